@@ -1,0 +1,49 @@
+/*
+ * commands.h: one function per subcommand, each in the file of its name, and what they share.
+ */
+#ifndef KRS_COMMANDS_H
+#define KRS_COMMANDS_H
+
+#include "cli/options.h"
+#include "compiler/base/text.h"
+#include "compiler/compile.h"
+#include "runtime/krs_vulkan.h"
+
+KrsStatus command_render(Options *options);
+KrsStatus command_compile(Options *options);
+KrsStatus command_validate(Options *options);
+KrsStatus command_query(Options *options);
+KrsStatus command_info(Options *options);
+KrsStatus command_devices(Options *options);
+KrsStatus command_check(Options *options);
+KrsStatus command_dump(Options *options);
+KrsStatus command_explain(Options *options);
+
+/* scene.c */
+
+/* Compiles a scene file, its diagnostics to standard error.  On KRS_OK the caller owns *scene,
+   else it is NULL and the user knows why. */
+KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene);
+/* KRS_OK, or KRS_IO_ERROR and words: the file is missing, a folder, or not ours to read. */
+KrsStatus scene_readable(const char *path);
+/* How diagnostics are printed, for krs_compile_file and krs_dump. */
+KrsOptions scene_options(const Options *options);
+/* A frame with --set and --time; KRS_BAD_ARGUMENT and words when a setting does not fit. */
+KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsFrame **frame);
+/* "a/ring.krs" is called "ring". */
+const char *scene_name(Arena *arena, const char *path);
+/* Says what a status means after a call of the library that has no words of its own. */
+KrsStatus say_status(KrsStatus status, const char *path);
+
+/* devices.c: opens the device that --device asks for.  On KRS_OK the caller owns *renderer,
+   else it is NULL and the user knows why. */
+KrsStatus open_renderer(const Options *options, KrsRenderer **renderer);
+
+/* info.c: the members that `krs info --json` and `krs compile` have in common. */
+void info_add_json(Text *json, const KrsScene *scene);
+
+/* Numbers in JSON; what is not finite becomes null. */
+void json_number(Text *json, double number);
+void json_vector(Text *json, const double *values, size_t count);
+
+#endif

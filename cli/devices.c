@@ -1,0 +1,84 @@
+/*
+ * devices.c: `krs devices`: the Vulkan devices, and the one a render would take.
+ */
+#include <stdio.h>
+
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/supervise.h"
+
+static const char *const kind_names[] = {
+    [KRS_DEVICE_OTHER] = "other", [KRS_DEVICE_CPU] = "cpu", [KRS_DEVICE_VIRTUAL] = "virtual",
+    [KRS_DEVICE_INTEGRATED] = "integrated", [KRS_DEVICE_DISCRETE] = "discrete"};
+
+typedef struct Version {
+    unsigned major, minor, patch;
+} Version;
+
+/* As VK_API_VERSION_MAJOR and its kin take it apart. */
+static Version unpack(uint32_t packed)
+{
+    return (Version){packed >> 22 & 0x7f, packed >> 12 & 0x3ff, packed & 0xfff};
+}
+
+static void print_text(const KrsDevice *devices, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        Version version = unpack(devices[i].api_version);
+        printf("%c %zu  %s (%s, Vulkan %u.%u.%u)%s\n", devices[i].preferred ? '*' : ' ', i,
+               devices[i].name, kind_names[devices[i].kind], version.major, version.minor,
+               version.patch, devices[i].usable ? "" : ", not usable");
+    }
+}
+
+static void print_json(Arena *arena, const KrsDevice *devices, size_t count)
+{
+    Text json = {.arena = arena};
+    text_add(&json, "{\"devices\": [");
+    for (size_t i = 0; i < count; i++) {
+        Version version = unpack(devices[i].api_version);
+        text_format(&json, "%s{\"index\": %zu, \"name\": ", i == 0 ? "" : ", ", i);
+        text_json(&json, devices[i].name);
+        text_format(&json, ", \"kind\": \"%s\", \"vulkan\": \"%u.%u.%u\", \"usable\": %s, "
+                           "\"preferred\": %s}",
+                    kind_names[devices[i].kind], version.major, version.minor, version.patch,
+                    devices[i].usable ? "true" : "false", devices[i].preferred ? "true" : "false");
+    }
+    text_add(&json, "]}");
+    puts(json.bytes);
+}
+
+KrsStatus command_devices(Options *options)
+{
+    size_t count = 0;
+    stage_enter(STAGE_DEVICE);
+    KrsStatus status = krs_devices(NULL, 0, &count);
+    KrsDevice *devices = arena_new_array(options->arena, KrsDevice, count + 1);
+    size_t capacity = count;
+    if (status == KRS_OK)
+        status = krs_devices(devices, capacity, &count);
+    if (status == KRS_NO_DEVICE)
+        say("no Vulkan device; a driver for the processor is in the package mesa-vulkan-drivers");
+    if (status != KRS_OK)
+        return say_status(status, "the list of devices");
+    count = count < capacity ? count : capacity;
+    if (options->json)
+        print_json(options->arena, devices, count);
+    else
+        print_text(devices, count);
+    return KRS_OK;
+}
+
+KrsStatus open_renderer(const Options *options, KrsRenderer **renderer)
+{
+    KrsRendererOptions with = {.device = options->device};
+    stage_enter(STAGE_DEVICE);
+    KrsStatus status = krs_renderer_new(&with, renderer);
+    stage_enter(STAGE_START);
+    if (status == KRS_OK)
+        return KRS_OK;
+    say("%s", *renderer ? krs_renderer_message(*renderer) : "out of memory");
+    krs_renderer_free(*renderer);
+    *renderer = NULL;
+    return status;
+}

@@ -1,0 +1,61 @@
+/*
+ * dump.c: `krs dump`: the scene as it is after any stage of the compiler, as text.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/modules.h"
+#include "cli/supervise.h"
+
+/* SPIR-V comes behind the stages that the library knows, one module for each kernel. */
+static KrsStatus dump_spirv(const Options *options, const char *path)
+{
+    KrsScene *scene;
+    Modules modules;
+    KrsStatus status = scene_open(options, path, &scene);
+    if (status != KRS_OK)
+        return status;
+    status = modules_compile(options, scene, &modules);
+    for (size_t i = 0; i < modules.count && status == KRS_OK; i++) {
+        char *text = spirv_disassemble(modules.items[i].words, modules.items[i].word_count);
+        if (!text)
+            status = say_status(KRS_OUT_OF_MEMORY, path);
+        else
+            printf("; %s\n%s", modules.items[i].file, text);
+        free(text);
+    }
+    modules_free(&modules);
+    krs_scene_free(scene);
+    return status;
+}
+
+static DumpStage find_stage(const char *name)
+{
+    DumpStage stage = 0;
+    while (stage < DUMP_STAGE_COUNT && strcmp(dump_stage_names[stage], name) != 0)
+        stage++;
+    return stage;
+}
+
+KrsStatus command_dump(Options *options)
+{
+    const char *path = options->files.items[0];
+    DumpStage stage = find_stage(options->after);
+    if (stage == DUMP_STAGE_COUNT)
+        return dump_spirv(options, path);
+    KrsStatus status = scene_readable(path);
+    if (status != KRS_OK)
+        return status;
+    char *text = NULL;
+    KrsOptions with = scene_options(options);
+    stage_enter(STAGE_COMPILE);
+    status = krs_dump(path, stage, &with, &text);
+    stage_enter(STAGE_ANSWER);
+    if (text)
+        fputs(text, stdout);
+    free(text);
+    return say_status(status, path);
+}

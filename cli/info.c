@@ -1,0 +1,146 @@
+/*
+ * info.c: `krs info`: what a scene consists of and costs.
+ */
+#include <math.h>
+#include <stdio.h>
+
+#include "cli/commands.h"
+#include "cli/console.h"
+
+static void print_vector(const double *values, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        fputs(i == 0 ? (count > 1 ? "[" : "") : ", ", stdout);
+        print_number(stdout, values[i]);
+    }
+    fputs(count > 1 ? "]" : "", stdout);
+}
+
+static void print_component(const KrsComponent *component, size_t number)
+{
+    printf("component %zu: %s\n    bounds     ", number, component->name);
+    print_vector(component->low, 3);
+    fputs(" to ", stdout);
+    print_vector(component->high, 3);
+    fputs("\n    slope      ", stdout);
+    print_number(stdout, component->slope);
+    puts(component->exact ? " (the distance is exact)" : "");
+    if (component->levels > 0) {
+        printf("    levels     %u\n    instances  ", component->levels);
+        print_number(stdout, component->instances);
+        putchar('\n');
+    }
+}
+
+static void print_parameter(const KrsParameter *parameter)
+{
+    printf("param %s = ", parameter->name);
+    print_vector(parameter->value, parameter->components);
+    fputs(" in ", stdout);
+    print_vector(parameter->low, parameter->components);
+    fputs(" to ", stdout);
+    print_vector(parameter->high, parameter->components);
+    putchar('\n');
+}
+
+static void print_text(const KrsScene *scene)
+{
+    const KrsProgram *program = krs_scene_program(scene);
+    for (size_t i = 0; i < krs_component_count(scene); i++) {
+        KrsComponent component;
+        krs_component(scene, i, &component);
+        print_component(&component, i + 1);
+    }
+    for (size_t i = 0; i < krs_parameter_count(scene); i++) {
+        KrsParameter parameter;
+        krs_parameter(scene, i, &parameter);
+        print_parameter(&parameter);
+    }
+    fputs("bounds ", stdout);
+    print_vector(program->low, 3);
+    fputs(" to ", stdout);
+    print_vector(program->high, 3);
+    printf("\noperations %zu\nflops per evaluation ", program->operations);
+    print_number(stdout, program->flops);
+    printf("\nhash %s\n", krs_scene_hash(scene));
+}
+
+static void add_components(Text *json, const KrsScene *scene)
+{
+    text_add(json, "\"components\": [");
+    for (size_t i = 0; i < krs_component_count(scene); i++) {
+        KrsComponent component;
+        krs_component(scene, i, &component);
+        text_add(json, i == 0 ? "{\"name\": " : ", {\"name\": ");
+        text_json(json, component.name);
+        text_add(json, ", \"low\": ");
+        json_vector(json, component.low, 3);
+        text_add(json, ", \"high\": ");
+        json_vector(json, component.high, 3);
+        text_add(json, ", \"slope\": ");
+        json_number(json, component.slope);
+        text_format(json, ", \"exact\": %s, \"levels\": %u, \"instances\": ",
+                    component.exact ? "true" : "false", component.levels);
+        json_number(json, component.instances);
+        text_add(json, "}");
+    }
+    text_add(json, "]");
+}
+
+static void add_parameters(Text *json, const KrsScene *scene)
+{
+    text_add(json, "\"parameters\": [");
+    for (size_t i = 0; i < krs_parameter_count(scene); i++) {
+        KrsParameter parameter;
+        krs_parameter(scene, i, &parameter);
+        text_add(json, i == 0 ? "{\"name\": " : ", {\"name\": ");
+        text_json(json, parameter.name);
+        text_add(json, ", \"value\": ");
+        json_vector(json, parameter.value, parameter.components);
+        text_add(json, ", \"low\": ");
+        json_vector(json, parameter.low, parameter.components);
+        text_add(json, ", \"high\": ");
+        json_vector(json, parameter.high, parameter.components);
+        text_add(json, "}");
+    }
+    text_add(json, "]");
+}
+
+/* The members that `krs info --json` and the NAME.json of `krs compile` have in common. */
+void info_add_json(Text *json, const KrsScene *scene)
+{
+    const KrsProgram *program = krs_scene_program(scene);
+    text_add(json, "\"krs\": ");
+    text_json(json, KRS_VERSION);
+    text_add(json, ", \"hash\": ");
+    text_json(json, krs_scene_hash(scene));
+    text_add(json, ", \"bounds\": {\"low\": ");
+    json_vector(json, program->low, 3);
+    text_add(json, ", \"high\": ");
+    json_vector(json, program->high, 3);
+    text_format(json, "}, \"operations\": %zu, \"flops_per_evaluation\": ", program->operations);
+    json_number(json, program->flops);
+    text_add(json, ", ");
+    add_components(json, scene);
+    text_add(json, ", ");
+    add_parameters(json, scene);
+}
+
+KrsStatus command_info(Options *options)
+{
+    KrsScene *scene;
+    KrsStatus status = scene_open(options, options->files.items[0], &scene);
+    if (status != KRS_OK)
+        return status;
+    if (options->json) {
+        Text json = {.arena = options->arena};
+        text_add(&json, "{");
+        info_add_json(&json, scene);
+        text_add(&json, "}");
+        puts(json.bytes);
+    } else {
+        print_text(scene);
+    }
+    krs_scene_free(scene);
+    return KRS_OK;
+}

@@ -1,0 +1,116 @@
+/*
+ * main.c: `krs`, the command.
+ *
+ * The way of a command line: options.c understands it, supervise.c forks, the function of the
+ * subcommand does the work in the child, and the status it returns becomes the exit status.
+ */
+#include <OpenEXR/openexr.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <glslang/build_info.h>
+#include <png.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <spirv-tools/libspirv.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+#include <vulkan/vulkan.h>
+
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/supervise.h"
+
+static Work *const works[COMMAND_COUNT] = {
+    [COMMAND_RENDER] = command_render,     [COMMAND_COMPILE] = command_compile,
+    [COMMAND_VALIDATE] = command_validate, [COMMAND_QUERY] = command_query,
+    [COMMAND_INFO] = command_info,         [COMMAND_DEVICES] = command_devices,
+    [COMMAND_CHECK] = command_check,       [COMMAND_DUMP] = command_dump,
+    [COMMAND_EXPLAIN] = command_explain,
+};
+
+/* A standard stream that the caller closed would otherwise be given out again, and a picture
+   written into what printf takes for the terminal.  Opened the wrong way round, each still fails
+   when used. */
+static void hold_standard_streams(void)
+{
+    for (int stream = 0; stream < 3; stream++)
+        if (fcntl(stream, F_GETFD) < 0 && errno == EBADF)
+            open("/dev/null", stream == 0 ? O_WRONLY : O_RDONLY);
+}
+
+/* Of glslang, which is linked statically, the version is known when compiling. */
+static KrsStatus print_version(void)
+{
+    int major, minor, patch;
+    const char *extra;
+    uint32_t vulkan = VK_API_VERSION_1_0;
+    exr_get_library_version(&major, &minor, &patch, &extra);
+    vkEnumerateInstanceVersion(&vulkan);
+    printf("krs %s\n", KRS_VERSION);
+    printf("Vulkan loader %u.%u.%u\n", VK_API_VERSION_MAJOR(vulkan), VK_API_VERSION_MINOR(vulkan),
+           VK_API_VERSION_PATCH(vulkan));
+    printf("glslang %d.%d.%d\n", GLSLANG_VERSION_MAJOR, GLSLANG_VERSION_MINOR,
+           GLSLANG_VERSION_PATCH);
+    printf("SPIRV-Tools %s\n", spvSoftwareVersionString());
+    printf("OpenEXRCore %d.%d.%d%s\n", major, minor, patch, extra ? extra : "");
+    printf("libpng %s\n", png_get_libpng_ver(NULL));
+    return console_finish();
+}
+
+/* The work as the child does it: out of memory in any arena of the command ends here. */
+static KrsStatus work_with_memory(Options *options)
+{
+    jmp_buf exhausted;
+    if (setjmp(exhausted) != 0) {
+        say("out of memory");
+        return KRS_OUT_OF_MEMORY;
+    }
+    options->arena->memory->exhausted = &exhausted;
+    return works[options->command](options);
+}
+
+static int run(Options *options, int argc, char **argv)
+{
+    jmp_buf exhausted;
+    if (setjmp(exhausted) != 0) {
+        say("out of memory");
+        return KRS_OUT_OF_MEMORY;
+    }
+    options->arena->memory->exhausted = &exhausted;
+    KrsStatus status = options_parse(options, argc, argv);
+    if (status != KRS_OK)
+        return status;
+    if (options->help) {
+        help_print_command(options->command, stdout);
+        return console_finish();
+    }
+    return supervise(options, work_with_memory);
+}
+
+static int map_exit(const Options *options, int status)
+{
+    for (size_t i = 0; i < options->exit_map.count; i++)
+        if (options->exit_map.items[i].from == status)
+            return options->exit_map.items[i].to;
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    hold_standard_streams();
+    signal(SIGPIPE, SIG_IGN); /* a write that fails says so by itself */
+    signal(SIGXFSZ, SIG_IGN);
+    if (argc == 2 && (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0))
+        return print_version();
+    if (argc == 2 && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)) {
+        help_print(stdout);
+        return console_finish();
+    }
+    Memory  memory = {.limit = 0};
+    Arena   arena = {.memory = &memory};
+    Options options = {.arena = &arena};
+    int     status = map_exit(&options, run(&options, argc, argv));
+    arena_free(&arena);
+    return status;
+}

@@ -1,0 +1,29 @@
+/*
+ * modules.h: the SPIR-V of a scene without a device: every kernel that includes the scene.
+ */
+#ifndef KRS_MODULES_H
+#define KRS_MODULES_H
+
+#include "cli/commands.h"
+
+typedef struct Module {
+    const char *entry; /* "trace" */
+    const char *file;  /* "trace.comp" */
+    uint32_t   *words;
+    size_t      word_count;
+} Module;
+
+typedef struct Modules {
+    Module *items;
+    size_t  count, capacity;
+} Modules;
+
+/* Compiles and validates every kernel for the scene; when one is refused, a bug of ours, its
+   log is said.  modules_free in either case. */
+KrsStatus modules_compile(const Options *options, const KrsScene *scene, Modules *modules);
+void      modules_free(Modules *modules);
+
+/* Appends {"entry": "trace", "workgroup": [8, 8, 1], "bindings": [{"set": 0, ...}, ...]}. */
+void module_add_json(Text *json, const Module *module);
+
+#endif

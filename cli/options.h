@@ -1,0 +1,94 @@
+/*
+ * options.h: the command line, understood.
+ */
+#ifndef KRS_OPTIONS_H
+#define KRS_OPTIONS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "compiler/base/arena.h"
+#include "compiler/krs.h"
+#include "runtime/film/film.h"
+
+enum {
+    MANY_FILES = -1,      /* a command that takes one or more files */
+    SIDE_LIMIT = 16384,   /* pixels along a side of a picture in this version */
+    SAMPLES_LIMIT = 65536
+};
+
+typedef enum CommandId {
+#define COMMAND(id, name, arguments, files, summary, examples) COMMAND_##id,
+#include "cli/commands.def"
+#undef COMMAND
+    COMMAND_COUNT
+} CommandId;
+
+typedef struct CommandInfo {
+    const char *name, *arguments;
+    int         files; /* how many scenes, or MANY_FILES */
+    const char *summary, *examples;
+} CommandInfo;
+
+extern const CommandInfo command_table[COMMAND_COUNT];
+
+/* What `--aov` chooses; colour and alpha are always there. */
+typedef enum Aov {
+    AOV_Z = 1, AOV_P = 2, AOV_N = 4, AOV_ALBEDO = 8, AOV_ID = 16, AOV_STEPS = 32, AOV_ALL = 63
+} Aov;
+
+typedef enum When { WHEN_AUTO, WHEN_ALWAYS, WHEN_NEVER } When;
+typedef enum StatsForm { STATS_NONE, STATS_TEXT, STATS_JSON } StatsForm;
+
+/* --set */
+typedef struct Setting {
+    const char *name;
+    double      values[4];
+    size_t      count;
+} Setting;
+
+typedef struct ExitPair {
+    int from, to;
+} ExitPair;
+
+typedef struct Options {
+    CommandId command;
+    bool      help;
+    int       argc; /* the whole command line, for a report of a crash */
+    char    **argv;
+
+    struct { const char **items; size_t count, capacity; } files, outputs;
+    struct { Setting *items; size_t count, capacity; } settings;
+    struct { ExitPair *items; size_t count, capacity; } exit_map;
+
+    uint32_t    width, height, samples; /* 0: not given */
+    const char *integrator, *camera, *device, *after; /* NULL: not given */
+    bool        cropped;
+    uint32_t    crop[4]; /* x, y, width, height */
+    bool        animated;
+    uint32_t    first_frame, last_frame;
+    double      fps, time;
+    unsigned    aovs;
+    bool        exposed, tone_mapped; /* --exposure, --tone-map were given */
+    double      exposure;
+    ToneMap     tone_map;
+    uint64_t    seed, points;
+    double      deadline; /* seconds */
+    StatsForm   stats;
+    bool        stamp, binary, json, no_device, json_diagnostics, quiet;
+    When        color;
+
+    Arena *arena; /* for whatever a command needs until the process ends */
+} Options;
+
+/* Understands the words behind `krs`.  KRS_OK, or KRS_BAD_ARGUMENT after one line on standard
+   error that says what is wrong.  `options->arena` must be set. */
+KrsStatus options_parse(Options *options, int argc, char **argv);
+
+/* `krs --help`, `krs COMMAND --help`. */
+void help_print(FILE *out);
+void help_print_command(CommandId command, FILE *out);
+
+#endif

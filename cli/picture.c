@@ -1,0 +1,197 @@
+/*
+ * picture.c: which plane of a rendered frame is which channel of a file, and the words beside.
+ */
+#include "cli/picture.h"
+
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <time.h>
+
+#include "cli/console.h"
+#include "cli/supervise.h"
+#include "runtime/writer/exr.h"
+#include "runtime/writer/png.h"
+
+/* One channel of an EXR: a plane of KrsPicture, how many samples it has per pixel, and which
+   of them this is. */
+typedef struct ChannelRow {
+    const char *name;
+    SampleType  type;
+    unsigned    aov; /* bit of Aov; 0: always */
+    KrsPlane    plane;
+    size_t      offset, stride, index;
+} ChannelRow;
+
+#define PLANE(member) offsetof(KrsPicture, member)
+static const ChannelRow channel_rows[] = {
+    {"R",            SAMPLE_HALF,  0,          KRS_PLANE_COLOR,    PLANE(color),     4, 0},
+    {"G",            SAMPLE_HALF,  0,          KRS_PLANE_COLOR,    PLANE(color),     4, 1},
+    {"B",            SAMPLE_HALF,  0,          KRS_PLANE_COLOR,    PLANE(color),     4, 2},
+    {"A",            SAMPLE_HALF,  0,          KRS_PLANE_COLOR,    PLANE(color),     4, 3},
+    {"Z",            SAMPLE_FLOAT, AOV_Z,      KRS_PLANE_DEPTH,    PLANE(depth),     1, 0},
+    {"P.X",          SAMPLE_FLOAT, AOV_P,      KRS_PLANE_POSITION, PLANE(position),  3, 0},
+    {"P.Y",          SAMPLE_FLOAT, AOV_P,      KRS_PLANE_POSITION, PLANE(position),  3, 1},
+    {"P.Z",          SAMPLE_FLOAT, AOV_P,      KRS_PLANE_POSITION, PLANE(position),  3, 2},
+    {"N.X",          SAMPLE_FLOAT, AOV_N,      KRS_PLANE_NORMAL,   PLANE(normal),    3, 0},
+    {"N.Y",          SAMPLE_FLOAT, AOV_N,      KRS_PLANE_NORMAL,   PLANE(normal),    3, 1},
+    {"N.Z",          SAMPLE_FLOAT, AOV_N,      KRS_PLANE_NORMAL,   PLANE(normal),    3, 2},
+    {"albedo.R",     SAMPLE_HALF,  AOV_ALBEDO, KRS_PLANE_ALBEDO,   PLANE(albedo),    3, 0},
+    {"albedo.G",     SAMPLE_HALF,  AOV_ALBEDO, KRS_PLANE_ALBEDO,   PLANE(albedo),    3, 1},
+    {"albedo.B",     SAMPLE_HALF,  AOV_ALBEDO, KRS_PLANE_ALBEDO,   PLANE(albedo),    3, 2},
+    {"id.component", SAMPLE_UINT,  AOV_ID,     KRS_PLANE_IDS,      PLANE(component), 1, 0},
+    {"id.level",     SAMPLE_UINT,  AOV_ID,     KRS_PLANE_IDS,      PLANE(level),     1, 0},
+    {"id.instance",  SAMPLE_UINT,  AOV_ID,     KRS_PLANE_IDS,      PLANE(instance),  1, 0},
+    {"steps",        SAMPLE_UINT,  AOV_STEPS,  KRS_PLANE_STEPS,    PLANE(steps),     1, 0},
+};
+enum { CHANNELS = sizeof channel_rows / sizeof *channel_rows, TEXTS = 8 };
+
+static bool is_wanted(const Options *options, const ChannelRow *row)
+{
+    return row->aov == 0 || (options->aovs & row->aov) != 0;
+}
+
+FileForm file_form(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    if (dot && strcasecmp(dot, ".exr") == 0)
+        return FORM_EXR;
+    return dot && strcasecmp(dot, ".png") == 0 ? FORM_PNG : FORM_UNKNOWN;
+}
+
+uint32_t picture_planes(const Options *options, bool exr)
+{
+    uint32_t planes = KRS_PLANE_COLOR;
+    for (size_t i = 0; exr && i < CHANNELS; i++)
+        if (is_wanted(options, &channel_rows[i]))
+            planes |= channel_rows[i].plane;
+    return planes;
+}
+
+/* "radius=0.5 tint=[1, 0.5, 0]": every param of the scene, in its order. */
+static const char *describe_parameters(const Options *options, const KrsScene *scene)
+{
+    Text text = {.arena = options->arena};
+    text_add(&text, "");
+    for (size_t i = 0; i < krs_parameter_count(scene); i++) {
+        KrsParameter parameter;
+        krs_parameter(scene, i, &parameter);
+        const double *values = parameter.value;
+        for (size_t s = 0; s < options->settings.count; s++)
+            if (strcmp(options->settings.items[s].name, parameter.name) == 0)
+                values = options->settings.items[s].values;
+        text_format(&text, "%s%s=", i == 0 ? "" : " ", parameter.name);
+        if (parameter.components == 1)
+            text_number(&text, values[0]);
+        else
+            json_vector(&text, values, parameter.components);
+    }
+    return text.bytes;
+}
+
+static const char *describe_number(const Options *options, double number)
+{
+    Text text = {.arena = options->arena};
+    text_number(&text, number);
+    return text.bytes;
+}
+
+static const char *describe_now(const Options *options)
+{
+    char date[32];
+    time_t now = time(NULL);
+    struct tm utc;
+    gmtime_r(&now, &utc);
+    strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return arena_copy_text(options->arena, date, strlen(date));
+}
+
+static size_t collect_texts(const Options *options, const KrsPicture *source,
+                            const PictureNotes *notes, PictureText texts[TEXTS])
+{
+    size_t count = 0;
+    texts[count++] = (PictureText){"software", "krs " KRS_VERSION};
+    texts[count++] = (PictureText){"krs:scene", krs_scene_hash(notes->scene)};
+    texts[count++] = (PictureText){"krs:parameters", describe_parameters(options, notes->scene)};
+    texts[count++] = (PictureText){"krs:time", describe_number(options, notes->time)};
+    if (options->stamp) {
+        texts[count++] = (PictureText){"krs:date", describe_now(options)};
+        texts[count++] = (PictureText){"krs:device", source->stats.device};
+        texts[count++] =
+            (PictureText){"krs:seconds", describe_number(options, source->stats.wall_ms / 1000)};
+    }
+    return count;
+}
+
+static size_t collect_channels(const Options *options, const KrsPicture *source,
+                               PictureChannel channels[CHANNELS])
+{
+    size_t count = 0;
+    for (size_t i = 0; i < CHANNELS; i++) {
+        const ChannelRow *row = &channel_rows[i];
+        if (!is_wanted(options, row))
+            continue;
+        const char *plane; /* floats and integers alike: the pointer is taken as bytes */
+        memcpy(&plane, (const char *)source + row->offset, sizeof plane);
+        channels[count++] = (PictureChannel){.name = row->name, .type = row->type,
+                                             .samples = plane + row->index * sizeof(float),
+                                             .stride = row->stride};
+    }
+    return count;
+}
+
+static bool fill_exr(const void *user, OutputFile *file, OutputError *error)
+{
+    return exr_write(user, file, error);
+}
+
+typedef struct PngContents {
+    const Picture *picture;
+    const uint8_t *rgb;
+} PngContents;
+
+static bool fill_png(const void *user, OutputFile *file, OutputError *error)
+{
+    const PngContents *contents = user;
+    return png_write(contents->picture, contents->rgb, file, error);
+}
+
+static KrsStatus write_exr(const Options *options, const KrsPicture *source, Picture *picture,
+                           const char *path)
+{
+    PictureChannel channels[CHANNELS];
+    PictureMatrix to_camera, to_ndc;
+    memcpy(to_camera.m, source->world_to_camera, sizeof to_camera.m);
+    memcpy(to_ndc.m, source->world_to_ndc, sizeof to_ndc.m);
+    picture->channels = channels;
+    picture->channel_count = collect_channels(options, source, channels);
+    picture->world_to_camera = &to_camera;
+    picture->world_to_ndc = &to_ndc;
+    return write_output(path, fill_exr, picture);
+}
+
+static KrsStatus write_png(const KrsPicture *source, const Picture *picture,
+                           const FilmOptions *film, const char *path)
+{
+    uint8_t *rgb = malloc((size_t)source->window.width * source->window.height * 3);
+    if (!rgb)
+        return say_status(KRS_OUT_OF_MEMORY, path);
+    film_to_srgb8(source, film, rgb);
+    KrsStatus status = write_output(path, fill_png, &(PngContents){picture, rgb});
+    free(rgb);
+    return status;
+}
+
+KrsStatus picture_write(const Options *options, const KrsPicture *source,
+                        const PictureNotes *notes, const char *path)
+{
+    PictureText texts[TEXTS];
+    Picture picture = {
+        .width = source->width, .height = source->height,
+        .crop_x = source->window.x, .crop_y = source->window.y,
+        .crop_width = source->window.width, .crop_height = source->window.height,
+        .texts = texts, .text_count = collect_texts(options, source, notes, texts)};
+    return file_form(path) == FORM_EXR ? write_exr(options, source, &picture, path)
+                                       : write_png(source, &picture, &notes->film, path);
+}

@@ -1,0 +1,249 @@
+/*
+ * query.c: `krs query`: points and rays in, distances and hits out.
+ *
+ * Input is answered as it comes: whatever one read() brings is answered before the next, so
+ * that a program may hold a conversation over two pipes, and a file still goes through in
+ * large batches.
+ */
+#include <endian.h>
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/supervise.h"
+
+enum {
+    BATCH = 4096,
+    INPUT_SIZE = 1 << 16,     /* also the longest line */
+    RECORD_IN = 6 * 8,        /* bytes of a binary question */
+    RECORD_OUT = 10           /* numbers of a binary answer */
+};
+
+/* Rays end here, in world units from their origin: far beyond any scene, and finite. */
+static const double FARTHEST = 1e9;
+
+typedef struct Query {
+    KrsFrame *frame;
+    bool      binary;
+    size_t    count; /* questions that wait in the batch */
+    bool      is_ray[BATCH];
+    double    origins[BATCH][3], directions[BATCH][3];
+    double    gathered[BATCH][3], aims[BATCH][3]; /* of one kind, without gaps */
+    KrsHit    hits[BATCH], answers[BATCH];
+    uint64_t  line; /* the last one that was read */
+} Query;
+
+/* Answers the questions of one kind, points or rays. */
+static void answer_kind(Query *query, bool rays)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < query->count; i++)
+        if (query->is_ray[i] == rays) {
+            memcpy(query->gathered[count], query->origins[i], sizeof query->gathered[0]);
+            memcpy(query->aims[count++], query->directions[i], sizeof query->aims[0]);
+        }
+    const double(*points)[3] = (const double(*)[3])query->gathered;
+    if (rays)
+        krs_raycast(query->frame, points, (const double(*)[3])query->aims, count, FARTHEST, 0,
+                    query->hits);
+    else
+        krs_probe(query->frame, points, count, query->hits);
+    for (size_t i = 0, next = 0; i < query->count; i++)
+        if (query->is_ray[i] == rays)
+            query->answers[i] = query->hits[next++];
+}
+
+static void print_text(bool is_ray, const KrsHit *hit)
+{
+    if (is_ray && !hit->hit) {
+        puts("miss");
+        return;
+    }
+    print_number(stdout, is_ray ? hit->t : hit->distance);
+    for (int axis = 0; is_ray && axis < 3; axis++) {
+        putchar(' ');
+        print_number(stdout, hit->point[axis]);
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        putchar(' ');
+        print_number(stdout, hit->normal[axis]);
+    }
+    printf(" %u %u %u\n", hit->component, hit->level, hit->instance);
+}
+
+static void print_binary(bool is_ray, const KrsHit *hit)
+{
+    double record[RECORD_OUT] = {INFINITY};
+    if (hit->hit || !is_ray) {
+        record[0] = is_ray ? hit->t : hit->distance;
+        memcpy(record + 1, hit->point, sizeof hit->point);
+        memcpy(record + 4, hit->normal, sizeof hit->normal);
+        record[7] = hit->component;
+        record[8] = hit->level;
+        record[9] = hit->instance;
+    }
+    for (int i = 0; i < RECORD_OUT; i++) {
+        uint64_t bits;
+        memcpy(&bits, &record[i], sizeof bits);
+        bits = htole64(bits);
+        fwrite(&bits, sizeof bits, 1, stdout);
+    }
+}
+
+static void answer_batch(Query *query)
+{
+    answer_kind(query, false);
+    answer_kind(query, true);
+    for (size_t i = 0; i < query->count; i++)
+        if (query->binary)
+            print_binary(query->is_ray[i], &query->answers[i]);
+        else
+            print_text(query->is_ray[i], &query->answers[i]);
+    query->count = 0;
+}
+
+/* False when the numbers cannot be a point or a ray. */
+static bool add_question(Query *query, const double *numbers, bool is_ray)
+{
+    for (int i = 0; i < (is_ray ? 6 : 3); i++)
+        if (!isfinite(numbers[i]))
+            return false;
+    if (is_ray && numbers[3] == 0 && numbers[4] == 0 && numbers[5] == 0)
+        return false;
+    memcpy(query->origins[query->count], numbers, 3 * sizeof *numbers);
+    memcpy(query->directions[query->count], numbers + 3, 3 * sizeof *numbers);
+    query->is_ray[query->count++] = is_ray;
+    if (query->count == BATCH)
+        answer_batch(query);
+    return true;
+}
+
+/* One line, NUL-terminated.  Blank lines are skipped. */
+static bool read_line(Query *query, const char *line)
+{
+    double numbers[6] = {0};
+    int count = 0;
+    query->line++;
+    for (;;) {
+        line += strspn(line, " \t\r");
+        if (*line == '\0')
+            break;
+        char *end;
+        if (count == 6)
+            return false;
+        numbers[count++] = strtod(line, &end);
+        if (end == line || !strchr(" \t\r", *end)) /* also finds the NUL */
+            return false;
+        line = end;
+    }
+    return count == 0 || ((count == 3 || count == 6) && add_question(query, numbers, count == 6));
+}
+
+/* Takes the lines, or the records, that are complete; returns the bytes used.  *good becomes
+   false at one that makes no sense. */
+static size_t take_input(Query *query, char *input, size_t length, bool *good)
+{
+    size_t used = 0;
+    *good = true;
+    while (*good && query->binary && length - used >= RECORD_IN) {
+        double numbers[6];
+        for (int i = 0; i < 6; i++) {
+            uint64_t bits;
+            memcpy(&bits, input + used + 8 * (size_t)i, sizeof bits);
+            bits = le64toh(bits);
+            memcpy(&numbers[i], &bits, sizeof bits);
+        }
+        query->line++;
+        *good = add_question(query, numbers,
+                             numbers[3] != 0 || numbers[4] != 0 || numbers[5] != 0);
+        used += RECORD_IN;
+    }
+    char *newline;
+    while (*good && !query->binary && (newline = memchr(input + used, '\n', length - used))) {
+        *newline = '\0';
+        bool whole = strlen(input + used) == (size_t)(newline - input) - used;
+        *good = read_line(query, input + used) && whole;
+        used = (size_t)(newline - input) + 1;
+    }
+    return used;
+}
+
+static KrsStatus refuse_input(const Query *query)
+{
+    if (query->binary)
+        say("record %llu of standard input is not six finite numbers",
+            (unsigned long long)query->line);
+    else
+        say("line %llu of standard input is neither a point `x y z` nor a ray `x y z dx dy dz`",
+            (unsigned long long)query->line);
+    return KRS_BAD_ARGUMENT;
+}
+
+/* The rest after the last newline, or behind the last whole record. */
+static KrsStatus finish_input(Query *query, char *input, size_t length)
+{
+    bool good = true;
+    if (length > 0 && query->binary) {
+        query->line++;
+        good = false;
+    } else if (length > 0) {
+        input[length] = '\0';
+        good = read_line(query, input) && strlen(input) == length;
+    }
+    answer_batch(query);
+    return good ? KRS_OK : refuse_input(query);
+}
+
+static KrsStatus answer_input(Query *query, char *input)
+{
+    size_t length = 0;
+    for (;;) {
+        ssize_t got = read(STDIN_FILENO, input + length, INPUT_SIZE - length);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got < 0) {
+            say("cannot read standard input: %s", strerror(errno));
+            return KRS_IO_ERROR;
+        }
+        if (got == 0)
+            return finish_input(query, input, length);
+        length += (size_t)got;
+
+        bool good;
+        size_t used = take_input(query, input, length, &good);
+        answer_batch(query);
+        memmove(input, input + used, length - used);
+        length -= used;
+        if (length == INPUT_SIZE) { /* no line is as long as that */
+            query->line++;
+            good = false;
+        }
+        KrsStatus written = console_finish();
+        if (!good || written != KRS_OK)
+            return good ? written : refuse_input(query);
+    }
+}
+
+KrsStatus command_query(Options *options)
+{
+    KrsScene *scene;
+    KrsStatus status = scene_open(options, options->files.items[0], &scene);
+    if (status != KRS_OK)
+        return status;
+    Query *query = arena_new(options->arena, Query);
+    char *input = arena_alloc(options->arena, INPUT_SIZE + 1, 1);
+    query->binary = options->binary;
+    status = scene_frame(options, scene, &query->frame);
+    if (status == KRS_OK) {
+        stage_enter(STAGE_ANSWER);
+        status = answer_input(query, input);
+    }
+    krs_frame_free(query->frame);
+    krs_scene_free(scene);
+    return status;
+}

@@ -1,0 +1,294 @@
+/*
+ * render.c: `krs render`: compile, render frame by frame, write.
+ *
+ * Whatever can be wrong with the command line or the outputs is found before the work begins.
+ */
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/picture.h"
+#include "cli/supervise.h"
+
+typedef struct Render {
+    const Options *options;
+    const char   **outputs;
+    size_t         output_count;
+    KrsScene      *scene;
+    KrsFrame      *frame;
+    KrsRenderer   *renderer;
+    KrsRendering  *rendering;
+    KrsRenderOptions how;
+    Progress       progress;
+} Render;
+
+/* Where the frame's number goes in the name of an output: "%d", "%04d".  NULL without one. */
+static const char *find_pattern(const char *path, int *width, size_t *length)
+{
+    for (const char *percent = path; (percent = strchr(percent, '%')); percent++) {
+        size_t digits = strspn(percent + 1, "0123456789");
+        if (digits <= 2 && percent[1 + digits] == 'd') {
+            *width = atoi(percent + 1);
+            *length = digits + 2;
+            return percent;
+        }
+    }
+    return NULL;
+}
+
+/* The name of an output for a frame; without --frames, names are taken as they are. */
+static const char *frame_path(const Options *options, const char *path, uint32_t frame)
+{
+    int width = 0;
+    size_t length = 0;
+    const char *pattern = options->animated ? find_pattern(path, &width, &length) : NULL;
+    if (!pattern)
+        return path;
+    Text text = {.arena = options->arena};
+    text_add_bytes(&text, path, (size_t)(pattern - path));
+    text_format(&text, "%0*u", width, frame);
+    text_add(&text, pattern + length);
+    return text.bytes;
+}
+
+static void choose_outputs(Render *render)
+{
+    const Options *options = render->options;
+    render->outputs = options->outputs.items;
+    render->output_count = options->outputs.count;
+    if (render->output_count > 0)
+        return;
+    Text text = {.arena = options->arena};
+    text_format(&text, "%s%s.exr", scene_name(options->arena, options->files.items[0]),
+                options->animated ? "-%04d" : "");
+    render->outputs = arena_new(options->arena, const char *);
+    render->outputs[0] = text.bytes;
+    render->output_count = 1;
+}
+
+static KrsStatus check_outputs(const Render *render)
+{
+    const Options *options = render->options;
+    for (size_t i = 0; i < render->output_count; i++) {
+        const char *path = render->outputs[i];
+        int width;
+        size_t length;
+        OutputError error;
+        if (file_form(path) == FORM_UNKNOWN)
+            return say_usage(options, "the output `%s` ends in neither .exr nor .png", path);
+        if (options->animated && !find_pattern(path, &width, &length))
+            return say_usage(options, "with --frames, `%s` needs a place for the number: %%04d",
+                             path);
+        if (output_check(frame_path(options, path, options->first_frame), &error) != KRS_OK) {
+            say("%s", error.message);
+            return error.status;
+        }
+    }
+    return KRS_OK;
+}
+
+static KrsStatus find_camera(const Options *options, const KrsScene *scene, size_t *camera)
+{
+    size_t count = krs_camera_count(scene), named = 0;
+    const char **names = arena_new_array(options->arena, const char *, count + 1);
+    *camera = 0;
+    for (size_t i = 0; options->camera && i < count; i++) {
+        const char *name = krs_camera_name(scene, i);
+        if (name && strcmp(name, options->camera) == 0) {
+            *camera = i;
+            return KRS_OK;
+        }
+        if (name)
+            names[named++] = name;
+    }
+    if (!options->camera)
+        return KRS_OK;
+    const char *nearest = nearest_name(options->camera, names, named);
+    if (nearest)
+        return say_usage(options, "the scene has no camera `%s`; did you mean `%s`?",
+                         options->camera, nearest);
+    return say_usage(options, "the scene has no camera `%s`", options->camera);
+}
+
+static bool show_progress(void *user, double done)
+{
+    Render *render = user;
+    progress_show(&render->progress, done);
+    return !*interrupted();
+}
+
+/* Size, crop and what else the options and the scene's image block say together. */
+static KrsStatus choose_how(Render *render)
+{
+    const Options *options = render->options;
+    KrsView view;
+    size_t camera;
+    KrsStatus status = find_camera(options, render->scene, &camera);
+    if (status == KRS_OK)
+        status = krs_frame_view(render->frame, camera, &view);
+    if (status != KRS_OK)
+        return status;
+    uint32_t width = options->width    ? options->width
+                     : view.image.width ? view.image.width
+                                        : 1280;
+    uint32_t height = options->height    ? options->height
+                      : view.image.height ? view.image.height
+                                          : 720;
+    const uint32_t *crop = options->crop;
+    if (options->cropped && (crop[0] + crop[2] > width || crop[1] + crop[3] > height))
+        return say_usage(options, "--crop %u,%u,%u,%u is not inside of a picture of %ux%u", crop[0],
+                         crop[1], crop[2], crop[3], width, height);
+    bool exr = false;
+    for (size_t i = 0; i < render->output_count; i++)
+        exr = exr || file_form(render->outputs[i]) == FORM_EXR;
+    render->how = (KrsRenderOptions){
+        .width = width, .height = height, .samples = options->samples, .camera = camera,
+        .seed = options->seed, .planes = picture_planes(options, exr),
+        .progress = show_progress, .user = render};
+    if (options->cropped)
+        render->how.crop = (KrsWindow){crop[0], crop[1], crop[2], crop[3]};
+    return KRS_OK;
+}
+
+static void add_stats_json(Text *json, const KrsRenderStats *stats, const KrsProgram *program)
+{
+    text_format(json, "\"compile\": {\"front\": %.3f, \"glsl\": %.3f, \"spirv\": %.3f, "
+                      "\"pipeline\": %.3f}, \"render\": {",
+                program->front_ms, program->glsl_ms, stats->spirv_ms, stats->pipeline_ms);
+    for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
+        text_format(json, "\"%s\": %.3f, ", krs_phase_names[phase], stats->phase_ms[phase]);
+    text_format(json, "\"total\": %.3f, \"wall\": %.3f}, \"device_time\": %s, \"rays\": %llu, "
+                      "\"evaluations\": %llu, \"evaluations_per_ray\": {\"mean\": %.3f, "
+                      "\"maximum\": %u}, \"flops_per_evaluation\": %.3f, \"gflops\": %.3f, "
+                      "\"unresolved\": %llu, \"device\": ",
+                stats->total_ms, stats->wall_ms, stats->device_time ? "true" : "false",
+                (unsigned long long)stats->rays, (unsigned long long)stats->evaluations,
+                stats->evaluations_per_ray, stats->most_evaluations_per_ray,
+                stats->flops_per_evaluation, stats->gflops, (unsigned long long)stats->unresolved);
+    text_json(json, stats->device);
+    text_format(json, ", \"peak_memory_bytes\": %llu",
+                (unsigned long long)stats->peak_memory_bytes);
+}
+
+static void print_stats(const KrsRenderStats *stats, const KrsProgram *program)
+{
+    printf("device         %s\n", stats->device);
+    printf("compile        front end %.1f ms, GLSL %.1f ms, SPIR-V %.1f ms, pipelines %.1f ms\n",
+           program->front_ms, program->glsl_ms, stats->spirv_ms, stats->pipeline_ms);
+    printf("render         %.1f ms%s, %.1f ms in all:", stats->total_ms,
+           stats->device_time ? " on the device" : "", stats->wall_ms);
+    for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
+        printf(" %s %.1f", krs_phase_names[phase], stats->phase_ms[phase]);
+    printf("\nrays           %llu, %llu evaluations, %.1f per ray, at most %u\n",
+           (unsigned long long)stats->rays, (unsigned long long)stats->evaluations,
+           stats->evaluations_per_ray, stats->most_evaluations_per_ray);
+    printf("arithmetic     %.0f flops per evaluation, %.2f Gflop/s\n", stats->flops_per_evaluation,
+           stats->gflops);
+    printf("unresolved     %llu\npeak memory    %.1f MiB\n", (unsigned long long)stats->unresolved,
+           (double)stats->peak_memory_bytes / (1 << 20));
+}
+
+/* One object a frame, each on a line of its own. */
+static void show_stats(Render *render, const KrsRenderStats *stats, uint32_t frame)
+{
+    const Options *options = render->options;
+    const KrsProgram *program = krs_scene_program(render->scene);
+    if (options->stats != STATS_NONE)
+        progress_end(&render->progress);
+    if (options->stats == STATS_TEXT)
+        print_stats(stats, program);
+    if (options->stats != STATS_JSON)
+        return;
+    Text json = {.arena = options->arena};
+    text_add(&json, "{");
+    if (options->animated)
+        text_format(&json, "\"frame\": %u, ", frame);
+    add_stats_json(&json, stats, program);
+    text_add(&json, "}");
+    puts(json.bytes);
+}
+
+static KrsStatus write_outputs(const Render *render, const KrsPicture *picture, double time,
+                               uint32_t frame)
+{
+    const Options *options = render->options;
+    KrsView view;
+    KrsStatus status = krs_frame_view(render->frame, render->how.camera, &view);
+    PictureNotes notes = {.scene = render->scene, .time = time,
+                          .film = {.tone_map = options->tone_map, .exposure = options->exposure}};
+    if (!options->exposed)
+        notes.film.exposure = view.image.exposure;
+    if (!options->tone_mapped && view.image.tone_map)
+        tone_map_find(view.image.tone_map, &notes.film.tone_map); /* the compiler knows its name */
+    for (size_t i = 0; i < render->output_count && status == KRS_OK; i++)
+        status = picture_write(options, picture, &notes,
+                               frame_path(options, render->outputs[i], frame));
+    return status;
+}
+
+static KrsStatus render_frame(Render *render, uint32_t frame)
+{
+    const Options *options = render->options;
+    double time = options->time + (options->animated ? frame / options->fps : 0);
+    KrsPicture *picture = NULL;
+    KrsStatus status = krs_frame_set_time(render->frame, time);
+    stage_enter(STAGE_RENDER);
+    if (status == KRS_OK)
+        status = krs_render(render->rendering, render->frame, &render->how, &picture);
+    if (status != KRS_OK) {
+        progress_end(&render->progress);
+        if (status != KRS_INTERRUPTED)
+            say("%s", krs_renderer_message(render->renderer));
+        return status;
+    }
+    status = write_outputs(render, picture, time, frame);
+    if (status == KRS_OK)
+        show_stats(render, &picture->stats, frame);
+    krs_picture_free(picture);
+    return status;
+}
+
+static KrsStatus make_ready(Render *render)
+{
+    const Options *options = render->options;
+    KrsStatus status = scene_open(options, options->files.items[0], &render->scene);
+    if (status == KRS_OK)
+        status = scene_frame(options, render->scene, &render->frame);
+    if (status == KRS_OK)
+        status = choose_how(render);
+    if (status == KRS_OK)
+        status = open_renderer(options, &render->renderer);
+    if (status != KRS_OK)
+        return status;
+    stage_enter(STAGE_SHADERS);
+    status = krs_rendering_new(render->renderer, render->scene, &render->rendering);
+    if (status != KRS_OK)
+        say("%s", krs_renderer_message(render->renderer));
+    return status;
+}
+
+KrsStatus command_render(Options *options)
+{
+    Render *render = arena_new(options->arena, Render);
+    render->options = options;
+    choose_outputs(render);
+    KrsStatus status = check_outputs(render);
+    if (status == KRS_OK)
+        status = make_ready(render);
+    progress_start(&render->progress, options,
+                   (size_t)options->last_frame - options->first_frame + 1);
+    for (uint32_t frame = options->first_frame; frame <= options->last_frame && status == KRS_OK;
+         frame++) {
+        render->progress.part = frame - options->first_frame;
+        status = render_frame(render, frame);
+    }
+    progress_end(&render->progress);
+    krs_rendering_free(render->rendering);
+    krs_renderer_free(render->renderer);
+    krs_frame_free(render->frame);
+    krs_scene_free(render->scene);
+    return status;
+}

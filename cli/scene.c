@@ -1,0 +1,164 @@
+/*
+ * scene.c: from the path of a scene and the options to a compiled scene and a frame of it.
+ */
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/supervise.h"
+
+/* "error[E0203]: message" of the first line; the rest is drawn in ASCII and stays plain. */
+static void print_colored(const KrsDiagnostic *diagnostic)
+{
+    size_t head = strcspn(diagnostic->text, ":\n"), line = strcspn(diagnostic->text, "\n");
+    fprintf(stderr, "\033[1;%dm%.*s\033[0;1m%.*s\033[0m%s", diagnostic->error ? 31 : 33, (int)head,
+            diagnostic->text, (int)(line - head), diagnostic->text + head, diagnostic->text + line);
+}
+
+static void print_diagnostic(void *user, const KrsDiagnostic *diagnostic)
+{
+    const Options *options = user;
+    if (options->quiet && !diagnostic->error)
+        return;
+    if (options->json_diagnostics)
+        fprintf(stderr, "%s\n", diagnostic->json);
+    else if (console_color(options))
+        print_colored(diagnostic);
+    else
+        fputs(diagnostic->text, stderr);
+}
+
+KrsOptions scene_options(const Options *options)
+{
+    return (KrsOptions){.diagnostic = print_diagnostic, .user = (void *)options};
+}
+
+KrsStatus scene_readable(const char *path)
+{
+    struct stat info;
+    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    bool readable = file >= 0 && fstat(file, &info) == 0;
+    if (readable && S_ISDIR(info.st_mode)) {
+        errno = EISDIR;
+        readable = false;
+    }
+    if (!readable)
+        say("cannot read `%s`: %s", path, strerror(errno));
+    if (file >= 0)
+        close(file);
+    return readable ? KRS_OK : KRS_IO_ERROR;
+}
+
+KrsStatus say_status(KrsStatus status, const char *path)
+{
+    if (status == KRS_OUT_OF_MEMORY)
+        say("out of memory with `%s`", path);
+    else if (status == KRS_IO_ERROR)
+        say("cannot read `%s`", path);
+    else if (status == KRS_INTERNAL)
+        say("`%s` brought out a bug of krs", path);
+    return status; /* a wrong scene has been told about in diagnostics */
+}
+
+KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene)
+{
+    *scene = NULL;
+    KrsStatus status = scene_readable(path);
+    if (status != KRS_OK)
+        return status;
+    stage_enter(STAGE_COMPILE);
+    KrsOptions with = scene_options(options);
+    status = krs_compile_file(path, &with, scene);
+    stage_enter(STAGE_START);
+    return say_status(status, path);
+}
+
+const char *scene_name(Arena *arena, const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    const char *name = slash ? slash + 1 : path;
+    size_t length = strlen(name);
+    if (length > 4 && strcmp(name + length - 4, ".krs") == 0)
+        length -= 4;
+    return arena_copy_text(arena, name, length);
+}
+
+static KrsStatus say_unknown_parameter(const Options *options, const KrsScene *scene,
+                                       const char *name)
+{
+    size_t count = krs_parameter_count(scene);
+    const char **names = arena_new_array(options->arena, const char *, count + 1);
+    for (size_t i = 0; i < count; i++) {
+        KrsParameter parameter;
+        krs_parameter(scene, i, &parameter);
+        names[i] = parameter.name;
+    }
+    const char *nearest = nearest_name(name, names, count);
+    if (nearest)
+        return say_usage(options, "the scene has no param `%s`; did you mean `%s`?", name, nearest);
+    return say_usage(options, "the scene has no param `%s`; `krs info` lists what it has", name);
+}
+
+/* Why krs_frame_set refused a setting. */
+static KrsStatus say_refused_setting(const Options *options, const KrsScene *scene,
+                                     const Setting *setting)
+{
+    KrsParameter parameter;
+    size_t index = 0;
+    while (krs_parameter(scene, index, &parameter) == KRS_OK &&
+           strcmp(parameter.name, setting->name) != 0)
+        index++;
+    if (index == krs_parameter_count(scene))
+        return say_unknown_parameter(options, scene, setting->name);
+    if (setting->count != parameter.components)
+        return say_usage(options, "param `%s` takes %u number%s, not %zu", setting->name,
+                         parameter.components, parameter.components == 1 ? "" : "s",
+                         setting->count);
+    for (size_t i = 0; i < setting->count; i++)
+        if (!(setting->values[i] >= parameter.low[i] && setting->values[i] <= parameter.high[i]))
+            return say_usage(options, "param `%s` goes from %g to %g; %g is outside", setting->name,
+                             parameter.low[i], parameter.high[i], setting->values[i]);
+    return say_usage(options, "param `%s` cannot have this value", setting->name);
+}
+
+KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsFrame **frame)
+{
+    KrsStatus status = krs_frame_new(scene, frame);
+    if (status != KRS_OK)
+        return say_status(status, options->files.items[0]);
+    for (size_t i = 0; i < options->settings.count && status == KRS_OK; i++) {
+        const Setting *setting = &options->settings.items[i];
+        status = krs_frame_set(*frame, setting->name, setting->values, setting->count);
+        if (status == KRS_BAD_ARGUMENT)
+            say_refused_setting(options, scene, setting);
+    }
+    if (status == KRS_OK)
+        status = krs_frame_set_time(*frame, options->time);
+    if (status != KRS_OK) {
+        krs_frame_free(*frame);
+        *frame = NULL;
+    }
+    return status;
+}
+
+void json_number(Text *json, double number)
+{
+    if (isfinite(number))
+        text_number(json, number);
+    else
+        text_add(json, "null");
+}
+
+void json_vector(Text *json, const double *values, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        text_add(json, i == 0 ? "[" : ", ");
+        json_number(json, values[i]);
+    }
+    text_add(json, "]");
+}

@@ -1,0 +1,313 @@
+/*
+ * supervise.c: fork, wait, explain.
+ *
+ * Parent and child share one page of memory, which is how the parent knows how far the child
+ * had come.  That page and the interrupt flag are the only variables of the command that are
+ * global: a signal handler can reach nothing else.
+ */
+#include "cli/supervise.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "cli/console.h"
+
+typedef struct Shared {
+    atomic_int       stage;
+    _Atomic uint64_t entered; /* when, milliseconds of clock_now */
+    atomic_int       open;    /* whether `temporary` exists */
+    char             temporary[4096];
+} Shared;
+
+static Shared *shared;
+static volatile sig_atomic_t interrupt_flag;
+
+typedef struct StageInfo {
+    const char *name, *doing;
+    bool        timed;  /* stands under the deadline */
+    bool        polite; /* notices an interrupt by itself */
+} StageInfo;
+
+static const StageInfo stage_info[STAGE_COUNT] = {
+    [STAGE_START]    = {"start", "starting", false, false},
+    [STAGE_COMPILE]  = {"compile", "compiling the scene", true, false},
+    [STAGE_SHADERS]  = {"shaders", "compiling the shaders", true, false},
+    [STAGE_DEVICE]   = {"device", "starting the device", false, false},
+    [STAGE_RENDER]   = {"render", "rendering", false, true},
+    [STAGE_VALIDATE] = {"validate", "validating", false, true},
+    [STAGE_WRITE]    = {"write", "writing", false, true},
+    [STAGE_ANSWER]   = {"answer", "printing the answer", false, false},
+};
+
+/* The child. */
+
+static uint64_t milliseconds(void) { return (uint64_t)(clock_now() * 1000); }
+
+static void crash_for_test(Stage stage)
+{
+    const char *wish = getenv("KRS_TEST_CRASH");
+    size_t length = strlen(stage_info[stage].name);
+    if (!wish || strncmp(wish, stage_info[stage].name, length) != 0)
+        return;
+    if (wish[length] == '\0')
+        raise(SIGSEGV);
+    if (strcmp(wish + length, ":hang") == 0)
+        for (;;)
+            pause();
+    if (wish[length] == ':')
+        raise(atoi(wish + length + 1));
+}
+
+void stage_enter(Stage stage)
+{
+    atomic_store(&shared->entered, milliseconds());
+    atomic_store(&shared->stage, (int)stage);
+    crash_for_test(stage);
+}
+
+const volatile sig_atomic_t *interrupted(void) { return &interrupt_flag; }
+
+static void interrupt_child(int signal_number)
+{
+    (void)signal_number;
+    interrupt_flag = 1;
+    if (!stage_info[atomic_load(&shared->stage)].polite)
+        _exit(KRS_INTERRUPTED);
+}
+
+KrsStatus write_output(const char *path, Fill *fill, const void *user)
+{
+    OutputError error;
+    stage_enter(STAGE_WRITE);
+    OutputFile *file = output_open(path, &interrupt_flag, &error);
+    if (file) {
+        snprintf(shared->temporary, sizeof shared->temporary, "%s", output_temporary(file));
+        atomic_store(&shared->open, 1);
+        fill(user, file, &error); /* what goes wrong stands in `error` */
+        output_commit(file);
+        atomic_store(&shared->open, 0);
+    }
+    if (error.status != KRS_OK && error.status != KRS_INTERRUPTED)
+        say("%s", error.message);
+    return error.status;
+}
+
+typedef struct Bytes {
+    const char *text;
+    size_t      length;
+} Bytes;
+
+static bool fill_text(const void *user, OutputFile *file, OutputError *error)
+{
+    const Bytes *bytes = user;
+    (void)error;
+    return output_append(file, bytes->text, bytes->length);
+}
+
+KrsStatus write_output_text(const char *path, const char *text, size_t length)
+{
+    return write_output(path, fill_text, &(Bytes){text, length});
+}
+
+/* A signal that was ignored when we were started (nohup) stays ignored. */
+static void catch_signal(int number)
+{
+    struct sigaction old, action = {.sa_handler = interrupt_child, .sa_flags = SA_RESTART};
+    sigaction(number, NULL, &old);
+    if (old.sa_handler != SIG_IGN)
+        sigaction(number, &action, NULL);
+}
+
+static _Noreturn void run_child(Options *options, Work *work, const sigset_t *mask)
+{
+    prctl(PR_SET_PDEATHSIG, SIGTERM); /* nobody would read what we do */
+    catch_signal(SIGINT);
+    catch_signal(SIGTERM);
+    catch_signal(SIGHUP);
+    sigprocmask(SIG_SETMASK, mask, NULL);
+    stage_enter(STAGE_START);
+    KrsStatus status = work(options);
+    KrsStatus printed = console_finish();
+    exit(status == KRS_OK ? printed : status);
+}
+
+/* The parent. */
+
+typedef struct Watch {
+    pid_t  child;
+    bool   interrupted, late; /* why we stopped the child */
+    double interrupted_at;
+} Watch;
+
+static void copy_file(const char *from, const char *to)
+{
+    char buffer[65536];
+    int source = open(from, O_RDONLY | O_CLOEXEC);
+    int target = open(to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    ssize_t length = 0;
+    while (source >= 0 && target >= 0 && (length = read(source, buffer, sizeof buffer)) > 0)
+        if (write(target, buffer, (size_t)length) != length)
+            break;
+    if (source >= 0)
+        close(source);
+    if (target >= 0)
+        close(target);
+}
+
+/* Single quotes keep every byte in a shell, except themselves. */
+static void print_quoted(FILE *out, const char *word)
+{
+    fputc('\'', out);
+    for (; *word; word++)
+        if (*word == '\'')
+            fputs("'\\''", out);
+        else
+            fputc(*word, out);
+    fputc('\'', out);
+}
+
+static void copy_scenes(const Options *options, const char *folder)
+{
+    for (size_t i = 0; i < options->files.count; i++) {
+        const char *from = options->files.items[i], *slash = strrchr(from, '/');
+        char *to;
+        if (asprintf(&to, "%s/%zu-%s", folder, i + 1, slash ? slash + 1 : from) < 0)
+            return;
+        copy_file(from, to);
+        free(to);
+    }
+}
+
+static void write_command(const Options *options, const char *folder, const char *story)
+{
+    char *path;
+    if (asprintf(&path, "%s/command.txt", folder) < 0)
+        return;
+    FILE *out = fopen(path, "w");
+    free(path);
+    if (!out)
+        return;
+    fprintf(out, "krs %s: %s\n\ncommand:", KRS_VERSION, story);
+    for (int i = 0; i < options->argc; i++) {
+        fputc(' ', out);
+        print_quoted(out, options->argv[i]);
+    }
+    fputs("\nscenes:", out);
+    for (size_t i = 0; i < options->files.count; i++)
+        fprintf(out, " %s", options->files.items[i]);
+    fputc('\n', out);
+    fclose(out);
+}
+
+/* Says what happened, and keeps what is needed to see it again: scenes and command line. */
+static int report_bug(const Options *options, const char *story)
+{
+    char *folder;
+    const char *parent = getenv("TMPDIR");
+    if (asprintf(&folder, "%s/krs-crash-XXXXXX", parent && *parent ? parent : "/tmp") < 0)
+        folder = NULL;
+    if (folder && mkdtemp(folder)) {
+        copy_scenes(options, folder);
+        write_command(options, folder, story);
+        say("%s; this is a bug of krs or of the driver; what is needed to see it again is in %s",
+            story, folder);
+    } else {
+        say("%s; this is a bug of krs or of the driver", story);
+    }
+    free(folder);
+    return KRS_INTERNAL;
+}
+
+static int judge_death(const Options *options, const Watch *watch, int signal_number)
+{
+    char story[256];
+    const char *doing = stage_info[atomic_load(&shared->stage)].doing;
+    if (watch->interrupted)
+        return KRS_INTERRUPTED;
+    if (watch->late) {
+        snprintf(story, sizeof story, "gave up %s after %g seconds", doing, options->deadline);
+        return report_bug(options, story);
+    }
+    if (signal_number == SIGKILL) {
+        say("killed by the system while %s, probably for want of memory", doing);
+        return KRS_OUT_OF_MEMORY;
+    }
+    if (signal_number == SIGINT || signal_number == SIGTERM || signal_number == SIGHUP)
+        return KRS_INTERRUPTED;
+    snprintf(story, sizeof story, "crashed while %s (SIG%s)", doing,
+             sigabbrev_np(signal_number) ? sigabbrev_np(signal_number) : "?");
+    return report_bug(options, story);
+}
+
+/* Whether a stage with a deadline has passed it. */
+static bool is_late(const Options *options)
+{
+    double seconds = (double)(milliseconds() - atomic_load(&shared->entered)) / 1000;
+    return stage_info[atomic_load(&shared->stage)].timed && seconds > options->deadline;
+}
+
+/* Passes interrupts on and watches the clock until the child has ended; returns how. */
+static int wait_for_child(const Options *options, Watch *watch, const sigset_t *signals)
+{
+    const double patience = 10; /* seconds from an interrupt to force: a slice and a file */
+    int ended;
+    while (waitpid(watch->child, &ended, WNOHANG) == 0) {
+        struct timespec pause = {.tv_nsec = 100 * 1000 * 1000};
+        int number = sigtimedwait(signals, NULL, &pause);
+        if (number == SIGINT || number == SIGTERM || number == SIGHUP) {
+            if (!watch->interrupted)
+                watch->interrupted_at = clock_now();
+            watch->interrupted = true;
+            kill(watch->child, number);
+        }
+        if (!watch->interrupted && !watch->late && is_late(options)) {
+            watch->late = true;
+            kill(watch->child, SIGKILL);
+        }
+        if (watch->interrupted && clock_now() - watch->interrupted_at > patience)
+            kill(watch->child, SIGKILL);
+    }
+    return ended;
+}
+
+int supervise(Options *options, Work *work)
+{
+    shared = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (shared == MAP_FAILED) {
+        say("out of memory");
+        return KRS_OUT_OF_MEMORY;
+    }
+    sigset_t signals, before;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGTERM);
+    sigaddset(&signals, SIGHUP);
+    sigaddset(&signals, SIGCHLD);
+    signal(SIGCHLD, SIG_DFL); /* ignored, children could not be waited for */
+    sigprocmask(SIG_BLOCK, &signals, &before);
+
+    Watch watch = {.child = fork()};
+    if (watch.child < 0) {
+        say("cannot start a process: %s", strerror(errno));
+        return errno == ENOMEM ? KRS_OUT_OF_MEMORY : KRS_INTERNAL;
+    }
+    if (watch.child == 0)
+        run_child(options, work, &before);
+
+    int ended = wait_for_child(options, &watch, &signals);
+    int status = WIFEXITED(ended) ? WEXITSTATUS(ended)
+                                  : judge_death(options, &watch, WTERMSIG(ended));
+    if (atomic_load(&shared->open))
+        unlink(shared->temporary);
+    if (status == KRS_INTERRUPTED)
+        say("interrupted");
+    munmap(shared, sizeof *shared);
+    return status;
+}

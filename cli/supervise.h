@@ -1,0 +1,47 @@
+/*
+ * supervise.h: the work is done in a child process, so that a crash of a driver ends in a
+ * sentence and an exit status instead of silence, and leaves no half-written file.
+ */
+#ifndef KRS_SUPERVISE_H
+#define KRS_SUPERVISE_H
+
+#include <signal.h>
+
+#include "cli/options.h"
+#include "runtime/writer/atomic.h"
+
+/* What the child is doing; the parent names it should the child die. */
+typedef enum Stage {
+    STAGE_START, STAGE_COMPILE, STAGE_SHADERS, STAGE_DEVICE, STAGE_RENDER, STAGE_VALIDATE,
+    STAGE_WRITE, STAGE_ANSWER, STAGE_COUNT
+} Stage;
+
+typedef KrsStatus Work(Options *options);
+
+/* Runs `work` in a child and returns the exit status of the command:
+     - what `work` returns;
+     - 70 after a crash, or when compiling takes longer than options->deadline, with a line on
+       standard error and a folder that keeps what is needed to see it again;
+     - 71 when the system killed the child, which it does for want of memory;
+     - 130 after SIGINT, SIGTERM or SIGHUP, which are passed on. */
+int supervise(Options *options, Work *work);
+
+/* The following are for the child. */
+
+/* Tells the parent.  For the tests, the environment variable KRS_TEST_CRASH=STAGE makes the
+   process crash on entering a stage (start, compile, shaders, device, render, validate, write,
+   answer); STAGE:9 sends itself that signal instead, STAGE:hang never returns. */
+void stage_enter(Stage stage);
+
+/* Nonzero once the user has asked to stop.  In STAGE_RENDER, STAGE_VALIDATE and STAGE_WRITE it
+   is for the work to notice; in the others the process just ends. */
+const volatile sig_atomic_t *interrupted(void);
+
+/* Writes an output file by `fill`, in STAGE_WRITE, and says why when it cannot be.  The parent
+   removes the temporary if the child does not live to do so. */
+typedef bool Fill(const void *user, OutputFile *file, OutputError *error);
+KrsStatus write_output(const char *path, Fill *fill, const void *user);
+/* The same for a text. */
+KrsStatus write_output_text(const char *path, const char *text, size_t length);
+
+#endif

@@ -1,0 +1,312 @@
+/*
+ * validate.c: `krs validate`: tries to refute what the compiler claims of a scene.
+ *
+ * Three attempts.  The SPIR-V validator looks at every module.  On the processor, in double
+ * precision, a distance claims that the ball around its point is empty, so anywhere inside the
+ * ball the sign must be the same; the places tried are random, and straight towards the surface,
+ * which is where a distance that is too large is found out first.  On the device the distance
+ * is compared with the one in double precision.
+ *
+ * Half of the points are anywhere in and around the scene, half near a surface, found by
+ * following random rays.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/modules.h"
+#include "cli/supervise.h"
+
+enum { BATCH = 1024, PROBES = 8, MARCH_STEPS = 64 };
+
+/* How much of the ball must be empty: the rest is left to the rounding of the sum. */
+static const double BALL = 0.999;
+/* The size of a scene that has no bounds of its own, in world units. */
+static const double UNBOUNDED = 10;
+/* Device against double precision.  Positions are rounded to float, 2^-24 of the scene's size,
+   and reliability allows 16 of these times a condition near 10 for chains of foldings:
+   160 * 2^-24 = 1e-5.  The relative part is the device's functions: the worst is good to 1e-4. */
+static const double TOLERANCE_OF_SCALE = 1e-5, TOLERANCE_OF_VALUE = 1e-4;
+
+typedef struct Validation {
+    const Options *options;
+    const char *path;
+    KrsScene  *scene;
+    KrsFrame  *frame;
+    uint64_t   random;      /* state of the generator */
+    double     low[3], high[3], size; /* the box that is tried, and its diagonal */
+    uint64_t   balls;       /* probes inside of balls so far */
+    double     difference;  /* largest of the device so far, in tolerances */
+    double     points[BATCH][3];
+} Validation;
+
+/* splitmix64: the same points on every machine. */
+static uint64_t random_next(uint64_t *state)
+{
+    uint64_t z = *state += 0x9e3779b97f4a7c15;
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
+    z = (z ^ z >> 27) * 0x94d049bb133111eb;
+    return z ^ z >> 31;
+}
+
+static double random_unit(uint64_t *state) { return (double)(random_next(state) >> 11) * 0x1p-53; }
+
+static void random_direction(uint64_t *state, double direction[3])
+{
+    double z = 2 * random_unit(state) - 1, angle = 2 * acos(-1) * random_unit(state);
+    double radius = sqrt(fmax(0, 1 - z * z));
+    direction[0] = radius * cos(angle);
+    direction[1] = radius * sin(angle);
+    direction[2] = z;
+}
+
+/* The box around the scene, half as large again; where the scene goes on for ever, a cut. */
+static void choose_box(Validation *v)
+{
+    const KrsProgram *program = krs_scene_program(v->scene);
+    double square = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double low = fmax(program->low[axis], -UNBOUNDED);
+        double high = fmin(program->high[axis], UNBOUNDED);
+        if (isfinite(program->low[axis]) && isfinite(program->high[axis])) {
+            low = program->low[axis];
+            high = program->high[axis];
+        }
+        double margin = low < high ? (high - low) / 4 : 1;
+        v->low[axis] = fmin(low, high) - margin;
+        v->high[axis] = fmax(low, high) + margin;
+        square += (v->high[axis] - v->low[axis]) * (v->high[axis] - v->low[axis]);
+    }
+    v->size = sqrt(square);
+}
+
+/* Moves every second point of the batch along a random ray until it is close to a surface. */
+static void march_to_surface(Validation *v)
+{
+    double directions[BATCH][3], distances[BATCH];
+    for (size_t i = 0; i < BATCH; i++)
+        random_direction(&v->random, directions[i]);
+    for (int step = 0; step < MARCH_STEPS; step++) {
+        krs_distance(v->frame, (const double(*)[3])v->points, BATCH, distances);
+        for (size_t i = 1; i < BATCH; i += 2) {
+            double advance = 0.9 * distances[i]; /* arrives nearly, from either side */
+            if (fabs(advance) > 1e-3 * v->size && isfinite(advance))
+                for (int axis = 0; axis < 3; axis++)
+                    v->points[i][axis] += advance * directions[i][axis];
+        }
+    }
+}
+
+static void choose_points(Validation *v)
+{
+    for (size_t i = 0; i < BATCH; i++)
+        for (int axis = 0; axis < 3; axis++)
+            v->points[i][axis] =
+                v->low[axis] + random_unit(&v->random) * (v->high[axis] - v->low[axis]);
+    march_to_surface(v);
+    /* Rays that missed are far away, where nothing can be learned: back into the box. */
+    for (size_t i = 1; i < BATCH; i += 2)
+        for (int axis = 0; axis < 3; axis++)
+            if (!(v->points[i][axis] >= v->low[axis] && v->points[i][axis] <= v->high[axis]))
+                v->points[i][axis] =
+                    v->low[axis] + random_unit(&v->random) * (v->high[axis] - v->low[axis]);
+}
+
+static void print_point(const char *words, const double point[3])
+{
+    printf("%s [", words);
+    for (int axis = 0; axis < 3; axis++) {
+        print_number(stdout, point[axis]);
+        fputs(axis < 2 ? ", " : "]", stdout);
+    }
+}
+
+/* " of component 2 (`ring`)" at the place of a counter-example. */
+static void print_component(const Validation *v, const double point[3])
+{
+    KrsHit hit;
+    KrsComponent component;
+    krs_probe(v->frame, (const double(*)[3])point, 1, &hit);
+    if (hit.component > 0 && krs_component(v->scene, hit.component - 1, &component) == KRS_OK)
+        printf(" near component %u (%s)", hit.component, component.name);
+}
+
+static KrsStatus report_ball(const Validation *v, const double center[3], double distance,
+                             const double inside[3], double found)
+{
+    printf("%s: refuted: the distance ", v->path);
+    print_number(stdout, distance);
+    print_point(" at", center);
+    print_point(" is too large:", inside);
+    fputs(" is nearer and has the other sign, ", stdout);
+    print_number(stdout, found);
+    print_component(v, inside);
+    putchar('\n');
+    return KRS_BAD_SCENE;
+}
+
+/* A place in the ball around hit->point: the first probe goes straight to the surface, the
+   others half to the edge of the ball and half anywhere in it. */
+static void choose_inside(Validation *v, const KrsHit *hit, int probe, double inside[3])
+{
+    double direction[3], radius = BALL * fabs(hit->distance);
+    random_direction(&v->random, direction);
+    if (probe == 0)
+        for (int axis = 0; axis < 3; axis++)
+            direction[axis] = hit->distance > 0 ? -hit->normal[axis] : hit->normal[axis];
+    else if (probe % 2 == 0)
+        radius *= cbrt(random_unit(&v->random));
+    for (int axis = 0; axis < 3; axis++)
+        inside[axis] = hit->point[axis] + radius * direction[axis];
+}
+
+/* Distances that rounding may have made are nothing to judge by. */
+static bool is_worth_trying(const Validation *v, double distance)
+{
+    return isfinite(distance) && fabs(distance) > 1e-9 * v->size;
+}
+
+static KrsStatus try_balls(Validation *v)
+{
+    KrsHit hits[BATCH];
+    double inside[BATCH][3], found[BATCH];
+    krs_probe(v->frame, (const double(*)[3])v->points, BATCH, hits);
+    for (size_t i = 0; i < BATCH; i++)
+        if (isnan(hits[i].distance))
+            return report_ball(v, v->points[i], hits[i].distance, v->points[i], NAN);
+    for (int probe = 0; probe < PROBES; probe++) {
+        for (size_t i = 0; i < BATCH; i++)
+            if (is_worth_trying(v, hits[i].distance))
+                choose_inside(v, &hits[i], probe, inside[i]);
+            else
+                memcpy(inside[i], v->points[i], sizeof inside[i]);
+        krs_distance(v->frame, (const double(*)[3])inside, BATCH, found);
+        for (size_t i = 0; i < BATCH; i++) {
+            if (!is_worth_trying(v, hits[i].distance))
+                continue;
+            v->balls++;
+            if (!(hits[i].distance > 0 ? found[i] >= 0 : found[i] <= 0))
+                return report_ball(v, v->points[i], hits[i].distance, inside[i], found[i]);
+        }
+    }
+    return KRS_OK;
+}
+
+/* Both sides are asked about the same float positions. */
+static KrsStatus try_device(Validation *v, KrsRenderer *renderer, KrsRendering *rendering)
+{
+    float given[BATCH][3], answered[BATCH];
+    double rounded[BATCH][3], expected[BATCH];
+    for (size_t i = 0; i < BATCH; i++)
+        for (int axis = 0; axis < 3; axis++)
+            rounded[i][axis] = given[i][axis] = (float)v->points[i][axis];
+    KrsStatus status = krs_sample(rendering, v->frame, (const float(*)[3])given, BATCH, answered,
+                                  NULL);
+    if (status != KRS_OK) {
+        say("%s", krs_renderer_message(renderer));
+        return status;
+    }
+    krs_distance(v->frame, (const double(*)[3])rounded, BATCH, expected);
+    for (size_t i = 0; i < BATCH; i++) {
+        double tolerance = TOLERANCE_OF_SCALE * v->size + TOLERANCE_OF_VALUE * fabs(expected[i]);
+        double difference = fabs(answered[i] - expected[i]) / tolerance;
+        if (difference <= 1 || (isinf(expected[i]) && answered[i] > 1e30f)) {
+            v->difference = fmax(v->difference, isfinite(difference) ? difference : 0);
+            continue;
+        }
+        printf("%s: refuted: the device finds the distance %.9g", v->path, answered[i]);
+        print_point(" at", rounded[i]);
+        fputs(", double precision ", stdout);
+        print_number(stdout, expected[i]);
+        print_component(v, rounded[i]);
+        putchar('\n');
+        return KRS_BAD_SCENE;
+    }
+    return KRS_OK;
+}
+
+/* All points, in batches; `rendering` is NULL without a device. */
+static KrsStatus try_points(Validation *v, KrsRenderer *renderer, KrsRendering *rendering)
+{
+    Progress progress;
+    KrsStatus status = KRS_OK;
+    uint64_t tried = 0;
+    stage_enter(STAGE_VALIDATE);
+    progress_start(&progress, v->options, 1);
+    while (tried < v->options->points && status == KRS_OK) {
+        choose_points(v);
+        status = try_balls(v);
+        if (status == KRS_OK && rendering)
+            status = try_device(v, renderer, rendering);
+        if (*interrupted())
+            status = KRS_INTERRUPTED;
+        tried += BATCH;
+        progress_show(&progress, (double)tried / (double)v->options->points);
+    }
+    progress_end(&progress);
+    if (status != KRS_OK)
+        return status;
+    printf("%s: %llu points: %llu places in empty balls are empty", v->path,
+           (unsigned long long)tried, (unsigned long long)v->balls);
+    if (rendering)
+        printf("; %s agrees, at most %.2g of the tolerance apart",
+               krs_renderer_device(renderer).name, v->difference);
+    putchar('\n');
+    return KRS_OK;
+}
+
+static KrsStatus try_modules(const Validation *v)
+{
+    Modules modules;
+    KrsStatus status = modules_compile(v->options, v->scene, &modules);
+    if (status == KRS_OK)
+        printf("%s: %zu modules are valid SPIR-V\n", v->path, modules.count);
+    modules_free(&modules);
+    return status;
+}
+
+/* `renderer` is NULL without a device. */
+static KrsStatus validate_scene(Validation *v, KrsRenderer *renderer)
+{
+    KrsRendering *rendering = NULL;
+    KrsStatus status = scene_open(v->options, v->path, &v->scene);
+    if (status != KRS_OK)
+        return status;
+    choose_box(v);
+    status = scene_frame(v->options, v->scene, &v->frame);
+    if (status == KRS_OK)
+        status = try_modules(v);
+    if (status == KRS_OK && renderer) {
+        stage_enter(STAGE_SHADERS);
+        status = krs_rendering_new(renderer, v->scene, &rendering);
+        if (status != KRS_OK)
+            say("%s", krs_renderer_message(renderer));
+    }
+    if (status == KRS_OK)
+        status = try_points(v, renderer, rendering);
+    krs_rendering_free(rendering);
+    krs_frame_free(v->frame);
+    krs_scene_free(v->scene);
+    return status;
+}
+
+/* Goes through all scenes and returns the status of the first that failed. */
+KrsStatus command_validate(Options *options)
+{
+    KrsRenderer *renderer = NULL;
+    KrsStatus worst = options->no_device ? KRS_OK : open_renderer(options, &renderer);
+    if (worst != KRS_OK)
+        return worst;
+    for (size_t i = 0; i < options->files.count && !*interrupted(); i++) {
+        Validation *v = arena_new(options->arena, Validation);
+        *v = (Validation){.options = options, .path = options->files.items[i],
+                          .random = options->seed};
+        KrsStatus status = validate_scene(v, renderer);
+        if (worst == KRS_OK)
+            worst = status;
+    }
+    krs_renderer_free(renderer);
+    return worst;
+}

@@ -1,0 +1,140 @@
+/*
+ * arena.c: memory that is freed all at once, taken from the system in blocks.
+ *
+ * Built with -DKRS_ARENA_SEPARATE every object is a block of its own, so that the address
+ * sanitizer sees a write past the end of any of them.
+ */
+#include "compiler/base/arena.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FIRST_BLOCK_BYTES = 4096, LARGEST_BLOCK_BYTES = 1 << 20 };
+
+typedef struct ArenaBlock {
+    struct ArenaBlock *older;
+    size_t             size; /* with this header */
+} ArenaBlock;
+
+enum {
+    ALIGNMENT    = _Alignof(max_align_t),
+    HEADER_BYTES = (sizeof(ArenaBlock) + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT
+};
+
+static void out_of_memory(Memory *memory) { longjmp(*memory->exhausted, 1); }
+
+/* A zeroed block with room for `bytes` behind its header, not yet in any list. */
+static ArenaBlock *block_new(Memory *memory, size_t bytes)
+{
+    if (bytes > SIZE_MAX - HEADER_BYTES)
+        out_of_memory(memory);
+    size_t size = bytes + HEADER_BYTES;
+    if (memory->limit != 0 && (memory->used > memory->limit || size > memory->limit - memory->used))
+        out_of_memory(memory);
+    ArenaBlock *block = memory->allocate ? memory->allocate(memory->user, size) : malloc(size);
+    if (!block)
+        out_of_memory(memory);
+    memset(block, 0, size);
+    block->size = size;
+    memory->used += size;
+    return block;
+}
+
+static void *block_bytes(ArenaBlock *block) { return (char *)block + HEADER_BYTES; }
+
+#ifdef KRS_ARENA_SEPARATE
+
+static void *take(Arena *arena, size_t bytes)
+{
+    ArenaBlock *block = block_new(arena->memory, bytes);
+    block->older      = arena->newest;
+    arena->newest     = block;
+    return block_bytes(block);
+}
+
+#else
+
+/* Starts a new block, each twice as large as the one before, up to a limit. */
+static void *take_from_new_block(Arena *arena, size_t bytes)
+{
+    size_t room = FIRST_BLOCK_BYTES;
+    if (arena->newest)
+        room = arena->newest->size < LARGEST_BLOCK_BYTES ? 2 * arena->newest->size
+                                                         : LARGEST_BLOCK_BYTES;
+    room -= HEADER_BYTES;
+    ArenaBlock *block = block_new(arena->memory, bytes > room ? bytes : room);
+    if (bytes > room / 4 && arena->newest) {
+        /* A large object goes behind the newest block, whose free bytes stay in use. */
+        block->older         = arena->newest->older;
+        arena->newest->older = block;
+        return block_bytes(block);
+    }
+    block->older  = arena->newest;
+    arena->newest = block;
+    arena->next   = (char *)block_bytes(block) + bytes;
+    arena->left   = block->size - HEADER_BYTES - bytes;
+    return block_bytes(block);
+}
+
+static void *take(Arena *arena, size_t bytes)
+{
+    if (bytes > SIZE_MAX - ALIGNMENT)
+        out_of_memory(arena->memory);
+    bytes = (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+    if (bytes == 0)
+        bytes = ALIGNMENT; /* objects without size have addresses of their own, too */
+    if (bytes > arena->left)
+        return take_from_new_block(arena, bytes);
+    char *object = arena->next;
+    arena->next += bytes;
+    arena->left -= bytes;
+    return object;
+}
+
+#endif
+
+void *arena_alloc(Arena *arena, size_t count, size_t size)
+{
+    if (size != 0 && count > SIZE_MAX / size)
+        out_of_memory(arena->memory);
+    return take(arena, count * size);
+}
+
+void arena_free(Arena *arena)
+{
+    Memory *memory = arena->memory;
+    while (arena->newest) {
+        ArenaBlock *block = arena->newest;
+        arena->newest     = block->older;
+        memory->used -= block->size;
+        if (memory->release)
+            memory->release(memory->user, block);
+        else
+            free(block);
+    }
+    arena->next = NULL;
+    arena->left = 0;
+}
+
+char *arena_copy_text(Arena *arena, const char *bytes, size_t length)
+{
+    if (length == SIZE_MAX)
+        out_of_memory(arena->memory);
+    char *copy = arena_alloc(arena, length + 1, 1);
+    if (length > 0)
+        memcpy(copy, bytes, length);
+    return copy;
+}
+
+void *arena_grow(Arena *arena, void *items, size_t count, size_t *capacity, size_t size)
+{
+    if (*capacity > SIZE_MAX / 2)
+        out_of_memory(arena->memory);
+    size_t larger = *capacity < 4 ? 8 : 2 * *capacity;
+    void  *grown  = arena_alloc(arena, larger, size);
+    if (count > 0)
+        memcpy(grown, items, count * size);
+    *capacity = larger;
+    return grown;
+}

@@ -1,0 +1,60 @@
+/*
+ * arena.h: memory that is freed all at once.
+ *
+ * The compiler knows three lifetimes and so has three arenas (compilation.h).  Nothing is
+ * freed piece by piece.  Memory comes zeroed.  Running out of it unwinds, by longjmp, to the
+ * call of the library that began the work, which reports it, so no caller in between checks
+ * for NULL.
+ */
+#ifndef KRS_ARENA_H
+#define KRS_ARENA_H
+
+#include <setjmp.h>
+#include <stddef.h>
+
+/* Where arenas get their blocks, shared by all arenas of one compilation. */
+typedef struct Memory {
+    void *(*allocate)(void *user, size_t size); /* NULL means malloc */
+    void (*release)(void *user, void *block);   /* NULL means free */
+    void    *user;
+    size_t   used;  /* bytes now held */
+    size_t   limit; /* most bytes that may be held; 0 means no limit */
+    jmp_buf *exhausted; /* where running out leads; must be set before the first allocation */
+} Memory;
+
+typedef struct Arena {
+    Memory            *memory;
+    struct ArenaBlock *newest; /* blocks, newest first */
+    char              *next;   /* first free byte of the newest block */
+    size_t             left;   /* free bytes there */
+} Arena;
+
+/* count * size zeroed bytes, aligned for any object; never NULL.  A product that overflows is
+   running out of memory. */
+void *arena_alloc(Arena *arena, size_t count, size_t size);
+
+/* Gives every block back; the arena can be used again. */
+void arena_free(Arena *arena);
+
+/* A copy of length bytes, with a NUL behind them. */
+char *arena_copy_text(Arena *arena, const char *bytes, size_t length);
+
+/* A new T, or an array of n of them: Token *t = arena_new(arena, Token); */
+#define arena_new(arena, T)          ((T *)arena_alloc((arena), 1, sizeof(T)))
+#define arena_new_array(arena, T, n) ((T *)arena_alloc((arena), (n), sizeof(T)))
+
+/* A larger array in place of a full one, for array_push: the old elements are copied, the old
+   block stays in the arena. */
+void *arena_grow(Arena *arena, void *items, size_t count, size_t *capacity, size_t size);
+
+/* Growing arrays are structs with these three members, in the arena given at each push:
+       typedef struct { Token *items; size_t count, capacity; } Tokens;
+       array_push(arena, &tokens, token);                                                     */
+#define array_push(arena, array, item)                                                          \
+    ((array)->count == (array)->capacity                                                        \
+         ? (void)((array)->items = arena_grow((arena), (array)->items, (array)->count,          \
+                                              &(array)->capacity, sizeof *(array)->items))      \
+         : (void)0,                                                                             \
+     (void)((array)->items[(array)->count++] = (item)))
+
+#endif

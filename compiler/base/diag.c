@@ -1,0 +1,228 @@
+/*
+ * diag.c: collecting what the compiler has to say, and writing it for machines.  The pictures
+ * for people are drawn in diag_text.c.
+ */
+#include "compiler/base/diag.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SEVERITY_ERROR   DIAG_ERROR
+#define SEVERITY_WARNING DIAG_WARNING
+
+const DiagInfo diag_info[DIAG_CODE_COUNT] = {
+#define DIAG(code, severity, name, title, explanation)                                          \
+    [DIAG_##name] = {#code, SEVERITY_##severity, title, explanation},
+#include "compiler/base/diag.def"
+#undef DIAG
+};
+
+const DiagInfo *diag_find(const char *code)
+{
+    for (size_t i = 0; i < DIAG_CODE_COUNT; i++)
+        if (strcmp(diag_info[i].code, code) == 0)
+            return &diag_info[i];
+    return NULL;
+}
+
+/* ---- collecting ---- */
+
+static const char *format_text(Arena *arena, const char *format, va_list arguments)
+{
+    va_list again;
+    va_copy(again, arguments);
+    int   length = vsnprintf(NULL, 0, format, again);
+    va_end(again);
+    char *text = arena_alloc(arena, (size_t)(length > 0 ? length : 0) + 1, 1);
+    if (length > 0)
+        vsnprintf(text, (size_t)length + 1, format, arguments);
+    return text;
+}
+
+static bool same_span(Span a, Span b)
+{
+    return a.source == b.source && a.start == b.start && a.end == b.end;
+}
+
+/* The statements of a loop are elaborated many times and would complain each time.  Only the
+   few diagnostics that are kept are compared; what has no place is never a repeat. */
+static bool is_repeat(const Diags *diags, DiagCode code, Span span)
+{
+    for (size_t i = 0; i < diags->count && span.source != 0; i++)
+        if (diags->items[i]->code == code && same_span(diags->items[i]->span, span))
+            return true;
+    return false;
+}
+
+bool diags_full(const Diags *diags) { return diags->errors > MOST_DIAGS; }
+
+static Diag *diag_new(Diags *diags, DiagCode code, Span span)
+{
+    bool repeat = is_repeat(diags, code, span), kept = false;
+    if (!repeat) {
+        size_t *count = diag_info[code].severity == DIAG_ERROR ? &diags->errors : &diags->warnings;
+        kept          = ++*count <= MOST_DIAGS;
+    }
+    Diag *diag = kept ? arena_new(diags->arena, Diag) : &diags->scrap;
+    *diag      = (Diag){.code = code, .span = span, .message = ""};
+    if (kept)
+        array_push(diags->arena, diags, diag);
+    return diag;
+}
+
+Diag *diag_add(Diags *diags, DiagCode code, Span span, const char *format, ...)
+{
+    Diag *diag = diag_new(diags, code, span);
+    if (diag != &diags->scrap) {
+        va_list arguments;
+        va_start(arguments, format);
+        diag->message = format_text(diags->arena, format, arguments);
+        va_end(arguments);
+    }
+    return diag;
+}
+
+const char *diag_text(Diags *diags, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    const char *text = format_text(diags->arena, format, arguments);
+    va_end(arguments);
+    return text;
+}
+
+void diag_note(Diags *diags, Diag *diag, const char *note)
+{
+    if (diag != &diags->scrap)
+        array_push(diags->arena, &diag->notes, note);
+}
+
+void diag_place(Diags *diags, Diag *diag, Span span, const char *label)
+{
+    DiagPlace place = {span, label};
+    if (diag != &diags->scrap)
+        array_push(diags->arena, &diag->places, place);
+}
+
+/* ---- order ---- */
+
+static bool comes_after(const Diag *a, const Diag *b)
+{
+    if (a->span.source != b->span.source)
+        return a->span.source > b->span.source;
+    if (a->span.start != b->span.start)
+        return a->span.start > b->span.start;
+    return a->span.end > b->span.end;
+}
+
+/* By insertion: there are at most forty, and what is said first about one place stays first. */
+void diags_sort(Diags *diags)
+{
+    for (size_t i = 1; i < diags->count; i++) {
+        Diag  *diag = diags->items[i];
+        size_t at   = i;
+        for (; at > 0 && comes_after(diags->items[at - 1], diag); at--)
+            diags->items[at] = diags->items[at - 1];
+        diags->items[at] = diag;
+    }
+}
+
+/* ---- JSON ---- */
+
+/* UTF-16 units between two bytes of a text: characters beyond U+FFFF take two. */
+static uint32_t utf16_units(const char *text, uint32_t start, uint32_t end)
+{
+    uint32_t units = 0;
+    while (start < end) {
+        uint32_t character;
+        size_t   length = text_character(text + start, end - start, &character);
+        units += character > 0xFFFF ? 2 : 1;
+        start += length ? (uint32_t)length : 1;
+    }
+    return units;
+}
+
+static void json_position(const Source *source, uint32_t offset, Text *out)
+{
+    uint32_t line  = source_position(source, offset).line - 1;
+    uint32_t units = utf16_units(source->text, source->lines[line], offset);
+    text_format(out, "{\"line\":%u,\"character\":%u}", line, units);
+}
+
+static void json_place(const Diags *diags, Span span, Text *out)
+{
+    if (span.source == 0) {
+        text_add(out, "\"uri\":\"\",\"range\":{\"start\":{\"line\":0,\"character\":0},"
+                      "\"end\":{\"line\":0,\"character\":0}}");
+        return;
+    }
+    const Source *source = &diags->sources->items[span.source];
+    text_add(out, "\"uri\":");
+    text_json(out, source->name);
+    text_add(out, ",\"range\":{\"start\":");
+    json_position(source, span.start, out);
+    text_add(out, ",\"end\":");
+    json_position(source, span.end, out);
+    text_add(out, "}");
+}
+
+static void json_related(const Diags *diags, const Diag *diag, Text *out)
+{
+    text_add(out, ",\"relatedInformation\":[");
+    for (size_t i = 0; i < diag->places.count; i++) {
+        text_add(out, i ? ",{\"location\":{" : "{\"location\":{");
+        json_place(diags, diag->places.items[i].span, out);
+        text_add(out, "},\"message\":");
+        text_json(out, diag->places.items[i].label ? diag->places.items[i].label : "");
+        text_add(out, "}");
+    }
+    text_add(out, "]");
+}
+
+static void json_member(const char *name, const char *value, const char **separator, Text *out)
+{
+    if (!value)
+        return;
+    text_format(out, "%s\"%s\":", *separator, name);
+    text_json(out, value);
+    *separator = ",";
+}
+
+/* What the protocol has no field for goes into `data`, which is ours to define. */
+static void json_data(const Diag *diag, Text *out)
+{
+    const char *separator = "";
+    text_add(out, ",\"data\":{");
+    json_member("label", diag->label, &separator, out);
+    json_member("help", diag->help, &separator, out);
+    json_member("replacement", diag->replacement, &separator, out);
+    text_format(out, "%s\"notes\":[", separator);
+    for (size_t i = 0; i < diag->notes.count; i++) {
+        text_add(out, i ? "," : "");
+        text_json(out, diag->notes.items[i]);
+    }
+    text_add(out, "]}");
+}
+
+void diag_json_one(const Diags *diags, const Diag *diag, Text *out)
+{
+    const DiagInfo *info = &diag_info[diag->code];
+    text_add(out, "{");
+    json_place(diags, diag->span, out);
+    text_format(out, ",\"severity\":%d,\"code\":\"%s\",\"source\":\"krs\",\"message\":",
+                info->severity == DIAG_ERROR ? 1 : 2, info->code);
+    text_json(out, diag->message);
+    json_related(diags, diag, out);
+    json_data(diag, out);
+    text_add(out, "}");
+}
+
+void diags_print_json(const Diags *diags, Text *out)
+{
+    for (size_t i = 0; i < diags->count; i++) {
+        diag_json_one(diags, diags->items[i], out);
+        text_add(out, "\n");
+    }
+}

@@ -1,0 +1,88 @@
+/*
+ * diag.h: what the compiler has to say to the author of a scene.
+ *
+ * Diagnostics are collected, not printed: each has a code (one row of diag.def), the place,
+ * and whatever helps to mend it.  Messages start with a lower-case letter and do not end with
+ * punctuation; only `help` suggests what to do.
+ */
+#ifndef KRS_DIAG_H
+#define KRS_DIAG_H
+
+#include "compiler/base/source.h"
+#include "compiler/base/text.h"
+
+typedef enum DiagSeverity { DIAG_ERROR, DIAG_WARNING } DiagSeverity;
+
+typedef enum DiagCode {
+#define DIAG(code, severity, name, title, explanation) DIAG_##name,
+#include "compiler/base/diag.def"
+#undef DIAG
+    DIAG_CODE_COUNT
+} DiagCode;
+
+typedef struct DiagInfo {
+    const char  *code; /* "E0203" */
+    DiagSeverity severity;
+    const char  *title;       /* one line */
+    const char  *explanation; /* what `krs explain E0203` prints */
+} DiagInfo;
+
+extern const DiagInfo diag_info[DIAG_CODE_COUNT];
+
+/* A second place that belongs to the story, marked with ---- and its own label. */
+typedef struct DiagPlace {
+    Span        span;
+    const char *label;
+} DiagPlace;
+
+typedef struct Diag {
+    DiagCode    code;
+    const char *message;
+    Span        span;
+    const char *label;       /* stands after the ^^^^ marks; may be NULL */
+    const char *help;        /* may be NULL */
+    const char *replacement; /* text to put in place of `span`; may be NULL */
+    struct { DiagPlace *items; size_t count, capacity; } places;
+    struct { const char **items; size_t count, capacity; } notes;
+} Diag;
+
+typedef struct Diags {
+    Arena         *arena; /* everything said lives here */
+    const Sources *sources;
+    Diag         **items;
+    size_t         count, capacity;
+    size_t         errors, warnings; /* all of them, also those not kept */
+    Diag           scrap;
+} Diags;
+
+enum { MOST_DIAGS = 20 }; /* errors that are kept, and warnings */
+
+/* Adds a diagnostic; the members behind `message` may be set afterwards.  After 20 errors
+   further ones are counted but go to a scrap Diag, and so do repeats of a code at one span, which
+   are not counted; never NULL. */
+Diag *diag_add(Diags *diags, DiagCode code, Span span, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+/* Text formatted into the arena of the diagnostics, for labels and help. */
+const char *diag_text(Diags *diags, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void diag_note(Diags *diags, Diag *diag, const char *note);
+void diag_place(Diags *diags, Diag *diag, Span span, const char *label);
+
+/* Whether further errors would not be shown, so that a stage may stop looking for them. */
+bool diags_full(const Diags *diags);
+
+/* Sorts by position (sources in order of reading). */
+void diags_sort(Diags *diags);
+
+/* All diagnostics as in language.md, "What an error looks like", ending in "2 errors" and the
+   like; `color` adds terminal colours. */
+void diags_print_text(const Diags *diags, bool color, Text *out);
+/* One JSON object a line with the field names of the Language Server Protocol. */
+void diags_print_json(const Diags *diags, Text *out);
+/* One diagnostic alone, as the two functions above write it. */
+void diag_print_one(const Diags *diags, const Diag *diag, bool color, Text *out);
+void diag_json_one(const Diags *diags, const Diag *diag, Text *out);
+
+/* The row of "E0203", or NULL. */
+const DiagInfo *diag_find(const char *code);
+
+#endif

@@ -1,0 +1,355 @@
+/*
+ * diag_text.c: diagnostics drawn for people, with the lines of the text they are about.
+ *
+ * The text may be anything, so what would disturb a terminal or deceive a reader (control
+ * bytes, marks that turn the direction of writing) is made visible, and of a very long line
+ * only the part around the mark is shown.
+ */
+#include "compiler/base/diag.h"
+
+#include <string.h>
+
+enum { TAB_COLUMNS = 4, LONG_LINE_BYTES = 120, WINDOW_BEFORE = 40, WINDOW_CHARACTERS = 100 };
+
+/* A place to be marked, cut to its first line. */
+typedef struct Mark {
+    Span        span;
+    const char *label;
+    bool        primary;
+    uint32_t    line;        /* from 0 */
+    uint32_t    start, end;  /* bytes of the line to mark */
+    bool        drawn;
+} Mark;
+
+typedef struct Picture {
+    const Diags *diags;
+    Text        *out;
+    bool         color, error;
+    int          gutter; /* columns of the largest line number */
+    struct { Mark *items; size_t count, capacity; } marks;
+} Picture;
+
+/* ---- characters ---- */
+
+typedef struct CharacterRange {
+    uint32_t first, last;
+} CharacterRange;
+
+static bool is_among(uint32_t c, const CharacterRange *ranges, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (c >= ranges[i].first && c <= ranges[i].last)
+            return true;
+    return false;
+}
+
+/* Control characters, and invisible ones that reorder or hide their neighbours. */
+static bool is_deceptive(uint32_t c)
+{
+    static const CharacterRange ranges[] = {{0x80, 0x9F},     {0x61C, 0x61C},   {0x200B, 0x200F},
+                                            {0x2028, 0x202E}, {0x2060, 0x206F}, {0xFEFF, 0xFEFF}};
+    return is_among(c, ranges, sizeof ranges / sizeof *ranges);
+}
+
+static bool is_combining(uint32_t c)
+{
+    static const CharacterRange ranges[] = {
+        {0x300, 0x36F}, {0x1AB0, 0x1AFF}, {0x20D0, 0x20FF}, {0xFE00, 0xFE0F}, {0xFE20, 0xFE2F}};
+    return is_among(c, ranges, sizeof ranges / sizeof *ranges);
+}
+
+static bool is_wide(uint32_t c)
+{
+    static const CharacterRange ranges[] = {{0x1100, 0x115F}, {0x2E80, 0x303E},   {0x3041, 0xA4CF},
+                                            {0xAC00, 0xD7A3}, {0xF900, 0xFAFF},   {0xFE30, 0xFE6F},
+                                            {0xFF00, 0xFF60}, {0xFFE0, 0xFFE6},   {0x1F300, 0x1FAFF},
+                                            {0x20000, 0x3FFFD}};
+    return is_among(c, ranges, sizeof ranges / sizeof *ranges);
+}
+
+/* Adds the characters of some bytes as a terminal may show them (unless out is NULL) and
+   returns how many columns they take. */
+static uint32_t add_visible(Text *out, const char *bytes, size_t length)
+{
+    static const char replacement[] = "\xEF\xBF\xBD";
+    uint32_t          columns = 0;
+    for (size_t i = 0; i < length;) {
+        uint32_t    c;
+        size_t      used   = text_character(bytes + i, length - i, &c);
+        const char *shown  = bytes + i;
+        size_t      shown_length = used;
+        char        picture[] = "\xE2\x90\x80"; /* U+2400, the first of the control pictures */
+        uint32_t    width  = is_combining(c) ? 0 : is_wide(c) ? 2 : 1;
+        if (c == '\t') {
+            shown = "    ";
+            shown_length = width = TAB_COLUMNS;
+        } else if (c < 0x20 || c == 0x7F) {
+            picture[2]   = (char)(0x80 + (c == 0x7F ? 0x21 : c));
+            shown        = picture;
+            shown_length = 3;
+        } else if (used == 0 || is_deceptive(c)) {
+            shown        = replacement;
+            shown_length = 3;
+        }
+        if (out)
+            text_add_bytes(out, shown, shown_length);
+        columns += width;
+        i += used ? used : 1;
+    }
+    return columns;
+}
+
+/* The same for whole strings, whose lines after the first are indented. */
+static void add_lines(Text *out, const char *string, int indent)
+{
+    for (;;) {
+        size_t length = strcspn(string, "\n");
+        add_visible(out, string, length);
+        if (string[length] == '\0')
+            return;
+        text_format(out, "\n%*s", indent, "");
+        string += length + 1;
+    }
+}
+
+/* ---- colours ---- */
+
+static void paint(const Picture *picture, const char *code)
+{
+    if (picture->color)
+        text_format(picture->out, "\033[%sm", code);
+}
+
+static void paint_severity(const Picture *picture) { paint(picture, picture->error ? "1;31" : "1;33"); }
+static void paint_frame(const Picture *picture) { paint(picture, "1;34"); }
+static void paint_nothing(const Picture *picture) { paint(picture, "0"); }
+
+/* ---- marks ---- */
+
+static const Source *source_of(const Picture *picture, Span span)
+{
+    return &picture->diags->sources->items[span.source];
+}
+
+static void add_mark(Picture *picture, Span span, const char *label, bool primary)
+{
+    if (span.source == 0)
+        return;
+    const Source *source = source_of(picture, span);
+    uint32_t line = source_position(source, span.start).line - 1;
+    uint32_t end  = line + 1 < source->line_count ? source->lines[line + 1] - 1 : source->length;
+    if (end > source->lines[line] && source->text[end - 1] == '\r')
+        end--;
+    Mark mark = {span, label, primary, line, span.start, span.end, false};
+    if (mark.start > end)
+        mark.start = end;
+    if (mark.end > end)
+        mark.end = end;
+    if (mark.end < mark.start)
+        mark.end = mark.start;
+    array_push(picture->out->arena, &picture->marks, mark);
+}
+
+/* Bytes [start, end) of a source to show for a mark: the whole line unless it is long. */
+typedef struct Window {
+    uint32_t start, end;
+    bool     cut_before, cut_after;
+} Window;
+
+static bool is_inside_character(char byte) { return (byte & 0xC0) == 0x80; }
+
+static Window window_around(const Source *source, const Mark *mark)
+{
+    uint32_t first = source->lines[mark->line];
+    uint32_t last  = mark->line + 1 < source->line_count ? source->lines[mark->line + 1] - 1 : source->length;
+    if (last > first && source->text[last - 1] == '\r')
+        last--;
+    if (last - first <= LONG_LINE_BYTES)
+        return (Window){first, last, false, false};
+    uint32_t start = mark->start;
+    for (int i = 0; i < WINDOW_BEFORE && start > first; i++)
+        do
+            start--;
+        while (start > first && is_inside_character(source->text[start]));
+    uint32_t end = start;
+    for (int i = 0; i < WINDOW_CHARACTERS && end < last; i++)
+        do
+            end++;
+        while (end < last && is_inside_character(source->text[end]));
+    return (Window){start, end, start > first, end < last};
+}
+
+/* ---- drawing ---- */
+
+static void draw_gutter(const Picture *picture, const char *sign)
+{
+    paint_frame(picture);
+    text_format(picture->out, "%*s %s", picture->gutter, "", sign);
+    paint_nothing(picture);
+}
+
+static void draw_source_line(const Picture *picture, const Mark *mark, Window window)
+{
+    const Source *source = source_of(picture, mark->span);
+    paint_frame(picture);
+    text_format(picture->out, "%*u |", picture->gutter, mark->line + 1);
+    paint_nothing(picture);
+    if (window.end > window.start)
+        text_add(picture->out, " ");
+    text_add(picture->out, window.cut_before ? "..." : "");
+    add_visible(picture->out, source->text + window.start, window.end - window.start);
+    text_add(picture->out, window.cut_after ? "...\n" : "\n");
+}
+
+static void draw_marks(const Picture *picture, const Mark *mark, Window window)
+{
+    const char *text  = source_of(picture, mark->span)->text;
+    uint32_t    end   = mark->end < window.end ? mark->end : window.end;
+    uint32_t    blank = add_visible(NULL, text + window.start, mark->start - window.start);
+    uint32_t    width = end > mark->start ? add_visible(NULL, text + mark->start, end - mark->start) : 0;
+    draw_gutter(picture, "|");
+    text_format(picture->out, " %*s", (int)blank + (window.cut_before ? 3 : 0), "");
+    if (mark->primary)
+        paint_severity(picture);
+    else
+        paint_frame(picture);
+    for (uint32_t i = 0; i < (width ? width : 1); i++)
+        text_add(picture->out, mark->primary ? "^" : "-");
+    if (mark->label) {
+        text_add(picture->out, " ");
+        add_lines(picture->out, mark->label, picture->gutter + 4);
+    }
+    paint_nothing(picture);
+    text_add(picture->out, "\n");
+}
+
+/* Draws a line with the marks on it, the primary one first.  Marks that the window around the
+   first does not show wait for a picture of their own. */
+static void draw_line(Picture *picture, Mark *first)
+{
+    Window window = window_around(source_of(picture, first->span), first);
+    draw_source_line(picture, first, window);
+    for (Mark *mark = first; mark < picture->marks.items + picture->marks.count; mark++) {
+        bool here = mark->span.source == first->span.source && mark->line == first->line &&
+                    mark->start >= window.start && mark->start <= window.end;
+        if (here && !mark->drawn) {
+            draw_marks(picture, mark, window);
+            mark->drawn = true;
+        }
+    }
+}
+
+/* The next mark to draw in a file: of the undrawn ones on the topmost line, the first given. */
+static Mark *next_mark(const Picture *picture, uint32_t source)
+{
+    Mark *next = NULL;
+    for (size_t i = 0; i < picture->marks.count; i++) {
+        Mark *mark = &picture->marks.items[i];
+        if (!mark->drawn && mark->span.source == source && (!next || mark->line < next->line))
+            next = mark;
+    }
+    return next;
+}
+
+static void draw_file(Picture *picture, const Mark *named, const char *arrow)
+{
+    const Source *source   = source_of(picture, named->span);
+    Position      position = source_position(source, named->span.start);
+    paint_frame(picture);
+    text_format(picture->out, "%*s%s ", picture->gutter, "", arrow);
+    paint_nothing(picture);
+    add_visible(picture->out, source->name, strlen(source->name));
+    text_format(picture->out, ":%u:%u\n", position.line, position.column);
+    draw_gutter(picture, "|");
+    text_add(picture->out, "\n");
+    const Mark *above = NULL;
+    for (Mark *mark; (mark = next_mark(picture, named->span.source)) != NULL; above = mark) {
+        if (above && mark->line > above->line + 1)
+            text_add(picture->out, "...\n");
+        draw_line(picture, mark);
+    }
+}
+
+static void draw_remark(const Picture *picture, const char *kind, const char *text, const char *code)
+{
+    draw_gutter(picture, "= ");
+    paint(picture, "1");
+    text_format(picture->out, "%s: ", kind);
+    paint_nothing(picture);
+    add_lines(picture->out, text, picture->gutter + 5 + (int)strlen(kind));
+    if (code) {
+        text_add(picture->out, *text ? ": `" : "`");
+        add_lines(picture->out, code, picture->gutter + 5 + (int)strlen(kind));
+        text_add(picture->out, "`");
+    }
+    text_add(picture->out, "\n");
+}
+
+/* The replacement stands behind the help, unless the help quotes it already. */
+static void draw_help(const Picture *picture, const Diag *diag)
+{
+    if (diag->help && (!diag->replacement || strstr(diag->help, diag->replacement)))
+        draw_remark(picture, "help", diag->help, NULL);
+    else if (diag->help)
+        draw_remark(picture, "help", diag->help, diag->replacement);
+    else if (diag->replacement && *diag->replacement)
+        draw_remark(picture, "help", "write", diag->replacement);
+    else if (diag->replacement)
+        draw_remark(picture, "help", "leave this out", NULL);
+}
+
+static void draw_title(const Picture *picture, const Diag *diag)
+{
+    paint_severity(picture);
+    text_format(picture->out, "%s[%s]", picture->error ? "error" : "warning", diag_info[diag->code].code);
+    paint_nothing(picture);
+    paint(picture, "1");
+    text_add(picture->out, ": ");
+    add_lines(picture->out, diag->message, 4);
+    paint_nothing(picture);
+    text_add(picture->out, "\n");
+}
+
+void diag_print_one(const Diags *diags, const Diag *diag, bool color, Text *out)
+{
+    Picture picture = {.diags = diags, .out = out, .color = color, .gutter = 1};
+    picture.error   = diag_info[diag->code].severity == DIAG_ERROR;
+    add_mark(&picture, diag->span, diag->label, true);
+    for (size_t i = 0; i < diag->places.count; i++)
+        add_mark(&picture, diag->places.items[i].span, diag->places.items[i].label, false);
+    for (size_t i = 0; i < picture.marks.count; i++)
+        for (uint32_t n = picture.marks.items[i].line + 1, digits = 1; n > 0; n /= 10, digits++)
+            if ((int)digits > picture.gutter)
+                picture.gutter = (int)digits;
+
+    draw_title(&picture, diag);
+    for (size_t i = 0; i < picture.marks.count; i++)
+        if (!picture.marks.items[i].drawn)
+            draw_file(&picture, &picture.marks.items[i], i == 0 ? "-->" : ":::");
+    for (size_t i = 0; i < diag->notes.count; i++)
+        draw_remark(&picture, "note", diag->notes.items[i], NULL);
+    draw_help(&picture, diag);
+}
+
+static void print_count(size_t count, const char *what, Text *out)
+{
+    text_format(out, "%zu %s%s", count, what, count == 1 ? "" : "s");
+}
+
+void diags_print_text(const Diags *diags, bool color, Text *out)
+{
+    for (size_t i = 0; i < diags->count; i++) {
+        diag_print_one(diags, diags->items[i], color, out);
+        text_add(out, "\n");
+    }
+    if (diags->errors > MOST_DIAGS)
+        text_format(out, "too many errors, the first %d are shown", MOST_DIAGS);
+    else if (diags->errors > 0)
+        print_count(diags->errors, "error", out);
+    if (diags->warnings > 0) {
+        text_add(out, diags->errors > 0 ? ", " : "");
+        print_count(diags->warnings, "warning", out);
+    }
+    if (diags->errors + diags->warnings > 0)
+        text_add(out, "\n");
+}

@@ -1,0 +1,65 @@
+/*
+ * source.c: the texts of a compilation and places in them.
+ */
+#include "compiler/base/source.h"
+
+#include <string.h>
+
+static void find_lines(Arena *arena, Source *source)
+{
+    uint32_t count = 1;
+    for (uint32_t i = 0; i < source->length; i++)
+        count += source->text[i] == '\n';
+    source->lines      = arena_new_array(arena, uint32_t, count);
+    source->line_count = 1;
+    for (uint32_t i = 0; i < source->length; i++)
+        if (source->text[i] == '\n')
+            source->lines[source->line_count++] = i + 1;
+}
+
+static void push_source(Sources *sources, const char *name, const char *text, size_t length, bool library)
+{
+    Source source = {
+        .name    = arena_copy_text(sources->arena, name, strlen(name)),
+        .text    = arena_copy_text(sources->arena, text, length),
+        .length  = (uint32_t)length,
+        .library = library,
+    };
+    find_lines(sources->arena, &source);
+    array_push(sources->arena, sources, source);
+}
+
+uint32_t source_add(Sources *sources, const char *name, const char *text, size_t length, bool library)
+{
+    if (sources->count == 0)
+        push_source(sources, "", "", 0, true);
+    push_source(sources, name, text, length, library);
+    return (uint32_t)(sources->count - 1);
+}
+
+Position source_position(const Source *source, uint32_t offset)
+{
+    uint32_t low = 0, high = source->line_count; /* the line is in [low, high) */
+    while (high - low > 1) {
+        uint32_t middle = low + (high - low) / 2;
+        if (source->lines[middle] <= offset)
+            low = middle;
+        else
+            high = middle;
+    }
+    uint32_t column = 1;
+    for (uint32_t i = source->lines[low]; i < offset && i < source->length; i++)
+        column += (source->text[i] & 0xC0) != 0x80; /* bytes that begin a character */
+    /* A place in the middle of a character counts as its beginning. */
+    if (offset < source->length && (source->text[offset] & 0xC0) == 0x80 && column > 1)
+        column--;
+    return (Position){low + 1, column};
+}
+
+Span span_join(Span from, Span to)
+{
+    if (from.source != to.source)
+        return from.source == 0 ? to : from;
+    return (Span){from.source, from.start < to.start ? from.start : to.start,
+                  from.end > to.end ? from.end : to.end};
+}

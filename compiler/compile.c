@@ -1,0 +1,468 @@
+/*
+ * compile.c: the whole compiler: each step of run() turns one form of the scene into the next.
+ */
+#include "compiler/compile.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+
+#include "compiler/front/parse.h"
+#include "compiler/geometry/elaborate.h"
+#include "compiler/program.h"
+#include "compiler/shader/emit.h"
+
+enum { MOST_OPERATIONS = 20000, MOST_SOURCE_BYTES = 16 << 20 };
+
+static const size_t DEFAULT_MEMORY = (size_t)2 << 30;
+
+const char *const dump_stage_names[DUMP_STAGE_COUNT] = {"tokens", "syntax", "scene", "graph", "simplify", "glsl"};
+
+/* One run of the compiler: three arenas for three lifetimes.  `kept` stays with the scene,
+   `work` holds sources, diagnostics, the syntax tree and the elaborated scene until the end of
+   the run, `scratch` what one step needs. */
+typedef struct Compilation {
+    KrsScene  *scene;
+    Arena      work, syntax, scratch;
+    Sources    sources;
+    Names      names;
+    Diags      diags;
+    Scene      elaborated;
+    Node      *roots;
+    size_t     root_count;
+    const char *text, *name;
+    size_t     length;
+    DumpStage  dump_stage; /* DUMP_STAGE_COUNT: nothing is dumped */
+    const KrsOptions *options;
+    Text       dump;
+    double     started;
+} Compilation;
+
+static double now_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+static bool dumps(const Compilation *c, DumpStage stage) { return c->dump_stage == stage; }
+
+/* ---- files ---- */
+
+/* The whole of a regular file, malloc'ed; NULL with *reason (a static text). */
+static char *read_whole(const char *path, size_t *length, const char **reason)
+{
+    struct stat about;
+    FILE       *file = fopen(path, "rb");
+    char       *text = NULL;
+    *reason = strerror(errno);
+    if (!file)
+        return NULL;
+    if (fstat(fileno(file), &about) == 0 && S_ISDIR(about.st_mode)) {
+        *reason = "it is a folder";
+        fclose(file);
+        return NULL;
+    }
+    size_t capacity = 0;
+    *length         = 0;
+    for (;;) {
+        if (*length == capacity) {
+            capacity     = capacity ? 2 * capacity : 16384;
+            char *larger = capacity <= 4u * MOST_SOURCE_BYTES ? realloc(text, capacity) : NULL;
+            *reason      = "it is too large";
+            if (!larger)
+                break;
+            text = larger;
+        }
+        size_t count = fread(text + *length, 1, capacity - *length, file);
+        *length += count;
+        if (count == 0) {
+            *reason = ferror(file) ? "an error while reading" : NULL;
+            break;
+        }
+    }
+    fclose(file);
+    if (*reason) {
+        free(text);
+        text = NULL;
+    }
+    return text;
+}
+
+static char *read_used_file(void *user, const char *path, size_t *length, const char **reason)
+{
+    (void)user;
+    return read_whole(path, length, reason);
+}
+
+/* 64-bit FNV-1a (Fowler, Noll, Vo) of all sources that are not the library's. */
+static void hash_sources(const Sources *sources, char hash[17])
+{
+    uint64_t h = 0xcbf29ce484222325u;
+    for (size_t i = 1; i < sources->count; i++)
+        for (uint32_t k = 0; !sources->items[i].library && k < sources->items[i].length; k++)
+            h = (h ^ (uint8_t)sources->items[i].text[k]) * 0x100000001b3u;
+    snprintf(hash, 17, "%016llx", (unsigned long long)h);
+}
+
+/* ---- steps ---- */
+
+static void dump_front(Compilation *c, uint32_t source)
+{
+    if (!dumps(c, DUMP_TOKENS) && !dumps(c, DUMP_SYNTAX))
+        return;
+    Diags  silent = {.arena = &c->scratch, .sources = &c->sources};
+    Tokens tokens = lex(source, &c->sources, &c->names, &silent, &c->scratch);
+    if (dumps(c, DUMP_TOKENS))
+        tokens_print(&tokens, &c->sources, &c->dump);
+    else
+        syntax_print(parse(&tokens, &silent, &c->scratch), &c->sources, &c->dump);
+}
+
+static Graph *elaborate_scene(Compilation *c)
+{
+    uint32_t source = source_add(&c->sources, c->name, c->text, c->length, false);
+    dump_front(c, source);
+    Graph *graph        = graph_new(&c->work);
+    c->elaborated       = (Scene){.graph = graph, .zenith = NODE_NONE};
+    Elaboration e       = {.arena = &c->work, .syntax = &c->syntax, .scratch = &c->scratch, .diags = &c->diags,
+                           .names = &c->names, .sources = &c->sources, .graph = graph, .scene = &c->elaborated,
+                           .read_file = read_used_file, .text_total = c->length};
+    elaborate(&e, source, c->name);
+    arena_free(&c->scratch);
+    if (dumps(c, DUMP_SCENE) && c->diags.errors == 0)
+        scene_print(&c->elaborated, &c->sources, &c->dump);
+    return graph;
+}
+
+static size_t count_operations(const Graph *graph, const Node *roots, size_t count, Arena *scratch)
+{
+    Tape tape = tape_new(graph, roots, count, scratch);
+    return tape.count - tape.frame_count;
+}
+
+static void refuse_size(Compilation *c, size_t component, size_t operations, const Graph *graph)
+{
+    const Component *shown = &c->elaborated.components.items[component];
+    Diag *diag = diag_add(&c->diags, DIAG_TOO_LARGE, shown->span, "the scene needs more than %d operations", MOST_OPERATIONS);
+    diag->label = operations ? diag_text(&c->diags, "`%s` is the largest component, with %zu", shown->name, operations)
+                             : diag_text(&c->diags, "`%s` alone needs more", shown->name);
+    diag->help = "fewer shapes, reflections or copies; `.repeat` with a margin in its cells needs one copy only";
+    (void)graph;
+}
+
+/* All roots: of components, cameras, lights and the sky. */
+static bool lower_scene(Compilation *c, Graph *graph)
+{
+    const Scene *s = &c->elaborated;
+    c->root_count  = s->components.count * ROOT_COUNT + s->cameras.count * CAMERA_ROOTS +
+                    s->lights.count * LIGHT_ROOTS + SKY_ROOTS;
+    c->roots   = arena_new_array(&c->scene->arena, Node, c->root_count);
+    Node *root = c->roots;
+    for (size_t i = 0; i < s->components.count; i++, root += ROOT_COUNT)
+        if (!lower_component(graph, s->components.items[i].shape, &c->scratch, root)) {
+            refuse_size(c, i, 0, graph);
+            return false;
+        }
+    for (size_t i = 0; i < s->cameras.count; i++, root += CAMERA_ROOTS) {
+        const SceneCamera *camera = &s->cameras.items[i];
+        memcpy(root, (Node[]){camera->eye, camera->target, camera->up, camera->fov, camera->height},
+               CAMERA_ROOTS * sizeof *root);
+    }
+    for (size_t i = 0; i < s->lights.count; i++, root += LIGHT_ROOTS) {
+        const SceneLight *light = &s->lights.items[i];
+        memcpy(root, (Node[]){light->vector, light->color, light->softness}, LIGHT_ROOTS * sizeof *root);
+    }
+    memcpy(root, (Node[]){s->zenith, s->horizon, s->ground}, SKY_ROOTS * sizeof *root);
+    arena_free(&c->scratch);
+    graph_validate(graph, "lower");
+    if (dumps(c, DUMP_GRAPH))
+        graph_print(graph, &c->sources, c->roots, c->root_count, &c->dump);
+    return true;
+}
+
+/* Size is limited by construction: compilers of shaders are slow on what is too large. */
+static bool check_size(Compilation *c, const Graph *graph)
+{
+    size_t total = 0, largest = 0, most = 0;
+    for (size_t i = 0; i < c->elaborated.components.count; i++) {
+        size_t operations = count_operations(graph, &c->roots[i * ROOT_COUNT], 1, &c->scratch);
+        total += operations;
+        if (operations > most) {
+            most    = operations;
+            largest = i;
+        }
+        arena_free(&c->scratch);
+    }
+    if (total <= MOST_OPERATIONS)
+        return true;
+    refuse_size(c, largest, most, graph);
+    return false;
+}
+
+static double flops_of(const Graph *graph, const Tape *tape)
+{
+    double flops = 0;
+    for (size_t i = tape->frame_count; i < tape->count; i++) {
+        const Expr *expr = &graph->items[tape->nodes[i]];
+        GraphType   types[MAX_OPERANDS];
+        for (uint32_t k = 0; k < expr->operand_count; k++)
+            types[k] = graph->items[expr->operands[k]].type;
+        if (expr->operand_count)
+            flops += op_cost((Op)expr->op, expr->type, types);
+    }
+    return flops;
+}
+
+static const char *keep(Compilation *c, const char *text)
+{
+    return text ? arena_copy_text(&c->scene->arena, text, strlen(text)) : NULL;
+}
+
+/* Copies what the program needs out of the elaborated scene, whose memory goes. */
+static void keep_scene(Compilation *c)
+{
+    KrsScene    *scene = c->scene;
+    const Scene *s     = &c->elaborated;
+    Arena       *arena = &scene->arena;
+    scene->component_count = s->components.count;
+    scene->components      = arena_new_array(arena, KrsComponent, s->components.count + 1);
+    for (size_t i = 0; i < s->components.count; i++) {
+        const Component *from = &s->components.items[i];
+        KrsComponent    *to   = &scene->components[i];
+        *to = (KrsComponent){.name = keep(c, from->name), .slope = from->shape->slope, .exact = from->shape->exact,
+                             .levels = from->shape->levels, .instances = from->shape->instances};
+        for (int k = 0; k < 3; k++) {
+            to->low[k]  = from->shape->box.axis[k].low;
+            to->high[k] = from->shape->box.axis[k].high;
+        }
+    }
+    scene->parameter_count = s->parameters.count;
+    scene->parameters      = arena_new_array(arena, Parameter, s->parameters.count + 1);
+    for (size_t i = 0; i < s->parameters.count; i++) {
+        scene->parameters[i]      = s->parameters.items[i];
+        scene->parameters[i].name = keep(c, s->parameters.items[i].name);
+    }
+    scene->camera_count = s->cameras.count;
+    scene->cameras      = arena_new_array(arena, SceneCamera, s->cameras.count + 1);
+    for (size_t i = 0; i < s->cameras.count; i++) {
+        scene->cameras[i]      = s->cameras.items[i];
+        scene->cameras[i].name = keep(c, s->cameras.items[i].name);
+    }
+    scene->light_count = s->lights.count;
+    scene->lights      = arena_new_array(arena, SceneLight, s->lights.count + 1);
+    memcpy(scene->lights, s->lights.items, s->lights.count * sizeof *scene->lights);
+    scene->image            = s->image;
+    scene->image.integrator = keep(c, s->image.integrator);
+    scene->image.tone_map   = keep(c, s->image.tone_map);
+    for (int k = 0; k < 3; k++) {
+        scene->program.low[k]  = s->box.axis[k].low;
+        scene->program.high[k] = s->box.axis[k].high;
+    }
+}
+
+static void make_tapes(Compilation *c)
+{
+    KrsScene *scene = c->scene;
+    size_t    count = scene->component_count;
+    Node     *distances = arena_new_array(&c->scratch, Node, count + 1);
+    for (size_t i = 0; i < count; i++)
+        distances[i] = c->roots[i * ROOT_COUNT + ROOT_DISTANCE];
+    scene->roots    = c->roots;
+    scene->distance = tape_new(scene->graph, distances, count, &scene->arena);
+    scene->surface  = tape_new(scene->graph, c->roots, count * ROOT_COUNT, &scene->arena);
+    scene->view     = tape_new(scene->graph, c->roots + count * ROOT_COUNT, c->root_count - count * ROOT_COUNT, &scene->arena);
+    scene->program.operations = scene->distance.count - scene->distance.frame_count;
+    scene->program.flops      = flops_of(scene->graph, &scene->distance);
+}
+
+static void emit(Compilation *c)
+{
+    KrsScene *scene = c->scene;
+    Text      glsl  = {.arena = &scene->arena};
+    emit_glsl(scene->graph, &c->sources, c->roots, scene->component_count, &c->scratch, &glsl);
+    scene->program.glsl            = glsl.bytes;
+    scene->program.glsl_length     = glsl.length;
+    scene->program.parameter_slots = (uint32_t)scene->graph->parameters.count;
+    if (dumps(c, DUMP_GLSL))
+        text_add(&c->dump, glsl.bytes);
+}
+
+/* Text to program.  Each step stops at the first that found mistakes. */
+static KrsStatus run(Compilation *c)
+{
+    if (c->length > MOST_SOURCE_BYTES) {
+        source_add(&c->sources, c->name, "", 0, false);
+        diag_add(&c->diags, DIAG_LIMIT, (Span){1, 0, 0}, "the file has %zu bytes; the limit is 16 MiB", c->length);
+        return KRS_BAD_SCENE;
+    }
+    Graph *graph = elaborate_scene(c);
+    if (c->diags.errors || !lower_scene(c, graph))
+        return KRS_BAD_SCENE;
+    Graph *simple = graph_simplify(graph, c->roots, c->root_count, &c->scene->arena);
+    graph_validate(simple, "simplify");
+    c->scene->graph = simple;
+    if (dumps(c, DUMP_SIMPLIFY))
+        graph_print(simple, &c->sources, c->roots, c->root_count, &c->dump);
+    if (!check_size(c, simple))
+        return KRS_BAD_SCENE;
+    hash_sources(&c->sources, c->scene->hash);
+    keep_scene(c);
+    make_tapes(c);
+    c->scene->program.front_ms = now_ms() - c->started;
+    emit(c);
+    c->scene->program.glsl_ms = now_ms() - c->started - c->scene->program.front_ms;
+    return KRS_OK;
+}
+
+/* ---- the doorstep ---- */
+
+static void hand_over(const Diags *diags, const Diag *diag, const KrsOptions *options, Arena *arena)
+{
+    const Source *source   = &diags->sources->items[diag->span.source];
+    Position      position = source_position(source, diag->span.start);
+    Text          text = {.arena = arena}, json = {.arena = arena};
+    diag_print_one(diags, diag, false, &text);
+    diag_json_one(diags, diag, &json);
+    KrsDiagnostic public = {.error = diag_info[diag->code].severity == DIAG_ERROR, .code = diag_info[diag->code].code,
+                            .message = diag->message, .source = source->name, .line = position.line,
+                            .column = position.column, .text = text.bytes, .json = json.bytes};
+    options->diagnostic(options->user, &public);
+}
+
+static void report(Compilation *c)
+{
+    const KrsOptions *options = c->options;
+    diags_sort(&c->diags);
+    for (size_t i = 0; options->diagnostic && i < c->diags.count; i++)
+        hand_over(&c->diags, c->diags.items[i], options, &c->scratch);
+}
+
+/* Running out of memory anywhere in there leads back to here. */
+static KrsStatus run_guarded(Compilation *c)
+{
+    jmp_buf exhausted;
+    c->scene->memory.exhausted = &exhausted;
+    if (setjmp(exhausted) != 0)
+        return KRS_OUT_OF_MEMORY;
+    source_add(&c->sources, "", "", 0, true); /* source 0: no place */
+    KrsStatus status = run(c);
+    report(c);
+    return status;
+}
+
+static KrsStatus compile_and_dump(const char *text, size_t length, const char *name, const KrsOptions *options,
+                                  DumpStage stage, KrsScene **result, char **dump)
+{
+    static const KrsOptions defaults = {0};
+    options                          = options ? options : &defaults;
+    *result                          = NULL;
+    const KrsAllocator *allocator    = &options->allocator;
+    KrsScene *scene = allocator->allocate ? allocator->allocate(allocator->user, sizeof *scene) : malloc(sizeof *scene);
+    if (!scene)
+        return KRS_OUT_OF_MEMORY;
+    memset(scene, 0, sizeof *scene);
+    Compilation c = {.scene = scene, .text = text, .length = length, .name = name, .dump_stage = stage,
+                     .options = options, .started = now_ms()};
+    scene->memory = (Memory){allocator->allocate, allocator->release, allocator->user, 0,
+                             options->memory_limit ? options->memory_limit : DEFAULT_MEMORY, NULL};
+    scene->arena = c.work = c.syntax = c.scratch = (Arena){.memory = &scene->memory};
+    c.sources = (Sources){.arena = &c.work};
+    c.names   = (Names){.arena = &c.work};
+    c.diags   = (Diags){.arena = &c.work, .sources = &c.sources};
+    c.dump    = (Text){.arena = &c.work};
+
+    KrsStatus status = run_guarded(&c);
+    if (dump && status != KRS_OUT_OF_MEMORY)
+        *dump = strdup(c.dump.bytes ? c.dump.bytes : "");
+    arena_free(&c.work);
+    arena_free(&c.syntax);
+    arena_free(&c.scratch);
+    scene->memory.exhausted = NULL;
+    if (status != KRS_OK) {
+        krs_scene_free(scene);
+        return status;
+    }
+    *result = scene;
+    return KRS_OK;
+}
+
+KrsStatus krs_compile_text(const char *text, size_t length, const char *name, const KrsOptions *options, KrsScene **scene)
+{
+    return compile_and_dump(text, length, name, options, DUMP_STAGE_COUNT, scene, NULL);
+}
+
+KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene **scene)
+{
+    size_t      length;
+    const char *reason;
+    *scene     = NULL;
+    char *text = read_whole(path, &length, &reason);
+    if (!text)
+        return KRS_IO_ERROR;
+    KrsStatus status = krs_compile_text(text, length, path, options, scene);
+    free(text);
+    return status;
+}
+
+KrsStatus krs_dump(const char *path, DumpStage stage, const KrsOptions *options, char **dump)
+{
+    size_t      length;
+    const char *reason;
+    KrsScene   *scene;
+    *dump      = NULL;
+    char *text = read_whole(path, &length, &reason);
+    if (!text)
+        return KRS_IO_ERROR;
+    KrsStatus status = compile_and_dump(text, length, path, options, stage, &scene, dump);
+    free(text);
+    krs_scene_free(scene);
+    return status;
+}
+
+void krs_scene_free(KrsScene *scene)
+{
+    if (!scene)
+        return;
+    Memory memory = scene->memory;
+    arena_free(&scene->arena);
+    if (memory.allocate)
+        memory.release(memory.user, scene);
+    else
+        free(scene);
+}
+
+const KrsProgram *krs_scene_program(const KrsScene *scene) { return &scene->program; }
+size_t      krs_camera_count(const KrsScene *scene) { return scene->camera_count; }
+const char *krs_scene_hash(const KrsScene *scene) { return scene->hash; }
+size_t      krs_parameter_count(const KrsScene *scene) { return scene->parameter_count; }
+size_t      krs_component_count(const KrsScene *scene) { return scene->component_count; }
+
+const char *krs_camera_name(const KrsScene *scene, size_t index)
+{
+    return index < scene->camera_count ? scene->cameras[index].name : NULL;
+}
+
+KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *parameter)
+{
+    if (index >= scene->parameter_count)
+        return KRS_BAD_ARGUMENT;
+    const Parameter *from = &scene->parameters[index];
+    *parameter            = (KrsParameter){.name = from->name, .components = from->components};
+    memcpy(parameter->value, from->value, sizeof parameter->value);
+    memcpy(parameter->low, from->low, sizeof parameter->low);
+    memcpy(parameter->high, from->high, sizeof parameter->high);
+    return KRS_OK;
+}
+
+KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *component)
+{
+    if (index >= scene->component_count)
+        return KRS_BAD_ARGUMENT;
+    *component = scene->components[index];
+    return KRS_OK;
+}

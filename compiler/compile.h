@@ -1,0 +1,102 @@
+/*
+ * compile.h: text in, finished program out.  The compiler's doorstep: all that the runtime sees.
+ */
+#ifndef KRS_COMPILE_H
+#define KRS_COMPILE_H
+
+#include "compiler/base/arena.h"
+#include "compiler/base/diag.h"
+#include "compiler/krs.h"
+
+/*
+ * The GLSL of a program declares these promised functions, and the kernels of the runtime
+ * include it (their own text says `#include "scene.glsl"`):
+ *
+ *     layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[N]; };
+ *     void  krs_prepare();               once, first in main: everything that is constant in a frame
+ *     float krs_distance(vec3 p);        safe distance to the scene in world units, < 0 inside
+ *     struct KrsSurface { float distance; vec3 color; float roughness; float metallic;
+ *                         vec3 emission; uint component; uint level; uint instance; };
+ *     KrsSurface krs_surface(vec3 p);    what is at p: the component with the least distance
+ *
+ * N is parameter_slots (at least 1); slot 0 is (time, 0, 0, 0); a parameter has one slot.
+ */
+typedef struct KrsCamera {
+    enum { KRS_PERSPECTIVE, KRS_ORTHOGRAPHIC, KRS_PANORAMA } projection;
+    double eye[3], target[3], up[3];
+    double fov;    /* vertical, radians */
+    double height; /* orthographic: of the picture, world units */
+} KrsCamera;
+
+typedef struct KrsLight {
+    bool   positional;     /* else directional */
+    double vector[3];      /* position, or unit direction towards the light */
+    double color[3];       /* linear, already times intensity */
+    double softness;       /* directional: angular diameter, radians; positional: radius */
+    bool   shadow;
+} KrsLight;
+
+typedef struct KrsSky {
+    double zenith[3], horizon[3], ground[3]; /* linear radiance */
+} KrsSky;
+
+/* What the `image` block says; zero where it is silent. */
+typedef struct KrsImage {
+    uint32_t    width, height, samples;
+    const char *integrator; /* "preview", "direct", or NULL */
+    double      exposure;   /* stops; 0 changes nothing */
+    const char *tone_map;   /* or NULL */
+    double      error;      /* permitted distance from the surface in pixels; 0: the default */
+} KrsImage;
+
+/* Everything about a picture that the host evaluates once per frame. */
+typedef struct KrsView {
+    KrsCamera camera;
+    KrsSky    sky;
+    KrsImage  image;
+    size_t    light_count;
+    const KrsLight *lights; /* lives as long as the frame, until the next krs_frame_view */
+} KrsView;
+
+typedef struct KrsProgram {
+    const char *glsl;         /* promised functions, readable, with comments of source lines */
+    size_t      glsl_length;
+    uint32_t    parameter_slots;
+    double      low[3], high[3]; /* box around all components; infinite where unbounded */
+    size_t      operations;   /* of krs_distance */
+    double      flops;        /* of krs_distance, weighted as in measurements.md fact 5 */
+    double      front_ms, glsl_ms; /* time spent */
+} KrsProgram;
+
+/* The scene's program; lives as long as the scene. */
+const KrsProgram *krs_scene_program(const KrsScene *scene);
+/* The number of cameras and their names (the first is the default; NULL when unnamed). */
+size_t      krs_camera_count(const KrsScene *scene);
+const char *krs_camera_name(const KrsScene *scene, size_t index);
+/* Camera `camera`, lights, sky and image at the frame's parameters and time. */
+KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view);
+/* The parameter block as the GLSL expects it: parameter_slots vec4s. */
+void krs_frame_parameters(const KrsFrame *frame, float (*block)[4]);
+/* 64-bit FNV-1a of the whole text (used files included), 16 hexadecimal digits. */
+const char *krs_scene_hash(const KrsScene *scene);
+
+typedef enum DumpStage {
+    DUMP_TOKENS, DUMP_SYNTAX, DUMP_SCENE, DUMP_GRAPH, DUMP_SIMPLIFY, DUMP_GLSL, DUMP_STAGE_COUNT
+} DumpStage;
+extern const char *const dump_stage_names[DUMP_STAGE_COUNT];
+
+/* As krs_compile_file, and also the form of the scene after `stage`, as text the caller frees
+   with free(); when the scene is wrong, whatever stages before the mistake produced is printed. */
+KrsStatus krs_dump(const char *path, DumpStage stage, const KrsOptions *options, char **text);
+
+/* GLSL to SPIR-V by glslang, then through the SPIR-V validator.  `entry` names the compute
+   shader in messages.  On KRS_OK *words is malloc'ed and the caller's.  KRS_INTERNAL: refused by
+   glslang or the validator, a bug of ours: *log (malloc'ed) has their words.  Thread-safe. */
+KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, size_t *word_count, char **log);
+/* SPIR-V as assembly text (malloc'ed), or NULL. */
+char *spirv_disassemble(const uint32_t *words, size_t word_count);
+/* Once, before the first spirv_compile of a process and after the last. */
+void spirv_start(void);
+void spirv_stop(void);
+
+#endif

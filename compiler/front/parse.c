@@ -1,0 +1,510 @@
+/*
+ * parse.c: statements, and the file as a whole.
+ *
+ * The comment above each function is its rule in grammar/krs.ebnf, word for word; a test
+ * compares them.
+ */
+#include "compiler/front/parser.h"
+
+#include <string.h>
+
+/* ---- definitions ---- */
+
+/* let = "let" NAME "=" expression ";" ; */
+static Syntax *parse_let(Parser *p)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    accept(p, TOKEN_LET); /* it may be missing: see parse_forgotten_let */
+    const Token *name = expect_name(p, "of a `let`");
+    expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` after the name of a `let`");
+    add_child(p, parse_expression(p));
+    if (kind_here(p) == TOKEN_IN)
+        expected(p, "`;` after a `let`")->help =
+            "`let a = 1 in ...` is an expression, and a statement cannot be one";
+    expect_semicolon(p, "a `let`");
+    return finish_named(p, SYNTAX_LET, start, first, name);
+}
+
+/* parameter = NAME [ "=" expression ] ; */
+static Syntax *parse_parameter(Parser *p)
+{
+    Span         start = token_here(p)->span;
+    size_t       first = begin_children(p);
+    const Token *name  = expect_name(p, "of a parameter");
+    if (kind_here(p) == TOKEN_ASSIGN || kind_here(p) == TOKEN_COLON) {
+        expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` before the default of a parameter");
+        add_child(p, parse_expression(p));
+    }
+    return finish_named(p, SYNTAX_PARAMETER, start, first, name);
+}
+
+/* parameters = "(" [ parameter { "," parameter } [ "," ] ] ")" ; */
+static void parse_parameters(Parser *p, const char *what, const char *example)
+{
+    size_t opener = p->here.at;
+    if (!expect(p, TOKEN_LEFT_PAREN, what, example))
+        return;
+    while (!p->failed && kind_here(p) != TOKEN_RIGHT_PAREN) {
+        add_child(p, parse_parameter(p));
+        if (!accept(p, TOKEN_COMMA))
+            break;
+    }
+    expect_closer(p, TOKEN_RIGHT_PAREN, opener, "`,` or `)` after a parameter");
+}
+
+/* def = "def" NAME parameters "=" expression ";" ; */
+static Syntax *parse_def(Parser *p)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    advance(p);
+    const Token *name = expect_name(p, "of a function");
+    parse_parameters(p, "`(` after the name of a function",
+                     "for example `def ball(r = 1) = sphere(r);`; without parameters write `let`");
+    expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` before the value of a function");
+    add_child(p, parse_expression(p));
+    expect_semicolon(p, "a `def`");
+    return finish_named(p, SYNTAX_DEF, start, first, name);
+}
+
+/* param = "param" NAME "=" expression [ "in" expression ] ";" ; */
+static Syntax *parse_param(Parser *p)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    advance(p);
+    const Token *name = expect_name(p, "of a `param`");
+    expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` after the name of a `param`");
+    add_child(p, parse_expression(p));
+    if (accept(p, TOKEN_IN))
+        add_child(p, parse_expression(p));
+    expect_semicolon(p, "a `param`");
+    return finish_named(p, SYNTAX_PARAM, start, first, name);
+}
+
+/* ---- declarations with properties ---- */
+
+/* label = NAME | STATEMENT_WORD ; */
+static const Token *parse_label(Parser *p) { return expect_label(p, "the name of a property"); }
+
+/* property = label ":" expression ; */
+static Syntax *parse_property(Parser *p)
+{
+    Span         start = token_here(p)->span;
+    size_t       first = begin_children(p);
+    const Token *name  = parse_label(p);
+    expect_or_mend(p, TOKEN_COLON, TOKEN_ASSIGN, "`:` after the name of a property");
+    add_child(p, parse_expression(p));
+    return finish_named(p, SYNTAX_PROPERTY, start, first, name);
+}
+
+/* What separates two properties; a wrong or missing separator is reported and counts as one. */
+static bool accept_separator(Parser *p)
+{
+    if (p->failed || accept(p, TOKEN_COMMA))
+        return !p->failed;
+    Span end = {token_before(p)->span.source, token_before(p)->span.end, token_before(p)->span.end};
+    if (kind_here(p) == TOKEN_SEMICOLON) {
+        report_at(p, DIAG_UNEXPECTED_TOKEN, token_here(p)->span,
+                  "expected `,` or `}` after a property, found `;`")->replacement = ",";
+        advance(p);
+        return true;
+    }
+    if (!is_label(p) || kind_after(p) != TOKEN_COLON)
+        return false;
+    report_at(p, DIAG_UNEXPECTED_TOKEN, end, "`,` is missing after a property")->replacement = ",";
+    return true;
+}
+
+/* properties = "{" [ property { "," property } [ "," ] ] "}" ; */
+static void parse_properties(Parser *p, const char *what, const char *example)
+{
+    size_t opener = p->here.at;
+    if (!expect(p, TOKEN_LEFT_BRACE, what, example))
+        return;
+    while (is_label(p) && !begins_declaration(p)) {
+        Level start = p->here;
+        add_child(p, parse_property(p));
+        bool more = accept_separator(p);
+        if (p->failed)
+            recover_property(p, start);
+        else if (!more)
+            break;
+    }
+    expect_closer(p, TOKEN_RIGHT_BRACE, opener, "a property like `name: value`, or `}`");
+}
+
+/* shape = "shape" NAME parameters properties ; */
+static Syntax *parse_shape(Parser *p)
+{
+    static const char example[] = "for example `shape ball(r = 1) { distance: length(p) - r }`";
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    advance(p);
+    const Token *name = expect_name(p, "of a shape");
+    parse_parameters(p, "`(` after the name of a shape", example);
+    parse_properties(p, "`{` and the properties of the shape", example);
+    return finish_named(p, SYNTAX_SHAPE, start, first, name);
+}
+
+/* material = "material" NAME properties ; */
+static Syntax *parse_material(Parser *p)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    advance(p);
+    const Token *name = expect_name(p, "of a material");
+    parse_properties(p, "`{` and the properties of the material",
+                     "for example `material clay { color: #c8553d, roughness: 0.6 }`");
+    return finish_named(p, SYNTAX_MATERIAL, start, first, name);
+}
+
+/* A word, a name where one is permitted, and properties. */
+static Syntax *parse_block_of_properties(Parser *p, SyntaxKind kind, bool may_have_name,
+                                         const char *what, const char *example)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    advance(p);
+    const Token *name = may_have_name && kind_here(p) == TOKEN_NAME ? advance(p) : NULL;
+    parse_properties(p, what, example);
+    return finish(p, kind, start, first, name);
+}
+
+/* camera = "camera" [ NAME ] properties ; */
+static Syntax *parse_camera(Parser *p)
+{
+    return parse_block_of_properties(p, SYNTAX_CAMERA, true, "`{` and the properties of the camera",
+                                     "for example `camera { eye: [3, 2, 5], target: [0, 0, 0] }`");
+}
+
+/* light = "light" [ NAME ] properties ; */
+static Syntax *parse_light(Parser *p)
+{
+    return parse_block_of_properties(p, SYNTAX_LIGHT, true, "`{` and the properties of the light",
+                                     "for example `light sun { direction: [-1, 2, 1] }`");
+}
+
+/* sky = "sky" properties ; */
+static Syntax *parse_sky(Parser *p)
+{
+    return parse_block_of_properties(p, SYNTAX_SKY, false, "`{` and the properties of the sky",
+                                     "for example `sky { zenith: #5b87c5, horizon: #dfe9f2 }`");
+}
+
+/* image = "image" properties ; */
+static Syntax *parse_image(Parser *p)
+{
+    return parse_block_of_properties(p, SYNTAX_IMAGE, false, "`{` and the properties of the image",
+                                     "for example `image { size: [1920, 1080], samples: 64 }`");
+}
+
+/* ---- statements that do ---- */
+
+/* A word and an expression. */
+static Syntax *parse_simple(Parser *p, SyntaxKind kind, const char *after)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    advance(p);
+    add_child(p, parse_expression(p));
+    expect_semicolon(p, after);
+    return finish(p, kind, start, first, NULL);
+}
+
+/* show = "show" expression ";" ; */
+static Syntax *parse_show(Parser *p) { return parse_simple(p, SYNTAX_SHOW, "a `show`"); }
+
+/* use = "use" STRING ";" ; */
+static Syntax *parse_use(Parser *p)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    advance(p);
+    const Token *path = expect(p, TOKEN_STRING, "the name of a file in quotes after `use`",
+                               "for example `use \"std/trees.krs\";`");
+    expect_semicolon(p, "a `use`");
+    return finish_named(p, SYNTAX_USE, start, first, path);
+}
+
+/* A `;` behind a closing brace is a habit from other languages: a warning, and no statement. */
+static bool skip_needless_semicolon(Parser *p)
+{
+    if (kind_here(p) != TOKEN_SEMICOLON)
+        return false;
+    Diag *diag = report_at(p, DIAG_NO_EFFECT, token_here(p)->span, "a `;` without a statement");
+    diag->replacement = "";
+    advance(p);
+    return true;
+}
+
+/* The statements of a block up to its brace.  Each mistake costs one statement. */
+static void parse_statements(Parser *p, size_t opener, ParseFunction *statement,
+                             bool show_permitted)
+{
+    while (!p->failed && kind_here(p) != TOKEN_RIGHT_BRACE && kind_here(p) != TOKEN_END &&
+           !block_is_left(p, opener, show_permitted)) {
+        if (skip_needless_semicolon(p))
+            continue;
+        Level start = p->here;
+        add_child(p, statement(p));
+        if (p->failed)
+            recover_statement(p, start);
+    }
+    expect_closer(p, TOKEN_RIGHT_BRACE, opener, "a statement or `}`");
+}
+
+/* A `for` or `if` has this in common whether it stands in a krs block or not: what is in it. */
+typedef struct BlockRules {
+    ParseFunction *block, *branch; /* the `{ ... }`, and the `if` that may follow `else` */
+    const char    *for_example, *if_example;
+} BlockRules;
+
+static Syntax *parse_braces(Parser *p, ParseFunction *statement, bool show_permitted)
+{
+    Span   start  = token_here(p)->span;
+    size_t first  = begin_children(p), opener = p->here.at;
+    enter(p);
+    if (expect(p, TOKEN_LEFT_BRACE, "`{`", NULL))
+        parse_statements(p, opener, statement, show_permitted);
+    leave(p);
+    return finish(p, SYNTAX_BLOCK, start, first, NULL);
+}
+
+static Syntax *parse_loop(Parser *p, const BlockRules *rules)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    advance(p);
+    const Token *name = NULL;
+    if (kind_here(p) == TOKEN_NAME)
+        name = advance(p);
+    else
+        expected(p, "the name of the variable of a `for`")->help = rules->for_example;
+    expect(p, TOKEN_IN, "`in` after the variable of a `for`", rules->for_example);
+    add_child(p, parse_expression(p));
+    if (kind_here(p) != TOKEN_LEFT_BRACE)
+        expected(p, "`{` after the list of a `for`")->help = rules->for_example;
+    add_child(p, rules->block(p));
+    return finish_named(p, SYNTAX_FOR, start, first, name);
+}
+
+static Syntax *parse_choice(Parser *p, const BlockRules *rules)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    enter(p);
+    advance(p);
+    add_child(p, parse_expression(p));
+    if (kind_here(p) != TOKEN_LEFT_BRACE)
+        expected(p, "`{` after the condition of an `if`")->help = rules->if_example;
+    add_child(p, rules->block(p));
+    if (accept(p, TOKEN_ELSE))
+        add_child(p, kind_here(p) == TOKEN_IF ? rules->branch(p) : rules->block(p));
+    leave(p);
+    return finish(p, SYNTAX_IF_STATEMENT, start, first, NULL);
+}
+
+/* ---- blocks of the scene ---- */
+
+static Syntax *parse_block_statement(Parser *p);
+static Syntax *parse_if(Parser *p);
+
+/* block = "{" { block_statement } "}" ; */
+static Syntax *parse_block(Parser *p) { return parse_braces(p, parse_block_statement, true); }
+
+static const BlockRules scene_rules = {
+    parse_block, parse_if,
+    "for example `for i in 0..5 { show sphere(0.3).move([i, 0, 0]); }`",
+    "as a statement: `if n > 3 { show a; } else { show b; }`",
+};
+
+/* for = "for" NAME "in" expression block ; */
+static Syntax *parse_for(Parser *p) { return parse_loop(p, &scene_rules); }
+
+/* if = "if" expression block [ "else" ( if | block ) ] ; */
+static Syntax *parse_if(Parser *p) { return parse_choice(p, &scene_rules); }
+
+/* block_statement = let | show | for | if ; */
+static Syntax *parse_block_statement(Parser *p)
+{
+    switch (kind_here(p)) {
+    case TOKEN_LET:  return parse_let(p);
+    case TOKEN_SHOW: return parse_show(p);
+    case TOKEN_FOR:  return parse_for(p);
+    case TOKEN_IF:   return parse_if(p);
+    default:
+        expected(p, "`let`, `show`, `for`, `if` or `}` in a block");
+        return error_node(p);
+    }
+}
+
+/* ---- reflection sequences ---- */
+
+static Syntax *parse_krs_statement(Parser *p);
+static Syntax *parse_krs_if(Parser *p);
+
+/* krs_block = "{" { krs_statement } "}" ; */
+static Syntax *parse_krs_block(Parser *p) { return parse_braces(p, parse_krs_statement, false); }
+
+static const BlockRules krs_rules = {
+    parse_krs_block, parse_krs_if,
+    "for example `for i in 0..5 { reflect plane([1, 0, 0], i); }`",
+    "as a statement: `if i > 3 { kernel a; } else { kernel b; }`",
+};
+
+/* krs_for = "for" NAME "in" expression krs_block ; */
+static Syntax *parse_krs_for(Parser *p) { return parse_loop(p, &krs_rules); }
+
+/* krs_if = "if" expression krs_block [ "else" ( krs_if | krs_block ) ] ; */
+static Syntax *parse_krs_if(Parser *p) { return parse_choice(p, &krs_rules); }
+
+/* kernel = "kernel" expression ";" ; */
+static Syntax *parse_kernel(Parser *p) { return parse_simple(p, SYNTAX_KERNEL, "a `kernel`"); }
+
+/* reflect = "reflect" expression ";" ; */
+static Syntax *parse_reflect(Parser *p) { return parse_simple(p, SYNTAX_REFLECT, "a `reflect`"); }
+
+/* mobius = "mobius" expression ";" ; */
+static Syntax *parse_mobius(Parser *p) { return parse_simple(p, SYNTAX_MOBIUS, "a `mobius`"); }
+
+/* krs_statement = kernel | reflect | mobius | let | krs_for | krs_if ; */
+static Syntax *parse_krs_statement(Parser *p)
+{
+    if (is_word_here(p, "kernel"))
+        return parse_kernel(p);
+    if (is_word_here(p, "reflect"))
+        return parse_reflect(p);
+    if (is_word_here(p, "mobius"))
+        return parse_mobius(p);
+    switch (kind_here(p)) {
+    case TOKEN_LET: return parse_let(p);
+    case TOKEN_FOR: return parse_krs_for(p);
+    case TOKEN_IF:  return parse_krs_if(p);
+    default: {
+        Diag *diag = expected(p, "`kernel`, `reflect`, `mobius`, `let`, `for`, `if` or `}`");
+        diag_note(p->diags, diag, "the statements of a `krs` block build one set, in order");
+        return error_node(p);
+    }
+    }
+}
+
+/* krs = "krs" "{" { krs_statement } "}" ; */
+Syntax *parse_krs(Parser *p)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    enter(p);
+    advance(p);
+    size_t opener = p->here.at;
+    if (expect(p, TOKEN_LEFT_BRACE, "`{` after `krs`", "for example `krs { kernel sphere(1); }`"))
+        parse_statements(p, opener, parse_krs_statement, false);
+    leave(p);
+    return finish(p, SYNTAX_KRS, start, first, NULL);
+}
+
+/* ---- the file ---- */
+
+/* `size = 2;`: a definition all the same. */
+static Syntax *parse_forgotten_let(Parser *p)
+{
+    const Token *name = token_here(p);
+    Diag *diag        = report_at(p, DIAG_UNEXPECTED_TOKEN, name->span, "a definition without `let`");
+    diag->replacement = diag_text(p->diags, "let %s", name->name);
+    return parse_let(p);
+}
+
+static Syntax *no_statement(Parser *p)
+{
+    static const char *const words[] = {"let",    "def",   "param", "shape", "material",
+                                        "camera", "light", "sky",   "image", "show",
+                                        "use",    "for",   "if"};
+    const char  *help  = "a scene consists of statements like `let a = 1;` and `show sphere(a);`";
+    const Token *token = token_here(p);
+    const char  *meant = NULL;
+    bool         call  = kind_after(p) == TOKEN_LEFT_PAREN || kind_after(p) == TOKEN_DOT;
+    if (is_word_here(p, "kernel") || is_word_here(p, "reflect") || is_word_here(p, "mobius"))
+        help = "`kernel`, `reflect` and `mobius` stand in a `krs { ... }`";
+    else if (kind_here(p) == TOKEN_NAME && call)
+        help = "to put a shape into the picture write `show` in front of it";
+    else if (kind_here(p) == TOKEN_NAME)
+        meant = nearest_name(token->name, words, sizeof words / sizeof *words);
+    else if (kind_here(p) == TOKEN_RIGHT_BRACE)
+        help = "no `{` is open here";
+    Diag *diag        = expected(p, "a statement");
+    diag->help        = meant ? "did you mean" : help;
+    diag->replacement = meant;
+    return error_node(p);
+}
+
+/* definition = let | def | param | shape | material ; */
+static Syntax *parse_definition(Parser *p)
+{
+    switch (kind_here(p)) {
+    case TOKEN_LET:   return parse_let(p);
+    case TOKEN_DEF:   return parse_def(p);
+    case TOKEN_PARAM: return parse_param(p);
+    case TOKEN_SHAPE: return parse_shape(p);
+    default:          return parse_material(p);
+    }
+}
+
+/* surroundings = camera | light | sky | image ; */
+static Syntax *parse_surroundings(Parser *p)
+{
+    switch (kind_here(p)) {
+    case TOKEN_CAMERA: return parse_camera(p);
+    case TOKEN_LIGHT:  return parse_light(p);
+    case TOKEN_SKY:    return parse_sky(p);
+    default:           return parse_image(p);
+    }
+}
+
+/* statement = definition | surroundings | show | use | for | if ; */
+static Syntax *parse_statement(Parser *p)
+{
+    switch (kind_here(p)) {
+    case TOKEN_LET: case TOKEN_DEF: case TOKEN_PARAM: case TOKEN_SHAPE: case TOKEN_MATERIAL:
+        return parse_definition(p);
+    case TOKEN_CAMERA: case TOKEN_LIGHT: case TOKEN_SKY: case TOKEN_IMAGE:
+        return parse_surroundings(p);
+    case TOKEN_SHOW: return parse_show(p);
+    case TOKEN_USE:  return parse_use(p);
+    case TOKEN_FOR:  return parse_for(p);
+    case TOKEN_IF:   return parse_if(p);
+    case TOKEN_NAME:
+        return kind_after(p) == TOKEN_ASSIGN ? parse_forgotten_let(p) : no_statement(p);
+    default: return no_statement(p);
+    }
+}
+
+/* file = { statement } ; */
+static Syntax *parse_file(Parser *p)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    while (kind_here(p) != TOKEN_END) {
+        if (skip_needless_semicolon(p))
+            continue;
+        Level       level     = p->here;
+        const char *doc       = token_here(p)->doc;
+        Syntax     *statement = parse_statement(p);
+        if (statement->kind == SYNTAX_DEF || statement->kind == SYNTAX_SHAPE ||
+            statement->kind == SYNTAX_PARAM)
+            statement->doc = doc;
+        add_child(p, statement);
+        if (p->failed)
+            recover_statement(p, level);
+        if (diags_full(p->diags))
+            break;
+    }
+    return finish(p, SYNTAX_BLOCK, start, first, NULL);
+}
+
+Syntax *parse(const Tokens *tokens, Diags *diags, Arena *arena)
+{
+    Parser p = {.tokens = tokens->items, .count = tokens->count, .diags = diags, .arena = arena};
+    p.text   = diags->sources->items[tokens->items[0].span.source].text;
+    return parse_file(&p);
+}

@@ -1,0 +1,84 @@
+/*
+ * syntax.h: the syntax tree.
+ *
+ * Every node has the same shape: a kind, the place it was read from, a name, and children.
+ * The table says what these mean for each kind; everything that walks the tree (printing,
+ * names, elaboration) relies on it.
+ */
+#ifndef KRS_SYNTAX_H
+#define KRS_SYNTAX_H
+
+#include "compiler/base/source.h"
+#include "compiler/base/text.h"
+#include "compiler/front/token.h"
+
+/* kind            name             children, and what else is set */
+typedef enum SyntaxKind {
+    SYNTAX_ERROR,         /* -      none: something was wrong here and has been reported */
+    /* expressions */
+    SYNTAX_NUMBER,        /* -      none; number[0] (degrees are already radians) */
+    SYNTAX_COLOUR,        /* -      none; number[0..2], linear Rec.709 */
+    SYNTAX_STRING,        /* text   none; the name is the text between the quotes, unescaped */
+    SYNTAX_BOOLEAN,       /* -      none; number[0] is 0 or 1 */
+    SYNTAX_NAME,          /* name   none */
+    SYNTAX_LIST,          /* -      elements */
+    SYNTAX_COMPREHENSION, /* -      [0] element, [1..] FOR_CLAUSE or IF_CLAUSE, outermost first */
+    SYNTAX_FOR_CLAUSE,    /* name   [0] the list */
+    SYNTAX_IF_CLAUSE,     /* -      [0] the condition */
+    SYNTAX_RANGE,         /* -      [0] from, [1] to */
+    SYNTAX_UNARY,         /* -      [0] operand; op is TOKEN_MINUS or TOKEN_NOT */
+    SYNTAX_BINARY,        /* -      [0] left, [1] right; op, and op_span of the operator */
+    SYNTAX_IF,            /* -      [0] condition, [1] then, [2] else */
+    SYNTAX_LET_IN,        /* name   [0] value, [1] body */
+    SYNTAX_CALL,          /* -      [0] callee, [1..] ARGUMENT */
+    SYNTAX_METHOD,        /* name   [0] receiver, [1..] ARGUMENT; parentheses may be missing */
+    SYNTAX_ARGUMENT,      /* name?  [0] value; name NULL when positional */
+    SYNTAX_INDEX,         /* -      [0] list, [1] index */
+    SYNTAX_KRS,           /* -      statements: KERNEL REFLECT MOBIUS LET FOR IF_STATEMENT */
+    /* statements */
+    SYNTAX_BLOCK,         /* -      statements (of a `for` or `if`, and of the whole file) */
+    SYNTAX_LET,           /* name   [0] value */
+    SYNTAX_DEF,           /* name   [0..n-2] PARAMETER, [n-1] body; doc */
+    SYNTAX_PARAMETER,     /* name   [0] default, or no child */
+    SYNTAX_PARAM,         /* name   [0] default, [1] range (any expression), or no [1] */
+    SYNTAX_SHAPE,         /* name   PARAMETER..., PROPERTY...; doc */
+    SYNTAX_MATERIAL,      /* name   PROPERTY... */
+    SYNTAX_CAMERA,        /* name?  PROPERTY... */
+    SYNTAX_LIGHT,         /* name?  PROPERTY... */
+    SYNTAX_SKY,           /* -      PROPERTY... */
+    SYNTAX_IMAGE,         /* -      PROPERTY... */
+    SYNTAX_PROPERTY,      /* name   [0] value */
+    SYNTAX_SHOW,          /* -      [0] value */
+    SYNTAX_USE,           /* path   none; the name is the path */
+    SYNTAX_FOR,           /* name   [0] the list, [1] BLOCK */
+    SYNTAX_IF_STATEMENT,  /* -      [0] condition, [1] BLOCK, [2] BLOCK or IF_STATEMENT, or no [2] */
+    SYNTAX_KERNEL,        /* -      [0] shape */
+    SYNTAX_REFLECT,       /* -      [0] plane */
+    SYNTAX_MOBIUS,        /* -      [0] map */
+    SYNTAX_KIND_COUNT
+} SyntaxKind;
+
+typedef struct Syntax Syntax;
+struct Syntax {
+    SyntaxKind  kind;
+    TokenKind   op;
+    Span        span;      /* all of it */
+    Span        name_span; /* the name alone; for BINARY the operator */
+    const char *name;      /* interned, or NULL */
+    const char *doc;       /* the lines of the `///` comment before a DEF, SHAPE or PARAM, or NULL */
+    double      number[3];
+    Syntax    **children;
+    uint32_t    count;
+    uint32_t    height; /* levels of the tree from here down */
+};
+
+/* Most levels of an expression, so that whoever walks the tree may do so by calling itself. */
+enum { SYNTAX_MOST_LEVELS = 1000 };
+
+/* "comprehension", for dumps. */
+const char *syntax_kind_name(SyntaxKind kind);
+
+/* The tree as indented text, one node a line: kind, name, number, line:column. */
+void syntax_print(const Syntax *syntax, const Sources *sources, Text *out);
+
+#endif

@@ -1,0 +1,45 @@
+/*
+ * box.h: bounding volumes of shapes: boxes with sides of ranges, and balls.
+ */
+#ifndef KRS_BOX_H
+#define KRS_BOX_H
+
+#include "compiler/graph/facts.h"
+
+/* Interval arithmetic for bounds; 0 times infinity is 0, for an axis that is not used. */
+Range range_of(double number);
+Range range_add(Range a, Range b);
+Range range_sub(Range a, Range b);
+Range range_mul(Range a, Range b);
+Range range_hull(Range a, Range b);
+Range range_common(Range a, Range b); /* empty: low > high */
+
+extern const Box box_empty, box_infinite;
+
+bool box_is_empty(Box box);
+bool box_is_finite(Box box);
+Box  box_hull(Box a, Box b);
+Box  box_common(Box a, Box b);
+/* Larger by `by` on every side. */
+Box  box_grow(Box box, double by);
+Box  box_move(Box box, const Range by[3]);
+/* The box around a box after a linear map with these rows, each entry a range. */
+Box  box_turn(Box box, Range rows[3][3]);
+double box_diagonal(Box box);
+void   box_centre(Box box, double centre[3]);
+
+typedef struct Ball {
+    double centre[3];
+    double radius; /* < 0: empty; may be infinite */
+} Ball;
+
+Ball ball_around(Box box);
+Box  ball_box(Ball ball);
+Ball ball_hull(Ball a, Ball b);
+/* The ball of what is in `ball` with u.x <= w, and its mirror image (math.md 1, "Bounding
+   balls"); the unit vector and offset of the mirror are constants. */
+Ball ball_fold(Ball ball, const double u[3], double w);
+/* The box around the same set; ranges for mirrors that move. */
+Box  box_fold(Box box, const Range u[3], Range w);
+
+#endif

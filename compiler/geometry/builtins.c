@@ -1,0 +1,513 @@
+/*
+ * builtins.c: the built-in functions and constants.
+ */
+#include "compiler/geometry/elaborate.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+/* ---- vectors ---- */
+
+/* An argument as the node of a number or vector; NODE_NONE: reported. */
+static Node numeric_argument(Elaboration *e, const Call *call, uint32_t index)
+{
+    const Argument *argument = &call->arguments[index];
+    Node            node     = value_node(e, argument->value);
+    if (node != NODE_NONE && e->graph->items[node].type <= TYPE_VEC4)
+        return node;
+    type_error(e, argument->syntax, argument->value, "a vector");
+    return NODE_NONE;
+}
+
+static Value vector_op(Elaboration *e, Call *call, Op op, uint32_t arity)
+{
+    Node      nodes[2];
+    GraphType types[2];
+    for (uint32_t i = 0; i < arity; i++) {
+        nodes[i] = numeric_argument(e, call, i);
+        if (nodes[i] == NODE_NONE)
+            return value_error();
+        types[i] = e->graph->items[nodes[i]].type;
+    }
+    if (!graph_op_type(op, types, arity)) {
+        diag_add(e->diags, DIAG_LENGTH_MISMATCH, call->syntax->span, "`%s` needs %s", call->name,
+                 op == OP_cross ? "two vectors of 3" : arity == 2 ? "two vectors of one length" : "a vector");
+        return value_error();
+    }
+    e->graph->here = call->syntax->span;
+    return value_of_node(e, graph_op(e->graph, op, nodes));
+}
+
+static Value builtin_length(Elaboration *e, Call *call) { return vector_op(e, call, OP_length, 1); }
+static Value builtin_dot(Elaboration *e, Call *call) { return vector_op(e, call, OP_dot, 2); }
+static Value builtin_cross(Elaboration *e, Call *call) { return vector_op(e, call, OP_cross, 2); }
+static Value builtin_normalize(Elaboration *e, Call *call) { return vector_op(e, call, OP_normalize, 1); }
+
+static Value builtin_distance(Elaboration *e, Call *call)
+{
+    Value way = vector_op(e, call, OP_sub, 2);
+    if (way.type == VALUE_ERROR)
+        return way;
+    return value_of_node(e, graph_op1(e->graph, OP_length, value_node(e, way)));
+}
+
+static Value scaled(Elaboration *e, Call *call, double factor)
+{
+    Value values[] = {call->arguments[0].value, value_number(factor)};
+    if (numeric_argument(e, call, 0) == NODE_NONE)
+        return value_error();
+    return value_map_op(e, OP_mul, values, 2, call->syntax);
+}
+
+static Value builtin_radians(Elaboration *e, Call *call) { return scaled(e, call, PI / 180); }
+static Value builtin_degrees(Elaboration *e, Call *call) { return scaled(e, call, 180 / PI); }
+
+/* ---- lists ---- */
+
+static const List *list_argument(Elaboration *e, const Call *call, uint32_t index)
+{
+    const Argument *argument = &call->arguments[index];
+    if (argument->value.type == VALUE_LIST)
+        return argument->value.list;
+    type_error(e, argument->syntax, argument->value, "a list");
+    return NULL;
+}
+
+/* Reduces values with a binary operation, in pairs, so that the graph stays shallow. */
+static Value reduce(Elaboration *e, Op op, const Value *items, size_t count, const Syntax *place)
+{
+    if (count == 1)
+        return items[0];
+    size_t half = count / 2;
+    Value  a    = reduce(e, op, items, half, place);
+    Value  b    = reduce(e, op, items + half, count - half, place);
+    if (a.type == VALUE_ERROR || b.type == VALUE_ERROR)
+        return value_error();
+    Node nodes[] = {value_node(e, a), value_node(e, b)};
+    if (nodes[0] == NODE_NONE || nodes[1] == NODE_NONE) {
+        type_error(e, place, nodes[0] == NODE_NONE ? a : b, op == OP_and || op == OP_or ? "truth values" : "numbers or vectors");
+        return value_error();
+    }
+    GraphType types[] = {e->graph->items[nodes[0]].type, e->graph->items[nodes[1]].type};
+    if (!graph_op_type(op, types, 2)) {
+        diag_add(e->diags, DIAG_TYPE_MISMATCH, place->span, "%s and %s do not go together", value_type_name(e, a),
+                 value_type_name(e, b));
+        return value_error();
+    }
+    if (op == OP_and || op == OP_or)
+        return value_of_node(e, graph_op(e->graph, op, nodes));
+    return value_map_op(e, op, (Value[]){a, b}, 2, place);
+}
+
+static Value reduce_list(Elaboration *e, Call *call, Op op, Value empty)
+{
+    if (call->arguments[0].value.type == VALUE_EXPRESSION) { /* a vector known only as a node */
+        Node  vector = call->arguments[0].value.node;
+        Value parts[4];
+        uint32_t type = e->graph->items[vector].type;
+        if (type > TYPE_VEC4)
+            type_error(e, call->arguments[0].syntax, call->arguments[0].value, "a list");
+        if (type > TYPE_VEC4)
+            return value_error();
+        for (uint32_t i = 0; i < type; i++)
+            parts[i] = value_of_node(e, graph_component(e->graph, vector, i));
+        return reduce(e, op, parts, type, call->syntax);
+    }
+    const List *list = list_argument(e, call, 0);
+    if (!list)
+        return value_error();
+    return list->count ? reduce(e, op, list->items, list->count, call->syntax) : empty;
+}
+
+static Value builtin_sum(Elaboration *e, Call *call) { return reduce_list(e, call, OP_add, value_number(0)); }
+static Value builtin_product(Elaboration *e, Call *call) { return reduce_list(e, call, OP_mul, value_number(1)); }
+static Value builtin_any(Elaboration *e, Call *call) { return reduce_list(e, call, OP_or, value_boolean(false)); }
+static Value builtin_all(Elaboration *e, Call *call) { return reduce_list(e, call, OP_and, value_boolean(true)); }
+
+static Value extreme(Elaboration *e, Call *call, Op op)
+{
+    if (call->rest_count == 0) {
+        Diag *diag  = diag_add(e->diags, DIAG_MISSING_ARGUMENT, call->syntax->span, "`%s` needs something to choose from", call->name);
+        diag->label = "nothing is given";
+        return value_error();
+    }
+    if (call->rest_count == 1) {
+        call->arguments[0] = call->rest[0];
+        if (call->rest[0].value.type == VALUE_LIST && call->rest[0].value.list->count == 0) {
+            diag_add(e->diags, DIAG_BAD_VALUE, call->rest[0].syntax->span, "the list is empty");
+            return value_error();
+        }
+        return reduce_list(e, call, op, value_error());
+    }
+    Value *values = arena_new_array(e->arena, Value, call->rest_count);
+    for (uint32_t i = 0; i < call->rest_count; i++)
+        values[i] = call->rest[i].value;
+    return reduce(e, op, values, call->rest_count, call->syntax);
+}
+
+static Value builtin_least(Elaboration *e, Call *call) { return extreme(e, call, OP_min); }
+static Value builtin_greatest(Elaboration *e, Call *call) { return extreme(e, call, OP_max); }
+
+static Value builtin_len(Elaboration *e, Call *call)
+{
+    Value value = call->arguments[0].value;
+    if (value.type == VALUE_EXPRESSION && e->graph->items[value.node].type <= TYPE_VEC4 &&
+        e->graph->items[value.node].type >= TYPE_VEC2)
+        return value_number(e->graph->items[value.node].type);
+    const List *list = list_argument(e, call, 0);
+    return list ? value_number((double)list->count) : value_error();
+}
+
+static bool constant_argument(Elaboration *e, const Call *call, uint32_t index, double *number)
+{
+    const Argument *argument = &call->arguments[index];
+    if (!argument->syntax)
+        return true;
+    if (argument->value.type == VALUE_NUMBER) {
+        *number = argument->value.number;
+        return true;
+    }
+    if (argument->value.type == VALUE_EXPRESSION) {
+        Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, argument->syntax->span, "`%s` needs a number that is known at compile time", call->name);
+        diag->label = "this depends on a `param`, on `time` or on a coordinate";
+        point_at_definition(e, diag, argument->syntax, NULL);
+    } else
+        type_error(e, argument->syntax, argument->value, "a number");
+    return false;
+}
+
+static Value builtin_range(Elaboration *e, Call *call)
+{
+    double from = 0, to = 0, by = 1;
+    if (!constant_argument(e, call, 0, &from) || !constant_argument(e, call, 1, &to) || !constant_argument(e, call, 2, &by))
+        return value_error();
+    if (!is_given(call, 1)) {
+        to   = from;
+        from = 0;
+    }
+    double count = ceil((to - from) / by);
+    if (!(by != 0) || !(count <= 1e6)) {
+        Diag *diag  = diag_add(e->diags, by != 0 ? DIAG_LIMIT : DIAG_BAD_VALUE, call->syntax->span,
+                               by != 0 ? "a range of more than a million elements" : "a range with steps of 0 does not end");
+        diag->label = "this range";
+        return value_error();
+    }
+    List *list  = arena_new(e->arena, List);
+    list->count = count > 0 ? (size_t)count : 0;
+    list->items = arena_new_array(e->arena, Value, list->count + 1);
+    for (size_t i = 0; i < list->count; i++)
+        list->items[i] = value_number(from + (double)i * by);
+    return (Value){.type = VALUE_LIST, .list = list};
+}
+
+/* ---- random numbers: the same on every machine ---- */
+
+/* SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014) of
+   the bits of the seed; -0 and 0 are one seed. */
+static uint64_t hash_number(double seed, uint64_t stream)
+{
+    uint64_t bits;
+    seed += 0.0;
+    memcpy(&bits, &seed, sizeof bits);
+    bits += (stream + 1) * 0x9E3779B97F4A7C15u;
+    bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9u;
+    bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBu;
+    bits ^= bits >> 31;
+    bits += 0x9E3779B97F4A7C15u;
+    bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9u;
+    bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBu;
+    return bits ^ (bits >> 31);
+}
+
+static double unit_random(double seed, uint64_t stream) { return (double)(hash_number(seed, stream) >> 11) * 0x1p-53; }
+
+static Value builtin_random(Elaboration *e, Call *call)
+{
+    double seed = 0;
+    return constant_argument(e, call, 0, &seed) ? value_number(unit_random(seed, 0)) : value_error();
+}
+
+/* Marsaglia (1972): a point of the unit disc gives a point of the sphere by products and roots
+   only, which every machine computes alike. */
+static Value builtin_random_direction(Elaboration *e, Call *call)
+{
+    double seed = 0, a, b, s;
+    if (!constant_argument(e, call, 0, &seed))
+        return value_error();
+    uint64_t stream = 1;
+    do {
+        a = 2 * unit_random(seed, stream) - 1;
+        b = 2 * unit_random(seed, stream + 1) - 1;
+        s = a * a + b * b;
+        stream += 2;
+    } while (s >= 1);
+    double root = 2 * sqrt(1 - s);
+    return value_vector(e, (double[]){a * root, 1 - 2 * s, b * root}, 3);
+}
+
+/* ---- joining ---- */
+
+static bool blend_arguments(Elaboration *e, const Call *call, uint32_t first, BlendKind *kind, Node *width, Node *steps)
+{
+    *kind  = BLEND_QUADRATIC;
+    *width = NODE_NONE;
+    *steps = NODE_NONE;
+    const Argument *name = &call->arguments[first + 1];
+    if (name->syntax && name->value.type != VALUE_STRING) {
+        type_error(e, name->syntax, name->value, "the kind of a blend, a string");
+        return false;
+    }
+    if (name->syntax) {
+        const char *spellings[BLEND_COUNT];
+        uint32_t    found = BLEND_COUNT;
+        for (uint32_t i = 0; i < BLEND_COUNT; i++) {
+            spellings[i] = blend_info[i].spelling;
+            if (strcmp(spellings[i], name->value.string) == 0)
+                found = i;
+        }
+        if (found == BLEND_COUNT) {
+            Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, name->syntax->span, "no blend is called \"%s\"", name->value.string);
+            const char *near = nearest_name(name->value.string, spellings, BLEND_COUNT);
+            diag->label = "unknown kind of blend";
+            if (near)
+                diag->replacement = diag_text(e->diags, "\"%s\"", near);
+            diag->help = "there are \"quadratic\", \"cubic\", \"exponential\", \"circular\", \"chamfer\" and \"stairs\"";
+            return false;
+        }
+        *kind = (BlendKind)found;
+    }
+    uint32_t count;
+    if (!want_count(e, call, first + 2, 1, 64, 4, &count))
+        return false;
+    *steps = graph_number(e->graph, count);
+    if (!is_given(call, first))
+        return true;
+    *width      = want_number(e, call, first, 0);
+    Range range = *width == NODE_NONE ? range_of(0) : node_range(e, *width, 0);
+    if (range.low < 0) {
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[first].syntax->span, "the width of a blend cannot be negative");
+        diag->label = diag_text(e->diags, "this can be %g", range.low);
+        return false;
+    }
+    if (range.high == 0)
+        *width = NODE_NONE;
+    return range.high == 0 || *width != NODE_NONE;
+}
+
+/* The shapes of a call: positional ones, or the elements of lists among them. */
+static bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *place, Values *shapes)
+{
+    if (value.type == VALUE_LIST) {
+        for (size_t i = 0; i < value.list->count; i++)
+            if (!collect_shapes(e, call, value.list->items[i], place, shapes))
+                return false;
+        return true;
+    }
+    if (value.type != VALUE_SHAPE) {
+        if (value.type != VALUE_ERROR)
+            type_error(e, place, value, "shapes");
+        return false;
+    }
+    array_push(e->arena, shapes, value);
+    return true;
+}
+
+static Value join(Elaboration *e, const Call *call, ShapeKind kind, const Values *values, uint32_t first_option)
+{
+    BlendKind blend;
+    Node      width, steps;
+    if (!blend_arguments(e, call, first_option, &blend, &width, &steps))
+        return value_error();
+    if (values->count == 0 && kind != SHAPE_UNION) {
+        diag_add(e->diags, DIAG_MISSING_ARGUMENT, call->syntax->span, "`%s` needs at least one shape", call->name);
+        return value_error();
+    }
+    const Shape **shapes = arena_new_array(e->arena, const Shape *, values->count + 1);
+    for (size_t i = 0; i < values->count; i++) {
+        shapes[i] = values->items[i].shape;
+        if (shapes[i]->figure != shapes[0]->figure) {
+            Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, call->syntax->span, "plane figures and solids cannot be joined");
+            diag->help = "make figures solid with `.extrude(height)` or `.revolve()`";
+            return value_error();
+        }
+    }
+    return (Value){.type  = VALUE_SHAPE,
+                   .shape = make_joint(e, kind, shapes, (uint32_t)values->count, blend, width, steps, call->syntax->span)};
+}
+
+static Value join_rest(Elaboration *e, Call *call, ShapeKind kind)
+{
+    Values shapes = {0};
+    if (is_given(call, 0) && !collect_shapes(e, call, call->arguments[0].value, call->arguments[0].syntax, &shapes))
+        return value_error();
+    for (uint32_t i = 0; i < call->rest_count; i++)
+        if (!collect_shapes(e, call, call->rest[i].value, call->rest[i].syntax, &shapes))
+            return value_error();
+    return join(e, call, kind, &shapes, 1);
+}
+
+static Value builtin_union(Elaboration *e, Call *call) { return join_rest(e, call, SHAPE_UNION); }
+static Value builtin_intersection(Elaboration *e, Call *call) { return join_rest(e, call, SHAPE_INTERSECTION); }
+static Value builtin_difference(Elaboration *e, Call *call) { return join_rest(e, call, SHAPE_DIFFERENCE); }
+
+static Value builtin_xor(Elaboration *e, Call *call)
+{
+    const Shape *a = want_shape(e, call, 0), *b = want_shape(e, call, 1);
+    if (!a || !b)
+        return value_error();
+    Value  pair[] = {call->arguments[0].value, call->arguments[1].value};
+    Values values = {pair, 2, 2};
+    return join(e, call, SHAPE_XOR, &values, 2);
+}
+
+static Value builtin_morph(Elaboration *e, Call *call)
+{
+    const Shape *a = want_shape(e, call, 0), *b = want_shape(e, call, 1);
+    Node         t = want_number(e, call, 2, 0);
+    if (!a || !b || t == NODE_NONE)
+        return value_error();
+    Range range = node_range(e, t, 0);
+    if (range.low < 0 || range.high > 1) {
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[2].syntax->span, "`t` of `morph` must stay in [0, 1]");
+        diag->label = diag_text(e->diags, "this goes from %g to %g", range.low, range.high);
+        return value_error();
+    }
+    return (Value){.type = VALUE_SHAPE, .shape = make_morph(e, a, b, t, call->syntax->span)};
+}
+
+/* ---- maps ---- */
+
+static const double ORIGIN[3] = {0, 0, 0};
+
+static Value map_value(const Similarity *map) { return (Value){.type = VALUE_MAP, .map = map}; }
+
+static Value builtin_translate(Elaboration *e, Call *call)
+{
+    Node by = want_vector(e, call, 0, ORIGIN);
+    return by == NODE_NONE ? value_error() : map_value(similarity_translation(e, by));
+}
+
+static Value builtin_rotate(Elaboration *e, Call *call)
+{
+    Node axis = want_vector(e, call, 0, ORIGIN), angle = want_number(e, call, 1, 0);
+    if (axis == NODE_NONE || angle == NODE_NONE || !check_direction(e, axis, call->arguments[0].syntax, "the axis of a rotation"))
+        return value_error();
+    return map_value(similarity_rotation(e, axis, angle));
+}
+
+static Value builtin_scale(Elaboration *e, Call *call)
+{
+    Node by = want_number(e, call, 0, 1);
+    if (by == NODE_NONE || !check_positive(e, by, call->arguments[0].syntax, "a scale"))
+        return value_error();
+    return map_value(similarity_scaling(e, by));
+}
+
+static Value builtin_reflect(Elaboration *e, Call *call)
+{
+    Node         normal, offset;
+    const Shape *plane = want_shape(e, call, 0);
+    if (!plane)
+        return value_error();
+    if (!shape_plane(e, plane, &normal, &offset)) {
+        diag_add(e->diags, DIAG_NEEDS_PLANE, call->arguments[0].syntax->span, "`reflect` needs a plane, found a shape")
+            ->label = "this is not a plane";
+        return value_error();
+    }
+    return map_value(similarity_reflection(e, normal, offset));
+}
+
+static Value builtin_not_supported(Elaboration *e, Call *call)
+{
+    Diag *diag  = diag_add(e->diags, DIAG_NOT_SUPPORTED, call->syntax->span, "this version of krs does not have `%s`", call->name);
+    diag->label = "not in this version";
+    return value_error();
+}
+
+/* ---- tables ---- */
+
+static const Builtin builtins[] = {
+#define NUMERIC(name, parameters, op, meaning) {#name, parameters, OP_##op, NULL, meaning},
+#define SPECIAL(name, parameters, function, meaning) {#name, parameters, OP_COUNT, builtin_##function, meaning},
+#include "compiler/geometry/functions.def"
+#undef NUMERIC
+#undef SPECIAL
+};
+enum { BUILTIN_COUNT = sizeof builtins / sizeof *builtins };
+
+const Builtin *builtin_find(const char *name)
+{
+    for (size_t i = 0; i < BUILTIN_COUNT; i++)
+        if (strcmp(builtins[i].name, name) == 0)
+            return &builtins[i];
+    return NULL;
+}
+
+static const char *const constants[] = {"pi", "tau", "x", "y", "z", "p", "time", "level", "instance", "u", "v", "normal",
+                                        "identity", "orbit_trap", "rounding"};
+enum { CONSTANT_COUNT = sizeof constants / sizeof *constants };
+
+size_t builtin_names(const char **names, size_t capacity)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < BUILTIN_COUNT && count < capacity; i++)
+        names[count++] = builtins[i].name;
+    for (size_t i = 0; i < CONSTANT_COUNT && count < capacity; i++)
+        names[count++] = constants[i];
+    return count;
+}
+
+/* level and instance: in materials only. */
+static Value material_name(Elaboration *e, const char *name, Span span)
+{
+    if (!e->in_material) {
+        Diag *diag  = diag_add(e->diags, DIAG_OUT_OF_PLACE, span, "`%s` has a meaning in materials only", name);
+        diag->label = "not in a material";
+        return value_error();
+    }
+    if (strcmp(name, "level") == 0)
+        return value_of_node(e, graph_leaf(e->graph, OP_LEVEL));
+    Node instance = graph_leaf(e->graph, OP_INSTANCE);
+    return value_of_node(e, graph_op1(e->graph, OP_id_unit, instance));
+}
+
+/* The radius of .round(r), in `core:` of a shape declaration only. */
+static Value rounding_name(Elaboration *e, Span span)
+{
+    if (e->rounding != NODE_NONE)
+        return value_of_node(e, e->rounding);
+    Diag *diag  = diag_add(e->diags, DIAG_OUT_OF_PLACE, span, "`rounding` has a meaning in `core:` only");
+    diag->label = "not in the core of a shape declaration";
+    return value_error();
+}
+
+bool builtin_constant(Elaboration *e, const char *name, Span span, Value *value)
+{
+    Graph *g = e->graph;
+    if (strcmp(name, "pi") == 0)
+        *value = value_number(PI);
+    else if (strcmp(name, "tau") == 0)
+        *value = value_number(2 * PI);
+    else if (strlen(name) == 1 && name[0] >= 'x' && name[0] <= 'z')
+        *value = value_of_node(e, graph_component(g, graph_leaf(g, OP_POINT), (uint32_t)(name[0] - 'x')));
+    else if (strcmp(name, "p") == 0)
+        *value = value_of_node(e, graph_leaf(g, OP_POINT));
+    else if (strcmp(name, "time") == 0)
+        *value = value_of_node(e, graph_parameter(g, 0, TYPE_FLOAT));
+    else if (strcmp(name, "level") == 0 || strcmp(name, "instance") == 0)
+        *value = material_name(e, name, span);
+    else if (strcmp(name, "rounding") == 0)
+        *value = rounding_name(e, span);
+    else if (strcmp(name, "identity") == 0)
+        *value = (Value){.type = VALUE_MAP, .map = similarity_identity(e)};
+    else if (strcmp(name, "u") == 0 || strcmp(name, "v") == 0 || strcmp(name, "normal") == 0 ||
+             strcmp(name, "orbit_trap") == 0) {
+        Diag *diag  = diag_add(e->diags, DIAG_NOT_SUPPORTED, span, "this version of krs does not have `%s`", name);
+        diag->label = "not in this version";
+        *value      = value_error();
+    } else
+        return false;
+    return true;
+}

@@ -1,0 +1,300 @@
+/*
+ * declare.c: shapes declared in the language, the library's and the users' own.
+ *
+ * A declaration gives the distance as an expression of the point.  Where it claims `exact`, the
+ * claim is put to the test by sampling when it is first used; otherwise a slope is derived and
+ * the distance divided by it, so that every primitive is 1-Lipschitz from here on.
+ */
+#include "compiler/geometry/elaborate.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "compiler/graph/evaluate.h"
+
+static const char *const property_names[] = {"distance", "bound", "exact", "within", "uv", "plane", "figure", "core", "example"};
+enum { PROPERTY_COUNT = sizeof property_names / sizeof *property_names };
+
+static const Syntax *find_property(const Syntax *declaration, const char *name)
+{
+    for (uint32_t i = 0; i < declaration->count; i++)
+        if (declaration->children[i]->kind == SYNTAX_PROPERTY && strcmp(declaration->children[i]->name, name) == 0)
+            return declaration->children[i]->children[0];
+    return NULL;
+}
+
+static bool check_properties(Elaboration *e, const Syntax *declaration)
+{
+    bool good = true;
+    for (uint32_t i = 0; i < declaration->count; i++) {
+        const Syntax *property = declaration->children[i];
+        bool          known    = property->kind != SYNTAX_PROPERTY;
+        for (size_t k = 0; !known && k < PROPERTY_COUNT; k++)
+            known = strcmp(property->name, property_names[k]) == 0;
+        if (known)
+            continue;
+        Diag *diag = diag_add(e->diags, DIAG_UNKNOWN_PROPERTY, property->name_span, "a shape has no property `%s`", property->name);
+        diag->label       = "unknown property";
+        diag->replacement = nearest_name(property->name, property_names, PROPERTY_COUNT);
+        good              = false;
+    }
+    return good;
+}
+
+/* A property that is a number at every point. */
+static Node field_property(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Value value = evaluate(e, env, syntax);
+    Node  node  = value.type == VALUE_NUMBER || value.type == VALUE_EXPRESSION ? value_node(e, value) : NODE_NONE;
+    if (node != NODE_NONE && e->graph->items[node].type == TYPE_FLOAT)
+        return node;
+    if (value.type != VALUE_ERROR)
+        type_error(e, syntax, value, "a number");
+    return NODE_NONE;
+}
+
+static bool flag_property(Elaboration *e, const Environment *env, const Syntax *declaration, const char *name)
+{
+    const Syntax *syntax = find_property(declaration, name);
+    if (!syntax)
+        return false;
+    Value value = evaluate(e, env, syntax);
+    if (value.type != VALUE_BOOLEAN && value.type != VALUE_ERROR)
+        type_error(e, syntax, value, "true or false");
+    return value.type == VALUE_BOOLEAN && value.boolean;
+}
+
+/* `within`: a shape, or two corners. */
+static bool within_property(Elaboration *e, const Environment *env, const Syntax *declaration, Box *box)
+{
+    const Syntax *syntax = find_property(declaration, "within");
+    *box                 = box_infinite;
+    if (!syntax)
+        return true;
+    Value value = evaluate(e, env, syntax);
+    if (value.type == VALUE_SHAPE) {
+        *box = value.shape->box;
+        return true;
+    }
+    if (value.type == VALUE_LIST && value.list->count == 2) {
+        Node low  = to_vector(e, value.list->items[0], syntax, "`within`");
+        Node high = to_vector(e, value.list->items[1], syntax, "`within`");
+        for (uint32_t i = 0; low != NODE_NONE && high != NODE_NONE && i < 3; i++)
+            box->axis[i] = (Range){node_range(e, low, i).low, node_range(e, high, i).high};
+        return low != NODE_NONE && high != NODE_NONE;
+    }
+    if (value.type != VALUE_ERROR)
+        type_error(e, syntax, value, "a shape or a list of two corners");
+    return false;
+}
+
+static bool plane_property(Elaboration *e, const Environment *env, const Syntax *declaration, Shape *shape)
+{
+    const Syntax *syntax = find_property(declaration, "plane");
+    if (!syntax)
+        return true;
+    Value value = evaluate(e, env, syntax);
+    if (value.type == VALUE_LIST && value.list->count == 2) {
+        shape->plane_normal = to_vector(e, value.list->items[0], syntax, "the normal of a plane");
+        shape->plane_offset = to_number(e, value.list->items[1], syntax, "the offset of a plane");
+        return shape->plane_normal != NODE_NONE && shape->plane_offset != NODE_NONE &&
+               check_direction(e, shape->plane_normal, syntax, "the normal of a plane");
+    }
+    if (value.type != VALUE_ERROR)
+        type_error(e, syntax, value, "a list of a normal and an offset");
+    return false;
+}
+
+/* ---- slopes ---- */
+
+/* Distance to a box of constants, as nodes. */
+static Node box_distance(Elaboration *e, Box box)
+{
+    Graph *g = e->graph;
+    double centre[3], half[3];
+    box_centre(box, centre);
+    for (int i = 0; i < 3; i++)
+        half[i] = 0.5 * (box.axis[i].high - box.axis[i].low);
+    Node point   = graph_leaf(g, OP_POINT);
+    Node middle  = graph_constant(g, TYPE_VEC3, centre);
+    Node sides   = graph_constant(g, TYPE_VEC3, half);
+    Node local   = graph_op2(g, OP_sub, point, middle);
+    Node size    = graph_op1(g, OP_abs, local);
+    Node excess  = graph_op2(g, OP_sub, size, sides);
+    Node zero    = graph_number(g, 0);
+    Node outside = graph_op2(g, OP_max, excess, zero);
+    return graph_op1(g, OP_length, outside);
+}
+
+static Node divide(Elaboration *e, Node distance, double slope)
+{
+    if (slope <= 1 + 1e-9)
+        return distance;
+    Node factor = graph_number(e->graph, 1 / slope);
+    return graph_op2(e->graph, OP_mul, distance, factor);
+}
+
+static void report_steep(Elaboration *e, const Syntax *declaration, const Syntax *distance, Node blame)
+{
+    Span  span  = blame != NODE_NONE && e->graph->items[blame].span.source ? e->graph->items[blame].span : distance->span;
+    Diag *diag  = diag_add(e->diags, DIAG_STEEP, span, "the slope of `%s` has no bound", declaration->name);
+    diag->label = "this can change arbitrarily fast";
+    diag_place(e->diags, diag, distance->span, "the distance is this expression");
+    diag->help = "give the shape a bounded `within`, or keep this part away from divisions by zero and jumps";
+}
+
+/*
+ * The slope is derived over all space; where that has no bound, over `within` and a margin m
+ * around it.  There f / slope bounds the distance to the surface (the segment to the nearest
+ * point stays in the box), and outside the distance to the box itself does, which is at least m.
+ */
+static bool derive_slope(Elaboration *e, Shape *shape, const Syntax *declaration, const Syntax *syntax)
+{
+    enum { CELLS = 512 };
+    Node blame     = NODE_NONE;
+    shape->derived = graph_slope(e->graph, shape->distance, box_infinite, NULL, 1, &blame, e->scratch);
+    if (isfinite(shape->derived)) {
+        shape->distance = divide(e, shape->distance, shape->derived);
+        return true;
+    }
+    if (box_is_finite(shape->box)) {
+        double margin  = 0.05 * box_diagonal(shape->box) + 1e-6;
+        shape->derived = graph_slope(e->graph, shape->distance, box_grow(shape->box, margin), NULL, CELLS, &blame, e->scratch);
+        if (isfinite(shape->derived)) {
+            Node around     = box_distance(e, shape->box);
+            Node limit      = graph_number(e->graph, margin);
+            Node away       = graph_op2(e->graph, OP_less, limit, around);
+            Node inside     = divide(e, shape->distance, shape->derived);
+            shape->distance = graph_op3(e->graph, OP_select, away, around, inside);
+            return true;
+        }
+    }
+    report_steep(e, declaration, syntax, blame);
+    return false;
+}
+
+/* ---- claims ---- */
+
+/* Points for sampling: a fixed sequence (Roberts' R3), spread over a box. */
+static void sample_point(uint32_t index, Box box, double point[3])
+{
+    static const double steps[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+    for (int i = 0; i < 3; i++) {
+        double t = fmod(0.5 + (index + 1) * steps[i], 1);
+        point[i] = box.axis[i].low + t * (box.axis[i].high - box.axis[i].low);
+    }
+}
+
+static void parameter_values(const Elaboration *e, NodeValue *values)
+{
+    for (size_t i = 0; i < e->scene->parameters.count; i++) {
+        const Parameter *parameter = &e->scene->parameters.items[i];
+        memcpy(values[parameter->slot].v, parameter->value, sizeof parameter->value);
+    }
+}
+
+static void refuse_claim(Elaboration *e, const Syntax *declaration, const char *claim, const char *found, const double point[3])
+{
+    const Syntax *syntax = find_property(declaration, claim);
+    Diag *diag = diag_add(e->diags, DIAG_FALSE_CLAIM, syntax->span, "`%s` of `%s` is not true", claim, declaration->name);
+    diag->label = "claimed here";
+    diag_note(e->diags, diag, diag_text(e->diags, "%s at [%.4g, %.4g, %.4g]", found, point[0], point[1], point[2]));
+    if (strcmp(claim, "exact") == 0)
+        diag->help = "leave `exact` out: the compiler then derives a safe slope";
+}
+
+/* Pairs of near points refute a slope above 1, single points a solid outside of `within`. */
+static bool check_claims(Elaboration *e, const Syntax *declaration, const Shape *shape, Node distance, bool exact)
+{
+    enum { SAMPLES = 400 };
+    Tape       tape       = tape_new(e->graph, &distance, 1, e->scratch);
+    NodeValue *values     = arena_new_array(e->scratch, NodeValue, e->graph->count);
+    NodeValue *parameters = arena_new_array(e->scratch, NodeValue, e->graph->parameters.count);
+    parameter_values(e, parameters);
+    tape_run_frame(&tape, parameters, values);
+    Box  around = box_is_finite(shape->box) ? box_grow(shape->box, 0.3 * box_diagonal(shape->box) + 0.1)
+                                            : (Box){{{-10, 10}, {-10, 10}, {-10, 10}}};
+    double size = box_diagonal(around), rounding = 1e-9 * (1 + size);
+    bool   bounded = find_property(declaration, "within") != NULL;
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        double a[3], b[3], moved = 0;
+        sample_point(i, around, a);
+        sample_point(i + 7 * SAMPLES, (Box){{{-1, 1}, {-1, 1}, {-1, 1}}}, b);
+        for (int k = 0; k < 3; k++) {
+            b[k] = shape->figure && k == 2 ? a[k] : a[k] + b[k] * size * (i % 2 ? 0.1 : 1e-4);
+            moved += (b[k] - a[k]) * (b[k] - a[k]);
+        }
+        tape_run_point(&tape, a, values);
+        double at_a = values[distance].v[0];
+        tape_run_point(&tape, b, values);
+        double at_b = values[distance].v[0];
+        if (exact && !(fabs(at_a - at_b) <= sqrt(moved) * (1 + 1e-6) + rounding)) {
+            refuse_claim(e, declaration, "exact", diag_text(e->diags, "its slope is %.4g", fabs(at_a - at_b) / sqrt(moved)), a);
+            return false;
+        }
+        bool outside = false;
+        for (int k = 0; k < (shape->figure ? 2 : 3); k++)
+            outside = outside || a[k] < shape->box.axis[k].low - rounding || a[k] > shape->box.axis[k].high + rounding;
+        if (bounded && outside && at_a < -rounding) {
+            refuse_claim(e, declaration, "within", "there is something outside of it", a);
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Once per declaration, at the sizes of its first use. */
+static bool needs_check(Elaboration *e, const Syntax *declaration)
+{
+    for (size_t i = 0; i < e->checked.count; i++)
+        if (e->checked.items[i] == declaration)
+            return false;
+    array_push(e->arena, &e->checked, declaration);
+    return true;
+}
+
+Value declare_instance(Elaboration *e, const Function *function, const Environment *env, Span span)
+{
+    const Syntax *declaration = function->syntax;
+    const Syntax *distance    = find_property(declaration, "distance");
+    if (!distance) {
+        diag_add(e->diags, DIAG_MISSING_ARGUMENT, declaration->name_span, "the shape `%s` has no `distance`", function->name)
+            ->help = "add `distance: ...`, an expression of x, y, z that is negative inside";
+        return value_error();
+    }
+    bool first = needs_check(e, declaration);
+    if (first && !check_properties(e, declaration))
+        return value_error();
+
+    Shape *shape    = shape_new(e, SHAPE_PRIMITIVE, function->name, span, NULL, 0);
+    Span   caller   = e->graph->here;
+    shape->distance = field_property(e, env, distance);
+    shape->figure   = flag_property(e, env, declaration, "figure");
+    shape->exact    = flag_property(e, env, declaration, "exact");
+    shape->instances = 1;
+    const Syntax *bound = find_property(declaration, "bound");
+    if (bound)
+        shape->bound = field_property(e, env, bound);
+    bool good = within_property(e, env, declaration, &shape->box) && plane_property(e, env, declaration, shape) &&
+                shape->distance != NODE_NONE && (!bound || shape->bound != NODE_NONE);
+    const Syntax *uv = find_property(declaration, "uv");
+    if (uv && first)
+        good = evaluate(e, env, uv).type != VALUE_ERROR && good;
+    if (!good)
+        return value_error();
+
+    Node claimed = shape->distance;
+    if (!shape->exact && !derive_slope(e, shape, declaration, distance))
+        return value_error();
+    if (first && !check_claims(e, declaration, shape, claimed, shape->exact))
+        return value_error();
+    const Syntax *core = find_property(declaration, "core");
+    if (core) {
+        Environment *kept = arena_new(e->arena, Environment);
+        *kept             = *env;
+        shape->core       = core;
+        shape->core_names = kept;
+    }
+    e->graph->here = caller;
+    return (Value){.type = VALUE_SHAPE, .shape = shape};
+}

@@ -1,0 +1,186 @@
+/*
+ * functions.c: calls of functions and of shape declarations written in the language.
+ */
+#include "compiler/geometry/elaborate.h"
+
+enum { MOST_CALLS = 1000 };
+
+static uint32_t parameter_count(const Syntax *definition)
+{
+    uint32_t count = 0;
+    while (count < definition->count && definition->children[count]->kind == SYNTAX_PARAMETER)
+        count++;
+    return count;
+}
+
+/* "torus(major, minor)", for notes. */
+static const char *signature(Elaboration *e, const Syntax *definition)
+{
+    Text text = {.arena = e->diags->arena};
+    text_format(&text, "%s(", definition->name);
+    for (uint32_t i = 0; i < parameter_count(definition); i++)
+        text_format(&text, "%s%s", i ? ", " : "", definition->children[i]->name);
+    text_add(&text, ")");
+    return text.bytes;
+}
+
+static uint32_t find_parameter(Elaboration *e, const Syntax *definition, const Syntax *argument)
+{
+    uint32_t     count = parameter_count(definition);
+    const char **names = arena_new_array(e->scratch, const char *, count + 1);
+    for (uint32_t i = 0; i < count; i++) {
+        names[i] = definition->children[i]->name;
+        if (names[i] == argument->name)
+            return i;
+    }
+    Diag *diag  = diag_add(e->diags, DIAG_UNKNOWN_PARAMETER, argument->name_span, "`%s` has no parameter `%s`",
+                           definition->name, argument->name);
+    diag->label = "unknown parameter";
+    diag->replacement = nearest_name(argument->name, names, count);
+    if (diag->replacement)
+        diag->help = "a parameter with a similar name exists";
+    diag_note(e->diags, diag, signature(e, definition));
+    return UINT32_MAX;
+}
+
+/* Arguments that are given, evaluated in the caller's environment, by parameter. */
+static bool gather(Elaboration *e, const Environment *env, const Syntax *call, const Syntax *definition, Value *values,
+                   const Syntax **places)
+{
+    uint32_t count = parameter_count(definition), next = 0;
+    bool     good  = true;
+    for (uint32_t i = 1; i < call->count; i++) {
+        const Syntax *argument = call->children[i];
+        if (argument->kind != SYNTAX_ARGUMENT)
+            return false;
+        uint32_t slot  = argument->name ? find_parameter(e, definition, argument) : next++;
+        Value    value = evaluate(e, env, argument->children[0]);
+        if (slot == UINT32_MAX) {
+            good = false;
+            continue;
+        }
+        if (slot >= count) {
+            Diag *diag = diag_add(e->diags, DIAG_TOO_MANY_ARGUMENTS, argument->span, "`%s` takes %u argument%s",
+                                  definition->name, count, count == 1 ? "" : "s");
+            diag->label = "one too many";
+            diag_note(e->diags, diag, signature(e, definition));
+            return false;
+        }
+        if (places[slot]) {
+            Diag *diag = diag_add(e->diags, DIAG_TOO_MANY_ARGUMENTS, argument->span, "`%s` is given twice",
+                                  definition->children[slot]->name);
+            diag_place(e->diags, diag, places[slot]->span, "given here first");
+            good = false;
+            continue;
+        }
+        values[slot] = value;
+        places[slot] = argument->children[0];
+        good         = good && value.type != VALUE_ERROR;
+    }
+    return good;
+}
+
+/* Binds given values and defaults; a default sees the parameters before it. */
+static bool bind_parameters(Elaboration *e, const Function *function, const Value *values, const Syntax *const *places,
+                            const Syntax *call, Environment *env)
+{
+    const Syntax *definition = function->syntax;
+    *env                     = *function->closure;
+    for (uint32_t i = 0; i < parameter_count(definition); i++) {
+        const Syntax *parameter = definition->children[i];
+        Value         value;
+        if (places[i])
+            value = values[i];
+        else if (parameter->count)
+            value = evaluate(e, env, parameter->children[0]);
+        else {
+            Diag *diag  = diag_add(e->diags, DIAG_MISSING_ARGUMENT, call->span, "`%s` needs an argument `%s`",
+                                   definition->name, parameter->name);
+            diag->label = "not given here";
+            diag_note(e->diags, diag, signature(e, definition));
+            return false;
+        }
+        if (value.type == VALUE_ERROR)
+            return false;
+        *env = bind(e, env, parameter->name, value, parameter->name_span);
+    }
+    return true;
+}
+
+/* A shape's sizes are the same at every point. */
+static bool check_shape_arguments(Elaboration *e, const Function *function, const Value *values,
+                                  const Syntax *const *places)
+{
+    for (uint32_t i = 0; i < parameter_count(function->syntax); i++)
+        if (places[i] && value_time(e, values[i]) == TIME_POINT) {
+            Diag *diag = diag_add(e->diags, DIAG_NOT_FRAME_TIME, places[i]->span,
+                                  "`%s` of `%s` may not depend on the point", function->syntax->children[i]->name,
+                                  function->name);
+            diag->label = "this depends on x, y, z or p";
+            point_at_definition(e, diag, places[i], NULL);
+            return false;
+        }
+    return true;
+}
+
+Value call_values(Elaboration *e, const Function *function, const Value *values, const Syntax *const *places,
+                  const Syntax *syntax)
+{
+    if (e->calls >= MOST_CALLS) {
+        if (!e->stopped)
+            diag_add(e->diags, DIAG_LIMIT, syntax->span, "`%s` is called within itself more than 1,000 deep", function->name);
+        e->stopped = true;
+        return value_error();
+    }
+    Environment env;
+    e->calls++;
+    Value result = value_error();
+    if (bind_parameters(e, function, values, places, syntax, &env)) {
+        if (function->syntax->kind == SYNTAX_SHAPE)
+            result = declare_instance(e, function, &env, syntax->span);
+        else
+            result = evaluate(e, &env, function->syntax->children[function->syntax->count - 1]);
+    }
+    e->calls--;
+    return result;
+}
+
+static Value call_builtin(Elaboration *e, const Environment *env, const Syntax *syntax, const Builtin *builtin)
+{
+    Call call;
+    if (!bind_arguments(e, env, syntax, 1, builtin->name, builtin->parameters, &call))
+        return value_error();
+    if (builtin->function)
+        return builtin->function(e, &call);
+    Value     values[MAX_OPERANDS];
+    GraphType types[MAX_OPERANDS];
+    uint32_t  arity = 0;
+    for (; call.arguments[arity].syntax; arity++) {
+        values[arity] = call.arguments[arity].value;
+        Node node     = value_node(e, values[arity]);
+        types[arity]  = node == NODE_NONE ? TYPE_UINT : e->graph->items[node].type;
+        if (types[arity] > TYPE_VEC4) {
+            type_error(e, call.arguments[arity].syntax, values[arity], "a number or a vector");
+            return value_error();
+        }
+    }
+    if (!graph_op_type(builtin->op, types, arity)) {
+        diag_add(e->diags, DIAG_LENGTH_MISMATCH, syntax->span, "`%s` needs vectors of one length", builtin->name);
+        return value_error();
+    }
+    return value_map_op(e, builtin->op, values, arity, syntax);
+}
+
+Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax, const Function *function)
+{
+    if (function->builtin)
+        return call_builtin(e, env, syntax, function->builtin);
+    uint32_t       count  = parameter_count(function->syntax);
+    Value         *values = arena_new_array(e->arena, Value, count + 1);
+    const Syntax **places = arena_new_array(e->arena, const Syntax *, count + 1);
+    if (!gather(e, env, syntax, function->syntax, values, places))
+        return value_error();
+    if (function->syntax->kind == SYNTAX_SHAPE && !check_shape_arguments(e, function, values, places))
+        return value_error();
+    return call_values(e, function, values, places, syntax);
+}

@@ -1,0 +1,340 @@
+/*
+ * make.c: shapes from shapes.  Each function states, for its kind, the box of the result and
+ * how the slope follows from the children's (shape.h has the table, math.md section 4 the
+ * proofs); lower.c states the distance.
+ */
+#include "compiler/geometry/elaborate.h"
+
+#include <math.h>
+
+const BlendInfo blend_info[BLEND_COUNT] = {
+#define BLEND(name, spelling, op, slope, bulge, meaning) {spelling, OP_##op, slope, bulge, meaning},
+#include "compiler/geometry/blends.def"
+#undef BLEND
+};
+
+Range node_range(Elaboration *e, Node node, uint32_t component)
+{
+    const Expr *expr = &e->graph->items[node];
+    if (expr->op == OP_CONSTANT)
+        return range_of(expr->number[component]);
+    return graph_frame_fact(e->graph, node, e->scratch).value[component];
+}
+
+Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span, const Shape *const *children,
+                 uint32_t count)
+{
+    Shape *shape        = arena_new(e->arena, Shape);
+    shape->kind         = kind;
+    shape->name         = name;
+    shape->span         = span;
+    shape->children     = arena_new_array(e->arena, const Shape *, count + 1);
+    shape->child_count  = count;
+    shape->box          = box_empty;
+    shape->slope        = 1;
+    shape->derived      = 1;
+    shape->exact        = true;
+    shape->distance     = shape->bound = shape->blend_width = NODE_NONE;
+    shape->plane_normal = shape->plane_offset = NODE_NONE;
+    shape->values[0] = shape->values[1] = NODE_NONE;
+    for (uint32_t i = 0; i < count; i++) {
+        const Shape *child = children[i];
+        shape->children[i] = child;
+        shape->slope       = fmax(shape->slope, child->slope);
+        shape->exact       = shape->exact && child->exact;
+        shape->figure      = shape->figure || child->figure;
+        shape->instances += child->instances;
+        shape->depth = child->depth >= shape->depth ? child->depth + 1 : shape->depth;
+        shape->levels = child->levels > shape->levels ? child->levels : shape->levels;
+    }
+    if (count == 1)
+        shape->box = children[0]->box;
+    if (shape->depth > MOST_SHAPE_DEPTH && !e->stopped) {
+        diag_add(e->diags, DIAG_LIMIT, span, "shapes are nested more than 1,000 deep");
+        e->stopped = true;
+    }
+    return shape;
+}
+
+static Shape *wrap(Elaboration *e, ShapeKind kind, const char *name, const Shape *shape, Span span)
+{
+    return shape_new(e, kind, name, span, &shape, 1);
+}
+
+const Shape *make_empty(Elaboration *e, Span span) { return shape_new(e, SHAPE_EMPTY, "nothing", span, NULL, 0); }
+
+const Shape *make_transform(Elaboration *e, const Shape *shape, const Similarity *map, Span span)
+{
+    /* A chain of maps is one map. */
+    if (shape->kind == SHAPE_TRANSFORM) {
+        map   = similarity_product(e, map, &shape->map);
+        shape = shape->children[0];
+    }
+    Shape *moved = wrap(e, SHAPE_TRANSFORM, "transform", shape, span);
+    moved->map   = *map;
+    moved->box   = similarity_box(e, map, shape->box);
+    return moved;
+}
+
+const Shape *make_stretch(Elaboration *e, const Shape *shape, Node factors, Span span)
+{
+    Shape *stretched     = wrap(e, SHAPE_STRETCH, "scale", shape, span);
+    stretched->values[0] = factors;
+    stretched->exact     = false;
+    for (uint32_t i = 0; i < 3 && !box_is_empty(shape->box); i++)
+        stretched->box.axis[i] = range_mul(shape->box.axis[i], node_range(e, factors, i));
+    return stretched;
+}
+
+const Shape *make_joint(Elaboration *e, ShapeKind kind, const Shape *const *shapes, uint32_t count, BlendKind blend,
+                        Node width, Node steps, Span span)
+{
+    static const char *const names[] = {[SHAPE_UNION] = "union", [SHAPE_INTERSECTION] = "intersection",
+                                        [SHAPE_DIFFERENCE] = "difference", [SHAPE_XOR] = "xor"};
+    Shape *joint       = shape_new(e, kind, names[kind], span, shapes, count);
+    joint->blend       = blend;
+    joint->blend_width = width;
+    joint->values[0]   = steps;
+    /* Outside, the least of exact distances is exact; every other joint only bounds it. */
+    joint->exact = joint->exact && kind == SHAPE_UNION && width == NODE_NONE;
+    for (uint32_t i = 0; i < count; i++) {
+        if (i == 0)
+            joint->box = shapes[0]->box;
+        else if (kind == SHAPE_INTERSECTION)
+            joint->box = box_common(joint->box, shapes[i]->box);
+        else if (kind != SHAPE_DIFFERENCE)
+            joint->box = box_hull(joint->box, shapes[i]->box);
+    }
+    if (width != NODE_NONE && count > 1) {
+        const BlendInfo *info = &blend_info[blend];
+        /* Each further operand adds a partial derivative; their squares sum to 1, so the sum of
+           n of them is at most sqrt(n): for two operands the factor of the table. */
+        joint->slope *= info->slope > 1 ? pow(info->slope, log2(count)) : 1;
+        if (kind != SHAPE_INTERSECTION && kind != SHAPE_DIFFERENCE)
+            joint->box = box_grow(joint->box, info->bulge * node_range(e, width, 0).high * (count - 1));
+    }
+    return joint;
+}
+
+const Shape *make_morph(Elaboration *e, const Shape *a, const Shape *b, Node t, Span span)
+{
+    const Shape *children[] = {a, b};
+    Shape       *morph      = shape_new(e, SHAPE_MORPH, "morph", span, children, 2);
+    morph->values[0]        = t;
+    morph->exact            = false;
+    /* Where the mix is 0 one of the distances is at most 0, or both are. */
+    morph->box = box_hull(a->box, b->box);
+    return morph;
+}
+
+const Shape *make_offset(Elaboration *e, const Shape *shape, Node radius, Span span)
+{
+    Shape *offset     = wrap(e, SHAPE_OFFSET, "offset", shape, span);
+    Range  range      = node_range(e, radius, 0);
+    offset->values[0] = radius;
+    offset->box       = box_grow(shape->box, fmax(range.high, 0));
+    offset->exact     = shape->exact && range.low >= 0;
+    return offset;
+}
+
+const Shape *make_shell(Elaboration *e, const Shape *shape, Node thickness, Span span)
+{
+    Shape *shell     = wrap(e, SHAPE_SHELL, "shell", shape, span);
+    shell->values[0] = thickness;
+    shell->box       = box_grow(shape->box, 0.5 * node_range(e, thickness, 0).high);
+    return shell;
+}
+
+const Shape *make_elongate(Elaboration *e, const Shape *shape, Node half, Span span)
+{
+    Shape *longer     = wrap(e, SHAPE_ELONGATE, "elongate", shape, span);
+    longer->values[0] = half;
+    Range sides[3];
+    for (uint32_t i = 0; i < 3; i++) {
+        double most = node_range(e, half, i).high;
+        sides[i]    = (Range){-most, most};
+    }
+    longer->box = box_move(shape->box, sides);
+    return longer;
+}
+
+const Shape *make_extrude(Elaboration *e, const Shape *figure, Node height, Span span)
+{
+    Graph *g           = e->graph;
+    Shape *solid       = wrap(e, SHAPE_EXTRUDE, "extrude", figure, span);
+    Node   half        = graph_number(g, 0.5);
+    solid->values[0]   = graph_op2(g, OP_mul, height, half);
+    double most        = node_range(e, solid->values[0], 0).high;
+    solid->box.axis[2] = (Range){-most, most};
+    solid->figure      = false;
+    return solid;
+}
+
+const Shape *make_revolve(Elaboration *e, const Shape *figure, Node offset, Span span)
+{
+    Shape *solid     = wrap(e, SHAPE_REVOLVE, "revolve", figure, span);
+    solid->values[0] = offset;
+    solid->figure    = false;
+    Range  x         = range_add(figure->box.axis[0], node_range(e, offset, 0));
+    double most      = fmax(x.high, 0);
+    /* What crosses the axis is cut by it: the distance inside the cut is only a bound. */
+    solid->exact       = figure->exact && x.low >= 0;
+    solid->box.axis[0] = solid->box.axis[2] = (Range){-most, most};
+    return solid;
+}
+
+/* How far the content stays from the walls of its cell on one axis; < 0: it sticks out. */
+static double cell_margin(Range content, double period)
+{
+    return fmin(0.5 * period - content.high, 0.5 * period + content.low);
+}
+
+const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const uint32_t cells[3], const Syntax *place)
+{
+    Shape *repeat     = wrap(e, SHAPE_REPEAT, "repeat", shape, place->span);
+    repeat->values[0] = period;
+    double copies     = 1;
+    for (uint32_t i = 0; i < 3; i++) {
+        Range  range     = node_range(e, period, i);
+        bool   repeats   = cells[i] != 1 && range.high > 0;
+        repeat->cells[i] = repeats ? cells[i] : 1;
+        if (!repeats)
+            continue;
+        double margin = cell_margin(shape->box.axis[i], range.low);
+        if (!(margin >= -1e-9 * range.low) || box_is_empty(shape->box)) {
+            Diag *diag = diag_add(e->diags, DIAG_OUTSIDE_CELL, place->span,
+                                  "the shape reaches from %.4g to %.4g on the %c axis, its cell from %.4g to %.4g",
+                                  shape->box.axis[i].low, shape->box.axis[i].high, "xyz"[i], -0.5 * range.low, 0.5 * range.low);
+            diag->label = "does not fit its cell";
+            diag->help  = "use a larger period, or a smaller shape that is centred in its cell";
+            return NULL;
+        }
+        double reach = cells[i] ? 0.5 * (cells[i] - 1) * range.high : INFINITY;
+        repeat->box.axis[i] = (Range){shape->box.axis[i].low - reach, shape->box.axis[i].high + reach};
+        copies *= cells[i] ? cells[i] : INFINITY;
+    }
+    repeat->instances *= copies;
+    return repeat;
+}
+
+const Shape *make_repeat_polar(Elaboration *e, const Shape *shape, uint32_t count, const Syntax *place)
+{
+    Shape *repeat    = wrap(e, SHAPE_REPEAT_POLAR, "repeat_polar", shape, place->span);
+    repeat->cells[0] = count;
+    if (box_is_empty(shape->box))
+        return repeat;
+    double most = 0;
+    for (int i = 0; i < 3; i += 2)
+        most = hypot(most, fmax(fabs(shape->box.axis[i].low), fabs(shape->box.axis[i].high)));
+    repeat->box.axis[0] = repeat->box.axis[2] = (Range){-most, most};
+    repeat->instances *= count;
+    return repeat;
+}
+
+const Shape *make_mirror(Elaboration *e, const Shape *shape, Node normal, Node offset, Span span)
+{
+    Shape *mirror     = wrap(e, SHAPE_MIRROR, "mirror", shape, span);
+    mirror->values[0] = normal;
+    mirror->values[1] = offset;
+    mirror->exact     = false;
+    Range u[3];
+    for (uint32_t i = 0; i < 3; i++)
+        u[i] = node_range(e, normal, i);
+    mirror->box = box_fold(shape->box, u, node_range(e, offset, 0));
+    return mirror;
+}
+
+const Shape *make_paint(Elaboration *e, const Shape *shape, const Material *material, Span span)
+{
+    Shape *painted    = wrap(e, SHAPE_PAINT, "paint", shape, span);
+    painted->material = material;
+    return painted;
+}
+
+/* ---- sequences ---- */
+
+static bool is_constant_mirror(const Graph *graph, const Stage *stage)
+{
+    return graph_is_constant(graph, stage->normal) && graph_is_constant(graph, stage->offset);
+}
+
+static Ball reflect_ball(Elaboration *e, const Stage *stage, Ball ball, Box folded)
+{
+    if (!is_constant_mirror(e->graph, stage))
+        return ball_around(folded);
+    return ball_fold(ball, e->graph->items[stage->normal].number, e->graph->items[stage->offset].number[0]);
+}
+
+/* Boxes and balls grow along the sequence side by side; each is tight where the other is not
+   (turned mirrors blow boxes up), so each is cut to the other's size at every level. */
+static Box bound_sequence(Elaboration *e, const Shape *krs)
+{
+    Box  box  = box_empty;
+    Ball ball = ball_around(box_empty);
+    for (uint32_t i = 0; i < krs->stage_count; i++) {
+        const Stage *stage = &krs->stages[i];
+        if (stage->kind == STAGE_KERNEL) {
+            Box kernel = krs->children[stage->kernel]->box;
+            box        = box_hull(box, kernel);
+            ball       = ball_hull(ball, ball_around(kernel));
+        } else if (stage->kind == STAGE_REFLECT) {
+            Range u[3];
+            for (uint32_t k = 0; k < 3; k++)
+                u[k] = node_range(e, stage->normal, k);
+            box  = box_fold(box, u, node_range(e, stage->offset, 0));
+            ball = reflect_ball(e, stage, ball, box);
+        } else {
+            box  = similarity_box(e, &stage->map, box);
+            ball = ball_around(similarity_box(e, &stage->map, ball_box(ball)));
+        }
+        box          = box_common(box, ball_box(ball));
+        Ball tighter = ball_around(box);
+        if (tighter.radius < ball.radius)
+            ball = tighter;
+    }
+    return box;
+}
+
+const Shape *make_krs(Elaboration *e, const Stage *stages, uint32_t stage_count, const Shape *const *kernels,
+                      uint32_t kernel_count, Span span)
+{
+    Shape *krs       = shape_new(e, SHAPE_KRS, "krs", span, kernels, kernel_count);
+    krs->stages      = stages;
+    krs->stage_count = stage_count;
+    krs->exact       = false;
+    krs->instances   = 0;
+    krs->levels      = 0;
+    for (uint32_t i = 0; i < stage_count; i++) {
+        if (stages[i].kind == STAGE_KERNEL)
+            krs->instances += kernels[stages[i].kernel]->instances;
+        else if (stages[i].kind == STAGE_REFLECT) {
+            krs->instances *= 2;
+            krs->levels++;
+        }
+    }
+    krs->box = bound_sequence(e, krs);
+    return krs;
+}
+
+/* ---- planes ---- */
+
+bool shape_plane(Elaboration *e, const Shape *shape, Node *normal, Node *offset)
+{
+    Graph *g = e->graph;
+    if (shape->kind == SHAPE_PAINT)
+        return shape_plane(e, shape->children[0], normal, offset);
+    if (shape->kind == SHAPE_PRIMITIVE && shape->plane_normal != NODE_NONE) {
+        Node size = graph_op1(g, OP_length, shape->plane_normal);
+        *normal   = graph_op1(g, OP_normalize, shape->plane_normal);
+        *offset   = graph_op2(g, OP_div, shape->plane_offset, size);
+        return true;
+    }
+    if (shape->kind != SHAPE_TRANSFORM || !shape_plane(e, shape->children[0], normal, offset))
+        return false;
+    /* n.x <= w becomes (R n).y <= s w + (R n).t for y = s R x + t. */
+    *normal      = similarity_turn(e, &shape->map, *normal);
+    Node scaled  = graph_op2(g, OP_mul, *offset, shape->map.scale);
+    Node shifted = graph_op2(g, OP_dot, *normal, shape->map.shift);
+    *offset      = graph_op2(g, OP_add, scaled, shifted);
+    return true;
+}

@@ -1,0 +1,228 @@
+/*
+ * scope.c: files, the names they define, and the files they use.
+ */
+#include "compiler/geometry/elaborate.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "compiler/base/embedded.h"
+#include "compiler/front/names.h"
+#include "compiler/front/parse.h"
+
+enum { MOST_FILE_BYTES = 16 << 20, MOST_TOTAL_BYTES = 64 << 20, MOST_FILES = 1024 };
+
+static size_t slot_of(const Scope *scope, const char *name)
+{
+    return (size_t)(((uintptr_t)name >> 3) * 0x9E3779B97F4A7C15u >> 32) % scope->slot_count;
+}
+
+static Definition *find_own(const Scope *scope, const char *name)
+{
+    if (scope->slot_count == 0)
+        return NULL;
+    for (size_t i = slot_of(scope, name);; i = (i + 1) % scope->slot_count) {
+        if (!scope->slots[i])
+            return NULL;
+        if (scope->slots[i]->name == name)
+            return scope->slots[i];
+    }
+}
+
+Definition *scope_find(const Scope *scope, const char *name)
+{
+    Definition *definition = find_own(scope, name);
+    for (size_t i = 0; !definition && i < scope->used.count; i++)
+        definition = find_own(scope->used.items[i], name);
+    return definition;
+}
+
+static bool defines(const Syntax *syntax)
+{
+    switch (syntax->kind) {
+    case SYNTAX_LET: case SYNTAX_DEF: case SYNTAX_PARAM: case SYNTAX_SHAPE: case SYNTAX_MATERIAL:
+        return true;
+    case SYNTAX_CAMERA: case SYNTAX_LIGHT:
+        return syntax->name != NULL;
+    default:
+        return false;
+    }
+}
+
+static void define_all(Elaboration *e, Scope *scope)
+{
+    for (uint32_t i = 0; i < scope->file->count; i++) {
+        const Syntax *syntax = scope->file->children[i];
+        if (!defines(syntax))
+            continue;
+        Definition *definition = arena_new(e->arena, Definition);
+        *definition = (Definition){.name = syntax->name, .syntax = syntax, .scope = scope};
+        array_push(e->arena, &scope->definitions, definition);
+    }
+    scope->slot_count = 2 * scope->definitions.count + 1;
+    scope->slots      = arena_new_array(e->arena, Definition *, scope->slot_count);
+    for (size_t i = 0; i < scope->definitions.count; i++) {
+        Definition *definition = scope->definitions.items[i];
+        size_t      slot       = slot_of(scope, definition->name);
+        while (scope->slots[slot] && scope->slots[slot]->name != definition->name)
+            slot = (slot + 1) % scope->slot_count;
+        if (!scope->slots[slot]) /* of two definitions the first counts; names_check reports */
+            scope->slots[slot] = definition;
+    }
+}
+
+typedef struct KnownNames {
+    const char **items;
+    size_t       count, capacity;
+} KnownNames;
+
+/* Names of another file that this one may use: all but private ones (_name). */
+static void add_names(Elaboration *e, const Scope *scope, KnownNames *known)
+{
+    for (size_t i = 0; i < scope->definitions.count; i++)
+        if (scope->definitions.items[i]->name[0] != '_')
+            array_push(e->scratch, known, scope->definitions.items[i]->name);
+}
+
+static void check_names(Elaboration *e, const Scope *scope)
+{
+    KnownNames  known = {0};
+    const char *builtin[512];
+    size_t      count = builtin_names(builtin, sizeof builtin / sizeof *builtin);
+    for (size_t i = 0; i < count; i++)
+        array_push(e->scratch, &known, name_intern(e->names, builtin[i], strlen(builtin[i])));
+    for (size_t i = 0; i < e->library->used.count; i++)
+        if (e->library->used.items[i] != scope)
+            add_names(e, e->library->used.items[i], &known);
+    for (size_t i = 0; i < scope->used.count; i++)
+        add_names(e, scope->used.items[i], &known);
+    NameScope names = {known.items, known.count};
+    names_check(scope->file, &names, e->diags, e->scratch);
+}
+
+static Scope *find_loaded(const Elaboration *e, const char *path)
+{
+    for (size_t i = 0; i < e->scopes.count; i++)
+        if (strcmp(e->scopes.items[i]->path, path) == 0)
+            return e->scopes.items[i];
+    return NULL;
+}
+
+/* "folder/used.krs" for a `use "used.krs"` in "folder/file.krs". */
+static const char *resolve_path(Elaboration *e, const char *from, const char *path)
+{
+    const char *slash = strrchr(from, '/');
+    if (!slash || path[0] == '/')
+        return path;
+    Text text = {.arena = e->arena};
+    text_add_bytes(&text, from, (size_t)(slash - from + 1));
+    text_add(&text, path);
+    return text.bytes;
+}
+
+static bool read_library(const char *path, const char **text, size_t *length)
+{
+    for (const EmbeddedFile *file = library_files; file->name; file++)
+        if (strcmp(file->name, path) == 0) {
+            *text   = file->text;
+            *length = file->length;
+            return true;
+        }
+    return false;
+}
+
+static bool read_used(Elaboration *e, const Scope *from, const Syntax *use, const char **path, uint32_t *source)
+{
+    const char *text   = NULL;
+    char       *owned  = NULL;
+    size_t      length = 0;
+    const char *reason = "there is no such file in the library";
+    bool        library = strncmp(use->name, "std/", 4) == 0;
+    *path = library ? use->name : resolve_path(e, from->path, use->name);
+    if (library)
+        read_library(use->name, &text, &length);
+    else {
+        reason = "files cannot be read here";
+        if (e->read_file)
+            text = owned = e->read_file(e->reader, *path, &length, &reason);
+    }
+    if (!text) {
+        Diag *diag  = diag_add(e->diags, DIAG_CANNOT_READ, use->name_span, "cannot read `%s`: %s", *path, reason);
+        diag->label = "used here";
+        return false;
+    }
+    e->text_total += length;
+    bool fits = length <= MOST_FILE_BYTES && e->text_total <= MOST_TOTAL_BYTES && e->scopes.count < MOST_FILES;
+    if (fits)
+        *source = source_add(e->sources, *path, text, length, library);
+    else
+        diag_add(e->diags, DIAG_LIMIT, use->name_span, "too much text: a file may have 16 MiB, all together 64 MiB in 1,024 files");
+    free(owned);
+    return fits;
+}
+
+static void load_used(Elaboration *e, Scope *scope, const Syntax *use)
+{
+    const char *path;
+    uint32_t    source;
+    const char *known = strncmp(use->name, "std/", 4) == 0 ? use->name : resolve_path(e, scope->path, use->name);
+    Scope      *used  = find_loaded(e, known);
+    if (used && used->loading) {
+        Diag *diag  = diag_add(e->diags, DIAG_CIRCULAR_USE, use->name_span, "`%s` uses itself", known);
+        diag->label = "this closes the circle";
+        return;
+    }
+    if (!used) {
+        if (!read_used(e, scope, use, &path, &source))
+            return;
+        used = scope_load(e, source, path);
+    }
+    array_push(e->arena, &scope->used, used);
+}
+
+static Scope *scope_new(Elaboration *e, const char *path)
+{
+    Scope *scope       = arena_new(e->arena, Scope);
+    scope->path        = path;
+    scope->environment = (Environment){NULL, scope};
+    return scope;
+}
+
+static Scope *scope_parse(Elaboration *e, uint32_t source, const char *path)
+{
+    Scope *scope = scope_new(e, path);
+    array_push(e->arena, &e->scopes, scope);
+
+    Tokens tokens = lex(source, e->sources, e->names, e->diags, e->syntax);
+    scope->file   = parse(&tokens, e->diags, e->syntax);
+    define_all(e, scope);
+    return scope;
+}
+
+Scope *scope_load(Elaboration *e, uint32_t source, const char *path)
+{
+    Scope *scope   = scope_parse(e, source, path);
+    scope->loading = true;
+    for (uint32_t i = 0; i < scope->file->count; i++)
+        if (scope->file->children[i]->kind == SYNTAX_USE)
+            load_used(e, scope, scope->file->children[i]);
+    scope->loading = false;
+    check_names(e, scope);
+    return scope;
+}
+
+/* The files of compiler/library/ itself; those in its folder std/ wait for a `use`. */
+void scope_load_library(Elaboration *e)
+{
+    e->library = scope_new(e, "library");
+    for (const EmbeddedFile *file = library_files; file->name; file++) {
+        if (strchr(file->name, '/'))
+            continue;
+        const char *path   = diag_text(e->diags, "library:%s", file->name);
+        uint32_t    source = source_add(e->sources, path, file->text, file->length, true);
+        Scope      *scope  = scope_parse(e, source, path);
+        array_push(e->arena, &e->library->used, scope);
+    }
+    for (size_t i = 0; i < e->library->used.count; i++)
+        check_names(e, e->library->used.items[i]);
+}

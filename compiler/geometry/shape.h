@@ -1,0 +1,151 @@
+/*
+ * shape.h: the elaborated scene: trees of shapes, and what the picture needs beside them.
+ *
+ * A shape is made by the functions below, bottom up; each knows at once its bounding box and
+ * how steep its distance is, by the rule of its kind.  Numbers in it are nodes of the graph
+ * that do not depend on the point, so a parameter can move everything.  Shapes never change.
+ */
+#ifndef KRS_SHAPE_H
+#define KRS_SHAPE_H
+
+#include "compiler/geometry/box.h"
+#include "compiler/geometry/value.h"
+
+/*
+ * Kinds, with their children and values (nodes).  `slope` says how the Lipschitz constant of
+ * the result follows from that of the children (math.md, section 4).
+ */
+typedef enum ShapeKind {
+    SHAPE_EMPTY,        /* nothing: distance infinite */
+    SHAPE_PRIMITIVE,    /* `distance`, `bound`; slope 1 after division by the derived one */
+    SHAPE_TRANSFORM,    /* [0]; map; distances times its scale; slope of the child */
+    SHAPE_STRETCH,      /* [0]; values[0] factors (VEC3); times the least factor; slope of the child */
+    SHAPE_UNION,        /* [..]; blend; largest slope times the blend's factor */
+    SHAPE_INTERSECTION, /* likewise */
+    SHAPE_DIFFERENCE,   /* [0] less all others; likewise */
+    SHAPE_XOR,          /* [0], [1]; likewise */
+    SHAPE_MORPH,        /* [0], [1]; values[0] in [0, 1]; largest slope */
+    SHAPE_OFFSET,       /* [0]; values[0]; d - r; slope of the child */
+    SHAPE_SHELL,        /* [0]; values[0]; |d| - t / 2; slope of the child */
+    SHAPE_ELONGATE,     /* [0]; values[0] half lengths; slope of the child: clamping is 1-Lipschitz */
+    SHAPE_EXTRUDE,      /* [0] a figure; values[0] half height; largest of child's and 1 */
+    SHAPE_REVOLVE,      /* [0] a figure; values[0] offset; slope of the child */
+    SHAPE_REPEAT,       /* [0]; values[0] period, cells; slope of the child: see lower.c */
+    SHAPE_REPEAT_POLAR, /* [0]; cells[0] copies about y; slope of the child */
+    SHAPE_MIRROR,       /* [0]; values[0] unit normal, values[1] offset; slope of the child */
+    SHAPE_PAINT,        /* [0]; material; slope of the child */
+    SHAPE_KRS           /* kernels; stages in order; the largest slope: folds are 1-Lipschitz */
+} ShapeKind;
+
+/* x -> scale * rows * x + shift, the rows orthonormal: what translate, rotate, scale and
+   reflect compose to. */
+struct Similarity {
+    Node scale, rows[3], shift;
+};
+
+/* How two distances are joined; blends.def has a row for each. */
+typedef enum BlendKind {
+#define BLEND(name, spelling, op, slope, bulge, meaning) BLEND_##name,
+#include "compiler/geometry/blends.def"
+#undef BLEND
+    BLEND_COUNT
+} BlendKind;
+
+typedef struct BlendInfo {
+    const char *spelling;
+    Op          op;      /* smooth minimum of (a, b, width) */
+    double      slope;   /* slope of the result over the larger slope of the operands */
+    double      bulge;   /* how far min(a, b) may exceed the result, in widths */
+    const char *meaning;
+} BlendInfo;
+extern const BlendInfo blend_info[BLEND_COUNT];
+
+/* One statement of a `krs` block. */
+typedef struct Stage {
+    enum { STAGE_KERNEL, STAGE_REFLECT, STAGE_SIMILARITY } kind;
+    uint32_t   kernel;         /* KERNEL: index of the child */
+    Node       normal, offset; /* REFLECT: unit normal and offset */
+    Similarity map;            /* SIMILARITY */
+    Span       span;
+} Stage;
+
+/* Walks of the tree are recursive. */
+enum { MOST_SHAPE_DEPTH = 1000 };
+
+struct Shape {
+    ShapeKind     kind;
+    Span          span; /* of the expression that made it */
+    const char   *name; /* of the declaration or operation, for dumps */
+    const Shape **children;
+    uint32_t      child_count;
+    uint32_t      depth; /* of the tree below, at most MOST_SHAPE_DEPTH */
+
+    Box    box;     /* around the solid, for all values of the parameters */
+    double slope;   /* Lipschitz constant of what it lowers to */
+    double derived; /* PRIMITIVE: the slope of its expression, by which it is divided */
+    bool   exact;   /* the distance outside is the true one */
+    bool   figure;  /* a plane figure in x and y */
+    double instances; /* kernels counted with their reflections */
+    uint32_t levels;  /* reflections of the outermost sequence in it */
+
+    Node            distance, bound;       /* PRIMITIVE, in its own coordinates; bound may be NODE_NONE */
+    Node            values[2];
+    Similarity      map;
+    BlendKind       blend;                 /* with blend_width NODE_NONE the joint is sharp */
+    Node            blend_width;
+    uint32_t        cells[3];              /* REPEAT: copies per axis, 0 for endless */
+    Node            plane_normal, plane_offset; /* PRIMITIVE that is a half-space, else NODE_NONE */
+    const Syntax   *core; /* PRIMITIVE: what .round(r) grows by r, an expression of `rounding`, or NULL */
+    const struct Environment *core_names;  /* what that expression sees */
+    const Material *material;
+    const Stage    *stages;
+    uint32_t        stage_count;
+};
+
+/* A `param`: its slot in the parameter block and its range. */
+typedef struct Parameter {
+    const char *name;
+    uint32_t    slot, components;
+    double      value[4], low[4], high[4];
+} Parameter;
+
+/* What a `show` shows. */
+typedef struct Component {
+    const char  *name;
+    const Shape *shape;
+    Span         span;
+} Component;
+
+/* Numbers and vectors here are frame-time nodes. */
+typedef struct SceneCamera {
+    const char *name; /* or NULL */
+    Node        eye, target, up, fov, height;
+    uint32_t    projection;
+} SceneCamera;
+
+typedef struct SceneLight {
+    bool positional, shadow;
+    Node vector, color, softness;
+} SceneLight;
+
+typedef struct SceneImage {
+    uint32_t    width, height, samples;
+    const char *integrator, *tone_map;
+    double      exposure, error;
+} SceneImage;
+
+typedef struct Scene {
+    Graph *graph;
+    struct { Component *items; size_t count, capacity; } components;
+    struct { Parameter *items; size_t count, capacity; } parameters;
+    struct { SceneCamera *items; size_t count, capacity; } cameras;
+    struct { SceneLight *items; size_t count, capacity; } lights;
+    Node       zenith, horizon, ground;
+    SceneImage image;
+    Box        box; /* around all components */
+} Scene;
+
+/* The scene as indented text, for `krs dump --after=scene`. */
+void scene_print(const Scene *scene, const Sources *sources, Text *out);
+
+#endif

@@ -1,0 +1,357 @@
+/*
+ * statements.c: files and `krs` blocks, statement by statement.
+ */
+#include "compiler/geometry/elaborate.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Where the statements of a block go: the scene, or a sequence. */
+typedef struct Sequence {
+    struct { Stage *items; size_t count, capacity; } stages;
+    struct { const Shape **items; size_t count, capacity; } kernels;
+    bool wrong;
+} Sequence;
+
+/* ---- definitions ---- */
+
+static Value function_value(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Environment *closure  = arena_new(e->arena, Environment);
+    *closure              = *env;
+    Function    *function = arena_new(e->arena, Function);
+    *function             = (Function){.name = syntax->name, .syntax = syntax, .closure = closure};
+    return (Value){.type = VALUE_FUNCTION, .function = function};
+}
+
+/* Numbers of a `param`: its default, or a bound of its range; 0: reported. */
+static uint32_t constants_of(Elaboration *e, Value value, const Syntax *syntax, double numbers[4])
+{
+    if (value.type == VALUE_NUMBER) {
+        numbers[0] = value.number;
+        return 1;
+    }
+    uint32_t count = value.type == VALUE_LIST && value.list->count <= 4 ? (uint32_t)value.list->count : 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (value.list->items[i].type != VALUE_NUMBER)
+            count = 0;
+        else
+            numbers[i] = value.list->items[i].number;
+    }
+    if (count >= 2)
+        return count;
+    if (value_time(e, value) != TIME_COMPILE) {
+        Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, syntax->span, "the value of a `param` must be a constant");
+        diag->label = "this is not known at compile time";
+    } else if (value.type != VALUE_ERROR)
+        type_error(e, syntax, value, "a number, a vector or a colour");
+    return 0;
+}
+
+static bool param_range(Elaboration *e, const Environment *env, const Syntax *syntax, Parameter *parameter)
+{
+    for (int i = 0; i < 4; i++) {
+        parameter->low[i]  = -INFINITY;
+        parameter->high[i] = INFINITY;
+    }
+    if (syntax->count < 2)
+        return true;
+    Value  range = evaluate(e, env, syntax->children[1]);
+    double bounds[2][4];
+    if (range.type == VALUE_ERROR)
+        return false;
+    bool good = range.type == VALUE_LIST && range.list->count == 2;
+    for (uint32_t side = 0; good && side < 2; side++) {
+        uint32_t count = constants_of(e, range.list->items[side], syntax->children[1], bounds[side]);
+        if (!count)
+            return false;
+        for (uint32_t i = 0; count == 1 && i < 4; i++)
+            bounds[side][i] = bounds[side][0];
+        good = count == 1 || count == parameter->components;
+    }
+    for (uint32_t i = 0; good && i < parameter->components; i++) {
+        parameter->low[i]  = bounds[0][i];
+        parameter->high[i] = bounds[1][i];
+        good               = bounds[0][i] <= parameter->value[i] && parameter->value[i] <= bounds[1][i];
+    }
+    if (good)
+        return true;
+    Diag *diag  = diag_add(e->diags, DIAG_RANGE_OF_PARAM, syntax->children[1]->span, "the range of `%s` does not fit its default", syntax->name);
+    diag->label = "[low, high] with low <= default <= high";
+    diag_place(e->diags, diag, syntax->children[0]->span, "the default");
+    return false;
+}
+
+static Value define_param(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Parameter parameter  = {.name = syntax->name};
+    Value     value      = evaluate(e, env, syntax->children[0]);
+    parameter.components = value.type == VALUE_ERROR ? 0 : constants_of(e, value, syntax->children[0], parameter.value);
+    if (!parameter.components || !param_range(e, env, syntax, &parameter))
+        return value_error();
+    parameter.slot       = (uint32_t)e->graph->parameters.count;
+    GraphParameter range = {{0}, {0}};
+    memcpy(range.low, parameter.low, sizeof range.low);
+    memcpy(range.high, parameter.high, sizeof range.high);
+    array_push(e->arena, &e->graph->parameters, range);
+    array_push(e->arena, &e->scene->parameters, parameter);
+    return (Value){.type = VALUE_EXPRESSION, .node = graph_parameter(e->graph, parameter.slot, (GraphType)parameter.components)};
+}
+
+Value run_definition(Elaboration *e, Definition *definition, Span use)
+{
+    if (definition->state == DEFINITION_DONE)
+        return definition->value;
+    if (definition->state == DEFINITION_RUNNING) {
+        /* names_check reports circles it can see; this is the one through a function. */
+        Diag *diag  = diag_add(e->diags, DIAG_CYCLE, definition->syntax->name_span, "`%s` needs itself", definition->name);
+        diag->label = "defined here";
+        diag_place(e->diags, diag, use, "needed here");
+        return value_error();
+    }
+    definition->state       = DEFINITION_RUNNING;
+    const Syntax *syntax    = definition->syntax;
+    Environment  *env       = &definition->scope->environment;
+    Span          caller    = e->graph->here;
+    switch (syntax->kind) {
+    case SYNTAX_LET:      definition->value = evaluate(e, env, syntax->children[0]); break;
+    case SYNTAX_PARAM:    definition->value = define_param(e, env, syntax); break;
+    case SYNTAX_MATERIAL: definition->value = elaborate_material(e, env, syntax); break;
+    case SYNTAX_DEF:
+    case SYNTAX_SHAPE:    definition->value = function_value(e, env, syntax); break;
+    default:              definition->value = value_number(0); break; /* cameras and lights: names only */
+    }
+    e->graph->here    = caller;
+    definition->state = DEFINITION_DONE;
+    return definition->value;
+}
+
+/* ---- show ---- */
+
+static const char *component_name(Elaboration *e, const Syntax *syntax)
+{
+    if (syntax->kind == SYNTAX_NAME)
+        return syntax->name;
+    /* `show oak.move(...)` shows the oak. */
+    if (syntax->kind == SYNTAX_METHOD)
+        return component_name(e, syntax->children[0]);
+    return diag_text(e->diags, "component %zu", e->scene->components.count + 1);
+}
+
+static bool show_one(Elaboration *e, Value value, void *user)
+{
+    const Syntax *syntax = user;
+    if (value.type == VALUE_LIST) {
+        for (size_t i = 0; i < value.list->count; i++)
+            if (!show_one(e, value.list->items[i], user))
+                return false;
+        return true;
+    }
+    if (value.type != VALUE_SHAPE) {
+        if (value.type != VALUE_ERROR)
+            type_error(e, syntax, value, "a shape");
+        return false;
+    }
+    if (value.shape->figure) {
+        Diag *diag  = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span, "a plane figure cannot be shown");
+        diag->label = "this has no thickness";
+        diag->help  = "make it solid with `.extrude(height)` or `.revolve()`";
+        return false;
+    }
+    Component component = {component_name(e, syntax), value.shape, syntax->span};
+    array_push(e->arena, &e->scene->components, component);
+    return true;
+}
+
+/* ---- krs blocks ---- */
+
+static void add_kernel(Elaboration *e, const Environment *env, const Syntax *syntax, Sequence *sequence)
+{
+    Value value = evaluate(e, env, syntax->children[0]);
+    if (value.type == VALUE_SHAPE && !value.shape->figure) {
+        Stage stage = {.kind = STAGE_KERNEL, .kernel = (uint32_t)sequence->kernels.count, .span = syntax->span};
+        array_push(e->arena, &sequence->kernels, value.shape);
+        array_push(e->arena, &sequence->stages, stage);
+        return;
+    }
+    sequence->wrong = true;
+    if (value.type == VALUE_SHAPE)
+        diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->children[0]->span, "a kernel must be solid, found a plane figure")
+            ->help = "make it solid with `.extrude(height)` or `.revolve()`";
+    else if (value.type != VALUE_ERROR)
+        type_error(e, syntax->children[0], value, "a shape");
+}
+
+static void add_mirror(Elaboration *e, const Environment *env, const Syntax *syntax, Sequence *sequence)
+{
+    const Syntax *argument = syntax->children[0];
+    Value         value    = evaluate(e, env, argument);
+    Stage         stage    = {.kind = STAGE_REFLECT, .span = syntax->span};
+    if (value.type == VALUE_SHAPE && shape_plane(e, value.shape, &stage.normal, &stage.offset)) {
+        array_push(e->arena, &sequence->stages, stage);
+        return;
+    }
+    sequence->wrong = true;
+    if (value.type == VALUE_ERROR)
+        return;
+    const char *type = value_type_name(e, value);
+    Diag *diag  = diag_add(e->diags, DIAG_NEEDS_PLANE, argument->span, "`reflect` needs a plane, found %s", type);
+    diag->label = diag_text(e->diags, "this is %s", type);
+    if (value.type == VALUE_SHAPE)
+        diag->help = "planes are written `plane(normal: [1, 0, 0], offset: 2)`; for an inversion in a sphere there is "
+                     "`mobius invert(center: [0, 0, 0], radius: 2);`";
+    point_at_definition(e, diag, argument, NULL);
+}
+
+static void add_map(Elaboration *e, const Environment *env, const Syntax *syntax, Sequence *sequence)
+{
+    Value value = evaluate(e, env, syntax->children[0]);
+    Stage stage = {.kind = STAGE_SIMILARITY, .span = syntax->span};
+    if (value.type == VALUE_MAP) {
+        stage.map = *value.map;
+        array_push(e->arena, &sequence->stages, stage);
+        return;
+    }
+    sequence->wrong = true;
+    if (value.type != VALUE_ERROR)
+        type_error(e, syntax->children[0], value, "a map of space");
+}
+
+/* ---- blocks ---- */
+
+typedef struct Loop {
+    const Environment *env;
+    const Syntax      *syntax;
+    Sequence          *sequence; /* NULL at the top level */
+} Loop;
+
+static void run_block(Elaboration *e, const Environment *env, const Syntax *block, Sequence *sequence);
+
+static bool run_turn(Elaboration *e, Value element, void *user)
+{
+    const Loop *loop = user;
+    Environment env  = bind(e, loop->env, loop->syntax->name, element, loop->syntax->name_span);
+    run_block(e, &env, loop->syntax->children[1], loop->sequence);
+    return !e->stopped && !(loop->sequence && loop->sequence->wrong);
+}
+
+static void run_if(Elaboration *e, const Environment *env, const Syntax *syntax, Sequence *sequence);
+
+static void run_statement(Elaboration *e, Environment *env, const Syntax *syntax, Sequence *sequence)
+{
+    Loop loop = {env, syntax, sequence};
+    switch (syntax->kind) {
+    case SYNTAX_LET:
+        *env = bind(e, env, syntax->name, evaluate(e, env, syntax->children[0]), syntax->name_span);
+        break;
+    case SYNTAX_DEF:
+    case SYNTAX_SHAPE:
+        *env = bind(e, env, syntax->name, function_value(e, env, syntax), syntax->name_span);
+        break;
+    case SYNTAX_FOR:
+        if (!evaluate_each(e, env, syntax->children[0], run_turn, &loop) && sequence)
+            sequence->wrong = true;
+        break;
+    case SYNTAX_IF_STATEMENT: run_if(e, env, syntax, sequence); break;
+    case SYNTAX_SHOW:         show_one(e, evaluate(e, env, syntax->children[0]), syntax->children[0]); break;
+    case SYNTAX_KERNEL:       add_kernel(e, env, syntax, sequence); break;
+    case SYNTAX_REFLECT:      add_mirror(e, env, syntax, sequence); break;
+    case SYNTAX_MOBIUS:       add_map(e, env, syntax, sequence); break;
+    case SYNTAX_CAMERA: case SYNTAX_LIGHT: case SYNTAX_SKY: case SYNTAX_IMAGE:
+        elaborate_look(e, env, syntax);
+        break;
+    default: break; /* errors of the parser */
+    }
+}
+
+static void run_block(Elaboration *e, const Environment *env, const Syntax *block, Sequence *sequence)
+{
+    Environment inner = *env;
+    for (uint32_t i = 0; i < block->count && !e->stopped; i++)
+        run_statement(e, &inner, block->children[i], sequence);
+}
+
+static void run_if(Elaboration *e, const Environment *env, const Syntax *syntax, Sequence *sequence)
+{
+    Value condition = evaluate(e, env, syntax->children[0]);
+    if (condition.type == VALUE_BOOLEAN) {
+        const Syntax *branch = condition.boolean ? syntax->children[1] : syntax->count > 2 ? syntax->children[2] : NULL;
+        if (branch && branch->kind == SYNTAX_IF_STATEMENT)
+            run_if(e, env, branch, sequence);
+        else if (branch)
+            run_block(e, env, branch, sequence);
+        return;
+    }
+    if (sequence)
+        sequence->wrong = true;
+    if (condition.type == VALUE_EXPRESSION) {
+        Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, syntax->children[0]->span,
+                               "the condition of a statement must be known at compile time");
+        diag->label = "this depends on a `param`, on `time` or on a coordinate";
+        point_at_definition(e, diag, syntax->children[0], NULL);
+    } else if (condition.type != VALUE_ERROR)
+        type_error(e, syntax->children[0], condition, "a truth value");
+}
+
+Value elaborate_krs(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Sequence sequence = {0};
+    run_block(e, env, syntax, &sequence);
+    if (sequence.wrong || e->stopped)
+        return value_error();
+    if (sequence.kernels.count == 0) {
+        Diag *diag  = diag_add(e->diags, DIAG_NO_EFFECT, syntax->span, "a sequence without a kernel is empty");
+        diag->label = "no `kernel` in here";
+        return (Value){.type = VALUE_SHAPE, .shape = make_empty(e, syntax->span)};
+    }
+    const Shape *krs = make_krs(e, sequence.stages.items, (uint32_t)sequence.stages.count, sequence.kernels.items,
+                                (uint32_t)sequence.kernels.count, syntax->span);
+    return (Value){.type = VALUE_SHAPE, .shape = krs};
+}
+
+/* ---- the file ---- */
+
+static void run_file(Elaboration *e, Scope *scope)
+{
+    Environment env = scope->environment;
+    for (uint32_t i = 0; i < scope->file->count && !e->stopped; i++) {
+        const Syntax *syntax = scope->file->children[i];
+        switch (syntax->kind) {
+        case SYNTAX_LET: case SYNTAX_PARAM: case SYNTAX_MATERIAL: case SYNTAX_DEF: case SYNTAX_SHAPE: {
+            Definition *definition = scope_find(scope, syntax->name);
+            if (definition && definition->syntax == syntax)
+                run_definition(e, definition, syntax->name_span);
+            break;
+        }
+        case SYNTAX_USE: break;
+        default: run_statement(e, &env, syntax, NULL); break;
+        }
+    }
+}
+
+/* Parameters get their slots in the order of the text, whoever needs them first. */
+static void run_params(Elaboration *e, Scope *scope)
+{
+    for (size_t i = 0; i < scope->definitions.count; i++)
+        if (scope->definitions.items[i]->syntax->kind == SYNTAX_PARAM)
+            run_definition(e, scope->definitions.items[i], scope->definitions.items[i]->syntax->name_span);
+}
+
+void elaborate(Elaboration *e, uint32_t source, const char *path)
+{
+    e->rounding = NODE_NONE;
+    scope_load_library(e);
+    Scope *scope = scope_load(e, source, path);
+    if (e->diags->errors)
+        return;
+    for (size_t i = 0; i < e->scopes.count; i++)
+        run_params(e, e->scopes.items[i]);
+    run_file(e, scope);
+    e->scene->box = box_empty;
+    for (size_t i = 0; i < e->scene->components.count; i++)
+        e->scene->box = box_hull(e->scene->box, e->scene->components.items[i].shape->box);
+    finish_looks(e);
+    if (e->scene->components.count == 0 && e->diags->errors == 0)
+        diag_add(e->diags, DIAG_NOTHING_SHOWN, scope->file->span, "the scene shows nothing")->help =
+            "write `show` and a shape, for example `show sphere(1);`";
+}

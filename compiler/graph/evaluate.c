@@ -1,0 +1,388 @@
+/*
+ * evaluate.c: the graph in double precision.
+ *
+ * The first half says what each operation of ops.def is; every definition is total, or not a
+ * number exactly where mathematics has no answer.  The second half runs lists of nodes.
+ */
+#include "compiler/graph/evaluate.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+/* ---- the `value` column of MAP rows ---- */
+
+static double value_sign(double a) { return (a > 0) - (a < 0); }
+static double value_unit(double a) { return fmin(fmax(a, -1), 1); }
+
+/* Exact, unlike a - b * floor(a / b), so that it never leaves [0, b). */
+static double value_mod(double a, double b)
+{
+    double rest = fmod(a, b);
+    return rest != 0 && (rest < 0) != (b < 0) ? rest + b : rest;
+}
+
+/* The sign of a zero means nothing here. */
+static double value_pow(double a, double b) { return pow(a + 0.0, b); }
+static double value_atan2(double a, double b) { return atan2(a + 0.0, b + 0.0); }
+
+static double value_smoothstep(double a, double b, double c)
+{
+    double t = a == b ? !(c < a) : fmin(fmax((c - a) / (b - a), 0), 1);
+    return t * t * (3 - 2 * t);
+}
+
+/* ---- the `evaluate` column of OP rows: `size` is the number of components that matter ---- */
+
+static NodeValue number(double a) { return (NodeValue){{a}}; }
+static NodeValue vector3(double x, double y, double z) { return (NodeValue){{x, y, z}}; }
+
+static NodeValue evaluate_splat(const NodeValue *o, uint32_t size)
+{
+    NodeValue result = {0};
+    for (uint32_t i = 0; i < size; i++)
+        result.v[i] = o[0].v[0];
+    return result;
+}
+
+static NodeValue evaluate_vector(const NodeValue *o, uint32_t size)
+{
+    NodeValue result = {0};
+    for (uint32_t i = 0; i < size; i++)
+        result.v[i] = o[i].v[0];
+    return result;
+}
+
+static double dot(const NodeValue *a, const NodeValue *b, uint32_t size)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < size; i++)
+        sum += a->v[i] * b->v[i];
+    return sum;
+}
+
+static NodeValue evaluate_dot(const NodeValue *o, uint32_t size)
+{
+    return number(dot(&o[0], &o[1], size));
+}
+
+static NodeValue evaluate_cross(const NodeValue *o, uint32_t size)
+{
+    (void)size;
+    const double *a = o[0].v, *b = o[1].v;
+    return vector3(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
+}
+
+/* Neither overflows nor loses what is small, as the square root of a sum of squares would. */
+static double length(const NodeValue *a, uint32_t size)
+{
+    double sum = fabs(a->v[0]);
+    for (uint32_t i = 1; i < size; i++)
+        sum = hypot(sum, a->v[i]);
+    return sum;
+}
+
+static NodeValue evaluate_length(const NodeValue *o, uint32_t size)
+{
+    return number(length(&o[0], size));
+}
+
+static NodeValue evaluate_normalize(const NodeValue *o, uint32_t size)
+{
+    NodeValue result = {0};
+    double    whole  = length(&o[0], size);
+    for (uint32_t i = 0; i < size && whole != 0; i++)
+        result.v[i] = o[0].v[i] / whole;
+    return result;
+}
+
+static NodeValue evaluate_scale(const NodeValue *o, uint32_t size)
+{
+    NodeValue result = {0};
+    for (uint32_t i = 0; i < size; i++)
+        result.v[i] = o[0].v[i] * o[1].v[0];
+    return result;
+}
+
+#define TRUTH(name, condition)                                                                     \
+    static NodeValue evaluate_##name(const NodeValue *o, uint32_t size)                            \
+    {                                                                                              \
+        (void)size;                                                                                \
+        return number(condition);                                                                  \
+    }
+TRUTH(less, o[0].v[0] < o[1].v[0])
+TRUTH(less_equal, o[0].v[0] <= o[1].v[0])
+TRUTH(equal, o[0].v[0] == o[1].v[0])
+TRUTH(not_equal, o[0].v[0] != o[1].v[0])
+TRUTH(and, o[0].v[0] != 0 && o[1].v[0] != 0)
+TRUTH(or, o[0].v[0] != 0 || o[1].v[0] != 0)
+TRUTH(not, o[0].v[0] == 0)
+TRUTH(front, dot(&o[1], &o[0], 3) > o[2].v[0])
+#undef TRUTH
+
+static NodeValue evaluate_select(const NodeValue *o, uint32_t size)
+{
+    (void)size;
+    return o[0].v[0] != 0 ? o[1] : o[2];
+}
+
+static NodeValue evaluate_turn(const NodeValue *o, uint32_t size)
+{
+    (void)size;
+    return vector3(dot(&o[1], &o[0], 3), dot(&o[2], &o[0], 3), dot(&o[3], &o[0], 3));
+}
+
+static NodeValue evaluate_fold(const NodeValue *o, uint32_t size)
+{
+    NodeValue result = o[0];
+    double    depth  = fmax(dot(&o[1], &o[0], 3) - o[2].v[0], 0);
+    for (uint32_t i = 0; i < size; i++)
+        result.v[i] -= 2 * depth * o[1].v[i];
+    return result;
+}
+
+static NodeValue evaluate_cell(const NodeValue *o, uint32_t size)
+{
+    NodeValue result = o[0];
+    for (uint32_t i = 0; i < size; i++) {
+        double period = o[1].v[i];
+        if (period > 0) {
+            double cell = floor(o[0].v[i] / period + 0.5);
+            result.v[i] -= period * fmin(fmax(cell, o[2].v[i]), o[3].v[i]);
+        }
+    }
+    return result;
+}
+
+static NodeValue evaluate_cell_polar(const NodeValue *o, uint32_t size)
+{
+    (void)size;
+    const double *p = o[0].v, count = o[1].v[0];
+    if (!(count >= 1))
+        return o[0];
+    double sector = 2 * acos(-1) / count;
+    double angle  = sector * floor(value_atan2(p[2], p[0]) / sector + 0.5);
+    double c = cos(angle), s = sin(angle);
+    return vector3(c * p[0] + s * p[2], p[1], c * p[2] - s * p[0]);
+}
+
+/* The same integer arithmetic as in helpers.def; every input gives another output. */
+static uint32_t scramble(uint32_t x)
+{
+    x = (x ^ (x >> 16)) * 0x7feb352du;
+    x = (x ^ (x >> 15)) * 0x846ca68bu;
+    return x ^ (x >> 16);
+}
+
+static NodeValue evaluate_push_id(const NodeValue *o, uint32_t size)
+{
+    (void)size;
+    return number((uint32_t)o[0].v[0] * 2u + (o[1].v[0] != 0));
+}
+
+static NodeValue evaluate_hash_id(const NodeValue *o, uint32_t size)
+{
+    (void)size;
+    return number(scramble((uint32_t)o[0].v[0] + (o[1].v[0] != 0 ? 0x9e3779b9u : 0x7f4a7c15u)));
+}
+
+static NodeValue evaluate_join_id(const NodeValue *o, uint32_t size)
+{
+    (void)size;
+    return number(scramble(scramble((uint32_t)o[0].v[0]) + (uint32_t)o[1].v[0]));
+}
+
+static NodeValue evaluate_id_unit(const NodeValue *o, uint32_t size)
+{
+    (void)size;
+    return number((scramble((uint32_t)o[0].v[0]) >> 8) / 16777216.0);
+}
+
+/* ---- smooth minima (math.md, section 4); a width of 0 leaves min(a, b) ---- */
+
+/* 1 where a = b, falling to 0 where they differ by the width; infinite distances are equal. */
+static double nearness(double a, double b, double width)
+{
+    return a == b ? 1 : fmax(1 - fabs(a - b) / width, 0);
+}
+
+static double smin_quadratic(double a, double b, double k)
+{
+    double h = nearness(a, b, k);
+    return fmin(a, b) - k * h * h / 4;
+}
+
+static double smin_cubic(double a, double b, double k)
+{
+    double h = nearness(a, b, k);
+    return fmin(a, b) - k * h * h * h / 6;
+}
+
+static double smin_exponential(double a, double b, double k)
+{
+    double apart = a == b ? 0 : fabs(a - b);
+    return fmin(a, b) - k * log1p(exp(-apart / k));
+}
+
+static double smin_circular(double a, double b, double k)
+{
+    return fmax(k, fmin(a, b)) - hypot(fmax(k - a, 0), fmax(k - b, 0));
+}
+
+static double smin_chamfer(double a, double b, double k)
+{
+    return fmin(fmin(a, b), (a + b - k) * sqrt(0.5));
+}
+
+#define SMOOTH_MINIMUM(name)                                                                       \
+    static NodeValue evaluate_##name(const NodeValue *o, uint32_t size)                            \
+    {                                                                                              \
+        (void)size;                                                                                \
+        double a = o[0].v[0], b = o[1].v[0], k = o[2].v[0];                                        \
+        return number(k > 0 ? name(a, b, k) : fmin(a, b));                                         \
+    }
+SMOOTH_MINIMUM(smin_quadratic)
+SMOOTH_MINIMUM(smin_cubic)
+SMOOTH_MINIMUM(smin_exponential)
+SMOOTH_MINIMUM(smin_circular)
+SMOOTH_MINIMUM(smin_chamfer)
+#undef SMOOTH_MINIMUM
+
+/* hg_sdf's fOpUnionStairs: a triangle wave turns the line a + b = k into steps along which
+   either a or b alone decides; that is why its slope is that of the steeper of them. */
+static NodeValue evaluate_smin_stairs(const NodeValue *o, uint32_t size)
+{
+    (void)size;
+    double a = o[0].v[0], b = o[1].v[0], k = o[2].v[0];
+    if (!(k > 0) || isinf(a) || isinf(b))
+        return number(fmin(a, b));
+    double s = k / fmax(o[3].v[0], 1), u = b - k;
+    double wave = fabs(value_mod(u - a + s, 2 * s) - s);
+    return number(fmin(fmin(a, b), 0.5 * (u + a + wave)));
+}
+
+static NodeValue evaluate_blend_weight(const NodeValue *o, uint32_t size)
+{
+    (void)size;
+    double a = o[0].v[0], b = o[1].v[0], k = o[2].v[0];
+    if (!(k > 0))
+        return number(b >= a);
+    return number(a == b ? 0.5 : fmin(fmax(0.5 + 0.5 * (b - a) / k, 0), 1));
+}
+
+/* ---- one operation ---- */
+
+static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
+
+NodeValue op_evaluate(Op op, GraphType type, uint32_t index, const GraphType *types,
+                      const NodeValue *operands)
+{
+    NodeValue result = {0};
+    uint32_t  size   = components(type);
+    switch (op) {
+    case OP_COMPONENT:
+        return number(operands[0].v[index]);
+#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning)                            \
+    case OP_##name:                                                                                \
+        for (uint32_t i = 0; i < size; i++) {                                                      \
+            double a = operands[0].v[i], b = arity > 1 ? operands[arity > 1].v[i] : 0;             \
+            double c = arity > 2 ? operands[arity > 2 ? 2 : 0].v[i] : 0;                           \
+            (void)b, (void)c;                                                                      \
+            result.v[i] = (value);                                                                 \
+        }                                                                                          \
+        return result;
+#define OP(name, signature, glsl, evaluate, facts, meaning)                                        \
+    case OP_##name:                                                                                \
+        return evaluate(operands, components(types[0]) > size ? components(types[0]) : size);
+#include "compiler/graph/ops.def"
+#undef MAP
+#undef OP
+    default:
+        assert(!"a leaf has no value by itself");
+        return result;
+    }
+}
+
+/* ---- tapes ---- */
+
+static void tape_mark(const Graph *graph, const Node *roots, size_t root_count, bool *needed)
+{
+    Node last = 0;
+    for (size_t i = 0; i < root_count; i++) {
+        needed[roots[i]] = true;
+        last = roots[i] > last ? roots[i] : last;
+    }
+    for (Node node = last + 1; node-- > 0;)
+        if (needed[node])
+            for (int i = 0; i < graph->items[node].operand_count; i++)
+                needed[graph->items[node].operands[i]] = true;
+}
+
+/* Nothing of frame time needs anything of point time, so it can all go first. */
+Tape tape_new(const Graph *graph, const Node *roots, size_t root_count, Arena *arena)
+{
+    bool *needed = arena_new_array(arena, bool, graph->count);
+    if (root_count)
+        tape_mark(graph, roots, root_count, needed);
+    Tape   tape  = {.graph = graph};
+    size_t count = 0;
+    for (Node node = 0; node < graph->count; node++) {
+        count += needed[node];
+        tape.frame_count += needed[node] && graph->items[node].time != TIME_POINT;
+    }
+    Node  *nodes = arena_new_array(arena, Node, count + 1);
+    size_t frame = 0, point = tape.frame_count;
+    for (Node node = 0; node < graph->count; node++)
+        if (needed[node])
+            nodes[graph->items[node].time != TIME_POINT ? frame++ : point++] = node;
+    tape.nodes = nodes;
+    tape.count = count;
+    return tape;
+}
+
+static void tape_run_node(const Graph *graph, Node node, NodeValue *values)
+{
+    const Expr *e = &graph->items[node];
+    GraphType   types[MAX_OPERANDS]    = {0};
+    NodeValue   operands[MAX_OPERANDS] = {0};
+    for (int i = 0; i < e->operand_count; i++) {
+        types[i]    = graph->items[e->operands[i]].type;
+        operands[i] = values[e->operands[i]];
+    }
+    values[node] = op_evaluate(e->op, e->type, e->index, types, operands);
+}
+
+void tape_run_frame(const Tape *tape, const NodeValue *parameters, NodeValue *values)
+{
+    for (size_t i = 0; i < tape->frame_count; i++) {
+        Node        node = tape->nodes[i];
+        const Expr *e    = &tape->graph->items[node];
+        if (e->op == OP_CONSTANT)
+            memcpy(values[node].v, e->number, sizeof values[node].v);
+        else if (e->op == OP_PARAMETER)
+            values[node] = parameters[e->index];
+        else
+            tape_run_node(tape->graph, node, values);
+    }
+}
+
+/* OP_INSTANCE and OP_LEVEL, which stand in materials that were not lowered, count as 1 and 0. */
+void tape_run_point(const Tape *tape, const double point[3], NodeValue *values)
+{
+    for (size_t i = tape->frame_count; i < tape->count; i++) {
+        Node node = tape->nodes[i];
+        switch ((Op)tape->graph->items[node].op) {
+        case OP_POINT:
+            memcpy(values[node].v, point, 3 * sizeof *point);
+            break;
+        case OP_INSTANCE:
+            values[node] = number(1);
+            break;
+        case OP_LEVEL:
+            values[node] = number(0);
+            break;
+        default:
+            tape_run_node(tape->graph, node, values);
+        }
+    }
+}

@@ -1,0 +1,35 @@
+/*
+ * evaluate.h: the graph in double precision.
+ *
+ * This is both a product (krs query, the library's distance calls) and the oracle that every
+ * shader is held against.
+ */
+#ifndef KRS_EVALUATE_H
+#define KRS_EVALUATE_H
+
+#include "compiler/graph/graph.h"
+
+typedef struct NodeValue {
+    double v[4]; /* booleans 0 or 1; UINT exact */
+} NodeValue;
+
+/* The value of one operation for operand values of these types. */
+NodeValue op_evaluate(Op op, GraphType type, uint32_t index, const GraphType *types, const NodeValue *operands);
+
+/* A list of the nodes that a set of roots needs, in order, ready to be run many times. */
+typedef struct Tape {
+    const Graph *graph;
+    const Node  *nodes;        /* all needed nodes, operands first */
+    size_t       count;
+    size_t       frame_count;  /* the first frame_count of them are compile or frame time */
+} Tape;
+
+Tape tape_new(const Graph *graph, const Node *roots, size_t root_count, Arena *arena);
+
+/* Runs the part of a tape that does not depend on the point.  `values` has graph->count
+   elements, indexed by node; parameters[slot] is the parameter block (slot 0: time). */
+void tape_run_frame(const Tape *tape, const NodeValue *parameters, NodeValue *values);
+/* Runs the rest at a point; tape_run_frame has filled `values`. */
+void tape_run_point(const Tape *tape, const double point[3], NodeValue *values);
+
+#endif

@@ -1,0 +1,45 @@
+/*
+ * facts.h: ranges and slopes of expressions over a box.
+ *
+ * A slope (Lipschitz constant) is what the tracer divides by; it must be safe, never tight at
+ * any price: rounding goes outwards and an unbounded factor makes an unbounded slope.  Two
+ * engines run side by side and the smaller result counts: a calculus of norms (sum, product
+ * and chain rules on slopes) and intervals of the gradient (math.md, section 4).
+ */
+#ifndef KRS_FACTS_H
+#define KRS_FACTS_H
+
+#include "compiler/graph/graph.h"
+
+typedef struct Range {
+    double low, high; /* low <= high; may be infinite; [-inf, inf] is "anything" */
+} Range;
+
+typedef struct Box {
+    Range axis[3];
+} Box;
+
+typedef struct Fact {
+    Range  value[4];       /* per component */
+    Range  gradient[4][3]; /* per component, d/dx d/dy d/dz of the point */
+    double slope;          /* Lipschitz constant with respect to the point, Euclidean norms */
+} Fact;
+
+/* A fact per node of the graph for points in the box and parameters in their ranges (or, where
+   `parameters` is given, at these very values: NodeValue-like rows of 4 doubles per slot). */
+Fact *graph_facts(const Graph *graph, Box box, const double (*parameters)[4], Arena *arena);
+
+/* Range of one node that does not depend on the point, over the ranges of the parameters. */
+Fact graph_frame_fact(const Graph *graph, Node node, Arena *scratch);
+
+/* The slope of `root` over a box, refined by cutting the box into at most `cells` parts; inf
+   when there is no bound. `*blame` (may be NULL) is the node whose slope first became infinite
+   or contributes most. */
+double graph_slope(const Graph *graph, Node root, Box box, const double (*parameters)[4], uint32_t cells,
+                   Node *blame, Arena *scratch);
+
+/* The fact of one operation from the facts of its operands: the rule of its row. */
+Fact op_fact(Op op, GraphType type, uint32_t index, const GraphType *types, const Fact *operands,
+             const double *constant);
+
+#endif

@@ -1,0 +1,517 @@
+/*
+ * graph.c: making nodes.
+ *
+ * Every node is looked up before it is made, so that equal expressions are one node, and what
+ * is constant is computed on the spot.  Tables about operations are made from ops.def here.
+ */
+#include "compiler/graph/graph.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "compiler/graph/evaluate.h"
+
+/* ---- what is known of operations ---- */
+
+typedef struct OpInfo {
+    const char *name, *glsl;
+    const char *signature; /* NULL for leaves and componentwise rows */
+    uint8_t     arity;     /* of componentwise rows */
+} OpInfo;
+
+static const OpInfo op_info[OP_COUNT] = {
+    [OP_CONSTANT]  = {.name = "constant"},
+    [OP_PARAMETER] = {.name = "parameter"},
+    [OP_POINT]     = {.name = "point"},
+    [OP_INSTANCE]  = {.name = "instance"},
+    [OP_LEVEL]     = {.name = "level"},
+    [OP_COMPONENT] = {.name = "component"},
+#define MAP(name_, arity_, glsl_, value, range, da, db, dc, norm, meaning)                         \
+    [OP_##name_] = {.name = #name_, .glsl = glsl_, .arity = arity_},
+#define OP(name_, signature_, glsl_, evaluate, facts, meaning)                                     \
+    [OP_##name_] = {.name = #name_, .glsl = glsl_, .signature = signature_},
+#include "compiler/graph/ops.def"
+#undef MAP
+#undef OP
+};
+
+const char *graph_op_name(Op op) { return op_info[op].name; }
+const char *op_glsl(Op op) { return op_info[op].glsl; }
+
+#define HELPER(name, text) static const char helper_##name[] = text;
+#define HELPS(op, name)
+#include "compiler/graph/helpers.def"
+#undef HELPER
+#undef HELPS
+
+const char *op_helper(Op op)
+{
+    switch (op) {
+#define HELPER(name, text)
+#define HELPS(op, name)                                                                            \
+    case OP_##op:                                                                                  \
+        return helper_##name;
+#include "compiler/graph/helpers.def"
+#undef HELPER
+#undef HELPS
+    default:
+        return NULL;
+    }
+}
+
+static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
+
+/* Cost of one component; of OP rows, of the whole. */
+static double op_weight(Op op, double n)
+{
+    switch (op) {
+    case OP_CONSTANT: case OP_PARAMETER: case OP_POINT: case OP_INSTANCE: case OP_LEVEL:
+    case OP_COMPONENT: case OP_vec2: case OP_vec3: case OP_vec4: case OP_splat2: case OP_splat3:
+    case OP_splat4:        return 0;
+    case OP_div:           return 1.4;
+    case OP_sqrt:          return 1.6;
+    case OP_inversesqrt:   return 2.9;
+    case OP_exp: case OP_exp2: case OP_log: case OP_log2: return 4.2;
+    case OP_asin: case OP_acos: return 8;
+    case OP_sin:           return 5.6;
+    case OP_cos:           return 6.6;
+    case OP_atan:          return 8.5;
+    case OP_pow:           return 8.7;
+    case OP_tan: case OP_atan2: return 11;
+    case OP_sinh: case OP_cosh: case OP_tanh: return 7;
+    case OP_fract: case OP_round: case OP_clamp: case OP_mix: return 2;
+    case OP_mod:           return 4.4;
+    case OP_smoothstep:    return 8;
+    case OP_dot: case OP_scale: return n;
+    case OP_length:        return n + 1.6;
+    case OP_normalize:     return 2 * n + 3.9;
+    case OP_cross:         return 6;
+    case OP_select:        return n;
+    case OP_turn:          return 9;
+    case OP_fold:          return 8;
+    case OP_front:         return 3;
+    case OP_cell:          return 20;
+    case OP_cell_polar:    return 30;
+    case OP_push_id: case OP_hash_id: case OP_join_id: case OP_id_unit: return 5;
+    case OP_smin_quadratic: case OP_smin_cubic: return 7;
+    case OP_smin_exponential: return 13;
+    case OP_smin_circular: return 9;
+    case OP_smin_chamfer:  return 5;
+    case OP_smin_stairs:   return 14;
+    case OP_blend_weight:  return 5;
+    default:               return 1;
+    }
+}
+
+double op_cost(Op op, GraphType type, const GraphType *operands)
+{
+    if (op_info[op].arity)
+        return op_weight(op, 1) * components(type);
+    uint32_t first = op_info[op].signature ? components(operands[0]) : 1;
+    return op_weight(op, first > components(type) ? first : components(type));
+}
+
+/* ---- types ---- */
+
+/* The operands are FLOATs and vectors of one size; FLOATs will be spread. */
+static GraphType map_type(const GraphType *operands, uint32_t count)
+{
+    GraphType type = TYPE_FLOAT;
+    for (uint32_t i = 0; i < count; i++) {
+        if (operands[i] < TYPE_FLOAT || operands[i] > TYPE_VEC4)
+            return 0;
+        if (operands[i] != TYPE_FLOAT && type != TYPE_FLOAT && operands[i] != type)
+            return 0;
+        if (operands[i] != TYPE_FLOAT)
+            type = operands[i];
+    }
+    return type;
+}
+
+/* The type a letter of a signature stands for; `vector` and `any` are 0 until one is met. */
+static bool letter_fits(char letter, GraphType type, GraphType *vector, GraphType *any)
+{
+    switch (letter) {
+    case 'f': return type == TYPE_FLOAT;
+    case 'b': return type == TYPE_BOOL;
+    case 'u': return type == TYPE_UINT;
+    case 'v':
+        if (!*vector && type >= TYPE_VEC2 && type <= TYPE_VEC4)
+            *vector = type;
+        return *vector && type == *vector;
+    case 't':
+        if (!*any)
+            *any = type;
+        return type == *any;
+    default: return type == (GraphType)(letter - '0');
+    }
+}
+
+static GraphType signature_type(const char *signature, const GraphType *operands, uint32_t count)
+{
+    GraphType vector = 0, any = 0;
+    uint32_t  i      = 0;
+    for (; signature[i] != '>'; i++)
+        if (i >= count || !letter_fits(signature[i], operands[i], &vector, &any))
+            return 0;
+    char result = signature[i + 1];
+    if (i != count)
+        return 0;
+    for (GraphType type = TYPE_FLOAT; type <= TYPE_UINT; type++)
+        if (letter_fits(result, type, &vector, &any))
+            return type;
+    return 0;
+}
+
+GraphType graph_op_type(Op op, const GraphType *operands, uint32_t count)
+{
+    if (op_info[op].signature)
+        return signature_type(op_info[op].signature, operands, count);
+    if (op == OP_COMPONENT)
+        return count == 1 && operands[0] >= TYPE_VEC2 && operands[0] <= TYPE_VEC4 ? TYPE_FLOAT : 0;
+    return op_info[op].arity && op_info[op].arity == count ? map_type(operands, count) : 0;
+}
+
+static uint32_t op_arity(Op op)
+{
+    if (op == OP_COMPONENT)
+        return 1;
+    const char *signature = op_info[op].signature;
+    return signature ? (uint32_t)(strchr(signature, '>') - signature) : op_info[op].arity;
+}
+
+/* ---- one node for equal expressions ---- */
+
+/* What makes expressions equal: all but where they were written. */
+static bool expr_equal(const Expr *a, const Expr *b)
+{
+    return a->op == b->op && a->type == b->type && a->index == b->index &&
+           !memcmp(a->operands, b->operands, sizeof a->operands) &&
+           !memcmp(a->number, b->number, sizeof a->number);
+}
+
+static uint64_t hash_word(uint64_t hash, uint64_t word)
+{
+    hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
+    return hash ^ (hash >> 32);
+}
+
+static uint64_t expr_hash(const Expr *e)
+{
+    uint64_t hash = hash_word(e->op, e->type);
+    hash          = hash_word(hash, e->index);
+    for (int i = 0; i < MAX_OPERANDS; i++) {
+        uint64_t bits;
+        memcpy(&bits, &e->number[i], sizeof bits);
+        hash = hash_word(hash, e->operands[i]);
+        hash = hash_word(hash, bits);
+    }
+    return hash;
+}
+
+/* The slot of an equal node, or the empty one where it belongs (slots hold node + 1). */
+static size_t slot_find(const Graph *graph, const Expr *e)
+{
+    size_t slot = expr_hash(e) & (graph->slot_count - 1);
+    while (graph->slots[slot] && !expr_equal(&graph->items[graph->slots[slot] - 1], e))
+        slot = (slot + 1) & (graph->slot_count - 1);
+    return slot;
+}
+
+static void slots_grow(Graph *graph)
+{
+    graph->slot_count = graph->slot_count ? 2 * graph->slot_count : 64;
+    graph->slots      = arena_new_array(graph->arena, uint32_t, graph->slot_count);
+    for (Node node = 0; node < graph->count; node++)
+        graph->slots[slot_find(graph, &graph->items[node])] = node + 1;
+}
+
+static Node node_intern(Graph *graph, Expr e)
+{
+    if (2 * (graph->count + 1) > graph->slot_count)
+        slots_grow(graph);
+    for (int i = e.operand_count; i < MAX_OPERANDS; i++)
+        e.operands[i] = NODE_NONE;
+    for (int i = 0; i < 4; i++)
+        e.number[i] += 0.0; /* -0 and 0 are one constant */
+    size_t slot = slot_find(graph, &e);
+    if (!graph->slots[slot]) {
+        e.span = graph->here;
+        array_push(graph->arena, graph, e);
+        graph->slots[slot] = (uint32_t)graph->count;
+    }
+    Node node = graph->slots[slot] - 1;
+    if (!graph->items[node].span.source) /* the compiler's own until now */
+        graph->items[node].span = graph->here;
+    return node;
+}
+
+/* ---- leaves ---- */
+
+Graph *graph_new(Arena *arena)
+{
+    Graph *graph = arena_new(arena, Graph);
+    graph->arena = arena;
+    GraphParameter time = {{-HUGE_VAL}, {HUGE_VAL}};
+    array_push(arena, &graph->parameters, time);
+    return graph;
+}
+
+Node graph_constant(Graph *graph, GraphType type, const double *numbers)
+{
+    Expr e = {.op = OP_CONSTANT, .type = (uint8_t)type};
+    memcpy(e.number, numbers, components(type) * sizeof *numbers);
+    return node_intern(graph, e);
+}
+
+Node graph_number(Graph *graph, double number)
+{
+    return graph_constant(graph, TYPE_FLOAT, &number);
+}
+
+Node graph_vec3(Graph *graph, double x, double y, double z)
+{
+    double numbers[3] = {x, y, z};
+    return graph_constant(graph, TYPE_VEC3, numbers);
+}
+
+Node graph_bool(Graph *graph, bool value)
+{
+    double number = value;
+    return graph_constant(graph, TYPE_BOOL, &number);
+}
+
+Node graph_uint(Graph *graph, uint32_t value)
+{
+    double number = value;
+    return graph_constant(graph, TYPE_UINT, &number);
+}
+
+Node graph_parameter(Graph *graph, uint32_t slot, GraphType type)
+{
+    Expr e = {.op = OP_PARAMETER, .type = (uint8_t)type, .time = TIME_FRAME, .index = slot};
+    return node_intern(graph, e);
+}
+
+Node graph_leaf(Graph *graph, Op op)
+{
+    assert(op == OP_POINT || op == OP_INSTANCE || op == OP_LEVEL);
+    GraphType type = op == OP_POINT ? TYPE_VEC3 : op == OP_INSTANCE ? TYPE_UINT : TYPE_FLOAT;
+    return node_intern(graph, (Expr){.op = (uint8_t)op, .type = (uint8_t)type, .time = TIME_POINT});
+}
+
+bool graph_is_constant(const Graph *graph, Node node)
+{
+    return graph->items[node].op == OP_CONSTANT;
+}
+
+/* ---- operations ---- */
+
+/* The constant that e is when all its operands are; NODE_NONE when it is not a finite one. */
+static Node fold_constant(Graph *graph, const Expr *e)
+{
+    GraphType types[MAX_OPERANDS]    = {0};
+    NodeValue operands[MAX_OPERANDS] = {0};
+    for (int i = 0; i < e->operand_count; i++) {
+        const Expr *operand = &graph->items[e->operands[i]];
+        if (operand->op != OP_CONSTANT)
+            return NODE_NONE;
+        types[i] = operand->type;
+        memcpy(operands[i].v, operand->number, sizeof operands[i].v);
+    }
+    NodeValue value = op_evaluate(e->op, e->type, e->index, types, operands);
+    for (uint32_t i = 0; i < components(e->type); i++)
+        if (!isfinite(value.v[i]))
+            return NODE_NONE;
+    return graph_constant(graph, e->type, value.v);
+}
+
+/* The node of e, whose operands are in place; its binding time is the latest of theirs. */
+static Node operation(Graph *graph, Expr e)
+{
+    Node folded = fold_constant(graph, &e);
+    if (folded != NODE_NONE)
+        return folded;
+    for (int i = 0; i < e.operand_count; i++)
+        if (graph->items[e.operands[i]].time > e.time)
+            e.time = graph->items[e.operands[i]].time;
+    return node_intern(graph, e);
+}
+
+static Node spread(Graph *graph, Node number, GraphType type)
+{
+    static const Op splats[] = {OP_splat2, OP_splat3, OP_splat4};
+    return graph_op(graph, splats[type - TYPE_VEC2], &number);
+}
+
+Node graph_op(Graph *graph, Op op, const Node *operands)
+{
+    Expr      e = {.op = (uint8_t)op, .operand_count = (uint8_t)op_arity(op)};
+    GraphType types[MAX_OPERANDS];
+    assert(e.operand_count > 0);
+    for (int i = 0; i < e.operand_count; i++) {
+        assert(operands[i] < graph->count);
+        types[i]      = graph->items[operands[i]].type;
+        e.operands[i] = operands[i];
+    }
+    GraphType type = graph_op_type(op, types, e.operand_count);
+    assert(type != 0);
+    e.type = (uint8_t)type;
+    for (int i = 0; op_info[op].arity && i < e.operand_count; i++)
+        if (types[i] == TYPE_FLOAT && type != TYPE_FLOAT)
+            e.operands[i] = spread(graph, operands[i], type);
+    return operation(graph, e);
+}
+
+Node graph_op1(Graph *graph, Op op, Node a)
+{
+    return graph_op(graph, op, &a);
+}
+
+Node graph_op2(Graph *graph, Op op, Node a, Node b)
+{
+    Node operands[] = {a, b};
+    return graph_op(graph, op, operands);
+}
+
+Node graph_op3(Graph *graph, Op op, Node a, Node b, Node c)
+{
+    Node operands[] = {a, b, c};
+    return graph_op(graph, op, operands);
+}
+
+Node graph_op4(Graph *graph, Op op, Node a, Node b, Node c, Node d)
+{
+    Node operands[] = {a, b, c, d};
+    return graph_op(graph, op, operands);
+}
+
+Node graph_component(Graph *graph, Node vector, uint32_t index)
+{
+    GraphType type = graph->items[vector].type;
+    assert(type <= TYPE_VEC4 && index < components(type));
+    if (type == TYPE_FLOAT)
+        return vector;
+    return operation(graph, (Expr){.op = OP_COMPONENT, .type = TYPE_FLOAT, .index = index,
+                                   .operand_count = 1, .operands = {vector}});
+}
+
+/* ---- powers ---- */
+
+/* base ^ n for n >= 1, bit by bit from the highest. */
+static Node power_positive(Graph *graph, Node base, uint32_t n)
+{
+    uint32_t bit = 1;
+    while (bit <= n / 2)
+        bit *= 2;
+    Node power = base;
+    for (bit /= 2; bit; bit /= 2) {
+        power = graph_op1(graph, OP_square, power);
+        if (n & bit)
+            power = graph_op2(graph, OP_mul, power, base);
+    }
+    return power;
+}
+
+Node graph_power(Graph *graph, Node base, Node exponent)
+{
+    const Expr *e = &graph->items[exponent];
+    double      n = e->number[0];
+    bool        uniform = e->op == OP_CONSTANT;
+    for (uint32_t i = 1; i < components(e->type); i++)
+        uniform = uniform && e->number[i] == n;
+    bool same_type = e->type == TYPE_FLOAT || e->type == graph->items[base].type;
+    bool integer   = n == floor(n) && fabs(n) <= 64;
+    if (!uniform || !same_type || n == 0 || !(integer || fabs(n) == 0.5))
+        return graph_op2(graph, OP_pow, base, exponent);
+    if (!integer)
+        return graph_op1(graph, n > 0 ? OP_sqrt : OP_inversesqrt, base);
+    Node power = power_positive(graph, base, (uint32_t)fabs(n));
+    if (n > 0)
+        return power;
+    Node one = graph_number(graph, 1);
+    return graph_op2(graph, OP_div, one, power);
+}
+
+/* ---- substitution ---- */
+
+static Node substitute_leaf(const Expr *e, Node node, Substitution with)
+{
+    Node other = e->op == OP_POINT      ? with.point
+                 : e->op == OP_INSTANCE ? with.instance
+                 : e->op == OP_LEVEL    ? with.level
+                                        : NODE_NONE;
+    return other == NODE_NONE ? node : other;
+}
+
+/* The graph grows meanwhile, so the expression is handed over as a copy. */
+static Node substitute_operands(Graph *graph, Expr e, Node node, const Node *copies)
+{
+    bool changed = false;
+    for (int i = 0; i < e.operand_count; i++) {
+        changed       = changed || copies[e.operands[i]] != e.operands[i];
+        e.operands[i] = copies[e.operands[i]];
+    }
+    if (!changed)
+        return node;
+    graph->here = e.span;
+    return e.op == OP_COMPONENT ? graph_component(graph, e.operands[0], e.index)
+                                : graph_op(graph, e.op, e.operands);
+}
+
+Node graph_substitute(Graph *graph, Node root, Substitution with, Arena *scratch)
+{
+    Span  here   = graph->here;
+    Tape  tape   = tape_new(graph, &root, 1, scratch);
+    Node *copies = arena_new_array(scratch, Node, (size_t)root + 1);
+    for (size_t i = 0; i < tape.count; i++) {
+        Node node    = tape.nodes[i];
+        Expr e       = graph->items[node];
+        copies[node] = e.operand_count ? substitute_operands(graph, e, node, copies)
+                                       : substitute_leaf(&e, node, with);
+    }
+    graph->here = here;
+    return copies[root];
+}
+
+/* ---- validation ---- */
+
+static const char *node_mistake(const Graph *graph, Node node)
+{
+    const Expr *e = &graph->items[node];
+    GraphType   types[MAX_OPERANDS] = {0};
+    uint8_t     latest = e->op == OP_CONSTANT    ? TIME_COMPILE
+                         : e->op == OP_PARAMETER ? TIME_FRAME
+                         : e->operand_count == 0 ? TIME_POINT
+                                                 : TIME_COMPILE;
+    if (e->op >= OP_COUNT || e->operand_count != op_arity(e->op))
+        return "wrong number of operands";
+    for (int i = 0; i < e->operand_count; i++) {
+        if (e->operands[i] >= node)
+            return "an operand does not come first";
+        const Expr *operand = &graph->items[e->operands[i]];
+        types[i] = operand->type;
+        latest   = operand->time > latest ? operand->time : latest;
+        if (op_info[e->op].arity && operand->type != e->type)
+            return "an operand that was not spread";
+    }
+    if (e->operand_count && graph_op_type(e->op, types, e->operand_count) != e->type)
+        return "wrong type";
+    if (e->op == OP_COMPONENT && e->index >= components(types[0]))
+        return "no such component";
+    return e->time == latest ? NULL : "wrong binding time";
+}
+
+void graph_validate(const Graph *graph, const char *pass)
+{
+    for (Node node = 0; node < graph->count; node++) {
+        const char *mistake = node_mistake(graph, node);
+        if (mistake) {
+            fprintf(stderr, "after %s: node %u (%s): %s\n", pass, (unsigned)node,
+                    graph_op_name(graph->items[node].op), mistake);
+            assert(!"an invalid graph");
+        }
+    }
+}

@@ -1,0 +1,131 @@
+/*
+ * graph.h: the typed, hash-consed graph of expressions.
+ *
+ * Everything that is computed per frame or per point is a node here: coordinates, parameters,
+ * arithmetic.  Nodes are indices and operands come first: storage order is evaluation order, a
+ * pass is one loop, and an analysis is an array beside the graph.  Equal nodes are one node.
+ * The graph knows nothing of scenes.
+ */
+#ifndef KRS_GRAPH_H
+#define KRS_GRAPH_H
+
+#include "compiler/base/source.h"
+#include "compiler/base/text.h"
+
+typedef uint32_t Node;
+#define NODE_NONE UINT32_MAX
+
+/* UINT is an instance number: 32 bits, arithmetic wraps. */
+typedef enum GraphType {
+    TYPE_FLOAT = 1, /* the value of FLOAT and VECn is their number of components */
+    TYPE_VEC2  = 2,
+    TYPE_VEC3  = 3,
+    TYPE_VEC4  = 4,
+    TYPE_BOOL,
+    TYPE_UINT
+} GraphType;
+
+/* When a node's value is known; a node is as late as its latest operand. */
+typedef enum BindingTime { TIME_COMPILE, TIME_FRAME, TIME_POINT } BindingTime;
+
+typedef enum Op {
+    OP_CONSTANT,  /* number[0..3]; booleans are 0 or 1, UINT exact */
+    OP_PARAMETER, /* frame time: slot `index` of the parameter block; slot 0 is `time` */
+    OP_POINT,     /* point time, VEC3: where the expression is evaluated */
+    OP_INSTANCE,  /* point time, UINT: replaced when a material is lowered (as are the next two) */
+    OP_LEVEL,     /* point time, FLOAT */
+    OP_COMPONENT, /* component `index` of a vector: FLOAT */
+#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning) OP_##name,
+#define OP(name, signature, glsl, evaluate, facts, meaning) OP_##name,
+#include "compiler/graph/ops.def"
+#undef MAP
+#undef OP
+    OP_COUNT
+} Op;
+
+enum { MAX_OPERANDS = 4 };
+
+typedef struct Expr {
+    uint8_t  op, type, time;
+    uint8_t  operand_count;
+    uint32_t index;                 /* OP_COMPONENT, OP_PARAMETER */
+    Node     operands[MAX_OPERANDS];
+    double   number[4];             /* OP_CONSTANT */
+    Span     span;                  /* where the author wrote it, for blame */
+} Expr;
+
+/* The range a parameter may have, for slopes that must hold over all of it. */
+typedef struct GraphParameter {
+    double low[4], high[4];
+} GraphParameter;
+
+typedef struct Graph {
+    Arena    *arena;
+    Expr     *items;
+    size_t    count, capacity;
+    uint32_t *slots; /* hash table of nodes */
+    size_t    slot_count;
+    struct { GraphParameter *items; size_t count, capacity; } parameters; /* [0] is time */
+    Span      here;  /* span given to nodes made now */
+} Graph;
+
+/* An empty graph whose parameter 0 is `time`, in (-inf, inf). */
+Graph *graph_new(Arena *arena);
+
+/* Leaves. */
+Node graph_constant(Graph *graph, GraphType type, const double *numbers);
+Node graph_number(Graph *graph, double number);
+Node graph_vec3(Graph *graph, double x, double y, double z);
+Node graph_bool(Graph *graph, bool value);
+Node graph_uint(Graph *graph, uint32_t value);
+Node graph_parameter(Graph *graph, uint32_t slot, GraphType type);
+Node graph_leaf(Graph *graph, Op op); /* OP_POINT, OP_INSTANCE, OP_LEVEL */
+
+/* An operation on as many operands as its row says (asserted, with their types).  Operands that
+   are all constant are folded by op_evaluate, unless the result is not finite: then the node
+   stays, for whoever wants to report it.  Where one operand
+   of a componentwise row is a FLOAT and another a vector, the FLOAT is spread (OP_splat2..4). */
+Node graph_op(Graph *graph, Op op, const Node *operands);
+Node graph_op1(Graph *graph, Op op, Node a);
+Node graph_op2(Graph *graph, Op op, Node a, Node b);
+Node graph_op3(Graph *graph, Op op, Node a, Node b, Node c);
+Node graph_op4(Graph *graph, Op op, Node a, Node b, Node c, Node d);
+/* Component `index` (0..3) of a vector; of a FLOAT, component 0 is itself. */
+Node graph_component(Graph *graph, Node vector, uint32_t index);
+/* base ^ exponent: by multiplication where the exponent is a small constant integer, by square
+   roots where it is 1/2 or -1/2, else OP_pow. */
+Node graph_power(Graph *graph, Node base, Node exponent);
+
+/* The type that an operation on these operands has, or 0 when it is not defined for them. */
+GraphType graph_op_type(Op op, const GraphType *operands, uint32_t count);
+
+const char *graph_op_name(Op op);
+bool        graph_is_constant(const Graph *graph, Node node);
+
+/* The row's GLSL, operands $a..$d; NULL for leaves and OP_COMPONENT. */
+const char *op_glsl(Op op);
+/* GLSL functions that op_glsl calls, or NULL.  Operations share texts: emit a pointer once. */
+const char *op_helper(Op op);
+/* What an operation costs, in multiply-adds of one component (measurements.md, fact 5). */
+double op_cost(Op op, GraphType type, const GraphType *operands);
+
+/* A copy of `root` (and all it needs) in the same graph, with leaves replaced: OP_POINT by
+   `point`, OP_INSTANCE by `instance`, OP_LEVEL by `level`; NODE_NONE keeps a leaf. */
+typedef struct Substitution {
+    Node point, instance, level;
+} Substitution;
+Node graph_substitute(Graph *graph, Node root, Substitution with, Arena *scratch);
+
+/* Algebraic simplification of everything `roots` need, into a new graph (same parameters):
+   the roots are renumbered in place.  Rules keep values: x+0, x*1, x*0 (x finite), --x,
+   min(x,x), component of a built vector, a built vector of all components of one vector, select
+   with equal branches or known condition, constants gathered.  Dead nodes are gone. */
+Graph *graph_simplify(const Graph *graph, Node *roots, size_t root_count, Arena *arena);
+
+/* Asserts what every pass must keep: operands first, types right, arity right, times right. */
+void graph_validate(const Graph *graph, const char *pass);
+
+/* One node a line: "%12 vec3 point = sub %3 %11  ; file:line:column". */
+void graph_print(const Graph *graph, const Sources *sources, const Node *roots, size_t root_count, Text *out);
+
+#endif

@@ -1,0 +1,137 @@
+/*
+ * krs.h: compile scenes and ask them questions.  No Vulkan is needed; rendering is in
+ * krs_vulkan.h.
+ *
+ * There is no global state: different scenes may be used from different threads, and one
+ * scene, which never changes once compiled, from many.  What varies from frame to frame (the
+ * values of parameters, the time) lives in a KrsFrame, which belongs to one thread at a time.
+ * Nothing here prints, exits or aborts.
+ */
+#ifndef KRS_H
+#define KRS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define KRS_VERSION "0.1.0"
+
+/* The command's exit statuses are these numbers too. */
+typedef enum KrsStatus {
+    KRS_OK              = 0,
+    KRS_BAD_SCENE       = 1,  /* diagnostics say why */
+    KRS_BAD_ARGUMENT    = 2,  /* wrong use of this interface */
+    KRS_NO_DEVICE       = 69, /* no usable Vulkan device */
+    KRS_INTERNAL        = 70, /* a bug of krs or of the driver */
+    KRS_OUT_OF_MEMORY   = 71,
+    KRS_CANNOT_CREATE   = 73, /* an output cannot be created */
+    KRS_IO_ERROR        = 74, /* the scene cannot be read, or an output not be written */
+    KRS_INTERRUPTED     = 130
+} KrsStatus;
+
+typedef struct KrsScene KrsScene;
+typedef struct KrsFrame KrsFrame;
+
+/* One diagnostic, as text ready to print and as one JSON object (field names of the Language
+   Server Protocol).  The strings live until the callback returns. */
+typedef struct KrsDiagnostic {
+    bool        error; /* else a warning */
+    const char *code;  /* "E0312" */
+    const char *message;
+    const char *source; /* name of the text it is about */
+    uint32_t    line, column; /* from 1 */
+    const char *text, *json;
+} KrsDiagnostic;
+
+typedef void KrsDiagnosticCallback(void *user, const KrsDiagnostic *diagnostic);
+
+/* Where memory comes from; zero means malloc and free.  glslang and the Vulkan driver have
+   their own. */
+typedef struct KrsAllocator {
+    void *(*allocate)(void *user, size_t size); /* NULL when there is none; aligned as malloc */
+    void (*release)(void *user, void *block);
+    void *user;
+} KrsAllocator;
+
+typedef struct KrsOptions {
+    KrsAllocator           allocator;
+    KrsDiagnosticCallback *diagnostic; /* may be NULL */
+    void                  *user;       /* handed to `diagnostic` */
+    size_t                 memory_limit; /* bytes; 0 means 2 GiB */
+} KrsOptions;
+
+/* Compiles a text in memory (`name` is used in diagnostics, and `use` is relative to its
+   folder) or a file.  On KRS_OK the caller owns *scene; on any other status it is NULL.
+   `options` may be NULL.  KRS_BAD_SCENE: see the diagnostics; KRS_IO_ERROR: the file cannot be
+   read; KRS_OUT_OF_MEMORY. */
+KrsStatus krs_compile_text(const char *text, size_t length, const char *name, const KrsOptions *options,
+                           KrsScene **scene);
+KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene **scene);
+void      krs_scene_free(KrsScene *scene);
+
+/* A `param` of the scene. */
+typedef struct KrsParameter {
+    const char *name;
+    uint32_t    components;    /* 1 for a number, 2..4 for a vector or colour */
+    double      value[4];      /* the default */
+    double      low[4], high[4]; /* the permitted range; may be infinite */
+} KrsParameter;
+
+size_t krs_parameter_count(const KrsScene *scene);
+/* Parameter `index` in the order of the text; KRS_BAD_ARGUMENT when there is none. */
+KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *parameter);
+
+/* Parameters at their defaults, time 0.  The scene must outlive the frame. */
+KrsStatus krs_frame_new(const KrsScene *scene, KrsFrame **frame);
+void      krs_frame_free(KrsFrame *frame);
+/* KRS_BAD_ARGUMENT when there is no such parameter, a component is outside of its range, or
+   not finite; the frame is then unchanged. */
+KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values, size_t count);
+KrsStatus krs_frame_set_time(KrsFrame *frame, double time);
+
+/* A component of the scene: what one `show` shows. */
+typedef struct KrsComponent {
+    const char *name;      /* the variable it was shown by, or "component 3" */
+    double      low[3], high[3]; /* a box around it in world units; may be infinite */
+    double      slope;     /* the derived bound on the slope of its expression */
+    bool        exact;     /* the distance is exact outside wherever math.md says so */
+    uint32_t    levels;    /* reflections of its outermost sequence; 0 without one */
+    double      instances; /* copies of kernels, counted with their reflections */
+} KrsComponent;
+
+size_t    krs_component_count(const KrsScene *scene);
+KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *component);
+
+/* Distances for `count` points in world units: never above the distance to the nearest surface,
+   negative inside. */
+void krs_distance(KrsFrame *frame, const double (*points)[3], size_t count, double *distances);
+
+/* What is at a point, or where a ray ends. */
+typedef struct KrsHit {
+    bool     hit;       /* for rays; always true for points */
+    double   t;         /* for rays: world units along the unit direction */
+    double   point[3];
+    double   distance;  /* at that point */
+    double   normal[3]; /* unit gradient of the distance; 0 where there is none */
+    uint32_t component; /* from 1 */
+    uint32_t level;     /* reflections before the kernel */
+    uint32_t instance;  /* heap number of math.md section 1, a hash beyond 31 mirrors; 1 without a sequence */
+    double   color[3];  /* linear Rec.709 */
+    double   roughness, metallic;
+} KrsHit;
+
+/* Distance, normal and identity at points. */
+void krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits);
+/* First hits of rays in [0, farthest]; directions of any length but 0.  A hit is within
+   `tolerance` of the surface, in world units (0: 1e-9 times the distance travelled, or 1e-9). */
+void krs_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3], size_t count,
+                 double farthest, double tolerance, KrsHit *hits);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

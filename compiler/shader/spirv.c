@@ -1,0 +1,78 @@
+/*
+ * spirv.c: GLSL to SPIR-V, and every module through the SPIR-V validator.
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <spirv-tools/libspirv.h>
+
+#include "compiler/compile.h"
+#include "compiler/shader/glslang_border.h"
+
+void spirv_start(void) { border_start(); }
+void spirv_stop(void) { border_stop(); }
+
+/* The log, headed by the shader's name; takes over `words_of_tool`. */
+static char *name_log(const char *entry, const char *tool, char *words_of_tool)
+{
+    size_t length = strlen(entry) + strlen(tool) + strlen(words_of_tool) + 32;
+    char  *log    = malloc(length);
+    if (log)
+        snprintf(log, length, "%s: refused by %s: %s", entry, tool, words_of_tool);
+    free(words_of_tool);
+    return log;
+}
+
+static KrsStatus validate(const char *entry, const uint32_t *words, size_t word_count, char **log)
+{
+    spv_context    context    = spvContextCreate(SPV_ENV_VULKAN_1_1);
+    spv_diagnostic diagnostic = NULL;
+    if (!context)
+        return KRS_OUT_OF_MEMORY;
+    spv_result_t result = spvValidateBinary(context, words, word_count, &diagnostic);
+    KrsStatus    status = KRS_OK;
+    if (result != SPV_SUCCESS) {
+        status      = result == SPV_ERROR_OUT_OF_MEMORY ? KRS_OUT_OF_MEMORY : KRS_INTERNAL;
+        char *words_of_tool = strdup(diagnostic && diagnostic->error ? diagnostic->error : "no reason given");
+        if (words_of_tool)
+            *log = name_log(entry, "the SPIR-V validator", words_of_tool);
+    }
+    spvDiagnosticDestroy(diagnostic);
+    spvContextDestroy(context);
+    return status;
+}
+
+KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, size_t *word_count, char **log)
+{
+    char        *refusal = NULL;
+    BorderResult result  = border_compile(glsl, words, word_count, &refusal);
+    *log                 = NULL;
+    if (result == BORDER_REFUSED) {
+        *log = name_log(entry, "glslang", refusal);
+        return KRS_INTERNAL;
+    }
+    if (result == BORDER_NO_MEMORY) {
+        free(refusal);
+        return KRS_OUT_OF_MEMORY;
+    }
+    KrsStatus status = validate(entry, *words, *word_count, log);
+    if (status != KRS_OK) {
+        free(*words);
+        *words = NULL;
+    }
+    return status;
+}
+
+char *spirv_disassemble(const uint32_t *words, size_t word_count)
+{
+    spv_context context = spvContextCreate(SPV_ENV_VULKAN_1_1);
+    spv_text    text    = NULL;
+    char       *copy    = NULL;
+    if (context && spvBinaryToText(context, words, word_count, SPV_BINARY_TO_TEXT_OPTION_FRIENDLY_NAMES |
+                                   SPV_BINARY_TO_TEXT_OPTION_INDENT, &text, NULL) == SPV_SUCCESS)
+        copy = strdup(text->str);
+    spvTextDestroy(text);
+    spvContextDestroy(context);
+    return copy;
+}

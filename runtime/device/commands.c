@@ -1,0 +1,79 @@
+/*
+ * commands.c: recording a piece of work, running it and timing it.  One piece runs at a time:
+ * slices are long against what a submission costs, and the host must look at each anyway.
+ */
+#include "runtime/device/gpu.h"
+
+static const VkPipelineStageFlags WORK = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+
+static void memory_barrier(Gpu *gpu, VkPipelineStageFlags after, VkAccessFlags seen_by)
+{
+    vkCmdPipelineBarrier(gpu->commands, WORK, after, 0, 1, &(VkMemoryBarrier){
+        .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+        .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
+        .dstAccessMask = seen_by,
+    }, 0, NULL, 0, NULL);
+}
+
+void gpu_barrier(Gpu *gpu)
+{
+    memory_barrier(gpu, WORK, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT |
+                              VK_ACCESS_UNIFORM_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT |
+                              VK_ACCESS_TRANSFER_WRITE_BIT);
+}
+
+bool gpu_begin(Gpu *gpu)
+{
+    TRY(gpu, "record work", vkResetCommandPool(gpu->device, gpu->pool, 0));
+    TRY(gpu, "record work", vkBeginCommandBuffer(gpu->commands, &(VkCommandBufferBeginInfo){
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
+    }));
+    if (gpu->times) {
+        vkCmdResetQueryPool(gpu->commands, gpu->times, 0, 2);
+        vkCmdWriteTimestamp(gpu->commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, gpu->times, 0);
+    }
+    gpu_barrier(gpu);
+    return true;
+
+failed:
+    return false;
+}
+
+static bool measure(Gpu *gpu, double *ms)
+{
+    uint64_t ticks[2];
+    TRY(gpu, "read the device's clock",
+        vkGetQueryPoolResults(gpu->device, gpu->times, 0, 2, sizeof ticks, ticks, sizeof ticks[0],
+                              VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
+    uint64_t passed = (ticks[1] - ticks[0]) & gpu->time_mask;
+    *ms += (double)passed * (double)gpu->properties.limits.timestampPeriod / 1e6;
+    return true;
+
+failed:
+    return false;
+}
+
+bool gpu_finish(Gpu *gpu, double *ms)
+{
+    if (gpu->times)
+        vkCmdWriteTimestamp(gpu->commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, gpu->times, 1);
+    memory_barrier(gpu, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+    TRY(gpu, "record work", vkEndCommandBuffer(gpu->commands));
+
+    double start = clock_ms();
+    TRY(gpu, "submit work", vkQueueSubmit(gpu->queue, 1, &(VkSubmitInfo){
+        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+        .commandBufferCount = 1,
+        .pCommandBuffers = &gpu->commands,
+    }, gpu->fence));
+    TRY(gpu, "wait for the device", vkWaitForFences(gpu->device, 1, &gpu->fence, VK_TRUE, UINT64_MAX));
+    TRY(gpu, "wait for the device", vkResetFences(gpu->device, 1, &gpu->fence));
+    if (gpu->times)
+        return measure(gpu, ms);
+    *ms += clock_ms() - start;
+    return true;
+
+failed:
+    return false;
+}

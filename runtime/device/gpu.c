@@ -1,0 +1,394 @@
+/*
+ * gpu.c: opening a Vulkan device: instance, validation, choice, queue.
+ */
+#include "runtime/device/gpu.h"
+
+#include <ctype.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <time.h>
+
+#define VALIDATION_LAYER "VK_LAYER_KHRONOS_validation"
+#define NO_DEVICE "no usable Vulkan device: install a driver, for example Debian's mesa-vulkan-drivers"
+
+double clock_ms(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
+}
+
+void *gpu_alloc(Gpu *gpu, size_t count, size_t size, const char *attempt)
+{
+    void *block = NULL;
+    if (size == 0 || count <= SIZE_MAX / size) {
+        size_t bytes = count * size > 0 ? count * size : 1;
+        block = gpu->allocator.allocate ? gpu->allocator.allocate(gpu->allocator.user, bytes) : calloc(1, bytes);
+        if (block && gpu->allocator.allocate)
+            memset(block, 0, bytes);
+    }
+    if (!block)
+        gpu_refuse(gpu, KRS_OUT_OF_MEMORY, "cannot %s: out of memory", attempt);
+    return block;
+}
+
+void gpu_release(Gpu *gpu, void *block)
+{
+    if (block && gpu->allocator.release)
+        gpu->allocator.release(gpu->allocator.user, block);
+    else if (!gpu->allocator.allocate)
+        free(block);
+}
+
+void gpu_refuse(Gpu *gpu, KrsStatus status, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(gpu->message, sizeof gpu->message, format, arguments);
+    va_end(arguments);
+    gpu->status = status;
+}
+
+void gpu_fail(Gpu *gpu, VkResult result, const char *attempt)
+{
+    switch (result) {
+    case VK_ERROR_OUT_OF_HOST_MEMORY:
+        gpu_refuse(gpu, KRS_OUT_OF_MEMORY, "cannot %s: out of memory", attempt);
+        break;
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+    case VK_ERROR_OUT_OF_POOL_MEMORY:
+    case VK_ERROR_FRAGMENTED_POOL:
+    case VK_ERROR_FRAGMENTATION:
+    case VK_ERROR_TOO_MANY_OBJECTS:
+        gpu_refuse(gpu, KRS_OUT_OF_MEMORY, "cannot %s: out of memory on the device", attempt);
+        break;
+    case VK_ERROR_INCOMPATIBLE_DRIVER:
+        gpu_refuse(gpu, KRS_NO_DEVICE, NO_DEVICE);
+        break;
+    case VK_ERROR_LAYER_NOT_PRESENT:
+    case VK_ERROR_EXTENSION_NOT_PRESENT:
+        gpu_refuse(gpu, KRS_NO_DEVICE,
+                   "cannot %s: the validation layers are not installed (Debian: vulkan-validationlayers)",
+                   attempt);
+        break;
+    case VK_ERROR_INITIALIZATION_FAILED:
+        gpu_refuse(gpu, KRS_NO_DEVICE, "cannot %s: the Vulkan driver does not start", attempt);
+        break;
+    case VK_ERROR_DEVICE_LOST:
+        gpu_refuse(gpu, KRS_INTERNAL, "cannot %s: the device was lost (its driver gave up or was reset)",
+                   attempt);
+        break;
+    default:
+        gpu_refuse(gpu, KRS_INTERNAL, "cannot %s: the driver answers with Vulkan error %d", attempt, result);
+    }
+}
+
+/* ---- Instance and validation ---- */
+
+static VKAPI_ATTR VkBool32 VKAPI_CALL take_complaint(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                                     VkDebugUtilsMessageTypeFlagsEXT type,
+                                                     const VkDebugUtilsMessengerCallbackDataEXT *data,
+                                                     void *user)
+{
+    (void)severity;
+    (void)type;
+    Gpu *gpu = user;
+    gpu->complaints++;
+    if (gpu->complaint)
+        gpu->complaint(gpu->user, data->pMessage ? data->pMessage : "");
+    return VK_FALSE;
+}
+
+static bool instance_create(Gpu *gpu, bool validation)
+{
+    const char *layers[] = {VALIDATION_LAYER};
+    const char *extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+    VkValidationFeatureEnableEXT enables[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+    VkDebugUtilsMessengerCreateInfoEXT listen = {
+        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+        .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
+                           VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
+        .pfnUserCallback = take_complaint,
+        .pUserData = gpu,
+    };
+    VkValidationFeaturesEXT features = {
+        .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+        .pNext = &listen, /* also while the instance itself is made and unmade */
+        .enabledValidationFeatureCount = 1,
+        .pEnabledValidationFeatures = enables,
+    };
+    TRY(gpu, "start Vulkan", vkCreateInstance(&(VkInstanceCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+        .pNext = validation ? &features : NULL,
+        .pApplicationInfo = &(VkApplicationInfo){
+            .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+            .pApplicationName = "krs",
+            .pEngineName = "krs",
+            .apiVersion = VK_API_VERSION_1_1,
+        },
+        .enabledLayerCount = validation,
+        .ppEnabledLayerNames = layers,
+        .enabledExtensionCount = validation ? 2 : 0,
+        .ppEnabledExtensionNames = extensions,
+    }, NULL, &gpu->instance));
+
+    if (validation) {
+        PFN_vkCreateDebugUtilsMessengerEXT create = (PFN_vkCreateDebugUtilsMessengerEXT)
+            vkGetInstanceProcAddr(gpu->instance, "vkCreateDebugUtilsMessengerEXT");
+        if (create)
+            TRY(gpu, "listen to the validation layers", create(gpu->instance, &listen, NULL, &gpu->messenger));
+        gpu->set_name = (PFN_vkSetDebugUtilsObjectNameEXT)
+            vkGetInstanceProcAddr(gpu->instance, "vkSetDebugUtilsObjectNameEXT");
+    }
+    return true;
+
+failed:
+    return false;
+}
+
+void gpu_name(Gpu *gpu, VkObjectType type, uint64_t handle, const char *name)
+{
+    if (gpu->set_name)
+        gpu->set_name(gpu->device, &(VkDebugUtilsObjectNameInfoEXT){
+            .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+            .objectType = type,
+            .objectHandle = handle,
+            .pObjectName = name,
+        });
+}
+
+/* ---- Choice ---- */
+
+/* The first queue family with compute, and how many bits its clock has; false when there is
+   none.  No device has more families than are looked at. */
+static bool find_family(VkPhysicalDevice physical, uint32_t *family, uint32_t *clock_bits)
+{
+    VkQueueFamilyProperties families[32];
+    uint32_t                count = 32;
+    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families);
+    for (uint32_t i = 0; i < count; i++)
+        if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) {
+            *family = i;
+            *clock_bits = families[i].timestampValidBits;
+            return true;
+        }
+    return false;
+}
+
+KrsDevice gpu_describe(VkPhysicalDevice physical)
+{
+    VkPhysicalDeviceProperties properties;
+    uint32_t                   family, clock_bits;
+    vkGetPhysicalDeviceProperties(physical, &properties);
+    KrsDevice device = {
+        .api_version = properties.apiVersion,
+        .usable = properties.apiVersion >= VK_API_VERSION_1_1 &&
+                  find_family(physical, &family, &clock_bits),
+    };
+    snprintf(device.name, sizeof device.name, "%s", properties.deviceName);
+    switch (properties.deviceType) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:   device.kind = KRS_DEVICE_DISCRETE; break;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: device.kind = KRS_DEVICE_INTEGRATED; break;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:    device.kind = KRS_DEVICE_VIRTUAL; break;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:            device.kind = KRS_DEVICE_CPU; break;
+    default:                                     device.kind = KRS_DEVICE_OTHER;
+    }
+    return device;
+}
+
+/* All physical devices, in memory of the host; NULL with the failure noted. */
+static VkPhysicalDevice *find_devices(Gpu *gpu, uint32_t *count)
+{
+    VkPhysicalDevice *devices = NULL;
+    VkResult          result;
+    do { /* a device may come while we ask */
+        gpu_release(gpu, devices);
+        devices = NULL;
+        TRY(gpu, "list the Vulkan devices", vkEnumeratePhysicalDevices(gpu->instance, count, NULL));
+        devices = gpu_alloc(gpu, *count, sizeof *devices, "list the Vulkan devices");
+        if (!devices)
+            return NULL;
+        result = vkEnumeratePhysicalDevices(gpu->instance, count, devices);
+    } while (result == VK_INCOMPLETE);
+    TRY(gpu, "list the Vulkan devices", result);
+    if (*count > 0)
+        return devices;
+    gpu_refuse(gpu, KRS_NO_DEVICE, NO_DEVICE);
+
+failed:
+    gpu_release(gpu, devices);
+    return NULL;
+}
+
+static bool all_digits(const char *text)
+{
+    while (isdigit((unsigned char)*text))
+        text++;
+    return *text == '\0';
+}
+
+/* Whether `device`, of number `index`, is one that the words ask for. */
+static bool wanted(const KrsDevice *device, uint32_t index, const char *words)
+{
+    if (!words || !*words)
+        return true;
+    if (strcasecmp(words, "cpu") == 0)
+        return device->kind == KRS_DEVICE_CPU;
+    if (all_digits(words))
+        return strtoul(words, NULL, 10) == index;
+    return strcasestr(device->name, words) != NULL;
+}
+
+/* The usable device that is wanted; of several the first when words name it, else the first of
+   the best kind.  `count` when there is none. */
+static uint32_t choose(const VkPhysicalDevice *devices, uint32_t count, const char *words)
+{
+    static const int rank[] = {[KRS_DEVICE_OTHER] = 0, [KRS_DEVICE_CPU] = 1, [KRS_DEVICE_VIRTUAL] = 2,
+                               [KRS_DEVICE_INTEGRATED] = 3, [KRS_DEVICE_DISCRETE] = 4};
+    uint32_t best = count;
+    int      best_rank = -1;
+    for (uint32_t i = 0; i < count; i++) {
+        KrsDevice device = gpu_describe(devices[i]);
+        if (!device.usable || !wanted(&device, i, words))
+            continue;
+        if (words && *words)
+            return i;
+        if (rank[device.kind] > best_rank) {
+            best = i;
+            best_rank = rank[device.kind];
+        }
+    }
+    return best;
+}
+
+bool gpu_list(Gpu *gpu, KrsDevice *devices, size_t capacity, size_t *count)
+{
+    *count = 0;
+    if (!instance_create(gpu, false))
+        return false;
+    uint32_t          found = 0;
+    VkPhysicalDevice *physical = find_devices(gpu, &found);
+    if (physical) {
+        uint32_t preferred = choose(physical, found, NULL);
+        *count = found;
+        for (uint32_t i = 0; i < found && i < capacity; i++) {
+            devices[i] = gpu_describe(physical[i]);
+            devices[i].preferred = i == preferred;
+        }
+    }
+    gpu_release(gpu, physical);
+    gpu_close(gpu);
+    return physical != NULL;
+}
+
+static bool choose_device(Gpu *gpu, const char *words)
+{
+    uint32_t          count = 0;
+    VkPhysicalDevice *devices = find_devices(gpu, &count);
+    if (!devices)
+        return false;
+    uint32_t chosen = choose(devices, count, words);
+    uint32_t bits = 0;
+    bool     found = chosen < count && find_family(devices[chosen], &gpu->family, &bits);
+    if (found) {
+        gpu->physical = devices[chosen];
+        gpu->time_mask = bits >= 64 ? UINT64_MAX : (UINT64_C(1) << bits) - 1;
+    } else if (words && *words) {
+        gpu_refuse(gpu, KRS_NO_DEVICE, "no usable Vulkan device is called `%s`: `krs devices` lists them",
+                   words);
+    } else {
+        gpu_refuse(gpu, KRS_NO_DEVICE, NO_DEVICE);
+    }
+    gpu_release(gpu, devices);
+    return found;
+}
+
+/* ---- Device ---- */
+
+static bool device_create(Gpu *gpu)
+{
+    vkGetPhysicalDeviceProperties(gpu->physical, &gpu->properties);
+    vkGetPhysicalDeviceMemoryProperties(gpu->physical, &gpu->memory);
+    VkPhysicalDeviceFeatures offered;
+    vkGetPhysicalDeviceFeatures(gpu->physical, &offered);
+
+    TRY(gpu, "open the device", vkCreateDevice(gpu->physical, &(VkDeviceCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+        .queueCreateInfoCount = 1,
+        .pQueueCreateInfos = &(VkDeviceQueueCreateInfo){
+            .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+            .queueFamilyIndex = gpu->family,
+            .queueCount = 1,
+            .pQueuePriorities = &(float){1},
+        },
+        .pEnabledFeatures = &(VkPhysicalDeviceFeatures){.robustBufferAccess = offered.robustBufferAccess},
+    }, NULL, &gpu->device));
+    vkGetDeviceQueue(gpu->device, gpu->family, 0, &gpu->queue);
+
+    TRY(gpu, "prepare the device", vkCreateCommandPool(gpu->device, &(VkCommandPoolCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+        .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
+        .queueFamilyIndex = gpu->family,
+    }, NULL, &gpu->pool));
+    TRY(gpu, "prepare the device", vkAllocateCommandBuffers(gpu->device, &(VkCommandBufferAllocateInfo){
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+        .commandPool = gpu->pool,
+        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+        .commandBufferCount = 1,
+    }, &gpu->commands));
+    TRY(gpu, "prepare the device", vkCreateFence(gpu->device, &(VkFenceCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO,
+    }, NULL, &gpu->fence));
+    if (gpu->time_mask != 0)
+        TRY(gpu, "prepare the device", vkCreateQueryPool(gpu->device, &(VkQueryPoolCreateInfo){
+            .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+            .queryType = VK_QUERY_TYPE_TIMESTAMP,
+            .queryCount = 2,
+        }, NULL, &gpu->times));
+    gpu_name(gpu, VK_OBJECT_TYPE_COMMAND_BUFFER, (uint64_t)(uintptr_t)gpu->commands, "slice");
+    return true;
+
+failed:
+    return false;
+}
+
+bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
+{
+    static const KrsRendererOptions defaults;
+    if (!options)
+        options = &defaults;
+    *gpu = (Gpu){.allocator = options->allocator, .complaint = options->complaint, .user = options->user};
+    if (instance_create(gpu, options->validation) && choose_device(gpu, options->device) && device_create(gpu))
+        return true;
+    gpu_close(gpu);
+    return false;
+}
+
+void gpu_close(Gpu *gpu)
+{
+    if (gpu->device) {
+        vkDestroyQueryPool(gpu->device, gpu->times, NULL);
+        vkDestroyFence(gpu->device, gpu->fence, NULL);
+        vkDestroyCommandPool(gpu->device, gpu->pool, NULL);
+        vkDestroyDevice(gpu->device, NULL);
+    }
+    if (gpu->messenger) {
+        PFN_vkDestroyDebugUtilsMessengerEXT destroy = (PFN_vkDestroyDebugUtilsMessengerEXT)
+            vkGetInstanceProcAddr(gpu->instance, "vkDestroyDebugUtilsMessengerEXT");
+        destroy(gpu->instance, gpu->messenger, NULL);
+    }
+    if (gpu->instance)
+        vkDestroyInstance(gpu->instance, NULL);
+    gpu->device = VK_NULL_HANDLE;
+    gpu->messenger = VK_NULL_HANDLE;
+    gpu->instance = VK_NULL_HANDLE;
+}
+
+bool gpu_is_cpu(const Gpu *gpu)
+{
+    return gpu->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+}

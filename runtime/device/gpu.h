@@ -1,0 +1,84 @@
+/*
+ * gpu.h: a Vulkan device with one queue, and what is needed to keep it busy.
+ *
+ * Every call that can fail because of the machine returns false and leaves a status and one
+ * line of words in the Gpu.  Only gpu_open knows where the device came from; all else uses the
+ * handles, so that they may one day be the caller's.
+ */
+#ifndef KRS_GPU_H
+#define KRS_GPU_H
+
+#include <vulkan/vulkan.h>
+
+#include "runtime/krs_vulkan.h"
+
+typedef struct Gpu {
+    KrsAllocator     allocator;
+    VkInstance       instance;
+    VkPhysicalDevice physical;
+    VkDevice         device;
+    VkQueue          queue;
+    uint32_t         family;
+    VkCommandPool    pool;
+    VkCommandBuffer  commands; /* the one that is recorded, run and waited for */
+    VkFence          fence;
+    VkQueryPool      times;    /* two timestamps; none when the queue has no clock */
+    uint64_t         time_mask;
+
+    VkPhysicalDeviceProperties       properties;
+    VkPhysicalDeviceMemoryProperties memory;
+    uint64_t memory_used, memory_peak; /* bytes of device memory */
+
+    VkDebugUtilsMessengerEXT         messenger;
+    PFN_vkSetDebugUtilsObjectNameEXT set_name; /* NULL without validation */
+    KrsValidationCallback           *complaint;
+    void                            *user;
+    uint64_t                         complaints;
+
+    KrsStatus status; /* of the last call that failed */
+    char      message[512];
+} Gpu;
+
+/* Opens the device that the options ask for; `gpu` must stay where it is.  On failure only the
+   status and the message remain. */
+bool gpu_open(Gpu *gpu, const KrsRendererOptions *options);
+void gpu_close(Gpu *gpu);
+
+/* The devices there are, as krs_devices. */
+bool gpu_list(Gpu *gpu, KrsDevice *devices, size_t capacity, size_t *count);
+KrsDevice gpu_describe(VkPhysicalDevice physical);
+bool gpu_is_cpu(const Gpu *gpu);
+
+/* Zeroed memory of the host, or NULL with the failure noted. */
+void *gpu_alloc(Gpu *gpu, size_t count, size_t size, const char *attempt);
+void  gpu_release(Gpu *gpu, void *block);
+
+/* Notes a failure in words of our own, or in Vulkan's: "cannot <attempt>: <reason>". */
+void gpu_refuse(Gpu *gpu, KrsStatus status, const char *format, ...) __attribute__((format(printf, 3, 4)));
+void gpu_fail(Gpu *gpu, VkResult result, const char *attempt);
+
+/* Gives an object a name in the messages of the validation layers. */
+void gpu_name(Gpu *gpu, VkObjectType type, uint64_t handle, const char *name);
+
+/* Starts recording.  What earlier work wrote can be read from here on. */
+bool gpu_begin(Gpu *gpu);
+/* Between two commands of which the second uses what the first wrote. */
+void gpu_barrier(Gpu *gpu);
+/* Runs what was recorded, waits, and adds its milliseconds to *ms: by the device's clock where
+   it has one. */
+bool gpu_finish(Gpu *gpu, double *ms);
+
+/* Milliseconds of the host's steady clock. */
+double clock_ms(void);
+
+/* Run a Vulkan call, or note why not and go to `failed`. */
+#define TRY(gpu, attempt, call)                \
+    do {                                       \
+        VkResult result_ = (call);             \
+        if (result_ != VK_SUCCESS) {           \
+            gpu_fail((gpu), result_, attempt); \
+            goto failed;                       \
+        }                                      \
+    } while (0)
+
+#endif

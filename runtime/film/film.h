@@ -1,0 +1,38 @@
+/*
+ * film.h: from scene-linear light to what a screen shows.
+ */
+#ifndef KRS_FILM_H
+#define KRS_FILM_H
+
+#include "runtime/krs_vulkan.h"
+
+/* Curves from [0, infinity) to [0, 1]. */
+typedef enum ToneMap {
+    TONE_NEUTRAL, /* Khronos PBR Neutral: colours up to 0.8 as they are, highlights compressed */
+    TONE_ACES,    /* the fit of the ACES reference curve by Stephen Hill: filmic contrast */
+    TONE_NONE,    /* cut at 1 */
+    TONE_MAP_COUNT
+} ToneMap;
+extern const char *const tone_map_names[TONE_MAP_COUNT]; /* "neutral", "aces", "none" */
+
+typedef struct FilmOptions {
+    ToneMap tone_map;
+    double  exposure; /* stops */
+} FilmOptions;
+
+/* False when no curve has that name. */
+bool tone_map_find(const char *name, ToneMap *tone_map);
+
+/* Applies a curve to a linear Rec.709 colour; each component of the result is in [0, 1], and 0
+   where it was not a number. */
+void tone_map_apply(ToneMap tone_map, const double color[3], double out[3]);
+
+/* The sRGB transfer function, [0, 1] to [0, 1]. */
+double srgb_encode(double linear);
+
+/* The picture's window as 8-bit sRGB, three bytes a pixel.  Dithering replaces the steps between
+   levels; it hangs on the pixel's place in the whole picture alone.  The colour plane must be
+   there. */
+void film_to_srgb8(const KrsPicture *picture, const FilmOptions *options, uint8_t *rgb);
+
+#endif

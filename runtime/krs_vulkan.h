@@ -1,0 +1,175 @@
+/*
+ * krs_vulkan.h: render compiled scenes on a Vulkan device.
+ *
+ * A KrsRenderer is a device made ready, a KrsRendering is a scene made ready on it (its
+ * shaders are compiled once), and krs_render turns one frame of the scene into a KrsPicture in
+ * host memory.  Different renderers may be used from different threads; a renderer and all that
+ * was made from it belong to one thread at a time.  Nothing here prints, exits or aborts: every
+ * failure is a status, and one line of text that krs_renderer_message returns.
+ */
+#ifndef KRS_VULKAN_H
+#define KRS_VULKAN_H
+
+#include "compiler/krs.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct KrsRenderer  KrsRenderer;
+typedef struct KrsRendering KrsRendering;
+
+typedef enum KrsDeviceKind {
+    KRS_DEVICE_OTHER, KRS_DEVICE_CPU, KRS_DEVICE_VIRTUAL, KRS_DEVICE_INTEGRATED, KRS_DEVICE_DISCRETE
+} KrsDeviceKind;
+
+typedef struct KrsDevice {
+    char          name[256];
+    KrsDeviceKind kind;
+    uint32_t      api_version; /* as Vulkan packs it */
+    bool          usable;      /* has compute and Vulkan 1.1 */
+    bool          preferred;   /* what a renderer takes when nothing is asked for */
+} KrsDevice;
+
+/* A complaint of Vulkan's validation layers; the text lives until the callback returns. */
+typedef void KrsValidationCallback(void *user, const char *message);
+
+/* Zero asks for the defaults. */
+typedef struct KrsRendererOptions {
+    /* NULL or "": a real graphics card if there is one (discrete before integrated), else a
+       device of type CPU.  "cpu": a device of type CPU.  A number: the device of that index in
+       krs_devices.  Anything else: the first device whose name contains it, in any case. */
+    const char            *device;
+    bool                   validation; /* core and synchronization validation */
+    KrsValidationCallback *complaint;  /* may be NULL: complaints are counted all the same */
+    void                  *user;       /* handed to `complaint` */
+    KrsAllocator           allocator;  /* our memory; the driver's and glslang's is their own */
+} KrsRendererOptions;
+
+/* The devices of this machine, in Vulkan's order.  *count is how many there are, of which the
+   first `capacity` are written.  KRS_NO_DEVICE: Vulkan cannot be started, or knows no device. */
+KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count);
+
+/* Opens a device.  *renderer is the caller's to free whatever the status, so that its message
+   can be read; it is NULL only when memory ran out.  KRS_NO_DEVICE, KRS_OUT_OF_MEMORY,
+   KRS_INTERNAL.  A renderer whose opening failed must only be freed. */
+KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **renderer);
+void      krs_renderer_free(KrsRenderer *renderer); /* its renderings must be freed before */
+
+/* Why the last call on this renderer, or on one of its renderings, failed: one line, "" when it
+   did not.  Lives until the next such call. */
+const char *krs_renderer_message(const KrsRenderer *renderer);
+KrsDevice   krs_renderer_device(const KrsRenderer *renderer);
+/* Complaints of the validation layers so far. */
+uint64_t krs_renderer_complaints(const KrsRenderer *renderer);
+
+/* Compiles the scene's shaders.  The scene must outlive the rendering.  On any status but KRS_OK
+   *rendering is NULL. */
+KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRendering **rendering);
+void      krs_rendering_free(KrsRendering *rendering);
+
+/* The parts of a picture, as bits. */
+typedef enum KrsPlane {
+    KRS_PLANE_COLOR    = 1,
+    KRS_PLANE_DEPTH    = 2,
+    KRS_PLANE_POSITION = 4,
+    KRS_PLANE_NORMAL   = 8,
+    KRS_PLANE_ALBEDO   = 16,
+    KRS_PLANE_IDS      = 32, /* component, level and instance */
+    KRS_PLANE_STEPS    = 64,
+    KRS_PLANE_ALL      = 127
+} KrsPlane;
+
+typedef struct KrsWindow {
+    uint32_t x, y, width, height; /* of pixels; row 0 is the top */
+} KrsWindow;
+
+/* Called between slices of work; `done` rises from 0 to 1.  False interrupts the render. */
+typedef bool KrsProgressCallback(void *user, double done);
+
+/* Zero asks for the defaults. */
+typedef struct KrsRenderOptions {
+    uint32_t  width, height; /* 0: what the scene says, else 1280x720; at most 16384 */
+    KrsWindow crop;          /* width 0: everything */
+    uint32_t  samples;       /* rays per pixel; 0: what the scene says, else 1; at most 65536 */
+    size_t    camera;        /* its number */
+    uint64_t  seed;          /* moves the samples of a pixel, but not the first: that is its centre */
+    double    error;         /* permitted distance from the surface in pixels; 0: as above, else 0.25 */
+    uint32_t  planes;        /* bits of KrsPlane; 0: all */
+    uint32_t  most_steps;    /* of a primary ray; 0: 16384, which is also the most */
+    uint32_t  steps_at_once; /* of a primary ray in one dispatch; 0: 512; at most 8192 */
+    double    slice_ms;      /* aim for dispatches this long; 0: 50 */
+    KrsProgressCallback *progress; /* may be NULL */
+    void                *user;     /* handed to `progress` */
+} KrsRenderOptions;
+
+typedef enum KrsPhase {
+    KRS_PHASE_BEAMS, KRS_PHASE_PRIMARY, KRS_PHASE_NORMALS, KRS_PHASE_SHADOWS,
+    KRS_PHASE_OCCLUSION, KRS_PHASE_SHADING, KRS_PHASE_RESOLVE, KRS_PHASE_COUNT
+} KrsPhase;
+extern const char *const krs_phase_names[KRS_PHASE_COUNT]; /* "beams", ... */
+
+typedef struct KrsRenderStats {
+    double   spirv_ms, pipeline_ms;      /* making the scene ready, the driver's compiler included */
+    double   phase_ms[KRS_PHASE_COUNT];  /* on the device */
+    double   total_ms;                   /* their sum */
+    double   wall_ms;                    /* of krs_render, without making ready */
+    bool     device_time;                /* measured by timestamp queries, else by the host's clock */
+    uint64_t rays;                       /* primary rays */
+    uint64_t evaluations;                /* of the distance, spent on them */
+    double   evaluations_per_ray;        /* the mean */
+    uint32_t most_evaluations_per_ray;
+    double   flops_per_evaluation;
+    double   gflops;                     /* of the primary phase */
+    uint64_t unresolved;                 /* primary and shadow rays that ran out of steps */
+    uint64_t peak_memory_bytes;          /* most memory held at once: the device's, and the picture */
+    char     device[256];
+} KrsRenderStats;
+
+/*
+ * A rendered frame.  The planes hold the pixels of `window` only, row by row from the top, and
+ * are NULL when they were not asked for.  Where a pixel's centre hits nothing, the depth is
+ * +infinity and all planes but colour and steps are 0.
+ */
+typedef struct KrsPicture {
+    uint32_t  width, height; /* of the whole picture */
+    KrsWindow window;        /* the part of it that was rendered */
+    float    *color;         /* R G B A, scene-linear Rec.709; A is the share of rays that hit */
+    float    *depth;         /* along the view axis; along the ray for a panorama */
+    float    *position;      /* x y z of the hit, world units */
+    float    *normal;        /* x y z, unit, outwards */
+    float    *albedo;        /* R G B */
+    uint32_t *component;     /* from 1; 0 for nothing */
+    uint32_t *level, *instance;
+    uint32_t *steps;         /* distance evaluations spent on the ray through the centre */
+    /* Row vectors times these: camera space is x right, y up, z along the view axis; in NDC
+       x and y run from -1 to 1.  For a panorama NDC is camera space. */
+    float world_to_camera[4][4], world_to_ndc[4][4];
+    KrsRenderStats stats;
+    KrsAllocator   allocator; /* where the memory came from */
+} KrsPicture;
+
+/* Renders a frame of the rendering's own scene.  On KRS_OK the caller owns *picture; on any
+   other status it is NULL.  `options` may be NULL.  KRS_BAD_ARGUMENT, KRS_OUT_OF_MEMORY (host or
+   device), KRS_INTERRUPTED, KRS_INTERNAL.  Equal arguments on an equal device give equal
+   pictures, bit by bit, whatever the crop and the slices. */
+KrsStatus krs_render(KrsRendering *rendering, KrsFrame *frame, const KrsRenderOptions *options,
+                     KrsPicture **picture);
+void      krs_picture_free(KrsPicture *picture);
+
+/* What the device says about a point. */
+typedef struct KrsSurfacePoint {
+    float    distance; /* as the surface function sees it */
+    float    color[3], roughness, metallic, emission[3];
+    uint32_t component, level, instance;
+} KrsSurfacePoint;
+
+/* Evaluates the scene on the device at `count` points: distances, and what is there when
+   `surfaces` is not NULL. */
+KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3], size_t count,
+                     float *distances, KrsSurfacePoint *surfaces);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

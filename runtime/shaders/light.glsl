@@ -1,0 +1,66 @@
+/*
+ * light.glsl: the sky, and how a surface reflects light.
+ */
+
+// Radiance of the sky: the horizon's colour fades to the zenith's above and the ground's below.
+vec3 sky_radiance(vec3 direction)
+{
+    float rise = clamp(direction.y, -1.0, 1.0);
+    float left = 1.0 - max(rise, 0.0);
+    vec3  above = mix(frame.zenith.rgb, frame.horizon.rgb, left * left * left);
+    return mix(above, frame.ground.rgb, smoothstep(0.0, 0.25, -rise));
+}
+
+// Mean radiance of the half sky around a normal.
+vec3 sky_light(vec3 normal)
+{
+    vec3 above = mix(frame.horizon.rgb, frame.zenith.rgb, 0.6);
+    return mix(frame.ground.rgb, above, 0.5 + 0.5 * normal.y);
+}
+
+// What a directional light that has a size adds to the sky: its disc and a glow around it.
+vec3 sun_radiance(vec3 direction, vec3 toward_sun, vec3 color, float diameter)
+{
+    if (diameter <= 0.0)
+        return vec3(0.0);
+    float away = length(direction - toward_sun); // the angle, where it matters
+    float disc = 1.0 - smoothstep(0.4 * diameter, 0.6 * diameter, away);
+    float glow = 0.12 * exp2(-24.0 * away) + 0.03 * exp2(-5.0 * away);
+    return color * (2.0 * disc + glow);
+}
+
+// Reflectance times cosine: Lambert below a GGX coat (Smith's masking, Schlick's Fresnel).
+vec3 reflected(vec3 normal, vec3 toward_eye, vec3 toward_light, vec3 color, float roughness, float metallic)
+{
+    vec3  between = toward_eye + toward_light;
+    vec3  halfway = between / max(length(between), 1e-6);
+    float light = clamp(dot(normal, toward_light), 0.0, 1.0);
+    float eye = max(dot(normal, toward_eye), 1e-3);
+    float tilt = clamp(dot(normal, halfway), 0.0, 1.0);
+    float facing = clamp(1.0 - dot(toward_eye, halfway), 0.0, 1.0);
+
+    float width = max(roughness * roughness, 2e-3);
+    float square = width * width;
+    float spread = tilt * tilt * (square - 1.0) + 1.0;
+    float lobe = square / (PI * spread * spread);
+    float masked = 0.5 / (light * sqrt(eye * eye * (1.0 - square) + square) +
+                          eye * sqrt(light * light * (1.0 - square) + square));
+    float edge = facing * facing;
+    edge *= edge * facing;
+    vec3 head_on = mix(vec3(0.04), color, metallic);
+    vec3 mirrored = head_on + (1.0 - head_on) * edge;
+    vec3 scattered = (1.0 - mirrored) * (1.0 - metallic) * color / PI;
+    return (scattered + mirrored * lobe * masked) * light;
+}
+
+// The sky seen in the coat: the split-sum integral, fitted (Karis 2014).
+vec3 sky_reflected(vec3 normal, vec3 toward_eye, vec3 color, float roughness, float metallic)
+{
+    float eye = clamp(dot(normal, toward_eye), 0.0, 1.0);
+    vec4  r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
+    float a = min(r.x * r.x, exp2(-9.28 * eye)) * r.x + r.y;
+    vec2  fit = vec2(-1.04, 1.04) * a + r.zw;
+    vec3  bounced = reflect(-toward_eye, normal);
+    vec3  seen = mix(sky_radiance(bounced), sky_light(normal), roughness);
+    return seen * (mix(vec3(0.04), color, metallic) * fit.x + fit.y);
+}

@@ -1,0 +1,77 @@
+/*
+ * blocks.h: what host and kernels hand to each other, as shaders/frame.glsl and its neighbours
+ * declare it.
+ */
+#ifndef KRS_BLOCKS_H
+#define KRS_BLOCKS_H
+
+#include <assert.h>
+#include <stdint.h>
+
+/* uniform Frame, std140. */
+typedef struct FrameBlock {
+    float    eye[3], farthest;
+    float    right[4], up[4], forward[4];
+    float    low[4], high[4];
+    float    zenith[4], horizon[4], ground[4];
+    float    size[2];
+    float    pixel_base, pixel_slope;
+    float    error, occlusion_reach;
+    uint32_t projection; /* the enum of KrsCamera */
+    uint32_t most_steps;
+} FrameBlock;
+static_assert(sizeof(FrameBlock) == 176, "std140");
+
+enum { SECONDARY_NORMALS, SECONDARY_OCCLUSION, SECONDARY_SHADOW };
+enum { LIGHT_POSITIONAL = 1, LIGHT_CASTS_SHADOWS = 2 };
+
+/* push_constant Work. */
+typedef struct WorkBlock {
+    uint32_t first, groups, stride;
+    uint32_t phase;
+    uint32_t corner[2], extent[2];
+    float    offset[2];
+    uint32_t steps;
+    uint32_t beginning;
+    float    light_vector[4];
+    float    light_color[3];
+    uint32_t light_kind;
+    float    light_softness;
+} WorkBlock;
+static_assert(sizeof(WorkBlock) == 84 && sizeof(WorkBlock) <= 128, "what every device takes");
+
+typedef struct CounterBlock {
+    uint32_t marching;
+    uint32_t unresolved;
+} CounterBlock;
+
+/* Pixel of resolve.comp, std430. */
+typedef struct PixelBlock {
+    float    color[4];
+    float    position[3], depth;
+    float    normal[3];
+    uint32_t steps;
+    float    albedo[3];
+    uint32_t component, level, instance;
+    uint32_t evaluations, most;
+} PixelBlock;
+static_assert(sizeof(PixelBlock) == 80, "std430");
+
+/* Only their sizes matter to the host. */
+enum { RAY_BYTES = 16, HIT_BYTES = 80, TILE = 8 };
+
+/* Points and Answer of sample.comp. */
+typedef struct PointBlock {
+    float point[4];
+} PointBlock;
+
+typedef struct AnswerBlock {
+    float    color[3], distance;
+    float    emission[3], surface_distance;
+    float    roughness, metallic;
+    uint32_t component, level;
+    uint32_t instance, unused[3];
+} AnswerBlock;
+static_assert(sizeof(AnswerBlock) == 64, "std430");
+
+#endif

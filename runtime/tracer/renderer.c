@@ -1,0 +1,262 @@
+/*
+ * renderer.c: making a device, and a scene on it, ready; and taking them down.
+ */
+#include "runtime/tracer/renderer.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FRAME_BINDING, RAYS_BINDING, HITS_BINDING, RESULTS_BINDING, COUNTERS_BINDING, BINDING_COUNT };
+
+KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
+{
+    Gpu gpu = {0};
+    return gpu_list(&gpu, devices, capacity, count) ? KRS_OK : gpu.status;
+}
+
+/* ---- The renderer ---- */
+
+static bool set_layout_create(Gpu *gpu, uint32_t count, VkDescriptorSetLayout *layout)
+{
+    VkDescriptorSetLayoutBinding bindings[BINDING_COUNT];
+    for (uint32_t i = 0; i < count; i++)
+        bindings[i] = (VkDescriptorSetLayoutBinding){
+            .binding = i,
+            .descriptorType = i == FRAME_BINDING ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+                                                 : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+            .descriptorCount = 1,
+            .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
+        };
+    TRY(gpu, "prepare the renderer", vkCreateDescriptorSetLayout(gpu->device, &(VkDescriptorSetLayoutCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+        .bindingCount = count,
+        .pBindings = bindings,
+    }, NULL, layout));
+    return true;
+
+failed:
+    return false;
+}
+
+static bool layouts_create(KrsRenderer *renderer)
+{
+    Gpu *gpu = &renderer->gpu;
+    if (!set_layout_create(gpu, 1, &renderer->scene_layout) ||
+        !set_layout_create(gpu, BINDING_COUNT, &renderer->frame_layout))
+        return false;
+    TRY(gpu, "prepare the renderer", vkCreatePipelineLayout(gpu->device, &(VkPipelineLayoutCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+        .setLayoutCount = 2,
+        .pSetLayouts = (VkDescriptorSetLayout[]){renderer->scene_layout, renderer->frame_layout},
+        .pushConstantRangeCount = 1,
+        .pPushConstantRanges = &(VkPushConstantRange){VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(WorkBlock)},
+    }, NULL, &renderer->layout));
+    return true;
+
+failed:
+    return false;
+}
+
+KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
+{
+    Gpu allocating = {.allocator = options ? options->allocator : (KrsAllocator){0}};
+    KrsRenderer *renderer = gpu_alloc(&allocating, 1, sizeof *renderer, "make a renderer");
+    *out = renderer;
+    if (!renderer)
+        return KRS_OUT_OF_MEMORY;
+    if (!gpu_open(&renderer->gpu, options))
+        return renderer->gpu.status;
+    spirv_start();
+    renderer->compiler_started = true;
+    if (!layouts_create(renderer) ||
+        !kernel_create(&renderer->gpu, &renderer->resolve, "resolve.comp", NULL, renderer->layout,
+                       &renderer->spirv_ms, &renderer->pipeline_ms))
+        return renderer->gpu.status;
+    return KRS_OK;
+}
+
+void krs_renderer_free(KrsRenderer *renderer)
+{
+    if (!renderer)
+        return;
+    Gpu *gpu = &renderer->gpu;
+    if (gpu->device) {
+        kernel_destroy(gpu, &renderer->resolve);
+        vkDestroyPipelineLayout(gpu->device, renderer->layout, NULL);
+        vkDestroyDescriptorSetLayout(gpu->device, renderer->frame_layout, NULL);
+        vkDestroyDescriptorSetLayout(gpu->device, renderer->scene_layout, NULL);
+    }
+    gpu_close(gpu);
+    if (renderer->compiler_started)
+        spirv_stop();
+    Gpu allocating = {.allocator = gpu->allocator};
+    gpu_release(&allocating, renderer);
+}
+
+const char *krs_renderer_message(const KrsRenderer *renderer)
+{
+    return renderer ? renderer->gpu.message : "cannot make a renderer: out of memory";
+}
+
+void renderer_clear(KrsRenderer *renderer)
+{
+    renderer->gpu.message[0] = '\0';
+    renderer->gpu.status = KRS_OK;
+}
+
+KrsDevice krs_renderer_device(const KrsRenderer *renderer)
+{
+    return gpu_describe(renderer->gpu.physical);
+}
+
+uint64_t krs_renderer_complaints(const KrsRenderer *renderer)
+{
+    return renderer->gpu.complaints;
+}
+
+/* ---- The rendering ---- */
+
+void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding, const Buffer *buffer)
+{
+    vkUpdateDescriptorSets(rendering->renderer->gpu.device, 1, &(VkWriteDescriptorSet){
+        .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+        .dstSet = set,
+        .dstBinding = binding,
+        .descriptorCount = 1,
+        .descriptorType = binding == FRAME_BINDING ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+                                                   : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+        .pBufferInfo = &(VkDescriptorBufferInfo){buffer->buffer, 0, buffer->size},
+    }, 0, NULL);
+}
+
+static bool sets_create(KrsRendering *rendering)
+{
+    Gpu        *gpu = &rendering->renderer->gpu;
+    const char *attempt = "prepare the scene";
+    TRY(gpu, attempt, vkCreateDescriptorPool(gpu->device, &(VkDescriptorPoolCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+        .maxSets = 3,
+        .poolSizeCount = 2,
+        .pPoolSizes = (VkDescriptorPoolSize[]){
+            {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 3},
+            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * (BINDING_COUNT - 1)},
+        },
+    }, NULL, &rendering->pool));
+    VkDescriptorSet sets[3];
+    TRY(gpu, attempt, vkAllocateDescriptorSets(gpu->device, &(VkDescriptorSetAllocateInfo){
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+        .descriptorPool = rendering->pool,
+        .descriptorSetCount = 3,
+        .pSetLayouts = (VkDescriptorSetLayout[]){rendering->renderer->scene_layout,
+                                                 rendering->renderer->frame_layout,
+                                                 rendering->renderer->frame_layout},
+    }, sets));
+    rendering->scene_set = sets[0];
+    rendering->band_set = sets[1];
+    rendering->points_set = sets[2];
+    return true;
+
+failed:
+    return false;
+}
+
+static bool buffers_create(KrsRendering *rendering)
+{
+    Gpu     *gpu = &rendering->renderer->gpu;
+    uint32_t slots = rendering->program->parameter_slots;
+    if (slots > gpu->properties.limits.maxUniformBufferRange / (4 * sizeof(float))) {
+        gpu_refuse(gpu, KRS_NO_DEVICE, "the device has no room for the scene's %u parameters", slots);
+        return false;
+    }
+    if (!buffer_create(gpu, &rendering->parameters, (VkDeviceSize)slots * 4 * sizeof(float), SHARED,
+                       "scene's parameters") ||
+        !buffer_create(gpu, &rendering->frame, sizeof(FrameBlock), SHARED, "camera") ||
+        !buffer_create(gpu, &rendering->counters, sizeof(CounterBlock), SHARED, "counters"))
+        return false;
+    rendering_bind(rendering, rendering->scene_set, 0, &rendering->parameters);
+    rendering_bind(rendering, rendering->band_set, FRAME_BINDING, &rendering->frame);
+    rendering_bind(rendering, rendering->band_set, COUNTERS_BINDING, &rendering->counters);
+    return true;
+}
+
+static bool kernels_create(KrsRendering *rendering)
+{
+    const struct { Kernel *kernel; const char *file; } kernels[] = {
+        {&rendering->trace, "trace.comp"},
+        {&rendering->secondary, "secondary.comp"},
+        {&rendering->material, "material.comp"},
+    };
+    for (size_t i = 0; i < sizeof kernels / sizeof kernels[0]; i++)
+        if (!kernel_create(&rendering->renderer->gpu, kernels[i].kernel, kernels[i].file,
+                           rendering->program->glsl, rendering->renderer->layout, &rendering->spirv_ms,
+                           &rendering->pipeline_ms))
+            return false;
+    return true;
+}
+
+KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRendering **out)
+{
+    *out = NULL;
+    renderer_clear(renderer);
+    KrsRendering *rendering = gpu_alloc(&renderer->gpu, 1, sizeof *rendering, "prepare the scene");
+    if (!rendering)
+        return renderer->gpu.status;
+    rendering->renderer = renderer;
+    rendering->scene = scene;
+    rendering->program = krs_scene_program(scene);
+    rendering->spirv_ms = renderer->spirv_ms;
+    rendering->pipeline_ms = renderer->pipeline_ms;
+    for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
+        rendering->tiles_at_once[phase] = gpu_is_cpu(&renderer->gpu) ? 64 : 1024;
+    if (!sets_create(rendering) || !buffers_create(rendering) || !kernels_create(rendering)) {
+        KrsStatus status = renderer->gpu.status;
+        krs_rendering_free(rendering);
+        return status;
+    }
+    *out = rendering;
+    return KRS_OK;
+}
+
+void krs_rendering_free(KrsRendering *rendering)
+{
+    if (!rendering)
+        return;
+    Gpu    *gpu = &rendering->renderer->gpu;
+    Buffer *buffers[] = {&rendering->parameters, &rendering->frame, &rendering->counters,
+                         &rendering->band.rays, &rendering->band.hits, &rendering->band.results,
+                         &rendering->band.fetched, &rendering->points, &rendering->answers};
+    for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
+        buffer_destroy(gpu, buffers[i]);
+    Kernel *kernels[] = {&rendering->trace, &rendering->secondary, &rendering->material, &rendering->sample};
+    for (size_t i = 0; i < sizeof kernels / sizeof kernels[0]; i++)
+        kernel_destroy(gpu, kernels[i]);
+    vkDestroyDescriptorPool(gpu->device, rendering->pool, NULL);
+    gpu_release(gpu, rendering);
+}
+
+bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame)
+{
+    /* Into memory of the host first: the compiler may read back what it writes. */
+    Gpu   *gpu = &rendering->renderer->gpu;
+    size_t slots = rendering->program->parameter_slots;
+    float (*block)[4] = gpu_alloc(gpu, slots, sizeof *block, "set the scene's parameters");
+    if (!block)
+        return false;
+    krs_frame_parameters(frame, block);
+    memcpy(rendering->parameters.bytes, block, slots * sizeof *block);
+    gpu_release(gpu, block);
+    return true;
+}
+
+void rendering_dispatch(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set, const void *work,
+                        uint32_t work_bytes, uint32_t groups)
+{
+    VkCommandBuffer  commands = rendering->renderer->gpu.commands;
+    VkPipelineLayout layout = rendering->renderer->layout;
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel->pipeline);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 2,
+                            (VkDescriptorSet[]){rendering->scene_set, set}, 0, NULL);
+    vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, work_bytes, work);
+    vkCmdDispatch(commands, groups, 1, 1);
+}

@@ -1,0 +1,55 @@
+/*
+ * renderer.h: what stands behind the handles of krs_vulkan.h.
+ */
+#ifndef KRS_RENDERER_H
+#define KRS_RENDERER_H
+
+#include "compiler/compile.h"
+#include "runtime/device/buffer.h"
+#include "runtime/device/kernel.h"
+#include "runtime/tracer/blocks.h"
+
+struct KrsRenderer {
+    Gpu                   gpu;
+    bool                  compiler_started;
+    VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters */
+    VkDescriptorSetLayout frame_layout; /* set 1: what frame.glsl declares */
+    VkPipelineLayout      layout;       /* of every kernel */
+    Kernel                resolve;
+    double                spirv_ms, pipeline_ms; /* of `resolve` */
+};
+
+/* The buffers that hold a band of the picture. */
+typedef struct Band {
+    uint64_t pixels; /* room for so many; 0: no buffers */
+    Buffer   rays, hits, results;
+    Buffer   fetched; /* where the host reads the results */
+} Band;
+
+struct KrsRendering {
+    KrsRenderer      *renderer;
+    const KrsScene   *scene;
+    const KrsProgram *program;
+    Kernel            trace, secondary, material, sample; /* `sample` when first needed */
+    double            spirv_ms, pipeline_ms;
+    bool              warm; /* the driver has compiled the kernels for good */
+
+    VkDescriptorPool  pool;
+    VkDescriptorSet   scene_set, band_set, points_set;
+    Buffer            parameters, frame, counters;
+    Band              band;
+    Buffer            points, answers; /* of krs_sample */
+    uint32_t          tiles_at_once[KRS_PHASE_COUNT]; /* learned from the last slices */
+};
+
+/* Copies the values of the frame's parameters to the device. */
+bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame);
+/* Points a binding of set 1 at a buffer. */
+void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding, const Buffer *buffer);
+/* Records that a kernel runs with these push constants on `groups` workgroups. */
+void rendering_dispatch(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set, const void *work,
+                        uint32_t work_bytes, uint32_t groups);
+/* Forgets the message of the call before. */
+void renderer_clear(KrsRenderer *renderer);
+
+#endif

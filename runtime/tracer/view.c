@@ -1,0 +1,212 @@
+/*
+ * view.c: the camera's frame, how far rays go, and how large the scene is.
+ */
+#include "runtime/tracer/view.h"
+
+#include <math.h>
+
+static const double PI = 3.14159265358979323846;
+
+/* The shaders' substitute for an infinite box: 1e18 over 1e-18 is still a float. */
+#define UNBOUNDED 1e18
+/* A scene without bounds ends this many times its size from the camera: far beyond where its
+   horizon is a pixel high. */
+#define HORIZON 1e4
+
+static double dot3(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static void cross3(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Scales v to length 1; false when it has none. */
+static bool normalize3(double v[3])
+{
+    double length = sqrt(dot3(v, v));
+    if (!(length > 0) || isinf(length))
+        return false;
+    for (int i = 0; i < 3; i++)
+        v[i] /= length;
+    return true;
+}
+
+typedef struct Basis {
+    double right[3], up[3], forward[3]; /* orthonormal */
+    double distance;                    /* from the eye to the target */
+} Basis;
+
+static bool camera_basis(const KrsCamera *camera, Basis *basis)
+{
+    for (int i = 0; i < 3; i++)
+        basis->forward[i] = camera->target[i] - camera->eye[i];
+    basis->distance = sqrt(dot3(basis->forward, basis->forward));
+    if (!normalize3(basis->forward))
+        return false;
+
+    /* Looking straight along `up` (or with none), some other axis must say what is right. */
+    cross3(basis->forward, camera->up, basis->right);
+    if (!(dot3(basis->right, basis->right) > 1e-18 * dot3(camera->up, camera->up)) ||
+        !normalize3(basis->right)) {
+        double other[3] = {0};
+        other[fabs(basis->forward[2]) < 0.9 ? 2 : 0] = -1;
+        cross3(basis->forward, other, basis->right);
+        if (!normalize3(basis->right))
+            return false;
+    }
+    cross3(basis->right, basis->forward, basis->up);
+    return true;
+}
+
+/* Half of what the picture shows, at distance 1 where it is perspective: along up and right. */
+static void half_extent(const KrsCamera *camera, uint32_t width, uint32_t height, double extent[2])
+{
+    double half = camera->projection == KRS_PERSPECTIVE    ? tan(camera->fov / 2)
+                : camera->projection == KRS_ORTHOGRAPHIC ? camera->height / 2
+                                                         : 1;
+    extent[1] = half;
+    extent[0] = camera->projection == KRS_PANORAMA ? 1 : half * width / height;
+}
+
+static bool camera_is_sound(const KrsCamera *camera)
+{
+    for (int i = 0; i < 3; i++)
+        if (!isfinite(camera->eye[i]) || !isfinite(camera->target[i]) || !isfinite(camera->up[i]))
+            return false;
+    if (camera->projection == KRS_PERSPECTIVE)
+        return camera->fov > 0 && camera->fov < PI;
+    if (camera->projection == KRS_ORTHOGRAPHIC)
+        return camera->height > 0 && isfinite(camera->height);
+    return true;
+}
+
+static void to_floats(const double from[3], float to[4])
+{
+    for (int i = 0; i < 3; i++)
+        to[i] = (float)from[i];
+    to[3] = 0;
+}
+
+static void scaled(const double from[3], double by, float to[4])
+{
+    const double product[3] = {from[0] * by, from[1] * by, from[2] * by};
+    to_floats(product, to);
+}
+
+/* The diagonal of the scene's box over the axes along which it is bounded; 0 when none is. */
+static double finite_size(const double low[3], const double high[3])
+{
+    double sum = 0;
+    for (int i = 0; i < 3; i++)
+        if (isfinite(low[i]) && isfinite(high[i]) && high[i] > low[i])
+            sum += (high[i] - low[i]) * (high[i] - low[i]);
+    return sqrt(sum);
+}
+
+static bool is_bounded(const double low[3], const double high[3])
+{
+    bool bounded = true;
+    for (int i = 0; i < 3; i++)
+        bounded = bounded && isfinite(low[i]) && isfinite(high[i]);
+    return bounded;
+}
+
+/* The box, a little larger: surfaces may touch it, and single precision must not lose them. */
+static void place_box(const KrsView *view, const double low[3], const double high[3], FrameBlock *block)
+{
+    double size = finite_size(low, high), reach = 0;
+    for (int i = 0; i < 3; i++) {
+        reach = fmax(reach, fabs(view->camera.eye[i]));
+        reach = isfinite(low[i]) ? fmax(reach, fabs(low[i])) : reach;
+        reach = isfinite(high[i]) ? fmax(reach, fabs(high[i])) : reach;
+    }
+    double margin = 1e-4 * size + 1e-6 * reach;
+    for (int i = 0; i < 3; i++) {
+        block->low[i] = (float)fmin(fmax(low[i] - margin, -UNBOUNDED), UNBOUNDED);
+        block->high[i] = (float)fmin(fmax(high[i] + margin, -UNBOUNDED), UNBOUNDED);
+    }
+}
+
+/* Where rays end, and how far occlusion is felt.  The latter hangs on the scene, not on the
+   camera, where that is possible, so that it does not change while the camera moves. */
+static void place_ends(const KrsView *view, const double low[3], const double high[3], double distance,
+                       FrameBlock *block)
+{
+    double size = finite_size(low, high);
+    if (is_bounded(low, high)) {
+        double farthest = 0;
+        for (int i = 0; i < 3; i++) {
+            double side = fmax(fabs(low[i] - view->camera.eye[i]), fabs(high[i] - view->camera.eye[i]));
+            farthest += side * side;
+        }
+        /* An orthographic ray starts beside the eye, by no more than the box is away. */
+        block->farthest = (float)(2.1 * sqrt(farthest) + 2 * view->camera.height);
+        block->occlusion_reach = (float)(0.15 * size);
+    } else {
+        double scale = fmax(size, distance);
+        block->farthest = (float)(HORIZON * scale);
+        block->occlusion_reach = (float)(0.15 * (size > 0 ? fmin(size, distance) : distance));
+    }
+    if (!(block->occlusion_reach > 0))
+        block->occlusion_reach = (float)(0.15 * distance);
+}
+
+bool view_prepare(const KrsView *view, const double low[3], const double high[3], uint32_t width,
+                  uint32_t height, FrameBlock *block)
+{
+    const KrsCamera *camera = &view->camera;
+    Basis            basis;
+    double           extent[2];
+    if (!camera_is_sound(camera) || !camera_basis(camera, &basis))
+        return false;
+    half_extent(camera, width, height, extent);
+
+    *block = (FrameBlock){
+        .size = {(float)width, (float)height},
+        .projection = (uint32_t)camera->projection,
+    };
+    for (int i = 0; i < 3; i++)
+        block->eye[i] = (float)camera->eye[i];
+    scaled(basis.right, extent[0], block->right);
+    scaled(basis.up, extent[1], block->up);
+    to_floats(basis.forward, block->forward);
+    to_floats(view->sky.zenith, block->zenith);
+    to_floats(view->sky.horizon, block->horizon);
+    to_floats(view->sky.ground, block->ground);
+
+    double pixel = camera->projection == KRS_PANORAMA ? PI / height : 2 * extent[1] / height;
+    *(camera->projection == KRS_ORTHOGRAPHIC ? &block->pixel_base : &block->pixel_slope) = (float)pixel;
+    place_box(view, low, high, block);
+    place_ends(view, low, high, basis.distance, block);
+    return isfinite(block->farthest);
+}
+
+void view_matrices(const KrsCamera *camera, uint32_t width, uint32_t height, KrsPicture *picture)
+{
+    Basis  basis = {0};
+    double extent[2];
+    camera_basis(camera, &basis);
+    half_extent(camera, width, height, extent);
+
+    const double *axes[3] = {basis.right, basis.up, basis.forward};
+    double        camera_space[4][4] = {{0}};
+    for (int column = 0; column < 3; column++) {
+        for (int row = 0; row < 3; row++)
+            camera_space[row][column] = axes[column][row];
+        camera_space[3][column] = -dot3(axes[column], camera->eye);
+    }
+    camera_space[3][3] = 1;
+
+    for (int row = 0; row < 4; row++) {
+        const double *from = camera_space[row];
+        const bool    perspective = camera->projection == KRS_PERSPECTIVE;
+        for (int column = 0; column < 4; column++)
+            picture->world_to_camera[row][column] = (float)from[column];
+        picture->world_to_ndc[row][0] = (float)(from[0] / extent[0]);
+        picture->world_to_ndc[row][1] = (float)(from[1] / extent[1]);
+        picture->world_to_ndc[row][2] = (float)from[2];
+        picture->world_to_ndc[row][3] = (float)(perspective ? from[2] : from[3]);
+    }
+}

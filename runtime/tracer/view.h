@@ -1,0 +1,19 @@
+/*
+ * view.h: from what the scene says about camera and sky to what the kernels need.
+ */
+#ifndef KRS_VIEW_H
+#define KRS_VIEW_H
+
+#include "compiler/compile.h"
+#include "runtime/krs_vulkan.h"
+#include "runtime/tracer/blocks.h"
+
+/* Fills in all of `block` but error and most_steps.  False when the camera cannot be used: an
+   eye at its target, an angle or a height that is not positive, or anything not finite. */
+bool view_prepare(const KrsView *view, const double low[3], const double high[3], uint32_t width,
+                  uint32_t height, FrameBlock *block);
+
+/* The matrices of a picture, for a camera that view_prepare has accepted. */
+void view_matrices(const KrsCamera *camera, uint32_t width, uint32_t height, KrsPicture *picture);
+
+#endif

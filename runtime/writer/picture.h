@@ -1,0 +1,45 @@
+/*
+ * picture.h: what the writers of image files are given: planes of samples and words about them.
+ */
+#ifndef KRS_WRITER_PICTURE_H
+#define KRS_WRITER_PICTURE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "runtime/writer/atomic.h"
+
+/* How the samples of a channel are stored; in memory a half is a float and is rounded when
+   written. */
+typedef enum SampleType { SAMPLE_HALF, SAMPLE_FLOAT, SAMPLE_UINT } SampleType;
+
+typedef struct PictureChannel {
+    const char *name;    /* "R", "albedo.G", "id.component" */
+    SampleType  type;
+    const void *samples; /* float, or uint32_t for SAMPLE_UINT; row 0 is the top */
+    size_t      stride;  /* samples from one pixel to the next: 4 for interleaved RGBA */
+} PictureChannel;
+
+/* Words that travel with the picture: "krs:scene", "9c0ffee...". */
+typedef struct PictureText {
+    const char *name, *value;
+} PictureText;
+
+/* Imath's convention: points are row vectors, p' = p M, so m[3] is the translation. */
+typedef struct PictureMatrix {
+    float m[4][4];
+} PictureMatrix;
+
+typedef struct Picture {
+    uint32_t width, height;           /* of the whole picture: EXR's displayWindow */
+    uint32_t crop_x, crop_y;          /* the part that is there: EXR's dataWindow */
+    uint32_t crop_width, crop_height; /* the size of every channel */
+    const PictureChannel *channels;
+    size_t                channel_count;
+    const PictureText    *texts;
+    size_t                text_count;
+    const PictureMatrix  *world_to_camera, *world_to_ndc; /* NULL: not written */
+} Picture;
+
+#endif

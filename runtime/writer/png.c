@@ -1,0 +1,109 @@
+/*
+ * png.c: writes PNG files by libpng, which reports errors by longjmp.
+ *
+ * Everything that lives across a call of libpng stands in a PngWriter or is an argument, so no
+ * local variable loses its value in the jump.
+ */
+#include "runtime/writer/png.h"
+
+#include <png.h>
+#include <setjmp.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct PngWriter {
+    OutputFile  *file;
+    OutputError *error;
+    png_structp  png;
+    png_infop    info;
+    png_textp    texts;
+} PngWriter;
+
+static void write_callback(png_structp png, png_bytep bytes, size_t length)
+{
+    PngWriter *writer = png_get_io_ptr(png);
+    if (!output_append(writer->file, bytes, length))
+        png_error(png, writer->error->message);
+}
+
+/* The file is flushed once, when it is committed. */
+static void flush_callback(png_structp png) { (void)png; }
+
+static _Noreturn void error_callback(png_structp png, png_const_charp message)
+{
+    PngWriter *writer = png_get_error_ptr(png);
+    if (writer->error->status == KRS_OK) {
+        bool memory = strstr(message, "emory") != NULL; /* libpng has no code for it */
+        writer->error->status = memory ? KRS_OUT_OF_MEMORY : KRS_INTERNAL;
+        snprintf(writer->error->message, sizeof writer->error->message,
+                 "cannot make a PNG file: %s", message);
+    }
+    png_longjmp(png, 1);
+}
+
+static void warning_callback(png_structp png, png_const_charp message)
+{
+    (void)png, (void)message;
+}
+
+static bool fail_memory(OutputError *error)
+{
+    error->status = KRS_OUT_OF_MEMORY;
+    snprintf(error->message, sizeof error->message, "out of memory while writing a PNG file");
+    return false;
+}
+
+/* iTXt, because names may be UTF-8. */
+static void write_texts(PngWriter *writer, const Picture *picture)
+{
+    for (size_t i = 0; i < picture->text_count; i++) {
+        const PictureText *text = &picture->texts[i];
+        bool software = strcmp(text->name, "software") == 0; /* PNG has its own spelling */
+        writer->texts[i] = (png_text){
+            .compression = PNG_ITXT_COMPRESSION_NONE,
+            .key = (char *)(software ? "Software" : text->name),
+            .text = (char *)text->value,
+            .itxt_length = strlen(text->value),
+        };
+    }
+    png_set_text(writer->png, writer->info, writer->texts, (int)picture->text_count);
+}
+
+/* False after libpng jumped out. */
+static bool write_file(PngWriter *writer, const Picture *picture, const uint8_t *rgb)
+{
+    if (setjmp(png_jmpbuf(writer->png)) != 0)
+        return false;
+    png_set_write_fn(writer->png, writer, write_callback, flush_callback);
+    png_set_user_limits(writer->png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+    png_set_IHDR(writer->png, writer->info, picture->crop_width, picture->crop_height, 8,
+                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB_gAMA_and_cHRM(writer->png, writer->info, PNG_sRGB_INTENT_PERCEPTUAL);
+    if (picture->crop_x || picture->crop_y)
+        png_set_oFFs(writer->png, writer->info, (png_int_32)picture->crop_x,
+                     (png_int_32)picture->crop_y, PNG_OFFSET_PIXEL);
+    write_texts(writer, picture);
+    png_write_info(writer->png, writer->info);
+    for (uint32_t y = 0; y < picture->crop_height; y++)
+        png_write_row(writer->png, rgb + (size_t)y * picture->crop_width * 3);
+    png_write_end(writer->png, writer->info);
+    return true;
+}
+
+bool png_write(const Picture *picture, const uint8_t *rgb, OutputFile *file, OutputError *error)
+{
+    PngWriter writer = {.file = file, .error = error};
+    writer.texts = calloc(picture->text_count + 1, sizeof *writer.texts);
+    if (!writer.texts)
+        return fail_memory(error);
+    writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, error_callback,
+                                         warning_callback);
+    writer.info = writer.png ? png_create_info_struct(writer.png) : NULL;
+    bool done = writer.info ? write_file(&writer, picture, rgb) : fail_memory(error);
+    if (writer.png)
+        png_destroy_write_struct(&writer.png, &writer.info);
+    free(writer.texts);
+    return done;
+}

@@ -1,0 +1,106 @@
+#!/bin/sh
+# answers.sh: what query, info, devices, dump, explain and validate answer.
+. "$(dirname "$0")/common.sh"
+plan 24
+
+ask() { # question, options...
+    question=$1
+    shift
+    printf '%s' "$question" | "$krs" query ball.krs "$@" >out 2>err
+    status=$?
+}
+# The answer, rounded to 6 digits so that the last bits do not matter.
+answer() {
+    awk '{ for (i = 1; i <= NF; i++) printf "%s%s", ($i ~ /^[-0-9]/ ? sprintf("%.6g", $i + 0) : $i),
+           (i < NF ? " " : "\n") }' out
+}
+answered() { # text, what
+    [ "$status" -eq 0 ] && [ "$(answer)" = "$1" ]
+    result $? "$2"
+}
+
+ask '0 2 0
+'
+answered '1 0 1 0 1 0 1' "a point"
+ask '0 0 0.25'
+answered '-0.75 0 0 1 1 0 1' "a point inside, without a newline"
+ask '0 0 9 0 0 -2
+'
+answered '8 0 0 1 0 0 1 1 0 1' "a ray; t is in world units"
+ask '0 0 9 0 0 1
+'
+answered 'miss' "a ray that misses"
+ask '0 2 0
+
+ 0	0 9  0 0 -1
+0 3 0
+'
+answered '1 0 1 0 1 0 1
+8 0 0 1 0 0 1 1 0 1
+2 0 1 0 1 0 1' "points and rays mixed, in their order"
+ask '0 2 0
+' --set radius=0.5
+answered '1.5 0 1 0 1 0 1' "a param is set"
+ask ''
+[ "$status" -eq 0 ] && [ ! -s out ]
+result $? "no question"
+ask '0 2 0
+0 1
+0 3 0
+'
+[ "$status" -eq 2 ] && grep -q 'line 2 of standard input' err && [ "$(answer)" = '1 0 1 0 1 0 1' ]
+result $? "a line that cannot be read, after the answers before it"
+for line in '1 2 3 4' '1 2 three' '1 2 3x' '1 2 nan' '1 2 3 0 0 0' '1 2 3 4 5 6 7'; do
+    ask "$line"
+    said 2 "line 1 of standard input" "the line $line"
+done
+awk 'BEGIN { for (i = 0; i < 20000; i++) print 0, 2 + i, 0 }' >many
+"$krs" query ball.krs <many >out 2>err
+status=$?
+[ "$status" -eq 0 ] && awk '{ if (sprintf("%.6g", $1) != sprintf("%.6g", NR)) wrong = 1 }
+                            END { exit wrong || NR != 20000 }' out
+result $? "twenty thousand points"
+
+# The double 2 is the bytes 0 0 0 0 0 0 0 40 (hexadecimal), -1 is ... f0 bf, 9 is ... 22 40.
+zero='\000\000\000\000\000\000\000\000'
+two='\000\000\000\000\000\000\000\100'
+nine='\000\000\000\000\000\000\042\100'
+minus='\000\000\000\000\000\000\360\277'
+# shellcheck disable=SC2059 # the escapes are meant for printf
+printf "$zero$two$zero$zero$zero$zero$zero$zero$nine$zero$zero$minus" >records
+"$krs" query --binary ball.krs <records >out 2>err
+status=$?
+[ "$status" -eq 0 ] && [ "$(wc -c <out)" -eq 160 ] &&
+    [ "$(od -An -tfD -w80 out | awk '{ printf "%.6g %.6g %.6g;", $1, $4, $8 }')" = '1 0 1;8 1 1;' ]
+result $? "binary questions and answers"
+head -c 50 records | "$krs" query --binary ball.krs >out 2>err
+status=$?
+said 2 "record 2 of standard input" "a record that is cut off"
+
+run info ball.krs
+[ "$status" -eq 0 ] && grep -q 'ball' out && grep -q '^param radius = 1 in 0.5 to 1.5$' out
+result $? "info as text"
+run info --json ball.krs
+[ "$status" -eq 0 ] && is_json <out && grep -q '"slope": ' out &&
+    grep -q '"flops_per_evaluation": ' out
+result $? "info as JSON"
+run devices --json
+[ "$status" -eq 0 ] && is_json <out && grep -q '"preferred": true' out
+result $? "devices as JSON"
+
+empty=""
+for stage in tokens syntax scene graph simplify glsl spirv; do
+    run dump --after=$stage ball.krs
+    [ "$status" -eq 0 ] && [ -s out ] || empty="$empty $stage"
+done
+[ -z "$empty" ]
+result $? "every stage can be dumped$empty"
+run explain E0101
+[ "$status" -eq 0 ] && grep -q '^error\[E0101\]: ' out
+result $? "a diagnostic is explained"
+run explain
+[ "$status" -eq 0 ] && [ "$(grep -c '^[EW][0-9][0-9][0-9][0-9]  ' out)" -eq "$(wc -l <out)" ]
+result $? "all diagnostics are listed"
+run validate --points 4000 ball.krs
+[ "$status" -eq 0 ] && grep -q 'balls are empty; .* agrees' out
+result $? "a true scene is not refuted"

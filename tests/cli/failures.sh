@@ -1,0 +1,93 @@
+#!/bin/sh
+# failures.sh: crashes, interrupts, missing devices and missing memory.
+. "$(dirname "$0")/common.sh"
+plan 24
+small="--size 16x12 --quiet"
+
+for stage in start compile shaders device render write; do
+    printf old >kept.exr
+    # shellcheck disable=SC2086
+    KRS_TEST_CRASH=$stage "$krs" render ball.krs $small -o kept.exr >out 2>err
+    status=$?
+    [ "$status" -eq 70 ] && grep -q '^krs: crashed while .*SIGSEGV' err &&
+        [ "$(wc -l <err)" -eq 1 ] && [ "$(cat kept.exr)" = old ] && no_temporaries
+    result $? "a crash in stage $stage is reported and leaves the old file"
+done
+
+kept=$(sed -n 's/.*see it again is in //p' err)
+[ -n "$kept" ] && cmp -s "$kept"/1-ball.krs ball.krs && grep -q "'kept.exr'" "$kept"/command.txt
+result $? "scene and command line of a crash are kept"
+for signal in ABRT:6 BUS:7 FPE:8 ILL:4; do
+    KRS_TEST_CRASH=compile:${signal#*:} "$krs" check ball.krs >out 2>err
+    status=$?
+    said 70 "SIG${signal%:*}" "death by SIG${signal%:*}"
+done
+KRS_TEST_CRASH=render:9 "$krs" render ball.krs --quiet -o a.exr >out 2>err
+status=$?
+said 71 "probably for want of memory" "killed by the system"
+KRS_TEST_CRASH=compile:hang "$krs" check --deadline 0.3 ball.krs >out 2>err
+status=$?
+said 70 "gave up compiling the scene after 0.3 seconds" "compiling that does not end"
+
+VK_ICD_FILENAMES=/nonexistent VK_DRIVER_FILES=/nonexistent "$krs" render ball.krs >out 2>err
+status=$?
+[ "$status" -eq 69 ] && [ -s err ] && [ ! -e ball.exr ]
+result $? "no Vulkan driver"
+VK_ICD_FILENAMES=/nonexistent VK_DRIVER_FILES=/nonexistent "$krs" devices >out 2>err
+status=$?
+said 69 "no Vulkan device" "no device to list"
+run render ball.krs --device 'No Such Card'
+said 69 "No Such Card" "an unknown device"
+run render ball.krs --device 'No Such Card' --exit-map 71=33,69=99
+ended 99 "--exit-map translates"
+run check missing.krs --exit-map 71=33
+ended 74 "--exit-map leaves other statuses alone"
+
+# Signals.  `env` undoes what a shell may have done to background processes.
+long_render() {
+    env --default-signal=INT "$krs" render ball.krs --size 4000x4000 --samples 4096 -o kept.exr \
+        >out 2>err &
+    process=$!
+    waited=0
+    until grep -q Progress err || [ "$waited" -ge 600 ]; do
+        sleep 0.1
+        waited=$((waited + 1))
+    done
+}
+for signal in INT TERM; do
+    printf old >kept.exr
+    long_render
+    kill -s "$signal" "$process"
+    wait "$process"
+    status=$?
+    [ "$status" -eq 130 ] && grep -q '^krs: interrupted' err && [ "$(cat kept.exr)" = old ] &&
+        no_temporaries
+    result $? "SIG$signal while rendering"
+done
+grep '^Progress: [0-9]*%$' err >lines && [ "$(wc -l <lines)" -ge 1 ]
+result $? "progress on a pipe is plain lines"
+# shellcheck disable=SC2086
+KRS_TEST_CRASH=write:2 "$krs" render ball.krs $small -o kept.exr >out 2>err
+status=$?
+[ "$status" -eq 130 ] && [ "$(cat kept.exr)" = old ] && no_temporaries
+result $? "SIGINT while writing"
+# shellcheck disable=SC2086
+if strace -o /dev/null true 2>/dev/null; then
+    strace -f -o /dev/null -e trace=pwrite64 -e inject=pwrite64:signal=KILL:when=1 \
+        "$krs" render ball.krs $small -o kept.exr >out 2>err
+    status=$?
+    [ "$status" -eq 71 ] && [ "$(cat kept.exr)" = old ] && no_temporaries
+    result $? "SIGKILL while writing"
+else
+    skip "SIGKILL while writing" "no strace, or no right to use it"
+fi
+
+# Nine megabytes of text; the command itself needs far less than the limit.
+awk 'BEGIN { for (i = 0; i < 300000; i++) printf "let a%d = [%d, %d, %d];\n", i, i, i, i }' >big.krs
+(
+    # shellcheck disable=SC3045 # dash, bash and ksh have it
+    ulimit -v 120000
+    "$krs" check big.krs >out 2>err
+)
+status=$?
+said 71 "out of memory" "a scene that does not fit into memory"

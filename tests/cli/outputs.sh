@@ -1,0 +1,109 @@
+#!/bin/sh
+# outputs.sh: an output appears whole or not at all, and says why not.
+. "$(dirname "$0")/common.sh"
+plan 23
+small="--size 16x12 --quiet"
+
+# shellcheck disable=SC2086 # the options are separate words
+picture() { run render ball.krs $small "$@"; }
+
+picture
+[ "$status" -eq 0 ] && [ -s ball.exr ] && no_temporaries
+result $? "the default output is SCENE.exr in the current folder"
+picture -o a.exr -o a.png
+[ "$status" -eq 0 ] && [ -s a.exr ] && [ -s a.png ] && [ ! -s out ]
+result $? "several outputs"
+
+picture -o nowhere/a.exr
+said 73 "cannot create \`nowhere/a.exr\`: No such file or directory" "a missing folder"
+mkdir folder.exr
+picture -o folder.exr
+said 73 "Is a directory" "a folder in the place of the output"
+printf old >file
+picture -o file/a.exr
+said 73 "Not a directory" "a file in the place of the folder"
+if [ "$(id -u)" -ne 0 ]; then
+    mkdir locked && chmod 555 locked
+    picture -o locked/a.exr
+    said 73 "Permission denied" "a folder that may not be written"
+else
+    mkdir -p /proc/self/krs 2>/dev/null
+    picture -o /proc/a.exr
+    said 73 "cannot create \`/proc/a.exr\`" "a folder that cannot be written"
+fi
+
+ln -s /dev/full full.exr
+picture -o full.exr
+said 74 "error while writing \`full.exr\`: No space left on device" "a full device"
+ln -s /dev/full full.png
+picture -o full.png
+said 74 "No space left on device" "a full device, PNG"
+
+# A file may have 8 blocks of 512 or 1024 bytes; some SPIR-V is larger.  (Not tried with a
+# picture: drivers that keep their memory in files do not survive the limit.)
+run compile ball.krs -o limited
+for file in limited/*; do printf old >"$file"; done
+(
+    ulimit -f 8
+    "$krs" compile ball.krs -o limited >out 2>err
+)
+status=$?
+said 74 "error while writing \`limited/ball." "a file that may not grow"
+refused=$(sed -n 's/^krs: error while writing `\(.*\)`.*/\1/p' err)
+[ "$(cat "$refused")" = old ] && (cd limited && no_temporaries)
+result $? "what was there before stays"
+
+mkdir disk
+if [ "$(id -u)" -eq 0 ] && mount -t tmpfs -o size=64k none disk 2>/dev/null; then
+    printf old >disk/a.exr
+    picture --size 256x256 -o disk/a.exr
+    said 74 "No space left on device" "a disk that fills"
+    [ "$(cat disk/a.exr)" = old ] && [ "$(find disk -type f | wc -l)" -eq 1 ]
+    result $? "a full disk keeps the old file, and nothing else"
+    umount disk
+else
+    skip "a disk that fills" "no right to mount"
+    skip "a full disk keeps the old file, and nothing else" "no right to mount"
+fi
+
+printf old >target.exr
+ln -s target.exr link.exr
+picture -o link.exr
+[ "$status" -eq 0 ] && [ -L link.exr ] && [ "$(wc -c <target.exr)" -gt 100 ]
+result $? "a symbolic link is followed"
+
+"$krs" info ball.krs >&- 2>err
+status=$?
+: >out
+said 74 "error while writing standard output" "closed standard output"
+"$krs" info ball.krs >/dev/full 2>err
+status=$?
+said 74 "No space left on device" "full standard output"
+# shellcheck disable=SC2086
+"$krs" render ball.krs $small -o closed.exr >&- 2>err
+status=$?
+ended 0 "a render has nothing to say on standard output"
+"$krs" check ball.krs <&- >out 2>err
+status=$?
+ended 0 "closed standard input where none is read"
+"$krs" query ball.krs <&- >out 2>err
+status=$?
+said 74 "cannot read standard input" "closed standard input"
+# shellcheck disable=SC2086
+"$krs" render ball.krs $small -o mute.exr 2>&- >out
+status=$?
+: >err
+[ "$status" -eq 0 ] && [ "$(head -c 4 mute.exr | od -An -tx1 | tr -d ' ')" = 762f3101 ]
+result $? "closed standard error does not become part of the picture"
+"$krs" info ball.krs 2>err | :
+run explain E0101
+ended 0 "a reader that leaves early is survived"
+
+run compile ball.krs -o shaders
+[ "$status" -eq 0 ] && [ -s shaders/ball.glsl ] && [ -s shaders/ball.trace.spv ] &&
+    is_json <shaders/ball.json
+result $? "compile writes GLSL, SPIR-V and JSON"
+run compile ball.krs -o nowhere/deep
+said 73 "cannot create \`nowhere/deep\`" "a folder that cannot be made"
+run compile ball.krs -o file
+said 73 "Not a directory" "a file in the place of the folder of shaders"

@@ -1,0 +1,56 @@
+#!/bin/sh
+# scenes.sh: scenes that cannot be read, or are wrong, end in the right status and a diagnostic.
+. "$(dirname "$0")/common.sh"
+plan 21
+
+run check missing.krs
+said 74 "cannot read \`missing.krs\`: No such file or directory" "a missing file"
+run check .
+said 74 "Is a directory" "a folder"
+: >empty.krs
+run check empty.krs
+said 0 "W0401" "an empty file shows nothing"
+head -c 4096 /dev/urandom >binary.krs
+run check binary.krs
+said 1 "error[E01" "a binary file"
+printf 'show sphere(1);\0show sphere(2);' >nul.krs
+run check nul.krs
+said 1 "error[E01" "a NUL byte"
+
+wrong() { # code, text, what
+    printf '%s\n' "$2" >wrong.krs
+    run check wrong.krs
+    said 1 "error[$1]" "$3"
+}
+wrong E0103 'show sphere(1' 'a parenthesis that is not closed'
+wrong E0103 'camera { eye: [0, 0, 5]' 'a block that is not closed'
+wrong E0103 '/* nothing' 'a comment that is not closed'
+wrong E0103 'use "std/trees.krs' 'a string that is not closed'
+wrong E0201 'show spere(1);' 'an unknown name'
+wrong E0501 'use "nowhere.krs"; show sphere(1);' "a missing \`use\` is the scene's mistake"
+
+run check wrong.krs ball.krs missing.krs
+said 1 "missing.krs" "all files are checked, the first failure is the status"
+run check ball.krs
+[ "$status" -eq 0 ] && [ ! -s out ] && [ ! -s err ]
+result $? "a scene without mistakes is silent"
+
+printf 'show spere(1);\n' >wrong.krs
+run check --diagnostics json wrong.krs
+[ "$status" -eq 1 ] && [ ! -s out ] && grep '^{' err | is_json && grep -q '"code":"E0201"' err
+result $? "diagnostics as JSON"
+run check --color always wrong.krs
+[ "$status" -eq 1 ] && grep -q "$(printf '\033')" err
+result $? "diagnostics in colour"
+NO_COLOR=1 "$krs" check wrong.krs >out 2>err
+status=$?
+[ "$status" -eq 1 ] && ! grep -q "$(printf '\033')" err
+result $? "no colour when it is not wanted"
+run check --quiet empty.krs
+[ "$status" -eq 0 ] && [ ! -s err ]
+result $? "--quiet says no warning"
+
+for command in render info query validate; do
+    run "$command" wrong.krs
+    said 1 "error[E0201]" "$command refuses a wrong scene"
+done

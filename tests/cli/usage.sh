@@ -1,0 +1,80 @@
+#!/bin/sh
+# usage.sh: command lines that are wrong, and the pages of help.
+. "$(dirname "$0")/common.sh"
+plan 43
+
+run
+said 2 "no command is given" "no command"
+run rendr ball.krs
+said 2 "did you mean \`render\`?" "a misspelt command"
+run frobnicate
+said 2 "there is no command \`frobnicate\`" "an unknown command"
+run render ball.krs --sise 8x8
+said 2 "did you mean --size?" "a misspelt option"
+run check ball.krs --size 8x8
+said 2 "check has no option --size" "an option of another command"
+run render ball.krs -z
+said 2 "render has no option -z" "an unknown letter"
+run render ball.krs --size
+said 2 "--size needs an argument: WxH" "an argument that is missing"
+run render ball.krs --stamp=yes
+said 2 "--stamp takes no argument" "an argument that is too much"
+run render
+said 2 "render needs a scene" "no scene"
+run render ball.krs ball.krs
+said 2 "render takes one scene" "two scenes where one is rendered"
+run devices ball.krs
+said 2 "devices takes no file" "a scene where none is needed"
+
+for size in 0x8 8x0 8 8x 8x8x8 ax8 -8x8 16385x8 2147483648x2 4294967297x8 1e3x8 ' 8x8' 8.5x8; do
+    run render ball.krs --size "$size"
+    said 2 "each from 1 to 16384" "--size $size"
+done
+run render ball.krs --samples 0
+said 2 "--samples wants" "no samples"
+run render ball.krs --crop 0,0,0,8
+said 2 "--crop wants" "an empty crop"
+run render ball.krs --size 8x8 --crop 4,4,8,8
+said 2 "is not inside of a picture of 8x8" "a crop that sticks out"
+run render ball.krs --time nan
+said 2 "--time wants" "a time that is no number"
+run render ball.krs --frames 5..3
+said 2 "--frames wants" "frames that run backwards"
+run render ball.krs --frames 0..3 -o a.exr
+said 2 "needs a place for the number" "frames that would overwrite each other"
+run render ball.krs --aov Z,Q
+said 2 "--aov wants" "an unknown channel"
+run render ball.krs -o ball.jpg
+said 2 "ends in neither .exr nor .png" "an unknown form of picture"
+run render ball.krs --camera sied
+said 2 "did you mean \`side\`?" "a misspelt camera"
+run render ball.krs --integrator path
+said 2 "not in this version" "an integrator that is missing"
+run render ball.krs --resume
+said 2 "not in this version" "checkpoints that are missing"
+run query ball.krs --set radus=1
+said 2 "did you mean \`radius\`?" "a misspelt param"
+run query ball.krs --set radius=7
+said 2 "goes from 0.5 to 1.5" "a param out of range"
+run query ball.krs --set 'radius=[1,2]'
+said 2 "takes 1 number, not 2" "a vector for a number"
+run query ball.krs --set radius=one
+said 2 "--set wants" "a value that is no number"
+run --exit-map
+said 2 "there is no command" "an option without a command"
+
+run --help
+[ "$status" -eq 0 ] && [ ! -s err ] && grep -q 'render' out
+result $? "krs --help"
+run --version
+[ "$status" -eq 0 ] && grep -q '^krs [0-9]' out && grep -q 'OpenEXRCore [0-9]' out &&
+    grep -q 'glslang [0-9]' out
+result $? "krs --version names the libraries"
+incomplete=""
+for command in render compile validate query info devices check dump explain; do
+    run "$command" --help
+    [ "$status" -eq 0 ] && [ "$(sed -n 3p out | cut -c1-8)" = "    krs " ] ||
+        [ "$command" = query ] || incomplete="$incomplete $command"
+done
+[ -z "$incomplete" ]
+result $? "every command has a page that begins with examples$incomplete"

@@ -1,0 +1,44 @@
+#!/bin/sh
+# layers.sh: each folder may include itself and the folders before it in this list; of the
+# compiler, the runtime and the command may see only its doorstep.
+set -u
+cd "$(dirname "$0")/.." || exit 1
+layers="compiler/base compiler/front compiler/graph compiler/geometry compiler/shader compiler
+        runtime/device runtime/tracer runtime/film runtime/writer runtime cli"
+doorstep="compiler/base/ compiler/compile.h compiler/krs.h"
+
+# Whether a header is one of the files, or in one of the folders (with a slash at the end).
+allowed() { # header, files and folders
+    for place in $2; do
+        [ "$1" = "$place" ] && return 0
+        case $place in
+        */) [ "${1%/*}/" = "$place" ] && return 0 ;;
+        esac
+    done
+    return 1
+}
+
+echo "1..$(echo "$layers" | wc -w)"
+places="" number=0 bad=0
+for layer in $layers; do
+    number=$((number + 1))
+    [ "$layer" = runtime/device ] && places=$doorstep
+    places="$places $layer/"
+    wrong=""
+    for hit in $(grep -Hn '^ *# *include *"' "$layer"/*.c "$layer"/*.h "$layer"/*.cpp \
+        "$layer"/*.def 2>/dev/null | tr -d ' '); do
+        header=${hit#*include\"}
+        header=${header%%\"*}
+        allowed "$header" "$places" ||
+            wrong="$wrong# ${hit%%:#*}: $layer must not know $header
+"
+    done
+    if [ -z "$wrong" ]; then
+        echo "ok $number - $layer"
+    else
+        echo "not ok $number - $layer"
+        printf '%s' "$wrong"
+        bad=1
+    fi
+done
+exit $bad

@@ -1,0 +1,81 @@
+/*
+ * product.c: scenes are compiled from text, as an author's would be, and asked point by point.
+ */
+#include "tests/oracle/product.h"
+
+#include <stdio.h>
+#include <string.h>
+
+void scene_write(SceneText *text, const char *format, ...)
+{
+    size_t left = sizeof text->bytes - text->length;
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(text->bytes + text->length, left, format, arguments);
+    va_end(arguments);
+    assert_in_range(length, 0, left - 1);
+    text->length += (size_t)length;
+}
+
+static void print_diagnostic(void *user, const KrsDiagnostic *diagnostic)
+{
+    (void)user;
+    fprintf(stderr, "%s\n", diagnostic->text);
+}
+
+Product product_compile(const char *text)
+{
+    Product product = {0};
+    KrsOptions options = {.diagnostic = print_diagnostic};
+    KrsStatus status = krs_compile_text(text, strlen(text), "oracle.krs", &options, &product.scene);
+    if (status != KRS_OK)
+        fail_msg("status %d for the scene:\n%s", (int)status, text);
+    assert_int_equal(krs_frame_new(product.scene, &product.frame), KRS_OK);
+    return product;
+}
+
+Product product_format(const char *format, ...)
+{
+    char text[4096];
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    assert_in_range(length, 0, sizeof text - 1);
+    return product_compile(text);
+}
+
+void product_free(Product *product)
+{
+    krs_frame_free(product->frame);
+    krs_scene_free(product->scene);
+    *product = (Product){0};
+}
+
+double product_distance(const Product *product, Vec point)
+{
+    double distance, points[1][3] = {{point.x, point.y, point.z}};
+    krs_distance(product->frame, (const double(*)[3])points, 1, &distance);
+    return distance;
+}
+
+double product_field(const void *product, Vec point) { return product_distance(product, point); }
+
+KrsHit product_probe(const Product *product, Vec point)
+{
+    KrsHit hit;
+    double points[1][3] = {{point.x, point.y, point.z}};
+    krs_probe(product->frame, (const double(*)[3])points, 1, &hit);
+    return hit;
+}
+
+KrsHit product_raycast(const Product *product, Vec origin, Vec direction, double farthest,
+                       double tolerance)
+{
+    KrsHit hit;
+    double origins[1][3] = {{origin.x, origin.y, origin.z}};
+    double directions[1][3] = {{direction.x, direction.y, direction.z}};
+    krs_raycast(product->frame, (const double(*)[3])origins, (const double(*)[3])directions, 1,
+                farthest, tolerance, &hit);
+    return hit;
+}

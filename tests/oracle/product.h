@@ -1,0 +1,42 @@
+/*
+ * product.h: the compiler as the oracle sees it, through compiler/krs.h alone.
+ */
+#ifndef ORACLE_PRODUCT_H
+#define ORACLE_PRODUCT_H
+
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <cmocka.h>
+
+#include "compiler/krs.h"
+#include "tests/oracle/brute.h"
+
+/* A scene and its frame at default parameters. */
+typedef struct Product {
+    KrsScene *scene;
+    KrsFrame *frame;
+} Product;
+
+/* A scene written piece by piece; too long a text fails the test. */
+typedef struct SceneText {
+    char   bytes[1 << 16];
+    size_t length;
+} SceneText;
+
+void scene_write(SceneText *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Compiles a text; a refusal prints text and diagnostics and fails the test. */
+Product product_compile(const char *text);
+Product product_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
+void    product_free(Product *product);
+
+double product_distance(const Product *product, Vec point);
+KrsHit product_probe(const Product *product, Vec point);
+KrsHit product_raycast(const Product *product, Vec origin, Vec direction, double farthest,
+                       double tolerance);
+
+/* product_distance for judge.h: `product` is a Product. */
+double product_field(const void *product, Vec point);
+
+#endif

@@ -1,0 +1,57 @@
+#!/bin/sh
+# run.sh PROGRAM...: runs test programs and scripts, and counts what they say in TAP.
+#
+# A line that begins with `ok` is a test that passed, `not ok` one that failed.  A program that
+# dies, takes longer than KRS_TEST_SECONDS (120), says nothing, says less than its plan (1..N)
+# promised, or fails without saying which test, is one failure more.  What a failing program
+# printed is shown.  The last line is `N passed, N failed`; the status is 0 if none failed.
+set -u
+
+seconds=${KRS_TEST_SECONDS:-120}
+output=$(mktemp) || exit 1
+trap 'rm -f "$output"' EXIT
+trap 'exit 130' INT TERM
+export CMOCKA_MESSAGE_OUTPUT=TAP
+
+# Why a finished program counts as a failure beyond its `not ok` lines; nothing if it does not.
+complaint() { # status passed failed planned
+    if [ "$1" -eq 124 ] || { [ "$1" -eq 137 ] && [ "$3" -ne 137 ]; }; then
+        echo "took longer than $seconds seconds, or was killed"
+    elif [ "$1" -ge 125 ] && [ "$1" -ne "$3" ]; then
+        echo "died with status $1"
+    elif [ $(($2 + $3)) -eq 0 ]; then
+        echo "ran no test"
+    elif [ $(($2 + $3)) -lt "$4" ]; then
+        echo "stopped after $(($2 + $3)) of $4 tests"
+    elif [ "$1" -ne 0 ] && [ "$3" -eq 0 ]; then
+        echo "ended with status $1 though no test failed"
+    fi
+}
+
+total_passed=0 total_failed=0
+for program in "$@"; do
+    case $program in
+    */*) command=$program ;;
+    *) command=./$program ;;
+    esac
+    timeout -k 5 "$seconds" "$command" >"$output" 2>&1 </dev/null
+    status=$?
+    passed=$(grep -c '^ok' "$output")
+    failed=$(grep -c '^not ok' "$output")
+    planned=$(sed -n 's/^1\.\.\([0-9][0-9]*\).*/\1/p' "$output" |
+        awk '{ sum += $1 } END { print sum + 0 }')
+    why=$(complaint "$status" "$passed" "$failed" "$planned")
+    [ -n "$why" ] && failed=$((failed + 1))
+
+    if [ "$failed" -gt 0 ]; then
+        echo "==== $program: $failed failed${why:+ ($why)}"
+        cat "$output"
+    else
+        echo "     $program: $passed passed"
+    fi
+    total_passed=$((total_passed + passed))
+    total_failed=$((total_failed + failed))
+done
+
+echo "$total_passed passed, $total_failed failed"
+[ "$total_failed" -eq 0 ]

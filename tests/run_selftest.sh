@@ -1,0 +1,69 @@
+#!/bin/sh
+# run_selftest.sh: the runner notices tests that fail, crash, hang, or are not run at all.
+set -u
+here=$(cd "$(dirname "$0")" && pwd)
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+number=0
+
+program() { # name; the script is read from standard input
+    { echo '#!/bin/sh'; cat; } >"$work/$1"
+    chmod +x "$work/$1"
+}
+
+# The runner's last line and whether it succeeds, for some of the programs.
+expect() { # what, last line, status, programs...
+    number=$((number + 1))
+    what=$1 last=$2 wanted=$3
+    shift 3
+    (cd "$work" && KRS_TEST_SECONDS=2 "$here/run.sh" "$@") >"$work/output" 2>&1
+    status=$?
+    if [ "$(tail -n 1 "$work/output")" = "$last" ] && [ "$status" -eq "$wanted" ]; then
+        echo "ok $number - $what"
+    else
+        echo "not ok $number - $what"
+        sed 's/^/# /' "$work/output"
+    fi
+}
+
+program good <<'END'
+echo 1..2; echo 'ok 1 - a'; echo 'ok 2 - b'
+END
+program failing <<'END'
+echo 1..2; echo 'not ok 1 - a'; echo 'ok 2 - b'; exit 1
+END
+program lenient <<'END'
+echo 'not ok 1 - a'; exit 0
+END
+program crashing <<'END'
+echo 'ok 1 - a'; kill -SEGV $$
+END
+program crashing_later <<'END'
+echo 'not ok 1 - a'; kill -ABRT $$
+END
+program hanging <<'END'
+echo 'ok 1 - a'; exec sleep 60
+END
+program silent <<'END'
+exit 0
+END
+program stopping <<'END'
+echo 1..3; echo 'ok 1 - a'; exit 0
+END
+program muttering <<'END'
+echo 'ok 1 - a'; exit 3
+END
+
+echo 1..12
+expect 'tests that pass' '2 passed, 0 failed' 0 good
+expect 'results are added up' '4 passed, 0 failed' 0 good ./good
+expect 'a test that fails' '1 passed, 1 failed' 1 failing
+expect 'a failure with status 0' '0 passed, 1 failed' 1 lenient
+expect 'a crash' '1 passed, 1 failed' 1 crashing
+expect 'a crash after a failure' '0 passed, 2 failed' 1 crashing_later
+expect 'a program that hangs' '1 passed, 1 failed' 1 hanging
+expect 'a program without a test' '0 passed, 1 failed' 1 silent
+expect 'a program that stops early' '1 passed, 1 failed' 1 stopping
+expect 'a status nobody explains' '1 passed, 1 failed' 1 muttering
+expect 'a program that does not exist' '0 passed, 1 failed' 1 missing
+expect 'one failure among many' '5 passed, 1 failed' 1 good failing good
