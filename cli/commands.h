@@ -26,8 +26,18 @@ KrsStatus command_explain(Options *options);
 KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene);
 /* KRS_OK, or KRS_IO_ERROR and words: the file is missing, a folder, or not ours to read. */
 KrsStatus scene_readable(const char *path);
-/* How diagnostics are printed, for krs_compile_file and krs_dump. */
-KrsOptions scene_options(const Options *options);
+
+/* Prints diagnostics as they come, and counts them. */
+typedef struct DiagnosticSink {
+    const Options *options;
+    size_t         errors, warnings; /* printed so far */
+} DiagnosticSink;
+
+/* For krs_compile_file and krs_dump; `sink` must outlive the call. */
+KrsOptions scene_options(DiagnosticSink *sink);
+/* "2 errors, 1 warning", unless there were none. */
+void scene_print_counts(const DiagnosticSink *sink);
+
 /* A frame with --set and --time; KRS_BAD_ARGUMENT and words when a setting does not fit. */
 KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsFrame **frame);
 /* "a/ring.krs" is called "ring". */

@@ -50,9 +50,11 @@ KrsStatus command_dump(Options *options)
     if (status != KRS_OK)
         return status;
     char *text = NULL;
-    KrsOptions with = scene_options(options);
+    DiagnosticSink sink = {.options = options};
+    KrsOptions with = scene_options(&sink);
     stage_enter(STAGE_COMPILE);
     status = krs_dump(path, stage, &with, &text);
+    scene_print_counts(&sink);
     stage_enter(STAGE_ANSWER);
     if (text)
         fputs(text, stdout);

@@ -11,7 +11,6 @@
 #include <png.h>
 #include <setjmp.h>
 #include <signal.h>
-#include <spirv-tools/libspirv.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -38,6 +37,10 @@ static void hold_standard_streams(void)
         if (fcntl(stream, F_GETFD) < 0 && errno == EBADF)
             open("/dev/null", stream == 0 ? O_WRONLY : O_RDONLY);
 }
+
+/* Of SPIRV-Tools; their header for C defines a variable, so only one file of a program may
+   include it, and that is spirv.c. */
+const char *spvSoftwareVersionString(void);
 
 /* Of glslang, which is linked statically, the version is known when compiling. */
 static KrsStatus print_version(void)

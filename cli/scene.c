@@ -22,20 +22,36 @@ static void print_colored(const KrsDiagnostic *diagnostic)
 
 static void print_diagnostic(void *user, const KrsDiagnostic *diagnostic)
 {
-    const Options *options = user;
-    if (options->quiet && !diagnostic->error)
+    DiagnosticSink *sink = user;
+    if (sink->options->quiet && !diagnostic->error)
         return;
-    if (options->json_diagnostics)
+    sink->errors += diagnostic->error;
+    sink->warnings += !diagnostic->error;
+    if (sink->options->json_diagnostics)
         fprintf(stderr, "%s\n", diagnostic->json);
-    else if (console_color(options))
+    else if (console_color(sink->options))
         print_colored(diagnostic);
     else
         fputs(diagnostic->text, stderr);
+    if (!sink->options->json_diagnostics)
+        fputc('\n', stderr);
 }
 
-KrsOptions scene_options(const Options *options)
+KrsOptions scene_options(DiagnosticSink *sink)
 {
-    return (KrsOptions){.diagnostic = print_diagnostic, .user = (void *)options};
+    return (KrsOptions){.diagnostic = print_diagnostic, .user = sink};
+}
+
+void scene_print_counts(const DiagnosticSink *sink)
+{
+    size_t errors = sink->errors, warnings = sink->warnings;
+    if (sink->options->json_diagnostics || errors + warnings == 0)
+        return;
+    if (errors > 0)
+        fprintf(stderr, "%zu error%s%s", errors, errors == 1 ? "" : "s", warnings ? ", " : "");
+    if (warnings > 0)
+        fprintf(stderr, "%zu warning%s", warnings, warnings == 1 ? "" : "s");
+    fputc('\n', stderr);
 }
 
 KrsStatus scene_readable(const char *path)
@@ -72,8 +88,10 @@ KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene)
     if (status != KRS_OK)
         return status;
     stage_enter(STAGE_COMPILE);
-    KrsOptions with = scene_options(options);
+    DiagnosticSink sink = {.options = options};
+    KrsOptions with = scene_options(&sink);
     status = krs_compile_file(path, &with, scene);
+    scene_print_counts(&sink);
     stage_enter(STAGE_START);
     return say_status(status, path);
 }

@@ -93,8 +93,8 @@ typedef struct KrsRenderOptions {
     KrsWindow crop;          /* width 0: everything */
     uint32_t  samples;       /* rays per pixel; 0: what the scene says, else 1; at most 65536 */
     size_t    camera;        /* its number */
-    uint64_t  seed;          /* moves the samples of a pixel, but not the first: that is its centre */
-    double    error;         /* permitted distance from the surface in pixels; 0: as above, else 0.25 */
+    uint64_t  seed;          /* moves the samples of a pixel, but the first stays at its centre */
+    double    error;         /* permitted distance from the surface, pixels; 0: as above, or 0.25 */
     uint32_t  planes;        /* bits of KrsPlane; 0: all */
     uint32_t  most_steps;    /* of a primary ray; 0: 16384, which is also the most */
     uint32_t  steps_at_once; /* of a primary ray in one dispatch; 0: 512; at most 8192 */
@@ -110,11 +110,11 @@ typedef enum KrsPhase {
 extern const char *const krs_phase_names[KRS_PHASE_COUNT]; /* "beams", ... */
 
 typedef struct KrsRenderStats {
-    double   spirv_ms, pipeline_ms;      /* making the scene ready, the driver's compiler included */
+    double   spirv_ms, pipeline_ms;      /* making the scene ready: our compiler, the driver's */
     double   phase_ms[KRS_PHASE_COUNT];  /* on the device */
     double   total_ms;                   /* their sum */
     double   wall_ms;                    /* of krs_render, without making ready */
-    bool     device_time;                /* measured by timestamp queries, else by the host's clock */
+    bool     device_time;                /* by timestamp queries, else by the host's clock */
     uint64_t rays;                       /* primary rays */
     uint64_t evaluations;                /* of the distance, spent on them */
     double   evaluations_per_ray;        /* the mean */
@@ -122,7 +122,7 @@ typedef struct KrsRenderStats {
     double   flops_per_evaluation;
     double   gflops;                     /* of the primary phase */
     uint64_t unresolved;                 /* primary and shadow rays that ran out of steps */
-    uint64_t peak_memory_bytes;          /* most memory held at once: the device's, and the picture */
+    uint64_t peak_memory_bytes;          /* the most held at once on the device, and the picture */
     char     device[256];
 } KrsRenderStats;
 
@@ -166,8 +166,8 @@ typedef struct KrsSurfacePoint {
 
 /* Evaluates the scene on the device at `count` points: distances, and what is there when
    `surfaces` is not NULL. */
-KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3], size_t count,
-                     float *distances, KrsSurfacePoint *surfaces);
+KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3],
+                     size_t count, float *distances, KrsSurfacePoint *surfaces);
 
 #ifdef __cplusplus
 }

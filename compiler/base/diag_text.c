@@ -60,10 +60,9 @@ static bool is_combining(uint32_t c)
 
 static bool is_wide(uint32_t c)
 {
-    static const CharacterRange ranges[] = {{0x1100, 0x115F}, {0x2E80, 0x303E},   {0x3041, 0xA4CF},
-                                            {0xAC00, 0xD7A3}, {0xF900, 0xFAFF},   {0xFE30, 0xFE6F},
-                                            {0xFF00, 0xFF60}, {0xFFE0, 0xFFE6},   {0x1F300, 0x1FAFF},
-                                            {0x20000, 0x3FFFD}};
+    static const CharacterRange ranges[] = {
+        {0x1100, 0x115F}, {0x2E80, 0x303E}, {0x3041, 0xA4CF}, {0xAC00, 0xD7A3},   {0xF900, 0xFAFF},
+        {0xFE30, 0xFE6F}, {0xFF00, 0xFF60}, {0xFFE0, 0xFFE6}, {0x1F300, 0x1FAFF}, {0x20000, 0x3FFFD}};
     return is_among(c, ranges, sizeof ranges / sizeof *ranges);
 }
 
@@ -120,7 +119,11 @@ static void paint(const Picture *picture, const char *code)
         text_format(picture->out, "\033[%sm", code);
 }
 
-static void paint_severity(const Picture *picture) { paint(picture, picture->error ? "1;31" : "1;33"); }
+static void paint_severity(const Picture *picture)
+{
+    paint(picture, picture->error ? "1;31" : "1;33");
+}
+
 static void paint_frame(const Picture *picture) { paint(picture, "1;34"); }
 static void paint_nothing(const Picture *picture) { paint(picture, "0"); }
 
@@ -131,15 +134,20 @@ static const Source *source_of(const Picture *picture, Span span)
     return &picture->diags->sources->items[span.source];
 }
 
+/* The end of a line without what ends it. */
+static uint32_t line_end(const Source *source, uint32_t line)
+{
+    uint32_t end = line + 1 < source->line_count ? source->lines[line + 1] - 1 : source->length;
+    return end > source->lines[line] && source->text[end - 1] == '\r' ? end - 1 : end;
+}
+
 static void add_mark(Picture *picture, Span span, const char *label, bool primary)
 {
     if (span.source == 0)
         return;
     const Source *source = source_of(picture, span);
     uint32_t line = source_position(source, span.start).line - 1;
-    uint32_t end  = line + 1 < source->line_count ? source->lines[line + 1] - 1 : source->length;
-    if (end > source->lines[line] && source->text[end - 1] == '\r')
-        end--;
+    uint32_t end  = line_end(source, line);
     Mark mark = {span, label, primary, line, span.start, span.end, false};
     if (mark.start > end)
         mark.start = end;
@@ -160,10 +168,7 @@ static bool is_inside_character(char byte) { return (byte & 0xC0) == 0x80; }
 
 static Window window_around(const Source *source, const Mark *mark)
 {
-    uint32_t first = source->lines[mark->line];
-    uint32_t last  = mark->line + 1 < source->line_count ? source->lines[mark->line + 1] - 1 : source->length;
-    if (last > first && source->text[last - 1] == '\r')
-        last--;
+    uint32_t first = source->lines[mark->line], last = line_end(source, mark->line);
     if (last - first <= LONG_LINE_BYTES)
         return (Window){first, last, false, false};
     uint32_t start = mark->start;
@@ -206,7 +211,8 @@ static void draw_marks(const Picture *picture, const Mark *mark, Window window)
     const char *text  = source_of(picture, mark->span)->text;
     uint32_t    end   = mark->end < window.end ? mark->end : window.end;
     uint32_t    blank = add_visible(NULL, text + window.start, mark->start - window.start);
-    uint32_t    width = end > mark->start ? add_visible(NULL, text + mark->start, end - mark->start) : 0;
+    uint32_t    width = end <= mark->start ? 0
+                                           : add_visible(NULL, text + mark->start, end - mark->start);
     draw_gutter(picture, "|");
     text_format(picture->out, " %*s", (int)blank + (window.cut_before ? 3 : 0), "");
     if (mark->primary)
@@ -270,7 +276,8 @@ static void draw_file(Picture *picture, const Mark *named, const char *arrow)
     }
 }
 
-static void draw_remark(const Picture *picture, const char *kind, const char *text, const char *code)
+static void draw_remark(const Picture *picture, const char *kind, const char *text,
+                        const char *code)
 {
     draw_gutter(picture, "= ");
     paint(picture, "1");
@@ -301,7 +308,8 @@ static void draw_help(const Picture *picture, const Diag *diag)
 static void draw_title(const Picture *picture, const Diag *diag)
 {
     paint_severity(picture);
-    text_format(picture->out, "%s[%s]", picture->error ? "error" : "warning", diag_info[diag->code].code);
+    text_add(picture->out, picture->error ? "error" : "warning");
+    text_format(picture->out, "[%s]", diag_info[diag->code].code);
     paint_nothing(picture);
     paint(picture, "1");
     text_add(picture->out, ": ");

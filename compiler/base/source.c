@@ -17,7 +17,8 @@ static void find_lines(Arena *arena, Source *source)
             source->lines[source->line_count++] = i + 1;
 }
 
-static void push_source(Sources *sources, const char *name, const char *text, size_t length, bool library)
+static void push_source(Sources *sources, const char *name, const char *text, size_t length,
+                        bool library)
 {
     Source source = {
         .name    = arena_copy_text(sources->arena, name, strlen(name)),
@@ -29,7 +30,8 @@ static void push_source(Sources *sources, const char *name, const char *text, si
     array_push(sources->arena, sources, source);
 }
 
-uint32_t source_add(Sources *sources, const char *name, const char *text, size_t length, bool library)
+uint32_t source_add(Sources *sources, const char *name, const char *text, size_t length,
+                    bool library)
 {
     if (sources->count == 0)
         push_source(sources, "", "", 0, true);

@@ -83,12 +83,18 @@ void text_number(Text *text, double number)
 
 /* ---- JSON ---- */
 
+/* The length of a UTF-8 character by its first byte, or 0. */
+static size_t length_by_first(unsigned char byte)
+{
+    if (byte < 0x80)
+        return 1;
+    return byte < 0xC2 ? 0 : byte < 0xE0 ? 2 : byte < 0xF0 ? 3 : byte < 0xF5 ? 4 : 0;
+}
+
 /* The length of the well-formed UTF-8 character at s, or 0. */
 static size_t utf8_length(const unsigned char *s)
 {
-    if (s[0] < 0x80)
-        return 1;
-    size_t        length = s[0] < 0xC2 ? 0 : s[0] < 0xE0 ? 2 : s[0] < 0xF0 ? 3 : s[0] < 0xF5 ? 4 : 0;
+    size_t        length = length_by_first(s[0]);
     unsigned char low = 0x80, high = 0xBF; /* of the second byte: no surrogates, no overlong form */
     if (s[0] == 0xE0)
         low = 0xA0;

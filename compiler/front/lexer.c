@@ -60,7 +60,10 @@ bool token_is_statement_word(TokenKind kind) { return rows[kind].class == STATEM
 
 /* ASCII only, whatever the locale. */
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
-static bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+static bool is_letter(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
 static bool is_word(char c) { return is_letter(c) || is_digit(c); }
 static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
@@ -248,7 +251,8 @@ static double read_unit(Lexer *lexer, uint32_t start, double number)
         lexer->at++;
     uint32_t length = lexer->at - unit;
     if (isinf(number)) {
-        bad_number(lexer, start, "a number that is too large", "the largest is about 1.8e308", NULL);
+        bad_number(lexer, start, "a number that is too large", "the largest is about 1.8e308",
+                   NULL);
         return 0;
     }
     if (length == 3 && memcmp(lexer->text + unit, "deg", 3) == 0)
@@ -450,8 +454,8 @@ static bool lex_lookalike(Lexer *lexer)
         bool  ascii = (found->sign[0] & 0x80) == 0;
         Diag *diag  = report(lexer, ascii ? DIAG_UNEXPECTED_TOKEN : DIAG_STRAY_BYTES, start, "",
                              NULL);
-        diag->message     = diag_text(lexer->diags, "`%s` is not part of the language", found->sign);
         diag->replacement = found->instead;
+        diag->message = diag_text(lexer->diags, "`%s` is not part of the language", found->sign);
         if (found->kind == TOKEN_END)
             diag->message = "a no-break space, which looks like a space and is none";
         else

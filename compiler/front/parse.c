@@ -410,7 +410,7 @@ Syntax *parse_krs(Parser *p)
 static Syntax *parse_forgotten_let(Parser *p)
 {
     const Token *name = token_here(p);
-    Diag *diag        = report_at(p, DIAG_UNEXPECTED_TOKEN, name->span, "a definition without `let`");
+    Diag *diag = report_at(p, DIAG_UNEXPECTED_TOKEN, name->span, "a definition without `let`");
     diag->replacement = diag_text(p->diags, "let %s", name->name);
     return parse_let(p);
 }

@@ -8,28 +8,7 @@
 const Box box_empty    = {{{INFINITY, -INFINITY}, {INFINITY, -INFINITY}, {INFINITY, -INFINITY}}};
 const Box box_infinite = {{{-INFINITY, INFINITY}, {-INFINITY, INFINITY}, {-INFINITY, INFINITY}}};
 
-Range range_of(double number) { return (Range){number, number}; }
-Range range_hull(Range a, Range b) { return (Range){fmin(a.low, b.low), fmax(a.high, b.high)}; }
-Range range_common(Range a, Range b) { return (Range){fmax(a.low, b.low), fmin(a.high, b.high)}; }
-
-/* Infinities of opposite sign: the sum can be anything on that side. */
-static double sum_or(double sum, double otherwise) { return isnan(sum) ? otherwise : sum; }
-
-Range range_add(Range a, Range b)
-{
-    return (Range){sum_or(a.low + b.low, -INFINITY), sum_or(a.high + b.high, INFINITY)};
-}
-
-Range range_sub(Range a, Range b) { return range_add(a, (Range){-b.high, -b.low}); }
-
-static double product(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
-
-Range range_mul(Range a, Range b)
-{
-    double p = product(a.low, b.low), q = product(a.low, b.high);
-    double r = product(a.high, b.low), s = product(a.high, b.high);
-    return (Range){fmin(fmin(p, q), fmin(r, s)), fmax(fmax(p, q), fmax(r, s))};
-}
+static Range range_common(Range a, Range b) { return (Range){fmax(a.low, b.low), fmin(a.high, b.high)}; }
 
 bool box_is_empty(Box box)
 {

@@ -4,15 +4,7 @@
 #ifndef KRS_BOX_H
 #define KRS_BOX_H
 
-#include "compiler/graph/facts.h"
-
-/* Interval arithmetic for bounds; 0 times infinity is 0, for an axis that is not used. */
-Range range_of(double number);
-Range range_add(Range a, Range b);
-Range range_sub(Range a, Range b);
-Range range_mul(Range a, Range b);
-Range range_hull(Range a, Range b);
-Range range_common(Range a, Range b); /* empty: low > high */
+#include "compiler/graph/range.h"
 
 extern const Box box_empty, box_infinite;
 

@@ -143,6 +143,22 @@ static bool repeats_operand(const Expr *user, Node operand)
     return count > 1;
 }
 
+/* An expression that is a whole statement needs no parentheses around it. */
+static const char *bare(Emitter *e, const char *text)
+{
+    size_t   length = strlen(text);
+    uint32_t open   = 0;
+    if (text[0] != '(')
+        return text;
+    for (size_t i = 0; i < length; i++) {
+        open += text[i] == '(';
+        open -= text[i] == ')';
+        if (open == 0 && i + 1 < length)
+            return text;
+    }
+    return arena_copy_text(e->scratch, text + 1, length - 2);
+}
+
 /* Marks the nodes that a function needs, counting uses; frame values end the walk. */
 static void count_uses(Emitter *e, const Node *roots, size_t count, bool frame)
 {
@@ -182,7 +198,7 @@ static void emit_node(Emitter *e, Node n)
     Text name = {.arena = e->scratch};
     text_format(&name, "%s%u", expr->type == TYPE_BOOL ? "b" : expr->type == TYPE_FLOAT ? "t" : expr->type == TYPE_UINT ? "n" : "v",
                 e->next++);
-    text_format(e->out, "    %s %s = %s;\n", type_name(expr->type), name.bytes, text);
+    text_format(e->out, "    %s %s = %s;\n", type_name(expr->type), name.bytes, bare(e, text));
     e->text[n]    = name.bytes;
     e->nesting[n] = 0;
 }
@@ -234,7 +250,7 @@ static void emit_frame(Emitter *e, const Node *roots, size_t count)
             continue;
         }
         comment_line(e, g->items[n].span);
-        text_format(e->out, "    %s = %s;\n", e->frame[n], node_text(e, &g->items[n]));
+        text_format(e->out, "    %s = %s;\n", e->frame[n], bare(e, node_text(e, &g->items[n])));
         e->text[n]    = e->frame[n];
         e->nesting[n] = 0;
     }

@@ -24,7 +24,8 @@ static bool find_type(const Gpu *gpu, uint32_t permitted, VkMemoryPropertyFlags 
 static bool find_type_for(const Gpu *gpu, uint32_t permitted, Where where, uint32_t *type)
 {
     if (where == SHARED)
-        return find_type(gpu, permitted, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+        return find_type(gpu, permitted,
+                         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
                          VK_MEMORY_PROPERTY_HOST_CACHED_BIT, type);
     return find_type(gpu, permitted, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, type);
 }
@@ -61,7 +62,8 @@ bool buffer_create(Gpu *gpu, Buffer *buffer, VkDeviceSize size, Where where, con
         gpu->memory_peak = gpu->memory_used;
     TRY(gpu, attempt, vkBindBufferMemory(gpu->device, buffer->buffer, buffer->memory, 0));
     if (where == SHARED)
-        TRY(gpu, attempt, vkMapMemory(gpu->device, buffer->memory, 0, VK_WHOLE_SIZE, 0, &buffer->bytes));
+        TRY(gpu, attempt,
+            vkMapMemory(gpu->device, buffer->memory, 0, VK_WHOLE_SIZE, 0, &buffer->bytes));
     return true;
 
 failed:

@@ -4,7 +4,8 @@
  */
 #include "runtime/device/gpu.h"
 
-static const VkPipelineStageFlags WORK = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+static const VkPipelineStageFlags WORK =
+    VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
 
 static void memory_barrier(Gpu *gpu, VkPipelineStageFlags after, VkAccessFlags seen_by)
 {
@@ -67,7 +68,8 @@ bool gpu_finish(Gpu *gpu, double *ms)
         .commandBufferCount = 1,
         .pCommandBuffers = &gpu->commands,
     }, gpu->fence));
-    TRY(gpu, "wait for the device", vkWaitForFences(gpu->device, 1, &gpu->fence, VK_TRUE, UINT64_MAX));
+    TRY(gpu, "wait for the device",
+        vkWaitForFences(gpu->device, 1, &gpu->fence, VK_TRUE, UINT64_MAX));
     TRY(gpu, "wait for the device", vkResetFences(gpu->device, 1, &gpu->fence));
     if (gpu->times)
         return measure(gpu, ms);

@@ -12,7 +12,8 @@
 #include <time.h>
 
 #define VALIDATION_LAYER "VK_LAYER_KHRONOS_validation"
-#define NO_DEVICE "no usable Vulkan device: install a driver, for example Debian's mesa-vulkan-drivers"
+#define NO_DEVICE                                                                               \
+    "no usable Vulkan device: install a driver, for example Debian's mesa-vulkan-drivers"
 
 double clock_ms(void)
 {
@@ -23,11 +24,12 @@ double clock_ms(void)
 
 void *gpu_alloc(Gpu *gpu, size_t count, size_t size, const char *attempt)
 {
-    void *block = NULL;
+    const KrsAllocator *allocator = &gpu->allocator;
+    void               *block = NULL;
     if (size == 0 || count <= SIZE_MAX / size) {
         size_t bytes = count * size > 0 ? count * size : 1;
-        block = gpu->allocator.allocate ? gpu->allocator.allocate(gpu->allocator.user, bytes) : calloc(1, bytes);
-        if (block && gpu->allocator.allocate)
+        block = allocator->allocate ? allocator->allocate(allocator->user, bytes) : calloc(1, bytes);
+        if (block && allocator->allocate)
             memset(block, 0, bytes);
     }
     if (!block)
@@ -71,27 +73,27 @@ void gpu_fail(Gpu *gpu, VkResult result, const char *attempt)
     case VK_ERROR_LAYER_NOT_PRESENT:
     case VK_ERROR_EXTENSION_NOT_PRESENT:
         gpu_refuse(gpu, KRS_NO_DEVICE,
-                   "cannot %s: the validation layers are not installed (Debian: vulkan-validationlayers)",
-                   attempt);
+                   "cannot %s: the validation layers are not installed (Debian:"
+                   " vulkan-validationlayers)", attempt);
         break;
     case VK_ERROR_INITIALIZATION_FAILED:
         gpu_refuse(gpu, KRS_NO_DEVICE, "cannot %s: the Vulkan driver does not start", attempt);
         break;
     case VK_ERROR_DEVICE_LOST:
-        gpu_refuse(gpu, KRS_INTERNAL, "cannot %s: the device was lost (its driver gave up or was reset)",
-                   attempt);
+        gpu_refuse(gpu, KRS_INTERNAL,
+                   "cannot %s: the device was lost (its driver gave up or was reset)", attempt);
         break;
     default:
-        gpu_refuse(gpu, KRS_INTERNAL, "cannot %s: the driver answers with Vulkan error %d", attempt, result);
+        gpu_refuse(gpu, KRS_INTERNAL, "cannot %s: the driver answers with Vulkan error %d", attempt,
+                   result);
     }
 }
 
 /* ---- Instance and validation ---- */
 
-static VKAPI_ATTR VkBool32 VKAPI_CALL take_complaint(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
-                                                     VkDebugUtilsMessageTypeFlagsEXT type,
-                                                     const VkDebugUtilsMessengerCallbackDataEXT *data,
-                                                     void *user)
+static VKAPI_ATTR VkBool32 VKAPI_CALL
+take_complaint(VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtilsMessageTypeFlagsEXT type,
+               const VkDebugUtilsMessengerCallbackDataEXT *data, void *user)
 {
     (void)severity;
     (void)type;
@@ -105,8 +107,10 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL take_complaint(VkDebugUtilsMessageSeverity
 static bool instance_create(Gpu *gpu, bool validation)
 {
     const char *layers[] = {VALIDATION_LAYER};
-    const char *extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
-    VkValidationFeatureEnableEXT enables[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+    const char *extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
+                                VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+    VkValidationFeatureEnableEXT enables[] = {
+        VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
     VkDebugUtilsMessengerCreateInfoEXT listen = {
         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
         .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
@@ -140,7 +144,8 @@ static bool instance_create(Gpu *gpu, bool validation)
         PFN_vkCreateDebugUtilsMessengerEXT create = (PFN_vkCreateDebugUtilsMessengerEXT)
             vkGetInstanceProcAddr(gpu->instance, "vkCreateDebugUtilsMessengerEXT");
         if (create)
-            TRY(gpu, "listen to the validation layers", create(gpu->instance, &listen, NULL, &gpu->messenger));
+            TRY(gpu, "listen to the validation layers",
+                create(gpu->instance, &listen, NULL, &gpu->messenger));
         gpu->set_name = (PFN_vkSetDebugUtilsObjectNameEXT)
             vkGetInstanceProcAddr(gpu->instance, "vkSetDebugUtilsObjectNameEXT");
     }
@@ -247,19 +252,17 @@ static bool wanted(const KrsDevice *device, uint32_t index, const char *words)
    the best kind.  `count` when there is none. */
 static uint32_t choose(const VkPhysicalDevice *devices, uint32_t count, const char *words)
 {
-    static const int rank[] = {[KRS_DEVICE_OTHER] = 0, [KRS_DEVICE_CPU] = 1, [KRS_DEVICE_VIRTUAL] = 2,
-                               [KRS_DEVICE_INTEGRATED] = 3, [KRS_DEVICE_DISCRETE] = 4};
-    uint32_t best = count;
-    int      best_rank = -1;
+    uint32_t      best = count;
+    KrsDeviceKind best_kind = KRS_DEVICE_OTHER;
     for (uint32_t i = 0; i < count; i++) {
         KrsDevice device = gpu_describe(devices[i]);
         if (!device.usable || !wanted(&device, i, words))
             continue;
         if (words && *words)
             return i;
-        if (rank[device.kind] > best_rank) {
+        if (best == count || device.kind > best_kind) { /* the enum rises from worse to better */
             best = i;
-            best_rank = rank[device.kind];
+            best_kind = device.kind;
         }
     }
     return best;
@@ -298,8 +301,8 @@ static bool choose_device(Gpu *gpu, const char *words)
         gpu->physical = devices[chosen];
         gpu->time_mask = bits >= 64 ? UINT64_MAX : (UINT64_C(1) << bits) - 1;
     } else if (words && *words) {
-        gpu_refuse(gpu, KRS_NO_DEVICE, "no usable Vulkan device is called `%s`: `krs devices` lists them",
-                   words);
+        gpu_refuse(gpu, KRS_NO_DEVICE,
+                   "no usable Vulkan device is called `%s`: `krs devices` lists them", words);
     } else {
         gpu_refuse(gpu, KRS_NO_DEVICE, NO_DEVICE);
     }
@@ -313,10 +316,12 @@ static bool device_create(Gpu *gpu)
 {
     vkGetPhysicalDeviceProperties(gpu->physical, &gpu->properties);
     vkGetPhysicalDeviceMemoryProperties(gpu->physical, &gpu->memory);
-    VkPhysicalDeviceFeatures offered;
+    VkPhysicalDeviceFeatures offered, taken = {0};
     vkGetPhysicalDeviceFeatures(gpu->physical, &offered);
+    taken.robustBufferAccess = offered.robustBufferAccess;
 
-    TRY(gpu, "open the device", vkCreateDevice(gpu->physical, &(VkDeviceCreateInfo){
+    const char *attempt = "open the device";
+    TRY(gpu, attempt, vkCreateDevice(gpu->physical, &(VkDeviceCreateInfo){
         .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
         .queueCreateInfoCount = 1,
         .pQueueCreateInfos = &(VkDeviceQueueCreateInfo){
@@ -325,26 +330,26 @@ static bool device_create(Gpu *gpu)
             .queueCount = 1,
             .pQueuePriorities = &(float){1},
         },
-        .pEnabledFeatures = &(VkPhysicalDeviceFeatures){.robustBufferAccess = offered.robustBufferAccess},
+        .pEnabledFeatures = &taken,
     }, NULL, &gpu->device));
     vkGetDeviceQueue(gpu->device, gpu->family, 0, &gpu->queue);
 
-    TRY(gpu, "prepare the device", vkCreateCommandPool(gpu->device, &(VkCommandPoolCreateInfo){
+    TRY(gpu, attempt, vkCreateCommandPool(gpu->device, &(VkCommandPoolCreateInfo){
         .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
         .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
         .queueFamilyIndex = gpu->family,
     }, NULL, &gpu->pool));
-    TRY(gpu, "prepare the device", vkAllocateCommandBuffers(gpu->device, &(VkCommandBufferAllocateInfo){
+    TRY(gpu, attempt, vkAllocateCommandBuffers(gpu->device, &(VkCommandBufferAllocateInfo){
         .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
         .commandPool = gpu->pool,
         .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
         .commandBufferCount = 1,
     }, &gpu->commands));
-    TRY(gpu, "prepare the device", vkCreateFence(gpu->device, &(VkFenceCreateInfo){
+    TRY(gpu, attempt, vkCreateFence(gpu->device, &(VkFenceCreateInfo){
         .sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO,
     }, NULL, &gpu->fence));
     if (gpu->time_mask != 0)
-        TRY(gpu, "prepare the device", vkCreateQueryPool(gpu->device, &(VkQueryPoolCreateInfo){
+        TRY(gpu, attempt, vkCreateQueryPool(gpu->device, &(VkQueryPoolCreateInfo){
             .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
             .queryType = VK_QUERY_TYPE_TIMESTAMP,
             .queryCount = 2,
@@ -361,8 +366,13 @@ bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
     static const KrsRendererOptions defaults;
     if (!options)
         options = &defaults;
-    *gpu = (Gpu){.allocator = options->allocator, .complaint = options->complaint, .user = options->user};
-    if (instance_create(gpu, options->validation) && choose_device(gpu, options->device) && device_create(gpu))
+    *gpu = (Gpu){
+        .allocator = options->allocator,
+        .complaint = options->complaint,
+        .user = options->user,
+    };
+    if (instance_create(gpu, options->validation) && choose_device(gpu, options->device) &&
+        device_create(gpu))
         return true;
     gpu_close(gpu);
     return false;

@@ -47,14 +47,15 @@ void gpu_close(Gpu *gpu);
 /* The devices there are, as krs_devices. */
 bool gpu_list(Gpu *gpu, KrsDevice *devices, size_t capacity, size_t *count);
 KrsDevice gpu_describe(VkPhysicalDevice physical);
-bool gpu_is_cpu(const Gpu *gpu);
+bool      gpu_is_cpu(const Gpu *gpu);
 
 /* Zeroed memory of the host, or NULL with the failure noted. */
 void *gpu_alloc(Gpu *gpu, size_t count, size_t size, const char *attempt);
 void  gpu_release(Gpu *gpu, void *block);
 
 /* Notes a failure in words of our own, or in Vulkan's: "cannot <attempt>: <reason>". */
-void gpu_refuse(Gpu *gpu, KrsStatus status, const char *format, ...) __attribute__((format(printf, 3, 4)));
+void gpu_refuse(Gpu *gpu, KrsStatus status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 void gpu_fail(Gpu *gpu, VkResult result, const char *attempt);
 
 /* Gives an object a name in the messages of the validation layers. */

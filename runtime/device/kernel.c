@@ -52,7 +52,8 @@ char *kernel_text(Gpu *gpu, const char *file, const char *scene)
     const char *text = find_file(file, strlen(file));
     size_t      length = text ? expand(text, scene, NULL) : 0;
     if (length == 0) {
-        gpu_refuse(gpu, KRS_INTERNAL, "the kernel `%s`, or a file that it includes, is missing", file);
+        gpu_refuse(gpu, KRS_INTERNAL, "the kernel `%s`, or a file that it includes, is missing",
+                   file);
         return NULL;
     }
     char *whole = gpu_alloc(gpu, length + 1, 1, "put a kernel together");
@@ -78,8 +79,8 @@ static bool compile(Gpu *gpu, const char *file, const char *scene, uint32_t **wo
     return status == KRS_OK;
 }
 
-bool kernel_create(Gpu *gpu, Kernel *kernel, const char *file, const char *scene, VkPipelineLayout layout,
-                   double *spirv_ms, double *pipeline_ms)
+bool kernel_create(Gpu *gpu, Kernel *kernel, const char *file, const char *scene,
+                   VkPipelineLayout layout, double *spirv_ms, double *pipeline_ms)
 {
     *kernel = (Kernel){0};
     uint32_t      *words = NULL;

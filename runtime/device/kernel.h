@@ -16,8 +16,8 @@ char *kernel_text(Gpu *gpu, const char *file, const char *scene);
 
 /* Compiles `file` of runtime/shaders for the scene (NULL for a kernel without one) and adds the
    time it took. */
-bool kernel_create(Gpu *gpu, Kernel *kernel, const char *file, const char *scene, VkPipelineLayout layout,
-                   double *spirv_ms, double *pipeline_ms);
+bool kernel_create(Gpu *gpu, Kernel *kernel, const char *file, const char *scene,
+                   VkPipelineLayout layout, double *spirv_ms, double *pipeline_ms);
 void kernel_destroy(Gpu *gpu, Kernel *kernel);
 
 #endif

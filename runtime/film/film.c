@@ -46,9 +46,15 @@ static void multiply(const double matrix[3][3], const double v[3], double out[3]
 static void apply_aces(const double color[3], double out[3])
 {
     static const double into[3][3] = {
-        {0.59719, 0.35458, 0.04823}, {0.07600, 0.90834, 0.01566}, {0.02840, 0.13383, 0.83777}};
+        {0.59719, 0.35458, 0.04823},
+        {0.07600, 0.90834, 0.01566},
+        {0.02840, 0.13383, 0.83777},
+    };
     static const double back[3][3] = {
-        {1.60475, -0.53108, -0.07367}, {-0.10208, 1.10813, -0.00605}, {-0.00327, -0.07276, 1.07602}};
+        {1.60475, -0.53108, -0.07367},
+        {-0.10208, 1.10813, -0.00605},
+        {-0.00327, -0.07276, 1.07602},
+    };
     double film[3];
     multiply(into, color, film);
     for (int i = 0; i < 3; i++) {

@@ -30,7 +30,8 @@ vec3 sun_radiance(vec3 direction, vec3 toward_sun, vec3 color, float diameter)
 }
 
 // Reflectance times cosine: Lambert below a GGX coat (Smith's masking, Schlick's Fresnel).
-vec3 reflected(vec3 normal, vec3 toward_eye, vec3 toward_light, vec3 color, float roughness, float metallic)
+vec3 reflected(vec3 normal, vec3 toward_eye, vec3 toward_light, vec3 color, float roughness,
+               float metallic)
 {
     vec3  between = toward_eye + toward_light;
     vec3  halfway = between / max(length(between), 1e-6);

@@ -15,7 +15,8 @@
 #include "frame.glsl"
 
 // Steps onto the surface once the error is permitted, the first plain, then by the secant: two
-// end well below a hundredth of a pixel at usual angles.  A ray that falls at less than the least slope grazes.
+// end well below a hundredth of a pixel at usual angles.  A ray that falls at less than the
+// least slope only grazes.
 const uint  REFINEMENTS = 2u;
 const float LEAST_SLOPE = 0.1;
 

@@ -12,7 +12,8 @@ static const struct Plane {
     size_t   bytes;   /* per pixel */
     size_t   offset;  /* in a PixelBlock */
 } planes[] = {
-#define PLANE(name, bit, numbers) {offsetof(KrsPicture, name), bit, 4 * numbers, offsetof(PixelBlock, name)}
+#define PLANE(name, bit, numbers)                                                               \
+    {offsetof(KrsPicture, name), bit, 4 * numbers, offsetof(PixelBlock, name)}
     PLANE(color, KRS_PLANE_COLOR, 4),
     PLANE(depth, KRS_PLANE_DEPTH, 1),
     PLANE(position, KRS_PLANE_POSITION, 3),
@@ -39,7 +40,8 @@ static void plane_set(KrsPicture *picture, int plane, void *values)
     memcpy((char *)picture + planes[plane].member, &values, sizeof values);
 }
 
-KrsPicture *picture_new(Gpu *gpu, uint32_t width, uint32_t height, KrsWindow window, uint32_t wanted)
+KrsPicture *picture_new(Gpu *gpu, uint32_t width, uint32_t height, KrsWindow window,
+                        uint32_t wanted)
 {
     KrsPicture *picture = gpu_alloc(gpu, 1, sizeof *picture, "make a picture");
     if (!picture)

@@ -7,8 +7,9 @@
 #include "runtime/device/gpu.h"
 #include "runtime/tracer/blocks.h"
 
-/* A picture whose planes are black; NULL with the failure noted. */
-KrsPicture *picture_new(Gpu *gpu, uint32_t width, uint32_t height, KrsWindow window, uint32_t planes);
+/* A picture whose wanted planes (bits of KrsPlane) are zero; NULL with the failure noted. */
+KrsPicture *picture_new(Gpu *gpu, uint32_t width, uint32_t height, KrsWindow window,
+                        uint32_t wanted);
 
 /* Takes `count` finished pixels over into the planes, from the window's pixel number `first` on:
    colour is the mean of `samples` rays.  Counts them in the statistics. */

@@ -92,10 +92,10 @@ static bool settle_frame(Job *job, KrsFrame *frame)
     if (!settle_options(job))
         return false;
     const KrsProgram *program = job->rendering->program;
-    if (!view_prepare(&job->view, program->low, program->high, job->options.width, job->options.height,
-                      &job->frame))
-        return refuse(job, "the camera sees nothing: its eye is at its target, or its angle or height is"
-                           " not one");
+    if (!view_prepare(&job->view, program->low, program->high, job->options.width,
+                      job->options.height, &job->frame))
+        return refuse(job, "the camera sees nothing: its eye is at its target, or its angle or"
+                           " height is not one");
     job->frame.error = (float)job->options.error;
     job->frame.most_steps = job->options.most_steps;
     memcpy(job->rendering->frame.bytes, &job->frame, sizeof job->frame);
@@ -123,7 +123,7 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels)
     if (!buffer_create(gpu, &band->rays, pixels * RAY_BYTES, ON_DEVICE, "rays") ||
         !buffer_create(gpu, &band->hits, pixels * HIT_BYTES, ON_DEVICE, "hits") ||
         !buffer_create(gpu, &band->results, pixels * sizeof(PixelBlock), ON_DEVICE, "pixels") ||
-        !buffer_create(gpu, &band->fetched, pixels * sizeof(PixelBlock), SHARED, "pixels to be read")) {
+        !buffer_create(gpu, &band->fetched, pixels * sizeof(PixelBlock), SHARED, "pixels to read")) {
         band_destroy(gpu, band);
         return false;
     }
@@ -211,7 +211,8 @@ static bool run_phase(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock 
         work->stride = spread(job->gpu, count);
         if (!gpu_begin(job->gpu))
             return false;
-        rendering_dispatch(job->rendering, kernel, job->rendering->band_set, work, sizeof *work, count);
+        rendering_dispatch(job->rendering, kernel, job->rendering->band_set, work, sizeof *work,
+                           count);
         if (!gpu_finish(job->gpu, &ms))
             return false;
         job->picture->stats.phase_ms[phase] += ms;
@@ -280,12 +281,6 @@ static void place_ray(uint32_t index, uint64_t seed, float offset[2])
     }
 }
 
-static void enter_phase(Job *job, double from, double to)
-{
-    job->done += job->share * from;
-    job->share *= to - from;
-}
-
 /* One ray of every pixel of the band; `done` and `share` of the job are its own. */
 static bool render_ray(Job *job, WorkBlock *work, uint32_t index)
 {
@@ -305,18 +300,18 @@ static bool render_ray(Job *job, WorkBlock *work, uint32_t index)
         {KRS_PHASE_RESOLVE, 0, 0.97, 1},
     };
     for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
-        bool ran;
-        job->done = start;
-        job->share = whole;
-        enter_phase(job, steps[i].from, steps[i].to);
+        KrsPhase phase = steps[i].phase;
+        bool     ran;
+        job->done = start + whole * steps[i].from;
+        job->share = whole * (steps[i].to - steps[i].from);
         work->phase = steps[i].secondary;
         work->beginning = index == 0;
-        switch (steps[i].phase) {
+        switch (phase) {
         case KRS_PHASE_PRIMARY: ran = trace(job, work); break;
         case KRS_PHASE_SHADOWS: ran = light_up(job, work); break;
-        case KRS_PHASE_SHADING: ran = run_phase(job, steps[i].phase, &r->material, work); break;
-        case KRS_PHASE_RESOLVE: ran = run_phase(job, steps[i].phase, &r->renderer->resolve, work); break;
-        default:                ran = run_phase(job, steps[i].phase, &r->secondary, work);
+        case KRS_PHASE_SHADING: ran = run_phase(job, phase, &r->material, work); break;
+        case KRS_PHASE_RESOLVE: ran = run_phase(job, phase, &r->renderer->resolve, work); break;
+        default:                ran = run_phase(job, phase, &r->secondary, work);
         }
         if (!ran)
             return false;
@@ -408,7 +403,7 @@ static void finish_stats(Job *job)
     stats->device_time = job->gpu->times != VK_NULL_HANDLE;
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         stats->total_ms += stats->phase_ms[phase];
-    stats->rays = (uint64_t)job->options.crop.width * job->options.crop.height * job->options.samples;
+    stats->rays = (uint64_t)job->options.samples * job->options.crop.width * job->options.crop.height;
     stats->evaluations_per_ray = (double)stats->evaluations / (double)stats->rays;
     stats->flops_per_evaluation = program->flops;
     double primary = stats->phase_ms[KRS_PHASE_PRIMARY];

@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FRAME_BINDING, RAYS_BINDING, HITS_BINDING, RESULTS_BINDING, COUNTERS_BINDING, BINDING_COUNT };
+/* Bindings of set 1; those in between are the buffers of a band. */
+enum { FRAME_BINDING = 0, COUNTERS_BINDING = 4, BINDING_COUNT };
 
 KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
 {
@@ -28,11 +29,13 @@ static bool set_layout_create(Gpu *gpu, uint32_t count, VkDescriptorSetLayout *l
             .descriptorCount = 1,
             .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
         };
-    TRY(gpu, "prepare the renderer", vkCreateDescriptorSetLayout(gpu->device, &(VkDescriptorSetLayoutCreateInfo){
+    VkDescriptorSetLayoutCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
         .bindingCount = count,
         .pBindings = bindings,
-    }, NULL, layout));
+    };
+    TRY(gpu, "prepare the renderer",
+        vkCreateDescriptorSetLayout(gpu->device, &info, NULL, layout));
     return true;
 
 failed:
@@ -45,13 +48,16 @@ static bool layouts_create(KrsRenderer *renderer)
     if (!set_layout_create(gpu, 1, &renderer->scene_layout) ||
         !set_layout_create(gpu, BINDING_COUNT, &renderer->frame_layout))
         return false;
-    TRY(gpu, "prepare the renderer", vkCreatePipelineLayout(gpu->device, &(VkPipelineLayoutCreateInfo){
+    VkPushConstantRange        work = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(WorkBlock)};
+    VkPipelineLayoutCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
         .setLayoutCount = 2,
         .pSetLayouts = (VkDescriptorSetLayout[]){renderer->scene_layout, renderer->frame_layout},
         .pushConstantRangeCount = 1,
-        .pPushConstantRanges = &(VkPushConstantRange){VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(WorkBlock)},
-    }, NULL, &renderer->layout));
+        .pPushConstantRanges = &work,
+    };
+    TRY(gpu, "prepare the renderer",
+        vkCreatePipelineLayout(gpu->device, &info, NULL, &renderer->layout));
     return true;
 
 failed:
@@ -117,7 +123,8 @@ uint64_t krs_renderer_complaints(const KrsRenderer *renderer)
 
 /* ---- The rendering ---- */
 
-void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding, const Buffer *buffer)
+void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding,
+                    const Buffer *buffer)
 {
     vkUpdateDescriptorSets(rendering->renderer->gpu.device, 1, &(VkWriteDescriptorSet){
         .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
@@ -166,7 +173,8 @@ static bool buffers_create(KrsRendering *rendering)
     Gpu     *gpu = &rendering->renderer->gpu;
     uint32_t slots = rendering->program->parameter_slots;
     if (slots > gpu->properties.limits.maxUniformBufferRange / (4 * sizeof(float))) {
-        gpu_refuse(gpu, KRS_NO_DEVICE, "the device has no room for the scene's %u parameters", slots);
+        gpu_refuse(gpu, KRS_NO_DEVICE, "the device has no room for the scene's %u parameters",
+                   slots);
         return false;
     }
     if (!buffer_create(gpu, &rendering->parameters, (VkDeviceSize)slots * 4 * sizeof(float), SHARED,
@@ -189,8 +197,8 @@ static bool kernels_create(KrsRendering *rendering)
     };
     for (size_t i = 0; i < sizeof kernels / sizeof kernels[0]; i++)
         if (!kernel_create(&rendering->renderer->gpu, kernels[i].kernel, kernels[i].file,
-                           rendering->program->glsl, rendering->renderer->layout, &rendering->spirv_ms,
-                           &rendering->pipeline_ms))
+                           rendering->program->glsl, rendering->renderer->layout,
+                           &rendering->spirv_ms, &rendering->pipeline_ms))
             return false;
     return true;
 }
@@ -228,7 +236,8 @@ void krs_rendering_free(KrsRendering *rendering)
                          &rendering->band.fetched, &rendering->points, &rendering->answers};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         buffer_destroy(gpu, buffers[i]);
-    Kernel *kernels[] = {&rendering->trace, &rendering->secondary, &rendering->material, &rendering->sample};
+    Kernel *kernels[] = {&rendering->trace, &rendering->secondary, &rendering->material,
+                         &rendering->sample};
     for (size_t i = 0; i < sizeof kernels / sizeof kernels[0]; i++)
         kernel_destroy(gpu, kernels[i]);
     vkDestroyDescriptorPool(gpu->device, rendering->pool, NULL);
@@ -249,8 +258,8 @@ bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame)
     return true;
 }
 
-void rendering_dispatch(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set, const void *work,
-                        uint32_t work_bytes, uint32_t groups)
+void rendering_dispatch(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,
+                        const void *work, uint32_t work_bytes, uint32_t groups)
 {
     VkCommandBuffer  commands = rendering->renderer->gpu.commands;
     VkPipelineLayout layout = rendering->renderer->layout;

@@ -45,10 +45,11 @@ struct KrsRendering {
 /* Copies the values of the frame's parameters to the device. */
 bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame);
 /* Points a binding of set 1 at a buffer. */
-void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding, const Buffer *buffer);
+void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding,
+                    const Buffer *buffer);
 /* Records that a kernel runs with these push constants on `groups` workgroups. */
-void rendering_dispatch(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set, const void *work,
-                        uint32_t work_bytes, uint32_t groups);
+void rendering_dispatch(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,
+                        const void *work, uint32_t work_bytes, uint32_t groups);
 /* Forgets the message of the call before. */
 void renderer_clear(KrsRenderer *renderer);
 

@@ -60,8 +60,8 @@ static bool run_batch(KrsRendering *rendering, const float (*points)[3], uint32_
     return gpu_finish(gpu, &ms);
 }
 
-KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3], size_t count,
-                     float *distances, KrsSurfacePoint *surfaces)
+KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3],
+                     size_t count, float *distances, KrsSurfacePoint *surfaces)
 {
     renderer_clear(rendering->renderer);
     if (!prepare(rendering) || !rendering_set_parameters(rendering, frame))

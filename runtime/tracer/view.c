@@ -13,7 +13,10 @@ static const double PI = 3.14159265358979323846;
    horizon is a pixel high. */
 #define HORIZON 1e4
 
-static double dot3(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot3(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 static void cross3(const double a[3], const double b[3], double out[3])
 {
@@ -114,7 +117,8 @@ static bool is_bounded(const double low[3], const double high[3])
 }
 
 /* The box, a little larger: surfaces may touch it, and single precision must not lose them. */
-static void place_box(const KrsView *view, const double low[3], const double high[3], FrameBlock *block)
+static void place_box(const KrsView *view, const double low[3], const double high[3],
+                      FrameBlock *block)
 {
     double size = finite_size(low, high), reach = 0;
     for (int i = 0; i < 3; i++) {
@@ -131,14 +135,15 @@ static void place_box(const KrsView *view, const double low[3], const double hig
 
 /* Where rays end, and how far occlusion is felt.  The latter hangs on the scene, not on the
    camera, where that is possible, so that it does not change while the camera moves. */
-static void place_ends(const KrsView *view, const double low[3], const double high[3], double distance,
-                       FrameBlock *block)
+static void place_ends(const KrsView *view, const double low[3], const double high[3],
+                       double distance, FrameBlock *block)
 {
     double size = finite_size(low, high);
     if (is_bounded(low, high)) {
         double farthest = 0;
         for (int i = 0; i < 3; i++) {
-            double side = fmax(fabs(low[i] - view->camera.eye[i]), fabs(high[i] - view->camera.eye[i]));
+            double eye = view->camera.eye[i];
+            double side = fmax(fabs(low[i] - eye), fabs(high[i] - eye));
             farthest += side * side;
         }
         /* An orthographic ray starts beside the eye, by no more than the box is away. */
@@ -177,7 +182,10 @@ bool view_prepare(const KrsView *view, const double low[3], const double high[3]
     to_floats(view->sky.ground, block->ground);
 
     double pixel = camera->projection == KRS_PANORAMA ? PI / height : 2 * extent[1] / height;
-    *(camera->projection == KRS_ORTHOGRAPHIC ? &block->pixel_base : &block->pixel_slope) = (float)pixel;
+    if (camera->projection == KRS_ORTHOGRAPHIC)
+        block->pixel_base = (float)pixel;
+    else
+        block->pixel_slope = (float)pixel;
     place_box(view, low, high, block);
     place_ends(view, low, high, basis.distance, block);
     return isfinite(block->farthest);

@@ -49,7 +49,7 @@ for file in limited/*; do printf old >"$file"; done
 )
 status=$?
 said 74 "error while writing \`limited/ball." "a file that may not grow"
-refused=$(sed -n 's/^krs: error while writing `\(.*\)`.*/\1/p' err)
+refused=$(sed -n 's/.*error while writing .\(limited[^ ]*\).: .*/\1/p' err)
 [ "$(cat "$refused")" = old ] && (cd limited && no_temporaries)
 result $? "what was there before stays"
 

@@ -17,12 +17,14 @@
 #include "runtime/device/buffer.h"
 #include "runtime/krs_vulkan.h"
 
-#define assert_near(value, expected, within) assert_true(fabs((value) - (expected)) <= (within))
+#define assert_near(value, expected, within)                                                    \
+    assert_true(fabs((value) - (expected)) <= (within))
 
 static const char scene_text[] =
     "param size = 1 in [0.1, 1.5];\n"
     "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 40deg }\n"
-    "camera flat { eye: [-2, 3, 4], target: [0.3, 0.2, -0.1], projection: \"orthographic\", height: 3 }\n"
+    "camera flat { eye: [-2, 3, 4], target: [0.3, 0.2, -0.1],\n"
+    "              projection: \"orthographic\", height: 3 }\n"
     "camera round { eye: [2, 0.5, 1], target: [0, 0, 0], projection: \"panorama\" }\n"
     "camera inner { eye: [0.2, 0.1, -0.3], target: [0, 1, 0], up: [0, 0, 1], fov: 60deg }\n"
     "light sun { direction: [-1, 2, 1], intensity: 3, softness: 1deg }\n"
@@ -74,7 +76,8 @@ static void stage_open(Stage *stage, const char *text, const KrsAllocator *alloc
     KrsStatus status = krs_renderer_new(&options, &stage->renderer);
     if (status != KRS_OK)
         fail_msg("%s", krs_renderer_message(stage->renderer));
-    assert_int_equal(krs_compile_text(text, strlen(text), "test.krs", &compiling, &stage->scene), KRS_OK);
+    assert_int_equal(krs_compile_text(text, strlen(text), "test.krs", &compiling, &stage->scene),
+                     KRS_OK);
     assert_int_equal(krs_frame_new(stage->scene, &stage->frame), KRS_OK);
     if (krs_rendering_new(stage->renderer, stage->scene, &stage->rendering) != KRS_OK)
         fail_msg("%s", krs_renderer_message(stage->renderer));
@@ -129,7 +132,8 @@ static void copy_between(Gpu *gpu, const Buffer *from, const Buffer *to, bool wi
     vkCmdFillBuffer(gpu->commands, from->buffer, 0, VK_WHOLE_SIZE, 7);
     if (with_barrier)
         gpu_barrier(gpu);
-    vkCmdCopyBuffer(gpu->commands, from->buffer, to->buffer, 1, &(VkBufferCopy){.size = from->size});
+    vkCmdCopyBuffer(gpu->commands, from->buffer, to->buffer, 1,
+                    &(VkBufferCopy){.size = from->size});
     assert_true(gpu_finish(gpu, &ms));
 }
 
@@ -154,7 +158,8 @@ static void a_planted_hazard_is_reported(void **state)
 
     unsigned before = stage.complaints;
     assert_true(gpu_begin(&gpu)); /* a copy beyond the end of the buffer */
-    vkCmdCopyBuffer(gpu.commands, from.buffer, to.buffer, 1, &(VkBufferCopy){.srcOffset = 4096, .size = 4});
+    vkCmdCopyBuffer(gpu.commands, from.buffer, to.buffer, 1,
+                    &(VkBufferCopy){.srcOffset = 4096, .size = 4});
     assert_true(stage.complaints > before);
     assert_non_null(strstr(stage.complaint, "VUID-vkCmdCopyBuffer"));
     assert_int_equal(gpu.complaints, stage.complaints);
@@ -217,7 +222,10 @@ static void devices_are_chosen(void **state)
 
 /* ---- A sphere in closed form ---- */
 
-static double dot3(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot3(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 static void unit3(double v[3])
 {
@@ -260,8 +268,8 @@ static TestRay pixel_ray(const KrsCamera *camera, unsigned i, unsigned j)
             ray.origin[k] += aside * right[k] + above * up[k];
             ray.direction[k] = ray.forward[k];
         } else {
-            ray.direction[k] = cos(y * PI / 2) * (cos(x * PI) * ray.forward[k] + sin(x * PI) * right[k]) +
-                               sin(y * PI / 2) * up[k];
+            double level = cos(x * PI) * ray.forward[k] + sin(x * PI) * right[k];
+            ray.direction[k] = cos(y * PI / 2) * level + sin(y * PI / 2) * up[k];
         }
     }
     unit3(ray.direction);
@@ -388,11 +396,14 @@ static void matrices_lead_back_to_the_pixel(void **state)
 
 static void samples_converge_on_the_area(void **state)
 {
-    Stage      *stage = *state;
-    double      share = 0, pixel = 3.0 / HEIGHT;
-    KrsPicture *one = render(stage, (KrsRenderOptions){.camera = FLAT, .error = 0.01});
-    KrsPicture *many = render(stage, (KrsRenderOptions){.camera = FLAT, .error = 0.01, .samples = 32});
-    KrsPicture *other = render(stage, (KrsRenderOptions){.camera = FLAT, .error = 0.01, .samples = 32, .seed = 5});
+    Stage *stage = *state;
+    double share = 0, pixel = 3.0 / HEIGHT;
+    KrsRenderOptions options = {.camera = FLAT, .error = 0.01};
+    KrsPicture      *one = render(stage, options);
+    options.samples = 32;
+    KrsPicture *many = render(stage, options);
+    options.seed = 5;
+    KrsPicture *other = render(stage, options);
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
         float alpha = many->color[4 * i + 3];
         assert_true(alpha * 32 == floorf(alpha * 32) && alpha <= 1);
@@ -420,10 +431,13 @@ static void points_are_sampled(void **state)
     for (int i = 0; i < COUNT; i++)
         for (int k = 0; k < 3; k++)
             points[i][k] = (float)sin(i * (k + 1.7)) * 3;
-    assert_int_equal(krs_sample(stage->rendering, stage->frame, (const float(*)[3])points, COUNT, distances,
-                                surfaces), KRS_OK);
+    KrsStatus status = krs_sample(stage->rendering, stage->frame, (const float(*)[3])points, COUNT,
+                                  distances, surfaces);
+    assert_int_equal(status, KRS_OK);
     for (int i = 0; i < COUNT; i++) {
-        double away[3] = {points[i][0] - CENTRE[0], points[i][1] - CENTRE[1], points[i][2] - CENTRE[2]};
+        double away[3];
+        for (int k = 0; k < 3; k++)
+            away[k] = points[i][k] - CENTRE[k];
         assert_near(distances[i], sqrt(dot3(away, away)) - 1, 2e-6);
         assert_near(surfaces[i].distance, distances[i], 2e-6);
         assert_int_equal(surfaces[i].component, 1);
@@ -489,10 +503,11 @@ static void crops_are_parts(void **state)
 static void bands_are_not_seen(void **state)
 {
     /* Wide enough for several bands; its middle row is also rendered alone. */
-    Stage          *stage = *state;
-    KrsWindow       row = {0, 300, 1000, 1};
-    KrsPicture     *whole = render(stage, (KrsRenderOptions){.width = 1000, .height = 600});
-    KrsPicture     *part = render(stage, (KrsRenderOptions){.width = 1000, .height = 600, .crop = row});
+    Stage           *stage = *state;
+    KrsRenderOptions options = {.width = 1000, .height = 600};
+    KrsPicture      *whole = render(stage, options);
+    options.crop = (KrsWindow){0, 300, 1000, 1};
+    KrsPicture *part = render(stage, options);
     assert_memory_equal(part->color, &whole->color[4 * 1000 * 300], 4 * 1000 * sizeof(float));
     assert_int_equal(whole->stats.rays, 600000);
     krs_picture_free(whole);
@@ -516,7 +531,8 @@ static void interruption_is_heard(void **state)
         int              left = calls;
         KrsRenderOptions options = {
             .width = WIDTH, .height = HEIGHT, .progress = stop_later, .user = &left};
-        assert_int_equal(krs_render(stage->rendering, stage->frame, &options, &picture), KRS_INTERRUPTED);
+        assert_int_equal(krs_render(stage->rendering, stage->frame, &options, &picture),
+                         KRS_INTERRUPTED);
         assert_null(picture);
         assert_int_equal(left, 0);
     }
@@ -573,7 +589,8 @@ static void wrong_use_is_refused(void **state)
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         KrsPicture *picture;
-        assert_int_equal(krs_render(stage->rendering, stage->frame, &wrong[i], &picture), KRS_BAD_ARGUMENT);
+        assert_int_equal(krs_render(stage->rendering, stage->frame, &wrong[i], &picture),
+                         KRS_BAD_ARGUMENT);
         assert_null(picture);
         assert_true(strlen(krs_renderer_message(stage->renderer)) > 10);
     }
@@ -581,8 +598,9 @@ static void wrong_use_is_refused(void **state)
 
 static void only_wanted_planes_are_held(void **state)
 {
-    Stage      *stage = *state;
-    KrsPicture *picture = render(stage, (KrsRenderOptions){.planes = KRS_PLANE_DEPTH | KRS_PLANE_IDS});
+    Stage           *stage = *state;
+    KrsRenderOptions options = {.planes = KRS_PLANE_DEPTH | KRS_PLANE_IDS};
+    KrsPicture      *picture = render(stage, options);
     assert_non_null(picture->depth);
     assert_non_null(picture->instance);
     assert_null(picture->color);
@@ -619,12 +637,14 @@ static KrsStatus render_with(Ledger *ledger, Stage *stage)
     KrsRenderer       *renderer;
     KrsRendering      *rendering = NULL;
     KrsPicture        *picture = NULL;
-    KrsRendererOptions options = {.device = "cpu", .allocator = {ledger_allocate, ledger_release, ledger}};
-    KrsStatus          status = krs_renderer_new(&options, &renderer);
+    KrsRenderOptions   small = {.width = 16, .height = 16};
+    KrsRendererOptions options = {
+        .device = "cpu", .allocator = {ledger_allocate, ledger_release, ledger}};
+    KrsStatus status = krs_renderer_new(&options, &renderer);
     if (status == KRS_OK)
         status = krs_rendering_new(renderer, stage->scene, &rendering);
     if (status == KRS_OK)
-        status = krs_render(rendering, stage->frame, &(KrsRenderOptions){.width = 16, .height = 16}, &picture);
+        status = krs_render(rendering, stage->frame, &small, &picture);
     if (status != KRS_OK)
         assert_non_null(strstr(krs_renderer_message(renderer), "memory"));
     krs_picture_free(picture);

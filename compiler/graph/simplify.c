@@ -1,0 +1,440 @@
+/*
+ * simplify.c: algebra that makes a graph smaller without changing values.
+ *
+ * Nodes are rebuilt in order into a new graph, each by the first rule of its operation that
+ * fits, so that rules see operands that are simple already.  A second copy then leaves out what
+ * no root needs any more.  Rules keep values exactly, but for the sign of zero and, where
+ * constants are gathered, the last digit.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "compiler/graph/evaluate.h"
+
+typedef struct Simplifier {
+    const Graph *old;
+    Graph       *graph;  /* what is built */
+    Node        *nodes;  /* by node of old: the one of graph */
+    bool        *finite; /* by node of old: never infinite or not a number, but by overflow */
+} Simplifier;
+
+/* A node about to be rebuilt: its operands in the new graph. */
+typedef struct Step {
+    Graph      *graph;
+    Op          op;
+    GraphType   type;
+    uint32_t    index;
+    Node        o[MAX_OPERANDS];
+    bool        finite[MAX_OPERANDS]; /* of each operand */
+} Step;
+
+/* ---- what rules ask about ---- */
+
+static const Expr *expr(const Step *s, Node node) { return &s->graph->items[node]; }
+static bool is(const Step *s, Node node, Op op) { return expr(s, node)->op == op; }
+static bool constant(const Step *s, Node node) { return is(s, node, OP_CONSTANT); }
+
+static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
+
+/* Whether a node is the constant with all components equal to this number. */
+static bool equals(const Step *s, Node node, double number)
+{
+    const Expr *e = expr(s, node);
+    for (uint32_t i = 0; e->op == OP_CONSTANT && i < components(e->type); i++)
+        if (e->number[i] != number)
+            return false;
+    return e->op == OP_CONSTANT;
+}
+
+static Node operand(const Step *s, Node node, int i) { return expr(s, node)->operands[i]; }
+
+static Node zero(const Step *s)
+{
+    static const double zeros[4] = {0};
+    return graph_constant(s->graph, s->type, zeros);
+}
+
+static Node op2(const Step *s, Op op, Node a, Node b) { return graph_op2(s->graph, op, a, b); }
+
+/* The constant that `op` makes of two, or NODE_NONE where it is not finite or the digits of a
+   subnormal would be lost. */
+static Node gathered(const Step *s, Op op, Node a, Node b)
+{
+    Node node = op2(s, op, a, b);
+    if (!constant(s, node))
+        return NODE_NONE;
+    for (uint32_t i = 0; i < components(s->type); i++)
+        if (expr(s, node)->number[i] != 0 && !isnormal(expr(s, node)->number[i]))
+            return NODE_NONE;
+    return node;
+}
+
+/* x `op` (c `join` d) for (x `op` c) ... d, where the constants gather. */
+static Node gather(const Step *s, Op op, Node x, Op join, Node c, Node d)
+{
+    Node both = gathered(s, join, c, d);
+    return both == NODE_NONE ? NODE_NONE : op2(s, op, x, both);
+}
+
+/* ---- rules: each gives the node to use instead, or NODE_NONE ---- */
+
+#define RULE(condition, result)                                                                    \
+    if (condition)                                                                                 \
+        return (result)
+
+/* Of operations that may take their operands in either order: the older first, a constant
+   last. */
+static void order_operands(Step *s)
+{
+    bool swap = constant(s, s->o[0]) ? !constant(s, s->o[1])
+                                     : !constant(s, s->o[1]) && s->o[1] < s->o[0];
+    if (swap) {
+        Node first   = s->o[0];
+        bool finite  = s->finite[0];
+        s->o[0]      = s->o[1];
+        s->finite[0] = s->finite[1];
+        s->o[1]      = first;
+        s->finite[1] = finite;
+    }
+}
+
+static Node simplify_add(const Step *s)
+{
+    Node a = s->o[0], b = s->o[1];
+    RULE(equals(s, b, 0), a);
+    RULE(is(s, b, OP_neg), op2(s, OP_sub, a, operand(s, b, 0)));
+    RULE(is(s, a, OP_neg), op2(s, OP_sub, b, operand(s, a, 0)));
+    bool chain = constant(s, b) && expr(s, a)->operand_count == 2;
+    RULE(chain && is(s, a, OP_add) && constant(s, operand(s, a, 1)),
+         gather(s, OP_add, operand(s, a, 0), OP_add, operand(s, a, 1), b));
+    RULE(chain && is(s, a, OP_sub) && constant(s, operand(s, a, 1)),
+         gather(s, OP_add, operand(s, a, 0), OP_sub, b, operand(s, a, 1)));
+    return NODE_NONE;
+}
+
+static Node simplify_sub(const Step *s)
+{
+    Node a = s->o[0], b = s->o[1];
+    RULE(equals(s, b, 0), a);
+    RULE(equals(s, a, 0), graph_op1(s->graph, OP_neg, b));
+    RULE(a == b && s->finite[0], zero(s));
+    RULE(is(s, b, OP_neg), op2(s, OP_add, a, operand(s, b, 0)));
+    bool chain = constant(s, b) && expr(s, a)->operand_count == 2;
+    RULE(chain && is(s, a, OP_add) && constant(s, operand(s, a, 1)),
+         gather(s, OP_sub, operand(s, a, 0), OP_sub, b, operand(s, a, 1)));
+    RULE(chain && is(s, a, OP_sub) && constant(s, operand(s, a, 1)),
+         gather(s, OP_sub, operand(s, a, 0), OP_add, operand(s, a, 1), b));
+    return NODE_NONE;
+}
+
+static Node simplify_mul(const Step *s)
+{
+    Node a = s->o[0], b = s->o[1];
+    RULE(equals(s, b, 1), a);
+    RULE(equals(s, b, -1), graph_op1(s->graph, OP_neg, a));
+    RULE(equals(s, b, 0) && s->finite[0] && s->finite[1], zero(s));
+    RULE(a == b, graph_op1(s->graph, OP_square, a));
+    RULE(is(s, a, OP_neg) && is(s, b, OP_neg), op2(s, OP_mul, operand(s, a, 0), operand(s, b, 0)));
+    RULE(constant(s, b) && is(s, a, OP_mul) && constant(s, operand(s, a, 1)),
+         gather(s, OP_mul, operand(s, a, 0), OP_mul, operand(s, a, 1), b));
+    return NODE_NONE;
+}
+
+/* A power of two has an exact reciprocal. */
+static bool powers_of_two(const Step *s, Node node)
+{
+    const Expr *e = expr(s, node);
+    for (uint32_t i = 0; e->op == OP_CONSTANT && i < components(e->type); i++) {
+        int exponent;
+        if (fabs(frexp(e->number[i], &exponent)) != 0.5 || abs(exponent) > 500)
+            return false;
+    }
+    return e->op == OP_CONSTANT;
+}
+
+static Node simplify_div(const Step *s)
+{
+    Node a = s->o[0], b = s->o[1];
+    RULE(equals(s, b, 1), a);
+    if (!powers_of_two(s, b))
+        return NODE_NONE;
+    Node one        = graph_number(s->graph, 1);
+    Node reciprocal = op2(s, OP_div, one, b);
+    return op2(s, OP_mul, a, reciprocal);
+}
+
+static Node simplify_neg(const Step *s)
+{
+    Node a = s->o[0];
+    RULE(is(s, a, OP_neg), operand(s, a, 0));
+    RULE(is(s, a, OP_sub), op2(s, OP_sub, operand(s, a, 1), operand(s, a, 0)));
+    return NODE_NONE;
+}
+
+static Node simplify_abs(const Step *s)
+{
+    Node a = s->o[0];
+    RULE(is(s, a, OP_abs) || is(s, a, OP_square) || is(s, a, OP_length), a);
+    RULE(is(s, a, OP_neg), graph_op1(s->graph, OP_abs, operand(s, a, 0)));
+    return NODE_NONE;
+}
+
+static Node simplify_square(const Step *s)
+{
+    Node a = s->o[0];
+    RULE(is(s, a, OP_abs) || is(s, a, OP_neg), graph_op1(s->graph, OP_square, operand(s, a, 0)));
+    return NODE_NONE;
+}
+
+/* Whether a sum has only squares as terms, at most 4; what is squared goes to `roots`. */
+static bool sum_of_squares(const Step *s, Node sum, Node *roots, uint32_t *count)
+{
+    if (is(s, sum, OP_add))
+        return sum_of_squares(s, operand(s, sum, 0), roots, count) &&
+               sum_of_squares(s, operand(s, sum, 1), roots, count);
+    if (!is(s, sum, OP_square) || *count == 4)
+        return false;
+    roots[(*count)++] = operand(s, sum, 0);
+    return true;
+}
+
+/* The slope of a root of squares is unbounded to whoever does not see that it is a length. */
+static Node simplify_sqrt(const Step *s)
+{
+    static const Op vectors[] = {OP_vec2, OP_vec3, OP_vec4};
+    Node     a = s->o[0], roots[4];
+    uint32_t count = 0;
+    RULE(is(s, a, OP_square), graph_op1(s->graph, OP_abs, operand(s, a, 0)));
+    RULE(is(s, a, OP_dot) && operand(s, a, 0) == operand(s, a, 1),
+         graph_op1(s->graph, OP_length, operand(s, a, 0)));
+    if (s->type != TYPE_FLOAT || !sum_of_squares(s, a, roots, &count) || count < 2)
+        return NODE_NONE;
+    Node vector = graph_op(s->graph, vectors[count - 2], roots);
+    return graph_op1(s->graph, OP_length, vector);
+}
+
+static Node simplify_pow(const Step *s)
+{
+    Node power = graph_power(s->graph, s->o[0], s->o[1]);
+    return is(s, power, OP_pow) ? NODE_NONE : power;
+}
+
+static Node simplify_extremum(const Step *s)
+{
+    RULE(s->o[0] == s->o[1], s->o[0]);
+    return NODE_NONE;
+}
+
+static Node simplify_mix(const Step *s)
+{
+    RULE(equals(s, s->o[2], 0) && s->finite[1], s->o[0]);
+    RULE(equals(s, s->o[2], 1) && s->finite[0], s->o[1]);
+    return NODE_NONE;
+}
+
+static Node simplify_scale(const Step *s)
+{
+    RULE(equals(s, s->o[1], 1), s->o[0]);
+    RULE(equals(s, s->o[1], -1), graph_op1(s->graph, OP_neg, s->o[0]));
+    RULE(equals(s, s->o[1], 0) && s->finite[0], zero(s));
+    return NODE_NONE;
+}
+
+static Node simplify_component(const Step *s)
+{
+    Node a = s->o[0];
+    switch ((Op)expr(s, a)->op) {
+    case OP_vec2: case OP_vec3: case OP_vec4:
+        return operand(s, a, (int)s->index);
+    case OP_splat2: case OP_splat3: case OP_splat4:
+        return operand(s, a, 0);
+    default:
+        return NODE_NONE;
+    }
+}
+
+/* [v.x, v.y, v.z] is v, and [x, x, x] a splat. */
+static Node simplify_vector(const Step *s)
+{
+    static const Op splats[] = {OP_splat2, OP_splat3, OP_splat4};
+    uint32_t size  = s->type;
+    Node     first = s->o[0];
+    bool     equal = true, whole = is(s, first, OP_COMPONENT);
+    for (uint32_t i = 0; i < size; i++) {
+        equal = equal && s->o[i] == first;
+        whole = whole && is(s, s->o[i], OP_COMPONENT) && expr(s, s->o[i])->index == i &&
+                operand(s, s->o[i], 0) == operand(s, first, 0);
+    }
+    RULE(whole && expr(s, operand(s, first, 0))->type == s->type, operand(s, first, 0));
+    RULE(equal, graph_op1(s->graph, splats[size - 2], first));
+    return NODE_NONE;
+}
+
+static Node simplify_logic(const Step *s)
+{
+    Node a = s->o[0], b = s->o[1];
+    RULE(a == b, a);
+    RULE(constant(s, b), (expr(s, b)->number[0] != 0) == (s->op == OP_and) ? a : b);
+    return NODE_NONE;
+}
+
+static Node simplify_not(const Step *s)
+{
+    RULE(is(s, s->o[0], OP_not), operand(s, s->o[0], 0));
+    return NODE_NONE;
+}
+
+static Node simplify_select(const Step *s)
+{
+    Node condition = s->o[0], yes = s->o[1], no = s->o[2];
+    RULE(yes == no, yes);
+    RULE(constant(s, condition), expr(s, condition)->number[0] != 0 ? yes : no);
+    RULE(is(s, condition, OP_not),
+         graph_op3(s->graph, OP_select, operand(s, condition, 0), no, yes));
+    return NODE_NONE;
+}
+
+static Node simplify_turn(const Step *s)
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            const Expr *row = expr(s, s->o[i + 1]);
+            if (row->op != OP_CONSTANT || row->number[j] != (i == j))
+                return NODE_NONE;
+        }
+    return s->o[0];
+}
+
+static Node simplify_cell(const Step *s)
+{
+    RULE(equals(s, s->o[1], 0), s->o[0]);
+    return NODE_NONE;
+}
+
+static Node simplify_smin(const Step *s)
+{
+    RULE(equals(s, s->o[2], 0), op2(s, OP_min, s->o[0], s->o[1]));
+    return NODE_NONE;
+}
+
+static Node simplify_by_rule(Step *s)
+{
+    switch (s->op) {
+    case OP_add:           order_operands(s); return simplify_add(s);
+    case OP_mul:           order_operands(s); return simplify_mul(s);
+    case OP_min: case OP_max: order_operands(s); return simplify_extremum(s);
+    case OP_and: case OP_or:  order_operands(s); return simplify_logic(s);
+    case OP_dot: case OP_equal: case OP_not_equal: order_operands(s); return NODE_NONE;
+    case OP_sub:           return simplify_sub(s);
+    case OP_div:           return simplify_div(s);
+    case OP_neg:           return simplify_neg(s);
+    case OP_abs:           return simplify_abs(s);
+    case OP_square:        return simplify_square(s);
+    case OP_sqrt:          return simplify_sqrt(s);
+    case OP_pow:           return simplify_pow(s);
+    case OP_mix:           return simplify_mix(s);
+    case OP_scale:         return simplify_scale(s);
+    case OP_COMPONENT:     return simplify_component(s);
+    case OP_vec2: case OP_vec3: case OP_vec4: return simplify_vector(s);
+    case OP_not:           return simplify_not(s);
+    case OP_select:        return simplify_select(s);
+    case OP_turn:          return simplify_turn(s);
+    case OP_cell:          return simplify_cell(s);
+    case OP_smin_quadratic: case OP_smin_cubic: case OP_smin_exponential:
+    case OP_smin_circular: case OP_smin_chamfer: case OP_smin_stairs: return simplify_smin(s);
+    default:               return NODE_NONE;
+    }
+}
+
+/* ---- the pass ---- */
+
+/* Operations that can make what is not finite from what is. */
+static bool op_stays_finite(Op op)
+{
+    switch (op) {
+    case OP_div: case OP_mod: case OP_sqrt: case OP_inversesqrt: case OP_log: case OP_log2:
+    case OP_exp: case OP_exp2: case OP_sinh: case OP_cosh: case OP_tan: case OP_pow:
+        return false;
+    default:
+        return true;
+    }
+}
+
+static bool node_stays_finite(const Simplifier *simplifier, const Expr *e)
+{
+    bool finite = op_stays_finite(e->op);
+    for (int i = 0; i < 4 && e->op == OP_CONSTANT; i++)
+        finite = finite && isfinite(e->number[i]);
+    for (int i = 0; i < e->operand_count; i++)
+        finite = finite && simplifier->finite[e->operands[i]];
+    return finite;
+}
+
+static Node rebuild_leaf(Graph *graph, const Expr *e)
+{
+    switch ((Op)e->op) {
+    case OP_CONSTANT:
+        return graph_constant(graph, e->type, e->number);
+    case OP_PARAMETER:
+        return graph_parameter(graph, e->index, e->type);
+    default:
+        return graph_leaf(graph, e->op);
+    }
+}
+
+static Node rebuild(Simplifier *simplifier, const Expr *e, bool with_rules)
+{
+    Graph *graph = simplifier->graph;
+    graph->here  = e->span;
+    if (e->operand_count == 0)
+        return rebuild_leaf(graph, e);
+    Step step = {.graph = graph, .op = e->op, .type = e->type, .index = e->index};
+    for (int i = 0; i < e->operand_count; i++) {
+        step.o[i]      = simplifier->nodes[e->operands[i]];
+        step.finite[i] = simplifier->finite[e->operands[i]];
+    }
+    Node node = with_rules ? simplify_by_rule(&step) : NODE_NONE;
+    if (node != NODE_NONE)
+        return node;
+    return e->op == OP_COMPONENT ? graph_component(graph, step.o[0], e->index)
+                                 : graph_op(graph, e->op, step.o);
+}
+
+/* What the roots need of `old`, by the rules or as it is, in a new graph. */
+static Graph *rebuild_all(const Graph *old, Node *roots, size_t root_count, bool with_rules,
+                          Arena *arena)
+{
+    Tape       tape       = tape_new(old, roots, root_count, arena);
+    Simplifier simplifier = {.old = old, .graph = graph_new(arena)};
+    bool      *needed     = arena_new_array(arena, bool, old->count + 1);
+    simplifier.nodes  = arena_new_array(arena, Node, old->count + 1);
+    simplifier.finite = arena_new_array(arena, bool, old->count + 1);
+    for (size_t i = 0; i < tape.count; i++)
+        needed[tape.nodes[i]] = true;
+    for (Node node = 0; node < old->count; node++)
+        if (needed[node]) {
+            const Expr *e            = &old->items[node];
+            simplifier.finite[node] = node_stays_finite(&simplifier, e);
+            simplifier.nodes[node]  = rebuild(&simplifier, e, with_rules);
+        }
+    for (size_t i = 0; i < root_count; i++)
+        roots[i] = simplifier.nodes[roots[i]];
+    simplifier.graph->parameters.count = 0;
+    for (size_t i = 0; i < old->parameters.count; i++)
+        array_push(arena, &simplifier.graph->parameters, old->parameters.items[i]);
+    simplifier.graph->here = (Span){0};
+    return simplifier.graph;
+}
+
+/* What one rule makes may fit another, so it is done again while it helps. */
+Graph *graph_simplify(const Graph *graph, Node *roots, size_t root_count, Arena *arena)
+{
+    for (size_t before = SIZE_MAX;;) {
+        Graph *simple = rebuild_all(graph, roots, root_count, true, arena);
+        Graph *copy   = rebuild_all(simple, roots, root_count, false, arena);
+        if (copy->count >= before)
+            return copy;
+        before = copy->count;
+        graph  = copy;
+    }
+}

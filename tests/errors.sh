@@ -1,0 +1,45 @@
+#!/bin/sh
+# errors.sh: every diagnostic code has a scene in tests/errors/ whose output is as blessed in the
+# .err file beside it, and a mark in the scene (//~ E0203) that no blessing can change: that code
+# is reported on that line.  `errors.sh --bless` writes the .err files.
+cd "$(dirname "$0")/.." || exit 1
+krs=${KRS:-build/krs}
+got=$(mktemp) && trap 'rm -f "$got"' EXIT
+failed=0
+
+report() { # name, passed
+    if [ "$2" = yes ]; then echo "ok - $1"; else echo "not ok - $1"; failed=1; fi
+}
+
+for scene in tests/errors/*.krs; do
+    "$krs" check --color never "$scene" >"$got" 2>&1
+    status=$?
+    case $scene in */W*) wanted=0 ;; *) wanted=1 ;; esac
+    if [ "${1:-}" = --bless ]; then cp "$got" "${scene%.krs}.err"; fi
+
+    passed=yes
+    [ $status -eq $wanted ] || { echo "# $scene: status $status, expected $wanted"; passed=no; }
+    if ! diff "${scene%.krs}.err" "$got"; then passed=no; fi
+    marks=$(grep -n '//~ ' "$scene" | sed 's/^\([0-9]*\):.*\/\/~ \([EW][0-9]*\).*/\1 \2/')
+    while read -r line code; do
+        [ -z "$line" ] && continue
+        if ! grep -A1 "\[$code\]" "$got" | grep -q -- "--> $scene:$line:"; then
+            echo "# $scene: $code is not reported on line $line"
+            passed=no
+        fi
+    done <<EOF
+$marks
+EOF
+    report "$(basename "$scene" .krs)" $passed
+done
+
+# Every code of the table has a scene.
+sed -n 's/^DIAG(\([EW][0-9]*\),.*/\1/p' compiler/base/diag.def >"$got"
+while read -r code; do
+    found=no
+    for scene in tests/errors/"$code"-*.krs; do
+        [ -e "$scene" ] && found=yes
+    done
+    report "$code has a scene" $found
+done <"$got"
+exit $failed
