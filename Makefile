@@ -1,58 +1,78 @@
 # make            build/krs, build/libkrs.a
-# make demo       set up, build, render the highlights of the examples to build/demo/
+# make demo       set up, build, render the examples' highlights to build/demo/
 # make test       set up, build, run every test; the last line is `N passed, N failed`
-# make lint       shaders by themselves, shell scripts, formatting of nothing else
-# make fuzz       the front end under libFuzzer for FUZZ_SECONDS
-# make deps       install what is missing (Debian packages)
+# make sanitize   the same programs under ASan and UBSan, in build/asan/
+# make fuzz       the front end under libFuzzer for FUZZ_SECONDS (30)
+# make lint       kernels by themselves, shell scripts
+# make bless      writes the expected text of tests/errors/; read the difference
+# make deps       installs what is missing (Debian packages)
 
-B ?= build
+B       ?= build
+CFLAGS  ?= -g -O2
+FUZZ_SECONDS ?= 30
 
 # Sources in the order of the pipeline: reading down this list is reading the program.
-BASE     := $(wildcard compiler/base/*.c)
-FRONT    := $(wildcard compiler/front/*.c)
-GRAPH    := $(wildcard compiler/graph/*.c)
-GEOMETRY := $(wildcard compiler/geometry/*.c)
-SHADER   := compiler/shader/emit.c compiler/shader/spirv.c
-COMPILER := $(BASE) $(FRONT) $(GRAPH) $(GEOMETRY) $(SHADER) compiler/compile.c compiler/query.c
-GLSLANG  := compiler/shader/glslang_border.cpp
-RUNTIME  := $(wildcard runtime/device/*.c runtime/tracer/*.c runtime/film/*.c runtime/writer/*.c)
-CLI      := $(wildcard cli/*.c)
+BASE     := $(addprefix compiler/base/, arena.c text.c source.c diag.c diag_text.c)
+FRONT    := $(addprefix compiler/front/, lexer.c syntax.c parser.c parse_expression.c parse.c names.c)
+GRAPH    := $(addprefix compiler/graph/, graph.c simplify.c range.c rules.c facts.c evaluate.c print.c)
+GEOMETRY := $(addprefix compiler/geometry/, box.c arithmetic.c arguments.c builtins.c functions.c \
+                expression.c similarity.c make.c declare.c methods.c looks.c scope.c statements.c print.c lower.c)
+SHADER   := $(addprefix compiler/shader/, emit.c spirv.c)
+BORDER   := compiler/shader/glslang_border.cpp
+DOORSTEP := compiler/compile.c compiler/query.c
+RUNTIME  := $(sort $(wildcard runtime/device/*.c runtime/tracer/*.c runtime/film/*.c runtime/writer/*.c))
+CLI      := $(sort $(wildcard cli/*.c))
 
 # Text files that the program carries: the standard library and the kernels.
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))
 SHADERS  := $(sort $(wildcard runtime/shaders/*.comp runtime/shaders/*.glsl))
+EXAMPLES := $(sort $(wildcard examples/*.krs))
 
-CFLAGS   ?= -g -O2
-STYLE    := -std=c17 -D_GNU_SOURCE -Wall -Wextra -Wpedantic -Wshadow -Werror -I. -MMD -MP
-COMPILE   = $(CC) $(STYLE) -pthread $(CFLAGS)
-OPENEXR  := -lOpenEXRCore-3_1
+STYLE    := -std=c17 -D_GNU_SOURCE -Wall -Wextra -Wpedantic -Wshadow -Werror -I. -MMD -MP -pthread
 LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLCompiler -lSPIRV \
             -lSPVRemapper -lglslang-default-resource-limits -lSPIRV-Tools-opt -lSPIRV-Tools \
-            $(OPENEXR) -lpng -lvulkan -lstdc++ -lm -pthread
+            -lOpenEXRCore-3_1 -lpng -lvulkan -lstdc++ -lm -pthread
 
-OBJECTS_COMPILER := $(COMPILER:%.c=$(B)/%.o) $(GLSLANG:%.cpp=$(B)/%.o) $(B)/library_files.o
-OBJECTS_RUNTIME  := $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o
-OBJECTS_CLI      := $(CLI:%.c=$(B)/%.o)
+COMPILER := $(BASE) $(FRONT) $(GRAPH) $(GEOMETRY) $(SHADER) $(DOORSTEP)
+OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
+            $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o
 
 all: $(B)/krs
-$(B)/krs: $(OBJECTS_CLI) $(B)/libkrs.a
-	$(COMPILE) -o $@ $^ $(LIBS)
-$(B)/libkrs.a: $(OBJECTS_COMPILER) $(OBJECTS_RUNTIME)
-	rm -f $@
-	$(AR) rcs $@ $^
+$(B)/krs: $(CLI:%.c=$(B)/%.o) $(B)/libkrs.a
+	@echo "link   $@"
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+$(B)/libkrs.a: $(OBJECTS)
+	@echo "pack   $@"
+	@rm -f $@
+	@$(AR) rcs $@ $^
 $(B)/%.o: %.c
 	@mkdir -p $(@D)
-	$(COMPILE) -c -o $@ $<
+	@echo "compile $<"
+	@$(CC) $(STYLE) $(CFLAGS) -c -o $@ $<
 $(B)/%.o: %.cpp
 	@mkdir -p $(@D)
-	$(CXX) -std=c++17 -Wall -Wextra -I. -I/usr/include/glslang -MMD -MP $(CFLAGS) -c -o $@ $<
+	@echo "compile $<"
+	@$(CXX) -std=c++17 -Wall -Wextra -I. -I/usr/include/glslang -MMD -MP $(CFLAGS) -c -o $@ $<
 $(B)/%.o: $(B)/%.c
-	$(COMPILE) -c -o $@ $<
-
+	@$(CC) $(STYLE) $(CFLAGS) -c -o $@ $<
 $(B)/library_files.c: $(B)/embed $(LIBRARY)
-	$(B)/embed library_files compiler/library/ $(LIBRARY) >$@
+	@$(B)/embed library_files compiler/library/ $(LIBRARY) >$@
 $(B)/shader_files.c: $(B)/embed $(SHADERS)
-	$(B)/embed shader_files runtime/shaders/ $(SHADERS) >$@
+	@$(B)/embed shader_files runtime/shaders/ $(SHADERS) >$@
 $(B)/embed: compiler/base/embed/embed.c
 	@mkdir -p $(@D)
-	$(COMPILE) -o $@ $<
+	@$(CC) $(STYLE) -O1 -o $@ $<
+
+include tests/tests.mk
+
+# ---- what a newcomer types ----
+demo: deps
+	@$(MAKE) --no-print-directory all
+	@tools/demo.sh $(B)
+deps:
+	@tools/deps.sh
+clean:
+	rm -rf build
+.PHONY: all demo deps clean
+.DELETE_ON_ERROR:
+-include $(shell find $(B) -name '*.d' 2>/dev/null)

@@ -251,7 +251,6 @@ static KrsStatus refuse(const Options *options, OptionId id, const char *wants, 
     return say_usage(options, "--%s wants %s, not `%s`", option_info[id].name, wants, value);
 }
 
-static const char *const integrators[] = {"preview", "direct", NULL};
 static const char *const stages[] = {"tokens", "syntax", "scene", "graph", "simplify", "glsl",
                                      "spirv", NULL};
 static const char *const whens[] = {"auto", "always", "never", NULL};
@@ -277,11 +276,10 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
         options->samples = (uint32_t)whole;
         return KRS_OK;
     case OPTION_INTEGRATOR:
-        if (strcmp(value, "path") == 0)
-            return say_usage(options, "--integrator path is not in this version; there are "
-                                      "preview and direct");
-        options->integrator = read_choice(value, integrators);
-        return options->integrator ? KRS_OK : refuse(options, id, "preview or direct", value);
+        if (strcmp(value, "direct") == 0 || strcmp(value, "path") == 0)
+            return say_usage(options, "--integrator %s is not in this version; there is preview",
+                             value);
+        return strcmp(value, "preview") == 0 ? KRS_OK : refuse(options, id, "preview", value);
     case OPTION_CAMERA:
         options->camera = value;
         return KRS_OK;

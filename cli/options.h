@@ -64,7 +64,7 @@ typedef struct Options {
     struct { ExitPair *items; size_t count, capacity; } exit_map;
 
     uint32_t    width, height, samples; /* 0: not given */
-    const char *integrator, *camera, *device, *after; /* NULL: not given */
+    const char *camera, *device, *after; /* NULL: not given */
     bool        cropped;
     uint32_t    crop[4]; /* x, y, width, height */
     bool        animated;

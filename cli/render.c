@@ -131,6 +131,10 @@ static KrsStatus choose_how(Render *render)
         status = krs_frame_view(render->frame, camera, &view);
     if (status != KRS_OK)
         return status;
+    const char *integrator = view.image.integrator;
+    if (integrator && strcmp(integrator, "preview") != 0 && !options->quiet)
+        say("the scene asks for the integrator `%s`, which is not in this version; it is rendered "
+            "by preview", integrator);
     uint32_t width = options->width    ? options->width
                      : view.image.width ? view.image.width
                                         : 1280;

@@ -174,8 +174,12 @@ static KrsStatus try_balls(Validation *v)
     double inside[BATCH][3], found[BATCH];
     krs_probe(v->frame, (const double(*)[3])v->points, BATCH, hits);
     for (size_t i = 0; i < BATCH; i++)
-        if (isnan(hits[i].distance))
-            return report_ball(v, v->points[i], hits[i].distance, v->points[i], NAN);
+        if (isnan(hits[i].distance)) {
+            printf("%s: refuted: the distance", v->path);
+            print_point(" at", v->points[i]);
+            puts(" is not a number");
+            return KRS_BAD_SCENE;
+        }
     for (int probe = 0; probe < PROBES; probe++) {
         for (size_t i = 0; i < BATCH; i++)
             if (is_worth_trying(v, hits[i].distance))

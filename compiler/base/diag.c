@@ -4,9 +4,6 @@
  */
 #include "compiler/base/diag.h"
 
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define SEVERITY_ERROR   DIAG_ERROR
@@ -28,18 +25,6 @@ const DiagInfo *diag_find(const char *code)
 }
 
 /* ---- collecting ---- */
-
-static const char *format_text(Arena *arena, const char *format, va_list arguments)
-{
-    va_list again;
-    va_copy(again, arguments);
-    int   length = vsnprintf(NULL, 0, format, again);
-    va_end(again);
-    char *text = arena_alloc(arena, (size_t)(length > 0 ? length : 0) + 1, 1);
-    if (length > 0)
-        vsnprintf(text, (size_t)length + 1, format, arguments);
-    return text;
-}
 
 static bool same_span(Span a, Span b)
 {
@@ -76,21 +61,24 @@ Diag *diag_add(Diags *diags, DiagCode code, Span span, const char *format, ...)
 {
     Diag *diag = diag_new(diags, code, span);
     if (diag != &diags->scrap) {
+        Text    message = {.arena = diags->arena};
         va_list arguments;
         va_start(arguments, format);
-        diag->message = format_text(diags->arena, format, arguments);
+        text_format_list(&message, format, arguments);
         va_end(arguments);
+        diag->message = message.bytes;
     }
     return diag;
 }
 
 const char *diag_text(Diags *diags, const char *format, ...)
 {
+    Text    text = {.arena = diags->arena};
     va_list arguments;
     va_start(arguments, format);
-    const char *text = format_text(diags->arena, format, arguments);
+    text_format_list(&text, format, arguments);
     va_end(arguments);
-    return text;
+    return text.bytes;
 }
 
 void diag_note(Diags *diags, Diag *diag, const char *note)

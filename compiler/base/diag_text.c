@@ -61,8 +61,9 @@ static bool is_combining(uint32_t c)
 static bool is_wide(uint32_t c)
 {
     static const CharacterRange ranges[] = {
-        {0x1100, 0x115F}, {0x2E80, 0x303E}, {0x3041, 0xA4CF}, {0xAC00, 0xD7A3},   {0xF900, 0xFAFF},
-        {0xFE30, 0xFE6F}, {0xFF00, 0xFF60}, {0xFFE0, 0xFFE6}, {0x1F300, 0x1FAFF}, {0x20000, 0x3FFFD}};
+        {0x1100, 0x115F}, {0x2E80, 0x303E},   {0x3041, 0xA4CF},  {0xAC00, 0xD7A3}, {0xF900, 0xFAFF},
+        {0xFE30, 0xFE6F}, {0xFF00, 0xFF60},   {0xFFE0, 0xFFE6},
+        {0x1F300, 0x1FAFF}, {0x20000, 0x3FFFD}};
     return is_among(c, ranges, sizeof ranges / sizeof *ranges);
 }
 
@@ -211,8 +212,8 @@ static void draw_marks(const Picture *picture, const Mark *mark, Window window)
     const char *text  = source_of(picture, mark->span)->text;
     uint32_t    end   = mark->end < window.end ? mark->end : window.end;
     uint32_t    blank = add_visible(NULL, text + window.start, mark->start - window.start);
-    uint32_t    width = end <= mark->start ? 0
-                                           : add_visible(NULL, text + mark->start, end - mark->start);
+    uint32_t    bytes = end > mark->start ? end - mark->start : 0;
+    uint32_t    width = add_visible(NULL, text + mark->start, bytes);
     draw_gutter(picture, "|");
     text_format(picture->out, " %*s", (int)blank + (window.cut_before ? 3 : 0), "");
     if (mark->primary)
@@ -276,8 +277,9 @@ static void draw_file(Picture *picture, const Mark *named, const char *arrow)
     }
 }
 
+/* Text under the picture, and code, if any, in quotes behind it. */
 static void draw_remark(const Picture *picture, const char *kind, const char *text,
-                        const char *code)
+                        const char *separator, const char *code)
 {
     draw_gutter(picture, "= ");
     paint(picture, "1");
@@ -285,7 +287,7 @@ static void draw_remark(const Picture *picture, const char *kind, const char *te
     paint_nothing(picture);
     add_lines(picture->out, text, picture->gutter + 5 + (int)strlen(kind));
     if (code) {
-        text_add(picture->out, *text ? ": `" : "`");
+        text_format(picture->out, "%s`", separator);
         add_lines(picture->out, code, picture->gutter + 5 + (int)strlen(kind));
         text_add(picture->out, "`");
     }
@@ -296,13 +298,13 @@ static void draw_remark(const Picture *picture, const char *kind, const char *te
 static void draw_help(const Picture *picture, const Diag *diag)
 {
     if (diag->help && (!diag->replacement || strstr(diag->help, diag->replacement)))
-        draw_remark(picture, "help", diag->help, NULL);
+        draw_remark(picture, "help", diag->help, "", NULL);
     else if (diag->help)
-        draw_remark(picture, "help", diag->help, diag->replacement);
+        draw_remark(picture, "help", diag->help, ": ", diag->replacement);
     else if (diag->replacement && *diag->replacement)
-        draw_remark(picture, "help", "write", diag->replacement);
+        draw_remark(picture, "help", "write", " ", diag->replacement);
     else if (diag->replacement)
-        draw_remark(picture, "help", "leave this out", NULL);
+        draw_remark(picture, "help", "leave this out", "", NULL);
 }
 
 static void draw_title(const Picture *picture, const Diag *diag)
@@ -335,7 +337,7 @@ void diag_print_one(const Diags *diags, const Diag *diag, bool color, Text *out)
         if (!picture.marks.items[i].drawn)
             draw_file(&picture, &picture.marks.items[i], i == 0 ? "-->" : ":::");
     for (size_t i = 0; i < diag->notes.count; i++)
-        draw_remark(&picture, "note", diag->notes.items[i], NULL);
+        draw_remark(&picture, "note", diag->notes.items[i], "", NULL);
     draw_help(&picture, diag);
 }
 

@@ -8,7 +8,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -34,18 +33,27 @@ void text_add_bytes(Text *text, const char *bytes, size_t length)
 
 void text_add(Text *text, const char *string) { text_add_bytes(text, string, strlen(string)); }
 
-void text_format(Text *text, const char *format, ...)
+void text_format_list(Text *text, const char *format, va_list arguments)
 {
-    va_list arguments, again;
-    va_start(arguments, format);
+    enum { USUAL_LENGTH = 80 };
+    va_list again;
     va_copy(again, arguments);
-    int length = vsnprintf(NULL, 0, format, arguments);
-    if (length > 0) {
+    text_reserve(text, USUAL_LENGTH);
+    size_t room   = text->capacity - text->length;
+    int    length = vsnprintf(text->bytes + text->length, room, format, arguments);
+    if (length >= 0 && (size_t)length >= room) {
         text_reserve(text, (size_t)length);
         vsnprintf(text->bytes + text->length, (size_t)length + 1, format, again);
-        text->length += (size_t)length;
     }
+    text->length += length > 0 ? (size_t)length : 0;
     va_end(again);
+}
+
+void text_format(Text *text, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    text_format_list(text, format, arguments);
     va_end(arguments);
 }
 
@@ -242,7 +250,7 @@ const char *nearest_name(const char *word, const char *const *candidates, size_t
         if (other > LONGEST_GUESS || (other > length ? other - length : length - other) >= nearest)
             continue;
         size_t distance = edit_distance(word, length, candidates[i], other);
-        if (distance < nearest) {
+        if (distance < nearest && distance < length && distance < other) {
             nearest = distance;
             name    = candidates[i];
         }

@@ -4,6 +4,7 @@
 #ifndef KRS_TEXT_H
 #define KRS_TEXT_H
 
+#include <stdarg.h>
 #include <stdint.h>
 
 #include "compiler/base/arena.h"
@@ -18,6 +19,8 @@ typedef struct Text {
 void text_add(Text *text, const char *string);
 void text_add_bytes(Text *text, const char *bytes, size_t length);
 void text_format(Text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void text_format_list(Text *text, const char *format, va_list arguments)
+    __attribute__((format(printf, 2, 0)));
 
 /* The shortest decimal that reads back as the same double ("0.1", "1e+30", "inf"). */
 void text_number(Text *text, double number);
@@ -39,8 +42,8 @@ typedef struct Names {
 const char *name_intern(Names *names, const char *bytes, size_t length);
 
 /* The candidate that a misspelt word most likely means, or NULL: restricted Damerau-Levenshtein
-   distance (a swap counts once), at most 1 edit for words under 3 letters, else 2; nearest
-   first, ties to the earlier candidate. */
+   distance (a swap counts once), at most 1 edit for words under 3 letters, else 2, and never as
+   many as there are letters; nearest first, ties to the earlier candidate. */
 const char *nearest_name(const char *word, const char *const *candidates, size_t count);
 
 #endif

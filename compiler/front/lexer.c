@@ -386,6 +386,8 @@ static void lex_string(Lexer *lexer, char quote)
         Diag *diag  = report(lexer, DIAG_UNCLOSED, start, "a string is not closed",
                              "close it with a quote on the same line");
         diag->label = "begins here";
+        add_token(lexer, TOKEN_ERROR, start); /* it has swallowed the rest of the statement */
+        return;
     }
     const Text *read = &lexer->scratch;
     add_token(lexer, TOKEN_STRING, start)->name =

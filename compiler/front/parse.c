@@ -200,6 +200,17 @@ static Syntax *parse_image(Parser *p)
                                      "for example `image { size: [1920, 1080], samples: 64 }`");
 }
 
+/* surroundings = camera | light | sky | image ; */
+static Syntax *parse_surroundings(Parser *p)
+{
+    switch (kind_here(p)) {
+    case TOKEN_CAMERA: return parse_camera(p);
+    case TOKEN_LIGHT:  return parse_light(p);
+    case TOKEN_SKY:    return parse_sky(p);
+    default:           return parse_image(p);
+    }
+}
+
 /* ---- statements that do ---- */
 
 /* A word and an expression. */
@@ -240,11 +251,10 @@ static bool skip_needless_semicolon(Parser *p)
 }
 
 /* The statements of a block up to its brace.  Each mistake costs one statement. */
-static void parse_statements(Parser *p, size_t opener, ParseFunction *statement,
-                             bool show_permitted)
+static void parse_statements(Parser *p, size_t opener, ParseFunction *statement, BlockKind kind)
 {
     while (!p->failed && kind_here(p) != TOKEN_RIGHT_BRACE && kind_here(p) != TOKEN_END &&
-           !block_is_left(p, opener, show_permitted)) {
+           !block_is_left(p, opener, kind)) {
         if (skip_needless_semicolon(p))
             continue;
         Level start = p->here;
@@ -261,13 +271,13 @@ typedef struct BlockRules {
     const char    *for_example, *if_example;
 } BlockRules;
 
-static Syntax *parse_braces(Parser *p, ParseFunction *statement, bool show_permitted)
+static Syntax *parse_braces(Parser *p, ParseFunction *statement, BlockKind kind)
 {
     Span   start  = token_here(p)->span;
     size_t first  = begin_children(p), opener = p->here.at;
     enter(p);
     if (expect(p, TOKEN_LEFT_BRACE, "`{`", NULL))
-        parse_statements(p, opener, statement, show_permitted);
+        parse_statements(p, opener, statement, kind);
     leave(p);
     return finish(p, SYNTAX_BLOCK, start, first, NULL);
 }
@@ -312,7 +322,10 @@ static Syntax *parse_block_statement(Parser *p);
 static Syntax *parse_if(Parser *p);
 
 /* block = "{" { block_statement } "}" ; */
-static Syntax *parse_block(Parser *p) { return parse_braces(p, parse_block_statement, true); }
+static Syntax *parse_block(Parser *p)
+{
+    return parse_braces(p, parse_block_statement, SCENE_BLOCK);
+}
 
 static const BlockRules scene_rules = {
     parse_block, parse_if,
@@ -326,11 +339,15 @@ static Syntax *parse_for(Parser *p) { return parse_loop(p, &scene_rules); }
 /* if = "if" expression block [ "else" ( if | block ) ] ; */
 static Syntax *parse_if(Parser *p) { return parse_choice(p, &scene_rules); }
 
-/* block_statement = let | show | for | if ; */
+/* block_statement = let | def | shape | surroundings | show | for | if ; */
 static Syntax *parse_block_statement(Parser *p)
 {
     switch (kind_here(p)) {
-    case TOKEN_LET:  return parse_let(p);
+    case TOKEN_LET:   return parse_let(p);
+    case TOKEN_DEF:   return parse_def(p);
+    case TOKEN_SHAPE: return parse_shape(p);
+    case TOKEN_CAMERA: case TOKEN_LIGHT: case TOKEN_SKY: case TOKEN_IMAGE:
+        return parse_surroundings(p);
     case TOKEN_SHOW: return parse_show(p);
     case TOKEN_FOR:  return parse_for(p);
     case TOKEN_IF:   return parse_if(p);
@@ -346,7 +363,10 @@ static Syntax *parse_krs_statement(Parser *p);
 static Syntax *parse_krs_if(Parser *p);
 
 /* krs_block = "{" { krs_statement } "}" ; */
-static Syntax *parse_krs_block(Parser *p) { return parse_braces(p, parse_krs_statement, false); }
+static Syntax *parse_krs_block(Parser *p)
+{
+    return parse_braces(p, parse_krs_statement, KRS_BLOCK);
+}
 
 static const BlockRules krs_rules = {
     parse_krs_block, parse_krs_if,
@@ -399,7 +419,7 @@ Syntax *parse_krs(Parser *p)
     advance(p);
     size_t opener = p->here.at;
     if (expect(p, TOKEN_LEFT_BRACE, "`{` after `krs`", "for example `krs { kernel sphere(1); }`"))
-        parse_statements(p, opener, parse_krs_statement, false);
+        parse_statements(p, opener, parse_krs_statement, KRS_BLOCK);
     leave(p);
     return finish(p, SYNTAX_KRS, start, first, NULL);
 }
@@ -413,6 +433,15 @@ static Syntax *parse_forgotten_let(Parser *p)
     Diag *diag = report_at(p, DIAG_UNEXPECTED_TOKEN, name->span, "a definition without `let`");
     diag->replacement = diag_text(p->diags, "let %s", name->name);
     return parse_let(p);
+}
+
+/* Reading goes on behind it: what follows is probably in order. */
+static Syntax *stray_brace(Parser *p)
+{
+    Syntax *error = error_node(p);
+    report_at(p, DIAG_UNEXPECTED_TOKEN, token_here(p)->span, "a `}` without a `{`");
+    advance(p);
+    return error;
 }
 
 static Syntax *no_statement(Parser *p)
@@ -430,8 +459,6 @@ static Syntax *no_statement(Parser *p)
         help = "to put a shape into the picture write `show` in front of it";
     else if (kind_here(p) == TOKEN_NAME)
         meant = nearest_name(token->name, words, sizeof words / sizeof *words);
-    else if (kind_here(p) == TOKEN_RIGHT_BRACE)
-        help = "no `{` is open here";
     Diag *diag        = expected(p, "a statement");
     diag->help        = meant ? "did you mean" : help;
     diag->replacement = meant;
@@ -450,17 +477,6 @@ static Syntax *parse_definition(Parser *p)
     }
 }
 
-/* surroundings = camera | light | sky | image ; */
-static Syntax *parse_surroundings(Parser *p)
-{
-    switch (kind_here(p)) {
-    case TOKEN_CAMERA: return parse_camera(p);
-    case TOKEN_LIGHT:  return parse_light(p);
-    case TOKEN_SKY:    return parse_sky(p);
-    default:           return parse_image(p);
-    }
-}
-
 /* statement = definition | surroundings | show | use | for | if ; */
 static Syntax *parse_statement(Parser *p)
 {
@@ -473,6 +489,7 @@ static Syntax *parse_statement(Parser *p)
     case TOKEN_USE:  return parse_use(p);
     case TOKEN_FOR:  return parse_for(p);
     case TOKEN_IF:   return parse_if(p);
+    case TOKEN_RIGHT_BRACE: return stray_brace(p);
     case TOKEN_NAME:
         return kind_after(p) == TOKEN_ASSIGN ? parse_forgotten_let(p) : no_statement(p);
     default: return no_statement(p);

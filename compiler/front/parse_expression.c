@@ -37,8 +37,9 @@ static Syntax *parse_if_then_else(Parser *p)
     expect(p, TOKEN_THEN, "`then` after the condition of an `if`", example);
     add_child(p, parse_expression(p));
     if (!accept(p, TOKEN_ELSE)) {
-        Diag *diag = expected(p, "`else`: an `if` has a value in either case");
-        diag->help = example;
+        Diag *diag  = expected(p, "`else`");
+        diag->label = "an `if` needs a value for either case";
+        diag->help  = example;
         diag_place(p->diags, diag, start, "the `if` begins here");
     }
     add_child(p, parse_expression(p));
@@ -215,20 +216,16 @@ Syntax *parse_expression(Parser *p)
 
 /* ---- calls, methods, indices ---- */
 
-/* argument = [ label ":" ] expression ; */
-static Syntax *parse_argument(Parser *p)
+/* named = label ":" expression ; */
+static Syntax *parse_named(Parser *p)
 {
     Span         start = token_here(p)->span;
     size_t       first = begin_children(p);
-    const Token *name  = NULL;
-    if (is_label(p) && kind_after(p) == TOKEN_COLON) {
-        name = advance(p);
-        advance(p);
-    } else if (kind_here(p) == TOKEN_NAME && kind_after(p) == TOKEN_ASSIGN) {
-        name       = advance(p);
-        Diag *diag = report_at(p, DIAG_UNEXPECTED_TOKEN, token_here(p)->span,
-                               "expected `:` after the name of an argument, found `=`");
-        diag->help = "arguments are named like `radius: 2`; to compare write `==`";
+    const Token *name  = advance(p);
+    if (!accept(p, TOKEN_COLON)) {
+        Diag *diag        = report_at(p, DIAG_UNEXPECTED_TOKEN, token_here(p)->span,
+                                      "expected `:` after the name of an argument, found `=`");
+        diag->help        = "arguments are named like `radius: 2`; to compare write `==`";
         diag->replacement = ":";
         advance(p);
     }
@@ -236,14 +233,40 @@ static Syntax *parse_argument(Parser *p)
     return finish(p, SYNTAX_ARGUMENT, start, first, name);
 }
 
-/* arguments = "(" [ argument { "," argument } [ "," ] ] ")" ; */
+static Syntax *parse_positional(Parser *p, const Token *named_before)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    add_child(p, parse_expression(p));
+    Syntax *argument = finish(p, SYNTAX_ARGUMENT, start, first, NULL);
+    if (named_before) {
+        Diag *diag  = report_at(p, DIAG_UNEXPECTED_TOKEN, argument->span,
+                                "an argument without a name behind one with a name");
+        diag->label = "name this one too";
+        diag_place(p->diags, diag, named_before->span, "arguments have names from here on");
+    }
+    return argument;
+}
+
+static bool at_name_of_argument(const Parser *p)
+{
+    TokenKind after = kind_after(p);
+    return (is_label(p) && after == TOKEN_COLON) ||
+           (kind_here(p) == TOKEN_NAME && after == TOKEN_ASSIGN); /* a slip */
+}
+
+/* arguments = "(" [ ( named | expression { "," expression } ) { "," named } [ "," ] ] ")" ; */
 static void parse_arguments(Parser *p)
 {
-    size_t opener = p->here.at;
+    const Token *named  = NULL; /* the first */
+    size_t       opener = p->here.at;
     enter(p);
     advance(p);
     while (!p->failed && kind_here(p) != TOKEN_RIGHT_PAREN) {
-        add_child(p, parse_argument(p));
+        bool is_named = at_name_of_argument(p);
+        if (is_named && !named)
+            named = token_here(p);
+        add_child(p, is_named ? parse_named(p) : parse_positional(p, named));
         if (!accept(p, TOKEN_COMMA))
             break;
     }

@@ -252,11 +252,13 @@ void leave(Parser *p) { p->depth--; }
 
 /* ---- recovery ---- */
 
-bool block_is_left(const Parser *p, size_t opener, bool show_permitted)
+bool block_is_left(const Parser *p, size_t opener, BlockKind kind)
 {
-    if (p->failed || !begins_declaration(p) || (show_permitted && kind_here(p) == TOKEN_SHOW))
+    if (p->failed || !begins_declaration(p))
         return false;
-    return !brace_is_closed(p, opener);
+    TokenKind here  = kind_here(p);
+    bool      fits  = here != TOKEN_PARAM && here != TOKEN_MATERIAL && here != TOKEN_USE;
+    return (kind == KRS_BLOCK || !fits) && !brace_is_closed(p, opener);
 }
 
 /* Whether recovery may end here.  `let`, `for` and `if` are parts of expressions, too: they must

@@ -37,6 +37,8 @@ typedef struct Parser {
 
 typedef Syntax *ParseFunction(Parser *p);
 
+typedef enum BlockKind { SCENE_BLOCK, KRS_BLOCK } BlockKind;
+
 /* ---- tokens ---- */
 TokenKind    kind_here(const Parser *p); /* TOKEN_ERROR after a failure */
 TokenKind    kind_after(const Parser *p);
@@ -74,7 +76,7 @@ void leave(Parser *p);
 /* ---- recovery ---- */
 /* Whether a statement that cannot stand in this block begins here, because the block was never
    closed. */
-bool block_is_left(const Parser *p, size_t opener, bool show_permitted);
+bool block_is_left(const Parser *p, size_t opener, BlockKind kind);
 void recover_statement(Parser *p, Level start);
 void recover_property(Parser *p, Level start);
 

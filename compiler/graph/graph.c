@@ -349,7 +349,7 @@ static Node spread(Graph *graph, Node number, GraphType type)
 Node graph_op(Graph *graph, Op op, const Node *operands)
 {
     Expr      e = {.op = (uint8_t)op, .operand_count = (uint8_t)op_arity(op)};
-    GraphType types[MAX_OPERANDS];
+    GraphType types[MAX_OPERANDS] = {0};
     assert(e.operand_count > 0);
     for (int i = 0; i < e.operand_count; i++) {
         assert(operands[i] < graph->count);

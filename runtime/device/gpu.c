@@ -28,8 +28,8 @@ void *gpu_alloc(Gpu *gpu, size_t count, size_t size, const char *attempt)
     void               *block = NULL;
     if (size == 0 || count <= SIZE_MAX / size) {
         size_t bytes = count * size > 0 ? count * size : 1;
-        block = allocator->allocate ? allocator->allocate(allocator->user, bytes) : calloc(1, bytes);
-        if (block && allocator->allocate)
+        block = allocator->allocate ? allocator->allocate(allocator->user, bytes) : malloc(bytes);
+        if (block)
             memset(block, 0, bytes);
     }
     if (!block)
@@ -92,7 +92,8 @@ void gpu_fail(Gpu *gpu, VkResult result, const char *attempt)
 /* ---- Instance and validation ---- */
 
 static VKAPI_ATTR VkBool32 VKAPI_CALL
-take_complaint(VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtilsMessageTypeFlagsEXT type,
+take_complaint(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+               VkDebugUtilsMessageTypeFlagsEXT type,
                const VkDebugUtilsMessengerCallbackDataEXT *data, void *user)
 {
     (void)severity;

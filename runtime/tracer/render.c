@@ -115,15 +115,16 @@ static void band_destroy(Gpu *gpu, Band *band)
 
 static bool band_create(KrsRendering *rendering, uint64_t pixels)
 {
-    Gpu  *gpu = &rendering->renderer->gpu;
-    Band *band = &rendering->band;
+    Gpu         *gpu = &rendering->renderer->gpu;
+    Band        *band = &rendering->band;
+    VkDeviceSize result_bytes = pixels * sizeof(PixelBlock);
     if (band->pixels >= pixels)
         return true;
     band_destroy(gpu, band);
     if (!buffer_create(gpu, &band->rays, pixels * RAY_BYTES, ON_DEVICE, "rays") ||
         !buffer_create(gpu, &band->hits, pixels * HIT_BYTES, ON_DEVICE, "hits") ||
-        !buffer_create(gpu, &band->results, pixels * sizeof(PixelBlock), ON_DEVICE, "pixels") ||
-        !buffer_create(gpu, &band->fetched, pixels * sizeof(PixelBlock), SHARED, "pixels to read")) {
+        !buffer_create(gpu, &band->results, result_bytes, ON_DEVICE, "pixels") ||
+        !buffer_create(gpu, &band->fetched, result_bytes, SHARED, "pixels to read")) {
         band_destroy(gpu, band);
         return false;
     }
@@ -403,7 +404,8 @@ static void finish_stats(Job *job)
     stats->device_time = job->gpu->times != VK_NULL_HANDLE;
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         stats->total_ms += stats->phase_ms[phase];
-    stats->rays = (uint64_t)job->options.samples * job->options.crop.width * job->options.crop.height;
+    const KrsWindow *window = &job->options.crop;
+    stats->rays = (uint64_t)job->options.samples * window->width * window->height;
     stats->evaluations_per_ray = (double)stats->evaluations / (double)stats->rays;
     stats->flops_per_evaluation = program->flops;
     double primary = stats->phase_ms[KRS_PHASE_PRIMARY];

@@ -77,6 +77,8 @@ static bool exr_try(ExrWriter *writer, exr_result_t result)
 {
     if (result == EXR_ERR_SUCCESS)
         return true;
+    if (result == EXR_ERR_CORRUPT_CHUNK)
+        result = EXR_ERR_OUT_OF_MEMORY; /* of a writer: zlib found no memory to compress a chunk */
     if (writer->error->status == KRS_OK) {
         writer->error->status =
             result == EXR_ERR_OUT_OF_MEMORY ? KRS_OUT_OF_MEMORY : KRS_INTERNAL;

@@ -34,7 +34,8 @@ static _Noreturn void error_callback(png_structp png, png_const_charp message)
 {
     PngWriter *writer = png_get_error_ptr(png);
     if (writer->error->status == KRS_OK) {
-        bool memory = strstr(message, "emory") != NULL; /* libpng has no code for it */
+        /* libpng has no codes; the second is what it says when its list of texts cannot grow. */
+        bool memory = strstr(message, "emory") || strstr(message, "too many text chunks");
         writer->error->status = memory ? KRS_OUT_OF_MEMORY : KRS_INTERNAL;
         snprintf(writer->error->message, sizeof writer->error->message,
                  "cannot make a PNG file: %s", message);

@@ -1,5 +1,6 @@
 #!/bin/sh
 # answers.sh: what query, info, devices, dump, explain and validate answer.
+# shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
 plan 24
 

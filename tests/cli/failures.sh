@@ -1,5 +1,6 @@
 #!/bin/sh
 # failures.sh: crashes, interrupts, missing devices and missing memory.
+# shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
 plan 24
 small="--size 16x12 --quiet"
@@ -49,7 +50,7 @@ long_render() {
         >out 2>err &
     process=$!
     waited=0
-    until grep -q Progress err || [ "$waited" -ge 600 ]; do
+    until grep -q Progress err || [ "$waited" -ge 600 ] || ! kill -0 "$process" 2>/dev/null; do
         sleep 0.1
         waited=$((waited + 1))
     done

@@ -1,5 +1,6 @@
 #!/bin/sh
 # outputs.sh: an output appears whole or not at all, and says why not.
+# shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
 plan 23
 small="--size 16x12 --quiet"

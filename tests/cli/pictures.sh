@@ -1,5 +1,6 @@
 #!/bin/sh
 # pictures.sh: what is in the files that `krs render` writes.
+# shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
 plan 20
 "${CC:-cc}" -std=c17 -D_GNU_SOURCE -o exr_text "$root/tests/cli/exr_text.c" -lOpenEXRCore-3_1 ||

@@ -1,5 +1,6 @@
 #!/bin/sh
 # scenes.sh: scenes that cannot be read, or are wrong, end in the right status and a diagnostic.
+# shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
 plan 21
 

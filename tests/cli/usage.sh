@@ -1,7 +1,8 @@
 #!/bin/sh
 # usage.sh: command lines that are wrong, and the pages of help.
+# shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 43
+plan 44
 
 run
 said 2 "no command is given" "no command"
@@ -50,6 +51,8 @@ run render ball.krs --camera sied
 said 2 "did you mean \`side\`?" "a misspelt camera"
 run render ball.krs --integrator path
 said 2 "not in this version" "an integrator that is missing"
+run render ball.krs --integrator foo
+said 2 "--integrator wants preview" "an unknown integrator"
 run render ball.krs --resume
 said 2 "not in this version" "checkpoints that are missing"
 run query ball.krs --set radus=1

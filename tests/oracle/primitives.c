@@ -458,8 +458,9 @@ static const Primitive primitives[] = {
     {"bezier", "bezier([$a, $b], [$c, $d], [$e, $f], $g).extrude($l)", make_bezier, EXTRUDED,
      true, {PLACE, {-0.9, -0.5}, PLACE, {-0.2, 0.2}, PLACE, {0.5, 0.9}, {0.1, 0.4}, LAST = SIZE}},
     {"straight bezier", "bezier([$a, $b], [0, 0], [0.5, 0.5], $g).extrude($l)", make_bezier,
-     EXTRUDED, true, {{-0.5, -0.5}, {-0.5, -0.5}, {0, 0}, {0, 0}, {0.5, 0.5}, {0.5, 0.5}, {0.1, 0.4},
-                      LAST = SIZE}},
+     EXTRUDED, true,
+     {{-0.5, -0.5}, {-0.5, -0.5}, {0, 0}, {0, 0}, {0.5, 0.5}, {0.5, 0.5}, {0.1, 0.4},
+      LAST = SIZE}},
 };
 enum { PRIMITIVES = sizeof primitives / sizeof *primitives };
 

@@ -325,7 +325,7 @@ static void check_pixel(const KrsPicture *picture, size_t index, const TestRay *
         return;
     double depth = panorama ? t : t * dot3(ray->direction, ray->forward);
     assert_true(fabs(away) < 0.02 * pixel + 2e-6);
-    assert_near(picture->depth[index], depth, 0.05 * pixel + 5e-6);
+    assert_near(picture->depth[index], depth, (0.02 * pixel + 4e-6) / facing);
 }
 
 static void sphere_is_where_it_should_be(void **state)

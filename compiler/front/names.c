@@ -1,0 +1,468 @@
+/*
+ * names.c: every name is defined somewhere, before anything is evaluated.
+ *
+ * One walk over the tree with a table of what each name means at the moment: entering a scope
+ * puts its definitions on top, leaving it takes them off.  What the top-level definitions need
+ * of each other is noted on the way, and searched for circles at the end.
+ */
+#include "compiler/front/names.h"
+
+#include <string.h>
+
+/* A top-level definition, a node of the graph of needs. */
+typedef struct Definition {
+    const Syntax *syntax;
+    struct { struct Need *items; size_t count, capacity; } needs;
+    const struct Definition *user; /* the last that noted its need of this one */
+    /* for the search */
+    uint32_t number, low; /* order of discovery from 1, and the least that can be reached */
+    size_t   next;        /* the need to follow next */
+    uint32_t circle;      /* the strongly connected component, from 1 */
+    const struct Need       *found_by; /* of the shortest way */
+    const struct Definition *found_from;
+} Definition;
+
+typedef struct Need {
+    Definition *of;
+    Span        use;
+} Need;
+
+/* What a name means at some place. */
+typedef struct Meaning {
+    struct Slot    *slot;
+    Span            span;
+    Definition     *definition; /* NULL unless it is a top-level name of this file */
+    uint32_t        depth;      /* of the scope that defines it; 0: from outside */
+    struct Meaning *hidden;     /* what the name meant outside */
+    struct Meaning *older;      /* the meaning that was added before this one */
+} Meaning;
+
+typedef struct Slot {
+    const char *name;
+    Meaning    *meaning; /* NULL: none at the moment */
+    bool        reported;
+} Slot;
+
+typedef struct Checker {
+    Arena      *arena;
+    Diags      *diags;
+    Slot      **slots; /* hash table; the capacity is a power of two */
+    size_t      count, capacity;
+    Meaning    *newest;
+    uint32_t    depth;
+    Definition *current; /* NULL outside of top-level definitions */
+    bool        blind;   /* names may be missing because of mistakes reported before */
+    struct { Definition **items; size_t count, capacity; } definitions;
+} Checker;
+
+/* ---- the table ---- */
+
+static size_t hash_name(const char *name)
+{
+    uint64_t hash = 0xCBF29CE484222325u;
+    for (; *name; name++)
+        hash = (hash ^ (unsigned char)*name) * 0x100000001B3u;
+    return (size_t)(hash ^ hash >> 32);
+}
+
+static Slot **find_place(Slot **slots, size_t capacity, const char *name)
+{
+    size_t i = hash_name(name) & (capacity - 1);
+    while (slots[i] && slots[i]->name != name && strcmp(slots[i]->name, name) != 0)
+        i = (i + 1) & (capacity - 1);
+    return &slots[i];
+}
+
+static void grow_table(Checker *c)
+{
+    size_t capacity = c->capacity ? 2 * c->capacity : 1024;
+    Slot **slots    = arena_new_array(c->arena, Slot *, capacity);
+    for (size_t i = 0; i < c->capacity; i++)
+        if (c->slots[i])
+            *find_place(slots, capacity, c->slots[i]->name) = c->slots[i];
+    c->slots    = slots;
+    c->capacity = capacity;
+}
+
+static Slot *find_slot(Checker *c, const char *name)
+{
+    if (2 * c->count >= c->capacity)
+        grow_table(c);
+    Slot **place = find_place(c->slots, c->capacity, name);
+    if (!*place) {
+        *place         = arena_new(c->arena, Slot);
+        (*place)->name = name;
+        c->count++;
+    }
+    return *place;
+}
+
+static void add_meaning(Checker *c, Slot *slot, Span span, Definition *definition)
+{
+    Meaning *meaning = arena_new(c->arena, Meaning);
+    *meaning = (Meaning){slot, span, definition, c->depth, slot->meaning, c->newest};
+    slot->meaning = c->newest = meaning;
+}
+
+static void enter_scope(Checker *c) { c->depth++; }
+
+static void leave_scope(Checker *c)
+{
+    for (; c->newest && c->newest->depth == c->depth; c->newest = c->newest->older)
+        c->newest->slot->meaning = c->newest->hidden;
+    c->depth--;
+}
+
+/* ---- definitions ---- */
+
+static void warn_of_coordinate(Checker *c, const char *name, Span span)
+{
+    if (strlen(name) != 1 || !strchr("xyzpuv", name[0]))
+        return;
+    Diag *diag  = diag_add(c->diags, DIAG_SHADOWED_COORDINATE, span,
+                           "`%s` hides the coordinate `%s`", name, name);
+    diag->label = "from here on it means this";
+}
+
+static void define(Checker *c, const char *name, Span span, Definition *definition)
+{
+    Slot *slot = find_slot(c, name);
+    if (slot->meaning && slot->meaning->depth == c->depth) {
+        Diag *diag  = diag_add(c->diags, DIAG_DUPLICATE_NAME, span, "`%s` is defined twice", name);
+        diag->label = "defined again here";
+        diag_place(c->diags, diag, slot->meaning->span, "defined here first");
+        return;
+    }
+    warn_of_coordinate(c, name, span);
+    add_meaning(c, slot, span, definition);
+}
+
+static void define_syntax(Checker *c, const Syntax *syntax)
+{
+    define(c, syntax->name, syntax->name_span, NULL);
+}
+
+/* ---- uses ---- */
+
+/* The nearest visible name; those of inner scopes come first. */
+static const char *suggest(Checker *c, const char *name)
+{
+    struct { const char **items; size_t count, capacity; } visible = {0};
+    for (const Meaning *meaning = c->newest; meaning; meaning = meaning->older)
+        array_push(c->arena, &visible, meaning->slot->name);
+    return nearest_name(name, visible.items, visible.count);
+}
+
+static void report_unknown(Checker *c, Slot *slot, Span span)
+{
+    if (slot->reported || c->blind)
+        return;
+    slot->reported = true; /* further uses are the same mistake */
+    Diag *diag     = diag_add(c->diags, DIAG_UNKNOWN_NAME, span, "the name `%s` is not defined",
+                              slot->name);
+    diag->label    = "unknown name";
+    if (!diags_full(c->diags))
+        diag->replacement = suggest(c, slot->name);
+    if (diag->replacement)
+        diag->help = "a name that is similar exists";
+}
+
+static void use_name(Checker *c, const Syntax *syntax)
+{
+    Slot *slot = find_slot(c, syntax->name);
+    if (!slot->meaning) {
+        report_unknown(c, slot, syntax->span);
+        return;
+    }
+    Definition *used = slot->meaning->definition;
+    if (!used || !c->current || used->user == c->current)
+        return;
+    used->user = c->current;
+    Need need  = {used, syntax->span};
+    array_push(c->arena, &c->current->needs, need);
+}
+
+/* ---- the walk ---- */
+
+static void walk(Checker *c, const Syntax *syntax);
+
+static void walk_children(Checker *c, const Syntax *syntax)
+{
+    for (uint32_t i = 0; i < syntax->count; i++)
+        walk(c, syntax->children[i]);
+}
+
+/* Each clause sees the variables of those before it, the element sees all. */
+static void walk_comprehension(Checker *c, const Syntax *syntax)
+{
+    for (uint32_t i = 1; i < syntax->count; i++) {
+        const Syntax *clause = syntax->children[i];
+        walk_children(c, clause);
+        enter_scope(c);
+        if (clause->kind == SYNTAX_FOR_CLAUSE)
+            define_syntax(c, clause);
+    }
+    walk(c, syntax->children[0]);
+    for (uint32_t i = 1; i < syntax->count; i++)
+        leave_scope(c);
+}
+
+static void check_properties(Checker *c, const Syntax *syntax)
+{
+    enter_scope(c); /* of the names of properties, which mean nothing outside of this check */
+    for (uint32_t i = 0; i < syntax->count; i++) {
+        const Syntax *property = syntax->children[i];
+        if (property->kind != SYNTAX_PROPERTY)
+            continue;
+        Slot *slot = find_slot(c, property->name);
+        if (slot->meaning && slot->meaning->depth == c->depth) {
+            Diag *diag  = diag_add(c->diags, DIAG_DUPLICATE_NAME, property->name_span,
+                                   "`%s` is given twice", property->name);
+            diag->label = "given again here";
+            diag_place(c->diags, diag, slot->meaning->span, "given here first");
+        } else
+            add_meaning(c, slot, property->name_span, NULL);
+    }
+    leave_scope(c);
+}
+
+/* A function or shape: a default sees the parameters before it, the body sees all. */
+static void walk_function(Checker *c, const Syntax *syntax)
+{
+    enter_scope(c);
+    for (uint32_t i = 0; i < syntax->count; i++) {
+        walk(c, syntax->children[i]);
+        if (syntax->children[i]->kind == SYNTAX_PARAMETER)
+            define_syntax(c, syntax->children[i]);
+    }
+    leave_scope(c);
+    check_properties(c, syntax);
+}
+
+/* In blocks a name is known from its definition on. */
+static void walk_block(Checker *c, const Syntax *syntax)
+{
+    enter_scope(c);
+    for (uint32_t i = 0; i < syntax->count; i++) {
+        const Syntax *statement = syntax->children[i];
+        SyntaxKind    kind      = statement->kind;
+        walk(c, statement);
+        if (kind == SYNTAX_LET || kind == SYNTAX_DEF || kind == SYNTAX_SHAPE)
+            define_syntax(c, statement);
+    }
+    leave_scope(c);
+}
+
+static void walk(Checker *c, const Syntax *syntax)
+{
+    switch (syntax->kind) {
+    case SYNTAX_NAME:          use_name(c, syntax); break;
+    case SYNTAX_COMPREHENSION: walk_comprehension(c, syntax); break;
+    case SYNTAX_KRS:
+    case SYNTAX_BLOCK:         walk_block(c, syntax); break;
+    case SYNTAX_DEF:
+    case SYNTAX_SHAPE:         walk_function(c, syntax); break;
+    case SYNTAX_LET_IN:
+    case SYNTAX_FOR:
+        walk(c, syntax->children[0]);
+        enter_scope(c);
+        define_syntax(c, syntax);
+        walk(c, syntax->children[1]);
+        leave_scope(c);
+        break;
+    case SYNTAX_MATERIAL: case SYNTAX_CAMERA: case SYNTAX_LIGHT: case SYNTAX_SKY: case SYNTAX_IMAGE:
+        walk_children(c, syntax);
+        check_properties(c, syntax);
+        break;
+    default: walk_children(c, syntax); break;
+    }
+}
+
+/* ---- circles ---- */
+
+/* A function may call itself; the value of anything else cannot need itself. */
+static bool may_need_itself(const Definition *definition)
+{
+    return definition->syntax->kind == SYNTAX_DEF || definition->syntax->kind == SYNTAX_SHAPE;
+}
+
+typedef struct DefinitionStack {
+    Definition **items;
+    size_t       count, capacity;
+} DefinitionStack;
+
+static uint32_t least(uint32_t a, uint32_t b) { return a < b ? a : b; }
+
+/* Takes a finished component off the stack. */
+static void close_circle(DefinitionStack *open, const Definition *first, uint32_t circle)
+{
+    Definition *last;
+    do {
+        last         = open->items[--open->count];
+        last->circle = circle;
+    } while (last != first);
+}
+
+/* Tarjan's algorithm from one definition, without recursion: chains of definitions are long. */
+static void find_components(Checker *c, Definition *root, uint32_t *numbers, uint32_t *circles)
+{
+    DefinitionStack path = {0}, open = {0};
+    root->number = root->low = ++*numbers;
+    array_push(c->arena, &path, root);
+    array_push(c->arena, &open, root);
+    while (path.count > 0) {
+        Definition *here = path.items[path.count - 1];
+        if (here->next < here->needs.count) {
+            Definition *other = here->needs.items[here->next++].of;
+            if (other->number == 0) {
+                other->number = other->low = ++*numbers;
+                array_push(c->arena, &path, other);
+                array_push(c->arena, &open, other);
+            } else if (other->circle == 0)
+                here->low = least(here->low, other->number);
+            continue;
+        }
+        path.count--;
+        if (path.count > 0)
+            path.items[path.count - 1]->low = least(path.items[path.count - 1]->low, here->low);
+        if (here->low == here->number)
+            close_circle(&open, here, ++*circles);
+    }
+}
+
+/* The shortest way from a definition back to itself, in breadth; NULL when there is none.  The
+   result is the last definition on the way, and found_from leads back. */
+static const Definition *find_way(Checker *c, Definition *start, const Need **last)
+{
+    DefinitionStack queue = {0};
+    array_push(c->arena, &queue, start);
+    for (size_t i = 0; i < queue.count; i++) {
+        Definition *here = queue.items[i];
+        for (size_t k = 0; k < here->needs.count; k++) {
+            const Need *need = &here->needs.items[k];
+            if (need->of == start) {
+                *last = need;
+                return here;
+            }
+            if (need->of->circle == start->circle && !need->of->found_from) {
+                need->of->found_from = here;
+                need->of->found_by   = need;
+                array_push(c->arena, &queue, need->of);
+            }
+        }
+    }
+    return NULL;
+}
+
+static void report_circle(Checker *c, Definition *start)
+{
+    enum { MOST_PLACES = 10 };
+    const Need       *need = NULL;
+    const Definition *here = find_way(c, start, &need);
+    if (!here)
+        return;
+    struct { const Definition **items; size_t count, capacity; } way = {0};
+    struct { const Need **items; size_t count, capacity; } needs = {0};
+    for (; here != start; need = here->found_by, here = here->found_from) {
+        array_push(c->arena, &way, here);
+        array_push(c->arena, &needs, need);
+    }
+    array_push(c->arena, &way, start);
+    array_push(c->arena, &needs, need);
+
+    const char *name = start->syntax->name;
+    Diag *diag  = diag_add(c->diags, DIAG_CYCLE, start->syntax->name_span,
+                           "the value of `%s` depends on itself", name);
+    diag->label = "this definition needs its own value";
+    for (size_t i = way.count; i-- > 0;) {
+        if (way.count - i > MOST_PLACES) {
+            diag_note(c->diags, diag, diag_text(c->diags, "and %zu more", i + 1));
+            break;
+        }
+        const char *label = diag_text(c->diags, "`%s` needs `%s`", way.items[i]->syntax->name,
+                                      needs.items[i]->of->syntax->name);
+        diag_place(c->diags, diag, needs.items[i]->use, label);
+    }
+}
+
+static void check_circles(Checker *c)
+{
+    uint32_t numbers = 0, circles = 0;
+    for (size_t i = 0; i < c->definitions.count; i++)
+        if (c->definitions.items[i]->number == 0)
+            find_components(c, c->definitions.items[i], &numbers, &circles);
+    bool *reported = arena_new_array(c->arena, bool, circles + 1);
+    for (size_t i = 0; i < c->definitions.count && !diags_full(c->diags); i++) {
+        Definition *definition = c->definitions.items[i];
+        if (may_need_itself(definition) || reported[definition->circle])
+            continue;
+        reported[definition->circle] = true;
+        report_circle(c, definition);
+    }
+}
+
+/* ---- the file ---- */
+
+static bool defines(const Syntax *syntax)
+{
+    switch (syntax->kind) {
+    case SYNTAX_LET: case SYNTAX_DEF: case SYNTAX_PARAM: case SYNTAX_SHAPE: case SYNTAX_MATERIAL:
+        return true;
+    case SYNTAX_CAMERA: case SYNTAX_LIGHT:
+        return syntax->name != NULL;
+    default:
+        return false;
+    }
+}
+
+/* What could not be read may have defined the names that the rest of the statement uses. */
+static bool contains_error(const Syntax *syntax)
+{
+    bool found = syntax->kind == SYNTAX_ERROR;
+    for (uint32_t i = 0; i < syntax->count && !found; i++)
+        found = contains_error(syntax->children[i]);
+    return found;
+}
+
+/* Whether top-level names may be missing, so that an unknown one is no new mistake: a statement
+   could not be read, or a file that this one uses. */
+static bool is_incomplete(const Checker *c, const Syntax *file)
+{
+    for (uint32_t i = 0; i < file->count; i++)
+        if (file->children[i]->kind == SYNTAX_ERROR)
+            return true;
+    for (size_t i = 0; i < c->diags->count; i++) {
+        const Diag *diag = c->diags->items[i];
+        bool elsewhere   = diag->span.source != file->span.source;
+        bool grammar     = diag->code < DIAG_UNKNOWN_NAME;
+        if ((elsewhere && grammar) || diag->code == DIAG_CANNOT_READ || diag->code == DIAG_LIMIT ||
+            diag->code == DIAG_CIRCULAR_USE)
+            return true;
+    }
+    return false;
+}
+
+void names_check(const Syntax *file, const NameScope *scope, Diags *diags, Arena *arena)
+{
+    Checker checker = {.arena = arena, .diags = diags}, *c = &checker;
+    bool incomplete = is_incomplete(c, file);
+    for (size_t i = scope->known_count; i-- > 0;) /* the first shall be the newest */
+        add_meaning(c, find_slot(c, scope->known[i]), (Span){0}, NULL);
+
+    enter_scope(c);
+    for (uint32_t i = 0; i < file->count; i++) {
+        const Syntax *syntax     = file->children[i];
+        Definition   *definition = arena_new(arena, Definition);
+        definition->syntax       = syntax;
+        array_push(arena, &c->definitions, definition);
+        if (defines(syntax))
+            define(c, syntax->name, syntax->name_span, definition);
+    }
+    for (uint32_t i = 0; i < file->count; i++) {
+        c->current = c->definitions.items[i];
+        c->blind   = incomplete || contains_error(file->children[i]);
+        walk(c, file->children[i]);
+    }
+    leave_scope(c);
+    check_circles(c);
+}

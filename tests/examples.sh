@@ -1,0 +1,28 @@
+#!/bin/sh
+# examples.sh: every example checks without a warning, validates, and renders with no ray left
+# unresolved, silently under the validation layers.
+cd "$(dirname "$0")/.." || exit 1
+krs=${KRS:-build/krs}
+folder=$(mktemp -d) && trap 'rm -rf "$folder"' EXIT
+failed=0
+report() { # name, status
+    if [ "$2" -eq 0 ]; then echo "ok - $1"; else echo "not ok - $1"; failed=1; fi
+}
+for scene in examples/*.krs; do
+    "$krs" check "$scene" >"$folder/check" 2>&1 && [ ! -s "$folder/check" ]
+    status=$?
+    [ $status -eq 0 ] || cat "$folder/check"
+    report "$scene has no mistake and no warning" $status
+
+    "$krs" render "$scene" --quiet --size 320x180 --stats json -o "$folder/picture.exr" -o "$folder/picture.png" >"$folder/stats" 2>"$folder/said"
+    report "$scene renders" $?
+    cat "$folder/said"
+    grep -q '"unresolved": *0[,}]' "$folder/stats"
+    report "$scene leaves no ray unresolved" $?
+
+    "$krs" validate "$scene" >"$folder/said" 2>&1
+    status=$?
+    [ $status -eq 0 ] || cat "$folder/said"
+    report "$scene validates" $status
+done
+exit $failed

@@ -1,0 +1,16 @@
+#!/bin/sh
+# lint.sh: every kernel is GLSL by itself, every script passes shellcheck.
+cd "$(dirname "$0")/.." || exit 1
+failed=0
+report() { # name, status
+    if [ "$2" -eq 0 ]; then echo "ok - $1"; else echo "not ok - $1"; failed=1; fi
+}
+for kernel in runtime/shaders/*.comp; do
+    glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -o /dev/null "$kernel" >/dev/null
+    report "$kernel is valid GLSL" $?
+done
+for script in tools/*.sh tests/*.sh tests/*/*.sh .ci/run; do
+    shellcheck -x -P SCRIPTDIR "$script"
+    report "$script passes shellcheck" $?
+done
+exit $failed

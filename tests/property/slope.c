@@ -1,0 +1,202 @@
+/*
+ * slope.c: slopes of whole expressions over boxes, refined by cutting.
+ *
+ * A gyroid's largest gradient is known, so bounds can be held against it from both sides; boxes
+ * without end, parameters and blame are tried on small expressions.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#include "compiler/graph/evaluate.h"
+#include "compiler/graph/facts.h"
+
+static const Box everywhere = {{{-HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, HUGE_VAL}}};
+static const Box around     = {{{-2, 2}, {-2, 2}, {-2, 2}}};
+
+typedef struct Bench {
+    Memory memory;
+    Arena  arena;
+    Graph *graph;
+    Node   point, x, y, z;
+} Bench;
+
+static jmp_buf out_of_memory;
+
+static int bench_start(void **state)
+{
+    static Bench bench;
+    bench       = (Bench){.memory = {.exhausted = &out_of_memory}};
+    bench.arena = (Arena){.memory = &bench.memory};
+    bench.graph = graph_new(&bench.arena);
+    bench.point = graph_leaf(bench.graph, OP_POINT);
+    bench.x     = graph_component(bench.graph, bench.point, 0);
+    bench.y     = graph_component(bench.graph, bench.point, 1);
+    bench.z     = graph_component(bench.graph, bench.point, 2);
+    *state      = &bench;
+    return 0;
+}
+
+static int bench_stop(void **state)
+{
+    arena_free(&((Bench *)*state)->arena);
+    return 0;
+}
+
+static Node sine_times_cosine(Bench *b, Node s, Node c)
+{
+    Node sine   = graph_op1(b->graph, OP_sin, s);
+    Node cosine = graph_op1(b->graph, OP_cos, c);
+    return graph_op2(b->graph, OP_mul, sine, cosine);
+}
+
+/* sin x cos y + sin y cos z + sin z cos x, whose gradient is longest, sqrt 3, at its flat
+   points (such as the origin). */
+static Node gyroid(Bench *b)
+{
+    Node first  = sine_times_cosine(b, b->x, b->y);
+    Node second = sine_times_cosine(b, b->y, b->z);
+    Node third  = sine_times_cosine(b, b->z, b->x);
+    Node sum    = graph_op2(b->graph, OP_add, first, second);
+    return graph_op2(b->graph, OP_add, sum, third);
+}
+
+static double slope_over(Bench *b, Node root, Box box, uint32_t cells)
+{
+    return graph_slope(b->graph, root, box, NULL, cells, NULL, &b->arena);
+}
+
+static void gyroid_bounds_shrink_with_cells(void **state)
+{
+    Bench *b    = *state;
+    Node   root = gyroid(b);
+    double pi = acos(-1), last = 3.4642;
+    Box    box = {{{-pi, pi}, {-pi, pi}, {-pi, pi}}};
+    for (uint32_t cells = 1; cells <= 4096; cells *= 8) {
+        double slope = slope_over(b, root, box, cells);
+        assert_true(slope >= 1.7320);
+        assert_true(slope <= last);
+        last = slope;
+    }
+    assert_true(last < 2.5); /* math.md, section 4, has 2.06 for the uniform 8^4 */
+    assert_true(slope_over(b, root, everywhere, 1) <= 3.4642);
+}
+
+static void distances_have_slope_one(void **state)
+{
+    Bench *b = *state;
+    Graph *g = b->graph;
+    Node   one = graph_number(g, 1), length = graph_op1(g, OP_length, b->point);
+    Node   sphere = graph_op2(g, OP_sub, length, one);
+    assert_true(slope_over(b, sphere, everywhere, 1) == 1);
+    assert_true(slope_over(b, sphere, around, 64) == 1);
+
+    Node size = graph_op1(g, OP_abs, b->point), half = graph_vec3(g, 1, 2, 3);
+    Node beyond = graph_op2(g, OP_sub, size, half), zero = graph_number(g, 0);
+    Node outside = graph_op2(g, OP_max, beyond, zero);
+    Node distance = graph_op1(g, OP_length, outside);
+    assert_true(slope_over(b, distance, everywhere, 1) <= 1.0000001);
+}
+
+static void products_are_unbounded_only_without_a_box(void **state)
+{
+    Bench *b      = *state;
+    Node   square = graph_op2(b->graph, OP_mul, b->x, b->x);
+    double slope  = slope_over(b, square, around, 1);
+    assert_true(slope >= 4 && slope <= 4.0000001);
+    assert_true(slope_over(b, square, everywhere, 64) == HUGE_VAL);
+}
+
+static void cutting_finds_what_a_whole_box_hides(void **state)
+{
+    Bench *b = *state;
+    Graph *g = b->graph;
+    Node   up = graph_op2(g, OP_mul, b->x, b->x), down = graph_op1(g, OP_neg, up);
+    Node   cube = graph_op2(g, OP_mul, up, b->x), mixed = graph_op2(g, OP_mul, down, b->y);
+    Node   sum  = graph_op2(g, OP_add, cube, mixed);
+    double whole = slope_over(b, sum, around, 1), cut = slope_over(b, sum, around, 512);
+    double truth = hypot(3 * 4 + 2 * 2 * 2, 4); /* at (2, -2) */
+    assert_true(cut >= truth && cut <= whole);
+    assert_true(cut < 1.05 * truth);
+}
+
+static void jumps_are_found_on_the_seam_of_parts(void **state)
+{
+    Bench *b    = *state;
+    Node   step = graph_op1(b->graph, OP_floor, b->x);
+    assert_true(slope_over(b, step, around, 64) == HUGE_VAL);
+    Box inside = {{{0.25, 0.75}, {-1, 1}, {-1, 1}}};
+    assert_true(slope_over(b, step, inside, 1) == 0);
+}
+
+static void parameters_count_with_their_range_or_value(void **state)
+{
+    Bench *b = *state;
+    Graph *g = b->graph;
+    GraphParameter range = {{-1}, {3}};
+    array_push(g->arena, &g->parameters, range);
+    Node parameter = graph_parameter(g, 1, TYPE_FLOAT);
+    Node product   = graph_op2(g, OP_mul, parameter, b->x);
+    assert_true(slope_over(b, product, everywhere, 1) == 3);
+    const double values[2][4] = {{0}, {0.5}};
+    assert_true(graph_slope(g, product, everywhere, values, 1, NULL, &b->arena) == 0.5);
+
+    Node shifted = graph_op2(g, OP_add, parameter, parameter);
+    Fact fact    = graph_frame_fact(g, shifted, &b->arena);
+    assert_true(fact.value[0].low == -2 && fact.value[0].high == 6 && fact.slope == 0);
+}
+
+static void blame_goes_to_the_unbounded_operand(void **state)
+{
+    Bench *b = *state;
+    Graph *g = b->graph;
+    Node   root  = graph_op1(g, OP_sqrt, b->x), harmless = graph_op1(g, OP_sin, b->y);
+    Node   sum   = graph_op2(g, OP_add, harmless, root);
+    Node   blame = NODE_NONE;
+    assert_true(graph_slope(g, sum, around, NULL, 8, &blame, &b->arena) == HUGE_VAL);
+    assert_int_equal(blame, root);
+
+    Node ten = graph_number(g, 10), steep = graph_op2(g, OP_mul, b->x, ten);
+    Node gentle = graph_op1(g, OP_sin, steep), both = graph_op2(g, OP_add, gentle, b->y);
+    graph_slope(g, both, around, NULL, 8, &blame, &b->arena);
+    assert_int_equal(blame, steep);
+}
+
+/* Every node of the gyroid keeps its facts at points of the box. */
+static void facts_of_a_graph_hold(void **state)
+{
+    Bench *b    = *state;
+    Node   root = gyroid(b);
+    Fact  *facts = graph_facts(b->graph, around, NULL, &b->arena);
+    Tape   tape  = tape_new(b->graph, &root, 1, &b->arena);
+    NodeValue *values = arena_new_array(&b->arena, NodeValue, b->graph->count);
+    NodeValue  time   = {{0}};
+    tape_run_frame(&tape, &time, values);
+    for (int i = 0; i < 1000; i++) {
+        double p[3] = {fmod(i * 0.7548, 4) - 2, fmod(i * 0.5698, 4) - 2, fmod(i * 0.3141, 4) - 2};
+        tape_run_point(&tape, p, values);
+        for (size_t k = 0; k < tape.count; k++) {
+            Node node = tape.nodes[k];
+            assert_true(facts[node].value[0].low <= values[node].v[0]);
+            assert_true(facts[node].value[0].high >= values[node].v[0]);
+        }
+    }
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, bench_start, bench_stop)
+    const struct CMUnitTest tests[] = {
+        TEST(gyroid_bounds_shrink_with_cells),
+        TEST(distances_have_slope_one),
+        TEST(products_are_unbounded_only_without_a_box),
+        TEST(cutting_finds_what_a_whole_box_hides),
+        TEST(jumps_are_found_on_the_seam_of_parts),
+        TEST(parameters_count_with_their_range_or_value),
+        TEST(blame_goes_to_the_unbounded_operand),
+        TEST(facts_of_a_graph_hold),
+    };
+    return cmocka_run_group_tests_name("slopes", tests, NULL, NULL);
+}

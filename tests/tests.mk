@@ -1,0 +1,60 @@
+# tests.mk: what `make test` runs.
+#
+# Every test speaks TAP; tests/run.sh counts.  The compiler's tests run a second time under the
+# address and undefined-behaviour sanitizers, and everything compiles under clang as well.
+
+ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c)
+UNIT        := front film tracer writer memory
+PROPERTY    := ops graph
+ORACLES     := self primitives krs_expand operators device
+FUZZ        := sentences
+PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
+               $(FUZZ:%=tests/fuzz/%)
+# Without a device: what runs under the sanitizers, too (drivers leak by design).
+SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/memory tests/property/ops \
+               tests/property/graph tests/oracle/primitives tests/oracle/krs_expand tests/oracle/operators \
+               tests/fuzz/sentences
+SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/editors.sh tests/lint.sh \
+               tests/errors.sh tests/examples.sh $(sort $(filter-out tests/cli/common.sh, $(wildcard tests/cli/*.sh)))
+
+$(B)/tests/oracle/oracle.a: $(ORACLE:%.c=$(B)/%.o)
+	@rm -f $@
+	@$(AR) rcs $@ $^
+$(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/oracle.a $(B)/libkrs.a
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
+$(B)/tests/%: $(B)/tests/%.o $(B)/libkrs.a
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
+.SECONDARY:
+
+test-programs: $(PROGRAMS:%=$(B)/%) $(B)/tests/cli/exr_text
+sanitized-programs: $(SANITIZED:%=$(B)/%) $(B)/krs
+sanitize:
+	@$(MAKE) --no-print-directory sanitized-programs B=$(B)/asan \
+	    CFLAGS='-g -O1 -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined'
+
+# clang must like every file as well; its objects are not linked.
+clang-check: $(B)/library_files.c $(B)/shader_files.c
+	@$(MAKE) --no-print-directory clang-objects B=$(B)/clang CC=clang CFLAGS=-O1
+clang-objects: $(COMPILER:%.c=$(B)/%.o) $(RUNTIME:%.c=$(B)/%.o) $(CLI:%.c=$(B)/%.o)
+
+# The whole front end, text to graph, under libFuzzer, seeded from examples and tests.
+FUZZ_FLAGS := -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined
+$(B)/fuzz/front_fuzz: $(COMPILER) tests/fuzz/front_fuzz.c $(B)/library_files.c
+	@mkdir -p $(@D)
+	@echo "compile $@"
+	@clang $(filter-out -MMD -MP, $(STYLE)) $(FUZZ_FLAGS),fuzzer -o $@ $(BASE) $(FRONT) $(GRAPH) $(GEOMETRY) \
+	    compiler/shader/emit.c $(DOORSTEP) tests/fuzz/front_fuzz.c $(B)/library_files.c -lm
+fuzz: $(B)/fuzz/front_fuzz
+	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) tests/fuzz/fuzz.sh
+
+lint:
+	@tests/lint.sh
+bless: $(B)/krs
+	@tests/errors.sh --bless
+
+test: deps
+	@$(MAKE) --no-print-directory all test-programs clang-check $(B)/fuzz/front_fuzz
+	@$(MAKE) --no-print-directory sanitize
+	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs tests/run.sh $(PROGRAMS:%=$(B)/%) $(SCRIPTS) \
+	    $(SANITIZED:%=$(B)/asan/%) tests/errors-sanitized.sh tests/fuzz/fuzz.sh
+.PHONY: test test-programs sanitize sanitized-programs clang-check clang-objects fuzz lint bless

@@ -1,0 +1,119 @@
+/*
+ * memory.c: an allocation that fails, at every point where one is made, ends the call with
+ * KRS_OUT_OF_MEMORY, nothing leaked and nothing broken.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "compiler/compile.h"
+
+/* Fails the allocation with number `failing` and, if `lasting`, all after it. */
+typedef struct Scarce {
+    uint64_t made, failing;
+    int64_t  held;
+    bool     lasting;
+} Scarce;
+
+static void *scarce_allocate(void *user, size_t size)
+{
+    Scarce *scarce = user;
+    scarce->made++;
+    if (scarce->made == scarce->failing || (scarce->lasting && scarce->made > scarce->failing))
+        return NULL;
+    scarce->held++;
+    return malloc(size);
+}
+
+static void scarce_release(void *user, void *block)
+{
+    Scarce *scarce = user;
+    scarce->held -= block != NULL;
+    free(block);
+}
+
+static const char *const scenes[] = {
+    "show sphere(1);",
+    "param r = 0.3 in [0.1, 0.5]; show union([sphere(1), box([1, 2, 1])], blend: r).move([r, 1, 0]);",
+    "show krs { kernel box([1, 1, 1]); for i in 0..6 { reflect plane(random_direction(i), 1); } };",
+    "show [sphere(0.2).move([i, 0, 0]) for i in 0..40]; camera { eye: [1, 2, 3] }",
+    "let a = 1 +; show sphre(1); show box(a).mvoe(1);", /* several mistakes */
+};
+
+/* Everything a caller does with a scene. */
+static KrsStatus use_scene(const char *text, Scarce *scarce)
+{
+    KrsOptions options = {.allocator = {scarce_allocate, scarce_release, scarce}};
+    KrsScene  *scene;
+    KrsFrame  *frame = NULL;
+    KrsStatus  status = krs_compile_text(text, strlen(text), "scene.krs", &options, &scene);
+    if (status == KRS_OK)
+        status = krs_frame_new(scene, &frame);
+    if (status == KRS_OK) {
+        double point[1][3] = {{1, 2, 3}}, distance;
+        KrsHit hit;
+        krs_distance(frame, (const double (*)[3])point, 1, &distance);
+        krs_probe(frame, (const double (*)[3])point, 1, &hit);
+    }
+    krs_frame_free(frame);
+    krs_scene_free(scene);
+    return status;
+}
+
+static void fail_at_every_point(bool lasting)
+{
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
+        Scarce    plenty   = {0};
+        KrsStatus expected = use_scene(scenes[i], &plenty);
+        assert_int_equal(plenty.held, 0);
+        assert_true(plenty.made > 3);
+        for (uint64_t failing = 1; failing <= plenty.made; failing++) {
+            Scarce    scarce = {.failing = failing, .lasting = lasting};
+            KrsStatus status = use_scene(scenes[i], &scarce);
+            assert_int_equal(scarce.held, 0);
+            if (status != expected)
+                assert_int_equal(status, KRS_OUT_OF_MEMORY);
+            else
+                assert_false(lasting); /* memory that never comes cannot go unnoticed */
+        }
+    }
+}
+
+static void one_allocation_fails(void **state)
+{
+    (void)state;
+    fail_at_every_point(false);
+}
+
+static void all_later_allocations_fail(void **state)
+{
+    (void)state;
+    fail_at_every_point(true);
+}
+
+static void the_limit_holds(void **state)
+{
+    (void)state;
+    Scarce     scarce  = {0};
+    KrsOptions options = {.allocator = {scarce_allocate, scarce_release, &scarce}, .memory_limit = 1 << 20};
+    const char *text   = "let a = [[i, i + 1, i + 2] for i in 0..900000]; show sphere(1);";
+    KrsScene   *scene;
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", &options, &scene), KRS_OUT_OF_MEMORY);
+    assert_null(scene);
+    assert_int_equal(scarce.held, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_allocation_fails),
+        cmocka_unit_test(all_later_allocations_fail),
+        cmocka_unit_test(the_limit_holds),
+    };
+    return cmocka_run_group_tests_name("memory", tests, NULL, NULL);
+}

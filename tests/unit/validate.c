@@ -1,0 +1,232 @@
+/*
+ * `krs validate` refutes a distance that is too large, one that is not a number, and a device
+ * that disagrees, and lets an honest scene pass.
+ *
+ * The scene, a unit ball, and the device are played by this file, so that they can lie.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "cli/console.c"
+#include "cli/options.c"
+#include "cli/validate.c"
+
+/* How the ball's distance is falsified. */
+static double exaggeration;   /* the distance outside is this much too large */
+static double inside_factor;  /* the same inside */
+static bool   not_a_number;   /* in one half of space */
+static double device_error;   /* added to what the device says */
+
+static double ball(const double point[3])
+{
+    double square = point[0] * point[0] + point[1] * point[1] + point[2] * point[2];
+    double distance = sqrt(square) - 1;
+    if (not_a_number && point[0] > 0)
+        return NAN;
+    return distance * (distance > 0 ? exaggeration : inside_factor);
+}
+
+void krs_distance(KrsFrame *frame, const double (*points)[3], size_t count, double *distances)
+{
+    (void)frame;
+    for (size_t i = 0; i < count; i++)
+        distances[i] = ball(points[i]);
+}
+
+void krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits)
+{
+    (void)frame;
+    for (size_t i = 0; i < count; i++) {
+        double size = fabs(sqrt(points[i][0] * points[i][0] + points[i][1] * points[i][1] +
+                                points[i][2] * points[i][2]));
+        hits[i] = (KrsHit){.hit = true, .component = 1, .distance = ball(points[i])};
+        for (int axis = 0; axis < 3; axis++) {
+            hits[i].point[axis] = points[i][axis];
+            hits[i].normal[axis] = points[i][axis] / size;
+        }
+    }
+}
+
+KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3],
+                     size_t count, float *distances, KrsSurfacePoint *surfaces)
+{
+    (void)rendering, (void)frame, (void)surfaces;
+    for (size_t i = 0; i < count; i++) {
+        double point[3] = {points[i][0], points[i][1], points[i][2]};
+        distances[i] = (float)(ball(point) + device_error);
+    }
+    return KRS_OK;
+}
+
+const KrsProgram *krs_scene_program(const KrsScene *scene)
+{
+    static const KrsProgram program = {.low = {-1, -1, -1}, .high = {1, 1, 1}};
+    (void)scene;
+    return &program;
+}
+
+KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *component)
+{
+    (void)scene;
+    *component = (KrsComponent){.name = "ball"};
+    return index == 0 ? KRS_OK : KRS_BAD_ARGUMENT;
+}
+
+/* What else validate.c calls, with nothing behind it. */
+
+static char something; /* whose address stands for scenes, frames and devices */
+
+KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene)
+{
+    (void)options, (void)path;
+    *scene = (KrsScene *)&something;
+    return KRS_OK;
+}
+
+KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsFrame **frame)
+{
+    (void)options, (void)scene;
+    *frame = (KrsFrame *)&something;
+    return KRS_OK;
+}
+
+KrsStatus open_renderer(const Options *options, KrsRenderer **renderer)
+{
+    (void)options;
+    *renderer = (KrsRenderer *)&something;
+    return KRS_OK;
+}
+
+KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRendering **rendering)
+{
+    (void)renderer, (void)scene;
+    *rendering = (KrsRendering *)&something;
+    return KRS_OK;
+}
+
+KrsStatus modules_compile(const Options *options, const KrsScene *scene, Modules *modules)
+{
+    (void)options, (void)scene;
+    *modules = (Modules){0};
+    return KRS_OK;
+}
+
+void modules_free(Modules *modules) { (void)modules; }
+void krs_rendering_free(KrsRendering *rendering) { (void)rendering; }
+void krs_renderer_free(KrsRenderer *renderer) { (void)renderer; }
+void krs_frame_free(KrsFrame *frame) { (void)frame; }
+void krs_scene_free(KrsScene *scene) { (void)scene; }
+void stage_enter(Stage stage) { (void)stage; }
+
+const char *krs_renderer_message(const KrsRenderer *renderer)
+{
+    (void)renderer;
+    return "";
+}
+
+KrsDevice krs_renderer_device(const KrsRenderer *renderer)
+{
+    (void)renderer;
+    return (KrsDevice){.name = "a device"};
+}
+
+const volatile sig_atomic_t *interrupted(void)
+{
+    static volatile sig_atomic_t never;
+    return &never;
+}
+
+/* The tests. */
+
+static KrsStatus validate(void)
+{
+    jmp_buf exhausted;
+    if (setjmp(exhausted) != 0)
+        return KRS_OUT_OF_MEMORY;
+    Memory  memory = {.exhausted = &exhausted};
+    Arena   arena = {.memory = &memory};
+    Options options = {.arena = &arena};
+    char   *words[] = {"krs", "validate", "--quiet", "--points", "4000", "ball.krs"};
+    assert_int_equal(options_parse(&options, 6, words), KRS_OK);
+    KrsStatus status = command_validate(&options);
+    arena_free(&arena);
+    return status;
+}
+
+static int be_honest(void **state)
+{
+    (void)state;
+    exaggeration = inside_factor = 1;
+    not_a_number = false;
+    device_error = 0;
+    return 0;
+}
+
+static void an_honest_scene_passes(void **state)
+{
+    (void)state;
+    assert_int_equal(validate(), KRS_OK);
+}
+
+static void a_cautious_scene_passes(void **state)
+{
+    (void)state;
+    exaggeration = inside_factor = 0.3;
+    assert_int_equal(validate(), KRS_OK);
+}
+
+static void two_per_cent_too_much_is_refuted(void **state)
+{
+    (void)state;
+    exaggeration = 1.02;
+    assert_int_equal(validate(), KRS_BAD_SCENE);
+}
+
+static void too_much_inside_is_refuted(void **state)
+{
+    (void)state;
+    inside_factor = 1.02;
+    assert_int_equal(validate(), KRS_BAD_SCENE);
+}
+
+static void what_is_not_a_number_is_refuted(void **state)
+{
+    (void)state;
+    not_a_number = true;
+    assert_int_equal(validate(), KRS_BAD_SCENE);
+}
+
+static void a_device_that_disagrees_is_refuted(void **state)
+{
+    (void)state;
+    device_error = 1e-3;
+    assert_int_equal(validate(), KRS_BAD_SCENE);
+    device_error = NAN;
+    assert_int_equal(validate(), KRS_BAD_SCENE);
+}
+
+static void rounding_of_a_device_passes(void **state)
+{
+    (void)state;
+    device_error = 1e-6;
+    assert_int_equal(validate(), KRS_OK);
+}
+
+int main(void)
+{
+#define HONEST(test) cmocka_unit_test_setup(test, be_honest)
+    const struct CMUnitTest tests[] = {
+        HONEST(an_honest_scene_passes),
+        HONEST(a_cautious_scene_passes),
+        HONEST(two_per_cent_too_much_is_refuted),
+        HONEST(too_much_inside_is_refuted),
+        HONEST(what_is_not_a_number_is_refuted),
+        HONEST(a_device_that_disagrees_is_refuted),
+        HONEST(rounding_of_a_device_passes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
