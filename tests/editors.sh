@@ -16,7 +16,7 @@ check() { # name wanted found
     fi
 }
 
-sorted() { tr -s ' |' '\n\n' | sed '/^$/d' | sort | tr '\n' ' '; }
+sorted() { tr '|' ' ' | tr -s ' ' '\n' | sed '/^$/d' | sort | tr '\n' ' '; }
 
 for class in STATEMENT CONTROL OPERATOR_WORD CONSTANT; do
     words=$(sed -n "s/^TOKEN([A-Z_]*, *\"\([a-z]*\)\", *$class)\$/\1/p" compiler/front/token.def |

@@ -31,11 +31,50 @@ Diag *type_error(Elaboration *e, const Syntax *syntax, Value found, const char *
     return diag;
 }
 
+/*
+ * Ranges are those of the parameters, but a parameter without one counts with its default, and
+ * time with a long animation: what is infinite then divides by zero somewhere, or overflows.
+ */
+bool check_finite(Elaboration *e, Node node, const Syntax *syntax)
+{
+    enum { LONGEST_SECONDS = 1000000 };
+    Graph *g = e->graph;
+    if (g->items[node].op == OP_CONSTANT || g->items[node].type > TYPE_VEC4)
+        return true;
+    size_t          count = g->parameters.count;
+    GraphParameter *kept  = arena_new_array(e->arena, GraphParameter, count);
+    memcpy(kept, g->parameters.items, count * sizeof *kept);
+    for (size_t i = 0; i < e->scene->parameters.count; i++) {
+        const Parameter *parameter = &e->scene->parameters.items[i];
+        for (uint32_t k = 0; k < 4; k++)
+            if (!isfinite(parameter->low[k]) || !isfinite(parameter->high[k]))
+                g->parameters.items[parameter->slot].low[k] = g->parameters.items[parameter->slot].high[k] =
+                    parameter->value[k];
+    }
+    g->parameters.items[0].low[0]  = -LONGEST_SECONDS;
+    g->parameters.items[0].high[0] = LONGEST_SECONDS;
+    bool finite = true;
+    for (uint32_t k = 0; k < g->items[node].type; k++) {
+        Range range = node_range(e, node, k);
+        finite      = finite && isfinite(range.low) && isfinite(range.high);
+    }
+    memcpy(g->parameters.items, kept, count * sizeof *kept);
+    if (finite)
+        return true;
+    Diag *diag  = diag_add(e->diags, DIAG_NOT_A_NUMBER, syntax->span, "this is not finite for every permitted parameter");
+    diag->label = "a division by zero, or an overflow, is possible";
+    diag->help  = "give the `param` a range that excludes it, or guard it, as in `1 / max(a, 0.001)`";
+    point_at_definition(e, diag, syntax, NULL);
+    return false;
+}
+
 /* Shapes are the same at every point: what may not depend on x, y, z or p. */
 static Node frame_time(Elaboration *e, Node node, const Syntax *syntax, const char *what)
 {
-    if (node == NODE_NONE || e->graph->items[node].time <= TIME_FRAME)
+    if (node == NODE_NONE || e->graph->items[node].time == TIME_COMPILE)
         return node;
+    if (e->graph->items[node].time == TIME_FRAME)
+        return check_finite(e, node, syntax) ? node : NODE_NONE;
     Diag *diag  = diag_add(e->diags, DIAG_NOT_FRAME_TIME, syntax->span, "%s may not depend on the point", what);
     diag->label = "this depends on x, y, z or p";
     point_at_definition(e, diag, syntax, NULL);

@@ -288,6 +288,7 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
         return value_error();
     if (first && !check_claims(e, declaration, shape, claimed, shape->exact))
         return value_error();
+    arena_free(e->scratch);
     const Syntax *core = find_property(declaration, "core");
     if (core) {
         Environment *kept = arena_new(e->arena, Environment);

@@ -111,8 +111,14 @@ static bool bind_parameters(Elaboration *e, const Function *function, const Valu
 static bool check_shape_arguments(Elaboration *e, const Function *function, const Value *values,
                                   const Syntax *const *places)
 {
-    for (uint32_t i = 0; i < parameter_count(function->syntax); i++)
-        if (places[i] && value_time(e, values[i]) == TIME_POINT) {
+    for (uint32_t i = 0; i < parameter_count(function->syntax); i++) {
+        if (!places[i])
+            continue;
+        BindingTime time = value_time(e, values[i]);
+        Node        node = time == TIME_FRAME ? value_node(e, values[i]) : NODE_NONE;
+        if (node != NODE_NONE && !check_finite(e, node, places[i]))
+            return false;
+        if (time == TIME_POINT) {
             Diag *diag = diag_add(e->diags, DIAG_NOT_FRAME_TIME, places[i]->span,
                                   "`%s` of `%s` may not depend on the point", function->syntax->children[i]->name,
                                   function->name);
@@ -120,6 +126,7 @@ static bool check_shape_arguments(Elaboration *e, const Function *function, cons
             point_at_definition(e, diag, places[i], NULL);
             return false;
         }
+    }
     return true;
 }
 

@@ -18,7 +18,9 @@ Range node_range(Elaboration *e, Node node, uint32_t component)
     const Expr *expr = &e->graph->items[node];
     if (expr->op == OP_CONSTANT)
         return range_of(expr->number[component]);
-    return graph_frame_fact(e->graph, node, e->scratch).value[component];
+    Range range = graph_frame_fact(e->graph, node, e->scratch).value[component];
+    arena_free(e->scratch);
+    return range;
 }
 
 Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span, const Shape *const *children,

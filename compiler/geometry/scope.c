@@ -108,15 +108,36 @@ static Scope *find_loaded(const Elaboration *e, const char *path)
     return NULL;
 }
 
+/* Takes "folder/../" and "./" out of a path, so that a file has one name. */
+static void simplify_path(char *path)
+{
+    char *to = path;
+    for (const char *from = path; *from;) {
+        size_t length = strcspn(from, "/");
+        bool   last   = from[length] == '\0';
+        char  *back   = to > path ? to - 1 : NULL; /* the slash behind the folder before */
+        while (back && back > path && back[-1] != '/')
+            back--;
+        bool folder = back && !(to - back == 3 && strncmp(back, "../", 3) == 0) && back < to - 1;
+        if (length == 2 && strncmp(from, "..", 2) == 0 && folder)
+            to = back;
+        else if (!(length == 1 && from[0] == '.' && !last)) {
+            memmove(to, from, length + !last);
+            to += length + !last;
+        }
+        from += length + !last;
+    }
+    *to = '\0';
+}
+
 /* "folder/used.krs" for a `use "used.krs"` in "folder/file.krs". */
 static const char *resolve_path(Elaboration *e, const char *from, const char *path)
 {
-    const char *slash = strrchr(from, '/');
-    if (!slash || path[0] == '/')
-        return path;
-    Text text = {.arena = e->arena};
-    text_add_bytes(&text, from, (size_t)(slash - from + 1));
+    const char *slash = path[0] == '/' ? NULL : strrchr(from, '/');
+    Text        text  = {.arena = e->arena};
+    text_add_bytes(&text, from, slash ? (size_t)(slash - from + 1) : 0);
     text_add(&text, path);
+    simplify_path(text.bytes);
     return text.bytes;
 }
 
@@ -201,7 +222,7 @@ static Scope *scope_parse(Elaboration *e, uint32_t source, const char *path)
 
 Scope *scope_load(Elaboration *e, uint32_t source, const char *path)
 {
-    Scope *scope   = scope_parse(e, source, path);
+    Scope *scope   = scope_parse(e, source, resolve_path(e, "", path));
     scope->loading = true;
     for (uint32_t i = 0; i < scope->file->count; i++)
         if (scope->file->children[i]->kind == SYNTAX_USE)

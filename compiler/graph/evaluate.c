@@ -274,8 +274,8 @@ static NodeValue evaluate_blend_weight(const NodeValue *o, uint32_t size)
 
 static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
 
-NodeValue op_evaluate(Op op, GraphType type, uint32_t index, const GraphType *types,
-                      const NodeValue *operands)
+static NodeValue value_of_row(Op op, GraphType type, uint32_t index, const GraphType *types,
+                              const NodeValue *operands)
 {
     NodeValue result = {0};
     uint32_t  size   = components(type);
@@ -301,6 +301,16 @@ NodeValue op_evaluate(Op op, GraphType type, uint32_t index, const GraphType *ty
         assert(!"a leaf has no value by itself");
         return result;
     }
+}
+
+/* Zero has no sign: -0 becomes 0, so that 1 / (-1 * 0) does not depend on who multiplied. */
+NodeValue op_evaluate(Op op, GraphType type, uint32_t index, const GraphType *types,
+                      const NodeValue *operands)
+{
+    NodeValue value = value_of_row(op, type, index, types, operands);
+    for (int i = 0; i < 4; i++)
+        value.v[i] += 0.0;
+    return value;
 }
 
 /* ---- tapes ---- */

@@ -210,6 +210,14 @@ Range range_tan(Range a)
     return widened(tan(a.low), tan(a.high));
 }
 
+/* 1 + tan^2, but for the jump from one end of the line to the other at a pole. */
+Range range_tan_slope(Range value)
+{
+    if (value.low == -HUGE_VAL)
+        return ANYTHING;
+    return range_add(range_of(1), range_square(value));
+}
+
 static double unit(double a) { return fmin(fmax(a, -1), 1); }
 
 Range range_asin(Range a) { return widened(asin(unit(a.low)), asin(unit(a.high))); }

@@ -45,6 +45,7 @@ Range range_above(Range a, double least); /* the part of a that is not below */
 Range range_sin(Range a);
 Range range_cos(Range a);
 Range range_tan(Range a);
+Range range_tan_slope(Range value);
 Range range_asin(Range a);
 Range range_acos(Range a);
 Range range_asin_slope(Range a);

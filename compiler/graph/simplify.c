@@ -186,7 +186,8 @@ static Node simplify_square(const Step *s)
     return NODE_NONE;
 }
 
-/* Whether a sum has only squares as terms, at most 4; what is squared goes to `roots`. */
+/* Whether a sum has only squares as terms, at most 4; what is squared goes to `roots`, the oldest
+   first, as they are when they are the components of one vector. */
 static bool sum_of_squares(const Step *s, Node sum, Node *roots, uint32_t *count)
 {
     if (is(s, sum, OP_add))
@@ -194,7 +195,11 @@ static bool sum_of_squares(const Step *s, Node sum, Node *roots, uint32_t *count
                sum_of_squares(s, operand(s, sum, 1), roots, count);
     if (!is(s, sum, OP_square) || *count == 4)
         return false;
-    roots[(*count)++] = operand(s, sum, 0);
+    Node     root = operand(s, sum, 0);
+    uint32_t i    = (*count)++;
+    for (; i > 0 && roots[i - 1] > root; i--)
+        roots[i] = roots[i - 1];
+    roots[i] = root;
     return true;
 }
 

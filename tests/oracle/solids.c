@@ -159,6 +159,15 @@ static double ball_depth(const Sweep *sweep, const Curve *curve, Vec point, doub
     return vec_distance(point, curve_at(curve, t)) - radius;
 }
 
+/* How much the depth can change, at most, while t goes from 0 to 1. */
+static double depth_change(const Sweep *sweep, const Curve *c)
+{
+    double way = c->kind == CURVE_ARC ? c->angle * vec_length(c->right)
+                                      : 2 * fmax(vec_distance(c->from, c->via),
+                                                 vec_distance(c->via, c->to));
+    return way + fabs(sweep->radius - sweep->radius_end);
+}
+
 /* The least depth between two parameters that hold one minimum. */
 static double refine_depth(const Sweep *sweep, const Curve *curve, Vec point, double low,
                            double high)
@@ -186,18 +195,15 @@ double sweep_depth(const Sweep *sweep, Vec point)
     double best = HUGE_VAL;
     for (int k = 0; k < sweep->curve_count; k++) {
         const Curve *curve = &sweep->curves[k];
-        double depth[PIECES + 1];
-        int least = 0;
+        double depth[PIECES + 1], slack = depth_change(sweep, curve) / PIECES;
         for (int i = 0; i <= PIECES; i++) {
             depth[i] = ball_depth(sweep, curve, point, (double)i / PIECES);
-            if (depth[i] < depth[least])
-                least = i;
+            best = fmin(best, depth[i]);
         }
-        best = fmin(best, depth[least]);
         for (int i = 0; i <= PIECES; i++) {
-            bool valley = (i == 0 || depth[i] <= depth[i - 1]) &&
+            bool valley = (i == 0 || depth[i] < depth[i - 1]) &&
                           (i == PIECES || depth[i] <= depth[i + 1]);
-            if (valley)
+            if (valley && depth[i] - slack < best)
                 best = fmin(best, refine_depth(sweep, curve, point, fmax(0, i - 1.0) / PIECES,
                                                fmin(PIECES, i + 1.0) / PIECES));
         }

@@ -374,10 +374,10 @@ static Sample sample_at(const Trial *trial, const double p[3])
     return sample;
 }
 
-/* Near a pole the rounding of the operands would be all that is seen. */
+/* Near a pole little but the rounding of the operands is seen. */
 static bool sample_defined(const Trial *trial, const Sample *sample, uint32_t size)
 {
-    double most = trial->type == TYPE_UINT ? UINT32_MAX : 100;
+    double most = trial->type == TYPE_UINT ? UINT32_MAX : 1000;
     for (uint32_t i = 0; i < size; i++)
         if (!(fabs(sample->value.v[i]) <= most))
             return false;
