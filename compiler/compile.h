@@ -7,6 +7,7 @@
 #include "compiler/base/arena.h"
 #include "compiler/base/diag.h"
 #include "compiler/krs.h"
+#include "compiler/shader/spirv.h"
 
 /*
  * The GLSL of a program declares these promised functions, and the kernels of the runtime
@@ -88,15 +89,5 @@ extern const char *const dump_stage_names[DUMP_STAGE_COUNT];
 /* As krs_compile_file, and also the form of the scene after `stage`, as text the caller frees
    with free(); when the scene is wrong, whatever stages before the mistake produced is printed. */
 KrsStatus krs_dump(const char *path, DumpStage stage, const KrsOptions *options, char **text);
-
-/* GLSL to SPIR-V by glslang, then through the SPIR-V validator.  `entry` names the compute
-   shader in messages.  On KRS_OK *words is malloc'ed and the caller's.  KRS_INTERNAL: refused by
-   glslang or the validator, a bug of ours: *log (malloc'ed) has their words.  Thread-safe. */
-KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, size_t *word_count, char **log);
-/* SPIR-V as assembly text (malloc'ed), or NULL. */
-char *spirv_disassemble(const uint32_t *words, size_t word_count);
-/* Once, before the first spirv_compile of a process and after the last. */
-void spirv_start(void);
-void spirv_stop(void);
 
 #endif

@@ -4,14 +4,14 @@
 # address and undefined-behaviour sanitizers, and everything compiles under clang as well.
 
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c)
-UNIT        := front film tracer writer memory
+UNIT        := front film tracer writer memory validate
 PROPERTY    := ops graph
 ORACLES     := self primitives krs_expand operators device
 FUZZ        := sentences
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
-SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/memory tests/property/ops \
+SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/validate tests/unit/memory tests/property/ops \
                tests/property/graph tests/oracle/primitives tests/oracle/krs_expand tests/oracle/operators \
                tests/fuzz/sentences
 SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/editors.sh tests/lint.sh \
@@ -26,7 +26,7 @@ $(B)/tests/%: $(B)/tests/%.o $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
 .SECONDARY:
 
-test-programs: $(PROGRAMS:%=$(B)/%) $(B)/tests/cli/exr_text
+test-programs: $(PROGRAMS:%=$(B)/%)
 sanitized-programs: $(SANITIZED:%=$(B)/%) $(B)/krs
 sanitize:
 	@$(MAKE) --no-print-directory sanitized-programs B=$(B)/asan \

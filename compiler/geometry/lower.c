@@ -305,6 +305,33 @@ static Lowered lower_revolve(Lowering *l, const Shape *shape, Place place)
 /* ---- repetition ---- */
 
 /*
+ * The walls of cells go on for ever, and far away would still hold rays up and throw false
+ * penumbras; the distance to the box of all copies is a bound as well, and there the larger one.
+ */
+static Lowered outside_of_box(Lowering *l, const Shape *shape, Place place, Lowered result)
+{
+    Graph *g = l->graph;
+    double centre[3], half[3];
+    if (result.distance == NODE_NONE || !box_is_finite(shape->box))
+        return result;
+    box_centre(shape->box, centre);
+    for (int i = 0; i < 3; i++)
+        half[i] = 0.5 * (shape->box.axis[i].high - shape->box.axis[i].low);
+    Node middle     = graph_constant(g, TYPE_VEC3, centre);
+    Node sides      = graph_constant(g, TYPE_VEC3, half);
+    Node local      = graph_op2(g, OP_sub, place.point, middle);
+    Node size       = graph_op1(g, OP_abs, local);
+    Node excess     = graph_op2(g, OP_sub, size, sides);
+    Node zero       = graph_number(g, 0);
+    Node outside    = graph_op2(g, OP_max, excess, zero);
+    Node around     = graph_op1(g, OP_length, outside);
+    Node beyond     = graph_op2(g, OP_less, zero, around);
+    Node larger     = graph_op2(g, OP_max, result.distance, around);
+    result.distance = graph_op3(g, OP_select, beyond, larger, result.distance);
+    return result;
+}
+
+/*
  * On an axis that repeats, the content lies in its cell.  Where it keeps a margin from the
  * walls, the distance to the next cell's content is at least the distance to the wall plus the
  * margin, and the least of that and the distance inside is safe and continuous: everything on
@@ -428,9 +455,10 @@ static Lowered lower_repeat(Lowering *l, const Shape *shape, Place place)
         Lowered copy  = lower(l, shape->children[0], at(place, point));
         result        = join_two(l, &sharp, result, copy);
     }
-    if (walls != NODE_NONE && result.distance != NODE_NONE)
-        result.distance = graph_op2(g, OP_min, result.distance, walls);
-    return result;
+    if (walls == NODE_NONE || result.distance == NODE_NONE)
+        return result;
+    result.distance = graph_op2(g, OP_min, result.distance, walls);
+    return outside_of_box(l, shape, place, result);
 }
 
 /* Rotation about y that brings an angle to the x axis. */
@@ -507,9 +535,10 @@ static Lowered lower_repeat_polar(Lowering *l, const Shape *shape, Place place)
     Node wall   = graph_op2(g, OP_sub, along, aside);
     Node behind = graph_number(g, margin);
     wall        = graph_op2(g, OP_add, wall, behind);
-    if (result.distance != NODE_NONE)
-        result.distance = graph_op2(g, OP_min, result.distance, wall);
-    return result;
+    if (result.distance == NODE_NONE)
+        return result;
+    result.distance = graph_op2(g, OP_min, result.distance, wall);
+    return outside_of_box(l, shape, place, result);
 }
 
 /* ---- sequences ---- */

@@ -7,8 +7,8 @@
 
 #include <spirv-tools/libspirv.h>
 
-#include "compiler/compile.h"
 #include "compiler/shader/glslang_border.h"
+#include "compiler/shader/spirv.h"
 
 void spirv_start(void) { border_start(); }
 void spirv_stop(void) { border_stop(); }

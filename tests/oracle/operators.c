@@ -189,6 +189,7 @@ static void operation_means_what_it_says(void **state)
     Trial trial = {product_field, &product, inside_operation, operation, vec(0, 0, 0),
                    operation->region, POINTS, 21};
     judge_acquits(&trial, operation->text);
+    product_keeps_claim(&product, operation->text, operation->region, 22);
     if (operation->exact)
         judge_refutes_larger(&trial, 1.15, operation->text);
     else
@@ -320,14 +321,15 @@ static void frames_are_scenes(void **state)
 {
     (void)state;
     Product moving = product_format("%sparam r = 0.1 in [0.05, 0.6]; param shift = [0, 0, 0];\n"
-                                    "show union(a.move(shift), b.rotate([0, 1, 0], time), blend: r);",
-                                    prelude);
+                                    "show union(a.move(shift), b.rotate([0, 1, 0], time),"
+                                    " blend: r);", prelude);
     Random random = {41};
     for (int set = 0; set < 6; set++) {
         double r = random_between(&random, 0.05, 0.6), time = random_between(&random, -4, 4);
         Vec v = random_in_cube(&random, 1);
         assert_int_equal(krs_frame_set(moving.frame, "r", &r, 1), KRS_OK);
-        assert_int_equal(krs_frame_set(moving.frame, "shift", (double[]){v.x, v.y, v.z}, 3), KRS_OK);
+        const double shift[3] = {v.x, v.y, v.z};
+        assert_int_equal(krs_frame_set(moving.frame, "shift", shift, 3), KRS_OK);
         assert_int_equal(krs_frame_set_time(moving.frame, time), KRS_OK);
         Product still = product_format("%sshow union(a.move([%.17g, %.17g, %.17g]),"
                                        " b.rotate([0, 1, 0], %.17g), blend: %.17g);",

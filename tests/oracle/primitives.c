@@ -585,23 +585,6 @@ static void primitive_is_its_definition(void **state)
 
 static bool negative(const void *product, Vec p) { return product_distance(product, p) <= 0; }
 
-/* From a point outside, as far as an exact distance says and against its gradient, lies the
-   surface. */
-static void check_claim(const Product *product, const char *what, Random *random)
-{
-    KrsComponent component;
-    assert_int_equal(krs_component(product->scene, 0, &component), KRS_OK);
-    for (int i = 0; component.exact && i < POINTS; i++) {
-        Vec point = random_in_cube(random, 1.5);
-        KrsHit hit = product_probe(product, point);
-        Vec normal = vec(hit.normal[0], hit.normal[1], hit.normal[2]);
-        Vec foot = vec_sub(point, vec_scale(hit.distance, normal));
-        if (hit.distance > 0 && fabs(product_distance(product, foot)) > 1e-4)
-            fail_msg("%s claims to be exact, but %.9g before (%g, %g, %g) it is %.9g away", what,
-                     hit.distance, point.x, point.y, point.z, product_distance(product, foot));
-    }
-}
-
 /* How a tapered arc goes from one radius to the other is its own affair, within limits: the
    surface is never farther than a third of the change from that of the linear one. */
 static void tapered_arcs(void **state)
@@ -622,7 +605,7 @@ static void tapered_arcs(void **state)
             radius, end);
         Trial trial = {product_field, &product, negative, &product, vec(0, 0, 0), 1.5, POINTS, 79};
         judge_acquits(&trial, "tapered arc");
-        check_claim(&product, "tapered arc", &random);
+        product_keeps_claim(&product, "tapered arc", 1.5, 80);
         for (int i = 0; i < POINTS; i++) {
             Vec point = random_in_cube(&random, 1.2);
             double depth = sweep_depth(&sweep, point), slack = (radius - end) / 3;

@@ -79,3 +79,20 @@ KrsHit product_raycast(const Product *product, Vec origin, Vec direction, double
                 farthest, tolerance, &hit);
     return hit;
 }
+
+void product_keeps_claim(const Product *product, const char *what, double region, uint64_t seed)
+{
+    KrsComponent component;
+    Random random = {seed};
+    assert_int_equal(krs_component(product->scene, 0, &component), KRS_OK);
+    for (int i = 0; component.exact && i < 1000; i++) {
+        Vec point = random_in_cube(&random, region);
+        KrsHit hit = product_probe(product, point);
+        Vec normal = vec(hit.normal[0], hit.normal[1], hit.normal[2]);
+        double rest = product_distance(product, vec_sub(point, vec_scale(hit.distance, normal)));
+        if (hit.distance > 0 && fabs(rest) > 1e-4)
+            fail_msg("%s claims to be exact, but from (%g, %g, %g), %.9g away, the way down the "
+                     "gradient ends %.9g away", what, point.x, point.y, point.z, hit.distance,
+                     rest);
+    }
+}

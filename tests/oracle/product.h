@@ -36,6 +36,10 @@ KrsHit product_probe(const Product *product, Vec point);
 KrsHit product_raycast(const Product *product, Vec origin, Vec direction, double farthest,
                        double tolerance);
 
+/* Fails the test when the first component claims to be exact and is not: from a point outside,
+   as far as an exact distance says and against its gradient, lies the surface. */
+void product_keeps_claim(const Product *product, const char *what, double region, uint64_t seed);
+
 /* product_distance for judge.h: `product` is a Product. */
 double product_field(const void *product, Vec point);
 
