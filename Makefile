@@ -10,6 +10,7 @@
 B       ?= build
 CFLAGS  ?= -g -O2
 FUZZ_SECONDS ?= 30
+CLANG   ?= clang-14
 
 # Sources in the order of the pipeline: reading down this list is reading the program.
 BASE     := $(addprefix compiler/base/, arena.c text.c source.c diag.c diag_text.c)

@@ -34,17 +34,19 @@ sanitize:
 
 # clang must like every file as well; its objects are not linked.
 clang-check: $(B)/library_files.c $(B)/shader_files.c
-	@$(MAKE) --no-print-directory clang-objects B=$(B)/clang CC=clang CFLAGS=-O1
+	@$(MAKE) --no-print-directory clang-objects B=$(B)/clang CC=$(CLANG) CFLAGS=-O1
 clang-objects: $(COMPILER:%.c=$(B)/%.o) $(RUNTIME:%.c=$(B)/%.o) $(CLI:%.c=$(B)/%.o)
 
-# The whole front end, text to graph, under libFuzzer, seeded from examples and tests.
-FUZZ_FLAGS := -g -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined
-$(B)/fuzz/front_fuzz: $(COMPILER) tests/fuzz/front_fuzz.c $(B)/library_files.c
-	@mkdir -p $(@D)
-	@echo "compile $@"
-	@clang $(filter-out -MMD -MP, $(STYLE)) $(FUZZ_FLAGS),fuzzer -o $@ $(BASE) $(FRONT) $(GRAPH) $(GEOMETRY) \
-	    compiler/shader/emit.c $(DOORSTEP) tests/fuzz/front_fuzz.c $(B)/library_files.c -lm
-fuzz: $(B)/fuzz/front_fuzz
+# The front end (lexer, parser, names) and the whole compiler but glslang under libFuzzer.
+HARNESSES   := front_fuzz scene_fuzz
+FUZZED      := $(filter-out compiler/shader/spirv.c, $(COMPILER))
+fuzz-programs: $(HARNESSES:%=$(B)/tests/fuzz/%)
+$(HARNESSES:%=$(B)/tests/fuzz/%): $(B)/tests/fuzz/%: $(B)/tests/fuzz/%.o $(FUZZED:%.c=$(B)/%.o) $(B)/library_files.o
+	@$(CC) $(CFLAGS) -fsanitize=fuzzer -o $@ $^ -lm
+fuzzers:
+	@$(MAKE) --no-print-directory fuzz-programs B=$(B)/fuzz CC=$(CLANG) \
+	    CFLAGS='-g -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined'
+fuzz: fuzzers
 	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) tests/fuzz/fuzz.sh
 
 lint:
@@ -53,8 +55,8 @@ bless: $(B)/krs
 	@tests/errors.sh --bless
 
 test: deps
-	@$(MAKE) --no-print-directory all test-programs clang-check $(B)/fuzz/front_fuzz
+	@$(MAKE) --no-print-directory all test-programs clang-check fuzzers
 	@$(MAKE) --no-print-directory sanitize
 	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs tests/run.sh $(PROGRAMS:%=$(B)/%) $(SCRIPTS) \
 	    $(SANITIZED:%=$(B)/asan/%) tests/errors-sanitized.sh tests/fuzz/fuzz.sh
-.PHONY: test test-programs sanitize sanitized-programs clang-check clang-objects fuzz lint bless
+.PHONY: test test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers fuzz-programs lint bless

@@ -12,7 +12,7 @@
 
 #include "compiler/graph/evaluate.h"
 
-static const char *const property_names[] = {"distance", "bound", "exact", "within", "uv", "plane", "figure", "core", "example"};
+static const char *const property_names[] = {"distance", "bound", "exact", "slope", "within", "uv", "plane", "figure", "core", "example"};
 enum { PROPERTY_COUNT = sizeof property_names / sizeof *property_names };
 
 static const Syntax *find_property(const Syntax *declaration, const char *name)
@@ -59,9 +59,28 @@ static bool flag_property(Elaboration *e, const Environment *env, const Syntax *
     if (!syntax)
         return false;
     Value value = evaluate(e, env, syntax);
-    if (value.type != VALUE_BOOLEAN && value.type != VALUE_ERROR)
+    /* What is true for some values of the parameters only cannot be claimed. */
+    bool  sometimes = value.type == VALUE_EXPRESSION && e->graph->items[value.node].type == TYPE_BOOL;
+    if (value.type != VALUE_BOOLEAN && value.type != VALUE_ERROR && !sometimes)
         type_error(e, syntax, value, "true or false");
     return value.type == VALUE_BOOLEAN && value.boolean;
+}
+
+/* `slope`: a claimed bound on how fast the distance changes; 0 when there is none. */
+static bool slope_property(Elaboration *e, const Environment *env, const Syntax *declaration, double *slope)
+{
+    const Syntax *syntax = find_property(declaration, "slope");
+    *slope               = 0;
+    if (!syntax)
+        return true;
+    Value value = evaluate(e, env, syntax);
+    if (value.type == VALUE_NUMBER && value.number > 0) {
+        *slope = value.number;
+        return true;
+    }
+    if (value.type != VALUE_ERROR)
+        type_error(e, syntax, value, "a constant number above 0");
+    return false;
 }
 
 /* `within`: a shape, or two corners. */
@@ -203,8 +222,9 @@ static void refuse_claim(Elaboration *e, const Syntax *declaration, const char *
         diag->help = "leave `exact` out: the compiler then derives a safe slope";
 }
 
-/* Pairs of near points refute a slope above 1, single points a solid outside of `within`. */
-static bool check_claims(Elaboration *e, const Syntax *declaration, const Shape *shape, Node distance, bool exact)
+/* Pairs of near points refute a claimed slope (0: none is claimed), single points a solid
+   outside of `within`. */
+static bool check_claims(Elaboration *e, const Syntax *declaration, const Shape *shape, Node distance, double slope)
 {
     enum { SAMPLES = 400 };
     Tape       tape       = tape_new(e->graph, &distance, 1, e->scratch);
@@ -228,8 +248,8 @@ static bool check_claims(Elaboration *e, const Syntax *declaration, const Shape 
         double at_a = values[distance].v[0];
         tape_run_point(&tape, b, values);
         double at_b = values[distance].v[0];
-        if (exact && !(fabs(at_a - at_b) <= sqrt(moved) * (1 + 1e-6) + rounding)) {
-            refuse_claim(e, declaration, "exact", diag_text(e->diags, "its slope is %.4g", fabs(at_a - at_b) / sqrt(moved)), a);
+        if (slope > 0 && !(fabs(at_a - at_b) <= slope * sqrt(moved) * (1 + 1e-6) + rounding)) {
+            refuse_claim(e, declaration, shape->exact ? "exact" : "slope", diag_text(e->diags, "its slope is %.4g", fabs(at_a - at_b) / sqrt(moved)), a);
             return false;
         }
         bool outside = false;
@@ -283,10 +303,17 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
     if (!good)
         return value_error();
 
-    Node claimed = shape->distance;
-    if (!shape->exact && !derive_slope(e, shape, declaration, distance))
+    Node   plain = shape->distance;
+    double slope;
+    if (!slope_property(e, env, declaration, &slope))
         return value_error();
-    if (first && !check_claims(e, declaration, shape, claimed, shape->exact))
+    slope = shape->exact ? 1 : slope;
+    if (slope > 0) {
+        shape->derived  = slope;
+        shape->distance = divide(e, shape->distance, slope);
+    } else if (!derive_slope(e, shape, declaration, distance))
+        return value_error();
+    if (first && !check_claims(e, declaration, shape, plain, slope))
         return value_error();
     arena_free(e->scratch);
     const Syntax *core = find_property(declaration, "core");

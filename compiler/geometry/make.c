@@ -195,6 +195,7 @@ const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const 
 {
     Shape *repeat     = wrap(e, SHAPE_REPEAT, "repeat", shape, place->span);
     repeat->values[0] = period;
+    repeat->exact     = false; /* walls of cells are bounds */
     double copies     = 1;
     for (uint32_t i = 0; i < 3; i++) {
         Range  range     = node_range(e, period, i);
@@ -223,6 +224,7 @@ const Shape *make_repeat_polar(Elaboration *e, const Shape *shape, uint32_t coun
 {
     Shape *repeat    = wrap(e, SHAPE_REPEAT_POLAR, "repeat_polar", shape, place->span);
     repeat->cells[0] = count;
+    repeat->exact    = false;
     if (box_is_empty(shape->box))
         return repeat;
     double most = 0;

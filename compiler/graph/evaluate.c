@@ -8,6 +8,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- the `value` column of MAP rows ---- */
@@ -315,39 +316,85 @@ NodeValue op_evaluate(Op op, GraphType type, uint32_t index, const GraphType *ty
 
 /* ---- tapes ---- */
 
-static void tape_mark(const Graph *graph, const Node *roots, size_t root_count, bool *needed)
+/* The nodes found so far, in a hash table; its size is a power of 2, at most half is full. */
+typedef struct NodeSet {
+    Node  *slots; /* node + 1; 0 is free */
+    size_t size;
+    Node  *nodes; /* in the order in which they were found */
+    size_t count, capacity;
+} NodeSet;
+
+/* Whether the node is new; then it takes its slot. */
+static bool set_take(NodeSet *set, Node node)
 {
-    Node last = 0;
-    for (size_t i = 0; i < root_count; i++) {
-        needed[roots[i]] = true;
-        last = roots[i] > last ? roots[i] : last;
-    }
-    for (Node node = last + 1; node-- > 0;)
-        if (needed[node])
-            for (int i = 0; i < graph->items[node].operand_count; i++)
-                needed[graph->items[node].operands[i]] = true;
+    size_t i = node * (size_t)0x9E3779B97F4A7C15u >> 20 & (set->size - 1);
+    for (; set->slots[i]; i = (i + 1) & (set->size - 1))
+        if (set->slots[i] == node + 1)
+            return false;
+    set->slots[i] = node + 1;
+    return true;
 }
 
-/* Nothing of frame time needs anything of point time, so it can all go first. */
+static void set_add(NodeSet *set, Node node, Arena *arena)
+{
+    if (2 * (set->count + 1) > set->size) {
+        set->size  = set->size ? 2 * set->size : 64;
+        set->slots = arena_new_array(arena, Node, set->size);
+        for (size_t i = 0; i < set->count; i++)
+            set_take(set, set->nodes[i]);
+    }
+    if (!set_take(set, node))
+        return;
+    if (set->count == set->capacity)
+        set->nodes = arena_grow(arena, set->nodes, set->count, &set->capacity, sizeof *set->nodes);
+    set->nodes[set->count++] = node;
+}
+
+static int compare_nodes(const void *a, const void *b)
+{
+    return (*(const Node *)a > *(const Node *)b) - (*(const Node *)a < *(const Node *)b);
+}
+
+/* The work grows with what the roots need, not with the graph: most expressions are small and
+   the graph of many of them is large.  Nothing of frame time needs anything of point time, so
+   it can all go first. */
 Tape tape_new(const Graph *graph, const Node *roots, size_t root_count, Arena *arena)
 {
-    bool *needed = arena_new_array(arena, bool, graph->count);
-    if (root_count)
-        tape_mark(graph, roots, root_count, needed);
-    Tape   tape  = {.graph = graph};
-    size_t count = 0;
-    for (Node node = 0; node < graph->count; node++) {
-        count += needed[node];
-        tape.frame_count += needed[node] && graph->items[node].time != TIME_POINT;
+    NodeSet set = {0};
+    for (size_t i = 0; i < root_count; i++)
+        set_add(&set, roots[i], arena);
+    for (size_t i = 0; i < set.count; i++) {
+        const Expr *e = &graph->items[set.nodes[i]];
+        for (int k = 0; k < e->operand_count; k++)
+            set_add(&set, e->operands[k], arena);
     }
-    Node  *nodes = arena_new_array(arena, Node, count + 1);
-    size_t frame = 0, point = tape.frame_count;
-    for (Node node = 0; node < graph->count; node++)
-        if (needed[node])
-            nodes[graph->items[node].time != TIME_POINT ? frame++ : point++] = node;
+    if (set.count)
+        qsort(set.nodes, set.count, sizeof *set.nodes, compare_nodes);
+    Tape  tape  = {.graph = graph, .count = set.count};
+    Node *nodes = arena_new_array(arena, Node, set.count + 1);
+    for (int frame = 1; frame >= 0; frame--)
+        for (size_t i = 0, at = frame ? 0 : tape.frame_count; i < set.count; i++)
+            if ((graph->items[set.nodes[i]].time != TIME_POINT) == frame) {
+                nodes[at++] = set.nodes[i];
+                tape.frame_count += (size_t)frame;
+            }
     tape.nodes = nodes;
-    tape.count = count;
     return tape;
+}
+
+size_t tape_place(const Tape *tape, Node node)
+{
+    bool   point = tape->graph->items[node].time == TIME_POINT;
+    size_t low   = point ? tape->frame_count : 0, high = point ? tape->count : tape->frame_count;
+    while (high - low > 1) {
+        size_t middle = low + (high - low) / 2;
+        if (tape->nodes[middle] <= node)
+            low = middle;
+        else
+            high = middle;
+    }
+    assert(low < tape->count && tape->nodes[low] == node);
+    return low;
 }
 
 static void tape_run_node(const Graph *graph, Node node, NodeValue *values)

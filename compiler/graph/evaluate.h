@@ -27,6 +27,9 @@ typedef struct Tape {
 
 Tape tape_new(const Graph *graph, const Node *roots, size_t root_count, Arena *arena);
 
+/* Where on the tape a node is that the roots need. */
+size_t tape_place(const Tape *tape, Node node);
+
 /* Runs the part of a tape that does not depend on the point.  `values` has graph->count
    elements, indexed by node; parameters[slot] is the parameter block (slot 0: time). */
 void tape_run_frame(const Tape *tape, const NodeValue *parameters, NodeValue *values);

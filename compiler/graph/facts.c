@@ -20,14 +20,14 @@ static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_
 typedef struct Study {
     const Graph *graph;
     Tape         tape;
-    uint32_t    *places; /* by node; NULL: the node itself */
+    bool         whole; /* facts of all nodes, else of those on the tape, in its order */
     const double (*parameters)[4];
     Fact        *facts;
 } Study;
 
 static Fact *study_fact(const Study *study, Node node)
 {
-    return &study->facts[study->places ? study->places[node] : node];
+    return &study->facts[study->whole ? node : tape_place(&study->tape, node)];
 }
 
 static Fact leaf_fact(const Study *study, const Expr *e, Box box)
@@ -83,17 +83,14 @@ static Study study_new(const Graph *graph, Node root, const double (*parameters)
 {
     Study study  = {.graph = graph, .parameters = parameters};
     study.tape   = tape_new(graph, &root, 1, arena);
-    study.places = arena_new_array(arena, uint32_t, (size_t)root + 1);
     study.facts  = arena_new_array(arena, Fact, study.tape.count);
-    for (size_t i = 0; i < study.tape.count; i++)
-        study.places[study.tape.nodes[i]] = (uint32_t)i;
     study_run(&study, (Box){0}, 0, study.tape.frame_count);
     return study;
 }
 
 Fact *graph_facts(const Graph *graph, Box box, const double (*parameters)[4], Arena *arena)
 {
-    Study study = {.graph = graph, .parameters = parameters};
+    Study study = {.graph = graph, .whole = true, .parameters = parameters};
     study.facts = arena_new_array(arena, Fact, graph->count);
     for (Node node = 0; node < graph->count; node++)
         study.facts[node] = node_fact(&study, node, box);

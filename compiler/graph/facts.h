@@ -35,8 +35,8 @@ Fact graph_frame_fact(const Graph *graph, Node node, Arena *scratch);
 /* The slope of `root` over a box, refined by cutting the box into at most `cells` parts; inf
    when there is no bound. `*blame` (may be NULL) is the node whose slope first became infinite
    or contributes most. */
-double graph_slope(const Graph *graph, Node root, Box box, const double (*parameters)[4], uint32_t cells,
-                   Node *blame, Arena *scratch);
+double graph_slope(const Graph *graph, Node root, Box box, const double (*parameters)[4],
+                   uint32_t cells, Node *blame, Arena *scratch);
 
 /* The fact of one operation from the facts of its operands: the rule of its row. */
 Fact op_fact(Op op, GraphType type, uint32_t index, const GraphType *types, const Fact *operands,

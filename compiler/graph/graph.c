@@ -447,12 +447,13 @@ static Node substitute_leaf(const Expr *e, Node node, Substitution with)
 }
 
 /* The graph grows meanwhile, so the expression is handed over as a copy. */
-static Node substitute_operands(Graph *graph, Expr e, Node node, const Node *copies)
+static Node substitute_operands(Graph *graph, Expr e, Node node, const Tape *tape, const Node *copies)
 {
     bool changed = false;
     for (int i = 0; i < e.operand_count; i++) {
-        changed       = changed || copies[e.operands[i]] != e.operands[i];
-        e.operands[i] = copies[e.operands[i]];
+        Node copy     = copies[tape_place(tape, e.operands[i])];
+        changed       = changed || copy != e.operands[i];
+        e.operands[i] = copy;
     }
     if (!changed)
         return node;
@@ -465,15 +466,15 @@ Node graph_substitute(Graph *graph, Node root, Substitution with, Arena *scratch
 {
     Span  here   = graph->here;
     Tape  tape   = tape_new(graph, &root, 1, scratch);
-    Node *copies = arena_new_array(scratch, Node, (size_t)root + 1);
+    Node *copies = arena_new_array(scratch, Node, tape.count);
     for (size_t i = 0; i < tape.count; i++) {
-        Node node    = tape.nodes[i];
-        Expr e       = graph->items[node];
-        copies[node] = e.operand_count ? substitute_operands(graph, e, node, copies)
-                                       : substitute_leaf(&e, node, with);
+        Node node = tape.nodes[i];
+        Expr e    = graph->items[node];
+        copies[i] = e.operand_count ? substitute_operands(graph, e, node, &tape, copies)
+                                    : substitute_leaf(&e, node, with);
     }
     graph->here = here;
-    return copies[root];
+    return copies[tape_place(&tape, root)];
 }
 
 /* ---- validation ---- */

@@ -125,7 +125,9 @@ Graph *graph_simplify(const Graph *graph, Node *roots, size_t root_count, Arena 
 /* Asserts what every pass must keep: operands first, types right, arity right, times right. */
 void graph_validate(const Graph *graph, const char *pass);
 
-/* One node a line: "%12 vec3 point = sub %3 %11  ; file:line:column". */
-void graph_print(const Graph *graph, const Sources *sources, const Node *roots, size_t root_count, Text *out);
+/* One needed node a line, "%12 vec3 point = sub %3 %11  ; file:line:column", then the roots, each
+   as "root %12"; `sources` may be NULL. */
+void graph_print(const Graph *graph, const Sources *sources, const Node *roots, size_t root_count,
+                 Text *out);
 
 #endif

@@ -48,7 +48,7 @@ static double sum_low(double a, double b)
     return sum_excess(a, b, sum) > 0 ? step_down(sum) : sum;
 }
 
-static double sum_high(double a, double b) { return -sum_low(-a, -b); }
+static double sum_high(double a, double b) { return 0 - sum_low(-a, -b); }
 
 static double product_low(double a, double b)
 {
@@ -62,7 +62,7 @@ static double product_low(double a, double b)
     return fma(a, b, -product) < 0 ? step_down(product) : product;
 }
 
-static double product_high(double a, double b) { return -product_low(-a, b); }
+static double product_high(double a, double b) { return 0 - product_low(-a, b); }
 
 static double quotient_low(double a, double b)
 {
@@ -77,7 +77,7 @@ static double quotient_low(double a, double b)
     return exact ? quotient : step_down(quotient);
 }
 
-static double quotient_high(double a, double b) { return -quotient_low(-a, b); }
+static double quotient_high(double a, double b) { return 0 - quotient_low(-a, b); }
 
 double sum_upward(double a, double b) { return sum_high(a, b); }
 double product_upward(double a, double b) { return product_high(a, b); }
@@ -142,7 +142,7 @@ Range range_square(Range a)
 
 Range range_above(Range a, double least)
 {
-    return (Range){fmax(a.low, least), fmax(a.high, least)};
+    return (Range){fmax(a.low, least) + 0.0, fmax(a.high, least) + 0.0}; /* 1 / sqrt(-0) is -inf */
 }
 
 Range range_sqrt(Range a)

@@ -133,7 +133,7 @@ static Range fact_size(const Fact *fact, uint32_t size)
         least   = hypot(least, range_least(fact->value[i]));
         largest = hypot_upward(largest, range_largest(fact->value[i]));
     }
-    return (Range){size > 1 ? least - least * 0x1p-50 : least, largest};
+    return (Range){size > 1 && isfinite(least) ? least - least * 0x1p-50 : least, largest};
 }
 
 /* ---- slopes from gradients ---- */
@@ -183,12 +183,16 @@ static double gradient_slope(const Fact *fact, uint32_t size)
     return split < whole ? split * (1 + 0x1p-50) : whole;
 }
 
-/* Both engines meet: the smaller slope counts, and no derivative is larger. */
+/* Both engines meet: the smaller slope counts, and no derivative is larger.  Ends out of order
+   come from operands that are defined nowhere in the box. */
 static Fact fact_agreed(Fact fact, uint32_t size)
 {
     bool same = true;
-    for (uint32_t i = 0; i < size; i++)
+    for (uint32_t i = 0; i < size; i++) {
+        if (!(fact.value[i].low <= fact.value[i].high))
+            fact.value[i] = ANYTHING;
         same = same && range_is_single(fact.value[i]);
+    }
     fact.slope = same ? 0 : fmin(fact.slope, gradient_slope(&fact, size));
     for (uint32_t i = 0; i < size; i++) {
         Jet jet = jet_of(&fact, i);

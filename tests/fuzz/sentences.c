@@ -38,7 +38,8 @@ typedef struct Grammar {
     Arena *arena;
     struct { Rule *items; size_t count, capacity; } rules;
     const char *at; /* while reading */
-    uint64_t random;
+    uint64_t    random;
+    int         words; /* that the sentence may still have before it is brought to an end */
 } Grammar;
 
 enum { UNREACHABLE = 1000000 };
@@ -227,6 +228,7 @@ static void add_word(Grammar *g, const char *word, Text *out)
                                          " /* ; */ ", "\n/// a note\n"};
     text_add(out, word);
     text_add(out, PICK(g, blanks));
+    g->words--;
 }
 
 /* Writes something that fits a part; with little `room` left the shortest way is taken. */
@@ -234,6 +236,8 @@ static void make(Grammar *g, const Part *part, int room, Text *out)
 {
     const Part *only = part->parts.count ? part->parts.items[0] : NULL;
     uint32_t    times = 0;
+    if (g->words <= 0)
+        room = 0;
     switch (part->kind) {
     case PART_WORD:
         add_word(g, part->quoted ? part->word : example_of(g, part->word), out);
@@ -241,6 +245,8 @@ static void make(Grammar *g, const Part *part, int room, Text *out)
     case PART_RULE: {
         Rule *rule = find_rule(g, part->word);
         rule->used = true;
+        if (random_below(g, 6) == 0) /* so that something is left for what comes after */
+            room = (int)random_below(g, (uint32_t)(room > 0 ? room : 0) + 1);
         make(g, rule->part, room - 1, out);
         break;
     }
@@ -259,7 +265,7 @@ static void make(Grammar *g, const Part *part, int room, Text *out)
     case PART_OPTIONAL:
     case PART_REPEAT:
         if (room > only->height)
-            times = random_below(g, part->kind == PART_REPEAT ? 3 : 2);
+            times = random_below(g, part->kind == PART_REPEAT ? 4 : 2);
         for (uint32_t i = 0; i < times; i++)
             make(g, only, room, out);
         break;
@@ -332,7 +338,8 @@ int main(int argc, char **argv)
         grammar.random = (uint64_t)(seed + i) * 0x9E3779B97F4A7C15u | 1;
         Text sentence  = {.arena = &each};
         text_add(&sentence, "");
-        int room = 20 + (int)random_below(&grammar, 60);
+        grammar.words = (int)random_below(&grammar, 600);
+        int room = 40 + (int)random_below(&grammar, 100);
         make(&grammar, find_rule(&grammar, "file")->part, room, &sentence);
         refused += !is_accepted(sentence.bytes, sentence.length, true, &each);
         if (drop_closer(&grammar, &sentence)) {
@@ -349,8 +356,8 @@ int main(int argc, char **argv)
         }
     arena_free(&fixed);
     printf("1..3\n# %ld sentences from seed %ld, %ld without a bracket\n", count, seed, (long)cut);
-    bool good = report(1, refused == 0 && count > 0, "sentences of the grammar are accepted");
-    good = report(2, wrong == 0 && cut > 0, "sentences without a closing bracket are refused") && good;
-    good = report(3, all_used, "the sentences use every rule") && good;
-    return good ? 0 : 1;
+    bool accepts = report(1, refused == 0 && count > 0, "sentences of the grammar are accepted");
+    bool refuses = report(2, wrong == 0 && cut > 0, "sentences without a closing bracket are not");
+    bool reaches = report(3, all_used, "the sentences use every rule");
+    return accepts && refuses && reaches ? 0 : 1;
 }

@@ -24,6 +24,7 @@
  *     m  mostly moves with the point   c  mostly fixed
  *     p  mostly fixed, positive or 0   w  mostly fixed width, sometimes 0
  *     b  truth                         i  instance number
+ *     e  often a whole number in the middle of the box, so that two are equal there
  * and, always fixed:
  *     r  row of one rotation           u  unit vector              n  whole number 1..7
  *     l  -2..0                         h  0..2
@@ -37,6 +38,8 @@ static const struct {
     {OP_cell, "mplh"},          {OP_cell_polar, "mn"},      {OP_smin_quadratic, "mmw"},
     {OP_smin_cubic, "mmw"},     {OP_smin_exponential, "mmw"}, {OP_smin_circular, "mmw"},
     {OP_smin_chamfer, "mmw"},   {OP_smin_stairs, "mmwn"},   {OP_blend_weight, "mmw"},
+    {OP_less, "ee"},            {OP_less_equal, "ee"},      {OP_equal, "ee"},
+    {OP_not_equal, "ee"},
 };
 
 typedef struct Row {
@@ -219,7 +222,7 @@ static uint32_t moving_eighths(char kind)
 {
     switch (kind) {
     case 'm':                     return 7;
-    case 'b': case 'i':           return 4;
+    case 'b': case 'i': case 'e': return 4;
     case 'c': case 'p': case 'w': return 1;
     default:                      return 0;
     }
@@ -234,7 +237,7 @@ static void operand_make(Random *random, Operand *operand, char kind, GraphType 
         operand->base[i] = fixed_number(random, kind);
         if (kind == 'm' && narrow)
             operand->base[i] *= 0.01;
-        if (kind == 'm' && below(random, 8) == 0)
+        if (below(random, 8) < (kind == 'e' ? 4 : kind == 'm'))
             operand->base[i] = round(operand->base[i]);
         if (kind == 'r')
             operand->base[i] = row[i];
@@ -269,10 +272,11 @@ static GraphType letter_type(char letter, GraphType map, GraphType vector, Graph
 
 static Trial trial_make(Random *random, Row row)
 {
-    Trial     trial  = {.row = row, .arity = (uint32_t)(strchr(row.signature, '>') - row.signature)};
+    Trial     trial  = {.row = row};
     GraphType map    = (GraphType)(below(random, 2) ? 1 : 1 + below(random, 4));
     GraphType vector = (GraphType)(2 + below(random, 3)), any = (GraphType)(1 + below(random, 6));
     double    shared[3], rows[3][3], size = exp(between(random, log(1e-3), log(2)));
+    trial.arity = (uint32_t)(strchr(row.signature, '>') - row.signature);
     random_unit(random, shared);
     random_rotation(random, rows);
     for (int j = 0; j < 3; j++)
@@ -395,7 +399,8 @@ static double sample_size(const Sample *sample, uint32_t size)
 static bool range_holds(const Fact *fact, const Sample *sample, uint32_t size)
 {
     for (uint32_t i = 0; i < size; i++)
-        if (!(fact->value[i].low <= sample->value.v[i] && sample->value.v[i] <= fact->value[i].high))
+        if (!(fact->value[i].low <= sample->value.v[i] &&
+              sample->value.v[i] <= fact->value[i].high))
             return false;
     return true;
 }

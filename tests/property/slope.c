@@ -13,7 +13,8 @@
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/facts.h"
 
-static const Box everywhere = {{{-HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, HUGE_VAL}}};
+#define ENDLESS {-HUGE_VAL, HUGE_VAL}
+static const Box everywhere = {{ENDLESS, ENDLESS, ENDLESS}};
 static const Box around     = {{{-2, 2}, {-2, 2}, {-2, 2}}};
 
 typedef struct Bench {
