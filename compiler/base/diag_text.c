@@ -79,7 +79,8 @@ static uint32_t add_visible(Text *out, const char *bytes, size_t length)
         const char *shown  = bytes + i;
         size_t      shown_length = used;
         char        picture[] = "\xE2\x90\x80"; /* U+2400, the first of the control pictures */
-        uint32_t    width  = is_combining(c) ? 0 : is_wide(c) ? 2 : 1;
+        bool        ascii  = c < 0x80;
+        uint32_t    width  = !ascii && is_combining(c) ? 0 : !ascii && is_wide(c) ? 2 : 1;
         if (c == '\t') {
             shown = "    ";
             shown_length = width = TAB_COLUMNS;
@@ -87,7 +88,7 @@ static uint32_t add_visible(Text *out, const char *bytes, size_t length)
             picture[2]   = (char)(0x80 + (c == 0x7F ? 0x21 : c));
             shown        = picture;
             shown_length = 3;
-        } else if (used == 0 || is_deceptive(c)) {
+        } else if (used == 0 || (!ascii && is_deceptive(c))) {
             shown        = replacement;
             shown_length = 3;
         }

@@ -127,7 +127,7 @@ static void parse_properties(Parser *p, const char *what, const char *example)
         Level start = p->here;
         add_child(p, parse_property(p));
         bool more = accept_separator(p);
-        if (p->failed)
+        if (p->failed && !p->abandoned)
             recover_property(p, start);
         else if (!more)
             break;
@@ -259,7 +259,7 @@ static void parse_statements(Parser *p, size_t opener, ParseFunction *statement,
             continue;
         Level start = p->here;
         add_child(p, statement(p));
-        if (p->failed)
+        if (p->failed && !p->abandoned)
             recover_statement(p, start);
     }
     expect_closer(p, TOKEN_RIGHT_BRACE, opener, "a statement or `}`");

@@ -246,6 +246,7 @@ void enter(Parser *p)
     Diag *diag = report_at(p, DIAG_TOO_DEEP, span_here(p), "nested more than 200 levels deep");
     diag->help = "name a part with `let` and use the name";
     fail(p);
+    p->abandoned = true;
 }
 
 void leave(Parser *p) { p->depth--; }
@@ -275,7 +276,7 @@ static bool may_resume(const Parser *p, Level start)
 /* Takes the mark of failure away; at least one token has been read since `start`. */
 static void begin_recovery(Parser *p, Level start)
 {
-    p->failed = false;
+    p->failed = p->abandoned = false;
     if (p->here.at == start.at)
         advance(p);
 }
@@ -348,6 +349,10 @@ static Syntax *check_height(Parser *p, Syntax *node)
 
 Syntax *finish(Parser *p, SyntaxKind kind, Span start, size_t first, const Token *name)
 {
+    if (p->failed && kind <= SYNTAX_KRS) {
+        p->pending.count = first;
+        return error_node(p);
+    }
     Syntax *node = arena_new(p->arena, Syntax);
     node->kind   = kind;
     node->span   = start;

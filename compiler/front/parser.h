@@ -30,6 +30,7 @@ typedef struct Parser {
     Arena       *arena;
     Level        here;
     bool         failed;
+    bool         abandoned; /* nested too deeply: only the file goes on, no block within */
     uint32_t     depth;    /* nesting now */
     size_t       unclosed; /* the token at which something unclosed was last noticed */
     struct { Syntax **items; size_t count, capacity; } pending; /* children of unfinished nodes */
@@ -83,7 +84,8 @@ void recover_property(Parser *p, Level start);
 /* ---- nodes ---- */
 size_t begin_children(const Parser *p);
 void   add_child(Parser *p, Syntax *child);
-/* A node from `start` to the last token read, with the children added since `first`. */
+/* A node from `start` to the last token read, with the children added since `first`.  An
+   expression in which something failed is a SYNTAX_ERROR as a whole. */
 Syntax *finish(Parser *p, SyntaxKind kind, Span start, size_t first, const Token *name);
 /* The same for a kind that has a name: a SYNTAX_ERROR without one. */
 Syntax *finish_named(Parser *p, SyntaxKind kind, Span start, size_t first, const Token *name);

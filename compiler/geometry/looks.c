@@ -285,7 +285,7 @@ static void add_light(Elaboration *e, const Environment *env, const Syntax *synt
 
 static void set_sky(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    static const double zenith[3] = {0.105, 0.241, 0.558}, horizon[3] = {0.729, 0.737, 0.863}, ground[3] = {0.15, 0.14, 0.13};
+    static const double zenith[3] = {0.24, 0.36, 0.56}, horizon[3] = {0.78, 0.82, 0.87}, ground[3] = {0.22, 0.2, 0.18};
     e->scene->zenith  = vector_property(e, env, syntax, "zenith", zenith);
     e->scene->horizon = vector_property(e, env, syntax, "horizon", horizon);
     e->scene->ground  = vector_property(e, env, syntax, "ground", ground);

@@ -382,10 +382,13 @@ Range range_mix(Range a, Range b, Range c)
     return isnan(mixed.low) ? ANYTHING : widened(mixed.low, mixed.high);
 }
 
-/* (c - a) / (b - a), clamped. */
+/* (c - a) / (b - a), clamped; where a = b it is a step. */
 static Range smoothstep_progress(Range a, Range b, Range c)
 {
-    Range progress = range_div(range_sub(c, a), range_sub(b, a));
+    Range width = range_sub(b, a);
+    if (width.low <= 0 && width.high >= 0)
+        return (Range){0, 1};
+    Range progress = range_div(range_sub(c, a), width);
     return (Range){fmin(fmax(progress.low, 0), 1), fmax(fmin(progress.high, 1), 0)};
 }
 

@@ -298,8 +298,8 @@ static void tapes_give_what_recursion_gives(void **state)
         NodeValue *values = arena_new_array(&b->arena, NodeValue, b->graph->count);
         Place      place  = random_place(b);
         tape_run_frame(&tape, place.parameters, values);
-        for (int i = 0; i < 3; i++) {
-            place.point[i] = between(b, -2, 2);
+        for (int axis = 0; axis < 3; axis++) {
+            place.point[axis] = between(b, -2, 2);
             tape_run_point(&tape, place.point, values);
             for (int i = 0; i < 3; i++) {
                 GraphType type     = b->graph->items[roots[i]].type;
@@ -446,8 +446,9 @@ static Place place_in_box(Bench *b, Box box)
 {
     Place place = random_place(b);
     for (int i = 0; i < 3; i++) {
-        double low  = box.axis[i].low > -HUGE_VAL ? box.axis[i].low : fmin(box.axis[i].high, 2) - 4;
-        double high = box.axis[i].high < HUGE_VAL ? box.axis[i].high : fmax(box.axis[i].low, -2) + 4;
+        Range  a    = box.axis[i];
+        double low  = a.low > -HUGE_VAL ? a.low : fmin(a.high, 2) - 4;
+        double high = a.high < HUGE_VAL ? a.high : fmax(a.low, -2) + 4;
         place.point[i] = between(b, low, high);
     }
     return place;
@@ -490,7 +491,7 @@ static bool fact_holds(const Fact *fact, GraphType type, const NodeValue *value)
     return true;
 }
 
-/* Between two places; undefined operands may have an undefined slope. */
+/* Between two places where the value is defined. */
 static bool slope_holds(const Fact *fact, GraphType type, const Place places[2],
                         const NodeValue *a, const NodeValue *b)
 {
