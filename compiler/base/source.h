@@ -36,7 +36,8 @@ typedef struct Position {
 } Position;
 
 /* Adds a copy of a text (at most 16 MiB, which the caller has checked) and returns its number. */
-uint32_t source_add(Sources *sources, const char *name, const char *text, size_t length, bool library);
+uint32_t source_add(Sources *sources, const char *name, const char *text, size_t length,
+                    bool library);
 Position source_position(const Source *source, uint32_t offset);
 
 /* From the start of one place to the end of another in the same source. */

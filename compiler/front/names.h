@@ -12,7 +12,8 @@ typedef struct NameScope {
     size_t             known_count;
 } NameScope;
 
-/* Reports names used and not defined (E0201, with the nearest known name), names defined twice
+/* Reports names used and not defined (E0201, each once, with the nearest known name; not where
+   a mistake already reported may have hidden the definition), names defined twice
    in one scope (E0202), cycles among top-level `let`s (E0203: the chain of definitions as
    places), and definitions that hide x, y, z, p, u, v (W0201).  Bodies of functions that are
    never called are checked too.  A function may call itself; a `let` may not need itself, also

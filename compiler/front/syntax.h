@@ -51,7 +51,7 @@ typedef enum SyntaxKind {
     SYNTAX_SHOW,          /* -      [0] value */
     SYNTAX_USE,           /* path   none; the name is the path */
     SYNTAX_FOR,           /* name   [0] the list, [1] BLOCK */
-    SYNTAX_IF_STATEMENT,  /* -      [0] condition, [1] BLOCK, [2] BLOCK or IF_STATEMENT, or no [2] */
+    SYNTAX_IF_STATEMENT,  /* -      [0] condition, [1] BLOCK, [2] BLOCK, IF_STATEMENT, or none */
     SYNTAX_KERNEL,        /* -      [0] shape */
     SYNTAX_REFLECT,       /* -      [0] plane */
     SYNTAX_MOBIUS,        /* -      [0] map */
@@ -65,7 +65,7 @@ struct Syntax {
     Span        span;      /* all of it */
     Span        name_span; /* the name alone; for BINARY the operator */
     const char *name;      /* interned, or NULL */
-    const char *doc;       /* the lines of the `///` comment before a DEF, SHAPE or PARAM, or NULL */
+    const char *doc;       /* lines of the `///` comment before a DEF, SHAPE or PARAM, or NULL */
     double      number[3];
     Syntax    **children;
     uint32_t    count;

@@ -153,9 +153,9 @@ static Node divide(Elaboration *e, Node distance, double slope)
     return graph_op2(e->graph, OP_mul, distance, factor);
 }
 
-static void report_steep(Elaboration *e, const Syntax *declaration, const Syntax *distance, Node blame)
+static void report_steep(Elaboration *e, const Syntax *declaration, const Syntax *distance, Span blame)
 {
-    Span  span  = blame != NODE_NONE && e->graph->items[blame].span.source ? e->graph->items[blame].span : distance->span;
+    Span  span  = blame.source ? blame : distance->span;
     Diag *diag  = diag_add(e->diags, DIAG_STEEP, span, "the slope of `%s` has no bound", declaration->name);
     diag->label = "this can change arbitrarily fast";
     diag_place(e->diags, diag, distance->span, "the distance is this expression");
@@ -170,15 +170,16 @@ static void report_steep(Elaboration *e, const Syntax *declaration, const Syntax
 static bool derive_slope(Elaboration *e, Shape *shape, const Syntax *declaration, const Syntax *syntax)
 {
     enum { CELLS = 512 };
-    Node blame     = NODE_NONE;
-    shape->derived = graph_slope(e->graph, shape->distance, box_infinite, NULL, 1, &blame, e->scratch);
+    Node   blame = NODE_NONE, root = shape->distance;
+    Graph *plain = graph_simplify(e->graph, &root, 1, e->scratch); /* sqrt(x * x + ...) is a length there */
+    shape->derived = graph_slope(plain, root, box_infinite, NULL, 1, &blame, e->scratch);
     if (isfinite(shape->derived)) {
         shape->distance = divide(e, shape->distance, shape->derived);
         return true;
     }
     if (box_is_finite(shape->box)) {
         double margin  = 0.05 * box_diagonal(shape->box) + 1e-6;
-        shape->derived = graph_slope(e->graph, shape->distance, box_grow(shape->box, margin), NULL, CELLS, &blame, e->scratch);
+        shape->derived = graph_slope(plain, root, box_grow(shape->box, margin), NULL, CELLS, &blame, e->scratch);
         if (isfinite(shape->derived)) {
             Node around     = box_distance(e, shape->box);
             Node limit      = graph_number(e->graph, margin);
@@ -188,7 +189,7 @@ static bool derive_slope(Elaboration *e, Shape *shape, const Syntax *declaration
             return true;
         }
     }
-    report_steep(e, declaration, syntax, blame);
+    report_steep(e, declaration, syntax, blame == NODE_NONE ? (Span){0, 0, 0} : plain->items[blame].span);
     return false;
 }
 

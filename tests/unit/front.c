@@ -76,7 +76,8 @@ static const char *codes(Reading *r)
     for (size_t i = 0; i < r->diags.count; i++) {
         const Diag *diag = r->diags.items[i];
         Position    at   = source_position(&r->sources.items[diag->span.source], diag->span.start);
-        text_format(&text, "%s%s@%u:%u", i ? " " : "", diag_info[diag->code].code, at.line, at.column);
+        text_format(&text, "%s%s@%u:%u", i ? " " : "", diag_info[diag->code].code, at.line,
+                    at.column);
     }
     return text.bytes;
 }
@@ -409,7 +410,8 @@ static void operators_have_their_precedence(void **state)
                     "(comprehension (if then else a b c) (for clause i d))");
     expect_grouping("[a, b,]", "(list a b)");
     expect_grouping("krs { kernel a; reflect reflect(b); mobius c * d; let e = 1; }",
-                    "(krs (kernel a) (reflect (call reflect (argument b))) (mobius (c*d)) (let e 1))");
+                    "(krs (kernel a) (reflect (call reflect (argument b)))"
+                    " (mobius (c*d)) (let e 1))");
 }
 
 static void the_tree_is_printed(void **state)
@@ -451,7 +453,8 @@ static void the_tree_is_printed(void **state)
 static void every_mistake_is_reported_once(void **state)
 {
     (void)state;
-    expect_codes("let a = 1 +;\nlet b = ;\nlet c = 2;\nshow a b;", "E0101@1:12 E0101@2:9 E0101@4:8");
+    expect_codes("let a = 1 +;\nlet b = ;\nlet c = 2;\nshow a b;",
+                 "E0101@1:12 E0101@2:9 E0101@4:8");
     expect_codes("let a = 1\nlet b = 2\n", "E0101@1:10 E0101@2:10");
     expect_codes("camera { eye: [1, 2 3], fov: 1 2, up: 3 }\nlet = 3;",
                  "E0101@1:21 E0101@1:32 E0101@2:5");
@@ -493,7 +496,8 @@ static void brackets_are_blamed_where_they_open(void **state)
 }
 
 /* `count` times `piece` between two other texts. */
-static Reading *read_repeated(const char *before, const char *piece, size_t count, const char *after)
+static Reading *read_repeated(const char *before, const char *piece, size_t count,
+                              const char *after)
 {
     size_t length = strlen(piece);
     char  *text   = malloc(strlen(before) + count * length + strlen(after) + 1);
@@ -570,10 +574,12 @@ static void names_are_found(void **state)
 {
     (void)state;
     expect_name_codes("show a;\nlet a = b;\nlet b = 1;", "");
-    expect_name_codes("show sphre(1);\nlet a = bar + baz;\nlet b = bar;", "E0201@1:6 E0201@2:9 E0201@2:15");
+    expect_name_codes("show sphre(1);\nlet a = bar + baz;\nlet b = bar;",
+                      "E0201@1:6 E0201@2:9 E0201@2:15");
     expect_name_codes("def f(a, b = a) = a + b + c;", "E0201@1:27");
     expect_name_codes("def f(a = b, b = 1) = a;", "E0201@1:11");
-    expect_name_codes("let l = [i + j for i in [1] for j in [i] if j > i];\nlet m = i;", "E0201@2:9");
+    expect_name_codes("let l = [i + j for i in [1] for j in [i] if j > i];\nlet m = i;",
+                      "E0201@2:9");
     expect_name_codes("let l = [1 for i in [i]];", "E0201@1:22");
     expect_name_codes("let l = let q = 1 in q;\nshow q;", "E0201@2:6");
     expect_name_codes("for i in [1] { let j = i; show j; }\nshow j;", "E0201@2:6");
@@ -663,14 +669,16 @@ static void a_diagnostic_is_drawn(void **state)
     Diag    *diag = diag_add(&r->diags, DIAG_NEEDS_PLANE, (Span){file, 29, 38},
                              "'reflect' needs a plane, found a shape");
     diag->label   = "this is a shape";
-    diag->help    = "for an inversion in a sphere write 'mobius invert(center: [0,0,0], radius: 2);'";
+    diag->help    = "for an inversion in a sphere write "
+                    "'mobius invert(center: [0,0,0], radius: 2);'";
     expect_picture(r,
         "error[E0312]: 'reflect' needs a plane, found a shape\n"
         "  --> grove.krs:14:17\n"
         "   |\n"
         "14 |         reflect sphere(2);\n"
         "   |                 ^^^^^^^^^ this is a shape\n"
-        "   = help: for an inversion in a sphere write 'mobius invert(center: [0,0,0], radius: 2);'\n"
+        "   = help: for an inversion in a sphere write "
+        "'mobius invert(center: [0,0,0], radius: 2);'\n"
         "\n"
         "1 error\n");
 }
@@ -794,8 +802,8 @@ static void json_has_places_of_the_protocol(void **state)
     diags_print_json(&r->diags, &text);
     assert_string_equal(text.bytes,
         "{\"uri\":\"j.krs\",\"range\":{\"start\":{\"line\":1,\"character\":3},"
-        "\"end\":{\"line\":1,\"character\":4}},\"severity\":1,\"code\":\"E0201\",\"source\":\"krs\","
-        "\"message\":\"a message\",\"relatedInformation\":[{\"location\":{\"uri\":\"j.krs\","
+        "\"end\":{\"line\":1,\"character\":4}},\"severity\":1,\"code\":\"E0201\","
+        "\"source\":\"krs\",\"message\":\"a message\",\"relatedInformation\":[{\"location\":{\"uri\":\"j.krs\","
         "\"range\":{\"start\":{\"line\":0,\"character\":0},\"end\":{\"line\":0,\"character\":1}}},"
         "\"message\":\"a \\\"place\\\"\"}],\"data\":{\"replacement\":\"d\",\"notes\":[]}}\n");
     reading_free(r);
@@ -819,8 +827,10 @@ static void codes_are_found(void **state)
     (void)state;
     assert_ptr_equal(diag_find("E0312"), &diag_info[DIAG_NEEDS_PLANE]);
     assert_null(diag_find("E9999"));
-    for (size_t i = 0; i < DIAG_CODE_COUNT; i++)
-        assert_int_equal(diag_info[i].severity, diag_info[i].code[0] == 'E' ? DIAG_ERROR : DIAG_WARNING);
+    for (size_t i = 0; i < DIAG_CODE_COUNT; i++) {
+        bool error = diag_info[i].code[0] == 'E';
+        assert_int_equal(diag_info[i].severity, error ? DIAG_ERROR : DIAG_WARNING);
+    }
 }
 
 int main(void)
