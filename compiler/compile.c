@@ -234,7 +234,8 @@ static void keep_scene(Compilation *c)
     for (size_t i = 0; i < s->components.count; i++) {
         const Component *from = &s->components.items[i];
         KrsComponent    *to   = &scene->components[i];
-        *to = (KrsComponent){.name = keep(c, from->name), .slope = from->shape->slope, .exact = from->shape->exact,
+        *to = (KrsComponent){.name = keep(c, from->name), .slope = from->shape->slope * from->shape->derived,
+                             .exact = from->shape->exact,
                              .levels = from->shape->levels, .instances = from->shape->instances};
         for (int k = 0; k < 3; k++) {
             to->low[k]  = from->shape->box.axis[k].low;

@@ -43,6 +43,7 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span, co
         const Shape *child = children[i];
         shape->children[i] = child;
         shape->slope       = fmax(shape->slope, child->slope);
+        shape->derived     = fmax(shape->derived, child->derived);
         shape->exact       = shape->exact && child->exact;
         shape->figure      = shape->figure || child->figure;
         shape->instances += child->instances;

@@ -82,7 +82,8 @@ struct Shape {
 
     Box    box;     /* around the solid, for all values of the parameters */
     double slope;   /* Lipschitz constant of what it lowers to */
-    double derived; /* PRIMITIVE: the slope of its expression, by which it is divided */
+    double derived; /* PRIMITIVE: the slope of its expression, by which it is divided; else the
+                       largest in the tree */
     bool   exact;   /* the distance outside is the true one */
     bool   figure;  /* a plane figure in x and y */
     double instances; /* kernels counted with their reflections */

@@ -25,21 +25,17 @@ layout(std140, set = 1, binding = 0) uniform Frame {
     float pixel_slope;
     float error;             // permitted distance from the surface, in pixels
     float occlusion_reach;   // of the farthest occlusion tap
-    uint  projection;
     uint  most_steps;
 } frame;
 
 layout(push_constant) uniform Work {
-    uint  first, groups, stride; // tiles [first, first + groups), in an order of this stride
-    uint  phase;                 // of secondary.comp
     uvec2 corner, extent;        // of the band, in pixels
-    vec2  offset;                // of the ray within its pixel
-    uint  steps;                 // of a ray in this dispatch
-    uint  beginning;             // 1: rays start here; for resolve.comp: the first ray of a pixel
-    vec4  light_vector;          // towards it, or its position
-    vec3  light_color;
-    uint  light_kind;            // bit 0: positional, bit 1: casts shadows
+    vec3  light_vector;          // towards it, or its position
     float light_softness;        // angular diameter, or radius
+    vec3  light_color;
+    uint  steps;                 // of a ray in this dispatch
+    vec2  offset;                // of the ray within its pixel
+    uint  first, groups, stride; // tiles [first, first + groups), in an order of this stride
 } work;
 
 struct Ray {
@@ -66,10 +62,16 @@ struct Hit {
 layout(std430, set = 1, binding = 1) buffer Rays { Ray rays[]; };
 layout(std430, set = 1, binding = 2) buffer Hits { Hit hits[]; };
 
-layout(std430, set = 1, binding = 4) buffer Counters {
-    uint marching;   // rays that need another dispatch
-    uint unresolved; // rays that ran out of steps
-} counters;
+// What decides branches is here and not among the constants above: lavapipe compiles a kernel
+// anew, and keeps it, for every set of constants that decides one.
+layout(std430, set = 1, binding = 4) buffer Control {
+    uint marching;   // counts rays that need another dispatch
+    uint unresolved; // counts rays that ran out of steps
+    uint projection;
+    uint phase;      // of secondary.comp
+    uint beginning;  // 1: rays start here; for resolve.comp: the first ray of a pixel
+    uint light_kind; // bit 0: positional, bit 1: casts shadows
+} control;
 
 // The pixel of this invocation; false when there is none.  The stride spreads neighbouring
 // tiles over a device that deals out workgroups in contiguous halves.
@@ -91,12 +93,12 @@ void find_ray(vec2 place, out vec3 origin, out vec3 direction, out float base, o
     origin = frame.eye.xyz;
     base = frame.pixel_base;
     slope = frame.pixel_slope;
-    if (frame.projection == PERSPECTIVE) {
+    if (control.projection == PERSPECTIVE) {
         vec3  straight = frame.forward.xyz + plane.x * frame.right.xyz + plane.y * frame.up.xyz;
         float stretch = length(straight);
         direction = straight / stretch;
         slope /= stretch;
-    } else if (frame.projection == ORTHOGRAPHIC) {
+    } else if (control.projection == ORTHOGRAPHIC) {
         origin += plane.x * frame.right.xyz + plane.y * frame.up.xyz;
         direction = frame.forward.xyz;
     } else {

@@ -50,7 +50,7 @@ void main()
     bvec3 sound = bvec3(radiance.x < INFINITE, radiance.y < INFINITE, radiance.z < INFINITE);
     vec4 color = vec4(mix(vec3(0.0), max(radiance, 0.0), sound), solid ? 1.0 : 0.0);
 
-    if (work.beginning == 0u) {
+    if (control.beginning == 0u) {
         pixels[index].color += color;
         pixels[index].evaluations += ray.steps;
         pixels[index].most = max(pixels[index].most, ray.steps);
@@ -60,7 +60,7 @@ void main()
     Pixel pixel;
     pixel.color = color;
     pixel.position = solid ? hit.position : vec3(0.0);
-    pixel.depth = frame.projection == PANORAMA ? ray.t : dot(apart, frame.forward.xyz);
+    pixel.depth = control.projection == PANORAMA ? ray.t : dot(apart, frame.forward.xyz);
     if (!solid)
         pixel.depth = uintBitsToFloat(0x7f800000u); // infinity
     pixel.normal = solid ? ray.side * hit.normal : vec3(0.0);

@@ -38,7 +38,7 @@ void main()
     Ray  ray = rays[index];
     Hit  hit = hits[index];
     bool solid = ray.fate == HIT;
-    uint phase = work.phase;
+    uint phase = control.phase;
     float rounding = ROUNDING * (largest(hit.position) + largest(origin));
 
     // Differences over half a pixel: finer detail would only be noise.  Below 3e-4 of the
@@ -53,8 +53,8 @@ void main()
     uint  limit = phase == NORMALS ? 6u : OCCLUSION_TAPS;
     if (phase == SHADOW) {
         start += hit.normal * (hit.pixel + 4.0 * rounding);
-        bool  positional = (work.light_kind & POSITIONAL) != 0u;
-        vec3  toward = positional ? work.light_vector.xyz - start : work.light_vector.xyz;
+        bool  positional = (control.light_kind & POSITIONAL) != 0u;
+        vec3  toward = positional ? work.light_vector - start : work.light_vector;
         float remote = positional ? max(length(toward), 1e-12) : 1.0;
         way = toward / remote;
         far = positional ? remote : frame.eye.w;
@@ -64,7 +64,7 @@ void main()
         sharpness = work.light_softness <= 0.0 ? INFINITE
                   : positional ? 0.5 * remote / work.light_softness
                                : 0.5 / tan(0.5 * min(work.light_softness, 3.0));
-        bool needed = (work.light_kind & CASTS_SHADOWS) != 0u && dot(hit.normal, way) > 0.0;
+        bool needed = (control.light_kind & CASTS_SHADOWS) != 0u && dot(hit.normal, way) > 0.0;
         limit = needed ? SHADOW_STEPS : 0u;
     }
     if (!solid)
@@ -115,15 +115,15 @@ void main()
     } else if (phase == OCCLUSION) {
         hits[index].occlusion = exp2(-2.5 * blocked); // light finds its way in by reflection
     } else if (!solid) {
-        if ((work.light_kind & POSITIONAL) == 0u)
-            hits[index].radiance += sun_radiance(direction, work.light_vector.xyz, work.light_color,
+        if ((control.light_kind & POSITIONAL) == 0u)
+            hits[index].radiance += sun_radiance(direction, work.light_vector, work.light_color,
                                                  work.light_softness);
     } else {
         if (limit > 0u && !done && t < far)
-            atomicAdd(counters.unresolved, 1u);
+            atomicAdd(control.unresolved, 1u);
         vec3 light = work.light_color;
-        if ((work.light_kind & POSITIONAL) != 0u) {
-            vec3 apart_from_light = work.light_vector.xyz - hit.position;
+        if ((control.light_kind & POSITIONAL) != 0u) {
+            vec3 apart_from_light = work.light_vector - hit.position;
             light /= max(dot(apart_from_light, apart_from_light), 1e-12);
         }
         visible = visible < 4e-3 ? 0.0 : visible;

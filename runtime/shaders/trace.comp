@@ -35,7 +35,7 @@ void main()
 
     // No side yet: the first distance tells, unless the ray comes from outside of the box.
     Ray ray = Ray(range.x, range.x > 0.0 ? 1.0 : 0.0, 0u, range.x <= range.y ? MARCHING : MISS);
-    if (work.beginning == 0u)
+    if (control.beginning == 0u)
         ray = rays[index];
 
     float start = largest(origin);
@@ -72,10 +72,10 @@ void main()
     if (ray.fate == MARCHING) {
         if (ray.steps >= frame.most_steps) {
             // It has been creeping along a surface, so that is what is drawn; and it is counted.
-            atomicAdd(counters.unresolved, 1u);
+            atomicAdd(control.unresolved, 1u);
             ray.fate = ray.t <= range.y ? HIT : MISS; // a t that is not a number is a miss
         } else {
-            atomicAdd(counters.marching, 1u);
+            atomicAdd(control.marching, 1u);
         }
     }
     rays[index] = ray;

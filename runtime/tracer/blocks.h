@@ -17,8 +17,7 @@ typedef struct FrameBlock {
     float    size[2];
     float    pixel_base, pixel_slope;
     float    error, occlusion_reach;
-    uint32_t projection; /* the enum of KrsCamera */
-    uint32_t most_steps;
+    uint32_t most_steps, unused;
 } FrameBlock;
 static_assert(sizeof(FrameBlock) == 176, "std140");
 
@@ -27,23 +26,24 @@ enum { LIGHT_POSITIONAL = 1, LIGHT_CASTS_SHADOWS = 2 };
 
 /* push_constant Work. */
 typedef struct WorkBlock {
-    uint32_t first, groups, stride;
-    uint32_t phase;
     uint32_t corner[2], extent[2];
-    float    offset[2];
-    uint32_t steps;
-    uint32_t beginning;
-    float    light_vector[4];
+    float    light_vector[3], light_softness;
     float    light_color[3];
-    uint32_t light_kind;
-    float    light_softness;
+    uint32_t steps;
+    float    offset[2];
+    uint32_t first, groups, stride;
 } WorkBlock;
-static_assert(sizeof(WorkBlock) == 84 && sizeof(WorkBlock) <= 128, "what every device takes");
+static_assert(sizeof(WorkBlock) == 68 && sizeof(WorkBlock) <= 128, "what every device takes");
 
-typedef struct CounterBlock {
+/* buffer Control, std430. */
+typedef struct ControlBlock {
     uint32_t marching;
     uint32_t unresolved;
-} CounterBlock;
+    uint32_t projection; /* the enum of KrsCamera */
+    uint32_t phase;      /* SECONDARY_... */
+    uint32_t beginning;
+    uint32_t light_kind; /* LIGHT_... */
+} ControlBlock;
 
 /* Pixel of resolve.comp, std430. */
 typedef struct PixelBlock {

@@ -231,29 +231,28 @@ static bool run_phase(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock 
 
 static bool trace(Job *job, WorkBlock *work)
 {
-    CounterBlock *counters = job->rendering->counters.bytes;
-    work->beginning = 1;
+    ControlBlock *control = job->rendering->control.bytes;
     work->steps = job->options.steps_at_once;
     for (double left = job->share;; left -= job->share) {
-        counters->marching = 0;
+        control->marching = 0;
         job->share = 0.9 * left; /* few rays need a second pass */
         if (!run_phase(job, KRS_PHASE_PRIMARY, &job->rendering->trace, work))
             return false;
-        if (counters->marching == 0)
+        if (control->marching == 0)
             return true;
         job->done += job->share;
-        work->beginning = 0;
+        control->beginning = 0;
     }
 }
 
 static bool light_up(Job *job, WorkBlock *work)
 {
+    ControlBlock *control = job->rendering->control.bytes;
     job->share /= (double)job->view.light_count;
     for (size_t i = 0; i < job->view.light_count; i++, job->done += job->share) {
         const KrsLight *light = &job->view.lights[i];
-        work->phase = SECONDARY_SHADOW;
-        work->light_kind = (light->positional ? LIGHT_POSITIONAL : 0) |
-                           (light->shadow ? LIGHT_CASTS_SHADOWS : 0);
+        control->light_kind = (light->positional ? LIGHT_POSITIONAL : 0) |
+                              (light->shadow ? LIGHT_CASTS_SHADOWS : 0);
         work->light_softness = (float)light->softness;
         for (int k = 0; k < 3; k++) {
             work->light_vector[k] = (float)light->vector[k];
@@ -287,6 +286,7 @@ static bool render_ray(Job *job, WorkBlock *work, uint32_t index)
 {
     const double start = job->done, whole = job->share;
     KrsRendering *r = job->rendering;
+    ControlBlock *control = r->control.bytes;
     place_ray(index, job->options.seed, work->offset);
     static const struct {
         KrsPhase phase;
@@ -305,8 +305,8 @@ static bool render_ray(Job *job, WorkBlock *work, uint32_t index)
         bool     ran;
         job->done = start + whole * steps[i].from;
         job->share = whole * (steps[i].to - steps[i].from);
-        work->phase = steps[i].secondary;
-        work->beginning = index == 0;
+        control->phase = steps[i].secondary;
+        control->beginning = phase == KRS_PHASE_PRIMARY || index == 0;
         switch (phase) {
         case KRS_PHASE_PRIMARY: ran = trace(job, work); break;
         case KRS_PHASE_SHADOWS: ran = light_up(job, work); break;
@@ -336,20 +336,20 @@ static bool fetch(Job *job, uint64_t pixels)
 static bool render_band(Job *job, uint32_t from, uint32_t rows)
 {
     const KrsWindow *window = &job->options.crop;
-    CounterBlock    *counters = job->rendering->counters.bytes;
+    ControlBlock    *control = job->rendering->control.bytes;
     WorkBlock        work = {
         .corner = {window->x, window->y + from},
         .extent = {window->width, rows},
     };
-    *counters = (CounterBlock){0};
+    *control = (ControlBlock){.projection = (uint32_t)job->view.camera.projection};
     for (uint32_t i = 0; i < job->options.samples; i++) {
         double band_share = (double)rows / window->height;
         job->share = band_share / job->options.samples;
         job->done = (double)from / window->height + job->share * i;
         if (!render_ray(job, &work, i))
             return false;
-        job->picture->stats.unresolved += counters->unresolved;
-        counters->unresolved = 0;
+        job->picture->stats.unresolved += control->unresolved;
+        control->unresolved = 0;
     }
     if (!fetch(job, (uint64_t)rows * window->width))
         return false;

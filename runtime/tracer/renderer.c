@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Bindings of set 1; those in between are the buffers of a band. */
-enum { FRAME_BINDING = 0, COUNTERS_BINDING = 4, BINDING_COUNT };
+enum { FRAME_BINDING = 0, CONTROL_BINDING = 4, BINDING_COUNT };
 
 KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
 {
@@ -180,11 +180,11 @@ static bool buffers_create(KrsRendering *rendering)
     if (!buffer_create(gpu, &rendering->parameters, (VkDeviceSize)slots * 4 * sizeof(float), SHARED,
                        "scene's parameters") ||
         !buffer_create(gpu, &rendering->frame, sizeof(FrameBlock), SHARED, "camera") ||
-        !buffer_create(gpu, &rendering->counters, sizeof(CounterBlock), SHARED, "counters"))
+        !buffer_create(gpu, &rendering->control, sizeof(ControlBlock), SHARED, "control block"))
         return false;
     rendering_bind(rendering, rendering->scene_set, 0, &rendering->parameters);
     rendering_bind(rendering, rendering->band_set, FRAME_BINDING, &rendering->frame);
-    rendering_bind(rendering, rendering->band_set, COUNTERS_BINDING, &rendering->counters);
+    rendering_bind(rendering, rendering->band_set, CONTROL_BINDING, &rendering->control);
     return true;
 }
 
@@ -231,7 +231,7 @@ void krs_rendering_free(KrsRendering *rendering)
     if (!rendering)
         return;
     Gpu    *gpu = &rendering->renderer->gpu;
-    Buffer *buffers[] = {&rendering->parameters, &rendering->frame, &rendering->counters,
+    Buffer *buffers[] = {&rendering->parameters, &rendering->frame, &rendering->control,
                          &rendering->band.rays, &rendering->band.hits, &rendering->band.results,
                          &rendering->band.fetched, &rendering->points, &rendering->answers};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)

@@ -36,7 +36,7 @@ struct KrsRendering {
 
     VkDescriptorPool  pool;
     VkDescriptorSet   scene_set, band_set, points_set;
-    Buffer            parameters, frame, counters;
+    Buffer            parameters, frame, control;
     Band              band;
     Buffer            points, answers; /* of krs_sample */
     uint32_t          tiles_at_once[KRS_PHASE_COUNT]; /* learned from the last slices */

@@ -170,7 +170,6 @@ bool view_prepare(const KrsView *view, const double low[3], const double high[3]
 
     *block = (FrameBlock){
         .size = {(float)width, (float)height},
-        .projection = (uint32_t)camera->projection,
     };
     for (int i = 0; i < 3; i++)
         block->eye[i] = (float)camera->eye[i];
