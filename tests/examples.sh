@@ -14,13 +14,13 @@ for scene in examples/*.krs; do
     [ $status -eq 0 ] || cat "$folder/check"
     report "$scene has no mistake and no warning" $status
 
-    "$krs" render "$scene" --quiet --size 320x180 --stats json -o "$folder/picture.exr" -o "$folder/picture.png" >"$folder/stats" 2>"$folder/said"
+    "$krs" render "$scene" --quiet --size 320x180 --samples 1 --stats json -o "$folder/picture.exr" -o "$folder/picture.png" >"$folder/stats" 2>"$folder/said"
     report "$scene renders" $?
     cat "$folder/said"
     grep -q '"unresolved": *0[,}]' "$folder/stats"
     report "$scene leaves no ray unresolved" $?
 
-    "$krs" validate "$scene" >"$folder/said" 2>&1
+    "$krs" validate --points 4096 "$scene" >"$folder/said" 2>&1
     status=$?
     [ $status -eq 0 ] || cat "$folder/said"
     report "$scene validates" $status

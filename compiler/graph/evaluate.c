@@ -74,13 +74,17 @@ static NodeValue evaluate_cross(const NodeValue *o, uint32_t size)
     return vector3(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]);
 }
 
-/* Neither overflows nor loses what is small, as the square root of a sum of squares would. */
+/* Where the sum of squares overflows or loses what is small, hypot goes on. */
 static double length(const NodeValue *a, uint32_t size)
 {
-    double sum = fabs(a->v[0]);
+    double sum = 0, whole = fabs(a->v[0]);
+    for (uint32_t i = 0; i < size; i++)
+        sum += a->v[i] * a->v[i];
+    if (sum > 1e-200 && sum < 1e200)
+        return sqrt(sum);
     for (uint32_t i = 1; i < size; i++)
-        sum = hypot(sum, a->v[i]);
-    return sum;
+        whole = hypot(whole, a->v[i]);
+    return whole;
 }
 
 static NodeValue evaluate_length(const NodeValue *o, uint32_t size)
@@ -397,16 +401,43 @@ size_t tape_place(const Tape *tape, Node node)
     return low;
 }
 
+/* The rows once more, for tapes: straight from operands to result, without copies. */
+static inline void run_row(const Expr *e, const NodeValue *values, NodeValue *result, const Expr *nodes)
+{
+    const NodeValue *x = &values[e->operands[0]], *y = &values[e->operands[1]], *z = &values[e->operands[2]];
+    uint32_t         size = components(e->type);
+    switch ((Op)e->op) {
+    case OP_COMPONENT:
+        *result = number(x->v[e->index]);
+        return;
+#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning)                            \
+    case OP_##name:                                                                                \
+        for (uint32_t i = 0; i < size; i++) {                                                      \
+            double a = x->v[i], b = arity > 1 ? y->v[i] : 0, c = arity > 2 ? z->v[i] : 0;          \
+            (void)b, (void)c;                                                                      \
+            result->v[i] = (value) + 0.0;                                                          \
+        }                                                                                          \
+        return;
+#define OP(name, signature, glsl, evaluate, facts, meaning)                                        \
+    case OP_##name:
+#include "compiler/graph/ops.def"
+#undef MAP
+#undef OP
+    default: {
+        NodeValue operands[MAX_OPERANDS];
+        GraphType types[MAX_OPERANDS];
+        for (int i = 0; i < e->operand_count; i++) {
+            types[i]    = nodes[e->operands[i]].type;
+            operands[i] = values[e->operands[i]];
+        }
+        *result = op_evaluate(e->op, e->type, e->index, types, operands);
+    }
+    }
+}
+
 static void tape_run_node(const Graph *graph, Node node, NodeValue *values)
 {
-    const Expr *e = &graph->items[node];
-    GraphType   types[MAX_OPERANDS]    = {0};
-    NodeValue   operands[MAX_OPERANDS] = {0};
-    for (int i = 0; i < e->operand_count; i++) {
-        types[i]    = graph->items[e->operands[i]].type;
-        operands[i] = values[e->operands[i]];
-    }
-    values[node] = op_evaluate(e->op, e->type, e->index, types, operands);
+    run_row(&graph->items[node], values, &values[node], graph->items);
 }
 
 void tape_run_frame(const Tape *tape, const NodeValue *parameters, NodeValue *values)

@@ -98,11 +98,13 @@ void main()
             float aside = sqrt(max(distance * distance - back * back, 0.0));
             if (back < before)
                 visible = min(visible, sharpness * aside / max(t - back, rounding));
-            float closest = max(0.25 * frame.error * (hit.pixel + slope * t), rounding);
-            if (distance < closest)
+            if (distance < max(frame.error * hit.pixel, rounding))
                 visible = 0.0;
-            before = distance;
-            t += distance;
+            // A ray that creeps along a surface goes on by a pixel at least, or a quarter of the
+            // penumbra's width: what it could miss is too small to be seen.
+            float least = max(hit.pixel, 0.25 * t / sharpness);
+            before = distance < least ? INFINITE : distance;
+            t += max(distance, least);
             done = visible < 4e-3 || t >= far;
         }
     }
