@@ -60,6 +60,11 @@ static uint32_t vector_length(const Elaboration *e, Value value)
     return (uint32_t)value.list->count;
 }
 
+uint32_t value_size(const Elaboration *e, Value value)
+{
+    return is_scalar(e, value) ? 1 : vector_length(e, value);
+}
+
 const char *value_type_name(Elaboration *e, Value value)
 {
     switch (value.type) {

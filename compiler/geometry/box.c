@@ -135,18 +135,29 @@ Ball ball_hull(Ball a, Ball b)
     return hull;
 }
 
-Ball ball_fold(Ball ball, const double u[3], double w)
+/*
+ * For one mirror, e = u.c - w: empty when e >= r, else centre c - e u and radius r - e when
+ * e <= 0, sqrt(r^2 - e^2) when e > 0.  Mirrors that move: the radius of the least e, about the
+ * middle of all centres, and as much more as the centres leave it.
+ */
+Ball ball_fold(Ball ball, const Range u[3], Range w)
 {
     if (ball.radius < 0 || isinf(ball.radius))
         return ball;
-    double e = u[0] * ball.centre[0] + u[1] * ball.centre[1] + u[2] * ball.centre[2] - w;
-    if (e >= ball.radius)
-        return (Ball){{0, 0, 0}, -1};
+    Range e = range_sub(range_of(0), w);
     for (int i = 0; i < 3; i++)
-        ball.centre[i] -= e * u[i];
-    ball.radius = e <= 0 ? ball.radius - e : sqrt(ball.radius * ball.radius - e * e);
-    ball.radius *= 1 + 1e-14;
-    return ball;
+        e = range_add(e, range_mul(u[i], range_of(ball.centre[i])));
+    if (e.low >= ball.radius)
+        return (Ball){{0, 0, 0}, -1};
+    Ball   fold  = {.radius = e.low <= 0 ? ball.radius - e.low : sqrt(ball.radius * ball.radius - e.low * e.low)};
+    double leave = 0;
+    for (int i = 0; i < 3; i++) {
+        Range shift    = range_mul(e, u[i]);
+        fold.centre[i] = ball.centre[i] - 0.5 * (shift.low + shift.high);
+        leave          = hypot(leave, 0.5 * (shift.high - shift.low));
+    }
+    fold.radius = (fold.radius + leave) * (1 + 1e-14);
+    return fold;
 }
 
 /* The part of a box on the kept side of a mirror, axis by axis. */

@@ -29,8 +29,8 @@ Ball ball_around(Box box);
 Box  ball_box(Ball ball);
 Ball ball_hull(Ball a, Ball b);
 /* The ball of what is in `ball` with u.x <= w, and its mirror image (math.md 1, "Bounding
-   balls"); the unit vector and offset of the mirror are constants. */
-Ball ball_fold(Ball ball, const double u[3], double w);
+   balls"), for a unit vector and an offset that may move in their ranges. */
+Ball ball_fold(Ball ball, const Range u[3], Range w);
 /* The box around the same set; ranges for mirrors that move. */
 Box  box_fold(Box box, const Range u[3], Range w);
 

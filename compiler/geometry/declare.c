@@ -292,7 +292,6 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
     shape->distance = field_property(e, env, distance);
     shape->figure   = flag_property(e, env, declaration, "figure");
     shape->exact    = flag_property(e, env, declaration, "exact");
-    shape->instances = 1;
     const Syntax *bound = find_property(declaration, "bound");
     if (bound)
         shape->bound = field_property(e, env, bound);

@@ -98,6 +98,8 @@ Value value_select(Elaboration *e, const Syntax *syntax, Value condition, Value 
 Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count, const Syntax *place);
 Value value_of_node(Elaboration *e, Node node);
 Value value_vector(Elaboration *e, const double *numbers, uint32_t count);
+/* 1 for a number, 2 to 4 for a vector, 0 for anything else. */
+uint32_t value_size(const Elaboration *e, Value value);
 /* "a number", "a vector of 3", "a shape": for messages. */
 const char *value_type_name(Elaboration *e, Value value);
 /* The node of a number, vector or truth value; NODE_NONE when it is none of these. */

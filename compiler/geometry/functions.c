@@ -80,6 +80,24 @@ static bool gather(Elaboration *e, const Environment *env, const Syntax *call, c
     return good;
 }
 
+/* The default of a shape's parameter shows what it must be: a number, or a vector of some length. */
+static bool fits_default(Elaboration *e, const Environment *env, const Function *function, const Syntax *parameter,
+                         Value value, const Syntax *place)
+{
+    if (function->syntax->kind != SYNTAX_SHAPE || parameter->count == 0)
+        return true;
+    Value usual = evaluate(e, env, parameter->children[0]);
+    if (value_size(e, usual) == 0 || value_size(e, usual) == value_size(e, value))
+        return true;
+    const char *found = value_type_name(e, value);
+    Diag *diag  = diag_add(e->diags, DIAG_TYPE_MISMATCH, place->span, "`%s` of `%s` must be %s, found %s", parameter->name,
+                           function->name, value_type_name(e, usual), found);
+    diag->label = diag_text(e->diags, "this is %s", found);
+    diag_note(e->diags, diag, signature(e, function->syntax));
+    point_at_definition(e, diag, place, NULL);
+    return false;
+}
+
 /* Binds given values and defaults; a default sees the parameters before it. */
 static bool bind_parameters(Elaboration *e, const Function *function, const Value *values, const Syntax *const *places,
                             const Syntax *call, Environment *env)
@@ -89,9 +107,11 @@ static bool bind_parameters(Elaboration *e, const Function *function, const Valu
     for (uint32_t i = 0; i < parameter_count(definition); i++) {
         const Syntax *parameter = definition->children[i];
         Value         value;
-        if (places[i])
+        if (places[i]) {
             value = values[i];
-        else if (parameter->count)
+            if (!fits_default(e, env, function, parameter, value, places[i]))
+                return false;
+        } else if (parameter->count)
             value = evaluate(e, env, parameter->children[0]);
         else {
             Diag *diag  = diag_add(e->diags, DIAG_MISSING_ARGUMENT, call->span, "`%s` needs an argument `%s`",
@@ -130,6 +150,35 @@ static bool check_shape_arguments(Elaboration *e, const Function *function, cons
     return true;
 }
 
+/*
+ * A mistake that comes to light inside the library is the caller's: its diagnostics are moved
+ * to the call, and the place in the library becomes the second one.
+ */
+static void blame_caller(Elaboration *e, size_t first, const Syntax *syntax, const Function *function)
+{
+    const Source *sources = e->sources->items;
+    if (sources[syntax->span.source].library)
+        return;
+    size_t kept = first;
+    for (size_t i = first; i < e->diags->count; i++) {
+        Diag *diag  = e->diags->items[i];
+        bool  error = diag_info[diag->code].severity == DIAG_ERROR;
+        bool  ours  = sources[diag->span.source].library && diag->span.source;
+        if (ours && error && kept > first) { /* one mistake at the call, one report */
+            e->diags->errors--;
+            continue;
+        }
+        e->diags->items[kept++] = diag;
+        if (!ours)
+            continue;
+        diag_place(e->diags, diag, diag->span, diag->label ? diag->label : "found here");
+        diag->span        = syntax->span;
+        diag->label       = diag_text(e->diags, "in this call of `%s`", function->name);
+        diag->replacement = NULL;
+    }
+    e->diags->count = kept;
+}
+
 Value call_values(Elaboration *e, const Function *function, const Value *values, const Syntax *const *places,
                   const Syntax *syntax)
 {
@@ -140,8 +189,9 @@ Value call_values(Elaboration *e, const Function *function, const Value *values,
         return value_error();
     }
     Environment env;
+    size_t      said   = e->diags->count;
+    Value       result = value_error();
     e->calls++;
-    Value result = value_error();
     if (bind_parameters(e, function, values, places, syntax, &env)) {
         if (function->syntax->kind == SYNTAX_SHAPE)
             result = declare_instance(e, function, &env, syntax->span);
@@ -149,6 +199,7 @@ Value call_values(Elaboration *e, const Function *function, const Value *values,
             result = evaluate(e, &env, function->syntax->children[function->syntax->count - 1]);
     }
     e->calls--;
+    blame_caller(e, said, syntax, function);
     return result;
 }
 

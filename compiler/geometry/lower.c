@@ -16,6 +16,7 @@
 #include <math.h>
 
 #include "compiler/geometry/box.h"
+#include "compiler/graph/parity.h"
 
 enum { MOST_HEAP_MIRRORS = 31 };
 
@@ -331,17 +332,40 @@ static Lowered outside_of_box(Lowering *l, const Shape *shape, Place place, Lowe
     return result;
 }
 
+/* Whether the content looks the same mirrored in the middle of its cell on an axis; `mapped`
+   is OP_POINT seen by the content, which may stand turned in its cell. */
+static bool is_symmetric(Lowering *l, const Shape *content, Node mapped, uint32_t axis)
+{
+    Lowering alone = {l->graph, l->scratch, false, l->most, false};
+    Lowered  inner = lower(&alone, content, (Place){mapped, NODE_NONE, NODE_NONE, true});
+    l->overflow    = l->overflow || alone.overflow;
+    return inner.distance != NODE_NONE && graph_is_even(l->graph, inner.distance, axis, l->scratch);
+}
+
 /*
- * On an axis that repeats, the content lies in its cell.  Where it keeps a margin from the
- * walls, the distance to the next cell's content is at least the distance to the wall plus the
- * margin, and the least of that and the distance inside is safe and continuous: everything on
- * the wall is at least the margin away.  Without a margin the neighbour on the nearer side is
- * evaluated as well, which is exact (math.md, section 4, "repetition").
+ * On an axis that repeats, the content lies in its cell; what are the other copies to a point?
+ *   SYMMETRIC  content that is its own mirror image: the copies beyond a wall are the image of
+ *              this one, and never nearer.
+ *   WALLS      content that keeps a margin from the walls: the next copy is at least as far as
+ *              the wall plus the margin.  The least of that and the distance inside is safe and
+ *              continuous, but it is a bound only: not where a blend or an offset lies above.
+ *   NEIGHBOURS else: the copy on the nearer side is evaluated as well, which is exact
+ *              (math.md, section 4, "repetition").
  */
+typedef enum Joining { SYMMETRIC, WALLS, NEIGHBOURS } Joining;
+
+static Joining choose_joining(Lowering *l, const Shape *content, Node mapped, uint32_t axis, double margin,
+                              double size, Place place)
+{
+    if (is_symmetric(l, content, mapped, axis))
+        return SYMMETRIC;
+    return margin >= 0.05 * size && !place.lipschitz ? WALLS : NEIGHBOURS;
+}
+
 typedef struct Lattice {
     Node   period;        /* of the axis */
     Node   shifted;       /* coordinate, moved so that cells have whole numbers */
-    Node   low, high;     /* numbers of the first and the last cell */
+    Node   low, high;     /* numbers of the first and the last cell; NODE_NONE: endless */
     double margin;        /* of the content */
     double least_period;
     bool   repeats;
@@ -372,10 +396,15 @@ static Lattice lattice_of(Lowering *l, const Shape *shape, Place place, uint32_t
         Node offset   = graph_op2(g, OP_mul, cells.period, half);
         cells.shifted = graph_op2(g, OP_add, cells.shifted, offset);
     }
-    double last = count ? floor(count / 2) : 1e9;
-    cells.high  = graph_number(g, last);
-    cells.low   = graph_number(g, count ? last + 1 - count : -1e9);
+    double last = floor(count / 2);
+    cells.high  = count ? graph_number(g, last) : NODE_NONE;
+    cells.low   = count ? graph_number(g, last + 1 - count) : NODE_NONE;
     return cells;
+}
+
+static Node within_lattice(Graph *g, const Lattice *cells, Node number)
+{
+    return cells->low == NODE_NONE ? number : graph_op3(g, OP_clamp, number, cells->low, cells->high);
 }
 
 /* Coordinate within the nearest cell. */
@@ -383,7 +412,7 @@ static Node in_cell(Graph *g, const Lattice *cells, Node *number)
 {
     Node ratio  = graph_op2(g, OP_div, cells->shifted, cells->period);
     ratio       = graph_op1(g, OP_round, ratio);
-    *number     = graph_op3(g, OP_clamp, ratio, cells->low, cells->high);
+    *number     = within_lattice(g, cells, ratio);
     Node start  = graph_op2(g, OP_mul, *number, cells->period);
     return graph_op2(g, OP_sub, cells->shifted, start);
 }
@@ -396,7 +425,7 @@ static Node in_neighbour(Graph *g, const Lattice *cells, Node local, Node number
     Node left   = graph_op2(g, OP_less, local, zero);
     Node side   = graph_op3(g, OP_select, left, minus, one);
     Node next   = graph_op2(g, OP_add, number, side);
-    next        = graph_op3(g, OP_clamp, next, cells->low, cells->high);
+    next        = within_lattice(g, cells, next);
     Node start  = graph_op2(g, OP_mul, next, cells->period);
     return graph_op2(g, OP_sub, cells->shifted, start);
 }
@@ -408,11 +437,13 @@ static Node wall_distance(Graph *g, const Lattice *cells, Node local, Node numbe
     Node wall   = graph_op2(g, OP_mul, cells->period, half);
     Node right  = graph_op2(g, OP_sub, wall, local);
     Node left   = graph_op2(g, OP_add, wall, local);
-    Node far    = graph_number(g, NOWHERE);
-    Node first  = graph_op2(g, OP_less_equal, number, cells->low);
-    Node last   = graph_op2(g, OP_less_equal, cells->high, number);
-    left        = graph_op3(g, OP_select, first, far, left);
-    right       = graph_op3(g, OP_select, last, far, right);
+    if (cells->low != NODE_NONE) {
+        Node far   = graph_number(g, NOWHERE);
+        Node first = graph_op2(g, OP_less_equal, number, cells->low);
+        Node last  = graph_op2(g, OP_less_equal, cells->high, number);
+        left       = graph_op3(g, OP_select, first, far, left);
+        right      = graph_op3(g, OP_select, last, far, right);
+    }
     Node nearer = graph_op2(g, OP_min, left, right);
     Node margin = graph_number(g, cells->margin);
     return graph_op2(g, OP_add, nearer, margin);
@@ -423,6 +454,7 @@ static Lowered lower_repeat(Lowering *l, const Shape *shape, Place place)
     Graph *g = l->graph;
     Node   own[3], other[3], walls = NODE_NONE;
     bool   neighbour[3];
+    Node   plain = graph_leaf(g, OP_POINT);
     for (uint32_t i = 0; i < 3; i++) {
         Lattice cells = lattice_of(l, shape, place, i);
         own[i] = other[i] = cells.shifted;
@@ -430,11 +462,12 @@ static Lowered lower_repeat(Lowering *l, const Shape *shape, Place place)
         if (!cells.repeats)
             continue;
         Node number;
-        own[i]       = in_cell(g, &cells, &number);
-        neighbour[i] = cells.margin < 0.05 * cells.least_period;
+        own[i]          = in_cell(g, &cells, &number);
+        Joining joining = choose_joining(l, shape->children[0], plain, i, cells.margin, cells.least_period, place);
+        neighbour[i]    = joining == NEIGHBOURS;
         if (neighbour[i])
             other[i] = in_neighbour(g, &cells, own[i], number);
-        else {
+        if (joining == WALLS) {
             Node wall = wall_distance(g, &cells, own[i], number);
             walls     = walls == NODE_NONE ? wall : graph_op2(g, OP_min, walls, wall);
         }
@@ -494,11 +527,8 @@ static Lowered all_around(Lowering *l, const Shape *shape, Place place, uint32_t
     return join_two(l, &sharp, a, b);
 }
 
-/*
- * Copies around y: the point is turned into the sector of the content.  As with cells, a margin
- * from the walls makes the least of the distance and of wall plus margin safe, and content that
- * touches the walls needs its neighbour; content that crosses them is written out, copy by copy.
- */
+/* Copies around y: the point is turned into the sector of the content, and the sectors join as
+   cells do.  Content that crosses the walls is written out, copy by copy. */
 static Lowered lower_repeat_polar(Lowering *l, const Shape *shape, Place place)
 {
     Graph *g           = l->graph;
@@ -517,7 +547,12 @@ static Lowered lower_repeat_polar(Lowering *l, const Shape *shape, Place place)
     Node    back   = turn_about_y(g, local, -angle);
     Lowered result = lower(l, shape->children[0], at(place, back));
     Node    z      = graph_component(g, local, 2), zero = graph_number(g, 0);
-    if (margin < 0.05 * (hypot(centre[0], centre[2]) * sin(half_sector))) {
+    Node    mapped = turn_about_y(g, graph_leaf(g, OP_POINT), -angle);
+    double  width  = hypot(centre[0], centre[2]) * sin(half_sector);
+    Joining joining = choose_joining(l, shape->children[0], mapped, 2, margin, width, place);
+    if (joining == SYMMETRIC)
+        return result;
+    if (joining == NEIGHBOURS) {
         Node    right  = graph_op2(g, OP_less, zero, z);
         Node    plus   = turn_about_y(g, local, 2 * half_sector);
         Node    minus  = turn_about_y(g, local, -2 * half_sector);

@@ -39,6 +39,7 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span, co
     shape->distance     = shape->bound = shape->blend_width = NODE_NONE;
     shape->plane_normal = shape->plane_offset = NODE_NONE;
     shape->values[0] = shape->values[1] = NODE_NONE;
+    double sequences = 0; /* instances of the sequences among the parts; other parts make one */
     for (uint32_t i = 0; i < count; i++) {
         const Shape *child = children[i];
         shape->children[i] = child;
@@ -46,10 +47,11 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span, co
         shape->derived     = fmax(shape->derived, child->derived);
         shape->exact       = shape->exact && child->exact;
         shape->figure      = shape->figure || child->figure;
-        shape->instances += child->instances;
+        sequences += child->levels > 0 ? child->instances : 0;
         shape->depth = child->depth >= shape->depth ? child->depth + 1 : shape->depth;
         shape->levels = child->levels > shape->levels ? child->levels : shape->levels;
     }
+    shape->instances = sequences > 0 ? sequences : kind != SHAPE_EMPTY;
     if (count == 1)
         shape->box = children[0]->box;
     if (shape->depth > MOST_SHAPE_DEPTH && !e->stopped) {
@@ -197,7 +199,6 @@ const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const 
     Shape *repeat     = wrap(e, SHAPE_REPEAT, "repeat", shape, place->span);
     repeat->values[0] = period;
     repeat->exact     = false; /* walls of cells are bounds */
-    double copies     = 1;
     for (uint32_t i = 0; i < 3; i++) {
         Range  range     = node_range(e, period, i);
         bool   repeats   = cells[i] != 1 && range.high > 0;
@@ -215,9 +216,7 @@ const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const 
         }
         double reach = cells[i] ? 0.5 * (cells[i] - 1) * range.high : INFINITY;
         repeat->box.axis[i] = (Range){shape->box.axis[i].low - reach, shape->box.axis[i].high + reach};
-        copies *= cells[i] ? cells[i] : INFINITY;
     }
-    repeat->instances *= copies;
     return repeat;
 }
 
@@ -232,7 +231,6 @@ const Shape *make_repeat_polar(Elaboration *e, const Shape *shape, uint32_t coun
     for (int i = 0; i < 3; i += 2)
         most = hypot(most, fmax(fabs(shape->box.axis[i].low), fabs(shape->box.axis[i].high)));
     repeat->box.axis[0] = repeat->box.axis[2] = (Range){-most, most};
-    repeat->instances *= count;
     return repeat;
 }
 
@@ -258,18 +256,6 @@ const Shape *make_paint(Elaboration *e, const Shape *shape, const Material *mate
 
 /* ---- sequences ---- */
 
-static bool is_constant_mirror(const Graph *graph, const Stage *stage)
-{
-    return graph_is_constant(graph, stage->normal) && graph_is_constant(graph, stage->offset);
-}
-
-static Ball reflect_ball(Elaboration *e, const Stage *stage, Ball ball, Box folded)
-{
-    if (!is_constant_mirror(e->graph, stage))
-        return ball_around(folded);
-    return ball_fold(ball, e->graph->items[stage->normal].number, e->graph->items[stage->offset].number[0]);
-}
-
 /* Boxes and balls grow along the sequence side by side; each is tight where the other is not
    (turned mirrors blow boxes up), so each is cut to the other's size at every level. */
 static Box bound_sequence(Elaboration *e, const Shape *krs)
@@ -286,8 +272,9 @@ static Box bound_sequence(Elaboration *e, const Shape *krs)
             Range u[3];
             for (uint32_t k = 0; k < 3; k++)
                 u[k] = node_range(e, stage->normal, k);
-            box  = box_fold(box, u, node_range(e, stage->offset, 0));
-            ball = reflect_ball(e, stage, ball, box);
+            Range w = node_range(e, stage->offset, 0);
+            box     = box_fold(box, u, w);
+            ball    = ball_fold(ball, u, w);
         } else {
             box  = similarity_box(e, &stage->map, box);
             ball = ball_around(similarity_box(e, &stage->map, ball_box(ball)));

@@ -86,7 +86,7 @@ struct Shape {
                        largest in the tree */
     bool   exact;   /* the distance outside is the true one */
     bool   figure;  /* a plane figure in x and y */
-    double instances; /* kernels counted with their reflections */
+    double instances; /* copies of kernels that reflections make; 1 without a sequence */
     uint32_t levels;  /* reflections of the outermost sequence in it */
 
     Node            distance, bound;       /* PRIMITIVE, in its own coordinates; bound may be NODE_NONE */

@@ -59,12 +59,21 @@ static void rotation_rows(Elaboration *e, Node axis, Node cosine, Node sine, Nod
     }
 }
 
+/* A quarter turn's cosine is 0, not what is left of the rounding of pi / 2. */
+static Node snap(Graph *g, Node node)
+{
+    if (!graph_is_constant(g, node))
+        return node;
+    double number = g->items[node].number[0], nearest = round(number);
+    return fabs(number - nearest) < 4e-16 ? graph_number(g, nearest) : node;
+}
+
 const Similarity *similarity_rotation(Elaboration *e, Node axis, Node angle)
 {
     Similarity *map = similarity_new(e);
     Node unit   = graph_op1(e->graph, OP_normalize, axis);
-    Node cosine = graph_op1(e->graph, OP_cos, angle);
-    Node sine   = graph_op1(e->graph, OP_sin, angle);
+    Node cosine = snap(e->graph, graph_op1(e->graph, OP_cos, angle));
+    Node sine   = snap(e->graph, graph_op1(e->graph, OP_sin, angle));
     rotation_rows(e, unit, cosine, sine, map->rows);
     return map;
 }
