@@ -1,9 +1,9 @@
 #!/bin/sh
 # deps.sh: installs the Debian packages that building and testing need and that are missing.
 # Says what it does; uses sudo when it is not run by root; does nothing when nothing is missing.
-packages="g++ pkg-config glslang-dev glslang-tools spirv-tools libvulkan-dev mesa-vulkan-drivers
-          vulkan-validationlayers libopenexr-dev libpng-dev libcmocka-dev zlib1g-dev clang-14
-          libclang-rt-14-dev shellcheck strace"
+packages="g++ glslang-dev glslang-tools spirv-tools libvulkan-dev mesa-vulkan-drivers
+          vulkan-validationlayers libopenexr-dev libpng-dev libcmocka-dev clang-14
+          libclang-rt-14-dev shellcheck strace openexr"
 
 missing=""
 for package in $packages; do
