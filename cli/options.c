@@ -297,9 +297,9 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
                    ? KRS_OK
                    : refuse(options, id, "a number above 0", value);
     case OPTION_TIME:
-        return read_number(value, -DBL_MAX, DBL_MAX, &options->time)
+        return read_number(value, -1e9, 1e9, &options->time)
                    ? KRS_OK
-                   : refuse(options, id, "a number of seconds", value);
+                   : refuse(options, id, "a number of seconds from -1e9 to 1e9", value);
     case OPTION_SET:
         return read_setting(options, value)
                    ? KRS_OK

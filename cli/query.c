@@ -107,6 +107,15 @@ static void answer_batch(Query *query)
     query->count = 0;
 }
 
+/* Brings a direction of any length near 1, so that its square neither overflows nor vanishes.
+   Powers of two leave it the same direction to the last bit. */
+static void tame_direction(double *direction)
+{
+    double largest = fmax(fmax(fabs(direction[0]), fabs(direction[1])), fabs(direction[2]));
+    for (int axis = 0; axis < 3; axis++)
+        direction[axis] = scalbn(direction[axis], -ilogb(largest));
+}
+
 /* False when the numbers cannot be a point or a ray. */
 static bool add_question(Query *query, const double *numbers, bool is_ray)
 {
@@ -117,6 +126,8 @@ static bool add_question(Query *query, const double *numbers, bool is_ray)
         return false;
     memcpy(query->origins[query->count], numbers, 3 * sizeof *numbers);
     memcpy(query->directions[query->count], numbers + 3, 3 * sizeof *numbers);
+    if (is_ray)
+        tame_direction(query->directions[query->count]);
     query->is_ray[query->count++] = is_ray;
     if (query->count == BATCH)
         answer_batch(query);
@@ -223,9 +234,10 @@ static KrsStatus answer_input(Query *query, char *input)
             query->line++;
             good = false;
         }
-        KrsStatus written = console_finish();
-        if (!good || written != KRS_OK)
-            return good ? written : refuse_input(query);
+        if (!good)
+            return refuse_input(query);
+        if (fflush(stdout) != 0)
+            return KRS_OK; /* the end of every command looks at the output, and says so once */
     }
 }
 

@@ -2,7 +2,7 @@
 # answers.sh: what query, info, devices, dump, explain and validate answer.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 24
+plan 26
 
 ask() { # question, options...
     question=$1
@@ -31,6 +31,11 @@ answered '8 0 0 1 0 0 1 1 0 1' "a ray; t is in world units"
 ask '0 0 9 0 0 1
 '
 answered 'miss' "a ray that misses"
+ask '0 0 9 0 0 -1e300
+0 0 9 0 0 -1e-300
+'
+answered '8 0 0 1 0 0 1 1 0 1
+8 0 0 1 0 0 1 1 0 1' "directions whose squares are not numbers"
 ask '0 2 0
 
  0	0 9  0 0 -1
@@ -61,6 +66,10 @@ status=$?
 [ "$status" -eq 0 ] && awk '{ if (sprintf("%.6g", $1) != sprintf("%.6g", NR)) wrong = 1 }
                             END { exit wrong || NR != 20000 }' out
 result $? "twenty thousand points"
+echo '0 2 0' | "$krs" query ball.krs >/dev/full 2>err
+status=$?
+[ "$status" -eq 74 ] && [ "$(grep -c 'error while writing standard output' err)" -eq 1 ]
+result $? "answers that cannot be written are complained of once"
 
 # The double 2 is the bytes 0 0 0 0 0 0 0 40 (hexadecimal), -1 is ... f0 bf, 9 is ... 22 40.
 zero='\000\000\000\000\000\000\000\000'

@@ -2,7 +2,7 @@
 # usage.sh: command lines that are wrong, and the pages of help.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 44
+plan 45
 
 run
 said 2 "no command is given" "no command"
@@ -39,6 +39,8 @@ run render ball.krs --size 8x8 --crop 4,4,8,8
 said 2 "is not inside of a picture of 8x8" "a crop that sticks out"
 run render ball.krs --time nan
 said 2 "--time wants" "a time that is no number"
+run render ball.krs --time 1e300
+said 2 "--time wants" "a time that float numbers cannot hold"
 run render ball.krs --frames 5..3
 said 2 "--frames wants" "frames that run backwards"
 run render ball.krs --frames 0..3 -o a.exr
