@@ -20,7 +20,8 @@ enum { MOST_OPERATIONS = 20000, MOST_SOURCE_BYTES = 16 << 20 };
 
 static const size_t DEFAULT_MEMORY = (size_t)2 << 30;
 
-const char *const dump_stage_names[DUMP_STAGE_COUNT] = {"tokens", "syntax", "scene", "graph", "simplify", "glsl"};
+const char *const dump_stage_names[DUMP_STAGE_COUNT] = {
+    "tokens", "syntax", "scene", "graph", "simplify", "glsl"};
 
 /* One run of the compiler: three arenas for three lifetimes.  `kept` stays with the scene,
    `work` holds sources, diagnostics, the syntax tree and the elaborated scene until the end of
@@ -93,12 +94,6 @@ static char *read_whole(const char *path, size_t *length, const char **reason)
     return text;
 }
 
-static char *read_used_file(void *user, const char *path, size_t *length, const char **reason)
-{
-    (void)user;
-    return read_whole(path, length, reason);
-}
-
 /* 64-bit FNV-1a (Fowler, Noll, Vo) of all sources that are not the library's. */
 static void hash_sources(const Sources *sources, char hash[17])
 {
@@ -129,9 +124,16 @@ static Graph *elaborate_scene(Compilation *c)
     dump_front(c, source);
     Graph *graph        = graph_new(&c->work);
     c->elaborated       = (Scene){.graph = graph, .zenith = NODE_NONE};
-    Elaboration e       = {.arena = &c->work, .syntax = &c->syntax, .scratch = &c->scratch, .diags = &c->diags,
-                           .names = &c->names, .sources = &c->sources, .graph = graph, .scene = &c->elaborated,
-                           .read_file = read_used_file, .text_total = c->length};
+    Elaboration e       = {.arena      = &c->work,
+                           .syntax     = &c->syntax,
+                           .scratch    = &c->scratch,
+                           .diags      = &c->diags,
+                           .names      = &c->names,
+                           .sources    = &c->sources,
+                           .graph      = graph,
+                           .scene      = &c->elaborated,
+                           .read_file  = read_whole,
+                           .text_total = c->length};
     elaborate(&e, source, c->name);
     arena_free(&c->scratch);
     if (dumps(c, DUMP_SCENE) && c->diags.errors == 0)
@@ -139,20 +141,24 @@ static Graph *elaborate_scene(Compilation *c)
     return graph;
 }
 
+/* Operations at each point: what depends on the frame only does not count. */
 static size_t count_operations(const Graph *graph, const Node *roots, size_t count, Arena *scratch)
 {
     Tape tape = tape_new(graph, roots, count, scratch);
     return tape.count - tape.frame_count;
 }
 
-static void refuse_size(Compilation *c, size_t component, size_t operations, const Graph *graph)
+/* `operations`: of that component; 0 when they were too many to be counted. */
+static void refuse_size(Compilation *c, size_t component, size_t operations)
 {
     const Component *shown = &c->elaborated.components.items[component];
-    Diag *diag = diag_add(&c->diags, DIAG_TOO_LARGE, shown->span, "the scene needs more than %d operations", MOST_OPERATIONS);
-    diag->label = operations ? diag_text(&c->diags, "`%s` is the largest component, with %zu", shown->name, operations)
+    Diag *diag  = diag_add(&c->diags, DIAG_TOO_LARGE, shown->span,
+                           "the scene needs more than %d operations", MOST_OPERATIONS);
+    diag->label = operations ? diag_text(&c->diags, "`%s` is the largest component, with %zu",
+                                         shown->name, operations)
                              : diag_text(&c->diags, "`%s` alone needs more", shown->name);
-    diag->help = "fewer shapes, reflections or copies; `.repeat` with a margin in its cells needs one copy only";
-    (void)graph;
+    diag->help  = "fewer shapes, reflections or copies; `.repeat` with a margin in its cells needs "
+                  "one copy only";
 }
 
 /* All roots: of components, cameras, lights and the sky. */
@@ -165,7 +171,7 @@ static bool lower_scene(Compilation *c, Graph *graph)
     Node *root = c->roots;
     for (size_t i = 0; i < s->components.count; i++, root += ROOT_COUNT)
         if (!lower_component(graph, s->components.items[i].shape, &c->scratch, root)) {
-            refuse_size(c, i, 0, graph);
+            refuse_size(c, i, 0);
             return false;
         }
     for (size_t i = 0; i < s->cameras.count; i++, root += CAMERA_ROOTS) {
@@ -175,7 +181,8 @@ static bool lower_scene(Compilation *c, Graph *graph)
     }
     for (size_t i = 0; i < s->lights.count; i++, root += LIGHT_ROOTS) {
         const SceneLight *light = &s->lights.items[i];
-        memcpy(root, (Node[]){light->vector, light->color, light->softness}, LIGHT_ROOTS * sizeof *root);
+        memcpy(root, (Node[]){light->vector, light->color, light->softness},
+               LIGHT_ROOTS * sizeof *root);
     }
     memcpy(root, (Node[]){s->zenith, s->horizon, s->ground}, SKY_ROOTS * sizeof *root);
     arena_free(&c->scratch);
@@ -200,10 +207,11 @@ static bool check_size(Compilation *c, const Graph *graph)
     }
     if (total <= MOST_OPERATIONS)
         return true;
-    refuse_size(c, largest, most, graph);
+    refuse_size(c, largest, most);
     return false;
 }
 
+/* The cost of what is computed at each point, in multiply-adds. */
 static double flops_of(const Graph *graph, const Tape *tape)
 {
     double flops = 0;
@@ -223,25 +231,34 @@ static const char *keep(Compilation *c, const char *text)
     return text ? arena_copy_text(&c->scene->arena, text, strlen(text)) : NULL;
 }
 
+static void keep_components(Compilation *c)
+{
+    KrsScene    *scene = c->scene;
+    const Scene *s     = &c->elaborated;
+    scene->component_count = s->components.count;
+    scene->components      = arena_new_array(&scene->arena, KrsComponent, s->components.count + 1);
+    for (size_t i = 0; i < s->components.count; i++) {
+        const Component *from = &s->components.items[i];
+        KrsComponent    *to   = &scene->components[i];
+        *to = (KrsComponent){.name      = keep(c, from->name),
+                             .slope     = from->shape->slope * from->shape->derived,
+                             .exact     = from->shape->exact,
+                             .levels    = from->shape->levels,
+                             .instances = from->shape->instances};
+        for (int k = 0; k < 3; k++) {
+            to->low[k]  = from->shape->box.axis[k].low;
+            to->high[k] = from->shape->box.axis[k].high;
+        }
+    }
+}
+
 /* Copies what the program needs out of the elaborated scene, whose memory goes. */
 static void keep_scene(Compilation *c)
 {
     KrsScene    *scene = c->scene;
     const Scene *s     = &c->elaborated;
     Arena       *arena = &scene->arena;
-    scene->component_count = s->components.count;
-    scene->components      = arena_new_array(arena, KrsComponent, s->components.count + 1);
-    for (size_t i = 0; i < s->components.count; i++) {
-        const Component *from = &s->components.items[i];
-        KrsComponent    *to   = &scene->components[i];
-        *to = (KrsComponent){.name = keep(c, from->name), .slope = from->shape->slope * from->shape->derived,
-                             .exact = from->shape->exact,
-                             .levels = from->shape->levels, .instances = from->shape->instances};
-        for (int k = 0; k < 3; k++) {
-            to->low[k]  = from->shape->box.axis[k].low;
-            to->high[k] = from->shape->box.axis[k].high;
-        }
-    }
+    keep_components(c);
     scene->parameter_count = s->parameters.count;
     scene->parameters      = arena_new_array(arena, Parameter, s->parameters.count + 1);
     for (size_t i = 0; i < s->parameters.count; i++) {
@@ -276,7 +293,8 @@ static void make_tapes(Compilation *c)
     scene->roots    = c->roots;
     scene->distance = tape_new(scene->graph, distances, count, &scene->arena);
     scene->surface  = tape_new(scene->graph, c->roots, count * ROOT_COUNT, &scene->arena);
-    scene->view     = tape_new(scene->graph, c->roots + count * ROOT_COUNT, c->root_count - count * ROOT_COUNT, &scene->arena);
+    scene->view     = tape_new(scene->graph, c->roots + count * ROOT_COUNT,
+                               c->root_count - count * ROOT_COUNT, &scene->arena);
     scene->program.operations = scene->distance.count - scene->distance.frame_count;
     scene->program.flops      = flops_of(scene->graph, &scene->distance);
 }
@@ -293,12 +311,13 @@ static void emit(Compilation *c)
         text_add(&c->dump, glsl.bytes);
 }
 
-/* Text to program.  Each step stops at the first that found mistakes. */
+/* Text to program; ends at the first step that found mistakes. */
 static KrsStatus run(Compilation *c)
 {
     if (c->length > MOST_SOURCE_BYTES) {
         source_add(&c->sources, c->name, "", 0, false);
-        diag_add(&c->diags, DIAG_LIMIT, (Span){1, 0, 0}, "the file has %zu bytes; the limit is 16 MiB", c->length);
+        diag_add(&c->diags, DIAG_LIMIT, (Span){1, 0, 0},
+                 "the file has %zu bytes; the limit is 16 MiB", c->length);
         return KRS_BAD_SCENE;
     }
     Graph *graph = elaborate_scene(c);
@@ -329,9 +348,14 @@ static void hand_over(const Diags *diags, const Diag *diag, const KrsOptions *op
     Text          text = {.arena = arena}, json = {.arena = arena};
     diag_print_one(diags, diag, false, &text);
     diag_json_one(diags, diag, &json);
-    KrsDiagnostic public = {.error = diag_info[diag->code].severity == DIAG_ERROR, .code = diag_info[diag->code].code,
-                            .message = diag->message, .source = source->name, .line = position.line,
-                            .column = position.column, .text = text.bytes, .json = json.bytes};
+    KrsDiagnostic public = {.error   = diag_info[diag->code].severity == DIAG_ERROR,
+                            .code    = diag_info[diag->code].code,
+                            .message = diag->message,
+                            .source  = source->name,
+                            .line    = position.line,
+                            .column  = position.column,
+                            .text    = text.bytes,
+                            .json    = json.bytes};
     options->diagnostic(options->user, &public);
 }
 
@@ -356,19 +380,26 @@ static KrsStatus run_guarded(Compilation *c)
     return status;
 }
 
-static KrsStatus compile_and_dump(const char *text, size_t length, const char *name, const KrsOptions *options,
-                                  DumpStage stage, KrsScene **result, char **dump)
+static KrsStatus compile_and_dump(const char *text, size_t length, const char *name,
+                                  const KrsOptions *options, DumpStage stage, KrsScene **result,
+                                  char **dump)
 {
     static const KrsOptions defaults = {0};
     options                          = options ? options : &defaults;
     *result                          = NULL;
     const KrsAllocator *allocator    = &options->allocator;
-    KrsScene *scene = allocator->allocate ? allocator->allocate(allocator->user, sizeof *scene) : malloc(sizeof *scene);
+    KrsScene *scene = allocator->allocate ? allocator->allocate(allocator->user, sizeof *scene)
+                                          : malloc(sizeof *scene);
     if (!scene)
         return KRS_OUT_OF_MEMORY;
     memset(scene, 0, sizeof *scene);
-    Compilation c = {.scene = scene, .text = text, .length = length, .name = name, .dump_stage = stage,
-                     .options = options, .started = now_ms()};
+    Compilation c = {.scene      = scene,
+                     .text       = text,
+                     .length     = length,
+                     .name       = name,
+                     .dump_stage = stage,
+                     .options    = options,
+                     .started    = now_ms()};
     scene->memory = (Memory){allocator->allocate, allocator->release, allocator->user, 0,
                              options->memory_limit ? options->memory_limit : DEFAULT_MEMORY, NULL};
     scene->arena = c.work = c.syntax = c.scratch = (Arena){.memory = &scene->memory};
@@ -392,7 +423,8 @@ static KrsStatus compile_and_dump(const char *text, size_t length, const char *n
     return KRS_OK;
 }
 
-KrsStatus krs_compile_text(const char *text, size_t length, const char *name, const KrsOptions *options, KrsScene **scene)
+KrsStatus krs_compile_text(const char *text, size_t length, const char *name,
+                           const KrsOptions *options, KrsScene **scene)
 {
     return compile_and_dump(text, length, name, options, DUMP_STAGE_COUNT, scene, NULL);
 }

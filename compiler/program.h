@@ -40,6 +40,9 @@ static inline const Node *light_roots(const KrsScene *scene, size_t light)
     return camera_roots(scene, scene->camera_count) + light * LIGHT_ROOTS;
 }
 
-static inline const Node *sky_roots(const KrsScene *scene) { return light_roots(scene, scene->light_count); }
+static inline const Node *sky_roots(const KrsScene *scene)
+{
+    return light_roots(scene, scene->light_count);
+}
 
 #endif

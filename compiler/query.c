@@ -17,13 +17,14 @@ struct KrsFrame {
 
 /* ---- frames ---- */
 
+/* Zeroed memory of the scene's allocator; NULL: there is none. */
 static void *take(const KrsScene *scene, size_t count, size_t size)
 {
     const Memory *memory = &scene->memory;
-    void *block = memory->allocate ? memory->allocate(memory->user, (count ? count : 1) * size)
-                                   : malloc((count ? count : 1) * size);
+    size_t        bytes  = (count ? count : 1) * size;
+    void         *block  = memory->allocate ? memory->allocate(memory->user, bytes) : malloc(bytes);
     if (block)
-        memset(block, 0, (count ? count : 1) * size);
+        memset(block, 0, bytes);
     return block;
 }
 
@@ -78,7 +79,8 @@ KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values,
         if (count != parameter->components)
             return KRS_BAD_ARGUMENT;
         for (size_t k = 0; k < count; k++)
-            if (!isfinite(values[k]) || values[k] < parameter->low[k] || values[k] > parameter->high[k])
+            if (!isfinite(values[k]) || values[k] < parameter->low[k] ||
+                values[k] > parameter->high[k])
                 return KRS_BAD_ARGUMENT;
         memcpy(frame->parameters[parameter->slot].v, values, count * sizeof *values);
         frame->fresh = false;
@@ -114,7 +116,10 @@ static void refresh(KrsFrame *frame)
     frame->fresh = true;
 }
 
-static void copy3(double to[3], const KrsFrame *frame, Node node) { memcpy(to, frame->values[node].v, 3 * sizeof *to); }
+static void copy3(double to[3], const KrsFrame *frame, Node node)
+{
+    memcpy(to, frame->values[node].v, 3 * sizeof *to);
+}
 
 static void normalize3(double v[3])
 {
@@ -143,16 +148,17 @@ KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view)
     for (size_t i = 0; i < scene->light_count; i++) {
         const Node *light = light_roots(scene, i);
         KrsLight   *to    = &frame->lights[i];
-        *to = (KrsLight){.positional = scene->lights[i].positional, .shadow = scene->lights[i].shadow,
-                         .softness = frame->values[light[2]].v[0]};
+        *to = (KrsLight){.positional = scene->lights[i].positional,
+                         .shadow     = scene->lights[i].shadow,
+                         .softness   = frame->values[light[2]].v[0]};
         copy3(to->vector, frame, light[0]);
         copy3(to->color, frame, light[1]);
         if (!to->positional)
             normalize3(to->vector);
     }
     const SceneImage *image = &scene->image;
-    view->image = (KrsImage){image->width, image->height, image->samples, image->integrator, image->exposure,
-                             image->tone_map, image->error};
+    view->image = (KrsImage){image->width,    image->height,   image->samples, image->integrator,
+                             image->exposure, image->tone_map, image->error};
     return KRS_OK;
 }
 
@@ -189,7 +195,8 @@ static void normal_at(KrsFrame *frame, const double point[3], double normal[3])
     double   step = 1e-6 * (1 + size);
     uint32_t nearest;
     for (int i = 0; i < 3; i++) {
-        double before[3] = {point[0], point[1], point[2]}, after[3] = {point[0], point[1], point[2]};
+        double before[3] = {point[0], point[1], point[2]};
+        double after[3]  = {point[0], point[1], point[2]};
         before[i] -= step;
         after[i] += step;
         normal[i] = distance_at(frame, after, &nearest) - distance_at(frame, before, &nearest);
@@ -226,8 +233,8 @@ void krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit 
 
 /* Sphere tracing (math.md, section 6) without relaxation.  A ray from inside of a solid sees
    the solid's inner wall. */
-static void trace(KrsFrame *frame, const double origin[3], const double direction[3], double farthest, double tolerance,
-                  KrsHit *hit)
+static void trace(KrsFrame *frame, const double origin[3], const double direction[3],
+                  double farthest, double tolerance, KrsHit *hit)
 {
     enum { MOST_STEPS = 100000 };
     double   unit[3] = {direction[0], direction[1], direction[2]}, point[3], t = 0, side = 0;
@@ -250,8 +257,8 @@ static void trace(KrsFrame *frame, const double origin[3], const double directio
     }
 }
 
-void krs_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3], size_t count,
-                 double farthest, double tolerance, KrsHit *hits)
+void krs_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
+                 size_t count, double farthest, double tolerance, KrsHit *hits)
 {
     refresh(frame);
     for (size_t i = 0; i < count; i++)

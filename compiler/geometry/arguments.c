@@ -6,7 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax, const char *label)
+static const double ORIGIN[3] = {0, 0, 0};
+
+/* ---- reports ---- */
+
+void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax)
 {
     if (!syntax || syntax->kind != SYNTAX_NAME)
         return;
@@ -17,19 +21,84 @@ void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax, const
         const Definition *definition = scope_find(scope, syntax->name);
         if (definition && definition->syntax)
             diag_place(e->diags, diag, definition->syntax->name_span,
-                       label ? label : diag_text(e->diags, "`%s` is defined here", syntax->name));
+                       diag_text(e->diags, "`%s` is defined here", syntax->name));
         return;
     }
 }
 
-Diag *type_error(Elaboration *e, const Syntax *syntax, Value found, const char *wanted)
+void type_error(Elaboration *e, const Syntax *syntax, Value found, const char *wanted)
 {
+    if (found.type == VALUE_ERROR)
+        return;
     const char *name = value_type_name(e, found);
-    Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span, "expected %s, found %s", wanted, name);
+    Diag *diag =
+        diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span, "expected %s, found %s", wanted, name);
     diag->label = diag_text(e->diags, "this is %s", name);
-    point_at_definition(e, diag, syntax, NULL);
+    point_at_definition(e, diag, syntax);
+}
+
+void constant_error(Elaboration *e, const Syntax *syntax, const char *message)
+{
+    Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, syntax->span, "%s", message);
+    diag->label = "this depends on a `param`, on `time` or on a coordinate";
+    point_at_definition(e, diag, syntax);
+}
+
+void point_error(Elaboration *e, const Syntax *syntax, const char *what)
+{
+    Diag *diag  = diag_add(e->diags, DIAG_NOT_FRAME_TIME, syntax->span,
+                           "%s may not depend on the point", what);
+    diag->label = "this depends on `x`, `y`, `z` or `p`";
+    point_at_definition(e, diag, syntax);
+}
+
+void not_supported(Elaboration *e, Span span, const char *what)
+{
+    Diag *diag =
+        diag_add(e->diags, DIAG_NOT_SUPPORTED, span, "this version of krs does not have %s", what);
+    diag->label = "not in this version";
+}
+
+const char *signature(Elaboration *e, const char *name, const char *const *parameters,
+                      uint32_t count)
+{
+    Text text = {.arena = e->diags->arena};
+    text_format(&text, "%s(", name);
+    for (uint32_t i = 0; i < count; i++)
+        text_format(&text, "%s%s", i ? ", " : "", parameters[i]);
+    text_add(&text, ")");
+    return text.bytes;
+}
+
+void unknown_parameter(Elaboration *e, const Syntax *argument, const char *name,
+                       const char *const *parameters, uint32_t count)
+{
+    Diag *diag        = diag_add(e->diags, DIAG_UNKNOWN_PARAMETER, argument->name_span,
+                                 "`%s` has no parameter `%s`", name, argument->name);
+    diag->label       = "unknown parameter";
+    diag->replacement = nearest_name(argument->name, parameters, count);
+    if (diag->replacement)
+        diag->help = "a parameter with a similar name exists";
+    diag_note(e->diags, diag, signature(e, name, parameters, count));
+}
+
+Diag *too_many_arguments(Elaboration *e, const Syntax *argument, const char *name, uint32_t count)
+{
+    Diag *diag  = diag_add(e->diags, DIAG_TOO_MANY_ARGUMENTS, argument->span,
+                           "`%s` takes %u argument%s", name, count, count == 1 ? "" : "s");
+    diag->label = "one too many";
     return diag;
 }
+
+Diag *missing_argument(Elaboration *e, const Syntax *call, const char *name, const char *parameter)
+{
+    Diag *diag  = diag_add(e->diags, DIAG_MISSING_ARGUMENT, call->span,
+                           "`%s` needs an argument `%s`", name, parameter);
+    diag->label = "not given here";
+    return diag;
+}
+
+/* ---- checks ---- */
 
 /*
  * Ranges are those of the parameters, but a parameter without one counts with its default, and
@@ -46,10 +115,10 @@ bool check_finite(Elaboration *e, Node node, const Syntax *syntax)
     memcpy(kept, g->parameters.items, count * sizeof *kept);
     for (size_t i = 0; i < e->scene->parameters.count; i++) {
         const Parameter *parameter = &e->scene->parameters.items[i];
+        GraphParameter  *range     = &g->parameters.items[parameter->slot];
         for (uint32_t k = 0; k < 4; k++)
             if (!isfinite(parameter->low[k]) || !isfinite(parameter->high[k]))
-                g->parameters.items[parameter->slot].low[k] = g->parameters.items[parameter->slot].high[k] =
-                    parameter->value[k];
+                range->low[k] = range->high[k] = parameter->value[k];
     }
     g->parameters.items[0].low[0]  = -LONGEST_SECONDS;
     g->parameters.items[0].high[0] = LONGEST_SECONDS;
@@ -61,10 +130,12 @@ bool check_finite(Elaboration *e, Node node, const Syntax *syntax)
     memcpy(g->parameters.items, kept, count * sizeof *kept);
     if (finite)
         return true;
-    Diag *diag  = diag_add(e->diags, DIAG_NOT_A_NUMBER, syntax->span, "this is not finite for every permitted parameter");
+    Diag *diag  = diag_add(e->diags, DIAG_NOT_A_NUMBER, syntax->span,
+                           "this is not finite for every permitted parameter");
     diag->label = "a division by zero, or an overflow, is possible";
-    diag->help  = "give the `param` a range that excludes it, or guard it, as in `1 / max(a, 0.001)`";
-    point_at_definition(e, diag, syntax, NULL);
+    diag->help  = "give the `param` a range that excludes it, or guard it, "
+                  "as in `1 / max(a, 0.001)`";
+    point_at_definition(e, diag, syntax);
     return false;
 }
 
@@ -75,9 +146,7 @@ static Node frame_time(Elaboration *e, Node node, const Syntax *syntax, const ch
         return node;
     if (e->graph->items[node].time == TIME_FRAME)
         return check_finite(e, node, syntax) ? node : NODE_NONE;
-    Diag *diag  = diag_add(e->diags, DIAG_NOT_FRAME_TIME, syntax->span, "%s may not depend on the point", what);
-    diag->label = "this depends on x, y, z or p";
-    point_at_definition(e, diag, syntax, NULL);
+    point_error(e, syntax, what);
     return NODE_NONE;
 }
 
@@ -87,18 +156,17 @@ Node to_number(Elaboration *e, Value value, const Syntax *syntax, const char *wh
         return graph_number(e->graph, value.number);
     if (value.type == VALUE_EXPRESSION && e->graph->items[value.node].type == TYPE_FLOAT)
         return frame_time(e, value.node, syntax, what);
-    if (value.type != VALUE_ERROR)
-        type_error(e, syntax, value, "a number");
+    type_error(e, syntax, value, "a number");
     return NODE_NONE;
 }
 
 Node to_vector(Elaboration *e, Value value, const Syntax *syntax, const char *what)
 {
-    Node node = value.type == VALUE_LIST || value.type == VALUE_EXPRESSION ? value_node(e, value) : NODE_NONE;
+    Node node = value.type == VALUE_LIST || value.type == VALUE_EXPRESSION ? value_node(e, value)
+                                                                           : NODE_NONE;
     if (node != NODE_NONE && e->graph->items[node].type == TYPE_VEC3)
         return frame_time(e, node, syntax, what);
-    if (value.type != VALUE_ERROR)
-        type_error(e, syntax, value, "a vector of 3");
+    type_error(e, syntax, value, "a vector of 3");
     return NODE_NONE;
 }
 
@@ -109,7 +177,9 @@ bool check_direction(Elaboration *e, Node vector, const Syntax *syntax, const ch
         if (range.low != 0 || range.high != 0)
             return true;
     }
-    diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "%s cannot be the zero vector", what)->label = "no direction";
+    Diag *diag =
+        diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "%s cannot be the zero vector", what);
+    diag->label = "no direction";
     return false;
 }
 
@@ -118,13 +188,16 @@ bool check_positive(Elaboration *e, Node number, const Syntax *syntax, const cha
     Range range = node_range(e, number, 0);
     if (range.low > 0)
         return true;
-    Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "%s must be greater than 0", what);
+    Diag *diag =
+        diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "%s must be greater than 0", what);
     diag->label = range.low == range.high ? diag_text(e->diags, "this is %g", range.low)
                                           : diag_text(e->diags, "this can be %g", range.low);
     if (range.low != range.high)
         diag->help = "give the `param` a range that keeps it positive, or use `max(..., 0.001)`";
     return false;
 }
+
+/* ---- what an argument must be ---- */
 
 bool is_given(const Call *call, uint32_t index) { return call->arguments[index].syntax != NULL; }
 
@@ -153,19 +226,16 @@ bool want_count(Elaboration *e, const Call *call, uint32_t index, uint32_t least
         return true;
     Value value = argument->value;
     if (value.type == VALUE_EXPRESSION) {
-        Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, argument->syntax->span,
-                               "a count must be known at compile time");
-        diag->label = "this depends on a `param`, on `time` or on a coordinate";
-        point_at_definition(e, diag, argument->syntax, NULL);
+        constant_error(e, argument->syntax, "a count must be known at compile time");
         return false;
     }
     if (value.type != VALUE_NUMBER) {
-        if (value.type != VALUE_ERROR)
-            type_error(e, argument->syntax, value, "a whole number");
+        type_error(e, argument->syntax, value, "a whole number");
         return false;
     }
     if (value.number != floor(value.number) || value.number < least || value.number > most) {
-        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, argument->syntax->span, "%g cannot be a count here", value.number);
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, argument->syntax->span,
+                               "%g cannot be a count here", value.number);
         diag->label = diag_text(e->diags, "whole numbers from %u to %u are possible", least, most);
         return false;
     }
@@ -178,10 +248,47 @@ const Shape *want_shape(Elaboration *e, const Call *call, uint32_t index)
     const Argument *argument = &call->arguments[index];
     if (argument->syntax && argument->value.type == VALUE_SHAPE)
         return argument->value.shape;
-    if (argument->syntax && argument->value.type != VALUE_ERROR)
+    if (argument->syntax)
         type_error(e, argument->syntax, argument->value, "a shape");
     return NULL;
 }
+
+bool want_plane(Elaboration *e, const Call *call, Node *normal, Node *offset)
+{
+    const Shape *plane = want_shape(e, call, 0);
+    if (!plane || shape_plane(e, plane, normal, offset))
+        return plane != NULL;
+    Diag *diag  = diag_add(e->diags, DIAG_NEEDS_PLANE, call->arguments[0].syntax->span,
+                           "`%s` needs a plane, found a shape", call->name);
+    diag->label = "this is not a plane";
+    diag->help  = "write `plane(normal, offset)`";
+    return false;
+}
+
+const Similarity *want_translation(Elaboration *e, const Call *call)
+{
+    Node by = want_vector(e, call, 0, ORIGIN);
+    return by == NODE_NONE ? NULL : similarity_translation(e, by);
+}
+
+const Similarity *want_rotation(Elaboration *e, const Call *call)
+{
+    Node axis = want_vector(e, call, 0, ORIGIN), angle = want_number(e, call, 1, 0);
+    if (axis == NODE_NONE || angle == NODE_NONE ||
+        !check_direction(e, axis, call->arguments[0].syntax, "the axis of a rotation"))
+        return NULL;
+    return similarity_rotation(e, axis, angle);
+}
+
+const Similarity *want_scaling(Elaboration *e, const Call *call)
+{
+    Node by = want_number(e, call, 0, 1);
+    if (by == NODE_NONE || !check_positive(e, by, call->arguments[0].syntax, "a scale"))
+        return NULL;
+    return similarity_scaling(e, by);
+}
+
+/* ---- sorting arguments ---- */
 
 /* One word of "a b= rest...". */
 typedef struct ParameterWord {
@@ -210,37 +317,28 @@ static uint32_t split_parameters(const char *parameters, ParameterWord *words)
     return count;
 }
 
-static Value no_such_parameter(Elaboration *e, const Syntax *argument, const char *name, const ParameterWord *words,
-                               uint32_t count)
+/* The parameter that a named argument is for; UINT32_MAX: reported. */
+static uint32_t find_word(Elaboration *e, const Syntax *argument, const char *name,
+                          const ParameterWord *words, uint32_t count)
 {
     const char *names[MAX_PARAMETERS];
-    Text        list = {.arena = e->diags->arena};
-    text_add(&list, "");
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = 0; i < count; i++)
+        if (strlen(argument->name) == words[i].length &&
+            strncmp(argument->name, words[i].text, words[i].length) == 0)
+            return i;
+    for (uint32_t i = 0; i < count; i++)
         names[i] = arena_copy_text(e->diags->arena, words[i].text, words[i].length);
-        text_format(&list, "%s%s", i ? ", " : "", names[i]);
-    }
-    Diag *diag = diag_add(e->diags, DIAG_UNKNOWN_PARAMETER, argument->name_span, "`%s` has no parameter `%s`", name,
-                          argument->name);
-    diag->label       = "unknown parameter";
-    diag->replacement = nearest_name(argument->name, names, count);
-    if (diag->replacement)
-        diag->help = "a parameter with a similar name exists";
-    diag_note(e->diags, diag, diag_text(e->diags, "%s(%s)", name, list.bytes));
-    return value_error();
+    unknown_parameter(e, argument, name, names, count);
+    return UINT32_MAX;
 }
 
-static void too_many(Elaboration *e, const Syntax *argument, const char *name, uint32_t count)
-{
-    Diag *diag  = diag_add(e->diags, DIAG_TOO_MANY_ARGUMENTS, argument->span, "`%s` takes %u argument%s", name, count,
-                           count == 1 ? "" : "s");
-    diag->label = "one too many";
-}
-
-static bool store(Elaboration *e, Argument *slot, const Syntax *argument, Value value, const char *name)
+/* Puts an argument in its place; false: that was taken. */
+static bool store(Elaboration *e, Argument *slot, const Syntax *argument, Value value,
+                  const char *name)
 {
     if (slot->syntax) {
-        Diag *diag = diag_add(e->diags, DIAG_TOO_MANY_ARGUMENTS, argument->span, "an argument of `%s` is given twice", name);
+        Diag *diag = diag_add(e->diags, DIAG_TOO_MANY_ARGUMENTS, argument->span,
+                              "an argument of `%s` is given twice", name);
         diag_place(e->diags, diag, slot->syntax->span, "given here first");
         return false;
     }
@@ -248,14 +346,14 @@ static bool store(Elaboration *e, Argument *slot, const Syntax *argument, Value 
     return true;
 }
 
-bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_syntax, uint32_t first,
-                    const char *name, const char *parameters, Call *call)
+bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_syntax,
+                    uint32_t first, const char *name, const char *parameters, Call *call)
 {
     ParameterWord words[MAX_PARAMETERS];
     uint32_t      count = split_parameters(parameters, words), next = 0;
     bool          good  = true;
-    *call               = (Call){.syntax = call_syntax, .name = name};
-    call->rest          = arena_new_array(e->arena, Argument, call_syntax->count + 1);
+    *call      = (Call){.syntax = call_syntax, .name = name};
+    call->rest = arena_new_array(e->arena, Argument, call_syntax->count + 1);
     for (uint32_t i = first; i < call_syntax->count; i++) {
         const Syntax *argument = call_syntax->children[i];
         if (argument->kind != SYNTAX_ARGUMENT)
@@ -263,12 +361,8 @@ bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_s
         Value    value = evaluate(e, env, argument->children[0]);
         uint32_t slot  = next;
         if (argument->name) {
-            for (slot = 0; slot < count; slot++)
-                if (strlen(argument->name) == words[slot].length &&
-                    strncmp(argument->name, words[slot].text, words[slot].length) == 0)
-                    break;
-            if (slot == count) {
-                no_such_parameter(e, argument, name, words, count);
+            slot = find_word(e, argument, name, words, count);
+            if (slot == UINT32_MAX) {
                 good = false;
                 continue;
             }
@@ -277,18 +371,18 @@ bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_s
             good = good && value.type != VALUE_ERROR;
             continue;
         } else if (next++ >= count) {
-            too_many(e, argument, name, count);
+            too_many_arguments(e, argument, name, count);
             good = false;
             continue;
         }
-        good = store(e, &call->arguments[slot], argument, value, name) && value.type != VALUE_ERROR && good;
+        good = store(e, &call->arguments[slot], argument, value, name) &&
+               value.type != VALUE_ERROR && good;
     }
     for (uint32_t i = 0; good && i < count; i++)
         if (!call->arguments[i].syntax && !words[i].optional && !words[i].variadic) {
-            Diag *diag  = diag_add(e->diags, DIAG_MISSING_ARGUMENT, call_syntax->span, "`%s` needs an argument `%.*s`", name,
-                                   (int)words[i].length, words[i].text);
-            diag->label = "not given here";
-            good        = false;
+            missing_argument(e, call_syntax, name,
+                             diag_text(e->diags, "%.*s", (int)words[i].length, words[i].text));
+            good = false;
         }
     return good;
 }

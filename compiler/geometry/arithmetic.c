@@ -23,14 +23,19 @@ Value value_of_node(Elaboration *e, Node node)
     return value_vector(e, numbers, expr->type);
 }
 
+Value value_list(Elaboration *e, Value *items, size_t count)
+{
+    List *list = arena_new(e->arena, List);
+    *list      = (List){count, items};
+    return (Value){.type = VALUE_LIST, .list = list};
+}
+
 Value value_vector(Elaboration *e, const double *numbers, uint32_t count)
 {
-    List *list  = arena_new(e->arena, List);
-    list->count = count;
-    list->items = arena_new_array(e->arena, Value, count);
+    Value *items = arena_new_array(e->arena, Value, count);
     for (uint32_t i = 0; i < count; i++)
-        list->items[i] = value_number(numbers[i]);
-    return (Value){.type = VALUE_LIST, .list = list};
+        items[i] = value_number(numbers[i]);
+    return value_list(e, items, count);
 }
 
 static bool is_scalar(const Elaboration *e, Value value)
@@ -65,6 +70,12 @@ uint32_t value_size(const Elaboration *e, Value value)
     return is_scalar(e, value) ? 1 : vector_length(e, value);
 }
 
+static bool is_declaration(Value function)
+{
+    const Syntax *syntax = function.function->syntax;
+    return syntax && syntax->kind == SYNTAX_SHAPE;
+}
+
 const char *value_type_name(Elaboration *e, Value value)
 {
     switch (value.type) {
@@ -72,8 +83,7 @@ const char *value_type_name(Elaboration *e, Value value)
     case VALUE_NUMBER:   return "a number";
     case VALUE_BOOLEAN:  return "a truth value";
     case VALUE_STRING:   return "a string";
-    case VALUE_FUNCTION: return value.function->syntax && value.function->syntax->kind == SYNTAX_SHAPE
-                                    ? "a shape declaration" : "a function";
+    case VALUE_FUNCTION: return is_declaration(value) ? "a shape declaration" : "a function";
     case VALUE_SHAPE:    return "a shape";
     case VALUE_MAP:      return "a map of space";
     case VALUE_MATERIAL: return "a material";
@@ -123,16 +133,33 @@ BindingTime value_time(const Elaboration *e, Value value)
     return latest;
 }
 
-static Value not_finite(Elaboration *e, const Syntax *syntax, const char *what)
+static Value not_finite(Elaboration *e, const Syntax *syntax, bool by_zero)
 {
-    Diag *diag  = diag_add(e->diags, DIAG_NOT_A_NUMBER, syntax->span, "%s", what);
+    const char *what = by_zero ? "division by zero" : "the result is not a finite number";
+    Diag       *diag = diag_add(e->diags, DIAG_NOT_A_NUMBER, syntax->span, "%s", what);
     diag->label = "this has no finite value";
     return value_error();
 }
 
-Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count, const Syntax *place)
+/* An operation on lists of `length` numbers, element by element: the result is such a list. */
+static Value map_elements(Elaboration *e, Op op, const Value *arguments, uint32_t count,
+                          uint32_t length, const Syntax *place)
 {
-    /* A list of numbers stays a list of numbers: element by element. */
+    Value *items = arena_new_array(e->arena, Value, length);
+    for (uint32_t k = 0; k < length; k++) {
+        Value parts[MAX_OPERANDS];
+        for (uint32_t i = 0; i < count; i++)
+            parts[i] = arguments[i].type == VALUE_LIST ? arguments[i].list->items[k] : arguments[i];
+        items[k] = value_map_op(e, op, parts, count, place);
+        if (items[k].type == VALUE_ERROR)
+            return value_error();
+    }
+    return value_list(e, items, length);
+}
+
+Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count,
+                   const Syntax *place)
+{
     uint32_t length = 0;
     bool     whole  = false; /* some operand is a vector known only as a node */
     for (uint32_t i = 0; i < count; i++) {
@@ -140,20 +167,8 @@ Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count
         length     = n ? n : length;
         whole      = whole || (n && arguments[i].type == VALUE_EXPRESSION);
     }
-    if (length && !whole) {
-        List *list  = arena_new(e->arena, List);
-        list->count = length;
-        list->items = arena_new_array(e->arena, Value, length);
-        for (uint32_t k = 0; k < length; k++) {
-            Value parts[MAX_OPERANDS];
-            for (uint32_t i = 0; i < count; i++)
-                parts[i] = arguments[i].type == VALUE_LIST ? arguments[i].list->items[k] : arguments[i];
-            list->items[k] = value_map_op(e, op, parts, count, place);
-            if (list->items[k].type == VALUE_ERROR)
-                return value_error();
-        }
-        return (Value){.type = VALUE_LIST, .list = list};
-    }
+    if (length && !whole)
+        return map_elements(e, op, arguments, count, length, place);
     Node nodes[MAX_OPERANDS];
     bool constant = true;
     for (uint32_t i = 0; i < count; i++) {
@@ -163,8 +178,7 @@ Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count
     e->graph->here = place->span;
     Node result    = graph_op(e->graph, op, nodes);
     if (constant && !graph_is_constant(e->graph, result))
-        return not_finite(e, place, op == OP_div || op == OP_mod ? "division by zero"
-                                                                 : "the result is not a finite number");
+        return not_finite(e, place, op == OP_div || op == OP_mod);
     return value_of_node(e, result);
 }
 
@@ -186,18 +200,21 @@ static bool fold_numbers(TokenKind op, double a, double b, double *result)
 static Value arithmetic(Elaboration *e, const Syntax *syntax, Value a, Value b)
 {
     double result;
-    if (a.type == VALUE_NUMBER && b.type == VALUE_NUMBER && fold_numbers(syntax->op, a.number, b.number, &result)) {
+    if (a.type == VALUE_NUMBER && b.type == VALUE_NUMBER &&
+        fold_numbers(syntax->op, a.number, b.number, &result)) {
         if (isfinite(result))
             return value_number(result);
         bool by_zero = (syntax->op == TOKEN_SLASH || syntax->op == TOKEN_PERCENT) && b.number == 0;
-        return not_finite(e, syntax, by_zero ? "division by zero" : "the result is not a finite number");
+        return not_finite(e, syntax, by_zero);
     }
     uint32_t n = vector_length(e, a), m = vector_length(e, b);
     if (n && m && n != m) {
         Diag *diag = diag_add(e->diags, DIAG_LENGTH_MISMATCH, syntax->name_span,
                               "a vector of %u and a vector of %u do not go together", n, m);
-        diag_place(e->diags, diag, syntax->children[0]->span, diag_text(e->diags, "this has %u elements", n));
-        diag_place(e->diags, diag, syntax->children[1]->span, diag_text(e->diags, "this has %u elements", m));
+        diag_place(e->diags, diag, syntax->children[0]->span,
+                   diag_text(e->diags, "this has %u elements", n));
+        diag_place(e->diags, diag, syntax->children[1]->span,
+                   diag_text(e->diags, "this has %u elements", m));
         return value_error();
     }
     static const Op ops[TOKEN_KIND_COUNT] = {
@@ -209,15 +226,13 @@ static Value arithmetic(Elaboration *e, const Syntax *syntax, Value a, Value b)
         return value_of_node(e, graph_power(e->graph, a.node, exponent));
     }
     if (syntax->op == TOKEN_CARET && b.type == VALUE_NUMBER && a.type == VALUE_LIST) {
-        List *list  = arena_new(e->arena, List);
-        list->count = n;
-        list->items = arena_new_array(e->arena, Value, n);
+        Value *items = arena_new_array(e->arena, Value, n);
         for (uint32_t i = 0; i < n; i++) {
-            list->items[i] = arithmetic(e, syntax, a.list->items[i], b);
-            if (list->items[i].type == VALUE_ERROR)
+            items[i] = arithmetic(e, syntax, a.list->items[i], b);
+            if (items[i].type == VALUE_ERROR)
                 return value_error();
         }
-        return (Value){.type = VALUE_LIST, .list = list};
+        return value_list(e, items, n);
     }
     return value_map_op(e, ops[syntax->op], (Value[]){a, b}, 2, syntax);
 }
@@ -227,21 +242,30 @@ static bool is_numeric(const Elaboration *e, Value value)
     return is_scalar(e, value) || vector_length(e, value) != 0;
 }
 
+/* Says of two expressions what type each has. */
+static void place_types(Elaboration *e, Diag *diag, Syntax *const *pair, const char *left,
+                        const char *right)
+{
+    diag_place(e->diags, diag, pair[0]->span, diag_text(e->diags, "this is %s", left));
+    diag_place(e->diags, diag, pair[1]->span, diag_text(e->diags, "this is %s", right));
+}
+
 static Value mismatch(Elaboration *e, const Syntax *syntax, Value a, Value b)
 {
     static const char *const words[TOKEN_KIND_COUNT] = {
         [TOKEN_PLUS] = "+", [TOKEN_MINUS] = "-", [TOKEN_STAR] = "*", [TOKEN_SLASH] = "/",
         [TOKEN_PERCENT] = "%", [TOKEN_CARET] = "^", [TOKEN_AMPERSAND] = "&", [TOKEN_BAR] = "|",
-        [TOKEN_LESS] = "<", [TOKEN_LESS_EQUAL] = "<=", [TOKEN_GREATER] = ">", [TOKEN_GREATER_EQUAL] = ">=",
-        [TOKEN_EQUAL_EQUAL] = "==", [TOKEN_NOT_EQUAL] = "!=", [TOKEN_AND] = "and", [TOKEN_OR] = "or"};
+        [TOKEN_LESS] = "<", [TOKEN_LESS_EQUAL] = "<=", [TOKEN_GREATER] = ">",
+        [TOKEN_GREATER_EQUAL] = ">=", [TOKEN_EQUAL_EQUAL] = "==", [TOKEN_NOT_EQUAL] = "!=",
+        [TOKEN_AND] = "and", [TOKEN_OR] = "or"};
     const char *left = value_type_name(e, a), *right = value_type_name(e, b);
-    Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->name_span, "`%s` does not go with %s and %s",
-                          words[syntax->op], left, right);
-    diag_place(e->diags, diag, syntax->children[0]->span, diag_text(e->diags, "this is %s", left));
-    diag_place(e->diags, diag, syntax->children[1]->span, diag_text(e->diags, "this is %s", right));
-    point_at_definition(e, diag, syntax->children[0], NULL);
-    point_at_definition(e, diag, syntax->children[1], NULL);
-    if (a.type == VALUE_SHAPE && is_scalar(e, b) && (syntax->op == TOKEN_MINUS || syntax->op == TOKEN_PLUS))
+    Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->name_span,
+                          "`%s` does not go with %s and %s", words[syntax->op], left, right);
+    place_types(e, diag, syntax->children, left, right);
+    point_at_definition(e, diag, syntax->children[0]);
+    point_at_definition(e, diag, syntax->children[1]);
+    if (a.type == VALUE_SHAPE && is_scalar(e, b) &&
+        (syntax->op == TOKEN_MINUS || syntax->op == TOKEN_PLUS))
         diag->help = "to shrink or grow a shape write `.offset(-0.1)` or `.offset(0.1)`";
     else if (a.type == VALUE_SHAPE && b.type == VALUE_SHAPE && syntax->op == TOKEN_PLUS)
         diag->help = "to join shapes write `a | b`";
@@ -261,8 +285,7 @@ static Value join_shapes(Elaboration *e, const Syntax *syntax, const Shape *a, c
         return value_error();
     }
     const Shape *shapes[] = {a, b};
-    return (Value){.type  = VALUE_SHAPE,
-                   .shape = make_joint(e, kind, shapes, 2, BLEND_QUADRATIC, NODE_NONE, NODE_NONE, syntax->span)};
+    return value_shape(make_joint(e, kind, shapes, 2, blend_sharp, syntax->span));
 }
 
 static Value compare(Elaboration *e, const Syntax *syntax, Value a, Value b)
@@ -275,8 +298,9 @@ static Value compare(Elaboration *e, const Syntax *syntax, Value a, Value b)
     if (!is_scalar(e, a) || !is_scalar(e, b))
         return mismatch(e, syntax, a, b);
     static const Op ops[TOKEN_KIND_COUNT] = {
-        [TOKEN_LESS] = OP_less, [TOKEN_LESS_EQUAL] = OP_less_equal, [TOKEN_GREATER] = OP_less,
-        [TOKEN_GREATER_EQUAL] = OP_less_equal, [TOKEN_EQUAL_EQUAL] = OP_equal, [TOKEN_NOT_EQUAL] = OP_not_equal};
+        [TOKEN_LESS] = OP_less, [TOKEN_LESS_EQUAL] = OP_less_equal,
+        [TOKEN_GREATER] = OP_less, [TOKEN_GREATER_EQUAL] = OP_less_equal,
+        [TOKEN_EQUAL_EQUAL] = OP_equal, [TOKEN_NOT_EQUAL] = OP_not_equal};
     bool  swap  = syntax->op == TOKEN_GREATER || syntax->op == TOKEN_GREATER_EQUAL;
     Node  left  = value_node(e, swap ? b : a);
     Node  right = value_node(e, swap ? a : b);
@@ -297,17 +321,19 @@ Value value_binary(Elaboration *e, const Syntax *syntax, Value a, Value b)
     case TOKEN_AND:
     case TOKEN_OR:
         if (is_truth(e, a) && is_truth(e, b)) {
+            Op   op   = syntax->op == TOKEN_AND ? OP_and : OP_or;
             Node left = value_node(e, a), right = value_node(e, b);
-            return value_of_node(e, graph_op2(e->graph, syntax->op == TOKEN_AND ? OP_and : OP_or, left, right));
+            return value_of_node(e, graph_op2(e->graph, op, left, right));
         }
         break;
-    case TOKEN_PLUS: case TOKEN_MINUS: case TOKEN_STAR: case TOKEN_SLASH: case TOKEN_PERCENT: case TOKEN_CARET:
+    case TOKEN_PLUS: case TOKEN_MINUS: case TOKEN_STAR:
+    case TOKEN_SLASH: case TOKEN_PERCENT: case TOKEN_CARET:
         if (is_numeric(e, a) && is_numeric(e, b))
             return arithmetic(e, syntax, a, b);
         if (syntax->op == TOKEN_MINUS && a.type == VALUE_SHAPE && b.type == VALUE_SHAPE)
             return join_shapes(e, syntax, a.shape, b.shape);
         if (syntax->op == TOKEN_STAR && a.type == VALUE_MAP && b.type == VALUE_MAP)
-            return (Value){.type = VALUE_MAP, .map = similarity_product(e, a.map, b.map)};
+            return value_map(similarity_product(e, a.map, b.map));
         break;
     default:
         return compare(e, syntax, a, b);
@@ -327,7 +353,7 @@ Value value_unary(Elaboration *e, const Syntax *syntax, Value a)
         return value_map_op(e, OP_neg, &a, 1, syntax);
     Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span, "`%s` does not go with %s",
                           syntax->op == TOKEN_NOT ? "not" : "-", value_type_name(e, a));
-    point_at_definition(e, diag, syntax->children[0], NULL);
+    point_at_definition(e, diag, syntax->children[0]);
     return value_error();
 }
 
@@ -338,19 +364,17 @@ Value value_select(Elaboration *e, const Syntax *syntax, Value condition, Value 
         return value_error();
     Node a = value_node(e, yes), b = value_node(e, no);
     if (a == NODE_NONE || b == NODE_NONE) {
-        Value other = a == NODE_NONE ? yes : no;
-        Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, syntax->children[0]->span,
-                               "the condition must be known at compile time to choose %s", value_type_name(e, other));
-        diag->label = "this depends on a `param`, on `time` or on a coordinate";
-        point_at_definition(e, diag, syntax->children[0], NULL);
+        const char *other = value_type_name(e, a == NODE_NONE ? yes : no);
+        const char *message = diag_text(
+            e->diags, "the condition must be known at compile time to choose %s", other);
+        constant_error(e, syntax->children[0], message);
         return value_error();
     }
     if (e->graph->items[a].type != e->graph->items[b].type) {
         const char *left = value_type_name(e, yes), *right = value_type_name(e, no);
         Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span,
                               "the branches of `if` have different types: %s and %s", left, right);
-        diag_place(e->diags, diag, syntax->children[1]->span, diag_text(e->diags, "this is %s", left));
-        diag_place(e->diags, diag, syntax->children[2]->span, diag_text(e->diags, "this is %s", right));
+        place_types(e, diag, syntax->children + 1, left, right);
         return value_error();
     }
     e->graph->here = syntax->span;

@@ -8,7 +8,10 @@
 const Box box_empty    = {{{INFINITY, -INFINITY}, {INFINITY, -INFINITY}, {INFINITY, -INFINITY}}};
 const Box box_infinite = {{{-INFINITY, INFINITY}, {-INFINITY, INFINITY}, {-INFINITY, INFINITY}}};
 
-static Range range_common(Range a, Range b) { return (Range){fmax(a.low, b.low), fmin(a.high, b.high)}; }
+static Range range_common(Range a, Range b)
+{
+    return (Range){fmax(a.low, b.low), fmin(a.high, b.high)};
+}
 
 bool box_is_empty(Box box)
 {
@@ -77,6 +80,11 @@ void box_centre(Box box, double centre[3])
 {
     for (int i = 0; i < 3; i++)
         centre[i] = 0.5 * (box.axis[i].low + box.axis[i].high);
+}
+
+double cell_margin(Range content, double period)
+{
+    return fmin(0.5 * period - content.high, 0.5 * period + content.low);
 }
 
 double box_diagonal(Box box)
@@ -149,8 +157,10 @@ Ball ball_fold(Ball ball, const Range u[3], Range w)
         e = range_add(e, range_mul(u[i], range_of(ball.centre[i])));
     if (e.low >= ball.radius)
         return (Ball){{0, 0, 0}, -1};
-    Ball   fold  = {.radius = e.low <= 0 ? ball.radius - e.low : sqrt(ball.radius * ball.radius - e.low * e.low)};
+    Ball   fold  = {.radius = ball.radius - e.low};
     double leave = 0;
+    if (e.low > 0)
+        fold.radius = sqrt(ball.radius * ball.radius - e.low * e.low);
     for (int i = 0; i < 3; i++) {
         Range shift    = range_mul(e, u[i]);
         fold.centre[i] = ball.centre[i] - 0.5 * (shift.low + shift.high);
@@ -170,9 +180,11 @@ static Box clip_to_half_space(Box box, const Range u[3], Range w)
             if (j != i)
                 rest = range_sub(rest, range_mul(u[j], box.axis[j]));
         if (u[i].low > 1e-12)
-            box.axis[i].high = fmin(box.axis[i].high, fmax(rest.high / u[i].low, rest.high / u[i].high));
+            box.axis[i].high =
+                fmin(box.axis[i].high, fmax(rest.high / u[i].low, rest.high / u[i].high));
         if (u[i].high < -1e-12)
-            box.axis[i].low = fmax(box.axis[i].low, fmin(rest.high / u[i].low, rest.high / u[i].high));
+            box.axis[i].low =
+                fmax(box.axis[i].low, fmin(rest.high / u[i].low, rest.high / u[i].high));
         if (box.axis[i].low > box.axis[i].high)
             return box_empty;
     }
@@ -190,13 +202,8 @@ Box box_fold(Box box, const Range u[3], Range w)
     Range rows[3][3], shift[3];
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
-            Range two_uu = range_mul(range_of(2), i == j ? (Range){0, 0} : range_mul(u[i], u[j]));
-            if (i == j) {
-                double most  = fmax(u[i].low * u[i].low, u[i].high * u[i].high);
-                double least = u[i].low <= 0 && u[i].high >= 0 ? 0 : fmin(u[i].low * u[i].low, u[i].high * u[i].high);
-                two_uu       = (Range){2 * least, 2 * most};
-            }
-            rows[i][j] = range_sub(range_of(i == j), two_uu);
+            Range uu   = i == j ? range_square(u[i]) : range_mul(u[i], u[j]);
+            rows[i][j] = range_sub(range_of(i == j), range_mul(range_of(2), uu));
         }
         shift[i] = range_mul(range_of(2), range_mul(w, u[i]));
     }

@@ -18,13 +18,18 @@ Box  box_move(Box box, const Range by[3]);
 /* The box around a box after a linear map with these rows, each entry a range. */
 Box  box_turn(Box box, Range rows[3][3]);
 double box_diagonal(Box box);
+/* Of a finite box. */
 void   box_centre(Box box, double centre[3]);
+/* How far the side `content` of a box stays from the walls of a cell that is centred at 0;
+   < 0: it sticks out. */
+double cell_margin(Range content, double period);
 
 typedef struct Ball {
     double centre[3];
     double radius; /* < 0: empty; may be infinite */
 } Ball;
 
+/* Infinite for a box that is not finite. */
 Ball ball_around(Box box);
 Box  ball_box(Ball ball);
 Ball ball_hull(Ball a, Ball b);

@@ -6,8 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
-
 /* ---- vectors ---- */
 
 /* An argument as the node of a number or vector; NODE_NONE: reported. */
@@ -32,8 +30,9 @@ static Value vector_op(Elaboration *e, Call *call, Op op, uint32_t arity)
         types[i] = e->graph->items[nodes[i]].type;
     }
     if (!graph_op_type(op, types, arity)) {
+        const char *wanted = op == OP_cross ? "two vectors of 3" : "two vectors of one length";
         diag_add(e->diags, DIAG_LENGTH_MISMATCH, call->syntax->span, "`%s` needs %s", call->name,
-                 op == OP_cross ? "two vectors of 3" : arity == 2 ? "two vectors of one length" : "a vector");
+                 arity == 1 ? "a vector" : wanted);
         return value_error();
     }
     e->graph->here = call->syntax->span;
@@ -43,7 +42,11 @@ static Value vector_op(Elaboration *e, Call *call, Op op, uint32_t arity)
 static Value builtin_length(Elaboration *e, Call *call) { return vector_op(e, call, OP_length, 1); }
 static Value builtin_dot(Elaboration *e, Call *call) { return vector_op(e, call, OP_dot, 2); }
 static Value builtin_cross(Elaboration *e, Call *call) { return vector_op(e, call, OP_cross, 2); }
-static Value builtin_normalize(Elaboration *e, Call *call) { return vector_op(e, call, OP_normalize, 1); }
+
+static Value builtin_normalize(Elaboration *e, Call *call)
+{
+    return vector_op(e, call, OP_normalize, 1);
+}
 
 static Value builtin_distance(Elaboration *e, Call *call)
 {
@@ -61,8 +64,8 @@ static Value scaled(Elaboration *e, Call *call, double factor)
     return value_map_op(e, OP_mul, values, 2, call->syntax);
 }
 
-static Value builtin_radians(Elaboration *e, Call *call) { return scaled(e, call, PI / 180); }
-static Value builtin_degrees(Elaboration *e, Call *call) { return scaled(e, call, 180 / PI); }
+static Value builtin_radians(Elaboration *e, Call *call) { return scaled(e, call, M_PI / 180); }
+static Value builtin_degrees(Elaboration *e, Call *call) { return scaled(e, call, 180 / M_PI); }
 
 /* ---- lists ---- */
 
@@ -87,13 +90,14 @@ static Value reduce(Elaboration *e, Op op, const Value *items, size_t count, con
         return value_error();
     Node nodes[] = {value_node(e, a), value_node(e, b)};
     if (nodes[0] == NODE_NONE || nodes[1] == NODE_NONE) {
-        type_error(e, place, nodes[0] == NODE_NONE ? a : b, op == OP_and || op == OP_or ? "truth values" : "numbers or vectors");
+        type_error(e, place, nodes[0] == NODE_NONE ? a : b,
+                   op == OP_and || op == OP_or ? "truth values" : "numbers or vectors");
         return value_error();
     }
     GraphType types[] = {e->graph->items[nodes[0]].type, e->graph->items[nodes[1]].type};
     if (!graph_op_type(op, types, 2)) {
-        diag_add(e->diags, DIAG_TYPE_MISMATCH, place->span, "%s and %s do not go together", value_type_name(e, a),
-                 value_type_name(e, b));
+        diag_add(e->diags, DIAG_TYPE_MISMATCH, place->span, "%s and %s do not go together",
+                 value_type_name(e, a), value_type_name(e, b));
         return value_error();
     }
     if (op == OP_and || op == OP_or)
@@ -101,16 +105,17 @@ static Value reduce(Elaboration *e, Op op, const Value *items, size_t count, con
     return value_map_op(e, op, (Value[]){a, b}, 2, place);
 }
 
+/* Of the elements of the first argument; `empty` when it has none. */
 static Value reduce_list(Elaboration *e, Call *call, Op op, Value empty)
 {
     if (call->arguments[0].value.type == VALUE_EXPRESSION) { /* a vector known only as a node */
         Node  vector = call->arguments[0].value.node;
         Value parts[4];
         uint32_t type = e->graph->items[vector].type;
-        if (type > TYPE_VEC4)
+        if (type > TYPE_VEC4) {
             type_error(e, call->arguments[0].syntax, call->arguments[0].value, "a list");
-        if (type > TYPE_VEC4)
             return value_error();
+        }
         for (uint32_t i = 0; i < type; i++)
             parts[i] = value_of_node(e, graph_component(e->graph, vector, i));
         return reduce(e, op, parts, type, call->syntax);
@@ -121,15 +126,32 @@ static Value reduce_list(Elaboration *e, Call *call, Op op, Value empty)
     return list->count ? reduce(e, op, list->items, list->count, call->syntax) : empty;
 }
 
-static Value builtin_sum(Elaboration *e, Call *call) { return reduce_list(e, call, OP_add, value_number(0)); }
-static Value builtin_product(Elaboration *e, Call *call) { return reduce_list(e, call, OP_mul, value_number(1)); }
-static Value builtin_any(Elaboration *e, Call *call) { return reduce_list(e, call, OP_or, value_boolean(false)); }
-static Value builtin_all(Elaboration *e, Call *call) { return reduce_list(e, call, OP_and, value_boolean(true)); }
+static Value builtin_sum(Elaboration *e, Call *call)
+{
+    return reduce_list(e, call, OP_add, value_number(0));
+}
 
+static Value builtin_product(Elaboration *e, Call *call)
+{
+    return reduce_list(e, call, OP_mul, value_number(1));
+}
+
+static Value builtin_any(Elaboration *e, Call *call)
+{
+    return reduce_list(e, call, OP_or, value_boolean(false));
+}
+
+static Value builtin_all(Elaboration *e, Call *call)
+{
+    return reduce_list(e, call, OP_and, value_boolean(true));
+}
+
+/* Of all arguments, or of the elements of the only one. */
 static Value extreme(Elaboration *e, Call *call, Op op)
 {
     if (call->rest_count == 0) {
-        Diag *diag  = diag_add(e->diags, DIAG_MISSING_ARGUMENT, call->syntax->span, "`%s` needs something to choose from", call->name);
+        Diag *diag  = diag_add(e->diags, DIAG_MISSING_ARGUMENT, call->syntax->span,
+                               "`%s` needs something to choose from", call->name);
         diag->label = "nothing is given";
         return value_error();
     }
@@ -160,6 +182,7 @@ static Value builtin_len(Elaboration *e, Call *call)
     return list ? value_number((double)list->count) : value_error();
 }
 
+/* A number that is known at compile time; *number stays when it is not given.  False: reported. */
 static bool constant_argument(Elaboration *e, const Call *call, uint32_t index, double *number)
 {
     const Argument *argument = &call->arguments[index];
@@ -169,11 +192,11 @@ static bool constant_argument(Elaboration *e, const Call *call, uint32_t index, 
         *number = argument->value.number;
         return true;
     }
-    if (argument->value.type == VALUE_EXPRESSION) {
-        Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, argument->syntax->span, "`%s` needs a number that is known at compile time", call->name);
-        diag->label = "this depends on a `param`, on `time` or on a coordinate";
-        point_at_definition(e, diag, argument->syntax, NULL);
-    } else
+    if (argument->value.type == VALUE_EXPRESSION)
+        constant_error(e, argument->syntax,
+                       diag_text(e->diags, "`%s` needs a number that is known at compile time",
+                                 call->name));
+    else
         type_error(e, argument->syntax, argument->value, "a number");
     return false;
 }
@@ -181,7 +204,8 @@ static bool constant_argument(Elaboration *e, const Call *call, uint32_t index, 
 static Value builtin_range(Elaboration *e, Call *call)
 {
     double from = 0, to = 0, by = 1;
-    if (!constant_argument(e, call, 0, &from) || !constant_argument(e, call, 1, &to) || !constant_argument(e, call, 2, &by))
+    if (!constant_argument(e, call, 0, &from) || !constant_argument(e, call, 1, &to) ||
+        !constant_argument(e, call, 2, &by))
         return value_error();
     if (!is_given(call, 1)) {
         to   = from;
@@ -189,17 +213,18 @@ static Value builtin_range(Elaboration *e, Call *call)
     }
     double count = ceil((to - from) / by);
     if (!(by != 0) || !(count <= 1e6)) {
-        Diag *diag  = diag_add(e->diags, by != 0 ? DIAG_LIMIT : DIAG_BAD_VALUE, call->syntax->span,
-                               by != 0 ? "a range of more than a million elements" : "a range with steps of 0 does not end");
+        bool  ends  = by != 0;
+        Diag *diag  = diag_add(e->diags, ends ? DIAG_LIMIT : DIAG_BAD_VALUE, call->syntax->span,
+                               ends ? "a range of more than a million elements"
+                                    : "a range with steps of 0 does not end");
         diag->label = "this range";
         return value_error();
     }
-    List *list  = arena_new(e->arena, List);
-    list->count = count > 0 ? (size_t)count : 0;
-    list->items = arena_new_array(e->arena, Value, list->count + 1);
-    for (size_t i = 0; i < list->count; i++)
-        list->items[i] = value_number(from + (double)i * by);
-    return (Value){.type = VALUE_LIST, .list = list};
+    size_t size  = count > 0 ? (size_t)count : 0;
+    Value *items = arena_new_array(e->arena, Value, size + 1);
+    for (size_t i = 0; i < size; i++)
+        items[i] = value_number(from + (double)i * by);
+    return value_list(e, items, size);
 }
 
 /* ---- random numbers: the same on every machine ---- */
@@ -221,12 +246,17 @@ static uint64_t hash_number(double seed, uint64_t stream)
     return bits ^ (bits >> 31);
 }
 
-static double unit_random(double seed, uint64_t stream) { return (double)(hash_number(seed, stream) >> 11) * 0x1p-53; }
+/* In [0, 1). */
+static double unit_random(double seed, uint64_t stream)
+{
+    return (double)(hash_number(seed, stream) >> 11) * 0x1p-53;
+}
 
 static Value builtin_random(Elaboration *e, Call *call)
 {
     double seed = 0;
-    return constant_argument(e, call, 0, &seed) ? value_number(unit_random(seed, 0)) : value_error();
+    return constant_argument(e, call, 0, &seed) ? value_number(unit_random(seed, 0))
+                                                : value_error();
 }
 
 /* Marsaglia (1972): a point of the unit disc gives a point of the sphere by products and roots
@@ -249,55 +279,63 @@ static Value builtin_random_direction(Elaboration *e, Call *call)
 
 /* ---- joining ---- */
 
-static bool blend_arguments(Elaboration *e, const Call *call, uint32_t first, BlendKind *kind, Node *width, Node *steps)
+/* The kind of a blend by its spelling; without an argument the quadratic one.  False: reported. */
+static bool blend_kind(Elaboration *e, const Argument *name, BlendKind *kind)
 {
-    *kind  = BLEND_QUADRATIC;
-    *width = NODE_NONE;
-    *steps = NODE_NONE;
-    const Argument *name = &call->arguments[first + 1];
-    if (name->syntax && name->value.type != VALUE_STRING) {
+    *kind = BLEND_QUADRATIC;
+    if (!name->syntax)
+        return true;
+    if (name->value.type != VALUE_STRING) {
         type_error(e, name->syntax, name->value, "the kind of a blend, a string");
         return false;
     }
-    if (name->syntax) {
-        const char *spellings[BLEND_COUNT];
-        uint32_t    found = BLEND_COUNT;
-        for (uint32_t i = 0; i < BLEND_COUNT; i++) {
-            spellings[i] = blend_info[i].spelling;
-            if (strcmp(spellings[i], name->value.string) == 0)
-                found = i;
-        }
-        if (found == BLEND_COUNT) {
-            Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, name->syntax->span, "no blend is called \"%s\"", name->value.string);
-            const char *near = nearest_name(name->value.string, spellings, BLEND_COUNT);
-            diag->label = "unknown kind of blend";
-            if (near)
-                diag->replacement = diag_text(e->diags, "\"%s\"", near);
-            diag->help = "there are \"quadratic\", \"cubic\", \"exponential\", \"circular\", \"chamfer\" and \"stairs\"";
-            return false;
-        }
-        *kind = (BlendKind)found;
+    const char *spellings[BLEND_COUNT];
+    for (uint32_t i = 0; i < BLEND_COUNT; i++) {
+        spellings[i] = blend_info[i].spelling;
+        *kind        = (BlendKind)i;
+        if (strcmp(spellings[i], name->value.string) == 0)
+            return true;
     }
-    uint32_t count;
-    if (!want_count(e, call, first + 2, 1, 64, 4, &count))
+    Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, name->syntax->span, "no blend is called \"%s\"",
+                          name->value.string);
+    const char *near = nearest_name(name->value.string, spellings, BLEND_COUNT);
+    diag->label = "unknown kind of blend";
+    if (near)
+        diag->replacement = diag_text(e->diags, "\"%s\"", near);
+    diag->help = "there are \"quadratic\", \"cubic\", \"exponential\", \"circular\", "
+                 "\"chamfer\" and \"stairs\"";
+    return false;
+}
+
+/* The parameters `blend= kind= steps=`, of which `first` is the first.  False: reported. */
+static bool blend_arguments(Elaboration *e, const Call *call, uint32_t first, Blend *blend)
+{
+    uint32_t steps;
+    *blend = blend_sharp;
+    if (!blend_kind(e, &call->arguments[first + 1], &blend->kind) ||
+        !want_count(e, call, first + 2, 1, 64, 4, &steps))
         return false;
-    *steps = graph_number(e->graph, count);
+    blend->steps = graph_number(e->graph, steps);
     if (!is_given(call, first))
         return true;
-    *width      = want_number(e, call, first, 0);
-    Range range = *width == NODE_NONE ? range_of(0) : node_range(e, *width, 0);
+    Node width = want_number(e, call, first, 0);
+    if (width == NODE_NONE)
+        return false;
+    Range range = node_range(e, width, 0);
     if (range.low < 0) {
-        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[first].syntax->span, "the width of a blend cannot be negative");
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[first].syntax->span,
+                               "the width of a blend cannot be negative");
         diag->label = diag_text(e->diags, "this can be %g", range.low);
         return false;
     }
-    if (range.high == 0)
-        *width = NODE_NONE;
-    return range.high == 0 || *width != NODE_NONE;
+    if (range.high != 0)
+        blend->width = width;
+    return true;
 }
 
 /* The shapes of a call: positional ones, or the elements of lists among them. */
-static bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *place, Values *shapes)
+static bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *place,
+                           Values *shapes)
 {
     if (value.type == VALUE_LIST) {
         for (size_t i = 0; i < value.list->count; i++)
@@ -306,41 +344,43 @@ static bool collect_shapes(Elaboration *e, const Call *call, Value value, const 
         return true;
     }
     if (value.type != VALUE_SHAPE) {
-        if (value.type != VALUE_ERROR)
-            type_error(e, place, value, "shapes");
+        type_error(e, place, value, "shapes");
         return false;
     }
     array_push(e->arena, shapes, value);
     return true;
 }
 
-static Value join(Elaboration *e, const Call *call, ShapeKind kind, const Values *values, uint32_t first_option)
+static Value join(Elaboration *e, const Call *call, ShapeKind kind, const Values *values,
+                  uint32_t first_option)
 {
-    BlendKind blend;
-    Node      width, steps;
-    if (!blend_arguments(e, call, first_option, &blend, &width, &steps))
+    Blend blend;
+    if (!blend_arguments(e, call, first_option, &blend))
         return value_error();
     if (values->count == 0 && kind != SHAPE_UNION) {
-        diag_add(e->diags, DIAG_MISSING_ARGUMENT, call->syntax->span, "`%s` needs at least one shape", call->name);
+        diag_add(e->diags, DIAG_MISSING_ARGUMENT, call->syntax->span,
+                 "`%s` needs at least one shape", call->name);
         return value_error();
     }
     const Shape **shapes = arena_new_array(e->arena, const Shape *, values->count + 1);
     for (size_t i = 0; i < values->count; i++) {
         shapes[i] = values->items[i].shape;
         if (shapes[i]->figure != shapes[0]->figure) {
-            Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, call->syntax->span, "plane figures and solids cannot be joined");
+            Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, call->syntax->span,
+                                  "plane figures and solids cannot be joined");
             diag->help = "make figures solid with `.extrude(height)` or `.revolve()`";
             return value_error();
         }
     }
-    return (Value){.type  = VALUE_SHAPE,
-                   .shape = make_joint(e, kind, shapes, (uint32_t)values->count, blend, width, steps, call->syntax->span)};
+    uint32_t count = (uint32_t)values->count;
+    return value_shape(make_joint(e, kind, shapes, count, blend, call->syntax->span));
 }
 
 static Value join_rest(Elaboration *e, Call *call, ShapeKind kind)
 {
     Values shapes = {0};
-    if (is_given(call, 0) && !collect_shapes(e, call, call->arguments[0].value, call->arguments[0].syntax, &shapes))
+    if (is_given(call, 0) &&
+        !collect_shapes(e, call, call->arguments[0].value, call->arguments[0].syntax, &shapes))
         return value_error();
     for (uint32_t i = 0; i < call->rest_count; i++)
         if (!collect_shapes(e, call, call->rest[i].value, call->rest[i].syntax, &shapes))
@@ -348,9 +388,20 @@ static Value join_rest(Elaboration *e, Call *call, ShapeKind kind)
     return join(e, call, kind, &shapes, 1);
 }
 
-static Value builtin_union(Elaboration *e, Call *call) { return join_rest(e, call, SHAPE_UNION); }
-static Value builtin_intersection(Elaboration *e, Call *call) { return join_rest(e, call, SHAPE_INTERSECTION); }
-static Value builtin_difference(Elaboration *e, Call *call) { return join_rest(e, call, SHAPE_DIFFERENCE); }
+static Value builtin_union(Elaboration *e, Call *call)
+{
+    return join_rest(e, call, SHAPE_UNION);
+}
+
+static Value builtin_intersection(Elaboration *e, Call *call)
+{
+    return join_rest(e, call, SHAPE_INTERSECTION);
+}
+
+static Value builtin_difference(Elaboration *e, Call *call)
+{
+    return join_rest(e, call, SHAPE_DIFFERENCE);
+}
 
 static Value builtin_xor(Elaboration *e, Call *call)
 {
@@ -370,67 +421,51 @@ static Value builtin_morph(Elaboration *e, Call *call)
         return value_error();
     Range range = node_range(e, t, 0);
     if (range.low < 0 || range.high > 1) {
-        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[2].syntax->span, "`t` of `morph` must stay in [0, 1]");
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[2].syntax->span,
+                               "`t` of `morph` must stay in [0, 1]");
         diag->label = diag_text(e->diags, "this goes from %g to %g", range.low, range.high);
         return value_error();
     }
-    return (Value){.type = VALUE_SHAPE, .shape = make_morph(e, a, b, t, call->syntax->span)};
+    return value_shape(make_morph(e, a, b, t, call->syntax->span));
 }
 
 /* ---- maps ---- */
 
-static const double ORIGIN[3] = {0, 0, 0};
-
-static Value map_value(const Similarity *map) { return (Value){.type = VALUE_MAP, .map = map}; }
-
 static Value builtin_translate(Elaboration *e, Call *call)
 {
-    Node by = want_vector(e, call, 0, ORIGIN);
-    return by == NODE_NONE ? value_error() : map_value(similarity_translation(e, by));
+    return value_map(want_translation(e, call));
 }
 
 static Value builtin_rotate(Elaboration *e, Call *call)
 {
-    Node axis = want_vector(e, call, 0, ORIGIN), angle = want_number(e, call, 1, 0);
-    if (axis == NODE_NONE || angle == NODE_NONE || !check_direction(e, axis, call->arguments[0].syntax, "the axis of a rotation"))
-        return value_error();
-    return map_value(similarity_rotation(e, axis, angle));
+    return value_map(want_rotation(e, call));
 }
 
 static Value builtin_scale(Elaboration *e, Call *call)
 {
-    Node by = want_number(e, call, 0, 1);
-    if (by == NODE_NONE || !check_positive(e, by, call->arguments[0].syntax, "a scale"))
-        return value_error();
-    return map_value(similarity_scaling(e, by));
+    return value_map(want_scaling(e, call));
 }
 
 static Value builtin_reflect(Elaboration *e, Call *call)
 {
-    Node         normal, offset;
-    const Shape *plane = want_shape(e, call, 0);
-    if (!plane)
+    Node normal, offset;
+    if (!want_plane(e, call, &normal, &offset))
         return value_error();
-    if (!shape_plane(e, plane, &normal, &offset)) {
-        diag_add(e->diags, DIAG_NEEDS_PLANE, call->arguments[0].syntax->span, "`reflect` needs a plane, found a shape")
-            ->label = "this is not a plane";
-        return value_error();
-    }
-    return map_value(similarity_reflection(e, normal, offset));
+    return value_map(similarity_reflection(e, normal, offset));
 }
 
 static Value builtin_not_supported(Elaboration *e, Call *call)
 {
-    Diag *diag  = diag_add(e->diags, DIAG_NOT_SUPPORTED, call->syntax->span, "this version of krs does not have `%s`", call->name);
-    diag->label = "not in this version";
+    not_supported(e, call->syntax->span, diag_text(e->diags, "`%s`", call->name));
     return value_error();
 }
 
 /* ---- tables ---- */
 
 static const Builtin builtins[] = {
-#define NUMERIC(name, parameters, op, meaning) {#name, parameters, OP_##op, NULL, meaning},
-#define SPECIAL(name, parameters, function, meaning) {#name, parameters, OP_COUNT, builtin_##function, meaning},
+#define NUMERIC(name, parameters, op, meaning) {#name, parameters, OP_##op, NULL},
+#define SPECIAL(name, parameters, function, meaning)                                               \
+    {#name, parameters, OP_COUNT, builtin_##function},
 #include "compiler/geometry/functions.def"
 #undef NUMERIC
 #undef SPECIAL
@@ -445,8 +480,9 @@ const Builtin *builtin_find(const char *name)
     return NULL;
 }
 
-static const char *const constants[] = {"pi", "tau", "x", "y", "z", "p", "time", "level", "instance", "u", "v", "normal",
-                                        "identity", "orbit_trap", "rounding"};
+static const char *const constants[] = {
+    "pi", "tau", "x", "y", "z", "p", "time", "level", "instance", "u", "v", "normal", "identity",
+    "orbit_trap", "rounding"};
 enum { CONSTANT_COUNT = sizeof constants / sizeof *constants };
 
 size_t builtin_names(const char **names, size_t capacity)
@@ -463,7 +499,8 @@ size_t builtin_names(const char **names, size_t capacity)
 static Value material_name(Elaboration *e, const char *name, Span span)
 {
     if (!e->in_material) {
-        Diag *diag  = diag_add(e->diags, DIAG_OUT_OF_PLACE, span, "`%s` has a meaning in materials only", name);
+        Diag *diag  = diag_add(e->diags, DIAG_OUT_OF_PLACE, span,
+                               "`%s` has a meaning in materials only", name);
         diag->label = "not in a material";
         return value_error();
     }
@@ -478,20 +515,27 @@ static Value rounding_name(Elaboration *e, Span span)
 {
     if (e->rounding != NODE_NONE)
         return value_of_node(e, e->rounding);
-    Diag *diag  = diag_add(e->diags, DIAG_OUT_OF_PLACE, span, "`rounding` has a meaning in `core:` only");
+    Diag *diag =
+        diag_add(e->diags, DIAG_OUT_OF_PLACE, span, "`rounding` has a meaning in `core:` only");
     diag->label = "not in the core of a shape declaration";
     return value_error();
+}
+
+static Value coordinate(Elaboration *e, uint32_t axis)
+{
+    Node point = graph_leaf(e->graph, OP_POINT);
+    return value_of_node(e, graph_component(e->graph, point, axis));
 }
 
 bool builtin_constant(Elaboration *e, const char *name, Span span, Value *value)
 {
     Graph *g = e->graph;
     if (strcmp(name, "pi") == 0)
-        *value = value_number(PI);
+        *value = value_number(M_PI);
     else if (strcmp(name, "tau") == 0)
-        *value = value_number(2 * PI);
+        *value = value_number(2 * M_PI);
     else if (strlen(name) == 1 && name[0] >= 'x' && name[0] <= 'z')
-        *value = value_of_node(e, graph_component(g, graph_leaf(g, OP_POINT), (uint32_t)(name[0] - 'x')));
+        *value = coordinate(e, (uint32_t)(name[0] - 'x'));
     else if (strcmp(name, "p") == 0)
         *value = value_of_node(e, graph_leaf(g, OP_POINT));
     else if (strcmp(name, "time") == 0)
@@ -501,12 +545,11 @@ bool builtin_constant(Elaboration *e, const char *name, Span span, Value *value)
     else if (strcmp(name, "rounding") == 0)
         *value = rounding_name(e, span);
     else if (strcmp(name, "identity") == 0)
-        *value = (Value){.type = VALUE_MAP, .map = similarity_identity(e)};
+        *value = value_map(similarity_identity(e));
     else if (strcmp(name, "u") == 0 || strcmp(name, "v") == 0 || strcmp(name, "normal") == 0 ||
              strcmp(name, "orbit_trap") == 0) {
-        Diag *diag  = diag_add(e->diags, DIAG_NOT_SUPPORTED, span, "this version of krs does not have `%s`", name);
-        diag->label = "not in this version";
-        *value      = value_error();
+        not_supported(e, span, diag_text(e->diags, "`%s`", name));
+        *value = value_error();
     } else
         return false;
     return true;

@@ -10,18 +10,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/geometry/lower.h"
 #include "compiler/graph/evaluate.h"
 
-static const char *const property_names[] = {"distance", "bound", "exact", "slope", "within", "uv", "plane", "figure", "core", "example"};
+static const char *const property_names[] = {
+    "distance", "bound", "exact", "slope", "within", "uv", "plane", "figure", "core", "example"};
 enum { PROPERTY_COUNT = sizeof property_names / sizeof *property_names };
-
-static const Syntax *find_property(const Syntax *declaration, const char *name)
-{
-    for (uint32_t i = 0; i < declaration->count; i++)
-        if (declaration->children[i]->kind == SYNTAX_PROPERTY && strcmp(declaration->children[i]->name, name) == 0)
-            return declaration->children[i]->children[0];
-    return NULL;
-}
 
 static bool check_properties(Elaboration *e, const Syntax *declaration)
 {
@@ -33,7 +27,8 @@ static bool check_properties(Elaboration *e, const Syntax *declaration)
             known = strcmp(property->name, property_names[k]) == 0;
         if (known)
             continue;
-        Diag *diag = diag_add(e->diags, DIAG_UNKNOWN_PROPERTY, property->name_span, "a shape has no property `%s`", property->name);
+        Diag *diag        = diag_add(e->diags, DIAG_UNKNOWN_PROPERTY, property->name_span,
+                                     "a shape has no property `%s`", property->name);
         diag->label       = "unknown property";
         diag->replacement = nearest_name(property->name, property_names, PROPERTY_COUNT);
         good              = false;
@@ -45,29 +40,30 @@ static bool check_properties(Elaboration *e, const Syntax *declaration)
 static Node field_property(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     Value value = evaluate(e, env, syntax);
-    Node  node  = value.type == VALUE_NUMBER || value.type == VALUE_EXPRESSION ? value_node(e, value) : NODE_NONE;
-    if (node != NODE_NONE && e->graph->items[node].type == TYPE_FLOAT)
-        return node;
-    if (value.type != VALUE_ERROR)
-        type_error(e, syntax, value, "a number");
+    if (value_size(e, value) == 1)
+        return value_node(e, value);
+    type_error(e, syntax, value, "a number");
     return NODE_NONE;
 }
 
-static bool flag_property(Elaboration *e, const Environment *env, const Syntax *declaration, const char *name)
+static bool flag_property(Elaboration *e, const Environment *env, const Syntax *declaration,
+                          const char *name)
 {
     const Syntax *syntax = find_property(declaration, name);
     if (!syntax)
         return false;
     Value value = evaluate(e, env, syntax);
+    if (value.type == VALUE_BOOLEAN)
+        return value.boolean;
     /* What is true for some values of the parameters only cannot be claimed. */
-    bool  sometimes = value.type == VALUE_EXPRESSION && e->graph->items[value.node].type == TYPE_BOOL;
-    if (value.type != VALUE_BOOLEAN && value.type != VALUE_ERROR && !sometimes)
+    if (value.type != VALUE_EXPRESSION || e->graph->items[value.node].type != TYPE_BOOL)
         type_error(e, syntax, value, "true or false");
-    return value.type == VALUE_BOOLEAN && value.boolean;
+    return false;
 }
 
 /* `slope`: a claimed bound on how fast the distance changes; 0 when there is none. */
-static bool slope_property(Elaboration *e, const Environment *env, const Syntax *declaration, double *slope)
+static bool slope_property(Elaboration *e, const Environment *env, const Syntax *declaration,
+                           double *slope)
 {
     const Syntax *syntax = find_property(declaration, "slope");
     *slope               = 0;
@@ -78,13 +74,13 @@ static bool slope_property(Elaboration *e, const Environment *env, const Syntax 
         *slope = value.number;
         return true;
     }
-    if (value.type != VALUE_ERROR)
-        type_error(e, syntax, value, "a constant number above 0");
+    type_error(e, syntax, value, "a constant number above 0");
     return false;
 }
 
 /* `within`: a shape, or two corners. */
-static bool within_property(Elaboration *e, const Environment *env, const Syntax *declaration, Box *box)
+static bool within_property(Elaboration *e, const Environment *env, const Syntax *declaration,
+                            Box *box)
 {
     const Syntax *syntax = find_property(declaration, "within");
     *box                 = box_infinite;
@@ -102,12 +98,12 @@ static bool within_property(Elaboration *e, const Environment *env, const Syntax
             box->axis[i] = (Range){node_range(e, low, i).low, node_range(e, high, i).high};
         return low != NODE_NONE && high != NODE_NONE;
     }
-    if (value.type != VALUE_ERROR)
-        type_error(e, syntax, value, "a shape or a list of two corners");
+    type_error(e, syntax, value, "a shape or a list of two corners");
     return false;
 }
 
-static bool plane_property(Elaboration *e, const Environment *env, const Syntax *declaration, Shape *shape)
+static bool plane_property(Elaboration *e, const Environment *env, const Syntax *declaration,
+                           Shape *shape)
 {
     const Syntax *syntax = find_property(declaration, "plane");
     if (!syntax)
@@ -119,47 +115,22 @@ static bool plane_property(Elaboration *e, const Environment *env, const Syntax 
         return shape->plane_normal != NODE_NONE && shape->plane_offset != NODE_NONE &&
                check_direction(e, shape->plane_normal, syntax, "the normal of a plane");
     }
-    if (value.type != VALUE_ERROR)
-        type_error(e, syntax, value, "a list of a normal and an offset");
+    type_error(e, syntax, value, "a list of a normal and an offset");
     return false;
 }
 
 /* ---- slopes ---- */
 
-/* Distance to a box of constants, as nodes. */
-static Node box_distance(Elaboration *e, Box box)
-{
-    Graph *g = e->graph;
-    double centre[3], half[3];
-    box_centre(box, centre);
-    for (int i = 0; i < 3; i++)
-        half[i] = 0.5 * (box.axis[i].high - box.axis[i].low);
-    Node point   = graph_leaf(g, OP_POINT);
-    Node middle  = graph_constant(g, TYPE_VEC3, centre);
-    Node sides   = graph_constant(g, TYPE_VEC3, half);
-    Node local   = graph_op2(g, OP_sub, point, middle);
-    Node size    = graph_op1(g, OP_abs, local);
-    Node excess  = graph_op2(g, OP_sub, size, sides);
-    Node zero    = graph_number(g, 0);
-    Node outside = graph_op2(g, OP_max, excess, zero);
-    return graph_op1(g, OP_length, outside);
-}
-
-static Node divide(Elaboration *e, Node distance, double slope)
-{
-    if (slope <= 1 + 1e-9)
-        return distance;
-    Node factor = graph_number(e->graph, 1 / slope);
-    return graph_op2(e->graph, OP_mul, distance, factor);
-}
-
-static void report_steep(Elaboration *e, const Syntax *declaration, const Syntax *distance, Span blame)
+static void report_steep(Elaboration *e, const Syntax *declaration, const Syntax *distance,
+                         Span blame)
 {
     Span  span  = blame.source ? blame : distance->span;
-    Diag *diag  = diag_add(e->diags, DIAG_STEEP, span, "the slope of `%s` has no bound", declaration->name);
+    Diag *diag =
+        diag_add(e->diags, DIAG_STEEP, span, "the slope of `%s` has no bound", declaration->name);
     diag->label = "this can change arbitrarily fast";
     diag_place(e->diags, diag, distance->span, "the distance is this expression");
-    diag->help = "give the shape a bounded `within`, or keep this part away from divisions by zero and jumps";
+    diag->help  = "give the shape a bounded `within`, or keep this part away from divisions by "
+                  "zero and jumps";
 }
 
 /*
@@ -167,29 +138,34 @@ static void report_steep(Elaboration *e, const Syntax *declaration, const Syntax
  * around it.  There f / slope bounds the distance to the surface (the segment to the nearest
  * point stays in the box), and outside the distance to the box itself does, which is at least m.
  */
-static bool derive_slope(Elaboration *e, Shape *shape, const Syntax *declaration, const Syntax *syntax)
+static bool derive_slope(Elaboration *e, Shape *shape, const Syntax *declaration,
+                         const Syntax *syntax)
 {
     enum { CELLS = 512 };
     Node   blame = NODE_NONE, root = shape->distance;
-    Graph *plain = graph_simplify(e->graph, &root, 1, e->scratch); /* sqrt(x * x + ...) is a length there */
+    /* Simplified, sqrt(x * x + ...) is a length, whose slope is known. */
+    Graph *plain   = graph_simplify(e->graph, &root, 1, e->scratch);
     shape->derived = graph_slope(plain, root, box_infinite, NULL, 1, &blame, e->scratch);
     if (isfinite(shape->derived)) {
-        shape->distance = divide(e, shape->distance, shape->derived);
+        shape->distance = divide_by_slope(e->graph, shape->distance, shape->derived);
         return true;
     }
     if (box_is_finite(shape->box)) {
         double margin  = 0.05 * box_diagonal(shape->box) + 1e-6;
-        shape->derived = graph_slope(plain, root, box_grow(shape->box, margin), NULL, CELLS, &blame, e->scratch);
+        shape->derived =
+            graph_slope(plain, root, box_grow(shape->box, margin), NULL, CELLS, &blame, e->scratch);
         if (isfinite(shape->derived)) {
-            Node around     = box_distance(e, shape->box);
+            Node point      = graph_leaf(e->graph, OP_POINT);
+            Node around     = box_distance(e->graph, point, shape->box);
             Node limit      = graph_number(e->graph, margin);
             Node away       = graph_op2(e->graph, OP_less, limit, around);
-            Node inside     = divide(e, shape->distance, shape->derived);
+            Node inside     = divide_by_slope(e->graph, shape->distance, shape->derived);
             shape->distance = graph_op3(e->graph, OP_select, away, around, inside);
             return true;
         }
     }
-    report_steep(e, declaration, syntax, blame == NODE_NONE ? (Span){0, 0, 0} : plain->items[blame].span);
+    report_steep(e, declaration, syntax,
+                 blame == NODE_NONE ? (Span){0, 0, 0} : plain->items[blame].span);
     return false;
 }
 
@@ -213,19 +189,34 @@ static void parameter_values(const Elaboration *e, NodeValue *values)
     }
 }
 
-static void refuse_claim(Elaboration *e, const Syntax *declaration, const char *claim, const char *found, const double point[3])
+static void refuse_claim(Elaboration *e, const Syntax *declaration, const char *claim,
+                         const char *found, const double point[3])
 {
     const Syntax *syntax = find_property(declaration, claim);
-    Diag *diag = diag_add(e->diags, DIAG_FALSE_CLAIM, syntax->span, "`%s` of `%s` is not true", claim, declaration->name);
+    Diag *diag  = diag_add(e->diags, DIAG_FALSE_CLAIM, syntax->span, "`%s` of `%s` is not true",
+                           claim, declaration->name);
     diag->label = "claimed here";
-    diag_note(e->diags, diag, diag_text(e->diags, "%s at [%.4g, %.4g, %.4g]", found, point[0], point[1], point[2]));
+    diag_note(e->diags, diag,
+              diag_text(e->diags, "%s at [%.4g, %.4g, %.4g]", found, point[0], point[1], point[2]));
     if (strcmp(claim, "exact") == 0)
         diag->help = "leave `exact` out: the compiler then derives a safe slope";
 }
 
+/* Whether a point lies farther than `rounding` from the box of the shape. */
+static bool is_outside(const Shape *shape, const double point[3], double rounding)
+{
+    for (int i = 0; i < (shape->figure ? 2 : 3); i++) {
+        Range side = shape->box.axis[i];
+        if (point[i] < side.low - rounding || point[i] > side.high + rounding)
+            return true;
+    }
+    return false;
+}
+
 /* Pairs of near points refute a claimed slope (0: none is claimed), single points a solid
    outside of `within`. */
-static bool check_claims(Elaboration *e, const Syntax *declaration, const Shape *shape, Node distance, double slope)
+static bool check_claims(Elaboration *e, const Syntax *declaration, const Shape *shape,
+                         Node distance, double slope)
 {
     enum { SAMPLES = 400 };
     Tape       tape       = tape_new(e->graph, &distance, 1, e->scratch);
@@ -233,8 +224,9 @@ static bool check_claims(Elaboration *e, const Syntax *declaration, const Shape 
     NodeValue *parameters = arena_new_array(e->scratch, NodeValue, e->graph->parameters.count);
     parameter_values(e, parameters);
     tape_run_frame(&tape, parameters, values);
-    Box  around = box_is_finite(shape->box) ? box_grow(shape->box, 0.3 * box_diagonal(shape->box) + 0.1)
-                                            : (Box){{{-10, 10}, {-10, 10}, {-10, 10}}};
+    Box around  = box_is_finite(shape->box)
+                      ? box_grow(shape->box, 0.3 * box_diagonal(shape->box) + 0.1)
+                      : (Box){{{-10, 10}, {-10, 10}, {-10, 10}}};
     double size = box_diagonal(around), rounding = 1e-9 * (1 + size);
     bool   bounded = find_property(declaration, "within") != NULL;
     for (uint32_t i = 0; i < SAMPLES; i++) {
@@ -250,13 +242,12 @@ static bool check_claims(Elaboration *e, const Syntax *declaration, const Shape 
         tape_run_point(&tape, b, values);
         double at_b = values[distance].v[0];
         if (slope > 0 && !(fabs(at_a - at_b) <= slope * sqrt(moved) * (1 + 1e-6) + rounding)) {
-            refuse_claim(e, declaration, shape->exact ? "exact" : "slope", diag_text(e->diags, "its slope is %.4g", fabs(at_a - at_b) / sqrt(moved)), a);
+            const char *found =
+                diag_text(e->diags, "its slope is %.4g", fabs(at_a - at_b) / sqrt(moved));
+            refuse_claim(e, declaration, shape->exact ? "exact" : "slope", found, a);
             return false;
         }
-        bool outside = false;
-        for (int k = 0; k < (shape->figure ? 2 : 3); k++)
-            outside = outside || a[k] < shape->box.axis[k].low - rounding || a[k] > shape->box.axis[k].high + rounding;
-        if (bounded && outside && at_a < -rounding) {
+        if (bounded && at_a < -rounding && is_outside(shape, a, rounding)) {
             refuse_claim(e, declaration, "within", "there is something outside of it", a);
             return false;
         }
@@ -274,55 +265,67 @@ static bool needs_check(Elaboration *e, const Syntax *declaration)
     return true;
 }
 
+/* What the shape is, out of its properties; `first`: also those that nothing needs yet. */
+static bool read_properties(Elaboration *e, const Environment *env, const Syntax *declaration,
+                            bool first, Shape *shape)
+{
+    const Syntax *bound = find_property(declaration, "bound");
+    const Syntax *uv    = find_property(declaration, "uv");
+    shape->distance     = field_property(e, env, find_property(declaration, "distance"));
+    shape->figure       = flag_property(e, env, declaration, "figure");
+    shape->exact        = flag_property(e, env, declaration, "exact");
+    if (bound)
+        shape->bound = field_property(e, env, bound);
+    bool good = within_property(e, env, declaration, &shape->box) &&
+                plane_property(e, env, declaration, shape) && shape->distance != NODE_NONE &&
+                (!bound || shape->bound != NODE_NONE);
+    if (uv && first)
+        good = evaluate(e, env, uv).type != VALUE_ERROR && good;
+    return good;
+}
+
+/* Makes the distance safe: by its claimed slope, which is put to the test, or a derived one. */
+static bool settle_slope(Elaboration *e, const Environment *env, const Syntax *declaration,
+                         bool first, Shape *shape)
+{
+    Node   plain = shape->distance;
+    double slope;
+    if (!slope_property(e, env, declaration, &slope))
+        return false;
+    slope = shape->exact ? 1 : slope;
+    if (slope > 0) {
+        shape->derived  = slope;
+        shape->distance = divide_by_slope(e->graph, plain, slope);
+    } else if (!derive_slope(e, shape, declaration, find_property(declaration, "distance")))
+        return false;
+    return !first || check_claims(e, declaration, shape, plain, slope);
+}
+
 Value declare_instance(Elaboration *e, const Function *function, const Environment *env, Span span)
 {
     const Syntax *declaration = function->syntax;
-    const Syntax *distance    = find_property(declaration, "distance");
-    if (!distance) {
-        diag_add(e->diags, DIAG_MISSING_ARGUMENT, declaration->name_span, "the shape `%s` has no `distance`", function->name)
-            ->help = "add `distance: ...`, an expression of x, y, z that is negative inside";
+    if (!find_property(declaration, "distance")) {
+        Diag *diag = diag_add(e->diags, DIAG_MISSING_ARGUMENT, declaration->name_span,
+                              "the shape `%s` has no `distance`", function->name);
+        diag->help = "add `distance: ...`, an expression of x, y, z that is negative inside";
         return value_error();
     }
     bool first = needs_check(e, declaration);
     if (first && !check_properties(e, declaration))
         return value_error();
 
-    Shape *shape    = shape_new(e, SHAPE_PRIMITIVE, function->name, span, NULL, 0);
-    Span   caller   = e->graph->here;
-    shape->distance = field_property(e, env, distance);
-    shape->figure   = flag_property(e, env, declaration, "figure");
-    shape->exact    = flag_property(e, env, declaration, "exact");
-    const Syntax *bound = find_property(declaration, "bound");
-    if (bound)
-        shape->bound = field_property(e, env, bound);
-    bool good = within_property(e, env, declaration, &shape->box) && plane_property(e, env, declaration, shape) &&
-                shape->distance != NODE_NONE && (!bound || shape->bound != NODE_NONE);
-    const Syntax *uv = find_property(declaration, "uv");
-    if (uv && first)
-        good = evaluate(e, env, uv).type != VALUE_ERROR && good;
-    if (!good)
-        return value_error();
-
-    Node   plain = shape->distance;
-    double slope;
-    if (!slope_property(e, env, declaration, &slope))
-        return value_error();
-    slope = shape->exact ? 1 : slope;
-    if (slope > 0) {
-        shape->derived  = slope;
-        shape->distance = divide(e, shape->distance, slope);
-    } else if (!derive_slope(e, shape, declaration, distance))
-        return value_error();
-    if (first && !check_claims(e, declaration, shape, plain, slope))
+    Shape *shape  = shape_new(e, SHAPE_PRIMITIVE, function->name, span, NULL, 0);
+    Span   caller = e->graph->here;
+    if (!read_properties(e, env, declaration, first, shape) ||
+        !settle_slope(e, env, declaration, first, shape))
         return value_error();
     arena_free(e->scratch);
-    const Syntax *core = find_property(declaration, "core");
-    if (core) {
+    shape->core = find_property(declaration, "core");
+    if (shape->core) {
         Environment *kept = arena_new(e->arena, Environment);
         *kept             = *env;
-        shape->core       = core;
         shape->core_names = kept;
     }
     e->graph->here = caller;
-    return (Value){.type = VALUE_SHAPE, .shape = shape};
+    return value_shape(shape);
 }

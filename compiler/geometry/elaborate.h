@@ -14,13 +14,12 @@
 #include "compiler/geometry/shape.h"
 
 /* Reads a file that a `use` names: malloc'ed bytes, or NULL with *reason set. */
-typedef char *FileReader(void *user, const char *path, size_t *length, const char **reason);
+typedef char *FileReader(const char *path, size_t *length, const char **reason);
 
 typedef struct Binding {
     const char           *name;
     Value                 value;
-    Span                  span; /* of the name where it was bound */
-    const struct Binding *next;
+    const struct Binding *next; /* bound before, in this or an outer block */
 } Binding;
 
 typedef struct Environment Environment;
@@ -61,42 +60,55 @@ typedef struct Elaboration {
     Scene      *scene;
     Scope      *library;
     struct { Scope **items; size_t count, capacity; } scopes;
-    struct { const Syntax **items; size_t count, capacity; } checked; /* shape declarations sampled */
+    /* Shape declarations whose claims have been put to the test. */
+    struct { const Syntax **items; size_t count, capacity; } checked;
     FileReader *read_file;
-    void       *reader;
-    uint64_t    steps;
-    uint32_t    depth, calls;
-    size_t      text_total;
-    bool        stopped; /* a limit was reached: everything is an error from here, silently */
-    Node        rounding; /* what the name `rounding` means in `core:`, or NODE_NONE */
-    bool        in_material; /* level and instance have a meaning */
+    uint64_t    steps;        /* of evaluation, so far */
+    uint32_t    depth, calls; /* how deep expressions and calls are nested now */
+    size_t      text_total;   /* bytes of all files read */
+    bool        stopped;      /* a limit was reached: everything is an error from here, silently */
+    Node        rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
+    bool        in_material;  /* level and instance have a meaning */
 } Elaboration;
 
-/* Evaluates a file, whose source is already in e->sources, into e->scene. */
+/* Evaluates a file, whose source is already in e->sources, into e->scene; e->scene is complete
+   unless e->diags has errors. */
 void elaborate(Elaboration *e, uint32_t source, const char *path);
 
 /* ---- scope.c ---- */
 /* Makes e->library of the embedded files that every scene sees. */
 void        scope_load_library(Elaboration *e);
+/* Reads a file and all that it uses; its names are checked.  Mistakes are reported. */
 Scope      *scope_load(Elaboration *e, uint32_t source, const char *path);
+/* A definition of the file or of the files that it uses, or NULL. */
 Definition *scope_find(const Scope *scope, const char *name);
 
 /* ---- expression.c ---- */
+/* VALUE_ERROR: a mistake was found, and has been reported. */
 Value evaluate(Elaboration *e, const Environment *env, const Syntax *syntax);
 /* A list's elements in turn: of a SYNTAX_RANGE without making the list.  False: reported. */
 typedef bool EachElement(Elaboration *e, Value element, void *user);
-bool evaluate_each(Elaboration *e, const Environment *env, const Syntax *syntax, EachElement *each, void *user);
-Environment bind(Elaboration *e, const Environment *env, const char *name, Value value, Span span);
-/* Counts a step of evaluation; false when a limit is reached (reported once). */
-bool step(Elaboration *e, Span span);
+bool evaluate_each(Elaboration *e, const Environment *env, const Syntax *syntax, EachElement *each,
+                   void *user);
+/* The environment with one more name, which hides any equal one. */
+Environment bind(Elaboration *e, const Environment *env, const char *name, Value value);
+/* The value of a top-level definition, evaluated when it is first needed, at `use`. */
 Value run_definition(Elaboration *e, Definition *definition, Span use);
 
 /* ---- arithmetic.c ---- */
+/* The operator `syntax->op` on values; types that it does not go with are reported. */
 Value value_unary(Elaboration *e, const Syntax *syntax, Value a);
 Value value_binary(Elaboration *e, const Syntax *syntax, Value a, Value b);
+/* `if` on a condition that is a node: both branches are there, one is chosen. */
 Value value_select(Elaboration *e, const Syntax *syntax, Value condition, Value yes, Value no);
-Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count, const Syntax *place);
+/* An operation that works element by element, on numbers and vectors whose types go together
+   (graph_op_type); `place` is blamed for results that are not finite. */
+Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count,
+                   const Syntax *place);
+/* A number, vector or truth value, plain where the node is constant. */
 Value value_of_node(Elaboration *e, Node node);
+/* Takes over `items`, which are in the arena. */
+Value value_list(Elaboration *e, Value *items, size_t count);
 Value value_vector(Elaboration *e, const double *numbers, uint32_t count);
 /* 1 for a number, 2 to 4 for a vector, 0 for anything else. */
 uint32_t value_size(const Elaboration *e, Value value);
@@ -104,6 +116,7 @@ uint32_t value_size(const Elaboration *e, Value value);
 const char *value_type_name(Elaboration *e, Value value);
 /* The node of a number, vector or truth value; NODE_NONE when it is none of these. */
 Node value_node(Elaboration *e, Value value);
+/* The latest of its parts. */
 BindingTime value_time(const Elaboration *e, Value value);
 
 /* ---- arguments.c ---- */
@@ -126,31 +139,57 @@ typedef struct Call {
 } Call;
 
 /*
- * Each `want_` says what an argument must be, reports when it is not and then returns NODE_NONE
- * or false.  A missing argument gives the default and no report.  Values that are VALUE_ERROR
+ * Each `want_` says what an argument must be, reports when it is not and then returns NODE_NONE,
+ * NULL or false.  A missing argument gives the default and no report.  Values that are VALUE_ERROR
  * fail silently.
  */
-Node want_number(Elaboration *e, const Call *call, uint32_t index, double otherwise);   /* frame time FLOAT */
-Node want_vector(Elaboration *e, const Call *call, uint32_t index, const double otherwise[3]); /* VEC3 */
+
+/* A FLOAT, or a VEC3, of frame time. */
+Node want_number(Elaboration *e, const Call *call, uint32_t index, double otherwise);
+Node want_vector(Elaboration *e, const Call *call, uint32_t index, const double otherwise[3]);
 bool want_count(Elaboration *e, const Call *call, uint32_t index, uint32_t least, uint32_t most,
                 uint32_t otherwise, uint32_t *count);
 const Shape *want_shape(Elaboration *e, const Call *call, uint32_t index);
+/* The parameter "plane": its unit normal and offset. */
+bool want_plane(Elaboration *e, const Call *call, Node *normal, Node *offset);
+/* The map that the parameters "by", "axis angle" and "by" describe. */
+const Similarity *want_translation(Elaboration *e, const Call *call);
+const Similarity *want_rotation(Elaboration *e, const Call *call);
+const Similarity *want_scaling(Elaboration *e, const Call *call);
+/* The same for a value that stands anywhere; `what` names it: "`fov`", "this argument". */
+Node to_number(Elaboration *e, Value value, const Syntax *syntax, const char *what);
+Node to_vector(Elaboration *e, Value value, const Syntax *syntax, const char *what);
+bool is_given(const Call *call, uint32_t index);
+
 /* Reports a direction that is always the zero vector, or a size that can be 0 or less. */
 bool check_direction(Elaboration *e, Node vector, const Syntax *syntax, const char *what);
 bool check_positive(Elaboration *e, Node number, const Syntax *syntax, const char *what);
 /* Reports a number that can be infinite for some permitted value of the parameters. */
 bool check_finite(Elaboration *e, Node node, const Syntax *syntax);
-bool is_given(const Call *call, uint32_t index);
-/* The same for a value that stands anywhere. */
-Node to_number(Elaboration *e, Value value, const Syntax *syntax, const char *what);
-Node to_vector(Elaboration *e, Value value, const Syntax *syntax, const char *what);
+
 /* Sorts the arguments of a call into the parameters "a b= rest..."; false: reported.  `=` marks
    an optional parameter, `...` one that takes all positional ones. */
-bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_syntax, uint32_t first,
-                    const char *name, const char *parameters, Call *call);
-Diag *type_error(Elaboration *e, const Syntax *syntax, Value found, const char *wanted);
-/* Marks where the name that `syntax` is was defined, as a second place of a diagnostic. */
-void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax, const char *label);
+bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_syntax,
+                    uint32_t first, const char *name, const char *parameters, Call *call);
+
+/* Report; the strings of `parameters` must live as long as the diagnostics. */
+Diag *too_many_arguments(Elaboration *e, const Syntax *argument, const char *name, uint32_t count);
+Diag *missing_argument(Elaboration *e, const Syntax *call, const char *name, const char *parameter);
+void unknown_parameter(Elaboration *e, const Syntax *argument, const char *name,
+                       const char *const *parameters, uint32_t count);
+/* A value of another type than `wanted` ("a number"); silent for VALUE_ERROR. */
+void type_error(Elaboration *e, const Syntax *syntax, Value found, const char *wanted);
+/* A value that must be known at compile time, and is not. */
+void constant_error(Elaboration *e, const Syntax *syntax, const char *message);
+/* A value that must be the same at every point, and is not; `what` names it. */
+void point_error(Elaboration *e, const Syntax *syntax, const char *what);
+/* What the language describes and this version does not have. */
+void not_supported(Elaboration *e, Span span, const char *what);
+/* "torus(major, minor)", for notes. */
+const char *signature(Elaboration *e, const char *name, const char *const *parameters,
+                      uint32_t count);
+/* If `syntax` is a top-level name, marks where it was defined as a second place of `diag`. */
+void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax);
 
 /* ---- builtins.c ---- */
 typedef Value BuiltinFunction(Elaboration *e, Call *call);
@@ -159,70 +198,85 @@ typedef struct Builtin {
     const char      *parameters;
     Op               op; /* of componentwise functions, else OP_COUNT */
     BuiltinFunction *function; /* NULL: componentwise `op` */
-    const char      *meaning;
 } Builtin;
 const Builtin *builtin_find(const char *name);
-/* A constant (pi, x, time); false when there is none of this name. */
+/* A constant (pi, x, time); false when there is none of this name.  One that has no meaning at
+   this place is reported. */
 bool builtin_constant(Elaboration *e, const char *name, Span span, Value *value);
-/* All names that need no definition, for names_check. */
+/* All names that need no definition, for names_check; returns how many, at most `capacity`. */
 size_t builtin_names(const char **names, size_t capacity);
 
 /* ---- functions.c ---- */
-Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax, const Function *function);
-Value call_values(Elaboration *e, const Function *function, const Value *values, const Syntax *const *places,
-                  const Syntax *syntax);
+/* Calls a function, or makes the shape of a declaration; `syntax` is the call. */
+Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax,
+                    const Function *function);
 
 /* ---- declare.c: shapes declared in the language ---- */
-Value declare_instance(Elaboration *e, const Function *function, const Environment *parameters, Span span);
+/* The shape of a declaration whose parameters `env` binds; `span` is the call. */
+Value declare_instance(Elaboration *e, const Function *function, const Environment *env, Span span);
 
 /* ---- methods.c ---- */
 Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax);
 
 /* ---- make.c: shapes from shapes, each with its rule for box and slope ---- */
-Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span, const Shape *const *children,
-                 uint32_t count);
+/* A shape with these children, and what most kinds take over from them. */
+Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
+                 const Shape *const *children, uint32_t count);
 const Shape *make_empty(Elaboration *e, Span span);
 const Shape *make_transform(Elaboration *e, const Shape *shape, const Similarity *map, Span span);
 const Shape *make_stretch(Elaboration *e, const Shape *shape, Node factors, Span span);
-const Shape *make_joint(Elaboration *e, ShapeKind kind, const Shape *const *shapes, uint32_t count, BlendKind blend,
-                        Node width, Node steps, Span span);
+const Shape *make_joint(Elaboration *e, ShapeKind kind, const Shape *const *shapes, uint32_t count,
+                        Blend blend, Span span);
 const Shape *make_morph(Elaboration *e, const Shape *a, const Shape *b, Node t, Span span);
 const Shape *make_offset(Elaboration *e, const Shape *shape, Node radius, Span span);
 const Shape *make_shell(Elaboration *e, const Shape *shape, Node thickness, Span span);
 const Shape *make_elongate(Elaboration *e, const Shape *shape, Node half, Span span);
 const Shape *make_extrude(Elaboration *e, const Shape *figure, Node height, Span span);
 const Shape *make_revolve(Elaboration *e, const Shape *figure, Node offset, Span span);
-const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const uint32_t cells[3], const Syntax *place);
-const Shape *make_repeat_polar(Elaboration *e, const Shape *shape, uint32_t count, const Syntax *place);
+/* NULL: the shape does not fit its cell, which is reported at `place`. */
+const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const uint32_t cells[3],
+                         const Syntax *place);
+const Shape *make_repeat_polar(Elaboration *e, const Shape *shape, uint32_t count,
+                               const Syntax *place);
 const Shape *make_mirror(Elaboration *e, const Shape *shape, Node normal, Node offset, Span span);
 const Shape *make_paint(Elaboration *e, const Shape *shape, const Material *material, Span span);
-const Shape *make_krs(Elaboration *e, const Stage *stages, uint32_t stage_count, const Shape *const *kernels,
-                      uint32_t kernel_count, Span span);
+const Shape *make_krs(Elaboration *e, const Stage *stages, uint32_t stage_count,
+                      const Shape *const *kernels, uint32_t kernel_count, Span span);
 /* Unit normal and offset of a shape that is a plane, also a moved, turned or scaled one. */
 bool shape_plane(Elaboration *e, const Shape *shape, Node *normal, Node *offset);
 /* Ranges of frame-time nodes over all values of the parameters. */
 Range node_range(Elaboration *e, Node node, uint32_t component);
 
-/* ---- similarity.c ---- */
+/* ---- similarity.c: maps of frame time ---- */
 const Similarity *similarity_identity(Elaboration *e);
 const Similarity *similarity_translation(Elaboration *e, Node shift);
+/* By a number above 0. */
 const Similarity *similarity_scaling(Elaboration *e, Node scale);
+/* By an angle in radians about an axis of any length but 0; from a direction to another. */
 const Similarity *similarity_rotation(Elaboration *e, Node axis, Node angle);
 const Similarity *similarity_alignment(Elaboration *e, Node from, Node to);
+/* In the plane of a unit normal and an offset. */
 const Similarity *similarity_reflection(Elaboration *e, Node normal, Node offset);
-const Similarity *similarity_product(Elaboration *e, const Similarity *f, const Similarity *g); /* f(g(x)) */
+/* f(g(x)). */
+const Similarity *similarity_product(Elaboration *e, const Similarity *f, const Similarity *g);
 const Similarity *similarity_inverse(Elaboration *e, const Similarity *f);
 Node similarity_turn(Elaboration *e, const Similarity *f, Node vector); /* rows times vector */
+/* The box around the image of a box, for all values of the parameters. */
 Box  similarity_box(Elaboration *e, const Similarity *f, Box box);
 
 /* ---- looks.c: cameras, lights, sky, image, materials ---- */
+/* The value of `name:` in a block of properties, or NULL. */
+const Syntax *find_property(const Syntax *block, const char *name);
 Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *syntax);
+/* Adds a camera or light to the scene, or sets its sky or image. */
 void  elaborate_look(Elaboration *e, const Environment *env, const Syntax *syntax);
+/* Adds what the scene leaves out: a camera, a sun, a sky. */
 void  finish_looks(Elaboration *e);
 /* A material, or a colour that becomes one; NULL: reported. */
 const Material *to_material(Elaboration *e, Value value, const Syntax *syntax);
 
 /* ---- statements.c ---- */
+/* The shape of a `krs` block. */
 Value elaborate_krs(Elaboration *e, const Environment *env, const Syntax *syntax);
 
 #endif

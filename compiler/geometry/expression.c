@@ -19,17 +19,18 @@ static Value limit_reached(Elaboration *e, Span span, const char *message)
     return value_error();
 }
 
-bool step(Elaboration *e, Span span)
+/* Counts a step of evaluation; false when a limit is reached (reported once). */
+static bool step(Elaboration *e, Span span)
 {
     if (!e->stopped && ++e->steps > MOST_STEPS)
         limit_reached(e, span, "the scene takes more than 10 million steps to elaborate");
     return !e->stopped;
 }
 
-Environment bind(Elaboration *e, const Environment *env, const char *name, Value value, Span span)
+Environment bind(Elaboration *e, const Environment *env, const char *name, Value value)
 {
     Binding *binding = arena_new(e->arena, Binding);
-    *binding         = (Binding){name, value, span, env->locals};
+    *binding         = (Binding){name, value, env->locals};
     return (Environment){binding, env->scope};
 }
 
@@ -58,19 +59,18 @@ static Value evaluate_name(Elaboration *e, const Environment *env, const Syntax 
 
 static Value evaluate_list(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    List *list  = arena_new(e->arena, List);
-    list->count = syntax->count;
-    list->items = arena_new_array(e->arena, Value, syntax->count);
-    bool wrong  = false;
+    Value *items = arena_new_array(e->arena, Value, syntax->count);
+    bool   wrong = false;
     for (uint32_t i = 0; i < syntax->count; i++) {
-        list->items[i] = evaluate(e, env, syntax->children[i]);
-        wrong          = wrong || list->items[i].type == VALUE_ERROR;
+        items[i] = evaluate(e, env, syntax->children[i]);
+        wrong    = wrong || items[i].type == VALUE_ERROR;
     }
-    return wrong ? value_error() : (Value){.type = VALUE_LIST, .list = list};
+    return wrong ? value_error() : value_list(e, items, syntax->count);
 }
 
 /* A number that is known now: bounds of ranges, indices. */
-static bool constant_number(Elaboration *e, const Environment *env, const Syntax *syntax, const char *what, double *number)
+static bool constant_number(Elaboration *e, const Environment *env, const Syntax *syntax,
+                            const char *what, double *number)
 {
     Value value = evaluate(e, env, syntax);
     if (value.type == VALUE_NUMBER) {
@@ -78,25 +78,29 @@ static bool constant_number(Elaboration *e, const Environment *env, const Syntax
         return true;
     }
     if (value.type == VALUE_EXPRESSION) {
-        Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, syntax->span, "%s must be known at compile time", what);
+        Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, syntax->span,
+                               "%s must be known at compile time", what);
         diag->label = value_time(e, value) == TIME_FRAME ? "this depends on a `param` or on `time`"
                                                          : "this depends on a coordinate";
-        diag->help  = "use a constant; to show a part only, give the most there can be and choose inside "
-                      "with `if`";
-        point_at_definition(e, diag, syntax, NULL);
-    } else if (value.type != VALUE_ERROR)
+        diag->help  = "use a constant; to show a part only, give the most there can be and choose "
+                      "inside with `if`";
+        point_at_definition(e, diag, syntax);
+    } else
         type_error(e, syntax, value, "a number");
     return false;
 }
 
-static bool each_of_range(Elaboration *e, const Environment *env, const Syntax *syntax, EachElement *each, void *user)
+static bool each_of_range(Elaboration *e, const Environment *env, const Syntax *syntax,
+                          EachElement *each, void *user)
 {
     double from, to;
     if (!constant_number(e, env, syntax->children[0], "the start of a range", &from) ||
         !constant_number(e, env, syntax->children[1], "the end of a range", &to))
         return false;
     if (to - from > MOST_ELEMENTS) {
-        limit_reached(e, syntax->span, diag_text(e->diags, "a range of %.0f elements; the limit is a million", ceil(to - from)));
+        limit_reached(e, syntax->span,
+                      diag_text(e->diags, "a range of %.0f elements; the limit is a million",
+                                ceil(to - from)));
         return false;
     }
     for (uint32_t i = 0; from + i < to; i++)
@@ -105,7 +109,8 @@ static bool each_of_range(Elaboration *e, const Environment *env, const Syntax *
     return true;
 }
 
-bool evaluate_each(Elaboration *e, const Environment *env, const Syntax *syntax, EachElement *each, void *user)
+bool evaluate_each(Elaboration *e, const Environment *env, const Syntax *syntax, EachElement *each,
+                   void *user)
 {
     if (syntax->kind == SYNTAX_RANGE)
         return each_of_range(e, env, syntax, each, user);
@@ -136,7 +141,7 @@ static bool comprehend_each(Elaboration *e, Value element, void *user)
 {
     const Comprehension *outer  = user;
     const Syntax        *clause = outer->syntax->children[outer->clause];
-    Environment          env    = bind(e, outer->env, clause->name, element, clause->name_span);
+    Environment          env    = bind(e, outer->env, clause->name, element);
     Comprehension        inner  = *outer;
     inner.env                   = &env;
     inner.clause++;
@@ -165,8 +170,7 @@ static bool run_clause(Elaboration *e, const Comprehension *c)
         next.clause++;
         return !condition.boolean || run_clause(e, &next);
     }
-    if (condition.type != VALUE_ERROR)
-        type_error(e, clause->children[0], condition, "a truth value that is known at compile time");
+    type_error(e, clause->children[0], condition, "a truth value that is known at compile time");
     return false;
 }
 
@@ -176,9 +180,7 @@ static Value evaluate_comprehension(Elaboration *e, const Environment *env, cons
     Comprehension c = {env, syntax, 1, &result};
     if (!run_clause(e, &c))
         return value_error();
-    List *list = arena_new(e->arena, List);
-    *list      = (List){result.count, result.items};
-    return (Value){.type = VALUE_LIST, .list = list};
+    return value_list(e, result.items, result.count);
 }
 
 static bool push_element(Elaboration *e, Value element, void *user)
@@ -193,9 +195,7 @@ static Value evaluate_range(Elaboration *e, const Environment *env, const Syntax
     Values result = {0};
     if (!each_of_range(e, env, syntax, push_element, &result))
         return value_error();
-    List *list = arena_new(e->arena, List);
-    *list      = (List){result.count, result.items};
-    return (Value){.type = VALUE_LIST, .list = list};
+    return value_list(e, result.items, result.count);
 }
 
 static Value evaluate_if(Elaboration *e, const Environment *env, const Syntax *syntax)
@@ -223,7 +223,9 @@ static Value evaluate_index(Elaboration *e, const Environment *env, const Syntax
         return value_error();
     bool   node  = list.type == VALUE_EXPRESSION && e->graph->items[list.node].type >= TYPE_VEC2 &&
                 e->graph->items[list.node].type <= TYPE_VEC4;
-    size_t count = node ? e->graph->items[list.node].type : list.type == VALUE_LIST ? list.list->count : 0;
+    size_t count = node                      ? e->graph->items[list.node].type
+                   : list.type == VALUE_LIST ? list.list->count
+                                             : 0;
     if (!node && list.type != VALUE_LIST) {
         type_error(e, syntax->children[0], list, "a list");
         return value_error();
@@ -231,8 +233,9 @@ static Value evaluate_index(Elaboration *e, const Environment *env, const Syntax
     if (!(index >= 0 && index < (double)count) || index != floor(index)) {
         Diag *diag = diag_add(e->diags, DIAG_INDEX_RANGE, syntax->children[1]->span,
                               "index %g of a list of %zu", index, count);
-        diag->label = count ? diag_text(e->diags, "whole numbers from 0 to %zu are possible", count - 1)
-                            : "the list is empty";
+        diag->label =
+            count ? diag_text(e->diags, "whole numbers from 0 to %zu are possible", count - 1)
+                  : "the list is empty";
         return value_error();
     }
     if (!node)
@@ -247,10 +250,10 @@ static Value evaluate_call(Elaboration *e, const Environment *env, const Syntax 
         return callee;
     if (callee.type == VALUE_FUNCTION)
         return call_function(e, env, syntax, callee.function);
-    Diag *diag  = diag_add(e->diags, DIAG_NOT_CALLABLE, syntax->children[0]->span, "%s cannot be called",
-                           value_type_name(e, callee));
+    Diag *diag  = diag_add(e->diags, DIAG_NOT_CALLABLE, syntax->children[0]->span,
+                           "%s cannot be called", value_type_name(e, callee));
     diag->label = "neither a function nor a shape declaration";
-    point_at_definition(e, diag, syntax->children[0], NULL);
+    point_at_definition(e, diag, syntax->children[0]);
     return value_error();
 }
 
@@ -269,7 +272,7 @@ static Value evaluate_binary(Elaboration *e, const Environment *env, const Synta
 static Value evaluate_let(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     Value       value = evaluate(e, env, syntax->children[0]);
-    Environment inner = bind(e, env, syntax->name, value, syntax->name_span);
+    Environment inner = bind(e, env, syntax->name, value);
     return evaluate(e, &inner, syntax->children[1]);
 }
 
@@ -301,7 +304,9 @@ Value evaluate(Elaboration *e, const Environment *env, const Syntax *syntax)
     if (!step(e, syntax->span))
         return value_error();
     if (e->depth >= MOST_DEPTH)
-        return limit_reached(e, syntax->span, "evaluation is nested too deeply: a function calls itself without end?");
+        return limit_reached(e, syntax->span,
+                             "evaluation is nested too deeply, perhaps by a function that calls "
+                             "itself without end");
     e->depth++;
     Value value = evaluate_inner(e, env, syntax);
     e->depth--;

@@ -13,39 +13,36 @@ static uint32_t parameter_count(const Syntax *definition)
     return count;
 }
 
-/* "torus(major, minor)", for notes. */
-static const char *signature(Elaboration *e, const Syntax *definition)
-{
-    Text text = {.arena = e->diags->arena};
-    text_format(&text, "%s(", definition->name);
-    for (uint32_t i = 0; i < parameter_count(definition); i++)
-        text_format(&text, "%s%s", i ? ", " : "", definition->children[i]->name);
-    text_add(&text, ")");
-    return text.bytes;
-}
-
-static uint32_t find_parameter(Elaboration *e, const Syntax *definition, const Syntax *argument)
+/* The names of the parameters of a definition. */
+static const char **parameter_names(Elaboration *e, const Syntax *definition)
 {
     uint32_t     count = parameter_count(definition);
-    const char **names = arena_new_array(e->scratch, const char *, count + 1);
-    for (uint32_t i = 0; i < count; i++) {
+    const char **names = arena_new_array(e->diags->arena, const char *, count + 1);
+    for (uint32_t i = 0; i < count; i++)
         names[i] = definition->children[i]->name;
-        if (names[i] == argument->name)
+    return names;
+}
+
+static void note_signature(Elaboration *e, Diag *diag, const Syntax *definition)
+{
+    const char **names = parameter_names(e, definition);
+    diag_note(e->diags, diag, signature(e, definition->name, names, parameter_count(definition)));
+}
+
+/* The parameter that a named argument is for; UINT32_MAX: reported. */
+static uint32_t find_parameter(Elaboration *e, const Syntax *definition, const Syntax *argument)
+{
+    uint32_t count = parameter_count(definition);
+    for (uint32_t i = 0; i < count; i++)
+        if (definition->children[i]->name == argument->name)
             return i;
-    }
-    Diag *diag  = diag_add(e->diags, DIAG_UNKNOWN_PARAMETER, argument->name_span, "`%s` has no parameter `%s`",
-                           definition->name, argument->name);
-    diag->label = "unknown parameter";
-    diag->replacement = nearest_name(argument->name, names, count);
-    if (diag->replacement)
-        diag->help = "a parameter with a similar name exists";
-    diag_note(e->diags, diag, signature(e, definition));
+    unknown_parameter(e, argument, definition->name, parameter_names(e, definition), count);
     return UINT32_MAX;
 }
 
 /* Arguments that are given, evaluated in the caller's environment, by parameter. */
-static bool gather(Elaboration *e, const Environment *env, const Syntax *call, const Syntax *definition, Value *values,
-                   const Syntax **places)
+static bool gather(Elaboration *e, const Environment *env, const Syntax *call,
+                   const Syntax *definition, Value *values, const Syntax **places)
 {
     uint32_t count = parameter_count(definition), next = 0;
     bool     good  = true;
@@ -60,15 +57,13 @@ static bool gather(Elaboration *e, const Environment *env, const Syntax *call, c
             continue;
         }
         if (slot >= count) {
-            Diag *diag = diag_add(e->diags, DIAG_TOO_MANY_ARGUMENTS, argument->span, "`%s` takes %u argument%s",
-                                  definition->name, count, count == 1 ? "" : "s");
-            diag->label = "one too many";
-            diag_note(e->diags, diag, signature(e, definition));
+            Diag *diag = too_many_arguments(e, argument, definition->name, count);
+            note_signature(e, diag, definition);
             return false;
         }
         if (places[slot]) {
-            Diag *diag = diag_add(e->diags, DIAG_TOO_MANY_ARGUMENTS, argument->span, "`%s` is given twice",
-                                  definition->children[slot]->name);
+            Diag *diag = diag_add(e->diags, DIAG_TOO_MANY_ARGUMENTS, argument->span,
+                                  "`%s` is given twice", definition->children[slot]->name);
             diag_place(e->diags, diag, places[slot]->span, "given here first");
             good = false;
             continue;
@@ -80,9 +75,9 @@ static bool gather(Elaboration *e, const Environment *env, const Syntax *call, c
     return good;
 }
 
-/* The default of a shape's parameter shows what it must be: a number, or a vector of some length. */
-static bool fits_default(Elaboration *e, const Environment *env, const Function *function, const Syntax *parameter,
-                         Value value, const Syntax *place)
+/* The default of a shape's parameter shows what it must be: a number or a vector, how long. */
+static bool fits_default(Elaboration *e, const Environment *env, const Function *function,
+                         const Syntax *parameter, Value value, const Syntax *place)
 {
     if (function->syntax->kind != SYNTAX_SHAPE || parameter->count == 0)
         return true;
@@ -90,17 +85,18 @@ static bool fits_default(Elaboration *e, const Environment *env, const Function 
     if (value_size(e, usual) == 0 || value_size(e, usual) == value_size(e, value))
         return true;
     const char *found = value_type_name(e, value);
-    Diag *diag  = diag_add(e->diags, DIAG_TYPE_MISMATCH, place->span, "`%s` of `%s` must be %s, found %s", parameter->name,
-                           function->name, value_type_name(e, usual), found);
+    Diag *diag =
+        diag_add(e->diags, DIAG_TYPE_MISMATCH, place->span, "`%s` of `%s` must be %s, found %s",
+                 parameter->name, function->name, value_type_name(e, usual), found);
     diag->label = diag_text(e->diags, "this is %s", found);
-    diag_note(e->diags, diag, signature(e, function->syntax));
-    point_at_definition(e, diag, place, NULL);
+    note_signature(e, diag, function->syntax);
+    point_at_definition(e, diag, place);
     return false;
 }
 
 /* Binds given values and defaults; a default sees the parameters before it. */
-static bool bind_parameters(Elaboration *e, const Function *function, const Value *values, const Syntax *const *places,
-                            const Syntax *call, Environment *env)
+static bool bind_parameters(Elaboration *e, const Function *function, const Value *values,
+                            const Syntax *const *places, const Syntax *call, Environment *env)
 {
     const Syntax *definition = function->syntax;
     *env                     = *function->closure;
@@ -114,15 +110,13 @@ static bool bind_parameters(Elaboration *e, const Function *function, const Valu
         } else if (parameter->count)
             value = evaluate(e, env, parameter->children[0]);
         else {
-            Diag *diag  = diag_add(e->diags, DIAG_MISSING_ARGUMENT, call->span, "`%s` needs an argument `%s`",
-                                   definition->name, parameter->name);
-            diag->label = "not given here";
-            diag_note(e->diags, diag, signature(e, definition));
+            Diag *diag = missing_argument(e, call, definition->name, parameter->name);
+            note_signature(e, diag, definition);
             return false;
         }
         if (value.type == VALUE_ERROR)
             return false;
-        *env = bind(e, env, parameter->name, value, parameter->name_span);
+        *env = bind(e, env, parameter->name, value);
     }
     return true;
 }
@@ -139,11 +133,8 @@ static bool check_shape_arguments(Elaboration *e, const Function *function, cons
         if (node != NODE_NONE && !check_finite(e, node, places[i]))
             return false;
         if (time == TIME_POINT) {
-            Diag *diag = diag_add(e->diags, DIAG_NOT_FRAME_TIME, places[i]->span,
-                                  "`%s` of `%s` may not depend on the point", function->syntax->children[i]->name,
-                                  function->name);
-            diag->label = "this depends on x, y, z or p";
-            point_at_definition(e, diag, places[i], NULL);
+            const char *name = function->syntax->children[i]->name;
+            point_error(e, places[i], diag_text(e->diags, "`%s` of `%s`", name, function->name));
             return false;
         }
     }
@@ -154,7 +145,8 @@ static bool check_shape_arguments(Elaboration *e, const Function *function, cons
  * A mistake that comes to light inside the library is the caller's: its diagnostics are moved
  * to the call, and the place in the library becomes the second one.
  */
-static void blame_caller(Elaboration *e, size_t first, const Syntax *syntax, const Function *function)
+static void blame_caller(Elaboration *e, size_t first, const Syntax *syntax,
+                         const Function *function)
 {
     const Source *sources = e->sources->items;
     if (sources[syntax->span.source].library)
@@ -179,12 +171,14 @@ static void blame_caller(Elaboration *e, size_t first, const Syntax *syntax, con
     e->diags->count = kept;
 }
 
-Value call_values(Elaboration *e, const Function *function, const Value *values, const Syntax *const *places,
-                  const Syntax *syntax)
+/* The body of a function, or the shape that a declaration makes, for arguments in order. */
+static Value call_values(Elaboration *e, const Function *function, const Value *values,
+                         const Syntax *const *places, const Syntax *syntax)
 {
     if (e->calls >= MOST_CALLS) {
         if (!e->stopped)
-            diag_add(e->diags, DIAG_LIMIT, syntax->span, "`%s` is called within itself more than 1,000 deep", function->name);
+            diag_add(e->diags, DIAG_LIMIT, syntax->span,
+                     "`%s` is called within itself more than 1,000 deep", function->name);
         e->stopped = true;
         return value_error();
     }
@@ -203,7 +197,8 @@ Value call_values(Elaboration *e, const Function *function, const Value *values,
     return result;
 }
 
-static Value call_builtin(Elaboration *e, const Environment *env, const Syntax *syntax, const Builtin *builtin)
+static Value call_builtin(Elaboration *e, const Environment *env, const Syntax *syntax,
+                          const Builtin *builtin)
 {
     Call call;
     if (!bind_arguments(e, env, syntax, 1, builtin->name, builtin->parameters, &call))
@@ -223,13 +218,15 @@ static Value call_builtin(Elaboration *e, const Environment *env, const Syntax *
         }
     }
     if (!graph_op_type(builtin->op, types, arity)) {
-        diag_add(e->diags, DIAG_LENGTH_MISMATCH, syntax->span, "`%s` needs vectors of one length", builtin->name);
+        diag_add(e->diags, DIAG_LENGTH_MISMATCH, syntax->span, "`%s` needs vectors of one length",
+                 builtin->name);
         return value_error();
     }
     return value_map_op(e, builtin->op, values, arity, syntax);
 }
 
-Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax, const Function *function)
+Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax,
+                    const Function *function)
 {
     if (function->builtin)
         return call_builtin(e, env, syntax, function->builtin);
@@ -238,7 +235,8 @@ Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax
     const Syntax **places = arena_new_array(e->arena, const Syntax *, count + 1);
     if (!gather(e, env, syntax, function->syntax, values, places))
         return value_error();
-    if (function->syntax->kind == SYNTAX_SHAPE && !check_shape_arguments(e, function, values, places))
+    if (function->syntax->kind == SYNTAX_SHAPE &&
+        !check_shape_arguments(e, function, values, places))
         return value_error();
     return call_values(e, function, values, places, syntax);
 }

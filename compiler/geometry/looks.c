@@ -48,6 +48,7 @@ static const char *block_name(SyntaxKind kind)
     }
 }
 
+/* Whether a block may have a property; false: reported. */
 static bool check_property(Elaboration *e, const Syntax *block, const Syntax *property)
 {
     const char *names[LOOK_PROPERTY_COUNT];
@@ -60,13 +61,14 @@ static bool check_property(Elaboration *e, const Syntax *block, const Syntax *pr
             continue;
         if (!look_properties[i].later)
             return true;
-        diag_add(e->diags, DIAG_NOT_SUPPORTED, property->name_span, "this version of krs does not have `%s` of %s",
-                 property->name, block_name(block->kind))->label = "not in this version";
+        not_supported(e, property->name_span,
+                      diag_text(e->diags, "`%s` of %s", property->name, block_name(block->kind)));
         return false;
     }
-    Diag *diag  = diag_add(e->diags, DIAG_UNKNOWN_PROPERTY, property->name_span, "%s has no property `%s`",
-                           block_name(block->kind), property->name);
-    diag->label = "unknown property";
+    const char *owner = block_name(block->kind);
+    Diag       *diag  = diag_add(e->diags, DIAG_UNKNOWN_PROPERTY, property->name_span,
+                                 "%s has no property `%s`", owner, property->name);
+    diag->label       = "unknown property";
     diag->replacement = nearest_name(property->name, names, count);
     if (diag->replacement)
         diag->help = "a property with a similar name exists";
@@ -80,25 +82,29 @@ static void check_block(Elaboration *e, const Syntax *block)
         if (property->kind != SYNTAX_PROPERTY || !check_property(e, block, property))
             continue;
         for (uint32_t k = 0; k < i; k++)
-            if (block->children[k]->kind == SYNTAX_PROPERTY && block->children[k]->name == property->name) {
-                Diag *diag = diag_add(e->diags, DIAG_DUPLICATE_NAME, property->name_span, "`%s` is given twice", property->name);
+            if (block->children[k]->kind == SYNTAX_PROPERTY &&
+                block->children[k]->name == property->name) {
+                Diag *diag = diag_add(e->diags, DIAG_DUPLICATE_NAME, property->name_span,
+                                      "`%s` is given twice", property->name);
                 diag_place(e->diags, diag, block->children[k]->name_span, "given here first");
                 break;
             }
     }
 }
 
-static const Syntax *find_property(const Syntax *block, const char *name)
+const Syntax *find_property(const Syntax *block, const char *name)
 {
     for (uint32_t i = 0; i < block->count; i++)
-        if (block->children[i]->kind == SYNTAX_PROPERTY && strcmp(block->children[i]->name, name) == 0)
+        if (block->children[i]->kind == SYNTAX_PROPERTY &&
+            strcmp(block->children[i]->name, name) == 0)
             return block->children[i]->children[0];
     return NULL;
 }
 
 /* ---- values of properties: frame time, except in materials ---- */
 
-static Node number_property(Elaboration *e, const Environment *env, const Syntax *block, const char *name, double otherwise)
+static Node number_property(Elaboration *e, const Environment *env, const Syntax *block,
+                            const char *name, double otherwise)
 {
     const Syntax *syntax = find_property(block, name);
     if (!syntax)
@@ -107,8 +113,8 @@ static Node number_property(Elaboration *e, const Environment *env, const Syntax
     return node == NODE_NONE ? graph_number(e->graph, otherwise) : node;
 }
 
-static Node vector_property(Elaboration *e, const Environment *env, const Syntax *block, const char *name,
-                            const double otherwise[3])
+static Node vector_property(Elaboration *e, const Environment *env, const Syntax *block,
+                            const char *name, const double otherwise[3])
 {
     const Syntax *syntax = find_property(block, name);
     if (!syntax)
@@ -118,8 +124,8 @@ static Node vector_property(Elaboration *e, const Environment *env, const Syntax
 }
 
 /* A number that must be known when the scene is compiled. */
-static double constant_property(Elaboration *e, const Environment *env, const Syntax *block, const char *name,
-                                double least, double most, double otherwise)
+static double constant_property(Elaboration *e, const Environment *env, const Syntax *block,
+                                const char *name, double least, double most, double otherwise)
 {
     const Syntax *syntax = find_property(block, name);
     if (!syntax)
@@ -129,12 +135,14 @@ static double constant_property(Elaboration *e, const Environment *env, const Sy
         return otherwise;
     double number = e->graph->items[node].number[0];
     if (!graph_is_constant(e->graph, node)) {
-        diag_add(e->diags, DIAG_NOT_COMPILE_TIME, syntax->span, "`%s` must be known at compile time", name)->label =
-            "this depends on a `param` or on `time`";
+        Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, syntax->span,
+                               "`%s` must be known at compile time", name);
+        diag->label = "this depends on a `param` or on `time`";
         return otherwise;
     }
     if (!(number >= least && number <= most)) {
-        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "`%s` cannot be %g", name, number);
+        Diag *diag =
+            diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "`%s` cannot be %g", name, number);
         diag->label = diag_text(e->diags, "from %g to %g is possible", least, most);
         return otherwise;
     }
@@ -142,8 +150,8 @@ static double constant_property(Elaboration *e, const Environment *env, const Sy
 }
 
 /* One of a few words; NULL when it is not given or not one of them. */
-static const char *word_property(Elaboration *e, const Environment *env, const Syntax *block, const char *name,
-                                 const char *const *words, size_t count)
+static const char *word_property(Elaboration *e, const Environment *env, const Syntax *block,
+                                 const char *name, const char *const *words, size_t count)
 {
     const Syntax *syntax = find_property(block, name);
     if (!syntax)
@@ -161,29 +169,29 @@ static const char *word_property(Elaboration *e, const Environment *env, const S
             return words[i];
         text_format(&list, "%s\"%s\"", i ? ", " : "", words[i]);
     }
-    Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "`%s` cannot be \"%s\"", name, value.string);
+    Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "`%s` cannot be \"%s\"", name,
+                           value.string);
     diag->label = diag_text(e->diags, "one of %s", list.bytes);
     return NULL;
 }
 
 /* ---- materials ---- */
 
-/* A property of a material may depend on the point: a number or a colour there. */
-static Node looking_property(Elaboration *e, const Environment *env, const Syntax *block, const char *name, Node otherwise,
-                             GraphType type)
+/* A number or a colour that may depend on the point; *property stays when it is not given. */
+static void looking_property(Elaboration *e, const Environment *env, const Syntax *block,
+                             const char *name, GraphType type, Node *property)
 {
     const Syntax *syntax = find_property(block, name);
     if (!syntax)
-        return otherwise;
+        return;
     Value value = evaluate(e, env, syntax);
     Node  node  = value_node(e, value);
     if (node != NODE_NONE && type == TYPE_VEC3 && e->graph->items[node].type == TYPE_FLOAT)
         node = graph_op3(e->graph, OP_vec3, node, node, node);
     if (node != NODE_NONE && e->graph->items[node].type == type)
-        return node;
-    if (value.type != VALUE_ERROR)
+        *property = node;
+    else
         type_error(e, syntax, value, type == TYPE_VEC3 ? "a colour" : "a number");
-    return otherwise;
 }
 
 static Material *material_new(Elaboration *e, const char *name)
@@ -203,10 +211,10 @@ Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *s
     Material *material  = material_new(e, syntax->name);
     bool      outer     = e->in_material;
     e->in_material      = true;
-    material->color     = looking_property(e, env, syntax, "color", material->color, TYPE_VEC3);
-    material->roughness = looking_property(e, env, syntax, "roughness", material->roughness, TYPE_FLOAT);
-    material->metallic  = looking_property(e, env, syntax, "metallic", material->metallic, TYPE_FLOAT);
-    material->emission  = looking_property(e, env, syntax, "emission", material->emission, TYPE_VEC3);
+    looking_property(e, env, syntax, "color", TYPE_VEC3, &material->color);
+    looking_property(e, env, syntax, "roughness", TYPE_FLOAT, &material->roughness);
+    looking_property(e, env, syntax, "metallic", TYPE_FLOAT, &material->metallic);
+    looking_property(e, env, syntax, "emission", TYPE_VEC3, &material->emission);
     e->in_material      = outer;
     return (Value){.type = VALUE_MATERIAL, .material = material};
 }
@@ -215,14 +223,14 @@ const Material *to_material(Elaboration *e, Value value, const Syntax *syntax)
 {
     if (value.type == VALUE_MATERIAL)
         return value.material;
-    Node color = value.type == VALUE_LIST || value.type == VALUE_EXPRESSION ? value_node(e, value) : NODE_NONE;
+    Node color = value.type == VALUE_LIST || value.type == VALUE_EXPRESSION ? value_node(e, value)
+                                                                            : NODE_NONE;
     if (color != NODE_NONE && e->graph->items[color].type == TYPE_VEC3) {
         Material *material = material_new(e, "colour");
         material->color    = color;
         return material;
     }
-    if (value.type != VALUE_ERROR)
-        type_error(e, syntax, value, "a material or a colour");
+    type_error(e, syntax, value, "a material or a colour");
     return NULL;
 }
 
@@ -238,16 +246,18 @@ static void add_camera(Elaboration *e, const Environment *env, const Syntax *syn
     camera.eye         = vector_property(e, env, syntax, "eye", eye);
     camera.target      = vector_property(e, env, syntax, "target", ORIGIN);
     camera.up          = vector_property(e, env, syntax, "up", UP);
-    camera.fov         = number_property(e, env, syntax, "fov", 40 * 3.14159265358979323846 / 180);
+    camera.fov         = number_property(e, env, syntax, "fov", 40 * M_PI / 180);
     camera.height      = number_property(e, env, syntax, "height", 4);
     const char *word   = word_property(e, env, syntax, "projection", projections, 3);
     while (word && projections[camera.projection] != word)
         camera.projection++;
     const Syntax *fov  = find_property(syntax, "fov");
     Range         span = node_range(e, camera.fov, 0);
-    if (fov && (span.low <= 0 || span.high >= 3.14159))
-        diag_add(e->diags, DIAG_BAD_VALUE, fov->span, "`fov` must lie between 0 and 180 degrees")->help =
-            "angles are radians unless they end in `deg`: write `40deg`";
+    if (fov && (span.low <= 0 || span.high >= 3.14159)) {
+        Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, fov->span,
+                              "`fov` must lie between 0 and 180 degrees");
+        diag->help = "angles are radians unless they end in `deg`: write `40deg`";
+    }
     const Syntax *height = find_property(syntax, "height");
     if (height)
         check_positive(e, camera.height, height, "the height of the picture");
@@ -259,11 +269,13 @@ static void add_camera(Elaboration *e, const Environment *env, const Syntax *syn
 
 static void add_light(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    const Syntax *direction = find_property(syntax, "direction"), *position = find_property(syntax, "position");
+    const Syntax *direction = find_property(syntax, "direction");
+    const Syntax *position  = find_property(syntax, "position");
     SceneLight    light     = {.positional = position != NULL, .shadow = true};
     if (!direction == !position) {
-        Diag *diag = diag_add(e->diags, direction ? DIAG_TOO_MANY_ARGUMENTS : DIAG_MISSING_ARGUMENT, syntax->name_span,
-                              "a light has either a `direction` or a `position`");
+        Diag *diag =
+            diag_add(e->diags, direction ? DIAG_TOO_MANY_ARGUMENTS : DIAG_MISSING_ARGUMENT,
+                     syntax->name_span, "a light has either a `direction` or a `position`");
         diag->help = "for example `light sun { direction: [-1, 2, 1], intensity: 3 }`";
         return;
     }
@@ -278,14 +290,16 @@ static void add_light(Elaboration *e, const Environment *env, const Syntax *synt
     Value         value  = shadow ? evaluate(e, env, shadow) : value_boolean(true);
     if (value.type == VALUE_BOOLEAN)
         light.shadow = value.boolean;
-    else if (value.type != VALUE_ERROR)
+    else
         type_error(e, shadow, value, "true or false");
     array_push(e->arena, &e->scene->lights, light);
 }
 
 static void set_sky(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    static const double zenith[3] = {0.24, 0.36, 0.56}, horizon[3] = {0.78, 0.82, 0.87}, ground[3] = {0.22, 0.2, 0.18};
+    static const double zenith[3]  = {0.24, 0.36, 0.56};
+    static const double horizon[3] = {0.78, 0.82, 0.87};
+    static const double ground[3]  = {0.22, 0.2, 0.18};
     e->scene->zenith  = vector_property(e, env, syntax, "zenith", zenith);
     e->scene->horizon = vector_property(e, env, syntax, "horizon", horizon);
     e->scene->ground  = vector_property(e, env, syntax, "ground", ground);
@@ -295,27 +309,33 @@ static void set_sky(Elaboration *e, const Environment *env, const Syntax *syntax
         type_error(e, sun, evaluate(e, env, sun), "the name of a light");
 }
 
+static void set_size(Elaboration *e, const Syntax *size, Value value)
+{
+    Node node = value.type == VALUE_LIST ? value_node(e, value) : NODE_NONE;
+    bool good = node != NODE_NONE && e->graph->items[node].type == TYPE_VEC2 &&
+                graph_is_constant(e->graph, node);
+    for (int i = 0; good && i < 2; i++) {
+        double side = e->graph->items[node].number[i];
+        good        = side >= 1 && side <= 16384 && side == floor(side);
+    }
+    if (good) {
+        e->scene->image.width  = (uint32_t)e->graph->items[node].number[0];
+        e->scene->image.height = (uint32_t)e->graph->items[node].number[1];
+    } else if (value.type != VALUE_ERROR) {
+        Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, size->span,
+                              "`size` of the image must be two whole numbers from 1 to 16384");
+        diag->help = "for example `size: [1280, 720]`";
+    }
+}
+
 static void set_image(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     static const char *const integrators[] = {"preview", "direct"};
     static const char *const tone_maps[]   = {"neutral", "aces", "none"};
     SceneImage   *image = &e->scene->image;
     const Syntax *size  = find_property(syntax, "size");
-    if (size) {
-        Value value = evaluate(e, env, size);
-        Node  node  = value.type == VALUE_LIST ? value_node(e, value) : NODE_NONE;
-        bool  good  = node != NODE_NONE && e->graph->items[node].type == TYPE_VEC2 && graph_is_constant(e->graph, node);
-        for (int i = 0; good && i < 2; i++) {
-            double side = e->graph->items[node].number[i];
-            good        = side >= 1 && side <= 16384 && side == floor(side);
-        }
-        if (good) {
-            image->width  = (uint32_t)e->graph->items[node].number[0];
-            image->height = (uint32_t)e->graph->items[node].number[1];
-        } else if (value.type != VALUE_ERROR)
-            diag_add(e->diags, DIAG_BAD_VALUE, size->span, "`size` of the image must be two whole numbers from 1 to 16384")
-                ->help = "for example `size: [1280, 720]`";
-    }
+    if (size)
+        set_size(e, size, evaluate(e, env, size));
     image->samples    = (uint32_t)constant_property(e, env, syntax, "samples", 1, 65536, 0);
     image->exposure   = constant_property(e, env, syntax, "exposure", -20, 20, 0);
     image->error      = constant_property(e, env, syntax, "error", 0.001, 1, 0);
@@ -343,7 +363,7 @@ static void default_camera(Elaboration *e)
     for (size_t i = 0; i < e->scene->components.count; i++)
         if (box_is_finite(e->scene->components.items[i].shape->box))
             box = box_hull(box, e->scene->components.items[i].shape->box);
-    double target[3] = {0, 0, 0}, eye[3], radius = 2, fov = 35 * 3.14159265358979323846 / 180;
+    double target[3] = {0, 0, 0}, eye[3], radius = 2, fov = 35 * M_PI / 180;
     static const double towards[3] = {0.53, 0.37, 0.76};
     if (!box_is_empty(box)) {
         box_centre(box, target);

@@ -49,7 +49,8 @@ typedef struct Place {
 
 static Lowered lower(Lowering *l, const Shape *shape, Place place);
 
-static const Lowered nothing = {NODE_NONE, {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE}};
+static const Lowered nothing = {
+    NODE_NONE, {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE}};
 
 static Place at(Place place, Node point)
 {
@@ -67,55 +68,68 @@ static Place steady(Place place)
 
 static Node choose(Graph *g, Node condition, Node a, Node b)
 {
-    return a == b || b == NODE_NONE ? a : a == NODE_NONE ? b : graph_op3(g, OP_select, condition, a, b);
+    if (a == NODE_NONE || b == NODE_NONE || a == b)
+        return a == NODE_NONE ? b : a;
+    return graph_op3(g, OP_select, condition, a, b);
 }
 
 static Surface choose_surface(Graph *g, Node condition, Surface a, Surface b)
 {
-    return (Surface){choose(g, condition, a.color, b.color),         choose(g, condition, a.roughness, b.roughness),
-                     choose(g, condition, a.metallic, b.metallic),   choose(g, condition, a.emission, b.emission),
-                     choose(g, condition, a.level, b.level),         choose(g, condition, a.instance, b.instance)};
+    return (Surface){choose(g, condition, a.color, b.color),
+                     choose(g, condition, a.roughness, b.roughness),
+                     choose(g, condition, a.metallic, b.metallic),
+                     choose(g, condition, a.emission, b.emission),
+                     choose(g, condition, a.level, b.level),
+                     choose(g, condition, a.instance, b.instance)};
 }
 
+/* Weight 1 is a. */
 static Node mix_nodes(Graph *g, Node a, Node b, Node weight)
 {
-    /* weight 1 is a */
-    return a == b || b == NODE_NONE ? a : a == NODE_NONE ? b : graph_op3(g, OP_mix, b, a, weight);
+    if (a == NODE_NONE || b == NODE_NONE || a == b)
+        return a == NODE_NONE ? b : a;
+    return graph_op3(g, OP_mix, b, a, weight);
 }
 
 /* Materials blend with the shapes; numbers of levels and instances cannot. */
 static Surface mix_surface(Graph *g, Node nearer, Node weight, Surface a, Surface b)
 {
-    return (Surface){mix_nodes(g, a.color, b.color, weight),       mix_nodes(g, a.roughness, b.roughness, weight),
-                     mix_nodes(g, a.metallic, b.metallic, weight), mix_nodes(g, a.emission, b.emission, weight),
-                     choose(g, nearer, a.level, b.level),          choose(g, nearer, a.instance, b.instance)};
+    return (Surface){mix_nodes(g, a.color, b.color, weight),
+                     mix_nodes(g, a.roughness, b.roughness, weight),
+                     mix_nodes(g, a.metallic, b.metallic, weight),
+                     mix_nodes(g, a.emission, b.emission, weight),
+                     choose(g, nearer, a.level, b.level),
+                     choose(g, nearer, a.instance, b.instance)};
 }
 
 /* ---- joints ---- */
 
+static Node join_distances(Graph *g, Blend blend, Node a, Node b)
+{
+    if (blend.width == NODE_NONE)
+        return graph_op2(g, OP_min, a, b);
+    if (blend.kind == BLEND_STAIRS)
+        return graph_op4(g, OP_smin_stairs, a, b, blend.width, blend.steps);
+    return graph_op3(g, blend_info[blend.kind].op, a, b, blend.width);
+}
+
 /* The union of two distances, sharp or blended. */
-static Lowered join_two(Lowering *l, const Shape *shape, Lowered a, Lowered b)
+static Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b)
 {
     Graph *g = l->graph;
     if (a.distance == NODE_NONE)
         return b;
     if (b.distance == NODE_NONE)
         return a;
-    Lowered joined = nothing;
-    bool    sharp  = shape->blend_width == NODE_NONE;
-    if (sharp)
-        joined.distance = graph_op2(g, OP_min, a.distance, b.distance);
-    else if (blend_info[shape->blend].op == OP_smin_stairs)
-        joined.distance = graph_op4(g, OP_smin_stairs, a.distance, b.distance, shape->blend_width, shape->values[0]);
-    else
-        joined.distance = graph_op3(g, blend_info[shape->blend].op, a.distance, b.distance, shape->blend_width);
+    Lowered joined  = nothing;
+    joined.distance = join_distances(g, blend, a.distance, b.distance);
     if (!l->surfaces)
         return joined;
     Node nearer = graph_op2(g, OP_less, a.distance, b.distance);
-    if (sharp)
+    if (blend.width == NODE_NONE)
         joined.surface = choose_surface(g, nearer, a.surface, b.surface);
     else {
-        Node weight    = graph_op3(g, OP_blend_weight, a.distance, b.distance, shape->blend_width);
+        Node weight    = graph_op3(g, OP_blend_weight, a.distance, b.distance, blend.width);
         joined.surface = mix_surface(g, nearer, weight, a.surface, b.surface);
     }
     return joined;
@@ -128,13 +142,15 @@ static Lowered complement(Lowering *l, Lowered a)
     return a;
 }
 
+/* A blend moves the zero set. */
 static Place joint_place(const Shape *shape, Place place)
 {
-    return shape->blend_width == NODE_NONE ? place : steady(place);
+    return shape->blend.width == NODE_NONE ? place : steady(place);
 }
 
 /* Joined in pairs, so that the graph stays shallow and a blend of many keeps its slope. */
-static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *children, uint32_t count, Place place)
+static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *children,
+                        uint32_t count, Place place)
 {
     if (count == 0)
         return nothing;
@@ -143,7 +159,12 @@ static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *chi
     uint32_t half  = count / 2;
     Lowered  left  = union_of(l, shape, children, half, place);
     Lowered  right = union_of(l, shape, children + half, count - half, place);
-    return join_two(l, shape, left, right);
+    return join_two(l, shape->blend, left, right);
+}
+
+static Lowered lower_union(Lowering *l, const Shape *shape, Place place)
+{
+    return union_of(l, shape, shape->children, shape->child_count, place);
 }
 
 static Lowered lower_intersection(Lowering *l, const Shape *shape, Place place)
@@ -154,7 +175,7 @@ static Lowered lower_intersection(Lowering *l, const Shape *shape, Place place)
         Lowered next = lower(l, shape->children[i], place);
         if (all.distance == NODE_NONE || next.distance == NODE_NONE)
             return nothing;
-        Lowered joined = join_two(l, shape, complement(l, all), complement(l, next));
+        Lowered joined = join_two(l, shape->blend, complement(l, all), complement(l, next));
         all            = complement(l, joined);
     }
     return all;
@@ -166,7 +187,7 @@ static Lowered lower_difference(Lowering *l, const Shape *shape, Place place)
     Lowered right = union_of(l, shape, shape->children + 1, shape->child_count - 1, place);
     if (left.distance == NODE_NONE || right.distance == NODE_NONE)
         return left;
-    Lowered joined = join_two(l, shape, complement(l, left), right);
+    Lowered joined = join_two(l, shape->blend, complement(l, left), right);
     return complement(l, joined);
 }
 
@@ -175,17 +196,18 @@ static Lowered lower_xor(Lowering *l, const Shape *shape, Place place)
 {
     Lowered a = lower(l, shape->children[0], place), b = lower(l, shape->children[1], place);
     if (a.distance == NODE_NONE || b.distance == NODE_NONE)
-        return join_two(l, shape, a, b);
-    Lowered both   = join_two(l, shape, a, b);
-    Lowered shared = join_two(l, shape, complement(l, a), complement(l, b)); /* minus the intersection */
-    Lowered result = both;
-    result.distance = graph_op2(l->graph, OP_max, both.distance, shared.distance);
+        return join_two(l, shape->blend, a, b);
+    Lowered result = join_two(l, shape->blend, a, b);
+    /* What they share is the complement of: */
+    Lowered shared = join_two(l, shape->blend, complement(l, a), complement(l, b));
+    result.distance = graph_op2(l->graph, OP_max, result.distance, shared.distance);
     return result;
 }
 
 static Lowered lower_morph(Lowering *l, const Shape *shape, Place place)
 {
-    Lowered a = lower(l, shape->children[0], steady(place)), b = lower(l, shape->children[1], steady(place));
+    Lowered a = lower(l, shape->children[0], steady(place));
+    Lowered b = lower(l, shape->children[1], steady(place));
     if (a.distance == NODE_NONE || b.distance == NODE_NONE)
         return a.distance == NODE_NONE ? b : a;
     Graph  *g      = l->graph;
@@ -207,12 +229,7 @@ static Lowered lower_morph(Lowering *l, const Shape *shape, Place place)
 static Node before_map(Graph *g, const Similarity *map, Node point)
 {
     Node rows[3];
-    for (uint32_t i = 0; i < 3; i++) {
-        Node x  = graph_component(g, map->rows[0], i);
-        Node y  = graph_component(g, map->rows[1], i);
-        Node z  = graph_component(g, map->rows[2], i);
-        rows[i] = graph_op3(g, OP_vec3, x, y, z);
-    }
+    transpose_rows(g, map->rows, rows);
     Node moved  = graph_op2(g, OP_sub, point, map->shift);
     Node turned = moved;
     Node e0 = graph_vec3(g, 1, 0, 0), e1 = graph_vec3(g, 0, 1, 0), e2 = graph_vec3(g, 0, 0, 1);
@@ -305,6 +322,22 @@ static Lowered lower_revolve(Lowering *l, const Shape *shape, Place place)
 
 /* ---- repetition ---- */
 
+Node box_distance(Graph *g, Node point, Box box)
+{
+    double centre[3], half[3];
+    box_centre(box, centre);
+    for (int i = 0; i < 3; i++)
+        half[i] = 0.5 * (box.axis[i].high - box.axis[i].low);
+    Node middle  = graph_constant(g, TYPE_VEC3, centre);
+    Node sides   = graph_constant(g, TYPE_VEC3, half);
+    Node local   = graph_op2(g, OP_sub, point, middle);
+    Node size    = graph_op1(g, OP_abs, local);
+    Node excess  = graph_op2(g, OP_sub, size, sides);
+    Node zero    = graph_number(g, 0);
+    Node outside = graph_op2(g, OP_max, excess, zero);
+    return graph_op1(g, OP_length, outside);
+}
+
 /*
  * The walls of cells go on for ever, and far away would still hold rays up and throw false
  * penumbras; the distance to the box of all copies is a bound as well, and there the larger one.
@@ -312,20 +345,10 @@ static Lowered lower_revolve(Lowering *l, const Shape *shape, Place place)
 static Lowered outside_of_box(Lowering *l, const Shape *shape, Place place, Lowered result)
 {
     Graph *g = l->graph;
-    double centre[3], half[3];
     if (result.distance == NODE_NONE || !box_is_finite(shape->box))
         return result;
-    box_centre(shape->box, centre);
-    for (int i = 0; i < 3; i++)
-        half[i] = 0.5 * (shape->box.axis[i].high - shape->box.axis[i].low);
-    Node middle     = graph_constant(g, TYPE_VEC3, centre);
-    Node sides      = graph_constant(g, TYPE_VEC3, half);
-    Node local      = graph_op2(g, OP_sub, place.point, middle);
-    Node size       = graph_op1(g, OP_abs, local);
-    Node excess     = graph_op2(g, OP_sub, size, sides);
+    Node around     = box_distance(g, place.point, shape->box);
     Node zero       = graph_number(g, 0);
-    Node outside    = graph_op2(g, OP_max, excess, zero);
-    Node around     = graph_op1(g, OP_length, outside);
     Node beyond     = graph_op2(g, OP_less, zero, around);
     Node larger     = graph_op2(g, OP_max, result.distance, around);
     result.distance = graph_op3(g, OP_select, beyond, larger, result.distance);
@@ -354,8 +377,8 @@ static bool is_symmetric(Lowering *l, const Shape *content, Node mapped, uint32_
  */
 typedef enum Joining { SYMMETRIC, WALLS, NEIGHBOURS } Joining;
 
-static Joining choose_joining(Lowering *l, const Shape *content, Node mapped, uint32_t axis, double margin,
-                              double size, Place place)
+static Joining choose_joining(Lowering *l, const Shape *content, Node mapped, uint32_t axis,
+                              double margin, double size, Place place)
 {
     if (is_symmetric(l, content, mapped, axis))
         return SYMMETRIC;
@@ -388,7 +411,7 @@ static Lattice lattice_of(Lowering *l, const Shape *shape, Place place, uint32_t
     cells.period       = graph_component(g, shape->values[0], axis);
     cells.least_period = frame_range(l, cells.period).low;
     Range content      = shape->children[0]->box.axis[axis];
-    cells.margin       = fmin(0.5 * cells.least_period - content.high, 0.5 * cells.least_period + content.low);
+    cells.margin       = cell_margin(content, cells.least_period);
     uint32_t count     = shape->cells[axis];
     /* An even number of copies is centred between two of them. */
     if (count && count % 2 == 0) {
@@ -404,7 +427,8 @@ static Lattice lattice_of(Lowering *l, const Shape *shape, Place place, uint32_t
 
 static Node within_lattice(Graph *g, const Lattice *cells, Node number)
 {
-    return cells->low == NODE_NONE ? number : graph_op3(g, OP_clamp, number, cells->low, cells->high);
+    return cells->low == NODE_NONE ? number
+                                   : graph_op3(g, OP_clamp, number, cells->low, cells->high);
 }
 
 /* Coordinate within the nearest cell. */
@@ -449,6 +473,29 @@ static Node wall_distance(Graph *g, const Lattice *cells, Node local, Node numbe
     return graph_op2(g, OP_add, nearer, margin);
 }
 
+/* The copy in the point's own cell, joined with those in the neighbour cells that count: at
+   most one on each axis, so the cells of a corner. */
+static Lowered join_neighbours(Lowering *l, const Shape *shape, Place place, const Node own[3],
+                               const Node other[3], const bool neighbour[3])
+{
+    Lowered result = nothing;
+    for (uint32_t corner = 0; corner < 8; corner++) {
+        Node parts[3];
+        bool exists = true;
+        for (uint32_t i = 0; i < 3; i++) {
+            bool across = corner >> i & 1;
+            exists      = exists && (!across || neighbour[i]);
+            parts[i]    = across ? other[i] : own[i];
+        }
+        if (!exists)
+            continue;
+        Node    point = graph_op(l->graph, OP_vec3, parts);
+        Lowered copy  = lower(l, shape->children[0], at(place, point));
+        result        = join_two(l, blend_sharp, result, copy);
+    }
+    return result;
+}
+
 static Lowered lower_repeat(Lowering *l, const Shape *shape, Place place)
 {
     Graph *g = l->graph;
@@ -463,7 +510,8 @@ static Lowered lower_repeat(Lowering *l, const Shape *shape, Place place)
             continue;
         Node number;
         own[i]          = in_cell(g, &cells, &number);
-        Joining joining = choose_joining(l, shape->children[0], plain, i, cells.margin, cells.least_period, place);
+        Joining joining = choose_joining(l, shape->children[0], plain, i, cells.margin,
+                                         cells.least_period, place);
         neighbour[i]    = joining == NEIGHBOURS;
         if (neighbour[i])
             other[i] = in_neighbour(g, &cells, own[i], number);
@@ -472,22 +520,7 @@ static Lowered lower_repeat(Lowering *l, const Shape *shape, Place place)
             walls     = walls == NODE_NONE ? wall : graph_op2(g, OP_min, walls, wall);
         }
     }
-    Lowered result = nothing;
-    Shape   sharp  = {.blend_width = NODE_NONE};
-    for (uint32_t corner = 0; corner < 8; corner++) {
-        Node parts[3];
-        bool exists = true;
-        for (uint32_t i = 0; i < 3; i++) {
-            bool across = corner >> i & 1;
-            exists      = exists && (!across || neighbour[i]);
-            parts[i]    = across ? other[i] : own[i];
-        }
-        if (!exists)
-            continue;
-        Node    point = graph_op(g, OP_vec3, parts);
-        Lowered copy  = lower(l, shape->children[0], at(place, point));
-        result        = join_two(l, &sharp, result, copy);
-    }
+    Lowered result = join_neighbours(l, shape, place, own, other, neighbour);
     if (walls == NODE_NONE || result.distance == NODE_NONE)
         return result;
     result.distance = graph_op2(g, OP_min, result.distance, walls);
@@ -515,16 +548,44 @@ static double sector_margin(Box content, double angle, double half_sector)
     return isnan(least) ? -INFINITY : least;
 }
 
-static Lowered all_around(Lowering *l, const Shape *shape, Place place, uint32_t first, uint32_t count)
+static Lowered all_around(Lowering *l, const Shape *shape, Place place, uint32_t first,
+                          uint32_t count)
 {
-    Shape sharp = {.blend_width = NODE_NONE};
     if (count == 1) {
-        Node point = turn_about_y(l->graph, place.point, 2 * 3.14159265358979323846 * first / shape->cells[0]);
+        Node point = turn_about_y(l->graph, place.point, 2 * M_PI * first / shape->cells[0]);
         return lower(l, shape->children[0], at(place, point));
     }
     Lowered a = all_around(l, shape, place, first, count / 2);
     Lowered b = all_around(l, shape, place, first + count / 2, count - count / 2);
-    return join_two(l, &sharp, a, b);
+    return join_two(l, blend_sharp, a, b);
+}
+
+/* The copy in the sector on the side of a point that lies in its own, turned towards +x. */
+static Lowered lower_next_sector(Lowering *l, const Shape *shape, Place place, Node local,
+                                 double angle)
+{
+    Graph *g      = l->graph;
+    double sector = 2 * (M_PI / shape->cells[0]);
+    Node   z      = graph_component(g, local, 2), zero = graph_number(g, 0);
+    Node   right  = graph_op2(g, OP_less, zero, z);
+    Node   plus   = turn_about_y(g, local, sector);
+    Node   minus  = turn_about_y(g, local, -sector);
+    Node   next   = graph_op3(g, OP_select, right, plus, minus);
+    Node   point  = turn_about_y(g, next, -angle);
+    return lower(l, shape->children[0], at(place, point));
+}
+
+/* Distance to the nearer wall of the sector around +x, plus the margin behind it. */
+static Node sector_wall(Graph *g, Node local, double half_sector, double margin)
+{
+    Node z      = graph_component(g, local, 2), x = graph_component(g, local, 0);
+    Node sine   = graph_number(g, sin(half_sector)), cosine = graph_number(g, cos(half_sector));
+    Node along  = graph_op2(g, OP_mul, x, sine);
+    Node aside  = graph_op1(g, OP_abs, z);
+    aside       = graph_op2(g, OP_mul, aside, cosine);
+    Node wall   = graph_op2(g, OP_sub, along, aside);
+    Node behind = graph_number(g, margin);
+    return graph_op2(g, OP_add, wall, behind);
 }
 
 /* Copies around y: the point is turned into the sector of the content, and the sectors join as
@@ -532,7 +593,7 @@ static Lowered all_around(Lowering *l, const Shape *shape, Place place, uint32_t
 static Lowered lower_repeat_polar(Lowering *l, const Shape *shape, Place place)
 {
     Graph *g           = l->graph;
-    double half_sector = 3.14159265358979323846 / shape->cells[0];
+    double half_sector = M_PI / shape->cells[0];
     Box    content     = shape->children[0]->box;
     double centre[3];
     box_centre(content, centre);
@@ -546,32 +607,18 @@ static Lowered lower_repeat_polar(Lowering *l, const Shape *shape, Place place)
     Node    local  = graph_op2(g, OP_cell_polar, facing, count);
     Node    back   = turn_about_y(g, local, -angle);
     Lowered result = lower(l, shape->children[0], at(place, back));
-    Node    z      = graph_component(g, local, 2), zero = graph_number(g, 0);
     Node    mapped = turn_about_y(g, graph_leaf(g, OP_POINT), -angle);
     double  width  = hypot(centre[0], centre[2]) * sin(half_sector);
     Joining joining = choose_joining(l, shape->children[0], mapped, 2, margin, width, place);
     if (joining == SYMMETRIC)
         return result;
     if (joining == NEIGHBOURS) {
-        Node    right  = graph_op2(g, OP_less, zero, z);
-        Node    plus   = turn_about_y(g, local, 2 * half_sector);
-        Node    minus  = turn_about_y(g, local, -2 * half_sector);
-        Node    next   = graph_op3(g, OP_select, right, plus, minus);
-        Node    point  = turn_about_y(g, next, -angle);
-        Lowered copy   = lower(l, shape->children[0], at(place, point));
-        Shape   sharp  = {.blend_width = NODE_NONE};
-        return join_two(l, &sharp, result, copy);
+        Lowered copy = lower_next_sector(l, shape, place, local, angle);
+        return join_two(l, blend_sharp, result, copy);
     }
-    Node x      = graph_component(g, local, 0);
-    Node sine   = graph_number(g, sin(half_sector)), cosine = graph_number(g, cos(half_sector));
-    Node along  = graph_op2(g, OP_mul, x, sine);
-    Node aside  = graph_op1(g, OP_abs, z);
-    aside       = graph_op2(g, OP_mul, aside, cosine);
-    Node wall   = graph_op2(g, OP_sub, along, aside);
-    Node behind = graph_number(g, margin);
-    wall        = graph_op2(g, OP_add, wall, behind);
     if (result.distance == NODE_NONE)
         return result;
+    Node wall       = sector_wall(g, local, half_sector, margin);
     result.distance = graph_op2(g, OP_min, result.distance, wall);
     return outside_of_box(l, shape, place, result);
 }
@@ -586,16 +633,16 @@ static Lowered lower_krs(Lowering *l, const Shape *shape, Place place)
 {
     Graph   *g      = l->graph;
     Lowered  result = nothing;
-    Shape    sharp  = {.blend_width = NODE_NONE};
     Node     point  = place.point, scale = graph_number(g, 1);
     Node     id     = graph_uint(g, 1);
     uint32_t level  = shape->levels;
+    Op       next_id = shape->levels <= MOST_HEAP_MIRRORS ? OP_push_id : OP_hash_id;
     for (uint32_t i = shape->stage_count; i-- > 0;) {
         const Stage *stage = &shape->stages[i];
         if (stage->kind == STAGE_REFLECT) {
             if (l->surfaces) {
                 Node behind = graph_op3(g, OP_front, point, stage->normal, stage->offset);
-                id          = graph_op2(g, shape->levels <= MOST_HEAP_MIRRORS ? OP_push_id : OP_hash_id, id, behind);
+                id          = graph_op2(g, next_id, id, behind);
             }
             point = graph_op3(g, OP_fold, point, stage->normal, stage->offset);
             level--;
@@ -605,12 +652,13 @@ static Lowered lower_krs(Lowering *l, const Shape *shape, Place place)
         } else {
             Place inner = at(place, point);
             if (l->surfaces) {
-                /* In a sequence within a sequence the outer level counts, the inner instance is hashed in. */
-                inner.level    = place.level == NODE_NONE ? graph_number(g, level) : place.level;
-                inner.instance = place.instance == NODE_NONE ? id : graph_op2(g, OP_join_id, place.instance, id);
+                /* Within an outer sequence its level counts, and this instance is hashed in. */
+                bool outer     = place.level != NODE_NONE;
+                inner.level    = outer ? place.level : graph_number(g, level);
+                inner.instance = outer ? graph_op2(g, OP_join_id, place.instance, id) : id;
             }
             Lowered kernel = lower(l, shape->children[stage->kernel], inner);
-            result         = join_two(l, &sharp, result, scale_distance(l, kernel, scale));
+            result         = join_two(l, blend_sharp, result, scale_distance(l, kernel, scale));
         }
     }
     return result;
@@ -682,7 +730,7 @@ static Lowered lower(Lowering *l, const Shape *shape, Place place)
     case SHAPE_PRIMITIVE:    return lower_primitive(l, shape, place);
     case SHAPE_TRANSFORM:    return lower_transform(l, shape, place);
     case SHAPE_STRETCH:      return lower_stretch(l, shape, place);
-    case SHAPE_UNION:        return union_of(l, shape, shape->children, shape->child_count, joint_place(shape, place));
+    case SHAPE_UNION:        return lower_union(l, shape, joint_place(shape, place));
     case SHAPE_INTERSECTION: return lower_intersection(l, shape, joint_place(shape, place));
     case SHAPE_DIFFERENCE:   return lower_difference(l, shape, joint_place(shape, place));
     case SHAPE_XOR:          return lower_xor(l, shape, joint_place(shape, place));
@@ -702,6 +750,14 @@ static Lowered lower(Lowering *l, const Shape *shape, Place place)
     return nothing;
 }
 
+Node divide_by_slope(Graph *g, Node distance, double slope)
+{
+    if (slope <= 1 + 1e-9)
+        return distance;
+    Node factor = graph_number(g, 1 / slope);
+    return graph_op2(g, OP_mul, distance, factor);
+}
+
 static Node or_else(Node node, Node otherwise) { return node == NODE_NONE ? otherwise : node; }
 
 bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roots)
@@ -710,11 +766,7 @@ bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roo
     Place    place = {graph_leaf(graph, OP_POINT), NODE_NONE, NODE_NONE, false};
     Lowered  all   = lower(&l, shape, place);
     Node     distance = or_else(all.distance, graph_number(graph, NOWHERE));
-    if (shape->slope > 1 + 1e-9) {
-        Node factor = graph_number(graph, 1 / shape->slope);
-        distance    = graph_op2(graph, OP_mul, distance, factor);
-    }
-    roots[ROOT_DISTANCE]  = distance;
+    roots[ROOT_DISTANCE]  = divide_by_slope(graph, distance, shape->slope);
     roots[ROOT_COLOR]     = or_else(all.surface.color, graph_vec3(graph, 0.6, 0.6, 0.6));
     roots[ROOT_ROUGHNESS] = or_else(all.surface.roughness, graph_number(graph, 0.6));
     roots[ROOT_METALLIC]  = or_else(all.surface.metallic, graph_number(graph, 0));

@@ -18,9 +18,16 @@ typedef enum ComponentRoot {
     ROOT_COUNT
 } ComponentRoot;
 
+enum { MOST_LOWERED = 400000 };
+
 /* Lowers a shape at the point OP_POINT; roots[ROOT_COUNT] are filled.  False when more than
    MOST_LOWERED nodes would be needed: copies within copies. */
-enum { MOST_LOWERED = 400000 };
 bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roots);
+
+/* Distance to a finite box, 0 inside. */
+Node box_distance(Graph *graph, Node point, Box box);
+
+/* What grows `slope` times as fast as distance, made safe. */
+Node divide_by_slope(Graph *graph, Node distance, double slope);
 
 #endif

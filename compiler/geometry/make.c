@@ -8,10 +8,11 @@
 #include <math.h>
 
 const BlendInfo blend_info[BLEND_COUNT] = {
-#define BLEND(name, spelling, op, slope, bulge, meaning) {spelling, OP_##op, slope, bulge, meaning},
+#define BLEND(name, spelling, op, slope, bulge, meaning) {spelling, OP_##op, slope, bulge},
 #include "compiler/geometry/blends.def"
 #undef BLEND
 };
+const Blend blend_sharp = {BLEND_QUADRATIC, NODE_NONE, NODE_NONE};
 
 Range node_range(Elaboration *e, Node node, uint32_t component)
 {
@@ -23,8 +24,8 @@ Range node_range(Elaboration *e, Node node, uint32_t component)
     return range;
 }
 
-Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span, const Shape *const *children,
-                 uint32_t count)
+Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
+                 const Shape *const *children, uint32_t count)
 {
     Shape *shape        = arena_new(e->arena, Shape);
     shape->kind         = kind;
@@ -36,7 +37,8 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span, co
     shape->slope        = 1;
     shape->derived      = 1;
     shape->exact        = true;
-    shape->distance     = shape->bound = shape->blend_width = NODE_NONE;
+    shape->blend        = blend_sharp;
+    shape->distance     = shape->bound = NODE_NONE;
     shape->plane_normal = shape->plane_offset = NODE_NONE;
     shape->values[0] = shape->values[1] = NODE_NONE;
     double sequences = 0; /* instances of the sequences among the parts; other parts make one */
@@ -66,7 +68,10 @@ static Shape *wrap(Elaboration *e, ShapeKind kind, const char *name, const Shape
     return shape_new(e, kind, name, span, &shape, 1);
 }
 
-const Shape *make_empty(Elaboration *e, Span span) { return shape_new(e, SHAPE_EMPTY, "nothing", span, NULL, 0); }
+const Shape *make_empty(Elaboration *e, Span span)
+{
+    return shape_new(e, SHAPE_EMPTY, "nothing", span, NULL, 0);
+}
 
 const Shape *make_transform(Elaboration *e, const Shape *shape, const Similarity *map, Span span)
 {
@@ -91,17 +96,16 @@ const Shape *make_stretch(Elaboration *e, const Shape *shape, Node factors, Span
     return stretched;
 }
 
-const Shape *make_joint(Elaboration *e, ShapeKind kind, const Shape *const *shapes, uint32_t count, BlendKind blend,
-                        Node width, Node steps, Span span)
+const Shape *make_joint(Elaboration *e, ShapeKind kind, const Shape *const *shapes, uint32_t count,
+                        Blend blend, Span span)
 {
-    static const char *const names[] = {[SHAPE_UNION] = "union", [SHAPE_INTERSECTION] = "intersection",
-                                        [SHAPE_DIFFERENCE] = "difference", [SHAPE_XOR] = "xor"};
-    Shape *joint       = shape_new(e, kind, names[kind], span, shapes, count);
-    joint->blend       = blend;
-    joint->blend_width = width;
-    joint->values[0]   = steps;
+    static const char *const names[] = {
+        [SHAPE_UNION] = "union", [SHAPE_INTERSECTION] = "intersection",
+        [SHAPE_DIFFERENCE] = "difference", [SHAPE_XOR] = "xor"};
+    Shape *joint = shape_new(e, kind, names[kind], span, shapes, count);
+    joint->blend = blend;
     /* Outside, the least of exact distances is exact; every other joint only bounds it. */
-    joint->exact = joint->exact && kind == SHAPE_UNION && width == NODE_NONE;
+    joint->exact = joint->exact && kind == SHAPE_UNION && blend.width == NODE_NONE;
     for (uint32_t i = 0; i < count; i++) {
         if (i == 0)
             joint->box = shapes[0]->box;
@@ -110,13 +114,14 @@ const Shape *make_joint(Elaboration *e, ShapeKind kind, const Shape *const *shap
         else if (kind != SHAPE_DIFFERENCE)
             joint->box = box_hull(joint->box, shapes[i]->box);
     }
-    if (width != NODE_NONE && count > 1) {
-        const BlendInfo *info = &blend_info[blend];
+    if (blend.width != NODE_NONE && count > 1) {
+        const BlendInfo *info = &blend_info[blend.kind];
         /* Each further operand adds a partial derivative; their squares sum to 1, so the sum of
            n of them is at most sqrt(n): for two operands the factor of the table. */
         joint->slope *= info->slope > 1 ? pow(info->slope, log2(count)) : 1;
         if (kind != SHAPE_INTERSECTION && kind != SHAPE_DIFFERENCE)
-            joint->box = box_grow(joint->box, info->bulge * node_range(e, width, 0).high * (count - 1));
+            joint->box = box_grow(joint->box,
+                                  info->bulge * node_range(e, blend.width, 0).high * (count - 1));
     }
     return joint;
 }
@@ -188,13 +193,8 @@ const Shape *make_revolve(Elaboration *e, const Shape *figure, Node offset, Span
     return solid;
 }
 
-/* How far the content stays from the walls of its cell on one axis; < 0: it sticks out. */
-static double cell_margin(Range content, double period)
-{
-    return fmin(0.5 * period - content.high, 0.5 * period + content.low);
-}
-
-const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const uint32_t cells[3], const Syntax *place)
+const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const uint32_t cells[3],
+                         const Syntax *place)
 {
     Shape *repeat     = wrap(e, SHAPE_REPEAT, "repeat", shape, place->span);
     repeat->values[0] = period;
@@ -207,20 +207,24 @@ const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const 
             continue;
         double margin = cell_margin(shape->box.axis[i], range.low);
         if (!(margin >= -1e-9 * range.low) || box_is_empty(shape->box)) {
+            Range is   = shape->box.axis[i];
             Diag *diag = diag_add(e->diags, DIAG_OUTSIDE_CELL, place->span,
-                                  "the shape reaches from %.4g to %.4g on the %c axis, its cell from %.4g to %.4g",
-                                  shape->box.axis[i].low, shape->box.axis[i].high, "xyz"[i], -0.5 * range.low, 0.5 * range.low);
+                                  "the shape reaches from %.4g to %.4g on the %c axis, "
+                                  "its cell from %.4g to %.4g",
+                                  is.low, is.high, "xyz"[i], -0.5 * range.low, 0.5 * range.low);
             diag->label = "does not fit its cell";
             diag->help  = "use a larger period, or a smaller shape that is centred in its cell";
             return NULL;
         }
         double reach = cells[i] ? 0.5 * (cells[i] - 1) * range.high : INFINITY;
-        repeat->box.axis[i] = (Range){shape->box.axis[i].low - reach, shape->box.axis[i].high + reach};
+        repeat->box.axis[i] =
+            (Range){shape->box.axis[i].low - reach, shape->box.axis[i].high + reach};
     }
     return repeat;
 }
 
-const Shape *make_repeat_polar(Elaboration *e, const Shape *shape, uint32_t count, const Syntax *place)
+const Shape *make_repeat_polar(Elaboration *e, const Shape *shape, uint32_t count,
+                               const Syntax *place)
 {
     Shape *repeat    = wrap(e, SHAPE_REPEAT_POLAR, "repeat_polar", shape, place->span);
     repeat->cells[0] = count;
@@ -287,8 +291,8 @@ static Box bound_sequence(Elaboration *e, const Shape *krs)
     return box;
 }
 
-const Shape *make_krs(Elaboration *e, const Stage *stages, uint32_t stage_count, const Shape *const *kernels,
-                      uint32_t kernel_count, Span span)
+const Shape *make_krs(Elaboration *e, const Stage *stages, uint32_t stage_count,
+                      const Shape *const *kernels, uint32_t kernel_count, Span span)
 {
     Shape *krs       = shape_new(e, SHAPE_KRS, "krs", span, kernels, kernel_count);
     krs->stages      = stages;

@@ -10,53 +10,41 @@ typedef Value Method(Elaboration *e, const Shape *shape, Call *call);
 
 static const double ORIGIN[3] = {0, 0, 0};
 
-static Value shape_value(const Shape *shape)
-{
-    return shape ? (Value){.type = VALUE_SHAPE, .shape = shape} : value_error();
-}
-
+/* The shape after a map; NULL, whose reason has been reported, is VALUE_ERROR. */
 static Value moved(Elaboration *e, const Shape *shape, const Similarity *map, const Call *call)
 {
-    return shape_value(make_transform(e, shape, map, call->syntax->span));
+    return map ? value_shape(make_transform(e, shape, map, call->syntax->span)) : value_error();
 }
 
 static Value method_move(Elaboration *e, const Shape *shape, Call *call)
 {
-    Node by = want_vector(e, call, 0, ORIGIN);
-    return by == NODE_NONE ? value_error() : moved(e, shape, similarity_translation(e, by), call);
+    return moved(e, shape, want_translation(e, call), call);
 }
 
 static Value method_rotate(Elaboration *e, const Shape *shape, Call *call)
 {
-    Node axis = want_vector(e, call, 0, ORIGIN), angle = want_number(e, call, 1, 0);
-    if (axis == NODE_NONE || angle == NODE_NONE || !check_direction(e, axis, call->arguments[0].syntax, "the axis of a rotation"))
-        return value_error();
-    return moved(e, shape, similarity_rotation(e, axis, angle), call);
+    return moved(e, shape, want_rotation(e, call), call);
 }
 
 static Value method_scale(Elaboration *e, const Shape *shape, Call *call)
 {
     const Argument *by = &call->arguments[0];
-    if (by->value.type == VALUE_NUMBER ||
-        (by->value.type == VALUE_EXPRESSION && e->graph->items[by->value.node].type == TYPE_FLOAT)) {
-        Node factor = want_number(e, call, 0, 1);
-        if (factor == NODE_NONE || !check_positive(e, factor, by->syntax, "a scale"))
-            return value_error();
-        return moved(e, shape, similarity_scaling(e, factor), call);
-    }
+    if (value_size(e, by->value) == 1)
+        return moved(e, shape, want_scaling(e, call), call);
     Node factors = want_vector(e, call, 0, ORIGIN);
     if (factors == NODE_NONE)
         return value_error();
     for (uint32_t i = 0; i < 3; i++)
         if (!check_positive(e, graph_component(e->graph, factors, i), by->syntax, "a scale"))
             return value_error();
-    return shape_value(make_stretch(e, shape, factors, call->syntax->span));
+    return value_shape(make_stretch(e, shape, factors, call->syntax->span));
 }
 
 static Value method_align(Elaboration *e, const Shape *shape, Call *call)
 {
     Node from = want_vector(e, call, 0, ORIGIN), to = want_vector(e, call, 1, ORIGIN);
-    if (from == NODE_NONE || to == NODE_NONE || !check_direction(e, from, call->arguments[0].syntax, "a direction") ||
+    if (from == NODE_NONE || to == NODE_NONE ||
+        !check_direction(e, from, call->arguments[0].syntax, "a direction") ||
         !check_direction(e, to, call->arguments[1].syntax, "a direction"))
         return value_error();
     return moved(e, shape, similarity_alignment(e, from, to), call);
@@ -64,17 +52,10 @@ static Value method_align(Elaboration *e, const Shape *shape, Call *call)
 
 static Value method_mirror(Elaboration *e, const Shape *shape, Call *call)
 {
-    Node         normal, offset;
-    const Shape *plane = want_shape(e, call, 0);
-    if (!plane)
+    Node normal, offset;
+    if (!want_plane(e, call, &normal, &offset))
         return value_error();
-    if (!shape_plane(e, plane, &normal, &offset)) {
-        Diag *diag  = diag_add(e->diags, DIAG_NEEDS_PLANE, call->arguments[0].syntax->span, "`mirror` needs a plane, found a shape");
-        diag->label = "this is not a plane";
-        diag->help  = "write `plane(normal, offset)`";
-        return value_error();
-    }
-    return shape_value(make_mirror(e, shape, normal, offset, call->syntax->span));
+    return value_shape(make_mirror(e, shape, normal, offset, call->syntax->span));
 }
 
 static Value method_transform(Elaboration *e, const Shape *shape, Call *call)
@@ -85,6 +66,19 @@ static Value method_transform(Elaboration *e, const Shape *shape, Call *call)
         return value_error();
     }
     return moved(e, shape, map->value.map, call);
+}
+
+/* Reports a number or vector of which some part can be negative. */
+static bool check_not_negative(Elaboration *e, Node node, const Syntax *syntax, const char *what)
+{
+    for (uint32_t i = 0; i < e->graph->items[node].type; i++)
+        if (node_range(e, node, i).low < 0) {
+            Diag *diag =
+                diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "%s cannot be negative", what);
+            diag->label = "negative";
+            return false;
+        }
+    return true;
 }
 
 /* Copies per axis: a number for all, or a vector; 0 is endless. */
@@ -119,16 +113,14 @@ static Value method_repeat(Elaboration *e, const Shape *shape, Call *call)
         node = want_vector(e, call, 0, ORIGIN);
     else {
         Node number = want_number(e, call, 0, 1);
-        node        = number == NODE_NONE ? NODE_NONE : graph_op3(e->graph, OP_vec3, number, number, number);
+        node        = number;
+        if (number != NODE_NONE)
+            node = graph_op3(e->graph, OP_vec3, number, number, number);
     }
-    if (node == NODE_NONE || !cell_counts(e, call, cells))
+    if (node == NODE_NONE || !cell_counts(e, call, cells) ||
+        !check_not_negative(e, node, period->syntax, "a period"))
         return value_error();
-    for (uint32_t i = 0; i < 3; i++)
-        if (node_range(e, node, i).low < 0) {
-            diag_add(e->diags, DIAG_BAD_VALUE, period->syntax->span, "a period cannot be negative")->label = "negative";
-            return value_error();
-        }
-    return shape_value(make_repeat(e, shape, node, cells, call->syntax));
+    return value_shape(make_repeat(e, shape, node, cells, call->syntax));
 }
 
 static Value method_repeat_polar(Elaboration *e, const Shape *shape, Call *call)
@@ -139,23 +131,24 @@ static Value method_repeat_polar(Elaboration *e, const Shape *shape, Call *call)
     if (!want_count(e, call, 0, 1, 100000, 1, &count) || axis == NODE_NONE)
         return value_error();
     if (count == 1)
-        return shape_value(shape);
+        return value_shape(shape);
     Node up = graph_constant(e->graph, TYPE_VEC3, UP);
     if (axis == up)
-        return shape_value(make_repeat_polar(e, shape, count, call->syntax));
+        return value_shape(make_repeat_polar(e, shape, count, call->syntax));
     /* About another axis: turn it up, repeat, turn it back. */
     if (!check_direction(e, axis, call->arguments[1].syntax, "an axis"))
         return value_error();
     const Similarity *raise  = similarity_alignment(e, axis, up);
     const Shape      *raised = make_transform(e, shape, raise, call->syntax->span);
     const Shape      *copies = make_repeat_polar(e, raised, count, call->syntax);
-    return shape_value(make_transform(e, copies, similarity_inverse(e, raise), call->syntax->span));
+    return value_shape(make_transform(e, copies, similarity_inverse(e, raise), call->syntax->span));
 }
 
 static Value method_offset(Elaboration *e, const Shape *shape, Call *call)
 {
     Node r = want_number(e, call, 0, 0);
-    return r == NODE_NONE ? value_error() : shape_value(make_offset(e, shape, r, call->syntax->span));
+    return r == NODE_NONE ? value_error()
+                          : value_shape(make_offset(e, shape, r, call->syntax->span));
 }
 
 /* The shape that, grown by r, is `shape` with round edges; NULL when it does not know one. */
@@ -178,23 +171,20 @@ static const Shape *core_of(Elaboration *e, const Shape *shape, Node r, const Ca
 static Value method_round(Elaboration *e, const Shape *shape, Call *call)
 {
     Node r = want_number(e, call, 0, 0);
-    if (r == NODE_NONE)
+    if (r == NODE_NONE ||
+        !check_not_negative(e, r, call->arguments[0].syntax, "the radius of `round`"))
         return value_error();
-    if (node_range(e, r, 0).low < 0) {
-        diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[0].syntax->span, "the radius of `round` cannot be negative")
-            ->label = "negative";
-        return value_error();
-    }
     const Shape *core = core_of(e, shape, r, call);
-    return shape_value(make_offset(e, core ? core : shape, r, call->syntax->span));
+    return value_shape(make_offset(e, core ? core : shape, r, call->syntax->span));
 }
 
 static Value method_shell(Elaboration *e, const Shape *shape, Call *call)
 {
     Node t = want_number(e, call, 0, 0);
-    if (t == NODE_NONE || !check_positive(e, t, call->arguments[0].syntax, "the thickness of a shell"))
+    if (t == NODE_NONE ||
+        !check_positive(e, t, call->arguments[0].syntax, "the thickness of a shell"))
         return value_error();
-    return shape_value(make_shell(e, shape, t, call->syntax->span));
+    return value_shape(make_shell(e, shape, t, call->syntax->span));
 }
 
 static Value method_elongate(Elaboration *e, const Shape *shape, Call *call)
@@ -204,13 +194,9 @@ static Value method_elongate(Elaboration *e, const Shape *shape, Call *call)
         return value_error();
     Node half = graph_number(e->graph, 0.5);
     half      = graph_op2(e->graph, OP_scale, v, half);
-    for (uint32_t i = 0; i < 3; i++)
-        if (node_range(e, half, i).low < 0) {
-            diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[0].syntax->span, "`elongate` cannot be negative")->label =
-                "negative";
-            return value_error();
-        }
-    return shape_value(make_elongate(e, shape, half, call->syntax->span));
+    if (!check_not_negative(e, half, call->arguments[0].syntax, "`elongate`"))
+        return value_error();
+    return value_shape(make_elongate(e, shape, half, call->syntax->span));
 }
 
 static bool check_figure(Elaboration *e, const Shape *shape, const Call *call)
@@ -220,7 +206,8 @@ static bool check_figure(Elaboration *e, const Shape *shape, const Call *call)
     Diag *diag  = diag_add(e->diags, DIAG_TYPE_MISMATCH, call->syntax->children[0]->span,
                            "`%s` needs a plane figure, found a solid", call->name);
     diag->label = "this is a solid";
-    diag->help  = "plane figures are circle, rectangle, polygon, regular, star, segment, arc and bezier";
+    diag->help  = "plane figures are `circle`, `rectangle`, `polygon`, `regular`, `star`, "
+                  "`segment`, `arc` and `bezier`";
     return false;
 }
 
@@ -229,9 +216,10 @@ static Value method_extrude(Elaboration *e, const Shape *shape, Call *call)
     Node height = want_number(e, call, 0, 1);
     if (height == NODE_NONE || !check_figure(e, shape, call))
         return value_error();
-    if (is_given(call, 0) && !check_positive(e, height, call->arguments[0].syntax, "the height of an extrusion"))
+    if (is_given(call, 0) &&
+        !check_positive(e, height, call->arguments[0].syntax, "the height of an extrusion"))
         return value_error();
-    return shape_value(make_extrude(e, shape, height, call->syntax->span));
+    return value_shape(make_extrude(e, shape, height, call->syntax->span));
 }
 
 static Value method_revolve(Elaboration *e, const Shape *shape, Call *call)
@@ -239,13 +227,14 @@ static Value method_revolve(Elaboration *e, const Shape *shape, Call *call)
     Node offset = want_number(e, call, 0, 0);
     if (offset == NODE_NONE || !check_figure(e, shape, call))
         return value_error();
-    return shape_value(make_revolve(e, shape, offset, call->syntax->span));
+    return value_shape(make_revolve(e, shape, offset, call->syntax->span));
 }
 
 static Value method_paint(Elaboration *e, const Shape *shape, Call *call)
 {
     const Material *material = to_material(e, call->arguments[0].value, call->arguments[0].syntax);
-    return material ? shape_value(make_paint(e, shape, material, call->syntax->span)) : value_error();
+    return material ? value_shape(make_paint(e, shape, material, call->syntax->span))
+                    : value_error();
 }
 
 static Value method_within(Elaboration *e, const Shape *shape, Call *call)
@@ -254,19 +243,19 @@ static Value method_within(Elaboration *e, const Shape *shape, Call *call)
     if (!region)
         return value_error();
     if (is_given(call, 1)) {
-        diag_add(e->diags, DIAG_NOT_SUPPORTED, call->arguments[1].syntax->span, "this version of krs cannot cut a surface open")
-            ->label = "not in this version";
+        Diag *diag  = diag_add(e->diags, DIAG_NOT_SUPPORTED, call->arguments[1].syntax->span,
+                               "this version of krs cannot cut a surface open");
+        diag->label = "not in this version";
         return value_error();
     }
     const Shape *both[] = {shape, region};
-    return shape_value(make_joint(e, SHAPE_INTERSECTION, both, 2, BLEND_QUADRATIC, NODE_NONE, NODE_NONE, call->syntax->span));
+    return value_shape(make_joint(e, SHAPE_INTERSECTION, both, 2, blend_sharp, call->syntax->span));
 }
 
 static Value method_not_supported(Elaboration *e, const Shape *shape, Call *call)
 {
     (void)shape;
-    Diag *diag = diag_add(e->diags, DIAG_NOT_SUPPORTED, call->syntax->name_span, "this version of krs does not have `.%s`", call->name);
-    diag->label = "not in this version";
+    not_supported(e, call->syntax->name_span, diag_text(e->diags, "`.%s`", call->name));
     return value_error();
 }
 
@@ -288,7 +277,8 @@ static Value unknown_method(Elaboration *e, const Syntax *syntax, Value receiver
     for (size_t i = 0; i < METHOD_COUNT; i++)
         names[i] = methods[i].name;
     const char *type = value_type_name(e, receiver);
-    Diag *diag = diag_add(e->diags, DIAG_UNKNOWN_METHOD, syntax->name_span, "%s has no method `%s`", type, syntax->name);
+    Diag *diag = diag_add(e->diags, DIAG_UNKNOWN_METHOD, syntax->name_span, "%s has no method `%s`",
+                          type, syntax->name);
     diag->label = "unknown method";
     if (receiver.type == VALUE_SHAPE)
         diag->replacement = nearest_name(syntax->name, names, METHOD_COUNT);
@@ -306,7 +296,7 @@ Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax)
     if (receiver.type == VALUE_ERROR)
         return receiver;
     if (receiver.type == VALUE_MAP && strcmp(syntax->name, "inverse") == 0 && syntax->count == 1)
-        return (Value){.type = VALUE_MAP, .map = similarity_inverse(e, receiver.map)};
+        return value_map(similarity_inverse(e, receiver.map));
     for (size_t i = 0; receiver.type == VALUE_SHAPE && i < METHOD_COUNT; i++) {
         Call call;
         if (strcmp(methods[i].name, syntax->name) != 0)

@@ -4,12 +4,26 @@
 #include "compiler/geometry/shape.h"
 
 static const char *const kind_names[] = {
-    [SHAPE_EMPTY] = "empty", [SHAPE_PRIMITIVE] = "primitive", [SHAPE_TRANSFORM] = "transform",
-    [SHAPE_STRETCH] = "stretch", [SHAPE_UNION] = "union", [SHAPE_INTERSECTION] = "intersection",
-    [SHAPE_DIFFERENCE] = "difference", [SHAPE_XOR] = "xor", [SHAPE_MORPH] = "morph", [SHAPE_OFFSET] = "offset",
-    [SHAPE_SHELL] = "shell", [SHAPE_ELONGATE] = "elongate", [SHAPE_EXTRUDE] = "extrude", [SHAPE_REVOLVE] = "revolve",
-    [SHAPE_REPEAT] = "repeat", [SHAPE_REPEAT_POLAR] = "repeat_polar", [SHAPE_MIRROR] = "mirror",
-    [SHAPE_PAINT] = "paint", [SHAPE_KRS] = "krs"};
+    [SHAPE_EMPTY]        = "empty",
+    [SHAPE_PRIMITIVE]    = "primitive",
+    [SHAPE_TRANSFORM]    = "transform",
+    [SHAPE_STRETCH]      = "stretch",
+    [SHAPE_UNION]        = "union",
+    [SHAPE_INTERSECTION] = "intersection",
+    [SHAPE_DIFFERENCE]   = "difference",
+    [SHAPE_XOR]          = "xor",
+    [SHAPE_MORPH]        = "morph",
+    [SHAPE_OFFSET]       = "offset",
+    [SHAPE_SHELL]        = "shell",
+    [SHAPE_ELONGATE]     = "elongate",
+    [SHAPE_EXTRUDE]      = "extrude",
+    [SHAPE_REVOLVE]      = "revolve",
+    [SHAPE_REPEAT]       = "repeat",
+    [SHAPE_REPEAT_POLAR] = "repeat_polar",
+    [SHAPE_MIRROR]       = "mirror",
+    [SHAPE_PAINT]        = "paint",
+    [SHAPE_KRS]          = "krs",
+};
 
 static void print_indent(Text *out, uint32_t depth)
 {
@@ -38,27 +52,35 @@ static void print_box(Box box, Text *out)
         text_format(out, " %.6g..%.6g", box.axis[i].low, box.axis[i].high);
 }
 
-static void print_shape(const Scene *scene, const Sources *sources, const Shape *shape, uint32_t depth, Text *out)
+/* Blend, and the numbers of the kind (shape.h). */
+static void print_values(const Scene *scene, const Shape *shape, Text *out)
+{
+    if (shape->blend.width != NODE_NONE)
+        text_format(out, "  blend %s", blend_info[shape->blend.kind].spelling);
+    const Node numbers[] = {shape->blend.width, shape->blend.steps, shape->values[0],
+                            shape->values[1]};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        if (numbers[i] != NODE_NONE) {
+            text_add(out, i == 0 ? " " : "  ");
+            print_node(scene, numbers[i], out);
+        }
+}
+
+static void print_shape(const Scene *scene, const Sources *sources, const Shape *shape,
+                        uint32_t depth, Text *out)
 {
     print_indent(out, depth);
     text_add(out, shape->kind == SHAPE_PRIMITIVE ? shape->name : kind_names[shape->kind]);
     if (shape->span.source) {
         Position position = source_position(&sources->items[shape->span.source], shape->span.start);
-        text_format(out, "  %s:%u:%u", sources->items[shape->span.source].name, position.line, position.column);
+        text_format(out, "  %s:%u:%u", sources->items[shape->span.source].name, position.line,
+                    position.column);
     }
     print_box(shape->box, out);
     text_format(out, "  slope %.6g%s", shape->slope, shape->exact ? " exact" : "");
     if (shape->kind == SHAPE_PRIMITIVE && shape->derived > 1 + 1e-9)
         text_format(out, " (derived %.6g)", shape->derived);
-    if (shape->blend_width != NODE_NONE) {
-        text_format(out, "  blend %s ", blend_info[shape->blend].spelling);
-        print_node(scene, shape->blend_width, out);
-    }
-    for (int i = 0; i < 2; i++)
-        if (shape->values[i] != NODE_NONE) {
-            text_add(out, "  ");
-            print_node(scene, shape->values[i], out);
-        }
+    print_values(scene, shape, out);
     if (shape->kind == SHAPE_PAINT)
         text_format(out, "  %s", shape->material->name);
     text_add(out, "\n");
@@ -87,7 +109,8 @@ void scene_print(const Scene *scene, const Sources *sources, Text *out)
         const Parameter *parameter = &scene->parameters.items[i];
         text_format(out, "param %s slot %u", parameter->name, parameter->slot);
         for (uint32_t k = 0; k < parameter->components; k++)
-            text_format(out, " %.6g in [%.6g, %.6g]", parameter->value[k], parameter->low[k], parameter->high[k]);
+            text_format(out, " %.6g in [%.6g, %.6g]", parameter->value[k], parameter->low[k],
+                        parameter->high[k]);
         text_add(out, "\n");
     }
     for (size_t i = 0; i < scene->components.count; i++) {

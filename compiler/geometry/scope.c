@@ -141,60 +141,67 @@ static const char *resolve_path(Elaboration *e, const char *from, const char *pa
     return text.bytes;
 }
 
-static bool read_library(const char *path, const char **text, size_t *length)
+/* A file of the library, or NULL. */
+static const char *read_library(const char *path, size_t *length)
 {
     for (const EmbeddedFile *file = library_files; file->name; file++)
         if (strcmp(file->name, path) == 0) {
-            *text   = file->text;
             *length = file->length;
-            return true;
+            return file->text;
         }
-    return false;
+    return NULL;
 }
 
-static bool read_used(Elaboration *e, const Scope *from, const Syntax *use, const char **path, uint32_t *source)
+static bool is_library(const Syntax *use) { return strncmp(use->name, "std/", 4) == 0; }
+
+/* The name that a used file has in this run. */
+static const char *used_path(Elaboration *e, const Scope *from, const Syntax *use)
 {
-    const char *text   = NULL;
-    char       *owned  = NULL;
+    return is_library(use) ? use->name : resolve_path(e, from->path, use->name);
+}
+
+/* Reads a used file into e->sources; false: reported. */
+static bool read_used(Elaboration *e, const Syntax *use, const char *path, uint32_t *source)
+{
+    char       *owned  = NULL; /* to be freed */
     size_t      length = 0;
     const char *reason = "there is no such file in the library";
-    bool        library = strncmp(use->name, "std/", 4) == 0;
-    *path = library ? use->name : resolve_path(e, from->path, use->name);
-    if (library)
-        read_library(use->name, &text, &length);
-    else {
-        reason = "files cannot be read here";
-        if (e->read_file)
-            text = owned = e->read_file(e->reader, *path, &length, &reason);
-    }
+    const char *text;
+    if (is_library(use))
+        text = read_library(path, &length);
+    else
+        text = owned = e->read_file(path, &length, &reason);
     if (!text) {
-        Diag *diag  = diag_add(e->diags, DIAG_CANNOT_READ, use->name_span, "cannot read `%s`: %s", *path, reason);
+        Diag *diag  = diag_add(e->diags, DIAG_CANNOT_READ, use->name_span, "cannot read `%s`: %s",
+                               path, reason);
         diag->label = "used here";
         return false;
     }
     e->text_total += length;
-    bool fits = length <= MOST_FILE_BYTES && e->text_total <= MOST_TOTAL_BYTES && e->scopes.count < MOST_FILES;
+    bool fits = length <= MOST_FILE_BYTES && e->text_total <= MOST_TOTAL_BYTES &&
+                e->scopes.count < MOST_FILES;
     if (fits)
-        *source = source_add(e->sources, *path, text, length, library);
+        *source = source_add(e->sources, path, text, length, is_library(use));
     else
-        diag_add(e->diags, DIAG_LIMIT, use->name_span, "too much text: a file may have 16 MiB, all together 64 MiB in 1,024 files");
+        diag_add(e->diags, DIAG_LIMIT, use->name_span,
+                 "too much text: a file may have 16 MiB, all together 64 MiB in 1,024 files");
     free(owned);
     return fits;
 }
 
 static void load_used(Elaboration *e, Scope *scope, const Syntax *use)
 {
-    const char *path;
     uint32_t    source;
-    const char *known = strncmp(use->name, "std/", 4) == 0 ? use->name : resolve_path(e, scope->path, use->name);
-    Scope      *used  = find_loaded(e, known);
+    const char *path = used_path(e, scope, use);
+    Scope      *used = find_loaded(e, path);
     if (used && used->loading) {
-        Diag *diag  = diag_add(e->diags, DIAG_CIRCULAR_USE, use->name_span, "`%s` uses itself", known);
+        Diag *diag =
+            diag_add(e->diags, DIAG_CIRCULAR_USE, use->name_span, "`%s` uses itself", path);
         diag->label = "this closes the circle";
         return;
     }
     if (!used) {
-        if (!read_used(e, scope, use, &path, &source))
+        if (!read_used(e, use, path, &source))
             return;
         used = scope_load(e, source, path);
     }

@@ -19,7 +19,7 @@ typedef enum ShapeKind {
     SHAPE_EMPTY,        /* nothing: distance infinite */
     SHAPE_PRIMITIVE,    /* `distance`, `bound`; slope 1 after division by the derived one */
     SHAPE_TRANSFORM,    /* [0]; map; distances times its scale; slope of the child */
-    SHAPE_STRETCH,      /* [0]; values[0] factors (VEC3); times the least factor; slope of the child */
+    SHAPE_STRETCH,      /* [0]; values[0] factors (VEC3); times the least; slope of the child */
     SHAPE_UNION,        /* [..]; blend; largest slope times the blend's factor */
     SHAPE_INTERSECTION, /* likewise */
     SHAPE_DIFFERENCE,   /* [0] less all others; likewise */
@@ -27,7 +27,7 @@ typedef enum ShapeKind {
     SHAPE_MORPH,        /* [0], [1]; values[0] in [0, 1]; largest slope */
     SHAPE_OFFSET,       /* [0]; values[0]; d - r; slope of the child */
     SHAPE_SHELL,        /* [0]; values[0]; |d| - t / 2; slope of the child */
-    SHAPE_ELONGATE,     /* [0]; values[0] half lengths; slope of the child: clamping is 1-Lipschitz */
+    SHAPE_ELONGATE,     /* [0]; values[0] half lengths; slope of the child (a clamp's is 1) */
     SHAPE_EXTRUDE,      /* [0] a figure; values[0] half height; largest of child's and 1 */
     SHAPE_REVOLVE,      /* [0] a figure; values[0] offset; slope of the child */
     SHAPE_REPEAT,       /* [0]; values[0] period, cells; slope of the child: see lower.c */
@@ -43,6 +43,9 @@ struct Similarity {
     Node scale, rows[3], shift;
 };
 
+/* The rows of the inverse of a turn. */
+void transpose_rows(Graph *graph, const Node rows[3], Node transposed[3]);
+
 /* How two distances are joined; blends.def has a row for each. */
 typedef enum BlendKind {
 #define BLEND(name, spelling, op, slope, bulge, meaning) BLEND_##name,
@@ -56,9 +59,15 @@ typedef struct BlendInfo {
     Op          op;      /* smooth minimum of (a, b, width) */
     double      slope;   /* slope of the result over the larger slope of the operands */
     double      bulge;   /* how far min(a, b) may exceed the result, in widths */
-    const char *meaning;
 } BlendInfo;
 extern const BlendInfo blend_info[BLEND_COUNT];
+
+typedef struct Blend {
+    BlendKind kind;
+    Node      width; /* NODE_NONE: the joint is sharp */
+    Node      steps; /* of BLEND_STAIRS */
+} Blend;
+extern const Blend blend_sharp;
 
 /* One statement of a `krs` block. */
 typedef struct Stage {
@@ -89,18 +98,18 @@ struct Shape {
     double instances; /* copies of kernels that reflections make; 1 without a sequence */
     uint32_t levels;  /* reflections of the outermost sequence in it */
 
-    Node            distance, bound;       /* PRIMITIVE, in its own coordinates; bound may be NODE_NONE */
-    Node            values[2];
-    Similarity      map;
-    BlendKind       blend;                 /* with blend_width NODE_NONE the joint is sharp */
-    Node            blend_width;
-    uint32_t        cells[3];              /* REPEAT: copies per axis, 0 for endless */
-    Node            plane_normal, plane_offset; /* PRIMITIVE that is a half-space, else NODE_NONE */
-    const Syntax   *core; /* PRIMITIVE: what .round(r) grows by r, an expression of `rounding`, or NULL */
-    const struct Environment *core_names;  /* what that expression sees */
-    const Material *material;
-    const Stage    *stages;
-    uint32_t        stage_count;
+    Node       distance, bound; /* PRIMITIVE, in its own coordinates; bound may be NODE_NONE */
+    Node       values[2];       /* see ShapeKind; NODE_NONE where there are fewer */
+    Similarity map;
+    Blend      blend;    /* of joints */
+    uint32_t   cells[3]; /* REPEAT: copies per axis, 0 for endless */
+
+    Node          plane_normal, plane_offset; /* PRIMITIVE that is a half-space, else NODE_NONE */
+    const Syntax *core; /* PRIMITIVE: what .round(r) grows by r, using `rounding`; or NULL */
+    const struct Environment *core_names; /* what that expression sees */
+    const Material           *material;
+    const Stage              *stages;
+    uint32_t                  stage_count;
 };
 
 /* A `param`: its slot in the parameter block and its range. */

@@ -11,7 +11,10 @@
 
 static const double ZERO[3] = {0, 0, 0};
 
-static Node unit_axis(Graph *graph, int axis) { return graph_vec3(graph, axis == 0, axis == 1, axis == 2); }
+static Node unit_axis(Graph *graph, int axis)
+{
+    return graph_vec3(graph, axis == 0, axis == 1, axis == 2);
+}
 
 static Similarity *similarity_new(Elaboration *e)
 {
@@ -51,7 +54,7 @@ static void rotation_rows(Elaboration *e, Node axis, Node cosine, Node sine, Nod
         Node along    = graph_component(g, axis, (uint32_t)i);
         along         = graph_op2(g, OP_mul, along, versine);
         Node outer    = graph_op2(g, OP_scale, axis, along);
-        /* Row i of [a]x is e_i^T [a]x = (e_i x a)^T ... with the sign of (a x v)_i = (e_i x a).v */
+        /* Row i of [a]x is e_i x a, for (a x v)_i = e_i.(a x v) = (e_i x a).v */
         Node cross = graph_op2(g, OP_cross, unit, axis);
         cross      = graph_op2(g, OP_scale, cross, sine);
         Node sum   = graph_op2(g, OP_add, diagonal, outer);
@@ -121,7 +124,7 @@ const Similarity *similarity_alignment(Elaboration *e, Node from, Node to)
     bisector       = graph_op1(g, OP_normalize, bisector);
     Node zero      = graph_number(g, 0);
     const Similarity *first  = similarity_reflection(e, bisector, zero);
-    /* The first takes a to -b (to a itself, reversed, when they are opposite: -a = b, so a to a). */
+    /* The first takes a to -b; when they are opposite it leaves a, which is -b, where it is. */
     Node turned              = similarity_turn(e, first, a);
     Node way                 = graph_op2(g, OP_sub, turned, b);
     Node way_size            = graph_op1(g, OP_length, way);
@@ -162,18 +165,23 @@ const Similarity *similarity_product(Elaboration *e, const Similarity *f, const 
     return map;
 }
 
+void transpose_rows(Graph *graph, const Node rows[3], Node transposed[3])
+{
+    for (uint32_t i = 0; i < 3; i++) {
+        Node x        = graph_component(graph, rows[0], i);
+        Node y        = graph_component(graph, rows[1], i);
+        Node z        = graph_component(graph, rows[2], i);
+        transposed[i] = graph_op3(graph, OP_vec3, x, y, z);
+    }
+}
+
 const Similarity *similarity_inverse(Elaboration *e, const Similarity *f)
 {
     Graph      *g   = e->graph;
     Similarity *map = similarity_new(e);
     Node        one = graph_number(g, 1);
     map->scale      = graph_op2(g, OP_div, one, f->scale);
-    for (uint32_t i = 0; i < 3; i++) {
-        Node x = graph_component(g, f->rows[0], i);
-        Node y = graph_component(g, f->rows[1], i);
-        Node z = graph_component(g, f->rows[2], i);
-        map->rows[i] = graph_op3(g, OP_vec3, x, y, z);
-    }
+    transpose_rows(g, f->rows, map->rows);
     Node back   = similarity_turn(e, map, f->shift);
     Node factor = graph_op1(g, OP_neg, map->scale);
     map->shift  = graph_op2(g, OP_scale, back, factor);

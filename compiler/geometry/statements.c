@@ -6,11 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-/* Where the statements of a block go: the scene, or a sequence. */
+/* Where the statements of a `krs` block go; those at the top level have none (NULL). */
 typedef struct Sequence {
     struct { Stage *items; size_t count, capacity; } stages;
     struct { const Shape **items; size_t count, capacity; } kernels;
-    bool wrong;
+    bool wrong; /* a mistake was reported: the block has no value */
 } Sequence;
 
 /* ---- definitions ---- */
@@ -31,7 +31,8 @@ static uint32_t constants_of(Elaboration *e, Value value, const Syntax *syntax, 
         numbers[0] = value.number;
         return 1;
     }
-    uint32_t count = value.type == VALUE_LIST && value.list->count <= 4 ? (uint32_t)value.list->count : 0;
+    uint32_t count =
+        value.type == VALUE_LIST && value.list->count <= 4 ? (uint32_t)value.list->count : 0;
     for (uint32_t i = 0; i < count; i++) {
         if (value.list->items[i].type != VALUE_NUMBER)
             count = 0;
@@ -41,14 +42,17 @@ static uint32_t constants_of(Elaboration *e, Value value, const Syntax *syntax, 
     if (count >= 2)
         return count;
     if (value_time(e, value) != TIME_COMPILE) {
-        Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, syntax->span, "the value of a `param` must be a constant");
+        Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, syntax->span,
+                               "the value of a `param` must be a constant");
         diag->label = "this is not known at compile time";
-    } else if (value.type != VALUE_ERROR)
+    } else
         type_error(e, syntax, value, "a number, a vector or a colour");
     return 0;
 }
 
-static bool param_range(Elaboration *e, const Environment *env, const Syntax *syntax, Parameter *parameter)
+/* The range of a `param`, endless when it has none; a number counts for all components. */
+static bool param_range(Elaboration *e, const Environment *env, const Syntax *syntax,
+                        Parameter *parameter)
 {
     for (int i = 0; i < 4; i++) {
         parameter->low[i]  = -INFINITY;
@@ -62,7 +66,8 @@ static bool param_range(Elaboration *e, const Environment *env, const Syntax *sy
         return false;
     bool good = range.type == VALUE_LIST && range.list->count == 2;
     for (uint32_t side = 0; good && side < 2; side++) {
-        uint32_t count = constants_of(e, range.list->items[side], syntax->children[1], bounds[side]);
+        uint32_t count =
+            constants_of(e, range.list->items[side], syntax->children[1], bounds[side]);
         if (!count)
             return false;
         for (uint32_t i = 0; count == 1 && i < 4; i++)
@@ -72,11 +77,12 @@ static bool param_range(Elaboration *e, const Environment *env, const Syntax *sy
     for (uint32_t i = 0; good && i < parameter->components; i++) {
         parameter->low[i]  = bounds[0][i];
         parameter->high[i] = bounds[1][i];
-        good               = bounds[0][i] <= parameter->value[i] && parameter->value[i] <= bounds[1][i];
+        good = bounds[0][i] <= parameter->value[i] && parameter->value[i] <= bounds[1][i];
     }
     if (good)
         return true;
-    Diag *diag  = diag_add(e->diags, DIAG_RANGE_OF_PARAM, syntax->children[1]->span, "the range of `%s` does not fit its default", syntax->name);
+    Diag *diag  = diag_add(e->diags, DIAG_RANGE_OF_PARAM, syntax->children[1]->span,
+                           "the range of `%s` does not fit its default", syntax->name);
     diag->label = "[low, high] with low <= default <= high";
     diag_place(e->diags, diag, syntax->children[0]->span, "the default");
     return false;
@@ -86,7 +92,9 @@ static Value define_param(Elaboration *e, const Environment *env, const Syntax *
 {
     Parameter parameter  = {.name = syntax->name};
     Value     value      = evaluate(e, env, syntax->children[0]);
-    parameter.components = value.type == VALUE_ERROR ? 0 : constants_of(e, value, syntax->children[0], parameter.value);
+    if (value.type == VALUE_ERROR)
+        return value;
+    parameter.components = constants_of(e, value, syntax->children[0], parameter.value);
     if (!parameter.components || !param_range(e, env, syntax, &parameter))
         return value_error();
     parameter.slot       = (uint32_t)e->graph->parameters.count;
@@ -95,7 +103,8 @@ static Value define_param(Elaboration *e, const Environment *env, const Syntax *
     memcpy(range.high, parameter.high, sizeof range.high);
     array_push(e->arena, &e->graph->parameters, range);
     array_push(e->arena, &e->scene->parameters, parameter);
-    return (Value){.type = VALUE_EXPRESSION, .node = graph_parameter(e->graph, parameter.slot, (GraphType)parameter.components)};
+    Node node = graph_parameter(e->graph, parameter.slot, (GraphType)parameter.components);
+    return (Value){.type = VALUE_EXPRESSION, .node = node};
 }
 
 Value run_definition(Elaboration *e, Definition *definition, Span use)
@@ -104,7 +113,8 @@ Value run_definition(Elaboration *e, Definition *definition, Span use)
         return definition->value;
     if (definition->state == DEFINITION_RUNNING) {
         /* names_check reports circles it can see; this is the one through a function. */
-        Diag *diag  = diag_add(e->diags, DIAG_CYCLE, definition->syntax->name_span, "`%s` needs itself", definition->name);
+        Diag *diag  = diag_add(e->diags, DIAG_CYCLE, definition->syntax->name_span,
+                               "`%s` needs itself", definition->name);
         diag->label = "defined here";
         diag_place(e->diags, diag, use, "needed here");
         return value_error();
@@ -119,7 +129,7 @@ Value run_definition(Elaboration *e, Definition *definition, Span use)
     case SYNTAX_MATERIAL: definition->value = elaborate_material(e, env, syntax); break;
     case SYNTAX_DEF:
     case SYNTAX_SHAPE:    definition->value = function_value(e, env, syntax); break;
-    default:              definition->value = value_number(0); break; /* cameras and lights: names only */
+    default:              definition->value = value_number(0); break; /* cameras, lights: names */
     }
     e->graph->here    = caller;
     definition->state = DEFINITION_DONE;
@@ -138,6 +148,7 @@ static const char *component_name(Elaboration *e, const Syntax *syntax)
     return diag_text(e->diags, "component %zu", e->scene->components.count + 1);
 }
 
+/* An EachElement: shows a shape, or all shapes of a list; `user` is the expression shown. */
 static bool show_one(Elaboration *e, Value value, void *user)
 {
     const Syntax *syntax = user;
@@ -148,12 +159,12 @@ static bool show_one(Elaboration *e, Value value, void *user)
         return true;
     }
     if (value.type != VALUE_SHAPE) {
-        if (value.type != VALUE_ERROR)
-            type_error(e, syntax, value, "a shape");
+        type_error(e, syntax, value, "a shape");
         return false;
     }
     if (value.shape->figure) {
-        Diag *diag  = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span, "a plane figure cannot be shown");
+        Diag *diag =
+            diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span, "a plane figure cannot be shown");
         diag->label = "this has no thickness";
         diag->help  = "make it solid with `.extrude(height)` or `.revolve()`";
         return false;
@@ -165,24 +176,29 @@ static bool show_one(Elaboration *e, Value value, void *user)
 
 /* ---- krs blocks ---- */
 
-static void add_kernel(Elaboration *e, const Environment *env, const Syntax *syntax, Sequence *sequence)
+static void add_kernel(Elaboration *e, const Environment *env, const Syntax *syntax,
+                       Sequence *sequence)
 {
     Value value = evaluate(e, env, syntax->children[0]);
     if (value.type == VALUE_SHAPE && !value.shape->figure) {
-        Stage stage = {.kind = STAGE_KERNEL, .kernel = (uint32_t)sequence->kernels.count, .span = syntax->span};
+        Stage stage = {.kind   = STAGE_KERNEL,
+                       .kernel = (uint32_t)sequence->kernels.count,
+                       .span   = syntax->span};
         array_push(e->arena, &sequence->kernels, value.shape);
         array_push(e->arena, &sequence->stages, stage);
         return;
     }
     sequence->wrong = true;
-    if (value.type == VALUE_SHAPE)
-        diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->children[0]->span, "a kernel must be solid, found a plane figure")
-            ->help = "make it solid with `.extrude(height)` or `.revolve()`";
-    else if (value.type != VALUE_ERROR)
+    if (value.type == VALUE_SHAPE) {
+        Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->children[0]->span,
+                              "a kernel must be solid, found a plane figure");
+        diag->help = "make it solid with `.extrude(height)` or `.revolve()`";
+    } else
         type_error(e, syntax->children[0], value, "a shape");
 }
 
-static void add_mirror(Elaboration *e, const Environment *env, const Syntax *syntax, Sequence *sequence)
+static void add_mirror(Elaboration *e, const Environment *env, const Syntax *syntax,
+                       Sequence *sequence)
 {
     const Syntax *argument = syntax->children[0];
     Value         value    = evaluate(e, env, argument);
@@ -195,15 +211,17 @@ static void add_mirror(Elaboration *e, const Environment *env, const Syntax *syn
     if (value.type == VALUE_ERROR)
         return;
     const char *type = value_type_name(e, value);
-    Diag *diag  = diag_add(e->diags, DIAG_NEEDS_PLANE, argument->span, "`reflect` needs a plane, found %s", type);
+    Diag *diag  = diag_add(e->diags, DIAG_NEEDS_PLANE, argument->span,
+                           "`reflect` needs a plane, found %s", type);
     diag->label = diag_text(e->diags, "this is %s", type);
     if (value.type == VALUE_SHAPE)
-        diag->help = "planes are written `plane(normal: [1, 0, 0], offset: 2)`; for an inversion in a sphere there is "
-                     "`mobius invert(center: [0, 0, 0], radius: 2);`";
-    point_at_definition(e, diag, argument, NULL);
+        diag->help = "planes are written `plane(normal: [1, 0, 0], offset: 2)`; for an inversion "
+                     "in a sphere there is `mobius invert(center: [0, 0, 0], radius: 2);`";
+    point_at_definition(e, diag, argument);
 }
 
-static void add_map(Elaboration *e, const Environment *env, const Syntax *syntax, Sequence *sequence)
+static void add_map(Elaboration *e, const Environment *env, const Syntax *syntax,
+                    Sequence *sequence)
 {
     Value value = evaluate(e, env, syntax->children[0]);
     Stage stage = {.kind = STAGE_SIMILARITY, .span = syntax->span};
@@ -213,8 +231,7 @@ static void add_map(Elaboration *e, const Environment *env, const Syntax *syntax
         return;
     }
     sequence->wrong = true;
-    if (value.type != VALUE_ERROR)
-        type_error(e, syntax->children[0], value, "a map of space");
+    type_error(e, syntax->children[0], value, "a map of space");
 }
 
 /* ---- blocks ---- */
@@ -225,35 +242,40 @@ typedef struct Loop {
     Sequence          *sequence; /* NULL at the top level */
 } Loop;
 
-static void run_block(Elaboration *e, const Environment *env, const Syntax *block, Sequence *sequence);
+static void run_block(Elaboration *e, const Environment *env, const Syntax *block,
+                      Sequence *sequence);
 
 static bool run_turn(Elaboration *e, Value element, void *user)
 {
     const Loop *loop = user;
-    Environment env  = bind(e, loop->env, loop->syntax->name, element, loop->syntax->name_span);
+    Environment env  = bind(e, loop->env, loop->syntax->name, element);
     run_block(e, &env, loop->syntax->children[1], loop->sequence);
     return !e->stopped && !(loop->sequence && loop->sequence->wrong);
 }
 
-static void run_if(Elaboration *e, const Environment *env, const Syntax *syntax, Sequence *sequence);
+static void run_if(Elaboration *e, const Environment *env, const Syntax *syntax,
+                   Sequence *sequence);
 
-static void run_statement(Elaboration *e, Environment *env, const Syntax *syntax, Sequence *sequence)
+static void run_statement(Elaboration *e, Environment *env, const Syntax *syntax,
+                          Sequence *sequence)
 {
     Loop loop = {env, syntax, sequence};
     switch (syntax->kind) {
     case SYNTAX_LET:
-        *env = bind(e, env, syntax->name, evaluate(e, env, syntax->children[0]), syntax->name_span);
+        *env = bind(e, env, syntax->name, evaluate(e, env, syntax->children[0]));
         break;
     case SYNTAX_DEF:
     case SYNTAX_SHAPE:
-        *env = bind(e, env, syntax->name, function_value(e, env, syntax), syntax->name_span);
+        *env = bind(e, env, syntax->name, function_value(e, env, syntax));
         break;
     case SYNTAX_FOR:
         if (!evaluate_each(e, env, syntax->children[0], run_turn, &loop) && sequence)
             sequence->wrong = true;
         break;
     case SYNTAX_IF_STATEMENT: run_if(e, env, syntax, sequence); break;
-    case SYNTAX_SHOW:         show_one(e, evaluate(e, env, syntax->children[0]), syntax->children[0]); break;
+    case SYNTAX_SHOW:
+        show_one(e, evaluate(e, env, syntax->children[0]), syntax->children[0]);
+        break;
     case SYNTAX_KERNEL:       add_kernel(e, env, syntax, sequence); break;
     case SYNTAX_REFLECT:      add_mirror(e, env, syntax, sequence); break;
     case SYNTAX_MOBIUS:       add_map(e, env, syntax, sequence); break;
@@ -264,7 +286,8 @@ static void run_statement(Elaboration *e, Environment *env, const Syntax *syntax
     }
 }
 
-static void run_block(Elaboration *e, const Environment *env, const Syntax *block, Sequence *sequence)
+static void run_block(Elaboration *e, const Environment *env, const Syntax *block,
+                      Sequence *sequence)
 {
     Environment inner = *env;
     for (uint32_t i = 0; i < block->count && !e->stopped; i++)
@@ -275,7 +298,8 @@ static void run_if(Elaboration *e, const Environment *env, const Syntax *syntax,
 {
     Value condition = evaluate(e, env, syntax->children[0]);
     if (condition.type == VALUE_BOOLEAN) {
-        const Syntax *branch = condition.boolean ? syntax->children[1] : syntax->count > 2 ? syntax->children[2] : NULL;
+        uint32_t      taken  = condition.boolean ? 1 : 2;
+        const Syntax *branch = taken < syntax->count ? syntax->children[taken] : NULL;
         if (branch && branch->kind == SYNTAX_IF_STATEMENT)
             run_if(e, env, branch, sequence);
         else if (branch)
@@ -284,12 +308,10 @@ static void run_if(Elaboration *e, const Environment *env, const Syntax *syntax,
     }
     if (sequence)
         sequence->wrong = true;
-    if (condition.type == VALUE_EXPRESSION) {
-        Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, syntax->children[0]->span,
-                               "the condition of a statement must be known at compile time");
-        diag->label = "this depends on a `param`, on `time` or on a coordinate";
-        point_at_definition(e, diag, syntax->children[0], NULL);
-    } else if (condition.type != VALUE_ERROR)
+    if (condition.type == VALUE_EXPRESSION)
+        constant_error(e, syntax->children[0],
+                       "the condition of a statement must be known at compile time");
+    else
         type_error(e, syntax->children[0], condition, "a truth value");
 }
 
@@ -300,13 +322,15 @@ Value elaborate_krs(Elaboration *e, const Environment *env, const Syntax *syntax
     if (sequence.wrong || e->stopped)
         return value_error();
     if (sequence.kernels.count == 0) {
-        Diag *diag  = diag_add(e->diags, DIAG_NO_EFFECT, syntax->span, "a sequence without a kernel is empty");
+        Diag *diag  = diag_add(e->diags, DIAG_NO_EFFECT, syntax->span,
+                               "a sequence without a kernel is empty");
         diag->label = "no `kernel` in here";
-        return (Value){.type = VALUE_SHAPE, .shape = make_empty(e, syntax->span)};
+        return value_shape(make_empty(e, syntax->span));
     }
-    const Shape *krs = make_krs(e, sequence.stages.items, (uint32_t)sequence.stages.count, sequence.kernels.items,
-                                (uint32_t)sequence.kernels.count, syntax->span);
-    return (Value){.type = VALUE_SHAPE, .shape = krs};
+    const Shape *krs =
+        make_krs(e, sequence.stages.items, (uint32_t)sequence.stages.count, sequence.kernels.items,
+                 (uint32_t)sequence.kernels.count, syntax->span);
+    return value_shape(krs);
 }
 
 /* ---- the file ---- */
@@ -317,7 +341,8 @@ static void run_file(Elaboration *e, Scope *scope)
     for (uint32_t i = 0; i < scope->file->count && !e->stopped; i++) {
         const Syntax *syntax = scope->file->children[i];
         switch (syntax->kind) {
-        case SYNTAX_LET: case SYNTAX_PARAM: case SYNTAX_MATERIAL: case SYNTAX_DEF: case SYNTAX_SHAPE: {
+        case SYNTAX_LET: case SYNTAX_PARAM: case SYNTAX_MATERIAL:
+        case SYNTAX_DEF: case SYNTAX_SHAPE: {
             Definition *definition = scope_find(scope, syntax->name);
             if (definition && definition->syntax == syntax)
                 run_definition(e, definition, syntax->name_span);
@@ -332,9 +357,11 @@ static void run_file(Elaboration *e, Scope *scope)
 /* Parameters get their slots in the order of the text, whoever needs them first. */
 static void run_params(Elaboration *e, Scope *scope)
 {
-    for (size_t i = 0; i < scope->definitions.count; i++)
-        if (scope->definitions.items[i]->syntax->kind == SYNTAX_PARAM)
-            run_definition(e, scope->definitions.items[i], scope->definitions.items[i]->syntax->name_span);
+    for (size_t i = 0; i < scope->definitions.count; i++) {
+        Definition *definition = scope->definitions.items[i];
+        if (definition->syntax->kind == SYNTAX_PARAM)
+            run_definition(e, definition, definition->syntax->name_span);
+    }
 }
 
 void elaborate(Elaboration *e, uint32_t source, const char *path)
@@ -351,7 +378,9 @@ void elaborate(Elaboration *e, uint32_t source, const char *path)
     for (size_t i = 0; i < e->scene->components.count; i++)
         e->scene->box = box_hull(e->scene->box, e->scene->components.items[i].shape->box);
     finish_looks(e);
-    if (e->scene->components.count == 0 && e->diags->errors == 0)
-        diag_add(e->diags, DIAG_NOTHING_SHOWN, scope->file->span, "the scene shows nothing")->help =
-            "write `show` and a shape, for example `show sphere(1);`";
+    if (e->scene->components.count == 0 && e->diags->errors == 0) {
+        Diag *diag =
+            diag_add(e->diags, DIAG_NOTHING_SHOWN, scope->file->span, "the scene shows nothing");
+        diag->help = "write `show` and a shape, for example `show sphere(1);`";
+    }
 }

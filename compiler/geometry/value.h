@@ -72,7 +72,25 @@ struct Material {
 };
 
 static inline Value value_error(void) { return (Value){.type = VALUE_ERROR}; }
-static inline Value value_number(double number) { return (Value){.type = VALUE_NUMBER, .number = number}; }
-static inline Value value_boolean(bool truth) { return (Value){.type = VALUE_BOOLEAN, .boolean = truth}; }
+static inline Value value_number(double number)
+{
+    return (Value){.type = VALUE_NUMBER, .number = number};
+}
+
+static inline Value value_boolean(bool truth)
+{
+    return (Value){.type = VALUE_BOOLEAN, .boolean = truth};
+}
+
+/* Of a shape or a map; NULL, whose reason has been reported, is VALUE_ERROR. */
+static inline Value value_shape(const Shape *shape)
+{
+    return shape ? (Value){.type = VALUE_SHAPE, .shape = shape} : value_error();
+}
+
+static inline Value value_map(const Similarity *map)
+{
+    return map ? (Value){.type = VALUE_MAP, .map = map} : value_error();
+}
 
 #endif

@@ -447,7 +447,8 @@ static Node substitute_leaf(const Expr *e, Node node, Substitution with)
 }
 
 /* The graph grows meanwhile, so the expression is handed over as a copy. */
-static Node substitute_operands(Graph *graph, Expr e, Node node, const Tape *tape, const Node *copies)
+static Node substitute_operands(Graph *graph, Expr e, Node node, const Tape *tape,
+                                const Node *copies)
 {
     bool changed = false;
     for (int i = 0; i < e.operand_count; i++) {

@@ -51,7 +51,8 @@ static uint8_t component_parity(const Expr *e, const Parity *const *operands, ui
 {
     uint8_t a = operands[0]->of[k], b = e->operand_count > 1 ? operands[1]->of[k] : NEITHER;
     switch ((Op)e->op) {
-    case OP_neg: case OP_sign: case OP_sin: case OP_tan: case OP_asin: case OP_atan: case OP_sinh: case OP_tanh:
+    case OP_neg: case OP_sign: case OP_sin: case OP_tan: case OP_asin: case OP_atan:
+    case OP_sinh: case OP_tanh:
         return a;
     case OP_abs: case OP_square: case OP_cos: case OP_cosh:
         return unsign(a);
@@ -66,22 +67,26 @@ static uint8_t component_parity(const Expr *e, const Parity *const *operands, ui
     }
 }
 
-static Parity node_parity(const Graph *graph, const Expr *e, const Parity *const *operands, uint32_t axis)
+/* Constants, parameters and the point; whatever else is a leaf is not known. */
+static Parity leaf_parity(const Expr *e, uint32_t axis)
+{
+    Parity parity = {{NEITHER, NEITHER, NEITHER, NEITHER}};
+    for (uint32_t k = 0; k < size_of(e); k++) {
+        if (e->op == OP_CONSTANT || e->op == OP_PARAMETER)
+            parity.of[k] = e->op == OP_CONSTANT && e->number[k] == 0 ? ZERO : EVEN;
+        else if (e->op == OP_POINT)
+            parity.of[k] = k == axis ? ODD : EVEN;
+    }
+    return parity;
+}
+
+static Parity node_parity(const Graph *graph, const Expr *e, const Parity *const *operands,
+                          uint32_t axis)
 {
     Parity   parity = {{NEITHER, NEITHER, NEITHER, NEITHER}};
     uint32_t size   = size_of(e);
-    if (e->op == OP_CONSTANT || e->op == OP_PARAMETER) {
-        for (uint32_t k = 0; k < size; k++)
-            parity.of[k] = e->op == OP_CONSTANT && e->number[k] == 0 ? ZERO : EVEN;
-        return parity;
-    }
-    if (e->op == OP_POINT) {
-        for (uint32_t k = 0; k < 3; k++)
-            parity.of[k] = k == axis ? ODD : EVEN;
-        return parity;
-    }
     if (e->operand_count == 0)
-        return parity;
+        return leaf_parity(e, axis);
     uint32_t first = size_of(&graph->items[e->operands[0]]);
     switch ((Op)e->op) {
     case OP_COMPONENT:

@@ -44,6 +44,17 @@ static const char *type_name(GraphType type)
     return "float";
 }
 
+/* What names of values begin with. */
+static char type_letter(GraphType type)
+{
+    switch (type) {
+    case TYPE_FLOAT: return 't';
+    case TYPE_BOOL:  return 'b';
+    case TYPE_UINT:  return 'n';
+    default:         return 'v';
+    }
+}
+
 /* The shortest literal that reads back as the float nearest to the number. */
 static void add_literal(Text *text, double number)
 {
@@ -119,6 +130,7 @@ static const char *node_text(Emitter *e, const Expr *expr)
     }
 }
 
+/* Says where the next statement comes from, unless it is the same line as before. */
 static void comment_line(Emitter *e, Span span)
 {
     if (!span.source)
@@ -131,7 +143,7 @@ static void comment_line(Emitter *e, Span span)
     text_format(e->out, "    // %s:%u\n", source->name, position.line);
 }
 
-/* How often a template names each operand: a text that stands twice is computed twice. */
+/* Whether a template names an operand twice: what stands twice is computed twice. */
 static bool repeats_operand(const Expr *user, Node operand)
 {
     if (user->op == OP_COMPONENT)
@@ -196,8 +208,7 @@ static void emit_node(Emitter *e, Node n)
         return;
     comment_line(e, expr->span);
     Text name = {.arena = e->scratch};
-    text_format(&name, "%s%u", expr->type == TYPE_BOOL ? "b" : expr->type == TYPE_FLOAT ? "t" : expr->type == TYPE_UINT ? "n" : "v",
-                e->next++);
+    text_format(&name, "%c%u", type_letter(expr->type), e->next++);
     text_format(e->out, "    %s %s = %s;\n", type_name(expr->type), name.bytes, bare(e, text));
     e->text[n]    = name.bytes;
     e->nesting[n] = 0;
@@ -239,7 +250,8 @@ static void emit_frame(Emitter *e, const Node *roots, size_t count)
         e->frame[n] = name.bytes;
         text_format(e->out, "%s %s;\n", type_name(g->items[n].type), name.bytes);
     }
-    text_add(e->out, "\n// Everything that stays the same within a frame: call it first.\nvoid krs_prepare()\n{\n");
+    text_add(e->out, "\n// Everything that stays the same within a frame: call it first.\n"
+                     "void krs_prepare()\n{\n");
     count_uses(e, frame, frames, true);
     e->next = 0;
     for (Node n = 0; n < g->count; n++) {
@@ -298,23 +310,29 @@ static void emit_surfaces(Emitter *e, const Node *roots, size_t components)
         text_format(e->out, "KrsSurface krs_surface_%zu(vec3 p)\n{\n", i + 1);
         emit_body(e, root, ROOT_COUNT);
         text_format(e->out, "    return KrsSurface(%s, %s, %s, %s, %s, %zuu, uint(%s), %s);\n}\n\n",
-                    e->text[root[ROOT_DISTANCE]], e->text[root[ROOT_COLOR]], e->text[root[ROOT_ROUGHNESS]],
-                    e->text[root[ROOT_METALLIC]], e->text[root[ROOT_EMISSION]], i + 1, e->text[root[ROOT_LEVEL]],
+                    e->text[root[ROOT_DISTANCE]], e->text[root[ROOT_COLOR]],
+                    e->text[root[ROOT_ROUGHNESS]], e->text[root[ROOT_METALLIC]],
+                    e->text[root[ROOT_EMISSION]], i + 1, e->text[root[ROOT_LEVEL]],
                     e->text[root[ROOT_INSTANCE]]);
     }
-    text_add(e->out, "// What is at p: the component with the least distance.\nKrsSurface krs_surface(vec3 p)\n{\n");
-    text_add(e->out, components ? "    KrsSurface nearest = krs_surface_1(p);\n"
-                                : "    return KrsSurface(1e30, vec3(0.0), 1.0, 0.0, vec3(0.0), 0u, 0u, 0u);\n");
+    const char *empty =
+        "    return KrsSurface(1e30, vec3(0.0), 1.0, 0.0, vec3(0.0), 0u, 0u, 0u);\n";
+    text_add(e->out, "// What is at p: the component with the least distance.\n"
+                     "KrsSurface krs_surface(vec3 p)\n{\n");
+    text_add(e->out, components ? "    KrsSurface nearest = krs_surface_1(p);\n" : empty);
     if (components > 1)
         text_add(e->out, "    KrsSurface other;\n");
     for (size_t i = 1; i < components; i++)
-        text_format(e->out, "    other = krs_surface_%zu(p);\n    if (other.distance < nearest.distance)\n"
-                            "        nearest = other;\n", i + 1);
+        text_format(e->out,
+                    "    other = krs_surface_%zu(p);\n"
+                    "    if (other.distance < nearest.distance)\n"
+                    "        nearest = other;\n",
+                    i + 1);
     text_add(e->out, components ? "    return nearest;\n}\n" : "}\n");
 }
 
-void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots, size_t component_count,
-               Arena *scratch, Text *out)
+void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
+               size_t component_count, Arena *scratch, Text *out)
 {
     Emitter e = {.graph = graph, .sources = sources, .scratch = scratch, .out = out};
     size_t  count = component_count * ROOT_COUNT;
@@ -322,11 +340,22 @@ void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots, si
     e.frame   = arena_new_array(scratch, const char *, graph->count + 1);
     e.nesting = arena_new_array(scratch, uint8_t, graph->count + 1);
     e.uses    = arena_new_array(scratch, uint32_t, graph->count + 1);
-    text_format(out, "// Distance code of a scene; slot 0 holds the time, then one slot for each `param`.\n"
-                     "layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[%zu]; };\n\n"
-                     "struct KrsSurface {\n    float distance;\n    vec3  color;\n    float roughness;\n"
-                     "    float metallic;\n    vec3  emission;\n    uint  component;\n    uint  level;\n"
-                     "    uint  instance;\n};\n\n", graph->parameters.count);
+    text_add(out, "// Distance code of a scene; "
+                  "slot 0 holds the time, then one slot for each `param`.\n");
+    text_format(out,
+                "layout(std140, set = 0, binding = 0) uniform KrsParameters "
+                "{ vec4 krs_parameter[%zu]; };\n\n",
+                graph->parameters.count);
+    text_add(out, "struct KrsSurface {\n"
+                  "    float distance;\n"
+                  "    vec3  color;\n"
+                  "    float roughness;\n"
+                  "    float metallic;\n"
+                  "    vec3  emission;\n"
+                  "    uint  component;\n"
+                  "    uint  level;\n"
+                  "    uint  instance;\n"
+                  "};\n\n");
     emit_helpers(&e, roots, count);
     emit_frame(&e, roots, count);
     emit_distances(&e, roots, component_count);

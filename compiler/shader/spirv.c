@@ -33,17 +33,20 @@ static KrsStatus validate(const char *entry, const uint32_t *words, size_t word_
     spv_result_t result = spvValidateBinary(context, words, word_count, &diagnostic);
     KrsStatus    status = KRS_OK;
     if (result != SPV_SUCCESS) {
-        status      = result == SPV_ERROR_OUT_OF_MEMORY ? KRS_OUT_OF_MEMORY : KRS_INTERNAL;
-        char *words_of_tool = strdup(diagnostic && diagnostic->error ? diagnostic->error : "no reason given");
-        if (words_of_tool)
-            *log = name_log(entry, "the SPIR-V validator", words_of_tool);
+        const char *reason =
+            diagnostic && diagnostic->error ? diagnostic->error : "no reason given";
+        char       *copy   = strdup(reason);
+        status = result == SPV_ERROR_OUT_OF_MEMORY ? KRS_OUT_OF_MEMORY : KRS_INTERNAL;
+        if (copy)
+            *log = name_log(entry, "the SPIR-V validator", copy);
     }
     spvDiagnosticDestroy(diagnostic);
     spvContextDestroy(context);
     return status;
 }
 
-KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, size_t *word_count, char **log)
+KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, size_t *word_count,
+                        char **log)
 {
     char        *refusal = NULL;
     BorderResult result  = border_compile(glsl, words, word_count, &refusal);
@@ -69,8 +72,8 @@ char *spirv_disassemble(const uint32_t *words, size_t word_count)
     spv_context context = spvContextCreate(SPV_ENV_VULKAN_1_1);
     spv_text    text    = NULL;
     char       *copy    = NULL;
-    if (context && spvBinaryToText(context, words, word_count, SPV_BINARY_TO_TEXT_OPTION_FRIENDLY_NAMES |
-                                   SPV_BINARY_TO_TEXT_OPTION_INDENT, &text, NULL) == SPV_SUCCESS)
+    uint32_t style = SPV_BINARY_TO_TEXT_OPTION_FRIENDLY_NAMES | SPV_BINARY_TO_TEXT_OPTION_INDENT;
+    if (context && spvBinaryToText(context, words, word_count, style, &text, NULL) == SPV_SUCCESS)
         copy = strdup(text->str);
     spvTextDestroy(text);
     spvContextDestroy(context);

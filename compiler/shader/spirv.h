@@ -9,8 +9,9 @@
 /* GLSL to SPIR-V by glslang, then through the SPIR-V validator.  `entry` names the compute
    shader in messages.  On KRS_OK *words is malloc'ed and the caller's.  KRS_INTERNAL: refused by
    glslang or the validator, a bug of ours: *log (malloc'ed) has their words.  Thread-safe. */
-KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, size_t *word_count, char **log);
-/* SPIR-V as assembly text (malloc'ed), or NULL. */
+KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, size_t *word_count,
+                        char **log);
+/* SPIR-V as assembly text (malloc'ed), or NULL when it is none or there is no memory. */
 char *spirv_disassemble(const uint32_t *words, size_t word_count);
 /* Once, before the first spirv_compile of a process and after the last. */
 void spirv_start(void);

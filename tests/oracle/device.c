@@ -74,19 +74,22 @@ static Comparison compare_scene(const char *text, double roughness, double plant
     KrsHit *hits         = malloc(POINTS * sizeof *hits);
     KrsSurfacePoint *surfaces = malloc(POINTS * sizeof *surfaces);
     scatter(points, rounded);
-    assert_int_equal(krs_sample(rendering, frame, (const float (*)[3])rounded, POINTS, device, surfaces), KRS_OK);
+    status = krs_sample(rendering, frame, (const float (*)[3])rounded, POINTS, device, surfaces);
+    assert_int_equal(status, KRS_OK);
     krs_distance(frame, (const double (*)[3])points, POINTS, host);
     krs_probe(frame, (const double (*)[3])points, POINTS, hits);
 
     Comparison result = {0};
     for (size_t i = 0; i < POINTS; i++) {
-        double size    = 1 + fabs(points[i][0]) + fabs(points[i][1]) + fabs(points[i][2]) + fabs(host[i]);
+        double reach   = fabs(points[i][0]) + fabs(points[i][1]) + fabs(points[i][2]);
+        double size    = 1 + reach + fabs(host[i]);
         double allowed = roughness * 0x1p-23 * size;
         double excess  = fabs(planted * device[i] - host[i]) / allowed;
         if (!(excess <= result.worst))
             result.worst = isnan(excess) ? INFINITY : excess;
         result.id_count++;
-        result.wrong_ids += surfaces[i].component != hits[i].component || surfaces[i].level != hits[i].level ||
+        result.wrong_ids += surfaces[i].component != hits[i].component ||
+                            surfaces[i].level != hits[i].level ||
                             surfaces[i].instance != hits[i].instance;
     }
     free(points);
@@ -105,7 +108,8 @@ static void agrees(const char *text, double roughness)
 {
     Comparison c = compare_scene(text, roughness, 1);
     if (c.worst > 1 || c.wrong_ids * 500 > c.id_count)
-        fprintf(stderr, "worst %.3g, wrong ids %zu of %zu: %s\n", c.worst, c.wrong_ids, c.id_count, text);
+        fprintf(stderr, "worst %.3g, wrong ids %zu of %zu: %s\n", c.worst, c.wrong_ids, c.id_count,
+                text);
     assert_true(c.worst <= 1);
     /* Ties only: a point in 500 at most. */
     assert_true(c.wrong_ids * 500 <= c.id_count);
@@ -114,17 +118,20 @@ static void agrees(const char *text, double roughness)
 static void primitives_agree(void **context)
 {
     static const char *const solids[] = {
-        "sphere(0.8)", "box([1, 2, 0.7])", "cylinder(0.6, 1.3)", "cone(0.7, 1.2)", "capped_cone(0.8, 0.3, 1)",
-        "capsule([-0.5, 0, 0.2], [0.6, 0.7, 0], 0.2)", "round_cone([-0.6, 0, 0], [0.7, 0.4, 0.1], 0.4, 0.15)",
+        "sphere(0.8)", "box([1, 2, 0.7])", "cylinder(0.6, 1.3)", "cone(0.7, 1.2)",
+        "capped_cone(0.8, 0.3, 1)", "capsule([-0.5, 0, 0.2], [0.6, 0.7, 0], 0.2)",
+        "round_cone([-0.6, 0, 0], [0.7, 0.4, 0.1], 0.4, 0.15)",
         "arc_capsule([-0.8, 0, 0], [0, 0.7, 0.1], [0.9, 0.1, 0], 0.15, 0.15)", "torus(0.8, 0.25)",
-        "ellipsoid([1, 0.5, 0.7])", "link(0.6, 0.4, 0.12)", "octahedron(1)", "tetrahedron(1)", "dodecahedron(0.9)",
-        "icosahedron(0.9)", "prism(6, 0.8, 1)", "pyramid(1.2, 1)", "wedge(70deg)", "plane([0.3, 1, 0.2], 0.1)",
-        "circle(0.7).extrude(0.5)", "rectangle([1, 0.6]).revolve(1)", "regular(5, 0.8).extrude(0.4)",
-        "star().extrude(0.3)", "polygon([[-1, -0.5], [1, -0.6], [0.2, 0.1], [0.5, 0.9]]).extrude(0.6)"};
+        "ellipsoid([1, 0.5, 0.7])", "link(0.6, 0.4, 0.12)", "octahedron(1)", "tetrahedron(1)",
+        "dodecahedron(0.9)", "icosahedron(0.9)", "prism(6, 0.8, 1)", "pyramid(1.2, 1)",
+        "wedge(70deg)", "plane([0.3, 1, 0.2], 0.1)", "circle(0.7).extrude(0.5)",
+        "rectangle([1, 0.6]).revolve(1)", "regular(5, 0.8).extrude(0.4)", "star().extrude(0.3)",
+        "polygon([[-1, -0.5], [1, -0.6], [0.2, 0.1], [0.5, 0.9]]).extrude(0.6)"};
     (void)context;
     for (size_t i = 0; i < sizeof solids / sizeof *solids; i++) {
         char text[400];
-        snprintf(text, sizeof text, "show %s.rotate([1, 2, 3], 0.7).move([0.1, -0.2, 0.3]);", solids[i]);
+        snprintf(text, sizeof text, "show %s.rotate([1, 2, 3], 0.7).move([0.1, -0.2, 0.3]);",
+                 solids[i]);
         agrees(text, 16);
     }
 }
@@ -132,18 +139,22 @@ static void primitives_agree(void **context)
 static void operations_agree(void **context)
 {
     static const char *const shapes[] = {
-        "a | b", "a & b", "a - b", "xor(a, b)", "morph(a, b, 0.3)",
-        "union(a, b, blend: 0.3)", "intersection(a, b, blend: 0.3, kind: \"cubic\")",
-        "difference(a, b, blend: 0.2, kind: \"exponential\")", "union(a, b, blend: 0.4, kind: \"circular\")",
-        "union(a, b, blend: 0.4, kind: \"chamfer\")", "union(a, b, blend: 0.4, kind: \"stairs\")",
-        "a.scale(1.7)", "a.scale([1, 2, 0.5])", "a.shell(0.1)", "a.round(0.1)", "a.offset(0.2)",
-        "a.elongate([0.5, 0, 1])", "a.mirror(plane([1, 1, 0], 0.3))", "a.align([1, 2, 3], [0, -1, 0.2])",
-        "a.scale(0.3).repeat([1, 1.2, 0], [4, 3, 1])", "a.scale(0.2).move([1.5, 0, 0]).repeat_polar(7)",
-        "a.scale(0.3).repeat(0.8)"};
+        "a | b", "a & b", "a - b", "xor(a, b)", "morph(a, b, 0.3)", "union(a, b, blend: 0.3)",
+        "intersection(a, b, blend: 0.3, kind: \"cubic\")",
+        "difference(a, b, blend: 0.2, kind: \"exponential\")",
+        "union(a, b, blend: 0.4, kind: \"circular\")",
+        "union(a, b, blend: 0.4, kind: \"chamfer\")",
+        "union(a, b, blend: 0.4, kind: \"stairs\")", "a.scale(1.7)", "a.scale([1, 2, 0.5])",
+        "a.shell(0.1)", "a.round(0.1)", "a.offset(0.2)", "a.elongate([0.5, 0, 1])",
+        "a.mirror(plane([1, 1, 0], 0.3))", "a.align([1, 2, 3], [0, -1, 0.2])",
+        "a.scale(0.3).repeat([1, 1.2, 0], [4, 3, 1])",
+        "a.scale(0.2).move([1.5, 0, 0]).repeat_polar(7)", "a.scale(0.3).repeat(0.8)"};
     (void)context;
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         char text[400];
-        snprintf(text, sizeof text, "let a = box([1, 1.4, 0.8]); let b = sphere(0.7).move([0.4, 0.3, 0.2]); show %s;", shapes[i]);
+        snprintf(text, sizeof text,
+                 "let a = box([1, 1.4, 0.8]); let b = sphere(0.7).move([0.4, 0.3, 0.2]); show %s;",
+                 shapes[i]);
         agrees(text, 32);
     }
 }
@@ -151,16 +162,21 @@ static void operations_agree(void **context)
 static void functions_agree(void **context)
 {
     static const char *const fields[] = {
-        "sin(x) + cos(2 * y)", "tan(0.1 * z)", "asin(clamp(x, -0.9, 0.9))", "acos(clamp(0.3 * y, -0.9, 0.9))", "atan(x * y)",
-        "atan2(y, x + 20)", "sqrt(x * x + 1)", "inversesqrt(y * y + 0.5)", "exp(0.2 * x)", "exp2(0.3 * x)",
-        "log(1 + x * x)", "log2(2 + y * y)", "sinh(0.2 * x)", "cosh(0.2 * y)", "tanh(z)", "abs(x) - sign(y + 100)",
-        "pow(1 + x * x, 0.7)", "x ^ 3 * 0.01", "mix(x, y, 0.3)", "smoothstep(-1, 2, x)", "clamp(x, -1, y)",
-        "min(x, y, z)", "max([x, y, z])", "length(p - [1, 2, 3])", "dot(p, [1, 0.5, 0.2])", "length(cross(p, [0, 1, 0]))",
-        "normalize(p + [20, 0, 0])[0]", "distance(p, [1, 1, 1])", "sum([x, y, 2 * z])"};
+        "sin(x) + cos(2 * y)", "tan(0.1 * z)", "asin(clamp(x, -0.9, 0.9))",
+        "acos(clamp(0.3 * y, -0.9, 0.9))", "atan(x * y)", "atan2(y, x + 20)", "sqrt(x * x + 1)",
+        "inversesqrt(y * y + 0.5)", "exp(0.2 * x)", "exp2(0.3 * x)", "log(1 + x * x)",
+        "log2(2 + y * y)", "sinh(0.2 * x)", "cosh(0.2 * y)", "tanh(z)", "abs(x) - sign(y + 100)",
+        "pow(1 + x * x, 0.7)", "x ^ 3 * 0.01", "mix(x, y, 0.3)", "smoothstep(-1, 2, x)",
+        "clamp(x, -1, y)", "min(x, y, z)", "max([x, y, z])", "length(p - [1, 2, 3])",
+        "dot(p, [1, 0.5, 0.2])", "length(cross(p, [0, 1, 0]))", "normalize(p + [20, 0, 0])[0]",
+        "distance(p, [1, 1, 1])", "sum([x, y, 2 * z])"};
     (void)context;
     for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
         char text[400];
-        snprintf(text, sizeof text, "shape f() { distance: max(0.2 * (%s), length(p) - 3.5), within: sphere(3.5) } show f();", fields[i]);
+        snprintf(text, sizeof text,
+                 "shape f() { distance: max(0.2 * (%s), length(p) - 3.5), within: sphere(3.5) }"
+                 " show f();",
+                 fields[i]);
         agrees(text, 64);
     }
 }
@@ -169,20 +185,31 @@ static void sequences_agree(void **context)
 {
     (void)context;
     agrees("show krs { kernel capsule([0, 0, 0], [0.3, 0.6, 0], 0.1); for i in 0..12 {"
-           " reflect plane(random_direction(i), 0.3 + 0.1 * i); kernel sphere(0.1).move(random_direction(100 + i)); } };", 64);
-    agrees("show krs { kernel box([0.3, 0.4, 0.5]); for i in 0..28 { reflect plane(random_direction(i), 0.2 + 0.02 * i); } };", 256);
-    agrees("show krs { kernel sphere(0.2); for i in 0..36 { reflect plane(random_direction(i), 0.3 + 0.02 * i); } };", 256);
-    agrees("let inner = krs { kernel sphere(0.2).move([0.3, 0, 0]); reflect plane([1, 0, 0], 0.2); };"
-           "show krs { kernel inner; reflect plane([0, 1, 0], 0.5); mobius rotate([0, 0, 1], 0.3) * scale(1.3) * translate([0.1, 0.2, 0]);"
-           " reflect plane([0, 1, 1], 0.7); };", 64);
+           "    reflect plane(random_direction(i), 0.3 + 0.1 * i);"
+           "    kernel sphere(0.1).move(random_direction(100 + i)); } };",
+           64);
+    agrees("show krs { kernel box([0.3, 0.4, 0.5]);"
+           "    for i in 0..28 { reflect plane(random_direction(i), 0.2 + 0.02 * i); } };",
+           256);
+    agrees("show krs { kernel sphere(0.2);"
+           "    for i in 0..36 { reflect plane(random_direction(i), 0.3 + 0.02 * i); } };",
+           256);
+    agrees("let inner = krs {"
+           "    kernel sphere(0.2).move([0.3, 0, 0]); reflect plane([1, 0, 0], 0.2); };"
+           "show krs { kernel inner; reflect plane([0, 1, 0], 0.5);"
+           "    mobius rotate([0, 0, 1], 0.3) * scale(1.3) * translate([0.1, 0.2, 0]);"
+           "    reflect plane([0, 1, 1], 0.7); };",
+           64);
 }
 
 static void parameters_agree(void **context)
 {
     (void)context;
     agrees("param a = 0.7 in [0, 2]; param w = [0.3, 0.2, 0.1]; param c = #ff8000;"
-           "show box([1, 1, 1]).rotate([1, 1, 0], 3 * a + time).move(w * 2).scale(1 + 0.5 * sin(a)).paint(c);"
-           "show sphere(0.3 + 0.1 * a).move([2, cos(a), 0]);", 32);
+           "show box([1, 1, 1]).rotate([1, 1, 0], 3 * a + time).move(w * 2)"
+           "    .scale(1 + 0.5 * sin(a)).paint(c);"
+           "show sphere(0.3 + 0.1 * a).move([2, cos(a), 0]);",
+           32);
 }
 
 /* The comparison can fail: distances off by a hundredth of a percent are found. */
@@ -212,11 +239,13 @@ static int close_device(void **context)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(primitives_agree), cmocka_unit_test(operations_agree), cmocka_unit_test(functions_agree),
-        cmocka_unit_test(sequences_agree),  cmocka_unit_test(parameters_agree), cmocka_unit_test(a_fault_is_found),
+        cmocka_unit_test(primitives_agree), cmocka_unit_test(operations_agree),
+        cmocka_unit_test(functions_agree),  cmocka_unit_test(sequences_agree),
+        cmocka_unit_test(parameters_agree), cmocka_unit_test(a_fault_is_found),
     };
     spirv_start();
-    int failed = cmocka_run_group_tests_name("device and evaluator", tests, open_device, close_device);
+    int failed =
+        cmocka_run_group_tests_name("device and evaluator", tests, open_device, close_device);
     spirv_stop();
     return failed;
 }

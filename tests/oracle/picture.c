@@ -33,7 +33,10 @@ static Vec add(Vec a, Vec b) { return (Vec){a.x + b.x, a.y + b.y, a.z + b.z}; }
 static Vec sub(Vec a, Vec b) { return (Vec){a.x - b.x, a.y - b.y, a.z - b.z}; }
 static Vec times(Vec a, double s) { return (Vec){a.x * s, a.y * s, a.z * s}; }
 static double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static Vec cross(Vec a, Vec b) { return (Vec){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+static Vec cross(Vec a, Vec b)
+{
+    return (Vec){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
 static Vec unit(Vec a) { return times(a, 1 / sqrt(dot(a, a))); }
 
 /* Rays through the centres of all pixels; returns the size of a pixel at distance 1. */
@@ -62,7 +65,8 @@ static bool is_inside(const KrsHit *hits, int i, int j)
             if (x < 0 || y < 0 || x >= WIDTH || y >= HEIGHT)
                 continue;
             const KrsHit *there = &hits[y * WIDTH + x];
-            if (there->hit != here->hit || there->component != here->component || there->instance != here->instance)
+            if (there->hit != here->hit || there->component != here->component ||
+                there->instance != here->instance)
                 return false;
             double turn = here->normal[0] * there->normal[0] + here->normal[1] * there->normal[1] +
                           here->normal[2] * there->normal[2];
@@ -103,7 +107,8 @@ static Verdict judge(const KrsPicture *picture, const KrsHit *hits, double pixel
             }
             off /= pixel * hit->t;
             verdict.worst = fmax(verdict.worst, off);
-            verdict.wrong += picture->component[k] != hit->component || picture->level[k] != hit->level ||
+            verdict.wrong += picture->component[k] != hit->component ||
+                             picture->level[k] != hit->level ||
                              picture->instance[k] != hit->instance || turn < 0.99;
         }
     return verdict;
@@ -125,12 +130,13 @@ static Verdict compare(const char *text, double planted)
     assert_int_equal(picture->stats.unresolved, 0);
     assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);
 
-    double(*origins)[3]    = malloc(PIXELS * sizeof *origins);
-    double(*directions)[3] = malloc(PIXELS * sizeof *directions);
+    double (*origins)[3]    = malloc(PIXELS * sizeof *origins);
+    double (*directions)[3] = malloc(PIXELS * sizeof *directions);
     KrsHit *hits           = malloc(PIXELS * sizeof *hits);
     view.camera.eye[0] += planted;
     double pixel = make_rays(&view.camera, origins, directions);
-    krs_raycast(frame, (const double(*)[3])origins, (const double(*)[3])directions, PIXELS, 1e3, 1e-8, hits);
+    krs_raycast(frame, (const double (*)[3])origins, (const double (*)[3])directions, PIXELS, 1e3,
+                1e-8, hits);
     Verdict verdict = judge(picture, hits, pixel);
     free(origins);
     free(directions);
@@ -146,8 +152,8 @@ static void agrees(const char *text)
 {
     Verdict verdict = compare(text, 0);
     if (verdict.worst > 0.5 || verdict.wrong * 2000 > verdict.inside)
-        fprintf(stderr, "%zu inside, %zu wrong, %zu outline, worst %.3g pixels: %s\n", verdict.inside, verdict.wrong,
-                verdict.outline_wrong, verdict.worst, text);
+        fprintf(stderr, "%zu inside, %zu wrong, %zu outline, worst %.3g pixels: %s\n",
+                verdict.inside, verdict.wrong, verdict.outline_wrong, verdict.worst, text);
     assert_true(verdict.inside > PIXELS / 3);
     /* A crease that the ring of neighbours misses may turn a normal: one pixel in 2,000. */
     assert_true(verdict.wrong * 2000 <= verdict.inside);
@@ -159,20 +165,24 @@ static void solids_agree(void **state)
 {
     (void)state;
     agrees("camera { eye: [2, 3, 5] } show box([1, 1.4, 0.8]) - sphere(0.7).move([0.4, 0.3, 0.4]);"
-           " show plane([0, 1, 0], -0.8) & box([8, 2, 8]);");
+           "show plane([0, 1, 0], -0.8) & box([8, 2, 8]);");
     agrees("camera { eye: [3, 2, 4], target: [0.2, 0, 0], fov: 35deg }"
-           " show union([torus(1, 0.3), cylinder(0.4, 1.6)], blend: 0.2); show ellipsoid([0.4, 0.2, 0.3]).move([1.2, 0.7, 0]);");
-    agrees("camera { eye: [0, 4, 6] } show capsule([0, 0, 0], [0, 0.6, 0], 0.15).repeat([0.8, 0, 0.8], [5, 1, 5]);"
-           " show cone(0.3, 0.6).move([1.8, 0.9, 0]).repeat_polar(9);");
+           "show union([torus(1, 0.3), cylinder(0.4, 1.6)], blend: 0.2);"
+           "show ellipsoid([0.4, 0.2, 0.3]).move([1.2, 0.7, 0]);");
+    agrees("camera { eye: [0, 4, 6] }"
+           "show capsule([0, 0, 0], [0, 0.6, 0], 0.15).repeat([0.8, 0, 0.8], [5, 1, 5]);"
+           "show cone(0.3, 0.6).move([1.8, 0.9, 0]).repeat_polar(9);");
 }
 
 static void sequences_agree(void **state)
 {
     (void)state;
-    agrees("camera { eye: [0, 2, 9], fov: 50deg } show krs { kernel sphere(0.35); for i in 0..6 {"
-           " reflect plane(random_direction(i), 0.5 + 0.15 * i); } };");
-    agrees("camera { eye: [1, 2, 7] } show krs { kernel box([0.5, 0.3, 0.4]).rotate([1, 1, 0], 0.5); for i in 0..5 {"
-           " reflect plane(random_direction(i + 20), 0.4 + 0.2 * i); kernel sphere(0.2).move(0.5 * random_direction(i)); } };");
+    agrees("camera { eye: [0, 2, 9], fov: 50deg } show krs { kernel sphere(0.35);"
+           "    for i in 0..6 { reflect plane(random_direction(i), 0.5 + 0.15 * i); } };");
+    agrees("camera { eye: [1, 2, 7] }"
+           "show krs { kernel box([0.5, 0.3, 0.4]).rotate([1, 1, 0], 0.5); for i in 0..5 {"
+           "    reflect plane(random_direction(i + 20), 0.4 + 0.2 * i);"
+           "    kernel sphere(0.2).move(0.5 * random_direction(i)); } };");
 }
 
 static void a_fault_is_found(void **state)
@@ -206,7 +216,8 @@ int main(void)
         cmocka_unit_test(a_fault_is_found),
     };
     spirv_start();
-    int failed = cmocka_run_group_tests_name("pictures against exact rays", tests, open_device, close_device);
+    int failed = cmocka_run_group_tests_name("pictures against exact rays", tests, open_device,
+                                             close_device);
     spirv_stop();
     return failed;
 }

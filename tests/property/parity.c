@@ -37,7 +37,8 @@ static double value_at(const Graph *graph, Node root, double x, double y, double
 /* A random FLOAT of the coordinates and constants. */
 static Node random_float(Graph *g, uint32_t depth)
 {
-    static const Op unary[]  = {OP_neg, OP_abs, OP_sin, OP_cos, OP_square, OP_atan, OP_floor, OP_tanh};
+    static const Op unary[] = {
+        OP_neg, OP_abs, OP_sin, OP_cos, OP_square, OP_atan, OP_floor, OP_tanh};
     static const Op binary[] = {OP_add, OP_sub, OP_mul, OP_min, OP_max};
     if (depth == 0 || draw(6) == 0) {
         Node point = graph_leaf(g, OP_POINT);
@@ -51,7 +52,8 @@ static Node random_float(Graph *g, uint32_t depth)
         return graph_op1(g, OP_length, v);
     }
     case 2: {
-        Node b = random_float(g, depth - 1), c = random_float(g, depth - 1), less = graph_op2(g, OP_less, a, b);
+        Node b    = random_float(g, depth - 1), c = random_float(g, depth - 1);
+        Node less = graph_op2(g, OP_less, a, b);
         return graph_op3(g, OP_select, less, b, c);
     }
     default: {
@@ -73,8 +75,10 @@ static void random_expressions_keep_their_word(void **context)
         even += said;
         bool differs = false;
         for (int i = 0; i < 8; i++) {
-            double x = draw(1000) * 0.0037 - 1.7, y = draw(1000) * 0.004 - 2, z = draw(1000) * 0.004 - 2;
-            double here = value_at(graph, root, x, y, z, &arena), there = value_at(graph, root, -x, y, z, &arena);
+            double x     = draw(1000) * 0.0037 - 1.7;
+            double y     = draw(1000) * 0.004 - 2, z = draw(1000) * 0.004 - 2;
+            double here  = value_at(graph, root, x, y, z, &arena);
+            double there = value_at(graph, root, -x, y, z, &arena);
             differs = differs || fabs(here - there) > 1e-9 * (1 + fabs(here));
         }
         refuted += differs;
@@ -90,20 +94,29 @@ static void what_libraries_write_is_seen(void **context)
     (void)context;
     Arena  arena = {.memory = &memory};
     Graph *g     = graph_new(&arena);
-    Node   point = graph_leaf(g, OP_POINT), half = graph_vec3(g, 1, 2, 3), zero = graph_number(g, 0);
-    Node   ball = graph_op1(g, OP_length, point);
+    Node   point = graph_leaf(g, OP_POINT);
+    Node   half  = graph_vec3(g, 1, 2, 3), zero = graph_number(g, 0);
+    Node   ball  = graph_op1(g, OP_length, point);
     assert_true(graph_is_even(g, ball, 0, &arena));
-    Node size = graph_op1(g, OP_abs, point), excess = graph_op2(g, OP_sub, size, half);
-    Node outside = graph_op2(g, OP_max, excess, zero), box = graph_op1(g, OP_length, outside);
+
+    Node size    = graph_op1(g, OP_abs, point);
+    Node excess  = graph_op2(g, OP_sub, size, half);
+    Node outside = graph_op2(g, OP_max, excess, zero);
+    Node box     = graph_op1(g, OP_length, outside);
     assert_true(graph_is_even(g, box, 1, &arena));
-    Node aside = graph_vec3(g, 1, 0, 0), moved = graph_op2(g, OP_sub, point, aside);
+
+    Node aside = graph_vec3(g, 1, 0, 0);
+    Node moved = graph_op2(g, OP_sub, point, aside);
     Node other = graph_op1(g, OP_length, moved);
     assert_false(graph_is_even(g, other, 0, &arena));
     assert_true(graph_is_even(g, other, 2, &arena));
+
     /* A quarter turn about y swaps x and z: still even in both. */
     Node r0 = graph_vec3(g, 0, 0, 1), r1 = graph_vec3(g, 0, 1, 0), r2 = graph_vec3(g, -1, 0, 0);
-    Node turned = graph_op4(g, OP_turn, point, r0, r1, r2), long_size = graph_op1(g, OP_abs, turned);
-    Node long_excess = graph_op2(g, OP_sub, long_size, half), long_box = graph_op1(g, OP_length, long_excess);
+    Node turned      = graph_op4(g, OP_turn, point, r0, r1, r2);
+    Node long_size   = graph_op1(g, OP_abs, turned);
+    Node long_excess = graph_op2(g, OP_sub, long_size, half);
+    Node long_box    = graph_op1(g, OP_length, long_excess);
     assert_true(graph_is_even(g, long_box, 0, &arena));
     arena_free(&arena);
 }

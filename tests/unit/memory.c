@@ -39,7 +39,8 @@ static void scarce_release(void *user, void *block)
 
 static const char *const scenes[] = {
     "show sphere(1);",
-    "param r = 0.3 in [0.1, 0.5]; show union([sphere(1), box([1, 2, 1])], blend: r).move([r, 1, 0]);",
+    ("param r = 0.3 in [0.1, 0.5];"
+     "show union([sphere(1), box([1, 2, 1])], blend: r).move([r, 1, 0]);"),
     "show krs { kernel box([1, 1, 1]); for i in 0..6 { reflect plane(random_direction(i), 1); } };",
     "show [sphere(0.2).move([i, 0, 0]) for i in 0..40]; camera { eye: [1, 2, 3] }",
     "let a = 1 +; show sphre(1); show box(a).mvoe(1);", /* several mistakes */
@@ -100,10 +101,12 @@ static void the_limit_holds(void **state)
 {
     (void)state;
     Scarce     scarce  = {0};
-    KrsOptions options = {.allocator = {scarce_allocate, scarce_release, &scarce}, .memory_limit = 1 << 20};
+    KrsOptions options = {.allocator    = {scarce_allocate, scarce_release, &scarce},
+                          .memory_limit = 1 << 20};
     const char *text   = "let a = [[i, i + 1, i + 2] for i in 0..900000]; show sphere(1);";
     KrsScene   *scene;
-    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", &options, &scene), KRS_OUT_OF_MEMORY);
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", &options, &scene),
+                     KRS_OUT_OF_MEMORY);
     assert_null(scene);
     assert_int_equal(scarce.held, 0);
 }
