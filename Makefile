@@ -20,7 +20,7 @@ GEOMETRY := $(addprefix compiler/geometry/, box.c arithmetic.c arguments.c built
                 expression.c similarity.c make.c declare.c methods.c looks.c scope.c statements.c print.c lower.c)
 SHADER   := $(addprefix compiler/shader/, emit.c spirv.c)
 BORDER   := compiler/shader/glslang_border.cpp
-DOORSTEP := compiler/compile.c compiler/query.c
+DOORSTEP := compiler/compile.c compiler/framing.c compiler/query.c
 RUNTIME  := $(sort $(wildcard runtime/device/*.c runtime/tracer/*.c runtime/film/*.c runtime/writer/*.c))
 CLI      := $(sort $(wildcard cli/*.c))
 

@@ -3,6 +3,7 @@
  */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "cli/commands.h"
 #include "cli/console.h"
@@ -10,24 +11,27 @@
 static void print_vector(const double *values, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        fputs(i == 0 ? (count > 1 ? "[" : "") : ", ", stdout);
-        print_number(stdout, values[i]);
+        printf("%s%.6g", i == 0 ? (count > 1 ? "[" : "") : ", ", values[i]);
     }
     fputs(count > 1 ? "]" : "", stdout);
 }
 
 static void print_component(const KrsComponent *component, size_t number)
 {
-    printf("component %zu: %s\n    bounds     ", number, component->name);
+    /* Components without a name are called by their number. */
+    if (strncmp(component->name, "component ", 10) == 0)
+        printf("%s\n    bounds     ", component->name);
+    else
+        printf("component %zu: %s\n    bounds     ", number, component->name);
     print_vector(component->low, 3);
     fputs(" to ", stdout);
     print_vector(component->high, 3);
     fputs("\n    slope      ", stdout);
-    print_number(stdout, component->slope);
+    printf("%.6g", component->slope);
     puts(component->exact ? " (the distance is exact)" : "");
     if (component->levels > 0) {
         printf("    levels     %u\n    instances  ", component->levels);
-        print_number(stdout, component->instances);
+        printf("%.0f", component->instances);
         putchar('\n');
     }
 }
@@ -36,10 +40,9 @@ static void print_parameter(const KrsParameter *parameter)
 {
     printf("param %s = ", parameter->name);
     print_vector(parameter->value, parameter->components);
-    fputs(" in ", stdout);
-    print_vector(parameter->low, parameter->components);
-    fputs(" to ", stdout);
-    print_vector(parameter->high, parameter->components);
+    for (uint32_t i = 0; i < parameter->components; i++)
+        if (isfinite(parameter->low[i]) || isfinite(parameter->high[i]))
+            printf(" in [%.6g, %.6g]", parameter->low[i], parameter->high[i]);
     putchar('\n');
 }
 
@@ -56,12 +59,15 @@ static void print_text(const KrsScene *scene)
         krs_parameter(scene, i, &parameter);
         print_parameter(&parameter);
     }
+    for (size_t i = 0; i < krs_camera_count(scene); i++)
+        if (krs_camera_name(scene, i))
+            printf("camera %zu: %s\n", i, krs_camera_name(scene, i));
     fputs("bounds ", stdout);
     print_vector(program->low, 3);
     fputs(" to ", stdout);
     print_vector(program->high, 3);
     printf("\noperations %zu\nflops per evaluation ", program->operations);
-    print_number(stdout, program->flops);
+    printf("%.1f", program->flops);
     printf("\nhash %s\n", krs_scene_hash(scene));
 }
 

@@ -239,6 +239,8 @@ static KrsStatus render_frame(Render *render, uint32_t frame)
     double time = options->time + (options->animated ? frame / options->fps : 0);
     KrsPicture *picture = NULL;
     KrsStatus status = krs_frame_set_time(render->frame, time);
+    if (status != KRS_OK)
+        return say_usage(options, "at time %g something in the scene is not finite", time);
     stage_enter(STAGE_RENDER);
     if (status == KRS_OK)
         status = krs_render(render->rendering, render->frame, &render->how, &picture);

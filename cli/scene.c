@@ -141,7 +141,8 @@ static KrsStatus say_refused_setting(const Options *options, const KrsScene *sce
         if (!(setting->values[i] >= parameter.low[i] && setting->values[i] <= parameter.high[i]))
             return say_usage(options, "param `%s` goes from %g to %g; %g is outside", setting->name,
                              parameter.low[i], parameter.high[i], setting->values[i]);
-    return say_usage(options, "param `%s` cannot have this value", setting->name);
+    return say_usage(options, "with this value of param `%s` something in the scene is not finite",
+                     setting->name);
 }
 
 KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsFrame **frame)
@@ -155,8 +156,8 @@ KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsFrame **
         if (status == KRS_BAD_ARGUMENT)
             say_refused_setting(options, scene, setting);
     }
-    if (status == KRS_OK)
-        status = krs_frame_set_time(*frame, options->time);
+    if (status == KRS_OK && krs_frame_set_time(*frame, options->time) != KRS_OK)
+        status = say_usage(options, "at time %g something in the scene is not finite", options->time);
     if (status != KRS_OK) {
         krs_frame_free(*frame);
         *frame = NULL;

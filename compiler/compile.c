@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 #include <time.h>
 
+#include "compiler/framing.h"
 #include "compiler/front/parse.h"
 #include "compiler/geometry/elaborate.h"
 #include "compiler/program.h"
@@ -336,7 +337,7 @@ static KrsStatus run(Compilation *c)
     c->scene->program.front_ms = now_ms() - c->started;
     emit(c);
     c->scene->program.glsl_ms = now_ms() - c->started - c->scene->program.front_ms;
-    return KRS_OK;
+    return c->scene->cameras[0].standing_in ? frame_scene(c->scene) : KRS_OK;
 }
 
 /* ---- the doorstep ---- */

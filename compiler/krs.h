@@ -88,8 +88,8 @@ KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *param
 /* Parameters at their defaults, time 0.  The scene must outlive the frame. */
 KrsStatus krs_frame_new(const KrsScene *scene, KrsFrame **frame);
 void      krs_frame_free(KrsFrame *frame);
-/* KRS_BAD_ARGUMENT when there is no such parameter, a component is outside of its range, or
-   not finite; the frame is then unchanged. */
+/* KRS_BAD_ARGUMENT when there is no such parameter, a component is outside of its range or not
+   finite, or something in the scene is not finite for it; the frame is then unchanged. */
 KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values, size_t count);
 KrsStatus krs_frame_set_time(KrsFrame *frame, double time);
 

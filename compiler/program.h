@@ -23,6 +23,8 @@ struct KrsScene {
     size_t       parameter_count;
     SceneCamera *cameras; /* their nodes are not used: the roots are */
     SceneLight  *lights;
+    bool         framed; /* the first camera stands in, and framing.c has placed it here: */
+    double       framed_eye[3], framed_target[3];
     SceneImage   image;
     char         hash[17];
     Tape         distance; /* of all components */

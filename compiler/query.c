@@ -69,6 +69,58 @@ void krs_frame_free(KrsFrame *frame)
     give(scene, frame);
 }
 
+/* Values that depend on parameters only, once after each change. */
+static void refresh(KrsFrame *frame)
+{
+    if (frame->fresh)
+        return;
+    tape_run_frame(&frame->scene->surface, frame->parameters, frame->values);
+    tape_run_frame(&frame->scene->distance, frame->parameters, frame->values);
+    tape_run_frame(&frame->scene->view, frame->parameters, frame->values);
+    frame->fresh = true;
+}
+
+static bool node_is_finite(const KrsFrame *frame, Node node)
+{
+    const Expr *e = &frame->scene->graph->items[node];
+    for (uint32_t k = 0; e->time != TIME_POINT && e->type <= TYPE_VEC4 && k < (uint32_t)e->type; k++)
+        if (!isfinite(frame->values[node].v[k]))
+            return false;
+    return true;
+}
+
+/* Whether all that points and the view get from the frame are numbers.  A value that is chosen
+   against, as in `if a == 0 then 1 else 1 / a`, is not used and does not count. */
+static bool frame_is_finite(KrsFrame *frame)
+{
+    const KrsScene *scene = frame->scene;
+    const Node     *roots = camera_roots(scene, 0), *end = sky_roots(scene) + SKY_ROOTS;
+    refresh(frame);
+    for (const Node *root = roots; root < end; root++)
+        if (!node_is_finite(frame, *root))
+            return false;
+    for (size_t i = scene->surface.frame_count; i < scene->surface.count; i++) {
+        const Expr *e = &scene->graph->items[scene->surface.nodes[i]];
+        for (int k = 0; k < e->operand_count; k++)
+            if (!node_is_finite(frame, e->operands[k]))
+                return false;
+    }
+    return true;
+}
+
+/* Gives slot `slot` of the parameter block new values, unless the scene cannot have them. */
+static KrsStatus change_slot(KrsFrame *frame, uint32_t slot, const double *values, size_t count)
+{
+    NodeValue before = frame->parameters[slot];
+    memcpy(frame->parameters[slot].v, values, count * sizeof *values);
+    frame->fresh = false;
+    if (frame_is_finite(frame))
+        return KRS_OK;
+    frame->parameters[slot] = before;
+    frame->fresh            = false;
+    return KRS_BAD_ARGUMENT;
+}
+
 KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values, size_t count)
 {
     const KrsScene *scene = frame->scene;
@@ -82,20 +134,14 @@ KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values,
             if (!isfinite(values[k]) || values[k] < parameter->low[k] ||
                 values[k] > parameter->high[k])
                 return KRS_BAD_ARGUMENT;
-        memcpy(frame->parameters[parameter->slot].v, values, count * sizeof *values);
-        frame->fresh = false;
-        return KRS_OK;
+        return change_slot(frame, parameter->slot, values, count);
     }
     return KRS_BAD_ARGUMENT;
 }
 
 KrsStatus krs_frame_set_time(KrsFrame *frame, double time)
 {
-    if (!isfinite(time))
-        return KRS_BAD_ARGUMENT;
-    frame->parameters[0].v[0] = time;
-    frame->fresh              = false;
-    return KRS_OK;
+    return isfinite(time) ? change_slot(frame, 0, &time, 1) : KRS_BAD_ARGUMENT;
 }
 
 void krs_frame_parameters(const KrsFrame *frame, float (*block)[4])
@@ -103,17 +149,6 @@ void krs_frame_parameters(const KrsFrame *frame, float (*block)[4])
     for (uint32_t i = 0; i < frame->scene->program.parameter_slots; i++)
         for (int k = 0; k < 4; k++)
             block[i][k] = (float)frame->parameters[i].v[k];
-}
-
-/* Values that depend on parameters only, once after each change. */
-static void refresh(KrsFrame *frame)
-{
-    if (frame->fresh)
-        return;
-    tape_run_frame(&frame->scene->surface, frame->parameters, frame->values);
-    tape_run_frame(&frame->scene->distance, frame->parameters, frame->values);
-    tape_run_frame(&frame->scene->view, frame->parameters, frame->values);
-    frame->fresh = true;
 }
 
 static void copy3(double to[3], const KrsFrame *frame, Node node)
@@ -140,6 +175,10 @@ KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view)
     copy3(view->camera.eye, frame, root[0]);
     copy3(view->camera.target, frame, root[1]);
     copy3(view->camera.up, frame, root[2]);
+    if (scene->framed && camera == 0) {
+        memcpy(view->camera.eye, scene->framed_eye, sizeof view->camera.eye);
+        memcpy(view->camera.target, scene->framed_target, sizeof view->camera.target);
+    }
     view->camera.fov    = frame->values[root[3]].v[0];
     view->camera.height = frame->values[root[4]].v[0];
     copy3(view->sky.zenith, frame, sky[0]);

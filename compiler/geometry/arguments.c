@@ -10,19 +10,45 @@ static const double ORIGIN[3] = {0, 0, 0};
 
 /* ---- reports ---- */
 
-void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax)
+/* The top-level definition that a name refers to, as far as its file tells. */
+static const Definition *definition_of(const Elaboration *e, const Syntax *name)
 {
-    if (!syntax || syntax->kind != SYNTAX_NAME)
-        return;
     for (size_t i = 0; i < e->scopes.count; i++) {
         const Scope *scope = e->scopes.items[i];
-        if (!scope->file || scope->file->span.source != syntax->span.source)
-            continue;
-        const Definition *definition = scope_find(scope, syntax->name);
-        if (definition && definition->syntax)
-            diag_place(e->diags, diag, definition->syntax->name_span,
-                       diag_text(e->diags, "`%s` is defined here", syntax->name));
-        return;
+        if (scope->file && scope->file->span.source == name->span.source)
+            return scope_find(scope, name->name);
+    }
+    return NULL;
+}
+
+/* The first name in an expression whose value is later than compile time. */
+static const Syntax *find_late_name(const Elaboration *e, const Syntax *syntax)
+{
+    if (syntax->kind == SYNTAX_NAME) {
+        const Definition *definition = definition_of(e, syntax);
+        return definition && value_time(e, definition->value) != TIME_COMPILE ? syntax : NULL;
+    }
+    const Syntax *found = NULL;
+    for (uint32_t i = 0; !found && i < syntax->count; i++)
+        found = find_late_name(e, syntax->children[i]);
+    return found;
+}
+
+void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax)
+{
+    enum { LONGEST_CHAIN = 8 };
+    bool late = diag->code == DIAG_NOT_COMPILE_TIME || diag->code == DIAG_NOT_FRAME_TIME;
+    if (syntax && late)
+        syntax = find_late_name(e, syntax);
+    for (int i = 0; i < LONGEST_CHAIN && syntax && syntax->kind == SYNTAX_NAME; i++) {
+        const Definition *definition = definition_of(e, syntax);
+        if (!definition || !definition->syntax)
+            return;
+        diag_place(e->diags, diag, definition->syntax->name_span,
+                   diag_text(e->diags, "`%s` is defined here", syntax->name));
+        /* The chain of definitions, down to the `param` that began it. */
+        bool on = late && definition->syntax->kind == SYNTAX_LET;
+        syntax  = on ? find_late_name(e, definition->syntax->children[0]) : NULL;
     }
 }
 

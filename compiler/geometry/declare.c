@@ -119,6 +119,18 @@ static bool plane_property(Elaboration *e, const Environment *env, const Syntax 
     return false;
 }
 
+/* A size of 0 or less leaves nothing to see, or a surface without an inside. */
+static void warn_if_empty(Elaboration *e, const Shape *shape)
+{
+    bool flat = false;
+    for (int i = 0; i < (shape->figure ? 2 : 3); i++)
+        flat = flat || !(shape->box.axis[i].low < shape->box.axis[i].high);
+    if (!flat || e->sources->items[shape->span.source].library)
+        return;
+    Diag *diag  = diag_add(e->diags, DIAG_NO_EFFECT, shape->span, "this `%s` is empty", shape->name);
+    diag->label = "a size is 0 or less";
+}
+
 /* ---- slopes ---- */
 
 static void report_steep(Elaboration *e, const Syntax *declaration, const Syntax *distance,
@@ -229,6 +241,8 @@ static bool check_claims(Elaboration *e, const Syntax *declaration, const Shape 
                       : (Box){{{-10, 10}, {-10, 10}, {-10, 10}}};
     double size = box_diagonal(around), rounding = 1e-9 * (1 + size);
     bool   bounded = find_property(declaration, "within") != NULL;
+    if (!(size < 1e100)) /* check_extent refuses what is so large, in better words */
+        return true;
     for (uint32_t i = 0; i < SAMPLES; i++) {
         double a[3], b[3], moved = 0;
         sample_point(i, around, a);
@@ -279,6 +293,8 @@ static bool read_properties(Elaboration *e, const Environment *env, const Syntax
     bool good = within_property(e, env, declaration, &shape->box) &&
                 plane_property(e, env, declaration, shape) && shape->distance != NODE_NONE &&
                 (!bound || shape->bound != NODE_NONE);
+    if (good)
+        warn_if_empty(e, shape);
     if (uv && first)
         good = evaluate(e, env, uv).type != VALUE_ERROR && good;
     return good;

@@ -61,6 +61,7 @@ typedef struct Elaboration {
     Scope      *library;
     struct { Scope **items; size_t count, capacity; } scopes;
     /* Shape declarations whose claims have been put to the test. */
+    struct { const Syntax **items; size_t count, capacity; } single; /* sky, image, unnamed camera */
     struct { const Syntax **items; size_t count, capacity; } checked;
     FileReader *read_file;
     uint64_t    steps;        /* of evaluation, so far */

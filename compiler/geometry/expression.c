@@ -8,7 +8,8 @@
 enum {
     MOST_STEPS    = 10 * 1000 * 1000,
     MOST_DEPTH    = 4000,
-    MOST_ELEMENTS = 1000 * 1000
+    MOST_ELEMENTS = 1000 * 1000,
+    MOST_NODES    = 500 * 1000
 };
 
 static Value limit_reached(Elaboration *e, Span span, const char *message)
@@ -24,6 +25,8 @@ static bool step(Elaboration *e, Span span)
 {
     if (!e->stopped && ++e->steps > MOST_STEPS)
         limit_reached(e, span, "the scene takes more than 10 million steps to elaborate");
+    if (!e->stopped && e->graph->count > MOST_NODES)
+        limit_reached(e, span, "the expressions of the scene have more than 500,000 operations");
     return !e->stopped;
 }
 

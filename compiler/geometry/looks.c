@@ -149,7 +149,8 @@ static double constant_property(Elaboration *e, const Environment *env, const Sy
     return number;
 }
 
-/* One of a few words; NULL when it is not given or not one of them. */
+/* One of a few words, of which those with a ~ are not in this version; NULL when it is not given
+   or not one of them. */
 static const char *word_property(Elaboration *e, const Environment *env, const Syntax *block,
                                  const char *name, const char *const *words, size_t count)
 {
@@ -165,6 +166,12 @@ static const char *word_property(Elaboration *e, const Environment *env, const S
     }
     Text list = {.arena = e->diags->arena};
     for (size_t i = 0; i < count; i++) {
+        if (words[i][0] == '~' && strcmp(words[i] + 1, value.string) == 0) {
+            not_supported(e, syntax->span, diag_text(e->diags, "`%s: \"%s\"`", name, value.string));
+            return NULL;
+        }
+        if (words[i][0] == '~')
+            continue;
         if (strcmp(words[i], value.string) == 0)
             return words[i];
         text_format(&list, "%s\"%s\"", i ? ", " : "", words[i]);
@@ -299,7 +306,7 @@ static void set_sky(Elaboration *e, const Environment *env, const Syntax *syntax
 {
     static const double zenith[3]  = {0.24, 0.36, 0.56};
     static const double horizon[3] = {0.78, 0.82, 0.87};
-    static const double ground[3]  = {0.22, 0.2, 0.18};
+    static const double ground[3]  = {0.32, 0.31, 0.3};
     e->scene->zenith  = vector_property(e, env, syntax, "zenith", zenith);
     e->scene->horizon = vector_property(e, env, syntax, "horizon", horizon);
     e->scene->ground  = vector_property(e, env, syntax, "ground", ground);
@@ -330,7 +337,7 @@ static void set_size(Elaboration *e, const Syntax *size, Value value)
 
 static void set_image(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    static const char *const integrators[] = {"preview", "direct"};
+    static const char *const integrators[] = {"preview", "~direct", "~path"};
     static const char *const tone_maps[]   = {"neutral", "aces", "none"};
     SceneImage   *image = &e->scene->image;
     const Syntax *size  = find_property(syntax, "size");
@@ -339,13 +346,32 @@ static void set_image(Elaboration *e, const Environment *env, const Syntax *synt
     image->samples    = (uint32_t)constant_property(e, env, syntax, "samples", 1, 65536, 0);
     image->exposure   = constant_property(e, env, syntax, "exposure", -20, 20, 0);
     image->error      = constant_property(e, env, syntax, "error", 0.001, 1, 0);
-    image->integrator = word_property(e, env, syntax, "integrator", integrators, 2);
+    image->integrator = word_property(e, env, syntax, "integrator", integrators, 3);
     image->tone_map   = word_property(e, env, syntax, "tone_map", tone_maps, 3);
+}
+
+/* A scene has one sky, one image, and one camera without a name. */
+static void check_single(Elaboration *e, const Syntax *syntax)
+{
+    if (syntax->kind == SYNTAX_LIGHT || syntax->name)
+        return;
+    for (size_t i = 0; i < e->single.count; i++) {
+        if (e->single.items[i]->kind != syntax->kind)
+            continue;
+        Diag *diag = diag_add(e->diags, DIAG_DUPLICATE_NAME, syntax->span, "%s is described twice",
+                              block_name(syntax->kind));
+        diag_place(e->diags, diag, e->single.items[i]->span, "described here first");
+        if (syntax->kind == SYNTAX_CAMERA)
+            diag->help = "give further cameras names: `camera side { ... }`";
+        return;
+    }
+    array_push(e->arena, &e->single, syntax);
 }
 
 void elaborate_look(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     check_block(e, syntax);
+    check_single(e, syntax);
     switch (syntax->kind) {
     case SYNTAX_CAMERA: add_camera(e, env, syntax); break;
     case SYNTAX_LIGHT:  add_light(e, env, syntax); break;
@@ -371,7 +397,8 @@ static void default_camera(Elaboration *e)
     }
     for (int i = 0; i < 3; i++)
         eye[i] = target[i] + towards[i] * radius / sin(0.5 * fov);
-    SceneCamera camera = {.eye    = graph_constant(e->graph, TYPE_VEC3, eye),
+    SceneCamera camera = {.standing_in = true,
+                          .eye    = graph_constant(e->graph, TYPE_VEC3, eye),
                           .target = graph_constant(e->graph, TYPE_VEC3, target),
                           .up     = graph_constant(e->graph, TYPE_VEC3, UP),
                           .fov    = graph_number(e->graph, fov),

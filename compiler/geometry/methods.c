@@ -301,7 +301,11 @@ Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax)
         Call call;
         if (strcmp(methods[i].name, syntax->name) != 0)
             continue;
-        if (!bind_arguments(e, env, syntax, 1, methods[i].name, methods[i].parameters, &call))
+        bool outer     = e->in_material;
+        e->in_material = outer || methods[i].method == method_paint; /* a colour is a material */
+        bool bound = bind_arguments(e, env, syntax, 1, methods[i].name, methods[i].parameters, &call);
+        e->in_material = outer;
+        if (!bound)
             return value_error();
         return methods[i].method(e, receiver.shape, &call);
     }

@@ -131,6 +131,7 @@ typedef struct SceneCamera {
     const char *name; /* or NULL */
     Node        eye, target, up, fov, height;
     uint32_t    projection;
+    bool        standing_in; /* for a scene that has no camera: framing.c finds eye and target */
 } SceneCamera;
 
 typedef struct SceneLight {

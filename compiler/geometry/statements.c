@@ -149,6 +149,24 @@ static const char *component_name(Elaboration *e, const Syntax *syntax)
 }
 
 /* An EachElement: shows a shape, or all shapes of a list; `user` is the expression shown. */
+/* Single precision, in which devices compute, ends at 3e38 and its squares much earlier. */
+static bool check_extent(Elaboration *e, const Shape *shape, const Syntax *syntax)
+{
+    const double most = 1e12;
+    for (int i = 0; i < 3; i++) {
+        Range  axis  = shape->box.axis[i];
+        double reach = fmax(isfinite(axis.low) ? fabs(axis.low) : 0,
+                            isfinite(axis.high) ? fabs(axis.high) : 0);
+        if (reach <= most)
+            continue;
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span,
+                               "the shape reaches to %.3g on the %c axis", reach, "xyz"[i]);
+        diag->label = "farther than 1e12, which devices cannot compute with";
+        return false;
+    }
+    return true;
+}
+
 static bool show_one(Elaboration *e, Value value, void *user)
 {
     const Syntax *syntax = user;
@@ -169,6 +187,8 @@ static bool show_one(Elaboration *e, Value value, void *user)
         diag->help  = "make it solid with `.extrude(height)` or `.revolve()`";
         return false;
     }
+    if (!check_extent(e, value.shape, syntax))
+        return false;
     Component component = {component_name(e, syntax), value.shape, syntax->span};
     array_push(e->arena, &e->scene->components, component);
     return true;

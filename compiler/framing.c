@@ -1,0 +1,120 @@
+/*
+ * framing.c: a camera for a scene that has none.
+ *
+ * Boxes of sequences hold for all values of the parameters and are loose; a picture framed by
+ * them shows a speck.  So a few hundred rays are cast from the ball around the box to points
+ * all over it, and the camera frames what they hit.
+ */
+#include "compiler/framing.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { RAYS = 512, ROUNDS = 3 };
+
+typedef struct Sphere {
+    double centre[3], radius;
+} Sphere;
+
+/* The ball around the boxes of the bounded components; false when there is none. */
+static bool outer_ball(const KrsScene *scene, Sphere *ball)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < scene->component_count; i++) {
+        const KrsComponent *component = &scene->components[i];
+        bool                finite    = true;
+        for (int k = 0; k < 3; k++)
+            finite = finite && isfinite(component->low[k]) && isfinite(component->high[k]);
+        for (int k = 0; finite && k < 3; k++) {
+            low[k]  = fmin(low[k], component->low[k]);
+            high[k] = fmax(high[k], component->high[k]);
+        }
+    }
+    ball->radius = 0;
+    for (int k = 0; k < 3; k++) {
+        ball->centre[k] = 0.5 * (low[k] + high[k]);
+        ball->radius    = hypot(ball->radius, 0.5 * (high[k] - low[k]));
+    }
+    return isfinite(ball->radius) && ball->radius > 0;
+}
+
+/* Points evenly on a sphere (a Fibonacci lattice), each looking at a point within the ball that
+   a second lattice gives. */
+static void make_rays(const Sphere *ball, double (*origins)[3], double (*directions)[3])
+{
+    const double golden = 2.399963229728653; /* pi (3 - sqrt 5) */
+    for (int i = 0; i < RAYS; i++) {
+        double y = 1 - (2 * i + 1.0) / RAYS, ring = sqrt(1 - y * y), angle = golden * i;
+        double from[3] = {ring * cos(angle), y, ring * sin(angle)};
+        double depth = 0.9 * cbrt((i * 89 % RAYS + 0.5) / RAYS), turn = golden * (i * 37 % RAYS);
+        double up = 1 - (2 * (i * 53 % RAYS) + 1.0) / RAYS, side = sqrt(1 - up * up);
+        double to[3] = {depth * side * cos(turn), depth * up, depth * side * sin(turn)};
+        for (int k = 0; k < 3; k++) {
+            origins[i][k]    = ball->centre[k] + 1.01 * ball->radius * from[k];
+            directions[i][k] = to[k] - 1.01 * from[k];
+        }
+    }
+}
+
+/* What hits of bounded components have shown so far. */
+typedef struct Extent {
+    double low[3], high[3];
+} Extent;
+
+static void add_hits(const KrsScene *scene, const KrsHit *hits, Extent *seen)
+{
+    for (int i = 0; i < RAYS; i++) {
+        if (!hits[i].hit || !isfinite(scene->components[hits[i].component - 1].low[0]))
+            continue;
+        for (int k = 0; k < 3; k++) {
+            seen->low[k]  = fmin(seen->low[k], hits[i].point[k]);
+            seen->high[k] = fmax(seen->high[k], hits[i].point[k]);
+        }
+    }
+}
+
+/* The ball around what was seen, a little larger for what was not. */
+static bool inner_ball(const Extent *seen, Sphere *ball)
+{
+    double radius = 0;
+    for (int k = 0; k < 3; k++)
+        radius = hypot(radius, 0.5 * (seen->high[k] - seen->low[k]));
+    if (!isfinite(radius) || !(radius > 1e-3 * ball->radius))
+        return false;
+    for (int k = 0; k < 3; k++)
+        ball->centre[k] = 0.5 * (seen->low[k] + seen->high[k]);
+    ball->radius = fmin(ball->radius, 1.06 * radius);
+    return true;
+}
+
+KrsStatus frame_scene(KrsScene *scene)
+{
+    static const double towards[3] = {0.53, 0.37, 0.76};
+    double              origins[RAYS][3], directions[RAYS][3];
+    KrsHit              hits[RAYS];
+    KrsFrame           *frame;
+    KrsView             view;
+    Sphere              ball;
+    Extent              seen = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    if (!outer_ball(scene, &ball))
+        return KRS_OK;
+    KrsStatus status = krs_frame_new(scene, &frame);
+    if (status != KRS_OK)
+        return status;
+    /* What is found sharpens the ball, and the next round's rays. */
+    for (int round = 0; round < ROUNDS; round++) {
+        make_rays(&ball, origins, directions);
+        krs_raycast(frame, (const double(*)[3])origins, (const double(*)[3])directions, RAYS, 4 * ball.radius,
+                    1e-3 * ball.radius, hits);
+        add_hits(scene, hits, &seen);
+        if (!inner_ball(&seen, &ball))
+            break;
+    }
+    krs_frame_view(frame, 0, &view);
+    krs_frame_free(frame);
+    scene->framed = true;
+    memcpy(scene->framed_target, ball.centre, sizeof ball.centre);
+    for (int k = 0; k < 3; k++)
+        scene->framed_eye[k] = ball.centre[k] + towards[k] * ball.radius / sin(0.5 * view.camera.fov);
+    return KRS_OK;
+}

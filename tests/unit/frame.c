@@ -1,0 +1,122 @@
+/*
+ * frame.c: parameters, time and views through the C interface.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "compiler/compile.h"
+
+static KrsFrame *open_scene(const char *text, KrsScene **scene)
+{
+    KrsFrame *frame;
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, scene), KRS_OK);
+    assert_int_equal(krs_frame_new(*scene, &frame), KRS_OK);
+    return frame;
+}
+
+static void close_scene(KrsFrame *frame, KrsScene *scene)
+{
+    krs_frame_free(frame);
+    krs_scene_free(scene);
+}
+
+static double distance_at(KrsFrame *frame, double x, double y, double z)
+{
+    double point[1][3] = {{x, y, z}}, distance;
+    krs_distance(frame, (const double(*)[3])point, 1, &distance);
+    return distance;
+}
+
+static void parameters_move_the_scene(void **state)
+{
+    (void)state;
+    KrsScene    *scene;
+    KrsParameter parameter;
+    KrsFrame    *frame = open_scene("param r = 1 in [0.5, 2]; param at = [1, 0, 0];"
+                                    "show sphere(r).move(at + [0, time, 0]);", &scene);
+    assert_int_equal(krs_parameter_count(scene), 2);
+    assert_int_equal(krs_parameter(scene, 0, &parameter), KRS_OK);
+    assert_string_equal(parameter.name, "r");
+    assert_true(parameter.low[0] == 0.5 && parameter.high[0] == 2 && parameter.components == 1);
+    assert_int_equal(krs_parameter(scene, 2, &parameter), KRS_BAD_ARGUMENT);
+
+    assert_true(fabs(distance_at(frame, 4, 0, 0) - 2) < 1e-12);
+    assert_int_equal(krs_frame_set(frame, "r", (double[]){2}, 1), KRS_OK);
+    assert_true(fabs(distance_at(frame, 4, 0, 0) - 1) < 1e-12);
+    assert_int_equal(krs_frame_set(frame, "at", (double[]){0, 0, 0}, 3), KRS_OK);
+    assert_true(fabs(distance_at(frame, 4, 0, 0) - 2) < 1e-12);
+    assert_int_equal(krs_frame_set_time(frame, 3), KRS_OK);
+    assert_true(fabs(distance_at(frame, 4, 0, 0) - 3) < 1e-12);
+
+    /* What is refused changes nothing. */
+    assert_int_equal(krs_frame_set(frame, "r", (double[]){2.5}, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_frame_set(frame, "r", (double[]){NAN}, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_frame_set(frame, "r", (double[]){1, 1}, 2), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_frame_set(frame, "q", (double[]){1}, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_frame_set_time(frame, INFINITY), KRS_BAD_ARGUMENT);
+    assert_true(fabs(distance_at(frame, 4, 0, 0) - 3) < 1e-12);
+    close_scene(frame, scene);
+}
+
+static void frames_that_are_not_finite_are_refused(void **state)
+{
+    (void)state;
+    KrsScene *scene;
+    KrsFrame *frame = open_scene("param a = 0.5 in [-1, 1]; show sphere(2 + sqrt(a));", &scene);
+    assert_int_equal(krs_frame_set(frame, "a", (double[]){-1}, 1), KRS_BAD_ARGUMENT);
+    assert_true(fabs(distance_at(frame, 4, 0, 0) - (2 - sqrt(0.5))) < 1e-12);
+    assert_int_equal(krs_frame_set(frame, "a", (double[]){1}, 1), KRS_OK);
+    close_scene(frame, scene);
+
+    /* A root that is chosen against does no harm. */
+    frame = open_scene("param a = 0.5 in [-1, 1]; show sphere(if a < 0 then 1 else 1 + sqrt(a));", &scene);
+    assert_int_equal(krs_frame_set(frame, "a", (double[]){-1}, 1), KRS_OK);
+    assert_true(fabs(distance_at(frame, 4, 0, 0) - 3) < 1e-12);
+    close_scene(frame, scene);
+}
+
+/* The angle between the view axis and a point, seen from the eye. */
+static double angle_to(const KrsCamera *camera, double x, double y, double z)
+{
+    double to[3] = {x, y, z}, along = 0, a = 0, b = 0;
+    for (int k = 0; k < 3; k++) {
+        double axis = camera->target[k] - camera->eye[k], way = to[k] - camera->eye[k];
+        along += axis * way;
+        a += axis * axis;
+        b += way * way;
+    }
+    return acos(along / sqrt(a * b));
+}
+
+static void a_missing_camera_frames_the_scene(void **state)
+{
+    (void)state;
+    /* The box of a sequence with a moving mirror is far larger than what is there. */
+    KrsScene *scene;
+    KrsView   view;
+    KrsFrame *frame = open_scene("param w = 1 in [1, 50]; show plane([0, 1, 0], -1);"
+                                 "show krs { kernel sphere(0.5); reflect plane([1, 0, 0], w); };", &scene);
+    assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);
+    double half = 0.5 * view.camera.fov;
+    double left = angle_to(&view.camera, -0.5, 0, 0), right = angle_to(&view.camera, 2.5, 0, 0);
+    assert_true(left < half && right < half);
+    assert_true(left > 0.3 * half || right > 0.3 * half);
+    assert_int_equal(krs_frame_view(frame, 1, &view), KRS_BAD_ARGUMENT);
+    close_scene(frame, scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(parameters_move_the_scene),
+        cmocka_unit_test(frames_that_are_not_finite_are_refused),
+        cmocka_unit_test(a_missing_camera_frames_the_scene),
+    };
+    return cmocka_run_group_tests_name("frames", tests, NULL, NULL);
+}
