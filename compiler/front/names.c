@@ -403,18 +403,6 @@ static void check_circles(Checker *c)
 
 /* ---- the file ---- */
 
-static bool defines(const Syntax *syntax)
-{
-    switch (syntax->kind) {
-    case SYNTAX_LET: case SYNTAX_DEF: case SYNTAX_PARAM: case SYNTAX_SHAPE: case SYNTAX_MATERIAL:
-        return true;
-    case SYNTAX_CAMERA: case SYNTAX_LIGHT:
-        return syntax->name != NULL;
-    default:
-        return false;
-    }
-}
-
 /* What could not be read may have defined the names that the rest of the statement uses. */
 static bool contains_error(const Syntax *syntax)
 {
@@ -455,7 +443,7 @@ void names_check(const Syntax *file, const NameScope *scope, Diags *diags, Arena
         Definition   *definition = arena_new(arena, Definition);
         definition->syntax       = syntax;
         array_push(arena, &c->definitions, definition);
-        if (defines(syntax))
+        if (syntax_defines(syntax))
             define(c, syntax->name, syntax->name_span, definition);
     }
     for (uint32_t i = 0; i < file->count; i++) {

@@ -89,3 +89,15 @@ void syntax_print(const Syntax *syntax, const Sources *sources, Text *out)
 {
     print_level(syntax, sources, 0, out);
 }
+
+bool syntax_defines(const Syntax *syntax)
+{
+    switch (syntax->kind) {
+    case SYNTAX_LET: case SYNTAX_DEF: case SYNTAX_PARAM: case SYNTAX_SHAPE: case SYNTAX_MATERIAL:
+        return true;
+    case SYNTAX_CAMERA: case SYNTAX_LIGHT:
+        return syntax->name != NULL;
+    default:
+        return false;
+    }
+}

@@ -78,6 +78,9 @@ enum { SYNTAX_MOST_LEVELS = 1000 };
 /* "comprehension", for dumps. */
 const char *syntax_kind_name(SyntaxKind kind);
 
+/* Whether a statement gives its name a meaning in the whole file. */
+bool syntax_defines(const Syntax *syntax);
+
 /* The tree as indented text, one node a line: kind, name, number, line:column. */
 void syntax_print(const Syntax *syntax, const Sources *sources, Text *out);
 

@@ -37,23 +37,11 @@ Definition *scope_find(const Scope *scope, const char *name)
     return definition;
 }
 
-static bool defines(const Syntax *syntax)
-{
-    switch (syntax->kind) {
-    case SYNTAX_LET: case SYNTAX_DEF: case SYNTAX_PARAM: case SYNTAX_SHAPE: case SYNTAX_MATERIAL:
-        return true;
-    case SYNTAX_CAMERA: case SYNTAX_LIGHT:
-        return syntax->name != NULL;
-    default:
-        return false;
-    }
-}
-
 static void define_all(Elaboration *e, Scope *scope)
 {
     for (uint32_t i = 0; i < scope->file->count; i++) {
         const Syntax *syntax = scope->file->children[i];
-        if (!defines(syntax))
+        if (!syntax_defines(syntax))
             continue;
         Definition *definition = arena_new(e->arena, Definition);
         *definition = (Definition){.name = syntax->name, .syntax = syntax, .scope = scope};

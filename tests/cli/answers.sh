@@ -88,7 +88,7 @@ status=$?
 said 2 "record 2 of standard input" "a record that is cut off"
 
 run info ball.krs
-[ "$status" -eq 0 ] && grep -q 'ball' out && grep -q '^param radius = 1 in 0.5 to 1.5$' out
+[ "$status" -eq 0 ] && grep -q 'ball' out && grep -q '^param radius = 1 in \[0.5, 1.5\]$' out
 result $? "info as text"
 run info --json ball.krs
 [ "$status" -eq 0 ] && is_json <out && grep -q '"slope": ' out &&
