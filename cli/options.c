@@ -136,12 +136,24 @@ static bool read_color(const char *word, Setting *setting)
     return true;
 }
 
+/* A number of a param: `deg` stands behind an angle in degrees, as in a scene. */
+static bool read_parameter_number(const char *word, const char **end, double *value)
+{
+    if (!read_number_prefix(word, end, value))
+        return false;
+    if (strncmp(*end, "deg", 3) == 0) {
+        *value *= M_PI / 180;
+        *end += 3;
+    }
+    return true;
+}
+
 static bool read_vector(const char *word, Setting *setting)
 {
     do {
         word += 1 + strspn(word + 1, " ");
         if (setting->count == 4 ||
-            !read_number_prefix(word, &word, &setting->values[setting->count]))
+            !read_parameter_number(word, &word, &setting->values[setting->count]))
             return false;
         setting->count++;
         word += strspn(word, " ");
@@ -164,7 +176,7 @@ static bool read_setting(Options *options, const char *word)
         done = read_vector(value, &setting);
     } else {
         setting.count = 1;
-        done = read_number(value, -DBL_MAX, DBL_MAX, &setting.values[0]);
+        done = read_parameter_number(value, &value, &setting.values[0]) && *value == '\0';
     }
     if (done)
         array_push(options->arena, &options->settings, setting);

@@ -143,7 +143,8 @@ typedef struct KrsPicture {
     uint32_t *level, *instance;
     uint32_t *steps;         /* distance evaluations spent on the ray through the centre */
     /* Row vectors times these: camera space is x right, y up, z along the view axis; in NDC
-       x and y run from -1 to 1.  For a panorama NDC is camera space. */
+       x and y run from -1 to 1, and z, in perspective, from 0 at distance 0.001 to 1 at
+       infinity.  For a panorama NDC is camera space. */
     float world_to_camera[4][4], world_to_ndc[4][4];
     KrsRenderStats stats;
     KrsAllocator   allocator; /* where the memory came from */

@@ -5,6 +5,9 @@
 
 #include <math.h>
 
+/* Where z is 0 in the NDC of a perspective picture; it is 1 at infinity. */
+static const double NDC_NEAR = 1e-3;
+
 static const double PI = 3.14159265358979323846;
 
 /* The shaders' substitute for an infinite box: 1e18 over 1e-18 is still a float. */
@@ -213,7 +216,8 @@ void view_matrices(const KrsCamera *camera, uint32_t width, uint32_t height, Krs
             picture->world_to_camera[row][column] = (float)from[column];
         picture->world_to_ndc[row][0] = (float)(from[0] / extent[0]);
         picture->world_to_ndc[row][1] = (float)(from[1] / extent[1]);
-        picture->world_to_ndc[row][2] = (float)from[2];
+        picture->world_to_ndc[row][2] =
+            (float)(perspective ? from[2] - NDC_NEAR * from[3] : from[2]);
         picture->world_to_ndc[row][3] = (float)(perspective ? from[2] : from[3]);
     }
 }

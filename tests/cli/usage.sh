@@ -2,7 +2,7 @@
 # usage.sh: command lines that are wrong, and the pages of help.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 45
+plan 47
 
 run
 said 2 "no command is given" "no command"
@@ -65,6 +65,11 @@ run query ball.krs --set 'radius=[1,2]'
 said 2 "takes 1 number, not 2" "a vector for a number"
 run query ball.krs --set radius=one
 said 2 "--set wants" "a value that is no number"
+run query ball.krs --set radius=60deg
+[ "$status" -eq 0 ]
+result $? "an angle in degrees"
+run query ball.krs --set radius=60degs
+said 2 "--set wants" "an angle with a misspelt unit"
 run --exit-map
 said 2 "there is no command" "an option without a command"
 

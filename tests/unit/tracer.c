@@ -389,6 +389,8 @@ static void matrices_lead_back_to_the_pixel(void **state)
             assert_near(place[2], picture->depth[i], 1e-4);
             assert_near((ndc[0] + 1) / 2 * WIDTH, (double)(i % WIDTH) + 0.5, 1e-3);
             assert_near((1 - ndc[1]) / 2 * HEIGHT, (double)(i / WIDTH) + 0.5, 1e-3);
+            /* The third coordinate tells depths apart: the matrix can be inverted. */
+            assert_near(ndc[2], camera == FLAT ? place[2] : 1 - 1e-3 / place[2], 1e-4);
         }
         krs_picture_free(picture);
     }
