@@ -304,9 +304,9 @@ static void add_light(Elaboration *e, const Environment *env, const Syntax *synt
 
 static void set_sky(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    static const double zenith[3]  = {0.24, 0.36, 0.56};
-    static const double horizon[3] = {0.78, 0.82, 0.87};
-    static const double ground[3]  = {0.32, 0.31, 0.3};
+    static const double zenith[3]  = {0.17, 0.26, 0.42};
+    static const double horizon[3] = {0.56, 0.6, 0.66};
+    static const double ground[3]  = {0.17, 0.165, 0.16};
     e->scene->zenith  = vector_property(e, env, syntax, "zenith", zenith);
     e->scene->horizon = vector_property(e, env, syntax, "horizon", horizon);
     e->scene->ground  = vector_property(e, env, syntax, "ground", ground);
