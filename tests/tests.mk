@@ -57,6 +57,6 @@ bless: $(B)/krs
 test: deps
 	@$(MAKE) --no-print-directory all test-programs clang-check fuzzers
 	@$(MAKE) --no-print-directory sanitize
-	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs tests/run.sh $(PROGRAMS:%=$(B)/%) $(SCRIPTS) \
+	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=300 tests/run.sh $(PROGRAMS:%=$(B)/%) $(SCRIPTS) \
 	    $(SANITIZED:%=$(B)/asan/%) tests/errors-sanitized.sh tests/fuzz/fuzz.sh
 .PHONY: test test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers fuzz-programs lint bless
