@@ -345,6 +345,11 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
             return refuse(options, id, "json or nothing", value);
         options->stats = value ? STATS_JSON : STATS_TEXT;
         return KRS_OK;
+    case OPTION_BEAMS:
+        options->no_beams = strcmp(value, "off") == 0;
+        return options->no_beams || strcmp(value, "on") == 0
+                   ? KRS_OK
+                   : refuse(options, id, "on or off", value);
     case OPTION_TRACE:
         return say_usage(options, "--trace is not in this version; there is one tracer");
     case OPTION_RESUME:

@@ -74,6 +74,7 @@ typedef struct Options {
     bool        exposed, tone_mapped; /* --exposure, --tone-map were given */
     double      exposure;
     ToneMap     tone_map;
+    bool        no_beams;
     uint64_t    seed, points;
     double      deadline; /* seconds */
     StatsForm   stats;

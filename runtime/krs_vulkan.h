@@ -98,6 +98,7 @@ typedef struct KrsRenderOptions {
     uint32_t  planes;        /* bits of KrsPlane; 0: all */
     uint32_t  most_steps;    /* of a primary ray; 0: 16384, which is also the most */
     uint32_t  steps_at_once; /* of a primary ray in one dispatch; 0: 512; at most 8192 */
+    bool      no_beams;      /* each ray is marched by itself all the way */
     double    slice_ms;      /* aim for dispatches this long; 0: 50 */
     KrsProgressCallback *progress; /* may be NULL */
     void                *user;     /* handed to `progress` */

@@ -56,7 +56,7 @@ struct Hit {
     uint  component;
     uint  level, instance;
     float pixel;     // the width of a pixel there
-    float unused;
+    float beam;      // before there is a hit: where the beam of a tile ends
 };
 
 layout(std430, set = 1, binding = 1) buffer Rays { Ray rays[]; };
@@ -71,7 +71,11 @@ layout(std430, set = 1, binding = 4) buffer Control {
     uint phase;      // of secondary.comp
     uint beginning;  // 1: rays start here; for resolve.comp: the first ray of a pixel
     uint light_kind; // bit 0: positional, bit 1: casts shadows
+    uint beams;      // of trace.comp: NO_BEAMS, MARCH_BEAMS, or FOLLOW_BEAMS
+    uint beam_evaluations; // counts distances spent on beams
 } control;
+
+const uint NO_BEAMS = 0u, MARCH_BEAMS = 1u, FOLLOW_BEAMS = 2u;
 
 // The pixel of this invocation; false when there is none.  The stride spreads neighbouring
 // tiles over a device that deals out workgroups in contiguous halves.

@@ -43,7 +43,11 @@ typedef struct ControlBlock {
     uint32_t phase;      /* SECONDARY_... */
     uint32_t beginning;
     uint32_t light_kind; /* LIGHT_... */
+    uint32_t beams;      /* ..._BEAMS */
+    uint32_t beam_evaluations;
 } ControlBlock;
+
+enum { NO_BEAMS, MARCH_BEAMS, FOLLOW_BEAMS };
 
 /* Pixel of resolve.comp, std430. */
 typedef struct PixelBlock {

@@ -199,11 +199,10 @@ static bool report(Job *job, double within_phase)
     return true;
 }
 
-/* Runs a kernel over all tiles of the band. */
-static bool run_phase(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work)
+static bool run_groups(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
+                       uint32_t tiles)
 {
     uint32_t *at_once = &job->rendering->tiles_at_once[phase];
-    uint32_t  tiles = (work->extent[0] + TILE - 1) / TILE * ((work->extent[1] + TILE - 1) / TILE);
     for (uint32_t first = 0; first < tiles;) {
         uint32_t count = *at_once < tiles - first ? *at_once : tiles - first;
         double   ms = 0;
@@ -227,7 +226,35 @@ static bool run_phase(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock 
     return true;
 }
 
+/* Runs a kernel over all tiles of the band. */
+static bool run_phase(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work)
+{
+    uint32_t across = (work->extent[0] + TILE - 1) / TILE;
+    uint32_t down = (work->extent[1] + TILE - 1) / TILE;
+    return run_groups(job, phase, kernel, work, across * down);
+}
+
 /* ---- The phases of one ray per pixel ---- */
+
+/* A beam may end anywhere, so what it has not done in as many steps is left to the rays; the
+   number does not depend on slices, which must not be seen. */
+enum { MOST_BEAM_STEPS = 256 };
+
+/* Beams of all tiles, counted in the whole picture, that the band has a part of. */
+static bool march_beams(Job *job, WorkBlock *work)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    uint32_t      beams = 1;
+    for (int i = 0; i < 2; i++)
+        beams *= (work->corner[i] + work->extent[i] - 1) / TILE - work->corner[i] / TILE + 1;
+    work->steps = MOST_BEAM_STEPS;
+    control->beams = MARCH_BEAMS;
+    if (!run_groups(job, KRS_PHASE_BEAMS, &job->rendering->trace, work,
+                    (beams + TILE * TILE - 1) / (TILE * TILE)))
+        return false;
+    control->beams = FOLLOW_BEAMS;
+    return true;
+}
 
 static bool trace(Job *job, WorkBlock *work)
 {
@@ -288,6 +315,12 @@ static bool render_ray(Job *job, WorkBlock *work, uint32_t index)
     KrsRendering *r = job->rendering;
     ControlBlock *control = r->control.bytes;
     place_ray(index, job->options.seed, work->offset);
+    control->beams = NO_BEAMS;
+    control->beginning = 1;
+    job->share = 0; /* too short to be seen */
+    if (!job->options.no_beams && job->view.camera.projection != KRS_PANORAMA &&
+        !march_beams(job, work))
+        return false;
     static const struct {
         KrsPhase phase;
         uint32_t secondary;
@@ -349,7 +382,8 @@ static bool render_band(Job *job, uint32_t from, uint32_t rows)
         if (!render_ray(job, &work, i))
             return false;
         job->picture->stats.unresolved += control->unresolved;
-        control->unresolved = 0;
+        job->picture->stats.evaluations += control->beam_evaluations;
+        control->unresolved = control->beam_evaluations = 0;
     }
     if (!fetch(job, (uint64_t)rows * window->width))
         return false;

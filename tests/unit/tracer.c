@@ -478,6 +478,36 @@ static void slices_are_not_seen(void **state)
     stage_close(&stage);
 }
 
+/* Beams begin rays later, and that is all: what the rays see stays to a small part of a pixel,
+   but for outlines, and costs less. */
+static void beams_are_not_seen(void **state)
+{
+    (void)state;
+    Stage stage = {0};
+    stage_open(&stage, landscape_text, NULL);
+    KrsPicture *behind = render(&stage, (KrsRenderOptions){.samples = 1});
+    KrsPicture *alone = render(&stage, (KrsRenderOptions){.samples = 1, .no_beams = true});
+    unsigned    other = 0, apart = 0;
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
+        other += behind->component[i] != alone->component[i];
+        if (!behind->component[i] || behind->component[i] != alone->component[i])
+            continue;
+        double off = 0; /* across the surface: along it a grazing ray may end anywhere */
+        for (int k = 0; k < 3; k++)
+            off += ((double)behind->position[3 * i + k] - alone->position[3 * i + k]) *
+                   alone->normal[3 * i + k];
+        apart += fabs(off) > 3e-4 * alone->depth[i];
+    }
+    assert_true(other * 500 <= WIDTH * HEIGHT);
+    assert_true(apart * 500 <= WIDTH * HEIGHT);
+    assert_true(behind->stats.phase_ms[KRS_PHASE_BEAMS] > 0);
+    assert_true(alone->stats.phase_ms[KRS_PHASE_BEAMS] == 0);
+    assert_true(behind->stats.evaluations < 0.9 * (double)alone->stats.evaluations);
+    krs_picture_free(behind);
+    krs_picture_free(alone);
+    stage_close(&stage);
+}
+
 static void crops_are_parts(void **state)
 {
     Stage          *stage = *state;
@@ -682,6 +712,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(samples_converge_on_the_area, set_up, tear_down),
         cmocka_unit_test_setup_teardown(points_are_sampled, set_up, tear_down),
         cmocka_unit_test(slices_are_not_seen),
+        cmocka_unit_test(beams_are_not_seen),
         cmocka_unit_test_setup_teardown(crops_are_parts, set_up, tear_down),
         cmocka_unit_test_setup_teardown(bands_are_not_seen, set_up, tear_down),
         cmocka_unit_test_setup_teardown(interruption_is_heard, set_up, tear_down),
