@@ -16,16 +16,21 @@ typedef struct Sphere {
     double centre[3], radius;
 } Sphere;
 
+static bool is_bounded(const KrsComponent *component)
+{
+    for (int k = 0; k < 3; k++)
+        if (!isfinite(component->low[k]) || !isfinite(component->high[k]))
+            return false;
+    return true;
+}
+
 /* The ball around the boxes of the bounded components; false when there is none. */
 static bool outer_ball(const KrsScene *scene, Sphere *ball)
 {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < scene->component_count; i++) {
         const KrsComponent *component = &scene->components[i];
-        bool                finite    = true;
-        for (int k = 0; k < 3; k++)
-            finite = finite && isfinite(component->low[k]) && isfinite(component->high[k]);
-        for (int k = 0; finite && k < 3; k++) {
+        for (int k = 0; is_bounded(component) && k < 3; k++) {
             low[k]  = fmin(low[k], component->low[k]);
             high[k] = fmax(high[k], component->high[k]);
         }
@@ -64,7 +69,7 @@ typedef struct Extent {
 static void add_hits(const KrsScene *scene, const KrsHit *hits, Extent *seen)
 {
     for (int i = 0; i < RAYS; i++) {
-        if (!hits[i].hit || !isfinite(scene->components[hits[i].component - 1].low[0]))
+        if (!hits[i].hit || !is_bounded(&scene->components[hits[i].component - 1]))
             continue;
         for (int k = 0; k < 3; k++) {
             seen->low[k]  = fmin(seen->low[k], hits[i].point[k]);
@@ -104,8 +109,8 @@ KrsStatus frame_scene(KrsScene *scene)
     /* What is found sharpens the ball, and the next round's rays. */
     for (int round = 0; round < ROUNDS; round++) {
         make_rays(&ball, origins, directions);
-        krs_raycast(frame, (const double(*)[3])origins, (const double(*)[3])directions, RAYS, 4 * ball.radius,
-                    1e-3 * ball.radius, hits);
+        krs_raycast(frame, (const double(*)[3])origins, (const double(*)[3])directions, RAYS,
+                    4 * ball.radius, 1e-3 * ball.radius, hits);
         add_hits(scene, hits, &seen);
         if (!inner_ball(&seen, &ball))
             break;
@@ -115,6 +120,7 @@ KrsStatus frame_scene(KrsScene *scene)
     scene->framed = true;
     memcpy(scene->framed_target, ball.centre, sizeof ball.centre);
     for (int k = 0; k < 3; k++)
-        scene->framed_eye[k] = ball.centre[k] + towards[k] * ball.radius / sin(0.5 * view.camera.fov);
+        scene->framed_eye[k] =
+            ball.centre[k] + towards[k] * ball.radius / sin(0.5 * view.camera.fov);
     return KRS_OK;
 }

@@ -156,10 +156,16 @@ static void copy3(double to[3], const KrsFrame *frame, Node node)
     memcpy(to, frame->values[node].v, 3 * sizeof *to);
 }
 
+/* Any length but 0: squares of what is very long or short would overflow, or vanish. */
 static void normalize3(double v[3])
 {
+    double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    if (!(largest > 0))
+        return;
+    for (int i = 0; i < 3; i++)
+        v[i] /= largest;
     double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3 && length > 0; i++)
+    for (int i = 0; i < 3; i++)
         v[i] /= length;
 }
 

@@ -9,6 +9,10 @@ failed=0
 report() { # name, status
     if [ "$2" -eq 0 ]; then echo "ok - $1"; else echo "not ok - $1"; failed=1; fi
 }
+VK_LOADER_DEBUG=layer VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation "$krs" devices >"$folder/said" 2>&1
+grep -q 'Loading layer library.*khronos_validation' "$folder/said"
+report "the validation layer is loaded when it is asked for" $?
+
 for scene in examples/*.krs; do
     "$krs" check "$scene" >"$folder/check" 2>&1 && [ ! -s "$folder/check" ]
     status=$?

@@ -149,10 +149,11 @@ static double constant_property(Elaboration *e, const Environment *env, const Sy
     return number;
 }
 
-/* One of a few words, of which those with a ~ are not in this version; NULL when it is not given
-   or not one of them. */
+/* One of a few words, the last `later` of which are known but not in this version; NULL when it
+   is not given, or not one that is there. */
 static const char *word_property(Elaboration *e, const Environment *env, const Syntax *block,
-                                 const char *name, const char *const *words, size_t count)
+                                 const char *name, const char *const *words, size_t count,
+                                 size_t later)
 {
     const Syntax *syntax = find_property(block, name);
     if (!syntax)
@@ -166,15 +167,15 @@ static const char *word_property(Elaboration *e, const Environment *env, const S
     }
     Text list = {.arena = e->diags->arena};
     for (size_t i = 0; i < count; i++) {
-        if (words[i][0] == '~' && strcmp(words[i] + 1, value.string) == 0) {
-            not_supported(e, syntax->span, diag_text(e->diags, "`%s: \"%s\"`", name, value.string));
+        bool same = strcmp(words[i], value.string) == 0;
+        if (same && i + later >= count) {
+            not_supported(e, syntax->span, diag_text(e->diags, "`%s: \"%s\"`", name, words[i]));
             return NULL;
         }
-        if (words[i][0] == '~')
-            continue;
-        if (strcmp(words[i], value.string) == 0)
+        if (same)
             return words[i];
-        text_format(&list, "%s\"%s\"", i ? ", " : "", words[i]);
+        if (i + later < count)
+            text_format(&list, "%s\"%s\"", i ? ", " : "", words[i]);
     }
     Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "`%s` cannot be \"%s\"", name,
                            value.string);
@@ -255,7 +256,7 @@ static void add_camera(Elaboration *e, const Environment *env, const Syntax *syn
     camera.up          = vector_property(e, env, syntax, "up", UP);
     camera.fov         = number_property(e, env, syntax, "fov", 40 * M_PI / 180);
     camera.height      = number_property(e, env, syntax, "height", 4);
-    const char *word   = word_property(e, env, syntax, "projection", projections, 3);
+    const char *word   = word_property(e, env, syntax, "projection", projections, 3, 0);
     while (word && projections[camera.projection] != word)
         camera.projection++;
     const Syntax *fov  = find_property(syntax, "fov");
@@ -337,7 +338,7 @@ static void set_size(Elaboration *e, const Syntax *size, Value value)
 
 static void set_image(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    static const char *const integrators[] = {"preview", "~direct", "~path"};
+    static const char *const integrators[] = {"preview", "direct", "path"};
     static const char *const tone_maps[]   = {"neutral", "aces", "none"};
     SceneImage   *image = &e->scene->image;
     const Syntax *size  = find_property(syntax, "size");
@@ -346,8 +347,8 @@ static void set_image(Elaboration *e, const Environment *env, const Syntax *synt
     image->samples    = (uint32_t)constant_property(e, env, syntax, "samples", 1, 65536, 0);
     image->exposure   = constant_property(e, env, syntax, "exposure", -20, 20, 0);
     image->error      = constant_property(e, env, syntax, "error", 0.001, 1, 0);
-    image->integrator = word_property(e, env, syntax, "integrator", integrators, 3);
-    image->tone_map   = word_property(e, env, syntax, "tone_map", tone_maps, 3);
+    image->integrator = word_property(e, env, syntax, "integrator", integrators, 3, 2);
+    image->tone_map   = word_property(e, env, syntax, "tone_map", tone_maps, 3, 0);
 }
 
 /* A scene has one sky, one image, and one camera without a name. */

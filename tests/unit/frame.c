@@ -111,12 +111,44 @@ static void a_missing_camera_frames_the_scene(void **state)
     close_scene(frame, scene);
 }
 
+/* A column without end in y must not be framed, nor what is seen of it. */
+static void endless_components_are_not_framed(void **state)
+{
+    (void)state;
+    KrsScene *scene;
+    KrsView   view;
+    KrsFrame *frame = open_scene("show sphere(0.5); show cylinder(0.2, 0.9)"
+                                 ".move([1.5, 0, 0]).repeat([0, 1, 0]);", &scene);
+    assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);
+    for (int k = 0; k < 3; k++)
+        assert_true(fabs(view.camera.target[k]) < 0.1);
+    close_scene(frame, scene);
+}
+
+/* Directions may have any length but 0. */
+static void rays_of_any_length_hit(void **state)
+{
+    static const double lengths[] = {1e-300, 1e-160, 1e-3, 1, 1e200, 1e300};
+    (void)state;
+    KrsScene *scene;
+    KrsFrame *frame = open_scene("show sphere(1);", &scene);
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        const double origin[1][3] = {{0, 0, 3}}, direction[1][3] = {{0, 0, -lengths[i]}};
+        KrsHit       hit;
+        krs_raycast(frame, origin, direction, 1, 10, 0, &hit);
+        assert_true(hit.hit && fabs(hit.t - 2) < 1e-6);
+    }
+    close_scene(frame, scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parameters_move_the_scene),
         cmocka_unit_test(frames_that_are_not_finite_are_refused),
         cmocka_unit_test(a_missing_camera_frames_the_scene),
+        cmocka_unit_test(endless_components_are_not_framed),
+        cmocka_unit_test(rays_of_any_length_hit),
     };
     return cmocka_run_group_tests_name("frames", tests, NULL, NULL);
 }
