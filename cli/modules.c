@@ -29,7 +29,7 @@ static KrsStatus compile_kernel(const Options *options, const char *glsl, const 
                                 Modules *modules)
 {
     Gpu   gpu = {0}; /* stays closed: it only carries the reason of a failure */
-    char *text = kernel_text(&gpu, file, glsl), *log = NULL;
+    char *text = kernel_text(&gpu, &(KernelSource){file, glsl, NULL}), *log = NULL;
     if (!text) {
         say("%s", gpu.message);
         return gpu.status;

@@ -118,6 +118,16 @@ static const char *read_choice(const char *word, const char *const *choices)
     return NULL;
 }
 
+/* The number of a word among the names of an enum, whose first is the default and cannot be
+   asked for; 0 when it is not there. */
+static int find_choice(const char *word, const char *const *names, int count)
+{
+    for (int i = 1; i < count; i++)
+        if (strcmp(word, names[i]) == 0)
+            return i;
+    return 0;
+}
+
 /* Colours are linear in all computations, as in the language. */
 static double linear_from_srgb(unsigned byte)
 {
@@ -340,6 +350,9 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
     case OPTION_DEVICE:
         options->device = value;
         return KRS_OK;
+    case OPTION_CACHE:
+        options->cache = value;
+        return *value ? KRS_OK : refuse(options, id, "a folder, or off", value);
     case OPTION_STATS:
         if (value && strcmp(value, "json") != 0)
             return refuse(options, id, "json or nothing", value);
@@ -350,8 +363,17 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
         return options->no_beams || strcmp(value, "on") == 0
                    ? KRS_OK
                    : refuse(options, id, "on or off", value);
+    case OPTION_ERROR:
+        return read_number(value, 1e-6, 1000, &options->error)
+                   ? KRS_OK
+                   : refuse(options, id, "a number of pixels above 0", value);
     case OPTION_TRACE:
-        return say_usage(options, "--trace is not in this version; there is one tracer");
+        options->trace = (KrsTrace)find_choice(value, krs_trace_names, KRS_TRACE_COUNT);
+        return options->trace ? KRS_OK : refuse(options, id, "plain, relaxed or auto", value);
+    case OPTION_SCHEDULE:
+        options->schedule =
+            (KrsSchedule)find_choice(value, krs_schedule_names, KRS_SCHEDULE_COUNT);
+        return options->schedule ? KRS_OK : refuse(options, id, "pixel, refill or queue", value);
     case OPTION_RESUME:
         return say_usage(options, "--resume is not in this version; there are no checkpoints");
     case OPTION_AFTER:

@@ -64,7 +64,7 @@ typedef struct Options {
     struct { ExitPair *items; size_t count, capacity; } exit_map;
 
     uint32_t    width, height, samples; /* 0: not given */
-    const char *camera, *device, *after; /* NULL: not given */
+    const char *camera, *device, *cache, *after; /* NULL: not given */
     bool        cropped;
     uint32_t    crop[4]; /* x, y, width, height */
     bool        animated;
@@ -75,6 +75,9 @@ typedef struct Options {
     double      exposure;
     ToneMap     tone_map;
     bool        no_beams;
+    double      error; /* 0: not given */
+    KrsTrace    trace;
+    KrsSchedule schedule;
     uint64_t    seed, points;
     double      deadline; /* seconds */
     StatsForm   stats;

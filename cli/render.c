@@ -150,7 +150,9 @@ static KrsStatus choose_how(Render *render)
         exr = exr || file_form(render->outputs[i]) == FORM_EXR;
     render->how = (KrsRenderOptions){
         .width = width, .height = height, .samples = options->samples, .camera = camera,
-        .seed = options->seed, .no_beams = options->no_beams, .planes = picture_planes(options, exr),
+        .seed = options->seed, .error = options->error, .trace = options->trace,
+        .schedule = options->schedule, .no_beams = options->no_beams,
+        .planes = picture_planes(options, exr),
         .progress = show_progress, .user = render};
     if (options->cropped)
         render->how.crop = (KrsWindow){crop[0], crop[1], crop[2], crop[3]};

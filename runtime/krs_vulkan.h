@@ -43,6 +43,9 @@ typedef struct KrsRendererOptions {
     bool                   validation; /* core and synchronization validation */
     KrsValidationCallback *complaint;  /* may be NULL: complaints are counted all the same */
     void                  *user;       /* handed to `complaint` */
+    /* A folder for what is compiled, so that another time it need not be; it is made if it is
+       missing, and need not be writable.  NULL: none.  Without one nothing is written to disk. */
+    const char            *cache;
     KrsAllocator           allocator;  /* our memory; the driver's and glslang's is their own */
 } KrsRendererOptions;
 
@@ -87,6 +90,37 @@ typedef struct KrsWindow {
 /* Called between slices of work; `done` rises from 0 to 1.  False interrupts the render. */
 typedef bool KrsProgressCallback(void *user, double done);
 
+/* How rays advance; the pictures are the same but for the permitted error.  The default is what
+   `make bench` found fastest for the kind of device. */
+typedef enum KrsTrace {
+    KRS_TRACE_DEFAULT,
+    KRS_TRACE_PLAIN,   /* by the distance (Hart 1996) */
+    KRS_TRACE_RELAXED, /* by 1.2 times as much, and back where that was too far (Keinert et al.
+                          2014, 3.1, corrected) */
+    KRS_TRACE_AUTO,    /* by as much as the slope of the last steps lets expect (automatic
+                          relaxation) */
+    KRS_TRACE_COUNT
+} KrsTrace;
+extern const char *const krs_trace_names[KRS_TRACE_COUNT]; /* "default", "plain", ... */
+
+/* How rays are dealt out to the lanes of the device; the pictures are the same bit by bit. */
+typedef enum KrsSchedule {
+    KRS_SCHEDULE_DEFAULT,
+    KRS_SCHEDULE_PIXEL,  /* a lane to a pixel until it is done */
+    KRS_SCHEDULE_REFILL, /* a lane that is done takes the next pixel of its tile */
+    KRS_SCHEDULE_QUEUE,  /* a few steps a pass, then those not done are queued up again */
+    KRS_SCHEDULE_COUNT
+} KrsSchedule;
+extern const char *const krs_schedule_names[KRS_SCHEDULE_COUNT];
+
+/* The shadows of lights that have a size. */
+typedef enum KrsShadows {
+    KRS_SHADOWS_SOFT, /* one ray to the light's middle tells how much is hidden, about */
+    KRS_SHADOWS_AREA, /* each ray of a pixel sees another point of the light: right with many */
+    KRS_SHADOWS_COUNT
+} KrsShadows;
+extern const char *const krs_shadows_names[KRS_SHADOWS_COUNT];
+
 /* Zero asks for the defaults. */
 typedef struct KrsRenderOptions {
     uint32_t  width, height; /* 0: what the scene says, else 1280x720; at most 16384 */
@@ -98,6 +132,9 @@ typedef struct KrsRenderOptions {
     uint32_t  planes;        /* bits of KrsPlane; 0: all */
     uint32_t  most_steps;    /* of a primary ray; 0: 16384, which is also the most */
     uint32_t  steps_at_once; /* of a primary ray in one dispatch; 0: 512; at most 8192 */
+    KrsTrace    trace;
+    KrsSchedule schedule;
+    KrsShadows  shadows;
     bool      no_beams;      /* each ray is marched by itself all the way */
     double    slice_ms;      /* aim for dispatches this long; 0: 50 */
     KrsProgressCallback *progress; /* may be NULL */

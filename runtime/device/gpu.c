@@ -11,6 +11,8 @@
 #include <strings.h>
 #include <time.h>
 
+#include "runtime/device/pipelines.h"
+
 #define VALIDATION_LAYER "VK_LAYER_KHRONOS_validation"
 #define NO_DEVICE                                                                               \
     "no usable Vulkan device: install a driver, for example Debian's mesa-vulkan-drivers"
@@ -372,9 +374,12 @@ bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
         .complaint = options->complaint,
         .user = options->user,
     };
+    cache_open(&gpu->cache, options->cache, options->allocator);
     if (instance_create(gpu, options->validation) && choose_device(gpu, options->device) &&
-        device_create(gpu))
+        device_create(gpu)) {
+        pipelines_open(gpu);
         return true;
+    }
     gpu_close(gpu);
     return false;
 }
@@ -382,6 +387,7 @@ bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
 void gpu_close(Gpu *gpu)
 {
     if (gpu->device) {
+        pipelines_close(gpu);
         vkDestroyQueryPool(gpu->device, gpu->times, NULL);
         vkDestroyFence(gpu->device, gpu->fence, NULL);
         vkDestroyCommandPool(gpu->device, gpu->pool, NULL);
@@ -394,6 +400,7 @@ void gpu_close(Gpu *gpu)
     }
     if (gpu->instance)
         vkDestroyInstance(gpu->instance, NULL);
+    cache_close(&gpu->cache);
     gpu->device = VK_NULL_HANDLE;
     gpu->messenger = VK_NULL_HANDLE;
     gpu->instance = VK_NULL_HANDLE;

@@ -10,6 +10,7 @@
 
 #include <vulkan/vulkan.h>
 
+#include "runtime/device/cache.h"
 #include "runtime/krs_vulkan.h"
 
 typedef struct Gpu {
@@ -28,6 +29,10 @@ typedef struct Gpu {
     VkPhysicalDeviceProperties       properties;
     VkPhysicalDeviceMemoryProperties memory;
     uint64_t memory_used, memory_peak; /* bytes of device memory */
+
+    Cache           cache;            /* of shaders; zero when none was asked for */
+    VkPipelineCache pipelines;        /* the driver's, or none */
+    size_t          pipelines_loaded; /* bytes that it began with */
 
     VkDebugUtilsMessengerEXT         messenger;
     PFN_vkSetDebugUtilsObjectNameEXT set_name; /* NULL without validation */

@@ -1,8 +1,10 @@
 /*
- * kernel.c: a kernel's text, with the scene's put in, becomes SPIR-V and then a pipeline.
+ * kernel.c: a kernel's text, with the scene's put in, becomes SPIR-V and then a pipeline; both
+ * are kept in the cache, the pipeline by the driver's own.
  */
 #include "runtime/device/kernel.h"
 
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,88 +20,160 @@ static const char *find_file(const char *name, size_t length)
     return NULL;
 }
 
-/* Copies `text` to `out` (NULL: only counts) with its includes in place, which include nothing
-   themselves.  Returns the length, or 0 when a file is missing. */
-static size_t expand(const char *text, const char *scene, char *out)
+/* What a line of a kernel stands for: itself, a file that it includes, or, after the version,
+   also the defines.  Returns false when a file is missing. */
+static bool find_parts(const char *line, size_t length, const KernelSource *source,
+                       const char **part, size_t *part_length)
 {
     static const char include[] = "#include \"";
-    size_t length = 0;
-    while (*text) {
-        size_t      line = strcspn(text, "\n") + (strchr(text, '\n') != NULL);
-        const char *from = text;
-        size_t      bytes = line;
-        if (strncmp(text, include, sizeof include - 1) == 0) {
-            const char *name = text + sizeof include - 1;
-            size_t      name_length = strcspn(name, "\"");
-            bool        is_scene = strncmp(name, "scene.glsl", name_length) == 0;
-            from = is_scene ? scene : find_file(name, name_length);
-            if (!from)
-                return 0;
-            bytes = strlen(from);
-        }
+    *part = line;
+    *part_length = length;
+    if (strncmp(line, include, sizeof include - 1) != 0)
+        return true;
+    const char *name = line + sizeof include - 1;
+    size_t      name_length = strcspn(name, "\"");
+    bool        is_scene = strncmp(name, "scene.glsl", name_length) == 0;
+    *part = is_scene ? source->scene : find_file(name, name_length);
+    *part_length = *part ? strlen(*part) : 0;
+    return *part != NULL;
+}
+
+/* Copies `text` to `out` (NULL: only counts) with its includes, which include nothing themselves,
+   and its defines in place.  Returns the length, or 0 when a file is missing. */
+static size_t expand(const char *text, const KernelSource *source, char *out)
+{
+    size_t      length = 0;
+    const char *defines = source->defines ? source->defines : "";
+    for (bool first = true; *text; first = false) {
+        size_t      line = strcspn(text, "\n") + (strchr(text, '\n') != NULL), bytes;
+        const char *part;
+        if (!find_parts(text, line, source, &part, &bytes))
+            return 0;
         if (out)
-            memcpy(out + length, from, bytes);
+            memcpy(out + length, part, bytes);
         length += bytes;
         text += line;
+        if (first) { /* the version, before which nothing may stand */
+            if (out)
+                memcpy(out + length, defines, strlen(defines));
+            length += strlen(defines);
+        }
     }
     if (out)
         out[length] = '\0';
     return length;
 }
 
-char *kernel_text(Gpu *gpu, const char *file, const char *scene)
+char *kernel_text(Gpu *gpu, const KernelSource *source)
 {
-    const char *text = find_file(file, strlen(file));
-    size_t      length = text ? expand(text, scene, NULL) : 0;
+    const char *text = find_file(source->file, strlen(source->file));
+    size_t      length = text ? expand(text, source, NULL) : 0;
     if (length == 0) {
         gpu_refuse(gpu, KRS_INTERNAL, "the kernel `%s`, or a file that it includes, is missing",
-                   file);
+                   source->file);
         return NULL;
     }
     char *whole = gpu_alloc(gpu, length + 1, 1, "put a kernel together");
     if (whole)
-        expand(text, scene, whole);
+        expand(text, source, whole);
     return whole;
 }
 
-static bool compile(Gpu *gpu, const char *file, const char *scene, uint32_t **words, size_t *count)
+/* A kernel on its way to SPIR-V, in a thread of its own when it must be compiled. */
+typedef struct Making {
+    const char *file;
+    char       *text;
+    CacheKey    key;
+    uint32_t   *found, *made; /* in the cache, or by the compiler; one of them, when done */
+    size_t      bytes;
+    KrsStatus   status;       /* of the compiler */
+    char       *log;
+    pthread_t   thread;
+    bool        started; /* the thread */
+} Making;
+
+static void *compile(void *user)
 {
-    char *text = kernel_text(gpu, file, scene);
-    if (!text)
-        return false;
-    char     *log = NULL;
-    KrsStatus status = spirv_compile(text, file, words, count, &log);
-    if (status == KRS_OUT_OF_MEMORY)
-        gpu_refuse(gpu, status, "cannot compile the kernel `%s`: out of memory", file);
-    else if (status != KRS_OK)
-        gpu_refuse(gpu, KRS_INTERNAL, "the kernel `%s` does not compile: %.*s", file,
-                   log ? (int)strcspn(log, "\n") : 0, log ? log : "");
-    free(log);
-    gpu_release(gpu, text);
-    return status == KRS_OK;
+    Making *making = user;
+    size_t  count = 0;
+    making->status =
+        spirv_compile(making->text, making->file, &making->made, &count, &making->log);
+    making->bytes = count * sizeof *making->made;
+    return NULL;
 }
 
-bool kernel_create(Gpu *gpu, Kernel *kernel, const char *file, const char *scene,
-                   VkPipelineLayout layout, double *spirv_ms, double *pipeline_ms)
+/* Puts the text together and looks into the cache. */
+static bool begin(Gpu *gpu, Making *making, const KernelSource *source)
 {
-    *kernel = (Kernel){0};
-    uint32_t      *words = NULL;
-    size_t         count = 0;
+    char maker[160];
+    *making = (Making){.file = source->file, .text = kernel_text(gpu, source)};
+    if (!making->text)
+        return false;
+    snprintf(maker, sizeof maker, "%s: krs %s, glslang %s, SPIRV-Tools %s", source->file,
+             KRS_VERSION, spirv_glslang_version(), spirv_tools_version());
+    making->key = cache_key(maker, making->text, strlen(making->text));
+    making->found = cache_load(&gpu->cache, CACHE_SPIRV, making->key, &making->bytes);
+    return true;
+}
+
+/* Compiles what was not found, all at once; where a thread cannot be had, one after another. */
+static void compile_all(Making *makings, size_t count)
+{
+    size_t first = count; /* the one that this thread compiles */
+    for (size_t i = 0; i < count; i++) {
+        Making *making = &makings[i];
+        if (making->found)
+            continue;
+        if (first == count)
+            first = i;
+        else if (pthread_create(&making->thread, NULL, compile, making) == 0)
+            making->started = true;
+        else
+            compile(making);
+    }
+    if (first < count)
+        compile(&makings[first]);
+    for (size_t i = 0; i < count; i++)
+        if (makings[i].started)
+            pthread_join(makings[i].thread, NULL);
+}
+
+/* Keeps what was compiled, or says why it was not. */
+static bool finish(Gpu *gpu, const Making *making)
+{
+    const char *log = making->log ? making->log : "";
+    if (making->found)
+        return true;
+    if (making->status == KRS_OK)
+        cache_store(&gpu->cache, CACHE_SPIRV, making->key, making->made, making->bytes);
+    else if (making->status == KRS_OUT_OF_MEMORY)
+        gpu_refuse(gpu, making->status, "cannot compile the kernel `%s`: out of memory",
+                   making->file);
+    else
+        gpu_refuse(gpu, KRS_INTERNAL, "the kernel `%s` does not compile: %.*s", making->file,
+                   (int)strcspn(log, "\n"), log);
+    return making->status == KRS_OK;
+}
+
+static void release(Gpu *gpu, Making *making)
+{
+    gpu_release(gpu, making->text);
+    gpu_release(gpu, making->found);
+    free(making->made);
+    free(making->log);
+}
+
+static bool pipeline_create(Gpu *gpu, Kernel *kernel, const Making *making,
+                            VkPipelineLayout layout)
+{
     VkShaderModule module = VK_NULL_HANDLE;
     bool           ready = false;
-
-    double start = clock_ms();
-    if (!compile(gpu, file, scene, &words, &count))
-        return false;
-    double compiled = clock_ms();
-    *spirv_ms += compiled - start;
-
     TRY(gpu, "load a kernel", vkCreateShaderModule(gpu->device, &(VkShaderModuleCreateInfo){
         .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-        .codeSize = count * sizeof *words,
-        .pCode = words,
+        .codeSize = making->bytes,
+        .pCode = making->found ? making->found : making->made,
     }, NULL, &module));
-    TRY(gpu, "prepare a kernel", vkCreateComputePipelines(gpu->device, VK_NULL_HANDLE, 1,
+    TRY(gpu, "prepare a kernel", vkCreateComputePipelines(gpu->device, gpu->pipelines, 1,
         &(VkComputePipelineCreateInfo){
             .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
             .stage = {
@@ -110,14 +184,45 @@ bool kernel_create(Gpu *gpu, Kernel *kernel, const char *file, const char *scene
             },
             .layout = layout,
         }, NULL, &kernel->pipeline));
-    gpu_name(gpu, VK_OBJECT_TYPE_PIPELINE, (uint64_t)(uintptr_t)kernel->pipeline, file);
-    *pipeline_ms += clock_ms() - compiled;
+    gpu_name(gpu, VK_OBJECT_TYPE_PIPELINE, (uint64_t)(uintptr_t)kernel->pipeline, making->file);
     ready = true;
 
 failed:
     vkDestroyShaderModule(gpu->device, module, NULL);
-    free(words);
     return ready;
+}
+
+bool kernel_create_all(Gpu *gpu, const KernelRequest *requests, size_t count,
+                       VkPipelineLayout layout, double *spirv_ms, double *pipeline_ms)
+{
+    double  start = clock_ms();
+    Making *makings = gpu_alloc(gpu, count, sizeof *makings, "compile the kernels");
+    bool    ready = makings != NULL;
+    for (size_t i = 0; i < count && ready; i++)
+        ready = begin(gpu, &makings[i], &requests[i].source);
+    if (ready)
+        compile_all(makings, count);
+    for (size_t i = 0; i < count && ready; i++)
+        ready = finish(gpu, &makings[i]);
+    double compiled = clock_ms();
+    *spirv_ms += compiled - start;
+
+    for (size_t i = 0; i < count; i++)
+        *requests[i].kernel = (Kernel){0};
+    for (size_t i = 0; i < count && ready; i++)
+        ready = pipeline_create(gpu, requests[i].kernel, &makings[i], layout);
+    *pipeline_ms += clock_ms() - compiled;
+    for (size_t i = 0; i < count && makings; i++)
+        release(gpu, &makings[i]);
+    gpu_release(gpu, makings);
+    return ready;
+}
+
+bool kernel_create(Gpu *gpu, Kernel *kernel, const KernelSource *source, VkPipelineLayout layout,
+                   double *spirv_ms, double *pipeline_ms)
+{
+    return kernel_create_all(gpu, &(KernelRequest){kernel, *source}, 1, layout, spirv_ms,
+                             pipeline_ms);
 }
 
 void kernel_destroy(Gpu *gpu, Kernel *kernel)

@@ -8,16 +8,33 @@
 
 typedef struct Kernel {
     VkPipeline pipeline;
+    bool       warm; /* it has run: the driver has compiled it for good */
 } Kernel;
 
-/* The text of a kernel with its includes: "scene.glsl" is `scene`, every other one a file of
-   runtime/shaders.  The caller's to release; NULL with the failure noted. */
-char *kernel_text(Gpu *gpu, const char *file, const char *scene);
+/* What a kernel is made from. */
+typedef struct KernelSource {
+    const char *file;    /* of runtime/shaders */
+    const char *scene;   /* takes the place of "scene.glsl"; NULL for a kernel without one */
+    const char *defines; /* lines of `#define NAME VALUE` that choose a variant, or NULL */
+} KernelSource;
 
-/* Compiles `file` of runtime/shaders for the scene (NULL for a kernel without one) and adds the
-   time it took. */
-bool kernel_create(Gpu *gpu, Kernel *kernel, const char *file, const char *scene,
-                   VkPipelineLayout layout, double *spirv_ms, double *pipeline_ms);
+/* The text of a kernel: its includes in place, and its defines after the `#version` line.  The
+   caller's to release; NULL with the failure noted. */
+char *kernel_text(Gpu *gpu, const KernelSource *source);
+
+/* Compiles a kernel, or takes it from the cache, and adds the time it took. */
+bool kernel_create(Gpu *gpu, Kernel *kernel, const KernelSource *source, VkPipelineLayout layout,
+                   double *spirv_ms, double *pipeline_ms);
+
+typedef struct KernelRequest {
+    Kernel      *kernel; /* to be made */
+    KernelSource source;
+} KernelRequest;
+
+/* The same for several kernels, which are compiled at the same time.  On failure some may have
+   been made: kernel_destroy in either case. */
+bool kernel_create_all(Gpu *gpu, const KernelRequest *requests, size_t count,
+                       VkPipelineLayout layout, double *spirv_ms, double *pipeline_ms);
 void kernel_destroy(Gpu *gpu, Kernel *kernel);
 
 #endif

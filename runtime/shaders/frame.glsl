@@ -2,19 +2,18 @@
  * frame.glsl: what the kernels of a picture share: the frame, the work of a dispatch, the
  * state of each pixel between dispatches, and the rays of pixels.
  *
- * A picture is rendered in bands of rows; the buffers hold one band.  A workgroup is a tile of
- * 8x8 pixels.  The C side of these blocks is in runtime/tracer/blocks.h.
+ * A picture is rendered in bands of rows; the buffers hold one band.  The C side of these blocks
+ * is in runtime/tracer/blocks.h.
  */
-layout(local_size_x = 8, local_size_y = 8) in;
 
 const float PI       = 3.14159265358979;
 const float INFINITE = 1e38;
 const float ROUNDING = 2.4e-7; // four units in the last place of 1
 
 const uint PERSPECTIVE = 0u, ORTHOGRAPHIC = 1u, PANORAMA = 2u;
-const uint MARCHING = 0u, HIT = 1u, MISS = 2u; // the fate of a ray
+const uint MARCHING = 0u, HIT = 1u, MISS = 2u, CLOSING = 3u; // the fate of a ray
 
-layout(std140, set = 1, binding = 0) uniform Frame {
+struct Frame {
     vec4  eye;               // w: no ray goes farther
     vec4  right, up;         // to the edges of the picture, at distance 1 where it is perspective
     vec4  forward;           // unit
@@ -26,67 +25,131 @@ layout(std140, set = 1, binding = 0) uniform Frame {
     float error;             // permitted distance from the surface, in pixels
     float occlusion_reach;   // of the farthest occlusion tap
     uint  most_steps;
-} frame;
+};
 
-layout(push_constant) uniform Work {
+struct Work {
     uvec2 corner, extent;        // of the band, in pixels
-    vec3  light_vector;          // towards it, or its position
-    float light_softness;        // angular diameter, or radius
-    vec3  light_color;
-    uint  steps;                 // of a ray in this dispatch
     vec2  offset;                // of the ray within its pixel
-    uint  first, groups, stride; // tiles [first, first + groups), in an order of this stride
-} work;
+    uint  steps;                 // of a lane in this dispatch
+    uint  first, groups, stride; // groups [first, first + groups), in an order of this stride
+};
 
+// What decides branches is here and not among the constants of a dispatch: lavapipe compiles a
+// kernel anew, and keeps it, for every set of constants that decides one.
+struct Control {
+    uint projection;
+    uint phase;      // of the kernel
+    uint first_ray;  // 1: it is the first of its pixel
+    uint light;      // which one a dispatch is about,
+    uint lights;     // of how many
+    uint shadows;    // SOFT_SHADOWS or AREA_SHADOWS
+    uint ray;        // the number of the ray within its pixel
+    uint follow;     // 1: rays start where the beams of their tiles end
+    uint source;     // of the items (schedule.glsl): FRESH, QUEUED or REST,
+    uint items;      // how many there are,
+    uint share;      // and at most for a lane
+    uint reading;    // where the half of the queue that is read begins,
+    uint writing;    // and the one that is written
+};
+
+// A ray that is done.
 struct Ray {
     float t;
     float side;  // 1 outside of all solids; -1 when the camera is inside of one
     uint  steps;
     uint  fate;
+    bool  lost;  // it ran out of steps
 };
 
 struct Hit {
-    vec3  position;
-    float occlusion; // 1: open
     vec3  normal;    // towards the side that the ray comes from
+    float occlusion; // 1: open
     float roughness;
-    vec3  color;
     float metallic;
-    vec3  radiance;  // found so far: emission, then light by light
+    float visible;   // how much of the light that is being dealt with
     uint  component;
-    uint  level, instance;
-    float pixel;     // the width of a pixel there
-    float beam;      // before there is a hit: where the beam of a tile ends
+    vec3  color;
+    uint  level;
+    vec3  radiance;  // found so far: emission, then light by light
+    uint  instance;
 };
 
-layout(std430, set = 1, binding = 1) buffer Rays { Ray rays[]; };
+struct Light {
+    vec3  vector;   // towards it (unit), or its position
+    float softness; // angular diameter, or radius
+    vec3  color;
+    uint  kind;
+};
+const uint POSITIONAL = 1u, CASTS_SHADOWS = 2u; // bits of its kind
+const uint SOFT_SHADOWS = 0u, AREA_SHADOWS = 1u;
+
+// Where the rays of the pixels end, then the beams of 8x8 tiles, then those of 32x32 tiles.
+layout(std430, set = 1, binding = 1) buffer Ends { float ends[]; };
 layout(std430, set = 1, binding = 2) buffer Hits { Hit hits[]; };
+layout(std430, set = 1, binding = 5) buffer Fates { uint fates[]; }; // of rays, by pack_ray
+layout(std430, set = 1, binding = 8) readonly buffer Lights { Light lights[]; };
+layout(std140, set = 1, binding = 0) uniform FrameBlock { Frame given_frame; };
+layout(push_constant) uniform WorkBlock { Work given_work; };
+layout(std430, set = 1, binding = 4) buffer ControlBlock {
+    Control given_control;
+    uint    queued;           // counts rays that need another dispatch,
+    uint    left;             // and items that nobody has begun
+    uint    solid;            // counts pixels that see something (background.comp)
+    uint    unresolved;       // counts rays that ran out of steps
+    uint    beam_evaluations; // counts distances spent on beams
+} counts;
 
-// What decides branches is here and not among the constants above: lavapipe compiles a kernel
-// anew, and keeps it, for every set of constants that decides one.
-layout(std430, set = 1, binding = 4) buffer Control {
-    uint marching;   // counts rays that need another dispatch
-    uint unresolved; // counts rays that ran out of steps
-    uint projection;
-    uint phase;      // of secondary.comp
-    uint beginning;  // 1: rays start here; for resolve.comp: the first ray of a pixel
-    uint light_kind; // bit 0: positional, bit 1: casts shadows
-    uint beams;      // of trace.comp: NO_BEAMS, MARCH_BEAMS, or FOLLOW_BEAMS
-    uint beam_evaluations; // counts distances spent on beams
-} control;
+Frame   frame;
+Work    work;
+Control control;
 
-const uint NO_BEAMS = 0u, MARCH_BEAMS = 1u, FOLLOW_BEAMS = 2u;
-
-// The pixel of this invocation; false when there is none.  The stride spreads neighbouring
-// tiles over a device that deals out workgroups in contiguous halves.
-bool find_pixel(out uvec2 pixel, out uint index)
+// Once, first in main: inside of a loop lavapipe would fetch every number again, lane by lane.
+void load_frame()
 {
-    uint  tile = work.first + gl_WorkGroupID.x * work.stride % work.groups;
-    uint  across = (work.extent.x + 7u) / 8u;
-    uvec2 local = uvec2(tile % across, tile / across) * 8u + gl_LocalInvocationID.xy;
+    frame = given_frame;
+    work = given_work;
+    control = counts.given_control;
+}
+
+// The least bits: fate, side, lost; then the steps.
+uint pack_ray(Ray ray)
+{
+    return ray.fate | (ray.side < 0.0 ? 4u : 0u) | (ray.lost ? 8u : 0u) | ray.steps << 4u;
+}
+
+Ray find_end(uint index)
+{
+    uint bits = fates[index];
+    return Ray(ends[index], (bits & 4u) != 0u ? -1.0 : 1.0, bits >> 4u, bits & 3u,
+               (bits & 8u) != 0u);
+}
+
+// Column and row of the `number`th cell of a grid, row by row.  Whole numbers below 2^22 come out
+// exact, and on lavapipe, which divides integers lane by lane, twenty times faster.
+uvec2 find_cell(uint number, uint across)
+{
+    uint row = uint((float(number) + 0.5) / float(across));
+    return uvec2(number - row * across, row);
+}
+
+// The place of item `number` among tiles of `side` pixels a side (a power of 2), row by row; false
+// when it is not in the band.
+bool find_pixel_of_item(uint number, uint side, out uvec2 pixel, out uint index)
+{
+    uint  within = number % (side * side);
+    uvec2 tile = find_cell(number / (side * side), (work.extent.x + side - 1u) / side);
+    uvec2 local = tile * side + uvec2(within % side, within / side);
     index = local.y * work.extent.x + local.x;
     pixel = work.corner + local;
     return local.x < work.extent.x && local.y < work.extent.y;
+}
+
+// The tiles of `side` pixels a side, counted in the whole picture, that the band has a part of:
+// the first, and how many.
+void find_tiles(uint side, out uvec2 first, out uvec2 count)
+{
+    first = work.corner / side;
+    count = (work.corner + work.extent - 1u) / side - first + 1u;
 }
 
 // The ray through a place of the picture, in pixels from its top left corner, and how wide a

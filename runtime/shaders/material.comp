@@ -5,22 +5,24 @@
  */
 #include "scene.glsl"
 #include "frame.glsl"
+#include "pixels.glsl"
+#include "solid.glsl"
 
 void main()
 {
-    uvec2 pixel;
-    uint  index;
-    if (!find_pixel(pixel, index))
+    load_frame();
+    uint number;
+    if (!find_item(number))
         return;
     krs_prepare();
 
-    KrsSurface surface = krs_surface(hits[index].position);
-    bool solid = rays[index].fate == HIT;
-    hits[index].color = clamp(surface.color, 0.0, 1.0);
-    hits[index].roughness = clamp(surface.roughness, 0.0, 1.0);
-    hits[index].metallic = clamp(surface.metallic, 0.0, 1.0);
-    hits[index].radiance = solid ? surface.emission : vec3(0.0);
-    hits[index].component = surface.component;
-    hits[index].level = surface.level;
-    hits[index].instance = surface.instance;
+    Place      place = find_place(number);
+    KrsSurface surface = krs_surface(place.position);
+    hits[place.index].color = clamp(surface.color, 0.0, 1.0);
+    hits[place.index].roughness = clamp(surface.roughness, 0.0, 1.0);
+    hits[place.index].metallic = clamp(surface.metallic, 0.0, 1.0);
+    hits[place.index].radiance = surface.emission;
+    hits[place.index].component = surface.component;
+    hits[place.index].level = surface.level;
+    hits[place.index].instance = surface.instance;
 }

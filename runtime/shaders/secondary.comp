@@ -1,21 +1,39 @@
 #version 450
 #extension GL_GOOGLE_include_directive : enable
+#extension GL_KHR_shader_subgroup_vote : enable
 /*
  * secondary.comp: what the distance around a hit tells: its normal, how open it is, and whether
  * it sees a light.
  *
  * The three phases are dispatches of one kernel, so that the scene is compiled once for them
- * and its distance stands once, in one loop.  A dispatch of the last phase is about one light
- * and adds its reflection to the pixel.
+ * and its distance stands once, in one loop.  A dispatch of the last phase is about one light.
  */
 #include "scene.glsl"
 #include "frame.glsl"
-#include "light.glsl"
+#include "solid.glsl"
 
-const uint NORMALS = 0u, OCCLUSION = 1u, SHADOW = 2u;
-const uint POSITIONAL = 1u, CASTS_SHADOWS = 2u;
+const uint NORMALS = 0u, OCCLUSION = 1u, SHADOW = 2u; // control.phase
 const uint SHADOW_STEPS = 1024u;
 const uint OCCLUSION_TAPS = 5u;
+
+// A shadow that is darker than this is black.
+const float BLACK = 4e-3;
+
+// The item.
+Place place;
+vec3  start, way;  // the next distance is asked for at start + t way
+float t;
+float end;         // of the way to the light
+float sharpness;   // of the shadow's edge
+float before;      // the distance at the step before
+vec3  sum;         // of the taps of a normal
+float blocked, weight; // of those of occlusion
+float visible;     // how much of the light
+uint  taps, limit; // so far, and at most
+
+uint  lost;        // of this lane's shadow rays
+
+void begin_group() { lost = 0u; }
 
 // The i-th corner of an octahedron: taps along the axes have an error of second order only.
 vec3 octahedron(uint i)
@@ -24,113 +42,143 @@ vec3 octahedron(uint i)
     return side * vec3(i >> 1u == 0u, i >> 1u == 1u, i >> 1u == 2u);
 }
 
-void main()
+// A number in [0, 1) for a pixel, one of many that differ.
+float random(uint index, uint which)
 {
-    uvec2 pixel;
-    uint  index;
-    if (!find_pixel(pixel, index))
-        return;
-    krs_prepare();
+    uint hash = index * 747796405u + which * 2891336453u + 12345u; // PCG (O'Neill 2014)
+    hash = ((hash >> ((hash >> 28u) + 4u)) ^ hash) * 277803737u;
+    return float((hash >> 22u ^ hash) >> 8u) / 16777216.0;
+}
 
-    vec3  origin, direction;
-    float base, slope;
-    find_ray(vec2(pixel) + work.offset, origin, direction, base, slope);
-    Ray  ray = rays[index];
-    Hit  hit = hits[index];
-    bool solid = ray.fate == HIT;
-    uint phase = control.phase;
-    float rounding = ROUNDING * (largest(hit.position) + largest(origin));
+// A point of the unit disc for this ray of its pixel: the rays together fill it evenly.
+vec2 disc_point(vec2 pixel_seed)
+{
+    vec2  even = fract(pixel_seed + vec2(0.7548777, 0.5698403) * float(control.ray));
+    float angle = 2.0 * PI * even.x;
+    return sqrt(even.y) * vec2(cos(angle), sin(angle));
+}
 
-    // Differences over half a pixel: finer detail would only be noise.  Below 3e-4 of the
-    // coordinates rounding would be the noise.
-    float apart = max(0.5 * hit.pixel, 3e-4 * largest(hit.position) + rounding);
-
-    // From which the taps and the shadow ray start: off the surface, which the hit may be
-    // below by the permitted error.
-    vec3  start = hit.position;
-    vec3  way = hit.normal;
-    float far = 0.0, sharpness = 0.0;
-    uint  limit = phase == NORMALS ? 6u : OCCLUSION_TAPS;
-    if (phase == SHADOW) {
-        start += hit.normal * (hit.pixel + 4.0 * rounding);
-        bool  positional = (control.light_kind & POSITIONAL) != 0u;
-        vec3  toward = positional ? work.light_vector - start : work.light_vector;
-        float remote = positional ? max(length(toward), 1e-12) : 1.0;
-        way = toward / remote;
-        far = positional ? remote : frame.eye.w;
-        far = min(far, clip_ray(start, way, far).y);
-        // As wide as the light is seen, and outwards of the hard shadow's edge: the distance
-        // of a ray that misses is known, not how deep one is that does not.
-        sharpness = work.light_softness <= 0.0 ? INFINITE
-                  : positional ? 0.5 * remote / work.light_softness
-                               : 0.5 / tan(0.5 * min(work.light_softness, 3.0));
-        bool needed = (control.light_kind & CASTS_SHADOWS) != 0u && dot(hit.normal, way) > 0.0;
-        limit = needed ? SHADOW_STEPS : 0u;
+// From the hit to the light: to its middle, or for area shadows to a point of its disc.
+void aim_at_light(vec3 normal)
+{
+    Light light = lights[control.light];
+    bool  positional = (light.kind & POSITIONAL) != 0u;
+    start = place.position + normal * (place.width + 4.0 * place.rounding);
+    vec3  toward = positional ? light.vector - start : light.vector;
+    float radius = positional ? light.softness : tan(0.5 * min(light.softness, 3.0));
+    // As wide as the light is seen, and outwards of the hard shadow's edge: the distance of a
+    // ray that misses is known, not how deep one is that does not.
+    float remote = max(length(toward), 1e-12);
+    sharpness = light.softness <= 0.0 ? INFINITE : 0.5 * remote / radius;
+    if (control.shadows == AREA_SHADOWS) {
+        vec3 axis = toward / remote;
+        vec3 aside = normalize(abs(axis.x) < 0.7 ? vec3(0.0, axis.z, -axis.y)
+                                                 : vec3(-axis.z, 0.0, axis.x));
+        vec2 seed = vec2(random(place.index, 2u * control.light),
+                         random(place.index, 2u * control.light + 1u));
+        vec2 at = radius * disc_point(seed);
+        toward += at.x * aside + at.y * cross(axis, aside);
+        sharpness = INFINITE;
+        remote = length(toward);
     }
-    if (!solid)
-        limit = 0u;
+    way = toward / remote;
+    end = positional ? remote : frame.eye.w;
+    end = min(end, clip_ray(start, way, end).y);
+    bool facing = dot(normal, way) > 0.0;
+    visible = facing ? 1.0 : 0.0;
+    limit = facing && (light.kind & CASTS_SHADOWS) != 0u ? SHADOW_STEPS : 0u;
+}
 
-    vec3  sum = vec3(0.0);
-    float blocked = 0.0, weight = 0.33, reach = 0.0625 * frame.occlusion_reach;
-    float visible = 1.0, t = 0.0, before = INFINITE;
-    bool  done = false;
-    for (uint i = 0u; i < limit && !done; i++) {
-        if (phase == NORMALS) {
-            way = octahedron(i);
-            t = apart;
-        } else if (phase == OCCLUSION) {
-            t = reach;
-        }
-        float distance = ray.side * krs_distance(start + t * way);
-
-        if (phase == NORMALS) {
-            sum += distance * way;
-        } else if (phase == OCCLUSION) {
-            // How much less room there is than an open surface would leave, at five scales.
-            blocked += weight * clamp(1.0 - distance / t, 0.0, 1.0);
-            weight *= 0.75;
-            reach *= 2.0;
-        } else {
-            // A surface may be as near as the rim where this step's sphere meets the last one's,
-            // which lies `back` behind here, if that is ahead of the last step.
-            visible = min(visible, sharpness * distance / max(t, rounding));
-            float back = distance * distance / (2.0 * before);
-            float aside = sqrt(max(distance * distance - back * back, 0.0));
-            if (back < before)
-                visible = min(visible, sharpness * aside / max(t - back, rounding));
-            if (distance < max(frame.error * hit.pixel, rounding))
-                visible = 0.0;
-            // A ray that creeps along a surface goes on by a pixel at least, or a quarter of the
-            // penumbra's width: what it could miss is too small to be seen.
-            float least = max(hit.pixel, 0.25 * t / sharpness);
-            before = distance < least ? INFINITE : distance;
-            t += max(distance, least);
-            done = visible < 4e-3 || t >= far;
-        }
-    }
-
-    if (!solid && phase != SHADOW)
-        return;
-    if (phase == NORMALS) {
-        float steepness = length(sum);
-        hits[index].normal = steepness > 0.0 && steepness < INFINITE ? sum / steepness : -direction;
-    } else if (phase == OCCLUSION) {
-        hits[index].occlusion = exp2(-2.5 * blocked); // light finds its way in by reflection
-    } else if (!solid) {
-        if ((control.light_kind & POSITIONAL) == 0u)
-            hits[index].radiance += sun_radiance(direction, work.light_vector, work.light_color,
-                                                 work.light_softness);
+void begin_item(uint number)
+{
+    place = find_place(number);
+    vec3 normal = hits[place.index].normal;
+    start = place.position;
+    taps = 0u;
+    sum = vec3(0.0);
+    before = INFINITE;
+    blocked = 0.0;
+    weight = 0.33;
+    if (control.phase == SHADOW) {
+        aim_at_light(normal);
+        t = 0.0;
+    } else if (control.phase == OCCLUSION) {
+        way = normal;
+        t = 0.0625 * frame.occlusion_reach;
+        limit = OCCLUSION_TAPS;
     } else {
-        if (limit > 0u && !done && t < far)
-            atomicAdd(control.unresolved, 1u);
-        vec3 light = work.light_color;
-        if ((control.light_kind & POSITIONAL) != 0u) {
-            vec3 apart_from_light = work.light_vector - hit.position;
-            light /= max(dot(apart_from_light, apart_from_light), 1e-12);
-        }
-        visible = visible < 4e-3 ? 0.0 : visible;
-        visible = visible * visible * (3.0 - 2.0 * visible);
-        hits[index].radiance += visible * light * reflected(hit.normal, -direction, way, hit.color,
-                                                            hit.roughness, hit.metallic);
+        // Differences over half a pixel: finer detail would only be noise.  Below 3e-4 of the
+        // coordinates rounding would be the noise.
+        way = octahedron(0u);
+        t = max(0.5 * place.width, 3e-4 * largest(place.position) + place.rounding);
+        limit = 6u;
     }
 }
+
+bool item_wants_more() { return taps < limit; }
+
+vec3 item_place() { return start + t * way; }
+
+// A surface may be as near as the rim where this step's sphere meets the last one's, which lies
+// `back` behind here, if that is ahead of the last step (math.md 6).
+void take_shadow(float distance)
+{
+    visible = min(visible, sharpness * distance / max(t, place.rounding));
+    float back = distance * distance / (2.0 * before);
+    float aside = sqrt(max(distance * distance - back * back, 0.0));
+    if (back < before)
+        visible = min(visible, sharpness * aside / max(t - back, place.rounding));
+    if (distance < max(frame.error * place.width, place.rounding))
+        visible = 0.0;
+    // A ray that creeps along a surface goes on by a pixel at least, or a quarter of the
+    // penumbra's width: what it could miss is too small to be seen.
+    float least = max(place.width, 0.25 * t / sharpness);
+    before = distance < least ? INFINITE : distance;
+    t += max(distance, least);
+    if (visible < BLACK || t >= end)
+        limit = 0u;
+}
+
+void take_distance(float distance)
+{
+    distance *= place.side;
+    taps++;
+    if (control.phase == SHADOW) {
+        take_shadow(distance);
+    } else if (control.phase == OCCLUSION) {
+        // How much less room there is than an open surface would leave, at five scales.
+        blocked += weight * clamp(1.0 - distance / t, 0.0, 1.0);
+        weight *= 0.75;
+        t *= 2.0;
+    } else {
+        sum += distance * way;
+        way = octahedron(taps);
+    }
+}
+
+void end_item()
+{
+    if (control.phase == SHADOW) {
+        lost += limit > 0u && t < end ? 1u : 0u;
+        float seen = visible < BLACK ? 0.0 : visible;
+        hits[place.index].visible = seen * seen * (3.0 - 2.0 * seen);
+    } else if (control.phase == OCCLUSION) {
+        hits[place.index].occlusion = exp2(-2.5 * blocked); // light finds its way in by reflection
+    } else {
+        float steepness = length(sum);
+        hits[place.index].normal =
+            steepness > 0.0 && steepness < INFINITE ? sum / steepness : -place.direction;
+    }
+}
+
+void end_group(uint turns)
+{
+    if (lost > 0u)
+        atomicAdd(counts.unresolved, lost);
+}
+
+const bool SAVES = false;
+void resume_item(uint number) {}
+void save_item() {}
+
+#include "schedule.glsl"

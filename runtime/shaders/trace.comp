@@ -1,148 +1,239 @@
 #version 450
 #extension GL_GOOGLE_include_directive : enable
+#extension GL_KHR_shader_subgroup_vote : enable
+#extension GL_KHR_shader_subgroup_ballot : enable
 /*
  * trace.comp: primary rays, by sphere tracing, behind beams.
  *
- * A ray advances by the distance to the scene, which cannot take it through a surface, until it
- * is within the permitted error of one: a share of the pixel's width there, or what single
- * precision can tell.  A few further steps then bring it onto the surface.  A ray from inside of
- * a solid sees the solid's inner wall.
+ * A ray advances from a place where the distance was known, `t`, by a gap to the next.  The ball
+ * of empty space around `t` and the one around the next place must meet, or something may be in
+ * between: then the ray goes back to the middle of what they leave open, and so on, until they
+ * meet or what is open is no longer than a sixteenth of the permitted error.  A ray hits where
+ * the distance is not above 0, never where it is only small, so that thin things are as thick as
+ * they are, however coarse the steps.  A ray from inside of a solid sees the solid's inner wall.
  *
- * What the 64 rays of a tile share is marched once before, by the beam through the middle of
- * the tile: as long as the empty ball around its point is wider than the tile is there, all its
- * rays may start at the same parameter.  Tiles count from the corner of the picture, whatever
- * the crop and the band, so that equal pixels come out of all of them.
+ * How far a gap is, is the method's affair (TRACE): the distance (plain), 1.2 times as much
+ * (relaxed), or up to where the balls just meet if the distance goes on as it did (automatic).
  *
- * The distance is the one heavy thing and stands once, in one loop, which is bounded; rays that
- * need longer are continued by another dispatch from the state in their Ray.
+ * What the rays of a tile share is marched once before, by the beam through the middle of the
+ * tile: a ray through empty space less the tile's width.  Tiles of 32x32 pixels are followed by
+ * tiles of 8x8; they count from the corner of the picture, whatever the crop and the band, so that
+ * equal pixels come out of all of them.
  */
 #include "scene.glsl"
 #include "frame.glsl"
 
-// Steps onto the surface once the error is permitted, the first plain, then by the secant: three
-// end well below a hundredth of a pixel at usual angles.  A ray that falls at less than the
-// least slope only grazes.
-const uint  REFINEMENTS = 3u;
-const float LEAST_SLOPE = 0.1;
+const uint PLAIN = 1u, RELAXED = 2u, AUTOMATIC = 3u; // TRACE: as KrsTrace
+const uint RAYS = 0u, BEAMS_32 = 1u, BEAMS_8 = 2u;   // control.phase
+const uint MOST_BEAM_STEPS = 256u;                   // the rest is left to the rays
 
+// What may be left open between two balls, of the permitted error.
+const float OPEN = 1.0 / 16.0;
+// Relaxation: how far beyond the distance; how fast the mean slope is learned.
+const float RELAXATION = 1.2;
+const float LEARNING = 0.3;
 // A beam ends where its ball is hardly wider than the tile (measurements.md: 1.05).
 const float WIDER = 1.05;
 
-// The tiles, counted in the whole picture, that the band has a part of: the first, and how many.
-void find_tiles(out uvec2 first, out uvec2 count)
+#if REFILL
+const uint TILE = 32u;
+#else
+const uint TILE = 8u;
+#endif
+
+const bool SAVES = true;
+
+// A ray under way.
+struct March {
+    uint  index;     // of its pixel, or its beam: where it ends up in `ends`
+    float t;         // nothing is before this place, where it has been,
+    float room;      // nor for this long behind it
+    float gap;       // from t to the next place to look at
+    float slope;     // of the room along the ray, as it was on average
+    float nearest_t; // of all places so far the one with the least room for its pixel's width,
+    float nearest;   // and the room
+    float side;      // as of a Ray; 0: not known
+    uint  steps;
+    uint  fate;
+};
+
+layout(std430, set = 1, binding = 6) buffer Queue { March queue[]; };
+
+March march;
+bool  exists;                  // the item is in the band
+vec3  origin, direction;
+float end;
+float pixel_base, pixel_slope; // a pixel is as wide as base + slope t
+vec2  width;                   // so is the beam; 0 for a ray
+float rounding;                // of coordinates at t = 0
+uvec2 first_8, count_8, first_32, count_32; // the tiles of beams
+
+void begin_group()
 {
-    first = work.corner / 8u;
-    count = (work.corner + work.extent - 1u) / 8u - first + 1u;
+    find_tiles(8u, first_8, count_8);
+    find_tiles(32u, first_32, count_32);
 }
 
-// How far the rays of a tile are from the ray through its middle at the same parameter t: at
-// most base + slope t.
-vec2 find_width(vec2 middle, vec3 origin, vec3 direction)
+float open_at(float t)
 {
-    vec2 width = vec2(0.0);
-    for (uint corner = 0u; corner < 4u; corner++) {
-        vec3  from, along;
-        float base, slope;
-        find_ray(middle + 8.0 * vec2(corner & 1u, corner >> 1u) - 4.0, from, along, base, slope);
-        width = max(width, vec2(length(from - origin), length(along - direction)));
-    }
-    return width;
+    return OPEN * frame.error * (pixel_base + pixel_slope * t) + ROUNDING * (rounding + t);
 }
 
-void main()
+// The ray, or the beam's middle, through a place of the picture.
+void aim(vec2 place)
 {
-    bool  beam = control.beams == MARCH_BEAMS;
-    uvec2 first, count;
-    find_tiles(first, count);
+    find_ray(place, origin, direction, pixel_base, pixel_slope);
+    rounding = largest(origin);
+}
 
+// What the beam of a tile of `side` pixels a side must keep clear: a ray of it is at most base +
+// slope t from the ray through the middle at the same t.  The difference of two unit vectors
+// a/|a| and b/|b| is at most 2 |a - b| / (|a| + |b|).
+vec2 find_width(float side)
+{
+    float half_diagonal = 0.7071068 * side;
+    float apart = half_diagonal * frame.pixel_slope;
+    float stretch = frame.pixel_slope / max(pixel_slope, 1e-30);
+    return vec2(half_diagonal * pixel_base, apart / max(stretch - 0.5 * apart, 0.1));
+}
+
+void begin_item(uint number)
+{
+    bool  is_ray = control.phase == RAYS, large = control.phase == BEAMS_32;
     uvec2 pixel;
-    uint  index;
-    bool  exists = find_pixel(pixel, index);
-    vec2  place = vec2(pixel) + work.offset;
-    if (beam) {
-        uint tile = work.first + gl_WorkGroupID.x * work.stride % work.groups;
-        index = tile * 64u + gl_LocalInvocationIndex;
-        exists = index < count.x * count.y;
-        place = vec2(first + uvec2(index % count.x, index / count.x)) * 8.0 + 4.0;
-    }
-    if (!exists)
-        return;
-    krs_prepare();
+    uint  pixels = work.extent.x * work.extent.y, index;
+    exists = find_pixel_of_item(number, TILE, pixel, index) || !is_ray;
 
-    vec3  origin, direction;
-    float base, slope;
-    find_ray(place, origin, direction, base, slope);
-    vec2 range = clip_ray(origin, direction, frame.eye.w);
-    vec2 width = find_width(place, origin, direction);
-    if (control.beams == FOLLOW_BEAMS) {
-        uvec2 tile = pixel / 8u - first;
-        range.x = max(range.x, hits[tile.y * count.x + tile.x].beam);
-    }
-    if (beam)
-        range = vec2(0.0, frame.eye.w);
+    float side = large ? 32.0 : 8.0;
+    uvec2 tile = find_cell(number, large ? count_32.x : count_8.x);
+    vec2  middle = side * (vec2(tile + (large ? first_32 : first_8)) + 0.5);
+    aim(is_ray ? vec2(pixel) + work.offset : middle);
+    width = is_ray ? vec2(0.0) : find_width(side);
 
+    // Starts where the beam that it is in has ended: a ray's of 8x8, that one's of 32x32.
+    uint  larger = pixels + count_8.x * count_8.y;
+    uvec2 parent = is_ray ? pixel / 8u - first_8 : (tile + first_8) / 4u - first_32;
+    uint  beam = is_ray ? pixels + parent.y * count_8.x + parent.x
+                        : larger + parent.y * count_32.x + parent.x;
+    bool  behind = exists && !large && control.follow != 0u;
+    float start = 0.0;
+    if (behind)
+        start = ends[beam];
+    vec2 range = is_ray ? clip_ray(origin, direction, frame.eye.w) : vec2(0.0, frame.eye.w);
+    end = range.y;
+
+    march.index = is_ray ? index : number + (large ? larger : pixels);
+    march.t = max(range.x, start);
+    march.room = march.gap = 0.0;
+    march.slope = -1.0;
+    march.nearest_t = 0.0;
+    march.nearest = INFINITE;
     // No side yet: the first distance tells, unless something empty lies behind the ray.
-    Ray ray = Ray(range.x, range.x > 0.0 ? 1.0 : 0.0, 0u, range.x <= range.y ? MARCHING : MISS);
-    if (control.beginning == 0u && !beam)
-        ray = rays[index];
-
-    float start = largest(origin);
-    float base_error = frame.error * base + ROUNDING * start;
-    float slope_error = max(frame.error * slope, ROUNDING);
-    float last = INFINITE, step_before = INFINITE;
-    uint  close = 0u;
-    uint  budget = min(work.steps, frame.most_steps - min(ray.steps, frame.most_steps));
-
-    // A ray that is being refined finishes here, so that where a dispatch ends is not seen.
-    for (uint i = 0u; (i < budget || close > 0u) && ray.fate == MARCHING; i++) {
-        float distance = krs_distance(origin + ray.t * direction);
-        if (beam) {
-            float room = distance - ROUNDING * (start + ray.t) - width.x;
-            ray.steps++;
-            if (room < (WIDER * width.y) * ray.t + (WIDER - 1.0) * width.x || distance < base_error)
-                ray.fate = HIT;
-            else
-                ray.t = (ray.t + room) / (1.0 + width.y);
-            if (ray.t > range.y)
-                ray.fate = MISS;
-            continue;
-        }
-        ray.side = ray.side == 0.0 ? (distance < 0.0 ? -1.0 : 1.0) : ray.side;
-        distance *= ray.side;
-        ray.steps++;
-
-        if (close > 0u || distance < base_error + slope_error * ray.t)
-            close++;
-        bool away = close > 1u && abs(distance) >= abs(last);
-        if (away)
-            ray.t -= step_before; // that place was nearer
-        if (away || close > REFINEMENTS) {
-            ray.fate = HIT;
-        } else {
-            float slope_here = clamp((last - distance) / step_before, LEAST_SLOPE, 1.0);
-            step_before = close > 1u ? distance / slope_here : distance;
-            last = distance;
-            ray.t += step_before;
-            if (ray.t > range.y)
-                ray.fate = close > 0u ? HIT : MISS;
-        }
-    }
-
-    if (beam) { // wherever it ends, everything before is empty
-        hits[index].beam = ray.fate == MISS ? INFINITE : ray.t;
-        atomicAdd(control.beam_evaluations, ray.steps);
-        return;
-    }
-    if (ray.fate == MARCHING) {
-        if (ray.steps >= frame.most_steps) {
-            // It has been creeping along a surface, so that is what is drawn; and it is counted.
-            atomicAdd(control.unresolved, 1u);
-            ray.fate = ray.t <= range.y ? HIT : MISS; // a t that is not a number is a miss
-        } else {
-            atomicAdd(control.marching, 1u);
-        }
-    }
-    rays[index] = ray;
-    hits[index].position = origin + ray.t * direction;
-    hits[index].pixel = base + slope * ray.t;
+    march.side = march.t > 0.0 || !is_ray ? 1.0 : 0.0;
+    march.steps = 0u;
+    march.fate = march.t <= end ? MARCHING : MISS;
 }
+
+void resume_item(uint number)
+{
+    march = queue[control.reading + number];
+    exists = true;
+    uvec2 pixel = work.corner + find_cell(march.index, work.extent.x);
+    aim(vec2(pixel) + work.offset);
+    width = vec2(0.0);
+    end = clip_ray(origin, direction, frame.eye.w).y;
+}
+
+bool item_wants_more()
+{
+    uint most = control.phase == RAYS ? frame.most_steps : MOST_BEAM_STEPS;
+    return exists && (march.fate == MARCHING || march.fate == CLOSING) && march.steps < most;
+}
+
+vec3 item_place() { return origin + (march.t + march.gap) * direction; }
+
+// The surface is crossed between t, where there is room, and `at`, where there is none, within
+// the permitted error: looks there once more, unless what is between is short anyway.
+void close_in(float at, float room)
+{
+    float along = march.room > room ? clamp(march.room / (march.room - room), 0.0, 2.0) : 0.0;
+    bool  accurate = march.gap - march.room <= 2.0 * open_at(at) || march.fate == CLOSING;
+    march.gap *= along;
+    march.t += accurate ? march.gap : 0.0;
+    march.fate = accurate ? HIT : CLOSING;
+}
+
+// How far to go from a place with so much room; the balls should still meet.
+float find_gap(float room, float open)
+{
+    if (TRACE == RELAXED)
+        return RELAXATION * room + open;
+    if (TRACE == AUTOMATIC)
+        return room * max(1.0, 2.0 / (1.0 - min(march.slope, 0.98))) + open;
+    return room + open;
+}
+
+void take_distance(float distance)
+{
+    float at = march.t + march.gap;
+    march.side = march.side == 0.0 ? (distance < 0.0 ? -1.0 : 1.0) : march.side;
+    float room = (march.side * distance - width.x - width.y * at) / (1.0 + width.y);
+    float open = open_at(at), pixel = pixel_base + pixel_slope * at;
+    bool  is_ray = width.x + width.y == 0.0;
+    march.steps++;
+
+    if (room * (pixel_base + pixel_slope * march.nearest_t) < march.nearest * pixel) {
+        march.nearest = room;
+        march.nearest_t = at;
+    }
+    float least = is_ray ? ROUNDING * (rounding + at)
+                         : (WIDER - 1.0) * (width.x + width.y * at);
+    float doubtful = march.gap - march.room; // as long as may hide something
+    if (march.fate == CLOSING || (room <= least && (doubtful <= open / OPEN || !is_ray))) {
+        if (is_ray)
+            close_in(at, room);
+        else
+            march.fate = HIT;
+    } else if (room > least && doubtful <= room + 1.01 * open) {
+        float slope = march.gap > 0.0 ? (room - march.room) / march.gap : -1.0;
+        march.slope = mix(march.slope, slope, LEARNING);
+        march.t = at;
+        march.room = room;
+        march.gap = find_gap(room, open);
+        march.fate = at + room > end ? MISS : MARCHING;
+    } else {
+        march.gap = max(0.5 * (march.gap + march.room - max(room, 0.0)), march.room + open);
+        march.slope = -1.0;
+    }
+}
+
+// A ray that has run out of steps ends where it came closest to a surface, if that was within
+// its pixel; a beam ends anywhere, since everything before is empty.
+void end_item()
+{
+    bool is_ray = control.phase == RAYS;
+    bool lost = is_ray && (march.fate == MARCHING || march.fate == CLOSING);
+    bool near = march.nearest < pixel_base + pixel_slope * march.nearest_t;
+    if (lost) {
+        march.t = near ? march.nearest_t : march.t;
+        march.fate = near ? HIT : MISS;
+    }
+    if (exists)
+        ends[march.index] = !is_ray && march.fate == MISS ? INFINITE : march.t;
+    if (exists && is_ray)
+        fates[march.index] =
+            pack_ray(Ray(march.t, march.side, march.steps, march.fate, lost));
+}
+
+void save_item()
+{
+    queue[control.writing + atomicAdd(counts.queued, 1u)] = march;
+}
+
+void end_group(uint turns)
+{
+    if (control.phase != RAYS && turns > 0u)
+        atomicAdd(counts.beam_evaluations, turns);
+}
+
+#include "schedule.glsl"

@@ -21,35 +21,47 @@ typedef struct FrameBlock {
 } FrameBlock;
 static_assert(sizeof(FrameBlock) == 176, "std140");
 
+/* Phases of the kernels. */
+enum { TRACE_RAYS, TRACE_BEAMS_32, TRACE_BEAMS_8 };
 enum { SECONDARY_NORMALS, SECONDARY_OCCLUSION, SECONDARY_SHADOW };
+enum { SHADE_ONE_LIGHT, SHADE_FINISH };
+
+enum { ITEMS_FRESH, ITEMS_QUEUED, ITEMS_REST };
 enum { LIGHT_POSITIONAL = 1, LIGHT_CASTS_SHADOWS = 2 };
 
 /* push_constant Work. */
 typedef struct WorkBlock {
     uint32_t corner[2], extent[2];
-    float    light_vector[3], light_softness;
-    float    light_color[3];
-    uint32_t steps;
     float    offset[2];
+    uint32_t steps;
     uint32_t first, groups, stride;
 } WorkBlock;
-static_assert(sizeof(WorkBlock) == 68 && sizeof(WorkBlock) <= 128, "what every device takes");
+static_assert(sizeof(WorkBlock) == 40, "std430");
+
+/* Light, std430. */
+typedef struct LightBlock {
+    float    vector[3], softness;
+    float    color[3];
+    uint32_t kind; /* LIGHT_... */
+} LightBlock;
+static_assert(sizeof(LightBlock) == 32, "std430");
 
 /* buffer Control, std430. */
 typedef struct ControlBlock {
-    uint32_t marching;
-    uint32_t unresolved;
     uint32_t projection; /* the enum of KrsCamera */
-    uint32_t phase;      /* SECONDARY_... */
-    uint32_t beginning;
-    uint32_t light_kind; /* LIGHT_... */
-    uint32_t beams;      /* ..._BEAMS */
-    uint32_t beam_evaluations;
+    uint32_t phase;
+    uint32_t first_ray;
+    uint32_t light, lights;
+    uint32_t shadows; /* KrsShadows */
+    uint32_t ray;
+    uint32_t follow;
+    uint32_t source; /* ITEMS_... */
+    uint32_t items, share;
+    uint32_t reading, writing;
+    uint32_t queued, left, solid, unresolved, beam_evaluations; /* counted by the kernels */
 } ControlBlock;
 
-enum { NO_BEAMS, MARCH_BEAMS, FOLLOW_BEAMS };
-
-/* Pixel of resolve.comp, std430. */
+/* Pixel of results.glsl, std430. */
 typedef struct PixelBlock {
     float    color[4];
     float    position[3], depth;
@@ -62,7 +74,7 @@ typedef struct PixelBlock {
 static_assert(sizeof(PixelBlock) == 80, "std430");
 
 /* Only their sizes matter to the host. */
-enum { RAY_BYTES = 16, HIT_BYTES = 80, TILE = 8 };
+enum { HIT_BYTES = 64, MARCH_BYTES = 40, TILE = 8 };
 
 /* Points and Answer of sample.comp. */
 typedef struct PointBlock {

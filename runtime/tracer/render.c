@@ -14,7 +14,7 @@
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/view.h"
 
-/* Pixels of a band: room for 50 MB of buffers, half of what the smallest devices bind. */
+/* Pixels of a band: room for 80 MB of buffers, none larger than the smallest devices bind. */
 #define BAND_PIXELS     (UINT64_C(1) << 18)
 /* Bands are halved when the device lacks memory, down to this. */
 #define BAND_PIXELS_MIN (UINT64_C(1) << 12)
@@ -24,10 +24,18 @@
 /* All loops of an invocation together stay under 32768 iterations: some devices end them
    silently after 65535. */
 #define MOST_STEPS_AT_ONCE 8192
+#define MOST_TURNS      16384 /* of a lane that takes item after item */
+#define MOST_BEAM_STEPS 256   /* of a beam, as in trace.comp */
+/* Steps of a pass of the queue: more leave lanes idle, fewer cost passes. */
+#define QUEUE_STEPS     16
 
 const char *const krs_phase_names[KRS_PHASE_COUNT] = {
     "beams", "primary", "normals", "shadows", "occlusion", "shading", "resolve",
 };
+
+const char *const krs_trace_names[KRS_TRACE_COUNT] = {"default", "plain", "relaxed", "auto"};
+const char *const krs_schedule_names[KRS_SCHEDULE_COUNT] = {"default", "pixel", "refill", "queue"};
+const char *const krs_shadows_names[KRS_SHADOWS_COUNT] = {"soft", "area"};
 
 /* A render under way. */
 typedef struct Job {
@@ -36,6 +44,7 @@ typedef struct Job {
     KrsRenderOptions options; /* with nothing left to be defaulted */
     KrsView          view;
     FrameBlock       frame;
+    Kernel          *trace, *secondary;
     KrsPicture      *picture;
     double           done, share; /* of the whole: before this phase, and of it */
     bool             interrupted;
@@ -64,7 +73,9 @@ static bool settle_options(Job *job)
     o->samples = first_of(o->samples, image->samples, 1);
     o->planes = first_of(o->planes, 0, KRS_PLANE_ALL);
     o->most_steps = first_of(o->most_steps, 0, MOST_STEPS);
-    o->steps_at_once = first_of(o->steps_at_once, 0, 512);
+    renderer_choose(job->rendering->renderer, &o->trace, &o->schedule);
+    o->steps_at_once =
+        first_of(o->steps_at_once, 0, o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
     o->error = o->error != 0 ? o->error : image->error != 0 ? image->error : 0.25;
     o->slice_ms = o->slice_ms != 0 ? o->slice_ms : 50;
     if (o->crop.width == 0)
@@ -99,39 +110,60 @@ static bool settle_frame(Job *job, KrsFrame *frame)
     job->frame.error = (float)job->options.error;
     job->frame.most_steps = job->options.most_steps;
     memcpy(job->rendering->frame.bytes, &job->frame, sizeof job->frame);
-    return rendering_set_parameters(job->rendering, frame);
+    return rendering_set_parameters(job->rendering, frame) &&
+           rendering_set_lights(job->rendering, job->view.lights, job->view.light_count);
 }
 
 /* ---- The buffers of a band ---- */
 
 static void band_destroy(Gpu *gpu, Band *band)
 {
-    buffer_destroy(gpu, &band->rays);
-    buffer_destroy(gpu, &band->hits);
-    buffer_destroy(gpu, &band->results);
-    buffer_destroy(gpu, &band->fetched);
+    Buffer *buffers[] = {&band->ends, &band->fates, &band->hits, &band->results, &band->fetched,
+                         &band->queue, &band->taken};
+    for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
+        buffer_destroy(gpu, buffers[i]);
     band->pixels = 0;
+}
+
+/* Beams of a band of so many pixels, whatever its shape and place: every tile of 8x8 pixels that
+   it touches, and every one of 32x32. */
+static VkDeviceSize most_beams(uint64_t pixels)
+{
+    return 2 * (pixels / TILE + 2 * LARGEST_SIDE / TILE);
 }
 
 static bool band_create(KrsRendering *rendering, uint64_t pixels)
 {
-    Gpu         *gpu = &rendering->renderer->gpu;
-    Band        *band = &rendering->band;
-    VkDeviceSize result_bytes = pixels * sizeof(PixelBlock);
+    Gpu  *gpu = &rendering->renderer->gpu;
+    Band *band = &rendering->band;
+    const struct {
+        Buffer      *buffer;
+        uint32_t     binding; /* of set 1; 0: of none */
+        VkDeviceSize bytes;
+        Where        where;
+        const char  *name;
+    } wanted[] = {
+        {&band->ends, 1, (pixels + most_beams(pixels)) * sizeof(float), ON_DEVICE, "depths"},
+        {&band->hits, 2, pixels * HIT_BYTES, ON_DEVICE, "hits"},
+        {&band->results, 3, pixels * sizeof(PixelBlock), ON_DEVICE, "pixels"},
+        {&band->fates, 5, pixels * sizeof(uint32_t), ON_DEVICE, "rays"},
+        {&band->queue, 6, 2 * pixels * MARCH_BYTES, ON_DEVICE, "queue of rays"},
+        {&band->taken, 7, most_beams(pixels) * sizeof(uint32_t), ON_DEVICE, "shares of lanes"},
+        {&band->fetched, 0, pixels * sizeof(PixelBlock), SHARED, "pixels to read"},
+    };
     if (band->pixels >= pixels)
         return true;
     band_destroy(gpu, band);
-    if (!buffer_create(gpu, &band->rays, pixels * RAY_BYTES, ON_DEVICE, "rays") ||
-        !buffer_create(gpu, &band->hits, pixels * HIT_BYTES, ON_DEVICE, "hits") ||
-        !buffer_create(gpu, &band->results, result_bytes, ON_DEVICE, "pixels") ||
-        !buffer_create(gpu, &band->fetched, result_bytes, SHARED, "pixels to read")) {
-        band_destroy(gpu, band);
-        return false;
+    for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
+        if (!buffer_create(gpu, wanted[i].buffer, wanted[i].bytes, wanted[i].where,
+                           wanted[i].name)) {
+            band_destroy(gpu, band);
+            return false;
+        }
+        if (wanted[i].binding)
+            rendering_bind(rendering, rendering->band_set, wanted[i].binding, wanted[i].buffer);
     }
     band->pixels = pixels;
-    const Buffer *buffers[] = {&band->rays, &band->hits, &band->results};
-    for (uint32_t i = 0; i < 3; i++)
-        rendering_bind(rendering, rendering->band_set, 1 + i, buffers[i]);
     return true;
 }
 
@@ -226,50 +258,123 @@ static bool run_groups(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock
     return true;
 }
 
-/* Runs a kernel over all tiles of the band. */
-static bool run_phase(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work)
+/* Runs a kernel over items that all cost alike (pixels.glsl). */
+static bool run_all(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
+                    uint32_t items)
 {
-    uint32_t across = (work->extent[0] + TILE - 1) / TILE;
-    uint32_t down = (work->extent[1] + TILE - 1) / TILE;
-    return run_groups(job, phase, kernel, work, across * down);
+    ControlBlock *control = job->rendering->control.bytes;
+    control->items = items;
+    return run_groups(job, phase, kernel, work, (items + 63) / 64);
 }
 
 /* ---- The phases of one ray per pixel ---- */
 
-/* A beam may end anywhere, so what it has not done in as many steps is left to the rays; the
-   number does not depend on slices, which must not be seen. */
-enum { MOST_BEAM_STEPS = 256 };
+/* How trace.comp deals out its items: to so many lanes a group, from tiles of so many pixels a
+   side, to a lane so many; and how many steps a lane has in a dispatch. */
+typedef struct Dealing {
+    uint32_t lanes, side, share, steps;
+} Dealing;
+
+static Dealing dealing(const Job *job)
+{
+    uint32_t steps = job->options.steps_at_once;
+    if (job->options.schedule == KRS_SCHEDULE_REFILL)
+        return (Dealing){8, 32, 32 * 32 / 8, 8 * steps < MOST_TURNS ? 8 * steps : MOST_TURNS};
+    return (Dealing){64, 8, 1, steps};
+}
+
+/* Runs a kernel over items of which each takes the steps that it needs (schedule.glsl). */
+static bool run_items(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
+                      uint32_t items, Dealing deal)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    uint32_t      in_group = deal.lanes * deal.share;
+    control->items = items;
+    control->share = deal.share;
+    work->steps = deal.steps;
+    return run_groups(job, phase, kernel, work, (items + in_group - 1) / in_group);
+}
+
+static uint32_t tiles_touched(const WorkBlock *work, uint32_t side)
+{
+    uint32_t tiles = 1;
+    for (int i = 0; i < 2; i++)
+        tiles *= (work->corner[i] + work->extent[i] - 1) / side - work->corner[i] / side + 1;
+    return tiles;
+}
 
 /* Beams of all tiles, counted in the whole picture, that the band has a part of. */
 static bool march_beams(Job *job, WorkBlock *work)
 {
+    static const struct { uint32_t phase, side; } sizes[] = {{TRACE_BEAMS_32, 32},
+                                                             {TRACE_BEAMS_8, 8}};
     ControlBlock *control = job->rendering->control.bytes;
-    uint32_t      beams = 1;
-    for (int i = 0; i < 2; i++)
-        beams *= (work->corner[i] + work->extent[i] - 1) / TILE - work->corner[i] / TILE + 1;
-    work->steps = MOST_BEAM_STEPS;
-    control->beams = MARCH_BEAMS;
-    if (!run_groups(job, KRS_PHASE_BEAMS, &job->rendering->trace, work,
-                    (beams + TILE * TILE - 1) / (TILE * TILE)))
-        return false;
-    control->beams = FOLLOW_BEAMS;
+    Dealing       deal = dealing(job);
+    control->source = ITEMS_FRESH;
+    deal.share = deal.share < 8 ? deal.share : 8;
+    deal.steps = deal.share * MOST_BEAM_STEPS; /* none is saved */
+    for (int i = 0; i < 2; i++) {
+        control->phase = sizes[i].phase;
+        if (!run_items(job, KRS_PHASE_BEAMS, job->trace, work, tiles_touched(work, sizes[i].side),
+                       deal))
+            return false;
+        control->follow = 1;
+    }
     return true;
 }
 
+/* First every pixel of the band, until all have been begun; then, pass by pass, the rays that
+   are not done. */
 static bool trace(Job *job, WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    work->steps = job->options.steps_at_once;
+    Dealing       deal = dealing(job);
+    uint32_t      pixels = work->extent[0] * work->extent[1];
+    uint32_t      items = deal.side * deal.side;
+    for (int i = 0; i < 2; i++)
+        items *= (work->extent[i] + deal.side - 1) / deal.side;
+    control->phase = TRACE_RAYS;
+    control->source = ITEMS_FRESH;
+    control->queued = control->writing = 0;
     for (double left = job->share;; left -= job->share) {
-        control->marching = 0;
+        control->left = 0;
         job->share = 0.9 * left; /* few rays need a second pass */
-        if (!run_phase(job, KRS_PHASE_PRIMARY, &job->rendering->trace, work))
+        if (!run_items(job, KRS_PHASE_PRIMARY, job->trace, work, items, deal))
             return false;
-        if (control->marching == 0)
-            return true;
         job->done += job->share;
-        control->beginning = 0;
+        if (control->left > 0) {
+            control->source = ITEMS_REST;
+            continue;
+        }
+        if (control->queued == 0)
+            return true;
+        control->source = ITEMS_QUEUED;
+        items = control->queued;
+        control->queued = 0;
+        control->reading = control->writing;
+        control->writing = pixels - control->reading;
+        deal.share = 1;
+        deal.steps = job->options.steps_at_once;
     }
+}
+
+/* A phase of secondary.comp, about the pixels that see something. */
+static bool look_around(Job *job, KrsPhase phase, uint32_t secondary, WorkBlock *work)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    Dealing       deal = dealing(job);
+    deal.steps = MOST_TURNS;
+    while (deal.share > 8 && control->solid / (deal.lanes * deal.share) < 64)
+        deal.share /= 2; /* groups enough for every core of the device */
+    control->phase = secondary;
+    control->source = ITEMS_FRESH;
+    do {
+        control->left = 0;
+        if (!run_items(job, phase, job->secondary, work, control->solid, deal))
+            return false;
+        control->source = ITEMS_REST;
+    } while (control->left > 0);
+    return true;
 }
 
 static bool light_up(Job *job, WorkBlock *work)
@@ -277,15 +382,12 @@ static bool light_up(Job *job, WorkBlock *work)
     ControlBlock *control = job->rendering->control.bytes;
     job->share /= (double)job->view.light_count;
     for (size_t i = 0; i < job->view.light_count; i++, job->done += job->share) {
-        const KrsLight *light = &job->view.lights[i];
-        control->light_kind = (light->positional ? LIGHT_POSITIONAL : 0) |
-                              (light->shadow ? LIGHT_CASTS_SHADOWS : 0);
-        work->light_softness = (float)light->softness;
-        for (int k = 0; k < 3; k++) {
-            work->light_vector[k] = (float)light->vector[k];
-            work->light_color[k] = (float)light->color[k];
-        }
-        if (!run_phase(job, KRS_PHASE_SHADOWS, &job->rendering->secondary, work))
+        control->light = (uint32_t)i;
+        if (!look_around(job, KRS_PHASE_SHADOWS, SECONDARY_SHADOW, work))
+            return false;
+        control->phase = SHADE_ONE_LIGHT;
+        if (!run_all(job, KRS_PHASE_SHADING, &job->rendering->renderer->shade, work,
+                     control->solid))
             return false;
     }
     return true;
@@ -308,46 +410,58 @@ static void place_ray(uint32_t index, uint64_t seed, float offset[2])
     }
 }
 
+/* The steps from rays to light, and their shares of the time, about. */
+typedef enum Step {
+    STEP_TRACE, STEP_BACKGROUND, STEP_NORMALS, STEP_MATERIAL, STEP_OCCLUSION, STEP_LIGHTS,
+    STEP_FINISH, STEP_COUNT
+} Step;
+static const double step_share[STEP_COUNT] = {0.5, 0.02, 0.1, 0.03, 0.1, 0.22, 0.03};
+
+static bool run_step(Job *job, Step step, WorkBlock *work)
+{
+    KrsRendering *r = job->rendering;
+    ControlBlock *control = r->control.bytes;
+    uint32_t      pixels = work->extent[0] * work->extent[1];
+    switch (step) {
+    case STEP_TRACE:
+        return trace(job, work);
+    case STEP_BACKGROUND:
+        control->solid = 0;
+        return run_all(job, KRS_PHASE_RESOLVE, &r->renderer->background, work, pixels);
+    case STEP_NORMALS:
+        return look_around(job, KRS_PHASE_NORMALS, SECONDARY_NORMALS, work);
+    case STEP_MATERIAL:
+        return run_all(job, KRS_PHASE_SHADING, &r->material, work, control->solid);
+    case STEP_OCCLUSION:
+        return look_around(job, KRS_PHASE_OCCLUSION, SECONDARY_OCCLUSION, work);
+    case STEP_LIGHTS:
+        return light_up(job, work);
+    case STEP_FINISH:
+        control->phase = SHADE_FINISH;
+        return run_all(job, KRS_PHASE_RESOLVE, &r->renderer->shade, work, control->solid);
+    case STEP_COUNT: break;
+    }
+    return false;
+}
+
 /* One ray of every pixel of the band; `done` and `share` of the job are its own. */
 static bool render_ray(Job *job, WorkBlock *work, uint32_t index)
 {
-    const double start = job->done, whole = job->share;
-    KrsRendering *r = job->rendering;
-    ControlBlock *control = r->control.bytes;
+    const double  whole = job->share;
+    ControlBlock *control = job->rendering->control.bytes;
     place_ray(index, job->options.seed, work->offset);
-    control->beams = NO_BEAMS;
-    control->beginning = 1;
+    control->ray = index;
+    control->first_ray = index == 0;
+    control->follow = 0;
     job->share = 0; /* too short to be seen */
     if (!job->options.no_beams && job->view.camera.projection != KRS_PANORAMA &&
         !march_beams(job, work))
         return false;
-    static const struct {
-        KrsPhase phase;
-        uint32_t secondary;
-        double   from, to; /* of the time, about */
-    } steps[] = {
-        {KRS_PHASE_PRIMARY, 0, 0, 0.5},
-        {KRS_PHASE_NORMALS, SECONDARY_NORMALS, 0.5, 0.6},
-        {KRS_PHASE_SHADING, 0, 0.6, 0.65},
-        {KRS_PHASE_OCCLUSION, SECONDARY_OCCLUSION, 0.65, 0.75},
-        {KRS_PHASE_SHADOWS, SECONDARY_SHADOW, 0.75, 0.97},
-        {KRS_PHASE_RESOLVE, 0, 0.97, 1},
-    };
-    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
-        KrsPhase phase = steps[i].phase;
-        bool     ran;
-        job->done = start + whole * steps[i].from;
-        job->share = whole * (steps[i].to - steps[i].from);
-        control->phase = steps[i].secondary;
-        control->beginning = phase == KRS_PHASE_PRIMARY || index == 0;
-        switch (phase) {
-        case KRS_PHASE_PRIMARY: ran = trace(job, work); break;
-        case KRS_PHASE_SHADOWS: ran = light_up(job, work); break;
-        case KRS_PHASE_SHADING: ran = run_phase(job, phase, &r->material, work); break;
-        case KRS_PHASE_RESOLVE: ran = run_phase(job, phase, &r->renderer->resolve, work); break;
-        default:                ran = run_phase(job, phase, &r->secondary, work);
-        }
-        if (!ran)
+    double done = job->done;
+    for (Step step = 0; step < STEP_COUNT; done += whole * step_share[step], step++) {
+        job->done = done;
+        job->share = whole * step_share[step];
+        if (!run_step(job, step, work))
             return false;
     }
     return true;
@@ -366,6 +480,16 @@ static bool fetch(Job *job, uint64_t pixels)
     return gpu_finish(job->gpu, &ms);
 }
 
+/* Where nothing is hit, most of a pixel stays zero. */
+static bool clear_results(Job *job)
+{
+    double ms = 0;
+    if (!gpu_begin(job->gpu))
+        return false;
+    vkCmdFillBuffer(job->gpu->commands, job->rendering->band.results.buffer, 0, VK_WHOLE_SIZE, 0);
+    return gpu_finish(job->gpu, &ms);
+}
+
 static bool render_band(Job *job, uint32_t from, uint32_t rows)
 {
     const KrsWindow *window = &job->options.crop;
@@ -374,7 +498,13 @@ static bool render_band(Job *job, uint32_t from, uint32_t rows)
         .corner = {window->x, window->y + from},
         .extent = {window->width, rows},
     };
-    *control = (ControlBlock){.projection = (uint32_t)job->view.camera.projection};
+    *control = (ControlBlock){
+        .projection = (uint32_t)job->view.camera.projection,
+        .lights = (uint32_t)job->view.light_count,
+        .shadows = job->options.shadows,
+    };
+    if (!clear_results(job))
+        return false;
     for (uint32_t i = 0; i < job->options.samples; i++) {
         double band_share = (double)rows / window->height;
         job->share = band_share / job->options.samples;
@@ -397,19 +527,23 @@ static bool render_band(Job *job, uint32_t from, uint32_t rows)
 static bool warm_up(Job *job)
 {
     KrsRendering *r = job->rendering;
-    const Kernel *kernels[] = {&r->trace, &r->secondary, &r->material, &r->renderer->resolve};
+    Kernel       *kernels[] = {job->trace, job->secondary, &r->material, &r->renderer->background,
+                               &r->renderer->shade};
     WorkBlock     work = {.groups = 1, .stride = 1};
     double        start = clock_ms(), ms = 0;
-    for (size_t i = 0; i < sizeof kernels / sizeof kernels[0] && !r->warm; i++) {
+    *(ControlBlock *)r->control.bytes = (ControlBlock){.share = 1};
+    for (size_t i = 0; i < sizeof kernels / sizeof kernels[0]; i++) {
+        if (kernels[i]->warm)
+            continue;
         if (!gpu_begin(job->gpu))
             return false;
         rendering_dispatch(r, kernels[i], r->band_set, &work, sizeof work, 1);
         if (!gpu_finish(job->gpu, &ms))
             return false;
-    }
-    if (!r->warm)
+        kernels[i]->warm = true;
         r->pipeline_ms += clock_ms() - start;
-    r->warm = true;
+        start = clock_ms();
+    }
     return true;
 }
 
@@ -417,7 +551,9 @@ static bool render(Job *job)
 {
     const KrsWindow *window = &job->options.crop;
     uint32_t         rows = make_room(job);
-    if (rows == 0 || !warm_up(job))
+    job->trace = rendering_trace(job->rendering, job->options.trace, job->options.schedule);
+    job->secondary = rendering_secondary(job->rendering, job->options.schedule);
+    if (rows == 0 || !job->trace || !job->secondary || !warm_up(job))
         return false;
     double start = clock_ms();
     for (uint32_t from = 0; from < window->height; from += rows) {

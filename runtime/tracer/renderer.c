@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Bindings of set 1; those in between are the buffers of a band. */
-enum { FRAME_BINDING = 0, CONTROL_BINDING = 4, BINDING_COUNT };
+enum { FRAME_BINDING = 0, CONTROL_BINDING = 4, LIGHTS_BINDING = 8, BINDING_COUNT };
 
 KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
 {
@@ -75,8 +75,11 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
         return renderer->gpu.status;
     spirv_start();
     renderer->compiler_started = true;
+    const KernelSource background = {.file = "background.comp"}, shade = {.file = "shade.comp"};
     if (!layouts_create(renderer) ||
-        !kernel_create(&renderer->gpu, &renderer->resolve, "resolve.comp", NULL, renderer->layout,
+        !kernel_create(&renderer->gpu, &renderer->background, &background, renderer->layout,
+                       &renderer->spirv_ms, &renderer->pipeline_ms) ||
+        !kernel_create(&renderer->gpu, &renderer->shade, &shade, renderer->layout,
                        &renderer->spirv_ms, &renderer->pipeline_ms))
         return renderer->gpu.status;
     return KRS_OK;
@@ -88,7 +91,8 @@ void krs_renderer_free(KrsRenderer *renderer)
         return;
     Gpu *gpu = &renderer->gpu;
     if (gpu->device) {
-        kernel_destroy(gpu, &renderer->resolve);
+        kernel_destroy(gpu, &renderer->background);
+        kernel_destroy(gpu, &renderer->shade);
         vkDestroyPipelineLayout(gpu->device, renderer->layout, NULL);
         vkDestroyDescriptorSetLayout(gpu->device, renderer->frame_layout, NULL);
         vkDestroyDescriptorSetLayout(gpu->device, renderer->scene_layout, NULL);
@@ -188,19 +192,61 @@ static bool buffers_create(KrsRendering *rendering)
     return true;
 }
 
+static bool create_kernel(KrsRendering *rendering, Kernel *kernel, const char *file,
+                          const char *defines)
+{
+    KernelSource source = {file, rendering->program->glsl, defines};
+    return kernel_create(&rendering->renderer->gpu, kernel, &source, rendering->renderer->layout,
+                         &rendering->spirv_ms, &rendering->pipeline_ms);
+}
+
+void renderer_choose(const KrsRenderer *renderer, KrsTrace *trace, KrsSchedule *schedule)
+{
+    if (*trace == KRS_TRACE_DEFAULT)
+        *trace = KRS_TRACE_AUTO;
+    if (*schedule == KRS_SCHEDULE_DEFAULT)
+        *schedule = gpu_is_cpu(&renderer->gpu) ? KRS_SCHEDULE_REFILL : KRS_SCHEDULE_QUEUE;
+}
+
+/* A queue is the kernel of pixels with fewer steps. */
+static KrsSchedule schedule_of_kernel(KrsSchedule schedule)
+{
+    return schedule == KRS_SCHEDULE_QUEUE ? KRS_SCHEDULE_PIXEL : schedule;
+}
+
+static Kernel *find_variant(KrsRendering *rendering, Kernel *kernel, const char *file,
+                                  KrsTrace trace, KrsSchedule schedule)
+{
+    char defines[64];
+    snprintf(defines, sizeof defines, "#define TRACE %du\n#define REFILL %d\n", (int)trace,
+             schedule == KRS_SCHEDULE_REFILL);
+    if (!kernel->pipeline && !create_kernel(rendering, kernel, file, defines))
+        return NULL;
+    return kernel;
+}
+
+Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule)
+{
+    schedule = schedule_of_kernel(schedule);
+    return find_variant(rendering, &rendering->trace[trace][schedule], "trace.comp", trace,
+                        schedule);
+}
+
+Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule)
+{
+    schedule = schedule_of_kernel(schedule);
+    return find_variant(rendering, &rendering->secondary[schedule], "secondary.comp",
+                        KRS_TRACE_PLAIN, schedule);
+}
+
 static bool kernels_create(KrsRendering *rendering)
 {
-    const struct { Kernel *kernel; const char *file; } kernels[] = {
-        {&rendering->trace, "trace.comp"},
-        {&rendering->secondary, "secondary.comp"},
-        {&rendering->material, "material.comp"},
-    };
-    for (size_t i = 0; i < sizeof kernels / sizeof kernels[0]; i++)
-        if (!kernel_create(&rendering->renderer->gpu, kernels[i].kernel, kernels[i].file,
-                           rendering->program->glsl, rendering->renderer->layout,
-                           &rendering->spirv_ms, &rendering->pipeline_ms))
-            return false;
-    return true;
+    KrsTrace    trace = KRS_TRACE_DEFAULT;
+    KrsSchedule schedule = KRS_SCHEDULE_DEFAULT;
+    renderer_choose(rendering->renderer, &trace, &schedule);
+    return rendering_trace(rendering, trace, schedule) &&
+           rendering_secondary(rendering, schedule) &&
+           create_kernel(rendering, &rendering->material, "material.comp", NULL);
 }
 
 KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRendering **out)
@@ -231,17 +277,47 @@ void krs_rendering_free(KrsRendering *rendering)
     if (!rendering)
         return;
     Gpu    *gpu = &rendering->renderer->gpu;
-    Buffer *buffers[] = {&rendering->parameters, &rendering->frame, &rendering->control,
-                         &rendering->band.rays, &rendering->band.hits, &rendering->band.results,
-                         &rendering->band.fetched, &rendering->points, &rendering->answers};
+    Buffer *buffers[] = {&rendering->parameters, &rendering->frame, &rendering->control, &rendering->lights,
+                         &rendering->band.ends, &rendering->band.fates, &rendering->band.hits,
+                         &rendering->band.results, &rendering->band.fetched,
+                         &rendering->band.queue, &rendering->band.taken,
+                         &rendering->points, &rendering->answers};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         buffer_destroy(gpu, buffers[i]);
-    Kernel *kernels[] = {&rendering->trace, &rendering->secondary, &rendering->material,
-                         &rendering->sample};
-    for (size_t i = 0; i < sizeof kernels / sizeof kernels[0]; i++)
-        kernel_destroy(gpu, kernels[i]);
+    kernel_destroy(gpu, &rendering->material);
+    kernel_destroy(gpu, &rendering->sample);
+    for (int schedule = 0; schedule < KRS_SCHEDULE_COUNT; schedule++) {
+        kernel_destroy(gpu, &rendering->secondary[schedule]);
+        for (int trace = 0; trace < KRS_TRACE_COUNT; trace++)
+            kernel_destroy(gpu, &rendering->trace[trace][schedule]);
+    }
     vkDestroyDescriptorPool(gpu->device, rendering->pool, NULL);
     gpu_release(gpu, rendering);
+}
+
+bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count)
+{
+    Gpu         *gpu = &rendering->renderer->gpu;
+    Buffer      *buffer = &rendering->lights;
+    VkDeviceSize bytes = (count > 0 ? count : 1) * sizeof(LightBlock);
+    if (buffer->size < bytes) {
+        buffer_destroy(gpu, buffer);
+        if (!buffer_create(gpu, buffer, bytes, SHARED, "lights"))
+            return false;
+        rendering_bind(rendering, rendering->band_set, LIGHTS_BINDING, buffer);
+    }
+    LightBlock *blocks = buffer->bytes;
+    for (size_t i = 0; i < count; i++) {
+        const KrsLight *light = &lights[i];
+        blocks[i].kind = (light->positional ? LIGHT_POSITIONAL : 0) |
+                         (light->shadow ? LIGHT_CASTS_SHADOWS : 0);
+        blocks[i].softness = (float)light->softness;
+        for (int k = 0; k < 3; k++) {
+            blocks[i].vector[k] = (float)light->vector[k];
+            blocks[i].color[k] = (float)light->color[k];
+        }
+    }
+    return true;
 }
 
 bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame)

@@ -15,14 +15,14 @@ struct KrsRenderer {
     VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters */
     VkDescriptorSetLayout frame_layout; /* set 1: what frame.glsl declares */
     VkPipelineLayout      layout;       /* of every kernel */
-    Kernel                resolve;
-    double                spirv_ms, pipeline_ms; /* of `resolve` */
+    Kernel                background, shade;
+    double                spirv_ms, pipeline_ms; /* of these two */
 };
 
 /* The buffers that hold a band of the picture. */
 typedef struct Band {
     uint64_t pixels; /* room for so many; 0: no buffers */
-    Buffer   rays, hits, results;
+    Buffer   ends, fates, hits, results, queue, taken;
     Buffer   fetched; /* where the host reads the results */
 } Band;
 
@@ -30,20 +30,29 @@ struct KrsRendering {
     KrsRenderer      *renderer;
     const KrsScene   *scene;
     const KrsProgram *program;
-    Kernel            trace, secondary, material, sample; /* `sample` when first needed */
+    Kernel            material;
+    Kernel            sample; /* when first needed, as the variants of these: */
+    Kernel            trace[KRS_TRACE_COUNT][KRS_SCHEDULE_COUNT], secondary[KRS_SCHEDULE_COUNT];
     double            spirv_ms, pipeline_ms;
-    bool              warm; /* the driver has compiled the kernels for good */
 
     VkDescriptorPool  pool;
     VkDescriptorSet   scene_set, band_set, points_set;
-    Buffer            parameters, frame, control;
+    Buffer            parameters, frame, control, lights;
     Band              band;
     Buffer            points, answers; /* of krs_sample */
     uint32_t          tiles_at_once[KRS_PHASE_COUNT]; /* learned from the last slices */
 };
 
+/* The kernels of primary and secondary rays for a method and a schedule (neither is the default),
+   compiled when they are first asked for.  NULL with the failure noted. */
+Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule);
+Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule);
+/* Puts what is fastest on this device where the default is asked for. */
+void renderer_choose(const KrsRenderer *renderer, KrsTrace *trace, KrsSchedule *schedule);
 /* Copies the values of the frame's parameters to the device. */
 bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame);
+/* Copies the lights of a frame to the device. */
+bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count);
 /* Points a binding of set 1 at a buffer. */
 void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding,
                     const Buffer *buffer);

@@ -13,7 +13,8 @@ static bool prepare(KrsRendering *rendering)
 {
     Gpu *gpu = &rendering->renderer->gpu;
     if (!rendering->sample.pipeline &&
-        !kernel_create(gpu, &rendering->sample, "sample.comp", rendering->program->glsl,
+        !kernel_create(gpu, &rendering->sample,
+                       &(KernelSource){"sample.comp", rendering->program->glsl, NULL},
                        rendering->renderer->layout, &rendering->spirv_ms, &rendering->pipeline_ms))
         return false;
     if (!rendering->points.buffer &&

@@ -4,24 +4,49 @@
  * Its own files are never flushed to the disk and stay behind after an error, so the bytes go
  * through a callback into an OutputFile, which knows better.  A chunk is 16 lines.  The library
  * wants packed samples, so each chunk's lines are copied into a block per channel first, which
- * is where floats become halves.
+ * is where floats become halves.  Packing and compressing take nearly all of the time, so
+ * several threads do it; each waits for its turn to write, and the file is the same.
  */
 #include "runtime/writer/exr.h"
 
 #include <OpenEXR/openexr.h>
+#include <pthread.h>
+#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { ZIP_LEVEL = 4 }; /* zlib's 4: within 2 % of the size of 9 for renders, four times faster */
+enum {
+    ZIP_LEVEL = 4,   /* zlib's 4: within 2 % of the size of 9 for renders, four times faster */
+    MOST_WORKERS = 8 /* one of them writes at any time, and each needs memory for a chunk */
+};
 
 typedef struct ExrWriter {
     const Picture *picture;
     OutputFile    *file;
     OutputError   *error;
     exr_context_t  context;
-    void         **blocks; /* packed lines of each channel, in the picture's order */
 } ExrWriter;
+
+/* The chunks of a picture.  Under the lock: they are taken from the top on by whoever is free,
+   and written in that order. */
+typedef struct Chunks {
+    ExrWriter      *writer;
+    uint32_t        lines, count; /* lines of a chunk; number of chunks */
+    pthread_mutex_t lock;
+    pthread_cond_t  next; /* a chunk was written, or something failed */
+    uint32_t        taken, written;
+    exr_result_t    result; /* the first failure, after which no more are taken */
+} Chunks;
+
+typedef struct Worker {
+    Chunks    *chunks;
+    pthread_t  thread;
+    uint32_t   chunk;  /* that it has taken */
+    uint32_t  *block;  /* packed lines of all channels, in the picture's order */
+    bool       begun;  /* the pipeline is set up */
+    exr_encode_pipeline_t pipeline; /* keeps its buffers from chunk to chunk */
+} Worker;
 
 uint16_t half_from_float(float number)
 {
@@ -170,18 +195,19 @@ static void pack_lines(const Picture *picture, const PictureChannel *channel, si
 }
 
 /* The library sorts channels by name; ours are found by theirs. */
-static void pack_chunk(ExrWriter *writer, exr_encode_pipeline_t *pipeline)
+static void pack_chunk(Worker *worker)
 {
-    const Picture *picture = writer->picture;
+    const Picture         *picture = worker->chunks->writer->picture;
+    exr_encode_pipeline_t *pipeline = &worker->pipeline;
     size_t first = (size_t)pipeline->chunk.start_y - picture->crop_y;
     for (int c = 0; c < pipeline->channel_count; c++) {
         exr_coding_channel_info_t *target = &pipeline->channels[c];
         size_t i = 0;
         while (strcmp(picture->channels[i].name, target->channel_name) != 0)
             i++;
-        pack_lines(picture, &picture->channels[i], first, (size_t)target->height,
-                   writer->blocks[i]);
-        target->encode_from_ptr = writer->blocks[i];
+        void *packed = worker->block + i * worker->chunks->lines * picture->crop_width;
+        pack_lines(picture, &picture->channels[i], first, (size_t)target->height, packed);
+        target->encode_from_ptr = packed;
         target->user_bytes_per_element = target->bytes_per_element;
         target->user_data_type = target->data_type;
         target->user_pixel_stride = target->bytes_per_element;
@@ -189,38 +215,128 @@ static void pack_chunk(ExrWriter *writer, exr_encode_pipeline_t *pipeline)
     }
 }
 
-/* Encodes one chunk; `pipeline` keeps its buffers from chunk to chunk. */
-static bool write_chunk(ExrWriter *writer, exr_encode_pipeline_t *pipeline, int y, bool first)
+/* Called by the library before it writes what a worker has encoded. */
+static exr_result_t wait_for_turn(exr_encode_pipeline_t *pipeline)
 {
-    exr_context_t context = writer->context;
-    exr_chunk_info_t chunk;
-    if (!exr_try(writer, exr_write_scanline_chunk_info(context, 0, y, &chunk)) ||
-        !exr_try(writer, first ? exr_encoding_initialize(context, 0, &chunk, pipeline)
-                               : exr_encoding_update(context, 0, &chunk, pipeline)))
-        return false;
-    pack_chunk(writer, pipeline);
-    if (first && !exr_try(writer, exr_encoding_choose_default_routines(context, 0, pipeline)))
-        return false;
-    return exr_try(writer, exr_encoding_run(context, 0, pipeline));
+    const Worker *worker = pipeline->encoding_user_data;
+    Chunks       *chunks = worker->chunks;
+    pthread_mutex_lock(&chunks->lock);
+    while (chunks->written != worker->chunk && chunks->result == EXR_ERR_SUCCESS)
+        pthread_cond_wait(&chunks->next, &chunks->lock);
+    exr_result_t result = chunks->result;
+    pthread_mutex_unlock(&chunks->lock);
+    return result;
+}
+
+/* Takes the next chunk; false when there is none. */
+static bool take_chunk(Worker *worker)
+{
+    Chunks *chunks = worker->chunks;
+    pthread_mutex_lock(&chunks->lock);
+    bool taken = chunks->taken < chunks->count && chunks->result == EXR_ERR_SUCCESS;
+    if (taken)
+        worker->chunk = chunks->taken++;
+    pthread_mutex_unlock(&chunks->lock);
+    return taken;
+}
+
+static exr_result_t write_chunk(Worker *worker)
+{
+    const Chunks          *chunks = worker->chunks;
+    exr_context_t          context = chunks->writer->context;
+    exr_encode_pipeline_t *pipeline = &worker->pipeline;
+    uint32_t         y = chunks->writer->picture->crop_y + worker->chunk * chunks->lines;
+    exr_chunk_info_t info;
+    exr_result_t     result = exr_write_scanline_chunk_info(context, 0, (int)y, &info);
+    if (result != EXR_ERR_SUCCESS)
+        return result;
+    result = worker->begun ? exr_encoding_update(context, 0, &info, pipeline)
+                           : exr_encoding_initialize(context, 0, &info, pipeline);
+    if (result != EXR_ERR_SUCCESS)
+        return result;
+    pack_chunk(worker);
+    if (!worker->begun) {
+        worker->begun = true;
+        result = exr_encoding_choose_default_routines(context, 0, pipeline);
+        if (result != EXR_ERR_SUCCESS)
+            return result;
+        pipeline->encoding_user_data = worker;
+        pipeline->yield_until_ready_fn = wait_for_turn;
+    }
+    return exr_encoding_run(context, 0, pipeline);
+}
+
+static void *work(void *user)
+{
+    Worker *worker = user;
+    Chunks *chunks = worker->chunks;
+    while (take_chunk(worker)) {
+        exr_result_t result = write_chunk(worker);
+        pthread_mutex_lock(&chunks->lock);
+        if (result == EXR_ERR_SUCCESS)
+            chunks->written++;
+        else if (chunks->result == EXR_ERR_SUCCESS)
+            chunks->result = result;
+        pthread_cond_broadcast(&chunks->next);
+        pthread_mutex_unlock(&chunks->lock);
+    }
+    return NULL;
+}
+
+/* As many as there are processors for us, and no more than chunks. */
+static uint32_t count_workers(const Chunks *chunks)
+{
+    cpu_set_t processors;
+    uint32_t  count = MOST_WORKERS;
+    if (sched_getaffinity(0, sizeof processors, &processors) == 0 &&
+        (uint32_t)CPU_COUNT(&processors) < count)
+        count = (uint32_t)CPU_COUNT(&processors);
+    return count < chunks->count ? count : chunks->count;
+}
+
+/* The calling thread is the first worker, and the only one where no other can be had. */
+static void run_workers(Chunks *chunks)
+{
+    const Picture *picture = chunks->writer->picture;
+    Worker         workers[MOST_WORKERS];
+    uint32_t       count = 0, wanted = count_workers(chunks);
+    size_t         samples = picture->channel_count * chunks->lines * picture->crop_width;
+    for (; count < wanted; count++) {
+        Worker *worker = &workers[count];
+        *worker = (Worker){.chunks = chunks, .pipeline = EXR_ENCODE_PIPELINE_INITIALIZER};
+        worker->block = malloc(samples * sizeof *worker->block);
+        if (!worker->block)
+            break;
+        if (count > 0 && pthread_create(&worker->thread, NULL, work, worker) != 0) {
+            free(worker->block);
+            break;
+        }
+    }
+    if (count == 0)
+        chunks->result = EXR_ERR_OUT_OF_MEMORY;
+    else
+        work(&workers[0]);
+    for (uint32_t i = 0; i < count; i++) {
+        if (i > 0)
+            pthread_join(workers[i].thread, NULL);
+        exr_encoding_destroy(chunks->writer->context, &workers[i].pipeline);
+        free(workers[i].block);
+    }
 }
 
 static bool write_chunks(ExrWriter *writer)
 {
-    const Picture *picture = writer->picture;
     int32_t lines;
     if (!exr_try(writer, exr_get_scanlines_per_chunk(writer->context, 0, &lines)))
         return false;
-    for (size_t i = 0; i < picture->channel_count; i++) {
-        writer->blocks[i] = malloc((size_t)lines * picture->crop_width * sizeof(float));
-        if (!writer->blocks[i])
-            return exr_try(writer, EXR_ERR_OUT_OF_MEMORY);
-    }
-    exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
-    bool done = true;
-    for (uint32_t y = 0; done && y < picture->crop_height; y += (uint32_t)lines)
-        done = write_chunk(writer, &pipeline, (int)(picture->crop_y + y), y == 0);
-    exr_encoding_destroy(writer->context, &pipeline);
-    return done;
+    Chunks chunks = {
+        .writer = writer, .lines = (uint32_t)lines, .result = EXR_ERR_SUCCESS,
+        .count = (writer->picture->crop_height + (uint32_t)lines - 1) / (uint32_t)lines,
+        .lock = PTHREAD_MUTEX_INITIALIZER, .next = PTHREAD_COND_INITIALIZER};
+    run_workers(&chunks);
+    pthread_cond_destroy(&chunks.next);
+    pthread_mutex_destroy(&chunks.lock);
+    return exr_try(writer, chunks.result);
 }
 
 bool exr_write(const Picture *picture, OutputFile *file, OutputError *error)
@@ -231,9 +347,6 @@ bool exr_write(const Picture *picture, OutputFile *file, OutputError *error)
     setup.user_data = &writer;
     setup.write_fn = write_callback;
 
-    writer.blocks = calloc(picture->channel_count, sizeof *writer.blocks);
-    if (!writer.blocks)
-        return exr_try(&writer, EXR_ERR_OUT_OF_MEMORY);
     bool done = exr_try(&writer, exr_start_write(&writer.context, "picture",
                                                  EXR_WRITE_FILE_DIRECTLY, &setup));
     if (done) {
@@ -242,8 +355,5 @@ bool exr_write(const Picture *picture, OutputFile *file, OutputError *error)
         exr_result_t finished = exr_finish(&writer.context); /* writes the table of chunks */
         done = done && exr_try(&writer, finished);
     }
-    for (size_t i = 0; i < picture->channel_count; i++)
-        free(writer.blocks[i]);
-    free(writer.blocks);
     return done;
 }

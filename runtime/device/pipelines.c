@@ -1,0 +1,79 @@
+/*
+ * pipelines.c: loads a driver's pipeline cache, and saves it when it has grown.
+ */
+#include "runtime/device/pipelines.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* What grows with every scene must start anew at some time. */
+static const size_t LARGE = CACHE_ENTRY_BYTES / 2;
+
+bool pipelines_fit(const VkPhysicalDeviceProperties *device, const void *bytes, size_t length)
+{
+    VkPipelineCacheHeaderVersionOne header;
+    if (length <= sizeof header)
+        return false;
+    memcpy(&header, bytes, sizeof header);
+    return header.headerSize == sizeof header &&
+           header.headerVersion == VK_PIPELINE_CACHE_HEADER_VERSION_ONE &&
+           header.vendorID == device->vendorID && header.deviceID == device->deviceID &&
+           memcmp(header.pipelineCacheUUID, device->pipelineCacheUUID, VK_UUID_SIZE) == 0;
+}
+
+static CacheKey device_key(const VkPhysicalDeviceProperties *device)
+{
+    char maker[96];
+    snprintf(maker, sizeof maker, "pipelines: vendor %x, device %x, driver %x", device->vendorID,
+             device->deviceID, device->driverVersion);
+    return cache_key(maker, device->pipelineCacheUUID, VK_UUID_SIZE);
+}
+
+static VkResult create(Gpu *gpu, const void *bytes, size_t length)
+{
+    return vkCreatePipelineCache(gpu->device, &(VkPipelineCacheCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
+        .initialDataSize = length,
+        .pInitialData = bytes,
+    }, NULL, &gpu->pipelines);
+}
+
+void pipelines_open(Gpu *gpu)
+{
+    if (!gpu->cache.folder)
+        return;
+    size_t length = 0;
+    void  *bytes = cache_load(&gpu->cache, CACHE_PIPELINES, device_key(&gpu->properties), &length);
+    if (bytes && length < LARGE && pipelines_fit(&gpu->properties, bytes, length) &&
+        create(gpu, bytes, length) == VK_SUCCESS)
+        gpu->pipelines_loaded = length;
+    else if (create(gpu, NULL, 0) != VK_SUCCESS)
+        gpu->pipelines = VK_NULL_HANDLE;
+    gpu_release(gpu, bytes);
+}
+
+/* lavapipe's data is a header and nothing else, so nothing is written for it: Mesa keeps its
+   pipelines by itself. */
+static void save(Gpu *gpu)
+{
+    size_t length = 0;
+    if (vkGetPipelineCacheData(gpu->device, gpu->pipelines, &length, NULL) != VK_SUCCESS ||
+        length <= gpu->pipelines_loaded || length <= sizeof(VkPipelineCacheHeaderVersionOne))
+        return;
+    Gpu   quiet = {.allocator = gpu->allocator}; /* takes the note when there is no memory */
+    void *bytes = gpu_alloc(&quiet, length, 1, "save the pipelines");
+    if (bytes &&
+        vkGetPipelineCacheData(gpu->device, gpu->pipelines, &length, bytes) == VK_SUCCESS &&
+        pipelines_fit(&gpu->properties, bytes, length))
+        cache_store(&gpu->cache, CACHE_PIPELINES, device_key(&gpu->properties), bytes, length);
+    gpu_release(&quiet, bytes);
+}
+
+void pipelines_close(Gpu *gpu)
+{
+    if (gpu->pipelines) {
+        save(gpu);
+        vkDestroyPipelineCache(gpu->device, gpu->pipelines, NULL);
+    }
+    gpu->pipelines = VK_NULL_HANDLE;
+}

@@ -1,0 +1,52 @@
+#version 450
+#extension GL_GOOGLE_include_directive : enable
+/*
+ * background.comp: ends the pixels whose ray hits nothing: the sky, and the lights that have a
+ * disc in it; lists the others; and counts steps.
+ */
+#include "frame.glsl"
+#include "pixels.glsl"
+#include "solid.glsl"
+#include "light.glsl"
+#include "results.glsl"
+
+void count_steps(uint index, uint steps)
+{
+    uint evaluations = 0u, most = 0u;
+    if (control.first_ray == 0u) {
+        evaluations = pixels[index].evaluations;
+        most = pixels[index].most;
+    } else {
+        pixels[index].steps = steps;
+        pixels[index].depth = uintBitsToFloat(0x7f800000u); // infinity, until there is a hit
+    }
+    pixels[index].evaluations = evaluations + steps;
+    pixels[index].most = max(most, steps);
+}
+
+void main()
+{
+    load_frame();
+    uint index;
+    if (!find_item(index))
+        return;
+    Ray ray = find_end(index);
+    count_steps(index, ray.steps);
+    if (ray.lost)
+        atomicAdd(counts.unresolved, 1u);
+    if (ray.fate == HIT)
+        solid[atomicAdd(counts.solid, 1u)] = index;
+
+    vec3  origin, direction;
+    float base, slope;
+    uvec2 pixel = work.corner + find_cell(index, work.extent.x);
+    find_ray(vec2(pixel) + work.offset, origin, direction, base, slope);
+    vec3 radiance = sky_radiance(direction);
+    for (uint i = 0u; i < control.lights; i++) {
+        Light light = lights[i];
+        if ((light.kind & POSITIONAL) == 0u)
+            radiance += sun_radiance(direction, light.vector, light.color, light.softness);
+    }
+    if (ray.fate != HIT)
+        add_color(index, radiance, 0.0);
+}
