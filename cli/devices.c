@@ -2,6 +2,8 @@
  * devices.c: `krs devices`: the Vulkan devices, and the one a render would take.
  */
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "cli/commands.h"
 #include "cli/console.h"
@@ -69,9 +71,26 @@ KrsStatus command_devices(Options *options)
     return KRS_OK;
 }
 
+/* Where compiled shaders are kept; NULL: nowhere.  As the XDG Base Directory Specification has
+   it, a folder that is not absolute is as good as none. */
+static const char *cache_folder(const Options *options)
+{
+    if (options->cache)
+        return strcmp(options->cache, "off") == 0 ? NULL : options->cache;
+    Text        path = {.arena = options->arena};
+    const char *caches = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+    if (caches && caches[0] == '/')
+        text_format(&path, "%s/krs", caches);
+    else if (home && home[0] == '/')
+        text_format(&path, "%s/.cache/krs", home);
+    else
+        return NULL;
+    return path.bytes;
+}
+
 KrsStatus open_renderer(const Options *options, KrsRenderer **renderer)
 {
-    KrsRendererOptions with = {.device = options->device};
+    KrsRendererOptions with = {.device = options->device, .cache = cache_folder(options)};
     stage_enter(STAGE_DEVICE);
     KrsStatus status = krs_renderer_new(&with, renderer);
     stage_enter(STAGE_START);

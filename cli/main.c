@@ -7,7 +7,6 @@
 #include <OpenEXR/openexr.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <glslang/build_info.h>
 #include <png.h>
 #include <setjmp.h>
 #include <signal.h>
@@ -38,11 +37,6 @@ static void hold_standard_streams(void)
             open("/dev/null", stream == 0 ? O_WRONLY : O_RDONLY);
 }
 
-/* Of SPIRV-Tools; their header for C defines a variable, so only one file of a program may
-   include it, and that is spirv.c. */
-const char *spvSoftwareVersionString(void);
-
-/* Of glslang, which is linked statically, the version is known when compiling. */
 static KrsStatus print_version(void)
 {
     int major, minor, patch;
@@ -53,9 +47,8 @@ static KrsStatus print_version(void)
     printf("krs %s\n", KRS_VERSION);
     printf("Vulkan loader %u.%u.%u\n", VK_API_VERSION_MAJOR(vulkan), VK_API_VERSION_MINOR(vulkan),
            VK_API_VERSION_PATCH(vulkan));
-    printf("glslang %d.%d.%d\n", GLSLANG_VERSION_MAJOR, GLSLANG_VERSION_MINOR,
-           GLSLANG_VERSION_PATCH);
-    printf("SPIRV-Tools %s\n", spvSoftwareVersionString());
+    printf("glslang %s\n", spirv_glslang_version());
+    printf("SPIRV-Tools %s\n", spirv_tools_version());
     printf("OpenEXRCore %d.%d.%d%s\n", major, minor, patch, extra ? extra : "");
     printf("libpng %s\n", png_get_libpng_ver(NULL));
     return console_finish();

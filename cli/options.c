@@ -273,6 +273,13 @@ static KrsStatus refuse(const Options *options, OptionId id, const char *wants, 
     return say_usage(options, "--%s wants %s, not `%s`", option_info[id].name, wants, value);
 }
 
+/* `on` is the default of every switch, so `off` is what is noted. */
+static KrsStatus read_switch(const Options *options, OptionId id, const char *value, bool *off)
+{
+    *off = strcmp(value, "off") == 0;
+    return *off || strcmp(value, "on") == 0 ? KRS_OK : refuse(options, id, "on or off", value);
+}
+
 static const char *const stages[] = {"tokens", "syntax", "scene", "graph", "simplify", "glsl",
                                      "spirv", NULL};
 static const char *const whens[] = {"auto", "always", "never", NULL};
@@ -358,11 +365,13 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
             return refuse(options, id, "json or nothing", value);
         options->stats = value ? STATS_JSON : STATS_TEXT;
         return KRS_OK;
-    case OPTION_BEAMS:
-        options->no_beams = strcmp(value, "off") == 0;
-        return options->no_beams || strcmp(value, "on") == 0
+    case OPTION_BEAMS: return read_switch(options, id, value, &options->no_beams);
+    case OPTION_UPSAMPLING: return read_switch(options, id, value, &options->no_upsampling);
+    case OPTION_SHADOWS:
+        options->area_shadows = strcmp(value, krs_shadows_names[KRS_SHADOWS_AREA]) == 0;
+        return options->area_shadows || strcmp(value, krs_shadows_names[KRS_SHADOWS_SOFT]) == 0
                    ? KRS_OK
-                   : refuse(options, id, "on or off", value);
+                   : refuse(options, id, "soft or area", value);
     case OPTION_ERROR:
         return read_number(value, 1e-6, 1000, &options->error)
                    ? KRS_OK

@@ -74,7 +74,7 @@ typedef struct Options {
     bool        exposed, tone_mapped; /* --exposure, --tone-map were given */
     double      exposure;
     ToneMap     tone_map;
-    bool        no_beams;
+    bool        no_beams, no_upsampling, area_shadows;
     double      error; /* 0: not given */
     KrsTrace    trace;
     KrsSchedule schedule;

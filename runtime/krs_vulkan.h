@@ -136,6 +136,8 @@ typedef struct KrsRenderOptions {
     KrsSchedule schedule;
     KrsShadows  shadows;
     bool      no_beams;      /* each ray is marched by itself all the way */
+    bool      no_upsampling; /* shadows and occlusion are found for every pixel, not for a quarter
+                                of them where the others can be seen to be alike */
     double    slice_ms;      /* aim for dispatches this long; 0: 50 */
     KrsProgressCallback *progress; /* may be NULL */
     void                *user;     /* handed to `progress` */

@@ -34,12 +34,15 @@ void main()
     count_steps(index, ray.steps);
     if (ray.lost)
         atomicAdd(counts.unresolved, 1u);
-    if (ray.fate == HIT)
+    uvec2 pixel = work.corner + find_cell(index, work.extent.x);
+    if (ray.fate == HIT) {
         solid[atomicAdd(counts.solid, 1u)] = index;
+        if (is_anchor(pixel))
+            solid[band_pixels() + atomicAdd(counts.anchors, 1u)] = index;
+    }
 
     vec3  origin, direction;
     float base, slope;
-    uvec2 pixel = work.corner + find_cell(index, work.extent.x);
     find_ray(vec2(pixel) + work.offset, origin, direction, base, slope);
     vec3 radiance = sky_radiance(direction);
     for (uint i = 0u; i < control.lights; i++) {

@@ -48,8 +48,9 @@ struct Control {
     uint source;     // of the items (schedule.glsl): FRESH, QUEUED or REST,
     uint items;      // how many there are,
     uint share;      // and at most for a lane
-    uint reading;    // where the half of the queue that is read begins,
+    uint reading;    // where the queue or list that is read begins,
     uint writing;    // and the one that is written
+    uint value;      // of fill.comp: which one it fills in
 };
 
 // A ray that is done.
@@ -94,7 +95,8 @@ layout(std430, set = 1, binding = 4) buffer ControlBlock {
     Control given_control;
     uint    queued;           // counts rays that need another dispatch,
     uint    left;             // and items that nobody has begun
-    uint    solid;            // counts pixels that see something (background.comp)
+    uint    solid, anchors;   // counts pixels that see something (solid.glsl),
+    uint    rest;             // and those that fill.comp does not fill in
     uint    unresolved;       // counts rays that ran out of steps
     uint    beam_evaluations; // counts distances spent on beams
 } counts;

@@ -1,8 +1,20 @@
 /*
  * solid.glsl: the pixels whose ray hits something, as a list: what comes after the primary rays
- * is about them alone.  The list lies where the queue of rays was.
+ * is about them alone.
+ *
+ * A quarter of them, those in columns and rows 0, 2, 5 and 7 of their tile of 8x8, are anchors:
+ * where all of a tile agree, the pixels in between are filled in.  Lists lie where the queue of
+ * rays was, each with room for all pixels: all, the anchors, and those that are not filled in; a
+ * fourth part says of each tile whether its anchors agree.
  */
 layout(std430, set = 1, binding = 6) buffer Solid { uint solid[]; };
+
+uint band_pixels() { return work.extent.x * work.extent.y; }
+
+bool is_anchor(uvec2 pixel)
+{
+    return (0xA5u >> (pixel.x & 7u) & 0xA5u >> (pixel.y & 7u) & 1u) != 0u;
+}
 
 // The ray of a pixel of the list, and where it hits.
 struct Place {
@@ -14,10 +26,10 @@ struct Place {
     float side;      // as of a Ray
 };
 
-Place find_place(uint number)
+Place find_place_of(uint index)
 {
     Place place;
-    place.index = solid[number];
+    place.index = index;
     uvec2 pixel = work.corner + find_cell(place.index, work.extent.x);
     vec3  origin;
     float base, slope;
@@ -29,3 +41,6 @@ Place find_place(uint number)
     place.side = ray.side;
     return place;
 }
+
+// The place of item `number` of the list that is read.
+Place find_place(uint number) { return find_place_of(solid[control.reading + number]); }

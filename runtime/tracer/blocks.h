@@ -25,6 +25,8 @@ static_assert(sizeof(FrameBlock) == 176, "std140");
 enum { TRACE_RAYS, TRACE_BEAMS_32, TRACE_BEAMS_8 };
 enum { SECONDARY_NORMALS, SECONDARY_OCCLUSION, SECONDARY_SHADOW };
 enum { SHADE_ONE_LIGHT, SHADE_FINISH };
+enum { FILL_JUDGE, FILL_FILL };
+enum { LIST_ALL, LIST_ANCHORS, LIST_REST }; /* of solid.glsl */
 
 enum { ITEMS_FRESH, ITEMS_QUEUED, ITEMS_REST };
 enum { LIGHT_POSITIONAL = 1, LIGHT_CASTS_SHADOWS = 2 };
@@ -58,7 +60,9 @@ typedef struct ControlBlock {
     uint32_t source; /* ITEMS_... */
     uint32_t items, share;
     uint32_t reading, writing;
-    uint32_t queued, left, solid, unresolved, beam_evaluations; /* counted by the kernels */
+    uint32_t value; /* SECONDARY_OCCLUSION or SECONDARY_SHADOW */
+    /* counted by the kernels: */
+    uint32_t queued, left, solid, anchors, rest, unresolved, beam_evaluations;
 } ControlBlock;
 
 /* Pixel of results.glsl, std430. */

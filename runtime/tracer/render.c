@@ -1,17 +1,14 @@
 /*
  * render.c: one frame.
  *
- * The picture is made in bands of rows that fit into modest buffers.  For each band and each
- * ray of its pixels the phases follow one another: primary rays, normals, materials, occlusion,
- * lights, and the sum.  Each phase is cut into slices of tiles, short enough that no watchdog
- * minds and an interruption is heard at once; how many tiles that is, is learned on the way, and
- * shows in nothing but the time.
+ * The picture is made in bands of rows that fit into modest buffers; phases.c makes one ray of
+ * each pixel of a band.
  */
 #include <math.h>
 #include <string.h>
 
+#include "runtime/tracer/phases.h"
 #include "runtime/tracer/picture.h"
-#include "runtime/tracer/renderer.h"
 #include "runtime/tracer/view.h"
 
 /* Pixels of a band: room for 80 MB of buffers, none larger than the smallest devices bind. */
@@ -29,26 +26,9 @@
 /* Steps of a pass of the queue: more leave lanes idle, fewer cost passes. */
 #define QUEUE_STEPS     16
 
-const char *const krs_phase_names[KRS_PHASE_COUNT] = {
-    "beams", "primary", "normals", "shadows", "occlusion", "shading", "resolve",
-};
-
 const char *const krs_trace_names[KRS_TRACE_COUNT] = {"default", "plain", "relaxed", "auto"};
 const char *const krs_schedule_names[KRS_SCHEDULE_COUNT] = {"default", "pixel", "refill", "queue"};
 const char *const krs_shadows_names[KRS_SHADOWS_COUNT] = {"soft", "area"};
-
-/* A render under way. */
-typedef struct Job {
-    KrsRendering    *rendering;
-    Gpu             *gpu;
-    KrsRenderOptions options; /* with nothing left to be defaulted */
-    KrsView          view;
-    FrameBlock       frame;
-    Kernel          *trace, *secondary;
-    KrsPicture      *picture;
-    double           done, share; /* of the whole: before this phase, and of it */
-    bool             interrupted;
-} Job;
 
 /* ---- What is asked for ---- */
 
@@ -178,7 +158,7 @@ static uint32_t rows_within(uint32_t width, uint64_t pixels)
    rows; 0 when there is no room at all. */
 static uint32_t make_room(Job *job)
 {
-    const KrsWindow *window = &job->options.crop;
+    const KrsWindow *window = &job->cover;
     for (uint64_t pixels = BAND_PIXELS; pixels >= BAND_PIXELS_MIN; pixels /= 2) {
         uint32_t rows = rows_within(window->width, pixels);
         rows = rows < window->height ? rows : window->height;
@@ -190,281 +170,6 @@ static uint32_t make_room(Job *job)
             return 0;
     }
     return 0;
-}
-
-/* ---- Slices ---- */
-
-/* A step through [0, count) that visits all and goes far each time, so that neighbouring tiles,
-   which cost alike, are spread over a device that deals out contiguous shares. */
-static uint32_t spread(const Gpu *gpu, uint32_t count)
-{
-    if (!gpu_is_cpu(gpu) || count < 3)
-        return 1;
-    for (uint32_t step = (uint32_t)(0.618 * count);; step++) {
-        uint32_t a = count, b = step;
-        while (b != 0) {
-            uint32_t rest = a % b;
-            a = b;
-            b = rest;
-        }
-        if (a == 1)
-            return step;
-    }
-}
-
-/* How many tiles to take next, after `tiles` took `ms`. */
-static uint32_t next_slice(uint32_t tiles, double ms, double aim)
-{
-    double factor = ms > 0 ? aim / ms : 4;
-    double next = tiles * fmin(fmax(factor, 0.1), 4);
-    return next < 1 ? 1 : next > 65535 ? 65535 : (uint32_t)next;
-}
-
-static bool report(Job *job, double within_phase)
-{
-    if (job->options.progress &&
-        !job->options.progress(job->options.user, job->done + job->share * within_phase)) {
-        job->interrupted = true;
-        gpu_refuse(job->gpu, KRS_INTERRUPTED, "interrupted");
-        return false;
-    }
-    return true;
-}
-
-static bool run_groups(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
-                       uint32_t tiles)
-{
-    uint32_t *at_once = &job->rendering->tiles_at_once[phase];
-    for (uint32_t first = 0; first < tiles;) {
-        uint32_t count = *at_once < tiles - first ? *at_once : tiles - first;
-        double   ms = 0;
-        work->first = first;
-        work->groups = count;
-        work->stride = spread(job->gpu, count);
-        if (!gpu_begin(job->gpu))
-            return false;
-        rendering_dispatch(job->rendering, kernel, job->rendering->band_set, work, sizeof *work,
-                           count);
-        if (!gpu_finish(job->gpu, &ms))
-            return false;
-        job->picture->stats.phase_ms[phase] += ms;
-        /* The last slice may be too small to learn much from. */
-        if (count == *at_once || ms > job->options.slice_ms)
-            *at_once = next_slice(count, ms, job->options.slice_ms);
-        first += count;
-        if (!report(job, (double)first / tiles))
-            return false;
-    }
-    return true;
-}
-
-/* Runs a kernel over items that all cost alike (pixels.glsl). */
-static bool run_all(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
-                    uint32_t items)
-{
-    ControlBlock *control = job->rendering->control.bytes;
-    control->items = items;
-    return run_groups(job, phase, kernel, work, (items + 63) / 64);
-}
-
-/* ---- The phases of one ray per pixel ---- */
-
-/* How trace.comp deals out its items: to so many lanes a group, from tiles of so many pixels a
-   side, to a lane so many; and how many steps a lane has in a dispatch. */
-typedef struct Dealing {
-    uint32_t lanes, side, share, steps;
-} Dealing;
-
-static Dealing dealing(const Job *job)
-{
-    uint32_t steps = job->options.steps_at_once;
-    if (job->options.schedule == KRS_SCHEDULE_REFILL)
-        return (Dealing){8, 32, 32 * 32 / 8, 8 * steps < MOST_TURNS ? 8 * steps : MOST_TURNS};
-    return (Dealing){64, 8, 1, steps};
-}
-
-/* Runs a kernel over items of which each takes the steps that it needs (schedule.glsl). */
-static bool run_items(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
-                      uint32_t items, Dealing deal)
-{
-    ControlBlock *control = job->rendering->control.bytes;
-    uint32_t      in_group = deal.lanes * deal.share;
-    control->items = items;
-    control->share = deal.share;
-    work->steps = deal.steps;
-    return run_groups(job, phase, kernel, work, (items + in_group - 1) / in_group);
-}
-
-static uint32_t tiles_touched(const WorkBlock *work, uint32_t side)
-{
-    uint32_t tiles = 1;
-    for (int i = 0; i < 2; i++)
-        tiles *= (work->corner[i] + work->extent[i] - 1) / side - work->corner[i] / side + 1;
-    return tiles;
-}
-
-/* Beams of all tiles, counted in the whole picture, that the band has a part of. */
-static bool march_beams(Job *job, WorkBlock *work)
-{
-    static const struct { uint32_t phase, side; } sizes[] = {{TRACE_BEAMS_32, 32},
-                                                             {TRACE_BEAMS_8, 8}};
-    ControlBlock *control = job->rendering->control.bytes;
-    Dealing       deal = dealing(job);
-    control->source = ITEMS_FRESH;
-    deal.share = deal.share < 8 ? deal.share : 8;
-    deal.steps = deal.share * MOST_BEAM_STEPS; /* none is saved */
-    for (int i = 0; i < 2; i++) {
-        control->phase = sizes[i].phase;
-        if (!run_items(job, KRS_PHASE_BEAMS, job->trace, work, tiles_touched(work, sizes[i].side),
-                       deal))
-            return false;
-        control->follow = 1;
-    }
-    return true;
-}
-
-/* First every pixel of the band, until all have been begun; then, pass by pass, the rays that
-   are not done. */
-static bool trace(Job *job, WorkBlock *work)
-{
-    ControlBlock *control = job->rendering->control.bytes;
-    Dealing       deal = dealing(job);
-    uint32_t      pixels = work->extent[0] * work->extent[1];
-    uint32_t      items = deal.side * deal.side;
-    for (int i = 0; i < 2; i++)
-        items *= (work->extent[i] + deal.side - 1) / deal.side;
-    control->phase = TRACE_RAYS;
-    control->source = ITEMS_FRESH;
-    control->queued = control->writing = 0;
-    for (double left = job->share;; left -= job->share) {
-        control->left = 0;
-        job->share = 0.9 * left; /* few rays need a second pass */
-        if (!run_items(job, KRS_PHASE_PRIMARY, job->trace, work, items, deal))
-            return false;
-        job->done += job->share;
-        if (control->left > 0) {
-            control->source = ITEMS_REST;
-            continue;
-        }
-        if (control->queued == 0)
-            return true;
-        control->source = ITEMS_QUEUED;
-        items = control->queued;
-        control->queued = 0;
-        control->reading = control->writing;
-        control->writing = pixels - control->reading;
-        deal.share = 1;
-        deal.steps = job->options.steps_at_once;
-    }
-}
-
-/* A phase of secondary.comp, about the pixels that see something. */
-static bool look_around(Job *job, KrsPhase phase, uint32_t secondary, WorkBlock *work)
-{
-    ControlBlock *control = job->rendering->control.bytes;
-    Dealing       deal = dealing(job);
-    deal.steps = MOST_TURNS;
-    while (deal.share > 8 && control->solid / (deal.lanes * deal.share) < 64)
-        deal.share /= 2; /* groups enough for every core of the device */
-    control->phase = secondary;
-    control->source = ITEMS_FRESH;
-    do {
-        control->left = 0;
-        if (!run_items(job, phase, job->secondary, work, control->solid, deal))
-            return false;
-        control->source = ITEMS_REST;
-    } while (control->left > 0);
-    return true;
-}
-
-static bool light_up(Job *job, WorkBlock *work)
-{
-    ControlBlock *control = job->rendering->control.bytes;
-    job->share /= (double)job->view.light_count;
-    for (size_t i = 0; i < job->view.light_count; i++, job->done += job->share) {
-        control->light = (uint32_t)i;
-        if (!look_around(job, KRS_PHASE_SHADOWS, SECONDARY_SHADOW, work))
-            return false;
-        control->phase = SHADE_ONE_LIGHT;
-        if (!run_all(job, KRS_PHASE_SHADING, &job->rendering->renderer->shade, work,
-                     control->solid))
-            return false;
-    }
-    return true;
-}
-
-/* The place of ray `index` within its pixel.  Ray 0 goes through the centre; the others follow
-   the R2 sequence (multiples of the powers of the plastic number, modulo 1), which fills the
-   pixel evenly however many there are, moved by the seed. */
-static void place_ray(uint32_t index, uint64_t seed, float offset[2])
-{
-    static const double step[2] = {0.75487766624669276, 0.56984029099805327};
-    for (int i = 0; i < 2; i++) {
-        uint64_t hash = seed * 2 + (uint64_t)i; /* splitmix64 */
-        hash = (hash ^ hash >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-        hash = (hash ^ hash >> 27) * UINT64_C(0x94d049bb133111eb);
-        hash ^= hash >> 31;
-        double moved = seed && index ? (double)(hash >> 11) / 9007199254740992.0 : 0;
-        double place = 0.5 + step[i] * index + moved;
-        offset[i] = (float)(place - floor(place));
-    }
-}
-
-/* The steps from rays to light, and their shares of the time, about. */
-typedef enum Step {
-    STEP_TRACE, STEP_BACKGROUND, STEP_NORMALS, STEP_MATERIAL, STEP_OCCLUSION, STEP_LIGHTS,
-    STEP_FINISH, STEP_COUNT
-} Step;
-static const double step_share[STEP_COUNT] = {0.5, 0.02, 0.1, 0.03, 0.1, 0.22, 0.03};
-
-static bool run_step(Job *job, Step step, WorkBlock *work)
-{
-    KrsRendering *r = job->rendering;
-    ControlBlock *control = r->control.bytes;
-    uint32_t      pixels = work->extent[0] * work->extent[1];
-    switch (step) {
-    case STEP_TRACE:
-        return trace(job, work);
-    case STEP_BACKGROUND:
-        control->solid = 0;
-        return run_all(job, KRS_PHASE_RESOLVE, &r->renderer->background, work, pixels);
-    case STEP_NORMALS:
-        return look_around(job, KRS_PHASE_NORMALS, SECONDARY_NORMALS, work);
-    case STEP_MATERIAL:
-        return run_all(job, KRS_PHASE_SHADING, &r->material, work, control->solid);
-    case STEP_OCCLUSION:
-        return look_around(job, KRS_PHASE_OCCLUSION, SECONDARY_OCCLUSION, work);
-    case STEP_LIGHTS:
-        return light_up(job, work);
-    case STEP_FINISH:
-        control->phase = SHADE_FINISH;
-        return run_all(job, KRS_PHASE_RESOLVE, &r->renderer->shade, work, control->solid);
-    case STEP_COUNT: break;
-    }
-    return false;
-}
-
-/* One ray of every pixel of the band; `done` and `share` of the job are its own. */
-static bool render_ray(Job *job, WorkBlock *work, uint32_t index)
-{
-    const double  whole = job->share;
-    ControlBlock *control = job->rendering->control.bytes;
-    place_ray(index, job->options.seed, work->offset);
-    control->ray = index;
-    control->first_ray = index == 0;
-    control->follow = 0;
-    job->share = 0; /* too short to be seen */
-    if (!job->options.no_beams && job->view.camera.projection != KRS_PANORAMA &&
-        !march_beams(job, work))
-        return false;
-    double done = job->done;
-    for (Step step = 0; step < STEP_COUNT; done += whole * step_share[step], step++) {
-        job->done = done;
-        job->share = whole * step_share[step];
-        if (!run_step(job, step, work))
-            return false;
-    }
-    return true;
 }
 
 /* ---- Bands ---- */
@@ -490,13 +195,26 @@ static bool clear_results(Job *job)
     return gpu_finish(job->gpu, &ms);
 }
 
+/* Takes the rows of a band over, as far as they are in the crop. */
+static void take_band(Job *job, uint32_t from, uint32_t rows)
+{
+    const KrsWindow *cover = &job->cover, *crop = &job->options.crop;
+    for (uint32_t y = cover->y + from; y < cover->y + from + rows; y++) {
+        if (y < crop->y || y >= crop->y + crop->height)
+            continue;
+        size_t row = (size_t)(y - cover->y - from) * cover->width + (crop->x - cover->x);
+        picture_take(job->picture, (PixelBlock *)job->rendering->band.fetched.bytes + row,
+                     (size_t)(y - crop->y) * crop->width, crop->width, job->options.samples);
+    }
+}
+
 static bool render_band(Job *job, uint32_t from, uint32_t rows)
 {
-    const KrsWindow *window = &job->options.crop;
+    const KrsWindow *cover = &job->cover;
     ControlBlock    *control = job->rendering->control.bytes;
     WorkBlock        work = {
-        .corner = {window->x, window->y + from},
-        .extent = {window->width, rows},
+        .corner = {cover->x, cover->y + from},
+        .extent = {cover->width, rows},
     };
     *control = (ControlBlock){
         .projection = (uint32_t)job->view.camera.projection,
@@ -506,19 +224,18 @@ static bool render_band(Job *job, uint32_t from, uint32_t rows)
     if (!clear_results(job))
         return false;
     for (uint32_t i = 0; i < job->options.samples; i++) {
-        double band_share = (double)rows / window->height;
+        double band_share = (double)rows / cover->height;
         job->share = band_share / job->options.samples;
-        job->done = (double)from / window->height + job->share * i;
-        if (!render_ray(job, &work, i))
+        job->done = (double)from / cover->height + job->share * i;
+        if (!phases_run(job, &work, i))
             return false;
         job->picture->stats.unresolved += control->unresolved;
         job->picture->stats.evaluations += control->beam_evaluations;
         control->unresolved = control->beam_evaluations = 0;
     }
-    if (!fetch(job, (uint64_t)rows * window->width))
+    if (!fetch(job, (uint64_t)rows * cover->width))
         return false;
-    picture_take(job->picture, job->rendering->band.fetched.bytes, (size_t)from * window->width,
-                 (size_t)rows * window->width, job->options.samples);
+    take_band(job, from, rows);
     return true;
 }
 
@@ -528,12 +245,12 @@ static bool warm_up(Job *job)
 {
     KrsRendering *r = job->rendering;
     Kernel       *kernels[] = {job->trace, job->secondary, &r->material, &r->renderer->background,
-                               &r->renderer->shade};
+                               &r->renderer->shade, job->sparse ? &r->renderer->fill : NULL};
     WorkBlock     work = {.groups = 1, .stride = 1};
     double        start = clock_ms(), ms = 0;
     *(ControlBlock *)r->control.bytes = (ControlBlock){.share = 1};
     for (size_t i = 0; i < sizeof kernels / sizeof kernels[0]; i++) {
-        if (kernels[i]->warm)
+        if (!kernels[i] || kernels[i]->warm)
             continue;
         if (!gpu_begin(job->gpu))
             return false;
@@ -547,17 +264,32 @@ static bool warm_up(Job *job)
     return true;
 }
 
+/* What a tile has in common must not depend on the crop, so whole tiles are traced. */
+static KrsWindow whole_tiles(const KrsRenderOptions *options)
+{
+    const KrsWindow *crop = &options->crop;
+    KrsWindow cover = {crop->x / TILE * TILE, crop->y / TILE * TILE, 0, 0};
+    uint32_t  right = (crop->x + crop->width + TILE - 1) / TILE * TILE;
+    uint32_t  bottom = (crop->y + crop->height + TILE - 1) / TILE * TILE;
+    cover.width = (right < options->width ? right : options->width) - cover.x;
+    cover.height = (bottom < options->height ? bottom : options->height) - cover.y;
+    return cover;
+}
+
 static bool render(Job *job)
 {
-    const KrsWindow *window = &job->options.crop;
-    uint32_t         rows = make_room(job);
+    job->sparse = !job->options.no_upsampling && job->options.shadows == KRS_SHADOWS_SOFT;
+    job->cover = whole_tiles(&job->options);
+    uint32_t rows = make_room(job);
+    if (rows == 0)
+        return false;
     job->trace = rendering_trace(job->rendering, job->options.trace, job->options.schedule);
     job->secondary = rendering_secondary(job->rendering, job->options.schedule);
-    if (rows == 0 || !job->trace || !job->secondary || !warm_up(job))
+    if (!job->trace || !job->secondary || !warm_up(job))
         return false;
     double start = clock_ms();
-    for (uint32_t from = 0; from < window->height; from += rows) {
-        uint32_t left = window->height - from;
+    for (uint32_t from = 0; from < job->cover.height; from += rows) {
+        uint32_t left = job->cover.height - from;
         if (!render_band(job, from, left < rows ? left : rows))
             return false;
     }

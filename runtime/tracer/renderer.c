@@ -75,13 +75,18 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
         return renderer->gpu.status;
     spirv_start();
     renderer->compiler_started = true;
-    const KernelSource background = {.file = "background.comp"}, shade = {.file = "shade.comp"};
-    if (!layouts_create(renderer) ||
-        !kernel_create(&renderer->gpu, &renderer->background, &background, renderer->layout,
-                       &renderer->spirv_ms, &renderer->pipeline_ms) ||
-        !kernel_create(&renderer->gpu, &renderer->shade, &shade, renderer->layout,
-                       &renderer->spirv_ms, &renderer->pipeline_ms))
+    if (!layouts_create(renderer))
         return renderer->gpu.status;
+    const struct { Kernel *kernel; const char *file; } kernels[] = {
+        {&renderer->background, "background.comp"},
+        {&renderer->fill, "fill.comp"},
+        {&renderer->shade, "shade.comp"},
+    };
+    for (size_t i = 0; i < sizeof kernels / sizeof kernels[0]; i++)
+        if (!kernel_create(&renderer->gpu, kernels[i].kernel,
+                           &(KernelSource){.file = kernels[i].file}, renderer->layout,
+                           &renderer->spirv_ms, &renderer->pipeline_ms))
+            return renderer->gpu.status;
     return KRS_OK;
 }
 
@@ -92,6 +97,7 @@ void krs_renderer_free(KrsRenderer *renderer)
     Gpu *gpu = &renderer->gpu;
     if (gpu->device) {
         kernel_destroy(gpu, &renderer->background);
+        kernel_destroy(gpu, &renderer->fill);
         kernel_destroy(gpu, &renderer->shade);
         vkDestroyPipelineLayout(gpu->device, renderer->layout, NULL);
         vkDestroyDescriptorSetLayout(gpu->device, renderer->frame_layout, NULL);

@@ -15,8 +15,8 @@ struct KrsRenderer {
     VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters */
     VkDescriptorSetLayout frame_layout; /* set 1: what frame.glsl declares */
     VkPipelineLayout      layout;       /* of every kernel */
-    Kernel                background, shade;
-    double                spirv_ms, pipeline_ms; /* of these two */
+    Kernel                background, fill, shade;
+    double                spirv_ms, pipeline_ms; /* of these three */
 };
 
 /* The buffers that hold a band of the picture. */

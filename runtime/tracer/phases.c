@@ -1,0 +1,322 @@
+/*
+ * phases.c: from rays to light.
+ *
+ * For each ray of the pixels of a band the phases follow one another: beams, primary rays,
+ * normals, materials, occlusion, lights, and the sum.  Each phase is cut into slices of
+ * workgroups, short enough that no watchdog minds and an interruption is heard at once; how many
+ * that is, is learned on the way, and shows in nothing but the time.
+ */
+#include "runtime/tracer/phases.h"
+
+#include <math.h>
+
+#define MOST_TURNS      16384 /* of a lane that takes item after item */
+#define MOST_BEAM_STEPS 256   /* of a beam, as in trace.comp */
+
+const char *const krs_phase_names[KRS_PHASE_COUNT] = {
+    "beams", "primary", "normals", "shadows", "occlusion", "shading", "resolve",
+};
+
+/* ---- Slices ---- */
+
+/* A step through [0, count) that visits all and goes far each time, so that neighbouring tiles,
+   which cost alike, are spread over a device that deals out contiguous shares. */
+static uint32_t spread(const Gpu *gpu, uint32_t count)
+{
+    if (!gpu_is_cpu(gpu) || count < 3)
+        return 1;
+    for (uint32_t step = (uint32_t)(0.618 * count);; step++) {
+        uint32_t a = count, b = step;
+        while (b != 0) {
+            uint32_t rest = a % b;
+            a = b;
+            b = rest;
+        }
+        if (a == 1)
+            return step;
+    }
+}
+
+/* How many tiles to take next, after `tiles` took `ms`. */
+static uint32_t next_slice(uint32_t tiles, double ms, double aim)
+{
+    double factor = ms > 0 ? aim / ms : 4;
+    double next = tiles * fmin(fmax(factor, 0.1), 4);
+    return next < 1 ? 1 : next > 65535 ? 65535 : (uint32_t)next;
+}
+
+/* A phase may turn out to have more parts than was thought, but progress never goes back. */
+static bool report(Job *job, double within_phase)
+{
+    job->shown = fmax(job->shown, fmin(job->done + job->share * within_phase, 1));
+    if (job->options.progress && !job->options.progress(job->options.user, job->shown)) {
+        gpu_refuse(job->gpu, KRS_INTERRUPTED, "interrupted");
+        return false;
+    }
+    return true;
+}
+
+static bool run_groups(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
+                       uint32_t tiles)
+{
+    uint32_t *at_once = &job->rendering->tiles_at_once[phase];
+    for (uint32_t first = 0; first < tiles;) {
+        uint32_t count = *at_once < tiles - first ? *at_once : tiles - first;
+        double   ms = 0;
+        work->first = first;
+        work->groups = count;
+        work->stride = spread(job->gpu, count);
+        if (!gpu_begin(job->gpu))
+            return false;
+        rendering_dispatch(job->rendering, kernel, job->rendering->band_set, work, sizeof *work,
+                           count);
+        if (!gpu_finish(job->gpu, &ms))
+            return false;
+        job->picture->stats.phase_ms[phase] += ms;
+        /* The last slice may be too small to learn much from. */
+        if (count == *at_once || ms > job->options.slice_ms)
+            *at_once = next_slice(count, ms, job->options.slice_ms);
+        first += count;
+        if (!report(job, (double)first / tiles))
+            return false;
+    }
+    return true;
+}
+
+/* Runs a kernel over items that all cost alike (pixels.glsl). */
+static bool run_all(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
+                    uint32_t items)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    control->items = items;
+    return run_groups(job, phase, kernel, work, (items + 63) / 64);
+}
+
+/* ---- The phases of one ray per pixel ---- */
+
+/* How trace.comp deals out its items: to so many lanes a group, from tiles of so many pixels a
+   side, to a lane so many; and how many steps a lane has in a dispatch. */
+typedef struct Dealing {
+    uint32_t lanes, side, share, steps;
+} Dealing;
+
+static Dealing dealing(const Job *job)
+{
+    uint32_t steps = job->options.steps_at_once;
+    if (job->options.schedule == KRS_SCHEDULE_REFILL)
+        return (Dealing){8, 32, 32 * 32 / 8, 8 * steps < MOST_TURNS ? 8 * steps : MOST_TURNS};
+    return (Dealing){64, 8, 1, steps};
+}
+
+/* Runs a kernel over items of which each takes the steps that it needs (schedule.glsl). */
+static bool run_items(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
+                      uint32_t items, Dealing deal)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    uint32_t      in_group = deal.lanes * deal.share;
+    control->items = items;
+    control->share = deal.share;
+    work->steps = deal.steps;
+    return run_groups(job, phase, kernel, work, (items + in_group - 1) / in_group);
+}
+
+static uint32_t tiles_touched(const WorkBlock *work, uint32_t side)
+{
+    uint32_t tiles = 1;
+    for (int i = 0; i < 2; i++)
+        tiles *= (work->corner[i] + work->extent[i] - 1) / side - work->corner[i] / side + 1;
+    return tiles;
+}
+
+/* Beams of all tiles, counted in the whole picture, that the band has a part of. */
+static bool march_beams(Job *job, WorkBlock *work)
+{
+    static const struct { uint32_t phase, side; } sizes[] = {{TRACE_BEAMS_32, 32},
+                                                             {TRACE_BEAMS_8, 8}};
+    ControlBlock *control = job->rendering->control.bytes;
+    Dealing       deal = dealing(job);
+    control->source = ITEMS_FRESH;
+    deal.share = deal.share < 8 ? deal.share : 8;
+    deal.steps = deal.share * MOST_BEAM_STEPS; /* none is saved */
+    for (int i = 0; i < 2; i++) {
+        control->phase = sizes[i].phase;
+        if (!run_items(job, KRS_PHASE_BEAMS, job->trace, work, tiles_touched(work, sizes[i].side),
+                       deal))
+            return false;
+        control->follow = 1;
+    }
+    return true;
+}
+
+/* First every pixel of the band, until all have been begun; then, pass by pass, the rays that
+   are not done. */
+static bool trace(Job *job, WorkBlock *work)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    Dealing       deal = dealing(job);
+    uint32_t      pixels = work->extent[0] * work->extent[1];
+    uint32_t      items = deal.side * deal.side;
+    for (int i = 0; i < 2; i++)
+        items *= (work->extent[i] + deal.side - 1) / deal.side;
+    control->phase = TRACE_RAYS;
+    control->source = ITEMS_FRESH;
+    control->queued = control->writing = 0;
+    for (double left = job->share;; left -= job->share) {
+        control->left = 0;
+        job->share = 0.9 * left; /* few rays need a second pass */
+        if (!run_items(job, KRS_PHASE_PRIMARY, job->trace, work, items, deal))
+            return false;
+        job->done += job->share;
+        if (control->left > 0) {
+            control->source = ITEMS_REST;
+            continue;
+        }
+        if (control->queued == 0)
+            return true;
+        control->source = ITEMS_QUEUED;
+        items = control->queued;
+        control->queued = 0;
+        control->reading = control->writing;
+        control->writing = pixels - control->reading;
+        deal.share = 1;
+        deal.steps = job->options.steps_at_once;
+    }
+}
+
+/* A phase of secondary.comp, about the pixels of a list. */
+static bool look_around(Job *job, KrsPhase phase, uint32_t secondary, WorkBlock *work,
+                        uint32_t list, uint32_t count)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    Dealing       deal = dealing(job);
+    deal.steps = MOST_TURNS;
+    while (deal.share > 8 && count / (deal.lanes * deal.share) < 64)
+        deal.share /= 2; /* groups enough for every core of the device */
+    control->phase = secondary;
+    control->source = ITEMS_FRESH;
+    control->reading = list * work->extent[0] * work->extent[1];
+    do {
+        control->left = 0;
+        if (!run_items(job, phase, job->secondary, work, count, deal))
+            return false;
+        control->source = ITEMS_REST;
+    } while (control->left > 0);
+    return true;
+}
+
+/* As much for a quarter of the pixels; the others are filled in where that cannot be seen, and
+   looked at where it could. */
+static bool look_sparsely(Job *job, KrsPhase phase, uint32_t secondary, WorkBlock *work)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    Kernel       *fill = &job->rendering->renderer->fill;
+    if (!job->sparse)
+        return look_around(job, phase, secondary, work, LIST_ALL, control->solid);
+    if (!look_around(job, phase, secondary, work, LIST_ANCHORS, control->anchors))
+        return false;
+    uint32_t tiles = 1;
+    for (int i = 0; i < 2; i++)
+        tiles *= (work->extent[i] + TILE - 1) / TILE;
+    control->value = secondary;
+    control->rest = 0;
+    control->phase = FILL_JUDGE;
+    if (!run_all(job, phase, fill, work, tiles))
+        return false;
+    control->phase = FILL_FILL;
+    return run_all(job, phase, fill, work, control->solid) &&
+           look_around(job, phase, secondary, work, LIST_REST, control->rest);
+}
+
+static bool light_up(Job *job, WorkBlock *work)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    job->share /= (double)job->view.light_count;
+    for (size_t i = 0; i < job->view.light_count; i++, job->done += job->share) {
+        control->light = (uint32_t)i;
+        if (!look_sparsely(job, KRS_PHASE_SHADOWS, SECONDARY_SHADOW, work))
+            return false;
+        control->phase = SHADE_ONE_LIGHT;
+        control->reading = 0;
+        if (!run_all(job, KRS_PHASE_SHADING, &job->rendering->renderer->shade, work,
+                     control->solid))
+            return false;
+    }
+    return true;
+}
+
+/* The place of ray `index` within its pixel.  Ray 0 goes through the centre; the others follow
+   the R2 sequence (multiples of the powers of the plastic number, modulo 1), which fills the
+   pixel evenly however many there are, moved by the seed. */
+static void place_ray(uint32_t index, uint64_t seed, float offset[2])
+{
+    static const double step[2] = {0.75487766624669276, 0.56984029099805327};
+    for (int i = 0; i < 2; i++) {
+        uint64_t hash = seed * 2 + (uint64_t)i; /* splitmix64 */
+        hash = (hash ^ hash >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+        hash = (hash ^ hash >> 27) * UINT64_C(0x94d049bb133111eb);
+        hash ^= hash >> 31;
+        double moved = seed && index ? (double)(hash >> 11) / 9007199254740992.0 : 0;
+        double place = 0.5 + step[i] * index + moved;
+        offset[i] = (float)(place - floor(place));
+    }
+}
+
+/* The steps from rays to light, and their shares of the time, about. */
+typedef enum Step {
+    STEP_TRACE, STEP_BACKGROUND, STEP_NORMALS, STEP_MATERIAL, STEP_OCCLUSION, STEP_LIGHTS,
+    STEP_FINISH, STEP_COUNT
+} Step;
+static const double step_share[STEP_COUNT] = {0.5, 0.02, 0.1, 0.03, 0.1, 0.22, 0.03};
+
+static bool run_step(Job *job, Step step, WorkBlock *work)
+{
+    KrsRendering *r = job->rendering;
+    ControlBlock *control = r->control.bytes;
+    uint32_t      pixels = work->extent[0] * work->extent[1];
+    switch (step) {
+    case STEP_TRACE:
+        return trace(job, work);
+    case STEP_BACKGROUND:
+        control->solid = control->anchors = control->reading = 0;
+        return run_all(job, KRS_PHASE_RESOLVE, &r->renderer->background, work, pixels);
+    case STEP_NORMALS:
+        return look_around(job, KRS_PHASE_NORMALS, SECONDARY_NORMALS, work, LIST_ALL,
+                           control->solid);
+    case STEP_MATERIAL:
+        control->reading = 0;
+        return run_all(job, KRS_PHASE_SHADING, &r->material, work, control->solid);
+    case STEP_OCCLUSION:
+        return look_sparsely(job, KRS_PHASE_OCCLUSION, SECONDARY_OCCLUSION, work);
+    case STEP_LIGHTS:
+        return light_up(job, work);
+    case STEP_FINISH:
+        control->phase = SHADE_FINISH;
+        control->reading = 0;
+        return run_all(job, KRS_PHASE_RESOLVE, &r->renderer->shade, work, control->solid);
+    case STEP_COUNT: break;
+    }
+    return false;
+}
+
+bool phases_run(Job *job, WorkBlock *work, uint32_t index)
+{
+    const double  whole = job->share;
+    ControlBlock *control = job->rendering->control.bytes;
+    place_ray(index, job->options.seed, work->offset);
+    control->ray = index;
+    control->first_ray = index == 0;
+    control->follow = 0;
+    job->share = 0; /* too short to be seen */
+    if (!job->options.no_beams && job->view.camera.projection != KRS_PANORAMA &&
+        !march_beams(job, work))
+        return false;
+    double done = job->done;
+    for (Step step = 0; step < STEP_COUNT; done += whole * step_share[step], step++) {
+        job->done = done;
+        job->share = whole * step_share[step];
+        if (!run_step(job, step, work))
+            return false;
+    }
+    return true;
+}
+

@@ -1,0 +1,27 @@
+/*
+ * phases.h: a render under way, and one ray of each pixel of a band.
+ */
+#ifndef KRS_PHASES_H
+#define KRS_PHASES_H
+
+#include "runtime/tracer/renderer.h"
+
+typedef struct Job {
+    KrsRendering    *rendering;
+    Gpu             *gpu;
+    KrsRenderOptions options; /* with nothing left to be defaulted */
+    KrsView          view;
+    FrameBlock       frame;
+    Kernel          *trace, *secondary;
+    bool             sparse; /* shadows and occlusion are found for a quarter of the pixels */
+    KrsWindow        cover;  /* the tiles that the crop has a part of: what is traced */
+    KrsPicture      *picture;
+    double           done, share; /* of the whole: before this phase, and of it */
+    double           shown;       /* the progress that was reported */
+} Job;
+
+/* Traces ray number `index` of every pixel of the band and adds what it sees to the results.
+   `done` and `share` of the job are its own. */
+bool phases_run(Job *job, WorkBlock *work, uint32_t index);
+
+#endif
