@@ -56,7 +56,8 @@ bool is_like(uint index, uint first)
 // Between the anchors around it: columns and rows 0, 2, 5 and 7.
 float interpolate(uvec2 corner, uvec2 within)
 {
-    uvec2 low = uvec2(0x75522200u) >> 4u * within & 7u, high = uvec2(0x77555220u) >> 4u * within & 7u;
+    uvec2 low = uvec2(0x75522200u) >> 4u * within & 7u;
+    uvec2 high = uvec2(0x77555220u) >> 4u * within & 7u;
     vec2  part = vec2(within - low) / vec2(max(high - low, 1u));
     uint  across = work.extent.x;
     uvec2 a = corner + low, b = corner + high;

@@ -13,7 +13,7 @@
  *     void save_item()                     stores how far it is
  *     void end_group(uint turns)           last of all, after so many steps
  *     const bool SAVES                     whether items are saved when the dispatch has had its
- *                                          steps; else those that are begun are brought to their end
+ *                                          steps; else those that are begun are finished
  *
  * A group deals its items out to its lanes in turn.  On lavapipe, where a branch skips nothing
  * and eight lanes go through a loop together, a lane that is done takes its next item while the
@@ -22,7 +22,10 @@
  * has one item.
  */
 // Whether a lane may go on with its item after so many steps.
-bool may_go_on(uint turns, uint allowed) { return item_wants_more() && (!SAVES || turns < allowed); }
+bool may_go_on(uint turns, uint allowed)
+{
+    return item_wants_more() && (!SAVES || turns < allowed);
+}
 
 const uint FRESH = 0u, QUEUED = 1u, REST = 2u; // control.source: where items come from
 

@@ -42,10 +42,10 @@ vec3 octahedron(uint i)
     return side * vec3(i >> 1u == 0u, i >> 1u == 1u, i >> 1u == 2u);
 }
 
-// A number in [0, 1) for a pixel, one of many that differ.
-float random(uint index, uint which)
+// A number in [0, 1) for a pixel, one of many that differ (PCG, O'Neill 2014).
+float random(uvec2 pixel, uint which)
 {
-    uint hash = index * 747796405u + which * 2891336453u + 12345u; // PCG (O'Neill 2014)
+    uint hash = (pixel.x + 16384u * pixel.y) * 747796405u + which * 2891336453u;
     hash = ((hash >> ((hash >> 28u) + 4u)) ^ hash) * 277803737u;
     return float((hash >> 22u ^ hash) >> 8u) / 16777216.0;
 }
@@ -74,8 +74,8 @@ void aim_at_light(vec3 normal)
         vec3 axis = toward / remote;
         vec3 aside = normalize(abs(axis.x) < 0.7 ? vec3(0.0, axis.z, -axis.y)
                                                  : vec3(-axis.z, 0.0, axis.x));
-        vec2 seed = vec2(random(place.index, 2u * control.light),
-                         random(place.index, 2u * control.light + 1u));
+        vec2 seed = vec2(random(place.pixel, 2u * control.light + 1u),
+                         random(place.pixel, 2u * control.light + 2u));
         vec2 at = radius * disc_point(seed);
         toward += at.x * aside + at.y * cross(axis, aside);
         sharpness = INFINITE;

@@ -18,7 +18,8 @@ bool is_anchor(uvec2 pixel)
 
 // The ray of a pixel of the list, and where it hits.
 struct Place {
-    uint  index;     // of the pixel
+    uvec2 pixel;
+    uint  index;     // of the pixel in the band
     vec3  position;
     vec3  direction; // of the ray, unit
     float width;     // of a pixel there
@@ -30,10 +31,10 @@ Place find_place_of(uint index)
 {
     Place place;
     place.index = index;
-    uvec2 pixel = work.corner + find_cell(place.index, work.extent.x);
+    place.pixel = work.corner + find_cell(index, work.extent.x);
     vec3  origin;
     float base, slope;
-    find_ray(vec2(pixel) + work.offset, origin, place.direction, base, slope);
+    find_ray(vec2(place.pixel) + work.offset, origin, place.direction, base, slope);
     Ray ray = find_end(place.index);
     place.position = origin + ray.t * place.direction;
     place.width = base + slope * ray.t;

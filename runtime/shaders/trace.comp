@@ -192,7 +192,8 @@ void take_distance(float distance)
     float least = is_ray ? ROUNDING * (rounding + at)
                          : (WIDER - 1.0) * (width.x + width.y * at);
     float doubtful = march.gap - march.room; // as long as may hide something
-    if (march.fate == CLOSING || (room <= least && (doubtful <= frame.error * pixel + open || !is_ray))) {
+    bool  ends_here = room <= least && (doubtful <= frame.error * pixel + open || !is_ray);
+    if (ends_here || march.fate == CLOSING) {
         if (is_ray)
             close_in(at, room);
         else

@@ -173,13 +173,16 @@ static bool trace(Job *job, WorkBlock *work)
         }
         if (control->queued == 0)
             return true;
+        /* Each pass twice as long, so that they are few even for the longest rays. */
+        deal.steps = control->source != ITEMS_QUEUED ? job->options.steps_at_once
+                   : deal.steps < MOST_TURNS / 2     ? 2 * deal.steps
+                                                     : MOST_TURNS;
         control->source = ITEMS_QUEUED;
         items = control->queued;
         control->queued = 0;
         control->reading = control->writing;
         control->writing = pixels - control->reading;
         deal.share = 1;
-        deal.steps = job->options.steps_at_once;
     }
 }
 

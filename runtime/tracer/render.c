@@ -53,7 +53,7 @@ static bool settle_options(Job *job)
     o->samples = first_of(o->samples, image->samples, 1);
     o->planes = first_of(o->planes, 0, KRS_PLANE_ALL);
     o->most_steps = first_of(o->most_steps, 0, MOST_STEPS);
-    renderer_choose(job->rendering->renderer, &o->trace, &o->schedule);
+    rendering_choose(job->rendering, &o->trace, &o->schedule);
     o->steps_at_once =
         first_of(o->steps_at_once, 0, o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
     o->error = o->error != 0 ? o->error : image->error != 0 ? image->error : 0.25;

@@ -206,12 +206,19 @@ static bool create_kernel(KrsRendering *rendering, Kernel *kernel, const char *f
                          &rendering->spirv_ms, &rendering->pipeline_ms);
 }
 
-void renderer_choose(const KrsRenderer *renderer, KrsTrace *trace, KrsSchedule *schedule)
+/* Where a distance costs less than this, dealing items out to lanes costs more than it gains. */
+#define FLOPS_WORTH_REFILL 600
+
+void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule)
 {
+    bool software = gpu_is_cpu(&rendering->renderer->gpu);
+    bool heavy = rendering->program->flops >= FLOPS_WORTH_REFILL;
     if (*trace == KRS_TRACE_DEFAULT)
         *trace = KRS_TRACE_AUTO;
     if (*schedule == KRS_SCHEDULE_DEFAULT)
-        *schedule = gpu_is_cpu(&renderer->gpu) ? KRS_SCHEDULE_REFILL : KRS_SCHEDULE_QUEUE;
+        *schedule = !software ? KRS_SCHEDULE_QUEUE
+                  : heavy     ? KRS_SCHEDULE_REFILL
+                              : KRS_SCHEDULE_PIXEL;
 }
 
 /* A queue is the kernel of pixels with fewer steps. */
@@ -249,7 +256,7 @@ static bool kernels_create(KrsRendering *rendering)
 {
     KrsTrace    trace = KRS_TRACE_DEFAULT;
     KrsSchedule schedule = KRS_SCHEDULE_DEFAULT;
-    renderer_choose(rendering->renderer, &trace, &schedule);
+    rendering_choose(rendering, &trace, &schedule);
     return rendering_trace(rendering, trace, schedule) &&
            rendering_secondary(rendering, schedule) &&
            create_kernel(rendering, &rendering->material, "material.comp", NULL);
@@ -283,11 +290,11 @@ void krs_rendering_free(KrsRendering *rendering)
     if (!rendering)
         return;
     Gpu    *gpu = &rendering->renderer->gpu;
-    Buffer *buffers[] = {&rendering->parameters, &rendering->frame, &rendering->control, &rendering->lights,
-                         &rendering->band.ends, &rendering->band.fates, &rendering->band.hits,
-                         &rendering->band.results, &rendering->band.fetched,
-                         &rendering->band.queue, &rendering->band.taken,
-                         &rendering->points, &rendering->answers};
+    Band   *band = &rendering->band;
+    Buffer *buffers[] = {&rendering->parameters, &rendering->frame, &rendering->control,
+                         &rendering->lights, &rendering->points, &rendering->answers,
+                         &band->ends, &band->fates, &band->hits, &band->results, &band->fetched,
+                         &band->queue, &band->taken};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         buffer_destroy(gpu, buffers[i]);
     kernel_destroy(gpu, &rendering->material);

@@ -47,8 +47,9 @@ struct KrsRendering {
    compiled when they are first asked for.  NULL with the failure noted. */
 Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule);
 Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule);
-/* Puts what is fastest on this device where the default is asked for. */
-void renderer_choose(const KrsRenderer *renderer, KrsTrace *trace, KrsSchedule *schedule);
+/* Puts what `make bench` found fastest for such a scene on such a device where the default is
+   asked for. */
+void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule);
 /* Copies the values of the frame's parameters to the device. */
 bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame);
 /* Copies the lights of a frame to the device. */
