@@ -140,27 +140,15 @@ static Node simplify_mul(const Step *s)
     return NODE_NONE;
 }
 
-/* A power of two has an exact reciprocal. */
-static bool powers_of_two(const Step *s, Node node)
-{
-    const Expr *e = expr(s, node);
-    for (uint32_t i = 0; e->op == OP_CONSTANT && i < components(e->type); i++) {
-        int exponent;
-        if (fabs(frexp(e->number[i], &exponent)) != 0.5 || abs(exponent) > 500)
-            return false;
-    }
-    return e->op == OP_CONSTANT;
-}
-
+/* Divisions cost more than products, and no driver may make one of the other. */
 static Node simplify_div(const Step *s)
 {
     Node a = s->o[0], b = s->o[1];
     RULE(equals(s, b, 1), a);
-    if (!powers_of_two(s, b))
+    if (!constant(s, b) || equals(s, b, 0))
         return NODE_NONE;
-    Node one        = graph_number(s->graph, 1);
-    Node reciprocal = op2(s, OP_div, one, b);
-    return op2(s, OP_mul, a, reciprocal);
+    Node reciprocal = gathered(s, OP_div, graph_number(s->graph, 1), b);
+    return reciprocal == NODE_NONE ? NODE_NONE : op2(s, OP_mul, a, reciprocal);
 }
 
 static Node simplify_neg(const Step *s)
@@ -230,10 +218,31 @@ static Node simplify_extremum(const Step *s)
     return NODE_NONE;
 }
 
+/* From constant to constant by k x + b is a constant times x and another. */
+static Node simplify_ramp(const Step *s)
+{
+    Node from = s->o[0], x = s->o[2];
+    Node span = op2(s, OP_sub, s->o[1], from), steep = span;
+    if (is(s, x, OP_add) && constant(s, operand(s, x, 1))) {
+        from = op2(s, OP_add, from, op2(s, OP_mul, span, operand(s, x, 1)));
+        x = operand(s, x, 0);
+    }
+    if (is(s, x, OP_mul) && constant(s, operand(s, x, 1))) {
+        steep = gathered(s, OP_mul, span, operand(s, x, 1));
+        x = operand(s, x, 0);
+    }
+    if (steep == NODE_NONE || !constant(s, from))
+        return NODE_NONE;
+    return op2(s, OP_add, op2(s, OP_mul, x, steep), from);
+}
+
 static Node simplify_mix(const Step *s)
 {
     RULE(equals(s, s->o[2], 0) && s->finite[1], s->o[0]);
     RULE(equals(s, s->o[2], 1) && s->finite[0], s->o[1]);
+    if (s->type == TYPE_FLOAT && constant(s, s->o[0]) && constant(s, s->o[1]) && s->finite[0] &&
+        s->finite[1])
+        return simplify_ramp(s);
     return NODE_NONE;
 }
 

@@ -1,6 +1,9 @@
 /*
  * spirv.c: GLSL to SPIR-V, and every module through the SPIR-V validator.
  */
+#include <glslang/build_info.h>
+#include <pthread.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,8 +13,50 @@
 #include "compiler/shader/glslang_border.h"
 #include "compiler/shader/spirv.h"
 
-void spirv_start(void) { border_start(); }
-void spirv_stop(void) { border_stop(); }
+/* glslang belongs to the process, and cannot be started by one thread while another uses it. */
+static struct {
+    pthread_mutex_t lock;
+    size_t          users;
+    bool            runs;
+} glslang = {.lock = PTHREAD_MUTEX_INITIALIZER};
+
+void spirv_start(void)
+{
+    pthread_mutex_lock(&glslang.lock);
+    glslang.users++;
+    pthread_mutex_unlock(&glslang.lock);
+}
+
+void spirv_stop(void)
+{
+    pthread_mutex_lock(&glslang.lock);
+    if (--glslang.users == 0 && glslang.runs) {
+        border_stop();
+        glslang.runs = false;
+    }
+    pthread_mutex_unlock(&glslang.lock);
+}
+
+static void start_when_needed(void)
+{
+    pthread_mutex_lock(&glslang.lock);
+    if (!glslang.runs)
+        border_start();
+    glslang.runs = true;
+    pthread_mutex_unlock(&glslang.lock);
+}
+
+#define WORD(number)  #number
+#define WORDS(number) WORD(number)
+
+/* It is linked statically, so its version is known when compiling. */
+const char *spirv_glslang_version(void)
+{
+    return WORDS(GLSLANG_VERSION_MAJOR) "." WORDS(GLSLANG_VERSION_MINOR) "."
+           WORDS(GLSLANG_VERSION_PATCH);
+}
+
+const char *spirv_tools_version(void) { return spvSoftwareVersionString(); }
 
 /* The log, headed by the shader's name; takes over `words_of_tool`. */
 static char *name_log(const char *entry, const char *tool, char *words_of_tool)
@@ -48,6 +93,7 @@ static KrsStatus validate(const char *entry, const uint32_t *words, size_t word_
 KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, size_t *word_count,
                         char **log)
 {
+    start_when_needed();
     char        *refusal = NULL;
     BorderResult result  = border_compile(glsl, words, word_count, &refusal);
     *log                 = NULL;

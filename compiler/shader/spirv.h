@@ -13,8 +13,13 @@ KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, s
                         char **log);
 /* SPIR-V as assembly text (malloc'ed), or NULL when it is none or there is no memory. */
 char *spirv_disassemble(const uint32_t *words, size_t word_count);
-/* Once, before the first spirv_compile of a process and after the last. */
+/* Around every spirv_compile, in pairs that may nest and may stand in different threads: between
+   them glslang keeps the tables that the first spirv_compile sets up, which takes it longer than
+   a kernel does.  spirv_start itself costs nothing. */
 void spirv_start(void);
 void spirv_stop(void);
+/* Versions of the tools: what a shader is made by. */
+const char *spirv_glslang_version(void);
+const char *spirv_tools_version(void);
 
 #endif
