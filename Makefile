@@ -2,6 +2,7 @@
 # make demo       set up, build, render the examples' highlights to build/demo/
 # make test       set up, build, run every test; the last line is `N passed, N failed`
 # make sanitize   the same programs under ASan and UBSan, in build/asan/
+# make bench      measures, writes bench/results/; bench-quick: only whether it can
 # make fuzz       the front end under libFuzzer for FUZZ_SECONDS (30)
 # make lint       kernels by themselves, shell scripts
 # make bless      writes the expected text of tests/errors/; read the difference
@@ -16,7 +17,7 @@ CLANG   ?= clang-14
 BASE     := $(addprefix compiler/base/, arena.c text.c source.c diag.c diag_text.c)
 FRONT    := $(addprefix compiler/front/, lexer.c syntax.c parser.c parse_expression.c parse.c names.c)
 GRAPH    := $(addprefix compiler/graph/, graph.c simplify.c range.c rules.c facts.c parity.c evaluate.c print.c)
-GEOMETRY := $(addprefix compiler/geometry/, box.c arithmetic.c arguments.c builtins.c functions.c \
+GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c arithmetic.c arguments.c builtins.c functions.c \
                 expression.c similarity.c make.c declare.c methods.c looks.c scope.c statements.c print.c lower.c)
 SHADER   := $(addprefix compiler/shader/, emit.c spirv.c)
 BORDER   := compiler/shader/glslang_border.cpp
@@ -32,7 +33,7 @@ EXAMPLES := $(sort $(wildcard examples/*.krs))
 STYLE    := -std=c17 -D_GNU_SOURCE -Wall -Wextra -Wpedantic -Wshadow -Werror -I. -MMD -MP -pthread
 LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLCompiler -lSPIRV \
             -lSPVRemapper -lglslang-default-resource-limits -lSPIRV-Tools-opt -lSPIRV-Tools \
-            -lOpenEXRCore-3_1 -lpng -lvulkan -lstdc++ -lm -pthread
+            -lOpenEXRCore-3_1 -lpng -lxxhash -lvulkan -lstdc++ -lm -pthread
 
 COMPILER := $(BASE) $(FRONT) $(GRAPH) $(GEOMETRY) $(SHADER) $(DOORSTEP)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
@@ -65,6 +66,7 @@ $(B)/embed: compiler/base/embed/embed.c
 	@$(CC) $(STYLE) -O1 -o $@ $<
 
 include tests/tests.mk
+include bench/bench.mk
 
 # ---- what a newcomer types ----
 demo: deps

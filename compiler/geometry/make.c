@@ -7,6 +7,8 @@
 
 #include <math.h>
 
+#include "compiler/geometry/reach.h"
+
 const BlendInfo blend_info[BLEND_COUNT] = {
 #define BLEND(name, spelling, op, slope, bulge, meaning) {spelling, OP_##op, slope, bulge},
 #include "compiler/geometry/blends.def"
@@ -260,12 +262,50 @@ const Shape *make_paint(Elaboration *e, const Shape *shape, const Material *mate
 
 /* ---- sequences ---- */
 
+/* A number that does not move in its range, or none. */
+static bool read_number(Range range, double *number)
+{
+    *number = 0.5 * (range.low + range.high);
+    return range.high - range.low <= 1e-12 * (1 + fabs(*number));
+}
+
+/* The numbers of a stage; false when some are not known when compiling. */
+static bool read_stage(Elaboration *e, const Shape *krs, const Stage *stage, ReachStage *reach)
+{
+    bool known = true;
+    if (stage->kind == STAGE_KERNEL) {
+        reach->kind   = REACH_KERNEL;
+        reach->kernel = krs->children[stage->kernel]->box;
+    } else if (stage->kind == STAGE_REFLECT) {
+        reach->kind = REACH_REFLECT;
+        for (uint32_t i = 0; i < 3; i++)
+            known = read_number(node_range(e, stage->normal, i), &reach->normal[i]) && known;
+        known = read_number(node_range(e, stage->offset, 0), &reach->offset) && known;
+    } else {
+        double scale;
+        reach->kind = REACH_MAP;
+        known = read_number(node_range(e, stage->map.scale, 0), &scale);
+        for (uint32_t i = 0; i < 3; i++) {
+            for (uint32_t j = 0; j < 3; j++) {
+                double *entry = &reach->rows[i][j];
+                known = read_number(node_range(e, stage->map.rows[i], j), entry) && known;
+                *entry *= scale;
+            }
+            known = read_number(node_range(e, stage->map.shift, i), &reach->shift[i]) && known;
+        }
+    }
+    return known;
+}
+
 /* Boxes and balls grow along the sequence side by side; each is tight where the other is not
-   (turned mirrors blow boxes up), so each is cut to the other's size at every level. */
+   (turned mirrors blow boxes up), so each is cut to the other's size at every level.  While all
+   numbers are known, a search then finds how far the set really reaches. */
 static Box bound_sequence(Elaboration *e, const Shape *krs)
 {
-    Box  box  = box_empty;
-    Ball ball = ball_around(box_empty);
+    ReachStage *reach = arena_new_array(e->arena, ReachStage, krs->stage_count + 1);
+    bool        known = true;
+    Box         box   = box_empty;
+    Ball        ball  = ball_around(box_empty);
     for (uint32_t i = 0; i < krs->stage_count; i++) {
         const Stage *stage = &krs->stages[i];
         if (stage->kind == STAGE_KERNEL) {
@@ -287,6 +327,13 @@ static Box bound_sequence(Elaboration *e, const Shape *krs)
         Ball tighter = ball_around(box);
         if (tighter.radius < ball.radius)
             ball = tighter;
+        known         = known && read_stage(e, krs, stage, &reach[i]);
+        reach[i].box  = box;
+        reach[i].ball = ball;
+        if (known && stage->kind == STAGE_REFLECT)
+            reach_tighten(reach, i + 1);
+        box  = reach[i].box;
+        ball = reach[i].ball;
     }
     return box;
 }
