@@ -8,10 +8,15 @@
 set -u
 
 seconds=${KRS_TEST_SECONDS:-120}
-output=$(mktemp) || exit 1
-trap 'rm -f "$output"' EXIT
+folder=$(mktemp -d) || exit 1
+output=$folder/output
+trap 'rm -rf "$folder"' EXIT
 trap 'exit 130' INT TERM
 export CMOCKA_MESSAGE_OUTPUT=TAP
+
+# The command keeps shaders in a folder of the tests; the driver goes on using the user's.
+export MESA_SHADER_CACHE_DIR="${MESA_SHADER_CACHE_DIR:-${XDG_CACHE_HOME:-${HOME:-$folder}/.cache}}"
+export XDG_CACHE_HOME="$folder/caches"
 
 # Why a finished program counts as a failure beyond its `not ok` lines; nothing if it does not.
 complaint() { # status passed failed planned

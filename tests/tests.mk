@@ -3,15 +3,15 @@
 # Every test speaks TAP; tests/run.sh counts.  The compiler's tests run a second time under the
 # address and undefined-behaviour sanitizers, and everything compiles under clang as well.
 
-ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c)
-UNIT        := front film tracer writer memory validate frame
+ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c)
+UNIT        := front film tracer methods writer memory validate frame cache compiled
 PROPERTY    := ops graph slope parity
-ORACLES     := self primitives krs_expand operators device picture
+ORACLES     := self primitives krs_expand operators device picture coverage
 FUZZ        := sentences
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
-SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/validate tests/unit/memory tests/unit/frame tests/property/ops \
+SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/validate tests/unit/memory tests/unit/cache tests/unit/frame tests/property/ops \
                tests/property/graph tests/property/slope tests/property/parity tests/oracle/primitives tests/oracle/krs_expand tests/oracle/operators \
                tests/fuzz/sentences
 SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/editors.sh tests/lint.sh \

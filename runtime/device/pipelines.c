@@ -52,13 +52,13 @@ void pipelines_open(Gpu *gpu)
     gpu_release(gpu, bytes);
 }
 
-/* lavapipe's data is a header and nothing else, so nothing is written for it: Mesa keeps its
-   pipelines by itself. */
+/* lavapipe's data is a header and nothing else, which does not fit, so nothing is written: Mesa
+   keeps its pipelines by itself. */
 static void save(Gpu *gpu)
 {
     size_t length = 0;
     if (vkGetPipelineCacheData(gpu->device, gpu->pipelines, &length, NULL) != VK_SUCCESS ||
-        length <= gpu->pipelines_loaded || length <= sizeof(VkPipelineCacheHeaderVersionOne))
+        length <= gpu->pipelines_loaded)
         return;
     Gpu   quiet = {.allocator = gpu->allocator}; /* takes the note when there is no memory */
     void *bytes = gpu_alloc(&quiet, length, 1, "save the pipelines");

@@ -1,4 +1,4 @@
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
  * background.comp: ends the pixels whose ray hits nothing: the sky, and the lights that have a

@@ -1,4 +1,4 @@
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
  * fill.comp: shadow or occlusion of the pixels between anchors, where that cannot be seen.

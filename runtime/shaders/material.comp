@@ -1,4 +1,4 @@
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
  * material.comp: what is at each hit: colour, coat, identity.

@@ -1,4 +1,4 @@
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : enable
 #extension GL_KHR_shader_subgroup_vote : enable
 /*
@@ -8,6 +8,10 @@
  * The three phases are dispatches of one kernel, so that the scene is compiled once for them
  * and its distance stands once, in one loop.  A dispatch of the last phase is about one light.
  */
+#ifndef TRACE // which variant: the renderer says so; this one suits every device
+#define TRACE 3u
+#define REFILL 0
+#endif
 #include "scene.glsl"
 #include "frame.glsl"
 #include "solid.glsl"

@@ -1,4 +1,4 @@
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
  * shade.comp: the light that a hit sends along its ray: of one light, by a dispatch for each;

@@ -1,4 +1,4 @@
-#version 450
+#version 440
 #extension GL_GOOGLE_include_directive : enable
 #extension GL_KHR_shader_subgroup_vote : enable
 #extension GL_KHR_shader_subgroup_ballot : enable
@@ -20,6 +20,10 @@
  * tiles of 8x8; they count from the corner of the picture, whatever the crop and the band, so that
  * equal pixels come out of all of them.
  */
+#ifndef TRACE // which variant: the renderer says so; this one suits every device
+#define TRACE 3u
+#define REFILL 0
+#endif
 #include "scene.glsl"
 #include "frame.glsl"
 

@@ -75,18 +75,15 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
         return renderer->gpu.status;
     spirv_start();
     renderer->compiler_started = true;
-    if (!layouts_create(renderer))
-        return renderer->gpu.status;
-    const struct { Kernel *kernel; const char *file; } kernels[] = {
-        {&renderer->background, "background.comp"},
-        {&renderer->fill, "fill.comp"},
-        {&renderer->shade, "shade.comp"},
+    const KernelRequest kernels[] = {
+        {&renderer->background, {.file = "background.comp"}},
+        {&renderer->fill, {.file = "fill.comp"}},
+        {&renderer->shade, {.file = "shade.comp"}},
     };
-    for (size_t i = 0; i < sizeof kernels / sizeof kernels[0]; i++)
-        if (!kernel_create(&renderer->gpu, kernels[i].kernel,
-                           &(KernelSource){.file = kernels[i].file}, renderer->layout,
-                           &renderer->spirv_ms, &renderer->pipeline_ms))
-            return renderer->gpu.status;
+    if (!layouts_create(renderer) ||
+        !kernel_create_all(&renderer->gpu, kernels, sizeof kernels / sizeof kernels[0],
+                           renderer->layout, &renderer->spirv_ms, &renderer->pipeline_ms))
+        return renderer->gpu.status;
     return KRS_OK;
 }
 
@@ -198,14 +195,6 @@ static bool buffers_create(KrsRendering *rendering)
     return true;
 }
 
-static bool create_kernel(KrsRendering *rendering, Kernel *kernel, const char *file,
-                          const char *defines)
-{
-    KernelSource source = {file, rendering->program->glsl, defines};
-    return kernel_create(&rendering->renderer->gpu, kernel, &source, rendering->renderer->layout,
-                         &rendering->spirv_ms, &rendering->pipeline_ms);
-}
-
 /* Where a distance costs less than this, dealing items out to lanes costs more than it gains. */
 #define FLOPS_WORTH_REFILL 600
 
@@ -227,13 +216,26 @@ static KrsSchedule schedule_of_kernel(KrsSchedule schedule)
     return schedule == KRS_SCHEDULE_QUEUE ? KRS_SCHEDULE_PIXEL : schedule;
 }
 
-static Kernel *find_variant(KrsRendering *rendering, Kernel *kernel, const char *file,
-                                  KrsTrace trace, KrsSchedule schedule)
-{
+typedef struct Variant {
     char defines[64];
-    snprintf(defines, sizeof defines, "#define TRACE %du\n#define REFILL %d\n", (int)trace,
-             schedule == KRS_SCHEDULE_REFILL);
-    if (!kernel->pipeline && !create_kernel(rendering, kernel, file, defines))
+} Variant;
+
+static Variant name_variant(KrsTrace trace, KrsSchedule schedule)
+{
+    Variant variant;
+    snprintf(variant.defines, sizeof variant.defines, "#define TRACE %du\n#define REFILL %d\n",
+             (int)trace, schedule == KRS_SCHEDULE_REFILL);
+    return variant;
+}
+
+static Kernel *find_variant(KrsRendering *rendering, Kernel *kernel, const char *file,
+                            KrsTrace trace, KrsSchedule schedule)
+{
+    Variant      variant = name_variant(trace, schedule);
+    KernelSource source = {file, rendering->program->glsl, variant.defines};
+    if (!kernel->pipeline &&
+        !kernel_create(&rendering->renderer->gpu, kernel, &source, rendering->renderer->layout,
+                       &rendering->spirv_ms, &rendering->pipeline_ms))
         return NULL;
     return kernel;
 }
@@ -252,14 +254,24 @@ Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule)
                         KRS_TRACE_PLAIN, schedule);
 }
 
+/* Those that a picture by default needs. */
 static bool kernels_create(KrsRendering *rendering)
 {
+    const char *scene = rendering->program->glsl;
     KrsTrace    trace = KRS_TRACE_DEFAULT;
     KrsSchedule schedule = KRS_SCHEDULE_DEFAULT;
     rendering_choose(rendering, &trace, &schedule);
-    return rendering_trace(rendering, trace, schedule) &&
-           rendering_secondary(rendering, schedule) &&
-           create_kernel(rendering, &rendering->material, "material.comp", NULL);
+    schedule = schedule_of_kernel(schedule);
+    Variant       primary = name_variant(trace, schedule);
+    Variant       plain = name_variant(KRS_TRACE_PLAIN, schedule);
+    KernelRequest kernels[] = {
+        {&rendering->trace[trace][schedule], {"trace.comp", scene, primary.defines}},
+        {&rendering->secondary[schedule], {"secondary.comp", scene, plain.defines}},
+        {&rendering->material, {"material.comp", scene, NULL}},
+    };
+    return kernel_create_all(&rendering->renderer->gpu, kernels,
+                             sizeof kernels / sizeof kernels[0], rendering->renderer->layout,
+                             &rendering->spirv_ms, &rendering->pipeline_ms);
 }
 
 KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRendering **out)

@@ -18,6 +18,7 @@
 #include <fcntl.h>
 #include <math.h>
 #include <png.h>
+#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -158,7 +159,7 @@ static void halves_of_extreme_numbers(void **state)
 
 /* A picture with a channel of each type, cropped, its colours interleaved. */
 
-enum { WIDTH = 37, HEIGHT = 41, CROP_X = 5, CROP_Y = 7, FULL_WIDTH = 50, FULL_HEIGHT = 60 };
+enum { WIDTH = 37, HEIGHT = 203, CROP_X = 5, CROP_Y = 7, FULL_WIDTH = 50, FULL_HEIGHT = 220 };
 
 typedef struct Sample {
     float    color[WIDTH * HEIGHT][4];
@@ -293,6 +294,45 @@ static void exr_reads_back(void **state)
     free(depth);
     free(id);
     exr_finish(&context);
+    free(sample);
+}
+
+static size_t read_file(const char *path, char *bytes, size_t size)
+{
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    size_t length = fread(bytes, 1, size, file);
+    fclose(file);
+    assert_true(length < size);
+    return length;
+}
+
+/* With one processor there is one worker; the file must be that of any number. */
+static void workers_are_not_seen(void **state)
+{
+    enum { SIZE = 1 << 20 };
+    (void)state;
+    Sample   *sample = sample_new();
+    char     *alone = malloc(SIZE), *together = malloc(SIZE);
+    cpu_set_t all, one;
+    int       processor = 0;
+    assert_true(alone && together);
+    assert_int_equal(sched_getaffinity(0, sizeof all, &all), 0);
+    while (!CPU_ISSET(processor, &all))
+        processor++;
+    CPU_ZERO(&one);
+    CPU_SET(processor, &one);
+    assert_int_equal(sched_setaffinity(0, sizeof one, &one), 0);
+    assert_int_equal(write_sample(sample, EXR, "alone.exr"), KRS_OK);
+    assert_int_equal(sched_setaffinity(0, sizeof all, &all), 0);
+    size_t length = read_file("alone.exr", alone, SIZE);
+    for (int i = 0; i < 20; i++) {
+        assert_int_equal(write_sample(sample, EXR, "together.exr"), KRS_OK);
+        assert_int_equal(read_file("together.exr", together, SIZE), length);
+        assert_memory_equal(together, alone, length);
+    }
+    free(together);
+    free(alone);
     free(sample);
 }
 
@@ -484,6 +524,7 @@ int main(void)
         cmocka_unit_test(halves_round_to_nearest_even),
         cmocka_unit_test(halves_of_extreme_numbers),
         IN_FOLDER(exr_reads_back),
+        IN_FOLDER(workers_are_not_seen),
         IN_FOLDER(png_reads_back),
         IN_FOLDER(equal_pictures_are_equal_files),
         IN_FOLDER(every_failing_call_is_told),

@@ -1,0 +1,20 @@
+# bench.mk: `make bench` measures, and writes bench/results/; `make bench-quick` tries out that it
+# can, on small pictures, and writes to the build folder.  bench/README.md says what is measured.
+
+BENCH    := $(sort $(wildcard bench/*.c))
+REVISION  = $(shell git describe --always --dirty 2>/dev/null || echo unknown)
+
+$(B)/bench/bench: $(BENCH:%.c=$(B)/%.o) $(B)/libkrs.a
+	@echo "link   $@"
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+bench: deps
+	@$(MAKE) --no-print-directory $(B)/bench/bench $(B)/krs
+	@$(B)/bench/bench --krs $(B)/krs --revision $(REVISION)
+bench-quick: $(B)/bench/bench $(B)/krs
+	@$(B)/bench/bench --krs $(B)/krs --revision $(REVISION) --quick --folder $(B)/bench/results
+
+# For `make test`.
+SCRIPTS += tests/bench.sh
+test-programs: $(B)/bench/bench
+clang-objects: $(BENCH:%.c=$(B)/%.o)
+.PHONY: bench bench-quick

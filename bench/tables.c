@@ -1,0 +1,185 @@
+/*
+ * tables.c: the results as tables that can be read as they are and as Markdown.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "bench/results.h"
+
+/* One column of numbers; what a row has there is told by its index in an array of values. */
+typedef struct Column {
+    const char *title, *format;
+    int         width;
+} Column;
+
+/* `first` is the title of the column of names. */
+static void add_titles(Text *text, const char *first, int name_width, const Column *columns,
+                       size_t count)
+{
+    text_format(text, "| %-*s |", name_width, first);
+    for (size_t i = 0; i < count; i++)
+        text_format(text, " %*s |", columns[i].width, columns[i].title);
+    text_format(text, "\n|%.*s|", name_width + 2, "--------------------------------");
+    for (size_t i = 0; i < count; i++)
+        text_format(text, "%.*s:|", columns[i].width + 1, "--------------------------------");
+    text_add(text, "\n");
+}
+
+/* What is not a number is left blank. */
+static void add_row(Text *text, const char *name, int name_width, const Column *columns,
+                    const double *values, size_t count)
+{
+    text_format(text, "| %-*s |", name_width, name);
+    for (size_t i = 0; i < count; i++) {
+        Text cell = {.arena = text->arena};
+        if (!isnan(values[i]))
+            text_format(&cell, columns[i].format, values[i]);
+        text_format(text, " %*s |", columns[i].width, cell.length > 0 ? cell.bytes : "");
+    }
+    text_add(text, "\n");
+}
+
+static void tell_machine(const Bench *bench, const Results *results, Text *text)
+{
+    text_format(text, "# %s on %s\n\n", results->date, results->machine.slug);
+    for (size_t i = 0; i < results->machine.count; i++)
+        text_format(text, "- %s: %s\n", results->machine.facts[i].name,
+                    results->machine.facts[i].text);
+    text_format(text, "- peak: %.1f GFLOP/s of multiply-adds, measured\n", results->peak.gflops);
+    text_format(text, "\nPictures of %ux%u, medians of %u%s, milliseconds.\n", bench->width,
+                bench->height, bench->repeats, bench->quick ? " (a quick run: no figures to quote)"
+                                                            : "");
+}
+
+enum { NAME_WIDTH = 20 };
+
+static const Column entry_columns[] = {
+    {"beams", "%.0f", 5},       {"primary", "%.0f", 7},    {"normals", "%.0f", 7},
+    {"shading", "%.0f", 7},     {"resolve", "%.0f", 7},    {"**sum**", "%.0f", 7},
+    {"shadows", "%.0f", 7},     {"occl.", "%.0f", 5},      {"total", "%.0f", 6},
+    {"wall", "%.0f", 6},        {"cpu", "%.0f", 6},        {"evals/ray", "%.2f", 9},
+    {"ns/ray", "%.0f", 7},      {"GFLOP/s", "%.1f", 7},    {"of peak", "%.0f%%", 7},
+    {"coverage", "%.5f", 8},    {"error", "%+.2f%%", 8},   {"unresolved", "%.0f", 10},
+    {"differs inside", "%.3f%%", 14},
+};
+enum { ENTRY_COLUMNS = sizeof entry_columns / sizeof entry_columns[0] };
+
+static void tell_entry(const Results *results, const Contest *contest, const Entry *entry,
+                       Text *text)
+{
+    const Times *t = &entry->median;
+    const double none = NAN, *phase = t->phase;
+    const bool   ours = !entry->written;
+    const double sum = times_without_secondary(t), gflops = ours ? entry->gflops : none;
+    double values[ENTRY_COLUMNS] = {
+        ours ? phase[KRS_PHASE_BEAMS] : none,
+        ours ? phase[KRS_PHASE_PRIMARY] : none,
+        ours ? phase[KRS_PHASE_NORMALS] : none,
+        ours ? phase[KRS_PHASE_SHADING] : none,
+        ours ? phase[KRS_PHASE_RESOLVE] : none,
+        sum,
+        ours ? phase[KRS_PHASE_SHADOWS] : none,
+        ours ? phase[KRS_PHASE_OCCLUSION] : none,
+        t->total, t->wall, t->cpu,
+        entry->evaluations_per_ray, entry->ns_per_ray,
+        gflops, 100 * gflops / results->peak.gflops,
+        entry->coverage, 100 * coverage_error(contest, entry->coverage),
+        entry->unresolved, 100 * entry->agreement.inside_differs,
+    };
+    add_row(text, entry->name, NAME_WIDTH, entry_columns, values, ENTRY_COLUMNS);
+}
+
+static void tell_contest(const Results *results, const Contest *contest, Text *text)
+{
+    text_format(text, "\n## %s\n\n", contest->row->name);
+    const Entry *ours = &contest->entries[0], *by_hand = contest->same_error;
+    text_format(text, "%.0f flops an evaluation.  To SPIR-V and by the driver, cold: ours %.0f +"
+                      " %.0f ms, by hand %.0f + %.0f ms.\n",
+                contest->flops_per_evaluation, ours->spirv_ms, ours->pipeline_ms,
+                by_hand->spirv_ms, by_hand->pipeline_ms);
+    text_format(text, "Reference: error %g pixels, coverage %.5f, %.1f evaluations a ray,"
+                      " %.0f rays unresolved; %.1f%% of the picture is away from edges.\n",
+                REFERENCE_ERROR, contest->reference_coverage,
+                contest->reference_evaluations_per_ray, (double)contest->reference_unresolved,
+                100 * contest->geometry.inside);
+    text_format(text, "By hand, at that error: %.3f%% of the pixels have another fate, %.3f%%"
+                      " another depth, away from edges %.4f%%; there depth differs by %.1e"
+                      " of a pixel's width (median).\n\n",
+                100 * contest->geometry.hit_differs, 100 * contest->geometry.depth_differs,
+                100 * contest->geometry.inside_differs, contest->geometry.depth_error);
+    add_titles(text, "method", NAME_WIDTH, entry_columns, ENTRY_COLUMNS);
+    for (size_t i = 0; i < contest->count; i++)
+        tell_entry(results, contest, &contest->entries[i], text);
+}
+
+static void tell_ratios(const Results *results, Text *text)
+{
+    static const Column columns[] = {
+        {"ours: sum", "%.0f", 9}, {"by hand", "%.0f", 8}, {"times", "%.2f", 6},
+        {"least", "%.2f", 6}, {"its error", "%g", 9}, {"by hand, right", "%.0f", 14},
+        {"times", "%.2f", 6}, {"least", "%.2f", 6}, {"coverage of ours", "%+.2f%%", 16},
+    };
+    enum { COLUMNS = sizeof columns / sizeof columns[0] };
+    text_format(text, "\n## Ours (the default) and by hand\n\nBy hand at the same permitted error,"
+                      " and at the largest one at which its coverage is within %g%% of the"
+                      " reference's; how many times as long it takes, by the medians and by the"
+                      " least of the runs.\n\n", 100 * COVERAGE_TOLERANCE);
+    add_titles(text, "scene", NAME_WIDTH, columns, COLUMNS);
+    for (size_t i = 0; i < results->contest_count; i++) {
+        const Contest *c = &results->contests[i];
+        const Entry   *right = c->same_coverage;
+        double values[COLUMNS] = {
+            times_without_secondary(&c->entries[0].median),
+            c->same_error->median.total, contest_ratio(c, c->same_error),
+            contest_least_ratio(c, c->same_error),
+            right ? right->error : NAN, right ? right->median.total : NAN,
+            right ? contest_ratio(c, right) : NAN, right ? contest_least_ratio(c, right) : NAN,
+            100 * coverage_error(c, c->entries[0].coverage),
+        };
+        add_row(text, c->row->name, NAME_WIDTH, columns, values, COLUMNS);
+    }
+}
+
+static void tell_line(Text *text, const char *what, const Line *line, const char *unit)
+{
+    text_format(text, "- %s: %.4g %+.4g n %s, R2 %.4f\n", what, line->intercept, line->slope, unit,
+                line->r2);
+}
+
+static void tell_growth(const Growth *growth, Text *text)
+{
+    static const Column columns[] = {
+        {"ns/distance", "%.2f", 11}, {"ns/evaluation", "%.2f", 13}, {"**sum**", "%.0f", 7}};
+    text_add(text, "\n## Growth with the levels n of the tree\n\n");
+    add_titles(text, "levels", NAME_WIDTH, columns, 3);
+    for (size_t i = 0; i < growth->count; i++) {
+        Text name = {.arena = text->arena};
+        text_format(&name, "%.0f", growth->levels[i]);
+        add_row(text, name.bytes, NAME_WIDTH, columns,
+                (double[]){growth->ns_per_distance[i], growth->ns_per_evaluation[i],
+                           growth->total_ms[i]}, 3);
+    }
+    text_add(text, "\n");
+    tell_line(text, "distance", &growth->distance_line, "ns");
+    tell_line(text, "evaluation", &growth->evaluation_line, "ns");
+    tell_line(text, "sum", &growth->total_line, "ms");
+}
+
+static void tell_latency(const Latency *latency, Text *text)
+{
+    text_format(text, "\n## First picture\n\nexamples/01-hello.krs at 640x360, from starting the"
+                      " command to its end: %.0f ms cold, %.0f ms with warm caches.\n",
+                latency->cold_ms, latency->warm_ms);
+}
+
+void results_tables(const Bench *bench, const Results *results, Text *text)
+{
+    tell_machine(bench, results, text);
+    for (size_t i = 0; i < results->contest_count; i++)
+        tell_contest(results, &results->contests[i], text);
+    tell_ratios(results, text);
+    tell_growth(&results->growth, text);
+    tell_latency(&results->latency, text);
+    if (results->complaints.length > 0)
+        text_format(text, "\n## Wrong\n\n%s", results->complaints.bytes);
+}

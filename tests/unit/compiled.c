@@ -1,0 +1,410 @@
+/*
+ * What is compiled once is not compiled again: kernels come from the cache, also under scarce
+ * memory; a driver's pipelines are kept; and glslang may be wanted by several threads at once.
+ *
+ * lavapipe keeps no pipelines of its own.  Mesa's driver for AMD's cards can pretend to have one,
+ * which compiles, and keeps what it compiled, but has no queue to run it on.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <dirent.h>
+#include <limits.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "compiler/base/embedded.h"
+#include "compiler/compile.h"
+#include "runtime/device/kernel.h"
+#include "runtime/device/pipelines.h"
+
+static char folder[] = "/tmp/krs-compiled-XXXXXX";
+
+static int enter_folder(void **state)
+{
+    (void)state;
+    memcpy(folder + sizeof folder - 7, "XXXXXX", 6);
+    return mkdtemp(folder) && chdir(folder) == 0 ? 0 : -1;
+}
+
+static int leave_folder(void **state)
+{
+    char command[64];
+    (void)state;
+    snprintf(command, sizeof command, "rm -rf %s", folder);
+    return chdir("/") == 0 && system(command) == 0 ? 0 : -1;
+}
+
+/* The files that end in `ending`: how many, and which of them is the last in the alphabet. */
+static int count_files(const char *ending, char last[NAME_MAX + 1])
+{
+    struct dirent **found;
+    int             count = 0, all = scandir(".", &found, NULL, alphasort);
+    for (int i = 0; i < all; i++) {
+        const char *dot = strrchr(found[i]->d_name, '.');
+        if (dot && strcmp(dot, ending) == 0) {
+            snprintf(last, NAME_MAX + 1, "%s", found[i]->d_name);
+            count++;
+        }
+        free(found[i]);
+    }
+    free(found);
+    return count;
+}
+
+static KrsStatus open_and_close(const KrsRendererOptions *options)
+{
+    KrsRenderer *renderer;
+    KrsStatus    status = krs_renderer_new(options, &renderer);
+    krs_renderer_free(renderer);
+    return status;
+}
+
+/* A file that is written again is another one, because writing is renaming. */
+static ino_t number_of(const char *name)
+{
+    struct stat info;
+    assert_int_equal(stat(name, &info), 0);
+    return info.st_ino;
+}
+
+static void a_kernel_is_compiled_once(void **state)
+{
+    (void)state;
+    char name[NAME_MAX + 1];
+    KrsRendererOptions options = {.device = "cpu", .cache = folder};
+    assert_int_equal(open_and_close(&options), KRS_OK);
+    int kernels = count_files(".spirv", name);
+    assert_true(kernels > 0);
+    ino_t number = number_of(name);
+    assert_int_equal(open_and_close(&options), KRS_OK);
+    assert_int_equal(count_files(".spirv", name), kernels);
+    assert_int_equal(number_of(name), number);
+
+    assert_int_equal(truncate(name, 100), 0);
+    assert_int_equal(open_and_close(&options), KRS_OK);
+    assert_int_equal(count_files(".spirv", name), kernels);
+    number = number_of(name);
+    struct stat repaired;
+    assert_int_equal(stat(name, &repaired), 0);
+    assert_true(repaired.st_size > 100);
+    assert_int_equal(open_and_close(&options), KRS_OK);
+    assert_int_equal(number_of(name), number);
+}
+
+static void nothing_is_written_unasked(void **state)
+{
+    (void)state;
+    char name[NAME_MAX + 1];
+    setenv("XDG_CACHE_HOME", folder, 1);
+    setenv("HOME", folder, 1);
+    assert_int_equal(open_and_close(&(KrsRendererOptions){.device = "cpu"}), KRS_OK);
+    assert_int_equal(count_files(".spirv", name), 0);
+    assert_int_equal(access("krs", F_OK), -1);
+}
+
+/* A layout that has room for the bindings of any kernel. */
+static VkPipelineLayout make_layout(Gpu *gpu)
+{
+    enum { SETS = 2, BINDINGS = 16 };
+    VkDescriptorSetLayoutBinding bindings[BINDINGS];
+    VkDescriptorSetLayout        sets[SETS];
+    VkPipelineLayout             layout;
+    for (uint32_t i = 0; i < BINDINGS; i++)
+        bindings[i] = (VkDescriptorSetLayoutBinding){
+            .binding = i, .descriptorCount = 1, .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
+            .descriptorType = i == 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+                                     : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
+    for (int i = 0; i < SETS; i++)
+        assert_int_equal(vkCreateDescriptorSetLayout(gpu->device,
+            &(VkDescriptorSetLayoutCreateInfo){
+                .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                .bindingCount = BINDINGS, .pBindings = bindings}, NULL, &sets[i]), VK_SUCCESS);
+    assert_int_equal(vkCreatePipelineLayout(gpu->device, &(VkPipelineLayoutCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+        .setLayoutCount = SETS, .pSetLayouts = sets,
+        .pushConstantRangeCount = 1,
+        .pPushConstantRanges = &(VkPushConstantRange){VK_SHADER_STAGE_COMPUTE_BIT, 0, 128},
+    }, NULL, &layout), VK_SUCCESS);
+    for (int i = 0; i < SETS; i++)
+        vkDestroyDescriptorSetLayout(gpu->device, sets[i], NULL);
+    return layout;
+}
+
+/* A kernel that needs no scene. */
+static const char *find_kernel(void)
+{
+    for (const EmbeddedFile *file = shader_files; file->name; file++)
+        if (strstr(file->name, ".comp") && !strstr(file->text, "#include \"scene.glsl\""))
+            return file->name;
+    fail_msg("every kernel includes the scene");
+    return NULL;
+}
+
+/* Several variants of a kernel: all are made, or the reason is told. */
+static void kernels_are_compiled_together(void **state)
+{
+    enum { KERNELS = 4 };
+    (void)state;
+    Gpu           gpu;
+    const char   *file = find_kernel();
+    Kernel        kernels[KERNELS];
+    KernelRequest requests[KERNELS];
+    double        spirv_ms = 0, pipeline_ms = 0;
+    char          name[NAME_MAX + 1];
+    static const char *const defines[KERNELS] = {
+        NULL, "#define VARIANT 1\n", "#define VARIANT 2\n", "#error refused\n"};
+    assert_true(gpu_open(&gpu, &(KrsRendererOptions){.device = "cpu", .cache = folder}));
+    VkPipelineLayout layout = make_layout(&gpu);
+    for (int i = 0; i < KERNELS; i++)
+        requests[i] = (KernelRequest){&kernels[i], {file, NULL, defines[i]}};
+
+    spirv_start();
+    for (int kept = 0; kept < 2; kept++) { /* compiled, then from the cache */
+        assert_true(kernel_create_all(&gpu, requests, KERNELS - 1, layout, &spirv_ms,
+                                      &pipeline_ms));
+        for (int i = 0; i < KERNELS - 1; i++) {
+            assert_true(kernels[i].pipeline != VK_NULL_HANDLE);
+            kernel_destroy(&gpu, &kernels[i]);
+        }
+        assert_int_equal(count_files(".spirv", name), KERNELS - 1);
+    }
+    assert_false(kernel_create_all(&gpu, requests, KERNELS, layout, &spirv_ms, &pipeline_ms));
+    assert_int_equal(gpu.status, KRS_INTERNAL);
+    assert_non_null(strstr(gpu.message, file));
+    for (int i = 0; i < KERNELS; i++)
+        kernel_destroy(&gpu, &kernels[i]);
+    requests[1].source.file = "missing.comp";
+    assert_false(kernel_create_all(&gpu, requests, 2, layout, &spirv_ms, &pipeline_ms));
+    assert_non_null(strstr(gpu.message, "missing.comp"));
+    spirv_stop();
+    vkDestroyPipelineLayout(gpu.device, layout, NULL);
+    gpu_close(&gpu);
+}
+
+typedef struct Ledger {
+    int left, held; /* allocations that succeed from now on; blocks */
+} Ledger;
+
+static void *ledger_allocate(void *user, size_t size)
+{
+    Ledger *ledger = user;
+    if (ledger->left-- <= 0)
+        return NULL;
+    ledger->held++;
+    return malloc(size);
+}
+
+static void ledger_release(void *user, void *block)
+{
+    ((Ledger *)user)->held--;
+    free(block);
+}
+
+static KrsStatus open_with(Ledger ledger)
+{
+    KrsRendererOptions options = {.device = "cpu", .cache = folder,
+                                  .allocator = {ledger_allocate, ledger_release, &ledger}};
+    KrsStatus          status = open_and_close(&options);
+    assert_true(status == KRS_OK || status == KRS_OUT_OF_MEMORY);
+    assert_int_equal(ledger.held, 0);
+    return status;
+}
+
+/* No memory from each allocation on in turn, until there is plenty.  Once it suffices, the cache
+   is filled, and what lies there needs memory of its own; where that is missing, it is compiled. */
+static void memory_that_runs_out_is_reported(void **state)
+{
+    enum { PLENTY = 60 };
+    (void)state;
+    int failures = 0;
+    spirv_start(); /* so that glslang starts once */
+    for (int left = 0; left < PLENTY; left++)
+        failures += open_with((Ledger){.left = left}) != KRS_OK;
+    assert_true(failures > 3 && failures < PLENTY / 2);
+    assert_int_equal(open_with((Ledger){.left = PLENTY}), KRS_OK);
+    spirv_stop();
+}
+
+/* ---- The driver's pipelines ---- */
+
+static const char small_text[] = "#version 440\n"
+                                 "layout(local_size_x = 1) in;\n"
+                                 "shared uint x;\n"
+                                 "void main() { x = gl_WorkGroupID.x; }\n";
+
+/* The card that is not there: no queue can be had, so gpu_open would not take it.  False when
+   Mesa lacks the driver. */
+static bool pretend_to_open(Gpu *gpu)
+{
+    uint32_t count = 8;
+    VkPhysicalDevice devices[8];
+    setenv("RADV_FORCE_FAMILY", "navi21", 1);
+    assert_int_equal(vkCreateInstance(&(VkInstanceCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+        .pApplicationInfo = &(VkApplicationInfo){
+            .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_1},
+    }, NULL, &gpu->instance), VK_SUCCESS);
+    assert_true(vkEnumeratePhysicalDevices(gpu->instance, &count, devices) >= VK_SUCCESS);
+    unsetenv("RADV_FORCE_FAMILY");
+    for (uint32_t i = 0; i < count && !gpu->physical; i++) {
+        vkGetPhysicalDeviceProperties(devices[i], &gpu->properties);
+        if (strstr(gpu->properties.deviceName, "NAVI21"))
+            gpu->physical = devices[i];
+    }
+    if (!gpu->physical) {
+        vkDestroyInstance(gpu->instance, NULL);
+        return false;
+    }
+    assert_int_equal(vkCreateDevice(gpu->physical, &(VkDeviceCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+        .queueCreateInfoCount = 1,
+        .pQueueCreateInfos = &(VkDeviceQueueCreateInfo){
+            .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+            .queueCount = 1,
+            .pQueuePriorities = &(float){1},
+        },
+    }, NULL, &gpu->device), VK_SUCCESS);
+    return true;
+}
+
+static void make_pipeline(const Gpu *gpu, const uint32_t *words, size_t bytes)
+{
+    VkShaderModule   module;
+    VkPipelineLayout layout;
+    VkPipeline       pipeline;
+    assert_int_equal(vkCreateShaderModule(gpu->device, &(VkShaderModuleCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+        .codeSize = bytes, .pCode = words}, NULL, &module), VK_SUCCESS);
+    assert_int_equal(vkCreatePipelineLayout(gpu->device, &(VkPipelineLayoutCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO}, NULL, &layout), VK_SUCCESS);
+    assert_int_equal(vkCreateComputePipelines(gpu->device, gpu->pipelines, 1,
+        &(VkComputePipelineCreateInfo){
+            .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+            .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                      .stage = VK_SHADER_STAGE_COMPUTE_BIT, .module = module, .pName = "main"},
+            .layout = layout}, NULL, &pipeline), VK_SUCCESS);
+    vkDestroyPipeline(gpu->device, pipeline, NULL);
+    vkDestroyPipelineLayout(gpu->device, layout, NULL);
+    vkDestroyShaderModule(gpu->device, module, NULL);
+}
+
+/* A run that makes one pipeline, or none; returns how much of the driver's data it began with. */
+static size_t run_on(Gpu *gpu, const uint32_t *words, size_t bytes)
+{
+    cache_open(&gpu->cache, folder, (KrsAllocator){0});
+    gpu->pipelines_loaded = 0;
+    pipelines_open(gpu);
+    assert_true(gpu->pipelines != VK_NULL_HANDLE);
+    if (words)
+        make_pipeline(gpu, words, bytes);
+    pipelines_close(gpu);
+    cache_close(&gpu->cache);
+    return gpu->pipelines_loaded;
+}
+
+static void pipelines_are_kept(void **state)
+{
+    (void)state;
+    Gpu       gpu = {0};
+    uint32_t *words;
+    size_t    count;
+    char      name[NAME_MAX + 1], *log;
+    if (!pretend_to_open(&gpu))
+        skip();
+    spirv_start();
+    assert_int_equal(spirv_compile(small_text, "test", &words, &count, &log), KRS_OK);
+    spirv_stop();
+
+    assert_int_equal(run_on(&gpu, NULL, 0), 0);
+    assert_int_equal(count_files(".pipelines", name), 0); /* nothing to keep */
+    assert_int_equal(run_on(&gpu, words, 4 * count), 0);
+    assert_int_equal(count_files(".pipelines", name), 1);
+    ino_t  number = number_of(name);
+    size_t loaded = run_on(&gpu, words, 4 * count);
+    assert_true(loaded > sizeof(VkPipelineCacheHeaderVersionOne));
+    assert_int_equal(number_of(name), number); /* it was known, so nothing has grown */
+
+    assert_int_equal(truncate(name, 100), 0);
+    assert_int_equal(run_on(&gpu, words, 4 * count), 0);
+    assert_int_equal(run_on(&gpu, words, 4 * count), loaded);
+
+    /* Another device finds nothing, and what its driver would not have made is not kept. */
+    gpu.properties.vendorID ^= 1;
+    assert_int_equal(run_on(&gpu, words, 4 * count), 0);
+    assert_int_equal(count_files(".pipelines", name), 1);
+    gpu.properties.vendorID ^= 1;
+    free(words);
+    vkDestroyDevice(gpu.device, NULL);
+    vkDestroyInstance(gpu.instance, NULL);
+}
+
+static void lavapipe_keeps_none(void **state)
+{
+    (void)state;
+    char name[NAME_MAX + 1];
+    KrsRendererOptions options = {.device = "llvmpipe", .cache = folder};
+    KrsStatus          status = open_and_close(&options);
+    if (status == KRS_NO_DEVICE)
+        skip(); /* another driver for the processor */
+    assert_int_equal(status, KRS_OK);
+    assert_int_equal(count_files(".pipelines", name), 0);
+}
+
+/* ---- glslang ---- */
+
+static void *compile_a_few_times(void *user)
+{
+    bool *done = user;
+    *done = true;
+    for (int i = 0; i < 3; i++) {
+        uint32_t *words = NULL;
+        size_t    count;
+        char     *log = NULL;
+        spirv_start();
+        *done = *done && spirv_compile(small_text, "test", &words, &count, &log) == KRS_OK &&
+                count > 5 && words[0] == 0x07230203;
+        free(words);
+        free(log);
+        spirv_stop();
+    }
+    return NULL;
+}
+
+static void threads_may_compile_at_once(void **state)
+{
+    enum { THREADS = 4 };
+    pthread_t threads[THREADS];
+    bool      done[THREADS];
+    (void)state;
+    for (int i = 0; i < THREADS; i++)
+        assert_int_equal(pthread_create(&threads[i], NULL, compile_a_few_times, &done[i]), 0);
+    for (int i = 0; i < THREADS; i++) {
+        pthread_join(threads[i], NULL);
+        assert_true(done[i]);
+    }
+}
+
+#define in_folder(test) cmocka_unit_test_setup_teardown(test, enter_folder, leave_folder)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        in_folder(a_kernel_is_compiled_once),
+        in_folder(nothing_is_written_unasked),
+        in_folder(kernels_are_compiled_together),
+        in_folder(memory_that_runs_out_is_reported),
+        in_folder(lavapipe_keeps_none),
+        in_folder(pipelines_are_kept),
+        cmocka_unit_test(threads_may_compile_at_once),
+    };
+    return cmocka_run_group_tests_name("compiled", tests, NULL, NULL);
+}
