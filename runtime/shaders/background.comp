@@ -10,18 +10,15 @@
 #include "light.glsl"
 #include "results.glsl"
 
+// The pixel is zero before its first ray.
 void count_steps(uint index, uint steps)
 {
-    uint evaluations = 0u, most = 0u;
-    if (control.first_ray == 0u) {
-        evaluations = pixels[index].evaluations;
-        most = pixels[index].most;
-    } else {
+    if (control.first_ray != 0u) {
         pixels[index].steps = steps;
-        pixels[index].depth = uintBitsToFloat(0x7f800000u); // infinity, until there is a hit
+    } else {
+        pixels[index].evaluations += steps;
+        pixels[index].most = max(pixels[index].most, steps);
     }
-    pixels[index].evaluations = evaluations + steps;
-    pixels[index].most = max(most, steps);
 }
 
 void main()
@@ -51,5 +48,5 @@ void main()
             radiance += sun_radiance(direction, light.vector, light.color, light.softness);
     }
     if (ray.fate != HIT)
-        add_color(index, radiance, 0.0);
+        pixels[index].color.rgb += sound(radiance);
 }

@@ -1,7 +1,11 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
- * fill.comp: shadow or occlusion of the pixels between anchors, where that cannot be seen.
+ * fill.comp: what saves work: tiles without a ray, and shadow or occlusion of the pixels between
+ * anchors, where that cannot be seen.
+ *
+ * A tile of 8x8 pixels whose beam goes through the scene unhindered needs no rays: the others are
+ * listed.
  *
  * A tile of 8x8 pixels whose sixteen anchors see one component, face the same way and agree about
  * the value is filled in; a pixel of it that is not as they are, and all pixels of other tiles,
@@ -11,7 +15,7 @@
 #include "pixels.glsl"
 #include "solid.glsl"
 
-const uint JUDGE = 0u, FILL = 1u;             // control.phase
+const uint LIST_TILES = 0u, JUDGE = 1u, FILL = 2u; // control.phase
 const uint OCCLUSION = 1u, SHADOW = 2u;       // control.value
 const float MOST_APART[3] = float[](0.0, 0.06, 0.02); // of the anchors, by value
 const float FACING = 0.9;                     // least cosine between normals
@@ -22,6 +26,13 @@ float value_at(uint index)
 }
 
 uint tile_of(uvec2 local) { return local.y / 8u * ((work.extent.x + 7u) / 8u) + local.x / 8u; }
+
+// Tiles count from the corner of the band, which is a corner of tiles of the picture.
+void list_tile(uint tile)
+{
+    if (ends[band_pixels() + tile] < INFINITE)
+        tiles[atomicAdd(counts.tiles, 1u)] = tile;
+}
 
 void judge(uint tile)
 {
@@ -87,7 +98,9 @@ void main()
     uint number;
     if (!find_item(number))
         return;
-    if (control.phase == JUDGE)
+    if (control.phase == LIST_TILES)
+        list_tile(number);
+    else if (control.phase == JUDGE)
         judge(number);
     else
         fill(number);

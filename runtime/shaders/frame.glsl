@@ -44,7 +44,8 @@ struct Control {
     uint lights;     // of how many
     uint shadows;    // SOFT_SHADOWS or AREA_SHADOWS
     uint ray;        // the number of the ray within its pixel
-    uint follow;     // 1: rays start where the beams of their tiles end
+    uint follow;     // 1: rays start where the beams of their tiles end,
+    uint listed;     // and 1: there are rays in listed tiles only
     uint source;     // of the items (schedule.glsl): FRESH, QUEUED or REST,
     uint items;      // how many there are,
     uint share;      // and at most for a lane
@@ -89,13 +90,16 @@ layout(std430, set = 1, binding = 1) buffer Ends { float ends[]; };
 layout(std430, set = 1, binding = 2) buffer Hits { Hit hits[]; };
 layout(std430, set = 1, binding = 5) buffer Fates { uint fates[]; }; // of rays, by pack_ray
 layout(std430, set = 1, binding = 8) readonly buffer Lights { Light lights[]; };
+// Tiles of 8x8 pixels whose beams find something (fill.comp): only their pixels have rays.
+layout(std430, set = 1, binding = 9) buffer Tiles { uint tiles[]; };
 layout(std140, set = 1, binding = 0) uniform FrameBlock { Frame given_frame; };
 layout(push_constant) uniform WorkBlock { Work given_work; };
 layout(std430, set = 1, binding = 4) buffer ControlBlock {
     Control given_control;
     uint    queued;           // counts rays that need another dispatch,
     uint    left;             // and items that nobody has begun
-    uint    solid, anchors;   // counts pixels that see something (solid.glsl),
+    uint    tiles;            // counts listed tiles,
+    uint    solid, anchors;   // pixels that see something (solid.glsl),
     uint    rest;             // and those that fill.comp does not fill in
     uint    unresolved;       // counts rays that ran out of steps
     uint    beam_evaluations; // counts distances spent on beams
@@ -132,18 +136,6 @@ uvec2 find_cell(uint number, uint across)
 {
     uint row = uint((float(number) + 0.5) / float(across));
     return uvec2(number - row * across, row);
-}
-
-// The place of item `number` among tiles of `side` pixels a side (a power of 2), row by row; false
-// when it is not in the band.
-bool find_pixel_of_item(uint number, uint side, out uvec2 pixel, out uint index)
-{
-    uint  within = number % (side * side);
-    uvec2 tile = find_cell(number / (side * side), (work.extent.x + side - 1u) / side);
-    uvec2 local = tile * side + uvec2(within % side, within / side);
-    index = local.y * work.extent.x + local.x;
-    pixel = work.corner + local;
-    return local.x < work.extent.x && local.y < work.extent.y;
 }
 
 // The tiles of `side` pixels a side, counted in the whole picture, that the band has a part of:

@@ -9,21 +9,17 @@ struct Pixel {
     vec3  normal;
     uint  steps;
     vec3  albedo;
-    uint  component;
+    uint  component; // 0: nothing, and all else but colour and steps is meaningless
     uint  level, instance;
-    uint  evaluations; // summed over the rays
-    uint  most;        // of any ray
+    uint  evaluations; // by the rays after the first, summed;
+    uint  most;        // of any of them
 };
 
 layout(std430, set = 1, binding = 3) buffer Pixels { Pixel pixels[]; };
 
-// Adds what one ray has seen; what is not a number or infinite counts as black.
-void add_color(uint index, vec3 radiance, float alpha)
+// What is not a number or infinite counts as black.
+vec3 sound(vec3 radiance)
 {
-    bvec3 sound = bvec3(radiance.x < INFINITE, radiance.y < INFINITE, radiance.z < INFINITE);
-    vec4  color = vec4(mix(vec3(0.0), max(radiance, 0.0), sound), alpha);
-    vec4  before = vec4(0.0);
-    if (control.first_ray == 0u)
-        before = pixels[index].color;
-    pixels[index].color = before + color;
+    bvec3 finite = bvec3(radiance.x < INFINITE, radiance.y < INFINITE, radiance.z < INFINITE);
+    return mix(vec3(0.0), max(radiance, 0.0), finite);
 }

@@ -60,7 +60,8 @@ void main()
     if (control.phase == ONE_LIGHT) {
         hits[place.index].radiance = hit.radiance + lit(place, hit);
     } else {
-        add_color(place.index, hit.radiance + ambient(hit, -place.direction), 1.0);
+        vec3 radiance = hit.radiance + ambient(hit, -place.direction);
+        pixels[place.index].color += vec4(sound(radiance), 1.0);
         if (control.first_ray != 0u)
             describe(place, hit);
     }

@@ -41,12 +41,6 @@ const float LEARNING = 0.3;
 // A beam ends where its ball is hardly wider than the tile (measurements.md: 1.05).
 const float WIDER = 1.05;
 
-#if REFILL
-const uint TILE = 32u;
-#else
-const uint TILE = 8u;
-#endif
-
 const bool SAVES = true;
 
 // A ray under way.
@@ -104,12 +98,26 @@ vec2 find_width(float side)
     return vec2(half_diagonal * pixel_base, apart / max(stretch - 0.5 * apart, 0.1));
 }
 
+// The pixel of item `number`: items go through tiles of 8x8 pixels one after the other, all tiles
+// of the band or those that are listed.  False when it is not in the band.
+bool find_pixel(uint number, out uvec2 pixel, out uint index)
+{
+    uint tile = number / 64u, within = number % 64u;
+    if (control.listed != 0u)
+        tile = tiles[tile];
+    uvec2 corner = 8u * find_cell(tile, (work.extent.x + 7u) / 8u);
+    uvec2 local = corner + uvec2(within % 8u, within / 8u);
+    index = local.y * work.extent.x + local.x;
+    pixel = work.corner + local;
+    return local.x < work.extent.x && local.y < work.extent.y;
+}
+
 void begin_item(uint number)
 {
     bool  is_ray = control.phase == RAYS, large = control.phase == BEAMS_32;
     uvec2 pixel;
     uint  pixels = work.extent.x * work.extent.y, index;
-    exists = find_pixel_of_item(number, TILE, pixel, index) || !is_ray;
+    exists = find_pixel(number, pixel, index) || !is_ray;
 
     float side = large ? 32.0 : 8.0;
     uvec2 tile = find_cell(number, large ? count_32.x : count_8.x);

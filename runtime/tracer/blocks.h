@@ -25,7 +25,7 @@ static_assert(sizeof(FrameBlock) == 176, "std140");
 enum { TRACE_RAYS, TRACE_BEAMS_32, TRACE_BEAMS_8 };
 enum { SECONDARY_NORMALS, SECONDARY_OCCLUSION, SECONDARY_SHADOW };
 enum { SHADE_ONE_LIGHT, SHADE_FINISH };
-enum { FILL_JUDGE, FILL_FILL };
+enum { FILL_LIST_TILES, FILL_JUDGE, FILL_FILL };
 enum { LIST_ALL, LIST_ANCHORS, LIST_REST }; /* of solid.glsl */
 
 enum { ITEMS_FRESH, ITEMS_QUEUED, ITEMS_REST };
@@ -56,13 +56,13 @@ typedef struct ControlBlock {
     uint32_t light, lights;
     uint32_t shadows; /* KrsShadows */
     uint32_t ray;
-    uint32_t follow;
+    uint32_t follow, listed;
     uint32_t source; /* ITEMS_... */
     uint32_t items, share;
     uint32_t reading, writing;
     uint32_t value; /* SECONDARY_OCCLUSION or SECONDARY_SHADOW */
     /* counted by the kernels: */
-    uint32_t queued, left, solid, anchors, rest, unresolved, beam_evaluations;
+    uint32_t queued, left, tiles, solid, anchors, rest, unresolved, beam_evaluations;
 } ControlBlock;
 
 /* Pixel of results.glsl, std430. */
@@ -78,6 +78,7 @@ typedef struct PixelBlock {
 static_assert(sizeof(PixelBlock) == 80, "std430");
 
 /* Only their sizes matter to the host. */
+enum { FATE_MISS = 2 }; /* a packed ray that took no step (frame.glsl) */
 enum { HIT_BYTES = 64, MARCH_BYTES = 40, TILE = 8 };
 
 /* Points and Answer of sample.comp. */

@@ -13,10 +13,6 @@
 #define MOST_TURNS      16384 /* of a lane that takes item after item */
 #define MOST_BEAM_STEPS 256   /* of a beam, as in trace.comp */
 
-const char *const krs_phase_names[KRS_PHASE_COUNT] = {
-    "beams", "primary", "normals", "shadows", "occlusion", "shading", "resolve",
-};
-
 /* ---- Slices ---- */
 
 /* A step through [0, count) that visits all and goes far each time, so that neighbouring tiles,
@@ -94,18 +90,18 @@ static bool run_all(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *w
 
 /* ---- The phases of one ray per pixel ---- */
 
-/* How trace.comp deals out its items: to so many lanes a group, from tiles of so many pixels a
-   side, to a lane so many; and how many steps a lane has in a dispatch. */
+/* How items are dealt out (schedule.glsl): to so many lanes a group, to a lane so many; and how many
+   steps a lane has in a dispatch. */
 typedef struct Dealing {
-    uint32_t lanes, side, share, steps;
+    uint32_t lanes, share, steps;
 } Dealing;
 
 static Dealing dealing(const Job *job)
 {
     uint32_t steps = job->options.steps_at_once;
     if (job->options.schedule == KRS_SCHEDULE_REFILL)
-        return (Dealing){8, 32, 32 * 32 / 8, 8 * steps < MOST_TURNS ? 8 * steps : MOST_TURNS};
-    return (Dealing){64, 8, 1, steps};
+        return (Dealing){8, 128, 8 * steps < MOST_TURNS ? 8 * steps : MOST_TURNS};
+    return (Dealing){64, 1, steps};
 }
 
 /* Runs a kernel over items of which each takes the steps that it needs (schedule.glsl). */
@@ -118,6 +114,27 @@ static bool run_items(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock 
     control->share = deal.share;
     work->steps = deal.steps;
     return run_groups(job, phase, kernel, work, (items + in_group - 1) / in_group);
+}
+
+static uint32_t tiles_of_band(const WorkBlock *work)
+{
+    return ((work->extent[0] + TILE - 1) / TILE) * ((work->extent[1] + TILE - 1) / TILE);
+}
+
+/* Lists the tiles whose beams find something; the rays of all others miss. */
+static bool list_tiles(Job *job, WorkBlock *work)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    Gpu          *gpu = job->gpu;
+    control->phase = FILL_LIST_TILES;
+    control->tiles = 0;
+    control->listed = 1;
+    if (!run_all(job, KRS_PHASE_BEAMS, &job->rendering->renderer->fill, work,
+                 tiles_of_band(work)) ||
+        !gpu_begin(gpu))
+        return false;
+    vkCmdFillBuffer(gpu->commands, job->rendering->band.fates.buffer, 0, VK_WHOLE_SIZE, FATE_MISS);
+    return gpu_finish(gpu, &job->picture->stats.phase_ms[KRS_PHASE_BEAMS]);
 }
 
 static uint32_t tiles_touched(const WorkBlock *work, uint32_t side)
@@ -145,19 +162,19 @@ static bool march_beams(Job *job, WorkBlock *work)
             return false;
         control->follow = 1;
     }
-    return true;
+    return list_tiles(job, work);
 }
 
-/* First every pixel of the band, until all have been begun; then, pass by pass, the rays that
-   are not done. */
+/* First every pixel of the band, or of the listed tiles, until all have been begun; then, pass by
+   pass, the rays that are not done. */
 static bool trace(Job *job, WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
     Dealing       deal = dealing(job);
     uint32_t      pixels = work->extent[0] * work->extent[1];
-    uint32_t      items = deal.side * deal.side;
-    for (int i = 0; i < 2; i++)
-        items *= (work->extent[i] + deal.side - 1) / deal.side;
+    uint32_t      items = (control->listed ? control->tiles : tiles_of_band(work)) * TILE * TILE;
+    while (deal.share > 16 && items / (deal.lanes * deal.share) < 64)
+        deal.share /= 2; /* groups enough for every core of the device */
     control->phase = TRACE_RAYS;
     control->source = ITEMS_FRESH;
     control->queued = control->writing = 0;
@@ -217,13 +234,10 @@ static bool look_sparsely(Job *job, KrsPhase phase, uint32_t secondary, WorkBloc
         return look_around(job, phase, secondary, work, LIST_ALL, control->solid);
     if (!look_around(job, phase, secondary, work, LIST_ANCHORS, control->anchors))
         return false;
-    uint32_t tiles = 1;
-    for (int i = 0; i < 2; i++)
-        tiles *= (work->extent[i] + TILE - 1) / TILE;
     control->value = secondary;
     control->rest = 0;
     control->phase = FILL_JUDGE;
-    if (!run_all(job, phase, fill, work, tiles))
+    if (!run_all(job, phase, fill, work, tiles_of_band(work)))
         return false;
     control->phase = FILL_FILL;
     return run_all(job, phase, fill, work, control->solid) &&
@@ -308,7 +322,7 @@ bool phases_run(Job *job, WorkBlock *work, uint32_t index)
     place_ray(index, job->options.seed, work->offset);
     control->ray = index;
     control->first_ray = index == 0;
-    control->follow = 0;
+    control->follow = control->listed = 0;
     job->share = 0; /* too short to be seen */
     if (!job->options.no_beams && job->view.camera.projection != KRS_PANORAMA &&
         !march_beams(job, work))

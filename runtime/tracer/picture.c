@@ -3,6 +3,7 @@
  */
 #include "runtime/tracer/picture.h"
 
+#include <math.h>
 #include <string.h>
 
 /* The planes: all are arrays of 32-bit numbers. */
@@ -92,11 +93,16 @@ void picture_take(KrsPicture *picture, const PixelBlock *pixels, size_t first, s
     for (size_t k = 4 * first; picture->color && samples > 1 && k < 4 * (first + count); k++)
         picture->color[k] /= (float)samples;
 
+    for (size_t k = 0; picture->depth && k < count; k++)
+        if (pixels[k].component == 0)
+            picture->depth[first + k] = INFINITY;
+
     KrsRenderStats *stats = &picture->stats;
     for (size_t k = 0; k < count; k++) {
-        stats->evaluations += pixels[k].evaluations;
-        if (pixels[k].most > stats->most_evaluations_per_ray)
-            stats->most_evaluations_per_ray = pixels[k].most;
+        uint32_t most = pixels[k].most > pixels[k].steps ? pixels[k].most : pixels[k].steps;
+        stats->evaluations += (uint64_t)pixels[k].steps + pixels[k].evaluations;
+        if (most > stats->most_evaluations_per_ray)
+            stats->most_evaluations_per_ray = most;
     }
 }
 

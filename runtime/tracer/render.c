@@ -26,10 +26,6 @@
 /* Steps of a pass of the queue: more leave lanes idle, fewer cost passes. */
 #define QUEUE_STEPS     16
 
-const char *const krs_trace_names[KRS_TRACE_COUNT] = {"default", "plain", "relaxed", "auto"};
-const char *const krs_schedule_names[KRS_SCHEDULE_COUNT] = {"default", "pixel", "refill", "queue"};
-const char *const krs_shadows_names[KRS_SHADOWS_COUNT] = {"soft", "area"};
-
 /* ---- What is asked for ---- */
 
 static bool refuse(Job *job, const char *words)
@@ -99,7 +95,7 @@ static bool settle_frame(Job *job, KrsFrame *frame)
 static void band_destroy(Gpu *gpu, Band *band)
 {
     Buffer *buffers[] = {&band->ends, &band->fates, &band->hits, &band->results, &band->fetched,
-                         &band->queue, &band->taken};
+                         &band->queue, &band->taken, &band->tiles};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         buffer_destroy(gpu, buffers[i]);
     band->pixels = 0;
@@ -129,6 +125,7 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels)
         {&band->fates, 5, pixels * sizeof(uint32_t), ON_DEVICE, "rays"},
         {&band->queue, 6, 2 * pixels * MARCH_BYTES, ON_DEVICE, "queue of rays"},
         {&band->taken, 7, most_beams(pixels) * sizeof(uint32_t), ON_DEVICE, "shares of lanes"},
+        {&band->tiles, 9, most_beams(pixels) * sizeof(uint32_t), ON_DEVICE, "tiles"},
         {&band->fetched, 0, pixels * sizeof(PixelBlock), SHARED, "pixels to read"},
     };
     if (band->pixels >= pixels)
@@ -174,6 +171,16 @@ static uint32_t make_room(Job *job)
 
 /* ---- Bands ---- */
 
+/* The results are summed up. */
+static bool clear_results(Job *job)
+{
+    double ms = 0;
+    if (!gpu_begin(job->gpu))
+        return false;
+    vkCmdFillBuffer(job->gpu->commands, job->rendering->band.results.buffer, 0, VK_WHOLE_SIZE, 0);
+    return gpu_finish(job->gpu, &ms);
+}
+
 static bool fetch(Job *job, uint64_t pixels)
 {
     double ms = 0; /* copying is no phase */
@@ -182,16 +189,6 @@ static bool fetch(Job *job, uint64_t pixels)
     vkCmdCopyBuffer(job->gpu->commands, job->rendering->band.results.buffer,
                     job->rendering->band.fetched.buffer, 1,
                     &(VkBufferCopy){.size = pixels * sizeof(PixelBlock)});
-    return gpu_finish(job->gpu, &ms);
-}
-
-/* Where nothing is hit, most of a pixel stays zero. */
-static bool clear_results(Job *job)
-{
-    double ms = 0;
-    if (!gpu_begin(job->gpu))
-        return false;
-    vkCmdFillBuffer(job->gpu->commands, job->rendering->band.results.buffer, 0, VK_WHOLE_SIZE, 0);
     return gpu_finish(job->gpu, &ms);
 }
 
@@ -245,12 +242,12 @@ static bool warm_up(Job *job)
 {
     KrsRendering *r = job->rendering;
     Kernel       *kernels[] = {job->trace, job->secondary, &r->material, &r->renderer->background,
-                               &r->renderer->shade, job->sparse ? &r->renderer->fill : NULL};
+                               &r->renderer->shade, &r->renderer->fill};
     WorkBlock     work = {.groups = 1, .stride = 1};
     double        start = clock_ms(), ms = 0;
     *(ControlBlock *)r->control.bytes = (ControlBlock){.share = 1};
     for (size_t i = 0; i < sizeof kernels / sizeof kernels[0]; i++) {
-        if (!kernels[i] || kernels[i]->warm)
+        if (kernels[i]->warm)
             continue;
         if (!gpu_begin(job->gpu))
             return false;

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Bindings of set 1; those in between are the buffers of a band. */
-enum { FRAME_BINDING = 0, CONTROL_BINDING = 4, LIGHTS_BINDING = 8, BINDING_COUNT };
+enum { FRAME_BINDING = 0, CONTROL_BINDING = 4, LIGHTS_BINDING = 8, BINDING_COUNT = 10 };
 
 KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
 {
@@ -306,7 +306,7 @@ void krs_rendering_free(KrsRendering *rendering)
     Buffer *buffers[] = {&rendering->parameters, &rendering->frame, &rendering->control,
                          &rendering->lights, &rendering->points, &rendering->answers,
                          &band->ends, &band->fates, &band->hits, &band->results, &band->fetched,
-                         &band->queue, &band->taken};
+                         &band->queue, &band->taken, &band->tiles};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         buffer_destroy(gpu, buffers[i]);
     kernel_destroy(gpu, &rendering->material);

@@ -22,7 +22,7 @@ struct KrsRenderer {
 /* The buffers that hold a band of the picture. */
 typedef struct Band {
     uint64_t pixels; /* room for so many; 0: no buffers */
-    Buffer   ends, fates, hits, results, queue, taken;
+    Buffer   ends, fates, hits, results, queue, taken, tiles;
     Buffer   fetched; /* where the host reads the results */
 } Band;
 

@@ -1,0 +1,11 @@
+/*
+ * names.c: what the numbers of krs_vulkan.h are called, in options and statistics.
+ */
+#include "runtime/krs_vulkan.h"
+
+const char *const krs_phase_names[KRS_PHASE_COUNT] = {
+    "beams", "primary", "normals", "shadows", "occlusion", "shading", "resolve",
+};
+const char *const krs_trace_names[KRS_TRACE_COUNT] = {"default", "plain", "relaxed", "auto"};
+const char *const krs_schedule_names[KRS_SCHEDULE_COUNT] = {"default", "pixel", "refill", "queue"};
+const char *const krs_shadows_names[KRS_SHADOWS_COUNT] = {"soft", "area"};
