@@ -79,3 +79,45 @@ bool gpu_finish(Gpu *gpu, double *ms)
 failed:
     return false;
 }
+
+bool gpu_rehearse(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
+                  const VkDescriptorSet sets[2], const void *constants, uint32_t bytes)
+{
+    const char     *attempt = "try a kernel out";
+    VkCommandBuffer commands; /* the pool's, until it is destroyed */
+    TRY(gpu, attempt, vkAllocateCommandBuffers(gpu->device, &(VkCommandBufferAllocateInfo){
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+        .commandPool = gpu->rehearsals,
+        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+        .commandBufferCount = 1,
+    }, &commands));
+    TRY(gpu, attempt, vkBeginCommandBuffer(commands, &(VkCommandBufferBeginInfo){
+        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
+    }));
+    uint32_t first = sets[0] == VK_NULL_HANDLE;
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, first, 2 - first,
+                            sets + first, 0, NULL);
+    vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, bytes, constants);
+    vkCmdDispatch(commands, 1, 1, 1);
+    TRY(gpu, attempt, vkEndCommandBuffer(commands));
+    TRY(gpu, attempt, vkQueueSubmit(gpu->queue, 1, &(VkSubmitInfo){
+        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+        .commandBufferCount = 1,
+        .pCommandBuffers = &commands,
+    }, VK_NULL_HANDLE));
+    return true;
+
+failed:
+    return false;
+}
+
+bool gpu_wait(Gpu *gpu)
+{
+    TRY(gpu, "wait for the device", vkQueueWaitIdle(gpu->queue));
+    return true;
+
+failed:
+    return false;
+}

@@ -337,11 +337,13 @@ static bool device_create(Gpu *gpu)
     }, NULL, &gpu->device));
     vkGetDeviceQueue(gpu->device, gpu->family, 0, &gpu->queue);
 
-    TRY(gpu, attempt, vkCreateCommandPool(gpu->device, &(VkCommandPoolCreateInfo){
+    const VkCommandPoolCreateInfo pool = {
         .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
         .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
         .queueFamilyIndex = gpu->family,
-    }, NULL, &gpu->pool));
+    };
+    TRY(gpu, attempt, vkCreateCommandPool(gpu->device, &pool, NULL, &gpu->pool));
+    TRY(gpu, attempt, vkCreateCommandPool(gpu->device, &pool, NULL, &gpu->rehearsals));
     TRY(gpu, attempt, vkAllocateCommandBuffers(gpu->device, &(VkCommandBufferAllocateInfo){
         .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
         .commandPool = gpu->pool,
@@ -390,6 +392,7 @@ void gpu_close(Gpu *gpu)
         pipelines_close(gpu);
         vkDestroyQueryPool(gpu->device, gpu->times, NULL);
         vkDestroyFence(gpu->device, gpu->fence, NULL);
+        vkDestroyCommandPool(gpu->device, gpu->rehearsals, NULL);
         vkDestroyCommandPool(gpu->device, gpu->pool, NULL);
         vkDestroyDevice(gpu->device, NULL);
     }

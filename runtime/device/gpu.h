@@ -20,7 +20,7 @@ typedef struct Gpu {
     VkDevice         device;
     VkQueue          queue;
     uint32_t         family;
-    VkCommandPool    pool;
+    VkCommandPool    pool, rehearsals;
     VkCommandBuffer  commands; /* the one that is recorded, run and waited for */
     VkFence          fence;
     VkQueryPool      times;    /* two timestamps; none when the queue has no clock */
@@ -73,6 +73,13 @@ void gpu_barrier(Gpu *gpu);
 /* Runs what was recorded, waits, and adds its milliseconds to *ms: by the device's clock where
    it has one. */
 bool gpu_finish(Gpu *gpu, double *ms);
+
+/* Has the device run one group of a kernel, and does not wait for it: a driver that compiles a
+   kernel only when it first runs does so meanwhile.  The first set may be VK_NULL_HANDLE. */
+bool gpu_rehearse(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
+                  const VkDescriptorSet sets[2], const void *constants, uint32_t bytes);
+/* Until all that was rehearsed has run. */
+bool gpu_wait(Gpu *gpu);
 
 /* Milliseconds of the host's steady clock. */
 double clock_ms(void);

@@ -8,7 +8,6 @@
 
 typedef struct Kernel {
     VkPipeline pipeline;
-    bool       warm; /* it has run: the driver has compiled it for good */
 } Kernel;
 
 /* What a kernel is made from. */

@@ -236,29 +236,13 @@ static bool render_band(Job *job, uint32_t from, uint32_t rows)
     return true;
 }
 
-/* A driver may compile a kernel only when it first runs: let it, on no pixels, before the clock
-   of the picture starts. */
-static bool warm_up(Job *job)
+/* Lets the driver finish with the kernels, so that the clock of the picture does not see it. */
+static bool wait_for_kernels(Job *job)
 {
-    KrsRendering *r = job->rendering;
-    Kernel       *kernels[] = {job->trace, job->secondary, &r->material, &r->renderer->background,
-                               &r->renderer->shade, &r->renderer->fill};
-    WorkBlock     work = {.groups = 1, .stride = 1};
-    double        start = clock_ms(), ms = 0;
-    *(ControlBlock *)r->control.bytes = (ControlBlock){.share = 1};
-    for (size_t i = 0; i < sizeof kernels / sizeof kernels[0]; i++) {
-        if (kernels[i]->warm)
-            continue;
-        if (!gpu_begin(job->gpu))
-            return false;
-        rendering_dispatch(r, kernels[i], r->band_set, &work, sizeof work, 1);
-        if (!gpu_finish(job->gpu, &ms))
-            return false;
-        kernels[i]->warm = true;
-        r->pipeline_ms += clock_ms() - start;
-        start = clock_ms();
-    }
-    return true;
+    double start = clock_ms();
+    bool   ready = gpu_wait(job->gpu);
+    job->rendering->pipeline_ms += clock_ms() - start;
+    return ready;
 }
 
 /* What a tile has in common must not depend on the crop, so whole tiles are traced. */
@@ -282,7 +266,7 @@ static bool render(Job *job)
         return false;
     job->trace = rendering_trace(job->rendering, job->options.trace, job->options.schedule);
     job->secondary = rendering_secondary(job->rendering, job->options.schedule);
-    if (!job->trace || !job->secondary || !warm_up(job))
+    if (!job->trace || !job->secondary || !wait_for_kernels(job))
         return false;
     double start = clock_ms();
     for (uint32_t from = 0; from < job->cover.height; from += rows) {

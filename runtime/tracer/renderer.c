@@ -64,6 +64,70 @@ failed:
     return false;
 }
 
+/* ---- Rehearsals ---- */
+
+static void bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer)
+{
+    vkUpdateDescriptorSets(gpu->device, 1, &(VkWriteDescriptorSet){
+        .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+        .dstSet = set,
+        .dstBinding = binding,
+        .descriptorCount = 1,
+        .descriptorType = binding == FRAME_BINDING ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+                                                   : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+        .pBufferInfo = &(VkDescriptorBufferInfo){buffer->buffer, 0, buffer->size},
+    }, 0, NULL);
+}
+
+/* A set of buffers that hold zeros: no kernel finds any item in them. */
+static bool idle_create(KrsRenderer *renderer)
+{
+    Gpu        *gpu = &renderer->gpu;
+    const char *attempt = "prepare the renderer";
+    enum { IDLE_BYTES = 4096 };
+    if (!buffer_create(gpu, &renderer->idle, IDLE_BYTES, SHARED, "rehearsals"))
+        return false;
+    memset(renderer->idle.bytes, 0, IDLE_BYTES);
+    TRY(gpu, attempt, vkCreateDescriptorPool(gpu->device, &(VkDescriptorPoolCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+        .maxSets = 1,
+        .poolSizeCount = 2,
+        .pPoolSizes = (VkDescriptorPoolSize[]){
+            {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
+            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BINDING_COUNT - 1},
+        },
+    }, NULL, &renderer->idle_pool));
+    TRY(gpu, attempt, vkAllocateDescriptorSets(gpu->device, &(VkDescriptorSetAllocateInfo){
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+        .descriptorPool = renderer->idle_pool,
+        .descriptorSetCount = 1,
+        .pSetLayouts = &renderer->frame_layout,
+    }, &renderer->idle_set));
+    for (uint32_t binding = 0; binding < BINDING_COUNT; binding++)
+        bind(gpu, renderer->idle_set, binding, &renderer->idle);
+    return true;
+
+failed:
+    return false;
+}
+
+/* Makes kernels and sends them through the driver once, in the background. */
+static bool make_kernels(KrsRenderer *renderer, VkDescriptorSet scene_set,
+                         const KernelRequest *requests, size_t count, double *spirv_ms,
+                         double *pipeline_ms)
+{
+    const VkDescriptorSet sets[2] = {scene_set, renderer->idle_set};
+    const WorkBlock       work = {.groups = 1, .stride = 1};
+    if (!kernel_create_all(&renderer->gpu, requests, count, renderer->layout, spirv_ms,
+                           pipeline_ms))
+        return false;
+    for (size_t i = 0; i < count; i++)
+        if (!gpu_rehearse(&renderer->gpu, requests[i].kernel->pipeline, renderer->layout, sets,
+                          &work, sizeof work))
+            return false;
+    return true;
+}
+
 KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
 {
     Gpu allocating = {.allocator = options ? options->allocator : (KrsAllocator){0}};
@@ -80,9 +144,9 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
         {&renderer->fill, {.file = "fill.comp"}},
         {&renderer->shade, {.file = "shade.comp"}},
     };
-    if (!layouts_create(renderer) ||
-        !kernel_create_all(&renderer->gpu, kernels, sizeof kernels / sizeof kernels[0],
-                           renderer->layout, &renderer->spirv_ms, &renderer->pipeline_ms))
+    if (!layouts_create(renderer) || !idle_create(renderer) ||
+        !make_kernels(renderer, VK_NULL_HANDLE, kernels, sizeof kernels / sizeof kernels[0],
+                      &renderer->spirv_ms, &renderer->pipeline_ms))
         return renderer->gpu.status;
     return KRS_OK;
 }
@@ -93,9 +157,12 @@ void krs_renderer_free(KrsRenderer *renderer)
         return;
     Gpu *gpu = &renderer->gpu;
     if (gpu->device) {
+        gpu_wait(gpu);
         kernel_destroy(gpu, &renderer->background);
         kernel_destroy(gpu, &renderer->fill);
         kernel_destroy(gpu, &renderer->shade);
+        vkDestroyDescriptorPool(gpu->device, renderer->idle_pool, NULL);
+        buffer_destroy(gpu, &renderer->idle);
         vkDestroyPipelineLayout(gpu->device, renderer->layout, NULL);
         vkDestroyDescriptorSetLayout(gpu->device, renderer->frame_layout, NULL);
         vkDestroyDescriptorSetLayout(gpu->device, renderer->scene_layout, NULL);
@@ -133,15 +200,7 @@ uint64_t krs_renderer_complaints(const KrsRenderer *renderer)
 void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding,
                     const Buffer *buffer)
 {
-    vkUpdateDescriptorSets(rendering->renderer->gpu.device, 1, &(VkWriteDescriptorSet){
-        .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-        .dstSet = set,
-        .dstBinding = binding,
-        .descriptorCount = 1,
-        .descriptorType = binding == FRAME_BINDING ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
-                                                   : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-        .pBufferInfo = &(VkDescriptorBufferInfo){buffer->buffer, 0, buffer->size},
-    }, 0, NULL);
+    bind(&rendering->renderer->gpu, set, binding, buffer);
 }
 
 static bool sets_create(KrsRendering *rendering)
@@ -231,11 +290,11 @@ static Variant name_variant(KrsTrace trace, KrsSchedule schedule)
 static Kernel *find_variant(KrsRendering *rendering, Kernel *kernel, const char *file,
                             KrsTrace trace, KrsSchedule schedule)
 {
-    Variant      variant = name_variant(trace, schedule);
-    KernelSource source = {file, rendering->program->glsl, variant.defines};
+    Variant       variant = name_variant(trace, schedule);
+    KernelRequest request = {kernel, {file, rendering->program->glsl, variant.defines}};
     if (!kernel->pipeline &&
-        !kernel_create(&rendering->renderer->gpu, kernel, &source, rendering->renderer->layout,
-                       &rendering->spirv_ms, &rendering->pipeline_ms))
+        !make_kernels(rendering->renderer, rendering->scene_set, &request, 1,
+                      &rendering->spirv_ms, &rendering->pipeline_ms))
         return NULL;
     return kernel;
 }
@@ -269,9 +328,9 @@ static bool kernels_create(KrsRendering *rendering)
         {&rendering->secondary[schedule], {"secondary.comp", scene, plain.defines}},
         {&rendering->material, {"material.comp", scene, NULL}},
     };
-    return kernel_create_all(&rendering->renderer->gpu, kernels,
-                             sizeof kernels / sizeof kernels[0], rendering->renderer->layout,
-                             &rendering->spirv_ms, &rendering->pipeline_ms);
+    return make_kernels(rendering->renderer, rendering->scene_set, kernels,
+                        sizeof kernels / sizeof kernels[0], &rendering->spirv_ms,
+                        &rendering->pipeline_ms);
 }
 
 KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRendering **out)
@@ -307,6 +366,7 @@ void krs_rendering_free(KrsRendering *rendering)
                          &rendering->lights, &rendering->points, &rendering->answers,
                          &band->ends, &band->fates, &band->hits, &band->results, &band->fetched,
                          &band->queue, &band->taken, &band->tiles};
+    gpu_wait(gpu); /* rehearsals may still run; a device that is lost has none */
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         buffer_destroy(gpu, buffers[i]);
     kernel_destroy(gpu, &rendering->material);

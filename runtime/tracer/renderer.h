@@ -17,6 +17,9 @@ struct KrsRenderer {
     VkPipelineLayout      layout;       /* of every kernel */
     Kernel                background, fill, shade;
     double                spirv_ms, pipeline_ms; /* of these three */
+    VkDescriptorPool      idle_pool;             /* for rehearsals: */
+    VkDescriptorSet       idle_set;              /* a frame with nothing in it, */
+    Buffer                idle;                  /* all of it in here */
 };
 
 /* The buffers that hold a band of the picture. */
