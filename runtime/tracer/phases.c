@@ -12,6 +12,7 @@
 
 #define MOST_TURNS      16384 /* of a lane that takes item after item */
 #define MOST_BEAM_STEPS 256   /* of a beam, as in trace.comp */
+#define MOST_PASS_STEPS 2048  /* of rays that are left over, in one more pass */
 
 /* ---- Slices ---- */
 
@@ -33,11 +34,11 @@ static uint32_t spread(const Gpu *gpu, uint32_t count)
     }
 }
 
-/* How many tiles to take next, after `tiles` took `ms`. */
-static uint32_t next_slice(uint32_t tiles, double ms, double aim)
+/* How many groups to take next, after `groups` took `ms`. */
+static uint32_t next_slice(uint32_t groups, double ms, double aim)
 {
     double factor = ms > 0 ? aim / ms : 4;
-    double next = tiles * fmin(fmax(factor, 0.1), 4);
+    double next = groups * fmin(fmax(factor, 0.1), 4);
     return next < 1 ? 1 : next > 65535 ? 65535 : (uint32_t)next;
 }
 
@@ -52,12 +53,22 @@ static bool report(Job *job, double within_phase)
     return true;
 }
 
-static bool run_groups(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
-                       uint32_t tiles)
+/* What was learned about slices of a kernel in a phase: kernels without the scene cost next to
+   nothing, and tell nothing about the others. */
+static uint32_t *groups_at_once(Job *job, KrsPhase phase, const Kernel *kernel)
 {
-    uint32_t *at_once = &job->rendering->tiles_at_once[phase];
-    for (uint32_t first = 0; first < tiles;) {
-        uint32_t count = *at_once < tiles - first ? *at_once : tiles - first;
+    const KrsRenderer *renderer = job->rendering->renderer;
+    bool has_scene = kernel != &renderer->background && kernel != &renderer->fill &&
+                     kernel != &renderer->shade;
+    return &job->rendering->groups_at_once[phase][has_scene];
+}
+
+static bool run_groups(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
+                       uint32_t groups)
+{
+    uint32_t *at_once = groups_at_once(job, phase, kernel);
+    for (uint32_t first = 0; first < groups;) {
+        uint32_t count = *at_once < groups - first ? *at_once : groups - first;
         double   ms = 0;
         work->first = first;
         work->groups = count;
@@ -73,7 +84,7 @@ static bool run_groups(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock
         if (count == *at_once || ms > job->options.slice_ms)
             *at_once = next_slice(count, ms, job->options.slice_ms);
         first += count;
-        if (!report(job, (double)first / tiles))
+        if (!report(job, (double)first / groups))
             return false;
     }
     return true;
@@ -90,8 +101,8 @@ static bool run_all(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *w
 
 /* ---- The phases of one ray per pixel ---- */
 
-/* How items are dealt out (schedule.glsl): to so many lanes a group, to a lane so many; and how many
-   steps a lane has in a dispatch. */
+/* How items are dealt out (schedule.glsl): to so many lanes a group, to a lane so many; and how
+   many steps a lane has in a dispatch. */
 typedef struct Dealing {
     uint32_t lanes, share, steps;
 } Dealing;
@@ -192,8 +203,8 @@ static bool trace(Job *job, WorkBlock *work)
             return true;
         /* Each pass twice as long, so that they are few even for the longest rays. */
         deal.steps = control->source != ITEMS_QUEUED ? job->options.steps_at_once
-                   : deal.steps < MOST_TURNS / 2     ? 2 * deal.steps
-                                                     : MOST_TURNS;
+                   : deal.steps < MOST_PASS_STEPS    ? 2 * deal.steps
+                                                     : deal.steps;
         control->source = ITEMS_QUEUED;
         items = control->queued;
         control->queued = 0;

@@ -345,8 +345,8 @@ KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRen
     rendering->program = krs_scene_program(scene);
     rendering->spirv_ms = renderer->spirv_ms;
     rendering->pipeline_ms = renderer->pipeline_ms;
-    for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
-        rendering->tiles_at_once[phase] = gpu_is_cpu(&renderer->gpu) ? 64 : 1024;
+    for (int i = 0; i < 2 * KRS_PHASE_COUNT; i++)
+        rendering->groups_at_once[i / 2][i % 2] = gpu_is_cpu(&renderer->gpu) ? 8 : 1024;
     if (!sets_create(rendering) || !buffers_create(rendering) || !kernels_create(rendering)) {
         KrsStatus status = renderer->gpu.status;
         krs_rendering_free(rendering);

@@ -43,7 +43,7 @@ struct KrsRendering {
     Buffer            parameters, frame, control, lights;
     Band              band;
     Buffer            points, answers; /* of krs_sample */
-    uint32_t          tiles_at_once[KRS_PHASE_COUNT]; /* learned from the last slices */
+    uint32_t          groups_at_once[KRS_PHASE_COUNT][2]; /* learned from the last slices */
 };
 
 /* The kernels of primary and secondary rays for a method and a schedule (neither is the default),
