@@ -7,9 +7,10 @@
  * A tile of 8x8 pixels whose beam goes through the scene unhindered needs no rays: the others are
  * listed.
  *
- * A tile of 8x8 pixels whose sixteen anchors see one component, face the same way and agree about
- * the value is filled in; a pixel of it that is not as they are, and all pixels of other tiles,
- * are listed, to be looked at one by one.
+ * A tile of 8x8 pixels whose sixteen anchors see one component and face the same way is filled in
+ * if they agree about occlusion; and if they are lit and nothing else is near their ways to the
+ * light (secondary.comp), which goes for thin shadows, too.  A pixel that is not as they are,
+ * and all pixels of other tiles, are listed, to be looked at one by one.
  */
 #include "frame.glsl"
 #include "pixels.glsl"
@@ -17,7 +18,7 @@
 
 const uint LIST_TILES = 0u, JUDGE = 1u, FILL = 2u; // control.phase
 const uint OCCLUSION = 1u, SHADOW = 2u;       // control.value
-const float MOST_APART[3] = float[](0.0, 0.06, 0.02); // of the anchors, by value
+const float MOST_APART = 0.03;                // of the anchors' occlusion
 const float FACING = 0.9;                     // least cosine between normals
 
 float value_at(uint index)
@@ -50,8 +51,8 @@ void judge(uint tile)
         agree = find_end(index).fate == HIT && hits[index].component == like.component &&
                 dot(hits[index].normal, like.normal) > FACING;
     }
-    float allowed = control.value == SHADOW ? MOST_APART[SHADOW] : MOST_APART[OCCLUSION];
-    solid[3u * band_pixels() + tile] = agree && most - least <= allowed ? 1u : 0u;
+    agree = agree && (control.value == SHADOW ? least == 1.0 : most - least <= MOST_APART);
+    solid[3u * band_pixels() + tile] = agree ? 1u : 0u;
 }
 
 // Whether a pixel of a tile is as its first anchor: on one surface, which faces one way.

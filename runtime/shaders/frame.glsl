@@ -44,6 +44,7 @@ struct Control {
     uint lights;     // of how many
     uint shadows;    // SOFT_SHADOWS or AREA_SHADOWS
     uint ray;        // the number of the ray within its pixel
+    uint seed;       // moves what is drawn by lot
     uint follow;     // 1: rays start where the beams of their tiles end,
     uint listed;     // and 1: there are rays in listed tiles only
     uint source;     // of the items (schedule.glsl): FRESH, QUEUED or REST,

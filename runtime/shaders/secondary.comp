@@ -22,6 +22,12 @@ const uint OCCLUSION_TAPS = 5u;
 
 // A shadow that is darker than this is black.
 const float BLACK = 4e-3;
+// Rays to lights start so many pixels above the surface.
+const float LIFT = 0.5;
+// A way is clear for the pixels around as well if it stays so many of them away from everything.
+const float CLEARANCE = 3.0;
+// What is lit and not clear: less than 1 by a bit (fill.comp).
+const float LIT = 0.99999994;
 
 // The item.
 Place place;
@@ -33,6 +39,8 @@ float before;      // the distance at the step before
 vec3  sum;         // of the taps of a normal
 float blocked, weight; // of those of occlusion
 float visible;     // how much of the light
+float facing;      // cosine between normal and way
+bool  is_clear;    // nothing else is near the way to it
 uint  taps, limit; // so far, and at most
 
 uint  lost;        // of this lane's shadow rays
@@ -50,14 +58,17 @@ vec3 octahedron(uint i)
 float random(uvec2 pixel, uint which)
 {
     uint hash = (pixel.x + 16384u * pixel.y) * 747796405u + which * 2891336453u;
+    hash ^= control.seed * 2654435769u;
     hash = ((hash >> ((hash >> 28u) + 4u)) ^ hash) * 277803737u;
     return float((hash >> 22u ^ hash) >> 8u) / 16777216.0;
 }
 
-// A point of the unit disc for this ray of its pixel: the rays together fill it evenly.
+// A point of the unit disc for this ray of its pixel: the rays together fill it evenly, and none
+// of it hangs on the place of the ray in the pixel.  That has the steps of two dimensions (R2,
+// phases.c), so these are the last two of four (R4).
 vec2 disc_point(vec2 pixel_seed)
 {
-    vec2  even = fract(pixel_seed + vec2(0.7548777, 0.5698403) * float(control.ray));
+    vec2  even = fract(pixel_seed + vec2(0.6287067, 0.5385973) * float(control.ray));
     float angle = 2.0 * PI * even.x;
     return sqrt(even.y) * vec2(cos(angle), sin(angle));
 }
@@ -67,7 +78,7 @@ void aim_at_light(vec3 normal)
 {
     Light light = lights[control.light];
     bool  positional = (light.kind & POSITIONAL) != 0u;
-    start = place.position + normal * (place.width + 4.0 * place.rounding);
+    start = place.position + normal * (LIFT * place.width + 4.0 * place.rounding);
     vec3  toward = positional ? light.vector - start : light.vector;
     float radius = positional ? light.softness : tan(0.5 * min(light.softness, 3.0));
     // As wide as the light is seen, and outwards of the hard shadow's edge: the distance of a
@@ -88,9 +99,10 @@ void aim_at_light(vec3 normal)
     way = toward / remote;
     end = positional ? remote : frame.eye.w;
     end = min(end, clip_ray(start, way, end).y);
-    bool facing = dot(normal, way) > 0.0;
-    visible = facing ? 1.0 : 0.0;
-    limit = facing && (light.kind & CASTS_SHADOWS) != 0u ? SHADOW_STEPS : 0u;
+    facing = dot(normal, way);
+    visible = facing > 0.0 ? 1.0 : 0.0;
+    is_clear = true;
+    limit = facing > 0.0 && (light.kind & CASTS_SHADOWS) != 0u ? SHADOW_STEPS : 0u;
 }
 
 void begin_item(uint number)
@@ -134,9 +146,12 @@ void take_shadow(float distance)
         visible = min(visible, sharpness * aside / max(t - back, place.rounding));
     if (distance < max(frame.error * place.width, place.rounding))
         visible = 0.0;
-    // A ray that creeps along a surface goes on by a pixel at least, or a quarter of the
+    // The surface itself falls away by the cosine.
+    if (distance < min(CLEARANCE * place.width, 0.5 * facing * t))
+        is_clear = false;
+    // A ray that creeps along a surface goes on by a pixel at least, or a sixteenth of the
     // penumbra's width: what it could miss is too small to be seen.
-    float least = max(place.width, 0.25 * t / sharpness);
+    float least = max(place.width, 0.0625 * t / sharpness);
     before = distance < least ? INFINITE : distance;
     t += max(distance, least);
     if (visible < BLACK || t >= end)
@@ -165,7 +180,8 @@ void end_item()
     if (control.phase == SHADOW) {
         lost += limit > 0u && t < end ? 1u : 0u;
         float seen = visible < BLACK ? 0.0 : visible;
-        hits[place.index].visible = seen * seen * (3.0 - 2.0 * seen);
+        seen = seen * seen * (3.0 - 2.0 * seen);
+        hits[place.index].visible = is_clear ? seen : min(seen, LIT);
     } else if (control.phase == OCCLUSION) {
         hits[place.index].occlusion = exp2(-2.5 * blocked); // light finds its way in by reflection
     } else {

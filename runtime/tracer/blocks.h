@@ -56,6 +56,7 @@ typedef struct ControlBlock {
     uint32_t light, lights;
     uint32_t shadows; /* KrsShadows */
     uint32_t ray;
+    uint32_t seed;
     uint32_t follow, listed;
     uint32_t source; /* ITEMS_... */
     uint32_t items, share;

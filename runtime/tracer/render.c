@@ -217,6 +217,7 @@ static bool render_band(Job *job, uint32_t from, uint32_t rows)
         .projection = (uint32_t)job->view.camera.projection,
         .lights = (uint32_t)job->view.light_count,
         .shadows = job->options.shadows,
+        .seed = (uint32_t)(job->options.seed ^ job->options.seed >> 32),
     };
     if (!clear_results(job))
         return false;
