@@ -255,7 +255,7 @@ static bool buffers_create(KrsRendering *rendering)
 }
 
 /* Where a distance costs less than this, dealing items out to lanes costs more than it gains. */
-#define FLOPS_WORTH_REFILL 600
+#define FLOPS_WORTH_REFILL 150
 
 void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule)
 {
