@@ -28,6 +28,9 @@ CLI      := $(sort $(wildcard cli/*.c))
 # Text files that the program carries: the standard library and the kernels.
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))
 SHADERS  := $(sort $(wildcard runtime/shaders/*.comp runtime/shaders/*.glsl))
+# Kernels without a scene are compiled here and now, not on every machine again.
+MODULES  := $(shell grep -L 'include "scene.glsl"' runtime/shaders/*.comp)
+MODULES  := $(MODULES:runtime/shaders/%=$(B)/modules/%.spv)
 EXAMPLES := $(sort $(wildcard examples/*.krs))
 
 STYLE    := -std=c17 -D_GNU_SOURCE -Wall -Wextra -Wpedantic -Wshadow -Werror -I. -MMD -MP -pthread
@@ -37,7 +40,7 @@ LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLC
 
 COMPILER := $(BASE) $(FRONT) $(GRAPH) $(GEOMETRY) $(SHADER) $(DOORSTEP)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
-            $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o
+            $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o
 
 all: $(B)/krs
 $(B)/krs: $(CLI:%.c=$(B)/%.o) $(B)/libkrs.a
@@ -61,6 +64,13 @@ $(B)/library_files.c: $(B)/embed $(LIBRARY)
 	@$(B)/embed library_files compiler/library/ $(LIBRARY) >$@
 $(B)/shader_files.c: $(B)/embed $(SHADERS)
 	@$(B)/embed shader_files runtime/shaders/ $(SHADERS) >$@
+$(B)/module_files.c: $(B)/embed $(MODULES)
+	@$(B)/embed module_files $(B)/modules/ $(MODULES) >$@
+$(B)/modules/%.spv: runtime/shaders/% $(SHADERS)
+	@mkdir -p $(@D)
+	@echo "shader $<"
+	@glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -o $@ $< >/dev/null
+	@spirv-val --target-env vulkan1.1 $@
 $(B)/embed: compiler/base/embed/embed.c
 	@mkdir -p $(@D)
 	@$(CC) $(STYLE) -O1 -o $@ $<

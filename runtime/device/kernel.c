@@ -102,11 +102,31 @@ static void *compile(void *user)
     return NULL;
 }
 
-/* Puts the text together and looks into the cache. */
+/* The SPIR-V that the program carries of a kernel without a scene. */
+static const EmbeddedFile *find_module(const KernelSource *source)
+{
+    size_t length = strlen(source->file);
+    for (const EmbeddedFile *file = module_files; file->name; file++)
+        if (!source->scene && !source->defines && strncmp(file->name, source->file, length) == 0 &&
+            strcmp(file->name + length, ".spv") == 0)
+            return file;
+    return NULL;
+}
+
+/* Takes the kernel from the program itself, or puts its text together and looks into the cache. */
 static bool begin(Gpu *gpu, Making *making, const KernelSource *source)
 {
     char maker[160];
-    *making = (Making){.file = source->file, .text = kernel_text(gpu, source)};
+    const EmbeddedFile *module = find_module(source);
+    *making = (Making){.file = source->file};
+    if (module) {
+        making->bytes = module->length;
+        making->found = gpu_alloc(gpu, module->length, 1, "load a kernel");
+        if (making->found)
+            memcpy(making->found, module->text, module->length);
+        return making->found != NULL;
+    }
+    making->text = kernel_text(gpu, source);
     if (!making->text)
         return false;
     snprintf(maker, sizeof maker, "%s: krs %s, glslang %s, SPIRV-Tools %s", source->file,
