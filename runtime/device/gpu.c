@@ -315,9 +315,24 @@ static bool choose_device(Gpu *gpu, const char *words)
 
 /* ---- Device ---- */
 
+static void read_properties(Gpu *gpu)
+{
+    VkPhysicalDeviceSubgroupProperties subgroups = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES,
+    };
+    VkPhysicalDeviceProperties2 properties = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+        .pNext = &subgroups,
+    };
+    vkGetPhysicalDeviceProperties2(gpu->physical, &properties);
+    gpu->properties = properties.properties;
+    gpu->votes = subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT &&
+                 subgroups.supportedOperations & VK_SUBGROUP_FEATURE_VOTE_BIT;
+}
+
 static bool device_create(Gpu *gpu)
 {
-    vkGetPhysicalDeviceProperties(gpu->physical, &gpu->properties);
+    read_properties(gpu);
     vkGetPhysicalDeviceMemoryProperties(gpu->physical, &gpu->memory);
     VkPhysicalDeviceFeatures offered, taken = {0};
     vkGetPhysicalDeviceFeatures(gpu->physical, &offered);

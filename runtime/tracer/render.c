@@ -49,7 +49,12 @@ static bool settle_options(Job *job)
     o->samples = first_of(o->samples, image->samples, 1);
     o->planes = first_of(o->planes, 0, KRS_PLANE_ALL);
     o->most_steps = first_of(o->most_steps, 0, MOST_STEPS);
+    if ((unsigned)o->trace >= KRS_TRACE_COUNT || (unsigned)o->schedule >= KRS_SCHEDULE_COUNT ||
+        (unsigned)o->shadows >= KRS_SHADOWS_COUNT)
+        return refuse(job, "there is no such method, schedule or kind of shadow");
     rendering_choose(job->rendering, &o->trace, &o->schedule);
+    if (o->schedule == KRS_SCHEDULE_REFILL && !job->gpu->votes)
+        return refuse(job, "the device has no votes among lanes, which `refill` needs");
     o->steps_at_once =
         first_of(o->steps_at_once, 0, o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
     o->error = o->error != 0 ? o->error : image->error != 0 ? image->error : 0.25;

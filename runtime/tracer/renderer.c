@@ -259,8 +259,9 @@ static bool buffers_create(KrsRendering *rendering)
 
 void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule)
 {
-    bool software = gpu_is_cpu(&rendering->renderer->gpu);
-    bool heavy = rendering->program->flops >= FLOPS_WORTH_REFILL;
+    const Gpu *gpu = &rendering->renderer->gpu;
+    bool       software = gpu_is_cpu(gpu);
+    bool       heavy = rendering->program->flops >= FLOPS_WORTH_REFILL && gpu->votes;
     if (*trace == KRS_TRACE_DEFAULT)
         *trace = KRS_TRACE_AUTO;
     if (*schedule == KRS_SCHEDULE_DEFAULT)

@@ -618,6 +618,9 @@ static void wrong_use_is_refused(void **state)
         {.error = NAN},
         {.slice_ms = -1},
         {.steps_at_once = 8193},
+        {.trace = KRS_TRACE_COUNT},
+        {.schedule = KRS_SCHEDULE_COUNT},
+        {.shadows = KRS_SHADOWS_COUNT},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         KrsPicture *picture;
