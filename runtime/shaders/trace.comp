@@ -1,7 +1,6 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
 #extension GL_KHR_shader_subgroup_vote : enable
-#extension GL_KHR_shader_subgroup_ballot : enable
 /*
  * trace.comp: primary rays, by sphere tracing, behind beams.
  *
@@ -38,7 +37,7 @@ const float MOST_OPEN = 0.015625;
 // Relaxation: how far beyond the distance; how fast the mean slope is learned.
 const float RELAXATION = 1.2;
 const float LEARNING = 0.3;
-// A beam ends where its ball is hardly wider than the tile (measurements.md: 1.05).
+// A beam ends where its ball is hardly wider than the tile.
 const float WIDER = 1.05;
 
 const bool SAVES = true;
