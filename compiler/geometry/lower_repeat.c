@@ -1,0 +1,296 @@
+/*
+ * lower_repeat.c: copies in the cells of a lattice, and in sectors around an axis.
+ */
+#include "compiler/geometry/lowering.h"
+
+#include <math.h>
+
+#include "compiler/graph/parity.h"
+
+/* Farther than any wall. */
+static const double NOWHERE = 1e30;
+
+/*
+ * The walls of cells go on for ever, and far away would still hold rays up and throw false
+ * penumbras; the distance to the box of all copies is a bound as well, and there the larger one.
+ */
+static Lowered outside_of_box(Lowering *l, const Shape *shape, Place place, Lowered result)
+{
+    Graph *g = l->graph;
+    if (result.distance == NODE_NONE || !box_is_finite(shape->box))
+        return result;
+    Node around     = box_distance(g, place.point, shape->box);
+    Node zero       = graph_number(g, 0);
+    Node beyond     = graph_op2(g, OP_less, zero, around);
+    Node larger     = graph_op2(g, OP_max, result.distance, around);
+    result.distance = graph_op3(g, OP_select, beyond, larger, result.distance);
+    return result;
+}
+
+/* Whether the content looks the same mirrored in the middle of its cell on an axis; `mapped`
+   is OP_POINT seen by the content, which may stand turned in its cell. */
+static bool is_symmetric(Lowering *l, const Shape *content, Node mapped, uint32_t axis)
+{
+    Lowering alone = {l->graph, l->scratch, false, l->most, false};
+    Lowered  inner = lower_shape(&alone, content, (Place){mapped, NODE_NONE, NODE_NONE, true});
+    l->overflow    = l->overflow || alone.overflow;
+    return inner.distance != NODE_NONE && graph_is_even(l->graph, inner.distance, axis, l->scratch);
+}
+
+/*
+ * On an axis that repeats, the content lies in its cell; what are the other copies to a point?
+ *   SYMMETRIC  content that is its own mirror image: the copies beyond a wall are the image of
+ *              this one, and never nearer.
+ *   WALLS      content that keeps a margin from the walls: the next copy is at least as far as
+ *              the wall plus the margin.  The least of that and the distance inside is safe and
+ *              continuous, but it is a bound only: not where a blend or an offset lies above.
+ *   NEIGHBOURS else: the copy on the nearer side is evaluated as well, which is exact
+ *              (math.md, section 4, "repetition").
+ */
+typedef enum Joining { SYMMETRIC, WALLS, NEIGHBOURS } Joining;
+
+static Joining choose_joining(Lowering *l, const Shape *content, Node mapped, uint32_t axis,
+                              double margin, double size, Place place)
+{
+    if (is_symmetric(l, content, mapped, axis))
+        return SYMMETRIC;
+    return margin >= 0.05 * size && !place.lipschitz ? WALLS : NEIGHBOURS;
+}
+
+typedef struct Lattice {
+    Node   period;        /* of the axis */
+    Node   shifted;       /* coordinate, moved so that cells have whole numbers */
+    Node   low, high;     /* numbers of the first and the last cell; NODE_NONE: endless */
+    double margin;        /* of the content */
+    double least_period;
+    bool   repeats;
+} Lattice;
+
+static Range frame_range(Lowering *l, Node node)
+{
+    if (graph_is_constant(l->graph, node))
+        return (Range){l->graph->items[node].number[0], l->graph->items[node].number[0]};
+    return graph_frame_fact(l->graph, node, l->scratch).value[0];
+}
+
+static Lattice lattice_of(Lowering *l, const Shape *shape, Place place, uint32_t axis)
+{
+    Graph  *g     = l->graph;
+    Lattice cells = {.repeats = shape->cells[axis] != 1};
+    cells.shifted = graph_component(g, place.point, axis);
+    if (!cells.repeats)
+        return cells;
+    cells.period       = graph_component(g, shape->values[0], axis);
+    cells.least_period = frame_range(l, cells.period).low;
+    Range content      = shape->children[0]->box.axis[axis];
+    cells.margin       = cell_margin(content, cells.least_period);
+    uint32_t count     = shape->cells[axis];
+    /* An even number of copies is centred between two of them. */
+    if (count && count % 2 == 0) {
+        Node half     = graph_number(g, 0.5);
+        Node offset   = graph_op2(g, OP_mul, cells.period, half);
+        cells.shifted = graph_op2(g, OP_add, cells.shifted, offset);
+    }
+    double last = floor(count / 2);
+    cells.high  = count ? graph_number(g, last) : NODE_NONE;
+    cells.low   = count ? graph_number(g, last + 1 - count) : NODE_NONE;
+    return cells;
+}
+
+static Node within_lattice(Graph *g, const Lattice *cells, Node number)
+{
+    return cells->low == NODE_NONE ? number
+                                   : graph_op3(g, OP_clamp, number, cells->low, cells->high);
+}
+
+/* Coordinate within the nearest cell. */
+static Node in_cell(Graph *g, const Lattice *cells, Node *number)
+{
+    Node ratio  = graph_op2(g, OP_div, cells->shifted, cells->period);
+    ratio       = graph_op1(g, OP_round, ratio);
+    *number     = within_lattice(g, cells, ratio);
+    Node start  = graph_op2(g, OP_mul, *number, cells->period);
+    return graph_op2(g, OP_sub, cells->shifted, start);
+}
+
+/* Coordinate within the neighbour cell on the side where the point is; the same cell again
+   where there is no neighbour. */
+static Node in_neighbour(Graph *g, const Lattice *cells, Node local, Node number)
+{
+    Node zero   = graph_number(g, 0), one = graph_number(g, 1), minus = graph_number(g, -1);
+    Node left   = graph_op2(g, OP_less, local, zero);
+    Node side   = graph_op3(g, OP_select, left, minus, one);
+    Node next   = graph_op2(g, OP_add, number, side);
+    next        = within_lattice(g, cells, next);
+    Node start  = graph_op2(g, OP_mul, next, cells->period);
+    return graph_op2(g, OP_sub, cells->shifted, start);
+}
+
+/* Distance to the wall of the nearest existing neighbour, plus the margin behind it. */
+static Node wall_distance(Graph *g, const Lattice *cells, Node local, Node number)
+{
+    Node half   = graph_number(g, 0.5);
+    Node wall   = graph_op2(g, OP_mul, cells->period, half);
+    Node right  = graph_op2(g, OP_sub, wall, local);
+    Node left   = graph_op2(g, OP_add, wall, local);
+    if (cells->low != NODE_NONE) {
+        Node far   = graph_number(g, NOWHERE);
+        Node first = graph_op2(g, OP_less_equal, number, cells->low);
+        Node last  = graph_op2(g, OP_less_equal, cells->high, number);
+        left       = graph_op3(g, OP_select, first, far, left);
+        right      = graph_op3(g, OP_select, last, far, right);
+    }
+    Node nearer = graph_op2(g, OP_min, left, right);
+    Node margin = graph_number(g, cells->margin);
+    return graph_op2(g, OP_add, nearer, margin);
+}
+
+/* The copy in the point's own cell, joined with those in the neighbour cells that count: at
+   most one on each axis, so the cells of a corner. */
+static Lowered join_neighbours(Lowering *l, const Shape *shape, Place place, const Node own[3],
+                               const Node other[3], const bool neighbour[3])
+{
+    Lowered result = lowered_nothing;
+    for (uint32_t corner = 0; corner < 8; corner++) {
+        Node parts[3];
+        bool exists = true;
+        for (uint32_t i = 0; i < 3; i++) {
+            bool across = corner >> i & 1;
+            exists      = exists && (!across || neighbour[i]);
+            parts[i]    = across ? other[i] : own[i];
+        }
+        if (!exists)
+            continue;
+        Node    point = graph_op(l->graph, OP_vec3, parts);
+        Lowered copy  = lower_shape(l, shape->children[0], place_at(place, point));
+        result        = join_two(l, blend_sharp, result, copy);
+    }
+    return result;
+}
+
+Lowered lower_repeat(Lowering *l, const Shape *shape, Place place)
+{
+    Graph *g = l->graph;
+    Node   own[3], other[3], walls = NODE_NONE;
+    bool   neighbour[3];
+    Node   plain = graph_leaf(g, OP_POINT);
+    for (uint32_t i = 0; i < 3; i++) {
+        Lattice cells = lattice_of(l, shape, place, i);
+        own[i] = other[i] = cells.shifted;
+        neighbour[i]      = false;
+        if (!cells.repeats)
+            continue;
+        Node number;
+        own[i]          = in_cell(g, &cells, &number);
+        Joining joining = choose_joining(l, shape->children[0], plain, i, cells.margin,
+                                         cells.least_period, place);
+        neighbour[i]    = joining == NEIGHBOURS;
+        if (neighbour[i])
+            other[i] = in_neighbour(g, &cells, own[i], number);
+        if (joining == WALLS) {
+            Node wall = wall_distance(g, &cells, own[i], number);
+            walls     = walls == NODE_NONE ? wall : graph_op2(g, OP_min, walls, wall);
+        }
+    }
+    Lowered result = join_neighbours(l, shape, place, own, other, neighbour);
+    if (walls == NODE_NONE || result.distance == NODE_NONE)
+        return result;
+    result.distance = graph_op2(g, OP_min, result.distance, walls);
+    return outside_of_box(l, shape, place, result);
+}
+
+/* Rotation about y that brings an angle to the x axis. */
+static Node turn_about_y(Graph *g, Node point, double angle)
+{
+    double c = cos(angle), s = sin(angle);
+    Node   r0 = graph_vec3(g, c, 0, s), r1 = graph_vec3(g, 0, 1, 0), r2 = graph_vec3(g, -s, 0, c);
+    return angle == 0 ? point : graph_op4(g, OP_turn, point, r0, r1, r2);
+}
+
+/* How far the content, turned by -angle, stays from the walls of the sector around +x. */
+static double sector_margin(Box content, double angle, double half_sector)
+{
+    double least = INFINITY, c = cos(angle), s = sin(angle);
+    for (int corner = 0; corner < 4; corner++) {
+        double x = corner & 1 ? content.axis[0].high : content.axis[0].low;
+        double z = corner & 2 ? content.axis[2].high : content.axis[2].low;
+        double along = c * x + s * z, across = -s * x + c * z;
+        least = fmin(least, along * sin(half_sector) - fabs(across) * cos(half_sector));
+    }
+    return isnan(least) ? -INFINITY : least;
+}
+
+static Lowered all_around(Lowering *l, const Shape *shape, Place place, uint32_t first,
+                          uint32_t count)
+{
+    if (count == 1) {
+        Node point = turn_about_y(l->graph, place.point, 2 * M_PI * first / shape->cells[0]);
+        return lower_shape(l, shape->children[0], place_at(place, point));
+    }
+    Lowered a = all_around(l, shape, place, first, count / 2);
+    Lowered b = all_around(l, shape, place, first + count / 2, count - count / 2);
+    return join_two(l, blend_sharp, a, b);
+}
+
+/* The copy in the sector on the side of a point that lies in its own, turned towards +x. */
+static Lowered lower_next_sector(Lowering *l, const Shape *shape, Place place, Node local,
+                                 double angle)
+{
+    Graph *g      = l->graph;
+    double sector = 2 * (M_PI / shape->cells[0]);
+    Node   z      = graph_component(g, local, 2), zero = graph_number(g, 0);
+    Node   right  = graph_op2(g, OP_less, zero, z);
+    Node   plus   = turn_about_y(g, local, sector);
+    Node   minus  = turn_about_y(g, local, -sector);
+    Node   next   = graph_op3(g, OP_select, right, plus, minus);
+    Node   point  = turn_about_y(g, next, -angle);
+    return lower_shape(l, shape->children[0], place_at(place, point));
+}
+
+/* Distance to the nearer wall of the sector around +x, plus the margin behind it. */
+static Node sector_wall(Graph *g, Node local, double half_sector, double margin)
+{
+    Node z      = graph_component(g, local, 2), x = graph_component(g, local, 0);
+    Node sine   = graph_number(g, sin(half_sector)), cosine = graph_number(g, cos(half_sector));
+    Node along  = graph_op2(g, OP_mul, x, sine);
+    Node aside  = graph_op1(g, OP_abs, z);
+    aside       = graph_op2(g, OP_mul, aside, cosine);
+    Node wall   = graph_op2(g, OP_sub, along, aside);
+    Node behind = graph_number(g, margin);
+    return graph_op2(g, OP_add, wall, behind);
+}
+
+/* Copies around y: the point is turned into the sector of the content, and the sectors join as
+   cells do.  Content that crosses the walls is written out, copy by copy. */
+Lowered lower_repeat_polar(Lowering *l, const Shape *shape, Place place)
+{
+    Graph *g           = l->graph;
+    double half_sector = M_PI / shape->cells[0];
+    Box    content     = shape->children[0]->box;
+    double centre[3];
+    box_centre(content, centre);
+    double angle  = box_is_finite(content) ? atan2(centre[2], centre[0]) : 0;
+    double margin = sector_margin(content, angle, half_sector);
+    if (shape->cells[0] < 3 || margin < 0)
+        return all_around(l, shape, place, 0, shape->cells[0]);
+
+    Node    facing = turn_about_y(g, place.point, angle);
+    Node    count  = graph_number(g, shape->cells[0]);
+    Node    local  = graph_op2(g, OP_cell_polar, facing, count);
+    Node    back   = turn_about_y(g, local, -angle);
+    Lowered result = lower_shape(l, shape->children[0], place_at(place, back));
+    Node    mapped = turn_about_y(g, graph_leaf(g, OP_POINT), -angle);
+    double  width  = hypot(centre[0], centre[2]) * sin(half_sector);
+    Joining joining = choose_joining(l, shape->children[0], mapped, 2, margin, width, place);
+    if (joining == SYMMETRIC)
+        return result;
+    if (joining == NEIGHBOURS) {
+        Lowered copy = lower_next_sector(l, shape, place, local, angle);
+        return join_two(l, blend_sharp, result, copy);
+    }
+    if (result.distance == NODE_NONE)
+        return result;
+    Node wall       = sector_wall(g, local, half_sector, margin);
+    result.distance = graph_op2(g, OP_min, result.distance, wall);
+    return outside_of_box(l, shape, place, result);
+}

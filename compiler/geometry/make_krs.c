@@ -1,0 +1,105 @@
+/*
+ * make_krs.c: sequences: their bounding volumes, level by level.
+ */
+#include "compiler/geometry/elaborate.h"
+
+#include <math.h>
+
+#include "compiler/geometry/reach.h"
+
+/* A number that does not move in its range, or none. */
+static bool read_number(Range range, double *number)
+{
+    *number = 0.5 * (range.low + range.high);
+    return range.high - range.low <= 1e-12 * (1 + fabs(*number));
+}
+
+/* The numbers of a stage; false when some are not known when compiling. */
+static bool read_stage(Elaboration *e, const Shape *krs, const Stage *stage, ReachStage *reach)
+{
+    bool known = true;
+    if (stage->kind == STAGE_KERNEL) {
+        reach->kind   = REACH_KERNEL;
+        reach->kernel = krs->children[stage->kernel]->box;
+    } else if (stage->kind == STAGE_REFLECT) {
+        reach->kind = REACH_REFLECT;
+        for (uint32_t i = 0; i < 3; i++)
+            known = read_number(node_range(e, stage->normal, i), &reach->normal[i]) && known;
+        known = read_number(node_range(e, stage->offset, 0), &reach->offset) && known;
+    } else {
+        double scale;
+        reach->kind = REACH_MAP;
+        known = read_number(node_range(e, stage->map.scale, 0), &scale);
+        for (uint32_t i = 0; i < 3; i++) {
+            for (uint32_t j = 0; j < 3; j++) {
+                double *entry = &reach->rows[i][j];
+                known = read_number(node_range(e, stage->map.rows[i], j), entry) && known;
+                *entry *= scale;
+            }
+            known = read_number(node_range(e, stage->map.shift, i), &reach->shift[i]) && known;
+        }
+    }
+    return known;
+}
+
+/* Boxes and balls grow along the sequence side by side; each is tight where the other is not
+   (turned mirrors blow boxes up), so each is cut to the other's size at every level.  While all
+   numbers are known, a search then finds how far the set really reaches. */
+static Box bound_sequence(Elaboration *e, const Shape *krs)
+{
+    ReachStage *reach = arena_new_array(e->arena, ReachStage, krs->stage_count + 1);
+    bool        known = true;
+    Box         box   = box_empty;
+    Ball        ball  = ball_around(box_empty);
+    for (uint32_t i = 0; i < krs->stage_count; i++) {
+        const Stage *stage = &krs->stages[i];
+        if (stage->kind == STAGE_KERNEL) {
+            Box kernel = krs->children[stage->kernel]->box;
+            box        = box_hull(box, kernel);
+            ball       = ball_hull(ball, ball_around(kernel));
+        } else if (stage->kind == STAGE_REFLECT) {
+            Range u[3];
+            for (uint32_t k = 0; k < 3; k++)
+                u[k] = node_range(e, stage->normal, k);
+            Range w = node_range(e, stage->offset, 0);
+            box     = box_fold(box, u, w);
+            ball    = ball_fold(ball, u, w);
+        } else {
+            box  = similarity_box(e, &stage->map, box);
+            ball = ball_around(similarity_box(e, &stage->map, ball_box(ball)));
+        }
+        box          = box_common(box, ball_box(ball));
+        Ball tighter = ball_around(box);
+        if (tighter.radius < ball.radius)
+            ball = tighter;
+        known         = known && read_stage(e, krs, stage, &reach[i]);
+        reach[i].box  = box;
+        reach[i].ball = ball;
+        if (known && stage->kind == STAGE_REFLECT)
+            reach_tighten(reach, i + 1);
+        box  = reach[i].box;
+        ball = reach[i].ball;
+    }
+    return box;
+}
+
+const Shape *make_krs(Elaboration *e, const Stage *stages, uint32_t stage_count,
+                      const Shape *const *kernels, uint32_t kernel_count, Span span)
+{
+    Shape *krs       = shape_new(e, SHAPE_KRS, "krs", span, kernels, kernel_count);
+    krs->stages      = stages;
+    krs->stage_count = stage_count;
+    krs->exact       = false;
+    krs->instances   = 0;
+    krs->levels      = 0;
+    for (uint32_t i = 0; i < stage_count; i++) {
+        if (stages[i].kind == STAGE_KERNEL)
+            krs->instances += kernels[stages[i].kernel]->instances;
+        else if (stages[i].kind == STAGE_REFLECT) {
+            krs->instances *= 2;
+            krs->levels++;
+        }
+    }
+    krs->box = bound_sequence(e, krs);
+    return krs;
+}
