@@ -1,0 +1,335 @@
+/*
+ * derive.c: derivatives of expressions, as expressions.
+ *
+ * One loop over the needed nodes, operands first (forward mode): three derivatives a node.  The
+ * rules of operations that work component by component are the columns da, db, dc of ops.def,
+ * written there for ranges and read here as makers of nodes; the others have theirs below.
+ */
+#include "compiler/graph/derive.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "compiler/graph/evaluate.h"
+
+typedef struct Derivation {
+    Graph     *graph;
+    Smoothness smoothness; /* the least of all so far */
+} Derivation;
+
+/* ---- the functions of the columns da, db, dc, for nodes ---- */
+
+static Node number(Derivation *d, double value) { return graph_number(d->graph, value); }
+
+static Node times(Derivation *d, Node a, Node b) { return graph_op2(d->graph, OP_mul, a, b); }
+
+static Node over(Derivation *d, Node a, Node b) { return graph_op2(d->graph, OP_div, a, b); }
+
+/* A derivative that holds only where nothing jumps or breaks off. */
+static Node between(Derivation *d, Node derivative)
+{
+    if (d->smoothness > DERIVED_BETWEEN)
+        d->smoothness = DERIVED_BETWEEN;
+    return derivative;
+}
+
+/* 1 where a < b, else 0, component by component. */
+static Node is_less(Derivation *d, Node a, Node b)
+{
+    Node not_less = graph_op2(d->graph, OP_step, b, a);
+    Node one      = number(d, 1);
+    return between(d, graph_op2(d->graph, OP_sub, one, not_less));
+}
+
+/* -1/2 a^(-3/2), with r = a^(-1/2). */
+static Node inversesqrt_slope(Derivation *d, Node r)
+{
+    Node cube = times(d, graph_op1(d->graph, OP_square, r), r);
+    return times(d, number(d, -0.5), cube);
+}
+
+/* 1 + sign * a^2 */
+static Node one_and_square(Derivation *d, Node a, Op sign)
+{
+    Node square = graph_op1(d->graph, OP_square, a);
+    return graph_op2(d->graph, sign, number(d, 1), square);
+}
+
+/* asin and acos take what is beyond 1 for 1: there they do not change. */
+static Node asin_slope(Derivation *d, Node a)
+{
+    Node rest   = one_and_square(d, a, OP_sub);
+    Node inside = is_less(d, number(d, 0), rest);
+    Node safe   = graph_op2(d->graph, OP_max, rest, number(d, 1e-300));
+    return times(d, inside, graph_op1(d->graph, OP_inversesqrt, safe));
+}
+
+static Node sech_square(Derivation *d, Node a)
+{
+    return one_and_square(d, graph_op1(d->graph, OP_tanh, a), OP_sub);
+}
+
+static Node pow_slope(Derivation *d, Node a, Node b)
+{
+    Node less = graph_op2(d->graph, OP_sub, b, number(d, 1));
+    return times(d, b, graph_power(d->graph, a, less));
+}
+
+static Node atan2_slope(Derivation *d, Node a, Node b, Node numerator)
+{
+    Node squares = graph_op2(d->graph, OP_add, graph_op1(d->graph, OP_square, a),
+                             graph_op1(d->graph, OP_square, b));
+    return over(d, numerator, squares);
+}
+
+/* Of h^2 (3 - 2 h), h = (c - a) / (b - a) clamped: by c it is 6 h (1 - h) / (b - a), by the edges
+   the same less the parts that they have in h. */
+static Node smoothstep_slope(Derivation *d, Node a, Node b, Node c, int operand)
+{
+    Graph *g    = d->graph;
+    Node   zero = number(d, 0), one = number(d, 1);
+    Node   width = graph_op2(g, OP_sub, b, a);
+    Node   part  = over(d, graph_op2(g, OP_sub, c, a), width);
+    Node   h     = graph_op3(g, OP_clamp, part, zero, one);
+    Node   rest  = graph_op2(g, OP_sub, one, h);
+    Node   slope = over(d, times(d, times(d, h, rest), number(d, 6)), width);
+    if (operand == 0)
+        slope = graph_op1(g, OP_neg, times(d, slope, rest));
+    else if (operand == 1)
+        slope = graph_op1(g, OP_neg, times(d, slope, h));
+    return between(d, slope);
+}
+
+#define ZERO number(d, 0)
+#define ONE number(d, 1)
+#define TWO number(d, 2)
+#define HALF number(d, 0.5)
+#define LN2 number(d, M_LN2)
+#define MINUS_ONE number(d, -1)
+#define ANYTHING between(d, ZERO)
+#define jumps(steps) between(d, ZERO)
+#define unless_jumps(steps, derivative) between(d, derivative)
+#define range_sign(a) between(d, graph_op1(d->graph, OP_sign, a))
+#define range_mul(a, b) times(d, a, b)
+#define range_div(a, b) over(d, a, b)
+#define range_add(a, b) graph_op2(d->graph, OP_add, a, b)
+#define range_sub(a, b) graph_op2(d->graph, OP_sub, a, b)
+#define range_neg(a) graph_op1(d->graph, OP_neg, a)
+#define range_square(a) graph_op1(d->graph, OP_square, a)
+#define range_sin(a) graph_op1(d->graph, OP_sin, a)
+#define range_cos(a) graph_op1(d->graph, OP_cos, a)
+#define range_sinh(a) graph_op1(d->graph, OP_sinh, a)
+#define range_cosh(a) graph_op1(d->graph, OP_cosh, a)
+#define range_floor(a) graph_op1(d->graph, OP_floor, a)
+#define range_max(a, b) graph_op2(d->graph, OP_max, a, b)
+#define range_above(a, least) (a)
+#define range_inversesqrt_slope(a, r) inversesqrt_slope(d, r)
+#define range_tan_slope(r) one_and_square(d, r, OP_add)
+#define range_asin_slope(a) asin_slope(d, a)
+#define range_sech_square(a) sech_square(d, a)
+#define range_pow_slope(a, b) pow_slope(d, a, b)
+#define range_pow_slope_exponent(a, r) times(d, r, graph_op1(d->graph, OP_log, a))
+#define range_atan2_slope(a, b, numerator) atan2_slope(d, a, b, numerator)
+#define range_is_less(a, b) is_less(d, a, b)
+#define range_smoothstep_slope(a, b, c, operand) smoothstep_slope(d, a, b, c, operand)
+
+/* The derivative of a row by operand `which`; r is the row's own node. */
+typedef Node Partial(Derivation *d, int which, Node a, Node b, Node c, Node r);
+#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning)                            \
+    static Node partial_##name(Derivation *d, int which, Node a, Node b, Node c, Node r)           \
+    {                                                                                              \
+        (void)a, (void)b, (void)c, (void)r;                                                        \
+        return which == 0 ? (da) : which == 1 ? (db) : (dc);                                       \
+    }
+#define OP(name, signature, glsl, evaluate, facts, meaning)
+#include "compiler/graph/ops.def"
+#undef MAP
+#undef OP
+
+static Partial *const partials[OP_COUNT] = {
+#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning) [OP_##name] = partial_##name,
+#define OP(name, signature, glsl, evaluate, facts, meaning)
+#include "compiler/graph/ops.def"
+#undef MAP
+#undef OP
+};
+
+/* ---- rules ---- */
+
+static bool is_zero(const Graph *graph, Node node)
+{
+    const Expr *e = &graph->items[node];
+    bool        zero = e->op == OP_CONSTANT;
+    for (uint32_t i = 0; zero && e->type <= TYPE_VEC4 && i < (uint32_t)e->type; i++)
+        zero = e->number[i] == 0;
+    return zero;
+}
+
+static Node zero_of(Graph *graph, GraphType type)
+{
+    static const double zeros[4] = {0};
+    return graph_constant(graph, type, zeros);
+}
+
+static Node plus(Graph *graph, Node a, Node b)
+{
+    if (is_zero(graph, a) || is_zero(graph, b))
+        return is_zero(graph, a) ? b : a;
+    return graph_op2(graph, OP_add, a, b);
+}
+
+/* Sum over the operands of the row's derivative times the operand's own. */
+static Node derive_map(Derivation *d, Node node, const Node *inner)
+{
+    Expr  e  = d->graph->items[node];
+    Node  a  = e.operands[0], b = e.operand_count > 1 ? e.operands[1] : a;
+    Node  c  = e.operand_count > 2 ? e.operands[2] : a;
+    Node  sum = zero_of(d->graph, e.type);
+    for (int i = 0; i < e.operand_count; i++) {
+        if (is_zero(d->graph, inner[i]))
+            continue;
+        Node factor = partials[e.op](d, i, a, b, c, node);
+        if (is_zero(d->graph, factor))
+            continue;
+        sum = plus(d->graph, sum, times(d, factor, inner[i]));
+    }
+    return sum;
+}
+
+/* op(da, b) + op(a, db): what is linear in both of its operands. */
+static Node derive_bilinear(Graph *g, Op op, const Expr *e, const Node *inner)
+{
+    Node sum = zero_of(g, e->type);
+    if (!is_zero(g, inner[0]))
+        sum = graph_op2(g, op, inner[0], e->operands[1]);
+    if (!is_zero(g, inner[1])) {
+        Node second = graph_op2(g, op, e->operands[0], inner[1]);
+        sum         = plus(g, sum, second);
+    }
+    return sum;
+}
+
+static Node derive_length(Graph *g, const Expr *e, Node node, const Node *inner)
+{
+    Node along = graph_op2(g, OP_dot, e->operands[0], inner[0]);
+    return graph_op2(g, OP_div, along, node);
+}
+
+/* (a' - n (n.a')) / |a| */
+static Node derive_normalize(Graph *g, const Expr *e, Node node, const Node *inner)
+{
+    Node along  = graph_op2(g, OP_dot, node, inner[0]);
+    Node radial = graph_op2(g, OP_scale, node, along);
+    Node across = graph_op2(g, OP_sub, inner[0], radial);
+    Node size   = graph_op1(g, OP_length, e->operands[0]);
+    return graph_op2(g, OP_scale, across, graph_op2(g, OP_div, graph_number(g, 1), size));
+}
+
+/* Folds mirror directions as they mirror points: b the unit normal. */
+static Node derive_fold(Derivation *d, const Expr *e, const Node *inner)
+{
+    Graph *g     = d->graph;
+    Node   front = graph_op3(g, OP_front, e->operands[0], e->operands[1], e->operands[2]);
+    Node   along = graph_op2(g, OP_dot, e->operands[1], inner[0]);
+    Node   twice = graph_op2(g, OP_mul, along, graph_number(g, 2));
+    Node   mirrored = graph_op2(g, OP_sub, inner[0], graph_op2(g, OP_scale, e->operands[1], twice));
+    return between(d, graph_op3(g, OP_select, front, mirrored, inner[0]));
+}
+
+/* Where only some operands may depend on the point. */
+static bool others_are_still(const Graph *g, const Node *inner, int from, int count)
+{
+    for (int i = from; i < count; i++)
+        if (!is_zero(g, inner[i]))
+            return false;
+    return true;
+}
+
+/* The derivative of `node`, those of its operands in `inner`; NODE_NONE: no rule. */
+static Node derive_node(Derivation *d, Node node, const Node *inner)
+{
+    Graph *g = d->graph;
+    Expr   e = g->items[node];
+    if (partials[e.op])
+        return derive_map(d, node, inner);
+    if (e.type <= TYPE_VEC4 && others_are_still(g, inner, 0, e.operand_count) &&
+        e.op != OP_select)
+        return zero_of(g, e.type);
+    switch (e.op) {
+    case OP_COMPONENT: return graph_component(g, inner[0], e.index);
+    case OP_splat2: case OP_splat3: case OP_splat4:
+    case OP_vec2: case OP_vec3: case OP_vec4: return graph_op(g, e.op, inner);
+    case OP_dot: case OP_cross: case OP_scale: return derive_bilinear(g, e.op, &e, inner);
+    case OP_length:    return derive_length(g, &e, node, inner);
+    case OP_normalize: return derive_normalize(g, &e, node, inner);
+    case OP_select:
+        return between(d, graph_op3(g, OP_select, e.operands[0], inner[1], inner[2]));
+    case OP_turn:
+        return others_are_still(g, inner, 1, 4)
+                   ? graph_op4(g, OP_turn, inner[0], e.operands[1], e.operands[2], e.operands[3])
+                   : NODE_NONE;
+    case OP_fold: return others_are_still(g, inner, 1, 3) ? derive_fold(d, &e, inner) : NODE_NONE;
+    case OP_cell: return others_are_still(g, inner, 1, 4) ? between(d, inner[0]) : NODE_NONE;
+    default:      return NODE_NONE;
+    }
+}
+
+/* The derivatives along one axis of all nodes on the tape; NODE_NONE: reached one without. */
+static Node derive_along(Derivation *d, const Tape *tape, int axis, Node *made, Node *blame)
+{
+    Graph *g = d->graph;
+    for (size_t i = 0; i < tape->count; i++) {
+        Node node = tape->nodes[i];
+        Expr e    = g->items[node];
+        Node inner[MAX_OPERANDS];
+        g->here = e.span;
+        if (e.type > TYPE_VEC4)
+            made[i] = zero_of(g, TYPE_FLOAT); /* conditions: between them nothing changes */
+        else if (e.op == OP_POINT)
+            made[i] = graph_vec3(g, axis == 0, axis == 1, axis == 2);
+        else if (e.time != TIME_POINT)
+            made[i] = zero_of(g, e.type);
+        else {
+            for (int k = 0; k < e.operand_count; k++)
+                inner[k] = made[tape_place(tape, e.operands[k])];
+            made[i] = e.operand_count ? derive_node(d, node, inner) : NODE_NONE;
+        }
+        if (made[i] == NODE_NONE) {
+            *blame = node;
+            return NODE_NONE;
+        }
+    }
+    return made[tape->count - 1];
+}
+
+Smoothness graph_derive(Graph *graph, Node root, Node partial[3], Node *blame, Arena *scratch)
+{
+    Derivation d    = {graph, DERIVED_SMOOTH};
+    Span       here = graph->here;
+    Node       culprit = NODE_NONE;
+    Tape       tape = tape_new(graph, &root, 1, scratch);
+    assert(graph->items[root].type <= TYPE_VEC4);
+    /* The root's place: frame-time nodes come first on a tape, so it need not be the last. */
+    size_t place = tape_place(&tape, root);
+    Node  *made  = arena_new_array(scratch, Node, tape.count);
+    for (int axis = 0; axis < 3; axis++) {
+        if (derive_along(&d, &tape, axis, made, &culprit) == NODE_NONE) {
+            graph->here = here;
+            if (blame)
+                *blame = culprit;
+            return DERIVED_NOT;
+        }
+        partial[axis] = made[place];
+    }
+    graph->here = here;
+    return d.smoothness;
+}
+
+Smoothness graph_gradient(Graph *graph, Node root, Node *gradient, Node *blame, Arena *scratch)
+{
+    Node       partial[3];
+    Smoothness smoothness = graph_derive(graph, root, partial, blame, scratch);
+    if (smoothness != DERIVED_NOT)
+        *gradient = graph_op(graph, OP_vec3, partial);
+    return smoothness;
+}
