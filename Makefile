@@ -16,7 +16,7 @@ CLANG   ?= clang-14
 # Sources in the order of the pipeline: reading down this list is reading the program.
 BASE     := $(addprefix compiler/base/, arena.c text.c source.c diag.c diag_text.c)
 FRONT    := $(addprefix compiler/front/, lexer.c syntax.c parser.c parse_expression.c parse.c names.c)
-GRAPH    := $(addprefix compiler/graph/, graph.c derive.c simplify.c range.c rules.c facts.c parity.c evaluate.c print.c)
+GRAPH    := $(addprefix compiler/graph/, graph.c derive.c series.c simplify.c range.c rules.c facts.c parity.c evaluate.c print.c)
 GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c arithmetic.c arguments.c builtins.c functions.c \
                 expression.c map.c moebius.c make.c make_krs.c declare.c methods.c looks.c scope.c statements.c print.c \
                 lower.c lower_repeat.c lower_krs.c)

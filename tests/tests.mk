@@ -5,14 +5,14 @@
 
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c)
 UNIT        := front film tracer methods writer memory validate frame cache compiled
-PROPERTY    := ops graph derive slope parity reach
+PROPERTY    := ops graph derive series slope parity reach
 ORACLES     := self primitives krs_expand operators device picture coverage shadows
 FUZZ        := sentences
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
 SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/validate tests/unit/memory tests/unit/cache tests/unit/frame tests/property/ops \
-               tests/property/graph tests/property/derive tests/property/slope tests/property/parity tests/property/reach tests/oracle/primitives tests/oracle/krs_expand tests/oracle/operators \
+               tests/property/graph tests/property/derive tests/property/series tests/property/slope tests/property/parity tests/property/reach tests/oracle/primitives tests/oracle/krs_expand tests/oracle/operators \
                tests/fuzz/sentences
 SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/editors.sh tests/lint.sh \
                tests/errors.sh tests/examples.sh $(sort $(filter-out tests/cli/common.sh, $(wildcard tests/cli/*.sh)))

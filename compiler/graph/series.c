@@ -1,0 +1,361 @@
+/*
+ * series.c: power series of polynomials, along lines and in balls.
+ *
+ * One loop over the nodes that the polynomial needs.  Along a line a product is the product of
+ * the series.  In a ball the parts of order k are bounded by their sizes: the size of a product
+ * is at most the product of the sizes; the first order alone is exact, as its gradient is carried
+ * along, because it decides where the bound is needed most, near the surface.
+ */
+#include "compiler/graph/series.h"
+
+#include <assert.h>
+#include <math.h>
+
+#include "compiler/graph/evaluate.h"
+
+/* The series of one number, in a ball with the gradient beside it, and while the degree is at most
+   2 and the numbers are known, the second derivatives: x^2 + y^2 + z^2 is r^2 in size, not 3 r^2. */
+typedef struct Part {
+    Series series;
+    Node   gradient; /* VEC3; NODE_NONE along lines */
+    bool   quadric;
+    double hessian[3][3];
+} Part;
+
+/* Of a number, or of the components of a vector. */
+typedef struct Parts {
+    uint32_t count;
+    Part    *items;
+} Parts;
+
+typedef struct Expansion {
+    Graph *graph;
+    Arena *scratch;
+    Node   origin, direction; /* direction: NODE_NONE in a ball */
+    SeriesFault *fault;
+} Expansion;
+
+static bool in_ball(const Expansion *x) { return x->direction == NODE_NONE; }
+
+static bool is_number(const Graph *graph, Node node, double number)
+{
+    return graph->items[node].op == OP_CONSTANT && graph->items[node].number[0] == number;
+}
+
+static Node plus(Graph *g, Node a, Node b)
+{
+    if (is_number(g, a, 0) || is_number(g, b, 0))
+        return is_number(g, a, 0) ? b : a;
+    return graph_op2(g, OP_add, a, b);
+}
+
+static Node times(Graph *g, Node a, Node b)
+{
+    if (is_number(g, a, 0) || is_number(g, b, 1))
+        return a;
+    if (is_number(g, b, 0) || is_number(g, a, 1))
+        return b;
+    return a == b ? graph_op1(g, OP_square, a) : graph_op2(g, OP_mul, a, b);
+}
+
+static Node size_of(const Expansion *x, Node a) { return graph_op1(x->graph, OP_abs, a); }
+
+/* Order k of a series, as a size in balls. */
+static Node order(const Expansion *x, const Series *series, uint32_t k)
+{
+    return k == 0 && in_ball(x) ? size_of(x, series->c[0]) : series->c[k];
+}
+
+static void set_gradient(const Expansion *x, Part *part, Node gradient)
+{
+    part->gradient = gradient;
+    if (in_ball(x) && part->series.degree > 0)
+        part->series.c[1] = graph_op1(x->graph, OP_length, gradient);
+}
+
+/* The largest size of an eigenvalue of a symmetric matrix: how fast what has these second
+   derivatives can bend in any direction. */
+static double largest_bend(double a[3][3])
+{
+    double mean = (a[0][0] + a[1][1] + a[2][2]) / 3, m[3][3], deviation = 0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            m[i][j] = a[i][j] - (i == j ? mean : 0);
+            deviation += m[i][j] * m[i][j] / 6;
+        }
+    deviation = sqrt(deviation);
+    double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+    double cubed  = 2 * deviation * deviation * deviation;
+    double angle  = acos(cubed > 0 ? fmin(fmax(determinant / cubed, -1), 1) : 1) / 3;
+    double top    = mean + 2 * deviation * cos(angle);
+    double bottom = mean + 2 * deviation * cos(angle + 2 * M_PI / 3);
+    return fmax(fabs(top), fabs(bottom)) * (1 + 1e-7);
+}
+
+/* Puts what the second derivatives say into order 2. */
+static void settle_quadric(const Expansion *x, Part *part)
+{
+    if (part->quadric && part->series.degree == 2)
+        part->series.c[2] = graph_number(x->graph, 0.5 * largest_bend(part->hessian));
+}
+
+static bool gradient_is_known(const Expansion *x, const Part *part)
+{
+    return part->quadric && part->series.degree <= 1 && graph_is_constant(x->graph, part->gradient);
+}
+
+static Node no_gradient(const Expansion *x)
+{
+    return in_ball(x) ? graph_vec3(x->graph, 0, 0, 0) : NODE_NONE;
+}
+
+static Part constant_part(const Expansion *x, Node node)
+{
+    Part part = {.gradient = no_gradient(x), .quadric = in_ball(x)};
+    part.series.c[0] = node;
+    return part;
+}
+
+/* Coordinate i of the point. */
+static Part coordinate_part(const Expansion *x, uint32_t i)
+{
+    Part part = {.series = {.degree = 1}, .quadric = in_ball(x)};
+    part.series.c[0] = graph_component(x->graph, x->origin, i);
+    if (in_ball(x)) {
+        part.gradient    = graph_vec3(x->graph, i == 0, i == 1, i == 2);
+        part.series.c[1] = graph_number(x->graph, 1);
+    } else {
+        part.gradient    = NODE_NONE;
+        part.series.c[1] = graph_component(x->graph, x->direction, i);
+    }
+    return part;
+}
+
+static Part add_parts(const Expansion *x, Part a, Part b)
+{
+    Graph       *g = x->graph;
+    const Series *s = &a.series, *t = &b.series;
+    Part         sum = {.series = {.degree = s->degree > t->degree ? s->degree : t->degree}};
+    for (uint32_t k = 0; k <= sum.series.degree; k++)
+        sum.series.c[k] = k > s->degree   ? t->c[k]
+                          : k > t->degree ? s->c[k]
+                                          : plus(g, s->c[k], t->c[k]);
+    set_gradient(x, &sum,
+                 in_ball(x) ? graph_op2(g, OP_add, a.gradient, b.gradient) : NODE_NONE);
+    sum.quadric = a.quadric && b.quadric;
+    for (int i = 0; i < 9; i++)
+        sum.hessian[i / 3][i % 3] = a.hessian[i / 3][i % 3] + b.hessian[i / 3][i % 3];
+    settle_quadric(x, &sum);
+    return sum;
+}
+
+static Part negate_part(const Expansion *x, Part a)
+{
+    for (uint32_t k = 0; k <= a.series.degree; k++)
+        if (k == 0 || !in_ball(x))
+            a.series.c[k] = graph_op1(x->graph, OP_neg, a.series.c[k]);
+    if (in_ball(x))
+        a.gradient = graph_op1(x->graph, OP_neg, a.gradient);
+    for (int i = 0; i < 9; i++)
+        a.hessian[i / 3][i % 3] = -a.hessian[i / 3][i % 3];
+    return a;
+}
+
+/* The second derivatives of a product of two known linear numbers, or of a quadric and a known
+   constant. */
+static void multiply_quadrics(const Expansion *x, const Part *a, const Part *b, Part *product)
+{
+    const Expr *u = &x->graph->items[a->gradient], *v = &x->graph->items[b->gradient];
+    bool        scaled = a->series.degree == 0 || b->series.degree == 0;
+    const Part *other = a->series.degree == 0 ? b : a, *factor = a->series.degree == 0 ? a : b;
+    if (scaled) {
+        const Expr *number = &x->graph->items[factor->series.c[0]];
+        product->quadric   = other->quadric && number->op == OP_CONSTANT;
+        for (int i = 0; product->quadric && i < 9; i++)
+            product->hessian[i / 3][i % 3] = number->number[0] * other->hessian[i / 3][i % 3];
+    } else if (gradient_is_known(x, a) && gradient_is_known(x, b)) {
+        product->quadric = true;
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                product->hessian[i][j] = u->number[i] * v->number[j] + v->number[i] * u->number[j];
+    }
+    settle_quadric(x, product);
+}
+
+static Part multiply_parts(const Expansion *x, Part a, Part b)
+{
+    Graph *g       = x->graph;
+    Part   product = {.series = {.degree = a.series.degree + b.series.degree}};
+    assert(product.series.degree <= MOST_DEGREE);
+    product.series.c[0] = times(g, a.series.c[0], b.series.c[0]);
+    for (uint32_t k = 1; k <= product.series.degree; k++) {
+        Node sum = graph_number(g, 0);
+        for (uint32_t i = 0; i <= k; i++) {
+            if (i > a.series.degree || k - i > b.series.degree)
+                continue;
+            Node term = times(g, order(x, &a.series, i), order(x, &b.series, k - i));
+            sum       = plus(g, sum, term);
+        }
+        product.series.c[k] = sum;
+    }
+    Node gradient = NODE_NONE;
+    if (in_ball(x)) {
+        Node first  = graph_op2(g, OP_scale, b.gradient, a.series.c[0]);
+        Node second = graph_op2(g, OP_scale, a.gradient, b.series.c[0]);
+        gradient    = graph_op2(g, OP_add, first, second);
+    }
+    set_gradient(x, &product, gradient);
+    if (in_ball(x))
+        multiply_quadrics(x, &a, &b, &product);
+    return product;
+}
+
+static bool is_constant(Part part) { return part.series.degree == 0; }
+
+static Parts new_parts(const Expansion *x, uint32_t count)
+{
+    return (Parts){count, arena_new_array(x->scratch, Part, count)};
+}
+
+/* Component i of an operand; a number counts for all components. */
+static Part part_of(const Parts *parts, uint32_t i) { return parts->items[parts->count > i ? i : 0]; }
+
+static bool multiply(Expansion *x, Node node, Part a, Part b, Part *product)
+{
+    uint32_t degree = a.series.degree + b.series.degree;
+    if (degree > MOST_DEGREE) {
+        *x->fault = (SeriesFault){node, degree};
+        return false;
+    }
+    *product = multiply_parts(x, a, b);
+    return true;
+}
+
+/* Sums of products of components: dot, and each component of cross. */
+static bool dot_parts(Expansion *x, Node node, const Parts *a, const Parts *b, Part *sum)
+{
+    for (uint32_t i = 0; i < a->count; i++) {
+        Part product;
+        if (!multiply(x, node, a->items[i], b->items[i], &product))
+            return false;
+        *sum = i == 0 ? product : add_parts(x, *sum, product);
+    }
+    return true;
+}
+
+static bool cross_parts(Expansion *x, Node node, const Parts *a, const Parts *b, Parts *result)
+{
+    for (uint32_t i = 0; i < 3; i++) {
+        uint32_t j = (i + 1) % 3, k = (i + 2) % 3;
+        Part     first, second;
+        if (!multiply(x, node, a->items[j], b->items[k], &first) ||
+            !multiply(x, node, a->items[k], b->items[j], &second))
+            return false;
+        result->items[i] = add_parts(x, first, negate_part(x, second));
+    }
+    return true;
+}
+
+/* What works component by component; false for an operation that no polynomial has. */
+static bool expand_component(Expansion *x, Node node, Op op, Part a, Part b, Part *result)
+{
+    switch (op) {
+    case OP_add:    *result = add_parts(x, a, b); return true;
+    case OP_sub:    *result = add_parts(x, a, negate_part(x, b)); return true;
+    case OP_neg:    *result = negate_part(x, a); return true;
+    case OP_square: return multiply(x, node, a, a, result);
+    case OP_mul:
+    case OP_scale:  return multiply(x, node, a, b, result);
+    case OP_div:
+        if (!is_constant(b))
+            return false;
+        b.series.c[0] = graph_op2(x->graph, OP_div, graph_number(x->graph, 1), b.series.c[0]);
+        return multiply(x, node, a, b, result);
+    default: return false;
+    }
+}
+
+static bool expand_op(Expansion *x, Node node, const Parts *operands, Parts *result)
+{
+    Expr e = x->graph->items[node];
+    switch (e.op) {
+    case OP_COMPONENT: result->items[0] = part_of(&operands[0], e.index); return true;
+    case OP_splat2: case OP_splat3: case OP_splat4:
+        for (uint32_t i = 0; i < result->count; i++)
+            result->items[i] = operands[0].items[0];
+        return true;
+    case OP_vec2: case OP_vec3: case OP_vec4:
+        for (uint32_t i = 0; i < result->count; i++)
+            result->items[i] = operands[i].items[0];
+        return true;
+    case OP_dot:   return dot_parts(x, node, &operands[0], &operands[1], &result->items[0]);
+    case OP_cross: return cross_parts(x, node, &operands[0], &operands[1], result);
+    case OP_turn:
+        for (uint32_t i = 0; i < 3; i++)
+            if (!dot_parts(x, node, &operands[0], &operands[i + 1], &result->items[i]))
+                return false;
+        return true;
+    default:
+        for (uint32_t i = 0; i < result->count; i++)
+            if (!expand_component(x, node, e.op, part_of(&operands[0], i),
+                                  part_of(&operands[e.operand_count > 1], i), &result->items[i]))
+                return false;
+        return true;
+    }
+}
+
+/* A node of point time whose operands are expanded. */
+static bool expand_node(Expansion *x, Node node, const Tape *tape, const Parts *all, Parts *result)
+{
+    Expr e = x->graph->items[node];
+    x->graph->here = e.span;
+    *result        = new_parts(x, e.type <= TYPE_VEC4 ? e.type : 1);
+    if (e.time != TIME_POINT) {
+        for (uint32_t i = 0; e.type <= TYPE_VEC4 && i < result->count; i++)
+            result->items[i] = constant_part(x, graph_component(x->graph, node, i));
+        return true;
+    }
+    if (e.op == OP_POINT) {
+        for (uint32_t i = 0; i < 3; i++)
+            result->items[i] = coordinate_part(x, i);
+        return true;
+    }
+    Parts operands[MAX_OPERANDS];
+    for (int i = 0; i < e.operand_count; i++)
+        operands[i] = all[tape_place(tape, e.operands[i])];
+    return e.type <= TYPE_VEC4 && e.operand_count > 0 && expand_op(x, node, operands, result);
+}
+
+static bool expand(Expansion *x, Node root, Series *series)
+{
+    Span   here = x->graph->here;
+    Tape   tape = tape_new(x->graph, &root, 1, x->scratch);
+    Parts *all  = arena_new_array(x->scratch, Parts, tape.count);
+    assert(x->graph->items[root].type == TYPE_FLOAT);
+    for (size_t i = 0; i < tape.count; i++) {
+        *x->fault = (SeriesFault){tape.nodes[i], 0};
+        if (!expand_node(x, tape.nodes[i], &tape, all, &all[i])) {
+            x->graph->here = here;
+            return false;
+        }
+    }
+    x->graph->here = here;
+    *series        = all[tape_place(&tape, root)].items[0].series;
+    return true;
+}
+
+bool graph_line_series(Graph *graph, Node root, Node origin, Node direction, Series *series,
+                       SeriesFault *fault, Arena *scratch)
+{
+    Expansion x = {graph, scratch, origin, direction, fault};
+    return expand(&x, root, series);
+}
+
+bool graph_ball_series(Graph *graph, Node root, Node point, Series *series, SeriesFault *fault,
+                       Arena *scratch)
+{
+    Expansion x = {graph, scratch, point, NODE_NONE, fault};
+    return expand(&x, root, series);
+}
