@@ -3,6 +3,7 @@
 # make test       set up, build, run every test; the last line is `N passed, N failed`
 # make sanitize   the same programs under ASan and UBSan, in build/asan/
 # make bench      measures, writes bench/results/; bench-quick: only whether it can
+# make minify     how well one sample shows what is finer than a pixel
 # make fuzz       the front end under libFuzzer for FUZZ_SECONDS (30)
 # make lint       kernels by themselves, shell scripts
 # make bless      writes the expected text of tests/errors/; read the difference
@@ -16,13 +17,13 @@ CLANG   ?= clang-14
 # Sources in the order of the pipeline: reading down this list is reading the program.
 BASE     := $(addprefix compiler/base/, arena.c text.c source.c diag.c diag_text.c)
 FRONT    := $(addprefix compiler/front/, lexer.c syntax.c parser.c parse_expression.c parse.c names.c)
-GRAPH    := $(addprefix compiler/graph/, graph.c derive.c series.c simplify.c range.c rules.c facts.c parity.c evaluate.c print.c)
-GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c arithmetic.c arguments.c builtins.c functions.c \
-                expression.c map.c moebius.c make.c make_krs.c declare.c methods.c looks.c scope.c statements.c print.c \
-                lower.c lower_repeat.c lower_krs.c)
+GRAPH    := $(addprefix compiler/graph/, graph.c derive.c series.c simplify.c range.c rules.c facts.c parity.c regions.c fractal.c evaluate.c print.c)
+GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c arguments.c builtins.c functions.c \
+                expression.c map.c moebius.c make.c make_fractal.c meta.c make_krs.c field.c deform.c declare.c methods.c looks.c palette.c scope.c statements.c print.c \
+                lower.c lower_normal.c lower_repeat.c lower_deform.c lower_krs.c lower_along.c lower_guards.c lower_moebius.c)
 SHADER   := $(addprefix compiler/shader/, emit.c spirv.c)
 BORDER   := compiler/shader/glslang_border.cpp
-DOORSTEP := compiler/compile.c compiler/framing.c compiler/query.c
+DOORSTEP := compiler/compile.c compiler/framing.c compiler/frame.c compiler/query.c
 RUNTIME  := $(sort $(wildcard runtime/device/*.c runtime/tracer/*.c runtime/film/*.c runtime/writer/*.c))
 CLI      := $(sort $(wildcard cli/*.c))
 
@@ -85,8 +86,10 @@ demo: deps
 	@tools/demo.sh $(B)
 deps:
 	@tools/deps.sh
+libs:
+	@echo $(LIBS)
 clean:
 	rm -rf build
-.PHONY: all demo deps clean
+.PHONY: all demo deps libs clean
 .DELETE_ON_ERROR:
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

@@ -155,6 +155,10 @@ static void run_all(Bench *bench, Results *results)
     peak_open(bench, &results->peak);
     run_contests(bench, results);
     growth_run(bench, &results->growth);
+    sequences_run(bench, &results->sequences);
+    sequences_judge(&results->sequences, &results->complaints);
+    questions_run(bench, &results->questions);
+    questions_judge(&results->questions, &results->complaints);
     latency_run(bench, &results->latency);
     peak_measure(bench, &results->peak);
     peak_close(bench, &results->peak);

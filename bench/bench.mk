@@ -13,8 +13,14 @@ bench: deps
 bench-quick: $(B)/bench/bench $(B)/krs
 	@$(B)/bench/bench --krs $(B)/krs --revision $(REVISION) --quick --folder $(B)/bench/results
 
+# How well one sample shows what is finer than a pixel (bench/README.md).
+$(B)/bench/minify/minify: $(B)/bench/minify/minify.o $(B)/libkrs.a
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+minify: $(B)/bench/minify/minify
+	@$(B)/bench/minify/minify
+
 # For `make test`.
 SCRIPTS += tests/bench.sh
 test-programs: $(B)/bench/bench
-clang-objects: $(BENCH:%.c=$(B)/%.o)
-.PHONY: bench bench-quick
+clang-objects: $(BENCH:%.c=$(B)/%.o) $(B)/bench/minify/minify.o
+.PHONY: bench bench-quick minify

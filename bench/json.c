@@ -172,6 +172,22 @@ static void add_growth(Text *json, const Growth *growth)
     end(json, "}");
 }
 
+static void add_sequences(Text *json, const Sequences *sequences)
+{
+    begin(json, "sequences", "[");
+    for (size_t i = 0; i < sequences->count; i++)
+        for (int k = 0; k < STAND_COUNT; k++) {
+            begin(json, NULL, "{");
+            add_text(json, "scene", stand_rows[k].name);
+            add_number(json, "levels", sequences->levels[i]);
+            add_number(json, "flops", sequences->flops[k][i]);
+            add_number(json, "ms", sequences->ms[k][i]);
+            add_number(json, "coverage", sequences->coverage[k][i]);
+            end(json, "}");
+        }
+    end(json, "]");
+}
+
 void results_json(const Bench *bench, const Results *results, Text *json)
 {
     begin(json, NULL, "{\n  ");
@@ -193,6 +209,17 @@ void results_json(const Bench *bench, const Results *results, Text *json)
     }
     end(json, "]");
     add_growth(json, &results->growth);
+    add_sequences(json, &results->sequences);
+    begin(json, "questions", "{");
+    for (int i = 0; i < ANSWERER_COUNT; i++) {
+        begin(json, answerer_names[i], "{");
+        add_number(json, "points_per_second", results->questions.points_per_second[i]);
+        add_number(json, "rays_per_second", results->questions.rays_per_second[i]);
+        end(json, "}");
+    }
+    add_number(json, "alone_ms", results->questions.alone_ms);
+    add_number(json, "disagree", results->questions.disagree);
+    end(json, "}");
     begin(json, "first_picture", "{");
     add_number(json, "cold_ms", results->latency.cold_ms);
     add_number(json, "warm_ms", results->latency.warm_ms);

@@ -6,8 +6,10 @@
 
 #include "bench/contest.h"
 #include "bench/growth.h"
+#include "bench/krs.h"
 #include "bench/latency.h"
 #include "bench/machine.h"
+#include "bench/questions.h"
 
 typedef struct Results {
     const char *date; /* 2026-11-21 */
@@ -16,6 +18,8 @@ typedef struct Results {
     Contest    *contests;
     size_t      contest_count;
     Growth      growth;
+    Sequences   sequences;
+    Questions   questions;
     Latency     latency;
     Text        complaints; /* what is not right, a line each */
 } Results;

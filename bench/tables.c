@@ -165,6 +165,43 @@ static void tell_growth(const Growth *growth, Text *text)
     tell_line(text, "sum", &growth->total_line, "ms");
 }
 
+/* Figure 12 of the KRS paper of 2016. */
+static void tell_sequences(const Bench *bench, const Results *results, Text *text)
+{
+    static const Column columns[] = {{"flops", "%.0f", 6}, {"beams, primary, normals", "%.0f", 23},
+                                     {"of the bundle", "%.2f", 13}, {"ns/ray", "%.0f", 7},
+                                     {"kflop/ray", "%.1f", 9}};
+    const Sequences *s = &results->sequences;
+    double           pixels = (double)bench->width * bench->height;
+    text_format(text, "\n## Sequences and compounds of eight\n\nEach of the eight has the levels of"
+                      " the row; a bundle is one sequence with as many kernels.  The last column is"
+                      " the time of a ray times the peak of the device: the 2016 paper's 28"
+                      " levels at 15 pictures a second come to %.0f.\n", PAPER_KILOFLOPS);
+    for (size_t i = 0; i < s->count; i++) {
+        text_format(text, "\n%.0f levels\n\n", s->levels[i]);
+        add_titles(text, "scene", 22, columns, 5);
+        for (int k = 0; k < STAND_COUNT; k++) {
+            double ns = s->ms[k][i] * 1e6 / pixels;
+            add_row(text, stand_rows[k].name, 22, columns,
+                    (double[]){s->flops[k][i], s->ms[k][i], s->ms[k][i] / s->ms[STAND_BUNDLE][i],
+                               ns, ns * results->peak.gflops / 1e3}, 5);
+        }
+    }
+}
+
+static void tell_questions(const Questions *questions, Text *text)
+{
+    static const Column columns[] = {{"points/s", "%.0f", 9}, {"rays/s", "%.0f", 9}};
+    text_format(text, "\n## Questions\n\nThe tree of 28 levels, %zu at once to the host, %zu to the"
+                      " device; one ray alone comes back from the device in %.2f ms.\n\n",
+                questions->rays[ANSWERER_HOST], questions->rays[ANSWERER_DEVICE],
+                questions->alone_ms);
+    add_titles(text, "answered by", NAME_WIDTH, columns, 2);
+    for (int i = 0; i < ANSWERER_COUNT; i++)
+        add_row(text, answerer_names[i], NAME_WIDTH, columns,
+                (double[]){questions->points_per_second[i], questions->rays_per_second[i]}, 2);
+}
+
 static void tell_latency(const Latency *latency, Text *text)
 {
     text_format(text, "\n## First picture\n\nexamples/01-hello.krs at 640x360, from starting the"
@@ -179,6 +216,8 @@ void results_tables(const Bench *bench, const Results *results, Text *text)
         tell_contest(results, &results->contests[i], text);
     tell_ratios(results, text);
     tell_growth(&results->growth, text);
+    tell_sequences(bench, results, text);
+    tell_questions(&results->questions, text);
     tell_latency(&results->latency, text);
     if (results->complaints.length > 0)
         text_format(text, "\n## Wrong\n\n%s", results->complaints.bytes);

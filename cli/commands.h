@@ -38,7 +38,7 @@ KrsOptions scene_options(DiagnosticSink *sink);
 /* "2 errors, 1 warning", unless there were none. */
 void scene_print_counts(const DiagnosticSink *sink);
 
-/* A frame with --set and --time; KRS_BAD_ARGUMENT and words when a setting does not fit. */
+/* A frame with --set, --zone and --time; KRS_BAD_ARGUMENT and words when a setting does not fit. */
 KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsFrame **frame);
 /* "a/ring.krs" is called "ring". */
 const char *scene_name(Arena *arena, const char *path);

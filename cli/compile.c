@@ -59,10 +59,13 @@ static KrsStatus write_all(const Options *options, const KrsScene *scene, const 
     const char *name = scene_name(options->arena, options->files.items[0]);
     Text base = {.arena = options->arena};
     text_format(&base, "%s/%s", options->outputs.items[0], name);
+    Text glsl = {.arena = options->arena};
+    text_add(&glsl, compiled_defines(options));
+    text_add_bytes(&glsl, program->glsl, program->glsl_length);
 
     KrsStatus status = make_folder(options->outputs.items[0]);
     if (status == KRS_OK)
-        status = write_part(options, base.bytes, ".glsl", program->glsl, program->glsl_length);
+        status = write_part(options, base.bytes, ".glsl", glsl.bytes, glsl.length);
     for (size_t i = 0; i < modules->count && status == KRS_OK; i++) {
         const Module *module = &modules->items[i];
         Text ending = {.arena = options->arena};

@@ -28,12 +28,16 @@ static void print_component(const KrsComponent *component, size_t number)
     print_vector(component->high, 3);
     fputs("\n    slope      ", stdout);
     printf("%.6g", component->slope);
-    puts(component->exact ? " (the distance is exact)" : "");
+    puts(component->exact      ? " (the distance is exact, by claim)"
+         : component->estimate ? " (the distance is an estimate: `krs validate` measures it)"
+                               : " (the distance is a bound, derived)");
     if (component->levels > 0) {
         printf("    levels     %u\n    instances  ", component->levels);
         printf("%.0f", component->instances);
         putchar('\n');
     }
+    if (component->inversions > 0)
+        printf("    inversions %u\n", component->inversions);
 }
 
 static void print_parameter(const KrsParameter *parameter)
@@ -62,6 +66,8 @@ static void print_text(const KrsScene *scene)
     for (size_t i = 0; i < krs_camera_count(scene); i++)
         if (krs_camera_name(scene, i))
             printf("camera %zu: %s\n", i, krs_camera_name(scene, i));
+    if (krs_zone_count(scene) > 0)
+        printf("zones %zu\n", krs_zone_count(scene));
     fputs("bounds ", stdout);
     print_vector(program->low, 3);
     fputs(" to ", stdout);
@@ -85,10 +91,11 @@ static void add_components(Text *json, const KrsScene *scene)
         json_vector(json, component.high, 3);
         text_add(json, ", \"slope\": ");
         json_number(json, component.slope);
-        text_format(json, ", \"exact\": %s, \"levels\": %u, \"instances\": ",
-                    component.exact ? "true" : "false", component.levels);
+        text_format(json, ", \"exact\": %s, \"estimate\": %s, \"levels\": %u, \"instances\": ",
+                    component.exact ? "true" : "false", component.estimate ? "true" : "false",
+                    component.levels);
         json_number(json, component.instances);
-        text_add(json, "}");
+        text_format(json, ", \"inversions\": %u}", component.inversions);
     }
     text_add(json, "]");
 }
@@ -124,7 +131,8 @@ void info_add_json(Text *json, const KrsScene *scene)
     json_vector(json, program->low, 3);
     text_add(json, ", \"high\": ");
     json_vector(json, program->high, 3);
-    text_format(json, "}, \"operations\": %zu, \"flops_per_evaluation\": ", program->operations);
+    text_format(json, "}, \"zones\": %zu", krs_zone_count(scene));
+    text_format(json, ", \"operations\": %zu, \"flops_per_evaluation\": ", program->operations);
     json_number(json, program->flops);
     text_add(json, ", ");
     add_components(json, scene);

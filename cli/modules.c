@@ -25,11 +25,17 @@ static bool is_kernel(const char *file)
     return length > 5 && strcmp(file + length - 5, ".comp") == 0;
 }
 
+const char *compiled_defines(const Options *options)
+{
+    return options->early_outs == KRS_EARLY_OUTS_OFF ? "" : "#define EARLY_OUTS\n";
+}
+
 static KrsStatus compile_kernel(const Options *options, const char *glsl, const char *file,
                                 Modules *modules)
 {
     Gpu   gpu = {0}; /* stays closed: it only carries the reason of a failure */
-    char *text = kernel_text(&gpu, &(KernelSource){file, glsl, NULL}), *log = NULL;
+    char *text = kernel_text(&gpu, &(KernelSource){file, glsl, compiled_defines(options)});
+    char *log = NULL;
     if (!text) {
         say("%s", gpu.message);
         return gpu.status;

@@ -193,6 +193,21 @@ static bool read_setting(Options *options, const char *word)
     return done;
 }
 
+/* "X,Y,Z,R"; what the library would refuse is refused here. */
+static bool read_zone(Options *options, const char *word)
+{
+    const double most = 1e18;
+    double      *zone = options->zones[options->zone_count];
+    for (int i = 0; i < 4; i++) {
+        if (!read_number_prefix(word, &word, &zone[i]) || fabs(zone[i]) > most ||
+            *word != (i < 3 ? ',' : '\0'))
+            return false;
+        word += i < 3;
+    }
+    options->zone_count++;
+    return zone[3] >= 0;
+}
+
 static bool read_aovs(const char *word, unsigned *aovs)
 {
     static const char *const names[] = {"Z", "P", "N", "albedo", "id", "steps"};
@@ -334,6 +349,12 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
                    ? KRS_OK
                    : refuse(options, id, "NAME=VALUE, the value a number, [1,2,3] or #rrggbb",
                             value);
+    case OPTION_ZONE:
+        if (options->zone_count == KRS_MOST_ZONES)
+            return say_usage(options, "there are at most %d zones", KRS_MOST_ZONES);
+        return read_zone(options, value)
+                   ? KRS_OK
+                   : refuse(options, id, "X,Y,Z,RADIUS, the radius not negative", value);
     case OPTION_AOV:
         return read_aovs(value, &options->aovs)
                    ? KRS_OK
@@ -357,6 +378,19 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
     case OPTION_DEVICE:
         options->device = value;
         return KRS_OK;
+    case OPTION_ON:
+        options->on_device = strcmp(value, "device") == 0;
+        return options->on_device || strcmp(value, "host") == 0
+                   ? KRS_OK
+                   : refuse(options, id, "host or device", value);
+    case OPTION_TOLERANCE:
+        return read_number(value, 1e-300, 1e18, &options->tolerance)
+                   ? KRS_OK
+                   : refuse(options, id, "a length above 0", value);
+    case OPTION_FARTHEST:
+        return read_number(value, 0, 1e18, &options->farthest)
+                   ? KRS_OK
+                   : refuse(options, id, "a length from 0 to 1e18", value);
     case OPTION_CACHE:
         options->cache = value;
         return *value ? KRS_OK : refuse(options, id, "a folder, or off", value);
@@ -366,7 +400,18 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
         options->stats = value ? STATS_JSON : STATS_TEXT;
         return KRS_OK;
     case OPTION_BEAMS: return read_switch(options, id, value, &options->no_beams);
+    case OPTION_COMPONENTS:
+        options->components =
+            (KrsComponents)find_choice(value, krs_components_names, KRS_COMPONENTS_COUNT);
+        return options->components ? KRS_OK : refuse(options, id, "together or apart", value);
+    case OPTION_EARLY_OUTS: {
+        bool      off;
+        KrsStatus status    = read_switch(options, id, value, &off);
+        options->early_outs = off ? KRS_EARLY_OUTS_OFF : KRS_EARLY_OUTS_ON;
+        return status;
+    }
     case OPTION_UPSAMPLING: return read_switch(options, id, value, &options->no_upsampling);
+    case OPTION_FILTER:     return read_switch(options, id, value, &options->no_filter);
     case OPTION_SHADOWS:
         options->area_shadows = strcmp(value, krs_shadows_names[KRS_SHADOWS_AREA]) == 0;
         return options->area_shadows || strcmp(value, krs_shadows_names[KRS_SHADOWS_SOFT]) == 0
@@ -529,6 +574,8 @@ static KrsStatus check_together(Options *options)
         return say_usage(options, "compile needs one folder to write to: -o DIR");
     if (options->command == COMMAND_DUMP && !options->after)
         return say_usage(options, "dump needs --after=STAGE");
+    if (options->command == COMMAND_QUERY && options->device && !options->on_device)
+        return say_usage(options, "--device is for questions that are answered with --on device");
     return KRS_OK;
 }
 
@@ -540,6 +587,7 @@ KrsStatus options_parse(Options *options, int argc, char **argv)
     options->aovs = AOV_ALL;
     options->fps = 24;
     options->points = 20000;
+    options->farthest = 1e9; /* far beyond any scene, and finite */
     options->deadline = 60;
     if (argc < 2)
         return say_usage(options, "no command is given");

@@ -62,6 +62,8 @@ typedef struct Options {
     struct { const char **items; size_t count, capacity; } files, outputs;
     struct { Setting *items; size_t count, capacity; } settings;
     struct { ExitPair *items; size_t count, capacity; } exit_map;
+    double      zones[KRS_MOST_ZONES][4];
+    size_t      zone_count;
 
     uint32_t    width, height, samples; /* 0: not given */
     const char *camera, *device, *cache, *after; /* NULL: not given */
@@ -74,12 +76,16 @@ typedef struct Options {
     bool        exposed, tone_mapped; /* --exposure, --tone-map were given */
     double      exposure;
     ToneMap     tone_map;
-    bool        no_beams, no_upsampling, area_shadows;
+    bool        no_beams, no_upsampling, no_filter, area_shadows;
+    KrsEarlyOuts early_outs;
+    KrsComponents components;
     double      error; /* 0: not given */
     KrsTrace    trace;
     KrsSchedule schedule;
     uint64_t    seed, points;
     double      deadline; /* seconds */
+    double      tolerance, farthest; /* of rays that are asked about; tolerance 0: not given */
+    bool        on_device;
     StatsForm   stats;
     bool        stamp, binary, json, no_device, json_diagnostics, quiet;
     When        color;

@@ -90,6 +90,17 @@ static const char *describe_parameters(const Options *options, const KrsScene *s
     return text.bytes;
 }
 
+/* "[0, 1, 0, 0.5] [...]": centers and radii. */
+static const char *describe_zones(const Options *options)
+{
+    Text text = {.arena = options->arena};
+    for (size_t i = 0; i < options->zone_count; i++) {
+        text_add(&text, i == 0 ? "" : " ");
+        json_vector(&text, options->zones[i], 4);
+    }
+    return text.bytes;
+}
+
 static const char *describe_number(const Options *options, double number)
 {
     Text text = {.arena = options->arena};
@@ -115,6 +126,8 @@ static size_t collect_texts(const Options *options, const KrsPicture *source,
     texts[count++] = (PictureText){"krs:scene", krs_scene_hash(notes->scene)};
     texts[count++] = (PictureText){"krs:parameters", describe_parameters(options, notes->scene)};
     texts[count++] = (PictureText){"krs:time", describe_number(options, notes->time)};
+    if (options->zone_count > 0)
+        texts[count++] = (PictureText){"krs:zones", describe_zones(options)};
     if (options->stamp) {
         texts[count++] = (PictureText){"krs:date", describe_now(options)};
         texts[count++] = (PictureText){"krs:device", source->stats.device};

@@ -18,28 +18,46 @@
 #include "cli/supervise.h"
 
 enum {
-    BATCH = 4096,
-    INPUT_SIZE = 1 << 16,     /* also the longest line */
+    BATCH = 16384,
+    INPUT_SIZE = 1 << 20,     /* also the longest line */
     RECORD_IN = 6 * 8,        /* bytes of a binary question */
     RECORD_OUT = 10           /* numbers of a binary answer */
 };
 
-/* Rays end here, in world units from their origin: far beyond any scene, and finite. */
-static const double FARTHEST = 1e9;
-
 typedef struct Query {
-    KrsFrame *frame;
-    bool      binary;
-    size_t    count; /* questions that wait in the batch */
-    bool      is_ray[BATCH];
-    double    origins[BATCH][3], directions[BATCH][3];
-    double    gathered[BATCH][3], aims[BATCH][3]; /* of one kind, without gaps */
-    KrsHit    hits[BATCH], answers[BATCH];
-    uint64_t  line; /* the last one that was read */
+    const Options *options;
+    KrsFrame      *frame;
+    KrsRenderer   *renderer;
+    KrsRendering  *rendering; /* NULL: the host answers */
+    KrsStatus      status;    /* of the answers so far */
+    size_t         count;     /* questions that wait in the batch */
+    bool           is_ray[BATCH];
+    double         origins[BATCH][3], directions[BATCH][3];
+    double         gathered[BATCH][3], aims[BATCH][3]; /* of one kind, without gaps */
+    KrsHit         hits[BATCH], answers[BATCH];
+    uint64_t       line; /* the last one that was read */
 } Query;
 
+static KrsStatus answer_gathered(Query *query, bool rays, size_t count)
+{
+    const double(*points)[3] = (const double(*)[3])query->gathered;
+    const double(*aims)[3]   = (const double(*)[3])query->aims;
+    double farthest = query->options->farthest, tolerance = query->options->tolerance;
+    if (!query->rendering && rays)
+        return krs_raycast(query->frame, points, aims, count, farthest, tolerance, query->hits);
+    if (!query->rendering)
+        return krs_probe(query->frame, points, count, query->hits);
+    KrsStatus status = rays ? krs_device_raycast(query->rendering, query->frame, points, aims,
+                                                 count, farthest, tolerance, query->hits)
+                            : krs_device_probe(query->rendering, query->frame, points, count,
+                                               query->hits);
+    if (status != KRS_OK)
+        say("%s", krs_renderer_message(query->renderer));
+    return status;
+}
+
 /* Answers the questions of one kind, points or rays. */
-static void answer_kind(Query *query, bool rays)
+static KrsStatus answer_kind(Query *query, bool rays)
 {
     size_t count = 0;
     for (size_t i = 0; i < query->count; i++)
@@ -47,21 +65,20 @@ static void answer_kind(Query *query, bool rays)
             memcpy(query->gathered[count], query->origins[i], sizeof query->gathered[0]);
             memcpy(query->aims[count++], query->directions[i], sizeof query->aims[0]);
         }
-    const double(*points)[3] = (const double(*)[3])query->gathered;
-    if (rays)
-        krs_raycast(query->frame, points, (const double(*)[3])query->aims, count, FARTHEST, 0,
-                    query->hits);
-    else
-        krs_probe(query->frame, points, count, query->hits);
-    for (size_t i = 0, next = 0; i < query->count; i++)
+    KrsStatus status = count > 0 ? answer_gathered(query, rays, count) : KRS_OK;
+    for (size_t i = 0, next = 0; i < query->count && status == KRS_OK; i++)
         if (query->is_ray[i] == rays)
             query->answers[i] = query->hits[next++];
+    return status;
 }
 
 static void print_text(bool is_ray, const KrsHit *hit)
 {
     if (is_ray && !hit->hit) {
-        puts("miss");
+        fputs(hit->unresolved ? "unresolved " : "miss", stdout);
+        if (hit->unresolved)
+            print_number(stdout, hit->t);
+        putchar('\n');
         return;
     }
     print_number(stdout, is_ray ? hit->t : hit->distance);
@@ -78,7 +95,7 @@ static void print_text(bool is_ray, const KrsHit *hit)
 
 static void print_binary(bool is_ray, const KrsHit *hit)
 {
-    double record[RECORD_OUT] = {INFINITY};
+    double record[RECORD_OUT] = {hit->unresolved ? NAN : INFINITY};
     if (hit->hit || !is_ray) {
         record[0] = is_ray ? hit->t : hit->distance;
         memcpy(record + 1, hit->point, sizeof hit->point);
@@ -95,25 +112,19 @@ static void print_binary(bool is_ray, const KrsHit *hit)
     }
 }
 
+/* Nothing more is answered after a failure. */
 static void answer_batch(Query *query)
 {
-    answer_kind(query, false);
-    answer_kind(query, true);
-    for (size_t i = 0; i < query->count; i++)
-        if (query->binary)
+    if (query->status == KRS_OK)
+        query->status = answer_kind(query, false);
+    if (query->status == KRS_OK)
+        query->status = answer_kind(query, true);
+    for (size_t i = 0; i < query->count && query->status == KRS_OK; i++)
+        if (query->options->binary)
             print_binary(query->is_ray[i], &query->answers[i]);
         else
             print_text(query->is_ray[i], &query->answers[i]);
     query->count = 0;
-}
-
-/* Brings a direction of any length near 1, so that its square neither overflows nor vanishes.
-   Powers of two leave it the same direction to the last bit. */
-static void tame_direction(double *direction)
-{
-    double largest = fmax(fmax(fabs(direction[0]), fabs(direction[1])), fabs(direction[2]));
-    for (int axis = 0; axis < 3; axis++)
-        direction[axis] = scalbn(direction[axis], -ilogb(largest));
 }
 
 /* False when the numbers cannot be a point or a ray. */
@@ -126,8 +137,6 @@ static bool add_question(Query *query, const double *numbers, bool is_ray)
         return false;
     memcpy(query->origins[query->count], numbers, 3 * sizeof *numbers);
     memcpy(query->directions[query->count], numbers + 3, 3 * sizeof *numbers);
-    if (is_ray)
-        tame_direction(query->directions[query->count]);
     query->is_ray[query->count++] = is_ray;
     if (query->count == BATCH)
         answer_batch(query);
@@ -161,7 +170,7 @@ static size_t take_input(Query *query, char *input, size_t length, bool *good)
 {
     size_t used = 0;
     *good = true;
-    while (*good && query->binary && length - used >= RECORD_IN) {
+    while (*good && query->options->binary && length - used >= RECORD_IN) {
         double numbers[6];
         for (int i = 0; i < 6; i++) {
             uint64_t bits;
@@ -175,7 +184,8 @@ static size_t take_input(Query *query, char *input, size_t length, bool *good)
         used += RECORD_IN;
     }
     char *newline;
-    while (*good && !query->binary && (newline = memchr(input + used, '\n', length - used))) {
+    while (*good && !query->options->binary &&
+           (newline = memchr(input + used, '\n', length - used))) {
         *newline = '\0';
         bool whole = strlen(input + used) == (size_t)(newline - input) - used;
         *good = read_line(query, input + used) && whole;
@@ -186,7 +196,7 @@ static size_t take_input(Query *query, char *input, size_t length, bool *good)
 
 static KrsStatus refuse_input(const Query *query)
 {
-    if (query->binary)
+    if (query->options->binary)
         say("record %llu of standard input is not six finite numbers",
             (unsigned long long)query->line);
     else
@@ -199,7 +209,7 @@ static KrsStatus refuse_input(const Query *query)
 static KrsStatus finish_input(Query *query, char *input, size_t length)
 {
     bool good = true;
-    if (length > 0 && query->binary) {
+    if (length > 0 && query->options->binary) {
         query->line++;
         good = false;
     } else if (length > 0) {
@@ -207,7 +217,7 @@ static KrsStatus finish_input(Query *query, char *input, size_t length)
         good = read_line(query, input) && strlen(input) == length;
     }
     answer_batch(query);
-    return good ? KRS_OK : refuse_input(query);
+    return !good && query->status == KRS_OK ? refuse_input(query) : query->status;
 }
 
 static KrsStatus answer_input(Query *query, char *input)
@@ -228,6 +238,8 @@ static KrsStatus answer_input(Query *query, char *input)
         bool good;
         size_t used = take_input(query, input, length, &good);
         answer_batch(query);
+        if (query->status != KRS_OK)
+            return query->status;
         memmove(input, input + used, length - used);
         length -= used;
         if (length == INPUT_SIZE) { /* no line is as long as that */
@@ -241,6 +253,19 @@ static KrsStatus answer_input(Query *query, char *input)
     }
 }
 
+/* With --on device. */
+static KrsStatus open_device(Query *query, const KrsScene *scene)
+{
+    KrsStatus status = open_renderer(query->options, &query->renderer);
+    if (status != KRS_OK)
+        return status;
+    stage_enter(STAGE_SHADERS);
+    status = krs_rendering_new_for(query->renderer, scene, KRS_FOR_QUESTIONS, &query->rendering);
+    if (status != KRS_OK)
+        say("%s", krs_renderer_message(query->renderer));
+    return status;
+}
+
 KrsStatus command_query(Options *options)
 {
     KrsScene *scene;
@@ -249,12 +274,16 @@ KrsStatus command_query(Options *options)
         return status;
     Query *query = arena_new(options->arena, Query);
     char *input = arena_alloc(options->arena, INPUT_SIZE + 1, 1);
-    query->binary = options->binary;
+    query->options = options;
     status = scene_frame(options, scene, &query->frame);
+    if (status == KRS_OK && options->on_device)
+        status = open_device(query, scene);
     if (status == KRS_OK) {
         stage_enter(STAGE_ANSWER);
         status = answer_input(query, input);
     }
+    krs_rendering_free(query->rendering);
+    krs_renderer_free(query->renderer);
     krs_frame_free(query->frame);
     krs_scene_free(scene);
     return status;

@@ -156,6 +156,9 @@ KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsFrame **
         if (status == KRS_BAD_ARGUMENT)
             say_refused_setting(options, scene, setting);
     }
+    if (status == KRS_OK)
+        status = krs_frame_set_zones(*frame, (const double(*)[4])options->zones,
+                                     options->zone_count);
     if (status == KRS_OK && krs_frame_set_time(*frame, options->time) != KRS_OK)
         status = say_usage(options, "at time %g something in the scene is not finite", options->time);
     if (status != KRS_OK) {

@@ -7,6 +7,9 @@
  * which is where a distance that is too large is found out first.  On the device the distance
  * is compared with the one in double precision.
  *
+ * Estimates (of Mandelbulbs) claim nothing that could be refuted: how much of the way to the
+ * surface they reach is measured, straight towards it and in random directions, and reported.
+ *
  * Half of the points are anywhere in and around the scene, half near a surface, found by
  * following random rays.
  */
@@ -19,7 +22,7 @@
 #include "cli/modules.h"
 #include "cli/supervise.h"
 
-enum { BATCH = 1024, PROBES = 8, MARCH_STEPS = 64 };
+enum { BATCH = 1024, PROBES = 8, MARCH_STEPS = 64, MEASURE_STEPS = 96 };
 
 /* How much of the ball must be empty: the rest is left to the rounding of the sum. */
 static const double BALL = 0.999;
@@ -38,6 +41,8 @@ typedef struct Validation {
     uint64_t   random;      /* state of the generator */
     double     low[3], high[3], size; /* the box that is tried, and its diagonal */
     uint64_t   balls;       /* probes inside of balls so far */
+    uint64_t   ways;        /* from points to a surface that has an estimate, */
+    double     reached;     /* and the largest part of such a way that the estimate was */
     double     difference;  /* largest of the device so far, in tolerances */
     double     points[BATCH][3];
 } Validation;
@@ -168,6 +173,45 @@ static bool is_worth_trying(const Validation *v, double distance)
     return isfinite(distance) && fabs(distance) > 1e-9 * v->size;
 }
 
+static bool is_estimate(const Validation *v, const KrsHit *hit)
+{
+    KrsComponent component;
+    return hit->component > 0 &&
+           krs_component(v->scene, hit->component - 1, &component) == KRS_OK && component.estimate;
+}
+
+/* Goes on from half the distance, by half of what is found there, until the sign changes. */
+static void measure_ways(Validation *v, const KrsHit *hits, bool straight)
+{
+    double directions[BATCH][3], ways[BATCH], places[BATCH][3], found[BATCH];
+    bool   going[BATCH], any = false;
+    for (size_t i = 0; i < BATCH; i++) {
+        random_direction(&v->random, directions[i]);
+        double side = hits[i].distance > 0 ? -1 : 1;
+        for (int axis = 0; axis < 3 && straight; axis++)
+            directions[i][axis] = side * hits[i].normal[axis];
+        going[i] = is_worth_trying(v, hits[i].distance) && is_estimate(v, &hits[i]);
+        ways[i]  = 0.5 * fabs(hits[i].distance);
+        any      = any || going[i];
+    }
+    for (int step = 0; any && step < MEASURE_STEPS; step++) {
+        for (size_t i = 0; i < BATCH; i++)
+            for (int axis = 0; axis < 3; axis++)
+                places[i][axis] = hits[i].point[axis] + ways[i] * directions[i][axis];
+        krs_distance(v->frame, (const double(*)[3])places, BATCH, found);
+        for (size_t i = 0; i < BATCH; i++) {
+            if (!going[i])
+                continue;
+            going[i] = hits[i].distance > 0 ? found[i] > 0 : found[i] < 0;
+            if (!going[i]) {
+                v->ways++;
+                v->reached = fmax(v->reached, fabs(hits[i].distance) / ways[i]);
+            }
+            ways[i] += fmax(0.5 * fabs(found[i]), 1e-3 * fabs(hits[i].distance));
+        }
+    }
+}
+
 static KrsStatus try_balls(Validation *v)
 {
     KrsHit hits[BATCH];
@@ -188,13 +232,15 @@ static KrsStatus try_balls(Validation *v)
                 memcpy(inside[i], v->points[i], sizeof inside[i]);
         krs_distance(v->frame, (const double(*)[3])inside, BATCH, found);
         for (size_t i = 0; i < BATCH; i++) {
-            if (!is_worth_trying(v, hits[i].distance))
+            if (!is_worth_trying(v, hits[i].distance) || is_estimate(v, &hits[i]))
                 continue;
             v->balls++;
             if (!(hits[i].distance > 0 ? found[i] >= 0 : found[i] <= 0))
                 return report_ball(v, v->points[i], hits[i].distance, inside[i], found[i]);
         }
     }
+    measure_ways(v, hits, true);
+    measure_ways(v, hits, false);
     return KRS_OK;
 }
 
@@ -258,6 +304,9 @@ static KrsStatus try_points(Validation *v, KrsRenderer *renderer, KrsRendering *
         printf("; %s agrees, at most %.2g of the tolerance apart",
                krs_renderer_device(renderer).name, v->difference);
     putchar('\n');
+    if (v->ways > 0)
+        printf("%s: estimates reach at most %.3f of the way to the surface, of %llu ways\n",
+               v->path, v->reached, (unsigned long long)v->ways);
     return KRS_OK;
 }
 

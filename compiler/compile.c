@@ -19,6 +19,10 @@
 
 enum { MOST_OPERATIONS = 20000, MOST_SOURCE_BYTES = 16 << 20 };
 
+/* Components of so many flops are marched by themselves, in scenes of so many: as bench/krs.c
+   found.  Less is gained where their boxes lie within each other. */
+static const double HEAVY_FLOPS = 100, SCATTERED_FLOPS = 1000, MIXED_FLOPS = 2000;
+
 static const size_t DEFAULT_MEMORY = (size_t)2 << 30;
 
 const char *const dump_stage_names[DUMP_STAGE_COUNT] = {
@@ -35,7 +39,7 @@ typedef struct Compilation {
     Diags      diags;
     Scene      elaborated;
     Node      *roots;
-    size_t     root_count;
+    size_t     root_count, point_roots; /* the first of them are point time */
     const char *text, *name;
     size_t     length;
     DumpStage  dump_stage; /* DUMP_STAGE_COUNT: nothing is dumped */
@@ -124,7 +128,7 @@ static Graph *elaborate_scene(Compilation *c)
     uint32_t source = source_add(&c->sources, c->name, c->text, c->length, false);
     dump_front(c, source);
     Graph *graph        = graph_new(&c->work);
-    c->elaborated       = (Scene){.graph = graph, .zenith = NODE_NONE};
+    c->elaborated       = (Scene){.graph = graph, .zenith = NODE_NONE, .zone = NODE_NONE};
     Elaboration e       = {.arena      = &c->work,
                            .syntax     = &c->syntax,
                            .scratch    = &c->scratch,
@@ -162,19 +166,31 @@ static void refuse_size(Compilation *c, size_t component, size_t operations)
                   "one copy only";
 }
 
-/* All roots: of components, cameras, lights and the sky. */
+static void refuse_zones(Compilation *c, Span span, size_t operations)
+{
+    Diag *diag  = diag_add(&c->diags, DIAG_TOO_LARGE, span,
+                           "the scene needs more than %d operations", MOST_OPERATIONS);
+    diag->label = diag_text(&c->diags, "its %zu zones need %zu", c->elaborated.zone_count,
+                            operations);
+    diag->help  = "fewer zones";
+}
+
+/* All roots: of components, zones, cameras, lights and the sky. */
 static bool lower_scene(Compilation *c, Graph *graph)
 {
     const Scene *s = &c->elaborated;
-    c->root_count  = s->components.count * ROOT_COUNT + s->cameras.count * CAMERA_ROOTS +
+    c->point_roots = s->components.count * ROOT_COUNT + (s->zone_count > 0);
+    c->root_count  = c->point_roots + s->cameras.count * CAMERA_ROOTS +
                     s->lights.count * LIGHT_ROOTS + SKY_ROOTS;
-    c->roots   = arena_new_array(&c->scene->arena, Node, c->root_count);
+    c->roots   = arena_new_array(&c->scene->arena, Node, c->root_count + MARCH_ROOTS * s->components.count);
     Node *root = c->roots;
     for (size_t i = 0; i < s->components.count; i++, root += ROOT_COUNT)
         if (!lower_component(graph, s->components.items[i].shape, &c->scratch, root)) {
             refuse_size(c, i, 0);
             return false;
         }
+    if (s->zone_count > 0)
+        *root++ = s->zone;
     for (size_t i = 0; i < s->cameras.count; i++, root += CAMERA_ROOTS) {
         const SceneCamera *camera = &s->cameras.items[i];
         memcpy(root, (Node[]){camera->eye, camera->target, camera->up, camera->fov, camera->height},
@@ -186,6 +202,17 @@ static bool lower_scene(Compilation *c, Graph *graph)
                LIGHT_ROOTS * sizeof *root);
     }
     memcpy(root, (Node[]){s->zenith, s->horizon, s->ground}, SKY_ROOTS * sizeof *root);
+    /* Behind all others, and last, so that nothing else depends on them. */
+    for (size_t i = 0; i < s->components.count; i++) {
+        const Shape *shape = s->components.items[i].shape;
+        Node         plain = c->roots[i * ROOT_COUNT + ROOT_DISTANCE];
+        Node        *march = &c->roots[c->root_count + i];
+        *march = lower_guarded(graph, shape, plain, &c->scratch);
+        for (AlongMethod method = 0; method < ALONG_COUNT; method++) {
+            march += s->components.count;
+            *march = lower_along(graph, shape, plain, method, &c->scratch);
+        }
+    }
     arena_free(&c->scratch);
     graph_validate(graph, "lower");
     if (dumps(c, DUMP_GRAPH))
@@ -206,9 +233,15 @@ static bool check_size(Compilation *c, const Graph *graph)
         }
         arena_free(&c->scratch);
     }
-    if (total <= MOST_OPERATIONS)
+    size_t zones = 0;
+    if (c->elaborated.zone_count > 0)
+        zones = count_operations(graph, &c->roots[c->point_roots - 1], 1, &c->scratch);
+    if (total + zones <= MOST_OPERATIONS)
         return true;
-    refuse_size(c, largest, most);
+    if (zones > most)
+        refuse_zones(c, graph->items[c->roots[c->point_roots - 1]].span, zones);
+    else
+        refuse_size(c, largest, most);
     return false;
 }
 
@@ -244,8 +277,10 @@ static void keep_components(Compilation *c)
         *to = (KrsComponent){.name      = keep(c, from->name),
                              .slope     = from->shape->slope * from->shape->derived,
                              .exact     = from->shape->exact,
+                             .estimate  = from->shape->estimate,
                              .levels    = from->shape->levels,
-                             .instances = from->shape->instances};
+                             .instances = from->shape->instances,
+                             .inversions = from->shape->inversions};
         for (int k = 0; k < 3; k++) {
             to->low[k]  = from->shape->box.axis[k].low;
             to->high[k] = from->shape->box.axis[k].high;
@@ -275,6 +310,7 @@ static void keep_scene(Compilation *c)
     scene->light_count = s->lights.count;
     scene->lights      = arena_new_array(arena, SceneLight, s->lights.count + 1);
     memcpy(scene->lights, s->lights.items, s->lights.count * sizeof *scene->lights);
+    scene->zone_count       = s->zone_count;
     scene->image            = s->image;
     scene->image.integrator = keep(c, s->image.integrator);
     scene->image.tone_map   = keep(c, s->image.tone_map);
@@ -291,20 +327,106 @@ static void make_tapes(Compilation *c)
     Node     *distances = arena_new_array(&c->scratch, Node, count + 1);
     for (size_t i = 0; i < count; i++)
         distances[i] = c->roots[i * ROOT_COUNT + ROOT_DISTANCE];
-    scene->roots    = c->roots;
+    scene->roots = c->roots;
+    scene->guarded_roots = c->roots + c->root_count;
+    scene->along_roots   = scene->guarded_roots + count;
+    for (size_t i = 0; i < count; i++)
+        scene->program.along = scene->program.along || scene->along_roots[i] != distances[i];
+    Node *guarded = arena_new_array(&c->scratch, Node, count + 1);
+    memcpy(guarded, scene->guarded_roots, count * sizeof *guarded);
+    if (scene->zone_count > 0)
+        guarded[count] = distances[count] = zone_root(scene);
+    count += scene->zone_count > 0;
+    scene->guarded  = tape_new_guarded(scene->graph, guarded, count, &scene->arena);
     scene->distance = tape_new(scene->graph, distances, count, &scene->arena);
-    scene->surface  = tape_new(scene->graph, c->roots, count * ROOT_COUNT, &scene->arena);
-    scene->view     = tape_new(scene->graph, c->roots + count * ROOT_COUNT,
-                               c->root_count - count * ROOT_COUNT, &scene->arena);
+    scene->surface  = tape_new(scene->graph, c->roots, c->point_roots, &scene->arena);
+    scene->view     = tape_new(scene->graph, c->roots + c->point_roots,
+                               c->root_count - c->point_roots, &scene->arena);
     scene->program.operations = scene->distance.count - scene->distance.frame_count;
     scene->program.flops      = flops_of(scene->graph, &scene->distance);
+}
+
+static void keep_group(KrsGroup *group, double flops, Box box)
+{
+    group->flops = flops;
+    for (int i = 0; i < 3; i++) {
+        group->low[i]  = box.axis[i].low;
+        group->high[i] = box.axis[i].high;
+    }
+}
+
+static double component_flops(Compilation *c, size_t component)
+{
+    const KrsScene *scene = c->scene;
+    Tape tape = tape_new(scene->graph, &c->roots[component * ROOT_COUNT + ROOT_DISTANCE], 1,
+                         &c->scratch);
+    return flops_of(scene->graph, &tape);
+}
+
+/* The group that a component joins: one of its own if it is heavy and bounded, while there are any;
+   else the last, of all the others. */
+static size_t choose_group(const KrsProgram *program, double flops, Box box)
+{
+    bool own = flops >= HEAVY_FLOPS && box_is_finite(box) && !box_is_empty(box);
+    return own && program->group_count < KRS_MOST_GROUPS - 1 ? program->group_count
+                                                             : KRS_MOST_GROUPS - 1;
+}
+
+static double flops_worth_splitting(const KrsProgram *program)
+{
+    double sum = 0, hull = 1;
+    for (size_t i = 0; i < program->group_count; i++) {
+        double volume = 1;
+        for (int k = 0; k < 3; k++)
+            volume *= program->groups[i].high[k] - program->groups[i].low[k];
+        sum += volume;
+    }
+    for (int k = 0; k < 3; k++)
+        hull *= program->high[k] - program->low[k];
+    return sum <= hull ? SCATTERED_FLOPS : MIXED_FLOPS;
+}
+
+/* Which components are marched by themselves.  `groups` gets the number of each, from 1. */
+static void form_groups(Compilation *c, const Box *boxes, uint32_t *groups)
+{
+    KrsProgram *program = &c->scene->program;
+    Box         rest    = box_empty;
+    double      light   = 0;
+    for (size_t i = 0; i < c->scene->component_count; i++) {
+        double flops = component_flops(c, i);
+        size_t group = choose_group(program, flops, boxes[i]);
+        groups[i]    = (uint32_t)group + 1;
+        if (group < KRS_MOST_GROUPS - 1) {
+            program->group_count++;
+            keep_group(&program->groups[group], flops, boxes[i]);
+            continue;
+        }
+        light += flops;
+        rest = box_hull(rest, boxes[i]);
+    }
+    if (light > 0 && program->group_count > 0) {
+        for (size_t i = 0; i < c->scene->component_count; i++)
+            if (groups[i] == KRS_MOST_GROUPS)
+                groups[i] = (uint32_t)program->group_count + 1;
+        keep_group(&program->groups[program->group_count++], light, rest);
+    }
+    if (program->group_count < 2)
+        program->group_count = 0;
+    program->apart = program->group_count > 0 && program->flops >= flops_worth_splitting(program);
 }
 
 static void emit(Compilation *c)
 {
     KrsScene *scene = c->scene;
     Text      glsl  = {.arena = &scene->arena};
-    emit_glsl(scene->graph, &c->sources, c->roots, scene->component_count, &c->scratch, &glsl);
+    Box      *boxes = arena_new_array(&c->scratch, Box, scene->component_count + 1);
+    for (size_t i = 0; i < scene->component_count; i++)
+        boxes[i] = c->elaborated.components.items[i].shape->box;
+    uint32_t *groups = arena_new_array(&c->scratch, uint32_t, scene->component_count + 1);
+    form_groups(c, boxes, groups);
+    emit_glsl(scene->graph, &c->sources, c->roots, scene->component_count, zone_root(scene),
+              &(EmitMarch){scene->guarded_roots, scene->along_roots, boxes,
+                           scene->program.group_count ? groups : NULL}, &c->scratch, &glsl);
     scene->program.glsl            = glsl.bytes;
     scene->program.glsl_length     = glsl.length;
     scene->program.parameter_slots = (uint32_t)scene->graph->parameters.count;
@@ -324,7 +446,8 @@ static KrsStatus run(Compilation *c)
     Graph *graph = elaborate_scene(c);
     if (c->diags.errors || !lower_scene(c, graph))
         return KRS_BAD_SCENE;
-    Graph *simple = graph_simplify(graph, c->roots, c->root_count, &c->scene->arena);
+    size_t roots  = c->root_count + MARCH_ROOTS * c->elaborated.components.count;
+    Graph *simple = graph_simplify(graph, c->roots, roots, &c->scene->arena);
     graph_validate(simple, "simplify");
     c->scene->graph = simple;
     if (dumps(c, DUMP_SIMPLIFY))
@@ -472,6 +595,7 @@ void krs_scene_free(KrsScene *scene)
 
 const KrsProgram *krs_scene_program(const KrsScene *scene) { return &scene->program; }
 size_t      krs_camera_count(const KrsScene *scene) { return scene->camera_count; }
+size_t      krs_zone_count(const KrsScene *scene) { return scene->zone_count; }
 const char *krs_scene_hash(const KrsScene *scene) { return scene->hash; }
 size_t      krs_parameter_count(const KrsScene *scene) { return scene->parameter_count; }
 size_t      krs_component_count(const KrsScene *scene) { return scene->component_count; }

@@ -17,10 +17,30 @@
  *     void  krs_prepare();               once, first in main: everything that is constant in a frame
  *     float krs_distance(vec3 p);        safe distance to the scene in world units, < 0 inside
  *     struct KrsSurface { float distance; vec3 color; float roughness; float metallic;
- *                         vec3 emission; uint component; uint level; uint instance; };
- *     KrsSurface krs_surface(vec3 p);    what is at p: the component with the least distance
+ *                         vec3 emission; uint component; uint level; uint instance;
+ *                         vec3 normal; };
+ *     KrsSurface krs_surface(vec3 p, vec3 normal, float footprint);
+ *                                        what is at p: the component with the least distance
  *
- * N is parameter_slots (at least 1); slot 0 is (time, 0, 0, 0); a parameter has one slot.
+ * krs_surface is given the unit gradient of krs_distance at p, and the radius of the pixel's cone
+ * there in world units (0 for a point).  The normal that it returns is the one to light: unit,
+ * outwards, and the given one unless mirrors are smooth.
+ *
+ * With EARLY_OUTS defined, what a graphics card should march by:
+ *
+ *     float krs_distance_lod(vec3 p, float footprint);
+ *
+ * It is never above the distance to the nearest surface and not above 0 in the same places, but
+ * often less than krs_distance: what is far away for its size is not looked at.  What is smaller
+ * than `footprint`, the radius of a pixel's cone at p, counts as the box around it (0: nothing
+ * does).  Where a branch saves no work, as on lavapipe, krs_distance costs less.
+ *
+ * A scene of several heavy components has groups of them (KrsGroup): with GROUP defined as the
+ * number of one there is krs_distance alone, and of that group alone.
+ *
+ * N is parameter_slots (at least 1); slot 0 is (time, 0, 0, 0); a parameter has one slot.  Zones
+ * of the scene have been cut out of distances.  With ZONES defined, as many slots follow for zones
+ * of the caller (krs_frame_zones).
  */
 typedef struct KrsCamera {
     enum { KRS_PERSPECTIVE, KRS_ORTHOGRAPHIC, KRS_PANORAMA } projection;
@@ -59,6 +79,14 @@ typedef struct KrsView {
     const KrsLight *lights; /* lives as long as the frame, until the next krs_frame_view */
 } KrsView;
 
+/* Components that are best marched by themselves, one group after another: with GROUP defined as
+   the number of a group, from 1, krs_distance is that of the group's components alone. */
+typedef struct KrsGroup {
+    double flops;            /* as below, of its components */
+    double low[3], high[3];  /* box around them */
+} KrsGroup;
+enum { KRS_MOST_GROUPS = 8 };
+
 typedef struct KrsProgram {
     const char *glsl;         /* promised functions, readable, with comments of source lines */
     size_t      glsl_length;
@@ -66,6 +94,10 @@ typedef struct KrsProgram {
     double      low[3], high[3]; /* box around all components; infinite where unbounded */
     size_t      operations;   /* of krs_distance */
     double      flops;        /* of krs_distance, weighted as in measurements.md fact 5 */
+    bool        along;        /* there is krs_along, for kernels with #define ALONG */
+    KrsGroup    groups[KRS_MOST_GROUPS];
+    size_t      group_count;  /* 0: all components belong together */
+    bool        apart;        /* taking turns is worth it */
     double      front_ms, glsl_ms; /* time spent */
 } KrsProgram;
 
@@ -74,10 +106,26 @@ const KrsProgram *krs_scene_program(const KrsScene *scene);
 /* The number of cameras and their names (the first is the default; NULL when unnamed). */
 size_t      krs_camera_count(const KrsScene *scene);
 const char *krs_camera_name(const KrsScene *scene, size_t index);
+/* Zones that the scene declares. */
+size_t krs_zone_count(const KrsScene *scene);
 /* Camera `camera`, lights, sky and image at the frame's parameters and time. */
 KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view);
 /* The parameter block as the GLSL expects it: parameter_slots vec4s. */
 void krs_frame_parameters(const KrsFrame *frame, float (*block)[4]);
+/* The zones of the caller (center, radius), to stand behind the parameter block when the GLSL is
+   compiled with ZONES defined as that many or more; the others must have a radius that is far
+   below 0.  Returns how many. */
+size_t krs_frame_zones(const KrsFrame *frame, float (*zones)[4]);
+/* A ray as questions march it: in a unit direction, and from `start` to `end`, which is what the
+   box around the scene has of [0, farthest]; nothing of it when `end` is the smaller. */
+typedef struct KrsRay {
+    double origin[3], direction[3], start, end;
+} KrsRay;
+KrsRay krs_ray(const KrsScene *scene, const double origin[3], const double direction[3],
+               double farthest);
+/* Whether these are arguments that krs_raycast accepts. */
+bool krs_rays_are_sound(const double (*origins)[3], const double (*directions)[3], size_t count,
+                        double farthest, double tolerance);
 /* 64-bit FNV-1a of the whole text (used files included), 16 hexadecimal digits. */
 const char *krs_scene_hash(const KrsScene *scene);
 

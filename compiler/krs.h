@@ -93,26 +93,48 @@ void      krs_frame_free(KrsFrame *frame);
 KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values, size_t count);
 KrsStatus krs_frame_set_time(KrsFrame *frame, double time);
 
+/*
+ * Empty zones: spheres (center and radius) within which nothing of the scene is, so that the
+ * caller can put something of its own there.  Solids end at a zone as if the sphere had been
+ * subtracted; the cut shows the component, and the material, that it goes through.  These zones
+ * add to those that the scene declares, and replace those of the call before.
+ * KRS_BAD_ARGUMENT when there are more than KRS_MOST_ZONES, a radius is negative, or a number is
+ * not finite or beyond 1e18; the frame is then unchanged.
+ */
+#define KRS_MOST_ZONES 16
+KrsStatus krs_frame_set_zones(KrsFrame *frame, const double (*zones)[4], size_t count);
+
 /* A component of the scene: what one `show` shows. */
 typedef struct KrsComponent {
     const char *name;      /* the variable it was shown by, or "component 3" */
     double      low[3], high[3]; /* a box around it in world units; may be infinite */
     double      slope;     /* the derived bound on the slope of its expression */
     bool        exact;     /* the distance is exact outside wherever math.md says so */
+    bool        estimate;  /* nothing is proven of the distance; else it is a bound */
     uint32_t    levels;    /* reflections of its outermost sequence; 0 without one */
     double      instances; /* copies of kernels, counted with their reflections */
+    uint32_t    inversions; /* maps of its outermost sequence that invert, or of `.transform` */
 } KrsComponent;
 
 size_t    krs_component_count(const KrsScene *scene);
 KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *component);
 
+/*
+ * Questions.  All are KRS_BAD_ARGUMENT, and answer nothing, when a number among the arguments is
+ * not what it must be: coordinates are finite.
+ */
+
 /* Distances for `count` points in world units: never above the distance to the nearest surface,
-   negative inside. */
-void krs_distance(KrsFrame *frame, const double (*points)[3], size_t count, double *distances);
+   negative inside.  +infinity in a scene with nothing in it. */
+KrsStatus krs_distance(KrsFrame *frame, const double (*points)[3], size_t count, double *distances);
+/* Unit gradients of the distance, outwards; 0 where there is none. */
+KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count,
+                     double (*normals)[3]);
 
 /* What is at a point, or where a ray ends. */
 typedef struct KrsHit {
     bool     hit;       /* for rays; always true for points */
+    bool     unresolved; /* for rays: given up after KRS_MOST_STEPS steps, clear up to `t` */
     double   t;         /* for rays: world units along the unit direction */
     double   point[3];
     double   distance;  /* at that point */
@@ -122,14 +144,30 @@ typedef struct KrsHit {
     uint32_t instance;  /* heap number of math.md section 1, a hash beyond 31 mirrors; 1 without a sequence */
     double   color[3];  /* linear Rec.709 */
     double   roughness, metallic;
+    double   shading[3]; /* the normal that light sees: `normal`, unless mirrors are smooth over a
+                            width of their own */
 } KrsHit;
 
 /* Distance, normal and identity at points. */
-void krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits);
-/* First hits of rays in [0, farthest]; directions of any length but 0.  A hit is within
-   `tolerance` of the surface, in world units (0: 1e-9 times the distance travelled, or 1e-9). */
-void krs_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3], size_t count,
-                 double farthest, double tolerance, KrsHit *hits);
+KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits);
+
+/*
+ * First hits of rays in [0, farthest], which may be infinite; directions of any length but 0.
+ *
+ * A ray hits where the distance is not above 0, so things are as thick as they are, whatever the
+ * tolerance.  The tolerance, in world units (0: 1e-9), says how far `t` may be from where the
+ * surface is crossed; a sixteenth of it is the length of a way through a solid that may be
+ * overlooked, as where a ray grazes one.  Both grow by what coordinates of that size are rounded
+ * by.  A ray from inside of a solid sees the solid's inner wall; one that begins on a surface hits
+ * it at 0.
+ *
+ * A ray that comes so near to surfaces for so long that KRS_MOST_STEPS distances do not bring it
+ * to an end (as within a hair's breadth of an endless plane) is neither hit nor miss: it is
+ * `unresolved`, and nothing is before `t`.
+ */
+#define KRS_MOST_STEPS 100000
+KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
+                      size_t count, double farthest, double tolerance, KrsHit *hits);
 
 #ifdef __cplusplus
 }

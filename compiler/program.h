@@ -8,7 +8,9 @@
 #include "compiler/geometry/lower.h"
 #include "compiler/graph/evaluate.h"
 
-/* Roots of the graph, in this order: ROOT_COUNT for each component, then what a view needs. */
+/* Roots of the graph, in this order: ROOT_COUNT for each component, the depth in zones if there
+   are any, then what a view needs. */
+enum { MARCH_ROOTS = 1 + ALONG_COUNT }; /* behind all others: lower_guarded, lower_along */
 enum { CAMERA_ROOTS = 5, LIGHT_ROOTS = 3, SKY_ROOTS = 3 };
 
 struct KrsScene {
@@ -17,7 +19,10 @@ struct KrsScene {
     KrsProgram   program;
     const Graph *graph;
     const Node  *roots;
+    const Node  *guarded_roots; /* of each component: what to march by (lower_guarded) */
+    const Node  *along_roots;   /* of each component, method by method: lower_along */
     size_t       component_count, camera_count, light_count;
+    size_t       zone_count; /* declared; all have one root */
     KrsComponent *components;
     Parameter   *parameters;
     size_t       parameter_count;
@@ -27,14 +32,39 @@ struct KrsScene {
     double       framed_eye[3], framed_target[3];
     SceneImage   image;
     char         hash[17];
-    Tape         distance; /* of all components */
+    Tape         distance; /* of all components, and zones */
+    Tape         guarded;  /* of all components: guarded_roots, with what may be left out */
     Tape         surface;  /* all roots of all components */
     Tape         view;     /* cameras, lights and sky */
 };
 
+/* A frame: what varies, and room for the values of all nodes. */
+struct KrsFrame {
+    const KrsScene *scene;
+    NodeValue      *parameters; /* the parameter block: slot 0 is the time */
+    NodeValue      *values;     /* of every node */
+    KrsLight       *lights;
+    bool            fresh;      /* frame values are of these parameters */
+    double          zones[KRS_MOST_ZONES][4];
+    size_t          zone_count; /* of the caller */
+};
+
+/* Computes what depends on parameters only, once after each change. */
+void frame_refresh(KrsFrame *frame);
+/* The value of a node that is a vector of 3. */
+void frame_copy(const KrsFrame *frame, Node node, double to[3]);
+/* Any length but 0: squares of what is very long or short would overflow, or vanish. */
+void vector_normalize(double v[3]);
+
+static inline Node zone_root(const KrsScene *scene)
+{
+    return scene->zone_count ? scene->roots[scene->component_count * ROOT_COUNT] : NODE_NONE;
+}
+
 static inline const Node *camera_roots(const KrsScene *scene, size_t camera)
 {
-    return scene->roots + scene->component_count * ROOT_COUNT + camera * CAMERA_ROOTS;
+    return scene->roots + scene->component_count * ROOT_COUNT + (scene->zone_count > 0) +
+           camera * CAMERA_ROOTS;
 }
 
 static inline const Node *light_roots(const KrsScene *scene, size_t light)

@@ -1,215 +1,46 @@
 /*
- * query.c: frames and questions: the scene at given parameters and time, in double precision.
+ * query.c: questions: what is at a point, and where a ray ends, in double precision.
+ *
+ * What is asked of the device (runtime/tracer/query.c) follows the same rules in single precision.
  */
+#include <float.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "compiler/program.h"
 
-struct KrsFrame {
-    const KrsScene *scene;
-    NodeValue      *parameters; /* the parameter block: slot 0 is the time */
-    NodeValue      *values;     /* of every node */
-    KrsLight       *lights;
-    bool            fresh;      /* frame values are of these parameters */
-};
-
-/* ---- frames ---- */
-
-/* Zeroed memory of the scene's allocator; NULL: there is none. */
-static void *take(const KrsScene *scene, size_t count, size_t size)
+static double largest3(const double v[3])
 {
-    const Memory *memory = &scene->memory;
-    size_t        bytes  = (count ? count : 1) * size;
-    void         *block  = memory->allocate ? memory->allocate(memory->user, bytes) : malloc(bytes);
-    if (block)
-        memset(block, 0, bytes);
-    return block;
+    return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
 }
 
-static void give(const KrsScene *scene, void *block)
+static bool are_finite(const double (*vectors)[3], size_t count)
 {
-    const Memory *memory = &scene->memory;
-    if (block && memory->allocate)
-        memory->release(memory->user, block);
-    else
-        free(block);
-}
-
-KrsStatus krs_frame_new(const KrsScene *scene, KrsFrame **result)
-{
-    *result         = NULL;
-    KrsFrame *frame = take(scene, 1, sizeof *frame);
-    if (!frame)
-        return KRS_OUT_OF_MEMORY;
-    frame->scene      = scene;
-    frame->parameters = take(scene, scene->program.parameter_slots, sizeof *frame->parameters);
-    frame->values     = take(scene, scene->graph->count, sizeof *frame->values);
-    frame->lights     = take(scene, scene->light_count, sizeof *frame->lights);
-    if (!frame->parameters || !frame->values || !frame->lights) {
-        krs_frame_free(frame);
-        return KRS_OUT_OF_MEMORY;
-    }
-    for (size_t i = 0; i < scene->parameter_count; i++)
-        memcpy(frame->parameters[scene->parameters[i].slot].v, scene->parameters[i].value,
-               sizeof scene->parameters[i].value);
-    *result = frame;
-    return KRS_OK;
-}
-
-void krs_frame_free(KrsFrame *frame)
-{
-    if (!frame)
-        return;
-    const KrsScene *scene = frame->scene;
-    give(scene, frame->parameters);
-    give(scene, frame->values);
-    give(scene, frame->lights);
-    give(scene, frame);
-}
-
-/* Values that depend on parameters only, once after each change. */
-static void refresh(KrsFrame *frame)
-{
-    if (frame->fresh)
-        return;
-    tape_run_frame(&frame->scene->surface, frame->parameters, frame->values);
-    tape_run_frame(&frame->scene->distance, frame->parameters, frame->values);
-    tape_run_frame(&frame->scene->view, frame->parameters, frame->values);
-    frame->fresh = true;
-}
-
-static bool node_is_finite(const KrsFrame *frame, Node node)
-{
-    const Expr *e = &frame->scene->graph->items[node];
-    for (uint32_t k = 0; e->time != TIME_POINT && e->type <= TYPE_VEC4 && k < (uint32_t)e->type; k++)
-        if (!isfinite(frame->values[node].v[k]))
+    for (size_t i = 0; i < count; i++)
+        if (!isfinite(vectors[i][0]) || !isfinite(vectors[i][1]) || !isfinite(vectors[i][2]))
             return false;
     return true;
 }
 
-/* Whether all that points and the view get from the frame are numbers.  A value that is chosen
-   against, as in `if a == 0 then 1 else 1 / a`, is not used and does not count. */
-static bool frame_is_finite(KrsFrame *frame)
+/* ---- points ---- */
+
+/* How deep a point is in the deepest zone, those of the scene (in frame->values) and of the
+   caller; negative outside. */
+static double zone_depth(const KrsFrame *frame, const double point[3])
 {
-    const KrsScene *scene = frame->scene;
-    const Node     *roots = camera_roots(scene, 0), *end = sky_roots(scene) + SKY_ROOTS;
-    refresh(frame);
-    for (const Node *root = roots; root < end; root++)
-        if (!node_is_finite(frame, *root))
-            return false;
-    for (size_t i = scene->surface.frame_count; i < scene->surface.count; i++) {
-        const Expr *e = &scene->graph->items[scene->surface.nodes[i]];
-        for (int k = 0; k < e->operand_count; k++)
-            if (!node_is_finite(frame, e->operands[k]))
-                return false;
+    Node   zone  = zone_root(frame->scene);
+    double depth = zone == NODE_NONE ? -INFINITY : frame->values[zone].v[0];
+    for (size_t i = 0; i < frame->zone_count; i++) {
+        const double *at = frame->zones[i];
+        double away[3]   = {point[0] - at[0], point[1] - at[1], point[2] - at[2]};
+        double distance  = sqrt(away[0] * away[0] + away[1] * away[1] + away[2] * away[2]);
+        depth            = fmax(depth, at[3] - distance);
     }
-    return true;
+    return depth;
 }
 
-/* Gives slot `slot` of the parameter block new values, unless the scene cannot have them. */
-static KrsStatus change_slot(KrsFrame *frame, uint32_t slot, const double *values, size_t count)
-{
-    NodeValue before = frame->parameters[slot];
-    memcpy(frame->parameters[slot].v, values, count * sizeof *values);
-    frame->fresh = false;
-    if (frame_is_finite(frame))
-        return KRS_OK;
-    frame->parameters[slot] = before;
-    frame->fresh            = false;
-    return KRS_BAD_ARGUMENT;
-}
-
-KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values, size_t count)
-{
-    const KrsScene *scene = frame->scene;
-    for (size_t i = 0; i < scene->parameter_count; i++) {
-        const Parameter *parameter = &scene->parameters[i];
-        if (strcmp(parameter->name, name) != 0)
-            continue;
-        if (count != parameter->components)
-            return KRS_BAD_ARGUMENT;
-        for (size_t k = 0; k < count; k++)
-            if (!isfinite(values[k]) || values[k] < parameter->low[k] ||
-                values[k] > parameter->high[k])
-                return KRS_BAD_ARGUMENT;
-        return change_slot(frame, parameter->slot, values, count);
-    }
-    return KRS_BAD_ARGUMENT;
-}
-
-KrsStatus krs_frame_set_time(KrsFrame *frame, double time)
-{
-    return isfinite(time) ? change_slot(frame, 0, &time, 1) : KRS_BAD_ARGUMENT;
-}
-
-void krs_frame_parameters(const KrsFrame *frame, float (*block)[4])
-{
-    for (uint32_t i = 0; i < frame->scene->program.parameter_slots; i++)
-        for (int k = 0; k < 4; k++)
-            block[i][k] = (float)frame->parameters[i].v[k];
-}
-
-static void copy3(double to[3], const KrsFrame *frame, Node node)
-{
-    memcpy(to, frame->values[node].v, 3 * sizeof *to);
-}
-
-/* Any length but 0: squares of what is very long or short would overflow, or vanish. */
-static void normalize3(double v[3])
-{
-    double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
-    if (!(largest > 0))
-        return;
-    for (int i = 0; i < 3; i++)
-        v[i] /= largest;
-    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3; i++)
-        v[i] /= length;
-}
-
-KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view)
-{
-    const KrsScene *scene = frame->scene;
-    if (camera >= scene->camera_count)
-        return KRS_BAD_ARGUMENT;
-    refresh(frame);
-    const Node *root = camera_roots(scene, camera), *sky = sky_roots(scene);
-    *view = (KrsView){.light_count = scene->light_count, .lights = frame->lights};
-    view->camera.projection = scene->cameras[camera].projection;
-    copy3(view->camera.eye, frame, root[0]);
-    copy3(view->camera.target, frame, root[1]);
-    copy3(view->camera.up, frame, root[2]);
-    if (scene->framed && camera == 0) {
-        memcpy(view->camera.eye, scene->framed_eye, sizeof view->camera.eye);
-        memcpy(view->camera.target, scene->framed_target, sizeof view->camera.target);
-    }
-    view->camera.fov    = frame->values[root[3]].v[0];
-    view->camera.height = frame->values[root[4]].v[0];
-    copy3(view->sky.zenith, frame, sky[0]);
-    copy3(view->sky.horizon, frame, sky[1]);
-    copy3(view->sky.ground, frame, sky[2]);
-    for (size_t i = 0; i < scene->light_count; i++) {
-        const Node *light = light_roots(scene, i);
-        KrsLight   *to    = &frame->lights[i];
-        *to = (KrsLight){.positional = scene->lights[i].positional,
-                         .shadow     = scene->lights[i].shadow,
-                         .softness   = frame->values[light[2]].v[0]};
-        copy3(to->vector, frame, light[0]);
-        copy3(to->color, frame, light[1]);
-        if (!to->positional)
-            normalize3(to->vector);
-    }
-    const SceneImage *image = &scene->image;
-    view->image = (KrsImage){image->width,    image->height,   image->samples, image->integrator,
-                             image->exposure, image->tone_map, image->error};
-    return KRS_OK;
-}
-
-/* ---- questions ---- */
-
-/* The least distance of all components; *nearest is its component, from 1. */
+/* The least distance of all components; *nearest is its component, from 1.  Zones cut what is
+   there, and do not change whose it is. */
 static double distance_at(KrsFrame *frame, const double point[3], uint32_t *nearest)
 {
     const KrsScene *scene = frame->scene;
@@ -222,22 +53,37 @@ static double distance_at(KrsFrame *frame, const double point[3], uint32_t *near
             *nearest = (uint32_t)i + 1;
         }
     }
-    return least;
+    double depth = zone_depth(frame, point);
+    return least < depth ? depth : least;
 }
 
-void krs_distance(KrsFrame *frame, const double (*points)[3], size_t count, double *distances)
+/* No more than the distance, and cheaper: levels of sequences that are far for their size are not
+   looked at (lower_guarded). */
+static double room_at(KrsFrame *frame, const double point[3])
+{
+    const KrsScene *scene = frame->scene;
+    double          least = INFINITY;
+    tape_run_point(&scene->guarded, point, frame->values);
+    for (size_t i = 0; i < scene->component_count; i++)
+        least = fmin(least, frame->values[scene->guarded_roots[i]].v[0]);
+    return fmax(least, zone_depth(frame, point));
+}
+
+KrsStatus krs_distance(KrsFrame *frame, const double (*points)[3], size_t count, double *distances)
 {
     uint32_t nearest = 0;
-    refresh(frame);
+    if (!are_finite(points, count))
+        return KRS_BAD_ARGUMENT;
+    frame_refresh(frame);
     for (size_t i = 0; i < count; i++)
         distances[i] = distance_at(frame, points[i], &nearest);
+    return KRS_OK;
 }
 
 /* Central differences: in double precision their error is far below what a normal needs. */
 static void normal_at(KrsFrame *frame, const double point[3], double normal[3])
 {
-    double   size = fmax(fabs(point[0]), fmax(fabs(point[1]), fabs(point[2])));
-    double   step = 1e-6 * (1 + size);
+    double   step = 1e-6 * (1 + largest3(point));
     uint32_t nearest;
     for (int i = 0; i < 3; i++) {
         double before[3] = {point[0], point[1], point[2]};
@@ -251,6 +97,16 @@ static void normal_at(KrsFrame *frame, const double point[3], double normal[3])
         normal[i] = length > 1e-3 * step ? normal[i] / length : 0;
 }
 
+KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count, double (*normals)[3])
+{
+    if (!are_finite(points, count))
+        return KRS_BAD_ARGUMENT;
+    frame_refresh(frame);
+    for (size_t i = 0; i < count; i++)
+        normal_at(frame, points[i], normals[i]);
+    return KRS_OK;
+}
+
 static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
 {
     const KrsScene *scene = frame->scene;
@@ -260,52 +116,200 @@ static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
     hit->distance = distance_at(frame, point, &hit->component);
     if (!hit->component)
         return;
-    tape_run_point(&scene->surface, point, frame->values);
+    tape_run_surface(&scene->surface, point, hit->normal, 0, frame->values);
     const Node *root = &scene->roots[(hit->component - 1) * ROOT_COUNT];
     hit->level       = (uint32_t)frame->values[root[ROOT_LEVEL]].v[0];
     hit->instance    = (uint32_t)frame->values[root[ROOT_INSTANCE]].v[0];
-    copy3(hit->color, frame, root[ROOT_COLOR]);
+    frame_copy(frame, root[ROOT_COLOR], hit->color);
     hit->roughness = frame->values[root[ROOT_ROUGHNESS]].v[0];
     hit->metallic  = frame->values[root[ROOT_METALLIC]].v[0];
+    /* No mirror is smooth where a zone cuts. */
+    if (hit->distance > frame->values[root[ROOT_DISTANCE]].v[0])
+        memcpy(hit->shading, hit->normal, sizeof hit->shading);
+    else
+        frame_copy(frame, root[ROOT_NORMAL], hit->shading);
 }
 
-void krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits)
+KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits)
 {
-    refresh(frame);
+    if (!are_finite(points, count))
+        return KRS_BAD_ARGUMENT;
+    frame_refresh(frame);
     for (size_t i = 0; i < count; i++)
         probe(frame, points[i], &hits[i]);
+    return KRS_OK;
 }
 
-/* Sphere tracing (math.md, section 6) without relaxation.  A ray from inside of a solid sees
-   the solid's inner wall. */
-static void trace(KrsFrame *frame, const double origin[3], const double direction[3],
-                  double farthest, double tolerance, KrsHit *hit)
+/* ---- rays ---- */
+
+/* Grown by what rounding may take away from a box. */
+static void clip_axis(double low, double high, double from, double along, KrsRay *ray)
 {
-    enum { MOST_STEPS = 100000 };
-    double   unit[3] = {direction[0], direction[1], direction[2]}, point[3], t = 0, side = 0;
-    uint32_t nearest;
-    normalize3(unit);
-    *hit = (KrsHit){0};
-    for (int i = 0; i < MOST_STEPS && t <= farthest; i++) {
-        for (int k = 0; k < 3; k++)
-            point[k] = origin[k] + t * unit[k];
-        double distance = distance_at(frame, point, &nearest);
-        if (side == 0)
-            side = distance < 0 ? -1 : 1;
-        distance *= side;
-        if (distance < (tolerance > 0 ? tolerance : 1e-9 * fmax(1, t))) {
-            probe(frame, point, hit);
-            hit->t = t;
-            return;
-        }
-        t += distance;
+    double margin = 1e-9 * (1 + fabs(from));
+    low -= margin + (isfinite(low) ? 1e-9 * fabs(low) : 0);
+    high += margin + (isfinite(high) ? 1e-9 * fabs(high) : 0);
+    double a = (low - from) / along, b = (high - from) / along;
+    if (along == 0) {
+        a = from >= low && from <= high ? -INFINITY : INFINITY;
+        b = -a;
+    } else if (along < 0) {
+        double swap = a;
+        a = b;
+        b = swap;
     }
+    ray->start = fmax(ray->start, a);
+    ray->end   = fmin(ray->end, b);
 }
 
-void krs_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
-                 size_t count, double farthest, double tolerance, KrsHit *hits)
+KrsRay krs_ray(const KrsScene *scene, const double origin[3], const double direction[3],
+               double farthest)
 {
-    refresh(frame);
+    const KrsProgram *program = &scene->program;
+    const double      nowhere = 1e30; /* farther than anything is; its square is a number */
+    KrsRay            ray     = {.end = fmin(farthest, nowhere)};
+    memcpy(ray.origin, origin, sizeof ray.origin);
+    memcpy(ray.direction, direction, sizeof ray.direction);
+    vector_normalize(ray.direction);
+    for (int k = 0; k < 3; k++)
+        clip_axis(program->low[k], program->high[k], origin[k], ray.direction[k], &ray);
+    return ray;
+}
+
+bool krs_rays_are_sound(const double (*origins)[3], const double (*directions)[3], size_t count,
+                        double farthest, double tolerance)
+{
+    if (!(farthest >= 0) || !(tolerance >= 0) || isinf(tolerance) || !are_finite(origins, count) ||
+        !are_finite(directions, count))
+        return false;
     for (size_t i = 0; i < count; i++)
-        trace(frame, origins[i], directions[i], farthest, tolerance, &hits[i]);
+        if (largest3(directions[i]) == 0)
+            return false;
+    return true;
+}
+
+/* A ray under way.  Nothing is before `t`, nor for `room` behind it; `gap` from there is the next
+   place to look at. */
+typedef struct March {
+    KrsFrame *frame;
+    KrsRay    ray;
+    double    size;  /* of the origin's coordinates: what rounding goes by */
+    double    tolerance;
+    double    side;  /* -1 from inside of a solid; 0: not known */
+    double    t, room, gap;
+    double    slope; /* of the room along the ray, as it was on average */
+} March;
+
+static void march_point(const March *march, double t, double point[3])
+{
+    for (int k = 0; k < 3; k++)
+        point[k] = march->ray.origin[k] + t * march->ray.direction[k];
+}
+
+static double march_room(March *march, double t)
+{
+    double point[3];
+    march_point(march, t, point);
+    double distance = room_at(march->frame, point);
+    if (march->side == 0)
+        march->side = distance < 0 ? -1 : 1;
+    return march->side * distance;
+}
+
+static double rounding_at(const March *march, double t)
+{
+    return 4 * DBL_EPSILON * (march->size + t);
+}
+
+/* Where the surface is crossed between t, where there is room, and t + gap, where there is `room`
+   and so none: by false position, each end's weight halved when the other has moved twice
+   (the Illinois method). */
+static double find_crossing(March *march, double room)
+{
+    enum { MOST_ROUNDS = 100 };
+    double low = march->t, high = march->t + march->gap, below = march->room, above = room;
+    double enough = fmax(rounding_at(march, high), march->tolerance / 16);
+    int    moved = 0;
+    for (int i = 0; i < MOST_ROUNDS && above < 0 && below > 0 && high - low > enough; i++) {
+        double t = low + (high - low) * below / (below - above);
+        t        = fmin(fmax(t, low + 0.25 * enough), high - 0.25 * enough);
+        double r = march_room(march, t);
+        if (r > 0) {
+            low   = t;
+            below = r;
+            above *= moved > 0 ? 0.5 : 1;
+            moved = 1;
+        } else {
+            high  = t;
+            above = r;
+            below *= moved < 0 ? 0.5 : 1;
+            moved = -1;
+        }
+    }
+    return high;
+}
+
+typedef enum Fate { MARCHING, HIT, MISS } Fate;
+
+/*
+ * One look, by the rule of trace.comp: the ball of empty space around t and the one around the
+ * place looked at must meet; else the ray goes back to the middle of what they leave open, until
+ * no more is open than a sixteenth of the tolerance.  So a gap may be as long as the balls are
+ * expected to meet over if the room goes on as it did (automatic relaxation).
+ */
+static Fate march_step(March *march)
+{
+    double at = march->t + march->gap, room = march_room(march, at);
+    double least = rounding_at(march, at), open = march->tolerance / 16 + least;
+    double doubtful = march->gap - march->room;
+    if (room <= least && doubtful <= march->tolerance + open) {
+        march->t   = find_crossing(march, room);
+        march->gap = 0;
+        return march->t <= march->ray.end ? HIT : MISS;
+    }
+    if (room > least && doubtful <= room + 1.01 * open) {
+        double slope = march->gap > 0 ? (room - march->room) / march->gap : -1;
+        march->slope += 0.3 * (slope - march->slope);
+        march->t    = at;
+        march->room = room;
+        march->gap  = room * fmax(1, 2 / (1 - fmin(march->slope, 0.98))) + open;
+        return at + room > march->ray.end ? MISS : MARCHING;
+    }
+    march->gap   = fmax(0.5 * (march->gap + march->room - fmax(room, 0)), march->room + open);
+    march->slope = -1;
+    return MARCHING;
+}
+
+static void trace(KrsFrame *frame, KrsRay ray, double tolerance, KrsHit *hit)
+{
+    March march = {.frame     = frame,
+                   .ray       = ray,
+                   .size      = largest3(ray.origin),
+                   .tolerance = tolerance > 0 ? tolerance : 1e-9,
+                   .side      = ray.start > 0 ? 1 : 0,
+                   .t         = ray.start,
+                   .slope     = -1};
+    Fate  fate = ray.start <= ray.end ? MARCHING : MISS;
+    for (int i = 0; i < KRS_MOST_STEPS && fate == MARCHING; i++)
+        fate = march_step(&march);
+    *hit = (KrsHit){0};
+    if (fate == MISS)
+        return;
+    double point[3];
+    march_point(&march, march.t, point);
+    probe(frame, point, hit);
+    hit->t          = march.t;
+    hit->hit        = fate == HIT;
+    hit->unresolved = fate == MARCHING;
+}
+
+KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
+                      size_t count, double farthest, double tolerance, KrsHit *hits)
+{
+    if (!krs_rays_are_sound(origins, directions, count, farthest, tolerance))
+        return KRS_BAD_ARGUMENT;
+    frame_refresh(frame);
+    for (size_t i = 0; i < count; i++)
+        trace(frame, krs_ray(frame->scene, origins[i], directions[i], farthest), tolerance,
+              &hits[i]);
+    return KRS_OK;
 }

@@ -34,6 +34,12 @@ typedef struct KrsDevice {
 /* A complaint of Vulkan's validation layers; the text lives until the callback returns. */
 typedef void KrsValidationCallback(void *user, const char *message);
 
+/* Whether rays leave out by branches what is far away for its size.  The default is to, but not on
+   devices of type CPU: those that are known run both sides of a branch. */
+typedef enum KrsEarlyOuts {
+    KRS_EARLY_OUTS_DEFAULT, KRS_EARLY_OUTS_ON, KRS_EARLY_OUTS_OFF
+} KrsEarlyOuts;
+
 /* Zero asks for the defaults. */
 typedef struct KrsRendererOptions {
     /* NULL or "": a real graphics card if there is one (discrete before integrated), else a
@@ -46,6 +52,7 @@ typedef struct KrsRendererOptions {
     /* A folder for what is compiled, so that another time it need not be; it is made if it is
        missing, and need not be writable.  NULL: none.  Without one nothing is written to disk. */
     const char            *cache;
+    KrsEarlyOuts           early_outs;
     KrsAllocator           allocator;  /* our memory; the driver's and glslang's is their own */
 } KrsRendererOptions;
 
@@ -66,9 +73,19 @@ KrsDevice   krs_renderer_device(const KrsRenderer *renderer);
 /* Complaints of the validation layers so far. */
 uint64_t krs_renderer_complaints(const KrsRenderer *renderer);
 
-/* Compiles the scene's shaders.  The scene must outlive the rendering.  On any status but KRS_OK
-   *rendering is NULL. */
+/* What a rendering is mostly for: those shaders are compiled at once, others when they are
+   needed.  So are those for a frame with empty zones (krs_frame_set_zones): the first time, and
+   again when there are more than 1, 2, 4 or 8 for the first time, never for other numbers. */
+typedef enum KrsPurpose {
+    KRS_FOR_PICTURES, /* krs_render */
+    KRS_FOR_QUESTIONS /* krs_device_probe, krs_device_raycast */
+} KrsPurpose;
+
+/* Compiles the scene's shaders, for pictures.  The scene must outlive the rendering.  On any status
+   but KRS_OK *rendering is NULL. */
 KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRendering **rendering);
+KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, KrsPurpose purpose,
+                                KrsRendering **rendering);
 void      krs_rendering_free(KrsRendering *rendering);
 
 /* The parts of a picture, as bits. */
@@ -99,6 +116,11 @@ typedef enum KrsTrace {
                           2014, 3.1, corrected) */
     KRS_TRACE_AUTO,    /* by as much as the slope of the last steps lets expect (automatic
                           relaxation) */
+    KRS_TRACE_EXACT,   /* by what lies ahead on the ray: the next zero of polynomials; where there
+                          are none, plain.  By their Bernstein coefficients, */
+    KRS_TRACE_TAYLOR,  /* or by the slope that the Taylor series on the ray permits (Ban and
+                          Valasek 2023, with the safe one of its iterates), */
+    KRS_TRACE_ROOT_FREE, /* or by the radius within which it cannot be 0 */
     KRS_TRACE_COUNT
 } KrsTrace;
 extern const char *const krs_trace_names[KRS_TRACE_COUNT]; /* "default", "plain", ... */
@@ -112,6 +134,17 @@ typedef enum KrsSchedule {
     KRS_SCHEDULE_COUNT
 } KrsSchedule;
 extern const char *const krs_schedule_names[KRS_SCHEDULE_COUNT];
+
+/* Whether heavy components of a scene are marched together, or each by itself and those in front
+   first; the pictures are the same but for the permitted error.  The default is by themselves on
+   devices of type CPU.  Together whatever is asked for when the camera is inside of a solid. */
+typedef enum KrsComponents {
+    KRS_COMPONENTS_DEFAULT,
+    KRS_COMPONENTS_TOGETHER,
+    KRS_COMPONENTS_APART,
+    KRS_COMPONENTS_COUNT
+} KrsComponents;
+extern const char *const krs_components_names[KRS_COMPONENTS_COUNT];
 
 /* The shadows of lights that have a size. */
 typedef enum KrsShadows {
@@ -135,9 +168,12 @@ typedef struct KrsRenderOptions {
     KrsTrace    trace;
     KrsSchedule schedule;
     KrsShadows  shadows;
+    KrsComponents components;
     bool      no_beams;      /* each ray is marched by itself all the way */
     bool      no_upsampling; /* shadows and occlusion are found for every pixel, not for a quarter
                                 of them where the others can be seen to be alike */
+    bool      no_filter;     /* normals are those of the very point, about, and roughness is what
+                                the material says, however much finer than a pixel detail is */
     double    slice_ms;      /* aim for dispatches this long; 0: 50 */
     KrsProgressCallback *progress; /* may be NULL */
     void                *user;     /* handed to `progress` */
@@ -203,12 +239,32 @@ typedef struct KrsSurfacePoint {
     float    distance; /* as the surface function sees it */
     float    color[3], roughness, metallic, emission[3];
     uint32_t component, level, instance;
+    float    normal[3]; /* the one to light */
 } KrsSurfacePoint;
 
 /* Evaluates the scene on the device at `count` points: distances, and what is there when
    `surfaces` is not NULL. */
 KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3],
                      size_t count, float *distances, KrsSurfacePoint *surfaces);
+
+/*
+ * Questions to the device, for many at once: krs_probe and krs_raycast (krs.h) in single
+ * precision, with the same arguments and answers; numbers beyond 1e18 are refused, too.
+ *
+ * Distances, and t on top of the tolerance, are right to a few units in the last place of the
+ * coordinates for simple scenes, and to some hundred for sequences of dozens of mirrors; what is
+ * far outside of a bounded scene loses nothing, since rays begin at its box.  Normals are
+ * differences over a thousandth of the coordinates.  A tolerance of 0 asks for as much as single
+ * precision has.  A ray is unresolved after 8192 steps.
+ *
+ * KRS_BAD_ARGUMENT (nothing is answered), KRS_OUT_OF_MEMORY, KRS_INTERNAL; what is written to
+ * `hits` is then undefined.  Memory does not grow with `count`.
+ */
+KrsStatus krs_device_probe(KrsRendering *rendering, KrsFrame *frame, const double (*points)[3],
+                           size_t count, KrsHit *hits);
+KrsStatus krs_device_raycast(KrsRendering *rendering, KrsFrame *frame, const double (*origins)[3],
+                             const double (*directions)[3], size_t count, double farthest,
+                             double tolerance, KrsHit *hits);
 
 #ifdef __cplusplus
 }

@@ -289,10 +289,12 @@ static void lex_number(Lexer *lexer)
 }
 
 /* The sRGB curve of IEC 61966-2-1. */
-static double linear_from_srgb(unsigned byte)
+void linear_from_srgb(uint32_t rgb, double linear[3])
 {
-    double value = byte / 255.0;
-    return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
+    for (int i = 0; i < 3; i++) {
+        double value = (rgb >> (16 - 8 * i) & 255) / 255.0;
+        linear[i]    = value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
+    }
 }
 
 static const char *six_digits(Lexer *lexer, uint32_t start)
@@ -315,8 +317,7 @@ static void lex_colour(Lexer *lexer)
                    six_digits(lexer, start));
     Token        *token = add_token(lexer, TOKEN_COLOUR, start);
     unsigned long rgb   = good ? strtoul(digits, NULL, 16) : 0;
-    for (int i = 0; i < 3; i++)
-        token->number[i] = linear_from_srgb(rgb >> (16 - 8 * i) & 255);
+    linear_from_srgb((uint32_t)rgb, token->number);
 }
 
 /* ---- strings ---- */

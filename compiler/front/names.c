@@ -271,6 +271,7 @@ static void walk(Checker *c, const Syntax *syntax)
         leave_scope(c);
         break;
     case SYNTAX_MATERIAL: case SYNTAX_CAMERA: case SYNTAX_LIGHT: case SYNTAX_SKY: case SYNTAX_IMAGE:
+    case SYNTAX_ZONE:
         walk_children(c, syntax);
         check_properties(c, syntax);
         break;

@@ -200,13 +200,21 @@ static Syntax *parse_image(Parser *p)
                                      "for example `image { size: [1920, 1080], samples: 64 }`");
 }
 
-/* surroundings = camera | light | sky | image ; */
+/* zone = "zone" properties ; */
+static Syntax *parse_zone(Parser *p)
+{
+    return parse_block_of_properties(p, SYNTAX_ZONE, false, "`{` and the properties of the zone",
+                                     "for example `zone { center: [0, 1, 0], radius: 0.5 }`");
+}
+
+/* surroundings = camera | light | sky | image | zone ; */
 static Syntax *parse_surroundings(Parser *p)
 {
     switch (kind_here(p)) {
     case TOKEN_CAMERA: return parse_camera(p);
     case TOKEN_LIGHT:  return parse_light(p);
     case TOKEN_SKY:    return parse_sky(p);
+    case TOKEN_ZONE:   return parse_zone(p);
     default:           return parse_image(p);
     }
 }
@@ -346,7 +354,7 @@ static Syntax *parse_block_statement(Parser *p)
     case TOKEN_LET:   return parse_let(p);
     case TOKEN_DEF:   return parse_def(p);
     case TOKEN_SHAPE: return parse_shape(p);
-    case TOKEN_CAMERA: case TOKEN_LIGHT: case TOKEN_SKY: case TOKEN_IMAGE:
+    case TOKEN_CAMERA: case TOKEN_LIGHT: case TOKEN_SKY: case TOKEN_IMAGE: case TOKEN_ZONE:
         return parse_surroundings(p);
     case TOKEN_SHOW: return parse_show(p);
     case TOKEN_FOR:  return parse_for(p);
@@ -483,7 +491,7 @@ static Syntax *parse_statement(Parser *p)
     switch (kind_here(p)) {
     case TOKEN_LET: case TOKEN_DEF: case TOKEN_PARAM: case TOKEN_SHAPE: case TOKEN_MATERIAL:
         return parse_definition(p);
-    case TOKEN_CAMERA: case TOKEN_LIGHT: case TOKEN_SKY: case TOKEN_IMAGE:
+    case TOKEN_CAMERA: case TOKEN_LIGHT: case TOKEN_SKY: case TOKEN_IMAGE: case TOKEN_ZONE:
         return parse_surroundings(p);
     case TOKEN_SHOW: return parse_show(p);
     case TOKEN_USE:  return parse_use(p);

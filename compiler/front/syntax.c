@@ -37,6 +37,7 @@ const char *syntax_kind_name(SyntaxKind kind)
         [SYNTAX_LIGHT] = "light",
         [SYNTAX_SKY] = "sky",
         [SYNTAX_IMAGE] = "image",
+        [SYNTAX_ZONE] = "zone",
         [SYNTAX_PROPERTY] = "property",
         [SYNTAX_SHOW] = "show",
         [SYNTAX_USE] = "use",

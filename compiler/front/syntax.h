@@ -47,6 +47,7 @@ typedef enum SyntaxKind {
     SYNTAX_LIGHT,         /* name?  PROPERTY... */
     SYNTAX_SKY,           /* -      PROPERTY... */
     SYNTAX_IMAGE,         /* -      PROPERTY... */
+    SYNTAX_ZONE,          /* -      PROPERTY... */
     SYNTAX_PROPERTY,      /* name   [0] value */
     SYNTAX_SHOW,          /* -      [0] value */
     SYNTAX_USE,           /* path   none; the name is the path */

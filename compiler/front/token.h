@@ -37,6 +37,9 @@ typedef struct Tokens {
    where they begin a statement. */
 Tokens lex(uint32_t source, const Sources *sources, Names *names, Diags *diags, Arena *arena);
 
+/* 0xrrggbb as linear light. */
+void linear_from_srgb(uint32_t rgb, double linear[3]);
+
 /* One token a line, for `krs dump --after=tokens`. */
 void tokens_print(const Tokens *tokens, const Sources *sources, Text *out);
 

@@ -269,6 +269,22 @@ bool want_count(Elaboration *e, const Call *call, uint32_t index, uint32_t least
     return true;
 }
 
+bool want_flag(Elaboration *e, const Call *call, uint32_t index, bool *flag)
+{
+    const Argument *argument = &call->arguments[index];
+    if (!argument->syntax)
+        return true;
+    if (argument->value.type == VALUE_BOOLEAN) {
+        *flag = argument->value.boolean;
+        return true;
+    }
+    if (argument->value.type == VALUE_EXPRESSION)
+        constant_error(e, argument->syntax, "this must be true or false when the scene is compiled");
+    else
+        type_error(e, argument->syntax, argument->value, "true or false");
+    return false;
+}
+
 const Shape *want_shape(Elaboration *e, const Call *call, uint32_t index)
 {
     const Argument *argument = &call->arguments[index];
@@ -291,27 +307,27 @@ bool want_plane(Elaboration *e, const Call *call, Node *normal, Node *offset)
     return false;
 }
 
-const Similarity *want_translation(Elaboration *e, const Call *call)
+const Map *want_translation(Elaboration *e, const Call *call)
 {
     Node by = want_vector(e, call, 0, ORIGIN);
-    return by == NODE_NONE ? NULL : similarity_translation(e, by);
+    return by == NODE_NONE ? NULL : map_translation(e, by);
 }
 
-const Similarity *want_rotation(Elaboration *e, const Call *call)
+const Map *want_rotation(Elaboration *e, const Call *call)
 {
     Node axis = want_vector(e, call, 0, ORIGIN), angle = want_number(e, call, 1, 0);
     if (axis == NODE_NONE || angle == NODE_NONE ||
         !check_direction(e, axis, call->arguments[0].syntax, "the axis of a rotation"))
         return NULL;
-    return similarity_rotation(e, axis, angle);
+    return map_rotation(e, axis, angle);
 }
 
-const Similarity *want_scaling(Elaboration *e, const Call *call)
+const Map *want_scaling(Elaboration *e, const Call *call)
 {
     Node by = want_number(e, call, 0, 1);
     if (by == NODE_NONE || !check_positive(e, by, call->arguments[0].syntax, "a scale"))
         return NULL;
-    return similarity_scaling(e, by);
+    return map_scaling(e, by);
 }
 
 /* ---- sorting arguments ---- */

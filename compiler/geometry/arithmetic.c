@@ -333,7 +333,7 @@ Value value_binary(Elaboration *e, const Syntax *syntax, Value a, Value b)
         if (syntax->op == TOKEN_MINUS && a.type == VALUE_SHAPE && b.type == VALUE_SHAPE)
             return join_shapes(e, syntax, a.shape, b.shape);
         if (syntax->op == TOKEN_STAR && a.type == VALUE_MAP && b.type == VALUE_MAP)
-            return value_map(similarity_product(e, a.map, b.map));
+            return value_map(map_product(e, a.map, b.map));
         break;
     default:
         return compare(e, syntax, a, b);

@@ -277,6 +277,77 @@ static Value builtin_random_direction(Elaboration *e, Call *call)
     return value_vector(e, (double[]){a * root, 1 - 2 * s, b * root}, 3);
 }
 
+/* ---- noise ---- */
+
+/* Of a number, a straight cut through the noise of the plane, off its zeros. */
+static Node noise_of(Graph *g, Node place)
+{
+    if (g->items[place].type == TYPE_FLOAT) {
+        Node aside = graph_number(g, 0.37);
+        place      = graph_op2(g, OP_vec2, place, aside);
+    }
+    return graph_op1(g, g->items[place].type == TYPE_VEC2 ? OP_noise2 : OP_noise3, place);
+}
+
+/* The argument `p`; NODE_NONE: reported. */
+static Node noise_place(Elaboration *e, const Call *call)
+{
+    Node place = numeric_argument(e, call, 0);
+    if (place == NODE_NONE || e->graph->items[place].type <= TYPE_VEC3)
+        return place;
+    diag_add(e->diags, DIAG_LENGTH_MISMATCH, call->arguments[0].syntax->span,
+             "`%s` needs a number or a vector of 2 or 3", call->name);
+    return NODE_NONE;
+}
+
+static Value builtin_noise(Elaboration *e, Call *call)
+{
+    Node place = noise_place(e, call);
+    if (place == NODE_NONE)
+        return value_error();
+    e->graph->here = call->syntax->span;
+    return value_of_node(e, noise_of(e->graph, place));
+}
+
+/* Where an octave begins: all are 0 on their lattices, which must not meet. */
+static Node octave_start(Graph *g, GraphType type, uint32_t octave)
+{
+    static const double steps[3] = {17.137, 9.713, 5.371};
+    double              start[4] = {0};
+    for (uint32_t i = 0; i < 3; i++)
+        start[i] = octave * steps[i];
+    return graph_constant(g, type, start);
+}
+
+static Value builtin_fbm(Elaboration *e, Call *call)
+{
+    Graph   *g = e->graph;
+    Node     place = noise_place(e, call);
+    Node     gain = want_number(e, call, 2, 0.5), lacunarity = want_number(e, call, 3, 2);
+    uint32_t octaves;
+    if (place == NODE_NONE || gain == NODE_NONE || lacunarity == NODE_NONE ||
+        !want_count(e, call, 1, 1, 16, 5, &octaves))
+        return value_error();
+    if ((is_given(call, 2) && !check_positive(e, gain, call->arguments[2].syntax, "`gain`")) ||
+        (is_given(call, 3) &&
+         !check_positive(e, lacunarity, call->arguments[3].syntax, "`lacunarity`")))
+        return value_error();
+    g->here  = call->syntax->span;
+    Node sum = NODE_NONE, total = NODE_NONE, loud = graph_number(g, 1), fine = loud;
+    for (uint32_t i = 0; i < octaves; i++) {
+        Node scaled_place = graph_op2(g, OP_mul, place, fine);
+        Node start        = octave_start(g, g->items[place].type, i);
+        Node moved        = graph_op2(g, OP_add, scaled_place, start);
+        Node octave       = noise_of(g, moved);
+        octave            = graph_op2(g, OP_mul, octave, loud);
+        sum               = i ? graph_op2(g, OP_add, sum, octave) : octave;
+        total             = i ? graph_op2(g, OP_add, total, loud) : loud;
+        loud              = graph_op2(g, OP_mul, loud, gain);
+        fine              = graph_op2(g, OP_mul, fine, lacunarity);
+    }
+    return value_of_node(e, graph_op2(g, OP_div, sum, total));
+}
+
 /* ---- joining ---- */
 
 /* The kind of a blend by its spelling; without an argument the quadratic one.  False: reported. */
@@ -333,9 +404,8 @@ static bool blend_arguments(Elaboration *e, const Call *call, uint32_t first, Bl
     return true;
 }
 
-/* The shapes of a call: positional ones, or the elements of lists among them. */
-static bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *place,
-                           Values *shapes)
+bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *place,
+                    Values *shapes)
 {
     if (value.type == VALUE_LIST) {
         for (size_t i = 0; i < value.list->count; i++)
@@ -351,6 +421,21 @@ static bool collect_shapes(Elaboration *e, const Call *call, Value value, const 
     return true;
 }
 
+const Shape **joinable_shapes(Elaboration *e, const Call *call, const Values *values)
+{
+    const Shape **shapes = arena_new_array(e->arena, const Shape *, values->count + 1);
+    for (size_t i = 0; i < values->count; i++) {
+        shapes[i] = values->items[i].shape;
+        if (shapes[i]->figure != shapes[0]->figure) {
+            Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, call->syntax->span,
+                                  "plane figures and solids cannot be joined");
+            diag->help = "make figures solid with `.extrude(height)` or `.revolve()`";
+            return NULL;
+        }
+    }
+    return shapes;
+}
+
 static Value join(Elaboration *e, const Call *call, ShapeKind kind, const Values *values,
                   uint32_t first_option)
 {
@@ -362,16 +447,9 @@ static Value join(Elaboration *e, const Call *call, ShapeKind kind, const Values
                  "`%s` needs at least one shape", call->name);
         return value_error();
     }
-    const Shape **shapes = arena_new_array(e->arena, const Shape *, values->count + 1);
-    for (size_t i = 0; i < values->count; i++) {
-        shapes[i] = values->items[i].shape;
-        if (shapes[i]->figure != shapes[0]->figure) {
-            Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, call->syntax->span,
-                                  "plane figures and solids cannot be joined");
-            diag->help = "make figures solid with `.extrude(height)` or `.revolve()`";
-            return value_error();
-        }
-    }
+    const Shape **shapes = joinable_shapes(e, call, values);
+    if (!shapes)
+        return value_error();
     uint32_t count = (uint32_t)values->count;
     return value_shape(make_joint(e, kind, shapes, count, blend, call->syntax->span));
 }
@@ -451,7 +529,92 @@ static Value builtin_reflect(Elaboration *e, Call *call)
     Node normal, offset;
     if (!want_plane(e, call, &normal, &offset))
         return value_error();
-    return value_map(similarity_reflection(e, normal, offset));
+    return value_map(map_reflection(e, normal, offset));
+}
+
+static Value builtin_invert(Elaboration *e, Call *call)
+{
+    static const double ORIGIN[3] = {0, 0, 0};
+    Node center = want_vector(e, call, 0, ORIGIN), radius = want_number(e, call, 1, 1);
+    if (center == NODE_NONE || radius == NODE_NONE)
+        return value_error();
+    if (is_given(call, 1) && !check_positive(e, radius, call->arguments[1].syntax,
+                                             "the radius of an inversion"))
+        return value_error();
+    return value_map(map_inversion(e, center, radius));
+}
+
+/* A real number, or a list of four; false: reported. */
+static bool quaternion_argument(Elaboration *e, const Call *call, uint32_t index, double entry[4])
+{
+    const Argument *argument = &call->arguments[index];
+    entry[0] = entry[1] = entry[2] = entry[3] = 0;
+    if (value_size(e, argument->value) == 1)
+        return constant_argument(e, call, index, entry);
+    if (argument->value.type == VALUE_LIST && value_size(e, argument->value) == 4) {
+        Call one = *call;
+        for (size_t i = 0; i < 4; i++) {
+            one.arguments[index].value = argument->value.list->items[i];
+            if (!constant_argument(e, &one, index, &entry[i]))
+                return false;
+        }
+        return true;
+    }
+    if (argument->value.type == VALUE_EXPRESSION)
+        constant_error(e, argument->syntax,
+                       "the entries of a matrix must be known at compile time");
+    else
+        type_error(e, argument->syntax, argument->value, "a quaternion, [re, i, j, k]");
+    return false;
+}
+
+static Value builtin_matrix(Elaboration *e, Call *call)
+{
+    double      entries[4][4];
+    const char *reason;
+    for (uint32_t i = 0; i < 4; i++)
+        if (!quaternion_argument(e, call, i, entries[i]))
+            return value_error();
+    const Map *map = map_of_matrix(e, (const double (*)[4])entries, &reason);
+    if (map)
+        return value_map(map);
+    Diag *diag  = diag_add(e->diags, DIAG_NOT_A_MAP, call->syntax->span,
+                           "this matrix does not map space to space");
+    diag->label = reason;
+    diag->help  = "products of `translate`, `rotate`, `scale`, `reflect` and `invert` are all the "
+                  "maps there are";
+    return value_error();
+}
+
+/* Left minus right of `left == right`; a surface needs no more. */
+static Value builtin_algebraic(Elaboration *e, Call *call)
+{
+    const Argument *equation = &call->arguments[0];
+    Value           value    = equation->value;
+    const Expr     *expr     = value.type == VALUE_EXPRESSION ? &e->graph->items[value.node] : NULL;
+    if (!expr || expr->op != OP_equal) {
+        if (value.type == VALUE_ERROR)
+            return value;
+        Diag *diag  = diag_add(e->diags, DIAG_TYPE_MISMATCH, equation->syntax->span,
+                               "`algebraic` needs an equation of x, y and z");
+        diag->label = "no `==` of expressions of the point";
+        diag->help  = "write `algebraic(x^2 + y^2 + z^2 == 1)`";
+        return value_error();
+    }
+    Node left = expr->operands[0], right = expr->operands[1];
+    Node formula = graph_op2(e->graph, OP_sub, left, right);
+    return value_shape(make_field(e, formula, true, call->syntax));
+}
+
+static Value builtin_field(Elaboration *e, Call *call)
+{
+    const Argument *argument = &call->arguments[0];
+    if (value_size(e, argument->value) != 1) {
+        type_error(e, argument->syntax, argument->value, "a number at every point");
+        return value_error();
+    }
+    Node formula = value_node(e, argument->value);
+    return value_shape(make_field(e, formula, false, call->syntax));
 }
 
 static Value builtin_not_supported(Elaboration *e, Call *call)
@@ -482,7 +645,7 @@ const Builtin *builtin_find(const char *name)
 
 static const char *const constants[] = {
     "pi", "tau", "x", "y", "z", "p", "time", "level", "instance", "u", "v", "normal", "identity",
-    "orbit_trap", "rounding"};
+    "orbit_trap", "orbit_step", "rounding"};
 enum { CONSTANT_COUNT = sizeof constants / sizeof *constants };
 
 size_t builtin_names(const char **names, size_t capacity)
@@ -495,7 +658,7 @@ size_t builtin_names(const char **names, size_t capacity)
     return count;
 }
 
-/* level and instance: in materials only. */
+/* level, instance, u, v, normal, orbit_trap and orbit_step: in materials only. */
 static Value material_name(Elaboration *e, const char *name, Span span)
 {
     if (!e->in_material) {
@@ -506,6 +669,16 @@ static Value material_name(Elaboration *e, const char *name, Span span)
     }
     if (strcmp(name, "level") == 0)
         return value_of_node(e, graph_leaf(e->graph, OP_LEVEL));
+    if (strcmp(name, "normal") == 0)
+        return value_of_node(e, graph_leaf(e->graph, OP_NORMAL));
+    if (strlen(name) == 1) {
+        Node uv = graph_leaf(e->graph, OP_UV);
+        return value_of_node(e, graph_component(e->graph, uv, name[0] == 'v'));
+    }
+    if (strncmp(name, "orbit", 5) == 0) {
+        Node trap = graph_leaf(e->graph, OP_TRAP);
+        return value_of_node(e, graph_component(e->graph, trap, strcmp(name, "orbit_step") == 0));
+    }
     Node instance = graph_leaf(e->graph, OP_INSTANCE);
     return value_of_node(e, graph_op1(e->graph, OP_id_unit, instance));
 }
@@ -540,17 +713,15 @@ bool builtin_constant(Elaboration *e, const char *name, Span span, Value *value)
         *value = value_of_node(e, graph_leaf(g, OP_POINT));
     else if (strcmp(name, "time") == 0)
         *value = value_of_node(e, graph_parameter(g, 0, TYPE_FLOAT));
-    else if (strcmp(name, "level") == 0 || strcmp(name, "instance") == 0)
+    else if (strcmp(name, "level") == 0 || strcmp(name, "instance") == 0 ||
+             strcmp(name, "u") == 0 || strcmp(name, "v") == 0 || strcmp(name, "normal") == 0 ||
+             strcmp(name, "orbit_trap") == 0 || strcmp(name, "orbit_step") == 0)
         *value = material_name(e, name, span);
     else if (strcmp(name, "rounding") == 0)
         *value = rounding_name(e, span);
     else if (strcmp(name, "identity") == 0)
-        *value = value_map(similarity_identity(e));
-    else if (strcmp(name, "u") == 0 || strcmp(name, "v") == 0 || strcmp(name, "normal") == 0 ||
-             strcmp(name, "orbit_trap") == 0) {
-        not_supported(e, span, diag_text(e->diags, "`%s`", name));
-        *value = value_error();
-    } else
+        *value = value_map(map_identity(e));
+    else
         return false;
     return true;
 }

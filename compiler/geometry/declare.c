@@ -279,24 +279,38 @@ static bool needs_check(Elaboration *e, const Syntax *declaration)
     return true;
 }
 
-/* What the shape is, out of its properties; `first`: also those that nothing needs yet. */
+/* Two coordinates on the surface, which materials know as `u` and `v`. */
+static bool uv_property(Elaboration *e, const Environment *env, const Syntax *declaration,
+                        Shape *shape)
+{
+    const Syntax *syntax = find_property(declaration, "uv");
+    shape->without_uv    = syntax ? NULL : shape;
+    if (!syntax)
+        return true;
+    Value value = evaluate(e, env, syntax);
+    if (value_size(e, value) == 2)
+        shape->uv = value_node(e, value);
+    else
+        type_error(e, syntax, value, "a list of two numbers");
+    return shape->uv != NODE_NONE;
+}
+
+/* What the shape is, out of its properties. */
 static bool read_properties(Elaboration *e, const Environment *env, const Syntax *declaration,
-                            bool first, Shape *shape)
+                            Shape *shape)
 {
     const Syntax *bound = find_property(declaration, "bound");
-    const Syntax *uv    = find_property(declaration, "uv");
     shape->distance     = field_property(e, env, find_property(declaration, "distance"));
     shape->figure       = flag_property(e, env, declaration, "figure");
     shape->exact        = flag_property(e, env, declaration, "exact");
     if (bound)
         shape->bound = field_property(e, env, bound);
     bool good = within_property(e, env, declaration, &shape->box) &&
-                plane_property(e, env, declaration, shape) && shape->distance != NODE_NONE &&
+                plane_property(e, env, declaration, shape) &&
+                uv_property(e, env, declaration, shape) && shape->distance != NODE_NONE &&
                 (!bound || shape->bound != NODE_NONE);
     if (good)
         warn_if_empty(e, shape);
-    if (uv && first)
-        good = evaluate(e, env, uv).type != VALUE_ERROR && good;
     return good;
 }
 
@@ -332,7 +346,7 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
 
     Shape *shape  = shape_new(e, SHAPE_PRIMITIVE, function->name, span, NULL, 0);
     Span   caller = e->graph->here;
-    if (!read_properties(e, env, declaration, first, shape) ||
+    if (!read_properties(e, env, declaration, shape) ||
         !settle_slope(e, env, declaration, first, shape))
         return value_error();
     arena_free(e->scratch);

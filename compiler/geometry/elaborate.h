@@ -11,6 +11,7 @@
 #ifndef KRS_ELABORATE_H
 #define KRS_ELABORATE_H
 
+#include "compiler/geometry/cover.h"
 #include "compiler/geometry/shape.h"
 
 /* Reads a file that a `use` names: malloc'ed bytes, or NULL with *reason set. */
@@ -69,7 +70,7 @@ typedef struct Elaboration {
     size_t      text_total;   /* bytes of all files read */
     bool        stopped;      /* a limit was reached: everything is an error from here, silently */
     Node        rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
-    bool        in_material;  /* level and instance have a meaning */
+    bool        in_material;  /* level, instance, u, v and normal have a meaning */
 } Elaboration;
 
 /* Evaluates a file, whose source is already in e->sources, into e->scene; e->scene is complete
@@ -151,12 +152,14 @@ Node want_vector(Elaboration *e, const Call *call, uint32_t index, const double 
 bool want_count(Elaboration *e, const Call *call, uint32_t index, uint32_t least, uint32_t most,
                 uint32_t otherwise, uint32_t *count);
 const Shape *want_shape(Elaboration *e, const Call *call, uint32_t index);
+/* True or false, known at compile time; *flag stays what it is when nothing was given. */
+bool want_flag(Elaboration *e, const Call *call, uint32_t index, bool *flag);
 /* The parameter "plane": its unit normal and offset. */
 bool want_plane(Elaboration *e, const Call *call, Node *normal, Node *offset);
 /* The map that the parameters "by", "axis angle" and "by" describe. */
-const Similarity *want_translation(Elaboration *e, const Call *call);
-const Similarity *want_rotation(Elaboration *e, const Call *call);
-const Similarity *want_scaling(Elaboration *e, const Call *call);
+const Map *want_translation(Elaboration *e, const Call *call);
+const Map *want_rotation(Elaboration *e, const Call *call);
+const Map *want_scaling(Elaboration *e, const Call *call);
 /* The same for a value that stands anywhere; `what` names it: "`fov`", "this argument". */
 Node to_number(Elaboration *e, Value value, const Syntax *syntax, const char *what);
 Node to_vector(Elaboration *e, Value value, const Syntax *syntax, const char *what);
@@ -201,6 +204,11 @@ typedef struct Builtin {
     BuiltinFunction *function; /* NULL: componentwise `op` */
 } Builtin;
 const Builtin *builtin_find(const char *name);
+/* The shapes of a call: a shape, or the elements of a list; `place` is blamed.  False: reported. */
+bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *place,
+                    Values *shapes);
+/* These shapes, if they are all solids or all figures; NULL: reported. */
+const Shape **joinable_shapes(Elaboration *e, const Call *call, const Values *values);
 /* A constant (pi, x, time); false when there is none of this name.  One that has no meaning at
    this place is reported. */
 bool builtin_constant(Elaboration *e, const char *name, Span span, Value *value);
@@ -216,15 +224,41 @@ Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax
 /* The shape of a declaration whose parameters `env` binds; `span` is the call. */
 Value declare_instance(Elaboration *e, const Function *function, const Environment *env, Span span);
 
+/* ---- field.c: solids given by an expression that is negative inside ---- */
+/* NULL: reported at `place`, the call.  `algebraic`: it must be a polynomial. */
+const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Syntax *place);
+/* The same shape where only what is in the box matters: fields in it get their bound there. */
+const Shape *restrict_shape(Elaboration *e, const Shape *shape, Box box);
+/* Reports a field in the tree that has no bound. */
+bool check_bounded(Elaboration *e, const Shape *shape);
+
+/* ---- meta.c ---- */
+BuiltinFunction builtin_meta;
+
+/* ---- make_fractal.c ---- */
+BuiltinFunction builtin_julia, builtin_mandelbulb;
+/* Reports a distance of which nothing is proven, below something (`what`) that moves its surface. */
+void check_steady(Elaboration *e, const Shape *shape, const char *what, Span span);
+
 /* ---- methods.c ---- */
 Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax);
+
+/* ---- palette.c ---- */
+Value method_color_by(Elaboration *e, const Shape *shape, Call *call);
+
+/* ---- deform.c: the methods that deform, and the boxes of what they make ---- */
+Value method_twist(Elaboration *e, const Shape *shape, Call *call);
+Value method_bend(Elaboration *e, const Shape *shape, Call *call);
+Value method_taper(Elaboration *e, const Shape *shape, Call *call);
+Value method_displace(Elaboration *e, const Shape *shape, Call *call);
 
 /* ---- make.c: shapes from shapes, each with its rule for box and slope ---- */
 /* A shape with these children, and what most kinds take over from them. */
 Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
                  const Shape *const *children, uint32_t count);
 const Shape *make_empty(Elaboration *e, Span span);
-const Shape *make_transform(Elaboration *e, const Shape *shape, const Similarity *map, Span span);
+/* NULL: an inversion of something endless, which is reported. */
+const Shape *make_transform(Elaboration *e, const Shape *shape, const Map *map, Span span);
 const Shape *make_stretch(Elaboration *e, const Shape *shape, Node factors, Span span);
 const Shape *make_joint(Elaboration *e, ShapeKind kind, const Shape *const *shapes, uint32_t count,
                         Blend blend, Span span);
@@ -240,7 +274,13 @@ const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const 
 const Shape *make_repeat_polar(Elaboration *e, const Shape *shape, uint32_t count,
                                const Syntax *place);
 const Shape *make_mirror(Elaboration *e, const Shape *shape, Node normal, Node offset, Span span);
+/* The width may be NODE_NONE: a pixel's. */
+const Shape *make_smooth(Elaboration *e, const Shape *shape, Node width, Span span);
+/* NULL: the material needs what the shape has not, which is reported. */
 const Shape *make_paint(Elaboration *e, const Shape *shape, const Material *material, Span span);
+/* Reports a shape that is endless, at the place of an inversion. */
+bool check_invertible(Elaboration *e, const Shape *shape, Span span);
+/* NULL: something endless is inverted, which is reported. */
 const Shape *make_krs(Elaboration *e, const Stage *stages, uint32_t stage_count,
                       const Shape *const *kernels, uint32_t kernel_count, Span span);
 /* Unit normal and offset of a shape that is a plane, also a moved, turned or scaled one. */
@@ -248,22 +288,37 @@ bool shape_plane(Elaboration *e, const Shape *shape, Node *normal, Node *offset)
 /* Ranges of frame-time nodes over all values of the parameters. */
 Range node_range(Elaboration *e, Node node, uint32_t component);
 
-/* ---- similarity.c: maps of frame time ---- */
-const Similarity *similarity_identity(Elaboration *e);
-const Similarity *similarity_translation(Elaboration *e, Node shift);
+/* ---- map.c: maps of frame time ---- */
+Map       *map_new(Elaboration *e); /* the identity, to be changed */
+const Map *map_identity(Elaboration *e);
+const Map *map_translation(Elaboration *e, Node shift);
 /* By a number above 0. */
-const Similarity *similarity_scaling(Elaboration *e, Node scale);
+const Map *map_scaling(Elaboration *e, Node scale);
 /* By an angle in radians about an axis of any length but 0; from a direction to another. */
-const Similarity *similarity_rotation(Elaboration *e, Node axis, Node angle);
-const Similarity *similarity_alignment(Elaboration *e, Node from, Node to);
+const Map *map_rotation(Elaboration *e, Node axis, Node angle);
+const Map *map_alignment(Elaboration *e, Node from, Node to);
 /* In the plane of a unit normal and an offset. */
-const Similarity *similarity_reflection(Elaboration *e, Node normal, Node offset);
+const Map *map_reflection(Elaboration *e, Node normal, Node offset);
 /* f(g(x)). */
-const Similarity *similarity_product(Elaboration *e, const Similarity *f, const Similarity *g);
-const Similarity *similarity_inverse(Elaboration *e, const Similarity *f);
-Node similarity_turn(Elaboration *e, const Similarity *f, Node vector); /* rows times vector */
-/* The box around the image of a box, for all values of the parameters. */
-Box  similarity_box(Elaboration *e, const Similarity *f, Box box);
+const Map *map_product(Elaboration *e, const Map *f, const Map *g);
+const Map *map_inverse(Elaboration *e, const Map *f);
+Node map_turn(Elaboration *e, const Map *f, Node vector); /* rows times vector */
+Node map_apply(Elaboration *e, const Map *f, Node point); /* without `first` */
+void turn_product(Elaboration *e, const Node a[3], const Node b[3], Node product[3]);
+/* For all values of the parameters, without `first`; the box around the image of a box under a
+   similarity. */
+MapRange map_range(Elaboration *e, const Map *f);
+Box      map_box(Elaboration *e, const Map *f, Box box);
+
+/* ---- moebius.c: maps of frame time that invert ---- */
+/* In the sphere about `center`; the radius is not 0. */
+const Map *map_inversion(Elaboration *e, Node center, Node radius);
+/* (a q + b) (c q + d)^-1 for the quaternions a, b, c, d; NULL when that does not map space to
+   space, with *reason set. */
+const Map *map_of_matrix(Elaboration *e, const double entries[4][4], const char **reason);
+/* f(g(x)) of two maps, not both similarities, without their `first`; NULL: they stay two. */
+const Map *moebius_product(Elaboration *e, const Map *f, const Map *g);
+const Map *inversion_inverse(Elaboration *e, const Map *f);
 
 /* ---- looks.c: cameras, lights, sky, image, materials ---- */
 /* The value of `name:` in a block of properties, or NULL. */

@@ -34,6 +34,7 @@ static const struct LookProperty {
     {SYNTAX_IMAGE, "tone_map", false},     {SYNTAX_IMAGE, "error", false},
     {SYNTAX_IMAGE, "frames", true},        {SYNTAX_IMAGE, "rate", true},
     {SYNTAX_IMAGE, "bounces", true},
+    {SYNTAX_ZONE, "center", false},        {SYNTAX_ZONE, "radius", false},
 };
 enum { LOOK_PROPERTY_COUNT = sizeof look_properties / sizeof *look_properties };
 
@@ -44,6 +45,7 @@ static const char *block_name(SyntaxKind kind)
     case SYNTAX_CAMERA:   return "a camera";
     case SYNTAX_LIGHT:    return "a light";
     case SYNTAX_SKY:      return "the sky";
+    case SYNTAX_ZONE:     return "a zone";
     default:              return "the image";
     }
 }
@@ -351,10 +353,35 @@ static void set_image(Elaboration *e, const Environment *env, const Syntax *synt
     image->tone_map   = word_property(e, env, syntax, "tone_map", tone_maps, 3, 0);
 }
 
+/* How deep a point is in the deepest of all zones: what the distance must not be below. */
+static void add_zone(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Graph        *g      = e->graph;
+    Scene        *scene  = e->scene;
+    const Syntax *size   = find_property(syntax, "radius");
+    Node          center = vector_property(e, env, syntax, "center", ORIGIN);
+    Node          radius = number_property(e, env, syntax, "radius", 1);
+    Range         range  = node_range(e, radius, 0);
+    if (size && range.low < 0) {
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, size->span,
+                               "the radius of a zone must not be negative");
+        diag->label = diag_text(e->diags, range.low == range.high ? "this is %g" : "this can be %g",
+                                range.low);
+        return;
+    }
+    g->here    = syntax->span;
+    Node point = graph_leaf(g, OP_POINT);
+    Node away  = graph_op2(g, OP_sub, point, center);
+    Node depth = graph_op1(g, OP_length, away);
+    depth      = graph_op2(g, OP_sub, radius, depth);
+    scene->zone = scene->zone == NODE_NONE ? depth : graph_op2(g, OP_max, scene->zone, depth);
+    scene->zone_count++;
+}
+
 /* A scene has one sky, one image, and one camera without a name. */
 static void check_single(Elaboration *e, const Syntax *syntax)
 {
-    if (syntax->kind == SYNTAX_LIGHT || syntax->name)
+    if (syntax->kind == SYNTAX_LIGHT || syntax->kind == SYNTAX_ZONE || syntax->name)
         return;
     for (size_t i = 0; i < e->single.count; i++) {
         if (e->single.items[i]->kind != syntax->kind)
@@ -377,6 +404,7 @@ void elaborate_look(Elaboration *e, const Environment *env, const Syntax *syntax
     case SYNTAX_CAMERA: add_camera(e, env, syntax); break;
     case SYNTAX_LIGHT:  add_light(e, env, syntax); break;
     case SYNTAX_SKY:    set_sky(e, env, syntax); break;
+    case SYNTAX_ZONE:   add_zone(e, env, syntax); break;
     default:            set_image(e, env, syntax); break;
     }
 }

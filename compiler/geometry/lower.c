@@ -17,7 +17,13 @@
 static const double NOWHERE = 1e30;
 
 const Lowered lowered_nothing = {
-    NODE_NONE, {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE}};
+    NODE_NONE, {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE,
+                NODE_NONE, NODE_NONE}};
+
+Place place_bare(Node point, bool lipschitz)
+{
+    return (Place){point, NODE_NONE, NODE_NONE, lipschitz, NODE_NONE, NODE_NONE, NODE_NONE};
+}
 
 Place place_at(Place place, Node point)
 {
@@ -47,7 +53,10 @@ static Surface choose_surface(Graph *g, Node condition, Surface a, Surface b)
                      choose(g, condition, a.metallic, b.metallic),
                      choose(g, condition, a.emission, b.emission),
                      choose(g, condition, a.level, b.level),
-                     choose(g, condition, a.instance, b.instance)};
+                     choose(g, condition, a.instance, b.instance),
+                     choose(g, condition, a.uv, b.uv),
+                     choose(g, condition, a.normal, b.normal),
+                     choose(g, condition, a.trap, b.trap)};
 }
 
 /* Weight 1 is a. */
@@ -58,15 +67,18 @@ static Node mix_nodes(Graph *g, Node a, Node b, Node weight)
     return graph_op3(g, OP_mix, b, a, weight);
 }
 
-/* Materials blend with the shapes; numbers of levels and instances cannot. */
-static Surface mix_surface(Graph *g, Node nearer, Node weight, Surface a, Surface b)
+/* Materials blend with the shapes; numbers of levels and instances cannot, nor can coordinates. */
+Surface mix_surface(Graph *g, Node nearer, Node weight, Surface a, Surface b)
 {
     return (Surface){mix_nodes(g, a.color, b.color, weight),
                      mix_nodes(g, a.roughness, b.roughness, weight),
                      mix_nodes(g, a.metallic, b.metallic, weight),
                      mix_nodes(g, a.emission, b.emission, weight),
                      choose(g, nearer, a.level, b.level),
-                     choose(g, nearer, a.instance, b.instance)};
+                     choose(g, nearer, a.instance, b.instance),
+                     choose(g, nearer, a.uv, b.uv),
+                     mix_nodes(g, a.normal, b.normal, weight),
+                     choose(g, nearer, a.trap, b.trap)};
 }
 
 /* ---- joints ---- */
@@ -193,7 +205,7 @@ static Lowered lower_morph(Lowering *l, const Shape *shape, Place place)
 /* ---- maps of space ---- */
 
 /* R^T (point - shift) / scale: where the point was before the map. */
-Node before_map(Graph *g, const Similarity *map, Node point)
+Node before_map(Graph *g, const Map *map, Node point)
 {
     Node rows[3];
     transpose_rows(g, map->rows, rows);
@@ -216,10 +228,30 @@ Lowered scale_distance(Lowering *l, Lowered result, Node factor)
     return result;
 }
 
+Lowered lower_behind(Lowering *l, const Shape *child, Place place, const NormalPath *path,
+                     Node point)
+{
+    Lowered result        = lower_shape(l, child, place_behind(path, place, point));
+    result.surface.normal = normal_out(l, path, result.surface.normal);
+    return result;
+}
+
+Node enter_scale(Lowering *l, Node scale)
+{
+    Node unit = l->unit;
+    if (l->guarded)
+        l->unit = graph_op2(l->graph, OP_mul, unit, scale);
+    return unit;
+}
+
 static Lowered lower_transform(Lowering *l, const Shape *shape, Place place)
 {
-    Node    point  = before_map(l->graph, &shape->map, place.point);
-    Lowered result = lower_shape(l, shape->children[0], place_at(place, point));
+    NormalPath path  = normal_path(l, place, 1);
+    Node       point = before_map(l->graph, &shape->map, place.point);
+    normal_turn(l, &path, shape->map.rows, shape->map.scale);
+    Node    unit   = enter_scale(l, shape->map.scale);
+    Lowered result = lower_behind(l, shape->children[0], place, &path, point);
+    l->unit        = unit;
     return scale_distance(l, result, shape->map.scale);
 }
 
@@ -231,14 +263,30 @@ static Lowered lower_stretch(Lowering *l, const Shape *shape, Place place)
     Node   least   = graph_op2(g, OP_min, x, y);
     least          = graph_op2(g, OP_min, least, z);
     Node   point   = graph_op2(g, OP_div, place.point, shape->values[0]);
-    Lowered result = lower_shape(l, shape->children[0], place_at(place, point));
+    NormalPath path = normal_path(l, place, 1);
+    normal_stretch(l, &path, shape->values[0], least);
+    Node    unit   = enter_scale(l, least);
+    Lowered result = lower_behind(l, shape->children[0], place, &path, point);
+    l->unit        = unit;
     return scale_distance(l, result, least);
 }
 
 static Lowered lower_mirror(Lowering *l, const Shape *shape, Place place)
 {
+    NormalPath path = normal_path(l, place, 1);
+    normal_fold(l, &path, place.point, shape->values[0], shape->values[1]);
     Node point = graph_op3(l->graph, OP_fold, place.point, shape->values[0], shape->values[1]);
-    return lower_shape(l, shape->children[0], place_at(place, point));
+    return lower_behind(l, shape->children[0], place, &path, point);
+}
+
+/* The last of a chain counts, as with paint. */
+static Lowered lower_smooth(Lowering *l, const Shape *shape, Place place)
+{
+    if (l->surfaces && place.smoothing == NODE_NONE)
+        place.smoothing = shape->values[0] != NODE_NONE
+                              ? shape->values[0]
+                              : graph_op2(l->graph, OP_add, place.footprint, place.footprint);
+    return lower_shape(l, shape->children[0], place);
 }
 
 static Lowered lower_elongate(Lowering *l, const Shape *shape, Place place)
@@ -299,7 +347,9 @@ static Lowered lower_revolve(Lowering *l, const Shape *shape, Place place)
     away        = graph_op2(g, OP_sub, away, shape->values[0]);
     Node   zero = graph_number(g, 0);
     Node   flat = graph_op3(g, OP_vec3, away, y, zero);
-    return lower_shape(l, shape->children[0], place_at(place, flat));
+    NormalPath path = normal_path(l, place, 1);
+    normal_turn_about_y(l, &path, place.point, graph_vec3(g, 1, 0, 0));
+    return lower_behind(l, shape->children[0], place, &path, flat);
 }
 
 /* ---- leaves, paint, and the walk ---- */
@@ -307,7 +357,7 @@ static Lowered lower_revolve(Lowering *l, const Shape *shape, Place place)
 static Lowered lower_primitive(Lowering *l, const Shape *shape, Place place)
 {
     Graph       *g    = l->graph;
-    Substitution with = {place.point, NODE_NONE, NODE_NONE};
+    Substitution with = substitute_point(place.point);
     Lowered      leaf = lowered_nothing;
     leaf.distance     = graph_substitute(g, shape->distance, with, l->scratch);
     if (shape->bound != NODE_NONE && !place.lipschitz) {
@@ -317,8 +367,20 @@ static Lowered lower_primitive(Lowering *l, const Shape *shape, Place place)
     if (l->surfaces) {
         leaf.surface.level    = place.level == NODE_NONE ? graph_number(g, 0) : place.level;
         leaf.surface.instance = place.instance == NODE_NONE ? graph_uint(g, 1) : place.instance;
+        leaf.surface.normal   = place.normal;
+        if (shape->uv != NODE_NONE)
+            leaf.surface.uv = graph_substitute(g, shape->uv, with, l->scratch);
+        if (shape->trap != NODE_NONE)
+            leaf.surface.trap = graph_substitute(g, shape->trap, with, l->scratch);
     }
     return leaf;
+}
+
+/* What a material leaves open stays. */
+static void paint_with(Lowering *l, Node *property, Node paint, Substitution with)
+{
+    if (paint != NODE_NONE)
+        *property = graph_substitute(l->graph, paint, with, l->scratch);
 }
 
 /* The outermost paint counts, as the last method of a chain does. */
@@ -327,12 +389,14 @@ static Lowered lower_paint(Lowering *l, const Shape *shape, Place place)
     Lowered result = lower_shape(l, shape->children[0], place);
     if (!l->surfaces || result.distance == NODE_NONE)
         return result;
-    Substitution    with     = {place.point, result.surface.instance, result.surface.level};
+    Substitution    with     = {place.point, result.surface.instance, result.surface.level,
+                                result.surface.uv, NODE_NONE, result.surface.trap};
     const Material *material = shape->material;
-    result.surface.color     = graph_substitute(l->graph, material->color, with, l->scratch);
-    result.surface.roughness = graph_substitute(l->graph, material->roughness, with, l->scratch);
-    result.surface.metallic  = graph_substitute(l->graph, material->metallic, with, l->scratch);
-    result.surface.emission  = graph_substitute(l->graph, material->emission, with, l->scratch);
+    with.normal              = unit_normal(l->graph, result.surface.normal, place.normal);
+    paint_with(l, &result.surface.color, material->color, with);
+    paint_with(l, &result.surface.roughness, material->roughness, with);
+    paint_with(l, &result.surface.metallic, material->metallic, with);
+    paint_with(l, &result.surface.emission, material->emission, with);
     return result;
 }
 
@@ -357,22 +421,20 @@ static Lowered lower_shell(Lowering *l, const Shape *shape, Place place)
     return result;
 }
 
-Lowered lower_shape(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_kind(Lowering *l, const Shape *shape, Place place)
 {
-    l->graph->here = shape->span;
-    l->overflow    = l->overflow || l->graph->count > l->most;
-    if (l->overflow)
-        return lowered_nothing;
     switch (shape->kind) {
     case SHAPE_EMPTY:        return lowered_nothing;
     case SHAPE_PRIMITIVE:    return lower_primitive(l, shape, place);
     case SHAPE_TRANSFORM:    return lower_transform(l, shape, place);
+    case SHAPE_INVERSION:    return lower_inversion(l, shape, place);
     case SHAPE_STRETCH:      return lower_stretch(l, shape, place);
     case SHAPE_UNION:        return lower_union(l, shape, joint_place(shape, place));
     case SHAPE_INTERSECTION: return lower_intersection(l, shape, joint_place(shape, place));
     case SHAPE_DIFFERENCE:   return lower_difference(l, shape, joint_place(shape, place));
     case SHAPE_XOR:          return lower_xor(l, shape, joint_place(shape, place));
     case SHAPE_MORPH:        return lower_morph(l, shape, place);
+    case SHAPE_META:         return lower_meta(l, shape, place);
     case SHAPE_OFFSET:       return lower_offset(l, shape, place);
     case SHAPE_SHELL:        return lower_shell(l, shape, place);
     case SHAPE_ELONGATE:     return lower_elongate(l, shape, place);
@@ -381,11 +443,29 @@ Lowered lower_shape(Lowering *l, const Shape *shape, Place place)
     case SHAPE_REPEAT:       return lower_repeat(l, shape, place);
     case SHAPE_REPEAT_POLAR: return lower_repeat_polar(l, shape, place);
     case SHAPE_MIRROR:       return lower_mirror(l, shape, place);
+    case SHAPE_TWIST:        return lower_twist(l, shape, place);
+    case SHAPE_BEND:         return lower_bend(l, shape, place);
+    case SHAPE_TAPER:        return lower_taper(l, shape, place);
+    case SHAPE_DISPLACE:     return lower_displace(l, shape, place);
+    case SHAPE_SMOOTH:       return lower_smooth(l, shape, place);
     case SHAPE_PAINT:        return lower_paint(l, shape, place);
     case SHAPE_KRS:          return lower_krs(l, shape, place);
     }
     assert(!"every kind of shape has a rule");
     return lowered_nothing;
+}
+
+Lowered lower_shape(Lowering *l, const Shape *shape, Place place)
+{
+    l->graph->here = shape->span;
+    l->overflow    = l->overflow || l->graph->count > l->most;
+    if (l->overflow)
+        return lowered_nothing;
+    Lowered result = lower_kind(l, shape, place);
+    /* Where no mirror is smooth, the normal that came in is the one that comes out. */
+    if (result.distance != NODE_NONE && place.smoothing == NODE_NONE && !shape->smooth)
+        result.surface.normal = place.normal;
+    return result;
 }
 
 Node divide_by_slope(Graph *g, Node distance, double slope)
@@ -400,9 +480,12 @@ static Node or_else(Node node, Node otherwise) { return node == NODE_NONE ? othe
 
 bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roots)
 {
-    Lowering l     = {graph, scratch, true, graph->count + MOST_LOWERED, false};
-    Place    place = {graph_leaf(graph, OP_POINT), NODE_NONE, NODE_NONE, false};
-    Lowered  all   = lower_shape(&l, shape, place);
+    Lowering l     = {.graph = graph, .scratch = scratch, .surfaces = true,
+                      .most = graph->count + MOST_LOWERED};
+    Place    place = place_bare(graph_leaf(graph, OP_POINT), false);
+    place.normal    = graph_leaf(graph, OP_NORMAL);
+    place.footprint = graph_leaf(graph, OP_FOOTPRINT);
+    Lowered  all    = lower_shape(&l, shape, place);
     Node     distance = or_else(all.distance, graph_number(graph, NOWHERE));
     roots[ROOT_DISTANCE]  = divide_by_slope(graph, distance, shape->slope);
     roots[ROOT_COLOR]     = or_else(all.surface.color, graph_vec3(graph, 0.6, 0.6, 0.6));
@@ -411,5 +494,17 @@ bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roo
     roots[ROOT_EMISSION]  = or_else(all.surface.emission, graph_vec3(graph, 0, 0, 0));
     roots[ROOT_LEVEL]     = or_else(all.surface.level, graph_number(graph, 0));
     roots[ROOT_INSTANCE]  = or_else(all.surface.instance, graph_uint(graph, 1));
+    Node normal           = or_else(all.surface.normal, place.normal);
+    roots[ROOT_NORMAL]    = unit_normal(graph, normal, place.normal);
     return !l.overflow;
+}
+
+Node lower_guarded(Graph *graph, const Shape *shape, Node plain, Arena *scratch)
+{
+    Lowering l   = {.graph = graph, .scratch = scratch, .guarded = true,
+                    .unit = graph_number(graph, 1), .most = graph->count + MOST_LOWERED};
+    Lowered  all = lower_shape(&l, shape, place_bare(graph_leaf(graph, OP_POINT), false));
+    if (all.distance == NODE_NONE || l.overflow)
+        return plain;
+    return divide_by_slope(graph, all.distance, shape->slope);
 }

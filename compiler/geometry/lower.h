@@ -15,6 +15,7 @@ typedef enum ComponentRoot {
     ROOT_EMISSION, /* VEC3 */
     ROOT_LEVEL,    /* FLOAT */
     ROOT_INSTANCE, /* UINT */
+    ROOT_NORMAL,   /* VEC3, unit: OP_NORMAL, but for smooth mirrors */
     ROOT_COUNT
 } ComponentRoot;
 
@@ -23,6 +24,30 @@ enum { MOST_LOWERED = 400000 };
 /* Lowers a shape at the point OP_POINT; roots[ROOT_COUNT] are filled.  False when more than
    MOST_LOWERED nodes would be needed: copies within copies. */
 bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roots);
+
+/*
+ * What to march by instead of ROOT_DISTANCE where branches save time: levels of sequences that are
+ * far away for their size are left out (OP_guard), and those smaller than OP_FOOTPRINT.  Never
+ * above the distance to the surface, and not above 0 in the same places, but often less than
+ * ROOT_DISTANCE, and it jumps.  `plain`, which is ROOT_DISTANCE, when it grows too large.
+ */
+Node lower_guarded(Graph *graph, const Shape *shape, Node plain, Arena *scratch);
+
+/* How polynomials tell how far a ray may go; all are safe. */
+typedef enum AlongMethod {
+    ALONG_EXACT,     /* by Bernstein coefficients: lower_along.c */
+    ALONG_TAYLOR,    /* by the slope that a Taylor series permits (Ban and Valasek): the r with
+                        r sum n |P_n| r^(n-1) = |P_0| */
+    ALONG_ROOT_FREE, /* by what keeps a Taylor series from 0: the r with sum |P_n| r^n = |P_0| */
+    ALONG_COUNT
+} AlongMethod;
+
+/*
+ * How far a ray from OP_POINT along OP_DIRECTION may go before it can enter the shape, negative when
+ * it is within and looks for the way out: at least the distance, and where polynomials bound the
+ * shape much more.  `plain`, which is ROOT_DISTANCE, where that is as good.
+ */
+Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod method, Arena *scratch);
 
 /* Distance to a finite box, 0 inside. */
 Node box_distance(Graph *graph, Node point, Box box);

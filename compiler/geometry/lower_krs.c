@@ -1,45 +1,103 @@
 /*
  * lower_krs.c: kernel-reflection sequences.
+ *
+ * From the last statement to the first (math.md, sections 1 and 2.4): a mirror folds the point
+ * and gives the instance its next bit, a map takes the point behind it, a kernel joins with the
+ * level that it has: the mirrors before it.
  */
 #include "compiler/geometry/lowering.h"
 
 enum { MOST_HEAP_MIRRORS = 31 };
 
-/*
- * From the last statement to the first (math.md, section 1): a mirror folds the point and gives
- * the instance its next bit, a kernel joins with the level that it has: the mirrors before it.
- */
+/* How far the walk has come. */
+typedef struct Walk {
+    const Shape *krs;
+    Place        place; /* of the sequence */
+    Passage      passage;
+    NormalPath   path;
+    Node         id;
+    uint32_t     level;
+    Lowered      result; /* of the kernels so far */
+    Node         inner;  /* the distance of those within the innermost hull */
+    Hull        *hulls;
+    Stop        *stops;
+    uint32_t     hull_count, stop_count;
+} Walk;
+
+static void take_mirror(Lowering *l, Walk *walk, const Stage *stage)
+{
+    Graph *g     = l->graph;
+    Node   point = walk->passage.point;
+    if (l->surfaces) {
+        Op   next   = walk->krs->levels <= MOST_HEAP_MIRRORS ? OP_push_id : OP_hash_id;
+        Node behind = graph_op3(g, OP_front, point, stage->normal, stage->offset);
+        walk->id    = graph_op2(g, next, walk->id, behind);
+    }
+    normal_fold(l, &walk->path, point, stage->normal, stage->offset);
+    walk->passage.point = graph_op3(g, OP_fold, point, stage->normal, stage->offset);
+    walk->level--;
+}
+
+/* `before`: around what the map is applied to, or NULL. */
+static void take_map(Lowering *l, Walk *walk, const Stage *stage, const LevelBound *before)
+{
+    if (stage->map.pole != NODE_NONE && before) {
+        Hull hull  = passage_hull(l, &walk->passage, &stage->map, before->ball);
+        hull.outer = walk->inner;
+        walk->hulls[walk->hull_count++] = hull;
+        walk->inner                     = NODE_NONE;
+    }
+    passage_map(l, &walk->passage, &stage->map, &walk->path);
+}
+
+static void take_kernel(Lowering *l, Walk *walk, const Shape *shape)
+{
+    Graph *g     = l->graph;
+    Place  inner = place_behind(&walk->path, walk->place, walk->passage.point);
+    if (l->surfaces) {
+        /* Within an outer sequence its level counts, and this instance is hashed in. */
+        bool outer     = walk->place.level != NODE_NONE;
+        inner.level    = outer ? walk->place.level : graph_number(g, walk->level);
+        inner.instance = outer ? graph_op2(g, OP_join_id, walk->place.instance, walk->id)
+                               : walk->id;
+    }
+    Node    unit   = enter_passage(l, &walk->passage);
+    Lowered kernel = lower_shape(l, shape, inner);
+    l->unit        = unit;
+    kernel         = passage_out(l, &walk->passage, kernel);
+    normal_kernel(l, &walk->path, walk->result, kernel);
+    walk->result = join_two(l, blend_sharp, walk->result, kernel);
+    walk->inner  = nearer_of(g, walk->inner, kernel.distance);
+}
+
 Lowered lower_krs(Lowering *l, const Shape *shape, Place place)
 {
-    Graph   *g      = l->graph;
-    Lowered  result = lowered_nothing;
-    Node     point  = place.point, scale = graph_number(g, 1);
-    Node     id     = graph_uint(g, 1);
-    uint32_t level  = shape->levels;
-    Op       next_id = shape->levels <= MOST_HEAP_MIRRORS ? OP_push_id : OP_hash_id;
-    for (uint32_t i = shape->stage_count; i-- > 0;) {
+    uint32_t count = shape->stage_count;
+    Walk     walk  = {.krs     = shape,
+                      .place   = place,
+                      .passage = passage_new(l->graph, place.point),
+                      .path    = normal_path(l, place, 2 * count),
+                      .id      = graph_uint(l->graph, 1),
+                      .level   = shape->levels,
+                      .result  = lowered_nothing,
+                      .inner   = NODE_NONE,
+                      .hulls   = arena_new_array(l->scratch, Hull, count + 1),
+                      .stops   = arena_new_array(l->scratch, Stop, count + 1)};
+    for (uint32_t i = count; i-- > 0;) {
         const Stage *stage = &shape->stages[i];
-        if (stage->kind == STAGE_REFLECT) {
-            if (l->surfaces) {
-                Node behind = graph_op3(g, OP_front, point, stage->normal, stage->offset);
-                id          = graph_op2(g, next_id, id, behind);
-            }
-            point = graph_op3(g, OP_fold, point, stage->normal, stage->offset);
-            level--;
-        } else if (stage->kind == STAGE_SIMILARITY) {
-            point = before_map(g, &stage->map, point);
-            scale = graph_op2(g, OP_mul, scale, stage->map.scale);
-        } else {
-            Place inner = place_at(place, point);
-            if (l->surfaces) {
-                /* Within an outer sequence its level counts, and this instance is hashed in. */
-                bool outer     = place.level != NODE_NONE;
-                inner.level    = outer ? place.level : graph_number(g, level);
-                inner.instance = outer ? graph_op2(g, OP_join_id, place.instance, id) : id;
-            }
-            Lowered kernel = lower_shape(l, shape->children[stage->kernel], inner);
-            result         = join_two(l, blend_sharp, result, scale_distance(l, kernel, scale));
+        if (may_stop(l, shape, i, place))
+            walk.stops[walk.stop_count++] =
+                (Stop){&shape->bounds[i], walk.passage, walk.result.distance};
+        switch (stage->kind) {
+        case STAGE_REFLECT: take_mirror(l, &walk, stage); break;
+        case STAGE_MAP:     take_map(l, &walk, stage, i ? &shape->bounds[i - 1] : NULL); break;
+        case STAGE_KERNEL:  take_kernel(l, &walk, shape->children[stage->kernel]); break;
         }
     }
+    Lowered result        = walk.result;
+    result.surface.normal = normal_out(l, &walk.path, result.surface.normal);
+    if (walk.hull_count)
+        result.distance = within_hulls(l, walk.hulls, walk.hull_count, walk.inner);
+    result.distance = guard_stops(l, walk.stops, walk.stop_count, result.distance);
     return result;
 }

@@ -31,8 +31,8 @@ static Lowered outside_of_box(Lowering *l, const Shape *shape, Place place, Lowe
    is OP_POINT seen by the content, which may stand turned in its cell. */
 static bool is_symmetric(Lowering *l, const Shape *content, Node mapped, uint32_t axis)
 {
-    Lowering alone = {l->graph, l->scratch, false, l->most, false};
-    Lowered  inner = lower_shape(&alone, content, (Place){mapped, NODE_NONE, NODE_NONE, true});
+    Lowering alone = {.graph = l->graph, .scratch = l->scratch, .most = l->most};
+    Lowered  inner = lower_shape(&alone, content, place_bare(mapped, true));
     l->overflow    = l->overflow || alone.overflow;
     return inner.distance != NODE_NONE && graph_is_even(l->graph, inner.distance, axis, l->scratch);
 }
@@ -220,12 +220,20 @@ static double sector_margin(Box content, double angle, double half_sector)
     return isnan(least) ? -INFINITY : least;
 }
 
+/* A copy that stands turned about y. */
+static Lowered lower_turned(Lowering *l, const Shape *content, Place place, Node point)
+{
+    NormalPath path = normal_path(l, place, 1);
+    normal_turn_about_y(l, &path, place.point, point);
+    return lower_behind(l, content, place, &path, point);
+}
+
 static Lowered all_around(Lowering *l, const Shape *shape, Place place, uint32_t first,
                           uint32_t count)
 {
     if (count == 1) {
         Node point = turn_about_y(l->graph, place.point, 2 * M_PI * first / shape->cells[0]);
-        return lower_shape(l, shape->children[0], place_at(place, point));
+        return lower_turned(l, shape->children[0], place, point);
     }
     Lowered a = all_around(l, shape, place, first, count / 2);
     Lowered b = all_around(l, shape, place, first + count / 2, count - count / 2);
@@ -244,7 +252,7 @@ static Lowered lower_next_sector(Lowering *l, const Shape *shape, Place place, N
     Node   minus  = turn_about_y(g, local, -sector);
     Node   next   = graph_op3(g, OP_select, right, plus, minus);
     Node   point  = turn_about_y(g, next, -angle);
-    return lower_shape(l, shape->children[0], place_at(place, point));
+    return lower_turned(l, shape->children[0], place, point);
 }
 
 /* Distance to the nearer wall of the sector around +x, plus the margin behind it. */
@@ -278,7 +286,7 @@ Lowered lower_repeat_polar(Lowering *l, const Shape *shape, Place place)
     Node    count  = graph_number(g, shape->cells[0]);
     Node    local  = graph_op2(g, OP_cell_polar, facing, count);
     Node    back   = turn_about_y(g, local, -angle);
-    Lowered result = lower_shape(l, shape->children[0], place_at(place, back));
+    Lowered result = lower_turned(l, shape->children[0], place, back);
     Node    mapped = turn_about_y(g, graph_leaf(g, OP_POINT), -angle);
     double  width  = hypot(centre[0], centre[2]) * sin(half_sector);
     Joining joining = choose_joining(l, shape->children[0], mapped, 2, margin, width, place);

@@ -1,15 +1,17 @@
 /*
  * lowering.h: what the files of the lowering share: lower.c walks and joins, lower_repeat.c
- * has the copies in cells, lower_krs.c the sequences.
+ * has the copies in cells, lower_krs.c the sequences, lower_moebius.c maps that invert,
+ * lower_normal.c turns normals.
  */
 #ifndef KRS_LOWERING_H
 #define KRS_LOWERING_H
 
 #include "compiler/geometry/lower.h"
 
-/* What a hit needs; NODE_NONE in `color`: not painted yet. */
+/* What a hit needs; NODE_NONE in `color`: not painted yet.  `normal` is in the space of the shape
+   that was lowered; it need not be a unit vector (unit_normal). */
 typedef struct Surface {
-    Node color, roughness, metallic, emission, level, instance;
+    Node color, roughness, metallic, emission, level, instance, uv, normal, trap;
 } Surface;
 
 typedef struct Lowered {
@@ -21,16 +23,25 @@ typedef struct Lowering {
     Graph *graph;
     Arena *scratch;
     bool   surfaces; /* else the distance alone */
+    AlongMethod method; /* of lower_along.c */
+    bool   guarded;  /* what is far is left out (guards.c) */
+    Node   unit;     /* guarded: how long 1 is outside of everything */
     size_t most;     /* nodes that the graph may have */
     bool   overflow;
 } Lowering;
 
 /* Where a shape stands: the mapped point, and the sequence around it.  `lipschitz` says that
-   something above (a blend, an offset) moves the zero set and so needs the slope. */
+   something above (a blend, an offset) moves the zero set and so needs the slope.  With surfaces
+   also the normal of the surface and the radius of a pixel, in the shape's space. */
 typedef struct Place {
     Node point, level, instance; /* level, instance: NODE_NONE outside of sequences */
     bool lipschitz;
+    Node normal, footprint;
+    Node smoothing; /* the width over which normals change sides of a mirror; NODE_NONE: at once */
 } Place;
+
+/* A place outside of everything, of a lowering without surfaces. */
+Place place_bare(Node point, bool lipschitz);
 
 extern const Lowered lowered_nothing;
 
@@ -38,13 +49,113 @@ extern const Lowered lowered_nothing;
 Place place_at(Place place, Node point);
 Place place_steady(Place place);
 
+/* ---- lower_normal.c ---- */
+/* One map of space, or a kernel that joins what is further in, from outside inwards. */
+typedef struct NormalStep {
+    enum { NORMAL_MIRROR, NORMAL_TURN, NORMAL_STRETCH, NORMAL_KERNEL } kind;
+    Node axis, share;    /* MIRROR: unit; how much of it, on the way out */
+    Node rows[3];        /* TURN; [0] of STRETCH: factors */
+    Node normal, nearer; /* KERNEL: of its surface; that it is nearer than all further out */
+} NormalStep;
+
+/* The way of a normal from a place inwards; does nothing in a lowering without surfaces. */
+typedef struct NormalPath {
+    Place       innermost; /* normal, footprint and smoothing behind the steps so far */
+    NormalStep *steps;
+    uint32_t    count;
+} NormalPath;
+
+/* `most`: steps that will be taken. */
+NormalPath normal_path(Lowering *l, Place place, uint32_t most);
+/* Before x -> stretch * rows * x + shift. */
+void normal_turn(Lowering *l, NormalPath *path, const Node rows[3], Node stretch);
+/* Before a turn about y that brings `inner` to where `outer` is. */
+void normal_turn_about_y(Lowering *l, NormalPath *path, Node outer, Node inner);
+/* Before x -> factors * x, element by element; `least` of them. */
+void normal_stretch(Lowering *l, NormalPath *path, Node factors, Node least);
+/* Before a reflection along a unit vector that depends on the point. */
+void normal_flip(Lowering *l, NormalPath *path, Node axis);
+/* OP_fold at the point; mirrors are where smoothing is. */
+void normal_fold(Lowering *l, NormalPath *path, Node point, Node axis, Node offset);
+/* A kernel was lowered here; `outer` is all that was joined before. */
+void normal_kernel(Lowering *l, NormalPath *path, Lowered outer, Lowered kernel);
+/* The normal in the space where the path began, of what was lowered behind it: of its kernels, or
+   `inner` where there is none. */
+Node normal_out(Lowering *l, const NormalPath *path, Node inner);
+/* The place behind the steps, at a point there. */
+Place place_behind(const NormalPath *path, Place place, Node point);
+/* A unit vector; `otherwise` where nothing is left of the normal. */
+Node unit_normal(Graph *g, Node normal, Node otherwise);
+
 /* ---- lower.c ---- */
 Lowered lower_shape(Lowering *l, const Shape *shape, Place place);
+/* The same behind maps that have been taken down, at a point there. */
+Lowered lower_behind(Lowering *l, const Shape *child, Place place, const NormalPath *path,
+                     Node point);
 /* The union of two distances, sharp or blended. */
 Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b);
 /* R^T (point - shift) / scale: where the point was before the map. */
-Node before_map(Graph *g, const Similarity *map, Node point);
+Node before_map(Graph *g, const Map *map, Node point);
 Lowered scale_distance(Lowering *l, Lowered result, Node factor);
+/* Takes up the unit behind a map that enlarges; returns the one to go back to. */
+Node enter_scale(Lowering *l, Node scale);
+
+/* ---- lower_moebius.c ---- */
+/* How far a walk through maps has come, from outside inwards.  An empty ball of radius d around
+   the point behind them is one of radius d * scale around the point outside or, once a map has
+   inverted, d / (shrink + bend * |d|). */
+typedef struct Passage {
+    Node point, scale;
+    Node shrink, bend; /* NODE_NONE: nothing has inverted yet */
+} Passage;
+
+Passage passage_new(Graph *g, Node point);
+/* Behind a map without `first`; normals take at most two steps. */
+void    passage_map(Lowering *l, Passage *passage, const Map *map, NormalPath *path);
+/* What was lowered behind the maps, as distances outside. */
+Lowered passage_out(Lowering *l, const Passage *passage, Lowered result);
+/* As enter_scale, behind all of the maps. */
+Node    enter_passage(Lowering *l, const Passage *passage);
+
+/* Around what a map has inverted, seen from outside of everything. */
+typedef struct Hull {
+    Node bound; /* the distance to it is at least this; NODE_NONE: nothing is known */
+    Node outer; /* the distance of what was found outside of it; NODE_NONE: nothing */
+} Hull;
+
+/* Of what lies in a ball before the map that is next on the way inwards. */
+Hull passage_hull(Lowering *l, const Passage *passage, const Map *map, Ball ball);
+/* Of two distances, each of which may be NODE_NONE. */
+Node nearer_of(Graph *g, Node a, Node b);
+/* The distance of everything, from hulls within hulls and of what was found in the innermost. */
+Node within_hulls(Lowering *l, const Hull *hulls, uint32_t count, Node distance);
+Lowered lower_inversion(Lowering *l, const Shape *shape, Place place);
+
+/* ---- lower_guards.c ---- */
+/* A place between two stages of a sequence where what is left may be left out. */
+typedef struct Stop {
+    const LevelBound *bound; /* around all that is left */
+    Passage           passage;
+    Node              so_far; /* the distance by the stages after; NODE_NONE: of nothing */
+} Stop;
+
+/* Whether there is to be one before a stage. */
+bool may_stop(const Lowering *l, const Shape *krs, uint32_t stage, Place place);
+/* The distance of a sequence which is `whole` when nothing is left out; stops from the outermost
+   to the innermost. */
+Node guard_stops(Lowering *l, const Stop *stops, uint32_t count, Node whole);
+
+/* ---- lower_deform.c ---- */
+Lowered lower_twist(Lowering *l, const Shape *shape, Place place);
+Lowered lower_bend(Lowering *l, const Shape *shape, Place place);
+Lowered lower_taper(Lowering *l, const Shape *shape, Place place);
+Lowered lower_displace(Lowering *l, const Shape *shape, Place place);
+
+/* `weight` 1 is a; what cannot be mixed is taken from a where `nearer`. */
+Surface mix_surface(Graph *g, Node nearer, Node weight, Surface a, Surface b);
+
+/* ---- meta.c ---- */
+Lowered lower_meta(Lowering *l, const Shape *shape, Place place);
 
 /* ---- lower_repeat.c ---- */
 Lowered lower_repeat(Lowering *l, const Shape *shape, Place place);

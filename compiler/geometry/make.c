@@ -7,6 +7,8 @@
 
 #include <math.h>
 
+#include "compiler/graph/evaluate.h"
+
 const BlendInfo blend_info[BLEND_COUNT] = {
 #define BLEND(name, spelling, op, slope, bulge, meaning) {spelling, OP_##op, slope, bulge},
 #include "compiler/geometry/blends.def"
@@ -38,7 +40,8 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
     shape->derived      = 1;
     shape->exact        = true;
     shape->blend        = blend_sharp;
-    shape->distance     = shape->bound = NODE_NONE;
+    shape->distance     = shape->bound = shape->uv = shape->trap = NODE_NONE;
+    shape->formula      = NODE_NONE;
     shape->plane_normal = shape->plane_offset = NODE_NONE;
     shape->values[0] = shape->values[1] = NODE_NONE;
     double sequences = 0; /* instances of the sequences among the parts; other parts make one */
@@ -48,10 +51,17 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
         shape->slope       = fmax(shape->slope, child->slope);
         shape->derived     = fmax(shape->derived, child->derived);
         shape->exact       = shape->exact && child->exact;
+        shape->estimate    = shape->estimate || child->estimate;
+        shape->trapped     = shape->trapped || child->trapped;
         shape->figure      = shape->figure || child->figure;
+        shape->fields      = shape->fields || child->fields;
+        shape->smooth      = shape->smooth || child->smooth;
+        shape->without_uv  = shape->without_uv ? shape->without_uv : child->without_uv;
         sequences += child->levels > 0 ? child->instances : 0;
         shape->depth = child->depth >= shape->depth ? child->depth + 1 : shape->depth;
         shape->levels = child->levels > shape->levels ? child->levels : shape->levels;
+        if (child->inversions > shape->inversions)
+            shape->inversions = child->inversions;
     }
     shape->instances = sequences > 0 ? sequences : kind != SHAPE_EMPTY;
     if (count == 1)
@@ -73,17 +83,60 @@ const Shape *make_empty(Elaboration *e, Span span)
     return shape_new(e, SHAPE_EMPTY, "nothing", span, NULL, 0);
 }
 
-const Shape *make_transform(Elaboration *e, const Shape *shape, const Similarity *map, Span span)
+bool check_invertible(Elaboration *e, const Shape *shape, Span span)
 {
-    /* A chain of maps is one map. */
-    if (shape->kind == SHAPE_TRANSFORM) {
-        map   = similarity_product(e, map, &shape->map);
-        shape = shape->children[0];
-    }
+    if (box_is_finite(shape->box) || box_is_empty(shape->box))
+        return true;
+    Diag *diag  = diag_add(e->diags, DIAG_ENDLESS_INVERTED, span,
+                           "something endless cannot be inverted");
+    diag->label = "an inversion";
+    diag->help  = "cut it first, with `.within(sphere(10))`, say";
+    diag_place(e->diags, diag, shape->span, "this is endless");
+    return false;
+}
+
+static const Shape *make_inversion(Elaboration *e, const Shape *shape, const Map *map, Span span)
+{
+    if (!check_invertible(e, shape, span))
+        return NULL;
+    Shape   *inverted = wrap(e, SHAPE_INVERSION, "transform", shape, span);
+    MapRange range    = map_range(e, map);
+    Cover    cover    = {0};
+    cover_add(e->arena, &cover, shape->box);
+    cover_map(&cover, &range);
+    inverted->map   = *map;
+    inverted->exact = false;
+    inverted->inversions++;
+    inverted->box   = cover_box(&cover);
+    return inverted;
+}
+
+/* By a map without `first`. */
+static const Shape *transform_by(Elaboration *e, const Shape *shape, const Map *map, Span span)
+{
+    if (map->pole != NODE_NONE)
+        return make_inversion(e, shape, map, span);
     Shape *moved = wrap(e, SHAPE_TRANSFORM, "transform", shape, span);
     moved->map   = *map;
-    moved->box   = similarity_box(e, map, shape->box);
+    moved->box   = map_box(e, map, shape->box);
     return moved;
+}
+
+const Shape *make_transform(Elaboration *e, const Shape *shape, const Map *map, Span span)
+{
+    if (map->first)
+        shape = make_transform(e, shape, map->first, span);
+    if (!shape)
+        return NULL;
+    Map single   = *map;
+    single.first = NULL;
+    /* A chain of maps is one map, where it can be. */
+    if (shape->kind == SHAPE_TRANSFORM || shape->kind == SHAPE_INVERSION) {
+        const Map *product = map_product(e, &single, &shape->map);
+        if (!product->first)
+            return transform_by(e, shape->children[0], product, span);
+    }
+    return transform_by(e, shape, &single, span);
 }
 
 const Shape *make_stretch(Elaboration *e, const Shape *shape, Node factors, Span span)
@@ -104,6 +157,8 @@ const Shape *make_joint(Elaboration *e, ShapeKind kind, const Shape *const *shap
         [SHAPE_DIFFERENCE] = "difference", [SHAPE_XOR] = "xor"};
     Shape *joint = shape_new(e, kind, names[kind], span, shapes, count);
     joint->blend = blend;
+    if (blend.width != NODE_NONE)
+        check_steady(e, joint, "a blend", span);
     /* Outside, the least of exact distances is exact; every other joint only bounds it. */
     joint->exact = joint->exact && kind == SHAPE_UNION && blend.width == NODE_NONE;
     for (uint32_t i = 0; i < count; i++) {
@@ -131,6 +186,7 @@ const Shape *make_morph(Elaboration *e, const Shape *a, const Shape *b, Node t, 
     const Shape *children[] = {a, b};
     Shape       *morph      = shape_new(e, SHAPE_MORPH, "morph", span, children, 2);
     morph->values[0]        = t;
+    check_steady(e, morph, "`morph`", span);
     morph->exact            = false;
     /* Where the mix is 0 one of the distances is at most 0, or both are. */
     morph->box = box_hull(a->box, b->box);
@@ -144,6 +200,7 @@ const Shape *make_offset(Elaboration *e, const Shape *shape, Node radius, Span s
     offset->values[0] = radius;
     offset->box       = box_grow(shape->box, fmax(range.high, 0));
     offset->exact     = shape->exact && range.low >= 0;
+    check_steady(e, offset, "an offset", span);
     return offset;
 }
 
@@ -152,6 +209,7 @@ const Shape *make_shell(Elaboration *e, const Shape *shape, Node thickness, Span
     Shape *shell     = wrap(e, SHAPE_SHELL, "shell", shape, span);
     shell->values[0] = thickness;
     shell->box       = box_grow(shape->box, 0.5 * node_range(e, thickness, 0).high);
+    check_steady(e, shell, "a shell", span);
     return shell;
 }
 
@@ -251,8 +309,50 @@ const Shape *make_mirror(Elaboration *e, const Shape *shape, Node normal, Node o
     return mirror;
 }
 
+const Shape *make_smooth(Elaboration *e, const Shape *shape, Node width, Span span)
+{
+    Shape *smooth     = wrap(e, SHAPE_SMOOTH, "smooth_mirrors", shape, span);
+    smooth->values[0] = width;
+    smooth->smooth    = true;
+    return smooth;
+}
+
+/* Whether a material uses `u` or `v` (OP_UV), or `orbit_trap` (OP_TRAP). */
+static bool material_needs(Elaboration *e, const Material *material, Op leaf)
+{
+    Node   all[] = {material->color, material->roughness, material->metallic, material->emission};
+    Node   roots[sizeof all / sizeof *all];
+    size_t count = 0;
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        if (all[i] != NODE_NONE)
+            roots[count++] = all[i];
+    bool needed = false;
+    Tape tape   = tape_new(e->graph, roots, count, e->scratch);
+    for (size_t i = 0; i < tape.count; i++)
+        needed = needed || e->graph->items[tape.nodes[i]].op == leaf;
+    arena_free(e->scratch);
+    return needed;
+}
+
 const Shape *make_paint(Elaboration *e, const Shape *shape, const Material *material, Span span)
 {
+    if (!shape->trapped && material_needs(e, material, OP_TRAP)) {
+        Diag *diag  = diag_add(e->diags, DIAG_OUT_OF_PLACE, span,
+                               "`orbit_trap` has no meaning on `%s`", shape->name);
+        diag->label = "this needs a fractal";
+        diag->help  = "`julia` and `mandelbulb` are fractals";
+        diag_place(e->diags, diag, shape->span, "none in this shape");
+        return NULL;
+    }
+    if (shape->without_uv && material_needs(e, material, OP_UV)) {
+        const Shape *without = shape->without_uv;
+        Diag *diag  = diag_add(e->diags, DIAG_OUT_OF_PLACE, span,
+                               "`u` and `v` have no meaning on `%s`", without->name);
+        diag->label = "this material needs them";
+        diag_place(e->diags, diag, without->span, "declared without `uv`");
+        diag->help  = "give the declaration of the shape a `uv: [...]`";
+        return NULL;
+    }
     Shape *painted    = wrap(e, SHAPE_PAINT, "paint", shape, span);
     painted->material = material;
     return painted;
@@ -274,7 +374,7 @@ bool shape_plane(Elaboration *e, const Shape *shape, Node *normal, Node *offset)
     if (shape->kind != SHAPE_TRANSFORM || !shape_plane(e, shape->children[0], normal, offset))
         return false;
     /* n.x <= w becomes (R n).y <= s w + (R n).t for y = s R x + t. */
-    *normal      = similarity_turn(e, &shape->map, *normal);
+    *normal      = map_turn(e, &shape->map, *normal);
     Node scaled  = graph_op2(g, OP_mul, *offset, shape->map.scale);
     Node shifted = graph_op2(g, OP_dot, *normal, shape->map.shift);
     *offset      = graph_op2(g, OP_add, scaled, shifted);

@@ -42,10 +42,42 @@ static bool read_stage(Elaboration *e, const Shape *krs, const Stage *stage, Rea
     return known;
 }
 
+/* Of a sequence with maps that invert: balls all the way (cover.h). */
+static Box bound_inverted(Elaboration *e, const Shape *krs, LevelBound *bounds)
+{
+    Cover cover = {0};
+    for (uint32_t i = 0; i < krs->stage_count; i++) {
+        const Stage *stage = &krs->stages[i];
+        if (stage->kind == STAGE_KERNEL) {
+            const Shape *kernel = krs->children[stage->kernel];
+            if (!box_is_finite(kernel->box) && !box_is_empty(kernel->box)) {
+                for (; i < krs->stage_count; i++)
+                    bounds[i] = (LevelBound){box_infinite, ball_around(box_infinite)};
+                return box_infinite; /* after the last inversion: see check_kernels */
+            }
+            cover_add(e->arena, &cover, kernel->box);
+        } else if (stage->kind == STAGE_REFLECT) {
+            Range u[3];
+            for (uint32_t k = 0; k < 3; k++)
+                u[k] = node_range(e, stage->normal, k);
+            cover_fold(e->arena, &cover, u, node_range(e, stage->offset, 0));
+        } else {
+            MapRange map = map_range(e, &stage->map);
+            cover_map(&cover, &map);
+        }
+        bounds[i].box  = cover_box(&cover);
+        Ball around    = ball_around(bounds[i].box);
+        bounds[i].ball = cover_ball(&cover);
+        if (around.radius < bounds[i].ball.radius)
+            bounds[i].ball = around;
+    }
+    return cover_box(&cover);
+}
+
 /* Boxes and balls grow along the sequence side by side; each is tight where the other is not
    (turned mirrors blow boxes up), so each is cut to the other's size at every level.  While all
    numbers are known, a search then finds how far the set really reaches. */
-static Box bound_sequence(Elaboration *e, const Shape *krs)
+static Box bound_sequence(Elaboration *e, const Shape *krs, LevelBound *bounds)
 {
     ReachStage *reach = arena_new_array(e->arena, ReachStage, krs->stage_count + 1);
     bool        known = true;
@@ -65,8 +97,8 @@ static Box bound_sequence(Elaboration *e, const Shape *krs)
             box     = box_fold(box, u, w);
             ball    = ball_fold(ball, u, w);
         } else {
-            box  = similarity_box(e, &stage->map, box);
-            ball = ball_around(similarity_box(e, &stage->map, ball_box(ball)));
+            box  = map_box(e, &stage->map, box);
+            ball = ball_around(map_box(e, &stage->map, ball_box(ball)));
         }
         box          = box_common(box, ball_box(ball));
         Ball tighter = ball_around(box);
@@ -77,10 +109,34 @@ static Box bound_sequence(Elaboration *e, const Shape *krs)
         reach[i].ball = ball;
         if (known && stage->kind == STAGE_REFLECT)
             reach_tighten(reach, i + 1);
-        box  = reach[i].box;
-        ball = reach[i].ball;
+        box       = reach[i].box;
+        ball      = reach[i].ball;
+        bounds[i] = (LevelBound){box, ball};
     }
     return box;
+}
+
+static uint32_t count_inversions(const Shape *krs)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < krs->stage_count; i++)
+        count += krs->stages[i].kind == STAGE_MAP && krs->stages[i].map.pole != NODE_NONE;
+    return count;
+}
+
+/* What is inverted must not be endless; reported at the first inversion after it. */
+static bool check_kernels(Elaboration *e, const Shape *krs)
+{
+    bool        good = true;
+    const Stage *inversion = NULL;
+    for (uint32_t i = krs->stage_count; i-- > 0;) {
+        const Stage *stage = &krs->stages[i];
+        if (stage->kind == STAGE_MAP && stage->map.pole != NODE_NONE)
+            inversion = stage;
+        if (stage->kind == STAGE_KERNEL && inversion)
+            good = check_invertible(e, krs->children[stage->kernel], inversion->span) && good;
+    }
+    return good;
 }
 
 const Shape *make_krs(Elaboration *e, const Stage *stages, uint32_t stage_count,
@@ -100,6 +156,11 @@ const Shape *make_krs(Elaboration *e, const Stage *stages, uint32_t stage_count,
             krs->levels++;
         }
     }
-    krs->box = bound_sequence(e, krs);
+    krs->inversions = count_inversions(krs);
+    if (krs->inversions && !check_kernels(e, krs))
+        return NULL;
+    LevelBound *bounds = arena_new_array(e->arena, LevelBound, stage_count + 1);
+    krs->bounds        = bounds;
+    krs->box = krs->inversions ? bound_inverted(e, krs, bounds) : bound_sequence(e, krs, bounds);
     return krs;
 }

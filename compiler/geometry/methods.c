@@ -11,7 +11,7 @@ typedef Value Method(Elaboration *e, const Shape *shape, Call *call);
 static const double ORIGIN[3] = {0, 0, 0};
 
 /* The shape after a map; NULL, whose reason has been reported, is VALUE_ERROR. */
-static Value moved(Elaboration *e, const Shape *shape, const Similarity *map, const Call *call)
+static Value moved(Elaboration *e, const Shape *shape, const Map *map, const Call *call)
 {
     return map ? value_shape(make_transform(e, shape, map, call->syntax->span)) : value_error();
 }
@@ -47,7 +47,7 @@ static Value method_align(Elaboration *e, const Shape *shape, Call *call)
         !check_direction(e, from, call->arguments[0].syntax, "a direction") ||
         !check_direction(e, to, call->arguments[1].syntax, "a direction"))
         return value_error();
-    return moved(e, shape, similarity_alignment(e, from, to), call);
+    return moved(e, shape, map_alignment(e, from, to), call);
 }
 
 static Value method_mirror(Elaboration *e, const Shape *shape, Call *call)
@@ -138,10 +138,10 @@ static Value method_repeat_polar(Elaboration *e, const Shape *shape, Call *call)
     /* About another axis: turn it up, repeat, turn it back. */
     if (!check_direction(e, axis, call->arguments[1].syntax, "an axis"))
         return value_error();
-    const Similarity *raise  = similarity_alignment(e, axis, up);
+    const Map *raise  = map_alignment(e, axis, up);
     const Shape      *raised = make_transform(e, shape, raise, call->syntax->span);
     const Shape      *copies = make_repeat_polar(e, raised, count, call->syntax);
-    return value_shape(make_transform(e, copies, similarity_inverse(e, raise), call->syntax->span));
+    return value_shape(make_transform(e, copies, map_inverse(e, raise), call->syntax->span));
 }
 
 static Value method_offset(Elaboration *e, const Shape *shape, Call *call)
@@ -237,17 +237,40 @@ static Value method_paint(Elaboration *e, const Shape *shape, Call *call)
                     : value_error();
 }
 
+static Value method_smooth_mirrors(Elaboration *e, const Shape *shape, Call *call)
+{
+    Node width = is_given(call, 0) ? want_number(e, call, 0, 0) : NODE_NONE;
+    if (is_given(call, 0) &&
+        (width == NODE_NONE || !check_not_negative(e, width, call->arguments[0].syntax, "a width")))
+        return value_error();
+    return value_shape(make_smooth(e, shape, width, call->syntax->span));
+}
+
+/* The surface alone, thin enough to look like one: a thousandth of the region. */
+static const Shape *sheet_of(Elaboration *e, const Shape *shape, const Shape *region,
+                             const Call *call)
+{
+    if (!box_is_finite(region->box) || box_is_empty(region->box)) {
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[0].syntax->span,
+                               "a surface is cut open by a bounded region");
+        diag->label = "endless";
+        return NULL;
+    }
+    Node thickness = graph_number(e->graph, 1e-3 * box_diagonal(region->box));
+    return make_shell(e, shape, thickness, call->syntax->span);
+}
+
 static Value method_within(Elaboration *e, const Shape *shape, Call *call)
 {
     const Shape *region = want_shape(e, call, 0);
     if (!region)
         return value_error();
-    if (is_given(call, 1)) {
-        Diag *diag  = diag_add(e->diags, DIAG_NOT_SUPPORTED, call->arguments[1].syntax->span,
-                               "this version of krs cannot cut a surface open");
-        diag->label = "not in this version";
+    bool open = false;
+    if (!want_flag(e, call, 1, &open))
         return value_error();
-    }
+    shape = restrict_shape(e, shape, region->box);
+    if (open && !(shape = sheet_of(e, shape, region, call)))
+        return value_error();
     const Shape *both[] = {shape, region};
     return value_shape(make_joint(e, SHAPE_INTERSECTION, both, 2, blend_sharp, call->syntax->span));
 }
@@ -296,13 +319,14 @@ Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax)
     if (receiver.type == VALUE_ERROR)
         return receiver;
     if (receiver.type == VALUE_MAP && strcmp(syntax->name, "inverse") == 0 && syntax->count == 1)
-        return value_map(similarity_inverse(e, receiver.map));
+        return value_map(map_inverse(e, receiver.map));
     for (size_t i = 0; receiver.type == VALUE_SHAPE && i < METHOD_COUNT; i++) {
         Call call;
         if (strcmp(methods[i].name, syntax->name) != 0)
             continue;
         bool outer     = e->in_material;
-        e->in_material = outer || methods[i].method == method_paint; /* a colour is a material */
+        e->in_material = outer || methods[i].method == method_paint || /* a colour is a material */
+                         methods[i].method == method_color_by;
         bool bound = bind_arguments(e, env, syntax, 1, methods[i].name, methods[i].parameters, &call);
         e->in_material = outer;
         if (!bound)

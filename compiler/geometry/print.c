@@ -7,12 +7,14 @@ static const char *const kind_names[] = {
     [SHAPE_EMPTY]        = "empty",
     [SHAPE_PRIMITIVE]    = "primitive",
     [SHAPE_TRANSFORM]    = "transform",
+    [SHAPE_INVERSION]    = "inversion",
     [SHAPE_STRETCH]      = "stretch",
     [SHAPE_UNION]        = "union",
     [SHAPE_INTERSECTION] = "intersection",
     [SHAPE_DIFFERENCE]   = "difference",
     [SHAPE_XOR]          = "xor",
     [SHAPE_MORPH]        = "morph",
+    [SHAPE_META]         = "meta",
     [SHAPE_OFFSET]       = "offset",
     [SHAPE_SHELL]        = "shell",
     [SHAPE_ELONGATE]     = "elongate",
@@ -21,6 +23,11 @@ static const char *const kind_names[] = {
     [SHAPE_REPEAT]       = "repeat",
     [SHAPE_REPEAT_POLAR] = "repeat_polar",
     [SHAPE_MIRROR]       = "mirror",
+    [SHAPE_TWIST]        = "twist",
+    [SHAPE_BEND]         = "bend",
+    [SHAPE_TAPER]        = "taper",
+    [SHAPE_DISPLACE]     = "displace",
+    [SHAPE_SMOOTH]       = "smooth_mirrors",
     [SHAPE_PAINT]        = "paint",
     [SHAPE_KRS]          = "krs",
 };
@@ -66,6 +73,25 @@ static void print_values(const Scene *scene, const Shape *shape, Text *out)
         }
 }
 
+/* "similarity" or "inversion", and the numbers of the map (shape.h). */
+static void print_map(const Scene *scene, const Map *map, Text *out)
+{
+    text_add(out, map->pole == NODE_NONE ? "similarity" : "inversion");
+    text_add(out, "  scale ");
+    print_node(scene, map->scale, out);
+    text_add(out, "  rows");
+    for (int i = 0; i < 3; i++) {
+        text_add(out, " ");
+        print_node(scene, map->rows[i], out);
+    }
+    text_add(out, "  shift ");
+    print_node(scene, map->shift, out);
+    if (map->pole == NODE_NONE)
+        return;
+    text_add(out, "  pole ");
+    print_node(scene, map->pole, out);
+}
+
 static void print_shape(const Scene *scene, const Sources *sources, const Shape *shape,
                         uint32_t depth, Text *out)
 {
@@ -83,6 +109,10 @@ static void print_shape(const Scene *scene, const Sources *sources, const Shape 
     print_values(scene, shape, out);
     if (shape->kind == SHAPE_PAINT)
         text_format(out, "  %s", shape->material->name);
+    if (shape->kind == SHAPE_TRANSFORM || shape->kind == SHAPE_INVERSION) {
+        text_add(out, "  ");
+        print_map(scene, &shape->map, out);
+    }
     text_add(out, "\n");
     for (uint32_t i = 0; i < shape->stage_count; i++) {
         const Stage *stage = &shape->stages[i];
@@ -91,8 +121,10 @@ static void print_shape(const Scene *scene, const Sources *sources, const Shape 
             continue;
         }
         print_indent(out, depth + 1);
-        text_add(out, stage->kind == STAGE_REFLECT ? "reflect " : "map");
-        if (stage->kind == STAGE_REFLECT) {
+        if (stage->kind == STAGE_MAP)
+            print_map(scene, &stage->map, out);
+        else {
+            text_add(out, "reflect ");
             print_node(scene, stage->normal, out);
             text_add(out, " ");
             print_node(scene, stage->offset, out);
@@ -117,5 +149,6 @@ void scene_print(const Scene *scene, const Sources *sources, Text *out)
         text_format(out, "component %zu %s\n", i + 1, scene->components.items[i].name);
         print_shape(scene, sources, scene->components.items[i].shape, 1, out);
     }
-    text_format(out, "cameras %zu\nlights %zu\n", scene->cameras.count, scene->lights.count);
+    text_format(out, "cameras %zu\nlights %zu\nzones %zu\n", scene->cameras.count,
+                scene->lights.count, scene->zone_count);
 }

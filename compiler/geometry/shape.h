@@ -19,12 +19,15 @@ typedef enum ShapeKind {
     SHAPE_EMPTY,        /* nothing: distance infinite */
     SHAPE_PRIMITIVE,    /* `distance`, `bound`; slope 1 after division by the derived one */
     SHAPE_TRANSFORM,    /* [0]; map; distances times its scale; slope of the child */
+    SHAPE_INVERSION,    /* [0]; map with a pole; distances by the bound of lower_moebius.c; slope
+                           of the child */
     SHAPE_STRETCH,      /* [0]; values[0] factors (VEC3); times the least; slope of the child */
     SHAPE_UNION,        /* [..]; blend; largest slope times the blend's factor */
     SHAPE_INTERSECTION, /* likewise */
     SHAPE_DIFFERENCE,   /* [0] less all others; likewise */
     SHAPE_XOR,          /* [0], [1]; likewise */
     SHAPE_MORPH,        /* [0], [1]; values[0] in [0, 1]; largest slope */
+    SHAPE_META,         /* [..]; values[0] level, values[1] reach; largest slope: see meta.c */
     SHAPE_OFFSET,       /* [0]; values[0]; d - r; slope of the child */
     SHAPE_SHELL,        /* [0]; values[0]; |d| - t / 2; slope of the child */
     SHAPE_ELONGATE,     /* [0]; values[0] half lengths; slope of the child (a clamp's is 1) */
@@ -33,14 +36,25 @@ typedef enum ShapeKind {
     SHAPE_REPEAT,       /* [0]; values[0] period, cells; slope of the child: see lower.c */
     SHAPE_REPEAT_POLAR, /* [0]; cells[0] copies about y; slope of the child */
     SHAPE_MIRROR,       /* [0]; values[0] unit normal, values[1] offset; slope of the child */
+    SHAPE_TWIST,        /* [0]; values[0] rate, about y; 1: see lower_deform.c, also for the next */
+    SHAPE_BEND,         /* [0]; values[0] rate, about x; cells[0] parts, which overlap; 1 */
+    SHAPE_TAPER,        /* [0]; values[0], values[1] factors at both ends of y; 1 */
+    SHAPE_DISPLACE,     /* [0]; values[0] amplitude of `formula`; 1 */
+    SHAPE_SMOOTH,       /* [0]; values[0] width or NODE_NONE; slope of the child */
     SHAPE_PAINT,        /* [0]; material; slope of the child */
     SHAPE_KRS           /* kernels; stages in order; the largest slope: folds are 1-Lipschitz */
 } ShapeKind;
 
-/* x -> scale * rows * x + shift, the rows orthonormal: what translate, rotate, scale and
-   reflect compose to. */
-struct Similarity {
-    Node scale, rows[3], shift;
+/*
+ * A conformal map of space: the similarity x -> scale * rows * x + shift or, with a pole,
+ * x -> scale * rows * (x - pole) / |x - pole|^2 + shift; rows orthonormal, scale > 0.  Products
+ * are one map again, except of inversions whose poles may come too near to each other: those
+ * stay apart, and `first` is what is applied before.
+ */
+struct Map {
+    Node       scale, rows[3], shift;
+    Node       pole;  /* NODE_NONE: a similarity */
+    const Map *first; /* NULL: nothing; similarities have none */
 };
 
 /* The rows of the inverse of a turn. */
@@ -62,6 +76,14 @@ typedef struct BlendInfo {
 } BlendInfo;
 extern const BlendInfo blend_info[BLEND_COUNT];
 
+/* How the shapes of a metasurface fade; falloffs.def has a row for each. */
+typedef enum FalloffKind {
+#define FALLOFF(name, spelling, steepest, meaning) FALLOFF_##name,
+#include "compiler/geometry/falloffs.def"
+#undef FALLOFF
+    FALLOFF_COUNT
+} FalloffKind;
+
 typedef struct Blend {
     BlendKind kind;
     Node      width; /* NODE_NONE: the joint is sharp */
@@ -71,12 +93,21 @@ extern const Blend blend_sharp;
 
 /* One statement of a `krs` block. */
 typedef struct Stage {
-    enum { STAGE_KERNEL, STAGE_REFLECT, STAGE_SIMILARITY } kind;
+    enum { STAGE_KERNEL, STAGE_REFLECT, STAGE_MAP } kind;
     uint32_t   kernel;         /* KERNEL: index of the child */
     Node       normal, offset; /* REFLECT: unit normal and offset */
-    Similarity map;            /* SIMILARITY */
+    Map        map;            /* MAP, without `first` */
     Span       span;
 } Stage;
+
+/* Around all that the stages of a sequence up to one have made, where that one leaves it. */
+typedef struct LevelBound {
+    Box  box;
+    Ball ball; /* may be the tighter of the two */
+} LevelBound;
+
+/* Each is about a quarter turn. */
+enum { MOST_BEND_PARTS = 16 };
 
 /* Walks of the tree are recursive. */
 enum { MOST_SHAPE_DEPTH = 1000 };
@@ -94,14 +125,27 @@ struct Shape {
     double derived; /* PRIMITIVE: the slope of its expression, by which it is divided; else the
                        largest in the tree */
     bool   exact;   /* the distance outside is the true one */
+    bool   estimate; /* nothing is proven of the distance: a primitive in the tree is measured only */
+    bool   trapped; /* in the tree is a fractal: `orbit_trap` means something */
     bool   figure;  /* a plane figure in x and y */
     double instances; /* copies of kernels that reflections make; 1 without a sequence */
     uint32_t levels;  /* reflections of the outermost sequence in it */
+    uint32_t inversions; /* maps of that sequence that invert, or of `.transform` on the way */
 
-    Node       distance, bound; /* PRIMITIVE, in its own coordinates; bound may be NODE_NONE */
+    /* PRIMITIVE, in its own coordinates; bound, uv and trap (VEC2) may be NODE_NONE. */
+    Node       formula; /* of a field or an algebraic surface (field.c) or DISPLACE, else NODE_NONE */
+    double     overlap; /* BEND: by how much the parts reach beyond their ends */
+    double     steep, reach; /* DISPLACE: slope and largest size of the formula in the box */
+    uint32_t   degree;  /* of a formula that is a polynomial, else 0 */
+    Span       blame;   /* what a field without a bound owes that to */
+    bool       fields;  /* in the tree is a field whose bound follows from a region */
+    Node       distance, bound, uv, trap;
+    const struct Shape *without_uv; /* a primitive in the tree that has none, or NULL */
+    bool       smooth;          /* mirrors in the tree are smooth */
     Node       values[2];       /* see ShapeKind; NODE_NONE where there are fewer */
-    Similarity map;
+    Map        map; /* without `first` */
     Blend      blend;    /* of joints */
+    FalloffKind falloff; /* META */
     uint32_t   cells[3]; /* REPEAT: copies per axis, 0 for endless */
 
     Node          plane_normal, plane_offset; /* PRIMITIVE that is a half-space, else NODE_NONE */
@@ -110,6 +154,7 @@ struct Shape {
     const Material           *material;
     const Stage              *stages;
     uint32_t                  stage_count;
+    const LevelBound         *bounds; /* of the stages, for all values of the parameters */
 };
 
 /* A `param`: its slot in the parameter block and its range. */
@@ -152,6 +197,8 @@ typedef struct Scene {
     struct { SceneCamera *items; size_t count, capacity; } cameras;
     struct { SceneLight *items; size_t count, capacity; } lights;
     Node       zenith, horizon, ground;
+    Node       zone; /* the depth of OP_POINT in zones, negative outside; NODE_NONE without any */
+    size_t     zone_count;
     SceneImage image;
     Box        box; /* around all components */
 } Scene;

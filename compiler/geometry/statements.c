@@ -187,7 +187,7 @@ static bool show_one(Elaboration *e, Value value, void *user)
         diag->help  = "make it solid with `.extrude(height)` or `.revolve()`";
         return false;
     }
-    if (!check_extent(e, value.shape, syntax))
+    if (!check_bounded(e, value.shape) || !check_extent(e, value.shape, syntax))
         return false;
     Component component = {component_name(e, syntax), value.shape, syntax->span};
     array_push(e->arena, &e->scene->components, component);
@@ -240,14 +240,30 @@ static void add_mirror(Elaboration *e, const Environment *env, const Syntax *syn
     point_at_definition(e, diag, argument);
 }
 
+/* One stage for each map of a chain, the innermost first. */
+static void push_map(Elaboration *e, Sequence *sequence, const Map *map, Span span)
+{
+    Stage stage = {.kind = STAGE_MAP, .map = *map, .span = span};
+    if (map->first)
+        push_map(e, sequence, map->first, span);
+    stage.map.first = NULL;
+    array_push(e->arena, &sequence->stages, stage);
+}
+
+/* Maps with nothing between them are one. */
 static void add_map(Elaboration *e, const Environment *env, const Syntax *syntax,
                     Sequence *sequence)
 {
-    Value value = evaluate(e, env, syntax->children[0]);
-    Stage stage = {.kind = STAGE_SIMILARITY, .span = syntax->span};
+    Value  value = evaluate(e, env, syntax->children[0]);
+    size_t count = sequence->stages.count;
     if (value.type == VALUE_MAP) {
-        stage.map = *value.map;
-        array_push(e->arena, &sequence->stages, stage);
+        const Map *map  = value.map;
+        Stage      last = count ? sequence->stages.items[count - 1] : (Stage){0};
+        if (count && last.kind == STAGE_MAP) {
+            map = map_product(e, map, &last.map);
+            sequence->stages.count--;
+        }
+        push_map(e, sequence, map, syntax->span);
         return;
     }
     sequence->wrong = true;
@@ -299,7 +315,7 @@ static void run_statement(Elaboration *e, Environment *env, const Syntax *syntax
     case SYNTAX_KERNEL:       add_kernel(e, env, syntax, sequence); break;
     case SYNTAX_REFLECT:      add_mirror(e, env, syntax, sequence); break;
     case SYNTAX_MOBIUS:       add_map(e, env, syntax, sequence); break;
-    case SYNTAX_CAMERA: case SYNTAX_LIGHT: case SYNTAX_SKY: case SYNTAX_IMAGE:
+    case SYNTAX_CAMERA: case SYNTAX_LIGHT: case SYNTAX_SKY: case SYNTAX_IMAGE: case SYNTAX_ZONE:
         elaborate_look(e, env, syntax);
         break;
     default: break; /* errors of the parser */

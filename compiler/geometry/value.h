@@ -26,7 +26,7 @@ typedef enum ValueType {
 
 typedef struct Value Value;
 typedef struct Shape Shape;
-typedef struct Similarity Similarity;
+typedef struct Map Map;
 typedef struct Material Material;
 typedef struct List List;
 typedef struct Function Function;
@@ -49,7 +49,7 @@ struct Value {
         const List       *list;
         const Function   *function;
         const Shape      *shape;
-        const Similarity *map;
+        const Map        *map;
         const Material   *material;
     };
 };
@@ -65,7 +65,8 @@ typedef struct Values {
     size_t count, capacity;
 } Values;
 
-/* How the surface of a shape looks: numbers are nodes, colours linear VEC3 nodes. */
+/* How the surface of a shape looks: numbers are nodes, colours linear VEC3 nodes; NODE_NONE leaves
+   what it was painted with before. */
 struct Material {
     const char *name;
     Node        color, roughness, metallic, emission;
@@ -88,7 +89,7 @@ static inline Value value_shape(const Shape *shape)
     return shape ? (Value){.type = VALUE_SHAPE, .shape = shape} : value_error();
 }
 
-static inline Value value_map(const Similarity *map)
+static inline Value value_map(const Map *map)
 {
     return map ? (Value){.type = VALUE_MAP, .map = map} : value_error();
 }

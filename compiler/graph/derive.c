@@ -253,7 +253,7 @@ static Node derive_node(Derivation *d, Node node, const Node *inner)
     if (partials[e.op])
         return derive_map(d, node, inner);
     if (e.type <= TYPE_VEC4 && others_are_still(g, inner, 0, e.operand_count) &&
-        e.op != OP_select)
+        e.op != OP_select && e.op != OP_guard)
         return zero_of(g, e.type);
     switch (e.op) {
     case OP_COMPONENT: return graph_component(g, inner[0], e.index);
@@ -264,6 +264,16 @@ static Node derive_node(Derivation *d, Node node, const Node *inner)
     case OP_normalize: return derive_normalize(g, &e, node, inner);
     case OP_select:
         return between(d, graph_op3(g, OP_select, e.operands[0], inner[1], inner[2]));
+    case OP_guard: {
+        Node limit = graph_op2(g, OP_min, e.operands[1], e.operands[3]);
+        Node out   = graph_op2(g, OP_less_equal, limit, e.operands[0]);
+        Node least_far = graph_op2(g, OP_min, e.operands[3], number(d, 0));
+        least_far  = graph_op2(g, OP_less, least_far, e.operands[0]);
+        out        = graph_op2(g, OP_and, out, least_far);
+        Node least = graph_op2(g, OP_less, e.operands[0], e.operands[1]);
+        least      = graph_op3(g, OP_select, least, inner[0], inner[1]);
+        return between(d, graph_op3(g, OP_select, out, least, inner[2]));
+    }
     case OP_turn:
         return others_are_still(g, inner, 1, 4)
                    ? graph_op4(g, OP_turn, inner[0], e.operands[1], e.operands[2], e.operands[3])

@@ -11,6 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/graph/fractal.h"
+#include "compiler/graph/regions.h"
+
 /* ---- the `value` column of MAP rows ---- */
 
 static double value_sign(double a) { return (a > 0) - (a < 0); }
@@ -131,6 +134,20 @@ static NodeValue evaluate_select(const NodeValue *o, uint32_t size)
     return o[0].v[0] != 0 ? o[1] : o[2];
 }
 
+/* What is at 0 may be anywhere inside: there, inside of something else, only the rest can tell how
+   deep. */
+static bool guard_decides(double bound, double least, double far)
+{
+    return bound >= fmin(least, far) && bound > fmin(far, 0);
+}
+
+static NodeValue evaluate_guard(const NodeValue *o, uint32_t size)
+{
+    (void)size;
+    double bound = o[0].v[0], least = o[1].v[0];
+    return guard_decides(bound, least, o[3].v[0]) ? number(fmin(bound, least)) : o[2];
+}
+
 static NodeValue evaluate_turn(const NodeValue *o, uint32_t size)
 {
     (void)size;
@@ -177,6 +194,83 @@ static uint32_t scramble(uint32_t x)
     x = (x ^ (x >> 16)) * 0x7feb352du;
     x = (x ^ (x >> 15)) * 0x846ca68bu;
     return x ^ (x >> 16);
+}
+
+/*
+ * Gradient noise (Perlin, "Improving noise", 2002): at each point of the lattice of whole numbers
+ * stands a linear function, 0 there, in one of twelve directions (eight in the plane); between
+ * them it is faded by 6 t^5 - 15 t^4 + 10 t^3.  Divided by the largest value there can be; the
+ * bounds are proven in tests/property/noise.c.  Beyond 2^30 it goes on as it is there.
+ */
+static const double NOISE_END = 1073741824, NOISE_UNIT_2 = 0.99, NOISE_UNIT_3 = 0.96;
+
+static double lattice_place(double p, uint32_t *cell)
+{
+    double clamped = fmin(fmax(p, -NOISE_END), NOISE_END), whole = floor(clamped);
+    *cell = (uint32_t)(int32_t)whole;
+    return clamped - whole;
+}
+
+static double fade(double t) { return t * t * t * (t * (6 * t - 15) + 10); }
+
+/* The direction of a lattice point, from what was scrambled of its other coordinates. */
+static uint32_t lattice_bits(uint32_t row, uint32_t cell) { return scramble(row + cell) >> 28; }
+
+static double slope_of_2(uint32_t h, double x, double y)
+{
+    double straight = (h & 2 ? y : x) * sqrt(2), diagonal = h & 2 ? x - y : x + y;
+    double along    = h & 4 ? straight : diagonal;
+    return h & 1 ? -along : along;
+}
+
+static double slope_of_3(uint32_t h, double x, double y, double z)
+{
+    double u = h < 8 ? x : y, v = h < 4 ? y : h == 12 || h == 14 ? x : z;
+    return (h & 1 ? -u : u) + (h & 2 ? -v : v);
+}
+
+static double between(double a, double b, double t) { return a + (b - a) * t; }
+
+static NodeValue evaluate_noise2(const NodeValue *o, uint32_t size)
+{
+    uint32_t cell[2];
+    double   f[2], rows[2];
+    for (uint32_t i = 0; i < size; i++) {
+        if (isnan(o[0].v[i]))
+            return number(o[0].v[i]);
+        f[i] = lattice_place(o[0].v[i], &cell[i]);
+    }
+    for (uint32_t i = 0; i < 2; i++) {
+        uint32_t column = scramble(cell[0] + i);
+        double   x = f[0] - i;
+        double   low  = slope_of_2(lattice_bits(column, cell[1]), x, f[1]);
+        double   high = slope_of_2(lattice_bits(column, cell[1] + 1), x, f[1] - 1);
+        rows[i] = between(low, high, fade(f[1]));
+    }
+    return number(NOISE_UNIT_2 * between(rows[0], rows[1], fade(f[0])));
+}
+
+static NodeValue evaluate_noise3(const NodeValue *o, uint32_t size)
+{
+    uint32_t cell[3];
+    double   f[3], planes[2], rows[2];
+    for (uint32_t i = 0; i < size; i++) {
+        if (isnan(o[0].v[i]))
+            return number(o[0].v[i]);
+        f[i] = lattice_place(o[0].v[i], &cell[i]);
+    }
+    for (uint32_t i = 0; i < 2; i++) {
+        uint32_t plane = scramble(cell[0] + i);
+        for (uint32_t k = 0; k < 2; k++) {
+            uint32_t row = scramble(plane + cell[1] + k);
+            double   x = f[0] - i, y = f[1] - k;
+            double   low  = slope_of_3(lattice_bits(row, cell[2]), x, y, f[2]);
+            double   high = slope_of_3(lattice_bits(row, cell[2] + 1), x, y, f[2] - 1);
+            rows[k] = between(low, high, fade(f[2]));
+        }
+        planes[i] = between(rows[0], rows[1], fade(f[1]));
+    }
+    return number(NOISE_UNIT_3 * between(planes[0], planes[1], fade(f[0])));
 }
 
 static NodeValue evaluate_push_id(const NodeValue *o, uint32_t size)
@@ -386,6 +480,44 @@ Tape tape_new(const Graph *graph, const Node *roots, size_t root_count, Arena *a
     return tape;
 }
 
+/* A tape on which each region follows its guard. */
+typedef struct Layout {
+    const Regions *regions;
+    Node          *nodes;
+    uint32_t      *skips;
+    size_t         count;
+} Layout;
+
+static void lay_out(Layout *layout, uint32_t region)
+{
+    const Regions *regions = layout->regions;
+    for (Node node = regions->list.items[region].first; node != NODE_NONE;
+         node = regions->next[node]) {
+        if (regions->body[node] != NO_REGION) {
+            size_t test = layout->count;
+            layout->nodes[layout->count++] = node;
+            lay_out(layout, regions->body[node]);
+            layout->skips[test] = (uint32_t)(layout->count - test);
+        }
+        layout->nodes[layout->count++] = node;
+    }
+}
+
+Tape tape_new_guarded(const Graph *graph, const Node *roots, size_t root_count, Arena *arena)
+{
+    Tape    tape    = tape_new(graph, roots, root_count, arena);
+    Regions regions = graph_regions(graph, roots, root_count, arena);
+    size_t  most    = tape.count + regions.list.count;
+    Layout  layout  = {&regions, arena_new_array(arena, Node, most + 1),
+                       arena_new_array(arena, uint32_t, most + 1), tape.frame_count};
+    memcpy(layout.nodes, tape.nodes, tape.frame_count * sizeof *layout.nodes);
+    lay_out(&layout, REGION_ALWAYS);
+    tape.nodes = layout.nodes;
+    tape.skips = layout.skips;
+    tape.count = layout.count;
+    return tape;
+}
+
 size_t tape_place(const Tape *tape, Node node)
 {
     bool   point = tape->graph->items[node].time == TIME_POINT;
@@ -440,6 +572,19 @@ static void tape_run_node(const Graph *graph, Node node, NodeValue *values)
     run_row(&graph->items[node], values, &values[node], graph->items);
 }
 
+/* The guard at `i`: how many elements it leaves out. */
+static size_t run_guard(const Tape *tape, size_t i, NodeValue *values)
+{
+    const Expr *e     = &tape->graph->items[tape->nodes[i]];
+    double      bound = values[e->operands[0]].v[0], least = values[e->operands[1]].v[0];
+    if (!guard_decides(bound, least, values[e->operands[3]].v[0])) {
+        values[tape->nodes[i]] = values[e->operands[2]];
+        return 0;
+    }
+    values[tape->nodes[i]] = number(fmin(bound, least));
+    return tape->skips ? tape->skips[i] : 0;
+}
+
 void tape_run_frame(const Tape *tape, const NodeValue *parameters, NodeValue *values)
 {
     for (size_t i = 0; i < tape->frame_count; i++) {
@@ -454,8 +599,15 @@ void tape_run_frame(const Tape *tape, const NodeValue *parameters, NodeValue *va
     }
 }
 
-/* OP_INSTANCE and OP_LEVEL, which stand in materials that were not lowered, count as 1 and 0. */
 void tape_run_point(const Tape *tape, const double point[3], NodeValue *values)
+{
+    tape_run_surface(tape, point, (double[3]){0, 0, 0}, 0, values);
+}
+
+/* OP_INSTANCE, OP_LEVEL and OP_UV, which stand in materials that were not lowered, count as 1
+   and 0. */
+void tape_run_surface(const Tape *tape, const double point[3], const double normal[3],
+                      double footprint, NodeValue *values)
 {
     for (size_t i = tape->frame_count; i < tape->count; i++) {
         Node node = tape->nodes[i];
@@ -467,7 +619,19 @@ void tape_run_point(const Tape *tape, const double point[3], NodeValue *values)
             values[node] = number(1);
             break;
         case OP_LEVEL:
+        case OP_UV:
+        case OP_TRAP:
             values[node] = number(0);
+            break;
+        case OP_guard:
+            i += run_guard(tape, i, values);
+            break;
+        case OP_NORMAL:
+        case OP_DIRECTION:
+            memcpy(values[node].v, normal, 3 * sizeof *normal);
+            break;
+        case OP_FOOTPRINT:
+            values[node] = number(footprint);
             break;
         default:
             tape_run_node(tape->graph, node, values);

@@ -23,9 +23,15 @@ typedef struct Tape {
     const Node  *nodes;        /* all needed nodes, operands first */
     size_t       count;
     size_t       frame_count;  /* the first frame_count of them are compile or frame time */
+    const uint32_t *skips;     /* NULL, or how many to skip at each when it is a guard that leaves
+                                  something out */
 } Tape;
 
 Tape tape_new(const Graph *graph, const Node *roots, size_t root_count, Arena *arena);
+
+/* The same, but what a guard leaves out is not run, and its values are then of no use.  A guard
+   stands on it twice: before what it may leave out, and after. */
+Tape tape_new_guarded(const Graph *graph, const Node *roots, size_t root_count, Arena *arena);
 
 /* Where on the tape a node is that the roots need. */
 size_t tape_place(const Tape *tape, Node node);
@@ -35,5 +41,8 @@ size_t tape_place(const Tape *tape, Node node);
 void tape_run_frame(const Tape *tape, const NodeValue *parameters, NodeValue *values);
 /* Runs the rest at a point; tape_run_frame has filled `values`. */
 void tape_run_point(const Tape *tape, const double point[3], NodeValue *values);
+/* The same on a surface that has this normal there, seen by pixels of this radius. */
+void tape_run_surface(const Tape *tape, const double point[3], const double normal[3],
+                      double footprint, NodeValue *values);
 
 #endif

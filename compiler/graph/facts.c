@@ -30,9 +30,24 @@ static Fact *study_fact(const Study *study, Node node)
     return &study->facts[study->whole ? node : tape_place(&study->tape, node)];
 }
 
+/* What the values of leaves lie in that are not the point and not parameters. */
+static Range hit_range(Op op)
+{
+    switch (op) {
+    case OP_INSTANCE: return (Range){0, UINT32_MAX};
+    case OP_NORMAL:
+    case OP_DIRECTION: return (Range){-1, 1};
+    case OP_UV:       return ANYTHING;
+    case OP_TRAP:     return (Range){0, 1};
+    default:          return (Range){0, HUGE_VAL};
+    }
+}
+
 static Fact leaf_fact(const Study *study, const Expr *e, Box box)
 {
-    Fact fact = {.value = {{0, e->op == OP_INSTANCE ? UINT32_MAX : HUGE_VAL}}, .slope = HUGE_VAL};
+    Fact fact = {.slope = HUGE_VAL};
+    for (uint32_t i = 0; i < components(e->type); i++)
+        fact.value[i] = hit_range(e->op);
     if (e->op == OP_POINT) {
         fact = (Fact){.value = {box.axis[0], box.axis[1], box.axis[2]}, .slope = 1};
         for (int i = 0; i < 3; i++)
@@ -47,8 +62,9 @@ static Fact leaf_fact(const Study *study, const Expr *e, Box box)
                             : p               ? (Range){p->low[i], p->high[i]}
                                               : ANYTHING;
     } else
-        for (int j = 0; j < 3; j++)
-            fact.gradient[0][j] = ANYTHING;
+        for (uint32_t i = 0; i < components(e->type); i++)
+            for (int j = 0; j < 3; j++)
+                fact.gradient[i][j] = ANYTHING;
     return fact;
 }
 

@@ -27,6 +27,11 @@ static const OpInfo op_info[OP_COUNT] = {
     [OP_POINT]     = {.name = "point"},
     [OP_INSTANCE]  = {.name = "instance"},
     [OP_LEVEL]     = {.name = "level"},
+    [OP_UV]        = {.name = "uv"},
+    [OP_TRAP]      = {.name = "trap"},
+    [OP_NORMAL]    = {.name = "normal"},
+    [OP_FOOTPRINT] = {.name = "footprint"},
+    [OP_DIRECTION] = {.name = "direction"},
     [OP_COMPONENT] = {.name = "component"},
 #define MAP(name_, arity_, glsl_, value, range, da, db, dc, norm, meaning)                         \
     [OP_##name_] = {.name = #name_, .glsl = glsl_, .arity = arity_},
@@ -68,7 +73,7 @@ static double op_weight(Op op, double n)
 {
     switch (op) {
     case OP_CONSTANT: case OP_PARAMETER: case OP_POINT: case OP_INSTANCE: case OP_LEVEL:
-    case OP_COMPONENT: case OP_vec2: case OP_vec3: case OP_vec4: case OP_splat2: case OP_splat3:
+    case OP_UV: case OP_TRAP: case OP_NORMAL: case OP_FOOTPRINT: case OP_DIRECTION: case OP_COMPONENT: case OP_vec2: case OP_vec3: case OP_vec4: case OP_splat2: case OP_splat3:
     case OP_splat4:        return 0;
     case OP_div:           return 1.4;
     case OP_sqrt:          return 1.6;
@@ -94,6 +99,10 @@ static double op_weight(Op op, double n)
     case OP_front:         return 3;
     case OP_cell:          return 20;
     case OP_cell_polar:    return 30;
+    case OP_noise2:        return 90;
+    case OP_noise3:        return 220;
+    case OP_julia: case OP_julia_trap:           return 400; /* of some ten iterations */
+    case OP_mandelbulb: case OP_mandelbulb_trap: return 300;
     case OP_push_id: case OP_hash_id: case OP_join_id: case OP_id_unit: return 5;
     case OP_smin_quadratic: case OP_smin_cubic: return 7;
     case OP_smin_exponential: return 13;
@@ -297,8 +306,11 @@ Node graph_parameter(Graph *graph, uint32_t slot, GraphType type)
 
 Node graph_leaf(Graph *graph, Op op)
 {
-    assert(op == OP_POINT || op == OP_INSTANCE || op == OP_LEVEL);
-    GraphType type = op == OP_POINT ? TYPE_VEC3 : op == OP_INSTANCE ? TYPE_UINT : TYPE_FLOAT;
+    assert(op >= OP_POINT && op <= OP_DIRECTION);
+    GraphType type = op == OP_POINT || op == OP_NORMAL || op == OP_DIRECTION ? TYPE_VEC3
+                     : op == OP_INSTANCE               ? TYPE_UINT
+                     : op == OP_UV || op == OP_TRAP    ? TYPE_VEC2
+                                                       : TYPE_FLOAT;
     return node_intern(graph, (Expr){.op = (uint8_t)op, .type = (uint8_t)type, .time = TIME_POINT});
 }
 
@@ -424,7 +436,11 @@ Node graph_power(Graph *graph, Node base, Node exponent)
         uniform = uniform && e->number[i] == n;
     bool same_type = e->type == TYPE_FLOAT || e->type == graph->items[base].type;
     bool integer   = n == floor(n) && fabs(n) <= 64;
-    if (!uniform || !same_type || n == 0 || !(integer || fabs(n) == 0.5))
+    if (uniform && same_type && n == 0) {
+        static const double ones[4] = {1, 1, 1, 1};
+        return graph_constant(graph, graph->items[base].type, ones);
+    }
+    if (!uniform || !same_type || !(integer || fabs(n) == 0.5))
         return graph_op2(graph, OP_pow, base, exponent);
     if (!integer)
         return graph_op1(graph, n > 0 ? OP_sqrt : OP_inversesqrt, base);
@@ -437,11 +453,19 @@ Node graph_power(Graph *graph, Node base, Node exponent)
 
 /* ---- substitution ---- */
 
+Substitution substitute_point(Node point)
+{
+    return (Substitution){point, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE};
+}
+
 static Node substitute_leaf(const Expr *e, Node node, Substitution with)
 {
     Node other = e->op == OP_POINT      ? with.point
                  : e->op == OP_INSTANCE ? with.instance
                  : e->op == OP_LEVEL    ? with.level
+                 : e->op == OP_UV       ? with.uv
+                 : e->op == OP_TRAP     ? with.trap
+                 : e->op == OP_NORMAL   ? with.normal
                                         : NODE_NONE;
     return other == NODE_NONE ? node : other;
 }

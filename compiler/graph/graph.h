@@ -32,8 +32,13 @@ typedef enum Op {
     OP_CONSTANT,  /* number[0..3]; booleans are 0 or 1, UINT exact */
     OP_PARAMETER, /* frame time: slot `index` of the parameter block; slot 0 is `time` */
     OP_POINT,     /* point time, VEC3: where the expression is evaluated */
-    OP_INSTANCE,  /* point time, UINT: replaced when a material is lowered (as are the next two) */
+    OP_INSTANCE,  /* point time, UINT: replaced when a material is lowered, as is OP_LEVEL */
     OP_LEVEL,     /* point time, FLOAT */
+    OP_UV,        /* point time, VEC2: likewise */
+    OP_TRAP,      /* point time, VEC2: likewise */
+    OP_NORMAL,    /* point time, VEC3: of the surface at the point, unit, outwards */
+    OP_FOOTPRINT, /* point time, FLOAT: the radius that a pixel has there */
+    OP_DIRECTION, /* point time, VEC3: unit, of the ray on which the point lies */
     OP_COMPONENT, /* component `index` of a vector: FLOAT */
 #define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning) OP_##name,
 #define OP(name, signature, glsl, evaluate, facts, meaning) OP_##name,
@@ -79,7 +84,7 @@ Node graph_vec3(Graph *graph, double x, double y, double z);
 Node graph_bool(Graph *graph, bool value);
 Node graph_uint(Graph *graph, uint32_t value);
 Node graph_parameter(Graph *graph, uint32_t slot, GraphType type);
-Node graph_leaf(Graph *graph, Op op); /* OP_POINT, OP_INSTANCE, OP_LEVEL */
+Node graph_leaf(Graph *graph, Op op); /* OP_POINT to OP_DIRECTION */
 
 /* An operation on as many operands as its row says (asserted, with their types).  Operands that
    are all constant are folded by op_evaluate, unless the result is not finite: then the node
@@ -110,10 +115,12 @@ const char *op_helper(Op op);
 double op_cost(Op op, GraphType type, const GraphType *operands);
 
 /* A copy of `root` (and all it needs) in the same graph, with leaves replaced: OP_POINT by
-   `point`, OP_INSTANCE by `instance`, OP_LEVEL by `level`; NODE_NONE keeps a leaf. */
+   `point`, OP_INSTANCE by `instance` and so on; NODE_NONE keeps a leaf. */
 typedef struct Substitution {
-    Node point, instance, level;
+    Node point, instance, level, uv, normal, trap;
 } Substitution;
+/* Of the point alone. */
+Substitution substitute_point(Node point);
 Node graph_substitute(Graph *graph, Node root, Substitution with, Arena *scratch);
 
 /* Algebraic simplification of everything `roots` need, into a new graph (same parameters):

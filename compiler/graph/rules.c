@@ -15,6 +15,7 @@
 #include <math.h>
 
 #include "compiler/graph/evaluate.h"
+#include "compiler/graph/fractal.h"
 #include "compiler/graph/range.h"
 
 /* An operation and the facts of its operands. */
@@ -484,6 +485,22 @@ static Fact fact_select(const Call *call)
     return fact;
 }
 
+/* Where it goes from one case to the other, the value jumps. */
+static Fact fact_guard(const Call *call)
+{
+    Range a = call->operands[0].value[0], b = call->operands[1].value[0];
+    Range far = call->operands[3].value[0], limit = range_min(b, far);
+    if (a.high < limit.low || a.high <= fmin(far.low, 0))
+        return call->operands[2];
+    Fact fact     = fact_unknown(1);
+    fact.value[0] = range_min(a, b);
+    if (a.low < limit.high || a.low <= fmin(far.high, 0))
+        fact.value[0] = range_hull(fact.value[0], call->operands[2].value[0]);
+    else
+        fact.slope = fmax(call->operands[0].slope, call->operands[1].slope);
+    return fact;
+}
+
 /* ---- OP rows: maps of space ---- */
 
 /* The rows are orthonormal by construction, so lengths and slopes stay as they are. */
@@ -611,6 +628,41 @@ static Fact fact_cell_polar(const Call *call)
     return fact;
 }
 
+/* ---- OP rows: noise ---- */
+
+/*
+ * No value is above 1 in size and no derivative above `steepest`, along the axes as in any other
+ * direction: proven by tests/property/noise.c for all directions of all gradients.  Over a small
+ * part of space the value is near that in the middle.
+ */
+static Fact fact_noise(const Call *call, double steepest)
+{
+    const Fact *p      = &call->operands[0];
+    NodeValue   middle = {0};
+    double      reach  = 0;
+    Fact        fact   = {.slope = product_upward(steepest, p->slope)};
+    Jet         jet    = {.value = {-1, 1}};
+    for (uint32_t i = 0; i < call->size; i++) {
+        Range side   = p->value[i];
+        middle.v[i]  = side.low / 2 + side.high / 2;
+        reach        = hypot_upward(reach, fmax(side.high - middle.v[i], middle.v[i] - side.low));
+        for (int j = 0; j < 3; j++) {
+            Range part      = range_mul((Range){-steepest, steepest}, p->gradient[i][j]);
+            jet.gradient[j] = range_add(jet.gradient[j], part);
+        }
+    }
+    if (reach < 1) {
+        double value = op_evaluate(call->op, TYPE_FLOAT, 0, call->types, &middle).v[0];
+        double rise  = reach > 0 ? steepest * reach + 1e-12 : 0;
+        jet.value    = range_intersect((Range){value - rise, value + rise}, jet.value);
+    }
+    fact_set(&fact, 0, jet);
+    return fact;
+}
+
+static Fact fact_noise2(const Call *call) { return fact_noise(call, 2.84); }
+static Fact fact_noise3(const Call *call) { return fact_noise(call, 3.64); }
+
 /* ---- OP rows: identities ---- */
 
 static Fact fact_steps(const Call *call, uint32_t count, double most)
@@ -623,6 +675,74 @@ static Fact fact_steps(const Call *call, uint32_t count, double most)
 
 static Fact fact_identity(const Call *call) { return fact_steps(call, 2, UINT32_MAX); }
 static Fact fact_id_unit(const Call *call) { return fact_steps(call, 1, 1); }
+
+/* ---- OP rows: fractals ---- */
+
+/* The value in the middle of the point's range, and how far from there the point can be; false
+   where other operands move. */
+static bool fractal_middle(const Call *call, uint32_t others, double *middle, double *reach)
+{
+    NodeValue operands[MAX_OPERANDS] = {0};
+    *reach = 0;
+    for (uint32_t i = 0; i < 3; i++) {
+        Range at         = call->operands[0].value[i];
+        operands[0].v[i] = at.low / 2 + at.high / 2;
+        *reach = hypot_upward(*reach, fmax(sum_upward(at.high, -operands[0].v[i]),
+                                           sum_upward(operands[0].v[i], -at.low)));
+    }
+    for (uint32_t i = 1; i <= others; i++)
+        for (uint32_t k = 0; k < components(call->types[i]); k++) {
+            if (!range_is_single(call->operands[i].value[k]))
+                return false;
+            operands[i].v[k] = call->operands[i].value[k].low;
+        }
+    *middle = op_evaluate(call->op, TYPE_FLOAT, 0, call->types, operands).v[0];
+    return isfinite(*middle) && isfinite(*reach);
+}
+
+/* 1-Lipschitz in the point (fractal.c), between |q| - R and |q| + R. */
+static Fact fact_julia(const Call *call)
+{
+    Fact        fact  = fact_unknown(1);
+    const Fact *point = &call->operands[0];
+    Range  size = fact_size(point, 3), radius = call->operands[3].value[1];
+    double middle, reach;
+    fact.value[0] = (Range){size.low - radius.high, sum_upward(size.high, radius.high)};
+    if (fractal_middle(call, 3, &middle, &reach)) {
+        Range near    = {middle - reach, middle + reach};
+        fact.value[0] = range_intersect(fact.value[0], loosened(near, fabs(middle) + reach));
+    }
+    if (operands_constant(call, 1, 4))
+        fact.slope = point->slope;
+    return fact;
+}
+
+/* Outside of a ball the distance to a smaller one, inside nothing but an estimate. */
+static Fact fact_mandelbulb(const Call *call)
+{
+    Fact        fact  = fact_unknown(1);
+    const Fact *point = &call->operands[0];
+    Range  size = fact_size(point, 3), radius = call->operands[2].value[1];
+    Range  power = call->operands[1].value[0];
+    double core  = range_is_single(power) ? mandelbulb_core(power.low) : 0;
+    Range  value = {size.low - radius.high, fmax(size.high - core, 0)};
+    bool   far   = size.low > MANDELBULB_NEAR * radius.high;
+    if (far)
+        value.high = sum_upward(size.high, -radius.low);
+    fact.value[0] = loosened(value, size.high);
+    if (operands_constant(call, 1, 3) && (far || point->slope == 0))
+        fact.slope = point->slope;
+    return fact;
+}
+
+static Fact fact_trap(const Call *call)
+{
+    Fact fact     = fact_unknown(2);
+    fact.value[0] = fact.value[1] = (Range){0, 1};
+    if (operands_constant(call, 0, call->op == OP_julia_trap ? 4 : 3))
+        fact.slope = 0;
+    return fact;
+}
 
 /* ---- OP rows: smooth minima of a and b over a width k ---- */
 

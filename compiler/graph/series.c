@@ -37,9 +37,14 @@ typedef struct Expansion {
 
 static bool in_ball(const Expansion *x) { return x->direction == NODE_NONE; }
 
+/* Of a FLOAT or, for 0, of a vector. */
 static bool is_number(const Graph *graph, Node node, double number)
 {
-    return graph->items[node].op == OP_CONSTANT && graph->items[node].number[0] == number;
+    const Expr *e    = &graph->items[node];
+    bool        same = e->op == OP_CONSTANT && (e->type == TYPE_FLOAT || number == 0);
+    for (uint32_t i = 0; same && i < (uint32_t)e->type; i++)
+        same = e->number[i] == number;
+    return same;
 }
 
 static Node plus(Graph *g, Node a, Node b)
@@ -56,6 +61,13 @@ static Node times(Graph *g, Node a, Node b)
     if (is_number(g, b, 0) || is_number(g, a, 1))
         return b;
     return a == b ? graph_op1(g, OP_square, a) : graph_op2(g, OP_mul, a, b);
+}
+
+static Node times_vector(Graph *g, Node vector, Node number)
+{
+    return is_number(g, vector, 0) || is_number(g, number, 1)
+               ? vector
+               : graph_op2(g, OP_scale, vector, number);
 }
 
 static Node size_of(const Expansion *x, Node a) { return graph_op1(x->graph, OP_abs, a); }
@@ -143,7 +155,7 @@ static Part add_parts(const Expansion *x, Part a, Part b)
                           : k > t->degree ? s->c[k]
                                           : plus(g, s->c[k], t->c[k]);
     set_gradient(x, &sum,
-                 in_ball(x) ? graph_op2(g, OP_add, a.gradient, b.gradient) : NODE_NONE);
+                 in_ball(x) ? plus(g, a.gradient, b.gradient) : NODE_NONE);
     sum.quadric = a.quadric && b.quadric;
     for (int i = 0; i < 9; i++)
         sum.hessian[i / 3][i % 3] = a.hessian[i / 3][i % 3] + b.hessian[i / 3][i % 3];
@@ -202,9 +214,9 @@ static Part multiply_parts(const Expansion *x, Part a, Part b)
     }
     Node gradient = NODE_NONE;
     if (in_ball(x)) {
-        Node first  = graph_op2(g, OP_scale, b.gradient, a.series.c[0]);
-        Node second = graph_op2(g, OP_scale, a.gradient, b.series.c[0]);
-        gradient    = graph_op2(g, OP_add, first, second);
+        Node first  = times_vector(g, b.gradient, a.series.c[0]);
+        Node second = times_vector(g, a.gradient, b.series.c[0]);
+        gradient    = plus(g, first, second);
     }
     set_gradient(x, &product, gradient);
     if (in_ball(x))
@@ -358,4 +370,75 @@ bool graph_ball_series(Graph *graph, Node root, Node point, Series *series, Seri
 {
     Expansion x = {graph, scratch, point, NODE_NONE, fault};
     return expand(&x, root, series);
+}
+
+/* ---- the radius of a ball series ---- */
+
+enum { NEWTON_STEPS = 3 };
+
+/* Keeps quotients finite; below every coefficient that counts in single precision. */
+static const double TINY = 1e-30;
+
+static Node at_least(Graph *g, Node node, double least)
+{
+    return graph_op2(g, OP_max, node, graph_number(g, least));
+}
+
+/* The k-th root of a number >= 0. */
+static Node root_of(Graph *g, Node number, uint32_t k)
+{
+    if (k == 1)
+        return number;
+    if (k % 2 == 0)
+        return root_of(g, graph_op1(g, OP_sqrt, number), k / 2);
+    Node exponent = graph_op1(g, OP_log2, at_least(g, number, 1e-37));
+    exponent      = graph_op2(g, OP_mul, exponent, graph_number(g, 1.0 / k));
+    return graph_op1(g, OP_exp2, exponent);
+}
+
+/* The least root of one term alone: at least r*, and at most twice that. */
+static Node first_guess(Graph *g, const Series *s, Node size)
+{
+    Node least = NODE_NONE;
+    for (uint32_t k = 1; k <= s->degree; k++) {
+        if (is_number(g, s->c[k], 0))
+            continue;
+        Node quotient = graph_op2(g, OP_div, size, at_least(g, s->c[k], TINY));
+        Node root     = root_of(g, quotient, k);
+        least         = least == NODE_NONE ? root : graph_op2(g, OP_min, least, root);
+    }
+    return least;
+}
+
+/* S(r) and, beside it, its derivative, by Horner's rule. */
+static Node series_sum(Graph *g, const Series *s, Node r, Node *derivative)
+{
+    Node sum = s->c[s->degree], slope = sum;
+    for (uint32_t k = s->degree; k-- > 0;) {
+        if (k + 1 < s->degree)
+            slope = graph_op2(g, OP_add, graph_op2(g, OP_mul, slope, r), sum);
+        sum = graph_op2(g, OP_mul, sum, r);
+        if (k > 0)
+            sum = graph_op2(g, OP_add, sum, s->c[k]);
+    }
+    *derivative = slope;
+    return sum;
+}
+
+/* Newton's steps come down to the root from above, as the sum is convex; the chord from 0 ends
+   below it. */
+Node series_radius(Graph *g, const Series *s)
+{
+    Node size = graph_op1(g, OP_abs, s->c[0]);
+    Node r    = first_guess(g, s, size), slope;
+    for (int i = 0; i < NEWTON_STEPS && s->degree > 1; i++) {
+        Node sum    = series_sum(g, s, r, &slope);
+        Node excess = graph_op2(g, OP_sub, sum, size);
+        Node step   = graph_op2(g, OP_div, excess, at_least(g, slope, TINY));
+        r           = graph_op2(g, OP_sub, r, step);
+    }
+    Node sum   = series_sum(g, s, r, &slope);
+    Node share = graph_op2(g, OP_div, size, at_least(g, sum, TINY));
+    share      = graph_op2(g, OP_min, share, graph_number(g, 1));
+    return graph_op2(g, OP_mul, r, share);
 }

@@ -14,6 +14,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "compiler/graph/regions.h"
+
 /* Expressions are nested to this depth and length at most: compilers of shaders recurse. */
 enum { MOST_NESTING = 6, MOST_INLINE = 72 };
 
@@ -118,6 +120,9 @@ static const char *node_text(Emitter *e, const Expr *expr)
     switch (expr->op) {
     case OP_CONSTANT: return constant_text(e, expr);
     case OP_POINT:    return "p";
+    case OP_NORMAL:   return "normal";
+    case OP_FOOTPRINT: return "footprint";
+    case OP_DIRECTION: return "direction";
     case OP_PARAMETER: {
         static const char *const swizzle[] = {"", ".x", ".xy", ".xyz", ""};
         text_format(&text, "krs_parameter[%u]%s", expr->index, swizzle[expr->type]);
@@ -189,7 +194,7 @@ static void count_uses(Emitter *e, const Node *roots, size_t count, bool frame)
 
 static bool is_leaf(const Expr *expr)
 {
-    return expr->op == OP_CONSTANT || expr->op == OP_POINT || expr->op == OP_PARAMETER;
+    return expr->operand_count == 0;
 }
 
 /* Writes the statement of a node, or keeps its expression for the one place that needs it. */
@@ -266,7 +271,12 @@ static void emit_frame(Emitter *e, const Node *roots, size_t count)
         e->text[n]    = e->frame[n];
         e->nesting[n] = 0;
     }
-    text_add(e->out, "}\n\n");
+    text_format(e->out,
+                "#ifdef ZONES\n"
+                "    for (int i = 0; i < ZONES; i++)\n"
+                "        krs_zones[i] = krs_parameter[%zu + i];\n"
+                "#endif\n"
+                "}\n\n", e->graph->parameters.count);
 }
 
 static void emit_helpers(Emitter *e, const Node *roots, size_t count)
@@ -287,55 +297,302 @@ static void emit_helpers(Emitter *e, const Node *roots, size_t count)
     }
 }
 
-static void emit_distances(Emitter *e, const Node *roots, size_t components)
+/* What the distance must not be below: how deep p is in zones, negative outside.  Those of the
+   caller are in the slots behind the parameters, in a variant that has room for ZONES of them. */
+static void emit_zones(Emitter *e, Node zone)
 {
-    for (size_t i = 0; i < components; i++) {
-        Node root = roots[i * ROOT_COUNT + ROOT_DISTANCE];
-        text_format(e->out, "float krs_distance_%zu(vec3 p)\n{\n", i + 1);
-        emit_body(e, &root, 1);
-        text_format(e->out, "    return %s;\n}\n\n", e->text[root]);
+    if (zone != NODE_NONE) {
+        text_add(e->out, "// How deep p is in the zones of the scene, where nothing is.\n"
+                         "float krs_zone_depth(vec3 p)\n{\n");
+        emit_body(e, &zone, 1);
+        text_format(e->out, "    return %s;\n}\n\n", e->text[zone]);
     }
-    text_add(e->out, "// Never above the distance to the nearest surface; negative inside.\n"
-                     "float krs_distance(vec3 p)\n{\n");
+    text_format(e->out,
+                "// The distance where zones have been cut out: those of the scene, and ZONES of\n"
+                "// the caller, of which slot %zu holds the first: center and radius.\n"
+                "float krs_cut(vec3 p, float d)\n{\n", e->graph->parameters.count);
+    if (zone != NODE_NONE)
+        text_add(e->out, "    d = max(d, krs_zone_depth(p));\n");
+    text_add(e->out, "#ifdef ZONES\n"
+                     "    for (int i = 0; i < ZONES; i++)\n"
+                     "        d = max(d, krs_zones[i].w - length(p - krs_zones[i].xyz));\n"
+                     "#endif\n"
+                     "    return d;\n}\n\n");
+}
+
+static void emit_union(Emitter *e, size_t components)
+{
     text_add(e->out, components ? "    float d = krs_distance_1(p);\n" : "    float d = 1e30;\n");
     for (size_t i = 1; i < components; i++)
         text_format(e->out, "    d = min(d, krs_distance_%zu(p));\n", i + 1);
-    text_add(e->out, "    return d;\n}\n\n");
+}
+
+/* Of the group that is defined, or of all. */
+static void emit_group_distances(Emitter *e, size_t components, const uint32_t *groups)
+{
+    text_add(e->out, "#ifdef GROUP\n    float d = 1e30;\n");
+    for (size_t i = 0; i < components; i++)
+        text_format(e->out, "#if GROUP == %u\n    d = min(d, krs_distance_%zu(p));\n#endif\n",
+                    groups[i], i + 1);
+    text_add(e->out, "#else\n");
+    emit_union(e, components);
+    text_add(e->out, "#endif\n");
+}
+
+static void emit_distances(Emitter *e, const Node *roots, size_t components,
+                           const uint32_t *groups)
+{
+    for (size_t i = 0; i < components; i++) {
+        Node root = roots[i * ROOT_COUNT + ROOT_DISTANCE];
+        if (groups)
+            text_format(e->out, "#if !defined GROUP || GROUP == %u\n", groups[i]);
+        text_format(e->out, "float krs_distance_%zu(vec3 p)\n{\n", i + 1);
+        emit_body(e, &root, 1);
+        text_format(e->out, "    return %s;\n}\n%s\n", e->text[root], groups ? "#endif\n" : "");
+    }
+    text_add(e->out, "// Never above the distance to the nearest surface; negative inside.\n"
+                     "float krs_distance(vec3 p)\n{\n");
+    if (groups)
+        emit_group_distances(e, components, groups);
+    else
+        emit_union(e, components);
+    text_add(e->out, "    return krs_cut(p, d);\n}\n\n");
+}
+
+/* ---- early-outs ---- */
+
+/* Names for all that a function needs of other times than its own. */
+static void name_constants(Emitter *e)
+{
+    const Graph *g = e->graph;
+    for (Node n = 0; n < g->count; n++) {
+        if (!e->uses[n] || g->items[n].time == TIME_POINT)
+            continue;
+        if (g->items[n].time == TIME_COMPILE) {
+            emit_node(e, n);
+            continue;
+        }
+        e->text[n]    = e->frame[n];
+        e->nesting[n] = 0;
+    }
+}
+
+static const char *emit_region(Emitter *e, const Regions *regions, uint32_t region, Node result,
+                               bool returns);
+
+/* Where nothing has been found yet, the bound alone counts. */
+static bool nothing_found(const Emitter *e, Node least)
+{
+    const Expr *expr = &e->graph->items[least];
+    return expr->op == OP_CONSTANT && expr->number[0] >= 1e30;
+}
+
+/* The condition of OP_guard, shorter where some of it is known. */
+static const char *guard_text(Emitter *e, const Node *o)
+{
+    const Expr *limit = &e->graph->items[o[3]];
+    const char *bound = e->text[o[0]], *far = e->text[o[3]];
+    Text        text = {.arena = e->scratch};
+    if (nothing_found(e, o[1]))
+        text_format(&text, "%s >= %s", bound, far);
+    else
+        text_format(&text, "%s >= min(%s, %s)", bound, e->text[o[1]], bare(e, far));
+    if (limit->op != OP_CONSTANT)
+        text_format(&text, " && %s > min(%s, 0.0)", bound, bare(e, far));
+    else if (limit->number[0] >= 0)
+        text_format(&text, " && %s > 0.0", bound);
+    return text.bytes;
+}
+
+/* A guard within an expression: what it may leave out stands in a block. */
+static void emit_guard(Emitter *e, const Regions *regions, Node guard)
+{
+    const Node *o     = e->graph->items[guard].operands;
+    const char *bound = e->text[o[0]], *least = e->text[o[1]];
+    Text        name  = {.arena = e->scratch};
+    text_format(&name, "t%u", e->next++);
+    text_format(e->out, "    float %s = min(%s, %s);\n    if (!(%s)) {\n", name.bytes, bound, least,
+                guard_text(e, o));
+    const char *rest = emit_region(e, regions, regions->body[guard], o[2], false);
+    text_format(e->out, "    %s = %s;\n    }\n", name.bytes, rest);
+    e->text[guard]    = name.bytes;
+    e->nesting[guard] = 0;
+}
+
+static void emit_return(Emitter *e, const Node *o)
+{
+    const char *bound = e->text[o[0]];
+    text_format(e->out, "    if (%s)\n        return ", guard_text(e, o));
+    if (nothing_found(e, o[1]))
+        text_format(e->out, "%s;\n", bound);
+    else
+        text_format(e->out, "min(%s, %s);\n", bound, e->text[o[1]]);
+}
+
+/* Statements of a region; returns its result.  Where that is all that the function is about, a
+   guard can return. */
+static const char *emit_region(Emitter *e, const Regions *regions, uint32_t region, Node result,
+                               bool returns)
+{
+    for (Node n = regions->list.items[region].first; n != NODE_NONE; n = regions->next[n]) {
+        const Node *o = e->graph->items[n].operands;
+        if (regions->body[n] == NO_REGION) {
+            emit_node(e, n);
+        } else if (n != result || !returns) {
+            comment_line(e, e->graph->items[n].span);
+            emit_guard(e, regions, n);
+        } else {
+            emit_return(e, o);
+            return emit_region(e, regions, regions->body[n], o[2], true);
+        }
+    }
+    return e->text[result];
+}
+
+static void emit_guarded(Emitter *e, size_t component, Node root)
+{
+    Regions regions = graph_regions(e->graph, &root, 1, e->scratch);
+    text_format(e->out, "float krs_distance_lod_%zu(vec3 p, float footprint)\n{\n", component + 1);
+    count_uses(e, &root, 1, false);
+    e->next = 0;
+    e->last = (Span){0, 0, 0};
+    name_constants(e);
+    const char *result = emit_region(e, &regions, REGION_ALWAYS, root, true);
+    text_format(e->out, "    return %s;\n}\n\n", result);
+}
+
+static const char *vector_text(Emitter *e, const double v[3])
+{
+    Expr constant = {.op = OP_CONSTANT, .type = TYPE_VEC3, .number = {v[0], v[1], v[2]}};
+    return constant_text(e, &constant);
+}
+
+/* A component whose box is not nearer than what has been found is left out. */
+static void emit_guarded_component(Emitter *e, size_t component, Box box, bool first)
+{
+    if (first) {
+        text_format(e->out, "    float d = krs_distance_lod_%zu(p, footprint);\n", component + 1);
+        return;
+    }
+    double centre[3], half[3];
+    box_centre(box, centre);
+    for (int i = 0; i < 3; i++)
+        half[i] = (0.5 + 1e-6) * (box.axis[i].high - box.axis[i].low) + 1e-6 * fabs(centre[i]);
+    if (box_is_finite(box))
+        text_format(e->out, "    if (krs_box_distance(p, %s, %s) < max(d, 1e-30))\n    ",
+                    vector_text(e, centre), vector_text(e, half));
+    text_format(e->out, "    d = min(d, krs_distance_lod_%zu(p, footprint));\n", component + 1);
+}
+
+/* What marches by branches: endless components first, then the others where they may be nearer. */
+static void emit_early_outs(Emitter *e, const EmitMarch *march, size_t components)
+{
+    text_add(e->out, "#ifdef EARLY_OUTS\n");
+    for (size_t i = 0; i < components; i++)
+        emit_guarded(e, i, march->guarded[i]);
+    text_add(e->out,
+             "float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)\n{\n"
+             "    return length(max(abs(p - center) - half_sides, 0.0));\n}\n\n"
+             "// To march by: never above the distance to the nearest surface, and not above 0 in\n"
+             "// the same places as krs_distance.  What is far for its size is not looked at, nor\n"
+             "// what is smaller than the footprint.\n"
+             "float krs_distance_lod(vec3 p, float footprint)\n{\n");
+    size_t count = 0;
+    for (int finite = 0; finite < 2; finite++)
+        for (size_t i = 0; i < components; i++)
+            if (!box_is_empty(march->boxes[i]) && box_is_finite(march->boxes[i]) == finite)
+                emit_guarded_component(e, i, march->boxes[i], count++ == 0);
+    if (count == 0)
+        text_add(e->out, "    float d = 1e30;\n");
+    text_add(e->out, "    return krs_cut(p, d);\n}\n#endif\n\n");
+}
+
+/* ---- along rays ---- */
+
+/* krs_along by one method. */
+static void emit_along_by(Emitter *e, const Node *along, const Node *roots, size_t components)
+{
+    for (size_t i = 0; i < components; i++) {
+        if (along[i] == roots[i * ROOT_COUNT + ROOT_DISTANCE])
+            continue;
+        text_format(e->out, "float krs_along_%zu(vec3 p, vec3 direction)\n{\n", i + 1);
+        emit_body(e, &along[i], 1);
+        text_format(e->out, "    return %s;\n}\n\n", e->text[along[i]]);
+    }
+    text_add(e->out,
+             "// How far a ray from p along a unit direction may go before it can meet a surface: at\n"
+             "// least the distance, and much farther where polynomials tell; negative inside.\n"
+             "float krs_along(vec3 p, vec3 direction)\n{\n    float t = 1e30;\n");
+    for (size_t i = 0; i < components; i++) {
+        bool plain = along[i] == roots[i * ROOT_COUNT + ROOT_DISTANCE];
+        text_format(e->out, "    t = min(t, krs_%s_%zu(p%s));\n", plain ? "distance" : "along",
+                    i + 1, plain ? "" : ", direction");
+    }
+    text_add(e->out, "    return krs_cut(p, t);\n}\n");
+}
+
+static void emit_along(Emitter *e, const EmitMarch *march, const Node *roots, size_t components)
+{
+    bool any = false;
+    for (size_t i = 0; i < components; i++)
+        any = any || march->along[i] != roots[i * ROOT_COUNT + ROOT_DISTANCE];
+    for (AlongMethod method = 0; any && method < ALONG_COUNT; method++) {
+        text_format(e->out, "#if defined(ALONG) && ALONG == %d\n", (int)method);
+        emit_along_by(e, march->along + method * components, roots, components);
+        text_add(e->out, "#endif\n\n");
+    }
 }
 
 static void emit_surfaces(Emitter *e, const Node *roots, size_t components)
 {
     for (size_t i = 0; i < components; i++) {
         const Node *root = &roots[i * ROOT_COUNT];
-        text_format(e->out, "KrsSurface krs_surface_%zu(vec3 p)\n{\n", i + 1);
+        text_format(e->out,
+                    "KrsSurface krs_surface_%zu(vec3 p, vec3 normal, float footprint)\n{\n",
+                    i + 1);
         emit_body(e, root, ROOT_COUNT);
-        text_format(e->out, "    return KrsSurface(%s, %s, %s, %s, %s, %zuu, uint(%s), %s);\n}\n\n",
+        text_format(e->out,
+                    "    return KrsSurface(%s, %s, %s, %s, %s, %zuu, uint(%s), %s, %s);\n}\n\n",
                     e->text[root[ROOT_DISTANCE]], e->text[root[ROOT_COLOR]],
                     e->text[root[ROOT_ROUGHNESS]], e->text[root[ROOT_METALLIC]],
                     e->text[root[ROOT_EMISSION]], i + 1, e->text[root[ROOT_LEVEL]],
-                    e->text[root[ROOT_INSTANCE]]);
+                    e->text[root[ROOT_INSTANCE]], e->text[root[ROOT_NORMAL]]);
     }
     const char *empty =
-        "    return KrsSurface(1e30, vec3(0.0), 1.0, 0.0, vec3(0.0), 0u, 0u, 0u);\n";
-    text_add(e->out, "// What is at p: the component with the least distance.\n"
-                     "KrsSurface krs_surface(vec3 p)\n{\n");
-    text_add(e->out, components ? "    KrsSurface nearest = krs_surface_1(p);\n" : empty);
+        "    return KrsSurface(1e30, vec3(0.0), 1.0, 0.0, vec3(0.0), 0u, 0u, 0u, normal);\n";
+    text_add(e->out, "// What is at p: the component with the least distance.  `normal` is the\n"
+                     "// gradient of krs_distance there, `footprint` the radius of a pixel, or 0.\n"
+                     "KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)\n{\n");
+    text_add(e->out, components ? "    KrsSurface nearest = krs_surface_1(p, normal, footprint);\n"
+                                : empty);
     if (components > 1)
         text_add(e->out, "    KrsSurface other;\n");
     for (size_t i = 1; i < components; i++)
         text_format(e->out,
-                    "    other = krs_surface_%zu(p);\n"
+                    "    other = krs_surface_%zu(p, normal, footprint);\n"
                     "    if (other.distance < nearest.distance)\n"
                     "        nearest = other;\n",
                     i + 1);
-    text_add(e->out, components ? "    return nearest;\n}\n" : "}\n");
+    if (components > 0)
+        text_add(e->out, "    float cut = krs_cut(p, nearest.distance);\n"
+                         "    if (cut > nearest.distance)\n"
+                         "        nearest.normal = normal;\n"
+                         "    nearest.distance = cut;\n"
+                         "    return nearest;\n");
+    text_add(e->out, "}\n");
 }
 
 void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
-               size_t component_count, Arena *scratch, Text *out)
+               size_t component_count, Node zone, const EmitMarch *march, Arena *scratch, Text *out)
 {
     Emitter e = {.graph = graph, .sources = sources, .scratch = scratch, .out = out};
-    size_t  count = component_count * ROOT_COUNT;
+    size_t  plain = component_count * ROOT_COUNT + (zone != NODE_NONE);
+    size_t  count = plain + (1 + ALONG_COUNT) * component_count;
+    Node   *all = arena_new_array(scratch, Node, count + 1);
+    memcpy(all, roots, plain * sizeof *all);
+    memcpy(all + plain, march->guarded, component_count * sizeof *all);
+    memcpy(all + plain + component_count, march->along,
+           ALONG_COUNT * component_count * sizeof *all);
     e.text    = arena_new_array(scratch, const char *, graph->count + 1);
     e.frame   = arena_new_array(scratch, const char *, graph->count + 1);
     e.nesting = arena_new_array(scratch, uint8_t, graph->count + 1);
@@ -343,9 +600,15 @@ void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
     text_add(out, "// Distance code of a scene; "
                   "slot 0 holds the time, then one slot for each `param`.\n");
     text_format(out,
+                "#ifdef ZONES\n"
                 "layout(std140, set = 0, binding = 0) uniform KrsParameters "
-                "{ vec4 krs_parameter[%zu]; };\n\n",
-                graph->parameters.count);
+                "{ vec4 krs_parameter[%zu + ZONES]; };\n"
+                "vec4 krs_zones[ZONES];\n"
+                "#else\n"
+                "layout(std140, set = 0, binding = 0) uniform KrsParameters "
+                "{ vec4 krs_parameter[%zu]; };\n"
+                "#endif\n\n",
+                graph->parameters.count, graph->parameters.count);
     text_add(out, "struct KrsSurface {\n"
                   "    float distance;\n"
                   "    vec3  color;\n"
@@ -355,9 +618,17 @@ void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
                   "    uint  component;\n"
                   "    uint  level;\n"
                   "    uint  instance;\n"
+                  "    vec3  normal;\n"
                   "};\n\n");
-    emit_helpers(&e, roots, count);
-    emit_frame(&e, roots, count);
-    emit_distances(&e, roots, component_count);
+    emit_helpers(&e, all, count);
+    emit_frame(&e, all, count);
+    emit_zones(&e, zone);
+    emit_distances(&e, roots, component_count, march->groups);
+    if (march->groups)
+        text_add(out, "#ifndef GROUP\n");
+    emit_early_outs(&e, march, component_count);
+    emit_along(&e, march, roots, component_count);
     emit_surfaces(&e, roots, component_count);
+    if (march->groups)
+        text_add(out, "#endif\n");
 }

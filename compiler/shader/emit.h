@@ -6,9 +6,18 @@
 
 #include "compiler/geometry/lower.h"
 
+/* How components are to be marched. */
+typedef struct EmitMarch {
+    const Node *guarded; /* of each component: lower_guarded */
+    const Node *along;   /* of each component, method by method: lower_along */
+    const Box  *boxes;
+    const uint32_t *groups; /* the group of each, or NULL: all together */
+} EmitMarch;
+
 /* Text of a program with `component_count` components; the roots of component i are
-   roots[i * ROOT_COUNT + ...], nodes of a simplified graph. */
+   roots[i * ROOT_COUNT + ...], nodes of a simplified graph.  `zone`, the depth in zones, follows
+   them, or is NODE_NONE. */
 void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
-               size_t component_count, Arena *scratch, Text *out);
+               size_t component_count, Node zone, const EmitMarch *march, Arena *scratch, Text *out);
 
 #endif

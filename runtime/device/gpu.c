@@ -401,6 +401,15 @@ bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
     return false;
 }
 
+bool gpu_open_beside(Gpu *gpu, const Gpu *other)
+{
+    *gpu = (Gpu){.physical = other->physical, .family = other->family};
+    if (device_create(gpu))
+        return true;
+    gpu_close(gpu);
+    return false;
+}
+
 void gpu_close(Gpu *gpu)
 {
     if (gpu->device) {

@@ -48,6 +48,8 @@ typedef struct Gpu {
 /* Opens the device that the options ask for; `gpu` must stay where it is.  On failure only the
    status and the message remain. */
 bool gpu_open(Gpu *gpu, const KrsRendererOptions *options);
+/* A second device of the kind of `other`, which must stay longer; it has no caches. */
+bool gpu_open_beside(Gpu *gpu, const Gpu *other);
 void gpu_close(Gpu *gpu);
 
 /* The devices there are, as krs_devices. */

@@ -183,15 +183,56 @@ static void release(Gpu *gpu, Making *making)
     free(making->log);
 }
 
-static bool pipeline_create(Gpu *gpu, Kernel *kernel, const Making *making,
-                            VkPipelineLayout layout)
+/* Takes the words over, for good or bad. */
+static KernelCode take_code(Making *making)
 {
+    KernelCode code = {making->file, making->found ? making->found : making->made, making->bytes,
+                       !making->found};
+    making->found = making->made = NULL;
+    return code;
+}
+
+bool kernel_compile_all(Gpu *gpu, const KernelRequest *requests, size_t count, KernelCode *codes,
+                        double *spirv_ms)
+{
+    double  start = clock_ms();
+    Making *makings = gpu_alloc(gpu, count, sizeof *makings, "compile the kernels");
+    bool    ready = makings != NULL;
+    for (size_t i = 0; i < count && ready; i++)
+        ready = begin(gpu, &makings[i], &requests[i].source);
+    if (ready)
+        compile_all(makings, count);
+    for (size_t i = 0; i < count && ready; i++)
+        ready = finish(gpu, &makings[i]);
+    for (size_t i = 0; i < count; i++)
+        codes[i] = ready ? take_code(&makings[i]) : (KernelCode){0};
+    for (size_t i = 0; i < count && makings; i++)
+        release(gpu, &makings[i]);
+    gpu_release(gpu, makings);
+    *spirv_ms += clock_ms() - start;
+    return ready;
+}
+
+void kernel_code_release(Gpu *gpu, KernelCode *code)
+{
+    if (code->compiled)
+        free(code->words);
+    else
+        gpu_release(gpu, code->words);
+    *code = (KernelCode){0};
+}
+
+bool kernel_load(Gpu *gpu, Kernel *kernel, const KernelCode *code, VkPipelineLayout layout,
+                 double *pipeline_ms)
+{
+    double         start = clock_ms();
     VkShaderModule module = VK_NULL_HANDLE;
     bool           ready = false;
+    *kernel = (Kernel){0};
     TRY(gpu, "load a kernel", vkCreateShaderModule(gpu->device, &(VkShaderModuleCreateInfo){
         .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-        .codeSize = making->bytes,
-        .pCode = making->found ? making->found : making->made,
+        .codeSize = code->bytes,
+        .pCode = code->words,
     }, NULL, &module));
     TRY(gpu, "prepare a kernel", vkCreateComputePipelines(gpu->device, gpu->pipelines, 1,
         &(VkComputePipelineCreateInfo){
@@ -204,37 +245,27 @@ static bool pipeline_create(Gpu *gpu, Kernel *kernel, const Making *making,
             },
             .layout = layout,
         }, NULL, &kernel->pipeline));
-    gpu_name(gpu, VK_OBJECT_TYPE_PIPELINE, (uint64_t)(uintptr_t)kernel->pipeline, making->file);
+    gpu_name(gpu, VK_OBJECT_TYPE_PIPELINE, (uint64_t)(uintptr_t)kernel->pipeline, code->file);
     ready = true;
 
 failed:
     vkDestroyShaderModule(gpu->device, module, NULL);
+    *pipeline_ms += clock_ms() - start;
     return ready;
 }
 
 bool kernel_create_all(Gpu *gpu, const KernelRequest *requests, size_t count,
                        VkPipelineLayout layout, double *spirv_ms, double *pipeline_ms)
 {
-    double  start = clock_ms();
-    Making *makings = gpu_alloc(gpu, count, sizeof *makings, "compile the kernels");
-    bool    ready = makings != NULL;
-    for (size_t i = 0; i < count && ready; i++)
-        ready = begin(gpu, &makings[i], &requests[i].source);
-    if (ready)
-        compile_all(makings, count);
-    for (size_t i = 0; i < count && ready; i++)
-        ready = finish(gpu, &makings[i]);
-    double compiled = clock_ms();
-    *spirv_ms += compiled - start;
-
+    KernelCode *codes = gpu_alloc(gpu, count, sizeof *codes, "compile the kernels");
+    bool ready = codes && kernel_compile_all(gpu, requests, count, codes, spirv_ms);
     for (size_t i = 0; i < count; i++)
         *requests[i].kernel = (Kernel){0};
     for (size_t i = 0; i < count && ready; i++)
-        ready = pipeline_create(gpu, requests[i].kernel, &makings[i], layout);
-    *pipeline_ms += clock_ms() - compiled;
-    for (size_t i = 0; i < count && makings; i++)
-        release(gpu, &makings[i]);
-    gpu_release(gpu, makings);
+        ready = kernel_load(gpu, requests[i].kernel, &codes[i], layout, pipeline_ms);
+    for (size_t i = 0; i < count && codes; i++)
+        kernel_code_release(gpu, &codes[i]);
+    gpu_release(gpu, codes);
     return ready;
 }
 

@@ -25,10 +25,27 @@ char *kernel_text(Gpu *gpu, const KernelSource *source);
 bool kernel_create(Gpu *gpu, Kernel *kernel, const KernelSource *source, VkPipelineLayout layout,
                    double *spirv_ms, double *pipeline_ms);
 
+/* What becomes of it: SPIR-V. */
+typedef struct KernelCode {
+    const char *file;
+    uint32_t   *words;
+    size_t      bytes;
+    bool        compiled; /* just now: it was in no cache */
+} KernelCode;
+
 typedef struct KernelRequest {
     Kernel      *kernel; /* to be made */
     KernelSource source;
 } KernelRequest;
+
+/* The two halves of it: several kernels are compiled at the same time, and each becomes a
+   pipeline of a device.  Codes are the caller's to release, in either case; a kernel that was not
+   made is zero. */
+bool kernel_compile_all(Gpu *gpu, const KernelRequest *requests, size_t count, KernelCode *codes,
+                        double *spirv_ms);
+bool kernel_load(Gpu *gpu, Kernel *kernel, const KernelCode *code, VkPipelineLayout layout,
+                 double *pipeline_ms);
+void kernel_code_release(Gpu *gpu, KernelCode *code);
 
 /* The same for several kernels, which are compiled at the same time.  On failure some may have
    been made: kernel_destroy in either case. */

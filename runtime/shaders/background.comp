@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : enable
 /*
  * background.comp: ends the pixels whose ray hits nothing: the sky, and the lights that have a
- * disc in it; lists the others; and counts steps.
+ * disc in it; lists the others, and where they are hit; and counts steps.
  */
 #include "frame.glsl"
 #include "pixels.glsl"
@@ -13,12 +13,20 @@
 // The pixel is zero before its first ray.
 void count_steps(uint index, uint steps)
 {
-    if (control.first_ray != 0u) {
-        pixels[index].steps = steps;
-    } else {
-        pixels[index].evaluations += steps;
-        pixels[index].most = max(pixels[index].most, steps);
-    }
+    uvec4 counts = pixels[index].counts;
+    bool  first = control.first_ray != 0u;
+    pixels[index].counts =
+        uvec4(counts.x, first ? steps : counts.y, first ? counts.z : counts.z + steps,
+              first ? counts.w : max(counts.w, steps));
+}
+
+// Where the ray hits, for all that comes after.  Where there is no width there must be a sign.
+void keep_place(uint index, Ray ray, vec3 origin, vec3 direction, float width)
+{
+    vec3  position = origin + ray.t * direction;
+    float rounding = ROUNDING * (largest(position) + largest(origin));
+    hits[index].place = vec4(position, ray.side * max(width, 1e-30));
+    hits[index].ray = vec4(direction, rounding);
 }
 
 void main()
@@ -32,21 +40,23 @@ void main()
     if (ray.lost)
         atomicAdd(counts.unresolved, 1u);
     uvec2 pixel = work.corner + find_cell(index, work.extent.x);
+
+    vec3  origin, direction;
+    float base, slope;
+    find_ray(vec2(pixel) + work.offset, origin, direction, base, slope);
     if (ray.fate == HIT) {
+        keep_place(index, ray, origin, direction, base + slope * ray.t);
         solid[atomicAdd(counts.solid, 1u)] = index;
         if (is_anchor(pixel))
             solid[band_pixels() + atomicAdd(counts.anchors, 1u)] = index;
     }
 
-    vec3  origin, direction;
-    float base, slope;
-    find_ray(vec2(pixel) + work.offset, origin, direction, base, slope);
     vec3 radiance = sky_radiance(direction);
     for (uint i = 0u; i < control.lights; i++) {
-        Light light = lights[i];
+        Light light = find_light(i);
         if ((light.kind & POSITIONAL) == 0u)
             radiance += sun_radiance(direction, light.vector, light.color, light.softness);
     }
     if (ray.fate != HIT)
-        pixels[index].color.rgb += sound(radiance);
+        pixels[index].color += vec4(sound(radiance), 0.0);
 }

@@ -21,10 +21,12 @@ const uint OCCLUSION = 1u, SHADOW = 2u;       // control.value
 const float MOST_APART = 0.03;                // of the anchors' occlusion
 const float FACING = 0.9;                     // least cosine between normals
 
-float value_at(uint index)
+uint number_of(uint index)
 {
-    return control.value == SHADOW ? hits[index].visible : hits[index].occlusion;
+    return OF_HIT * index + (control.value == SHADOW ? VISIBLE_OF_HIT : OCCLUSION_OF_HIT);
 }
+
+float value_at(uint index) { return hit_numbers[number_of(index)]; }
 
 uint tile_of(uvec2 local) { return local.y / 8u * ((work.extent.x + 7u) / 8u) + local.x / 8u; }
 
@@ -40,7 +42,8 @@ void judge(uint tile)
     uvec2 corner = 8u * find_cell(tile, (work.extent.x + 7u) / 8u);
     bool  agree = corner.x + 8u <= work.extent.x && corner.y + 8u <= work.extent.y;
     uint  first = corner.y * work.extent.x + corner.x;
-    Hit   like = hits[first];
+    uint  component = hits[first].identity.x;
+    vec3  normal = hits[first].facing.xyz;
     float least = INFINITE, most = -INFINITE;
     for (uint i = 0u; i < 16u && agree; i++) {
         uvec2 at = corner + uvec2(0x7520u >> 4u * (i & 3u) & 7u, 0x7520u >> i / 4u * 4u & 7u);
@@ -48,8 +51,8 @@ void judge(uint tile)
         float value = value_at(index);
         least = min(least, value);
         most = max(most, value);
-        agree = find_end(index).fate == HIT && hits[index].component == like.component &&
-                dot(hits[index].normal, like.normal) > FACING;
+        agree = find_end(index).fate == HIT && hits[index].identity.x == component &&
+                dot(hits[index].facing.xyz, normal) > FACING;
     }
     agree = agree && (control.value == SHADOW ? least == 1.0 : most - least <= MOST_APART);
     solid[3u * band_pixels() + tile] = agree ? 1u : 0u;
@@ -58,11 +61,11 @@ void judge(uint tile)
 // Whether a pixel of a tile is as its first anchor: on one surface, which faces one way.
 bool is_like(uint index, uint first)
 {
-    Place here = find_place_of(index), there = find_place_of(first);
-    vec3  normal = hits[first].normal;
-    float above = abs(dot(normal, here.position - there.position));
-    return hits[index].component == hits[first].component &&
-           dot(hits[index].normal, normal) > FACING && above < 4.0 * here.width;
+    vec4  here = hits[index].place;
+    vec3  normal = hits[first].facing.xyz;
+    float above = abs(dot(normal, here.xyz - hits[first].place.xyz));
+    return hits[index].identity.x == hits[first].identity.x &&
+           dot(hits[index].facing.xyz, normal) > FACING && above < 4.0 * abs(here.w);
 }
 
 // Between the anchors around it: columns and rows 0, 2, 5 and 7.
@@ -87,10 +90,8 @@ void fill(uint number)
         return;
     if (!agree || !is_like(index, first))
         solid[2u * band_pixels() + atomicAdd(counts.rest, 1u)] = index;
-    else if (control.value == SHADOW)
-        hits[index].visible = interpolate(corner, local & 7u);
     else
-        hits[index].occlusion = interpolate(corner, local & 7u);
+        hit_numbers[number_of(index)] = interpolate(corner, local & 7u);
 }
 
 void main()

@@ -25,6 +25,7 @@ struct Frame {
     float error;             // permitted distance from the surface, in pixels
     float occlusion_reach;   // of the farthest occlusion tap
     uint  most_steps;
+    float blur;              // how far around a hit its normal is looked for, in pixels
 };
 
 struct Work {
@@ -64,24 +65,31 @@ struct Ray {
     bool  lost;  // it ran out of steps
 };
 
+// What is kept of a pixel, a light or a ray lies in memory in rows of four numbers, which are read
+// and written whole where that can be: of each access lavapipe makes a loop over the lanes, and
+// such loops are most of what it has to compile.
 struct Hit {
-    vec3  normal;    // towards the side that the ray comes from
-    float occlusion; // 1: open
-    float roughness;
-    float metallic;
-    float visible;   // how much of the light that is being dealt with
-    uint  component;
-    vec3  color;
-    uint  level;
-    vec3  radiance;  // found so far: emission, then light by light
-    uint  instance;
+    vec4  place;    // position; the width of a pixel there, negative for a ray inside of a solid
+    vec4  ray;      // its direction, unit; the rounding of coordinates
+    vec4  facing;   // normal, towards the side that the ray comes from; occlusion, 1: open, and
+                    // before that is known how even the surface is within a pixel, 1: flat
+    vec4  shading;  // the mean of the normals to light: its direction; its length
+    vec4  coat;     // colour; roughness
+    vec4  radiance; // found so far: emission, then light by light; metallic
+    uvec4 identity; // component, level, instance; how much of a light is visible (bits of a float)
 };
+// So many numbers is a Hit (HIT_BYTES in blocks.h), and two of them by number (solid.glsl).
+const uint OF_HIT = 28u, OCCLUSION_OF_HIT = 11u, VISIBLE_OF_HIT = 27u;
 
 struct Light {
     vec3  vector;   // towards it (unit), or its position
     float softness; // angular diameter, or radius
     vec3  color;
     uint  kind;
+};
+struct LightRows {
+    vec4  vector; // and softness
+    uvec4 color;  // bits of floats; kind
 };
 const uint POSITIONAL = 1u, CASTS_SHADOWS = 2u; // bits of its kind
 const uint SOFT_SHADOWS = 0u, AREA_SHADOWS = 1u;
@@ -90,7 +98,7 @@ const uint SOFT_SHADOWS = 0u, AREA_SHADOWS = 1u;
 layout(std430, set = 1, binding = 1) buffer Ends { float ends[]; };
 layout(std430, set = 1, binding = 2) buffer Hits { Hit hits[]; };
 layout(std430, set = 1, binding = 5) buffer Fates { uint fates[]; }; // of rays, by pack_ray
-layout(std430, set = 1, binding = 8) readonly buffer Lights { Light lights[]; };
+layout(std430, set = 1, binding = 8) readonly buffer Lights { LightRows lights[]; };
 // Tiles of 8x8 pixels whose beams find something (fill.comp): only their pixels have rays.
 layout(std430, set = 1, binding = 9) buffer Tiles { uint tiles[]; };
 layout(std140, set = 1, binding = 0) uniform FrameBlock { Frame given_frame; };
@@ -116,6 +124,12 @@ void load_frame()
     frame = given_frame;
     work = given_work;
     control = counts.given_control;
+}
+
+Light find_light(uint number)
+{
+    LightRows rows = lights[number];
+    return Light(rows.vector.xyz, rows.vector.w, uintBitsToFloat(rows.color.xyz), rows.color.w);
 }
 
 // The least bits: fate, side, lost; then the steps.

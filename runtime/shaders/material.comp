@@ -8,6 +8,27 @@
 #include "pixels.glsl"
 #include "solid.glsl"
 
+const float EVEN = 0.98;      // less is not a curved surface's own, but detail
+const float LEAST_BLUR = 0.5; // without filtering (normal_reach in render.c)
+const float SEEN = 0.78;      // the mean of the normals that are seen of a thin round thing
+
+// The mean of the normals that the pixel sees, not a unit vector, where the mean of all around is
+// this share of a unit normal.  Of what is thin only the side towards the eye is seen.
+vec3 mean_normal(vec3 normal, float share, vec3 toward_eye)
+{
+    float rest = 1.0 - share;
+    return share * normal + SEEN * rest * rest * toward_eye;
+}
+
+// Normals that vary within the pixel make the coat rougher: the shorter their mean, the wider
+// their lobe (Toksvig 2005).
+float roughen(float roughness, float share)
+{
+    float square = roughness * roughness;
+    float spread = 2.0 * (1.0 - share) / max(share, 1e-3);
+    return sqrt(sqrt(min(square * square + spread, 1.0)));
+}
+
 void main()
 {
     load_frame();
@@ -17,12 +38,16 @@ void main()
     krs_prepare();
 
     Place      place = find_place(number);
-    KrsSurface surface = krs_surface(place.position);
-    hits[place.index].color = clamp(surface.color, 0.0, 1.0);
-    hits[place.index].roughness = clamp(surface.roughness, 0.0, 1.0);
-    hits[place.index].metallic = clamp(surface.metallic, 0.0, 1.0);
-    hits[place.index].radiance = surface.emission;
-    hits[place.index].component = surface.component;
-    hits[place.index].level = surface.level;
-    hits[place.index].instance = surface.instance;
+    vec4       facing = hits[place.index].facing;
+    KrsSurface surface = krs_surface(place.position, place.side * facing.xyz, 0.5 * place.width);
+    vec4       coat = clamp(vec4(surface.color, surface.roughness), 0.0, 1.0);
+    float      share = frame.blur > LEAST_BLUR ? min(facing.w / EVEN, 1.0) : 1.0;
+    vec3       mean = mean_normal(place.side * surface.normal, share, -place.direction);
+    float      size = length(mean);
+    coat.a = roughen(coat.a, share);
+    hits[place.index].shading = vec4(mean / max(size, 1e-6), min(size, 1.0));
+    hits[place.index].coat = coat;
+    hits[place.index].radiance = vec4(surface.emission, clamp(surface.metallic, 0.0, 1.0));
+    hits[place.index].identity =
+        uvec4(surface.component, surface.level, surface.instance, 0u);
 }

@@ -3,16 +3,11 @@
  * gives everything but the colour.
  */
 struct Pixel {
-    vec4  color; // summed over the rays
-    vec3  position;
-    float depth;
-    vec3  normal;
-    uint  steps;
-    vec3  albedo;
-    uint  component; // 0: nothing, and all else but colour and steps is meaningless
-    uint  level, instance;
-    uint  evaluations; // by the rays after the first, summed;
-    uint  most;        // of any of them
+    vec4  color;  // summed over the rays
+    vec4  place;  // position; depth
+    uvec4 normal; // bits of floats; component, 0: nothing, all else but colour and steps is void
+    uvec4 albedo; // bits of floats; level
+    uvec4 counts; // instance; steps; of the rays after the first: steps, summed, and of any of them
 };
 
 layout(std430, set = 1, binding = 3) buffer Pixels { Pixel pixels[]; };

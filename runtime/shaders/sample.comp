@@ -7,7 +7,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(push_constant) uniform Work { uint count; } work;
+layout(push_constant) uniform Work { uint count, taps; } work; // taps: 1, or 7 with normals
 
 struct Answer {
     vec3  color;
@@ -16,11 +16,30 @@ struct Answer {
     float surface_distance;
     float roughness, metallic;
     uint  component, level;
-    uint  instance, unused[3];
+    uint  instance;
+    vec3  normal;   // the one to light
+    vec3  gradient; // of the distance, unit
 };
 
 layout(std430, set = 1, binding = 1) readonly buffer Points { vec4 points[]; };
 layout(std430, set = 1, binding = 2) writeonly buffer Answers { Answer answers[]; };
+
+// The distance, then one step along each axis and back: their differences are the gradient.
+vec4 look_around(vec3 p)
+{
+    float step = 1e-3 * (0.1 + max(max(abs(p.x), abs(p.y)), abs(p.z)));
+    vec4  found = vec4(0.0);
+    for (uint i = 0u; i < work.taps; i++) {
+        uint  axis = (i + 1u) / 2u;
+        float side = (i & 1u) != 0u ? 1.0 : -1.0;
+        vec3  way = side * vec3(axis == 1u, axis == 2u, axis == 3u);
+        float distance = krs_distance(p + step * way);
+        found += axis == 0u ? vec4(0.0, 0.0, 0.0, distance) : vec4(distance * way, 0.0);
+    }
+    float steepness = length(found.xyz);
+    found.xyz /= steepness > 0.0 ? steepness : 1.0;
+    return found;
+}
 
 void main()
 {
@@ -30,10 +49,11 @@ void main()
     krs_prepare();
 
     vec3 p = points[index].xyz;
-    KrsSurface surface = krs_surface(p);
+    vec4 around = look_around(p);
+    KrsSurface surface = krs_surface(p, around.xyz, 0.0);
     Answer answer;
     answer.color = surface.color;
-    answer.distance = krs_distance(p);
+    answer.distance = around.w;
     answer.emission = surface.emission;
     answer.surface_distance = surface.distance;
     answer.roughness = surface.roughness;
@@ -41,6 +61,7 @@ void main()
     answer.component = surface.component;
     answer.level = surface.level;
     answer.instance = surface.instance;
-    answer.unused = uint[3](0u, 0u, 0u);
+    answer.normal = surface.normal;
+    answer.gradient = around.xyz;
     answers[index] = answer;
 }

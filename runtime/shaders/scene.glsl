@@ -16,6 +16,7 @@ struct KrsSurface {
     uint  component;
     uint  level;
     uint  instance;
+    vec3  normal;
 };
 
 float krs_local_radius;
@@ -24,7 +25,7 @@ void krs_prepare() { krs_local_radius = 1.0 + krs_parameter[0].x; }
 
 float krs_distance(vec3 p) { return length(p) - krs_local_radius; }
 
-KrsSurface krs_surface(vec3 p)
+KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)
 {
-    return KrsSurface(krs_distance(p), vec3(0.8), 0.5, 0.0, vec3(0.0), 1u, 0u, 1u);
+    return KrsSurface(krs_distance(p), vec3(0.8), 0.5, 0.0, vec3(0.0), 1u, 0u, 1u, normal);
 }

@@ -4,10 +4,10 @@
  *
  * The kernel that includes this says what an item is:
  *     void begin_group()                   first of all
- *     void begin_item(uint number)         takes an item up
- *     void resume_item(uint number)        takes one up that was saved
+ *     void begin_item(uint number, bool saved)   takes an item up, or one that was saved
  *     bool item_wants_more()               it is not finished
  *     vec3 item_place()                    where it wants to know the distance
+ *     float item_distance(vec3 place)      the distance there, or less
  *     void take_distance(float distance)   one step
  *     void end_item()                      stores what it has found
  *     void save_item()                     stores how far it is
@@ -42,7 +42,7 @@ void work_on_items(uint group, uint turns_allowed, inout uint turns)
               ? min(control.share, (control.items - number + 7u) / 8u) : 0u;
     bool holding = false, going = false;
     if (control.source == QUEUED && left > 0u) {
-        resume_item(number);
+        begin_item(number, true);
         holding = true;
         going = true;
         left = 0u;
@@ -61,7 +61,7 @@ void work_on_items(uint group, uint turns_allowed, inout uint turns)
                 holding = false;
             }
             if (!holding && hungry) {
-                begin_item(number);
+                begin_item(number, false);
                 holding = true;
                 number += 8u;
                 left--;
@@ -70,7 +70,7 @@ void work_on_items(uint group, uint turns_allowed, inout uint turns)
             hungry = !going && left > 0u && turns < turns_allowed;
         } while (subgroupAny(hungry));
         do { // until one is done that has something left, or all are
-            float distance = krs_distance(item_place());
+            float distance = item_distance(item_place());
             if (going) {
                 take_distance(distance);
                 turns++;
@@ -95,12 +95,9 @@ void work_on_items(uint group, uint turns_allowed, inout uint turns)
     uint number = group * 64u + gl_LocalInvocationIndex;
     if (number >= control.items)
         return;
-    if (control.source == QUEUED)
-        resume_item(number);
-    else
-        begin_item(number);
+    begin_item(number, control.source == QUEUED);
     for (; may_go_on(turns, turns_allowed); turns++)
-        take_distance(krs_distance(item_place()));
+        take_distance(item_distance(item_place()));
     if (item_wants_more())
         save_item();
     else

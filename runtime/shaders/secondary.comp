@@ -24,6 +24,8 @@ const uint OCCLUSION_TAPS = 5u;
 const float BLACK = 4e-3;
 // Rays to lights start so many pixels above the surface.
 const float LIFT = 0.5;
+// For so many pixels from there a distance may be a bound as at the start.
+const float SHARED = 8.0;
 // A way is clear for the pixels around as well if it stays so many of them away from everything.
 const float CLEARANCE = 3.0;
 // What is lit and not clear: less than 1 by a bit (fill.comp).
@@ -36,7 +38,8 @@ float t;
 float end;         // of the way to the light
 float sharpness;   // of the shadow's edge
 float before;      // the distance at the step before
-vec3  sum;         // of the taps of a normal
+float share;       // of the true distance, at the start of a shadow ray
+vec3  sum, level;  // of the taps of a normal, with the signs of their directions and without
 float blocked, weight; // of those of occlusion
 float visible;     // how much of the light
 float facing;      // cosine between normal and way
@@ -76,7 +79,7 @@ vec2 disc_point(vec2 pixel_seed)
 // From the hit to the light: to its middle, or for area shadows to a point of its disc.
 void aim_at_light(vec3 normal)
 {
-    Light light = lights[control.light];
+    Light light = find_light(control.light);
     bool  positional = (light.kind & POSITIONAL) != 0u;
     start = place.position + normal * (LIFT * place.width + 4.0 * place.rounding);
     vec3  toward = positional ? light.vector - start : light.vector;
@@ -89,8 +92,9 @@ void aim_at_light(vec3 normal)
         vec3 axis = toward / remote;
         vec3 aside = normalize(abs(axis.x) < 0.7 ? vec3(0.0, axis.z, -axis.y)
                                                  : vec3(-axis.z, 0.0, axis.x));
-        vec2 seed = vec2(random(place.pixel, 2u * control.light + 1u),
-                         random(place.pixel, 2u * control.light + 2u));
+        uvec2 pixel = work.corner + find_cell(place.index, work.extent.x);
+        vec2  seed = vec2(random(pixel, 2u * control.light + 1u),
+                          random(pixel, 2u * control.light + 2u));
         vec2 at = radius * disc_point(seed);
         toward += at.x * aside + at.y * cross(axis, aside);
         sharpness = INFINITE;
@@ -105,13 +109,13 @@ void aim_at_light(vec3 normal)
     limit = facing > 0.0 && (light.kind & CASTS_SHADOWS) != 0u ? SHADOW_STEPS : 0u;
 }
 
-void begin_item(uint number)
+void begin_item(uint number, bool saved)
 {
     place = find_place(number);
-    vec3 normal = hits[place.index].normal;
+    vec3 normal = hits[place.index].facing.xyz;
     start = place.position;
     taps = 0u;
-    sum = vec3(0.0);
+    sum = level = vec3(0.0);
     before = INFINITE;
     blocked = 0.0;
     weight = 0.33;
@@ -123,16 +127,17 @@ void begin_item(uint number)
         t = 0.0625 * frame.occlusion_reach;
         limit = OCCLUSION_TAPS;
     } else {
-        // Differences over half a pixel: finer detail would only be noise.  Below 3e-4 of the
+        // Differences over a pixel or so: finer detail would only be noise.  Below 3e-4 of the
         // coordinates rounding would be the noise.
         way = octahedron(0u);
-        t = max(0.5 * place.width, 3e-4 * largest(place.position) + place.rounding);
+        t = max(frame.blur * place.width, 3e-4 * largest(place.position) + place.rounding);
         limit = 6u;
     }
 }
 
 bool item_wants_more() { return taps < limit; }
 
+float item_distance(vec3 place) { return krs_distance(place); }
 vec3 item_place() { return start + t * way; }
 
 // A surface may be as near as the rim where this step's sphere meets the last one's, which lies
@@ -144,7 +149,13 @@ void take_shadow(float distance)
     float aside = sqrt(max(distance * distance - back * back, 0.0));
     if (back < before)
         visible = min(visible, sharpness * aside / max(t - back, place.rounding));
-    if (distance < max(frame.error * place.width, place.rounding))
+    // Near the start even what is open may have a small distance, where that is only a bound: as
+    // small a part of the true one as at the first step.
+    float lift = LIFT * place.width + 4.0 * place.rounding;
+    if (taps == 1u)
+        share = clamp(distance / lift, 0.0625, 1.0);
+    float near = mix(share, 1.0, min(t / (SHARED * place.width), 1.0));
+    if (distance < max(near * frame.error * place.width, place.rounding))
         visible = 0.0;
     // The surface itself falls away by the cosine.
     if (distance < min(CLEARANCE * place.width, 0.5 * facing * t))
@@ -171,6 +182,7 @@ void take_distance(float distance)
         t *= 2.0;
     } else {
         sum += distance * way;
+        level += distance * abs(way);
         way = octahedron(taps);
     }
 }
@@ -181,13 +193,19 @@ void end_item()
         lost += limit > 0u && t < end ? 1u : 0u;
         float seen = visible < BLACK ? 0.0 : visible;
         seen = seen * seen * (3.0 - 2.0 * seen);
-        hits[place.index].visible = is_clear ? seen : min(seen, LIT);
+        hit_numbers[OF_HIT * place.index + VISIBLE_OF_HIT] = is_clear ? seen : min(seen, LIT);
     } else if (control.phase == OCCLUSION) {
-        hits[place.index].occlusion = exp2(-2.5 * blocked); // light finds its way in by reflection
+        // Light finds its way in by reflection.
+        hit_numbers[OF_HIT * place.index + OCCLUSION_OF_HIT] = exp2(-2.5 * blocked);
     } else {
         float steepness = length(sum);
-        hits[place.index].normal =
+        vec3  normal =
             steepness > 0.0 && steepness < INFINITE ? sum / steepness : -place.direction;
+        // Where all is flat, opposite taps cancel; on an edge, or where things are smaller than
+        // the taps are apart, they do not.
+        float uneven = length(vec2(steepness, length(level)));
+        float even = uneven > 0.0 && uneven < INFINITE ? steepness / uneven : 1.0;
+        hits[place.index].facing = vec4(normal, even);
     }
 }
 
@@ -198,7 +216,6 @@ void end_group(uint turns)
 }
 
 const bool SAVES = false;
-void resume_item(uint number) {}
 void save_item() {}
 
 #include "schedule.glsl"

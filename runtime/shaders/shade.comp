@@ -12,9 +12,13 @@
 
 const uint ONE_LIGHT = 0u, FINISH = 1u; // control.phase
 
+// Scattered light goes with the cosine, and so with the mean of the normals, which is shorter than
+// each; what a coat mirrors is as much whatever its roughness.
+vec3 mean_color(Hit hit) { return hit.coat.rgb * mix(hit.shading.w, 1.0, hit.radiance.a); }
+
 vec3 lit(Place place, Hit hit)
 {
-    Light light = lights[control.light];
+    Light light = find_light(control.light);
     vec3  toward = light.vector, color = light.color;
     if ((light.kind & POSITIONAL) != 0u) {
         vec3  apart = light.vector - place.position;
@@ -22,31 +26,33 @@ vec3 lit(Place place, Hit hit)
         toward = apart * inversesqrt(square);
         color /= square;
     }
-    return hit.visible * color * reflected(hit.normal, -place.direction, toward, hit.color,
-                                           hit.roughness, hit.metallic);
+    float visible = uintBitsToFloat(hit.identity.w);
+    return visible * color * reflected(hit.shading.xyz, -place.direction, toward, mean_color(hit),
+                                       hit.coat.a, hit.radiance.a);
 }
 
 // The hemisphere of the sky, as far as it is open; what is closed off by a surface of like
 // colour gives some light back.
 vec3 ambient(Hit hit, vec3 toward_eye)
 {
-    vec3 bounce = hit.occlusion / max(1.0 - hit.color * (1.0 - hit.occlusion), 0.05);
-    vec3 scattered = hit.color * (1.0 - hit.metallic) * sky_light(hit.normal) * bounce;
-    vec3 mirrored = sky_reflected(hit.normal, toward_eye, hit.color, hit.roughness, hit.metallic);
-    return scattered + mirrored * hit.occlusion;
+    vec3  normal = hit.shading.xyz, color = hit.coat.rgb;
+    float open = hit.facing.w, metallic = hit.radiance.a;
+    vec3  bounce = open / max(1.0 - color * (1.0 - open), 0.05);
+    vec3  scattered = color * (1.0 - metallic) * sky_light(hit.shading.w * normal) * bounce;
+    vec3  mirrored = sky_reflected(normal, toward_eye, color, hit.coat.a, metallic);
+    return scattered + mirrored * open;
 }
 
 void describe(Place place, Hit hit)
 {
     vec3  apart = place.position - frame.eye.xyz;
     float along = dot(apart, frame.forward.xyz);
-    pixels[place.index].depth = control.projection == PANORAMA ? length(apart) : along;
-    pixels[place.index].position = place.position;
-    pixels[place.index].normal = place.side * hit.normal;
-    pixels[place.index].albedo = hit.color;
-    pixels[place.index].component = hit.component;
-    pixels[place.index].level = hit.level;
-    pixels[place.index].instance = hit.instance;
+    float depth = control.projection == PANORAMA ? length(apart) : along;
+    uvec3 normal = floatBitsToUint(place.side * hit.shading.xyz);
+    pixels[place.index].place = vec4(place.position, depth);
+    pixels[place.index].normal = uvec4(normal, hit.identity.x);
+    pixels[place.index].albedo = uvec4(floatBitsToUint(hit.coat.rgb), hit.identity.y);
+    pixels[place.index].counts.x = hit.identity.z;
 }
 
 void main()
@@ -58,9 +64,9 @@ void main()
     Place place = find_place(number);
     Hit   hit = hits[place.index];
     if (control.phase == ONE_LIGHT) {
-        hits[place.index].radiance = hit.radiance + lit(place, hit);
+        hits[place.index].radiance = hit.radiance + vec4(lit(place, hit), 0.0);
     } else {
-        vec3 radiance = hit.radiance + ambient(hit, -place.direction);
+        vec3 radiance = hit.radiance.rgb + ambient(hit, -place.direction);
         pixels[place.index].color += vec4(sound(radiance), 1.0);
         if (control.first_ray != 0u)
             describe(place, hit);

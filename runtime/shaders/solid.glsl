@@ -16,9 +16,11 @@ bool is_anchor(uvec2 pixel)
     return (0xA5u >> (pixel.x & 7u) & 0xA5u >> (pixel.y & 7u) & 1u) != 0u;
 }
 
-// The ray of a pixel of the list, and where it hits.
+// Hits once more, number by number: fill.comp works on either of two of these.
+layout(std430, set = 1, binding = 2) buffer HitNumbers { float hit_numbers[]; };
+
+// The ray of a pixel of the list, and where it hits, as background.comp has found it.
 struct Place {
-    uvec2 pixel;
     uint  index;     // of the pixel in the band
     vec3  position;
     vec3  direction; // of the ray, unit
@@ -29,18 +31,8 @@ struct Place {
 
 Place find_place_of(uint index)
 {
-    Place place;
-    place.index = index;
-    place.pixel = work.corner + find_cell(index, work.extent.x);
-    vec3  origin;
-    float base, slope;
-    find_ray(vec2(place.pixel) + work.offset, origin, place.direction, base, slope);
-    Ray ray = find_end(place.index);
-    place.position = origin + ray.t * place.direction;
-    place.width = base + slope * ray.t;
-    place.rounding = ROUNDING * (largest(place.position) + largest(origin));
-    place.side = ray.side;
-    return place;
+    vec4 place = hits[index].place, ray = hits[index].ray;
+    return Place(index, place.xyz, ray.xyz, abs(place.w), ray.w, place.w < 0.0 ? -1.0 : 1.0);
 }
 
 // The place of item `number` of the list that is read.

@@ -42,7 +42,7 @@ const float WIDER = 1.05;
 
 const bool SAVES = true;
 
-// A ray under way.
+// A ray under way; in the queue two rows of four numbers.
 struct March {
     uint  index;     // of its pixel, or its beam: where it ends up in `ends`
     float t;         // nothing is before this place, where it has been,
@@ -56,7 +56,7 @@ struct March {
     uint  fate;
 };
 
-layout(std430, set = 1, binding = 6) buffer Queue { March queue[]; };
+layout(std430, set = 1, binding = 6) buffer Queue { uvec4 queue[]; };
 
 March march;
 bool  exists;                  // the item is in the band
@@ -111,33 +111,26 @@ bool find_pixel(uint number, out uvec2 pixel, out uint index)
     return local.x < work.extent.x && local.y < work.extent.y;
 }
 
-void begin_item(uint number)
+March unpack_march(uvec4 low, uvec4 high)
 {
-    bool  is_ray = control.phase == RAYS, large = control.phase == BEAMS_32;
-    uvec2 pixel;
-    uint  pixels = work.extent.x * work.extent.y, index;
-    exists = find_pixel(number, pixel, index) || !is_ray;
+    vec4 rest = uintBitsToFloat(high);
+    return March(low.x, uintBitsToFloat(low.z), uintBitsToFloat(low.w), rest.x, rest.y, rest.z,
+                 rest.w, float(low.y >> 2u & 3u) - 1.0, low.y >> 4u, low.y & 3u);
+}
 
-    float side = large ? 32.0 : 8.0;
-    uvec2 tile = find_cell(number, large ? count_32.x : count_8.x);
-    vec2  middle = side * (vec2(tile + (large ? first_32 : first_8)) + 0.5);
-    aim(is_ray ? vec2(pixel) + work.offset : middle);
-    width = is_ray ? vec2(0.0) : find_width(side);
+void save_item()
+{
+    uint at = 2u * (control.writing + atomicAdd(counts.queued, 1u));
+    uint bits = march.fate | uint(march.side + 1.0) << 2u | march.steps << 4u;
+    queue[at] = uvec4(march.index, bits, floatBitsToUint(vec2(march.t, march.room)));
+    queue[at + 1u] = floatBitsToUint(vec4(march.gap, march.slope, march.nearest_t, march.nearest));
+}
 
-    // Starts where the beam that it is in has ended: a ray's of 8x8, that one's of 32x32.
-    uint  larger = pixels + count_8.x * count_8.y;
-    uvec2 parent = is_ray ? pixel / 8u - first_8 : (tile + first_8) / 4u - first_32;
-    uint  beam = is_ray ? pixels + parent.y * count_8.x + parent.x
-                        : larger + parent.y * count_32.x + parent.x;
-    bool  behind = exists && !large && control.follow != 0u;
-    float start = 0.0;
-    if (behind)
-        start = ends[beam];
-    vec2 range = is_ray ? clip_ray(origin, direction, frame.eye.w) : vec2(0.0, frame.eye.w);
-    end = range.y;
-
-    march.index = is_ray ? index : number + (large ? larger : pixels);
-    march.t = max(range.x, start);
+// The march of a ray or a beam that starts where nothing is before `start`.
+void begin_march(uint index, float start, bool is_ray)
+{
+    march.index = index;
+    march.t = start;
     march.room = march.gap = 0.0;
     march.slope = -1.0;
     march.nearest_t = 0.0;
@@ -148,20 +141,62 @@ void begin_item(uint number)
     march.fate = march.t <= end ? MARCHING : MISS;
 }
 
-void resume_item(uint number)
+void begin_item(uint number, bool saved)
 {
-    march = queue[control.reading + number];
-    exists = true;
-    uvec2 pixel = work.corner + find_cell(march.index, work.extent.x);
-    aim(vec2(pixel) + work.offset);
-    width = vec2(0.0);
-    end = clip_ray(origin, direction, frame.eye.w).y;
+    bool  is_ray = control.phase == RAYS, large = control.phase == BEAMS_32;
+    uvec2 pixel;
+    uint  pixels = work.extent.x * work.extent.y, index;
+    exists = find_pixel(number, pixel, index) || !is_ray;
+    if (saved) {
+        uint at = 2u * (control.reading + number);
+        march = unpack_march(queue[at], queue[at + 1u]);
+        pixel = work.corner + find_cell(march.index, work.extent.x);
+        exists = true;
+    }
+
+    float side = large ? 32.0 : 8.0;
+    uvec2 tile = find_cell(number, large ? count_32.x : count_8.x);
+    vec2  middle = side * (vec2(tile + (large ? first_32 : first_8)) + 0.5);
+    aim(is_ray ? vec2(pixel) + work.offset : middle);
+    width = is_ray ? vec2(0.0) : find_width(side);
+    vec2 range = is_ray ? clip_ray(origin, direction, frame.eye.w) : vec2(0.0, frame.eye.w);
+    end = range.y;
+#ifdef GROUP
+    uint at_pixel = saved ? march.index : index;
+    if (exists && is_ray && find_end(at_pixel).fate == HIT)
+        end = min(end, ends[at_pixel]);
+#endif
+    if (saved)
+        return;
+
+    // Starts where the beam that it is in has ended: a ray's of 8x8, that one's of 32x32.
+    uint  larger = pixels + count_8.x * count_8.y;
+    uvec2 parent = is_ray ? pixel / 8u - first_8 : (tile + first_8) / 4u - first_32;
+    uint  beam = is_ray ? pixels + parent.y * count_8.x + parent.x
+                        : larger + parent.y * count_32.x + parent.x;
+    bool  behind = exists && !large && control.follow != 0u;
+    float start = 0.0;
+    if (behind)
+        start = ends[beam];
+    begin_march(is_ray ? index : number + (large ? larger : pixels), max(range.x, start), is_ray);
 }
 
 bool item_wants_more()
 {
     uint most = control.phase == RAYS ? frame.most_steps : MOST_BEAM_STEPS;
     return exists && (march.fate == MARCHING || march.fate == CLOSING) && march.steps < most;
+}
+
+// What is far for its size need not be looked at, where a branch saves work.
+float item_distance(vec3 place)
+{
+#ifdef ALONG
+    return krs_along(place, direction);
+#elif defined(EARLY_OUTS) && !defined(GROUP)
+    return krs_distance_lod(place, 0.0);
+#else
+    return krs_distance(place);
+#endif
 }
 
 vec3 item_place() { return origin + (march.t + march.gap) * direction; }
@@ -233,16 +268,22 @@ void end_item()
         march.t = near ? march.nearest_t : march.t;
         march.fate = near ? HIT : MISS;
     }
+#ifdef GROUP
+    // What other groups have found stays, unless this is nearer.
+    if (exists && is_ray) {
+        Ray known = find_end(march.index);
+        bool farther = march.fate == MISS || known.fate == HIT && known.t < march.t;
+        march.t = farther ? known.t : march.t;
+        march.fate = farther ? known.fate : HIT;
+        march.steps += known.steps;
+        lost = lost || known.lost;
+    }
+#endif
     if (exists)
         ends[march.index] = !is_ray && march.fate == MISS ? INFINITE : march.t;
     if (exists && is_ray)
         fates[march.index] =
             pack_ray(Ray(march.t, march.side, march.steps, march.fate, lost));
-}
-
-void save_item()
-{
-    queue[control.writing + atomicAdd(counts.queued, 1u)] = march;
 }
 
 void end_group(uint turns)

@@ -17,7 +17,8 @@ typedef struct FrameBlock {
     float    size[2];
     float    pixel_base, pixel_slope;
     float    error, occlusion_reach;
-    uint32_t most_steps, unused;
+    uint32_t most_steps;
+    float    blur;
 } FrameBlock;
 static_assert(sizeof(FrameBlock) == 176, "std140");
 
@@ -71,16 +72,16 @@ typedef struct PixelBlock {
     float    color[4];
     float    position[3], depth;
     float    normal[3];
-    uint32_t steps;
+    uint32_t component;
     float    albedo[3];
-    uint32_t component, level, instance;
-    uint32_t evaluations, most;
+    uint32_t level, instance;
+    uint32_t steps, evaluations, most;
 } PixelBlock;
 static_assert(sizeof(PixelBlock) == 80, "std430");
 
 /* Only their sizes matter to the host. */
 enum { FATE_MISS = 2 }; /* a packed ray that took no step (frame.glsl) */
-enum { HIT_BYTES = 64, MARCH_BYTES = 40, TILE = 8 };
+enum { HIT_BYTES = 112, MARCH_BYTES = 32, TILE = 8 };
 
 /* Points and Answer of sample.comp. */
 typedef struct PointBlock {
@@ -93,7 +94,21 @@ typedef struct AnswerBlock {
     float    roughness, metallic;
     uint32_t component, level;
     uint32_t instance, unused[3];
+    float    normal[3], unused_too;
+    float    gradient[3], unused_three;
 } AnswerBlock;
-static_assert(sizeof(AnswerBlock) == 64, "std430");
+static_assert(sizeof(AnswerBlock) == 96, "std430");
+
+/* Two rows of Questions and one of Ways of query.comp. */
+typedef struct QuestionBlock {
+    float origin[3], end;
+    float direction[3], side;
+} QuestionBlock;
+
+enum { QUERY_MARCHING, QUERY_HIT, QUERY_MISS }; /* the fates of frame.glsl */
+typedef struct WayBlock {
+    float    t;
+    uint32_t fate, place, steps;
+} WayBlock;
 
 #endif

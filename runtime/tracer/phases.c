@@ -8,31 +8,16 @@
  */
 #include "runtime/tracer/phases.h"
 
+#include "runtime/tracer/view.h"
+
 #include <math.h>
+#include <string.h>
 
 #define MOST_TURNS      16384 /* of a lane that takes item after item */
 #define MOST_BEAM_STEPS 256   /* of a beam, as in trace.comp */
 #define MOST_PASS_STEPS 2048  /* of rays that are left over, in one more pass */
 
 /* ---- Slices ---- */
-
-/* A step through [0, count) that visits all and goes far each time, so that neighbouring tiles,
-   which cost alike, are spread over a device that deals out contiguous shares. */
-static uint32_t spread(const Gpu *gpu, uint32_t count)
-{
-    if (!gpu_is_cpu(gpu) || count < 3)
-        return 1;
-    for (uint32_t step = (uint32_t)(0.618 * count);; step++) {
-        uint32_t a = count, b = step;
-        while (b != 0) {
-            uint32_t rest = a % b;
-            a = b;
-            b = rest;
-        }
-        if (a == 1)
-            return step;
-    }
-}
 
 /* How many groups to take next, after `groups` took `ms`. */
 static uint32_t next_slice(uint32_t groups, double ms, double aim)
@@ -72,7 +57,7 @@ static bool run_groups(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock
         double   ms = 0;
         work->first = first;
         work->groups = count;
-        work->stride = spread(job->gpu, count);
+        work->stride = rendering_spread(job->rendering, count);
         if (!gpu_begin(job->gpu))
             return false;
         rendering_dispatch(job->rendering, kernel, job->rendering->band_set, work, sizeof *work,
@@ -136,13 +121,18 @@ static uint32_t tiles_of_band(const WorkBlock *work)
 static bool list_tiles(Job *job, WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    Gpu          *gpu = job->gpu;
     control->phase = FILL_LIST_TILES;
     control->tiles = 0;
     control->listed = 1;
-    if (!run_all(job, KRS_PHASE_BEAMS, &job->rendering->renderer->fill, work,
-                 tiles_of_band(work)) ||
-        !gpu_begin(gpu))
+    return run_all(job, KRS_PHASE_BEAMS, &job->rendering->renderer->fill, work,
+                   tiles_of_band(work));
+}
+
+/* Until a ray is found to hit something it misses. */
+static bool clear_fates(Job *job)
+{
+    Gpu *gpu = job->gpu;
+    if (!gpu_begin(gpu))
         return false;
     vkCmdFillBuffer(gpu->commands, job->rendering->band.fates.buffer, 0, VK_WHOLE_SIZE, FATE_MISS);
     return gpu_finish(gpu, &job->picture->stats.phase_ms[KRS_PHASE_BEAMS]);
@@ -168,7 +158,7 @@ static bool march_beams(Job *job, WorkBlock *work)
     deal.steps = deal.share * MOST_BEAM_STEPS; /* none is saved */
     for (int i = 0; i < 2; i++) {
         control->phase = sizes[i].phase;
-        if (!run_items(job, KRS_PHASE_BEAMS, job->trace, work, tiles_touched(work, sizes[i].side),
+        if (!run_items(job, KRS_PHASE_BEAMS, job->beams, work, tiles_touched(work, sizes[i].side),
                        deal))
             return false;
         control->follow = 1;
@@ -212,6 +202,47 @@ static bool trace(Job *job, WorkBlock *work)
         control->writing = pixels - control->reading;
         deal.share = 1;
     }
+}
+
+static bool has_beams(const Job *job)
+{
+    return !job->options.no_beams && job->view.camera.projection != KRS_PANORAMA;
+}
+
+/* Beams, then rays, of one kernel. */
+static bool march(Job *job, WorkBlock *work)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    const double  share = job->share;
+    control->follow = control->listed = 0;
+    job->share = 0; /* of beams: too short to be seen */
+    if (has_beams(job) && !march_beams(job, work))
+        return false;
+    job->share = share;
+    return trace(job, work);
+}
+
+static bool march_all(Job *job, WorkBlock *work)
+{
+    FrameBlock *frame = job->rendering->frame.bytes;
+    Kernel     *whole = job->trace;
+    bool        good = (!has_beams(job) && job->part_count == 0) || clear_fates(job);
+    if (job->part_count == 0)
+        return good && march(job, work);
+    job->share /= job->part_count;
+    for (uint32_t i = 0; i < job->part_count && good; i++) {
+        const MarchPart *part = &job->parts[i];
+        const KrsGroup  *group = &job->rendering->program->groups[part->group];
+        view_place_box(&job->view, group->low, group->high, frame);
+        job->trace = job->beams = part->trace;
+        double share = job->share;
+        good = march(job, work);
+        job->share = share;
+    }
+    memcpy(frame->low, job->frame.low, sizeof frame->low);
+    memcpy(frame->high, job->frame.high, sizeof frame->high);
+    job->trace = whole;
+    return good;
 }
 
 /* A phase of secondary.comp, about the pixels of a list. */
@@ -303,7 +334,7 @@ static bool run_step(Job *job, Step step, WorkBlock *work)
     uint32_t      pixels = work->extent[0] * work->extent[1];
     switch (step) {
     case STEP_TRACE:
-        return trace(job, work);
+        return march_all(job, work);
     case STEP_BACKGROUND:
         control->solid = control->anchors = control->reading = 0;
         return run_all(job, KRS_PHASE_RESOLVE, &r->renderer->background, work, pixels);
@@ -312,7 +343,7 @@ static bool run_step(Job *job, Step step, WorkBlock *work)
                            control->solid);
     case STEP_MATERIAL:
         control->reading = 0;
-        return run_all(job, KRS_PHASE_SHADING, &r->material, work, control->solid);
+        return run_all(job, KRS_PHASE_SHADING, job->material, work, control->solid);
     case STEP_OCCLUSION:
         return look_sparsely(job, KRS_PHASE_OCCLUSION, SECONDARY_OCCLUSION, work);
     case STEP_LIGHTS:
@@ -333,11 +364,6 @@ bool phases_run(Job *job, WorkBlock *work, uint32_t index)
     place_ray(index, job->options.seed, work->offset);
     control->ray = index;
     control->first_ray = index == 0;
-    control->follow = control->listed = 0;
-    job->share = 0; /* too short to be seen */
-    if (!job->options.no_beams && job->view.camera.projection != KRS_PANORAMA &&
-        !march_beams(job, work))
-        return false;
     double done = job->done;
     for (Step step = 0; step < STEP_COUNT; done += whole * step_share[step], step++) {
         job->done = done;

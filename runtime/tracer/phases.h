@@ -6,13 +6,21 @@
 
 #include "runtime/tracer/renderer.h"
 
+/* A group of components, to be marched by itself. */
+typedef struct MarchPart {
+    uint32_t group;
+    Kernel  *trace;
+} MarchPart;
+
 typedef struct Job {
     KrsRendering    *rendering;
     Gpu             *gpu;
     KrsRenderOptions options; /* with nothing left to be defaulted */
     KrsView          view;
     FrameBlock       frame;
-    Kernel          *trace, *secondary;
+    Kernel          *trace, *beams, *secondary, *material;
+    MarchPart        parts[KRS_MOST_GROUPS]; /* the nearest first */
+    uint32_t         part_count;             /* 0: all are marched together, by `trace` */
     bool             sparse; /* shadows and occlusion are found for a quarter of the pixels */
     KrsWindow        cover;  /* the tiles that the crop has a part of: what is traced */
     KrsPicture      *picture;
@@ -23,5 +31,9 @@ typedef struct Job {
 /* Traces ray number `index` of every pixel of the band and adds what it sees to the results.
    `done` and `share` of the job are its own. */
 bool phases_run(Job *job, WorkBlock *work, uint32_t index);
+
+/* ---- apart.c ---- */
+/* Finds the parts that are marched one by one in this frame, and their kernels. */
+bool apart_prepare(Job *job, KrsFrame *frame);
 
 #endif

@@ -50,7 +50,8 @@ static bool settle_options(Job *job)
     o->planes = first_of(o->planes, 0, KRS_PLANE_ALL);
     o->most_steps = first_of(o->most_steps, 0, MOST_STEPS);
     if ((unsigned)o->trace >= KRS_TRACE_COUNT || (unsigned)o->schedule >= KRS_SCHEDULE_COUNT ||
-        (unsigned)o->shadows >= KRS_SHADOWS_COUNT)
+        (unsigned)o->shadows >= KRS_SHADOWS_COUNT ||
+        (unsigned)o->components >= KRS_COMPONENTS_COUNT)
         return refuse(job, "there is no such method, schedule or kind of shadow");
     rendering_choose(job->rendering, &o->trace, &o->schedule);
     if (o->schedule == KRS_SCHEDULE_REFILL && !job->gpu->votes)
@@ -76,6 +77,13 @@ static bool settle_options(Job *job)
     return true;
 }
 
+/* How far around a hit its normal is looked for, in pixels; more than half a pixel: what is finer
+   is filtered.  Several rays of a pixel show it by themselves.  bench/minify found the number. */
+static float normal_reach(const KrsRenderOptions *options)
+{
+    return options->no_filter || options->samples > 1 ? 0.5f : 0.7f;
+}
+
 /* Reads the frame: camera, lights, parameters. */
 static bool settle_frame(Job *job, KrsFrame *frame)
 {
@@ -90,6 +98,7 @@ static bool settle_frame(Job *job, KrsFrame *frame)
                            " height is not one");
     job->frame.error = (float)job->options.error;
     job->frame.most_steps = job->options.most_steps;
+    job->frame.blur = normal_reach(&job->options);
     memcpy(job->rendering->frame.bytes, &job->frame, sizeof job->frame);
     return rendering_set_parameters(job->rendering, frame) &&
            rendering_set_lights(job->rendering, job->view.lights, job->view.light_count);
@@ -263,16 +272,33 @@ static KrsWindow whole_tiles(const KrsRenderOptions *options)
     return cover;
 }
 
-static bool render(Job *job)
+/* The kernels of primary rays and beams, of all components or part by part. */
+static bool find_marches(Job *job, KrsFrame *frame)
+{
+    const KrsRenderOptions *options = &job->options;
+    if (!apart_prepare(job, frame))
+        return false;
+    if (job->part_count > 0)
+        return true;
+    job->trace = rendering_trace(job->rendering, options->trace, options->schedule, 0);
+    job->beams = options->no_beams
+                     ? job->trace
+                     : rendering_beams(job->rendering, options->trace, options->schedule);
+    return job->trace && job->beams;
+}
+
+static bool render(Job *job, KrsFrame *frame)
 {
     job->sparse = !job->options.no_upsampling && job->options.shadows == KRS_SHADOWS_SOFT;
     job->cover = whole_tiles(&job->options);
     uint32_t rows = make_room(job);
     if (rows == 0)
         return false;
-    job->trace = rendering_trace(job->rendering, job->options.trace, job->options.schedule);
+    if (!find_marches(job, frame))
+        return false;
     job->secondary = rendering_secondary(job->rendering, job->options.schedule);
-    if (!job->trace || !job->secondary || !wait_for_kernels(job))
+    job->material = rendering_material(job->rendering);
+    if (!job->secondary || !job->material || !wait_for_kernels(job))
         return false;
     double start = clock_ms();
     for (uint32_t from = 0; from < job->cover.height; from += rows) {
@@ -318,7 +344,7 @@ KrsStatus krs_render(KrsRendering *rendering, KrsFrame *frame, const KrsRenderOp
     if (!job.picture)
         return job.gpu->status;
     view_matrices(&job.view.camera, job.options.width, job.options.height, job.picture);
-    if (!render(&job)) {
+    if (!render(&job, frame)) {
         krs_picture_free(job.picture);
         return job.gpu->status;
     }

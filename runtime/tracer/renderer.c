@@ -7,8 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Bindings of set 1; those in between are the buffers of a band. */
-enum { FRAME_BINDING = 0, CONTROL_BINDING = 4, LIGHTS_BINDING = 8, BINDING_COUNT = 10 };
+#include "runtime/tracer/stage.h"
+
+/* Bindings of set 1, with those of stage.h; those in between are the buffers of a band. */
+enum { CONTROL_BINDING = 4, LIGHTS_BINDING = 8 };
 
 KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
 {
@@ -16,117 +18,10 @@ KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
     return gpu_list(&gpu, devices, capacity, count) ? KRS_OK : gpu.status;
 }
 
+/* The radius of a zone in which nothing is. */
+#define NO_ZONE (-1e30f)
+
 /* ---- The renderer ---- */
-
-static bool set_layout_create(Gpu *gpu, uint32_t count, VkDescriptorSetLayout *layout)
-{
-    VkDescriptorSetLayoutBinding bindings[BINDING_COUNT];
-    for (uint32_t i = 0; i < count; i++)
-        bindings[i] = (VkDescriptorSetLayoutBinding){
-            .binding = i,
-            .descriptorType = i == FRAME_BINDING ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
-                                                 : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-            .descriptorCount = 1,
-            .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
-        };
-    VkDescriptorSetLayoutCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-        .bindingCount = count,
-        .pBindings = bindings,
-    };
-    TRY(gpu, "prepare the renderer",
-        vkCreateDescriptorSetLayout(gpu->device, &info, NULL, layout));
-    return true;
-
-failed:
-    return false;
-}
-
-static bool layouts_create(KrsRenderer *renderer)
-{
-    Gpu *gpu = &renderer->gpu;
-    if (!set_layout_create(gpu, 1, &renderer->scene_layout) ||
-        !set_layout_create(gpu, BINDING_COUNT, &renderer->frame_layout))
-        return false;
-    VkPushConstantRange        work = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(WorkBlock)};
-    VkPipelineLayoutCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-        .setLayoutCount = 2,
-        .pSetLayouts = (VkDescriptorSetLayout[]){renderer->scene_layout, renderer->frame_layout},
-        .pushConstantRangeCount = 1,
-        .pPushConstantRanges = &work,
-    };
-    TRY(gpu, "prepare the renderer",
-        vkCreatePipelineLayout(gpu->device, &info, NULL, &renderer->layout));
-    return true;
-
-failed:
-    return false;
-}
-
-/* ---- Rehearsals ---- */
-
-static void bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer)
-{
-    vkUpdateDescriptorSets(gpu->device, 1, &(VkWriteDescriptorSet){
-        .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-        .dstSet = set,
-        .dstBinding = binding,
-        .descriptorCount = 1,
-        .descriptorType = binding == FRAME_BINDING ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
-                                                   : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-        .pBufferInfo = &(VkDescriptorBufferInfo){buffer->buffer, 0, buffer->size},
-    }, 0, NULL);
-}
-
-/* A set of buffers that hold zeros: no kernel finds any item in them. */
-static bool idle_create(KrsRenderer *renderer)
-{
-    Gpu        *gpu = &renderer->gpu;
-    const char *attempt = "prepare the renderer";
-    enum { IDLE_BYTES = 4096 };
-    if (!buffer_create(gpu, &renderer->idle, IDLE_BYTES, SHARED, "rehearsals"))
-        return false;
-    memset(renderer->idle.bytes, 0, IDLE_BYTES);
-    TRY(gpu, attempt, vkCreateDescriptorPool(gpu->device, &(VkDescriptorPoolCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-        .maxSets = 1,
-        .poolSizeCount = 2,
-        .pPoolSizes = (VkDescriptorPoolSize[]){
-            {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
-            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BINDING_COUNT - 1},
-        },
-    }, NULL, &renderer->idle_pool));
-    TRY(gpu, attempt, vkAllocateDescriptorSets(gpu->device, &(VkDescriptorSetAllocateInfo){
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-        .descriptorPool = renderer->idle_pool,
-        .descriptorSetCount = 1,
-        .pSetLayouts = &renderer->frame_layout,
-    }, &renderer->idle_set));
-    for (uint32_t binding = 0; binding < BINDING_COUNT; binding++)
-        bind(gpu, renderer->idle_set, binding, &renderer->idle);
-    return true;
-
-failed:
-    return false;
-}
-
-/* Makes kernels and sends them through the driver once, in the background. */
-static bool make_kernels(KrsRenderer *renderer, VkDescriptorSet scene_set,
-                         const KernelRequest *requests, size_t count, double *spirv_ms,
-                         double *pipeline_ms)
-{
-    const VkDescriptorSet sets[2] = {scene_set, renderer->idle_set};
-    const WorkBlock       work = {.groups = 1, .stride = 1};
-    if (!kernel_create_all(&renderer->gpu, requests, count, renderer->layout, spirv_ms,
-                           pipeline_ms))
-        return false;
-    for (size_t i = 0; i < count; i++)
-        if (!gpu_rehearse(&renderer->gpu, requests[i].kernel->pipeline, renderer->layout, sets,
-                          &work, sizeof work))
-            return false;
-    return true;
-}
 
 KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
 {
@@ -137,6 +32,9 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
         return KRS_OUT_OF_MEMORY;
     if (!gpu_open(&renderer->gpu, options))
         return renderer->gpu.status;
+    KrsEarlyOuts early_outs = options ? options->early_outs : KRS_EARLY_OUTS_DEFAULT;
+    renderer->early_outs    = early_outs == KRS_EARLY_OUTS_DEFAULT ? !gpu_is_cpu(&renderer->gpu)
+                                                                 : early_outs == KRS_EARLY_OUTS_ON;
     spirv_start();
     renderer->compiler_started = true;
     const KernelRequest kernels[] = {
@@ -144,9 +42,9 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
         {&renderer->fill, {.file = "fill.comp"}},
         {&renderer->shade, {.file = "shade.comp"}},
     };
-    if (!layouts_create(renderer) || !idle_create(renderer) ||
-        !make_kernels(renderer, VK_NULL_HANDLE, kernels, sizeof kernels / sizeof kernels[0],
-                      &renderer->spirv_ms, &renderer->pipeline_ms))
+    if (!stage_create(renderer) ||
+        !stage_make_kernels(renderer, VK_NULL_HANDLE, kernels, sizeof kernels / sizeof kernels[0],
+                            &renderer->spirv_ms, &renderer->pipeline_ms))
         return renderer->gpu.status;
     return KRS_OK;
 }
@@ -161,11 +59,7 @@ void krs_renderer_free(KrsRenderer *renderer)
         kernel_destroy(gpu, &renderer->background);
         kernel_destroy(gpu, &renderer->fill);
         kernel_destroy(gpu, &renderer->shade);
-        vkDestroyDescriptorPool(gpu->device, renderer->idle_pool, NULL);
-        buffer_destroy(gpu, &renderer->idle);
-        vkDestroyPipelineLayout(gpu->device, renderer->layout, NULL);
-        vkDestroyDescriptorSetLayout(gpu->device, renderer->frame_layout, NULL);
-        vkDestroyDescriptorSetLayout(gpu->device, renderer->scene_layout, NULL);
+        stage_destroy(renderer);
     }
     gpu_close(gpu);
     if (renderer->compiler_started)
@@ -200,7 +94,7 @@ uint64_t krs_renderer_complaints(const KrsRenderer *renderer)
 void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding,
                     const Buffer *buffer)
 {
-    bind(&rendering->renderer->gpu, set, binding, buffer);
+    stage_bind(&rendering->renderer->gpu, set, binding, buffer);
 }
 
 static bool sets_create(KrsRendering *rendering)
@@ -237,10 +131,10 @@ failed:
 static bool buffers_create(KrsRendering *rendering)
 {
     Gpu     *gpu = &rendering->renderer->gpu;
-    uint32_t slots = rendering->program->parameter_slots;
+    uint32_t slots = rendering->program->parameter_slots + KRS_MOST_ZONES;
     if (slots > gpu->properties.limits.maxUniformBufferRange / (4 * sizeof(float))) {
         gpu_refuse(gpu, KRS_NO_DEVICE, "the device has no room for the scene's %u parameters",
-                   slots);
+                   rendering->program->parameter_slots);
         return false;
     }
     if (!buffer_create(gpu, &rendering->parameters, (VkDeviceSize)slots * 4 * sizeof(float), SHARED,
@@ -263,7 +157,7 @@ void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedul
     bool       software = gpu_is_cpu(gpu);
     bool       heavy = rendering->program->flops >= FLOPS_WORTH_REFILL && gpu->votes;
     if (*trace == KRS_TRACE_DEFAULT)
-        *trace = KRS_TRACE_AUTO;
+        *trace = rendering->program->along ? KRS_TRACE_EXACT : KRS_TRACE_AUTO;
     if (*schedule == KRS_SCHEDULE_DEFAULT)
         *schedule = !software ? KRS_SCHEDULE_QUEUE
                   : heavy     ? KRS_SCHEDULE_REFILL
@@ -276,65 +170,167 @@ static KrsSchedule schedule_of_kernel(KrsSchedule schedule)
     return schedule == KRS_SCHEDULE_QUEUE ? KRS_SCHEDULE_PIXEL : schedule;
 }
 
+/* On devices of type CPU alone: others leave far components out by branches. */
+bool rendering_marches_apart(const KrsRendering *rendering, KrsComponents components)
+{
+    bool by_default = rendering->program->apart && gpu_is_cpu(&rendering->renderer->gpu) &&
+                      !rendering->renderer->early_outs;
+    return rendering->program->group_count > 0 && !rendering->program->along &&
+           (components == KRS_COMPONENTS_DEFAULT ? by_default : components == KRS_COMPONENTS_APART);
+}
+
 typedef struct Variant {
-    char defines[64];
+    char defines[128];
 } Variant;
 
-static Variant name_variant(KrsTrace trace, KrsSchedule schedule)
+/* By the numbers of AlongMethod. */
+static const char *const along_names[] = {"#define ALONG 0\n", "#define ALONG 1\n",
+                                          "#define ALONG 2\n"};
+
+static Variant name_variant(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule)
 {
-    Variant variant;
-    snprintf(variant.defines, sizeof variant.defines, "#define TRACE %du\n#define REFILL %d\n",
-             (int)trace, schedule == KRS_SCHEDULE_REFILL);
+    uint32_t zones = rendering->in_use->zones;
+    bool     by_ray = trace >= KRS_TRACE_EXACT;
+    bool     along = by_ray && rendering->program->along;
+    Variant  variant;
+    int      length = snprintf(variant.defines, sizeof variant.defines,
+                               "#define TRACE %du\n#define REFILL %d\n%s%s",
+                               (int)(by_ray ? KRS_TRACE_PLAIN : trace),
+                               schedule == KRS_SCHEDULE_REFILL,
+                               rendering->renderer->early_outs ? "#define EARLY_OUTS\n" : "",
+                               along ? along_names[trace - KRS_TRACE_EXACT] : "");
+    if (zones > 0)
+        snprintf(variant.defines + length, sizeof variant.defines - (size_t)length,
+                 "#define ZONES %u\n", zones);
     return variant;
+}
+
+static Variant name_group(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+                          uint32_t group)
+{
+    Variant variant = name_variant(rendering, trace, schedule);
+    size_t  length  = strlen(variant.defines);
+    if (group > 0)
+        snprintf(variant.defines + length, sizeof variant.defines - length, "#define GROUP %u\n",
+                 group);
+    return variant;
+}
+
+static Kernel *find_kernel(KrsRendering *rendering, Kernel *kernel, const char *file,
+                           Variant variant)
+{
+    KernelRequest request = {kernel, {file, rendering->program->glsl, variant.defines}};
+    if (!kernel->pipeline &&
+        !stage_make_kernels(rendering->renderer, rendering->scene_set, &request, 1,
+                            &rendering->spirv_ms, &rendering->pipeline_ms))
+        return NULL;
+    return kernel;
 }
 
 static Kernel *find_variant(KrsRendering *rendering, Kernel *kernel, const char *file,
                             KrsTrace trace, KrsSchedule schedule)
 {
-    Variant       variant = name_variant(trace, schedule);
-    KernelRequest request = {kernel, {file, rendering->program->glsl, variant.defines}};
-    if (!kernel->pipeline &&
-        !make_kernels(rendering->renderer, rendering->scene_set, &request, 1,
-                      &rendering->spirv_ms, &rendering->pipeline_ms))
-        return NULL;
-    return kernel;
+    return find_kernel(rendering, kernel, file, name_variant(rendering, trace, schedule));
 }
 
-Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule)
+Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+                        uint32_t group)
 {
     schedule = schedule_of_kernel(schedule);
-    return find_variant(rendering, &rendering->trace[trace][schedule], "trace.comp", trace,
-                        schedule);
+    return find_kernel(rendering, &rendering->in_use->trace[trace][schedule][group], "trace.comp",
+                       name_group(rendering, trace, schedule, group));
+}
+
+Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule)
+{
+    return rendering_trace(rendering, trace >= KRS_TRACE_EXACT ? KRS_TRACE_PLAIN : trace, schedule,
+                           0);
 }
 
 Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule)
 {
     schedule = schedule_of_kernel(schedule);
-    return find_variant(rendering, &rendering->secondary[schedule], "secondary.comp",
+    return find_variant(rendering, &rendering->in_use->secondary[schedule], "secondary.comp",
                         KRS_TRACE_PLAIN, schedule);
 }
 
-/* Those that a picture by default needs. */
-static bool kernels_create(KrsRendering *rendering)
+Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule)
 {
-    const char *scene = rendering->program->glsl;
-    KrsTrace    trace = KRS_TRACE_DEFAULT;
-    KrsSchedule schedule = KRS_SCHEDULE_DEFAULT;
+    schedule = schedule_of_kernel(schedule);
+    return find_variant(rendering, &rendering->in_use->query[schedule], "query.comp",
+                        KRS_TRACE_AUTO, schedule);
+}
+
+Kernel *rendering_material(KrsRendering *rendering)
+{
+    return find_variant(rendering, &rendering->in_use->material, "material.comp", KRS_TRACE_PLAIN,
+                        KRS_SCHEDULE_PIXEL);
+}
+
+Kernel *rendering_sample(KrsRendering *rendering)
+{
+    return find_variant(rendering, &rendering->in_use->sample, "sample.comp", KRS_TRACE_PLAIN,
+                        KRS_SCHEDULE_PIXEL);
+}
+
+/* Those that a picture by default, or questions, need, at the same time. */
+static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
+{
+    const char   *scene = rendering->program->glsl;
+    SceneKernels *to = rendering->in_use;
+    KrsTrace      trace = KRS_TRACE_DEFAULT;
+    KrsSchedule   schedule = KRS_SCHEDULE_DEFAULT;
     rendering_choose(rendering, &trace, &schedule);
     schedule = schedule_of_kernel(schedule);
-    Variant       primary = name_variant(trace, schedule);
-    Variant       plain = name_variant(KRS_TRACE_PLAIN, schedule);
-    KernelRequest kernels[] = {
-        {&rendering->trace[trace][schedule], {"trace.comp", scene, primary.defines}},
-        {&rendering->secondary[schedule], {"secondary.comp", scene, plain.defines}},
-        {&rendering->material, {"material.comp", scene, NULL}},
+    Variant       primary[1 + KRS_MOST_GROUPS];
+    Variant       plain = name_variant(rendering, KRS_TRACE_PLAIN, schedule);
+    Variant       query = name_variant(rendering, KRS_TRACE_AUTO, schedule);
+    Variant       simple = name_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    KernelRequest pictures[4 + KRS_MOST_GROUPS] = {
+        {&to->secondary[schedule], {"secondary.comp", scene, plain.defines}},
+        {&to->material, {"material.comp", scene, simple.defines}},
+        {&to->trace[KRS_TRACE_PLAIN][schedule][0], {"trace.comp", scene, plain.defines}},
     };
-    return make_kernels(rendering->renderer, rendering->scene_set, kernels,
-                        sizeof kernels / sizeof kernels[0], &rendering->spirv_ms,
-                        &rendering->pipeline_ms);
+    size_t   count = trace == KRS_TRACE_EXACT ? 3 : 2;
+    bool     apart = rendering_marches_apart(rendering, KRS_COMPONENTS_DEFAULT);
+    uint32_t last = apart ? (uint32_t)rendering->program->group_count : 0;
+    for (uint32_t group = apart; group <= last; group++) {
+        primary[group] = name_group(rendering, trace, schedule, group);
+        pictures[count++] = (KernelRequest){&to->trace[trace][schedule][group],
+                                            {"trace.comp", scene, primary[group].defines}};
+    }
+    KernelRequest questions[] = {
+        {&to->query[schedule], {"query.comp", scene, query.defines}},
+        {&to->sample, {"sample.comp", scene, simple.defines}},
+    };
+    bool for_pictures = purpose == KRS_FOR_PICTURES;
+    return stage_make_kernels(rendering->renderer, rendering->scene_set,
+                              for_pictures ? pictures : questions,
+                              for_pictures ? count : 2,
+                              &rendering->spirv_ms, &rendering->pipeline_ms);
+}
+
+static void kernels_destroy(Gpu *gpu, SceneKernels *kernels)
+{
+    kernel_destroy(gpu, &kernels->material);
+    kernel_destroy(gpu, &kernels->sample);
+    for (int schedule = 0; schedule < KRS_SCHEDULE_COUNT; schedule++) {
+        kernel_destroy(gpu, &kernels->query[schedule]);
+        kernel_destroy(gpu, &kernels->secondary[schedule]);
+        for (int trace = 0; trace < KRS_TRACE_COUNT; trace++)
+            for (uint32_t group = 0; group <= KRS_MOST_GROUPS; group++)
+                kernel_destroy(gpu, &kernels->trace[trace][schedule][group]);
+    }
+    *kernels = (SceneKernels){0};
 }
 
 KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRendering **out)
+{
+    return krs_rendering_new_for(renderer, scene, KRS_FOR_PICTURES, out);
+}
+
+KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, KrsPurpose purpose,
+                                KrsRendering **out)
 {
     *out = NULL;
     renderer_clear(renderer);
@@ -344,11 +340,13 @@ KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRen
     rendering->renderer = renderer;
     rendering->scene = scene;
     rendering->program = krs_scene_program(scene);
+    rendering->in_use = &rendering->kernels;
+    rendering->purpose = purpose;
     rendering->spirv_ms = renderer->spirv_ms;
     rendering->pipeline_ms = renderer->pipeline_ms;
     for (int i = 0; i < 2 * KRS_PHASE_COUNT; i++)
         rendering->groups_at_once[i / 2][i % 2] = gpu_is_cpu(&renderer->gpu) ? 8 : 1024;
-    if (!sets_create(rendering) || !buffers_create(rendering) || !kernels_create(rendering)) {
+    if (!sets_create(rendering) || !buffers_create(rendering) || !kernels_create(rendering, purpose)) {
         KrsStatus status = renderer->gpu.status;
         krs_rendering_free(rendering);
         return status;
@@ -365,18 +363,14 @@ void krs_rendering_free(KrsRendering *rendering)
     Band   *band = &rendering->band;
     Buffer *buffers[] = {&rendering->parameters, &rendering->frame, &rendering->control,
                          &rendering->lights, &rendering->points, &rendering->answers,
+                         &rendering->questions, &rendering->ways, &rendering->shares,
                          &band->ends, &band->fates, &band->hits, &band->results, &band->fetched,
                          &band->queue, &band->taken, &band->tiles};
     gpu_wait(gpu); /* rehearsals may still run; a device that is lost has none */
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         buffer_destroy(gpu, buffers[i]);
-    kernel_destroy(gpu, &rendering->material);
-    kernel_destroy(gpu, &rendering->sample);
-    for (int schedule = 0; schedule < KRS_SCHEDULE_COUNT; schedule++) {
-        kernel_destroy(gpu, &rendering->secondary[schedule]);
-        for (int trace = 0; trace < KRS_TRACE_COUNT; trace++)
-            kernel_destroy(gpu, &rendering->trace[trace][schedule]);
-    }
+    kernels_destroy(gpu, &rendering->kernels);
+    kernels_destroy(gpu, &rendering->zoned);
     vkDestroyDescriptorPool(gpu->device, rendering->pool, NULL);
     gpu_release(gpu, rendering);
 }
@@ -406,18 +400,54 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
     return true;
 }
 
+/* Kernels with room for so many zones: 1, 2, 4, 8 or 16; those that have more room stay. */
+static bool choose_zones(KrsRendering *rendering, size_t count)
+{
+    Gpu          *gpu = &rendering->renderer->gpu;
+    SceneKernels *zoned = &rendering->zoned;
+    rendering->in_use = count > 0 ? zoned : &rendering->kernels;
+    if (count <= zoned->zones)
+        return true;
+    if (!gpu_wait(gpu)) /* rehearsals of the old ones */
+        return false;
+    kernels_destroy(gpu, zoned);
+    for (zoned->zones = 1; zoned->zones < count;)
+        zoned->zones *= 2;
+    return kernels_create(rendering, rendering->purpose);
+}
+
 bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame)
 {
     /* Into memory of the host first: the compiler may read back what it writes. */
     Gpu   *gpu = &rendering->renderer->gpu;
     size_t slots = rendering->program->parameter_slots;
-    float (*block)[4] = gpu_alloc(gpu, slots, sizeof *block, "set the scene's parameters");
+    float (*block)[4] = gpu_alloc(gpu, slots + KRS_MOST_ZONES, sizeof *block,
+                                  "set the scene's parameters");
     if (!block)
         return false;
     krs_frame_parameters(frame, block);
-    memcpy(rendering->parameters.bytes, block, slots * sizeof *block);
+    size_t zones = krs_frame_zones(frame, block + slots);
+    for (size_t i = zones; i < KRS_MOST_ZONES; i++)
+        block[slots + i][3] = NO_ZONE;
+    memcpy(rendering->parameters.bytes, block, (slots + KRS_MOST_ZONES) * sizeof *block);
     gpu_release(gpu, block);
-    return true;
+    return choose_zones(rendering, zones);
+}
+
+uint32_t rendering_spread(const KrsRendering *rendering, uint32_t count)
+{
+    if (!gpu_is_cpu(&rendering->renderer->gpu) || count < 3)
+        return 1;
+    for (uint32_t step = (uint32_t)(0.618 * count);; step++) {
+        uint32_t a = count, b = step;
+        while (b != 0) {
+            uint32_t rest = a % b;
+            a = b;
+            b = rest;
+        }
+        if (a == 1)
+            return step;
+    }
 }
 
 void rendering_dispatch(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,

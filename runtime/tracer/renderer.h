@@ -12,13 +12,14 @@
 struct KrsRenderer {
     Gpu                   gpu;
     bool                  compiler_started;
+    bool                  early_outs; /* of kernels that march */
     VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters */
     VkDescriptorSetLayout frame_layout; /* set 1: what frame.glsl declares */
     VkPipelineLayout      layout;       /* of every kernel */
     Kernel                background, fill, shade;
     double                spirv_ms, pipeline_ms; /* of these three */
     VkDescriptorPool      idle_pool;             /* for rehearsals: */
-    VkDescriptorSet       idle_set;              /* a frame with nothing in it, */
+    VkDescriptorSet       idle_scene, idle_frame; /* with nothing in them, */
     Buffer                idle;                  /* all of it in here */
 };
 
@@ -29,32 +30,55 @@ typedef struct Band {
     Buffer   fetched; /* where the host reads the results */
 } Band;
 
+/* The kernels with the scene in them, each compiled when it is first needed. */
+typedef struct SceneKernels {
+    uint32_t zones; /* of the caller, that they have room for */
+    Kernel   material, sample;
+    Kernel   trace[KRS_TRACE_COUNT][KRS_SCHEDULE_COUNT][1 + KRS_MOST_GROUPS]; /* [0]: of all */
+    Kernel   secondary[KRS_SCHEDULE_COUNT];
+    Kernel   query[KRS_SCHEDULE_COUNT];
+} SceneKernels;
+
 struct KrsRendering {
     KrsRenderer      *renderer;
     const KrsScene   *scene;
     const KrsProgram *program;
-    Kernel            material;
-    Kernel            sample; /* when first needed, as the variants of these: */
-    Kernel            trace[KRS_TRACE_COUNT][KRS_SCHEDULE_COUNT], secondary[KRS_SCHEDULE_COUNT];
+    SceneKernels      kernels, zoned; /* without and with zones of the caller */
+    SceneKernels     *in_use;         /* those for the zones of the last frame */
+    KrsPurpose        purpose;
     double            spirv_ms, pipeline_ms;
 
     VkDescriptorPool  pool;
     VkDescriptorSet   scene_set, band_set, points_set;
     Buffer            parameters, frame, control, lights;
     Band              band;
-    Buffer            points, answers; /* of krs_sample */
+    Buffer            points, answers; /* of sample.comp */
+    Buffer            questions, ways, shares; /* of query.comp */
     uint32_t          groups_at_once[KRS_PHASE_COUNT][2]; /* learned from the last slices */
 };
 
 /* The kernels of primary and secondary rays for a method and a schedule (neither is the default),
-   compiled when they are first asked for.  NULL with the failure noted. */
-Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule);
+   compiled when they are first asked for, the former of a group of components, or of all (0).  NULL
+   with the failure noted. */
+Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+                        uint32_t group);
+/* The same for beams, which need distances for all directions. */
+Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule);
 Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule);
+Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule);
+/* Likewise. */
+Kernel *rendering_material(KrsRendering *rendering);
+Kernel *rendering_sample(KrsRendering *rendering);
 /* Puts what `make bench` found fastest for such a scene on such a device where the default is
    asked for. */
 void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule);
-/* Copies the values of the frame's parameters to the device. */
+/* Whether groups of components are marched one after the other, where that can be. */
+bool rendering_marches_apart(const KrsRendering *rendering, KrsComponents components);
+/* Copies the frame's parameters and zones to the device, and chooses the kernels for them. */
 bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame);
+/* A step through [0, count) that visits all and goes far each time, so that neighbours, which cost
+   alike, are spread over a device that deals out contiguous shares. */
+uint32_t rendering_spread(const KrsRendering *rendering, uint32_t count);
 /* Copies the lights of a frame to the device. */
 bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count);
 /* Points a binding of set 1 at a buffer. */
@@ -63,6 +87,13 @@ void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t bindi
 /* Records that a kernel runs with these push constants on `groups` workgroups. */
 void rendering_dispatch(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,
                         const void *work, uint32_t work_bytes, uint32_t groups);
+/* ---- sample.c ---- */
+enum { POINTS_AT_ONCE = 16384 };
+/* Makes room for that many points, and their answers. */
+bool sample_prepare(KrsRendering *rendering);
+/* What is at the first `count` of them; with normals, or the distance alone. */
+bool sample_run(KrsRendering *rendering, uint32_t count, bool normals);
+
 /* Forgets the message of the call before. */
 void renderer_clear(KrsRenderer *renderer);
 

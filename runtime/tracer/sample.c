@@ -5,23 +5,18 @@
 
 #include "runtime/tracer/renderer.h"
 
-/* Points of one dispatch. */
-#define BATCH 16384u
 enum { GROUP = 64 };
 
-static bool prepare(KrsRendering *rendering)
+bool sample_prepare(KrsRendering *rendering)
 {
     Gpu *gpu = &rendering->renderer->gpu;
-    if (!rendering->sample.pipeline &&
-        !kernel_create(gpu, &rendering->sample,
-                       &(KernelSource){"sample.comp", rendering->program->glsl, NULL},
-                       rendering->renderer->layout, &rendering->spirv_ms, &rendering->pipeline_ms))
-        return false;
     if (!rendering->points.buffer &&
-        !buffer_create(gpu, &rendering->points, BATCH * sizeof(PointBlock), SHARED, "points"))
+        !buffer_create(gpu, &rendering->points, POINTS_AT_ONCE * sizeof(PointBlock), SHARED,
+                       "points"))
         return false;
     if (!rendering->answers.buffer &&
-        !buffer_create(gpu, &rendering->answers, BATCH * sizeof(AnswerBlock), SHARED, "answers"))
+        !buffer_create(gpu, &rendering->answers, POINTS_AT_ONCE * sizeof(AnswerBlock), SHARED,
+                       "answers"))
         return false;
     rendering_bind(rendering, rendering->points_set, 0, &rendering->frame);
     rendering_bind(rendering, rendering->points_set, 1, &rendering->points);
@@ -45,18 +40,18 @@ static void take_answer(const AnswerBlock *answer, float *distance, KrsSurfacePo
     };
     memcpy(surface->color, answer->color, sizeof surface->color);
     memcpy(surface->emission, answer->emission, sizeof surface->emission);
+    memcpy(surface->normal, answer->normal, sizeof surface->normal);
 }
 
-static bool run_batch(KrsRendering *rendering, const float (*points)[3], uint32_t count)
+bool sample_run(KrsRendering *rendering, uint32_t count, bool normals)
 {
-    Gpu        *gpu = &rendering->renderer->gpu;
-    PointBlock *to = rendering->points.bytes;
-    double      ms = 0;
-    for (uint32_t i = 0; i < count; i++)
-        memcpy(to[i].point, points[i], sizeof points[i]);
-    if (!gpu_begin(gpu))
+    const uint32_t work[] = {count, normals ? 7 : 1}; /* of sample.comp */
+    Gpu    *gpu = &rendering->renderer->gpu;
+    Kernel *kernel = rendering_sample(rendering);
+    double  ms = 0;
+    if (!kernel || !gpu_begin(gpu))
         return false;
-    rendering_dispatch(rendering, &rendering->sample, rendering->points_set, &count, sizeof count,
+    rendering_dispatch(rendering, kernel, rendering->points_set, work, sizeof work,
                        (count + GROUP - 1) / GROUP);
     return gpu_finish(gpu, &ms);
 }
@@ -65,11 +60,15 @@ KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*poi
                      size_t count, float *distances, KrsSurfacePoint *surfaces)
 {
     renderer_clear(rendering->renderer);
-    if (!prepare(rendering) || !rendering_set_parameters(rendering, frame))
+    if (!sample_prepare(rendering) || !rendering_set_parameters(rendering, frame))
         return rendering->renderer->gpu.status;
-    for (size_t first = 0; first < count; first += BATCH) {
-        uint32_t batch = count - first < BATCH ? (uint32_t)(count - first) : BATCH;
-        if (!run_batch(rendering, points + first, batch))
+    for (size_t first = 0; first < count; first += POINTS_AT_ONCE) {
+        size_t      left = count - first;
+        uint32_t    batch = left < POINTS_AT_ONCE ? (uint32_t)left : POINTS_AT_ONCE;
+        PointBlock *to = rendering->points.bytes;
+        for (uint32_t i = 0; i < batch; i++)
+            memcpy(to[i].point, points[first + i], sizeof points[0]);
+        if (!sample_run(rendering, batch, surfaces != NULL))
             return rendering->renderer->gpu.status;
         const AnswerBlock *answers = rendering->answers.bytes;
         for (uint32_t i = 0; i < batch; i++)

@@ -119,9 +119,8 @@ static bool is_bounded(const double low[3], const double high[3])
     return bounded;
 }
 
-/* The box, a little larger: surfaces may touch it, and single precision must not lose them. */
-static void place_box(const KrsView *view, const double low[3], const double high[3],
-                      FrameBlock *block)
+void view_place_box(const KrsView *view, const double low[3], const double high[3],
+                    FrameBlock *block)
 {
     double size = finite_size(low, high), reach = 0;
     for (int i = 0; i < 3; i++) {
@@ -188,7 +187,7 @@ bool view_prepare(const KrsView *view, const double low[3], const double high[3]
         block->pixel_base = (float)pixel;
     else
         block->pixel_slope = (float)pixel;
-    place_box(view, low, high, block);
+    view_place_box(view, low, high, block);
     place_ends(view, low, high, basis.distance, block);
     return isfinite(block->farthest);
 }

@@ -13,6 +13,11 @@
 bool view_prepare(const KrsView *view, const double low[3], const double high[3], uint32_t width,
                   uint32_t height, FrameBlock *block);
 
+/* The box that rays are clipped to: this one, a little larger, since surfaces may touch it and
+   single precision must not lose them. */
+void view_place_box(const KrsView *view, const double low[3], const double high[3],
+                    FrameBlock *block);
+
 /* The matrices of a picture, for a camera that view_prepare has accepted. */
 void view_matrices(const KrsCamera *camera, uint32_t width, uint32_t height, KrsPicture *picture);
 

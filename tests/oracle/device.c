@@ -148,7 +148,11 @@ static void operations_agree(void **context)
         "a.shell(0.1)", "a.round(0.1)", "a.offset(0.2)", "a.elongate([0.5, 0, 1])",
         "a.mirror(plane([1, 1, 0], 0.3))", "a.align([1, 2, 3], [0, -1, 0.2])",
         "a.scale(0.3).repeat([1, 1.2, 0], [4, 3, 1])",
-        "a.scale(0.2).move([1.5, 0, 0]).repeat_polar(7)", "a.scale(0.3).repeat(0.8)"};
+        "a.scale(0.2).move([1.5, 0, 0]).repeat_polar(7)", "a.scale(0.3).repeat(0.8)",
+        "a.twist([0, 1, 0], 0.8)", "a.twist([1, 2, 0.5], -0.4)", "a.bend([1, 0, 0], 0.4)",
+        "a.scale([0.4, 3, 0.4]).bend([0, 0, 1], -1.1)", "a.taper([0, 1, 0], 1.2, 0.4)",
+        "a.displace(sin(3 * x) * cos(2 * y), 0.2)", "(a | b).displace(fbm(p, 3), 0.3)",
+        "(a - b).taper([1, 0, 0], 0.5, 1).twist([0, 1, 0], 0.5).bend([1, 0, 0], 0.2)"};
     (void)context;
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         char text[400];
@@ -169,7 +173,8 @@ static void functions_agree(void **context)
         "pow(1 + x * x, 0.7)", "x ^ 3 * 0.01", "mix(x, y, 0.3)", "smoothstep(-1, 2, x)",
         "clamp(x, -1, y)", "min(x, y, z)", "max([x, y, z])", "length(p - [1, 2, 3])",
         "dot(p, [1, 0.5, 0.2])", "length(cross(p, [0, 1, 0]))", "normalize(p + [20, 0, 0])[0]",
-        "distance(p, [1, 1, 1])", "sum([x, y, 2 * z])"};
+        "distance(p, [1, 1, 1])", "sum([x, y, 2 * z])", "noise(p)", "noise([z, x])", "noise(3 * y)",
+        "fbm(p, 4)"};
     (void)context;
     for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
         char text[400];
@@ -200,6 +205,45 @@ static void sequences_agree(void **context)
            "    mobius rotate([0, 0, 1], 0.3) * scale(1.3) * translate([0.1, 0.2, 0]);"
            "    reflect plane([0, 1, 1], 0.7); };",
            64);
+}
+
+static void inversions_agree(void **context)
+{
+    (void)context;
+    agrees("show sphere(0.5).move([0, 1, 0]).transform(invert());"
+           "show box([1, 1, 1]).transform(matrix([1, 0, 0, 0.4], [0, 1, 0, 0], [0, 0, 0.4, 0], 1));"
+           "show sphere(0.6).transform(invert([0, 0.2, 0], 0.5));",
+           64);
+    agrees("show krs { kernel sphere(0.35); for i in 0..9 {"
+           "    mobius scale(0.9) * rotate([0, 0, 1], 0.4 + 0.05 * i) * translate([0.6, 0, 0]);"
+           "    mobius invert(center: [0, -3, 0], radius: 3); reflect plane([-1, 0, 0], 0);"
+           "    kernel capsule([0, 0, 0], [0.5, 0.4, 0], radius: 0.08); } };",
+           256);
+    agrees("param t = 0.5 in [0, 1]; show krs { kernel box([0.3, 0.4, 0.5]);"
+           "    mobius invert([t, 2, 0], 2); mobius invert([0.5, 2, 0], 1 + t);"
+           "    reflect plane([1, 0, 0], 0.1); mobius invert([0, 0.3 * t, -1], 1); };",
+           256);
+}
+
+static void fractals_agree(void **context)
+{
+    static const char *const scenes[] = {
+        "show julia(c: [-0.2, 0.6, 0.2, 0.1]);", "show julia(c: [-1, 0.2, 0, 0], iterations: 5);",
+        "show julia(c: [-0.2, 0.6, 0.2, 0.1], power: 3, iterations: 6).rotate([1, 2, 3], 0.7);",
+        "show julia(c: [0.4, 0.3, 0.5, 0.1], power: 8, iterations: 3);",
+        "show mandelbulb(iterations: 3);", "show mandelbulb(power: 2, iterations: 8);",
+        "show mandelbulb(power: 5, iterations: 3).scale(2).move([0.1, 0.2, 0.3]);",
+        "param n = 4 in [2, 9]; param a = 0.1 in [-0.5, 0.5];"
+        "show julia(c: [a, 0.6, 0.2, a], power: 3, iterations: n) | mandelbulb(iterations: n - 1);",
+        "show meta([sphere(0.4).move([cos(i), sin(2 * i), 0]) for i in 0..7], level: 0.5);",
+        "show meta([sphere(0.4), box([1, 2, 0.3]) - sphere(0.5), torus(1.5, 0.2)],"
+        "    falloff: \"gaussian\", reach: 0.8);",
+        "show meta([sphere(0.4), sphere(0.2).move([1, 0, 0])], falloff: \"soft\", level: 0.3);",
+        "show union(meta([sphere(0.4), capsule([1, 0, 0], [0, 2, 1], 0.1)], falloff: \"exponential\","
+        "    reach: 0.9), julia(c: [-0.2, 0.6, 0.2, 0.1]), blend: 0.2);"};
+    (void)context;
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++)
+        agrees(scenes[i], 64);
 }
 
 static void parameters_agree(void **context)
@@ -241,6 +285,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(primitives_agree), cmocka_unit_test(operations_agree),
         cmocka_unit_test(functions_agree),  cmocka_unit_test(sequences_agree),
+        cmocka_unit_test(fractals_agree),
+        cmocka_unit_test(inversions_agree),
         cmocka_unit_test(parameters_agree), cmocka_unit_test(a_fault_is_found),
     };
     spirv_start();

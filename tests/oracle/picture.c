@@ -125,7 +125,7 @@ static Verdict compare(const char *text, double planted)
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
     assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT};
+    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .no_filter = true};
     assert_int_equal(krs_render(rendering, frame, &options, &picture), KRS_OK);
     assert_int_equal(picture->stats.unresolved, 0);
     assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);

@@ -866,6 +866,34 @@ static KrsPicture *take_scene(const char *text, KrsRenderOptions options)
     return picture;
 }
 
+/* The same where the distance is a bound, and so small a part of the true one at the tips of a long
+   ball that a ray which starts there seems to touch it. */
+static void lit_sides_of_bounds_are_lit(void **state)
+{
+    (void)state;
+    KrsPicture *picture = take_scene(
+        "light red { direction: [1, 0.4, 0.5], color: [1, 0, 0] }\n"
+        "light green { direction: [1, 0.4, 0.5], color: [0, 1, 0], shadow: false }\n"
+        "sky { zenith: #000000, horizon: #000000, ground: #000000 }\n"
+        "image { tone_map: \"none\" }\n"
+        "material white { color: [1, 1, 1], roughness: 1 }\n"
+        "camera { eye: [9, 4, 6], target: [2, 0, 0], fov: 30deg }\n"
+        "show sphere(1).scale([5, 1, 1]).paint(white);",
+        (KrsRenderOptions){.width = WIDTH, .height = HEIGHT});
+    int open = 0, dark = 0;
+    for (int k = 0; k < WIDTH * HEIGHT; k++) {
+        const float *color = picture->color + 4 * k;
+        if (picture->component[k] != 1 || color[1] < 0.01F)
+            continue;
+        open++;
+        dark += color[0] < 0.999F * color[1];
+    }
+    print_message("# hard, a long ball: %d pixels open to the light, %d dark\n", open, dark);
+    assert_true(open > 2000);
+    assert_int_equal(dark, 0);
+    krs_picture_free(picture);
+}
+
 static const KrsRenderOptions WALL_VIEW = {.width = 160, .height = 48, .no_upsampling = true};
 
 static int count_closed(const KrsPicture *picture)
@@ -1247,6 +1275,7 @@ int main(void)
         cmocka_unit_test(soft_shadows_are_the_least_openness),
         cmocka_unit_test(hard_shadows_end_where_rays_say),
         cmocka_unit_test(lit_sides_are_lit),
+        cmocka_unit_test(lit_sides_of_bounds_are_lit),
         cmocka_unit_test(open_ground_is_open),
         cmocka_unit_test(a_wall_closes_the_ground_at_its_foot),
         cmocka_unit_test(symmetric_scenes_have_symmetric_pictures),

@@ -25,9 +25,11 @@
  *     p  mostly fixed, positive or 0   w  mostly fixed width, sometimes 0
  *     b  truth                         i  instance number
  *     e  often a whole number in the middle of the box, so that two are equal there
+ *     s  mostly moves with the point, often from a steep place of gradient noise
  * and, always fixed:
  *     r  row of one rotation           u  unit vector              n  whole number 1..7
  *     l  -2..0                         h  0..2
+ *     k  whole number 2..5             q  -1/2..1/2
  * Rows without a line here have m, b and i as their types ask.
  */
 static const struct {
@@ -39,7 +41,9 @@ static const struct {
     {OP_smin_cubic, "mmw"},     {OP_smin_exponential, "mmw"}, {OP_smin_circular, "mmw"},
     {OP_smin_chamfer, "mmw"},   {OP_smin_stairs, "mmwn"},   {OP_blend_weight, "mmw"},
     {OP_less, "ee"},            {OP_less_equal, "ee"},      {OP_equal, "ee"},
-    {OP_not_equal, "ee"},
+    {OP_not_equal, "ee"},       {OP_noise2, "s"},           {OP_noise3, "s"},
+    {OP_julia, "mqkk"},         {OP_julia_trap, "mqkk"},    {OP_mandelbulb, "mkk"},
+    {OP_mandelbulb_trap, "mkk"},
 };
 
 typedef struct Row {
@@ -211,6 +215,8 @@ static double fixed_number(Random *random, char kind)
     case 'p': return below(random, 4) ? between(random, 0.3, 2) : 0;
     case 'w': return below(random, 6) ? between(random, 0.05, 2) : 0;
     case 'n': return 1 + below(random, 7);
+    case 'k': return 2 + below(random, 4);
+    case 'q': return between(random, -0.5, 0.5);
     case 'l': return -(double)below(random, 3);
     case 'h': return below(random, 3);
     default:  return between(random, -2, 2);
@@ -221,10 +227,32 @@ static double fixed_number(Random *random, char kind)
 static uint32_t moving_eighths(char kind)
 {
     switch (kind) {
-    case 'm':                     return 7;
+    case 'm': case 's':           return 7;
     case 'b': case 'i': case 'e': return 4;
     case 'c': case 'p': case 'w': return 1;
     default:                      return 0;
+    }
+}
+
+/* Of some places halfway between whole numbers, the one where noise rises most along an axis. */
+static void steep_place(Random *random, Operand *operand)
+{
+    Op     op = operand->type == TYPE_VEC2 ? OP_noise2 : OP_noise3;
+    double steepest = -1;
+    for (int k = 0; k < 40; k++) {
+        NodeValue place = {{0}};
+        for (uint32_t i = 0; i < operand->size; i++)
+            place.v[i] = floor(between(random, -1000, 1000)) + 0.5;
+        double middle = op_evaluate(op, TYPE_FLOAT, 0, &operand->type, &place).v[0];
+        for (uint32_t i = 0; i < operand->size; i++) {
+            NodeValue beside = place;
+            beside.v[i] += 1e-3;
+            double value = op_evaluate(op, TYPE_FLOAT, 0, &operand->type, &beside).v[0];
+            if (fabs(value - middle) > steepest) {
+                steepest = fabs(value - middle);
+                memcpy(operand->base, place.v, sizeof operand->base);
+            }
+        }
     }
 }
 
@@ -237,6 +265,7 @@ static void operand_make(Random *random, Operand *operand, char kind, GraphType 
         operand->base[i] = fixed_number(random, kind);
         if (kind == 'm' && narrow)
             operand->base[i] *= 0.01;
+
         if (below(random, 8) < (kind == 'e' ? 4 : kind == 'm'))
             operand->base[i] = round(operand->base[i]);
         if (kind == 'r')
@@ -246,6 +275,13 @@ static void operand_make(Random *random, Operand *operand, char kind, GraphType 
     }
     if (below(random, 8) < moving_eighths(kind))
         operand_move(random, operand, shared);
+    if (kind == 's' && below(random, 2)) { /* the point itself */
+        steep_place(random, operand);
+        operand->slope = 1;
+        for (uint32_t i = 0; i < operand->size; i++)
+            for (uint32_t j = 0; j < 3; j++)
+                operand->gradient[i][j] = i == j;
+    }
 }
 
 static char operand_kind(Op op, char letter, uint32_t i)
@@ -505,6 +541,7 @@ static bool only_jumps(Op op)
     case OP_less: case OP_less_equal: case OP_equal: case OP_not_equal: case OP_front:
     case OP_and: case OP_or: case OP_not:
     case OP_push_id: case OP_hash_id: case OP_join_id: case OP_id_unit:
+    case OP_julia_trap: case OP_mandelbulb_trap:
         return true;
     default:
         return false;
@@ -517,6 +554,8 @@ static bool is_broken_by(Row row, Mutation mutation)
     if (mutation == SMALLER_SLOPE || mutation == SMALLER_GRADIENT)
         return !only_jumps(row.op);
     uint32_t i = mutation - FORGET_OPERAND;
+    if (row.op == OP_guard && i == 3 && mutation != SMALLER_RANGE)
+        return false; /* it says where the value jumps, and nothing else */
     return mutation == SMALLER_RANGE || moving_eighths(operand_kind(row.op, row.signature[i], i));
 }
 

@@ -400,7 +400,7 @@ static void samples_converge_on_the_area(void **state)
 {
     Stage *stage = *state;
     double share = 0, pixel = 3.0 / HEIGHT;
-    KrsRenderOptions options = {.camera = FLAT, .error = 0.01};
+    KrsRenderOptions options = {.camera = FLAT, .error = 0.01, .no_filter = true};
     KrsPicture      *one = render(stage, options);
     options.samples = 32;
     KrsPicture *many = render(stage, options);

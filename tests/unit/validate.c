@@ -20,6 +20,7 @@ static double exaggeration;   /* the distance outside is this much too large */
 static double inside_factor;  /* the same inside */
 static bool   not_a_number;   /* in one half of space */
 static double device_error;   /* added to what the device says */
+static bool   an_estimate;    /* it claims to be no more */
 
 static double ball(const double point[3])
 {
@@ -30,14 +31,15 @@ static double ball(const double point[3])
     return distance * (distance > 0 ? exaggeration : inside_factor);
 }
 
-void krs_distance(KrsFrame *frame, const double (*points)[3], size_t count, double *distances)
+KrsStatus krs_distance(KrsFrame *frame, const double (*points)[3], size_t count, double *distances)
 {
     (void)frame;
     for (size_t i = 0; i < count; i++)
         distances[i] = ball(points[i]);
+    return KRS_OK;
 }
 
-void krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits)
+KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit *hits)
 {
     (void)frame;
     for (size_t i = 0; i < count; i++) {
@@ -49,6 +51,7 @@ void krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, KrsHit 
             hits[i].normal[axis] = points[i][axis] / size;
         }
     }
+    return KRS_OK;
 }
 
 KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3],
@@ -72,7 +75,7 @@ const KrsProgram *krs_scene_program(const KrsScene *scene)
 KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *component)
 {
     (void)scene;
-    *component = (KrsComponent){.name = "ball"};
+    *component = (KrsComponent){.name = "ball", .estimate = an_estimate};
     return index == 0 ? KRS_OK : KRS_BAD_ARGUMENT;
 }
 
@@ -163,6 +166,7 @@ static int be_honest(void **state)
     exaggeration = inside_factor = 1;
     not_a_number = false;
     device_error = 0;
+    an_estimate  = false;
     return 0;
 }
 
@@ -216,6 +220,31 @@ static void rounding_of_a_device_passes(void **state)
     assert_int_equal(validate(), KRS_OK);
 }
 
+/* The largest part of the way to the surface that validate finds the distance to be. */
+static double measured(void)
+{
+    static Validation v;
+    v = (Validation){.random = 1, .frame = (KrsFrame *)&something, .scene = (KrsScene *)&something};
+    choose_box(&v);
+    choose_points(&v);
+    assert_int_equal(try_balls(&v), KRS_OK);
+    assert_true(v.ways > 500);
+    assert_int_equal(v.balls, 0);
+    return v.reached;
+}
+
+static void an_estimate_is_measured(void **state)
+{
+    (void)state;
+    an_estimate = true;
+    assert_float_equal(measured(), 1, 0.01);
+    exaggeration = inside_factor = 0.6;
+    assert_float_equal(measured(), 0.6, 0.01);
+    exaggeration = 1.3;
+    assert_float_equal(measured(), 1.3, 0.02);
+    assert_int_equal(validate(), KRS_OK);
+}
+
 int main(void)
 {
 #define HONEST(test) cmocka_unit_test_setup(test, be_honest)
@@ -227,6 +256,7 @@ int main(void)
         HONEST(what_is_not_a_number_is_refuted),
         HONEST(a_device_that_disagrees_is_refuted),
         HONEST(rounding_of_a_device_passes),
+        HONEST(an_estimate_is_measured),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

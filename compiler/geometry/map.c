@@ -1,5 +1,6 @@
 /*
- * similarity.c: maps that keep shapes: x -> scale * R * x + shift.
+ * map.c: maps of space: those that keep shapes, x -> scale * R * x + shift, and what all have in
+ * common; moebius.c has those that invert.
  *
  * Scale, rows of R and shift are frame-time nodes, so a parameter can turn or move a shape; for
  * constants the graph folds everything away.  R is orthonormal by construction, which is why
@@ -7,6 +8,7 @@
  */
 #include "compiler/geometry/elaborate.h"
 
+#include <assert.h>
 #include <math.h>
 
 static const double ZERO[3] = {0, 0, 0};
@@ -16,29 +18,30 @@ static Node unit_axis(Graph *graph, int axis)
     return graph_vec3(graph, axis == 0, axis == 1, axis == 2);
 }
 
-static Similarity *similarity_new(Elaboration *e)
+Map *map_new(Elaboration *e)
 {
-    Similarity *map = arena_new(e->arena, Similarity);
-    map->scale      = graph_number(e->graph, 1);
+    Map *map   = arena_new(e->arena, Map);
+    map->scale = graph_number(e->graph, 1);
     for (int i = 0; i < 3; i++)
         map->rows[i] = unit_axis(e->graph, i);
     map->shift = graph_constant(e->graph, TYPE_VEC3, ZERO);
+    map->pole  = NODE_NONE;
     return map;
 }
 
-const Similarity *similarity_identity(Elaboration *e) { return similarity_new(e); }
+const Map *map_identity(Elaboration *e) { return map_new(e); }
 
-const Similarity *similarity_translation(Elaboration *e, Node shift)
+const Map *map_translation(Elaboration *e, Node shift)
 {
-    Similarity *map = similarity_new(e);
-    map->shift      = shift;
+    Map *map   = map_new(e);
+    map->shift = shift;
     return map;
 }
 
-const Similarity *similarity_scaling(Elaboration *e, Node scale)
+const Map *map_scaling(Elaboration *e, Node scale)
 {
-    Similarity *map = similarity_new(e);
-    map->scale      = scale;
+    Map *map   = map_new(e);
+    map->scale = scale;
     return map;
 }
 
@@ -71,9 +74,9 @@ static Node snap(Graph *g, Node node)
     return fabs(number - nearest) < 4e-16 ? graph_number(g, nearest) : node;
 }
 
-const Similarity *similarity_rotation(Elaboration *e, Node axis, Node angle)
+const Map *map_rotation(Elaboration *e, Node axis, Node angle)
 {
-    Similarity *map = similarity_new(e);
+    Map *map    = map_new(e);
     Node unit   = graph_op1(e->graph, OP_normalize, axis);
     Node cosine = snap(e->graph, graph_op1(e->graph, OP_cos, angle));
     Node sine   = snap(e->graph, graph_op1(e->graph, OP_sin, angle));
@@ -82,11 +85,11 @@ const Similarity *similarity_rotation(Elaboration *e, Node axis, Node angle)
 }
 
 /* The reflection x - 2 (u.x - w) u. */
-const Similarity *similarity_reflection(Elaboration *e, Node normal, Node offset)
+const Map *map_reflection(Elaboration *e, Node normal, Node offset)
 {
-    Graph      *g   = e->graph;
-    Similarity *map = similarity_new(e);
-    Node        two = graph_number(g, 2);
+    Graph *g   = e->graph;
+    Map   *map = map_new(e);
+    Node   two = graph_number(g, 2);
     for (int i = 0; i < 3; i++) {
         Node entry  = graph_component(g, normal, (uint32_t)i);
         Node factor = graph_op2(g, OP_mul, entry, two);
@@ -104,7 +107,7 @@ const Similarity *similarity_reflection(Elaboration *e, Node normal, Node offset
  * from and from+to, which maps from to -to, then in the plane perpendicular to `to`.  Opposite
  * directions leave the first plane undefined: then any perpendicular axis serves.
  */
-const Similarity *similarity_alignment(Elaboration *e, Node from, Node to)
+const Map *map_alignment(Elaboration *e, Node from, Node to)
 {
     Graph *g    = e->graph;
     Node   a    = graph_op1(g, OP_normalize, from);
@@ -123,22 +126,38 @@ const Similarity *similarity_alignment(Elaboration *e, Node from, Node to)
     Node bisector  = graph_op3(g, OP_select, opposite, aside, sum);
     bisector       = graph_op1(g, OP_normalize, bisector);
     Node zero      = graph_number(g, 0);
-    const Similarity *first  = similarity_reflection(e, bisector, zero);
+    const Map *first = map_reflection(e, bisector, zero);
     /* The first takes a to -b; when they are opposite it leaves a, which is -b, where it is. */
-    Node turned              = similarity_turn(e, first, a);
-    Node way                 = graph_op2(g, OP_sub, turned, b);
-    Node way_size            = graph_op1(g, OP_length, way);
-    Node still               = graph_op2(g, OP_less, way_size, tiny);
-    Node mirror              = graph_op3(g, OP_select, still, bisector, way);
-    mirror                   = graph_op1(g, OP_normalize, mirror);
-    const Similarity *second = similarity_reflection(e, mirror, zero);
-    return similarity_product(e, second, first);
+    Node turned       = map_turn(e, first, a);
+    Node way          = graph_op2(g, OP_sub, turned, b);
+    Node way_size     = graph_op1(g, OP_length, way);
+    Node still        = graph_op2(g, OP_less, way_size, tiny);
+    Node mirror       = graph_op3(g, OP_select, still, bisector, way);
+    mirror            = graph_op1(g, OP_normalize, mirror);
+    const Map *second = map_reflection(e, mirror, zero);
+    return map_product(e, second, first);
 }
 
-Node similarity_turn(Elaboration *e, const Similarity *f, Node vector)
+Node map_turn(Elaboration *e, const Map *f, Node vector)
 {
     return graph_op4(e->graph, OP_turn, vector, f->rows[0], f->rows[1], f->rows[2]);
 }
+
+Node map_apply(Elaboration *e, const Map *f, Node point)
+{
+    Graph *g     = e->graph;
+    Node   scale = f->scale;
+    if (f->pole != NODE_NONE) {
+        point       = graph_op2(g, OP_sub, point, f->pole);
+        Node square = graph_op2(g, OP_dot, point, point);
+        scale       = graph_op2(g, OP_div, scale, square);
+    }
+    Node turned = map_turn(e, f, point);
+    turned      = graph_op2(g, OP_scale, turned, scale);
+    return graph_op2(g, OP_add, turned, f->shift);
+}
+
+/* ---- products and inverses ---- */
 
 /* Row i of a product A B is the sum over j of A_ij times row j of B. */
 static Node product_row(Graph *g, Node row, const Node rows[3])
@@ -152,17 +171,48 @@ static Node product_row(Graph *g, Node row, const Node rows[3])
     return sum;
 }
 
-const Similarity *similarity_product(Elaboration *e, const Similarity *f, const Similarity *g)
+void turn_product(Elaboration *e, const Node a[3], const Node b[3], Node product[3])
 {
-    Graph      *graph = e->graph;
-    Similarity *map   = similarity_new(e);
-    map->scale        = graph_op2(graph, OP_mul, f->scale, g->scale);
     for (int i = 0; i < 3; i++)
-        map->rows[i] = product_row(graph, f->rows[i], g->rows);
-    Node turned = similarity_turn(e, f, g->shift);
-    turned      = graph_op2(graph, OP_scale, turned, f->scale);
-    map->shift  = graph_op2(graph, OP_add, turned, f->shift);
+        product[i] = product_row(e->graph, a[i], b);
+}
+
+static const Map *similarity_product(Elaboration *e, const Map *f, const Map *g)
+{
+    Map *map   = map_new(e);
+    map->scale = graph_op2(e->graph, OP_mul, f->scale, g->scale);
+    turn_product(e, f->rows, g->rows, map->rows);
+    map->shift = map_apply(e, f, g->shift);
     return map;
+}
+
+static bool is_identity(Elaboration *e, const Map *map)
+{
+    bool identity = map->pole == NODE_NONE && map->scale == graph_number(e->graph, 1) &&
+                    map->shift == graph_constant(e->graph, TYPE_VEC3, ZERO);
+    for (int i = 0; i < 3; i++)
+        identity = identity && map->rows[i] == unit_axis(e->graph, i);
+    return identity;
+}
+
+/* f(g(x)), f without maps before it: what can be one map becomes one. */
+static const Map *prepend(Elaboration *e, const Map *f, const Map *g)
+{
+    if (is_identity(e, f))
+        return g;
+    bool       plain  = f->pole == NODE_NONE && g->pole == NODE_NONE;
+    const Map *joined = plain ? similarity_product(e, f, g) : moebius_product(e, f, g);
+    if (joined)
+        return g->first ? prepend(e, joined, g->first) : joined;
+    Map *chain   = arena_new(e->arena, Map);
+    *chain       = *f;
+    chain->first = g;
+    return chain;
+}
+
+const Map *map_product(Elaboration *e, const Map *f, const Map *g)
+{
+    return prepend(e, f, f->first ? map_product(e, f->first, g) : g);
 }
 
 void transpose_rows(Graph *graph, const Node rows[3], Node transposed[3])
@@ -175,18 +225,26 @@ void transpose_rows(Graph *graph, const Node rows[3], Node transposed[3])
     }
 }
 
-const Similarity *similarity_inverse(Elaboration *e, const Similarity *f)
+static const Map *similarity_inverse(Elaboration *e, const Map *f)
 {
-    Graph      *g   = e->graph;
-    Similarity *map = similarity_new(e);
-    Node        one = graph_number(g, 1);
-    map->scale      = graph_op2(g, OP_div, one, f->scale);
+    Graph *g    = e->graph;
+    Map   *map  = map_new(e);
+    Node   one  = graph_number(g, 1);
+    map->scale  = graph_op2(g, OP_div, one, f->scale);
     transpose_rows(g, f->rows, map->rows);
-    Node back   = similarity_turn(e, map, f->shift);
+    Node back   = map_turn(e, map, f->shift);
     Node factor = graph_op1(g, OP_neg, map->scale);
     map->shift  = graph_op2(g, OP_scale, back, factor);
     return map;
 }
+
+const Map *map_inverse(Elaboration *e, const Map *f)
+{
+    const Map *back = f->pole == NODE_NONE ? similarity_inverse(e, f) : inversion_inverse(e, f);
+    return f->first ? map_product(e, map_inverse(e, f->first), back) : back;
+}
+
+/* ---- boxes ---- */
 
 /* Entries of an orthonormal matrix never leave [-1, 1], whatever their range was derived as. */
 static Range cosine_range(Range range)
@@ -194,13 +252,25 @@ static Range cosine_range(Range range)
     return (Range){fmax(-1, fmin(range.low, 1)), fmin(1, fmax(range.high, -1))};
 }
 
-Box similarity_box(Elaboration *e, const Similarity *f, Box box)
+MapRange map_range(Elaboration *e, const Map *f)
 {
-    Range rows[3][3], shift[3], scale = node_range(e, f->scale, 0);
+    MapRange range = {.inverts = f->pole != NODE_NONE, .scale = node_range(e, f->scale, 0)};
     for (uint32_t i = 0; i < 3; i++) {
         for (uint32_t j = 0; j < 3; j++)
-            rows[i][j] = range_mul(scale, cosine_range(node_range(e, f->rows[i], j)));
-        shift[i] = node_range(e, f->shift, i);
+            range.rows[i][j] = cosine_range(node_range(e, f->rows[i], j));
+        range.shift[i] = node_range(e, f->shift, i);
+        if (range.inverts)
+            range.pole[i] = node_range(e, f->pole, i);
     }
-    return box_move(box_turn(box, rows), shift);
+    return range;
+}
+
+Box map_box(Elaboration *e, const Map *f, Box box)
+{
+    MapRange range = map_range(e, f);
+    assert(!range.inverts);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            range.rows[i][j] = range_mul(range.scale, range.rows[i][j]);
+    return box_move(box_turn(box, range.rows), range.shift);
 }

@@ -1,0 +1,243 @@
+/*
+ * minify.c: how well a pixel shows what is far smaller than a pixel.
+ *
+ * Pictures of one and four samples, as they are and without the filtering of surfaces, are held
+ * against pictures of many samples without filtering: errors in what a screen shows, and flicker
+ * over a short flight.  bench/README.md says what the columns mean.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "compiler/compile.h"
+#include "runtime/film/film.h"
+#include "runtime/krs_vulkan.h"
+
+enum { WIDTH = 320, HEIGHT = 180, PIXELS = WIDTH * HEIGHT, FRAMES = 3 };
+
+static const struct Flight {
+    const char *name, *path, *camera; /* the camera moves with `time`, one unit a frame */
+} flights[] = {
+#define FLIGHT(name, path, camera) {name, path, camera},
+#include "bench/minify/flights.def"
+#undef FLIGHT
+};
+enum { FLIGHTS = sizeof flights / sizeof *flights };
+
+/* What is compared: samples, and whether surfaces are filtered. */
+static const struct Way {
+    uint32_t samples;
+    bool     plain;
+} ways[] = {{1, true}, {1, false}, {4, false}};
+enum { WAYS = sizeof ways / sizeof *ways };
+
+typedef struct Shot {
+    double color[PIXELS][3]; /* as a screen shows it, 0 to 255 */
+    double linear[PIXELS][3];
+    double alpha[PIXELS];
+    double ms; /* normals, materials, shadows, occlusion, light */
+} Shot;
+
+typedef struct Stage {
+    KrsRenderer  *renderer;
+    KrsScene     *scene;
+    KrsFrame     *frame;
+    KrsRendering *rendering;
+} Stage;
+
+static void fail(const char *what, const char *why)
+{
+    fprintf(stderr, "minify: %s: %s\n", what, why);
+    exit(1);
+}
+
+static void complain(void *user, const KrsDiagnostic *diagnostic)
+{
+    (void)user;
+    fprintf(stderr, "%s\n", diagnostic->text);
+}
+
+/* The scene's text with another camera. */
+static char *text_of(const struct Flight *flight)
+{
+    static char text[20000];
+    FILE  *file = fopen(flight->path, "rb");
+    if (!file)
+        fail(flight->path, "cannot read it");
+    size_t length = fread(text, 1, sizeof text - 1000, file);
+    fclose(file);
+    text[length] = '\0';
+    char *camera = strstr(text, "\ncamera {");
+    char *end    = camera ? strchr(camera, '}') : NULL;
+    if (!end)
+        fail(flight->path, "it has no camera");
+    memset(camera, ' ', (size_t)(end - camera) + 1);
+    strcat(text, flight->camera);
+    return text;
+}
+
+static Stage stage_open(KrsRenderer *renderer, const struct Flight *flight)
+{
+    Stage       stage   = {.renderer = renderer};
+    const char *text    = text_of(flight);
+    KrsOptions  options = {.diagnostic = complain};
+    if (krs_compile_text(text, strlen(text), flight->path, &options, &stage.scene) != KRS_OK ||
+        krs_frame_new(stage.scene, &stage.frame) != KRS_OK)
+        fail(flight->name, "it does not compile");
+    if (krs_rendering_new(renderer, stage.scene, &stage.rendering) != KRS_OK)
+        fail(flight->name, krs_renderer_message(renderer));
+    return stage;
+}
+
+static void stage_close(Stage *stage)
+{
+    krs_rendering_free(stage->rendering);
+    krs_frame_free(stage->frame);
+    krs_scene_free(stage->scene);
+}
+
+static void shoot(const Stage *stage, int frame, uint32_t samples, bool plain, Shot *shot)
+{
+    KrsPicture      *picture;
+    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = samples,
+                                .planes = KRS_PLANE_COLOR, .no_filter = plain,
+                                .seed = samples > 16 ? 7 : 0};
+    krs_frame_set_time(stage->frame, frame);
+    if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
+        fail("cannot render", krs_renderer_message(stage->renderer));
+    shot->ms = 0;
+    for (int i = KRS_PHASE_NORMALS; i <= KRS_PHASE_SHADING; i++)
+        shot->ms += picture->stats.phase_ms[i];
+    for (int i = 0; i < PIXELS; i++) {
+        double mapped[3];
+        for (int k = 0; k < 3; k++)
+            shot->linear[i][k] = picture->color[4 * i + k];
+        tone_map_apply(TONE_NEUTRAL, shot->linear[i], mapped);
+        for (int k = 0; k < 3; k++)
+            shot->color[i][k] = 255 * srgb_encode(mapped[k]);
+        shot->alpha[i] = picture->color[4 * i + 3];
+    }
+    krs_picture_free(picture);
+}
+
+/* Root mean square over the pixels that show something in either. */
+static double error_of(const Shot *shot, const Shot *truth)
+{
+    double sum = 0;
+    size_t count = 0;
+    for (int i = 0; i < PIXELS; i++) {
+        if (shot->alpha[i] == 0 && truth->alpha[i] == 0)
+            continue;
+        for (int k = 0; k < 3; k++) {
+            double apart = shot->color[i][k] - truth->color[i][k];
+            sum += apart * apart;
+        }
+        count += 3;
+    }
+    return sqrt(sum / (double)(count ? count : 1));
+}
+
+/* The truth with the coverage of a shot: what is left when only that is wrong. */
+static void cover(const Shot *shot, const Shot *truth, const Shot *sky, Shot *covered)
+{
+    *covered = *shot;
+    for (int i = 0; i < PIXELS; i++) {
+        double mapped[3], seen[3];
+        for (int k = 0; k < 3; k++) {
+            double share = truth->alpha[i];
+            double behind = (1 - share) * sky->linear[i][k];
+            double solid = share > 0 ? (truth->linear[i][k] - behind) / share : shot->linear[i][k];
+            seen[k] = shot->alpha[i] * solid + (1 - shot->alpha[i]) * sky->linear[i][k];
+        }
+        tone_map_apply(TONE_NEUTRAL, seen, mapped);
+        for (int k = 0; k < 3; k++)
+            covered->color[i][k] = 255 * srgb_encode(mapped[k]);
+    }
+}
+
+static double change_of(const Shot *a, const Shot *b)
+{
+    double sum = 0;
+    size_t count = 0;
+    for (int i = 0; i < PIXELS; i++) {
+        if (a->alpha[i] == 0 && b->alpha[i] == 0)
+            continue;
+        for (int k = 0; k < 3; k++)
+            sum += fabs(a->color[i][k] - b->color[i][k]);
+        count += 3;
+    }
+    return sum / (double)(count ? count : 1);
+}
+
+static double mean_alpha(const Shot *shot)
+{
+    double sum = 0;
+    for (int i = 0; i < PIXELS; i++)
+        sum += shot->alpha[i] / PIXELS;
+    return sum;
+}
+
+static double mean_light(const Shot *shot)
+{
+    double sum = 0;
+    for (int i = 0; i < PIXELS; i++)
+        for (int k = 0; k < 3; k++)
+            sum += shot->linear[i][k] / (3 * PIXELS);
+    return sum;
+}
+
+static void fly(KrsRenderer *renderer, const struct Flight *flight, uint32_t samples)
+{
+    static Shot truth[FRAMES], shots[WAYS][FRAMES], sky, covered;
+    Stage  stage = stage_open(renderer, flight);
+    struct Flight nothing = *flight;
+    nothing.path = "bench/minify/nothing.krs";
+    Stage  empty = stage_open(renderer, &nothing);
+    double still = 0;
+    for (int f = 0; f < FRAMES; f++) {
+        shoot(&stage, f, samples, true, &truth[f]);
+        for (int w = 0; w < WAYS; w++)
+            shoot(&stage, f, ways[w].samples, ways[w].plain, &shots[w][f]);
+    }
+    for (int f = 1; f < FRAMES; f++)
+        still += change_of(&truth[f], &truth[f - 1]) / (FRAMES - 1);
+    for (int w = 0; w < WAYS; w++) {
+        double error = 0, cut = 0, change = 0, ms = 0;
+        for (int f = 0; f < FRAMES; f++) {
+            shoot(&empty, f, 1, true, &sky);
+            cover(&shots[w][f], &truth[f], &sky, &covered);
+            error += error_of(&shots[w][f], &truth[f]) / FRAMES;
+            cut += error_of(&covered, &truth[f]) / FRAMES;
+            ms += shots[w][f].ms / FRAMES;
+            change += f ? change_of(&shots[w][f], &shots[w][f - 1]) / (FRAMES - 1) : 0;
+        }
+        printf("| %s | %u | %s | %.2f | %.2f | %.2f | %+.2f %% | %+.2f %% | %.0f |\n", flight->name,
+               ways[w].samples, ways[w].plain ? "no" : "yes", error, cut, change - still,
+               100 * (mean_alpha(&shots[w][0]) / mean_alpha(&truth[0]) - 1),
+               100 * (mean_light(&shots[w][0]) / mean_light(&truth[0]) - 1), ms);
+        fflush(stdout);
+    }
+    stage_close(&empty);
+    stage_close(&stage);
+}
+
+/* minify [SAMPLES [NAME]]: of the reference; one flight. */
+int main(int count, char **arguments)
+{
+    KrsRenderer *renderer;
+    uint32_t     samples = count > 1 ? (uint32_t)strtoul(arguments[1], NULL, 10) : 64;
+    spirv_start();
+    if (krs_renderer_new(NULL, &renderer) != KRS_OK)
+        fail("cannot open the device", renderer ? krs_renderer_message(renderer) : "no memory");
+    printf("%dx%d, %d frames, against %u samples\n\n", WIDTH, HEIGHT, FRAMES, samples);
+    printf("| scene | samples | filtered | error | of coverage | flicker | alpha | light | ms |\n"
+           "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+    for (int i = 0; i < FLIGHTS; i++)
+        if (count < 3 || strcmp(flights[i].name, arguments[2]) == 0)
+            fly(renderer, &flights[i], samples);
+    krs_renderer_free(renderer);
+    spirv_stop();
+    return 0;
+}

@@ -1,0 +1,249 @@
+/*
+ * lower_along.c: how far a ray may go, where that is more than a distance.
+ *
+ * A distance holds for all directions.  A ray has one, and along it a polynomial of the point is one
+ * of a single number t, whose next zero is the surface itself.  What is computed at a point is no
+ * zero yet but a long safe step towards it, so that the march along the ray does the iterations:
+ *     f(p + t v) = c0 + c1 t + ... + cn t^n,           |c0| > 0, taken as c0 > 0
+ * Only negative coefficients can bring it down: with m_k their sizes the least of (c0 / m_k)^(1/k)
+ * is between the root of c0 = sum m_k t^k and twice that (Cauchy), so it tells a good length w of
+ * the piece to look at.  On [0, w] the polynomial lies in the hull of its Bernstein coefficients b_i
+ * at t = i w / n, thus above the line from b0 through the one towards which the fall is steepest,
+ *     t = w min(1, b0 / max_i (b0 - b_i) n / i).
+ * Near a simple zero that is Newton's step, from the safe side; expanding about the point itself
+ * keeps single precision good where it matters (math.md, section 3).
+ *
+ * Unions, intersections and differences join such numbers as they join distances; affine maps keep
+ * them, as t counts the ray's own steps; whatever else there is counts with its distance.
+ */
+#include "compiler/geometry/lowering.h"
+
+#include <math.h>
+
+#include "compiler/graph/series.h"
+
+/* A ray in the space of a shape: point + t direction, with the same t everywhere. */
+typedef struct Ray {
+    Node point, direction, speed; /* speed: the length of direction */
+} Ray;
+
+/* The piece looked at, in first guesses (of 1 .. 6, 2 needs the fewest evaluations). */
+static const double PIECE = 2;
+static const double TINY  = 1e-30;
+
+static Node number(Lowering *l, double value) { return graph_number(l->graph, value); }
+
+static Node at_least(Lowering *l, Node node, double least)
+{
+    return graph_op2(l->graph, OP_max, node, number(l, least));
+}
+
+/* ---- polynomials ---- */
+
+static Node root_of(Lowering *l, Node a, uint32_t k)
+{
+    Graph *g = l->graph;
+    if (k == 1)
+        return a;
+    if (k % 2 == 0)
+        return root_of(l, graph_op1(g, OP_sqrt, a), k / 2);
+    Node logarithm = graph_op1(g, OP_log2, at_least(l, a, 1e-37));
+    return graph_op1(g, OP_exp2, graph_op2(g, OP_mul, logarithm, number(l, 1.0 / k)));
+}
+
+/* The length of the piece; bounded, so that its powers are numbers in single precision. */
+static Node piece_length(Lowering *l, const Series *s)
+{
+    Graph *g     = l->graph;
+    Node   least = number(l, pow(10, 34.0 / s->degree) / PIECE);
+    for (uint32_t k = 1; k <= s->degree; k++) {
+        Node fall  = at_least(l, graph_op1(g, OP_neg, s->c[k]), TINY);
+        Node guess = root_of(l, graph_op2(g, OP_div, s->c[0], fall), k);
+        least      = graph_op2(g, OP_min, least, guess);
+    }
+    return graph_op2(g, OP_mul, least, number(l, PIECE));
+}
+
+static double binomial(uint32_t n, uint32_t k)
+{
+    double value = 1;
+    for (uint32_t i = 1; i <= k; i++)
+        value = value * (n - k + i) / i;
+    return value;
+}
+
+/* (b0 - b_i) n / i from the terms c_k w^k: the fall to the i-th Bernstein coefficient, per piece. */
+static Node fall_towards(Lowering *l, const Node *terms, uint32_t n, uint32_t i)
+{
+    Graph *g   = l->graph;
+    Node   sum = NODE_NONE;
+    for (uint32_t k = 1; k <= i; k++) {
+        double share = -binomial(i, k) / binomial(n, k) * n / i;
+        Node   term  = graph_op2(g, OP_mul, terms[k], number(l, share));
+        sum          = sum == NODE_NONE ? term : graph_op2(g, OP_add, sum, term);
+    }
+    return sum;
+}
+
+/* The safe step, for a series that is positive at t = 0. */
+static Node safe_step(Lowering *l, const Series *s)
+{
+    Graph *g     = l->graph;
+    Node   piece = piece_length(l, s), power = piece, steepest = NODE_NONE;
+    Node   terms[MOST_DEGREE + 1];
+    for (uint32_t k = 1; k <= s->degree; k++) {
+        terms[k] = graph_op2(g, OP_mul, s->c[k], power);
+        power    = graph_op2(g, OP_mul, power, piece);
+    }
+    for (uint32_t i = 1; i <= s->degree; i++) {
+        Node fall = fall_towards(l, terms, s->degree, i);
+        steepest  = steepest == NODE_NONE ? fall : graph_op2(g, OP_max, steepest, fall);
+    }
+    Node share = graph_op2(g, OP_div, s->c[0], at_least(l, steepest, TINY));
+    share      = graph_op2(g, OP_min, share, number(l, 1));
+    return graph_op2(g, OP_mul, piece, share);
+}
+
+/* The r with r sum n |Pn| r^(n-1) = |P0|: the fixed point of the paper, found as a root, since its
+   iterates run away from it where high orders count (math.md, section 3). */
+static Node taylor_radius(Lowering *l, Series *s)
+{
+    for (uint32_t k = 2; k <= s->degree; k++)
+        s->c[k] = graph_op2(l->graph, OP_mul, s->c[k], number(l, k));
+    return series_radius(l->graph, s);
+}
+
+static Node along_series(Lowering *l, Series *s)
+{
+    Graph *g    = l->graph;
+    Node   sign = graph_op1(g, OP_sign, s->c[0]);
+    for (uint32_t k = 0; k <= s->degree; k++)
+        s->c[k] = l->method == ALONG_EXACT ? graph_op2(g, OP_mul, s->c[k], sign)
+                                           : graph_op1(g, OP_abs, s->c[k]);
+    Node step = l->method == ALONG_EXACT    ? safe_step(l, s)
+                : l->method == ALONG_TAYLOR ? taylor_radius(l, s)
+                                            : series_radius(g, s);
+    return graph_op2(g, OP_mul, step, sign);
+}
+
+static Node along_polynomial(Lowering *l, const Shape *shape, Ray ray)
+{
+    Series      s;
+    SeriesFault fault;
+    return graph_line_series(l->graph, shape->formula, ray.point, ray.direction, &s, &fault,
+                             l->scratch)
+               ? along_series(l, &s)
+               : NODE_NONE;
+}
+
+/* ---- shapes ---- */
+
+static Node along(Lowering *l, const Shape *shape, Ray ray);
+
+static Node along_distance(Lowering *l, const Shape *shape, Ray ray)
+{
+    Lowered ball = lower_shape(l, shape, place_bare(ray.point, false));
+    if (ball.distance == NODE_NONE)
+        return NODE_NONE;
+    Node distance = divide_by_slope(l->graph, ball.distance, shape->slope);
+    return graph_op2(l->graph, OP_div, distance, ray.speed);
+}
+
+static Node joined(Lowering *l, Op op, Node a, Node b)
+{
+    if (a == NODE_NONE || b == NODE_NONE)
+        return a == NODE_NONE ? b : a;
+    return graph_op2(l->graph, op, a, b);
+}
+
+static Node opposite(Lowering *l, Node a)
+{
+    return a == NODE_NONE ? a : graph_op1(l->graph, OP_neg, a);
+}
+
+static Node along_joint(Lowering *l, const Shape *shape, Ray ray)
+{
+    Node first = along(l, shape->children[0], ray), rest = NODE_NONE;
+    if (shape->kind == SHAPE_UNION)
+        rest = first;
+    for (uint32_t i = 1; i < shape->child_count; i++) {
+        Node next = along(l, shape->children[i], ray);
+        if (shape->kind == SHAPE_INTERSECTION) {
+            if (first == NODE_NONE || next == NODE_NONE)
+                return NODE_NONE;
+            first = joined(l, OP_max, first, next);
+        } else
+            rest = joined(l, OP_min, rest, next);
+    }
+    if (shape->kind == SHAPE_UNION)
+        return rest;
+    if (shape->kind == SHAPE_DIFFERENCE && first != NODE_NONE)
+        return joined(l, OP_max, first, opposite(l, rest));
+    return first;
+}
+
+/* Through x -> rows x scale + shift. */
+static Node along_map(Lowering *l, const Shape *shape, Ray ray)
+{
+    Graph *g = l->graph;
+    Map    linear = shape->map;
+    linear.shift  = graph_vec3(g, 0, 0, 0);
+    Ray inner = {before_map(g, &shape->map, ray.point), before_map(g, &linear, ray.direction),
+                 graph_op2(g, OP_div, ray.speed, shape->map.scale)};
+    return along(l, shape->children[0], inner);
+}
+
+static Node along_stretch(Lowering *l, const Shape *shape, Ray ray)
+{
+    Graph *g = l->graph;
+    Ray inner = {graph_op2(g, OP_div, ray.point, shape->values[0]),
+                 graph_op2(g, OP_div, ray.direction, shape->values[0]), NODE_NONE};
+    inner.speed = graph_op1(g, OP_length, inner.direction);
+    return along(l, shape->children[0], inner);
+}
+
+/* Whether a polynomial can be seen from here through what `along` can see through. */
+static bool sees_polynomial(const Shape *shape)
+{
+    bool sharp = shape->blend.width == NODE_NONE;
+    switch (shape->kind) {
+    case SHAPE_PRIMITIVE: return shape->formula != NODE_NONE && shape->degree > 0;
+    case SHAPE_UNION: case SHAPE_INTERSECTION: case SHAPE_DIFFERENCE:
+        for (uint32_t i = 0; sharp && i < shape->child_count; i++)
+            if (sees_polynomial(shape->children[i]))
+                return true;
+        return false;
+    case SHAPE_TRANSFORM: case SHAPE_STRETCH: case SHAPE_PAINT: case SHAPE_SMOOTH:
+        return sees_polynomial(shape->children[0]);
+    default: return false;
+    }
+}
+
+/* The t up to which nothing changes from outside to inside, negative from within; NODE_NONE: the
+   empty set. */
+static Node along(Lowering *l, const Shape *shape, Ray ray)
+{
+    l->graph->here = shape->span;
+    l->overflow    = l->overflow || l->graph->count > l->most;
+    if (l->overflow || !sees_polynomial(shape))
+        return l->overflow ? NODE_NONE : along_distance(l, shape, ray);
+    switch (shape->kind) {
+    case SHAPE_PRIMITIVE: return along_polynomial(l, shape, ray);
+    case SHAPE_TRANSFORM: return along_map(l, shape, ray);
+    case SHAPE_STRETCH:   return along_stretch(l, shape, ray);
+    case SHAPE_PAINT: case SHAPE_SMOOTH: return along(l, shape->children[0], ray);
+    default: return along_joint(l, shape, ray);
+    }
+}
+
+Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod method, Arena *scratch)
+{
+    if (!sees_polynomial(shape))
+        return plain;
+    Lowering l   = {.graph = graph, .scratch = scratch, .most = graph->count + MOST_LOWERED,
+                    .method = method};
+    Ray      ray = {graph_leaf(graph, OP_POINT), graph_leaf(graph, OP_DIRECTION),
+                    graph_number(graph, 1)};
+    Node     all = along(&l, shape, ray);
+    return l.overflow || all == NODE_NONE ? plain : all;
+}

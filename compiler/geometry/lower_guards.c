@@ -1,0 +1,73 @@
+/*
+ * lower_guards.c: levels of sequences that are far away are left out (math.md, section 1,
+ * "Early-out").
+ *
+ * All that the first stages of a sequence make lies in a box, and from outside of it the box is a
+ * bound for all of that.  A ray far away for the size of the box need not know more, and one that
+ * is nearer to what has been found already cannot.  A branch is worth this where it saves work,
+ * which is on graphics cards and in queries, not on lavapipe.
+ */
+#include "compiler/geometry/lowering.h"
+
+#include <math.h>
+
+/* Boxes are made larger by this part of the size of their coordinates: single precision. */
+static const double ROUNDING = 1e-6;
+
+/* Farther than this part of its radius, a box stands for what is in it.  Smaller parts leave more
+   out and make more steps; on the processor all from 0.25 to 1 cost the same within 10 %. */
+static const double FAR = 0.5;
+
+/* Farther than any scene. */
+static const double NOWHERE = 1e30;
+
+/* Where the point was just mapped, before kernels, and before everything.  What is guarded jumps,
+   so not where a slope is needed. */
+bool may_stop(const Lowering *l, const Shape *krs, uint32_t stage, Place place)
+{
+    const LevelBound *bound = &krs->bounds[stage];
+    bool last   = stage + 1 == krs->stage_count;
+    bool mapped = krs->stages[stage].kind == STAGE_KERNEL &&
+                  (last || krs->stages[stage + 1].kind != STAGE_KERNEL);
+    return l->guarded && !place.lipschitz && (last || mapped) && bound->ball.radius > 0 &&
+           isfinite(bound->ball.radius) && box_is_finite(bound->box);
+}
+
+/* A distance behind the maps as one outside of the sequence. */
+static Node out(Lowering *l, const Passage *passage, Node distance)
+{
+    Lowered behind  = lowered_nothing;
+    behind.distance = distance;
+    return passage_out(l, passage, behind).distance;
+}
+
+/* From where on nothing but the bound is of interest: never below where what is left is smaller
+   than a pixel. */
+static Node far_from(Lowering *l, const Stop *stop)
+{
+    Graph *g       = l->graph;
+    Node   radius  = graph_number(g, stop->bound->ball.radius);
+    Node   near    = graph_number(g, FAR * stop->bound->ball.radius);
+    Node   outside = graph_op2(g, OP_mul, out(l, &stop->passage, radius), l->unit);
+    Node   pixel   = graph_leaf(g, OP_FOOTPRINT);
+    Node   small   = graph_op2(g, OP_less, outside, pixel);
+    Node   always  = graph_number(g, -NOWHERE);
+    return graph_op3(g, OP_select, small, always, out(l, &stop->passage, near));
+}
+
+Node guard_stops(Lowering *l, const Stop *stops, uint32_t count, Node whole)
+{
+    Graph *g = l->graph;
+    for (uint32_t i = count; i-- > 0 && whole != NODE_NONE;) {
+        const Stop *stop   = &stops[i];
+        Box         box    = stop->bound->box;
+        double      largest = 0;
+        for (int k = 0; k < 3; k++)
+            largest = fmax(largest, fmax(fabs(box.axis[k].low), fabs(box.axis[k].high)));
+        Node bound  = box_distance(g, stop->passage.point, box_grow(box, ROUNDING * largest));
+        bound       = out(l, &stop->passage, bound);
+        Node so_far = stop->so_far == NODE_NONE ? graph_number(g, NOWHERE) : stop->so_far;
+        whole       = graph_op4(g, OP_guard, bound, so_far, whole, far_from(l, stop));
+    }
+    return whole;
+}

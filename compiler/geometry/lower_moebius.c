@@ -1,0 +1,178 @@
+/*
+ * lower_moebius.c: points and distances through conformal maps: the centred bound of math.md,
+ * section 2.4.
+ *
+ * An inversion takes balls to balls.  Around the image of a point let a ball of radius d be
+ * empty; what comes back of it is a ball that is not centred at the point, and the largest ball
+ * in it that is has 1 / r = sigma / d + 1 / X, where sigma is how much the map enlarges there
+ * and X the distance to its pole.  This is affine in 1 / d, so maps within maps carry two
+ * numbers: r = d / (A + B |d|).
+ */
+#include "compiler/geometry/lowering.h"
+
+#include <math.h>
+
+/* X is no less than this part of the radius of the sphere, so that everything stays finite. */
+static const double NEAR_POLE = 1e-6;
+
+/* Balls are made larger by this part: single precision.  The surface of a ball that is inverted
+   keeps off the pole, by this part of its radius, so that its image is no half-space. */
+static const double ROUNDING = 1e-5, KEEP_OFF = 0.1;
+
+Passage passage_new(Graph *g, Node point)
+{
+    return (Passage){point, graph_number(g, 1), NODE_NONE, NODE_NONE};
+}
+
+/* R^T way * factor + pole. */
+static Node behind_inversion(Graph *g, const Map *map, Node way, Node factor)
+{
+    Node rows[3];
+    transpose_rows(g, map->rows, rows);
+    Node e0 = graph_vec3(g, 1, 0, 0), e1 = graph_vec3(g, 0, 1, 0), e2 = graph_vec3(g, 0, 0, 1);
+    if (rows[0] != e0 || rows[1] != e1 || rows[2] != e2)
+        way = graph_op4(g, OP_turn, way, rows[0], rows[1], rows[2]);
+    way = graph_op2(g, OP_scale, way, factor);
+    return graph_op2(g, OP_add, way, map->pole);
+}
+
+static void passage_invert(Lowering *l, Passage *passage, const Map *map, NormalPath *path)
+{
+    Graph *g = l->graph;
+    Node   way     = graph_op2(g, OP_sub, passage->point, map->shift);
+    Node   square  = graph_op2(g, OP_dot, way, way);
+    Node   limit   = graph_number(g, NEAR_POLE * NEAR_POLE);
+    limit          = graph_op2(g, OP_mul, map->scale, limit);
+    square         = graph_op2(g, OP_max, square, limit);
+    Node   inverse = graph_op1(g, OP_inversesqrt, square); /* 1 / X */
+    Node   sigma   = graph_op2(g, OP_mul, inverse, inverse);
+    sigma          = graph_op2(g, OP_mul, map->scale, sigma);
+    if (passage->shrink == NODE_NONE) {
+        Node one        = graph_number(g, 1);
+        passage->shrink = graph_op2(g, OP_div, one, passage->scale);
+        passage->bend   = graph_number(g, 0);
+    }
+    Node bend       = graph_op2(g, OP_mul, passage->shrink, inverse);
+    passage->bend   = graph_op2(g, OP_add, passage->bend, bend);
+    passage->shrink = graph_op2(g, OP_mul, passage->shrink, sigma);
+    passage->point  = behind_inversion(g, map, way, sigma);
+    if (l->surfaces) {
+        Node one    = graph_number(g, 1);
+        Node axis   = graph_op2(g, OP_scale, way, inverse);
+        Node grown  = graph_op2(g, OP_div, one, sigma);
+        normal_flip(l, path, axis);
+        normal_turn(l, path, map->rows, grown);
+    }
+}
+
+void passage_map(Lowering *l, Passage *passage, const Map *map, NormalPath *path)
+{
+    Graph *g = l->graph;
+    if (map->pole != NODE_NONE) {
+        passage_invert(l, passage, map, path);
+        return;
+    }
+    passage->point = before_map(g, map, passage->point);
+    normal_turn(l, path, map->rows, map->scale);
+    if (passage->shrink == NODE_NONE)
+        passage->scale = graph_op2(g, OP_mul, passage->scale, map->scale);
+    else
+        passage->shrink = graph_op2(g, OP_div, passage->shrink, map->scale);
+}
+
+Lowered passage_out(Lowering *l, const Passage *passage, Lowered result)
+{
+    Graph *g = l->graph;
+    if (passage->shrink == NODE_NONE || result.distance == NODE_NONE)
+        return scale_distance(l, result, passage->scale);
+    Node size       = graph_op1(g, OP_abs, result.distance);
+    Node bend       = graph_op2(g, OP_mul, passage->bend, size);
+    Node divisor    = graph_op2(g, OP_add, passage->shrink, bend);
+    result.distance = graph_op2(g, OP_div, result.distance, divisor);
+    return result;
+}
+
+Node enter_passage(Lowering *l, const Passage *passage)
+{
+    if (!l->guarded || passage->shrink == NODE_NONE)
+        return enter_scale(l, passage->scale);
+    Node one = graph_number(l->graph, 1);
+    return enter_scale(l, graph_op2(l->graph, OP_div, one, passage->shrink));
+}
+
+static Range frame_range(Lowering *l, Node node)
+{
+    if (graph_is_constant(l->graph, node))
+        return range_of(l->graph->items[node].number[0]);
+    return graph_frame_fact(l->graph, node, l->scratch).value[0];
+}
+
+/*
+ * By the centred bound alone every pole looks like a point of the surface: r < X.  But what is
+ * inverted lies in some ball, whose image, the inside or the outside of another ball, leaves the
+ * pole out.  The distance to that is the larger bound near the pole, and 1-Lipschitz as well.
+ */
+Hull passage_hull(Lowering *l, const Passage *passage, const Map *map, Ball ball)
+{
+    Graph *g = l->graph;
+    if (ball.radius < 0 || isinf(ball.radius))
+        return (Hull){NODE_NONE, NODE_NONE};
+    Node   way     = graph_constant(g, TYPE_VEC3, ball.centre);
+    way            = graph_op2(g, OP_sub, way, map->pole);
+    Node   square  = graph_op2(g, OP_dot, way, way);
+    Range  away    = frame_range(l, square);
+    double radius  = ball.radius * (1 + ROUNDING);
+    bool   outside = !(away.low >= radius * radius * (1 + KEEP_OFF) * (1 + KEEP_OFF));
+    if (outside)
+        radius = fmax(radius, sqrt(away.high) * (1 + KEEP_OFF));
+    if (isinf(radius) || radius == 0)
+        return (Hull){NODE_NONE, NODE_NONE};
+    /* Centre and radius: scale (R way, radius) / (|way|^2 - radius^2); outside that is < 0. */
+    Node rest   = graph_number(g, radius * radius);
+    rest        = graph_op2(g, OP_sub, square, rest);
+    Node factor = graph_op2(g, OP_div, map->scale, rest);
+    Node centre = graph_op4(g, OP_turn, way, map->rows[0], map->rows[1], map->rows[2]);
+    centre      = graph_op2(g, OP_scale, centre, factor);
+    centre      = graph_op2(g, OP_add, centre, map->shift);
+    Node size   = graph_number(g, radius);
+    size        = graph_op2(g, OP_mul, size, factor);
+    Node away_from_centre = graph_op2(g, OP_sub, passage->point, centre);
+    Node length           = graph_op1(g, OP_length, away_from_centre);
+    Lowered bound         = lowered_nothing;
+    if (outside)
+        length = graph_op1(g, OP_neg, length);
+    bound.distance = graph_op2(g, OP_sub, length, size);
+    return (Hull){passage_out(l, passage, bound).distance, NODE_NONE};
+}
+
+Node nearer_of(Graph *g, Node a, Node b)
+{
+    if (a == NODE_NONE || b == NODE_NONE)
+        return a == NODE_NONE ? b : a;
+    return graph_op2(g, OP_min, a, b);
+}
+
+Node within_hulls(Lowering *l, const Hull *hulls, uint32_t count, Node distance)
+{
+    for (uint32_t i = count; i-- > 0;) {
+        if (hulls[i].bound != NODE_NONE && distance != NODE_NONE)
+            distance = graph_op2(l->graph, OP_max, distance, hulls[i].bound);
+        distance = nearer_of(l->graph, hulls[i].outer, distance);
+    }
+    return distance;
+}
+
+Lowered lower_inversion(Lowering *l, const Shape *shape, Place place)
+{
+    NormalPath path    = normal_path(l, place, 2);
+    Passage    passage = passage_new(l->graph, place.point);
+    Ball       ball    = ball_around(shape->children[0]->box);
+    Hull       hull    = passage_hull(l, &passage, &shape->map, ball);
+    passage_map(l, &passage, &shape->map, &path);
+    Node    unit    = enter_passage(l, &passage);
+    Lowered result  = lower_behind(l, shape->children[0], place, &path, passage.point);
+    l->unit         = unit;
+    result          = passage_out(l, &passage, result);
+    result.distance = within_hulls(l, &hull, 1, result.distance);
+    return result;
+}

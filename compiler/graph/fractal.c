@@ -1,0 +1,232 @@
+/*
+ * fractal.c: Julia sets of quaternions and Mandelbulbs, in double precision.
+ *
+ * The bound of a Julia set.  f(z) = z^p + c is steep: |f(z + h) - f(z)| <= (|z| + |h|)^p - |z|^p
+ * in every algebra with |ab| = |a||b|.  So the ball of radius x around f(z) holds the image of the
+ * ball around z whose radius is
+ *     step back:  (|z|^p + x)^(1/p) - |z|.
+ * An iterate z_n beyond the escape radius R has a ball of radius |z_n| - R of points that escape;
+ * stepped back n times it is a ball around the point outside of the solid.  The best n counts, and
+ * beyond 2 R a further iterate is never better: |z_{n+1}| - R stepped back is at most |z_n| - R
+ * where 2 |z_n|^p + R^p - 2 R <= (2 |z_n| - R)^p, which holds from 2 R on for p >= 2.  Inside,
+ * the last iterate has the ball R - |z_n|.
+ * Stepping back keeps the slope: with t = (|z| / (|z| + x'))^(p - 1), x' the radius stepped back,
+ * the new slope is at most t times the old one plus (1 - t), so all are 1-Lipschitz, and so is
+ * the greatest of them.  The proof needs no calculus of complex functions; it holds for sets that
+ * are connected or not, and for slices.
+ *
+ * The Mandelbulb's triplex power stretches space by p |w|^(p - 1) max(1, |sin p t / sin t|), t the
+ * angle from the poles, and nothing like that is proven.  1/2 |w| ln(|w| / R) / |w'|, where |w'| is
+ * the product of these, is an estimate; without the sines, as it is often seen, it would be up to
+ * 50 times too long near the poles' axis.  Inside, a step d is tried: it grows to
+ *     d_k+1 = ((|w_k| + d_k)^p - |w_k|^p) max(...) + d,
+ * and is made shorter until it keeps below R - |w|.
+ */
+#include "compiler/graph/fractal.h"
+
+#include <math.h>
+
+double julia_radius(double c, uint32_t power)
+{
+    double r = fmax(exp2(1.0 / (power - 1)), pow(2 * c, 1.0 / power));
+    for (int i = 0; i < 60; i++) /* Newton's steps come down to the root, as R^p is convex */
+        r = ((power - 1) * pow(r, power) + c) / (power * pow(r, power - 1) - 1);
+    return r;
+}
+
+double mandelbulb_radius(uint32_t power) { return exp2(1.0 / (power - 1)); }
+
+/* |w|^p + |c| <= |w| for some |w|, as long as |c| is at most this. */
+double mandelbulb_core(double power)
+{
+    double r = pow(power, -1 / (power - 1));
+    return r - pow(r, power);
+}
+
+/* ---- orbits ---- */
+
+static double norm(const double *v, int size)
+{
+    double sum = 0;
+    for (int i = 0; i < size; i++)
+        sum += v[i] * v[i];
+    return sqrt(sum);
+}
+
+/* (a + b s) (c + d s), where s * s = -square. */
+static void multiply(double result[2], const double a[2], const double b[2], double square)
+{
+    double real = a[0] * b[0] - square * a[1] * b[1];
+    result[1]   = a[0] * b[1] + a[1] * b[0];
+    result[0]   = real;
+}
+
+static void raise(double result[2], const double base[2], int power, double square)
+{
+    double factor[2] = {base[0], base[1]};
+    result[0]        = 1;
+    result[1]        = 0;
+    for (; power > 0; power >>= 1) {
+        if (power & 1)
+            multiply(result, result, factor, square);
+        multiply(factor, factor, factor, square);
+    }
+}
+
+/* z^power + c: a power of a + v is A + B v. */
+static void julia_step(double z[4], const double c[4], int power)
+{
+    double parts[2], square = z[1] * z[1] + z[2] * z[2] + z[3] * z[3];
+    raise(parts, (double[]){z[0], 1}, power, square);
+    z[0] = parts[0] + c[0];
+    for (int i = 1; i < 4; i++)
+        z[i] = parts[1] * z[i] + c[i];
+}
+
+/* White and Nylander's power, its poles on the y axis: the angles from the axis and about it
+   times `power`, by powers of complex numbers.  Returns how much more than |w|^power it stretches
+   there. */
+static double triplex_step(double w[3], const double c[3], int power)
+{
+    double across = hypot(w[0], w[2]), tilt[2], turn[2];
+    double even   = pow(hypot(across, w[1]), power - 1);
+    double about[2] = {across > 0 ? w[2] / across : 1, across > 0 ? w[0] / across : 0};
+    raise(tilt, (double[]){w[1], across}, power, 1);
+    raise(turn, about, power, 1);
+    w[0] = tilt[1] * turn[1] + c[0];
+    w[1] = tilt[0] + c[1];
+    w[2] = tilt[1] * turn[0] + c[2];
+    double stretch = across > 0 && even > 0 ? fabs(tilt[1]) / (across * even) : power;
+    return fmin(fmax(stretch, 1), power);
+}
+
+static int iterations_of(const NodeValue *range, const NodeValue *settings)
+{
+    double count = fmin(fmin(settings->v[0], range->v[1]), MOST_ITERATIONS);
+    return count > 0 ? (int)count : 0;
+}
+
+/* How near the iterates come to the origin (at most 1), and which of them the nearest is, as a
+   share of all. */
+typedef struct Trap {
+    double nearest, which;
+} Trap;
+
+static void trap_add(Trap *trap, double away, int iterate, int count)
+{
+    if (away < trap->nearest)
+        *trap = (Trap){away, (double)iterate / count};
+}
+
+static NodeValue trap_value(Trap trap) { return (NodeValue){{trap.nearest, trap.which}}; }
+
+/* ---- Julia sets ---- */
+
+/* The radius around z whose image f keeps within x: (|z|^p + x)^(1/p) - |z| without loss. */
+static double step_back(double size, double x, int power)
+{
+    double sum = 1, lower = 1, root = pow(pow(size, power) + x, 1.0 / power);
+    for (int i = 1; i < power; i++) {
+        lower *= size;
+        sum = sum * root + lower;
+    }
+    return sum > 0 ? x / sum : 0;
+}
+
+NodeValue evaluate_julia(const NodeValue *o, uint32_t size)
+{
+    (void)size;
+    int    power = (int)o[2].v[0], last = iterations_of(&o[2], &o[3]), n = 0;
+    double radius = o[3].v[1], sizes[MOST_ITERATIONS + 1];
+    double z[4] = {o[0].v[0], o[0].v[1], o[0].v[2], 0};
+    for (sizes[0] = norm(z, 4); n < last && sizes[n] <= 2 * radius; sizes[++n] = norm(z, 4))
+        julia_step(z, o[1].v, power);
+    bool   outside = sizes[n] > radius;
+    double x       = fabs(sizes[n] - radius);
+    while (n-- > 0)
+        x = fmax(step_back(sizes[n], x, power), sizes[n] - radius);
+    return (NodeValue){{outside ? x : -x}};
+}
+
+NodeValue evaluate_julia_trap(const NodeValue *o, uint32_t size)
+{
+    (void)size;
+    int    power = (int)o[2].v[0], last = iterations_of(&o[2], &o[3]);
+    double z[4] = {o[0].v[0], o[0].v[1], o[0].v[2], 0}, away = norm(z, 4);
+    Trap   trap = {1, 1};
+    for (int n = 1; n <= last && away <= 2 * o[3].v[1]; n++) {
+        julia_step(z, o[1].v, power);
+        away = norm(z, 4);
+        trap_add(&trap, away, n, last);
+    }
+    return trap_value(trap);
+}
+
+/* ---- Mandelbulbs ---- */
+
+/* The orbit is followed until it is as far away as single precision can raise to the power. */
+static double bailout(double power) { return fmin(16, exp2(32 / power)); }
+
+typedef struct Stretch {
+    double size, more; /* |w|, and what triplex_step has returned */
+} Stretch;
+
+/* What a step d at the point has grown to after the orbit. */
+static double grown(const Stretch *orbit, int count, double power, double d)
+{
+    double step = d;
+    for (int i = 0; i < count && step < 1e15; i++) {
+        double a = orbit[i].size;
+        step     = orbit[i].more * (pow(a + step, power) - pow(a, power)) + d;
+    }
+    return step;
+}
+
+/* A step that keeps below `room` after the orbit: growth is convex, so room / growth of it does. */
+static double steady_step(const Stretch *orbit, int count, double power, double d, double room)
+{
+    for (int i = 0; i < 4; i++) {
+        double end = grown(orbit, count, power, d);
+        if (end <= room)
+            break;
+        d *= i < 3 ? fmax(room / end, 0.25) : room / end;
+    }
+    return d;
+}
+
+NodeValue evaluate_mandelbulb(const NodeValue *o, uint32_t size)
+{
+    (void)size;
+    int           last = iterations_of(&o[1], &o[2]), n = 0;
+    const double *c = o[0].v;
+    double  power = o[1].v[0], radius = o[2].v[1], core = mandelbulb_core(power);
+    double  w[3] = {c[0], c[1], c[2]}, from_origin = norm(c, 3), away = from_origin, steep = 1;
+    Stretch orbit[MOST_ITERATIONS];
+    if (from_origin > MANDELBULB_NEAR * radius)
+        return (NodeValue){{from_origin - radius}};
+    for (; n < last && away <= bailout(power); n++) {
+        orbit[n] = (Stretch){away, triplex_step(w, c, (int)power)};
+        steep    = orbit[n].more * power * pow(away, power - 1) * steep + 1;
+        away     = norm(w, 3);
+    }
+    double distance;
+    if (away > radius)
+        distance = fmin(0.5 * away * log(away / radius) / steep, fmax(from_origin - core, 0));
+    else
+        distance = -steady_step(orbit, n, power, 0.5 * (radius - away) / steep, radius - away);
+    return (NodeValue){{fmax(distance, from_origin - radius)}};
+}
+
+NodeValue evaluate_mandelbulb_trap(const NodeValue *o, uint32_t size)
+{
+    (void)size;
+    int    last = iterations_of(&o[1], &o[2]);
+    double w[3] = {o[0].v[0], o[0].v[1], o[0].v[2]}, away = norm(w, 3);
+    Trap   trap = {1, 1};
+    for (int n = 1; n <= last && away <= 2 * o[2].v[1]; n++) {
+        triplex_step(w, o[0].v, (int)o[1].v[0]);
+        away = norm(w, 3);
+        trap_add(&trap, away, n, last);
+    }
+    return trap_value(trap);
+}

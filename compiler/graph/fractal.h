@@ -1,0 +1,32 @@
+/*
+ * fractal.h: Julia sets of quaternions and Mandelbulbs, in double precision.
+ *
+ * The solid of n iterations is the set of points whose orbit has not left the ball of the escape
+ * radius after n steps; it contains the solid of n + 1.  helpers.def has the same in GLSL.
+ */
+#ifndef KRS_FRACTAL_H
+#define KRS_FRACTAL_H
+
+#include "compiler/graph/evaluate.h"
+
+enum { MOST_POWER = 16, MOST_ITERATIONS = 64 };
+
+/* The least R that an orbit of z^power + c does not come back from: R^power = R + |c|. */
+double julia_radius(double c, uint32_t power);
+/* The same for the Mandelbulb, whatever the point. */
+double mandelbulb_radius(uint32_t power);
+
+/* The `evaluate` columns of ops.def.  Operands: point, c (Julia sets), (power, most iterations),
+   (iterations, escape radius). */
+NodeValue evaluate_julia(const NodeValue *o, uint32_t size);
+NodeValue evaluate_julia_trap(const NodeValue *o, uint32_t size);
+/* Operands: point, (power, most iterations), (iterations, escape radius). */
+NodeValue evaluate_mandelbulb(const NodeValue *o, uint32_t size);
+NodeValue evaluate_mandelbulb_trap(const NodeValue *o, uint32_t size);
+
+/* Radius of a ball about the origin that every Mandelbulb of this power contains. */
+double mandelbulb_core(double power);
+/* Outside of this many escape radii the ball of that radius serves as the solid. */
+#define MANDELBULB_NEAR 1.15
+
+#endif

@@ -1,0 +1,119 @@
+#version 440
+#extension GL_GOOGLE_include_directive : enable
+#extension GL_KHR_shader_subgroup_vote : enable
+/*
+ * query.comp: where rays that a program asks about end; sample.comp says what is there.
+ *
+ * The rule is that of trace.comp, without beams, and the permitted error is a length.  A ray that
+ * runs out of steps ends where it is, and is told apart.
+ */
+#ifndef REFILL // which variant: the renderer says so; this one suits every device
+#define REFILL 0
+#endif
+#include "scene.glsl"
+#include "frame.glsl"
+
+const bool SAVES = false;
+
+// What may be left open between two balls, of the permitted error.
+const float OPEN = 0.0625;
+const float LEARNING = 0.3; // of the mean slope
+
+// Two rows a ray: origin, and where it ends; unit direction, and 1 if it begins in the open.
+layout(std430, set = 1, binding = 5) readonly buffer Questions { vec4 questions[]; };
+// Bits of t; fate; place of the point; steps.
+layout(std430, set = 1, binding = 3) writeonly buffer Ways { uvec4 ways[]; };
+// Where rays hit, or were given up, for sample.comp.
+layout(std430, set = 1, binding = 1) writeonly buffer Points { vec4 points[]; };
+
+uint  index;              // of the ray
+vec3  origin, direction;
+float end;
+float rounding;           // of coordinates at t = 0
+float t, clear, gap;      // nothing is before t, nor for `clear` behind it; the next look is at t + gap
+float slope;              // of the room along the ray, as it was on average
+float side;               // as of a Ray; 0: not known
+uint  steps, fate;
+
+void begin_group() {}
+
+void begin_item(uint number, bool saved)
+{
+    vec4 from = questions[2u * number], way = questions[2u * number + 1u];
+    index = number;
+    origin = from.xyz;
+    direction = way.xyz;
+    end = from.w;
+    rounding = largest(origin);
+    t = clear = gap = 0.0;
+    slope = -1.0;
+    side = way.w;
+    steps = 0u;
+    fate = end >= 0.0 ? MARCHING : MISS;
+}
+
+bool item_wants_more()
+{
+    return (fate == MARCHING || fate == CLOSING) && steps < frame.most_steps;
+}
+
+// What is far for its size need not be looked at, where a branch saves work.
+float item_distance(vec3 place)
+{
+#ifdef EARLY_OUTS
+    return krs_distance_lod(place, 0.0);
+#else
+    return krs_distance(place);
+#endif
+}
+
+vec3 item_place() { return origin + (t + gap) * direction; }
+
+// The surface is crossed between t, where there is room, and t + gap, where there is none, within
+// the permitted error: looks there once more, unless what is between is short anyway.
+void close_in(float room, float open)
+{
+    float along = clear > room ? clamp(clear / (clear - room), 0.0, 2.0) : 0.0;
+    bool  accurate = gap - clear <= 2.0 * open || fate == CLOSING;
+    gap *= along;
+    t += accurate ? gap : 0.0;
+    fate = !accurate ? CLOSING : t <= end ? HIT : MISS;
+}
+
+void take_distance(float distance)
+{
+    float at = t + gap;
+    side = side == 0.0 ? (distance < 0.0 ? -1.0 : 1.0) : side;
+    float room = side * distance;
+    float least = ROUNDING * (rounding + at), open = OPEN * frame.error + least;
+    float doubtful = gap - clear; // as long as may hide something
+    steps++;
+    // Twice: a gap of `open` beyond what is clear may be rounded up.
+    if (fate == CLOSING || (room <= least && doubtful <= frame.error + 2.0 * open)) {
+        close_in(room, open);
+    } else if (room > least && doubtful <= room + 1.01 * open) {
+        slope = mix(slope, gap > 0.0 ? (room - clear) / gap : -1.0, LEARNING);
+        t = at;
+        clear = room;
+        gap = room * max(1.0, 2.0 / (1.0 - min(slope, 0.98))) + open;
+        fate = at + room > end ? MISS : MARCHING;
+    } else {
+        gap = max(0.5 * (gap + clear - max(room, 0.0)), clear + open);
+        slope = -1.0;
+    }
+}
+
+void end_item()
+{
+    uint place = 0u;
+    if (fate != MISS) {
+        place = atomicAdd(counts.solid, 1u);
+        points[place] = vec4(origin + t * direction, 0.0);
+    }
+    ways[index] = uvec4(floatBitsToUint(t), fate, place, steps);
+}
+
+void save_item() {}
+void end_group(uint turns) {}
+
+#include "schedule.glsl"

@@ -1,0 +1,224 @@
+/*
+ * query.c: points and rays that a program asks about, answered by the device.
+ *
+ * Rays are marched by query.comp; then sample.comp says what is where they hit, as it does at
+ * points.  Both work on a batch at a time.  What can be done in double precision before and
+ * after is: rays are brought to the box around the scene, and t is counted from the origin.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "runtime/tracer/renderer.h"
+
+enum { MOST_STEPS = 8192, MOST_TURNS = 16384 };
+
+/* Bindings of the set of points; sample.c has the first three. */
+enum { WAYS_BINDING = 3, CONTROL_BINDING = 4, QUESTIONS_BINDING = 5, SHARES_BINDING = 7 };
+
+/* What single precision can square. */
+static bool is_in_reach(const double (*vectors)[3], size_t count)
+{
+    const double most = 1e18;
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            if (!(fabs(vectors[i][k]) <= most))
+                return false;
+    return true;
+}
+
+static KrsStatus refuse(KrsRendering *rendering, const char *words)
+{
+    gpu_refuse(&rendering->renderer->gpu, KRS_BAD_ARGUMENT, "%s", words);
+    return KRS_BAD_ARGUMENT;
+}
+
+static void describe(const AnswerBlock *answer, KrsHit *hit)
+{
+    hit->distance = answer->distance;
+    hit->component = answer->component;
+    hit->level = answer->level;
+    hit->instance = answer->instance;
+    hit->roughness = answer->roughness;
+    hit->metallic = answer->metallic;
+    for (int k = 0; k < 3; k++) {
+        hit->normal[k] = answer->gradient[k];
+        hit->shading[k] = answer->normal[k];
+        hit->color[k] = answer->color[k];
+    }
+}
+
+/* ---- points ---- */
+
+static bool probe_batch(KrsRendering *rendering, const double (*points)[3], uint32_t count,
+                        KrsHit *hits)
+{
+    PointBlock *to = rendering->points.bytes;
+    for (uint32_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            to[i].point[k] = (float)points[i][k];
+    if (!sample_run(rendering, count, true))
+        return false;
+    const AnswerBlock *answers = rendering->answers.bytes;
+    for (uint32_t i = 0; i < count; i++) {
+        hits[i] = (KrsHit){.hit = true};
+        memcpy(hits[i].point, points[i], sizeof hits[i].point);
+        describe(&answers[i], &hits[i]);
+    }
+    return true;
+}
+
+static uint32_t batch_of(size_t left)
+{
+    return left < POINTS_AT_ONCE ? (uint32_t)left : POINTS_AT_ONCE;
+}
+
+KrsStatus krs_device_probe(KrsRendering *rendering, KrsFrame *frame, const double (*points)[3],
+                           size_t count, KrsHit *hits)
+{
+    renderer_clear(rendering->renderer);
+    if (!is_in_reach(points, count))
+        return refuse(rendering, "a coordinate is not a number below 1e18");
+    if (!sample_prepare(rendering) || !rendering_set_parameters(rendering, frame))
+        return rendering->renderer->gpu.status;
+    for (size_t first = 0; first < count; first += POINTS_AT_ONCE)
+        if (!probe_batch(rendering, points + first, batch_of(count - first), hits + first))
+            return rendering->renderer->gpu.status;
+    return KRS_OK;
+}
+
+/* ---- rays ---- */
+
+static bool prepare(KrsRendering *rendering)
+{
+    Gpu *gpu = &rendering->renderer->gpu;
+    const struct {
+        Buffer     *buffer;
+        uint32_t    binding;
+        size_t      size; /* for one ray */
+        const char *name;
+    } wanted[] = {
+        {&rendering->questions, QUESTIONS_BINDING, sizeof(QuestionBlock), "questions"},
+        {&rendering->ways, WAYS_BINDING, sizeof(WayBlock), "rays"},
+        {&rendering->shares, SHARES_BINDING, sizeof(uint32_t), "shares of lanes"},
+    };
+    if (!sample_prepare(rendering))
+        return false;
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
+        if (!wanted[i].buffer->buffer &&
+            !buffer_create(gpu, wanted[i].buffer, POINTS_AT_ONCE * wanted[i].size, SHARED,
+                           wanted[i].name))
+            return false;
+        rendering_bind(rendering, rendering->points_set, wanted[i].binding, wanted[i].buffer);
+    }
+    rendering_bind(rendering, rendering->points_set, CONTROL_BINDING, &rendering->control);
+    return true;
+}
+
+static void set_frame(KrsRendering *rendering, double tolerance)
+{
+    const FrameBlock frame = {.error = (float)tolerance, .most_steps = MOST_STEPS};
+    memcpy(rendering->frame.bytes, &frame, sizeof frame);
+}
+
+/* A ray of the device begins where the box around the scene does. */
+static QuestionBlock ask(const KrsRay *ray)
+{
+    const double  nowhere = 1e18;
+    QuestionBlock question = {.end = (float)fmin(ray->end - ray->start, nowhere),
+                              .side = ray->start > 0 ? 1 : 0};
+    for (int k = 0; k < 3; k++) {
+        question.origin[k] = (float)(ray->origin[k] + ray->start * ray->direction[k]);
+        question.direction[k] = (float)ray->direction[k];
+    }
+    if (!(ray->start <= ray->end))
+        question = (QuestionBlock){.end = -1};
+    return question;
+}
+
+/* Marches the questions.  As look_around in phases.c: a few items are dealt out to a lane, and what
+   a dispatch had no turns for is for the next. */
+static bool march(KrsRendering *rendering, uint32_t count)
+{
+    Gpu         *gpu = &rendering->renderer->gpu;
+    KrsTrace     trace = KRS_TRACE_DEFAULT;
+    KrsSchedule  schedule = KRS_SCHEDULE_DEFAULT;
+    rendering_choose(rendering, &trace, &schedule);
+    bool         refill = schedule == KRS_SCHEDULE_REFILL;
+    uint32_t     lanes = refill ? 8 : 64, share = refill ? 128 : 1;
+    const Kernel *kernel = rendering_query(rendering, schedule);
+    while (share > 8 && count / (lanes * share) < 64)
+        share /= 2; /* groups enough for every core of the device */
+    uint32_t      groups = (count + lanes * share - 1) / (lanes * share);
+    WorkBlock     work = {.steps = refill ? MOST_TURNS : MOST_STEPS,
+                          .groups = groups,
+                          .stride = rendering_spread(rendering, groups)};
+    ControlBlock *control = rendering->control.bytes;
+    *control = (ControlBlock){.source = ITEMS_FRESH, .items = count, .share = share};
+    for (bool more = kernel != NULL; more; control->source = ITEMS_REST) {
+        double ms = 0;
+        control->left = 0;
+        if (!gpu_begin(gpu))
+            return false;
+        rendering_dispatch(rendering, kernel, rendering->points_set, &work, sizeof work, groups);
+        if (!gpu_finish(gpu, &ms))
+            return false;
+        more = control->left > 0;
+    }
+    return kernel != NULL;
+}
+
+static void take_way(const KrsRay *ray, const WayBlock *way, const AnswerBlock *answers,
+                     KrsHit *hit)
+{
+    *hit = (KrsHit){0};
+    if (way->fate == QUERY_MISS)
+        return;
+    hit->hit = way->fate == QUERY_HIT;
+    hit->unresolved = !hit->hit;
+    hit->t = ray->start + (double)way->t;
+    for (int k = 0; k < 3; k++)
+        hit->point[k] = ray->origin[k] + hit->t * ray->direction[k];
+    describe(&answers[way->place], hit);
+}
+
+static bool raycast_batch(KrsRendering *rendering, const double (*origins)[3],
+                          const double (*directions)[3], uint32_t count, double farthest,
+                          KrsHit *hits)
+{
+    const KrsScene *scene = rendering->scene;
+    QuestionBlock  *questions = rendering->questions.bytes;
+    for (uint32_t i = 0; i < count; i++) {
+        KrsRay ray = krs_ray(scene, origins[i], directions[i], farthest);
+        questions[i] = ask(&ray);
+    }
+    if (!march(rendering, count))
+        return false;
+    const ControlBlock *control = rendering->control.bytes;
+    if (control->solid > 0 && !sample_run(rendering, control->solid, true))
+        return false;
+    const WayBlock *ways = rendering->ways.bytes;
+    for (uint32_t i = 0; i < count; i++) {
+        KrsRay ray = krs_ray(scene, origins[i], directions[i], farthest);
+        take_way(&ray, &ways[i], rendering->answers.bytes, &hits[i]);
+    }
+    return true;
+}
+
+KrsStatus krs_device_raycast(KrsRendering *rendering, KrsFrame *frame, const double (*origins)[3],
+                             const double (*directions)[3], size_t count, double farthest,
+                             double tolerance, KrsHit *hits)
+{
+    renderer_clear(rendering->renderer);
+    if (!krs_rays_are_sound(origins, directions, count, farthest, tolerance) ||
+        !is_in_reach(origins, count) || tolerance > 1e18)
+        return refuse(rendering, "rays have finite origins below 1e18, directions that are not 0, "
+                                 "and neither end nor tolerance below 0");
+    if (!prepare(rendering) || !rendering_set_parameters(rendering, frame))
+        return rendering->renderer->gpu.status;
+    set_frame(rendering, tolerance);
+    for (size_t first = 0; first < count; first += POINTS_AT_ONCE)
+        if (!raycast_batch(rendering, origins + first, directions + first,
+                           batch_of(count - first), farthest, hits + first))
+            return rendering->renderer->gpu.status;
+    return KRS_OK;
+}

@@ -1,0 +1,227 @@
+/*
+ * stage.c: layouts, idle sets, and kernels that have run once before they are needed.
+ *
+ * lavapipe compiles a kernel when it first runs, one after the other, and keeps what it has
+ * compiled on disk.  So a rehearsal has it do so while the host is busy with other things; and
+ * where several kernels are new, a second device, which exists for no longer, takes some of
+ * them: the first then finds those on disk.
+ */
+#include "runtime/tracer/stage.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <string.h>
+#include <unistd.h>
+
+/* ---- Layouts ---- */
+
+static bool set_layout_create(Gpu *gpu, uint32_t count, VkDescriptorSetLayout *layout)
+{
+    VkDescriptorSetLayoutBinding bindings[BINDING_COUNT];
+    for (uint32_t i = 0; i < count; i++)
+        bindings[i] = (VkDescriptorSetLayoutBinding){
+            .binding = i,
+            .descriptorType = i == FRAME_BINDING ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+                                                 : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+            .descriptorCount = 1,
+            .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
+        };
+    VkDescriptorSetLayoutCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+        .bindingCount = count,
+        .pBindings = bindings,
+    };
+    TRY(gpu, "prepare the renderer",
+        vkCreateDescriptorSetLayout(gpu->device, &info, NULL, layout));
+    return true;
+
+failed:
+    return false;
+}
+
+static bool layouts_create(KrsRenderer *renderer)
+{
+    Gpu *gpu = &renderer->gpu;
+    if (!set_layout_create(gpu, 1, &renderer->scene_layout) ||
+        !set_layout_create(gpu, BINDING_COUNT, &renderer->frame_layout))
+        return false;
+    VkPushConstantRange        work = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(WorkBlock)};
+    VkPipelineLayoutCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+        .setLayoutCount = 2,
+        .pSetLayouts = (VkDescriptorSetLayout[]){renderer->scene_layout, renderer->frame_layout},
+        .pushConstantRangeCount = 1,
+        .pPushConstantRanges = &work,
+    };
+    TRY(gpu, "prepare the renderer",
+        vkCreatePipelineLayout(gpu->device, &info, NULL, &renderer->layout));
+    return true;
+
+failed:
+    return false;
+}
+
+/* ---- Idle sets ---- */
+
+void stage_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer)
+{
+    vkUpdateDescriptorSets(gpu->device, 1, &(VkWriteDescriptorSet){
+        .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+        .dstSet = set,
+        .dstBinding = binding,
+        .descriptorCount = 1,
+        .descriptorType = binding == FRAME_BINDING ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+                                                   : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+        .pBufferInfo = &(VkDescriptorBufferInfo){buffer->buffer, 0, buffer->size},
+    }, 0, NULL);
+}
+
+/* Room for any scene's parameters, where the device has no more of it than most have. */
+static VkDeviceSize idle_bytes(const Gpu *gpu)
+{
+    const uint32_t most = 1 << 16, limit = gpu->properties.limits.maxUniformBufferRange;
+    return limit < most ? limit : most;
+}
+
+/* Sets of buffers that hold zeros: no kernel finds any item in them. */
+static bool idle_create(KrsRenderer *renderer)
+{
+    Gpu            *gpu = &renderer->gpu;
+    const char     *attempt = "prepare the renderer";
+    VkDescriptorSet sets[2];
+    if (!buffer_create(gpu, &renderer->idle, idle_bytes(gpu), SHARED, "rehearsals"))
+        return false;
+    memset(renderer->idle.bytes, 0, renderer->idle.size);
+    TRY(gpu, attempt, vkCreateDescriptorPool(gpu->device, &(VkDescriptorPoolCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+        .maxSets = 2,
+        .poolSizeCount = 2,
+        .pPoolSizes = (VkDescriptorPoolSize[]){
+            {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2},
+            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BINDING_COUNT - 1},
+        },
+    }, NULL, &renderer->idle_pool));
+    TRY(gpu, attempt, vkAllocateDescriptorSets(gpu->device, &(VkDescriptorSetAllocateInfo){
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+        .descriptorPool = renderer->idle_pool,
+        .descriptorSetCount = 2,
+        .pSetLayouts = (VkDescriptorSetLayout[]){renderer->scene_layout, renderer->frame_layout},
+    }, sets));
+    renderer->idle_scene = sets[0];
+    renderer->idle_frame = sets[1];
+    stage_bind(gpu, renderer->idle_scene, 0, &renderer->idle);
+    for (uint32_t binding = 0; binding < BINDING_COUNT; binding++)
+        stage_bind(gpu, renderer->idle_frame, binding, &renderer->idle);
+    return true;
+
+failed:
+    return false;
+}
+
+bool stage_create(KrsRenderer *renderer)
+{
+    return layouts_create(renderer) && idle_create(renderer);
+}
+
+void stage_destroy(KrsRenderer *renderer)
+{
+    Gpu *gpu = &renderer->gpu;
+    if (!gpu->device)
+        return;
+    vkDestroyDescriptorPool(gpu->device, renderer->idle_pool, NULL);
+    buffer_destroy(gpu, &renderer->idle);
+    vkDestroyPipelineLayout(gpu->device, renderer->layout, NULL);
+    vkDestroyDescriptorSetLayout(gpu->device, renderer->frame_layout, NULL);
+    vkDestroyDescriptorSetLayout(gpu->device, renderer->scene_layout, NULL);
+}
+
+/* ---- Rehearsals ---- */
+
+static bool rehearse(KrsRenderer *renderer, VkDescriptorSet scene_set, const Kernel *kernel)
+{
+    const VkDescriptorSet sets[2] = {scene_set, renderer->idle_frame};
+    const WorkBlock       work = {.groups = 1, .stride = 1};
+    return gpu_rehearse(&renderer->gpu, kernel->pipeline, renderer->layout, sets, &work,
+                        sizeof work);
+}
+
+/* Kernels that two devices rehearse: each takes the next that nobody has. */
+typedef struct Sharing {
+    const Gpu        *gpu; /* the first */
+    const KernelCode *codes;
+    size_t            count;
+    atomic_size_t     next;
+} Sharing;
+
+/* Whether a second device is worth its making: its host has a core for it, and there is more than
+   one kernel that the driver is not likely to have.  The validation layers' callback is for one
+   thread. */
+static bool worth_sharing(const Gpu *gpu, const KernelCode *codes, size_t count)
+{
+    size_t compiled = 0;
+    for (size_t i = 0; i < count; i++)
+        compiled += codes[i].compiled;
+    return compiled > 1 && gpu_is_cpu(gpu) && !gpu->messenger &&
+           sysconf(_SC_NPROCESSORS_ONLN) > 1;
+}
+
+/* The second device's thread.  If anything fails, or nothing is kept on disk, the first device
+   compiles what this one should have. */
+static void *assist(void *user)
+{
+    Sharing    *sharing = user;
+    KrsRenderer second = {0};
+    bool        ready = gpu_open_beside(&second.gpu, sharing->gpu) && stage_create(&second);
+    for (size_t i; ready && (i = atomic_fetch_add(&sharing->next, 1)) < sharing->count;) {
+        Kernel kernel;
+        double ms = 0;
+        ready = kernel_load(&second.gpu, &kernel, &sharing->codes[i], second.layout, &ms) &&
+                rehearse(&second, second.idle_scene, &kernel) && gpu_wait(&second.gpu);
+        kernel_destroy(&second.gpu, &kernel);
+    }
+    stage_destroy(&second);
+    gpu_close(&second.gpu);
+    return NULL;
+}
+
+/* Those that the second device does not take, and then, off the disk, those that it did. */
+static bool rehearse_all(KrsRenderer *renderer, VkDescriptorSet scene_set,
+                         const KernelRequest *requests, const KernelCode *codes, size_t count)
+{
+    Sharing   sharing = {.gpu = &renderer->gpu, .codes = codes, .count = count};
+    pthread_t thread;
+    bool      ready = true, taken[KERNELS_AT_ONCE] = {false};
+    bool      shared = worth_sharing(&renderer->gpu, codes, count) &&
+                  pthread_create(&thread, NULL, assist, &sharing) == 0;
+    while (shared && ready) {
+        ready = gpu_wait(&renderer->gpu); /* takes no more than it can work on */
+        size_t i = atomic_fetch_add(&sharing.next, 1);
+        if (i >= count)
+            break;
+        taken[i] = ready = ready && rehearse(renderer, scene_set, requests[i].kernel);
+    }
+    if (shared)
+        pthread_join(thread, NULL);
+    for (size_t i = 0; i < count && ready; i++)
+        ready = taken[i] || rehearse(renderer, scene_set, requests[i].kernel);
+    return ready;
+}
+
+bool stage_make_kernels(KrsRenderer *renderer, VkDescriptorSet scene_set,
+                        const KernelRequest *requests, size_t count, double *spirv_ms,
+                        double *pipeline_ms)
+{
+    Gpu       *gpu = &renderer->gpu;
+    KernelCode codes[KERNELS_AT_ONCE];
+    bool       ready = kernel_compile_all(gpu, requests, count, codes, spirv_ms);
+    double     start = clock_ms(), ms = 0;
+    for (size_t i = 0; i < count; i++)
+        *requests[i].kernel = (Kernel){0};
+    for (size_t i = 0; i < count && ready; i++)
+        ready = kernel_load(gpu, requests[i].kernel, &codes[i], renderer->layout, &ms);
+    ready = ready && rehearse_all(renderer, scene_set, requests, codes, count);
+    for (size_t i = 0; i < count; i++)
+        kernel_code_release(gpu, &codes[i]);
+    *pipeline_ms += clock_ms() - start;
+    return ready;
+}

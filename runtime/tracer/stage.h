@@ -1,0 +1,28 @@
+/*
+ * stage.h: what every kernel of a renderer needs, whatever the scene: layouts, and a scene and a
+ * frame of zeros for rehearsals, in which a kernel runs once and finds nothing to do.
+ */
+#ifndef KRS_STAGE_H
+#define KRS_STAGE_H
+
+#include "runtime/tracer/renderer.h"
+
+/* Bindings of the frame's set: a uniform buffer, and storage buffers. */
+enum { FRAME_BINDING = 0, BINDING_COUNT = 10 };
+
+/* For a renderer whose device is open.  What was made on failure goes with stage_destroy. */
+bool stage_create(KrsRenderer *renderer);
+/* After the kernels; for a renderer without a device nothing. */
+void stage_destroy(KrsRenderer *renderer);
+
+/* Points a binding of a set at a buffer. */
+void stage_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer);
+
+/* Makes at most KERNELS_AT_ONCE kernels, and sends them through the driver once, in the
+   background.  The scene's set may be VK_NULL_HANDLE. */
+enum { KERNELS_AT_ONCE = 12 };
+bool stage_make_kernels(KrsRenderer *renderer, VkDescriptorSet scene_set,
+                        const KernelRequest *requests, size_t count, double *spirv_ms,
+                        double *pipeline_ms);
+
+#endif

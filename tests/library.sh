@@ -1,0 +1,45 @@
+#!/bin/sh
+# library.sh: the program in docs/library.md compiles, against the library as it is, and prints
+# what the page says; and so does the part of one that asks a device.
+cd "$(dirname "$0")/.." || exit 1
+build=${B:-build}
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+failed=0
+echo "1..3"
+report() { # status, number and name
+    if [ "$1" -eq 0 ]; then echo "ok $2"; else echo "not ok $2"; failed=1; sed 's/^/# /' "$work/said"; fi
+}
+# The blocks between fences: which one, of which language.
+block() {
+    awk -v number="$1" -v fence="\`\`\`$2" '
+        $0 == "```" && inside { inside = 0; next }
+        $0 == "```" || /^```./ { inside = 1; chosen = $0 == fence && ++count == number; next }
+        inside && chosen' docs/library.md
+}
+compile() { # source
+    # shellcheck disable=SC2086 # many words
+    ${CC:-cc} -std=c17 -Wall -Wextra -Wpedantic -Werror -I. -o "$work/program" "$1" \
+        "$build/libkrs.a" $libs
+}
+libs=$(make --no-print-directory B="$build" libs)
+
+block 1 c >"$work/example.c"
+block 1 "" >"$work/expected"
+compile "$work/example.c" >"$work/said" 2>&1
+report $? "1 - the program of the page compiles"
+"$work/program" >"$work/said" 2>&1 && [ -s "$work/expected" ] && cmp -s "$work/said" "$work/expected"
+report $? "2 - and prints what the page says"
+{
+    echo '#include <stdio.h>'
+    echo '#include "runtime/krs_vulkan.h"'
+    echo 'int main(void) {'
+    echo 'KrsScene *scene; KrsFrame *frame; KrsHit hits[1]; size_t count = 1;'
+    echo 'const double origins[1][3] = {{0, 0, 9}}, directions[1][3] = {{0, 0, -1}};'
+    echo 'if (krs_compile_text("show sphere(1);", 15, "a", NULL, &scene) != KRS_OK) return 2;'
+    echo 'if (krs_frame_new(scene, &frame) != KRS_OK) return 2;'
+    block 2 c
+    echo 'return !(hits[0].hit && hits[0].t > 7.99 && hits[0].t < 8.01); }'
+} >"$work/device.c"
+compile "$work/device.c" >"$work/said" 2>&1 && "$work/program" >"$work/said" 2>&1
+report $? "3 - a device answers as the page asks it"
+exit $failed
