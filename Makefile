@@ -23,7 +23,7 @@ GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c a
                 lower.c lower_normal.c lower_repeat.c lower_deform.c lower_krs.c lower_along.c lower_guards.c lower_moebius.c)
 SHADER   := $(addprefix compiler/shader/, emit.c spirv.c)
 BORDER   := compiler/shader/glslang_border.cpp
-DOORSTEP := compiler/compile.c compiler/framing.c compiler/frame.c compiler/query.c
+DOORSTEP := compiler/compile.c compiler/framing.c compiler/frame.c compiler/query.c compiler/search.c compiler/refute.c
 RUNTIME  := $(sort $(wildcard runtime/device/*.c runtime/tracer/*.c runtime/film/*.c runtime/writer/*.c))
 CLI      := $(sort $(wildcard cli/*.c))
 

@@ -435,6 +435,10 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
         return options->after ? KRS_OK
                               : refuse(options, id, "tokens, syntax, scene, graph, simplify, glsl "
                                                     "or spirv", value);
+    case OPTION_SECONDS:
+        return read_number(value, 0, 1e6, &options->seconds)
+                   ? KRS_OK
+                   : refuse(options, id, "a number of seconds", value);
     case OPTION_DEADLINE:
         return read_number(value, 0.001, 1e6, &options->deadline)
                    ? KRS_OK
@@ -587,6 +591,7 @@ KrsStatus options_parse(Options *options, int argc, char **argv)
     options->aovs = AOV_ALL;
     options->fps = 24;
     options->points = 20000;
+    options->seconds = 2;
     options->farthest = 1e9; /* far beyond any scene, and finite */
     options->deadline = 60;
     if (argc < 2)

@@ -83,6 +83,7 @@ typedef struct Options {
     KrsTrace    trace;
     KrsSchedule schedule;
     uint64_t    seed, points;
+    double      seconds;  /* of the search of `krs validate` */
     double      deadline; /* seconds */
     double      tolerance, farthest; /* of rays that are asked about; tolerance 0: not given */
     bool        on_device;

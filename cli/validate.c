@@ -1,14 +1,16 @@
 /*
  * validate.c: `krs validate`: tries to refute what the compiler claims of a scene.
  *
- * Three attempts.  The SPIR-V validator looks at every module.  On the processor, in double
- * precision, a distance claims that the ball around its point is empty, so anywhere inside the
- * ball the sign must be the same; the places tried are random, and straight towards the surface,
- * which is where a distance that is too large is found out first.  On the device the distance
- * is compared with the one in double precision.
+ * Four attempts.  A directed search (compiler/search.h) looks for points where the distance of a
+ * component, or of a shape in it, breaks its bound, and blames a shape.  The SPIR-V validator
+ * looks at every module.  On the processor, in double precision, a distance claims that the ball
+ * around its point is empty, so anywhere inside the ball the sign must be the same; the places
+ * tried are random, and straight towards the surface, which is where a distance that is too large
+ * is found out first.  On the device the distance is compared with the one in double precision.
  *
- * Estimates (of Mandelbulbs) claim nothing that could be refuted: how much of the way to the
- * surface they reach is measured, straight towards it and in random directions, and reported.
+ * Of estimates (of Mandelbulbs) nothing is proven: how much of the way to the surface they reach is
+ * measured, straight towards it and in random directions, and reported; only more than all of it
+ * is wrong.
  *
  * Half of the points are anywhere in and around the scene, half near a surface, found by
  * following random rays.
@@ -212,6 +214,16 @@ static void measure_ways(Validation *v, const KrsHit *hits, bool straight)
     }
 }
 
+/* How long an estimate may be found, of the way: the rest is rounding. */
+static const double ALL_OF_THE_WAY = 1.001;
+
+static KrsStatus report_estimate(const Validation *v)
+{
+    printf("%s: refuted: an estimate is %.3f times as long as the way to the surface\n", v->path,
+           v->reached);
+    return KRS_BAD_SCENE;
+}
+
 static KrsStatus try_balls(Validation *v)
 {
     KrsHit hits[BATCH];
@@ -241,7 +253,7 @@ static KrsStatus try_balls(Validation *v)
     }
     measure_ways(v, hits, true);
     measure_ways(v, hits, false);
-    return KRS_OK;
+    return v->reached > ALL_OF_THE_WAY ? report_estimate(v) : KRS_OK;
 }
 
 /* Both sides are asked about the same float positions. */
@@ -320,6 +332,55 @@ static KrsStatus try_modules(const Validation *v)
     return status;
 }
 
+/* ---- the search ---- */
+
+static bool go_on(void *user, double fraction)
+{
+    Progress *progress = user;
+    progress_show(progress, fraction);
+    return !*interrupted();
+}
+
+static KrsStatus report_search(const Validation *v, KrsStatus status, const KrsRefutation *result)
+{
+    if (result->refuted)
+        printf("%s: refuted: the distance of a shape\n", v->path);
+    if (status != KRS_OK)
+        return status;
+    printf("%s: %zu shapes searched, at %zu settings, by %llu distances: no slope above %.6g of 1\n",
+           v->path, result->shapes, result->settings, (unsigned long long)result->evaluations,
+           result->steepest);
+    if (result->estimates > 0)
+        printf("%s: %zu shapes are estimates, of at most %.3f of the way to the surface\n", v->path,
+               result->estimates, result->longest);
+    return KRS_OK;
+}
+
+static KrsStatus try_search(Validation *v)
+{
+    const Options   *options = v->options;
+    size_t           count   = options->settings.count;
+    DiagnosticSink   sink    = {.options = options};
+    KrsOptions       with    = scene_options(&sink);
+    struct KrsFixed *fixed   = arena_new_array(options->arena, struct KrsFixed, count + 1);
+    for (size_t i = 0; i < count; i++) {
+        const Setting *setting = &options->settings.items[i];
+        fixed[i] = (struct KrsFixed){.name = setting->name, .count = setting->count};
+        memcpy(fixed[i].values, setting->values, sizeof fixed[i].values);
+    }
+    Progress         progress;
+    KrsRefutation    result;
+    KrsRefuteOptions how = {.seconds = options->seconds, .seed = options->seed,
+                            .time = options->time, .fixed = fixed, .fixed_count = count,
+                            .go_on = go_on, .user = &progress};
+    stage_enter(STAGE_VALIDATE);
+    progress_start(&progress, options, 1);
+    KrsStatus status = krs_refute(v->path, &with, &how, &result);
+    progress_end(&progress);
+    scene_print_counts(&sink);
+    return report_search(v, status, &result);
+}
+
 /* `renderer` is NULL without a device. */
 static KrsStatus validate_scene(Validation *v, KrsRenderer *renderer)
 {
@@ -329,6 +390,8 @@ static KrsStatus validate_scene(Validation *v, KrsRenderer *renderer)
         return status;
     choose_box(v);
     status = scene_frame(v->options, v->scene, &v->frame);
+    if (status == KRS_OK && v->options->seconds > 0)
+        status = try_search(v);
     if (status == KRS_OK)
         status = try_modules(v);
     if (status == KRS_OK && renderer) {

@@ -14,6 +14,7 @@
 #include "compiler/framing.h"
 #include "compiler/front/parse.h"
 #include "compiler/geometry/elaborate.h"
+#include "compiler/inspect.h"
 #include "compiler/program.h"
 #include "compiler/shader/emit.h"
 
@@ -27,6 +28,15 @@ static const size_t DEFAULT_MEMORY = (size_t)2 << 30;
 
 const char *const dump_stage_names[DUMP_STAGE_COUNT] = {
     "tokens", "syntax", "scene", "graph", "simplify", "glsl"};
+
+/* What is wanted beside the scene. */
+typedef struct Request {
+    DumpStage stage; /* DUMP_STAGE_COUNT: nothing is dumped */
+    char    **dump;
+    Inspect  *inspect; /* or NULL */
+    void     *user;
+} Request;
+static const Request scene_alone = {.stage = DUMP_STAGE_COUNT};
 
 /* One run of the compiler: three arenas for three lifetimes.  `kept` stays with the scene,
    `work` holds sources, diagnostics, the syntax tree and the elaborated scene until the end of
@@ -42,7 +52,7 @@ typedef struct Compilation {
     size_t     root_count, point_roots; /* the first of them are point time */
     const char *text, *name;
     size_t     length;
-    DumpStage  dump_stage; /* DUMP_STAGE_COUNT: nothing is dumped */
+    const Request    *request;
     const KrsOptions *options;
     Text       dump;
     double     started;
@@ -55,7 +65,7 @@ static double now_ms(void)
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
-static bool dumps(const Compilation *c, DumpStage stage) { return c->dump_stage == stage; }
+static bool dumps(const Compilation *c, DumpStage stage) { return c->request->stage == stage; }
 
 /* ---- files ---- */
 
@@ -175,6 +185,35 @@ static void refuse_zones(Compilation *c, Span span, size_t operations)
     diag->help  = "fewer zones";
 }
 
+static bool is_flat(const Component *component) { return component->plane_normal != NODE_NONE; }
+
+/*
+ * Components that are half-spaces need no march: a ray from p along d enters the one with n.x <= w
+ * at (w - n.p) / n.d, if n.d < 0.  The first root is the least of these, the second the least n.d.
+ * Where there are zones, planes have holes, and are marched like the rest.
+ */
+static void lower_flats(Compilation *c, Graph *g, Node roots[FLAT_ROOTS])
+{
+    const Scene *s     = &c->elaborated;
+    Node         point = graph_leaf(g, OP_POINT), direction = graph_leaf(g, OP_DIRECTION);
+    Node         far = graph_number(g, 1e30), zero = graph_number(g, 0);
+    roots[0]           = far;
+    roots[1]           = graph_number(g, 1);
+    for (size_t i = 0; i < s->components.count && s->zone_count == 0; i++) {
+        const Component *component = &s->components.items[i];
+        if (!is_flat(component))
+            continue;
+        c->scene->program.flats = true;
+        Node rise  = graph_op2(g, OP_dot, component->plane_normal, direction);
+        Node depth = graph_op2(g, OP_dot, component->plane_normal, point);
+        Node room  = graph_op2(g, OP_sub, component->plane_offset, depth);
+        Node falls = graph_op2(g, OP_less, rise, zero);
+        Node way   = graph_op3(g, OP_select, falls, graph_op2(g, OP_div, room, rise), far);
+        roots[0]   = graph_op2(g, OP_min, roots[0], way);
+        roots[1]   = graph_op2(g, OP_min, roots[1], rise);
+    }
+}
+
 /* All roots: of components, zones, cameras, lights and the sky. */
 static bool lower_scene(Compilation *c, Graph *graph)
 {
@@ -182,7 +221,8 @@ static bool lower_scene(Compilation *c, Graph *graph)
     c->point_roots = s->components.count * ROOT_COUNT + (s->zone_count > 0);
     c->root_count  = c->point_roots + s->cameras.count * CAMERA_ROOTS +
                     s->lights.count * LIGHT_ROOTS + SKY_ROOTS;
-    c->roots   = arena_new_array(&c->scene->arena, Node, c->root_count + MARCH_ROOTS * s->components.count);
+    c->roots   = arena_new_array(&c->scene->arena, Node, c->root_count +
+                                  MARCH_ROOTS * s->components.count + FLAT_ROOTS);
     Node *root = c->roots;
     for (size_t i = 0; i < s->components.count; i++, root += ROOT_COUNT)
         if (!lower_component(graph, s->components.items[i].shape, &c->scratch, root)) {
@@ -213,6 +253,7 @@ static bool lower_scene(Compilation *c, Graph *graph)
             *march = lower_along(graph, shape, plain, method, &c->scratch);
         }
     }
+    lower_flats(c, graph, &c->roots[c->root_count + MARCH_ROOTS * s->components.count]);
     arena_free(&c->scratch);
     graph_validate(graph, "lower");
     if (dumps(c, DUMP_GRAPH))
@@ -386,13 +427,17 @@ static double flops_worth_splitting(const KrsProgram *program)
     return sum <= hull ? SCATTERED_FLOPS : MIXED_FLOPS;
 }
 
-/* Which components are marched by themselves.  `groups` gets the number of each, from 1. */
-static void form_groups(Compilation *c, const Box *boxes, uint32_t *groups)
+/* Which components are marched by themselves.  `groups` gets the number of each, from 1; 0 for
+   those that need no march. */
+static void form_groups(Compilation *c, const Box *boxes, const bool *flat, uint32_t *groups)
 {
     KrsProgram *program = &c->scene->program;
     Box         rest    = box_empty;
     double      light   = 0;
     for (size_t i = 0; i < c->scene->component_count; i++) {
+        groups[i] = 0;
+        if (program->flats && flat[i])
+            continue;
         double flops = component_flops(c, i);
         size_t group = choose_group(program, flops, boxes[i]);
         groups[i]    = (uint32_t)group + 1;
@@ -420,18 +465,39 @@ static void emit(Compilation *c)
     KrsScene *scene = c->scene;
     Text      glsl  = {.arena = &scene->arena};
     Box      *boxes = arena_new_array(&c->scratch, Box, scene->component_count + 1);
-    for (size_t i = 0; i < scene->component_count; i++)
-        boxes[i] = c->elaborated.components.items[i].shape->box;
+    bool     *flat  = arena_new_array(&c->scratch, bool, scene->component_count + 1);
+    Box       rest  = box_empty;
+    for (size_t i = 0; i < scene->component_count; i++) {
+        const Component *component = &c->elaborated.components.items[i];
+        boxes[i] = component->shape->box;
+        flat[i]  = is_flat(component);
+        rest     = flat[i] ? rest : box_hull(rest, boxes[i]);
+    }
+    for (int k = 0; k < 3; k++) {
+        scene->program.rest_low[k]  = box_is_empty(rest) ? 0 : rest.axis[k].low;
+        scene->program.rest_high[k] = box_is_empty(rest) ? 0 : rest.axis[k].high;
+    }
     uint32_t *groups = arena_new_array(&c->scratch, uint32_t, scene->component_count + 1);
-    form_groups(c, boxes, groups);
+    form_groups(c, boxes, flat, groups);
     emit_glsl(scene->graph, &c->sources, c->roots, scene->component_count, zone_root(scene),
               &(EmitMarch){scene->guarded_roots, scene->along_roots, boxes,
-                           scene->program.group_count ? groups : NULL}, &c->scratch, &glsl);
+                           scene->program.group_count ? groups : NULL,
+                           scene->program.flats ? flat : NULL,
+                           scene->along_roots + ALONG_COUNT * scene->component_count},
+              &c->scratch, &glsl);
     scene->program.glsl            = glsl.bytes;
     scene->program.glsl_length     = glsl.length;
     scene->program.parameter_slots = (uint32_t)scene->graph->parameters.count;
     if (dumps(c, DUMP_GLSL))
         text_add(&c->dump, glsl.bytes);
+}
+
+static KrsStatus inspect(Compilation *c)
+{
+    c->diags.count = c->diags.warnings = 0;
+    arena_free(&c->scratch);
+    return c->request->inspect(c->request->user,
+                               &(Inspected){&c->elaborated, &c->diags, &c->work, &c->scratch});
 }
 
 /* Text to program; ends at the first step that found mistakes. */
@@ -446,7 +512,7 @@ static KrsStatus run(Compilation *c)
     Graph *graph = elaborate_scene(c);
     if (c->diags.errors || !lower_scene(c, graph))
         return KRS_BAD_SCENE;
-    size_t roots  = c->root_count + MARCH_ROOTS * c->elaborated.components.count;
+    size_t roots  = c->root_count + MARCH_ROOTS * c->elaborated.components.count + FLAT_ROOTS;
     Graph *simple = graph_simplify(graph, c->roots, roots, &c->scene->arena);
     graph_validate(simple, "simplify");
     c->scene->graph = simple;
@@ -460,7 +526,8 @@ static KrsStatus run(Compilation *c)
     c->scene->program.front_ms = now_ms() - c->started;
     emit(c);
     c->scene->program.glsl_ms = now_ms() - c->started - c->scene->program.front_ms;
-    return c->scene->cameras[0].standing_in ? frame_scene(c->scene) : KRS_OK;
+    KrsStatus status = c->scene->cameras[0].standing_in ? frame_scene(c->scene) : KRS_OK;
+    return status == KRS_OK && c->request->inspect ? inspect(c) : status;
 }
 
 /* ---- the doorstep ---- */
@@ -504,9 +571,8 @@ static KrsStatus run_guarded(Compilation *c)
     return status;
 }
 
-static KrsStatus compile_and_dump(const char *text, size_t length, const char *name,
-                                  const KrsOptions *options, DumpStage stage, KrsScene **result,
-                                  char **dump)
+static KrsStatus compile(const char *text, size_t length, const char *name,
+                         const KrsOptions *options, const Request *request, KrsScene **result)
 {
     static const KrsOptions defaults = {0};
     options                          = options ? options : &defaults;
@@ -521,7 +587,7 @@ static KrsStatus compile_and_dump(const char *text, size_t length, const char *n
                      .text       = text,
                      .length     = length,
                      .name       = name,
-                     .dump_stage = stage,
+                     .request    = request,
                      .options    = options,
                      .started    = now_ms()};
     scene->memory = (Memory){allocator->allocate, allocator->release, allocator->user, 0,
@@ -533,8 +599,8 @@ static KrsStatus compile_and_dump(const char *text, size_t length, const char *n
     c.dump    = (Text){.arena = &c.work};
 
     KrsStatus status = run_guarded(&c);
-    if (dump && status != KRS_OUT_OF_MEMORY)
-        *dump = strdup(c.dump.bytes ? c.dump.bytes : "");
+    if (request->dump && status != KRS_OUT_OF_MEMORY)
+        *request->dump = strdup(c.dump.bytes ? c.dump.bytes : "");
     arena_free(&c.work);
     arena_free(&c.syntax);
     arena_free(&c.scratch);
@@ -550,10 +616,11 @@ static KrsStatus compile_and_dump(const char *text, size_t length, const char *n
 KrsStatus krs_compile_text(const char *text, size_t length, const char *name,
                            const KrsOptions *options, KrsScene **scene)
 {
-    return compile_and_dump(text, length, name, options, DUMP_STAGE_COUNT, scene, NULL);
+    return compile(text, length, name, options, &scene_alone, scene);
 }
 
-KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene **scene)
+static KrsStatus compile_path(const char *path, const KrsOptions *options, const Request *request,
+                              KrsScene **scene)
 {
     size_t      length;
     const char *reason;
@@ -561,22 +628,30 @@ KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene
     char *text = read_whole(path, &length, &reason);
     if (!text)
         return KRS_IO_ERROR;
-    KrsStatus status = krs_compile_text(text, length, path, options, scene);
+    KrsStatus status = compile(text, length, path, options, request, scene);
     free(text);
     return status;
 }
 
+KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene **scene)
+{
+    return compile_path(path, options, &scene_alone, scene);
+}
+
 KrsStatus krs_dump(const char *path, DumpStage stage, const KrsOptions *options, char **dump)
 {
-    size_t      length;
-    const char *reason;
-    KrsScene   *scene;
-    *dump      = NULL;
-    char *text = read_whole(path, &length, &reason);
-    if (!text)
-        return KRS_IO_ERROR;
-    KrsStatus status = compile_and_dump(text, length, path, options, stage, &scene, dump);
-    free(text);
+    KrsScene *scene;
+    *dump            = NULL;
+    KrsStatus status = compile_path(path, options, &(Request){.stage = stage, .dump = dump}, &scene);
+    krs_scene_free(scene);
+    return status;
+}
+
+KrsStatus inspect_file(const char *path, const KrsOptions *options, Inspect *look, void *user)
+{
+    KrsScene *scene;
+    Request   request = {.stage = DUMP_STAGE_COUNT, .inspect = look, .user = user};
+    KrsStatus status  = compile_path(path, options, &request, &scene);
     krs_scene_free(scene);
     return status;
 }

@@ -94,6 +94,8 @@ typedef struct KrsProgram {
     double      low[3], high[3]; /* box around all components; infinite where unbounded */
     size_t      operations;   /* of krs_distance */
     double      flops;        /* of krs_distance, weighted as in measurements.md fact 5 */
+    bool        flats;        /* there is krs_ahead, for kernels with #define FLATS */
+    double      rest_low[3], rest_high[3]; /* with flats: the box around what is left to march */
     bool        along;        /* there is krs_along, for kernels with #define ALONG */
     KrsGroup    groups[KRS_MOST_GROUPS];
     size_t      group_count;  /* 0: all components belong together */
@@ -128,6 +130,41 @@ bool krs_rays_are_sound(const double (*origins)[3], const double (*directions)[3
                         double farthest, double tolerance);
 /* 64-bit FNV-1a of the whole text (used files included), 16 hexadecimal digits. */
 const char *krs_scene_hash(const KrsScene *scene);
+
+/*
+ * The attempt to refute the distances of a scene, and of every shape in it by itself: a directed
+ * search (search.h) for points where one is too long, rises too fast, is not a number, or where a
+ * solid is outside of its box; at the parameters' defaults and at random values in their ranges.
+ */
+typedef struct KrsRefuteOptions {
+    double   seconds; /* of counted work, so that every machine does and finds the same */
+    uint64_t seed;
+    double   time;    /* of the first attempt */
+    /* Parameters that keep these values; the others vary. */
+    struct KrsFixed {
+        const char *name;
+        double      values[4];
+        size_t      count;
+    } const *fixed;
+    size_t fixed_count;
+    /* Called now and then with the part that is done; false: stop.  May be NULL. */
+    bool (*go_on)(void *user, double fraction);
+    void  *user;
+} KrsRefuteOptions;
+
+typedef struct KrsRefutation {
+    bool     refuted;     /* a diagnostic says what, where, and the shape to blame */
+    size_t   shapes;      /* that were looked at */
+    size_t   settings;    /* values of the parameters that were tried, at most for one shape */
+    uint64_t evaluations; /* of distances */
+    double   steepest;    /* largest slope of a distance, of 1 that is permitted */
+    double   longest;     /* largest part of the way to a surface that an estimate was */
+    size_t   estimates;   /* shapes of which nothing more is claimed */
+} KrsRefutation;
+
+/* KRS_BAD_SCENE: refuted, or the scene is wrong; KRS_INTERRUPTED: it was stopped. */
+KrsStatus krs_refute(const char *path, const KrsOptions *options, const KrsRefuteOptions *how,
+                     KrsRefutation *result);
 
 typedef enum DumpStage {
     DUMP_TOKENS, DUMP_SYNTAX, DUMP_SCENE, DUMP_GRAPH, DUMP_SIMPLIFY, DUMP_GLSL, DUMP_STAGE_COUNT

@@ -11,6 +11,7 @@
 /* Roots of the graph, in this order: ROOT_COUNT for each component, the depth in zones if there
    are any, then what a view needs. */
 enum { MARCH_ROOTS = 1 + ALONG_COUNT }; /* behind all others: lower_guarded, lower_along */
+enum { FLAT_ROOTS = 2 }; /* behind those: where a ray meets a plane, and how steeply it falls */
 enum { CAMERA_ROOTS = 5, LIGHT_ROOTS = 3, SKY_ROOTS = 3 };
 
 struct KrsScene {

@@ -12,7 +12,7 @@ PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
 SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/validate tests/unit/memory tests/unit/cache tests/unit/frame tests/unit/query tests/property/ops tests/property/noise \
-               tests/property/graph tests/property/derive tests/property/series tests/property/along tests/property/slope tests/property/parity tests/property/reach tests/oracle/primitives tests/oracle/krs_expand tests/oracle/maps tests/oracle/moebius tests/oracle/operators tests/oracle/fractals tests/oracle/normals \
+               tests/property/graph tests/property/derive tests/property/series tests/property/along tests/property/slope tests/property/parity tests/property/reach tests/oracle/primitives tests/oracle/krs_expand tests/oracle/bounds tests/oracle/maps tests/oracle/moebius tests/oracle/operators tests/oracle/fractals tests/oracle/normals \
                tests/fuzz/sentences
 SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/editors.sh tests/lint.sh \
                tests/errors.sh tests/examples.sh tests/library.sh $(sort $(filter-out tests/cli/common.sh, $(wildcard tests/cli/*.sh)))

@@ -145,11 +145,8 @@ static void report_steep(Elaboration *e, const Syntax *declaration, const Syntax
                   "zero and jumps";
 }
 
-/*
- * The slope is derived over all space; where that has no bound, over `within` and a margin m
- * around it.  There f / slope bounds the distance to the surface (the segment to the nearest
- * point stays in the box), and outside the distance to the box itself does, which is at least m.
- */
+/* The slope is derived over all space; where that has no bound, over `within`, and the distance
+   outside of that from the nearest point in it (field.c). */
 static bool derive_slope(Elaboration *e, Shape *shape, const Syntax *declaration,
                          const Syntax *syntax)
 {
@@ -159,20 +156,15 @@ static bool derive_slope(Elaboration *e, Shape *shape, const Syntax *declaration
     Graph *plain   = graph_simplify(e->graph, &root, 1, e->scratch);
     shape->derived = graph_slope(plain, root, box_infinite, NULL, 1, &blame, e->scratch);
     if (isfinite(shape->derived)) {
+        shape->region   = box_infinite;
         shape->distance = divide_by_slope(e->graph, shape->distance, shape->derived);
         return true;
     }
     if (box_is_finite(shape->box)) {
-        double margin  = 0.05 * box_diagonal(shape->box) + 1e-6;
-        shape->derived =
-            graph_slope(plain, root, box_grow(shape->box, margin), NULL, CELLS, &blame, e->scratch);
+        shape->region  = shape->box;
+        shape->derived = graph_slope(plain, root, shape->region, NULL, CELLS, &blame, e->scratch);
         if (isfinite(shape->derived)) {
-            Node point      = graph_leaf(e->graph, OP_POINT);
-            Node around     = box_distance(e->graph, point, shape->box);
-            Node limit      = graph_number(e->graph, margin);
-            Node away       = graph_op2(e->graph, OP_less, limit, around);
-            Node inside     = divide_by_slope(e->graph, shape->distance, shape->derived);
-            shape->distance = graph_op3(e->graph, OP_select, away, around, inside);
+            shape->distance = bring_out(e, shape->distance, shape->derived, shape->region);
             return true;
         }
     }
@@ -322,7 +314,8 @@ static bool settle_slope(Elaboration *e, const Environment *env, const Syntax *d
     double slope;
     if (!slope_property(e, env, declaration, &slope))
         return false;
-    slope = shape->exact ? 1 : slope;
+    slope          = shape->exact ? 1 : slope;
+    shape->claimed = slope > 0;
     if (slope > 0) {
         shape->derived  = slope;
         shape->distance = divide_by_slope(e->graph, plain, slope);

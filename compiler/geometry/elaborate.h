@@ -227,6 +227,9 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
 /* ---- field.c: solids given by an expression that is negative inside ---- */
 /* NULL: reported at `place`, the call.  `algebraic`: it must be a polynomial. */
 const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Syntax *place);
+/* A bound on the distance to where an expression is 0 in a box, over which it has this slope: that of
+   the nearest point in the box, brought out.  1-Lipschitz everywhere. */
+Node bring_out(Elaboration *e, Node formula, double slope, Box box);
 /* The same shape where only what is in the box matters: fields in it get their bound there. */
 const Shape *restrict_shape(Elaboration *e, const Shape *shape, Box box);
 /* Reports a field in the tree that has no bound. */

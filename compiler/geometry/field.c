@@ -98,6 +98,12 @@ static Node at_nearest(Elaboration *e, Node formula, Box box)
     return graph_substitute(e->graph, formula, with, e->scratch);
 }
 
+Node bring_out(Elaboration *e, Node formula, double slope, Box box)
+{
+    Node inner = at_nearest(e, formula, box);
+    return brought_out(e->graph, divide_by_slope(e->graph, inner, slope), box);
+}
+
 /* r of |f| = |grad f| r + H r^2 / 2, with the sign of f. */
 static Node second_order(Graph *g, Node f, Node gradient, double bend)
 {
@@ -174,14 +180,14 @@ static bool settle(Elaboration *e, Shape *shape, Box box, Node *blame)
     double slope = graph_slope(plain, root, box, NULL, box_is_finite(box) ? CELLS : 1, blame,
                                e->scratch);
     shape->slope = shape->derived = slope;
+    shape->region = box;
     if (*blame != NODE_NONE) /* a node of `plain`: the same expression's place in the text */
         shape->blame = plain->items[*blame].span;
     if (!isfinite(slope))
         return false;
-    Node inner      = at_nearest(e, shape->formula, box);
-    shape->distance = brought_out(e->graph, divide_by_slope(e->graph, inner, slope), box);
+    shape->distance = bring_out(e, shape->formula, slope, box);
     shape->slope    = 1;
-    sharpen(e, shape, inner, slope, box);
+    sharpen(e, shape, at_nearest(e, shape->formula, box), slope, box);
     return true;
 }
 

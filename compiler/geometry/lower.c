@@ -465,6 +465,8 @@ Lowered lower_shape(Lowering *l, const Shape *shape, Place place)
     /* Where no mirror is smooth, the normal that came in is the one that comes out. */
     if (result.distance != NODE_NONE && place.smoothing == NODE_NONE && !shape->smooth)
         result.surface.normal = place.normal;
+    if (l->visits)
+        array_push(l->scratch, l->visits, ((Visit){shape, place.point, result.distance}));
     return result;
 }
 

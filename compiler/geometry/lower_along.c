@@ -27,8 +27,9 @@ typedef struct Ray {
     Node point, direction, speed; /* speed: the length of direction */
 } Ray;
 
-/* The piece looked at, in first guesses (of 1 .. 6, 2 needs the fewest evaluations). */
-static const double PIECE = 2;
+/* How far a term alone may fall over the piece, in c0; of 1 .. 16, few evaluations.  Twice the length
+   for all terms alike would let t^20 fall by a million, and a step be a millionth. */
+static const double PIECE = 4;
 static const double TINY  = 1e-30;
 
 static Node number(Lowering *l, double value) { return graph_number(l->graph, value); }
@@ -55,13 +56,14 @@ static Node root_of(Lowering *l, Node a, uint32_t k)
 static Node piece_length(Lowering *l, const Series *s)
 {
     Graph *g     = l->graph;
-    Node   least = number(l, pow(10, 34.0 / s->degree) / PIECE);
+    Node   least = number(l, pow(10, 34.0 / s->degree));
+    Node   whole = graph_op2(g, OP_mul, s->c[0], number(l, PIECE));
     for (uint32_t k = 1; k <= s->degree; k++) {
         Node fall  = at_least(l, graph_op1(g, OP_neg, s->c[k]), TINY);
-        Node guess = root_of(l, graph_op2(g, OP_div, s->c[0], fall), k);
+        Node guess = root_of(l, graph_op2(g, OP_div, whole, fall), k);
         least      = graph_op2(g, OP_min, least, guess);
     }
-    return graph_op2(g, OP_mul, least, number(l, PIECE));
+    return least;
 }
 
 static double binomial(uint32_t n, uint32_t k)

@@ -19,6 +19,16 @@ typedef struct Lowered {
     Surface surface;
 } Lowered;
 
+/* A shape that was lowered on the way: where, and its distance there. */
+typedef struct Visit {
+    const struct Shape *shape;
+    Node                point, distance; /* `distance` may be NODE_NONE */
+} Visit;
+typedef struct Visits {
+    Visit *items;
+    size_t count, capacity;
+} Visits;
+
 typedef struct Lowering {
     Graph *graph;
     Arena *scratch;
@@ -28,6 +38,7 @@ typedef struct Lowering {
     Node   unit;     /* guarded: how long 1 is outside of everything */
     size_t most;     /* nodes that the graph may have */
     bool   overflow;
+    Visits *visits; /* NULL, or what takes down every shape that is met, parts first */
 } Lowering;
 
 /* Where a shape stands: the mapped point, and the sequence around it.  `lipschitz` says that

@@ -125,6 +125,8 @@ struct Shape {
     double derived; /* PRIMITIVE: the slope of its expression, by which it is divided; else the
                        largest in the tree */
     bool   exact;   /* the distance outside is the true one */
+    bool   claimed; /* PRIMITIVE: its slope is claimed, not derived */
+    Box    region;  /* PRIMITIVE: over which its slope was derived; infinite: over all space */
     bool   estimate; /* nothing is proven of the distance: a primitive in the tree is measured only */
     bool   trapped; /* in the tree is a fractal: `orbit_trap` means something */
     bool   figure;  /* a plane figure in x and y */
@@ -169,6 +171,7 @@ typedef struct Component {
     const char  *name;
     const Shape *shape;
     Span         span;
+    Node         plane_normal, plane_offset; /* of a half-space and nothing else, or NODE_NONE */
 } Component;
 
 /* Numbers and vectors here are frame-time nodes. */

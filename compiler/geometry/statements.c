@@ -189,7 +189,10 @@ static bool show_one(Elaboration *e, Value value, void *user)
     }
     if (!check_bounded(e, value.shape) || !check_extent(e, value.shape, syntax))
         return false;
-    Component component = {component_name(e, syntax), value.shape, syntax->span};
+    Component component = {.name = component_name(e, syntax), .shape = value.shape,
+                           .span = syntax->span};
+    if (!shape_plane(e, value.shape, &component.plane_normal, &component.plane_offset))
+        component.plane_normal = component.plane_offset = NODE_NONE;
     array_push(e->arena, &e->scene->components, component);
     return true;
 }

@@ -320,27 +320,54 @@ static void emit_zones(Emitter *e, Node zone)
                      "    return d;\n}\n\n");
 }
 
-static void emit_union(Emitter *e, size_t components)
+/* With flats, kernels that know them march the rest. */
+static void emit_union(Emitter *e, size_t components, const bool *flat)
 {
+    if (flat) {
+        text_add(e->out, "#ifdef FLATS\n    float d = 1e30;\n");
+        for (size_t i = 0; i < components; i++)
+            if (!flat[i])
+                text_format(e->out, "    d = min(d, krs_distance_%zu(p));\n", i + 1);
+        text_add(e->out, "#else\n");
+    }
     text_add(e->out, components ? "    float d = krs_distance_1(p);\n" : "    float d = 1e30;\n");
     for (size_t i = 1; i < components; i++)
         text_format(e->out, "    d = min(d, krs_distance_%zu(p));\n", i + 1);
+    if (flat)
+        text_add(e->out, "#endif\n");
+}
+
+/* Where rays meet planes. */
+static void emit_flats(Emitter *e, const EmitMarch *march)
+{
+    if (!march->flat)
+        return;
+    text_add(e->out, "#ifdef FLATS\n"
+                     "// How far it is along a ray from outside to the nearest of the planes that\n"
+                     "// krs_distance then leaves out, and how steeply it falls towards one: n.d.\n"
+                     "float krs_ahead(vec3 p, vec3 direction)\n{\n");
+    emit_body(e, &march->ahead[0], 1);
+    text_format(e->out, "    return %s;\n}\n\nfloat krs_rise(vec3 direction)\n{\n",
+                e->text[march->ahead[0]]);
+    emit_body(e, &march->ahead[1], 1);
+    text_format(e->out, "    return %s;\n}\n#endif\n\n", e->text[march->ahead[1]]);
 }
 
 /* Of the group that is defined, or of all. */
-static void emit_group_distances(Emitter *e, size_t components, const uint32_t *groups)
+static void emit_group_distances(Emitter *e, size_t components, const uint32_t *groups,
+                                 const bool *flat)
 {
     text_add(e->out, "#ifdef GROUP\n    float d = 1e30;\n");
     for (size_t i = 0; i < components; i++)
         text_format(e->out, "#if GROUP == %u\n    d = min(d, krs_distance_%zu(p));\n#endif\n",
                     groups[i], i + 1);
     text_add(e->out, "#else\n");
-    emit_union(e, components);
+    emit_union(e, components, flat);
     text_add(e->out, "#endif\n");
 }
 
 static void emit_distances(Emitter *e, const Node *roots, size_t components,
-                           const uint32_t *groups)
+                           const uint32_t *groups, const bool *flat)
 {
     for (size_t i = 0; i < components; i++) {
         Node root = roots[i * ROOT_COUNT + ROOT_DISTANCE];
@@ -353,9 +380,9 @@ static void emit_distances(Emitter *e, const Node *roots, size_t components,
     text_add(e->out, "// Never above the distance to the nearest surface; negative inside.\n"
                      "float krs_distance(vec3 p)\n{\n");
     if (groups)
-        emit_group_distances(e, components, groups);
+        emit_group_distances(e, components, groups, flat);
     else
-        emit_union(e, components);
+        emit_union(e, components, flat);
     text_add(e->out, "    return krs_cut(p, d);\n}\n\n");
 }
 
@@ -497,11 +524,18 @@ static void emit_early_outs(Emitter *e, const EmitMarch *march, size_t component
              "// the same places as krs_distance.  What is far for its size is not looked at, nor\n"
              "// what is smaller than the footprint.\n"
              "float krs_distance_lod(vec3 p, float footprint)\n{\n");
-    size_t count = 0;
+    size_t count = march->flat != NULL;
+    if (march->flat)
+        text_add(e->out, "    float d = 1e30;\n");
     for (int finite = 0; finite < 2; finite++)
-        for (size_t i = 0; i < components; i++)
-            if (!box_is_empty(march->boxes[i]) && box_is_finite(march->boxes[i]) == finite)
-                emit_guarded_component(e, i, march->boxes[i], count++ == 0);
+        for (size_t i = 0; i < components; i++) {
+            bool flat = march->flat && march->flat[i];
+            if (box_is_empty(march->boxes[i]) || box_is_finite(march->boxes[i]) != finite)
+                continue;
+            text_add(e->out, flat ? "#ifndef FLATS\n" : "");
+            emit_guarded_component(e, i, march->boxes[i], count++ == 0);
+            text_add(e->out, flat ? "#endif\n" : "");
+        }
     if (count == 0)
         text_add(e->out, "    float d = 1e30;\n");
     text_add(e->out, "    return krs_cut(p, d);\n}\n#endif\n\n");
@@ -510,7 +544,8 @@ static void emit_early_outs(Emitter *e, const EmitMarch *march, size_t component
 /* ---- along rays ---- */
 
 /* krs_along by one method. */
-static void emit_along_by(Emitter *e, const Node *along, const Node *roots, size_t components)
+static void emit_along_by(Emitter *e, const Node *along, const Node *roots, size_t components,
+                          const bool *flat)
 {
     for (size_t i = 0; i < components; i++) {
         if (along[i] == roots[i * ROOT_COUNT + ROOT_DISTANCE])
@@ -525,8 +560,11 @@ static void emit_along_by(Emitter *e, const Node *along, const Node *roots, size
              "float krs_along(vec3 p, vec3 direction)\n{\n    float t = 1e30;\n");
     for (size_t i = 0; i < components; i++) {
         bool plain = along[i] == roots[i * ROOT_COUNT + ROOT_DISTANCE];
+        bool known = flat && flat[i];
+        text_add(e->out, known ? "#ifndef FLATS\n" : "");
         text_format(e->out, "    t = min(t, krs_%s_%zu(p%s));\n", plain ? "distance" : "along",
                     i + 1, plain ? "" : ", direction");
+        text_add(e->out, known ? "#endif\n" : "");
     }
     text_add(e->out, "    return krs_cut(p, t);\n}\n");
 }
@@ -538,7 +576,7 @@ static void emit_along(Emitter *e, const EmitMarch *march, const Node *roots, si
         any = any || march->along[i] != roots[i * ROOT_COUNT + ROOT_DISTANCE];
     for (AlongMethod method = 0; any && method < ALONG_COUNT; method++) {
         text_format(e->out, "#if defined(ALONG) && ALONG == %d\n", (int)method);
-        emit_along_by(e, march->along + method * components, roots, components);
+        emit_along_by(e, march->along + method * components, roots, components, march->flat);
         text_add(e->out, "#endif\n\n");
     }
 }
@@ -587,12 +625,15 @@ void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
 {
     Emitter e = {.graph = graph, .sources = sources, .scratch = scratch, .out = out};
     size_t  plain = component_count * ROOT_COUNT + (zone != NODE_NONE);
-    size_t  count = plain + (1 + ALONG_COUNT) * component_count;
+    size_t  rays = plain + (1 + ALONG_COUNT) * component_count;
+    size_t  count = rays + (march->flat ? 2 : 0);
     Node   *all = arena_new_array(scratch, Node, count + 1);
     memcpy(all, roots, plain * sizeof *all);
     memcpy(all + plain, march->guarded, component_count * sizeof *all);
     memcpy(all + plain + component_count, march->along,
            ALONG_COUNT * component_count * sizeof *all);
+    if (march->flat)
+        memcpy(all + rays, march->ahead, 2 * sizeof *all);
     e.text    = arena_new_array(scratch, const char *, graph->count + 1);
     e.frame   = arena_new_array(scratch, const char *, graph->count + 1);
     e.nesting = arena_new_array(scratch, uint8_t, graph->count + 1);
@@ -623,7 +664,8 @@ void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
     emit_helpers(&e, all, count);
     emit_frame(&e, all, count);
     emit_zones(&e, zone);
-    emit_distances(&e, roots, component_count, march->groups);
+    emit_distances(&e, roots, component_count, march->groups, march->flat);
+    emit_flats(&e, march);
     if (march->groups)
         text_add(out, "#ifndef GROUP\n");
     emit_early_outs(&e, march, component_count);

@@ -12,6 +12,8 @@ typedef struct EmitMarch {
     const Node *along;   /* of each component, method by method: lower_along */
     const Box  *boxes;
     const uint32_t *groups; /* the group of each, or NULL: all together */
+    const bool *flat;       /* whether each is a plane that krs_ahead knows; NULL: none is */
+    const Node *ahead;      /* with `flat`: where a ray meets one, and how steeply it falls */
 } EmitMarch;
 
 /* Text of a program with `component_count` components; the roots of component i are

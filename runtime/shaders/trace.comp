@@ -14,6 +14,9 @@
  * How far a gap is, is the method's affair (TRACE): the distance (plain), 1.2 times as much
  * (relaxed), or up to where the balls just meet if the distance goes on as it did (automatic).
  *
+ * Planes that are components of their own need no march: with FLATS a ray knows where it meets the
+ * first, and marches the rest up to there.
+ *
  * What the rays of a tile share is marched once before, by the beam through the middle of the
  * tile: a ray through empty space less the tile's width.  Tiles of 32x32 pixels are followed by
  * tiles of 8x8; they count from the corner of the picture, whatever the crop and the band, so that
@@ -62,6 +65,7 @@ March march;
 bool  exists;                  // the item is in the band
 vec3  origin, direction;
 float end;
+float flat_ahead;              // with FLATS: where a ray meets a plane; INFINITE: nowhere
 float pixel_base, pixel_slope; // a pixel is as wide as base + slope t
 vec2  width;                   // so is the beam; 0 for a ray
 float rounding;                // of coordinates at t = 0
@@ -166,6 +170,11 @@ void begin_item(uint number, bool saved)
     if (exists && is_ray && find_end(at_pixel).fate == HIT)
         end = min(end, ends[at_pixel]);
 #endif
+#ifdef FLATS
+    flat_ahead = is_ray ? krs_ahead(origin, direction) : INFINITE;
+    flat_ahead = flat_ahead > frame.eye.w ? INFINITE : max(flat_ahead, 0.0);
+    end = min(end, flat_ahead);
+#endif
     if (saved)
         return;
 
@@ -268,6 +277,18 @@ void end_item()
         march.t = near ? march.nearest_t : march.t;
         march.fate = near ? HIT : MISS;
     }
+#ifdef FLATS
+    // Planes are met where nothing else was; a beam whose rays may meet one is not done with.
+    if (march.fate == MISS && flat_ahead < INFINITE) {
+        march.fate = HIT;
+        march.t = flat_ahead;
+        march.side = 1.0;
+    }
+    if (!is_ray && march.fate == MISS && krs_rise(direction) < 1.01 * width.y + 1e-6) {
+        march.fate = HIT;
+        march.t = end;
+    }
+#endif
 #ifdef GROUP
     // What other groups have found stays, unless this is nearer.
     if (exists && is_ray) {

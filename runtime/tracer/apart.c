@@ -12,7 +12,7 @@
 
 /* A ray that begins inside of a solid sees the inner wall of the union, which no part of it knows;
    so the eye must be outside of everything. */
-static bool begins_outside(const Job *job, KrsFrame *frame)
+bool begins_outside(const Job *job, KrsFrame *frame)
 {
     const KrsProgram *program = job->rendering->program;
     const KrsCamera  *camera  = &job->view.camera;

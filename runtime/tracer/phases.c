@@ -227,9 +227,12 @@ static bool march_all(Job *job, WorkBlock *work)
     FrameBlock *frame = job->rendering->frame.bytes;
     Kernel     *whole = job->trace;
     bool        good = (!has_beams(job) && job->part_count == 0) || clear_fates(job);
+    const KrsProgram *program = job->rendering->program;
+    if (job->rest)
+        view_place_box(&job->view, program->rest_low, program->rest_high, frame);
     if (job->part_count == 0)
-        return good && march(job, work);
-    job->share /= job->part_count;
+        good = good && march(job, work);
+    job->share /= job->part_count ? job->part_count : 1;
     for (uint32_t i = 0; i < job->part_count && good; i++) {
         const MarchPart *part = &job->parts[i];
         const KrsGroup  *group = &job->rendering->program->groups[part->group];

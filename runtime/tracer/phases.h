@@ -20,6 +20,7 @@ typedef struct Job {
     FrameBlock       frame;
     Kernel          *trace, *beams, *secondary, *material;
     MarchPart        parts[KRS_MOST_GROUPS]; /* the nearest first */
+    bool             rest;                   /* planes are not marched, but known (FLATS) */
     uint32_t         part_count;             /* 0: all are marched together, by `trace` */
     bool             sparse; /* shadows and occlusion are found for a quarter of the pixels */
     KrsWindow        cover;  /* the tiles that the crop has a part of: what is traced */
@@ -35,5 +36,7 @@ bool phases_run(Job *job, WorkBlock *work, uint32_t index);
 /* ---- apart.c ---- */
 /* Finds the parts that are marched one by one in this frame, and their kernels. */
 bool apart_prepare(Job *job, KrsFrame *frame);
+/* Whether all rays of the camera begin outside of everything. */
+bool begins_outside(const Job *job, KrsFrame *frame);
 
 #endif

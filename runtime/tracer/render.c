@@ -280,10 +280,12 @@ static bool find_marches(Job *job, KrsFrame *frame)
         return false;
     if (job->part_count > 0)
         return true;
-    job->trace = rendering_trace(job->rendering, options->trace, options->schedule, 0);
+    job->rest = rendering_knows_flats(job->rendering) && begins_outside(job, frame);
+    uint32_t group = job->rest ? GROUP_REST : 0;
+    job->trace = rendering_trace(job->rendering, options->trace, options->schedule, group);
     job->beams = options->no_beams
                      ? job->trace
-                     : rendering_beams(job->rendering, options->trace, options->schedule);
+                     : rendering_beams(job->rendering, options->trace, options->schedule, group);
     return job->trace && job->beams;
 }
 

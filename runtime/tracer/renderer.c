@@ -170,12 +170,19 @@ static KrsSchedule schedule_of_kernel(KrsSchedule schedule)
     return schedule == KRS_SCHEDULE_QUEUE ? KRS_SCHEDULE_PIXEL : schedule;
 }
 
+/* Zones cut holes into planes. */
+bool rendering_knows_flats(const KrsRendering *rendering)
+{
+    return rendering->program->flats && rendering->in_use->zones == 0;
+}
+
 /* On devices of type CPU alone: others leave far components out by branches. */
 bool rendering_marches_apart(const KrsRendering *rendering, KrsComponents components)
 {
     bool by_default = rendering->program->apart && gpu_is_cpu(&rendering->renderer->gpu) &&
                       !rendering->renderer->early_outs;
-    return rendering->program->group_count > 0 && !rendering->program->along &&
+    bool holes = rendering->program->flats && !rendering_knows_flats(rendering);
+    return rendering->program->group_count > 0 && !rendering->program->along && !holes &&
            (components == KRS_COMPONENTS_DEFAULT ? by_default : components == KRS_COMPONENTS_APART);
 }
 
@@ -210,7 +217,10 @@ static Variant name_group(const KrsRendering *rendering, KrsTrace trace, KrsSche
 {
     Variant variant = name_variant(rendering, trace, schedule);
     size_t  length  = strlen(variant.defines);
-    if (group > 0)
+    if (group > 0 && rendering_knows_flats(rendering))
+        length += (size_t)snprintf(variant.defines + length, sizeof variant.defines - length,
+                                   "#define FLATS\n");
+    if (group > 0 && group < GROUP_REST)
         snprintf(variant.defines + length, sizeof variant.defines - length, "#define GROUP %u\n",
                  group);
     return variant;
@@ -241,10 +251,11 @@ Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule sch
                        name_group(rendering, trace, schedule, group));
 }
 
-Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule)
+Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+                        uint32_t group)
 {
     return rendering_trace(rendering, trace >= KRS_TRACE_EXACT ? KRS_TRACE_PLAIN : trace, schedule,
-                           0);
+                           group);
 }
 
 Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule)
@@ -282,19 +293,22 @@ static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
     KrsSchedule   schedule = KRS_SCHEDULE_DEFAULT;
     rendering_choose(rendering, &trace, &schedule);
     schedule = schedule_of_kernel(schedule);
-    Variant       primary[1 + KRS_MOST_GROUPS];
+    bool          apart = rendering_marches_apart(rendering, KRS_COMPONENTS_DEFAULT);
+    uint32_t      whole = rendering_knows_flats(rendering) ? GROUP_REST : 0;
+    Variant       primary[2 + KRS_MOST_GROUPS];
     Variant       plain = name_variant(rendering, KRS_TRACE_PLAIN, schedule);
+    Variant       beams = name_group(rendering, KRS_TRACE_PLAIN, schedule, whole);
     Variant       query = name_variant(rendering, KRS_TRACE_AUTO, schedule);
     Variant       simple = name_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     KernelRequest pictures[4 + KRS_MOST_GROUPS] = {
         {&to->secondary[schedule], {"secondary.comp", scene, plain.defines}},
         {&to->material, {"material.comp", scene, simple.defines}},
-        {&to->trace[KRS_TRACE_PLAIN][schedule][0], {"trace.comp", scene, plain.defines}},
+        {&to->trace[KRS_TRACE_PLAIN][schedule][whole], {"trace.comp", scene, beams.defines}},
     };
     size_t   count = trace == KRS_TRACE_EXACT ? 3 : 2;
-    bool     apart = rendering_marches_apart(rendering, KRS_COMPONENTS_DEFAULT);
-    uint32_t last = apart ? (uint32_t)rendering->program->group_count : 0;
-    for (uint32_t group = apart; group <= last; group++) {
+    uint32_t first = apart ? 1 : whole, last = apart ? (uint32_t)rendering->program->group_count
+                                                     : whole;
+    for (uint32_t group = first; group <= last; group++) {
         primary[group] = name_group(rendering, trace, schedule, group);
         pictures[count++] = (KernelRequest){&to->trace[trace][schedule][group],
                                             {"trace.comp", scene, primary[group].defines}};
@@ -318,7 +332,7 @@ static void kernels_destroy(Gpu *gpu, SceneKernels *kernels)
         kernel_destroy(gpu, &kernels->query[schedule]);
         kernel_destroy(gpu, &kernels->secondary[schedule]);
         for (int trace = 0; trace < KRS_TRACE_COUNT; trace++)
-            for (uint32_t group = 0; group <= KRS_MOST_GROUPS; group++)
+            for (uint32_t group = 0; group <= GROUP_REST; group++)
                 kernel_destroy(gpu, &kernels->trace[trace][schedule][group]);
     }
     *kernels = (SceneKernels){0};

@@ -30,11 +30,14 @@ typedef struct Band {
     Buffer   fetched; /* where the host reads the results */
 } Band;
 
+/* Instead of a group: all that is not a plane, where rays know planes by themselves. */
+enum { GROUP_REST = 1 + KRS_MOST_GROUPS };
+
 /* The kernels with the scene in them, each compiled when it is first needed. */
 typedef struct SceneKernels {
     uint32_t zones; /* of the caller, that they have room for */
     Kernel   material, sample;
-    Kernel   trace[KRS_TRACE_COUNT][KRS_SCHEDULE_COUNT][1 + KRS_MOST_GROUPS]; /* [0]: of all */
+    Kernel   trace[KRS_TRACE_COUNT][KRS_SCHEDULE_COUNT][2 + KRS_MOST_GROUPS]; /* [0]: of all */
     Kernel   secondary[KRS_SCHEDULE_COUNT];
     Kernel   query[KRS_SCHEDULE_COUNT];
 } SceneKernels;
@@ -58,12 +61,16 @@ struct KrsRendering {
 };
 
 /* The kernels of primary and secondary rays for a method and a schedule (neither is the default),
-   compiled when they are first asked for, the former of a group of components, or of all (0).  NULL
+   compiled when they are first asked for, the former of a group of components, of all (0), or
+   GROUP_REST.  NULL
    with the failure noted. */
 Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
                         uint32_t group);
 /* The same for beams, which need distances for all directions. */
-Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule);
+Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+                        uint32_t group);
+/* Whether there is a march of GROUP_REST. */
+bool rendering_knows_flats(const KrsRendering *rendering);
 Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule);
 Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule);
 /* Likewise. */

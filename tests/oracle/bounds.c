@@ -111,11 +111,13 @@ static Product compile_sequence(const Sequence *sequence, double slack)
                                    " %.17g);\n", b->from.x, b->from.y, b->from.z, b->to.x,
                             b->to.y, b->to.z, b->radius);
         }
+        if (level == sequence->mirror_count)
+            break;
         Half m = sequence->mirrors[level];
-        if (level < sequence->mirror_count && slack > 0)
+        if (slack > 0)
             scene_write(&text, "reflect plane([%.17g, %.17g, %.17g], w%d);\n", m.normal.x,
                         m.normal.y, m.normal.z, level);
-        else if (level < sequence->mirror_count)
+        else
             scene_write(&text, "reflect plane([%.17g, %.17g, %.17g], %.17g);\n", m.normal.x,
                         m.normal.y, m.normal.z, m.offset);
     }

@@ -459,9 +459,7 @@ static void others_are_safe(void **state)
         "union(sphere(0.6), box([1, 1, 1]).move([0.5, 0.4, 0]), blend: 0.6, kind: \"chamfer\")"
         ".twist([0, 1, 0], 0.3)",
         "union(sphere(0.6), box([1, 1, 1]).move([0.5, 0.4, 0]), blend: 0.6, kind: \"chamfer\")"
-        ".displace(x, 0.01)",
-        "(sphere(0.05).move([0, 0.85, 0]) | sphere(0.05).move([0.95, 0, 0]) |"
-        " sphere(0.05).move([0, 2.8, 0])).taper([0, 1, 0], from: 1, to: 0.3)"};
+        ".displace(x, 0.01)"};
     (void)state;
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         Product product = product_format("show %s;", shapes[i]);
@@ -470,6 +468,21 @@ static void others_are_safe(void **state)
         judge_acquits(&trial, shapes[i]);
         product_free(&product);
     }
+}
+
+/* Below a ball, far from it, and where the taper narrows towards it: all that makes its bound steep
+   comes together, which is rare. */
+static void narrowing_is_safe(void **state)
+{
+    static const char text[] = "show (sphere(0.05).move([0, 0.85, 0]) |"
+                               "      sphere(0.05).move([0.95, 0, 0]) |"
+                               "      sphere(0.05).move([0, 2.8, 0]))"
+                               "    .taper([0, 1, 0], from: 1, to: 0.3);";
+    (void)state;
+    Product product = product_compile(text);
+    Trial   trial   = {product_field, &product, is_negative, &product, vec(0, 0, 0), 0.08, 300, 5};
+    judge_acquits(&trial, text);
+    product_free(&product);
 }
 
 /* ---- how much of the distance is left ---- */
@@ -741,6 +754,7 @@ int main(void)
         cmocka_unit_test(a_twist_needs_no_range),
         cmocka_unit_test(displacements_are_safe),
         cmocka_unit_test(others_are_safe),
+        cmocka_unit_test(narrowing_is_safe),
         {"twists are of use", bounds_are_of_use, NULL, NULL, &shares[0]},
         {"bends are of use", bounds_are_of_use, NULL, NULL, &shares[1]},
         {"tapers are of use", bounds_are_of_use, NULL, NULL, &shares[2]},

@@ -239,6 +239,13 @@ void surface_gradient(Formula *formula, const Real p[3], Real gradient[3])
     }
 }
 
+Vec surface_slope(Formula *formula, Vec p)
+{
+    Real gradient[3];
+    surface_gradient(formula, (const Real[3]){p.x, p.y, p.z}, gradient);
+    return vec((double)gradient[0], (double)gradient[1], (double)gradient[2]);
+}
+
 bool surface_near(Formula *formula, Vec p, Vec *found)
 {
     Real q[3] = {p.x, p.y, p.z}, gradient[3];
@@ -400,6 +407,17 @@ Entry surface_crossing(Formula *formula, Real radius, Vec origin, Vec direction)
     if (is_doubtful(&chord, radius))
         entry.fate = RAY_DOUBTFUL;
     return entry;
+}
+
+double surface_leeway(Formula *formula, double radius, Vec p, Vec direction)
+{
+    Real   size = 0, half = radius / sqrtl(3);
+    double fall = fabs(vec_dot(surface_slope(formula, p), direction));
+    for (int i = 0; i < 8; i++) {
+        Real corner[3] = {i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half};
+        size = fmaxl(size, fabsl(formula(corner)));
+    }
+    return 1e-8 * radius + 1e-13 * (double)size / fall;
 }
 
 void random_ray(Random *random, double radius, Vec *origin, Vec *direction)

@@ -30,6 +30,7 @@ const Surface *surface_named(const char *name);
 
 /* By differences, whose error is some 1e-12 of the gradient's size nearby. */
 void surface_gradient(Formula *formula, const Real p[3], Real gradient[3]);
+Vec  surface_slope(Formula *formula, Vec p);
 
 /* The closest point of {f = 0}, about: down the gradient of |f|.  False when that leads nowhere. */
 bool surface_near(Formula *formula, Vec p, Vec *found);
@@ -51,6 +52,10 @@ Entry surface_entry(Formula *formula, Real radius, Vec origin, Vec direction);
 
 /* The first t in the ball at which f changes its sign, in either direction. */
 Entry surface_crossing(Formula *formula, Real radius, Vec origin, Vec direction);
+
+/* How far from a root at p double precision may end, which knows f to some 1e-15 of what it is
+   nearby: the farther, the smaller the angle at which the ray meets the surface. */
+double surface_leeway(Formula *formula, double radius, Vec p, Vec direction);
 
 /* A ray from a few radii away to somewhere in the ball. */
 void random_ray(Random *random, double radius, Vec *origin, Vec *direction);

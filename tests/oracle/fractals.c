@@ -306,7 +306,6 @@ static void a_fault_is_found(void **state)
     (void)state;
     char    text[200];
     Fractal f = julia_of(&julia_sets[4], text, sizeof text);
-    strcat(text, " ");
     Product product = product_new("show julia(c: [0, 0, 0, 0], iterations: 12).scale(1.02);");
     Measure m       = measure(&product, &f, 500);
     assert_true(m.most_inside > 1);

@@ -43,43 +43,21 @@ static void is_safe(void **state)
 
 static Vec point_of(const KrsHit *hit) { return vec(hit->point[0], hit->point[1], hit->point[2]); }
 
-static Vec gradient_at(const Surface *surface, Vec p)
-{
-    Real gradient[3];
-    surface_gradient(surface->formula, (const Real[3]){p.x, p.y, p.z}, gradient);
-    return vec((double)gradient[0], (double)gradient[1], (double)gradient[2]);
-}
-
 /* The angle between the hit's normal and the formula's gradient, or 0 where that is too small, or
    bends too much, to have a direction in double precision. */
 static double turn_at(const Surface *surface, const KrsHit *hit)
 {
     Vec  normal = vec(hit->normal[0], hit->normal[1], hit->normal[2]), p = point_of(hit);
-    Vec a = gradient_at(surface, p);
+    Vec a = surface_slope(surface->formula, p);
     for (int i = 0; i < 3; i++) {
         double h = 1e-4 * surface->radius;
         Vec    beside = vec_add(p, vec(h * (i == 0), h * (i == 1), h * (i == 2)));
-        Vec    b      = gradient_at(surface, beside);
+        Vec    b      = surface_slope(surface->formula, beside);
         if (vec_length(vec_cross(vec_unit(a), vec_unit(b))) > 0.005)
             return 0;
     }
     double angle = vec_length(vec_cross(vec_unit(a), normal));
     return vec_dot(a, normal) > 0 ? angle : 2 - angle;
-}
-
-/* How far t may be off where the surface is met at a small angle: double precision knows f to some
-   1e-15 of what it is nearby. */
-static double leeway(const Surface *surface, const KrsHit *hit, Vec direction)
-{
-    Vec    p    = point_of(hit);
-    Real   size = 0;
-    double fall = fabs(vec_dot(gradient_at(surface, p), direction));
-    for (int i = 0; i < 8; i++) {
-        Vec corner = vec_scale(surface->radius / sqrt(3),
-                               vec(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
-        size = fmaxl(size, fabsl(value_at(surface, corner)));
-    }
-    return 1e-8 * surface->radius + 1e-13 * (double)size / fall;
 }
 
 static void rays_find_first_roots(void **state)
@@ -106,7 +84,7 @@ static void rays_find_first_roots(void **state)
         hits++;
         on_ball += entry.on_ball;
         double off = fabs(hit.t - (double)entry.t);
-        if (off > leeway(surface, &hit, direction))
+        if (off > surface_leeway(surface->formula, surface->radius, point_of(&hit), direction))
             fail_msg("%s: ray %d ends at %.12g, its root is at %.12Lg", surface->name, i, hit.t,
                      entry.t);
         double turn = entry.on_ball ? 0 : turn_at(surface, &hit);

@@ -37,6 +37,13 @@ static const char landscape_text[] =
     "show box([0.9, 0.9, 0.9]).move([2, 0.5, 0.2]);\n"
     "show plane([0, 1, 0], 0);\n";
 
+/* The same on a ground that has to be marched. */
+static const char terrace_text[] =
+    "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 40deg }\n"
+    "show sphere(1).move([0, 1, 0]);\n"
+    "show box([0.9, 0.9, 0.9]).move([2, 0.5, 0.2]);\n"
+    "show box([80, 1, 80]).move([0, -0.5, 0]);\n";
+
 enum { FIRST, FLAT, ROUND, INNER, CAMERA_COUNT };
 enum { WIDTH = 97, HEIGHT = 61 };
 
@@ -484,7 +491,7 @@ static void beams_are_not_seen(void **state)
 {
     (void)state;
     Stage stage = {0};
-    stage_open(&stage, landscape_text, NULL);
+    stage_open(&stage, terrace_text, NULL);
     KrsPicture *behind = render(&stage, (KrsRenderOptions){.samples = 1});
     KrsPicture *alone = render(&stage, (KrsRenderOptions){.samples = 1, .no_beams = true});
     unsigned    other = 0, apart = 0;
@@ -505,6 +512,43 @@ static void beams_are_not_seen(void **state)
     assert_true(behind->stats.evaluations < 0.9 * (double)alone->stats.evaluations);
     krs_picture_free(behind);
     krs_picture_free(alone);
+    stage_close(&stage);
+}
+
+/* A zone far away changes nothing but that planes may have holes, and so are marched. */
+static void marched_planes_look_the_same(void **state)
+{
+    (void)state;
+    static const double far_away[1][4] = {{0, -1e5, 0, 1}};
+    Stage stage = {0};
+    stage_open(&stage,
+               "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 40deg }\n"
+               "camera below { eye: [3, -2, 5], target: [0, 0.5, 0] }\n"
+               "show sphere(1).move([0, 0.4, 0]);\n"
+               "show plane([0.1, 1, 0], 0);\n"
+               "show plane([0.5, 0.2, 1], -3).rotate([0, 1, 0], 20deg).paint(#4050c0);\n", NULL);
+    for (uint32_t camera = 0; camera < 2; camera++) {
+        KrsPicture *known = render(&stage, (KrsRenderOptions){.samples = 1, .camera = camera});
+        assert_int_equal(krs_frame_set_zones(stage.frame, far_away, 1), KRS_OK);
+        KrsPicture *marched = render(&stage, (KrsRenderOptions){.samples = 1, .camera = camera});
+        assert_int_equal(krs_frame_set_zones(stage.frame, NULL, 0), KRS_OK);
+        unsigned other = 0, planes = 0;
+        for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
+            other += known->component[i] != marched->component[i];
+            planes += known->component[i] > 1;
+            if (known->component[i] == marched->component[i] && known->component[i])
+                assert_true(fabsf(known->depth[i] - marched->depth[i]) <=
+                            2e-3f * (1 + known->depth[i]));
+        }
+        assert_true(other * 200 <= WIDTH * HEIGHT);
+        assert_true(planes > 1000);
+        if (camera == 0) /* below, all rays begin inside, and none of the planes is known */
+            assert_true(known->stats.evaluations < 0.3 * (double)marched->stats.evaluations);
+        assert_int_equal(known->stats.unresolved, 0);
+        krs_picture_free(known);
+        krs_picture_free(marched);
+    }
+    assert_int_equal(krs_renderer_complaints(stage.renderer), 0);
     stage_close(&stage);
 }
 
@@ -716,6 +760,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(points_are_sampled, set_up, tear_down),
         cmocka_unit_test(slices_are_not_seen),
         cmocka_unit_test(beams_are_not_seen),
+        cmocka_unit_test(marched_planes_look_the_same),
         cmocka_unit_test_setup_teardown(crops_are_parts, set_up, tear_down),
         cmocka_unit_test_setup_teardown(bands_are_not_seen, set_up, tear_down),
         cmocka_unit_test_setup_teardown(interruption_is_heard, set_up, tear_down),

@@ -21,6 +21,7 @@ static double inside_factor;  /* the same inside */
 static bool   not_a_number;   /* in one half of space */
 static double device_error;   /* added to what the device says */
 static bool   an_estimate;    /* it claims to be no more */
+static bool   search_refutes; /* what the directed search says */
 
 static double ball(const double point[3])
 {
@@ -118,6 +119,22 @@ KrsStatus modules_compile(const Options *options, const KrsScene *scene, Modules
     return KRS_OK;
 }
 
+/* The search has a test of its own, refute.c. */
+KrsStatus krs_refute(const char *path, const KrsOptions *options, const KrsRefuteOptions *how,
+                     KrsRefutation *result)
+{
+    (void)path, (void)options, (void)how;
+    *result = (KrsRefutation){.refuted = search_refutes};
+    return search_refutes ? KRS_BAD_SCENE : KRS_OK;
+}
+
+KrsOptions scene_options(DiagnosticSink *sink)
+{
+    (void)sink;
+    return (KrsOptions){0};
+}
+
+void scene_print_counts(const DiagnosticSink *sink) { (void)sink; }
 void modules_free(Modules *modules) { (void)modules; }
 void krs_rendering_free(KrsRendering *rendering) { (void)rendering; }
 void krs_renderer_free(KrsRenderer *renderer) { (void)renderer; }
@@ -166,7 +183,7 @@ static int be_honest(void **state)
     exaggeration = inside_factor = 1;
     not_a_number = false;
     device_error = 0;
-    an_estimate  = false;
+    an_estimate = search_refutes = false;
     return 0;
 }
 
@@ -174,6 +191,13 @@ static void an_honest_scene_passes(void **state)
 {
     (void)state;
     assert_int_equal(validate(), KRS_OK);
+}
+
+static void what_the_search_refutes_is_refuted(void **state)
+{
+    (void)state;
+    search_refutes = true;
+    assert_int_equal(validate(), KRS_BAD_SCENE);
 }
 
 static void a_cautious_scene_passes(void **state)
@@ -221,13 +245,13 @@ static void rounding_of_a_device_passes(void **state)
 }
 
 /* The largest part of the way to the surface that validate finds the distance to be. */
-static double measured(void)
+static double measured(KrsStatus expected)
 {
     static Validation v;
     v = (Validation){.random = 1, .frame = (KrsFrame *)&something, .scene = (KrsScene *)&something};
     choose_box(&v);
     choose_points(&v);
-    assert_int_equal(try_balls(&v), KRS_OK);
+    assert_int_equal(try_balls(&v), expected);
     assert_true(v.ways > 500);
     assert_int_equal(v.balls, 0);
     return v.reached;
@@ -237,12 +261,13 @@ static void an_estimate_is_measured(void **state)
 {
     (void)state;
     an_estimate = true;
-    assert_float_equal(measured(), 1, 0.01);
+    assert_float_equal(measured(KRS_OK), 1, 0.01);
     exaggeration = inside_factor = 0.6;
-    assert_float_equal(measured(), 0.6, 0.01);
-    exaggeration = 1.3;
-    assert_float_equal(measured(), 1.3, 0.02);
+    assert_float_equal(measured(KRS_OK), 0.6, 0.01);
     assert_int_equal(validate(), KRS_OK);
+    exaggeration = 1.3;
+    assert_float_equal(measured(KRS_BAD_SCENE), 1.3, 0.02);
+    assert_int_equal(validate(), KRS_BAD_SCENE);
 }
 
 int main(void)
@@ -250,6 +275,7 @@ int main(void)
 #define HONEST(test) cmocka_unit_test_setup(test, be_honest)
     const struct CMUnitTest tests[] = {
         HONEST(an_honest_scene_passes),
+        HONEST(what_the_search_refutes_is_refuted),
         HONEST(a_cautious_scene_passes),
         HONEST(two_per_cent_too_much_is_refuted),
         HONEST(too_much_inside_is_refuted),

@@ -1,0 +1,550 @@
+/*
+ * refute.c: the attempt to refute the distance of every shape of a scene, and whom to blame.
+ *
+ * Every shape of the trees is lowered by itself and searched (search.h): as it is where something
+ * above moves its surface, which needs the slope, and as it is where nothing does.  Components
+ * come first, and have half of the time; then their parts, parts of parts before the whole.
+ *
+ * Who is to blame: all shapes that the lowering of a refuted one meets are looked at in the very
+ * points in which it is refuted, each in its own space.  The smallest of them that is refuted too
+ * is next, and so on; where none is, the parts of the last are searched from these points on.
+ */
+#include "compiler/inspect.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "compiler/geometry/lowering.h"
+#include "compiler/search.h"
+
+/* Of the machine whose seconds are counted; most of today's are as fast, or faster. */
+static const double OPERATIONS_PER_SECOND = 1e8;
+enum { MOST_SHAPES = 4096, MOST_TRIALS = 6, SETTING_ATTEMPTS = 8 };
+
+/* A shape that is looked at, and where in the trees it was met first. */
+typedef struct Suspect {
+    const Shape *shape;
+    uint32_t     component;
+    size_t       parent; /* index of a suspect; SIZE_MAX of a component's whole shape */
+} Suspect;
+
+/* Points that refute a shape, at these parameters. */
+typedef struct Finding {
+    size_t     suspect;
+    bool       steady; /* of the distance that has to be 1-Lipschitz, else of the other */
+    Witness    witness;
+    NodeValue *parameters;
+} Finding;
+
+typedef struct Refuter {
+    const Inspected        *in;
+    const KrsRefuteOptions *how;
+    KrsRefutation          *result;
+    Graph    *graph;
+    uint64_t  random, total, done;
+    struct { Suspect *items; size_t count, capacity; } suspects;
+    bool      stopped;
+} Refuter;
+
+/* ---- shapes ---- */
+
+/* These add nothing to the distance of what they hold. */
+static bool is_wrapper(const Shape *shape)
+{
+    return shape->kind == SHAPE_PAINT || shape->kind == SHAPE_SMOOTH || shape->kind == SHAPE_EMPTY;
+}
+
+static bool is_known(const Refuter *r, const Shape *shape)
+{
+    for (size_t i = 0; i < r->suspects.count; i++)
+        if (r->suspects.items[i].shape == shape)
+            return true;
+    return false;
+}
+
+static void add_suspects(Refuter *r, const Shape *shape, uint32_t component, size_t parent)
+{
+    if (r->suspects.count >= MOST_SHAPES || is_known(r, shape))
+        return;
+    size_t own = r->suspects.count;
+    array_push(r->in->arena, &r->suspects, ((Suspect){shape, component, parent}));
+    for (uint32_t i = 0; i < shape->child_count; i++)
+        add_suspects(r, shape->children[i], component, own);
+}
+
+static Lowering lowering_of(Refuter *r, Visits *visits)
+{
+    return (Lowering){.graph = r->graph, .scratch = r->in->scratch, .visits = visits,
+                      .most = r->graph->count + MOST_LOWERED};
+}
+
+/* The distance of a shape in its own space; NODE_NONE: of nothing, or of too much. */
+static Node lower_alone(Refuter *r, const Shape *shape, bool steady, Visits *visits)
+{
+    Lowering l     = lowering_of(r, visits);
+    Place    place = place_bare(graph_leaf(r->graph, OP_POINT), steady);
+    Lowered  all   = lower_shape(&l, shape, place);
+    if (l.overflow || all.distance == NODE_NONE)
+        return NODE_NONE;
+    return divide_by_slope(r->graph, all.distance, shape->slope);
+}
+
+/* A search of one of the distances of a shape; false: there is nothing to search. */
+static bool search_of(Refuter *r, const Shape *shape, Node distance, bool steady, Search *search)
+{
+    Arena *scratch = r->in->scratch;
+    Graph *simple  = graph_simplify(r->graph, &distance, 1, scratch);
+    if (!search_new(search, simple, distance, shape->box, scratch))
+        return false;
+    search->steep  = steady;
+    search->figure = shape->figure;
+    search->random = r->random;
+    r->random += 0x9e3779b97f4a7c15;
+    return true;
+}
+
+/* ---- parameters ---- */
+
+static const struct KrsFixed *fixed_value(const Refuter *r, const char *name)
+{
+    for (size_t i = 0; i < r->how->fixed_count; i++)
+        if (strcmp(r->how->fixed[i].name, name) == 0)
+            return &r->how->fixed[i];
+    return NULL;
+}
+
+static double random_value(Refuter *r, double usual, double low, double high)
+{
+    double choice = random_unit(&r->random), t = random_unit(&r->random);
+    if (!isfinite(low))
+        low = fmin(usual, isfinite(high) ? high : usual) - 1 - fabs(usual);
+    if (!isfinite(high))
+        high = fmax(usual, low) + 1 + fabs(usual);
+    return choice < 0.2 ? low : choice < 0.4 ? high : low + t * (high - low);
+}
+
+/* Defaults in the first trial, then anything that is permitted. */
+static void choose_parameters(Refuter *r, uint32_t trial, NodeValue *values)
+{
+    const Scene *scene = r->in->scene;
+    values[0].v[0]     = trial ? 10 * random_unit(&r->random) : r->how->time;
+    for (size_t i = 0; i < scene->parameters.count; i++) {
+        const Parameter       *parameter = &scene->parameters.items[i];
+        const struct KrsFixed *fixed     = fixed_value(r, parameter->name);
+        double                *to        = values[parameter->slot].v;
+        memcpy(to, fixed ? fixed->values : parameter->value, sizeof parameter->value);
+        for (uint32_t k = 0; trial && !fixed && k < parameter->components; k++)
+            to[k] = random_value(r, parameter->value[k], parameter->low[k], parameter->high[k]);
+    }
+}
+
+static bool needs_parameters(const Tape *tape)
+{
+    for (size_t i = 0; i < tape->frame_count; i++)
+        if (tape->graph->items[tape->nodes[i]].op == OP_PARAMETER)
+            return true;
+    return false;
+}
+
+/* ---- looking at a shape ---- */
+
+static void report_progress(Refuter *r, uint64_t operations)
+{
+    r->done += operations;
+    double part = fmin(1, (double)r->done / (double)r->total);
+    if (r->how->go_on && !r->how->go_on(r->how->user, part))
+        r->stopped = true;
+}
+
+static void count_search(Refuter *r, const Search *search, const Shape *shape, double ratio)
+{
+    r->result->evaluations += search->evaluations;
+    if (shape->estimate)
+        r->result->longest = fmax(r->result->longest, ratio);
+    else if (search->steep)
+        r->result->steepest = fmax(r->result->steepest, ratio);
+}
+
+/* Tries one distance at several settings; the worst that refutes it goes to *finding. */
+static bool try_settings(Refuter *r, const Shape *shape, Search *search, uint64_t operations,
+                         Finding *finding)
+{
+    uint32_t   trials     = needs_parameters(&search->tape) ? MOST_TRIALS : 1;
+    size_t     slots      = r->graph->parameters.count;
+    NodeValue *parameters = arena_new_array(r->in->scratch, NodeValue, slots);
+    bool       refuted    = false;
+    for (uint32_t trial = 0; trial < trials && !r->stopped; trial++) {
+        bool sound = false;
+        for (int i = 0; i < SETTING_ATTEMPTS && !sound; i++) {
+            choose_parameters(r, trial, parameters);
+            sound = search_start(search, parameters);
+        }
+        if (!sound)
+            continue;
+        search->worst = (Witness){0};
+        search_run(search, operations / trials);
+        report_progress(r, operations / trials);
+        count_search(r, search, shape, search->worst.ratio);
+        search->evaluations = 0;
+        if (r->result->settings < trial + 1)
+            r->result->settings = trial + 1;
+        if (!search_refuted(search) || (refuted && search->worst.ratio <= finding->witness.ratio))
+            continue;
+        refuted          = true;
+        finding->steady  = search->steep;
+        finding->witness = search->worst;
+        memcpy(finding->parameters, parameters, slots * sizeof *parameters);
+    }
+    return refuted;
+}
+
+/* Both distances of a shape, where there are two. */
+static bool try_shape(Refuter *r, size_t suspect, uint64_t operations, Finding *finding)
+{
+    const Shape *shape  = r->suspects.items[suspect].shape;
+    Node         steady = NODE_NONE, plain = NODE_NONE;
+    bool         refuted = false;
+    Search       search;
+    finding->suspect = suspect;
+    if (!shape->estimate)
+        steady = lower_alone(r, shape, true, NULL);
+    plain = lower_alone(r, shape, false, NULL);
+    r->result->shapes++;
+    r->result->estimates += shape->estimate;
+    bool both = steady != NODE_NONE && plain != steady;
+    if (steady != NODE_NONE && search_of(r, shape, steady, true, &search))
+        refuted = try_settings(r, shape, &search, both ? operations / 2 : operations, finding);
+    if (!refuted && plain != steady && plain != NODE_NONE &&
+        search_of(r, shape, plain, false, &search))
+        refuted = try_settings(r, shape, &search, both ? operations / 2 : operations, finding);
+    arena_free(r->in->scratch);
+    return refuted;
+}
+
+/* ---- whom to blame ---- */
+
+/* How far a shape that was met on the way is from its claim in two points; below 1: it is not. */
+static double visit_ratio(const Visit *visit, bool steady, const NodeValue *at_p,
+                          const NodeValue *at_q)
+{
+    const double *p = at_p[visit->point].v, *q = at_q[visit->point].v;
+    double a = at_p[visit->distance].v[0], b = at_q[visit->distance].v[0], square = 0, size = 1;
+    if (isnan(a) || isnan(b))
+        return isfinite(p[0] + p[1] + p[2]) ? INFINITY : 0;
+    for (int i = 0; i < 3; i++) {
+        square += (p[i] - q[i]) * (p[i] - q[i]);
+        size += fabs(p[i]);
+    }
+    double rise = steady && !visit->shape->estimate ? fabs(a - b)
+                  : (a > 0) != (b > 0)              ? fmax(fabs(a), fabs(b)) : 0;
+    return fmax(0, rise / visit->shape->slope - 1e-9 * size) / fmax(sqrt(square), 1e-9 * size);
+}
+
+/* All that is met on the way into a refuted shape, with the values at its two points. */
+typedef struct Trail {
+    Visits     visits; /* those with a distance; nodes are of `graph` */
+    Graph     *graph;
+    NodeValue *at_p, *at_q;
+} Trail;
+
+static void run_at(const Tape *tape, const NodeValue *parameters, const double point[3],
+                   NodeValue *values)
+{
+    tape_run_frame(tape, parameters, values);
+    tape_run_point(tape, point, values);
+}
+
+static Trail trail_of(Refuter *r, const Finding *finding)
+{
+    const Shape *shape = r->suspects.items[finding->suspect].shape;
+    Arena       *arena = r->in->scratch;
+    Trail        trail = {0};
+    Visits       all   = {0};
+    (void)lower_alone(r, shape, finding->steady, &all);
+    for (size_t i = 0; i < all.count; i++)
+        if (all.items[i].distance != NODE_NONE && all.items[i].shape != shape)
+            array_push(arena, &trail.visits, all.items[i]);
+    size_t count = trail.visits.count;
+    Node  *roots = arena_new_array(arena, Node, 2 * count + 1);
+    for (size_t i = 0; i < count; i++) {
+        roots[2 * i]     = trail.visits.items[i].point;
+        roots[2 * i + 1] = trail.visits.items[i].distance;
+    }
+    trail.graph = r->graph;
+    trail.at_p  = arena_new_array(arena, NodeValue, r->graph->count);
+    trail.at_q  = arena_new_array(arena, NodeValue, r->graph->count);
+    Tape tape   = tape_new(r->graph, roots, 2 * count, arena);
+    run_at(&tape, finding->parameters, finding->witness.p, trail.at_p);
+    run_at(&tape, finding->parameters, finding->witness.q, trail.at_q);
+    return trail;
+}
+
+static size_t suspect_of(const Refuter *r, const Shape *shape)
+{
+    for (size_t i = 0; i < r->suspects.count; i++)
+        if (r->suspects.items[i].shape == shape)
+            return i;
+    return SIZE_MAX;
+}
+
+/* Searches a shape from two points on, at the parameters of a finding, which it replaces when the
+   shape is refuted as well. */
+static bool refute_from(Refuter *r, size_t suspect, const double p[3], const double q[3],
+                        uint64_t operations, Finding *finding)
+{
+    const Shape *shape = r->suspects.items[suspect].shape;
+    bool         steady = finding->steady && !shape->estimate;
+    Node         distance = lower_alone(r, shape, steady, NULL);
+    Search       search;
+    if (distance == NODE_NONE || !search_of(r, shape, distance, steady, &search) ||
+        !search_start(&search, finding->parameters))
+        return false;
+    if (p)
+        search_from(&search, p, q, operations / 4);
+    search_run(&search, operations - (p ? operations / 4 : 0));
+    if (!search_refuted(&search))
+        return false;
+    finding->suspect = suspect;
+    finding->steady  = steady;
+    finding->witness = search.worst;
+    return true;
+}
+
+/* From a refuted shape to a smaller one that is refuted; false: there is none. */
+static bool descend(Refuter *r, Finding *finding, uint64_t operations)
+{
+    Trail        trail = trail_of(r, finding);
+    const Visit *best  = NULL;
+    double       worst = 0;
+    for (size_t i = 0; i < trail.visits.count; i++) {
+        const Visit *visit = &trail.visits.items[i];
+        double       ratio = visit_ratio(visit, finding->steady, trail.at_p, trail.at_q);
+        bool less = !best || visit->shape->depth < best->shape->depth ||
+                    (visit->shape->depth == best->shape->depth && ratio > worst);
+        if (is_wrapper(visit->shape) || !(ratio > 1 + 1e-6) || !less)
+            continue;
+        best  = visit;
+        worst = ratio;
+    }
+    size_t suspect = best ? suspect_of(r, best->shape) : SIZE_MAX;
+    return suspect != SIZE_MAX &&
+           refute_from(r, suspect, trail.at_p[best->point].v, trail.at_q[best->point].v, operations,
+                       finding);
+}
+
+/* The same where no part is refuted in these points: each part is searched by itself. */
+static bool search_parts(Refuter *r, Finding *finding, uint64_t operations)
+{
+    const Shape *shape = r->suspects.items[finding->suspect].shape;
+    for (uint32_t i = 0; i < shape->child_count; i++) {
+        size_t suspect = suspect_of(r, shape->children[i]);
+        if (suspect != SIZE_MAX &&
+            refute_from(r, suspect, NULL, NULL, operations / shape->child_count, finding))
+            return true;
+        arena_free(r->in->scratch);
+    }
+    return false;
+}
+
+static void find_culprit(Refuter *r, Finding *finding)
+{
+    uint64_t operations = r->total / 20;
+    while (!r->stopped) {
+        bool smaller = descend(r, finding, operations);
+        arena_free(r->in->scratch);
+        if (!smaller && !search_parts(r, finding, operations))
+            return;
+        arena_free(r->in->scratch);
+    }
+}
+
+/* ---- the report ---- */
+
+static const char *point_text(Refuter *r, const double p[3])
+{
+    return diag_text(r->in->diags, "[%.6g, %.6g, %.6g]", p[0], p[1], p[2]);
+}
+
+static double apart(const double a[3], const double b[3])
+{
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
+static const char *fault_text(Refuter *r, const Witness *w)
+{
+    switch (w->fault) {
+    case FAULT_STEEP:
+        return diag_text(r->in->diags, "it rises %.4g times as fast as it may", w->ratio);
+    case FAULT_LONG:
+        return diag_text(r->in->diags, "it is %.4g times as long as the way to the surface",
+                         w->ratio);
+    case FAULT_OUTSIDE: return "something of it is outside of its box";
+    case FAULT_NAN:
+    case FAULT_NONE:    break;
+    }
+    return "it is not a number somewhere";
+}
+
+static void note_points(Refuter *r, Diag *diag, const Witness *w)
+{
+    Diags      *diags = r->in->diags;
+    const char *p     = point_text(r, w->p);
+    if (w->fault == FAULT_STEEP || w->fault == FAULT_LONG)
+        diag_note(diags, diag, diag_text(diags, "the distance is %.6g at %s and %.6g at %s, %.6g apart",
+                                         w->at_p, p, w->at_q, point_text(r, w->q),
+                                         apart(w->p, w->q)));
+    else
+        diag_note(diags, diag, diag_text(diags, "the distance is %.6g at %s", w->at_p, p));
+}
+
+/* "with r = 0.5, time = 2"; what has no parameter says nothing. */
+static void note_parameters(Refuter *r, Diag *diag, const NodeValue *parameters)
+{
+    const Scene *scene = r->in->scene;
+    Text         text  = {.arena = r->in->arena};
+    for (size_t i = 0; i < scene->parameters.count; i++) {
+        const Parameter *parameter = &scene->parameters.items[i];
+        text_format(&text, "%s%s = ", i ? ", " : "with ", parameter->name);
+        for (uint32_t k = 0; k < parameter->components; k++)
+            text_format(&text, "%s%.6g", k ? ", " : parameter->components > 1 ? "[" : "",
+                        parameters[parameter->slot].v[k]);
+        text_add(&text, parameter->components > 1 ? "]" : "");
+    }
+    text_format(&text, "%stime = %.6g", scene->parameters.count ? ", " : "at ",
+                parameters[0].v[0]);
+    diag_note(r->in->diags, diag, text.bytes);
+}
+
+/* What the distance says is empty, and where the surface is all the same. */
+static void note_surface(Refuter *r, Diag *diag, const Finding *finding)
+{
+    const Shape   *shape = r->suspects.items[finding->suspect].shape;
+    const Witness *w     = &finding->witness;
+    Search         search;
+    double         surface[3];
+    if (w->fault != FAULT_STEEP && w->fault != FAULT_LONG)
+        return;
+    Node          distance = lower_alone(r, shape, finding->steady, NULL);
+    const double *from     = fabs(w->at_p) >= fabs(w->at_q) ? w->p : w->q;
+    double        said     = fmax(fabs(w->at_p), fabs(w->at_q));
+    if (distance != NODE_NONE && search_of(r, shape, distance, false, &search) &&
+        search_start(&search, finding->parameters) && search_surface(&search, from, surface))
+        diag_note(r->in->diags, diag,
+                  diag_text(r->in->diags, "nothing is to be within %.6g of %s, but the surface is at "
+                            "%s, %.6g away", said, point_text(r, from), point_text(r, surface),
+                            apart(from, surface)));
+    arena_free(r->in->scratch);
+}
+
+/* Where in the scene the shape stands: its component, and the place if the shape is a part of it. */
+static void note_component(Refuter *r, Diag *diag, const Finding *whole, const Finding *finding)
+{
+    const Suspect   *suspect   = &r->suspects.items[finding->suspect];
+    const Component *component = &r->in->scene->components.items[suspect->component];
+    if (whole->suspect == finding->suspect && suspect->parent == SIZE_MAX)
+        return;
+    const char *text = diag_text(r->in->diags, "it is part of `%s`; points are in its own space",
+                                 component->name);
+    if (r->suspects.items[whole->suspect].parent == SIZE_MAX)
+        text = diag_text(r->in->diags, "%s; there, %s is where it shows", text,
+                         point_text(r, whole->witness.p));
+    diag_note(r->in->diags, diag, text);
+}
+
+/* The text where the author can do something: what is made in the library was asked for there. */
+static void place_caller(Refuter *r, Diag *diag, const Finding *finding)
+{
+    const Sources *sources = r->in->diags->sources;
+    size_t         i       = finding->suspect;
+    if (!sources->items[diag->span.source].library)
+        return;
+    while (i != SIZE_MAX && sources->items[r->suspects.items[i].shape->span.source].library)
+        i = r->suspects.items[i].parent;
+    if (i != SIZE_MAX)
+        diag_place(r->in->diags, diag, r->suspects.items[i].shape->span, "for this");
+}
+
+static void report(Refuter *r, const Finding *whole, const Finding *finding)
+{
+    const Shape *shape = r->suspects.items[finding->suspect].shape;
+    Diags       *diags = r->in->diags;
+    bool         claim = shape->kind == SHAPE_PRIMITIVE && (shape->exact || shape->claimed);
+    Diag *diag  = diag_add(diags, DIAG_REFUTED, shape->span, "the distance of `%s` is refuted: %s",
+                           shape->name, fault_text(r, &finding->witness));
+    diag->label = "this shape is to blame";
+    if (claim && shape->distance != NODE_NONE)
+        diag_place(diags, diag, r->graph->items[shape->distance].span,
+                   shape->exact ? "`exact` is claimed of this" : "a `slope` is claimed of this");
+    place_caller(r, diag, finding);
+    note_points(r, diag, &finding->witness);
+    note_surface(r, diag, finding);
+    note_parameters(r, diag, finding->parameters);
+    note_component(r, diag, whole, finding);
+    if (finding->witness.fault == FAULT_OUTSIDE && shape->kind == SHAPE_PRIMITIVE)
+        diag->help = "make its `within` larger";
+    else if (claim)
+        diag->help = shape->exact ? "leave `exact` out: the compiler then derives a safe slope"
+                                  : "leave `slope` out: the compiler then derives one";
+    else if (shape->estimate)
+        diag->help = "nothing is proven of an estimate, but none was ever found to be too long: "
+                     "please report it";
+    else
+        diag->help = "nobody claimed this: it is a bug of krs, please report it";
+}
+
+/* ---- the whole ---- */
+
+static KrsStatus settle(Refuter *r, Finding *finding)
+{
+    Finding whole = *finding;
+    find_culprit(r, finding);
+    report(r, &whole, finding);
+    r->result->refuted = true;
+    return KRS_BAD_SCENE;
+}
+
+static bool is_whole(const Refuter *r, size_t i) { return r->suspects.items[i].parent == SIZE_MAX; }
+
+/* Those of all components, or all others, from the last, whose parts are fewest. */
+static KrsStatus try_all(Refuter *r, bool whole, Finding *finding)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < r->suspects.count; i++)
+        count += is_whole(r, i) == whole && !is_wrapper(r->suspects.items[i].shape);
+    for (size_t i = r->suspects.count; i-- > 0 && !r->stopped;) {
+        if (is_whole(r, i) != whole || is_wrapper(r->suspects.items[i].shape))
+            continue;
+        if (try_shape(r, i, r->total / 2 / count, finding))
+            return settle(r, finding);
+    }
+    return r->stopped ? KRS_INTERRUPTED : KRS_OK;
+}
+
+static KrsStatus refute(void *user, const Inspected *in)
+{
+    Refuter     *r     = user;
+    const Scene *scene = in->scene;
+    r->in    = in;
+    r->graph = scene->graph;
+    for (size_t i = 0; i < scene->components.count; i++) {
+        const Shape *shape = scene->components.items[i].shape;
+        while (is_wrapper(shape) && shape->child_count)
+            shape = shape->children[0];
+        add_suspects(r, shape, (uint32_t)i, SIZE_MAX);
+    }
+    Finding finding = {.parameters =
+                           arena_new_array(in->arena, NodeValue, r->graph->parameters.count)};
+    KrsStatus status = try_all(r, true, &finding);
+    return status == KRS_OK ? try_all(r, false, &finding) : status;
+}
+
+KrsStatus krs_refute(const char *path, const KrsOptions *options, const KrsRefuteOptions *how,
+                     KrsRefutation *result)
+{
+    *result   = (KrsRefutation){0};
+    Refuter r = {.how    = how,
+                 .result = result,
+                 .random = how->seed,
+                 .total  = (uint64_t)(fmin(how->seconds, 1e9) * OPERATIONS_PER_SECOND) + 1};
+    return inspect_file(path, options, refute, &r);
+}
