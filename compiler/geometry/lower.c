@@ -12,6 +12,7 @@
 #include "compiler/geometry/lowering.h"
 
 #include <assert.h>
+#include <math.h>
 
 /* Farther than any scene: the distance to nothing.  Finite, so that sums stay numbers. */
 static const double NOWHERE = 1e30;
@@ -127,6 +128,45 @@ static Place joint_place(const Shape *shape, Place place)
     return shape->blend.width == NODE_NONE ? place : place_steady(place);
 }
 
+/* How far outside of a box a point is along the axis where that is most; negative inside. */
+static Node beyond_sides(Graph *g, Node point, Box box)
+{
+    Node most = NODE_NONE;
+    for (uint32_t i = 0; i < 3; i++) {
+        Range side = box.axis[i];
+        if (!isfinite(side.low) || !isfinite(side.high) || side.low >= side.high)
+            continue;
+        Node middle = graph_number(g, 0.5 * (side.low + side.high));
+        Node half   = graph_number(g, 0.5 * (side.high - side.low));
+        Node away   = graph_op2(g, OP_sub, graph_component(g, point, i), middle);
+        Node beyond = graph_op2(g, OP_sub, graph_op1(g, OP_abs, away), half);
+        most        = most == NODE_NONE ? beyond : graph_op2(g, OP_max, most, beyond);
+    }
+    return most;
+}
+
+/*
+ * A shape whose distance is looked at where it is not 0.  What is only a bound may be small far
+ * from the shape; the distance to the sides of its box is a bound as well, and with it the place
+ * where it is r lies within r of the box, as the boxes of make.c say.
+ */
+static Lowered lower_operand(Lowering *l, const Shape *shape, Place place)
+{
+    Lowered result = lower_shape(l, shape, place_steady(place));
+    if (result.distance == NODE_NONE || shape->exact)
+        return result;
+    Node beyond = beyond_sides(l->graph, place.point, shape->box);
+    if (beyond != NODE_NONE)
+        result.distance = graph_op2(l->graph, OP_max, result.distance, beyond);
+    return result;
+}
+
+static Lowered lower_joined(Lowering *l, const Shape *joint, const Shape *child, Place place)
+{
+    return joint->blend.width == NODE_NONE ? lower_shape(l, child, place)
+                                           : lower_operand(l, child, place);
+}
+
 /* Joined in pairs, so that the graph stays shallow and a blend of many keeps its slope. */
 static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *children,
                         uint32_t count, Place place)
@@ -134,7 +174,7 @@ static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *chi
     if (count == 0)
         return lowered_nothing;
     if (count == 1)
-        return lower_shape(l, children[0], place);
+        return lower_joined(l, shape, children[0], place);
     uint32_t half  = count / 2;
     Lowered  left  = union_of(l, shape, children, half, place);
     Lowered  right = union_of(l, shape, children + half, count - half, place);
@@ -149,9 +189,9 @@ static Lowered lower_union(Lowering *l, const Shape *shape, Place place)
 static Lowered lower_intersection(Lowering *l, const Shape *shape, Place place)
 {
     /* The complement of the union of the complements. */
-    Lowered all = lower_shape(l, shape->children[0], place);
+    Lowered all = lower_joined(l, shape, shape->children[0], place);
     for (uint32_t i = 1; i < shape->child_count; i++) {
-        Lowered next = lower_shape(l, shape->children[i], place);
+        Lowered next = lower_joined(l, shape, shape->children[i], place);
         if (all.distance == NODE_NONE || next.distance == NODE_NONE)
             return lowered_nothing;
         Lowered joined = join_two(l, shape->blend, complement(l, all), complement(l, next));
@@ -162,7 +202,7 @@ static Lowered lower_intersection(Lowering *l, const Shape *shape, Place place)
 
 static Lowered lower_difference(Lowering *l, const Shape *shape, Place place)
 {
-    Lowered left  = lower_shape(l, shape->children[0], place);
+    Lowered left  = lower_joined(l, shape, shape->children[0], place);
     Lowered right = union_of(l, shape, shape->children + 1, shape->child_count - 1, place);
     if (left.distance == NODE_NONE || right.distance == NODE_NONE)
         return left;
@@ -173,7 +213,8 @@ static Lowered lower_difference(Lowering *l, const Shape *shape, Place place)
 /* What is in one of two: their union less what they share. */
 static Lowered lower_xor(Lowering *l, const Shape *shape, Place place)
 {
-    Lowered a = lower_shape(l, shape->children[0], place), b = lower_shape(l, shape->children[1], place);
+    Lowered a = lower_joined(l, shape, shape->children[0], place);
+    Lowered b = lower_joined(l, shape, shape->children[1], place);
     if (a.distance == NODE_NONE || b.distance == NODE_NONE)
         return join_two(l, shape->blend, a, b);
     Lowered result = join_two(l, shape->blend, a, b);
@@ -402,7 +443,7 @@ static Lowered lower_paint(Lowering *l, const Shape *shape, Place place)
 
 static Lowered lower_offset(Lowering *l, const Shape *shape, Place place)
 {
-    Lowered result = lower_shape(l, shape->children[0], place_steady(place));
+    Lowered result = lower_operand(l, shape->children[0], place);
     if (result.distance != NODE_NONE)
         result.distance = graph_op2(l->graph, OP_sub, result.distance, shape->values[0]);
     return result;
@@ -411,7 +452,7 @@ static Lowered lower_offset(Lowering *l, const Shape *shape, Place place)
 static Lowered lower_shell(Lowering *l, const Shape *shape, Place place)
 {
     Graph  *g      = l->graph;
-    Lowered result = lower_shape(l, shape->children[0], place_steady(place));
+    Lowered result = lower_operand(l, shape->children[0], place);
     if (result.distance == NODE_NONE)
         return result;
     Node half       = graph_number(g, 0.5);

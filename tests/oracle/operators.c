@@ -370,6 +370,39 @@ static void components_are_joined(void **state)
     product_free(&product);
 }
 
+/* What is grown or blended may be where a bound is small, far from its shape: not beyond its box. */
+static void boxes_hold_what_is_grown(void **state)
+{
+    static const char *const solids[] = {
+        "sphere(1).scale([1, 1, 4]).offset(0.5)",
+        "(plane([1, 8, 0], 0) & plane([1, -8, 0], 0) & sphere(2)).offset(0.3)",
+        "(box([3, 3, 3]) & sphere(1.6).move([1.6, 1.6, 0])).shell(0.4)",
+        "union(sphere(1).scale([0.5, 3, 0.5]), sphere(0.7), blend: 0.6)",
+        "krs { kernel box([1, 0.2, 0.2]); reflect plane([1, 2, 0], 0.1);"
+        " reflect plane([-1, 1, 1], 0.2); }.offset(0.4)",
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof solids / sizeof *solids; i++) {
+        Product      product = product_format("show %s;", solids[i]);
+        Random       random = {71};
+        KrsComponent component;
+        int          inside = 0;
+        assert_int_equal(krs_component(product.scene, 0, &component), KRS_OK);
+        for (int k = 0; k < 20000; k++) {
+            Vec  p = random_in_cube(&random, 6);
+            bool held = p.x >= component.low[0] && p.x <= component.high[0] &&
+                        p.y >= component.low[1] && p.y <= component.high[1] &&
+                        p.z >= component.low[2] && p.z <= component.high[2];
+            bool solid = product_distance(&product, p) < 0;
+            inside += solid;
+            if (solid && !held)
+                fail_msg("%s: [%g, %g, %g] is inside, and not in the box", solids[i], p.x, p.y, p.z);
+        }
+        assert_true(inside > 5);
+        product_free(&product);
+    }
+}
+
 /* Normals are gradients: what a small step in every direction says. */
 static void normals_are_gradients(void **state)
 {
@@ -402,7 +435,7 @@ static void normals_are_gradients(void **state)
 
 int main(void)
 {
-    struct CMUnitTest tests[OPERATIONS + BLENDS + 4];
+    struct CMUnitTest tests[OPERATIONS + BLENDS + 5];
     size_t count = 0;
     for (size_t i = 0; i < OPERATIONS; i++)
         tests[count++] = (struct CMUnitTest){operations[i].text, operation_means_what_it_says, NULL,
@@ -414,5 +447,6 @@ int main(void)
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(frames_are_scenes);
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(components_are_joined);
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(normals_are_gradients);
+    tests[count++] = (struct CMUnitTest)cmocka_unit_test(boxes_hold_what_is_grown);
     return _cmocka_run_group_tests("operators", tests, count, NULL, NULL);
 }
