@@ -157,6 +157,7 @@ static void run_all(Bench *bench, Results *results)
     growth_run(bench, &results->growth);
     sequences_run(bench, &results->sequences);
     sequences_judge(&results->sequences, &results->complaints);
+    triangles_run(bench, &results->triangles);
     questions_run(bench, &results->questions);
     questions_judge(&results->questions, &results->complaints);
     latency_run(bench, &results->latency);

@@ -19,8 +19,21 @@ $(B)/bench/minify/minify: $(B)/bench/minify/minify.o $(B)/libkrs.a
 minify: $(B)/bench/minify/minify
 	@$(B)/bench/minify/minify
 
+# How many evaluations a pixel takes, as pictures in bench/results/.
+$(B)/bench/iterations/iterations: $(B)/bench/iterations/iterations.o $(B)/libkrs.a
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+iterations: $(B)/bench/iterations/iterations
+	@$(B)/bench/iterations/iterations
+
+# Every way to trace sequences with maps that invert.
+$(B)/bench/inverted/inverted: $(B)/bench/inverted/inverted.o $(B)/libkrs.a
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+inverted: $(B)/bench/inverted/inverted
+	@$(B)/bench/inverted/inverted
+
 # For `make test`.
 SCRIPTS += tests/bench.sh
 test-programs: $(B)/bench/bench
-clang-objects: $(BENCH:%.c=$(B)/%.o) $(B)/bench/minify/minify.o
-.PHONY: bench bench-quick minify
+clang-objects: $(BENCH:%.c=$(B)/%.o) $(B)/bench/minify/minify.o \
+               $(B)/bench/iterations/iterations.o
+.PHONY: bench bench-quick minify iterations

@@ -175,16 +175,44 @@ static void add_growth(Text *json, const Growth *growth)
 static void add_sequences(Text *json, const Sequences *sequences)
 {
     begin(json, "sequences", "[");
-    for (size_t i = 0; i < sequences->count; i++)
-        for (int k = 0; k < STAND_COUNT; k++) {
+    for (int k = 0; k < STAND_COUNT; k++) {
+        begin(json, NULL, "{");
+        add_text(json, "scene", stand_rows[k].name);
+        begin(json, "by_levels", "[");
+        for (size_t i = 0; i < sequences->count; i++) {
+            if (isnan(sequences->ms[k][i]))
+                continue;
             begin(json, NULL, "{");
-            add_text(json, "scene", stand_rows[k].name);
             add_number(json, "levels", sequences->levels[i]);
             add_number(json, "flops", sequences->flops[k][i]);
+            add_number(json, "evaluations_per_ray", sequences->evaluations[k][i]);
+            add_number(json, "beams_ms", sequences->beams_ms[k][i]);
             add_number(json, "ms", sequences->ms[k][i]);
             add_number(json, "coverage", sequences->coverage[k][i]);
             end(json, "}");
         }
+        end(json, "]");
+        add_line(json, "ms_by_levels", &sequences->lines[k]);
+        end(json, "}");
+    }
+    end(json, "]");
+    add_number(json, "paper_kiloflops_per_ray", PAPER_KILOFLOPS);
+}
+
+static void add_triangles(Text *json, const Triangles *triangles)
+{
+    begin(json, "triangles", "[");
+    for (size_t i = 0; i < triangles->count; i++) {
+        begin(json, NULL, "{");
+        add_number(json, "doublings", triangle_rows[i].doublings);
+        for (int k = 0; k < GROWING_COUNT; k++) {
+            begin(json, growing_names[k], "{");
+            add_number(json, "ns", triangles->ns_per_ray[k][i]);
+            add_number(json, "paper_us", triangle_rows[i].paper_us[k]);
+            end(json, "}");
+        }
+        end(json, "}");
+    }
     end(json, "]");
 }
 
@@ -210,6 +238,7 @@ void results_json(const Bench *bench, const Results *results, Text *json)
     end(json, "]");
     add_growth(json, &results->growth);
     add_sequences(json, &results->sequences);
+    add_triangles(json, &results->triangles);
     begin(json, "questions", "{");
     for (int i = 0; i < ANSWERER_COUNT; i++) {
         begin(json, answerer_names[i], "{");

@@ -1,5 +1,6 @@
 /*
- * krs.h: one sequence and compounds of eight against their levels: figure 12 of the KRS paper of 2016.
+ * krs.h: sequences, Moebius sequences and compounds of eight against their levels: figure 12 of the
+ * KRS paper of 2016.
  */
 #ifndef KRS_BENCH_KRS_H
 #define KRS_BENCH_KRS_H
@@ -7,34 +8,45 @@
 #include "bench/bench.h"
 #include "bench/measure.h"
 
-enum { MOST_LEVELS = 4 };
+enum { MOST_LEVELS = 8 };
 
 typedef enum Stand {
-    STAND_TREE, STAND_BUNDLE, STAND_COMPOUND_TOGETHER, STAND_COMPOUND, STAND_THICKET_TOGETHER,
-    STAND_THICKET, STAND_COUNT
+    STAND_TREE_STRAIGHTFORWARD, STAND_TREE_BEAMS, STAND_TREE, STAND_STRAIGHT, STAND_BENT_BINARY,
+    STAND_BENT_PLAIN, STAND_BENT, STAND_BUNDLE, STAND_COMPOUND_TOGETHER, STAND_COMPOUND,
+    STAND_THICKET_TOGETHER, STAND_THICKET, STAND_COUNT
 } Stand;
 
 typedef struct StandRow {
-    const char *name, *path;
-    uint32_t    components; /* KrsComponents */
+    const char      *name, *path;
+    uint32_t         most_levels;  /* what has more is left out: it takes minutes */
+    Stand            yardstick;    /* what its time is told beside; itself for none */
+    uint32_t         paper_levels; /* that the paper has 15 pictures a second with; 0: not told */
+    KrsRenderOptions options;
 } StandRow;
 extern const StandRow stand_rows[STAND_COUNT];
 
+/* What is not a number was left out. */
 typedef struct Sequences {
     size_t count;
     double levels[MOST_LEVELS];
     double ms[STAND_COUNT][MOST_LEVELS];       /* beams, primary rays and normals: the median */
+    double beams_ms[STAND_COUNT][MOST_LEVELS];
     double coverage[STAND_COUNT][MOST_LEVELS];
     double flops[STAND_COUNT][MOST_LEVELS];    /* of a distance */
+    double evaluations[STAND_COUNT][MOST_LEVELS]; /* for a ray */
+    Line   lines[STAND_COUNT];                 /* of ms by the levels */
     double unresolved;
 } Sequences;
 
 void sequences_run(Bench *bench, Sequences *sequences);
-/* Compounds cover what they should, however they are marched. */
+/* Compounds cover what they should, however they are marched, and so do Moebius sequences. */
 void sequences_judge(const Sequences *sequences, Text *complaints);
 
-/* 28 levels at 15 pictures of 1920x1200 a second on 6.1 TFLOP/s (section 11): nanoseconds a ray
-   times the peak of the device, which is what a ray may cost, in thousands of operations. */
+/* Beams, primary rays and normals. */
+double march_ms(const Times *times);
+
+/* 15 pictures of 1920x1200 a second on 6.1 TFLOP/s (section 11): nanoseconds a ray times the peak
+   of the device, which is what a ray may cost, in thousands of operations. */
 #define PAPER_KILOFLOPS (1e9 / 15 / (1920.0 * 1200) * 6.1)
 
 #endif

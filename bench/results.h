@@ -10,6 +10,7 @@
 #include "bench/latency.h"
 #include "bench/machine.h"
 #include "bench/questions.h"
+#include "bench/triangles.h"
 
 typedef struct Results {
     const char *date; /* 2026-11-21 */
@@ -19,6 +20,7 @@ typedef struct Results {
     size_t      contest_count;
     Growth      growth;
     Sequences   sequences;
+    Triangles   triangles;
     Questions   questions;
     Latency     latency;
     Text        complaints; /* what is not right, a line each */

@@ -17,6 +17,7 @@ KrsStatus command_info(Options *options);
 KrsStatus command_devices(Options *options);
 KrsStatus command_check(Options *options);
 KrsStatus command_dump(Options *options);
+KrsStatus command_import(Options *options);
 KrsStatus command_explain(Options *options);
 
 /* scene.c */

@@ -16,6 +16,56 @@ static void print_vector(const double *values, size_t count)
     fputs(count > 1 ? "]" : "", stdout);
 }
 
+enum { MOST_LINES = 48 }; /* of the bounds of one component; JSON has all */
+
+static bool is_box(const KrsBound *bound)
+{
+    for (int i = 0; i < 3; i++)
+        if (!isfinite(bound->low[i]) || !isfinite(bound->high[i]))
+            return false;
+    return true;
+}
+
+/* "torus  ring.krs:4:6  exact, by claim; box [..] to [..]" */
+static void print_bound(const KrsBound *bound, size_t number)
+{
+    printf("    %3zu  %*s%s", number, 2 * (int)bound->depth, "", bound->name);
+    if (bound->line > 0)
+        printf("  %s:%u:%u", bound->source, bound->line, bound->column);
+    printf("  %s", bound->rule);
+    if (bound->slope > 1 + 1e-9)
+        printf("; slope %.4g", bound->slope);
+    if (is_box(bound)) {
+        fputs("; box ", stdout);
+        print_vector(bound->low, 3);
+        fputs(" to ", stdout);
+        print_vector(bound->high, 3);
+    }
+    if (bound->levels > 0)
+        printf("; %u levels, %.0f instances", bound->levels, bound->instances);
+    if (bound->same > 0)
+        printf("; as %zu", bound->same);
+    if (bound->alike > 0)
+        printf("; %u more like it", bound->alike);
+    putchar('\n');
+}
+
+static void print_bounds(const KrsScene *scene, size_t component)
+{
+    size_t more, count = krs_bound_count(scene, component, &more), lines = count;
+    if (count > MOST_LINES)
+        lines = MOST_LINES;
+    more += count - lines;
+    puts("    distances, by shape:");
+    for (size_t i = 0; i < lines; i++) {
+        KrsBound bound;
+        krs_bound(scene, component, i, &bound);
+        print_bound(&bound, i + 1);
+    }
+    if (more > 0)
+        printf("         and %zu more shapes\n", more);
+}
+
 static void print_component(const KrsComponent *component, size_t number)
 {
     /* Components without a name are called by their number. */
@@ -38,6 +88,7 @@ static void print_component(const KrsComponent *component, size_t number)
     }
     if (component->inversions > 0)
         printf("    inversions %u\n", component->inversions);
+    printf("    flops      %.1f\n", component->flops);
 }
 
 static void print_parameter(const KrsParameter *parameter)
@@ -57,6 +108,7 @@ static void print_text(const KrsScene *scene)
         KrsComponent component;
         krs_component(scene, i, &component);
         print_component(&component, i + 1);
+        print_bounds(scene, i);
     }
     for (size_t i = 0; i < krs_parameter_count(scene); i++) {
         KrsParameter parameter;
@@ -77,6 +129,41 @@ static void print_text(const KrsScene *scene)
     printf("\nhash %s\n", krs_scene_hash(scene));
 }
 
+static void add_bound(Text *json, const KrsBound *bound)
+{
+    text_format(json, "{\"depth\": %u, \"name\": ", bound->depth);
+    text_json(json, bound->name);
+    text_add(json, ", \"source\": ");
+    text_json(json, bound->source);
+    text_format(json, ", \"line\": %u, \"column\": %u, \"rule\": ", bound->line, bound->column);
+    text_json(json, bound->rule);
+    text_add(json, ", \"slope\": ");
+    json_number(json, bound->slope);
+    text_add(json, ", \"low\": ");
+    json_vector(json, bound->low, 3);
+    text_add(json, ", \"high\": ");
+    json_vector(json, bound->high, 3);
+    text_format(json, ", \"exact\": %s, \"estimate\": %s, \"levels\": %u, \"instances\": ",
+                bound->exact ? "true" : "false", bound->estimate ? "true" : "false",
+                bound->levels);
+    json_number(json, bound->instances);
+    text_format(json, ", \"alike\": %u, \"same\": %zu}", bound->alike, bound->same);
+}
+
+/* The tree of a component as a list, parents first; `same` counts its entries from 1. */
+static void add_bounds(Text *json, const KrsScene *scene, size_t component)
+{
+    size_t more, count = krs_bound_count(scene, component, &more);
+    text_add(json, ", \"shapes\": [");
+    for (size_t i = 0; i < count; i++) {
+        KrsBound bound;
+        krs_bound(scene, component, i, &bound);
+        text_add(json, i ? ", " : "");
+        add_bound(json, &bound);
+    }
+    text_format(json, "], \"more_shapes\": %zu", more);
+}
+
 static void add_components(Text *json, const KrsScene *scene)
 {
     text_add(json, "\"components\": [");
@@ -95,7 +182,10 @@ static void add_components(Text *json, const KrsScene *scene)
                     component.exact ? "true" : "false", component.estimate ? "true" : "false",
                     component.levels);
         json_number(json, component.instances);
-        text_format(json, ", \"inversions\": %u}", component.inversions);
+        text_format(json, ", \"inversions\": %u, \"flops\": ", component.inversions);
+        json_number(json, component.flops);
+        add_bounds(json, scene, i);
+        text_add(json, "}");
     }
     text_add(json, "]");
 }

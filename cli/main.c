@@ -24,7 +24,7 @@ static Work *const works[COMMAND_COUNT] = {
     [COMMAND_VALIDATE] = command_validate, [COMMAND_QUERY] = command_query,
     [COMMAND_INFO] = command_info,         [COMMAND_DEVICES] = command_devices,
     [COMMAND_CHECK] = command_check,       [COMMAND_DUMP] = command_dump,
-    [COMMAND_EXPLAIN] = command_explain,
+    [COMMAND_IMPORT] = command_import,     [COMMAND_EXPLAIN] = command_explain,
 };
 
 /* A standard stream that the caller closed would otherwise be given out again, and a picture

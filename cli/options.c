@@ -19,7 +19,7 @@
 #define ON(command)  (1u << COMMAND_##command)
 #define ON_ALL       ((1u << COMMAND_COUNT) - 1)
 #define ON_SCENE     (ON(RENDER) | ON(VALIDATE) | ON(QUERY))
-#define ON_COMPILING (ON_ALL & ~(ON(DEVICES) | ON(EXPLAIN)))
+#define ON_COMPILING (ON_ALL & ~(ON(DEVICES) | ON(EXPLAIN) | ON(IMPORT)))
 
 const CommandInfo command_table[COMMAND_COUNT] = {
 #define COMMAND(id, name, arguments, files, summary, examples)                                  \
@@ -404,6 +404,12 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
         options->components =
             (KrsComponents)find_choice(value, krs_components_names, KRS_COMPONENTS_COUNT);
         return options->components ? KRS_OK : refuse(options, id, "together or apart", value);
+    case OPTION_NORMALS:
+        options->normals = (KrsNormals)find_choice(value, krs_normals_names, KRS_NORMALS_COUNT);
+        return options->normals ? KRS_OK
+                                : refuse(options, id, "forward, tetrahedron, octahedron, cube, "
+                                                      "icosahedron, dodecahedron or analytic",
+                                         value);
     case OPTION_EARLY_OUTS: {
         bool      off;
         KrsStatus status    = read_switch(options, id, value, &off);
@@ -423,7 +429,9 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
                    : refuse(options, id, "a number of pixels above 0", value);
     case OPTION_TRACE:
         options->trace = (KrsTrace)find_choice(value, krs_trace_names, KRS_TRACE_COUNT);
-        return options->trace ? KRS_OK : refuse(options, id, "plain, relaxed or auto", value);
+        return options->trace ? KRS_OK : refuse(options, id, "plain, relaxed, auto, exact, taylor, "
+                                                    "root-free, directional, binary or predicted",
+                                       value);
     case OPTION_SCHEDULE:
         options->schedule =
             (KrsSchedule)find_choice(value, krs_schedule_names, KRS_SCHEDULE_COUNT);
@@ -569,10 +577,13 @@ static KrsStatus check_together(Options *options)
             return say_usage(options, "explain takes one code, not %zu", files);
     } else if (info->files == MANY_FILES ? files == 0 : files != (size_t)info->files) {
         if (files == 0)
-            return say_usage(options, "%s needs a scene: krs %s %s", info->name, info->name,
+            return say_usage(options, "%s needs a %s: krs %s %s", info->name,
+                             options->command == COMMAND_IMPORT ? "file" : "scene", info->name,
                              info->arguments);
         return say_usage(options, "%s takes %s, not `%s`", info->name,
-                         info->files ? "one scene" : "no file", options->files.items[info->files]);
+                         options->command == COMMAND_IMPORT ? "one file"
+                         : info->files                      ? "one scene"
+                                                            : "no file", options->files.items[info->files]);
     }
     if (options->command == COMMAND_COMPILE && options->outputs.count != 1)
         return say_usage(options, "compile needs one folder to write to: -o DIR");

@@ -79,6 +79,7 @@ typedef struct Options {
     bool        no_beams, no_upsampling, no_filter, area_shadows;
     KrsEarlyOuts early_outs;
     KrsComponents components;
+    KrsNormals   normals;
     double      error; /* 0: not given */
     KrsTrace    trace;
     KrsSchedule schedule;

@@ -152,7 +152,7 @@ static KrsStatus choose_how(Render *render)
         .width = width, .height = height, .samples = options->samples, .camera = camera,
         .seed = options->seed, .error = options->error, .trace = options->trace,
         .schedule = options->schedule, .components = options->components, .no_beams = options->no_beams, .no_upsampling = options->no_upsampling,
-        .no_filter = options->no_filter,
+        .no_filter = options->no_filter, .normals = options->normals,
         .shadows = options->area_shadows ? KRS_SHADOWS_AREA : KRS_SHADOWS_SOFT,
         .planes = picture_planes(options, exr),
         .progress = show_progress, .user = render};

@@ -39,7 +39,8 @@ static void print_diagnostic(void *user, const KrsDiagnostic *diagnostic)
 
 KrsOptions scene_options(DiagnosticSink *sink)
 {
-    return (KrsOptions){.diagnostic = print_diagnostic, .user = sink};
+    return (KrsOptions){.diagnostic = print_diagnostic, .user = sink,
+                        .gradients = sink->options->normals == KRS_NORMALS_ANALYTIC};
 }
 
 void scene_print_counts(const DiagnosticSink *sink)

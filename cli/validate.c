@@ -69,7 +69,8 @@ static void random_direction(uint64_t *state, double direction[3])
     direction[2] = z;
 }
 
-/* The box around the scene, half as large again; where the scene goes on for ever, a cut. */
+/* The box around the scene, half as large again; where the scene goes on for ever, a cut; around
+   nothing, any. */
 static void choose_box(Validation *v)
 {
     const KrsProgram *program = krs_scene_program(v->scene);
@@ -81,6 +82,8 @@ static void choose_box(Validation *v)
             low = program->low[axis];
             high = program->high[axis];
         }
+        if (program->low[axis] > program->high[axis])
+            low = high = 0;
         double margin = low < high ? (high - low) / 4 : 1;
         v->low[axis] = fmin(low, high) - margin;
         v->high[axis] = fmax(low, high) + margin;
@@ -347,9 +350,9 @@ static KrsStatus report_search(const Validation *v, KrsStatus status, const KrsR
         printf("%s: refuted: the distance of a shape\n", v->path);
     if (status != KRS_OK)
         return status;
-    printf("%s: %zu shapes searched, at %zu settings, by %llu distances: no slope above %.6g of 1\n",
-           v->path, result->shapes, result->settings, (unsigned long long)result->evaluations,
-           result->steepest);
+    printf("%s: %zu shapes searched, at %zu settings, by %llu distances: "
+           "no slope above %.6g of 1\n", v->path, result->shapes, result->settings,
+           (unsigned long long)result->evaluations, result->steepest);
     if (result->estimates > 0)
         printf("%s: %zu shapes are estimates, of at most %.3f of the way to the surface\n", v->path,
                result->estimates, result->longest);

@@ -14,6 +14,8 @@
 #include "compiler/framing.h"
 #include "compiler/front/parse.h"
 #include "compiler/geometry/elaborate.h"
+#include "compiler/graph/anchor.h"
+#include "compiler/graph/derive.h"
 #include "compiler/inspect.h"
 #include "compiler/program.h"
 #include "compiler/shader/emit.h"
@@ -214,6 +216,76 @@ static void lower_flats(Compilation *c, Graph *g, Node roots[FLAT_ROOTS])
     }
 }
 
+/* Of components and of the zones, where they are asked for. */
+static void lower_gradients(Compilation *c, Graph *g, Node *roots)
+{
+    const Scene *s = &c->elaborated;
+    c->scene->program.gradients = c->options->gradients;
+    for (size_t i = 0; i <= s->components.count; i++, roots += GRADIENT_ROOTS) {
+        bool zones = i == s->components.count, known = false;
+        Node near = s->zone_count > 0 ? s->zone : graph_number(g, 0), gradient = NODE_NONE;
+        if (zones && c->options->gradients)
+            known = graph_gradient(g, near, &gradient, NULL, &c->scratch) != DERIVED_NOT;
+        else if (c->options->gradients)
+            known = lower_gradient(g, s->components.items[i].shape, &gradient, &near, &c->scratch);
+        Node distance = zones ? near : c->roots[i * ROOT_COUNT + ROOT_DISTANCE];
+        roots[0]      = known ? gradient : distance;
+        roots[1]      = known ? near : distance;
+        arena_free(&c->scratch);
+    }
+}
+
+/* ---- far from the origin ---- */
+
+/* Beyond this, single precision may show: a unit is known to a sixteen-thousandth there. */
+static const double FAR_OUT = 1000;
+
+/* Whether a camera may stand, and something be, so far out that points need an anchor. */
+static bool reaches_far(const Compilation *c, const Graph *graph)
+{
+    const Scene *s   = &c->elaborated;
+    bool         far = false;
+    for (size_t i = 0; i < 3 * s->components.count; i++) {
+        Range side = s->components.items[i / 3].shape->box.axis[i % 3];
+        far = far || (isfinite(side.low) && side.low < -FAR_OUT) ||
+              (isfinite(side.high) && side.high > FAR_OUT);
+    }
+    for (size_t i = 0; i < s->cameras.count && !s->cameras.items[i].standing_in; i++) {
+        const Expr *eye = &graph->items[s->cameras.items[i].eye];
+        for (int k = 0; k < 3; k++)
+            far = far || (eye->op == OP_CONSTANT && fabs(eye->number[k]) > FAR_OUT);
+    }
+    return far && s->zone_count == 0;
+}
+
+static size_t anchored_count(const Compilation *c)
+{
+    return c->scene->program.anchored ? c->elaborated.components.count * ROOT_COUNT + FLAT_ROOTS
+                                      : 0;
+}
+
+/* They stand behind all others. */
+static Node *anchored_roots(const Compilation *c)
+{
+    size_t components = c->elaborated.components.count;
+    return c->roots + c->root_count + MARCH_ROOTS * components + FLAT_ROOTS +
+           GRADIENT_ROOTS * (components + 1);
+}
+
+/* The roots of the components, and those of planes, for points given from an anchor. */
+static void lower_anchored(Compilation *c, Graph *graph, const Node *flats)
+{
+    Node          *roots = anchored_roots(c);
+    size_t         count = c->elaborated.components.count * ROOT_COUNT;
+    GraphParameter anywhere = {{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL, HUGE_VAL}};
+    Node anchor = graph_parameter(graph, (uint32_t)graph->parameters.count, TYPE_VEC3);
+    array_push(&c->scene->arena, &graph->parameters, anywhere);
+    memcpy(roots, c->roots, count * sizeof *roots);
+    memcpy(roots + count, flats, FLAT_ROOTS * sizeof *roots);
+    graph_anchor(graph, roots, count + FLAT_ROOTS, anchor, &c->scratch);
+    arena_free(&c->scratch);
+}
+
 /* All roots: of components, zones, cameras, lights and the sky. */
 static bool lower_scene(Compilation *c, Graph *graph)
 {
@@ -221,8 +293,10 @@ static bool lower_scene(Compilation *c, Graph *graph)
     c->point_roots = s->components.count * ROOT_COUNT + (s->zone_count > 0);
     c->root_count  = c->point_roots + s->cameras.count * CAMERA_ROOTS +
                     s->lights.count * LIGHT_ROOTS + SKY_ROOTS;
+    c->scene->program.anchored = reaches_far(c, graph);
     c->roots   = arena_new_array(&c->scene->arena, Node, c->root_count +
-                                  MARCH_ROOTS * s->components.count + FLAT_ROOTS);
+                                  MARCH_ROOTS * s->components.count + FLAT_ROOTS +
+                                  GRADIENT_ROOTS * (s->components.count + 1) + anchored_count(c));
     Node *root = c->roots;
     for (size_t i = 0; i < s->components.count; i++, root += ROOT_COUNT)
         if (!lower_component(graph, s->components.items[i].shape, &c->scratch, root)) {
@@ -253,8 +327,12 @@ static bool lower_scene(Compilation *c, Graph *graph)
             *march = lower_along(graph, shape, plain, method, &c->scratch);
         }
     }
-    lower_flats(c, graph, &c->roots[c->root_count + MARCH_ROOTS * s->components.count]);
+    Node *flats = &c->roots[c->root_count + MARCH_ROOTS * s->components.count];
+    lower_flats(c, graph, flats);
     arena_free(&c->scratch);
+    lower_gradients(c, graph, flats + FLAT_ROOTS);
+    if (c->scene->program.anchored)
+        lower_anchored(c, graph, flats);
     graph_validate(graph, "lower");
     if (dumps(c, DUMP_GRAPH))
         graph_print(graph, &c->sources, c->roots, c->root_count, &c->dump);
@@ -312,6 +390,7 @@ static void keep_components(Compilation *c)
     const Scene *s     = &c->elaborated;
     scene->component_count = s->components.count;
     scene->components      = arena_new_array(&scene->arena, KrsComponent, s->components.count + 1);
+    scene->bounds          = arena_new_array(&scene->arena, KrsBounds, s->components.count + 1);
     for (size_t i = 0; i < s->components.count; i++) {
         const Component *from = &s->components.items[i];
         KrsComponent    *to   = &scene->components[i];
@@ -326,6 +405,8 @@ static void keep_components(Compilation *c)
             to->low[k]  = from->shape->box.axis[k].low;
             to->high[k] = from->shape->box.axis[k].high;
         }
+        bounds_of(from->shape, &c->sources, &scene->bounds[i], &scene->arena, &c->scratch);
+        arena_free(&c->scratch);
     }
 }
 
@@ -361,6 +442,21 @@ static void keep_scene(Compilation *c)
     }
 }
 
+/* Everything that the host finds for kernels with an anchor, in the order of its slots. */
+static Tape precise_tape(Compilation *c)
+{
+    KrsScene    *scene = c->scene;
+    const Graph *graph = scene->graph;
+    Node        *found = arena_new_array(&scene->arena, Node, graph->count + 1);
+    size_t       count = 0;
+    for (Node n = 0; n < graph->count; n++)
+        if (graph->items[n].op == OP_precise)
+            found[count++] = n;
+    scene->precise_nodes = found;
+    scene->precise_count = count;
+    return tape_new(graph, found, count, &scene->arena);
+}
+
 static void make_tapes(Compilation *c)
 {
     KrsScene *scene = c->scene;
@@ -371,8 +467,11 @@ static void make_tapes(Compilation *c)
     scene->roots = c->roots;
     scene->guarded_roots = c->roots + c->root_count;
     scene->along_roots   = scene->guarded_roots + count;
-    for (size_t i = 0; i < count; i++)
+    const Node *directional = scene->along_roots + ALONG_DIRECTIONAL * count;
+    for (size_t i = 0; i < count; i++) {
         scene->program.along = scene->program.along || scene->along_roots[i] != distances[i];
+        scene->program.inverts = scene->program.inverts || directional[i] != distances[i];
+    }
     Node *guarded = arena_new_array(&c->scratch, Node, count + 1);
     memcpy(guarded, scene->guarded_roots, count * sizeof *guarded);
     if (scene->zone_count > 0)
@@ -383,6 +482,9 @@ static void make_tapes(Compilation *c)
     scene->surface  = tape_new(scene->graph, c->roots, c->point_roots, &scene->arena);
     scene->view     = tape_new(scene->graph, c->roots + c->point_roots,
                                c->root_count - c->point_roots, &scene->arena);
+    if (scene->program.anchored)
+        scene->precise = precise_tape(c);
+    scene->program.precise_slots = scene->precise_count;
     scene->program.operations = scene->distance.count - scene->distance.frame_count;
     scene->program.flops      = flops_of(scene->graph, &scene->distance);
 }
@@ -439,6 +541,7 @@ static void form_groups(Compilation *c, const Box *boxes, const bool *flat, uint
         if (program->flats && flat[i])
             continue;
         double flops = component_flops(c, i);
+        c->scene->components[i].flops = flops;
         size_t group = choose_group(program, flops, boxes[i]);
         groups[i]    = (uint32_t)group + 1;
         if (group < KRS_MOST_GROUPS - 1) {
@@ -477,13 +580,19 @@ static void emit(Compilation *c)
         scene->program.rest_low[k]  = box_is_empty(rest) ? 0 : rest.axis[k].low;
         scene->program.rest_high[k] = box_is_empty(rest) ? 0 : rest.axis[k].high;
     }
-    uint32_t *groups = arena_new_array(&c->scratch, uint32_t, scene->component_count + 1);
+    const Node *flats  = scene->along_roots + ALONG_COUNT * scene->component_count;
+    uint32_t   *groups = arena_new_array(&c->scratch, uint32_t, scene->component_count + 1);
     form_groups(c, boxes, flat, groups);
     emit_glsl(scene->graph, &c->sources, c->roots, scene->component_count, zone_root(scene),
-              &(EmitMarch){scene->guarded_roots, scene->along_roots, boxes,
-                           scene->program.group_count ? groups : NULL,
-                           scene->program.flats ? flat : NULL,
-                           scene->along_roots + ALONG_COUNT * scene->component_count},
+              &(EmitMarch){.guarded      = scene->guarded_roots,
+                           .along        = scene->along_roots,
+                           .boxes        = boxes,
+                           .groups       = scene->program.group_count ? groups : NULL,
+                           .flat         = scene->program.flats ? flat : NULL,
+                           .anchored     = scene->program.anchored ? anchored_roots(c) : NULL,
+                           .precise_slot = (uint32_t)scene->graph->parameters.count + KRS_MOST_ZONES,
+                           .ahead        = flats,
+                           .gradient     = scene->program.gradients ? flats + FLAT_ROOTS : NULL},
               &c->scratch, &glsl);
     scene->program.glsl            = glsl.bytes;
     scene->program.glsl_length     = glsl.length;
@@ -512,7 +621,8 @@ static KrsStatus run(Compilation *c)
     Graph *graph = elaborate_scene(c);
     if (c->diags.errors || !lower_scene(c, graph))
         return KRS_BAD_SCENE;
-    size_t roots  = c->root_count + MARCH_ROOTS * c->elaborated.components.count + FLAT_ROOTS;
+    size_t roots  = c->root_count + MARCH_ROOTS * c->elaborated.components.count + FLAT_ROOTS +
+                   GRADIENT_ROOTS * (c->elaborated.components.count + 1) + anchored_count(c);
     Graph *simple = graph_simplify(graph, c->roots, roots, &c->scene->arena);
     graph_validate(simple, "simplify");
     c->scene->graph = simple;
@@ -689,6 +799,22 @@ KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *param
     memcpy(parameter->value, from->value, sizeof parameter->value);
     memcpy(parameter->low, from->low, sizeof parameter->low);
     memcpy(parameter->high, from->high, sizeof parameter->high);
+    return KRS_OK;
+}
+
+size_t krs_bound_count(const KrsScene *scene, size_t component, size_t *more)
+{
+    bool exists = component < scene->component_count;
+    if (more)
+        *more = exists ? scene->bounds[component].more : 0;
+    return exists ? scene->bounds[component].count : 0;
+}
+
+KrsStatus krs_bound(const KrsScene *scene, size_t component, size_t index, KrsBound *bound)
+{
+    if (index >= krs_bound_count(scene, component, NULL))
+        return KRS_BAD_ARGUMENT;
+    *bound = scene->bounds[component].items[index];
     return KRS_OK;
 }
 

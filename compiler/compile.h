@@ -96,7 +96,11 @@ typedef struct KrsProgram {
     double      flops;        /* of krs_distance, weighted as in measurements.md fact 5 */
     bool        flats;        /* there is krs_ahead, for kernels with #define FLATS */
     double      rest_low[3], rest_high[3]; /* with flats: the box around what is left to march */
+    bool        anchored;     /* points may be given from an anchor, with #define ANCHORED */
+    size_t      precise_slots; /* then: how many more slots follow those of the zones */
+    bool        gradients;    /* there is krs_gradient, for kernels with #define GRADIENT */
     bool        along;        /* there is krs_along, for kernels with #define ALONG */
+    bool        inverts;      /* there are its variants for sequences with maps that invert */
     KrsGroup    groups[KRS_MOST_GROUPS];
     size_t      group_count;  /* 0: all components belong together */
     bool        apart;        /* taking turns is worth it */
@@ -112,6 +116,8 @@ const char *krs_camera_name(const KrsScene *scene, size_t index);
 size_t krs_zone_count(const KrsScene *scene);
 /* Camera `camera`, lights, sky and image at the frame's parameters and time. */
 KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view);
+/* What kernels with an anchor get for it, precise_slots vec4s, found in double precision. */
+size_t krs_frame_anchor(KrsFrame *frame, const double anchor[3], float (*block)[4]);
 /* The parameter block as the GLSL expects it: parameter_slots vec4s. */
 void krs_frame_parameters(const KrsFrame *frame, float (*block)[4]);
 /* The zones of the caller (center, radius), to stand behind the parameter block when the GLSL is

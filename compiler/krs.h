@@ -62,6 +62,8 @@ typedef struct KrsOptions {
     KrsDiagnosticCallback *diagnostic; /* may be NULL */
     void                  *user;       /* handed to `diagnostic` */
     size_t                 memory_limit; /* bytes; 0 means 2 GiB */
+    bool                   gradients;    /* derivatives as well, for KRS_NORMALS_ANALYTIC and for
+                                            whoever embeds the GLSL: krs_gradient */
 } KrsOptions;
 
 /* Compiles a text in memory (`name` is used in diagnostics, and `use` is relative to its
@@ -114,10 +116,32 @@ typedef struct KrsComponent {
     uint32_t    levels;    /* reflections of its outermost sequence; 0 without one */
     double      instances; /* copies of kernels, counted with their reflections */
     uint32_t    inversions; /* maps of its outermost sequence that invert, or of `.transform` */
+    double      flops;     /* of its distance, at one point */
 } KrsComponent;
 
 size_t    krs_component_count(const KrsScene *scene);
 KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *component);
+
+/* What is known of the distance of one shape of a component, in the shape's own space. */
+typedef struct KrsBound {
+    uint32_t    depth;     /* 0: all of the component; its parts follow it, one deeper */
+    const char *name;      /* "torus", "union" */
+    const char *source;    /* where the shape is made: name of a text, */
+    uint32_t    line, column; /* from 1; 0: nowhere */
+    const char *rule;      /* by which its bound follows: "exact, by claim" */
+    double      slope;     /* of the distance that it lowers to; divided out at the root */
+    double      low[3], high[3]; /* a box around it; may be infinite */
+    bool        exact, estimate; /* as of components */
+    uint32_t    levels;
+    double      instances;
+    uint32_t    alike;     /* parts like it, made in the same place, that follow and have no entry */
+    size_t      same;      /* from 1: the entry where its parts are; 0: behind this one */
+} KrsBound;
+
+/* How many entries there are, at most 256, and how many shapes there was no room for (`more` may be
+   NULL); 0 of a component that does not exist. */
+size_t    krs_bound_count(const KrsScene *scene, size_t component, size_t *more);
+KrsStatus krs_bound(const KrsScene *scene, size_t component, size_t index, KrsBound *bound);
 
 /*
  * Questions.  All are KRS_BAD_ARGUMENT, and answer nothing, when a number among the arguments is

@@ -4,6 +4,7 @@
 #ifndef KRS_PROGRAM_H
 #define KRS_PROGRAM_H
 
+#include "compiler/bounds.h"
 #include "compiler/compile.h"
 #include "compiler/geometry/lower.h"
 #include "compiler/graph/evaluate.h"
@@ -12,6 +13,9 @@
    are any, then what a view needs. */
 enum { MARCH_ROOTS = 1 + ALONG_COUNT }; /* behind all others: lower_guarded, lower_along */
 enum { FLAT_ROOTS = 2 }; /* behind those: where a ray meets a plane, and how steeply it falls */
+/* Behind those, of each component and then of all zones: lower_gradient's two; the same node twice,
+   a FLOAT, where there is none. */
+enum { GRADIENT_ROOTS = 2 };
 enum { CAMERA_ROOTS = 5, LIGHT_ROOTS = 3, SKY_ROOTS = 3 };
 
 struct KrsScene {
@@ -25,6 +29,7 @@ struct KrsScene {
     size_t       component_count, camera_count, light_count;
     size_t       zone_count; /* declared; all have one root */
     KrsComponent *components;
+    KrsBounds    *bounds;  /* of each component */
     Parameter   *parameters;
     size_t       parameter_count;
     SceneCamera *cameras; /* their nodes are not used: the roots are */
@@ -36,6 +41,9 @@ struct KrsScene {
     Tape         distance; /* of all components, and zones */
     Tape         guarded;  /* of all components: guarded_roots, with what may be left out */
     Tape         surface;  /* all roots of all components */
+    Tape         precise;  /* OP_precise, of which there are precise_count: precise_nodes */
+    const Node  *precise_nodes;
+    size_t       precise_count;
     Tape         view;     /* cameras, lights and sky */
 };
 

@@ -19,6 +19,8 @@
 
 /* Of the machine whose seconds are counted; most of today's are as fast, or faster. */
 static const double OPERATIONS_PER_SECOND = 1e8;
+/* After so many somebody is asked whether to go on. */
+static const uint64_t SLICE = 10000000;
 enum { MOST_SHAPES = 4096, MOST_TRIALS = 6, SETTING_ATTEMPTS = 8 };
 
 /* A shape that is looked at, and where in the trees it was met first. */
@@ -182,8 +184,12 @@ static bool try_settings(Refuter *r, const Shape *shape, Search *search, uint64_
         if (!sound)
             continue;
         search->worst = (Witness){0};
-        search_run(search, operations / trials);
-        report_progress(r, operations / trials);
+        for (uint64_t left = operations / trials; left > 0 && !r->stopped;) {
+            uint64_t slice = left < SLICE ? left : SLICE;
+            search_run(search, slice);
+            report_progress(r, slice);
+            left -= slice;
+        }
         count_search(r, search, shape, search->worst.ratio);
         search->evaluations = 0;
         if (r->result->settings < trial + 1)
@@ -390,9 +396,9 @@ static void note_points(Refuter *r, Diag *diag, const Witness *w)
     Diags      *diags = r->in->diags;
     const char *p     = point_text(r, w->p);
     if (w->fault == FAULT_STEEP || w->fault == FAULT_LONG)
-        diag_note(diags, diag, diag_text(diags, "the distance is %.6g at %s and %.6g at %s, %.6g apart",
-                                         w->at_p, p, w->at_q, point_text(r, w->q),
-                                         apart(w->p, w->q)));
+        diag_note(diags, diag,
+                  diag_text(diags, "the distance is %.6g at %s and %.6g at %s, %.6g apart",
+                            w->at_p, p, w->at_q, point_text(r, w->q), apart(w->p, w->q)));
     else
         diag_note(diags, diag, diag_text(diags, "the distance is %.6g at %s", w->at_p, p));
 }
@@ -430,13 +436,13 @@ static void note_surface(Refuter *r, Diag *diag, const Finding *finding)
     if (distance != NODE_NONE && search_of(r, shape, distance, false, &search) &&
         search_start(&search, finding->parameters) && search_surface(&search, from, surface))
         diag_note(r->in->diags, diag,
-                  diag_text(r->in->diags, "nothing is to be within %.6g of %s, but the surface is at "
-                            "%s, %.6g away", said, point_text(r, from), point_text(r, surface),
+                  diag_text(r->in->diags, "nothing is to be within %.6g of %s, but the surface is "
+                            "at %s, %.6g away", said, point_text(r, from), point_text(r, surface),
                             apart(from, surface)));
     arena_free(r->in->scratch);
 }
 
-/* Where in the scene the shape stands: its component, and the place if the shape is a part of it. */
+/* The component that the shape is a part of, and the place in that where it shows. */
 static void note_component(Refuter *r, Diag *diag, const Finding *whole, const Finding *finding)
 {
     const Suspect   *suspect   = &r->suspects.items[finding->suspect];

@@ -1,8 +1,8 @@
 /*
  * search.c: points that refute a distance: where they are looked for, and how finds are improved.
  *
- * An operation is a target where it branches, jumps or is steepest: a comparison where both sides are
- * equal, a quotient where its divisor is 0, an exponential where its argument is largest.  From a
+ * An operation is a target where it branches, jumps or is steepest: a comparison where both sides
+ * are equal, a quotient where its divisor is 0, an exponential where its argument is largest.  From a
  * random point, steps along the gradient of that expression lead there, also into a region too
  * thin for random points to meet.  A pair that is steep on average has a half that is at least as
  * steep, so pairs climb to where a distance jumps by being halved.
@@ -216,7 +216,7 @@ static void tighten(Search *s, Pair *pair)
     weigh(s, pair);
 }
 
-/* Marches from p until the side changes, at most `farthest`; then the pair is as tight as can be. */
+/* Marches from p until the side changes, at most `farthest`; then the pair is tightened. */
 static bool reach_surface(Search *s, Pair *pair, const double direction[3], double farthest)
 {
     double t = 0.5 * fabs(pair->at_p);
@@ -277,7 +277,8 @@ static double target_at(Search *s, const Target *t, double p[3])
     return target_value(s, t);
 }
 
-static void add_target(Search *s, Arena *arena, Goal goal, const Graph *g, const Expr *e, int a, int b)
+static void add_target(Search *s, Arena *arena, Goal goal, const Graph *g, const Expr *e, int a,
+                       int b)
 {
     Node of = e->operands[a];
     if (g->items[of].time != TIME_POINT && g->items[e->operands[b]].time != TIME_POINT)
@@ -607,8 +608,9 @@ bool search_start(Search *search, const NodeValue *parameters)
     for (size_t i = tape->frame_count; i < tape->count; i++) {
         const Expr *e = &tape->graph->items[tape->nodes[i]];
         for (int k = 0; k < e->operand_count; k++) {
-            const Expr *of = &tape->graph->items[e->operands[k]];
-            for (uint32_t c = 0; of->time != TIME_POINT && of->type <= TYPE_VEC4 && c < of->type; c++)
+            const Expr *of   = &tape->graph->items[e->operands[k]];
+            uint32_t    size = of->time != TIME_POINT && of->type <= TYPE_VEC4 ? of->type : 0;
+            for (uint32_t c = 0; c < size; c++)
                 if (!isfinite(search->values[e->operands[k]].v[c]))
                     return false;
         }

@@ -4,8 +4,8 @@
  * What a distance d claims: it is a number everywhere, solid only in its box, never longer than the
  * way to its surface, and, where something may move that surface, 1-Lipschitz.  Each of these is
  * refuted by one point or by two, which are looked for where claims break: near the surface, at the
- * corners and edges of the box, and where an operation of the graph branches, jumps, has its pole or
- * is steepest.  From the best finds a local search climbs on.
+ * corners and edges of the box, and where an operation of the graph branches, jumps, has its pole
+ * or is steepest.  From the best finds a local search climbs on.
  *
  * The search is deterministic: its budget is counted in operations, not in time.
  */

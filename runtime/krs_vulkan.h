@@ -121,6 +121,11 @@ typedef enum KrsTrace {
     KRS_TRACE_TAYLOR,  /* or by the slope that the Taylor series on the ray permits (Ban and
                           Valasek 2023, with the safe one of its iterates), */
     KRS_TRACE_ROOT_FREE, /* or by the radius within which it cannot be 0 */
+    KRS_TRACE_DIRECTIONAL, /* in sequences with maps that invert, by where the ray leaves empty balls
+                              that were found behind the maps; where there are none, plain; */
+    KRS_TRACE_BINARY,    /* or by balls that are tried: the next twice as large or half as large (KRS
+                            2016, algorithm 2, corrected), where the camera is outside of everything, */
+    KRS_TRACE_PREDICTED, /* or as large as the last lets expect */
     KRS_TRACE_COUNT
 } KrsTrace;
 extern const char *const krs_trace_names[KRS_TRACE_COUNT]; /* "default", "plain", ... */
@@ -146,6 +151,24 @@ typedef enum KrsComponents {
 } KrsComponents;
 extern const char *const krs_components_names[KRS_COMPONENTS_COUNT];
 
+/* Where the distance is looked at around a hit for its normal: see bench/README.md, Normals. */
+typedef enum KrsNormals {
+    KRS_NORMALS_DEFAULT,      /* the octahedron: the least error for its price */
+    KRS_NORMALS_FORWARD,      /* there and a step along each axis: an error of first order */
+    KRS_NORMALS_TETRAHEDRON,  /* at 4 corners: likewise */
+    KRS_NORMALS_OCTAHEDRON,   /* at 6, 8, 12 or 20 corners: an error of second order */
+    KRS_NORMALS_CUBE,
+    KRS_NORMALS_ICOSAHEDRON,
+    KRS_NORMALS_DODECAHEDRON,
+    KRS_NORMALS_ANALYTIC,     /* by derivatives, at the hit alone, of a scene that was compiled with
+                                 `gradients`; by the octahedron for components in which something
+                                 has none (noise, fractals), and where points have an anchor.
+                                 Neither these nor those by steps to one side tell what is finer
+                                 than a pixel: as with no_filter. */
+    KRS_NORMALS_COUNT
+} KrsNormals;
+extern const char *const krs_normals_names[KRS_NORMALS_COUNT]; /* "default", "forward", ... */
+
 /* The shadows of lights that have a size. */
 typedef enum KrsShadows {
     KRS_SHADOWS_SOFT, /* one ray to the light's middle tells how much is hidden, about */
@@ -169,6 +192,7 @@ typedef struct KrsRenderOptions {
     KrsSchedule schedule;
     KrsShadows  shadows;
     KrsComponents components;
+    KrsNormals  normals;
     bool      no_beams;      /* each ray is marched by itself all the way */
     bool      no_upsampling; /* shadows and occlusion are found for every pixel, not for a quarter
                                 of them where the others can be seen to be alike */

@@ -4,18 +4,18 @@
 # address and undefined-behaviour sanitizers, and everything compiles under clang as well.
 
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c formulas.c)
-UNIT        := front film tracer methods writer memory validate frame query cache compiled apart
-PROPERTY    := ops noise graph derive series along slope parity reach
-ORACLES     := self primitives krs_expand trees maps moebius operators deform normals fields fractals device query picture shading coverage shadows bounds
+UNIT        := front film tracer methods writer memory validate refute frame query cache compiled apart
+PROPERTY    := ops noise graph derive series along anchor slope parity reach
+ORACLES     := self primitives krs_expand trees maps moebius operators deform normals fields surfaces rays algebraic fractals device query picture shading coverage shadows bounds
 FUZZ        := sentences
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
-SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/validate tests/unit/memory tests/unit/cache tests/unit/frame tests/unit/query tests/property/ops tests/property/noise \
-               tests/property/graph tests/property/derive tests/property/series tests/property/along tests/property/slope tests/property/parity tests/property/reach tests/oracle/primitives tests/oracle/krs_expand tests/oracle/bounds tests/oracle/maps tests/oracle/moebius tests/oracle/operators tests/oracle/fractals tests/oracle/normals \
+SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/validate tests/unit/refute tests/unit/memory tests/unit/cache tests/unit/frame tests/unit/query tests/property/ops tests/property/noise \
+               tests/property/graph tests/property/derive tests/property/series tests/property/along tests/property/anchor tests/property/slope tests/property/parity tests/property/reach tests/oracle/primitives tests/oracle/krs_expand tests/oracle/bounds tests/oracle/maps tests/oracle/moebius tests/oracle/operators tests/oracle/fractals tests/oracle/normals \
                tests/fuzz/sentences
 SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/editors.sh tests/lint.sh \
-               tests/errors.sh tests/examples.sh tests/library.sh $(sort $(filter-out tests/cli/common.sh, $(wildcard tests/cli/*.sh)))
+               tests/errors.sh tests/examples.sh tests/library.sh tests/docs.sh $(sort $(filter-out tests/cli/common.sh, $(wildcard tests/cli/*.sh)))
 
 $(B)/tests/oracle/oracle.a: $(ORACLE:%.c=$(B)/%.o)
 	@rm -f $@

@@ -3,7 +3,7 @@
  *
  * Pictures of one and four samples, as they are and without the filtering of surfaces, are held
  * against pictures of many samples without filtering: errors in what a screen shows, and flicker
- * over a short flight.  bench/README.md says what the columns mean.
+ * over a short flight; and what filtering costs.  bench/README.md says what the columns mean.
  */
 #include <math.h>
 #include <stdio.h>
@@ -223,7 +223,57 @@ static void fly(KrsRenderer *renderer, const struct Flight *flight, uint32_t sam
     stage_close(&stage);
 }
 
-/* minify [SAMPLES [NAME]]: of the reference; one flight. */
+/* ---- What filtering costs: one sample of a large picture, with it and without, in turns ---- */
+
+enum { LARGE_WIDTH = 1280, LARGE_HEIGHT = 720, TURNS = 7 };
+
+static int compare_numbers(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double middle(double *numbers)
+{
+    qsort(numbers, TURNS, sizeof *numbers, compare_numbers);
+    return numbers[TURNS / 2];
+}
+
+static void time_once(const Stage *stage, bool plain, double *normals, double *all)
+{
+    KrsPicture      *picture;
+    KrsRenderOptions options = {.width = LARGE_WIDTH, .height = LARGE_HEIGHT, .samples = 1,
+                                .planes = KRS_PLANE_COLOR, .no_filter = plain};
+    if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
+        fail("cannot render", krs_renderer_message(stage->renderer));
+    *normals = picture->stats.phase_ms[KRS_PHASE_NORMALS];
+    *all = picture->stats.total_ms;
+    krs_picture_free(picture);
+}
+
+static void time_filter(KrsRenderer *renderer, const struct Flight *flight)
+{
+    Stage  stage = stage_open(renderer, flight);
+    double normals[2][TURNS], all[2][TURNS], warm_up;
+    krs_frame_set_time(stage.frame, 0);
+    for (int plain = 0; plain < 2; plain++)
+        time_once(&stage, plain, &warm_up, &warm_up);
+    for (int turn = 0; turn < TURNS; turn++)
+        for (int plain = 0; plain < 2; plain++)
+            time_once(&stage, plain, &normals[plain][turn], &all[plain][turn]);
+    double filtered = middle(all[0]), unfiltered = middle(all[1]);
+    printf("| %s | %.1f | %.1f | %.0f | %.0f | %.2f |\n", flight->name, middle(normals[1]),
+           middle(normals[0]), unfiltered, filtered, filtered / unfiltered);
+    fflush(stdout);
+    stage_close(&stage);
+}
+
+static bool is_wanted(const struct Flight *flight, int count, char **arguments)
+{
+    return count < 3 || strcmp(flight->name, arguments[2]) == 0;
+}
+
+/* minify [SAMPLES [NAME]]: of the reference; one flight.  With 0 samples only what it costs. */
 int main(int count, char **arguments)
 {
     KrsRenderer *renderer;
@@ -231,12 +281,20 @@ int main(int count, char **arguments)
     spirv_start();
     if (krs_renderer_new(NULL, &renderer) != KRS_OK)
         fail("cannot open the device", renderer ? krs_renderer_message(renderer) : "no memory");
-    printf("%dx%d, %d frames, against %u samples\n\n", WIDTH, HEIGHT, FRAMES, samples);
-    printf("| scene | samples | filtered | error | of coverage | flicker | alpha | light | ms |\n"
-           "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
-    for (int i = 0; i < FLIGHTS; i++)
-        if (count < 3 || strcmp(flights[i].name, arguments[2]) == 0)
+    if (samples > 0)
+        printf("%dx%d, %d frames, against %u samples\n\n"
+               "| scene | samples | filtered | error | of coverage | flicker | alpha | light | ms |\n"
+               "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
+               WIDTH, HEIGHT, FRAMES, samples);
+    for (int i = 0; i < FLIGHTS && samples > 0; i++)
+        if (is_wanted(&flights[i], count, arguments))
             fly(renderer, &flights[i], samples);
+    printf("\n%dx%d, one sample, medians of %d in turns, ms\n\n"
+           "| scene | normals | normals, filtered | total | total, filtered | times |\n"
+           "| --- | --- | --- | --- | --- | --- |\n", LARGE_WIDTH, LARGE_HEIGHT, TURNS);
+    for (int i = 0; i < FLIGHTS; i++)
+        if (is_wanted(&flights[i], count, arguments))
+            time_filter(renderer, &flights[i]);
     krs_renderer_free(renderer);
     spirv_stop();
     return 0;

@@ -12,9 +12,10 @@
  *
  * Other expressions are divided by their slope.  Where that has no bound, or a bad one, a region
  * C is needed: `.within` hands it down.  At a point q with its nearest point c in C,
- *     hypot(|q - c|, max(f(c) / L, 0)) + min(f(c) / L, 0),   L the slope over C,
+ *     hypot(|q - c|, max(f(c) / L, 0)),   L the slope over C,
  * is below the distance to what is in C, since |q - s|^2 >= |q - c|^2 + |c - s|^2 for s in C, and
- * 1-Lipschitz.  A second, sharper bound counts with the slope where the point is:
+ * 1-Lipschitz.  Where f(c) < 0 the solid ends at the sides of C: within it the value is
+ * max(f / L, -distance to them), so that nothing jumps there.  A second, sharper bound counts with the slope where the point is:
  *     |f| = |grad f| r + H r^2 / 2,   H the slope of the gradient over C.
  */
 #include "compiler/geometry/elaborate.h"
@@ -84,7 +85,9 @@ static Node brought_out(Graph *g, Node bound, Box box)
     Node point   = graph_leaf(g, OP_POINT), zero = graph_number(g, 0);
     Node away    = box_distance(g, point, box);
     Node outside = graph_op2(g, OP_max, bound, zero);
-    Node inside  = graph_op2(g, OP_min, bound, zero);
+    Node sides   = beyond_sides(g, point, box);
+    Node inside  = sides == NODE_NONE ? bound : graph_op2(g, OP_max, bound, sides);
+    inside       = graph_op2(g, OP_min, inside, zero);
     Node both    = graph_op1(g, OP_length, graph_op2(g, OP_vec2, away, outside));
     return graph_op2(g, OP_add, both, inside);
 }

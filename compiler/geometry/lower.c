@@ -14,6 +14,9 @@
 #include <assert.h>
 #include <math.h>
 
+#include "compiler/graph/derive.h"
+#include "compiler/graph/evaluate.h"
+
 /* Farther than any scene: the distance to nothing.  Finite, so that sums stay numbers. */
 static const double NOWHERE = 1e30;
 
@@ -128,8 +131,7 @@ static Place joint_place(const Shape *shape, Place place)
     return shape->blend.width == NODE_NONE ? place : place_steady(place);
 }
 
-/* How far outside of a box a point is along the axis where that is most; negative inside. */
-static Node beyond_sides(Graph *g, Node point, Box box)
+Node beyond_sides(Graph *g, Node point, Box box)
 {
     Node most = NODE_NONE;
     for (uint32_t i = 0; i < 3; i++) {
@@ -395,12 +397,42 @@ static Lowered lower_revolve(Lowering *l, const Shape *shape, Place place)
 
 /* ---- leaves, paint, and the walk ---- */
 
+/*
+ * What has a formula f has its gradient from that: the bound by which it is marched costs many times as
+ * much.  With n = grad f / |grad f| and the rest w held still, dot(n, q) + w = f / |grad f| changes
+ * with the point q as a plane does; NODE_NONE: the formula has no derivative.
+ */
+static Node tangent_distance(Lowering *l, const Shape *shape, Place place)
+{
+    Graph       *g    = l->graph;
+    Substitution with = substitute_point(place.point);
+    Node         gradient, w;
+    if (graph_gradient(g, shape->formula, &gradient, NULL, l->scratch) == DERIVED_NOT)
+        return NODE_NONE;
+    gradient     = graph_substitute(g, gradient, with, l->scratch);
+    Node f       = graph_substitute(g, shape->formula, with, l->scratch);
+    Node n       = graph_op1(g, OP_normalize, gradient);
+    Node steep   = graph_op1(g, OP_length, gradient);
+    steep        = graph_op2(g, OP_max, steep, graph_number(g, 1e-30));
+    Node depth   = graph_op2(g, OP_div, f, steep);
+    Node along   = graph_op2(g, OP_dot, n, place.point);
+    w            = graph_op2(g, OP_sub, depth, along);
+    array_push(l->scratch, l->still, n);
+    array_push(l->scratch, l->still, w);
+    return graph_op2(g, OP_add, along, w);
+}
+
 static Lowered lower_primitive(Lowering *l, const Shape *shape, Place place)
 {
     Graph       *g    = l->graph;
     Substitution with = substitute_point(place.point);
     Lowered      leaf = lowered_nothing;
-    leaf.distance     = graph_substitute(g, shape->distance, with, l->scratch);
+    if (l->still && shape->formula != NODE_NONE && !place.lipschitz)
+        leaf.distance = tangent_distance(l, shape, place);
+    if (leaf.distance == NODE_NONE)
+        leaf.distance = graph_substitute(g, shape->distance, with, l->scratch);
+    if (l->still)
+        return leaf;
     if (shape->bound != NODE_NONE && !place.lipschitz) {
         Node bound    = graph_substitute(g, shape->bound, with, l->scratch);
         leaf.distance = graph_op2(g, OP_max, leaf.distance, bound);
@@ -550,4 +582,22 @@ Node lower_guarded(Graph *graph, const Shape *shape, Node plain, Arena *scratch)
     if (all.distance == NODE_NONE || l.overflow)
         return plain;
     return divide_by_slope(graph, all.distance, shape->slope);
+}
+
+/* Three derivatives a node: what is larger is looked at by differences. */
+enum { MOST_DERIVED = 20000 };
+
+bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near, Arena *scratch)
+{
+    Nodes    still = {0};
+    Lowering l     = {.graph = graph, .scratch = scratch, .still = &still,
+                      .most = graph->count + MOST_DERIVED};
+    Lowered  all   = lower_shape(&l, shape, place_bare(graph_leaf(graph, OP_POINT), false));
+    if (all.distance == NODE_NONE || l.overflow)
+        return false;
+    *near = divide_by_slope(graph, all.distance, shape->slope);
+    Tape tape = tape_new(graph, near, 1, scratch);
+    return tape.count <= MOST_DERIVED &&
+           graph_gradient_of(graph, *near, still.items, still.count, gradient, NULL, scratch) !=
+               DERIVED_NOT;
 }

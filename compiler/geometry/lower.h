@@ -33,24 +33,40 @@ bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roo
  */
 Node lower_guarded(Graph *graph, const Shape *shape, Node plain, Arena *scratch);
 
-/* How polynomials tell how far a ray may go; all are safe. */
+/* How to tell how far a ray may go; all are safe. */
 typedef enum AlongMethod {
     ALONG_EXACT,     /* by Bernstein coefficients: lower_along.c */
     ALONG_TAYLOR,    /* by the slope that a Taylor series permits (Ban and Valasek): the r with
                         r sum n |P_n| r^(n-1) = |P_0| */
     ALONG_ROOT_FREE, /* by what keeps a Taylor series from 0: the r with sum |P_n| r^n = |P_0| */
+    ALONG_POLYNOMIALS, /* so many for polynomials; for sequences with maps that invert: */
+    ALONG_DIRECTIONAL = ALONG_POLYNOMIALS, /* by where the ray leaves empty balls: lower_images.c */
+    ALONG_PROBE,     /* by whether a ball around OP_POINT, of radius OP_FOOTPRINT, is empty: when
+                        what is computed is more than the radius; no distance, but about what the
+                        radius could be */
     ALONG_COUNT
 } AlongMethod;
 
 /*
  * How far a ray from OP_POINT along OP_DIRECTION may go before it can enter the shape, negative when
  * it is within and looks for the way out: at least the distance, and where polynomials bound the
- * shape much more.  `plain`, which is ROOT_DISTANCE, where that is as good.
+ * shape, or inversions are above it, much more.  `plain`, which is ROOT_DISTANCE, where that is as
+ * good.
  */
 Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod method, Arena *scratch);
 
+/*
+ * The gradient of ROOT_DISTANCE, a VEC3 of any length, and in `near` what it is the gradient of, which
+ * is about the distance near the surface; false when some operation has no derivative, or when that
+ * would grow too large.
+ */
+bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near, Arena *scratch);
+
 /* Distance to a finite box, 0 inside. */
 Node box_distance(Graph *graph, Node point, Box box);
+/* How far outside of a box a point is along the axis where that is most; negative inside.
+   NODE_NONE of a box that no axis bounds. */
+Node beyond_sides(Graph *graph, Node point, Box box);
 
 /* What grows `slope` times as fast as distance, made safe. */
 Node divide_by_slope(Graph *graph, Node distance, double slope);

@@ -27,8 +27,8 @@ typedef struct Ray {
     Node point, direction, speed; /* speed: the length of direction */
 } Ray;
 
-/* How far a term alone may fall over the piece, in c0; of 1 .. 16, few evaluations.  Twice the length
-   for all terms alike would let t^20 fall by a million, and a step be a millionth. */
+/* How far a term alone may fall over the piece, in c0; of 1 .. 16, few evaluations.  Twice the
+   length for all terms alike would let t^20 fall by a million, and a step be a millionth. */
 static const double PIECE = 4;
 static const double TINY  = 1e-30;
 
@@ -240,6 +240,8 @@ static Node along(Lowering *l, const Shape *shape, Ray ray)
 
 Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod method, Arena *scratch)
 {
+    if (method >= ALONG_POLYNOMIALS)
+        return lower_image(graph, shape, plain, method, scratch);
     if (!sees_polynomial(shape))
         return plain;
     Lowering l   = {.graph = graph, .scratch = scratch, .most = graph->count + MOST_LOWERED,

@@ -24,43 +24,55 @@ Passage passage_new(Graph *g, Node point)
     return (Passage){point, graph_number(g, 1), NODE_NONE, NODE_NONE};
 }
 
-/* R^T way * factor + pole. */
-static Node behind_inversion(Graph *g, const Map *map, Node way, Node factor)
+Node turn_behind(Graph *g, const Map *map, Node way)
 {
     Node rows[3];
     transpose_rows(g, map->rows, rows);
     Node e0 = graph_vec3(g, 1, 0, 0), e1 = graph_vec3(g, 0, 1, 0), e2 = graph_vec3(g, 0, 0, 1);
-    if (rows[0] != e0 || rows[1] != e1 || rows[2] != e2)
-        way = graph_op4(g, OP_turn, way, rows[0], rows[1], rows[2]);
-    way = graph_op2(g, OP_scale, way, factor);
+    if (rows[0] == e0 && rows[1] == e1 && rows[2] == e2)
+        return way;
+    return graph_op4(g, OP_turn, way, rows[0], rows[1], rows[2]);
+}
+
+/* R^T way * factor + pole. */
+static Node behind_inversion(Graph *g, const Map *map, Node way, Node factor)
+{
+    way = graph_op2(g, OP_scale, turn_behind(g, map, way), factor);
     return graph_op2(g, OP_add, way, map->pole);
+}
+
+Inversion inversion_at(Graph *g, const Map *map, Node point)
+{
+    Inversion at;
+    at.way      = graph_op2(g, OP_sub, point, map->shift);
+    Node square = graph_op2(g, OP_dot, at.way, at.way);
+    Node limit  = graph_number(g, NEAR_POLE * NEAR_POLE);
+    limit       = graph_op2(g, OP_mul, map->scale, limit);
+    square      = graph_op2(g, OP_max, square, limit);
+    at.inverse  = graph_op1(g, OP_inversesqrt, square);
+    at.sigma    = graph_op2(g, OP_mul, at.inverse, at.inverse);
+    at.sigma    = graph_op2(g, OP_mul, map->scale, at.sigma);
+    at.axis     = graph_op2(g, OP_scale, at.way, at.inverse);
+    return at;
 }
 
 static void passage_invert(Lowering *l, Passage *passage, const Map *map, NormalPath *path)
 {
-    Graph *g = l->graph;
-    Node   way     = graph_op2(g, OP_sub, passage->point, map->shift);
-    Node   square  = graph_op2(g, OP_dot, way, way);
-    Node   limit   = graph_number(g, NEAR_POLE * NEAR_POLE);
-    limit          = graph_op2(g, OP_mul, map->scale, limit);
-    square         = graph_op2(g, OP_max, square, limit);
-    Node   inverse = graph_op1(g, OP_inversesqrt, square); /* 1 / X */
-    Node   sigma   = graph_op2(g, OP_mul, inverse, inverse);
-    sigma          = graph_op2(g, OP_mul, map->scale, sigma);
+    Graph    *g  = l->graph;
+    Inversion at = inversion_at(g, map, passage->point);
     if (passage->shrink == NODE_NONE) {
         Node one        = graph_number(g, 1);
         passage->shrink = graph_op2(g, OP_div, one, passage->scale);
         passage->bend   = graph_number(g, 0);
     }
-    Node bend       = graph_op2(g, OP_mul, passage->shrink, inverse);
+    Node bend       = graph_op2(g, OP_mul, passage->shrink, at.inverse);
     passage->bend   = graph_op2(g, OP_add, passage->bend, bend);
-    passage->shrink = graph_op2(g, OP_mul, passage->shrink, sigma);
-    passage->point  = behind_inversion(g, map, way, sigma);
+    passage->shrink = graph_op2(g, OP_mul, passage->shrink, at.sigma);
+    passage->point  = behind_inversion(g, map, at.way, at.sigma);
     if (l->surfaces) {
         Node one    = graph_number(g, 1);
-        Node axis   = graph_op2(g, OP_scale, way, inverse);
-        Node grown  = graph_op2(g, OP_div, one, sigma);
-        normal_flip(l, path, axis);
+        Node grown  = graph_op2(g, OP_div, one, at.sigma);
+        normal_flip(l, path, at.axis);
         normal_turn(l, path, map->rows, grown);
     }
 }

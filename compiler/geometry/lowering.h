@@ -29,6 +29,11 @@ typedef struct Visits {
     size_t count, capacity;
 } Visits;
 
+typedef struct Nodes {
+    Node  *items;
+    size_t count, capacity;
+} Nodes;
+
 typedef struct Lowering {
     Graph *graph;
     Arena *scratch;
@@ -38,6 +43,7 @@ typedef struct Lowering {
     Node   unit;     /* guarded: how long 1 is outside of everything */
     size_t most;     /* nodes that the graph may have */
     bool   overflow;
+    Nodes *still;    /* NULL, or, of lower_gradient, what counts as constant */
     Visits *visits; /* NULL, or what takes down every shape that is met, parts first */
 } Lowering;
 
@@ -120,6 +126,17 @@ typedef struct Passage {
     Node shrink, bend; /* NODE_NONE: nothing has inverted yet */
 } Passage;
 
+/* An inversion on the way inwards, at a point. */
+typedef struct Inversion {
+    Node way, axis; /* from where it takes infinity to the point, and its direction, */
+    Node inverse;   /* and 1 by its length; */
+    Node sigma;     /* how much larger things become */
+} Inversion;
+
+Inversion inversion_at(Graph *g, const Map *map, Node point);
+/* A direction behind a map, but not reflected in the inversion. */
+Node      turn_behind(Graph *g, const Map *map, Node way);
+
 Passage passage_new(Graph *g, Node point);
 /* Behind a map without `first`; normals take at most two steps. */
 void    passage_map(Lowering *l, Passage *passage, const Map *map, NormalPath *path);
@@ -141,6 +158,10 @@ Node nearer_of(Graph *g, Node a, Node b);
 /* The distance of everything, from hulls within hulls and of what was found in the innermost. */
 Node within_hulls(Lowering *l, const Hull *hulls, uint32_t count, Node distance);
 Lowered lower_inversion(Lowering *l, const Shape *shape, Place place);
+
+/* ---- lower_images.c ---- */
+/* lower_along by ALONG_DIRECTIONAL or ALONG_PROBE. */
+Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod method, Arena *scratch);
 
 /* ---- lower_guards.c ---- */
 /* A place between two stages of a sequence where what is left may be left out. */

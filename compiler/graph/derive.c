@@ -9,12 +9,15 @@
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 #include "compiler/graph/evaluate.h"
 
 typedef struct Derivation {
-    Graph     *graph;
-    Smoothness smoothness; /* the least of all so far */
+    Graph      *graph;
+    Smoothness  smoothness; /* the least of all so far */
+    const bool *still;      /* nodes that are taken for constants, by number; or NULL */
+    size_t      still_end;  /* none from this number on */
 } Derivation;
 
 /* ---- the functions of the columns da, db, dc, for nodes ---- */
@@ -178,6 +181,20 @@ static Node plus(Graph *graph, Node a, Node b)
     return graph_op2(graph, OP_add, a, b);
 }
 
+/* What a length is divided by: below it, what is divided is 0. */
+static Node not_zero(Derivation *d, Node length)
+{
+    return graph_op2(d->graph, OP_max, length, number(d, 1e-30));
+}
+
+/* min and max choose: 0 times the derivative of what is not chosen need not be 0. */
+static Node derive_choice(Derivation *d, const Expr *e, const Node *inner)
+{
+    bool least = e->op == OP_min;
+    Node less  = graph_op2(d->graph, OP_less, e->operands[!least], e->operands[least]);
+    return between(d, graph_op3(d->graph, OP_select, less, inner[0], inner[1]));
+}
+
 /* Sum over the operands of the row's derivative times the operand's own. */
 static Node derive_map(Derivation *d, Node node, const Node *inner)
 {
@@ -209,20 +226,22 @@ static Node derive_bilinear(Graph *g, Op op, const Expr *e, const Node *inner)
     return sum;
 }
 
-static Node derive_length(Graph *g, const Expr *e, Node node, const Node *inner)
+static Node derive_length(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
-    Node along = graph_op2(g, OP_dot, e->operands[0], inner[0]);
-    return graph_op2(g, OP_div, along, node);
+    Node along = graph_op2(d->graph, OP_dot, e->operands[0], inner[0]);
+    return over(d, along, not_zero(d, node));
 }
 
 /* (a' - n (n.a')) / |a| */
-static Node derive_normalize(Graph *g, const Expr *e, Node node, const Node *inner)
+static Node derive_normalize(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
+    Graph *g    = d->graph;
     Node along  = graph_op2(g, OP_dot, node, inner[0]);
     Node radial = graph_op2(g, OP_scale, node, along);
     Node across = graph_op2(g, OP_sub, inner[0], radial);
     Node size   = graph_op1(g, OP_length, e->operands[0]);
-    return graph_op2(g, OP_scale, across, graph_op2(g, OP_div, graph_number(g, 1), size));
+    size        = not_zero(d, size);
+    return graph_op2(g, OP_scale, across, over(d, number(d, 1), size));
 }
 
 /* Folds mirror directions as they mirror points: b the unit normal. */
@@ -245,11 +264,147 @@ static bool others_are_still(const Graph *g, const Node *inner, int from, int co
     return true;
 }
 
+/* A turn about y by an angle that stays the same within its sector; its sine and cosine are told by
+   what it has made of the point. */
+static Node derive_cell_polar(Derivation *d, const Expr *e, Node node, const Node *inner)
+{
+    Graph *g = d->graph;
+    Node   p[3], r[3], v[3];
+    for (uint32_t i = 0; i < 3; i++) {
+        p[i] = graph_component(g, e->operands[0], i);
+        r[i] = graph_component(g, node, i);
+        v[i] = graph_component(g, inner[0], i);
+    }
+    Node xx = times(d, p[0], r[0]), zz = times(d, p[2], r[2]);
+    Node zx = times(d, p[2], r[0]), xz = times(d, p[0], r[2]);
+    Node square = graph_op1(g, OP_square, p[0]), other = graph_op1(g, OP_square, p[2]);
+    square      = not_zero(d, graph_op2(g, OP_add, square, other));
+    Node cosine = over(d, graph_op2(g, OP_add, xx, zz), square);
+    Node sine   = over(d, graph_op2(g, OP_sub, zx, xz), square);
+    Node cx = times(d, cosine, v[0]), sz = times(d, sine, v[2]);
+    Node cz = times(d, cosine, v[2]), sx = times(d, sine, v[0]);
+    Node x = graph_op2(g, OP_add, cx, sz), z = graph_op2(g, OP_sub, cz, sx);
+    return between(d, graph_op3(g, OP_vec3, x, v[1], z));
+}
+
+/* ---- blends: share[0] da + share[1] db ---- */
+
+/* Of a sharp minimum. */
+static void sharp_shares(Derivation *d, Node a, Node b, Node share[2])
+{
+    Node less = graph_op2(d->graph, OP_less, a, b), one = number(d, 1), zero = number(d, 0);
+    share[0]  = graph_op3(d->graph, OP_select, less, one, zero);
+    share[1]  = graph_op3(d->graph, OP_select, less, zero, one);
+}
+
+/* Those that give the farther one a share of 1/2 at most, the less the farther it is. */
+static void smooth_shares(Derivation *d, Op op, Node a, Node b, Node width, Node share[2])
+{
+    Graph *g     = d->graph;
+    Node   apart = graph_op1(g, OP_abs, graph_op2(g, OP_sub, a, b)), one = number(d, 1), far;
+    width        = not_zero(d, width);
+    apart        = over(d, apart, width);
+    if (op == OP_smin_exponential) {
+        far = graph_op1(g, OP_exp, graph_op1(g, OP_neg, apart));
+        far = over(d, far, graph_op2(g, OP_add, one, far));
+    } else {
+        far = graph_op2(g, OP_sub, one, apart);
+        far = graph_op2(g, OP_max, far, number(d, 0));
+        far = op == OP_smin_cubic ? graph_op1(g, OP_square, far) : far;
+        far = times(d, far, number(d, 0.5));
+    }
+    Node less = graph_op2(g, OP_less, a, b), near = graph_op2(g, OP_sub, one, far);
+    share[0]  = graph_op3(g, OP_select, less, near, far);
+    share[1]  = graph_op3(g, OP_select, less, far, near);
+}
+
+/* max(k, min(a, b)) - length(max(k - a, 0), max(k - b, 0)) */
+static void circular_shares(Derivation *d, Node a, Node b, Node width, Node share[2])
+{
+    Graph *g    = d->graph;
+    Node   zero = number(d, 0), depth[2];
+    for (int i = 0; i < 2; i++)
+        depth[i] = graph_op2(g, OP_max, graph_op2(g, OP_sub, width, i ? b : a), zero);
+    Node both = not_zero(d, graph_op1(g, OP_length, graph_op(g, OP_vec2, depth)));
+    Node out  = graph_op2(g, OP_less, width, graph_op2(g, OP_min, a, b));
+    for (int i = 0; i < 2; i++)
+        share[i] = graph_op3(g, OP_select, out, share[i], over(d, depth[i], both));
+}
+
+/* min(a, b, (a + b - k) / sqrt(2)) */
+static void chamfer_shares(Derivation *d, Node a, Node b, Node width, Node share[2])
+{
+    Graph *g    = d->graph;
+    Node   half = number(d, M_SQRT1_2);
+    Node   cut  = graph_op2(g, OP_sub, graph_op2(g, OP_add, a, b), width);
+    Node   least = graph_op2(g, OP_min, a, b);
+    Node   cuts  = graph_op2(g, OP_less, times(d, cut, half), least);
+    for (int i = 0; i < 2; i++)
+        share[i] = graph_op3(g, OP_select, cuts, half, share[i]);
+}
+
+/* min(a, b, (b - k + a + |mod(b - k - a + s, 2 s) - s|) / 2), s the width of a step */
+static void stairs_shares(Derivation *d, Node node, Node a, Node b, Node share[2])
+{
+    Graph *g      = d->graph;
+    Expr   e      = g->items[node];
+    Node   width  = not_zero(d, e.operands[2]);
+    Node   steps  = graph_op2(g, OP_max, e.operands[3], number(d, 1));
+    Node   step   = over(d, width, steps);
+    Node   level  = graph_op2(g, OP_sub, b, width);
+    level         = graph_op2(g, OP_sub, level, a);
+    level         = graph_op2(g, OP_add, level, step);
+    Node   within = graph_op2(g, OP_mod, level, graph_op2(g, OP_add, step, step));
+    Node   rises  = graph_op2(g, OP_less, step, within);
+    Node   stairs = graph_op2(g, OP_less, node, graph_op2(g, OP_min, a, b));
+    Node   zero = number(d, 0), one = number(d, 1);
+    Node   by_b = graph_op3(g, OP_select, rises, one, zero);
+    Node   by_a = graph_op3(g, OP_select, rises, zero, one);
+    share[0]    = graph_op3(g, OP_select, stairs, by_a, share[0]);
+    share[1]    = graph_op3(g, OP_select, stairs, by_b, share[1]);
+}
+
+static Node derive_blend(Derivation *d, const Expr *e, Node node, const Node *inner)
+{
+    Node a = e->operands[0], b = e->operands[1], width = e->operands[2];
+    Node sharp[2], share[2];
+    sharp_shares(d, a, b, sharp);
+    memcpy(share, sharp, sizeof share);
+    switch (e->op) {
+    case OP_smin_circular: circular_shares(d, a, b, width, share); break;
+    case OP_smin_chamfer:  chamfer_shares(d, a, b, width, share); break;
+    case OP_smin_stairs:   stairs_shares(d, node, a, b, share); break;
+    default:               smooth_shares(d, (Op)e->op, a, b, width, share); break;
+    }
+    Node blends = graph_op2(d->graph, OP_less, number(d, 0), width), sum[2];
+    for (int i = 0; i < 2; i++) {
+        share[i] = graph_op3(d->graph, OP_select, blends, share[i], sharp[i]);
+        sum[i]   = times(d, share[i], inner[i]);
+    }
+    return between(d, graph_op2(d->graph, OP_add, sum[0], sum[1]));
+}
+
+/* clamp(1/2 + (b - a) / 2k, 0, 1) */
+static Node derive_blend_weight(Derivation *d, const Expr *e, const Node *inner)
+{
+    Graph *g      = d->graph;
+    Node   apart  = graph_op1(g, OP_abs, graph_op2(g, OP_sub, e->operands[1], e->operands[0]));
+    Node   blends = graph_op2(g, OP_less, apart, e->operands[2]);
+    Node   width  = not_zero(d, e->operands[2]);
+    Node   slope  = over(d, number(d, 0.5), width);
+    Node   change = times(d, graph_op2(g, OP_sub, inner[1], inner[0]), slope);
+    return between(d, graph_op3(g, OP_select, blends, change, number(d, 0)));
+}
+
+/* ---- any node ---- */
+
 /* The derivative of `node`, those of its operands in `inner`; NODE_NONE: no rule. */
 static Node derive_node(Derivation *d, Node node, const Node *inner)
 {
     Graph *g = d->graph;
     Expr   e = g->items[node];
+    if ((e.op == OP_min || e.op == OP_max) && e.type == TYPE_FLOAT)
+        return derive_choice(d, &e, inner);
     if (partials[e.op])
         return derive_map(d, node, inner);
     if (e.type <= TYPE_VEC4 && others_are_still(g, inner, 0, e.operand_count) &&
@@ -260,8 +415,8 @@ static Node derive_node(Derivation *d, Node node, const Node *inner)
     case OP_splat2: case OP_splat3: case OP_splat4:
     case OP_vec2: case OP_vec3: case OP_vec4: return graph_op(g, e.op, inner);
     case OP_dot: case OP_cross: case OP_scale: return derive_bilinear(g, e.op, &e, inner);
-    case OP_length:    return derive_length(g, &e, node, inner);
-    case OP_normalize: return derive_normalize(g, &e, node, inner);
+    case OP_length:    return derive_length(d, &e, node, inner);
+    case OP_normalize: return derive_normalize(d, &e, node, inner);
     case OP_select:
         return between(d, graph_op3(g, OP_select, e.operands[0], inner[1], inner[2]));
     case OP_guard: {
@@ -280,6 +435,14 @@ static Node derive_node(Derivation *d, Node node, const Node *inner)
                    : NODE_NONE;
     case OP_fold: return others_are_still(g, inner, 1, 3) ? derive_fold(d, &e, inner) : NODE_NONE;
     case OP_cell: return others_are_still(g, inner, 1, 4) ? between(d, inner[0]) : NODE_NONE;
+    case OP_cell_polar:
+        return is_zero(g, inner[1]) ? derive_cell_polar(d, &e, node, inner) : NODE_NONE;
+    case OP_smin_quadratic: case OP_smin_cubic: case OP_smin_exponential:
+    case OP_smin_circular: case OP_smin_chamfer: case OP_smin_stairs:
+        return others_are_still(g, inner, 2, e.operand_count) ? derive_blend(d, &e, node, inner)
+                                                              : NODE_NONE;
+    case OP_blend_weight:
+        return is_zero(g, inner[2]) ? derive_blend_weight(d, &e, inner) : NODE_NONE;
     default:      return NODE_NONE;
     }
 }
@@ -295,6 +458,8 @@ static Node derive_along(Derivation *d, const Tape *tape, int axis, Node *made, 
         g->here = e.span;
         if (e.type > TYPE_VEC4)
             made[i] = zero_of(g, TYPE_FLOAT); /* conditions: between them nothing changes */
+        else if (d->still && node < d->still_end && d->still[node])
+            made[i] = zero_of(g, e.type);
         else if (e.op == OP_POINT)
             made[i] = graph_vec3(g, axis == 0, axis == 1, axis == 2);
         else if (e.time != TIME_POINT)
@@ -312,18 +477,18 @@ static Node derive_along(Derivation *d, const Tape *tape, int axis, Node *made, 
     return made[tape->count - 1];
 }
 
-Smoothness graph_derive(Graph *graph, Node root, Node partial[3], Node *blame, Arena *scratch)
+static Smoothness derive(Derivation *d, Node root, Node partial[3], Node *blame, Arena *scratch)
 {
-    Derivation d    = {graph, DERIVED_SMOOTH};
-    Span       here = graph->here;
-    Node       culprit = NODE_NONE;
-    Tape       tape = tape_new(graph, &root, 1, scratch);
+    Graph *graph   = d->graph;
+    Span   here    = graph->here;
+    Node   culprit = NODE_NONE;
+    Tape   tape    = tape_new(graph, &root, 1, scratch);
     assert(graph->items[root].type <= TYPE_VEC4);
     /* The root's place: frame-time nodes come first on a tape, so it need not be the last. */
     size_t place = tape_place(&tape, root);
     Node  *made  = arena_new_array(scratch, Node, tape.count);
     for (int axis = 0; axis < 3; axis++) {
-        if (derive_along(&d, &tape, axis, made, &culprit) == NODE_NONE) {
+        if (derive_along(d, &tape, axis, made, &culprit) == NODE_NONE) {
             graph->here = here;
             if (blame)
                 *blame = culprit;
@@ -332,13 +497,29 @@ Smoothness graph_derive(Graph *graph, Node root, Node partial[3], Node *blame, A
         partial[axis] = made[place];
     }
     graph->here = here;
-    return d.smoothness;
+    return d->smoothness;
+}
+
+Smoothness graph_derive(Graph *graph, Node root, Node partial[3], Node *blame, Arena *scratch)
+{
+    Derivation d = {.graph = graph, .smoothness = DERIVED_SMOOTH};
+    return derive(&d, root, partial, blame, scratch);
 }
 
 Smoothness graph_gradient(Graph *graph, Node root, Node *gradient, Node *blame, Arena *scratch)
 {
+    return graph_gradient_of(graph, root, NULL, 0, gradient, blame, scratch);
+}
+
+Smoothness graph_gradient_of(Graph *graph, Node root, const Node *still, size_t still_count,
+                             Node *gradient, Node *blame, Arena *scratch)
+{
     Node       partial[3];
-    Smoothness smoothness = graph_derive(graph, root, partial, blame, scratch);
+    bool      *marks = still_count ? arena_new_array(scratch, bool, graph->count) : NULL;
+    Derivation d     = {graph, DERIVED_SMOOTH, marks, graph->count};
+    for (size_t i = 0; i < still_count; i++)
+        marks[still[i]] = true;
+    Smoothness smoothness = derive(&d, root, partial, blame, scratch);
     if (smoothness != DERIVED_NOT)
         *gradient = graph_op(graph, OP_vec3, partial);
     return smoothness;

@@ -30,6 +30,7 @@ typedef struct Emitter {
     const char   **frame;   /* names of the globals that krs_prepare sets */
     uint32_t       next;    /* number of the next local name */
     uint32_t       globals;
+    uint32_t      *precise; /* of OP_precise: its slot in the parameter block */
     Span           last;    /* the line that was commented last */
 } Emitter;
 
@@ -114,6 +115,14 @@ static const char *fill_template(Emitter *e, const Expr *expr)
     return text.bytes;
 }
 
+static const char *slot_text(Emitter *e, uint32_t slot, GraphType type)
+{
+    static const char *const swizzle[] = {"", ".x", ".xy", ".xyz", ""};
+    Text text = {.arena = e->scratch};
+    text_format(&text, "krs_parameter[%u]%s", slot, swizzle[type]);
+    return text.bytes;
+}
+
 static const char *node_text(Emitter *e, const Expr *expr)
 {
     Text text = {.arena = e->scratch};
@@ -123,11 +132,8 @@ static const char *node_text(Emitter *e, const Expr *expr)
     case OP_NORMAL:   return "normal";
     case OP_FOOTPRINT: return "footprint";
     case OP_DIRECTION: return "direction";
-    case OP_PARAMETER: {
-        static const char *const swizzle[] = {"", ".x", ".xy", ".xyz", ""};
-        text_format(&text, "krs_parameter[%u]%s", expr->index, swizzle[expr->type]);
-        return text.bytes;
-    }
+    case OP_precise: return slot_text(e, e->precise[expr - e->graph->items], expr->type);
+    case OP_PARAMETER: return slot_text(e, expr->index, expr->type);
     case OP_COMPONENT:
         text_format(&text, "%s.%c", e->text[expr->operands[0]], "xyzw"[expr->index]);
         return text.bytes;
@@ -185,8 +191,8 @@ static void count_uses(Emitter *e, const Node *roots, size_t count, bool frame)
         e->uses[roots[i]] += 2; /* a root needs a name */
     for (Node n = (Node)g->count; n-- > 0;) {
         const Expr *expr = &g->items[n];
-        if (!e->uses[n] || (!frame && expr->time != TIME_POINT))
-            continue;
+        if (!e->uses[n] || (!frame && expr->time != TIME_POINT) || expr->op == OP_precise)
+            continue; /* what is precise, the host finds */
         for (uint32_t i = 0; i < expr->operand_count; i++)
             e->uses[expr->operands[i]] += repeats_operand(expr, expr->operands[i]) ? 2 : 1;
     }
@@ -543,42 +549,131 @@ static void emit_early_outs(Emitter *e, const EmitMarch *march, size_t component
 
 /* ---- along rays ---- */
 
-/* krs_along by one method. */
-static void emit_along_by(Emitter *e, const Node *along, const Node *roots, size_t components,
-                          const bool *flat)
+/* What a component has to itself by one method, and where it joins the others. */
+static void emit_one_along(Emitter *e, Node along, size_t component, const char *asked)
 {
+    text_format(e->out, "float krs_along_%zu(vec3 p, %s)\n{\n", component + 1, asked);
+    emit_body(e, &along, 1);
+    text_format(e->out, "    return %s;\n}\n\n", e->text[along]);
+}
+
+static void open_component(Emitter *e, const EmitMarch *march, size_t component)
+{
+    if (march->groups)
+        text_format(e->out, "#if !defined GROUP || GROUP == %u\n", march->groups[component]);
+    if (march->flat && march->flat[component])
+        text_add(e->out, "#ifndef FLATS\n");
+}
+
+static void close_component(Emitter *e, const EmitMarch *march, size_t component)
+{
+    text_add(e->out, march->flat && march->flat[component] ? "#endif\n" : "");
+    text_add(e->out, march->groups ? "#endif\n" : "");
+}
+
+/* krs_along by one method, or krs_probe. */
+static void emit_along_by(Emitter *e, AlongMethod method, const EmitMarch *march, const Node *roots,
+                          size_t components)
+{
+    const Node *along = march->along + method * components;
+    bool        probe = method == ALONG_PROBE;
     for (size_t i = 0; i < components; i++) {
         if (along[i] == roots[i * ROOT_COUNT + ROOT_DISTANCE])
             continue;
-        text_format(e->out, "float krs_along_%zu(vec3 p, vec3 direction)\n{\n", i + 1);
-        emit_body(e, &along[i], 1);
-        text_format(e->out, "    return %s;\n}\n\n", e->text[along[i]]);
+        open_component(e, march, i);
+        emit_one_along(e, along[i], i, probe ? "float footprint" : "vec3 direction");
+        close_component(e, march, i);
     }
-    text_add(e->out,
-             "// How far a ray from p along a unit direction may go before it can meet a surface: at\n"
-             "// least the distance, and much farther where polynomials tell; negative inside.\n"
-             "float krs_along(vec3 p, vec3 direction)\n{\n    float t = 1e30;\n");
+    text_add(e->out, probe
+        ? "// Whether the ball around p of this radius is empty: if more than 1, which is about by how\n"
+          "// much larger it could be.\n"
+          "float krs_probe(vec3 p, float footprint)\n{\n    float t = 1e30;\n"
+        : "// How far a ray from p along a unit direction may go before it can meet a surface: at\n"
+          "// least the distance, and much farther where polynomials or maps tell; negative inside.\n"
+          "float krs_along(vec3 p, vec3 direction)\n{\n    float t = 1e30;\n");
     for (size_t i = 0; i < components; i++) {
         bool plain = along[i] == roots[i * ROOT_COUNT + ROOT_DISTANCE];
-        bool known = flat && flat[i];
-        text_add(e->out, known ? "#ifndef FLATS\n" : "");
+        open_component(e, march, i);
         text_format(e->out, "    t = min(t, krs_%s_%zu(p%s));\n", plain ? "distance" : "along",
-                    i + 1, plain ? "" : ", direction");
-        text_add(e->out, known ? "#endif\n" : "");
+                    i + 1, plain ? "" : probe ? ", footprint" : ", direction");
+        close_component(e, march, i);
     }
-    text_add(e->out, "    return krs_cut(p, t);\n}\n");
+    text_format(e->out, "    return krs_cut(p, t)%s;\n}\n", probe ? " / footprint" : "");
 }
 
 static void emit_along(Emitter *e, const EmitMarch *march, const Node *roots, size_t components)
 {
-    bool any = false;
-    for (size_t i = 0; i < components; i++)
-        any = any || march->along[i] != roots[i * ROOT_COUNT + ROOT_DISTANCE];
-    for (AlongMethod method = 0; any && method < ALONG_COUNT; method++) {
+    for (AlongMethod method = 0; method < ALONG_COUNT; method++) {
+        bool any = false;
+        for (size_t i = 0; i < components; i++)
+            any = any || march->along[method * components + i] !=
+                             roots[i * ROOT_COUNT + ROOT_DISTANCE];
+        if (!any)
+            continue;
         text_format(e->out, "#if defined(ALONG) && ALONG == %d\n", (int)method);
-        emit_along_by(e, march->along + method * components, roots, components, march->flat);
+        emit_along_by(e, method, march, roots, components);
         text_add(e->out, "#endif\n\n");
     }
+}
+
+/* ---- gradients ---- */
+
+static bool has_gradient(const Emitter *e, const Node *roots)
+{
+    return e->graph->items[roots[0]].type == TYPE_VEC3;
+}
+
+/* Of one component: the gradient, and the distance. */
+static void emit_gradient_of(Emitter *e, size_t component, const Node *roots)
+{
+    text_format(e->out, "vec4 krs_gradient_%zu(vec3 p, float reach)\n{\n", component + 1);
+    if (has_gradient(e, roots)) {
+        emit_body(e, roots, 2);
+        text_format(e->out, "    return vec4(%s, %s);\n}\n\n", e->text[roots[0]],
+                    e->text[roots[1]]);
+        return;
+    }
+    text_format(e->out, "    vec4 found = vec4(0.0);\n"
+                        "    for (uint i = 0u; i < 7u; i++) {\n"
+                        "        vec3 way = vec3(i >> 1u == 0u, i >> 1u == 1u, i >> 1u == 2u);\n"
+                        "        way *= (i & 1u) == 0u ? reach : -reach;\n"
+                        "        float d = krs_distance_%zu(p + way);\n"
+                        "        found += i < 6u ? vec4(d * way, 0.0) : vec4(0.0, 0.0, 0.0, d);\n"
+                        "    }\n"
+                        "    return found;\n}\n\n", component + 1);
+}
+
+/* Where zones cut, their walls are the surface. */
+static void emit_zone_gradients(Emitter *e, Node zone, const Node *roots)
+{
+    if (zone != NODE_NONE) {
+        emit_body(e, roots, 2);
+        text_format(e->out, "    if (%s > nearest.w)\n        nearest = vec4(%s, %s);\n",
+                    e->text[roots[1]], e->text[roots[0]], e->text[roots[1]]);
+    }
+    text_add(e->out, "#ifdef ZONES\n"
+                     "    for (int i = 0; i < ZONES; i++) {\n"
+                     "        vec3 toward = krs_zones[i].xyz - p;\n"
+                     "        float depth = krs_zones[i].w - length(toward);\n"
+                     "        nearest = depth > nearest.w ? vec4(toward, depth) : nearest;\n"
+                     "    }\n"
+                     "#endif\n");
+}
+
+static void emit_gradients(Emitter *e, const EmitMarch *march, size_t components, Node zone)
+{
+    text_add(e->out, "#if defined(GRADIENT) && !defined(ANCHORED)\n");
+    for (size_t i = 0; i < components; i++)
+        emit_gradient_of(e, i, march->gradient + 2 * i);
+    text_add(e->out, "// The direction in which krs_distance rises fastest at a surface, a vector of any\n"
+                     "// length, by derivatives; by differences over `reach` where there are none.\n"
+                     "vec3 krs_gradient(vec3 p, float reach)\n{\n"
+                     "    vec4 nearest = vec4(0.0, 0.0, 0.0, 1e30), other;\n");
+    for (size_t i = 0; i < components; i++)
+        text_format(e->out, "    other = krs_gradient_%zu(p, reach);\n"
+                            "    nearest = other.w < nearest.w ? other : nearest;\n", i + 1);
+    emit_zone_gradients(e, zone, march->gradient + 2 * components);
+    text_add(e->out, "    return nearest.xyz;\n}\n#endif\n\n");
 }
 
 static void emit_surfaces(Emitter *e, const Node *roots, size_t components)
@@ -620,37 +715,9 @@ static void emit_surfaces(Emitter *e, const Node *roots, size_t components)
     text_add(e->out, "}\n");
 }
 
-void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
-               size_t component_count, Node zone, const EmitMarch *march, Arena *scratch, Text *out)
+static void emit_struct(Emitter *e)
 {
-    Emitter e = {.graph = graph, .sources = sources, .scratch = scratch, .out = out};
-    size_t  plain = component_count * ROOT_COUNT + (zone != NODE_NONE);
-    size_t  rays = plain + (1 + ALONG_COUNT) * component_count;
-    size_t  count = rays + (march->flat ? 2 : 0);
-    Node   *all = arena_new_array(scratch, Node, count + 1);
-    memcpy(all, roots, plain * sizeof *all);
-    memcpy(all + plain, march->guarded, component_count * sizeof *all);
-    memcpy(all + plain + component_count, march->along,
-           ALONG_COUNT * component_count * sizeof *all);
-    if (march->flat)
-        memcpy(all + rays, march->ahead, 2 * sizeof *all);
-    e.text    = arena_new_array(scratch, const char *, graph->count + 1);
-    e.frame   = arena_new_array(scratch, const char *, graph->count + 1);
-    e.nesting = arena_new_array(scratch, uint8_t, graph->count + 1);
-    e.uses    = arena_new_array(scratch, uint32_t, graph->count + 1);
-    text_add(out, "// Distance code of a scene; "
-                  "slot 0 holds the time, then one slot for each `param`.\n");
-    text_format(out,
-                "#ifdef ZONES\n"
-                "layout(std140, set = 0, binding = 0) uniform KrsParameters "
-                "{ vec4 krs_parameter[%zu + ZONES]; };\n"
-                "vec4 krs_zones[ZONES];\n"
-                "#else\n"
-                "layout(std140, set = 0, binding = 0) uniform KrsParameters "
-                "{ vec4 krs_parameter[%zu]; };\n"
-                "#endif\n\n",
-                graph->parameters.count, graph->parameters.count);
-    text_add(out, "struct KrsSurface {\n"
+    text_add(e->out, "struct KrsSurface {\n"
                   "    float distance;\n"
                   "    vec3  color;\n"
                   "    float roughness;\n"
@@ -661,16 +728,90 @@ void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
                   "    uint  instance;\n"
                   "    vec3  normal;\n"
                   "};\n\n");
+}
+
+/* Numbers what the host finds; returns how many slots that takes. */
+static uint32_t number_precise(Emitter *e, uint32_t slot)
+{
+    uint32_t first = slot;
+    for (Node n = 0; n < e->graph->count; n++)
+        if (e->graph->items[n].op == OP_precise)
+            e->precise[n] = slot++;
+    return slot - first;
+}
+
+/* The whole again for kernels far from the origin, to whom points are given from an anchor. */
+static void emit_anchored(Emitter *e, const EmitMarch *march, size_t components)
+{
+    const Node *roots = march->anchored, *ahead = roots + components * ROOT_COUNT;
+    uint32_t    slots = number_precise(e, march->precise_slot);
+    EmitMarch   plain = {.flat = march->flat, .ahead = ahead};
+    text_format(e->out,
+                "#ifdef ANCHORED // p is given from an anchor near it: graph/anchor.h\n"
+                "layout(std140, set = 0, binding = 0) uniform KrsParameters "
+                "{ vec4 krs_parameter[%u]; };\n\n",
+                march->precise_slot + slots + 1);
+    emit_struct(e);
+    emit_helpers(e, roots, components * ROOT_COUNT + 2);
+    emit_frame(e, roots, components * ROOT_COUNT + 2);
+    text_add(e->out, "float krs_cut(vec3 p, float d) { return d; }\n\n");
+    emit_distances(e, roots, components, NULL, march->flat);
+    emit_flats(e, &plain);
+    emit_surfaces(e, roots, components);
+    text_add(e->out, "#else\n");
+}
+
+void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
+               size_t component_count, Node zone, const EmitMarch *march, Arena *scratch, Text *out)
+{
+    Emitter e = {.graph = graph, .sources = sources, .scratch = scratch, .out = out};
+    size_t  plain = component_count * ROOT_COUNT + (zone != NODE_NONE);
+    size_t  rays = plain + (1 + ALONG_COUNT) * component_count;
+    size_t  flats = rays + (march->flat ? 2 : 0);
+    size_t  count = flats + (march->gradient ? 2 * (component_count + 1) : 0);
+    Node   *all = arena_new_array(scratch, Node, count + 1);
+    memcpy(all, roots, plain * sizeof *all);
+    memcpy(all + plain, march->guarded, component_count * sizeof *all);
+    memcpy(all + plain + component_count, march->along,
+           ALONG_COUNT * component_count * sizeof *all);
+    if (march->flat)
+        memcpy(all + rays, march->ahead, 2 * sizeof *all);
+    if (march->gradient)
+        memcpy(all + flats, march->gradient, 2 * (component_count + 1) * sizeof *all);
+    e.text    = arena_new_array(scratch, const char *, graph->count + 1);
+    e.frame   = arena_new_array(scratch, const char *, graph->count + 1);
+    e.nesting = arena_new_array(scratch, uint8_t, graph->count + 1);
+    e.uses    = arena_new_array(scratch, uint32_t, graph->count + 1);
+    e.precise = arena_new_array(scratch, uint32_t, graph->count + 1);
+    text_add(out, "// Distance code of a scene; "
+                  "slot 0 holds the time, then one slot for each `param`.\n");
+    if (march->anchored)
+        emit_anchored(&e, march, component_count);
+    text_format(out,
+                "#ifdef ZONES\n"
+                "layout(std140, set = 0, binding = 0) uniform KrsParameters "
+                "{ vec4 krs_parameter[%zu + ZONES]; };\n"
+                "vec4 krs_zones[ZONES];\n"
+                "#else\n"
+                "layout(std140, set = 0, binding = 0) uniform KrsParameters "
+                "{ vec4 krs_parameter[%zu]; };\n"
+                "#endif\n\n",
+                graph->parameters.count, graph->parameters.count);
+    emit_struct(&e);
     emit_helpers(&e, all, count);
     emit_frame(&e, all, count);
     emit_zones(&e, zone);
     emit_distances(&e, roots, component_count, march->groups, march->flat);
     emit_flats(&e, march);
+    emit_along(&e, march, roots, component_count);
     if (march->groups)
         text_add(out, "#ifndef GROUP\n");
     emit_early_outs(&e, march, component_count);
-    emit_along(&e, march, roots, component_count);
+    if (march->gradient)
+        emit_gradients(&e, march, component_count, zone);
     emit_surfaces(&e, roots, component_count);
     if (march->groups)
+        text_add(out, "#endif\n");
+    if (march->anchored)
         text_add(out, "#endif\n");
 }

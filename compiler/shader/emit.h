@@ -13,7 +13,12 @@ typedef struct EmitMarch {
     const Box  *boxes;
     const uint32_t *groups; /* the group of each, or NULL: all together */
     const bool *flat;       /* whether each is a plane that krs_ahead knows; NULL: none is */
+    const Node *anchored;   /* NULL, or all roots of all components and the two of `ahead` again, by
+                               graph_anchor, for kernels with #define ANCHORED */
+    uint32_t    precise_slot; /* where what the host finds for them begins in the parameter block */
     const Node *ahead;      /* with `flat`: where a ray meets one, and how steeply it falls */
+    const Node *gradient;   /* of each component and of the zones: lower_gradient's two; FLOATs where
+                               there is none; NULL: nobody wants any */
 } EmitMarch;
 
 /* Text of a program with `component_count` components; the roots of component i are

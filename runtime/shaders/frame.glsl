@@ -76,10 +76,11 @@ struct Hit {
     vec4  shading;  // the mean of the normals to light: its direction; its length
     vec4  coat;     // colour; roughness
     vec4  radiance; // found so far: emission, then light by light; metallic
-    uvec4 identity; // component, level, instance; how much of a light is visible (bits of a float)
+    uvec4 identity; // component, level, instance; how much of a light is visible, and before that
+                    // is known how steep the distance is there (bits of a float)
 };
-// So many numbers is a Hit (HIT_BYTES in blocks.h), and two of them by number (solid.glsl).
-const uint OF_HIT = 28u, OCCLUSION_OF_HIT = 11u, VISIBLE_OF_HIT = 27u;
+// So many numbers is a Hit (HIT_BYTES in blocks.h), and three of them by number (solid.glsl).
+const uint OF_HIT = 28u, OCCLUSION_OF_HIT = 11u, VISIBLE_OF_HIT = 27u, STEEPNESS_OF_HIT = 27u;
 
 struct Light {
     vec3  vector;   // towards it (unit), or its position

@@ -48,6 +48,7 @@ void main()
     hits[place.index].shading = vec4(mean / max(size, 1e-6), min(size, 1.0));
     hits[place.index].coat = coat;
     hits[place.index].radiance = vec4(surface.emission, clamp(surface.metallic, 0.0, 1.0));
+    uint last = hits[place.index].identity.w; // stays
     hits[place.index].identity =
-        uvec4(surface.component, surface.level, surface.instance, 0u);
+        uvec4(surface.component, surface.level, surface.instance, last);
 }

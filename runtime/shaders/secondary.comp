@@ -15,10 +15,12 @@
 #include "scene.glsl"
 #include "frame.glsl"
 #include "solid.glsl"
+#include "stencil.glsl"
 
 const uint NORMALS = 0u, OCCLUSION = 1u, SHADOW = 2u; // control.phase
 const uint SHADOW_STEPS = 1024u;
 const uint OCCLUSION_TAPS = 5u;
+const float LEAST_STEEPNESS = 1e-6;
 
 // A shadow that is darker than this is black.
 const float BLACK = 4e-3;
@@ -40,6 +42,8 @@ float sharpness;   // of the shadow's edge
 float before;      // the distance at the step before
 float share;       // of the true distance, at the start of a shadow ray
 vec3  sum, level;  // of the taps of a normal, with the signs of their directions and without
+float extent;      // of their directions: the sum of their squares
+float steepness;   // of the distance around the hit
 float blocked, weight; // of those of occlusion
 float visible;     // how much of the light
 float facing;      // cosine between normal and way
@@ -49,13 +53,6 @@ uint  taps, limit; // so far, and at most
 uint  lost;        // of this lane's shadow rays
 
 void begin_group() { lost = 0u; }
-
-// The i-th corner of an octahedron: taps along the axes have an error of second order only.
-vec3 octahedron(uint i)
-{
-    float side = (i & 1u) == 0u ? 1.0 : -1.0;
-    return side * vec3(i >> 1u == 0u, i >> 1u == 1u, i >> 1u == 2u);
-}
 
 // A number in [0, 1) for a pixel, one of many that differ (PCG, O'Neill 2014).
 float random(uvec2 pixel, uint which)
@@ -116,6 +113,7 @@ void begin_item(uint number, bool saved)
     start = place.position;
     taps = 0u;
     sum = level = vec3(0.0);
+    extent = 0.0;
     before = INFINITE;
     blocked = 0.0;
     weight = 0.33;
@@ -125,13 +123,23 @@ void begin_item(uint number, bool saved)
     } else if (control.phase == OCCLUSION) {
         way = normal;
         t = 0.0625 * frame.occlusion_reach;
+        steepness = hit_numbers[OF_HIT * place.index + STEEPNESS_OF_HIT];
         limit = OCCLUSION_TAPS;
     } else {
         // Differences over a pixel or so: finer detail would only be noise.  Below 3e-4 of the
         // coordinates rounding would be the noise.
-        way = octahedron(0u);
+        way = stencil(0u);
         t = max(frame.blur * place.width, 3e-4 * largest(place.position) + place.rounding);
-        limit = 6u;
+        limit = TAPS;
+#if defined(GRADIENT) && !defined(ANCHORED)
+        // Differences are for where derivatives are no numbers.
+        vec3 gradient = krs_gradient(place.position, t);
+        if (dot(gradient, gradient) > 0.0 && dot(gradient, gradient) < INFINITE) {
+            sum = place.side * gradient;
+            extent = 3.0 / t; // its own unit
+            limit = 0u;
+        }
+#endif
     }
 }
 
@@ -177,14 +185,27 @@ void take_distance(float distance)
         take_shadow(distance);
     } else if (control.phase == OCCLUSION) {
         // How much less room there is than an open surface would leave, at five scales.
-        blocked += weight * clamp(1.0 - distance / t, 0.0, 1.0);
+        blocked += weight * clamp(1.0 - distance / (steepness * t), 0.0, 1.0);
         weight *= 0.75;
         t *= 2.0;
     } else {
+#if STENCIL == 1
+        sum += distance * (taps == 1u ? vec3(-1.0) : way);
+#else
         sum += distance * way;
         level += distance * abs(way);
-        way = octahedron(taps);
+#endif
+        extent += dot(way, way);
+        way = stencil(taps);
     }
+}
+
+// How steep the distance is, 1 unless it is a bound.  In a hollow edge the differences of its two
+// sides cancel in part, and the rest is in the level, below 0; on a convex one they may.
+float find_steepness()
+{
+    float found = length(vec2(length(sum), length(min(level, 0.0)))) / (extent * t / 3.0);
+    return found > LEAST_STEEPNESS ? min(found, 1.0) : LEAST_STEEPNESS;
 }
 
 void end_item()
@@ -198,14 +219,14 @@ void end_item()
         // Light finds its way in by reflection.
         hit_numbers[OF_HIT * place.index + OCCLUSION_OF_HIT] = exp2(-2.5 * blocked);
     } else {
-        float steepness = length(sum);
-        vec3  normal =
-            steepness > 0.0 && steepness < INFINITE ? sum / steepness : -place.direction;
+        float size = length(sum);
+        vec3  normal = size > 0.0 && size < INFINITE ? sum / size : -place.direction;
         // Where all is flat, opposite taps cancel; on an edge, or where things are smaller than
         // the taps are apart, they do not.
-        float uneven = length(vec2(steepness, length(level)));
-        float even = uneven > 0.0 && uneven < INFINITE ? steepness / uneven : 1.0;
+        float uneven = length(vec2(size, length(level)));
+        float even = uneven > 0.0 && uneven < INFINITE ? size / uneven : 1.0;
         hits[place.index].facing = vec4(normal, even);
+        hit_numbers[OF_HIT * place.index + STEEPNESS_OF_HIT] = find_steepness();
     }
 }
 

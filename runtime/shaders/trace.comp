@@ -40,6 +40,9 @@ const float MOST_OPEN = 0.015625;
 // Relaxation: how far beyond the distance; how fast the mean slope is learned.
 const float RELAXATION = 1.2;
 const float LEARNING = 0.3;
+// Balls that are tried (PROBE): how large the next may be, of what is expected.
+const uint  BINARY = 1u;
+const float CAUTION = 0.9;
 // A beam ends where its ball is hardly wider than the tile.
 const float WIDER = 1.05;
 
@@ -143,6 +146,12 @@ void begin_march(uint index, float start, bool is_ray)
     march.side = march.t > 0.0 || !is_ray ? 1.0 : 0.0;
     march.steps = 0u;
     march.fate = march.t <= end ? MARCHING : MISS;
+#ifdef PROBE
+    // Beams end where there is no room for a tile.
+    march.gap = start > 0.0 ? 8.0 * (pixel_base + pixel_slope * start)
+                            : 0.05 * (end - start);
+    march.gap = max(march.gap, ROUNDING * (rounding + start));
+#endif
 }
 
 void begin_item(uint number, bool saved)
@@ -199,7 +208,9 @@ bool item_wants_more()
 // What is far for its size need not be looked at, where a branch saves work.
 float item_distance(vec3 place)
 {
-#ifdef ALONG
+#ifdef PROBE
+    return krs_probe(place, march.gap);
+#elif defined(ALONG)
     return krs_along(place, direction);
 #elif defined(EARLY_OUTS) && !defined(GROUP)
     return krs_distance_lod(place, 0.0);
@@ -208,15 +219,17 @@ float item_distance(vec3 place)
 #endif
 }
 
+// With PROBE the middle of a ball.
 vec3 item_place() { return origin + (march.t + march.gap) * direction; }
 
 // The surface is crossed between t, where there is room, and `at`, where there is none, within
-// the permitted error: looks there once more, unless what is between is short anyway.
+// the permitted error: looks there once more, unless what is between is short anyway.  It cannot
+// be crossed within the room; where steps are exact, that says more than the chord.
 void close_in(float at, float room)
 {
     float along = march.room > room ? clamp(march.room / (march.room - room), 0.0, 2.0) : 0.0;
     bool  accurate = march.gap - march.room <= 2.0 * open_at(at) || march.fate == CLOSING;
-    march.gap *= along;
+    march.gap = max(march.gap * along, march.room);
     march.t += accurate ? march.gap : 0.0;
     march.fate = accurate ? HIT : CLOSING;
 }
@@ -231,6 +244,45 @@ float find_gap(float room, float open)
     return room + open;
 }
 
+#ifdef PROBE
+// The ball that was tried, of radius gap, touches t, and its middle is behind it by as much; it is
+// empty if it could be more than 1 times as large.  A ray hits where one is not that is as short as
+// the permitted error.
+void take_distance(float larger)
+{
+    float radius = march.gap, empty = float(larger > 1.0);
+    float at = march.t + radius, pixel = pixel_base + pixel_slope * at;
+    float room = radius * larger; // at the middle, about
+    march.side = 1.0;
+    march.steps++;
+    if (room * (pixel_base + pixel_slope * march.nearest_t) < march.nearest * pixel) {
+        march.nearest = room;
+        march.nearest_t = at;
+    }
+    float least = 0.5 * open_at(at);
+    if (empty == 0.0 && radius <= 1.01 * least) {
+        march.t = at;
+        march.fate = HIT;
+        return;
+    }
+    if (PROBE == BINARY) {
+        march.gap = radius * (empty > 0.0 ? 2.0 : 0.5);
+    } else {
+        // The room at the middle of the next ball, room + slope * way, is to be its radius, or a
+        // little more.
+        float slope = march.room > 0.0 ? (room - march.room) / (at - march.slope) : -1.0;
+        slope = clamp(slope, -1.0, 0.9);
+        march.gap = CAUTION * (room + (2.0 * empty - 1.0) * slope * radius) / (1.0 - CAUTION * slope);
+        march.gap = empty > 0.0 ? clamp(march.gap, 0.1 * radius, 8.0 * radius)
+                                : clamp(march.gap, 0.1 * radius, 0.7 * radius);
+        march.room = room;
+        march.slope = at;
+    }
+    march.gap = max(march.gap, least);
+    march.t += 2.0 * empty * radius;
+    march.fate = march.t > end ? MISS : MARCHING;
+}
+#else
 void take_distance(float distance)
 {
     float at = march.t + march.gap;
@@ -265,6 +317,7 @@ void take_distance(float distance)
         march.slope = -1.0;
     }
 }
+#endif
 
 // A ray that has run out of steps ends where it came closest to a surface, if that was within
 // its pixel; a beam ends anywhere, since everything before is empty.

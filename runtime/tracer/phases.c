@@ -228,8 +228,14 @@ static bool march_all(Job *job, WorkBlock *work)
     Kernel     *whole = job->trace;
     bool        good = (!has_beams(job) && job->part_count == 0) || clear_fates(job);
     const KrsProgram *program = job->rendering->program;
-    if (job->rest)
-        view_place_box(&job->view, program->rest_low, program->rest_high, frame);
+    if (job->rest) {
+        double low[3], high[3];
+        for (int i = 0; i < 3; i++) {
+            low[i]  = program->rest_low[i] - job->anchor[i];
+            high[i] = program->rest_high[i] - job->anchor[i];
+        }
+        view_place_box(&job->view, low, high, frame);
+    }
     if (job->part_count == 0)
         good = good && march(job, work);
     job->share /= job->part_count ? job->part_count : 1;

@@ -18,6 +18,7 @@ typedef struct Job {
     KrsRenderOptions options; /* with nothing left to be defaulted */
     KrsView          view;
     FrameBlock       frame;
+    double           anchor[3]; /* that points are given from on the device; 0: they are not */
     Kernel          *trace, *beams, *secondary, *material;
     MarchPart        parts[KRS_MOST_GROUPS]; /* the nearest first */
     bool             rest;                   /* planes are not marched, but known (FLATS) */

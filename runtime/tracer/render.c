@@ -51,8 +51,10 @@ static bool settle_options(Job *job)
     o->most_steps = first_of(o->most_steps, 0, MOST_STEPS);
     if ((unsigned)o->trace >= KRS_TRACE_COUNT || (unsigned)o->schedule >= KRS_SCHEDULE_COUNT ||
         (unsigned)o->shadows >= KRS_SHADOWS_COUNT ||
-        (unsigned)o->components >= KRS_COMPONENTS_COUNT)
-        return refuse(job, "there is no such method, schedule or kind of shadow");
+        (unsigned)o->components >= KRS_COMPONENTS_COUNT || (unsigned)o->normals >= KRS_NORMALS_COUNT)
+        return refuse(job, "there is no such method, schedule, stencil or kind of shadow");
+    if (o->normals == KRS_NORMALS_ANALYTIC && !job->rendering->program->gradients)
+        return refuse(job, "analytic normals need a scene that was compiled with `gradients`");
     rendering_choose(job->rendering, &o->trace, &o->schedule);
     if (o->schedule == KRS_SCHEDULE_REFILL && !job->gpu->votes)
         return refuse(job, "the device has no votes among lanes, which `refill` needs");
@@ -81,7 +83,27 @@ static bool settle_options(Job *job)
    is filtered.  Several rays of a pixel show it by themselves.  bench/minify found the number. */
 static float normal_reach(const KrsRenderOptions *options)
 {
-    return options->no_filter || options->samples > 1 ? 0.5f : 0.7f;
+    bool one_sided = options->normals == KRS_NORMALS_FORWARD ||
+                     options->normals == KRS_NORMALS_ANALYTIC;
+    return options->no_filter || options->samples > 1 || one_sided ? 0.5f : 0.7f;
+}
+
+/* So far from the origin single precision may show. */
+#define FAR_OUT 500
+
+/* An eye that is far out is an anchor: points on the device are then what is seen from there. */
+static void choose_anchor(Job *job, const KrsFrame *frame)
+{
+    float         zones[KRS_MOST_ZONES][4];
+    const double *eye = job->view.camera.eye;
+    bool          far = fmax(fabs(eye[0]), fmax(fabs(eye[1]), fabs(eye[2]))) > FAR_OUT;
+    if (far && job->rendering->program->anchored && krs_frame_zones(frame, zones) == 0)
+        memcpy(job->anchor, eye, sizeof job->anchor);
+}
+
+static bool is_anchored(const Job *job)
+{
+    return job->anchor[0] != 0 || job->anchor[1] != 0 || job->anchor[2] != 0;
 }
 
 /* Reads the frame: camera, lights, parameters. */
@@ -91,9 +113,17 @@ static bool settle_frame(Job *job, KrsFrame *frame)
         return refuse(job, "the scene has no such camera");
     if (!settle_options(job))
         return false;
+    choose_anchor(job, frame);
     const KrsProgram *program = job->rendering->program;
-    if (!view_prepare(&job->view, program->low, program->high, job->options.width,
-                      job->options.height, &job->frame))
+    KrsView           seen = job->view;
+    double            low[3], high[3];
+    for (int i = 0; i < 3; i++) {
+        seen.camera.eye[i] -= job->anchor[i];
+        seen.camera.target[i] -= job->anchor[i];
+        low[i] = program->low[i] - job->anchor[i];
+        high[i] = program->high[i] - job->anchor[i];
+    }
+    if (!view_prepare(&seen, low, high, job->options.width, job->options.height, &job->frame))
         return refuse(job, "the camera sees nothing: its eye is at its target, or its angle or"
                            " height is not one");
     job->frame.error = (float)job->options.error;
@@ -101,7 +131,9 @@ static bool settle_frame(Job *job, KrsFrame *frame)
     job->frame.blur = normal_reach(&job->options);
     memcpy(job->rendering->frame.bytes, &job->frame, sizeof job->frame);
     return rendering_set_parameters(job->rendering, frame) &&
-           rendering_set_lights(job->rendering, job->view.lights, job->view.light_count);
+           (!is_anchored(job) || rendering_set_anchor(job->rendering, frame, job->anchor)) &&
+           rendering_set_lights(job->rendering, job->view.lights, job->view.light_count,
+                                job->anchor);
 }
 
 /* ---- The buffers of a band ---- */
@@ -206,6 +238,17 @@ static bool fetch(Job *job, uint64_t pixels)
     return gpu_finish(job->gpu, &ms);
 }
 
+/* Back from the anchor. */
+static void place_positions(Job *job, const PixelBlock *pixels, size_t first, size_t count)
+{
+    float *position = job->picture->position;
+    for (size_t k = 0; position && is_anchored(job) && k < count; k++)
+        for (int i = 0; pixels[k].component && i < 3; i++) {
+            float *number = &position[3 * (first + k) + i];
+            *number = (float)(*number + job->anchor[i]);
+        }
+}
+
 /* Takes the rows of a band over, as far as they are in the crop. */
 static void take_band(Job *job, uint32_t from, uint32_t rows)
 {
@@ -214,8 +257,10 @@ static void take_band(Job *job, uint32_t from, uint32_t rows)
         if (y < crop->y || y >= crop->y + crop->height)
             continue;
         size_t row = (size_t)(y - cover->y - from) * cover->width + (crop->x - cover->x);
-        picture_take(job->picture, (PixelBlock *)job->rendering->band.fetched.bytes + row,
-                     (size_t)(y - crop->y) * crop->width, crop->width, job->options.samples);
+        const PixelBlock *pixels = (PixelBlock *)job->rendering->band.fetched.bytes + row;
+        size_t            first = (size_t)(y - crop->y) * crop->width;
+        picture_take(job->picture, pixels, first, crop->width, job->options.samples);
+        place_positions(job, pixels, first, crop->width);
     }
 }
 
@@ -276,6 +321,9 @@ static KrsWindow whole_tiles(const KrsRenderOptions *options)
 static bool find_marches(Job *job, KrsFrame *frame)
 {
     const KrsRenderOptions *options = &job->options;
+    /* Balls that are tried know of no inside. */
+    if (job->options.trace >= KRS_TRACE_BINARY && !begins_outside(job, frame))
+        job->options.trace = KRS_TRACE_PLAIN;
     if (!apart_prepare(job, frame))
         return false;
     if (job->part_count > 0)
@@ -298,7 +346,8 @@ static bool render(Job *job, KrsFrame *frame)
         return false;
     if (!find_marches(job, frame))
         return false;
-    job->secondary = rendering_secondary(job->rendering, job->options.schedule);
+    job->secondary = rendering_secondary(job->rendering, job->options.schedule,
+                                         job->options.normals);
     job->material = rendering_material(job->rendering);
     if (!job->secondary || !job->material || !wait_for_kernels(job))
         return false;

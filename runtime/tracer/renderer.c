@@ -131,7 +131,8 @@ failed:
 static bool buffers_create(KrsRendering *rendering)
 {
     Gpu     *gpu = &rendering->renderer->gpu;
-    uint32_t slots = rendering->program->parameter_slots + KRS_MOST_ZONES;
+    uint32_t slots = rendering->program->parameter_slots + KRS_MOST_ZONES +
+                     (uint32_t)rendering->program->precise_slots + 1;
     if (slots > gpu->properties.limits.maxUniformBufferRange / (4 * sizeof(float))) {
         gpu_refuse(gpu, KRS_NO_DEVICE, "the device has no room for the scene's %u parameters",
                    rendering->program->parameter_slots);
@@ -183,29 +184,40 @@ bool rendering_marches_apart(const KrsRendering *rendering, KrsComponents compon
                       !rendering->renderer->early_outs;
     bool holes = rendering->program->flats && !rendering_knows_flats(rendering);
     return rendering->program->group_count > 0 && !rendering->program->along && !holes &&
+           !rendering->in_use->anchored &&
            (components == KRS_COMPONENTS_DEFAULT ? by_default : components == KRS_COMPONENTS_APART);
 }
 
 typedef struct Variant {
-    char defines[128];
+    char defines[160];
 } Variant;
 
 /* By the numbers of AlongMethod. */
-static const char *const along_names[] = {"#define ALONG 0\n", "#define ALONG 1\n",
-                                          "#define ALONG 2\n"};
+static const char *const along_names[KRS_TRACE_COUNT] = {
+    [KRS_TRACE_EXACT]       = "#define ALONG 0\n",
+    [KRS_TRACE_TAYLOR]      = "#define ALONG 1\n",
+    [KRS_TRACE_ROOT_FREE]   = "#define ALONG 2\n",
+    [KRS_TRACE_DIRECTIONAL] = "#define ALONG 3\n",
+    [KRS_TRACE_BINARY]      = "#define ALONG 4\n#define PROBE 1\n",
+    [KRS_TRACE_PREDICTED]   = "#define ALONG 4\n#define PROBE 2\n",
+};
 
 static Variant name_variant(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule)
 {
     uint32_t zones = rendering->in_use->zones;
+    bool     anchored = rendering->in_use->anchored; /* has the distance and the surface alone */
     bool     by_ray = trace >= KRS_TRACE_EXACT;
-    bool     along = by_ray && rendering->program->along;
+    bool     along = by_ray && !anchored && (trace >= KRS_TRACE_DIRECTIONAL ? rendering->program->inverts
+                                                               : rendering->program->along);
     Variant  variant;
     int      length = snprintf(variant.defines, sizeof variant.defines,
-                               "#define TRACE %du\n#define REFILL %d\n%s%s",
+                               "#define TRACE %du\n#define REFILL %d\n%s%s%s",
                                (int)(by_ray ? KRS_TRACE_PLAIN : trace),
                                schedule == KRS_SCHEDULE_REFILL,
-                               rendering->renderer->early_outs ? "#define EARLY_OUTS\n" : "",
-                               along ? along_names[trace - KRS_TRACE_EXACT] : "");
+                               anchored ? "#define ANCHORED\n" : "",
+                               rendering->renderer->early_outs && !anchored
+                                   ? "#define EARLY_OUTS\n" : "",
+                               along ? along_names[trace] : "");
     if (zones > 0)
         snprintf(variant.defines + length, sizeof variant.defines - (size_t)length,
                  "#define ZONES %u\n", zones);
@@ -258,11 +270,25 @@ Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule sch
                            group);
 }
 
-Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule)
+/* The octahedron is what the kernel has unless it is told otherwise. */
+static bool is_default(KrsNormals normals)
+{
+    return normals == KRS_NORMALS_DEFAULT || normals == KRS_NORMALS_OCTAHEDRON;
+}
+
+Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, KrsNormals normals)
 {
     schedule = schedule_of_kernel(schedule);
-    return find_variant(rendering, &rendering->in_use->secondary[schedule], "secondary.comp",
-                        KRS_TRACE_PLAIN, schedule);
+    normals  = is_default(normals) ? KRS_NORMALS_DEFAULT : normals;
+    Variant variant = name_variant(rendering, KRS_TRACE_PLAIN, schedule);
+    size_t  length  = strlen(variant.defines);
+    if (normals == KRS_NORMALS_ANALYTIC)
+        snprintf(variant.defines + length, sizeof variant.defines - length, "#define GRADIENT\n");
+    else if (normals != KRS_NORMALS_DEFAULT)
+        snprintf(variant.defines + length, sizeof variant.defines - length, "#define STENCIL %d\n",
+                 (int)normals);
+    return find_kernel(rendering, &rendering->in_use->secondary[normals][schedule],
+                       "secondary.comp", variant);
 }
 
 Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule)
@@ -301,7 +327,7 @@ static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
     Variant       query = name_variant(rendering, KRS_TRACE_AUTO, schedule);
     Variant       simple = name_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     KernelRequest pictures[4 + KRS_MOST_GROUPS] = {
-        {&to->secondary[schedule], {"secondary.comp", scene, plain.defines}},
+        {&to->secondary[KRS_NORMALS_DEFAULT][schedule], {"secondary.comp", scene, plain.defines}},
         {&to->material, {"material.comp", scene, simple.defines}},
         {&to->trace[KRS_TRACE_PLAIN][schedule][whole], {"trace.comp", scene, beams.defines}},
     };
@@ -330,7 +356,8 @@ static void kernels_destroy(Gpu *gpu, SceneKernels *kernels)
     kernel_destroy(gpu, &kernels->sample);
     for (int schedule = 0; schedule < KRS_SCHEDULE_COUNT; schedule++) {
         kernel_destroy(gpu, &kernels->query[schedule]);
-        kernel_destroy(gpu, &kernels->secondary[schedule]);
+        for (int normals = 0; normals < KRS_NORMALS_COUNT; normals++)
+            kernel_destroy(gpu, &kernels->secondary[normals][schedule]);
         for (int trace = 0; trace < KRS_TRACE_COUNT; trace++)
             for (uint32_t group = 0; group <= GROUP_REST; group++)
                 kernel_destroy(gpu, &kernels->trace[trace][schedule][group]);
@@ -385,11 +412,13 @@ void krs_rendering_free(KrsRendering *rendering)
         buffer_destroy(gpu, buffers[i]);
     kernels_destroy(gpu, &rendering->kernels);
     kernels_destroy(gpu, &rendering->zoned);
+    kernels_destroy(gpu, &rendering->anchored);
     vkDestroyDescriptorPool(gpu->device, rendering->pool, NULL);
     gpu_release(gpu, rendering);
 }
 
-bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count)
+bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count,
+                          const double anchor[3])
 {
     Gpu         *gpu = &rendering->renderer->gpu;
     Buffer      *buffer = &rendering->lights;
@@ -407,7 +436,7 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
                          (light->shadow ? LIGHT_CASTS_SHADOWS : 0);
         blocks[i].softness = (float)light->softness;
         for (int k = 0; k < 3; k++) {
-            blocks[i].vector[k] = (float)light->vector[k];
+            blocks[i].vector[k] = (float)(light->vector[k] - (light->positional ? anchor[k] : 0));
             blocks[i].color[k] = (float)light->color[k];
         }
     }
@@ -446,6 +475,23 @@ bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame)
     memcpy(rendering->parameters.bytes, block, (slots + KRS_MOST_ZONES) * sizeof *block);
     gpu_release(gpu, block);
     return choose_zones(rendering, zones);
+}
+
+bool rendering_set_anchor(KrsRendering *rendering, KrsFrame *frame, const double anchor[3])
+{
+    Gpu   *gpu   = &rendering->renderer->gpu;
+    size_t first = rendering->program->parameter_slots + KRS_MOST_ZONES;
+    size_t slots = rendering->program->precise_slots;
+    float (*block)[4] = gpu_alloc(gpu, slots + 1, sizeof *block, "set the scene's anchor");
+    if (!block)
+        return false;
+    krs_frame_anchor(frame, anchor, block);
+    memcpy((char *)rendering->parameters.bytes + first * sizeof *block, block,
+           slots * sizeof *block);
+    gpu_release(gpu, block);
+    rendering->in_use           = &rendering->anchored;
+    rendering->in_use->anchored = true;
+    return true;
 }
 
 uint32_t rendering_spread(const KrsRendering *rendering, uint32_t count)

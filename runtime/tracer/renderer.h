@@ -36,9 +36,10 @@ enum { GROUP_REST = 1 + KRS_MOST_GROUPS };
 /* The kernels with the scene in them, each compiled when it is first needed. */
 typedef struct SceneKernels {
     uint32_t zones; /* of the caller, that they have room for */
+    bool     anchored; /* points are given from an anchor */
     Kernel   material, sample;
     Kernel   trace[KRS_TRACE_COUNT][KRS_SCHEDULE_COUNT][2 + KRS_MOST_GROUPS]; /* [0]: of all */
-    Kernel   secondary[KRS_SCHEDULE_COUNT];
+    Kernel   secondary[KRS_NORMALS_COUNT][KRS_SCHEDULE_COUNT];
     Kernel   query[KRS_SCHEDULE_COUNT];
 } SceneKernels;
 
@@ -47,6 +48,7 @@ struct KrsRendering {
     const KrsScene   *scene;
     const KrsProgram *program;
     SceneKernels      kernels, zoned; /* without and with zones of the caller */
+    SceneKernels      anchored;       /* for eyes that are far from the origin */
     SceneKernels     *in_use;         /* those for the zones of the last frame */
     KrsPurpose        purpose;
     double            spirv_ms, pipeline_ms;
@@ -71,7 +73,7 @@ Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule sch
                         uint32_t group);
 /* Whether there is a march of GROUP_REST. */
 bool rendering_knows_flats(const KrsRendering *rendering);
-Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule);
+Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, KrsNormals normals);
 Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule);
 /* Likewise. */
 Kernel *rendering_material(KrsRendering *rendering);
@@ -83,11 +85,14 @@ void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedul
 bool rendering_marches_apart(const KrsRendering *rendering, KrsComponents components);
 /* Copies the frame's parameters and zones to the device, and chooses the kernels for them. */
 bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame);
+/* After it: gives points from an anchor from now on, and chooses the kernels for that. */
+bool rendering_set_anchor(KrsRendering *rendering, KrsFrame *frame, const double anchor[3]);
 /* A step through [0, count) that visits all and goes far each time, so that neighbours, which cost
    alike, are spread over a device that deals out contiguous shares. */
 uint32_t rendering_spread(const KrsRendering *rendering, uint32_t count);
-/* Copies the lights of a frame to the device. */
-bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count);
+/* Copies the lights of a frame to the device, as seen from an anchor. */
+bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count,
+                          const double anchor[3]);
 /* Points a binding of set 1 at a buffer. */
 void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding,
                     const Buffer *buffer);

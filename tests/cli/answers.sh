@@ -2,7 +2,7 @@
 # answers.sh: what query, info, devices, dump, explain and validate answer.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 26
+plan 31
 
 ask() { # question, options...
     question=$1
@@ -90,9 +90,11 @@ said 2 "record 2 of standard input" "a record that is cut off"
 run info ball.krs
 [ "$status" -eq 0 ] && grep -q 'ball' out && grep -q '^param radius = 1 in \[0.5, 1.5\]$' out
 result $? "info as text"
+grep -q 'distances, by shape' out && grep -q '  sphere  ball.krs:[0-9]*:[0-9]*  exact, by claim; box ' out
+result $? "info has the rule of every shape's distance"
 run info --json ball.krs
 [ "$status" -eq 0 ] && is_json <out && grep -q '"slope": ' out &&
-    grep -q '"flops_per_evaluation": ' out
+    grep -q '"flops_per_evaluation": ' out && grep -q '"rule": "exact, by claim"' out
 result $? "info as JSON"
 run devices --json
 [ "$status" -eq 0 ] && is_json <out && grep -q '"preferred": true' out
@@ -112,5 +114,30 @@ run explain
 [ "$status" -eq 0 ] && [ "$(grep -c '^[EW][0-9][0-9][0-9][0-9]  ' out)" -eq "$(wc -l <out)" ]
 result $? "all diagnostics are listed"
 run validate --points 4000 ball.krs
-[ "$status" -eq 0 ] && grep -q 'balls are empty; .* agrees' out
+[ "$status" -eq 0 ] && grep -q 'balls are empty; .* agrees' out &&
+    grep -q 'no slope above [01.9]* of 1$' out
 result $? "a true scene is not refuted"
+run validate --seconds 0.1 --seed 7 --no-device --points 1 ball.krs
+first=$(cat out)
+run validate --seconds 0.1 --seed 7 --no-device --points 1 ball.krs
+[ "$status" -eq 0 ] && [ "$first" = "$(cat out)" ]
+result $? "a search is the same each time"
+cat >dented.krs <<'EOF'
+param deep = 0 in [0, 1];
+shape dented() {
+    distance: if length(p - [0.6, 0.48, 0.7]) < 0.004 * deep then 1 else length(p) - 1,
+    exact: true
+}
+show dented();
+EOF
+run validate --no-device --points 1 dented.krs
+[ "$status" -eq 1 ] && grep -q '^dented.krs: refuted: ' out && grep -q 'error.E0411.*dented' err &&
+    grep -q -- '--> dented.krs:6:6' err && grep -q 'deep = ' err
+result $? "what is wrong for some values of a parameter is refuted, and the shape is blamed"
+run validate --no-device --points 1 --set deep=0 dented.krs
+[ "$status" -eq 0 ]
+result $? "a parameter that is set stays as it is"
+echo 'let a = 1;' >nothing.krs
+run validate --no-device --points 1 nothing.krs
+[ "$status" -eq 0 ]
+result $? "a scene that shows nothing is not refuted"

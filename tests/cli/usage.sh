@@ -81,7 +81,7 @@ run --version
     grep -q 'glslang [0-9]' out
 result $? "krs --version names the libraries"
 incomplete=""
-for command in render compile validate query info devices check dump explain; do
+for command in render compile validate query info devices check dump import explain; do
     run "$command" --help
     [ "$status" -eq 0 ] && [ "$(sed -n 3p out | cut -c1-8)" = "    krs " ] ||
         incomplete="$incomplete $command"

@@ -171,6 +171,89 @@ static void vector_rules_derive(void **state)
     }
 }
 
+/* Blends, at points where both count, on steps and cuts, and where the width is nothing. */
+static void blends_derive(void **state)
+{
+    static const struct { Op op; const char *name; } rows[] = {
+        {OP_smin_quadratic, "quadratic"}, {OP_smin_cubic, "cubic"},
+        {OP_smin_exponential, "exponential"}, {OP_smin_circular, "circular"},
+        {OP_smin_chamfer, "chamfer"}, {OP_blend_weight, "weight"},
+    };
+    Bench *b = *state;
+    Graph *g = b->graph;
+    Node   o[3], steps = graph_number(g, 3);
+    mixed_operands(b, o);
+    for (double width = 0; width < 3; width += 0.8) {
+        Node k = graph_number(g, width);
+        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+            Node root = graph_op3(g, rows[i].op, o[0], o[1], k);
+            assert_true(check_derivatives(b, rows[i].name, root) > 150);
+        }
+        Node stairs = graph_op4(g, OP_smin_stairs, o[0], o[1], k, steps);
+        assert_true(check_derivatives(b, "stairs", stairs) > 150);
+    }
+}
+
+static void sectors_derive(void **state)
+{
+    Bench *b = *state;
+    Graph *g = b->graph;
+    Node   o[3];
+    mixed_operands(b, o);
+    Node q = graph_op(g, OP_vec3, o);
+    for (double count = 0; count < 9; count += 4) {
+        Node cell = graph_op2(g, OP_cell_polar, q, graph_number(g, count));
+        for (uint32_t i = 0; i < 3; i++)
+            assert_true(check_derivatives(b, "sector", graph_component(g, cell, i)) > 150);
+    }
+}
+
+static void assert_near(double value, double expected, double slack)
+{
+    if (!(fabs(value - expected) <= slack))
+        fail_msg("%.9g instead of %.9g", value, expected);
+}
+
+/* Where lengths are 0, and where the lesser of two is chosen, no 0 / 0 comes out. */
+static void derivatives_of_boxes_are_numbers(void **state)
+{
+    Bench *b = *state;
+    Graph *g = b->graph;
+    Node   partial[3], zero = graph_number(g, 0);
+    Node   size    = graph_op1(g, OP_abs, b->point);
+    Node   excess  = graph_op2(g, OP_sub, size, graph_vec3(g, 1, 2, 3));
+    Node   outside = graph_op1(g, OP_length, graph_op2(g, OP_max, excess, zero));
+    Node   across  = graph_component(g, excess, 0), up = graph_component(g, excess, 1);
+    Node   most    = graph_op2(g, OP_max, across, up);
+    most           = graph_op2(g, OP_max, most, graph_component(g, excess, 2));
+    Node   box     = graph_op2(g, OP_add, outside, graph_op2(g, OP_min, most, zero));
+    assert_int_equal(graph_derive(g, box, partial, NULL, &b->arena), DERIVED_BETWEEN);
+    const double inside[3] = {0.9, 0.5, -0.3}, face[3] = {1, 0.5, -0.3}, out[3] = {4, 6, 3.5};
+    for (int i = 0; i < 3; i++) {
+        assert_near(value_at(b, partial[i], inside), i == 0, 1e-12);
+        assert_true(isfinite(value_at(b, partial[i], face)));
+        assert_near(value_at(b, partial[i], out), (double[]){3, 4, 0.5}[i] / sqrt(25.25), 1e-12);
+    }
+}
+
+/* f / |grad f| with the divisor still: on the surface the gradient is a unit vector. */
+static void what_is_still_has_no_derivative(void **state)
+{
+    Bench *b = *state;
+    Graph *g = b->graph;
+    Node   gradient, of_share;
+    Node   f = graph_op2(g, OP_sub, graph_op2(g, OP_mul, b->x, b->y), b->z);
+    assert_int_equal(graph_gradient(g, f, &gradient, NULL, &b->arena), DERIVED_SMOOTH);
+    Node steep = graph_op1(g, OP_length, gradient);
+    Node share = graph_op2(g, OP_div, f, steep);
+    assert_int_equal(graph_gradient_of(g, share, &steep, 1, &of_share, NULL, &b->arena),
+                     DERIVED_SMOOTH);
+    const double point[3] = {1.3, -0.4, 0.9}, size = sqrt(0.16 + 1.69 + 1);
+    for (uint32_t i = 0; i < 3; i++)
+        assert_near(value_at(b, graph_component(g, of_share, i), point),
+                           (double[]){-0.4, 1.3, -1}[i] / size, 1e-12);
+}
+
 static void smooth_ones_derive_twice(void **state)
 {
     Bench *b = *state;
@@ -192,10 +275,12 @@ static void kinks_and_gaps_are_told(void **state)
     Node   partial[3], blame = NODE_NONE;
     Node   kink = graph_op1(g, OP_abs, b->x);
     assert_int_equal(graph_derive(g, kink, partial, NULL, &b->arena), DERIVED_BETWEEN);
-    Node smin = graph_op3(g, OP_smin_cubic, b->x, b->y, graph_number(g, 0.2));
-    Node sum  = graph_op2(g, OP_add, smin, b->z);
+    Node hills = graph_op1(g, OP_noise3, b->point);
+    Node sum   = graph_op2(g, OP_add, hills, b->z);
     assert_int_equal(graph_derive(g, sum, partial, &blame, &b->arena), DERIVED_NOT);
-    assert_int_equal(blame, smin);
+    assert_int_equal(blame, hills);
+    Node width = graph_op3(g, OP_smin_cubic, b->x, b->y, b->z);
+    assert_int_equal(graph_derive(g, width, partial, &blame, &b->arena), DERIVED_NOT);
     Node constant = graph_number(g, 4);
     assert_int_equal(graph_derive(g, constant, partial, NULL, &b->arena), DERIVED_SMOOTH);
     assert_int_equal(partial[0], graph_number(g, 0));
@@ -206,6 +291,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(componentwise_rows_derive, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(vector_rules_derive, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(blends_derive, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(sectors_derive, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(derivatives_of_boxes_are_numbers, bench_start, bench_stop),
+        cmocka_unit_test_setup_teardown(what_is_still_has_no_derivative, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(smooth_ones_derive_twice, bench_start, bench_stop),
         cmocka_unit_test_setup_teardown(kinks_and_gaps_are_told, bench_start, bench_stop),
     };

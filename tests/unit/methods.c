@@ -36,7 +36,7 @@ typedef struct Scene {
     KrsRendering *rendering;
 } Scene;
 
-enum { LANDSCAPE, PART, CLOUD, GRID, INSIDE, SCENES };
+enum { LANDSCAPE, PART, CLOUD, GRID, INSIDE, CORAL, LATTICE, SCENES };
 static Scene scenes[SCENES] = {
     [LANDSCAPE] = {.name = "sphere and plane", .fov = 0.7, .text =
         "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"

@@ -1,0 +1,135 @@
+/*
+ * iterations.c: how many evaluations each pixel takes, as a picture: figure 13 of the KRS paper of
+ * 2016, whose scale this is: white is 0, black is 70; what takes more is red.
+ *
+ * A palm leaf of Moebius stages, side by side by one way to trace after another: the paper's first.
+ * All straightforward: a lane to a pixel and no beams.
+ */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "compiler/compile.h"
+#include "runtime/krs_vulkan.h"
+#include "runtime/writer/png.h"
+
+static const char path[] = "bench/scenes/palm-leaf.krs";
+
+enum { WIDTH = 480, HEIGHT = 320, PIXELS = WIDTH * HEIGHT, BLACK = 70 };
+
+static const KrsTrace ways[] = {KRS_TRACE_BINARY, KRS_TRACE_PREDICTED, KRS_TRACE_PLAIN,
+                                KRS_TRACE_AUTO, KRS_TRACE_DIRECTIONAL};
+enum { WAYS = sizeof ways / sizeof *ways };
+
+static void fail(const char *what, const char *why)
+{
+    fprintf(stderr, "iterations: %s: %s\n", what, why);
+    exit(1);
+}
+
+static void complain(void *user, const KrsDiagnostic *diagnostic)
+{
+    (void)user;
+    fprintf(stderr, "%s\n", diagnostic->text);
+}
+
+static void read_scene(char *text, size_t room)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        fail(path, strerror(errno));
+    size_t length = fread(text, 1, room - 1, file);
+    fclose(file);
+    text[length] = '\0';
+}
+
+static void shade(uint32_t steps, uint8_t *rgb)
+{
+    uint8_t gray = steps > BLACK ? 0 : (uint8_t)(255 - 255 * steps / BLACK);
+    rgb[0] = steps > BLACK ? 200 : gray;
+    rgb[1] = rgb[2] = gray;
+}
+
+static uint8_t sheet[3 * PIXELS * WAYS]; /* the pictures, side by side */
+
+static void put(const KrsPicture *picture, int place)
+{
+    for (int i = 0; i < PIXELS; i++) {
+        int x = place * WIDTH + i % WIDTH, y = i / WIDTH;
+        shade(picture->steps[i], &sheet[3 * (y * WIDTH * WAYS + x)]);
+    }
+}
+
+static void write_sheet(const char *name)
+{
+    OutputError   error = {0};
+    const Picture frame = {.width = WIDTH * WAYS, .height = HEIGHT, .crop_width = WIDTH * WAYS,
+                           .crop_height = HEIGHT};
+    OutputFile   *file = output_open(name, NULL, &error);
+    if (!file || !png_write(&frame, sheet, file, &error) || output_commit(file) != KRS_OK)
+        fail(name, error.message);
+}
+
+/* Of the pixels that cost something at all. */
+static void tell(const KrsPicture *picture, KrsTrace way)
+{
+    double   sum = 0;
+    size_t   count = 0, dark = 0;
+    uint32_t most = 0;
+    for (int i = 0; i < PIXELS; i++) {
+        uint32_t steps = picture->steps[i];
+        sum += steps;
+        count += steps > 0;
+        dark += steps > BLACK;
+        most = steps > most ? steps : most;
+    }
+    printf("| %s | %.1f | %u | %.2f %% |\n", krs_trace_names[way],
+           sum / (double)(count ? count : 1), most, 100.0 * (double)dark / PIXELS);
+}
+
+static void render(KrsRenderer *renderer, KrsRendering *rendering, KrsFrame *frame,
+                   KrsTrace way, int place)
+{
+    KrsPicture      *picture;
+    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1, .no_beams = true,
+                                .planes = KRS_PLANE_COLOR | KRS_PLANE_STEPS,
+                                .trace = way, .schedule = KRS_SCHEDULE_PIXEL};
+    if (krs_render(rendering, frame, &options, &picture) != KRS_OK)
+        fail(krs_trace_names[way], krs_renderer_message(renderer));
+    put(picture, place);
+    tell(picture, way);
+    krs_picture_free(picture);
+}
+
+/* iterations [FILE.png] */
+int main(int count, char **arguments)
+{
+    static char   text[20000];
+    KrsRenderer  *renderer;
+    KrsScene     *scene;
+    KrsFrame     *frame;
+    KrsRendering *rendering;
+    KrsOptions    options = {.diagnostic = complain};
+    const char   *name = count > 1 ? arguments[1] : "bench/results/iterations.png";
+    read_scene(text, sizeof text);
+    spirv_start();
+    if (krs_renderer_new(NULL, &renderer) != KRS_OK)
+        fail("cannot open the device", renderer ? krs_renderer_message(renderer) : "no memory");
+    if (krs_compile_text(text, strlen(text), path, &options, &scene) != KRS_OK ||
+        krs_frame_new(scene, &frame) != KRS_OK)
+        fail(path, "it does not compile");
+    if (krs_rendering_new(renderer, scene, &rendering) != KRS_OK)
+        fail(path, krs_renderer_message(renderer));
+    printf("| %dx%d | iterations of a pixel that has any | most | more than %d |\n"
+           "| --- | --- | --- | --- |\n", WIDTH, HEIGHT, BLACK);
+    for (int i = 0; i < WAYS; i++)
+        render(renderer, rendering, frame, ways[i], i);
+    write_sheet(name);
+    krs_rendering_free(rendering);
+    krs_frame_free(frame);
+    krs_scene_free(scene);
+    krs_renderer_free(renderer);
+    spirv_stop();
+    return 0;
+}

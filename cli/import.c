@@ -1,0 +1,107 @@
+/*
+ * import.c: `krs import`: a file of another program in, the text of a scene out.
+ *
+ * The text is for people to go on with: it keeps the names and factors of the file and says in
+ * comments what the file left open.  Nothing is guessed from the contents: the ending of the
+ * name says what a file is.
+ */
+#include "cli/import.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/supervise.h"
+
+enum { MOST_BYTES = 16 << 20 };
+
+static const struct {
+    const char *ending;
+    bool (*import)(Import *import);
+} forms[] = {{".jsurf", import_jsurf}, {".vm", import_tape}};
+enum { FORMS = sizeof forms / sizeof *forms };
+
+bool import_refuse(const Import *import, unsigned line, const char *format, ...)
+{
+    Text    words = {.arena = import->arena};
+    va_list arguments;
+    va_start(arguments, format);
+    text_format_list(&words, format, arguments);
+    va_end(arguments);
+    for (char *at = words.bytes; *at != '\0'; at++)
+        if ((unsigned char)*at < ' ' || *at == 0x7f) /* what a file says moves no cursor */
+            *at = '?';
+    say("%s:%u: %s", import->path, line, words.bytes);
+    return false;
+}
+
+void import_add_number(Text *text, double number)
+{
+    text_number(text, number == 0 ? 0 : number); /* never -0 */
+}
+
+void import_add_vector(Text *text, const double *numbers, int count)
+{
+    for (int i = 0; i < count; i++) {
+        text_add(text, i == 0 ? "[" : ", ");
+        import_add_number(text, numbers[i]);
+    }
+    text_add(text, "]");
+}
+
+static KrsStatus read_all(Import *import)
+{
+    KrsStatus status = scene_readable(import->path);
+    if (status != KRS_OK)
+        return status;
+    Text  text = {.arena = import->arena};
+    char  piece[1 << 14];
+    FILE *file = fopen(import->path, "rb");
+    for (size_t got = 1; file && got > 0 && text.length <= MOST_BYTES;) {
+        got = fread(piece, 1, sizeof piece, file);
+        text_add_bytes(&text, piece, got);
+    }
+    if (!file || ferror(file)) {
+        say("cannot read `%s`: %s", import->path, strerror(errno));
+        status = KRS_IO_ERROR;
+    } else if (text.length > MOST_BYTES) {
+        say("`%s` is longer than %d MiB", import->path, MOST_BYTES >> 20);
+        status = KRS_BAD_SCENE;
+    } else if (text.length > 0 && memchr(text.bytes, '\0', text.length)) {
+        say("`%s` is not a text: it has a NUL byte", import->path);
+        status = KRS_BAD_SCENE;
+    }
+    if (file)
+        fclose(file);
+    import->bytes  = text.length > 0 ? text.bytes : "";
+    import->length = text.length;
+    return status;
+}
+
+static KrsStatus write_scene(const Options *options, const Text *scene)
+{
+    if (options->outputs.count > 0)
+        return write_output_text(options->outputs.items[0], scene->bytes, scene->length);
+    fwrite(scene->bytes, 1, scene->length, stdout);
+    return KRS_OK; /* the end of every command looks at the output */
+}
+
+KrsStatus command_import(Options *options)
+{
+    const char *path   = options->files.items[0];
+    const char *ending = strrchr(path, '.'), *slash = strrchr(path, '/');
+    Import      import = {.path = path, .name = slash ? slash + 1 : path, .arena = options->arena};
+    import.scene.arena = options->arena;
+    for (size_t i = 0; ending && i < FORMS; i++) {
+        if (strcmp(ending, forms[i].ending) != 0)
+            continue;
+        KrsStatus status = read_all(&import);
+        if (status != KRS_OK)
+            return status;
+        return forms[i].import(&import) ? write_scene(options, &import.scene) : KRS_BAD_SCENE;
+    }
+    return say_usage(options, "`%s` ends in neither .jsurf nor .vm", path);
+}

@@ -1,0 +1,32 @@
+/*
+ * import.h: files of other programs, turned into scenes.
+ */
+#ifndef KRS_IMPORT_H
+#define KRS_IMPORT_H
+
+#include <stdbool.h>
+
+#include "compiler/base/text.h"
+
+typedef struct Import {
+    const char *path;  /* of the file, for words about it */
+    const char *name;  /* the same without folders, for a comment in the scene */
+    const char *bytes; /* all of it, without a NUL but for the one behind it */
+    size_t      length;
+    Arena      *arena;
+    Text        scene; /* what came of it */
+} Import;
+
+/* Each fills `scene`, or says what is wrong, and where, and returns false. */
+bool import_jsurf(Import *import); /* SURFER: an algebraic surface and its looks */
+bool import_tape(Import *import);  /* .vm of fidget and libfive's kin: a tape of operations */
+
+/* "krs: path:line: " and the words; returns false. */
+bool import_refuse(const Import *import, unsigned line, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* A number as the language writes it; NaN and infinities have no such form. */
+void import_add_number(Text *text, double number);
+void import_add_vector(Text *text, const double *numbers, int count);
+
+#endif

@@ -1,0 +1,280 @@
+/*
+ * import_tape.c: tapes of operations, .vm, as fidget reads them.
+ *
+ * A line `NAME OPERATION ARGUMENT...` gives a name to the result of an operation on the results of
+ * earlier lines, and the last line is the solid: below 0 inside.  Each line that counts for it
+ * becomes a `let`; numbers and coordinates are written where they are used.
+ */
+#include "cli/import.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_LINES = 100000, MOST_ARGUMENTS = 2 };
+
+/* How the language says it; $a and $b are the arguments. */
+typedef struct Operation {
+    const char *name;
+    int         arguments;
+    const char *text;
+} Operation;
+
+static const Operation operations[] = {
+    {"const", 0, NULL}, /* what follows is a number */
+    {"var-x", 0, "x"},
+    {"var-y", 0, "y"},
+    {"var-z", 0, "z"},
+    {"neg", 1, "-$a"},
+    {"abs", 1, "abs($a)"},
+    {"recip", 1, "1 / $a"},
+    {"sqrt", 1, "sqrt($a)"},
+    {"square", 1, "$a ^ 2"},
+    {"floor", 1, "floor($a)"},
+    {"ceil", 1, "ceil($a)"},
+    {"round", 1, "round($a)"},
+    {"sin", 1, "sin($a)"},
+    {"cos", 1, "cos($a)"},
+    {"tan", 1, "tan($a)"},
+    {"asin", 1, "asin($a)"},
+    {"acos", 1, "acos($a)"},
+    {"atan", 1, "atan($a)"},
+    {"exp", 1, "exp($a)"},
+    {"ln", 1, "log($a)"},
+    {"not", 1, "if $a == 0 then 1 else 0"},
+    {"add", 2, "$a + $b"},
+    {"sub", 2, "$a - $b"},
+    {"mul", 2, "$a * $b"},
+    {"div", 2, "$a / $b"},
+    {"min", 2, "min($a, $b)"},
+    {"max", 2, "max($a, $b)"},
+    {"atan2", 2, "atan2($a, $b)"},
+    {"mod", 2, "mod($a, abs($b))"}, /* never negative */
+    {"compare", 2, "sign($a - $b)"},
+    {"and", 2, "if $a == 0 then $a else $b"},
+    {"or", 2, "if $a == 0 then $b else $a"},
+};
+enum { OPERATIONS = sizeof operations / sizeof *operations };
+
+typedef struct Step {
+    const Operation *operation;
+    size_t           arguments[MOST_ARGUMENTS]; /* earlier steps */
+    double           number;                    /* of `const` */
+    bool             counts, varies;            /* for the result; with the point */
+    size_t           place;                     /* among those that are written, from 1 */
+} Step;
+
+/* Which step a name stands for at the moment; names are interned. */
+typedef struct Meaning {
+    const char *name;
+    size_t      step;
+} Meaning;
+
+typedef struct Tape {
+    Import  *import;
+    unsigned line;
+    Names    names;
+    struct { Step *items; size_t count, capacity; } steps;
+    Meaning *meanings; /* a hash table, open, twice as large as there can be names */
+} Tape;
+
+enum { MEANINGS = 1 << 18 };
+_Static_assert(MEANINGS >= 2 * MOST_LINES, "a table that is half empty");
+
+static Meaning *find_meaning(Tape *tape, const char *name)
+{
+    size_t slot = ((uintptr_t)name >> 3) * 0x9e3779b97f4a7c15u >> 40;
+    for (slot &= MEANINGS - 1; tape->meanings[slot].name; slot = (slot + 1) & (MEANINGS - 1))
+        if (tape->meanings[slot].name == name)
+            break;
+    return &tape->meanings[slot];
+}
+
+/* The next word of a line, or one of length 0 at its end. */
+typedef struct Word {
+    const char *start;
+    size_t      length;
+} Word;
+
+static Word next_word(const char **at)
+{
+    while (isspace((unsigned char)**at) && **at != '\n')
+        (*at)++;
+    Word word = {*at, 0};
+    while (!isspace((unsigned char)**at) && **at != '\0')
+        (*at)++;
+    word.length = (size_t)(*at - word.start);
+    return word;
+}
+
+static const Operation *find_operation(Word word)
+{
+    for (size_t i = 0; i < OPERATIONS; i++)
+        if (strlen(operations[i].name) == word.length &&
+            memcmp(operations[i].name, word.start, word.length) == 0)
+            return &operations[i];
+    return NULL;
+}
+
+/* For words about it, of which a few are enough. */
+static const char *word_text(const Tape *tape, Word word)
+{
+    return arena_copy_text(tape->import->arena, word.start, word.length < 60 ? word.length : 60);
+}
+
+static bool refuse_operation(Tape *tape, Word word)
+{
+    const char *names[OPERATIONS];
+    for (size_t i = 0; i < OPERATIONS; i++)
+        names[i] = operations[i].name;
+    const char *written = word_text(tape, word);
+    const char *nearest = nearest_name(written, names, OPERATIONS);
+    if (nearest)
+        return import_refuse(tape->import, tape->line, "no operation is called `%s`; is it `%s`?",
+                             written, nearest);
+    return import_refuse(tape->import, tape->line, "no operation is called `%s`", written);
+}
+
+static bool read_constant(Tape *tape, Step *step, const char **at)
+{
+    Word        word   = next_word(at);
+    const char *digits = arena_copy_text(tape->import->arena, word.start, word.length);
+    char       *end;
+    step->number = strtod(digits, &end);
+    if (word.length == 0)
+        return import_refuse(tape->import, tape->line, "`const` needs a number");
+    if (*end != '\0' || !isfinite(step->number))
+        return import_refuse(tape->import, tape->line, "`%s` is not a finite number",
+                             word_text(tape, word));
+    return true;
+}
+
+static bool read_argument(Tape *tape, Step *step, int index, const char **at)
+{
+    Word word = next_word(at);
+    if (word.length == 0)
+        return import_refuse(tape->import, tape->line, "`%s` needs %d argument%s",
+                             step->operation->name, step->operation->arguments,
+                             step->operation->arguments == 1 ? "" : "s");
+    const char    *name    = name_intern(&tape->names, word.start, word.length);
+    const Meaning *meaning = find_meaning(tape, name);
+    if (!meaning->name)
+        return import_refuse(tape->import, tape->line, "no line before this one is called `%s`",
+                             word_text(tape, word));
+    step->arguments[index] = meaning->step;
+    step->varies = step->varies || tape->steps.items[meaning->step].varies;
+    return true;
+}
+
+static bool read_line(Tape *tape, const char *at)
+{
+    Word name = next_word(&at);
+    if (name.length == 0 || name.start[0] == '#')
+        return true;
+    if (tape->steps.count == MOST_LINES)
+        return import_refuse(tape->import, tape->line, "more than %d operations", MOST_LINES);
+    Word word = next_word(&at);
+    Step step = {.operation = find_operation(word)};
+    if (word.length == 0)
+        return import_refuse(tape->import, tape->line,
+                             "a line is a name, an operation and its arguments: `_2 add _0 _1`");
+    if (!step.operation)
+        return refuse_operation(tape, word);
+    step.varies = step.operation->arguments == 0 && step.operation->text;
+    if (!step.operation->text && !read_constant(tape, &step, &at))
+        return false;
+    for (int i = 0; i < step.operation->arguments; i++)
+        if (!read_argument(tape, &step, i, &at))
+            return false;
+    if (next_word(&at).length > 0)
+        return import_refuse(tape->import, tape->line, "`%s` has too many arguments",
+                             step.operation->name);
+    const char *interned = name_intern(&tape->names, name.start, (size_t)name.length);
+    *find_meaning(tape, interned) = (Meaning){interned, tape->steps.count};
+    array_push(tape->import->arena, &tape->steps, step);
+    return true;
+}
+
+static bool read_tape(Tape *tape)
+{
+    const char *at = tape->import->bytes;
+    while (*at != '\0') {
+        tape->line++;
+        if (!read_line(tape, at))
+            return false;
+        at += strcspn(at, "\n");
+        at += *at == '\n';
+    }
+    if (tape->steps.count == 0)
+        return import_refuse(tape->import, tape->line + (tape->line == 0), "there is no operation");
+    if (!tape->steps.items[tape->steps.count - 1].varies)
+        return import_refuse(tape->import, tape->line,
+                             "what comes last does not depend on x, y or z");
+    return true;
+}
+
+/* ---- writing ---- */
+
+/* What a step is called where it is used. */
+static void write_name(const Tape *tape, size_t index)
+{
+    const Step *step = &tape->steps.items[index];
+    Text       *text = &tape->import->scene;
+    if (step->operation->arguments > 0) {
+        text_format(text, "n%zu", step->place);
+    } else if (step->operation->text) {
+        text_add(text, step->operation->text);
+    } else {
+        text_add(text, step->number < 0 ? "(" : "");
+        import_add_number(text, step->number);
+        text_add(text, step->number < 0 ? ")" : "");
+    }
+}
+
+static void write_step(const Tape *tape, const Step *step)
+{
+    Text *text = &tape->import->scene;
+    text_format(text, "let n%zu = ", step->place);
+    for (const char *at = step->operation->text; *at != '\0'; at++) {
+        if (*at == '$')
+            write_name(tape, step->arguments[*++at - 'a']);
+        else
+            text_add_bytes(text, at, 1);
+    }
+    text_add(text, ";\n");
+}
+
+static void write_tape(Tape *tape)
+{
+    size_t last = tape->steps.count - 1, place = 0;
+    Text  *text = &tape->import->scene;
+    tape->steps.items[last].counts = true;
+    for (size_t i = last + 1; i-- > 0;) {
+        const Step *step = &tape->steps.items[i];
+        for (int k = 0; step->counts && k < step->operation->arguments; k++)
+            tape->steps.items[step->arguments[k]].counts = true;
+    }
+    text_format(text, "// From %s.\n\n", tape->import->name);
+    for (size_t i = 0; i <= last; i++) {
+        Step *step = &tape->steps.items[i];
+        if (!step->counts || step->operation->arguments == 0)
+            continue;
+        step->place = ++place;
+        write_step(tape, step);
+    }
+    text_add(text, "\n// A tape has no bounds; this is what its viewers show unless asked.\n"
+                   "show field(");
+    write_name(tape, last);
+    text_add(text, ").within(box([2, 2, 2]));\n");
+}
+
+bool import_tape(Import *import)
+{
+    Tape tape = {.import = import, .names = {.arena = import->arena}};
+    tape.meanings = arena_new_array(import->arena, Meaning, MEANINGS);
+    if (!read_tape(&tape))
+        return false;
+    write_tape(&tape);
+    return true;
+}

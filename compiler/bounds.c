@@ -1,0 +1,182 @@
+/*
+ * bounds.c: what is known of the distance of every shape of a scene, and by which rule, for those
+ * who ask after shapes are gone (`krs info`).
+ *
+ * A list of each tree, parents first.  Parts that were made in the same place of the text, as in a
+ * loop, and are built alike, are one entry; a part that is met again refers to the first time.
+ */
+#include "compiler/bounds.h"
+
+#include <string.h>
+
+/* Of what is not a primitive: shape.h, math.md section 4. */
+static const char *const kind_rules[] = {
+    [SHAPE_EMPTY]        = "nothing",
+    [SHAPE_TRANSFORM]    = "conformal: a similarity, by its scale",
+    [SHAPE_INVERSION]    = "conformal: an inversion, by the centred bound",
+    [SHAPE_STRETCH]      = "by the least of three factors",
+    [SHAPE_UNION]        = "the least",
+    [SHAPE_INTERSECTION] = "the greatest",
+    [SHAPE_DIFFERENCE]   = "the greatest, of the complement",
+    [SHAPE_XOR]          = "the greatest of two joints",
+    [SHAPE_MORPH]        = "a mean: the steepest part's",
+    [SHAPE_META]         = "by the slopes of falloffs that can be felt",
+    [SHAPE_OFFSET]       = "moved by a constant",
+    [SHAPE_SHELL]        = "both sides, moved by a constant",
+    [SHAPE_ELONGATE]     = "a clamp of space, of slope 1",
+    [SHAPE_EXTRUDE]      = "Pythagoras, with the height",
+    [SHAPE_REVOLVE]      = "distances in the half-plane",
+    [SHAPE_REPEAT]       = "cells, and their walls or neighbours",
+    [SHAPE_REPEAT_POLAR] = "sectors, and their walls or neighbours",
+    [SHAPE_MIRROR]       = "a fold, of slope 1",
+    [SHAPE_TWIST]        = "a deformation undone in a convex region",
+    [SHAPE_BEND]         = "a deformation undone in convex regions",
+    [SHAPE_TAPER]        = "a deformation undone in a convex region",
+    [SHAPE_DISPLACE]     = "the slope of what displaces added",
+    [SHAPE_SMOOTH]       = "its part's",
+    [SHAPE_PAINT]        = "its part's",
+    [SHAPE_KRS]          = "folds of slope 1, conformal maps",
+};
+
+typedef struct Listing {
+    Arena         *arena;
+    const Sources *sources;
+    KrsBounds     *list;
+    const Shape  **shapes; /* of the entries */
+} Listing;
+
+static const char *box_text(Listing *l, Box box)
+{
+    Text text = {.arena = l->arena};
+    text_format(&text, "[%.4g, %.4g, %.4g] to [%.4g, %.4g, %.4g]", box.axis[0].low, box.axis[1].low,
+                box.axis[2].low, box.axis[0].high, box.axis[1].high, box.axis[2].high);
+    return text.bytes;
+}
+
+static void add_derived(Listing *l, const Shape *shape, Text *rule)
+{
+    if (box_is_finite(shape->region))
+        text_format(rule, "slope %.4g derived by intervals over %s", shape->derived,
+                    box_text(l, shape->region));
+    else
+        text_format(rule, "slope %.4g derived by norms over all space", shape->derived);
+}
+
+static const char *primitive_rule(Listing *l, const Shape *shape)
+{
+    Text rule = {.arena = l->arena};
+    if (shape->estimate)
+        text_add(&rule, "an estimate: measured, not proven");
+    else if (shape->exact)
+        text_add(&rule, "exact, by claim");
+    else if (shape->claimed)
+        text_format(&rule, "slope %.4g, by claim", shape->derived);
+    else if (shape->degree > 0)
+        text_format(&rule, "polynomial of degree %u, by its series in balls", shape->degree);
+    else if (shape->trapped)
+        text_add(&rule, "a ball around an escaped iterate, stepped back");
+    else
+        add_derived(l, shape, &rule);
+    if (shape->bound != NODE_NONE)
+        text_add(&rule, "; a sharper bound below sharp joints");
+    return rule.bytes;
+}
+
+static bool is_deformation(ShapeKind kind)
+{
+    return kind == SHAPE_TWIST || kind == SHAPE_BEND || kind == SHAPE_TAPER ||
+           kind == SHAPE_DISPLACE;
+}
+
+static const char *rule_of(Listing *l, const Shape *shape)
+{
+    if (shape->kind == SHAPE_PRIMITIVE)
+        return primitive_rule(l, shape);
+    Text rule = {.arena = l->arena};
+    text_add(&rule, kind_rules[shape->kind]);
+    if (shape->blend.width != NODE_NONE)
+        text_format(&rule, ", %s blend of factor %.4g", blend_info[shape->blend.kind].spelling,
+                    blend_info[shape->blend.kind].slope);
+    if (is_deformation(shape->kind))
+        text_format(&rule, ", of factor %.4g at most", shape->derived);
+    return rule.bytes;
+}
+
+/* Whether two shapes were made in the same place of the text, all through. */
+static bool are_alike(const Shape *a, const Shape *b)
+{
+    if (a == b)
+        return true;
+    if (a->kind != b->kind || a->child_count != b->child_count ||
+        a->span.source != b->span.source || a->span.start != b->span.start ||
+        a->span.end != b->span.end || a->exact != b->exact || a->slope != b->slope)
+        return false;
+    for (uint32_t i = 0; i < a->child_count; i++)
+        if (!are_alike(a->children[i], b->children[i]))
+            return false;
+    return true;
+}
+
+/* The number, from 1, of the entry that a shape has already; 0: none. */
+static size_t entry_of(const Listing *l, const Shape *shape)
+{
+    for (size_t i = 0; i < l->list->count; i++)
+        if (l->shapes[i] == shape)
+            return i + 1;
+    return 0;
+}
+
+static void fill_entry(Listing *l, const Shape *shape, KrsBound *entry)
+{
+    const Source *source = &l->sources->items[shape->span.source];
+    entry->name     = arena_copy_text(l->arena, shape->name, strlen(shape->name));
+    entry->source   = arena_copy_text(l->arena, source->name, strlen(source->name));
+    entry->rule     = rule_of(l, shape);
+    entry->slope    = shape->slope;
+    entry->exact    = shape->exact;
+    entry->estimate = shape->estimate;
+    entry->levels    = shape->levels;
+    entry->instances = shape->instances;
+    if (shape->span.source) {
+        Position position = source_position(source, shape->span.start);
+        entry->line       = position.line;
+        entry->column     = position.column;
+    }
+    for (int i = 0; i < 3; i++) {
+        entry->low[i]  = shape->box.axis[i].low;
+        entry->high[i] = shape->box.axis[i].high;
+    }
+}
+
+static void list_shape(Listing *l, const Shape *shape, uint32_t depth, uint32_t alike)
+{
+    KrsBounds *list = l->list;
+    if (list->count == KRS_MOST_BOUNDS) {
+        list->more++;
+        return;
+    }
+    size_t    same  = entry_of(l, shape);
+    KrsBound *entry = &list->items[list->count];
+    l->shapes[list->count++] = shape;
+    *entry = (KrsBound){.depth = depth, .alike = alike, .same = same};
+    fill_entry(l, shape, entry);
+    for (uint32_t i = 0; i < shape->child_count && !same;) {
+        uint32_t next = i + 1;
+        while (next < shape->child_count && are_alike(shape->children[i], shape->children[next]))
+            next++;
+        list_shape(l, shape->children[i], depth + 1, next - i - 1);
+        i = next;
+    }
+}
+
+void bounds_of(const Shape *shape, const Sources *sources, KrsBounds *list, Arena *arena,
+               Arena *scratch)
+{
+    KrsBound     *items  = arena_new_array(scratch, KrsBound, KRS_MOST_BOUNDS);
+    const Shape **shapes = arena_new_array(scratch, const Shape *, KRS_MOST_BOUNDS);
+    Listing       l      = {arena, sources, list, shapes};
+    *list                = (KrsBounds){.items = items};
+    list_shape(&l, shape, 0, 0);
+    list->items = arena_new_array(arena, KrsBound, list->count);
+    memcpy(list->items, items, list->count * sizeof *items);
+}

@@ -1,0 +1,22 @@
+/*
+ * bounds.h: what is known of the distances of a scene's shapes, kept beyond the shapes.
+ */
+#ifndef KRS_BOUNDS_H
+#define KRS_BOUNDS_H
+
+#include "compiler/geometry/shape.h"
+#include "compiler/krs.h"
+
+enum { KRS_MOST_BOUNDS = 256 }; /* of one component */
+
+typedef struct KrsBounds {
+    KrsBound *items;
+    size_t    count;
+    size_t    more; /* that there was no room for */
+} KrsBounds;
+
+/* The list of one tree, in `arena`. */
+void bounds_of(const Shape *shape, const Sources *sources, KrsBounds *list, Arena *arena,
+               Arena *scratch);
+
+#endif

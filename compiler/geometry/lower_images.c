@@ -1,0 +1,350 @@
+/*
+ * lower_images.c: the image of a ray, or of a ball, in sequences with maps that invert: how far
+ * the ray may go (ALONG_DIRECTIONAL), whether the ball is empty (ALONG_PROBE); math.md, section 2.
+ *
+ * The image of a ray p + t v under a conformal map F is a circle or a line through q = F(p).  With
+ * A = |F'(p)|, w the image's direction at q, and a vector h at q which is 0 while nothing inverts,
+ *     F(p + t v) = q + A (t w + t^2 h) / Q,    Q = 1 + 2 t w.h + t^2 h.h,
+ * and its distance from q is A t / sqrt(Q).  So w and h are all there is to carry, next to the point
+ * and the distance: they turn with rotations and mirrors, and an inversion at z from its pole turns
+ * h into R^T (h reflected along z - A z / |z|^2).  |h| is at most the B of the centred bound: that is
+ * this exit for the worst direction.  No ball is pulled back, so no terms cancel.
+ *
+ * A ball of radius d that is empty around q is left at the t with A t = d sqrt(Q).  Behind a mirror
+ * that is farther out than an inversion this holds up to where the image of the ray crosses the
+ * mirror: what comes back of the ball may have its centre on the other side.
+ *
+ * A ball is the same ball whatever it is seen through, but for mirrors, which the ball's image need
+ * not be on one side of: folding its centre is right, since distances do not grow.
+ */
+#include "compiler/geometry/lowering.h"
+
+/* What inverse lengths may be wrong by, in those of the centred bound: single precision. */
+static const double ROUNDING = 1e-5;
+
+/* A ball that comes so near to the pole, in its distance from it, counts as one that holds it. */
+static const double NEAR_POLE = 1e-3;
+
+static const double TINY = 1e-30;
+
+/* What has been taken through maps, so far. */
+typedef struct Image {
+    Passage passage;
+    Node    direction;      /* DIRECTIONAL: w */
+    Node    bow;            /* h; NODE_NONE: 0, nothing has inverted, */
+    Node    tilt, square;   /* and with it h.w, h.h */
+    Node    ahead;          /* 1 / t of the first mirror that is crossed, by those so far; */
+    Node    cut;            /* by those farther out than an inversion; NODE_NONE: there are none */
+    Node    radius;         /* PROBE */
+} Image;
+
+static Node number(Lowering *l, double value) { return graph_number(l->graph, value); }
+
+static Node larger(Lowering *l, Node a, Node b)
+{
+    if (a == NODE_NONE || b == NODE_NONE)
+        return a == NODE_NONE ? b : a;
+    return graph_op2(l->graph, OP_max, a, b);
+}
+
+static Node product(Lowering *l, Node a, Node b) { return graph_op2(l->graph, OP_mul, a, b); }
+static Node sum(Lowering *l, Node a, Node b) { return graph_op2(l->graph, OP_add, a, b); }
+static Node difference(Lowering *l, Node a, Node b) { return graph_op2(l->graph, OP_sub, a, b); }
+
+/* a - axis * along. */
+static Node less_part(Lowering *l, Node a, Node axis, Node along)
+{
+    Node part = graph_op2(l->graph, OP_scale, axis, along);
+    return graph_op2(l->graph, OP_sub, a, part);
+}
+
+static Node reflected(Lowering *l, Node a, Node axis)
+{
+    Node along = graph_op2(l->graph, OP_dot, axis, a);
+    return less_part(l, a, axis, product(l, along, number(l, 2)));
+}
+
+/* A: what 1 becomes, per length outside. */
+static Node shrink_of(Lowering *l, const Image *image)
+{
+    const Passage *passage = &image->passage;
+    if (passage->shrink != NODE_NONE)
+        return passage->shrink;
+    return graph_op2(l->graph, OP_div, number(l, 1), passage->scale);
+}
+
+/* ---- leaves ---- */
+
+/* The t at which the ray leaves the ball of radius |d| around its image here. */
+static Node exit_of(Lowering *l, const Image *image, Node d)
+{
+    Graph *g = l->graph;
+    if (image->bow == NODE_NONE)
+        return product(l, d, image->passage.scale);
+    Node shrink = image->passage.shrink;
+    Node size   = graph_op1(g, OP_abs, d);
+    Node whole  = sum(l, shrink, product(l, image->passage.bend, size)); /* centred: |d| / whole */
+    Node across = difference(l, image->square, graph_op1(g, OP_square, image->tilt));
+    Node bent   = product(l, across, graph_op1(g, OP_square, size));
+    Node room   = difference(l, graph_op1(g, OP_square, shrink), bent);
+    Node root   = graph_op1(g, OP_sqrt, larger(l, room, number(l, 0)));
+    Node rate   = difference(l, root, product(l, image->tilt, size));
+    if (image->cut != NODE_NONE)
+        rate = larger(l, rate, product(l, image->cut, size));
+    rate = larger(l, rate, number(l, 0));
+    rate = sum(l, rate, product(l, whole, number(l, ROUNDING)));
+    rate = graph_op2(g, OP_min, rate, whole);
+    return graph_op2(g, OP_div, d, rate);
+}
+
+/* What a distance at the image is worth outside: the way to go or, of a ball, the distance times
+   how much larger the ball is outside: more than its radius there when it is empty. */
+static Node worth_of(Lowering *l, const Image *image, Node distance)
+{
+    if (distance == NODE_NONE)
+        return NODE_NONE;
+    if (l->method == ALONG_DIRECTIONAL)
+        return exit_of(l, image, distance);
+    Node radius = graph_leaf(l->graph, OP_FOOTPRINT);
+    if (image->radius == radius)
+        return distance;
+    Node share = graph_op2(l->graph, OP_div, radius, image->radius);
+    return product(l, distance, share);
+}
+
+/* ---- maps ---- */
+
+static void bend_ray(Lowering *l, Image *image, const Map *map, const Inversion *inversion)
+{
+    Graph *g       = l->graph;
+    Node   curving = product(l, shrink_of(l, image), inversion->inverse), bow;
+    if (image->bow == NODE_NONE) {
+        bow = graph_op2(g, OP_scale, inversion->axis, graph_op1(g, OP_neg, curving));
+    } else {
+        Node along = graph_op2(g, OP_dot, inversion->axis, image->bow);
+        along      = sum(l, product(l, along, number(l, 2)), curving);
+        bow        = less_part(l, image->bow, inversion->axis, along);
+    }
+    Node direction   = reflected(l, image->direction, inversion->axis);
+    image->direction = turn_behind(g, map, direction);
+    image->bow       = turn_behind(g, map, bow);
+    image->tilt      = graph_op2(g, OP_dot, direction, bow);
+    image->square    = graph_op2(g, OP_dot, bow, bow);
+    image->cut       = larger(l, image->cut, image->ahead);
+    image->ahead     = NODE_NONE;
+}
+
+/* Returns what the pole lets pass of a ball outside, as its worth. */
+static Node invert_ball(Lowering *l, Image *image, const Map *map)
+{
+    Graph *g      = l->graph;
+    Node   way    = graph_op2(g, OP_sub, image->passage.point, map->shift);
+    Node   square = graph_op2(g, OP_dot, way, way);
+    Node   room   = difference(l, square, graph_op1(g, OP_square, image->radius));
+    Node   least  = product(l, square, number(l, NEAR_POLE));
+    least         = sum(l, least, number(l, TINY));
+    Node   factor = graph_op2(g, OP_div, map->scale, larger(l, room, least));
+    Node   reach  = graph_op1(g, OP_length, way);
+    reach         = product(l, reach, number(l, 1 - NEAR_POLE));
+    Node   worth  = worth_of(l, image, reach);
+    Node   centre = graph_op2(g, OP_scale, turn_behind(g, map, way), factor);
+    image->passage.point = graph_op2(g, OP_add, centre, map->pole);
+    image->radius        = product(l, image->radius, factor);
+    return worth;
+}
+
+/* Returns the worth of the pole, or NODE_NONE. */
+static Node image_map(Lowering *l, Image *image, const Map *map)
+{
+    Graph     *g    = l->graph;
+    NormalPath none = normal_path(l, place_bare(image->passage.point, false), 0);
+    if (l->method == ALONG_PROBE && map->pole != NODE_NONE)
+        return invert_ball(l, image, map);
+    if (l->method == ALONG_PROBE)
+        image->radius = graph_op2(g, OP_div, image->radius, map->scale);
+    else if (map->pole != NODE_NONE) {
+        Inversion inversion = inversion_at(g, map, image->passage.point);
+        bend_ray(l, image, map, &inversion);
+    } else {
+        image->direction = turn_behind(g, map, image->direction);
+        if (image->bow != NODE_NONE)
+            image->bow = turn_behind(g, map, image->bow);
+    }
+    passage_map(l, &image->passage, map, &none);
+    return NODE_NONE;
+}
+
+/* 1 / t where the ray crosses a mirror that is `away`, towards which it goes at `speed`: the larger
+   root y of away y^2 + (2 away h.w - speed) y + away h.h - A h.axis = 0. */
+static Node crossing(Lowering *l, const Image *image, Node axis, Node away, Node speed)
+{
+    Graph *g    = l->graph;
+    Node   some = larger(l, away, number(l, TINY));
+    if (image->bow == NODE_NONE)
+        return graph_op2(g, OP_div, speed, some);
+    Node half    = product(l, speed, number(l, -0.5));
+    half         = sum(l, half, product(l, away, image->tilt));
+    Node curving = graph_op2(g, OP_dot, axis, image->bow);
+    curving      = product(l, curving, image->passage.shrink);
+    Node rest    = difference(l, product(l, away, image->square), curving);
+    Node inner   = product(l, away, rest);
+    inner        = difference(l, graph_op1(g, OP_square, half), inner);
+    Node root    = graph_op1(g, OP_sqrt, larger(l, inner, number(l, 0)));
+    /* Whichever form of it adds what has the same sign. */
+    Node divisor = sum(l, half, root);
+    divisor      = larger(l, divisor, number(l, TINY));
+    Node leaving = graph_op2(g, OP_div, graph_op1(g, OP_neg, rest), divisor);
+    Node nearing = graph_op2(g, OP_div, difference(l, root, half), some);
+    Node leaves  = graph_op2(g, OP_less, number(l, 0), half);
+    return graph_op3(g, OP_select, leaves, leaving, nearing);
+}
+
+static void image_mirror(Lowering *l, Image *image, Node axis, Node offset)
+{
+    Graph *g             = l->graph;
+    Node   point         = image->passage.point;
+    image->passage.point = graph_op3(g, OP_fold, point, axis, offset);
+    if (l->method == ALONG_PROBE)
+        return;
+    Node front       = graph_op3(g, OP_front, point, axis, offset);
+    Node mirrored    = reflected(l, image->direction, axis);
+    image->direction = graph_op3(g, OP_select, front, mirrored, image->direction);
+    if (image->bow != NODE_NONE) {
+        mirrored   = reflected(l, image->bow, axis);
+        image->bow = graph_op3(g, OP_select, front, mirrored, image->bow);
+    }
+    Node away  = graph_op2(g, OP_dot, axis, point);
+    away       = graph_op1(g, OP_abs, difference(l, away, offset));
+    Node speed = graph_op2(g, OP_dot, axis, image->direction);
+    speed      = product(l, speed, shrink_of(l, image));
+    image->ahead = larger(l, image->ahead, crossing(l, image, axis, away, speed));
+}
+
+/* ---- shapes ---- */
+
+static Node image_shape(Lowering *l, const Shape *shape, Image image);
+
+static Node image_distance(Lowering *l, const Shape *shape, Image image)
+{
+    Lowered ball = lower_shape(l, shape, place_bare(image.passage.point, false));
+    if (ball.distance == NODE_NONE)
+        return NODE_NONE;
+    return worth_of(l, &image, divide_by_slope(l->graph, ball.distance, shape->slope));
+}
+
+/* Around what a map that inverts is applied to, as seen through all maps farther out. */
+static Node hull_worth(Lowering *l, const Image *image, const Map *map, Ball ball)
+{
+    Passage here = passage_new(l->graph, image->passage.point);
+    return worth_of(l, image, passage_hull(l, &here, map, ball).bound);
+}
+
+/* Of what is behind a map: no ball that holds its pole passes, but what is outside of the hull. */
+static Node through_map(Lowering *l, Node inner, Node pole, Node hull)
+{
+    if (inner == NODE_NONE)
+        return NODE_NONE;
+    return larger(l, nearer_of(l->graph, inner, pole), hull);
+}
+
+static Node image_inversion(Lowering *l, const Shape *shape, Image image)
+{
+    Node hull = hull_worth(l, &image, &shape->map, ball_around(shape->children[0]->box));
+    Node pole = image_map(l, &image, &shape->map);
+    return through_map(l, image_shape(l, shape->children[0], image), pole, hull);
+}
+
+/* From the last stage inwards, then back: kernels join what is farther in than themselves. */
+static Node image_krs(Lowering *l, const Shape *shape, Image image)
+{
+    uint32_t count   = shape->stage_count;
+    Node    *kernels = arena_new_array(l->scratch, Node, count + 1);
+    Node    *poles   = arena_new_array(l->scratch, Node, count + 1);
+    Node    *hulls   = arena_new_array(l->scratch, Node, count + 1);
+    for (uint32_t i = count; i-- > 0;) {
+        const Stage *stage = &shape->stages[i];
+        kernels[i] = poles[i] = hulls[i] = NODE_NONE;
+        switch (stage->kind) {
+        case STAGE_REFLECT: image_mirror(l, &image, stage->normal, stage->offset); break;
+        case STAGE_KERNEL:
+            kernels[i] = image_shape(l, shape->children[stage->kernel], image);
+            break;
+        case STAGE_MAP:
+            if (stage->map.pole != NODE_NONE && i > 0)
+                hulls[i] = hull_worth(l, &image, &stage->map, shape->bounds[i - 1].ball);
+            poles[i] = image_map(l, &image, &stage->map);
+            break;
+        }
+    }
+    Node inner = NODE_NONE;
+    for (uint32_t i = 0; i < count; i++)
+        inner = shape->stages[i].kind == STAGE_KERNEL
+                    ? nearer_of(l->graph, inner, kernels[i])
+                    : through_map(l, inner, poles[i], hulls[i]);
+    return inner;
+}
+
+static Node image_union(Lowering *l, const Shape *shape, Image image)
+{
+    Node nearest = NODE_NONE;
+    for (uint32_t i = 0; i < shape->child_count; i++)
+        nearest = nearer_of(l->graph, nearest, image_shape(l, shape->children[i], image));
+    return nearest;
+}
+
+/* Whether there is an inversion that can be seen from here through what images can be taken
+   through. */
+static bool sees_inversion(const Shape *shape)
+{
+    switch (shape->kind) {
+    case SHAPE_INVERSION: return true;
+    case SHAPE_KRS:
+        for (uint32_t i = 0; i < shape->stage_count; i++)
+            if (shape->stages[i].kind == STAGE_MAP && shape->stages[i].map.pole != NODE_NONE)
+                return true;
+        break;
+    case SHAPE_UNION:
+        if (shape->blend.width != NODE_NONE)
+            return false;
+        break;
+    case SHAPE_TRANSFORM: case SHAPE_PAINT: case SHAPE_SMOOTH: break;
+    default: return false;
+    }
+    for (uint32_t i = 0; i < shape->child_count; i++)
+        if (sees_inversion(shape->children[i]))
+            return true;
+    return false;
+}
+
+static Node image_shape(Lowering *l, const Shape *shape, Image image)
+{
+    l->graph->here = shape->span;
+    l->overflow    = l->overflow || l->graph->count > l->most;
+    if (l->overflow)
+        return NODE_NONE;
+    if (!sees_inversion(shape))
+        return image_distance(l, shape, image);
+    switch (shape->kind) {
+    case SHAPE_INVERSION: return image_inversion(l, shape, image);
+    case SHAPE_KRS:       return image_krs(l, shape, image);
+    case SHAPE_UNION:     return image_union(l, shape, image);
+    case SHAPE_TRANSFORM: image_map(l, &image, &shape->map); break;
+    default: break;
+    }
+    return image_shape(l, shape->children[0], image);
+}
+
+Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod method, Arena *scratch)
+{
+    if (!sees_inversion(shape))
+        return plain;
+    Lowering l     = {.graph = graph, .scratch = scratch, .most = graph->count + MOST_LOWERED,
+                      .method = method};
+    Image    image = {.bow = NODE_NONE, .tilt = NODE_NONE, .square = NODE_NONE,
+                      .ahead = NODE_NONE, .cut = NODE_NONE};
+    image.passage   = passage_new(graph, graph_leaf(graph, OP_POINT));
+    image.direction = graph_leaf(graph, OP_DIRECTION);
+    image.radius    = graph_leaf(graph, OP_FOOTPRINT);
+    Node all        = image_shape(&l, shape, image);
+    return l.overflow || all == NODE_NONE ? plain : all;
+}

@@ -1,0 +1,227 @@
+/*
+ * anchor.c: the graph near an anchor.
+ *
+ * Every value that is the point, or made of it by moving, turning, scaling or mirroring, is kept
+ * as a pair: a base, which is what happens to the anchor, and the rest, which is what happens to the
+ * way from there.  Mirrors cost as much as before: behind one with dot(u, p) <= w the rest r is
+ *     r - 2 (max(dot(u, r), w') - k) u,   w' = w - dot(u, base), k = 0 if it mirrors the base, else w'
+ * where nothing large is added and taken away again.  Rounding and limits keep pairs, too, so that
+ * repetition does.  Everything else gets the sum: near a surface of a kernel it is no larger
+ * than the kernel.
+ */
+#include "compiler/graph/anchor.h"
+
+#include "compiler/graph/evaluate.h"
+
+/* base + rest; base NODE_NONE: the rest is all. */
+typedef struct Pair {
+    Node base, rest;
+} Pair;
+
+static Pair whole(Node node) { return (Pair){NODE_NONE, node}; }
+
+static Node precise(Graph *g, Node node)
+{
+    return g->items[node].time == TIME_COMPILE ? node : graph_op1(g, OP_precise, node);
+}
+
+static Node sum_of(Graph *g, Pair pair)
+{
+    if (pair.base == NODE_NONE)
+        return pair.rest;
+    Node base = precise(g, pair.base);
+    return graph_op2(g, OP_add, base, pair.rest);
+}
+
+static bool is_still(const Graph *g, Pair pair)
+{
+    return pair.base == NODE_NONE && g->items[pair.rest].time != TIME_POINT;
+}
+
+static Node zero_like(Graph *g, Node node)
+{
+    static const double zeros[4] = {0};
+    return graph_constant(g, (GraphType)g->items[node].type, zeros);
+}
+
+/* a + b and a - b: what stands still joins the base. */
+static Pair add_pairs(Graph *g, Op op, Pair a, Pair b)
+{
+    Pair sum  = {NODE_NONE, NODE_NONE};
+    Node zero = NODE_NONE;
+    if (is_still(g, a))
+        a = (Pair){a.rest, zero = zero_like(g, a.rest)};
+    if (is_still(g, b))
+        b = (Pair){b.rest, zero = zero_like(g, b.rest)};
+    if (a.base == NODE_NONE || b.base == NODE_NONE) {
+        bool first = a.base != NODE_NONE;
+        sum.base   = first || op == OP_add ? (first ? a.base : b.base)
+                                           : graph_op1(g, OP_neg, b.base);
+    } else
+        sum.base = graph_op2(g, op, a.base, b.base);
+    sum.rest = graph_op2(g, op, a.rest, b.rest);
+    return sum;
+}
+
+/* The same linear operation on both; other operands stand still. */
+static Pair map_pair(Graph *g, const Expr *e, Pair a, int place)
+{
+    Node operands[MAX_OPERANDS];
+    for (int i = 0; i < e->operand_count; i++)
+        operands[i] = e->operands[i];
+    operands[place] = a.base;
+    Pair mapped     = {graph_op(g, e->op, operands), NODE_NONE};
+    operands[place] = a.rest;
+    mapped.rest     = graph_op(g, e->op, operands);
+    return mapped;
+}
+
+static Pair make_vector(Graph *g, const Expr *e, const Pair *parts)
+{
+    Node bases[MAX_OPERANDS], rests[MAX_OPERANDS];
+    for (int i = 0; i < e->operand_count; i++) {
+        bool still = is_still(g, parts[i]);
+        Node zero  = graph_number(g, 0);
+        bases[i]   = still ? parts[i].rest : parts[i].base == NODE_NONE ? zero : parts[i].base;
+        rests[i]   = still ? zero : parts[i].rest;
+    }
+    return (Pair){graph_op(g, e->op, bases), graph_op(g, e->op, rests)};
+}
+
+/* w - dot(u, base): the offset of a mirror as the rest sees it. */
+static Node offset_seen(Graph *g, const Expr *e, Pair a)
+{
+    Node depth = graph_op2(g, OP_dot, e->operands[1], a.base);
+    return graph_op2(g, OP_sub, e->operands[2], depth);
+}
+
+static Pair fold_pair(Graph *g, const Expr *e, Pair a)
+{
+    Node seen   = offset_seen(g, e, a), zero = graph_number(g, 0);
+    Node before = graph_op3(g, OP_front, a.base, e->operands[1], e->operands[2]);
+    Node kept   = graph_op3(g, OP_select, before, zero, seen);
+    Node depth  = graph_op2(g, OP_dot, e->operands[1], a.rest);
+    Node excess = graph_op2(g, OP_max, depth, precise(g, seen));
+    excess      = graph_op2(g, OP_sub, excess, precise(g, kept));
+    Node twice  = graph_op2(g, OP_mul, excess, graph_number(g, 2));
+    Node way    = graph_op2(g, OP_scale, e->operands[1], twice);
+    Pair folded = {graph_op3(g, OP_fold, a.base, e->operands[1], e->operands[2]), NODE_NONE};
+    folded.rest = graph_op2(g, OP_sub, a.rest, way);
+    return folded;
+}
+
+/* round, floor and ceil: that of the base, and that of the rest and what the base is beyond. */
+static Pair round_pair(Graph *g, const Expr *e, Pair a)
+{
+    Pair rounded = {graph_op1(g, e->op, a.base), NODE_NONE};
+    Node beyond  = graph_op2(g, OP_sub, a.base, rounded.base);
+    Node rest    = graph_op2(g, OP_add, precise(g, beyond), a.rest);
+    rounded.rest = graph_op1(g, e->op, rest);
+    return rounded;
+}
+
+/* min, max and clamp by limits that stand still. */
+static Pair limit_pair(Graph *g, const Expr *e, Pair a)
+{
+    Node operands[MAX_OPERANDS] = {a.rest};
+    for (int i = 1; i < e->operand_count; i++) {
+        Node limit  = graph_op2(g, OP_sub, e->operands[i], a.base);
+        operands[i] = precise(g, limit);
+    }
+    return (Pair){a.base, graph_op(g, e->op, operands)};
+}
+
+/* a < b as rest a - rest b < base b - base a. */
+static Node compare_pairs(Graph *g, const Expr *e, Pair a, Pair b)
+{
+    Pair difference = add_pairs(g, OP_sub, a, b);
+    if (difference.base == NODE_NONE)
+        return graph_op2(g, e->op, sum_of(g, a), sum_of(g, b));
+    Node limit = graph_op1(g, OP_neg, difference.base);
+    return graph_op2(g, e->op, difference.rest, precise(g, limit));
+}
+
+/* Whether all operands but one stand still. */
+static bool others_are_still(const Graph *g, const Expr *e, const Pair *pairs, int but)
+{
+    for (int i = 0; i < e->operand_count; i++)
+        if (i != but && !is_still(g, pairs[i]))
+            return false;
+    return true;
+}
+
+/* An operation of which nothing is known but its value. */
+static Pair plain_pair(Graph *g, const Expr *e, const Pair *pairs)
+{
+    Node operands[MAX_OPERANDS];
+    for (int i = 0; i < e->operand_count; i++)
+        operands[i] = sum_of(g, pairs[i]);
+    return whole(e->op == OP_COMPONENT ? graph_component(g, operands[0], e->index)
+                                       : graph_op(g, e->op, operands));
+}
+
+static bool any_base(const Expr *e, const Pair *pairs)
+{
+    for (int i = 0; i < e->operand_count; i++)
+        if (pairs[i].base != NODE_NONE)
+            return true;
+    return false;
+}
+
+static Pair anchored(Graph *g, const Expr *e, const Pair *p)
+{
+    if (!any_base(e, p))
+        return plain_pair(g, e, p);
+    int first = p[0].base != NODE_NONE ? 0 : 1;
+    switch (e->op) {
+    case OP_add: case OP_sub: return add_pairs(g, e->op, p[0], p[1]);
+    case OP_neg:       return map_pair(g, e, p[0], 0);
+    case OP_COMPONENT:
+        return (Pair){graph_component(g, p[0].base, e->index),
+                      graph_component(g, p[0].rest, e->index)};
+    case OP_splat2: case OP_splat3: case OP_splat4:
+    case OP_vec2: case OP_vec3: case OP_vec4: return make_vector(g, e, p);
+    case OP_mul: case OP_dot: case OP_scale:
+        return others_are_still(g, e, p, first) ? map_pair(g, e, p[first], first)
+                                                : plain_pair(g, e, p);
+    case OP_div: case OP_turn:
+        return others_are_still(g, e, p, 0) ? map_pair(g, e, p[0], 0) : plain_pair(g, e, p);
+    case OP_fold:
+        return others_are_still(g, e, p, 0) ? fold_pair(g, e, p[0]) : plain_pair(g, e, p);
+    case OP_front:
+        if (!others_are_still(g, e, p, 0))
+            return plain_pair(g, e, p);
+        return whole(graph_op3(g, OP_front, p[0].rest, e->operands[1],
+                               precise(g, offset_seen(g, e, p[0]))));
+    case OP_round: case OP_floor: case OP_ceil: return round_pair(g, e, p[0]);
+    case OP_min: case OP_max: case OP_clamp:
+        return others_are_still(g, e, p, 0) ? limit_pair(g, e, p[0]) : plain_pair(g, e, p);
+    case OP_less: case OP_less_equal: return whole(compare_pairs(g, e, p[0], p[1]));
+    default: return plain_pair(g, e, p);
+    }
+}
+
+void graph_anchor(Graph *graph, Node *roots, size_t count, Node anchor, Arena *scratch)
+{
+    Span  here  = graph->here;
+    Tape  tape  = tape_new(graph, roots, count, scratch);
+    Pair *pairs = arena_new_array(scratch, Pair, tape.count);
+    for (size_t i = 0; i < tape.count; i++) {
+        Node node = tape.nodes[i];
+        Expr e    = graph->items[node];
+        Pair operands[MAX_OPERANDS];
+        graph->here = e.span;
+        if (e.op == OP_POINT)
+            pairs[i] = (Pair){anchor, node};
+        else if (e.time != TIME_POINT || e.operand_count == 0)
+            pairs[i] = whole(node);
+        else {
+            for (int k = 0; k < e.operand_count; k++)
+                operands[k] = pairs[tape_place(&tape, e.operands[k])];
+            pairs[i] = anchored(graph, &e, operands);
+        }
+    }
+    for (size_t i = 0; i < count; i++)
+        roots[i] = sum_of(graph, pairs[tape_place(&tape, roots[i])]);
+    graph->here = here;
+}

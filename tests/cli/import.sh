@@ -1,0 +1,159 @@
+#!/bin/sh
+# import.sh: files of other programs become scenes that show what they showed, or are refused
+# with the line that is wrong; no file, whatever is in it, ends in a crash.
+# shellcheck source-path=SCRIPTDIR disable=SC2016
+. "$(dirname "$0")/common.sh"
+plan 44
+
+cat >ball.vm <<'END'
+# a ball of radius 0.75 with its upper half cut away, and a line that does not count
+
+_0 const 1e-1
+_x var-x
+_1 square _x
+_y var-y
+0x6000 square _y
+_z var-z
+_3 mul _z _z
+_4 add _1 0x6000
+_5 add _4 _3
+_6 sqrt _5
+_7 const -.75
+_8 add _6 _7
+unused sin _x
+_9 max _8 _y
+END
+cat >torus.jsurf <<'END'
+#jSurfer surface description
+#with a comment
+surface_equation=(x^2+y^2+z^2+.5^2-b^2)^2 - 4*.5^2*(x^2+\
+    y^2)
+surface_parameter_b=0.2
+surface_parameter_a = 7
+camera_type: ORTHOGRAPHIC_CAMERA
+camera_height=2.0
+camera_transform=1.0 0.0 0.0 -0.0  0.0 1.0 0.0 -0.0  0.0 0.0 1.0 -1.0  0.0 0.0 0.0 1.0
+rotation_matrix=1.0 0.0 0.0 0.0 0.0 0.0 -1.0 0.0 0.0 1.0 0.0 0.0 0.0 0.0 0.0 1.0
+scale_factor=0.30102999566
+front_material_color=1.0 0.0 0.0
+back_material_color=0.0 1.0 0.0
+light_status_0=ON
+light_position_0=0.0 0.0 100.0
+light_status_1=OFF
+light_position_1=0.0 100.0 0.0
+background_color=1 1 1
+END
+
+run import ball.vm -o ball_of_tape.krs
+[ "$status" -eq 0 ] && [ ! -s out ] && [ ! -s err ]
+result $? "a tape is written to a file, silently"
+run check ball_of_tape.krs
+[ "$status" -eq 0 ] && [ ! -s err ]
+result $? "and is a scene without a mistake"
+! grep -q sin ball_of_tape.krs
+result $? "without what does not count for it"
+run import ball.vm
+[ "$status" -eq 0 ] && cmp -s out ball_of_tape.krs
+result $? "or to standard output"
+
+# t of rays, to four digits.
+ask() { # scene, ray, t
+    printf '%s\n' "$2" | "$krs" query "$1" >out 2>err
+    status=$?
+    [ "$status" -eq 0 ] && [ "$(awk '{ printf "%.4f", $1 }' out)" = "$3" ]
+    result $? "a ray from $2 goes $3 to $1"
+}
+ask ball_of_tape.krs '0 -3 0 0 1 0' 2.2500
+ask ball_of_tape.krs '0.1 3 0 0 -1 0' 3.0000
+ask ball_of_tape.krs '3 -0.2 0 -1 0 0' 2.2772
+
+run import torus.jsurf -o torus.krs
+[ "$status" -eq 0 ] && [ ! -s err ]
+result $? "a surface of SURFER"
+run check torus.krs
+[ "$status" -eq 0 ] && [ ! -s err ]
+result $? "is a scene without a mistake"
+grep -q '^param b = 0.2 in \[0, 1\];$' torus.krs && ! grep -q '^param a' torus.krs
+result $? "with the parameters of its equation"
+grep -q 'within(sphere(2), open: true)' torus.krs
+result $? "in the ball of its zoom"
+grep -q '#ff0000 else #00ff00' torus.krs
+result $? "in the colours of its sides"
+[ "$(grep -c '^light' torus.krs)" -eq 1 ] && grep -q '^light { position: \[0, -202, 0\]' torus.krs
+result $? "with the lights that are on, where they are"
+grep -q 'eye: \[0, -8, 0\]' torus.krs && grep -q 'up: \[0, 0, 1\]' torus.krs &&
+    grep -q 'height: 4$' torus.krs
+result $? "and its camera"
+# The outer radius is 0.7; a sheet has a thickness of about 0.007.
+printf '5 0 0 -1 0 0\n' | "$krs" query torus.krs >out 2>err
+status=$?
+awk '{ exit !($1 > 4.29 && $1 < 4.301) }' out
+result $? "a ray meets the torus where it is"
+run render torus.krs --size 32x32 -o torus.png
+[ "$status" -eq 0 ] && [ -s torus.png ]
+result $? "it can be rendered"
+
+refused() { # file, text, words, what
+    printf '%b' "$2" >"$1"
+    run import "$1"
+    said 1 "$1:$3" "$4"
+}
+refused a.vm '_0 var-x\n_1 squre _0\n' '2: no operation is called `squre`; is it `square`?' "a misspelt operation"
+refused a.vm '_0 var-x\n\n_1 add _0\n' '3: `add` needs 2 arguments' "an argument that is missing"
+refused a.vm '_0 var-x\n_1 neg _0 _0\n' '2: `neg` has too many arguments' "an argument too much"
+refused a.vm '_0 neg _1\n_1 var-x\n' '1: no line before this one is called `_1`' "a name used before its line"
+refused a.vm '_0 const 1x\n' '1: `1x` is not a finite number' "a number that is none"
+refused a.vm '_0 const inf\n' '1: `inf` is not a finite number' "infinity"
+refused a.vm '_0\n' '1: a line is a name' "a line without an operation"
+refused a.vm '_0 const 1\n_1 sin _0' '2: what comes last does not depend' "a tape without coordinates"
+refused a.vm '# nothing\n' '1: there is no operation' "an empty tape"
+refused a.jsurf 'camera_height=2\n' '1: there is no surface_equation' "no equation"
+refused a.jsurf '\nsurface_equation=x^2+c\n' '2: the equation uses `c`, but there is no surface_parameter_c' "an unknown parameter"
+refused a.jsurf 'surface_equation=x^2+(y\n' '1: the equation ends where there should be' "an open parenthesis"
+refused a.jsurf 'surface_equation=x^2+2y\n' '1: the equation has `y` at place 6' "a product without its sign"
+refused a.jsurf 'surface_equation=x\\=0\n' '1: the equation has `=0` at place 2' "an equation with two sides"
+refused a.jsurf 'surface_equation=foo(x)\n' '1: no function is called `foo`' "an unknown function"
+refused a.jsurf 'surface_equation=x\nscale_factor=\n' '2: `scale_factor` needs 1 number' "a number that is missing"
+refused a.jsurf 'surface_equation=x\nscale_factor=9\n' '2: `scale_factor` leads out of' "too much zoom"
+refused a.jsurf 'surface_equation=x\nrotation_matrix=1 0 0 0 0 2 0 0 0 0 1 0 0 0 0 1\n' '2: `rotation_matrix` does more than turn' "a space that is stretched"
+refused a.jsurf 'surface_equation=x\ncamera_type=FISHEYE\n' '2: no camera is a `FISHEYE`' "an unknown camera"
+nested=$(awk 'BEGIN { for (i = 0; i < 5000; i++) printf "(" }')
+refused a.jsurf "surface_equation=$nested" '1: the equation is more than 60 deep' "parentheses without end"
+
+run import ball.krs
+said 2 "ends in neither .jsurf nor .vm" "a file of another kind"
+run import missing.vm
+said 74 "cannot read \`missing.vm\`" "a missing file"
+run import ball.vm -o nowhere/ball.krs
+said 73 "nowhere/ball.krs" "an output that cannot be created"
+printf '_0 var-x\0\n' >nul.vm
+run import nul.vm
+said 1 "not a text" "a NUL byte"
+
+# Damaged files: the exit status is 0 or 1, and what is written is understood or refused in turn.
+damaged() { # file, ending
+    size=$(wc -c <"$1") crashed=""
+    for turn in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24; do
+        at=$((turn * 7919 % size))
+        { head -c "$at" "$1"; printf "%b" "\\0$((turn * 37 % 256 / 64))$((turn * 37 % 64 / 8))$((turn % 8))"
+          [ $((turn % 3)) -eq 0 ] || tail -c +$((at + 1 + turn % 5)) "$1"; } >"damaged.$2"
+        run import "damaged.$2"
+        [ "$status" -le 1 ] || crashed="$crashed $turn:$status"
+        [ "$status" -eq 0 ] || continue
+        cp out damaged.krs
+        run check damaged.krs
+        [ "$status" -le 1 ] || crashed="$crashed $turn:check:$status"
+    done
+    [ -z "$crashed" ]
+    result $? "damaged files of .$2 do no harm$crashed"
+}
+damaged ball.vm vm
+damaged torus.jsurf jsurf
+head -c 65536 /dev/urandom | tr -d '\0' >noise.vm
+cp noise.vm noise.jsurf
+run import noise.vm
+[ "$status" -eq 1 ]
+result $? "noise for a tape"
+run import noise.jsurf
+[ "$status" -eq 1 ]
+result $? "noise for a surface"

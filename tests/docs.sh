@@ -1,0 +1,145 @@
+#!/bin/sh
+# docs.sh: the pages agree with the program.  Every scene in them checks; every statement,
+# function, method, property, kind and solid that the tables know is on docs/language.md, with
+# its parameters; every option, code and file that a page names exists.
+set -u
+cd "$(dirname "$0")/.." || exit 1
+krs=${KRS:-build/krs}
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+pages="README.md docs/language.md docs/library.md docs/architecture.md bench/README.md"
+failed=0
+report() { # status, name
+    if [ "$1" -eq 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failed=1; fi
+}
+# Prints nothing: $work/said is what is wrong.
+none() { # name
+    [ ! -s "$work/said" ]
+    report $? "$1"
+    sed 's/^/# /' "$work/said"
+}
+
+# ---- scenes ----
+for page in $pages; do
+    name=$(basename "$page" .md)
+    awk -v stem="$work/$name" '
+        /^```/ { inside = !inside; file = stem "-" FNR ".krs"; chosen = $0 == "```krs"; next }
+        inside && chosen { print > file }' "$page"
+done
+for scene in "$work"/*.krs; do
+    "$krs" check --color never "$scene" >"$work/said" 2>&1
+    none "the scene of $(basename "$scene" .krs | sed 's/-/.md, line /') has no mistake, no warning"
+done
+ls "$work"/README-*.krs "$work"/language-*.krs >/dev/null
+report $? "there are such scenes"
+
+# ---- the language ----
+# What is between backquotes, a line each; signatures without colons and dots.
+spans() {
+    # shellcheck disable=SC2016 # backquotes that are meant
+    awk '/^```/ { inside = !inside; next } !inside' "$1" | sed 's/\\|/|/g' | grep -o '`[^`]*`' |
+        tr -d '`'
+}
+spans docs/language.md >"$work/spans"
+sed 's/:\([,)]\)/\1/g; s/\.\.\.//g' "$work/spans" >"$work/signatures"
+grep -v '^\.' "$work/signatures" | grep -o '[A-Za-z_][A-Za-z_0-9]*' | sort -u >"$work/words"
+
+# Of `name(parameter, parameter)` on standard input: what is not there.  Where the page has the
+# name with parentheses, it must have these parameters.
+undocumented() {
+    while read -r wanted; do
+        name=${wanted%%(*}
+        if grep -q -- "^$name(" "$work/signatures"; then
+            grep -qF -- "$wanted" "$work/signatures" || echo "$wanted"
+        else
+            grep -qxF -- "$name" "$work/words" || echo "$name"
+        fi
+    done >"$work/said"
+}
+# The tables have "a b= c...".
+signature() { sed 's/=//g; s/\.\.\.//g; s/  *)/)/; s/ /, /g'; }
+
+words='STATEMENT\|CONTROL\|OPERATOR_WORD\|CONSTANT'
+sed -n "s/^TOKEN([A-Z_]*, *\"\([a-z]*\)\", *\($words\))/\1/p" compiler/front/token.def |
+    undocumented
+none "every word of the language is on its page"
+sed -n '/not_supported/d; s/^\(NUMERIC\|SPECIAL\)(\([a-z_0-9]*\), *"\([^"]*\)".*/\2(\3)/p' \
+    compiler/geometry/functions.def | signature | undocumented
+none "every function is on the page, with its parameters"
+sed -n '/not_supported/d; s/^METHOD(\([a-z_]*\), *"\([^"]*\)".*/.\1(\2)/p' \
+    compiler/geometry/methods.def | signature | while read -r wanted; do
+        grep -qF -- "$wanted" "$work/signatures" || echo "$wanted"
+    done >"$work/said"
+none "every method is on the page, with its parameters"
+sed -n 's/^\(BLEND\|FALLOFF\|PALETTE\)([A-Z_, ]*"\([a-z]*\)".*/\2/p' \
+    compiler/geometry/blends.def compiler/geometry/falloffs.def compiler/geometry/palettes.def |
+    while read -r kind; do
+        grep -qF -- "\"$kind\"" "$work/spans" || echo "$kind"
+    done >"$work/said"
+none "every kind of blend and falloff and every palette is on the page"
+
+# The row of a block names its properties.
+tr '{' '\n' <compiler/geometry/looks.c |
+    sed -n 's/^SYNTAX_\([A-Z]*\), "\([a-z_]*\)", false}.*/\1 \2/p' |
+    while read -r block property; do
+        row=$(echo "$block" | tr '[:upper:]' '[:lower:]')
+        grep "^| \`${row}[ \`]" docs/language.md |
+            grep -q "[\` ]${property}[\`:]" || echo "$property of $block"
+    done >"$work/said"
+none "every property of a look is in the row of its block"
+sed -n '/property_names\[\]/,/};/p' compiler/geometry/declare.c | grep -o '"[a-z]*"' |
+    tr -d '"' >"$work/properties"
+[ -s "$work/properties" ]
+report $? "the properties of shapes are found"
+while read -r property; do
+    grep -q "^| \`${property}[\`:]" docs/language.md || echo "$property"
+done <"$work/properties" >"$work/said"
+none "every property of a shape has a row"
+
+# What the library declares over several lines is joined; defaults do not matter.
+for file in compiler/library/*.krs compiler/library/std/*.krs; do
+    awk '/^(shape|def) [a-z]/ { open = 1; text = "" }
+         open { text = text " " $0 }
+         open && /\)( =| \{)/ { print text; open = 0 }' "$file"
+done >"$work/declared"
+awk '{
+    sub(/^ *(shape|def) /, ""); depth = 0; out = ""; skip = 0
+    for (i = 1; i <= length($0); i++) {
+        c = substr($0, i, 1)
+        if (c ~ /[(\[]/) depth++
+        if (c ~ /[)\]]/) depth--
+        if (depth == 1 && c == "=") skip = 1
+        if (depth == 1 && c == ",") skip = 0
+        if (depth == 0 && c == ")") { out = out ")"; break }
+        if (!skip && c != " ") out = out (c == "," ? ", " : c)
+    }
+    print out
+}' "$work/declared" >"$work/library"
+sed 's/, k)/)/; s/, done)/)/' "$work/library" | undocumented
+none "what the library declares is on the page, with its parameters"
+[ "$(wc -l <"$work/library")" -gt 60 ]
+report $? "the library's declarations are found"
+
+# ---- options, codes, files ----
+sed -n 's/^OPTION([A-Z_]*, *[^,]*, *"\([a-z-]*\)".*/--\1/p' cli/options.def >"$work/options"
+sed -n 's/.*"usage: bench \(.*\)/\1/p' bench/bench.c | grep -o -e '--[a-z-]*' >>"$work/options"
+echo --version >>"$work/options"
+# shellcheck disable=SC2086 # several pages
+grep -ho -e '[` ]--[a-z][a-z-]*' $pages | tr -d '` ' | sort -u |
+    grep -vxF -f "$work/options" >"$work/said"
+none "every option that a page names exists"
+# shellcheck disable=SC2086
+grep -ho '\<[EW][0-9]\{4\}\>' $pages | sort -u | while read -r code; do
+    grep -q "^DIAG($code," compiler/base/diag.def || echo "$code"
+done >"$work/said"
+none "every diagnostic that a page names exists"
+find . -name build -prune -o -type f -print >"$work/files"
+kinds='c\|h\|def\|cpp\|comp\|glsl\|ebnf\|sh\|png'
+for page in $pages; do
+    spans "$page"
+    sed 's/[](),;:]/ /g' "$page" | tr ' ' '\n' | grep /
+done | grep -x "[a-z][A-Za-z0-9_/.-]*\.\($kinds\|krs\)" | sort -u | while read -r file; do
+    grep -q "\(^\|/\)$(echo "$file" | sed 's/\./\\./g')\$" "$work/files" || echo "$file"
+done >"$work/said"
+none "every file that a page names exists"
+exit $failed

@@ -1,0 +1,291 @@
+/*
+ * stencils.c: the normals of pictures, by each stencil and by derivatives.
+ *
+ * By derivatives they are held against closed forms, and for scenes of every kind against
+ * differences of the distance in double precision at the position that the picture has; where two
+ * differences of different width do not agree there is an edge, and no normal.  By stencils they must
+ * agree with those by derivatives within what their order promises: r k for differences of first
+ * order, (r k)^2 for those of second, r the reach and k the largest curvature.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "runtime/krs_vulkan.h"
+
+enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
+
+static KrsRenderer *renderer;
+
+static int start(void **state)
+{
+    (void)state;
+    return krs_renderer_new(&(KrsRendererOptions){.device = "cpu"}, &renderer) != KRS_OK;
+}
+
+static int stop(void **state)
+{
+    (void)state;
+    krs_renderer_free(renderer);
+    return 0;
+}
+
+typedef struct Stage {
+    KrsScene     *scene;
+    KrsFrame     *frame;
+    KrsRendering *rendering;
+} Stage;
+
+static Stage stage_open(const char *text)
+{
+    Stage      stage;
+    KrsOptions options = {.gradients = true};
+    if (krs_compile_text(text, strlen(text), "scene.krs", &options, &stage.scene) != KRS_OK)
+        fail_msg("does not compile: %s", text);
+    assert_int_equal(krs_frame_new(stage.scene, &stage.frame), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, stage.scene, &stage.rendering), KRS_OK);
+    return stage;
+}
+
+static void stage_close(Stage *stage)
+{
+    krs_rendering_free(stage->rendering);
+    krs_frame_free(stage->frame);
+    krs_scene_free(stage->scene);
+}
+
+static KrsPicture *shoot(Stage *stage, KrsNormals normals)
+{
+    KrsPicture      *picture;
+    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .error = 0.01, .no_filter = true,
+                                .planes = KRS_PLANE_NORMAL | KRS_PLANE_POSITION | KRS_PLANE_DEPTH,
+                                .normals = normals};
+    if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(renderer));
+    return picture;
+}
+
+/* Radians. */
+static double angle(const float a[3], const double b[3])
+{
+    double cross[3], dot = 0;
+    for (int i = 0; i < 3; i++) {
+        int k = (i + 1) % 3, m = (i + 2) % 3;
+        cross[i] = a[k] * b[m] - a[m] * b[k];
+        dot += a[i] * b[i];
+    }
+    return atan2(sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]), dot);
+}
+
+/* ---- closed forms ---- */
+
+typedef void Closed(const double p[3], double n[3]);
+
+static void normal_of_torus(const double p[3], double n[3])
+{
+    double away = hypot(p[0], p[2]), side = (away - 1) / away;
+    n[0] = p[0] * side;
+    n[1] = p[1];
+    n[2] = p[2] * side;
+}
+
+/* (1 + 2 g) (r^2 - 1)^2 = 4 (h x^2 - y^2) (h y^2 - z^2) (h z^2 - x^2), h = g^2, g golden */
+static void normal_of_barth(const double p[3], double n[3])
+{
+    const double g = (1 + sqrt(5)) / 2, h = g * g;
+    double s[3] = {p[0] * p[0], p[1] * p[1], p[2] * p[2]};
+    double a = h * s[0] - s[1], b = h * s[1] - s[2], c = h * s[2] - s[0];
+    double ball = 4 * (1 + 2 * g) * (s[0] + s[1] + s[2] - 1);
+    n[0] = p[0] * (ball - 8 * (h * b * c - a * b));
+    n[1] = p[1] * (ball - 8 * (h * a * c - b * c));
+    n[2] = p[2] * (ball - 8 * (h * a * b - a * c));
+}
+
+static void agrees_with(const char *text, Closed *closed, double largest, double radius)
+{
+    Stage       stage   = stage_open(text);
+    KrsPicture *picture = shoot(&stage, KRS_NORMALS_ANALYTIC);
+    size_t      seen    = 0;
+    double      worst   = 0;
+    for (size_t i = 0; i < PIXELS; i++) {
+        double p[3], n[3];
+        for (int k = 0; k < 3; k++)
+            p[k] = picture->position[3 * i + k];
+        if (isinf(picture->depth[i]) || p[0] * p[0] + p[1] * p[1] + p[2] * p[2] > radius * radius)
+            continue;
+        closed(p, n);
+        worst = fmax(worst, angle(&picture->normal[3 * i], n));
+        seen++;
+    }
+    krs_picture_free(picture);
+    stage_close(&stage);
+    if (seen < PIXELS / 10 || worst > largest)
+        fail_msg("%zu pixels, worst %g: %s", seen, worst, text);
+}
+
+static void derivatives_agree_with_closed_forms(void **state)
+{
+    (void)state;
+    agrees_with("camera { eye: [1, 3, 3] } show torus(1, 0.4);", normal_of_torus, 1e-5, 10);
+    agrees_with("use \"std/surfaces.krs\"; camera { eye: [2, 1.5, 3.5] } show barth_sextic();",
+                normal_of_barth, 2e-2, 2.19);
+}
+
+/* ---- differences ---- */
+
+/* The gradient of the distance by differences of two widths; false where they do not agree. */
+static bool differences(KrsFrame *frame, const float at[3], double n[3])
+{
+    const double steps[2] = {1e-5, 2e-5};
+    double       found[2][3], apart = 0, size = 0;
+    for (int i = 0; i < 6; i++) {
+        KrsHit hits[2];
+        double points[2][3] = {{at[0], at[1], at[2]}, {at[0], at[1], at[2]}};
+        points[0][i % 3] -= steps[i / 3];
+        points[1][i % 3] += steps[i / 3];
+        krs_probe(frame, (const double (*)[3])points, 2, hits);
+        found[i / 3][i % 3] = (hits[1].distance - hits[0].distance) / (2 * steps[i / 3]);
+    }
+    for (int k = 0; k < 3; k++) {
+        n[k]  = found[0][k];
+        apart = fmax(apart, fabs(found[0][k] - found[1][k]));
+        size  = fmax(size, fabs(n[k]));
+    }
+    return apart < 1e-3 * size;
+}
+
+static void agrees_with_differences(const char *text)
+{
+    Stage       stage   = stage_open(text);
+    KrsPicture *picture = shoot(&stage, KRS_NORMALS_ANALYTIC);
+    size_t      seen = 0, hit = 0, wrong = 0;
+    double      worst = 0;
+    for (size_t i = 0; i < PIXELS; i++) {
+        double n[3];
+        hit += !isinf(picture->depth[i]);
+        if (isinf(picture->depth[i]) || !differences(stage.frame, &picture->position[3 * i], n))
+            continue;
+        double off = angle(&picture->normal[3 * i], n);
+        worst = fmax(worst, off);
+        wrong += off > 5e-3;
+        seen++;
+    }
+    krs_picture_free(picture);
+    stage_close(&stage);
+    if (getenv("KRS_TELL"))
+        fprintf(stderr, "%zu hit, %zu told, %zu wrong, worst %g: %.60s\n", hit, seen, wrong, worst,
+                text);
+    if (seen * 5 < hit * 4 || hit < PIXELS / 20 || wrong * 500 > seen)
+        fail_msg("%zu hit, %zu told, %zu wrong, worst %g: %s", hit, seen, wrong, worst, text);
+}
+
+static void derivatives_agree_with_differences(void **state)
+{
+    (void)state;
+    static const char *const scenes[] = {
+        "camera { eye: [2, 3, 5] } show box([1, 1.4, 0.8]) - sphere(0.7).move([0.4, 0.3, 0.4]);"
+        "show plane([0, 1, 0], -0.8) & box([8, 2, 8]);",
+        "camera { eye: [3, 2, 4], fov: 35deg }"
+        "show union([torus(1, 0.3), cylinder(0.4, 1.6)], blend: 0.2);"
+        "show ellipsoid([0.4, 0.2, 0.3]).move([1.2, 0.7, 0]).scale([1, 2, 1]);",
+        "camera { eye: [0, 4, 6] } show capsule([0, 0, 0], [0, 0.6, 0], 0.15)"
+        ".repeat([0.8, 0, 0.8], [5, 1, 5]);"
+        "show cone(0.3, 0.6).move([1.8, 0.9, 0]).repeat_polar(9);",
+        "camera { eye: [0, 2, 9], fov: 50deg } show krs { kernel sphere(0.35); for i in 0..6 {"
+        "reflect plane([sin(i), cos(i), 0.3 * i], 0.2 + 0.1 * i); } };",
+        "camera { eye: [2, 2, 5] } show box([0.8, 2, 0.8]).twist(axis: [0, 1, 0], rate: 0.5);"
+        "show torus(0.8, 0.2).move([2, 0, 0]).round(0.05);",
+        "camera { eye: [3, 2, 4] } show field(sin(3 * x) * sin(3 * y) + sin(3 * z) - 0.2)"
+        ".within(sphere(1.4));",
+        "use \"std/surfaces.krs\"; camera { eye: [3, 2, 4] }"
+        "show clebsch(2).rotate([0, 1, 0], 30deg) - box([1, 1, 1]).move([1, 1, 1]);",
+        "camera { eye: [3, 2, 4] } show sphere(1).displace(0.2 * sin(4 * x) * cos(5 * y));"
+        "show meta([sphere(0.3).move([1.5 + 0.2 * i, 0.4 * i, 0]) for i in 0..3], level: 0.5);",
+        "camera { eye: [0.2, 3, 8], fov: 30deg } show krs { kernel sphere(0.3).move([1, 0, 0]);"
+        "mobius translate([0.4, 0, 0]) * rotate([0, 1, 0], 50deg) * scale(0.8);"
+        "mobius reflect(plane([0, 1, 0], 0)) * invert(center: [0, -6, 0], radius: 6); };",
+        "camera { eye: [3, 2, 4] } show julia([-0.2, 0.6, 0.2, 0.2]);"
+        "show sphere(0.4).move([1.4, 0, 0]);",
+        "camera { eye: [3, 2, 4] } zone { center: [1, 0.7, 1], radius: 0.8 } show sphere(1.2);",
+    };
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++)
+        agrees_with_differences(scenes[i]);
+}
+
+/* ---- stencils ---- */
+
+/* A torus, whose largest curvature is known, seen from nearby. */
+static void stencils_keep_their_order(void **state)
+{
+    (void)state;
+    static const double curvature = 1 / 0.4;
+    Stage       stage = stage_open("camera { eye: [1, 3, 3], fov: 40deg } show torus(1, 0.4);");
+    for (KrsNormals normals = KRS_NORMALS_DEFAULT; normals < KRS_NORMALS_ANALYTIC; normals++) {
+        KrsPicture *picture = shoot(&stage, normals);
+        bool        first   = normals == KRS_NORMALS_FORWARD || normals == KRS_NORMALS_TETRAHEDRON;
+        double      worst   = 0, most = 0;
+        size_t      seen    = 0;
+        for (size_t i = 0; i < PIXELS; i++) {
+            double p[3], n[3];
+            if (isinf(picture->depth[i]))
+                continue;
+            for (int k = 0; k < 3; k++)
+                p[k] = picture->position[3 * i + k];
+            normal_of_torus(p, n);
+            double away  = sqrt(pow(p[0] - 1, 2) + pow(p[1] - 3, 2) + pow(p[2] - 3, 2));
+            double reach = fmax(0.5 * away * 2 * tan(0.5 * 40 * acos(-1) / 180) / HEIGHT, 3e-4 * 2);
+            double error = angle(&picture->normal[3 * i], n);
+            double bound = reach * curvature;
+            bound = (first ? bound : bound * bound) + 1e-3;
+            worst = fmax(worst, error / bound);
+            most  = fmax(most, error);
+            seen++;
+        }
+        krs_picture_free(picture);
+        if (getenv("KRS_TELL"))
+            fprintf(stderr, "%s: %zu, worst %g, %g of the bound\n", krs_normals_names[normals], seen,
+                    most, worst);
+        if (seen < PIXELS / 10 || worst > 1)
+            fail_msg("%s: %zu pixels, worst %g of the bound", krs_normals_names[normals], seen,
+                     worst);
+        /* What is of first order shows it. */
+        assert_true(most > (first ? 5e-3 : 0));
+    }
+    stage_close(&stage);
+}
+
+static void analytic_normals_are_asked_for_in_time(void **state)
+{
+    (void)state;
+    const char   *text = "show sphere(1);";
+    Stage         stage;
+    KrsPicture   *picture;
+    KrsRenderOptions options = {.width = 16, .height = 16, .normals = KRS_NORMALS_ANALYTIC};
+    assert_int_equal(krs_compile_text(text, strlen(text), "s.krs", NULL, &stage.scene), KRS_OK);
+    assert_int_equal(krs_frame_new(stage.scene, &stage.frame), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, stage.scene, &stage.rendering), KRS_OK);
+    assert_int_equal(krs_render(stage.rendering, stage.frame, &options, &picture),
+                     KRS_BAD_ARGUMENT);
+    assert_non_null(strstr(krs_renderer_message(renderer), "gradients"));
+    options.normals = KRS_NORMALS_COUNT;
+    assert_int_equal(krs_render(stage.rendering, stage.frame, &options, &picture),
+                     KRS_BAD_ARGUMENT);
+    stage_close(&stage);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(derivatives_agree_with_closed_forms),
+        cmocka_unit_test(derivatives_agree_with_differences),
+        cmocka_unit_test(stencils_keep_their_order),
+        cmocka_unit_test(analytic_normals_are_asked_for_in_time),
+    };
+    cmocka_set_message_output(CM_OUTPUT_TAP);
+    return cmocka_run_group_tests(tests, start, stop);
+}

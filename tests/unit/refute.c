@@ -1,0 +1,332 @@
+/*
+ * The attempt to refute: what is wrong in one small place is found, and blamed on the right shape;
+ * what is true is not refuted; the same search does the same each time.
+ *
+ * Searches of distances that this file makes, one wrong in each way, and whole scenes whose claims
+ * are false where 400 samples do not see it.  That a wrong rule of the compiler is found, too, was
+ * tried by hand: with the factor of a chamfer, the least factor of `.scale`, the neighbours of
+ * `.repeat` and the scale of a sequence spoilt, `krs validate` named the union, the scale, the
+ * repetition and the sequence.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "compiler/search.h"
+
+#include "compiler/compile.h"
+
+/* ---- distances made by hand ---- */
+
+typedef struct Bench {
+    Memory memory;
+    Arena  arena;
+    Graph *graph;
+} Bench;
+
+static jmp_buf out_of_memory;
+static const Box around_ball = {{{-1, 1}, {-1, 1}, {-1, 1}}};
+
+static int bench_start(void **state)
+{
+    static Bench bench;
+    bench       = (Bench){.memory = {.exhausted = &out_of_memory}};
+    bench.arena = (Arena){.memory = &bench.memory};
+    bench.graph = graph_new(&bench.arena);
+    *state      = &bench;
+    return 0;
+}
+
+static int bench_stop(void **state)
+{
+    arena_free(&((Bench *)*state)->arena);
+    return 0;
+}
+
+/* The distance to the unit ball. */
+static Node ball(Bench *b)
+{
+    Node point = graph_leaf(b->graph, OP_POINT), one = graph_number(b->graph, 1);
+    Node away  = graph_op1(b->graph, OP_length, point);
+    return graph_op2(b->graph, OP_sub, away, one);
+}
+
+/* The distance from a place near the ball's surface. */
+static Node from_spot(Bench *b)
+{
+    Node point = graph_leaf(b->graph, OP_POINT), spot = graph_vec3(b->graph, 0.36, 0.48, 0.82);
+    Node away  = graph_op2(b->graph, OP_sub, point, spot);
+    return graph_op1(b->graph, OP_length, away);
+}
+
+static Search search(Bench *b, Node distance, Box box, bool steep, uint64_t operations)
+{
+    NodeValue parameters[1] = {{{0}}};
+    Search    s;
+    assert_true(search_new(&s, b->graph, distance, box, &b->arena));
+    s.steep  = steep;
+    s.random = 1;
+    assert_true(search_start(&s, parameters));
+    search_run(&s, operations);
+    return s;
+}
+
+static void what_is_true_stays(void **state)
+{
+    for (int steep = 0; steep < 2; steep++) {
+        Search s = search(*state, ball(*state), around_ball, steep, 5000000);
+        assert_false(search_refuted(&s));
+        assert_true(s.worst.ratio > 0.999); /* and has been tried hard */
+    }
+}
+
+static void a_thousandth_too_much_is_found(void **state)
+{
+    Bench *b      = *state;
+    Node   factor = graph_number(b->graph, 1.001);
+    Node   longer = graph_op2(b->graph, OP_mul, ball(b), factor);
+    for (int steep = 0; steep < 2; steep++) {
+        Search s = search(b, longer, around_ball, steep, 5000000);
+        assert_true(search_refuted(&s));
+        assert_int_equal(s.worst.fault, steep ? FAULT_STEEP : FAULT_LONG);
+        assert_float_equal(s.worst.ratio, 1.001, 1e-5);
+    }
+}
+
+/* Of a volume of 10^-7 of the box: random points do not meet it. */
+static void a_small_jump_is_found(void **state)
+{
+    Bench *b     = *state;
+    Node   small = graph_number(b->graph, 0.004), high = graph_number(b->graph, 0.5);
+    Node   near  = graph_op2(b->graph, OP_less, from_spot(b), small);
+    Node   jump  = graph_op3(b->graph, OP_select, near, high, ball(b));
+    Search s     = search(b, jump, around_ball, true, 2000000);
+    assert_true(search_refuted(&s));
+    assert_true(s.worst.ratio > 1000);
+    double off = hypot(hypot(s.worst.p[0] - 0.36, s.worst.p[1] - 0.48), s.worst.p[2] - 0.82);
+    assert_true(off < 0.01);
+}
+
+/* 0.01 exp(-(away / 0.005)^2): without any branch. */
+static void a_small_spike_is_found(void **state)
+{
+    Bench *b     = *state;
+    Node   width = graph_number(b->graph, -1 / (0.005 * 0.005));
+    Node   high  = graph_number(b->graph, 0.01);
+    Node   power = graph_op2(b->graph, OP_mul, graph_op1(b->graph, OP_square, from_spot(b)), width);
+    Node   spike = graph_op2(b->graph, OP_mul, graph_op1(b->graph, OP_exp, power), high);
+    Node   bad   = graph_op2(b->graph, OP_add, ball(b), spike);
+    Search s     = search(b, bad, around_ball, true, 2000000);
+    assert_true(search_refuted(&s));
+    assert_true(s.worst.ratio > 2);
+}
+
+static void what_is_outside_of_the_box_is_found(void **state)
+{
+    Box    low = {{{-1, 1}, {-1, 1}, {-1, 0.99}}};
+    Search s   = search(*state, ball(*state), low, true, 1000000);
+    assert_true(search_refuted(&s));
+    assert_int_equal(s.worst.fault, FAULT_OUTSIDE);
+    assert_true(s.worst.p[2] > 0.99 && s.worst.at_p < 0);
+}
+
+static void what_is_not_a_number_is_found(void **state)
+{
+    Bench *b    = *state;
+    Node   room = graph_op2(b->graph, OP_sub, from_spot(b), graph_number(b->graph, 0.001));
+    Node   root = graph_op1(b->graph, OP_sqrt, room); /* of what is negative in a small ball */
+    Node   bad  = graph_op2(b->graph, OP_min, ball(b), root);
+    bad         = graph_op2(b->graph, OP_add, bad, graph_op2(b->graph, OP_mul, root,
+                                                             graph_number(b->graph, 1e-9)));
+    Search s    = search(b, bad, around_ball, true, 2000000);
+    assert_true(search_refuted(&s));
+    assert_int_equal(s.worst.fault, FAULT_NAN);
+}
+
+/* ---- whole scenes ---- */
+
+typedef struct Said {
+    uint32_t line, count;
+    char     code[8], text[4000];
+} Said;
+
+static void take(void *user, const KrsDiagnostic *diagnostic)
+{
+    Said *said = user;
+    said->count++;
+    said->line = diagnostic->line;
+    snprintf(said->code, sizeof said->code, "%s", diagnostic->code);
+    snprintf(said->text, sizeof said->text, "%s", diagnostic->text);
+}
+
+static KrsStatus refute(const char *text, double seconds, Said *said, KrsRefutation *result)
+{
+    char path[] = "/tmp/krs-refute-XXXXXX";
+    int  file   = mkstemp(path);
+    assert_true(file >= 0 && write(file, text, strlen(text)) == (ssize_t)strlen(text));
+    close(file);
+    *said = (Said){0};
+    KrsOptions       options = {.diagnostic = take, .user = said};
+    KrsRefuteOptions how     = {.seconds = seconds, .seed = 3};
+    KrsStatus        status  = krs_refute(path, &options, &how, result);
+    unlink(path);
+    return status;
+}
+
+/* Wrong at `line`: that shape is to blame. */
+static void assert_blamed(const char *text, uint32_t line, const char *words)
+{
+    Said          said;
+    KrsRefutation result;
+    assert_int_equal(refute(text, 1, &said, &result), KRS_BAD_SCENE);
+    assert_true(result.refuted);
+    assert_int_equal(said.count, 1);
+    assert_string_equal(said.code, "E0411");
+    assert_int_equal(said.line, line);
+    assert_non_null(strstr(said.text, words));
+}
+
+static void a_false_claim_of_exactness_is_blamed(void **state)
+{
+    (void)state;
+    assert_blamed("shape dented() {\n"
+                  "  distance: length(p) - 1 +\n"
+                  "    0.02 * exp(-40000 * length(p - [0.6, 0.48, 0.64]) ^ 2),\n"
+                  "  exact: true, within: box([3, 3, 3])\n"
+                  "}\n"
+                  "let part =\n"
+                  "  dented();\n"
+                  "show (part.scale(0.5).move([1, 2, 3]) | sphere(0.2))\n"
+                  "  .mirror(plane([0, 1, 0], 4));\n",
+                  7, "`exact` is claimed");
+}
+
+static void a_false_slope_is_blamed(void **state)
+{
+    (void)state;
+    assert_blamed("param k = 2 in [1, 9];\n"
+                  "shape waves(k) { distance: y + 0.3 * sin(k * x), slope: 1.5 }\n"
+                  "show sphere(2) &\n"
+                  "  waves(k);\n",
+                  4, "with k = ");
+}
+
+static void a_false_box_is_blamed(void **state)
+{
+    (void)state;
+    assert_blamed("shape horned() {\n"
+                  "  distance: min(length(p) - 1, length(p - [0.3, 0.41, 1.06]) - 0.02),\n"
+                  "  exact: true, within: box([2, 2, 2])\n"
+                  "}\n"
+                  "show box([1, 1, 1]).move([4, 0, 0]);\n"
+                  "show horned();\n",
+                  6, "outside of its box");
+}
+
+/* Two parts, of which one may not be shown at all: it is looked at by itself. */
+static void a_part_that_is_hidden_is_found(void **state)
+{
+    (void)state;
+    assert_blamed("shape steep() { distance: if x < 9 then length(p) - 1 else 3 * length(p) - 1,\n"
+                  "  exact: true, within: box([2, 2, 2]) }\n"
+                  "show box([40, 40, 40]) |\n"
+                  "  steep();\n",
+                  4, "this shape is to blame");
+}
+
+static void honest_scenes_pass(void **state)
+{
+    (void)state;
+    static const char *const scenes[] = {
+        "show torus(1, 0.3) | box([1, 1, 1]).rotate([1, 2, 3], 40deg) - sphere(0.6);",
+        "show union(sphere(1), box([1, 1, 1]).move([1, 0, 0]), blend: 0.2, kind: \"chamfer\");",
+        "show krs { kernel sphere(0.3).move([-0.5, -0.6, 0]); reflect plane([1, 0, 0], 0.1);\n"
+        "           reflect plane([0, 1, 0.2], -0.2); }.shell(0.1);",
+        "param a = 0.3 in [0.1, 1]; show cone(0.3, 1).repeat([2, 2, 0], [3, 3, 1]).offset(a / 4);",
+        "shape knot() { distance: (x ^ 2 + y ^ 2 + z ^ 2) ^ 2 - x, within: box([2.4, 2.4, 2.4]) }\n"
+        "show knot().offset(0.3);", /* of a slope that has no bound outside of the box */
+        "show field(sin(5 * x) * cos(5 * y) + sin(5 * y) * cos(5 * z) + sin(5 * z) * cos(5 * x))"
+        ".within(sphere(2)).offset(0.01);", /* solid beyond the sides of its region */
+        "show ellipsoid([0.5, 0.02, 0.12]).shell(0.2) | torus(1, 0.3).scale([1, 3, 1]).offset(0.4);"
+        "param twist = 1 in [0, 3];"
+        "show box([1, 2, 1]).twist([0, 1, 0], twist).taper([0, 1, 0], 1, 0.4);",
+    };
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
+        Said          said;
+        KrsRefutation result;
+        KrsStatus     status = refute(scenes[i], 0.3, &said, &result);
+        if (status != KRS_OK)
+            print_message("%s\n", said.text);
+        assert_int_equal(status, KRS_OK);
+        assert_true(!result.refuted && result.shapes > 0 && result.evaluations > 1000);
+        assert_true(result.steepest > 0.9 && result.steepest <= 1.000001);
+    }
+}
+
+static void an_estimate_is_only_measured(void **state)
+{
+    (void)state;
+    Said          said;
+    KrsRefutation result;
+    assert_int_equal(refute("show mandelbulb(8);", 0.2, &said, &result), KRS_OK);
+    assert_int_equal(result.estimates, 1);
+    assert_true(result.longest > 0.3 && result.longest <= 1);
+    assert_true(result.steepest == 0);
+}
+
+static void the_search_is_the_same_each_time(void **state)
+{
+    (void)state;
+    Said          said;
+    KrsRefutation first, second;
+    const char   *text = "param a = 1 in [0.5, 2]; show torus(a, 0.3) | box([1, 1, 1]);";
+    assert_int_equal(refute(text, 0.1, &said, &first), KRS_OK);
+    assert_int_equal(refute(text, 0.1, &said, &second), KRS_OK);
+    assert_true(first.steepest == second.steepest && first.evaluations == second.evaluations);
+    assert_int_equal(first.settings, 6);
+}
+
+static bool stop(void *user, double fraction)
+{
+    (void)user, (void)fraction;
+    return false;
+}
+
+static void a_search_can_be_stopped(void **state)
+{
+    (void)state;
+    KrsRefutation    result;
+    KrsRefuteOptions how = {.seconds = 1e6, .go_on = stop};
+    assert_int_equal(krs_refute("examples/01-hello.krs", NULL, &how, &result), KRS_INTERRUPTED);
+    assert_int_equal(krs_refute("no-such-scene.krs", NULL, &how, &result), KRS_IO_ERROR);
+}
+
+int main(void)
+{
+#define BENCH(test) cmocka_unit_test_setup_teardown(test, bench_start, bench_stop)
+    const struct CMUnitTest tests[] = {
+        BENCH(what_is_true_stays),
+        BENCH(a_thousandth_too_much_is_found),
+        BENCH(a_small_jump_is_found),
+        BENCH(a_small_spike_is_found),
+        BENCH(what_is_outside_of_the_box_is_found),
+        BENCH(what_is_not_a_number_is_found),
+        cmocka_unit_test(a_false_claim_of_exactness_is_blamed),
+        cmocka_unit_test(a_false_slope_is_blamed),
+        cmocka_unit_test(a_false_box_is_blamed),
+        cmocka_unit_test(a_part_that_is_hidden_is_found),
+        cmocka_unit_test(honest_scenes_pass),
+        cmocka_unit_test(an_estimate_is_only_measured),
+        cmocka_unit_test(the_search_is_the_same_each_time),
+        cmocka_unit_test(a_search_can_be_stopped),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
