@@ -35,5 +35,5 @@ inverted: $(B)/bench/inverted/inverted
 SCRIPTS += tests/bench.sh
 test-programs: $(B)/bench/bench
 clang-objects: $(BENCH:%.c=$(B)/%.o) $(B)/bench/minify/minify.o \
-               $(B)/bench/iterations/iterations.o
-.PHONY: bench bench-quick minify iterations
+               $(B)/bench/iterations/iterations.o $(B)/bench/inverted/inverted.o
+.PHONY: bench bench-quick minify iterations inverted

@@ -242,9 +242,10 @@ static void tell_triangles(const Triangles *triangles, Text *text)
         {"paper, simple, us/ray", "%.0f", 21},
     };
     text_format(text, "\n## A ray against triangles\n\nBeams, primary rays and normals, and the"
-                      " table of the 2014 paper (section 8), which does not say what it was measured on:"
-                      " what can be compared is the growth.  A branch of the tree counts as 2^%d"
-                      " triangles, a facet of the terrain as 2.\n\n", BRANCH_DOUBLINGS);
+                      " table of the 2014 paper (section 8), which does not say what it was"
+                      " measured on: what can be compared is the growth.  A branch of the tree"
+                      " counts as 2^%d triangles, a facet of the terrain as 2.\n\n",
+                BRANCH_DOUBLINGS);
     add_titles(text, "triangles", NAME_WIDTH, columns, 4);
     for (size_t i = 0; i < triangles->count; i++) {
         const TriangleRow *row = &triangle_rows[i];

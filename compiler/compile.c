@@ -592,7 +592,8 @@ static void emit(Compilation *c)
                            .anchored     = scene->program.anchored ? anchored_roots(c) : NULL,
                            .precise_slot = (uint32_t)scene->graph->parameters.count + KRS_MOST_ZONES,
                            .ahead        = flats,
-                           .gradient     = scene->program.gradients ? flats + FLAT_ROOTS : NULL},
+                           .gradient =
+                               scene->program.gradients ? flats + FLAT_ROOTS : NULL},
               &c->scratch, &glsl);
     scene->program.glsl            = glsl.bytes;
     scene->program.glsl_length     = glsl.length;

@@ -2,8 +2,8 @@
  * search.c: points that refute a distance: where they are looked for, and how finds are improved.
  *
  * An operation is a target where it branches, jumps or is steepest: a comparison where both sides
- * are equal, a quotient where its divisor is 0, an exponential where its argument is largest.  From a
- * random point, steps along the gradient of that expression lead there, also into a region too
+ * are equal, a quotient where its divisor is 0, an exponential where its argument is largest.  From
+ * a random point, steps along the gradient of that expression lead there, also into a region too
  * thin for random points to meet.  A pair that is steep on average has a half that is at least as
  * steep, so pairs climb to where a distance jumps by being halved.
  */

@@ -32,7 +32,8 @@ of_entries="method by_hand error ms total without_shadows_and_occlusion wall cpu
             hit_differs depth_differs inside_differs inside depth_error"
 of_ours="trace schedule beams gflops peak_share primary normals shadows occlusion shading resolve"
 once="date quick machine device driver processor memory system compiler krs revision peak_gflops
-      width height repeats scenes growth ns_per_distance ns_per_evaluation questions
+      width height repeats scenes growth sequences by_levels paper_kiloflops_per_ray triangles
+      doublings ns_per_distance ns_per_evaluation questions
       points_per_second rays_per_second first_picture cold_ms
       warm_ms complaints"
 of_scenes="name scene flops_per_evaluation first_use reference entries by_hand_takes

@@ -4,9 +4,9 @@
 # address and undefined-behaviour sanitizers, and everything compiles under clang as well.
 
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c formulas.c)
-UNIT        := front film tracer methods writer memory validate refute frame query cache compiled apart
+UNIT        := front film tracer methods writer memory validate refute frame query cache compiled apart stencils
 PROPERTY    := ops noise graph derive series along anchor slope parity reach
-ORACLES     := self primitives krs_expand trees maps moebius operators deform normals fields surfaces rays algebraic fractals device query picture shading coverage shadows bounds
+ORACLES     := self primitives krs_expand trees maps moebius operators deform normals fields surfaces rays algebraic fractals device query picture shading coverage shadows bounds stencils
 FUZZ        := sentences
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)

@@ -283,7 +283,8 @@ int main(int count, char **arguments)
         fail("cannot open the device", renderer ? krs_renderer_message(renderer) : "no memory");
     if (samples > 0)
         printf("%dx%d, %d frames, against %u samples\n\n"
-               "| scene | samples | filtered | error | of coverage | flicker | alpha | light | ms |\n"
+               "| scene | samples | filtered | error | of coverage | flicker | alpha | light | ms"
+               " |\n"
                "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
                WIDTH, HEIGHT, FRAMES, samples);
     for (int i = 0; i < FLIGHTS && samples > 0; i++)

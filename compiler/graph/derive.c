@@ -187,11 +187,13 @@ static Node not_zero(Derivation *d, Node length)
     return graph_op2(d->graph, OP_max, length, number(d, 1e-30));
 }
 
-/* min and max choose: 0 times the derivative of what is not chosen need not be 0. */
+/* min and max choose: 0 times the derivative of what is not chosen need not be 0.  Of two that are
+   equal the one that changes is chosen: min(x, 0) joins the inside of a solid to its outside. */
 static Node derive_choice(Derivation *d, const Expr *e, const Node *inner)
 {
     bool least = e->op == OP_min;
-    Node less  = graph_op2(d->graph, OP_less, e->operands[!least], e->operands[least]);
+    Op   op    = is_zero(d->graph, inner[1]) ? OP_less_equal : OP_less;
+    Node less  = graph_op2(d->graph, op, e->operands[!least], e->operands[least]);
     return between(d, graph_op3(d->graph, OP_select, less, inner[0], inner[1]));
 }
 
@@ -244,6 +246,29 @@ static Node derive_normalize(Derivation *d, const Expr *e, Node node, const Node
     return graph_op2(g, OP_scale, across, over(d, number(d, 1), size));
 }
 
+/* Where only some operands may depend on the point. */
+static bool others_are_still(const Graph *g, const Node *inner, int from, int count)
+{
+    for (int i = from; i < count; i++)
+        if (!is_zero(g, inner[i]))
+            return false;
+    return true;
+}
+
+/* rows a' + rows' a */
+static Node derive_turn(Graph *g, const Expr *e, const Node *inner)
+{
+    Node sum = zero_of(g, TYPE_VEC3), parts[3];
+    if (!is_zero(g, inner[0]))
+        sum = graph_op4(g, OP_turn, inner[0], e->operands[1], e->operands[2], e->operands[3]);
+    if (others_are_still(g, inner, 1, 4))
+        return sum;
+    for (int i = 0; i < 3; i++)
+        parts[i] = graph_op2(g, OP_dot, inner[i + 1], e->operands[0]);
+    Node turning = graph_op(g, OP_vec3, parts);
+    return plus(g, sum, turning);
+}
+
 /* Folds mirror directions as they mirror points: b the unit normal. */
 static Node derive_fold(Derivation *d, const Expr *e, const Node *inner)
 {
@@ -253,15 +278,6 @@ static Node derive_fold(Derivation *d, const Expr *e, const Node *inner)
     Node   twice = graph_op2(g, OP_mul, along, graph_number(g, 2));
     Node   mirrored = graph_op2(g, OP_sub, inner[0], graph_op2(g, OP_scale, e->operands[1], twice));
     return between(d, graph_op3(g, OP_select, front, mirrored, inner[0]));
-}
-
-/* Where only some operands may depend on the point. */
-static bool others_are_still(const Graph *g, const Node *inner, int from, int count)
-{
-    for (int i = from; i < count; i++)
-        if (!is_zero(g, inner[i]))
-            return false;
-    return true;
 }
 
 /* A turn about y by an angle that stays the same within its sector; its sine and cosine are told by
@@ -429,10 +445,7 @@ static Node derive_node(Derivation *d, Node node, const Node *inner)
         least      = graph_op3(g, OP_select, least, inner[0], inner[1]);
         return between(d, graph_op3(g, OP_select, out, least, inner[2]));
     }
-    case OP_turn:
-        return others_are_still(g, inner, 1, 4)
-                   ? graph_op4(g, OP_turn, inner[0], e.operands[1], e.operands[2], e.operands[3])
-                   : NODE_NONE;
+    case OP_turn: return derive_turn(g, &e, inner);
     case OP_fold: return others_are_still(g, inner, 1, 3) ? derive_fold(d, &e, inner) : NODE_NONE;
     case OP_cell: return others_are_still(g, inner, 1, 4) ? between(d, inner[0]) : NODE_NONE;
     case OP_cell_polar:

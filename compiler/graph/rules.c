@@ -724,7 +724,9 @@ static Fact fact_mandelbulb(const Call *call)
     const Fact *point = &call->operands[0];
     Range  size = fact_size(point, 3), radius = call->operands[2].value[1];
     Range  power = call->operands[1].value[0];
-    double core  = range_is_single(power) ? mandelbulb_core(power.low) : 0;
+    if (!range_is_single(power) || !(power.low >= 2) || !(radius.low > 0))
+        return fact; /* what no scene can write */
+    double core  = mandelbulb_core(power.low);
     Range  value = {size.low - radius.high, fmax(size.high - core, 0)};
     bool   far   = size.low > MANDELBULB_NEAR * radius.high;
     if (far)

@@ -585,11 +585,11 @@ static void emit_along_by(Emitter *e, AlongMethod method, const EmitMarch *march
         close_component(e, march, i);
     }
     text_add(e->out, probe
-        ? "// Whether the ball around p of this radius is empty: if more than 1, which is about by how\n"
-          "// much larger it could be.\n"
+        ? "// Whether the ball around p of this radius is empty: if it could be more than 1 times as\n"
+          "// large, which is what this says, about.\n"
           "float krs_probe(vec3 p, float footprint)\n{\n    float t = 1e30;\n"
         : "// How far a ray from p along a unit direction may go before it can meet a surface: at\n"
-          "// least the distance, and much farther where polynomials or maps tell; negative inside.\n"
+          "// least the distance, and farther where polynomials or maps tell; negative inside.\n"
           "float krs_along(vec3 p, vec3 direction)\n{\n    float t = 1e30;\n");
     for (size_t i = 0; i < components; i++) {
         bool plain = along[i] == roots[i * ROOT_COUNT + ROOT_DISTANCE];
@@ -665,7 +665,7 @@ static void emit_gradients(Emitter *e, const EmitMarch *march, size_t components
     text_add(e->out, "#if defined(GRADIENT) && !defined(ANCHORED)\n");
     for (size_t i = 0; i < components; i++)
         emit_gradient_of(e, i, march->gradient + 2 * i);
-    text_add(e->out, "// The direction in which krs_distance rises fastest at a surface, a vector of any\n"
+    text_add(e->out, "// The direction in which krs_distance rises fastest at a surface, of any\n"
                      "// length, by derivatives; by differences over `reach` where there are none.\n"
                      "vec3 krs_gradient(vec3 p, float reach)\n{\n"
                      "    vec4 nearest = vec4(0.0, 0.0, 0.0, 1e30), other;\n");

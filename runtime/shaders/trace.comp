@@ -246,8 +246,8 @@ float find_gap(float room, float open)
 
 #ifdef PROBE
 // The ball that was tried, of radius gap, touches t, and its middle is behind it by as much; it is
-// empty if it could be more than 1 times as large.  A ray hits where one is not that is as short as
-// the permitted error.
+// empty if it could be more than 1 times as large.  A ray hits where one is not that is no longer
+// than what may stay open.
 void take_distance(float larger)
 {
     float radius = march.gap, empty = float(larger > 1.0);
@@ -255,8 +255,10 @@ void take_distance(float larger)
     float room = radius * larger; // at the middle, about
     march.side = 1.0;
     march.steps++;
-    if (room * (pixel_base + pixel_slope * march.nearest_t) < march.nearest * pixel) {
-        march.nearest = room;
+    // A surface is in a ball that is not empty, but how near to the middle is not known.
+    if (empty == 0.0 &&
+        radius * (pixel_base + pixel_slope * march.nearest_t) < march.nearest * pixel) {
+        march.nearest = radius;
         march.nearest_t = at;
     }
     float least = 0.5 * open_at(at);
@@ -272,7 +274,8 @@ void take_distance(float larger)
         // little more.
         float slope = march.room > 0.0 ? (room - march.room) / (at - march.slope) : -1.0;
         slope = clamp(slope, -1.0, 0.9);
-        march.gap = CAUTION * (room + (2.0 * empty - 1.0) * slope * radius) / (1.0 - CAUTION * slope);
+        float beyond = slope * (empty > 0.0 ? radius : -radius);
+        march.gap = CAUTION * (room + beyond) / (1.0 - CAUTION * slope);
         march.gap = empty > 0.0 ? clamp(march.gap, 0.1 * radius, 8.0 * radius)
                                 : clamp(march.gap, 0.1 * radius, 0.7 * radius);
         march.room = room;

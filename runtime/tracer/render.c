@@ -51,7 +51,8 @@ static bool settle_options(Job *job)
     o->most_steps = first_of(o->most_steps, 0, MOST_STEPS);
     if ((unsigned)o->trace >= KRS_TRACE_COUNT || (unsigned)o->schedule >= KRS_SCHEDULE_COUNT ||
         (unsigned)o->shadows >= KRS_SHADOWS_COUNT ||
-        (unsigned)o->components >= KRS_COMPONENTS_COUNT || (unsigned)o->normals >= KRS_NORMALS_COUNT)
+        (unsigned)o->components >= KRS_COMPONENTS_COUNT ||
+        (unsigned)o->normals >= KRS_NORMALS_COUNT)
         return refuse(job, "there is no such method, schedule, stencil or kind of shadow");
     if (o->normals == KRS_NORMALS_ANALYTIC && !job->rendering->program->gradients)
         return refuse(job, "analytic normals need a scene that was compiled with `gradients`");

@@ -35,6 +35,9 @@
 #define MOST_BACK        0.025  /* light that falls where it should rise: the steps show */
 #define MOST_LEAK        0.01   /* light in the umbra, by creeping past an edge */
 #define MOST_ASYMMETRY   1e-3F
+#define MOST_MISJUDGED   0.06   /* of openness, in a pixel that sees both sides of a hollow edge; */
+#define MOST_IN_CREASES  4e-3   /* so many of the pixels, where all others are off by 0.01 */
+#define LEAST_CONVEX     0.99
 #define MOST_OVER_1      1e-3
 #define MOST_OVER_4      2e-4
 
@@ -841,10 +844,11 @@ static void lit_sides_are_lit(void **state)
 /* White sky, no light, and a surface that reflects half of red, no green and all of blue.  What
    its coat reflects is the same in all colours.  Blue light below the coat is what a white surface
    gives back, all of it however closed it is; of red so much is left as says how open it is. */
-#define OPEN_SKY \
+#define WHITE_SKY \
     "sky { zenith: [1, 1, 1], horizon: [1, 1, 1], ground: [1, 1, 1] }\n" \
     "light none { direction: [0, 1, 0], intensity: 0, shadow: false }\n" \
-    "material striped { color: [0.5, 0, 1], roughness: 1 }\n" \
+    "material striped { color: [0.5, 0, 1], roughness: 1 }\n"
+#define OPEN_SKY WHITE_SKY \
     "camera { eye: [2, 40, 40], target: [2, 0, 0], projection: \"orthographic\", height: 9 }\n" \
     "show plane([0, 1, 0], 0).paint(striped);\n"
 
@@ -961,6 +965,108 @@ static void a_wall_closes_the_ground_at_its_foot(void **state)
     }
 }
 
+/* Two walls, a floor and a ball on it, whose distance is `slope` times too small. */
+static KrsPicture *take_room(double slope)
+{
+    SceneText text = {0};
+    scene_write(&text, WHITE_SKY "shape room() {\n"
+                "    distance: min(min(x, z), min(y, length(p - [1.5, 1, 1.5]) - 1)),\n"
+                "    slope: %.17g\n}\n"
+                "camera { eye: [9, 6, 7], target: [1, 0.5, 1], fov: 30deg }\n"
+                "show room().paint(striped);\n", slope);
+    return take_scene(text.bytes, (KrsRenderOptions){.width = WIDTH, .height = HEIGHT,
+                                                     .no_upsampling = true,
+                                                     .no_filter = true});
+}
+
+static double room_distance(Vec p)
+{
+    double ball = vec_distance(p, vec(1.5, 1, 1.5)) - 1;
+    return fmin(fmin(p.x, p.z), fmin(p.y, ball));
+}
+
+/* What five looks along the normal say, of which the farthest reaches 0.15 of what the camera is
+   away from its target. */
+static double openness_of_room(Vec p, Vec normal, double slope)
+{
+    double blocked = 0, reach = 0.15 * vec_distance(vec(9, 6, 7), vec(1, 0.5, 1));
+    for (int i = 0; i < 5; i++) {
+        double t = reach * exp2(i - 4);
+        double room = room_distance(vec_add(p, vec_scale(t, normal))) / slope;
+        blocked += 0.33 * pow(0.75, i) * fmin(fmax(1 - room / t, 0), 1);
+    }
+    return exp2(-2.5 * blocked);
+}
+
+typedef struct Misjudged {
+    double most, wrong; /* difference of openness; share of pixels that are off by 0.01 */
+} Misjudged;
+
+/* Against the formula, by the true distance or less. */
+static Misjudged misjudge_room(const KrsPicture *picture, double slope)
+{
+    Misjudged found = {0};
+    int       open = 0, closed = 0;
+    for (int k = 0; k < WIDTH * HEIGHT; k++) {
+        const float *at = picture->position + 3 * k, *up = picture->normal + 3 * k;
+        if (picture->component[k] != 1)
+            continue;
+        double wanted = openness_of_room(vec((double)at[0], (double)at[1], (double)at[2]),
+                                         vec((double)up[0], (double)up[1], (double)up[2]), slope);
+        double off = fabs(openness_to_sky(picture, k) - wanted);
+        found.most = fmax(found.most, off);
+        found.wrong += off > 0.01 ? 1.0 / (WIDTH * HEIGHT) : 0;
+        open += wanted > 0.999;
+        closed += wanted < 0.9;
+    }
+    assert_true(slope > 1 || (open > 5000 && closed > 5000));
+    return found;
+}
+
+static void bounds_close_as_much_as_distances(void **state)
+{
+    (void)state;
+    static const double slopes[] = {1, 4, 32};
+    for (int i = 0; i < 3; i++) {
+        KrsPicture *picture = take_room(slopes[i]);
+        Misjudged   found = misjudge_room(picture, 1);
+        print_message("# occlusion, distance / %g: off by %.4f at most, %.3f %% by more than 0.01\n",
+                      slopes[i], found.most, 100 * found.wrong);
+        assert_true(found.most <= MOST_MISJUDGED);
+        assert_true(found.wrong <= MOST_IN_CREASES);
+        assert_true(misjudge_room(picture, 1.1).wrong > 0.5); /* so much would be found */
+        krs_picture_free(picture);
+    }
+}
+
+/* What is convex is open all around: a ball, and a long one, at whose tips the distance is a fifth
+   of the true one. */
+static void convex_solids_are_open(void **state)
+{
+    (void)state;
+    static const char *const solids[] = {"sphere(1)", "sphere(1).scale([5, 1, 1])",
+                                         "box([2, 1, 1]).rotate([1, 2, 3], 1).scale([1, 1, 6])"};
+    for (int i = 0; i < 3; i++) {
+        SceneText text = {0};
+        scene_write(&text, WHITE_SKY "camera { eye: [9, 4, 6], target: [1, 0, 0], fov: 40deg }\n"
+                    "show %s.paint(striped);\n", solids[i]);
+        KrsPicture *picture = take_scene(text.bytes, (KrsRenderOptions){
+            .width = WIDTH, .height = HEIGHT, .no_upsampling = true});
+        int    seen = 0;
+        double least = 1;
+        for (int k = 0; k < WIDTH * HEIGHT; k++)
+            if (picture->component[k] == 1) {
+                least = fmin(least, openness_to_sky(picture, k));
+                seen++;
+            }
+        print_message("# occlusion, %s: %d pixels, open by %.4f at least\n", solids[i], seen,
+                      least);
+        assert_true(seen > 1000);
+        assert_true(least > LEAST_CONVEX);
+        krs_picture_free(picture);
+    }
+}
+
 /* The greatest difference of colours between a picture and its mirror image. */
 static double asymmetry(const KrsPicture *picture)
 {
@@ -1072,6 +1178,39 @@ static bool example_is_unharmed(const char *path)
     krs_rendering_free(rendering);
     product_free(&product);
     return unseen;
+}
+
+/* Barth's sextic from near and far: nodes, creases, and hits by power series.  Light must show
+   neither tiles nor how the rays got there. */
+static void algebraic_surfaces_show_no_tiles(void **state)
+{
+    (void)state;
+    static const double angles[] = {40, 10};
+    size_t wrong = 0;
+    for (int i = 0; i < 2; i++) {
+        SceneText     text = {0};
+        KrsRendering *rendering;
+        KrsPicture   *pictures[2], *plain;
+        scene_write(&text, "let g = (1 + sqrt(5)) / 2;\n"
+                    "show algebraic((1 + 2 * g) * (x^2 + y^2 + z^2 - 1)^2 ==\n"
+                    "    4 * (g^2 * x^2 - y^2) * (g^2 * y^2 - z^2) * (g^2 * z^2 - x^2))\n"
+                    "    .within(sphere(1.8));\n"
+                    "camera { eye: [0, 2, 5], target: [0, -0.7, 0], fov: %gdeg }\n", angles[i]);
+        Product product = product_compile(text.bytes);
+        open_rendering(&product, &rendering);
+        take_both(rendering, product.frame, pictures);
+        plain = take_picture(rendering, product.frame, (KrsRenderOptions){
+            .width = WIDTH, .height = HEIGHT, .trace = KRS_TRACE_PLAIN, .no_upsampling = true});
+        wrong += !upsampling_is_unseen("a sextic", product.frame, pictures);
+        krs_picture_free(pictures[1]);
+        pictures[1] = plain;
+        wrong += !upsampling_is_unseen("a sextic, marched plainly", product.frame, pictures);
+        krs_picture_free(pictures[0]);
+        krs_picture_free(plain);
+        krs_rendering_free(rendering);
+        product_free(&product);
+    }
+    assert_int_equal(wrong, 0);
 }
 
 static void upsampling_is_not_seen(void **state)
@@ -1278,7 +1417,10 @@ int main(void)
         cmocka_unit_test(lit_sides_of_bounds_are_lit),
         cmocka_unit_test(open_ground_is_open),
         cmocka_unit_test(a_wall_closes_the_ground_at_its_foot),
+        cmocka_unit_test(bounds_close_as_much_as_distances),
+        cmocka_unit_test(convex_solids_are_open),
         cmocka_unit_test(symmetric_scenes_have_symmetric_pictures),
+        cmocka_unit_test(algebraic_surfaces_show_no_tiles),
         cmocka_unit_test(upsampling_is_not_seen),
         cmocka_unit_test(upsampling_keeps_thin_shadows),
         cmocka_unit_test(crops_are_parts_of_the_picture),

@@ -58,7 +58,32 @@ static Scene scenes[SCENES] = {
         "camera { eye: [0.1, 0.2, 0.3], target: [1, 0.4, 0.2], fov: 1.2 }"
         "show box([4, 3, 5]) - sphere(0.8).move([1.5, 0, 0.2])"
         "                   - cylinder(0.2, 9).move([1, 0, 1]);"},
+    [CORAL] = {.name = "coral", .fov = 0.6, .text =
+        "camera { eye: [0.3, 0.8, 1.5], target: [0.05, 0.5, 0], fov: 0.6 }"
+        "show krs { kernel sphere(0.2);"
+        "    for i in 0..5 {"
+        "        mobius translate([0, 0.42, 0]) * rotate([0, 1, 0], -1.2) * rotate([1, 0, 0], 0.5);"
+        "        mobius reflect(plane([0, 1, 0], 0)) * invert(center: [0, -2, 0], radius: 2);"
+        "        reflect plane([1, 0, 0], 0);"
+        "        kernel capsule([0, 0, 0], [0, 0.42, 0], radius: 0.085); } };"
+        "show sphere(0.25).move([0.5, 0.3, 0.3]);"},
+    /* The pole is in the middle of the picture. */
+    [LATTICE] = {.name = "lattice in a sphere", .fov = 0.6, .text =
+        "camera { eye: [0.2, 0.3, 3], fov: 0.6 }"
+        "show krs { kernel sphere(0.35); kernel box([1, 0.3, 0.3]);"
+        "    for i in 0..2 { reflect plane([1, 0, 0], 2 ^ i - 0.5);"
+        "        reflect plane([0, 1, 0], 2 ^ i - 0.5); reflect plane([0, 0, 1], 2 ^ i - 0.5); }"
+        "    mobius scale(1.2) * invert(radius: 1) * translate([-1.5, -1.5, 0.7]); };"},
 };
+
+/* Methods that are plain steps where nothing is for them need not be tried on every scene. */
+static bool is_spared(const Scene *scene, KrsTrace trace)
+{
+    bool inverts = scene == &scenes[CORAL] || scene == &scenes[LATTICE];
+    return scene != &scenes[LANDSCAPE] &&
+           (inverts ? trace >= KRS_TRACE_EXACT && trace < KRS_TRACE_DIRECTIONAL
+                    : trace >= KRS_TRACE_DIRECTIONAL);
+}
 
 static KrsRenderer *renderer;
 static char         complaint[2048]; /* the last */
@@ -251,7 +276,7 @@ static void methods_agree(void **state)
         KrsPicture *fine = render(scene, (KrsRenderOptions){
             .trace = KRS_TRACE_PLAIN, .no_beams = true, .error = FINE_ERROR});
         for (KrsTrace trace = 0; trace < KRS_TRACE_COUNT; trace++)
-            for (int beams = 0; beams < 2; beams++)
+            for (int beams = 0; beams < 2 && !is_spared(scene, trace); beams++)
                 wrong += !agrees(scene, fine, (KrsRenderOptions){
                     .trace = trace, .no_beams = !beams});
         krs_picture_free(fine);
@@ -284,6 +309,8 @@ static void schedules_are_not_seen(void **state)
     size_t wrong = 0;
     for (const Scene *scene = scenes; scene < scenes + SCENES; scene++)
         for (unsigned way = 0; way < 2 * KRS_TRACE_COUNT; way++) {
+            if (is_spared(scene, way / 2))
+                continue;
             /* Automatic relaxation with several rays a pixel, too. */
             KrsRenderOptions options = {
                 .trace = way / 2, .no_beams = way % 2, .samples = way / 2 == KRS_TRACE_AUTO ? 4 : 1,
@@ -405,7 +432,8 @@ static double surface_error(const Scene *scene, const KrsPicture *picture, int k
 }
 
 /* Whether rays have run out, and those of them that are drawn end within a pixel of a surface. */
-static bool ends_are_near(const Scene *scene, const KrsPicture *picture, const char *what)
+static bool ends_are_near(const Scene *scene, const KrsPicture *picture, KrsTrace trace,
+                          const char *what)
 {
     unsigned long long unresolved = picture->stats.unresolved;
     size_t             drawn = 0, far = 0;
@@ -416,7 +444,8 @@ static bool ends_are_near(const Scene *scene, const KrsPicture *picture, const c
         }
     print_message("# %s, %s: %llu rays ran out, %zu drawn, %zu of them off by more than a pixel\n",
                   scene->name, what, unresolved, drawn, far);
-    return unresolved > 0 && drawn > 0 && far == 0;
+    /* Eight halvings of a ball may not bring it anywhere. */
+    return unresolved > 0 && (drawn > 0 || trace == KRS_TRACE_BINARY) && far == 0;
 }
 
 static void rays_that_run_out_are_near(void **state)
@@ -425,10 +454,12 @@ static void rays_that_run_out_are_near(void **state)
     size_t wrong = 0;
     for (const Scene *scene = scenes; scene < scenes + SCENES; scene++)
         for (unsigned way = 0; way < 2 * KRS_TRACE_COUNT; way++) {
+            if (is_spared(scene, way / 2))
+                continue;
             KrsRenderOptions options = {
                 .trace = way / 2, .no_beams = way % 2, .most_steps = FEW_STEPS};
             KrsPicture *whole = render(scene, options);
-            wrong += !ends_are_near(scene, whole, words(&options));
+            wrong += !ends_are_near(scene, whole, options.trace, words(&options));
             for (KrsSchedule i = 1; i < KRS_SCHEDULE_COUNT; i++) {
                 options.schedule = i;
                 KrsPicture *picture = render(scene, options);

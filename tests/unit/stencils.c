@@ -8,108 +8,68 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <sys/types.h>
 #include <cmocka.h>
 
-typedef struct vec3 {
-    float x, y, z;
-} vec3;
-#define vec3(x, y, z) ((vec3){(float)(x), (float)(y), (float)(z)})
+#include "runtime/shaders/stencil.h"
 
-#define STENCIL 1
-#define TAPS forward_taps
-#define stencil forward
-#include "runtime/shaders/stencil.glsl"
-#undef STENCIL
-#undef TAPS
-#undef stencil
-#define STENCIL 2
-#define TAPS tetrahedron_taps
-#define stencil tetrahedron
-#include "runtime/shaders/stencil.glsl"
-#undef STENCIL
-#undef TAPS
-#undef stencil
-#define STENCIL 3
-#define TAPS octahedron_taps
-#define stencil octahedron
-#include "runtime/shaders/stencil.glsl"
-#undef STENCIL
-#undef TAPS
-#undef stencil
-#define STENCIL 4
-#define TAPS cube_taps
-#define stencil cube
-#include "runtime/shaders/stencil.glsl"
-#undef STENCIL
-#undef TAPS
-#undef stencil
-#define STENCIL 5
-#define TAPS icosahedron_taps
-#define stencil icosahedron
-#include "runtime/shaders/stencil.glsl"
-#undef STENCIL
-#undef TAPS
-#undef stencil
-#define STENCIL 6
-#define TAPS dodecahedron_taps
-#define stencil dodecahedron
-#include "runtime/shaders/stencil.glsl"
-
-typedef vec3 Corner(uint i);
-typedef struct Stencil {
+typedef struct Solid {
     const char *name;
-    Corner     *corner;
-    uint        taps, corners, neighbours; /* of a corner */
+    KrsNormals  normals;
+    uint        corners, neighbours; /* of a corner */
     double      edge; /* for corners on the unit sphere */
-} Stencil;
+} Solid;
 
-static double dot(vec3 a, vec3 b) { return (double)a.x * b.x + (double)a.y * b.y + (double)a.z * b.z; }
-
-static void corners_are_those_of_a_solid(const Stencil *s)
+static double dot(vec3 a, vec3 b)
 {
-    if (s->taps != s->corners)
-        fail_msg("%s: %u taps, and %u corners", s->name, s->taps, s->corners);
-    for (uint i = 0; i < s->taps; i++) {
+    return (double)a.x * b.x + (double)a.y * b.y + (double)a.z * b.z;
+}
+
+static void corners_are_those_of_a_solid(const Solid *solid)
+{
+    Stencil s = find_stencil(solid->normals);
+    if (s.taps != solid->corners)
+        fail_msg("%s: %u taps, and %u corners", solid->name, s.taps, solid->corners);
+    for (uint i = 0; i < s.taps; i++) {
         uint neighbours = 0;
-        vec3 v = s->corner(i);
+        vec3 v = s.corner(i);
         if (fabs(dot(v, v) - 1) > 1e-6)
-            fail_msg("%s: corner %u has length %g", s->name, i, sqrt(dot(v, v)));
-        for (uint k = 0; k < s->taps; k++) {
-            double apart = sqrt(fmax(2 - 2 * dot(v, s->corner(k)), 0));
-            if (k != i && apart < s->edge - 1e-4)
-                fail_msg("%s: corners %u and %u are %g apart", s->name, i, k, apart);
-            neighbours += fabs(apart - s->edge) < 1e-4;
+            fail_msg("%s: corner %u has length %g", solid->name, i, sqrt(dot(v, v)));
+        for (uint k = 0; k < s.taps; k++) {
+            double apart = sqrt(fmax(2 - 2 * dot(v, s.corner(k)), 0));
+            if (k != i && apart < solid->edge - 1e-4)
+                fail_msg("%s: corners %u and %u are %g apart", solid->name, i, k, apart);
+            neighbours += fabs(apart - solid->edge) < 1e-4;
         }
-        if (neighbours != s->neighbours)
-            fail_msg("%s: corner %u has %u neighbours", s->name, i, neighbours);
+        if (neighbours != solid->neighbours)
+            fail_msg("%s: corner %u has %u neighbours", solid->name, i, neighbours);
     }
 }
 
-static void squares_are_isotropic(const Stencil *s)
+static void squares_are_isotropic(const Solid *solid)
 {
+    Stencil s = find_stencil(solid->normals);
     double sum[3][3] = {{0}};
-    for (uint i = 0; i < s->taps; i++) {
-        vec3   v = s->corner(i);
+    for (uint i = 0; i < s.taps; i++) {
+        vec3   v = s.corner(i);
         double c[3] = {v.x, v.y, v.z};
         for (int k = 0; k < 9; k++)
             sum[k / 3][k % 3] += c[k / 3] * c[k % 3];
     }
     for (int k = 0; k < 9; k++)
-        if (fabs(sum[k / 3][k % 3] - (k / 3 == k % 3 ? s->taps / 3.0 : 0)) > 1e-5)
-            fail_msg("%s: entry %d of the sum of v v^T is %g", s->name, k, sum[k / 3][k % 3]);
+        if (fabs(sum[k / 3][k % 3] - (k / 3 == k % 3 ? s.taps / 3.0 : 0)) > 1e-5)
+            fail_msg("%s: entry %d of the sum of v v^T is %g", solid->name, k, sum[k / 3][k % 3]);
 }
 
 static void platonic_solids(void **state)
 {
     (void)state;
     const double golden = (1 + sqrt(5)) / 2;
-    const Stencil all[] = {
-        {"tetrahedron", tetrahedron, tetrahedron_taps, 4, 3, sqrt(8.0 / 3)},
-        {"octahedron", octahedron, octahedron_taps, 6, 4, sqrt(2)},
-        {"cube", cube, cube_taps, 8, 3, 2 / sqrt(3)},
-        {"icosahedron", icosahedron, icosahedron_taps, 12, 5, 2 / sqrt(1 + golden * golden)},
-        {"dodecahedron", dodecahedron, dodecahedron_taps, 20, 3, 2 / (golden * sqrt(3))},
+    const Solid  all[]  = {
+        {"tetrahedron", KRS_NORMALS_TETRAHEDRON, 4, 3, sqrt(8.0 / 3)},
+        {"octahedron", KRS_NORMALS_OCTAHEDRON, 6, 4, sqrt(2)},
+        {"cube", KRS_NORMALS_CUBE, 8, 3, 2 / sqrt(3)},
+        {"icosahedron", KRS_NORMALS_ICOSAHEDRON, 12, 5, 2 / sqrt(1 + golden * golden)},
+        {"dodecahedron", KRS_NORMALS_DODECAHEDRON, 20, 3, 2 / (golden * sqrt(3))},
     };
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         corners_are_those_of_a_solid(&all[i]);

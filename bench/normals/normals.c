@@ -1,0 +1,333 @@
+/*
+ * normals.c: how well, and how fast, a normal is found.
+ *
+ * First the table of Ban and Valasek (2023, figure 5) in single precision on the device: the angle
+ * between the true normal and what each stencil finds with steps of length r, and what derivatives
+ * find, at points of a picture of each surface.  Then pictures: what the phase of normals takes by
+ * each, and how far from those by derivatives they are.  bench/README.md says what the columns mean.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "runtime/krs_vulkan.h"
+#include "runtime/shaders/stencil.h"
+
+enum { POINTS = 2000, WIDTH = 640, HEIGHT = 360, PIXELS = WIDTH * HEIGHT, TURNS = 5 };
+
+static const double reaches[] = {1e-5, 5e-5, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 2e-2};
+enum { REACHES = sizeof reaches / sizeof *reaches };
+
+static void fail(const char *what, const char *why)
+{
+    fprintf(stderr, "normals: %s: %s\n", what, why);
+    exit(1);
+}
+
+typedef struct Stage {
+    KrsRenderer  *renderer;
+    KrsScene     *scene;
+    KrsFrame     *frame;
+    KrsRendering *rendering;
+} Stage;
+
+static void complain(void *user, const KrsDiagnostic *diagnostic)
+{
+    (void)user;
+    fprintf(stderr, "%s\n", diagnostic->text);
+}
+
+/* `text` or, if that is NULL, the file. */
+static Stage stage_open(KrsRenderer *renderer, const char *name, const char *text)
+{
+    Stage      stage   = {.renderer = renderer};
+    KrsOptions options = {.diagnostic = complain, .gradients = true};
+    KrsStatus  status  = text ? krs_compile_text(text, strlen(text), name, &options, &stage.scene)
+                              : krs_compile_file(name, &options, &stage.scene);
+    if (status != KRS_OK || krs_frame_new(stage.scene, &stage.frame) != KRS_OK)
+        fail(name, "it does not compile");
+    if (krs_rendering_new(renderer, stage.scene, &stage.rendering) != KRS_OK)
+        fail(name, krs_renderer_message(renderer));
+    return stage;
+}
+
+static void stage_close(Stage *stage)
+{
+    krs_rendering_free(stage->rendering);
+    krs_frame_free(stage->frame);
+    krs_scene_free(stage->scene);
+}
+
+static KrsPicture *shoot(const Stage *stage, KrsNormals normals, double error, bool plain)
+{
+    KrsPicture      *picture;
+    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .error = error,
+                                .normals = normals, .no_filter = plain};
+    if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
+        fail(krs_normals_names[normals], krs_renderer_message(stage->renderer));
+    return picture;
+}
+
+/* Degrees. */
+static double angle(const double a[3], const double b[3])
+{
+    double square = 0, dot = 0;
+    for (int i = 0; i < 3; i++) {
+        int k = (i + 1) % 3, m = (i + 2) % 3;
+        square += (a[k] * b[m] - a[m] * b[k]) * (a[k] * b[m] - a[m] * b[k]);
+        dot += a[i] * b[i];
+    }
+    return atan2(sqrt(square), dot) * 180 / acos(-1);
+}
+
+static int compare_numbers(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double middle(double *numbers, size_t count)
+{
+    qsort(numbers, count, sizeof *numbers, compare_numbers);
+    return count ? numbers[count / 2] : NAN;
+}
+
+/* ---- surfaces whose normals are known ---- */
+
+typedef void Truth(const double p[3], double n[3]);
+
+/* length([length([x, z]) - 1, y]) - 0.35 + 0.03 sin(9 x) sin(9 y) sin(9 z) */
+static void bumpy_normal(const double p[3], double n[3])
+{
+    double away = hypot(p[0], p[2]), size = hypot(away - 1, p[1]);
+    double s[3], c[3];
+    for (int i = 0; i < 3; i++) {
+        s[i] = sin(9 * p[i]);
+        c[i] = cos(9 * p[i]);
+    }
+    n[0] = p[0] / away * (away - 1) / size + 0.27 * c[0] * s[1] * s[2];
+    n[1] = p[1] / size + 0.27 * s[0] * c[1] * s[2];
+    n[2] = p[2] / away * (away - 1) / size + 0.27 * s[0] * s[1] * c[2];
+}
+
+/* (1 + 2 g) (r^2 - 1)^2 = 4 (h x^2 - y^2) (h y^2 - z^2) (h z^2 - x^2), h = g^2, g golden */
+static void barth_normal(const double p[3], double n[3])
+{
+    const double g = (1 + sqrt(5)) / 2, h = g * g;
+    double s[3] = {p[0] * p[0], p[1] * p[1], p[2] * p[2]};
+    double a = h * s[0] - s[1], b = h * s[1] - s[2], c = h * s[2] - s[0];
+    double ball = 4 * (1 + 2 * g) * (s[0] + s[1] + s[2] - 1);
+    n[0] = p[0] * (ball - 8 * (h * b * c - a * b));
+    n[1] = p[1] * (ball - 8 * (h * a * c - b * c));
+    n[2] = p[2] * (ball - 8 * (h * a * b - a * c));
+}
+
+static const struct Surface {
+    const char *name, *text;
+    Truth      *truth;
+    double      radius; /* farther out it is something else */
+} surfaces[] = {
+    {"a torus with bumps",
+     "camera { eye: [1.2, 3, 3.2], fov: 35deg }"
+     "show field(length([length([x, z]) - 1, y]) - 0.35 + 0.03 * sin(9 * x) * sin(9 * y) * sin(9 * z));",
+     bumpy_normal, 10},
+    {"Barth's sextic",
+     "use \"std/surfaces.krs\"; camera { eye: [3, 2.5, 5.5], fov: 40deg } show barth_sextic();",
+     barth_normal, 2.19},
+};
+enum { SURFACES = sizeof surfaces / sizeof *surfaces };
+
+/* ---- the table of angles ---- */
+
+typedef struct Sight {
+    float  point[3];
+    double normal[3]; /* by derivatives on the device */
+} Sight;
+
+/* So many of the picture's hits, spread over all of it. */
+static size_t choose_sights(const Stage *stage, const struct Surface *surface, Sight *sights)
+{
+    KrsPicture *picture = shoot(stage, KRS_NORMALS_ANALYTIC, 0.01, true);
+    size_t      count = 0;
+    for (size_t k = 0; k < PIXELS && count < POINTS; k++) {
+        size_t       i = k * 100003 % PIXELS; /* a prime: every pixel once, far from the last */
+        const float *p = &picture->position[3 * i];
+        double       out = sqrt((double)p[0] * p[0] + (double)p[1] * p[1] + (double)p[2] * p[2]);
+        if (isinf(picture->depth[i]) || out > surface->radius)
+            continue;
+        for (int c = 0; c < 3; c++) {
+            sights[count].point[c]  = p[c];
+            sights[count].normal[c] = picture->normal[3 * i + c];
+        }
+        count++;
+    }
+    krs_picture_free(picture);
+    return count;
+}
+
+/* As the kernel does it: all in single precision. */
+static void find_normals(const Stage *stage, KrsNormals normals, float reach, const Sight *sights,
+                         size_t count, double (*found)[3])
+{
+    Stencil stencil = find_stencil(normals);
+    float (*points)[3] = malloc(count * stencil.taps * sizeof *points);
+    float *distances   = malloc(count * stencil.taps * sizeof *distances);
+    for (size_t i = 0; i < count * stencil.taps; i++) {
+        vec3         v = stencil.corner((uint)(i % stencil.taps));
+        const float *p = sights[i / stencil.taps].point;
+        points[i][0] = p[0] + reach * v.x;
+        points[i][1] = p[1] + reach * v.y;
+        points[i][2] = p[2] + reach * v.z;
+    }
+    if (krs_sample(stage->rendering, stage->frame, (const float (*)[3])points,
+                   count * stencil.taps, distances, NULL) != KRS_OK)
+        fail("cannot sample", krs_renderer_message(stage->renderer));
+    for (size_t i = 0; i < count; i++) {
+        float sum[3] = {0};
+        for (uint k = 0; k < stencil.taps; k++) {
+            float d = distances[i * stencil.taps + k];
+            vec3  v = stencil.corner(k);
+            if (normals == KRS_NORMALS_FORWARD && k == 0)
+                v = vec3(-1, -1, -1);
+            sum[0] += d * v.x;
+            sum[1] += d * v.y;
+            sum[2] += d * v.z;
+        }
+        for (int c = 0; c < 3; c++)
+            found[i][c] = sum[c];
+    }
+    free(points);
+    free(distances);
+}
+
+typedef struct Error {
+    double median, most;
+} Error;
+
+static Error error_of(Truth *truth, const Sight *sights, double (*found)[3], size_t count)
+{
+    double *angles = malloc(count * sizeof *angles);
+    Error   error  = {0};
+    for (size_t i = 0; i < count; i++) {
+        double p[3] = {sights[i].point[0], sights[i].point[1], sights[i].point[2]}, n[3];
+        truth(p, n);
+        angles[i]  = angle(n, found ? found[i] : sights[i].normal);
+        error.most = fmax(error.most, angles[i]);
+    }
+    error.median = middle(angles, count);
+    free(angles);
+    return error;
+}
+
+static void print_stencil(const Stage *stage, const struct Surface *surface, KrsNormals normals,
+                          const Sight *sights, size_t count)
+{
+    double (*found)[3] = malloc(count * sizeof *found);
+    printf("| %s | %u |", krs_normals_names[normals], find_stencil(normals).taps);
+    double best = HUGE_VAL, at = 0;
+    for (int i = 0; i < REACHES; i++) {
+        find_normals(stage, normals, (float)reaches[i], sights, count, found);
+        Error error = error_of(surface->truth, sights, found, count);
+        printf(" %.2g / %.2g |", error.median, error.most);
+        if (error.median < best) {
+            best = error.median;
+            at   = reaches[i];
+        }
+    }
+    printf(" %.2g at %.0e |\n", best, at);
+    fflush(stdout);
+    free(found);
+}
+
+static void print_angles(KrsRenderer *renderer, const struct Surface *surface)
+{
+    static Sight sights[POINTS];
+    Stage  stage = stage_open(renderer, surface->name, surface->text);
+    size_t count = choose_sights(&stage, surface, sights);
+    printf("\n%s, %zu points: median / largest angle in degrees, by the length of the steps\n\n"
+           "| normals | taps |", surface->name, count);
+    for (int i = 0; i < REACHES; i++)
+        printf(" %.0e |", reaches[i]);
+    printf(" least median |\n| --- | --- |");
+    for (int i = 0; i <= REACHES; i++)
+        printf(" --- |");
+    printf("\n");
+    for (KrsNormals normals = KRS_NORMALS_FORWARD; normals < KRS_NORMALS_ANALYTIC; normals++)
+        print_stencil(&stage, surface, normals, sights, count);
+    Error error = error_of(surface->truth, sights, NULL, count);
+    printf("| analytic | 0 |");
+    for (int i = 0; i < REACHES; i++)
+        printf(" |");
+    printf(" %.2g / %.2g |\n", error.median, error.most);
+    stage_close(&stage);
+}
+
+/* ---- pictures ---- */
+
+static double difference(const KrsPicture *a, const KrsPicture *b)
+{
+    double *angles = malloc(PIXELS * sizeof *angles), n[2][3];
+    size_t  count = 0;
+    for (size_t i = 0; i < PIXELS; i++) {
+        if (isinf(a->depth[i]) || isinf(b->depth[i]))
+            continue;
+        for (int c = 0; c < 3; c++) {
+            n[0][c] = a->normal[3 * i + c];
+            n[1][c] = b->normal[3 * i + c];
+        }
+        angles[count++] = angle(n[0], n[1]);
+    }
+    double result = middle(angles, count);
+    free(angles);
+    return result;
+}
+
+static void print_pictures(KrsRenderer *renderer, const char *name, const char *path,
+                           const char *text)
+{
+    static double ms[KRS_NORMALS_COUNT][TURNS], total[KRS_NORMALS_COUNT][TURNS];
+    Stage       stage = stage_open(renderer, path, text);
+    KrsPicture *truth = shoot(&stage, KRS_NORMALS_ANALYTIC, 0, true);
+    double      apart[KRS_NORMALS_COUNT];
+    for (KrsNormals normals = KRS_NORMALS_FORWARD; normals < KRS_NORMALS_COUNT; normals++) {
+        KrsPicture *picture = shoot(&stage, normals, 0, true);
+        apart[normals]      = difference(truth, picture);
+        krs_picture_free(picture);
+    }
+    for (int turn = 0; turn < TURNS; turn++)
+        for (KrsNormals normals = KRS_NORMALS_FORWARD; normals < KRS_NORMALS_COUNT; normals++) {
+            KrsPicture *picture  = shoot(&stage, normals, 0, false);
+            ms[normals][turn]    = picture->stats.phase_ms[KRS_PHASE_NORMALS];
+            total[normals][turn] = picture->stats.total_ms;
+            krs_picture_free(picture);
+        }
+    for (KrsNormals normals = KRS_NORMALS_FORWARD; normals < KRS_NORMALS_COUNT; normals++)
+        printf("| %s | %s | %.2f | %.1f | %.2g |\n", name, krs_normals_names[normals],
+               middle(ms[normals], TURNS), middle(total[normals], TURNS), apart[normals]);
+    fflush(stdout);
+    krs_picture_free(truth);
+    stage_close(&stage);
+}
+
+int main(void)
+{
+    KrsRenderer *renderer;
+    if (krs_renderer_new(NULL, &renderer) != KRS_OK)
+        fail("cannot open the device", renderer ? krs_renderer_message(renderer) : "no memory");
+    printf("# Normals on %s\n", krs_renderer_device(renderer).name);
+    for (int i = 0; i < SURFACES; i++)
+        print_angles(renderer, &surfaces[i]);
+    printf("\nPictures of %dx%d, medians of %d in turns: milliseconds of the normals and of all, "
+           "and the median\nangle in degrees between these normals and those by derivatives, "
+           "without filtering\n\n"
+           "| scene | normals | ms | total ms | apart |\n| --- | --- | --- | --- | --- |\n",
+           WIDTH, HEIGHT, TURNS);
+    for (int i = 0; i < SURFACES; i++)
+        print_pictures(renderer, surfaces[i].name, surfaces[i].name, surfaces[i].text);
+    print_pictures(renderer, "flange", "bench/scenes/csg.krs", NULL);
+    print_pictures(renderer, "mountains", "bench/scenes/terrain.krs", NULL);
+    print_pictures(renderer, "tree, 12 levels", "bench/scenes/tree.krs", NULL);
+    krs_renderer_free(renderer);
+    return 0;
+}
