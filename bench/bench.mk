@@ -31,9 +31,23 @@ $(B)/bench/inverted/inverted: $(B)/bench/inverted/inverted.o $(B)/libkrs.a
 inverted: $(B)/bench/inverted/inverted
 	@$(B)/bench/inverted/inverted
 
+# How well and how fast normals are found (bench/README.md).
+$(B)/bench/normals/normals: $(B)/bench/normals/normals.o $(B)/libkrs.a
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+bench-normals: $(B)/bench/normals/normals
+	@$(B)/bench/normals/normals
+
+# Algebraic surfaces: our tracers, POV-Ray and surf where they are installed (bench/README.md).
+ALGEBRAIC := $(addprefix bench/algebraic/, algebraic.o programs.o polynomial.o)
+$(B)/bench/algebraic/algebraic: $(ALGEBRAIC:%=$(B)/%) $(B)/tests/oracle/oracle.a $(B)/libkrs.a
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
+bench-algebraic: $(B)/bench/algebraic/algebraic $(B)/krs
+	@$(B)/bench/algebraic/algebraic $(B)/krs
+
 # For `make test`.
 SCRIPTS += tests/bench.sh
 test-programs: $(B)/bench/bench
 clang-objects: $(BENCH:%.c=$(B)/%.o) $(B)/bench/minify/minify.o \
-               $(B)/bench/iterations/iterations.o $(B)/bench/inverted/inverted.o
-.PHONY: bench bench-quick minify iterations inverted
+               $(B)/bench/iterations/iterations.o $(B)/bench/inverted/inverted.o \
+               $(B)/bench/normals/normals.o $(ALGEBRAIC:%=$(B)/%)
+.PHONY: bench bench-quick minify iterations inverted bench-normals bench-algebraic

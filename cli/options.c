@@ -580,10 +580,11 @@ static KrsStatus check_together(Options *options)
             return say_usage(options, "%s needs a %s: krs %s %s", info->name,
                              options->command == COMMAND_IMPORT ? "file" : "scene", info->name,
                              info->arguments);
-        return say_usage(options, "%s takes %s, not `%s`", info->name,
-                         options->command == COMMAND_IMPORT ? "one file"
-                         : info->files                      ? "one scene"
-                                                            : "no file", options->files.items[info->files]);
+        const char *wanted = options->command == COMMAND_IMPORT ? "one file"
+                             : info->files                      ? "one scene"
+                                                                : "no file";
+        return say_usage(options, "%s takes %s, not `%s`", info->name, wanted,
+                         options->files.items[info->files]);
     }
     if (options->command == COMMAND_COMPILE && options->outputs.count != 1)
         return say_usage(options, "compile needs one folder to write to: -o DIR");

@@ -4,6 +4,7 @@
 #include "compiler/compile.h"
 
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -364,6 +365,55 @@ static bool check_size(Compilation *c, const Graph *graph)
     return false;
 }
 
+/* Whether an operation is on constants alone and yet not folded: its result is not finite; or a
+   constant that single precision does not have. */
+static bool is_beyond_numbers(const Graph *graph, const Expr *expr)
+{
+    bool constants = expr->operand_count > 0, beyond = false;
+    for (uint32_t i = 0; i < expr->operand_count; i++)
+        constants = constants && graph->items[expr->operands[i]].op == OP_CONSTANT;
+    for (uint32_t i = 0; i < 4 && expr->op == OP_CONSTANT; i++)
+        beyond = beyond || !(fabs(expr->number[i]) <= FLT_MAX);
+    return constants || beyond;
+}
+
+static void refuse_number(Compilation *c, const Component *shown, Span span)
+{
+    Diag *diag  = diag_add(&c->diags, DIAG_NOT_A_NUMBER, shown->span,
+                           "a number in `%s` is too large, or not finite", shown->name);
+    diag->label = "single precision goes to 3.4e38";
+    /* Equal expressions are one node, whose place may be in another component. */
+    if (span.source == shown->span.source && span.start > shown->span.start &&
+        span.end <= shown->span.end)
+        diag_place(&c->diags, diag, span, "in here");
+}
+
+/* The first node that the roots of some components need and no shader can have; else NODE_NONE. */
+static Node find_beyond_numbers(Compilation *c, const Graph *graph, size_t first, size_t count)
+{
+    Tape tape  = tape_new(graph, &c->roots[first * ROOT_COUNT], count * ROOT_COUNT, &c->scratch);
+    Node found = NODE_NONE;
+    for (size_t k = 0; k < tape.count && found == NODE_NONE; k++)
+        if (is_beyond_numbers(graph, &graph->items[tape.nodes[k]]))
+            found = tape.nodes[k];
+    arena_free(&c->scratch);
+    return found;
+}
+
+/* An overflow of what is given shows here only, where it has met everything else. */
+static bool check_numbers(Compilation *c, const Graph *graph)
+{
+    size_t count = c->elaborated.components.count;
+    if (find_beyond_numbers(c, graph, 0, count) == NODE_NONE)
+        return true;
+    for (size_t i = 0; i < count; i++) {
+        Node node = find_beyond_numbers(c, graph, i, 1);
+        if (node != NODE_NONE)
+            refuse_number(c, &c->elaborated.components.items[i], graph->items[node].span);
+    }
+    return false;
+}
+
 /* The cost of what is computed at each point, in multiply-adds. */
 static double flops_of(const Graph *graph, const Tape *tape)
 {
@@ -629,7 +679,7 @@ static KrsStatus run(Compilation *c)
     c->scene->graph = simple;
     if (dumps(c, DUMP_SIMPLIFY))
         graph_print(simple, &c->sources, c->roots, c->root_count, &c->dump);
-    if (!check_size(c, simple))
+    if (!check_size(c, simple) || !check_numbers(c, simple))
         return KRS_BAD_SCENE;
     hash_sources(&c->sources, c->scene->hash);
     keep_scene(c);
@@ -752,8 +802,9 @@ KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene
 KrsStatus krs_dump(const char *path, DumpStage stage, const KrsOptions *options, char **dump)
 {
     KrsScene *scene;
-    *dump            = NULL;
-    KrsStatus status = compile_path(path, options, &(Request){.stage = stage, .dump = dump}, &scene);
+    Request   request = {.stage = stage, .dump = dump};
+    *dump             = NULL;
+    KrsStatus status  = compile_path(path, options, &request, &scene);
     krs_scene_free(scene);
     return status;
 }

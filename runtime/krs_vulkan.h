@@ -121,10 +121,10 @@ typedef enum KrsTrace {
     KRS_TRACE_TAYLOR,  /* or by the slope that the Taylor series on the ray permits (Ban and
                           Valasek 2023, with the safe one of its iterates), */
     KRS_TRACE_ROOT_FREE, /* or by the radius within which it cannot be 0 */
-    KRS_TRACE_DIRECTIONAL, /* in sequences with maps that invert, by where the ray leaves empty balls
-                              that were found behind the maps; where there are none, plain; */
-    KRS_TRACE_BINARY,    /* or by balls that are tried: the next twice as large or half as large (KRS
-                            2016, algorithm 2, corrected), where the camera is outside of everything, */
+    KRS_TRACE_DIRECTIONAL, /* in sequences with maps that invert, by where the ray leaves empty
+                              balls that were found behind the maps; where there are none, plain; */
+    KRS_TRACE_BINARY,    /* or by balls that are tried, the next twice or half as large (KRS 2016,
+                            algorithm 2, corrected), if the camera is outside of everything, */
     KRS_TRACE_PREDICTED, /* or as large as the last lets expect */
     KRS_TRACE_COUNT
 } KrsTrace;

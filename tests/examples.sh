@@ -9,7 +9,8 @@ failed=0
 report() { # name, status
     if [ "$2" -eq 0 ]; then echo "ok - $1"; else echo "not ok - $1"; failed=1; fi
 }
-VK_LOADER_DEBUG=layer VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation "$krs" devices >"$folder/said" 2>&1
+VK_LOADER_DEBUG=layer VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation "$krs" devices \
+    >"$folder/said" 2>&1
 grep -q 'Loading layer library.*khronos_validation' "$folder/said"
 report "the validation layer is loaded when it is asked for" $?
 
@@ -21,7 +22,8 @@ for scene in examples/*.krs; do
 
     VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation \
         VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT \
-        "$krs" render "$scene" --quiet --size 320x180 --samples 1 --stats json -o "$folder/picture.exr" -o "$folder/picture.png" >"$folder/stats" 2>"$folder/said"
+        "$krs" render "$scene" --quiet --size 320x180 --samples 1 --stats json \
+        -o "$folder/picture.exr" -o "$folder/picture.png" >"$folder/stats" 2>"$folder/said"
     report "$scene renders" $?
     cat "$folder/said"
     ! grep -A5 -i "validation error\|validation warning\|VUID" "$folder/stats" "$folder/said"

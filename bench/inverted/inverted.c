@@ -165,7 +165,7 @@ int main(int count, char **arguments)
         fail("cannot open the device", renderer ? krs_renderer_message(renderer) : "no memory");
     printf("%dx%d, %s, medians of %zu\n\n", WIDTH, HEIGHT, krs_renderer_device(renderer).name,
            repeats);
-    printf("| scene | rays advance | beams | evals/ray | ns/ray | least | ns/eval | hit | differs | "
+    printf("| scene | trace | beams | evals/ray | ns/ray | least | ns/eval | hit | differs | "
            "unresolved |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
     for (size_t i = 0; i < SUBJECTS; i++)
         if (count < 3 || strcmp(subjects[i].name, arguments[2]) == 0)

@@ -327,7 +327,7 @@ int main(void)
         print_pictures(renderer, surfaces[i].name, surfaces[i].name, surfaces[i].text);
     print_pictures(renderer, "flange", "bench/scenes/csg.krs", NULL);
     print_pictures(renderer, "mountains", "bench/scenes/terrain.krs", NULL);
-    print_pictures(renderer, "tree, 12 levels", "bench/scenes/tree.krs", NULL);
+    print_pictures(renderer, "tree, 28 levels", "bench/scenes/tree28.krs", NULL);
     krs_renderer_free(renderer);
     return 0;
 }

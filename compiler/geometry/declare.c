@@ -127,7 +127,8 @@ static void warn_if_empty(Elaboration *e, const Shape *shape)
         flat = flat || !(shape->box.axis[i].low < shape->box.axis[i].high);
     if (!flat || e->sources->items[shape->span.source].library)
         return;
-    Diag *diag  = diag_add(e->diags, DIAG_NO_EFFECT, shape->span, "this `%s` is empty", shape->name);
+    Diag *diag =
+        diag_add(e->diags, DIAG_NO_EFFECT, shape->span, "this `%s` is empty", shape->name);
     diag->label = "a size is 0 or less";
 }
 

@@ -63,22 +63,6 @@ static const Shape *refuse_polynomial(Elaboration *e, SeriesFault fault, const S
     return NULL;
 }
 
-/* Whether all coefficients are finite that the nodes from `first` on compute from constants alone:
-   constants of which nothing finite can be made are left standing. */
-static bool check_coefficients(Elaboration *e, Node first, const Syntax *place)
-{
-    for (Node n = first; n < e->graph->count; n++) {
-        const Expr *expr = &e->graph->items[n];
-        if (expr->time != TIME_COMPILE || expr->op == OP_CONSTANT)
-            continue;
-        Diag *diag  = diag_add(e->diags, DIAG_NOT_A_NUMBER, place->span,
-                               "a coefficient of this polynomial is not finite");
-        diag->label = "a division by zero, or an overflow, is in here";
-        return false;
-    }
-    return true;
-}
-
 /* ---- other expressions ---- */
 
 /* Where a point of all space is looked at: the nearest in C. */
@@ -235,10 +219,7 @@ const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Synt
     shape->formula = formula;
     shape->fields  = true;
     Node point     = graph_leaf(e->graph, OP_POINT);
-    Node first     = (Node)e->graph->count;
     if (graph_ball_series(e->graph, formula, point, &series, &fault, e->scratch)) {
-        if (!check_coefficients(e, first, place))
-            return NULL;
         shape->distance = series_distance(e->graph, &series);
         shape->degree   = series.degree;
         shape->fields   = false;

@@ -367,6 +367,8 @@ static void add_zone(Elaboration *e, const Environment *env, const Syntax *synta
                                "the radius of a zone must not be negative");
         diag->label = diag_text(e->diags, range.low == range.high ? "this is %g" : "this can be %g",
                                 range.low);
+        if (range.low < range.high)
+            diag->help = "give the `param` a range that is not negative, or use `max(..., 0)`";
         return;
     }
     g->here    = syntax->span;

@@ -7,8 +7,8 @@
  *     F(p + t v) = q + A (t w + t^2 h) / Q,    Q = 1 + 2 t w.h + t^2 h.h,
  * and its distance from q is A t / sqrt(Q).  So w and h are all there is to carry, next to the
  * point: they turn with rotations and mirrors, and an inversion at z from its pole turns h into
- * R^T (h reflected along z - A z / |z|^2).  |h| is at most the B of the centred bound, which is this
- * exit for the worst direction.  No ball is pulled back, so no terms cancel.
+ * R^T (h reflected along z - A z / |z|^2).  |h| is at most the B of the centred bound, which is
+ * this exit for the worst direction.  No ball is pulled back, so no terms cancel.
  *
  * A ball of radius d that is empty around q is left at the t with A t = d sqrt(Q).  Behind a mirror
  * that is farther out than an inversion this holds up to where the image of the ray crosses the

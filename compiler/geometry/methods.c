@@ -71,13 +71,18 @@ static Value method_transform(Elaboration *e, const Shape *shape, Call *call)
 /* Reports a number or vector of which some part can be negative. */
 static bool check_not_negative(Elaboration *e, Node node, const Syntax *syntax, const char *what)
 {
-    for (uint32_t i = 0; i < e->graph->items[node].type; i++)
-        if (node_range(e, node, i).low < 0) {
-            Diag *diag =
-                diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "%s cannot be negative", what);
-            diag->label = "negative";
-            return false;
-        }
+    for (uint32_t i = 0; i < e->graph->items[node].type; i++) {
+        Range range = node_range(e, node, i);
+        if (range.low >= 0)
+            continue;
+        bool  known = range.low == range.high;
+        Diag *diag =
+            diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "%s cannot be negative", what);
+        diag->label = known ? "negative" : diag_text(e->diags, "this can be %g", range.low);
+        if (!known)
+            diag->help = "give the `param` a range that is not negative, or use `max(..., 0)`";
+        return false;
+    }
     return true;
 }
 
@@ -327,7 +332,8 @@ Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax)
         bool outer     = e->in_material;
         e->in_material = outer || methods[i].method == method_paint || /* a colour is a material */
                          methods[i].method == method_color_by;
-        bool bound = bind_arguments(e, env, syntax, 1, methods[i].name, methods[i].parameters, &call);
+        bool bound =
+            bind_arguments(e, env, syntax, 1, methods[i].name, methods[i].parameters, &call);
         e->in_material = outer;
         if (!bound)
             return value_error();

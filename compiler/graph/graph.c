@@ -73,7 +73,8 @@ static double op_weight(Op op, double n)
 {
     switch (op) {
     case OP_CONSTANT: case OP_PARAMETER: case OP_POINT: case OP_INSTANCE: case OP_LEVEL:
-    case OP_UV: case OP_TRAP: case OP_NORMAL: case OP_FOOTPRINT: case OP_DIRECTION: case OP_COMPONENT: case OP_vec2: case OP_vec3: case OP_vec4: case OP_splat2: case OP_splat3:
+    case OP_UV: case OP_TRAP: case OP_NORMAL: case OP_FOOTPRINT: case OP_DIRECTION:
+    case OP_COMPONENT: case OP_vec2: case OP_vec3: case OP_vec4: case OP_splat2: case OP_splat3:
     case OP_splat4:        return 0;
     case OP_div:           return 1.4;
     case OP_sqrt:          return 1.6;
@@ -340,7 +341,8 @@ static Node fold_constant(Graph *graph, const Expr *e)
     return graph_constant(graph, e->type, value.v);
 }
 
-/* The node of e, whose operands are in place; its binding time is the latest of theirs. */
+/* The node of e, whose operands are in place; its binding time is the latest of theirs, or the
+   frame's for what is constant and not finite: shaders have no literal for it. */
 static Node operation(Graph *graph, Expr e)
 {
     Node folded = fold_constant(graph, &e);
@@ -349,6 +351,8 @@ static Node operation(Graph *graph, Expr e)
     for (int i = 0; i < e.operand_count; i++)
         if (graph->items[e.operands[i]].time > e.time)
             e.time = graph->items[e.operands[i]].time;
+    if (e.time == TIME_COMPILE)
+        e.time = TIME_FRAME;
     return node_intern(graph, e);
 }
 
@@ -511,7 +515,7 @@ static const char *node_mistake(const Graph *graph, Node node)
     uint8_t     latest = e->op == OP_CONSTANT    ? TIME_COMPILE
                          : e->op == OP_PARAMETER ? TIME_FRAME
                          : e->operand_count == 0 ? TIME_POINT
-                                                 : TIME_COMPILE;
+                                                 : TIME_FRAME;
     if (e->op >= OP_COUNT || e->operand_count != op_arity(e->op))
         return "wrong number of operands";
     for (int i = 0; i < e->operand_count; i++) {

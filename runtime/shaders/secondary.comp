@@ -46,6 +46,10 @@ float extent;      // of their directions: the sum of their squares
 float steepness;   // of the distance around the hit
 float blocked, weight; // of those of occlusion
 float visible;     // how much of the light
+float open_before; // as the distance at the step before says
+float least, least_at, least_distance; // the last minimum of that, and where it was
+bool  falling;     // towards the next
+uint  looks;       // around there that are still to come
 float facing;      // cosine between normal and way
 bool  is_clear;    // nothing else is near the way to it
 uint  taps, limit; // so far, and at most
@@ -114,7 +118,9 @@ void begin_item(uint number, bool saved)
     taps = 0u;
     sum = level = vec3(0.0);
     extent = 0.0;
-    before = INFINITE;
+    looks = 0u;
+    before = open_before = least = INFINITE;
+    falling = false;
     blocked = 0.0;
     weight = 0.33;
     if (control.phase == SHADOW) {
@@ -143,20 +149,56 @@ void begin_item(uint number, bool saved)
     }
 }
 
-bool item_wants_more() { return taps < limit; }
+bool item_wants_more() { return taps < limit || looks > 0u; }
+
+// Around where a ray to a light comes nearest to something.
+float look_reach() { return max(0.0625 * least_distance, 64.0 * place.rounding); }
 
 float item_distance(vec3 place) { return krs_distance(place); }
-vec3 item_place() { return start + t * way; }
+vec3 item_place()
+{
+    return looks > 0u ? start + least_at * way + look_reach() * stencil(TAPS - looks)
+                      : start + t * way;
+}
+
+// How steep the distance is, 1 unless it is a bound.  In a hollow edge the differences of its two
+// sides cancel in part, and the rest is in the level, below 0; on a convex one they may.
+float find_steepness(float reach)
+{
+    float found = length(vec2(length(sum), length(min(level, 0.0)))) / (extent * reach / 3.0);
+    return found > LEAST_STEEPNESS ? min(found, 1.0) : LEAST_STEEPNESS;
+}
+
+// What comes near is not as near as it seems where the distance is a bound: how steep it is there
+// tells.
+void begin_looks()
+{
+    if (least >= visible)
+        return;
+    looks = TAPS;
+    sum = level = vec3(0.0);
+    extent = 0.0;
+}
 
 // A surface may be as near as the rim where this step's sphere meets the last one's, which lies
 // `back` behind here, if that is ahead of the last step (math.md 6).
 void take_shadow(float distance)
 {
-    visible = min(visible, sharpness * distance / max(t, place.rounding));
+    float open = sharpness * distance / max(t, place.rounding);
     float back = distance * distance / (2.0 * before);
     float aside = sqrt(max(distance * distance - back * back, 0.0));
     if (back < before)
-        visible = min(visible, sharpness * aside / max(t - back, place.rounding));
+        open = min(open, sharpness * aside / max(t - back, place.rounding));
+    bool rising = open >= open_before;
+    if (rising && falling)
+        begin_looks();
+    else if (!rising) {
+        least = open;
+        least_at = t;
+        least_distance = distance;
+    }
+    falling = !rising;
+    open_before = open;
     // Near the start even what is open may have a small distance, where that is only a bound: as
     // small a part of the true one as at the first step.
     float lift = LIFT * place.width + 4.0 * place.rounding;
@@ -170,16 +212,38 @@ void take_shadow(float distance)
         is_clear = false;
     // A ray that creeps along a surface goes on by a pixel at least, or a sixteenth of the
     // penumbra's width: what it could miss is too small to be seen.
-    float least = max(place.width, 0.0625 * t / sharpness);
-    before = distance < least ? INFINITE : distance;
-    t += max(distance, least);
+    float pace = max(place.width, 0.0625 * t / sharpness);
+    before = distance < pace ? INFINITE : distance;
+    t += max(distance, pace);
     if (visible < BLACK || t >= end)
+        limit = 0u;
+    if (t >= end && falling)
+        begin_looks();
+    if (visible < BLACK)
+        looks = 0u;
+}
+
+void take_look(float distance)
+{
+    vec3 from = stencil(TAPS - looks);
+    float more = distance - least_distance;
+    sum += more * from;
+    level += more * abs(from);
+    extent += dot(from, from);
+    looks--;
+    if (looks == 0u)
+        visible = min(visible, least / find_steepness(look_reach()));
+    if (visible < BLACK)
         limit = 0u;
 }
 
 void take_distance(float distance)
 {
     distance *= place.side;
+    if (looks > 0u) {
+        take_look(distance);
+        return;
+    }
     taps++;
     if (control.phase == SHADOW) {
         take_shadow(distance);
@@ -200,14 +264,6 @@ void take_distance(float distance)
     }
 }
 
-// How steep the distance is, 1 unless it is a bound.  In a hollow edge the differences of its two
-// sides cancel in part, and the rest is in the level, below 0; on a convex one they may.
-float find_steepness()
-{
-    float found = length(vec2(length(sum), length(min(level, 0.0)))) / (extent * t / 3.0);
-    return found > LEAST_STEEPNESS ? min(found, 1.0) : LEAST_STEEPNESS;
-}
-
 void end_item()
 {
     if (control.phase == SHADOW) {
@@ -226,7 +282,7 @@ void end_item()
         float uneven = length(vec2(size, length(level)));
         float even = uneven > 0.0 && uneven < INFINITE ? size / uneven : 1.0;
         hits[place.index].facing = vec4(normal, even);
-        hit_numbers[OF_HIT * place.index + STEEPNESS_OF_HIT] = find_steepness();
+        hit_numbers[OF_HIT * place.index + STEEPNESS_OF_HIT] = find_steepness(t);
     }
 }
 

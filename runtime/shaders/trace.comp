@@ -148,7 +148,7 @@ void begin_march(uint index, float start, bool is_ray)
     march.fate = march.t <= end ? MARCHING : MISS;
 #ifdef PROBE
     // Beams end where there is no room for a tile.
-    march.gap = start > 0.0 ? 8.0 * (pixel_base + pixel_slope * start)
+    march.gap = start > 0.0 ? 3.0 * (pixel_base + pixel_slope * start)
                             : 0.05 * (end - start);
     march.gap = max(march.gap, ROUNDING * (rounding + start));
 #endif

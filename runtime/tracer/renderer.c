@@ -207,8 +207,9 @@ static Variant name_variant(const KrsRendering *rendering, KrsTrace trace, KrsSc
     uint32_t zones = rendering->in_use->zones;
     bool     anchored = rendering->in_use->anchored; /* has the distance and the surface alone */
     bool     by_ray = trace >= KRS_TRACE_EXACT;
-    bool     along = by_ray && !anchored && (trace >= KRS_TRACE_DIRECTIONAL ? rendering->program->inverts
-                                                               : rendering->program->along);
+    bool     known = trace >= KRS_TRACE_DIRECTIONAL ? rendering->program->inverts
+                                                    : rendering->program->along;
+    bool     along = by_ray && !anchored && known;
     Variant  variant;
     int      length = snprintf(variant.defines, sizeof variant.defines,
                                "#define TRACE %du\n#define REFILL %d\n%s%s%s",

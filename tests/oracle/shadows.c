@@ -57,12 +57,15 @@ typedef struct Solid {
     double    radius; /* of twigs: in units of the parameter `size` */
 } Solid;
 
-typedef enum StageKind { LEDGE, LEDGE_LAMP, BALLS, BALL_LAMP, TWIGS, STAGES } StageKind;
+typedef enum StageKind {
+    LEDGE, LEDGE_LAMP, BALLS, BALL_LAMP, TWIGS, BOUNDS, FAR_BOUNDS, STAGES
+} StageKind;
 enum { FROM_ABOVE, FROM_THE_SIDE }; /* cameras: orthographic and perspective */
 enum { MOST_SOLIDS = 24, MOST_PIXELS = 1 << 16 };
 
 typedef struct Stage {
     bool          lamp; /* its light has a place, else it is a sun */
+    double        slope; /* balls have a distance so many times too small; 0: the true one */
     Vec           target;
     double        high; /* of what is seen from above */
     Solid         solids[MOST_SOLIDS];
@@ -81,6 +84,8 @@ static Stage stages[STAGES] = {
     [BALLS] = {.target = {1.2, 0, 0}, .high = 5},
     [BALL_LAMP] = {.lamp = true, .target = {1.2, 0, 0}, .high = 5},
     [TWIGS] = {.target = {0, 0, 0}, .high = 4},
+    [BOUNDS] = {.slope = 4, .target = {1.2, 0, 0}, .high = 5},
+    [FAR_BOUNDS] = {.slope = 20, .target = {1.2, 0, 0}, .high = 5},
 };
 
 /* Twigs in all directions that lie above the ground. */
@@ -108,17 +113,17 @@ static void place_solids(StageKind kind)
     }
     bool ledge = kind == LEDGE || kind == LEDGE_LAMP;
     stage->solids[stage->count++] = ledge ? A_LEDGE : A_BALL;
-    if (kind == BALLS) /* one that lies on the ground */
+    if (kind == BALLS || stage->slope > 0) /* one that lies on the ground */
         stage->solids[stage->count++] = (Solid){BALL, {-1.5, 0.4, 1.5}, {0, 0, 0}, 0.4};
 }
 
-static void write_solid(SceneText *text, const Solid *solid)
+static void write_solid(SceneText *text, const Stage *stage, const Solid *solid)
 {
     Vec a = solid->a, b = solid->b, middle = vec_mix(a, b, 0.5), sides = vec_sub(b, a);
     switch (solid->kind) {
     case BALL:
-        scene_write(text, "show sphere(%.17g).move([%.17g, %.17g, %.17g]).paint(white);\n",
-                    solid->radius, a.x, a.y, a.z);
+        scene_write(text, "show %s(%.17g).move([%.17g, %.17g, %.17g]).paint(white);\n",
+                    stage->slope > 0 ? "ball" : "sphere", solid->radius, a.x, a.y, a.z);
         break;
     case SLAB:
         scene_write(text, "show box([%.17g, %.17g, %.17g]).move([%.17g, %.17g, %.17g])"
@@ -163,8 +168,11 @@ static Stage *use_stage(StageKind kind)
         return stage;
     place_solids(kind);
     write_looks(&stage->text, stage);
+    if (stage->slope > 0)
+        scene_write(&stage->text, "shape ball(radius = 1) { distance: length(p) - radius, "
+                    "slope: %.17g, within: box(2 * radius * [1, 1, 1]) }\n", stage->slope);
     for (int i = 0; i < stage->count; i++)
-        write_solid(&stage->text, &stage->solids[i]);
+        write_solid(&stage->text, stage, &stage->solids[i]);
     stage->product = product_compile(stage->text.bytes);
     open_rendering(&stage->product, &stage->rendering);
     return stage;
@@ -704,6 +712,22 @@ static void soft_shadows_are_the_least_openness(void **state)
         wrong += !soft_is_right("ball", of_ball, &ball, MOST_BACK);
         krs_picture_free(of_edge);
         krs_picture_free(of_ball);
+    }
+    assert_int_equal(wrong, 0);
+}
+
+/* Penumbrae are as wide where the distance is only a bound. */
+static void soft_shadows_of_bounds_are_as_wide(void **state)
+{
+    (void)state;
+    size_t wrong = 0;
+    for (int i = 0; i < 4; i++) {
+        Shot ball = ball_shot(&lightings[i / 2], KRS_SHADOWS_SOFT, 1);
+        ball.stage = i % 2 ? FAR_BOUNDS : BOUNDS;
+        KrsPicture *picture = shoot(&ball);
+        print_message("# %s, distance / %g\n", lightings[i / 2].name, stages[ball.stage].slope);
+        wrong += !soft_is_right("ball", picture, &ball, MOST_BACK);
+        krs_picture_free(picture);
     }
     assert_int_equal(wrong, 0);
 }
@@ -1412,6 +1436,7 @@ int main(void)
         cmocka_unit_test(narrow_penumbras_converge),
         cmocka_unit_test(seeds_move_the_rays_to_the_light),
         cmocka_unit_test(soft_shadows_are_the_least_openness),
+        cmocka_unit_test(soft_shadows_of_bounds_are_as_wide),
         cmocka_unit_test(hard_shadows_end_where_rays_say),
         cmocka_unit_test(lit_sides_are_lit),
         cmocka_unit_test(lit_sides_of_bounds_are_lit),

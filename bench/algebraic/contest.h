@@ -1,0 +1,55 @@
+/*
+ * contest.h: what the files of the contest of algebraic surfaces share.
+ */
+#ifndef KRS_BENCH_ALGEBRAIC_H
+#define KRS_BENCH_ALGEBRAIC_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "bench/algebraic/polynomial.h"
+
+enum { WIDTH = 1280, HEIGHT = 720 };
+
+typedef struct Subject {
+    const char *name, *call, *oracle;
+    int         degree;
+    double      radius;
+    const char *text; /* of the polynomial */
+} Subject;
+
+extern const Definition definitions[]; /* what the texts may use */
+
+/* The view: parallel rays, a window of this height, the axes of the picture. */
+typedef struct View {
+    double right[3], up[3], back[3], height, distance;
+} View;
+
+void give_up(const char *what, const char *why);
+
+/* ---- programs.c ---- */
+/* A run of a program, from its start to its end. */
+typedef struct Run {
+    bool   done;
+    double wall, cpu; /* ms */
+    double frame;     /* ms of all threads, by its own statistics; 0: it tells none */
+    double coverage;  /* share of the pixels that are not background */
+    double megabytes; /* the most it held */
+} Run;
+
+typedef struct Program {
+    const char *name, *command; /* in PATH */
+    bool (*run)(const struct Program *program, const char *folder, const Subject *subject,
+                const View *view, Run *run);
+    int  largest_degree, least_degree;
+    bool slow; /* once is enough */
+} Program;
+
+extern const Program programs[];
+extern const size_t  program_count;
+
+bool program_is_installed(const char *command);
+/* Runs a command and waits; false when it fails. */
+bool run_command(char *const *arguments, const char *output, Run *run);
+
+#endif
