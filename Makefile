@@ -3,6 +3,7 @@
 # make test       set up, build, run every test; the last line is `N passed, N failed`
 # make sanitize   the same programs under ASan and UBSan, in build/asan/
 # make bench      measures, writes bench/results/; bench-quick: only whether it can
+# make bench-normals, bench-algebraic   stencils of normals; algebraic surfaces beside other programs
 # make minify     how well one sample shows what is finer than a pixel
 # make fuzz       the front end under libFuzzer for FUZZ_SECONDS (30)
 # make lint       kernels by themselves, shell scripts

@@ -62,7 +62,7 @@ static double middle(double *numbers, size_t count)
 
 static View view_of(const Subject *subject)
 {
-    View   view = {.back = {0.42, 0.31, 0.853}, .height = 2.2 * subject->radius,
+    View   view = {.back = {0.42, 0.31, 0.853}, .height = 1.4 * subject->radius,
                    .distance = 3 * subject->radius};
     double size = sqrt(0.42 * 0.42 + 0.31 * 0.31 + 0.853 * 0.853), across;
     for (int i = 0; i < 3; i++)
@@ -333,12 +333,12 @@ static void print_run(const Subject *subject, const char *name, const Run *run, 
         printf(" %.0f | %.1f |", run->frame, run->frame / frame);
     else
         printf(" | |");
-    printf(" %.2f | %.0f | %.1f %% |\n", run->cpu / krs_cpu, run->megabytes, 100 * run->coverage);
+    printf(" %.2f | %.1f %% |\n", run->cpu / krs_cpu, 100 * run->coverage);
     fflush(stdout);
 }
 
 static void print_programs(const char *krs, const Subject *subject, const View *view, double frame,
-                           double coverage, size_t repeats)
+                           double coverage, size_t repeats, bool slow)
 {
     static Runs all[8], cold, warm;
     char        folder[] = "/tmp/krs-algebraic-XXXXXX", cache[64];
@@ -360,7 +360,7 @@ static void print_programs(const char *krs, const Subject *subject, const View *
             const Program *program = &programs[i];
             if (!program_is_installed(program->command) ||
                 subject->degree > program->largest_degree ||
-                subject->degree < program->least_degree || (program->slow && turn > 0))
+                subject->degree < program->least_degree || (program->slow && (!slow || turn > 0)))
                 continue;
             run      = (Run){0};
             run.done = program->run(program, folder, subject, view, &run);
@@ -394,13 +394,13 @@ static void print_heads(size_t repeats, const char *device)
                    programs[i].command);
 }
 
-/* algebraic KRS [REPEATS [NAME]] */
+/* algebraic KRS [REPEATS [SURFACE [slow]]]: with `slow` what takes minutes as well. */
 int main(int count, char **arguments)
 {
     KrsRenderer *renderer;
     static double frames[SUBJECTS], coverages[SUBJECTS];
     if (count < 2)
-        give_up("usage", "algebraic KRS [REPEATS [SURFACE]]");
+        give_up("usage", "algebraic KRS [REPEATS [SURFACE [slow]]]");
     size_t repeats = count > 2 ? strtoul(arguments[2], NULL, 10) : 5;
     repeats = repeats < 1 ? 1 : repeats > MOST_REPEATS ? MOST_REPEATS : repeats;
     if (krs_renderer_new(NULL, &renderer) != KRS_OK)
@@ -418,12 +418,13 @@ int main(int count, char **arguments)
     }
     krs_renderer_free(renderer);
     printf("\n| surface | degree | program | wall ms | cpu ms | frame, cpu ms | of ours | cpu, of ours | "
-           "MB | coverage |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+           "coverage |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
     for (int i = 0; i < SUBJECTS; i++) {
         if (count > 3 && strcmp(subjects[i].name, arguments[3]) != 0)
             continue;
         View view = view_of(&subjects[i]);
-        print_programs(arguments[1], &subjects[i], &view, frames[i], coverages[i], repeats);
+        print_programs(arguments[1], &subjects[i], &view, frames[i], coverages[i], repeats,
+                       count > 4);
     }
     return 0;
 }

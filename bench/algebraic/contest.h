@@ -34,7 +34,6 @@ typedef struct Run {
     double wall, cpu; /* ms */
     double frame;     /* ms of all threads, by its own statistics; 0: it tells none */
     double coverage;  /* share of the pixels that are not background */
-    double megabytes; /* the most it held */
 } Run;
 
 typedef struct Program {
@@ -42,7 +41,7 @@ typedef struct Program {
     bool (*run)(const struct Program *program, const char *folder, const Subject *subject,
                 const View *view, Run *run);
     int  largest_degree, least_degree;
-    bool slow; /* once is enough */
+    bool slow; /* left out unless asked for, and then once is enough */
 } Program;
 
 extern const Program programs[];

@@ -61,9 +61,8 @@ bool run_command(char *const *arguments, const char *output, Run *run)
     posix_spawn_file_actions_destroy(&actions);
     if (!began || wait4(child, &status, 0, &usage) != child)
         return false;
-    run->wall      = now_ms() - start;
-    run->cpu       = milliseconds(usage.ru_utime) + milliseconds(usage.ru_stime);
-    run->megabytes = (double)usage.ru_maxrss / 1024;
+    run->wall = now_ms() - start;
+    run->cpu  = milliseconds(usage.ru_utime) + milliseconds(usage.ru_stime);
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 

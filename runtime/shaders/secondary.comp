@@ -30,6 +30,8 @@ const float LIFT = 0.5;
 const float SHARED = 8.0;
 // A way is clear for the pixels around as well if it stays so many of them away from everything.
 const float CLEARANCE = 3.0;
+// What is nearer than this part of a penumbra's width is touched.
+const float TOUCH = 4e-3;
 // What is lit and not clear: less than 1 by a bit (fill.comp).
 const float LIT = 0.99999994;
 
@@ -205,7 +207,11 @@ void take_shadow(float distance)
     if (taps == 1u)
         share = clamp(distance / lift, 0.0625, 1.0);
     float near = mix(share, 1.0, min(t / (SHARED * place.width), 1.0));
-    if (distance < max(near * frame.error * place.width, place.rounding))
+    // Where there is a penumbra, it tells what is near.
+    float touch = near * frame.error * place.width;
+    if (sharpness < INFINITE)
+        touch = min(touch, TOUCH * t / sharpness);
+    if (distance < max(touch, place.rounding))
         visible = 0.0;
     // The surface itself falls away by the cosine.
     if (distance < min(CLEARANCE * place.width, 0.5 * facing * t))
