@@ -3,6 +3,8 @@
 # Every test speaks TAP; tests/run.sh counts.  The compiler's tests run a second time under the
 # address and undefined-behaviour sanitizers, and everything compiles under clang as well.
 
+# What tests of several kinds share; nothing of it knows what is tested.
+SUPPORT     := $(addprefix tests/support/, bench.c random.c renderer.c)
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c formulas.c)
 UNIT        := front film tracer methods writer memory validate refute frame query cache compiled apart stencils
 PROPERTY    := ops noise graph derive series along anchor slope parity reach
@@ -20,9 +22,12 @@ SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/edit
 $(B)/tests/oracle/oracle.a: $(ORACLE:%.c=$(B)/%.o)
 	@rm -f $@
 	@$(AR) rcs $@ $^
-$(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/oracle.a $(B)/libkrs.a
+$(B)/tests/support/support.a: $(SUPPORT:%.c=$(B)/%.o)
+	@rm -f $@
+	@$(AR) rcs $@ $^
+$(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/oracle.a $(B)/tests/support/support.a $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
-$(B)/tests/%: $(B)/tests/%.o $(B)/libkrs.a
+$(B)/tests/%: $(B)/tests/%.o $(B)/tests/support/support.a $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
 .SECONDARY:
 

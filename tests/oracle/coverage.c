@@ -19,7 +19,7 @@
 #include <cmocka.h>
 
 #include "compiler/compile.h"
-#include "runtime/krs_vulkan.h"
+#include "tests/support/renderer.h"
 #include "tests/oracle/exact.h"
 #include "tests/oracle/product.h"
 
@@ -35,7 +35,6 @@
 enum { WIDTH = 400, HEIGHT = 225, PIXELS = WIDTH * HEIGHT };
 enum { ROUND, FLAT, CAMERAS }; /* perspective and orthographic */
 
-static KrsRenderer *renderer;
 
 /* ---- Scenes ---- */
 
@@ -658,25 +657,14 @@ static void rods_are_those_of_the_scene(void **state)
 
 /* ---- All tests ---- */
 
-static int open_device(void **state)
+static int close_all(void **state)
 {
-    (void)state;
-    KrsStatus status = krs_renderer_new(NULL, &renderer);
-    if (status != KRS_OK && renderer)
-        fprintf(stderr, "%s\n", krs_renderer_message(renderer));
-    return status != KRS_OK;
-}
-
-static int close_device(void **state)
-{
-    (void)state;
     for (int i = 0; i < SCENES; i++) {
         krs_rendering_free(scenes[i].rendering);
         product_free(&scenes[i].product);
         free(scenes[i].rods);
     }
-    krs_renderer_free(renderer);
-    return 0;
+    return renderer_close(state);
 }
 
 int main(void)
@@ -695,7 +683,7 @@ int main(void)
         cmocka_unit_test(branches_beyond_mirrors_are_found),
     };
     spirv_start(); /* held for all, so that no renderer starts the shader compiler anew */
-    int failed = cmocka_run_group_tests_name("coverage", tests, open_device, close_device);
+    int failed = cmocka_run_group_tests_name("coverage", tests, renderer_open, close_all);
     spirv_stop();
     return failed;
 }

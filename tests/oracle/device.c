@@ -18,11 +18,9 @@
 #include <cmocka.h>
 
 #include "compiler/compile.h"
-#include "runtime/krs_vulkan.h"
+#include "tests/support/renderer.h"
 
 enum { POINTS = 20000 };
-
-static KrsRenderer *renderer;
 
 static uint64_t state = 12345;
 
@@ -264,22 +262,6 @@ static void a_fault_is_found(void **context)
     assert_true(compare_scene("show sphere(1);", 16, 1).worst <= 1);
 }
 
-static int open_device(void **context)
-{
-    (void)context;
-    KrsStatus status = krs_renderer_new(NULL, &renderer);
-    if (status != KRS_OK && renderer)
-        fprintf(stderr, "%s\n", krs_renderer_message(renderer));
-    return status != KRS_OK;
-}
-
-static int close_device(void **context)
-{
-    (void)context;
-    krs_renderer_free(renderer);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -291,7 +273,7 @@ int main(void)
     };
     spirv_start();
     int failed =
-        cmocka_run_group_tests_name("device and evaluator", tests, open_device, close_device);
+        cmocka_run_group_tests_name("device and evaluator", tests, renderer_open, renderer_close);
     spirv_stop();
     return failed;
 }

@@ -18,11 +18,9 @@
 #include <cmocka.h>
 
 #include "compiler/compile.h"
-#include "runtime/krs_vulkan.h"
+#include "tests/support/renderer.h"
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
-
-static KrsRenderer *renderer;
 
 typedef struct Vec {
     double x, y, z;
@@ -114,6 +112,23 @@ static Verdict judge(const KrsPicture *picture, const KrsHit *hits, double pixel
     return verdict;
 }
 
+static KrsPicture *picture_of(const char *text)
+{
+    KrsScene        *scene;
+    KrsFrame        *frame;
+    KrsRendering    *rendering;
+    KrsPicture      *picture;
+    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .no_filter = true};
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
+    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
+    assert_int_equal(krs_render(rendering, frame, &options, &picture), KRS_OK);
+    krs_rendering_free(rendering);
+    krs_frame_free(frame);
+    krs_scene_free(scene);
+    return picture;
+}
+
 /* `planted` moves the exact camera sideways, to show that a fault is found. */
 static Verdict compare(const char *text, double planted)
 {
@@ -185,6 +200,33 @@ static void sequences_agree(void **state)
            "    kernel sphere(0.2).move(0.5 * random_direction(i)); } };");
 }
 
+/* From inside every ray ends at a wall, at none that is only a seam, and nothing that is outside
+   shines in. */
+static void the_inside_of_solids_agrees(void **state)
+{
+    static const char *const lights[] = {"intensity: 3", "intensity: 0", "intensity: 3, shadow: false"};
+    static const char inside[] =
+        "camera { eye: [-0.3, 0.1, 0.2], target: [1.5, 0, 0], fov: 90deg }"
+        "show box([1, 1, 1]); show box([1, 1, 1]).move([1, 0, 0]);"
+        "light sun { direction: [-1, 2, 1], %s }";
+    KrsPicture *pictures[3];
+    char        text[400];
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        snprintf(text, sizeof text, inside, lights[i]);
+        agrees(text);
+        pictures[i] = picture_of(text);
+    }
+    bool dark = memcmp(pictures[0]->color, pictures[1]->color, PIXELS * 16) == 0;
+    bool same = memcmp(pictures[1]->color, pictures[2]->color, PIXELS * 16) == 0;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < PIXELS; k++)
+            assert_true(pictures[i]->component[k] != 0);
+        krs_picture_free(pictures[i]);
+    }
+    assert_true(dark && !same);
+}
+
 static void a_fault_is_found(void **state)
 {
     (void)state;
@@ -192,32 +234,17 @@ static void a_fault_is_found(void **state)
     assert_true(verdict.worst > 0.5 || verdict.wrong * 2000 > verdict.inside);
 }
 
-static int open_device(void **state)
-{
-    (void)state;
-    KrsStatus status = krs_renderer_new(NULL, &renderer);
-    if (status != KRS_OK && renderer)
-        fprintf(stderr, "%s\n", krs_renderer_message(renderer));
-    return status != KRS_OK;
-}
-
-static int close_device(void **state)
-{
-    (void)state;
-    krs_renderer_free(renderer);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(solids_agree),
         cmocka_unit_test(sequences_agree),
+        cmocka_unit_test(the_inside_of_solids_agrees),
         cmocka_unit_test(a_fault_is_found),
     };
     spirv_start();
-    int failed = cmocka_run_group_tests_name("pictures against exact rays", tests, open_device,
-                                             close_device);
+    int failed = cmocka_run_group_tests_name("pictures against exact rays", tests, renderer_open,
+                                             renderer_close);
     spirv_stop();
     return failed;
 }

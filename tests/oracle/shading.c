@@ -16,12 +16,10 @@
 #include <cmocka.h>
 
 #include "compiler/compile.h"
-#include "runtime/krs_vulkan.h"
+#include "tests/support/renderer.h"
 #include "tests/oracle/brute.h"
 
 enum { WIDTH = 240, HEIGHT = 160, PIXELS = WIDTH * HEIGHT };
-
-static KrsRenderer *renderer;
 
 static KrsPicture *take(const char *text, KrsRenderOptions options)
 {
@@ -199,22 +197,6 @@ static void only_fine_detail_is_filtered(void **state)
     assert_true(worst == 0);
 }
 
-static int open_device(void **state)
-{
-    (void)state;
-    KrsStatus status = krs_renderer_new(NULL, &renderer);
-    if (status != KRS_OK && renderer)
-        fprintf(stderr, "%s\n", krs_renderer_message(renderer));
-    return status != KRS_OK;
-}
-
-static int close_device(void **state)
-{
-    (void)state;
-    krs_renderer_free(renderer);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -224,7 +206,7 @@ int main(void)
         cmocka_unit_test(only_fine_detail_is_filtered),
     };
     spirv_start();
-    int failed = cmocka_run_group_tests_name("shading", tests, open_device, close_device);
+    int failed = cmocka_run_group_tests_name("shading", tests, renderer_open, renderer_close);
     spirv_stop();
     return failed;
 }

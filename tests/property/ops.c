@@ -17,6 +17,8 @@
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/facts.h"
 
+#include "tests/support/random.h"
+
 /* ---- rows under test ---- */
 
 /*
@@ -71,34 +73,12 @@ static Row row_of(Op op)
     }
 }
 
-/* ---- random numbers, the same everywhere ---- */
-
-typedef struct Random {
-    uint64_t state;
-} Random;
-
-static uint32_t random_bits(Random *random)
-{
-    random->state = random->state * 6364136223846793005u + 1442695040888963407u;
-    uint64_t x    = random->state;
-    x ^= x >> 33;
-    x *= 0xff51afd7ed558ccdu;
-    return (uint32_t)(x >> 32);
-}
-
-static double between(Random *random, double low, double high)
-{
-    return low + (high - low) * (random_bits(random) / 4294967295.0);
-}
-
-static uint32_t below(Random *random, uint32_t n) { return random_bits(random) % n; }
-
 static void random_unit(Random *random, double u[3])
 {
     double size;
     do {
         for (int i = 0; i < 3; i++)
-            u[i] = between(random, -1, 1);
+            u[i] = random_between(random, -1, 1);
         size = sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
     } while (size < 0.1 || size > 1);
     for (int i = 0; i < 3; i++)
@@ -187,9 +167,9 @@ static Fact operand_fact(const Operand *operand, const double half[3], bool with
    be the point itself, turned and scaled. */
 static void operand_move(Random *random, Operand *operand, const double shared[3])
 {
-    double own[3], size = 0, speed = between(random, 0.2, 2);
+    double own[3], size = 0, speed = random_between(random, 0.2, 2);
     random_unit(random, own);
-    if (operand->type == TYPE_VEC3 && below(random, 2)) {
+    if (operand->type == TYPE_VEC3 && random_below(random, 2)) {
         double rows[3][3];
         random_rotation(random, rows);
         for (int i = 0; i < 3; i++)
@@ -198,10 +178,10 @@ static void operand_move(Random *random, Operand *operand, const double shared[3
         operand->slope = speed * (1 + 1e-14);
         return;
     }
-    const double *direction = below(random, 4) ? shared : own;
-    bool          along     = below(random, 3) == 0; /* in the direction of the value */
+    const double *direction = random_below(random, 4) ? shared : own;
+    bool          along     = random_below(random, 3) == 0; /* in the direction of the value */
     for (uint32_t i = 0; i < operand->size; i++) {
-        double rate = along ? operand->base[i] : between(random, -speed, speed);
+        double rate = along ? operand->base[i] : random_between(random, -speed, speed);
         size += rate * rate;
         for (int j = 0; j < 3; j++)
             operand->gradient[i][j] = rate * direction[j];
@@ -212,14 +192,14 @@ static void operand_move(Random *random, Operand *operand, const double shared[3
 static double fixed_number(Random *random, char kind)
 {
     switch (kind) {
-    case 'p': return below(random, 4) ? between(random, 0.3, 2) : 0;
-    case 'w': return below(random, 6) ? between(random, 0.05, 2) : 0;
-    case 'n': return 1 + below(random, 7);
-    case 'k': return 2 + below(random, 4);
-    case 'q': return between(random, -0.5, 0.5);
-    case 'l': return -(double)below(random, 3);
-    case 'h': return below(random, 3);
-    default:  return between(random, -2, 2);
+    case 'p': return random_below(random, 4) ? random_between(random, 0.3, 2) : 0;
+    case 'w': return random_below(random, 6) ? random_between(random, 0.05, 2) : 0;
+    case 'n': return 1 + random_below(random, 7);
+    case 'k': return 2 + random_below(random, 4);
+    case 'q': return random_between(random, -0.5, 0.5);
+    case 'l': return -(double)random_below(random, 3);
+    case 'h': return random_below(random, 3);
+    default:  return random_between(random, -2, 2);
     }
 }
 
@@ -242,7 +222,7 @@ static void steep_place(Random *random, Operand *operand)
     for (int k = 0; k < 40; k++) {
         NodeValue place = {{0}};
         for (uint32_t i = 0; i < operand->size; i++)
-            place.v[i] = floor(between(random, -1000, 1000)) + 0.5;
+            place.v[i] = floor(random_between(random, -1000, 1000)) + 0.5;
         double middle = op_evaluate(op, TYPE_FLOAT, 0, &operand->type, &place).v[0];
         for (uint32_t i = 0; i < operand->size; i++) {
             NodeValue beside = place;
@@ -260,22 +240,22 @@ static void operand_make(Random *random, Operand *operand, char kind, GraphType 
                          const double shared[3], const double row[3])
 {
     *operand = (Operand){.type = type, .size = type <= TYPE_VEC4 ? type : 1};
-    bool narrow = below(random, 3) == 0; /* near what happens at 0 and whole numbers */
+    bool narrow = random_below(random, 3) == 0; /* near what happens at 0 and whole numbers */
     for (uint32_t i = 0; i < operand->size; i++) {
         operand->base[i] = fixed_number(random, kind);
         if (kind == 'm' && narrow)
             operand->base[i] *= 0.01;
 
-        if (below(random, 8) < (kind == 'e' ? 4 : kind == 'm'))
+        if (random_below(random, 8) < (kind == 'e' ? 4 : kind == 'm'))
             operand->base[i] = round(operand->base[i]);
         if (kind == 'r')
             operand->base[i] = row[i];
         if (kind == 'u')
             operand->base[i] = shared[i];
     }
-    if (below(random, 8) < moving_eighths(kind))
+    if (random_below(random, 8) < moving_eighths(kind))
         operand_move(random, operand, shared);
-    if (kind == 's' && below(random, 2)) { /* the point itself */
+    if (kind == 's' && random_below(random, 2)) { /* the point itself */
         steep_place(random, operand);
         operand->slope = 1;
         for (uint32_t i = 0; i < operand->size; i++)
@@ -309,14 +289,15 @@ static GraphType letter_type(char letter, GraphType map, GraphType vector, Graph
 static Trial trial_make(Random *random, Row row)
 {
     Trial     trial  = {.row = row};
-    GraphType map    = (GraphType)(below(random, 2) ? 1 : 1 + below(random, 4));
-    GraphType vector = (GraphType)(2 + below(random, 3)), any = (GraphType)(1 + below(random, 6));
-    double    shared[3], rows[3][3], size = exp(between(random, log(1e-3), log(2)));
+    GraphType map    = (GraphType)(random_below(random, 2) ? 1 : 1 + random_below(random, 4));
+    GraphType vector = (GraphType)(2 + random_below(random, 3));
+    GraphType any    = (GraphType)(1 + random_below(random, 6));
+    double    shared[3], rows[3][3], size = exp(random_between(random, log(1e-3), log(2)));
     trial.arity = (uint32_t)(strchr(row.signature, '>') - row.signature);
     random_unit(random, shared);
     random_rotation(random, rows);
     for (int j = 0; j < 3; j++)
-        trial.half[j] = size * between(random, 0.2, 1);
+        trial.half[j] = size * random_between(random, 0.2, 1);
     for (uint32_t i = 0; i < trial.arity; i++) {
         char letter    = row.signature[i];
         trial.types[i] = letter_type(letter, map, vector, any);
@@ -479,10 +460,10 @@ static const char *refutation(Random *random, const Trial *trial, const Fact *fa
     uint32_t size = trial->type <= TYPE_VEC4 ? trial->type : 1, count = 0;
     for (int k = 0; k < POINTS; k++) {
         double p[3] = {0};
-        bool   corner = below(random, 3) == 0;
+        bool   corner = random_below(random, 3) == 0;
         for (int j = 0; j < 3 && k > 0; j++) /* the first is the middle, where operands are exact */
-            p[j] = corner ? (below(random, 2) ? 1 : -1) * trial->half[j]
-                          : between(random, -trial->half[j], trial->half[j]);
+            p[j] = corner ? (random_below(random, 2) ? 1 : -1) * trial->half[j]
+                          : random_between(random, -trial->half[j], trial->half[j]);
         Sample sample = sample_at(trial, p);
         if (!sample_defined(trial, &sample, size))
             continue;
@@ -492,8 +473,8 @@ static const char *refutation(Random *random, const Trial *trial, const Fact *fa
             if (same_piece(&samples[other], &sample) &&
                 !slope_holds(fact, &samples[other], &sample, size))
                 return "slope";
-        int j = (int)below(random, 3);
-        p[j]  = between(random, -trial->half[j], trial->half[j]);
+        int j = (int)random_below(random, 3);
+        p[j]  = random_between(random, -trial->half[j], trial->half[j]);
         Sample beside = sample_at(trial, p);
         if (sample_defined(trial, &beside, size) && same_piece(&beside, &sample) &&
             !gradient_holds(fact, &sample, &beside, j, size))

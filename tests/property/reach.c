@@ -18,27 +18,7 @@
 #include "compiler/geometry/reach.h"
 #include "compiler/krs.h"
 
-/* ---- random numbers, the same everywhere ---- */
-
-typedef struct Random {
-    uint64_t state;
-} Random;
-
-static uint32_t random_bits(Random *random)
-{
-    random->state = random->state * 6364136223846793005u + 1442695040888963407u;
-    uint64_t x    = random->state;
-    x ^= x >> 33;
-    x *= 0xff51afd7ed558ccdu;
-    return (uint32_t)(x >> 32);
-}
-
-static double between(Random *random, double low, double high)
-{
-    return low + (high - low) * (random_bits(random) / 4294967295.0);
-}
-
-static uint32_t below(Random *random, uint32_t n) { return random_bits(random) % n; }
+#include "tests/support/random.h"
 
 static double dot(const double a[3], const double b[3])
 {
@@ -64,7 +44,7 @@ static void random_unit(Random *random, double u[3])
 {
     do
         for (int i = 0; i < 3; i++)
-            u[i] = between(random, -1, 1);
+            u[i] = random_between(random, -1, 1);
     while (dot(u, u) < 0.01 || dot(u, u) > 1);
     normalize(u);
 }
@@ -211,14 +191,14 @@ static void grow_crowd(Crowd *crowd, const ReachStage *stage, const Instance *ke
 static Box random_box(Random *random)
 {
     Box  box;
-    bool flat = below(random, 10) == 0;
+    bool flat = random_below(random, 10) == 0;
     for (int i = 0; i < 3; i++) {
-        double centre = between(random, -2, 2), half = between(random, 0.02, 1);
+        double centre = random_between(random, -2, 2), half = random_between(random, 0.02, 1);
         half          = flat && i == 1 ? 0 : half;
         box.axis[i]   = (Range){centre - half, centre + half};
     }
-    if (below(random, 10) == 0)
-        box.axis[below(random, 3)] = (Range){1, -1};
+    if (random_below(random, 10) == 0)
+        box.axis[random_below(random, 3)] = (Range){1, -1};
     return box;
 }
 
@@ -228,7 +208,7 @@ static Instance random_instance(Random *random, Box box)
     for (int k = 0; k < POINTS; k++) {
         corner_of(box, k % CORNERS, instance.points[k]);
         for (int i = 0; i < 3 && k >= CORNERS; i++)
-            instance.points[k][i] = between(random, box.axis[i].low, box.axis[i].high);
+            instance.points[k][i] = random_between(random, box.axis[i].low, box.axis[i].high);
     }
     return instance;
 }
@@ -237,26 +217,26 @@ static Instance random_instance(Random *random, Box box)
 static void random_mirror(Random *random, Box before, ReachStage *stage)
 {
     random_unit(random, stage->normal);
-    if (below(random, 6) == 0) {
-        int axis = (int)below(random, 3);
+    if (random_below(random, 6) == 0) {
+        int axis = (int)random_below(random, 3);
         for (int i = 0; i < 3; i++)
-            stage->normal[i] = i == axis ? below(random, 2) * 2.0 - 1 : 0;
+            stage->normal[i] = i == axis ? random_below(random, 2) * 2.0 - 1 : 0;
     }
-    stage->offset = between(random, -0.3, 0.7) * diagonal(before);
+    stage->offset = random_between(random, -0.3, 0.7) * diagonal(before);
     for (int i = 0; i < 3 && !is_empty(before); i++)
         stage->offset += stage->normal[i] * middle(before.axis[i]);
 }
 
 static void random_map(Random *random, ReachStage *stage)
 {
-    double other[3], scale = exp(between(random, -1, 0.7));
+    double other[3], scale = exp(random_between(random, -1, 0.7));
     random_unit(random, stage->rows[0]);
     random_unit(random, other);
     cross(stage->rows[0], other, stage->rows[1]);
     normalize(stage->rows[1]);
     cross(stage->rows[0], stage->rows[1], stage->rows[2]);
     for (int i = 0; i < 3; i++) {
-        stage->shift[i] = between(random, -2, 2);
+        stage->shift[i] = random_between(random, -2, 2);
         for (int j = 0; j < 3; j++)
             stage->rows[i][j] *= scale;
     }
@@ -265,7 +245,7 @@ static void random_map(Random *random, ReachStage *stage)
 static ReachStage random_stage(Random *random, const ReachStage *before)
 {
     ReachStage stage = {.kind = REACH_MAP};
-    uint32_t   dice  = below(random, 10);
+    uint32_t   dice  = random_below(random, 10);
     if (dice < 2 || (!before && dice < 9)) {
         stage.kind   = REACH_KERNEL;
         stage.kernel = random_box(random);
@@ -370,11 +350,13 @@ static void loosen(Random *random, ReachStage *stage)
 {
     double size = diagonal(stage->box);
     for (int i = 0; i < 3 && !is_empty(stage->box); i++) {
-        stage->box.axis[i].low -= between(random, 0, 0.1) * size;
-        stage->box.axis[i].high += between(random, 0, 0.1) * size;
+        stage->box.axis[i].low -= random_between(random, 0, 0.1) * size;
+        stage->box.axis[i].high += random_between(random, 0, 0.1) * size;
     }
-    if (stage->ball.radius >= 0)
-        stage->ball.radius *= below(random, 8) == 0 ? HUGE_VAL : between(random, 1, 1.2);
+    if (stage->ball.radius >= 0) {
+        bool endless = random_below(random, 8) == 0;
+        stage->ball.radius *= endless ? HUGE_VAL : random_between(random, 1, 1.2);
+    }
 }
 
 /* ---- searches broken on purpose ---- */
@@ -524,8 +506,8 @@ static void compare(const Bench *bench, const ReachStage *stage, Verdict *verdic
 static void judge_sequence(Bench *bench, Random *random, Fault fault, Verdict *verdict)
 {
     ReachStage stages[MOST_STAGES];
-    uint32_t   count     = 3 + below(random, MOST_STAGES - 2);
-    bool       cut       = below(random, 2);
+    uint32_t   count     = 3 + random_below(random, MOST_STAGES - 2);
+    bool       cut       = random_below(random, 2);
     bench->clipped.count = bench->whole.count = 0;
     for (uint32_t i = 0; i < count; i++) {
         ReachStage *stage = &stages[i], *before = i > 0 ? stage - 1 : NULL;
@@ -777,14 +759,14 @@ static void grow_tree(ReachStage stages[TREE_STAGES])
 /* A random point of a random instance; false when a mirror cut it off. */
 static bool random_point(Random *random, const ReachStage stages[TREE_STAGES], double p[3])
 {
-    uint32_t    from = 2 * below(random, MIRRORS + 1);
+    uint32_t    from = 2 * random_below(random, MIRRORS + 1);
     const Range *side = stages[from].kernel.axis;
     for (int i = 0; i < 3; i++)
-        p[i] = between(random, side[i].low, side[i].high);
+        p[i] = random_between(random, side[i].low, side[i].high);
     for (uint32_t i = from + 1; i < TREE_STAGES; i += 2) {
         if (excess(&stages[i], p) > 0)
             return false;
-        if (below(random, 2))
+        if (random_below(random, 2))
             reflect(&stages[i], p);
     }
     return true;
@@ -864,7 +846,7 @@ static void random_outside(Random *random, Box box, double far, double p[3])
     do
         for (int i = 0; i < 3; i++) {
             double more = far * diagonal(box);
-            p[i] = between(random, box.axis[i].low - more, box.axis[i].high + more);
+            p[i] = random_between(random, box.axis[i].low - more, box.axis[i].high + more);
         }
     while (in_box(box, p));
 }
@@ -878,7 +860,7 @@ static Box seen_of_scene(KrsFrame *frame, Box box)
         double from[3], to[3], p[3];
         random_outside(&random, box, 0.2, from);
         for (int k = 0; k < 3; k++)
-            to[k] = between(&random, box.axis[k].low, box.axis[k].high);
+            to[k] = random_between(&random, box.axis[k].low, box.axis[k].high);
         if (walk(frame, box, from, to, p))
             include(&seen, p);
     }

@@ -13,38 +13,9 @@
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/series.h"
 
-typedef struct Bench {
-    Memory   memory;
-    Arena    arena;
-    Graph   *graph;
-    Node     point;
-    uint32_t seed;
-} Bench;
+#include "tests/support/bench.h"
 
-static jmp_buf out_of_memory;
-
-static int bench_start(void **state)
-{
-    static Bench bench;
-    bench       = (Bench){.memory = {.exhausted = &out_of_memory}, .seed = 11};
-    bench.arena = (Arena){.memory = &bench.memory};
-    bench.graph = graph_new(&bench.arena);
-    bench.point = graph_leaf(bench.graph, OP_POINT);
-    *state      = &bench;
-    return 0;
-}
-
-static int bench_stop(void **state)
-{
-    arena_free(&((Bench *)*state)->arena);
-    return 0;
-}
-
-static double uniform(Bench *b)
-{
-    b->seed = b->seed * 1664525u + 1013904223u;
-    return (b->seed >> 8) / 16777216.0;
-}
+static double uniform(Bench *b) { return random_between(&b->random, 0, 1); }
 
 static double evaluate(Bench *b, Node node, const double point[3])
 {

@@ -13,38 +13,11 @@
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/facts.h"
 
+#include "tests/support/bench.h"
+
 #define ENDLESS {-HUGE_VAL, HUGE_VAL}
 static const Box everywhere = {{ENDLESS, ENDLESS, ENDLESS}};
 static const Box around     = {{{-2, 2}, {-2, 2}, {-2, 2}}};
-
-typedef struct Bench {
-    Memory memory;
-    Arena  arena;
-    Graph *graph;
-    Node   point, x, y, z;
-} Bench;
-
-static jmp_buf out_of_memory;
-
-static int bench_start(void **state)
-{
-    static Bench bench;
-    bench       = (Bench){.memory = {.exhausted = &out_of_memory}};
-    bench.arena = (Arena){.memory = &bench.memory};
-    bench.graph = graph_new(&bench.arena);
-    bench.point = graph_leaf(bench.graph, OP_POINT);
-    bench.x     = graph_component(bench.graph, bench.point, 0);
-    bench.y     = graph_component(bench.graph, bench.point, 1);
-    bench.z     = graph_component(bench.graph, bench.point, 2);
-    *state      = &bench;
-    return 0;
-}
-
-static int bench_stop(void **state)
-{
-    arena_free(&((Bench *)*state)->arena);
-    return 0;
-}
 
 static Node sine_times_cosine(Bench *b, Node s, Node c)
 {

@@ -24,32 +24,11 @@
 
 #include "compiler/compile.h"
 
+#include "tests/support/bench.h"
+
 /* ---- distances made by hand ---- */
 
-typedef struct Bench {
-    Memory memory;
-    Arena  arena;
-    Graph *graph;
-} Bench;
-
-static jmp_buf out_of_memory;
 static const Box around_ball = {{{-1, 1}, {-1, 1}, {-1, 1}}};
-
-static int bench_start(void **state)
-{
-    static Bench bench;
-    bench       = (Bench){.memory = {.exhausted = &out_of_memory}};
-    bench.arena = (Arena){.memory = &bench.memory};
-    bench.graph = graph_new(&bench.arena);
-    *state      = &bench;
-    return 0;
-}
-
-static int bench_stop(void **state)
-{
-    arena_free(&((Bench *)*state)->arena);
-    return 0;
-}
 
 /* The distance to the unit ball. */
 static Node ball(Bench *b)

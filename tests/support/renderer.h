@@ -1,0 +1,15 @@
+/*
+ * renderer.h: the renderer that all tests of a program share.
+ */
+#ifndef SUPPORT_RENDERER_H
+#define SUPPORT_RENDERER_H
+
+#include "runtime/krs_vulkan.h"
+
+extern KrsRenderer *renderer;
+
+/* For cmocka's groups: opens the default device, or says why not and fails. */
+int renderer_open(void **state);
+int renderer_close(void **state);
+
+#endif
