@@ -18,9 +18,9 @@ CLANG   ?= clang-14
 # Sources in the order of the pipeline: reading down this list is reading the program.
 BASE     := $(addprefix compiler/base/, arena.c text.c source.c diag.c diag_text.c)
 FRONT    := $(addprefix compiler/front/, lexer.c syntax.c parser.c parse_expression.c parse.c names.c)
-GRAPH    := $(addprefix compiler/graph/, graph.c derive.c series.c anchor.c simplify.c range.c rules.c facts.c parity.c regions.c fractal.c evaluate.c print.c)
+GRAPH    := $(addprefix compiler/graph/, graph.c derive.c series.c local.c anchor.c simplify.c range.c rules.c facts.c parity.c regions.c fractal.c evaluate.c print.c)
 GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c arguments.c builtins.c functions.c \
-                expression.c map.c moebius.c make.c make_fractal.c meta.c make_krs.c field.c deform.c declare.c methods.c looks.c palette.c scope.c statements.c print.c \
+                expression.c map.c moebius.c make.c make_fractal.c meta.c make_krs.c slope.c field.c field_bounds.c deform.c declare.c methods.c looks.c palette.c scope.c statements.c print.c \
                 lower.c lower_normal.c lower_repeat.c lower_deform.c lower_krs.c lower_along.c lower_guards.c lower_moebius.c lower_images.c)
 SHADER   := $(addprefix compiler/shader/, emit.c spirv.c)
 BORDER   := compiler/shader/glslang_border.cpp

@@ -42,8 +42,7 @@ static KrsStatus write_description(const Options *options, const KrsScene *scene
     text_json(&json, name);
     text_add(&json, ", ");
     info_add_json(&json, scene);
-    text_format(&json, ", \"parameter_slots\": %u, \"entries\": [",
-                krs_scene_program(scene)->parameter_slots);
+    text_format(&json, ", \"parameter_slots\": %zu, \"entries\": [", krs_parameter_slots(scene));
     for (size_t i = 0; i < modules->count; i++) {
         text_add(&json, i == 0 ? "" : ", ");
         module_add_json(&json, &modules->items[i]);

@@ -79,6 +79,7 @@ static void print_component(const KrsComponent *component, size_t number)
     fputs("\n    slope      ", stdout);
     printf("%.6g", component->slope);
     puts(component->exact      ? " (the distance is exact, by claim)"
+         : component->per_frame ? " (the distance is a bound, derived for each frame: at first)"
          : component->estimate ? " (the distance is an estimate: `krs validate` measures it)"
                                : " (the distance is a bound, derived)");
     if (component->levels > 0) {
@@ -114,6 +115,11 @@ static void print_text(const KrsScene *scene)
         KrsParameter parameter;
         krs_parameter(scene, i, &parameter);
         print_parameter(&parameter);
+    }
+    for (size_t i = 0; i < krs_frame_slope_count(scene); i++) {
+        KrsFrameSlope slope;
+        krs_frame_slope(scene, i, &slope);
+        printf("slope of each frame: slot %u, of %s\n", slope.slot, slope.place);
     }
     for (size_t i = 0; i < krs_camera_count(scene); i++)
         if (krs_camera_name(scene, i))
@@ -178,6 +184,7 @@ static void add_components(Text *json, const KrsScene *scene)
         json_vector(json, component.high, 3);
         text_add(json, ", \"slope\": ");
         json_number(json, component.slope);
+        text_format(json, ", \"per_frame\": %s", component.per_frame ? "true" : "false");
         text_format(json, ", \"exact\": %s, \"estimate\": %s, \"levels\": %u, \"instances\": ",
                     component.exact ? "true" : "false", component.estimate ? "true" : "false",
                     component.levels);
@@ -209,6 +216,24 @@ static void add_parameters(Text *json, const KrsScene *scene)
     text_add(json, "]");
 }
 
+/* What the host finds for each frame, and in which slot the GLSL has it. */
+static void add_slopes(Text *json, const KrsScene *scene)
+{
+    text_add(json, "\"frame_slopes\": [");
+    for (size_t i = 0; i < krs_frame_slope_count(scene); i++) {
+        KrsFrameSlope slope;
+        krs_frame_slope(scene, i, &slope);
+        text_format(json, "%s{\"slot\": %u, \"place\": ", i == 0 ? "" : ", ", slope.slot);
+        text_json(json, slope.place);
+        text_add(json, ", \"low\": ");
+        json_vector(json, slope.low, 3);
+        text_add(json, ", \"high\": ");
+        json_vector(json, slope.high, 3);
+        text_add(json, "}");
+    }
+    text_add(json, "]");
+}
+
 /* The members that `krs info --json` and the NAME.json of `krs compile` have in common. */
 void info_add_json(Text *json, const KrsScene *scene)
 {
@@ -228,6 +253,8 @@ void info_add_json(Text *json, const KrsScene *scene)
     add_components(json, scene);
     text_add(json, ", ");
     add_parameters(json, scene);
+    text_add(json, ", ");
+    add_slopes(json, scene);
 }
 
 KrsStatus command_info(Options *options)

@@ -403,7 +403,8 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
     case OPTION_COMPONENTS:
         options->components =
             (KrsComponents)find_choice(value, krs_components_names, KRS_COMPONENTS_COUNT);
-        return options->components ? KRS_OK : refuse(options, id, "together or apart", value);
+        return options->components ? KRS_OK : refuse(options, id, "together, apart or packed",
+                                                       value);
     case OPTION_NORMALS:
         options->normals = (KrsNormals)find_choice(value, krs_normals_names, KRS_NORMALS_COUNT);
         return options->normals ? KRS_OK
@@ -417,6 +418,7 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
         return status;
     }
     case OPTION_UPSAMPLING: return read_switch(options, id, value, &options->no_upsampling);
+    case OPTION_OCCLUSION:  return read_switch(options, id, value, &options->no_occlusion);
     case OPTION_FILTER:     return read_switch(options, id, value, &options->no_filter);
     case OPTION_SHADOWS:
         options->area_shadows = strcmp(value, krs_shadows_names[KRS_SHADOWS_AREA]) == 0;
@@ -561,6 +563,8 @@ static KrsStatus find_command(Options *options, const char *word)
             return KRS_OK;
         }
     }
+    if (strcmp(word, "format") == 0)
+        return say_usage(options, "`format` is not in this version");
     const char *nearest = nearest_name(word, names, COMMAND_COUNT);
     if (nearest)
         return say_usage(options, "there is no command `%s`; did you mean `%s`?", word, nearest);

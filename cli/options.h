@@ -76,7 +76,7 @@ typedef struct Options {
     bool        exposed, tone_mapped; /* --exposure, --tone-map were given */
     double      exposure;
     ToneMap     tone_map;
-    bool        no_beams, no_upsampling, no_filter, area_shadows;
+    bool        no_beams, no_upsampling, no_occlusion, no_filter, area_shadows;
     KrsEarlyOuts early_outs;
     KrsComponents components;
     KrsNormals   normals;

@@ -151,8 +151,10 @@ static KrsStatus choose_how(Render *render)
     render->how = (KrsRenderOptions){
         .width = width, .height = height, .samples = options->samples, .camera = camera,
         .seed = options->seed, .error = options->error, .trace = options->trace,
-        .schedule = options->schedule, .components = options->components, .no_beams = options->no_beams, .no_upsampling = options->no_upsampling,
-        .no_filter = options->no_filter, .normals = options->normals,
+        .schedule = options->schedule, .components = options->components,
+        .no_beams = options->no_beams, .no_upsampling = options->no_upsampling,
+        .no_occlusion = options->no_occlusion, .no_filter = options->no_filter,
+        .normals = options->normals,
         .shadows = options->area_shadows ? KRS_SHADOWS_AREA : KRS_SHADOWS_SOFT,
         .planes = picture_planes(options, exr),
         .progress = show_progress, .user = render};
@@ -242,9 +244,9 @@ static KrsStatus render_frame(Render *render, uint32_t frame)
     const Options *options = render->options;
     double time = options->time + (options->animated ? frame / options->fps : 0);
     KrsPicture *picture = NULL;
-    KrsStatus status = krs_frame_set_time(render->frame, time);
+    KrsStatus status = scene_set_time(options, render->frame, time);
     if (status != KRS_OK)
-        return say_usage(options, "at time %g something in the scene is not finite", time);
+        return status;
     stage_enter(STAGE_RENDER);
     if (status == KRS_OK)
         status = krs_render(render->rendering, render->frame, &render->how, &picture);

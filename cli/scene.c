@@ -125,7 +125,7 @@ static KrsStatus say_unknown_parameter(const Options *options, const KrsScene *s
 
 /* Why krs_frame_set refused a setting. */
 static KrsStatus say_refused_setting(const Options *options, const KrsScene *scene,
-                                     const Setting *setting)
+                                     const KrsFrame *frame, const Setting *setting)
 {
     KrsParameter parameter;
     size_t index = 0;
@@ -142,8 +142,23 @@ static KrsStatus say_refused_setting(const Options *options, const KrsScene *sce
         if (!(setting->values[i] >= parameter.low[i] && setting->values[i] <= parameter.high[i]))
             return say_usage(options, "param `%s` goes from %g to %g; %g is outside", setting->name,
                              parameter.low[i], parameter.high[i], setting->values[i]);
+    const char *place = krs_frame_unbounded(frame);
+    if (place)
+        return say_usage(options, "with this value of param `%s` the slope of the expression at %s "
+                         "has no bound", setting->name, place);
     return say_usage(options, "with this value of param `%s` something in the scene is not finite",
                      setting->name);
+}
+
+KrsStatus scene_set_time(const Options *options, KrsFrame *frame, double time)
+{
+    if (krs_frame_set_time(frame, time) == KRS_OK)
+        return KRS_OK;
+    const char *place = krs_frame_unbounded(frame);
+    if (place)
+        return say_usage(options, "at time %g the slope of the expression at %s has no bound",
+                         time, place);
+    return say_usage(options, "at time %g something in the scene is not finite", time);
 }
 
 KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsFrame **frame)
@@ -155,13 +170,13 @@ KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsFrame **
         const Setting *setting = &options->settings.items[i];
         status = krs_frame_set(*frame, setting->name, setting->values, setting->count);
         if (status == KRS_BAD_ARGUMENT)
-            say_refused_setting(options, scene, setting);
+            say_refused_setting(options, scene, *frame, setting);
     }
     if (status == KRS_OK)
         status = krs_frame_set_zones(*frame, (const double(*)[4])options->zones,
                                      options->zone_count);
-    if (status == KRS_OK && krs_frame_set_time(*frame, options->time) != KRS_OK)
-        status = say_usage(options, "at time %g something in the scene is not finite", options->time);
+    if (status == KRS_OK)
+        status = scene_set_time(options, *frame, options->time);
     if (status != KRS_OK) {
         krs_frame_free(*frame);
         *frame = NULL;

@@ -55,11 +55,12 @@ static const char *box_text(Listing *l, Box box)
 
 static void add_derived(Listing *l, const Shape *shape, Text *rule)
 {
+    const char *when = shape->per_frame ? " at first, derived for each frame" : " derived";
     if (box_is_finite(shape->region))
-        text_format(rule, "slope %.4g derived by intervals over %s", shape->derived,
+        text_format(rule, "slope %.4g%s by intervals over %s", shape->derived, when,
                     box_text(l, shape->region));
     else
-        text_format(rule, "slope %.4g derived by norms over all space", shape->derived);
+        text_format(rule, "slope %.4g%s by norms over all space", shape->derived, when);
 }
 
 static const char *primitive_rule(Listing *l, const Shape *shape)
@@ -98,7 +99,8 @@ static const char *rule_of(Listing *l, const Shape *shape)
         text_format(&rule, ", %s blend of factor %.4g", blend_info[shape->blend.kind].spelling,
                     blend_info[shape->blend.kind].slope);
     if (is_deformation(shape->kind))
-        text_format(&rule, ", of factor %.4g at most", shape->derived);
+        text_format(&rule, ", of factor %.4g %s", shape->derived,
+                    shape->per_frame ? "at first, derived for each frame" : "at most");
     return rule.bytes;
 }
 

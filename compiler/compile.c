@@ -21,7 +21,11 @@
 #include "compiler/program.h"
 #include "compiler/shader/emit.h"
 
-enum { MOST_OPERATIONS = 20000, MOST_SOURCE_BYTES = 16 << 20 };
+/* Drivers take some ten seconds for a million bytes of shader, and three times as long for two. */
+enum { MOST_OPERATIONS = 20000, MOST_GLSL_BYTES = 1500000, MOST_SOURCE_BYTES = 16 << 20 };
+
+static const char fewer_shapes[] =
+    "fewer shapes, reflections or copies; `.repeat` with a margin in its cells needs one copy only";
 
 /* Components of so many flops are marched by themselves, in scenes of so many: as bench/krs.c
    found.  Less is gained where their boxes lie within each other. */
@@ -175,8 +179,7 @@ static void refuse_size(Compilation *c, size_t component, size_t operations)
     diag->label = operations ? diag_text(&c->diags, "`%s` is the largest component, with %zu",
                                          shown->name, operations)
                              : diag_text(&c->diags, "`%s` alone needs more", shown->name);
-    diag->help  = "fewer shapes, reflections or copies; `.repeat` with a margin in its cells needs "
-                  "one copy only";
+    diag->help  = fewer_shapes;
 }
 
 static void refuse_zones(Compilation *c, Span span, size_t operations)
@@ -265,12 +268,20 @@ static size_t anchored_count(const Compilation *c)
                                       : 0;
 }
 
-/* They stand behind all others. */
+/* They stand behind all but slopes. */
 static Node *anchored_roots(const Compilation *c)
 {
     size_t components = c->elaborated.components.count;
     return c->roots + c->root_count + MARCH_ROOTS * components + FLAT_ROOTS +
            GRADIENT_ROOTS * (components + 1);
+}
+
+/* Behind all others: what has a slope of each frame. */
+static Node *slope_roots(const Compilation *c) { return anchored_roots(c) + anchored_count(c); }
+
+static size_t all_roots(const Compilation *c)
+{
+    return (size_t)(slope_roots(c) - c->roots) + c->elaborated.slopes.count;
 }
 
 /* The roots of the components, and those of planes, for points given from an anchor. */
@@ -297,7 +308,8 @@ static bool lower_scene(Compilation *c, Graph *graph)
     c->scene->program.anchored = reaches_far(c, graph);
     c->roots   = arena_new_array(&c->scene->arena, Node, c->root_count +
                                   MARCH_ROOTS * s->components.count + FLAT_ROOTS +
-                                  GRADIENT_ROOTS * (s->components.count + 1) + anchored_count(c));
+                                  GRADIENT_ROOTS * (s->components.count + 1) + anchored_count(c) +
+                                  s->slopes.count);
     Node *root = c->roots;
     for (size_t i = 0; i < s->components.count; i++, root += ROOT_COUNT)
         if (!lower_component(graph, s->components.items[i].shape, &c->scratch, root)) {
@@ -334,6 +346,8 @@ static bool lower_scene(Compilation *c, Graph *graph)
     lower_gradients(c, graph, flats + FLAT_ROOTS);
     if (c->scene->program.anchored)
         lower_anchored(c, graph, flats);
+    for (size_t i = 0; i < s->slopes.count; i++)
+        slope_roots(c)[i] = s->slopes.items[i].formula;
     graph_validate(graph, "lower");
     if (dumps(c, DUMP_GRAPH))
         graph_print(graph, &c->sources, c->roots, c->root_count, &c->dump);
@@ -446,6 +460,7 @@ static void keep_components(Compilation *c)
         KrsComponent    *to   = &scene->components[i];
         *to = (KrsComponent){.name      = keep(c, from->name),
                              .slope     = from->shape->slope * from->shape->derived,
+                             .per_frame = from->shape->per_frame,
                              .exact     = from->shape->exact,
                              .estimate  = from->shape->estimate,
                              .levels    = from->shape->levels,
@@ -455,8 +470,39 @@ static void keep_components(Compilation *c)
             to->low[k]  = from->shape->box.axis[k].low;
             to->high[k] = from->shape->box.axis[k].high;
         }
+        scene->program.loose = scene->program.loose || shape_is_loose(from->shape);
         bounds_of(from->shape, &c->sources, &scene->bounds[i], &scene->arena, &c->scratch);
         arena_free(&c->scratch);
+    }
+}
+
+/* Shapes that were cut again leave slopes behind that nothing is divided by. */
+static bool is_needed(const Graph *graph, uint32_t slot)
+{
+    for (Node n = 0; n < graph->count; n++)
+        if (graph->items[n].op == OP_PARAMETER && graph->items[n].index == slot)
+            return true;
+    return false;
+}
+
+static void keep_slopes(Compilation *c)
+{
+    KrsScene    *scene = c->scene;
+    const Scene *s     = &c->elaborated;
+    scene->slopes      = arena_new_array(&scene->arena, KeptSlope, s->slopes.count + 1);
+    for (size_t i = 0; i < s->slopes.count; i++) {
+        const FrameSlope *from = &s->slopes.items[i];
+        if (!is_needed(scene->graph, from->slot))
+            continue;
+        const Source *source   = &c->sources.items[from->span.source];
+        Position      position = source_position(source, from->span.start);
+        Text          place    = {.arena = &scene->arena};
+        text_format(&place, "%s:%u:%u", source->name, position.line, position.column);
+        scene->slopes[scene->slope_count++] = (KeptSlope){
+            from->slot,
+            slope_task(scene->graph, slope_roots(c)[i], from->region,
+                       frame_slope_cells(from->region), &scene->arena),
+            place.bytes};
     }
 }
 
@@ -467,6 +513,7 @@ static void keep_scene(Compilation *c)
     const Scene *s     = &c->elaborated;
     Arena       *arena = &scene->arena;
     keep_components(c);
+    keep_slopes(c);
     scene->parameter_count = s->parameters.count;
     scene->parameters      = arena_new_array(arena, Parameter, s->parameters.count + 1);
     for (size_t i = 0; i < s->parameters.count; i++) {
@@ -592,6 +639,7 @@ static void form_groups(Compilation *c, const Box *boxes, const bool *flat, uint
             continue;
         double flops = component_flops(c, i);
         c->scene->components[i].flops = flops;
+        program->heavy += flops >= HEAVY_FLOPS;
         size_t group = choose_group(program, flops, boxes[i]);
         groups[i]    = (uint32_t)group + 1;
         if (group < KRS_MOST_GROUPS - 1) {
@@ -633,6 +681,7 @@ static void emit(Compilation *c)
     const Node *flats  = scene->along_roots + ALONG_COUNT * scene->component_count;
     uint32_t   *groups = arena_new_array(&c->scratch, uint32_t, scene->component_count + 1);
     form_groups(c, boxes, flat, groups);
+    scene->program.parts = emit_part_count(scene->component_count);
     emit_glsl(scene->graph, &c->sources, c->roots, scene->component_count, zone_root(scene),
               &(EmitMarch){.guarded      = scene->guarded_roots,
                            .along        = scene->along_roots,
@@ -642,6 +691,7 @@ static void emit(Compilation *c)
                            .anchored     = scene->program.anchored ? anchored_roots(c) : NULL,
                            .precise_slot = (uint32_t)scene->graph->parameters.count + KRS_MOST_ZONES,
                            .ahead        = flats,
+                           .slopes       = scene->slope_count > 0,
                            .gradient =
                                scene->program.gradients ? flats + FLAT_ROOTS : NULL},
               &c->scratch, &glsl);
@@ -650,6 +700,34 @@ static void emit(Compilation *c)
     scene->program.parameter_slots = (uint32_t)scene->graph->parameters.count;
     if (dumps(c, DUMP_GLSL))
         text_add(&c->dump, glsl.bytes);
+}
+
+/* Many small components have few operations, and much text around them. */
+static bool check_length(Compilation *c)
+{
+    size_t length = c->scene->program.glsl_length, largest = 0, most = 0;
+    size_t count  = c->elaborated.components.count;
+    if (length <= MOST_GLSL_BYTES)
+        return true;
+    for (size_t i = 0; i < count; i++) {
+        arena_free(&c->scratch);
+        size_t operations = count_operations(c->scene->graph, &c->roots[i * ROOT_COUNT], ROOT_COUNT,
+                                             &c->scratch);
+        largest = operations > most ? i : largest;
+        most    = operations > most ? operations : most;
+    }
+    const Component *shown = count ? &c->elaborated.components.items[largest] : NULL;
+    Diag *diag = diag_add(&c->diags, DIAG_TOO_LARGE, shown ? shown->span : (Span){1, 0, 0},
+                          "the scene needs %.1f MB of shader; the limit is %.1f MB",
+                          (double)length * 1e-6, MOST_GLSL_BYTES * 1e-6);
+    if (count > 1)
+        diag->label = diag_text(&c->diags, "the largest of %zu components, with %zu operations",
+                                count, most);
+    else if (shown)
+        diag->label = diag_text(&c->diags, "`%s` has %zu operations", shown->name, most);
+    diag->help = count > 100 ? "`show union([...])` makes one component of many shapes"
+                             : fewer_shapes;
+    return false;
 }
 
 static KrsStatus inspect(Compilation *c)
@@ -672,9 +750,7 @@ static KrsStatus run(Compilation *c)
     Graph *graph = elaborate_scene(c);
     if (c->diags.errors || !lower_scene(c, graph))
         return KRS_BAD_SCENE;
-    size_t roots  = c->root_count + MARCH_ROOTS * c->elaborated.components.count + FLAT_ROOTS +
-                   GRADIENT_ROOTS * (c->elaborated.components.count + 1) + anchored_count(c);
-    Graph *simple = graph_simplify(graph, c->roots, roots, &c->scene->arena);
+    Graph *simple = graph_simplify(graph, c->roots, all_roots(c), &c->scene->arena);
     graph_validate(simple, "simplify");
     c->scene->graph = simple;
     if (dumps(c, DUMP_SIMPLIFY))
@@ -687,6 +763,8 @@ static KrsStatus run(Compilation *c)
     c->scene->program.front_ms = now_ms() - c->started;
     emit(c);
     c->scene->program.glsl_ms = now_ms() - c->started - c->scene->program.front_ms;
+    if (!check_length(c))
+        return KRS_BAD_SCENE;
     KrsStatus status = c->scene->cameras[0].standing_in ? frame_scene(c->scene) : KRS_OK;
     return status == KRS_OK && c->request->inspect ? inspect(c) : status;
 }
@@ -835,6 +913,8 @@ size_t      krs_camera_count(const KrsScene *scene) { return scene->camera_count
 size_t      krs_zone_count(const KrsScene *scene) { return scene->zone_count; }
 const char *krs_scene_hash(const KrsScene *scene) { return scene->hash; }
 size_t      krs_parameter_count(const KrsScene *scene) { return scene->parameter_count; }
+size_t      krs_parameter_slots(const KrsScene *scene) { return scene->program.parameter_slots; }
+size_t      krs_frame_slope_count(const KrsScene *scene) { return scene->slope_count; }
 size_t      krs_component_count(const KrsScene *scene) { return scene->component_count; }
 
 const char *krs_camera_name(const KrsScene *scene, size_t index)
@@ -851,6 +931,19 @@ KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *param
     memcpy(parameter->value, from->value, sizeof parameter->value);
     memcpy(parameter->low, from->low, sizeof parameter->low);
     memcpy(parameter->high, from->high, sizeof parameter->high);
+    return KRS_OK;
+}
+
+KrsStatus krs_frame_slope(const KrsScene *scene, size_t index, KrsFrameSlope *slope)
+{
+    if (index >= scene->slope_count)
+        return KRS_BAD_ARGUMENT;
+    const KeptSlope *from = &scene->slopes[index];
+    *slope                = (KrsFrameSlope){.slot = from->slot, .place = from->place};
+    for (int i = 0; i < 3; i++) {
+        slope->low[i]  = from->task.box.axis[i].low;
+        slope->high[i] = from->task.box.axis[i].high;
+    }
     return KRS_OK;
 }
 

@@ -38,7 +38,7 @@
  * A scene of several heavy components has groups of them (KrsGroup): with GROUP defined as the
  * number of one there is krs_distance alone, and of that group alone.
  *
- * N is parameter_slots (at least 1); slot 0 is (time, 0, 0, 0); a parameter has one slot.  Zones
+ * N is parameter_slots (at least 1), what is in them is told at krs_frame_parameters.  Zones
  * of the scene have been cut out of distances.  With ZONES defined, as many slots follow for zones
  * of the caller (krs_frame_zones).
  */
@@ -101,9 +101,12 @@ typedef struct KrsProgram {
     bool        gradients;    /* there is krs_gradient, for kernels with #define GRADIENT */
     bool        along;        /* there is krs_along, for kernels with #define ALONG */
     bool        inverts;      /* there are its variants for sequences with maps that invert */
+    bool        loose;        /* a component is (shape_is_loose), for kernels with #define LOOSE */
     KrsGroup    groups[KRS_MOST_GROUPS];
     size_t      group_count;  /* 0: all components belong together */
     bool        apart;        /* taking turns is worth it */
+    uint32_t    parts;        /* of krs_distance_of, for kernels with #define PACKED */
+    uint32_t    heavy;        /* components that are worth being marched by themselves */
     double      front_ms, glsl_ms; /* time spent */
 } KrsProgram;
 
@@ -118,16 +121,16 @@ size_t krs_zone_count(const KrsScene *scene);
 KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view);
 /* What kernels with an anchor get for it, precise_slots vec4s, found in double precision. */
 size_t krs_frame_anchor(KrsFrame *frame, const double anchor[3], float (*block)[4]);
-/* The parameter block as the GLSL expects it: parameter_slots vec4s. */
-void krs_frame_parameters(const KrsFrame *frame, float (*block)[4]);
 /* The zones of the caller (center, radius), to stand behind the parameter block when the GLSL is
    compiled with ZONES defined as that many or more; the others must have a radius that is far
    below 0.  Returns how many. */
 size_t krs_frame_zones(const KrsFrame *frame, float (*zones)[4]);
 /* A ray as questions march it: in a unit direction, and from `start` to `end`, which is what the
-   box around the scene has of [0, farthest]; nothing of it when `end` is the smaller. */
+   box around the scene has of [0, farthest]; nothing of it when `end` is the smaller.  With `walls`
+   the box ends there: a ray from inside of a solid has left it by then. */
 typedef struct KrsRay {
     double origin[3], direction[3], start, end;
+    bool   walls;
 } KrsRay;
 KrsRay krs_ray(const KrsScene *scene, const double origin[3], const double direction[3],
                double farthest);

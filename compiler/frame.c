@@ -28,6 +28,46 @@ static void give(const KrsScene *scene, void *block)
         free(block);
 }
 
+#define ANY_SLOT UINT32_MAX
+
+static size_t slope_room(const KrsScene *scene)
+{
+    size_t most = 0;
+    for (size_t i = 0; i < scene->slope_count; i++) {
+        size_t room = slope_task_room(&scene->slopes[i].task);
+        most        = room > most ? room : most;
+    }
+    return most;
+}
+
+static bool depends_on(const Tape *tape, uint32_t slot)
+{
+    for (size_t i = 0; i < tape->frame_count; i++) {
+        const Expr *e = &tape->graph->items[tape->nodes[i]];
+        if (e->op == OP_PARAMETER && (e->index == slot || slot == ANY_SLOT))
+            return true;
+    }
+    return false;
+}
+
+/* Finds the slopes that depend on a slot; false, with `unbounded` set: one has no bound. */
+static bool find_slopes(KrsFrame *frame, uint32_t changed)
+{
+    const double (*parameters)[4] = (const double(*)[4])frame->parameters;
+    frame->unbounded = NULL;
+    for (size_t i = 0; i < frame->scene->slope_count; i++) {
+        const KeptSlope *slope = &frame->scene->slopes[i];
+        if (!depends_on(&slope->task.tape, changed))
+            continue;
+        double found = slope_task_run(&slope->task, parameters, frame->room, NULL);
+        found        = frame_slope_upward(found);
+        frame->parameters[slope->slot].v[0] = found;
+        if (!isfinite(found) && !frame->unbounded)
+            frame->unbounded = slope->place;
+    }
+    return !frame->unbounded;
+}
+
 KrsStatus krs_frame_new(const KrsScene *scene, KrsFrame **result)
 {
     *result         = NULL;
@@ -38,13 +78,18 @@ KrsStatus krs_frame_new(const KrsScene *scene, KrsFrame **result)
     frame->parameters = take(scene, scene->program.parameter_slots, sizeof *frame->parameters);
     frame->values     = take(scene, scene->graph->count, sizeof *frame->values);
     frame->lights     = take(scene, scene->light_count, sizeof *frame->lights);
-    if (!frame->parameters || !frame->values || !frame->lights) {
+    frame->room       = take(scene, slope_room(scene), 1);
+    if (!frame->parameters || !frame->values || !frame->lights || !frame->room) {
         krs_frame_free(frame);
         return KRS_OUT_OF_MEMORY;
     }
     for (size_t i = 0; i < scene->parameter_count; i++)
         memcpy(frame->parameters[scene->parameters[i].slot].v, scene->parameters[i].value,
                sizeof scene->parameters[i].value);
+    if (!find_slopes(frame, ANY_SLOT)) { /* such a scene should not have compiled */
+        krs_frame_free(frame);
+        return KRS_INTERNAL;
+    }
     *result = frame;
     return KRS_OK;
 }
@@ -57,6 +102,7 @@ void krs_frame_free(KrsFrame *frame)
     give(scene, frame->parameters);
     give(scene, frame->values);
     give(scene, frame->lights);
+    give(scene, frame->room);
     give(scene, frame);
 }
 
@@ -112,16 +158,20 @@ static KrsStatus change_slot(KrsFrame *frame, uint32_t slot, const double *value
     NodeValue before = frame->parameters[slot];
     memcpy(frame->parameters[slot].v, values, count * sizeof *values);
     frame->fresh = false;
-    if (frame_is_finite(frame))
+    if (find_slopes(frame, slot) && frame_is_finite(frame))
         return KRS_OK;
+    const char *unbounded   = frame->unbounded;
     frame->parameters[slot] = before;
     frame->fresh            = false;
+    find_slopes(frame, slot);
+    frame->unbounded = unbounded;
     return KRS_BAD_ARGUMENT;
 }
 
 KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values, size_t count)
 {
     const KrsScene *scene = frame->scene;
+    frame->unbounded      = NULL;
     for (size_t i = 0; i < scene->parameter_count; i++) {
         const Parameter *parameter = &scene->parameters[i];
         if (strcmp(parameter->name, name) != 0)
@@ -137,8 +187,11 @@ KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values,
     return KRS_BAD_ARGUMENT;
 }
 
+const char *krs_frame_unbounded(const KrsFrame *frame) { return frame->unbounded; }
+
 KrsStatus krs_frame_set_time(KrsFrame *frame, double time)
 {
+    frame->unbounded = NULL;
     return isfinite(time) ? change_slot(frame, 0, &time, 1) : KRS_BAD_ARGUMENT;
 }
 

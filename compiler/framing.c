@@ -10,7 +10,10 @@
 #include <math.h>
 #include <string.h>
 
-enum { RAYS = 512, ROUNDS = 3 };
+enum { RAYS = 512, FEWEST_RAYS = 64, ROUNDS = 3 };
+
+/* With a distance of more flops there are fewer rays, so that no scene waits long for its camera. */
+static const double FLOPS_OF_ALL_RAYS = 2500;
 
 typedef struct Sphere {
     double centre[3], radius;
@@ -43,16 +46,26 @@ static bool outer_ball(const KrsScene *scene, Sphere *ball)
     return isfinite(ball->radius) && ball->radius > 0;
 }
 
+/* A power of two, which the strides of make_rays have no factor in common with. */
+static int count_rays(const KrsScene *scene)
+{
+    int    count = RAYS;
+    double flops = krs_scene_program(scene)->flops;
+    while (count > FEWEST_RAYS && count * flops > RAYS * FLOPS_OF_ALL_RAYS)
+        count /= 2;
+    return count;
+}
+
 /* Points evenly on a sphere (a Fibonacci lattice), each looking at a point within the ball that
    a second lattice gives. */
-static void make_rays(const Sphere *ball, double (*origins)[3], double (*directions)[3])
+static void make_rays(const Sphere *ball, int count, double (*origins)[3], double (*directions)[3])
 {
     const double golden = 2.399963229728653; /* pi (3 - sqrt 5) */
-    for (int i = 0; i < RAYS; i++) {
-        double y = 1 - (2 * i + 1.0) / RAYS, ring = sqrt(1 - y * y), angle = golden * i;
+    for (int i = 0; i < count; i++) {
+        double y = 1 - (2 * i + 1.0) / count, ring = sqrt(1 - y * y), angle = golden * i;
         double from[3] = {ring * cos(angle), y, ring * sin(angle)};
-        double depth = 0.9 * cbrt((i * 89 % RAYS + 0.5) / RAYS), turn = golden * (i * 37 % RAYS);
-        double up = 1 - (2 * (i * 53 % RAYS) + 1.0) / RAYS, side = sqrt(1 - up * up);
+        double depth = 0.9 * cbrt((i * 89 % count + 0.5) / count), turn = golden * (i * 37 % count);
+        double up = 1 - (2 * (i * 53 % count) + 1.0) / count, side = sqrt(1 - up * up);
         double to[3] = {depth * side * cos(turn), depth * up, depth * side * sin(turn)};
         for (int k = 0; k < 3; k++) {
             origins[i][k]    = ball->centre[k] + 1.01 * ball->radius * from[k];
@@ -66,9 +79,9 @@ typedef struct Extent {
     double low[3], high[3];
 } Extent;
 
-static void add_hits(const KrsScene *scene, const KrsHit *hits, Extent *seen)
+static void add_hits(const KrsScene *scene, const KrsHit *hits, int count, Extent *seen)
 {
-    for (int i = 0; i < RAYS; i++) {
+    for (int i = 0; i < count; i++) {
         if (!hits[i].hit || !is_bounded(&scene->components[hits[i].component - 1]))
             continue;
         for (int k = 0; k < 3; k++) {
@@ -106,12 +119,13 @@ KrsStatus frame_scene(KrsScene *scene)
     KrsStatus status = krs_frame_new(scene, &frame);
     if (status != KRS_OK)
         return status;
+    int rays = count_rays(scene);
     /* What is found sharpens the ball, and the next round's rays. */
     for (int round = 0; round < ROUNDS; round++) {
-        make_rays(&ball, origins, directions);
-        krs_raycast(frame, (const double(*)[3])origins, (const double(*)[3])directions, RAYS,
-                    4 * ball.radius, 1e-3 * ball.radius, hits);
-        add_hits(scene, hits, &seen);
+        make_rays(&ball, rays, origins, directions);
+        krs_raycast(frame, (const double(*)[3])origins, (const double(*)[3])directions,
+                    (size_t)rays, 4 * ball.radius, 1e-3 * ball.radius, hits);
+        add_hits(scene, hits, rays, &seen);
         if (!inner_ball(&seen, &ball))
             break;
     }

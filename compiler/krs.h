@@ -94,6 +94,26 @@ void      krs_frame_free(KrsFrame *frame);
    finite, or something in the scene is not finite for it; the frame is then unchanged. */
 KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values, size_t count);
 KrsStatus krs_frame_set_time(KrsFrame *frame, double time);
+/* Of the last value or time that was refused: the place of an expression ("scene.krs:3:14") whose
+   slope has no bound for it; NULL when that was not why, or nothing was refused since. */
+const char *krs_frame_unbounded(const KrsFrame *frame);
+
+/*
+ * The uniforms of the GLSL that `krs compile` writes, for who embeds it: a vec4 for each slot.
+ * Slot 0 has the time, as (time, 0, 0, 0), then there is one for each parameter, in the order of
+ * krs_parameter.  Behind them are slopes, numbers in x, that are found for each frame: what
+ * distances are divided by where no constant is safe, as in sin(time * x).
+ */
+size_t krs_parameter_slots(const KrsScene *scene);
+void   krs_frame_parameters(const KrsFrame *frame, float (*block)[4]);
+/* The slot of slope `index`, and the place of its expression; false when there is none. */
+typedef struct KrsFrameSlope {
+    uint32_t    slot;
+    const char *place;         /* "scene.krs:3:14" */
+    double      low[3], high[3]; /* of the box over which it is found; may be infinite */
+} KrsFrameSlope;
+size_t    krs_frame_slope_count(const KrsScene *scene);
+KrsStatus krs_frame_slope(const KrsScene *scene, size_t index, KrsFrameSlope *slope);
 
 /*
  * Empty zones: spheres (center and radius) within which nothing of the scene is, so that the
@@ -111,6 +131,7 @@ typedef struct KrsComponent {
     const char *name;      /* the variable it was shown by, or "component 3" */
     double      low[3], high[3]; /* a box around it in world units; may be infinite */
     double      slope;     /* the derived bound on the slope of its expression */
+    bool        per_frame; /* that is of the first frame, and found anew for each */
     bool        exact;     /* the distance is exact outside wherever math.md says so */
     bool        estimate;  /* nothing is proven of the distance; else it is a bound */
     uint32_t    levels;    /* reflections of its outermost sequence; 0 without one */

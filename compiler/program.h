@@ -18,6 +18,13 @@ enum { FLAT_ROOTS = 2 }; /* behind those: where a ray meets a plane, and how ste
 enum { GRADIENT_ROOTS = 2 };
 enum { CAMERA_ROOTS = 5, LIGHT_ROOTS = 3, SKY_ROOTS = 3 };
 
+/* A slope that is found for each frame (geometry/slope.c). */
+typedef struct KeptSlope {
+    uint32_t    slot;
+    SlopeTask   task;
+    const char *place; /* "scene.krs:3:14" */
+} KeptSlope;
+
 struct KrsScene {
     Memory       memory;
     Arena        arena; /* all that stays: graph, names, program */
@@ -30,6 +37,8 @@ struct KrsScene {
     size_t       zone_count; /* declared; all have one root */
     KrsComponent *components;
     KrsBounds    *bounds;  /* of each component */
+    KeptSlope   *slopes;   /* those that the program needs */
+    size_t       slope_count;
     Parameter   *parameters;
     size_t       parameter_count;
     SceneCamera *cameras; /* their nodes are not used: the roots are */
@@ -50,7 +59,10 @@ struct KrsScene {
 /* A frame: what varies, and room for the values of all nodes. */
 struct KrsFrame {
     const KrsScene *scene;
-    NodeValue      *parameters; /* the parameter block: slot 0 is the time */
+    NodeValue      *parameters; /* the parameter block: slot 0 is the time; slopes are always those
+                                   of the other values */
+    void           *room;       /* to find them in */
+    const char     *unbounded;  /* the place of one that had no bound in the frame refused last */
     NodeValue      *values;     /* of every node */
     KrsLight       *lights;
     bool            fresh;      /* frame values are of these parameters */

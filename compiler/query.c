@@ -107,6 +107,9 @@ KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count, d
     return KRS_OK;
 }
 
+/* Within 0 and 1, as pictures show it; what is not a number is 0. */
+static double part(double number) { return number > 0 ? fmin(number, 1) : 0; }
+
 static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
 {
     const KrsScene *scene = frame->scene;
@@ -121,8 +124,10 @@ static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
     hit->level       = (uint32_t)frame->values[root[ROOT_LEVEL]].v[0];
     hit->instance    = (uint32_t)frame->values[root[ROOT_INSTANCE]].v[0];
     frame_copy(frame, root[ROOT_COLOR], hit->color);
-    hit->roughness = frame->values[root[ROOT_ROUGHNESS]].v[0];
-    hit->metallic  = frame->values[root[ROOT_METALLIC]].v[0];
+    hit->roughness = part(frame->values[root[ROOT_ROUGHNESS]].v[0]);
+    hit->metallic  = part(frame->values[root[ROOT_METALLIC]].v[0]);
+    for (int k = 0; k < 3; k++)
+        hit->color[k] = part(hit->color[k]);
     /* No mirror is smooth where a zone cuts. */
     if (hit->distance > frame->values[root[ROOT_DISTANCE]].v[0])
         memcpy(hit->shading, hit->normal, sizeof hit->shading);
@@ -166,12 +171,14 @@ KrsRay krs_ray(const KrsScene *scene, const double origin[3], const double direc
 {
     const KrsProgram *program = &scene->program;
     const double      nowhere = 1e30; /* farther than anything is; its square is a number */
-    KrsRay            ray     = {.end = fmin(farthest, nowhere)};
+    KrsRay            ray     = {.end = nowhere};
     memcpy(ray.origin, origin, sizeof ray.origin);
     memcpy(ray.direction, direction, sizeof ray.direction);
     vector_normalize(ray.direction);
     for (int k = 0; k < 3; k++)
         clip_axis(program->low[k], program->high[k], origin[k], ray.direction[k], &ray);
+    ray.walls = ray.end <= farthest && ray.end < nowhere;
+    ray.end   = fmin(ray.end, farthest);
     return ray;
 }
 
@@ -186,6 +193,8 @@ bool krs_rays_are_sound(const double (*origins)[3], const double (*directions)[3
             return false;
     return true;
 }
+
+enum { SEAM = 16 }; /* roundings */
 
 /* A ray under way.  Nothing is before `t`, nor for `room` behind it; `gap` from there is the next
    place to look at. */
@@ -205,6 +214,13 @@ static void march_point(const March *march, double t, double point[3])
         point[k] = march->ray.origin[k] + t * march->ray.direction[k];
 }
 
+static double rounding_at(const March *march, double t)
+{
+    return 4 * DBL_EPSILON * (march->size + t);
+}
+
+/* Solids that touch are one: from inside they count as grown by what rounding may leave open at
+   the seam between two. */
 static double march_room(March *march, double t)
 {
     double point[3];
@@ -212,12 +228,7 @@ static double march_room(March *march, double t)
     double distance = room_at(march->frame, point);
     if (march->side == 0)
         march->side = distance < 0 ? -1 : 1;
-    return march->side * distance;
-}
-
-static double rounding_at(const March *march, double t)
-{
-    return 4 * DBL_EPSILON * (march->size + t);
+    return march->side < 0 ? SEAM * rounding_at(march, t) - distance : distance;
 }
 
 /* Where the surface is crossed between t, where there is room, and t + gap, where there is `room`
@@ -292,6 +303,10 @@ static void trace(KrsFrame *frame, KrsRay ray, double tolerance, KrsHit *hit)
     for (int i = 0; i < KRS_MOST_STEPS && fate == MARCHING; i++)
         fate = march_step(&march);
     *hit = (KrsHit){0};
+    if (fate == MISS && march.side < 0 && ray.walls) {
+        march.t = ray.end;
+        fate    = HIT;
+    }
     if (fate == MISS)
         return;
     double point[3];

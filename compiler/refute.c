@@ -30,9 +30,17 @@ typedef struct Suspect {
     size_t       parent; /* index of a suspect; SIZE_MAX of a component's whole shape */
 } Suspect;
 
+/* What is searched of a shape: its distance, and of a whole component what marches instead. */
+typedef enum Claim {
+    CLAIM_DISTANCE,
+    CLAIM_GUARDED, /* the distance that leaves out what is far */
+    CLAIM_ALONG    /* the step along a ray, by AlongMethod from here on */
+} Claim;
+
 /* Points that refute a shape, at these parameters. */
 typedef struct Finding {
     size_t     suspect;
+    Claim      claim;
     bool       steady; /* of the distance that has to be 1-Lipschitz, else of the other */
     Witness    witness;
     NodeValue *parameters;
@@ -44,6 +52,8 @@ typedef struct Refuter {
     KrsRefutation          *result;
     Graph    *graph;
     uint64_t  random, total, done;
+    SlopeTask *slopes; /* of the scene's, in its order */
+    void      *room;
     struct { Suspect *items; size_t count, capacity; } suspects;
     bool      stopped;
 } Refuter;
@@ -91,18 +101,26 @@ static Node lower_alone(Refuter *r, const Shape *shape, bool steady, Visits *vis
     return divide_by_slope(r->graph, all.distance, shape->slope);
 }
 
-/* A search of one of the distances of a shape; false: there is nothing to search. */
-static bool search_of(Refuter *r, const Shape *shape, Node distance, bool steady, Search *search)
+/* A search of one of the distances of a shape, or of a step beside the distance that tells on which
+   side points are; false: there is nothing to search. */
+static bool search_step(Refuter *r, const Shape *shape, Node step, Node side, bool steady,
+                        Search *search)
 {
-    Arena *scratch = r->in->scratch;
-    Graph *simple  = graph_simplify(r->graph, &distance, 1, scratch);
-    if (!search_new(search, simple, distance, shape->box, scratch))
+    Arena *scratch  = r->in->scratch;
+    Node   roots[2] = {step, side};
+    Graph *simple   = graph_simplify(r->graph, roots, 2, scratch);
+    if (!search_new(search, simple, roots[0], roots[1], shape->box, scratch))
         return false;
     search->steep  = steady;
     search->figure = shape->figure;
     search->random = r->random;
     r->random += 0x9e3779b97f4a7c15;
     return true;
+}
+
+static bool search_of(Refuter *r, const Shape *shape, Node distance, bool steady, Search *search)
+{
+    return search_step(r, shape, distance, distance, steady, search);
 }
 
 /* ---- parameters ---- */
@@ -138,6 +156,38 @@ static void choose_parameters(Refuter *r, uint32_t trial, NodeValue *values)
         for (uint32_t k = 0; trial && !fixed && k < parameter->components; k++)
             to[k] = random_value(r, parameter->value[k], parameter->low[k], parameter->high[k]);
     }
+}
+
+/* Into the slots; false: one has no bound, and the frame is refused. */
+static bool find_slopes(const Refuter *r, NodeValue *values)
+{
+    const Scene *scene = r->in->scene;
+    for (size_t i = 0; i < scene->slopes.count; i++) {
+        const double (*parameters)[4] = (const double(*)[4])values;
+        double slope = frame_slope_upward(slope_task_run(&r->slopes[i], parameters, r->room, NULL));
+        values[scene->slopes.items[i].slot].v[0] = slope;
+        if (!isfinite(slope))
+            return false;
+    }
+    return true;
+}
+
+/* Simplified, as compiled scenes have them. */
+static void prepare_slopes(Refuter *r)
+{
+    const Scene *scene = r->in->scene;
+    size_t       most  = 0;
+    r->slopes          = arena_new_array(r->in->arena, SlopeTask, scene->slopes.count + 1);
+    for (size_t i = 0; i < scene->slopes.count; i++) {
+        const FrameSlope *slope = &scene->slopes.items[i];
+        Node              root  = slope->formula;
+        Graph            *plain = graph_simplify(r->graph, &root, 1, r->in->arena);
+        uint32_t          cells = frame_slope_cells(slope->region);
+        r->slopes[i] = slope_task(plain, root, slope->region, cells, r->in->arena);
+        size_t room  = slope_task_room(&r->slopes[i]);
+        most         = room > most ? room : most;
+    }
+    r->room = arena_alloc(r->in->arena, most, 1);
 }
 
 static bool needs_parameters(const Tape *tape)
@@ -179,7 +229,7 @@ static bool try_settings(Refuter *r, const Shape *shape, Search *search, uint64_
         bool sound = false;
         for (int i = 0; i < SETTING_ATTEMPTS && !sound; i++) {
             choose_parameters(r, trial, parameters);
-            sound = search_start(search, parameters);
+            sound = find_slopes(r, parameters) && search_start(search, parameters);
         }
         if (!sound)
             continue;
@@ -224,6 +274,37 @@ static bool try_shape(Refuter *r, size_t suspect, uint64_t operations, Finding *
         search_of(r, shape, plain, false, &search))
         refuted = try_settings(r, shape, &search, both ? operations / 2 : operations, finding);
     arena_free(r->in->scratch);
+    return refuted;
+}
+
+/* What marches instead of a component's distance; `plain` where that is the distance itself. */
+static Node lower_claim(Refuter *r, const Shape *shape, Claim claim, Node plain)
+{
+    Arena *scratch = r->in->scratch;
+    return claim == CLAIM_GUARDED ? lower_guarded(r->graph, shape, plain, scratch)
+                                  : lower_along(r->graph, shape, plain,
+                                                (AlongMethod)(claim - CLAIM_ALONG), scratch);
+}
+
+/* The guarded distance of a component, and its steps along rays, where there are such. */
+static bool try_steps(Refuter *r, size_t suspect, uint64_t operations, Finding *finding)
+{
+    const Shape *shape   = r->suspects.items[suspect].shape;
+    const Claim  end     = CLAIM_ALONG + ALONG_PROBE; /* which is no distance */
+    bool         refuted = false;
+    Search       search;
+    for (Claim claim = CLAIM_GUARDED; claim < end && !refuted && !r->stopped; claim++) {
+        Node plain = lower_alone(r, shape, false, NULL);
+        Node step  = plain == NODE_NONE ? plain : lower_claim(r, shape, claim, plain);
+        if (step != plain && !shape->estimate && !shape->figure &&
+            search_step(r, shape, step, plain, false, &search)) {
+            search.aimed     = claim >= CLAIM_ALONG;
+            finding->claim   = claim;
+            finding->suspect = suspect;
+            refuted          = try_settings(r, shape, &search, operations, finding);
+        }
+        arena_free(r->in->scratch);
+    }
     return refuted;
 }
 
@@ -470,20 +551,32 @@ static void place_caller(Refuter *r, Diag *diag, const Finding *finding)
         diag_place(r->in->diags, diag, r->suspects.items[i].shape->span, "for this");
 }
 
+static const char *const claim_texts[] = {
+    [CLAIM_DISTANCE]                = "distance",
+    [CLAIM_GUARDED]                 = "distance that leaves out what is far",
+    [CLAIM_ALONG + ALONG_EXACT]     = "step along a ray (exact)",
+    [CLAIM_ALONG + ALONG_TAYLOR]    = "step along a ray (taylor)",
+    [CLAIM_ALONG + ALONG_ROOT_FREE] = "step along a ray (root-free)",
+    [CLAIM_ALONG + ALONG_DIRECTIONAL] = "step along a ray (directional)",
+};
+
 static void report(Refuter *r, const Finding *whole, const Finding *finding)
 {
     const Shape *shape = r->suspects.items[finding->suspect].shape;
     Diags       *diags = r->in->diags;
-    bool         claim = shape->kind == SHAPE_PRIMITIVE && (shape->exact || shape->claimed);
-    Diag *diag  = diag_add(diags, DIAG_REFUTED, shape->span, "the distance of `%s` is refuted: %s",
-                           shape->name, fault_text(r, &finding->witness));
+    bool         claim = shape->kind == SHAPE_PRIMITIVE && (shape->exact || shape->claimed) &&
+                         finding->claim == CLAIM_DISTANCE;
+    Diag *diag  = diag_add(diags, DIAG_REFUTED, shape->span, "the %s of `%s` is refuted: %s",
+                           claim_texts[finding->claim], shape->name,
+                           fault_text(r, &finding->witness));
     diag->label = "this shape is to blame";
     if (claim && shape->distance != NODE_NONE)
         diag_place(diags, diag, r->graph->items[shape->distance].span,
                    shape->exact ? "`exact` is claimed of this" : "a `slope` is claimed of this");
     place_caller(r, diag, finding);
     note_points(r, diag, &finding->witness);
-    note_surface(r, diag, finding);
+    if (finding->claim == CLAIM_DISTANCE)
+        note_surface(r, diag, finding);
     note_parameters(r, diag, finding->parameters);
     note_component(r, diag, whole, finding);
     if (finding->witness.fault == FAULT_OUTSIDE && shape->kind == SHAPE_PRIMITIVE)
@@ -503,7 +596,8 @@ static void report(Refuter *r, const Finding *whole, const Finding *finding)
 static KrsStatus settle(Refuter *r, Finding *finding)
 {
     Finding whole = *finding;
-    find_culprit(r, finding);
+    if (finding->claim == CLAIM_DISTANCE)
+        find_culprit(r, finding);
     report(r, &whole, finding);
     r->result->refuted = true;
     return KRS_BAD_SCENE;
@@ -520,7 +614,8 @@ static KrsStatus try_all(Refuter *r, bool whole, Finding *finding)
     for (size_t i = r->suspects.count; i-- > 0 && !r->stopped;) {
         if (is_whole(r, i) != whole || is_wrapper(r->suspects.items[i].shape))
             continue;
-        if (try_shape(r, i, r->total / 2 / count, finding))
+        if (try_shape(r, i, r->total / 2 / count, finding) ||
+            (whole && try_steps(r, i, r->total / 8 / count, finding)))
             return settle(r, finding);
     }
     return r->stopped ? KRS_INTERRUPTED : KRS_OK;
@@ -532,6 +627,7 @@ static KrsStatus refute(void *user, const Inspected *in)
     const Scene *scene = in->scene;
     r->in    = in;
     r->graph = scene->graph;
+    prepare_slopes(r);
     for (size_t i = 0; i < scene->components.count; i++) {
         const Shape *shape = scene->components.items[i].shape;
         while (is_wrapper(shape) && shape->child_count)

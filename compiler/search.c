@@ -128,14 +128,17 @@ static double distance_at(Search *s, double p[3])
 {
     if (s->figure)
         p[2] = 0;
-    tape_run_point(&s->tape, p, s->values);
+    if (s->aimed)
+        tape_run_surface(&s->tape, p, s->aim, 0, s->values);
+    else
+        tape_run_point(&s->tape, p, s->values);
     s->spent += s->cost;
     s->evaluations++;
     double distance = s->values[s->distance].v[0];
     if (isnan(distance) && !is_settled(s) && isfinite(length3(p)))
         note(s, FAULT_NAN, INFINITY, p, p, distance, distance);
-    else if (distance < -rounding_at(s, p) && outside(s, p) > 1e3 * rounding_at(s, p) &&
-             !is_settled(s))
+    else if (s->side == s->distance && distance < -rounding_at(s, p) &&
+             outside(s, p) > 1e3 * rounding_at(s, p) && !is_settled(s))
         note(s, FAULT_OUTSIDE, INFINITY, p, p, distance, distance);
     return distance;
 }
@@ -143,8 +146,18 @@ static double distance_at(Search *s, double p[3])
 /* ---- pairs ---- */
 
 typedef struct Pair {
-    double p[3], q[3], at_p, at_q, ratio;
+    double p[3], q[3], at_p, at_q, side_p, side_q, ratio;
 } Pair;
+
+/* At the point that was looked at last. */
+static double side_now(const Search *s) { return s->values[s->side].v[0]; }
+
+static void aim_along(Search *s, const double from[3], const double to[3])
+{
+    double way = apart(from, to);
+    for (int i = 0; i < 3 && way > 0; i++)
+        s->aim[i] = (to[i] - from[i]) / way;
+}
 
 static bool are_sides_different(double a, double b) { return (a > 0) != (b > 0); }
 
@@ -153,12 +166,13 @@ static double ratio_of(const Search *s, const Pair *pair)
 {
     double way = apart(pair->p, pair->q), rounding = rounding_at(s, pair->p);
     double a = pair->at_p, b = pair->at_q;
-    if (!(way >= NEAREST * s->size) || !isfinite(a) || !isfinite(b))
+    if (!(way >= NEAREST * s->size) || isnan(a) || isnan(b) || isinf(pair->side_p + pair->side_q))
         return 0;
-    if (fabs(a) > NOWHERE || fabs(b) > NOWHERE)
+    if (s->side == s->distance && (fabs(a) > NOWHERE || fabs(b) > NOWHERE))
         return 0; /* nothing is anywhere, or a wall is */
     double rise = s->steep ? fabs(a - b)
-                           : are_sides_different(a, b) ? fmax(fabs(a), fabs(b)) : 0;
+                  : are_sides_different(pair->side_p, pair->side_q) ? fmax(fabs(a), fabs(b))
+                                                                    : 0;
     return fmax(0, rise - rounding) / way;
 }
 
@@ -172,8 +186,12 @@ static void weigh(Search *s, Pair *pair)
 
 static void judge(Search *s, Pair *pair)
 {
-    pair->at_p = distance_at(s, pair->p);
-    pair->at_q = distance_at(s, pair->q);
+    aim_along(s, pair->p, pair->q);
+    pair->at_p   = distance_at(s, pair->p);
+    pair->side_p = side_now(s);
+    aim_along(s, pair->q, pair->p);
+    pair->at_q   = distance_at(s, pair->q);
+    pair->side_q = side_now(s);
     weigh(s, pair);
 }
 
@@ -201,15 +219,17 @@ static void tighten(Search *s, Pair *pair)
 {
     double low = 0, high = 1, end[3];
     memcpy(end, pair->q, sizeof end);
-    for (int i = 0; i < 24 && are_sides_different(pair->at_p, pair->at_q); i++) {
+    aim_along(s, pair->q, pair->p);
+    for (int i = 0; i < 24 && are_sides_different(pair->side_p, pair->side_q); i++) {
         double t = 0.5 * (low + high), m[3];
         for (int k = 0; k < 3; k++)
             m[k] = pair->p[k] + t * (end[k] - pair->p[k]);
-        double at = distance_at(s, m);
-        if (are_sides_different(pair->at_p, at)) {
+        double at = distance_at(s, m), side = side_now(s);
+        if (are_sides_different(pair->side_p, side)) {
             memcpy(pair->q, m, sizeof m);
-            pair->at_q = at;
-            high       = t;
+            pair->at_q   = at;
+            pair->side_q = side;
+            high         = t;
         } else
             low = t;
     }
@@ -219,17 +239,22 @@ static void tighten(Search *s, Pair *pair)
 /* Marches from p until the side changes, at most `farthest`; then the pair is tightened. */
 static bool reach_surface(Search *s, Pair *pair, const double direction[3], double farthest)
 {
-    double t = 0.5 * fabs(pair->at_p);
+    memcpy(s->aim, direction, sizeof s->aim);
+    pair->at_p   = distance_at(s, pair->p);
+    pair->side_p = side_now(s);
+    add_scaled(s->aim, (double[3]){0}, -1, direction);
+    double t = 0.5 * fabs(pair->side_p);
     for (int i = 0; i < 40 && t <= farthest; i++) {
         add_scaled(pair->q, pair->p, t, direction);
-        pair->at_q = distance_at(s, pair->q);
-        if (!isfinite(pair->at_q))
+        pair->at_q   = distance_at(s, pair->q);
+        pair->side_q = side_now(s);
+        if (!isfinite(pair->side_q))
             return false;
-        if (are_sides_different(pair->at_p, pair->at_q)) {
+        if (are_sides_different(pair->side_p, pair->side_q)) {
             tighten(s, pair);
             return true;
         }
-        t += fmax(0.6 * fabs(pair->at_q), 0.03 * t + 1e-9 * s->size);
+        t += fmax(0.6 * fabs(pair->side_q), 0.03 * t + 1e-9 * s->size);
     }
     return false;
 }
@@ -242,7 +267,10 @@ static bool gradient_at(Search *s, const double p[3], double gradient[3])
         double before[3] = {p[0], p[1], p[2]}, after[3] = {p[0], p[1], p[2]};
         before[i] -= step;
         after[i] += step;
-        gradient[i] = distance_at(s, after) - distance_at(s, before);
+        (void)distance_at(s, after);
+        gradient[i] = side_now(s);
+        (void)distance_at(s, before);
+        gradient[i] -= side_now(s);
     }
     double length = length3(gradient);
     if (!isfinite(length) || !(length > 0))
@@ -408,7 +436,8 @@ static void start_at_surface(Search *s, double p[3])
     random_direction(s, direction);
     random_point(s, p);
     for (int i = 0; i < 40; i++) {
-        double distance = distance_at(s, p);
+        (void)distance_at(s, p);
+        double distance = side_now(s);
         if (!(fabs(distance) > 1e-5 * s->size) || !(fabs(distance) < NOWHERE))
             break;
         add_scaled(p, p, 0.9 * distance, direction);
@@ -507,12 +536,13 @@ static Pair best_way(Search *s, double p[3])
         random_direction(s, direction);
         if (i == 0)
             (void)gradient_at(s, p, direction);
-        pair.at_p = distance_at(s, pair.p);
+        (void)distance_at(s, pair.p);
+        double side = side_now(s), farthest = s->aimed ? s->size : 4 * fabs(side);
         for (int k = 0; k < 3 && i == 0; k++)
-            direction[k] *= pair.at_p > 0 ? -1 : 1;
-        if (fabs(pair.at_p) < 1e-6 * s->size || !(fabs(pair.at_p) < NOWHERE))
+            direction[k] *= side > 0 ? -1 : 1;
+        if (fabs(side) < 1e-6 * s->size || !(fabs(side) < NOWHERE))
             return best;
-        if (reach_surface(s, &pair, direction, 4 * fabs(pair.at_p)) && pair.ratio > best.ratio)
+        if (reach_surface(s, &pair, direction, farthest) && pair.ratio > best.ratio)
             best = pair;
     }
     return best;
@@ -571,12 +601,13 @@ static uint64_t operation_cost(const Graph *graph, const Expr *e)
     return 1 + (e->operand_count ? (uint64_t)op_cost((Op)e->op, e->type, types) : 0);
 }
 
-bool search_new(Search *search, const Graph *graph, Node distance, Box box, Arena *arena)
+bool search_new(Search *search, const Graph *graph, Node distance, Node side, Box box,
+                Arena *arena)
 {
-    *search = (Search){.distance = distance, .box = box, .cost = 1};
+    *search = (Search){.distance = distance, .side = side, .box = box, .aim = {1}, .cost = 1};
     if (box_is_empty(box) || graph->items[distance].time != TIME_POINT)
         return false;
-    search->tape   = tape_new(graph, &distance, 1, arena);
+    search->tape   = tape_new(graph, (Node[]){distance, side}, 2, arena);
     search->values = arena_new_array(arena, NodeValue, graph->count);
     for (size_t i = search->tape.frame_count; i < search->tape.count; i++) {
         const Expr *e = &graph->items[search->tape.nodes[i]];

@@ -36,9 +36,13 @@ typedef struct Target Target;
 typedef struct Search {
     Tape       tape;
     Node       distance; /* FLOAT */
+    Node       side;     /* FLOAT: which side of the surface a point is on; `distance`, or another
+                            one where that is a step from a guard or along a ray */
     Box        box;      /* claimed; may be infinite */
     bool       steep;    /* FAULT_STEEP is looked for, else FAULT_LONG */
     bool       figure;   /* z stays 0 */
+    bool       aimed;    /* the distance is that along a ray, OP_DIRECTION */
+    double     aim[3];   /* then: the ray's direction */
     uint64_t   random;   /* state of the generator */
     uint64_t   spent;    /* operations so far */
     uint64_t   cost;     /* of one evaluation */
@@ -53,8 +57,9 @@ typedef struct Search {
 } Search;
 
 /* A search for `distance`, whose tape and lists are in the arena; everything else is set by the
-   caller before search_start: box, steep, figure, random.  False: nothing to look at. */
-bool search_new(Search *search, const Graph *graph, Node distance, Box box, Arena *arena);
+   caller before search_start: box, steep, figure, random, aimed.  False: nothing to look at. */
+bool search_new(Search *search, const Graph *graph, Node distance, Node side, Box box,
+                Arena *arena);
 /* Takes on the values of parameters; false when something in the graph is then not finite, which
    frames refuse as well. */
 bool search_start(Search *search, const NodeValue *parameters);

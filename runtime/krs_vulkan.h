@@ -140,13 +140,16 @@ typedef enum KrsSchedule {
 } KrsSchedule;
 extern const char *const krs_schedule_names[KRS_SCHEDULE_COUNT];
 
-/* Whether heavy components of a scene are marched together, or each by itself and those in front
-   first; the pictures are the same but for the permitted error.  The default is by themselves on
-   devices of type CPU.  Together whatever is asked for when the camera is inside of a solid. */
+/* Whether heavy components of a scene are marched together, or each by itself: apart, in kernels of
+   their own, those in front first, or in one kernel, where each ray goes on with the component that
+   may come next (KRS 2016, 5.1).  The pictures are the same but for the permitted error.  The default
+   is apart on devices of type CPU, packed on others.  Together whatever is asked for when the camera
+   is inside of a solid. */
 typedef enum KrsComponents {
     KRS_COMPONENTS_DEFAULT,
     KRS_COMPONENTS_TOGETHER,
     KRS_COMPONENTS_APART,
+    KRS_COMPONENTS_PACKED,
     KRS_COMPONENTS_COUNT
 } KrsComponents;
 extern const char *const krs_components_names[KRS_COMPONENTS_COUNT];
@@ -196,6 +199,7 @@ typedef struct KrsRenderOptions {
     bool      no_beams;      /* each ray is marched by itself all the way */
     bool      no_upsampling; /* shadows and occlusion are found for every pixel, not for a quarter
                                 of them where the others can be seen to be alike */
+    bool      no_occlusion;  /* the light of the sky comes from everywhere, also into corners */
     bool      no_filter;     /* normals are those of the very point, about, and roughness is what
                                 the material says, however much finer than a pixel detail is */
     double    slice_ms;      /* aim for dispatches this long; 0: 50 */

@@ -7,14 +7,14 @@
 SUPPORT     := $(addprefix tests/support/, bench.c random.c renderer.c)
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c formulas.c)
 UNIT        := front film tracer methods writer memory validate refute frame query cache compiled apart stencils
-PROPERTY    := ops noise graph derive series along anchor slope parity reach
-ORACLES     := self primitives krs_expand trees maps moebius operators deform normals fields surfaces rays algebraic fractals device query picture shading coverage shadows bounds stencils
+PROPERTY    := ops noise graph derive series local along anchor slope parity reach
+ORACLES     := self primitives krs_expand trees maps moebius operators deform moving normals fields surfaces rays algebraic fractals device query picture seams shading coverage shadows loose bounds stencils
 FUZZ        := sentences
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
 SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/validate tests/unit/refute tests/unit/memory tests/unit/cache tests/unit/frame tests/unit/query tests/property/ops tests/property/noise \
-               tests/property/graph tests/property/derive tests/property/series tests/property/along tests/property/anchor tests/property/slope tests/property/parity tests/property/reach tests/oracle/primitives tests/oracle/krs_expand tests/oracle/bounds tests/oracle/maps tests/oracle/moebius tests/oracle/operators tests/oracle/fractals tests/oracle/normals \
+               tests/property/graph tests/property/derive tests/property/series tests/property/local tests/property/along tests/property/anchor tests/property/slope tests/property/parity tests/property/reach tests/oracle/primitives tests/oracle/krs_expand tests/oracle/bounds tests/oracle/maps tests/oracle/moebius tests/oracle/operators tests/oracle/moving tests/oracle/fractals tests/oracle/normals \
                tests/fuzz/sentences
 SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/editors.sh tests/lint.sh \
                tests/errors.sh tests/examples.sh tests/library.sh tests/docs.sh $(sort $(filter-out tests/cli/common.sh, $(wildcard tests/cli/*.sh)))

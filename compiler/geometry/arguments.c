@@ -279,7 +279,8 @@ bool want_flag(Elaboration *e, const Call *call, uint32_t index, bool *flag)
         return true;
     }
     if (argument->value.type == VALUE_EXPRESSION)
-        constant_error(e, argument->syntax, "this must be true or false when the scene is compiled");
+        constant_error(e, argument->syntax,
+                       "this must be true or false when the scene is compiled");
     else
         type_error(e, argument->syntax, argument->value, "true or false");
     return false;

@@ -151,27 +151,18 @@ static void report_steep(Elaboration *e, const Syntax *declaration, const Syntax
 static bool derive_slope(Elaboration *e, Shape *shape, const Syntax *declaration,
                          const Syntax *syntax)
 {
-    enum { CELLS = 512 };
-    Node   blame = NODE_NONE, root = shape->distance;
-    /* Simplified, sqrt(x * x + ...) is a length, whose slope is known. */
-    Graph *plain   = graph_simplify(e->graph, &root, 1, e->scratch);
-    shape->derived = graph_slope(plain, root, box_infinite, NULL, 1, &blame, e->scratch);
-    if (isfinite(shape->derived)) {
-        shape->region   = box_infinite;
-        shape->distance = divide_by_slope(e->graph, shape->distance, shape->derived);
-        return true;
+    Box       regions[2] = {box_infinite, shape->box};
+    Steepness slope;
+    if (!find_slope(e, shape->distance, regions, box_is_finite(shape->box) ? 2 : 1, syntax->span,
+                    &slope)) {
+        report_steep(e, declaration, syntax, slope.blame);
+        return false;
     }
-    if (box_is_finite(shape->box)) {
-        shape->region  = shape->box;
-        shape->derived = graph_slope(plain, root, shape->region, NULL, CELLS, &blame, e->scratch);
-        if (isfinite(shape->derived)) {
-            shape->distance = bring_out(e, shape->distance, shape->derived, shape->region);
-            return true;
-        }
-    }
-    report_steep(e, declaration, syntax,
-                 blame == NODE_NONE ? (Span){0, 0, 0} : plain->items[blame].span);
-    return false;
+    shape->derived   = slope.bound;
+    shape->region    = slope.region;
+    shape->per_frame = slope.slot != NODE_NONE;
+    shape->distance  = bring_out(e, shape->distance, &slope);
+    return true;
 }
 
 /* ---- claims ---- */

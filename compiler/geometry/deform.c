@@ -321,14 +321,13 @@ static double bump_reach(Elaboration *e, const Bump *bump, Box box)
     return INFINITY;
 }
 
-/* The slope everywhere or, failing that, where the displaced surface can be. */
-static double bump_slope(Elaboration *e, const Bump *bump, Box box, Node *blame)
+static void report_large_bump(Elaboration *e, const Call *call)
 {
-    enum { PARTS = 512 };
-    double slope = graph_slope(bump->graph, bump->root, box_infinite, NULL, 1, blame, e->scratch);
-    if (isfinite(slope) || !box_is_finite(box))
-        return slope;
-    return graph_slope(bump->graph, bump->root, box, NULL, PARTS, blame, e->scratch);
+    Diag *diag  = diag_add(e->diags, DIAG_STEEP, call->arguments[0].syntax->span,
+                           "the size of this displacement has no bound");
+    diag->label = "this can become arbitrarily large";
+    diag->help  = "keep it in limits with `clamp`, cut the shape with `.within`, give a `param` in "
+                  "it a range, or take what grows as the `amplitude`";
 }
 
 static void report_bump(Elaboration *e, const Call *call, Span blame)
@@ -358,15 +357,25 @@ Value method_displace(Elaboration *e, const Shape *shape, Call *call)
     displaced->values[0] = amplitude;
     Bump bump  = {.root = displaced->formula, .amplitude = node_range(e, amplitude, 0)};
     bump.graph = graph_simplify(e->graph, &bump.root, 1, e->scratch);
-    Node blame = NODE_NONE;
     displaced->reach = bump_reach(e, &bump, shape->box);
     double grown     = product_upward(range_largest(bump.amplitude), displaced->reach);
     displaced->box   = isfinite(grown) ? box_grow(shape->box, grown) : box_infinite;
-    displaced->steep = bump_slope(e, &bump, displaced->box, &blame);
-    note_slope(displaced, 1 + range_largest(bump.amplitude) * displaced->steep);
-    bool good = isfinite(displaced->steep) && isfinite(displaced->reach);
-    if (!good)
-        report_bump(e, call, blame == NODE_NONE ? (Span){0, 0, 0} : bump.graph->items[blame].span);
+    /* The slope everywhere or, failing that, where the displaced surface can be. */
+    Box       regions[2] = {box_infinite, displaced->box};
+    Steepness slope;
+    bool bounded = find_slope(e, displaced->formula, regions, box_is_finite(displaced->box) ? 2 : 1,
+                              expression->syntax->span, &slope);
+    if (!bounded || !isfinite(displaced->reach)) {
+        if (bounded)
+            report_large_bump(e, call);
+        else
+            report_bump(e, call, slope.blame);
+        arena_free(e->scratch);
+        return value_error();
+    }
+    displaced->values[1] = steepness_node(e->graph, &slope);
+    displaced->per_frame = displaced->per_frame || slope.slot != NODE_NONE;
+    note_slope(displaced, 1 + range_largest(bump.amplitude) * slope.bound);
     arena_free(e->scratch);
-    return good ? value_shape(displaced) : value_error();
+    return value_shape(displaced);
 }

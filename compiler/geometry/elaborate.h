@@ -224,14 +224,30 @@ Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax
 /* The shape of a declaration whose parameters `env` binds; `span` is the call. */
 Value declare_instance(Elaboration *e, const Function *function, const Environment *env, Span span);
 
+/* ---- slope.c: how fast expressions change ---- */
+typedef struct Steepness {
+    double bound;  /* of all frames; with a slot, of the first: time 0, defaults */
+    Node   slot;   /* the slope in the frame; NODE_NONE: the bound is a constant */
+    Box    region; /* over which; infinite: all space */
+    Span   blame;  /* of what changes fastest */
+} Steepness;
+/* Over the first of these regions where the slope of an expression has a bound; false: it has none.
+   `span` is its place. */
+bool find_slope(Elaboration *e, Node formula, const Box *regions, int count, Span span,
+                Steepness *found);
+Node steepness_node(Graph *graph, const Steepness *slope);
+/* What grows so fast, made safe. */
+Node divide_by_steepness(Graph *graph, Node distance, const Steepness *slope);
+
 /* ---- field.c: solids given by an expression that is negative inside ---- */
 /* NULL: reported at `place`, the call.  `algebraic`: it must be a polynomial. */
 const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Syntax *place);
-/* A bound on the distance to where an expression is 0 in a box, over which it has this slope: that of
-   the nearest point in the box, brought out.  1-Lipschitz everywhere. */
-Node bring_out(Elaboration *e, Node formula, double slope, Box box);
-/* The same shape where only what is in the box matters: fields in it get their bound there. */
-const Shape *restrict_shape(Elaboration *e, const Shape *shape, Box box);
+/* A bound on the distance to where an expression is 0 in the region over which it has this slope:
+   that of the nearest point in it, brought out.  1-Lipschitz everywhere. */
+Node bring_out(Elaboration *e, Node formula, const Steepness *slope);
+/* The same shape where only what is in the box matters: fields in it get their bound there; `even`:
+   one that is about the distance near their surfaces, if it can be had. */
+const Shape *restrict_shape(Elaboration *e, const Shape *shape, Box box, bool even);
 /* Reports a field in the tree that has no bound. */
 bool check_bounded(Elaboration *e, const Shape *shape);
 

@@ -15,29 +15,18 @@
  *     hypot(|q - c|, max(f(c) / L, 0)),   L the slope over C,
  * is below the distance to what is in C, since |q - s|^2 >= |q - c|^2 + |c - s|^2 for s in C, and
  * 1-Lipschitz.  Where f(c) < 0 the solid ends at the sides of C: within it the value is
- * max(f / L, -distance to them), so that nothing jumps there.  A second, sharper bound counts with the slope where the point is:
- *     |f| = |grad f| r + H r^2 / 2,   H the slope of the gradient over C.
+ * max(f / L, -distance to them), so that nothing jumps there.  In place of f / L there may be
+ * another distance, by which rays reach the surface sooner (field_bounds.c).
  */
 #include "compiler/geometry/elaborate.h"
 
 #include <math.h>
 
+#include "compiler/geometry/field_bounds.h"
 #include "compiler/geometry/lower.h"
-#include "compiler/graph/derive.h"
-#include "compiler/graph/evaluate.h"
 #include "compiler/graph/series.h"
 
-enum { CELLS = 512 };
-
-/* Keeps quotients finite; below every coefficient that counts in single precision. */
-static const double TINY = 1e-30;
-
 /* ---- polynomials ---- */
-
-static Node at_least(Graph *g, Node node, double least)
-{
-    return graph_op2(g, OP_max, node, graph_number(g, least));
-}
 
 static Node series_distance(Graph *g, const Series *s)
 {
@@ -101,97 +90,31 @@ static Node at_nearest(Elaboration *e, Node formula, Box box)
     return graph_substitute(e->graph, formula, with, e->scratch);
 }
 
-Node bring_out(Elaboration *e, Node formula, double slope, Box box)
+Node bring_out(Elaboration *e, Node formula, const Steepness *slope)
 {
-    Node inner = at_nearest(e, formula, box);
-    return brought_out(e->graph, divide_by_slope(e->graph, inner, slope), box);
+    Node inner = at_nearest(e, formula, slope->region);
+    return brought_out(e->graph, divide_by_steepness(e->graph, inner, slope), slope->region);
 }
 
-/* r of |f| = |grad f| r + H r^2 / 2, with the sign of f. */
-static Node second_order(Graph *g, Node f, Node gradient, double bend)
+/* Finds the slope over a region, which may be all space; infinite when there is no bound. */
+static void settle(Elaboration *e, Shape *shape, Box box, bool even)
 {
-    Node size    = graph_op1(g, OP_abs, f);
-    Node steep   = graph_op1(g, OP_length, gradient);
-    Node squared = graph_op2(g, OP_dot, gradient, gradient);
-    Node room    = graph_op2(g, OP_mul, size, graph_number(g, 2 * bend));
-    Node root    = graph_op1(g, OP_sqrt, graph_op2(g, OP_add, squared, room));
-    Node sum     = at_least(g, graph_op2(g, OP_add, steep, root), TINY);
-    Node twice   = graph_op2(g, OP_mul, f, graph_number(g, 2));
-    return graph_op2(g, OP_div, twice, sum);
-}
-
-/* How much longer the steps of `sharp` are than those of `plain`, on average over a box; both are
-   evaluated at the parameters' defaults. */
-static double gain_of(Elaboration *e, Node sharp, Node plain, Box box)
-{
-    enum { SAMPLES = 200 };
-    Node       roots[2]   = {sharp, plain};
-    Tape       tape       = tape_new(e->graph, roots, 2, e->scratch);
-    NodeValue *values     = arena_new_array(e->scratch, NodeValue, e->graph->count);
-    NodeValue *parameters = arena_new_array(e->scratch, NodeValue, e->graph->parameters.count);
-    for (size_t i = 0; i < e->scene->parameters.count; i++) {
-        const Parameter *parameter = &e->scene->parameters.items[i];
-        for (int k = 0; k < 4; k++)
-            parameters[parameter->slot].v[k] = parameter->value[k];
-    }
-    tape_run_frame(&tape, parameters, values);
-    double sum = 0;
-    int    count = 0;
-    for (uint32_t i = 0; i < SAMPLES; i++) {
-        /* Roberts' sequence in three dimensions. */
-        static const double steps[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
-        double              point[3];
-        for (int k = 0; k < 3; k++) {
-            double t = fmod(0.5 + (i + 1) * steps[k], 1);
-            point[k] = box.axis[k].low + t * (box.axis[k].high - box.axis[k].low);
-        }
-        tape_run_point(&tape, point, values);
-        double gain = fabs(values[sharp].v[0]) / fabs(values[plain].v[0]);
-        if (isfinite(gain)) {
-            sum += gain;
-            count++;
-        }
-    }
-    return count ? sum / count : 0;
-}
-
-/* The second bound costs about twice as much as the first. */
-static void sharpen(Elaboration *e, Shape *shape, Node inner, double slope, Box box)
-{
-    const double WORTH = 2;
-    Graph *g = e->graph;
-    Node   gradient, blame;
-    if (graph_gradient(g, shape->formula, &gradient, &blame, e->scratch) != DERIVED_SMOOTH)
+    Steepness slope;
+    bool      bounded = find_slope(e, shape->formula, &box, 1, shape->span, &slope);
+    shape->derived    = slope.bound;
+    shape->region     = box;
+    shape->blame      = slope.blame;
+    shape->slope      = bounded ? 1 : slope.bound;
+    shape->per_frame  = slope.slot != NODE_NONE;
+    if (!bounded)
         return;
-    Node   root  = gradient;
-    Graph *plain = graph_simplify(g, &root, 1, e->scratch);
-    double bend  = graph_slope(plain, root, box, NULL, CELLS, NULL, e->scratch);
-    if (!isfinite(bend))
+    shape->distance = bring_out(e, shape->formula, &slope);
+    if (shape->per_frame)
         return;
-    gradient   = at_nearest(e, gradient, box);
-    Node sharp = second_order(g, inner, gradient, bend);
-    Box  tried = box_is_finite(box) ? box : (Box){{{-10, 10}, {-10, 10}, {-10, 10}}};
-    if (gain_of(e, sharp, divide_by_slope(g, inner, slope), tried) >= WORTH)
-        shape->bound = brought_out(g, sharp, box);
-}
-
-/* Finds the slope over a region, which may be all space; false when there is no bound. */
-static bool settle(Elaboration *e, Shape *shape, Box box, Node *blame)
-{
-    Node   root  = shape->formula;
-    Graph *plain = graph_simplify(e->graph, &root, 1, e->scratch);
-    double slope = graph_slope(plain, root, box, NULL, box_is_finite(box) ? CELLS : 1, blame,
-                               e->scratch);
-    shape->slope = shape->derived = slope;
-    shape->region = box;
-    if (*blame != NODE_NONE) /* a node of `plain`: the same expression's place in the text */
-        shape->blame = plain->items[*blame].span;
-    if (!isfinite(slope))
-        return false;
-    shape->distance = bring_out(e, shape->formula, slope, box);
-    shape->slope    = 1;
-    sharpen(e, shape, at_nearest(e, shape->formula, box), slope, box);
-    return true;
+    FieldBounds bounds = field_bounds(e, shape->formula, slope.bound, box, even);
+    shape->distance    = brought_out(e->graph, at_nearest(e, bounds.steady, box), box);
+    if (bounds.sharp != NODE_NONE)
+        shape->bound = brought_out(e->graph, at_nearest(e, bounds.sharp, box), box);
 }
 
 /* ---- the solids ---- */
@@ -226,8 +149,7 @@ const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Synt
     } else if (algebraic) {
         return refuse_polynomial(e, fault, place);
     } else {
-        Node blame = NODE_NONE;
-        settle(e, shape, box_infinite, &blame);
+        settle(e, shape, box_infinite, false);
     }
     arena_free(e->scratch);
     return shape;
@@ -235,53 +157,52 @@ const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Synt
 
 /* ---- regions ---- */
 
-static const Shape *restrict_field(Elaboration *e, const Shape *shape, Box box)
+static const Shape *restrict_field(Elaboration *e, const Shape *shape, Box box, bool even)
 {
-    Node blame = NODE_NONE;
     if (shape->degree > 0 || !box_is_finite(box))
         return shape;
     Shape *restricted = arena_new(e->arena, Shape);
     *restricted       = *shape;
     restricted->bound = NODE_NONE;
-    settle(e, restricted, box, &blame);
+    settle(e, restricted, box, even);
     arena_free(e->scratch);
     return restricted;
 }
 
 /* The children over the same box, grown by what the joint may reach around. */
-static const Shape *restrict_joint(Elaboration *e, const Shape *shape, Box box)
+static const Shape *restrict_joint(Elaboration *e, const Shape *shape, Box box, bool even)
 {
     const Shape **children = arena_new_array(e->arena, const Shape *, shape->child_count + 1);
     double reach = shape->blend.width == NODE_NONE ? 0 : node_range(e, shape->blend.width, 0).high;
     for (uint32_t i = 0; i < shape->child_count; i++)
-        children[i] = restrict_shape(e, shape->children[i], box_grow(box, reach));
+        children[i] = restrict_shape(e, shape->children[i], box_grow(box, reach), even);
     return make_joint(e, shape->kind, children, shape->child_count, shape->blend, shape->span);
 }
 
-const Shape *restrict_shape(Elaboration *e, const Shape *shape, Box box)
+const Shape *restrict_shape(Elaboration *e, const Shape *shape, Box box, bool even)
 {
     if (!shape->fields || box_is_empty(box))
         return shape;
     const Shape *child = shape->child_count ? shape->children[0] : NULL;
     switch (shape->kind) {
-    case SHAPE_PRIMITIVE: return restrict_field(e, shape, box);
+    case SHAPE_PRIMITIVE: return restrict_field(e, shape, box, even);
     case SHAPE_UNION: case SHAPE_INTERSECTION: case SHAPE_DIFFERENCE: case SHAPE_XOR:
-        return restrict_joint(e, shape, box);
+        return restrict_joint(e, shape, box, even);
     case SHAPE_OFFSET: {
         double r = range_largest(node_range(e, shape->values[0], 0));
-        child    = restrict_shape(e, child, box_grow(box, r));
+        child    = restrict_shape(e, child, box_grow(box, r), even);
         return make_offset(e, child, shape->values[0], shape->span);
     }
     case SHAPE_SHELL: {
         double t = range_largest(node_range(e, shape->values[0], 0));
-        child    = restrict_shape(e, child, box_grow(box, 0.5 * t));
+        child    = restrict_shape(e, child, box_grow(box, 0.5 * t), even);
         return make_shell(e, child, shape->values[0], shape->span);
     }
     case SHAPE_PAINT:
-        return make_paint(e, restrict_shape(e, child, box), shape->material, shape->span);
+        return make_paint(e, restrict_shape(e, child, box, even), shape->material, shape->span);
     case SHAPE_TRANSFORM: {
         Box before = map_box(e, map_inverse(e, &shape->map), box);
-        child      = restrict_shape(e, child, before);
+        child      = restrict_shape(e, child, before, even);
         return make_transform(e, child, &shape->map, shape->span);
     }
     default: return shape;
@@ -309,7 +230,9 @@ bool check_bounded(Elaboration *e, const Shape *shape)
     Diag *diag  = diag_add(e->diags, DIAG_STEEP, span, "the slope of a field has no bound");
     diag->label = "this can change arbitrarily fast";
     diag_place(e->diags, diag, field->span, "in this field");
-    diag->help  = "cut it to a region: `.within(box([4, 4, 4]))`; or keep this part away from "
-                  "divisions by zero and jumps";
+    diag->help  = box_is_finite(field->region)
+                      ? "keep this part away from divisions by zero and jumps"
+                      : "cut it to a region: `.within(box([4, 4, 4]))`; or keep this part away "
+                        "from divisions by zero and jumps";
     return false;
 }

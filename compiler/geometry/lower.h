@@ -48,17 +48,17 @@ typedef enum AlongMethod {
 } AlongMethod;
 
 /*
- * How far a ray from OP_POINT along OP_DIRECTION may go before it can enter the shape, negative when
- * it is within and looks for the way out: at least the distance, and where polynomials bound the
- * shape, or inversions are above it, much more.  `plain`, which is ROOT_DISTANCE, where that is as
- * good.
+ * How far a ray from OP_POINT along OP_DIRECTION may go before it can enter the shape, negative
+ * when it is within and looks for the way out: at least the distance, and where polynomials bound
+ * the shape, or inversions are above it, much more.  `plain`, which is ROOT_DISTANCE, where that is
+ * as good.
  */
 Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod method, Arena *scratch);
 
 /*
- * The gradient of ROOT_DISTANCE, a VEC3 of any length, and in `near` what it is the gradient of, which
- * is about the distance near the surface; false when some operation has no derivative, or when that
- * would grow too large.
+ * The gradient of ROOT_DISTANCE, a VEC3 of any length, and in `near` what it is the gradient of,
+ * which is about the distance near the surface; false when some operation has no derivative, or
+ * when that would grow too large.
  */
 bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near, Arena *scratch);
 

@@ -1,14 +1,15 @@
 /*
  * lower_along.c: how far a ray may go, where that is more than a distance.
  *
- * A distance holds for all directions.  A ray has one, and along it a polynomial of the point is one
- * of a single number t, whose next zero is the surface itself.  What is computed at a point is no
- * zero yet but a long safe step towards it, so that the march along the ray does the iterations:
+ * A distance holds for all directions.  A ray has one, and along it a polynomial of the point is
+ * one of a single number t, whose next zero is the surface itself.  What is computed at a point is
+ * no zero yet but a long safe step towards it, so that the march along the ray does the iterations:
  *     f(p + t v) = c0 + c1 t + ... + cn t^n,           |c0| > 0, taken as c0 > 0
  * Only negative coefficients can bring it down: with m_k their sizes the least of (c0 / m_k)^(1/k)
  * is between the root of c0 = sum m_k t^k and twice that (Cauchy), so it tells a good length w of
- * the piece to look at.  On [0, w] the polynomial lies in the hull of its Bernstein coefficients b_i
- * at t = i w / n, thus above the line from b0 through the one towards which the fall is steepest,
+ * the piece to look at.  On [0, w] the polynomial lies in the hull of its Bernstein coefficients
+ * b_i at t = i w / n, thus above the line from b0 through the one towards which the fall is
+ * steepest,
  *     t = w min(1, b0 / max_i (b0 - b_i) n / i).
  * Near a simple zero that is Newton's step, from the safe side; expanding about the point itself
  * keeps single precision good where it matters (math.md, section 3).
@@ -74,7 +75,7 @@ static double binomial(uint32_t n, uint32_t k)
     return value;
 }
 
-/* (b0 - b_i) n / i from the terms c_k w^k: the fall to the i-th Bernstein coefficient, per piece. */
+/* (b0 - b_i) n / i from the terms c_k w^k: the fall to the i-th Bernstein coefficient, a piece. */
 static Node fall_towards(Lowering *l, const Node *terms, uint32_t n, uint32_t i)
 {
     Graph *g   = l->graph;

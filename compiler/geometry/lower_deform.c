@@ -482,7 +482,7 @@ Lowered lower_displace(Lowering *l, const Shape *shape, Place place)
     if (result.distance == NODE_NONE)
         return result;
     Node bump  = graph_substitute(g, shape->formula, substitute_point(point), l->scratch);
-    Node steep = mul(g, size, graph_number(g, shape->steep));
+    Node steep = mul(g, size, shape->values[1]);
     Node slope = add(g, steep, graph_number(g, child->slope));
     Node moved = sub(g, result.distance, mul(g, bump, shape->values[0]));
     result.distance = over(g, moved, slope);

@@ -236,52 +236,43 @@ static Node image_distance(Lowering *l, const Shape *shape, Image image)
 static Node hull_worth(Lowering *l, const Image *image, const Map *map, Ball ball)
 {
     Passage here = passage_new(l->graph, image->passage.point);
-    return worth_of(l, image, passage_hull(l, &here, map, ball).bound);
-}
-
-/* Of what is behind a map: no ball that holds its pole passes, but what is outside of the hull. */
-static Node through_map(Lowering *l, Node inner, Node pole, Node hull)
-{
-    if (inner == NODE_NONE)
-        return NODE_NONE;
-    return larger(l, nearer_of(l->graph, inner, pole), hull);
+    return worth_of(l, image, passage_hull(l, &here, map, ball));
 }
 
 static Node image_inversion(Lowering *l, const Shape *shape, Image image)
 {
     Node hull = hull_worth(l, &image, &shape->map, ball_around(shape->children[0]->box));
-    Node pole = image_map(l, &image, &shape->map);
-    return through_map(l, image_shape(l, shape->children[0], image), pole, hull);
+    Node pole  = image_map(l, &image, &shape->map);
+    Node inner = image_shape(l, shape->children[0], image);
+    return inner == NODE_NONE ? NODE_NONE : larger(l, nearer_of(l->graph, inner, pole), hull);
 }
 
-/* From the last stage inwards, then back: kernels join what is farther in than themselves. */
+/* What is first inwards is nearest at once, so that nothing has to be kept: behind a map no ball
+   that holds its pole passes, but what is outside of its hull and of those farther out. */
 static Node image_krs(Lowering *l, const Shape *shape, Image image)
 {
-    uint32_t count   = shape->stage_count;
-    Node    *kernels = arena_new_array(l->scratch, Node, count + 1);
-    Node    *poles   = arena_new_array(l->scratch, Node, count + 1);
-    Node    *hulls   = arena_new_array(l->scratch, Node, count + 1);
-    for (uint32_t i = count; i-- > 0;) {
+    Graph   *g     = l->graph;
+    Node     hull  = NODE_NONE, nearest = NODE_NONE;
+    uint32_t first = 0; /* kernel: what comes before it has nothing to be applied to */
+    while (first < shape->stage_count && shape->stages[first].kind != STAGE_KERNEL)
+        first++;
+    for (uint32_t i = shape->stage_count; i-- > first;) {
         const Stage *stage = &shape->stages[i];
-        kernels[i] = poles[i] = hulls[i] = NODE_NONE;
+        const Map   *map   = &stage->map;
+        Node         found = NODE_NONE;
         switch (stage->kind) {
         case STAGE_REFLECT: image_mirror(l, &image, stage->normal, stage->offset); break;
-        case STAGE_KERNEL:
-            kernels[i] = image_shape(l, shape->children[stage->kernel], image);
-            break;
+        case STAGE_KERNEL:  found = image_shape(l, shape->children[stage->kernel], image); break;
         case STAGE_MAP:
-            if (stage->map.pole != NODE_NONE && i > 0)
-                hulls[i] = hull_worth(l, &image, &stage->map, shape->bounds[i - 1].ball);
-            poles[i] = image_map(l, &image, &stage->map);
+            if (map->pole != NODE_NONE)
+                hull = larger(l, hull, hull_worth(l, &image, map, shape->bounds[i - 1].ball));
+            found = image_map(l, &image, map);
             break;
         }
+        if (found != NODE_NONE)
+            nearest = nearer_of(g, nearest, larger(l, found, hull));
     }
-    Node inner = NODE_NONE;
-    for (uint32_t i = 0; i < count; i++)
-        inner = shape->stages[i].kind == STAGE_KERNEL
-                    ? nearer_of(l->graph, inner, kernels[i])
-                    : through_map(l, inner, poles[i], hulls[i]);
-    return inner;
+    return nearest;
 }
 
 static Node image_union(Lowering *l, const Shape *shape, Image image)

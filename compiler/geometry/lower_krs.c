@@ -17,11 +17,11 @@ typedef struct Walk {
     NormalPath   path;
     Node         id;
     uint32_t     level;
-    Lowered      result; /* of the kernels so far */
-    Node         inner;  /* the distance of those within the innermost hull */
-    Hull        *hulls;
+    Lowered      result;   /* of the kernels so far */
+    Node         hull;     /* the bound of all hulls that the walk has come through */
+    Node         distance; /* of the kernels so far, none nearer than the hulls around it */
     Stop        *stops;
-    uint32_t     hull_count, stop_count;
+    uint32_t     stop_count;
 } Walk;
 
 static void take_mirror(Lowering *l, Walk *walk, const Stage *stage)
@@ -42,10 +42,8 @@ static void take_mirror(Lowering *l, Walk *walk, const Stage *stage)
 static void take_map(Lowering *l, Walk *walk, const Stage *stage, const LevelBound *before)
 {
     if (stage->map.pole != NODE_NONE && before) {
-        Hull hull  = passage_hull(l, &walk->passage, &stage->map, before->ball);
-        hull.outer = walk->inner;
-        walk->hulls[walk->hull_count++] = hull;
-        walk->inner                     = NODE_NONE;
+        Node hull  = passage_hull(l, &walk->passage, &stage->map, before->ball);
+        walk->hull = farther_of(l->graph, walk->hull, hull);
     }
     passage_map(l, &walk->passage, &stage->map, &walk->path);
 }
@@ -67,22 +65,26 @@ static void take_kernel(Lowering *l, Walk *walk, const Shape *shape)
     kernel         = passage_out(l, &walk->passage, kernel);
     normal_kernel(l, &walk->path, walk->result, kernel);
     walk->result = join_two(l, blend_sharp, walk->result, kernel);
-    walk->inner  = nearer_of(g, walk->inner, kernel.distance);
+    /* max(hull, min(a, b)) is the min of both with the hull: nothing waits for what is inside. */
+    Node bound = kernel.distance;
+    if (bound != NODE_NONE)
+        bound = farther_of(g, bound, walk->hull);
+    walk->distance = nearer_of(g, walk->distance, bound);
 }
 
 Lowered lower_krs(Lowering *l, const Shape *shape, Place place)
 {
     uint32_t count = shape->stage_count;
-    Walk     walk  = {.krs     = shape,
-                      .place   = place,
-                      .passage = passage_new(l->graph, place.point),
-                      .path    = normal_path(l, place, 2 * count),
-                      .id      = graph_uint(l->graph, 1),
-                      .level   = shape->levels,
-                      .result  = lowered_nothing,
-                      .inner   = NODE_NONE,
-                      .hulls   = arena_new_array(l->scratch, Hull, count + 1),
-                      .stops   = arena_new_array(l->scratch, Stop, count + 1)};
+    Walk     walk  = {.krs      = shape,
+                      .place    = place,
+                      .passage  = passage_new(l->graph, place.point),
+                      .path     = normal_path(l, place, 2 * count),
+                      .id       = graph_uint(l->graph, 1),
+                      .level    = shape->levels,
+                      .result   = lowered_nothing,
+                      .hull     = NODE_NONE,
+                      .distance = NODE_NONE,
+                      .stops    = arena_new_array(l->scratch, Stop, count + 1)};
     for (uint32_t i = count; i-- > 0;) {
         const Stage *stage = &shape->stages[i];
         if (may_stop(l, shape, i, place))
@@ -96,8 +98,8 @@ Lowered lower_krs(Lowering *l, const Shape *shape, Place place)
     }
     Lowered result        = walk.result;
     result.surface.normal = normal_out(l, &walk.path, result.surface.normal);
-    if (walk.hull_count)
-        result.distance = within_hulls(l, walk.hulls, walk.hull_count, walk.inner);
+    if (walk.hull != NODE_NONE)
+        result.distance = walk.distance;
     result.distance = guard_stops(l, walk.stops, walk.stop_count, result.distance);
     return result;
 }

@@ -124,11 +124,11 @@ static Range frame_range(Lowering *l, Node node)
  * inverted lies in some ball, whose image, the inside or the outside of another ball, leaves the
  * pole out.  The distance to that is the larger bound near the pole, and 1-Lipschitz as well.
  */
-Hull passage_hull(Lowering *l, const Passage *passage, const Map *map, Ball ball)
+Node passage_hull(Lowering *l, const Passage *passage, const Map *map, Ball ball)
 {
     Graph *g = l->graph;
     if (ball.radius < 0 || isinf(ball.radius))
-        return (Hull){NODE_NONE, NODE_NONE};
+        return NODE_NONE;
     Node   way     = graph_constant(g, TYPE_VEC3, ball.centre);
     way            = graph_op2(g, OP_sub, way, map->pole);
     Node   square  = graph_op2(g, OP_dot, way, way);
@@ -138,7 +138,7 @@ Hull passage_hull(Lowering *l, const Passage *passage, const Map *map, Ball ball
     if (outside)
         radius = fmax(radius, sqrt(away.high) * (1 + KEEP_OFF));
     if (isinf(radius) || radius == 0)
-        return (Hull){NODE_NONE, NODE_NONE};
+        return NODE_NONE;
     /* Centre and radius: scale (R way, radius) / (|way|^2 - radius^2); outside that is < 0. */
     Node rest   = graph_number(g, radius * radius);
     rest        = graph_op2(g, OP_sub, square, rest);
@@ -154,7 +154,7 @@ Hull passage_hull(Lowering *l, const Passage *passage, const Map *map, Ball ball
     if (outside)
         length = graph_op1(g, OP_neg, length);
     bound.distance = graph_op2(g, OP_sub, length, size);
-    return (Hull){passage_out(l, passage, bound).distance, NODE_NONE};
+    return passage_out(l, passage, bound).distance;
 }
 
 Node nearer_of(Graph *g, Node a, Node b)
@@ -164,14 +164,11 @@ Node nearer_of(Graph *g, Node a, Node b)
     return graph_op2(g, OP_min, a, b);
 }
 
-Node within_hulls(Lowering *l, const Hull *hulls, uint32_t count, Node distance)
+Node farther_of(Graph *g, Node a, Node b)
 {
-    for (uint32_t i = count; i-- > 0;) {
-        if (hulls[i].bound != NODE_NONE && distance != NODE_NONE)
-            distance = graph_op2(l->graph, OP_max, distance, hulls[i].bound);
-        distance = nearer_of(l->graph, hulls[i].outer, distance);
-    }
-    return distance;
+    if (a == NODE_NONE || b == NODE_NONE)
+        return a == NODE_NONE ? b : a;
+    return graph_op2(g, OP_max, a, b);
 }
 
 Lowered lower_inversion(Lowering *l, const Shape *shape, Place place)
@@ -179,12 +176,13 @@ Lowered lower_inversion(Lowering *l, const Shape *shape, Place place)
     NormalPath path    = normal_path(l, place, 2);
     Passage    passage = passage_new(l->graph, place.point);
     Ball       ball    = ball_around(shape->children[0]->box);
-    Hull       hull    = passage_hull(l, &passage, &shape->map, ball);
+    Node       hull    = passage_hull(l, &passage, &shape->map, ball);
     passage_map(l, &passage, &shape->map, &path);
     Node    unit    = enter_passage(l, &passage);
     Lowered result  = lower_behind(l, shape->children[0], place, &path, passage.point);
     l->unit         = unit;
     result          = passage_out(l, &passage, result);
-    result.distance = within_hulls(l, &hull, 1, result.distance);
+    if (result.distance != NODE_NONE)
+        result.distance = farther_of(l->graph, result.distance, hull);
     return result;
 }

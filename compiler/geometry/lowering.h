@@ -145,18 +145,12 @@ Lowered passage_out(Lowering *l, const Passage *passage, Lowered result);
 /* As enter_scale, behind all of the maps. */
 Node    enter_passage(Lowering *l, const Passage *passage);
 
-/* Around what a map has inverted, seen from outside of everything. */
-typedef struct Hull {
-    Node bound; /* the distance to it is at least this; NODE_NONE: nothing is known */
-    Node outer; /* the distance of what was found outside of it; NODE_NONE: nothing */
-} Hull;
-
-/* Of what lies in a ball before the map that is next on the way inwards. */
-Hull passage_hull(Lowering *l, const Passage *passage, const Map *map, Ball ball);
+/* Of what lies in a ball before the map that is next on the way inwards, seen from outside of
+   everything: the distance to it is at least this; NODE_NONE: nothing is known. */
+Node passage_hull(Lowering *l, const Passage *passage, const Map *map, Ball ball);
 /* Of two distances, each of which may be NODE_NONE. */
 Node nearer_of(Graph *g, Node a, Node b);
-/* The distance of everything, from hulls within hulls and of what was found in the innermost. */
-Node within_hulls(Lowering *l, const Hull *hulls, uint32_t count, Node distance);
+Node farther_of(Graph *g, Node a, Node b);
 Lowered lower_inversion(Lowering *l, const Shape *shape, Place place);
 
 /* ---- lower_images.c ---- */

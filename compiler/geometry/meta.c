@@ -15,6 +15,12 @@
  *
  * Where something above needs the slope, the sum is no more than n: nearest + room / n is
  * 1-Lipschitz, since F is 0 wherever there is a gap.
+ *
+ * A bound d may be much below the distance, and then what counts by it is fat.  The distance to
+ * the shape's box is a bound as well, but shows: flat faces.  So such a d is lengthened, by a
+ * factor k for which it is the longer of the two around the box (found by looking).  Its shape
+ * counts f(k d / reach), which rises by k L s in a step s, from a gap of d - reach / k on: so it
+ * counts k times in the sums above, and all else holds.
  */
 #include "compiler/geometry/elaborate.h"
 
@@ -22,6 +28,7 @@
 #include <string.h>
 
 #include "compiler/geometry/lowering.h"
+#include "compiler/graph/evaluate.h"
 
 static const struct {
     const char *spelling;
@@ -137,10 +144,77 @@ static Node falloff_at(Graph *g, FalloffKind kind, Node t)
     return NODE_NONE;
 }
 
+/* ---- bounds that are too short ---- */
+
+/* Points of a face of the box, and how far above it they are looked at, in parts of the reach. */
+enum { FACE_POINTS = 7, FACE_LEVELS = 3 };
+
+/* Beyond it, steps would be too short, and a box shows. */
+static const double MOST_STRETCH = 12;
+
+/* The values of parameters in the middle of their ranges. */
+static NodeValue *middle_parameters(const Graph *g, Arena *scratch)
+{
+    NodeValue *values = arena_new_array(scratch, NodeValue, g->parameters.count + 1);
+    for (size_t i = 0; i < g->parameters.count; i++)
+        for (int k = 0; k < 4; k++) {
+            double low = g->parameters.items[i].low[k], high = g->parameters.items[i].high[k];
+            values[i].v[k] = isfinite(low) && isfinite(high) ? 0.5 * low + 0.5 * high
+                             : isfinite(low)                 ? low + 1
+                             : isfinite(high)                ? high - 1
+                                                             : 0;
+        }
+    return values;
+}
+
+/* A point `above` face `face` of a box, by two numbers from 0 to 1. */
+static void point_above(Box box, int face, double u, double v, double above, double point[3])
+{
+    int   axis = face / 2, first = (axis + 1) % 3, second = (axis + 2) % 3;
+    Range side = box.axis[axis], a = box.axis[first], b = box.axis[second];
+    point[axis]   = face % 2 ? side.high + above : side.low - above;
+    point[first]  = a.low + u * (a.high - a.low);
+    point[second] = b.low + v * (b.high - b.low);
+}
+
+/* How many times longer than `distance` the way to the box is around it, at most. */
+static double stretch_around(const Tape *tape, Node distance, Box box, double reach,
+                             NodeValue *values)
+{
+    double most = 1;
+    for (int i = 0; i < 6 * FACE_LEVELS * FACE_POINTS * FACE_POINTS; i++) {
+        int    place = i % (FACE_POINTS * FACE_POINTS), face = i / (FACE_POINTS * FACE_POINTS);
+        double above = reach * (1 + face / 6) / FACE_LEVELS, point[3];
+        double u = place % FACE_POINTS / (FACE_POINTS - 1.0);
+        double v = place / FACE_POINTS / (FACE_POINTS - 1.0);
+        point_above(box, face % 6, u, v, above, point);
+        tape_run_point(tape, point, values);
+        most = fmax(most, fmin(above / fmax(values[distance].v[0], 1e-30), MOST_STRETCH));
+    }
+    return most;
+}
+
+static double stretch_of(const Lowering *l, const Shape *meta, const Shape *child)
+{
+    Graph   *g     = l->graph;
+    Lowering plain = {.graph = g, .scratch = l->scratch, .most = l->most};
+    Lowered  part  = lower_shape(&plain, child, place_bare(graph_leaf(g, OP_POINT), true));
+    if (part.distance == NODE_NONE || plain.overflow)
+        return 1;
+    Node       roots[] = {part.distance, meta->values[1]};
+    Tape       tape    = tape_new(g, roots, 2, l->scratch);
+    NodeValue *values  = arena_new_array(l->scratch, NodeValue, g->count);
+    tape_run_frame(&tape, middle_parameters(g, l->scratch), values);
+    double reach   = values[roots[1]].v[0];
+    double stretch = stretch_around(&tape, part.distance, child->box, reach, values);
+    return stretch > 1 + 1e-6 ? stretch : 1;
+}
+
 /* The shapes of a metasurface that there are. */
 typedef struct Parts {
     Graph   *graph;
     Node    *shares, *gaps;
+    double  *stretches, stretched; /* by how much distances are lengthened; the sum of all */
     uint32_t count;
     Surface  surface; /* mixed by the shares, `total` of them so far */
     Node     total;
@@ -177,22 +251,28 @@ static void add_part(Lowering *l, const Shape *meta, const Shape *child, Place p
 {
     Graph  *g     = l->graph;
     Node    zero  = graph_number(g, 0), one = graph_number(g, 1), reach = meta->values[1];
+    bool    loose = !child->exact && box_is_finite(child->box);
     Lowered part  = lower_shape(l, child, place_steady(place));
     if (part.distance == NODE_NONE)
         return;
-    /* A bound may be small far from its shape: there the distance to the box counts. */
-    if (!child->exact && box_is_finite(child->box)) {
+    double stretch = loose ? stretch_of(l, meta, child) : 1;
+    Node   begins  = graph_op2(g, OP_mul, reach, graph_number(g, 1 / stretch));
+    Node   gap     = graph_op2(g, OP_sub, part.distance, begins);
+    part.distance  = graph_op2(g, OP_mul, part.distance, graph_number(g, stretch));
+    if (loose) {
         Node around   = box_distance(g, place.point, child->box);
         part.distance = graph_op2(g, OP_max, part.distance, around);
+        gap           = graph_op2(g, OP_max, gap, graph_op2(g, OP_sub, around, reach));
     }
     Node t     = graph_op2(g, OP_div, part.distance, reach);
     t          = graph_op3(g, OP_clamp, t, zero, one);
     Node share = falloff_at(g, meta->falloff, t);
-    Node gap   = graph_op2(g, OP_sub, part.distance, reach);
     if (l->surfaces)
         mix_in(l, parts, part.surface, share);
-    parts->shares[parts->count] = share;
-    parts->gaps[parts->count++] = graph_op2(g, OP_max, gap, zero);
+    parts->stretched += stretch;
+    parts->stretches[parts->count] = stretch;
+    parts->shares[parts->count]    = share;
+    parts->gaps[parts->count++]    = graph_op2(g, OP_max, gap, zero);
 }
 
 /* How many shapes a step can meet: those whose reach begins at once, and others less, down to 0 at
@@ -206,6 +286,7 @@ static Node count_felt(const Parts *parts, Node nearest, Node most)
         Node part   = graph_op2(g, OP_div, behind, most);
         part        = graph_op2(g, OP_sub, one, part);
         part        = graph_op2(g, OP_max, part, zero);
+        part        = graph_op2(g, OP_mul, part, graph_number(g, parts->stretches[i]));
         sum         = i == 0 ? part : graph_op2(g, OP_add, sum, part);
     }
     return sum;
@@ -215,7 +296,7 @@ static Node step_of(const Parts *parts, Node room, Node most, bool lipschitz)
 {
     Graph *g       = parts->graph;
     Node   nearest = reduce(g, OP_min, parts->gaps, parts->count);
-    Node   count   = lipschitz || parts->count == 1 ? graph_number(g, parts->count)
+    Node   count   = lipschitz || parts->count == 1 ? graph_number(g, parts->stretched)
                                                     : count_felt(parts, nearest, most);
     Node   share   = graph_op2(g, OP_div, room, count);
     return graph_op2(g, OP_add, nearest, share);
@@ -228,6 +309,7 @@ Lowered lower_meta(Lowering *l, const Shape *shape, Place place)
     Lowered all   = lowered_nothing;
     parts.shares  = arena_new_array(l->scratch, Node, shape->child_count + 1);
     parts.gaps    = arena_new_array(l->scratch, Node, shape->child_count + 1);
+    parts.stretches = arena_new_array(l->scratch, double, shape->child_count + 1);
     for (uint32_t i = 0; i < shape->child_count; i++)
         add_part(l, shape, shape->children[i], place, &parts);
     if (parts.count == 0)

@@ -251,7 +251,10 @@ static Value method_smooth_mirrors(Elaboration *e, const Shape *shape, Call *cal
     return value_shape(make_smooth(e, shape, width, call->syntax->span));
 }
 
-/* The surface alone, thin enough to look like one: a thousandth of the region. */
+/* A sheet is thin enough to look like a surface: a thousandth of the region. */
+static double sheet_thickness(const Shape *region) { return 1e-3 * box_diagonal(region->box); }
+
+/* The surface alone. */
 static const Shape *sheet_of(Elaboration *e, const Shape *shape, const Shape *region,
                              const Call *call)
 {
@@ -261,7 +264,7 @@ static const Shape *sheet_of(Elaboration *e, const Shape *shape, const Shape *re
         diag->label = "endless";
         return NULL;
     }
-    Node thickness = graph_number(e->graph, 1e-3 * box_diagonal(region->box));
+    Node thickness = graph_number(e->graph, sheet_thickness(region));
     return make_shell(e, shape, thickness, call->syntax->span);
 }
 
@@ -273,7 +276,11 @@ static Value method_within(Elaboration *e, const Shape *shape, Call *call)
     bool open = false;
     if (!want_flag(e, call, 1, &open))
         return value_error();
-    shape = restrict_shape(e, shape, region->box);
+    Box box = region->box;
+    /* A field's solid ends at the sides of its box, where no sheet shall be. */
+    if (open && box_is_finite(box) && !box_is_empty(box))
+        box = box_grow(box, 2 * sheet_thickness(region));
+    shape = restrict_shape(e, shape, box, open);
     if (open && !(shape = sheet_of(e, shape, region, call)))
         return value_error();
     const Shape *both[] = {shape, region};

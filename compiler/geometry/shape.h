@@ -39,7 +39,7 @@ typedef enum ShapeKind {
     SHAPE_TWIST,        /* [0]; values[0] rate, about y; 1: see lower_deform.c, also for the next */
     SHAPE_BEND,         /* [0]; values[0] rate, about x; cells[0] parts, which overlap; 1 */
     SHAPE_TAPER,        /* [0]; values[0], values[1] factors at both ends of y; 1 */
-    SHAPE_DISPLACE,     /* [0]; values[0] amplitude of `formula`; 1 */
+    SHAPE_DISPLACE,     /* [0]; values[0] amplitude of `formula`, values[1] its slope; 1 */
     SHAPE_SMOOTH,       /* [0]; values[0] width or NODE_NONE; slope of the child */
     SHAPE_PAINT,        /* [0]; material; slope of the child */
     SHAPE_KRS           /* kernels; stages in order; the largest slope: folds are 1-Lipschitz */
@@ -125,9 +125,11 @@ struct Shape {
     double derived; /* PRIMITIVE: the slope of its expression, by which it is divided; else the
                        largest in the tree */
     bool   exact;   /* the distance outside is the true one */
+    bool   loose_parts; /* shape_is_loose of a child */
     bool   claimed; /* PRIMITIVE: its slope is claimed, not derived */
     Box    region;  /* PRIMITIVE: over which its slope was derived; infinite: over all space */
     bool   estimate; /* nothing is proven of the distance: a primitive in the tree is measured only */
+    bool   per_frame; /* in the tree is a slope that is found anew for each frame (FrameSlope) */
     bool   trapped; /* in the tree is a fractal: `orbit_trap` means something */
     bool   figure;  /* a plane figure in x and y */
     double instances; /* copies of kernels that reflections make; 1 without a sequence */
@@ -137,7 +139,7 @@ struct Shape {
     /* PRIMITIVE, in its own coordinates; bound, uv and trap (VEC2) may be NODE_NONE. */
     Node       formula; /* of a field or an algebraic surface (field.c) or DISPLACE, else NODE_NONE */
     double     overlap; /* BEND: by how much the parts reach beyond their ends */
-    double     steep, reach; /* DISPLACE: slope and largest size of the formula in the box */
+    double     reach;   /* DISPLACE: largest size of the formula in the box */
     uint32_t   degree;  /* of a formula that is a polynomial, else 0 */
     Span       blame;   /* what a field without a bound owes that to */
     bool       fields;  /* in the tree is a field whose bound follows from a region */
@@ -193,10 +195,29 @@ typedef struct SceneImage {
     double      exposure, error;
 } SceneImage;
 
+/* The slope of an expression that no constant bounds, as parameters in it have no limits: it is
+   found for the values of each frame (slope.c), and stands in a slot of the parameter block. */
+typedef struct FrameSlope {
+    uint32_t slot;
+    Node     formula;
+    Box      region; /* over which it is found; infinite: all space */
+    Span     span;   /* of the formula */
+} FrameSlope;
+
+/* The slot has a number of single precision that is no less than the slope; infinite: there is no
+   bound. */
+double frame_slope_upward(double slope);
+/* Into how many parts the region is cut at most. */
+uint32_t frame_slope_cells(Box region);
+
+/* The host finds each anew whenever anything changes. */
+enum { MOST_FRAME_SLOPES = 256 };
+
 typedef struct Scene {
     Graph *graph;
     struct { Component *items; size_t count, capacity; } components;
     struct { Parameter *items; size_t count, capacity; } parameters;
+    struct { FrameSlope *items; size_t count, capacity; } slopes;
     struct { SceneCamera *items; size_t count, capacity; } cameras;
     struct { SceneLight *items; size_t count, capacity; } lights;
     Node       zenith, horizon, ground;
@@ -205,6 +226,11 @@ typedef struct Scene {
     SceneImage image;
     Box        box; /* around all components */
 } Scene;
+
+/* Whether a distance may be far below the true one also where one surface alone is near: what is
+   steep goes by its slope, what is bent or stretched by where that is least.  Joints, blends and
+   mirrors do not make it so: there it is less only between two surfaces. */
+bool shape_is_loose(const Shape *shape);
 
 /* The scene as indented text, for `krs dump --after=scene`. */
 void scene_print(const Scene *scene, const Sources *sources, Text *out);

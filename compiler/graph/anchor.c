@@ -2,12 +2,12 @@
  * anchor.c: the graph near an anchor.
  *
  * Every value that is the point, or made of it by moving, turning, scaling or mirroring, is kept
- * as a pair: a base, which is what happens to the anchor, and the rest, which is what happens to the
- * way from there.  Mirrors cost as much as before: behind one with dot(u, p) <= w the rest r is
- *     r - 2 (max(dot(u, r), w') - k) u,   w' = w - dot(u, base), k = 0 if it mirrors the base, else w'
- * where nothing large is added and taken away again.  Rounding and limits keep pairs, too, so that
- * repetition does.  Everything else gets the sum: near a surface of a kernel it is no larger
- * than the kernel.
+ * as a pair: a base, which is what happens to the anchor, and the rest, which is what happens to
+ * the way from there.  Mirrors cost as much as before: behind one with dot(u, p) <= w the rest r is
+ *     r - 2 (max(dot(u, r), w') - k) u,   w' = w - dot(u, base),  k = 0 or w'
+ * (0 if it mirrors the base), where nothing large is added and taken away again.  Rounding and
+ * limits keep pairs, too, so that repetition does.  Everything else gets the sum: near a surface
+ * of a kernel it is no larger than the kernel.
  */
 #include "compiler/graph/anchor.h"
 

@@ -150,7 +150,8 @@ typedef Node Partial(Derivation *d, int which, Node a, Node b, Node c, Node r);
 #undef OP
 
 static Partial *const partials[OP_COUNT] = {
-#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning) [OP_##name] = partial_##name,
+#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning)                         \
+    [OP_##name] = partial_##name,
 #define OP(name, signature, glsl, evaluate, facts, meaning)
 #include "compiler/graph/ops.def"
 #undef MAP

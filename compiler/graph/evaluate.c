@@ -506,7 +506,8 @@ static void lay_out(Layout *layout, uint32_t region)
 Tape tape_new_guarded(const Graph *graph, const Node *roots, size_t root_count, Arena *arena)
 {
     Tape    tape    = tape_new(graph, roots, root_count, arena);
-    Regions regions = graph_regions(graph, roots, root_count, arena);
+    Regions regions = {0};
+    graph_regions(&regions, graph, roots, root_count, arena);
     size_t  most    = tape.count + regions.list.count;
     Layout  layout  = {&regions, arena_new_array(arena, Node, most + 1),
                        arena_new_array(arena, uint32_t, most + 1), tape.frame_count};

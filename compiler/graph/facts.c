@@ -94,16 +94,6 @@ static void study_run(const Study *study, Box box, size_t from, size_t to)
         *study_fact(study, study->tape.nodes[i]) = node_fact(study, study->tape.nodes[i], box);
 }
 
-/* Of what `root` needs, with everything of frame time already done. */
-static Study study_new(const Graph *graph, Node root, const double (*parameters)[4], Arena *arena)
-{
-    Study study  = {.graph = graph, .parameters = parameters};
-    study.tape   = tape_new(graph, &root, 1, arena);
-    study.facts  = arena_new_array(arena, Fact, study.tape.count);
-    study_run(&study, (Box){0}, 0, study.tape.frame_count);
-    return study;
-}
-
 Fact *graph_facts(const Graph *graph, Box box, const double (*parameters)[4], Arena *arena)
 {
     Study study = {.graph = graph, .whole = true, .parameters = parameters};
@@ -116,7 +106,9 @@ Fact *graph_facts(const Graph *graph, Box box, const double (*parameters)[4], Ar
 Fact graph_frame_fact(const Graph *graph, Node node, Arena *scratch)
 {
     assert(graph->items[node].time != TIME_POINT);
-    Study study = study_new(graph, node, NULL, scratch);
+    Study study = {.graph = graph, .tape = tape_new(graph, &node, 1, scratch)};
+    study.facts = arena_new_array(scratch, Fact, study.tape.count);
+    study_run(&study, (Box){0}, 0, study.tape.frame_count);
     return *study_fact(&study, node);
 }
 
@@ -234,16 +226,35 @@ static Node study_blame(const Study *study, Node root)
     }
 }
 
+SlopeTask slope_task(const Graph *graph, Node root, Box box, uint32_t cells, Arena *arena)
+{
+    return (SlopeTask){tape_new(graph, &root, 1, arena), root, box, cells};
+}
+
+size_t slope_task_room(const SlopeTask *task)
+{
+    return task->tape.count * sizeof(Fact) + ((size_t)task->cells + 1) * sizeof(Part);
+}
+
+double slope_task_run(const SlopeTask *task, const double (*parameters)[4], void *room,
+                      Node *blame)
+{
+    Study study = {task->tape.graph, task->tape, false, parameters, room};
+    Part *heap  = (Part *)(study.facts + task->tape.count);
+    study_run(&study, (Box){0}, 0, task->tape.frame_count);
+    heap[0] = (Part){task->box, part_slope(&study, task->root, task->box)};
+    heap_refine(&study, task->root, heap, task->cells);
+    if (blame) {
+        part_slope(&study, task->root, heap[0].box);
+        *blame = study_blame(&study, task->root);
+    }
+    return heap[0].slope;
+}
+
 double graph_slope(const Graph *graph, Node root, Box box, const double (*parameters)[4],
                    uint32_t cells, Node *blame, Arena *scratch)
 {
-    Study study = study_new(graph, root, parameters, scratch);
-    Part *heap  = arena_new_array(scratch, Part, (size_t)cells + 1);
-    heap[0]     = (Part){box, part_slope(&study, root, box)};
-    heap_refine(&study, root, heap, cells);
-    if (blame) {
-        part_slope(&study, root, heap[0].box);
-        *blame = study_blame(&study, root);
-    }
-    return heap[0].slope;
+    SlopeTask task = slope_task(graph, root, box, cells, scratch);
+    double   *room = arena_alloc(scratch, slope_task_room(&task), 1);
+    return slope_task_run(&task, parameters, room, blame);
 }

@@ -9,7 +9,7 @@
 #ifndef KRS_FACTS_H
 #define KRS_FACTS_H
 
-#include "compiler/graph/graph.h"
+#include "compiler/graph/evaluate.h"
 
 typedef struct Range {
     double low, high; /* low <= high; may be infinite; [-inf, inf] is "anything" */
@@ -37,6 +37,22 @@ Fact graph_frame_fact(const Graph *graph, Node node, Arena *scratch);
    or contributes most. */
 double graph_slope(const Graph *graph, Node root, Box box, const double (*parameters)[4],
                    uint32_t cells, Node *blame, Arena *scratch);
+
+/* The slope of one expression, to be found again and again, for other values of the parameters. */
+typedef struct SlopeTask {
+    Tape     tape;
+    Node     root;
+    Box      box;
+    uint32_t cells;
+} SlopeTask;
+
+/* The tape is in the arena; the graph must live as long. */
+SlopeTask slope_task(const Graph *graph, Node root, Box box, uint32_t cells, Arena *arena);
+/* Bytes that it needs to be run, aligned as doubles. */
+size_t slope_task_room(const SlopeTask *task);
+/* As graph_slope. */
+double slope_task_run(const SlopeTask *task, const double (*parameters)[4], void *room,
+                      Node *blame);
 
 /* The fact of one operation from the facts of its operands: the rule of its row. */
 Fact op_fact(Op op, GraphType type, uint32_t index, const GraphType *types, const Fact *operands,

@@ -208,7 +208,7 @@ static uint64_t hash_word(uint64_t hash, uint64_t word)
     return hash ^ (hash >> 32);
 }
 
-static uint64_t expr_hash(const Expr *e)
+static uint32_t expr_hash(const Expr *e)
 {
     uint64_t hash = hash_word(e->op, e->type);
     hash          = hash_word(hash, e->index);
@@ -218,24 +218,33 @@ static uint64_t expr_hash(const Expr *e)
         hash = hash_word(hash, e->operands[i]);
         hash = hash_word(hash, bits);
     }
-    return hash;
+    return (uint32_t)(hash >> 16);
 }
 
-/* The slot of an equal node, or the empty one where it belongs (slots hold node + 1). */
-static size_t slot_find(const Graph *graph, const Expr *e)
+/* The slot of an equal node, or the empty one where it belongs. */
+static GraphSlot *slot_find(const Graph *graph, const Expr *e, uint32_t hash)
 {
-    size_t slot = expr_hash(e) & (graph->slot_count - 1);
-    while (graph->slots[slot] && !expr_equal(&graph->items[graph->slots[slot] - 1], e))
-        slot = (slot + 1) & (graph->slot_count - 1);
-    return slot;
+    size_t slot = hash & (graph->slot_count - 1);
+    for (;; slot = (slot + 1) & (graph->slot_count - 1)) {
+        GraphSlot *at = &graph->slots[slot];
+        if (!at->number || (at->hash == hash && expr_equal(&graph->items[at->number - 1], e)))
+            return at;
+    }
 }
 
 static void slots_grow(Graph *graph)
 {
-    graph->slot_count = graph->slot_count ? 2 * graph->slot_count : 64;
-    graph->slots      = arena_new_array(graph->arena, uint32_t, graph->slot_count);
-    for (Node node = 0; node < graph->count; node++)
-        graph->slots[slot_find(graph, &graph->items[node])] = node + 1;
+    const GraphSlot *old   = graph->slots;
+    size_t           count = graph->slot_count;
+    graph->slot_count      = count ? 2 * count : 64;
+    graph->slots           = arena_new_array(graph->arena, GraphSlot, graph->slot_count);
+    for (size_t i = 0; i < count; i++) {
+        size_t slot = old[i].hash & (graph->slot_count - 1);
+        while (old[i].number && graph->slots[slot].number)
+            slot = (slot + 1) & (graph->slot_count - 1);
+        if (old[i].number)
+            graph->slots[slot] = old[i];
+    }
 }
 
 static Node node_intern(Graph *graph, Expr e)
@@ -246,13 +255,14 @@ static Node node_intern(Graph *graph, Expr e)
         e.operands[i] = NODE_NONE;
     for (int i = 0; i < 4; i++)
         e.number[i] += 0.0; /* -0 and 0 are one constant */
-    size_t slot = slot_find(graph, &e);
-    if (!graph->slots[slot]) {
+    uint32_t   hash = expr_hash(&e);
+    GraphSlot *slot = slot_find(graph, &e, hash);
+    if (!slot->number) {
         e.span = graph->here;
         array_push(graph->arena, graph, e);
-        graph->slots[slot] = (uint32_t)graph->count;
+        *slot = (GraphSlot){hash, (uint32_t)graph->count};
     }
-    Node node = graph->slots[slot] - 1;
+    Node node = slot->number - 1;
     if (!graph->items[node].span.source) /* the compiler's own until now */
         graph->items[node].span = graph->here;
     return node;

@@ -64,12 +64,17 @@ typedef struct GraphParameter {
     double low[4], high[4];
 } GraphParameter;
 
+/* Of the hash table of nodes: a look at the hash is cheaper than one at the node. */
+typedef struct GraphSlot {
+    uint32_t hash, number; /* node + 1; 0 is free */
+} GraphSlot;
+
 typedef struct Graph {
-    Arena    *arena;
-    Expr     *items;
-    size_t    count, capacity;
-    uint32_t *slots; /* hash table of nodes */
-    size_t    slot_count;
+    Arena     *arena;
+    Expr      *items;
+    size_t     count, capacity;
+    GraphSlot *slots;
+    size_t     slot_count;
     struct { GraphParameter *items; size_t count, capacity; } parameters; /* [0] is time */
     Span      here;  /* span given to nodes made now */
 } Graph;

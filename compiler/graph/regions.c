@@ -34,30 +34,33 @@ static uint32_t open_region(Regions *regions, Node guard, Arena *arena)
     return (uint32_t)regions->list.count - 1;
 }
 
-Regions graph_regions(const Graph *graph, const Node *roots, size_t root_count, Arena *arena)
+void graph_regions(Regions *regions, const Graph *graph, const Node *roots, size_t root_count,
+                   Arena *arena)
 {
     enum { REST = 2 };
-    Regions regions = {.of   = arena_new_array(arena, uint32_t, graph->count + 1),
-                       .body = arena_new_array(arena, uint32_t, graph->count + 1),
-                       .next = arena_new_array(arena, Node, graph->count + 1)};
-    Region  always  = {.guard = NODE_NONE, .first = NODE_NONE};
-    memset(regions.of, 0xff, graph->count * sizeof *regions.of);
-    memset(regions.body, 0xff, graph->count * sizeof *regions.body);
-    array_push(arena, &regions.list, always);
+    Region always = {.guard = NODE_NONE, .first = NODE_NONE};
+    if (!regions->of) {
+        regions->of   = arena_new_array(arena, uint32_t, graph->count + 1);
+        regions->body = arena_new_array(arena, uint32_t, graph->count + 1);
+        regions->next = arena_new_array(arena, Node, graph->count + 1);
+    }
+    memset(regions->of, 0xff, graph->count * sizeof *regions->of);
+    memset(regions->body, 0xff, graph->count * sizeof *regions->body);
+    regions->list.count = 0;
+    array_push(arena, &regions->list, always);
     for (size_t i = 0; i < root_count; i++)
-        regions.of[roots[i]] = REGION_ALWAYS;
+        regions->of[roots[i]] = REGION_ALWAYS;
     for (Node node = (Node)graph->count; node-- > 0;) {
         const Expr *e  = &graph->items[node];
-        uint32_t    of = regions.of[node];
+        uint32_t    of = regions->of[node];
         if (of == NO_REGION || e->time != TIME_POINT)
             continue;
-        regions.next[node] = regions.list.items[of].first;
-        regions.list.items[of].first = node;
+        regions->next[node] = regions->list.items[of].first;
+        regions->list.items[of].first = node;
         if (e->op == OP_guard)
-            regions.body[node] = open_region(&regions, node, arena);
+            regions->body[node] = open_region(regions, node, arena);
         for (int i = 0; i < e->operand_count; i++)
-            use(&regions, e->operands[i],
-                e->op == OP_guard && i == REST ? regions.body[node] : of);
+            use(regions, e->operands[i],
+                e->op == OP_guard && i == REST ? regions->body[node] : of);
     }
-    return regions;
 }

@@ -908,6 +908,15 @@ static Fact rule_of_row(const Call *call, uint32_t index, const double *constant
     }
 }
 
+/* Quotients by 0 all over the box: of 0, too, whose derivatives make the slope seem to be 0. */
+static bool is_defined_nowhere(const Call *call)
+{
+    for (uint32_t i = 0; call->op == OP_div && i < call->size; i++)
+        if (range_is_zero(call->operands[1].value[i]))
+            return true;
+    return false;
+}
+
 Fact op_fact(Op op, GraphType type, uint32_t index, const GraphType *types, const Fact *operands,
              const double *constant)
 {
@@ -915,5 +924,7 @@ Fact op_fact(Op op, GraphType type, uint32_t index, const GraphType *types, cons
     call.size = components(type);
     if (op != OP_CONSTANT && op != OP_COMPONENT && components(types[0]) > call.size)
         call.size = components(types[0]);
-    return fact_agreed(rule_of_row(&call, index, constant), components(type));
+    Fact fact = is_defined_nowhere(&call) ? fact_unknown(call.size)
+                                          : rule_of_row(&call, index, constant);
+    return fact_agreed(fact, components(type));
 }

@@ -14,7 +14,8 @@
 #include "compiler/graph/evaluate.h"
 
 /* The series of one number, in a ball with the gradient beside it, and while the degree is at most
-   2 and the numbers are known, the second derivatives: x^2 + y^2 + z^2 is r^2 in size, not 3 r^2. */
+   2 and the numbers are known, the second derivatives: x^2 + y^2 + z^2 is r^2 in size, not 3 r^2.
+   */
 typedef struct Part {
     Series series;
     Node   gradient; /* VEC3; NODE_NONE along lines */
@@ -232,7 +233,10 @@ static Parts new_parts(const Expansion *x, uint32_t count)
 }
 
 /* Component i of an operand; a number counts for all components. */
-static Part part_of(const Parts *parts, uint32_t i) { return parts->items[parts->count > i ? i : 0]; }
+static Part part_of(const Parts *parts, uint32_t i)
+{
+    return parts->items[parts->count > i ? i : 0];
+}
 
 static bool multiply(Expansion *x, Node node, Part a, Part b, Part *product)
 {

@@ -37,8 +37,8 @@ bool graph_line_series(Graph *graph, Node root, Node origin, Node direction, Ser
 bool graph_ball_series(Graph *graph, Node root, Node point, Series *series, SeriesFault *fault,
                        Arena *scratch);
 
-/* The r > 0 with |c[0]| = c[1] r + c[2] r^2 + ..., or a little less, of a series whose c[1], c[2] ...
-   are not negative. */
+/* The r > 0 with |c[0]| = c[1] r + c[2] r^2 + ..., or a little less, of a series whose c[1], c[2]
+   ... are not negative. */
 Node series_radius(Graph *graph, const Series *series);
 
 #endif

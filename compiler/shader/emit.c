@@ -12,6 +12,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "compiler/graph/regions.h"
@@ -27,10 +28,12 @@ typedef struct Emitter {
     const char   **text;    /* of a node in the function being written: its name or expression */
     uint8_t       *nesting; /* of that expression */
     uint32_t      *uses;    /* in the function being written */
+    struct { Node *items; size_t count, capacity; } needed; /* all that have uses, in order */
     const char   **frame;   /* names of the globals that krs_prepare sets */
     uint32_t       next;    /* number of the next local name */
     uint32_t       globals;
     uint32_t      *precise; /* of OP_precise: its slot in the parameter block */
+    Regions        regions; /* of the function being written, where it has guards */
     Span           last;    /* the line that was commented last */
 } Emitter;
 
@@ -98,17 +101,40 @@ static const char *constant_text(Emitter *e, const Expr *expr)
     return text.bytes;
 }
 
-/* A row's template with the operands in the place of $a, $b, $c, $d. */
+/* Says where the next statement comes from, unless it is the same line as before. */
+static void comment_line(Emitter *e, Span span)
+{
+    if (!span.source)
+        return;
+    const Source *source   = &e->sources->items[span.source];
+    Position      position = source_position(source, span.start);
+    if (e->last.source == span.source && e->last.start == position.line)
+        return;
+    e->last = (Span){span.source, position.line, 0};
+    text_format(e->out, "    // %s:%u\n", source->name, position.line);
+}
+
+/* A row's template with the operands in the place of $a, $b, $c, $d.  What stands before a
+   semicolon is a statement that comes before, and sets a local of its own, $t. */
 static const char *fill_template(Emitter *e, const Expr *expr)
 {
     Text        text = {.arena = e->scratch};
     const char *from = op_glsl((Op)expr->op);
+    uint32_t    local = strchr(from, ';') ? e->next++ : 0;
     while (*from) {
-        size_t plain = strcspn(from, "$");
+        size_t plain = strcspn(from, "$;");
         text_add_bytes(&text, from, plain);
         from += plain;
-        if (*from) {
-            text_add(&text, e->text[expr->operands[from[1] - 'a']]);
+        if (*from == ';') {
+            comment_line(e, expr->span);
+            text_format(e->out, "    %s;\n", text.bytes);
+            text = (Text){.arena = e->scratch};
+            from += strspn(from, "; ");
+        } else if (*from) {
+            if (from[1] == 't')
+                text_format(&text, "t%u", local);
+            else
+                text_add(&text, e->text[expr->operands[from[1] - 'a']]);
             from += 2;
         }
     }
@@ -141,19 +167,6 @@ static const char *node_text(Emitter *e, const Expr *expr)
     }
 }
 
-/* Says where the next statement comes from, unless it is the same line as before. */
-static void comment_line(Emitter *e, Span span)
-{
-    if (!span.source)
-        return;
-    const Source *source   = &e->sources->items[span.source];
-    Position      position = source_position(source, span.start);
-    if (e->last.source == span.source && e->last.start == position.line)
-        return;
-    e->last = (Span){span.source, position.line, 0};
-    text_format(e->out, "    // %s:%u\n", source->name, position.line);
-}
-
 /* Whether a template names an operand twice: what stands twice is computed twice. */
 static bool repeats_operand(const Expr *user, Node operand)
 {
@@ -162,7 +175,7 @@ static bool repeats_operand(const Expr *user, Node operand)
     const char *glsl  = op_glsl((Op)user->op);
     uint32_t    count = 0;
     for (const char *at = strchr(glsl, '$'); at; at = strchr(at + 1, '$'))
-        count += user->operands[at[1] - 'a'] == operand;
+        count += at[1] != 't' && user->operands[at[1] - 'a'] == operand;
     return count > 1;
 }
 
@@ -182,20 +195,36 @@ static const char *bare(Emitter *e, const char *text)
     return arena_copy_text(e->scratch, text + 1, length - 2);
 }
 
-/* Marks the nodes that a function needs, counting uses; frame values end the walk. */
+static void use(Emitter *e, Node node, uint32_t count)
+{
+    if (e->uses[node] == 0)
+        array_push(e->scratch, &e->needed, node);
+    e->uses[node] += count;
+}
+
+static int compare_nodes(const void *a, const void *b)
+{
+    return (*(const Node *)a > *(const Node *)b) - (*(const Node *)a < *(const Node *)b);
+}
+
+/* Finds the nodes that a function needs, counting uses; frame values end the walk.  The work grows
+   with the function, not with the graph: there are several functions for each component. */
 static void count_uses(Emitter *e, const Node *roots, size_t count, bool frame)
 {
-    const Graph *g = e->graph;
-    memset(e->uses, 0, g->count * sizeof *e->uses);
+    for (size_t i = 0; i < e->needed.count; i++)
+        e->uses[e->needed.items[i]] = 0;
+    e->needed.count = 0;
     for (size_t i = 0; i < count; i++)
-        e->uses[roots[i]] += 2; /* a root needs a name */
-    for (Node n = (Node)g->count; n-- > 0;) {
-        const Expr *expr = &g->items[n];
-        if (!e->uses[n] || (!frame && expr->time != TIME_POINT) || expr->op == OP_precise)
+        use(e, roots[i], 2); /* a root needs a name */
+    for (size_t i = 0; i < e->needed.count; i++) {
+        const Expr *expr = &e->graph->items[e->needed.items[i]];
+        if ((!frame && expr->time != TIME_POINT) || expr->op == OP_precise)
             continue; /* what is precise, the host finds */
-        for (uint32_t i = 0; i < expr->operand_count; i++)
-            e->uses[expr->operands[i]] += repeats_operand(expr, expr->operands[i]) ? 2 : 1;
+        for (uint32_t k = 0; k < expr->operand_count; k++)
+            use(e, expr->operands[k], repeats_operand(expr, expr->operands[k]) ? 2 : 1);
     }
+    if (e->needed.count)
+        qsort(e->needed.items, e->needed.count, sizeof *e->needed.items, compare_nodes);
 }
 
 static bool is_leaf(const Expr *expr)
@@ -232,9 +261,8 @@ static void emit_body(Emitter *e, const Node *roots, size_t count)
     count_uses(e, roots, count, false);
     e->next = 0;
     e->last = (Span){0, 0, 0};
-    for (Node n = 0; n < g->count; n++) {
-        if (!e->uses[n])
-            continue;
+    for (size_t i = 0; i < e->needed.count; i++) {
+        Node n = e->needed.items[i];
         if (g->items[n].time == TIME_FRAME) {
             e->text[n]    = e->frame[n];
             e->nesting[n] = 0;
@@ -251,8 +279,9 @@ static void emit_frame(Emitter *e, const Node *roots, size_t count)
     Node        *frame  = arena_new_array(e->scratch, Node, g->count);
     size_t       frames = 0;
     count_uses(e, roots, count, false);
-    for (Node n = 0; n < g->count; n++) {
-        if (!e->uses[n] || g->items[n].time != TIME_FRAME)
+    for (size_t i = 0; i < e->needed.count; i++) {
+        Node n = e->needed.items[i];
+        if (g->items[n].time != TIME_FRAME)
             continue;
         needed[n] = true;
         frame[frames++] = n;
@@ -265,9 +294,8 @@ static void emit_frame(Emitter *e, const Node *roots, size_t count)
                      "void krs_prepare()\n{\n");
     count_uses(e, frame, frames, true);
     e->next = 0;
-    for (Node n = 0; n < g->count; n++) {
-        if (!e->uses[n])
-            continue;
+    for (size_t i = 0; i < e->needed.count; i++) {
+        Node n = e->needed.items[i];
         if (!needed[n]) {
             emit_node(e, n);
             continue;
@@ -289,9 +317,9 @@ static void emit_helpers(Emitter *e, const Node *roots, size_t count)
 {
     const char *done[OP_COUNT];
     size_t      done_count = 0;
-    count_uses(e, roots, count, true);
-    for (Node n = 0; n < e->graph->count; n++) {
-        const char *helper = e->uses[n] ? op_helper((Op)e->graph->items[n].op) : NULL;
+    count_uses(e, roots, count, true); /* of the whole graph */
+    for (size_t k = 0; k < e->needed.count; k++) {
+        const char *helper = op_helper((Op)e->graph->items[e->needed.items[k]].op);
         for (size_t i = 0; helper && i < done_count; i++)
             if (done[i] == helper)
                 helper = NULL;
@@ -398,8 +426,9 @@ static void emit_distances(Emitter *e, const Node *roots, size_t components,
 static void name_constants(Emitter *e)
 {
     const Graph *g = e->graph;
-    for (Node n = 0; n < g->count; n++) {
-        if (!e->uses[n] || g->items[n].time == TIME_POINT)
+    for (size_t i = 0; i < e->needed.count; i++) {
+        Node n = e->needed.items[i];
+        if (g->items[n].time == TIME_POINT)
             continue;
         if (g->items[n].time == TIME_COMPILE) {
             emit_node(e, n);
@@ -482,15 +511,20 @@ static const char *emit_region(Emitter *e, const Regions *regions, uint32_t regi
     return e->text[result];
 }
 
-static void emit_guarded(Emitter *e, size_t component, Node root)
+/* Where it has no guards, it is the distance. */
+static void emit_guarded(Emitter *e, size_t component, Node root, Node distance)
 {
-    Regions regions = graph_regions(e->graph, &root, 1, e->scratch);
     text_format(e->out, "float krs_distance_lod_%zu(vec3 p, float footprint)\n{\n", component + 1);
+    if (root == distance) {
+        text_format(e->out, "    return krs_distance_%zu(p);\n}\n\n", component + 1);
+        return;
+    }
+    graph_regions(&e->regions, e->graph, &root, 1, e->scratch);
     count_uses(e, &root, 1, false);
     e->next = 0;
     e->last = (Span){0, 0, 0};
     name_constants(e);
-    const char *result = emit_region(e, &regions, REGION_ALWAYS, root, true);
+    const char *result = emit_region(e, &e->regions, REGION_ALWAYS, root, true);
     text_format(e->out, "    return %s;\n}\n\n", result);
 }
 
@@ -518,11 +552,12 @@ static void emit_guarded_component(Emitter *e, size_t component, Box box, bool f
 }
 
 /* What marches by branches: endless components first, then the others where they may be nearer. */
-static void emit_early_outs(Emitter *e, const EmitMarch *march, size_t components)
+static void emit_early_outs(Emitter *e, const EmitMarch *march, const Node *roots,
+                            size_t components)
 {
     text_add(e->out, "#ifdef EARLY_OUTS\n");
     for (size_t i = 0; i < components; i++)
-        emit_guarded(e, i, march->guarded[i]);
+        emit_guarded(e, i, march->guarded[i], roots[i * ROOT_COUNT + ROOT_DISTANCE]);
     text_add(e->out,
              "float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)\n{\n"
              "    return length(max(abs(p - center) - half_sides, 0.0));\n}\n\n"
@@ -545,6 +580,87 @@ static void emit_early_outs(Emitter *e, const EmitMarch *march, size_t component
     if (count == 0)
         text_add(e->out, "    float d = 1e30;\n");
     text_add(e->out, "    return krs_cut(p, d);\n}\n#endif\n\n");
+}
+
+/* ---- parts ---- */
+
+/* Beyond so many, neighbours share a part. */
+enum { MOST_PARTS = 64 };
+
+uint32_t emit_part_count(size_t components)
+{
+    return components < MOST_PARTS ? (uint32_t)components : MOST_PARTS;
+}
+
+/* The first component of a part, or of the one behind the last. */
+static size_t first_of_part(size_t part, size_t components)
+{
+    return part * components / emit_part_count(components);
+}
+
+/* What is inside of a switch over parts. */
+static void emit_part_distance(Emitter *e, size_t part, const bool *flat, size_t components)
+{
+    text_format(e->out, "    case %zuu:\n", part);
+    for (int guarded = 1; guarded >= 0; guarded--) {
+        text_add(e->out, guarded ? "#ifdef EARLY_OUTS\n" : "#else\n");
+        for (size_t i = first_of_part(part, components); i < first_of_part(part + 1, components);
+             i++) {
+            text_add(e->out, flat && flat[i] ? "#ifndef FLATS\n" : "");
+            text_format(e->out, guarded ? "        d = min(d, krs_distance_lod_%zu(p, 0.0));\n"
+                                        : "        d = min(d, krs_distance_%zu(p));\n", i + 1);
+            text_add(e->out, flat && flat[i] ? "#endif\n" : "");
+        }
+    }
+    text_add(e->out, "#endif\n        break;\n");
+}
+
+/* Its box, grown by what single precision may lose.  Where points are given from an anchor, no box
+   is known. */
+static void emit_part_box(Emitter *e, size_t part, Box box, bool flat)
+{
+    if (box_is_empty(box))
+        return;
+    double corner[2][3], size = box_is_finite(box) ? box_diagonal(box) : 0;
+    for (int i = 0; i < 3; i++) {
+        double reach  = fmax(fabs(box.axis[i].low), fabs(box.axis[i].high));
+        double margin = isfinite(reach) ? 1e-4 * size + 1e-6 * reach : 0;
+        corner[0][i]  = fmax(box.axis[i].low - margin, -1e18);
+        corner[1][i]  = fmin(box.axis[i].high + margin, 1e18);
+    }
+    text_format(e->out, "%s    case %zuu:\n        low = %s;\n        high = %s;\n"
+                        "        break;\n%s", flat ? "#ifndef FLATS\n" : "", part, vector_text(e, corner[0]),
+                vector_text(e, corner[1]), flat ? "#endif\n" : "");
+}
+
+/* `boxes` of components; NULL: not known. */
+static void emit_parts(Emitter *e, const Box *boxes, const bool *flat, size_t components)
+{
+    size_t parts = emit_part_count(components);
+    if (parts < 2)
+        return;
+    text_format(e->out, "#ifdef PACKED\n"
+                        "// Parts of the scene, most of them one component: the distance of one,"
+                        " and a box\n// around it; where there is none the box stays empty.\n"
+                        "const uint KRS_PARTS = %zuu;\n\n"
+                        "float krs_distance_of(uint part, vec3 p)\n{\n"
+                        "    float d = 1e30;\n    switch (part) {\n", parts);
+    for (size_t part = 0; part < parts; part++)
+        emit_part_distance(e, part, flat, components);
+    text_add(e->out, "    }\n    return krs_cut(p, d);\n}\n\n"
+                     "void krs_part_box(uint part, inout vec3 low, inout vec3 high)\n{\n"
+                     "    switch (part) {\n");
+    for (size_t part = 0; part < parts; part++) {
+        Box  box      = box_empty;
+        bool all_flat = true;
+        for (size_t i = first_of_part(part, components); i < first_of_part(part + 1, components);
+             i++) {
+            box      = box_hull(box, boxes ? boxes[i] : box_infinite);
+            all_flat = all_flat && flat && flat[i];
+        }
+        emit_part_box(e, part, box, all_flat);
+    }
+    text_add(e->out, "    }\n}\n#endif\n\n");
 }
 
 /* ---- along rays ---- */
@@ -756,6 +872,7 @@ static void emit_anchored(Emitter *e, const EmitMarch *march, size_t components)
     emit_frame(e, roots, components * ROOT_COUNT + 2);
     text_add(e->out, "float krs_cut(vec3 p, float d) { return d; }\n\n");
     emit_distances(e, roots, components, NULL, march->flat);
+    emit_parts(e, NULL, march->flat, components);
     emit_flats(e, &plain);
     emit_surfaces(e, roots, components);
     text_add(e->out, "#else\n");
@@ -785,6 +902,9 @@ void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
     e.precise = arena_new_array(scratch, uint32_t, graph->count + 1);
     text_add(out, "// Distance code of a scene; "
                   "slot 0 holds the time, then one slot for each `param`.\n");
+    if (march->slopes)
+        text_add(out, "// Behind them slopes that the host finds for each frame: "
+                      "krs_frame_parameters in krs.h.\n");
     if (march->anchored)
         emit_anchored(&e, march, component_count);
     text_format(out,
@@ -806,7 +926,8 @@ void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
     emit_along(&e, march, roots, component_count);
     if (march->groups)
         text_add(out, "#ifndef GROUP\n");
-    emit_early_outs(&e, march, component_count);
+    emit_early_outs(&e, march, roots, component_count);
+    emit_parts(&e, march->boxes, march->flat, component_count);
     if (march->gradient)
         emit_gradients(&e, march, component_count, zone);
     emit_surfaces(&e, roots, component_count);

@@ -17,10 +17,14 @@ typedef struct EmitMarch {
                                graph_anchor, for kernels with #define ANCHORED */
     uint32_t    precise_slot; /* where what the host finds for them begins in the parameter block */
     const Node *ahead;      /* with `flat`: where a ray meets one, and how steeply it falls */
+    bool        slopes;     /* there are slots of slopes */
     const Node *gradient;   /* of each component and of the zones: lower_gradient's two; FLOATs where
                                there is none; NULL: nobody wants any */
 } EmitMarch;
 
+/* In how many parts so many components are marched, where each ray goes on with the one that comes
+   next. */
+uint32_t emit_part_count(size_t components);
 /* Text of a program with `component_count` components; the roots of component i are
    roots[i * ROOT_COUNT + ...], nodes of a simplified graph.  `zone`, the depth in zones, follows
    them, or is NODE_NONE. */

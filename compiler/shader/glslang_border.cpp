@@ -56,7 +56,9 @@ static BorderResult compile(const char *glsl, uint32_t **words, size_t *word_cou
     glslang_program_add_shader(work.program, work.shader);
     if (!glslang_program_link(work.program, GLSLANG_MSG_SPV_RULES_BIT | GLSLANG_MSG_VULKAN_RULES_BIT))
         return refuse(glslang_program_get_info_log(work.program), log);
-    glslang_program_SPIRV_generate(work.program, GLSLANG_STAGE_COMPUTE);
+    glslang_spv_options_t options = {}; /* by default it would validate, which spirv.c does */
+    options.disable_optimizer     = true;
+    glslang_program_SPIRV_generate_with_options(work.program, GLSLANG_STAGE_COMPUTE, &options);
 
     size_t size = glslang_program_SPIRV_get_size(work.program);
     *words      = static_cast<uint32_t *>(malloc(size * sizeof **words));

@@ -69,15 +69,31 @@ static char *name_log(const char *entry, const char *tool, char *words_of_tool)
     return log;
 }
 
+/* Names for people are made for messages only: of a thousand values that glslang names alike, each
+   is tried against all before it. */
+static spv_result_t run_validator(const uint32_t *words, size_t word_count, bool names,
+                                  spv_context context, spv_diagnostic *diagnostic)
+{
+    spv_validator_options options = spvValidatorOptionsCreate();
+    spv_const_binary_t    binary  = {words, word_count};
+    if (!options)
+        return SPV_ERROR_OUT_OF_MEMORY;
+    spvValidatorOptionsSetFriendlyNames(options, names);
+    spv_result_t result = spvValidateWithOptions(context, options, &binary, diagnostic);
+    spvValidatorOptionsDestroy(options);
+    return result;
+}
+
 static KrsStatus validate(const char *entry, const uint32_t *words, size_t word_count, char **log)
 {
     spv_context    context    = spvContextCreate(SPV_ENV_VULKAN_1_1);
     spv_diagnostic diagnostic = NULL;
     if (!context)
         return KRS_OUT_OF_MEMORY;
-    spv_result_t result = spvValidateBinary(context, words, word_count, &diagnostic);
+    spv_result_t result = run_validator(words, word_count, false, context, NULL);
     KrsStatus    status = KRS_OK;
     if (result != SPV_SUCCESS) {
+        result = run_validator(words, word_count, true, context, &diagnostic);
         const char *reason =
             diagnostic && diagnostic->error ? diagnostic->error : "no reason given";
         char       *copy   = strdup(reason);

@@ -2,23 +2,13 @@
 #extension GL_GOOGLE_include_directive : enable
 /*
  * background.comp: ends the pixels whose ray hits nothing: the sky, and the lights that have a
- * disc in it; lists the others, and where they are hit; and counts steps.
+ * disc in it; lists the others, and where they are hit.
  */
 #include "frame.glsl"
 #include "pixels.glsl"
 #include "solid.glsl"
 #include "light.glsl"
 #include "results.glsl"
-
-// The pixel is zero before its first ray.
-void count_steps(uint index, uint steps)
-{
-    uvec4 counts = pixels[index].counts;
-    bool  first = control.first_ray != 0u;
-    pixels[index].counts =
-        uvec4(counts.x, first ? steps : counts.y, first ? counts.z : counts.z + steps,
-              first ? counts.w : max(counts.w, steps));
-}
 
 // Where the ray hits, for all that comes after.  Where there is no width there must be a sign.
 void keep_place(uint index, Ray ray, vec3 origin, vec3 direction, float width)
@@ -36,7 +26,7 @@ void main()
     if (!find_item(index))
         return;
     Ray ray = find_end(index);
-    count_steps(index, ray.steps);
+    set_result(COUNTS, index, uvec4(0u, ray.steps, 0u, 0u));
     if (ray.lost)
         atomicAdd(counts.unresolved, 1u);
     uvec2 pixel = work.corner + find_cell(index, work.extent.x);
@@ -49,6 +39,9 @@ void main()
         solid[atomicAdd(counts.solid, 1u)] = index;
         if (is_anchor(pixel))
             solid[band_pixels() + atomicAdd(counts.anchors, 1u)] = index;
+        if (control.parts != 0u)
+            solid[(4u + ray.group) * band_pixels() + atomicAdd(counts.of_group[ray.group], 1u)] =
+                index;
     }
 
     vec3 radiance = sky_radiance(direction);
@@ -58,5 +51,5 @@ void main()
             radiance += sun_radiance(direction, light.vector, light.color, light.softness);
     }
     if (ray.fate != HIT)
-        pixels[index].color += vec4(sound(radiance), 0.0);
+        add_color(index, vec4(sound(radiance), 0.0));
 }

@@ -1,11 +1,8 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
- * fill.comp: what saves work: tiles without a ray, and shadow or occlusion of the pixels between
- * anchors, where that cannot be seen.
- *
- * A tile of 8x8 pixels whose beam goes through the scene unhindered needs no rays: the others are
- * listed.
+ * fill.comp: what saves work: shadow or occlusion of the pixels between anchors, where that cannot
+ * be seen.
  *
  * A tile of 8x8 pixels whose sixteen anchors see one component and face the same way is filled in
  * if they agree about occlusion; and if they are lit and nothing else is near their ways to the
@@ -16,7 +13,7 @@
 #include "pixels.glsl"
 #include "solid.glsl"
 
-const uint LIST_TILES = 0u, JUDGE = 1u, FILL = 2u; // control.phase
+const uint JUDGE = 0u, FILL = 1u;             // control.phase
 const uint OCCLUSION = 1u, SHADOW = 2u;       // control.value
 const float MOST_APART = 0.03;                // of the anchors' occlusion
 const float FACING = 0.9;                     // least cosine between normals
@@ -29,13 +26,6 @@ uint number_of(uint index)
 float value_at(uint index) { return hit_numbers[number_of(index)]; }
 
 uint tile_of(uvec2 local) { return local.y / 8u * ((work.extent.x + 7u) / 8u) + local.x / 8u; }
-
-// Tiles count from the corner of the band, which is a corner of tiles of the picture.
-void list_tile(uint tile)
-{
-    if (ends[band_pixels() + tile] < INFINITE)
-        tiles[atomicAdd(counts.tiles, 1u)] = tile;
-}
 
 void judge(uint tile)
 {
@@ -100,9 +90,7 @@ void main()
     uint number;
     if (!find_item(number))
         return;
-    if (control.phase == LIST_TILES)
-        list_tile(number);
-    else if (control.phase == JUDGE)
+    if (control.phase == JUDGE)
         judge(number);
     else
         fill(number);

@@ -54,6 +54,9 @@ struct Control {
     uint reading;    // where the queue or list that is read begins,
     uint writing;    // and the one that is written
     uint value;      // of fill.comp: which one it fills in
+    uint rows;       // of results.glsl that are asked for, a bit each
+    uint parts;      // 1: rays tell which group of components they hit, and are listed by it
+    uint open;       // 1: occlusion is not looked for
 };
 
 // A ray that is done.
@@ -63,6 +66,7 @@ struct Ray {
     uint  steps;
     uint  fate;
     bool  lost;  // it ran out of steps
+    uint  group; // of the components that it hits; 0: of none, or not known
 };
 
 // What is kept of a pixel, a light or a ray lies in memory in rows of four numbers, which are read
@@ -100,7 +104,7 @@ layout(std430, set = 1, binding = 1) buffer Ends { float ends[]; };
 layout(std430, set = 1, binding = 2) buffer Hits { Hit hits[]; };
 layout(std430, set = 1, binding = 5) buffer Fates { uint fates[]; }; // of rays, by pack_ray
 layout(std430, set = 1, binding = 8) readonly buffer Lights { LightRows lights[]; };
-// Tiles of 8x8 pixels whose beams find something (fill.comp): only their pixels have rays.
+// Tiles of 8x8 pixels whose beams find something: only their pixels have rays.
 layout(std430, set = 1, binding = 9) buffer Tiles { uint tiles[]; };
 layout(std140, set = 1, binding = 0) uniform FrameBlock { Frame given_frame; };
 layout(push_constant) uniform WorkBlock { Work given_work; };
@@ -112,7 +116,9 @@ layout(std430, set = 1, binding = 4) buffer ControlBlock {
     uint    solid, anchors;   // pixels that see something (solid.glsl),
     uint    rest;             // and those that fill.comp does not fill in
     uint    unresolved;       // counts rays that ran out of steps
-    uint    beam_evaluations; // counts distances spent on beams
+    uint    evaluations;      // counts distances spent on beams and rays; the most on one of these
+    uint    most_evaluations;
+    uint    of_group[9];      // pixels that see something, by the group of their ray
 } counts;
 
 Frame   frame;
@@ -133,17 +139,18 @@ Light find_light(uint number)
     return Light(rows.vector.xyz, rows.vector.w, uintBitsToFloat(rows.color.xyz), rows.color.w);
 }
 
-// The least bits: fate, side, lost; then the steps.
+// The least bits: fate, side, lost, group; then the steps.
 uint pack_ray(Ray ray)
 {
-    return ray.fate | (ray.side < 0.0 ? 4u : 0u) | (ray.lost ? 8u : 0u) | ray.steps << 4u;
+    return ray.fate | (ray.side < 0.0 ? 4u : 0u) | (ray.lost ? 8u : 0u) | ray.group << 4u |
+           ray.steps << 8u;
 }
 
 Ray find_end(uint index)
 {
     uint bits = fates[index];
-    return Ray(ends[index], (bits & 4u) != 0u ? -1.0 : 1.0, bits >> 4u, bits & 3u,
-               (bits & 8u) != 0u);
+    return Ray(ends[index], (bits & 4u) != 0u ? -1.0 : 1.0, bits >> 8u, bits & 3u,
+               (bits & 8u) != 0u, bits >> 4u & 15u);
 }
 
 // Column and row of the `number`th cell of a grid, row by row.  Whole numbers below 2^22 come out
@@ -185,17 +192,23 @@ void find_ray(vec2 place, out vec3 origin, out vec3 direction, out float base, o
     }
 }
 
-// Where a ray is inside of the box around the scene; empty when the second is the smaller.  The
+// Where a ray is inside of a box; empty when the second is the smaller.  The
 // box may be as large as 1e18, and no component of a direction is taken as smaller than 1e-18,
 // so that nothing here is infinite times zero.
-vec2 clip_ray(vec3 origin, vec3 direction, float farthest)
+vec2 clip_to(vec3 low, vec3 high, vec3 origin, vec3 direction, float farthest)
 {
     vec3 safe = mix(direction, vec3(1e-18), lessThan(abs(direction), vec3(1e-18)));
-    vec3 a = (frame.low.xyz - origin) / safe;
-    vec3 b = (frame.high.xyz - origin) / safe;
+    vec3 a = (low - origin) / safe;
+    vec3 b = (high - origin) / safe;
     vec3 enter = min(a, b), leave = max(a, b);
     return vec2(max(max(enter.x, enter.y), max(enter.z, 0.0)),
                 min(min(leave.x, leave.y), min(leave.z, farthest)));
+}
+
+// Of the box around the scene.
+vec2 clip_ray(vec3 origin, vec3 direction, float farthest)
+{
+    return clip_to(frame.low.xyz, frame.high.xyz, origin, direction, farthest);
 }
 
 float largest(vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }

@@ -18,8 +18,13 @@ const bool SAVES = false;
 // What may be left open between two balls, of the permitted error.
 const float OPEN = 0.0625;
 const float LEARNING = 0.3; // of the mean slope
+// Solids that touch are one: from inside they count as grown by what rounding may leave open at
+// the seam between two.
+const float SEAM = 4.0;     // roundings
 
-// Two rows a ray: origin, and where it ends; unit direction, and 1 if it begins in the open.
+const float BEGINS_OUTSIDE = 1.0, ENDS_AT_WALLS = 2.0; // as in blocks.h
+
+// Two rows a ray: origin, and where it ends; unit direction, and its kind.
 layout(std430, set = 1, binding = 5) readonly buffer Questions { vec4 questions[]; };
 // Bits of t; fate; place of the point; steps.
 layout(std430, set = 1, binding = 3) writeonly buffer Ways { uvec4 ways[]; };
@@ -30,9 +35,10 @@ uint  index;              // of the ray
 vec3  origin, direction;
 float end;
 float rounding;           // of coordinates at t = 0
-float t, clear, gap;      // nothing is before t, nor for `clear` behind it; the next look is at t + gap
+float t, clear, gap;      // nothing is before t, nor for `clear` behind it; next look: at t + gap
 float slope;              // of the room along the ray, as it was on average
 float side;               // as of a Ray; 0: not known
+bool  walls;              // all solids end at `end`
 uint  steps, fate;
 
 void begin_group() {}
@@ -47,7 +53,8 @@ void begin_item(uint number, bool saved)
     rounding = largest(origin);
     t = clear = gap = 0.0;
     slope = -1.0;
-    side = way.w;
+    side = way.w == BEGINS_OUTSIDE ? 1.0 : 0.0;
+    walls = way.w == ENDS_AT_WALLS;
     steps = 0u;
     fate = end >= 0.0 ? MARCHING : MISS;
 }
@@ -69,11 +76,11 @@ float item_distance(vec3 place)
 
 vec3 item_place() { return origin + (t + gap) * direction; }
 
-// The surface is crossed between t, where there is room, and t + gap, where there is none, within
-// the permitted error: looks there once more, unless what is between is short anyway.
-void close_in(float room, float open)
+// The surface is crossed between t, where there is room (`before`), and t + gap, where there is
+// none, within the permitted error: looks there once more, unless what is between is short anyway.
+void close_in(float before, float room, float open)
 {
-    float along = clear > room ? clamp(clear / (clear - room), 0.0, 2.0) : 0.0;
+    float along = before > room ? clamp(before / (before - room), 0.0, 2.0) : 0.0;
     bool  accurate = gap - clear <= 2.0 * open || fate == CLOSING;
     gap *= along;
     t += accurate ? gap : 0.0;
@@ -84,13 +91,14 @@ void take_distance(float distance)
 {
     float at = t + gap;
     side = side == 0.0 ? (distance < 0.0 ? -1.0 : 1.0) : side;
-    float room = side * distance;
     float least = ROUNDING * (rounding + at), open = OPEN * frame.error + least;
+    float seam = side < 0.0 ? SEAM * least : 0.0;
+    float room = side * distance + seam;
     float doubtful = gap - clear; // as long as may hide something
     steps++;
     // Twice: a gap of `open` beyond what is clear may be rounded up.
     if (fate == CLOSING || (room <= least && doubtful <= frame.error + 2.0 * open)) {
-        close_in(room, open);
+        close_in(clear - seam, room - seam, open);
     } else if (room > least && doubtful <= room + 1.01 * open) {
         slope = mix(slope, gap > 0.0 ? (room - clear) / gap : -1.0, LEARNING);
         t = at;
@@ -106,6 +114,10 @@ void take_distance(float distance)
 void end_item()
 {
     uint place = 0u;
+    if (fate == MISS && side < 0.0 && walls) {
+        fate = HIT;
+        t = end;
+    }
     if (fate != MISS) {
         place = atomicAdd(counts.solid, 1u);
         points[place] = vec4(origin + t * direction, 0.0);

@@ -1,16 +1,29 @@
 /*
- * results.glsl: what becomes of each pixel.  The first ray of a pixel goes through its centre and
- * gives everything but the colour.
+ * results.glsl: what becomes of each pixel, in rows of four numbers: first the colours of all
+ * pixels of the band, then their places, and so on.  Rows that are not asked for are not written.
+ * The first ray of a pixel goes through its centre and gives everything but the colour.
  */
-struct Pixel {
-    vec4  color;  // summed over the rays
-    vec4  place;  // position; depth
-    uvec4 normal; // bits of floats; component, 0: nothing, all else but colour and steps is void
-    uvec4 albedo; // bits of floats; level
-    uvec4 counts; // instance; steps; of the rays after the first: steps, summed, and of any of them
-};
+const uint COLORS = 0u;  // floats, summed over the rays
+const uint PLACES = 1u;  // floats: position; depth
+const uint NORMALS = 2u; // floats, and component, 0: nothing, all else but colour and steps is void
+const uint ALBEDOS = 3u; // floats, and level
+const uint COUNTS = 4u;  // instance; steps
 
-layout(std430, set = 1, binding = 3) buffer Pixels { Pixel pixels[]; };
+layout(std430, set = 1, binding = 3) buffer Results { uvec4 results[]; }; // bits of floats
+
+bool is_wanted(uint row) { return (control.rows >> row & 1u) != 0u; }
+
+void add_color(uint index, vec4 color)
+{
+    uint at = COLORS * band_pixels() + index;
+    results[at] = floatBitsToUint(uintBitsToFloat(results[at]) + color);
+}
+
+void set_result(uint row, uint index, uvec4 numbers)
+{
+    if (control.first_ray != 0u && is_wanted(row))
+        results[row * band_pixels() + index] = numbers;
+}
 
 // What is not a number or infinite counts as black.
 vec3 sound(vec3 radiance)

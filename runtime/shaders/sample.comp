@@ -41,6 +41,12 @@ vec4 look_around(vec3 p)
     return found;
 }
 
+// Within 0 and 1; what is not a number is 0.
+vec4 part(vec4 numbers)
+{
+    return mix(vec4(0.0), min(numbers, 1.0), greaterThan(numbers, vec4(0.0)));
+}
+
 void main()
 {
     uint index = gl_GlobalInvocationID.x;
@@ -52,12 +58,13 @@ void main()
     vec4 around = look_around(p);
     KrsSurface surface = krs_surface(p, around.xyz, 0.0);
     Answer answer;
-    answer.color = surface.color;
+    answer.color = part(vec4(surface.color, 0.0)).rgb;
     answer.distance = around.w;
     answer.emission = surface.emission;
     answer.surface_distance = surface.distance;
-    answer.roughness = surface.roughness;
-    answer.metallic = surface.metallic;
+    vec4 coat = part(vec4(surface.roughness, surface.metallic, 0.0, 0.0));
+    answer.roughness = coat.x;
+    answer.metallic = coat.y;
     answer.component = surface.component;
     answer.level = surface.level;
     answer.instance = surface.instance;

@@ -7,6 +7,12 @@
  *
  * The three phases are dispatches of one kernel, so that the scene is compiled once for them
  * and its distance stands once, in one loop.  A dispatch of the last phase is about one light.
+ *
+ * Two kinds of scenes are different.  LOOSE: a distance in it is only a bound, which may be far
+ * below the true one.  A ray to a light then ends where it is inside of something, as primary rays
+ * do, not where it is near; and how near things are where that shows is looked for (looks.glsl).
+ * ALONG: there is krs_along, by which rays to a point of a light go; such a kernel has no other
+ * phase, since that is no distance.
  */
 #ifndef TRACE // which variant: the renderer says so; this one suits every device
 #define TRACE 3u
@@ -34,6 +40,18 @@ const float CLEARANCE = 3.0;
 const float TOUCH = 4e-3;
 // What is lit and not clear: less than 1 by a bit (fill.comp).
 const float LIT = 0.99999994;
+// What a ray to a point of a light may leave open where it must get inside: as in trace.comp, and
+// by how much more after each step.
+const float OPEN = 0.0625;
+const float MOST_OPEN = 0.015625;
+const float PATIENCE = 0.015625;
+
+// Differences for normals reach as far as a pixel asks for, but less of the coordinates would be
+// noise.
+const float NOISE = 3e-4;
+// What is so even is flat, and seen from outside already what is so EVEN_OUTSIDE; taps that lose
+// all of the solid still leave as much as LEAST_EVEN.
+const float EVEN = 0.9995, EVEN_OUTSIDE = 0.998, LEAST_EVEN = 0.7;
 
 // The item.
 Place place;
@@ -45,13 +63,19 @@ float before;      // the distance at the step before
 float share;       // of the true distance, at the start of a shadow ray
 vec3  sum, level;  // of the taps of a normal, with the signs of their directions and without
 float extent;      // of their directions: the sum of their squares
+bool  again;       // they are looked at once more, farther out,
+float middle;      // where the distance in their middle is this,
+float even;        // and so even was it before,
+vec3  facing_before; // with this normal,
+float steepness_before;
 float steepness;   // of the distance around the hit
 float blocked, weight; // of those of occlusion
 float visible;     // how much of the light
+#ifdef LOOSE
 float open_before; // as the distance at the step before says
 float least, least_at, least_distance; // the last minimum of that, and where it was
 bool  falling;     // towards the next
-uint  looks;       // around there that are still to come
+#endif
 float facing;      // cosine between normal and way
 bool  is_clear;    // nothing else is near the way to it
 uint  taps, limit; // so far, and at most
@@ -59,6 +83,18 @@ uint  taps, limit; // so far, and at most
 uint  lost;        // of this lane's shadow rays
 
 void begin_group() { lost = 0u; }
+
+// How steep the distance is, 1 unless it is a bound.  In a hollow edge the differences of its two
+// sides cancel in part, and the rest is in the level, below 0; on a convex one they may.
+float find_steepness(float reach)
+{
+    float found = length(vec2(length(sum), length(min(level, 0.0)))) / (extent * reach / 3.0);
+    return found > LEAST_STEEPNESS ? min(found, 1.0) : LEAST_STEEPNESS;
+}
+
+#ifdef LOOSE
+#include "looks.glsl"
+#endif
 
 // A number in [0, 1) for a pixel, one of many that differ (PCG, O'Neill 2014).
 float random(uvec2 pixel, uint which)
@@ -105,8 +141,11 @@ void aim_at_light(vec3 normal)
     }
     way = toward / remote;
     end = positional ? remote : frame.eye.w;
-    end = min(end, clip_ray(start, way, end).y);
-    facing = dot(normal, way);
+    float box_end = clip_ray(start, way, end).y;
+    // From inside of a solid nothing leaves the box around all of them.
+    bool walled = place.side < 0.0 && box_end < end && (light.kind & CASTS_SHADOWS) != 0u;
+    end = min(end, box_end);
+    facing = walled ? 0.0 : dot(normal, way);
     visible = facing > 0.0 ? 1.0 : 0.0;
     is_clear = true;
     limit = facing > 0.0 && (light.kind & CASTS_SHADOWS) != 0u ? SHADOW_STEPS : 0u;
@@ -120,9 +159,12 @@ void begin_item(uint number, bool saved)
     taps = 0u;
     sum = level = vec3(0.0);
     extent = 0.0;
+    before = INFINITE;
+#ifdef LOOSE
     looks = 0u;
-    before = open_before = least = INFINITE;
+    open_before = least = INFINITE;
     falling = false;
+#endif
     blocked = 0.0;
     weight = 0.33;
     if (control.phase == SHADOW) {
@@ -134,11 +176,12 @@ void begin_item(uint number, bool saved)
         steepness = hit_numbers[OF_HIT * place.index + STEEPNESS_OF_HIT];
         limit = OCCLUSION_TAPS;
     } else {
-        // Differences over a pixel or so: finer detail would only be noise.  Below 3e-4 of the
-        // coordinates rounding would be the noise.
+        // Differences over a pixel or so: finer detail would only be noise.
         way = stencil(0u);
-        t = max(frame.blur * place.width, 3e-4 * largest(place.position) + place.rounding);
+        t = max(frame.blur * place.width, NOISE * largest(place.position) + place.rounding);
         limit = TAPS;
+        again = false;
+        middle = 0.0;
 #if defined(GRADIENT) && !defined(ANCHORED)
         // Differences are for where derivatives are no numbers.
         vec3 gradient = krs_gradient(place.position, t);
@@ -151,122 +194,262 @@ void begin_item(uint number, bool saved)
     }
 }
 
-bool item_wants_more() { return taps < limit || looks > 0u; }
+bool item_wants_more()
+{
+#ifdef LOOSE
+    if (looks > 0u)
+        return true;
+#endif
+    return taps < limit;
+}
 
-// Around where a ray to a light comes nearest to something.
-float look_reach() { return max(0.0625 * least_distance, 64.0 * place.rounding); }
+float item_distance(vec3 place)
+{
+#ifdef ALONG
+    return krs_along(place, way);
+#else
+    return krs_distance(place);
+#endif
+}
 
-float item_distance(vec3 place) { return krs_distance(place); }
 vec3 item_place()
 {
-    return looks > 0u ? start + least_at * way + look_reach() * stencil(TAPS - looks)
-                      : start + t * way;
+#ifdef LOOSE
+    if (looks > 0u)
+        return look_point();
+#endif
+    return start + t * way;
 }
 
-// How steep the distance is, 1 unless it is a bound.  In a hollow edge the differences of its two
-// sides cancel in part, and the rest is in the level, below 0; on a convex one they may.
-float find_steepness(float reach)
-{
-    float found = length(vec2(length(sum), length(min(level, 0.0)))) / (extent * reach / 3.0);
-    return found > LEAST_STEEPNESS ? min(found, 1.0) : LEAST_STEEPNESS;
-}
-
-// What comes near is not as near as it seems where the distance is a bound: how steep it is there
-// tells.
-void begin_looks()
-{
-    if (least >= visible)
-        return;
-    looks = TAPS;
-    sum = level = vec3(0.0);
-    extent = 0.0;
-}
-
-// A surface may be as near as the rim where this step's sphere meets the last one's, which lies
-// `back` behind here, if that is ahead of the last step (math.md 6).
-void take_shadow(float distance)
+// How much of the light a distance here leaves visible.  A surface may be as near as the rim where
+// this step's sphere meets the last one's, which lies `back` behind here, if that is ahead of the
+// last step (math.md 6).
+float find_open(float distance)
 {
     float open = sharpness * distance / max(t, place.rounding);
     float back = distance * distance / (2.0 * before);
     float aside = sqrt(max(distance * distance - back * back, 0.0));
     if (back < before)
         open = min(open, sharpness * aside / max(t - back, place.rounding));
+    return open;
+}
+
+#ifdef LOOSE
+// What comes near is not as near as it seems.
+void look_at_least()
+{
+    if (least < visible)
+        begin_looks(start + least_at * way, least_distance);
+}
+
+void note_open(float open, float distance)
+{
     bool rising = open >= open_before;
     if (rising && falling)
-        begin_looks();
-    else if (!rising) {
+        look_at_least();
+    if (!rising) {
         least = open;
         least_at = t;
         least_distance = distance;
     }
     falling = !rising;
     open_before = open;
-    // Near the start even what is open may have a small distance, where that is only a bound: as
-    // small a part of the true one as at the first step.
+}
+#endif
+
+// What is nearer blocks the light.  Near the start even what is open may have a small distance,
+// where that is only a bound: as small a part of the true one as at the first step.
+float find_touch(float distance)
+{
     float lift = LIFT * place.width + 4.0 * place.rounding;
     if (taps == 1u)
         share = clamp(distance / lift, 0.0625, 1.0);
     float near = mix(share, 1.0, min(t / (SHARED * place.width), 1.0));
+#ifdef LOOSE
+    return near * place.rounding;
+#else
     // Where there is a penumbra, it tells what is near.
     float touch = near * frame.error * place.width;
     if (sharpness < INFINITE)
         touch = min(touch, TOUCH * t / sharpness);
-    if (distance < max(touch, place.rounding))
+    return max(touch, place.rounding);
+#endif
+}
+
+// A ray that creeps along a surface goes on by a pixel at least, or a sixteenth of the penumbra's
+// width: what it could miss is too small to be seen.  Where it must get inside to be blocked, by
+// as little as primary rays leave open, but by more and more the longer it creeps.
+float find_pace()
+{
+#ifdef LOOSE
+    if (sharpness == INFINITE)
+        return min(OPEN * frame.error, MOST_OPEN) * place.width * (1.0 + PATIENCE * float(taps)) +
+               place.rounding;
+#endif
+    return max(place.width, 0.0625 * t / sharpness);
+}
+
+void take_shadow(float distance)
+{
+#ifdef LOOSE
+    if (sharpness < INFINITE)
+        note_open(find_open(distance), distance);
+#else
+    visible = min(visible, find_open(distance));
+#endif
+    if (distance < find_touch(distance))
         visible = 0.0;
     // The surface itself falls away by the cosine.
     if (distance < min(CLEARANCE * place.width, 0.5 * facing * t))
         is_clear = false;
-    // A ray that creeps along a surface goes on by a pixel at least, or a sixteenth of the
-    // penumbra's width: what it could miss is too small to be seen.
-    float pace = max(place.width, 0.0625 * t / sharpness);
+    float pace = find_pace();
     before = distance < pace ? INFINITE : distance;
     t += max(distance, pace);
     if (visible < BLACK || t >= end)
         limit = 0u;
-    if (t >= end && falling)
-        begin_looks();
+#ifdef LOOSE
+    if (t >= end && falling && looks == 0u)
+        look_at_least();
     if (visible < BLACK)
         looks = 0u;
+#endif
 }
 
-void take_look(float distance)
+// How much less room there is than an open surface would leave, at five scales.
+void take_occlusion(float room)
 {
-    vec3 from = stencil(TAPS - looks);
-    float more = distance - least_distance;
-    sum += more * from;
-    level += more * abs(from);
-    extent += dot(from, from);
-    looks--;
-    if (looks == 0u)
-        visible = min(visible, least / find_steepness(look_reach()));
-    if (visible < BLACK)
-        limit = 0u;
+    blocked += weight * clamp(1.0 - room / t, 0.0, 1.0);
+    weight *= 0.75;
+    t *= 2.0;
+}
+
+// The parts of the sum that do not cancel: where all is flat, opposite taps do; on an edge, or
+// where things are smaller than the taps are apart, they do not.
+float find_evenness()
+{
+    float size = length(sum), uneven = length(vec2(size, length(level)));
+    return uneven > 0.0 && uneven < INFINITE ? size / uneven : 1.0;
+}
+
+#if defined(ROOTS) && STENCIL == 3
+// Around a curve on which its gradient vanishes a polynomial's distance is far from linear.  So
+// what is not even is looked at again from nearer, with the corners of a cube as well: of weight
+// 9/8 they make the octahedron exact up to the fifth power.
+const float NEARER = 0.125;
+const uint CORNERS = 8u;
+vec3 corner(uint i)
+{
+    return 0.57735026919 * (2.0 * vec3(i & 1u, i >> 1u & 1u, i >> 2u & 1u) - 1.0);
+}
+
+void look_nearer()
+{
+    t = max(NEARER * t, NOISE / 3.0 * largest(place.position) + place.rounding);
+    again = true;
+    taps = 0u;
+    limit = TAPS + CORNERS;
+    way = stencil(0u);
+    sum = level = vec3(0.0);
+    extent = 0.0;
+}
+
+void take_difference(float distance)
+{
+    float weight = taps > TAPS ? 1.125 : 1.0;
+    sum += weight * distance * way;
+    level += weight * distance * abs(way);
+    extent += weight * dot(way, way);
+    way = taps < TAPS ? stencil(taps) : corner(taps - TAPS);
+    if (taps < TAPS || again)
+        return;
+    even = find_evenness();
+    if (even < EVEN)
+        look_nearer();
+}
+
+float find_flatness() { return again ? even : find_evenness(); }
+#else
+// Solids that touch have a seam, where taps inside find a surface that is none.  So what is not
+// even is looked at again from so far outside that no tap is inside if it is flat.
+void look_again()
+{
+    facing_before = normalize(sum);
+    steepness_before = find_steepness(t);
+    start = place.position + t * facing_before;
+    again = true;
+    taps = 0u;
+    limit = TAPS + 1u;
+    way = sum = level = vec3(0.0);
+    extent = 0.0;
+}
+
+void take_difference(float distance)
+{
+#if STENCIL == 1
+    sum += distance * (taps == 1u ? vec3(-1.0) : way);
+    extent += dot(way, way);
+    way = stencil(taps);
+#else
+    if (again && taps == 1u)
+        middle = distance;
+    sum += distance * way;
+    level += (distance - middle) * abs(way);
+    extent += dot(way, way);
+    way = stencil(again ? taps - 1u : taps);
+    if (taps < limit || again)
+        return;
+    even = find_evenness();
+    if (even > LEAST_EVEN && even < EVEN)
+        look_again();
+#endif
+}
+
+float find_flatness() { return find_evenness(); }
+#endif
+
+void take_normal()
+{
+    float size = length(sum), flatness = find_flatness();
+    vec3  normal = size > 0.0 && size < INFINITE ? sum / size : -place.direction;
+    float found = find_steepness(t);
+    if (again && flatness < max(even, EVEN_OUTSIDE)) {
+        normal = facing_before;
+        flatness = even;
+        found = steepness_before;
+    }
+    hits[place.index].facing = vec4(normal, flatness);
+    hit_numbers[OF_HIT * place.index + STEEPNESS_OF_HIT] = found;
 }
 
 void take_distance(float distance)
 {
     distance *= place.side;
+#ifdef LOOSE
     if (looks > 0u) {
         take_look(distance);
+        if (looks == 0u && control.phase == OCCLUSION) {
+            take_occlusion(max(estimate, look_bound / steepness));
+        } else if (looks == 0u) {
+            visible = min(visible, least * estimate / look_bound);
+            limit = visible < BLACK ? 0u : limit;
+        }
         return;
     }
+#endif
     taps++;
     if (control.phase == SHADOW) {
         take_shadow(distance);
     } else if (control.phase == OCCLUSION) {
-        // How much less room there is than an open surface would leave, at five scales.
-        blocked += weight * clamp(1.0 - distance / (steepness * t), 0.0, 1.0);
-        weight *= 0.75;
-        t *= 2.0;
-    } else {
-#if STENCIL == 1
-        sum += distance * (taps == 1u ? vec3(-1.0) : way);
-#else
-        sum += distance * way;
-        level += distance * abs(way);
+        float room = distance / steepness;
+#ifdef LOOSE
+        if (distance > 0.0 && room < t) {
+            begin_looks(item_place(), distance);
+            return;
+        }
 #endif
-        extent += dot(way, way);
-        way = stencil(taps);
+        take_occlusion(room);
+    } else {
+        take_difference(distance);
     }
 }
 
@@ -281,14 +464,7 @@ void end_item()
         // Light finds its way in by reflection.
         hit_numbers[OF_HIT * place.index + OCCLUSION_OF_HIT] = exp2(-2.5 * blocked);
     } else {
-        float size = length(sum);
-        vec3  normal = size > 0.0 && size < INFINITE ? sum / size : -place.direction;
-        // Where all is flat, opposite taps cancel; on an edge, or where things are smaller than
-        // the taps are apart, they do not.
-        float uneven = length(vec2(size, length(level)));
-        float even = uneven > 0.0 && uneven < INFINITE ? size / uneven : 1.0;
-        hits[place.index].facing = vec4(normal, even);
-        hit_numbers[OF_HIT * place.index + STEEPNESS_OF_HIT] = find_steepness(t);
+        take_normal();
     }
 }
 

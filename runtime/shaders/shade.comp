@@ -26,7 +26,10 @@ vec3 lit(Place place, Hit hit)
         toward = apart * inversesqrt(square);
         color /= square;
     }
-    float visible = uintBitsToFloat(hit.identity.w);
+    // Who casts no shadows has not been looked for, but a surface that is turned away is dark.
+    float visible = (light.kind & CASTS_SHADOWS) != 0u ? uintBitsToFloat(hit.identity.w)
+                  : dot(hit.facing.xyz, toward) > 0.0  ? 1.0
+                                                       : 0.0;
     return visible * color * reflected(hit.shading.xyz, -place.direction, toward, mean_color(hit),
                                        hit.coat.a, hit.radiance.a);
 }
@@ -36,7 +39,7 @@ vec3 lit(Place place, Hit hit)
 vec3 ambient(Hit hit, vec3 toward_eye)
 {
     vec3  normal = hit.shading.xyz, color = hit.coat.rgb;
-    float open = hit.facing.w, metallic = hit.radiance.a;
+    float open = control.open != 0u ? 1.0 : hit.facing.w, metallic = hit.radiance.a;
     vec3  bounce = open / max(1.0 - color * (1.0 - open), 0.05);
     vec3  scattered = color * (1.0 - metallic) * sky_light(hit.shading.w * normal) * bounce;
     vec3  mirrored = sky_reflected(normal, toward_eye, color, hit.coat.a, metallic);
@@ -49,10 +52,10 @@ void describe(Place place, Hit hit)
     float along = dot(apart, frame.forward.xyz);
     float depth = control.projection == PANORAMA ? length(apart) : along;
     uvec3 normal = floatBitsToUint(place.side * hit.shading.xyz);
-    pixels[place.index].place = vec4(place.position, depth);
-    pixels[place.index].normal = uvec4(normal, hit.identity.x);
-    pixels[place.index].albedo = uvec4(floatBitsToUint(hit.coat.rgb), hit.identity.y);
-    pixels[place.index].counts.x = hit.identity.z;
+    set_result(PLACES, place.index, floatBitsToUint(vec4(place.position, depth)));
+    set_result(NORMALS, place.index, uvec4(normal, hit.identity.x));
+    set_result(ALBEDOS, place.index, uvec4(floatBitsToUint(hit.coat.rgb), hit.identity.y));
+    set_result(COUNTS, place.index, uvec4(hit.identity.z, find_end(place.index).steps, 0u, 0u));
 }
 
 void main()
@@ -67,8 +70,7 @@ void main()
         hits[place.index].radiance = hit.radiance + vec4(lit(place, hit), 0.0);
     } else {
         vec3 radiance = hit.radiance.rgb + ambient(hit, -place.direction);
-        pixels[place.index].color += vec4(sound(radiance), 1.0);
-        if (control.first_ray != 0u)
-            describe(place, hit);
+        add_color(place.index, vec4(sound(radiance), 1.0));
+        describe(place, hit);
     }
 }

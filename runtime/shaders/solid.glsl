@@ -5,7 +5,8 @@
  * A quarter of them, those in columns and rows 0, 2, 5 and 7 of their tile of 8x8, are anchors:
  * where all of a tile agree, the pixels in between are filled in.  Lists lie where the queue of
  * rays was, each with room for all pixels: all, the anchors, and those that are not filled in; a
- * fourth part says of each tile whether its anchors agree.
+ * fourth part says of each tile whether its anchors agree.  Where groups of components were marched
+ * one after the other, lists of what each of them shows follow.
  */
 layout(std430, set = 1, binding = 6) buffer Solid { uint solid[]; };
 

@@ -1,10 +1,11 @@
 /*
  * stencil.glsl: where the distance is looked at for a normal: at unit vectors v around the hit.
  *
- * The normal is along the sum of v f(p + r v), since the sum of v v^T is TAPS / 3 times the identity
- * for the corners of each of Plato's solids.  Where opposite to each corner there is another one, the
- * error is of second order in r; else, and for differences to one side, of first.  STENCIL says
- * which: a KrsNormals without the default.  This is C as well, for tests/unit/stencils.c.
+ * The normal is along the sum of v f(p + r v), since the sum of v v^T is TAPS / 3 times the
+ * identity for the corners of each of Plato's solids.  Where opposite to each corner there is
+ * another one, the error is of second order in r; else, and for differences to one side, of first.
+ * STENCIL says which: a KrsNormals without the default.  This is C as well, for
+ * tests/unit/stencils.c.
  */
 #ifndef STENCIL
 #define STENCIL 3

@@ -1,5 +1,6 @@
 /*
- * stencil.h: stencil.glsl for C: the corners of all stencils under their names, for tests and the bench.
+ * stencil.h: stencil.glsl for C: the corners of all stencils under their names, for tests and the
+ * bench.
  */
 #ifndef KRS_STENCIL_H
 #define KRS_STENCIL_H

@@ -20,7 +20,8 @@
  * What the rays of a tile share is marched once before, by the beam through the middle of the
  * tile: a ray through empty space less the tile's width.  Tiles of 32x32 pixels are followed by
  * tiles of 8x8; they count from the corner of the picture, whatever the crop and the band, so that
- * equal pixels come out of all of them.
+ * equal pixels come out of all of them.  Tiles of 8x8 whose beam goes through the scene unhindered
+ * need no rays: the others are listed.
  */
 #ifndef TRACE // which variant: the renderer says so; this one suits every device
 #define TRACE 3u
@@ -43,10 +44,17 @@ const float LEARNING = 0.3;
 // Balls that are tried (PROBE): how large the next may be, of what is expected.
 const uint  BINARY = 1u;
 const float CAUTION = 0.9;
+// Solids that touch are one: from inside they count as grown by what rounding may leave open at
+// the seam between two.
+const float SEAM = 4.0; // roundings
 // A beam ends where its ball is hardly wider than the tile.
 const float WIDER = 1.05;
 
+#ifdef PACKED
+const bool SAVES = false; // there is a march of each part
+#else
 const bool SAVES = true;
+#endif
 
 // A ray under way; in the queue two rows of four numbers.
 struct March {
@@ -70,12 +78,15 @@ vec3  origin, direction;
 float end;
 float flat_ahead;              // with FLATS: where a ray meets a plane; INFINITE: nowhere
 float pixel_base, pixel_slope; // a pixel is as wide as base + slope t
-vec2  width;                   // so is the beam; 0 for a ray
+vec2  width;                   // so is the beam; 0 for a ray, or less: solids count as grown
+bool  walls;                   // all solids end at `end`
 float rounding;                // of coordinates at t = 0
 uvec2 first_8, count_8, first_32, count_32; // the tiles of beams
+uint  most_steps;              // of a ray of this lane
 
 void begin_group()
 {
+    most_steps = 0u;
     find_tiles(8u, first_8, count_8);
     find_tiles(32u, first_32, count_32);
 }
@@ -103,6 +114,8 @@ vec2 find_width(float side)
     float stretch = frame.pixel_slope / max(pixel_slope, 1e-30);
     return vec2(half_diagonal * pixel_base, apart / max(stretch - 0.5 * apart, 0.1));
 }
+
+vec2 inside_width() { return -SEAM * ROUNDING * vec2(rounding, 1.0); }
 
 // The pixel of item `number`: items go through tiles of 8x8 pixels one after the other, all tiles
 // of the band or those that are listed.  False when it is not in the band.
@@ -154,6 +167,10 @@ void begin_march(uint index, float start, bool is_ray)
 #endif
 }
 
+#ifdef PACKED
+#include "packed.glsl"
+#endif
+
 void begin_item(uint number, bool saved)
 {
     bool  is_ray = control.phase == RAYS, large = control.phase == BEAMS_32;
@@ -172,8 +189,11 @@ void begin_item(uint number, bool saved)
     vec2  middle = side * (vec2(tile + (large ? first_32 : first_8)) + 0.5);
     aim(is_ray ? vec2(pixel) + work.offset : middle);
     width = is_ray ? vec2(0.0) : find_width(side);
+    if (saved && march.side < 0.0)
+        width = inside_width();
     vec2 range = is_ray ? clip_ray(origin, direction, frame.eye.w) : vec2(0.0, frame.eye.w);
     end = range.y;
+    walls = is_ray && end < frame.eye.w;
 #ifdef GROUP
     uint at_pixel = saved ? march.index : index;
     if (exists && is_ray && find_end(at_pixel).fate == HIT)
@@ -197,6 +217,9 @@ void begin_item(uint number, bool saved)
     if (behind)
         start = ends[beam];
     begin_march(is_ray ? index : number + (large ? larger : pixels), max(range.x, start), is_ray);
+#ifdef PACKED
+    begin_parts(is_ray);
+#endif
 }
 
 bool item_wants_more()
@@ -210,6 +233,8 @@ float item_distance(vec3 place)
 {
 #ifdef PROBE
     return krs_probe(place, march.gap);
+#elif defined(PACKED)
+    return krs_distance_of(part, place);
 #elif defined(ALONG)
     return krs_along(place, direction);
 #elif defined(EARLY_OUTS) && !defined(GROUP)
@@ -289,10 +314,13 @@ void take_distance(float larger)
 void take_distance(float distance)
 {
     float at = march.t + march.gap;
-    march.side = march.side == 0.0 ? (distance < 0.0 ? -1.0 : 1.0) : march.side;
+    if (march.side == 0.0) {
+        march.side = distance < 0.0 ? -1.0 : 1.0;
+        width = distance < 0.0 ? inside_width() : width;
+    }
     float room = (march.side * distance - width.x - width.y * at) / (1.0 + width.y);
     float open = open_at(at), pixel = pixel_base + pixel_slope * at;
-    bool  is_ray = width.x + width.y == 0.0;
+    bool  is_ray = width.x + width.y <= 0.0;
     march.steps++;
 
     if (abs(room) * (pixel_base + pixel_slope * march.nearest_t) < march.nearest * pixel) {
@@ -319,6 +347,9 @@ void take_distance(float distance)
         march.gap = max(0.5 * (march.gap + march.room - max(room, 0.0)), march.room + open);
         march.slope = -1.0;
     }
+#ifdef PACKED
+    turn_to_next_part();
+#endif
 }
 #endif
 
@@ -328,10 +359,16 @@ void end_item()
 {
     bool is_ray = control.phase == RAYS;
     bool lost = is_ray && (march.fate == MARCHING || march.fate == CLOSING);
+    uint group = 0u;
     bool near = march.nearest < pixel_base + pixel_slope * march.nearest_t;
     if (lost) {
         march.t = near ? march.nearest_t : march.t;
         march.fate = near ? HIT : MISS;
+    }
+    // From inside of a solid nothing leaves the box around all of them.
+    if (is_ray && march.fate == MISS && march.side < 0.0 && walls) {
+        march.fate = HIT;
+        march.t = end;
     }
 #ifdef FLATS
     // Planes are met where nothing else was; a beam whose rays may meet one is not done with.
@@ -353,20 +390,32 @@ void end_item()
         march.t = farther ? known.t : march.t;
         march.fate = farther ? known.fate : HIT;
         march.steps += known.steps;
+        group = uint(GROUP);
+#ifdef FLATS
+        group = march.t < flat_ahead ? group : 0u;
+#endif
+        group = farther ? known.group : group;
         lost = lost || known.lost;
     }
 #endif
     if (exists)
         ends[march.index] = !is_ray && march.fate == MISS ? INFINITE : march.t;
-    if (exists && is_ray)
+    // Tiles count from the corner of the band, which is a corner of tiles of the picture.
+    if (exists && control.phase == BEAMS_8 && march.fate != MISS)
+        tiles[atomicAdd(counts.tiles, 1u)] = march.index - work.extent.x * work.extent.y;
+    if (exists && is_ray) {
         fates[march.index] =
-            pack_ray(Ray(march.t, march.side, march.steps, march.fate, lost));
+            pack_ray(Ray(march.t, march.side, march.steps, march.fate, lost, group));
+        most_steps = max(most_steps, march.steps);
+    }
 }
 
 void end_group(uint turns)
 {
-    if (control.phase != RAYS && turns > 0u)
-        atomicAdd(counts.beam_evaluations, turns);
+    if (turns > 0u)
+        atomicAdd(counts.evaluations, turns);
+    if (most_steps > 0u)
+        atomicMax(counts.most_evaluations, most_steps);
 }
 
 #include "schedule.glsl"

@@ -44,6 +44,17 @@ static double distance_to(const Job *job, const KrsGroup *group)
     return sqrt(sum);
 }
 
+static bool find_kernels(Job *job, MarchPart *part)
+{
+    KrsRendering *r = job->rendering;
+    part->schedule  = rendering_schedule_of_group(r, job->asked, part->group + 1);
+    part->trace     = rendering_trace(r, job->options.trace, part->schedule, part->group + 1);
+    if (job->options.normals == KRS_NORMALS_ANALYTIC)
+        return part->trace != NULL;
+    part->normals = rendering_secondary(r, part->schedule, job->options.normals, part->group + 1);
+    return part->trace && part->normals;
+}
+
 bool apart_prepare(Job *job, KrsFrame *frame)
 {
     const KrsProgram *program = job->rendering->program;
@@ -54,11 +65,9 @@ bool apart_prepare(Job *job, KrsFrame *frame)
         return true;
     for (uint32_t group = 0; group < program->group_count; group++) {
         MarchPart part = {.group = group};
-        part.trace = rendering_trace(job->rendering, job->options.trace, job->options.schedule,
-                                     group + 1);
         double    away = distance_to(job, &program->groups[group]);
         uint32_t  at   = job->part_count++;
-        if (!part.trace)
+        if (!find_kernels(job, &part))
             return false;
         for (; at > 0 && distance[at - 1] > away; at--) {
             distance[at]   = distance[at - 1];

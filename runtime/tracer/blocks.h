@@ -26,8 +26,8 @@ static_assert(sizeof(FrameBlock) == 176, "std140");
 enum { TRACE_RAYS, TRACE_BEAMS_32, TRACE_BEAMS_8 };
 enum { SECONDARY_NORMALS, SECONDARY_OCCLUSION, SECONDARY_SHADOW };
 enum { SHADE_ONE_LIGHT, SHADE_FINISH };
-enum { FILL_LIST_TILES, FILL_JUDGE, FILL_FILL };
-enum { LIST_ALL, LIST_ANCHORS, LIST_REST }; /* of solid.glsl */
+enum { FILL_JUDGE, FILL_FILL };
+enum { LIST_ALL, LIST_ANCHORS, LIST_REST, LIST_OF_GROUP = 4 }; /* of solid.glsl */
 
 enum { ITEMS_FRESH, ITEMS_QUEUED, ITEMS_REST };
 enum { LIGHT_POSITIONAL = 1, LIGHT_CASTS_SHADOWS = 2 };
@@ -63,21 +63,24 @@ typedef struct ControlBlock {
     uint32_t items, share;
     uint32_t reading, writing;
     uint32_t value; /* SECONDARY_OCCLUSION or SECONDARY_SHADOW */
+    uint32_t rows;  /* bits of ResultRow */
+    uint32_t parts;
+    uint32_t open;  /* 1: no occlusion */
     /* counted by the kernels: */
-    uint32_t queued, left, tiles, solid, anchors, rest, unresolved, beam_evaluations;
+    uint32_t queued, left, tiles, solid, anchors, rest, unresolved, evaluations, most_evaluations;
+    uint32_t of_group[9]; /* KRS_MOST_GROUPS and 1 */
 } ControlBlock;
 
-/* Pixel of results.glsl, std430. */
-typedef struct PixelBlock {
-    float    color[4];
-    float    position[3], depth;
-    float    normal[3];
-    uint32_t component;
-    float    albedo[3];
-    uint32_t level, instance;
-    uint32_t steps, evaluations, most;
-} PixelBlock;
-static_assert(sizeof(PixelBlock) == 80, "std430");
+/* Results of results.glsl: rows of four numbers, each for all pixels of a band. */
+typedef enum ResultRow {
+    ROW_COLORS,
+    ROW_PLACES,  /* position, depth */
+    ROW_NORMALS, /* normal, component */
+    ROW_ALBEDOS, /* albedo, level */
+    ROW_COUNTS,  /* instance, steps */
+    RESULT_ROWS
+} ResultRow;
+enum { RESULT_NUMBERS = 4, RESULT_BYTES = 4 * RESULT_NUMBERS, COMPONENT_NUMBER = 3 };
 
 /* Only their sizes matter to the host. */
 enum { FATE_MISS = 2 }; /* a packed ray that took no step (frame.glsl) */
@@ -102,8 +105,11 @@ static_assert(sizeof(AnswerBlock) == 96, "std430");
 /* Two rows of Questions and one of Ways of query.comp. */
 typedef struct QuestionBlock {
     float origin[3], end;
-    float direction[3], side;
+    float direction[3], kind;
 } QuestionBlock;
+/* Of a ray: it begins in the open; or somewhere, and ends somewhere; or at what is the end of all
+   solids, so that it has left them there. */
+enum { ENDS_ANYWHERE, BEGINS_OUTSIDE, ENDS_AT_WALLS };
 
 enum { QUERY_MARCHING, QUERY_HIT, QUERY_MISS }; /* the fates of frame.glsl */
 typedef struct WayBlock {

@@ -10,7 +10,8 @@ const char *const krs_trace_names[KRS_TRACE_COUNT] = {"default", "plain", "relax
                                                         "root-free", "directional", "binary",
                                                         "predicted"};
 const char *const krs_schedule_names[KRS_SCHEDULE_COUNT] = {"default", "pixel", "refill", "queue"};
-const char *const krs_components_names[KRS_COMPONENTS_COUNT] = {"default", "together", "apart"};
+const char *const krs_components_names[KRS_COMPONENTS_COUNT] = {"default", "together", "apart",
+                                                                "packed"};
 const char *const krs_normals_names[KRS_NORMALS_COUNT] = {
     "default", "forward", "tetrahedron", "octahedron", "cube", "icosahedron", "dodecahedron",
     "analytic",

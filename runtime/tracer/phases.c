@@ -11,6 +11,7 @@
 #include "runtime/tracer/view.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #define MOST_TURNS      16384 /* of a lane that takes item after item */
@@ -95,7 +96,7 @@ typedef struct Dealing {
 static Dealing dealing(const Job *job)
 {
     uint32_t steps = job->options.steps_at_once;
-    if (job->options.schedule == KRS_SCHEDULE_REFILL)
+    if (job->schedule == KRS_SCHEDULE_REFILL)
         return (Dealing){8, 128, 8 * steps < MOST_TURNS ? 8 * steps : MOST_TURNS};
     return (Dealing){64, 1, steps};
 }
@@ -112,20 +113,78 @@ static bool run_items(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock 
     return run_groups(job, phase, kernel, work, (items + in_group - 1) / in_group);
 }
 
+/* One of several dispatches of a phase: what the control block tells it. */
+typedef struct Errand {
+    const Kernel *kernel;
+    ControlBlock  control;
+    uint32_t      steps, groups;
+} Errand;
+
+static Errand errand(const Job *job, const Kernel *kernel, uint32_t phase, uint32_t items,
+                     Dealing deal)
+{
+    uint32_t in_group = deal.lanes * deal.share;
+    Errand   errand   = {.kernel = kernel, .steps = deal.steps};
+    errand.control         = *(const ControlBlock *)job->rendering->control.bytes;
+    errand.control.phase   = phase;
+    errand.control.source  = ITEMS_FRESH;
+    errand.control.items   = items;
+    errand.control.share   = deal.share;
+    errand.groups          = (items + in_group - 1) / in_group;
+    return errand;
+}
+
+static bool run_each(Job *job, KrsPhase phase, const Errand *errands, size_t count,
+                     WorkBlock *work)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    for (size_t i = 0; i < count; i++) {
+        memcpy(control, &errands[i].control, offsetof(ControlBlock, queued));
+        work->steps = errands[i].steps;
+        if (!run_groups(job, phase, errands[i].kernel, work, errands[i].groups))
+            return false;
+    }
+    return true;
+}
+
+/* Runs one after the other, none of which leaves an item over: in one submission, as that costs
+   what thousands of rays do, if all together are no longer than a slice. */
+static bool run_errands(Job *job, KrsPhase phase, const Errand *errands, size_t count,
+                        WorkBlock *work)
+{
+    uint32_t *at_once = groups_at_once(job, phase, errands[0].kernel), groups = 0;
+    double    ms = 0;
+    for (size_t i = 0; i < count; i++)
+        groups += errands[i].groups;
+    if (groups == 0 || groups > *at_once)
+        return run_each(job, phase, errands, count, work);
+    if (!gpu_begin(job->gpu))
+        return false;
+    for (size_t i = 0; i < count; i++) {
+        if (errands[i].groups == 0)
+            continue;
+        work->first  = 0;
+        work->groups = errands[i].groups;
+        work->stride = rendering_spread(job->rendering, errands[i].groups);
+        work->steps  = errands[i].steps;
+        vkCmdUpdateBuffer(job->gpu->commands, job->rendering->control.buffer, 0,
+                          offsetof(ControlBlock, queued), &errands[i].control);
+        gpu_barrier(job->gpu);
+        rendering_dispatch(job->rendering, errands[i].kernel, job->rendering->band_set, work,
+                           sizeof *work, errands[i].groups);
+        gpu_barrier(job->gpu);
+    }
+    if (!gpu_finish(job->gpu, &ms))
+        return false;
+    job->picture->stats.phase_ms[phase] += ms;
+    if (ms > job->options.slice_ms)
+        *at_once = next_slice(groups, ms, job->options.slice_ms);
+    return report(job, 1);
+}
+
 static uint32_t tiles_of_band(const WorkBlock *work)
 {
     return ((work->extent[0] + TILE - 1) / TILE) * ((work->extent[1] + TILE - 1) / TILE);
-}
-
-/* Lists the tiles whose beams find something; the rays of all others miss. */
-static bool list_tiles(Job *job, WorkBlock *work)
-{
-    ControlBlock *control = job->rendering->control.bytes;
-    control->phase = FILL_LIST_TILES;
-    control->tiles = 0;
-    control->listed = 1;
-    return run_all(job, KRS_PHASE_BEAMS, &job->rendering->renderer->fill, work,
-                   tiles_of_band(work));
 }
 
 /* Until a ray is found to hit something it misses. */
@@ -146,24 +205,27 @@ static uint32_t tiles_touched(const WorkBlock *work, uint32_t side)
     return tiles;
 }
 
-/* Beams of all tiles, counted in the whole picture, that the band has a part of. */
+/* Beams of all tiles, counted in the whole picture, that the band has a part of.  Those of 8x8
+   pixels that find something are listed; the rays of all others miss. */
 static bool march_beams(Job *job, WorkBlock *work)
 {
     static const struct { uint32_t phase, side; } sizes[] = {{TRACE_BEAMS_32, 32},
                                                              {TRACE_BEAMS_8, 8}};
     ControlBlock *control = job->rendering->control.bytes;
     Dealing       deal = dealing(job);
-    control->source = ITEMS_FRESH;
+    Errand        beams[2];
     deal.share = deal.share < 8 ? deal.share : 8;
     deal.steps = deal.share * MOST_BEAM_STEPS; /* none is saved */
+    control->tiles = 0;
     for (int i = 0; i < 2; i++) {
-        control->phase = sizes[i].phase;
-        if (!run_items(job, KRS_PHASE_BEAMS, job->beams, work, tiles_touched(work, sizes[i].side),
-                       deal))
-            return false;
-        control->follow = 1;
+        beams[i] = errand(job, job->beams, sizes[i].phase, tiles_touched(work, sizes[i].side),
+                          deal);
+        beams[i].control.follow = i > 0;
     }
-    return list_tiles(job, work);
+    if (!run_errands(job, KRS_PHASE_BEAMS, beams, 2, work))
+        return false;
+    control->follow = control->listed = 1;
+    return true;
 }
 
 /* First every pixel of the band, or of the listed tiles, until all have been begun; then, pass by
@@ -244,14 +306,26 @@ static bool march_all(Job *job, WorkBlock *work)
         const KrsGroup  *group = &job->rendering->program->groups[part->group];
         view_place_box(&job->view, group->low, group->high, frame);
         job->trace = job->beams = part->trace;
+        job->schedule = part->schedule;
         double share = job->share;
         good = march(job, work);
         job->share = share;
     }
+    job->schedule = job->options.schedule;
     memcpy(frame->low, job->frame.low, sizeof frame->low);
     memcpy(frame->high, job->frame.high, sizeof frame->high);
     job->trace = whole;
     return good;
+}
+
+/* Of the pixels of a list. */
+static Dealing deal_around(const Job *job, uint32_t count)
+{
+    Dealing deal = dealing(job);
+    deal.steps = MOST_TURNS;
+    while (deal.share > 8 && count / (deal.lanes * deal.share) < 64)
+        deal.share /= 2; /* groups enough for every core of the device */
+    return deal;
 }
 
 /* A phase of secondary.comp, about the pixels of a list. */
@@ -259,10 +333,7 @@ static bool look_around(Job *job, KrsPhase phase, uint32_t secondary, WorkBlock 
                         uint32_t list, uint32_t count)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    Dealing       deal = dealing(job);
-    deal.steps = MOST_TURNS;
-    while (deal.share > 8 && count / (deal.lanes * deal.share) < 64)
-        deal.share /= 2; /* groups enough for every core of the device */
+    Dealing       deal = deal_around(job, count);
     control->phase = secondary;
     control->source = ITEMS_FRESH;
     control->reading = list * work->extent[0] * work->extent[1];
@@ -273,6 +344,28 @@ static bool look_around(Job *job, KrsPhase phase, uint32_t secondary, WorkBlock 
         control->source = ITEMS_REST;
     } while (control->left > 0);
     return true;
+}
+
+/* Where components were marched by themselves, so is the normal of each found: at the surface of
+   one the others do not count. */
+static bool find_normals(Job *job, WorkBlock *work)
+{
+    const ControlBlock *control = job->rendering->control.bytes;
+    Errand              errands[1 + KRS_MOST_GROUPS];
+    if (!control->parts)
+        return look_around(job, KRS_PHASE_NORMALS, SECONDARY_NORMALS, work, LIST_ALL,
+                           control->solid);
+    for (uint32_t i = 0; i <= job->part_count; i++) {
+        bool     part  = i < job->part_count; /* else what belongs to none: planes */
+        uint32_t group = part ? job->parts[i].group + 1 : 0;
+        uint32_t count = control->of_group[group];
+        job->schedule  = part ? job->parts[i].schedule : job->options.schedule;
+        errands[i] = errand(job, part ? job->parts[i].normals : job->secondary, SECONDARY_NORMALS,
+                            count, deal_around(job, count));
+        errands[i].control.reading =
+            (LIST_OF_GROUP + group) * work->extent[0] * work->extent[1];
+    }
+    return run_errands(job, KRS_PHASE_NORMALS, errands, 1 + job->part_count, work);
 }
 
 /* As much for a quarter of the pixels; the others are filled in where that cannot be seen, and
@@ -295,13 +388,31 @@ static bool look_sparsely(Job *job, KrsPhase phase, uint32_t secondary, WorkBloc
            look_around(job, phase, secondary, work, LIST_REST, control->rest);
 }
 
+bool lights_by_points(const Job *job, const KrsLight *light)
+{
+    return light->shadow && (job->options.shadows == KRS_SHADOWS_AREA || light->softness <= 0);
+}
+
+/* A ray that goes from root to root knows of no way beside it, so none is filled in. */
+static bool find_visible(Job *job, const KrsLight *light, WorkBlock *work)
+{
+    Kernel *secondary = job->secondary;
+    if (!job->shadows || !lights_by_points(job, light))
+        return look_sparsely(job, KRS_PHASE_SHADOWS, SECONDARY_SHADOW, work);
+    job->secondary = job->shadows;
+    bool good = look_around(job, KRS_PHASE_SHADOWS, SECONDARY_SHADOW, work, LIST_ALL,
+                            ((ControlBlock *)job->rendering->control.bytes)->solid);
+    job->secondary = secondary;
+    return good;
+}
+
 static bool light_up(Job *job, WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
     job->share /= (double)job->view.light_count;
     for (size_t i = 0; i < job->view.light_count; i++, job->done += job->share) {
         control->light = (uint32_t)i;
-        if (!look_sparsely(job, KRS_PHASE_SHADOWS, SECONDARY_SHADOW, work))
+        if (job->view.lights[i].shadow && !find_visible(job, &job->view.lights[i], work))
             return false;
         control->phase = SHADE_ONE_LIGHT;
         control->reading = 0;
@@ -346,15 +457,17 @@ static bool run_step(Job *job, Step step, WorkBlock *work)
         return march_all(job, work);
     case STEP_BACKGROUND:
         control->solid = control->anchors = control->reading = 0;
+        control->parts = job->part_count > 0 && job->parts[0].normals;
+        memset(control->of_group, 0, sizeof control->of_group);
         return run_all(job, KRS_PHASE_RESOLVE, &r->renderer->background, work, pixels);
     case STEP_NORMALS:
-        return look_around(job, KRS_PHASE_NORMALS, SECONDARY_NORMALS, work, LIST_ALL,
-                           control->solid);
+        return find_normals(job, work);
     case STEP_MATERIAL:
         control->reading = 0;
         return run_all(job, KRS_PHASE_SHADING, job->material, work, control->solid);
     case STEP_OCCLUSION:
-        return look_sparsely(job, KRS_PHASE_OCCLUSION, SECONDARY_OCCLUSION, work);
+        return control->open ||
+               look_sparsely(job, KRS_PHASE_OCCLUSION, SECONDARY_OCCLUSION, work);
     case STEP_LIGHTS:
         return light_up(job, work);
     case STEP_FINISH:

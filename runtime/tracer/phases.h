@@ -10,16 +10,21 @@
 typedef struct MarchPart {
     uint32_t group;
     Kernel  *trace;
+    Kernel  *normals; /* NULL: they are found by the whole distance */
+    KrsSchedule schedule;
 } MarchPart;
 
 typedef struct Job {
     KrsRendering    *rendering;
     Gpu             *gpu;
     KrsRenderOptions options; /* with nothing left to be defaulted */
+    KrsSchedule      asked;    /* for */
+    KrsSchedule      schedule; /* of the items that are dealt out now */
     KrsView          view;
     FrameBlock       frame;
     double           anchor[3]; /* that points are given from on the device; 0: they are not */
     Kernel          *trace, *beams, *secondary, *material;
+    Kernel          *shadows; /* of points of lights; NULL: as `secondary` does it */
     MarchPart        parts[KRS_MOST_GROUPS]; /* the nearest first */
     bool             rest;                   /* planes are not marched, but known (FLATS) */
     uint32_t         part_count;             /* 0: all are marched together, by `trace` */
@@ -29,6 +34,9 @@ typedef struct Job {
     double           done, share; /* of the whole: before this phase, and of it */
     double           shown;       /* the progress that was reported */
 } Job;
+
+/* Whether rays to a light go to points of it, not to all of it at once. */
+bool lights_by_points(const Job *job, const KrsLight *light);
 
 /* Traces ray number `index` of every pixel of the band and adds what it sees to the results.
    `done` and `share` of the job are its own. */

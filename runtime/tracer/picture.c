@@ -11,19 +11,20 @@ static const struct Plane {
     size_t   member;  /* offset of its pointer in a KrsPicture */
     uint32_t bit;
     size_t   bytes;   /* per pixel */
-    size_t   offset;  /* in a PixelBlock */
+    ResultRow row;    /* that has it, */
+    size_t   number;  /* from this of its numbers on */
 } planes[] = {
-#define PLANE(name, bit, numbers)                                                               \
-    {offsetof(KrsPicture, name), bit, 4 * numbers, offsetof(PixelBlock, name)}
-    PLANE(color, KRS_PLANE_COLOR, 4),
-    PLANE(depth, KRS_PLANE_DEPTH, 1),
-    PLANE(position, KRS_PLANE_POSITION, 3),
-    PLANE(normal, KRS_PLANE_NORMAL, 3),
-    PLANE(albedo, KRS_PLANE_ALBEDO, 3),
-    PLANE(component, KRS_PLANE_IDS, 1),
-    PLANE(level, KRS_PLANE_IDS, 1),
-    PLANE(instance, KRS_PLANE_IDS, 1),
-    PLANE(steps, KRS_PLANE_STEPS, 1),
+#define PLANE(name, bit, numbers, row, number)                                                  \
+    {offsetof(KrsPicture, name), bit, 4 * numbers, row, number}
+    PLANE(color, KRS_PLANE_COLOR, 4, ROW_COLORS, 0),
+    PLANE(depth, KRS_PLANE_DEPTH, 1, ROW_PLACES, 3),
+    PLANE(position, KRS_PLANE_POSITION, 3, ROW_PLACES, 0),
+    PLANE(normal, KRS_PLANE_NORMAL, 3, ROW_NORMALS, 0),
+    PLANE(albedo, KRS_PLANE_ALBEDO, 3, ROW_ALBEDOS, 0),
+    PLANE(component, KRS_PLANE_IDS, 1, ROW_NORMALS, COMPONENT_NUMBER),
+    PLANE(level, KRS_PLANE_IDS, 1, ROW_ALBEDOS, 3),
+    PLANE(instance, KRS_PLANE_IDS, 1, ROW_COUNTS, 0),
+    PLANE(steps, KRS_PLANE_STEPS, 1, ROW_COUNTS, 1),
 #undef PLANE
 };
 enum { PLANE_COUNT = sizeof planes / sizeof planes[0] };
@@ -67,43 +68,42 @@ KrsPicture *picture_new(Gpu *gpu, uint32_t width, uint32_t height, KrsWindow win
     return picture;
 }
 
-static void take_plane(void *plane, const PixelBlock *pixels, size_t first, size_t count,
-                       const struct Plane *description)
+uint32_t picture_rows(const KrsPicture *picture)
 {
-    size_t          numbers = description->bytes / 4, stride = sizeof *pixels / 4;
-    uint32_t       *to = (uint32_t *)plane + first * numbers;
-    const uint32_t *from = (const uint32_t *)((const char *)pixels + description->offset);
-    for (size_t k = 0; k < count; k++)
-        for (size_t n = 0; n < numbers; n++)
-            memcpy(&to[k * numbers + n], &from[k * stride + n], sizeof *to);
+    uint32_t rows = 1u << ROW_COLORS;
+    for (int i = 0; i < PLANE_COUNT; i++)
+        if (plane_get(picture, i))
+            rows |= 1u << planes[i].row;
+    /* Where something is, components tell. */
+    return rows & 1u << ROW_PLACES ? rows | 1u << ROW_NORMALS : rows;
 }
 
-void picture_take(KrsPicture *picture, const PixelBlock *pixels, size_t first, size_t count,
-                  uint32_t samples)
+static void take_plane(void *plane, const uint32_t *from, size_t first, size_t count,
+                       size_t numbers)
 {
-    /* In pieces that stay in the cache while plane after plane is filled. */
-    enum { PIECE = 256 };
-    for (size_t k = 0; k < count; k += PIECE)
-        for (int i = 0; i < PLANE_COUNT; i++) {
-            void *plane = plane_get(picture, i);
-            if (plane)
-                take_plane(plane, pixels + k, first + k, count - k < PIECE ? count - k : PIECE,
-                           &planes[i]);
-        }
+    uint32_t *to = (uint32_t *)plane + first * numbers;
+    for (size_t k = 0; k < count; k++)
+        for (size_t n = 0; n < numbers; n++)
+            memcpy(&to[k * numbers + n], &from[k * RESULT_NUMBERS + n], sizeof *to);
+}
+
+void picture_take(KrsPicture *picture, const uint32_t *results, size_t row_pixels, size_t first,
+                  size_t count, uint32_t samples)
+{
+    const size_t    row = row_pixels * RESULT_NUMBERS;
+    const uint32_t *components = results + ROW_NORMALS * row + COMPONENT_NUMBER;
+    for (int i = 0; i < PLANE_COUNT; i++) {
+        void *plane = plane_get(picture, i);
+        if (plane)
+            take_plane(plane, results + planes[i].row * row + planes[i].number, first, count,
+                       planes[i].bytes / 4);
+    }
     for (size_t k = 4 * first; picture->color && samples > 1 && k < 4 * (first + count); k++)
         picture->color[k] /= (float)samples;
 
     for (size_t k = 0; picture->depth && k < count; k++)
-        if (pixels[k].component == 0)
+        if (components[k * RESULT_NUMBERS] == 0)
             picture->depth[first + k] = INFINITY;
-
-    KrsRenderStats *stats = &picture->stats;
-    for (size_t k = 0; k < count; k++) {
-        uint32_t most = pixels[k].most > pixels[k].steps ? pixels[k].most : pixels[k].steps;
-        stats->evaluations += (uint64_t)pixels[k].steps + pixels[k].evaluations;
-        if (most > stats->most_evaluations_per_ray)
-            stats->most_evaluations_per_ray = most;
-    }
 }
 
 void krs_picture_free(KrsPicture *picture)

@@ -125,7 +125,9 @@ static QuestionBlock ask(const KrsRay *ray)
 {
     const double  nowhere = 1e18;
     QuestionBlock question = {.end = (float)fmin(ray->end - ray->start, nowhere),
-                              .side = ray->start > 0 ? 1 : 0};
+                              .kind = ray->start > 0 ? BEGINS_OUTSIDE
+                                      : ray->walls   ? ENDS_AT_WALLS
+                                                     : ENDS_ANYWHERE};
     for (int k = 0; k < 3; k++) {
         question.origin[k] = (float)(ray->origin[k] + ray->start * ray->direction[k]);
         question.direction[k] = (float)ray->direction[k];

@@ -11,8 +11,10 @@
 #include "runtime/tracer/picture.h"
 #include "runtime/tracer/view.h"
 
-/* Pixels of a band: room for 80 MB of buffers, none larger than the smallest devices bind. */
+/* Pixels of a band: room for 80 MB of buffers, none larger than the smallest devices bind; on a
+   processor half as many, which stay nearer to it and are made of pages that must be cleared. */
 #define BAND_PIXELS     (UINT64_C(1) << 18)
+#define BAND_PIXELS_CPU (UINT64_C(1) << 17)
 /* Bands are halved when the device lacks memory, down to this. */
 #define BAND_PIXELS_MIN (UINT64_C(1) << 12)
 #define LARGEST_SIDE    16384
@@ -56,7 +58,9 @@ static bool settle_options(Job *job)
         return refuse(job, "there is no such method, schedule, stencil or kind of shadow");
     if (o->normals == KRS_NORMALS_ANALYTIC && !job->rendering->program->gradients)
         return refuse(job, "analytic normals need a scene that was compiled with `gradients`");
+    job->asked = o->schedule;
     rendering_choose(job->rendering, &o->trace, &o->schedule);
+    job->schedule = o->schedule;
     if (o->schedule == KRS_SCHEDULE_REFILL && !job->gpu->votes)
         return refuse(job, "the device has no votes among lanes, which `refill` needs");
     o->steps_at_once =
@@ -168,12 +172,12 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels)
     } wanted[] = {
         {&band->ends, 1, (pixels + most_beams(pixels)) * sizeof(float), ON_DEVICE, "depths"},
         {&band->hits, 2, pixels * HIT_BYTES, ON_DEVICE, "hits"},
-        {&band->results, 3, pixels * sizeof(PixelBlock), ON_DEVICE, "pixels"},
+        {&band->results, 3, pixels * RESULT_ROWS * RESULT_BYTES, ON_DEVICE, "pixels"},
         {&band->fates, 5, pixels * sizeof(uint32_t), ON_DEVICE, "rays"},
         {&band->queue, 6, 2 * pixels * MARCH_BYTES, ON_DEVICE, "queue of rays"},
         {&band->taken, 7, most_beams(pixels) * sizeof(uint32_t), ON_DEVICE, "shares of lanes"},
         {&band->tiles, 9, most_beams(pixels) * sizeof(uint32_t), ON_DEVICE, "tiles"},
-        {&band->fetched, 0, pixels * sizeof(PixelBlock), SHARED, "pixels to read"},
+        {&band->fetched, 0, pixels * RESULT_ROWS * RESULT_BYTES, SHARED, "pixels to read"},
     };
     if (band->pixels >= pixels)
         return true;
@@ -203,7 +207,8 @@ static uint32_t rows_within(uint32_t width, uint64_t pixels)
 static uint32_t make_room(Job *job)
 {
     const KrsWindow *window = &job->cover;
-    for (uint64_t pixels = BAND_PIXELS; pixels >= BAND_PIXELS_MIN; pixels /= 2) {
+    const uint64_t   most = gpu_is_cpu(job->gpu) ? BAND_PIXELS_CPU : BAND_PIXELS;
+    for (uint64_t pixels = most; pixels >= BAND_PIXELS_MIN; pixels /= 2) {
         uint32_t rows = rows_within(window->width, pixels);
         rows = rows < window->height ? rows : window->height;
         if (band_create(job->rendering, (uint64_t)rows * window->width)) {
@@ -218,33 +223,40 @@ static uint32_t make_room(Job *job)
 
 /* ---- Bands ---- */
 
-/* The results are summed up. */
-static bool clear_results(Job *job)
+/* The rows that are asked for: colours are summed up, and what sees nothing is all zero. */
+static bool clear_results(Job *job, uint32_t rows, VkDeviceSize row_bytes)
 {
     double ms = 0;
     if (!gpu_begin(job->gpu))
         return false;
-    vkCmdFillBuffer(job->gpu->commands, job->rendering->band.results.buffer, 0, VK_WHOLE_SIZE, 0);
+    for (VkDeviceSize row = 0; row < RESULT_ROWS; row++)
+        if (rows >> row & 1)
+            vkCmdFillBuffer(job->gpu->commands, job->rendering->band.results.buffer,
+                            row * row_bytes, row_bytes, 0);
     return gpu_finish(job->gpu, &ms);
 }
 
-static bool fetch(Job *job, uint64_t pixels)
+static bool fetch(Job *job, uint32_t rows, VkDeviceSize row_bytes)
 {
-    double ms = 0; /* copying is no phase */
+    double       ms = 0; /* copying is no phase */
+    VkBufferCopy copies[RESULT_ROWS];
+    uint32_t     count = 0;
     if (!gpu_begin(job->gpu))
         return false;
+    for (VkDeviceSize row = 0; row < RESULT_ROWS; row++)
+        if (rows >> row & 1)
+            copies[count++] = (VkBufferCopy){row * row_bytes, row * row_bytes, row_bytes};
     vkCmdCopyBuffer(job->gpu->commands, job->rendering->band.results.buffer,
-                    job->rendering->band.fetched.buffer, 1,
-                    &(VkBufferCopy){.size = pixels * sizeof(PixelBlock)});
+                    job->rendering->band.fetched.buffer, count, copies);
     return gpu_finish(job->gpu, &ms);
 }
 
 /* Back from the anchor. */
-static void place_positions(Job *job, const PixelBlock *pixels, size_t first, size_t count)
+static void place_positions(Job *job, const uint32_t *normals, size_t first, size_t count)
 {
     float *position = job->picture->position;
     for (size_t k = 0; position && is_anchored(job) && k < count; k++)
-        for (int i = 0; pixels[k].component && i < 3; i++) {
+        for (int i = 0; normals[k * RESULT_NUMBERS + COMPONENT_NUMBER] && i < 3; i++) {
             float *number = &position[3 * (first + k) + i];
             *number = (float)(*number + job->anchor[i]);
         }
@@ -254,14 +266,17 @@ static void place_positions(Job *job, const PixelBlock *pixels, size_t first, si
 static void take_band(Job *job, uint32_t from, uint32_t rows)
 {
     const KrsWindow *cover = &job->cover, *crop = &job->options.crop;
+    const uint32_t  *results = job->rendering->band.fetched.bytes;
+    size_t           band = (size_t)rows * cover->width;
     for (uint32_t y = cover->y + from; y < cover->y + from + rows; y++) {
         if (y < crop->y || y >= crop->y + crop->height)
             continue;
         size_t row = (size_t)(y - cover->y - from) * cover->width + (crop->x - cover->x);
-        const PixelBlock *pixels = (PixelBlock *)job->rendering->band.fetched.bytes + row;
-        size_t            first = (size_t)(y - crop->y) * crop->width;
-        picture_take(job->picture, pixels, first, crop->width, job->options.samples);
-        place_positions(job, pixels, first, crop->width);
+        size_t first = (size_t)(y - crop->y) * crop->width;
+        picture_take(job->picture, results + row * RESULT_NUMBERS, band, first, crop->width,
+                     job->options.samples);
+        place_positions(job, results + (ROW_NORMALS * band + row) * RESULT_NUMBERS, first,
+                        crop->width);
     }
 }
 
@@ -269,6 +284,8 @@ static bool render_band(Job *job, uint32_t from, uint32_t rows)
 {
     const KrsWindow *cover = &job->cover;
     ControlBlock    *control = job->rendering->control.bytes;
+    KrsRenderStats  *stats = &job->picture->stats;
+    VkDeviceSize     row_bytes = (VkDeviceSize)rows * cover->width * RESULT_BYTES;
     WorkBlock        work = {
         .corner = {cover->x, cover->y + from},
         .extent = {cover->width, rows},
@@ -278,8 +295,10 @@ static bool render_band(Job *job, uint32_t from, uint32_t rows)
         .lights = (uint32_t)job->view.light_count,
         .shadows = job->options.shadows,
         .seed = (uint32_t)(job->options.seed ^ job->options.seed >> 32),
+        .rows = picture_rows(job->picture),
+        .open = job->options.no_occlusion,
     };
-    if (!clear_results(job))
+    if (!clear_results(job, control->rows, row_bytes))
         return false;
     for (uint32_t i = 0; i < job->options.samples; i++) {
         double band_share = (double)rows / cover->height;
@@ -287,11 +306,13 @@ static bool render_band(Job *job, uint32_t from, uint32_t rows)
         job->done = (double)from / cover->height + job->share * i;
         if (!phases_run(job, &work, i))
             return false;
-        job->picture->stats.unresolved += control->unresolved;
-        job->picture->stats.evaluations += control->beam_evaluations;
-        control->unresolved = control->beam_evaluations = 0;
+        stats->unresolved += control->unresolved;
+        stats->evaluations += control->evaluations;
+        if (control->most_evaluations > stats->most_evaluations_per_ray)
+            stats->most_evaluations_per_ray = control->most_evaluations;
+        control->unresolved = control->evaluations = control->most_evaluations = 0;
     }
-    if (!fetch(job, (uint64_t)rows * cover->width))
+    if (!fetch(job, control->rows, row_bytes))
         return false;
     take_band(job, from, rows);
     return true;
@@ -329,13 +350,28 @@ static bool find_marches(Job *job, KrsFrame *frame)
         return false;
     if (job->part_count > 0)
         return true;
-    job->rest = rendering_knows_flats(job->rendering) && begins_outside(job, frame);
-    uint32_t group = job->rest ? GROUP_REST : 0;
+    bool outside = begins_outside(job, frame);
+    job->rest = rendering_knows_flats(job->rendering) && outside;
+    bool     packed = outside && rendering_marches_packed(job->rendering, options->components,
+                                                          options->trace);
+    uint32_t group = packed ? GROUP_PACKED : job->rest ? GROUP_REST : 0;
     job->trace = rendering_trace(job->rendering, options->trace, options->schedule, group);
     job->beams = options->no_beams
                      ? job->trace
                      : rendering_beams(job->rendering, options->trace, options->schedule, group);
     return job->trace && job->beams;
+}
+
+/* The kernel of rays to points of lights, where one goes from root to root and a light needs it. */
+static bool find_shadows(Job *job)
+{
+    bool needed = false;
+    for (size_t i = 0; i < job->view.light_count; i++)
+        needed = needed || lights_by_points(job, &job->view.lights[i]);
+    if (!needed || !rendering_has_roots(job->rendering, job->options.trace))
+        return true;
+    job->shadows = rendering_shadows(job->rendering, job->options.schedule);
+    return job->shadows != NULL;
 }
 
 static bool render(Job *job, KrsFrame *frame)
@@ -348,9 +384,9 @@ static bool render(Job *job, KrsFrame *frame)
     if (!find_marches(job, frame))
         return false;
     job->secondary = rendering_secondary(job->rendering, job->options.schedule,
-                                         job->options.normals);
+                                         job->options.normals, 0);
     job->material = rendering_material(job->rendering);
-    if (!job->secondary || !job->material || !wait_for_kernels(job))
+    if (!job->secondary || !job->material || !find_shadows(job) || !wait_for_kernels(job))
         return false;
     double start = clock_ms();
     for (uint32_t from = 0; from < job->cover.height; from += rows) {

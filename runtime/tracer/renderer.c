@@ -151,6 +151,8 @@ static bool buffers_create(KrsRendering *rendering)
 
 /* Where a distance costs less than this, dealing items out to lanes costs more than it gains. */
 #define FLOPS_WORTH_REFILL 150
+/* For a part of the scene it is more: few of the rays of its tiles meet it. */
+#define FLOPS_WORTH_REFILL_APART 350
 
 void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule)
 {
@@ -163,6 +165,17 @@ void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedul
         *schedule = !software ? KRS_SCHEDULE_QUEUE
                   : heavy     ? KRS_SCHEDULE_REFILL
                               : KRS_SCHEDULE_PIXEL;
+}
+
+KrsSchedule rendering_schedule_of_group(const KrsRendering *rendering, KrsSchedule asked,
+                                        uint32_t group)
+{
+    KrsTrace trace = KRS_TRACE_DEFAULT;
+    bool     light = rendering->program->groups[group - 1].flops < FLOPS_WORTH_REFILL_APART;
+    if (asked == KRS_SCHEDULE_DEFAULT && light && gpu_is_cpu(&rendering->renderer->gpu))
+        return KRS_SCHEDULE_PIXEL;
+    rendering_choose(rendering, &trace, &asked);
+    return asked;
 }
 
 /* A queue is the kernel of pixels with fewer steps. */
@@ -188,8 +201,25 @@ bool rendering_marches_apart(const KrsRendering *rendering, KrsComponents compon
            (components == KRS_COMPONENTS_DEFAULT ? by_default : components == KRS_COMPONENTS_APART);
 }
 
+/* Whether rays go by what lies ahead of them (krs_along). */
+static bool goes_along(const KrsRendering *rendering, KrsTrace trace)
+{
+    bool known = trace >= KRS_TRACE_DIRECTIONAL ? rendering->program->inverts
+                                                : rendering->program->along;
+    return trace >= KRS_TRACE_EXACT && known && !rendering->in_use->anchored;
+}
+
+bool rendering_marches_packed(const KrsRendering *rendering, KrsComponents components,
+                              KrsTrace trace)
+{
+    bool by_default = rendering->program->heavy >= 2 && !gpu_is_cpu(&rendering->renderer->gpu);
+    return rendering->program->parts >= 2 && !goes_along(rendering, trace) &&
+           (components == KRS_COMPONENTS_DEFAULT ? by_default
+                                                 : components == KRS_COMPONENTS_PACKED);
+}
+
 typedef struct Variant {
-    char defines[160];
+    char defines[192];
 } Variant;
 
 /* By the numbers of AlongMethod. */
@@ -207,9 +237,6 @@ static Variant name_variant(const KrsRendering *rendering, KrsTrace trace, KrsSc
     uint32_t zones = rendering->in_use->zones;
     bool     anchored = rendering->in_use->anchored; /* has the distance and the surface alone */
     bool     by_ray = trace >= KRS_TRACE_EXACT;
-    bool     known = trace >= KRS_TRACE_DIRECTIONAL ? rendering->program->inverts
-                                                    : rendering->program->along;
-    bool     along = by_ray && !anchored && known;
     Variant  variant;
     int      length = snprintf(variant.defines, sizeof variant.defines,
                                "#define TRACE %du\n#define REFILL %d\n%s%s%s",
@@ -218,7 +245,7 @@ static Variant name_variant(const KrsRendering *rendering, KrsTrace trace, KrsSc
                                anchored ? "#define ANCHORED\n" : "",
                                rendering->renderer->early_outs && !anchored
                                    ? "#define EARLY_OUTS\n" : "",
-                               along ? along_names[trace] : "");
+                               goes_along(rendering, trace) ? along_names[trace] : "");
     if (zones > 0)
         snprintf(variant.defines + length, sizeof variant.defines - (size_t)length,
                  "#define ZONES %u\n", zones);
@@ -236,6 +263,8 @@ static Variant name_group(const KrsRendering *rendering, KrsTrace trace, KrsSche
     if (group > 0 && group < GROUP_REST)
         snprintf(variant.defines + length, sizeof variant.defines - length, "#define GROUP %u\n",
                  group);
+    if (group == GROUP_PACKED)
+        snprintf(variant.defines + length, sizeof variant.defines - length, "#define PACKED\n");
     return variant;
 }
 
@@ -277,18 +306,48 @@ static bool is_default(KrsNormals normals)
     return normals == KRS_NORMALS_DEFAULT || normals == KRS_NORMALS_OCTAHEDRON;
 }
 
-Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, KrsNormals normals)
+static Variant name_secondary(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+                              uint32_t group)
+{
+    Variant variant = name_variant(rendering, trace, schedule);
+    size_t  length  = strlen(variant.defines);
+    if (rendering->program->loose)
+        length += (size_t)snprintf(variant.defines + length, sizeof variant.defines - length,
+                                   "#define LOOSE\n");
+    if (rendering->program->along && !rendering->program->inverts)
+        length += (size_t)snprintf(variant.defines + length, sizeof variant.defines - length,
+                                   "#define ROOTS\n");
+    if (group > 0)
+        snprintf(variant.defines + length, sizeof variant.defines - length, "#define GROUP %u\n",
+                 group);
+    return variant;
+}
+
+bool rendering_has_roots(const KrsRendering *rendering, KrsTrace trace)
+{
+    return trace == KRS_TRACE_EXACT && rendering->program->along && !rendering->in_use->anchored;
+}
+
+Kernel *rendering_shadows(KrsRendering *rendering, KrsSchedule schedule)
+{
+    schedule = schedule_of_kernel(schedule);
+    return find_kernel(rendering, &rendering->in_use->shadows[schedule], "secondary.comp",
+                       name_secondary(rendering, KRS_TRACE_EXACT, schedule, 0));
+}
+
+Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, KrsNormals normals,
+                            uint32_t group)
 {
     schedule = schedule_of_kernel(schedule);
     normals  = is_default(normals) ? KRS_NORMALS_DEFAULT : normals;
-    Variant variant = name_variant(rendering, KRS_TRACE_PLAIN, schedule);
+    Variant variant = name_secondary(rendering, KRS_TRACE_PLAIN, schedule, group);
     size_t  length  = strlen(variant.defines);
     if (normals == KRS_NORMALS_ANALYTIC)
         snprintf(variant.defines + length, sizeof variant.defines - length, "#define GRADIENT\n");
     else if (normals != KRS_NORMALS_DEFAULT)
         snprintf(variant.defines + length, sizeof variant.defines - length, "#define STENCIL %d\n",
                  (int)normals);
-    return find_kernel(rendering, &rendering->in_use->secondary[normals][schedule],
+    return find_kernel(rendering, &rendering->in_use->secondary[normals][schedule][group],
                        "secondary.comp", variant);
 }
 
@@ -321,14 +380,17 @@ static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
     rendering_choose(rendering, &trace, &schedule);
     schedule = schedule_of_kernel(schedule);
     bool          apart = rendering_marches_apart(rendering, KRS_COMPONENTS_DEFAULT);
-    uint32_t      whole = rendering_knows_flats(rendering) ? GROUP_REST : 0;
-    Variant       primary[2 + KRS_MOST_GROUPS];
-    Variant       plain = name_variant(rendering, KRS_TRACE_PLAIN, schedule);
+    bool          packed = rendering_marches_packed(rendering, KRS_COMPONENTS_DEFAULT, trace);
+    uint32_t      whole = packed                             ? GROUP_PACKED
+                        : rendering_knows_flats(rendering) ? GROUP_REST : 0;
+    Variant       primary[GROUP_KINDS], normals[1 + KRS_MOST_GROUPS];
+    Variant       secondary = name_secondary(rendering, KRS_TRACE_PLAIN, schedule, 0);
     Variant       beams = name_group(rendering, KRS_TRACE_PLAIN, schedule, whole);
     Variant       query = name_variant(rendering, KRS_TRACE_AUTO, schedule);
     Variant       simple = name_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
-    KernelRequest pictures[4 + KRS_MOST_GROUPS] = {
-        {&to->secondary[KRS_NORMALS_DEFAULT][schedule], {"secondary.comp", scene, plain.defines}},
+    KernelRequest pictures[4 + 2 * KRS_MOST_GROUPS] = {
+        {&to->secondary[KRS_NORMALS_DEFAULT][schedule][0],
+         {"secondary.comp", scene, secondary.defines}},
         {&to->material, {"material.comp", scene, simple.defines}},
         {&to->trace[KRS_TRACE_PLAIN][schedule][whole], {"trace.comp", scene, beams.defines}},
     };
@@ -336,9 +398,18 @@ static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
     uint32_t first = apart ? 1 : whole, last = apart ? (uint32_t)rendering->program->group_count
                                                      : whole;
     for (uint32_t group = first; group <= last; group++) {
-        primary[group] = name_group(rendering, trace, schedule, group);
-        pictures[count++] = (KernelRequest){&to->trace[trace][schedule][group],
+        KrsSchedule own = apart ? rendering_schedule_of_group(rendering, KRS_SCHEDULE_DEFAULT,
+                                                              group)
+                                : schedule;
+        own            = schedule_of_kernel(own);
+        primary[group] = name_group(rendering, trace, own, group);
+        pictures[count++] = (KernelRequest){&to->trace[trace][own][group],
                                             {"trace.comp", scene, primary[group].defines}};
+        if (!apart)
+            continue;
+        normals[group] = name_secondary(rendering, KRS_TRACE_PLAIN, own, group);
+        pictures[count++] = (KernelRequest){&to->secondary[KRS_NORMALS_DEFAULT][own][group],
+                                            {"secondary.comp", scene, normals[group].defines}};
     }
     KernelRequest questions[] = {
         {&to->query[schedule], {"query.comp", scene, query.defines}},
@@ -357,10 +428,12 @@ static void kernels_destroy(Gpu *gpu, SceneKernels *kernels)
     kernel_destroy(gpu, &kernels->sample);
     for (int schedule = 0; schedule < KRS_SCHEDULE_COUNT; schedule++) {
         kernel_destroy(gpu, &kernels->query[schedule]);
+        kernel_destroy(gpu, &kernels->shadows[schedule]);
         for (int normals = 0; normals < KRS_NORMALS_COUNT; normals++)
-            kernel_destroy(gpu, &kernels->secondary[normals][schedule]);
+            for (uint32_t group = 0; group <= KRS_MOST_GROUPS; group++)
+                kernel_destroy(gpu, &kernels->secondary[normals][schedule][group]);
         for (int trace = 0; trace < KRS_TRACE_COUNT; trace++)
-            for (uint32_t group = 0; group <= GROUP_REST; group++)
+            for (uint32_t group = 0; group < GROUP_KINDS; group++)
                 kernel_destroy(gpu, &kernels->trace[trace][schedule][group]);
     }
     *kernels = (SceneKernels){0};

@@ -32,14 +32,17 @@ typedef struct Band {
 
 /* Instead of a group: all that is not a plane, where rays know planes by themselves. */
 enum { GROUP_REST = 1 + KRS_MOST_GROUPS };
+/* And all, part by part within each ray. */
+enum { GROUP_PACKED = 1 + GROUP_REST, GROUP_KINDS };
 
 /* The kernels with the scene in them, each compiled when it is first needed. */
 typedef struct SceneKernels {
     uint32_t zones; /* of the caller, that they have room for */
     bool     anchored; /* points are given from an anchor */
     Kernel   material, sample;
-    Kernel   trace[KRS_TRACE_COUNT][KRS_SCHEDULE_COUNT][2 + KRS_MOST_GROUPS]; /* [0]: of all */
-    Kernel   secondary[KRS_NORMALS_COUNT][KRS_SCHEDULE_COUNT];
+    Kernel   trace[KRS_TRACE_COUNT][KRS_SCHEDULE_COUNT][GROUP_KINDS]; /* [0]: of all */
+    Kernel   secondary[KRS_NORMALS_COUNT][KRS_SCHEDULE_COUNT][1 + KRS_MOST_GROUPS]; /* likewise */
+    Kernel   shadows[KRS_SCHEDULE_COUNT];
     Kernel   query[KRS_SCHEDULE_COUNT];
 } SceneKernels;
 
@@ -73,7 +76,12 @@ Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule sch
                         uint32_t group);
 /* Whether there is a march of GROUP_REST. */
 bool rendering_knows_flats(const KrsRendering *rendering);
-Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, KrsNormals normals);
+/* Of a group for normals alone. */
+Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, KrsNormals normals,
+                            uint32_t group);
+/* The same for rays to points of lights, where primary rays by this method go from root to root. */
+bool    rendering_has_roots(const KrsRendering *rendering, KrsTrace trace);
+Kernel *rendering_shadows(KrsRendering *rendering, KrsSchedule schedule);
 Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule);
 /* Likewise. */
 Kernel *rendering_material(KrsRendering *rendering);
@@ -81,8 +89,14 @@ Kernel *rendering_sample(KrsRendering *rendering);
 /* Puts what `make bench` found fastest for such a scene on such a device where the default is
    asked for. */
 void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule);
+/* The schedule for the rays of a group that is marched by itself. */
+KrsSchedule rendering_schedule_of_group(const KrsRendering *rendering, KrsSchedule asked,
+                                        uint32_t group);
 /* Whether groups of components are marched one after the other, where that can be. */
 bool rendering_marches_apart(const KrsRendering *rendering, KrsComponents components);
+/* Whether rays march by this method part by part, where that can be. */
+bool rendering_marches_packed(const KrsRendering *rendering, KrsComponents components,
+                              KrsTrace trace);
 /* Copies the frame's parameters and zones to the device, and chooses the kernels for them. */
 bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame);
 /* After it: gives points from an anchor from now on, and chooses the kernels for that. */

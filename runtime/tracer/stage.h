@@ -20,7 +20,7 @@ void stage_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *b
 
 /* Makes at most KERNELS_AT_ONCE kernels, and sends them through the driver once, in the
    background.  The scene's set may be VK_NULL_HANDLE. */
-enum { KERNELS_AT_ONCE = 12 };
+enum { KERNELS_AT_ONCE = 20 };
 bool stage_make_kernels(KrsRenderer *renderer, VkDescriptorSet scene_set,
                         const KernelRequest *requests, size_t count, double *spirv_ms,
                         double *pipeline_ms);

@@ -2,7 +2,7 @@
 # answers.sh: what query, info, devices, dump, explain and validate answer.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 31
+plan 36
 
 ask() { # question, options...
     question=$1
@@ -96,6 +96,29 @@ run info --json ball.krs
 [ "$status" -eq 0 ] && is_json <out && grep -q '"slope": ' out &&
     grep -q '"flops_per_evaluation": ' out && grep -q '"rule": "exact, by claim"' out
 result $? "info as JSON"
+# Slopes that are found for each frame: who has them, in which slot, and what is a frame without.
+cat >wave.krs <<'EOS'
+param k = 1;
+let sea = field(y - 0.1 * sin(k * x / (2 - time)));
+show sea;
+EOS
+run info wave.krs
+[ "$status" -eq 0 ] && grep -q 'derived for each frame by norms over all space' out &&
+    grep -q '^slope of each frame: slot 2, of wave.krs:2:11$' out
+result $? "info says what is derived for each frame"
+slopes='"frame_slopes": [{"slot": 2, "place": "wave.krs:2:11", "low": [null, null, null],'
+run info --json wave.krs
+[ "$status" -eq 0 ] && is_json <out && grep -qF "$slopes" out && grep -q '"per_frame": true' out
+result $? "and so does its JSON"
+run compile wave.krs -o compiled
+[ "$status" -eq 0 ] && is_json <compiled/wave.json && grep -qF "$slopes" compiled/wave.json &&
+    grep -q '"parameter_slots": 3' compiled/wave.json &&
+    grep -q 'krs_parameter\[2\].x' compiled/wave.glsl
+result $? "compile says in which slot of the GLSL it is"
+run query --time 2 wave.krs
+said 2 "at time 2 the slope of the expression at wave.krs:2:11 has no bound" "a frame without one"
+run query --set k=1e38 wave.krs
+said 2 "param \`k\` the slope of the expression at wave.krs:2:11 has no bound" "a value without one"
 run devices --json
 [ "$status" -eq 0 ] && is_json <out && grep -q '"preferred": true' out
 result $? "devices as JSON"

@@ -2,7 +2,7 @@
 # cache.sh: compiled shaders are kept from run to run, and no picture shows it.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 21
+plan 22
 export XDG_CACHE_HOME="$work/caches"
 cache=$XDG_CACHE_HOME/krs
 
@@ -47,6 +47,13 @@ run render other.krs --size 41x33 --quiet -o c.exr
 [ "$status" -eq 0 ] && [ "$(count "$cache")" -gt "$(wc -l <first)" ] &&
     [ "$(files "$cache" | comm -12 - first | wc -l)" -eq "$(wc -l <first)" ]
 result $? "another scene has entries of its own"
+
+echo 'show field(y - 0.1 * sin(time * x)).within(box([2, 1, 2]));' >wave.krs
+run render wave.krs --size 41x33 --quiet --time 1 -o one.exr
+files "$cache" >waves
+run render wave.krs --size 41x33 --quiet --time 9 -o nine.exr
+[ "$status" -eq 0 ] && files "$cache" | cmp -s - waves && ! cmp -s one.exr nine.exr
+result $? "slopes of other frames compile nothing"
 
 # Damage of several kinds, each to every file.
 files "$cache" >before

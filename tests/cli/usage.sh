@@ -2,7 +2,7 @@
 # usage.sh: command lines that are wrong, and the pages of help.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 47
+plan 48
 
 run
 said 2 "no command is given" "no command"
@@ -10,6 +10,8 @@ run rendr ball.krs
 said 2 "did you mean \`render\`?" "a misspelt command"
 run frobnicate
 said 2 "there is no command \`frobnicate\`" "an unknown command"
+run format ball.krs
+said 2 "not in this version" "a command that is missing"
 run render ball.krs --sise 8x8
 said 2 "did you mean --size?" "a misspelt option"
 run check ball.krs --size 8x8

@@ -28,7 +28,8 @@ static void count_errors(void *user, const KrsDiagnostic *diagnostic)
 static void check_planted(const char *bytes, size_t size)
 {
     static const char planted[] = "krs-planted-fault";
-    demand(!getenv("KRS_FUZZ_PLANTED") || size != sizeof planted - 1 || memcmp(bytes, planted, size) != 0);
+    demand(!getenv("KRS_FUZZ_PLANTED") || size != sizeof planted - 1 ||
+           memcmp(bytes, planted, size) != 0);
 }
 
 static void ask(const KrsScene *scene)
@@ -49,7 +50,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
 {
     size_t     errors  = 0;
-    KrsOptions options = {.diagnostic = count_errors, .user = &errors, .memory_limit = (size_t)1 << 30};
+    KrsOptions options = {.diagnostic = count_errors,
+                          .user = &errors,
+                          .memory_limit = (size_t)1 << 30};
     KrsScene  *scene;
     check_planted((const char *)bytes, size);
     KrsStatus status = krs_compile_text((const char *)bytes, size, "fuzz.krs", &options, &scene);

@@ -212,7 +212,8 @@ static const char *const scenes[] = {
     /* maps within and around */
     "show krs { kernel sphere(0.3).move([0.4, 0, 0]); reflect plane([1, 0.2, 0], 0.5);"
     "    mobius scale(1.7); kernel capsule([0, 0, 0], [1, 1, 0], 0.2);"
-    "    reflect plane([0.1, 1, 0], 0.9); mobius rotate([0, 0, 1], 40deg); kernel sphere(0.4); }.scale(0.6).move([0.5, 0, 0]);",
+    "    reflect plane([0.1, 1, 0], 0.9); mobius rotate([0, 0, 1], 40deg); kernel sphere(0.4); }"
+    "    .scale(0.6).move([0.5, 0, 0]);",
     /* a sequence in a sequence, and a part taken out of it */
     "let twig = krs { kernel capsule([0, 0, 0], [0, 0.5, 0], 0.05); reflect plane([1, -0.4, 0], 0);"
     "    kernel capsule([0, -0.5, 0], [0, 0, 0], 0.08); reflect plane([-0.4, -0.7, 0.5], 0.3); };"

@@ -254,6 +254,54 @@ static void parameters_agree(void **context)
            32);
 }
 
+/* Largest difference, over what is permitted; `late`: the device is asked before a frame is set. */
+static double compare_frames(KrsRendering *rendering, KrsFrame *frame, bool late)
+{
+    static const double times[] = {0, 0.4, -3, 25, 200, 1};
+    enum { FEW = 2000 };
+    static float  rounded[FEW][3], device[FEW];
+    static double points[FEW][3], host[FEW];
+    double        worst = 0;
+    for (size_t f = 0; f < sizeof times / sizeof *times; f++) {
+        for (size_t i = 0; i < FEW; i++)
+            for (int k = 0; k < 3; k++)
+                points[i][k] = rounded[i][k] = (float)uniform(-2, 2);
+        if (late)
+            krs_sample(rendering, frame, (const float(*)[3])rounded, FEW, device, NULL);
+        double k = 2 + times[f];
+        assert_int_equal(krs_frame_set(frame, "k", &k, 1), KRS_OK);
+        assert_int_equal(krs_frame_set_time(frame, times[f]), KRS_OK);
+        if (!late)
+            krs_sample(rendering, frame, (const float(*)[3])rounded, FEW, device, NULL);
+        krs_distance(frame, (const double(*)[3])points, FEW, host);
+        for (size_t i = 0; i < FEW; i++)
+            worst = fmax(worst, fabs(device[i] - host[i]) / (64 * 0x1p-23 * (7 + fabs(host[i]))));
+    }
+    return worst;
+}
+
+/* Slopes that the host finds for each frame reach kernels that are compiled once. */
+static void frames_agree(void **context)
+{
+    static const char text[] =
+        "param k = 2; shape w() { distance: length(p) - 1 + 0.1 * sin(x * time) }"
+        "show w(); show field(y + 1 - 0.1 * sin(k * x * y)).within(box([2, 3, 2]));"
+        "show sphere(0.5).displace(sin(time * x + k * z), 0.1).move([1, 1, 0]);";
+    (void)context;
+    KrsScene     *scene;
+    KrsFrame     *frame;
+    KrsRendering *rendering;
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
+    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_frame_slope_count(scene), 3);
+    assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
+    assert_true(compare_frames(rendering, frame, false) <= 1);
+    assert_true(compare_frames(rendering, frame, true) > 100); /* the frame before */
+    krs_rendering_free(rendering);
+    krs_frame_free(frame);
+    krs_scene_free(scene);
+}
+
 /* The comparison can fail: distances off by a hundredth of a percent are found. */
 static void a_fault_is_found(void **context)
 {
@@ -269,7 +317,8 @@ int main(void)
         cmocka_unit_test(functions_agree),  cmocka_unit_test(sequences_agree),
         cmocka_unit_test(fractals_agree),
         cmocka_unit_test(inversions_agree),
-        cmocka_unit_test(parameters_agree), cmocka_unit_test(a_fault_is_found),
+        cmocka_unit_test(parameters_agree), cmocka_unit_test(frames_agree),
+        cmocka_unit_test(a_fault_is_found),
     };
     spirv_start();
     int failed =

@@ -67,6 +67,19 @@ static double superquadric(Vec p)
 {
     return pow(fabs(p.x), 2.5) + pow(fabs(p.y), 2.5) + pow(fabs(p.z), 2.5) - 1;
 }
+static double cushion(Vec p)
+{
+    double bumps = 0.5 * sin(9 * p.x) * sin(9 * p.y);
+    return power(p.x, 10) + power(p.y, 10) + power(fabs(p.z), 5) - 1 + bumps;
+}
+/* Waves on waves, the smallest the steepest. */
+static double ripples(Vec p)
+{
+    double small = 0.1 * sin(20 * p.x + p.z) + 0.02 * sin(150 * p.z - p.x);
+    return p.y - 0.4 * sin(p.x) * cos(p.z) - small;
+}
+static double cliffs(Vec p) { return p.y - 0.1 * exp(1.5 * sin(2 * p.x) + p.z); }
+static double swell(Vec p) { return exp(p.x) + exp(2 * p.y) + exp(-p.z) * p.x - 4; }
 #define CHMUTOV(x)                                                                                 \
     "8192 * " #x "^14 - 28672 * " #x "^12 + 39424 * " #x "^10 - 26880 * " #x "^8"                   \
     " + 9408 * " #x "^6 - 1568 * " #x "^4 + 98 * " #x "^2 - 1"
@@ -104,6 +117,16 @@ static const Solid solids[] = {
      "show field(pow(abs(x), 2.5) + pow(abs(y), 2.5) + pow(abs(z), 2.5) - 1).within(box([2.2, 2.2,"
      " 2.2]));",
      superquadric, 2, 0.2, 0},
+    {"cushion",
+     "show field(pow(abs(x), 10) + pow(abs(y), 10) + pow(abs(z), 5) - 1"
+     " + 0.5 * sin(9 * x) * sin(9 * y))"
+     ".within(box([2.6, 2.6, 2.6]));",
+     cushion, 1.29, 0.18, 0},
+    {"ripples",
+     "show field(y - 0.4 * sin(x) * cos(z) - (0.1 * sin(20 * x + z) + 0.02 * sin(150 * z - x)));",
+     ripples, 5, 0.3, 0},
+    {"swell", "show field(exp(x) + exp(2 * y) + exp(-z) * x - 4).within(box([4, 4, 4]));", swell,
+     1.9, 0.4, 2},
 };
 enum { SOLIDS = sizeof solids / sizeof *solids };
 
@@ -175,6 +198,108 @@ static void is_of_use(void **state)
     product_free(&product);
 }
 
+/* ---- rays ---- */
+
+/* Where a ray first comes into the solid, by small steps and bisection; infinite: nowhere. */
+static double first_root(const Solid *solid, Vec origin, Vec direction)
+{
+    const double STEP = 1e-3;
+    for (double t = 0; t < 8; t += STEP) {
+        if (!inside(solid, vec_add(origin, vec_scale(t, direction))))
+            continue;
+        double low = t - STEP, high = t;
+        for (int i = 0; i < 40; i++) {
+            double middle = (low + high) / 2;
+            if (inside(solid, vec_add(origin, vec_scale(middle, direction))))
+                high = middle;
+            else
+                low = middle;
+        }
+        return high;
+    }
+    return INFINITY;
+}
+
+/* Of rays that pass the solid by less than its smallest features nothing is said. */
+static void rays_end_at_roots(void **state)
+{
+    const double TOLERANCE = 1e-5;
+    (void)state;
+    Random random = {47};
+    for (size_t i = 0; i < SOLIDS; i++) {
+        const Solid *solid = &solids[i];
+        if (solid->formula != cushion && solid->formula != swell && solid->formula != superquadric)
+            continue;
+        Product product = product_compile(solid->text);
+        int     hits = 0;
+        for (int k = 0; k < 150; k++) {
+            Vec    origin = vec_scale(4, random_unit(&random)), target = random_in_cube(&random, 1);
+            Vec    way = vec_sub(target, origin);
+            Vec    direction = vec_scale(1 / vec_distance(target, origin), way);
+            double root = first_root(solid, origin, direction);
+            KrsHit hit = product_raycast(&product, origin, direction, 8, TOLERANCE);
+            if (!isfinite(root))
+                continue;
+            hits++;
+            if (!hit.hit || fabs(hit.t - root) > 10 * TOLERANCE)
+                fail_msg("%s: a ray ends after %.9g, not after %.9g", solid->name, hit.t,
+                         root);
+        }
+        assert_true(hits > 40);
+        product_free(&product);
+    }
+}
+
+/* ---- sheets ---- */
+
+static double steepness(Formula *f, Vec p)
+{
+    const double h = 1e-6;
+    double x = f(vec(p.x + h, p.y, p.z)) - f(vec(p.x - h, p.y, p.z));
+    double y = f(vec(p.x, p.y + h, p.z)) - f(vec(p.x, p.y - h, p.z));
+    double z = f(vec(p.x, p.y, p.z + h)) - f(vec(p.x, p.y, p.z - h));
+    return hypot(hypot(x, y), z) / (2 * h);
+}
+
+/* Along lines through a box the field's zeros are found by bisection: the sheet is there and, three
+   times its thickness from them, nowhere else, on the sides of the box neither.  That it is as
+   thick where the field is flat is asked of fields that have second derivatives. */
+static void sheets_are_thin(void **state)
+{
+    static const char *const text[] = {
+        "show field(exp(x) + exp(2 * y) + exp(-z) * x - 4).within(box([4, 4, 4]), open: true);",
+        "show field(y - 0.3 * sin(2 * x) * exp(0.4 * z)).within(box([4, 4, 4]), open: true);",
+        "show field(y - 0.1 * exp(1.5 * sin(2 * x) + z)).within(box([4, 4, 4]), open: true);",
+    };
+    static Formula *const formulas[] = {swell, waves, cliffs};
+    const double          half = 0.5e-3 * 4 * sqrt(3);
+    (void)state;
+    Random random = {41};
+    for (int i = 0; i < 3; i++) {
+        Product product = product_compile(text[i]);
+        int     zeros = 0;
+        for (int k = 0; k < 2000; k++) {
+            Vec    p = random_in_cube(&random, 2), surface;
+            double side = k % 2 ? 2 : p.x;
+            p = vec(side, p.y, p.z);
+            double away = fabs(formulas[i](p)) / steepness(formulas[i], p);
+            if (away > 0.3)
+                assert_true(product_distance(&product, p) > 0);
+            if (!nearby_surface(formulas[i], p, &surface) || box_side(surface, 1.99) > 0)
+                continue;
+            Vec normal = vec_scale(1 / vec_distance(p, surface), vec_sub(p, surface));
+            Vec beside = vec_add(surface, vec_scale(3 * half, normal));
+            double near = fabs(formulas[i](beside)) / steepness(formulas[i], surface);
+            assert_true(product_distance(&product, surface) <= -0.9 * half);
+            if (near > 2 * half)
+                assert_true(product_distance(&product, beside) > 0);
+            zeros++;
+        }
+        assert_true(zeros > 300);
+        product_free(&product);
+    }
+}
+
 /* ---- random polynomials ---- */
 
 enum { MOST_TERMS = 12 };
@@ -237,7 +362,7 @@ static void random_polynomials_are_safe(void **state)
 
 int main(void)
 {
-    struct CMUnitTest tests[2 * SOLIDS + 1];
+    struct CMUnitTest tests[2 * SOLIDS + 3];
     static char       names[2 * SOLIDS][64];
     size_t            count = 0;
     for (size_t i = 0; i < SOLIDS; i++) {
@@ -249,6 +374,8 @@ int main(void)
         tests[count] = (struct CMUnitTest){names[count], is_of_use, NULL, NULL, state};
         count++;
     }
+    tests[count++] = (struct CMUnitTest)cmocka_unit_test(rays_end_at_roots);
+    tests[count++] = (struct CMUnitTest)cmocka_unit_test(sheets_are_thin);
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(random_polynomials_are_safe);
     return _cmocka_run_group_tests("fields", tests, count, NULL, NULL);
 }

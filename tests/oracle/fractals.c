@@ -597,6 +597,68 @@ static void meta_bounds_hold(void **state)
     }
 }
 
+/* From outside to the surface; false when the way leads past it. */
+static bool walk_in(const Product *product, Vec direction, Vec *surface)
+{
+    double t = 0;
+    for (int i = 0; i < 4000; i++) {
+        *surface = vec_scale(4 - t, direction);
+        double d = distance_at(product, *surface);
+        if (d < 1e-9)
+            return true;
+        t += fmax(d, 1e-6);
+        if (t > 4)
+            return false;
+    }
+    return false;
+}
+
+/* Whether the normal there is along an axis, as on the faces of a box. */
+static bool is_on_a_face(const Product *product, Vec p)
+{
+    const double h = 1e-5;
+    double       slopes[3], size = 0, most = 0;
+    for (int k = 0; k < 3; k++) {
+        Vec way   = vec(k == 0 ? h : 0, k == 1 ? h : 0, k == 2 ? h : 0);
+        slopes[k] = distance_at(product, vec_add(p, way)) - distance_at(product, vec_sub(p, way));
+        size      = hypot(size, slopes[k]);
+        most      = fmax(most, fabs(slopes[k]));
+    }
+    return most > size * (1 - 1e-5);
+}
+
+/* Shapes of which only a bound is known must not count as their boxes; and steps stay safe. */
+static void bounds_in_metasurfaces_show_no_box(void **state)
+{
+    static const char *const scenes[] = {
+        "show meta([ellipsoid([1, 0.15, 0.6])]);",
+        "show meta([ellipsoid([1.2, 0.3, 0.3]), sphere(0.2).move([0, 0.6, 0])], level: 0.3);",
+        "show meta([box([0.4, 1.6, 0.4]).twist([0, 1, 0], 3), sphere(0.3).move([0.8, 0, 0])]);",
+    };
+    (void)state;
+    Random random = {.state = 31};
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
+        Product product = product_new(scenes[i]);
+        int     found = 0, flat = 0;
+        for (int k = 0; k < 300; k++) {
+            Vec surface;
+            if (!walk_in(&product, random_unit(&random), &surface))
+                continue;
+            found++;
+            flat += is_on_a_face(&product, surface);
+        }
+        if (found < 250 || flat > found / 20)
+            fail_msg("%s: of %d points %d on flat faces", scenes[i], found, flat);
+        for (int k = 0; k < 300; k++) {
+            Vec    p = random_in_cube(&random, 2);
+            double d = distance_at(&product, p);
+            for (int n = 0; n < 20 && d > 0; n++)
+                assert_true(distance_at(&product, random_in_ball(&random, p, 0.999 * d)) > 0);
+        }
+        product_free(&product);
+    }
+}
+
 /* Everything solid is in the box, and the distance for blends rises no faster than 1. */
 static void meta_is_steady(void **state)
 {
@@ -685,6 +747,7 @@ int main(void)
         cmocka_unit_test(palettes_mix),
         cmocka_unit_test(traps_are_traps),
         cmocka_unit_test(meta_bounds_hold),
+        cmocka_unit_test(bounds_in_metasurfaces_show_no_box),
         cmocka_unit_test(meta_is_steady),
         cmocka_unit_test(meta_of_other_shapes),
         cmocka_unit_test(fractals_can_be_cut),

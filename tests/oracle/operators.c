@@ -370,7 +370,7 @@ static void components_are_joined(void **state)
     product_free(&product);
 }
 
-/* What is grown or blended may be where a bound is small, far from its shape: not beyond its box. */
+/* What is grown or blended may be where a bound is small, far from its shape: not outside its box. */
 static void boxes_hold_what_is_grown(void **state)
 {
     static const char *const solids[] = {
@@ -396,7 +396,8 @@ static void boxes_hold_what_is_grown(void **state)
             bool solid = product_distance(&product, p) < 0;
             inside += solid;
             if (solid && !held)
-                fail_msg("%s: [%g, %g, %g] is inside, and not in the box", solids[i], p.x, p.y, p.z);
+                fail_msg("%s: [%g, %g, %g] is inside, and not in the box", solids[i], p.x, p.y,
+                         p.z);
         }
         assert_true(inside > 5);
         product_free(&product);

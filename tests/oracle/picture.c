@@ -204,7 +204,8 @@ static void sequences_agree(void **state)
    shines in. */
 static void the_inside_of_solids_agrees(void **state)
 {
-    static const char *const lights[] = {"intensity: 3", "intensity: 0", "intensity: 3, shadow: false"};
+    static const char *const lights[] = {"intensity: 3", "intensity: 0",
+                                         "intensity: 3, shadow: false"};
     static const char inside[] =
         "camera { eye: [-0.3, 0.1, 0.2], target: [1.5, 0, 0], fov: 90deg }"
         "show box([1, 1, 1]); show box([1, 1, 1]).move([1, 0, 0]);"

@@ -403,6 +403,48 @@ static void hard_rays_are_told(void **context)
     scene_close(s);
 }
 
+/* Solids that touch are one: a ray from inside does not end at the seam between them, wherever it
+   begins and however it crosses; it ends where they do, and at every gap. */
+static void seams_do_not_end_rays(void **context)
+{
+    static const char *const touching[] = {
+        "show box([1, 1, 1]); show box([1, 1, 1]).move([1, 0, 0]);",
+        "show krs { kernel box([1, 1, 1]).move([0.5, 0, 0]); reflect plane([-1, 0, 0], 0); }"
+        "    .move([0.5, 0, 0]);",
+        "show (box([1, 1, 1]) | box([1, 1, 1]).move([1, 0, 0])).rotate([1, 2, 3], 0.7)"
+        "    .rotate([1, 2, 3], -0.7);",
+    };
+    static const double tolerances[] = {0, 1e-4, 0.01};
+    enum { COUNT = 2000 };
+    (void)context;
+    for (size_t run = 0; run < sizeof touching / sizeof *touching * 3; run++) {
+        Scene  s = scene_of(touching[run / 3], KRS_FOR_QUESTIONS);
+        double tolerance = tolerances[run % 3];
+        for (int i = 0; i < COUNT; i++)
+            for (int k = 0; k < 3; k++) {
+                points[i][k] = uniform(-0.45, k == 0 ? 1.45 : 0.45);
+                aims[i][k]   = k == 0 ? uniform(-1, 1) : uniform(-0.3, 0.3);
+            }
+        cast_device(s, COUNT, 100, tolerance);
+        for (int i = 0; i < COUNT; i++) {
+            const double low[3] = {-0.5, -0.5, -0.5}, high[3] = {1.5, 0.5, 0.5};
+            double       last = INFINITY;
+            for (int k = 0; k < 3; k++)
+                last = fmin(last, ((aims[i][k] > 0 ? high : low)[k] - points[i][k]) / aims[i][k]);
+            assert_true(found[i].hit);
+            assert_true(fabs(found[i].t - last * length3(aims[i])) <= tolerance + 2e-5);
+        }
+        scene_close(s);
+    }
+    Scene s = scene_of("show box([1, 1, 1]); show box([1, 1, 1]).move([1.00001, 0, 0]);",
+                       KRS_FOR_QUESTIONS);
+    memcpy(points[0], (double[]){-0.3, 0.1, 0.2}, sizeof *points);
+    memcpy(aims[0], (double[]){1, 0, 0}, sizeof *aims);
+    cast_device(s, 1, 100, 0);
+    assert_true(found[0].hit && fabs(found[0].t - 0.8) < 1e-6);
+    scene_close(s);
+}
+
 static void wrong_questions_are_refused(void **context)
 {
     static const double wrong[][3] = {{NAN, 0, 0}, {0, INFINITY, 0}, {0, 0, 1e19}};
@@ -504,6 +546,7 @@ int main(void)
         cmocka_unit_test(a_zone_looks_like_a_difference),
         cmocka_unit_test(any_number_is_answered),
         cmocka_unit_test(hard_rays_are_told),
+        cmocka_unit_test(seams_do_not_end_rays),
         cmocka_unit_test(wrong_questions_are_refused),
         cmocka_unit_test(memory_may_run_out),
     };

@@ -9,6 +9,9 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "compiler/compile.h"
 
 static Product surface_compile(const Surface *surface, double radius, bool open)
 {
@@ -393,6 +396,39 @@ static void sarti_has_its_nodes(void **state)
     distances_reach_nodes(surface, &nodes);
 }
 
+/* ---- pictures ---- */
+
+/* From its vantage, NAME_view, a surface fills a good part of a picture, and touches no edge. */
+static void is_well_in_view(void **state)
+{
+    enum { WIDTH = 48, HEIGHT = 27 };
+    const Surface *surface = *state;
+    int            name = (int)strcspn(surface->name, " "), hits = 0, on_edge = 0;
+    KrsView        view;
+    Product product = product_format("use \"std/surfaces.krs\";\nshow %.*s();\n"
+                                     "camera { eye: %.*s_view }",
+                                     name, surface->name, name, surface->name);
+    assert_int_equal(krs_frame_view(product.frame, 0, &view), KRS_OK);
+    Vec    eye = vec(view.camera.eye[0], view.camera.eye[1], view.camera.eye[2]);
+    Vec    forward = vec_unit(vec_scale(-1, eye)), up = vec(0, 1, 0);
+    Vec    right = vec_unit(vec_cross(forward, up));
+    double half = tan(20 * M_PI / 180);
+    up = vec_cross(right, forward);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        int    column = i % WIDTH, row = i / WIDTH;
+        double u = half * WIDTH / HEIGHT * (2 * (column + 0.5) / WIDTH - 1);
+        double v = half * (2 * (row + 0.5) / HEIGHT - 1);
+        Vec    way = vec_add(forward, vec_add(vec_scale(u, right), vec_scale(v, up)));
+        bool   hit = product_raycast(&product, eye, way, 1e3, 0.01).hit;
+        bool   edge = row == 0 || row == HEIGHT - 1 || column == 0 || column == WIDTH - 1;
+        hits += hit;
+        on_edge += hit && edge;
+    }
+    if (hits * 20 < WIDTH * HEIGHT || on_edge > 0)
+        fail_msg("%s: %d of %d, %d at the edge", surface->name, hits, WIDTH * HEIGHT, on_edge);
+    product_free(&product);
+}
+
 /* ---- all of it ---- */
 
 typedef struct Check {
@@ -404,7 +440,8 @@ int main(void)
 {
     static const Check checks[] = {{"is safe", is_safe},
                                    {"is where rays find it", rays_find_first_roots},
-                                   {"is a thin sheet when open", sheets_are_thin}};
+                                   {"is a thin sheet when open", sheets_are_thin},
+                                   {"is well in view", is_well_in_view}};
     enum { CHECKS = sizeof checks / sizeof *checks };
     static struct CMUnitTest tests[CHECKS * SURFACES + CENSUSES + 1];
     static char              names[CHECKS * SURFACES + CENSUSES][64];

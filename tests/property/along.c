@@ -142,7 +142,8 @@ static void steps_stay_before_the_surface(void **state)
             t += step;
             evaluations++;
             if (t > truth + 1e-7 && truth < end)
-                fail_msg("%s: ray %d goes to %.12g, the surface is at %.12g", c->name, ray, t, truth);
+                fail_msg("%s: ray %d goes to %.12g, the surface is at %.12g", c->name, ray, t,
+                         truth);
         }
         if (truth < end) {
             hits++;

@@ -75,7 +75,8 @@ static void mixed_operands(Bench *b, Node operands[3])
 {
     Graph *g    = b->graph;
     Node   half = graph_number(g, 0.5);
-    operands[0] = graph_op2(g, OP_add, graph_op1(g, OP_sin, b->x), graph_op2(g, OP_mul, b->y, half));
+    Node sine   = graph_op1(g, OP_sin, b->x), part = graph_op2(g, OP_mul, b->y, half);
+    operands[0] = graph_op2(g, OP_add, sine, part);
     operands[1] = graph_op2(g, OP_sub, graph_op2(g, OP_mul, b->y, b->z), half);
     operands[2] = graph_op2(g, OP_add, graph_op1(g, OP_square, b->z), b->x);
 }

@@ -621,6 +621,13 @@ static void every_row_can_be_emitted(void **state)
         const char *glsl = op_glsl(op), *helper = op_helper(op);
         assert_non_null(glsl);
         assert_non_null(strstr(glsl, "$a"));
+        const char *semicolon = strchr(glsl, ';'); /* behind the statement that sets $t */
+        assert_int_equal(semicolon != NULL, strstr(glsl, "$t") != NULL);
+        if (semicolon) {
+            assert_int_equal(strncmp(glsl, "float $t = ", 11), 0);
+            assert_non_null(strstr(semicolon, "$t"));
+            assert_null(strchr(semicolon + 1, ';'));
+        }
         const char *call = strstr(glsl, "krs_");
         assert_int_equal(call != NULL, helper != NULL);
         if (call) {
@@ -633,6 +640,7 @@ static void every_row_can_be_emitted(void **state)
         }
     }
     assert_ptr_equal(op_helper(OP_asin), op_helper(OP_acos));
+    assert_null(op_helper(OP_smin_quadratic)); /* thousands of calls are slow */
 }
 
 int main(void)

@@ -122,6 +122,30 @@ static void parameters_count_with_their_range_or_value(void **state)
     assert_true(fact.value[0].low == -2 && fact.value[0].high == 6 && fact.slope == 0);
 }
 
+/* One task, run for several values, gives what each would have got by itself. */
+static void tasks_follow_their_parameters(void **state)
+{
+    Bench *b = *state;
+    Graph *g = b->graph;
+    Node   time = graph_parameter(g, 0, TYPE_FLOAT);
+    Node   wave = graph_op1(g, OP_sin, graph_op2(g, OP_mul, time, b->x));
+    Node   root = graph_op2(g, OP_add, graph_op2(g, OP_mul, wave, b->y), b->z);
+    SlopeTask task = slope_task(g, root, around, 64, &b->arena);
+    void     *room = arena_alloc(&b->arena, slope_task_room(&task), 1);
+    for (int i = -20; i <= 20; i++) {
+        const double values[1][4] = {{0.3 * i}};
+        double       size = fabs(values[0][0]), slope = slope_task_run(&task, values, room, NULL);
+        assert_true(slope == graph_slope(g, root, around, values, 64, NULL, &b->arena));
+        assert_true(slope >= hypot(2 * size, 1)); /* at [0, 2, 0] */
+        assert_true(slope <= 1.1 * (2 * size + 2));
+    }
+    /* Quotients by 0 have no slope, those of 0 neither. */
+    Node none = graph_op2(g, OP_div, graph_op2(g, OP_mul, b->x, time), time);
+    const double at_zero[1][4] = {{0}}, at_one[1][4] = {{1}};
+    assert_true(graph_slope(g, none, around, at_zero, 1, NULL, &b->arena) == HUGE_VAL);
+    assert_true(graph_slope(g, none, around, at_one, 1, NULL, &b->arena) == 1);
+}
+
 static void blame_goes_to_the_unbounded_operand(void **state)
 {
     Bench *b = *state;
@@ -169,6 +193,7 @@ int main(void)
         TEST(cutting_finds_what_a_whole_box_hides),
         TEST(jumps_are_found_on_the_seam_of_parts),
         TEST(parameters_count_with_their_range_or_value),
+        TEST(tasks_follow_their_parameters),
         TEST(blame_goes_to_the_unbounded_operand),
         TEST(facts_of_a_graph_hold),
     };

@@ -1,12 +1,13 @@
 /*
- * apart.c: heavy components marched one by one, and levels that are left out for being far away,
- * are not seen.
+ * apart.c: heavy components marched one by one, in kernels of their own or packed in one, and
+ * levels that are left out for being far away, are not seen.
  *
- * Pictures of compounds marched apart must be those of the union: no more than one pixel in 2,000
- * hits where the other misses, depths differ by the permitted error and what a grazing ray makes of
- * it, and each pixel shows the same component.  So must pictures with early-outs.  Crops, bands and
- * schedules change no bit.  A scene is only taken apart where the compiler says that it pays, and
- * not when the camera is inside of a solid.
+ * Pictures of compounds marched apart or packed must be those of the union: no more than one pixel
+ * in 2,000 hits where the other misses, depths differ by the permitted error and what a grazing ray
+ * makes of it, each pixel shows the same component, level and instance, and normals are apart in
+ * seams between components alone.  So must pictures with early-outs.  Crops, bands and schedules
+ * change no bit.  A scene is only taken apart where the compiler says that it pays, and not when
+ * the camera is inside of a solid.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -136,6 +137,8 @@ typedef struct Difference {
     int    hits;   /* of one of the two alone */
     int    depths; /* farther apart than a surface seen at a small angle explains */
     int    components;
+    int    places; /* of level and instance, where the components are the same */
+    int    normals; /* farther apart than 0.2 */
     int    seen;   /* in both */
     double mean;   /* of the depths, in pixels' widths, where both hit */
 } Difference;
@@ -153,6 +156,14 @@ static Difference compare(const KrsPicture *a, const KrsPicture *b, double pixel
         d.mean += apart;
         d.depths += apart > 4;
         d.components += a->component[i] != b->component[i];
+        d.places += a->component[i] == b->component[i] &&
+                    (a->level[i] != b->level[i] || a->instance[i] != b->instance[i]);
+        double turned = 0;
+        for (int k = 0; k < 3; k++) {
+            double more = (double)a->normal[3 * i + k] - (double)b->normal[3 * i + k];
+            turned += more * more;
+        }
+        d.normals += turned > 0.04;
     }
     d.mean /= d.seen > 0 ? d.seen : 1;
     return d;
@@ -161,12 +172,15 @@ static Difference compare(const KrsPicture *a, const KrsPicture *b, double pixel
 static void check_same(const Scene *scene, const KrsPicture *a, const KrsPicture *b)
 {
     Difference d = compare(a, b, 0.6 / HEIGHT);
-    print_message("# %s: of %d: %d hits, %d depths, %d components differ; depths by %.4f pixels\n",
-                  scene->name, d.seen, d.hits, d.depths, d.components, d.mean);
+    print_message("# %s: of %d: %d hits, %d depths, %d components, %d places, %d normals differ; "
+                  "depths by %.4f pixels\n", scene->name, d.seen, d.hits, d.depths, d.components,
+                  d.places, d.normals, d.mean);
     assert_true(d.seen > PIXELS / 50);
     assert_true(d.hits <= PIXELS / 2000);
     assert_true(d.depths <= PIXELS / 2000);
     assert_true(d.components <= PIXELS / 2000);
+    assert_true(d.places <= PIXELS / 2000);
+    assert_true(d.normals <= PIXELS / 500);
     assert_true(d.mean < 0.25);
     assert_int_equal(a->stats.unresolved, 0);
     assert_int_equal(b->stats.unresolved, 0);
@@ -174,18 +188,24 @@ static void check_same(const Scene *scene, const KrsPicture *a, const KrsPicture
 
 static const KrsRenderOptions together = {.components = KRS_COMPONENTS_TOGETHER};
 static const KrsRenderOptions by_turns = {.components = KRS_COMPONENTS_APART};
+static const KrsRenderOptions packed = {.components = KRS_COMPONENTS_PACKED};
 
 static void parts_make_the_union(void **state)
 {
     const Scene *scene = *state;
     KrsPicture  *whole = render(scene, false, together);
     KrsPicture  *apart = render(scene, false, by_turns);
+    KrsPicture  *turns = render(scene, false, packed);
     check_same(scene, whole, apart);
+    check_same(scene, whole, turns);
     /* Otherwise there was nothing to compare. */
     bool parted = memcmp(whole->steps, apart->steps, PIXELS * sizeof *apart->steps) != 0;
     assert_int_equal(parted, scene != &scenes[INSIDE]);
+    parted = memcmp(whole->steps, turns->steps, PIXELS * sizeof *turns->steps) != 0;
+    assert_int_equal(parted, scene != &scenes[INSIDE]);
     krs_picture_free(whole);
     krs_picture_free(apart);
+    krs_picture_free(turns);
 }
 
 static void early_outs_are_not_seen(void **state)
@@ -235,6 +255,99 @@ static void crops_and_schedules_change_nothing(void **state)
     krs_picture_free(whole);
 }
 
+/* ---- packed, of any number ---- */
+
+/* Solids of several kinds on a spiral around the y axis, each into the next: cut ones, and
+   sequences of levels and instances. */
+static void write_spiral(Text *text, int count, double far, const char *more)
+{
+    static const char sequence[] =
+        "krs { kernel sphere(0.2).move([0.3, 0, 0]); reflect plane([1, 0, 0.3], 0.1);"
+        " kernel box([0.3, 0.5, 0.3]); reflect plane([0, 1, 0], 0.15); }";
+    static const char *const kinds[3] = {"(box([1, 0.8, 0.9]) - sphere(0.52))",
+                                         "(sphere(0.5) & box([0.7, 2, 0.7]))", sequence};
+    for (int i = 0; i < count; i++)
+        text_format(text, "show %s.rotate([1, 2, 3], %ddeg).move([%g, %g, %g]);\n", kinds[i % 3],
+                    57 * i, far + 1.6 * sin(0.7 * i), 0.12 * i - 1, 1.6 * cos(0.7 * i));
+    text_format(text, "%s camera { eye: [%.1f, 2, 8], target: [%.1f, %g, 0], fov: 0.5 }\n", more,
+                far + 1, far, 0.06 * count - 1);
+}
+
+static void spiral_is_the_union(int count, double far, const char *more, const char *name)
+{
+    Memory memory = {0};
+    Arena  arena  = {.memory = &memory};
+    Text   text   = {.arena = &arena};
+    Scene  scene  = {.name = name};
+    write_spiral(&text, count, far, more);
+    KrsOptions with = {.diagnostic = print_diagnostic};
+    assert_int_equal(krs_compile_text(text.bytes, text.length, name, &with, &scene.scene), KRS_OK);
+    assert_int_equal(krs_frame_new(scene.scene, &scene.frame), KRS_OK);
+    assert_int_equal(krs_rendering_new(plain, scene.scene, &scene.plain), KRS_OK);
+    assert_int_equal(krs_scene_program(scene.scene)->anchored, far > 0);
+    KrsPicture *whole = render(&scene, false, together), *turns = render(&scene, false, packed);
+    check_same(&scene, whole, turns);
+    bool parted = memcmp(whole->steps, turns->steps, PIXELS * sizeof *turns->steps) != 0;
+    assert_int_equal(parted, count > 1);
+    krs_picture_free(whole);
+    krs_picture_free(turns);
+    krs_rendering_free(scene.plain);
+    krs_frame_free(scene.frame);
+    krs_scene_free(scene.scene);
+    arena_free(&arena);
+}
+
+static void any_number_is_packed(void **state)
+{
+    (void)state;
+    static const int counts[] = {1, 8, 9, 65};
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "a spiral of %d", counts[i]);
+        spiral_is_the_union(counts[i], 0, "", name);
+    }
+}
+
+static void zones_are_packed(void **state)
+{
+    (void)state;
+    spiral_is_the_union(9, 0, "show plane([0, 1, 0], -1);"
+                              "zone { center: [0.5, 0, 1.5], radius: 0.9 }", "a spiral in a zone");
+}
+
+static void far_away_is_packed(void **state)
+{
+    (void)state;
+    spiral_is_the_union(9, 1e5, "", "a spiral far from the origin");
+}
+
+static void packed_in_every_way(void **state)
+{
+    (void)state;
+    const Scene *scene = &scenes[MIXED];
+    KrsPicture  *whole = render(scene, false, packed);
+    for (int schedule = KRS_SCHEDULE_PIXEL; schedule < KRS_SCHEDULE_COUNT; schedule++) {
+        KrsRenderOptions options = packed;
+        options.schedule = (KrsSchedule)schedule;
+        options.crop     = (KrsWindow){41, 21, 70, 50};
+        KrsPicture *part = render(scene, false, options);
+        check_equal(whole, part);
+        krs_picture_free(part);
+    }
+    for (int trace = KRS_TRACE_PLAIN; trace <= KRS_TRACE_RELAXED; trace++) {
+        KrsRenderOptions options = packed;
+        options.trace    = (KrsTrace)trace;
+        options.no_beams = true;
+        KrsPicture *other = render(scene, false, options);
+        check_same(scene, whole, other);
+        krs_picture_free(other);
+    }
+    KrsPicture *early_outs = render(scene, true, packed);
+    check_same(scene, whole, early_outs);
+    krs_picture_free(early_outs);
+    krs_picture_free(whole);
+}
+
 /* What is cheap is not worth kernels of its own. */
 static void only_what_is_heavy_is_apart(void **state)
 {
@@ -244,8 +357,10 @@ static void only_what_is_heavy_is_apart(void **state)
     KrsScene *scene;
     assert_int_equal(krs_compile_text(cheap, strlen(cheap), "cheap", NULL, &scene), KRS_OK);
     assert_int_equal(krs_scene_program(scene)->group_count, 0);
+    assert_int_equal(krs_scene_program(scene)->heavy, 0);
     krs_scene_free(scene);
     assert_int_equal(krs_scene_program(scenes[SCATTERED].scene)->group_count, 4);
+    assert_int_equal(krs_scene_program(scenes[SCATTERED].scene)->heavy, 4);
     assert_false(krs_scene_program(scenes[MIXED].scene)->apart);
     const KrsProgram *ground = krs_scene_program(scenes[GROUND].scene);
     assert_int_equal(ground->group_count, 5); /* the last: the ball; rays know the plane */
@@ -255,7 +370,7 @@ static void only_what_is_heavy_is_apart(void **state)
 
 int main(void)
 {
-    struct CMUnitTest tests[2 * SCENES + 2];
+    struct CMUnitTest tests[2 * SCENES + 6];
     size_t            count = 0;
     for (int i = 0; i < SCENES; i++) {
         tests[count++] = (struct CMUnitTest){scenes[i].name, parts_make_the_union, NULL, NULL,
@@ -264,6 +379,10 @@ int main(void)
                                              NULL, NULL, &scenes[i]};
     }
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(crops_and_schedules_change_nothing);
+    tests[count++] = (struct CMUnitTest)cmocka_unit_test(any_number_is_packed);
+    tests[count++] = (struct CMUnitTest)cmocka_unit_test(zones_are_packed);
+    tests[count++] = (struct CMUnitTest)cmocka_unit_test(far_away_is_packed);
+    tests[count++] = (struct CMUnitTest)cmocka_unit_test(packed_in_every_way);
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(only_what_is_heavy_is_apart);
     return _cmocka_run_group_tests("components apart", tests, count, open_scenes, close_scenes);
 }

@@ -81,6 +81,73 @@ static void frames_that_are_not_finite_are_refused(void **state)
     close_scene(frame, scene);
 }
 
+/* A frame in which something has no slope is refused by name, and leaves everything as it was. */
+static void frames_without_a_slope_are_refused(void **state)
+{
+    (void)state;
+    KrsScene     *scene;
+    KrsFrameSlope slope;
+    float         before[4][4], after[4][4];
+    KrsFrame     *frame = open_scene("param k = 1;\nlet f = field(y - sin(k * x / (time - 2)));\n"
+                                     "show f; show f.move([0, 5, 0]);", &scene);
+    assert_int_equal(krs_frame_slope_count(scene), 1); /* one expression */
+    assert_int_equal(krs_frame_slope(scene, 0, &slope), KRS_OK);
+    assert_int_equal(krs_frame_slope(scene, 1, &slope), KRS_BAD_ARGUMENT);
+    assert_string_equal(slope.place, "scene.krs:2:9");
+    assert_true(slope.low[0] == -INFINITY && slope.high[2] == INFINITY);
+    assert_int_equal(krs_parameter_slots(scene), 3);
+    assert_int_equal(slope.slot, 2);
+
+    assert_int_equal(krs_frame_set_time(frame, 1), KRS_OK);
+    krs_frame_parameters(frame, before);
+    assert_true(before[2][0] > 1.41421f && before[2][0] < 1.4143f);
+    double distance = distance_at(frame, 3, 2, 1);
+    assert_int_equal(krs_frame_set_time(frame, 2), KRS_BAD_ARGUMENT);
+    assert_string_equal(krs_frame_unbounded(frame), "scene.krs:2:9");
+    krs_frame_parameters(frame, after);
+    assert_memory_equal(before, after, 3 * sizeof *before);
+    assert_true(distance_at(frame, 3, 2, 1) == distance);
+    assert_int_equal(krs_frame_set_time(frame, INFINITY), KRS_BAD_ARGUMENT);
+    assert_null(krs_frame_unbounded(frame));
+    assert_int_equal(krs_frame_set(frame, "k", (double[]){1e38}, 1), KRS_BAD_ARGUMENT);
+    assert_non_null(krs_frame_unbounded(frame));
+    assert_int_equal(krs_frame_set(frame, "k", (double[]){10}, 1), KRS_OK);
+    assert_null(krs_frame_unbounded(frame));
+    krs_frame_parameters(frame, after);
+    assert_true(after[2][0] > 10);
+    close_scene(frame, scene);
+}
+
+/* Nor may a quotient of zeros seem to have the slope 0. */
+static void nothing_over_nothing_has_no_slope(void **state)
+{
+    (void)state;
+    KrsScene *scene;
+    KrsFrame *frame = open_scene("param k = 1; show field(y + sin(x * time / k));", &scene);
+    assert_int_equal(krs_frame_set(frame, "k", (double[]){0}, 1), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_frame_set(frame, "k", (double[]){0.5}, 1), KRS_OK);
+    close_scene(frame, scene);
+}
+
+/* What is cut has its slope in the region; that of the whole field is of no use then. */
+static void a_cut_field_has_one_slope(void **state)
+{
+    (void)state;
+    KrsScene     *scene;
+    KrsFrameSlope slope;
+    KrsFrame     *frame = open_scene("show field(y - sin(x * time)).within(box([2, 2, 2]));",
+                                     &scene);
+    assert_int_equal(krs_frame_slope_count(scene), 1);
+    assert_int_equal(krs_frame_slope(scene, 0, &slope), KRS_OK);
+    assert_true(slope.low[0] == -1 && slope.high[2] == 1);
+    close_scene(frame, scene);
+
+    /* A parameter with a range needs none. */
+    frame = open_scene("param k = 1 in [0, 9]; show field(y - sin(x * k));", &scene);
+    assert_int_equal(krs_frame_slope_count(scene), 0);
+    close_scene(frame, scene);
+}
+
 /* The angle between the view axis and a point, seen from the eye. */
 static double angle_to(const KrsCamera *camera, double x, double y, double z)
 {
@@ -146,6 +213,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parameters_move_the_scene),
         cmocka_unit_test(frames_that_are_not_finite_are_refused),
+        cmocka_unit_test(frames_without_a_slope_are_refused),
+        cmocka_unit_test(nothing_over_nothing_has_no_slope),
+        cmocka_unit_test(a_cut_field_has_one_slope),
         cmocka_unit_test(a_missing_camera_frames_the_scene),
         cmocka_unit_test(endless_components_are_not_framed),
         cmocka_unit_test(rays_of_any_length_hit),

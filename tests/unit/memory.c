@@ -1,11 +1,12 @@
 /*
  * memory.c: an allocation that fails, at every point where one is made, ends the call with
- * KRS_OUT_OF_MEMORY, nothing leaked and nothing broken.
+ * KRS_OUT_OF_MEMORY, nothing leaked and nothing broken.  Memory grows in step with scenes.
  */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,6 +44,7 @@ static const char *const scenes[] = {
      "show union([sphere(1), box([1, 2, 1])], blend: r).move([r, 1, 0]);"),
     "show krs { kernel box([1, 1, 1]); for i in 0..6 { reflect plane(random_direction(i), 1); } };",
     "show [sphere(0.2).move([i, 0, 0]) for i in 0..40]; camera { eye: [1, 2, 3] }",
+    "show field(y - sin(x * time)).within(box([2, 2, 2]));",
     "let a = 1 +; show sphre(1); show box(a).mvoe(1);", /* several mistakes */
 };
 
@@ -111,12 +113,61 @@ static void the_limit_holds(void **state)
     assert_int_equal(scarce.held, 0);
 }
 
+/* ---- growth ---- */
+
+typedef struct Counted {
+    size_t bytes; /* all that was ever asked for */
+} Counted;
+
+static void *counted_allocate(void *user, size_t size)
+{
+    Counted *counted = user;
+    counted->bytes += size;
+    return malloc(size);
+}
+
+static void counted_release(void *user, void *block)
+{
+    (void)user;
+    free(block);
+}
+
+static size_t bytes_for(const char *format, int count)
+{
+    char       text[256];
+    Counted    counted = {0};
+    KrsOptions options = {.allocator = {counted_allocate, counted_release, &counted}};
+    KrsScene  *scene;
+    snprintf(text, sizeof text, format, count);
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", &options, &scene), KRS_OK);
+    krs_scene_free(scene);
+    return counted.bytes;
+}
+
+/* What each component, shape or mirror takes is not the size of the whole scene. */
+static void memory_grows_with_the_scene(void **state)
+{
+    (void)state;
+    static const char *const growing[] = {
+        "camera {} for i in 0..%d { show sphere(0.1).move([0.1 * i, 0, 0]); }",
+        "camera {} show union([sphere(0.1).move([0.1 * i, 0, 0]) for i in 0..%d]);",
+        "camera {} show union([sphere(0.1).move([0.1 * i, 0, 0]) for i in 0..%d], blend: 0.1);",
+        "camera {} for i in 0..%d / 4 { show krs { kernel box([1, 1, 1]); for k in 0..4 {"
+        " reflect plane(random_direction(k), 1); } }.scale(0.1).move([0.5 * i, 0, 0]); }",
+        "camera {} show krs { kernel box([1, 1, 1]); for i in 0..%d / 8 {"
+        " reflect plane([cos(i), sin(i), 0], 0.1 * i); } };",
+    };
+    for (size_t i = 0; i < sizeof growing / sizeof *growing; i++)
+        assert_true(bytes_for(growing[i], 800) < 4 * bytes_for(growing[i], 200));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_allocation_fails),
         cmocka_unit_test(all_later_allocations_fail),
         cmocka_unit_test(the_limit_holds),
+        cmocka_unit_test(memory_grows_with_the_scene),
     };
     return cmocka_run_group_tests_name("memory", tests, NULL, NULL);
 }

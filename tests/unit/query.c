@@ -439,6 +439,41 @@ static void rays_that_run_out_are_told(void **context)
     scene_close(s);
 }
 
+/* Solids that touch are one: a ray from inside does not end at the seam between them, wherever it
+   begins and however it crosses; it ends where they do, and at every gap. */
+static void seams_do_not_end_rays(void **context)
+{
+    static const char *const scenes[] = {
+        "show box([1, 1, 1]); show box([1, 1, 1]).move([1, 0, 0]);",
+        "show krs { kernel box([1, 1, 1]).move([0.5, 0, 0]); reflect plane([-1, 0, 0], 0); }"
+        "    .move([0.5, 0, 0]);",
+        "show (box([1, 1, 1]) | box([1, 1, 1]).move([1, 0, 0])).rotate([1, 2, 3], 0.7)"
+        "    .rotate([1, 2, 3], -0.7);",
+        "show box([1, 1, 1]).repeat([1, 0, 0], [2, 1, 1]).move([0.5, 0, 0]);",
+    };
+    (void)context;
+    for (size_t scene = 0; scene < sizeof scenes / sizeof *scenes; scene++) {
+        Scene s = scene_of(scenes[scene]);
+        for (int i = 0; i < 600; i++) {
+            double tolerance = (double[]){0, 1e-7, 0.01}[i % 3], last = INFINITY;
+            double origin[3] = {uniform(-0.45, 1.45), uniform(-0.45, 0.45), uniform(-0.45, 0.45)};
+            double along[3]  = {uniform(-1, 1), uniform(-0.3, 0.3), uniform(-0.3, 0.3)};
+            double low[3] = {-0.5, -0.5, -0.5}, high[3] = {1.5, 0.5, 0.5};
+            for (int k = 0; k < 3; k++)
+                last = fmin(last, ((along[k] > 0 ? high : low)[k] - origin[k]) / along[k]);
+            KrsHit hit = cast(s.frame, origin, along, 100, tolerance);
+            assert_true(hit.hit);
+            assert_true(fabs(hit.t - last * length3(along)) <= tolerance + 1e-8);
+        }
+        scene_close(s);
+    }
+    Scene  s = scene_of("show box([1, 1, 1]); show box([1, 1, 1]).move([1.000001, 0, 0]);");
+    double origin[3] = {-0.3, 0.1, 0.2}, along[3] = {1, 0, 0};
+    KrsHit hit = cast(s.frame, origin, along, 100, 0);
+    assert_true(hit.hit && fabs(hit.t - 0.8) < 1e-9);
+    scene_close(s);
+}
+
 /* Squares of directions overflow, or vanish; origins are far. */
 static void directions_have_any_length(void **context)
 {
@@ -470,6 +505,7 @@ int main(void)
         cmocka_unit_test(rays_start_anywhere),
         cmocka_unit_test(thin_things_keep_their_width),
         cmocka_unit_test(rays_that_run_out_are_told),
+        cmocka_unit_test(seams_do_not_end_rays),
         cmocka_unit_test(directions_have_any_length),
     };
     return cmocka_run_group_tests_name("queries", tests, NULL, NULL);

@@ -6,7 +6,8 @@
  * are false where 400 samples do not see it.  That a wrong rule of the compiler is found, too, was
  * tried by hand: with the factor of a chamfer, the least factor of `.scale`, the neighbours of
  * `.repeat` and the scale of a sequence spoilt, `krs validate` named the union, the scale, the
- * repetition and the sequence.
+ * repetition and the sequence.  So were, of what marches instead of a distance, a wrong Bernstein
+ * coefficient, a series along lines with a term left out, and distances to levels that are too long.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -50,7 +51,7 @@ static Search search(Bench *b, Node distance, Box box, bool steep, uint64_t oper
 {
     NodeValue parameters[1] = {{{0}}};
     Search    s;
-    assert_true(search_new(&s, b->graph, distance, box, &b->arena));
+    assert_true(search_new(&s, b->graph, distance, distance, box, &b->arena));
     s.steep  = steep;
     s.random = 1;
     assert_true(search_start(&s, parameters));
@@ -288,11 +289,40 @@ static void a_search_can_be_stopped(void **state)
     assert_int_equal(krs_refute("no-such-scene.krs", NULL, &how, &result), KRS_IO_ERROR);
 }
 
+/* A step beside the distance that tells sides: too long by a fifth behind a place, or for rays of
+   some directions only. */
+static void steps_are_searched_beside_distances(void **state)
+{
+    Bench    *b             = *state;
+    NodeValue parameters[1] = {{{0}}};
+    for (int aimed = 0; aimed < 2; aimed++)
+        for (int wrong = 0; wrong < 2; wrong++) {
+            Search s;
+            Node   side  = ball(b), of = graph_leaf(b->graph, aimed ? OP_DIRECTION : OP_POINT);
+            Node   x     = graph_component(b->graph, of, 0);
+            Node   limit = graph_number(b->graph, aimed ? 0.9 : 1.1);
+            Node   there = graph_op2(b->graph, OP_less, limit, x);
+            Node   more  = graph_number(b->graph, wrong ? 1.2 : 0.9);
+            Node   less  = graph_number(b->graph, 0.8);
+            Node   part  = graph_op3(b->graph, OP_select, there, more, less);
+            Node   step  = graph_op2(b->graph, OP_mul, side, part);
+            assert_true(search_new(&s, b->graph, step, side, around_ball, &b->arena));
+            s.random = 1;
+            s.aimed  = aimed;
+            assert_true(search_start(&s, parameters));
+            search_run(&s, 3000000);
+            assert_int_equal(search_refuted(&s), wrong);
+            if (wrong)
+                assert_true(s.worst.fault == FAULT_LONG && fabs(s.worst.ratio - 1.2) < 0.01);
+        }
+}
+
 int main(void)
 {
 #define BENCH(test) cmocka_unit_test_setup_teardown(test, bench_start, bench_stop)
     const struct CMUnitTest tests[] = {
         BENCH(what_is_true_stays),
+        BENCH(steps_are_searched_beside_distances),
         BENCH(a_thousandth_too_much_is_found),
         BENCH(a_small_jump_is_found),
         BENCH(a_small_spike_is_found),

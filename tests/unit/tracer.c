@@ -728,6 +728,98 @@ static void only_wanted_planes_are_held(void **state)
     krs_picture_free(picture);
 }
 
+/* What is not asked for is not made, and what is comes out the same. */
+static void planes_do_not_hang_on_others(void **state)
+{
+    Stage           *stage = *state;
+    const size_t     pixels = (size_t)WIDTH * HEIGHT;
+    KrsRenderOptions options = {.samples = 3};
+    KrsPicture      *whole = render(stage, options);
+    for (int bit = 0; KRS_PLANE_ALL >> bit; bit++) {
+        /* What this leaves in memory is not to be taken for what has not been made. */
+        krs_picture_free(render(stage, (KrsRenderOptions){.camera = ROUND}));
+        options.planes   = 1u << bit;
+        KrsPicture *part = render(stage, options);
+        const struct { const void *part, *whole; size_t numbers; } planes[] = {
+            {part->color, whole->color, 4},   {part->depth, whole->depth, 1},
+            {part->position, whole->position, 3}, {part->normal, whole->normal, 3},
+            {part->albedo, whole->albedo, 3}, {part->component, whole->component, 1},
+            {part->level, whole->level, 1},   {part->instance, whole->instance, 1},
+            {part->steps, whole->steps, 1}};
+        size_t held = 0;
+        for (size_t i = 0; i < sizeof planes / sizeof *planes; i++) {
+            held += planes[i].part != NULL;
+            if (planes[i].part)
+                assert_memory_equal(planes[i].part, planes[i].whole,
+                                    pixels * planes[i].numbers * 4);
+        }
+        assert_true(held > 0);
+        assert_int_equal(part->stats.evaluations, whole->stats.evaluations);
+        krs_picture_free(part);
+    }
+    krs_picture_free(whole);
+}
+
+/* The steps of the first rays are among what the statistics count. */
+static void evaluations_are_counted(void **state)
+{
+    KrsPicture *picture = render(*state, (KrsRenderOptions){.no_beams = true});
+    uint64_t    sum = 0;
+    uint32_t    most = 0;
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
+        sum += picture->steps[i];
+        most = picture->steps[i] > most ? picture->steps[i] : most;
+    }
+    assert_int_equal(picture->stats.evaluations, sum);
+    assert_int_equal(picture->stats.most_evaluations_per_ray, most);
+    krs_picture_free(picture);
+}
+
+/* A ball over a floor: without occlusion no pixel is darker, and some below it are lighter. */
+static void occlusion_can_be_left_out(void **state)
+{
+    (void)state;
+    Stage stage = {0};
+    stage_open(&stage, landscape_text, NULL);
+    KrsPicture *with = render(&stage, (KrsRenderOptions){0});
+    KrsPicture *without = render(&stage, (KrsRenderOptions){.no_occlusion = true});
+    size_t      lighter = 0;
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
+        assert_true(without->color[4 * i] >= with->color[4 * i] - 1e-5f);
+        lighter += without->color[4 * i] > 1.1f * with->color[4 * i];
+    }
+    assert_true(lighter > 50);
+    assert_true(without->stats.phase_ms[KRS_PHASE_OCCLUSION] == 0);
+    krs_picture_free(with);
+    krs_picture_free(without);
+    stage_close(&stage);
+}
+
+/* A light that casts no shadows is the same where the shadowing one is not in the way: on a ball
+   alone, which is convex. */
+static void shadows_that_are_not_cast_are_not_missed(void **state)
+{
+    static const char form[] = "camera { eye: [3, 2, 5], fov: 30deg }\n"
+                               "light sun { direction: [-1, 2, 1], softness: 0deg, shadow: %s }\n"
+                               "show sphere(1);\n";
+    (void)state;
+    KrsPicture *pictures[2];
+    Stage       stages[2] = {0};
+    for (int i = 0; i < 2; i++) {
+        char text[256];
+        snprintf(text, sizeof text, form, i ? "true" : "false");
+        stage_open(&stages[i], text, NULL);
+        pictures[i] = render(&stages[i], (KrsRenderOptions){0});
+    }
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT * 4; i++)
+        assert_near(pictures[0]->color[i], pictures[1]->color[i], 0.01);
+    assert_true(pictures[0]->stats.phase_ms[KRS_PHASE_SHADOWS] == 0);
+    for (int i = 0; i < 2; i++) {
+        krs_picture_free(pictures[i]);
+        stage_close(&stages[i]);
+    }
+}
+
 /* ---- Memory ---- */
 
 typedef struct Ledger {
@@ -787,6 +879,44 @@ static void memory_that_runs_out_is_reported(void **state)
     assert_true(allocations > 8);
 }
 
+/* A material that divides by 0 somewhere, or takes the root of what is negative, gives numbers all
+   the same: what is none is 0, what is too much the most that there is. */
+static void materials_give_numbers(void **state)
+{
+    static const char *const materials[] = {
+        "color: [1 / (k * x), (k * x) / (k * y), sqrt(-1 - x * x)], roughness: (k * z) / (k * x)",
+        "color: log(x), metallic: sqrt(-1 - y * y), emission: 1 / (k * x)",
+        "color: red, emission: [x / k, sqrt(x), exp(1000 * y)]",
+        "color: [1e30, -1e30, 0.5] * x / k, roughness: 1 / max(k, 0), emission: 1e38",
+    };
+    (void)state;
+    for (size_t m = 0; m < sizeof materials / sizeof *materials; m++) {
+        Stage stage = {0};
+        char  text[400];
+        snprintf(text, sizeof text, "param k = 0; material m { %s } show sphere(1).paint(m);",
+                 materials[m]);
+        stage_open(&stage, text, NULL);
+        KrsPicture *picture = render(&stage, (KrsRenderOptions){.samples = 5});
+        size_t      wrong = 0, pixels = (size_t)WIDTH * HEIGHT;
+        for (size_t i = 0; i < 4 * pixels; i++)
+            wrong += !(picture->color[i] >= 0 && picture->color[i] < 1e38f);
+        for (size_t i = 0; i < 3 * pixels; i++)
+            wrong += !(picture->albedo[i] >= 0 && picture->albedo[i] <= 1) +
+                     !(fabsf(picture->normal[i]) <= 1.001f);
+        if (wrong > 0)
+            print_message("%zu wrong: %s\n", wrong, materials[m]);
+        assert_int_equal(wrong, 0);
+        krs_picture_free(picture);
+        double places[3][3] = {{1, 0, 0}, {-0.6, 0.8, 0}, {0, 0, 1}};
+        KrsHit hits[3];
+        assert_int_equal(krs_probe(stage.frame, (const double(*)[3])places, 3, hits), KRS_OK);
+        for (int i = 0; i < 9; i++)
+            assert_true(hits[i / 3].color[i % 3] >= 0 && hits[i / 3].color[i % 3] <= 1 &&
+                        hits[i / 3].roughness >= 0 && hits[i / 3].roughness <= 1);
+        stage_close(&stage);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -806,9 +936,14 @@ int main(void)
         cmocka_unit_test_setup_teardown(bands_are_not_seen, set_up, tear_down),
         cmocka_unit_test_setup_teardown(interruption_is_heard, set_up, tear_down),
         cmocka_unit_test(progress_goes_forwards),
+        cmocka_unit_test(materials_give_numbers),
         cmocka_unit_test_setup_teardown(exhausted_rays_are_counted, set_up, tear_down),
         cmocka_unit_test_setup_teardown(wrong_use_is_refused, set_up, tear_down),
         cmocka_unit_test_setup_teardown(only_wanted_planes_are_held, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(planes_do_not_hang_on_others, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(evaluations_are_counted, set_up, tear_down),
+        cmocka_unit_test(occlusion_can_be_left_out),
+        cmocka_unit_test(shadows_that_are_not_cast_are_not_missed),
         cmocka_unit_test_setup_teardown(memory_that_runs_out_is_reported, set_up, tear_down),
     };
     spirv_start(); /* held for all, so that no renderer starts the shader compiler anew */

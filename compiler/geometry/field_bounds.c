@@ -1,0 +1,365 @@
+/*
+ * field_bounds.c: which bound on the distance to a field's surface costs rays least.
+ *
+ * A field f is divided by its slope L over the region C in which it counts.  Where f is much
+ * flatter than L almost everywhere, steps are much too short.  A table of slopes by cells would
+ * cure that, but a look-up costs as much as 80 to 160 multiply-adds where a load is one a lane,
+ * more than most formulas; so these bounds are computed where the ray is:
+ *   heads: of a sum whose rest lies within m +- h over C, the whole can be 0 only where |head + m|
+ *     is at most h, so (|head + m| - h) / slope of the head is a bound too, longer far away;
+ *   second order: the r of |f| = |grad f| r + H r^2 / 2, H the slope of the gradient over C;
+ *   local: the same with what f can change near the point alone (graph/local.h).
+ * All count only zeros in C, from points in C.  The first two are 1-Lipschitz, and so distances as
+ * good as f / L: that of second order is, because on the way h to another point the gradient grows
+ * by H h at most, so what can change within r there can change within r + h here, less what can
+ * within h.  The local one has a trial radius, and serves where nothing above needs the slope.
+ *
+ * Rays are marched through the region in double precision by each, and the cheapest is taken.
+ */
+#include "compiler/geometry/field_bounds.h"
+
+#include <math.h>
+
+#include "compiler/geometry/lower.h"
+#include "compiler/graph/derive.h"
+#include "compiler/graph/evaluate.h"
+#include "compiler/graph/local.h"
+
+/* Into how many parts a region is cut for slopes: of gradients, which decide how long all steps
+   are, and of heads, of which there are many. */
+enum { CELLS = 512, HEAD_CELLS = 32 };
+
+/* Keeps quotients finite; below every coefficient that counts in single precision. */
+static const double TINY = 1e-30;
+
+static Node at_least(Graph *g, Node node, double least)
+{
+    return graph_op2(g, OP_max, node, graph_number(g, least));
+}
+
+/* Slope over a box; inf when there is no bound. */
+static double slope_over(Elaboration *e, Node node, Box box, uint32_t cells)
+{
+    Node   root  = node;
+    Graph *plain = graph_simplify(e->graph, &root, 1, e->scratch);
+    return graph_slope(plain, root, box, NULL, box_is_finite(box) ? cells : 1, NULL, e->scratch);
+}
+
+/* ---- heads of sums ---- */
+
+enum { MOST_TERMS = 12 };
+
+typedef struct Term {
+    Node   node;
+    Range  range;
+    double slope;
+} Term;
+
+typedef struct Terms {
+    Graph   *graph;
+    uint32_t count;
+    Term     items[MOST_TERMS];
+} Terms;
+
+/* Whether there are terms below products and signs. */
+static bool has_terms(const Graph *g, Node node)
+{
+    const Expr *e = &g->items[node];
+    switch (e->op) {
+    case OP_add: case OP_sub: return e->type == TYPE_FLOAT;
+    case OP_neg: case OP_div: return has_terms(g, e->operands[0]);
+    case OP_mul: return has_terms(g, e->operands[0]) || has_terms(g, e->operands[1]);
+    default:     return false;
+    }
+}
+
+/* Adds `factor` times an expression, term by term. */
+static void add_terms(Terms *terms, Node node, Node factor)
+{
+    Graph *g = terms->graph;
+    Expr   e = g->items[node];
+    if (!has_terms(g, node) || terms->count + 2 > MOST_TERMS) {
+        if (terms->count < MOST_TERMS)
+            terms->items[terms->count].node = graph_op2(g, OP_mul, factor, node);
+        terms->count++;
+        return;
+    }
+    Node opposite = graph_op1(g, OP_neg, factor);
+    int  inner    = e.op == OP_mul && !has_terms(g, e.operands[0]);
+    switch (e.op) {
+    case OP_add: case OP_sub:
+        add_terms(terms, e.operands[0], factor);
+        add_terms(terms, e.operands[1], e.op == OP_add ? factor : opposite);
+        break;
+    case OP_neg: add_terms(terms, e.operands[0], opposite); break;
+    case OP_mul:
+        add_terms(terms, e.operands[inner], graph_op2(g, OP_mul, factor, e.operands[1 - inner]));
+        break;
+    default:
+        add_terms(terms, e.operands[0], graph_op2(g, OP_div, factor, e.operands[1]));
+    }
+}
+
+static double steepness_for_size(const Term *term)
+{
+    return term->slope / (term->range.high - term->range.low);
+}
+
+/* The steepest for their size come last: those are left out first. */
+static void sort_terms(Terms *terms)
+{
+    for (uint32_t i = 1; i < terms->count; i++)
+        for (uint32_t k = i; k > 0; k--) {
+            Term *left = &terms->items[k - 1], *right = &terms->items[k];
+            if (!(steepness_for_size(left) > steepness_for_size(right)))
+                break;
+            Term swap = *left;
+            *left     = *right;
+            *right    = swap;
+        }
+}
+
+static Terms terms_of(Elaboration *e, Node formula, Box box)
+{
+    Terms terms = {.graph = e->graph};
+    add_terms(&terms, formula, graph_number(e->graph, 1));
+    if (terms.count > MOST_TERMS)
+        terms.count = 0;
+    for (uint32_t i = 0; i < terms.count; i++) {
+        Term  *term  = &terms.items[i];
+        Node   root  = term->node;
+        Graph *plain = graph_simplify(e->graph, &root, 1, e->scratch);
+        term->range  = graph_facts(plain, box, NULL, e->scratch)[root].value[0];
+        term->slope  = slope_over(e, term->node, box, 1);
+    }
+    sort_terms(&terms);
+    return terms;
+}
+
+/* (|head + m| - h) / slope for a rest in `range`; NODE_NONE: the slope has no bound. */
+static Node head_distance(Elaboration *e, Node head, Range range, Box box)
+{
+    Graph *g     = e->graph;
+    double slope = slope_over(e, head, box, HEAD_CELLS);
+    if (!isfinite(slope))
+        return NODE_NONE;
+    Node size   = graph_number(g, (0.5 * range.high - 0.5 * range.low) * (1 + 1e-12));
+    Node middle = graph_number(g, 0.5 * range.low + 0.5 * range.high);
+    Node whole  = graph_op1(g, OP_abs, graph_op2(g, OP_add, head, middle));
+    return divide_by_slope(g, graph_op2(g, OP_sub, whole, size), slope);
+}
+
+/* The longest by all heads; NODE_NONE: the formula is not such a sum. */
+static Node by_heads(Elaboration *e, Node formula, Box box)
+{
+    Graph *g     = e->graph;
+    Terms  terms = terms_of(e, formula, box);
+    Node   heads[MOST_TERMS], longest = NODE_NONE;
+    Range  rest = {0, 0};
+    for (uint32_t i = 0; i < terms.count; i++)
+        heads[i] = i == 0 ? terms.items[0].node
+                          : graph_op2(g, OP_add, heads[i - 1], terms.items[i].node);
+    for (uint32_t i = terms.count; i-- > 1;) {
+        rest.low += terms.items[i].range.low;
+        rest.high += terms.items[i].range.high;
+        if (!isfinite(rest.low) || !isfinite(rest.high))
+            break;
+        Node distance = head_distance(e, heads[i - 1], rest, box);
+        if (distance != NODE_NONE)
+            longest = longest == NODE_NONE ? distance : graph_op2(g, OP_max, longest, distance);
+    }
+    return longest;
+}
+
+/* ---- second order, and local ---- */
+
+static Node by_second_order(Elaboration *e, Node f, Box box)
+{
+    Graph *g = e->graph;
+    Node   gradient;
+    if (graph_gradient(g, f, &gradient, NULL, e->scratch) != DERIVED_SMOOTH)
+        return NODE_NONE;
+    double bend = slope_over(e, gradient, box, CELLS);
+    if (!isfinite(bend))
+        return NODE_NONE;
+    Node size    = graph_op1(g, OP_abs, f);
+    Node steep   = graph_op1(g, OP_length, gradient);
+    Node squared = graph_op2(g, OP_dot, gradient, gradient);
+    Node room    = graph_op2(g, OP_mul, size, graph_number(g, 2 * bend));
+    Node root    = graph_op1(g, OP_sqrt, graph_op2(g, OP_add, squared, room));
+    Node sum     = at_least(g, graph_op2(g, OP_add, steep, root), TINY);
+    Node twice   = graph_op2(g, OP_mul, size, graph_number(g, 2));
+    return graph_op2(g, OP_div, twice, sum);
+}
+
+static Node by_local_slope(Elaboration *e, Node f, Box box, double least)
+{
+    LocalBound local;
+    if (!graph_local_bound(e->graph, f, box, least, &local, e->scratch))
+        return NODE_NONE;
+    return local_radius(e->graph, f, &local);
+}
+
+/* ---- rays on trial ---- */
+
+/* Rays through a box, in double precision, at the parameters' defaults. */
+typedef struct March {
+    const Graph     *graph;
+    Box              box;
+    const NodeValue *parameters;
+    double           least; /* step */
+    Arena           *scratch;
+} March;
+
+enum { MARCHED_RAYS = 24, MOST_STEPS = 96 };
+
+typedef struct TrialRay {
+    double from[3], direction[3];
+} TrialRay;
+
+/* From point to point of Roberts' sequence in six dimensions. */
+static TrialRay trial_ray(Box box, uint32_t i)
+{
+    static const double root = 1.1347241384015194;
+    TrialRay            ray;
+    double              length = 0, place[6];
+    for (int k = 0; k < 6; k++) {
+        Range side = box.axis[k % 3];
+        double t   = fmod(0.5 + (i + 1) * pow(root, -(k + 1)), 1);
+        place[k]   = side.low + t * (side.high - side.low);
+    }
+    for (int k = 0; k < 3; k++) {
+        ray.from[k]      = place[k];
+        ray.direction[k] = place[k + 3] - place[k];
+        length           = hypot(length, ray.direction[k]);
+    }
+    for (int k = 0; k < 3; k++)
+        ray.direction[k] /= length > 0 ? length : 1;
+    return ray;
+}
+
+/* The distance at t; below 0 beyond the box. */
+static double distance_along(const March *m, const Tape *tape, Node root, const TrialRay *ray,
+                             double t, NodeValue *values)
+{
+    double point[3];
+    for (int k = 0; k < 3; k++) {
+        point[k] = ray->from[k] + t * ray->direction[k];
+        if (point[k] < m->box.axis[k].low || point[k] > m->box.axis[k].high)
+            return -1;
+    }
+    tape_run_point(tape, point, values);
+    return values[root].v[0];
+}
+
+/* Evaluations up to the surface or the sides of the box.  As the tracer's, a step is as long as
+   balls of empty space around its ends are expected to meet, and is taken back if they do not. */
+static uint32_t count_steps(const March *m, const Tape *tape, Node root, const TrialRay *ray,
+                            NodeValue *values)
+{
+    double   t = 0, step = 0, change = -1;
+    double   radius = distance_along(m, tape, root, ray, 0, values);
+    uint32_t count  = 1;
+    for (; radius > 0 && count < MOST_STEPS; count++) {
+        double usual = fmax(radius, m->least);
+        step         = fmax(usual, 2 * radius / (1 - change));
+        double next  = distance_along(m, tape, root, ray, t + step, values);
+        if (step > usual && step > radius + fabs(next)) {
+            step   = usual;
+            change = -1;
+            next   = distance_along(m, tape, root, ray, t + step, values);
+            count++;
+        } else
+            change = fmin(0.7 * change + 0.3 * (next - radius) / step, 0.98);
+        t += step;
+        radius = next;
+    }
+    return count;
+}
+
+/* Multiply-adds of all steps by a distance. */
+static double march_cost(const March *m, Node distance)
+{
+    const double OVERHEAD = 20; /* of the tracer, a step */
+    Tape         tape     = tape_new(m->graph, &distance, 1, m->scratch);
+    NodeValue   *values   = arena_new_array(m->scratch, NodeValue, m->graph->count);
+    double       cost     = OVERHEAD, steps = 0;
+    for (size_t i = tape.frame_count; i < tape.count; i++) {
+        const Expr *e = &m->graph->items[tape.nodes[i]];
+        GraphType   types[MAX_OPERANDS] = {0};
+        for (int k = 0; k < e->operand_count; k++)
+            types[k] = (GraphType)m->graph->items[e->operands[k]].type;
+        cost += e->operand_count ? op_cost((Op)e->op, (GraphType)e->type, types) : 0;
+    }
+    tape_run_frame(&tape, m->parameters, values);
+    for (uint32_t i = 0; i < MARCHED_RAYS; i++) {
+        TrialRay ray = trial_ray(m->box, i);
+        steps += count_steps(m, &tape, distance, &ray, values);
+    }
+    return steps * cost;
+}
+
+static March march_new(Elaboration *e, Box box)
+{
+    Box        tried      = box_is_finite(box) ? box : (Box){{{-10, 10}, {-10, 10}, {-10, 10}}};
+    NodeValue *parameters = arena_new_array(e->scratch, NodeValue, e->graph->parameters.count);
+    for (size_t i = 0; i < e->scene->parameters.count; i++) {
+        const Parameter *parameter = &e->scene->parameters.items[i];
+        for (int k = 0; k < 4; k++)
+            parameters[parameter->slot].v[k] = parameter->value[k];
+    }
+    return (March){e->graph, tried, parameters, 3e-5 * box_diagonal(tried), e->scratch};
+}
+
+/* ---- the choice ---- */
+
+/* The larger of a distance and a bound that knows no sign. */
+static Node lengthened(Graph *g, Node distance, Node bound)
+{
+    Node size = graph_op2(g, OP_max, graph_op1(g, OP_abs, distance), bound);
+    return graph_op2(g, OP_mul, graph_op1(g, OP_sign, distance), size);
+}
+
+/* The cheapest of some distances (NODE_NONE: not there), if it is clearly cheaper than the one that
+   there is already; *cost follows. */
+static Node cheapest(const March *march, Node present, const Node *others, int count, double *cost)
+{
+    const double LEAD = 0.85;
+    Node         best = present;
+    double       least = LEAD * *cost;
+    for (int i = 0; i < count; i++) {
+        double tried = others[i] == NODE_NONE ? HUGE_VAL : march_cost(march, others[i]);
+        if (tried >= least)
+            continue;
+        least = *cost = tried;
+        best  = others[i];
+    }
+    return best;
+}
+
+FieldBounds field_bounds(Elaboration *e, Node formula, double slope, Box box, bool even)
+{
+    static const double shares[] = {0.25, 1.0 / 64}; /* of the slope, what a local one may be */
+    Graph      *g      = e->graph;
+    March       march  = march_new(e, box);
+    FieldBounds bounds = {divide_by_slope(g, formula, slope), NODE_NONE};
+    Node        heads  = by_heads(e, formula, box), order = by_second_order(e, formula, box);
+    Node        steady[3] = {NODE_NONE, NODE_NONE, NODE_NONE}, sharp[2] = {NODE_NONE, NODE_NONE};
+    double      cost      = HUGE_VAL;
+    if (even && order != NODE_NONE)
+        bounds.steady = lengthened(g, bounds.steady, order);
+    else if (order != NODE_NONE)
+        steady[0] = lengthened(g, bounds.steady, order);
+    if (heads != NODE_NONE)
+        steady[1] = lengthened(g, bounds.steady, heads);
+    if (heads != NODE_NONE && steady[0] != NODE_NONE)
+        steady[2] = lengthened(g, steady[0], heads);
+    cost          = march_cost(&march, bounds.steady);
+    bounds.steady = cheapest(&march, bounds.steady, steady, 3, &cost);
+    for (int i = 0; i < 2; i++) {
+        Node local = by_local_slope(e, formula, box, slope * shares[i]);
+        sharp[i]   = local == NODE_NONE ? local : lengthened(g, bounds.steady, local);
+    }
+    bounds.sharp = cheapest(&march, NODE_NONE, sharp, 2, &cost);
+    return bounds;
+}
