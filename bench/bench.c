@@ -10,15 +10,22 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 
 #include "bench/results.h"
+#include "bench/sheet.h"
+
+typedef enum Part {
+    PART_GROWTH, PART_KRS, PART_TRIANGLES, PART_QUESTIONS, PART_FIRST_PICTURE, PART_COUNT
+} Part;
+static const char *const part_names[PART_COUNT] = {"growth", "krs", "triangles", "questions",
+                                                   "first-picture"};
 
 static const char usage[] =
-    "usage: bench [--quick] [--repeats N] [--only SCENE] [--krs COMMAND] [--folder FOLDER]\n"
+    "usage: bench [--quick] [--repeats N] [--only NAME] [--krs COMMAND] [--folder FOLDER]\n"
     "             [--device INDEX|NAME|cpu] [--revision NAME]\n"
-    "Run it from the root of the source.  It writes FOLDER/DATE-DEVICE.json and .md, and\n"
-    "fails when a picture is not as it should be.\n";
+    "Run it from the root of the source.  It writes FOLDER/DATE-bench-DEVICE.json and .md, and\n"
+    "fails when a picture is not as it should be.  Only one scene, or one of growth, krs,\n"
+    "triangles, questions and first-picture, is printed and not written.\n";
 
 void fail(const char *format, ...)
 {
@@ -75,6 +82,14 @@ static bool is_scene(const char *name)
     return false;
 }
 
+static bool is_part(const char *name)
+{
+    for (Part part = 0; part < PART_COUNT; part++)
+        if (strcmp(name, part_names[part]) == 0)
+            return true;
+    return false;
+}
+
 static void read_options(Bench *bench, int argc, char **argv)
 {
     static const struct option options[] = {
@@ -102,8 +117,8 @@ static void read_options(Bench *bench, int argc, char **argv)
         fputs(usage, stderr);
         exit(2);
     }
-    if (bench->only && !is_scene(bench->only))
-        fail("there is no scene called %s", bench->only);
+    if (bench->only && !is_scene(bench->only) && !is_part(bench->only))
+        fail("there is no scene or part called %s", bench->only);
     bench->repeats = repeats ? repeats : bench->quick ? 1 : 5;
     bench->width = bench->quick ? 320 : 1280;
     bench->height = bench->quick ? 180 : 720;
@@ -134,6 +149,11 @@ static void close_device(Bench *bench)
 
 /* ---- What is done ---- */
 
+static bool is_wanted(const Bench *bench, Part part)
+{
+    return !bench->only || strcmp(bench->only, part_names[part]) == 0;
+}
+
 static void run_contests(Bench *bench, Results *results)
 {
     results->contests = arena_new_array(bench->arena, Contest, scene_count);
@@ -154,25 +174,22 @@ static void run_all(Bench *bench, Results *results)
     tell("peak of the device");
     peak_open(bench, &results->peak);
     run_contests(bench, results);
-    growth_run(bench, &results->growth);
-    sequences_run(bench, &results->sequences);
-    sequences_judge(&results->sequences, &results->complaints);
-    triangles_run(bench, &results->triangles);
-    questions_run(bench, &results->questions);
-    questions_judge(&results->questions, &results->complaints);
-    latency_run(bench, &results->latency);
+    if (is_wanted(bench, PART_GROWTH))
+        growth_run(bench, &results->growth);
+    if (is_wanted(bench, PART_KRS)) {
+        sequences_run(bench, &results->sequences);
+        sequences_judge(&results->sequences, &results->complaints);
+    }
+    if (is_wanted(bench, PART_TRIANGLES))
+        triangles_run(bench, &results->triangles);
+    if (is_wanted(bench, PART_QUESTIONS)) {
+        questions_run(bench, &results->questions);
+        questions_judge(&results->questions, &results->complaints);
+    }
+    if (is_wanted(bench, PART_FIRST_PICTURE))
+        latency_run(bench, &results->latency);
     peak_measure(bench, &results->peak);
     peak_close(bench, &results->peak);
-}
-
-static const char *today(Arena *arena)
-{
-    char      date[16];
-    time_t    now = time(NULL);
-    struct tm parts;
-    gmtime_r(&now, &parts);
-    strftime(date, sizeof date, "%Y-%m-%d", &parts);
-    return arena_copy_text(arena, date, strlen(date));
 }
 
 static void write_results(const Bench *bench, const Results *results)
@@ -181,8 +198,11 @@ static void write_results(const Bench *bench, const Results *results)
     results_json(bench, results, &json);
     results_tables(bench, results, &text);
     fputs(text.bytes, stdout);
+    if (bench->only)
+        return;
     mkdir(bench->folder, 0777); /* it may be there; if it cannot be made, writing will tell */
-    text_format(&path, "%s/%s-%s.json", bench->folder, results->date, results->machine.slug);
+    text_format(&path, "%s/%s-bench-%s.json", bench->folder, results->date,
+                results->machine.slug);
     write_file(path.bytes, &json);
     memcpy(path.bytes + path.length - 4, "md", 3);
     write_file(path.bytes, &text);
@@ -201,7 +221,9 @@ int main(int argc, char **argv)
     forget_caches();
     open_device(&bench);
 
-    Results results = {.date = today(&arena), .complaints = {.arena = &arena}};
+    char date[16];
+    date_today(date, sizeof date);
+    Results results = {.date = date, .complaints = {.arena = &arena}};
     run_all(&bench, &results);
     write_results(&bench, &results);
     close_device(&bench);

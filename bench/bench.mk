@@ -14,31 +14,32 @@ bench-quick: $(B)/bench/bench $(B)/krs
 	@$(B)/bench/bench --krs $(B)/krs --revision $(REVISION) --quick --folder $(B)/bench/results
 
 # How well one sample shows what is finer than a pixel (bench/README.md).
-$(B)/bench/minify/minify: $(B)/bench/minify/minify.o $(B)/libkrs.a
+MINIFY := $(addprefix $(B)/bench/, minify/minify.o minify/pixel_filter.o sheet.o)
+$(B)/bench/minify/minify: $(MINIFY) $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
 minify: $(B)/bench/minify/minify
-	@$(B)/bench/minify/minify
+	@REVISION=$(REVISION) $(B)/bench/minify/minify
 
 # How many evaluations a pixel takes, as pictures in bench/results/.
-$(B)/bench/iterations/iterations: $(B)/bench/iterations/iterations.o $(B)/libkrs.a
+$(B)/bench/iterations/iterations: $(B)/bench/iterations/iterations.o $(B)/bench/sheet.o $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
 iterations: $(B)/bench/iterations/iterations
-	@$(B)/bench/iterations/iterations
+	@REVISION=$(REVISION) $(B)/bench/iterations/iterations
 
 # Every way to trace sequences with maps that invert.
-$(B)/bench/inverted/inverted: $(B)/bench/inverted/inverted.o $(B)/libkrs.a
+$(B)/bench/inverted/inverted: $(B)/bench/inverted/inverted.o $(B)/bench/sheet.o $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
 inverted: $(B)/bench/inverted/inverted
-	@$(B)/bench/inverted/inverted
+	@REVISION=$(REVISION) $(B)/bench/inverted/inverted
 
 # How well and how fast normals are found (bench/README.md).
-$(B)/bench/normals/normals: $(B)/bench/normals/normals.o $(B)/libkrs.a
+$(B)/bench/normals/normals: $(B)/bench/normals/normals.o $(B)/bench/sheet.o $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
 bench-normals: $(B)/bench/normals/normals
-	@$(B)/bench/normals/normals
+	@REVISION=$(REVISION) $(B)/bench/normals/normals
 
 # Algebraic surfaces: our tracers, POV-Ray and surf where they are installed (bench/README.md).
-ALGEBRAIC := $(addprefix bench/algebraic/, algebraic.o programs.o polynomial.o)
+ALGEBRAIC := $(addprefix bench/algebraic/, algebraic.o estimates.o judge.o processes.o programs.o trees.o polynomial.o)
 $(B)/bench/algebraic/algebraic: $(ALGEBRAIC:%=$(B)/%) $(B)/tests/oracle/oracle.a $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
 bench-algebraic: $(B)/bench/algebraic/algebraic $(B)/krs
@@ -47,7 +48,7 @@ bench-algebraic: $(B)/bench/algebraic/algebraic $(B)/krs
 # For `make test`.
 SCRIPTS += tests/bench.sh
 test-programs: $(B)/bench/bench
-clang-objects: $(BENCH:%.c=$(B)/%.o) $(B)/bench/minify/minify.o \
+clang-objects: $(BENCH:%.c=$(B)/%.o) $(MINIFY) \
                $(B)/bench/iterations/iterations.o $(B)/bench/inverted/inverted.o \
                $(B)/bench/normals/normals.o $(ALGEBRAIC:%=$(B)/%)
 .PHONY: bench bench-quick minify iterations inverted bench-normals bench-algebraic

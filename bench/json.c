@@ -172,8 +172,9 @@ static void add_growth(Text *json, const Growth *growth)
     end(json, "}");
 }
 
-static void add_sequences(Text *json, const Sequences *sequences)
+static void add_sequences(Text *json, const Bench *bench, const Results *results)
 {
+    const Sequences *sequences = &results->sequences;
     begin(json, "sequences", "[");
     for (int k = 0; k < STAND_COUNT; k++) {
         begin(json, NULL, "{");
@@ -188,6 +189,7 @@ static void add_sequences(Text *json, const Sequences *sequences)
             add_number(json, "evaluations_per_ray", sequences->evaluations[k][i]);
             add_number(json, "beams_ms", sequences->beams_ms[k][i]);
             add_number(json, "ms", sequences->ms[k][i]);
+            add_number(json, "cpu_ms", sequences->cpu_ms[k][i]);
             add_number(json, "coverage", sequences->coverage[k][i]);
             end(json, "}");
         }
@@ -196,7 +198,17 @@ static void add_sequences(Text *json, const Sequences *sequences)
         end(json, "}");
     }
     end(json, "]");
-    add_number(json, "paper_kiloflops_per_ray", PAPER_KILOFLOPS);
+    begin(json, "paper", "[");
+    for (int i = 0; i < PAPER_ROWS; i++) {
+        begin(json, NULL, "{");
+        add_text(json, "case", paper_rows[i].name);
+        add_number(json, "levels", paper_rows[i].levels);
+        add_number(json, "paper_kiloflops_per_ray", paper_rows[i].kiloflops);
+        add_number(json, "kiloflops_per_ray",
+                   paper_row_ours(bench, sequences, &paper_rows[i], results->peak.gflops));
+        end(json, "}");
+    }
+    end(json, "]");
 }
 
 static void add_triangles(Text *json, const Triangles *triangles)
@@ -237,7 +249,7 @@ void results_json(const Bench *bench, const Results *results, Text *json)
     }
     end(json, "]");
     add_growth(json, &results->growth);
-    add_sequences(json, &results->sequences);
+    add_sequences(json, bench, results);
     add_triangles(json, &results->triangles);
     begin(json, "questions", "{");
     for (int i = 0; i < ANSWERER_COUNT; i++) {

@@ -3,12 +3,13 @@
  */
 #include "bench/machine.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/utsname.h>
 #include <unistd.h>
+
+#include "bench/sheet.h"
 
 #ifdef __clang__
 #define COMPILER "clang " __clang_version__
@@ -95,18 +96,22 @@ static const char *describe_load(Bench *bench)
     return text.length > 0 ? text.bytes : "unknown";
 }
 
-/* "llvmpipe (LLVM 15.0.6, 256 bits)" is called llvmpipe. */
-static const char *make_slug(Bench *bench, const char *name)
+/* The target of make, with what was asked for beyond it. */
+static const char *describe_command(Bench *bench)
 {
-    Text slug = {.arena = bench->arena};
-    for (; *name && *name != '('; name++)
-        if (isalnum((unsigned char)*name))
-            text_format(&slug, "%c", tolower((unsigned char)*name));
-        else if (slug.length > 0 && slug.bytes[slug.length - 1] != '-')
-            text_add(&slug, "-");
-    while (slug.length > 0 && slug.bytes[slug.length - 1] == '-')
-        slug.bytes[--slug.length] = '\0';
-    return slug.length > 0 ? slug.bytes : "device";
+    Text text = {.arena = bench->arena};
+    text_format(&text, "%s, %u repeats", bench->quick ? "make bench-quick" : "make bench",
+                bench->repeats);
+    if (bench->only)
+        text_format(&text, ", only %s", bench->only);
+    return text.bytes;
+}
+
+static const char *make_slug(Bench *bench, const char *device)
+{
+    char slug[64];
+    device_slug(device, slug, sizeof slug);
+    return arena_copy_text(bench->arena, slug, strlen(slug));
 }
 
 void machine_describe(Bench *bench, Machine *machine)
@@ -122,4 +127,5 @@ void machine_describe(Bench *bench, Machine *machine)
     add_fact(machine, "compiler", COMPILER);
     add_fact(machine, "krs", KRS_VERSION);
     add_fact(machine, "revision", bench->revision);
+    add_fact(machine, "command", describe_command(bench));
 }

@@ -8,7 +8,7 @@
 #include "bench/bench.h"
 #include "bench/measure.h"
 
-enum { MOST_EQUIVALENTS = 8 };
+enum { MOST_EQUIVALENTS = 12 };
 
 /* What a branch or a piece of terrain is counted as, in doublings: the 2016 paper counts hundreds
    of triangles a branch (section 11); a facet of the terrain is two. */

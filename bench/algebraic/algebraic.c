@@ -1,14 +1,13 @@
 /*
  * algebraic.c: algebraic surfaces: our ways to trace them beside each other, and the whole program
- * beside POV-Ray and surf.
+ * beside POV-Ray and surf; and a tree of 2^28 branches beside one that is written out.
  *
- * Everything in turns, medians.  What our pictures show is held against first roots in long double
- * precision (tests/oracle/formulas.h), one pixel in sixteen.  bench/README.md says what the columns
- * mean.
+ * Everything in turns, medians.  What pictures show is held against first roots (judge.c).  The
+ * tables are printed, and written to bench/results/ when they are whole.  bench/README.md says what
+ * the columns mean.
  */
-#include <ftw.h>
+#include <ctype.h>
 #include <math.h>
-#include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -16,16 +15,15 @@
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
-#include <cmocka.h>
 
-#include "bench/algebraic/contest.h"
+#include "bench/algebraic/judge.h"
+#include "bench/algebraic/processes.h"
 #include "runtime/krs_vulkan.h"
-#include "tests/oracle/formulas.h"
 
-enum { MOST_REPEATS = 15, STRIDE = 4 };
 
 static const Subject subjects[] = {
-#define SURFACE(name, call, oracle, degree, radius, text) {name, call, oracle, degree, radius, text},
+#define SURFACE(name, call, oracle, degree, radius, text) \
+    {name, call, oracle, degree, radius, text},
 #include "bench/algebraic/surfaces.def"
 #undef SURFACE
 };
@@ -38,11 +36,34 @@ const Definition definitions[] = {
     {"l2", "(x^2*y^2+z^2)"},           {"l3", "(x^2*z^2+y^2)"},
     {"l4", "(y^2*z^2+x^2)"},           {NULL, NULL}};
 
-static const KrsTrace traces[] = {KRS_TRACE_PLAIN, KRS_TRACE_AUTO, KRS_TRACE_EXACT,
-                                  KRS_TRACE_TAYLOR, KRS_TRACE_ROOT_FREE};
-enum { TRACES = sizeof traces / sizeof *traces };
+/* Ours; all but the last with the normals that are the default. */
+static const struct Way {
+    const char *name;
+    KrsTrace    trace;
+    KrsNormals  normals;
+} ways[] = {{"plain", KRS_TRACE_PLAIN, 0},
+            {"auto", KRS_TRACE_AUTO, 0},
+            {"taylor", KRS_TRACE_TAYLOR, 0},
+            {"root-free", KRS_TRACE_ROOT_FREE, 0},
+            {"exact", KRS_TRACE_EXACT, 0},
+            {"exact, analytic", KRS_TRACE_EXACT, KRS_NORMALS_ANALYTIC}};
+enum { WAYS = sizeof ways / sizeof *ways, CHOSEN = 4 };
 
-void give_up(const char *what, const char *why)
+static FILE *kept; /* all that has been said */
+
+void say(const char *format, ...)
+{
+    va_list arguments, again;
+    va_start(arguments, format);
+    va_copy(again, arguments);
+    vprintf(format, arguments);
+    vfprintf(kept, format, again);
+    va_end(again);
+    va_end(arguments);
+    fflush(stdout);
+}
+
+_Noreturn void give_up(const char *what, const char *why)
 {
     fprintf(stderr, "algebraic: %s: %s\n", what, why);
     exit(1);
@@ -54,7 +75,7 @@ static int compare_numbers(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static double middle(double *numbers, size_t count)
+double middle(double *numbers, size_t count)
 {
     qsort(numbers, count, sizeof *numbers, compare_numbers);
     return count % 2 ? numbers[count / 2] : 0.5 * (numbers[count / 2 - 1] + numbers[count / 2]);
@@ -89,84 +110,10 @@ static void write_scene(const Subject *subject, const View *view, char *text, si
              view->height, b[0], b[1], b[2], WIDTH, HEIGHT);
 }
 
-/* ---- what is right ---- */
-
-typedef struct Judgement {
-    size_t asked, missed, extra; /* of the pixels that are looked at */
-    size_t apart;                /* of the latter two, not at an outline */
-} Judgement;
-
-static Fate fate_of(const Subject *subject, const View *view, int x, int y)
-{
-    const Surface *surface = surface_named(subject->oracle);
-    double u = ((x + 0.5) / WIDTH - 0.5) * view->height * WIDTH / HEIGHT;
-    double v = (0.5 - (y + 0.5) / HEIGHT) * view->height, at[3];
-    for (int i = 0; i < 3; i++)
-        at[i] = view->distance * view->back[i] + u * view->right[i] + v * view->up[i];
-    return surface_entry(surface->formula, subject->radius, vec(at[0], at[1], at[2]),
-                            vec(-view->back[0], -view->back[1], -view->back[2])).fate;
-}
-
-/* Whether a pixel next to this one should be seen so. */
-static bool is_at_outline(const Subject *subject, const View *view, int x, int y, bool seen)
-{
-    for (int k = 0; k < 9; k++) {
-        Fate fate = fate_of(subject, view, x + k % 3 - 1, y + k / 3 - 1);
-        if (fate == RAY_DOUBTFUL || (fate == RAY_HITS) == seen)
-            return true;
-    }
-    return false;
-}
-
-static Judgement judge(const Subject *subject, const View *view, const Fate *fates,
-                       const KrsPicture *picture)
-{
-    Judgement j = {0};
-    for (int y = 0; y < HEIGHT; y += STRIDE)
-        for (int x = 0; x < WIDTH; x += STRIDE) {
-            Fate fate = fates[y / STRIDE * (WIDTH / STRIDE) + x / STRIDE];
-            bool seen = picture->color[4 * ((size_t)y * WIDTH + x) + 3] > 0.5f;
-            if (fate == RAY_DOUBTFUL)
-                continue;
-            j.asked++;
-            if (seen == (fate == RAY_HITS))
-                continue;
-            j.missed += !seen;
-            j.extra += seen;
-            j.apart += !is_at_outline(subject, view, x, y, seen);
-        }
-    return j;
-}
-
-static const Fate *find_fates(const Subject *subject, const View *view)
-{
-    static Fate fates[(WIDTH / STRIDE) * (HEIGHT / STRIDE)];
-    for (int y = 0; y < HEIGHT; y += STRIDE)
-        for (int x = 0; x < WIDTH; x += STRIDE)
-            fates[y / STRIDE * (WIDTH / STRIDE) + x / STRIDE] = fate_of(subject, view, x, y);
-    return fates;
-}
-
-/* The text for the other programs is that of the same surface. */
-static void check_text(const Subject *subject)
-{
-    const Surface *surface = surface_named(subject->oracle);
-    Polynomial     p = polynomial_read(subject->text, definitions);
-    double         ratio = 0;
-    for (int i = 0; i < 20; i++) {
-        double at[3] = {sin(3.1 * i + 0.4), sin(1.7 * i + 1), sin(2.3 * i + 2)};
-        Real   same[3] = {at[0], at[1], at[2]};
-        double next = polynomial_value(&p, at) / (double)surface->formula(same);
-        if (i > 0 && fabs(next / ratio - 1) > 1e-6)
-            give_up(subject->name, "the text is another polynomial than the library's");
-        ratio = next;
-    }
-}
-
 /* ---- our tracers ---- */
 
 typedef struct Method {
-    double    frame[MOST_REPEATS], primary[MOST_REPEATS], cpu[MOST_REPEATS];
+    double    frame[MOST_REPEATS], rays[MOST_REPEATS], cpu[MOST_REPEATS];
     double    evaluations;
     uint64_t  unresolved;
     Judgement judgement;
@@ -181,8 +128,9 @@ typedef struct Stage {
 
 static Stage stage_open(KrsRenderer *renderer, const char *name, const char *text)
 {
-    Stage stage = {.renderer = renderer};
-    if (krs_compile_text(text, strlen(text), name, NULL, &stage.scene) != KRS_OK ||
+    Stage      stage   = {.renderer = renderer};
+    KrsOptions options = {.gradients = true};
+    if (krs_compile_text(text, strlen(text), name, &options, &stage.scene) != KRS_OK ||
         krs_frame_new(stage.scene, &stage.frame) != KRS_OK)
         give_up(name, "it does not compile");
     if (krs_rendering_new(renderer, stage.scene, &stage.rendering) != KRS_OK)
@@ -197,13 +145,15 @@ static void stage_close(Stage *stage)
     krs_scene_free(stage->scene);
 }
 
-static KrsPicture *shoot(const Stage *stage, KrsTrace trace)
+/* Without occlusion, which the other programs do not have either. */
+static KrsPicture *shoot(const Stage *stage, const struct Way *way)
 {
     KrsPicture      *picture;
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .trace = trace,
+    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .trace = way->trace,
+                                .normals = way->normals, .no_occlusion = true,
                                 .planes = KRS_PLANE_COLOR};
     if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
-        give_up(krs_trace_names[trace], krs_renderer_message(stage->renderer));
+        give_up(way->name, krs_renderer_message(stage->renderer));
     return picture;
 }
 
@@ -215,216 +165,183 @@ static double cpu_ms(void)
     return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
-/* What programs without occlusion do as well. */
-static double frame_ms(const KrsRenderStats *stats)
+static Judgement judge_picture(const Subject *subject, const View *view, const KrsPicture *picture,
+                               double *coverage)
 {
-    return stats->total_ms - stats->phase_ms[KRS_PHASE_OCCLUSION];
+    static bool seen[SEEN_ROWS][SEEN_COLUMNS];
+    *coverage = 0;
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++)
+        *coverage += picture->color[4 * i + 3] / (WIDTH * HEIGHT);
+    for (size_t y = 0; y < SEEN_ROWS; y++)
+        for (size_t x = 0; x < SEEN_COLUMNS; x++)
+            seen[y][x] = picture->color[4 * (y * STRIDE * WIDTH + x * STRIDE) + 3] > 0.5f;
+    return judge(subject, view, CUT_SOLID, seen);
 }
 
-/* Returns what all threads compute for a frame by the default, whose march are exact steps. */
-static double print_tracers(KrsRenderer *renderer, const Subject *subject, const View *view,
-                            size_t repeats, double *coverage)
+/* One picture that is judged, and then all in turns. */
+static void run_methods(const Stage *stage, const Subject *subject, const View *view,
+                        size_t repeats, Method methods[WAYS], double *coverage)
 {
-    static Method methods[TRACES];
-    char          text[1024];
-    write_scene(subject, view, text, sizeof text);
-    Stage       stage = stage_open(renderer, subject->name, text);
-    const Fate *fates = find_fates(subject, view);
-    for (int m = 0; m < TRACES; m++) {
-        KrsPicture *picture    = shoot(&stage, traces[m]);
-        methods[m].judgement   = judge(subject, view, fates, picture);
+    for (int m = 0; m < WAYS; m++) {
+        KrsPicture *picture    = shoot(stage, &ways[m]);
+        methods[m].judgement   = judge_picture(subject, view, picture, coverage);
         methods[m].evaluations = picture->stats.evaluations_per_ray;
         methods[m].unresolved  = picture->stats.unresolved;
-        if (traces[m] == KRS_TRACE_EXACT) {
-            *coverage = 0;
-            for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++)
-                *coverage += picture->color[4 * i + 3] / (WIDTH * HEIGHT);
-        }
         krs_picture_free(picture);
     }
     for (size_t turn = 0; turn < repeats; turn++)
-        for (int m = 0; m < TRACES; m++) {
-            double        before  = cpu_ms();
-            KrsPicture   *picture = shoot(&stage, traces[m]);
-            const double *phase   = picture->stats.phase_ms;
-            methods[m].cpu[turn]  = cpu_ms() - before;
-            methods[m].frame[turn]   = frame_ms(&picture->stats);
-            methods[m].primary[turn] = phase[KRS_PHASE_BEAMS] + phase[KRS_PHASE_PRIMARY];
+        for (int m = 0; m < WAYS; m++) {
+            double      before      = cpu_ms();
+            KrsPicture *picture     = shoot(stage, &ways[m]);
+            methods[m].cpu[turn]    = cpu_ms() - before;
+            methods[m].frame[turn]  = picture->stats.total_ms;
+            methods[m].rays[turn]   = picture->stats.phase_ms[KRS_PHASE_BEAMS] +
+                                    picture->stats.phase_ms[KRS_PHASE_PRIMARY];
             krs_picture_free(picture);
         }
-    double chosen = 0;
-    for (int m = 0; m < TRACES; m++) {
-        Method *method  = &methods[m];
-        double  frame   = middle(method->frame, repeats);
-        double  cpu     = middle(method->cpu, repeats);
-        double  primary = middle(method->primary, repeats);
-        printf("| %s | %d | %s | %.1f | %.1f | %.1f | %.1f | %.1f | %zu / %zu / %zu | %llu |\n",
-               subject->name, subject->degree, krs_trace_names[traces[m]], cpu, frame, primary,
-               primary * 1e6 / (WIDTH * HEIGHT), method->evaluations, method->judgement.missed,
-               method->judgement.extra, method->judgement.apart,
-               (unsigned long long)method->unresolved);
-        chosen = traces[m] == KRS_TRACE_EXACT ? cpu : chosen;
-    }
-    fflush(stdout);
-    stage_close(&stage);
-    return chosen;
 }
 
-/* ---- whole programs ---- */
-
-typedef struct Runs {
-    Run    median;
-    size_t count;
-    double wall[MOST_REPEATS], cpu[MOST_REPEATS], frame[MOST_REPEATS];
-} Runs;
-
-static void take(Runs *runs, const Run *run)
+/* Returns what all threads compute for a frame by the default, whose march are exact steps. */
+static Frame print_tracers(KrsRenderer *renderer, const Subject *subject, const View *view,
+                           size_t repeats)
 {
-    runs->wall[runs->count]  = run->wall;
-    runs->cpu[runs->count]   = run->cpu;
-    runs->frame[runs->count] = run->frame;
-    runs->median             = *run;
-    runs->count++;
-}
-
-static void settle(Runs *runs)
-{
-    runs->median.wall  = middle(runs->wall, runs->count);
-    runs->median.cpu   = middle(runs->cpu, runs->count);
-    runs->median.frame = middle(runs->frame, runs->count);
-}
-
-static bool run_krs(const char *krs, const char *folder, const Subject *subject, const View *view,
-                    Run *run)
-{
-    char scene[512], picture[512], said[512], text[1024];
-    snprintf(scene, sizeof scene, "%s/scene.krs", folder);
-    snprintf(picture, sizeof picture, "%s/krs.png", folder);
-    snprintf(said, sizeof said, "%s/krs.txt", folder);
-    FILE *file = fopen(scene, "wb");
-    if (!file)
-        give_up(scene, "cannot write it");
+    static Method methods[WAYS];
+    char          text[1024];
+    Frame         frame = {0};
     write_scene(subject, view, text, sizeof text);
-    fputs(text, file);
-    fclose(file);
-    char *const arguments[] = {(char *)krs, "render", scene, "-o", picture, "--quiet", NULL};
-    return run_command(arguments, said, run);
-}
-
-static int remove_entry(const char *path, const struct stat *info, int kind, struct FTW *place)
-{
-    (void)info, (void)kind, (void)place;
-    return remove(path);
-}
-
-/* All caches in this folder, or a fresh one. */
-static void point_caches(const char *folder)
-{
-    setenv("XDG_CACHE_HOME", folder, 1);
-    setenv("MESA_SHADER_CACHE_DIR", folder, 1);
-}
-
-static void print_run(const Subject *subject, const char *name, const Run *run, double frame,
-                      double krs_cpu)
-{
-    printf("| %s | %d | %s | %.0f | %.0f |", subject->name, subject->degree, name, run->wall,
-           run->cpu);
-    if (run->frame > 0)
-        printf(" %.0f | %.1f |", run->frame, run->frame / frame);
-    else
-        printf(" | |");
-    printf(" %.2f | %.1f %% |\n", run->cpu / krs_cpu, 100 * run->coverage);
-    fflush(stdout);
-}
-
-static void print_programs(const char *krs, const Subject *subject, const View *view, double frame,
-                           double coverage, size_t repeats, bool slow)
-{
-    static Runs all[8], cold, warm;
-    char        folder[] = "/tmp/krs-algebraic-XXXXXX", cache[64];
-    memset(all, 0, sizeof all);
-    cold = warm = (Runs){0};
-    if (!mkdtemp(folder))
-        give_up(folder, "cannot make it");
-    for (size_t turn = 0; turn < repeats; turn++) {
-        Run run = {.coverage = coverage, .frame = frame};
-        snprintf(cache, sizeof cache, "%s/cache%zu", folder, turn);
-        point_caches(cache);
-        if (!run_krs(krs, folder, subject, view, &run))
-            give_up(krs, "it failed");
-        take(&cold, &run);
-        if (!run_krs(krs, folder, subject, view, &run))
-            give_up(krs, "it failed");
-        take(&warm, &run);
-        for (size_t i = 0; i < program_count; i++) {
-            const Program *program = &programs[i];
-            if (!program_is_installed(program->command) ||
-                subject->degree > program->largest_degree ||
-                subject->degree < program->least_degree || (program->slow && (!slow || turn > 0)))
-                continue;
-            run      = (Run){0};
-            run.done = program->run(program, folder, subject, view, &run);
-            if (!run.done)
-                give_up(program->name, "it failed");
-            take(&all[i], &run);
-        }
+    Stage stage = stage_open(renderer, subject->name, text);
+    run_methods(&stage, subject, view, repeats, methods, &frame.coverage);
+    for (int m = 0; m < WAYS; m++) {
+        Method *method = &methods[m];
+        double  cpu = middle(method->cpu, repeats), rays = middle(method->rays, repeats);
+        say("| %s | %d | %s | %.0f | %.0f | %.1f | %.1f | %.1f | %zu / %zu / %zu | %llu |\n",
+            subject->name, subject->degree, ways[m].name, cpu, middle(method->frame, repeats),
+            rays, rays * 1e6 / (WIDTH * HEIGHT), method->evaluations, method->judgement.missed,
+            method->judgement.extra, method->judgement.apart,
+            (unsigned long long)method->unresolved);
     }
-    settle(&cold);
-    settle(&warm);
-    print_run(subject, "krs, caches warm", &warm.median, frame, warm.median.cpu);
-    print_run(subject, "krs, nothing cached", &cold.median, frame, warm.median.cpu);
-    for (size_t i = 0; i < program_count; i++)
-        if (all[i].count > 0) {
-            settle(&all[i]);
-            print_run(subject, programs[i].name, &all[i].median, frame, warm.median.cpu);
-        }
-    nftw(folder, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
+    frame.cpu       = middle(methods[CHOSEN].cpu, repeats);
+    frame.analytic_cpu = middle(methods[CHOSEN + 1].cpu, repeats);
+    frame.judgement = methods[CHOSEN].judgement;
+    stage_close(&stage);
+    return frame;
 }
 
-static void print_heads(size_t repeats, const char *device)
+/* ---- all of it ---- */
+
+/* "llvmpipe (LLVM 15.0.6, 256 bits)" is called llvmpipe. */
+static void name_results(const char *device, char *path, size_t room)
 {
-    double load[3] = {0};
-    getloadavg(load, 3);
-    printf("# Algebraic surfaces on %s\n\n%dx%d, parallel rays, medians of %zu in turns; "
-           "%ld processors, load %.1f at the start.\n\n", device, WIDTH, HEIGHT, repeats,
-           sysconf(_SC_NPROCESSORS_ONLN), load[0]);
+    char      date[16], slug[64] = "";
+    time_t    now = time(NULL);
+    struct tm parts;
+    gmtime_r(&now, &parts);
+    strftime(date, sizeof date, "%Y-%m-%d", &parts);
+    for (size_t i = 0; isalnum((unsigned char)device[i]) && i + 1 < sizeof slug; i++)
+        slug[i] = (char)tolower((unsigned char)device[i]);
+    snprintf(path, room, "bench/results/%s-algebraic-%s.md", date, slug);
+}
+
+static void write_results(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "wb");
+    if (!file || fputs(text, file) == EOF || fclose(file) != 0)
+        give_up(path, "cannot write it");
+    fprintf(stderr, "algebraic: wrote %s\n", path);
+}
+
+static void print_heads(size_t repeats, const char *device, double load)
+{
+    say("# Algebraic surfaces on %s\n\n%dx%d, medians of %zu in turns, without shadows and "
+        "occlusion; %ld processors, load %.1f at the start. bench/README.md says what the columns "
+        "mean.\n\n", device, WIDTH, HEIGHT, repeats, sysconf(_SC_NPROCESSORS_ONLN), load);
     for (size_t i = 0; i < program_count; i++)
         if (!program_is_installed(programs[i].command))
-            printf("%s is left out: `%s` is not installed.\n", programs[i].name,
-                   programs[i].command);
+            say("%s is left out: `%s` is not installed.\n", programs[i].name, programs[i].command);
 }
 
-/* algebraic KRS [REPEATS [SURFACE [slow]]]: with `slow` what takes minutes as well. */
-int main(int count, char **arguments)
+static bool is_wanted(const char *name, const char *only)
 {
-    KrsRenderer *renderer;
-    static double frames[SUBJECTS], coverages[SUBJECTS];
-    if (count < 2)
-        give_up("usage", "algebraic KRS [REPEATS [SURFACE [slow]]]");
-    size_t repeats = count > 2 ? strtoul(arguments[2], NULL, 10) : 5;
-    repeats = repeats < 1 ? 1 : repeats > MOST_REPEATS ? MOST_REPEATS : repeats;
-    if (krs_renderer_new(NULL, &renderer) != KRS_OK)
-        give_up("cannot open the device", renderer ? krs_renderer_message(renderer) : "no memory");
-    print_heads(repeats, krs_renderer_device(renderer).name);
-    printf("\n| surface | degree | trace | cpu ms | frame ms | primary ms | ns/ray | evals/ray "
-           "| missed / extra / apart | unresolved |\n"
-           "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+    return !only || strcmp(name, only) == 0;
+}
+
+static void run_processes(const char *krs, size_t repeats, const char *only, bool slow,
+                          Processes processes[SUBJECTS], Trees *trees)
+{
+    char text[1024];
     for (int i = 0; i < SUBJECTS; i++) {
-        if (count > 3 && strcmp(subjects[i].name, arguments[3]) != 0)
+        if (!is_wanted(subjects[i].name, only))
             continue;
+        fprintf(stderr, "algebraic: %s by whole programs\n", subjects[i].name);
         View view = view_of(&subjects[i]);
         check_text(&subjects[i]);
-        frames[i] = print_tracers(renderer, &subjects[i], &view, repeats, &coverages[i]);
+        write_scene(&subjects[i], &view, text, sizeof text);
+        processes_run(&processes[i], krs, &subjects[i], &view, text, repeats, slow);
     }
-    krs_renderer_free(renderer);
-    printf("\n| surface | degree | program | wall ms | cpu ms | frame, cpu ms | of ours | cpu, of ours | "
-           "coverage |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+    if (is_wanted("trees", only) && program_is_installed("povray"))
+        trees_run(trees, krs, repeats);
+}
+
+/* What is measured in this process. */
+static void print_all_tracers(KrsRenderer *renderer, size_t repeats, const char *only,
+                              Frame frames[SUBJECTS])
+{
+    say("| surface | degree | trace | cpu ms | frame ms | rays ms | ns/ray | evals/ray "
+        "| missed / extra / apart | unresolved |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
     for (int i = 0; i < SUBJECTS; i++) {
-        if (count > 3 && strcmp(subjects[i].name, arguments[3]) != 0)
+        if (!is_wanted(subjects[i].name, only))
             continue;
         View view = view_of(&subjects[i]);
-        print_programs(arguments[1], &subjects[i], &view, frames[i], coverages[i], repeats,
-                       count > 4);
+        estimates_print(&subjects[i], &view);
+        frames[i] = print_tracers(renderer, &subjects[i], &view, repeats);
     }
+}
+
+static void print_processes(const char *only, Processes processes[SUBJECTS],
+                            const Frame frames[SUBJECTS], Trees *trees)
+{
+    say("\n| surface | degree | program | wall ms | cpu ms | MB | frame, cpu ms | of ours "
+        "| cpu, of ours | coverage | missed / extra / apart |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+    for (int i = 0; i < SUBJECTS; i++)
+        if (is_wanted(subjects[i].name, only))
+            processes_print(&processes[i], &subjects[i], &frames[i]);
+    if (trees->branches > 0)
+        trees_print(trees);
+}
+
+/* algebraic KRS [REPEATS [SURFACE|trees [slow]]]: with `slow` what takes minutes as well. */
+int main(int count, char **arguments)
+{
+    KrsRenderer     *renderer;
+    static Frame     frames[SUBJECTS];
+    static Processes processes[SUBJECTS];
+    static Trees     trees;
+    char             path[128], *text;
+    size_t           length;
+    const char      *only = count > 3 ? arguments[3] : NULL;
+    if (count < 2)
+        give_up("usage", "algebraic KRS [REPEATS [SURFACE|trees [slow]]]");
+    size_t repeats = count > 2 ? strtoul(arguments[2], NULL, 10) : 3;
+    repeats = repeats < 1 ? 1 : repeats > MOST_REPEATS ? MOST_REPEATS : repeats;
+    kept    = open_memstream(&text, &length);
+    if (!kept)
+        give_up("cannot begin", "no memory");
+    double load = 0;
+    getloadavg(&load, 1);
+    run_processes(arguments[1], repeats, only, count > 4, processes, &trees);
+    if (krs_renderer_new(NULL, &renderer) != KRS_OK)
+        give_up("cannot open the device", renderer ? krs_renderer_message(renderer) : "no memory");
+    const char *device = krs_renderer_device(renderer).name;
+    print_heads(repeats, device, load);
+    name_results(device, path, sizeof path);
+    print_all_tracers(renderer, repeats, only, frames);
+    krs_renderer_free(renderer);
+    print_processes(only, processes, frames, &trees);
+    fclose(kept);
+    if (!only)
+        write_results(path, text);
+    free(text);
     return 0;
 }

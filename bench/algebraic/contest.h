@@ -9,7 +9,8 @@
 
 #include "bench/algebraic/polynomial.h"
 
-enum { WIDTH = 1280, HEIGHT = 720 };
+enum { WIDTH = 1280, HEIGHT = 720, MOST_REPEATS = 15, MOST_PROGRAMS = 8,
+       MOST_SUBJECTS = 16, FOLDER_ROOM = 64 };
 
 typedef struct Subject {
     const char *name, *call, *oracle;
@@ -25,15 +26,28 @@ typedef struct View {
     double right[3], up[3], back[3], height, distance;
 } View;
 
-void give_up(const char *what, const char *why);
+/* Pixels that are not what they should be. */
+typedef struct Judgement {
+    size_t asked, missed, extra; /* of the pixels that are looked at */
+    size_t apart;                /* of the latter two, not at an outline */
+} Judgement;
+
+_Noreturn void give_up(const char *what, const char *why);
+
+/* Prints, and keeps it for the results. */
+void say(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* The median of numbers, which are put into order. */
+double middle(double *numbers, size_t count);
 
 /* ---- programs.c ---- */
 /* A run of a program, from its start to its end. */
 typedef struct Run {
-    bool   done;
     double wall, cpu; /* ms */
     double frame;     /* ms of all threads, by its own statistics; 0: it tells none */
+    double memory;    /* MB, the most that was resident */
     double coverage;  /* share of the pixels that are not background */
+    Judgement judgement;
 } Run;
 
 typedef struct Program {
@@ -50,5 +64,7 @@ extern const size_t  program_count;
 bool program_is_installed(const char *command);
 /* Runs a command and waits; false when it fails. */
 bool run_command(char *const *arguments, const char *output, Run *run);
+/* The share of the pixels of a PPM that are not black; which, of one in sixteen, if asked for. */
+bool read_picture(const char *path, double *coverage, bool *seen);
 
 #endif

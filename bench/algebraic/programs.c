@@ -1,10 +1,10 @@
 /*
  * programs.c: POV-Ray and surf on the same surfaces: their scenes, and processes of them.
  *
- * They are asked for the same view, one light, no shadows, no smoothing of edges, and a file without
- * compression.  POV-Ray shows the same solid; surf knows no solids, and shows the surface alone
- * where it is within the ball, from both sides.  Neither is needed for krs: what is not installed is
- * left out.
+ * They are asked for the same view, one light, no shadows, no smoothing of edges, and a file
+ * without compression.  POV-Ray shows the same solid; surf knows no solids, and shows the surface
+ * alone where it is within the ball, from both sides.  Neither is needed for krs: what is not
+ * installed is left out.
  */
 #include <math.h>
 #include <fcntl.h>
@@ -17,7 +17,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "bench/algebraic/contest.h"
+#include "bench/algebraic/judge.h"
 
 extern char **environ;
 
@@ -63,6 +63,7 @@ bool run_command(char *const *arguments, const char *output, Run *run)
         return false;
     run->wall = now_ms() - start;
     run->cpu  = milliseconds(usage.ru_utime) + milliseconds(usage.ru_stime);
+    run->memory = (double)usage.ru_maxrss / 1024;
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
@@ -83,13 +84,12 @@ static bool read_number(FILE *file, int *number)
     return false;
 }
 
-/* The share of pixels of a PPM that are not black. */
-static bool read_coverage(const char *path, double *coverage)
+bool read_picture(const char *path, double *coverage, bool *seen)
 {
     FILE         *file = fopen(path, "rb");
     int           width = 0, height = 0, most = 0;
     unsigned char pixel[3];
-    size_t        seen = 0;
+    size_t        bright = 0;
     if (!file)
         return false;
     bool good = read_number(file, &width) && read_number(file, &height) &&
@@ -97,11 +97,24 @@ static bool read_coverage(const char *path, double *coverage)
     good = good && fgetc(file) == '\n';
     for (int i = 0; i < WIDTH * HEIGHT && good; i++) {
         good = fread(pixel, 1, 3, file) == 3;
-        seen += pixel[0] + pixel[1] + pixel[2] > 0;
+        bool here = pixel[0] + pixel[1] + pixel[2] > 0;
+        bright += here;
+        if (seen && i % WIDTH % STRIDE == 0 && i / WIDTH % STRIDE == 0)
+            *seen++ = here;
     }
     fclose(file);
-    *coverage = (double)seen / (WIDTH * HEIGHT);
+    *coverage = (double)bright / (WIDTH * HEIGHT);
     return good;
+}
+
+static bool judge_file(const char *path, const Subject *subject, const View *view, Drawn drawn,
+                       Run *run)
+{
+    static bool seen[SEEN_ROWS][SEEN_COLUMNS];
+    if (!read_picture(path, &run->coverage, &seen[0][0]))
+        return false;
+    run->judgement = judge(subject, view, drawn, seen);
+    return true;
 }
 
 static FILE *create(const char *path)
@@ -211,7 +224,8 @@ static bool run_pov(const char *folder, const Subject *subject, const View *view
     write_pov(scene, subject, view, expanded);
     char *const arguments[] = {"povray", input, output, "+FP", "+W1280", "+H720", "-D", "-A", "-P",
                                "-V", "+WT2", NULL};
-    if (!run_command(arguments, said, run) || !read_coverage(output + 2, &run->coverage))
+    if (!run_command(arguments, said, run) ||
+        !judge_file(output + 2, subject, view, CUT_SOLID, run))
         return false;
     run->frame = read_trace_time(said);
     return true;
@@ -278,7 +292,8 @@ static bool run_surf(const Program *program, const char *folder, const Subject *
     snprintf(said, sizeof said, "%s/surf.txt", folder);
     write_surf(script, picture, subject, view);
     char *const arguments[] = {(char *)program->command, script, NULL};
-    return run_command(arguments, said, run) && read_coverage(picture, &run->coverage);
+    return run_command(arguments, said, run) &&
+           judge_file(picture, subject, view, OPEN_SURFACE, run);
 }
 
 const Program programs[] = {

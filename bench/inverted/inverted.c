@@ -9,7 +9,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
+#include "bench/sheet.h"
 #include "compiler/compile.h"
 #include "runtime/krs_vulkan.h"
 
@@ -32,6 +34,7 @@ typedef struct Row {
     KrsTrace trace;
     bool     beams;
     double   ms[MOST_REPEATS]; /* of beams and primary rays */
+    double   cpu_ms;           /* of all threads for the whole picture: the least */
     double   evaluations, hits, differing;
     uint64_t unresolved;
 } Row;
@@ -43,6 +46,8 @@ typedef struct Stage {
     KrsFrame     *frame;
     KrsRendering *rendering;
 } Stage;
+
+static Sheet sheet;
 
 static void fail(const char *what, const char *why)
 {
@@ -73,6 +78,15 @@ static void stage_close(Stage *stage)
     krs_rendering_free(stage->rendering);
     krs_frame_free(stage->frame);
     krs_scene_free(stage->scene);
+}
+
+/* Milliseconds that the threads of this process have computed. */
+static double cpu_ms(void)
+{
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return 1e3 * (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+           1e-3 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
 static KrsPicture *render(const Stage *stage, KrsTrace trace, bool beams, double error)
@@ -114,7 +128,10 @@ static int by_size(const void *a, const void *b)
 
 static void measure(const Stage *stage, const KrsPicture *fine, Row *row, size_t turn)
 {
+    double      used = cpu_ms();
     KrsPicture *picture = render(stage, row->trace, row->beams, 0.25);
+    used = cpu_ms() - used;
+    row->cpu_ms = turn == 0 ? used : fmin(row->cpu_ms, used);
     const KrsRenderStats *stats = &picture->stats;
     row->ms[turn]    = stats->phase_ms[KRS_PHASE_BEAMS] + stats->phase_ms[KRS_PHASE_PRIMARY];
     row->evaluations = stats->evaluations_per_ray;
@@ -128,11 +145,11 @@ static void print_row(const Stage *stage, Row *row, size_t repeats)
 {
     qsort(row->ms, repeats, sizeof row->ms[0], by_size);
     double least = row->ms[0] * 1e6 / PIXELS, median = row->ms[repeats / 2] * 1e6 / PIXELS;
-    printf("| %s | %s | %s | %.2f | %.0f | %.0f | %.1f | %.2f %% | %.3f %% | %llu |\n", stage->name,
-           krs_trace_names[row->trace], row->beams ? "yes" : "no", row->evaluations, median, least,
-           least / row->evaluations, 100 * row->hits, 100 * row->differing,
-           (unsigned long long)row->unresolved);
-    fflush(stdout);
+    sheet_print(&sheet, "| %s | %s | %s | %.2f | %.0f | %.0f | %.1f | %.0f |", stage->name,
+                krs_trace_names[row->trace], row->beams ? "yes" : "no", row->evaluations, median,
+                least, least / row->evaluations, row->cpu_ms);
+    sheet_print(&sheet, " %.2f %% | %.3f %% | %llu |\n", 100 * row->hits, 100 * row->differing,
+                (unsigned long long)row->unresolved);
 }
 
 static void compare(KrsRenderer *renderer, const struct Subject *subject, size_t repeats)
@@ -163,13 +180,16 @@ int main(int count, char **arguments)
     spirv_start();
     if (krs_renderer_new(NULL, &renderer) != KRS_OK)
         fail("cannot open the device", renderer ? krs_renderer_message(renderer) : "no memory");
-    printf("%dx%d, %s, medians of %zu\n\n", WIDTH, HEIGHT, krs_renderer_device(renderer).name,
-           repeats);
-    printf("| scene | trace | beams | evals/ray | ns/ray | least | ns/eval | hit | differs | "
-           "unresolved |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+    sheet = sheet_open("inverted", "Sequences with maps that invert", "make inverted", renderer,
+                       count > 1);
+    sheet_print(&sheet, "%dx%d, medians of %zu\n\n", WIDTH, HEIGHT, repeats);
+    sheet_print(&sheet, "| scene | trace | beams | evals/ray | ns/ray | least | ns/eval | cpu ms |"
+                        " hit | differs | unresolved |\n"
+                        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
     for (size_t i = 0; i < SUBJECTS; i++)
         if (count < 3 || strcmp(subjects[i].name, arguments[2]) == 0)
             compare(renderer, &subjects[i], repeats);
+    sheet_close(&sheet);
     krs_renderer_free(renderer);
     spirv_stop();
     return 0;

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bench/sheet.h"
 #include "compiler/compile.h"
 #include "runtime/krs_vulkan.h"
 #include "runtime/writer/png.h"
@@ -21,6 +22,8 @@ enum { WIDTH = 480, HEIGHT = 320, PIXELS = WIDTH * HEIGHT, BLACK = 70 };
 static const KrsTrace ways[] = {KRS_TRACE_BINARY, KRS_TRACE_PREDICTED, KRS_TRACE_PLAIN,
                                 KRS_TRACE_AUTO, KRS_TRACE_DIRECTIONAL};
 enum { WAYS = sizeof ways / sizeof *ways };
+
+static Sheet sheet;
 
 static void fail(const char *what, const char *why)
 {
@@ -51,23 +54,23 @@ static void shade(uint32_t steps, uint8_t *rgb)
     rgb[1] = rgb[2] = gray;
 }
 
-static uint8_t sheet[3 * PIXELS * WAYS]; /* the pictures, side by side */
+static uint8_t strip[3 * PIXELS * WAYS]; /* the pictures, side by side */
 
 static void put(const KrsPicture *picture, int place)
 {
     for (int i = 0; i < PIXELS; i++) {
         int x = place * WIDTH + i % WIDTH, y = i / WIDTH;
-        shade(picture->steps[i], &sheet[3 * (y * WIDTH * WAYS + x)]);
+        shade(picture->steps[i], &strip[3 * (y * WIDTH * WAYS + x)]);
     }
 }
 
-static void write_sheet(const char *name)
+static void write_strip(const char *name)
 {
     OutputError   error = {0};
     const Picture frame = {.width = WIDTH * WAYS, .height = HEIGHT, .crop_width = WIDTH * WAYS,
                            .crop_height = HEIGHT};
     OutputFile   *file = output_open(name, NULL, &error);
-    if (!file || !png_write(&frame, sheet, file, &error) || output_commit(file) != KRS_OK)
+    if (!file || !png_write(&frame, strip, file, &error) || output_commit(file) != KRS_OK)
         fail(name, error.message);
 }
 
@@ -84,7 +87,7 @@ static void tell(const KrsPicture *picture, KrsTrace way)
         dark += steps > BLACK;
         most = steps > most ? steps : most;
     }
-    printf("| %s | %.1f | %u | %.2f %% |\n", krs_trace_names[way],
+    sheet_print(&sheet, "| %s | %.1f | %u | %.2f %% |\n", krs_trace_names[way],
            sum / (double)(count ? count : 1), most, 100.0 * (double)dark / PIXELS);
 }
 
@@ -102,6 +105,12 @@ static void render(KrsRenderer *renderer, KrsRendering *rendering, KrsFrame *fra
     krs_picture_free(picture);
 }
 
+static const char *base_name(const char *file)
+{
+    const char *slash = strrchr(file, '/');
+    return slash ? slash + 1 : file;
+}
+
 /* iterations [FILE.png] */
 int main(int count, char **arguments)
 {
@@ -111,7 +120,7 @@ int main(int count, char **arguments)
     KrsFrame     *frame;
     KrsRendering *rendering;
     KrsOptions    options = {.diagnostic = complain};
-    const char   *name = count > 1 ? arguments[1] : "bench/results/iterations.png";
+    char          name[256];
     read_scene(text, sizeof text);
     spirv_start();
     if (krs_renderer_new(NULL, &renderer) != KRS_OK)
@@ -121,14 +130,22 @@ int main(int count, char **arguments)
         fail(path, "it does not compile");
     if (krs_rendering_new(renderer, scene, &rendering) != KRS_OK)
         fail(path, krs_renderer_message(renderer));
-    printf("| %dx%d | iterations of a pixel that has any | most | more than %d |\n"
+    sheet = sheet_open("iterations", "Iterations of a palm leaf's pixels", "make iterations",
+                       renderer, count > 1);
+    if (count > 1)
+        snprintf(name, sizeof name, "%s", arguments[1]);
+    else /* beside the table */
+        snprintf(name, sizeof name, "%.*s.png", (int)(strlen(sheet.path) - 3), sheet.path);
+    sheet_print(&sheet, "| %dx%d | iterations of a pixel that has any | most | more than %d |\n"
            "| --- | --- | --- | --- |\n", WIDTH, HEIGHT, BLACK);
     for (int i = 0; i < WAYS; i++)
         render(renderer, rendering, frame, ways[i], i);
-    write_sheet(name);
+    sheet_print(&sheet, "\n![iterations](%s)\n", base_name(name));
+    write_strip(name);
     krs_rendering_free(rendering);
     krs_frame_free(frame);
     krs_scene_free(scene);
+    sheet_close(&sheet);
     krs_renderer_free(renderer);
     spirv_stop();
     return 0;

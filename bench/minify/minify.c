@@ -3,7 +3,8 @@
  *
  * Pictures of one and four samples, as they are and without the filtering of surfaces, are held
  * against pictures of many samples without filtering: errors in what a screen shows, and flicker
- * over a short flight; and what filtering costs.  bench/README.md says what the columns mean.
+ * over a short flight; what filtering costs; and what a wider filter of pixels would do.
+ * bench/README.md says what the columns mean.
  */
 #include <math.h>
 #include <stdio.h>
@@ -11,6 +12,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "bench/minify/pixel_filter.h"
+#include "bench/sheet.h"
 #include "compiler/compile.h"
 #include "runtime/film/film.h"
 #include "runtime/krs_vulkan.h"
@@ -46,6 +49,8 @@ typedef struct Stage {
     KrsFrame     *frame;
     KrsRendering *rendering;
 } Stage;
+
+static Sheet sheet;
 
 static void fail(const char *what, const char *why)
 {
@@ -213,11 +218,10 @@ static void fly(KrsRenderer *renderer, const struct Flight *flight, uint32_t sam
             ms += shots[w][f].ms / FRAMES;
             change += f ? change_of(&shots[w][f], &shots[w][f - 1]) / (FRAMES - 1) : 0;
         }
-        printf("| %s | %u | %s | %.2f | %.2f | %.2f | %+.2f %% | %+.2f %% | %.0f |\n", flight->name,
-               ways[w].samples, ways[w].plain ? "no" : "yes", error, cut, change - still,
-               100 * (mean_alpha(&shots[w][0]) / mean_alpha(&truth[0]) - 1),
-               100 * (mean_light(&shots[w][0]) / mean_light(&truth[0]) - 1), ms);
-        fflush(stdout);
+        sheet_print(&sheet, "| %s | %u | %s | %.2f | %.2f | %.2f | %+.2f %% | %+.2f %% | %.0f |\n",
+                    flight->name, ways[w].samples, ways[w].plain ? "no" : "yes", error, cut,
+                    change - still, 100 * (mean_alpha(&shots[w][0]) / mean_alpha(&truth[0]) - 1),
+                    100 * (mean_light(&shots[w][0]) / mean_light(&truth[0]) - 1), ms);
     }
     stage_close(&empty);
     stage_close(&stage);
@@ -262,9 +266,25 @@ static void time_filter(KrsRenderer *renderer, const struct Flight *flight)
         for (int plain = 0; plain < 2; plain++)
             time_once(&stage, plain, &normals[plain][turn], &all[plain][turn]);
     double filtered = middle(all[0]), unfiltered = middle(all[1]);
-    printf("| %s | %.1f | %.1f | %.0f | %.0f | %.2f |\n", flight->name, middle(normals[1]),
-           middle(normals[0]), unfiltered, filtered, filtered / unfiltered);
-    fflush(stdout);
+    sheet_print(&sheet, "| %s | %.1f | %.1f | %.0f | %.0f | %.2f |\n", flight->name,
+                middle(normals[1]), middle(normals[0]), unfiltered, filtered,
+                filtered / unfiltered);
+    stage_close(&stage);
+}
+
+/* ---- What another filter of pixels would do ---- */
+
+static void widen(KrsRenderer *renderer, const struct Flight *flight)
+{
+    Stage            stage = stage_open(renderer, flight);
+    KrsPicture      *fine;
+    KrsRenderOptions options = {.width = FINE * WIDTH, .height = FINE * HEIGHT, .samples = 1,
+                                .planes = KRS_PLANE_COLOR, .no_filter = true};
+    krs_frame_set_time(stage.frame, 0);
+    if (krs_render(stage.rendering, stage.frame, &options, &fine) != KRS_OK)
+        fail("cannot render", krs_renderer_message(stage.renderer));
+    pixel_filter_rows(&sheet, flight->name, fine);
+    krs_picture_free(fine);
     stage_close(&stage);
 }
 
@@ -281,8 +301,9 @@ int main(int count, char **arguments)
     spirv_start();
     if (krs_renderer_new(NULL, &renderer) != KRS_OK)
         fail("cannot open the device", renderer ? krs_renderer_message(renderer) : "no memory");
+    sheet = sheet_open("minify", "What is finer than a pixel", "make minify", renderer, count > 1);
     if (samples > 0)
-        printf("%dx%d, %d frames, against %u samples\n\n"
+        sheet_print(&sheet, "%dx%d, %d frames, against %u samples\n\n"
                "| scene | samples | filtered | error | of coverage | flicker | alpha | light | ms"
                " |\n"
                "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
@@ -290,12 +311,18 @@ int main(int count, char **arguments)
     for (int i = 0; i < FLIGHTS && samples > 0; i++)
         if (is_wanted(&flights[i], count, arguments))
             fly(renderer, &flights[i], samples);
-    printf("\n%dx%d, one sample, medians of %d in turns, ms\n\n"
+    sheet_print(&sheet, "\n%dx%d, one sample, medians of %d in turns, ms\n\n"
            "| scene | normals | normals, filtered | total | total, filtered | times |\n"
            "| --- | --- | --- | --- | --- | --- |\n", LARGE_WIDTH, LARGE_HEIGHT, TURNS);
     for (int i = 0; i < FLIGHTS; i++)
         if (is_wanted(&flights[i], count, arguments))
             time_filter(renderer, &flights[i]);
+    if (samples > 0)
+        pixel_filter_titles(&sheet);
+    for (int i = 0; i < FLIGHTS && samples > 0; i++)
+        if (is_wanted(&flights[i], count, arguments))
+            widen(renderer, &flights[i]);
+    sheet_close(&sheet);
     krs_renderer_free(renderer);
     spirv_stop();
     return 0;

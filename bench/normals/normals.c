@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bench/sheet.h"
 #include "runtime/krs_vulkan.h"
 #include "runtime/shaders/stencil.h"
 
@@ -18,6 +19,8 @@ enum { POINTS = 2000, WIDTH = 640, HEIGHT = 360, PIXELS = WIDTH * HEIGHT, TURNS 
 
 static const double reaches[] = {1e-5, 5e-5, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 2e-2};
 enum { REACHES = sizeof reaches / sizeof *reaches };
+
+static Sheet sheet;
 
 static void fail(const char *what, const char *why)
 {
@@ -224,18 +227,18 @@ static void print_stencil(const Stage *stage, const struct Surface *surface, Krs
                           const Sight *sights, size_t count)
 {
     double (*found)[3] = malloc(count * sizeof *found);
-    printf("| %s | %u |", krs_normals_names[normals], find_stencil(normals).taps);
+    sheet_print(&sheet, "| %s | %u |", krs_normals_names[normals], find_stencil(normals).taps);
     double best = HUGE_VAL, at = 0;
     for (int i = 0; i < REACHES; i++) {
         find_normals(stage, normals, (float)reaches[i], sights, count, found);
         Error error = error_of(surface->truth, sights, found, count);
-        printf(" %.2g / %.2g |", error.median, error.most);
+        sheet_print(&sheet, " %.2g / %.2g |", error.median, error.most);
         if (error.median < best) {
             best = error.median;
             at   = reaches[i];
         }
     }
-    printf(" %.2g at %.0e |\n", best, at);
+    sheet_print(&sheet, " %.2g at %.0e |\n", best, at);
     fflush(stdout);
     free(found);
 }
@@ -245,21 +248,22 @@ static void print_angles(KrsRenderer *renderer, const struct Surface *surface)
     static Sight sights[POINTS];
     Stage  stage = stage_open(renderer, surface->name, surface->text);
     size_t count = choose_sights(&stage, surface, sights);
-    printf("\n%s, %zu points: median / largest angle in degrees, by the length of the steps\n\n"
+    sheet_print(&sheet, "\n%s, %zu points: median / largest angle in degrees, by the length of the"
+                        " steps\n\n"
            "| normals | taps |", surface->name, count);
     for (int i = 0; i < REACHES; i++)
-        printf(" %.0e |", reaches[i]);
-    printf(" least median |\n| --- | --- |");
+        sheet_print(&sheet, " %.0e |", reaches[i]);
+    sheet_print(&sheet, " least median |\n| --- | --- |");
     for (int i = 0; i <= REACHES; i++)
-        printf(" --- |");
-    printf("\n");
+        sheet_print(&sheet, " --- |");
+    sheet_print(&sheet, "\n");
     for (KrsNormals normals = KRS_NORMALS_FORWARD; normals < KRS_NORMALS_ANALYTIC; normals++)
         print_stencil(&stage, surface, normals, sights, count);
     Error error = error_of(surface->truth, sights, NULL, count);
-    printf("| analytic | 0 |");
+    sheet_print(&sheet, "| analytic | 0 |");
     for (int i = 0; i < REACHES; i++)
-        printf(" |");
-    printf(" %.2g / %.2g |\n", error.median, error.most);
+        sheet_print(&sheet, " |");
+    sheet_print(&sheet, " %.2g / %.2g |\n", error.median, error.most);
     stage_close(&stage);
 }
 
@@ -303,7 +307,7 @@ static void print_pictures(KrsRenderer *renderer, const char *name, const char *
             krs_picture_free(picture);
         }
     for (KrsNormals normals = KRS_NORMALS_FORWARD; normals < KRS_NORMALS_COUNT; normals++)
-        printf("| %s | %s | %.2f | %.1f | %.2g |\n", name, krs_normals_names[normals],
+        sheet_print(&sheet, "| %s | %s | %.2f | %.1f | %.2g |\n", name, krs_normals_names[normals],
                middle(ms[normals], TURNS), middle(total[normals], TURNS), apart[normals]);
     fflush(stdout);
     krs_picture_free(truth);
@@ -315,10 +319,11 @@ int main(void)
     KrsRenderer *renderer;
     if (krs_renderer_new(NULL, &renderer) != KRS_OK)
         fail("cannot open the device", renderer ? krs_renderer_message(renderer) : "no memory");
-    printf("# Normals on %s\n", krs_renderer_device(renderer).name);
+    sheet = sheet_open("normals", "How normals are found", "make bench-normals", renderer, false);
     for (int i = 0; i < SURFACES; i++)
         print_angles(renderer, &surfaces[i]);
-    printf("\nPictures of %dx%d, medians of %d in turns: milliseconds of the normals and of all, "
+    sheet_print(&sheet, "\nPictures of %dx%d, medians of %d in turns: milliseconds of the normals"
+                        " and of all, "
            "and the median\nangle in degrees between these normals and those by derivatives, "
            "without filtering\n\n"
            "| scene | normals | ms | total ms | apart |\n| --- | --- | --- | --- | --- |\n",
@@ -328,6 +333,7 @@ int main(void)
     print_pictures(renderer, "flange", "bench/scenes/csg.krs", NULL);
     print_pictures(renderer, "mountains", "bench/scenes/terrain.krs", NULL);
     print_pictures(renderer, "tree, 28 levels", "bench/scenes/tree28.krs", NULL);
+    sheet_close(&sheet);
     krs_renderer_free(renderer);
     return 0;
 }

@@ -2,10 +2,10 @@
  * looks.glsl: how far away a surface is where the distance is only a bound (LOOSE).
  *
  * Steps go by the bound, since that is safe, but a penumbra or a corner that it told of would be
- * too dark.  So where it matters taps around a place say where the bound falls and how steeply, and
- * a walk goes down there by the secant method, from as far as the bound permits.  The estimate must
- * have no seams, or they would show as rings: nothing here is decided but by minima and maxima, and
- * all walks have as many steps.
+ * too dark.  So where it matters taps around a place say where the bound falls and how steeply:
+ * enough for occlusion, which is broad.  For penumbras a walk goes down there by the secant method,
+ * from as far as the bound permits.  The estimate must have no seams, or they would show as rings:
+ * nothing here is decided but by minima and maxima, and all walks have as many steps.
  */
 const float REACH = 0.0625;      // of the taps around, in bounds
 const uint  WALK = 4u;
@@ -79,8 +79,13 @@ void take_look(float distance)
         level += more * abs(from);
         extent += dot(from, from);
         looks--;
-        if (looks == WALK)
+        if (looks == WALK) {
             end_taps();
+            if (control.phase == OCCLUSION) {
+                estimate = look_bound / min(fall, 1.0);
+                looks = 0u;
+            }
+        }
         return;
     }
     looks--;
