@@ -7,7 +7,8 @@
  * from as far as the bound permits.  The estimate must have no seams, or they would show as rings:
  * nothing here is decided but by minima and maxima, and all walks have as many steps.
  */
-const float REACH = 0.0625;      // of the taps around, in bounds
+// Of the taps around, in bounds.  Where two bounds meet the taps see both, which darkens by as much.
+const float REACH = 0.0625, REACH_OF_OCCLUSION = 0.01;
 const uint  WALK = 4u;
 const float LEAST_FALL = 0.125;  // of the bound on the walk, for what it is at the taps
 const float EDGE = 0.8;          // where the sum has less of the gradient nothing is walked
@@ -31,7 +32,11 @@ void begin_looks(vec3 place, float bound)
     walked = walked_before = 0.0;
 }
 
-float look_reach() { return max(REACH * look_bound, 64.0 * place.rounding); }
+float look_reach()
+{
+    float reach = control.phase == OCCLUSION ? REACH_OF_OCCLUSION : REACH;
+    return max(reach * look_bound, 64.0 * place.rounding);
+}
 
 vec3 look_way()
 {
