@@ -448,6 +448,17 @@ static const char *keep(Compilation *c, const char *text)
     return text ? arena_copy_text(&c->scene->arena, text, strlen(text)) : NULL;
 }
 
+/* Whether a component has a face on one before it; among too many, it is taken to have. */
+static bool touches_others(const Scene *scene, size_t component)
+{
+    enum { MANY = 100 };
+    const Component *items = scene->components.items;
+    for (size_t i = 0; i < component && component < MANY; i++)
+        if (boxes_touch(items[i].shape->box, items[component].shape->box))
+            return true;
+    return component >= MANY;
+}
+
 static void keep_components(Compilation *c)
 {
     KrsScene    *scene = c->scene;
@@ -471,6 +482,7 @@ static void keep_components(Compilation *c)
             to->high[k] = from->shape->box.axis[k].high;
         }
         scene->program.loose = scene->program.loose || shape_is_loose(from->shape);
+        scene->program.seams = scene->program.seams || from->shape->seams || touches_others(s, i);
         bounds_of(from->shape, &c->sources, &scene->bounds[i], &scene->arena, &c->scratch);
         arena_free(&c->scratch);
     }

@@ -101,6 +101,7 @@ typedef struct KrsProgram {
     bool        gradients;    /* there is krs_gradient, for kernels with #define GRADIENT */
     bool        along;        /* there is krs_along, for kernels with #define ALONG */
     bool        inverts;      /* there are its variants for sequences with maps that invert */
+    bool        seams;        /* solids touch, face to face, for kernels with #define SEAMS */
     bool        loose;        /* a component is (shape_is_loose), for kernels with #define LOOSE */
     KrsGroup    groups[KRS_MOST_GROUPS];
     size_t      group_count;  /* 0: all components belong together */

@@ -43,6 +43,17 @@ bool shape_is_loose(const Shape *shape)
     }
 }
 
+/* By their boxes.  Where those touch and the solids do not, seams are looked for in vain. */
+static bool parts_touch(const Shape *const *parts, uint32_t count)
+{
+    enum { MANY = 100 };
+    for (uint32_t i = 0; i < count && count <= MANY; i++)
+        for (uint32_t k = 0; k < i; k++)
+            if (boxes_touch(parts[i]->box, parts[k]->box))
+                return true;
+    return count > MANY;
+}
+
 Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
                  const Shape *const *children, uint32_t count)
 {
@@ -69,6 +80,7 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
         shape->derived     = fmax(shape->derived, child->derived);
         shape->exact       = shape->exact && child->exact;
         shape->loose_parts = shape->loose_parts || shape_is_loose(child);
+        shape->seams       = shape->seams || child->seams;
         shape->estimate    = shape->estimate || child->estimate;
         shape->per_frame   = shape->per_frame || child->per_frame;
         shape->trapped     = shape->trapped || child->trapped;
@@ -82,6 +94,7 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
         if (child->inversions > shape->inversions)
             shape->inversions = child->inversions;
     }
+    shape->seams = shape->seams || (kind == SHAPE_UNION && parts_touch(children, count));
     shape->instances = sequences > 0 ? sequences : kind != SHAPE_EMPTY;
     if (count == 1)
         shape->box = children[0]->box;
@@ -293,6 +306,7 @@ const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const 
             diag->help  = "use a larger period, or a smaller shape that is centred in its cell";
             return NULL;
         }
+        repeat->seams = repeat->seams || margin <= 1e-6 * range.low;
         double reach = cells[i] ? 0.5 * (cells[i] - 1) * range.high : INFINITY;
         repeat->box.axis[i] =
             (Range){shape->box.axis[i].low - reach, shape->box.axis[i].high + reach};

@@ -126,6 +126,7 @@ struct Shape {
                        largest in the tree */
     bool   exact;   /* the distance outside is the true one */
     bool   loose_parts; /* shape_is_loose of a child */
+    bool   seams;   /* in the tree are parts that touch, face to face */
     bool   claimed; /* PRIMITIVE: its slope is claimed, not derived */
     Box    region;  /* PRIMITIVE: over which its slope was derived; infinite: over all space */
     bool   estimate; /* nothing is proven of the distance: a primitive in the tree is measured only */

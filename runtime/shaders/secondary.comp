@@ -12,7 +12,7 @@
  * below the true one.  A ray to a light then ends where it is inside of something, as primary rays
  * do, not where it is near; and how near things are where that shows is looked for (looks.glsl).
  * ALONG: there is krs_along, by which rays to a point of a light go; such a kernel has no other
- * phase, since that is no distance.
+ * phase, since that is no distance.  SEAMS: solids touch, face to face (look_again).
  */
 #ifndef TRACE // which variant: the renderer says so; this one suits every device
 #define TRACE 3u
@@ -398,9 +398,11 @@ void take_difference(float distance)
     way = stencil(again ? taps - 1u : taps);
     if (taps < limit || again)
         return;
+#ifdef SEAMS
     even = find_evenness();
     if (even > LEAST_EVEN && even < EVEN)
         look_again();
+#endif
 #endif
 }
 

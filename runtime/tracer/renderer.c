@@ -219,7 +219,7 @@ bool rendering_marches_packed(const KrsRendering *rendering, KrsComponents compo
 }
 
 typedef struct Variant {
-    char defines[192];
+    char defines[256];
 } Variant;
 
 /* By the numbers of AlongMethod. */
@@ -317,6 +317,9 @@ static Variant name_secondary(const KrsRendering *rendering, KrsTrace trace, Krs
     if (rendering->program->along && !rendering->program->inverts)
         length += (size_t)snprintf(variant.defines + length, sizeof variant.defines - length,
                                    "#define ROOTS\n");
+    if (rendering->program->seams)
+        length += (size_t)snprintf(variant.defines + length, sizeof variant.defines - length,
+                                   "#define SEAMS\n");
     if (group > 0)
         snprintf(variant.defines + length, sizeof variant.defines - length, "#define GROUP %u\n",
                  group);
