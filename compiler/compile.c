@@ -220,17 +220,35 @@ static void lower_flats(Compilation *c, Graph *g, Node roots[FLAT_ROOTS])
     }
 }
 
-/* Of components and of the zones, where they are asked for. */
+/* Whether rays go by roots of polynomials and nothing has many levels: then derivatives cost less
+   than the differences of a bound, which is no better than its series. */
+static bool is_algebraic(const Compilation *c)
+{
+    const Scene *s = &c->elaborated;
+    const Node  *exact = &c->roots[c->root_count + (1 + ALONG_EXACT) * s->components.count];
+    bool         found = false;
+    for (size_t i = 0; i < s->components.count; i++) {
+        const Shape *shape = s->components.items[i].shape;
+        if (shape->levels > 0 || shape->inversions > 0)
+            return false;
+        found = found || exact[i] != c->roots[i * ROOT_COUNT + ROOT_DISTANCE];
+    }
+    return found;
+}
+
+/* Of components and of the zones, where they are asked for or the best there is. */
 static void lower_gradients(Compilation *c, Graph *g, Node *roots)
 {
     const Scene *s = &c->elaborated;
-    c->scene->program.gradients = c->options->gradients;
+    bool         wanted = c->options->gradients || is_algebraic(c);
+    c->scene->program.gradients = wanted;
+    c->scene->program.algebraic = is_algebraic(c);
     for (size_t i = 0; i <= s->components.count; i++, roots += GRADIENT_ROOTS) {
         bool zones = i == s->components.count, known = false;
         Node near = s->zone_count > 0 ? s->zone : graph_number(g, 0), gradient = NODE_NONE;
-        if (zones && c->options->gradients)
+        if (zones && wanted)
             known = graph_gradient(g, near, &gradient, NULL, &c->scratch) != DERIVED_NOT;
-        else if (c->options->gradients)
+        else if (wanted)
             known = lower_gradient(g, s->components.items[i].shape, &gradient, &near, &c->scratch);
         Node distance = zones ? near : c->roots[i * ROOT_COUNT + ROOT_DISTANCE];
         roots[0]      = known ? gradient : distance;

@@ -99,6 +99,7 @@ typedef struct KrsProgram {
     bool        anchored;     /* points may be given from an anchor, with #define ANCHORED */
     size_t      precise_slots; /* then: how many more slots follow those of the zones */
     bool        gradients;    /* there is krs_gradient, for kernels with #define GRADIENT */
+    bool        algebraic;    /* normals are by krs_gradient unless asked for otherwise */
     bool        along;        /* there is krs_along, for kernels with #define ALONG */
     bool        inverts;      /* there are its variants for sequences with maps that invert */
     bool        seams;        /* solids touch, face to face, for kernels with #define SEAMS */

@@ -156,7 +156,8 @@ extern const char *const krs_components_names[KRS_COMPONENTS_COUNT];
 
 /* Where the distance is looked at around a hit for its normal: see bench/README.md, Normals. */
 typedef enum KrsNormals {
-    KRS_NORMALS_DEFAULT,      /* the octahedron: the least error for its price */
+    KRS_NORMALS_DEFAULT,      /* analytic where rays go by roots of polynomials, else the octahedron:
+                                 the least error for its price */
     KRS_NORMALS_FORWARD,      /* there and a step along each axis: an error of first order */
     KRS_NORMALS_TETRAHEDRON,  /* at 4 corners: likewise */
     KRS_NORMALS_OCTAHEDRON,   /* at 6, 8, 12 or 20 corners: an error of second order */

@@ -68,6 +68,15 @@ float middle;      // where the distance in their middle is this,
 float even;        // and so even was it before,
 vec3  facing_before; // with this normal,
 float steepness_before;
+#ifdef GRADIENT
+bool  derived;     // the normal is by derivatives,
+float outside;     // and this the distance where one unit is away, as the tap outside says
+#ifdef LOOSE
+const uint BOUND_TAPS = 1u;
+#else
+const uint BOUND_TAPS = 0u;
+#endif
+#endif
 float steepness;   // of the distance around the hit
 float blocked, weight; // of those of occlusion
 float visible;     // how much of the light
@@ -88,6 +97,10 @@ void begin_group() { lost = 0u; }
 // sides cancel in part, and the rest is in the level, below 0; on a convex one they may.
 float find_steepness(float reach)
 {
+#ifdef GRADIENT
+    if (derived)
+        return clamp(outside, LEAST_STEEPNESS, 1.0);
+#endif
     float found = length(vec2(length(sum), length(min(level, 0.0)))) / (extent * reach / 3.0);
     return found > LEAST_STEEPNESS ? min(found, 1.0) : LEAST_STEEPNESS;
 }
@@ -182,13 +195,21 @@ void begin_item(uint number, bool saved)
         limit = TAPS;
         again = false;
         middle = 0.0;
+#ifdef GRADIENT
+        derived = false;
+        outside = 1.0;
+#endif
 #if defined(GRADIENT) && !defined(ANCHORED)
         // Differences are for where derivatives are no numbers.
         vec3 gradient = krs_gradient(place.position, t);
-        if (dot(gradient, gradient) > 0.0 && dot(gradient, gradient) < INFINITE) {
-            sum = place.side * gradient;
+        // Differences are as well for where rounding makes what is seen face away.
+        float facing_eye = -place.side * dot(gradient, place.direction);
+        derived = facing_eye > 0.0 && dot(gradient, gradient) < INFINITE;
+        if (derived) {
+            sum = place.side * normalize(gradient);
+            way = sum;
             extent = 3.0 / t; // its own unit
-            limit = 0u;
+            limit = BOUND_TAPS;
         }
 #endif
     }
@@ -409,6 +430,24 @@ void take_difference(float distance)
 float find_flatness() { return find_evenness(); }
 #endif
 
+#ifdef GRADIENT
+// Where the bound falls less than that towards the surface, derivatives may be next to nothing but
+// rounding, as near a curve on which a polynomial vanishes several times.
+const float LEAST_OUTSIDE = 0.8;
+void take_outside(float distance)
+{
+    outside = distance;
+    if (outside >= LEAST_OUTSIDE)
+        return;
+    derived = false;
+    taps = 0u;
+    limit = TAPS;
+    way = stencil(0u);
+    sum = vec3(0.0);
+    extent = 0.0;
+}
+#endif
+
 void take_normal()
 {
     float size = length(sum), flatness = find_flatness();
@@ -450,6 +489,10 @@ void take_distance(float distance)
         }
 #endif
         take_occlusion(room);
+#ifdef GRADIENT
+    } else if (derived) {
+        take_outside(distance / t);
+#endif
     } else {
         take_difference(distance);
     }

@@ -58,6 +58,7 @@ static bool settle_options(Job *job)
         return refuse(job, "there is no such method, schedule, stencil or kind of shadow");
     if (o->normals == KRS_NORMALS_ANALYTIC && !job->rendering->program->gradients)
         return refuse(job, "analytic normals need a scene that was compiled with `gradients`");
+    o->normals = rendering_normals(job->rendering, o->normals);
     job->asked = o->schedule;
     rendering_choose(job->rendering, &o->trace, &o->schedule);
     job->schedule = o->schedule;

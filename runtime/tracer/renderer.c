@@ -300,14 +300,16 @@ Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule sch
                            group);
 }
 
-/* The octahedron is what the kernel has unless it is told otherwise. */
-static bool is_default(KrsNormals normals)
+KrsNormals rendering_normals(const KrsRendering *rendering, KrsNormals normals)
 {
-    return normals == KRS_NORMALS_DEFAULT || normals == KRS_NORMALS_OCTAHEDRON;
+    if (normals != KRS_NORMALS_DEFAULT)
+        return normals;
+    return rendering->program->algebraic ? KRS_NORMALS_ANALYTIC : KRS_NORMALS_OCTAHEDRON;
 }
 
+/* Normals as rendering_normals says; the octahedron is what the kernel has unless told otherwise. */
 static Variant name_secondary(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
-                              uint32_t group)
+                              KrsNormals normals, uint32_t group)
 {
     Variant variant = name_variant(rendering, trace, schedule);
     size_t  length  = strlen(variant.defines);
@@ -321,8 +323,13 @@ static Variant name_secondary(const KrsRendering *rendering, KrsTrace trace, Krs
         length += (size_t)snprintf(variant.defines + length, sizeof variant.defines - length,
                                    "#define SEAMS\n");
     if (group > 0)
-        snprintf(variant.defines + length, sizeof variant.defines - length, "#define GROUP %u\n",
-                 group);
+        length += (size_t)snprintf(variant.defines + length, sizeof variant.defines - length,
+                                   "#define GROUP %u\n", group);
+    if (normals == KRS_NORMALS_ANALYTIC)
+        snprintf(variant.defines + length, sizeof variant.defines - length, "#define GRADIENT\n");
+    else if (normals != KRS_NORMALS_OCTAHEDRON)
+        snprintf(variant.defines + length, sizeof variant.defines - length, "#define STENCIL %d\n",
+                 (int)normals);
     return variant;
 }
 
@@ -335,23 +342,18 @@ Kernel *rendering_shadows(KrsRendering *rendering, KrsSchedule schedule)
 {
     schedule = schedule_of_kernel(schedule);
     return find_kernel(rendering, &rendering->in_use->shadows[schedule], "secondary.comp",
-                       name_secondary(rendering, KRS_TRACE_EXACT, schedule, 0));
+                       name_secondary(rendering, KRS_TRACE_EXACT, schedule,
+                                      KRS_NORMALS_OCTAHEDRON, 0));
 }
 
 Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, KrsNormals normals,
                             uint32_t group)
 {
     schedule = schedule_of_kernel(schedule);
-    normals  = is_default(normals) ? KRS_NORMALS_DEFAULT : normals;
-    Variant variant = name_secondary(rendering, KRS_TRACE_PLAIN, schedule, group);
-    size_t  length  = strlen(variant.defines);
-    if (normals == KRS_NORMALS_ANALYTIC)
-        snprintf(variant.defines + length, sizeof variant.defines - length, "#define GRADIENT\n");
-    else if (normals != KRS_NORMALS_DEFAULT)
-        snprintf(variant.defines + length, sizeof variant.defines - length, "#define STENCIL %d\n",
-                 (int)normals);
+    normals  = rendering_normals(rendering, normals);
     return find_kernel(rendering, &rendering->in_use->secondary[normals][schedule][group],
-                       "secondary.comp", variant);
+                       "secondary.comp",
+                       name_secondary(rendering, KRS_TRACE_PLAIN, schedule, normals, group));
 }
 
 Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule)
@@ -387,12 +389,13 @@ static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
     uint32_t      whole = packed                             ? GROUP_PACKED
                         : rendering_knows_flats(rendering) ? GROUP_REST : 0;
     Variant       primary[GROUP_KINDS], normals[1 + KRS_MOST_GROUPS];
-    Variant       secondary = name_secondary(rendering, KRS_TRACE_PLAIN, schedule, 0);
+    KrsNormals    usual = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
+    Variant       secondary = name_secondary(rendering, KRS_TRACE_PLAIN, schedule, usual, 0);
     Variant       beams = name_group(rendering, KRS_TRACE_PLAIN, schedule, whole);
     Variant       query = name_variant(rendering, KRS_TRACE_AUTO, schedule);
     Variant       simple = name_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     KernelRequest pictures[4 + 2 * KRS_MOST_GROUPS] = {
-        {&to->secondary[KRS_NORMALS_DEFAULT][schedule][0],
+        {&to->secondary[usual][schedule][0],
          {"secondary.comp", scene, secondary.defines}},
         {&to->material, {"material.comp", scene, simple.defines}},
         {&to->trace[KRS_TRACE_PLAIN][schedule][whole], {"trace.comp", scene, beams.defines}},
@@ -410,8 +413,8 @@ static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
                                             {"trace.comp", scene, primary[group].defines}};
         if (!apart)
             continue;
-        normals[group] = name_secondary(rendering, KRS_TRACE_PLAIN, own, group);
-        pictures[count++] = (KernelRequest){&to->secondary[KRS_NORMALS_DEFAULT][own][group],
+        normals[group] = name_secondary(rendering, KRS_TRACE_PLAIN, own, usual, group);
+        pictures[count++] = (KernelRequest){&to->secondary[usual][own][group],
                                             {"secondary.comp", scene, normals[group].defines}};
     }
     KernelRequest questions[] = {

@@ -76,6 +76,8 @@ Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule sch
                         uint32_t group);
 /* Whether there is a march of GROUP_REST. */
 bool rendering_knows_flats(const KrsRendering *rendering);
+/* The normals that are meant: by derivatives where all is algebraic, else the octahedron's. */
+KrsNormals rendering_normals(const KrsRendering *rendering, KrsNormals normals);
 /* Of a group for normals alone. */
 Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, KrsNormals normals,
                             uint32_t group);
