@@ -143,4 +143,15 @@ done | grep -x "[a-z][A-Za-z0-9_/.-]*\.\($kinds\|krs\)" | sort -u | while read -
     grep -q "\(^\|/\)$(echo "$file" | sed 's/\./\\./g')\$" "$work/files" || echo "$file"
 done >"$work/said"
 none "every file that a page names exists"
+
+# ---- the C library ----
+sed -n 's/^[A-Za-z].*\(krs_[a-z_0-9]*\)(.*/\1/p' compiler/krs.h runtime/krs_vulkan.h |
+    sort -u >"$work/declared"
+# shellcheck disable=SC2016 # backquotes that are meant
+sed -n '/^## All functions/,$p' docs/library.md | grep -o '`krs_[a-z_0-9]*`' | tr -d '`' |
+    sort >"$work/listed"
+diff "$work/declared" "$work/listed" >"$work/said"
+none "docs/library.md lists the functions of the headers, each once"
+[ "$(wc -l <"$work/declared")" -gt 30 ]
+report $? "the headers declare some"
 exit $failed
