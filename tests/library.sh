@@ -5,7 +5,7 @@ cd "$(dirname "$0")/.." || exit 1
 build=${B:-build}
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 failed=0
-echo "1..3"
+echo "1..4"
 report() { # status, number and name
     if [ "$1" -eq 0 ]; then echo "ok $2"; else echo "not ok $2"; failed=1; sed 's/^/# /' "$work/said"; fi
 }
@@ -37,9 +37,22 @@ report $? "2 - and prints what the page says"
     echo 'const double origins[1][3] = {{0, 0, 9}}, directions[1][3] = {{0, 0, -1}};'
     echo 'if (krs_compile_text("show sphere(1);", 15, "a", NULL, &scene) != KRS_OK) return 2;'
     echo 'if (krs_frame_new(scene, &frame) != KRS_OK) return 2;'
-    block 2 c
+    block 3 c
     echo 'return !(hits[0].hit && hits[0].t > 7.99 && hits[0].t < 8.01); }'
 } >"$work/device.c"
 compile "$work/device.c" >"$work/said" 2>&1 && "$work/program" >"$work/said" 2>&1
 report $? "3 - a device answers as the page asks it"
+{
+    echo '#include <stdio.h>'
+    echo '#include <stdlib.h>'
+    echo '#include "compiler/krs.h"'
+    echo 'int main(void) {'
+    echo 'KrsScene *scene; KrsFrame *frame; double seconds = 2.5;'
+    echo 'if (krs_compile_text("show sphere(1);", 15, "a", NULL, &scene) != KRS_OK) return 2;'
+    echo 'if (krs_frame_new(scene, &frame) != KRS_OK) return 2;'
+    block 2 c
+    echo 'return !(block[0][0] == 2.5f); }'
+} >"$work/block.c"
+compile "$work/block.c" >"$work/said" 2>&1 && "$work/program" >"$work/said" 2>&1
+report $? "4 - a frame fills the parameters of a shader"
 exit $failed

@@ -433,10 +433,11 @@ float find_flatness() { return find_evenness(); }
 #ifdef GRADIENT
 // Where the bound falls less than that towards the surface, derivatives may be next to nothing but
 // rounding, as near a curve on which a polynomial vanishes several times.
-const float LEAST_OUTSIDE = 0.8;
+const float LEAST_OUTSIDE = 0.4;
 void take_outside(float distance)
 {
     outside = distance;
+#ifdef ROOTS
     if (outside >= LEAST_OUTSIDE)
         return;
     derived = false;
@@ -445,6 +446,7 @@ void take_outside(float distance)
     way = stencil(0u);
     sum = vec3(0.0);
     extent = 0.0;
+#endif
 }
 #endif
 
