@@ -100,6 +100,12 @@ static double triplex_step(double w[3], const double c[3], int power)
     return fmin(fmax(stretch, 1), power);
 }
 
+/* The powers are constants from 2 to MOST_POWER in every scene; random graphs have anything. */
+static int power_of(const NodeValue *range)
+{
+    return (int)fmin(fmax(range->v[0], 1), MOST_POWER);
+}
+
 static int iterations_of(const NodeValue *range, const NodeValue *settings)
 {
     double count = fmin(fmin(settings->v[0], range->v[1]), MOST_ITERATIONS);
@@ -136,7 +142,7 @@ static double step_back(double size, double x, int power)
 NodeValue evaluate_julia(const NodeValue *o, uint32_t size)
 {
     (void)size;
-    int    power = (int)o[2].v[0], last = iterations_of(&o[2], &o[3]), n = 0;
+    int    power = power_of(&o[2]), last = iterations_of(&o[2], &o[3]), n = 0;
     double radius = o[3].v[1], sizes[MOST_ITERATIONS + 1];
     double z[4] = {o[0].v[0], o[0].v[1], o[0].v[2], 0};
     for (sizes[0] = norm(z, 4); n < last && sizes[n] <= 2 * radius; sizes[++n] = norm(z, 4))
@@ -151,7 +157,7 @@ NodeValue evaluate_julia(const NodeValue *o, uint32_t size)
 NodeValue evaluate_julia_trap(const NodeValue *o, uint32_t size)
 {
     (void)size;
-    int    power = (int)o[2].v[0], last = iterations_of(&o[2], &o[3]);
+    int    power = power_of(&o[2]), last = iterations_of(&o[2], &o[3]);
     double z[4] = {o[0].v[0], o[0].v[1], o[0].v[2], 0}, away = norm(z, 4);
     Trap   trap = {1, 1};
     for (int n = 1; n <= last && away <= 2 * o[3].v[1]; n++) {
@@ -205,7 +211,7 @@ NodeValue evaluate_mandelbulb(const NodeValue *o, uint32_t size)
     if (from_origin > MANDELBULB_NEAR * radius)
         return (NodeValue){{from_origin - radius}};
     for (; n < last && away <= bailout(power); n++) {
-        orbit[n] = (Stretch){away, triplex_step(w, c, (int)power)};
+        orbit[n] = (Stretch){away, triplex_step(w, c, power_of(&o[1]))};
         steep    = orbit[n].more * power * pow(away, power - 1) * steep + 1;
         away     = norm(w, 3);
     }
@@ -224,7 +230,7 @@ NodeValue evaluate_mandelbulb_trap(const NodeValue *o, uint32_t size)
     double w[3] = {o[0].v[0], o[0].v[1], o[0].v[2]}, away = norm(w, 3);
     Trap   trap = {1, 1};
     for (int n = 1; n <= last && away <= 2 * o[2].v[1]; n++) {
-        triplex_step(w, o[0].v, (int)o[1].v[0]);
+        triplex_step(w, o[0].v, power_of(&o[1]));
         away = norm(w, 3);
         trap_add(&trap, away, n, last);
     }
