@@ -1,7 +1,7 @@
 # bench.mk: `make bench` measures, and writes bench/results/; `make bench-quick` tries out that it
 # can, on small pictures, and writes to the build folder.  bench/README.md says what is measured.
 
-BENCH    := $(sort $(wildcard bench/*.c))
+BENCH    := $(sort $(filter-out bench/stage.c, $(wildcard bench/*.c)))
 REVISION  = $(shell git describe --always --dirty 2>/dev/null || echo unknown)
 
 $(B)/bench/bench: $(BENCH:%.c=$(B)/%.o) $(B)/libkrs.a
@@ -14,33 +14,36 @@ bench-quick: $(B)/bench/bench $(B)/krs
 	@$(B)/bench/bench --krs $(B)/krs --revision $(REVISION) --quick --folder $(B)/bench/results
 
 # How well one sample shows what is finer than a pixel (bench/README.md).
-MINIFY := $(addprefix $(B)/bench/, minify/minify.o minify/pixel_filter.o sheet.o)
-$(B)/bench/minify/minify: $(MINIFY) $(B)/libkrs.a
+STAGE  := $(addprefix $(B)/bench/, stage.o sheet.o measure.o)
+MINIFY := $(addprefix $(B)/bench/, minify/minify.o minify/pixel_filter.o)
+$(B)/bench/minify/minify: $(MINIFY) $(STAGE) $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
 minify: $(B)/bench/minify/minify
 	@REVISION=$(REVISION) $(B)/bench/minify/minify
 
 # How many evaluations a pixel takes, as pictures in bench/results/.
-$(B)/bench/iterations/iterations: $(B)/bench/iterations/iterations.o $(B)/bench/sheet.o $(B)/libkrs.a
+$(B)/bench/iterations/iterations: $(B)/bench/iterations/iterations.o $(STAGE) $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
 iterations: $(B)/bench/iterations/iterations
 	@REVISION=$(REVISION) $(B)/bench/iterations/iterations
 
 # Every way to trace sequences with maps that invert.
-$(B)/bench/inverted/inverted: $(B)/bench/inverted/inverted.o $(B)/bench/sheet.o $(B)/libkrs.a
+$(B)/bench/inverted/inverted: $(B)/bench/inverted/inverted.o $(STAGE) $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
 inverted: $(B)/bench/inverted/inverted
 	@REVISION=$(REVISION) $(B)/bench/inverted/inverted
 
 # How well and how fast normals are found (bench/README.md).
-$(B)/bench/normals/normals: $(B)/bench/normals/normals.o $(B)/bench/sheet.o $(B)/libkrs.a
+$(B)/bench/normals/normals: $(B)/bench/normals/normals.o $(STAGE) $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
 bench-normals: $(B)/bench/normals/normals
 	@REVISION=$(REVISION) $(B)/bench/normals/normals
 
 # Algebraic surfaces: our tracers, POV-Ray and surf where they are installed (bench/README.md).
-ALGEBRAIC := $(addprefix bench/algebraic/, algebraic.o estimates.o judge.o processes.o programs.o trees.o polynomial.o)
-$(B)/bench/algebraic/algebraic: $(ALGEBRAIC:%=$(B)/%) $(B)/tests/oracle/oracle.a $(B)/libkrs.a
+ALGEBRAIC := $(addprefix bench/algebraic/, algebraic.o estimates.o judge.o processes.o programs.o \
+               trees.o julias.o polynomial.o)
+$(B)/bench/algebraic/algebraic: $(ALGEBRAIC:%=$(B)/%) $(B)/tests/oracle/oracle.a \
+                             $(B)/tests/support/support.a $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
 bench-algebraic: $(B)/bench/algebraic/algebraic $(B)/krs
 	@$(B)/bench/algebraic/algebraic $(B)/krs
@@ -48,7 +51,7 @@ bench-algebraic: $(B)/bench/algebraic/algebraic $(B)/krs
 # For `make test`.
 SCRIPTS += tests/bench.sh
 test-programs: $(B)/bench/bench
-clang-objects: $(BENCH:%.c=$(B)/%.o) $(MINIFY) \
+clang-objects: $(BENCH:%.c=$(B)/%.o) $(STAGE) $(MINIFY) \
                $(B)/bench/iterations/iterations.o $(B)/bench/inverted/inverted.o \
                $(B)/bench/normals/normals.o $(ALGEBRAIC:%=$(B)/%)
 .PHONY: bench bench-quick minify iterations inverted bench-normals bench-algebraic

@@ -1,6 +1,6 @@
 /*
  * algebraic.c: algebraic surfaces: our ways to trace them beside each other, and the whole program
- * beside POV-Ray and surf; and a tree of 2^28 branches beside one that is written out.
+ * beside POV-Ray and surf; a tree of 2^28 branches beside one that is written out; a Julia set.
  *
  * Everything in turns, medians.  What pictures show is held against first roots (judge.c).  The
  * tables are printed, and written to bench/results/ when they are whole.  bench/README.md says what
@@ -46,7 +46,7 @@ static const struct Way {
             {"taylor", KRS_TRACE_TAYLOR, 0},
             {"root-free", KRS_TRACE_ROOT_FREE, 0},
             {"exact", KRS_TRACE_EXACT, 0},
-            {"exact, analytic", KRS_TRACE_EXACT, KRS_NORMALS_ANALYTIC}};
+            {"exact, octahedron", KRS_TRACE_EXACT, KRS_NORMALS_OCTAHEDRON}};
 enum { WAYS = sizeof ways / sizeof *ways, CHOSEN = 4 };
 
 static FILE *kept; /* all that has been said */
@@ -221,7 +221,7 @@ static Frame print_tracers(KrsRenderer *renderer, const Subject *subject, const 
             (unsigned long long)method->unresolved);
     }
     frame.cpu       = middle(methods[CHOSEN].cpu, repeats);
-    frame.analytic_cpu = middle(methods[CHOSEN + 1].cpu, repeats);
+    frame.stencil_cpu = middle(methods[CHOSEN + 1].cpu, repeats);
     frame.judgement = methods[CHOSEN].judgement;
     stage_close(&stage);
     return frame;
@@ -265,8 +265,8 @@ static bool is_wanted(const char *name, const char *only)
     return !only || strcmp(name, only) == 0;
 }
 
-static void run_processes(const char *krs, size_t repeats, const char *only, bool slow,
-                          Processes processes[SUBJECTS], Trees *trees)
+static void run_processes(const char *krs, size_t repeats, const char *only,
+                          Processes processes[SUBJECTS], Trees *trees, Julias *julias)
 {
     char text[1024];
     for (int i = 0; i < SUBJECTS; i++) {
@@ -276,10 +276,12 @@ static void run_processes(const char *krs, size_t repeats, const char *only, boo
         View view = view_of(&subjects[i]);
         check_text(&subjects[i]);
         write_scene(&subjects[i], &view, text, sizeof text);
-        processes_run(&processes[i], krs, &subjects[i], &view, text, repeats, slow);
+        processes_run(&processes[i], krs, &subjects[i], &view, text, repeats);
     }
     if (is_wanted("trees", only) && program_is_installed("povray"))
         trees_run(trees, krs, repeats);
+    if (is_wanted("julias", only) && program_is_installed("povray"))
+        julias_run(julias, krs, repeats);
 }
 
 /* What is measured in this process. */
@@ -299,7 +301,7 @@ static void print_all_tracers(KrsRenderer *renderer, size_t repeats, const char 
 }
 
 static void print_processes(const char *only, Processes processes[SUBJECTS],
-                            const Frame frames[SUBJECTS], Trees *trees)
+                            const Frame frames[SUBJECTS], Trees *trees, Julias *julias)
 {
     say("\n| surface | degree | program | wall ms | cpu ms | MB | frame, cpu ms | of ours "
         "| cpu, of ours | coverage | missed / extra / apart |\n"
@@ -309,20 +311,23 @@ static void print_processes(const char *only, Processes processes[SUBJECTS],
             processes_print(&processes[i], &subjects[i], &frames[i]);
     if (trees->branches > 0)
         trees_print(trees);
+    if (julias->ours.count > 0)
+        julias_print(julias);
 }
 
-/* algebraic KRS [REPEATS [SURFACE|trees [slow]]]: with `slow` what takes minutes as well. */
+/* algebraic KRS [REPEATS [SURFACE|trees|julias]] */
 int main(int count, char **arguments)
 {
     KrsRenderer     *renderer;
     static Frame     frames[SUBJECTS];
     static Processes processes[SUBJECTS];
     static Trees     trees;
+    static Julias    julias;
     char             path[128], *text;
     size_t           length;
     const char      *only = count > 3 ? arguments[3] : NULL;
     if (count < 2)
-        give_up("usage", "algebraic KRS [REPEATS [SURFACE|trees [slow]]]");
+        give_up("usage", "algebraic KRS [REPEATS [SURFACE|trees|julias]]");
     size_t repeats = count > 2 ? strtoul(arguments[2], NULL, 10) : 3;
     repeats = repeats < 1 ? 1 : repeats > MOST_REPEATS ? MOST_REPEATS : repeats;
     kept    = open_memstream(&text, &length);
@@ -330,7 +335,7 @@ int main(int count, char **arguments)
         give_up("cannot begin", "no memory");
     double load = 0;
     getloadavg(&load, 1);
-    run_processes(arguments[1], repeats, only, count > 4, processes, &trees);
+    run_processes(arguments[1], repeats, only, processes, &trees, &julias);
     if (krs_renderer_new(NULL, &renderer) != KRS_OK)
         give_up("cannot open the device", renderer ? krs_renderer_message(renderer) : "no memory");
     const char *device = krs_renderer_device(renderer).name;
@@ -338,7 +343,7 @@ int main(int count, char **arguments)
     name_results(device, path, sizeof path);
     print_all_tracers(renderer, repeats, only, frames);
     krs_renderer_free(renderer);
-    print_processes(only, processes, frames, &trees);
+    print_processes(only, processes, frames, &trees, &julias);
     fclose(kept);
     if (!only)
         write_results(path, text);

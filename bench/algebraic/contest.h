@@ -55,7 +55,7 @@ typedef struct Program {
     bool (*run)(const struct Program *program, const char *folder, const Subject *subject,
                 const View *view, Run *run);
     int  largest_degree, least_degree;
-    bool slow; /* left out unless asked for, and then once is enough */
+    bool slow; /* once is enough */
 } Program;
 
 extern const Program programs[];
@@ -66,5 +66,7 @@ bool program_is_installed(const char *command);
 bool run_command(char *const *arguments, const char *output, Run *run);
 /* The share of the pixels of a PPM that are not black; which, of one in sixteen, if asked for. */
 bool read_picture(const char *path, double *coverage, bool *seen);
+/* The same of a PNG. */
+void read_png(const char *path, double *coverage, bool *seen);
 
 #endif

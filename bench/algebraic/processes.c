@@ -78,12 +78,12 @@ void run_krs(const char *krs, const char *folder, const char *cache, const char 
 /* ---- a surface ---- */
 
 static const char *const names_of_ours[OURS] = {"krs, nothing cached", "krs",
-                                                "krs, analytic normals"};
+                                                "krs, octahedron normals"};
 
 static void run_ours(const char *krs, const char *folder, size_t turn, const char *text,
                      Runs ours[OURS])
 {
-    static char *const analytic[] = {"--normals", "analytic", NULL};
+    static char *const stencil[] = {"--normals", "octahedron", NULL};
     Run  run = {0};
     char cache[32];
     snprintf(cache, sizeof cache, "cache%zu", turn);
@@ -91,20 +91,20 @@ static void run_ours(const char *krs, const char *folder, size_t turn, const cha
     runs_take(&ours[COLD], &run);
     run_krs(krs, folder, cache, text, NULL, &run);
     runs_take(&ours[WARM], &run);
-    run_krs(krs, folder, "analytic", text, analytic, &run);
+    run_krs(krs, folder, "stencil", text, stencil, &run);
     if (turn == 0) /* that has only filled the cache */
-        run_krs(krs, folder, "analytic", text, analytic, &run);
-    runs_take(&ours[ANALYTIC], &run);
+        run_krs(krs, folder, "stencil", text, stencil, &run);
+    runs_take(&ours[STENCIL], &run);
 }
 
-static bool takes_part(const Program *program, const Subject *subject, bool slow, size_t turn)
+static bool takes_part(const Program *program, const Subject *subject, size_t turn)
 {
     return program_is_installed(program->command) && subject->degree <= program->largest_degree &&
-           subject->degree >= program->least_degree && (!program->slow || (slow && turn == 0));
+           subject->degree >= program->least_degree && (!program->slow || turn == 0);
 }
 
 void processes_run(Processes *processes, const char *krs, const Subject *subject,
-                   const View *view, const char *text, size_t repeats, bool slow)
+                   const View *view, const char *text, size_t repeats)
 {
     char folder[FOLDER_ROOM];
     folder_make(folder);
@@ -112,7 +112,7 @@ void processes_run(Processes *processes, const char *krs, const Subject *subject
         run_ours(krs, folder, turn, text, processes->ours);
         for (size_t i = 0; i < program_count; i++) {
             Run run = {0};
-            if (!takes_part(&programs[i], subject, slow, turn))
+            if (!takes_part(&programs[i], subject, turn))
                 continue;
             if (!programs[i].run(&programs[i], folder, subject, view, &run))
                 give_up(programs[i].name, "it failed");
@@ -140,7 +140,7 @@ void processes_print(Processes *processes, const Subject *subject, const Frame *
     for (int i = 0; i < OURS; i++) {
         Run *run = &processes->ours[i].median;
         runs_settle(&processes->ours[i]);
-        run->frame     = i == ANALYTIC ? frame->analytic_cpu : frame->cpu;
+        run->frame     = i == STENCIL ? frame->stencil_cpu : frame->cpu;
         run->coverage  = frame->coverage;
         run->judgement = frame->judgement;
     }

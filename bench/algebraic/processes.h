@@ -8,7 +8,7 @@
 
 /* What a frame of ours takes by the default, and shows. */
 typedef struct Frame {
-    double    cpu, analytic_cpu, coverage;
+    double    cpu, stencil_cpu, coverage;
     Judgement judgement;
 } Frame;
 
@@ -29,8 +29,8 @@ void folder_remove(const char *path);
 void run_krs(const char *krs, const char *folder, const char *cache, const char *text,
              char *const *options, Run *run);
 
-/* Ours: with nothing cached, with all that leaves, and with normals as the others find them. */
-enum { COLD, WARM, ANALYTIC, OURS };
+/* Ours: with nothing cached, with all that leaves, and with normals by differences. */
+enum { COLD, WARM, STENCIL, OURS };
 
 /* What a surface has taken. */
 typedef struct Processes {
@@ -42,7 +42,7 @@ typedef struct Processes {
  * parent had in memory when it began, so this comes before all that needs much.
  */
 void processes_run(Processes *processes, const char *krs, const Subject *subject,
-                   const View *view, const char *text, size_t repeats, bool slow);
+                   const View *view, const char *text, size_t repeats);
 void processes_print(Processes *processes, const Subject *subject, const Frame *frame);
 
 /* ---- trees.c ---- */
@@ -54,5 +54,15 @@ typedef struct Trees {
 
 void trees_run(Trees *trees, const char *krs, size_t repeats);
 void trees_print(Trees *trees);
+
+/* ---- julias.c ---- */
+/* A Julia set by krs and by POV-Ray, and what their pictures get wrong. */
+typedef struct Julias {
+    Runs      ours, pov;
+    Judgement judged[2];
+} Julias;
+
+void julias_run(Julias *julias, const char *krs, size_t repeats);
+void julias_print(Julias *julias);
 
 #endif

@@ -8,6 +8,7 @@
  */
 #include <math.h>
 #include <fcntl.h>
+#include <png.h>
 #include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -105,6 +106,26 @@ bool read_picture(const char *path, double *coverage, bool *seen)
     fclose(file);
     *coverage = (double)bright / (WIDTH * HEIGHT);
     return good;
+}
+
+void read_png(const char *path, double *coverage, bool *seen)
+{
+    png_image image = {.version = PNG_IMAGE_VERSION};
+    if (!png_image_begin_read_from_file(&image, path))
+        give_up(path, "cannot read it");
+    image.format   = PNG_FORMAT_RGB;
+    png_byte *rgb  = malloc(PNG_IMAGE_SIZE(image));
+    size_t    lit  = 0, width = image.width, pixels = width * image.height;
+    if (!rgb || !png_image_finish_read(&image, NULL, rgb, 0, NULL))
+        give_up(path, "cannot read it");
+    for (size_t i = 0; i < pixels; i++) {
+        bool here = rgb[3 * i] + rgb[3 * i + 1] + rgb[3 * i + 2] > 0;
+        lit += here;
+        if (seen && i % width % STRIDE == 0 && i / width % STRIDE == 0)
+            *seen++ = here;
+    }
+    free(rgb);
+    *coverage = (double)lit / (double)pixels;
 }
 
 static bool judge_file(const char *path, const Subject *subject, const View *view, Drawn drawn,

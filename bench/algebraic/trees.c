@@ -5,7 +5,6 @@
  * arc with round ends.  Both have one light, at the eye, and nothing else.
  */
 #include <math.h>
-#include <png.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -154,30 +153,13 @@ static void write_krs_tree(int levels, char text[TEXT_ROOM])
              EYE[2], WIDTH, HEIGHT);
 }
 
-/* The share of the pixels of a PNG that are not black. */
-static double read_png(const char *path)
-{
-    png_image image = {.version = PNG_IMAGE_VERSION};
-    if (!png_image_begin_read_from_file(&image, path))
-        give_up(path, "cannot read it");
-    image.format   = PNG_FORMAT_RGB;
-    png_byte *rgb  = malloc(PNG_IMAGE_SIZE(image));
-    size_t    seen = 0, pixels = (size_t)image.width * image.height;
-    if (!rgb || !png_image_finish_read(&image, NULL, rgb, 0, NULL))
-        give_up(path, "cannot read it");
-    for (size_t i = 0; i < pixels; i++)
-        seen += rgb[3 * i] + rgb[3 * i + 1] + rgb[3 * i + 2] > 0;
-    free(rgb);
-    return (double)seen / (double)pixels;
-}
-
 static void run_krs_tree(const char *krs, const char *folder, int levels, Run *run)
 {
     char text[TEXT_ROOM], picture[512];
     write_krs_tree(levels, text);
     snprintf(picture, sizeof picture, "%s/krs.png", folder);
     run_krs(krs, folder, "trees", text, NULL, run);
-    run->coverage = read_png(picture);
+    read_png(picture, &run->coverage, NULL);
 }
 
 /* ---- both ---- */

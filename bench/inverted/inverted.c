@@ -9,9 +9,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 
+#include "bench/measure.h"
 #include "bench/sheet.h"
+#include "bench/stage.h"
 #include "compiler/compile.h"
 #include "runtime/krs_vulkan.h"
 
@@ -39,65 +40,13 @@ typedef struct Row {
     uint64_t unresolved;
 } Row;
 
-typedef struct Stage {
-    const char   *name;
-    KrsRenderer  *renderer;
-    KrsScene     *scene;
-    KrsFrame     *frame;
-    KrsRendering *rendering;
-} Stage;
-
 static Sheet sheet;
 
-static void fail(const char *what, const char *why)
+static KrsPicture *shoot(const Stage *stage, KrsTrace trace, bool beams, double error)
 {
-    fprintf(stderr, "inverted: %s: %s\n", what, why);
-    exit(1);
-}
-
-static void complain(void *user, const KrsDiagnostic *diagnostic)
-{
-    (void)user;
-    fprintf(stderr, "%s\n", diagnostic->text);
-}
-
-static Stage stage_open(KrsRenderer *renderer, const struct Subject *subject)
-{
-    Stage      stage   = {.name = subject->name, .renderer = renderer};
-    KrsOptions options = {.diagnostic = complain};
-    if (krs_compile_file(subject->path, &options, &stage.scene) != KRS_OK ||
-        krs_frame_new(stage.scene, &stage.frame) != KRS_OK)
-        fail(subject->name, "it does not compile");
-    if (krs_rendering_new(renderer, stage.scene, &stage.rendering) != KRS_OK)
-        fail(subject->name, krs_renderer_message(renderer));
-    return stage;
-}
-
-static void stage_close(Stage *stage)
-{
-    krs_rendering_free(stage->rendering);
-    krs_frame_free(stage->frame);
-    krs_scene_free(stage->scene);
-}
-
-/* Milliseconds that the threads of this process have computed. */
-static double cpu_ms(void)
-{
-    struct rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    return 1e3 * (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-           1e-3 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
-}
-
-static KrsPicture *render(const Stage *stage, KrsTrace trace, bool beams, double error)
-{
-    KrsPicture      *picture;
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1, .trace = trace,
-                                .no_beams = !beams, .error = error, .no_upsampling = true,
-                                .planes = KRS_PLANE_DEPTH | KRS_PLANE_IDS};
-    if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
-        fail(stage->name, krs_renderer_message(stage->renderer));
-    return picture;
+    return stage_render(stage, &(KrsRenderOptions){
+        .width = WIDTH, .height = HEIGHT, .samples = 1, .trace = trace, .no_beams = !beams,
+        .error = error, .no_upsampling = true, .planes = KRS_PLANE_DEPTH | KRS_PLANE_IDS});
 }
 
 /* Where only one of two pictures shows something, or its depth is off by a hundredth. */
@@ -120,16 +69,10 @@ static double hits_of(const KrsPicture *picture)
     return (double)count / PIXELS;
 }
 
-static int by_size(const void *a, const void *b)
-{
-    double difference = *(const double *)a - *(const double *)b;
-    return (difference > 0) - (difference < 0);
-}
-
 static void measure(const Stage *stage, const KrsPicture *fine, Row *row, size_t turn)
 {
     double      used = cpu_ms();
-    KrsPicture *picture = render(stage, row->trace, row->beams, 0.25);
+    KrsPicture *picture = shoot(stage, row->trace, row->beams, 0.25);
     used = cpu_ms() - used;
     row->cpu_ms = turn == 0 ? used : fmin(row->cpu_ms, used);
     const KrsRenderStats *stats = &picture->stats;
@@ -141,12 +84,11 @@ static void measure(const Stage *stage, const KrsPicture *fine, Row *row, size_t
     krs_picture_free(picture);
 }
 
-static void print_row(const Stage *stage, Row *row, size_t repeats)
+static void print_row(const char *name, Row *row, size_t repeats)
 {
-    qsort(row->ms, repeats, sizeof row->ms[0], by_size);
-    double least = row->ms[0] * 1e6 / PIXELS, median = row->ms[repeats / 2] * 1e6 / PIXELS;
-    sheet_print(&sheet, "| %s | %s | %s | %.2f | %.0f | %.0f | %.1f | %.0f |", stage->name,
-                krs_trace_names[row->trace], row->beams ? "yes" : "no", row->evaluations, median,
+    double middle = median(row->ms, repeats) * 1e6 / PIXELS, least = row->ms[0] * 1e6 / PIXELS;
+    sheet_print(&sheet, "| %s | %s | %s | %.2f | %.0f | %.0f | %.1f | %.0f |", name,
+                krs_trace_names[row->trace], row->beams ? "yes" : "no", row->evaluations, middle,
                 least, least / row->evaluations, row->cpu_ms);
     sheet_print(&sheet, " %.2f %% | %.3f %% | %llu |\n", 100 * row->hits, 100 * row->differing,
                 (unsigned long long)row->unresolved);
@@ -155,8 +97,8 @@ static void print_row(const Stage *stage, Row *row, size_t repeats)
 static void compare(KrsRenderer *renderer, const struct Subject *subject, size_t repeats)
 {
     Row         rows[2 * TRACES] = {0};
-    Stage       stage = stage_open(renderer, subject);
-    KrsPicture *fine  = render(&stage, KRS_TRACE_PLAIN, false, 0.01);
+    Stage       stage = stage_open(renderer, subject->path, NULL, false);
+    KrsPicture *fine  = shoot(&stage, KRS_TRACE_PLAIN, false, 0.01);
     /* Nothing is timed that has not run before. */
     for (size_t turn = 0; turn <= repeats; turn++)
         for (size_t i = 0; i < 2 * TRACES; i++) {
@@ -165,7 +107,7 @@ static void compare(KrsRenderer *renderer, const struct Subject *subject, size_t
             measure(&stage, fine, &rows[i], turn ? turn - 1 : 0);
         }
     for (size_t i = 0; i < 2 * TRACES; i++)
-        print_row(&stage, &rows[i], repeats);
+        print_row(subject->name, &rows[i], repeats);
     krs_picture_free(fine);
     stage_close(&stage);
 }
@@ -173,13 +115,11 @@ static void compare(KrsRenderer *renderer, const struct Subject *subject, size_t
 /* inverted [REPEATS [NAME]]: one scene. */
 int main(int count, char **arguments)
 {
-    KrsRenderer *renderer;
-    size_t       repeats = count > 1 ? strtoul(arguments[1], NULL, 10) : 5;
+    size_t repeats = count > 1 ? strtoul(arguments[1], NULL, 10) : 5;
     if (repeats < 1 || repeats > MOST_REPEATS)
-        fail(arguments[1], "1 to 15 repeats");
+        give_up(arguments[1], "1 to 15 repeats");
     spirv_start();
-    if (krs_renderer_new(NULL, &renderer) != KRS_OK)
-        fail("cannot open the device", renderer ? krs_renderer_message(renderer) : "no memory");
+    KrsRenderer *renderer = device_open();
     sheet = sheet_open("inverted", "Sequences with maps that invert", "make inverted", renderer,
                        count > 1);
     sheet_print(&sheet, "%dx%d, medians of %zu\n\n", WIDTH, HEIGHT, repeats);

@@ -5,12 +5,12 @@
  * A palm leaf of Moebius stages, side by side by one way to trace after another: the paper's first.
  * All straightforward: a lane to a pixel and no beams.
  */
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench/sheet.h"
+#include "bench/stage.h"
 #include "compiler/compile.h"
 #include "runtime/krs_vulkan.h"
 #include "runtime/writer/png.h"
@@ -24,28 +24,6 @@ static const KrsTrace ways[] = {KRS_TRACE_BINARY, KRS_TRACE_PREDICTED, KRS_TRACE
 enum { WAYS = sizeof ways / sizeof *ways };
 
 static Sheet sheet;
-
-static void fail(const char *what, const char *why)
-{
-    fprintf(stderr, "iterations: %s: %s\n", what, why);
-    exit(1);
-}
-
-static void complain(void *user, const KrsDiagnostic *diagnostic)
-{
-    (void)user;
-    fprintf(stderr, "%s\n", diagnostic->text);
-}
-
-static void read_scene(char *text, size_t room)
-{
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        fail(path, strerror(errno));
-    size_t length = fread(text, 1, room - 1, file);
-    fclose(file);
-    text[length] = '\0';
-}
 
 static void shade(uint32_t steps, uint8_t *rgb)
 {
@@ -71,7 +49,7 @@ static void write_strip(const char *name)
                            .crop_height = HEIGHT};
     OutputFile   *file = output_open(name, NULL, &error);
     if (!file || !png_write(&frame, strip, file, &error) || output_commit(file) != KRS_OK)
-        fail(name, error.message);
+        give_up(name, error.message);
 }
 
 /* Of the pixels that cost something at all. */
@@ -91,15 +69,12 @@ static void tell(const KrsPicture *picture, KrsTrace way)
            sum / (double)(count ? count : 1), most, 100.0 * (double)dark / PIXELS);
 }
 
-static void render(KrsRenderer *renderer, KrsRendering *rendering, KrsFrame *frame,
-                   KrsTrace way, int place)
+static void shoot(const Stage *stage, KrsTrace way, int place)
 {
-    KrsPicture      *picture;
     KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1, .no_beams = true,
                                 .planes = KRS_PLANE_COLOR | KRS_PLANE_STEPS,
                                 .trace = way, .schedule = KRS_SCHEDULE_PIXEL};
-    if (krs_render(rendering, frame, &options, &picture) != KRS_OK)
-        fail(krs_trace_names[way], krs_renderer_message(renderer));
+    KrsPicture *picture = stage_render(stage, &options);
     put(picture, place);
     tell(picture, way);
     krs_picture_free(picture);
@@ -114,22 +89,10 @@ static const char *base_name(const char *file)
 /* iterations [FILE.png] */
 int main(int count, char **arguments)
 {
-    static char   text[20000];
-    KrsRenderer  *renderer;
-    KrsScene     *scene;
-    KrsFrame     *frame;
-    KrsRendering *rendering;
-    KrsOptions    options = {.diagnostic = complain};
-    char          name[256];
-    read_scene(text, sizeof text);
+    char name[256];
     spirv_start();
-    if (krs_renderer_new(NULL, &renderer) != KRS_OK)
-        fail("cannot open the device", renderer ? krs_renderer_message(renderer) : "no memory");
-    if (krs_compile_text(text, strlen(text), path, &options, &scene) != KRS_OK ||
-        krs_frame_new(scene, &frame) != KRS_OK)
-        fail(path, "it does not compile");
-    if (krs_rendering_new(renderer, scene, &rendering) != KRS_OK)
-        fail(path, krs_renderer_message(renderer));
+    KrsRenderer *renderer = device_open();
+    Stage        stage    = stage_open(renderer, path, NULL, false);
     sheet = sheet_open("iterations", "Iterations of a palm leaf's pixels", "make iterations",
                        renderer, count > 1);
     if (count > 1)
@@ -139,12 +102,10 @@ int main(int count, char **arguments)
     sheet_print(&sheet, "| %dx%d | iterations of a pixel that has any | most | more than %d |\n"
            "| --- | --- | --- | --- |\n", WIDTH, HEIGHT, BLACK);
     for (int i = 0; i < WAYS; i++)
-        render(renderer, rendering, frame, ways[i], i);
+        shoot(&stage, ways[i], i);
     sheet_print(&sheet, "\n![iterations](%s)\n", base_name(name));
     write_strip(name);
-    krs_rendering_free(rendering);
-    krs_frame_free(frame);
-    krs_scene_free(scene);
+    stage_close(&stage);
     sheet_close(&sheet);
     krs_renderer_free(renderer);
     spirv_stop();

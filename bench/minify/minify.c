@@ -12,8 +12,10 @@
 #include <string.h>
 #include <time.h>
 
+#include "bench/measure.h"
 #include "bench/minify/pixel_filter.h"
 #include "bench/sheet.h"
+#include "bench/stage.h"
 #include "compiler/compile.h"
 #include "runtime/film/film.h"
 #include "runtime/krs_vulkan.h"
@@ -43,26 +45,7 @@ typedef struct Shot {
     double ms; /* normals, materials, shadows, occlusion, light */
 } Shot;
 
-typedef struct Stage {
-    KrsRenderer  *renderer;
-    KrsScene     *scene;
-    KrsFrame     *frame;
-    KrsRendering *rendering;
-} Stage;
-
 static Sheet sheet;
-
-static void fail(const char *what, const char *why)
-{
-    fprintf(stderr, "minify: %s: %s\n", what, why);
-    exit(1);
-}
-
-static void complain(void *user, const KrsDiagnostic *diagnostic)
-{
-    (void)user;
-    fprintf(stderr, "%s\n", diagnostic->text);
-}
 
 /* The scene's text with another camera. */
 static char *text_of(const struct Flight *flight)
@@ -70,48 +53,31 @@ static char *text_of(const struct Flight *flight)
     static char text[20000];
     FILE  *file = fopen(flight->path, "rb");
     if (!file)
-        fail(flight->path, "cannot read it");
+        give_up(flight->path, "cannot read it");
     size_t length = fread(text, 1, sizeof text - 1000, file);
     fclose(file);
     text[length] = '\0';
     char *camera = strstr(text, "\ncamera {");
     char *end    = camera ? strchr(camera, '}') : NULL;
     if (!end)
-        fail(flight->path, "it has no camera");
+        give_up(flight->path, "it has no camera");
     memset(camera, ' ', (size_t)(end - camera) + 1);
     strcat(text, flight->camera);
     return text;
 }
 
-static Stage stage_open(KrsRenderer *renderer, const struct Flight *flight)
+static Stage stage_of(KrsRenderer *renderer, const struct Flight *flight)
 {
-    Stage       stage   = {.renderer = renderer};
-    const char *text    = text_of(flight);
-    KrsOptions  options = {.diagnostic = complain};
-    if (krs_compile_text(text, strlen(text), flight->path, &options, &stage.scene) != KRS_OK ||
-        krs_frame_new(stage.scene, &stage.frame) != KRS_OK)
-        fail(flight->name, "it does not compile");
-    if (krs_rendering_new(renderer, stage.scene, &stage.rendering) != KRS_OK)
-        fail(flight->name, krs_renderer_message(renderer));
-    return stage;
-}
-
-static void stage_close(Stage *stage)
-{
-    krs_rendering_free(stage->rendering);
-    krs_frame_free(stage->frame);
-    krs_scene_free(stage->scene);
+    return stage_open(renderer, flight->path, text_of(flight), false);
 }
 
 static void shoot(const Stage *stage, int frame, uint32_t samples, bool plain, Shot *shot)
 {
-    KrsPicture      *picture;
     KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = samples,
                                 .planes = KRS_PLANE_COLOR, .no_filter = plain,
                                 .seed = samples > 16 ? 7 : 0};
     krs_frame_set_time(stage->frame, frame);
-    if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
-        fail("cannot render", krs_renderer_message(stage->renderer));
+    KrsPicture *picture = stage_render(stage, &options);
     shot->ms = 0;
     for (int i = KRS_PHASE_NORMALS; i <= KRS_PHASE_SHADING; i++)
         shot->ms += picture->stats.phase_ms[i];
@@ -196,10 +162,10 @@ static double mean_light(const Shot *shot)
 static void fly(KrsRenderer *renderer, const struct Flight *flight, uint32_t samples)
 {
     static Shot truth[FRAMES], shots[WAYS][FRAMES], sky, covered;
-    Stage  stage = stage_open(renderer, flight);
+    Stage  stage = stage_of(renderer, flight);
     struct Flight nothing = *flight;
     nothing.path = "bench/minify/nothing.krs";
-    Stage  empty = stage_open(renderer, &nothing);
+    Stage  empty = stage_of(renderer, &nothing);
     double still = 0;
     for (int f = 0; f < FRAMES; f++) {
         shoot(&stage, f, samples, true, &truth[f]);
@@ -231,25 +197,11 @@ static void fly(KrsRenderer *renderer, const struct Flight *flight, uint32_t sam
 
 enum { LARGE_WIDTH = 1280, LARGE_HEIGHT = 720, TURNS = 7 };
 
-static int compare_numbers(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double middle(double *numbers)
-{
-    qsort(numbers, TURNS, sizeof *numbers, compare_numbers);
-    return numbers[TURNS / 2];
-}
-
 static void time_once(const Stage *stage, bool plain, double *normals, double *all)
 {
-    KrsPicture      *picture;
     KrsRenderOptions options = {.width = LARGE_WIDTH, .height = LARGE_HEIGHT, .samples = 1,
                                 .planes = KRS_PLANE_COLOR, .no_filter = plain};
-    if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
-        fail("cannot render", krs_renderer_message(stage->renderer));
+    KrsPicture *picture = stage_render(stage, &options);
     *normals = picture->stats.phase_ms[KRS_PHASE_NORMALS];
     *all = picture->stats.total_ms;
     krs_picture_free(picture);
@@ -257,7 +209,7 @@ static void time_once(const Stage *stage, bool plain, double *normals, double *a
 
 static void time_filter(KrsRenderer *renderer, const struct Flight *flight)
 {
-    Stage  stage = stage_open(renderer, flight);
+    Stage  stage = stage_of(renderer, flight);
     double normals[2][TURNS], all[2][TURNS], warm_up;
     krs_frame_set_time(stage.frame, 0);
     for (int plain = 0; plain < 2; plain++)
@@ -265,9 +217,9 @@ static void time_filter(KrsRenderer *renderer, const struct Flight *flight)
     for (int turn = 0; turn < TURNS; turn++)
         for (int plain = 0; plain < 2; plain++)
             time_once(&stage, plain, &normals[plain][turn], &all[plain][turn]);
-    double filtered = middle(all[0]), unfiltered = middle(all[1]);
+    double filtered = median(all[0], TURNS), unfiltered = median(all[1], TURNS);
     sheet_print(&sheet, "| %s | %.1f | %.1f | %.0f | %.0f | %.2f |\n", flight->name,
-                middle(normals[1]), middle(normals[0]), unfiltered, filtered,
+                median(normals[1], TURNS), median(normals[0], TURNS), unfiltered, filtered,
                 filtered / unfiltered);
     stage_close(&stage);
 }
@@ -276,13 +228,11 @@ static void time_filter(KrsRenderer *renderer, const struct Flight *flight)
 
 static void widen(KrsRenderer *renderer, const struct Flight *flight)
 {
-    Stage            stage = stage_open(renderer, flight);
-    KrsPicture      *fine;
+    Stage            stage = stage_of(renderer, flight);
     KrsRenderOptions options = {.width = FINE * WIDTH, .height = FINE * HEIGHT, .samples = 1,
                                 .planes = KRS_PLANE_COLOR, .no_filter = true};
     krs_frame_set_time(stage.frame, 0);
-    if (krs_render(stage.rendering, stage.frame, &options, &fine) != KRS_OK)
-        fail("cannot render", krs_renderer_message(stage.renderer));
+    KrsPicture *fine = stage_render(&stage, &options);
     pixel_filter_rows(&sheet, flight->name, fine);
     krs_picture_free(fine);
     stage_close(&stage);
@@ -296,11 +246,9 @@ static bool is_wanted(const struct Flight *flight, int count, char **arguments)
 /* minify [SAMPLES [NAME]]: of the reference; one flight.  With 0 samples only what it costs. */
 int main(int count, char **arguments)
 {
-    KrsRenderer *renderer;
-    uint32_t     samples = count > 1 ? (uint32_t)strtoul(arguments[1], NULL, 10) : 64;
+    uint32_t samples = count > 1 ? (uint32_t)strtoul(arguments[1], NULL, 10) : 64;
     spirv_start();
-    if (krs_renderer_new(NULL, &renderer) != KRS_OK)
-        fail("cannot open the device", renderer ? krs_renderer_message(renderer) : "no memory");
+    KrsRenderer *renderer = device_open();
     sheet = sheet_open("minify", "What is finer than a pixel", "make minify", renderer, count > 1);
     if (samples > 0)
         sheet_print(&sheet, "%dx%d, %d frames, against %u samples\n\n"

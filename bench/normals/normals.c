@@ -4,14 +4,16 @@
  * First the table of Ban and Valasek (2023, figure 5) in single precision on the device: the angle
  * between the true normal and what each stencil finds with steps of length r, and what derivatives
  * find, at points of a picture of each surface.  Then pictures: what the phase of normals takes by
- * each, and how far from those by derivatives they are.  bench/README.md says what the columns mean.
+ * each, and how far from those by derivatives they are.  bench/README.md says what columns mean.
  */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "bench/measure.h"
 #include "bench/sheet.h"
+#include "bench/stage.h"
 #include "runtime/krs_vulkan.h"
 #include "runtime/shaders/stencil.h"
 
@@ -22,54 +24,11 @@ enum { REACHES = sizeof reaches / sizeof *reaches };
 
 static Sheet sheet;
 
-static void fail(const char *what, const char *why)
-{
-    fprintf(stderr, "normals: %s: %s\n", what, why);
-    exit(1);
-}
-
-typedef struct Stage {
-    KrsRenderer  *renderer;
-    KrsScene     *scene;
-    KrsFrame     *frame;
-    KrsRendering *rendering;
-} Stage;
-
-static void complain(void *user, const KrsDiagnostic *diagnostic)
-{
-    (void)user;
-    fprintf(stderr, "%s\n", diagnostic->text);
-}
-
-/* `text` or, if that is NULL, the file. */
-static Stage stage_open(KrsRenderer *renderer, const char *name, const char *text)
-{
-    Stage      stage   = {.renderer = renderer};
-    KrsOptions options = {.diagnostic = complain, .gradients = true};
-    KrsStatus  status  = text ? krs_compile_text(text, strlen(text), name, &options, &stage.scene)
-                              : krs_compile_file(name, &options, &stage.scene);
-    if (status != KRS_OK || krs_frame_new(stage.scene, &stage.frame) != KRS_OK)
-        fail(name, "it does not compile");
-    if (krs_rendering_new(renderer, stage.scene, &stage.rendering) != KRS_OK)
-        fail(name, krs_renderer_message(renderer));
-    return stage;
-}
-
-static void stage_close(Stage *stage)
-{
-    krs_rendering_free(stage->rendering);
-    krs_frame_free(stage->frame);
-    krs_scene_free(stage->scene);
-}
-
 static KrsPicture *shoot(const Stage *stage, KrsNormals normals, double error, bool plain)
 {
-    KrsPicture      *picture;
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .error = error,
-                                .normals = normals, .no_filter = plain};
-    if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
-        fail(krs_normals_names[normals], krs_renderer_message(stage->renderer));
-    return picture;
+    return stage_render(stage, &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT,
+                                                   .error = error, .normals = normals,
+                                                   .no_filter = plain});
 }
 
 /* Degrees. */
@@ -82,18 +41,6 @@ static double angle(const double a[3], const double b[3])
         dot += a[i] * b[i];
     }
     return atan2(sqrt(square), dot) * 180 / acos(-1);
-}
-
-static int compare_numbers(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double middle(double *numbers, size_t count)
-{
-    qsort(numbers, count, sizeof *numbers, compare_numbers);
-    return count ? numbers[count / 2] : NAN;
 }
 
 /* ---- surfaces whose normals are known ---- */
@@ -133,7 +80,8 @@ static const struct Surface {
 } surfaces[] = {
     {"a torus with bumps",
      "camera { eye: [1.2, 3, 3.2], fov: 35deg }"
-     "show field(length([length([x, z]) - 1, y]) - 0.35 + 0.03 * sin(9 * x) * sin(9 * y) * sin(9 * z));",
+     "show field(length([length([x, z]) - 1, y]) - 0.35 + "
+     "0.03 * sin(9 * x) * sin(9 * y) * sin(9 * z));",
      bumpy_normal, 10},
     {"Barth's sextic",
      "use \"std/surfaces.krs\"; camera { eye: [3, 2.5, 5.5], fov: 40deg } show barth_sextic();",
@@ -185,7 +133,7 @@ static void find_normals(const Stage *stage, KrsNormals normals, float reach, co
     }
     if (krs_sample(stage->rendering, stage->frame, (const float (*)[3])points,
                    count * stencil.taps, distances, NULL) != KRS_OK)
-        fail("cannot sample", krs_renderer_message(stage->renderer));
+        give_up("cannot sample", krs_renderer_message(stage->renderer));
     for (size_t i = 0; i < count; i++) {
         float sum[3] = {0};
         for (uint k = 0; k < stencil.taps; k++) {
@@ -218,7 +166,7 @@ static Error error_of(Truth *truth, const Sight *sights, double (*found)[3], siz
         angles[i]  = angle(n, found ? found[i] : sights[i].normal);
         error.most = fmax(error.most, angles[i]);
     }
-    error.median = middle(angles, count);
+    error.median = count ? median(angles, count) : NAN;
     free(angles);
     return error;
 }
@@ -246,7 +194,7 @@ static void print_stencil(const Stage *stage, const struct Surface *surface, Krs
 static void print_angles(KrsRenderer *renderer, const struct Surface *surface)
 {
     static Sight sights[POINTS];
-    Stage  stage = stage_open(renderer, surface->name, surface->text);
+    Stage  stage = stage_open(renderer, surface->name, surface->text, true);
     size_t count = choose_sights(&stage, surface, sights);
     sheet_print(&sheet, "\n%s, %zu points: median / largest angle in degrees, by the length of the"
                         " steps\n\n"
@@ -282,7 +230,7 @@ static double difference(const KrsPicture *a, const KrsPicture *b)
         }
         angles[count++] = angle(n[0], n[1]);
     }
-    double result = middle(angles, count);
+    double result = count ? median(angles, count) : NAN;
     free(angles);
     return result;
 }
@@ -291,7 +239,7 @@ static void print_pictures(KrsRenderer *renderer, const char *name, const char *
                            const char *text)
 {
     static double ms[KRS_NORMALS_COUNT][TURNS], total[KRS_NORMALS_COUNT][TURNS];
-    Stage       stage = stage_open(renderer, path, text);
+    Stage       stage = stage_open(renderer, path, text, true);
     KrsPicture *truth = shoot(&stage, KRS_NORMALS_ANALYTIC, 0, true);
     double      apart[KRS_NORMALS_COUNT];
     for (KrsNormals normals = KRS_NORMALS_FORWARD; normals < KRS_NORMALS_COUNT; normals++) {
@@ -308,7 +256,7 @@ static void print_pictures(KrsRenderer *renderer, const char *name, const char *
         }
     for (KrsNormals normals = KRS_NORMALS_FORWARD; normals < KRS_NORMALS_COUNT; normals++)
         sheet_print(&sheet, "| %s | %s | %.2f | %.1f | %.2g |\n", name, krs_normals_names[normals],
-               middle(ms[normals], TURNS), middle(total[normals], TURNS), apart[normals]);
+               median(ms[normals], TURNS), median(total[normals], TURNS), apart[normals]);
     fflush(stdout);
     krs_picture_free(truth);
     stage_close(&stage);
@@ -316,9 +264,7 @@ static void print_pictures(KrsRenderer *renderer, const char *name, const char *
 
 int main(void)
 {
-    KrsRenderer *renderer;
-    if (krs_renderer_new(NULL, &renderer) != KRS_OK)
-        fail("cannot open the device", renderer ? krs_renderer_message(renderer) : "no memory");
+    KrsRenderer *renderer = device_open();
     sheet = sheet_open("normals", "How normals are found", "make bench-normals", renderer, false);
     for (int i = 0; i < SURFACES; i++)
         print_angles(renderer, &surfaces[i]);
