@@ -3,12 +3,14 @@
 # make test       set up, build, run every test; the last line is `N passed, N failed`
 # make sanitize   the same programs under ASan and UBSan, in build/asan/
 # make bench      measures, writes bench/results/; bench-quick: only whether it can
-# make bench-normals, bench-algebraic   stencils of normals; algebraic surfaces beside other programs
+# make bench-normals    how normals are found
+# make bench-algebraic  algebraic surfaces beside other programs
 # make minify     how well one sample shows what is finer than a pixel
 # make fuzz       the front end under libFuzzer for FUZZ_SECONDS (30)
 # make lint       kernels by themselves, shell scripts
 # make bless      writes the expected text of tests/errors/; read the difference
 # make deps       installs what is missing (Debian packages)
+# make install    to PREFIX (/usr/local), below DESTDIR; uninstall: takes it away
 
 B       ?= build
 CFLAGS  ?= -g -O2
@@ -17,21 +19,29 @@ CLANG   ?= clang-14
 
 # Sources in the order of the pipeline: reading down this list is reading the program.
 BASE     := $(addprefix compiler/base/, arena.c text.c source.c diag.c diag_text.c)
-FRONT    := $(addprefix compiler/front/, lexer.c syntax.c parser.c parse_expression.c parse.c names.c)
-GRAPH    := $(addprefix compiler/graph/, graph.c derive.c series.c local.c anchor.c simplify.c range.c rules.c facts.c parity.c regions.c fractal.c evaluate.c print.c)
-GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c arguments.c builtins.c functions.c \
-                expression.c map.c moebius.c make.c make_fractal.c meta.c make_krs.c slope.c field.c field_bounds.c deform.c declare.c methods.c looks.c palette.c scope.c statements.c print.c \
-                lower.c lower_normal.c lower_repeat.c lower_deform.c lower_krs.c lower_along.c lower_guards.c lower_moebius.c lower_images.c)
-SHADER   := $(addprefix compiler/shader/, emit.c spirv.c)
+FRONT    := $(addprefix compiler/front/, lexer.c syntax.c parser.c parse_expression.c parse.c \
+                names.c)
+GRAPH    := $(addprefix compiler/graph/, graph.c derive.c series.c local.c anchor.c simplify.c \
+                range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c regions.c \
+                fractal.c evaluate.c print.c)
+GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c arguments.c \
+                builtins.c lists.c chance.c joining.c functions.c expression.c map.c moebius.c \
+                make.c make_fractal.c meta.c make_krs.c slope.c field.c field_bounds.c deform.c declare.c methods.c looks.c \
+                palette.c scope.c statements.c print.c lower.c lower_normal.c lower_repeat.c \
+                lower_deform.c lower_krs.c lower_along.c lower_guards.c lower_moebius.c \
+                lower_images.c)
+SHADER   := $(addprefix compiler/shader/, emit.c statements.c early_outs.c march.c spirv.c)
 BORDER   := compiler/shader/glslang_border.cpp
-DOORSTEP := compiler/compile.c compiler/framing.c compiler/frame.c compiler/query.c compiler/search.c compiler/refute.c compiler/bounds.c
-RUNTIME  := $(sort $(wildcard runtime/device/*.c runtime/tracer/*.c runtime/film/*.c runtime/writer/*.c))
+DOORSTEP := $(addprefix compiler/, compile.c roots.c limits.c keep.c groups.c program.c \
+                framing.c frame.c query.c search.c refute.c bounds.c)
+RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer film writer))))
 CLI      := $(sort $(wildcard cli/*.c))
 
 # Text files that the program carries: the standard library and the kernels.
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))
 SHADERS  := $(sort $(wildcard runtime/shaders/*.comp runtime/shaders/*.glsl))
-# Kernels without a scene are compiled here and now, not on every machine again.
+# Kernels without a scene are compiled here and now, not on every machine again; what is optimized
+# here, drivers need not.
 MODULES  := $(shell grep -L 'include "scene.glsl"' runtime/shaders/*.comp)
 MODULES  := $(MODULES:runtime/shaders/%=$(B)/modules/%.spv)
 EXAMPLES := $(sort $(wildcard examples/*.krs))
@@ -73,6 +83,7 @@ $(B)/modules/%.spv: runtime/shaders/% $(SHADERS)
 	@mkdir -p $(@D)
 	@echo "shader $<"
 	@glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -o $@ $< >/dev/null
+	@spirv-opt --target-env=vulkan1.1 -O $@ -o $@
 	@spirv-val --target-env vulkan1.1 $@
 $(B)/embed: compiler/base/embed/embed.c
 	@mkdir -p $(@D)
@@ -80,6 +91,7 @@ $(B)/embed: compiler/base/embed/embed.c
 
 include tests/tests.mk
 include bench/bench.mk
+include tools/install.mk
 
 # ---- what a newcomer types ----
 demo: deps

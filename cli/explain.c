@@ -1,7 +1,9 @@
 /*
  * explain.c: `krs explain`: the page of a diagnostic.
  */
+#include <ctype.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "cli/commands.h"
 #include "cli/console.h"
@@ -19,7 +21,10 @@ KrsStatus command_explain(Options *options)
         print_list();
         return KRS_OK;
     }
-    const DiagInfo *info = diag_find(options->files.items[0]);
+    char *code = arena_copy_text(options->arena, options->files.items[0],
+                                 strlen(options->files.items[0]));
+    code[0] = (char)toupper((unsigned char)code[0]); /* e0203, too */
+    const DiagInfo *info = diag_find(code);
     if (!info)
         return say_usage(options, "there is no diagnostic `%s`; `krs explain` lists them",
                          options->files.items[0]);

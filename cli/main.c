@@ -54,6 +54,31 @@ static KrsStatus print_version(void)
     return console_finish();
 }
 
+/* For `make install`: pages of the manual, and the completion of bash.  False: neither is asked. */
+static bool print_installed(int argc, char **argv, int *status)
+{
+    CommandId command = COMMAND_COUNT;
+    if (argc == 2 && strcmp(argv[1], "--completion") == 0) {
+        completion_print(stdout);
+        *status = console_finish();
+        return true;
+    }
+    if (argc < 2 || argc > 3 || strcmp(argv[1], "--manual") != 0)
+        return false;
+    if (argc == 3)
+        for (command = 0; command < COMMAND_COUNT; command++)
+            if (strcmp(argv[2], command_table[command].name) == 0)
+                break;
+    if (argc == 3 && command == COMMAND_COUNT) {
+        say("there is no command `%s`", argv[2]);
+        *status = KRS_BAD_ARGUMENT;
+        return true;
+    }
+    manual_print(command, stdout);
+    *status = console_finish();
+    return true;
+}
+
 /* The work as the child does it: out of memory in any arena of the command ends here. */
 static KrsStatus work_with_memory(Options *options)
 {
@@ -103,10 +128,13 @@ int main(int argc, char **argv)
         help_print(stdout);
         return console_finish();
     }
+    int status;
+    if (print_installed(argc, argv, &status))
+        return status;
     Memory  memory = {.limit = 0};
     Arena   arena = {.memory = &memory};
     Options options = {.arena = &arena};
-    int     status = map_exit(&options, run(&options, argc, argv));
+    status = map_exit(&options, run(&options, argc, argv));
     arena_free(&arena);
     return status;
 }

@@ -34,6 +34,24 @@ typedef struct CommandInfo {
 
 extern const CommandInfo command_table[COMMAND_COUNT];
 
+typedef enum OptionId {
+#define OPTION(id, letter, name, argument, commands, take, wants, help) OPTION_##id,
+#include "cli/options.def"
+#undef OPTION
+    OPTION_COUNT
+} OptionId;
+
+typedef struct OptionInfo {
+    char        letter;          /* 0: none */
+    const char *name, *argument; /* `argument` NULL: it takes none */
+    unsigned    commands;
+    const char *wants, *help;
+} OptionInfo;
+
+extern const OptionInfo option_info[OPTION_COUNT];
+
+bool option_belongs(OptionId id, CommandId command);
+
 /* What `--aov` chooses; colour and alpha are always there. */
 typedef enum Aov {
     AOV_Z = 1, AOV_P = 2, AOV_N = 4, AOV_ALBEDO = 8, AOV_ID = 16, AOV_STEPS = 32, AOV_ALL = 63
@@ -99,8 +117,16 @@ typedef struct Options {
    error that says what is wrong.  `options->arena` must be set. */
 KrsStatus options_parse(Options *options, int argc, char **argv);
 
+/* What each exit status means, in a sentence of several lines. */
+extern const char exit_statuses[];
+
 /* `krs --help`, `krs COMMAND --help`. */
 void help_print(FILE *out);
 void help_print_command(CommandId command, FILE *out);
+
+/* manual.c: the same as a page for man, of a command or, with COMMAND_COUNT, of `krs` itself; and
+   what bash completes command lines by. */
+void manual_print(CommandId command, FILE *out);
+void completion_print(FILE *out);
 
 #endif

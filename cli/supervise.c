@@ -14,6 +14,7 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -225,6 +226,32 @@ static int report_bug(const Options *options, const char *story)
     return KRS_INTERNAL;
 }
 
+static const char *signal_name(int signal_number)
+{
+    const char *name = sigabbrev_np(signal_number);
+    return name ? name : "?";
+}
+
+/* The bytes that a caller leaves us, 0 when that is no less than all; drivers and the libraries
+   that they use crash when they are refused memory. */
+static uint64_t memory_allowed(void)
+{
+    const uint64_t plenty = (uint64_t)4 << 30;
+    struct rlimit  limit;
+    bool limited = getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur < plenty;
+    return limited ? limit.rlim_cur : 0;
+}
+
+/* Whether the child's processor time was used up: `ulimit -t` kills as well. */
+static bool is_out_of_time(void)
+{
+    struct rlimit limit;
+    struct rusage used;
+    return getrlimit(RLIMIT_CPU, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
+           getrusage(RUSAGE_CHILDREN, &used) == 0 &&
+           (rlim_t)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1 >= limit.rlim_cur;
+}
+
 static int judge_death(const Options *options, const Watch *watch, int signal_number)
 {
     char story[256];
@@ -235,14 +262,23 @@ static int judge_death(const Options *options, const Watch *watch, int signal_nu
         snprintf(story, sizeof story, "gave up %s after %g seconds", doing, options->deadline);
         return report_bug(options, story);
     }
+    if ((signal_number == SIGKILL || signal_number == SIGXCPU) && is_out_of_time()) {
+        say("stopped while %s: the processor time that `ulimit -t` allows is used up", doing);
+        return KRS_INTERRUPTED;
+    }
     if (signal_number == SIGKILL) {
         say("killed by the system while %s, probably for want of memory", doing);
         return KRS_OUT_OF_MEMORY;
     }
     if (signal_number == SIGINT || signal_number == SIGTERM || signal_number == SIGHUP)
         return KRS_INTERRUPTED;
-    snprintf(story, sizeof story, "crashed while %s (SIG%s)", doing,
-             sigabbrev_np(signal_number) ? sigabbrev_np(signal_number) : "?");
+    uint64_t allowed = memory_allowed();
+    if (allowed > 0) {
+        say("crashed while %s (SIG%s), probably for want of memory: `ulimit -v` allows %llu MiB",
+            doing, signal_name(signal_number), (unsigned long long)(allowed >> 20));
+        return KRS_OUT_OF_MEMORY;
+    }
+    snprintf(story, sizeof story, "crashed while %s (SIG%s)", doing, signal_name(signal_number));
     return report_bug(options, story);
 }
 

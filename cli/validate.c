@@ -353,6 +353,11 @@ static KrsStatus report_search(const Validation *v, KrsStatus status, const KrsR
     printf("%s: %zu shapes searched, at %zu settings, by %llu distances: "
            "no slope above %.6g of 1\n", v->path, result->shapes, result->settings,
            (unsigned long long)result->evaluations, result->steepest);
+    if (result->refused > 0)
+        printf("%s: %zu times no setting was found that is finite everywhere\n", v->path,
+               result->refused);
+    if (result->skipped > 0)
+        printf("%s: %zu shapes are too large to be searched\n", v->path, result->skipped);
     if (result->estimates > 0)
         printf("%s: %zu shapes are estimates, of at most %.3f of the way to the surface\n", v->path,
                result->estimates, result->longest);

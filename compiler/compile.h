@@ -14,7 +14,7 @@
  * include it (their own text says `#include "scene.glsl"`):
  *
  *     layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[N]; };
- *     void  krs_prepare();               once, first in main: everything that is constant in a frame
+ *     void  krs_prepare();               once, first in main: all that is constant in a frame
  *     float krs_distance(vec3 p);        safe distance to the scene in world units, < 0 inside
  *     struct KrsSurface { float distance; vec3 color; float roughness; float metallic;
  *                         vec3 emission; uint component; uint level; uint instance;
@@ -93,7 +93,8 @@ typedef struct KrsProgram {
     uint32_t    parameter_slots;
     double      low[3], high[3]; /* box around all components; infinite where unbounded */
     size_t      operations;   /* of krs_distance */
-    double      flops;        /* of krs_distance, weighted as in measurements.md fact 5 */
+    double      flops;        /* of krs_distance, weighted as op_cost has it */
+    uint32_t    loops;        /* iterations of loops in it, at most */
     bool        flats;        /* there is krs_ahead, for kernels with #define FLATS */
     double      rest_low[3], rest_high[3]; /* with flats: the box around what is left to march */
     bool        anchored;     /* points may be given from an anchor, with #define ANCHORED */
@@ -167,6 +168,8 @@ typedef struct KrsRefutation {
     bool     refuted;     /* a diagnostic says what, where, and the shape to blame */
     size_t   shapes;      /* that were looked at */
     size_t   settings;    /* values of the parameters that were tried, at most for one shape */
+    size_t   refused;     /* that could not be had: frames refuse them, and all in their stead */
+    size_t   skipped;     /* shapes too large to be searched by themselves */
     uint64_t evaluations; /* of distances */
     double   steepest;    /* largest slope of a distance, of 1 that is permitted */
     double   longest;     /* largest part of the way to a surface that an estimate was */

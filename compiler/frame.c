@@ -117,39 +117,16 @@ void frame_refresh(KrsFrame *frame)
     frame->fresh = true;
 }
 
-static bool node_is_finite(const KrsFrame *frame, Node node)
-{
-    const Expr *e = &frame->scene->graph->items[node];
-    for (uint32_t k = 0; e->time != TIME_POINT && e->type <= TYPE_VEC4 && k < (uint32_t)e->type; k++)
-        if (!isfinite(frame->values[node].v[k]))
-            return false;
-    return true;
-}
-
-/* Whether all that the part of a tape which depends on the point gets from the frame is. */
-static bool points_get_numbers(const KrsFrame *frame, const Tape *tape)
-{
-    for (size_t i = tape->frame_count; i < tape->count; i++) {
-        const Expr *e = &tape->graph->items[tape->nodes[i]];
-        for (int k = 0; k < e->operand_count; k++)
-            if (!node_is_finite(frame, e->operands[k]))
-                return false;
-    }
-    return true;
-}
-
-/* Whether all that points and the view get from the frame are numbers.  A value that is chosen
-   against, as in `if a == 0 then 1 else 1 / a`, is not used and does not count. */
-static bool frame_is_finite(KrsFrame *frame)
+Node frame_infinite(KrsFrame *frame)
 {
     const KrsScene *scene = frame->scene;
-    const Node     *roots = camera_roots(scene, 0), *end = sky_roots(scene) + SKY_ROOTS;
+    const Node     *end   = scene->roots.sky + SKY_ROOTS;
     frame_refresh(frame);
-    for (const Node *root = roots; root < end; root++)
-        if (!node_is_finite(frame, *root))
-            return false;
-    return points_get_numbers(frame, &scene->surface) &&
-           points_get_numbers(frame, &scene->distance);
+    for (const Node *root = scene->roots.cameras; root < end; root++)
+        if (!node_value_is_finite(scene->graph, *root, frame->values))
+            return *root;
+    Node found = tape_frame_infinite(&scene->surface, frame->values);
+    return found != NODE_NONE ? found : tape_frame_infinite(&scene->distance, frame->values);
 }
 
 /* Gives slot `slot` of the parameter block new values, unless the scene cannot have them. */
@@ -158,7 +135,7 @@ static KrsStatus change_slot(KrsFrame *frame, uint32_t slot, const double *value
     NodeValue before = frame->parameters[slot];
     memcpy(frame->parameters[slot].v, values, count * sizeof *values);
     frame->fresh = false;
-    if (find_slopes(frame, slot) && frame_is_finite(frame))
+    if (find_slopes(frame, slot) && frame_infinite(frame) == NODE_NONE)
         return KRS_OK;
     const char *unbounded   = frame->unbounded;
     frame->parameters[slot] = before;
@@ -270,7 +247,7 @@ KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view)
     if (camera >= scene->camera_count)
         return KRS_BAD_ARGUMENT;
     frame_refresh(frame);
-    const Node *root = camera_roots(scene, camera), *sky = sky_roots(scene);
+    const Node *root = scene->roots.cameras + camera * CAMERA_ROOTS, *sky = scene->roots.sky;
     *view = (KrsView){.light_count = scene->light_count, .lights = frame->lights};
     view->camera.projection = scene->cameras[camera].projection;
     frame_copy(frame, root[0], view->camera.eye);
@@ -286,7 +263,7 @@ KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view)
     frame_copy(frame, sky[1], view->sky.horizon);
     frame_copy(frame, sky[2], view->sky.ground);
     for (size_t i = 0; i < scene->light_count; i++) {
-        const Node *light = light_roots(scene, i);
+        const Node *light = scene->roots.lights + i * LIGHT_ROOTS;
         KrsLight   *to    = &frame->lights[i];
         *to = (KrsLight){.positional = scene->lights[i].positional,
                          .shadow     = scene->lights[i].shadow,

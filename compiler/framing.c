@@ -12,7 +12,7 @@
 
 enum { RAYS = 512, FEWEST_RAYS = 64, ROUNDS = 3 };
 
-/* With a distance of more flops there are fewer rays, so that no scene waits long for its camera. */
+/* With a distance of more flops there are fewer rays: no scene waits long for its camera. */
 static const double FLOPS_OF_ALL_RAYS = 2500;
 
 typedef struct Sphere {

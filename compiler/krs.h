@@ -49,7 +49,8 @@ typedef struct KrsDiagnostic {
 
 typedef void KrsDiagnosticCallback(void *user, const KrsDiagnostic *diagnostic);
 
-/* Where memory comes from; zero means malloc and free.  glslang and the Vulkan driver have
+/* Where memory comes from; zero means malloc and free.  It is called by the thread that calls the
+   library, and must last as long as what was made with it.  glslang and the Vulkan driver have
    their own. */
 typedef struct KrsAllocator {
     void *(*allocate)(void *user, size_t size); /* NULL when there is none; aligned as malloc */
@@ -61,21 +62,24 @@ typedef struct KrsOptions {
     KrsAllocator           allocator;
     KrsDiagnosticCallback *diagnostic; /* may be NULL */
     void                  *user;       /* handed to `diagnostic` */
-    size_t                 memory_limit; /* bytes; 0 means 2 GiB */
+    size_t                 memory_limit; /* of a scene, while it is compiled; bytes; 0: 2 GiB */
     bool                   gradients;    /* derivatives as well, for KRS_NORMALS_ANALYTIC and for
                                             whoever embeds the GLSL: krs_gradient */
 } KrsOptions;
 
 /* Compiles a text in memory (`name` is used in diagnostics, and `use` is relative to its
-   folder) or a file.  On KRS_OK the caller owns *scene; on any other status it is NULL.
-   `options` may be NULL.  KRS_BAD_SCENE: see the diagnostics; KRS_IO_ERROR: the file cannot be
-   read; KRS_OUT_OF_MEMORY. */
-KrsStatus krs_compile_text(const char *text, size_t length, const char *name, const KrsOptions *options,
-                           KrsScene **scene);
+   folder) or a file.  Nothing of the arguments is kept but the allocator.  On KRS_OK the caller
+   owns *scene; on any other status it is NULL.  `options` may be NULL.  KRS_BAD_SCENE: see the
+   diagnostics; KRS_IO_ERROR: the file cannot be read; KRS_OUT_OF_MEMORY. */
+KrsStatus krs_compile_text(const char *text, size_t length, const char *name,
+                           const KrsOptions *options, KrsScene **scene);
 KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene **scene);
+/* Its frames and renderings must be freed before.  NULL is ignored, here as in all that frees. */
 void      krs_scene_free(KrsScene *scene);
 
-/* A `param` of the scene. */
+/* What the functions below say of a scene lives as long as the scene: names, places, rules. */
+
+/* A `param` of the scene.  Angles are in radians, colours linear Rec.709. */
 typedef struct KrsParameter {
     const char *name;
     uint32_t    components;    /* 1 for a number, 2..4 for a vector or colour */
@@ -87,26 +91,30 @@ size_t krs_parameter_count(const KrsScene *scene);
 /* Parameter `index` in the order of the text; KRS_BAD_ARGUMENT when there is none. */
 KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *parameter);
 
-/* Parameters at their defaults, time 0.  The scene must outlive the frame. */
+/* Parameters at their defaults, time 0, no zones of the caller.  The scene must outlive the frame.
+   KRS_OUT_OF_MEMORY: *frame is NULL. */
 KrsStatus krs_frame_new(const KrsScene *scene, KrsFrame **frame);
 void      krs_frame_free(KrsFrame *frame);
-/* KRS_BAD_ARGUMENT when there is no such parameter, a component is outside of its range or not
-   finite, or something in the scene is not finite for it; the frame is then unchanged. */
+/* Gives a parameter all of its `count` components; the time is in seconds.  KRS_BAD_ARGUMENT when
+   there is no such parameter or it has another number of components, one is outside of its range
+   or not finite, or something in the scene is not finite for it; the frame is then unchanged. */
 KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values, size_t count);
 KrsStatus krs_frame_set_time(KrsFrame *frame, double time);
 /* Of the last value or time that was refused: the place of an expression ("scene.krs:3:14") whose
-   slope has no bound for it; NULL when that was not why, or nothing was refused since. */
+   slope has no bound for it; NULL when that was not why, or the last one was taken. */
 const char *krs_frame_unbounded(const KrsFrame *frame);
 
 /*
- * The uniforms of the GLSL that `krs compile` writes, for who embeds it: a vec4 for each slot.
- * Slot 0 has the time, as (time, 0, 0, 0), then there is one for each parameter, in the order of
- * krs_parameter.  Behind them are slopes, numbers in x, that are found for each frame: what
- * distances are divided by where no constant is safe, as in sin(time * x).
+ * The uniforms of the GLSL that `krs compile` writes, for who embeds it: a vec4 for each slot, of
+ * which `block` has room for krs_parameter_slots.  Slot 0 has the time, as (time, 0, 0, 0), then
+ * there is one for each parameter, in the order of krs_parameter.  Behind them are slopes, numbers
+ * in x, that are found for each frame: what distances are divided by where no constant is safe, as
+ * in sin(time * x).
  */
 size_t krs_parameter_slots(const KrsScene *scene);
 void   krs_frame_parameters(const KrsFrame *frame, float (*block)[4]);
-/* The slot of slope `index`, and the place of its expression; false when there is none. */
+/* The slot of slope `index`, and the place of its expression; KRS_BAD_ARGUMENT when there is
+   none. */
 typedef struct KrsFrameSlope {
     uint32_t    slot;
     const char *place;         /* "scene.krs:3:14" */
@@ -132,15 +140,16 @@ typedef struct KrsComponent {
     double      low[3], high[3]; /* a box around it in world units; may be infinite */
     double      slope;     /* the derived bound on the slope of its expression */
     bool        per_frame; /* that is of the first frame, and found anew for each */
-    bool        exact;     /* the distance is exact outside wherever math.md says so */
+    bool        exact;     /* the distance is exact outside wherever docs/math.md says so */
     bool        estimate;  /* nothing is proven of the distance; else it is a bound */
     uint32_t    levels;    /* reflections of its outermost sequence; 0 without one */
     double      instances; /* copies of kernels, counted with their reflections */
     uint32_t    inversions; /* maps of its outermost sequence that invert, or of `.transform` */
-    double      flops;     /* of its distance, at one point */
+    double      flops;     /* of its distance, at one point: in multiply-adds */
 } KrsComponent;
 
 size_t    krs_component_count(const KrsScene *scene);
+/* Component `index`, from 0 in the order of the text; KRS_BAD_ARGUMENT when there is none. */
 KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *component);
 
 /* What is known of the distance of one shape of a component, in the shape's own space. */
@@ -155,18 +164,20 @@ typedef struct KrsBound {
     bool        exact, estimate; /* as of components */
     uint32_t    levels;
     double      instances;
-    uint32_t    alike;     /* parts like it, made in the same place, that follow and have no entry */
+    uint32_t    alike;     /* parts like it, made in the same place, that have no entry */
     size_t      same;      /* from 1: the entry where its parts are; 0: behind this one */
 } KrsBound;
 
 /* How many entries there are, at most 256, and how many shapes there was no room for (`more` may be
    NULL); 0 of a component that does not exist. */
 size_t    krs_bound_count(const KrsScene *scene, size_t component, size_t *more);
+/* KRS_BAD_ARGUMENT when there is no such entry. */
 KrsStatus krs_bound(const KrsScene *scene, size_t component, size_t index, KrsBound *bound);
 
 /*
- * Questions.  All are KRS_BAD_ARGUMENT, and answer nothing, when a number among the arguments is
- * not what it must be: coordinates are finite.
+ * Questions about a frame, in double precision.  Arrays have `count` elements, which may be 0, and
+ * are the caller's.  All are KRS_BAD_ARGUMENT, and answer nothing, when a number among the
+ * arguments is not what it must be: coordinates are finite.
  */
 
 /* Distances for `count` points in world units: never above the distance to the nearest surface,
@@ -184,9 +195,10 @@ typedef struct KrsHit {
     double   point[3];
     double   distance;  /* at that point */
     double   normal[3]; /* unit gradient of the distance; 0 where there is none */
-    uint32_t component; /* from 1 */
+    uint32_t component; /* from 1; 0 where nothing is hit */
     uint32_t level;     /* reflections before the kernel */
-    uint32_t instance;  /* heap number of math.md section 1, a hash beyond 31 mirrors; 1 without a sequence */
+    uint32_t instance;  /* docs/math.md, section 1: a number of its own for each copy, or, beyond
+                           31 mirrors, a hash; 1 without a sequence */
     double   color[3];  /* linear Rec.709 */
     double   roughness, metallic;
     double   shading[3]; /* the normal that light sees: `normal`, unless mirrors are smooth over a

@@ -1,5 +1,5 @@
 /*
- * program.h: a compiled scene, as compile.c makes it and query.c asks it.
+ * program.h: a compiled scene, as compile.c makes it, and program.c, frame.c and query.c ask it.
  */
 #ifndef KRS_PROGRAM_H
 #define KRS_PROGRAM_H
@@ -9,14 +9,26 @@
 #include "compiler/geometry/lower.h"
 #include "compiler/graph/evaluate.h"
 
-/* Roots of the graph, in this order: ROOT_COUNT for each component, the depth in zones if there
-   are any, then what a view needs. */
-enum { MARCH_ROOTS = 1 + ALONG_COUNT }; /* behind all others: lower_guarded, lower_along */
-enum { FLAT_ROOTS = 2 }; /* behind those: where a ray meets a plane, and how steeply it falls */
-/* Behind those, of each component and then of all zones: lower_gradient's two; the same node twice,
-   a FLOAT, where there is none. */
-enum { GRADIENT_ROOTS = 2 };
-enum { CAMERA_ROOTS = 5, LIGHT_ROOTS = 3, SKY_ROOTS = 3 };
+/* How many roots each has. */
+enum { CAMERA_ROOTS = 5, LIGHT_ROOTS = 3, SKY_ROOTS = 3, FLAT_ROOTS = 2, GRADIENT_ROOTS = 2 };
+
+/* What is asked of the graph: nodes in one array, in this order, so that they are simplified
+   together.  What begins with `guarded` is for the march: nothing else depends on it. */
+typedef struct Roots {
+    Node  *components; /* ROOT_COUNT of each */
+    Node  *zone;       /* the depth in zones, if there are any */
+    Node  *cameras;    /* eye, target, up, field of view and height of each */
+    Node  *lights;     /* vector, color and softness of each */
+    Node  *sky;        /* zenith, horizon, ground */
+    Node  *guarded;    /* of each component: lower_guarded */
+    Node  *along;      /* of each component, method by method: lower_along */
+    Node  *flats;      /* where a ray meets a plane, and how steeply it falls */
+    Node  *gradients;  /* of each component and then of all zones: lower_gradient's two; the same
+                          node twice, a FLOAT, where there is none */
+    Node  *anchored;   /* where points may be given from an anchor: components and flats again */
+    Node  *slopes;     /* of each slope that is found for each frame */
+    size_t count;
+} Roots;
 
 /* A slope that is found for each frame (geometry/slope.c). */
 typedef struct KeptSlope {
@@ -30,9 +42,7 @@ struct KrsScene {
     Arena        arena; /* all that stays: graph, names, program */
     KrsProgram   program;
     const Graph *graph;
-    const Node  *roots;
-    const Node  *guarded_roots; /* of each component: what to march by (lower_guarded) */
-    const Node  *along_roots;   /* of each component, method by method: lower_along */
+    Roots        roots;
     size_t       component_count, camera_count, light_count;
     size_t       zone_count; /* declared; all have one root */
     KrsComponent *components;
@@ -48,7 +58,7 @@ struct KrsScene {
     SceneImage   image;
     char         hash[17];
     Tape         distance; /* of all components, and zones */
-    Tape         guarded;  /* of all components: guarded_roots, with what may be left out */
+    Tape         guarded;  /* of all components: roots.guarded, with what may be left out */
     Tape         surface;  /* all roots of all components */
     Tape         precise;  /* OP_precise, of which there are precise_count: precise_nodes */
     const Node  *precise_nodes;
@@ -72,6 +82,8 @@ struct KrsFrame {
 
 /* Computes what depends on parameters only, once after each change. */
 void frame_refresh(KrsFrame *frame);
+/* Of all that points and the view get from the frame, something that is not finite; NODE_NONE. */
+Node frame_infinite(KrsFrame *frame);
 /* The value of a node that is a vector of 3. */
 void frame_copy(const KrsFrame *frame, Node node, double to[3]);
 /* Any length but 0: squares of what is very long or short would overflow, or vanish. */
@@ -79,23 +91,7 @@ void vector_normalize(double v[3]);
 
 static inline Node zone_root(const KrsScene *scene)
 {
-    return scene->zone_count ? scene->roots[scene->component_count * ROOT_COUNT] : NODE_NONE;
-}
-
-static inline const Node *camera_roots(const KrsScene *scene, size_t camera)
-{
-    return scene->roots + scene->component_count * ROOT_COUNT + (scene->zone_count > 0) +
-           camera * CAMERA_ROOTS;
-}
-
-static inline const Node *light_roots(const KrsScene *scene, size_t light)
-{
-    return camera_roots(scene, scene->camera_count) + light * LIGHT_ROOTS;
-}
-
-static inline const Node *sky_roots(const KrsScene *scene)
-{
-    return light_roots(scene, scene->light_count);
+    return scene->zone_count ? *scene->roots.zone : NODE_NONE;
 }
 
 #endif

@@ -47,7 +47,8 @@ static double distance_at(KrsFrame *frame, const double point[3], uint32_t *near
     double          least = INFINITY;
     tape_run_point(&scene->distance, point, frame->values);
     for (size_t i = 0; i < scene->component_count; i++) {
-        double distance = frame->values[scene->roots[i * ROOT_COUNT + ROOT_DISTANCE]].v[0];
+        Node   root     = scene->roots.components[i * ROOT_COUNT + ROOT_DISTANCE];
+        double distance = frame->values[root].v[0];
         if (distance < least || i == 0) {
             least    = distance;
             *nearest = (uint32_t)i + 1;
@@ -65,7 +66,7 @@ static double room_at(KrsFrame *frame, const double point[3])
     double          least = INFINITY;
     tape_run_point(&scene->guarded, point, frame->values);
     for (size_t i = 0; i < scene->component_count; i++)
-        least = fmin(least, frame->values[scene->guarded_roots[i]].v[0]);
+        least = fmin(least, frame->values[scene->roots.guarded[i]].v[0]);
     return fmax(least, zone_depth(frame, point));
 }
 
@@ -120,7 +121,7 @@ static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
     if (!hit->component)
         return;
     tape_run_surface(&scene->surface, point, hit->normal, 0, frame->values);
-    const Node *root = &scene->roots[(hit->component - 1) * ROOT_COUNT];
+    const Node *root = &scene->roots.components[(hit->component - 1) * ROOT_COUNT];
     hit->level       = (uint32_t)frame->values[root[ROOT_LEVEL]].v[0];
     hit->instance    = (uint32_t)frame->values[root[ROOT_INSTANCE]].v[0];
     frame_copy(frame, root[ROOT_COLOR], hit->color);

@@ -9,7 +9,7 @@
  * points in which it is refuted, each in its own space.  The smallest of them that is refuted too
  * is next, and so on; where none is, the parts of the last are searched from these points on.
  */
-#include "compiler/inspect.h"
+#include "compiler/refute.h"
 
 #include <math.h>
 #include <string.h>
@@ -54,6 +54,8 @@ typedef struct Refuter {
     uint64_t  random, total, done;
     SlopeTask *slopes; /* of the scene's, in its order */
     void      *room;
+    Tape       frames;       /* all components: what frames are refused by */
+    NodeValue *frame_values;
     struct { Suspect *items; size_t count, capacity; } suspects;
     bool      stopped;
 } Refuter;
@@ -96,6 +98,7 @@ static Node lower_alone(Refuter *r, const Shape *shape, bool steady, Visits *vis
     Lowering l     = lowering_of(r, visits);
     Place    place = place_bare(graph_leaf(r->graph, OP_POINT), steady);
     Lowered  all   = lower_shape(&l, shape, place);
+    r->result->skipped += l.overflow && !visits && !steady;
     if (l.overflow || all.distance == NODE_NONE)
         return NODE_NONE;
     return divide_by_slope(r->graph, all.distance, shape->slope);
@@ -190,6 +193,32 @@ static void prepare_slopes(Refuter *r)
     r->room = arena_alloc(r->in->arena, most, 1);
 }
 
+/* As frames have them: all components outside of everything. */
+static void prepare_frames(Refuter *r)
+{
+    Arena *arena = r->in->arena;
+    size_t count = 0;
+    Node  *roots = arena_new_array(arena, Node, r->in->scene->components.count + 1);
+    for (size_t i = 0; i < r->in->scene->components.count; i++) {
+        Node plain = lower_alone(r, r->in->scene->components.items[i].shape, false, NULL);
+        if (plain != NODE_NONE)
+            roots[count++] = plain;
+    }
+    r->result->skipped = 0; /* they are lowered once more */
+    Graph *simple      = graph_simplify(r->graph, roots, count, arena);
+    r->frames          = tape_new(simple, roots, count, arena);
+    r->frame_values    = arena_new_array(arena, NodeValue, simple->count);
+}
+
+/* Whether a frame can have these parameters; finds its slopes. */
+static bool is_possible(const Refuter *r, NodeValue *parameters)
+{
+    if (!find_slopes(r, parameters))
+        return false;
+    tape_run_frame(&r->frames, parameters, r->frame_values);
+    return tape_frame_infinite(&r->frames, r->frame_values) == NODE_NONE;
+}
+
 static bool needs_parameters(const Tape *tape)
 {
     for (size_t i = 0; i < tape->frame_count; i++)
@@ -217,6 +246,26 @@ static void count_search(Refuter *r, const Search *search, const Shape *shape, d
         r->result->steepest = fmax(r->result->steepest, ratio);
 }
 
+static void find(Finding *finding, bool steady, Witness witness, const NodeValue *parameters,
+                 size_t slots)
+{
+    finding->steady  = steady;
+    finding->witness = witness;
+    memcpy(finding->parameters, parameters, slots * sizeof *parameters);
+}
+
+/* Chooses parameters that a frame can have, as good as any others but for the first; false: there
+   are none to be found, or those of the first trial cannot be had, which is a finding. */
+static bool choose_possible(Refuter *r, uint32_t trial, NodeValue *parameters)
+{
+    for (int i = 0; i < (trial ? SETTING_ATTEMPTS : 1); i++) {
+        choose_parameters(r, trial, parameters);
+        if (is_possible(r, parameters))
+            return true;
+    }
+    return false;
+}
+
 /* Tries one distance at several settings; the worst that refutes it goes to *finding. */
 static bool try_settings(Refuter *r, const Shape *shape, Search *search, uint64_t operations,
                          Finding *finding)
@@ -226,13 +275,15 @@ static bool try_settings(Refuter *r, const Shape *shape, Search *search, uint64_
     NodeValue *parameters = arena_new_array(r->in->scratch, NodeValue, slots);
     bool       refuted    = false;
     for (uint32_t trial = 0; trial < trials && !r->stopped; trial++) {
-        bool sound = false;
-        for (int i = 0; i < SETTING_ATTEMPTS && !sound; i++) {
-            choose_parameters(r, trial, parameters);
-            sound = find_slopes(r, parameters) && search_start(search, parameters);
-        }
-        if (!sound)
+        bool possible = choose_possible(r, trial, parameters);
+        if (!possible && trial > 0) {
+            r->result->refused++;
             continue;
+        }
+        if (!possible || !search_start(search, parameters)) {
+            find(finding, search->steep, (Witness){.fault = FAULT_CONSTANT}, parameters, slots);
+            return true;
+        }
         search->worst = (Witness){0};
         for (uint64_t left = operations / trials; left > 0 && !r->stopped;) {
             uint64_t slice = left < SLICE ? left : SLICE;
@@ -246,12 +297,18 @@ static bool try_settings(Refuter *r, const Shape *shape, Search *search, uint64_
             r->result->settings = trial + 1;
         if (!search_refuted(search) || (refuted && search->worst.ratio <= finding->witness.ratio))
             continue;
-        refuted          = true;
-        finding->steady  = search->steep;
-        finding->witness = search->worst;
-        memcpy(finding->parameters, parameters, slots * sizeof *parameters);
+        refuted = true;
+        find(finding, search->steep, search->worst, parameters, slots);
     }
     return refuted;
+}
+
+static bool box_has_numbers(Box box)
+{
+    for (int i = 0; i < 3; i++)
+        if (isnan(box.axis[i].low) || isnan(box.axis[i].high))
+            return false;
+    return true;
 }
 
 /* Both distances of a shape, where there are two. */
@@ -262,11 +319,16 @@ static bool try_shape(Refuter *r, size_t suspect, uint64_t operations, Finding *
     bool         refuted = false;
     Search       search;
     finding->suspect = suspect;
+    r->result->shapes++;
+    r->result->estimates += shape->estimate;
+    if (!box_has_numbers(shape->box)) {
+        finding->witness = (Witness){.fault = FAULT_BOX};
+        choose_parameters(r, 0, finding->parameters);
+        return true;
+    }
     if (!shape->estimate)
         steady = lower_alone(r, shape, true, NULL);
     plain = lower_alone(r, shape, false, NULL);
-    r->result->shapes++;
-    r->result->estimates += shape->estimate;
     bool both = steady != NODE_NONE && plain != steady;
     if (steady != NODE_NONE && search_of(r, shape, steady, true, &search))
         refuted = try_settings(r, shape, &search, both ? operations / 2 : operations, finding);
@@ -383,13 +445,18 @@ static bool refute_from(Refuter *r, size_t suspect, const double p[3], const dou
     bool         steady = finding->steady && !shape->estimate;
     Node         distance = lower_alone(r, shape, steady, NULL);
     Search       search;
-    if (distance == NODE_NONE || !search_of(r, shape, distance, steady, &search) ||
-        !search_start(&search, finding->parameters))
+    if (distance == NODE_NONE || !search_of(r, shape, distance, steady, &search))
         return false;
-    if (p)
+    bool constant = finding->witness.fault == FAULT_CONSTANT;
+    if (search_start(&search, finding->parameters) == constant)
+        return false; /* this one is finite, or for another reason not to be searched */
+    if (constant)
+        search.worst.fault = FAULT_CONSTANT;
+    else if (p)
         search_from(&search, p, q, operations / 4);
-    search_run(&search, operations - (p ? operations / 4 : 0));
-    if (!search_refuted(&search))
+    if (!constant)
+        search_run(&search, operations - (p ? operations / 4 : 0));
+    if (!constant && !search_refuted(&search))
         return false;
     finding->suspect = suspect;
     finding->steady  = steady;
@@ -436,8 +503,9 @@ static bool search_parts(Refuter *r, Finding *finding, uint64_t operations)
 static void find_culprit(Refuter *r, Finding *finding)
 {
     uint64_t operations = r->total / 20;
-    while (!r->stopped) {
-        bool smaller = descend(r, finding, operations);
+    while (!r->stopped && finding->witness.fault != FAULT_BOX) {
+        bool placed  = finding->witness.fault != FAULT_CONSTANT;
+        bool smaller = placed && descend(r, finding, operations);
         arena_free(r->in->scratch);
         if (!smaller && !search_parts(r, finding, operations))
             return;
@@ -461,15 +529,22 @@ static const char *fault_text(Refuter *r, const Witness *w)
 {
     switch (w->fault) {
     case FAULT_STEEP:
-        return diag_text(r->in->diags, "it rises %.4g times as fast as it may", w->ratio);
+        return diag_text(r->in->diags, "it rises %.6g times as fast as it may", w->ratio);
     case FAULT_LONG:
-        return diag_text(r->in->diags, "it is %.4g times as long as the way to the surface",
+        return diag_text(r->in->diags, "it is %.6g times as long as the way to the surface",
                          w->ratio);
-    case FAULT_OUTSIDE: return "something of it is outside of its box";
+    case FAULT_OUTSIDE:  return "something of it is outside of its box";
+    case FAULT_CONSTANT: return "a number in it that is the same at all points is not finite";
+    case FAULT_BOX:      return "a side of its box is not a number";
     case FAULT_NAN:
     case FAULT_NONE:    break;
     }
     return "it is not a number somewhere";
+}
+
+static bool has_place(const Witness *w)
+{
+    return w->fault != FAULT_CONSTANT && w->fault != FAULT_BOX;
 }
 
 static void note_points(Refuter *r, Diag *diag, const Witness *w)
@@ -480,7 +555,7 @@ static void note_points(Refuter *r, Diag *diag, const Witness *w)
         diag_note(diags, diag,
                   diag_text(diags, "the distance is %.6g at %s and %.6g at %s, %.6g apart",
                             w->at_p, p, w->at_q, point_text(r, w->q), apart(w->p, w->q)));
-    else
+    else if (has_place(w))
         diag_note(diags, diag, diag_text(diags, "the distance is %.6g at %s", w->at_p, p));
 }
 
@@ -530,9 +605,10 @@ static void note_component(Refuter *r, Diag *diag, const Finding *whole, const F
     const Component *component = &r->in->scene->components.items[suspect->component];
     if (whole->suspect == finding->suspect && suspect->parent == SIZE_MAX)
         return;
-    const char *text = diag_text(r->in->diags, "it is part of `%s`; points are in its own space",
-                                 component->name);
-    if (r->suspects.items[whole->suspect].parent == SIZE_MAX)
+    const char *text = diag_text(r->in->diags, "it is part of `%s`%s", component->name,
+                                 has_place(&finding->witness) ? "; points are in its own space"
+                                                              : "");
+    if (r->suspects.items[whole->suspect].parent == SIZE_MAX && has_place(&whole->witness))
         text = diag_text(r->in->diags, "%s; there, %s is where it shows", text,
                          point_text(r, whole->witness.p));
     diag_note(r->in->diags, diag, text);
@@ -621,32 +697,50 @@ static KrsStatus try_all(Refuter *r, bool whole, Finding *finding)
     return r->stopped ? KRS_INTERRUPTED : KRS_OK;
 }
 
-static KrsStatus refute(void *user, const Inspected *in)
+static void start_refuter(Refuter *r)
 {
-    Refuter     *r     = user;
-    const Scene *scene = in->scene;
-    r->in    = in;
-    r->graph = scene->graph;
+    const Scene *scene = r->in->scene;
     prepare_slopes(r);
+    prepare_frames(r);
     for (size_t i = 0; i < scene->components.count; i++) {
         const Shape *shape = scene->components.items[i].shape;
         while (is_wrapper(shape) && shape->child_count)
             shape = shape->children[0];
         add_suspects(r, shape, (uint32_t)i, SIZE_MAX);
     }
+}
+
+KrsStatus refute_inspected(const Inspected *in, const KrsRefuteOptions *how, KrsRefutation *result)
+{
+    *result   = (KrsRefutation){0};
+    Refuter r = {.in     = in,
+                 .graph  = in->scene->graph,
+                 .how    = how,
+                 .result = result,
+                 .random = how->seed,
+                 .total  = (uint64_t)(fmin(how->seconds, 1e9) * OPERATIONS_PER_SECOND) + 1};
+    start_refuter(&r);
     Finding finding = {.parameters =
-                           arena_new_array(in->arena, NodeValue, r->graph->parameters.count)};
-    KrsStatus status = try_all(r, true, &finding);
-    return status == KRS_OK ? try_all(r, false, &finding) : status;
+                           arena_new_array(in->arena, NodeValue, r.graph->parameters.count)};
+    KrsStatus status = try_all(&r, true, &finding);
+    return status == KRS_OK ? try_all(&r, false, &finding) : status;
+}
+
+typedef struct Attempt {
+    const KrsRefuteOptions *how;
+    KrsRefutation          *result;
+} Attempt;
+
+static KrsStatus refute(void *user, const Inspected *in)
+{
+    Attempt *attempt = user;
+    return refute_inspected(in, attempt->how, attempt->result);
 }
 
 KrsStatus krs_refute(const char *path, const KrsOptions *options, const KrsRefuteOptions *how,
                      KrsRefutation *result)
 {
-    *result   = (KrsRefutation){0};
-    Refuter r = {.how    = how,
-                 .result = result,
-                 .random = how->seed,
-                 .total  = (uint64_t)(fmin(how->seconds, 1e9) * OPERATIONS_PER_SECOND) + 1};
-    return inspect_file(path, options, refute, &r);
+    Attempt attempt = {how, result};
+    *result         = (KrsRefutation){0};
+    return inspect_file(path, options, refute, &attempt);
 }

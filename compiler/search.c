@@ -6,6 +6,10 @@
  * a random point, steps along the gradient of that expression lead there, also into a region too
  * thin for random points to meet.  A pair that is steep on average has a half that is at least as
  * steep, so pairs climb to where a distance jumps by being halved.
+ *
+ * What a guard may leave out has to be in the guard's box.  The bound by that box counts only some
+ * way out of it, and what sticks out is small; so points go down to the surface of what may be left
+ * out, and from one that is out of the box another goes away from it to where the guard decides.
  */
 #include "compiler/search.h"
 
@@ -28,6 +32,10 @@ struct Target {
     Goal     goal;
     Node     a, b, c;
     uint32_t component;
+};
+
+struct Guard {
+    Target bound, rest;
 };
 
 enum { BATCH = 24, KEPT = 4, CLIMB_STEPS = 48 };
@@ -352,6 +360,12 @@ static void add_targets(Search *s, Arena *arena, const Graph *g, const Expr *e)
         add_target(s, arena, GOAL_HIGH, g, e, 0, 0);
         break;
     case OP_tanh: case OP_atan: add_target(s, arena, GOAL_ZERO, g, e, 0, 0); break;
+    case OP_guard: {
+        Guard guard = {{GOAL_ZERO, e->operands[0], e->operands[0], e->operands[0], 0},
+                       {GOAL_ZERO, e->operands[2], e->operands[2], e->operands[2], 0}};
+        array_push(arena, &s->guards, guard);
+        break;
+    }
     case OP_fold: case OP_front: add_target(s, arena, GOAL_FRONT, g, e, 0, 1); break;
     case OP_cell: add_target(s, arena, GOAL_WALL, g, e, 0, 1); break;
     default: break;
@@ -548,6 +562,46 @@ static Pair best_way(Search *s, double p[3])
     return best;
 }
 
+/* Down to where a distance is 0, along its gradient; `axis` is that, a unit vector.  False: it does
+   not get there. */
+static bool slide_down(Search *s, const Target *distance, double p[3], double axis[3])
+{
+    for (int i = 0; i < 24; i++) {
+        double at = target_at(s, distance, p), slope = target_slope(s, distance, p, at, axis);
+        if (!(slope > 0) || !isfinite(slope) || !(fabs(at) < NOWHERE))
+            return false;
+        add_scaled(axis, (double[3]){0}, 1 / slope, axis);
+        if (fabs(at) < NEAREST * s->size)
+            return true;
+        add_scaled(p, p, -at, axis);
+    }
+    return false;
+}
+
+/* A point of what a guard may leave out, and one where the guard decides: a way too long for the
+   bound if the first is not in the box. */
+static Pair best_past_guard(Search *s)
+{
+    const Guard *guard = &s->guards.items[choose(s, s->guards.count)];
+    Pair         best  = {.ratio = -1}, pair = {.ratio = 0};
+    double       axis[3];
+    random_point(s, pair.q);
+    if (!slide_down(s, &guard->rest, pair.q, axis))
+        return best;
+    add_scaled(pair.q, pair.q, -4 * NEAREST * s->size, axis); /* into it */
+    double out = target_at(s, &guard->bound, pair.q);
+    double slope = target_slope(s, &guard->bound, pair.q, out, axis);
+    if (!(out > 0) || !(slope > 0) || !isfinite(slope) || side_now(s) > 0)
+        return best;
+    for (double way = s->size; way > 1e-4 * s->size; way *= 0.8) {
+        add_scaled(pair.p, pair.q, way / slope, axis);
+        judge(s, &pair);
+        if (pair.ratio > best.ratio)
+            best = pair;
+    }
+    return best;
+}
+
 /* ---- climbing ---- */
 
 /* A pair near another one: both points moved, turned about p, or nearer and farther. */
@@ -601,11 +655,30 @@ static uint64_t operation_cost(const Graph *graph, const Expr *e)
     return 1 + (e->operand_count ? (uint64_t)op_cost((Op)e->op, e->type, types) : 0);
 }
 
+/* The box and what is next to it, cut where it goes on for ever, and anything for an empty one;
+   with guards as far as half the radius of the box, where the outermost begins. */
+static void choose_around(Search *search)
+{
+    Box box = box_is_empty(search->box) ? box_infinite : search->box;
+    for (int i = 0; i < 3; i++)
+        if (!isfinite(box.axis[i].low) || !isfinite(box.axis[i].high)) {
+            box.axis[i].low  = fmax(box.axis[i].low, -UNBOUNDED);
+            box.axis[i].high = fmin(box.axis[i].high, UNBOUNDED);
+        }
+    double outer = search->guards.count > 0 ? 0.3 * box_diagonal(box) : 0;
+    for (int i = 0; i < 3; i++) {
+        double low = box.axis[i].low, high = box.axis[i].high;
+        double margin = fmax(0.25 * fabs(high - low), outer) + 1e-3;
+        search->around.axis[i] = (Range){fmin(low, high) - margin, fmax(low, high) + margin};
+    }
+    search->size = box_diagonal(search->around);
+}
+
 bool search_new(Search *search, const Graph *graph, Node distance, Node side, Box box,
                 Arena *arena)
 {
     *search = (Search){.distance = distance, .side = side, .box = box, .aim = {1}, .cost = 1};
-    if (box_is_empty(box) || graph->items[distance].time != TIME_POINT)
+    if (graph->items[distance].time != TIME_POINT)
         return false;
     search->tape   = tape_new(graph, (Node[]){distance, side}, 2, arena);
     search->values = arena_new_array(arena, NodeValue, graph->count);
@@ -619,34 +692,21 @@ bool search_new(Search *search, const Graph *graph, Node distance, Node side, Bo
                 array_push(arena, &search->landmarks, e->operands[k]);
         }
     }
-    for (int i = 0; i < 3; i++) {
-        double low = box.axis[i].low, high = box.axis[i].high;
-        if (!isfinite(low) || !isfinite(high)) {
-            low  = fmax(low, -UNBOUNDED);
-            high = fmin(high, UNBOUNDED);
-        }
-        double margin = 0.25 * fabs(high - low) + 1e-3;
-        search->around.axis[i] = (Range){fmin(low, high) - margin, fmax(low, high) + margin};
-    }
-    search->size = box_diagonal(search->around);
+    choose_around(search);
     return isfinite(search->size) && search->size < 1e100;
 }
 
 bool search_start(Search *search, const NodeValue *parameters)
 {
-    const Tape *tape = &search->tape;
-    tape_run_frame(tape, parameters, search->values);
-    for (size_t i = tape->frame_count; i < tape->count; i++) {
-        const Expr *e = &tape->graph->items[tape->nodes[i]];
-        for (int k = 0; k < e->operand_count; k++) {
-            const Expr *of   = &tape->graph->items[e->operands[k]];
-            uint32_t    size = of->time != TIME_POINT && of->type <= TYPE_VEC4 ? of->type : 0;
-            for (uint32_t c = 0; c < size; c++)
-                if (!isfinite(search->values[e->operands[k]].v[c]))
-                    return false;
-        }
-    }
-    return true;
+    tape_run_frame(&search->tape, parameters, search->values);
+    return tape_frame_infinite(&search->tape, search->values) == NODE_NONE;
+}
+
+static Pair best_pair(Search *s)
+{
+    double p[3], axis[3];
+    choose_start(s, p, axis);
+    return s->steep ? best_around(s, p, axis) : best_way(s, p);
 }
 
 /* The best KEPT of a batch of starts, and from these uphill. */
@@ -656,9 +716,7 @@ static void search_batch(Search *s, uint64_t end)
     for (int i = 0; i < KEPT; i++)
         kept[i].ratio = -1;
     for (int i = 0; i < BATCH && s->spent < end && !is_settled(s); i++) {
-        double p[3], axis[3];
-        choose_start(s, p, axis);
-        Pair pair = s->steep ? best_around(s, p, axis) : best_way(s, p);
+        Pair pair = s->guards.count > 0 && choose(s, 2) ? best_past_guard(s) : best_pair(s);
         for (int k = 0; k < KEPT; k++)
             if (pair.ratio > kept[k].ratio) {
                 Pair less = kept[k];

@@ -20,7 +20,10 @@ typedef enum Fault {
     FAULT_STEEP,   /* distances at p and q differ by more than p and q are apart */
     FAULT_LONG,    /* the distance at p is longer than the way to q, on the other side */
     FAULT_OUTSIDE, /* p is within the solid, and not in the box */
-    FAULT_NAN      /* the distance at p is not a number */
+    FAULT_NAN,     /* the distance at p is not a number */
+    /* Found without a search: */
+    FAULT_CONSTANT, /* something that is the same at all points is not finite */
+    FAULT_BOX       /* a side of the box is not a number */
 } Fault;
 
 /* A pair of points; the faultier it is, the larger the ratio. */
@@ -32,6 +35,8 @@ typedef struct Witness {
 
 /* Where an operation is worth looking at. */
 typedef struct Target Target;
+/* A bound by a box, and what may be left out because of it. */
+typedef struct Guard Guard;
 
 typedef struct Search {
     Tape       tape;
@@ -53,6 +58,7 @@ typedef struct Search {
     Box        around;   /* finite: where points are taken */
     double     size;     /* its diagonal */
     struct { Target *items; size_t count, capacity; } targets;
+    struct { Guard *items; size_t count, capacity; } guards;
     struct { Node *items; size_t count, capacity; } landmarks; /* points that the frame knows */
 } Search;
 
@@ -60,8 +66,7 @@ typedef struct Search {
    caller before search_start: box, steep, figure, random, aimed.  False: nothing to look at. */
 bool search_new(Search *search, const Graph *graph, Node distance, Node side, Box box,
                 Arena *arena);
-/* Takes on the values of parameters; false when something in the graph is then not finite, which
-   frames refuse as well. */
+/* Takes on the values of parameters; false when something in the graph is then not finite. */
 bool search_start(Search *search, const NodeValue *parameters);
 /* Looks on until so many more operations have been spent. */
 void search_run(Search *search, uint64_t operations);

@@ -3,7 +3,7 @@
 # Says what it does; uses sudo when it is not run by root; does nothing when nothing is missing.
 packages="g++ glslang-dev glslang-tools spirv-tools libvulkan-dev mesa-vulkan-drivers
           vulkan-validationlayers libopenexr-dev libpng-dev libxxhash-dev libcmocka-dev clang-14
-          libclang-rt-14-dev shellcheck strace openexr"
+          libclang-rt-14-dev shellcheck strace openexr pkgconf"
 
 missing=""
 for package in $packages; do
@@ -27,5 +27,6 @@ fi
 echo "deps: installing$missing"
 $root apt-get update -qq >/dev/null || exit 1
 # shellcheck disable=SC2086 # the list is words
-$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null || exit 1
+$root env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -qq --no-install-recommends $missing >/dev/null || exit 1
 echo "deps: done"

@@ -9,7 +9,8 @@
 
 #include <string.h>
 
-enum { TAB_COLUMNS = 4, LONG_LINE_BYTES = 120, WINDOW_BEFORE = 40, WINDOW_CHARACTERS = 100 };
+enum { TAB_COLUMNS = 4, LONG_LINE_BYTES = 120, WINDOW_BEFORE = 40, WINDOW_CHARACTERS = 100,
+       LONG_TEXT_BYTES = 400 };
 
 /* A place to be marked, cut to its first line. */
 typedef struct Mark {
@@ -100,12 +101,18 @@ static uint32_t add_visible(Text *out, const char *bytes, size_t length)
     return columns;
 }
 
-/* The same for whole strings, whose lines after the first are indented. */
+/* The same for whole strings, whose lines after the first are indented.  A name may be as long as
+   a file: of a line only the beginning is shown. */
 static void add_lines(Text *out, const char *string, int indent)
 {
     for (;;) {
-        size_t length = strcspn(string, "\n");
-        add_visible(out, string, length);
+        size_t length = strcspn(string, "\n"), shown = length;
+        if (length > LONG_TEXT_BYTES)
+            shown = LONG_TEXT_BYTES;
+        while (shown < length && ((unsigned char)string[shown] & 0xC0) == 0x80)
+            shown--; /* within a character */
+        add_visible(out, string, shown);
+        text_add(out, shown < length ? "..." : "");
         if (string[length] == '\0')
             return;
         text_format(out, "\n%*s", indent, "");

@@ -3,7 +3,11 @@
  */
 #include "compiler/base/source.h"
 
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static void find_lines(Arena *arena, Source *source)
 {
@@ -64,4 +68,53 @@ Span span_join(Span from, Span to)
         return from.source == 0 ? to : from;
     return (Span){from.source, from.start < to.start ? from.start : to.start,
                   from.end > to.end ? from.end : to.end};
+}
+
+char *source_read(const char *path, size_t *length, const char **reason)
+{
+    struct stat about;
+    FILE       *file = fopen(path, "rb");
+    char       *text = NULL;
+    *reason = strerror(errno);
+    if (!file)
+        return NULL;
+    if (fstat(fileno(file), &about) == 0 && S_ISDIR(about.st_mode)) {
+        *reason = "it is a folder";
+        fclose(file);
+        return NULL;
+    }
+    size_t capacity = 0;
+    *length         = 0;
+    for (;;) {
+        if (*length == capacity) {
+            capacity     = capacity ? 2 * capacity : 16384;
+            char *larger = capacity <= 4u * MOST_SOURCE_BYTES ? realloc(text, capacity) : NULL;
+            *reason      = "it is too large";
+            if (!larger)
+                break;
+            text = larger;
+        }
+        size_t count = fread(text + *length, 1, capacity - *length, file);
+        *length += count;
+        if (count == 0) {
+            *reason = ferror(file) ? "an error while reading" : NULL;
+            break;
+        }
+    }
+    fclose(file);
+    if (*reason) {
+        free(text);
+        text = NULL;
+    }
+    return text;
+}
+
+/* FNV-1a (Fowler, Noll, Vo). */
+void sources_hash(const Sources *sources, char hash[17])
+{
+    uint64_t h = 0xcbf29ce484222325u;
+    for (size_t i = 1; i < sources->count; i++)
+        for (uint32_t k = 0; !sources->items[i].library && k < sources->items[i].length; k++)
+            h = (h ^ (uint8_t)sources->items[i].text[k]) * 0x100000001b3u;
+    snprintf(hash, 17, "%016llx", (unsigned long long)h);
 }

@@ -35,9 +35,17 @@ typedef struct Position {
     uint32_t line, column;
 } Position;
 
-/* Adds a copy of a text (at most 16 MiB, which the caller has checked) and returns its number. */
+enum { MOST_SOURCE_BYTES = 16 << 20 };
+
+/* The whole of a regular file, which the caller frees with free(); NULL, and *reason is a static
+   text.  It may be longer than a source. */
+char *source_read(const char *path, size_t *length, const char **reason);
+
+/* Adds a copy of a text of at most MOST_SOURCE_BYTES and returns its number. */
 uint32_t source_add(Sources *sources, const char *name, const char *text, size_t length,
                     bool library);
+/* 64 bits of the text of all sources that are not the library's, in hexadecimal digits. */
+void     sources_hash(const Sources *sources, char hash[17]);
 Position source_position(const Source *source, uint32_t offset);
 
 /* From the start of one place to the end of another in the same source. */

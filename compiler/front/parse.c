@@ -26,7 +26,7 @@ static Syntax *parse_let(Parser *p)
     return finish_named(p, SYNTAX_LET, start, first, name);
 }
 
-/* parameter = NAME [ "=" expression ] ; */
+/* parameter = NAME [ "=" expression [ "in" expression ] ] ; */
 static Syntax *parse_parameter(Parser *p)
 {
     Span         start = token_here(p)->span;
@@ -35,6 +35,8 @@ static Syntax *parse_parameter(Parser *p)
     if (kind_here(p) == TOKEN_ASSIGN || kind_here(p) == TOKEN_COLON) {
         expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` before the default of a parameter");
         add_child(p, parse_expression(p));
+        if (accept(p, TOKEN_IN))
+            add_child(p, parse_expression(p));
     }
     return finish_named(p, SYNTAX_PARAMETER, start, first, name);
 }

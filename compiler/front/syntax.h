@@ -39,7 +39,7 @@ typedef enum SyntaxKind {
     SYNTAX_BLOCK,         /* -      statements (of a `for` or `if`, and of the whole file) */
     SYNTAX_LET,           /* name   [0] value */
     SYNTAX_DEF,           /* name   [0..n-2] PARAMETER, [n-1] body; doc */
-    SYNTAX_PARAMETER,     /* name   [0] default, or no child */
+    SYNTAX_PARAMETER,     /* name   [0] default, [1] range (any expression); no [1], or no child */
     SYNTAX_PARAM,         /* name   [0] default, [1] range (any expression), or no [1] */
     SYNTAX_SHAPE,         /* name   PARAMETER..., PROPERTY...; doc */
     SYNTAX_MATERIAL,      /* name   PROPERTY... */

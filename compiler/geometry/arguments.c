@@ -269,6 +269,34 @@ bool want_count(Elaboration *e, const Call *call, uint32_t index, uint32_t least
     return true;
 }
 
+Node want_numeric(Elaboration *e, const Call *call, uint32_t index)
+{
+    const Argument *argument = &call->arguments[index];
+    Node            node     = value_node(e, argument->value);
+    if (node != NODE_NONE && e->graph->items[node].type <= TYPE_VEC4)
+        return node;
+    type_error(e, argument->syntax, argument->value, "a vector");
+    return NODE_NONE;
+}
+
+bool want_constant(Elaboration *e, const Call *call, uint32_t index, double *number)
+{
+    const Argument *argument = &call->arguments[index];
+    if (!argument->syntax)
+        return true;
+    if (argument->value.type == VALUE_NUMBER) {
+        *number = argument->value.number;
+        return true;
+    }
+    if (argument->value.type == VALUE_EXPRESSION)
+        constant_error(e, argument->syntax,
+                       diag_text(e->diags, "`%s` needs a number that is known at compile time",
+                                 call->name));
+    else
+        type_error(e, argument->syntax, argument->value, "a number");
+    return false;
+}
+
 bool want_flag(Elaboration *e, const Call *call, uint32_t index, bool *flag)
 {
     const Argument *argument = &call->arguments[index];

@@ -62,7 +62,7 @@ typedef struct Elaboration {
     Scope      *library;
     struct { Scope **items; size_t count, capacity; } scopes;
     /* Shape declarations whose claims have been put to the test. */
-    struct { const Syntax **items; size_t count, capacity; } single; /* sky, image, unnamed camera */
+    struct { const Syntax **items; size_t count, capacity; } single; /* sky, image, camera */
     struct { const Syntax **items; size_t count, capacity; } checked;
     FileReader *read_file;
     uint64_t    steps;        /* of evaluation, so far */
@@ -152,6 +152,10 @@ Node want_vector(Elaboration *e, const Call *call, uint32_t index, const double 
 bool want_count(Elaboration *e, const Call *call, uint32_t index, uint32_t least, uint32_t most,
                 uint32_t otherwise, uint32_t *count);
 const Shape *want_shape(Elaboration *e, const Call *call, uint32_t index);
+/* The node of a number or a vector. */
+Node want_numeric(Elaboration *e, const Call *call, uint32_t index);
+/* A number that is known at compile time; *number stays what it is when nothing was given. */
+bool want_constant(Elaboration *e, const Call *call, uint32_t index, double *number);
 /* True or false, known at compile time; *flag stays what it is when nothing was given. */
 bool want_flag(Elaboration *e, const Call *call, uint32_t index, bool *flag);
 /* The parameter "plane": its unit normal and offset. */
@@ -204,16 +208,27 @@ typedef struct Builtin {
     BuiltinFunction *function; /* NULL: componentwise `op` */
 } Builtin;
 const Builtin *builtin_find(const char *name);
-/* The shapes of a call: a shape, or the elements of a list; `place` is blamed.  False: reported. */
-bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *place,
-                    Values *shapes);
-/* These shapes, if they are all solids or all figures; NULL: reported. */
-const Shape **joinable_shapes(Elaboration *e, const Call *call, const Values *values);
 /* A constant (pi, x, time); false when there is none of this name.  One that has no meaning at
    this place is reported. */
 bool builtin_constant(Elaboration *e, const char *name, Span span, Value *value);
 /* All names that need no definition, for names_check; returns how many, at most `capacity`. */
 size_t builtin_names(const char **names, size_t capacity);
+
+/* ---- lists.c ---- */
+BuiltinFunction builtin_sum, builtin_product, builtin_any, builtin_all, builtin_least,
+    builtin_greatest, builtin_len, builtin_range;
+
+/* ---- chance.c ---- */
+BuiltinFunction builtin_random, builtin_random_direction, builtin_noise, builtin_fbm;
+
+/* ---- joining.c ---- */
+BuiltinFunction builtin_union, builtin_intersection, builtin_difference, builtin_xor,
+    builtin_morph;
+/* The shapes of a call: a shape, or the elements of a list; `place` is blamed.  False: reported. */
+bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *place,
+                    Values *shapes);
+/* These shapes, if they are all solids or all figures; NULL: reported. */
+const Shape **joinable_shapes(Elaboration *e, const Call *call, const Values *values);
 
 /* ---- functions.c ---- */
 /* Calls a function, or makes the shape of a declaration; `syntax` is the call. */
@@ -256,7 +271,7 @@ BuiltinFunction builtin_meta;
 
 /* ---- make_fractal.c ---- */
 BuiltinFunction builtin_julia, builtin_mandelbulb;
-/* Reports a distance of which nothing is proven, below something (`what`) that moves its surface. */
+/* Reports a distance of which nothing is proven, below something (`what`) that moves a surface. */
 void check_steady(Elaboration *e, const Shape *shape, const char *what, Span span);
 
 /* ---- methods.c ---- */

@@ -94,7 +94,64 @@ static bool fits_default(Elaboration *e, const Environment *env, const Function 
     return false;
 }
 
-/* Binds given values and defaults; a default sees the parameters before it. */
+/* The range of a parameter, two numbers; false: reported. */
+static bool parameter_range(Elaboration *e, const Environment *env, const Syntax *parameter,
+                            Range *range)
+{
+    const Syntax *syntax = parameter->children[1];
+    Value         value  = evaluate(e, env, syntax);
+    if (value.type == VALUE_ERROR)
+        return false;
+    if (value.type == VALUE_LIST && value.list->count == 2 &&
+        value.list->items[0].type == VALUE_NUMBER && value.list->items[1].type == VALUE_NUMBER) {
+        *range = (Range){value.list->items[0].number, value.list->items[1].number};
+        return true;
+    }
+    Diag *diag  = diag_add(e->diags, DIAG_RANGE_OF_PARAM, syntax->span,
+                           "the range of `%s` is not two numbers", parameter->name);
+    diag->label = "[low, high], known at compile time";
+    return false;
+}
+
+/* "18", or "from 0 to 18" of what is known in frames only. */
+static const char *range_text(Elaboration *e, Range range)
+{
+    Text text = {.arena = e->diags->arena};
+    text_add(&text, range.low < range.high ? "from " : "");
+    text_number(&text, range.low);
+    text_add(&text, range.low < range.high ? " to " : "");
+    if (range.low < range.high)
+        text_number(&text, range.high);
+    return text.bytes;
+}
+
+/* A parameter with a range takes numbers in it; `place` is the argument, or the default. */
+static bool fits_range(Elaboration *e, const Environment *env, const Function *function,
+                       const Syntax *parameter, Value value, const Syntax *place)
+{
+    Range range, found;
+    if (parameter->count < 2)
+        return true;
+    if (!parameter_range(e, env, parameter, &range))
+        return false;
+    if (value_size(e, value) != 1) {
+        type_error(e, place, value, "a number");
+        return false;
+    }
+    found = value.type == VALUE_NUMBER ? (Range){value.number, value.number}
+                                       : node_range(e, value_node(e, value), 0);
+    if (range.low <= found.low && found.high <= range.high)
+        return true;
+    Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, place->span, "`%s` of `%s` must be %s",
+                           parameter->name, function->name, range_text(e, range));
+    diag->label = diag_text(e->diags, found.low < found.high ? "this can be %s" : "this is %s",
+                            range_text(e, found));
+    note_signature(e, diag, function->syntax);
+    point_at_definition(e, diag, place);
+    return false;
+}
+
+/* Binds given values and defaults; a default, and a range, sees the parameters before it. */
 static bool bind_parameters(Elaboration *e, const Function *function, const Value *values,
                             const Syntax *const *places, const Syntax *call, Environment *env)
 {
@@ -114,7 +171,9 @@ static bool bind_parameters(Elaboration *e, const Function *function, const Valu
             note_signature(e, diag, definition);
             return false;
         }
-        if (value.type == VALUE_ERROR)
+        if (value.type == VALUE_ERROR ||
+            !fits_range(e, env, function, parameter, value,
+                        places[i] ? places[i] : parameter->children[0]))
             return false;
         *env = bind(e, env, parameter->name, value);
     }
@@ -141,12 +200,45 @@ static bool check_shape_arguments(Elaboration *e, const Function *function, cons
     return true;
 }
 
+static bool add_value(Text *text, const Elaboration *e, Value value)
+{
+    if (value.type == VALUE_NUMBER) {
+        text_number(text, value.number);
+        return true;
+    }
+    if (value.type != VALUE_LIST || value_size(e, value) < 2 || value_time(e, value) > TIME_COMPILE)
+        return false;
+    for (size_t i = 0; i < value.list->count; i++) {
+        text_add(text, i ? ", " : "[");
+        add_value(text, e, value.list->items[i]);
+    }
+    text_add(text, "]");
+    return true;
+}
+
+/* "called with levels = 18, size = [1, 2, 1]": numbers and vectors that are known. */
+static void note_arguments(Elaboration *e, Diag *diag, const Function *function,
+                           const Value *values, const Syntax *const *places)
+{
+    Text text = {.arena = e->diags->arena};
+    for (uint32_t i = 0; i < parameter_count(function->syntax); i++) {
+        Text value = {.arena = e->diags->arena};
+        if (!places[i] || !add_value(&value, e, values[i]))
+            continue;
+        text_format(&text, "%s%s = %s", text.length ? ", " : "called with ",
+                    function->syntax->children[i]->name, value.bytes);
+    }
+    if (text.length)
+        diag_note(e->diags, diag, text.bytes);
+}
+
 /*
  * A mistake that comes to light inside the library is the caller's: its diagnostics are moved
  * to the call, and the place in the library becomes the second one.
  */
 static void blame_caller(Elaboration *e, size_t first, const Syntax *syntax,
-                         const Function *function)
+                         const Function *function, const Value *values,
+                         const Syntax *const *places)
 {
     const Source *sources = e->sources->items;
     if (sources[syntax->span.source].library)
@@ -167,6 +259,7 @@ static void blame_caller(Elaboration *e, size_t first, const Syntax *syntax,
         diag->span        = syntax->span;
         diag->label       = diag_text(e->diags, "in this call of `%s`", function->name);
         diag->replacement = NULL;
+        note_arguments(e, diag, function, values, places);
     }
     e->diags->count = kept;
 }
@@ -193,7 +286,7 @@ static Value call_values(Elaboration *e, const Function *function, const Value *
             result = evaluate(e, &env, function->syntax->children[function->syntax->count - 1]);
     }
     e->calls--;
-    blame_caller(e, said, syntax, function);
+    blame_caller(e, said, syntax, function, values, places);
     return result;
 }
 

@@ -236,7 +236,7 @@ static Node image_distance(Lowering *l, const Shape *shape, Image image)
 static Node hull_worth(Lowering *l, const Image *image, const Map *map, Ball ball)
 {
     Passage here = passage_new(l->graph, image->passage.point);
-    return worth_of(l, image, passage_hull(l, &here, map, ball));
+    return worth_of(l, image, passage_hull(l, &here, map, &ball));
 }
 
 static Node image_inversion(Lowering *l, const Shape *shape, Image image)

@@ -7,6 +7,8 @@
  */
 #include "compiler/geometry/lowering.h"
 
+#include <math.h>
+
 enum { MOST_HEAP_MIRRORS = 31 };
 
 /* How far the walk has come. */
@@ -18,8 +20,9 @@ typedef struct Walk {
     Node         id;
     uint32_t     level;
     Lowered      result;   /* of the kernels so far */
-    Node         hull;     /* the bound of all hulls that the walk has come through */
-    Node         distance; /* of the kernels so far, none nearer than the hulls around it */
+    Hulls        hulls;
+    Node         inside;   /* distance of those that the last hull is around, */
+    Node         distance; /* and of the others, none nearer than the hulls around it */
     Stop        *stops;
     uint32_t     stop_count;
 } Walk;
@@ -34,17 +37,32 @@ static void take_mirror(Lowering *l, Walk *walk, const Stage *stage)
         walk->id    = graph_op2(g, next, walk->id, behind);
     }
     normal_fold(l, &walk->path, point, stage->normal, stage->offset);
+    hulls_fold(l, &walk->hulls, stage->normal, stage->offset);
     walk->passage.point = graph_op3(g, OP_fold, point, stage->normal, stage->offset);
     walk->level--;
 }
 
-/* `before`: around what the map is applied to, or NULL. */
+/* The kernels since the last hull: max(hull, min(a, b)), where nothing waits for what is inside of
+   another hull. */
+static void leave_hull(Lowering *l, Walk *walk)
+{
+    Node bound     = walk->inside == NODE_NONE
+                   ? NODE_NONE : farther_of(l->graph, walk->inside, walk->hulls.distance);
+    walk->distance = nearer_of(l->graph, walk->distance, bound);
+    walk->inside   = NODE_NONE;
+}
+
+/* `before`: around what the map is applied to, or NULL.  Where something above moves the surface,
+   it would show how far from a pole the hulls are: then all are there. */
 static void take_map(Lowering *l, Walk *walk, const Stage *stage, const LevelBound *before)
 {
-    if (stage->map.pole != NODE_NONE && before) {
-        Node hull  = passage_hull(l, &walk->passage, &stage->map, before->ball);
-        walk->hull = farther_of(l->graph, walk->hull, hull);
-    }
+    Ball  ball  = before ? before->ball : (Ball){.radius = HUGE_VAL};
+    Hulls hulls = walk->hulls;
+    if (walk->place.lipschitz)
+        hulls.within.radius = HUGE_VAL;
+    if (hulls_map(l, &hulls, &walk->passage, &stage->map, ball))
+        leave_hull(l, walk);
+    walk->hulls = hulls;
     passage_map(l, &walk->passage, &stage->map, &walk->path);
 }
 
@@ -65,11 +83,7 @@ static void take_kernel(Lowering *l, Walk *walk, const Shape *shape)
     kernel         = passage_out(l, &walk->passage, kernel);
     normal_kernel(l, &walk->path, walk->result, kernel);
     walk->result = join_two(l, blend_sharp, walk->result, kernel);
-    /* max(hull, min(a, b)) is the min of both with the hull: nothing waits for what is inside. */
-    Node bound = kernel.distance;
-    if (bound != NODE_NONE)
-        bound = farther_of(g, bound, walk->hull);
-    walk->distance = nearer_of(g, walk->distance, bound);
+    walk->inside = nearer_of(g, walk->inside, kernel.distance);
 }
 
 Lowered lower_krs(Lowering *l, const Shape *shape, Place place)
@@ -82,7 +96,8 @@ Lowered lower_krs(Lowering *l, const Shape *shape, Place place)
                       .id       = graph_uint(l->graph, 1),
                       .level    = shape->levels,
                       .result   = lowered_nothing,
-                      .hull     = NODE_NONE,
+                      .hulls    = {NODE_NONE, {.radius = HUGE_VAL}},
+                      .inside   = NODE_NONE,
                       .distance = NODE_NONE,
                       .stops    = arena_new_array(l->scratch, Stop, count + 1)};
     for (uint32_t i = count; i-- > 0;) {
@@ -98,7 +113,8 @@ Lowered lower_krs(Lowering *l, const Shape *shape, Place place)
     }
     Lowered result        = walk.result;
     result.surface.normal = normal_out(l, &walk.path, result.surface.normal);
-    if (walk.hull != NODE_NONE)
+    leave_hull(l, &walk);
+    if (walk.hulls.distance != NODE_NONE)
         result.distance = walk.distance;
     result.distance = guard_stops(l, walk.stops, walk.stop_count, result.distance);
     return result;

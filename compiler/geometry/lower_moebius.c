@@ -15,6 +15,9 @@
 /* X is no less than this part of the radius of the sphere, so that everything stays finite. */
 static const double NEAR_POLE = 1e-6;
 
+/* How far a pole stays from a ball to be of no concern, in radii. */
+static const double CLEAR = 0.5;
+
 /* Balls are made larger by this part: single precision.  The surface of a ball that is inverted
    keeps off the pole, by this part of its radius, so that its image is no half-space. */
 static const double ROUNDING = 1e-5, KEEP_OFF = 0.1;
@@ -49,9 +52,10 @@ Inversion inversion_at(Graph *g, const Map *map, Node point)
     Node limit  = graph_number(g, NEAR_POLE * NEAR_POLE);
     limit       = graph_op2(g, OP_mul, map->scale, limit);
     square      = graph_op2(g, OP_max, square, limit);
-    at.inverse  = graph_op1(g, OP_inversesqrt, square);
-    at.sigma    = graph_op2(g, OP_mul, at.inverse, at.inverse);
-    at.sigma    = graph_op2(g, OP_mul, map->scale, at.sigma);
+    at.sigma    = graph_op2(g, OP_div, map->scale, square);
+    at.inverse  = graph_op1(g, OP_inversesqrt, map->scale);
+    Node size   = graph_op1(g, OP_sqrt, at.sigma);
+    at.inverse  = graph_op2(g, OP_mul, size, at.inverse);
     at.axis     = graph_op2(g, OP_scale, at.way, at.inverse);
     return at;
 }
@@ -112,11 +116,11 @@ Node enter_passage(Lowering *l, const Passage *passage)
     return enter_scale(l, graph_op2(l->graph, OP_div, one, passage->shrink));
 }
 
-static Range frame_range(Lowering *l, Node node)
+static Range frame_range(Lowering *l, Node node, uint32_t component)
 {
     if (graph_is_constant(l->graph, node))
-        return range_of(l->graph->items[node].number[0]);
-    return graph_frame_fact(l->graph, node, l->scratch).value[0];
+        return range_of(l->graph->items[node].number[component]);
+    return graph_frame_fact(l->graph, node, l->scratch).value[component];
 }
 
 /*
@@ -124,21 +128,22 @@ static Range frame_range(Lowering *l, Node node)
  * inverted lies in some ball, whose image, the inside or the outside of another ball, leaves the
  * pole out.  The distance to that is the larger bound near the pole, and 1-Lipschitz as well.
  */
-Node passage_hull(Lowering *l, const Passage *passage, const Map *map, Ball ball)
+Node passage_hull(Lowering *l, const Passage *passage, const Map *map, Ball *ball)
 {
     Graph *g = l->graph;
-    if (ball.radius < 0 || isinf(ball.radius))
+    if (ball->radius < 0 || isinf(ball->radius))
         return NODE_NONE;
-    Node   way     = graph_constant(g, TYPE_VEC3, ball.centre);
+    Node   way     = graph_constant(g, TYPE_VEC3, ball->centre);
     way            = graph_op2(g, OP_sub, way, map->pole);
     Node   square  = graph_op2(g, OP_dot, way, way);
-    Range  away    = frame_range(l, square);
-    double radius  = ball.radius * (1 + ROUNDING);
+    Range  away    = frame_range(l, square, 0);
+    double radius  = ball->radius * (1 + ROUNDING);
     bool   outside = !(away.low >= radius * radius * (1 + KEEP_OFF) * (1 + KEEP_OFF));
     if (outside)
         radius = fmax(radius, sqrt(away.high) * (1 + KEEP_OFF));
     if (isinf(radius) || radius == 0)
         return NODE_NONE;
+    ball->radius = radius;
     /* Centre and radius: scale (R way, radius) / (|way|^2 - radius^2); outside that is < 0. */
     Node rest   = graph_number(g, radius * radius);
     rest        = graph_op2(g, OP_sub, square, rest);
@@ -155,6 +160,68 @@ Node passage_hull(Lowering *l, const Passage *passage, const Map *map, Ball ball
         length = graph_op1(g, OP_neg, length);
     bound.distance = graph_op2(g, OP_sub, length, size);
     return passage_out(l, passage, bound).distance;
+}
+
+/* ---- hulls of sequences ---- */
+
+/* Around all places of a ball whose centre may move. */
+static Ball ball_about(Lowering *l, Node centre, double radius)
+{
+    Ball   ball;
+    double leave = 0;
+    for (uint32_t i = 0; i < 3; i++) {
+        Range range    = frame_range(l, centre, i);
+        ball.centre[i] = 0.5 * (range.low + range.high);
+        leave          = hypot(leave, 0.5 * (range.high - range.low));
+    }
+    ball.radius = isfinite(leave) ? radius + leave : HUGE_VAL;
+    return ball;
+}
+
+void hulls_fold(Lowering *l, Hulls *hulls, Node normal, Node offset)
+{
+    if (isinf(hulls->within.radius))
+        return;
+    Node centre   = graph_constant(l->graph, TYPE_VEC3, hulls->within.centre);
+    centre        = graph_op3(l->graph, OP_fold, centre, normal, offset);
+    hulls->within = ball_about(l, centre, hulls->within.radius);
+}
+
+/* What the map makes of a ball, inwards; endless unless its pole is clear of the ball. */
+static Ball ball_behind(Lowering *l, const Map *map, Ball ball)
+{
+    Graph *g      = l->graph;
+    Ball   around = {.radius = HUGE_VAL};
+    if (isinf(ball.radius))
+        return around;
+    Node centre = graph_constant(g, TYPE_VEC3, ball.centre);
+    if (map->pole == NODE_NONE) {
+        Range scale = frame_range(l, map->scale, 0);
+        return ball_about(l, before_map(g, map, centre), ball.radius / scale.low);
+    }
+    double least  = (1 + CLEAR) * ball.radius;
+    Node   way    = graph_op2(g, OP_sub, centre, map->shift);
+    Node   square = graph_op2(g, OP_dot, way, way);
+    if (!(frame_range(l, square, 0).low >= least * least))
+        return around;
+    Node rest   = graph_number(g, ball.radius * ball.radius);
+    rest        = graph_op2(g, OP_sub, square, rest);
+    Node factor = graph_op2(g, OP_div, map->scale, rest);
+    centre      = behind_inversion(g, map, way, factor);
+    return ball_about(l, centre, ball.radius * frame_range(l, factor, 0).high);
+}
+
+bool hulls_map(Lowering *l, Hulls *hulls, const Passage *passage, const Map *map, Ball ball)
+{
+    hulls->within = ball_behind(l, map, hulls->within);
+    if (map->pole == NODE_NONE || !isinf(hulls->within.radius))
+        return false;
+    Node hull = passage_hull(l, passage, map, &ball);
+    if (hull == NODE_NONE)
+        return false;
+    hulls->within   = ball;
+    hulls->distance = farther_of(l->graph, hulls->distance, hull);
+    return true;
 }
 
 Node nearer_of(Graph *g, Node a, Node b)
@@ -176,7 +243,7 @@ Lowered lower_inversion(Lowering *l, const Shape *shape, Place place)
     NormalPath path    = normal_path(l, place, 2);
     Passage    passage = passage_new(l->graph, place.point);
     Ball       ball    = ball_around(shape->children[0]->box);
-    Node       hull    = passage_hull(l, &passage, &shape->map, ball);
+    Node       hull    = passage_hull(l, &passage, &shape->map, &ball);
     passage_map(l, &passage, &shape->map, &path);
     Node    unit    = enter_passage(l, &passage);
     Lowered result  = lower_behind(l, shape->children[0], place, &path, passage.point);

@@ -146,8 +146,21 @@ Lowered passage_out(Lowering *l, const Passage *passage, Lowered result);
 Node    enter_passage(Lowering *l, const Passage *passage);
 
 /* Of what lies in a ball before the map that is next on the way inwards, seen from outside of
-   everything: the distance to it is at least this; NODE_NONE: nothing is known. */
-Node passage_hull(Lowering *l, const Passage *passage, const Map *map, Ball ball);
+   everything: the distance to it is at least this; NODE_NONE: nothing is known.  The ball becomes
+   the one, a little larger, whose image this is the distance to. */
+Node passage_hull(Lowering *l, const Passage *passage, const Map *map, Ball *ball);
+
+/* The hulls that a walk through a sequence has come through.  Another one is worth its price where
+   the pole may be within those so far, as seen from outside; otherwise they are far from the pole,
+   and bound there what the next one would. */
+typedef struct Hulls {
+    Node distance; /* to all of them: the largest; NODE_NONE: there are none */
+    Ball within;   /* where the point is unless that is above 0; infinite: anywhere */
+} Hulls;
+
+void hulls_fold(Lowering *l, Hulls *hulls, Node normal, Node offset);
+/* Before passage_map.  `ball`: around what the map is applied to.  Whether there is one more. */
+bool hulls_map(Lowering *l, Hulls *hulls, const Passage *passage, const Map *map, Ball ball);
 /* Of two distances, each of which may be NODE_NONE. */
 Node nearer_of(Graph *g, Node a, Node b);
 Node farther_of(Graph *g, Node a, Node b);

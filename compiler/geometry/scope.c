@@ -10,7 +10,7 @@
 #include "compiler/front/names.h"
 #include "compiler/front/parse.h"
 
-enum { MOST_FILE_BYTES = 16 << 20, MOST_TOTAL_BYTES = 64 << 20, MOST_FILES = 1024 };
+enum { MOST_TOTAL_BYTES = 64 << 20, MOST_FILES = 1024 };
 
 static size_t slot_of(const Scope *scope, const char *name)
 {
@@ -166,7 +166,7 @@ static bool read_used(Elaboration *e, const Syntax *use, const char *path, uint3
         return false;
     }
     e->text_total += length;
-    bool fits = length <= MOST_FILE_BYTES && e->text_total <= MOST_TOTAL_BYTES &&
+    bool fits = length <= MOST_SOURCE_BYTES && e->text_total <= MOST_TOTAL_BYTES &&
                 e->scopes.count < MOST_FILES;
     if (fits)
         *source = source_add(e->sources, path, text, length, is_library(use));

@@ -129,7 +129,7 @@ struct Shape {
     bool   seams;   /* in the tree are parts that touch, face to face */
     bool   claimed; /* PRIMITIVE: its slope is claimed, not derived */
     Box    region;  /* PRIMITIVE: over which its slope was derived; infinite: over all space */
-    bool   estimate; /* nothing is proven of the distance: a primitive in the tree is measured only */
+    bool   estimate; /* nothing is proven of the distance: a primitive in it is measured only */
     bool   per_frame; /* in the tree is a slope that is found anew for each frame (FrameSlope) */
     bool   trapped; /* in the tree is a fractal: `orbit_trap` means something */
     bool   figure;  /* a plane figure in x and y */
@@ -138,7 +138,7 @@ struct Shape {
     uint32_t inversions; /* maps of that sequence that invert, or of `.transform` on the way */
 
     /* PRIMITIVE, in its own coordinates; bound, uv and trap (VEC2) may be NODE_NONE. */
-    Node       formula; /* of a field or an algebraic surface (field.c) or DISPLACE, else NODE_NONE */
+    Node       formula; /* of a field, algebraic surface (field.c) or DISPLACE, else NODE_NONE */
     double     overlap; /* BEND: by how much the parts reach beyond their ends */
     double     reach;   /* DISPLACE: largest size of the formula in the box */
     uint32_t   degree;  /* of a formula that is a polynomial, else 0 */

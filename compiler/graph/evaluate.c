@@ -519,6 +519,34 @@ Tape tape_new_guarded(const Graph *graph, const Node *roots, size_t root_count, 
     return tape;
 }
 
+double tape_flops(const Tape *tape)
+{
+    const Expr *items = tape->graph->items;
+    double      flops = 0;
+    for (size_t i = tape->frame_count; i < tape->count; i++) {
+        const Expr *expr = &items[tape->nodes[i]];
+        GraphType   types[MAX_OPERANDS];
+        for (uint32_t k = 0; k < expr->operand_count; k++)
+            types[k] = items[expr->operands[k]].type;
+        if (expr->operand_count)
+            flops += op_cost((Op)expr->op, expr->type, types);
+    }
+    return flops;
+}
+
+uint32_t tape_loops(const Tape *tape)
+{
+    const Expr *items = tape->graph->items;
+    uint32_t    loops = 0;
+    for (size_t i = tape->frame_count; i < tape->count; i++) {
+        const Expr *expr = &items[tape->nodes[i]];
+        uint32_t    range = expr->op == OP_julia ? 2 : expr->op == OP_mandelbulb ? 1 : 0;
+        if (range > 0) /* always a constant (make_fractal.c) */
+            loops += fractal_loops((Op)expr->op, items[expr->operands[range]].number[1]);
+    }
+    return loops;
+}
+
 size_t tape_place(const Tape *tape, Node node)
 {
     bool   point = tape->graph->items[node].time == TIME_POINT;
@@ -535,9 +563,11 @@ size_t tape_place(const Tape *tape, Node node)
 }
 
 /* The rows once more, for tapes: straight from operands to result, without copies. */
-static inline void run_row(const Expr *e, const NodeValue *values, NodeValue *result, const Expr *nodes)
+static inline void run_row(const Expr *e, const NodeValue *values, NodeValue *result,
+                           const Expr *nodes)
 {
-    const NodeValue *x = &values[e->operands[0]], *y = &values[e->operands[1]], *z = &values[e->operands[2]];
+    const NodeValue *x = &values[e->operands[0]], *y = &values[e->operands[1]];
+    const NodeValue *z = &values[e->operands[2]];
     uint32_t         size = components(e->type);
     switch ((Op)e->op) {
     case OP_COMPONENT:
@@ -598,6 +628,27 @@ void tape_run_frame(const Tape *tape, const NodeValue *parameters, NodeValue *va
         else
             tape_run_node(tape->graph, node, values);
     }
+}
+
+bool node_value_is_finite(const Graph *graph, Node node, const NodeValue *values)
+{
+    const Expr *e = &graph->items[node];
+    for (uint32_t k = 0; e->type <= TYPE_VEC4 && k < (uint32_t)e->type; k++)
+        if (!isfinite(values[node].v[k]))
+            return false;
+    return true;
+}
+
+Node tape_frame_infinite(const Tape *tape, const NodeValue *values)
+{
+    for (size_t i = tape->frame_count; i < tape->count; i++) {
+        const Expr *e = &tape->graph->items[tape->nodes[i]];
+        for (int k = 0; k < e->operand_count; k++)
+            if (tape->graph->items[e->operands[k]].time != TIME_POINT &&
+                !node_value_is_finite(tape->graph, e->operands[k], values))
+                return e->operands[k];
+    }
+    return NODE_NONE;
 }
 
 void tape_run_point(const Tape *tape, const double point[3], NodeValue *values)

@@ -33,12 +33,24 @@ Tape tape_new(const Graph *graph, const Node *roots, size_t root_count, Arena *a
    stands on it twice: before what it may leave out, and after. */
 Tape tape_new_guarded(const Graph *graph, const Node *roots, size_t root_count, Arena *arena);
 
+/* What it costs at each point, in multiply-adds; what depends on the frame does not count. */
+double tape_flops(const Tape *tape);
+
+/* Iterations of the loops that its kernels have within operations, at most. */
+uint32_t tape_loops(const Tape *tape);
+
 /* Where on the tape a node is that the roots need. */
 size_t tape_place(const Tape *tape, Node node);
 
 /* Runs the part of a tape that does not depend on the point.  `values` has graph->count
    elements, indexed by node; parameters[slot] is the parameter block (slot 0: time). */
 void tape_run_frame(const Tape *tape, const NodeValue *parameters, NodeValue *values);
+/* Whether a node's value is finite: elements of numbers, vectors and truth values count. */
+bool node_value_is_finite(const Graph *graph, Node node, const NodeValue *values);
+/* Of what the part of a tape that depends on the point gets from the frame, something that is not
+   finite; NODE_NONE: all is.  A value that is chosen against, as in `if a == 0 then 1 else 1 / a`,
+   is not used: it does not count. */
+Node tape_frame_infinite(const Tape *tape, const NodeValue *values);
 /* Runs the rest at a point; tape_run_frame has filled `values`. */
 void tape_run_point(const Tape *tape, const double point[3], NodeValue *values);
 /* The same on a surface that has this normal there, seen by pixels of this radius. */

@@ -24,6 +24,11 @@ NodeValue evaluate_julia_trap(const NodeValue *o, uint32_t size);
 NodeValue evaluate_mandelbulb(const NodeValue *o, uint32_t size);
 NodeValue evaluate_mandelbulb_trap(const NodeValue *o, uint32_t size);
 
+/* Iterations of loops in a kernel's bound (helpers.def) with so many iterations of the orbit at
+   most: there and back again in a Julia set, unless both ways are unrolled. */
+enum { UNROLLED_JULIA = 32 };
+uint32_t fractal_loops(Op op, double iterations);
+
 /* Radius of a ball about the origin that every Mandelbulb of this power contains. */
 double mandelbulb_core(double power);
 /* Outside of this many escape radii the ball of that radius serves as the solid. */

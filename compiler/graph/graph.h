@@ -116,7 +116,7 @@ bool        graph_is_constant(const Graph *graph, Node node);
 const char *op_glsl(Op op);
 /* GLSL functions that op_glsl calls, or NULL.  Operations share texts: emit a pointer once. */
 const char *op_helper(Op op);
-/* What an operation costs, in multiply-adds of one component (measurements.md, fact 5). */
+/* What an operation costs, in multiply-adds of one component, as measured on lavapipe. */
 double op_cost(Op op, GraphType type, const GraphType *operands);
 
 /* A copy of `root` (and all it needs) in the same graph, with leaves replaced: OP_POINT by

@@ -18,8 +18,8 @@ typedef struct EmitMarch {
     uint32_t    precise_slot; /* where what the host finds for them begins in the parameter block */
     const Node *ahead;      /* with `flat`: where a ray meets one, and how steeply it falls */
     bool        slopes;     /* there are slots of slopes */
-    const Node *gradient;   /* of each component and of the zones: lower_gradient's two; FLOATs where
-                               there is none; NULL: nobody wants any */
+    const Node *gradient;   /* of each component and of the zones: lower_gradient's two; FLOATs
+                               where there is none; NULL: nobody wants any */
 } EmitMarch;
 
 /* In how many parts so many components are marched, where each ray goes on with the one that comes
@@ -29,6 +29,7 @@ uint32_t emit_part_count(size_t components);
    roots[i * ROOT_COUNT + ...], nodes of a simplified graph.  `zone`, the depth in zones, follows
    them, or is NODE_NONE. */
 void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
-               size_t component_count, Node zone, const EmitMarch *march, Arena *scratch, Text *out);
+               size_t component_count, Node zone, const EmitMarch *march, Arena *scratch,
+               Text *out);
 
 #endif

@@ -1,0 +1,278 @@
+/*
+ * values.c: the values of options: each reader consumes a whole word and is false when it cannot.
+ */
+#include "cli/values.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool read_whole(const char *word, uint64_t low, uint64_t high, uint64_t *value)
+{
+    char *end;
+    if (!isdigit((unsigned char)word[0]))
+        return false; /* strtoull would take blanks and signs */
+    errno = 0;
+    unsigned long long number = strtoull(word, &end, 10);
+    *value = number;
+    return errno == 0 && *end == '\0' && number >= low && number <= high;
+}
+
+/* As in a scene, so no "inf", "nan" or hexadecimal; *end is what stands behind the number. */
+static bool read_number_prefix(const char *word, const char **end, double *value)
+{
+    size_t length = strspn(word, "+-0123456789.eE");
+    char copy[64], *stop;
+    if (length == 0 || length >= sizeof copy)
+        return false;
+    memcpy(copy, word, length);
+    copy[length] = '\0';
+    *value = strtod(copy, &stop);
+    *end = word + length;
+    return *stop == '\0' && isfinite(*value);
+}
+
+bool read_number(const char *word, double low, double high, double *value)
+{
+    const char *end;
+    return read_number_prefix(word, &end, value) && *end == '\0' && *value >= low &&
+           *value <= high;
+}
+
+bool read_count(const char *word, uint32_t low, uint32_t high, uint32_t *value)
+{
+    uint64_t whole = 0;
+    bool     read  = read_whole(word, low, high, &whole);
+    *value         = (uint32_t)whole;
+    return read;
+}
+
+/* Whole numbers between separators: "640x480" with "x", "0,0,8,8" with ",". */
+static bool read_wholes(const char *word, char separator, uint64_t low, uint64_t high,
+                        uint32_t *values, size_t count)
+{
+    char part[16];
+    for (size_t i = 0; i < count; i++) {
+        size_t length = strcspn(word, (char[]){separator, '\0'});
+        uint64_t value;
+        if (length >= sizeof part)
+            return false;
+        memcpy(part, word, length);
+        part[length] = '\0';
+        if (!read_whole(part, low, high, &value))
+            return false;
+        values[i] = (uint32_t)value;
+        word += length;
+        if (i + 1 < count && *word++ != separator)
+            return false;
+    }
+    return *word == '\0';
+}
+
+int find_choice(const char *word, const char *const *names, int count)
+{
+    for (int i = 1; i < count; i++)
+        if (strcmp(word, names[i]) == 0)
+            return i;
+    return 0;
+}
+
+bool read_either(const char *word, const char *yes, const char *no, bool *value)
+{
+    *value = strcmp(word, yes) == 0;
+    return *value || strcmp(word, no) == 0;
+}
+
+/* Colours are linear in all computations, as in the language. */
+static double linear_from_srgb(unsigned byte)
+{
+    double encoded = byte / 255.0;
+    return encoded <= 0.04045 ? encoded / 12.92 : pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+static bool read_color(const char *word, Setting *setting)
+{
+    if (strlen(word) != 7 || strspn(word + 1, "0123456789abcdefABCDEF") != 6)
+        return false;
+    unsigned long rgb = strtoul(word + 1, NULL, 16);
+    for (int i = 0; i < 3; i++)
+        setting->values[i] = linear_from_srgb(rgb >> (16 - 8 * i) & 255);
+    setting->count = 3;
+    return true;
+}
+
+/* A number of a param: `deg` stands behind an angle in degrees, as in a scene. */
+static bool read_parameter_number(const char *word, const char **end, double *value)
+{
+    if (!read_number_prefix(word, end, value))
+        return false;
+    if (strncmp(*end, "deg", 3) == 0) {
+        *value *= M_PI / 180;
+        *end += 3;
+    }
+    return true;
+}
+
+static bool read_vector(const char *word, Setting *setting)
+{
+    do {
+        word += 1 + strspn(word + 1, " ");
+        if (setting->count == 4 ||
+            !read_parameter_number(word, &word, &setting->values[setting->count]))
+            return false;
+        setting->count++;
+        word += strspn(word, " ");
+    } while (*word == ',');
+    return strcmp(word, "]") == 0 && setting->count >= 2;
+}
+
+bool read_setting(Options *options, const char *word)
+{
+    const char *equals = strchr(word, '=');
+    Setting setting = {.count = 0};
+    if (!equals || equals == word)
+        return false;
+    setting.name = arena_copy_text(options->arena, word, (size_t)(equals - word));
+    const char *value = equals + 1;
+    bool done;
+    if (*value == '#') {
+        done = read_color(value, &setting);
+    } else if (*value == '[') {
+        done = read_vector(value, &setting);
+    } else {
+        setting.count = 1;
+        done = read_parameter_number(value, &value, &setting.values[0]) && *value == '\0';
+    }
+    if (done)
+        array_push(options->arena, &options->settings, setting);
+    return done;
+}
+
+/* What the library would refuse is refused here. */
+bool read_zone(Options *options, const char *word)
+{
+    const double most = 1e18;
+    double      *zone = options->zones[options->zone_count];
+    for (int i = 0; i < 4; i++) {
+        if (!read_number_prefix(word, &word, &zone[i]) || fabs(zone[i]) > most ||
+            *word != (i < 3 ? ',' : '\0'))
+            return false;
+        word += i < 3;
+    }
+    options->zone_count++;
+    return zone[3] >= 0;
+}
+
+bool read_aovs(const char *word, unsigned *aovs)
+{
+    static const char *const names[] = {"Z", "P", "N", "albedo", "id", "steps"};
+    *aovs = 0;
+    if (strcmp(word, "all") == 0)
+        *aovs = AOV_ALL;
+    if (strcmp(word, "all") == 0 || strcmp(word, "none") == 0)
+        return true;
+    for (;; word++) {
+        size_t length = strcspn(word, ","), i = 0;
+        while (i < 6 && (strlen(names[i]) != length || strncmp(names[i], word, length) != 0))
+            i++;
+        if (i == 6)
+            return false;
+        *aovs |= 1u << i;
+        word += length;
+        if (*word == '\0')
+            return true;
+    }
+}
+
+bool read_exit_map(Options *options, const char *word)
+{
+    for (;; word++) {
+        char pair[16], *equals;
+        uint64_t from, to;
+        size_t length = strcspn(word, ",");
+        if (length >= sizeof pair)
+            return false;
+        memcpy(pair, word, length);
+        pair[length] = '\0';
+        if (!(equals = strchr(pair, '=')))
+            return false;
+        *equals = '\0';
+        if (!read_whole(pair, 0, 255, &from) || !read_whole(equals + 1, 0, 255, &to))
+            return false;
+        ExitPair entry = {(int)from, (int)to};
+        array_push(options->arena, &options->exit_map, entry);
+        word += length;
+        if (*word == '\0')
+            return true;
+    }
+}
+
+bool read_frames(Options *options, const char *word)
+{
+    enum { FRAMES_LIMIT = 1000000 };
+    const char *dots = strstr(word, "..");
+    uint64_t first, last;
+    if (!dots || !read_whole(dots + 2, 0, FRAMES_LIMIT, &last) ||
+        !read_whole(arena_copy_text(options->arena, word, (size_t)(dots - word)), 0, last, &first))
+        return false;
+    options->animated = true;
+    options->first_frame = (uint32_t)first;
+    options->last_frame = (uint32_t)last;
+    return true;
+}
+
+bool read_size(Options *options, const char *word)
+{
+    uint32_t size[2];
+    if (!read_wholes(word, 'x', 1, SIDE_LIMIT, size, 2))
+        return false;
+    options->width = size[0];
+    options->height = size[1];
+    return true;
+}
+
+bool read_crop(Options *options, const char *word)
+{
+    options->cropped = true;
+    return read_wholes(word, ',', 0, SIDE_LIMIT, options->crop, 4) && options->crop[2] > 0 &&
+           options->crop[3] > 0;
+}
+
+bool read_early_outs(const char *word, KrsEarlyOuts *early_outs)
+{
+    bool off;
+    bool read   = read_either(word, "off", "on", &off);
+    *early_outs = off ? KRS_EARLY_OUTS_OFF : KRS_EARLY_OUTS_ON;
+    return read;
+}
+
+bool read_stats(const char *word, StatsForm *stats)
+{
+    *stats = word ? STATS_JSON : STATS_TEXT;
+    return !word || strcmp(word, "json") == 0;
+}
+
+bool read_stage(const char *word, const char **stage)
+{
+    static const char *const stages[] = {"tokens",   "syntax", "scene", "graph",
+                                         "simplify", "glsl",   "spirv"};
+    *stage = NULL;
+    for (size_t i = 0; i < sizeof stages / sizeof *stages; i++)
+        if (strcmp(word, stages[i]) == 0)
+            *stage = stages[i];
+    return *stage != NULL;
+}
+
+bool read_when(const char *word, When *when)
+{
+    static const char *const names[] = {
+        [WHEN_AUTO] = "auto", [WHEN_ALWAYS] = "always", [WHEN_NEVER] = "never"};
+    for (int i = WHEN_AUTO; i <= WHEN_NEVER; i++)
+        if (strcmp(word, names[i]) == 0) {
+            *when = (When)i;
+            return true;
+        }
+    return false;
+}

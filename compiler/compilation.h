@@ -1,0 +1,67 @@
+/*
+ * compilation.h: one run of the compiler, and its steps from the elaborated scene to the program.
+ *
+ * compile.c calls them in this order.  A step that returns false has found mistakes and reported
+ * them; nothing may follow it.
+ */
+#ifndef KRS_COMPILATION_H
+#define KRS_COMPILATION_H
+
+#include "compiler/front/parse.h"
+#include "compiler/geometry/elaborate.h"
+#include "compiler/inspect.h"
+#include "compiler/program.h"
+
+/* What is wanted beside the scene. */
+typedef struct Request {
+    DumpStage stage; /* DUMP_STAGE_COUNT: nothing is dumped */
+    char    **dump;
+    Inspect  *inspect; /* or NULL */
+    void     *user;
+} Request;
+
+/* Three arenas for three lifetimes: scene->arena stays with the scene, `work` holds sources,
+   diagnostics and the elaborated scene until the end of the run, `scratch` what one step needs.
+   The syntax tree, which elaboration leaves, has one of its own. */
+typedef struct Compilation {
+    KrsScene  *scene;
+    Arena      work, syntax, scratch;
+    Sources    sources;
+    Names      names;
+    Diags      diags;
+    Scene      elaborated;
+    const char *text, *name;
+    size_t     length;
+    const Request    *request;
+    const KrsOptions *options;
+    Text       dump;
+    double     started;
+} Compilation;
+
+static inline bool is_flat(const Component *component)
+{
+    return component->plane_normal != NODE_NONE;
+}
+
+/* roots.c: from shapes to what is asked of the graph, scene->roots. */
+bool lower_scene(Compilation *c, Graph *graph);
+
+/* limits.c: what no compiler of shaders, or no shader, can have. */
+bool check_operations(Compilation *c);
+bool check_numbers(Compilation *c);
+/* The frame at time 0 with all defaults, which is every caller's first; after emit. */
+KrsStatus check_defaults(Compilation *c);
+bool check_length(Compilation *c);
+/* Reports that the scene is too large; `operations`: of that component, its largest; 0 when they
+   were too many to be counted. */
+void refuse_component(Compilation *c, size_t component, size_t operations);
+
+/* keep.c: copies what the program needs out of the elaborated scene, whose memory goes. */
+void keep_scene(Compilation *c);
+void keep_tapes(Compilation *c);
+
+/* groups.c: which components are marched by themselves.  groups[i] gets the number of the group of
+   each, from 1; 0 for those that need no march. */
+void form_groups(Compilation *c, uint32_t *groups);
+
+#endif

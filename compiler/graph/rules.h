@@ -1,0 +1,77 @@
+/*
+ * rules.h: what the rules of operations share.
+ *
+ * rules.c finds the rule of a row of ops.def; calculus.c is what rules are made of.
+ */
+#ifndef KRS_RULES_H
+#define KRS_RULES_H
+
+#include "compiler/graph/facts.h"
+#include "compiler/graph/range.h"
+
+/* An operation and the facts of its operands. */
+typedef struct Call {
+    Op               op;
+    GraphType        type;
+    const GraphType *types;
+    const Fact      *operands;
+    uint32_t         size; /* components of the result or the first operand, whichever has more */
+} Call;
+
+/* The fact of the result. */
+typedef Fact Rule(const Call *call);
+
+static inline uint32_t type_size(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
+
+/* ---- calculus.c ---- */
+
+/* One component with its gradient. */
+typedef struct Jet {
+    Range value, gradient[3];
+} Jet;
+
+Jet  jet_of(const Fact *fact, uint32_t i);
+void fact_set(Fact *fact, uint32_t i, Jet jet);
+Jet  jet_add(Jet a, Jet b);
+Jet  jet_sub(Jet a, Jet b);
+Jet  jet_mul(Jet a, Jet b);
+Jet  jet_hull(Jet a, Jet b);
+/* The jet times a factor that is the same all over the box. */
+Jet  jet_times(Jet a, Range factor);
+Jet  jet_dot(const Fact *a, const Fact *b, uint32_t size);
+
+/* Nothing is known of `size` components; rules put in what they can say. */
+Fact  fact_unknown(uint32_t size);
+/* Range of the Euclidean length of a vector. */
+Range fact_size(const Fact *fact, uint32_t size);
+/* Room for the rounding of a computation with numbers of this size. */
+Range loosened(Range range, double scale);
+/* Whether the operands from `first` up to `count` are the same all over the box. */
+bool  operands_constant(const Call *call, uint32_t first, uint32_t count);
+
+/* How slopes combine: ops.def. */
+typedef enum Norm { NORM_SUM, NORM_CONVEX, NORM_MIX, NORM_NONE } Norm;
+
+/* Value and partial derivatives of one component. */
+typedef struct Partials {
+    Range value, by[3];
+} Partials;
+
+/* A MAP row: the operands weighted by partial derivatives, component by component. */
+Fact fact_map(Norm norm, int arity, const Fact *operands, const Partials *rows, uint32_t size);
+/* Both engines meet: the smaller slope counts, and no derivative is larger.  Ends out of order
+   come from operands that are defined nowhere in the box. */
+Fact fact_agreed(Fact fact, uint32_t size);
+
+/* A truth value of so many operands; where it is neither always true nor never, it may jump. */
+Fact fact_truth(const Call *call, uint32_t count, bool always, bool never);
+
+/* ---- rules of rows ---- */
+
+/* rules_space.c */
+Rule fact_turn, fact_fold, fact_front, fact_cell, fact_cell_polar, fact_noise2, fact_noise3,
+    fact_identity, fact_id_unit, fact_julia, fact_mandelbulb, fact_trap;
+/* rules_blends.c */
+Rule fact_smin, fact_smin_circular, fact_smin_chamfer, fact_smin_stairs, fact_blend_weight;
+
+#endif

@@ -1,0 +1,252 @@
+/*
+ * rules_space.c: facts of maps of space, of noise, of identities and of fractals.
+ */
+#include <math.h>
+
+#include "compiler/graph/fractal.h"
+#include "compiler/graph/rules.h"
+
+/* ---- maps of space ---- */
+
+/* The rows are orthonormal by construction, so lengths and slopes stay as they are. */
+Fact fact_turn(const Call *call)
+{
+    const Fact *p    = &call->operands[0];
+    double      size = fact_size(p, 3).high, rows = 0;
+    Fact        fact = {0};
+    for (uint32_t i = 0; i < 3; i++) {
+        Jet jet   = jet_dot(&call->operands[i + 1], p, 3);
+        jet.value = range_intersect(jet.value, loosened((Range){-size, size}, size));
+        fact_set(&fact, i, jet);
+        rows = hypot_upward(rows, call->operands[i + 1].slope);
+    }
+    fact.slope = sum_upward(p->slope, product_upward(size, rows));
+    return fact;
+}
+
+/* dot(u, p) - w, the height above a mirror. */
+static Jet mirror_height(const Call *call)
+{
+    Jet along = jet_dot(&call->operands[1], &call->operands[0], 3);
+    return jet_sub(along, jet_of(&call->operands[2], 0));
+}
+
+/* A fold about a fixed mirror brings no two points further apart. */
+Fact fact_fold(const Call *call)
+{
+    Jet depth = mirror_height(call), none = {0};
+    if (depth.value.high <= 0)
+        depth = none;
+    else if (depth.value.low < 0) {
+        depth       = jet_hull(depth, none);
+        depth.value = range_above(depth.value, 0);
+    }
+    Fact fact  = {.slope = HUGE_VAL};
+    Jet  twice = jet_times(depth, range_of(2));
+    for (uint32_t i = 0; i < 3; i++) {
+        Jet back = jet_mul(twice, jet_of(&call->operands[1], i));
+        fact_set(&fact, i, jet_sub(jet_of(&call->operands[0], i), back));
+    }
+    if (operands_constant(call, 1, 3))
+        fact.slope = call->operands[0].slope;
+    return fact;
+}
+
+Fact fact_front(const Call *call)
+{
+    Range height = mirror_height(call).value;
+    return fact_truth(call, 3, height.low > 0, height.high <= 0);
+}
+
+/* Of p - period * k for the cell k in [low, high] that is nearest. */
+static Range cell_range(Range p, Range period, Range low, Range high)
+{
+    Range cell    = range_min(range_max(range_round(range_div(p, period)), low), high);
+    Range moved   = range_sub(p, range_mul(period, cell));
+    Range first   = range_sub(p, range_mul(period, low));
+    Range last    = range_sub(p, range_mul(period, high));
+    Range within  = {fmin(-period.high / 2, first.low), fmax(period.high / 2, last.high)};
+    double scale  = range_largest(p);
+    return range_intersect(moved, loosened(within, isfinite(scale) ? scale : period.high));
+}
+
+/* Within a cell it is a translation. */
+Fact fact_cell(const Call *call)
+{
+    const Fact *o    = call->operands;
+    Fact        fact = o[0];
+    for (uint32_t i = 0; i < 3; i++) {
+        Range p = o[0].value[i], period = o[1].value[i];
+        if (period.high > 0)
+            fact.value[i] = cell_range(p, range_above(period, 0), o[2].value[i], o[3].value[i]);
+        if (period.high > 0 && period.low <= 0)
+            fact.value[i] = range_hull(fact.value[i], p);
+    }
+    if (operands_constant(call, 1, 4))
+        return fact;
+    Fact unknown = fact_unknown(3);
+    for (uint32_t i = 0; i < 3; i++)
+        unknown.value[i] = fact.value[i];
+    return unknown;
+}
+
+/* The turned pair (x, z) has lengths in `radius`; so have its derivatives in x', z'. */
+static void sector_bounds(const Fact *p, Range count, Fact *fact)
+{
+    Fact   plane = {.value = {p->value[0], p->value[2]}};
+    Range  radius = fact_size(&plane, 2);
+    double half   = acos(-1) / count.low;
+    bool   narrow = count.low >= 2;
+    Range  x = {narrow ? radius.low * cos(half) : -radius.high, radius.high};
+    double z = narrow ? radius.high * sin(half) : radius.high;
+    fact->value[0] = loosened(x, radius.high);
+    fact->value[2] = loosened((Range){-z, z}, radius.high);
+    for (int j = 0; j < 3; j++) {
+        double most = hypot_upward(range_largest(p->gradient[0][j]),
+                                   range_largest(p->gradient[2][j]));
+        fact->gradient[0][j] = fact->gradient[2][j] = (Range){-most, most};
+    }
+}
+
+/* Within a sector it is a turn, and a known one when the box lies in one sector. */
+Fact fact_cell_polar(const Call *call)
+{
+    const Fact *p = &call->operands[0];
+    Range count = call->operands[1].value[0];
+    if (count.high < 1 || call->operands[1].slope != 0)
+        return count.high < 1 ? *p : fact_unknown(3);
+    Fact fact = *p;
+    sector_bounds(p, range_above(count, 1), &fact);
+    Range sector = range_div(range_of(2 * acos(-1)), count);
+    Range turns  = range_round(range_div(range_atan2(p->value[2], p->value[0]), sector));
+    if (range_is_single(count) && range_is_single(turns)) {
+        Range angle = range_mul(turns, sector), c = range_cos(angle), s = range_sin(angle);
+        Jet   x = jet_add(jet_times(jet_of(p, 0), c), jet_times(jet_of(p, 2), s));
+        Jet   z = jet_sub(jet_times(jet_of(p, 2), c), jet_times(jet_of(p, 0), s));
+        x.value = range_intersect(fact.value[0], x.value);
+        z.value = range_intersect(fact.value[2], z.value);
+        fact_set(&fact, 0, x);
+        fact_set(&fact, 2, z);
+    }
+    for (uint32_t i = 0; i < 3 && count.low < 1; i++)
+        fact_set(&fact, i, jet_hull(jet_of(&fact, i), jet_of(p, i)));
+    return fact;
+}
+
+/* ---- noise ---- */
+
+/*
+ * No value is above 1 in size and no derivative above `steepest`, along the axes as in any other
+ * direction: proven by tests/property/noise.c for all directions of all gradients.  Over a small
+ * part of space the value is near that in the middle.
+ */
+static Fact fact_noise(const Call *call, double steepest)
+{
+    const Fact *p      = &call->operands[0];
+    NodeValue   middle = {0};
+    double      reach  = 0;
+    Fact        fact   = {.slope = product_upward(steepest, p->slope)};
+    Jet         jet    = {.value = {-1, 1}};
+    for (uint32_t i = 0; i < call->size; i++) {
+        Range side   = p->value[i];
+        middle.v[i]  = side.low / 2 + side.high / 2;
+        reach        = hypot_upward(reach, fmax(side.high - middle.v[i], middle.v[i] - side.low));
+        for (int j = 0; j < 3; j++) {
+            Range part      = range_mul((Range){-steepest, steepest}, p->gradient[i][j]);
+            jet.gradient[j] = range_add(jet.gradient[j], part);
+        }
+    }
+    if (reach < 1) {
+        double value = op_evaluate(call->op, TYPE_FLOAT, 0, call->types, &middle).v[0];
+        double rise  = reach > 0 ? steepest * reach + 1e-12 : 0;
+        jet.value    = range_intersect((Range){value - rise, value + rise}, jet.value);
+    }
+    fact_set(&fact, 0, jet);
+    return fact;
+}
+
+Fact fact_noise2(const Call *call) { return fact_noise(call, 2.84); }
+Fact fact_noise3(const Call *call) { return fact_noise(call, 3.64); }
+
+/* ---- identities ---- */
+
+static Fact fact_steps(const Call *call, uint32_t count, double most)
+{
+    Fact fact     = fact_unknown(1);
+    fact.value[0] = (Range){0, most};
+    fact.slope    = operands_constant(call, 0, count) ? 0 : HUGE_VAL;
+    return fact;
+}
+
+Fact fact_identity(const Call *call) { return fact_steps(call, 2, UINT32_MAX); }
+Fact fact_id_unit(const Call *call) { return fact_steps(call, 1, 1); }
+
+/* ---- fractals ---- */
+
+/* The value in the middle of the point's range, and how far from there the point can be; false
+   where other operands move. */
+static bool fractal_middle(const Call *call, uint32_t others, double *middle, double *reach)
+{
+    NodeValue operands[MAX_OPERANDS] = {0};
+    *reach = 0;
+    for (uint32_t i = 0; i < 3; i++) {
+        Range at         = call->operands[0].value[i];
+        operands[0].v[i] = at.low / 2 + at.high / 2;
+        *reach = hypot_upward(*reach, fmax(sum_upward(at.high, -operands[0].v[i]),
+                                           sum_upward(operands[0].v[i], -at.low)));
+    }
+    for (uint32_t i = 1; i <= others; i++)
+        for (uint32_t k = 0; k < type_size(call->types[i]); k++) {
+            if (!range_is_single(call->operands[i].value[k]))
+                return false;
+            operands[i].v[k] = call->operands[i].value[k].low;
+        }
+    *middle = op_evaluate(call->op, TYPE_FLOAT, 0, call->types, operands).v[0];
+    return isfinite(*middle) && isfinite(*reach);
+}
+
+/* 1-Lipschitz in the point (fractal.c), between |q| - R and |q| + R. */
+Fact fact_julia(const Call *call)
+{
+    Fact        fact  = fact_unknown(1);
+    const Fact *point = &call->operands[0];
+    Range  size = fact_size(point, 3), radius = call->operands[3].value[1];
+    double middle, reach;
+    fact.value[0] = (Range){size.low - radius.high, sum_upward(size.high, radius.high)};
+    if (fractal_middle(call, 3, &middle, &reach)) {
+        Range near    = {middle - reach, middle + reach};
+        fact.value[0] = range_intersect(fact.value[0], loosened(near, fabs(middle) + reach));
+    }
+    if (operands_constant(call, 1, 4))
+        fact.slope = point->slope;
+    return fact;
+}
+
+/* Outside of a ball the distance to a smaller one, inside nothing but an estimate. */
+Fact fact_mandelbulb(const Call *call)
+{
+    Fact        fact  = fact_unknown(1);
+    const Fact *point = &call->operands[0];
+    Range  size = fact_size(point, 3), radius = call->operands[2].value[1];
+    Range  power = call->operands[1].value[0];
+    if (!range_is_single(power) || !(power.low >= 2) || !(radius.low > 0))
+        return fact; /* what no scene can write */
+    double core  = mandelbulb_core(power.low);
+    Range  value = {size.low - radius.high, fmax(size.high - core, 0)};
+    bool   far   = size.low > MANDELBULB_NEAR * radius.high;
+    if (far)
+        value.high = sum_upward(size.high, -radius.low);
+    fact.value[0] = loosened(value, size.high);
+    if (operands_constant(call, 1, 3) && (far || point->slope == 0))
+        fact.slope = point->slope;
+    return fact;
+}
+
+Fact fact_trap(const Call *call)
+{
+    Fact fact     = fact_unknown(2);
+    fact.value[0] = fact.value[1] = (Range){0, 1};
+    if (operands_constant(call, 0, call->op == OP_julia_trap ? 4 : 3))
+        fact.slope = 0;
+    return fact;
+}

@@ -1,0 +1,170 @@
+/*
+ * keep.c: what stays of a scene when it has been compiled.
+ *
+ * The elaborated scene, its shapes and their names go with the memory of the run; the program, its
+ * tapes and what callers may ask (program.c) are copied into the scene's own.
+ */
+#include <string.h>
+
+#include "compiler/compilation.h"
+
+static const char *keep(Compilation *c, const char *text)
+{
+    return text ? arena_copy_text(&c->scene->arena, text, strlen(text)) : NULL;
+}
+
+/* Whether a component has a face on one before it; among too many, it is taken to have. */
+static bool touches_others(const Scene *scene, size_t component)
+{
+    enum { MANY = 100 };
+    const Component *items = scene->components.items;
+    for (size_t i = 0; i < component && component < MANY; i++)
+        if (boxes_touch(items[i].shape->box, items[component].shape->box))
+            return true;
+    return component >= MANY;
+}
+
+static void keep_components(Compilation *c)
+{
+    KrsScene    *scene = c->scene;
+    const Scene *s     = &c->elaborated;
+    scene->component_count = s->components.count;
+    scene->components      = arena_new_array(&scene->arena, KrsComponent, s->components.count + 1);
+    scene->bounds          = arena_new_array(&scene->arena, KrsBounds, s->components.count + 1);
+    for (size_t i = 0; i < s->components.count; i++) {
+        const Component *from = &s->components.items[i];
+        KrsComponent    *to   = &scene->components[i];
+        *to = (KrsComponent){.name      = keep(c, from->name),
+                             .slope     = from->shape->slope * from->shape->derived,
+                             .per_frame = from->shape->per_frame,
+                             .exact     = from->shape->exact,
+                             .estimate  = from->shape->estimate,
+                             .levels    = from->shape->levels,
+                             .instances = from->shape->instances,
+                             .inversions = from->shape->inversions};
+        for (int k = 0; k < 3; k++) {
+            to->low[k]  = from->shape->box.axis[k].low;
+            to->high[k] = from->shape->box.axis[k].high;
+        }
+        scene->program.loose = scene->program.loose || shape_is_loose(from->shape);
+        scene->program.seams = scene->program.seams || from->shape->seams || touches_others(s, i);
+        bounds_of(from->shape, &c->sources, &scene->bounds[i], &scene->arena, &c->scratch);
+        arena_free(&c->scratch);
+    }
+}
+
+/* Shapes that were cut again leave slopes behind that nothing is divided by. */
+static bool is_needed(const Graph *graph, uint32_t slot)
+{
+    for (Node n = 0; n < graph->count; n++)
+        if (graph->items[n].op == OP_PARAMETER && graph->items[n].index == slot)
+            return true;
+    return false;
+}
+
+static void keep_slopes(Compilation *c)
+{
+    KrsScene    *scene = c->scene;
+    const Scene *s     = &c->elaborated;
+    scene->slopes      = arena_new_array(&scene->arena, KeptSlope, s->slopes.count + 1);
+    for (size_t i = 0; i < s->slopes.count; i++) {
+        const FrameSlope *from = &s->slopes.items[i];
+        if (!is_needed(scene->graph, from->slot))
+            continue;
+        const Source *source   = &c->sources.items[from->span.source];
+        Position      position = source_position(source, from->span.start);
+        Text          place    = {.arena = &scene->arena};
+        text_format(&place, "%s:%u:%u", source->name, position.line, position.column);
+        scene->slopes[scene->slope_count++] = (KeptSlope){
+            from->slot,
+            slope_task(scene->graph, scene->roots.slopes[i], from->region,
+                       frame_slope_cells(from->region), &scene->arena),
+            place.bytes};
+    }
+}
+
+void keep_scene(Compilation *c)
+{
+    KrsScene    *scene = c->scene;
+    const Scene *s     = &c->elaborated;
+    Arena       *arena = &scene->arena;
+    keep_components(c);
+    keep_slopes(c);
+    scene->parameter_count = s->parameters.count;
+    scene->parameters      = arena_new_array(arena, Parameter, s->parameters.count + 1);
+    for (size_t i = 0; i < s->parameters.count; i++) {
+        scene->parameters[i]      = s->parameters.items[i];
+        scene->parameters[i].name = keep(c, s->parameters.items[i].name);
+    }
+    scene->camera_count = s->cameras.count;
+    scene->cameras      = arena_new_array(arena, SceneCamera, s->cameras.count + 1);
+    for (size_t i = 0; i < s->cameras.count; i++) {
+        scene->cameras[i]      = s->cameras.items[i];
+        scene->cameras[i].name = keep(c, s->cameras.items[i].name);
+    }
+    scene->light_count = s->lights.count;
+    scene->lights      = arena_new_array(arena, SceneLight, s->lights.count + 1);
+    memcpy(scene->lights, s->lights.items, s->lights.count * sizeof *scene->lights);
+    scene->zone_count       = s->zone_count;
+    scene->image            = s->image;
+    scene->image.integrator = keep(c, s->image.integrator);
+    scene->image.tone_map   = keep(c, s->image.tone_map);
+    for (int k = 0; k < 3; k++) {
+        scene->program.low[k]  = s->box.axis[k].low;
+        scene->program.high[k] = s->box.axis[k].high;
+    }
+}
+
+/* Everything that the host finds for kernels with an anchor, in the order of its slots. */
+static Tape precise_tape(Compilation *c)
+{
+    KrsScene    *scene = c->scene;
+    const Graph *graph = scene->graph;
+    Node        *found = arena_new_array(&scene->arena, Node, graph->count + 1);
+    size_t       count = 0;
+    for (Node n = 0; n < graph->count; n++)
+        if (graph->items[n].op == OP_precise)
+            found[count++] = n;
+    scene->precise_nodes = found;
+    scene->precise_count = count;
+    return tape_new(graph, found, count, &scene->arena);
+}
+
+/* Of which components there are steps along rays, and which of those are for inversions. */
+static void find_steps(KrsScene *scene, const Node *distances)
+{
+    const Node *polynomial  = scene->roots.along;
+    const Node *directional = polynomial + ALONG_DIRECTIONAL * scene->component_count;
+    for (size_t i = 0; i < scene->component_count; i++) {
+        scene->program.along   = scene->program.along || polynomial[i] != distances[i];
+        scene->program.inverts = scene->program.inverts || directional[i] != distances[i];
+    }
+}
+
+void keep_tapes(Compilation *c)
+{
+    KrsScene    *scene = c->scene;
+    const Roots *roots = &scene->roots;
+    size_t       count = scene->component_count;
+    Node        *distances = arena_new_array(&c->scratch, Node, count + 1);
+    Node        *guarded   = arena_new_array(&c->scratch, Node, count + 1);
+    for (size_t i = 0; i < count; i++)
+        distances[i] = roots->components[i * ROOT_COUNT + ROOT_DISTANCE];
+    find_steps(scene, distances);
+    memcpy(guarded, roots->guarded, count * sizeof *guarded);
+    if (scene->zone_count > 0)
+        guarded[count] = distances[count] = zone_root(scene);
+    count += scene->zone_count > 0;
+    scene->guarded  = tape_new_guarded(scene->graph, guarded, count, &scene->arena);
+    scene->distance = tape_new(scene->graph, distances, count, &scene->arena);
+    scene->surface  = tape_new(scene->graph, roots->components,
+                               (size_t)(roots->cameras - roots->components), &scene->arena);
+    scene->view     = tape_new(scene->graph, roots->cameras,
+                               (size_t)(roots->guarded - roots->cameras), &scene->arena);
+    if (scene->program.anchored)
+        scene->precise = precise_tape(c);
+    scene->program.precise_slots = scene->precise_count;
+    scene->program.operations = scene->distance.count - scene->distance.frame_count;
+    scene->program.flops      = tape_flops(&scene->distance);
+    scene->program.loops      = tape_loops(&scene->distance);
+}

@@ -1,0 +1,198 @@
+/*
+ * limits.c: scenes that are refused after they were lowered: too large, or with numbers that no
+ * shader has.
+ *
+ * Size is limited by construction, since compilers of shaders are slow on what is too large: some
+ * ten seconds for a million bytes, and three times as long for two.
+ */
+#include <float.h>
+#include <math.h>
+
+#include "compiler/compilation.h"
+
+enum { MOST_OPERATIONS = 20000, MOST_GLSL_BYTES = 1500000 };
+
+static const char fewer_shapes[] =
+    "fewer shapes, reflections or copies; `.repeat` with a margin in its cells needs one copy only";
+
+/* ---- operations ---- */
+
+/* Operations at each point: what depends on the frame only does not count. */
+static size_t count_operations(Compilation *c, const Node *roots, size_t count)
+{
+    Tape   tape   = tape_new(c->scene->graph, roots, count, &c->scratch);
+    size_t result = tape.count - tape.frame_count;
+    arena_free(&c->scratch);
+    return result;
+}
+
+void refuse_component(Compilation *c, size_t component, size_t operations)
+{
+    const Component *shown = &c->elaborated.components.items[component];
+    Diag *diag  = diag_add(&c->diags, DIAG_TOO_LARGE, shown->span,
+                           "the scene needs more than %d operations", MOST_OPERATIONS);
+    diag->label = operations ? diag_text(&c->diags, "`%s` is the largest component, with %zu",
+                                         shown->name, operations)
+                             : diag_text(&c->diags, "`%s` alone needs more", shown->name);
+    diag->help  = fewer_shapes;
+}
+
+static void refuse_zones(Compilation *c, size_t operations)
+{
+    Span  span  = c->scene->graph->items[*c->scene->roots.zone].span;
+    Diag *diag  = diag_add(&c->diags, DIAG_TOO_LARGE, span,
+                           "the scene needs more than %d operations", MOST_OPERATIONS);
+    diag->label = diag_text(&c->diags, "its %zu zones need %zu", c->elaborated.zone_count,
+                            operations);
+    diag->help  = "fewer zones";
+}
+
+bool check_operations(Compilation *c)
+{
+    const Roots *roots = &c->scene->roots;
+    size_t       total = 0, largest = 0, most = 0, zones = 0;
+    for (size_t i = 0; i < c->elaborated.components.count; i++) {
+        size_t operations = count_operations(c, &roots->components[i * ROOT_COUNT], 1);
+        total += operations;
+        if (operations > most) {
+            most    = operations;
+            largest = i;
+        }
+    }
+    if (c->elaborated.zone_count > 0)
+        zones = count_operations(c, roots->zone, 1);
+    if (total + zones <= MOST_OPERATIONS)
+        return true;
+    if (zones > most)
+        refuse_zones(c, zones);
+    else
+        refuse_component(c, largest, most);
+    return false;
+}
+
+/* ---- numbers ---- */
+
+/* Whether an operation is on constants alone and yet not folded: its result is not finite; or a
+   constant that single precision does not have. */
+static bool is_beyond_numbers(const Graph *graph, const Expr *expr)
+{
+    bool constants = expr->operand_count > 0, beyond = false;
+    for (uint32_t i = 0; i < expr->operand_count; i++)
+        constants = constants && graph->items[expr->operands[i]].op == OP_CONSTANT;
+    for (uint32_t i = 0; i < 4 && expr->op == OP_CONSTANT; i++)
+        beyond = beyond || !(fabs(expr->number[i]) <= FLT_MAX);
+    return constants || beyond;
+}
+
+static void refuse_number(Compilation *c, const Component *shown, Span span)
+{
+    Diag *diag  = diag_add(&c->diags, DIAG_NOT_A_NUMBER, shown->span,
+                           "a number in `%s` is too large, or not finite", shown->name);
+    diag->label = "single precision goes to 3.4e38";
+    /* Equal expressions are one node, whose place may be in another component. */
+    if (span.source == shown->span.source && span.start > shown->span.start &&
+        span.end <= shown->span.end)
+        diag_place(&c->diags, diag, span, "in here");
+}
+
+/* The first node that the roots of some components need and no shader can have; else NODE_NONE. */
+static Node find_beyond_numbers(Compilation *c, size_t first, size_t count)
+{
+    const Graph *graph = c->scene->graph;
+    Tape tape  = tape_new(graph, &c->scene->roots.components[first * ROOT_COUNT],
+                          count * ROOT_COUNT, &c->scratch);
+    Node found = NODE_NONE;
+    for (size_t k = 0; k < tape.count && found == NODE_NONE; k++)
+        if (is_beyond_numbers(graph, &graph->items[tape.nodes[k]]))
+            found = tape.nodes[k];
+    arena_free(&c->scratch);
+    return found;
+}
+
+/* An overflow of what is given shows here only, where it has met everything else. */
+bool check_numbers(Compilation *c)
+{
+    size_t count = c->elaborated.components.count;
+    if (find_beyond_numbers(c, 0, count) == NODE_NONE)
+        return true;
+    for (size_t i = 0; i < count; i++) {
+        Node node = find_beyond_numbers(c, i, 1);
+        if (node != NODE_NONE)
+            refuse_number(c, &c->elaborated.components.items[i], c->scene->graph->items[node].span);
+    }
+    return false;
+}
+
+/* The component that needs a node; NULL: a camera, a light or the sky does. */
+static const Component *component_with(Compilation *c, Node node)
+{
+    for (size_t i = 0; i < c->elaborated.components.count; i++) {
+        const Node *roots = &c->scene->roots.components[i * ROOT_COUNT];
+        Tape        tape  = tape_new(c->scene->graph, roots, ROOT_COUNT, &c->scratch);
+        for (size_t k = 0; k < tape.count; k++)
+            if (tape.nodes[k] == node)
+                return &c->elaborated.components.items[i];
+    }
+    return NULL;
+}
+
+static void refuse_default(Compilation *c, Node node)
+{
+    Span             span  = c->scene->graph->items[node].span;
+    const Component *shown = component_with(c, node);
+    bool             ours  = span.source == 0 || c->sources.items[span.source].library;
+    Diag *diag  = diag_add(&c->diags, DIAG_NOT_A_NUMBER, ours && shown ? shown->span : span,
+                           "this is not finite with the default of every `param` at time 0");
+    diag->label = ours ? "a number in here divides by zero, or overflows"
+                       : "a division by zero, or an overflow";
+    diag->help  = "choose another default, or guard it, as in `1 / max(a, 0.001)`";
+    arena_free(&c->scratch);
+}
+
+KrsStatus check_defaults(Compilation *c)
+{
+    KrsFrame *frame;
+    KrsStatus status = krs_frame_new(c->scene, &frame);
+    if (status != KRS_OK)
+        return status;
+    Node node = frame_infinite(frame);
+    krs_frame_free(frame);
+    if (node != NODE_NONE)
+        refuse_default(c, node);
+    return node == NODE_NONE ? KRS_OK : KRS_BAD_SCENE;
+}
+
+/* ---- text ---- */
+
+static void refuse_length(Compilation *c, size_t largest, size_t operations)
+{
+    size_t           count = c->elaborated.components.count;
+    const Component *shown = count ? &c->elaborated.components.items[largest] : NULL;
+    Diag *diag = diag_add(&c->diags, DIAG_TOO_LARGE, shown ? shown->span : (Span){1, 0, 0},
+                          "the scene needs %.1f MB of shader; the limit is %.1f MB",
+                          (double)c->scene->program.glsl_length * 1e-6, MOST_GLSL_BYTES * 1e-6);
+    if (count > 1)
+        diag->label = diag_text(&c->diags, "the largest of %zu components, with %zu operations",
+                                count, operations);
+    else if (shown)
+        diag->label = diag_text(&c->diags, "`%s` has %zu operations", shown->name, operations);
+    diag->help = count > 100 ? "`show union([...])` makes one component of many shapes"
+                             : fewer_shapes;
+}
+
+/* Many small components have few operations, and much text around them. */
+bool check_length(Compilation *c)
+{
+    size_t largest = 0, most = 0;
+    if (c->scene->program.glsl_length <= MOST_GLSL_BYTES)
+        return true;
+    arena_free(&c->scratch);
+    for (size_t i = 0; i < c->elaborated.components.count; i++) {
+        const Node *root       = &c->scene->roots.components[i * ROOT_COUNT];
+        size_t      operations = count_operations(c, root, ROOT_COUNT);
+        largest = operations > most ? i : largest;
+        most    = operations > most ? operations : most;
+    }
+    refuse_length(c, largest, most);
+    return false;
+}

@@ -1,0 +1,82 @@
+/*
+ * program.c: what a compiled scene says of itself, and its end.
+ */
+#include "compiler/program.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const KrsProgram *krs_scene_program(const KrsScene *scene) { return &scene->program; }
+size_t      krs_camera_count(const KrsScene *scene) { return scene->camera_count; }
+size_t      krs_zone_count(const KrsScene *scene) { return scene->zone_count; }
+const char *krs_scene_hash(const KrsScene *scene) { return scene->hash; }
+size_t      krs_parameter_count(const KrsScene *scene) { return scene->parameter_count; }
+size_t      krs_parameter_slots(const KrsScene *scene) { return scene->program.parameter_slots; }
+size_t      krs_frame_slope_count(const KrsScene *scene) { return scene->slope_count; }
+size_t      krs_component_count(const KrsScene *scene) { return scene->component_count; }
+
+const char *krs_camera_name(const KrsScene *scene, size_t index)
+{
+    return index < scene->camera_count ? scene->cameras[index].name : NULL;
+}
+
+KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *parameter)
+{
+    if (index >= scene->parameter_count)
+        return KRS_BAD_ARGUMENT;
+    const Parameter *from = &scene->parameters[index];
+    *parameter            = (KrsParameter){.name = from->name, .components = from->components};
+    memcpy(parameter->value, from->value, sizeof parameter->value);
+    memcpy(parameter->low, from->low, sizeof parameter->low);
+    memcpy(parameter->high, from->high, sizeof parameter->high);
+    return KRS_OK;
+}
+
+KrsStatus krs_frame_slope(const KrsScene *scene, size_t index, KrsFrameSlope *slope)
+{
+    if (index >= scene->slope_count)
+        return KRS_BAD_ARGUMENT;
+    const KeptSlope *from = &scene->slopes[index];
+    *slope                = (KrsFrameSlope){.slot = from->slot, .place = from->place};
+    for (int i = 0; i < 3; i++) {
+        slope->low[i]  = from->task.box.axis[i].low;
+        slope->high[i] = from->task.box.axis[i].high;
+    }
+    return KRS_OK;
+}
+
+size_t krs_bound_count(const KrsScene *scene, size_t component, size_t *more)
+{
+    bool exists = component < scene->component_count;
+    if (more)
+        *more = exists ? scene->bounds[component].more : 0;
+    return exists ? scene->bounds[component].count : 0;
+}
+
+KrsStatus krs_bound(const KrsScene *scene, size_t component, size_t index, KrsBound *bound)
+{
+    if (index >= krs_bound_count(scene, component, NULL))
+        return KRS_BAD_ARGUMENT;
+    *bound = scene->bounds[component].items[index];
+    return KRS_OK;
+}
+
+KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *component)
+{
+    if (index >= scene->component_count)
+        return KRS_BAD_ARGUMENT;
+    *component = scene->components[index];
+    return KRS_OK;
+}
+
+void krs_scene_free(KrsScene *scene)
+{
+    if (!scene)
+        return;
+    Memory memory = scene->memory;
+    arena_free(&scene->arena);
+    if (memory.allocate)
+        memory.release(memory.user, scene);
+    else
+        free(scene);
+}

@@ -1,0 +1,63 @@
+/*
+ * emitter.h: what the files of the emitter share.
+ *
+ * statements.c turns nodes into statements; emit.c, early_outs.c and march.c write the functions
+ * around them.
+ */
+#ifndef KRS_EMITTER_H
+#define KRS_EMITTER_H
+
+#include "compiler/graph/regions.h"
+#include "compiler/shader/emit.h"
+
+typedef struct Emitter {
+    const Graph   *graph;
+    const Sources *sources;
+    Arena         *scratch;
+    Text          *out;
+    const char   **text;    /* of a node in the function being written: its name or expression */
+    uint8_t       *nesting; /* of that expression */
+    uint32_t      *uses;    /* in the function being written */
+    struct { Node *items; size_t count, capacity; } needed; /* all that have uses, in order */
+    const char   **frame;   /* names of the globals that krs_prepare sets */
+    uint32_t       next;    /* number of the next local name */
+    uint32_t       globals;
+    uint32_t      *precise; /* of OP_precise: its slot in the parameter block */
+    Regions        regions; /* of the function being written, where it has guards */
+    Span           last;    /* the line that was commented last */
+} Emitter;
+
+/* ---- statements.c ---- */
+
+/* Statements for all that the roots need, in a function of the point; e->text has what stands for
+   each root then. */
+void emit_body(Emitter *e, const Node *roots, size_t count);
+/* krs_prepare, and the globals that it sets: frame values that functions of the point need. */
+void emit_frame(Emitter *e, const Node *roots, size_t count);
+/* The functions that operations call. */
+void emit_helpers(Emitter *e, const Node *roots, size_t count);
+/* A function that is not a list of statements: what it needs, with names for what is constant in
+   it; then emit_node for each of the others. */
+void emit_begin(Emitter *e, const Node *roots, size_t count);
+void emit_node(Emitter *e, Node n);
+/* Says where the next statement comes from, unless it is the same line as before. */
+void emit_comment(Emitter *e, Span span);
+/* A vector as a literal. */
+const char *emit_vector(Emitter *e, const double v[3]);
+/* An expression that is a whole statement needs no parentheses around it. */
+const char *emit_bare(Emitter *e, const char *text);
+
+/* ---- early_outs.c: krs_distance_lod ---- */
+
+void emit_early_outs(Emitter *e, const EmitMarch *march, const Node *roots, size_t components);
+
+/* ---- march.c: what some marches need beside a distance ---- */
+
+/* krs_ahead and krs_rise: where rays meet planes. */
+void emit_flats(Emitter *e, const EmitMarch *march);
+/* krs_distance_of and krs_part_box.  `boxes` of components; NULL: not known. */
+void emit_parts(Emitter *e, const Box *boxes, const bool *flat, size_t components);
+/* krs_along by all methods that are better than the distance, and krs_probe. */
+void emit_along(Emitter *e, const EmitMarch *march, const Node *roots, size_t components);
+
+#endif

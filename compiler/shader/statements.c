@@ -1,0 +1,377 @@
+/*
+ * statements.c: nodes of the graph as statements.
+ *
+ * Each function is a list of short statements in the order of the nodes.  A value that is used
+ * once, by something near, stands inside the expression that uses it; everything else gets a
+ * name.  What depends on parameters only is computed once, in krs_prepare, into globals that
+ * the march reads as locals; literals cost nothing.  Statements carry the line of the scene
+ * that they come from.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "compiler/shader/emitter.h"
+
+/* Expressions are nested to this depth and length at most: compilers of shaders recurse. */
+enum { MOST_NESTING = 6, MOST_INLINE = 72 };
+
+static const char *type_name(GraphType type)
+{
+    switch (type) {
+    case TYPE_FLOAT: return "float";
+    case TYPE_VEC2:  return "vec2";
+    case TYPE_VEC3:  return "vec3";
+    case TYPE_VEC4:  return "vec4";
+    case TYPE_BOOL:  return "bool";
+    case TYPE_UINT:  return "uint";
+    }
+    return "float";
+}
+
+/* What names of values begin with. */
+static char type_letter(GraphType type)
+{
+    switch (type) {
+    case TYPE_FLOAT: return 't';
+    case TYPE_BOOL:  return 'b';
+    case TYPE_UINT:  return 'n';
+    default:         return 'v';
+    }
+}
+
+/* The shortest literal that reads back as the float nearest to the number. */
+static void add_literal(Text *text, double number)
+{
+    char   digits[40];
+    double limited = fmax(-FLT_MAX, fmin(number, FLT_MAX));
+    float  single  = (float)limited;
+    for (int precision = 6; precision <= 9; precision++) {
+        snprintf(digits, sizeof digits, "%.*g", precision, (double)single);
+        float back;
+        if (sscanf(digits, "%f", &back) == 1 && back == single)
+            break;
+    }
+    bool bare = !strpbrk(digits, ".e");
+    text_format(text, single < 0 ? "(%s%s)" : "%s%s", digits, bare ? ".0" : "");
+}
+
+static const char *constant_text(Emitter *e, const Expr *expr)
+{
+    Text text = {.arena = e->scratch};
+    if (expr->type == TYPE_BOOL)
+        return expr->number[0] != 0 ? "true" : "false";
+    if (expr->type == TYPE_UINT) {
+        text_format(&text, "%.0fu", expr->number[0]);
+        return text.bytes;
+    }
+    if (expr->type > TYPE_FLOAT)
+        text_format(&text, "%s(", type_name(expr->type));
+    bool equal = true;
+    for (uint32_t i = 1; i < expr->type; i++)
+        equal = equal && expr->number[i] == expr->number[0];
+    for (uint32_t i = 0; i < (equal ? 1u : expr->type); i++) {
+        if (i)
+            text_add(&text, ", ");
+        add_literal(&text, expr->number[i]);
+    }
+    if (expr->type > TYPE_FLOAT)
+        text_add(&text, ")");
+    return text.bytes;
+}
+
+const char *emit_vector(Emitter *e, const double v[3])
+{
+    Expr constant = {.op = OP_CONSTANT, .type = TYPE_VEC3, .number = {v[0], v[1], v[2]}};
+    return constant_text(e, &constant);
+}
+
+void emit_comment(Emitter *e, Span span)
+{
+    if (!span.source)
+        return;
+    const Source *source   = &e->sources->items[span.source];
+    Position      position = source_position(source, span.start);
+    if (e->last.source == span.source && e->last.start == position.line)
+        return;
+    e->last = (Span){span.source, position.line, 0};
+    text_format(e->out, "    // %s:%u\n", source->name, position.line);
+}
+
+/* A row's template with the operands in the place of $a, $b, $c, $d.  What stands before a
+   semicolon is a statement that comes before, and sets a local of its own, $t. */
+static const char *fill_template(Emitter *e, const Expr *expr)
+{
+    Text        text = {.arena = e->scratch};
+    const char *from = op_glsl((Op)expr->op);
+    uint32_t    local = strchr(from, ';') ? e->next++ : 0;
+    while (*from) {
+        size_t plain = strcspn(from, "$;");
+        text_add_bytes(&text, from, plain);
+        from += plain;
+        if (*from == ';') {
+            emit_comment(e, expr->span);
+            text_format(e->out, "    %s;\n", text.bytes);
+            text = (Text){.arena = e->scratch};
+            from += strspn(from, "; ");
+        } else if (*from) {
+            if (from[1] == 't')
+                text_format(&text, "t%u", local);
+            else
+                text_add(&text, e->text[expr->operands[from[1] - 'a']]);
+            from += 2;
+        }
+    }
+    return text.bytes;
+}
+
+static const char *slot_text(Emitter *e, uint32_t slot, GraphType type)
+{
+    static const char *const swizzle[] = {"", ".x", ".xy", ".xyz", ""};
+    Text text = {.arena = e->scratch};
+    text_format(&text, "krs_parameter[%u]%s", slot, swizzle[type]);
+    return text.bytes;
+}
+
+/* Of a fold: 1 + the axis that a constant mirror is across, negative where its normal points down;
+   0: none. */
+static int fold_axis(const Emitter *e, const Expr *fold)
+{
+    const Expr *normal = &e->graph->items[fold->operands[1]];
+    if (normal->op != OP_CONSTANT)
+        return 0;
+    for (int i = 0; i < 3; i++)
+        if (fabs(normal->number[i]) == 1)
+            return (int)normal->number[i] * (i + 1);
+    return 0;
+}
+
+/* Across an axis one coordinate becomes the lesser, or the greater, of itself and its image: two
+   operations that what follows has to wait for, where krs_fold has eight. */
+static const char *fold_text(Emitter *e, const Expr *fold)
+{
+    Text        text   = {.arena = e->scratch};
+    int         axis   = fold_axis(e, fold);
+    const char *point  = e->text[fold->operands[0]], *offset = e->text[fold->operands[2]];
+    const Expr *place  = &e->graph->items[fold->operands[2]];
+    bool        middle = place->op == OP_CONSTANT && place->number[0] == 0;
+    if (axis == 0)
+        return fill_template(e, fold);
+    text_add(&text, "vec3(");
+    for (int i = 0; i < 3; i++) {
+        char name = "xyz"[i];
+        if (i > 0)
+            text_add(&text, ", ");
+        if (i + 1 != abs(axis)) {
+            text_format(&text, "%s.%c", point, name);
+            continue;
+        }
+        text_format(&text, "%s(%s.%c, ", axis > 0 ? "min" : "max", point, name);
+        if (!middle)
+            text_format(&text, "%s2.0 * %s ", axis > 0 ? "" : "-", offset);
+        text_format(&text, "-%s%s.%c)", middle ? "" : " ", point, name);
+    }
+    text_add(&text, ")");
+    return text.bytes;
+}
+
+static const char *node_text(Emitter *e, const Expr *expr)
+{
+    Text text = {.arena = e->scratch};
+    switch (expr->op) {
+    case OP_CONSTANT: return constant_text(e, expr);
+    case OP_POINT:    return "p";
+    case OP_NORMAL:   return "normal";
+    case OP_FOOTPRINT: return "footprint";
+    case OP_DIRECTION: return "direction";
+    case OP_precise: return slot_text(e, e->precise[expr - e->graph->items], expr->type);
+    case OP_PARAMETER: return slot_text(e, expr->index, expr->type);
+    case OP_COMPONENT:
+        text_format(&text, "%s.%c", e->text[expr->operands[0]], "xyzw"[expr->index]);
+        return text.bytes;
+    case OP_fold: return fold_text(e, expr);
+    default: return fill_template(e, expr);
+    }
+}
+
+/* Whether a template names an operand twice: what stands twice is computed twice. */
+static bool repeats_operand(const Emitter *e, const Expr *user, Node operand)
+{
+    if (user->op == OP_COMPONENT)
+        return false;
+    if (user->op == OP_fold && user->operands[0] == operand && fold_axis(e, user) != 0)
+        return true;
+    const char *glsl  = op_glsl((Op)user->op);
+    uint32_t    count = 0;
+    for (const char *at = strchr(glsl, '$'); at; at = strchr(at + 1, '$'))
+        count += at[1] != 't' && user->operands[at[1] - 'a'] == operand;
+    return count > 1;
+}
+
+const char *emit_bare(Emitter *e, const char *text)
+{
+    size_t   length = strlen(text);
+    uint32_t open   = 0;
+    if (text[0] != '(')
+        return text;
+    for (size_t i = 0; i < length; i++) {
+        open += text[i] == '(';
+        open -= text[i] == ')';
+        if (open == 0 && i + 1 < length)
+            return text;
+    }
+    return arena_copy_text(e->scratch, text + 1, length - 2);
+}
+
+static void use(Emitter *e, Node node, uint32_t count)
+{
+    if (e->uses[node] == 0)
+        array_push(e->scratch, &e->needed, node);
+    e->uses[node] += count;
+}
+
+static int compare_nodes(const void *a, const void *b)
+{
+    return (*(const Node *)a > *(const Node *)b) - (*(const Node *)a < *(const Node *)b);
+}
+
+/* Finds the nodes that a function needs, counting uses; frame values end the walk.  The work grows
+   with the function, not with the graph: there are several functions for each component. */
+static void count_uses(Emitter *e, const Node *roots, size_t count, bool frame)
+{
+    for (size_t i = 0; i < e->needed.count; i++)
+        e->uses[e->needed.items[i]] = 0;
+    e->needed.count = 0;
+    for (size_t i = 0; i < count; i++)
+        use(e, roots[i], 2); /* a root needs a name */
+    for (size_t i = 0; i < e->needed.count; i++) {
+        const Expr *expr = &e->graph->items[e->needed.items[i]];
+        if ((!frame && expr->time != TIME_POINT) || expr->op == OP_precise)
+            continue; /* what is precise, the host finds */
+        for (uint32_t k = 0; k < expr->operand_count; k++)
+            use(e, expr->operands[k], repeats_operand(e, expr, expr->operands[k]) ? 2 : 1);
+    }
+    if (e->needed.count)
+        qsort(e->needed.items, e->needed.count, sizeof *e->needed.items, compare_nodes);
+}
+
+static bool is_leaf(const Expr *expr)
+{
+    return expr->operand_count == 0;
+}
+
+/* Writes the statement of a node, or keeps its expression for the one place that needs it. */
+void emit_node(Emitter *e, Node n)
+{
+    const Expr *expr = &e->graph->items[n];
+    uint8_t     deep = 0;
+    for (uint32_t i = 0; i < expr->operand_count; i++)
+        if (e->nesting[expr->operands[i]] > deep)
+            deep = e->nesting[expr->operands[i]];
+    const char *text  = node_text(e, expr);
+    bool        plain = is_leaf(expr) || (expr->op == OP_COMPONENT && deep == 0);
+    e->nesting[n]     = plain ? 0 : deep + 1;
+    e->text[n]        = text;
+    if (plain || (e->uses[n] == 1 && e->nesting[n] < MOST_NESTING && strlen(text) < MOST_INLINE))
+        return;
+    emit_comment(e, expr->span);
+    Text name = {.arena = e->scratch};
+    text_format(&name, "%c%u", type_letter(expr->type), e->next++);
+    text_format(e->out, "    %s %s = %s;\n", type_name(expr->type), name.bytes,
+                emit_bare(e, text));
+    e->text[n]    = name.bytes;
+    e->nesting[n] = 0;
+}
+
+void emit_begin(Emitter *e, const Node *roots, size_t count)
+{
+    count_uses(e, roots, count, false);
+    e->next = 0;
+    e->last = (Span){0, 0, 0};
+    for (size_t i = 0; i < e->needed.count; i++) {
+        Node n = e->needed.items[i];
+        if (e->graph->items[n].time == TIME_COMPILE)
+            emit_node(e, n);
+        if (e->graph->items[n].time != TIME_FRAME)
+            continue;
+        e->text[n]    = e->frame[n];
+        e->nesting[n] = 0;
+    }
+}
+
+void emit_body(Emitter *e, const Node *roots, size_t count)
+{
+    emit_begin(e, roots, count);
+    for (size_t i = 0; i < e->needed.count; i++)
+        if (e->graph->items[e->needed.items[i]].time == TIME_POINT)
+            emit_node(e, e->needed.items[i]);
+}
+
+/* Declares the globals; `set` gets the nodes that have one, of which there are so many. */
+static size_t emit_globals(Emitter *e, const Node *roots, size_t count, Node *set, bool *is_global)
+{
+    const Graph *g       = e->graph;
+    size_t       globals = 0;
+    count_uses(e, roots, count, false);
+    for (size_t i = 0; i < e->needed.count; i++) {
+        Node n = e->needed.items[i];
+        if (g->items[n].time != TIME_FRAME)
+            continue;
+        set[globals++] = n;
+        is_global[n]   = true;
+        Text name = {.arena = e->scratch};
+        text_format(&name, "krs_frame%u", e->globals++);
+        e->frame[n] = name.bytes;
+        text_format(e->out, "%s %s;\n", type_name(g->items[n].type), name.bytes);
+    }
+    return globals;
+}
+
+void emit_frame(Emitter *e, const Node *roots, size_t count)
+{
+    Node  *set       = arena_new_array(e->scratch, Node, e->graph->count);
+    bool  *is_global = arena_new_array(e->scratch, bool, e->graph->count);
+    size_t globals   = emit_globals(e, roots, count, set, is_global);
+    text_add(e->out, "\n// Everything that stays the same within a frame: call it first.\n"
+                     "void krs_prepare()\n{\n");
+    count_uses(e, set, globals, true);
+    e->next = 0;
+    for (size_t i = 0; i < e->needed.count; i++) {
+        Node        n    = e->needed.items[i];
+        const Expr *expr = &e->graph->items[n];
+        if (!is_global[n]) {
+            emit_node(e, n);
+            continue;
+        }
+        emit_comment(e, expr->span);
+        text_format(e->out, "    %s = %s;\n", e->frame[n], emit_bare(e, node_text(e, expr)));
+        e->text[n]    = e->frame[n];
+        e->nesting[n] = 0;
+    }
+    text_format(e->out,
+                "#ifdef ZONES\n"
+                "    for (int i = 0; i < ZONES; i++)\n"
+                "        krs_zones[i] = krs_parameter[%zu + i];\n"
+                "#endif\n"
+                "}\n\n", e->graph->parameters.count);
+}
+
+void emit_helpers(Emitter *e, const Node *roots, size_t count)
+{
+    const char *done[OP_COUNT];
+    size_t      done_count = 0;
+    count_uses(e, roots, count, true); /* of the whole graph */
+    for (size_t k = 0; k < e->needed.count; k++) {
+        const char *helper = op_helper((Op)e->graph->items[e->needed.items[k]].op);
+        for (size_t i = 0; helper && i < done_count; i++)
+            if (done[i] == helper)
+                helper = NULL;
+        if (!helper)
+            continue;
+        done[done_count++] = helper;
+        text_add(e->out, helper);
+        text_add(e->out, "\n");
+    }
+}

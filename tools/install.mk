@@ -1,0 +1,43 @@
+# install.mk: `make install` and `make uninstall`: the command, the library with its headers and
+# krs.pc, pages of the manual, and completion for bash.  PREFIX says where they belong, DESTDIR
+# where they are put for now, as for a package.
+
+PREFIX  ?= /usr/local
+DESTDIR ?=
+TARGET   = $(DESTDIR)$(PREFIX)
+VERSION  = $(shell sed -n 's/^.define KRS_VERSION "\(.*\)"/\1/p' compiler/krs.h)
+COMMANDS = $(shell sed -n 's/^COMMAND.[A-Z]*, "\([a-z]*\)".*/\1/p' cli/commands.def)
+INSTALLED = bin/krs lib/libkrs.a lib/pkgconfig/krs.pc include/krs.h include/krs_vulkan.h \
+            share/bash-completion/completions/krs share/man/man1/krs.1 \
+            $(COMMANDS:%=share/man/man1/krs-%.1)
+
+define KRS_PC
+prefix=$(PREFIX)
+includedir=$${prefix}/include
+libdir=$${prefix}/lib
+
+Name: krs
+Description: compiles and renders scenes of implicit surfaces
+Version: $(VERSION)
+Cflags: -I$${includedir}
+Libs: -L$${libdir} -lkrs $(LIBS)
+endef
+export KRS_PC
+
+install: $(B)/krs $(B)/libkrs.a
+	@install -d $(sort $(dir $(INSTALLED:%=$(TARGET)/%)))
+	@install -m 755 $(B)/krs $(TARGET)/bin/krs
+	@install -m 644 $(B)/libkrs.a $(TARGET)/lib/libkrs.a
+	@install -m 644 compiler/krs.h $(TARGET)/include/krs.h
+	@sed 's|"compiler/krs.h"|"krs.h"|' runtime/krs_vulkan.h >$(TARGET)/include/krs_vulkan.h
+	@echo "$$KRS_PC" >$(TARGET)/lib/pkgconfig/krs.pc
+	@$(B)/krs --completion >$(TARGET)/share/bash-completion/completions/krs
+	@$(B)/krs --manual >$(TARGET)/share/man/man1/krs.1
+	@for command in $(COMMANDS); do \
+	    $(B)/krs --manual $$command >$(TARGET)/share/man/man1/krs-$$command.1 || exit 1; \
+	done
+	@echo "installed in $(TARGET)"
+uninstall:
+	@rm -f $(INSTALLED:%=$(TARGET)/%)
+	@echo "removed from $(TARGET)"
+.PHONY: install uninstall
