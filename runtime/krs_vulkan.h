@@ -69,6 +69,7 @@ void      krs_renderer_free(KrsRenderer *renderer); /* its renderings must be fr
 /* Why the last call on this renderer, or on one of its renderings, failed: one line, "" when it
    did not.  Lives until the next such call. */
 const char *krs_renderer_message(const KrsRenderer *renderer);
+/* The device that was opened. */
 KrsDevice   krs_renderer_device(const KrsRenderer *renderer);
 /* Complaints of the validation layers so far. */
 uint64_t krs_renderer_complaints(const KrsRenderer *renderer);
@@ -82,7 +83,7 @@ typedef enum KrsPurpose {
 } KrsPurpose;
 
 /* Compiles the scene's shaders, for pictures.  The scene must outlive the rendering.  On any status
-   but KRS_OK *rendering is NULL. */
+   but KRS_OK *rendering is NULL: KRS_OUT_OF_MEMORY, KRS_INTERNAL. */
 KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRendering **rendering);
 KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, KrsPurpose purpose,
                                 KrsRendering **rendering);
@@ -142,9 +143,9 @@ extern const char *const krs_schedule_names[KRS_SCHEDULE_COUNT];
 
 /* Whether heavy components of a scene are marched together, or each by itself: apart, in kernels of
    their own, those in front first, or in one kernel, where each ray goes on with the component that
-   may come next (KRS 2016, 5.1).  The pictures are the same but for the permitted error.  The default
-   is apart on devices of type CPU, packed on others.  Together whatever is asked for when the camera
-   is inside of a solid. */
+   may come next (KRS 2016, 5.1).  The pictures are the same but for the permitted error.  The
+   default is apart on devices of type CPU, packed on others.  Together whatever is asked for when
+   the camera is inside of a solid. */
 typedef enum KrsComponents {
     KRS_COMPONENTS_DEFAULT,
     KRS_COMPONENTS_TOGETHER,
@@ -156,8 +157,8 @@ extern const char *const krs_components_names[KRS_COMPONENTS_COUNT];
 
 /* Where the distance is looked at around a hit for its normal: see bench/README.md, Normals. */
 typedef enum KrsNormals {
-    KRS_NORMALS_DEFAULT,      /* analytic where rays go by roots of polynomials, else the octahedron:
-                                 the least error for its price */
+    KRS_NORMALS_DEFAULT,      /* analytic where rays go by roots of polynomials, else the
+                                 octahedron: the least error for its price */
     KRS_NORMALS_FORWARD,      /* there and a step along each axis: an error of first order */
     KRS_NORMALS_TETRAHEDRON,  /* at 4 corners: likewise */
     KRS_NORMALS_OCTAHEDRON,   /* at 6, 8, 12 or 20 corners: an error of second order */
@@ -271,8 +272,8 @@ typedef struct KrsSurfacePoint {
     float    normal[3]; /* the one to light */
 } KrsSurfacePoint;
 
-/* Evaluates the scene on the device at `count` points: distances, and what is there when
-   `surfaces` is not NULL. */
+/* Evaluates the scene on the device at `count` points in world units: distances, as krs_distance
+   in single precision, and what is there; either may be NULL.  KRS_OUT_OF_MEMORY, KRS_INTERNAL. */
 KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3],
                      size_t count, float *distances, KrsSurfacePoint *surfaces);
 

@@ -37,7 +37,8 @@ result $? "every rule is defined once"
 
 {
     echo file
-    sed 's/^[a-z_]* = //; s/"[^"]*"//g; s/[A-Z][A-Z_]*//g' "$folder/grammar" | grep -o '[a-z_][a-z_]*'
+    sed 's/^[a-z_]* = //; s/"[^"]*"//g; s/[A-Z][A-Z_]*//g' "$folder/grammar" |
+        grep -o '[a-z_][a-z_]*'
 } | sort -u >"$folder/used"
 comm -3 "$folder/defined" "$folder/used" >"$folder/said"
 [ ! -s "$folder/said" ]
@@ -54,7 +55,8 @@ for file in compiler/front/parse.c compiler/front/parse_expression.c; do
 done >"$folder/said"
 sort "$folder/said" >"$folder/without"
 # These are shared by several rules, or mend what no rule permits.
-for name in left simple braces loop choice statements block_of_properties token positional forgotten_let; do
+for name in left simple braces loop choice statements block_of_properties token positional \
+    forgotten_let; do
     echo "parse_$name"
 done | sort >"$folder/helpers"
 sed 's/.*: //' "$folder/without" | grep -vxF -f "$folder/helpers" >"$folder/said"

@@ -7,7 +7,10 @@ work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 failed=0
 echo "1..4"
 report() { # status, number and name
-    if [ "$1" -eq 0 ]; then echo "ok $2"; else echo "not ok $2"; failed=1; sed 's/^/# /' "$work/said"; fi
+    [ "$1" -eq 0 ] && echo "ok $2" && return
+    echo "not ok $2"
+    failed=1
+    sed 's/^/# /' "$work/said"
 }
 # The blocks between fences: which one, of which language.
 block() {
@@ -27,7 +30,8 @@ block 1 c >"$work/example.c"
 block 1 "" >"$work/expected"
 compile "$work/example.c" >"$work/said" 2>&1
 report $? "1 - the program of the page compiles"
-"$work/program" >"$work/said" 2>&1 && [ -s "$work/expected" ] && cmp -s "$work/said" "$work/expected"
+"$work/program" >"$work/said" 2>&1 && [ -s "$work/expected" ] &&
+    cmp -s "$work/said" "$work/expected"
 report $? "2 - and prints what the page says"
 {
     echo '#include <stdio.h>'

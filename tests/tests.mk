@@ -4,20 +4,31 @@
 # address and undefined-behaviour sanitizers, and everything compiles under clang as well.
 
 # What tests of several kinds share; nothing of it knows what is tested.
-SUPPORT     := $(addprefix tests/support/, bench.c random.c renderer.c)
-ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c formulas.c)
-UNIT        := front film tracer methods writer memory validate refute frame query cache compiled apart stencils
+SUPPORT     := $(addprefix tests/support/, bench.c random.c renderer.c scarce.c)
+ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c \
+               formulas.c)
+UNIT        := front film tracer methods writer memory validate refute frame query cache compiled \
+               apart stencils
 PROPERTY    := ops noise graph derive series local along anchor slope parity reach
-ORACLES     := self primitives krs_expand trees maps moebius operators deform moving normals fields surfaces rays algebraic fractals device query picture seams shading coverage shadows loose bounds stencils
+ORACLES     := self primitives krs_expand trees maps moebius operators deform moving normals \
+               fields surfaces rays algebraic fractals device query picture seams shading coverage \
+               shadows loose bounds stencils
 FUZZ        := sentences
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
-SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/validate tests/unit/refute tests/unit/memory tests/unit/cache tests/unit/frame tests/unit/query tests/property/ops tests/property/noise \
-               tests/property/graph tests/property/derive tests/property/series tests/property/local tests/property/along tests/property/anchor tests/property/slope tests/property/parity tests/property/reach tests/oracle/primitives tests/oracle/krs_expand tests/oracle/bounds tests/oracle/maps tests/oracle/moebius tests/oracle/operators tests/oracle/moving tests/oracle/fractals tests/oracle/normals \
-               tests/fuzz/sentences
-SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/editors.sh tests/lint.sh \
-               tests/errors.sh tests/examples.sh tests/library.sh tests/docs.sh $(sort $(filter-out tests/cli/common.sh, $(wildcard tests/cli/*.sh)))
+SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/validate \
+               tests/unit/refute tests/unit/memory tests/unit/cache tests/unit/frame \
+               tests/unit/query tests/property/ops tests/property/noise tests/property/graph \
+               tests/property/derive tests/property/series tests/property/local \
+               tests/property/along tests/property/anchor tests/property/slope \
+               tests/property/parity tests/property/reach tests/oracle/primitives \
+               tests/oracle/krs_expand tests/oracle/bounds tests/oracle/maps tests/oracle/moebius \
+               tests/oracle/operators tests/oracle/moving tests/oracle/fractals \
+               tests/oracle/normals tests/fuzz/sentences
+SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/editors.sh \
+               tests/lint.sh tests/errors.sh tests/examples.sh tests/library.sh tests/docs.sh \
+               $(sort $(filter-out tests/cli/common.sh, $(wildcard tests/cli/*.sh)))
 
 $(B)/tests/oracle/oracle.a: $(ORACLE:%.c=$(B)/%.o)
 	@rm -f $@
@@ -25,7 +36,8 @@ $(B)/tests/oracle/oracle.a: $(ORACLE:%.c=$(B)/%.o)
 $(B)/tests/support/support.a: $(SUPPORT:%.c=$(B)/%.o)
 	@rm -f $@
 	@$(AR) rcs $@ $^
-$(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/oracle.a $(B)/tests/support/support.a $(B)/libkrs.a
+$(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/oracle.a \
+                     $(B)/tests/support/support.a $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
 $(B)/tests/%: $(B)/tests/%.o $(B)/tests/support/support.a $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
@@ -46,7 +58,8 @@ clang-objects: $(COMPILER:%.c=$(B)/%.o) $(RUNTIME:%.c=$(B)/%.o) $(CLI:%.c=$(B)/%
 HARNESSES   := front_fuzz scene_fuzz
 FUZZED      := $(filter-out compiler/shader/spirv.c, $(COMPILER))
 fuzz-programs: $(HARNESSES:%=$(B)/tests/fuzz/%)
-$(HARNESSES:%=$(B)/tests/fuzz/%): $(B)/tests/fuzz/%: $(B)/tests/fuzz/%.o $(FUZZED:%.c=$(B)/%.o) $(B)/library_files.o
+$(HARNESSES:%=$(B)/tests/fuzz/%): $(B)/tests/fuzz/%: $(B)/tests/fuzz/%.o \
+                                    $(FUZZED:%.c=$(B)/%.o) $(B)/library_files.o
 	@$(CC) $(CFLAGS) -fsanitize=fuzzer -o $@ $^ -lm
 fuzzers:
 	@$(MAKE) --no-print-directory fuzz-programs B=$(B)/fuzz CC=$(CLANG) \
@@ -62,6 +75,8 @@ bless: $(B)/krs
 test: deps
 	@$(MAKE) --no-print-directory all test-programs clang-check fuzzers
 	@$(MAKE) --no-print-directory sanitize
-	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=300 tests/run.sh $(PROGRAMS:%=$(B)/%) $(SCRIPTS) \
+	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=300 \
+	    tests/run.sh $(PROGRAMS:%=$(B)/%) $(SCRIPTS) \
 	    $(SANITIZED:%=$(B)/asan/%) tests/errors-sanitized.sh tests/fuzz/fuzz.sh
-.PHONY: test test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers fuzz-programs lint bless
+.PHONY: test test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers \
+        fuzz-programs lint bless

@@ -40,7 +40,8 @@ bool buffer_create(Gpu *gpu, Buffer *buffer, VkDeviceSize size, Where where, con
         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
         .size = size,
         .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
-                 VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT,
+                 VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                 VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
     }, NULL, &buffer->buffer));
     gpu_name(gpu, VK_OBJECT_TYPE_BUFFER, (uint64_t)(uintptr_t)buffer->buffer, name);
 
@@ -71,9 +72,40 @@ failed:
     return false;
 }
 
+VkDeviceSize buffer_texel_bytes(VkDeviceSize bytes)
+{
+    const VkDeviceSize page = 4096;
+    VkDeviceSize       pages = (bytes + page - 1) / page;
+    return (pages < 3 ? 3 : pages | 1) * page;
+}
+
+bool buffer_view(Gpu *gpu, Buffer *buffer, VkFormat format, uint32_t texel_bytes,
+                 const char *name)
+{
+    char attempt[128];
+    snprintf(attempt, sizeof attempt, "make room for the %s", name);
+    if (buffer->texels)
+        return true;
+    if (buffer->size / texel_bytes > gpu->properties.limits.maxTexelBufferElements) {
+        gpu_fail(gpu, VK_ERROR_OUT_OF_DEVICE_MEMORY, attempt);
+        return false;
+    }
+    TRY(gpu, attempt, vkCreateBufferView(gpu->device, &(VkBufferViewCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+        .buffer = buffer->buffer,
+        .format = format,
+        .range = VK_WHOLE_SIZE,
+    }, NULL, &buffer->texels));
+    return true;
+
+failed:
+    return false;
+}
+
 void buffer_destroy(Gpu *gpu, Buffer *buffer)
 {
     if (gpu->device) {
+        vkDestroyBufferView(gpu->device, buffer->texels, NULL);
         vkDestroyBuffer(gpu->device, buffer->buffer, NULL);
         vkFreeMemory(gpu->device, buffer->memory, NULL); /* unmaps it, too */
     }

@@ -17,11 +17,18 @@ typedef struct Buffer {
     VkDeviceSize   size;
     VkDeviceSize   held; /* what the device set aside for it */
     void          *bytes; /* SHARED only */
+    VkBufferView   texels; /* what is in it, for kernels that read it so (buffer_view) */
 } Buffer;
 
 /* A buffer of `size` bytes (at least 1) for every use a kernel has.  `name` stands in messages:
    "cannot make room for the <name>". */
 bool buffer_create(Gpu *gpu, Buffer *buffer, VkDeviceSize size, Where where, const char *name);
+/* At least so many bytes, for a buffer that is read as texels: llvmpipe compiles a kernel anew when
+   the size of one becomes a power of two, or 256 times it a multiple of that; this is neither. */
+VkDeviceSize buffer_texel_bytes(VkDeviceSize bytes);
+/* Makes it readable as texels of so many bytes and that format, where it is not so far. */
+bool buffer_view(Gpu *gpu, Buffer *buffer, VkFormat format, uint32_t texel_bytes,
+                 const char *name);
 void buffer_destroy(Gpu *gpu, Buffer *buffer);
 
 #endif

@@ -30,8 +30,9 @@ void *gpu_alloc(Gpu *gpu, size_t count, size_t size, const char *attempt)
     void               *block = NULL;
     if (size == 0 || count <= SIZE_MAX / size) {
         size_t bytes = count * size > 0 ? count * size : 1;
-        block = allocator->allocate ? allocator->allocate(allocator->user, bytes) : malloc(bytes);
-        if (block)
+        if (!allocator->allocate)
+            block = calloc(1, bytes); /* knows what is zero already: pages fresh from the system */
+        else if ((block = allocator->allocate(allocator->user, bytes)))
             memset(block, 0, bytes);
     }
     if (!block)
@@ -326,8 +327,9 @@ static void read_properties(Gpu *gpu)
     };
     vkGetPhysicalDeviceProperties2(gpu->physical, &properties);
     gpu->properties = properties.properties;
-    gpu->votes = subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT &&
-                 subgroups.supportedOperations & VK_SUBGROUP_FEATURE_VOTE_BIT;
+    gpu->shuffles = subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT &&
+                    subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT &&
+                    subgroups.subgroupSize >= 8;
 }
 
 static bool device_create(Gpu *gpu)

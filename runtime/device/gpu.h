@@ -28,7 +28,7 @@ typedef struct Gpu {
 
     VkPhysicalDeviceProperties       properties;
     VkPhysicalDeviceMemoryProperties memory;
-    bool votes; /* kernels may ask what all lanes of a subgroup say */
+    bool shuffles; /* eight lanes of a kernel may exchange numbers */
     uint64_t memory_used, memory_peak; /* bytes of device memory */
 
     Cache           cache;            /* of shaders; zero when none was asked for */

@@ -129,7 +129,7 @@ static bool begin(Gpu *gpu, Making *making, const KernelSource *source)
     making->text = kernel_text(gpu, source);
     if (!making->text)
         return false;
-    snprintf(maker, sizeof maker, "%s: krs %s, glslang %s, SPIRV-Tools %s", source->file,
+    snprintf(maker, sizeof maker, "%s: krs %s, glslang %s, SPIRV-Tools %s, inlined", source->file,
              KRS_VERSION, spirv_glslang_version(), spirv_tools_version());
     making->key = cache_key(maker, making->text, strlen(making->text));
     making->found = cache_load(&gpu->cache, CACHE_SPIRV, making->key, &making->bytes);

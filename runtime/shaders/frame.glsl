@@ -12,6 +12,7 @@ const float ROUNDING = 2.4e-7; // four units in the last place of 1
 
 const uint PERSPECTIVE = 0u, ORTHOGRAPHIC = 1u, PANORAMA = 2u;
 const uint MARCHING = 0u, HIT = 1u, MISS = 2u, CLOSING = 3u; // the fate of a ray
+const uint FRESH = 0u, QUEUED = 1u, REST = 2u; // control.source: where items come from
 
 struct Frame {
     vec4  eye;               // w: no ray goes farther
@@ -48,15 +49,17 @@ struct Control {
     uint seed;       // moves what is drawn by lot
     uint follow;     // 1: rays start where the beams of their tiles end,
     uint listed;     // and 1: there are rays in listed tiles only
-    uint source;     // of the items (schedule.glsl): FRESH, QUEUED or REST,
+    uint source;     // of the items (schedule.glsl),
     uint items;      // how many there are,
     uint share;      // and at most for a lane
     uint reading;    // where the queue or list that is read begins,
     uint writing;    // and the one that is written
-    uint value;      // of fill.comp: which one it fills in
+    uint value;      // of a hit's LIGHTING that is looked for
     uint rows;       // of results.glsl that are asked for, a bit each
     uint parts;      // 1: rays tell which group of components they hit, and are listed by it
     uint open;       // 1: occlusion is not looked for
+    uint window;     // of the tiles of beams, counted in the band, the first: column | row << 16,
+    uint across;     // and how many in a row
 };
 
 // A ray that is done.
@@ -69,22 +72,19 @@ struct Ray {
     uint  group; // of the components that it hits; 0: of none, or not known
 };
 
-// What is kept of a pixel, a light or a ray lies in memory in rows of four numbers, which are read
-// and written whole where that can be: of each access lavapipe makes a loop over the lanes, and
-// such loops are most of what it has to compile.
-struct Hit {
-    vec4  place;    // position; the width of a pixel there, negative for a ray inside of a solid
-    vec4  ray;      // its direction, unit; the rounding of coordinates
-    vec4  facing;   // normal, towards the side that the ray comes from; occlusion, 1: open, and
-                    // before that is known how even the surface is within a pixel, 1: flat
-    vec4  shading;  // the mean of the normals to light: its direction; its length
-    vec4  coat;     // colour; roughness
-    vec4  radiance; // found so far: emission, then light by light; metallic
-    uvec4 identity; // component, level, instance; how much of a light is visible, and before that
-                    // is known how steep the distance is there (bits of a float)
-};
-// So many numbers is a Hit (HIT_BYTES in blocks.h), and three of them by number (solid.glsl).
-const uint OF_HIT = 28u, OCCLUSION_OF_HIT = 11u, VISIBLE_OF_HIT = 27u, STEEPNESS_OF_HIT = 27u;
+// What is kept of a pixel, a light or a ray lies in memory in rows of four numbers, or one by one,
+// and is read as texels: of an access to a buffer lavapipe makes a loop over the lanes for each
+// number, which takes five times as long.  Buffers are for what is written, and what is counted.
+
+// The rows of a hit (HIT_ROWS in blocks.h).
+const uint PLACE = 0u;    // position; the width of a pixel there, negative for a ray inside a solid
+const uint RAY = 1u;      // its direction, unit; the rounding of coordinates
+const uint FACING = 2u;   // normal, towards the side that the ray comes from; how even the surface
+                          // is within a pixel, 1: flat
+const uint LIGHTING = 3u; // occlusion, 1: open, and before that is known how steep the distance is
+                          // there; how much of three lights is visible
+const uint HIT_ROWS = 4u;
+const uint LIGHTS_AT_ONCE = 3u;
 
 struct Light {
     vec3  vector;   // towards it (unit), or its position
@@ -92,20 +92,20 @@ struct Light {
     vec3  color;
     uint  kind;
 };
-struct LightRows {
-    vec4  vector; // and softness
-    uvec4 color;  // bits of floats; kind
-};
 const uint POSITIONAL = 1u, CASTS_SHADOWS = 2u; // bits of its kind
 const uint SOFT_SHADOWS = 0u, AREA_SHADOWS = 1u;
 
-// Where the rays of the pixels end, then the beams of 8x8 tiles, then those of 32x32 tiles.
-layout(std430, set = 1, binding = 1) buffer Ends { float ends[]; };
-layout(std430, set = 1, binding = 2) buffer Hits { Hit hits[]; };
-layout(std430, set = 1, binding = 5) buffer Fates { uint fates[]; }; // of rays, by pack_ray
-layout(std430, set = 1, binding = 8) readonly buffer Lights { LightRows lights[]; };
+// Where the rays of the pixels end, then the beams of 8x8 tiles, then those of 32x32 tiles: bits of
+// t, and the rest by pack_ray.
+layout(std430, set = 1, binding = 1) buffer Ends { uvec2 ends[]; };
+layout(std430, set = 1, binding = 2) writeonly buffer Hits { vec4 hits[]; };
+layout(std430, set = 1, binding = 2) writeonly buffer HitNumbers { float hit_numbers[]; };
 // Tiles of 8x8 pixels whose beams find something: only their pixels have rays.
 layout(std430, set = 1, binding = 9) buffer Tiles { uint tiles[]; };
+// Of lights two texels each; the others are what is in these buffers (stage.c).
+layout(set = 1, binding = 8) uniform usamplerBuffer light_texels;
+layout(set = 1, binding = 10) uniform usamplerBuffer end_texels;
+layout(set = 1, binding = 11) uniform usamplerBuffer hit_texels;
 layout(std140, set = 1, binding = 0) uniform FrameBlock { Frame given_frame; };
 layout(push_constant) uniform WorkBlock { Work given_work; };
 layout(std430, set = 1, binding = 4) buffer ControlBlock {
@@ -135,8 +135,23 @@ void load_frame()
 
 Light find_light(uint number)
 {
-    LightRows rows = lights[number];
-    return Light(rows.vector.xyz, rows.vector.w, uintBitsToFloat(rows.color.xyz), rows.color.w);
+    vec4  vector = uintBitsToFloat(texelFetch(light_texels, int(2u * number)));
+    uvec4 color = texelFetch(light_texels, int(2u * number + 1u));
+    return Light(vector.xyz, vector.w, uintBitsToFloat(color.xyz), color.w);
+}
+
+// Of the pixel of a slot (solid.glsl).
+vec4 find_hit(uint row, uint slot)
+{
+    return uintBitsToFloat(texelFetch(hit_texels, int(HIT_ROWS * slot + row)));
+}
+
+void keep_hit(uint row, uint slot, vec4 numbers) { hits[HIT_ROWS * slot + row] = numbers; }
+
+// One of LIGHTING.
+void keep_lighting(uint which, uint slot, float number)
+{
+    hit_numbers[4u * (HIT_ROWS * slot + LIGHTING) + which] = number;
 }
 
 // The least bits: fate, side, lost, group; then the steps.
@@ -148,8 +163,9 @@ uint pack_ray(Ray ray)
 
 Ray find_end(uint index)
 {
-    uint bits = fates[index];
-    return Ray(ends[index], (bits & 4u) != 0u ? -1.0 : 1.0, bits >> 8u, bits & 3u,
+    uvec2 row = texelFetch(end_texels, int(index)).xy;
+    uint  bits = row.y;
+    return Ray(uintBitsToFloat(row.x), (bits & 4u) != 0u ? -1.0 : 1.0, bits >> 8u, bits & 3u,
                (bits & 8u) != 0u, bits >> 4u & 15u);
 }
 

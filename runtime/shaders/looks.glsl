@@ -7,8 +7,10 @@
  * from as far as the bound permits.  The estimate must have no seams, or they would show as rings:
  * nothing here is decided but by minima and maxima, and all walks have as many steps.
  */
-// Of the taps around, in bounds.  Where two bounds meet the taps see both, which darkens by as much.
-const float REACH = 0.0625, REACH_OF_OCCLUSION = 0.01;
+// Of the taps around, in bounds.  Where two bounds meet taps see both, which darkens by as much;
+// near taps see one of them give way to the other at once, which shows as a contour in what is as
+// broad as occlusion.
+const float REACH = 0.0625, REACH_OF_OCCLUSION = 0.5;
 const uint  WALK = 4u;
 const float LEAST_FALL = 0.125;  // of the bound on the walk, for what it is at the taps
 const float EDGE = 0.8;          // where the sum has less of the gradient nothing is walked

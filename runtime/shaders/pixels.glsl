@@ -1,13 +1,25 @@
 /*
- * pixels.glsl: for kernels that do the same for every item.
+ * pixels.glsl: main() of a kernel that does the same for every item.
+ *
+ * The kernel that includes this says what that is:
+ *     void begin_group()              first of all
+ *     void do_item(uint number)
+ * A lane does several, for which the frame is loaded once.
  */
 layout(local_size_x = 64) in;
 
-// The number of this invocation's item; false when there is none.  The stride spreads neighbours
-// over a device that deals out workgroups in contiguous halves.
-bool find_item(out uint number)
+void main()
 {
+    load_frame();
+    begin_group();
+    // The stride spreads neighbours over a device that deals out workgroups in contiguous halves.
     uint group = work.first + gl_WorkGroupID.x * work.stride % work.groups;
-    number = group * 64u + gl_LocalInvocationIndex;
-    return number < control.items;
+    uint number = group * 64u * control.share + gl_LocalInvocationIndex;
+    uint done = 0u;
+    do { // lavapipe goes through the body of another loop once more
+        if (number < control.items)
+            do_item(number);
+        number += 64u;
+        done++;
+    } while (done < control.share);
 }

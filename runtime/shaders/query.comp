@@ -1,6 +1,6 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
-#extension GL_KHR_shader_subgroup_vote : enable
+#extension GL_KHR_shader_subgroup_shuffle : enable
 /*
  * query.comp: where rays that a program asks about end; sample.comp says what is there.
  *
@@ -41,7 +41,8 @@ float side;               // as of a Ray; 0: not known
 bool  walls;              // all solids end at `end`
 uint  steps, fate;
 
-void begin_group() {}
+void look_up_item(uint number) {}
+void begin_group(uint first) {}
 
 void begin_item(uint number, bool saved)
 {

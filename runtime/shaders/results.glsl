@@ -9,14 +9,15 @@ const uint NORMALS = 2u; // floats, and component, 0: nothing, all else but colo
 const uint ALBEDOS = 3u; // floats, and level
 const uint COUNTS = 4u;  // instance; steps
 
-layout(std430, set = 1, binding = 3) buffer Results { uvec4 results[]; }; // bits of floats
+layout(std430, set = 1, binding = 3) writeonly buffer Results { uvec4 results[]; };
+layout(set = 1, binding = 13) uniform usamplerBuffer result_texels; // bits of floats
 
 bool is_wanted(uint row) { return (control.rows >> row & 1u) != 0u; }
 
 void add_color(uint index, vec4 color)
 {
     uint at = COLORS * band_pixels() + index;
-    results[at] = floatBitsToUint(uintBitsToFloat(results[at]) + color);
+    results[at] = floatBitsToUint(uintBitsToFloat(texelFetch(result_texels, int(at))) + color);
 }
 
 void set_result(uint row, uint index, uvec4 numbers)

@@ -3,7 +3,9 @@
  * needs, every step one call of the distance.
  *
  * The kernel that includes this says what an item is:
- *     void begin_group()                   first of all
+ *     void begin_group(uint first)         first of all: the group's items begin with this one
+ *     void look_up_item(uint number)       what is to be had of an item from other lanes; these
+ *                                          may have an item each, and must keep it
  *     void begin_item(uint number, bool saved)   takes an item up, or one that was saved
  *     bool item_wants_more()               it is not finished
  *     vec3 item_place()                    where it wants to know the distance
@@ -15,11 +17,10 @@
  *     const bool SAVES                     whether items are saved when the dispatch has had its
  *                                          steps; else those that are begun are finished
  *
- * A group deals its items out to its lanes in turn.  On lavapipe, where a branch skips nothing
- * and eight lanes go through a loop together, a lane that is done takes its next item while the
- * others march on (REFILL): the loop over steps ends when a lane can do so.  What is in these
- * loops stands on every lane's way, so saving and resuming are outside.  On a graphics card a lane
- * has one item.
+ * On lavapipe, where a branch skips nothing and eight lanes go through a loop together, a lane that
+ * is done takes the group's next item while the others march on (REFILL): the loop over steps ends
+ * when a lane can do so.  What is in these loops stands on every lane's way, so saving and resuming
+ * are outside.  On a graphics card a lane has one item.
  */
 // Whether a lane may go on with its item after so many steps.
 bool may_go_on(uint turns, uint allowed)
@@ -27,65 +28,76 @@ bool may_go_on(uint turns, uint allowed)
     return item_wants_more() && (!SAVES || turns < allowed);
 }
 
-const uint FRESH = 0u, QUEUED = 1u, REST = 2u; // control.source: where items come from
-
 #if REFILL
 layout(local_size_x = 8) in;
-// How many of its items a lane has taken up so far, by the number of the lane.
+// How many of its items a group has taken up so far.
 layout(std430, set = 1, binding = 7) buffer Taken { uint taken[]; };
+
+// The bits of all eight lanes.  Of a vote lavapipe makes a loop over the lanes; of this, six
+// instructions.
+uint join_lanes(uint bits)
+{
+    bits |= subgroupShuffleXor(bits, 1u);
+    bits |= subgroupShuffleXor(bits, 2u);
+    return bits | subgroupShuffleXor(bits, 4u);
+}
+
+bool any_lane(bool says) { return join_lanes(uint(says)) != 0u; }
 
 void work_on_items(uint group, uint turns_allowed, inout uint turns)
 {
-    uint number = group * 8u * control.share + gl_LocalInvocationIndex;
-    uint lane = group * 8u + gl_LocalInvocationIndex;
-    uint left = number < control.items
-              ? min(control.share, (control.items - number + 7u) / 8u) : 0u;
-    bool holding = false, going = false;
-    if (control.source == QUEUED && left > 0u) {
-        begin_item(number, true);
-        holding = true;
-        going = true;
-        left = 0u;
+    uint lane = gl_LocalInvocationIndex, first = group * 8u * control.share, next = first;
+    uint limit = min(first + 8u * control.share, control.items);
+    bool holding = false, going, hungry;
+    if (control.source == QUEUED) {
+        holding = first + lane < limit;
+        if (holding)
+            begin_item(first + lane, true);
+        next = limit;
     }
-    uint before = control.source == REST && left > 0u ? taken[lane] : 0u;
-    left -= before;
-    number += 8u * before;
-    uint all = left;
-    bool hungry = left > 0u;
-    if (!subgroupAny(holding || hungry))
-        return;
+    if (control.source == REST)
+        next += taken[group];
     do {
-        do { // until each lane marches, or has nothing left
+        do { // until each lane marches, or there is nothing left
             if (holding && !item_wants_more()) {
                 end_item();
                 holding = false;
             }
-            if (!holding && hungry) {
+            bool asks = !holding && turns < turns_allowed; // and takes what is next, lane by lane
+            uint asking = join_lanes(uint(asks) << lane);
+            uint number = next + bitCount(asking & (1u << lane) - 1u);
+            look_up_item(number);
+            if (asks && number < limit) {
                 begin_item(number, false);
                 holding = true;
-                number += 8u;
-                left--;
             }
+            next += bitCount(asking);
             going = holding && may_go_on(turns, turns_allowed);
-            hungry = !going && left > 0u && turns < turns_allowed;
-        } while (subgroupAny(hungry));
-        do { // until one is done that has something left, or all are
+            hungry = !going && next < limit && turns < turns_allowed;
+        } while (any_lane(hungry));
+        uint wants;
+        do { // until one is done while there is something left, or all are
             float distance = item_distance(item_place());
             if (going) {
                 take_distance(distance);
                 turns++;
                 going = may_go_on(turns, turns_allowed);
             }
-            hungry = !going && left > 0u && turns < turns_allowed;
-        } while (subgroupAny(going) && !subgroupAny(hungry));
-    } while (subgroupAny(going || hungry));
+            hungry = !going && next < limit && turns < turns_allowed;
+            wants = join_lanes(uint(going) | uint(hungry) << 1u);
+        } while (wants == 1u);
+        going = wants != 0u;
+    } while (going);
     if (holding && item_wants_more())
         save_item();
     else if (holding)
         end_item();
-    taken[lane] = before + all - left;
-    if (left > 0u)
-        atomicAdd(counts.left, left);
+    next = min(next, limit);
+    if (lane == 0u && control.source != QUEUED) {
+        taken[group] = next - first;
+        if (next < limit)
+            atomicAdd(counts.left, limit - next);
+    }
 }
 #else
 layout(local_size_x = 64) in;
@@ -95,6 +107,7 @@ void work_on_items(uint group, uint turns_allowed, inout uint turns)
     uint number = group * 64u + gl_LocalInvocationIndex;
     if (number >= control.items)
         return;
+    look_up_item(number);
     begin_item(number, control.source == QUEUED);
     for (; may_go_on(turns, turns_allowed); turns++)
         take_distance(item_distance(item_place()));
@@ -109,8 +122,8 @@ void main()
 {
     load_frame();
     krs_prepare();
-    begin_group();
-    uint turns = 0u;
-    work_on_items(work.first + gl_WorkGroupID.x * work.stride % work.groups, work.steps, turns);
+    uint turns = 0u, group = work.first + gl_WorkGroupID.x * work.stride % work.groups;
+    begin_group(group * gl_WorkGroupSize.x * (REFILL != 0 ? control.share : 1u));
+    work_on_items(group, work.steps, turns);
     end_group(turns);
 }

@@ -1,6 +1,6 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
-#extension GL_KHR_shader_subgroup_vote : enable
+#extension GL_KHR_shader_subgroup_shuffle : enable
 /*
  * secondary.comp: what the distance around a hit tells: its normal, how open it is, and whether
  * it sees a light.
@@ -28,16 +28,17 @@ const uint SHADOW_STEPS = 1024u;
 const uint OCCLUSION_TAPS = 5u;
 const float LEAST_STEEPNESS = 1e-6;
 
-// A shadow that is darker than this is black.
-const float BLACK = 4e-3;
+// What is less open than this is black, and what is more so less of it is seen: no step shows.
+const float BLACK = 0.03;
 // Rays to lights start so many pixels above the surface.
 const float LIFT = 0.5;
 // For so many pixels from there a distance may be a bound as at the start.
 const float SHARED = 8.0;
 // A way is clear for the pixels around as well if it stays so many of them away from everything.
 const float CLEARANCE = 3.0;
-// What is nearer than this part of a penumbra's width is touched.
-const float TOUCH = 4e-3;
+// Relaxation: of the gap between balls that would still meet as far aside as they must; how fast
+// the slope is learned, and the steepest that is counted on.
+const float CAUTION = 0.6, LEARNING = 0.5, STEEPEST = 0.9;
 // What is lit and not clear: less than 1 by a bit (fill.comp).
 const float LIT = 0.99999994;
 // What a ray to a point of a light may leave open where it must get inside: as in trace.comp, and
@@ -59,7 +60,10 @@ vec3  start, way;  // the next distance is asked for at start + t way
 float t;
 float end;         // of the way to the light
 float sharpness;   // of the shadow's edge
-float before;      // the distance at the step before
+float before;      // the distance at the step before,
+float gap;         // which was so long
+bool  crept;       // whatever the distance was
+float slope;       // of the distance along the way, as it was on average
 float share;       // of the true distance, at the start of a shadow ray
 vec3  sum, level;  // of the taps of a normal, with the signs of their directions and without
 float extent;      // of their directions: the sum of their squares
@@ -91,7 +95,6 @@ uint  taps, limit; // so far, and at most
 
 uint  lost;        // of this lane's shadow rays
 
-void begin_group() { lost = 0u; }
 
 // How steep the distance is, 1 unless it is a bound.  In a hollow edge the differences of its two
 // sides cancel in part, and the rest is in the level, below 0; on a convex one they may.
@@ -128,10 +131,11 @@ vec2 disc_point(vec2 pixel_seed)
     return sqrt(even.y) * vec2(cos(angle), sin(angle));
 }
 
+Light light;
+
 // From the hit to the light: to its middle, or for area shadows to a point of its disc.
 void aim_at_light(vec3 normal)
 {
-    Light light = find_light(control.light);
     bool  positional = (light.kind & POSITIONAL) != 0u;
     start = place.position + normal * (LIFT * place.width + 4.0 * place.rounding);
     vec3  toward = positional ? light.vector - start : light.vector;
@@ -144,7 +148,7 @@ void aim_at_light(vec3 normal)
         vec3 axis = toward / remote;
         vec3 aside = normalize(abs(axis.x) < 0.7 ? vec3(0.0, axis.z, -axis.y)
                                                  : vec3(-axis.z, 0.0, axis.x));
-        uvec2 pixel = work.corner + find_cell(place.index, work.extent.x);
+        uvec2 pixel = work.corner + pixel_of(place.slot);
         vec2  seed = vec2(random(pixel, 2u * control.light + 1u),
                           random(pixel, 2u * control.light + 2u));
         vec2 at = radius * disc_point(seed);
@@ -164,15 +168,31 @@ void aim_at_light(vec3 normal)
     limit = facing > 0.0 && (light.kind & CASTS_SHADOWS) != 0u ? SHADOW_STEPS : 0u;
 }
 
+// Where the ray comes from that hits here, unit.
+vec3 find_backwards()
+{
+    return control.projection == ORTHOGRAPHIC ? -frame.forward.xyz
+                                              : normalize(frame.eye.xyz - place.position);
+}
+
+void look_up_item(uint number) {}
+
+void begin_group(uint first)
+{
+    lost = 0u;
+    light = find_light(control.light);
+}
+
 void begin_item(uint number, bool saved)
 {
     place = find_place(number);
-    vec3 normal = hits[place.index].facing.xyz;
+    vec3 normal = find_hit(FACING, place.slot).xyz;
     start = place.position;
     taps = 0u;
     sum = level = vec3(0.0);
     extent = 0.0;
-    before = INFINITE;
+    before = gap = 0.0;
+    crept = true;
 #ifdef LOOSE
     looks = 0u;
     open_before = least = INFINITE;
@@ -183,10 +203,11 @@ void begin_item(uint number, bool saved)
     if (control.phase == SHADOW) {
         aim_at_light(normal);
         t = 0.0;
+        slope = facing;
     } else if (control.phase == OCCLUSION) {
         way = normal;
         t = 0.0625 * frame.occlusion_reach;
-        steepness = hit_numbers[OF_HIT * place.index + STEEPNESS_OF_HIT];
+        steepness = find_hit(LIGHTING, place.slot).x;
         limit = OCCLUSION_TAPS;
     } else {
         // Differences over a pixel or so: finer detail would only be noise.
@@ -203,7 +224,7 @@ void begin_item(uint number, bool saved)
         // Differences are for where derivatives are no numbers.
         vec3 gradient = krs_gradient(place.position, t);
         // Differences are as well for where rounding makes what is seen face away.
-        float facing_eye = -place.side * dot(gradient, place.direction);
+        float facing_eye = place.side * dot(gradient, find_backwards());
         derived = facing_eye > 0.0 && dot(gradient, gradient) < INFINITE;
         if (derived) {
             sum = place.side * normalize(gradient);
@@ -242,17 +263,26 @@ vec3 item_place()
     return start + t * way;
 }
 
-// How much of the light a distance here leaves visible.  A surface may be as near as the rim where
-// this step's sphere meets the last one's, which lies `back` behind here, if that is ahead of the
-// last step (math.md 6).
-float find_open(float distance)
+// Where this ball of empty space meets the last one: so far behind here, so far aside of the way.
+// Nothing in between is nearer to the way, for what it is away from the start (math.md 6).
+struct Rim {
+    float back, aside;
+    bool  exists; // none does where one ball is in the other
+};
+
+Rim find_rim(float distance)
+{
+    float back = 0.5 * (gap + (distance - before) * (distance + before) / max(gap, 1e-30));
+    float aside = sqrt(max(distance * distance - back * back, 0.0));
+    return Rim(back, aside, !crept && back > 0.0 && back < gap);
+}
+
+// How much of the light a distance here leaves visible, if a surface may be at the rim.
+float find_open(float distance, Rim rim)
 {
     float open = sharpness * distance / max(t, place.rounding);
-    float back = distance * distance / (2.0 * before);
-    float aside = sqrt(max(distance * distance - back * back, 0.0));
-    if (back < before)
-        open = min(open, sharpness * aside / max(t - back, place.rounding));
-    return open;
+    float there = sharpness * rim.aside / max(t - rim.back, place.rounding);
+    return rim.exists ? min(open, there) : open;
 }
 
 #ifdef LOOSE
@@ -292,7 +322,7 @@ float find_touch(float distance)
     // Where there is a penumbra, it tells what is near.
     float touch = near * frame.error * place.width;
     if (sharpness < INFINITE)
-        touch = min(touch, TOUCH * t / sharpness);
+        touch = min(touch, BLACK * t / sharpness);
     return max(touch, place.rounding);
 #endif
 }
@@ -310,26 +340,61 @@ float find_pace()
     return max(place.width, 0.0625 * t / sharpness);
 }
 
+#ifndef LOOSE
+// As far aside nothing must be for what is found so far to hold.  The surface itself falls away by
+// the cosine.
+float find_room_needed(float at)
+{
+    float clear = is_clear ? min(CLEARANCE * place.width, 0.5 * facing * at) : 0.0;
+    return max(clear, visible * at / sharpness);
+}
+
+// A gap beyond the distance, as long as may be if the distance goes on as it did.
+float relax(float distance)
+{
+    float needed = min(find_room_needed(t) / distance, 1.0);
+    float relaxed = 2.0 * sqrt(1.0 - needed * needed) / (1.0 - clamp(slope, -1.0, STEEPEST));
+    return distance * max(CAUTION * relaxed, 1.0);
+}
+
+// Where balls leave too much open in between, or do not meet, the ray has gone too far.
+bool has_gone_too_far(float distance, Rim rim)
+{
+    bool narrow = rim.exists && rim.aside < find_room_needed(t - rim.back);
+    return !crept && gap > before && (narrow || gap > before + distance);
+}
+#endif
+
+// A step of a ray to a light.  What has gone too far goes back to where the last ball ends, and has
+// found nothing.
 void take_shadow(float distance)
 {
+    Rim  rim = find_rim(distance);
+    bool back = false;
 #ifdef LOOSE
     if (sharpness < INFINITE)
-        note_open(find_open(distance), distance);
+        note_open(find_open(distance, rim), distance);
 #else
-    visible = min(visible, find_open(distance));
+    back = has_gone_too_far(distance, rim);
+    float risen = gap > 0.0 ? mix(slope, (distance - before) / gap, LEARNING) : slope;
+    slope = back ? -1.0 : risen;
+    visible = back ? visible : min(visible, find_open(distance, rim));
 #endif
-    if (distance < find_touch(distance))
-        visible = 0.0;
-    // The surface itself falls away by the cosine.
-    if (distance < min(CLEARANCE * place.width, 0.5 * facing * t))
-        is_clear = false;
-    float pace = find_pace();
-    before = distance < pace ? INFINITE : distance;
-    t += max(distance, pace);
-    if (visible < BLACK || t >= end)
-        limit = 0u;
+    visible = !back && distance < find_touch(distance) ? 0.0 : visible;
+    bool near = distance < min(CLEARANCE * place.width, 0.5 * facing * t);
+    is_clear = is_clear && (back || !near);
+    float pace = find_pace(), least = max(distance, pace);
+    limit = !back && (visible < BLACK || t + least >= end) ? 0u : limit;
+    crept = !back && distance < pace;
+    float next = least;
+#ifndef LOOSE
+    next = min(crept ? pace : max(relax(distance), pace), max(end - t, 0.0));
+#endif
+    t += back ? before - gap : next;
+    gap = back ? before : next;
+    before = back ? before : distance;
 #ifdef LOOSE
-    if (t >= end && falling && looks == 0u)
+    if (limit == 0u && falling && looks == 0u)
         look_at_least();
     if (visible < BLACK)
         looks = 0u;
@@ -450,18 +515,19 @@ void take_outside(float distance)
 }
 #endif
 
-void take_normal()
+// And how steep the distance is.
+float take_normal()
 {
     float size = length(sum), flatness = find_flatness();
-    vec3  normal = size > 0.0 && size < INFINITE ? sum / size : -place.direction;
+    vec3  normal = size > 0.0 && size < INFINITE ? sum / size : find_backwards();
     float found = find_steepness(t);
     if (again && flatness < max(even, EVEN_OUTSIDE)) {
         normal = facing_before;
         flatness = even;
         found = steepness_before;
     }
-    hits[place.index].facing = vec4(normal, flatness);
-    hit_numbers[OF_HIT * place.index + STEEPNESS_OF_HIT] = found;
+    keep_hit(FACING, place.slot, vec4(normal, flatness));
+    return found;
 }
 
 void take_distance(float distance)
@@ -500,19 +566,28 @@ void take_distance(float distance)
     }
 }
 
+// How much of the light is seen: none of what is black.
+float find_seen()
+{
+    float seen = max(visible - BLACK, 0.0) / (1.0 - BLACK);
+    seen = seen * seen * (3.0 - 2.0 * seen);
+    return is_clear ? seen : min(seen, LIT);
+}
+
+// One number for all phases: of each store lavapipe makes a loop.
 void end_item()
 {
+    float found = 0.0;
     if (control.phase == SHADOW) {
-        lost += limit > 0u && t < end ? 1u : 0u;
-        float seen = visible < BLACK ? 0.0 : visible;
-        seen = seen * seen * (3.0 - 2.0 * seen);
-        hit_numbers[OF_HIT * place.index + VISIBLE_OF_HIT] = is_clear ? seen : min(seen, LIT);
+        lost += limit > 0u ? 1u : 0u;
+        found = find_seen();
     } else if (control.phase == OCCLUSION) {
         // Light finds its way in by reflection.
-        hit_numbers[OF_HIT * place.index + OCCLUSION_OF_HIT] = exp2(-2.5 * blocked);
+        found = exp2(-2.5 * blocked);
     } else {
-        take_normal();
+        found = take_normal();
     }
+    keep_lighting(control.value, place.slot, found);
 }
 
 void end_group(uint turns)

@@ -1,25 +1,70 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
- * shade.comp: the light that a hit sends along its ray: of one light, by a dispatch for each;
- * last of the sky, and then all of it becomes the pixel's.
+ * shade.comp: what is at each hit, and the light that it sends along its ray: its own, that of the
+ * sky, and of some lights at once.  All of it becomes the pixel's.
  */
+#include "scene.glsl"
 #include "frame.glsl"
-#include "pixels.glsl"
 #include "solid.glsl"
 #include "light.glsl"
 #include "results.glsl"
 
-const uint ONE_LIGHT = 0u, FINISH = 1u; // control.phase
+const float EVEN = 0.98;      // less is not a curved surface's own, but detail
+const float LEAST_BLUR = 0.5; // without filtering (normal_reach in render.c)
+const float SEEN = 0.78;      // the mean of the normals that are seen of a thin round thing
+
+// A sum of rays of such light is still a number.
+const float BRIGHTEST = 1e30;
+
+// What reflects light.
+struct Coat {
+    vec3  color, normal; // the latter is the direction of the mean of the normals,
+    float share;         // and this its length
+    float roughness, metallic;
+    vec3  toward_eye;
+};
+
+// Within 0 and most; what is not a number is 0.
+vec4 between(vec4 numbers, float most)
+{
+    return mix(vec4(0.0), min(numbers, most), greaterThan(numbers, vec4(0.0)));
+}
+
+// The mean of the normals that the pixel sees, not a unit vector, where the mean of all around is
+// this share of a unit normal.  Of what is thin only the side towards the eye is seen.
+vec3 mean_normal(vec3 normal, float share, vec3 toward_eye)
+{
+    float rest = 1.0 - share;
+    return share * normal + SEEN * rest * rest * toward_eye;
+}
+
+// Normals that vary within the pixel make the coat rougher: the shorter their mean, the wider
+// their lobe (Toksvig 2005).
+float roughen(float roughness, float share)
+{
+    float square = roughness * roughness;
+    float spread = 2.0 * (1.0 - share) / max(share, 1e-3);
+    return sqrt(sqrt(min(square * square + spread, 1.0)));
+}
+
+Coat find_coat(Place place, KrsSurface surface, float evenness)
+{
+    float share = frame.blur > LEAST_BLUR ? min(evenness / EVEN, 1.0) : 1.0;
+    vec3  mean = mean_normal(place.side * surface.normal, share, -place.direction);
+    vec4  coat = between(vec4(surface.color, surface.roughness), 1.0);
+    float size = length(mean);
+    return Coat(coat.rgb, mean / max(size, 1e-6), min(size, 1.0), roughen(coat.a, share),
+                between(vec4(surface.metallic), 1.0).x, -place.direction);
+}
 
 // Scattered light goes with the cosine, and so with the mean of the normals, which is shorter than
 // each; what a coat mirrors is as much whatever its roughness.
-vec3 mean_color(Hit hit) { return hit.coat.rgb * mix(hit.shading.w, 1.0, hit.radiance.a); }
+vec3 mean_color(Coat coat) { return coat.color * mix(coat.share, 1.0, coat.metallic); }
 
-vec3 lit(Place place, Hit hit)
+vec3 lit(Light light, Place place, Coat coat, vec3 facing, float visible)
 {
-    Light light = find_light(control.light);
-    vec3  toward = light.vector, color = light.color;
+    vec3 toward = light.vector, color = light.color;
     if ((light.kind & POSITIONAL) != 0u) {
         vec3  apart = light.vector - place.position;
         float square = max(dot(apart, apart), 1e-12);
@@ -27,50 +72,63 @@ vec3 lit(Place place, Hit hit)
         color /= square;
     }
     // Who casts no shadows has not been looked for, but a surface that is turned away is dark.
-    float visible = (light.kind & CASTS_SHADOWS) != 0u ? uintBitsToFloat(hit.identity.w)
-                  : dot(hit.facing.xyz, toward) > 0.0  ? 1.0
-                                                       : 0.0;
-    return visible * color * reflected(hit.shading.xyz, -place.direction, toward, mean_color(hit),
-                                       hit.coat.a, hit.radiance.a);
+    if ((light.kind & CASTS_SHADOWS) == 0u)
+        visible = dot(facing, toward) > 0.0 ? 1.0 : 0.0;
+    return visible * color * reflected(coat.normal, coat.toward_eye, toward, mean_color(coat),
+                                       coat.roughness, coat.metallic);
 }
 
 // The hemisphere of the sky, as far as it is open; what is closed off by a surface of like
 // colour gives some light back.
-vec3 ambient(Hit hit, vec3 toward_eye)
+vec3 ambient(Coat coat, float open)
 {
-    vec3  normal = hit.shading.xyz, color = hit.coat.rgb;
-    float open = control.open != 0u ? 1.0 : hit.facing.w, metallic = hit.radiance.a;
-    vec3  bounce = open / max(1.0 - color * (1.0 - open), 0.05);
-    vec3  scattered = color * (1.0 - metallic) * sky_light(hit.shading.w * normal) * bounce;
-    vec3  mirrored = sky_reflected(normal, toward_eye, color, hit.coat.a, metallic);
+    vec3 bounce = open / max(1.0 - coat.color * (1.0 - open), 0.05);
+    vec3 scattered = coat.color * (1.0 - coat.metallic) * sky_light(coat.share * coat.normal) *
+                     bounce;
+    vec3 mirrored = sky_reflected(coat.normal, coat.toward_eye, coat.color, coat.roughness,
+                                  coat.metallic);
     return scattered + mirrored * open;
 }
 
-void describe(Place place, Hit hit)
+void describe(uint index, Place place, Coat coat, KrsSurface surface)
 {
     vec3  apart = place.position - frame.eye.xyz;
     float along = dot(apart, frame.forward.xyz);
     float depth = control.projection == PANORAMA ? length(apart) : along;
-    uvec3 normal = floatBitsToUint(place.side * hit.shading.xyz);
-    set_result(PLACES, place.index, floatBitsToUint(vec4(place.position, depth)));
-    set_result(NORMALS, place.index, uvec4(normal, hit.identity.x));
-    set_result(ALBEDOS, place.index, uvec4(floatBitsToUint(hit.coat.rgb), hit.identity.y));
-    set_result(COUNTS, place.index, uvec4(hit.identity.z, find_end(place.index).steps, 0u, 0u));
+    uvec3 normal = floatBitsToUint(place.side * coat.normal);
+    uint  steps = find_end(index).steps;
+    set_result(PLACES, index, floatBitsToUint(vec4(place.position, depth)));
+    set_result(NORMALS, index, uvec4(normal, surface.component));
+    set_result(ALBEDOS, index, uvec4(floatBitsToUint(coat.color), surface.level));
+    set_result(COUNTS, index, uvec4(surface.instance, steps, 0u, 0u));
 }
 
-void main()
+void begin_group() { krs_prepare(); }
+
+void do_item(uint number)
 {
-    load_frame();
-    uint number;
-    if (!find_item(number))
-        return;
-    Place place = find_place(number);
-    Hit   hit = hits[place.index];
-    if (control.phase == ONE_LIGHT) {
-        hits[place.index].radiance = hit.radiance + vec4(lit(place, hit), 0.0);
-    } else {
-        vec3 radiance = hit.radiance.rgb + ambient(hit, -place.direction);
-        add_color(place.index, vec4(sound(radiance), 1.0));
-        describe(place, hit);
+    Place      place = find_place(number);
+    vec4       facing = find_hit(FACING, place.slot), lighting = find_hit(LIGHTING, place.slot);
+    KrsSurface surface = krs_surface(place.position, place.side * facing.xyz, 0.5 * place.width);
+    uint       index = index_of(pixel_of(place.slot));
+    Coat       coat = find_coat(place, surface, facing.w);
+    vec4       radiance = vec4(0.0);
+    if (control.light == 0u) {
+        radiance.rgb = between(vec4(surface.emission, 0.0), BRIGHTEST).rgb +
+                       ambient(coat, control.open != 0u ? 1.0 : lighting.x);
+        radiance.a = 1.0;
+        describe(index, place, coat, surface);
     }
+    uint end = min(control.light + LIGHTS_AT_ONCE, control.lights);
+    vec3 visible = lighting.yzw;
+    uint i = control.light;
+    do { // as in pixels.glsl
+        vec3 light = lit(find_light(i), place, coat, facing.xyz, visible.x);
+        radiance.rgb += i < end ? light : vec3(0.0);
+        visible = visible.yzx;
+        i++;
+    } while (i < end);
+    add_color(index, vec4(sound(radiance.rgb), radiance.a));
 }
+
+#include "pixels.glsl"

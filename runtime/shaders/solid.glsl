@@ -2,27 +2,37 @@
  * solid.glsl: the pixels whose ray hits something, as a list: what comes after the primary rays
  * is about them alone.
  *
- * A quarter of them, those in columns and rows 0, 2, 5 and 7 of their tile of 8x8, are anchors:
+ * A pixel is known by its slot: 64 times its tile of 8x8 pixels, and its number in there.  So lie
+ * the hits in memory, as what is near in the picture is looked at together.
+ *
+ * A quarter of the pixels, those in columns and rows 0, 2, 5 and 7 of their tile, are anchors:
  * where all of a tile agree, the pixels in between are filled in.  Lists lie where the queue of
  * rays was, each with room for all pixels: all, the anchors, and those that are not filled in; a
  * fourth part says of each tile whether its anchors agree.  Where groups of components were marched
  * one after the other, lists of what each of them shows follow.
  */
-layout(std430, set = 1, binding = 6) buffer Solid { uint solid[]; };
+layout(std430, set = 1, binding = 6) writeonly buffer Solid { uint solid[]; };
+layout(set = 1, binding = 12) uniform usamplerBuffer solid_texels;
+
+uint find_listed(uint number) { return texelFetch(solid_texels, int(number)).x; }
 
 uint band_pixels() { return work.extent.x * work.extent.y; }
 
-bool is_anchor(uvec2 pixel)
+// In the band.
+uvec2 pixel_of(uint slot)
 {
-    return (0xA5u >> (pixel.x & 7u) & 0xA5u >> (pixel.y & 7u) & 1u) != 0u;
+    uvec2 tile = find_cell(slot / 64u, (work.extent.x + 7u) / 8u);
+    return 8u * tile + uvec2(slot & 7u, slot >> 3u & 7u);
 }
 
-// Hits once more, number by number: fill.comp works on either of two of these.
-layout(std430, set = 1, binding = 2) buffer HitNumbers { float hit_numbers[]; };
+// Of a pixel among those of the band, row by row.
+uint index_of(uvec2 pixel) { return pixel.y * work.extent.x + pixel.x; }
 
-// The ray of a pixel of the list, and where it hits, as background.comp has found it.
+bool is_anchor(uint slot) { return (0xA5u >> (slot & 7u) & 0xA5u >> (slot >> 3u & 7u) & 1u) != 0u; }
+
+// The ray of a pixel of the list, and where it hits, as hits.comp has found it.
 struct Place {
-    uint  index;     // of the pixel in the band
+    uint  slot;
     vec3  position;
     vec3  direction; // of the ray, unit
     float width;     // of a pixel there
@@ -30,11 +40,10 @@ struct Place {
     float side;      // as of a Ray
 };
 
-Place find_place_of(uint index)
-{
-    vec4 place = hits[index].place, ray = hits[index].ray;
-    return Place(index, place.xyz, ray.xyz, abs(place.w), ray.w, place.w < 0.0 ? -1.0 : 1.0);
-}
-
 // The place of item `number` of the list that is read.
-Place find_place(uint number) { return find_place_of(solid[control.reading + number]); }
+Place find_place(uint number)
+{
+    uint slot = find_listed(control.reading + number);
+    vec4 place = find_hit(PLACE, slot), ray = find_hit(RAY, slot);
+    return Place(slot, place.xyz, ray.xyz, abs(place.w), ray.w, place.w < 0.0 ? -1.0 : 1.0);
+}

@@ -1,6 +1,6 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
-#extension GL_KHR_shader_subgroup_vote : enable
+#extension GL_KHR_shader_subgroup_shuffle : enable
 /*
  * trace.comp: primary rays, by sphere tracing, behind beams.
  *
@@ -74,27 +74,95 @@ layout(std430, set = 1, binding = 6) buffer Queue { uvec4 queue[]; };
 
 March march;
 bool  exists;                  // the item is in the band
+uint  slot;                    // of the item, from the first of the group on
 vec3  origin, direction;
 float end;
 float flat_ahead;              // with FLATS: where a ray meets a plane; INFINITE: nowhere
 float pixel_base, pixel_slope; // a pixel is as wide as base + slope t
 vec2  width;                   // so is the beam; 0 for a ray, or less: solids count as grown
+float shrinking;               // of the room, since the beam gets wider: 1 / (1 + slope)
 bool  walls;                   // all solids end at `end`
 float rounding;                // of coordinates at t = 0
+float open_share;              // of a pixel, may be left open
 uvec2 first_8, count_8, first_32, count_32; // the tiles of beams
 uint  most_steps;              // of a ray of this lane
+uint  finds;                   // beams of this lane that find something: a bit each, by slot
 
-void begin_group()
+// What the rays of a tile of 8x8 pixels have in common; a beam has it to itself.
+struct Slot {
+    uvec2 tile;  // its column and row in the picture, of tiles of this size
+    float start; // nothing is before: the beam that it is in has ended here
+};
+
+uint first_slot;  // of the group
+Slot item_slot;   // of the item that is about to begin
+#if REFILL
+uvec4 kept_slots; // two of sixteen, which is as many as a group has: tiles, and bits of starts
+#endif
+
+// Items go through tiles of 8x8 pixels one after the other.
+uint slot_of(uint number) { return control.phase == RAYS ? number / 64u : number; }
+
+// The tile of a beam, counted in the band.
+uvec2 cell_of_beam(uint number)
 {
-    most_steps = 0u;
+    return find_cell(number, control.across) +
+           uvec2(control.window & 0xffffu, control.window >> 16u);
+}
+
+// Rays are those of all tiles of the band, or of those that are listed.  They start where the beam
+// of 8x8 pixels has ended, and that one where its beam of 32x32 has.
+Slot load_slot(uint number)
+{
+    bool  is_ray = control.phase == RAYS, large = control.phase == BEAMS_32;
+    bool  exists = control.source != QUEUED && number <= slot_of(control.items - 1u);
+    uint  pixels = work.extent.x * work.extent.y;
+    if (exists && is_ray && control.listed != 0u)
+        number = tiles[number];
+    uvec2 cell = is_ray ? find_cell(number, count_8.x) : cell_of_beam(number);
+    uvec2 tile = cell + (large ? first_32 : first_8);
+    uvec2 parent = tile / 4u - first_32;
+    uint  beam = is_ray ? number : count_8.x * count_8.y + parent.y * count_32.x + parent.x;
+    float start = 0.0;
+    if (exists && !large && control.follow != 0u)
+        start = uintBitsToFloat(ends[pixels + beam].x);
+    return Slot(tile, start);
+}
+
+void begin_group(uint first)
+{
+    most_steps = finds = 0u;
+    open_share = min(OPEN * frame.error, MOST_OPEN);
     find_tiles(8u, first_8, count_8);
     find_tiles(32u, first_32, count_32);
+    first_slot = slot_of(first);
+#if REFILL
+    Slot a = load_slot(first_slot + gl_LocalInvocationIndex);
+    Slot b = load_slot(first_slot + gl_LocalInvocationIndex + 8u);
+    kept_slots = uvec4(a.tile.x | a.tile.y << 16u, b.tile.x | b.tile.y << 16u,
+                       floatBitsToUint(a.start), floatBitsToUint(b.start));
+#endif
+}
+
+void look_up_item(uint number)
+{
+#if REFILL
+    uint at = slot_of(number) - first_slot, lane = at & 7u;
+    uint low_tile = subgroupShuffle(kept_slots.x, lane);
+    uint high_tile = subgroupShuffle(kept_slots.y, lane);
+    uint low_start = subgroupShuffle(kept_slots.z, lane);
+    uint high_start = subgroupShuffle(kept_slots.w, lane);
+    uint tile = at < 8u ? low_tile : high_tile;
+    item_slot = Slot(uvec2(tile & 0xffffu, tile >> 16u),
+                     uintBitsToFloat(at < 8u ? low_start : high_start));
+#else
+    item_slot = load_slot(slot_of(number));
+#endif
 }
 
 float open_at(float t)
 {
-    return min(OPEN * frame.error, MOST_OPEN) * (pixel_base + pixel_slope * t) +
-           ROUNDING * (rounding + t);
+    return open_share * (pixel_base + pixel_slope * t) + ROUNDING * (rounding + t);
 }
 
 // The ray, or the beam's middle, through a place of the picture.
@@ -117,20 +185,6 @@ vec2 find_width(float side)
 
 vec2 inside_width() { return -SEAM * ROUNDING * vec2(rounding, 1.0); }
 
-// The pixel of item `number`: items go through tiles of 8x8 pixels one after the other, all tiles
-// of the band or those that are listed.  False when it is not in the band.
-bool find_pixel(uint number, out uvec2 pixel, out uint index)
-{
-    uint tile = number / 64u, within = number % 64u;
-    if (control.listed != 0u)
-        tile = tiles[tile];
-    uvec2 corner = 8u * find_cell(tile, (work.extent.x + 7u) / 8u);
-    uvec2 local = corner + uvec2(within % 8u, within / 8u);
-    index = local.y * work.extent.x + local.x;
-    pixel = work.corner + local;
-    return local.x < work.extent.x && local.y < work.extent.y;
-}
-
 March unpack_march(uvec4 low, uvec4 high)
 {
     vec4 rest = uintBitsToFloat(high);
@@ -152,7 +206,7 @@ void begin_march(uint index, float start, bool is_ray)
     march.index = index;
     march.t = start;
     march.room = march.gap = 0.0;
-    march.slope = -1.0;
+    march.slope = -1.0 / (1.0 - LEARNING); // -1 after the first step
     march.nearest_t = 0.0;
     march.nearest = INFINITE;
     // No side yet: the first distance tells, unless something empty lies behind the ray.
@@ -174,9 +228,11 @@ void begin_march(uint index, float start, bool is_ray)
 void begin_item(uint number, bool saved)
 {
     bool  is_ray = control.phase == RAYS, large = control.phase == BEAMS_32;
-    uvec2 pixel;
-    uint  pixels = work.extent.x * work.extent.y, index;
-    exists = find_pixel(number, pixel, index) || !is_ray;
+    uvec2 pixel = 8u * item_slot.tile + uvec2(number % 8u, number / 8u % 8u);
+    uvec2 local = pixel - work.corner;
+    uint  pixels = work.extent.x * work.extent.y, index = local.y * work.extent.x + local.x;
+    slot = slot_of(number) - first_slot;
+    exists = !is_ray || local.x < work.extent.x && local.y < work.extent.y;
     if (saved) {
         uint at = 2u * (control.reading + number);
         march = unpack_march(queue[at], queue[at + 1u]);
@@ -185,10 +241,10 @@ void begin_item(uint number, bool saved)
     }
 
     float side = large ? 32.0 : 8.0;
-    uvec2 tile = find_cell(number, large ? count_32.x : count_8.x);
-    vec2  middle = side * (vec2(tile + (large ? first_32 : first_8)) + 0.5);
+    vec2  middle = side * (vec2(item_slot.tile) + 0.5);
     aim(is_ray ? vec2(pixel) + work.offset : middle);
     width = is_ray ? vec2(0.0) : find_width(side);
+    shrinking = 1.0 / (1.0 + width.y);
     if (saved && march.side < 0.0)
         width = inside_width();
     vec2 range = is_ray ? clip_ray(origin, direction, frame.eye.w) : vec2(0.0, frame.eye.w);
@@ -196,8 +252,10 @@ void begin_item(uint number, bool saved)
     walls = is_ray && end < frame.eye.w;
 #ifdef GROUP
     uint at_pixel = saved ? march.index : index;
-    if (exists && is_ray && find_end(at_pixel).fate == HIT)
-        end = min(end, ends[at_pixel]);
+    if (exists && is_ray) {
+        Ray known = find_end(at_pixel);
+        end = known.fate == HIT ? min(end, known.t) : end;
+    }
 #endif
 #ifdef FLATS
     flat_ahead = is_ray ? krs_ahead(origin, direction) : INFINITE;
@@ -207,16 +265,10 @@ void begin_item(uint number, bool saved)
     if (saved)
         return;
 
-    // Starts where the beam that it is in has ended: a ray's of 8x8, that one's of 32x32.
-    uint  larger = pixels + count_8.x * count_8.y;
-    uvec2 parent = is_ray ? pixel / 8u - first_8 : (tile + first_8) / 4u - first_32;
-    uint  beam = is_ray ? pixels + parent.y * count_8.x + parent.x
-                        : larger + parent.y * count_32.x + parent.x;
-    bool  behind = exists && !large && control.follow != 0u;
-    float start = 0.0;
-    if (behind)
-        start = ends[beam];
-    begin_march(is_ray ? index : number + (large ? larger : pixels), max(range.x, start), is_ray);
+    uvec2 cell = item_slot.tile - (large ? first_32 : first_8);
+    uint  beam = large ? count_8.x * count_8.y + cell.y * count_32.x + cell.x
+                       : cell.y * count_8.x + cell.x;
+    begin_march(is_ray ? index : pixels + beam, max(range.x, item_slot.start), is_ray);
 #ifdef PACKED
     begin_parts(is_ray);
 #endif
@@ -247,25 +299,28 @@ float item_distance(vec3 place)
 // With PROBE the middle of a ball.
 vec3 item_place() { return origin + (march.t + march.gap) * direction; }
 
-// The surface is crossed between t, where there is room, and `at`, where there is none, within
-// the permitted error: looks there once more, unless what is between is short anyway.  It cannot
-// be crossed within the room; where steps are exact, that says more than the chord.
-void close_in(float at, float room)
+// The surface is crossed between t, where there is room, and t + gap, where there is none: where on
+// the chord.  It cannot be crossed within the room; where steps are exact, that says more.
+float find_crossing(float room)
 {
-    float along = march.room > room ? clamp(march.room / (march.room - room), 0.0, 2.0) : 0.0;
-    bool  accurate = march.gap - march.room <= 2.0 * open_at(at) || march.fate == CLOSING;
-    march.gap = max(march.gap * along, march.room);
-    march.t += accurate ? march.gap : 0.0;
-    march.fate = accurate ? HIT : CLOSING;
+    float along = march.room > room ? min(march.room / (march.room - room), 2.0) : 0.0;
+    return max(march.gap * along, march.room);
+}
+
+// The mean slope, with what is new.
+float find_slope(float room)
+{
+    float rate = march.gap > 0.0 ? LEARNING / march.gap : 0.0;
+    return (1.0 - LEARNING) * march.slope - rate * march.room + rate * room;
 }
 
 // How far to go from a place with so much room; the balls should still meet.
-float find_gap(float room, float open)
+float find_gap(float room, float slope, float open)
 {
     if (TRACE == RELAXED)
         return RELAXATION * room + open;
     if (TRACE == AUTOMATIC)
-        return room * max(1.0, 2.0 / (1.0 - min(march.slope, 0.98))) + open;
+        return max(room, 2.0 * room / (1.0 - min(slope, 0.98))) + open;
     return room + open;
 }
 
@@ -313,40 +368,35 @@ void take_distance(float larger)
 #else
 void take_distance(float distance)
 {
-    float at = march.t + march.gap;
+    bool  is_ray = control.phase == RAYS, closing = march.fate == CLOSING;
+    float at = march.t + march.gap, pixel = pixel_base + pixel_slope * at;
     if (march.side == 0.0) {
         march.side = distance < 0.0 ? -1.0 : 1.0;
         width = distance < 0.0 ? inside_width() : width;
     }
-    float room = (march.side * distance - width.x - width.y * at) / (1.0 + width.y);
-    float open = open_at(at), pixel = pixel_base + pixel_slope * at;
-    bool  is_ray = width.x + width.y <= 0.0;
+    float taken = width.x + width.y * at;
+    float room = (march.side * distance - taken) * shrinking;
+    float rounded = ROUNDING * (rounding + at), open = open_share * pixel + rounded;
+    float least = max(rounded, (WIDER - 1.0) * taken);
+    float doubtful = march.gap - march.room; // as long as may hide something
     march.steps++;
-
     if (abs(room) * (pixel_base + pixel_slope * march.nearest_t) < march.nearest * pixel) {
         march.nearest = abs(room);
         march.nearest_t = at;
     }
-    float least = is_ray ? ROUNDING * (rounding + at)
-                         : (WIDER - 1.0) * (width.x + width.y * at);
-    float doubtful = march.gap - march.room; // as long as may hide something
-    bool  ends_here = room <= least && (doubtful <= frame.error * pixel + open || !is_ray);
-    if (ends_here || march.fate == CLOSING) {
-        if (is_ray)
-            close_in(at, room);
-        else
-            march.fate = HIT;
-    } else if (room > least && doubtful <= room + 1.01 * open) {
-        float slope = march.gap > 0.0 ? (room - march.room) / march.gap : -1.0;
-        march.slope = mix(march.slope, slope, LEARNING);
-        march.t = at;
-        march.room = room;
-        march.gap = find_gap(room, open);
-        march.fate = at + room > end ? MISS : MARCHING;
-    } else {
-        march.gap = max(0.5 * (march.gap + march.room - max(room, 0.0)), march.room + open);
-        march.slope = -1.0;
-    }
+    bool met = room <= least && (doubtful <= frame.error * pixel + open || !is_ray) || closing;
+    bool passed = !met && room > least && doubtful <= room + 1.01 * open;
+    bool accurate = doubtful <= 2.0 * open || closing || !is_ray;
+    float crossing = find_crossing(room);
+    float slope = find_slope(room);
+
+    float back = max(0.5 * (march.gap + march.room - max(room, 0.0)), march.room + open);
+    float step = met && accurate && is_ray ? crossing : 0.0;
+    march.t = passed ? at : march.t + step;
+    march.gap = passed ? find_gap(room, slope, open) : met ? crossing : back;
+    march.room = passed ? room : march.room;
+    march.slope = passed ? slope : -1.0;
+    march.fate = met ? (accurate ? HIT : CLOSING) : passed && at + room > end ? MISS : MARCHING;
 #ifdef PACKED
     turn_to_next_part();
 #endif
@@ -398,20 +448,23 @@ void end_item()
         lost = lost || known.lost;
     }
 #endif
-    if (exists)
-        ends[march.index] = !is_ray && march.fate == MISS ? INFINITE : march.t;
-    // Tiles count from the corner of the band, which is a corner of tiles of the picture.
-    if (exists && control.phase == BEAMS_8 && march.fate != MISS)
-        tiles[atomicAdd(counts.tiles, 1u)] = march.index - work.extent.x * work.extent.y;
-    if (exists && is_ray) {
-        fates[march.index] =
-            pack_ray(Ray(march.t, march.side, march.steps, march.fate, lost, group));
-        most_steps = max(most_steps, march.steps);
+    if (!is_ray && march.fate == MISS)
+        march.t = INFINITE;
+    finds |= march.fate != MISS ? 1u << (slot & 15u) : 0u;
+    uint bits = pack_ray(Ray(march.t, march.side, march.steps, march.fate, lost, group));
+    if (exists) {
+        ends[march.index] = uvec2(floatBitsToUint(march.t), bits);
+        most_steps = max(most_steps, is_ray ? march.steps : 0u);
     }
 }
 
 void end_group(uint turns)
 {
+    if (control.phase == BEAMS_8)
+        for (; finds != 0u; finds &= finds - 1u) {
+            uvec2 cell = cell_of_beam(first_slot + (slot & ~15u) + uint(findLSB(finds)));
+            tiles[atomicAdd(counts.tiles, 1u)] = cell.y * count_8.x + cell.x;
+        }
     if (turns > 0u)
         atomicAdd(counts.evaluations, turns);
     if (most_steps > 0u)

@@ -25,10 +25,11 @@ static_assert(sizeof(FrameBlock) == 176, "std140");
 /* Phases of the kernels. */
 enum { TRACE_RAYS, TRACE_BEAMS_32, TRACE_BEAMS_8 };
 enum { SECONDARY_NORMALS, SECONDARY_OCCLUSION, SECONDARY_SHADOW };
-enum { SHADE_ONE_LIGHT, SHADE_FINISH };
 enum { FILL_JUDGE, FILL_FILL };
 enum { LIST_ALL, LIST_ANCHORS, LIST_REST, LIST_OF_GROUP = 4 }; /* of solid.glsl */
 
+enum { LIGHTS_AT_ONCE = 3 }; /* of a dispatch of shade.comp */
+enum { VALUE_OCCLUSION, VALUE_VISIBLE }; /* that and the next ones of those lights */
 enum { ITEMS_FRESH, ITEMS_QUEUED, ITEMS_REST };
 enum { LIGHT_POSITIONAL = 1, LIGHT_CASTS_SHADOWS = 2 };
 
@@ -62,10 +63,11 @@ typedef struct ControlBlock {
     uint32_t source; /* ITEMS_... */
     uint32_t items, share;
     uint32_t reading, writing;
-    uint32_t value; /* SECONDARY_OCCLUSION or SECONDARY_SHADOW */
+    uint32_t value; /* VALUE_... */
     uint32_t rows;  /* bits of ResultRow */
     uint32_t parts;
     uint32_t open;  /* 1: no occlusion */
+    uint32_t window, across;
     /* counted by the kernels: */
     uint32_t queued, left, tiles, solid, anchors, rest, unresolved, evaluations, most_evaluations;
     uint32_t of_group[9]; /* KRS_MOST_GROUPS and 1 */
@@ -74,17 +76,17 @@ typedef struct ControlBlock {
 /* Results of results.glsl: rows of four numbers, each for all pixels of a band. */
 typedef enum ResultRow {
     ROW_COLORS,
-    ROW_PLACES,  /* position, depth */
+    ROW_PLACES,  /* position, depth; infinite where nothing is */
     ROW_NORMALS, /* normal, component */
     ROW_ALBEDOS, /* albedo, level */
     ROW_COUNTS,  /* instance, steps */
     RESULT_ROWS
 } ResultRow;
-enum { RESULT_NUMBERS = 4, RESULT_BYTES = 4 * RESULT_NUMBERS, COMPONENT_NUMBER = 3 };
+enum { RESULT_NUMBERS = 4, RESULT_BYTES = 4 * RESULT_NUMBERS, DEPTH_NUMBER = 3 };
 
 /* Only their sizes matter to the host. */
 enum { FATE_MISS = 2 }; /* a packed ray that took no step (frame.glsl) */
-enum { HIT_BYTES = 112, MARCH_BYTES = 32, TILE = 8 };
+enum { END_BYTES = 8, HIT_BYTES = 64, MARCH_BYTES = 32, TILE = 8 };
 
 /* Points and Answer of sample.comp. */
 typedef struct PointBlock {

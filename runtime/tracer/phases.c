@@ -2,7 +2,7 @@
  * phases.c: from rays to light.
  *
  * For each ray of the pixels of a band the phases follow one another: beams, primary rays,
- * normals, materials, occlusion, lights, and the sum.  Each phase is cut into slices of
+ * normals, occlusion, shadows, and the sum of all light.  Each phase is cut into slices of
  * workgroups, short enough that no watchdog minds and an interruption is heard at once; how many
  * that is, is learned on the way, and shows in nothing but the time.
  */
@@ -16,6 +16,7 @@
 
 #define MOST_TURNS      16384 /* of a lane that takes item after item */
 #define MOST_BEAM_STEPS 256   /* of a beam, as in trace.comp */
+#define MOST_TAPS       64    /* of a normal that is looked at twice, and more */
 #define MOST_PASS_STEPS 2048  /* of rays that are left over, in one more pass */
 
 /* ---- Slices ---- */
@@ -44,8 +45,8 @@ static bool report(Job *job, double within_phase)
 static uint32_t *groups_at_once(Job *job, KrsPhase phase, const Kernel *kernel)
 {
     const KrsRenderer *renderer = job->rendering->renderer;
-    bool has_scene = kernel != &renderer->background && kernel != &renderer->fill &&
-                     kernel != &renderer->shade;
+    bool has_scene = kernel != &renderer->background && kernel != &renderer->hits &&
+                     kernel != &renderer->fill;
     return &job->rendering->groups_at_once[phase][has_scene];
 }
 
@@ -76,16 +77,26 @@ static bool run_groups(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock
     return true;
 }
 
-/* Runs a kernel over items that all cost alike (pixels.glsl). */
+/* Runs a kernel over items that all cost alike (pixels.glsl), of which lavapipe's lanes take so
+   many. */
+#define ITEMS_OF_LANE 8
+
 static bool run_all(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
                     uint32_t items)
 {
     ControlBlock *control = job->rendering->control.bytes;
     control->items = items;
-    return run_groups(job, phase, kernel, work, (items + 63) / 64);
+    control->share = gpu_is_cpu(job->gpu) ? ITEMS_OF_LANE : 1;
+    return run_groups(job, phase, kernel, work,
+                      (items + 64 * control->share - 1) / (64 * control->share));
 }
 
 /* ---- The phases of one ray per pixel ---- */
+
+static uint32_t turns_within(const Job *job, uint32_t wanted)
+{
+    return rendering_turns(job->rendering, wanted);
+}
 
 /* How items are dealt out (schedule.glsl): to so many lanes a group, to a lane so many; and how
    many steps a lane has in a dispatch. */
@@ -97,7 +108,10 @@ static Dealing dealing(const Job *job)
 {
     uint32_t steps = job->options.steps_at_once;
     if (job->schedule == KRS_SCHEDULE_REFILL)
-        return (Dealing){8, 128, 8 * steps < MOST_TURNS ? 8 * steps : MOST_TURNS};
+        steps = 8 * steps < MOST_TURNS ? 8 * steps : MOST_TURNS;
+    steps = turns_within(job, steps);
+    if (job->schedule == KRS_SCHEDULE_REFILL)
+        return (Dealing){8, 128, steps};
     return (Dealing){64, 1, steps};
 }
 
@@ -188,25 +202,46 @@ static uint32_t tiles_of_band(const WorkBlock *work)
 }
 
 /* Until a ray is found to hit something it misses. */
-static bool clear_fates(Job *job)
+static bool clear_ends(Job *job)
 {
     Gpu *gpu = job->gpu;
     if (!gpu_begin(gpu))
         return false;
-    vkCmdFillBuffer(gpu->commands, job->rendering->band.fates.buffer, 0, VK_WHOLE_SIZE, FATE_MISS);
+    vkCmdFillBuffer(gpu->commands, job->rendering->band.ends.buffer, 0, VK_WHOLE_SIZE, FATE_MISS);
     return gpu_finish(gpu, &job->picture->stats.phase_ms[KRS_PHASE_BEAMS]);
 }
 
-static uint32_t tiles_touched(const WorkBlock *work, uint32_t side)
+/* Those that may have rays that hit something. */
+static uint32_t tiles_of_rays(const Job *job, const WorkBlock *work)
 {
-    uint32_t tiles = 1;
-    for (int i = 0; i < 2; i++)
-        tiles *= (work->corner[i] + work->extent[i] - 1) / side - work->corner[i] / side + 1;
-    return tiles;
+    const ControlBlock *control = job->rendering->control.bytes;
+    return control->listed ? control->tiles : tiles_of_band(work);
 }
 
-/* Beams of all tiles, counted in the whole picture, that the band has a part of.  Those of 8x8
-   pixels that find something are listed; the rays of all others miss. */
+/* The tiles that both the band and the job's window have a part of, as the control block has it;
+   returns how many. */
+static uint32_t choose_tiles(const Job *job, const WorkBlock *work, uint32_t side)
+{
+    ControlBlock  *control = job->rendering->control.bytes;
+    const uint32_t window[2][2] = {{job->window.x, job->window.x + job->window.width},
+                                   {job->window.y, job->window.y + job->window.height}};
+    uint32_t       first[2], count[2];
+    for (int i = 0; i < 2; i++) {
+        uint32_t corner = work->corner[i], end = corner + work->extent[i];
+        uint32_t low  = corner > window[i][0] ? corner : window[i][0];
+        uint32_t high = end < window[i][1] ? end : window[i][1];
+        if (high <= low)
+            return 0;
+        first[i] = low / side - corner / side;
+        count[i] = (high - 1) / side - low / side + 1;
+    }
+    control->window = first[0] | first[1] << 16;
+    control->across = count[0];
+    return count[0] * count[1];
+}
+
+/* Beams of tiles, counted in the whole picture, that the band and the window have a part of.  Those
+   of 8x8 pixels that find something are listed; the rays of all others miss. */
 static bool march_beams(Job *job, WorkBlock *work)
 {
     static const struct { uint32_t phase, side; } sizes[] = {{TRACE_BEAMS_32, 32},
@@ -214,12 +249,13 @@ static bool march_beams(Job *job, WorkBlock *work)
     ControlBlock *control = job->rendering->control.bytes;
     Dealing       deal = dealing(job);
     Errand        beams[2];
-    deal.share = deal.share < 8 ? deal.share : 8;
+    bool          two = deal.share > 1 && turns_within(job, 2 * MOST_BEAM_STEPS) > MOST_BEAM_STEPS;
+    deal.share = two ? 2 : 1; /* a slot each, of a group's sixteen */
     deal.steps = deal.share * MOST_BEAM_STEPS; /* none is saved */
     control->tiles = 0;
     for (int i = 0; i < 2; i++) {
-        beams[i] = errand(job, job->beams, sizes[i].phase, tiles_touched(work, sizes[i].side),
-                          deal);
+        uint32_t tiles = choose_tiles(job, work, sizes[i].side);
+        beams[i] = errand(job, job->beams, sizes[i].phase, tiles, deal);
         beams[i].control.follow = i > 0;
     }
     if (!run_errands(job, KRS_PHASE_BEAMS, beams, 2, work))
@@ -235,7 +271,7 @@ static bool trace(Job *job, WorkBlock *work)
     ControlBlock *control = job->rendering->control.bytes;
     Dealing       deal = dealing(job);
     uint32_t      pixels = work->extent[0] * work->extent[1];
-    uint32_t      items = (control->listed ? control->tiles : tiles_of_band(work)) * TILE * TILE;
+    uint32_t      items = tiles_of_rays(job, work) * TILE * TILE;
     while (deal.share > 16 && items / (deal.lanes * deal.share) < 64)
         deal.share /= 2; /* groups enough for every core of the device */
     control->phase = TRACE_RAYS;
@@ -257,6 +293,7 @@ static bool trace(Job *job, WorkBlock *work)
         deal.steps = control->source != ITEMS_QUEUED ? job->options.steps_at_once
                    : deal.steps < MOST_PASS_STEPS    ? 2 * deal.steps
                                                      : deal.steps;
+        deal.steps = turns_within(job, deal.steps);
         control->source = ITEMS_QUEUED;
         items = control->queued;
         control->queued = 0;
@@ -268,7 +305,8 @@ static bool trace(Job *job, WorkBlock *work)
 
 static bool has_beams(const Job *job)
 {
-    return !job->options.no_beams && job->view.camera.projection != KRS_PANORAMA;
+    return !job->options.no_beams && job->view.camera.projection != KRS_PANORAMA &&
+           turns_within(job, MOST_BEAM_STEPS / 2) == MOST_BEAM_STEPS / 2;
 }
 
 /* Beams, then rays, of one kernel. */
@@ -288,7 +326,7 @@ static bool march_all(Job *job, WorkBlock *work)
 {
     FrameBlock *frame = job->rendering->frame.bytes;
     Kernel     *whole = job->trace;
-    bool        good = (!has_beams(job) && job->part_count == 0) || clear_fates(job);
+    bool        good = (!has_beams(job) && job->part_count == 0) || clear_ends(job);
     const KrsProgram *program = job->rendering->program;
     if (job->rest) {
         double low[3], high[3];
@@ -298,6 +336,7 @@ static bool march_all(Job *job, WorkBlock *work)
         }
         view_place_box(&job->view, low, high, frame);
     }
+    job->window = (KrsWindow){0, 0, (uint32_t)frame->size[0], (uint32_t)frame->size[1]};
     if (job->part_count == 0)
         good = good && march(job, work);
     job->share /= job->part_count ? job->part_count : 1;
@@ -305,6 +344,9 @@ static bool march_all(Job *job, WorkBlock *work)
         const MarchPart *part = &job->parts[i];
         const KrsGroup  *group = &job->rendering->program->groups[part->group];
         view_place_box(&job->view, group->low, group->high, frame);
+        /* The first one's rays find the planes, which are all around. */
+        if (i > 0 || !rendering_knows_flats(job->rendering))
+            job->window = view_window(frame, &job->view.camera);
         job->trace = job->beams = part->trace;
         job->schedule = part->schedule;
         double share = job->share;
@@ -322,9 +364,11 @@ static bool march_all(Job *job, WorkBlock *work)
 static Dealing deal_around(const Job *job, uint32_t count)
 {
     Dealing deal = dealing(job);
-    deal.steps = MOST_TURNS;
+    deal.steps = turns_within(job, MOST_TURNS);
     while (deal.share > 8 && count / (deal.lanes * deal.share) < 64)
         deal.share /= 2; /* groups enough for every core of the device */
+    while (deal.share > 1 && deal.share * MOST_TAPS > deal.steps)
+        deal.share /= 2;
     return deal;
 }
 
@@ -344,6 +388,18 @@ static bool look_around(Job *job, KrsPhase phase, uint32_t secondary, WorkBlock 
         control->source = ITEMS_REST;
     } while (control->left > 0);
     return true;
+}
+
+static bool list_hits(Job *job, WorkBlock *work)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    control->solid = control->anchors = control->value = 0;
+    control->parts = job->part_count > 0 && job->parts[0].normals;
+    memset(control->of_group, 0, sizeof control->of_group);
+    /* Each group of components has tiles of its own. */
+    control->listed = control->listed && job->part_count == 0;
+    return run_all(job, KRS_PHASE_RESOLVE, &job->rendering->renderer->hits, work,
+                   tiles_of_rays(job, work) * TILE * TILE);
 }
 
 /* Where components were marched by themselves, so is the normal of each found: at the surface of
@@ -378,7 +434,6 @@ static bool look_sparsely(Job *job, KrsPhase phase, uint32_t secondary, WorkBloc
         return look_around(job, phase, secondary, work, LIST_ALL, control->solid);
     if (!look_around(job, phase, secondary, work, LIST_ANCHORS, control->anchors))
         return false;
-    control->value = secondary;
     control->rest = 0;
     control->phase = FILL_JUDGE;
     if (!run_all(job, phase, fill, work, tiles_of_band(work)))
@@ -406,20 +461,39 @@ static bool find_visible(Job *job, const KrsLight *light, WorkBlock *work)
     return good;
 }
 
+/* How much is visible of each of the lights from `first` on that are shaded at once. */
+static bool find_lights(Job *job, uint32_t first, WorkBlock *work)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    for (uint32_t i = 0; i < LIGHTS_AT_ONCE && first + i < job->view.light_count; i++) {
+        const KrsLight *light = &job->view.lights[first + i];
+        control->light = first + i;
+        control->value = VALUE_VISIBLE + i;
+        if (light->shadow && !find_visible(job, light, work))
+            return false;
+        job->done += job->share;
+    }
+    return true;
+}
+
+/* Some lights at a time; all else with the first, of which there may be none. */
 static bool light_up(Job *job, WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    job->share /= (double)job->view.light_count;
-    for (size_t i = 0; i < job->view.light_count; i++, job->done += job->share) {
-        control->light = (uint32_t)i;
-        if (job->view.lights[i].shadow && !find_visible(job, &job->view.lights[i], work))
+    uint32_t      count = (uint32_t)job->view.light_count, first = 0;
+    job->share /= count ? count : 1;
+    do {
+        if (!find_lights(job, first, work))
             return false;
-        control->phase = SHADE_ONE_LIGHT;
+        control->light = first;
         control->reading = 0;
-        if (!run_all(job, KRS_PHASE_SHADING, &job->rendering->renderer->shade, work,
-                     control->solid))
+        double share = job->share;
+        job->share = 0;
+        if (!run_all(job, KRS_PHASE_SHADING, job->shade, work, control->solid))
             return false;
-    }
+        job->share = share;
+        first += LIGHTS_AT_ONCE;
+    } while (first < count);
     return true;
 }
 
@@ -442,10 +516,9 @@ static void place_ray(uint32_t index, uint64_t seed, float offset[2])
 
 /* The steps from rays to light, and their shares of the time, about. */
 typedef enum Step {
-    STEP_TRACE, STEP_BACKGROUND, STEP_NORMALS, STEP_MATERIAL, STEP_OCCLUSION, STEP_LIGHTS,
-    STEP_FINISH, STEP_COUNT
+    STEP_TRACE, STEP_BACKGROUND, STEP_HITS, STEP_NORMALS, STEP_OCCLUSION, STEP_LIGHTS, STEP_COUNT
 } Step;
-static const double step_share[STEP_COUNT] = {0.5, 0.02, 0.1, 0.03, 0.1, 0.22, 0.03};
+static const double step_share[STEP_COUNT] = {0.5, 0.01, 0.01, 0.1, 0.1, 0.28};
 
 static bool run_step(Job *job, Step step, WorkBlock *work)
 {
@@ -456,24 +529,17 @@ static bool run_step(Job *job, Step step, WorkBlock *work)
     case STEP_TRACE:
         return march_all(job, work);
     case STEP_BACKGROUND:
-        control->solid = control->anchors = control->reading = 0;
-        control->parts = job->part_count > 0 && job->parts[0].normals;
-        memset(control->of_group, 0, sizeof control->of_group);
         return run_all(job, KRS_PHASE_RESOLVE, &r->renderer->background, work, pixels);
+    case STEP_HITS:
+        return list_hits(job, work);
     case STEP_NORMALS:
         return find_normals(job, work);
-    case STEP_MATERIAL:
-        control->reading = 0;
-        return run_all(job, KRS_PHASE_SHADING, job->material, work, control->solid);
     case STEP_OCCLUSION:
+        control->value = VALUE_OCCLUSION;
         return control->open ||
                look_sparsely(job, KRS_PHASE_OCCLUSION, SECONDARY_OCCLUSION, work);
     case STEP_LIGHTS:
         return light_up(job, work);
-    case STEP_FINISH:
-        control->phase = SHADE_FINISH;
-        control->reading = 0;
-        return run_all(job, KRS_PHASE_RESOLVE, &r->renderer->shade, work, control->solid);
     case STEP_COUNT: break;
     }
     return false;

@@ -23,12 +23,13 @@ typedef struct Job {
     KrsView          view;
     FrameBlock       frame;
     double           anchor[3]; /* that points are given from on the device; 0: they are not */
-    Kernel          *trace, *beams, *secondary, *material;
+    Kernel          *trace, *beams, *secondary, *shade;
     Kernel          *shadows; /* of points of lights; NULL: as `secondary` does it */
     MarchPart        parts[KRS_MOST_GROUPS]; /* the nearest first */
     bool             rest;                   /* planes are not marched, but known (FLATS) */
     uint32_t         part_count;             /* 0: all are marched together, by `trace` */
     bool             sparse; /* shadows and occlusion are found for a quarter of the pixels */
+    KrsWindow        window; /* of the picture: where rays may meet what is marched now */
     KrsWindow        cover;  /* the tiles that the crop has a part of: what is traced */
     KrsPicture      *picture;
     double           done, share; /* of the whole: before this phase, and of it */

@@ -3,7 +3,6 @@
  */
 #include "runtime/tracer/picture.h"
 
-#include <math.h>
 #include <string.h>
 
 /* The planes: all are arrays of 32-bit numbers. */
@@ -17,11 +16,11 @@ static const struct Plane {
 #define PLANE(name, bit, numbers, row, number)                                                  \
     {offsetof(KrsPicture, name), bit, 4 * numbers, row, number}
     PLANE(color, KRS_PLANE_COLOR, 4, ROW_COLORS, 0),
-    PLANE(depth, KRS_PLANE_DEPTH, 1, ROW_PLACES, 3),
+    PLANE(depth, KRS_PLANE_DEPTH, 1, ROW_PLACES, DEPTH_NUMBER),
     PLANE(position, KRS_PLANE_POSITION, 3, ROW_PLACES, 0),
     PLANE(normal, KRS_PLANE_NORMAL, 3, ROW_NORMALS, 0),
     PLANE(albedo, KRS_PLANE_ALBEDO, 3, ROW_ALBEDOS, 0),
-    PLANE(component, KRS_PLANE_IDS, 1, ROW_NORMALS, COMPONENT_NUMBER),
+    PLANE(component, KRS_PLANE_IDS, 1, ROW_NORMALS, 3),
     PLANE(level, KRS_PLANE_IDS, 1, ROW_ALBEDOS, 3),
     PLANE(instance, KRS_PLANE_IDS, 1, ROW_COUNTS, 0),
     PLANE(steps, KRS_PLANE_STEPS, 1, ROW_COUNTS, 1),
@@ -74,36 +73,33 @@ uint32_t picture_rows(const KrsPicture *picture)
     for (int i = 0; i < PLANE_COUNT; i++)
         if (plane_get(picture, i))
             rows |= 1u << planes[i].row;
-    /* Where something is, components tell. */
-    return rows & 1u << ROW_PLACES ? rows | 1u << ROW_NORMALS : rows;
+    return rows;
 }
 
-static void take_plane(void *plane, const uint32_t *from, size_t first, size_t count,
-                       size_t numbers)
+/* Some are no floats, so they are copied as bytes; at once where a row is a plane. */
+static void take_plane(void *plane, const float *from, size_t first, size_t count, size_t bytes)
 {
-    uint32_t *to = (uint32_t *)plane + first * numbers;
+    char *to = (char *)plane + first * bytes;
+    if (bytes == RESULT_BYTES) {
+        memcpy(to, from, count * RESULT_BYTES);
+        return;
+    }
     for (size_t k = 0; k < count; k++)
-        for (size_t n = 0; n < numbers; n++)
-            memcpy(&to[k * numbers + n], &from[k * RESULT_NUMBERS + n], sizeof *to);
+        memcpy(to + k * bytes, from + k * RESULT_NUMBERS, bytes);
 }
 
-void picture_take(KrsPicture *picture, const uint32_t *results, size_t row_pixels, size_t first,
+void picture_take(KrsPicture *picture, const float *results, size_t row_pixels, size_t first,
                   size_t count, uint32_t samples)
 {
-    const size_t    row = row_pixels * RESULT_NUMBERS;
-    const uint32_t *components = results + ROW_NORMALS * row + COMPONENT_NUMBER;
+    const size_t row = row_pixels * RESULT_NUMBERS;
     for (int i = 0; i < PLANE_COUNT; i++) {
         void *plane = plane_get(picture, i);
         if (plane)
             take_plane(plane, results + planes[i].row * row + planes[i].number, first, count,
-                       planes[i].bytes / 4);
+                       planes[i].bytes);
     }
     for (size_t k = 4 * first; picture->color && samples > 1 && k < 4 * (first + count); k++)
         picture->color[k] /= (float)samples;
-
-    for (size_t k = 0; picture->depth && k < count; k++)
-        if (components[k * RESULT_NUMBERS] == 0)
-            picture->depth[first + k] = INFINITY;
 }
 
 void krs_picture_free(KrsPicture *picture)

@@ -17,7 +17,7 @@ uint32_t picture_rows(const KrsPicture *picture);
 /* Takes `count` finished pixels over into the planes, from the window's pixel number `first` on:
    colour is the mean of `samples` rays.  `results` is the first of them in the row of colours;
    the next row lies `row_pixels` pixels behind. */
-void picture_take(KrsPicture *picture, const uint32_t *results, size_t row_pixels, size_t first,
+void picture_take(KrsPicture *picture, const float *results, size_t row_pixels, size_t first,
                   size_t count, uint32_t samples);
 
 #endif

@@ -151,7 +151,7 @@ static bool march(KrsRendering *rendering, uint32_t count)
     while (share > 8 && count / (lanes * share) < 64)
         share /= 2; /* groups enough for every core of the device */
     uint32_t      groups = (count + lanes * share - 1) / (lanes * share);
-    WorkBlock     work = {.steps = refill ? MOST_TURNS : MOST_STEPS,
+    WorkBlock     work = {.steps = rendering_turns(rendering, refill ? MOST_TURNS : MOST_STEPS),
                           .groups = groups,
                           .stride = rendering_spread(rendering, groups)};
     ControlBlock *control = rendering->control.bytes;

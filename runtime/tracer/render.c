@@ -9,6 +9,7 @@
 
 #include "runtime/tracer/phases.h"
 #include "runtime/tracer/picture.h"
+#include "runtime/tracer/stage.h"
 #include "runtime/tracer/view.h"
 
 /* Pixels of a band: room for 80 MB of buffers, none larger than the smallest devices bind; on a
@@ -62,8 +63,8 @@ static bool settle_options(Job *job)
     job->asked = o->schedule;
     rendering_choose(job->rendering, &o->trace, &o->schedule);
     job->schedule = o->schedule;
-    if (o->schedule == KRS_SCHEDULE_REFILL && !job->gpu->votes)
-        return refuse(job, "the device has no votes among lanes, which `refill` needs");
+    if (o->schedule == KRS_SCHEDULE_REFILL && !job->gpu->shuffles)
+        return refuse(job, "the device's lanes cannot exchange numbers, which `refill` needs");
     o->steps_at_once =
         first_of(o->steps_at_once, 0, o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
     o->error = o->error != 0 ? o->error : image->error != 0 ? image->error : 0.25;
@@ -146,7 +147,7 @@ static bool settle_frame(Job *job, KrsFrame *frame)
 
 static void band_destroy(Gpu *gpu, Band *band)
 {
-    Buffer *buffers[] = {&band->ends, &band->fates, &band->hits, &band->results, &band->fetched,
+    Buffer *buffers[] = {&band->ends, &band->hits, &band->results, &band->fetched,
                          &band->queue, &band->taken, &band->tiles};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         buffer_destroy(gpu, buffers[i]);
@@ -162,35 +163,45 @@ static VkDeviceSize most_beams(uint64_t pixels)
 
 static bool band_create(KrsRendering *rendering, uint64_t pixels)
 {
-    Gpu  *gpu = &rendering->renderer->gpu;
-    Band *band = &rendering->band;
+    Gpu               *gpu     = &rendering->renderer->gpu;
+    Band              *band    = &rendering->band;
+    const bool         near    = gpu_is_cpu(gpu); /* the host reads the results where they are */
+    const Where        shared  = near ? SHARED : ON_DEVICE;
+    const VkDeviceSize results = pixels * RESULT_ROWS * RESULT_BYTES, beams = most_beams(pixels);
     const struct {
         Buffer      *buffer;
-        uint32_t     binding; /* of set 1; 0: of none */
-        VkDeviceSize bytes;
+        uint32_t     binding, texels; /* of set 1; 0: of none */
+        VkDeviceSize bytes;           /* 0: none is made */
         Where        where;
         const char  *name;
     } wanted[] = {
-        {&band->ends, 1, (pixels + most_beams(pixels)) * sizeof(float), ON_DEVICE, "depths"},
-        {&band->hits, 2, pixels * HIT_BYTES, ON_DEVICE, "hits"},
-        {&band->results, 3, pixels * RESULT_ROWS * RESULT_BYTES, ON_DEVICE, "pixels"},
-        {&band->fates, 5, pixels * sizeof(uint32_t), ON_DEVICE, "rays"},
-        {&band->queue, 6, 2 * pixels * MARCH_BYTES, ON_DEVICE, "queue of rays"},
-        {&band->taken, 7, most_beams(pixels) * sizeof(uint32_t), ON_DEVICE, "shares of lanes"},
-        {&band->tiles, 9, most_beams(pixels) * sizeof(uint32_t), ON_DEVICE, "tiles"},
-        {&band->fetched, 0, pixels * RESULT_ROWS * RESULT_BYTES, SHARED, "pixels to read"},
+        {&band->ends, ENDS_BINDING, END_TEXELS, (pixels + beams) * END_BYTES, ON_DEVICE, "rays"},
+        {&band->hits, HITS_BINDING, HIT_TEXELS, pixels * HIT_BYTES, ON_DEVICE, "hits"},
+        {&band->results, RESULTS_BINDING, RESULT_TEXELS, results, shared, "pixels"},
+        {&band->queue, QUEUE_BINDING, SOLID_TEXELS, 2 * pixels * MARCH_BYTES, ON_DEVICE,
+         "queue of rays"},
+        {&band->taken, TAKEN_BINDING, 0, beams * sizeof(uint32_t), ON_DEVICE, "shares of groups"},
+        {&band->tiles, TILES_BINDING, 0, beams * sizeof(uint32_t), ON_DEVICE, "tiles"},
+        {&band->fetched, 0, 0, near ? 0 : results, SHARED, "pixels to read"},
     };
     if (band->pixels >= pixels)
         return true;
     band_destroy(gpu, band);
     for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
-        if (!buffer_create(gpu, wanted[i].buffer, wanted[i].bytes, wanted[i].where,
-                           wanted[i].name)) {
+        Buffer *buffer = wanted[i].buffer;
+        if (wanted[i].bytes == 0)
+            continue;
+        VkDeviceSize bytes = wanted[i].texels ? buffer_texel_bytes(wanted[i].bytes)
+                                              : wanted[i].bytes;
+        if (!buffer_create(gpu, buffer, bytes, wanted[i].where, wanted[i].name) ||
+            (wanted[i].texels && !stage_view(gpu, wanted[i].texels, buffer, wanted[i].name))) {
             band_destroy(gpu, band);
             return false;
         }
         if (wanted[i].binding)
-            rendering_bind(rendering, rendering->band_set, wanted[i].binding, wanted[i].buffer);
+            rendering_bind(rendering, rendering->band_set, wanted[i].binding, buffer);
+        if (wanted[i].texels)
+            rendering_bind(rendering, rendering->band_set, wanted[i].texels, buffer);
     }
     band->pixels = pixels;
     return true;
@@ -208,11 +219,12 @@ static uint32_t rows_within(uint32_t width, uint64_t pixels)
 static uint32_t make_room(Job *job)
 {
     const KrsWindow *window = &job->cover;
+    const uint64_t   across = (window->width + TILE - 1) / TILE * TILE; /* tiles may end outside */
     const uint64_t   most = gpu_is_cpu(job->gpu) ? BAND_PIXELS_CPU : BAND_PIXELS;
     for (uint64_t pixels = most; pixels >= BAND_PIXELS_MIN; pixels /= 2) {
         uint32_t rows = rows_within(window->width, pixels);
         rows = rows < window->height ? rows : window->height;
-        if (band_create(job->rendering, (uint64_t)rows * window->width)) {
+        if (band_create(job->rendering, (rows + TILE - 1) / TILE * TILE * across)) {
             renderer_clear(job->rendering->renderer);
             return rows;
         }
@@ -224,16 +236,19 @@ static uint32_t make_room(Job *job)
 
 /* ---- Bands ---- */
 
-/* The rows that are asked for: colours are summed up, and what sees nothing is all zero. */
+/* The rows that are asked for: colours are summed up, what sees nothing is all zero, but places,
+   which are infinitely far away. */
 static bool clear_results(Job *job, uint32_t rows, VkDeviceSize row_bytes)
 {
-    double ms = 0;
+    const uint32_t infinite = 0x7f800000;
+    const Buffer  *results  = &job->rendering->band.results;
+    double         ms       = 0;
     if (!gpu_begin(job->gpu))
         return false;
     for (VkDeviceSize row = 0; row < RESULT_ROWS; row++)
         if (rows >> row & 1)
-            vkCmdFillBuffer(job->gpu->commands, job->rendering->band.results.buffer,
-                            row * row_bytes, row_bytes, 0);
+            vkCmdFillBuffer(job->gpu->commands, results->buffer, row * row_bytes, row_bytes,
+                            row == ROW_PLACES ? infinite : 0);
     return gpu_finish(job->gpu, &ms);
 }
 
@@ -242,6 +257,8 @@ static bool fetch(Job *job, uint32_t rows, VkDeviceSize row_bytes)
     double       ms = 0; /* copying is no phase */
     VkBufferCopy copies[RESULT_ROWS];
     uint32_t     count = 0;
+    if (job->rendering->band.results.bytes)
+        return true;
     if (!gpu_begin(job->gpu))
         return false;
     for (VkDeviceSize row = 0; row < RESULT_ROWS; row++)
@@ -252,14 +269,15 @@ static bool fetch(Job *job, uint32_t rows, VkDeviceSize row_bytes)
     return gpu_finish(job->gpu, &ms);
 }
 
-/* Back from the anchor. */
-static void place_positions(Job *job, const uint32_t *normals, size_t first, size_t count)
+/* Back from the anchor; nothing has no place. */
+static void place_positions(Job *job, const float *places, size_t first, size_t count)
 {
     float *position = job->picture->position;
-    for (size_t k = 0; position && is_anchored(job) && k < count; k++)
-        for (int i = 0; normals[k * RESULT_NUMBERS + COMPONENT_NUMBER] && i < 3; i++) {
+    for (size_t k = 0; position && k < count; k++)
+        for (int i = 0; i < 3; i++) {
             float *number = &position[3 * (first + k) + i];
-            *number = (float)(*number + job->anchor[i]);
+            bool   is_place = isfinite(places[k * RESULT_NUMBERS + DEPTH_NUMBER]);
+            *number = is_place ? (float)(*number + job->anchor[i]) : 0;
         }
 }
 
@@ -267,7 +285,9 @@ static void place_positions(Job *job, const uint32_t *normals, size_t first, siz
 static void take_band(Job *job, uint32_t from, uint32_t rows)
 {
     const KrsWindow *cover = &job->cover, *crop = &job->options.crop;
-    const uint32_t  *results = job->rendering->band.fetched.bytes;
+    const Band      *buffers = &job->rendering->band;
+    const float     *results = buffers->results.bytes ? buffers->results.bytes
+                                                      : buffers->fetched.bytes;
     size_t           band = (size_t)rows * cover->width;
     for (uint32_t y = cover->y + from; y < cover->y + from + rows; y++) {
         if (y < crop->y || y >= crop->y + crop->height)
@@ -276,7 +296,7 @@ static void take_band(Job *job, uint32_t from, uint32_t rows)
         size_t first = (size_t)(y - crop->y) * crop->width;
         picture_take(job->picture, results + row * RESULT_NUMBERS, band, first, crop->width,
                      job->options.samples);
-        place_positions(job, results + (ROW_NORMALS * band + row) * RESULT_NUMBERS, first,
+        place_positions(job, results + (ROW_PLACES * band + row) * RESULT_NUMBERS, first,
                         crop->width);
     }
 }
@@ -386,8 +406,8 @@ static bool render(Job *job, KrsFrame *frame)
         return false;
     job->secondary = rendering_secondary(job->rendering, job->options.schedule,
                                          job->options.normals, 0);
-    job->material = rendering_material(job->rendering);
-    if (!job->secondary || !job->material || !find_shadows(job) || !wait_for_kernels(job))
+    job->shade = rendering_shade(job->rendering);
+    if (!job->secondary || !job->shade || !find_shadows(job) || !wait_for_kernels(job))
         return false;
     double start = clock_ms();
     for (uint32_t from = 0; from < job->cover.height; from += rows) {

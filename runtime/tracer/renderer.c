@@ -9,9 +9,6 @@
 
 #include "runtime/tracer/stage.h"
 
-/* Bindings of set 1, with those of stage.h; those in between are the buffers of a band. */
-enum { CONTROL_BINDING = 4, LIGHTS_BINDING = 8 };
-
 KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
 {
     Gpu gpu = {0};
@@ -39,8 +36,8 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
     renderer->compiler_started = true;
     const KernelRequest kernels[] = {
         {&renderer->background, {.file = "background.comp"}},
+        {&renderer->hits, {.file = "hits.comp"}},
         {&renderer->fill, {.file = "fill.comp"}},
-        {&renderer->shade, {.file = "shade.comp"}},
     };
     if (!stage_create(renderer) ||
         !stage_make_kernels(renderer, VK_NULL_HANDLE, kernels, sizeof kernels / sizeof kernels[0],
@@ -57,8 +54,8 @@ void krs_renderer_free(KrsRenderer *renderer)
     if (gpu->device) {
         gpu_wait(gpu);
         kernel_destroy(gpu, &renderer->background);
+        kernel_destroy(gpu, &renderer->hits);
         kernel_destroy(gpu, &renderer->fill);
-        kernel_destroy(gpu, &renderer->shade);
         stage_destroy(renderer);
     }
     gpu_close(gpu);
@@ -104,10 +101,11 @@ static bool sets_create(KrsRendering *rendering)
     TRY(gpu, attempt, vkCreateDescriptorPool(gpu->device, &(VkDescriptorPoolCreateInfo){
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
         .maxSets = 3,
-        .poolSizeCount = 2,
+        .poolSizeCount = 3,
         .pPoolSizes = (VkDescriptorPoolSize[]){
             {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 3},
-            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * (BINDING_COUNT - 1)},
+            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * BUFFER_BINDINGS},
+            {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 2 * TEXEL_BINDINGS},
         },
     }, NULL, &rendering->pool));
     VkDescriptorSet sets[3];
@@ -158,13 +156,23 @@ void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedul
 {
     const Gpu *gpu = &rendering->renderer->gpu;
     bool       software = gpu_is_cpu(gpu);
-    bool       heavy = rendering->program->flops >= FLOPS_WORTH_REFILL && gpu->votes;
+    bool       heavy = rendering->program->flops >= FLOPS_WORTH_REFILL && gpu->shuffles;
     if (*trace == KRS_TRACE_DEFAULT)
         *trace = rendering->program->along ? KRS_TRACE_EXACT : KRS_TRACE_AUTO;
     if (*schedule == KRS_SCHEDULE_DEFAULT)
         *schedule = !software ? KRS_SCHEDULE_QUEUE
                   : heavy     ? KRS_SCHEDULE_REFILL
                               : KRS_SCHEDULE_PIXEL;
+}
+
+/* Of all loops of an invocation together: some devices end them silently after 65,535 iterations,
+   and an item that is begun may be finished. */
+#define MOST_ITERATIONS 24576
+
+uint32_t rendering_turns(const KrsRendering *rendering, uint32_t wanted)
+{
+    uint32_t most = MOST_ITERATIONS / (1 + rendering->program->loops);
+    return wanted < most ? wanted : most > 0 ? most : 1;
 }
 
 KrsSchedule rendering_schedule_of_group(const KrsRendering *rendering, KrsSchedule asked,
@@ -363,9 +371,9 @@ Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule)
                         KRS_TRACE_AUTO, schedule);
 }
 
-Kernel *rendering_material(KrsRendering *rendering)
+Kernel *rendering_shade(KrsRendering *rendering)
 {
-    return find_variant(rendering, &rendering->in_use->material, "material.comp", KRS_TRACE_PLAIN,
+    return find_variant(rendering, &rendering->in_use->shade, "shade.comp", KRS_TRACE_PLAIN,
                         KRS_SCHEDULE_PIXEL);
 }
 
@@ -397,7 +405,7 @@ static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
     KernelRequest pictures[4 + 2 * KRS_MOST_GROUPS] = {
         {&to->secondary[usual][schedule][0],
          {"secondary.comp", scene, secondary.defines}},
-        {&to->material, {"material.comp", scene, simple.defines}},
+        {&to->shade, {"shade.comp", scene, simple.defines}},
         {&to->trace[KRS_TRACE_PLAIN][schedule][whole], {"trace.comp", scene, beams.defines}},
     };
     size_t   count = trace == KRS_TRACE_EXACT ? 3 : 2;
@@ -430,7 +438,7 @@ static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
 
 static void kernels_destroy(Gpu *gpu, SceneKernels *kernels)
 {
-    kernel_destroy(gpu, &kernels->material);
+    kernel_destroy(gpu, &kernels->shade);
     kernel_destroy(gpu, &kernels->sample);
     for (int schedule = 0; schedule < KRS_SCHEDULE_COUNT; schedule++) {
         kernel_destroy(gpu, &kernels->query[schedule]);
@@ -467,7 +475,8 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
     rendering->pipeline_ms = renderer->pipeline_ms;
     for (int i = 0; i < 2 * KRS_PHASE_COUNT; i++)
         rendering->groups_at_once[i / 2][i % 2] = gpu_is_cpu(&renderer->gpu) ? 8 : 1024;
-    if (!sets_create(rendering) || !buffers_create(rendering) || !kernels_create(rendering, purpose)) {
+    if (!sets_create(rendering) || !buffers_create(rendering) ||
+        !kernels_create(rendering, purpose)) {
         KrsStatus status = renderer->gpu.status;
         krs_rendering_free(rendering);
         return status;
@@ -485,7 +494,7 @@ void krs_rendering_free(KrsRendering *rendering)
     Buffer *buffers[] = {&rendering->parameters, &rendering->frame, &rendering->control,
                          &rendering->lights, &rendering->points, &rendering->answers,
                          &rendering->questions, &rendering->ways, &rendering->shares,
-                         &band->ends, &band->fates, &band->hits, &band->results, &band->fetched,
+                         &band->ends, &band->hits, &band->results, &band->fetched,
                          &band->queue, &band->taken, &band->tiles};
     gpu_wait(gpu); /* rehearsals may still run; a device that is lost has none */
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
@@ -502,10 +511,11 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
 {
     Gpu         *gpu = &rendering->renderer->gpu;
     Buffer      *buffer = &rendering->lights;
-    VkDeviceSize bytes = (count > 0 ? count : 1) * sizeof(LightBlock);
+    VkDeviceSize bytes = buffer_texel_bytes(count * sizeof(LightBlock));
     if (buffer->size < bytes) {
         buffer_destroy(gpu, buffer);
-        if (!buffer_create(gpu, buffer, bytes, SHARED, "lights"))
+        if (!buffer_create(gpu, buffer, bytes, SHARED, "lights") ||
+            !stage_view(gpu, LIGHTS_BINDING, buffer, "lights"))
             return false;
         rendering_bind(rendering, rendering->band_set, LIGHTS_BINDING, buffer);
     }

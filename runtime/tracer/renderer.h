@@ -9,6 +9,9 @@
 #include "runtime/device/kernel.h"
 #include "runtime/tracer/blocks.h"
 
+/* How many numbers a texel has. */
+typedef enum TexelKind { NO_TEXELS, ONE_NUMBER, TWO_NUMBERS, FOUR_NUMBERS, TEXEL_KINDS } TexelKind;
+
 struct KrsRenderer {
     Gpu                   gpu;
     bool                  compiler_started;
@@ -16,18 +19,18 @@ struct KrsRenderer {
     VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters */
     VkDescriptorSetLayout frame_layout; /* set 1: what frame.glsl declares */
     VkPipelineLayout      layout;       /* of every kernel */
-    Kernel                background, fill, shade;
+    Kernel                background, hits, fill;
     double                spirv_ms, pipeline_ms; /* of these three */
     VkDescriptorPool      idle_pool;             /* for rehearsals: */
     VkDescriptorSet       idle_scene, idle_frame; /* with nothing in them, */
-    Buffer                idle;                  /* all of it in here */
+    Buffer                idle[TEXEL_KINDS];     /* all of it in these */
 };
 
 /* The buffers that hold a band of the picture. */
 typedef struct Band {
     uint64_t pixels; /* room for so many; 0: no buffers */
-    Buffer   ends, fates, hits, results, queue, taken, tiles;
-    Buffer   fetched; /* where the host reads the results */
+    Buffer   ends, hits, results, queue, taken, tiles;
+    Buffer   fetched; /* where the host reads the results; none where it reads them directly */
 } Band;
 
 /* Instead of a group: all that is not a plane, where rays know planes by themselves. */
@@ -39,7 +42,7 @@ enum { GROUP_PACKED = 1 + GROUP_REST, GROUP_KINDS };
 typedef struct SceneKernels {
     uint32_t zones; /* of the caller, that they have room for */
     bool     anchored; /* points are given from an anchor */
-    Kernel   material, sample;
+    Kernel   shade, sample;
     Kernel   trace[KRS_TRACE_COUNT][KRS_SCHEDULE_COUNT][GROUP_KINDS]; /* [0]: of all */
     Kernel   secondary[KRS_NORMALS_COUNT][KRS_SCHEDULE_COUNT][1 + KRS_MOST_GROUPS]; /* likewise */
     Kernel   shadows[KRS_SCHEDULE_COUNT];
@@ -86,11 +89,13 @@ bool    rendering_has_roots(const KrsRendering *rendering, KrsTrace trace);
 Kernel *rendering_shadows(KrsRendering *rendering, KrsSchedule schedule);
 Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule);
 /* Likewise. */
-Kernel *rendering_material(KrsRendering *rendering);
+Kernel *rendering_shade(KrsRendering *rendering);
 Kernel *rendering_sample(KrsRendering *rendering);
 /* Puts what `make bench` found fastest for such a scene on such a device where the default is
    asked for. */
 void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule);
+/* As many steps as are wanted of a lane in a dispatch, or as many as may be. */
+uint32_t rendering_turns(const KrsRendering *rendering, uint32_t wanted);
 /* The schedule for the rays of a group that is marched by itself. */
 KrsSchedule rendering_schedule_of_group(const KrsRendering *rendering, KrsSchedule asked,
                                         uint32_t group);

@@ -15,14 +15,31 @@
 
 /* ---- Layouts ---- */
 
+/* What a texel is at a binding, by the TexelKinds. */
+static const struct { VkFormat format; uint32_t bytes; } texel_kinds[TEXEL_KINDS] = {
+    [ONE_NUMBER]   = {VK_FORMAT_R32_UINT, 4},
+    [TWO_NUMBERS]  = {VK_FORMAT_R32G32_UINT, 8},
+    [FOUR_NUMBERS] = {VK_FORMAT_R32G32B32A32_UINT, 16},
+};
+static const TexelKind texels_of[BINDING_COUNT] = {
+    [LIGHTS_BINDING] = FOUR_NUMBERS, [END_TEXELS] = TWO_NUMBERS, [HIT_TEXELS] = FOUR_NUMBERS,
+    [SOLID_TEXELS] = ONE_NUMBER,     [RESULT_TEXELS] = FOUR_NUMBERS,
+};
+
+static VkDescriptorType type_of(uint32_t binding)
+{
+    return binding == FRAME_BINDING ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+         : texels_of[binding]       ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
+                                    : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+}
+
 static bool set_layout_create(Gpu *gpu, uint32_t count, VkDescriptorSetLayout *layout)
 {
     VkDescriptorSetLayoutBinding bindings[BINDING_COUNT];
     for (uint32_t i = 0; i < count; i++)
         bindings[i] = (VkDescriptorSetLayoutBinding){
             .binding = i,
-            .descriptorType = i == FRAME_BINDING ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
-                                                 : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+            .descriptorType = type_of(i),
             .descriptorCount = 1,
             .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
         };
@@ -63,6 +80,12 @@ failed:
 
 /* ---- Idle sets ---- */
 
+bool stage_view(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name)
+{
+    TexelKind kind = texels_of[binding];
+    return buffer_view(gpu, buffer, texel_kinds[kind].format, texel_kinds[kind].bytes, name);
+}
+
 void stage_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer)
 {
     vkUpdateDescriptorSets(gpu->device, 1, &(VkWriteDescriptorSet){
@@ -70,8 +93,8 @@ void stage_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *b
         .dstSet = set,
         .dstBinding = binding,
         .descriptorCount = 1,
-        .descriptorType = binding == FRAME_BINDING ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
-                                                   : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+        .descriptorType = type_of(binding),
+        .pTexelBufferView = &buffer->texels,
         .pBufferInfo = &(VkDescriptorBufferInfo){buffer->buffer, 0, buffer->size},
     }, 0, NULL);
 }
@@ -89,16 +112,24 @@ static bool idle_create(KrsRenderer *renderer)
     Gpu            *gpu = &renderer->gpu;
     const char     *attempt = "prepare the renderer";
     VkDescriptorSet sets[2];
-    if (!buffer_create(gpu, &renderer->idle, idle_bytes(gpu), SHARED, "rehearsals"))
-        return false;
-    memset(renderer->idle.bytes, 0, renderer->idle.size);
+    const char     *name = "rehearsals";
+    for (TexelKind kind = NO_TEXELS; kind < TEXEL_KINDS; kind++) {
+        Buffer      *idle  = &renderer->idle[kind];
+        VkDeviceSize bytes = kind == NO_TEXELS ? idle_bytes(gpu) : buffer_texel_bytes(1);
+        if (!buffer_create(gpu, idle, bytes, SHARED, name) ||
+            (kind != NO_TEXELS && !buffer_view(gpu, idle, texel_kinds[kind].format,
+                                               texel_kinds[kind].bytes, name)))
+            return false;
+        memset(idle->bytes, 0, idle->size);
+    }
     TRY(gpu, attempt, vkCreateDescriptorPool(gpu->device, &(VkDescriptorPoolCreateInfo){
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
         .maxSets = 2,
-        .poolSizeCount = 2,
+        .poolSizeCount = 3,
         .pPoolSizes = (VkDescriptorPoolSize[]){
             {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2},
-            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BINDING_COUNT - 1},
+            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BUFFER_BINDINGS},
+            {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, TEXEL_BINDINGS},
         },
     }, NULL, &renderer->idle_pool));
     TRY(gpu, attempt, vkAllocateDescriptorSets(gpu->device, &(VkDescriptorSetAllocateInfo){
@@ -109,9 +140,9 @@ static bool idle_create(KrsRenderer *renderer)
     }, sets));
     renderer->idle_scene = sets[0];
     renderer->idle_frame = sets[1];
-    stage_bind(gpu, renderer->idle_scene, 0, &renderer->idle);
+    stage_bind(gpu, renderer->idle_scene, 0, &renderer->idle[0]);
     for (uint32_t binding = 0; binding < BINDING_COUNT; binding++)
-        stage_bind(gpu, renderer->idle_frame, binding, &renderer->idle);
+        stage_bind(gpu, renderer->idle_frame, binding, &renderer->idle[texels_of[binding]]);
     return true;
 
 failed:
@@ -129,7 +160,8 @@ void stage_destroy(KrsRenderer *renderer)
     if (!gpu->device)
         return;
     vkDestroyDescriptorPool(gpu->device, renderer->idle_pool, NULL);
-    buffer_destroy(gpu, &renderer->idle);
+    for (TexelKind kind = NO_TEXELS; kind < TEXEL_KINDS; kind++)
+        buffer_destroy(gpu, &renderer->idle[kind]);
     vkDestroyPipelineLayout(gpu->device, renderer->layout, NULL);
     vkDestroyDescriptorSetLayout(gpu->device, renderer->frame_layout, NULL);
     vkDestroyDescriptorSetLayout(gpu->device, renderer->scene_layout, NULL);

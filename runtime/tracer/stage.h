@@ -7,14 +7,24 @@
 
 #include "runtime/tracer/renderer.h"
 
-/* Bindings of the frame's set: a uniform buffer, and storage buffers. */
-enum { FRAME_BINDING = 0, BINDING_COUNT = 10 };
+/* Bindings of the frame's set (frame.glsl): a uniform buffer, storage buffers, texels of lights,
+   and more storage buffers; then those once more as texels. */
+enum {
+    FRAME_BINDING = 0, ENDS_BINDING, HITS_BINDING, RESULTS_BINDING, CONTROL_BINDING,
+    QUEUE_BINDING = 6, TAKEN_BINDING, LIGHTS_BINDING, TILES_BINDING,
+    END_TEXELS, HIT_TEXELS, SOLID_TEXELS, RESULT_TEXELS,
+    BINDING_COUNT,
+    TEXEL_BINDINGS = 1 + BINDING_COUNT - END_TEXELS,
+    BUFFER_BINDINGS = BINDING_COUNT - TEXEL_BINDINGS - 1
+};
 
 /* For a renderer whose device is open.  What was made on failure goes with stage_destroy. */
 bool stage_create(KrsRenderer *renderer);
 /* After the kernels; for a renderer without a device nothing. */
 void stage_destroy(KrsRenderer *renderer);
 
+/* Makes a buffer readable at a binding of texels; `name` as in buffer_create. */
+bool stage_view(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name);
 /* Points a binding of a set at a buffer. */
 void stage_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer);
 

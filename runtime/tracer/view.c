@@ -135,6 +135,56 @@ void view_place_box(const KrsView *view, const double low[3], const double high[
     }
 }
 
+static double dot_floats(const double a[3], const float b[3])
+{
+    return a[0] * (double)b[0] + a[1] * (double)b[1] + a[2] * (double)b[2];
+}
+
+/* In half pictures from the middle, rightwards and upwards; false for what is not in front of the
+   eye. */
+static bool project(const FrameBlock *block, const double point[3], bool perspective,
+                    double place[2])
+{
+    const float *axes[2] = {block->right, block->up};
+    double       way[3], length = 0;
+    for (int i = 0; i < 3; i++) {
+        way[i] = point[i] - (double)block->eye[i];
+        length = hypot(length, way[i]);
+    }
+    double ahead = perspective ? dot_floats(way, block->forward) : 1;
+    for (int i = 0; i < 2; i++) {
+        const double axis[3] = {axes[i][0], axes[i][1], axes[i][2]};
+        place[i] = dot_floats(way, axes[i]) / (dot_floats(axis, axes[i]) * ahead);
+    }
+    return !perspective || ahead > 1e-3 * length;
+}
+
+KrsWindow view_window(const FrameBlock *block, const KrsCamera *camera)
+{
+    const double size[2] = {block->size[0], block->size[1]};
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    bool   known = camera->projection != KRS_PANORAMA;
+    bool   widens = camera->projection == KRS_PERSPECTIVE;
+    for (int corner = 0; corner < 8; corner++) {
+        double point[3], place[2];
+        for (int i = 0; i < 3; i++)
+            point[i] = (double)(corner >> i & 1 ? block->high[i] : block->low[i]);
+        known = project(block, point, widens, place) && known;
+        for (int i = 0; i < 2; i++) {
+            low[i]  = fmin(low[i], place[i]);
+            high[i] = fmax(high[i], place[i]);
+        }
+    }
+    double from[2] = {0.5 * (1 + low[0]), 0.5 * (1 - high[1])};
+    double to[2]   = {0.5 * (1 + high[0]), 0.5 * (1 - low[1])};
+    for (int i = 0; i < 2; i++) { /* a pixel more, for rounding */
+        from[i] = known ? fmin(fmax(floor(from[i] * size[i]) - 1, 0), size[i]) : 0;
+        to[i]   = known ? fmin(fmax(ceil(to[i] * size[i]) + 1, from[i]), size[i]) : size[i];
+    }
+    return (KrsWindow){(uint32_t)from[0], (uint32_t)from[1], (uint32_t)(to[0] - from[0]),
+                       (uint32_t)(to[1] - from[1])};
+}
+
 /* Where rays end, and how far occlusion is felt.  The latter hangs on the scene, not on the
    camera, where that is possible, so that it does not change while the camera moves. */
 static void place_ends(const KrsView *view, const double low[3], const double high[3],

@@ -18,6 +18,9 @@ bool view_prepare(const KrsView *view, const double low[3], const double high[3]
 void view_place_box(const KrsView *view, const double low[3], const double high[3],
                     FrameBlock *block);
 
+/* The pixels whose rays may meet the box of the block; of a panorama all. */
+KrsWindow view_window(const FrameBlock *block, const KrsCamera *camera);
+
 /* The matrices of a picture, for a camera that view_prepare has accepted. */
 void view_matrices(const KrsCamera *camera, uint32_t width, uint32_t height, KrsPicture *picture);
 

@@ -82,9 +82,9 @@ static bool write_file(PngWriter *writer, const Picture *picture, const uint8_t 
                  PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
                  PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB_gAMA_and_cHRM(writer->png, writer->info, PNG_sRGB_INTENT_PERCEPTUAL);
-    /* Dithered pictures become a tenth larger by this than at the default level with a filter
-       chosen for each row, or smaller; in a quarter of the time. */
-    png_set_compression_level(writer->png, 3);
+    /* From a tenth smaller to a third larger than at the default level with a filter chosen for
+       each row, in a sixth of the time. */
+    png_set_compression_level(writer->png, 2);
     png_set_filter(writer->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     if (picture->crop_x || picture->crop_y)
         png_set_oFFs(writer->png, writer->info, (png_int_32)picture->crop_x,

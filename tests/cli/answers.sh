@@ -2,7 +2,7 @@
 # answers.sh: what query, info, devices, dump, explain and validate answer.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 36
+plan 37
 
 ask() { # question, options...
     question=$1
@@ -90,7 +90,8 @@ said 2 "record 2 of standard input" "a record that is cut off"
 run info ball.krs
 [ "$status" -eq 0 ] && grep -q 'ball' out && grep -q '^param radius = 1 in \[0.5, 1.5\]$' out
 result $? "info as text"
-grep -q 'distances, by shape' out && grep -q '  sphere  ball.krs:[0-9]*:[0-9]*  exact, by claim; box ' out
+grep -q 'distances, by shape' out &&
+    grep -q '  sphere  ball.krs:[0-9]*:[0-9]*  exact, by claim; box ' out
 result $? "info has the rule of every shape's distance"
 run info --json ball.krs
 [ "$status" -eq 0 ] && is_json <out && grep -q '"slope": ' out &&
@@ -133,6 +134,10 @@ result $? "every stage can be dumped$empty"
 run explain E0101
 [ "$status" -eq 0 ] && grep -q '^error\[E0101\]: ' out
 result $? "a diagnostic is explained"
+cp out upper
+run explain e0101
+[ "$status" -eq 0 ] && cmp -s upper out
+result $? "a code in small letters, too"
 run explain
 [ "$status" -eq 0 ] && [ "$(grep -c '^[EW][0-9][0-9][0-9][0-9]  ' out)" -eq "$(wc -l <out)" ]
 result $? "all diagnostics are listed"

@@ -2,7 +2,7 @@
 # failures.sh: crashes, interrupts, missing devices and missing memory.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 24
+plan 26
 small="--size 16x12 --quiet"
 
 for stage in start compile shaders device render write; do
@@ -92,3 +92,17 @@ awk 'BEGIN { for (i = 0; i < 300000; i++) printf "let a%d = [%d, %d, %d];\n", i,
 )
 status=$?
 said 71 "out of memory" "a scene that does not fit into memory"
+(
+    # shellcheck disable=SC3045
+    ulimit -v 3000000
+    KRS_TEST_CRASH=shaders "$krs" render ball.krs --quiet -o a.exr >out 2>err
+)
+status=$?
+said 71 "probably for want of memory: \`ulimit -v\` allows 2929 MiB" "a crash where memory is limited"
+(
+    # shellcheck disable=SC3045
+    ulimit -t 1
+    "$krs" render ball.krs --quiet --size 4000x4000 --samples 4096 -o a.exr >out 2>err
+)
+status=$?
+said 130 "\`ulimit -t\` allows is used up" "processor time that is used up"

@@ -98,27 +98,39 @@ refused() { # file, text, words, what
     run import "$1"
     said 1 "$1:$3" "$4"
 }
-refused a.vm '_0 var-x\n_1 squre _0\n' '2: no operation is called `squre`; is it `square`?' "a misspelt operation"
+refused a.vm '_0 var-x\n_1 squre _0\n' '2: no operation is called `squre`; is it `square`?' \
+    "a misspelt operation"
 refused a.vm '_0 var-x\n\n_1 add _0\n' '3: `add` needs 2 arguments' "an argument that is missing"
 refused a.vm '_0 var-x\n_1 neg _0 _0\n' '2: `neg` has too many arguments' "an argument too much"
-refused a.vm '_0 neg _1\n_1 var-x\n' '1: no line before this one is called `_1`' "a name used before its line"
+refused a.vm '_0 neg _1\n_1 var-x\n' '1: no line before this one is called `_1`' \
+    "a name used before its line"
 refused a.vm '_0 const 1x\n' '1: `1x` is not a finite number' "a number that is none"
 refused a.vm '_0 const inf\n' '1: `inf` is not a finite number' "infinity"
 refused a.vm '_0\n' '1: a line is a name' "a line without an operation"
-refused a.vm '_0 const 1\n_1 sin _0' '2: what comes last does not depend' "a tape without coordinates"
+refused a.vm '_0 const 1\n_1 sin _0' '2: what comes last does not depend' \
+    "a tape without coordinates"
 refused a.vm '# nothing\n' '1: there is no operation' "an empty tape"
 refused a.jsurf 'camera_height=2\n' '1: there is no surface_equation' "no equation"
-refused a.jsurf '\nsurface_equation=x^2+c\n' '2: the equation uses `c`, but there is no surface_parameter_c' "an unknown parameter"
-refused a.jsurf 'surface_equation=x^2+(y\n' '1: the equation ends where there should be' "an open parenthesis"
-refused a.jsurf 'surface_equation=x^2+2y\n' '1: the equation has `y` at place 6' "a product without its sign"
-refused a.jsurf 'surface_equation=x\\=0\n' '1: the equation has `=0` at place 2' "an equation with two sides"
+refused a.jsurf '\nsurface_equation=x^2+c\n' \
+    '2: the equation uses `c`, but there is no surface_parameter_c' "an unknown parameter"
+refused a.jsurf 'surface_equation=x^2+(y\n' '1: the equation ends where there should be' \
+    "an open parenthesis"
+refused a.jsurf 'surface_equation=x^2+2y\n' '1: the equation has `y` at place 6' \
+    "a product without its sign"
+refused a.jsurf 'surface_equation=x\\=0\n' '1: the equation has `=0` at place 2' \
+    "an equation with two sides"
 refused a.jsurf 'surface_equation=foo(x)\n' '1: no function is called `foo`' "an unknown function"
-refused a.jsurf 'surface_equation=x\nscale_factor=\n' '2: `scale_factor` needs 1 number' "a number that is missing"
-refused a.jsurf 'surface_equation=x\nscale_factor=9\n' '2: `scale_factor` leads out of' "too much zoom"
-refused a.jsurf 'surface_equation=x\nrotation_matrix=1 0 0 0 0 2 0 0 0 0 1 0 0 0 0 1\n' '2: `rotation_matrix` does more than turn' "a space that is stretched"
-refused a.jsurf 'surface_equation=x\ncamera_type=FISHEYE\n' '2: no camera is a `FISHEYE`' "an unknown camera"
+refused a.jsurf 'surface_equation=x\nscale_factor=\n' '2: `scale_factor` needs 1 number' \
+    "a number that is missing"
+refused a.jsurf 'surface_equation=x\nscale_factor=9\n' '2: `scale_factor` leads out of' \
+    "too much zoom"
+refused a.jsurf 'surface_equation=x\nrotation_matrix=1 0 0 0 0 2 0 0 0 0 1 0 0 0 0 1\n' \
+    '2: `rotation_matrix` does more than turn' "a space that is stretched"
+refused a.jsurf 'surface_equation=x\ncamera_type=FISHEYE\n' '2: no camera is a `FISHEYE`' \
+    "an unknown camera"
 nested=$(awk 'BEGIN { for (i = 0; i < 5000; i++) printf "(" }')
-refused a.jsurf "surface_equation=$nested" '1: the equation is more than 60 deep' "parentheses without end"
+refused a.jsurf "surface_equation=$nested" '1: the equation is more than 60 deep' \
+    "parentheses without end"
 
 run import ball.krs
 said 2 "ends in neither .jsurf nor .vm" "a file of another kind"
@@ -135,7 +147,8 @@ damaged() { # file, ending
     size=$(wc -c <"$1") crashed=""
     for turn in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24; do
         at=$((turn * 7919 % size))
-        { head -c "$at" "$1"; printf "%b" "\\0$((turn * 37 % 256 / 64))$((turn * 37 % 64 / 8))$((turn % 8))"
+        octal=$((turn * 37 % 256 / 64))$((turn * 37 % 64 / 8))$((turn % 8))
+        { head -c "$at" "$1"; printf "%b" "\\0$octal"
           [ $((turn % 3)) -eq 0 ] || tail -c +$((at + 1 + turn % 5)) "$1"; } >"damaged.$2"
         run import "damaged.$2"
         [ "$status" -le 1 ] || crashed="$crashed $turn:$status"

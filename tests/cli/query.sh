@@ -63,7 +63,8 @@ done
 # The double 1e-6 is the bytes 8d ed b5 a0 f7 c6 b0 3e (hexadecimal), 1 is ... f0 3f.
 zero='\000\000\000\000\000\000\000\000'
 # shellcheck disable=SC2059 # the escapes are meant for printf
-printf "$zero"'\215\355\265\240\367\306\260\076'"$zero"'\000\000\000\000\000\000\360\077'"$zero$zero" >record
+printf "$zero"'\215\355\265\240\367\306\260\076'"$zero"'\000\000\000\000\000\000\360\077'"$zero$zero" \
+    >record
 "$krs" query --binary plane.krs <record >out 2>err
 status=$?
 [ "$status" -eq 0 ] && [ "$(wc -c <out)" -eq 80 ] &&

@@ -2,7 +2,7 @@
 # scenes.sh: scenes that cannot be read, or are wrong, end in the right status and a diagnostic.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 21
+plan 25
 
 run check missing.krs
 said 74 "cannot read \`missing.krs\`: No such file or directory" "a missing file"
@@ -55,3 +55,18 @@ for command in render info query validate; do
     run "$command" wrong.krs
     said 1 "error[E0201]" "$command refuses a wrong scene"
 done
+
+head -c 17000000 /dev/zero >huge.krs
+run check huge.krs
+said 1 "huge.krs:1:1" "a file that is too large"
+{ head -c 100000 /dev/zero | tr '\0' a; printf ' = 1;\n'; } >long.krs
+run check long.krs
+[ "$status" -eq 1 ] && [ "$(wc -L <err)" -lt 500 ]
+result $? "a message about a long name is short"
+printf '\357\273\277show sphere(1);\r\n\r\nshow spere(1);\r\n' >windows.krs
+run check windows.krs
+said 1 "windows.krs:3:6" "a byte order mark and line ends of two bytes"
+awk 'BEGIN { printf "show sphere("; for (i = 0; i < 100000; i++) printf "(";
+             printf "1"; for (i = 0; i < 100000; i++) printf ")"; print ");" }' >deep.krs
+run check deep.krs
+said 1 "error[E0105]" "a hundred thousand parentheses"

@@ -13,7 +13,8 @@ failed=0
 [ -x "$build/fuzz/tests/fuzz/scene_fuzz" ] || { echo "not ok - the fuzzers are built"; exit 1; }
 
 printf 'krs-planted-fault' >"$corpus/planted"
-if KRS_FUZZ_PLANTED=1 "$build/fuzz/tests/fuzz/scene_fuzz" -artifact_prefix="$corpus/found/" "$corpus/planted" >/dev/null 2>&1; then
+if KRS_FUZZ_PLANTED=1 "$build/fuzz/tests/fuzz/scene_fuzz" \
+    -artifact_prefix="$corpus/found/" "$corpus/planted" >/dev/null 2>&1; then
     echo "not ok - a planted fault is found"
     failed=1
 else
@@ -23,9 +24,10 @@ rm -f "$corpus"/found/*
 
 fuzz() { # harness, seconds
     cp -r "$corpus/seeds" "$corpus/$1"
-    if "$build/fuzz/tests/fuzz/$1" -max_total_time="$2" -timeout=20 -rss_limit_mb=4096 -max_len=4096 \
-        -artifact_prefix="$corpus/found/" "$corpus/$1" >"$corpus/log" 2>&1; then
-        echo "ok - $1: $(sed -n 's/^Done \([0-9]*\) runs.*/\1/p' "$corpus/log") runs without a finding"
+    if "$build/fuzz/tests/fuzz/$1" -max_total_time="$2" -timeout=20 -rss_limit_mb=4096 \
+        -max_len=4096 -artifact_prefix="$corpus/found/" "$corpus/$1" >"$corpus/log" 2>&1; then
+        runs=$(sed -n 's/^Done \([0-9]*\) runs.*/\1/p' "$corpus/log")
+        echo "ok - $1: $runs runs without a finding"
         return
     fi
     tail -40 "$corpus/log"

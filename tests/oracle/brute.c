@@ -26,25 +26,6 @@ Vec vec_turn(Vec p, Vec axis, double angle)
                                   vec_scale(sin(angle), vec_cross(up, out))));
 }
 
-/* splitmix64 (Steele, Lea, Flood 2014). */
-static uint64_t random_bits(Random *random)
-{
-    uint64_t z = random->state += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-}
-
-double random_between(Random *random, double low, double high)
-{
-    return low + (high - low) * (double)(random_bits(random) >> 11) * 0x1p-53;
-}
-
-int random_below(Random *random, int count)
-{
-    return (int)random_between(random, 0, count);
-}
-
 Vec random_in_cube(Random *random, double half)
 {
     double x = random_between(random, -half, half);

@@ -13,6 +13,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "tests/support/random.h"
+
 typedef struct Vec {
     double x, y, z;
 } Vec;
@@ -45,13 +47,6 @@ typedef struct Half {
 } Half;
 static inline double half_excess(Half half, Vec p) { return vec_dot(half.normal, p) - half.offset; }
 
-/* The same numbers on every machine; any state is a valid start. */
-typedef struct Random {
-    uint64_t state;
-} Random;
-
-double random_between(Random *random, double low, double high);
-int    random_below(Random *random, int count);
 Vec    random_unit(Random *random);
 Vec    random_in_cube(Random *random, double half);
 /* In the ball around `centre`, half of the time within a hundredth of its surface. */

@@ -481,10 +481,10 @@ typedef struct Coverage {
     double mean, spread;
 } Coverage;
 
-/* By rays through 16 x 16 places of each pixel. */
+/* By rays through 8 x 8 places of each pixel. */
 static Coverage true_coverage(const Shot *shot, const Lens *lens)
 {
-    enum { SIDE = 16 };
+    enum { SIDE = 8 };
     double sum = 0, squares = 0;
     for (int place = 0; place < SIDE * SIDE; place++) {
         double *enter = shot_truth(shot, lens, (place % SIDE + 0.5) / SIDE,

@@ -64,6 +64,36 @@ static double body_thickness(const Body *body)
     return body->box ? fmin(body->sides.x, fmin(body->sides.y, body->sides.z)) : body->radius;
 }
 
+static Vec body_middle(const Body *body)
+{
+    return body->box ? body->from : vec_mix(body->from, body->to, 0.5);
+}
+
+/* No point of the body is farther from its middle. */
+static double body_reach(const Body *body)
+{
+    double reach = body->box ? vec_length(body->sides)
+                             : vec_distance(body->from, body->to) / 2 + body->radius;
+    return reach * (1 + 1e-9) + 1e-9;
+}
+
+/* The point that an isometry takes to `point`. */
+static Vec isometry_undo(const Isometry *map, Vec point)
+{
+    Vec at = vec_sub(point, map->shift);
+    Vec sum = vec_add(vec_scale(at.x, map->rows[0]), vec_scale(at.y, map->rows[1]));
+    return vec_add(sum, vec_scale(at.z, map->rows[2]));
+}
+
+/* Whether one cut takes all of the body away. */
+static bool copy_is_cut_off(const Copy *copy)
+{
+    for (int i = 0; i < copy->cut_count; i++)
+        if (half_excess(copy->cuts[i], body_middle(copy->body)) > copy->reach)
+            return true;
+    return false;
+}
+
 /* How far the point is from satisfying the worst of the body and the cuts; `worst` is where
    it would have to go. */
 static double copy_violation(const Copy *copy, double margin, Vec p, Vec *better)
@@ -104,8 +134,12 @@ static void add_copies(const Sequence *sequence, Expansion *expansion, const Cop
         if (sequence->bodies[i].level == level) {
             Copy *copy = &expansion->copies[expansion->count++];
             *copy = *place;
-            copy->body = &sequence->bodies[i];
-            copy_find_interior(copy);
+            copy->body   = &sequence->bodies[i];
+            copy->middle = isometry_undo(&copy->pull, body_middle(copy->body));
+            copy->reach  = body_reach(copy->body);
+            copy->empty  = copy_is_cut_off(copy);
+            if (!copy->empty)
+                copy_find_interior(copy);
         }
     if (level == 0)
         return;
@@ -156,10 +190,20 @@ static bool copy_keeps(const Copy *copy, Vec q, double slack)
     return true;
 }
 
+/* Whether all of a copy is farther from a point than `distance`. */
+static bool is_beyond(const Copy *copy, Vec point, double distance)
+{
+    Vec    way  = vec_sub(point, copy->middle);
+    double more = copy->reach + distance;
+    return vec_dot(way, way) > more * more;
+}
+
 bool expansion_contains(const Expansion *expansion, Vec point)
 {
     for (size_t i = 0; i < expansion->count; i++) {
         const Copy *copy = &expansion->copies[i];
+        if (is_beyond(copy, point, 0))
+            continue;
         Vec q = isometry_apply(&copy->pull, point);
         if (vec_distance(q, body_project(copy->body, 0, q)) <= 1e-12 && copy_keeps(copy, q, 1e-12))
             return true;
@@ -221,6 +265,8 @@ double expansion_distance(const Expansion *expansion, Vec point, bool *sure)
     *sure = true;
     for (size_t i = 0; i < expansion->count; i++) {
         bool survives;
+        if (is_beyond(&expansion->copies[i], point, best))
+            continue;
         double distance = copy_distance_uncut(&expansion->copies[i], point, &survives);
         if (survives)
             best = fmin(best, distance);
@@ -228,6 +274,8 @@ double expansion_distance(const Expansion *expansion, Vec point, bool *sure)
     for (size_t i = 0; i < expansion->count; i++) {
         const Copy *copy = &expansion->copies[i];
         bool survives;
+        if (is_beyond(copy, point, best))
+            continue;
         double distance = copy_distance_uncut(copy, point, &survives);
         if (survives || distance >= best)
             continue;

@@ -42,6 +42,8 @@ typedef struct Copy {
     Isometry    pull; /* from the world to the space in which the kernel was placed */
     Half        cuts[EXPAND_MIRRORS]; /* in the kernel's space */
     int         cut_count;
+    Vec         middle;   /* in the world, a ball around all of it: what is beyond need not be */
+    double      reach;    /* looked at */
     bool        empty;    /* nothing is left of it, as far as was found */
     Vec         interior; /* a point well inside, unless empty */
 } Copy;

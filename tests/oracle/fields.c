@@ -81,7 +81,7 @@ static double ripples(Vec p)
 static double cliffs(Vec p) { return p.y - 0.1 * exp(1.5 * sin(2 * p.x) + p.z); }
 static double swell(Vec p) { return exp(p.x) + exp(2 * p.y) + exp(-p.z) * p.x - 4; }
 #define CHMUTOV(x)                                                                                 \
-    "8192 * " #x "^14 - 28672 * " #x "^12 + 39424 * " #x "^10 - 26880 * " #x "^8"                   \
+    "8192 * " #x "^14 - 28672 * " #x "^12 + 39424 * " #x "^10 - 26880 * " #x "^8"                  \
     " + 9408 * " #x "^6 - 1568 * " #x "^4 + 98 * " #x "^2 - 1"
 
 static const Solid solids[] = {

@@ -370,7 +370,7 @@ static void components_are_joined(void **state)
     product_free(&product);
 }
 
-/* What is grown or blended may be where a bound is small, far from its shape: not outside its box. */
+/* What is grown or blended may be where a bound is small, far from its shape: not outside a box. */
 static void boxes_hold_what_is_grown(void **state)
 {
     static const char *const solids[] = {

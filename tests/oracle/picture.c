@@ -21,6 +21,7 @@
 #include "tests/support/renderer.h"
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
+static const KrsRenderOptions plain = {.width = WIDTH, .height = HEIGHT, .no_filter = true};
 
 typedef struct Vec {
     double x, y, z;
@@ -112,23 +113,6 @@ static Verdict judge(const KrsPicture *picture, const KrsHit *hits, double pixel
     return verdict;
 }
 
-static KrsPicture *picture_of(const char *text)
-{
-    KrsScene        *scene;
-    KrsFrame        *frame;
-    KrsRendering    *rendering;
-    KrsPicture      *picture;
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .no_filter = true};
-    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
-    assert_int_equal(krs_render(rendering, frame, &options, &picture), KRS_OK);
-    krs_rendering_free(rendering);
-    krs_frame_free(frame);
-    krs_scene_free(scene);
-    return picture;
-}
-
 /* `planted` moves the exact camera sideways, to show that a fault is found. */
 static Verdict compare(const char *text, double planted)
 {
@@ -140,8 +124,7 @@ static Verdict compare(const char *text, double planted)
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
     assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
     assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .no_filter = true};
-    assert_int_equal(krs_render(rendering, frame, &options, &picture), KRS_OK);
+    assert_int_equal(krs_render(rendering, frame, &plain, &picture), KRS_OK);
     assert_int_equal(picture->stats.unresolved, 0);
     assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);
 
@@ -216,7 +199,7 @@ static void the_inside_of_solids_agrees(void **state)
     for (int i = 0; i < 3; i++) {
         snprintf(text, sizeof text, inside, lights[i]);
         agrees(text);
-        pictures[i] = picture_of(text);
+        pictures[i] = picture_of(text, &plain);
     }
     bool dark = memcmp(pictures[0]->color, pictures[1]->color, PIXELS * 16) == 0;
     bool same = memcmp(pictures[1]->color, pictures[2]->color, PIXELS * 16) == 0;

@@ -19,8 +19,9 @@
 
 #include "compiler/compile.h"
 #include "runtime/tracer/renderer.h"
-
-static KrsRenderer *renderer;
+#include "tests/support/random.h"
+#include "tests/support/renderer.h"
+#include "tests/support/scarce.h"
 
 typedef struct Scene {
     KrsScene     *scene;
@@ -54,19 +55,9 @@ static void scene_close(Scene s)
     krs_scene_free(s.scene);
 }
 
-static uint64_t state = 77;
+static Random chance = {77};
 
-static double uniform(double low, double high)
-{
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * (double)(state >> 11) * 0x1p-53;
-}
-
-static void random_vector(double size, double v[3])
-{
-    for (int k = 0; k < 3; k++)
-        v[k] = uniform(-size, size);
-}
+static double uniform(double low, double high) { return random_between(&chance, low, high); }
 
 static double length3(const double v[3]) { return hypot(hypot(v[0], v[1]), v[2]); }
 
@@ -100,7 +91,7 @@ static void points_agree(Scene s, size_t count, double size, double roughness)
 {
     size_t wrong_ids = 0, wrong_normals = 0;
     for (size_t i = 0; i < count; i++) {
-        random_vector(size, points[i]);
+        random_vector(&chance, size, points[i]);
         for (int k = 0; k < 3; k++)
             points[i][k] = (float)points[i][k];
     }
@@ -150,8 +141,8 @@ static void aim_rays(Scene s, size_t count, double size)
 {
     for (size_t i = 0; i < count;) {
         double target[3], distance;
-        random_vector(size, points[i]);
-        random_vector(0.7 * size, target);
+        random_vector(&chance, size, points[i]);
+        random_vector(&chance, 0.7 * size, target);
         assert_int_equal(krs_distance(s.frame, POINTS + i, 1, &distance), KRS_OK);
         if (distance < 0.02)
             continue;
@@ -263,7 +254,7 @@ static void zones_come_and_go(void **context)
     for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
         size_t count = counts[c];
         for (size_t i = 0; i < count; i++) {
-            random_vector(0.8, zones[i]);
+            random_vector(&chance, 0.8, zones[i]);
             zones[i][3] = uniform(0.1, 0.4);
         }
         const Kernel before = s.rendering->zoned.sample;
@@ -294,7 +285,7 @@ static const char difference[] =
     "show sphere(1).paint(#c04020) - hole.paint(#c04020);"
     "show plane([0, 1, 0], -1).paint(#4060a0) - hole.paint(#4060a0);";
 
-static KrsPicture *picture_of(Scene s)
+static KrsPicture *shoot(Scene s)
 {
     KrsRenderOptions options = {.width = 160, .height = 120, .error = 0.05};
     KrsPicture      *picture;
@@ -321,17 +312,17 @@ static void a_zone_looks_like_a_difference(void **context)
     Scene by_language = scene_of(zoned, KRS_FOR_PICTURES);
     Scene by_caller = scene_of(bare, KRS_FOR_PICTURES);
     Scene by_hand = scene_of(difference, KRS_FOR_PICTURES);
-    KrsPicture *whole = picture_of(by_caller);
+    KrsPicture *whole = shoot(by_caller);
     assert_int_equal(krs_frame_set_zones(by_caller.frame, zone, 1), KRS_OK);
-    KrsPicture *a = picture_of(by_language), *b = picture_of(by_caller), *c = picture_of(by_hand);
+    KrsPicture *a = shoot(by_language), *b = shoot(by_caller), *c = shoot(by_hand);
     assert_true(same_pictures(a, b));
     assert_true(same_pictures(a, c));
     assert_false(same_pictures(a, whole));
     assert_int_equal(krs_frame_set_zones(by_caller.frame, nearer, 1), KRS_OK);
-    KrsPicture *smaller = picture_of(by_caller);
+    KrsPicture *smaller = shoot(by_caller);
     assert_false(same_pictures(a, smaller));
     assert_int_equal(krs_frame_set_zones(by_caller.frame, NULL, 0), KRS_OK);
-    KrsPicture *again = picture_of(by_caller);
+    KrsPicture *again = shoot(by_caller);
     assert_true(same_pictures(again, whole));
     KrsPicture *all[] = {whole, a, b, c, smaller, again};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
@@ -469,29 +460,10 @@ static void wrong_questions_are_refused(void **context)
 }
 
 /* Memory that runs out at any allocation of ours ends the call with its status. */
-typedef struct Scarce {
-    int64_t made, failing, held;
-} Scarce;
-
-static void *scarce_allocate(void *user, size_t size)
-{
-    Scarce *scarce = user;
-    if (++scarce->made == scarce->failing)
-        return NULL;
-    scarce->held++;
-    return malloc(size);
-}
-
-static void scarce_release(void *user, void *block)
-{
-    ((Scarce *)user)->held -= block != NULL;
-    free(block);
-}
-
 static void memory_may_run_out(void **context)
 {
     Scarce             scarce = {0};
-    KrsRendererOptions options = {.allocator = {scarce_allocate, scarce_release, &scarce}};
+    KrsRendererOptions options = {.allocator = scarce_allocator(&scarce)};
     KrsRenderer       *shared = renderer, *own;
     const double       zone[1][4] = {{0, 0, 1, 0.5}};
     (void)context;
@@ -523,19 +495,6 @@ static void memory_may_run_out(void **context)
     renderer = shared;
 }
 
-static int open_device(void **context)
-{
-    (void)context;
-    return krs_renderer_new(NULL, &renderer) != KRS_OK;
-}
-
-static int close_device(void **context)
-{
-    (void)context;
-    krs_renderer_free(renderer);
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -551,7 +510,8 @@ int main(void)
         cmocka_unit_test(memory_may_run_out),
     };
     spirv_start();
-    int failed = cmocka_run_group_tests_name("device queries", tests, open_device, close_device);
+    int failed = cmocka_run_group_tests_name("device queries", tests, renderer_open,
+                                             renderer_close);
     spirv_stop();
     return failed;
 }

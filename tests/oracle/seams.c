@@ -21,23 +21,7 @@
 #include "tests/support/renderer.h"
 
 enum { WIDTH = 200, HEIGHT = 150, PIXELS = WIDTH * HEIGHT };
-
-static KrsPicture *picture_of(const char *text)
-{
-    KrsScene        *scene;
-    KrsFrame        *frame;
-    KrsRendering    *rendering;
-    KrsPicture      *picture;
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT};
-    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
-    assert_int_equal(krs_render(rendering, frame, &options, &picture), KRS_OK);
-    krs_rendering_free(rendering);
-    krs_frame_free(frame);
-    krs_scene_free(scene);
-    return picture;
-}
+static const KrsRenderOptions usual = {.width = WIDTH, .height = HEIGHT};
 
 /* Pixels that show: another colour, where the whole is even: its neighbours are alike. */
 static size_t count_different(const KrsPicture *parts, const KrsPicture *whole)
@@ -79,9 +63,9 @@ static void blocks_look_like_a_wall(void **state)
     for (size_t i = 0; i < sizeof walls / sizeof *walls; i++) {
         char text[400];
         snprintf(text, sizeof text, "show (%s)%s;", walls[i].whole, walls[i].around);
-        KrsPicture *whole = picture_of(text);
+        KrsPicture *whole = picture_of(text, &usual);
         snprintf(text, sizeof text, "show (%s)%s;", walls[i].parts, walls[i].around);
-        KrsPicture *parts = picture_of(text);
+        KrsPicture *parts = picture_of(text, &usual);
         size_t      different = count_different(parts, whole);
         if (different > 0)
             print_message("%zu pixels show: %s\n", different, text);
@@ -104,7 +88,7 @@ static void a_heart_has_no_belt(void **state)
 {
     (void)state;
     KrsPicture *picture = picture_of("use \"std/surfaces.krs\"; show heart();"
-                                     "camera { eye: [2.6, 0.3, 3], fov: 30deg }");
+                                     "camera { eye: [2.6, 0.3, 3], fov: 30deg }", &usual);
     size_t wrong = 0, belt = 0;
     double worst = 0;
     for (size_t k = 0; k < PIXELS; k++) {

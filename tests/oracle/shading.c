@@ -23,20 +23,9 @@ enum { WIDTH = 240, HEIGHT = 160, PIXELS = WIDTH * HEIGHT };
 
 static KrsPicture *take(const char *text, KrsRenderOptions options)
 {
-    KrsScene     *scene;
-    KrsFrame     *frame;
-    KrsRendering *rendering;
-    KrsPicture   *picture;
     options.width  = WIDTH;
     options.height = HEIGHT;
-    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
-    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
-    assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
-    assert_int_equal(krs_render(rendering, frame, &options, &picture), KRS_OK);
-    krs_rendering_free(rendering);
-    krs_frame_free(frame);
-    krs_scene_free(scene);
-    return picture;
+    return picture_of(text, &options);
 }
 
 static Vec read(const float *plane, int pixel)

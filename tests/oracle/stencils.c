@@ -197,7 +197,8 @@ static void derivatives_agree_with_differences(void **state)
         "camera { eye: [0, 4, 6] } show capsule([0, 0, 0], [0, 0.6, 0], 0.15)"
         ".repeat([0.8, 0, 0.8], [5, 1, 5]);"
         "show cone(0.3, 0.6).move([1.8, 0.9, 0]).repeat_polar(9);",
-        "camera { eye: [0, 2, 9], fov: 50deg } show krs { kernel sphere(0.8).move([0.5, 0, 0]); for i in 0..6 {"
+        "camera { eye: [0, 2, 9], fov: 50deg }"
+        "show krs { kernel sphere(0.8).move([0.5, 0, 0]); for i in 0..6 {"
         "reflect plane([sin(i), cos(i), 0.3 * i], 0.2 + 0.1 * i); } };",
         "camera { eye: [2, 2, 5] } show box([0.8, 2, 0.8]).twist(axis: [0, 1, 0], rate: 0.5);"
         "show torus(0.8, 0.2).move([2, 0, 0]).round(0.05);",

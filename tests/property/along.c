@@ -51,7 +51,7 @@ static double less_ball(const double p[3])
 }
 
 #define SEXTIC                                                                                     \
-    "let g = (1 + sqrt(5)) / 2;\nlet s = algebraic((1 + 2 * g) * (x^2 + y^2 + z^2 - 1)^2 =="        \
+    "let g = (1 + sqrt(5)) / 2;\nlet s = algebraic((1 + 2 * g) * (x^2 + y^2 + z^2 - 1)^2 =="       \
     " 4 * (g^2 * x^2 - y^2) * (g^2 * y^2 - z^2) * (g^2 * z^2 - x^2)).within(sphere(1.5));\n"
 
 static const struct Case {
@@ -119,7 +119,7 @@ static void steps_stay_before_the_surface(void **state)
     assert_int_equal(krs_compile_text(c->text, strlen(c->text), c->name, NULL, &scene), KRS_OK);
     assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
     assert_true(krs_scene_program(scene)->along);
-    Node root = scene->along_roots[0];
+    Node root = scene->roots.along[0];
     Tape tape = tape_new(scene->graph, &root, 1, &scene->arena);
     frame_refresh(frame);
     tape_run_frame(&tape, frame->parameters, frame->values);

@@ -78,12 +78,15 @@ static Node pick(Bench *b, const Garden *garden, GraphType type)
             return node;
     }
     double values[4];
+    bool   counts = type == TYPE_BOOL || type == TYPE_UINT;
     for (int i = 0; i < 4; i++)
-        values[i] = numbers[random_below(&b->random, type == TYPE_BOOL || type == TYPE_UINT ? 2 : 8)];
+        values[i] = numbers[random_below(&b->random, counts ? 2 : 8)];
     if (random_below(&b->random, 2))
         values[1] = values[2] = values[3] = values[0];
     return graph_constant(b->graph, type, values);
 }
+
+static GraphType random_type(Bench *b) { return (GraphType)(1 + random_below(&b->random, 6)); }
 
 /* A random operation on random operands that it is defined for. */
 static Node grow(Bench *b, const Garden *garden)
@@ -92,11 +95,10 @@ static Node grow(Bench *b, const Garden *garden)
         Op op = (Op)(OP_COMPONENT + random_below(&b->random, OP_COUNT - OP_COMPONENT));
         GraphType types[MAX_OPERANDS];
         Node      operands[MAX_OPERANDS];
-        GraphType usual = (GraphType)(1 + random_below(&b->random, 6));
+        GraphType usual = random_type(b);
         for (uint32_t count = 1; count <= MAX_OPERANDS; count++) {
             for (uint32_t i = 0; i < count; i++)
-                types[i] = random_below(&b->random, 3) ? usual
-                                                       : (GraphType)(1 + random_below(&b->random, 6));
+                types[i] = random_below(&b->random, 3) ? usual : random_type(b);
             if (!graph_op_type(op, types, count))
                 continue;
             for (uint32_t i = 0; i < count; i++)

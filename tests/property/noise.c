@@ -19,14 +19,11 @@
 
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/facts.h"
+#include "tests/support/random.h"
 
-static uint64_t state = 7;
+static Random chance = {7};
 
-static double uniform(double low, double high)
-{
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * (double)(state >> 11) * 0x1p-53;
-}
+static double uniform(double low, double high) { return random_between(&chance, low, high); }
 
 /* ---- the product ---- */
 

@@ -204,7 +204,7 @@ static double fixed_number(Random *random, char kind)
 }
 
 /* In how many of eight trials an operand moves. */
-static uint32_t moving_eighths(char kind)
+static int moving_eighths(char kind)
 {
     switch (kind) {
     case 'm': case 's':           return 7;

@@ -12,17 +12,14 @@
 
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/parity.h"
+#include "tests/support/random.h"
 
 static jmp_buf exhausted;
 static Memory  memory = {.exhausted = &exhausted};
 
-static uint64_t state = 99;
+static Random chance = {99};
 
-static uint32_t draw(uint32_t below)
-{
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    return (uint32_t)(state >> 33) % below;
-}
+static uint32_t draw(uint32_t below) { return random_below(&chance, below); }
 
 static double value_at(const Graph *graph, Node root, double x, double y, double z, Arena *arena)
 {

@@ -3,7 +3,14 @@
  */
 #include "tests/support/renderer.h"
 
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
 
 KrsRenderer *renderer;
 
@@ -22,4 +29,20 @@ int renderer_close(void **state)
     krs_renderer_free(renderer);
     renderer = NULL;
     return 0;
+}
+
+KrsPicture *picture_of(const char *text, const KrsRenderOptions *options)
+{
+    KrsScene     *scene;
+    KrsFrame     *frame;
+    KrsRendering *rendering;
+    KrsPicture   *picture;
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
+    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
+    assert_int_equal(krs_render(rendering, frame, options, &picture), KRS_OK);
+    krs_rendering_free(rendering);
+    krs_frame_free(frame);
+    krs_scene_free(scene);
+    return picture;
 }

@@ -24,6 +24,7 @@
 
 #include "runtime/device/cache.h"
 #include "runtime/device/pipelines.h"
+#include "tests/support/scarce.h"
 
 static char  folder[] = "/tmp/krs-cache-XXXXXX";
 static Cache cache;
@@ -494,49 +495,30 @@ static void a_full_disk_leaves_nothing(void **state)
     assert_int_equal(count_files(NULL), 1);
 }
 
-typedef struct Ledger {
-    int  left, held; /* allocations that succeed from now on; blocks */
-} Ledger;
-
-static void *ledger_allocate(void *user, size_t size)
-{
-    Ledger *ledger = user;
-    if (ledger->left-- <= 0)
-        return NULL;
-    ledger->held++;
-    return malloc(size);
-}
-
-static void ledger_release(void *user, void *block)
-{
-    ((Ledger *)user)->held--;
-    free(block);
-}
-
 static void memory_that_runs_out_is_a_miss(void **state)
 {
-    Ledger ledger = {0};
+    Scarce scarce = {.failing = 1, .lasting = true};
     Cache  poor;
     size_t length;
     char   name[NAME_MAX + 1];
     (void)state;
     for (int i = 0; i < 7; i++) /* full, so that making room needs memory too */
         make_large(i, 1000 + 100 * i, name);
-    cache_open(&poor, folder, (KrsAllocator){ledger_allocate, ledger_release, &ledger});
+    cache_open(&poor, folder, scarce_allocator(&scarce));
     cache_store(&poor, CACHE_SPIRV, key_of(8), "new", 3);
     assert_null(cache_load(&poor, CACHE_SPIRV, key_of(8), &length));
     assert_int_equal(count_files(NULL), 8);
 
-    ledger.left = 1; /* enough for either */
+    scarce.failing = scarce.made + 2; /* one is enough for either */
     void *bytes = cache_load(&poor, CACHE_SPIRV, key_of(8), &length);
     assert_non_null(bytes);
-    assert_int_equal(ledger.held, 1);
-    ledger_release(&ledger, bytes);
-    ledger.left = 1;
+    assert_int_equal(scarce.held, 1);
+    scarce_allocator(&scarce).release(&scarce, bytes);
+    scarce.failing = scarce.made + 2;
     cache_store(&poor, CACHE_SPIRV, key_of(9), "new", 3);
     assert_true(count_files(NULL) < 8);
     cache_close(&poor);
-    assert_int_equal(ledger.held, 0);
+    assert_int_equal(scarce.held, 0);
 }
 
 /* ---- The driver's data ---- */

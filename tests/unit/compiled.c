@@ -25,6 +25,7 @@
 #include "compiler/compile.h"
 #include "runtime/device/kernel.h"
 #include "runtime/device/pipelines.h"
+#include "tests/support/scarce.h"
 
 static char folder[] = "/tmp/krs-compiled-XXXXXX";
 
@@ -128,6 +129,16 @@ static void nothing_is_written_unasked(void **state)
     assert_int_equal(access("krs", F_OK), -1);
 }
 
+/* As frame.glsl and its kind have them: texels where kernels only read. */
+static VkDescriptorType type_of_binding(uint32_t binding)
+{
+    if (binding == 0)
+        return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    return binding == 8 || (binding >= 10 && binding <= 13)
+               ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
+               : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+}
+
 /* A layout that has room for the bindings of any kernel. */
 static VkPipelineLayout make_layout(Gpu *gpu)
 {
@@ -138,8 +149,7 @@ static VkPipelineLayout make_layout(Gpu *gpu)
     for (uint32_t i = 0; i < BINDINGS; i++)
         bindings[i] = (VkDescriptorSetLayoutBinding){
             .binding = i, .descriptorCount = 1, .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
-            .descriptorType = i == 0 ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
-                                     : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
+            .descriptorType = type_of_binding(i)};
     for (int i = 0; i < SETS; i++)
         assert_int_equal(vkCreateDescriptorSetLayout(gpu->device,
             &(VkDescriptorSetLayoutCreateInfo){
@@ -217,32 +227,13 @@ static void kernels_are_compiled_together(void **state)
     gpu_close(&gpu);
 }
 
-typedef struct Ledger {
-    int left, held; /* allocations that succeed from now on; blocks */
-} Ledger;
-
-static void *ledger_allocate(void *user, size_t size)
-{
-    Ledger *ledger = user;
-    if (ledger->left-- <= 0)
-        return NULL;
-    ledger->held++;
-    return malloc(size);
-}
-
-static void ledger_release(void *user, void *block)
-{
-    ((Ledger *)user)->held--;
-    free(block);
-}
-
-static KrsStatus open_with(Ledger ledger)
+static KrsStatus open_with(Scarce scarce)
 {
     KrsRendererOptions options = {.device = "cpu", .cache = folder,
-                                  .allocator = {ledger_allocate, ledger_release, &ledger}};
+                                  .allocator = scarce_allocator(&scarce)};
     KrsStatus          status = open_and_close(&options);
     assert_true(status == KRS_OK || status == KRS_OUT_OF_MEMORY);
-    assert_int_equal(ledger.held, 0);
+    assert_int_equal(scarce.held, 0);
     return status;
 }
 
@@ -255,9 +246,9 @@ static void memory_that_runs_out_is_reported(void **state)
     int failures = 0;
     spirv_start(); /* so that glslang starts once */
     for (int left = 0; left < PLENTY; left++)
-        failures += open_with((Ledger){.left = left}) != KRS_OK;
+        failures += open_with((Scarce){.failing = left + 1, .lasting = true}) != KRS_OK;
     assert_true(failures > 3 && failures < PLENTY / 2);
-    assert_int_equal(open_with((Ledger){.left = PLENTY}), KRS_OK);
+    assert_int_equal(open_with((Scarce){.failing = PLENTY + 1, .lasting = true}), KRS_OK);
     spirv_stop();
 }
 

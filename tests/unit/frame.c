@@ -75,7 +75,8 @@ static void frames_that_are_not_finite_are_refused(void **state)
     close_scene(frame, scene);
 
     /* A root that is chosen against does no harm. */
-    frame = open_scene("param a = 0.5 in [-1, 1]; show sphere(if a < 0 then 1 else 1 + sqrt(a));", &scene);
+    frame = open_scene("param a = 0.5 in [-1, 1]; show sphere(if a < 0 then 1 else 1 + sqrt(a));",
+                       &scene);
     assert_int_equal(krs_frame_set(frame, "a", (double[]){-1}, 1), KRS_OK);
     assert_true(fabs(distance_at(frame, 4, 0, 0) - 3) < 1e-12);
     close_scene(frame, scene);
@@ -168,7 +169,8 @@ static void a_missing_camera_frames_the_scene(void **state)
     KrsScene *scene;
     KrsView   view;
     KrsFrame *frame = open_scene("param w = 1 in [1, 50]; show plane([0, 1, 0], -1);"
-                                 "show krs { kernel sphere(0.5); reflect plane([1, 0, 0], w); };", &scene);
+                                 "show krs { kernel sphere(0.5); reflect plane([1, 0, 0], w); };",
+                                 &scene);
     assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);
     double half = 0.5 * view.camera.fov;
     double left = angle_to(&view.camera, -0.5, 0, 0), right = angle_to(&view.camera, 2.5, 0, 0);

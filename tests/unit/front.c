@@ -803,7 +803,8 @@ static void json_has_places_of_the_protocol(void **state)
     assert_string_equal(text.bytes,
         "{\"uri\":\"j.krs\",\"range\":{\"start\":{\"line\":1,\"character\":3},"
         "\"end\":{\"line\":1,\"character\":4}},\"severity\":1,\"code\":\"E0201\","
-        "\"source\":\"krs\",\"message\":\"a message\",\"relatedInformation\":[{\"location\":{\"uri\":\"j.krs\","
+        "\"source\":\"krs\",\"message\":\"a message\","
+        "\"relatedInformation\":[{\"location\":{\"uri\":\"j.krs\","
         "\"range\":{\"start\":{\"line\":0,\"character\":0},\"end\":{\"line\":0,\"character\":1}}},"
         "\"message\":\"a \\\"place\\\"\"}],\"data\":{\"replacement\":\"d\",\"notes\":[]}}\n");
     reading_free(r);

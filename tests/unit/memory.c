@@ -13,30 +13,7 @@
 #include <cmocka.h>
 
 #include "compiler/compile.h"
-
-/* Fails the allocation with number `failing` and, if `lasting`, all after it. */
-typedef struct Scarce {
-    uint64_t made, failing;
-    int64_t  held;
-    bool     lasting;
-} Scarce;
-
-static void *scarce_allocate(void *user, size_t size)
-{
-    Scarce *scarce = user;
-    scarce->made++;
-    if (scarce->made == scarce->failing || (scarce->lasting && scarce->made > scarce->failing))
-        return NULL;
-    scarce->held++;
-    return malloc(size);
-}
-
-static void scarce_release(void *user, void *block)
-{
-    Scarce *scarce = user;
-    scarce->held -= block != NULL;
-    free(block);
-}
+#include "tests/support/scarce.h"
 
 static const char *const scenes[] = {
     "show sphere(1);",
@@ -51,7 +28,7 @@ static const char *const scenes[] = {
 /* Everything a caller does with a scene. */
 static KrsStatus use_scene(const char *text, Scarce *scarce)
 {
-    KrsOptions options = {.allocator = {scarce_allocate, scarce_release, scarce}};
+    KrsOptions options = {.allocator = scarce_allocator(scarce)};
     KrsScene  *scene;
     KrsFrame  *frame = NULL;
     KrsStatus  status = krs_compile_text(text, strlen(text), "scene.krs", &options, &scene);
@@ -75,7 +52,7 @@ static void fail_at_every_point(bool lasting)
         KrsStatus expected = use_scene(scenes[i], &plenty);
         assert_int_equal(plenty.held, 0);
         assert_true(plenty.made > 3);
-        for (uint64_t failing = 1; failing <= plenty.made; failing++) {
+        for (int64_t failing = 1; failing <= plenty.made; failing++) {
             Scarce    scarce = {.failing = failing, .lasting = lasting};
             KrsStatus status = use_scene(scenes[i], &scarce);
             assert_int_equal(scarce.held, 0);
@@ -103,7 +80,7 @@ static void the_limit_holds(void **state)
 {
     (void)state;
     Scarce     scarce  = {0};
-    KrsOptions options = {.allocator    = {scarce_allocate, scarce_release, &scarce},
+    KrsOptions options = {.allocator    = scarce_allocator(&scarce),
                           .memory_limit = 1 << 20};
     const char *text   = "let a = [[i, i + 1, i + 2] for i in 0..900000]; show sphere(1);";
     KrsScene   *scene;

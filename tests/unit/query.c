@@ -16,6 +16,7 @@
 #include <cmocka.h>
 
 #include "compiler/compile.h"
+#include "tests/support/random.h"
 
 typedef struct Scene {
     KrsScene *scene;
@@ -36,19 +37,9 @@ static void scene_close(Scene s)
     krs_scene_free(s.scene);
 }
 
-static uint64_t state = 2024;
+static Random chance = {2024};
 
-static double uniform(double low, double high)
-{
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * (double)(state >> 11) * 0x1p-53;
-}
-
-static void random_vector(double size, double v[3])
-{
-    for (int k = 0; k < 3; k++)
-        v[k] = uniform(-size, size);
-}
+static double uniform(double low, double high) { return random_between(&chance, low, high); }
 
 static double length3(const double v[3]) { return hypot(hypot(v[0], v[1]), v[2]); }
 
@@ -113,7 +104,8 @@ static double first_in(const double solid[2], const double (*zones)[2], size_t c
     return t < solid[1] ? t : -1;
 }
 
-static const double ZONES[3][4] = {{0.9, 0.1, 0, 0.5}, {0.2, 0.8, 0.4, 0.45}, {-0.3, -0.2, 0.9, 0.6}};
+static const double ZONES[3][4] = {
+    {0.9, 0.1, 0, 0.5}, {0.2, 0.8, 0.4, 0.45}, {-0.3, -0.2, 0.9, 0.6}};
 
 static double ball_less_zones(const double point[3], const double (*zones)[4], size_t count)
 {
@@ -137,7 +129,7 @@ static void zones_cut_distances(void **context)
     assert_int_equal(krs_frame_set_zones(by_caller.frame, ZONES, 3), KRS_OK);
     for (int i = 0; i < 2000; i++) {
         double point[1][3], a, b;
-        random_vector(2, point[0]);
+        random_vector(&chance, 2, point[0]);
         krs_distance(by_language.frame, (const double(*)[3])point, 1, &a);
         krs_distance(by_caller.frame, (const double(*)[3])point, 1, &b);
         double right = ball_less_zones(point[0], ZONES, 3);
@@ -162,9 +154,9 @@ static void zones_cut_rays(void **context)
     for (int i = 0; i < 5000; i++) {
         double origin[3], target[3], unit[3], solid[2], holes[3][2], margin = INFINITY;
         do
-            random_vector(4, origin);
+            random_vector(&chance, 4, origin);
         while (length3(origin) < 1.1);
-        random_vector(1.2, target);
+        random_vector(&chance, 1.2, target);
         double remote = apart(target, origin), t = -1;
         for (int k = 0; k < 3; k++)
             unit[k] = (target[k] - origin[k]) / remote;
@@ -217,8 +209,8 @@ static void a_cut_shows_what_it_goes_through(void **context)
 static void cuts_are_lit_by_their_own_normal(void **context)
 {
     (void)context;
-    Scene  s = scene_of("show krs { kernel sphere(1).move([-0.8, 0, 0]); reflect plane([1, 0, 0], 0); }"
-                        "    .smooth_mirrors(1);");
+    Scene  s = scene_of("show krs { kernel sphere(1).move([-0.8, 0, 0]);"
+                        "    reflect plane([1, 0, 0], 0); }.smooth_mirrors(1);");
     double zone[1][4] = {{0.2, 0, 1, 0.7}}, point[2][3] = {{0.2, 0, 0.3}, {0.2, 0, 0.8}};
     KrsHit cut, smooth;
     assert_int_equal(krs_probe(s.frame, (const double(*)[3])point + 1, 1, &smooth), KRS_OK);
@@ -243,7 +235,7 @@ static void zones_are_differences(void **context)
     Scene a = scene_of(with), b = scene_of(without);
     for (int i = 0; i < 2000; i++) {
         double point[1][3], d[2];
-        random_vector(1.5, point[0]);
+        random_vector(&chance, 1.5, point[0]);
         krs_distance(a.frame, (const double(*)[3])point, 1, &d[0]);
         krs_distance(b.frame, (const double(*)[3])point, 1, &d[1]);
         assert_true(fabs(d[0] - d[1]) < 1e-12);
@@ -283,7 +275,7 @@ static void arrays_are_answered_in_order(void **context)
     (void)context;
     Scene s = scene_of("show sphere(1); show sphere(0.5).move([3, 0, 0]);");
     for (int i = 0; i < COUNT; i++)
-        random_vector(5, points[i]);
+        random_vector(&chance, 5, points[i]);
     assert_int_equal(krs_distance(s.frame, (const double(*)[3])points, COUNT, distances), KRS_OK);
     assert_int_equal(krs_normal(s.frame, (const double(*)[3])points, COUNT, normals), KRS_OK);
     assert_int_equal(krs_probe(s.frame, (const double(*)[3])points, COUNT, hits), KRS_OK);

@@ -7,8 +7,10 @@
  * tried by hand: with the factor of a chamfer, the least factor of `.scale`, the neighbours of
  * `.repeat` and the scale of a sequence spoilt, `krs validate` named the union, the scale, the
  * repetition and the sequence.  So were, of what marches instead of a distance, a wrong Bernstein
- * coefficient, a series along lines with a term left out, and distances to levels that are too long.
+ * coefficient, a series along lines with a term left out, distances to levels that are too long.
+ * Boxes of levels, boxes of shapes and constants are broken here, between compiling and searching.
  */
+#include <float.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,9 +23,8 @@
 
 #include <cmocka.h>
 
+#include "compiler/refute.h"
 #include "compiler/search.h"
-
-#include "compiler/compile.h"
 
 #include "tests/support/bench.h"
 
@@ -147,12 +148,17 @@ static void take(void *user, const KrsDiagnostic *diagnostic)
     snprintf(said->text, sizeof said->text, "%s", diagnostic->text);
 }
 
+static void write_scene(char *path, const char *text)
+{
+    int file = mkstemp(path);
+    assert_true(file >= 0 && write(file, text, strlen(text)) == (ssize_t)strlen(text));
+    close(file);
+}
+
 static KrsStatus refute(const char *text, double seconds, Said *said, KrsRefutation *result)
 {
     char path[] = "/tmp/krs-refute-XXXXXX";
-    int  file   = mkstemp(path);
-    assert_true(file >= 0 && write(file, text, strlen(text)) == (ssize_t)strlen(text));
-    close(file);
+    write_scene(path, text);
     *said = (Said){0};
     KrsOptions       options = {.diagnostic = take, .user = said};
     KrsRefuteOptions how     = {.seconds = seconds, .seed = 3};
@@ -317,6 +323,123 @@ static void steps_are_searched_beside_distances(void **state)
         }
 }
 
+/* ---- scenes that are broken behind the compiler's back ---- */
+
+typedef struct Breaking Breaking;
+struct Breaking {
+    void        (*how)(const Breaking *b, Shape *shape);
+    uint32_t      stage; /* of a sequence */
+    double        by;    /* part of a box's size that is taken away on all sides */
+    KrsRefutation result;
+};
+
+static KrsStatus break_and_refute(void *user, const Inspected *in)
+{
+    Breaking        *b   = user;
+    KrsRefuteOptions how = {.seconds = 0.3, .seed = 1};
+    b->how(b, (Shape *)(uintptr_t)in->scene->components.items[0].shape);
+    return refute_inspected(in, &how, &b->result);
+}
+
+static KrsStatus refute_broken(const char *text, Breaking *b, Said *said)
+{
+    char path[] = "/tmp/krs-refute-XXXXXX";
+    write_scene(path, text);
+    *said = (Said){0};
+    KrsOptions options = {.diagnostic = take, .user = said};
+    KrsStatus  status  = inspect_file(path, &options, break_and_refute, b);
+    unlink(path);
+    return status;
+}
+
+static void shrink_level(const Breaking *b, Shape *shape)
+{
+    assert_int_equal(shape->kind, SHAPE_KRS);
+    Box *box = (Box *)(uintptr_t)&shape->bounds[b->stage].box;
+    for (int i = 0; i < 3; i++) {
+        double less = b->by * (box->axis[i].high - box->axis[i].low);
+        box->axis[i].low += less;
+        box->axis[i].high -= less;
+    }
+}
+
+/* Levels are left out after kernels and after the last stage. */
+static void shrunken_boxes_of_levels_are_found(void **state)
+{
+    (void)state;
+    static const char swarm[] =
+        "show krs {\n"
+        "  for i in 0..4 {\n"
+        "    kernel sphere(0.2).move([0, 0.3 * i, 0]);\n"
+        "    reflect plane([cos(2.2 * i), 0.2, sin(2.2 * i)], 0.4 * (i + 1));\n"
+        "  }\n"
+        "};\n";
+    static const uint32_t stages[] = {0, 2, 4, 6, 7};
+    for (size_t i = 0; i < sizeof stages / sizeof *stages; i++) {
+        Said     said;
+        Breaking b = {.how = shrink_level, .stage = stages[i], .by = 0.05};
+        assert_int_equal(refute_broken(swarm, &b, &said), KRS_BAD_SCENE);
+        assert_non_null(strstr(said.text, "the distance that leaves out what is far"));
+        assert_non_null(strstr(said.text, "times as long as the way to the surface"));
+    }
+    Said     said;
+    Breaking none = {.how = shrink_level};
+    assert_int_equal(refute_broken(swarm, &none, &said), KRS_OK);
+}
+
+/* Times two it is infinite, which only the guard of the level sees. */
+static void enlarge_ball(const Breaking *b, Shape *shape)
+{
+    (void)b;
+    ((LevelBound *)(uintptr_t)shape->bounds)[0].ball.radius = DBL_MAX;
+}
+
+static void empty_box(const Breaking *b, Shape *shape)
+{
+    (void)b;
+    shape->box = box_empty;
+}
+
+static void lose_a_side(const Breaking *b, Shape *shape)
+{
+    (void)b;
+    shape->box.axis[1].low = NAN;
+}
+
+static void what_is_not_finite_is_not_passed_over(void **state)
+{
+    (void)state;
+    static const char scaled[] = "show krs { kernel sphere(1); mobius scale(2);\n"
+                                 "           reflect plane([1, 0, 0], 4); };\n";
+    static const struct {
+        void (*how)(const Breaking *b, Shape *shape);
+        const char *words;
+    } breaks[] = {
+        {enlarge_ball, "the same at all points is not finite"},
+        {empty_box, "outside of its box"},
+        {lose_a_side, "a side of its box is not a number"},
+    };
+    for (size_t i = 0; i < sizeof breaks / sizeof *breaks; i++) {
+        Said     said;
+        Breaking b = {.how = breaks[i].how};
+        assert_int_equal(refute_broken(scaled, &b, &said), KRS_BAD_SCENE);
+        assert_string_equal(said.code, "E0411");
+        assert_non_null(strstr(said.text, breaks[i].words));
+    }
+}
+
+/* Frames refuse the end of the range; the others are searched. */
+static void settings_that_cannot_be_had_are_no_mistake(void **state)
+{
+    (void)state;
+    Said          said;
+    KrsRefutation result;
+    const char   *text = "param a = 1 in [0, 1];\n"
+                         "show sphere(1) | field(x + y + z + 1 / a).within(sphere(2));";
+    assert_int_equal(refute(text, 0.2, &said, &result), KRS_OK);
+    assert_true(result.settings + result.refused == 6 && result.settings > 2);
+}
+
 int main(void)
 {
 #define BENCH(test) cmocka_unit_test_setup_teardown(test, bench_start, bench_stop)
@@ -336,6 +459,9 @@ int main(void)
         cmocka_unit_test(an_estimate_is_only_measured),
         cmocka_unit_test(the_search_is_the_same_each_time),
         cmocka_unit_test(a_search_can_be_stopped),
+        cmocka_unit_test(shrunken_boxes_of_levels_are_found),
+        cmocka_unit_test(what_is_not_finite_is_not_passed_over),
+        cmocka_unit_test(settings_that_cannot_be_had_are_no_mistake),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

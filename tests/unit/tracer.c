@@ -16,6 +16,7 @@
 #include "compiler/compile.h"
 #include "runtime/device/buffer.h"
 #include "runtime/krs_vulkan.h"
+#include "tests/support/scarce.h"
 
 #define assert_near(value, expected, within)                                                    \
     assert_true(fabs((value) - (expected)) <= (within))
@@ -562,7 +563,8 @@ static void far_cells_look_like_near_ones(void **state)
         "camera { eye: [off + 1.2, 1.3, 3.5], target: [off, 0.6, 0], fov: 40deg }\n"
         "light { position: [off - 2, 4, 3] }\n"
         "show krs {\n"
-        "    kernel capsule([0, 0, 0], [0.1, 0.8, 0], 0.05) | box([0.2, 0.3, 0.2]).move([0.5, 0.2, 0]);\n"
+        "    kernel capsule([0, 0, 0], [0.1, 0.8, 0], 0.05)\n"
+        "         | box([0.2, 0.3, 0.2]).move([0.5, 0.2, 0]);\n"
         "    for i in 0..20 { reflect plane([1, 0, 0], 2^i); }\n"
         "};\n"
         "show plane([0, 1, 0], 0);\n";
@@ -822,35 +824,13 @@ static void shadows_that_are_not_cast_are_not_missed(void **state)
 
 /* ---- Memory ---- */
 
-typedef struct Ledger {
-    int held;
-    int left; /* allocations until one fails; negative: none does */
-} Ledger;
-
-static void *ledger_allocate(void *user, size_t size)
-{
-    Ledger *ledger = user;
-    if (ledger->left == 0)
-        return NULL;
-    ledger->left--;
-    ledger->held++;
-    return malloc(size);
-}
-
-static void ledger_release(void *user, void *block)
-{
-    ((Ledger *)user)->held--;
-    free(block);
-}
-
-static KrsStatus render_with(Ledger *ledger, Stage *stage)
+static KrsStatus render_with(Scarce *scarce, Stage *stage)
 {
     KrsRenderer       *renderer;
     KrsRendering      *rendering = NULL;
     KrsPicture        *picture = NULL;
     KrsRenderOptions   small = {.width = 16, .height = 16};
-    KrsRendererOptions options = {
-        .device = "cpu", .allocator = {ledger_allocate, ledger_release, ledger}};
+    KrsRendererOptions options = {.device = "cpu", .allocator = scarce_allocator(scarce)};
     KrsStatus status = krs_renderer_new(&options, &renderer);
     if (status == KRS_OK)
         status = krs_rendering_new(renderer, stage->scene, &rendering);
@@ -861,7 +841,7 @@ static KrsStatus render_with(Ledger *ledger, Stage *stage)
     krs_picture_free(picture);
     krs_rendering_free(rendering);
     krs_renderer_free(renderer);
-    assert_int_equal(ledger->held, 0);
+    assert_int_equal(scarce->held, 0);
     return status;
 }
 
@@ -871,8 +851,8 @@ static void memory_that_runs_out_is_reported(void **state)
     int       allocations = 0;
     KrsStatus status;
     do {
-        Ledger ledger = {.left = allocations++};
-        status = render_with(&ledger, stage);
+        Scarce scarce = {.failing = ++allocations, .lasting = true};
+        status = render_with(&scarce, stage);
         assert_true(status == KRS_OK || status == KRS_OUT_OF_MEMORY);
     } while (status != KRS_OK && allocations < 100);
     assert_int_equal(status, KRS_OK);

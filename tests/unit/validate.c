@@ -13,6 +13,7 @@
 
 #include "cli/console.c"
 #include "cli/options.c"
+#include "cli/values.c"
 #include "cli/validate.c"
 
 /* How the ball's distance is falsified. */

@@ -1,0 +1,99 @@
+#!/bin/sh
+# install.sh: what `make install` puts where, that a program outside can be built from it, and that
+# `make uninstall` takes it all away.  Nothing is compiled but that program.
+# shellcheck source-path=SCRIPTDIR
+. "$(dirname "$0")/common.sh"
+plan 11
+
+# B as the tests have it: the folder of the command.
+build=$(dirname "$krs")
+make_it() { # words
+    (cd "$root" && make --no-print-directory B="$build" "$@") >out 2>err
+    status=$?
+}
+
+make_it install PREFIX=/usr DESTDIR="$work/stage"
+ended 0 "make install"
+(cd stage && find . -type f | sort) >files
+commands=$(sed -n 's/^COMMAND([A-Z]*, "\([a-z]*\)".*/\1/p' "$root/cli/commands.def")
+{
+    for file in bin/krs lib/libkrs.a lib/pkgconfig/krs.pc include/krs.h include/krs_vulkan.h \
+        share/bash-completion/completions/krs share/man/man1/krs.1; do
+        echo "./usr/$file"
+    done
+    for command in $commands; do echo "./usr/share/man/man1/krs-$command.1"; done
+} | sort >wanted
+cmp -s files wanted
+result $? "these files and no others, under DESTDIR"
+[ -d stage/usr ] && ! grep -rqI "$work" stage
+result $? "DESTDIR stands in none of them"
+
+# ---- the manual ----
+missing=""
+for command in $commands; do
+    page=stage/usr/share/man/man1/krs-$command.1
+    [ -s "$page" ] || break
+    "$krs" "$command" --help | sed -n 's/^    \(-[a-z], \)\{0,1\}--\([a-z-]*\).*/\2/p' >options
+    while read -r option; do
+        escaped=$(echo "--$option" | sed 's/-/\\-/g')
+        grep -qF -- "$escaped" "$page" || missing="$missing $option"
+    done <options
+    grep -q "krs.-$command" stage/usr/share/man/man1/krs.1 || missing="$missing $command"
+done
+[ -z "$missing" ] && [ -n "$commands" ] && [ -s "$page" ]
+result $? "the manual has each command and each option"
+if command -v man >/dev/null; then
+    for page in stage/usr/share/man/man1/*.1; do
+        MANWIDTH=80 man -l --warnings "$page" >>pages 2>>warnings
+    done
+    [ ! -s warnings ] && grep -q 'try to refute' pages
+    result $? "man reads the pages without a warning"
+else
+    skip "man reads the pages without a warning" "no man"
+fi
+
+# ---- completion ----
+complete_line() { # words of a line, the last to be completed
+    bash -c '. stage/usr/share/bash-completion/completions/krs
+        COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)); _krs; printf "%s\n" "${COMPREPLY[@]}"' line "$@"
+}
+if command -v bash >/dev/null; then
+    [ "$(complete_line krs ren)" = render ] &&
+        [ "$(complete_line krs render --sam)" = --samples ] &&
+        [ "$(complete_line krs render --tone-map a)" = aces ] &&
+        [ "$(complete_line krs render ba)" = ball.krs ] &&
+        [ "$(complete_line krs explain E0203)" = E0203 ] &&
+        [ -z "$(complete_line krs check --samp)" ]
+    result $? "bash completes commands, options, their values and files"
+else
+    skip "bash completes commands, options, their values and files" "no bash"
+fi
+
+# ---- a program outside ----
+make_it install PREFIX="$work/usr"
+ended 0 "make install for use"
+export PKG_CONFIG_PATH="$work/usr/lib/pkgconfig"
+if command -v pkg-config >/dev/null; then
+    awk '/^```/ { inside = !inside; block += inside; next }
+         inside && block == 1 { sub(/"compiler\/krs.h"/, "<krs.h>"); print > "outside.c" }
+         inside && block == 2 { print > "expected" }' "$root/docs/library.md"
+    echo '#include <krs_vulkan.h>' >vulkan.c
+    echo 'KrsStatus (*function)(void) = (KrsStatus (*)(void))krs_render;' >>vulkan.c
+    # shellcheck disable=SC2046 # words are meant
+    ${CC:-cc} -std=c17 -Wall -Werror $(pkg-config --cflags krs) outside.c vulkan.c \
+        $(pkg-config --libs krs) -o outside >out 2>err && ./outside >printed 2>err &&
+        cmp -s printed expected
+    result $? "the program of docs/library.md, built by krs.pc, prints what it says there"
+    [ "$(pkg-config --modversion krs)" = "$("$krs" --version | sed -n 's/^krs //p')" ]
+    result $? "krs.pc has the version"
+else
+    skip "the program of docs/library.md, built by krs.pc" "no pkg-config"
+    skip "krs.pc has the version" "no pkg-config"
+fi
+"$work/usr/bin/krs" check ball.krs >out 2>err
+status=$?
+ended 0 "the installed command works"
+
+make_it uninstall PREFIX=/usr DESTDIR="$work/stage"
+[ -d stage/usr ] && [ -z "$(find stage -type f)" ]
+result $? "make uninstall takes all of it away"
