@@ -322,8 +322,7 @@ static void components_without_derivatives_have_differences(void **state)
     krs_picture_free(corners);
     stage_close(&stage);
     assert_true(seen[0] > PIXELS / 40 && seen[1] > PIXELS / 40);
-    /* Where differences are not even the octahedron looks twice. */
-    assert_true(other[0] * 25 < seen[0] && other[1] * 2 > seen[1]);
+    assert_true(other[0] * 100 < seen[0] && other[1] * 2 > seen[1]);
 }
 
 static void analytic_normals_are_asked_for_in_time(void **state)
