@@ -98,7 +98,8 @@ static void run_pov_julia(const char *folder, bool seen[SEEN_ROWS][SEEN_COLUMNS]
     write_pov_julia(input + 2);
     char *const arguments[] = {"povray", input, output, "+FP", "+W1280", "+H720", "-D", "-A", "-P",
                                "-V", "+WT2", NULL};
-    if (!run_command(arguments, said, run) || !read_picture(output + 2, &run->coverage, &seen[0][0]))
+    if (!run_command(arguments, said, run) ||
+        !read_picture(output + 2, &run->coverage, &seen[0][0]))
         give_up("povray", "it failed");
 }
 

@@ -315,7 +315,7 @@ KrsNormals rendering_normals(const KrsRendering *rendering, KrsNormals normals)
     return rendering->program->algebraic ? KRS_NORMALS_ANALYTIC : KRS_NORMALS_OCTAHEDRON;
 }
 
-/* Normals as rendering_normals says; the octahedron is what the kernel has unless told otherwise. */
+/* Normals as rendering_normals says; the octahedron is what the kernel has otherwise. */
 static Variant name_secondary(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
                               KrsNormals normals, uint32_t group)
 {

@@ -4,8 +4,8 @@
  * By derivatives they are held against closed forms, and for scenes of every kind against
  * differences of the distance in double precision at the position that the picture has; where two
  * differences of different width do not agree there is an edge, and no normal.  By stencils they
- * must agree with those by derivatives within what their order promises: r k for differences of first
- * order, (r k)^2 for those of second, r the reach and k the largest curvature.
+ * must agree with those by derivatives within what their order promises: r k for differences of
+ * first order, (r k)^2 for those of second, r the reach and k the largest curvature.
  */
 #include <math.h>
 #include <setjmp.h>
