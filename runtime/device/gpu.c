@@ -327,9 +327,11 @@ static void read_properties(Gpu *gpu)
     };
     vkGetPhysicalDeviceProperties2(gpu->physical, &properties);
     gpu->properties = properties.properties;
-    gpu->shuffles = subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT &&
-                    subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT &&
-                    subgroups.subgroupSize >= 8;
+    bool shuffles = subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT &&
+                    subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
+    gpu->refill_lanes = !shuffles || subgroups.subgroupSize < 4 ? 0
+                      : subgroups.subgroupSize < 8              ? 4
+                                                                : 8;
 }
 
 static bool device_create(Gpu *gpu)

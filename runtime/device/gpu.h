@@ -28,7 +28,7 @@ typedef struct Gpu {
 
     VkPhysicalDeviceProperties       properties;
     VkPhysicalDeviceMemoryProperties memory;
-    bool shuffles; /* eight lanes of a kernel may exchange numbers */
+    uint32_t refill_lanes; /* of a group whose lanes exchange numbers: 8, or 4; 0: they cannot */
     uint64_t memory_used, memory_peak; /* bytes of device memory */
 
     Cache           cache;            /* of shaders; zero when none was asked for */

@@ -29,25 +29,26 @@ bool may_go_on(uint turns, uint allowed)
 }
 
 #if REFILL
-layout(local_size_x = 8) in;
+const uint LANES = uint(REFILL); // as many as go through a loop together: 4 or 8
+layout(local_size_x = REFILL) in;
 // How many of its items a group has taken up so far.
 layout(std430, set = 1, binding = 7) buffer Taken { uint taken[]; };
 
-// The bits of all eight lanes.  Of a vote lavapipe makes a loop over the lanes; of this, six
+// The bits of all lanes.  Of a vote lavapipe makes a loop over the lanes; of this, six
 // instructions.
 uint join_lanes(uint bits)
 {
     bits |= subgroupShuffleXor(bits, 1u);
     bits |= subgroupShuffleXor(bits, 2u);
-    return bits | subgroupShuffleXor(bits, 4u);
+    return LANES > 4u ? bits | subgroupShuffleXor(bits, 4u) : bits;
 }
 
 bool any_lane(bool says) { return join_lanes(uint(says)) != 0u; }
 
 void work_on_items(uint group, uint turns_allowed, inout uint turns)
 {
-    uint lane = gl_LocalInvocationIndex, first = group * 8u * control.share, next = first;
-    uint limit = min(first + 8u * control.share, control.items);
+    uint lane = gl_LocalInvocationIndex, first = group * LANES * control.share, next = first;
+    uint limit = min(first + LANES * control.share, control.items);
     bool holding = false, going, hungry;
     if (control.source == QUEUED) {
         holding = first + lane < limit;

@@ -97,7 +97,7 @@ struct Slot {
 uint first_slot;  // of the group
 Slot item_slot;   // of the item that is about to begin
 #if REFILL
-uvec4 kept_slots; // two of sixteen, which is as many as a group has: tiles, and bits of starts
+uvec4 kept_slots; // two, of two a lane, which is as many as a group has: tiles, and bits of starts
 #endif
 
 // Items go through tiles of 8x8 pixels one after the other.
@@ -138,7 +138,7 @@ void begin_group(uint first)
     first_slot = slot_of(first);
 #if REFILL
     Slot a = load_slot(first_slot + gl_LocalInvocationIndex);
-    Slot b = load_slot(first_slot + gl_LocalInvocationIndex + 8u);
+    Slot b = load_slot(first_slot + gl_LocalInvocationIndex + uint(REFILL));
     kept_slots = uvec4(a.tile.x | a.tile.y << 16u, b.tile.x | b.tile.y << 16u,
                        floatBitsToUint(a.start), floatBitsToUint(b.start));
 #endif
@@ -147,14 +147,14 @@ void begin_group(uint first)
 void look_up_item(uint number)
 {
 #if REFILL
-    uint at = slot_of(number) - first_slot, lane = at & 7u;
+    uint at = slot_of(number) - first_slot, lane = at % uint(REFILL);
     uint low_tile = subgroupShuffle(kept_slots.x, lane);
     uint high_tile = subgroupShuffle(kept_slots.y, lane);
     uint low_start = subgroupShuffle(kept_slots.z, lane);
     uint high_start = subgroupShuffle(kept_slots.w, lane);
-    uint tile = at < 8u ? low_tile : high_tile;
+    uint tile = at < uint(REFILL) ? low_tile : high_tile;
     item_slot = Slot(uvec2(tile & 0xffffu, tile >> 16u),
-                     uintBitsToFloat(at < 8u ? low_start : high_start));
+                     uintBitsToFloat(at < uint(REFILL) ? low_start : high_start));
 #else
     item_slot = load_slot(slot_of(number));
 #endif

@@ -16,7 +16,6 @@
 
 #define MOST_TURNS      16384 /* of a lane that takes item after item */
 #define MOST_BEAM_STEPS 256   /* of a beam, as in trace.comp */
-#define MOST_TAPS       64    /* of a normal that is looked at twice, and more */
 #define MOST_PASS_STEPS 2048  /* of rays that are left over, in one more pass */
 
 /* ---- Slices ---- */
@@ -111,7 +110,7 @@ static Dealing dealing(const Job *job)
         steps = 8 * steps < MOST_TURNS ? 8 * steps : MOST_TURNS;
     steps = turns_within(job, steps);
     if (job->schedule == KRS_SCHEDULE_REFILL)
-        return (Dealing){8, 128, steps};
+        return (Dealing){job->gpu->refill_lanes, 128, steps};
     return (Dealing){64, 1, steps};
 }
 
@@ -272,7 +271,7 @@ static bool trace(Job *job, WorkBlock *work)
     Dealing       deal = dealing(job);
     uint32_t      pixels = work->extent[0] * work->extent[1];
     uint32_t      items = tiles_of_rays(job, work) * TILE * TILE;
-    while (deal.share > 16 && items / (deal.lanes * deal.share) < 64)
+    while (deal.lanes * deal.share > 128 && items / (deal.lanes * deal.share) < 64)
         deal.share /= 2; /* groups enough for every core of the device */
     control->phase = TRACE_RAYS;
     control->source = ITEMS_FRESH;
@@ -365,10 +364,10 @@ static Dealing deal_around(const Job *job, uint32_t count)
 {
     Dealing deal = dealing(job);
     deal.steps = turns_within(job, MOST_TURNS);
-    while (deal.share > 8 && count / (deal.lanes * deal.share) < 64)
+    bool loops = job->rendering->program->loops > 0; /* which leave turns for few items */
+    while (deal.lanes * deal.share > 64 &&
+           (loops || count / (deal.lanes * deal.share) < 64))
         deal.share /= 2; /* groups enough for every core of the device */
-    while (deal.share > 1 && deal.share * MOST_TAPS > deal.steps)
-        deal.share /= 2;
     return deal;
 }
 
@@ -416,8 +415,10 @@ static bool find_normals(Job *job, WorkBlock *work)
         uint32_t group = part ? job->parts[i].group + 1 : 0;
         uint32_t count = control->of_group[group];
         job->schedule  = part ? job->parts[i].schedule : job->options.schedule;
+        Dealing  deal  = deal_around(job, count);
+        deal.steps     = MOST_TURNS; /* none is left over: an item has few */
         errands[i] = errand(job, part ? job->parts[i].normals : job->secondary, SECONDARY_NORMALS,
-                            count, deal_around(job, count));
+                            count, deal);
         errands[i].control.reading =
             (LIST_OF_GROUP + group) * work->extent[0] * work->extent[1];
     }

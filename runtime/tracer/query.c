@@ -146,9 +146,9 @@ static bool march(KrsRendering *rendering, uint32_t count)
     KrsSchedule  schedule = KRS_SCHEDULE_DEFAULT;
     rendering_choose(rendering, &trace, &schedule);
     bool         refill = schedule == KRS_SCHEDULE_REFILL;
-    uint32_t     lanes = refill ? 8 : 64, share = refill ? 128 : 1;
+    uint32_t     lanes = refill ? gpu->refill_lanes : 64, share = refill ? 128 : 1;
     const Kernel *kernel = rendering_query(rendering, schedule);
-    while (share > 8 && count / (lanes * share) < 64)
+    while (lanes * share > 64 && count / (lanes * share) < 64)
         share /= 2; /* groups enough for every core of the device */
     uint32_t      groups = (count + lanes * share - 1) / (lanes * share);
     WorkBlock     work = {.steps = rendering_turns(rendering, refill ? MOST_TURNS : MOST_STEPS),

@@ -63,7 +63,7 @@ static bool settle_options(Job *job)
     job->asked = o->schedule;
     rendering_choose(job->rendering, &o->trace, &o->schedule);
     job->schedule = o->schedule;
-    if (o->schedule == KRS_SCHEDULE_REFILL && !job->gpu->shuffles)
+    if (o->schedule == KRS_SCHEDULE_REFILL && job->gpu->refill_lanes == 0)
         return refuse(job, "the device's lanes cannot exchange numbers, which `refill` needs");
     o->steps_at_once =
         first_of(o->steps_at_once, 0, o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);

@@ -156,7 +156,7 @@ void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedul
 {
     const Gpu *gpu = &rendering->renderer->gpu;
     bool       software = gpu_is_cpu(gpu);
-    bool       heavy = rendering->program->flops >= FLOPS_WORTH_REFILL && gpu->shuffles;
+    bool       heavy = rendering->program->flops >= FLOPS_WORTH_REFILL && gpu->refill_lanes > 0;
     if (*trace == KRS_TRACE_DEFAULT)
         *trace = rendering->program->along ? KRS_TRACE_EXACT : KRS_TRACE_AUTO;
     if (*schedule == KRS_SCHEDULE_DEFAULT)
@@ -249,7 +249,8 @@ static Variant name_variant(const KrsRendering *rendering, KrsTrace trace, KrsSc
     int      length = snprintf(variant.defines, sizeof variant.defines,
                                "#define TRACE %du\n#define REFILL %d\n%s%s%s",
                                (int)(by_ray ? KRS_TRACE_PLAIN : trace),
-                               schedule == KRS_SCHEDULE_REFILL,
+                               schedule == KRS_SCHEDULE_REFILL
+                                   ? (int)rendering->renderer->gpu.refill_lanes : 0,
                                anchored ? "#define ANCHORED\n" : "",
                                rendering->renderer->early_outs && !anchored
                                    ? "#define EARLY_OUTS\n" : "",
