@@ -66,6 +66,14 @@ static void take_map(Lowering *l, Walk *walk, const Stage *stage, const LevelBou
     passage_map(l, &walk->passage, &stage->map, &walk->path);
 }
 
+/* Nodes become statements in the order in which they are made.  The next fold is what all other
+   levels wait for: it stands before the kernel, so that a processor has both in sight. */
+static void prepare_fold(Lowering *l, const Walk *walk, const Stage *next)
+{
+    if (next && next->kind == STAGE_REFLECT)
+        graph_op3(l->graph, OP_fold, walk->passage.point, next->normal, next->offset);
+}
+
 static void take_kernel(Lowering *l, Walk *walk, const Shape *shape)
 {
     Graph *g     = l->graph;
@@ -108,7 +116,10 @@ Lowered lower_krs(Lowering *l, const Shape *shape, Place place)
         switch (stage->kind) {
         case STAGE_REFLECT: take_mirror(l, &walk, stage); break;
         case STAGE_MAP:     take_map(l, &walk, stage, i ? &shape->bounds[i - 1] : NULL); break;
-        case STAGE_KERNEL:  take_kernel(l, &walk, shape->children[stage->kernel]); break;
+        case STAGE_KERNEL:
+            prepare_fold(l, &walk, i ? stage - 1 : NULL);
+            take_kernel(l, &walk, shape->children[stage->kernel]);
+            break;
         }
     }
     Lowered result        = walk.result;
