@@ -240,6 +240,8 @@ static Emitter emitter_new(const Graph *graph, const Sources *sources, Arena *sc
     e.frame   = arena_new_array(scratch, const char *, count);
     e.nesting = arena_new_array(scratch, uint8_t, count);
     e.uses    = arena_new_array(scratch, uint32_t, count);
+    e.beyond  = arena_new_array(scratch, const char *, count);
+    e.feeds_mirror = arena_new_array(scratch, uint8_t, count);
     e.precise = arena_new_array(scratch, uint32_t, count);
     return e;
 }
@@ -274,6 +276,19 @@ static void emit_head(Emitter *e, const EmitMarch *march)
     if (march->slopes)
         text_add(e->out, "// Behind them slopes that the host finds for each frame: "
                          "krs_frame_parameters in krs.h.\n");
+    text_add(e->out,
+             "// Where branches save work there are many threads, and operations count.\n"
+             "// Elsewhere what has to be waited for counts, and built-in min and max of\n"
+             "// variables are three instructions, since they mind what is not a number.\n"
+             "#ifdef EARLY_OUTS\n"
+             "#define krs_min(a, b) min(a, b)\n"
+             "#define krs_max(a, b) max(a, b)\n"
+             "#define KRS_BACK(back, here) here\n"
+             "#else\n"
+             "#define krs_min(a, b) ((b) < (a) ? (b) : (a))\n"
+             "#define krs_max(a, b) ((a) < (b) ? (b) : (a))\n"
+             "#define KRS_BACK(back, here) back\n"
+             "#endif\n");
 }
 
 static void emit_parameters(Emitter *e)

@@ -1,7 +1,7 @@
 /*
  * emitter.h: what the files of the emitter share.
  *
- * statements.c turns nodes into statements; emit.c, early_outs.c and march.c write the functions
+ * statements.c and mirrors.c turn nodes into statements; emit.c, early_outs.c and march.c write the functions
  * around them.
  */
 #ifndef KRS_EMITTER_H
@@ -20,6 +20,8 @@ typedef struct Emitter {
     uint32_t      *uses;    /* in the function being written */
     struct { Node *items; size_t count, capacity; } needed; /* all that have uses, in order */
     const char   **frame;   /* names of the globals that krs_prepare sets */
+    uint8_t       *feeds_mirror; /* whether a mirror (OP_fold) uses it */
+    const char   **beyond;  /* of mirrors in a row: the name of how far beyond it the point is */
     uint32_t       next;    /* number of the next local name */
     uint32_t       globals;
     uint32_t      *precise; /* of OP_precise: its slot in the parameter block */
@@ -42,10 +44,19 @@ void emit_begin(Emitter *e, const Node *roots, size_t count);
 void emit_node(Emitter *e, Node n);
 /* Says where the next statement comes from, unless it is the same line as before. */
 void emit_comment(Emitter *e, Span span);
-/* A vector as a literal. */
+/* A number, or a vector, as a literal. */
+const char *emit_number(Emitter *e, double number);
 const char *emit_vector(Emitter *e, const double v[3]);
 /* An expression that is a whole statement needs no parentheses around it. */
 const char *emit_bare(Emitter *e, const char *text);
+
+/* ---- mirrors.c ---- */
+
+/* The expression of a mirror (OP_fold), and statements before it; NULL: as the operation's row
+   has it. */
+const char *mirror_text(Emitter *e, const Expr *fold);
+/* Whether that may name the point more than once. */
+bool mirror_repeats(const Emitter *e, const Expr *fold);
 
 /* ---- early_outs.c: krs_distance_lod ---- */
 

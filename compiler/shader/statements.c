@@ -82,6 +82,13 @@ static const char *constant_text(Emitter *e, const Expr *expr)
     return text.bytes;
 }
 
+const char *emit_number(Emitter *e, double number)
+{
+    Text text = {.arena = e->scratch};
+    add_literal(&text, number);
+    return text.bytes;
+}
+
 const char *emit_vector(Emitter *e, const double v[3])
 {
     Expr constant = {.op = OP_CONSTANT, .type = TYPE_VEC3, .number = {v[0], v[1], v[2]}};
@@ -135,46 +142,12 @@ static const char *slot_text(Emitter *e, uint32_t slot, GraphType type)
     return text.bytes;
 }
 
-/* Of a fold: 1 + the axis that a constant mirror is across, negative where its normal points down;
-   0: none. */
-static int fold_axis(const Emitter *e, const Expr *fold)
+/* Of two variables by a macro, since built-ins mind what is not a number. */
+static bool picks_variable(const Emitter *e, const Expr *expr)
 {
-    const Expr *normal = &e->graph->items[fold->operands[1]];
-    if (normal->op != OP_CONSTANT)
-        return 0;
-    for (int i = 0; i < 3; i++)
-        if (fabs(normal->number[i]) == 1)
-            return (int)normal->number[i] * (i + 1);
-    return 0;
-}
-
-/* Across an axis one coordinate becomes the lesser, or the greater, of itself and its image: two
-   operations that what follows has to wait for, where krs_fold has eight. */
-static const char *fold_text(Emitter *e, const Expr *fold)
-{
-    Text        text   = {.arena = e->scratch};
-    int         axis   = fold_axis(e, fold);
-    const char *point  = e->text[fold->operands[0]], *offset = e->text[fold->operands[2]];
-    const Expr *place  = &e->graph->items[fold->operands[2]];
-    bool        middle = place->op == OP_CONSTANT && place->number[0] == 0;
-    if (axis == 0)
-        return fill_template(e, fold);
-    text_add(&text, "vec3(");
-    for (int i = 0; i < 3; i++) {
-        char name = "xyz"[i];
-        if (i > 0)
-            text_add(&text, ", ");
-        if (i + 1 != abs(axis)) {
-            text_format(&text, "%s.%c", point, name);
-            continue;
-        }
-        text_format(&text, "%s(%s.%c, ", axis > 0 ? "min" : "max", point, name);
-        if (!middle)
-            text_format(&text, "%s2.0 * %s ", axis > 0 ? "" : "-", offset);
-        text_format(&text, "-%s%s.%c)", middle ? "" : " ", point, name);
-    }
-    text_add(&text, ")");
-    return text.bytes;
+    return (expr->op == OP_min || expr->op == OP_max) && expr->type == TYPE_FLOAT &&
+           e->graph->items[expr->operands[0]].op != OP_CONSTANT &&
+           e->graph->items[expr->operands[1]].op != OP_CONSTANT;
 }
 
 static const char *node_text(Emitter *e, const Expr *expr)
@@ -191,7 +164,14 @@ static const char *node_text(Emitter *e, const Expr *expr)
     case OP_COMPONENT:
         text_format(&text, "%s.%c", e->text[expr->operands[0]], "xyzw"[expr->index]);
         return text.bytes;
-    case OP_fold: return fold_text(e, expr);
+    case OP_min: case OP_max:
+        text_add(&text, picks_variable(e, expr) ? "krs_" : "");
+        text_add(&text, fill_template(e, expr));
+        return text.bytes;
+    case OP_fold: {
+        const char *mirror = mirror_text(e, expr);
+        return mirror ? mirror : fill_template(e, expr);
+    }
     default: return fill_template(e, expr);
     }
 }
@@ -201,7 +181,8 @@ static bool repeats_operand(const Emitter *e, const Expr *user, Node operand)
 {
     if (user->op == OP_COMPONENT)
         return false;
-    if (user->op == OP_fold && user->operands[0] == operand && fold_axis(e, user) != 0)
+    if (picks_variable(e, user) ||
+        (user->op == OP_fold && user->operands[0] == operand && mirror_repeats(e, user)))
         return true;
     const char *glsl  = op_glsl((Op)user->op);
     uint32_t    count = 0;
@@ -242,7 +223,7 @@ static int compare_nodes(const void *a, const void *b)
 static void count_uses(Emitter *e, const Node *roots, size_t count, bool frame)
 {
     for (size_t i = 0; i < e->needed.count; i++)
-        e->uses[e->needed.items[i]] = 0;
+        e->uses[e->needed.items[i]] = e->feeds_mirror[e->needed.items[i]] = 0;
     e->needed.count = 0;
     for (size_t i = 0; i < count; i++)
         use(e, roots[i], 2); /* a root needs a name */
@@ -252,6 +233,8 @@ static void count_uses(Emitter *e, const Node *roots, size_t count, bool frame)
             continue; /* what is precise, the host finds */
         for (uint32_t k = 0; k < expr->operand_count; k++)
             use(e, expr->operands[k], repeats_operand(e, expr, expr->operands[k]) ? 2 : 1);
+        if (expr->op == OP_fold)
+            e->feeds_mirror[expr->operands[0]] = true;
     }
     if (e->needed.count)
         qsort(e->needed.items, e->needed.count, sizeof *e->needed.items, compare_nodes);
