@@ -28,7 +28,7 @@ static int fold_axis(const Emitter *e, const Expr *fold)
 }
 
 /* Across an axis one coordinate becomes the lesser, or the greater, of itself and its image: two
-   operations that what follows has to wait for. */
+   operations that what follows has to wait for, or one. */
 static const char *across_axis(Emitter *e, const Expr *fold, int axis)
 {
     Text        text   = {.arena = e->scratch};
@@ -44,10 +44,12 @@ static const char *across_axis(Emitter *e, const Expr *fold, int axis)
             text_format(&text, "%s.%c", point, name);
             continue;
         }
-        text_format(&text, "%s(%s.%c, ", axis > 0 ? "min" : "max", point, name);
-        if (!middle)
-            text_format(&text, "%s2.0 * %s ", axis > 0 ? "" : "-", offset);
-        text_format(&text, "-%s%s.%c)", middle ? "" : " ", point, name);
+        const char *sign = axis > 0 ? "" : "-";
+        if (middle)
+            text_format(&text, "%sabs(%s.%c)", axis > 0 ? "-" : "", point, name);
+        else
+            text_format(&text, "%s(%s.%c, %s2.0 * %s - %s.%c)", axis > 0 ? "krs_min" : "krs_max",
+                        point, name, sign, offset, point, name);
     }
     text_add(&text, ")");
     return text.bytes;
