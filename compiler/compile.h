@@ -104,6 +104,7 @@ typedef struct KrsProgram {
     bool        along;        /* there is krs_along, for kernels with #define ALONG */
     bool        inverts;      /* there are its variants for sequences with maps that invert */
     bool        seams;        /* solids touch, face to face, for kernels with #define SEAMS */
+    bool        shadows;      /* a light casts some */
     bool        loose;        /* a component is (shape_is_loose), for kernels with #define LOOSE */
     KrsGroup    groups[KRS_MOST_GROUPS];
     size_t      group_count;  /* 0: all components belong together */
@@ -115,6 +116,8 @@ typedef struct KrsProgram {
 
 /* The scene's program; lives as long as the scene. */
 const KrsProgram *krs_scene_program(const KrsScene *scene);
+/* Whether a camera of the scene is a panorama. */
+bool krs_scene_is_panoramic(const KrsScene *scene);
 /* The number of cameras and their names (the first is the default; NULL when unnamed). */
 size_t      krs_camera_count(const KrsScene *scene);
 const char *krs_camera_name(const KrsScene *scene, size_t index);

@@ -105,6 +105,8 @@ void keep_scene(Compilation *c)
     scene->light_count = s->lights.count;
     scene->lights      = arena_new_array(arena, SceneLight, s->lights.count + 1);
     memcpy(scene->lights, s->lights.items, s->lights.count * sizeof *scene->lights);
+    for (size_t i = 0; i < s->lights.count; i++)
+        scene->program.shadows = scene->program.shadows || s->lights.items[i].shadow;
     scene->zone_count       = s->zone_count;
     scene->image            = s->image;
     scene->image.integrator = keep(c, s->image.integrator);

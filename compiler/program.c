@@ -7,6 +7,14 @@
 #include <string.h>
 
 const KrsProgram *krs_scene_program(const KrsScene *scene) { return &scene->program; }
+
+bool krs_scene_is_panoramic(const KrsScene *scene)
+{
+    bool panoramic = false;
+    for (size_t i = 0; i < scene->camera_count; i++)
+        panoramic = panoramic || scene->cameras[i].projection == KRS_PANORAMA;
+    return panoramic;
+}
 size_t      krs_camera_count(const KrsScene *scene) { return scene->camera_count; }
 size_t      krs_zone_count(const KrsScene *scene) { return scene->zone_count; }
 const char *krs_scene_hash(const KrsScene *scene) { return scene->hash; }

@@ -6,7 +6,7 @@
  *
  * A tile of 8x8 pixels whose sixteen anchors see one surface, which faces one way, is filled in
  * if they agree about occlusion; and if they are lit and nothing else is near their ways to the
- * light (secondary.comp), which goes for thin shadows, too.  A pixel that is not as they are,
+ * light (shadows.comp), which goes for thin shadows, too.  A pixel that is not as they are,
  * and all pixels of other tiles, are listed, to be looked at one by one.
  */
 #include "frame.glsl"
@@ -28,17 +28,17 @@ float value_at(uint index)
 // Whether a pixel of a tile is as its first anchor: on one surface, which faces one way.
 bool is_like(uint slot, vec3 first, vec3 normal)
 {
-    vec4  here = find_hit(PLACE, slot);
-    float above = abs(dot(normal, here.xyz - first));
+    Place here = find_place_of(slot);
+    float above = abs(dot(normal, here.position - first));
     return dot(find_hit(FACING, slot).xyz, normal) > FACING_ALIKE &&
-           above < ON_PLANE * abs(here.w);
+           above < ON_PLANE * here.width;
 }
 
 void judge(uint tile)
 {
     uint  first = 64u * tile;
     bool  agree = true;
-    vec3  position = find_hit(PLACE, first).xyz, normal = find_hit(FACING, first).xyz;
+    vec3  position = find_place_of(first).position, normal = find_hit(FACING, first).xyz;
     float least = INFINITE, most = -INFINITE;
     for (uint i = 0u; i < 16u && agree; i++) {
         uint  slot = first + (0x7520u >> 4u * (i & 3u) & 7u) + 8u * (0x7520u >> i / 4u * 4u & 7u);
@@ -74,7 +74,7 @@ void fill(uint number)
     bool agree = find_listed(3u * band_pixels() + slot / 64u) != 0u;
     if (is_anchor(slot))
         return;
-    if (!agree || !is_like(slot, find_hit(PLACE, first).xyz, find_hit(FACING, first).xyz))
+    if (!agree || !is_like(slot, find_place_of(first).position, find_hit(FACING, first).xyz))
         solid[2u * band_pixels() + atomicAdd(counts.rest, 1u)] = slot;
     else
         keep_lighting(control.value, slot, interpolate(slot));

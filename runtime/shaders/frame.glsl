@@ -44,10 +44,9 @@ struct Control {
     uint first_ray;  // 1: it is the first of its pixel
     uint light;      // which one a dispatch is about,
     uint lights;     // of how many
-    uint shadows;    // SOFT_SHADOWS or AREA_SHADOWS
     uint ray;        // the number of the ray within its pixel
     uint seed;       // moves what is drawn by lot
-    uint follow;     // 1: rays start where the beams of their tiles end,
+    uint follow;     // 1: rays start where the beams of their tiles end, 2: of quarters of these,
     uint listed;     // and 1: there are rays in listed tiles only
     uint source;     // of the items (schedule.glsl),
     uint items;      // how many there are,
@@ -77,13 +76,11 @@ struct Ray {
 // number, which takes five times as long.  Buffers are for what is written, and what is counted.
 
 // The rows of a hit (HIT_ROWS in blocks.h).
-const uint PLACE = 0u;    // position; the width of a pixel there, negative for a ray inside a solid
-const uint RAY = 1u;      // its direction, unit; the rounding of coordinates
-const uint FACING = 2u;   // normal, towards the side that the ray comes from; how even the surface
+const uint FACING = 0u;   // normal, towards the side that the ray comes from; how even the surface
                           // is within a pixel, 1: flat
-const uint LIGHTING = 3u; // occlusion, 1: open, and before that is known how steep the distance is
+const uint LIGHTING = 1u; // occlusion, 1: open, and before that is known how steep the distance is
                           // there; how much of three lights is visible
-const uint HIT_ROWS = 4u;
+const uint HIT_ROWS = 2u;
 const uint LIGHTS_AT_ONCE = 3u;
 
 struct Light {
@@ -93,10 +90,9 @@ struct Light {
     uint  kind;
 };
 const uint POSITIONAL = 1u, CASTS_SHADOWS = 2u; // bits of its kind
-const uint SOFT_SHADOWS = 0u, AREA_SHADOWS = 1u;
 
-// Where the rays of the pixels end, then the beams of 8x8 tiles, then those of 32x32 tiles: bits of
-// t, and the rest by pack_ray.
+// Where the rays of the pixels end, then the beams of 8x8 tiles, then those of 32x32 tiles, then
+// those of the quarters of 8x8 tiles, tile by tile: bits of t, and the rest by pack_ray.
 layout(std430, set = 1, binding = 1) buffer Ends { uvec2 ends[]; };
 layout(std430, set = 1, binding = 2) writeonly buffer Hits { vec4 hits[]; };
 layout(std430, set = 1, binding = 2) writeonly buffer HitNumbers { float hit_numbers[]; };
@@ -198,14 +194,18 @@ void find_ray(vec2 place, out vec3 origin, out vec3 direction, out float base, o
         float stretch = length(straight);
         direction = straight / stretch;
         slope /= stretch;
-    } else if (control.projection == ORTHOGRAPHIC) {
+    } else {
         origin += plane.x * frame.right.xyz + plane.y * frame.up.xyz;
         direction = frame.forward.xyz;
-    } else {
+    }
+#ifdef PANORAMIC // a camera of the scene is: sines and cosines would be found for every ray
+    if (control.projection == PANORAMA) {
         float longitude = plane.x * PI, latitude = plane.y * 0.5 * PI;
         vec3  level = cos(longitude) * frame.forward.xyz + sin(longitude) * frame.right.xyz;
+        origin = frame.eye.xyz;
         direction = cos(latitude) * level + sin(latitude) * frame.up.xyz;
     }
+#endif
 }
 
 // Where a ray is inside of a box; empty when the second is the smaller.  The

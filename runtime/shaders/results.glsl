@@ -10,20 +10,20 @@ const uint ALBEDOS = 3u; // floats, and level
 const uint COUNTS = 4u;  // instance; steps
 
 layout(std430, set = 1, binding = 3) writeonly buffer Results { uvec4 results[]; };
+layout(std430, set = 1, binding = 3) writeonly buffer Colors { vec3 colors[]; }; // 16 bytes each
 layout(set = 1, binding = 13) uniform usamplerBuffer result_texels; // bits of floats
 
 bool is_wanted(uint row) { return (control.rows >> row & 1u) != 0u; }
 
-void add_color(uint index, vec4 color)
+vec4 find_color(uint index)
 {
-    uint at = COLORS * band_pixels() + index;
-    results[at] = floatBitsToUint(uintBitsToFloat(texelFetch(result_texels, int(at))) + color);
+    return uintBitsToFloat(texelFetch(result_texels, int(COLORS * band_pixels() + index)));
 }
 
-void set_result(uint row, uint index, uvec4 numbers)
+// Of what has no alpha.
+void add_light(uint index, vec3 color)
 {
-    if (control.first_ray != 0u && is_wanted(row))
-        results[row * band_pixels() + index] = numbers;
+    colors[COLORS * band_pixels() + index] = find_color(index).rgb + color;
 }
 
 // What is not a number or infinite counts as black.

@@ -90,20 +90,41 @@ vec3 ambient(Coat coat, float open)
     return scattered + mirrored * open;
 }
 
-void describe(uint index, Place place, Coat coat, KrsSurface surface)
+// What becomes of the pixel of a hit, row by row: whatever is not asked for would take lavapipe as
+// long as what is.
+void keep_results(uint index, uint rows, vec4 color, Place place, Coat coat, KrsSurface surface)
 {
     vec3  apart = place.position - frame.eye.xyz;
     float along = dot(apart, frame.forward.xyz);
     float depth = control.projection == PANORAMA ? length(apart) : along;
     uvec3 normal = floatBitsToUint(place.side * coat.normal);
-    uint  steps = find_end(index).steps;
-    set_result(PLACES, index, floatBitsToUint(vec4(place.position, depth)));
-    set_result(NORMALS, index, uvec4(normal, surface.component));
-    set_result(ALBEDOS, index, uvec4(floatBitsToUint(coat.color), surface.level));
-    set_result(COUNTS, index, uvec4(surface.instance, steps, 0u, 0u));
+    do { // as in pixels.glsl
+        uint  row = uint(findLSB(rows));
+        uvec4 numbers = floatBitsToUint(color);
+        if (row == PLACES)
+            numbers = floatBitsToUint(vec4(place.position, depth));
+        if (row == NORMALS)
+            numbers = uvec4(normal, surface.component);
+        if (row == ALBEDOS)
+            numbers = uvec4(floatBitsToUint(coat.color), surface.level);
+        if (row == COUNTS)
+            numbers = uvec4(surface.instance, place.steps, 0u, 0u);
+        results[row * band_pixels() + index] = numbers;
+        rows &= rows - 1u;
+    } while (rows != 0u);
 }
 
-void begin_group() { krs_prepare(); }
+uint  rows;       // of the results
+Light lights[3u]; // LIGHTS_AT_ONCE, as each lane fetches them once
+
+void begin_group()
+{
+    krs_prepare();
+    lights[0] = find_light(control.light);
+    lights[1] = find_light(control.light + 1u);
+    lights[2] = find_light(control.light + 2u);
+    rows = control.first_ray != 0u && control.light == 0u ? control.rows : 1u << COLORS;
+}
 
 void do_item(uint number)
 {
@@ -117,18 +138,21 @@ void do_item(uint number)
         radiance.rgb = between(vec4(surface.emission, 0.0), BRIGHTEST).rgb +
                        ambient(coat, control.open != 0u ? 1.0 : lighting.x);
         radiance.a = 1.0;
-        describe(index, place, coat, surface);
     }
     uint end = min(control.light + LIGHTS_AT_ONCE, control.lights);
     vec3 visible = lighting.yzw;
     uint i = control.light;
+    Light now = lights[0], next = lights[1];
     do { // as in pixels.glsl
-        vec3 light = lit(find_light(i), place, coat, facing.xyz, visible.x);
+        vec3 light = lit(now, place, coat, facing.xyz, visible.x);
         radiance.rgb += i < end ? light : vec3(0.0);
         visible = visible.yzx;
+        now = next;
+        next = lights[2];
         i++;
     } while (i < end);
-    add_color(index, vec4(sound(radiance.rgb), radiance.a));
+    vec4 sum = find_color(index) + vec4(sound(radiance.rgb), radiance.a);
+    keep_results(index, rows, sum, place, coat, surface);
 }
 
 #include "pixels.glsl"

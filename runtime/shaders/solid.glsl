@@ -30,20 +30,30 @@ uint index_of(uvec2 pixel) { return pixel.y * work.extent.x + pixel.x; }
 
 bool is_anchor(uint slot) { return (0xA5u >> (slot & 7u) & 0xA5u >> (slot >> 3u & 7u) & 1u) != 0u; }
 
-// The ray of a pixel of the list, and where it hits, as hits.comp has found it.
+// The ray of a pixel of the list, and where it hits.  That is found anew wherever it is asked for:
+// it costs no more than to fetch it.
 struct Place {
     uint  slot;
     vec3  position;
     vec3  direction; // of the ray, unit
     float width;     // of a pixel there
     float rounding;  // of the coordinates
-    float side;      // as of a Ray
+    float side;      // as of a Ray,
+    uint  steps;     // likewise
 };
 
-// The place of item `number` of the list that is read.
-Place find_place(uint number)
+Place find_place_of(uint slot)
 {
-    uint slot = find_listed(control.reading + number);
-    vec4 place = find_hit(PLACE, slot), ray = find_hit(RAY, slot);
-    return Place(slot, place.xyz, ray.xyz, abs(place.w), ray.w, place.w < 0.0 ? -1.0 : 1.0);
+    uvec2 pixel = pixel_of(slot);
+    Ray   ray = find_end(index_of(pixel));
+    vec3  origin, direction;
+    float base, slope;
+    find_ray(vec2(work.corner + pixel) + work.offset, origin, direction, base, slope);
+    vec3  position = origin + ray.t * direction;
+    float rounding = ROUNDING * (largest(position) + largest(origin));
+    float width = max(base + slope * ray.t, 1e-30); // something is divided by it
+    return Place(slot, position, direction, width, rounding, ray.side, ray.steps);
 }
+
+// The place of item `number` of the list that is read.
+Place find_place(uint number) { return find_place_of(find_listed(control.reading + number)); }

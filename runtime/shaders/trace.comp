@@ -12,7 +12,9 @@
  * they are, however coarse the steps.  A ray from inside of a solid sees the solid's inner wall.
  *
  * How far a gap is, is the method's affair (TRACE): the distance (plain), 1.2 times as much
- * (relaxed), or up to where the balls just meet if the distance goes on as it did (automatic).
+ * (relaxed), or up to where the balls just meet if the distance goes on as it did (automatic), and
+ * where a surface is expected within the permitted error, beyond it: a surface that has been
+ * crossed is found by the chord, one that is approached by ever shorter steps.
  *
  * Planes that are components of their own need no march: with FLATS a ray knows where it meets the
  * first, and marches the rest up to there.
@@ -21,7 +23,7 @@
  * tile: a ray through empty space less the tile's width.  Tiles of 32x32 pixels are followed by
  * tiles of 8x8; they count from the corner of the picture, whatever the crop and the band, so that
  * equal pixels come out of all of them.  Tiles of 8x8 whose beam goes through the scene unhindered
- * need no rays: the others are listed.
+ * need no rays: the others are listed, and followed by tiles of 4x4, the quarters of these.
  */
 #ifndef TRACE // which variant: the renderer says so; this one suits every device
 #define TRACE 3u
@@ -31,7 +33,7 @@
 #include "frame.glsl"
 
 const uint PLAIN = 1u, RELAXED = 2u, AUTOMATIC = 3u; // TRACE: as KrsTrace
-const uint RAYS = 0u, BEAMS_32 = 1u, BEAMS_8 = 2u;   // control.phase
+const uint RAYS = 0u, BEAMS_32 = 1u, BEAMS_8 = 2u, BEAMS_4 = 3u; // control.phase
 const uint MOST_BEAM_STEPS = 256u;                   // the rest is left to the rays
 
 // What may be left open between two balls: of the permitted error, and of a pixel at most.  Twigs
@@ -41,6 +43,10 @@ const float MOST_OPEN = 0.015625;
 // Relaxation: how far beyond the distance; how fast the mean slope is learned.
 const float RELAXATION = 1.2;
 const float LEARNING = 0.3;
+// Automatic: how far beyond the surface that is expected; a chord that ends inside at a distance
+// below such a part of the one where it began is believed.
+const float BEYOND = 1.05;
+const float SHALLOW = 0.25;
 // Balls that are tried (PROBE): how large the next may be, of what is expected.
 const uint  BINARY = 1u;
 const float CAUTION = 0.9;
@@ -88,20 +94,31 @@ uvec2 first_8, count_8, first_32, count_32; // the tiles of beams
 uint  most_steps;              // of a ray of this lane
 uint  finds;                   // beams of this lane that find something: a bit each, by slot
 
-// What the rays of a tile of 8x8 pixels have in common; a beam has it to itself.
+// What the items of a tile have in common: 64 rays or four beams of 4x4 pixels, by quarters; the
+// other beams have one to themselves.
 struct Slot {
-    uvec2 tile;  // its column and row in the picture, of tiles of this size
-    float start; // nothing is before: the beam that it is in has ended here
+    uvec2 tile;   // its column and row in the picture, of tiles of 8x8 or of 32x32 pixels
+    vec4  starts; // nothing is before: the beam that it is in has ended here; of rays, by quarters
 };
 
-uint first_slot;  // of the group
-Slot item_slot;   // of the item that is about to begin
+uint  first_slot; // of the group
+uvec2 item_tile;  // of the item that is about to begin: its slot's,
+float item_start; // and where it starts
 #if REFILL
-uvec4 kept_slots; // two, of two a lane, which is as many as a group has: tiles, and bits of starts
+uvec2 kept_tiles;               // of two slots a lane, which is as many as a group has
+vec4  kept_starts, more_starts; // of the one, and of the other
 #endif
 
-// Items go through tiles of 8x8 pixels one after the other.
-uint slot_of(uint number) { return control.phase == RAYS ? number / 64u : number; }
+// Items go through slots one after the other, and through the quarters of each.
+uint slot_of(uint number)
+{
+    return number >> (control.phase == RAYS ? 6u : control.phase == BEAMS_4 ? 2u : 0u);
+}
+
+uint quarter_of(uint number)
+{
+    return control.phase == RAYS ? number >> 4u & 3u : control.phase == BEAMS_4 ? number & 3u : 0u;
+}
 
 // The tile of a beam, counted in the band.
 uvec2 cell_of_beam(uint number)
@@ -110,23 +127,43 @@ uvec2 cell_of_beam(uint number)
            uvec2(control.window & 0xffffu, control.window >> 16u);
 }
 
-// Rays are those of all tiles of the band, or of those that are listed.  They start where the beam
-// of 8x8 pixels has ended, and that one where its beam of 32x32 has.
+// Where in `ends` the beam of a tile is, by its place in the band.
+uint end_of_8(uvec2 cell) { return work.extent.x * work.extent.y + cell.y * count_8.x + cell.x; }
+
+uint end_of_32(uvec2 cell)
+{
+    return end_of_8(uvec2(0u, count_8.y)) + cell.y * count_32.x + cell.x;
+}
+
+uint end_of_4(uvec2 cell, uint quarter)
+{
+    return end_of_32(uvec2(0u, count_32.y)) + 4u * (cell.y * count_8.x + cell.x) + quarter;
+}
+
+float load_start(uint end) { return uintBitsToFloat(ends[end].x); }
+
+// Rays and beams of 4x4 pixels are those of all tiles of the band, or of those that are listed.
+// Rays start where the beam of 4x4 pixels has ended, if there is one, that one where its beam of
+// 8x8 has, and that one where its beam of 32x32 has.
 Slot load_slot(uint number)
 {
     bool  is_ray = control.phase == RAYS, large = control.phase == BEAMS_32;
+    bool  small = control.phase == BEAMS_4;
     bool  exists = control.source != QUEUED && number <= slot_of(control.items - 1u);
-    uint  pixels = work.extent.x * work.extent.y;
-    if (exists && is_ray && control.listed != 0u)
+    if (exists && (is_ray || small) && control.listed != 0u)
         number = tiles[number];
-    uvec2 cell = is_ray ? find_cell(number, count_8.x) : cell_of_beam(number);
+    uvec2 cell = is_ray || small ? find_cell(number, count_8.x) : cell_of_beam(number);
     uvec2 tile = cell + (large ? first_32 : first_8);
-    uvec2 parent = tile / 4u - first_32;
-    uint  beam = is_ray ? number : count_8.x * count_8.y + parent.y * count_32.x + parent.x;
-    float start = 0.0;
-    if (exists && !large && control.follow != 0u)
-        start = uintBitsToFloat(ends[pixels + beam].x);
-    return Slot(tile, start);
+    vec4  starts = vec4(0.0);
+    if (exists && !large && control.follow != 0u) {
+        bool quarters = is_ray && control.follow == 2u;
+        uint end = quarters ? end_of_4(cell, 0u)
+                 : is_ray || small ? end_of_8(cell) : end_of_32(tile / 4u - first_32);
+        starts = vec4(load_start(end));
+        if (quarters)
+            starts.yzw = vec3(load_start(end + 1u), load_start(end + 2u), load_start(end + 3u));
+    }
+    return Slot(tile, starts);
 }
 
 void begin_group(uint first)
@@ -139,8 +176,9 @@ void begin_group(uint first)
 #if REFILL
     Slot a = load_slot(first_slot + gl_LocalInvocationIndex);
     Slot b = load_slot(first_slot + gl_LocalInvocationIndex + uint(REFILL));
-    kept_slots = uvec4(a.tile.x | a.tile.y << 16u, b.tile.x | b.tile.y << 16u,
-                       floatBitsToUint(a.start), floatBitsToUint(b.start));
+    kept_tiles = uvec2(a.tile.x | a.tile.y << 16u, b.tile.x | b.tile.y << 16u);
+    kept_starts = a.starts;
+    more_starts = b.starts;
 #endif
 }
 
@@ -148,16 +186,20 @@ void look_up_item(uint number)
 {
 #if REFILL
     uint at = slot_of(number) - first_slot, lane = at % uint(REFILL);
-    uint low_tile = subgroupShuffle(kept_slots.x, lane);
-    uint high_tile = subgroupShuffle(kept_slots.y, lane);
-    uint low_start = subgroupShuffle(kept_slots.z, lane);
-    uint high_start = subgroupShuffle(kept_slots.w, lane);
-    uint tile = at < uint(REFILL) ? low_tile : high_tile;
-    item_slot = Slot(uvec2(tile & 0xffffu, tile >> 16u),
-                     uintBitsToFloat(at < uint(REFILL) ? low_start : high_start));
+    bool low = at < uint(REFILL);
+    uint low_tile = subgroupShuffle(kept_tiles.x, lane);
+    uint high_tile = subgroupShuffle(kept_tiles.y, lane);
+    uint tile = low ? low_tile : high_tile;
+    vec4 low_starts = subgroupShuffle(kept_starts, lane);
+    vec4 high_starts = subgroupShuffle(more_starts, lane);
+    Slot found = Slot(uvec2(tile & 0xffffu, tile >> 16u), low ? low_starts : high_starts);
 #else
-    item_slot = load_slot(slot_of(number));
+    Slot found = load_slot(slot_of(number));
 #endif
+    uint quarter = control.phase == RAYS ? quarter_of(number) : 0u;
+    vec2 starts = quarter < 2u ? found.starts.xy : found.starts.zw;
+    item_tile = found.tile;
+    item_start = (quarter & 1u) == 0u ? starts.x : starts.y;
 }
 
 float open_at(float t)
@@ -228,9 +270,12 @@ void begin_march(uint index, float start, bool is_ray)
 void begin_item(uint number, bool saved)
 {
     bool  is_ray = control.phase == RAYS, large = control.phase == BEAMS_32;
-    uvec2 pixel = 8u * item_slot.tile + uvec2(number % 8u, number / 8u % 8u);
+    bool  small = control.phase == BEAMS_4;
+    uint  quarter = quarter_of(number);
+    uvec2 half_tile = uvec2(quarter & 1u, quarter >> 1u);
+    uvec2 pixel = 8u * item_tile + 4u * half_tile + uvec2(number & 3u, number >> 2u & 3u);
     uvec2 local = pixel - work.corner;
-    uint  pixels = work.extent.x * work.extent.y, index = local.y * work.extent.x + local.x;
+    uint  index = local.y * work.extent.x + local.x;
     slot = slot_of(number) - first_slot;
     exists = !is_ray || local.x < work.extent.x && local.y < work.extent.y;
     if (saved) {
@@ -240,8 +285,9 @@ void begin_item(uint number, bool saved)
         exists = true;
     }
 
-    float side = large ? 32.0 : 8.0;
-    vec2  middle = side * (vec2(item_slot.tile) + 0.5);
+    float side = large ? 32.0 : small ? 4.0 : 8.0;
+    uvec2 tile = small ? 2u * item_tile + half_tile : item_tile;
+    vec2  middle = side * (vec2(tile) + 0.5);
     aim(is_ray ? vec2(pixel) + work.offset : middle);
     width = is_ray ? vec2(0.0) : find_width(side);
     shrinking = 1.0 / (1.0 + width.y);
@@ -265,10 +311,9 @@ void begin_item(uint number, bool saved)
     if (saved)
         return;
 
-    uvec2 cell = item_slot.tile - (large ? first_32 : first_8);
-    uint  beam = large ? count_8.x * count_8.y + cell.y * count_32.x + cell.x
-                       : cell.y * count_8.x + cell.x;
-    begin_march(is_ray ? index : pixels + beam, max(range.x, item_slot.start), is_ray);
+    uvec2 cell = item_tile - (large ? first_32 : first_8);
+    uint  beam = large ? end_of_32(cell) : small ? end_of_4(cell, quarter) : end_of_8(cell);
+    begin_march(is_ray ? index : beam, max(range.x, item_start), is_ray);
 #ifdef PACKED
     begin_parts(is_ray);
 #endif
@@ -307,20 +352,17 @@ float find_crossing(float room)
     return max(march.gap * along, march.room);
 }
 
-// The mean slope, with what is new.
-float find_slope(float room)
-{
-    float rate = march.gap > 0.0 ? LEARNING / march.gap : 0.0;
-    return (1.0 - LEARNING) * march.slope - rate * march.room + rate * room;
-}
-
-// How far to go from a place with so much room; the balls should still meet.
-float find_gap(float room, float slope, float open)
+// How far to go from a place with so much room, given the slope up to there and the mean: the balls
+// should still meet, or the surface be crossed with no more in doubt than is permitted.
+float find_gap(float room, float last_slope, float slope, float permitted, float open)
 {
     if (TRACE == RELAXED)
         return RELAXATION * room + open;
-    if (TRACE == AUTOMATIC)
-        return max(room, 2.0 * room / (1.0 - min(slope, 0.98))) + open;
+    if (TRACE == AUTOMATIC) {
+        bool  crosses = BEYOND * room <= -last_slope * (room + permitted);
+        float factor = crosses ? BEYOND / -last_slope : 2.0 / (1.0 - min(slope, 0.98));
+        return max(room, factor * room) + open;
+    }
     return room + open;
 }
 
@@ -379,21 +421,24 @@ void take_distance(float distance)
     float rounded = ROUNDING * (rounding + at), open = open_share * pixel + rounded;
     float least = max(rounded, (WIDER - 1.0) * taken);
     float doubtful = march.gap - march.room; // as long as may hide something
+    float permitted = is_ray ? frame.error * pixel : 0.0;
     march.steps++;
     if (abs(room) * (pixel_base + pixel_slope * march.nearest_t) < march.nearest * pixel) {
         march.nearest = abs(room);
         march.nearest_t = at;
     }
-    bool met = room <= least && (doubtful <= frame.error * pixel + open || !is_ray) || closing;
+    bool met = room <= least && (doubtful <= permitted + open || !is_ray) || closing;
     bool passed = !met && room > least && doubtful <= room + 1.01 * open;
-    bool accurate = doubtful <= 2.0 * open || closing || !is_ray;
+    bool accurate = doubtful <= 2.0 * open || closing || !is_ray ||
+                    TRACE == AUTOMATIC && -room <= SHALLOW * march.room;
     float crossing = find_crossing(room);
-    float slope = find_slope(room);
+    float last_slope = march.gap > 0.0 ? (room - march.room) / march.gap : 0.0;
+    float slope = (1.0 - LEARNING) * march.slope + LEARNING * last_slope;
 
     float back = max(0.5 * (march.gap + march.room - max(room, 0.0)), march.room + open);
-    float step = met && accurate && is_ray ? crossing : 0.0;
+    float step = met && accurate ? is_ray ? crossing : march.room : 0.0;
     march.t = passed ? at : march.t + step;
-    march.gap = passed ? find_gap(room, slope, open) : met ? crossing : back;
+    march.gap = passed ? find_gap(room, last_slope, slope, permitted, open) : met ? crossing : back;
     march.room = passed ? room : march.room;
     march.slope = passed ? slope : -1.0;
     march.fate = met ? (accurate ? HIT : CLOSING) : passed && at + room > end ? MISS : MARCHING;

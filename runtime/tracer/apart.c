@@ -51,7 +51,7 @@ static bool find_kernels(Job *job, MarchPart *part)
     part->trace     = rendering_trace(r, job->options.trace, part->schedule, part->group + 1);
     if (job->options.normals == KRS_NORMALS_ANALYTIC)
         return part->trace != NULL;
-    part->normals = rendering_secondary(r, part->schedule, job->options.normals, part->group + 1);
+    part->normals = rendering_around(r, job->options.normals, part->group + 1);
     return part->trace && part->normals;
 }
 

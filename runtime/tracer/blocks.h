@@ -23,9 +23,10 @@ typedef struct FrameBlock {
 static_assert(sizeof(FrameBlock) == 176, "std140");
 
 /* Phases of the kernels. */
-enum { TRACE_RAYS, TRACE_BEAMS_32, TRACE_BEAMS_8 };
-enum { SECONDARY_NORMALS, SECONDARY_OCCLUSION, SECONDARY_SHADOW };
+enum { TRACE_RAYS, TRACE_BEAMS_32, TRACE_BEAMS_8, TRACE_BEAMS_4 };
+enum { AROUND_NORMALS, AROUND_OCCLUSION };
 enum { FILL_JUDGE, FILL_FILL };
+enum { BACKGROUND_FIRST, BACKGROUND_SUN };
 enum { LIST_ALL, LIST_ANCHORS, LIST_REST, LIST_OF_GROUP = 4 }; /* of solid.glsl */
 
 enum { LIGHTS_AT_ONCE = 3 }; /* of a dispatch of shade.comp */
@@ -56,7 +57,6 @@ typedef struct ControlBlock {
     uint32_t phase;
     uint32_t first_ray;
     uint32_t light, lights;
-    uint32_t shadows; /* KrsShadows */
     uint32_t ray;
     uint32_t seed;
     uint32_t follow, listed;
@@ -86,7 +86,7 @@ enum { RESULT_NUMBERS = 4, RESULT_BYTES = 4 * RESULT_NUMBERS, DEPTH_NUMBER = 3 }
 
 /* Only their sizes matter to the host. */
 enum { FATE_MISS = 2 }; /* a packed ray that took no step (frame.glsl) */
-enum { END_BYTES = 8, HIT_BYTES = 64, MARCH_BYTES = 32, TILE = 8 };
+enum { END_BYTES = 8, HIT_BYTES = 32, MARCH_BYTES = 32, TILE = 8 };
 
 /* Points and Answer of sample.comp. */
 typedef struct PointBlock {

@@ -44,8 +44,9 @@ static bool report(Job *job, double within_phase)
 static uint32_t *groups_at_once(Job *job, KrsPhase phase, const Kernel *kernel)
 {
     const KrsRenderer *renderer = job->rendering->renderer;
-    bool has_scene = kernel != &renderer->background && kernel != &renderer->hits &&
-                     kernel != &renderer->fill;
+    bool panoramic = job->rendering->panoramic;
+    bool has_scene = kernel != &renderer->background[panoramic] &&
+                     kernel != &renderer->fill[panoramic];
     return &job->rendering->groups_at_once[phase][has_scene];
 }
 
@@ -80,12 +81,14 @@ static bool run_groups(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock
    many. */
 #define ITEMS_OF_LANE 8
 
+static uint32_t items_of_lane(const Job *job) { return gpu_is_cpu(job->gpu) ? ITEMS_OF_LANE : 1; }
+
 static bool run_all(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
                     uint32_t items)
 {
     ControlBlock *control = job->rendering->control.bytes;
     control->items = items;
-    control->share = gpu_is_cpu(job->gpu) ? ITEMS_OF_LANE : 1;
+    control->share = items_of_lane(job);
     return run_groups(job, phase, kernel, work,
                       (items + 64 * control->share - 1) / (64 * control->share));
 }
@@ -239,18 +242,34 @@ static uint32_t choose_tiles(const Job *job, const WorkBlock *work, uint32_t sid
     return count[0] * count[1];
 }
 
+/* At most so many beams for a lane, and turns enough for all, as none is saved: whichever lanes
+   take them, the last is done after those of a lane and one more. */
+static Dealing deal_beams(const Job *job, uint32_t most)
+{
+    Dealing deal = dealing(job);
+    deal.share = deal.share < most ? deal.share : most;
+    for (; deal.share > 1; deal.share /= 2) {
+        uint32_t half = (deal.share + 1) * MOST_BEAM_STEPS / 2; /* as in has_beams */
+        if (turns_within(job, half) == half)
+            break;
+    }
+    deal.steps = (deal.share + 1) * MOST_BEAM_STEPS;
+    return deal;
+}
+
+/* Where a distance costs less than this, beams of 4x4 pixels cost more than they gain. */
+#define FLOPS_WORTH_QUARTERS 150
+
 /* Beams of tiles, counted in the whole picture, that the band and the window have a part of.  Those
-   of 8x8 pixels that find something are listed; the rays of all others miss. */
-static bool march_beams(Job *job, WorkBlock *work)
+   of 8x8 pixels that find something are listed; the rays of all others miss.  The quarters of the
+   listed ones may have beams, too. */
+static bool march_beams(Job *job, WorkBlock *work, double flops)
 {
     static const struct { uint32_t phase, side; } sizes[] = {{TRACE_BEAMS_32, 32},
                                                              {TRACE_BEAMS_8, 8}};
     ControlBlock *control = job->rendering->control.bytes;
-    Dealing       deal = dealing(job);
+    Dealing       deal = deal_beams(job, 2); /* a slot each, of two that a lane keeps */
     Errand        beams[2];
-    bool          two = deal.share > 1 && turns_within(job, 2 * MOST_BEAM_STEPS) > MOST_BEAM_STEPS;
-    deal.share = two ? 2 : 1; /* a slot each, of a group's sixteen */
-    deal.steps = deal.share * MOST_BEAM_STEPS; /* none is saved */
     control->tiles = 0;
     for (int i = 0; i < 2; i++) {
         uint32_t tiles = choose_tiles(job, work, sizes[i].side);
@@ -260,6 +279,14 @@ static bool march_beams(Job *job, WorkBlock *work)
     if (!run_errands(job, KRS_PHASE_BEAMS, beams, 2, work))
         return false;
     control->follow = control->listed = 1;
+    if (flops < FLOPS_WORTH_QUARTERS)
+        return true;
+    control->phase = TRACE_BEAMS_4;
+    control->source = ITEMS_FRESH;
+    if (!run_items(job, KRS_PHASE_BEAMS, job->beams, work, 4 * control->tiles,
+                   deal_beams(job, 8))) /* four of a slot */
+        return false;
+    control->follow = 2;
     return true;
 }
 
@@ -308,14 +335,14 @@ static bool has_beams(const Job *job)
            turns_within(job, MOST_BEAM_STEPS / 2) == MOST_BEAM_STEPS / 2;
 }
 
-/* Beams, then rays, of one kernel. */
-static bool march(Job *job, WorkBlock *work)
+/* Beams, then rays, of one kernel, whose distance costs so much. */
+static bool march(Job *job, WorkBlock *work, double flops)
 {
     ControlBlock *control = job->rendering->control.bytes;
     const double  share = job->share;
     control->follow = control->listed = 0;
     job->share = 0; /* of beams: too short to be seen */
-    if (has_beams(job) && !march_beams(job, work))
+    if (has_beams(job) && !march_beams(job, work, flops))
         return false;
     job->share = share;
     return trace(job, work);
@@ -337,7 +364,7 @@ static bool march_all(Job *job, WorkBlock *work)
     }
     job->window = (KrsWindow){0, 0, (uint32_t)frame->size[0], (uint32_t)frame->size[1]};
     if (job->part_count == 0)
-        good = good && march(job, work);
+        good = good && march(job, work, program->flops);
     job->share /= job->part_count ? job->part_count : 1;
     for (uint32_t i = 0; i < job->part_count && good; i++) {
         const MarchPart *part = &job->parts[i];
@@ -349,7 +376,7 @@ static bool march_all(Job *job, WorkBlock *work)
         job->trace = job->beams = part->trace;
         job->schedule = part->schedule;
         double share = job->share;
-        good = march(job, work);
+        good = march(job, work, group->flops);
         job->share = share;
     }
     job->schedule = job->options.schedule;
@@ -371,34 +398,55 @@ static Dealing deal_around(const Job *job, uint32_t count)
     return deal;
 }
 
-/* A phase of secondary.comp, about the pixels of a list. */
-static bool look_around(Job *job, KrsPhase phase, uint32_t secondary, WorkBlock *work,
+/* Normals, occlusion or what is seen of a light, for the pixels of a list: rays to lights take the
+   steps that they need. */
+static bool look_around(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
                         uint32_t list, uint32_t count)
 {
     ControlBlock *control = job->rendering->control.bytes;
     Dealing       deal = deal_around(job, count);
-    control->phase = secondary;
+    control->phase = phase == KRS_PHASE_OCCLUSION ? AROUND_OCCLUSION : AROUND_NORMALS;
     control->source = ITEMS_FRESH;
     control->reading = list * work->extent[0] * work->extent[1];
+    if (phase != KRS_PHASE_SHADOWS)
+        return run_all(job, phase, kernel, work, count);
     do {
         control->left = 0;
-        if (!run_items(job, phase, job->secondary, work, count, deal))
+        if (!run_items(job, phase, kernel, work, count, deal))
             return false;
         control->source = ITEMS_REST;
     } while (control->left > 0);
     return true;
 }
 
-static bool list_hits(Job *job, WorkBlock *work)
+/* The first light from this one on that has a disc in the sky. */
+static uint32_t find_sun(const Job *job, uint32_t light)
 {
-    ControlBlock *control = job->rendering->control.bytes;
+    while (light < job->view.light_count &&
+           (job->view.lights[light].positional || job->view.lights[light].softness <= 0))
+        light++;
+    return light;
+}
+
+/* The sky and the first sun, and the lists of what hits something; then each other sun. */
+static bool resolve(Job *job, WorkBlock *work)
+{
+    KrsRendering *r = job->rendering;
+    ControlBlock *control = r->control.bytes;
+    uint32_t      sun = find_sun(job, 0);
     control->solid = control->anchors = control->value = 0;
     control->parts = job->part_count > 0 && job->parts[0].normals;
+    control->phase = BACKGROUND_FIRST;
     memset(control->of_group, 0, sizeof control->of_group);
-    /* Each group of components has tiles of its own. */
-    control->listed = control->listed && job->part_count == 0;
-    return run_all(job, KRS_PHASE_RESOLVE, &job->rendering->renderer->hits, work,
-                   tiles_of_rays(job, work) * TILE * TILE);
+    do {
+        control->light = sun;
+        if (!run_all(job, KRS_PHASE_RESOLVE, &r->renderer->background[r->panoramic], work,
+                     tiles_of_band(work) * TILE))
+            return false;
+        control->phase = BACKGROUND_SUN;
+        sun = find_sun(job, sun + 1);
+    } while (sun < job->view.light_count);
+    return true;
 }
 
 /* Where components were marched by themselves, so is the normal of each found: at the surface of
@@ -408,17 +456,12 @@ static bool find_normals(Job *job, WorkBlock *work)
     const ControlBlock *control = job->rendering->control.bytes;
     Errand              errands[1 + KRS_MOST_GROUPS];
     if (!control->parts)
-        return look_around(job, KRS_PHASE_NORMALS, SECONDARY_NORMALS, work, LIST_ALL,
-                           control->solid);
+        return look_around(job, KRS_PHASE_NORMALS, job->around, work, LIST_ALL, control->solid);
     for (uint32_t i = 0; i <= job->part_count; i++) {
         bool     part  = i < job->part_count; /* else what belongs to none: planes */
         uint32_t group = part ? job->parts[i].group + 1 : 0;
-        uint32_t count = control->of_group[group];
-        job->schedule  = part ? job->parts[i].schedule : job->options.schedule;
-        Dealing  deal  = deal_around(job, count);
-        deal.steps     = MOST_TURNS; /* none is left over: an item has few */
-        errands[i] = errand(job, part ? job->parts[i].normals : job->secondary, SECONDARY_NORMALS,
-                            count, deal);
+        errands[i] = errand(job, part ? job->parts[i].normals : job->around, AROUND_NORMALS,
+                            control->of_group[group], (Dealing){64, items_of_lane(job), 0});
         errands[i].control.reading =
             (LIST_OF_GROUP + group) * work->extent[0] * work->extent[1];
     }
@@ -427,13 +470,13 @@ static bool find_normals(Job *job, WorkBlock *work)
 
 /* As much for a quarter of the pixels; the others are filled in where that cannot be seen, and
    looked at where it could. */
-static bool look_sparsely(Job *job, KrsPhase phase, uint32_t secondary, WorkBlock *work)
+static bool look_sparsely(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    Kernel       *fill = &job->rendering->renderer->fill;
+    Kernel       *fill = &job->rendering->renderer->fill[job->rendering->panoramic];
     if (!job->sparse)
-        return look_around(job, phase, secondary, work, LIST_ALL, control->solid);
-    if (!look_around(job, phase, secondary, work, LIST_ANCHORS, control->anchors))
+        return look_around(job, phase, kernel, work, LIST_ALL, control->solid);
+    if (!look_around(job, phase, kernel, work, LIST_ANCHORS, control->anchors))
         return false;
     control->rest = 0;
     control->phase = FILL_JUDGE;
@@ -441,7 +484,7 @@ static bool look_sparsely(Job *job, KrsPhase phase, uint32_t secondary, WorkBloc
         return false;
     control->phase = FILL_FILL;
     return run_all(job, phase, fill, work, control->solid) &&
-           look_around(job, phase, secondary, work, LIST_REST, control->rest);
+           look_around(job, phase, kernel, work, LIST_REST, control->rest);
 }
 
 bool lights_by_points(const Job *job, const KrsLight *light)
@@ -452,14 +495,10 @@ bool lights_by_points(const Job *job, const KrsLight *light)
 /* A ray that goes from root to root knows of no way beside it, so none is filled in. */
 static bool find_visible(Job *job, const KrsLight *light, WorkBlock *work)
 {
-    Kernel *secondary = job->secondary;
-    if (!job->shadows || !lights_by_points(job, light))
-        return look_sparsely(job, KRS_PHASE_SHADOWS, SECONDARY_SHADOW, work);
-    job->secondary = job->shadows;
-    bool good = look_around(job, KRS_PHASE_SHADOWS, SECONDARY_SHADOW, work, LIST_ALL,
-                            ((ControlBlock *)job->rendering->control.bytes)->solid);
-    job->secondary = secondary;
-    return good;
+    const ControlBlock *control = job->rendering->control.bytes;
+    if (!job->roots || !lights_by_points(job, light))
+        return look_sparsely(job, KRS_PHASE_SHADOWS, job->shadows, work);
+    return look_around(job, KRS_PHASE_SHADOWS, job->roots, work, LIST_ALL, control->solid);
 }
 
 /* How much is visible of each of the lights from `first` on that are shaded at once. */
@@ -517,28 +556,24 @@ static void place_ray(uint32_t index, uint64_t seed, float offset[2])
 
 /* The steps from rays to light, and their shares of the time, about. */
 typedef enum Step {
-    STEP_TRACE, STEP_BACKGROUND, STEP_HITS, STEP_NORMALS, STEP_OCCLUSION, STEP_LIGHTS, STEP_COUNT
+    STEP_TRACE, STEP_RESOLVE, STEP_NORMALS, STEP_OCCLUSION, STEP_LIGHTS, STEP_COUNT
 } Step;
-static const double step_share[STEP_COUNT] = {0.5, 0.01, 0.01, 0.1, 0.1, 0.28};
+static const double step_share[STEP_COUNT] = {0.5, 0.02, 0.1, 0.1, 0.28};
 
 static bool run_step(Job *job, Step step, WorkBlock *work)
 {
-    KrsRendering *r = job->rendering;
-    ControlBlock *control = r->control.bytes;
-    uint32_t      pixels = work->extent[0] * work->extent[1];
+    ControlBlock *control = job->rendering->control.bytes;
     switch (step) {
     case STEP_TRACE:
         return march_all(job, work);
-    case STEP_BACKGROUND:
-        return run_all(job, KRS_PHASE_RESOLVE, &r->renderer->background, work, pixels);
-    case STEP_HITS:
-        return list_hits(job, work);
+    case STEP_RESOLVE:
+        return resolve(job, work);
     case STEP_NORMALS:
         return find_normals(job, work);
     case STEP_OCCLUSION:
         control->value = VALUE_OCCLUSION;
         return control->open ||
-               look_sparsely(job, KRS_PHASE_OCCLUSION, SECONDARY_OCCLUSION, work);
+               look_sparsely(job, KRS_PHASE_OCCLUSION, job->around, work);
     case STEP_LIGHTS:
         return light_up(job, work);
     case STEP_COUNT: break;

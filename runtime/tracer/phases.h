@@ -23,8 +23,9 @@ typedef struct Job {
     KrsView          view;
     FrameBlock       frame;
     double           anchor[3]; /* that points are given from on the device; 0: they are not */
-    Kernel          *trace, *beams, *secondary, *shade;
-    Kernel          *shadows; /* of points of lights; NULL: as `secondary` does it */
+    Kernel          *trace, *beams, *around, *shade;
+    Kernel          *shadows, *roots; /* of rays to lights, and to points of lights where those go
+                                         from root to root; NULL where no light needs it */
     MarchPart        parts[KRS_MOST_GROUPS]; /* the nearest first */
     bool             rest;                   /* planes are not marched, but known (FLATS) */
     uint32_t         part_count;             /* 0: all are marched together, by `trace` */

@@ -3,6 +3,7 @@
  */
 #include "runtime/tracer/picture.h"
 
+#include <assert.h>
 #include <string.h>
 
 /* The planes: all are arrays of 32-bit numbers. */
@@ -76,16 +77,21 @@ uint32_t picture_rows(const KrsPicture *picture)
     return rows;
 }
 
-/* Some are no floats, so they are copied as bytes; at once where a row is a plane. */
+/* Some are no floats, so they are copied as bytes; at once where a row is a plane.  Of a size that
+   is known a copy is no call. */
 static void take_plane(void *plane, const float *from, size_t first, size_t count, size_t bytes)
 {
+    enum { NUMBER = 4, VECTOR = 12 };
     char *to = (char *)plane + first * bytes;
     if (bytes == RESULT_BYTES) {
         memcpy(to, from, count * RESULT_BYTES);
         return;
     }
-    for (size_t k = 0; k < count; k++)
-        memcpy(to + k * bytes, from + k * RESULT_NUMBERS, bytes);
+    assert(bytes == NUMBER || bytes == VECTOR);
+    for (size_t k = 0; k < count && bytes == NUMBER; k++)
+        memcpy(to + k * NUMBER, from + k * RESULT_NUMBERS, NUMBER);
+    for (size_t k = 0; k < count && bytes == VECTOR; k++)
+        memcpy(to + k * VECTOR, from + k * RESULT_NUMBERS, VECTOR);
 }
 
 void picture_take(KrsPicture *picture, const float *results, size_t row_pixels, size_t first,

@@ -154,8 +154,8 @@ static void band_destroy(Gpu *gpu, Band *band)
     band->pixels = 0;
 }
 
-/* Beams of a band of so many pixels, whatever its shape and place: every tile of 8x8 pixels that
-   it touches, and every one of 32x32. */
+/* Room for the beams of a band of so many pixels, whatever its shape and place: every tile of 8x8
+   pixels, its quarters, and every tile of 32x32. */
 static VkDeviceSize most_beams(uint64_t pixels)
 {
     return 2 * (pixels / TILE + 2 * LARGEST_SIDE / TILE);
@@ -314,7 +314,6 @@ static bool render_band(Job *job, uint32_t from, uint32_t rows)
     *control = (ControlBlock){
         .projection = (uint32_t)job->view.camera.projection,
         .lights = (uint32_t)job->view.light_count,
-        .shadows = job->options.shadows,
         .seed = (uint32_t)(job->options.seed ^ job->options.seed >> 32),
         .rows = picture_rows(job->picture),
         .open = job->options.no_occlusion,
@@ -383,16 +382,22 @@ static bool find_marches(Job *job, KrsFrame *frame)
     return job->trace && job->beams;
 }
 
-/* The kernel of rays to points of lights, where one goes from root to root and a light needs it. */
+/* The kernels of rays to lights that are needed. */
 static bool find_shadows(Job *job)
 {
-    bool needed = false;
-    for (size_t i = 0; i < job->view.light_count; i++)
-        needed = needed || lights_by_points(job, &job->view.lights[i]);
-    if (!needed || !rendering_has_roots(job->rendering, job->options.trace))
-        return true;
-    job->shadows = rendering_shadows(job->rendering, job->options.schedule);
-    return job->shadows != NULL;
+    const KrsRenderOptions *options = &job->options;
+    bool                    has_roots = rendering_has_roots(job->rendering, options->trace);
+    for (size_t i = 0; i < job->view.light_count; i++) {
+        const KrsLight *light    = &job->view.lights[i];
+        bool            by_roots = has_roots && lights_by_points(job, light);
+        Kernel        **kernel   = by_roots ? &job->roots : &job->shadows;
+        if (!light->shadow)
+            continue;
+        *kernel = rendering_shadows(job->rendering, options->schedule, options->shadows, by_roots);
+        if (!*kernel)
+            return false;
+    }
+    return true;
 }
 
 static bool render(Job *job, KrsFrame *frame)
@@ -404,10 +409,9 @@ static bool render(Job *job, KrsFrame *frame)
         return false;
     if (!find_marches(job, frame))
         return false;
-    job->secondary = rendering_secondary(job->rendering, job->options.schedule,
-                                         job->options.normals, 0);
+    job->around = rendering_around(job->rendering, job->options.normals, 0);
     job->shade = rendering_shade(job->rendering);
-    if (!job->secondary || !job->shade || !find_shadows(job) || !wait_for_kernels(job))
+    if (!job->around || !job->shade || !find_shadows(job) || !wait_for_kernels(job))
         return false;
     double start = clock_ms();
     for (uint32_t from = 0; from < job->cover.height; from += rows) {

@@ -35,9 +35,8 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
     spirv_start();
     renderer->compiler_started = true;
     const KernelRequest kernels[] = {
-        {&renderer->background, {.file = "background.comp"}},
-        {&renderer->hits, {.file = "hits.comp"}},
-        {&renderer->fill, {.file = "fill.comp"}},
+        {&renderer->background[0], {.file = "background.comp"}},
+        {&renderer->fill[0], {.file = "fill.comp"}},
     };
     if (!stage_create(renderer) ||
         !stage_make_kernels(renderer, VK_NULL_HANDLE, kernels, sizeof kernels / sizeof kernels[0],
@@ -53,9 +52,10 @@ void krs_renderer_free(KrsRenderer *renderer)
     Gpu *gpu = &renderer->gpu;
     if (gpu->device) {
         gpu_wait(gpu);
-        kernel_destroy(gpu, &renderer->background);
-        kernel_destroy(gpu, &renderer->hits);
-        kernel_destroy(gpu, &renderer->fill);
+        for (int panoramic = 0; panoramic < 2; panoramic++) {
+            kernel_destroy(gpu, &renderer->background[panoramic]);
+            kernel_destroy(gpu, &renderer->fill[panoramic]);
+        }
         stage_destroy(renderer);
     }
     gpu_close(gpu);
@@ -226,6 +226,9 @@ bool rendering_marches_packed(const KrsRendering *rendering, KrsComponents compo
                                                  : components == KRS_COMPONENTS_PACKED);
 }
 
+/* Rays of panoramas, which cost more, are in kernels of scenes that have some. */
+#define PANORAMIC "#define PANORAMIC\n"
+
 typedef struct Variant {
     char defines[256];
 } Variant;
@@ -247,10 +250,11 @@ static Variant name_variant(const KrsRendering *rendering, KrsTrace trace, KrsSc
     bool     by_ray = trace >= KRS_TRACE_EXACT;
     Variant  variant;
     int      length = snprintf(variant.defines, sizeof variant.defines,
-                               "#define TRACE %du\n#define REFILL %d\n%s%s%s",
+                               "#define TRACE %du\n#define REFILL %d\n%s%s%s%s",
                                (int)(by_ray ? KRS_TRACE_PLAIN : trace),
                                schedule == KRS_SCHEDULE_REFILL
                                    ? (int)rendering->renderer->gpu.refill_lanes : 0,
+                               rendering->panoramic ? PANORAMIC : "",
                                anchored ? "#define ANCHORED\n" : "",
                                rendering->renderer->early_outs && !anchored
                                    ? "#define EARLY_OUTS\n" : "",
@@ -316,21 +320,24 @@ KrsNormals rendering_normals(const KrsRendering *rendering, KrsNormals normals)
     return rendering->program->algebraic ? KRS_NORMALS_ANALYTIC : KRS_NORMALS_OCTAHEDRON;
 }
 
-/* Normals as rendering_normals says; the octahedron is what the kernel has otherwise. */
-static Variant name_secondary(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
-                              KrsNormals normals, uint32_t group)
+/* With what is special about a scene's distance around a hit. */
+static Variant name_secondary(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule)
 {
-    Variant variant = name_variant(rendering, trace, schedule);
+    const KrsProgram *program = rendering->program;
+    Variant           variant = name_variant(rendering, trace, schedule);
+    size_t            length  = strlen(variant.defines);
+    snprintf(variant.defines + length, sizeof variant.defines - length, "%s%s%s",
+             program->loose ? "#define LOOSE\n" : "",
+             program->along && !program->inverts ? "#define ROOTS\n" : "",
+             program->seams ? "#define SEAMS\n" : "");
+    return variant;
+}
+
+/* Normals as rendering_normals says; the octahedron is what the kernel has otherwise. */
+static Variant name_around(const KrsRendering *rendering, KrsNormals normals, uint32_t group)
+{
+    Variant variant = name_secondary(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     size_t  length  = strlen(variant.defines);
-    if (rendering->program->loose)
-        length += (size_t)snprintf(variant.defines + length, sizeof variant.defines - length,
-                                   "#define LOOSE\n");
-    if (rendering->program->along && !rendering->program->inverts)
-        length += (size_t)snprintf(variant.defines + length, sizeof variant.defines - length,
-                                   "#define ROOTS\n");
-    if (rendering->program->seams)
-        length += (size_t)snprintf(variant.defines + length, sizeof variant.defines - length,
-                                   "#define SEAMS\n");
     if (group > 0)
         length += (size_t)snprintf(variant.defines + length, sizeof variant.defines - length,
                                    "#define GROUP %u\n", group);
@@ -342,27 +349,35 @@ static Variant name_secondary(const KrsRendering *rendering, KrsTrace trace, Krs
     return variant;
 }
 
+static Variant name_shadows(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+                            KrsShadows shadows)
+{
+    Variant variant = name_secondary(rendering, trace, schedule);
+    size_t  length  = strlen(variant.defines);
+    if (shadows == KRS_SHADOWS_AREA)
+        snprintf(variant.defines + length, sizeof variant.defines - length, "#define AREA\n");
+    return variant;
+}
+
 bool rendering_has_roots(const KrsRendering *rendering, KrsTrace trace)
 {
     return trace == KRS_TRACE_EXACT && rendering->program->along && !rendering->in_use->anchored;
 }
 
-Kernel *rendering_shadows(KrsRendering *rendering, KrsSchedule schedule)
+Kernel *rendering_shadows(KrsRendering *rendering, KrsSchedule schedule, KrsShadows shadows,
+                          bool by_roots)
 {
     schedule = schedule_of_kernel(schedule);
-    return find_kernel(rendering, &rendering->in_use->shadows[schedule], "secondary.comp",
-                       name_secondary(rendering, KRS_TRACE_EXACT, schedule,
-                                      KRS_NORMALS_OCTAHEDRON, 0));
+    KrsTrace trace = by_roots ? KRS_TRACE_EXACT : KRS_TRACE_PLAIN;
+    return find_kernel(rendering, &rendering->in_use->shadows[schedule][shadows][by_roots],
+                       "shadows.comp", name_shadows(rendering, trace, schedule, shadows));
 }
 
-Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, KrsNormals normals,
-                            uint32_t group)
+Kernel *rendering_around(KrsRendering *rendering, KrsNormals normals, uint32_t group)
 {
-    schedule = schedule_of_kernel(schedule);
-    normals  = rendering_normals(rendering, normals);
-    return find_kernel(rendering, &rendering->in_use->secondary[normals][schedule][group],
-                       "secondary.comp",
-                       name_secondary(rendering, KRS_TRACE_PLAIN, schedule, normals, group));
+    normals = rendering_normals(rendering, normals);
+    return find_kernel(rendering, &rendering->in_use->around[normals][group], "around.comp",
+                       name_around(rendering, normals, group));
 }
 
 Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule)
@@ -384,6 +399,20 @@ Kernel *rendering_sample(KrsRendering *rendering)
                         KRS_SCHEDULE_PIXEL);
 }
 
+/* The renderer's kernels for panoramas. */
+static bool panoramic_create(KrsRendering *rendering)
+{
+    KrsRenderer        *renderer = rendering->renderer;
+    const KernelRequest kernels[] = {
+        {&renderer->background[1], {.file = "background.comp", .defines = PANORAMIC}},
+        {&renderer->fill[1], {.file = "fill.comp", .defines = PANORAMIC}},
+    };
+    return !rendering->panoramic || renderer->background[1].pipeline ||
+           stage_make_kernels(renderer, VK_NULL_HANDLE, kernels,
+                              sizeof kernels / sizeof kernels[0], &rendering->spirv_ms,
+                              &rendering->pipeline_ms);
+}
+
 /* Those that a picture by default, or questions, need, at the same time. */
 static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
 {
@@ -399,17 +428,22 @@ static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
                         : rendering_knows_flats(rendering) ? GROUP_REST : 0;
     Variant       primary[GROUP_KINDS], normals[1 + KRS_MOST_GROUPS];
     KrsNormals    usual = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
-    Variant       secondary = name_secondary(rendering, KRS_TRACE_PLAIN, schedule, usual, 0);
+    Variant       around = name_around(rendering, usual, 0);
+    Variant       shadows = name_shadows(rendering, KRS_TRACE_PLAIN, schedule, KRS_SHADOWS_SOFT);
     Variant       beams = name_group(rendering, KRS_TRACE_PLAIN, schedule, whole);
     Variant       query = name_variant(rendering, KRS_TRACE_AUTO, schedule);
     Variant       simple = name_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
-    KernelRequest pictures[4 + 2 * KRS_MOST_GROUPS] = {
-        {&to->secondary[usual][schedule][0],
-         {"secondary.comp", scene, secondary.defines}},
+    KernelRequest pictures[5 + 2 * KRS_MOST_GROUPS] = {
+        {&to->around[usual][0], {"around.comp", scene, around.defines}},
         {&to->shade, {"shade.comp", scene, simple.defines}},
-        {&to->trace[KRS_TRACE_PLAIN][schedule][whole], {"trace.comp", scene, beams.defines}},
     };
-    size_t   count = trace == KRS_TRACE_EXACT ? 3 : 2;
+    size_t   count = 2;
+    if (rendering->program->shadows)
+        pictures[count++] = (KernelRequest){&to->shadows[schedule][KRS_SHADOWS_SOFT][0],
+                                            {"shadows.comp", scene, shadows.defines}};
+    if (trace == KRS_TRACE_EXACT)
+        pictures[count++] = (KernelRequest){&to->trace[KRS_TRACE_PLAIN][schedule][whole],
+                                            {"trace.comp", scene, beams.defines}};
     uint32_t first = apart ? 1 : whole, last = apart ? (uint32_t)rendering->program->group_count
                                                      : whole;
     for (uint32_t group = first; group <= last; group++) {
@@ -422,9 +456,9 @@ static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
                                             {"trace.comp", scene, primary[group].defines}};
         if (!apart)
             continue;
-        normals[group] = name_secondary(rendering, KRS_TRACE_PLAIN, own, usual, group);
-        pictures[count++] = (KernelRequest){&to->secondary[usual][own][group],
-                                            {"secondary.comp", scene, normals[group].defines}};
+        normals[group] = name_around(rendering, usual, group);
+        pictures[count++] = (KernelRequest){&to->around[usual][group],
+                                            {"around.comp", scene, normals[group].defines}};
     }
     KernelRequest questions[] = {
         {&to->query[schedule], {"query.comp", scene, query.defines}},
@@ -441,12 +475,14 @@ static void kernels_destroy(Gpu *gpu, SceneKernels *kernels)
 {
     kernel_destroy(gpu, &kernels->shade);
     kernel_destroy(gpu, &kernels->sample);
+    for (int normals = 0; normals < KRS_NORMALS_COUNT; normals++)
+        for (uint32_t group = 0; group <= KRS_MOST_GROUPS; group++)
+            kernel_destroy(gpu, &kernels->around[normals][group]);
     for (int schedule = 0; schedule < KRS_SCHEDULE_COUNT; schedule++) {
         kernel_destroy(gpu, &kernels->query[schedule]);
-        kernel_destroy(gpu, &kernels->shadows[schedule]);
-        for (int normals = 0; normals < KRS_NORMALS_COUNT; normals++)
-            for (uint32_t group = 0; group <= KRS_MOST_GROUPS; group++)
-                kernel_destroy(gpu, &kernels->secondary[normals][schedule][group]);
+        for (int shadows = 0; shadows < KRS_SHADOWS_COUNT; shadows++)
+            for (int by_roots = 0; by_roots < 2; by_roots++)
+                kernel_destroy(gpu, &kernels->shadows[schedule][shadows][by_roots]);
         for (int trace = 0; trace < KRS_TRACE_COUNT; trace++)
             for (uint32_t group = 0; group < GROUP_KINDS; group++)
                 kernel_destroy(gpu, &kernels->trace[trace][schedule][group]);
@@ -472,11 +508,12 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
     rendering->program = krs_scene_program(scene);
     rendering->in_use = &rendering->kernels;
     rendering->purpose = purpose;
+    rendering->panoramic = krs_scene_is_panoramic(scene);
     rendering->spirv_ms = renderer->spirv_ms;
     rendering->pipeline_ms = renderer->pipeline_ms;
     for (int i = 0; i < 2 * KRS_PHASE_COUNT; i++)
         rendering->groups_at_once[i / 2][i % 2] = gpu_is_cpu(&renderer->gpu) ? 8 : 1024;
-    if (!sets_create(rendering) || !buffers_create(rendering) ||
+    if (!sets_create(rendering) || !buffers_create(rendering) || !panoramic_create(rendering) ||
         !kernels_create(rendering, purpose)) {
         KrsStatus status = renderer->gpu.status;
         krs_rendering_free(rendering);

@@ -19,8 +19,8 @@ struct KrsRenderer {
     VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters */
     VkDescriptorSetLayout frame_layout; /* set 1: what frame.glsl declares */
     VkPipelineLayout      layout;       /* of every kernel */
-    Kernel                background, hits, fill;
-    double                spirv_ms, pipeline_ms; /* of these three */
+    Kernel                background[2], fill[2]; /* [1]: for scenes with panoramas, when needed */
+    double                spirv_ms, pipeline_ms; /* of the former */
     VkDescriptorPool      idle_pool;             /* for rehearsals: */
     VkDescriptorSet       idle_scene, idle_frame; /* with nothing in them, */
     Buffer                idle[TEXEL_KINDS];     /* all of it in these */
@@ -44,8 +44,8 @@ typedef struct SceneKernels {
     bool     anchored; /* points are given from an anchor */
     Kernel   shade, sample;
     Kernel   trace[KRS_TRACE_COUNT][KRS_SCHEDULE_COUNT][GROUP_KINDS]; /* [0]: of all */
-    Kernel   secondary[KRS_NORMALS_COUNT][KRS_SCHEDULE_COUNT][1 + KRS_MOST_GROUPS]; /* likewise */
-    Kernel   shadows[KRS_SCHEDULE_COUNT];
+    Kernel   around[KRS_NORMALS_COUNT][1 + KRS_MOST_GROUPS]; /* likewise */
+    Kernel   shadows[KRS_SCHEDULE_COUNT][KRS_SHADOWS_COUNT][2]; /* [1]: from root to root */
     Kernel   query[KRS_SCHEDULE_COUNT];
 } SceneKernels;
 
@@ -57,6 +57,7 @@ struct KrsRendering {
     SceneKernels      anchored;       /* for eyes that are far from the origin */
     SceneKernels     *in_use;         /* those for the zones of the last frame */
     KrsPurpose        purpose;
+    bool              panoramic;      /* a camera of the scene is a panorama */
     double            spirv_ms, pipeline_ms;
 
     VkDescriptorPool  pool;
@@ -68,10 +69,9 @@ struct KrsRendering {
     uint32_t          groups_at_once[KRS_PHASE_COUNT][2]; /* learned from the last slices */
 };
 
-/* The kernels of primary and secondary rays for a method and a schedule (neither is the default),
-   compiled when they are first asked for, the former of a group of components, of all (0), or
-   GROUP_REST.  NULL
-   with the failure noted. */
+/* The kernel of primary rays for a method and a schedule (neither is the default), of a group of
+   components, of all (0), or GROUP_REST, compiled when it is first asked for.  NULL with the
+   failure noted. */
 Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
                         uint32_t group);
 /* The same for beams, which need distances for all directions. */
@@ -81,12 +81,13 @@ Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule sch
 bool rendering_knows_flats(const KrsRendering *rendering);
 /* The normals that are meant: by derivatives where all is algebraic, else the octahedron's. */
 KrsNormals rendering_normals(const KrsRendering *rendering, KrsNormals normals);
-/* Of a group for normals alone. */
-Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, KrsNormals normals,
-                            uint32_t group);
-/* The same for rays to points of lights, where primary rays by this method go from root to root. */
+/* That of normals and occlusion; of a group for normals alone. */
+Kernel *rendering_around(KrsRendering *rendering, KrsNormals normals, uint32_t group);
+/* Whether primary rays by this method go from root to root.  Then so do those to points of lights,
+   by a kernel of their own. */
 bool    rendering_has_roots(const KrsRendering *rendering, KrsTrace trace);
-Kernel *rendering_shadows(KrsRendering *rendering, KrsSchedule schedule);
+Kernel *rendering_shadows(KrsRendering *rendering, KrsSchedule schedule, KrsShadows shadows,
+                          bool by_roots);
 Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule);
 /* Likewise. */
 Kernel *rendering_shade(KrsRendering *rendering);

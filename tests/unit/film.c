@@ -181,6 +181,45 @@ static void a_stop_is_a_doubling(void **state)
     assert_memory_not_equal(brighter.rgb, doubled.rgb, sizeof doubled.rgb);
 }
 
+/* The byte by the definitions, the noise by floor. */
+static uint8_t defined_byte(const float color[3], FilmOptions options, int channel, double x,
+                            double y)
+{
+    double light[3], shown[3];
+    for (int i = 0; i < 3; i++)
+        light[i] = pow(2, options.exposure) * color[i];
+    tone_map_apply(options.tone_map, light, shown);
+    double noise = 0.06711056 * (x + 47 * channel) + 0.00583715 * (y + 17 * channel);
+    noise = 52.9829189 * (noise - floor(noise));
+    return (uint8_t)floor(255 * srgb_encode(shown[channel]) + noise - floor(noise));
+}
+
+static void bytes_are_as_defined(void **state)
+{
+    (void)state;
+    enum { WIDTH = 157, HEIGHT = 41, COUNT = 4 * WIDTH * HEIGHT };
+    static const float odd[] = {NAN, INFINITY, -1, 1e-42f, 1e30f, 0, 1, 0.08f, 0.76f, 0.8f};
+    static const double stops[] = {0, 1.3, -3, 140};
+    static float   color[COUNT];
+    static uint8_t rgb[COUNT];
+    uint32_t       chance = 7;
+    for (int kind = 0; kind < 12; kind++) {
+        FilmOptions options = {(ToneMap)(kind % TONE_MAP_COUNT), stops[kind / TONE_MAP_COUNT]};
+        for (int i = 0; i < COUNT; i++) {
+            chance = chance * 1664525 + 1013904223;
+            double part = (chance >> 8) / 16777216.0;
+            double light = exp(12 * part - 9) / pow(2, options.exposure);
+            color[i] = chance % 256 < 16 ? odd[(chance >> 8) % 10] : (float)light;
+        }
+        film_to_srgb8(&(KrsPicture){.width = 2000, .height = 2000, .window = {911, 1204, WIDTH,
+                      HEIGHT}, .color = color}, &options, rgb);
+        for (int k = 0; k < WIDTH * HEIGHT; k++)
+            for (int i = 0; i < 3; i++)
+                assert_int_equal(rgb[3 * k + i], defined_byte(&color[4 * k], options, i,
+                                                              911 + k % WIDTH, 1204 + k / WIDTH));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -194,6 +233,7 @@ int main(void)
         cmocka_unit_test(black_and_white_are_clean),
         cmocka_unit_test(dithering_hangs_on_the_place_in_the_whole),
         cmocka_unit_test(a_stop_is_a_doubling),
+        cmocka_unit_test(bytes_are_as_defined),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

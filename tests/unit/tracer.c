@@ -822,6 +822,50 @@ static void shadows_that_are_not_cast_are_not_missed(void **state)
     }
 }
 
+/* The sky is the sum of what each light adds to it, for the first sample as for others; a light
+   without a size, or with a place, adds nothing. */
+static void every_sun_is_in_the_sky(void **state)
+{
+    static const char text[] =
+        "param one = 0 in [0, 9]; param two = 0 in [0, 9]; param three = 0 in [0, 9];\n"
+        "camera { eye: [3, 2, 5], target: [0, 2.5, 0], fov: 70deg }\n"
+        "light point { position: [0, 3, 0], intensity: 5 }\n"
+        "light a { direction: [-3, 0.9, -5], intensity: one, softness: 6deg }\n"
+        "light sharp { direction: [-1, 2, -5], intensity: 5, softness: 0deg }\n"
+        "light b { direction: [-5, 2, -5], intensity: two, softness: 4deg }\n"
+        "light c { direction: [-4, 2, -8], intensity: three, softness: 5deg }\n"
+        "show sphere(1);\n";
+    static const char *const names[] = {"one", "two", "three"};
+    enum { NONE, ALL = 4, PICTURES };
+    (void)state;
+    Stage       stage = {0};
+    KrsPicture *pictures[PICTURES];
+    stage_open(&stage, text, NULL);
+    for (int i = 0; i < PICTURES; i++) {
+        for (int sun = 0; sun < 3; sun++) {
+            double intensity = i == ALL || i == sun + 1 ? 2 + sun : 0;
+            assert_int_equal(krs_frame_set(stage.frame, names[sun], &intensity, 1), KRS_OK);
+        }
+        pictures[i] = render(&stage, (KrsRenderOptions){.samples = 2, .no_occlusion = true});
+    }
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT * 4; i++) {
+        double sum = -2 * (double)pictures[NONE]->color[i];
+        for (int sun = 1; sun <= 3; sun++)
+            sum += pictures[sun]->color[i];
+        if (pictures[NONE]->color[i / 4 * 4 + 3] == 0)
+            assert_near(pictures[ALL]->color[i], sum, 1e-5 * (1 + fabs(sum)));
+    }
+    for (int i = 1; i <= 3; i++) {
+        double brightest = 0;
+        for (size_t k = 0; k < (size_t)WIDTH * HEIGHT; k++)
+            brightest = fmax(brightest, pictures[i]->color[4 * k] - pictures[NONE]->color[4 * k]);
+        assert_near(brightest, 2.15 * (1 + i), 0.1 * (1 + i)); /* disc and glow: 2, and 0.15 */
+    }
+    for (int i = 0; i < PICTURES; i++)
+        krs_picture_free(pictures[i]);
+    stage_close(&stage);
+}
+
 /* ---- Memory ---- */
 
 static KrsStatus render_with(Scarce *scarce, Stage *stage)
@@ -924,6 +968,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(evaluations_are_counted, set_up, tear_down),
         cmocka_unit_test(occlusion_can_be_left_out),
         cmocka_unit_test(shadows_that_are_not_cast_are_not_missed),
+        cmocka_unit_test(every_sun_is_in_the_sky),
         cmocka_unit_test_setup_teardown(memory_that_runs_out_is_reported, set_up, tear_down),
     };
     spirv_start(); /* held for all, so that no renderer starts the shader compiler anew */

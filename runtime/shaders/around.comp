@@ -1,0 +1,339 @@
+#version 440
+#extension GL_GOOGLE_include_directive : enable
+/*
+ * around.comp: what the distance around a hit tells: its normal, and how open it is.
+ *
+ * Both look at a few places that are known before, so a lane does pixel after pixel (pixels.glsl):
+ * lanes that loop together are done together, but where something is looked at again.  The two are
+ * dispatches of one kernel, so that the scene is compiled once for them and its distance stands
+ * once, in one loop.
+ *
+ * LOOSE: a distance is only a bound, so occlusion looks for how near things are (looks.glsl).
+ * SEAMS: solids touch, face to face (look_again).
+ */
+#include "scene.glsl"
+#include "frame.glsl"
+#include "solid.glsl"
+#include "stencil.glsl"
+
+const uint NORMALS = 0u, OCCLUSION = 1u; // control.phase
+const uint OCCLUSION_TAPS = 5u;
+const float LEAST_STEEPNESS = 1e-6;
+
+// Differences for normals reach as far as a pixel asks for, but less of the coordinates would be
+// noise.
+const float NOISE = 3e-4;
+// What is so even is flat, and seen from outside already what is so EVEN_OUTSIDE; taps that lose
+// all of the solid still leave as much as LEAST_EVEN.
+const float EVEN = 0.9995, EVEN_OUTSIDE = 0.998, LEAST_EVEN = 0.7;
+
+// The item.
+Place place;
+vec3  start, way;  // the next distance is asked for at start + t way
+float t;
+uint  taps, limit; // so far, and at most
+vec3  sum, level;  // of the taps of a normal, with the signs of their directions and without
+float extent;      // of their directions: the sum of their squares
+bool  again;       // they are looked at once more, farther out,
+float middle;      // where the distance in their middle is this,
+float even;        // and so even was it before,
+vec3  facing_before; // with this normal,
+float steepness_before;
+#ifdef GRADIENT
+bool  derived;     // the normal is by derivatives,
+float outside;     // and this the distance where one unit is away, as the tap outside says
+#ifdef LOOSE
+const uint BOUND_TAPS = 1u;
+#else
+const uint BOUND_TAPS = 0u;
+#endif
+#endif
+float steepness;   // of the distance around the hit
+float blocked, weight; // of the taps of occlusion
+
+#ifdef LOOSE
+#include "looks.glsl"
+
+// In bounds.  Near taps see one bound give way to another at once, which shows as a contour in what
+// is as broad as occlusion.
+const float REACH = 0.5;
+#endif
+
+// How steep the distance is, 1 unless it is a bound.  In a hollow edge the differences of its two
+// sides cancel in part, and the rest is in the level, below 0; on a convex one they may.
+float find_steepness(float reach)
+{
+#ifdef GRADIENT
+    if (derived)
+        return clamp(outside, LEAST_STEEPNESS, 1.0);
+#endif
+    float found = length(vec2(length(sum), length(min(level, 0.0)))) / (extent * reach / 3.0);
+    return found > LEAST_STEEPNESS ? min(found, 1.0) : LEAST_STEEPNESS;
+}
+
+// Where the ray comes from that hits here, unit.
+vec3 find_backwards()
+{
+    return control.projection == ORTHOGRAPHIC ? -frame.forward.xyz
+                                              : normalize(frame.eye.xyz - place.position);
+}
+
+// The taps of a stencil around the hit.
+void begin_taps()
+{
+    taps = 0u;
+    limit = TAPS;
+    way = stencil(0u);
+    sum = level = vec3(0.0);
+    extent = 0.0;
+}
+
+void begin_normal()
+{
+    // Differences over a pixel or so: finer detail would only be noise.
+    t = max(frame.blur * place.width, NOISE * largest(place.position) + place.rounding);
+    again = false;
+    middle = 0.0;
+    begin_taps();
+#ifdef GRADIENT
+    derived = false;
+    outside = 1.0;
+#ifndef ANCHORED
+    // Differences are for where derivatives are no numbers.
+    vec3 gradient = krs_gradient(place.position, t);
+    // Differences are as well for where rounding makes what is seen face away.
+    float facing_eye = place.side * dot(gradient, find_backwards());
+    derived = facing_eye > 0.0 && dot(gradient, gradient) < INFINITE;
+    if (derived) {
+        sum = place.side * normalize(gradient);
+        way = sum;
+        extent = 3.0 / t; // its own unit
+        limit = BOUND_TAPS;
+    }
+#endif
+#endif
+}
+
+void begin_occlusion()
+{
+    taps = 0u;
+    limit = OCCLUSION_TAPS;
+    way = find_hit(FACING, place.slot).xyz;
+    t = 0.0625 * frame.occlusion_reach;
+    steepness = find_hit(LIGHTING, place.slot).x;
+    blocked = 0.0;
+    weight = 0.33;
+}
+
+void begin_item(uint number)
+{
+    place = find_place(number);
+    start = place.position;
+#ifdef LOOSE
+    looks = 0u;
+#endif
+    if (control.phase == OCCLUSION)
+        begin_occlusion();
+    else
+        begin_normal();
+}
+
+bool item_wants_more()
+{
+#ifdef LOOSE
+    if (looks > 0u)
+        return true;
+#endif
+    return taps < limit;
+}
+
+vec3 item_place()
+{
+#ifdef LOOSE
+    if (looks > 0u)
+        return tap_point();
+#endif
+    return start + t * way;
+}
+
+// How much less room there is than an open surface would leave, at five scales.
+void take_room(float room)
+{
+    blocked += weight * clamp(1.0 - room / t, 0.0, 1.0);
+    weight *= 0.75;
+    t *= 2.0;
+}
+
+#ifdef LOOSE
+// The bound is expected to be as steep as at the hit.
+void take_looks()
+{
+    float fall = find_fall(find_sum(steepness * find_scale()));
+    take_room(look_bound / min(fall, steepness));
+}
+#endif
+
+void take_occlusion(float distance)
+{
+    float room = distance / steepness;
+#ifdef LOOSE
+    if (distance > 0.0 && room < t) {
+        begin_looks(item_place(), distance, REACH);
+        return;
+    }
+#endif
+    take_room(room);
+}
+
+// The parts of the sum that do not cancel: where all is flat, opposite taps do; on an edge, or
+// where things are smaller than the taps are apart, they do not.
+float find_evenness()
+{
+    float size = length(sum), uneven = length(vec2(size, length(level)));
+    return uneven > 0.0 && uneven < INFINITE ? size / uneven : 1.0;
+}
+
+#if defined(ROOTS) && STENCIL == 3
+// Around a curve on which its gradient vanishes a polynomial's distance is far from linear.  So
+// what is not even is looked at again from nearer, with the corners of a cube as well: of weight
+// 9/8 they make the octahedron exact up to the fifth power.
+const float NEARER = 0.125;
+const uint CORNERS = 8u;
+vec3 corner(uint i)
+{
+    return 0.57735026919 * (2.0 * vec3(i & 1u, i >> 1u & 1u, i >> 2u & 1u) - 1.0);
+}
+
+void look_nearer()
+{
+    t = max(NEARER * t, NOISE / 3.0 * largest(place.position) + place.rounding);
+    again = true;
+    begin_taps();
+    limit = TAPS + CORNERS;
+}
+
+void take_difference(float distance)
+{
+    float weight = taps > TAPS ? 1.125 : 1.0;
+    sum += weight * distance * way;
+    level += weight * distance * abs(way);
+    extent += weight * dot(way, way);
+    way = taps < TAPS ? stencil(taps) : corner(taps - TAPS);
+    if (taps < TAPS || again)
+        return;
+    even = find_evenness();
+    if (even < EVEN)
+        look_nearer();
+}
+
+float find_flatness() { return again ? even : find_evenness(); }
+#else
+// Solids that touch have a seam, where taps inside find a surface that is none.  So what is not
+// even is looked at again from so far outside that no tap is inside if it is flat.
+void look_again()
+{
+    facing_before = normalize(sum);
+    steepness_before = find_steepness(t);
+    start = place.position + t * facing_before;
+    again = true;
+    begin_taps();
+    limit = TAPS + 1u;
+    way = vec3(0.0);
+}
+
+void take_difference(float distance)
+{
+#if STENCIL == 1
+    sum += distance * (taps == 1u ? vec3(-1.0) : way);
+    extent += dot(way, way);
+    way = stencil(taps);
+#else
+    if (again && taps == 1u)
+        middle = distance;
+    sum += distance * way;
+    level += (distance - middle) * abs(way);
+    extent += dot(way, way);
+    way = stencil(again ? taps - 1u : taps);
+    if (taps < limit || again)
+        return;
+#ifdef SEAMS
+    even = find_evenness();
+    if (even > LEAST_EVEN && even < EVEN)
+        look_again();
+#endif
+#endif
+}
+
+float find_flatness() { return find_evenness(); }
+#endif
+
+#ifdef GRADIENT
+// Where the bound falls less than that towards the surface, derivatives may be next to nothing but
+// rounding, as near a curve on which a polynomial vanishes several times.
+const float LEAST_OUTSIDE = 0.4;
+void take_outside(float distance)
+{
+    outside = distance;
+#ifdef ROOTS
+    if (outside >= LEAST_OUTSIDE)
+        return;
+    derived = false;
+    begin_taps();
+#endif
+}
+#endif
+
+// And how steep the distance is.
+float find_normal()
+{
+    float size = length(sum), flatness = find_flatness();
+    vec3  normal = size > 0.0 && size < INFINITE ? sum / size : find_backwards();
+    float found = find_steepness(t);
+    if (again && flatness < max(even, EVEN_OUTSIDE)) {
+        normal = facing_before;
+        flatness = even;
+        found = steepness_before;
+    }
+    keep_hit(FACING, place.slot, vec4(normal, flatness));
+    return found;
+}
+
+void take_distance(float distance)
+{
+    distance *= place.side;
+#ifdef LOOSE
+    if (looks > 0u) {
+        take_tap(distance);
+        if (looks == 0u)
+            take_looks();
+        return;
+    }
+#endif
+    taps++;
+    if (control.phase == OCCLUSION)
+        take_occlusion(distance);
+#ifdef GRADIENT
+    else if (derived)
+        take_outside(distance / t);
+#endif
+    else
+        take_difference(distance);
+}
+
+void begin_group() { krs_prepare(); }
+
+// One number for both phases: of each store lavapipe makes a loop.
+void do_item(uint number)
+{
+    begin_item(number);
+    do { // lavapipe goes through the body of another loop once more
+        float distance = krs_distance(item_place());
+        if (item_wants_more())
+            take_distance(distance);
+    } while (item_wants_more());
+    // Light finds its way in by reflection.
+    float found = control.phase == OCCLUSION ? exp2(-2.5 * blocked) : find_normal();
+    keep_lighting(control.value, place.slot, found);
+}
+
+#include "pixels.glsl"
