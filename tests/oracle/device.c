@@ -235,6 +235,9 @@ static void fractals_agree(void **context)
         "show julia(c: [-0.2, 0.6, 0.2, 0.1], power: 3, iterations: 6).rotate([1, 2, 3], 0.7);",
         "show julia(c: [0.4, 0.3, 0.5, 0.1], power: 8, iterations: 3);",
         "show mandelbulb(iterations: 3);", "show mandelbulb(power: 2, iterations: 8);",
+        "show mandelbulb(power: 4, iterations: 4) | mandelbulb(6, 3).move([2, 0, 0])"
+        "   | mandelbulb(7, 3).move([0, 0, 2]) | mandelbulb(12, 2).move([2, 0, 2]);",
+        "show mandelbulb(16, 2) | mandelbulb(3, 9).move([2, 0, 0]);",
         "show mandelbulb(power: 5, iterations: 3).scale(2).move([0.1, 0.2, 0.3]);",
         "param n = 4 in [2, 9]; param a = 0.1 in [-0.5, 0.5];"
         "show julia(c: [a, 0.6, 0.2, a], power: 3, iterations: n) | mandelbulb(iterations: n - 1);",
