@@ -83,8 +83,11 @@ static KrsStatus read_all(Import *import)
 
 static KrsStatus write_scene(const Options *options, const Text *scene)
 {
-    if (options->outputs.count > 0)
-        return write_output_text(options->outputs.items[0], scene->bytes, scene->length);
+    const char *path = options->outputs.count > 0 ? options->outputs.items[0] : NULL;
+    if (path && scene_is_kept(options, path) != KRS_OK)
+        return KRS_BAD_ARGUMENT;
+    if (path)
+        return write_output_text(path, scene->bytes, scene->length);
     fwrite(scene->bytes, 1, scene->length, stdout);
     return KRS_OK; /* the end of every command looks at the output */
 }

@@ -54,13 +54,20 @@ static KrsStatus print_version(void)
     return console_finish();
 }
 
-/* For `make install`: pages of the manual, and the completion of bash.  False: neither is asked. */
+static int print_completion(const char *shell)
+{
+    if (completion_print(shell, stdout))
+        return console_finish();
+    say("there is completion for bash, zsh and fish, not for `%s`", shell);
+    return KRS_BAD_ARGUMENT;
+}
+
+/* For `make install`: pages of the manual, and completion.  False: neither is asked. */
 static bool print_installed(int argc, char **argv, int *status)
 {
     CommandId command = COMMAND_COUNT;
-    if (argc == 2 && strcmp(argv[1], "--completion") == 0) {
-        completion_print(stdout);
-        *status = console_finish();
+    if (argc >= 2 && argc <= 3 && strcmp(argv[1], "--completion") == 0) {
+        *status = print_completion(argc == 3 ? argv[2] : "bash");
         return true;
     }
     if (argc < 2 || argc > 3 || strcmp(argv[1], "--manual") != 0)

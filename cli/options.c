@@ -186,6 +186,8 @@ static KrsStatus check_together(Options *options)
     }
     if (options->command == COMMAND_COMPILE && options->outputs.count != 1)
         return say_usage(options, "compile needs one folder to write to: -o DIR");
+    if (options->command == COMMAND_IMPORT && options->outputs.count > 1)
+        return say_usage(options, "import writes one scene, not %zu", options->outputs.count);
     if (options->command == COMMAND_DUMP && !options->after)
         return say_usage(options, "dump needs --after=STAGE");
     if (options->command == COMMAND_QUERY && options->device && !options->on_device)

@@ -124,9 +124,9 @@ extern const char exit_statuses[];
 void help_print(FILE *out);
 void help_print_command(CommandId command, FILE *out);
 
-/* manual.c: the same as a page for man, of a command or, with COMMAND_COUNT, of `krs` itself; and
-   what bash completes command lines by. */
+/* manual.c: the same as a page for man, of a command or, with COMMAND_COUNT, of `krs` itself. */
 void manual_print(CommandId command, FILE *out);
-void completion_print(FILE *out);
+/* completion.c: what a shell (bash, zsh or fish; else false) completes command lines by. */
+bool completion_print(const char *shell, FILE *out);
 
 #endif

@@ -82,7 +82,13 @@ static KrsStatus check_outputs(const Render *render)
         if (options->animated && !find_pattern(path, &width, &length))
             return say_usage(options, "with --frames, `%s` needs a place for the number: %%04d",
                              path);
-        if (output_check(frame_path(options, path, options->first_frame), &error) != KRS_OK) {
+        for (size_t other = 0; other < i; other++)
+            if (strcmp(render->outputs[other], path) == 0)
+                return say_usage(options, "the output `%s` is asked for twice", path);
+        path = frame_path(options, path, options->first_frame);
+        if (scene_is_kept(options, path) != KRS_OK)
+            return KRS_BAD_ARGUMENT;
+        if (output_check(path, &error) != KRS_OK) {
             say("%s", error.message);
             return error.status;
         }

@@ -71,6 +71,16 @@ KrsStatus scene_readable(const char *path)
     return readable ? KRS_OK : KRS_IO_ERROR;
 }
 
+KrsStatus scene_is_kept(const Options *options, const char *output)
+{
+    struct stat from, to;
+    const char *path = options->files.items[0];
+    if (stat(path, &from) != 0 || stat(output, &to) != 0 || !S_ISREG(to.st_mode) ||
+        from.st_dev != to.st_dev || from.st_ino != to.st_ino)
+        return KRS_OK;
+    return say_usage(options, "the output `%s` would take the place of `%s`", output, path);
+}
+
 KrsStatus say_status(KrsStatus status, const char *path)
 {
     if (status == KRS_OUT_OF_MEMORY)

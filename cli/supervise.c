@@ -15,6 +15,7 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -147,13 +148,16 @@ typedef struct Watch {
     double interrupted_at;
 } Watch;
 
+/* Of a regular file only: a pipe may never have a writer, a device never end. */
 static void copy_file(const char *from, const char *to)
 {
-    char buffer[65536];
-    int source = open(from, O_RDONLY | O_CLOEXEC);
-    int target = open(to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-    ssize_t length = 0;
-    while (source >= 0 && target >= 0 && (length = read(source, buffer, sizeof buffer)) > 0)
+    char        buffer[65536];
+    struct stat about;
+    ssize_t     length = 0;
+    int         source = open(from, O_RDONLY | O_CLOEXEC | O_NONBLOCK), target = -1;
+    if (source >= 0 && fstat(source, &about) == 0 && S_ISREG(about.st_mode))
+        target = open(to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    while (target >= 0 && (length = read(source, buffer, sizeof buffer)) > 0)
         if (write(target, buffer, (size_t)length) != length)
             break;
     if (source >= 0)

@@ -144,7 +144,7 @@ static KrsStatus run(Compilation *c)
     if (c->length > MOST_SOURCE_BYTES) {
         uint32_t source = source_add(&c->sources, c->name, "", 0, false);
         diag_add(&c->diags, DIAG_LIMIT, (Span){source, 0, 0},
-                 "the file has %zu bytes; the limit is 16 MiB", c->length);
+                 "the file is longer than %d MiB", MOST_SOURCE_BYTES >> 20);
         return KRS_BAD_SCENE;
     }
     Graph *graph = elaborate_scene(c);

@@ -1,6 +1,6 @@
 # install.mk: `make install` and `make uninstall`: the command, the library with its headers and
-# krs.pc, pages of the manual, and completion for bash.  PREFIX says where they belong, DESTDIR
-# where they are put for now, as for a package.
+# krs.pc, pages of the manual, and completion for bash, zsh and fish.  PREFIX says where they
+# belong, DESTDIR where they are put for now, as for a package.
 
 PREFIX  ?= /usr/local
 DESTDIR ?=
@@ -8,7 +8,8 @@ TARGET   = $(DESTDIR)$(PREFIX)
 VERSION  = $(shell sed -n 's/^.define KRS_VERSION "\(.*\)"/\1/p' compiler/krs.h)
 COMMANDS = $(shell sed -n 's/^COMMAND.[A-Z]*, "\([a-z]*\)".*/\1/p' cli/commands.def)
 INSTALLED = bin/krs lib/libkrs.a lib/pkgconfig/krs.pc include/krs.h include/krs_vulkan.h \
-            share/bash-completion/completions/krs share/man/man1/krs.1 \
+            share/bash-completion/completions/krs share/zsh/site-functions/_krs \
+            share/fish/vendor_completions.d/krs.fish share/man/man1/krs.1 \
             $(COMMANDS:%=share/man/man1/krs-%.1)
 
 define KRS_PC
@@ -31,7 +32,9 @@ install: $(B)/krs $(B)/libkrs.a
 	@install -m 644 compiler/krs.h $(TARGET)/include/krs.h
 	@sed 's|"compiler/krs.h"|"krs.h"|' runtime/krs_vulkan.h >$(TARGET)/include/krs_vulkan.h
 	@echo "$$KRS_PC" >$(TARGET)/lib/pkgconfig/krs.pc
-	@$(B)/krs --completion >$(TARGET)/share/bash-completion/completions/krs
+	@$(B)/krs --completion bash >$(TARGET)/share/bash-completion/completions/krs
+	@$(B)/krs --completion zsh >$(TARGET)/share/zsh/site-functions/_krs
+	@$(B)/krs --completion fish >$(TARGET)/share/fish/vendor_completions.d/krs.fish
 	@$(B)/krs --manual >$(TARGET)/share/man/man1/krs.1
 	@for command in $(COMMANDS); do \
 	    $(B)/krs --manual $$command >$(TARGET)/share/man/man1/krs-$$command.1 || exit 1; \

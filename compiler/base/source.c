@@ -85,11 +85,12 @@ char *source_read(const char *path, size_t *length, const char **reason)
     }
     size_t capacity = 0;
     *length         = 0;
-    for (;;) {
+    *reason         = NULL;
+    while (*length <= MOST_SOURCE_BYTES) { /* devices have no end */
         if (*length == capacity) {
             capacity     = capacity ? 2 * capacity : 16384;
-            char *larger = capacity <= 4u * MOST_SOURCE_BYTES ? realloc(text, capacity) : NULL;
-            *reason      = "it is too large";
+            char *larger = realloc(text, capacity);
+            *reason      = larger ? NULL : "there is not enough memory";
             if (!larger)
                 break;
             text = larger;

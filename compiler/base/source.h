@@ -37,8 +37,8 @@ typedef struct Position {
 
 enum { MOST_SOURCE_BYTES = 16 << 20 };
 
-/* The whole of a regular file, which the caller frees with free(); NULL, and *reason is a static
-   text.  It may be longer than a source. */
+/* The whole of a file, which the caller frees with free(); NULL, and *reason is a static text.  Of
+   one that is longer than a source, no more than shows that. */
 char *source_read(const char *path, size_t *length, const char **reason);
 
 /* Adds a copy of a text of at most MOST_SOURCE_BYTES and returns its number. */

@@ -15,12 +15,14 @@ typedef struct Lexer {
     const char    *text;
     uint32_t       length, at;
     uint32_t       source;
+    uint32_t       line_end; /* of the line that was last asked for; or 0 */
     Names         *names;
     Diags         *diags;
     Arena         *arena;
     Tokens         tokens;
     Text           doc;     /* the `///` lines since the last token */
     Text           scratch; /* of the number or string being read */
+    bool           begins[256]; /* find_beginnings */
 } Lexer;
 
 /* ---- rows of token.def ---- */
@@ -75,6 +77,8 @@ static char peek(const Lexer *lexer, uint32_t ahead)
 
 static bool is_next(const Lexer *lexer, const char *spelling)
 {
+    if (lexer->at == lexer->length || lexer->text[lexer->at] != spelling[0])
+        return false; /* nearly always, and cheap */
     size_t length = strlen(spelling);
     return length <= lexer->length - lexer->at &&
            memcmp(lexer->text + lexer->at, spelling, length) == 0;
@@ -123,11 +127,15 @@ static void skip_text(Lexer *lexer, uint32_t end)
     }
 }
 
-static uint32_t line_end(const Lexer *lexer)
+/* Looked for once a line, however many strings there are in it. */
+static uint32_t line_end(Lexer *lexer)
 {
+    if (lexer->line_end > lexer->at)
+        return lexer->line_end;
     const char *start   = lexer->text + lexer->at;
     const char *newline = memchr(start, '\n', lexer->length - lexer->at);
-    return newline ? (uint32_t)(newline - lexer->text) : lexer->length;
+    lexer->line_end     = newline ? (uint32_t)(newline - lexer->text) : lexer->length;
+    return lexer->line_end;
 }
 
 /* `///` begins documentation, `//` and `////` do not. */
@@ -482,12 +490,23 @@ static bool lex_sign(Lexer *lexer)
     return false;
 }
 
+/* The bytes that a token or a blank can begin with; those that lookalikes begin with may mean
+   nothing as well.  A file that is no text has millions of others in a row. */
+static void find_beginnings(bool begins[256])
+{
+    for (int c = 1; c < 128; c++)
+        begins[c] = is_word((char)c) || is_space((char)c) ||
+                    strchr("#\"'!()[]{},;:.=<>+-*/%^&|", c);
+    for (size_t i = 0; i < sizeof lookalikes / sizeof *lookalikes; i++)
+        begins[(unsigned char)lookalikes[i].sign[0]] = true;
+}
+
 /* Whether a token that means something, or a blank, can begin here. */
 static bool is_known_byte(const Lexer *lexer)
 {
-    char c = peek(lexer, 0);
-    if (is_word(c) || is_space(c) || (c && strchr("#\"'!()[]{},;:.=<>+-*/%^&|", c)))
-        return true;
+    unsigned char c = (unsigned char)peek(lexer, 0);
+    if (c < 128 || !lexer->begins[c])
+        return lexer->begins[c];
     for (size_t i = 0; i < sizeof lookalikes / sizeof *lookalikes; i++)
         if (is_next(lexer, lookalikes[i].sign))
             return true;
@@ -547,6 +566,7 @@ Tokens lex(uint32_t source, const Sources *sources, Names *names, Diags *diags, 
                            .doc = {.arena = arena}, .scratch = {.arena = arena}};
     if (is_next(&lexer, "\xEF\xBB\xBF")) /* a byte order mark */
         lexer.at = 3;
+    find_beginnings(lexer.begins);
     skip_blank(&lexer);
     while (lexer.at < lexer.length && !diags_full(diags)) {
         lex_token(&lexer);

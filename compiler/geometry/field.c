@@ -124,25 +124,40 @@ static bool depends_on_point(const Elaboration *e, Node node)
     return e->graph->items[node].time == TIME_POINT;
 }
 
+/* Whether nothing of the point is left, as in x - x. */
+static bool series_is_constant(const Graph *g, const Series *s)
+{
+    uint32_t k = s->degree;
+    while (k > 0 && g->items[s->c[k]].op == OP_CONSTANT && g->items[s->c[k]].number[0] == 0)
+        k--;
+    return k == 0;
+}
+
+static const Shape *refuse_constant(Elaboration *e, const Shape *shape)
+{
+    Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, shape->span,
+                           "`%s` needs an expression of the point", shape->name);
+    diag->label = "the same everywhere";
+    diag->help  = "use x, y, z or p in it";
+    return NULL;
+}
+
 const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Syntax *place)
 {
     Series      series;
     SeriesFault fault;
     Shape      *shape = shape_new(e, SHAPE_PRIMITIVE, algebraic ? "algebraic" : "field",
                                   place->span, NULL, 0);
-    if (!depends_on_point(e, formula)) {
-        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, place->span,
-                               "`%s` needs an expression of the point", shape->name);
-        diag->label = "the same everywhere";
-        diag->help  = "use x, y, z or p in it";
-        return NULL;
-    }
+    if (!depends_on_point(e, formula))
+        return refuse_constant(e, shape);
     shape->box     = box_infinite;
     shape->exact   = false;
     shape->formula = formula;
     shape->fields  = true;
     Node point     = graph_leaf(e->graph, OP_POINT);
     if (graph_ball_series(e->graph, formula, point, &series, &fault, e->scratch)) {
+        if (series_is_constant(e->graph, &series))
+            return refuse_constant(e, shape);
         shape->distance = series_distance(e->graph, &series);
         shape->degree   = series.degree;
         shape->fields   = false;

@@ -3,7 +3,7 @@
 # `make uninstall` takes it all away.  Nothing is compiled but that program.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 11
+plan 16
 
 # B as the tests have it: the folder of the command.
 build=$(dirname "$krs")
@@ -18,7 +18,8 @@ ended 0 "make install"
 commands=$(sed -n 's/^COMMAND([A-Z]*, "\([a-z]*\)".*/\1/p' "$root/cli/commands.def")
 {
     for file in bin/krs lib/libkrs.a lib/pkgconfig/krs.pc include/krs.h include/krs_vulkan.h \
-        share/bash-completion/completions/krs share/man/man1/krs.1; do
+        share/bash-completion/completions/krs share/zsh/site-functions/_krs \
+        share/fish/vendor_completions.d/krs.fish share/man/man1/krs.1; do
         echo "./usr/$file"
     done
     for command in $commands; do echo "./usr/share/man/man1/krs-$command.1"; done
@@ -57,17 +58,58 @@ complete_line() { # words of a line, the last to be completed
     bash -c '. stage/usr/share/bash-completion/completions/krs
         COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)); _krs; printf "%s\n" "${COMPREPLY[@]}"' line "$@"
 }
+touch ball.vm
 if command -v bash >/dev/null; then
     [ "$(complete_line krs ren)" = render ] &&
         [ "$(complete_line krs render --sam)" = --samples ] &&
         [ "$(complete_line krs render --tone-map a)" = aces ] &&
         [ "$(complete_line krs render ba)" = ball.krs ] &&
+        [ "$(complete_line krs import ba)" = ball.vm ] &&
+        [ -z "$(complete_line krs devices ba)" ] &&
         [ "$(complete_line krs explain E0203)" = E0203 ] &&
         [ -z "$(complete_line krs check --samp)" ]
     result $? "bash completes commands, options, their values and files"
 else
     skip "bash completes commands, options, their values and files" "no bash"
 fi
+
+# What a command's page of help says, as the files for zsh and fish have it.
+zsh=stage/usr/share/zsh/site-functions/_krs fish=stage/usr/share/fish/vendor_completions.d/krs.fish
+missing=""
+for command in $commands; do
+    "$krs" "$command" --help >page
+    sed -n 's/^    \(-[a-z], \)\{0,1\}--\([a-z-]*\).*/\2/p' page | sort >options
+    sed -n "/^$command)/,/;;\$/p" $zsh | sed -n "s/.*--\([a-z-]*\)[=}[].*/\1/p" | sort >in_zsh
+    sed -n "s/.*seen_subcommand_from $command' -l \([a-z-]*\).*/\1/p" $fish | sort >in_fish
+    cmp -s options in_zsh || missing="$missing zsh:$command"
+    cmp -s options in_fish || missing="$missing fish:$command"
+    grep -q "^    '$command:" $zsh || missing="$missing zsh:$command"
+    grep -q "use_subcommand -a $command -d" $fish || missing="$missing fish:$command"
+done
+[ -z "$missing" ] && [ -s options ]
+result $? "zsh and fish have each command and each option$missing"
+grep -qF ':(neutral aces none)' $zsh && grep -qF "tone-map -x -a 'neutral aces none'" $fish &&
+    grep -qF '_files -g "*.jsurf *.vm"' $zsh && grep -qF '(__fish_complete_suffix .vm)' $fish &&
+    grep -q '1:code:(.*E0203' $zsh && grep -q "from explain' -a '.*E0203" $fish
+result $? "and values, files and codes"
+if command -v zsh >/dev/null; then
+    zsh -n $zsh >out 2>err && [ ! -s err ]
+    result $? "zsh reads its file"
+else
+    skip "zsh reads its file" "no zsh"
+fi
+if command -v fish >/dev/null; then
+    fish_line() { fish -c "source $fish; complete -C '$1'" | cut -f 1; }
+    [ "$(fish_line 'krs ren')" = render ] && [ "$(fish_line 'krs render --sam')" = --samples ] &&
+        [ "$(fish_line 'krs render --tone-map a')" = aces ] &&
+        [ "$(fish_line 'krs import ba' | head -n 1)" = ball.vm ] &&
+        [ "$(fish_line 'krs explain E0203')" = E0203 ] && [ -z "$(fish_line 'krs check --samp')" ]
+    result $? "fish completes as bash does"
+else
+    skip "fish completes as bash does" "no fish"
+fi
+run --completion tcsh
+said 2 "bash, zsh and fish" "no other shell"
 
 # ---- a program outside ----
 make_it install PREFIX="$work/usr"

@@ -2,7 +2,7 @@
 # outputs.sh: an output appears whole or not at all, and says why not.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 23
+plan 27
 small="--size 16x12 --quiet"
 
 # shellcheck disable=SC2086 # the options are separate words
@@ -14,6 +14,21 @@ result $? "the default output is SCENE.exr in the current folder"
 picture -o a.exr -o a.png
 [ "$status" -eq 0 ] && [ -s a.exr ] && [ -s a.png ] && [ ! -s out ]
 result $? "several outputs"
+
+picture -o a.png -o a.exr -o a.png
+said 2 "the output \`a.png\` is asked for twice" "an output that is asked for twice"
+cp ball.krs named.png && ln -s "$work/named.png" link.png
+for output in ./named.png link.png; do
+    run render named.png --size 16x12 --quiet -o $output
+    [ "$status" -eq 2 ] && grep -qF "would take the place of \`named.png\`" err &&
+        cmp -s ball.krs named.png
+    result $? "a picture does not take the place of its scene: $output"
+done
+printf 'surface_equation=x^2 + y^2 + z^2 - 1\n' >ball.jsurf
+cp ball.jsurf before
+run import ball.jsurf -o ball.jsurf
+[ "$status" -eq 2 ] && cmp -s before ball.jsurf
+result $? "an import does not take the place of what it reads"
 
 picture -o nowhere/a.exr
 said 73 "cannot create \`nowhere/a.exr\`: No such file or directory" "a missing folder"

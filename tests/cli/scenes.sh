@@ -2,7 +2,7 @@
 # scenes.sh: scenes that cannot be read, or are wrong, end in the right status and a diagnostic.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 25
+plan 33
 
 run check missing.krs
 said 74 "cannot read \`missing.krs\`: No such file or directory" "a missing file"
@@ -70,3 +70,32 @@ awk 'BEGIN { printf "show sphere("; for (i = 0; i < 100000; i++) printf "(";
              printf "1"; for (i = 0; i < 100000; i++) printf ")"; print ");" }' >deep.krs
 run check deep.krs
 said 1 "error[E0105]" "a hundred thousand parentheses"
+
+# ---- what is no scene at all ----
+
+ln -s loop.krs other.krs && ln -s other.krs loop.krs
+run check loop.krs
+said 74 "Too many levels of symbolic links" "links in a circle"
+run check /dev/zero
+said 1 "longer than 16 MiB" "a device that has no end"
+# Reading takes a fifth of a second; strings are kept, and need memory.
+while read -r count byte name; do
+    head -c "$count" /dev/zero | tr '\0' "$byte" >same.krs
+    (
+        # shellcheck disable=SC3045 # dash, bash and ksh have it
+        ulimit -t 1
+        "$krs" check same.krs >out 2>err
+    )
+    status=$?
+    ended 1 "$count $name are refused in a second"
+done <<'END'
+16000000 \0 NUL bytes
+16000000 \377 bytes 255
+16000000 ? question marks
+1500000 " quotes
+1500000 ' single quotes
+END
+mkfifo pipe.krs
+timeout -s KILL 20 "$krs" check --deadline 0.2 pipe.krs >out 2>err
+status=$?
+said 70 "gave up" "a pipe that nobody writes to is given up, and not kept"

@@ -2,7 +2,7 @@
 # usage.sh: command lines that are wrong, and the pages of help.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 48
+plan 53
 
 run
 said 2 "no command is given" "no command"
@@ -47,6 +47,12 @@ run render ball.krs --frames 5..3
 said 2 "--frames wants" "frames that run backwards"
 run render ball.krs --frames 0..3 -o a.exr
 said 2 "needs a place for the number" "frames that would overwrite each other"
+for option in --deadline=1e7 --fps=0 --error=0 --device=; do
+    run render ball.krs "$option"
+    said 2 "${option%%=*} wants" "$option"
+done
+run import ball.jsurf -o a.krs -o b.krs
+said 2 "import writes one scene, not 2" "two scenes from one file"
 run render ball.krs --aov Z,Q
 said 2 "--aov wants" "an unknown channel"
 run render ball.krs -o ball.jpg
