@@ -6,7 +6,7 @@
  *
  * A ray advances from a place where the distance was known, `t`, by a gap to the next.  The ball
  * of empty space around `t` and the one around the next place must meet, or something may be in
- * between: then the ray goes back to the middle of what they leave open, and so on, until they
+ * between: then the ray goes back to two fifths of the way to it, and so on, until they
  * meet or what is open is no longer than a sixteenth of the permitted error.  A ray hits where
  * the distance is not above 0, never where it is only small, so that thin things are as thick as
  * they are, however coarse the steps.  A ray from inside of a solid sees the solid's inner wall.
@@ -435,7 +435,7 @@ void take_distance(float distance)
     float last_slope = march.gap > 0.0 ? (room - march.room) / march.gap : 0.0;
     float slope = (1.0 - LEARNING) * march.slope + LEARNING * last_slope;
 
-    float back = max(0.5 * (march.gap + march.room - max(room, 0.0)), march.room + open);
+    float back = max(0.4 * (march.gap + march.room - max(room, 0.0)), march.room + open);
     float step = met && accurate ? is_ray ? crossing : march.room : 0.0;
     march.t = passed ? at : march.t + step;
     march.gap = passed ? find_gap(room, last_slope, slope, permitted, open) : met ? crossing : back;
