@@ -88,6 +88,10 @@ void begin_taps()
     extent = 0.0;
 }
 
+#if defined(ROOTS) && STENCIL == 3
+void begin_nearer();
+#endif
+
 void begin_normal()
 {
     // Differences over a pixel or so: finer detail would only be noise.
@@ -110,6 +114,10 @@ void begin_normal()
         extent = 3.0 / t; // its own unit
         limit = BOUND_TAPS;
     }
+#if defined(ROOTS) && STENCIL == 3
+    else
+        begin_nearer();
+#endif
 #endif
 #endif
 }
@@ -212,6 +220,13 @@ void look_nearer()
     limit = TAPS + CORNERS;
 }
 
+// At once: on such a curve all is odd, and six differences are even where they are wrong.
+void begin_nearer()
+{
+    even = 1.0;
+    look_nearer();
+}
+
 void take_difference(float distance)
 {
     float weight = taps > TAPS ? 1.125 : 1.0;
@@ -274,11 +289,11 @@ const float LEAST_OUTSIDE = 0.4;
 void take_outside(float distance)
 {
     outside = distance;
-#ifdef ROOTS
+#if defined(ROOTS) && STENCIL == 3
     if (outside >= LEAST_OUTSIDE)
         return;
     derived = false;
-    begin_taps();
+    begin_nearer();
 #endif
 }
 #endif
@@ -289,11 +304,13 @@ float find_normal()
     float size = length(sum), flatness = find_flatness();
     vec3  normal = size > 0.0 && size < INFINITE ? sum / size : find_backwards();
     float found = find_steepness(t);
+#if !(defined(ROOTS) && STENCIL == 3) // there facing_before is never set, and nearer is better
     if (again && flatness < max(even, EVEN_OUTSIDE)) {
         normal = facing_before;
         flatness = even;
         found = steepness_before;
     }
+#endif
     keep_hit(FACING, place.slot, vec4(normal, flatness));
     return found;
 }

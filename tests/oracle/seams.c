@@ -105,9 +105,9 @@ static void a_heart_has_no_belt(void **state)
         wrong += angle > 2;
         worst = fmax(worst, angle);
     }
-    if (wrong > belt / 30 || worst >= 20)
+    if (wrong > belt / 30 || worst >= 15)
         print_message("%zu of %zu wrong, the worst by %g degrees\n", wrong, belt, worst);
-    assert_true(belt > 500 && wrong <= belt / 30 && worst < 20);
+    assert_true(belt > 500 && wrong <= belt / 30 && worst < 15);
     krs_picture_free(picture);
 }
 
