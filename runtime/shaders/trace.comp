@@ -6,10 +6,11 @@
  *
  * A ray advances from a place where the distance was known, `t`, by a gap to the next.  The ball
  * of empty space around `t` and the one around the next place must meet, or something may be in
- * between: then the ray goes back to two fifths of the way to it, and so on, until they
- * meet or what is open is no longer than a sixteenth of the permitted error.  A ray hits where
- * the distance is not above 0, never where it is only small, so that thin things are as thick as
- * they are, however coarse the steps.  A ray from inside of a solid sees the solid's inner wall.
+ * between: then the ray goes back to four fifths of the way to the middle of what they leave open,
+ * and so on, until they meet or what is open is no longer than a sixteenth of the permitted error.
+ * A ray hits where the distance is not above 0, never where it is only small, so that thin things
+ * are as thick as they are, however coarse the steps.  A ray from inside of a solid sees the
+ * solid's inner wall.
  *
  * How far a gap is, is the method's affair (TRACE): the distance (plain), 1.2 times as much
  * (relaxed), or up to where the balls just meet if the distance goes on as it did (automatic), and
