@@ -281,12 +281,12 @@ static void emit_head(Emitter *e, const EmitMarch *march)
              "// Elsewhere what has to be waited for counts, and built-in min and max of\n"
              "// variables are three instructions, since they mind what is not a number.\n"
              "#ifdef EARLY_OUTS\n"
-             "#define krs_min(a, b) min(a, b)\n"
-             "#define krs_max(a, b) max(a, b)\n"
+             "#define KRS_MIN(a, b) min(a, b)\n"
+             "#define KRS_MAX(a, b) max(a, b)\n"
              "#define KRS_BACK(back, here) here\n"
              "#else\n"
-             "#define krs_min(a, b) ((b) < (a) ? (b) : (a))\n"
-             "#define krs_max(a, b) ((a) < (b) ? (b) : (a))\n"
+             "#define KRS_MIN(a, b) ((b) < (a) ? (b) : (a))\n"
+             "#define KRS_MAX(a, b) ((a) < (b) ? (b) : (a))\n"
              "#define KRS_BACK(back, here) back\n"
              "#endif\n");
 }

@@ -48,7 +48,7 @@ static const char *across_axis(Emitter *e, const Expr *fold, int axis)
         if (middle)
             text_format(&text, "%sabs(%s.%c)", axis > 0 ? "-" : "", point, name);
         else
-            text_format(&text, "%s(%s.%c, %s2.0 * %s - %s.%c)", axis > 0 ? "krs_min" : "krs_max",
+            text_format(&text, "%s(%s.%c, %s2.0 * %s - %s.%c)", axis > 0 ? "KRS_MIN" : "KRS_MAX",
                         point, name, sign, offset, point, name);
     }
     text_add(&text, ")");

@@ -165,8 +165,10 @@ static const char *node_text(Emitter *e, const Expr *expr)
         text_format(&text, "%s.%c", e->text[expr->operands[0]], "xyzw"[expr->index]);
         return text.bytes;
     case OP_min: case OP_max:
-        text_add(&text, picks_variable(e, expr) ? "krs_" : "");
-        text_add(&text, fill_template(e, expr));
+        if (!picks_variable(e, expr))
+            return fill_template(e, expr);
+        text_format(&text, "%s(%s, %s)", expr->op == OP_min ? "KRS_MIN" : "KRS_MAX",
+                    e->text[expr->operands[0]], e->text[expr->operands[1]]);
         return text.bytes;
     case OP_fold: {
         const char *mirror = mirror_text(e, expr);
