@@ -413,62 +413,81 @@ static bool panoramic_create(KrsRendering *rendering)
                               &rendering->pipeline_ms);
 }
 
-/* Those that a picture by default, or questions, need, at the same time. */
+/* Kernels of the scene that are made at the same time. */
+typedef struct Requests {
+    KernelRequest items[5 + 2 * KRS_MOST_GROUPS];
+    Variant       variants[5 + 2 * KRS_MOST_GROUPS];
+    size_t        count;
+} Requests;
+
+static void request(Requests *requests, const KrsRendering *rendering, Kernel *kernel,
+                    const char *file, Variant variant)
+{
+    Variant *kept = &requests->variants[requests->count];
+    *kept = variant;
+    requests->items[requests->count++] =
+        (KernelRequest){kernel, {file, rendering->program->glsl, kept->defines}};
+}
+
+/* Where components take turns each of them has its own march, and normals. */
+static void request_marches(Requests *requests, KrsRendering *rendering, KrsTrace trace,
+                            KrsSchedule schedule)
+{
+    SceneKernels *to = rendering->in_use;
+    KrsNormals    usual = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
+    bool          apart = rendering_marches_apart(rendering, KRS_COMPONENTS_DEFAULT);
+    bool          packed = rendering_marches_packed(rendering, KRS_COMPONENTS_DEFAULT, trace);
+    uint32_t      whole = packed ? GROUP_PACKED : rendering_knows_flats(rendering) ? GROUP_REST : 0;
+    if (trace == KRS_TRACE_EXACT)
+        request(requests, rendering, &to->trace[KRS_TRACE_PLAIN][schedule][whole], "trace.comp",
+                name_group(rendering, KRS_TRACE_PLAIN, schedule, whole));
+    if (!apart)
+        request(requests, rendering, &to->trace[trace][schedule][whole], "trace.comp",
+                name_group(rendering, trace, schedule, whole));
+    for (uint32_t group = 1; apart && group <= rendering->program->group_count; group++) {
+        KrsSchedule own = schedule_of_kernel(
+            rendering_schedule_of_group(rendering, KRS_SCHEDULE_DEFAULT, group));
+        request(requests, rendering, &to->trace[trace][own][group], "trace.comp",
+                name_group(rendering, trace, own, group));
+        request(requests, rendering, &to->around[usual][group], "around.comp",
+                name_around(rendering, usual, group));
+    }
+}
+
+static void request_pictures(Requests *requests, KrsRendering *rendering, KrsTrace trace,
+                             KrsSchedule schedule)
+{
+    SceneKernels *to = rendering->in_use;
+    KrsNormals    usual = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
+    request(requests, rendering, &to->around[usual][0], "around.comp",
+            name_around(rendering, usual, 0));
+    request(requests, rendering, &to->shade, "shade.comp",
+            name_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL));
+    if (rendering->program->shadows)
+        request(requests, rendering, &to->shadows[schedule][KRS_SHADOWS_SOFT][0], "shadows.comp",
+                name_shadows(rendering, KRS_TRACE_PLAIN, schedule, KRS_SHADOWS_SOFT));
+    request_marches(requests, rendering, trace, schedule);
+}
+
+/* Those that a picture by default, or questions, need. */
 static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
 {
-    const char   *scene = rendering->program->glsl;
     SceneKernels *to = rendering->in_use;
     KrsTrace      trace = KRS_TRACE_DEFAULT;
     KrsSchedule   schedule = KRS_SCHEDULE_DEFAULT;
+    Requests      requests = {.count = 0};
     rendering_choose(rendering, &trace, &schedule);
     schedule = schedule_of_kernel(schedule);
-    bool          apart = rendering_marches_apart(rendering, KRS_COMPONENTS_DEFAULT);
-    bool          packed = rendering_marches_packed(rendering, KRS_COMPONENTS_DEFAULT, trace);
-    uint32_t      whole = packed                             ? GROUP_PACKED
-                        : rendering_knows_flats(rendering) ? GROUP_REST : 0;
-    Variant       primary[GROUP_KINDS], normals[1 + KRS_MOST_GROUPS];
-    KrsNormals    usual = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
-    Variant       around = name_around(rendering, usual, 0);
-    Variant       shadows = name_shadows(rendering, KRS_TRACE_PLAIN, schedule, KRS_SHADOWS_SOFT);
-    Variant       beams = name_group(rendering, KRS_TRACE_PLAIN, schedule, whole);
-    Variant       query = name_variant(rendering, KRS_TRACE_AUTO, schedule);
-    Variant       simple = name_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
-    KernelRequest pictures[5 + 2 * KRS_MOST_GROUPS] = {
-        {&to->around[usual][0], {"around.comp", scene, around.defines}},
-        {&to->shade, {"shade.comp", scene, simple.defines}},
-    };
-    size_t   count = 2;
-    if (rendering->program->shadows)
-        pictures[count++] = (KernelRequest){&to->shadows[schedule][KRS_SHADOWS_SOFT][0],
-                                            {"shadows.comp", scene, shadows.defines}};
-    if (trace == KRS_TRACE_EXACT)
-        pictures[count++] = (KernelRequest){&to->trace[KRS_TRACE_PLAIN][schedule][whole],
-                                            {"trace.comp", scene, beams.defines}};
-    uint32_t first = apart ? 1 : whole, last = apart ? (uint32_t)rendering->program->group_count
-                                                     : whole;
-    for (uint32_t group = first; group <= last; group++) {
-        KrsSchedule own = apart ? rendering_schedule_of_group(rendering, KRS_SCHEDULE_DEFAULT,
-                                                              group)
-                                : schedule;
-        own            = schedule_of_kernel(own);
-        primary[group] = name_group(rendering, trace, own, group);
-        pictures[count++] = (KernelRequest){&to->trace[trace][own][group],
-                                            {"trace.comp", scene, primary[group].defines}};
-        if (!apart)
-            continue;
-        normals[group] = name_around(rendering, usual, group);
-        pictures[count++] = (KernelRequest){&to->around[usual][group],
-                                            {"around.comp", scene, normals[group].defines}};
+    if (purpose == KRS_FOR_PICTURES) {
+        request_pictures(&requests, rendering, trace, schedule);
+    } else {
+        request(&requests, rendering, &to->query[schedule], "query.comp",
+                name_variant(rendering, KRS_TRACE_AUTO, schedule));
+        request(&requests, rendering, &to->sample, "sample.comp",
+                name_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL));
     }
-    KernelRequest questions[] = {
-        {&to->query[schedule], {"query.comp", scene, query.defines}},
-        {&to->sample, {"sample.comp", scene, simple.defines}},
-    };
-    bool for_pictures = purpose == KRS_FOR_PICTURES;
-    return stage_make_kernels(rendering->renderer, rendering->scene_set,
-                              for_pictures ? pictures : questions,
-                              for_pictures ? count : 2,
-                              &rendering->spirv_ms, &rendering->pipeline_ms);
+    return stage_make_kernels(rendering->renderer, rendering->scene_set, requests.items,
+                              requests.count, &rendering->spirv_ms, &rendering->pipeline_ms);
 }
 
 static void kernels_destroy(Gpu *gpu, SceneKernels *kernels)
