@@ -1,6 +1,7 @@
 # make            build/krs, build/libkrs.a
 # make demo       set up, build, render the examples' highlights to build/demo/
-# make test       set up, build, run every test; the last line is `N passed, N failed`
+# make test       set up, build, run every test; the last line is `N passed, N failed`, and
+#                 `, N skipped` where some were; DEVICE=...: on another device (krs devices)
 # make sanitize   the same programs under ASan and UBSan, in build/asan/
 # make bench      measures, writes bench/results/; bench-quick: only whether it can
 # make bench-normals    how normals are found
@@ -16,6 +17,7 @@ B       ?= build
 CFLAGS  ?= -g -O2
 FUZZ_SECONDS ?= 30
 CLANG   ?= clang-14
+DEVICE  ?= $(KRS_DEVICE)
 
 # Sources in the order of the pipeline: reading down this list is reading the program.
 BASE     := $(addprefix compiler/base/, arena.c text.c source.c diag.c diag_text.c)

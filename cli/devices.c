@@ -90,7 +90,8 @@ static const char *cache_folder(const Options *options)
 
 KrsStatus open_renderer(const Options *options, KrsRenderer **renderer)
 {
-    KrsRendererOptions with = {.device = options->device, .cache = cache_folder(options),
+    const char        *device = options->device ? options->device : getenv("KRS_DEVICE");
+    KrsRendererOptions with = {.device = device, .cache = cache_folder(options),
                                .early_outs = options->early_outs};
     stage_enter(STAGE_DEVICE);
     KrsStatus status = krs_renderer_new(&with, renderer);

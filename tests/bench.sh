@@ -52,7 +52,8 @@ has_members() { # file, how often at least, names
     done
 }
 
-"$build/bench/bench" --quick --krs "$krs" --folder "$work/results" >"$work/out" 2>"$work/err"
+set -- ${KRS_DEVICE:+--device "$KRS_DEVICE"}
+"$build/bench/bench" --quick "$@" --krs "$krs" --folder "$work/results" >"$work/out" 2>"$work/err"
 status=$?
 [ $status -eq 0 ] || { sed 's/^/# /' "$work/err"; sed -n '/^## Wrong/,$s/^/# /p' "$work/out"; }
 report $status "a quick run finds every picture as it should be"
@@ -92,7 +93,7 @@ sed 's/ball(p, vec3(0.0, 0.6, 0.78), 0.2)/ball(p, vec3(0.0, 0.6, 0.78), 0.3)/' \
     bench/handwritten/csg.comp >"$work/bench/handwritten/csg.comp"
 ! cmp -s bench/handwritten/csg.comp "$work/bench/handwritten/csg.comp"
 report $? "the planted fault is one"
-(cd "$work" && "$build/bench/bench" --quick --only csg --krs "$krs" --folder wrong) \
+(cd "$work" && "$build/bench/bench" --quick "$@" --only csg --krs "$krs" --folder wrong) \
     >"$work/out" 2>"$work/err"
 [ $? -eq 1 ] && grep -q '^csg, by hand: share of wrong pixels' "$work/out"
 report $? "a shader by hand of another scene is noticed"

@@ -16,7 +16,7 @@ expect() { # what, last line, status, programs...
     number=$((number + 1))
     what=$1 last=$2 wanted=$3
     shift 3
-    (cd "$work" && KRS_TEST_SECONDS=2 "$here/run.sh" "$@") >"$work/output" 2>&1
+    (cd "$work" && env -u KRS_DEVICE -u VK_ADD_DRIVER_FILES KRS_TEST_SECONDS=2 "$here/run.sh" "$@") >"$work/output" 2>&1
     status=$?
     if [ "$(tail -n 1 "$work/output")" = "$last" ] && [ "$status" -eq "$wanted" ]; then
         echo "ok $number - $what"
@@ -54,7 +54,29 @@ program muttering <<'END'
 echo 'ok 1 - a'; exit 3
 END
 
-echo 1..12
+program skipping <<'END'
+echo 1..3; echo 'ok 1 - a'; echo 'not ok 2 # SKIP b'; echo 'ok 3 - c # SKIP no card'
+END
+program skipping_all <<'END'
+echo 1..1; echo 'ok 1 - a # SKIP no card'
+END
+program skipping_and_failing <<'END'
+echo 1..2; echo 'ok 1 - a # SKIP no card'; echo 'not ok 2 - b'; exit 1
+END
+program skipping_and_dying <<'END'
+echo 1..2; echo 'ok 1 - a # SKIP no card'; exit 3
+END
+program on_a_card <<'END'
+[ "${KRS_DEVICE:-}" = "Card of mine" ] && echo 'ok 1 - a'
+END
+program on_swiftshader <<'END'
+case ${VK_ADD_DRIVER_FILES:-} in
+*swiftshader*) echo 'ok 1 - a' ;;
+*) echo 'not ok 1 - a' ;;
+esac
+END
+
+echo 1..20
 expect 'tests that pass' '2 passed, 0 failed' 0 good
 expect 'results are added up' '4 passed, 0 failed' 0 good ./good
 expect 'a test that fails' '1 passed, 1 failed' 1 failing
@@ -67,3 +89,13 @@ expect 'a program that stops early' '1 passed, 1 failed' 1 stopping
 expect 'a status nobody explains' '1 passed, 1 failed' 1 muttering
 expect 'a program that does not exist' '0 passed, 1 failed' 1 missing
 expect 'one failure among many' '5 passed, 1 failed' 1 good failing good
+expect 'tests that are skipped' '1 passed, 0 failed, 2 skipped' 0 skipping
+expect 'nothing but skipped tests' '0 passed, 0 failed, 1 skipped' 0 skipping_all
+expect 'a failure among skipped tests' '0 passed, 1 failed, 1 skipped' 1 skipping_and_failing
+expect 'skipped tests do not excuse an end' '0 passed, 1 failed, 1 skipped' 1 skipping_and_dying
+expect 'skipped tests are added up' '3 passed, 0 failed, 3 skipped' 0 skipping good skipping_all
+expect 'a device for what follows' '1 passed, 1 failed' 1 on_a_card 'KRS_DEVICE=Card of mine' \
+    on_a_card
+expect 'a driver that only tests know' '1 passed, 1 failed' 1 on_swiftshader \
+    KRS_DEVICE=SwiftShader on_swiftshader
+expect 'a driver for an index' '0 passed, 1 failed' 1 KRS_DEVICE=0 on_swiftshader

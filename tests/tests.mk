@@ -1,10 +1,12 @@
 # tests.mk: what `make test` runs.
 #
-# Every test speaks TAP; tests/run.sh counts.  The compiler's tests run a second time under the
+# Every test speaks TAP; tests/run.sh counts.  `make test DEVICE=...` runs all on another Vulkan
+# device, in the words of `krs --device`; `DEVICE=swiftshader` on one that every Debian can have.  The compiler's tests run a second time under the
 # address and undefined-behaviour sanitizers, and everything compiles under clang as well.
 
 # What tests of several kinds share; nothing of it knows what is tested.
-SUPPORT     := $(addprefix tests/support/, bench.c random.c renderer.c scarce.c)
+SUPPORT     := $(addprefix tests/support/, bench.c device.c random.c renderer.c \
+               scarce.c)
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c \
                formulas.c)
 UNIT        := front film tracer methods writer memory validate refute frame query cache compiled \
@@ -76,7 +78,7 @@ test: deps
 	@$(MAKE) --no-print-directory all test-programs clang-check fuzzers
 	@$(MAKE) --no-print-directory sanitize
 	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=300 \
-	    tests/run.sh $(PROGRAMS:%=$(B)/%) $(SCRIPTS) \
+	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") $(PROGRAMS:%=$(B)/%) $(SCRIPTS) \
 	    $(SANITIZED:%=$(B)/asan/%) tests/errors-sanitized.sh tests/fuzz/fuzz.sh
 .PHONY: test test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers \
         fuzz-programs lint bless

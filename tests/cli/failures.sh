@@ -2,7 +2,7 @@
 # failures.sh: crashes, interrupts, missing devices and missing memory.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 26
+plan 28
 small="--size 16x12 --quiet"
 
 for stage in start compile shaders device render write; do
@@ -30,15 +30,24 @@ KRS_TEST_CRASH=compile:hang "$krs" check --deadline 0.3 ball.krs >out 2>err
 status=$?
 said 70 "gave up compiling the scene after 0.3 seconds" "compiling that does not end"
 
-VK_ICD_FILENAMES=/nonexistent VK_DRIVER_FILES=/nonexistent "$krs" render ball.krs >out 2>err
-status=$?
+without_driver() { # arguments of krs
+    VK_ICD_FILENAMES=/nonexistent VK_DRIVER_FILES=/nonexistent VK_ADD_DRIVER_FILES="" \
+        "$krs" "$@" >out 2>err
+    status=$?
+}
+without_driver render ball.krs
 [ "$status" -eq 69 ] && [ -s err ] && [ ! -e ball.exr ]
 result $? "no Vulkan driver"
-VK_ICD_FILENAMES=/nonexistent VK_DRIVER_FILES=/nonexistent "$krs" devices >out 2>err
-status=$?
+without_driver devices
 said 69 "no Vulkan device" "no device to list"
 run render ball.krs --device 'No Such Card'
 said 69 "No Such Card" "an unknown device"
+KRS_DEVICE='No Such Card' "$krs" render ball.krs >out 2>err
+status=$?
+said 69 "No Such Card" "an unknown device from the environment"
+KRS_DEVICE='No Such Card' "$krs" render ball.krs --quiet --size 8x8 --device 0 -o device.png \
+    >out 2>err
+result $? "--device is stronger than the environment"
 run render ball.krs --device 'No Such Card' --exit-map 71=33,69=99
 ended 99 "--exit-map translates"
 run check missing.krs --exit-map 71=33

@@ -9,6 +9,7 @@
 #include "runtime/krs_vulkan.h"
 #include "tests/oracle/formulas.h"
 #include "tests/oracle/product.h"
+#include "tests/support/device.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -164,7 +165,7 @@ static void a_planted_fault_is_seen(void **state)
 
 static int open_device(void **state)
 {
-    KrsRendererOptions options = {.device = "cpu"};
+    KrsRendererOptions options = {.device = tested_device()};
     (void)state;
     if (krs_renderer_new(&options, &renderer) == KRS_OK)
         return 0;

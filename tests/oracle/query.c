@@ -19,6 +19,7 @@
 
 #include "compiler/compile.h"
 #include "runtime/tracer/renderer.h"
+#include "tests/support/device.h"
 #include "tests/support/random.h"
 #include "tests/support/renderer.h"
 #include "tests/support/scarce.h"
@@ -463,7 +464,8 @@ static void wrong_questions_are_refused(void **context)
 static void memory_may_run_out(void **context)
 {
     Scarce             scarce = {0};
-    KrsRendererOptions options = {.allocator = scarce_allocator(&scarce)};
+    KrsRendererOptions options = {.device = tested_device(),
+                                  .allocator = scarce_allocator(&scarce)};
     KrsRenderer       *shared = renderer, *own;
     const double       zone[1][4] = {{0, 0, 1, 0.5}};
     (void)context;

@@ -17,6 +17,7 @@
 #include <cmocka.h>
 
 #include "runtime/krs_vulkan.h"
+#include "tests/support/device.h"
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
 
@@ -25,7 +26,7 @@ static KrsRenderer *renderer;
 static int start(void **state)
 {
     (void)state;
-    return krs_renderer_new(&(KrsRendererOptions){.device = "cpu"}, &renderer) != KRS_OK;
+    return krs_renderer_new(&(KrsRendererOptions){.device = tested_device()}, &renderer) != KRS_OK;
 }
 
 static int stop(void **state)

@@ -12,12 +12,15 @@
 
 #include <cmocka.h>
 
+#include "tests/support/device.h"
+
 KrsRenderer *renderer;
 
 int renderer_open(void **state)
 {
     (void)state;
-    KrsStatus status = krs_renderer_new(NULL, &renderer);
+    KrsRendererOptions options = {.device = tested_device()};
+    KrsStatus          status = krs_renderer_new(&options, &renderer);
     if (status != KRS_OK && renderer)
         fprintf(stderr, "%s\n", krs_renderer_message(renderer));
     return status != KRS_OK;

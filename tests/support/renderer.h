@@ -8,7 +8,7 @@
 
 extern KrsRenderer *renderer;
 
-/* For cmocka's groups: opens the default device, or says why not and fails. */
+/* For cmocka's groups: opens the device of the tests, or says why not and fails. */
 int renderer_open(void **state);
 int renderer_close(void **state);
 

@@ -21,6 +21,7 @@
 
 #include "compiler/compile.h"
 #include "runtime/krs_vulkan.h"
+#include "tests/support/device.h"
 
 enum { WIDTH = 160, HEIGHT = 100, PIXELS = WIDTH * HEIGHT };
 
@@ -80,7 +81,7 @@ static void print_complaint(void *user, const char *message)
 static int open_scenes(void **state)
 {
     (void)state;
-    KrsRendererOptions options = {.device = "cpu", .validation = true,
+    KrsRendererOptions options = {.device = tested_device(), .validation = true,
                                   .complaint = print_complaint};
     KrsOptions with   = {.diagnostic = print_diagnostic};
     KrsStatus  status = krs_renderer_new(&options, &plain);

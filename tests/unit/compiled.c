@@ -25,6 +25,7 @@
 #include "compiler/compile.h"
 #include "runtime/device/kernel.h"
 #include "runtime/device/pipelines.h"
+#include "tests/support/device.h"
 #include "tests/support/scarce.h"
 
 static char folder[] = "/tmp/krs-compiled-XXXXXX";
@@ -98,7 +99,7 @@ static void a_kernel_is_compiled_once(void **state)
 {
     (void)state;
     char name[NAME_MAX + 1];
-    KrsRendererOptions options = {.device = "cpu", .cache = folder};
+    KrsRendererOptions options = {.device = tested_device(), .cache = folder};
     assert_int_equal(prepare_scene(&options), KRS_OK);
     int kernels = count_files(".spirv", name);
     assert_true(kernels > 0);
@@ -124,7 +125,7 @@ static void nothing_is_written_unasked(void **state)
     char name[NAME_MAX + 1];
     setenv("XDG_CACHE_HOME", folder, 1);
     setenv("HOME", folder, 1);
-    assert_int_equal(prepare_scene(&(KrsRendererOptions){.device = "cpu"}), KRS_OK);
+    assert_int_equal(prepare_scene(&(KrsRendererOptions){.device = tested_device()}), KRS_OK);
     assert_int_equal(count_files(".spirv", name), 0);
     assert_int_equal(access("krs", F_OK), -1);
 }
@@ -181,8 +182,8 @@ static void some_kernels_come_along(void **state)
 {
     (void)state;
     char name[NAME_MAX + 1];
-    assert_int_equal(open_and_close(&(KrsRendererOptions){.device = "cpu", .cache = folder}),
-                     KRS_OK);
+    KrsRendererOptions options = {.device = tested_device(), .cache = folder};
+    assert_int_equal(open_and_close(&options), KRS_OK);
     assert_int_equal(count_files(".spirv", name), 0);
 }
 
@@ -199,7 +200,7 @@ static void kernels_are_compiled_together(void **state)
     char          name[NAME_MAX + 1];
     static const char *const defines[KERNELS] = {
         "#define VARIANT 0\n", "#define VARIANT 1\n", "#define VARIANT 2\n", "#error refused\n"};
-    assert_true(gpu_open(&gpu, &(KrsRendererOptions){.device = "cpu", .cache = folder}));
+    assert_true(gpu_open(&gpu, &(KrsRendererOptions){.device = tested_device(), .cache = folder}));
     VkPipelineLayout layout = make_layout(&gpu);
     for (int i = 0; i < KERNELS; i++)
         requests[i] = (KernelRequest){&kernels[i], {file, NULL, defines[i]}};
@@ -229,7 +230,7 @@ static void kernels_are_compiled_together(void **state)
 
 static KrsStatus open_with(Scarce scarce)
 {
-    KrsRendererOptions options = {.device = "cpu", .cache = folder,
+    KrsRendererOptions options = {.device = tested_device(), .cache = folder,
                                   .allocator = scarce_allocator(&scarce)};
     KrsStatus          status = open_and_close(&options);
     assert_true(status == KRS_OK || status == KRS_OUT_OF_MEMORY);

@@ -20,6 +20,7 @@
 
 #include "compiler/compile.h"
 #include "runtime/krs_vulkan.h"
+#include "tests/support/device.h"
 
 enum { WIDTH = 160, HEIGHT = 100, PIXELS = WIDTH * HEIGHT };
 /* Where bits are compared: twelve tiles, of which some are not whole. */
@@ -117,7 +118,8 @@ static void close_scene(Scene *scene)
 static int open_scenes(void **state)
 {
     (void)state;
-    KrsRendererOptions options = {.device = "cpu", .validation = true, .complaint = note_complaint};
+    KrsRendererOptions options = {.device = tested_device(), .validation = true,
+                                  .complaint = note_complaint};
     KrsStatus          status = krs_renderer_new(&options, &renderer);
     for (int i = 0; i < SCENES && status == KRS_OK; i++)
         status = open_scene(&scenes[i]);
