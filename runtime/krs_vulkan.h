@@ -27,7 +27,7 @@ typedef struct KrsDevice {
     char          name[256];
     KrsDeviceKind kind;
     uint32_t      api_version; /* as Vulkan packs it */
-    bool          usable;      /* has compute and Vulkan 1.1 */
+    bool          usable;      /* has compute, Vulkan 1.1 and eight storage buffers */
     bool          preferred;   /* what a renderer takes when nothing is asked for */
 } KrsDevice;
 
@@ -39,6 +39,12 @@ typedef void KrsValidationCallback(void *user, const char *message);
 typedef enum KrsEarlyOuts {
     KRS_EARLY_OUTS_DEFAULT, KRS_EARLY_OUTS_ON, KRS_EARLY_OUTS_OFF
 } KrsEarlyOuts;
+
+/* For tests, as bits: what the host takes a device for.  Pictures are the same. */
+typedef enum KrsPretence {
+    KRS_PRETEND_CARD = 1,        /* a graphics card, whatever its type */
+    KRS_PRETEND_LEAST_LIMITS = 2 /* one whose buffers are no longer than any device's may be */
+} KrsPretence;
 
 /* Zero asks for the defaults. */
 typedef struct KrsRendererOptions {
@@ -53,6 +59,7 @@ typedef struct KrsRendererOptions {
        missing, and need not be writable.  NULL: none.  Without one nothing is written to disk. */
     const char            *cache;
     KrsEarlyOuts           early_outs;
+    unsigned               pretence;   /* bits of KrsPretence */
     KrsAllocator           allocator;  /* our memory; the driver's and glslang's is their own */
 } KrsRendererOptions;
 

@@ -8,6 +8,9 @@ report() { # name, status
 for kernel in runtime/shaders/*.comp; do
     glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL" $?
+    glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -DNO_TEXELS -o /dev/null \
+        "$kernel" >/dev/null
+    report "$kernel is valid GLSL without texels" $?
 done
 for script in tools/*.sh tests/*.sh tests/*/*.sh .ci/run; do
     shellcheck -x -P SCRIPTDIR "$script"

@@ -10,7 +10,7 @@ SUPPORT     := $(addprefix tests/support/, bench.c device.c random.c renderer.c 
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c \
                formulas.c)
 UNIT        := front film tracer methods writer memory validate refute frame query cache compiled \
-               apart stencils
+               apart stencils drivers
 PROPERTY    := ops noise graph derive series local along anchor slope parity reach
 ORACLES     := self primitives krs_expand trees maps moebius operators deform moving normals \
                fields surfaces rays algebraic fractals device query picture seams shading coverage \

@@ -14,6 +14,13 @@
 #include "runtime/device/pipelines.h"
 
 #define VALIDATION_LAYER "VK_LAYER_KHRONOS_validation"
+/* Where fewer texels than that can be read, buffers are: the lowest band of the widest picture has
+   so many (render.c). */
+#define LEAST_TEXELS (1u << 22)
+/* What every device must have at least (Vulkan, table 53). */
+#define LEAST_TEXEL_LIMIT (1u << 16)
+#define LEAST_RANGE_LIMIT (1u << 27)
+
 #define NO_DEVICE                                                                               \
     "no usable Vulkan device: install a driver, for example Debian's mesa-vulkan-drivers"
 
@@ -172,6 +179,13 @@ void gpu_name(Gpu *gpu, VkObjectType type, uint64_t handle, const char *name)
 
 /* ---- Choice ---- */
 
+/* Whether the device has what all kernels need. */
+static bool is_capable(const VkPhysicalDeviceProperties *properties)
+{
+    return properties->apiVersion >= VK_API_VERSION_1_1 &&
+           properties->limits.maxPerStageDescriptorStorageBuffers >= STORAGE_BUFFERS;
+}
+
 /* The first queue family with compute, and how many bits its clock has; false when there is
    none.  No device has more families than are looked at. */
 static bool find_family(VkPhysicalDevice physical, uint32_t *family, uint32_t *clock_bits)
@@ -195,8 +209,7 @@ KrsDevice gpu_describe(VkPhysicalDevice physical)
     vkGetPhysicalDeviceProperties(physical, &properties);
     KrsDevice device = {
         .api_version = properties.apiVersion,
-        .usable = properties.apiVersion >= VK_API_VERSION_1_1 &&
-                  find_family(physical, &family, &clock_bits),
+        .usable = is_capable(&properties) && find_family(physical, &family, &clock_bits),
     };
     snprintf(device.name, sizeof device.name, "%s", properties.deviceName);
     switch (properties.deviceType) {
@@ -292,6 +305,29 @@ bool gpu_list(Gpu *gpu, KrsDevice *devices, size_t capacity, size_t *count)
     return physical != NULL;
 }
 
+/* Says why none of the devices that the words ask for can be used. */
+static void refuse_devices(Gpu *gpu, const VkPhysicalDevice *devices, uint32_t count,
+                           const char *words)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        VkPhysicalDeviceProperties properties;
+        KrsDevice                  device = gpu_describe(devices[i]);
+        vkGetPhysicalDeviceProperties(devices[i], &properties);
+        uint32_t buffers = properties.limits.maxPerStageDescriptorStorageBuffers;
+        if (!wanted(&device, i, words) || buffers >= STORAGE_BUFFERS)
+            continue;
+        gpu_refuse(gpu, KRS_NO_DEVICE,
+                   "the device `%s` gives a kernel %u storage buffers, and krs needs %d",
+                   device.name, buffers, STORAGE_BUFFERS);
+        return;
+    }
+    if (words && *words)
+        gpu_refuse(gpu, KRS_NO_DEVICE,
+                   "no usable Vulkan device is called `%s`: `krs devices` lists them", words);
+    else
+        gpu_refuse(gpu, KRS_NO_DEVICE, NO_DEVICE);
+}
+
 static bool choose_device(Gpu *gpu, const char *words)
 {
     uint32_t          count = 0;
@@ -304,11 +340,8 @@ static bool choose_device(Gpu *gpu, const char *words)
     if (found) {
         gpu->physical = devices[chosen];
         gpu->time_mask = bits >= 64 ? UINT64_MAX : (UINT64_C(1) << bits) - 1;
-    } else if (words && *words) {
-        gpu_refuse(gpu, KRS_NO_DEVICE,
-                   "no usable Vulkan device is called `%s`: `krs devices` lists them", words);
     } else {
-        gpu_refuse(gpu, KRS_NO_DEVICE, NO_DEVICE);
+        refuse_devices(gpu, devices, count, words);
     }
     gpu_release(gpu, devices);
     return found;
@@ -316,7 +349,7 @@ static bool choose_device(Gpu *gpu, const char *words)
 
 /* ---- Device ---- */
 
-static void read_properties(Gpu *gpu)
+static void read_properties(Gpu *gpu, unsigned pretence)
 {
     VkPhysicalDeviceSubgroupProperties subgroups = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES,
@@ -327,6 +360,13 @@ static void read_properties(Gpu *gpu)
     };
     vkGetPhysicalDeviceProperties2(gpu->physical, &properties);
     gpu->properties = properties.properties;
+    VkPhysicalDeviceLimits *limits = &gpu->properties.limits;
+    if (pretence & KRS_PRETEND_LEAST_LIMITS) {
+        limits->maxTexelBufferElements = LEAST_TEXEL_LIMIT;
+        limits->maxStorageBufferRange = LEAST_RANGE_LIMIT;
+    }
+    gpu->pretends_card = pretence & KRS_PRETEND_CARD;
+    gpu->texels = limits->maxTexelBufferElements >= LEAST_TEXELS;
     bool shuffles = subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT &&
                     subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
     gpu->refill_lanes = !shuffles || subgroups.subgroupSize < 4 ? 0
@@ -334,9 +374,9 @@ static void read_properties(Gpu *gpu)
                                                                 : 8;
 }
 
-static bool device_create(Gpu *gpu)
+static bool device_create(Gpu *gpu, unsigned pretence)
 {
-    read_properties(gpu);
+    read_properties(gpu, pretence);
     vkGetPhysicalDeviceMemoryProperties(gpu->physical, &gpu->memory);
     VkPhysicalDeviceFeatures offered, taken = {0};
     vkGetPhysicalDeviceFeatures(gpu->physical, &offered);
@@ -397,7 +437,7 @@ bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
     };
     cache_open(&gpu->cache, options->cache, options->allocator);
     if (instance_create(gpu, options->validation) && choose_device(gpu, options->device) &&
-        device_create(gpu)) {
+        device_create(gpu, options->pretence)) {
         pipelines_open(gpu);
         return true;
     }
@@ -408,7 +448,7 @@ bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
 bool gpu_open_beside(Gpu *gpu, const Gpu *other)
 {
     *gpu = (Gpu){.physical = other->physical, .family = other->family};
-    if (device_create(gpu))
+    if (device_create(gpu, other->texels ? 0 : KRS_PRETEND_LEAST_LIMITS))
         return true;
     gpu_close(gpu);
     return false;
@@ -439,5 +479,5 @@ void gpu_close(Gpu *gpu)
 
 bool gpu_is_cpu(const Gpu *gpu)
 {
-    return gpu->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    return gpu->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && !gpu->pretends_card;
 }

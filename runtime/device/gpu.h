@@ -13,6 +13,10 @@
 #include "runtime/device/cache.h"
 #include "runtime/krs_vulkan.h"
 
+/* What a stage of a kernel binds of storage buffers (stage.h); devices may have four and no more,
+   but those of desktops have 16 and more. */
+enum { STORAGE_BUFFERS = 8 };
+
 typedef struct Gpu {
     KrsAllocator     allocator;
     VkInstance       instance;
@@ -28,6 +32,8 @@ typedef struct Gpu {
 
     VkPhysicalDeviceProperties       properties;
     VkPhysicalDeviceMemoryProperties memory;
+    bool     pretends_card; /* a device of type CPU is treated as a graphics card */
+    bool     texels;        /* kernels read what they only read as texels, not as buffers */
     uint32_t refill_lanes; /* of a group whose lanes exchange numbers: 8, or 4; 0: they cannot */
     uint64_t memory_used, memory_peak; /* bytes of device memory */
 

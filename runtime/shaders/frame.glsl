@@ -94,14 +94,25 @@ const uint POSITIONAL = 1u, CASTS_SHADOWS = 2u; // bits of its kind
 // Where the rays of the pixels end, then the beams of 8x8 tiles, then those of 32x32 tiles, then
 // those of the quarters of 8x8 tiles, tile by tile: bits of t, and the rest by pack_ray.
 layout(std430, set = 1, binding = 1) buffer Ends { uvec2 ends[]; };
-layout(std430, set = 1, binding = 2) writeonly buffer Hits { vec4 hits[]; };
 layout(std430, set = 1, binding = 2) writeonly buffer HitNumbers { float hit_numbers[]; };
 // Tiles of 8x8 pixels whose beams find something: only their pixels have rays.
 layout(std430, set = 1, binding = 9) buffer Tiles { uint tiles[]; };
+#ifdef NO_TEXELS // the device reads too few of them: buffers are read instead
+layout(std430, set = 1, binding = 2) buffer Hits { vec4 hits[]; };
+layout(std430, set = 1, binding = 5) readonly buffer Lights { uvec4 light_rows[]; };
+uvec4 load_light_row(uint number) { return light_rows[number]; }
+uvec2 load_end(uint index) { return ends[index]; }
+vec4  load_hit_row(uint number) { return hits[number]; }
+#else
+layout(std430, set = 1, binding = 2) writeonly buffer Hits { vec4 hits[]; };
 // Of lights two texels each; the others are what is in these buffers (stage.c).
 layout(set = 1, binding = 8) uniform usamplerBuffer light_texels;
 layout(set = 1, binding = 10) uniform usamplerBuffer end_texels;
 layout(set = 1, binding = 11) uniform usamplerBuffer hit_texels;
+uvec4 load_light_row(uint number) { return texelFetch(light_texels, int(number)); }
+uvec2 load_end(uint index) { return texelFetch(end_texels, int(index)).xy; }
+vec4  load_hit_row(uint number) { return uintBitsToFloat(texelFetch(hit_texels, int(number))); }
+#endif
 layout(std140, set = 1, binding = 0) uniform FrameBlock { Frame given_frame; };
 layout(push_constant) uniform WorkBlock { Work given_work; };
 layout(std430, set = 1, binding = 4) buffer ControlBlock {
@@ -131,16 +142,13 @@ void load_frame()
 
 Light find_light(uint number)
 {
-    vec4  vector = uintBitsToFloat(texelFetch(light_texels, int(2u * number)));
-    uvec4 color = texelFetch(light_texels, int(2u * number + 1u));
+    vec4  vector = uintBitsToFloat(load_light_row(2u * number));
+    uvec4 color = load_light_row(2u * number + 1u);
     return Light(vector.xyz, vector.w, uintBitsToFloat(color.xyz), color.w);
 }
 
 // Of the pixel of a slot (solid.glsl).
-vec4 find_hit(uint row, uint slot)
-{
-    return uintBitsToFloat(texelFetch(hit_texels, int(HIT_ROWS * slot + row)));
-}
+vec4 find_hit(uint row, uint slot) { return load_hit_row(HIT_ROWS * slot + row); }
 
 void keep_hit(uint row, uint slot, vec4 numbers) { hits[HIT_ROWS * slot + row] = numbers; }
 
@@ -159,7 +167,7 @@ uint pack_ray(Ray ray)
 
 Ray find_end(uint index)
 {
-    uvec2 row = texelFetch(end_texels, int(index)).xy;
+    uvec2 row = load_end(index);
     uint  bits = row.y;
     return Ray(uintBitsToFloat(row.x), (bits & 4u) != 0u ? -1.0 : 1.0, bits >> 8u, bits & 3u,
                (bits & 8u) != 0u, bits >> 4u & 15u);

@@ -9,15 +9,21 @@ const uint NORMALS = 2u; // floats, and component, 0: nothing, all else but colo
 const uint ALBEDOS = 3u; // floats, and level
 const uint COUNTS = 4u;  // instance; steps
 
-layout(std430, set = 1, binding = 3) writeonly buffer Results { uvec4 results[]; };
 layout(std430, set = 1, binding = 3) writeonly buffer Colors { vec3 colors[]; }; // 16 bytes each
+#ifdef NO_TEXELS
+layout(std430, set = 1, binding = 3) buffer Results { uvec4 results[]; };
+uvec4 load_result(uint number) { return results[number]; }
+#else
+layout(std430, set = 1, binding = 3) writeonly buffer Results { uvec4 results[]; };
 layout(set = 1, binding = 13) uniform usamplerBuffer result_texels; // bits of floats
+uvec4 load_result(uint number) { return texelFetch(result_texels, int(number)); }
+#endif
 
 bool is_wanted(uint row) { return (control.rows >> row & 1u) != 0u; }
 
 vec4 find_color(uint index)
 {
-    return uintBitsToFloat(texelFetch(result_texels, int(COLORS * band_pixels() + index)));
+    return uintBitsToFloat(load_result(COLORS * band_pixels() + index));
 }
 
 // Of what has no alpha.

@@ -11,10 +11,14 @@
  * fourth part says of each tile whether its anchors agree.  Where groups of components were marched
  * one after the other, lists of what each of them shows follow.
  */
+#ifdef NO_TEXELS
+layout(std430, set = 1, binding = 6) buffer Solid { uint solid[]; };
+uint find_listed(uint number) { return solid[number]; }
+#else
 layout(std430, set = 1, binding = 6) writeonly buffer Solid { uint solid[]; };
 layout(set = 1, binding = 12) uniform usamplerBuffer solid_texels;
-
 uint find_listed(uint number) { return texelFetch(solid_texels, int(number)).x; }
+#endif
 
 uint band_pixels() { return work.extent.x * work.extent.y; }
 

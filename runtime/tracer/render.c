@@ -214,14 +214,26 @@ static uint32_t rows_within(uint32_t width, uint64_t pixels)
     return rows < TILE ? TILE : (uint32_t)rows;
 }
 
+/* As many pixels as a band may have for none of its buffers to be longer than kernels may read. */
+static uint64_t most_pixels(const Gpu *gpu)
+{
+    const VkPhysicalDeviceLimits *limits = &gpu->properties.limits;
+    const uint64_t slack = buffer_texel_bytes(1); /* what rounding adds at most */
+    const uint64_t in_range = (limits->maxStorageBufferRange - slack) / (RESULT_ROWS * RESULT_BYTES);
+    const uint64_t in_texels = (limits->maxTexelBufferElements - slack / sizeof(uint32_t)) /
+                               (2 * MARCH_BYTES / sizeof(uint32_t));
+    return gpu->texels && in_texels < in_range ? in_texels : in_range;
+}
+
 /* Makes room for a band of the picture, for a smaller one when memory is short, and returns its
    rows; 0 when there is no room at all. */
 static uint32_t make_room(Job *job)
 {
     const KrsWindow *window = &job->cover;
     const uint64_t   across = (window->width + TILE - 1) / TILE * TILE; /* tiles may end outside */
-    const uint64_t   most = gpu_is_cpu(job->gpu) ? BAND_PIXELS_CPU : BAND_PIXELS;
-    for (uint64_t pixels = most; pixels >= BAND_PIXELS_MIN; pixels /= 2) {
+    const uint64_t   usual = gpu_is_cpu(job->gpu) ? BAND_PIXELS_CPU : BAND_PIXELS;
+    const uint64_t   most = most_pixels(job->gpu);
+    for (uint64_t pixels = usual < most ? usual : most; pixels >= BAND_PIXELS_MIN; pixels /= 2) {
         uint32_t rows = rows_within(window->width, pixels);
         rows = rows < window->height ? rows : window->height;
         if (band_create(job->rendering, (rows + TILE - 1) / TILE * TILE * across)) {

@@ -15,6 +15,11 @@ KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
     return gpu_list(&gpu, devices, capacity, count) ? KRS_OK : gpu.status;
 }
 
+/* Defines of kernels: */
+#define NO_TEXELS "#define NO_TEXELS\n" /* see Gpu.texels */
+/* rays of panoramas, which cost more, are in kernels of scenes that have some. */
+#define PANORAMIC "#define PANORAMIC\n"
+
 /* The radius of a zone in which nothing is. */
 #define NO_ZONE (-1e30f)
 
@@ -34,9 +39,10 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
                                                                  : early_outs == KRS_EARLY_OUTS_ON;
     spirv_start();
     renderer->compiler_started = true;
+    const char         *defines = renderer->gpu.texels ? NULL : NO_TEXELS;
     const KernelRequest kernels[] = {
-        {&renderer->background[0], {.file = "background.comp"}},
-        {&renderer->fill[0], {.file = "fill.comp"}},
+        {&renderer->background[0], {.file = "background.comp", .defines = defines}},
+        {&renderer->fill[0], {.file = "fill.comp", .defines = defines}},
     };
     if (!stage_create(renderer) ||
         !stage_make_kernels(renderer, VK_NULL_HANDLE, kernels, sizeof kernels / sizeof kernels[0],
@@ -226,9 +232,6 @@ bool rendering_marches_packed(const KrsRendering *rendering, KrsComponents compo
                                                  : components == KRS_COMPONENTS_PACKED);
 }
 
-/* Rays of panoramas, which cost more, are in kernels of scenes that have some. */
-#define PANORAMIC "#define PANORAMIC\n"
-
 typedef struct Variant {
     char defines[256];
 } Variant;
@@ -250,10 +253,11 @@ static Variant name_variant(const KrsRendering *rendering, KrsTrace trace, KrsSc
     bool     by_ray = trace >= KRS_TRACE_EXACT;
     Variant  variant;
     int      length = snprintf(variant.defines, sizeof variant.defines,
-                               "#define TRACE %du\n#define REFILL %d\n%s%s%s%s",
+                               "#define TRACE %du\n#define REFILL %d\n%s%s%s%s%s",
                                (int)(by_ray ? KRS_TRACE_PLAIN : trace),
                                schedule == KRS_SCHEDULE_REFILL
                                    ? (int)rendering->renderer->gpu.refill_lanes : 0,
+                               rendering->renderer->gpu.texels ? "" : NO_TEXELS,
                                rendering->panoramic ? PANORAMIC : "",
                                anchored ? "#define ANCHORED\n" : "",
                                rendering->renderer->early_outs && !anchored
@@ -403,9 +407,10 @@ Kernel *rendering_sample(KrsRendering *rendering)
 static bool panoramic_create(KrsRendering *rendering)
 {
     KrsRenderer        *renderer = rendering->renderer;
+    const char         *defines = renderer->gpu.texels ? PANORAMIC : PANORAMIC NO_TEXELS;
     const KernelRequest kernels[] = {
-        {&renderer->background[1], {.file = "background.comp", .defines = PANORAMIC}},
-        {&renderer->fill[1], {.file = "fill.comp", .defines = PANORAMIC}},
+        {&renderer->background[1], {.file = "background.comp", .defines = defines}},
+        {&renderer->fill[1], {.file = "fill.comp", .defines = defines}},
     };
     return !rendering->panoramic || renderer->background[1].pipeline ||
            stage_make_kernels(renderer, VK_NULL_HANDLE, kernels,
@@ -568,13 +573,15 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
 {
     Gpu         *gpu = &rendering->renderer->gpu;
     Buffer      *buffer = &rendering->lights;
-    VkDeviceSize bytes = buffer_texel_bytes(count * sizeof(LightBlock));
+    /* Kernels load as many at once, and those beyond the last as well. */
+    VkDeviceSize bytes = buffer_texel_bytes((count + LIGHTS_AT_ONCE) * sizeof(LightBlock));
     if (buffer->size < bytes) {
         buffer_destroy(gpu, buffer);
         if (!buffer_create(gpu, buffer, bytes, SHARED, "lights") ||
             !stage_view(gpu, LIGHTS_BINDING, buffer, "lights"))
             return false;
-        rendering_bind(rendering, rendering->band_set, LIGHTS_BINDING, buffer);
+        rendering_bind(rendering, rendering->band_set,
+                       gpu->texels ? LIGHTS_BINDING : LIGHT_ROWS_BINDING, buffer);
     }
     LightBlock *blocks = buffer->bytes;
     for (size_t i = 0; i < count; i++) {

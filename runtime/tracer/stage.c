@@ -26,11 +26,18 @@ static const TexelKind texels_of[BINDING_COUNT] = {
     [SOLID_TEXELS] = ONE_NUMBER,     [RESULT_TEXELS] = FOUR_NUMBERS,
 };
 
+static_assert((int)BUFFER_BINDINGS <= (int)STORAGE_BUFFERS, "devices are asked for so many");
+
 static VkDescriptorType type_of(uint32_t binding)
 {
     return binding == FRAME_BINDING ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
          : texels_of[binding]       ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
                                     : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+}
+
+static bool is_bound(const Gpu *gpu, uint32_t binding)
+{
+    return gpu->texels || !texels_of[binding];
 }
 
 static bool set_layout_create(Gpu *gpu, uint32_t count, VkDescriptorSetLayout *layout)
@@ -40,7 +47,7 @@ static bool set_layout_create(Gpu *gpu, uint32_t count, VkDescriptorSetLayout *l
         bindings[i] = (VkDescriptorSetLayoutBinding){
             .binding = i,
             .descriptorType = type_of(i),
-            .descriptorCount = 1,
+            .descriptorCount = is_bound(gpu, i),
             .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
         };
     VkDescriptorSetLayoutCreateInfo info = {
@@ -83,11 +90,15 @@ failed:
 bool stage_view(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name)
 {
     TexelKind kind = texels_of[binding];
+    if (!is_bound(gpu, binding))
+        return true;
     return buffer_view(gpu, buffer, texel_kinds[kind].format, texel_kinds[kind].bytes, name);
 }
 
 void stage_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer)
 {
+    if (!is_bound(gpu, binding))
+        return;
     vkUpdateDescriptorSets(gpu->device, 1, &(VkWriteDescriptorSet){
         .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
         .dstSet = set,

@@ -8,10 +8,11 @@
 #include "runtime/tracer/renderer.h"
 
 /* Bindings of the frame's set (frame.glsl): a uniform buffer, storage buffers, texels of lights,
-   and more storage buffers; then those once more as texels. */
+   and more storage buffers; then those once more as texels.  Where the device reads too few texels
+   (Gpu.texels) none of these is bound, and lights are a storage buffer. */
 enum {
     FRAME_BINDING = 0, ENDS_BINDING, HITS_BINDING, RESULTS_BINDING, CONTROL_BINDING,
-    QUEUE_BINDING = 6, TAKEN_BINDING, LIGHTS_BINDING, TILES_BINDING,
+    LIGHT_ROWS_BINDING, QUEUE_BINDING, TAKEN_BINDING, LIGHTS_BINDING, TILES_BINDING,
     END_TEXELS, HIT_TEXELS, SOLID_TEXELS, RESULT_TEXELS,
     BINDING_COUNT,
     TEXEL_BINDINGS = 1 + BINDING_COUNT - END_TEXELS,
@@ -23,9 +24,10 @@ bool stage_create(KrsRenderer *renderer);
 /* After the kernels; for a renderer without a device nothing. */
 void stage_destroy(KrsRenderer *renderer);
 
-/* Makes a buffer readable at a binding of texels; `name` as in buffer_create. */
+/* Makes a buffer readable at a binding of texels, where there are some; `name` as in
+   buffer_create. */
 bool stage_view(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name);
-/* Points a binding of a set at a buffer. */
+/* Points a binding of a set at a buffer; one of texels, where there are none, at nothing. */
 void stage_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer);
 
 /* Makes at most KERNELS_AT_ONCE kernels, and sends them through the driver once, in the

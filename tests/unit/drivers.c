@@ -1,0 +1,236 @@
+/*
+ * drivers.c: what kinds of devices the host tells apart is not seen.
+ *
+ * lavapipe is taken for a graphics card, and for a device whose buffers are no longer than any
+ * device's may be: pictures and answers must be those of lavapipe as it is, bit by bit, under the
+ * validation layers.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "compiler/compile.h"
+#include "runtime/krs_vulkan.h"
+
+static char complaint[2048]; /* the last */
+
+static void note_complaint(void *user, const char *message)
+{
+    (void)user;
+    snprintf(complaint, sizeof complaint, "%s", message);
+}
+
+/* ---- A scene on a device ---- */
+
+typedef struct Stage {
+    KrsRenderer  *renderer;
+    KrsScene     *scene;
+    KrsFrame     *frame;
+    KrsRendering *rendering;
+} Stage;
+
+static Stage open_stage(const char *text, unsigned pretence)
+{
+    KrsRendererOptions options = {.device = "cpu", .validation = true, .complaint = note_complaint,
+                                  .early_outs = KRS_EARLY_OUTS_OFF, .pretence = pretence};
+    Stage              stage;
+    KrsStatus          status = krs_renderer_new(&options, &stage.renderer);
+    if (status != KRS_OK)
+        fail_msg("%s", krs_renderer_message(stage.renderer));
+    if (krs_compile_text(text, strlen(text), "scene.krs", NULL, &stage.scene) != KRS_OK)
+        fail_msg("does not compile: %s", text);
+    assert_int_equal(krs_frame_new(stage.scene, &stage.frame), KRS_OK);
+    assert_int_equal(krs_rendering_new(stage.renderer, stage.scene, &stage.rendering), KRS_OK);
+    return stage;
+}
+
+static void close_stage(Stage *stage)
+{
+    if (krs_renderer_complaints(stage->renderer) != 0)
+        fail_msg("the validation layers complain: %s", complaint);
+    krs_rendering_free(stage->rendering);
+    krs_frame_free(stage->frame);
+    krs_scene_free(stage->scene);
+    krs_renderer_free(stage->renderer);
+}
+
+static KrsPicture *render(const Stage *stage, const KrsRenderOptions *options)
+{
+    KrsPicture *picture;
+    if (krs_render(stage->rendering, stage->frame, options, &picture) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(stage->renderer));
+    return picture;
+}
+
+/* ---- Pictures ---- */
+
+static size_t differing_bytes(const void *a, const void *b, size_t bytes)
+{
+    const unsigned char *left = a, *right = b;
+    size_t               differ = 0;
+    for (size_t i = 0; i < bytes; i++)
+        differ += left[i] != right[i];
+    return differ;
+}
+
+/* Bytes of all planes, and of the counts, that differ.  Bands share the beams of tiles that both
+   have a part of, so counts depend on the bands of a large picture. */
+static size_t difference(const KrsPicture *a, const KrsPicture *b)
+{
+    size_t pixels = (size_t)a->window.width * a->window.height;
+    bool   is_one_band = pixels < 1 << 17;
+    return differing_bytes(a->color, b->color, pixels * 4 * sizeof(float)) +
+           differing_bytes(a->depth, b->depth, pixels * sizeof(float)) +
+           differing_bytes(a->position, b->position, pixels * 3 * sizeof(float)) +
+           differing_bytes(a->normal, b->normal, pixels * 3 * sizeof(float)) +
+           differing_bytes(a->albedo, b->albedo, pixels * 3 * sizeof(float)) +
+           differing_bytes(a->component, b->component, pixels * sizeof(uint32_t)) +
+           differing_bytes(a->level, b->level, pixels * sizeof(uint32_t)) +
+           differing_bytes(a->instance, b->instance, pixels * sizeof(uint32_t)) +
+           differing_bytes(a->steps, b->steps, pixels * sizeof(uint32_t)) +
+           (is_one_band && a->stats.evaluations != b->stats.evaluations) +
+           (a->stats.most_evaluations_per_ray != b->stats.most_evaluations_per_ray) +
+           (a->stats.unresolved != b->stats.unresolved);
+}
+
+typedef struct Case {
+    const char      *name, *text;
+    KrsRenderOptions options;
+} Case;
+
+/* Each as a card has it, so that the schedule is the same. */
+static const Case cases[] = {
+    {"five lights", "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
+                    "light sun { direction: [1, 2, 1], softness: 4deg }"
+                    "light a { position: [2, 3, 0], intensity: 4 }"
+                    "light b { position: [-2, 3, 0], intensity: 4, color: #ff0000 }"
+                    "light c { direction: [-1, 1, 0.3], intensity: 0.4 }"
+                    "light d { position: [0, 4, 2], intensity: 4, color: #0000ff }"
+                    "show sphere(1).move([0, 1, 0]); show plane([0, 1, 0], 0);",
+     {.width = 150, .height = 93, .schedule = KRS_SCHEDULE_QUEUE}},
+    {"several bands", "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
+                      "show torus(1.2, 0.3).move([0, 1, 0]); show box([0.7, 0.7, 0.7]);",
+     {.width = 1100, .height = 500, .schedule = KRS_SCHEDULE_QUEUE}},
+    {"four samples of 12 mirrors", "camera { eye: [2, 6, 22], fov: 0.6 }"
+                                   "show krs { kernel sphere(0.45); for i in 0..12 {"
+                                   "reflect plane(random_direction(i), 0.4 + 0.22 * i); } };",
+     {.width = 131, .height = 70, .samples = 4, .schedule = KRS_SCHEDULE_QUEUE}},
+    {"area shadows", "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
+                     "show sphere(1).move([0, 1, 0]) - box([0.8, 0.8, 4]); show plane([0, 1, 0], 0);",
+     {.width = 97, .height = 61, .samples = 2, .shadows = KRS_SHADOWS_AREA,
+      .schedule = KRS_SCHEDULE_PIXEL}},
+    {"a panorama", "camera { eye: [0.1, 0.2, 0.3], projection: \"panorama\" }"
+                   "show box([4, 3, 5]) - sphere(0.8).move([1.5, 0, 0.2]);",
+     {.width = 120, .height = 60, .schedule = KRS_SCHEDULE_REFILL}},
+    {"few steps", "camera { eye: [3, 4, 7], fov: 0.6 }"
+                  "show torus(0.5, 0.15).repeat([1.4, 0.9, 1.4], [5, 3, 5]);",
+     {.width = 160, .height = 100, .most_steps = 9, .schedule = KRS_SCHEDULE_QUEUE}},
+    {"a polynomial", "camera { eye: [3, 2, 3], fov: 0.6 }"
+                     "show algebraic(x ^ 4 + y ^ 4 + z ^ 4 == 1).within(sphere(1.5));",
+     {.width = 100, .height = 70, .schedule = KRS_SCHEDULE_QUEUE}},
+};
+
+/* Renders a case as the device is, and as it is taken for. */
+static size_t compare(const Case *test, unsigned pretence)
+{
+    Stage       plain = open_stage(test->text, 0), pretending = open_stage(test->text, pretence);
+    KrsPicture *a = render(&plain, &test->options), *b = render(&pretending, &test->options);
+    size_t      differ = difference(a, b);
+    if (differ > 0)
+        print_message("# %s: %zu bytes differ\n", test->name, differ);
+    krs_picture_free(a);
+    krs_picture_free(b);
+    close_stage(&plain);
+    close_stage(&pretending);
+    return differ;
+}
+
+static void compare_all(unsigned pretence)
+{
+    size_t wrong = 0;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+        wrong += compare(&cases[i], pretence) > 0;
+    assert_int_equal(wrong, 0);
+}
+
+static void short_texel_buffers_are_not_seen(void **state)
+{
+    (void)state;
+    compare_all(KRS_PRETEND_LEAST_LIMITS);
+}
+
+static void a_card_is_not_seen(void **state)
+{
+    (void)state;
+    compare_all(KRS_PRETEND_CARD);
+    assert_int_equal(compare(&cases[0], KRS_PRETEND_CARD | KRS_PRETEND_LEAST_LIMITS), 0);
+}
+
+/* The comparison sees one bit. */
+static void a_flipped_bit_is_found(void **state)
+{
+    (void)state;
+    Stage       stage = open_stage(cases[0].text, 0);
+    KrsPicture *a = render(&stage, &cases[0].options), *b = render(&stage, &cases[0].options);
+    assert_int_equal(difference(a, b), 0);
+    b->steps[150 * 93 - 1] ^= 1;
+    assert_int_equal(difference(a, b), 1);
+    krs_picture_free(a);
+    krs_picture_free(b);
+    close_stage(&stage);
+}
+
+/* ---- Questions ---- */
+
+enum { RAYS = 300 };
+
+static void ask(unsigned pretence, KrsHit hits[RAYS])
+{
+    static double origins[RAYS][3], directions[RAYS][3];
+    Stage         stage = open_stage(cases[0].text, pretence);
+    for (int i = 0; i < RAYS; i++) {
+        origins[i][0] = 4;
+        origins[i][1] = 3;
+        directions[i][0] = -1;
+        directions[i][1] = 0.004 * (i % 20) - 0.6;
+        directions[i][2] = 0.004 * (i / 20) - 0.03;
+    }
+    assert_int_equal(krs_device_raycast(stage.rendering, stage.frame, (const double(*)[3])origins,
+                                        (const double(*)[3])directions, RAYS, 100, 1e-4, hits),
+                     KRS_OK);
+    close_stage(&stage);
+}
+
+static void answers_are_the_same(void **state)
+{
+    (void)state;
+    static KrsHit plain[RAYS], others[RAYS];
+    size_t        hits = 0;
+    ask(0, plain);
+    for (int i = 0; i < RAYS; i++)
+        hits += plain[i].hit;
+    assert_true(hits > RAYS / 4);
+    for (unsigned pretence = 1; pretence < 4; pretence++) {
+        ask(pretence, others);
+        assert_memory_equal(plain, others, sizeof plain);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(short_texel_buffers_are_not_seen),
+        cmocka_unit_test(a_card_is_not_seen),
+        cmocka_unit_test(a_flipped_bit_is_found),
+        cmocka_unit_test(answers_are_the_same),
+    };
+    spirv_start(); /* held for all, so that no renderer starts the shader compiler anew */
+    int failed = cmocka_run_group_tests_name("drivers", tests, NULL, NULL);
+    spirv_stop();
+    return failed;
+}
