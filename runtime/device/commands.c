@@ -7,20 +7,27 @@
 static const VkPipelineStageFlags WORK =
     VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
 
-static void memory_barrier(Gpu *gpu, VkPipelineStageFlags after, VkAccessFlags seen_by)
+static void memory_barrier(VkCommandBuffer commands, VkPipelineStageFlags after,
+                           VkAccessFlags seen_by)
 {
-    vkCmdPipelineBarrier(gpu->commands, WORK, after, 0, 1, &(VkMemoryBarrier){
+    vkCmdPipelineBarrier(commands, WORK, after, 0, 1, &(VkMemoryBarrier){
         .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
         .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
         .dstAccessMask = seen_by,
     }, 0, NULL, 0, NULL);
 }
 
+/* What was written can be used, and written again. */
+static void barrier(VkCommandBuffer commands)
+{
+    memory_barrier(commands, WORK, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT |
+                                   VK_ACCESS_UNIFORM_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT |
+                                   VK_ACCESS_TRANSFER_WRITE_BIT);
+}
+
 void gpu_barrier(Gpu *gpu)
 {
-    memory_barrier(gpu, WORK, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT |
-                              VK_ACCESS_UNIFORM_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT |
-                              VK_ACCESS_TRANSFER_WRITE_BIT);
+    barrier(gpu->commands);
 }
 
 bool gpu_begin(Gpu *gpu)
@@ -59,7 +66,7 @@ bool gpu_finish(Gpu *gpu, double *ms)
 {
     if (gpu->times)
         vkCmdWriteTimestamp(gpu->commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, gpu->times, 1);
-    memory_barrier(gpu, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+    memory_barrier(gpu->commands, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
     TRY(gpu, "record work", vkEndCommandBuffer(gpu->commands));
 
     double start = clock_ms();
@@ -95,6 +102,7 @@ bool gpu_rehearse(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
         .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
         .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
     }));
+    barrier(commands); /* all rehearsals use the same buffers */
     uint32_t first = sets[0] == VK_NULL_HANDLE;
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, first, 2 - first,

@@ -342,6 +342,18 @@ float item_distance(vec3 place)
 #endif
 }
 
+// Whether a surface is nearer to a place of the ray than a pixel is wide there.  With early outs a
+// march goes by bounds, which are small near surfaces and elsewhere: then the distance decides.
+bool is_near(float t, float room)
+{
+    float pixel = pixel_base + pixel_slope * t;
+#if defined(EARLY_OUTS) && !defined(GROUP) && !defined(ALONG)
+    return room < pixel && abs(krs_distance(origin + t * direction)) < pixel;
+#else
+    return room < pixel;
+#endif
+}
+
 // With PROBE the middle of a ball.
 vec3 item_place() { return origin + (march.t + march.gap) * direction; }
 
@@ -456,8 +468,8 @@ void end_item()
     bool is_ray = control.phase == RAYS;
     bool lost = is_ray && (march.fate == MARCHING || march.fate == CLOSING);
     uint group = 0u;
-    bool near = march.nearest < pixel_base + pixel_slope * march.nearest_t;
     if (lost) {
+        bool near = is_near(march.nearest_t, march.nearest);
         march.t = near ? march.nearest_t : march.t;
         march.fate = near ? HIT : MISS;
     }

@@ -169,6 +169,14 @@ static bool march(KrsRendering *rendering, uint32_t count)
     return kernel != NULL;
 }
 
+bool ways_are_sound(const WayBlock *ways, uint32_t count, uint32_t ends)
+{
+    bool sound = ends <= count;
+    for (uint32_t i = 0; i < count && sound; i++)
+        sound = ways[i].fate == QUERY_MISS || (ways[i].fate < QUERY_MISS && ways[i].place < ends);
+    return sound;
+}
+
 static void take_way(const KrsRay *ray, const WayBlock *way, const AnswerBlock *answers,
                      KrsHit *hit)
 {
@@ -196,9 +204,15 @@ static bool raycast_batch(KrsRendering *rendering, const double (*origins)[3],
     if (!march(rendering, count))
         return false;
     const ControlBlock *control = rendering->control.bytes;
-    if (control->solid > 0 && !sample_run(rendering, control->solid, true))
+    const WayBlock     *ways = rendering->ways.bytes;
+    uint32_t            ends = control->solid;
+    if (!ways_are_sound(ways, count, ends)) {
+        gpu_refuse(&rendering->renderer->gpu, KRS_INTERNAL,
+                   "cannot read where rays end: the device answers with numbers that cannot be");
         return false;
-    const WayBlock *ways = rendering->ways.bytes;
+    }
+    if (ends > 0 && !sample_run(rendering, ends, true))
+        return false;
     for (uint32_t i = 0; i < count; i++) {
         KrsRay ray = krs_ray(scene, origins[i], directions[i], farthest);
         take_way(&ray, &ways[i], rendering->answers.bytes, &hits[i]);

@@ -128,6 +128,11 @@ bool sample_prepare(KrsRendering *rendering);
 /* What is at the first `count` of them; with normals, or the distance alone. */
 bool sample_run(KrsRendering *rendering, uint32_t count, bool normals);
 
+/* ---- query.c ---- */
+/* Whether what the device says of `count` rays can be used: each has missed, or has its own place
+   among the `ends` of rays. */
+bool ways_are_sound(const WayBlock *ways, uint32_t count, uint32_t ends);
+
 /* Forgets the message of the call before. */
 void renderer_clear(KrsRenderer *renderer);
 

@@ -4,7 +4,8 @@
  * lavapipe compiles a kernel when it first runs, one after the other, and keeps what it has
  * compiled on disk.  So a rehearsal has it do so while the host is busy with other things; and
  * where several kernels are new, a second device, which exists for no longer, takes some of
- * them: the first then finds those on disk.
+ * them: the first then finds those on disk.  Graphics cards compile a kernel when its pipeline is
+ * made: only devices of type CPU rehearse.
  */
 #include "runtime/tracer/stage.h"
 
@@ -262,7 +263,8 @@ bool stage_make_kernels(KrsRenderer *renderer, VkDescriptorSet scene_set,
         *requests[i].kernel = (Kernel){0};
     for (size_t i = 0; i < count && ready; i++)
         ready = kernel_load(gpu, requests[i].kernel, &codes[i], renderer->layout, &ms);
-    ready = ready && rehearse_all(renderer, scene_set, requests, codes, count);
+    if (gpu_is_cpu(gpu))
+        ready = ready && rehearse_all(renderer, scene_set, requests, codes, count);
     for (size_t i = 0; i < count; i++)
         kernel_code_release(gpu, &codes[i]);
     *pipeline_ms += clock_ms() - start;

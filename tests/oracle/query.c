@@ -460,6 +460,27 @@ static void wrong_questions_are_refused(void **context)
     scene_close(s);
 }
 
+/* Where rays end is told by indices that the device writes: they are not followed blindly. */
+static void wrong_answers_are_refused(void **context)
+{
+    (void)context;
+    const WayBlock good[4] = {{1, QUERY_HIT, 1, 9}, {9, QUERY_MISS, 77, 2},
+                              {2, QUERY_HIT, 0, 8}, {3, QUERY_MARCHING, 2, 99}};
+    assert_true(ways_are_sound(good, 4, 3));
+    assert_true(ways_are_sound(good, 0, 0));
+    assert_false(ways_are_sound(good, 4, 2)); /* the last ray has no place */
+    assert_false(ways_are_sound(good, 4, 5)); /* more places than rays */
+    const WayBlock faults[] = {{1, QUERY_HIT, 3, 9}, {1, QUERY_HIT, UINT32_MAX, 9},
+                               {1, QUERY_MARCHING, 3, 9}, {1, QUERY_MISS + 1, 0, 9}};
+    for (size_t fault = 0; fault < sizeof faults / sizeof *faults; fault++)
+        for (int at = 0; at < 4; at++) {
+            WayBlock ways[4];
+            memcpy(ways, good, sizeof ways);
+            ways[at] = faults[fault];
+            assert_false(ways_are_sound(ways, 4, 3));
+        }
+}
+
 /* Memory that runs out at any allocation of ours ends the call with its status. */
 static void memory_may_run_out(void **context)
 {
@@ -509,6 +530,7 @@ int main(void)
         cmocka_unit_test(hard_rays_are_told),
         cmocka_unit_test(seams_do_not_end_rays),
         cmocka_unit_test(wrong_questions_are_refused),
+        cmocka_unit_test(wrong_answers_are_refused),
         cmocka_unit_test(memory_may_run_out),
     };
     spirv_start();

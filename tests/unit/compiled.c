@@ -25,6 +25,7 @@
 #include "compiler/compile.h"
 #include "runtime/device/kernel.h"
 #include "runtime/device/pipelines.h"
+#include "runtime/tracer/renderer.h"
 #include "tests/support/device.h"
 #include "tests/support/scarce.h"
 
@@ -378,6 +379,32 @@ static void lavapipe_keeps_none(void **state)
     assert_int_equal(count_files(".pipelines", name), 0);
 }
 
+/* ---- Rehearsals ---- */
+
+/* Kernels are run before they are needed on devices of type CPU alone; a pretended card has nothing
+   to run them with, so that it would crash. */
+static void graphics_cards_do_not_rehearse(void **state)
+{
+    (void)state;
+    static const char  text[] = "show sphere(1);\n";
+    KrsRendererOptions options = {.device = tested_device()};
+    KrsRenderer       *renderer;
+    KrsRendering      *rendering;
+    KrsScene          *scene;
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
+    assert_int_equal(krs_renderer_new(&options, &renderer), KRS_OK);
+    Gpu          *gpu = &renderer->gpu;
+    VkCommandPool rehearsals = gpu->rehearsals;
+    assert_true(gpu_wait(gpu));
+    gpu->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+    gpu->rehearsals = VK_NULL_HANDLE;
+    assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
+    gpu->rehearsals = rehearsals;
+    krs_rendering_free(rendering);
+    krs_renderer_free(renderer);
+    krs_scene_free(scene);
+}
+
 /* ---- glslang ---- */
 
 static void *compile_a_few_times(void *user)
@@ -424,6 +451,7 @@ int main(void)
         in_folder(memory_that_runs_out_is_reported),
         in_folder(lavapipe_keeps_none),
         in_folder(pipelines_are_kept),
+        cmocka_unit_test(graphics_cards_do_not_rehearse),
         cmocka_unit_test(threads_may_compile_at_once),
     };
     return cmocka_run_group_tests_name("compiled", tests, NULL, NULL);

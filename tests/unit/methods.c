@@ -505,6 +505,34 @@ static void rays_that_run_out_are_near(void **state)
     assert_int_equal(wrong, 0);
 }
 
+/* With early outs a march sees bounds of what is far for its size, and near a surface of something
+   else these are small, too. */
+static void rays_with_early_outs_that_run_out_are_near(void **state)
+{
+    (void)state;
+    KrsRendererOptions options = {.device = tested_device(), .early_outs = KRS_EARLY_OUTS_ON};
+    KrsRenderer       *early;
+    size_t             wrong = 0;
+    assert_int_equal(krs_renderer_new(&options, &early), KRS_OK);
+    for (int i = 0; i < SCENES; i++) {
+        Scene scene = scenes[i];
+        if (i == LANDSCAPE || i == INSIDE)
+            continue; /* nothing in them is left out */
+        assert_int_equal(krs_rendering_new(early, scene.scene, &scene.rendering), KRS_OK);
+        for (int k = 0; k < 2 * KRS_COMPONENTS_COUNT; k++) {
+            KrsRenderOptions rendering = {.width = SMALL_WIDTH, .height = SMALL_HEIGHT,
+                                          .no_beams = k % 2, .components = k / 2,
+                                          .most_steps = FEW_STEPS};
+            KrsPicture      *picture = render(&scene, rendering);
+            wrong += !ends_are_near(&scene, picture, rendering.trace, words(&rendering));
+            krs_picture_free(picture);
+        }
+        krs_rendering_free(scene.rendering);
+    }
+    krs_renderer_free(early);
+    assert_int_equal(wrong, 0);
+}
+
 /* What plain sphere tracing from the eye sees in few steps: the least distance, in widths of a
    pixel at the place. */
 static double least_error(const Scene *scene, const KrsPicture *picture, int k)
@@ -560,6 +588,7 @@ int main(void)
         cmocka_unit_test_teardown(loops_within_distances_count, hear_layers),
         cmocka_unit_test_teardown(a_flipped_bit_is_found, hear_layers),
         cmocka_unit_test_teardown(rays_that_run_out_are_near, hear_layers),
+        cmocka_unit_test_teardown(rays_with_early_outs_that_run_out_are_near, hear_layers),
         cmocka_unit_test_teardown(the_best_place_is_drawn, hear_layers),
     };
     spirv_start(); /* held for all, so that no renderer starts the shader compiler anew */
