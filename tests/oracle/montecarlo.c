@@ -1,0 +1,109 @@
+/*
+ * montecarlo.c: rays, the light's disc, and the coat of a white surface.
+ */
+#include "tests/oracle/montecarlo.h"
+
+#define FARTHEST    100.0
+#define LEAST_STEP  2e-4 /* a ray may miss what is thinner */
+#define ABOVE       5e-4 /* where rays from a surface begin */
+#define DEGREE      (M_PI / 180)
+
+static double bound_at(const Setting *setting, Vec p)
+{
+    return setting->room->bound(p, setting->numbers);
+}
+
+/* The first place from `t` on at which a line is inside of something; HUGE_VAL: none. */
+static double first_inside(const Setting *setting, Line line, double t, double end)
+{
+    double before = t;
+    while (t < end) {
+        double away = bound_at(setting, line_at(line, t));
+        if (away <= 0) {
+            while (t - before > 1e-9) {
+                double middle = 0.5 * (t + before);
+                if (bound_at(setting, line_at(line, middle)) <= 0)
+                    t = middle;
+                else
+                    before = middle;
+            }
+            return t;
+        }
+        before = t;
+        t += fmax(away, LEAST_STEP);
+    }
+    return HUGE_VAL;
+}
+
+static Vec gradient_at(const Setting *setting, Vec p)
+{
+    const double step = 1e-6;
+    double d[3];
+    for (int i = 0; i < 3; i++) {
+        Vec by = vec(i == 0 ? step : 0, i == 1 ? step : 0, i == 2 ? step : 0);
+        d[i] = bound_at(setting, vec_add(p, by)) - bound_at(setting, vec_sub(p, by));
+    }
+    return vec_unit(vec(d[0], d[1], d[2]));
+}
+
+Setting setting_choose(const Room *room, Random *random)
+{
+    Setting setting = {.room = room};
+    for (int i = 0; i < ROOM_NUMBERS; i++)
+        setting.numbers[i] = random_between(random, room->numbers[i].low, room->numbers[i].high);
+    setting.light = vec(random_between(random, room->light_low.x, room->light_high.x),
+                        random_between(random, room->light_low.y, room->light_high.y),
+                        random_between(random, room->light_low.z, room->light_high.z));
+    setting.wide = random_between(random, room->wide.low, room->wide.high);
+    if (!room->lamp)
+        setting.wide *= DEGREE;
+    return setting;
+}
+
+/* Reflectance times cosine of white at roughness 1, where the lobe is as wide as it can be. */
+static double reflect_white(Vec normal, Vec toward_eye, Vec toward_light)
+{
+    double light = vec_dot(normal, toward_light), eye = fmax(vec_dot(normal, toward_eye), 1e-3);
+    Vec    halfway = vec_unit(vec_add(toward_eye, toward_light));
+    double mirrored = 0.04 + 0.96 * pow(1 - vec_dot(toward_eye, halfway), 5);
+    if (light <= 0)
+        return 0;
+    return light * ((1 - mirrored) / M_PI + mirrored / M_PI * 0.5 / (light + eye));
+}
+
+/* The part of the light's disc that nothing hides from a point. */
+static double find_visible(const Setting *setting, Vec point, Vec normal, int rays, Random *random)
+{
+    Vec    start = vec_add(point, vec_scale(ABOVE, normal));
+    Vec    apart = setting->room->lamp ? vec_sub(setting->light, start) : vec_unit(setting->light);
+    double radius = setting->room->lamp ? setting->wide : tan(setting->wide / 2);
+    Vec    axis = vec_unit(apart), aside = vec_across(axis), other = vec_cross(axis, aside);
+    double turn = random_between(random, 0, 1), shift = random_between(random, 0, 1);
+    int    open = 0;
+    for (int i = 0; i < rays; i++) {
+        double away = radius * sqrt((i + shift) / rays);
+        double angle = 2 * M_PI * (turn + 0.6180339887 * i);
+        Vec    way = vec_add(apart, vec_add(vec_scale(away * cos(angle), aside),
+                                            vec_scale(away * sin(angle), other)));
+        double end = setting->room->lamp ? vec_length(way) : FARTHEST;
+        open += first_inside(setting, (Line){start, vec_unit(way)}, 0, end) > end;
+    }
+    return (double)open / rays;
+}
+
+Seen see(const Setting *setting, Line ray, int rays, Random *random)
+{
+    Seen   seen = {0};
+    double t = first_inside(setting, ray, 0, FARTHEST);
+    if (t > FARTHEST)
+        return seen;
+    seen.hit = true;
+    seen.point = line_at(ray, t);
+    seen.normal = gradient_at(setting, seen.point);
+    Vec    apart = setting->room->lamp ? vec_sub(setting->light, seen.point) : setting->light;
+    double square = setting->room->lamp ? vec_dot(apart, apart) : 1;
+    seen.light = reflect_white(seen.normal, vec_scale(-1, ray.direction), vec_unit(apart)) / square;
+    if (seen.light > 0)
+        seen.visible = find_visible(setting, seen.point, seen.normal, rays, random);
+    return seen;
+}
