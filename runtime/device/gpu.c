@@ -115,11 +115,41 @@ take_complaint(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
     return VK_FALSE;
 }
 
+/* Devices that do not have all of Vulkan (on macOS none has) are listed to those only who ask for
+   them by this; and one that says so of itself wants to hear that it is known. */
+#define PORTABILITY_SUBSET "VK_KHR_portability_subset" /* in a header of its own */
+
+/* Whether an extension is among those that are offered: by a device, or without one by Vulkan. */
+static bool is_offered(Gpu *gpu, VkPhysicalDevice physical, const char *extension)
+{
+    uint32_t count = 0;
+    bool     found = false;
+    VkResult result = physical
+        ? vkEnumerateDeviceExtensionProperties(physical, NULL, &count, NULL)
+        : vkEnumerateInstanceExtensionProperties(NULL, &count, NULL);
+    VkExtensionProperties *offered =
+        result == VK_SUCCESS ? gpu_alloc(gpu, count, sizeof *offered, "list extensions") : NULL;
+    if (offered)
+        result = physical ? vkEnumerateDeviceExtensionProperties(physical, NULL, &count, offered)
+                          : vkEnumerateInstanceExtensionProperties(NULL, &count, offered);
+    for (uint32_t i = 0; offered && result == VK_SUCCESS && i < count; i++)
+        found = found || strcmp(offered[i].extensionName, extension) == 0;
+    gpu_release(gpu, offered);
+    return found;
+}
+
 static bool instance_create(Gpu *gpu, bool validation)
 {
-    const char *layers[] = {VALIDATION_LAYER};
-    const char *extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
-                                VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+    const char *layers[] = {VALIDATION_LAYER}, *extensions[3];
+    uint32_t    extension_count = 0;
+    bool portability = is_offered(gpu, VK_NULL_HANDLE,
+                                  VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+    if (portability)
+        extensions[extension_count++] = VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME;
+    if (validation) {
+        extensions[extension_count++] = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+        extensions[extension_count++] = VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME;
+    }
     VkValidationFeatureEnableEXT enables[] = {
         VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
     VkDebugUtilsMessengerCreateInfoEXT listen = {
@@ -139,6 +169,7 @@ static bool instance_create(Gpu *gpu, bool validation)
     TRY(gpu, "start Vulkan", vkCreateInstance(&(VkInstanceCreateInfo){
         .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
         .pNext = validation ? &features : NULL,
+        .flags = portability ? VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR : 0,
         .pApplicationInfo = &(VkApplicationInfo){
             .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
             .pApplicationName = "krs",
@@ -147,7 +178,7 @@ static bool instance_create(Gpu *gpu, bool validation)
         },
         .enabledLayerCount = validation,
         .ppEnabledLayerNames = layers,
-        .enabledExtensionCount = validation ? 2 : 0,
+        .enabledExtensionCount = extension_count,
         .ppEnabledExtensionNames = extensions,
     }, NULL, &gpu->instance));
 
@@ -378,9 +409,11 @@ static bool device_create(Gpu *gpu, unsigned pretence)
 {
     read_properties(gpu, pretence);
     vkGetPhysicalDeviceMemoryProperties(gpu->physical, &gpu->memory);
+    const char *extensions[] = {PORTABILITY_SUBSET};
+    /* Nothing outside of a buffer is read or written: the layers are to see it if it is. */
     VkPhysicalDeviceFeatures offered, taken = {0};
     vkGetPhysicalDeviceFeatures(gpu->physical, &offered);
-    taken.robustBufferAccess = offered.robustBufferAccess;
+    taken.robustBufferAccess = offered.robustBufferAccess && !gpu->messenger;
 
     const char *attempt = "open the device";
     TRY(gpu, attempt, vkCreateDevice(gpu->physical, &(VkDeviceCreateInfo){
@@ -392,6 +425,8 @@ static bool device_create(Gpu *gpu, unsigned pretence)
             .queueCount = 1,
             .pQueuePriorities = &(float){1},
         },
+        .enabledExtensionCount = is_offered(gpu, gpu->physical, PORTABILITY_SUBSET),
+        .ppEnabledExtensionNames = extensions,
         .pEnabledFeatures = &taken,
     }, NULL, &gpu->device));
     vkGetDeviceQueue(gpu->device, gpu->family, 0, &gpu->queue);

@@ -1,8 +1,8 @@
 /*
  * drivers.c: what kinds of devices the host tells apart is not seen.
  *
- * lavapipe is taken for a graphics card, and for a device whose buffers are no longer than any
- * device's may be: pictures and answers must be those of lavapipe as it is, bit by bit, under the
+ * The device is taken for a graphics card, and for one whose buffers are no longer than any
+ * device's may be: pictures and answers must be those of the device as it is, bit by bit, under the
  * validation layers.
  */
 #include <setjmp.h>
@@ -16,6 +16,7 @@
 
 #include "compiler/compile.h"
 #include "runtime/krs_vulkan.h"
+#include "tests/support/device.h"
 
 static char complaint[2048]; /* the last */
 
@@ -36,7 +37,7 @@ typedef struct Stage {
 
 static Stage open_stage(const char *text, unsigned pretence)
 {
-    KrsRendererOptions options = {.device = "cpu", .validation = true, .complaint = note_complaint,
+    KrsRendererOptions options = {.device = tested_device(), .validation = true, .complaint = note_complaint,
                                   .early_outs = KRS_EARLY_OUTS_OFF, .pretence = pretence};
     Stage              stage;
     KrsStatus          status = krs_renderer_new(&options, &stage.renderer);
