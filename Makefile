@@ -28,8 +28,8 @@ GRAPH    := $(addprefix compiler/graph/, graph.c derive.c series.c local.c ancho
                 fractal.c evaluate.c print.c)
 GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c arguments.c \
                 builtins.c lists.c chance.c joining.c functions.c expression.c map.c moebius.c \
-                make.c make_fractal.c meta.c make_krs.c slope.c field.c field_bounds.c deform.c declare.c methods.c looks.c \
-                palette.c scope.c statements.c print.c lower.c lower_normal.c lower_repeat.c \
+                make.c make_fractal.c meta.c make_krs.c slope.c field.c field_bounds.c deform.c \
+                declare.c claims.c empty.c methods.c looks.c palette.c scope.c statements.c print.c lower.c lower_normal.c lower_repeat.c \
                 lower_deform.c lower_krs.c lower_along.c lower_guards.c lower_moebius.c \
                 lower_images.c)
 SHADER   := $(addprefix compiler/shader/, emit.c statements.c mirrors.c early_outs.c march.c spirv.c)

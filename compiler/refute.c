@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/geometry/claims.h"
 #include "compiler/geometry/lowering.h"
 #include "compiler/search.h"
 
@@ -41,6 +42,7 @@ typedef enum Claim {
 typedef struct Finding {
     size_t     suspect;
     Claim      claim;
+    ShapeClaim pair;   /* `property` is NULL, or what is claimed beside the distance */
     bool       steady; /* of the distance that has to be 1-Lipschitz, else of the other */
     Witness    witness;
     NodeValue *parameters;
@@ -339,6 +341,30 @@ static bool try_shape(Refuter *r, size_t suspect, uint64_t operations, Finding *
     return refuted;
 }
 
+/* What a declaration claims beside its distance. */
+static bool try_claims(Refuter *r, size_t suspect, uint64_t operations, Finding *finding)
+{
+    const Shape *shape   = r->suspects.items[suspect].shape;
+    Arena       *scratch = r->in->scratch;
+    bool         refuted = false;
+    ShapeClaims  claims  = claims_of(r->graph, shape, scratch);
+    for (uint32_t i = 0; i < claims.count && !refuted && !r->stopped; i++) {
+        const ShapeClaim *pair = &claims.items[i];
+        Search            search;
+        if (!search_new_claim(&search, r->graph, pair->a, pair->b, shape->box, scratch))
+            continue;
+        search.figure = shape->figure && strcmp(pair->property, "figure") != 0;
+        search.random = r->random;
+        r->random += 0x9e3779b97f4a7c15;
+        finding->suspect = suspect;
+        refuted          = try_settings(r, shape, &search, operations / claims.count, finding);
+        if (refuted)
+            finding->pair = *pair;
+    }
+    arena_free(scratch);
+    return refuted;
+}
+
 /* What marches instead of a component's distance; `plain` where that is the distance itself. */
 static Node lower_claim(Refuter *r, const Shape *shape, Claim claim, Node plain)
 {
@@ -536,6 +562,7 @@ static const char *fault_text(Refuter *r, const Witness *w)
     case FAULT_OUTSIDE:  return "something of it is outside of its box";
     case FAULT_CONSTANT: return "a number in it that is the same at all points is not finite";
     case FAULT_BOX:      return "a side of its box is not a number";
+    case FAULT_CLAIM: /* report_claim */
     case FAULT_NAN:
     case FAULT_NONE:    break;
     }
@@ -667,14 +694,33 @@ static void report(Refuter *r, const Finding *whole, const Finding *finding)
         diag->help = "nobody claimed this: it is a bug of krs, please report it";
 }
 
+static void report_claim(Refuter *r, const Finding *finding)
+{
+    Diags            *diags = r->in->diags;
+    const ShapeClaim *pair  = &finding->pair;
+    Diag *diag  = diag_add(diags, DIAG_REFUTED, pair->shape->span, "`%s` of `%s` is refuted: %s",
+                           pair->property, pair->shape->name, pair->wrong);
+    diag->label = "this shape is to blame";
+    diag_place(diags, diag, pair->span, "claimed here");
+    place_caller(r, diag, finding);
+    diag_note(diags, diag,
+              diag_text(diags, "by %.6g at %s", finding->witness.at_p,
+                        point_text(r, finding->witness.p)));
+    note_parameters(r, diag, finding->parameters);
+    note_component(r, diag, finding, finding);
+}
+
 /* ---- the whole ---- */
 
 static KrsStatus settle(Refuter *r, Finding *finding)
 {
     Finding whole = *finding;
-    if (finding->claim == CLAIM_DISTANCE)
+    if (finding->claim == CLAIM_DISTANCE && !finding->pair.property)
         find_culprit(r, finding);
-    report(r, &whole, finding);
+    if (finding->pair.property)
+        report_claim(r, finding);
+    else
+        report(r, &whole, finding);
     r->result->refuted = true;
     return KRS_BAD_SCENE;
 }
@@ -691,6 +737,7 @@ static KrsStatus try_all(Refuter *r, bool whole, Finding *finding)
         if (is_whole(r, i) != whole || is_wrapper(r->suspects.items[i].shape))
             continue;
         if (try_shape(r, i, r->total / 2 / count, finding) ||
+            try_claims(r, i, r->total / 8 / count, finding) ||
             (whole && try_steps(r, i, r->total / 8 / count, finding)))
             return settle(r, finding);
     }
@@ -708,6 +755,8 @@ static void start_refuter(Refuter *r)
             shape = shape->children[0];
         add_suspects(r, shape, (uint32_t)i, SIZE_MAX);
     }
+    for (size_t i = 0; i < scene->half_spaces.count; i++)
+        add_suspects(r, scene->half_spaces.items[i], 0, SIZE_MAX);
 }
 
 KrsStatus refute_inspected(const Inspected *in, const KrsRefuteOptions *how, KrsRefutation *result)

@@ -128,7 +128,8 @@ static void note(Search *s, Fault fault, double ratio, const double p[3], const 
 
 static bool is_settled(const Search *s)
 {
-    return s->worst.fault == FAULT_NAN || s->worst.fault == FAULT_OUTSIDE;
+    return s->worst.fault == FAULT_NAN || s->worst.fault == FAULT_OUTSIDE ||
+           s->worst.fault == FAULT_CLAIM;
 }
 
 /* The distance at a point; what one point alone refutes is noted at once. */
@@ -145,7 +146,10 @@ static double distance_at(Search *s, double p[3])
     double distance = s->values[s->distance].v[0];
     if (isnan(distance) && !is_settled(s) && isfinite(length3(p)))
         note(s, FAULT_NAN, INFINITY, p, p, distance, distance);
-    else if (s->side == s->distance && distance < -rounding_at(s, p) &&
+    else if (s->claim) {
+        if (distance > rounding_at(s, p) && !is_settled(s))
+            note(s, FAULT_CLAIM, INFINITY, p, p, distance, distance);
+    } else if (s->side == s->distance && distance < -rounding_at(s, p) &&
              outside(s, p) > 1e3 * rounding_at(s, p) && !is_settled(s))
         note(s, FAULT_OUTSIDE, INFINITY, p, p, distance, distance);
     return distance;
@@ -178,6 +182,8 @@ static double ratio_of(const Search *s, const Pair *pair)
         return 0;
     if (s->side == s->distance && (fabs(a) > NOWHERE || fabs(b) > NOWHERE))
         return 0; /* nothing is anywhere, or a wall is */
+    if (s->claim) /* none is refuted here: uphill is towards 0 */
+        return 1 / (1 + fabs(fmax(a, b)) / s->size);
     double rise = s->steep ? fabs(a - b)
                   : are_sides_different(pair->side_p, pair->side_q) ? fmax(fabs(a), fabs(b))
                                                                     : 0;
@@ -694,6 +700,21 @@ bool search_new(Search *search, const Graph *graph, Node distance, Node side, Bo
     }
     choose_around(search);
     return isfinite(search->size) && search->size < 1e100;
+}
+
+bool search_new_claim(Search *search, Graph *graph, Node a, Node b, Box box, Arena *arena)
+{
+    Node  roots[3] = {a, b, graph_op2(graph, OP_min, a, b)};
+    Graph *simple  = graph_simplify(graph, roots, 3, arena);
+    if (!search_new(search, simple, roots[2], roots[2], box, arena))
+        return false;
+    search->claim = true;
+    for (int i = 0; i < 2; i++) { /* what is wrong may be thin, but lies at a surface */
+        Target target = {GOAL_ZERO, roots[i], roots[i], roots[i], 0};
+        for (int times = 0; times < 4; times++)
+            array_push(arena, &search->targets, target);
+    }
+    return true;
 }
 
 bool search_start(Search *search, const NodeValue *parameters)

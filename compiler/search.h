@@ -21,6 +21,7 @@ typedef enum Fault {
     FAULT_LONG,    /* the distance at p is longer than the way to q, on the other side */
     FAULT_OUTSIDE, /* p is within the solid, and not in the box */
     FAULT_NAN,     /* the distance at p is not a number */
+    FAULT_CLAIM,   /* two numbers are both above 0 at p, and claimed never to be */
     /* Found without a search: */
     FAULT_CONSTANT, /* something that is the same at all points is not finite */
     FAULT_BOX       /* a side of the box is not a number */
@@ -46,6 +47,7 @@ typedef struct Search {
     Box        box;      /* claimed; may be infinite */
     bool       steep;    /* FAULT_STEEP is looked for, else FAULT_LONG */
     bool       figure;   /* z stays 0 */
+    bool       claim;    /* `distance` is the lesser of two numbers that are nowhere above 0 both */
     bool       aimed;    /* the distance is that along a ray, OP_DIRECTION */
     double     aim[3];   /* then: the ray's direction */
     uint64_t   random;   /* state of the generator */
@@ -66,6 +68,8 @@ typedef struct Search {
    caller before search_start: box, steep, figure, random, aimed.  False: nothing to look at. */
 bool search_new(Search *search, const Graph *graph, Node distance, Node side, Box box,
                 Arena *arena);
+/* The same for a point at which two numbers are both above 0. */
+bool search_new_claim(Search *search, Graph *graph, Node a, Node b, Box box, Arena *arena);
 /* Takes on the values of parameters; false when something in the graph is then not finite. */
 bool search_start(Search *search, const NodeValue *parameters);
 /* Looks on until so many more operations have been spent. */

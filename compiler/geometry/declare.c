@@ -1,9 +1,9 @@
 /*
  * declare.c: shapes declared in the language, the library's and the users' own.
  *
- * A declaration gives the distance as an expression of the point.  Where it claims `exact`, the
- * claim is put to the test by sampling when it is first used; otherwise a slope is derived and
- * the distance divided by it, so that every primitive is 1-Lipschitz from here on.
+ * A declaration gives the distance as an expression of the point.  What it claims is put to the
+ * test when it is first used (claims.c).  Where no slope is claimed one is derived and the distance
+ * divided by it, so that every primitive is 1-Lipschitz from here on.
  */
 #include "compiler/geometry/elaborate.h"
 
@@ -11,7 +11,6 @@
 #include <string.h>
 
 #include "compiler/geometry/lower.h"
-#include "compiler/graph/evaluate.h"
 
 static const char *const property_names[] = {
     "distance", "bound", "exact", "slope", "within", "uv", "plane", "figure", "core", "example"};
@@ -165,101 +164,12 @@ static bool derive_slope(Elaboration *e, Shape *shape, const Syntax *declaration
     return true;
 }
 
-/* ---- claims ---- */
-
-/* Points for sampling: a fixed sequence (Roberts' R3), spread over a box. */
-static void sample_point(uint32_t index, Box box, double point[3])
-{
-    static const double steps[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
-    for (int i = 0; i < 3; i++) {
-        double t = fmod(0.5 + (index + 1) * steps[i], 1);
-        point[i] = box.axis[i].low + t * (box.axis[i].high - box.axis[i].low);
-    }
-}
-
-static void parameter_values(const Elaboration *e, NodeValue *values)
-{
-    for (size_t i = 0; i < e->scene->parameters.count; i++) {
-        const Parameter *parameter = &e->scene->parameters.items[i];
-        memcpy(values[parameter->slot].v, parameter->value, sizeof parameter->value);
-    }
-}
-
-static void refuse_claim(Elaboration *e, const Syntax *declaration, const char *claim,
-                         const char *found, const double point[3])
-{
-    const Syntax *syntax = find_property(declaration, claim);
-    Diag *diag  = diag_add(e->diags, DIAG_FALSE_CLAIM, syntax->span, "`%s` of `%s` is not true",
-                           claim, declaration->name);
-    diag->label = "claimed here";
-    diag_note(e->diags, diag,
-              diag_text(e->diags, "%s at [%.4g, %.4g, %.4g]", found, point[0], point[1], point[2]));
-    if (strcmp(claim, "exact") == 0)
-        diag->help = "leave `exact` out: the compiler then derives a safe slope";
-}
-
-/* Whether a point lies farther than `rounding` from the box of the shape. */
-static bool is_outside(const Shape *shape, const double point[3], double rounding)
-{
-    for (int i = 0; i < (shape->figure ? 2 : 3); i++) {
-        Range side = shape->box.axis[i];
-        if (point[i] < side.low - rounding || point[i] > side.high + rounding)
-            return true;
-    }
-    return false;
-}
-
-/* Pairs of near points refute a claimed slope (0: none is claimed), single points a solid
-   outside of `within`. */
-static bool check_claims(Elaboration *e, const Syntax *declaration, const Shape *shape,
-                         Node distance, double slope)
-{
-    enum { SAMPLES = 400 };
-    Tape       tape       = tape_new(e->graph, &distance, 1, e->scratch);
-    NodeValue *values     = arena_new_array(e->scratch, NodeValue, e->graph->count);
-    NodeValue *parameters = arena_new_array(e->scratch, NodeValue, e->graph->parameters.count);
-    parameter_values(e, parameters);
-    tape_run_frame(&tape, parameters, values);
-    Box around  = box_is_finite(shape->box)
-                      ? box_grow(shape->box, 0.3 * box_diagonal(shape->box) + 0.1)
-                      : (Box){{{-10, 10}, {-10, 10}, {-10, 10}}};
-    double size = box_diagonal(around), rounding = 1e-9 * (1 + size);
-    bool   bounded = find_property(declaration, "within") != NULL;
-    if (!(size < 1e100)) /* check_extent refuses what is so large, in better words */
-        return true;
-    for (uint32_t i = 0; i < SAMPLES; i++) {
-        double a[3], b[3], moved = 0;
-        sample_point(i, around, a);
-        sample_point(i + 7 * SAMPLES, (Box){{{-1, 1}, {-1, 1}, {-1, 1}}}, b);
-        for (int k = 0; k < 3; k++) {
-            b[k] = shape->figure && k == 2 ? a[k] : a[k] + b[k] * size * (i % 2 ? 0.1 : 1e-4);
-            moved += (b[k] - a[k]) * (b[k] - a[k]);
-        }
-        tape_run_point(&tape, a, values);
-        double at_a = values[distance].v[0];
-        tape_run_point(&tape, b, values);
-        double at_b = values[distance].v[0];
-        if (slope > 0 && !(fabs(at_a - at_b) <= slope * sqrt(moved) * (1 + 1e-6) + rounding)) {
-            const char *found =
-                diag_text(e->diags, "its slope is %.4g", fabs(at_a - at_b) / sqrt(moved));
-            refuse_claim(e, declaration, shape->exact ? "exact" : "slope", found, a);
-            return false;
-        }
-        if (bounded && at_a < -rounding && is_outside(shape, a, rounding)) {
-            refuse_claim(e, declaration, "within", "there is something outside of it", a);
-            return false;
-        }
-    }
-    return true;
-}
-
-/* Once per declaration, at the sizes of its first use. */
-static bool needs_check(Elaboration *e, const Syntax *declaration)
+bool needs_check(Elaboration *e, const Syntax *syntax)
 {
     for (size_t i = 0; i < e->checked.count; i++)
-        if (e->checked.items[i] == declaration)
+        if (e->checked.items[i] == syntax)
             return false;
-    array_push(e->arena, &e->checked, declaration);
+    array_push(e->arena, &e->checked, syntax);
     return true;
 }
 
@@ -302,18 +212,43 @@ static bool read_properties(Elaboration *e, const Environment *env, const Syntax
 static bool settle_slope(Elaboration *e, const Environment *env, const Syntax *declaration,
                          bool first, Shape *shape)
 {
-    Node   plain = shape->distance;
     double slope;
+    shape->declared = shape->distance;
     if (!slope_property(e, env, declaration, &slope))
         return false;
     slope          = shape->exact ? 1 : slope;
     shape->claimed = slope > 0;
     if (slope > 0) {
         shape->derived  = slope;
-        shape->distance = divide_by_slope(e->graph, plain, slope);
+        shape->distance = divide_by_slope(e->graph, shape->declared, slope);
     } else if (!derive_slope(e, shape, declaration, find_property(declaration, "distance")))
         return false;
-    return !first || check_claims(e, declaration, shape, plain, slope);
+    return !first || check_claims(e, shape, slope);
+}
+
+/* A core that no `.round` asks for yet is tried by a radius that is a tenth of the least side. */
+static bool try_core(Elaboration *e, const Shape *shape)
+{
+    double least = HUGE_VAL;
+    for (int i = 0; i < (shape->figure ? 2 : 3); i++)
+        least = fmin(least, shape->box.axis[i].high - shape->box.axis[i].low);
+    if (!(least > 0) || is_of_library(e, shape))
+        return true;
+    Node         radius = graph_number(e->graph, isfinite(least) ? 0.1 * least : 0.1);
+    const Shape *core   = declared_core(e, shape, radius);
+    return core && check_core(e, shape, core, radius);
+}
+
+const Shape *declared_core(Elaboration *e, const Shape *shape, Node rounding)
+{
+    Node outer  = e->rounding;
+    e->rounding = rounding;
+    Value core  = evaluate(e, shape->core_names, shape->core);
+    e->rounding = outer;
+    if (core.type == VALUE_SHAPE && core.shape->figure == shape->figure)
+        return core.shape;
+    type_error(e, shape->core, core, shape->figure ? "a plane figure" : "a solid");
+    return NULL;
 }
 
 Value declare_instance(Elaboration *e, const Function *function, const Environment *env, Span span)
@@ -331,6 +266,7 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
 
     Shape *shape  = shape_new(e, SHAPE_PRIMITIVE, function->name, span, NULL, 0);
     Span   caller = e->graph->here;
+    shape->declaration = declaration;
     if (!read_properties(e, env, declaration, shape) ||
         !settle_slope(e, env, declaration, first, shape))
         return value_error();
@@ -341,6 +277,10 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
         *kept             = *env;
         shape->core_names = kept;
     }
+    if (first && shape->core && !try_core(e, shape))
+        return value_error();
+    if (shape->plane_normal != NODE_NONE && !is_of_library(e, shape))
+        array_push(e->arena, &e->scene->half_spaces, shape);
     e->graph->here = caller;
     return value_shape(shape);
 }

@@ -238,6 +238,25 @@ Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax
 /* ---- declare.c: shapes declared in the language ---- */
 /* The shape of a declaration whose parameters `env` binds; `span` is the call. */
 Value declare_instance(Elaboration *e, const Function *function, const Environment *env, Span span);
+/* Whether a declaration or property has not been put to the test yet; it counts as tested from
+   here on. */
+bool needs_check(Elaboration *e, const Syntax *syntax);
+
+/* What `core` is for this `rounding`; NULL: reported. */
+const Shape *declared_core(Elaboration *e, const Shape *shape, Node rounding);
+
+/* ---- claims.c: what declarations claim ---- */
+/* The library's claims hold for all sizes: tests search them, and compiling does not wait. */
+bool is_of_library(const Elaboration *e, const Shape *shape);
+/* Samples the claims of a declared shape at its sizes; `slope` is claimed, 0: none is.  False:
+   reported. */
+bool check_claims(Elaboration *e, const Shape *shape, double slope);
+/* The same of the `core` of a declared shape, for this `rounding`. */
+bool check_core(Elaboration *e, const Shape *shape, const Shape *core, Node rounding);
+
+/* ---- empty.c ---- */
+/* Warns of a component, shown at `span`, that is known to be empty. */
+void warn_if_nothing_is_left(Elaboration *e, const Shape *shape, const char *name, Span span);
 
 /* ---- slope.c: how fast expressions change ---- */
 typedef struct Steepness {
@@ -298,6 +317,9 @@ const Shape *make_joint(Elaboration *e, ShapeKind kind, const Shape *const *shap
                         Blend blend, Span span);
 const Shape *make_morph(Elaboration *e, const Shape *a, const Shape *b, Node t, Span span);
 const Shape *make_offset(Elaboration *e, const Shape *shape, Node radius, Span span);
+/* `shape` with round edges: its core, grown. */
+const Shape *make_rounded(Elaboration *e, const Shape *shape, const Shape *core, Node radius,
+                          Span span);
 const Shape *make_shell(Elaboration *e, const Shape *shape, Node thickness, Span span);
 const Shape *make_elongate(Elaboration *e, const Shape *shape, Node half, Span span);
 const Shape *make_extrude(Elaboration *e, const Shape *figure, Node height, Span span);

@@ -69,7 +69,7 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
     shape->exact        = true;
     shape->blend        = blend_sharp;
     shape->distance     = shape->bound = shape->uv = shape->trap = NODE_NONE;
-    shape->formula      = NODE_NONE;
+    shape->formula      = shape->declared = NODE_NONE;
     shape->plane_normal = shape->plane_offset = NODE_NONE;
     shape->values[0] = shape->values[1] = NODE_NONE;
     double sequences = 0; /* instances of the sequences among the parts; other parts make one */
@@ -225,7 +225,7 @@ const Shape *make_morph(Elaboration *e, const Shape *a, const Shape *b, Node t, 
     return morph;
 }
 
-const Shape *make_offset(Elaboration *e, const Shape *shape, Node radius, Span span)
+static Shape *new_offset(Elaboration *e, const Shape *shape, Node radius, Span span)
 {
     Shape *offset     = wrap(e, SHAPE_OFFSET, "offset", shape, span);
     Range  range      = node_range(e, radius, 0);
@@ -234,6 +234,19 @@ const Shape *make_offset(Elaboration *e, const Shape *shape, Node radius, Span s
     offset->exact     = shape->exact && range.low >= 0;
     check_steady(e, offset, "an offset", span);
     return offset;
+}
+
+const Shape *make_offset(Elaboration *e, const Shape *shape, Node radius, Span span)
+{
+    return new_offset(e, shape, radius, span);
+}
+
+const Shape *make_rounded(Elaboration *e, const Shape *shape, const Shape *core, Node radius,
+                          Span span)
+{
+    Shape *round   = new_offset(e, core, radius, span);
+    round->rounded = shape;
+    return round;
 }
 
 const Shape *make_shell(Elaboration *e, const Shape *shape, Node thickness, Span span)

@@ -156,20 +156,20 @@ static Value method_offset(Elaboration *e, const Shape *shape, Call *call)
                           : value_shape(make_offset(e, shape, r, call->syntax->span));
 }
 
-/* The shape that, grown by r, is `shape` with round edges; NULL when it does not know one. */
-static const Shape *core_of(Elaboration *e, const Shape *shape, Node r, const Call *call)
+/* The shape that, grown by r, is `shape` with round edges; NULL when it does not know one.  *good
+   becomes false where it knows a wrong one. */
+static const Shape *core_of(Elaboration *e, const Shape *shape, Node r, const Call *call,
+                            bool *good)
 {
     if (shape->kind == SHAPE_PRIMITIVE && shape->core) {
-        Node outer  = e->rounding;
-        e->rounding = r;
-        Value core  = evaluate(e, shape->core_names, shape->core);
-        e->rounding = outer;
-        return core.type == VALUE_SHAPE ? core.shape : NULL;
+        const Shape *core = declared_core(e, shape, r);
+        *good = core && (!needs_check(e, shape->core) || check_core(e, shape, core, r));
+        return core;
     }
     if (shape->kind != SHAPE_TRANSFORM)
         return NULL;
     Node         smaller = graph_op2(e->graph, OP_div, r, shape->map.scale);
-    const Shape *core    = core_of(e, shape->children[0], smaller, call);
+    const Shape *core    = core_of(e, shape->children[0], smaller, call, good);
     return core ? make_transform(e, core, &shape->map, call->syntax->span) : NULL;
 }
 
@@ -179,8 +179,13 @@ static Value method_round(Elaboration *e, const Shape *shape, Call *call)
     if (r == NODE_NONE ||
         !check_not_negative(e, r, call->arguments[0].syntax, "the radius of `round`"))
         return value_error();
-    const Shape *core = core_of(e, shape, r, call);
-    return value_shape(make_offset(e, core ? core : shape, r, call->syntax->span));
+    bool         good = true;
+    const Shape *core = core_of(e, shape, r, call, &good);
+    if (!good)
+        return value_error();
+    Span span = call->syntax->span;
+    return value_shape(core ? make_rounded(e, shape, core, r, span)
+                            : make_offset(e, shape, r, span));
 }
 
 static Value method_shell(Elaboration *e, const Shape *shape, Call *call)

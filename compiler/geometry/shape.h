@@ -154,6 +154,9 @@ struct Shape {
     uint32_t   cells[3]; /* REPEAT: copies per axis, 0 for endless */
 
     Node          plane_normal, plane_offset; /* PRIMITIVE that is a half-space, else NODE_NONE */
+    const Syntax *declaration; /* PRIMITIVE that a declaration made, else NULL */
+    Node          declared;    /* of such a primitive: its `distance` as it is written */
+    const struct Shape *rounded; /* OFFSET that .round made of a core: what is rounded; or NULL */
     const Syntax *core; /* PRIMITIVE: what .round(r) grows by r, using `rounding`; or NULL */
     const struct Environment *core_names; /* what that expression sees */
     const Material           *material;
@@ -219,6 +222,8 @@ typedef struct Scene {
     struct { Component *items; size_t count, capacity; } components;
     struct { Parameter *items; size_t count, capacity; } parameters;
     struct { FrameSlope *items; size_t count, capacity; } slopes;
+    /* Declared half-spaces, which may be in no component: mirrors. */
+    struct { const Shape **items; size_t count, capacity; } half_spaces;
     struct { SceneCamera *items; size_t count, capacity; } cameras;
     struct { SceneLight *items; size_t count, capacity; } lights;
     Node       zenith, horizon, ground;

@@ -217,6 +217,81 @@ static void a_false_box_is_blamed(void **state)
                   6, "outside of its box");
 }
 
+/* Claims beside the distance, true at the default of the parameter and false for others; each
+   also as it is true for all. */
+static void other_claims_are_searched(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *shape, *use, *wrong, *right, *words;
+    } claims[] = {
+        {"distance: y - k, exact: true, plane: [[0, 1, 0], %s]", "show a(k) & box([3, 3, 3]);",
+         "k ^ 2", "k", "`plane` of `a`"},
+        {"distance: y - k, exact: true, plane: [[0, %s, 0], 2 * k]",
+         "show sphere(1).mirror(a(k));", "2 * k", "2", "`plane` of `a`"},
+        {"distance: y - k, exact: true, plane: [[0, 1, 0], k + %s]", /* a thousandth */
+         "show krs { kernel sphere(1); reflect a(k); };", "0.001 * (k - 1)", "0", "`plane` of `a`"},
+        {"distance: length([x, y + %s * z]) - 1, figure: true, within: [[-9, -9, 0], [9, 9, 0]]",
+         "show a(k).extrude(1);", "0.01 * (k - 1)", "0", "its `distance` changes with z"},
+        {"distance: length([x, y]) - 1, figure: true, within: [[-1, -1, 0], [1, 1, 0]],\n"
+         "uv: [x, y + %s * z]",
+         "show a(k).revolve(2);", "(k - 1)", "(k - k)", "its `uv` changes with z"},
+        {"distance: length(p) - 1, exact: true, within: sphere(1), core: ball(1 - %s * rounding)",
+         "show a(k).move([1, 2, 3]).round(0.2);", "k", "1", "grown by `rounding`"},
+        {"distance: length(p) - k, exact: true, within: sphere(2), core: ball(%s - rounding)",
+         "show a(k).scale(2).round(0.1 * k);", "sqrt(k)", "k", "`core` of `a`"},
+        {"distance: 0.5 * (length(p) - k), slope: 1, within: sphere(2), bound: length(p) - %s",
+         "show a(k) | sphere(0.1);", "k ^ 0.9", "k", "`bound` of `a`"},
+        {"distance: 0.5 * (length(p) - 1), slope: 1, within: sphere(2), bound: %s * (length(p) - 1)",
+         "show a(k) | sphere(0.1);", "k", "1", "the distance of `a`"},
+    };
+    for (size_t i = 0; i < sizeof claims / sizeof *claims; i++)
+        for (int wrong = 0; wrong < 2; wrong++) {
+            char          claim[300], text[700];
+            Said          said;
+            KrsRefutation result;
+            snprintf(claim, sizeof claim, claims[i].shape, wrong ? claims[i].wrong : claims[i].right);
+            snprintf(text, sizeof text, "param k = 1 in [0.5, 2];\n"
+                     "shape ball(r) { distance: length(p) - r, exact: true, within: sphere(r) }\n"
+                     "shape a(k) { %s }\n%s\n", claim, claims[i].use);
+            KrsStatus status = refute(text, 0.2, &said, &result);
+            if (status != (wrong ? KRS_BAD_SCENE : KRS_OK))
+                print_message("%s%s\n", text, said.text);
+            assert_int_equal(status, wrong ? KRS_BAD_SCENE : KRS_OK);
+            if (wrong && !strstr(said.text, claims[i].words))
+                fail_msg("%s%s\n", text, said.text);
+            assert_int_equal(result.refuted, wrong);
+        }
+}
+
+/* At other sizes than those of a test picture, too. */
+static void claims_of_the_library_are_true(void **state)
+{
+    (void)state;
+    static const char *const scenes[] = {
+        "param k = 1 in [0.5, 2]; show box([k, 1, 2]).round(0.1 * k); show sphere(k).round(0.3);\n"
+        "show cylinder(k, 1).round(0.2); show torus(k, 0.3).round(0.1);\n"
+        "show link(k, 0.5, 0.2).round(0.1);",
+        "param k = 1 in [0.5, 2]; show octahedron(k).round(0.1 * k); show tetrahedron(k).round(0.05);\n"
+        "show dodecahedron(k).round(0.1); show icosahedron(k).round(0.1);\n"
+        "show prism(5, k, 2).round(0.1);",
+        "param k = 1 in [0.5, 2]; show circle(k).round(0.1).extrude(1); show ellipsoid([k, 2, 0.3]);\n"
+        "show rectangle([1, k]).round(0.1).extrude(1); show regular(7, k).round(0.1).revolve(3);\n"
+        "show star(5, k).extrude(1); show polygon().extrude(k); show segment().extrude(k);\n"
+        "show arc(k, 100deg).extrude(1); show bezier().extrude(k);",
+        "param k = 1 in [0.5, 2]; show half_space([1, k, 2], k) & sphere(2);\n"
+        "show plane([k, 1, 0], 0.5) & sphere(2);",
+    };
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
+        Said          said;
+        KrsRefutation result;
+        KrsStatus     status = refute(scenes[i], 0.5, &said, &result);
+        if (status != KRS_OK)
+            print_message("%s\n", said.text);
+        assert_int_equal(status, KRS_OK);
+    }
+}
+
 /* Two parts, of which one may not be shown at all: it is looked at by itself. */
 static void a_part_that_is_hidden_is_found(void **state)
 {
@@ -454,6 +529,8 @@ int main(void)
         cmocka_unit_test(a_false_claim_of_exactness_is_blamed),
         cmocka_unit_test(a_false_slope_is_blamed),
         cmocka_unit_test(a_false_box_is_blamed),
+        cmocka_unit_test(other_claims_are_searched),
+        cmocka_unit_test(claims_of_the_library_are_true),
         cmocka_unit_test(a_part_that_is_hidden_is_found),
         cmocka_unit_test(honest_scenes_pass),
         cmocka_unit_test(an_estimate_is_only_measured),
