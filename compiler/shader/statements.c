@@ -95,6 +95,15 @@ const char *emit_vector(Emitter *e, const double v[3])
     return constant_text(e, &constant);
 }
 
+/* A file may have any name; what would end the comment, or the text, is shown as `?`. */
+static void add_file_name(Text *out, const char *name)
+{
+    for (; *name; name++) {
+        bool control = (unsigned char)*name < ' ' || *name == 0x7f;
+        text_add_bytes(out, control ? "?" : name, 1);
+    }
+}
+
 void emit_comment(Emitter *e, Span span)
 {
     if (!span.source)
@@ -104,7 +113,9 @@ void emit_comment(Emitter *e, Span span)
     if (e->last.source == span.source && e->last.start == position.line)
         return;
     e->last = (Span){span.source, position.line, 0};
-    text_format(e->out, "    // %s:%u\n", source->name, position.line);
+    text_add(e->out, "    // ");
+    add_file_name(e->out, source->name);
+    text_format(e->out, ":%u\n", position.line);
 }
 
 /* A row's template with the operands in the place of $a, $b, $c, $d.  What stands before a

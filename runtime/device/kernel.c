@@ -64,6 +64,40 @@ static size_t expand(const char *text, const KernelSource *source, char *out)
     return length;
 }
 
+/* The end of the comment that begins at `text`, at the line's end or behind the closing mark; NULL
+   where none begins.  GLSL has no strings, in which such a mark would mean something else. */
+static const char *comment_end(const char *text)
+{
+    if (text[0] != '/' || (text[1] != '/' && text[1] != '*'))
+        return NULL;
+    if (text[1] == '/')
+        return text + strcspn(text, "\n");
+    const char *end = strstr(text + 2, "*/");
+    return end ? end + 2 : text + strlen(text);
+}
+
+/* Takes out comments, blanks at the ends of lines, and lines with nothing else: what no compiler
+   looks at.  A comment within a line leaves the blank that it stands for. */
+void kernel_strip(char *text)
+{
+    char *to = text, *line = text; /* where the line begins in what has been written */
+    for (const char *from = text; *from;) {
+        const char *behind = comment_end(from);
+        char        next = behind ? ' ' : *from;
+        from = behind ? behind : from + 1;
+        if (next != '\n') {
+            *to++ = next;
+            continue;
+        }
+        while (to > line && strchr(" \t\r", to[-1]))
+            to--;
+        if (to > line)
+            *to++ = '\n';
+        line = to;
+    }
+    *to = '\0';
+}
+
 char *kernel_text(Gpu *gpu, const KernelSource *source)
 {
     const char *text = find_file(source->file, strlen(source->file));
@@ -74,8 +108,10 @@ char *kernel_text(Gpu *gpu, const KernelSource *source)
         return NULL;
     }
     char *whole = gpu_alloc(gpu, length + 1, 1, "put a kernel together");
-    if (whole)
+    if (whole) {
         expand(text, source, whole);
+        kernel_strip(whole);
+    }
     return whole;
 }
 

@@ -17,9 +17,12 @@ typedef struct KernelSource {
     const char *defines; /* lines of `#define NAME VALUE` that choose a variant, or NULL */
 } KernelSource;
 
-/* The text of a kernel: its includes in place, and its defines after the `#version` line.  The
+/* The text of a kernel: its includes in place, its defines after the `#version` line, and without
+   comments, so that the cache knows a scene again that differs in them, in its name or folder.  The
    caller's to release; NULL with the failure noted. */
 char *kernel_text(Gpu *gpu, const KernelSource *source);
+/* Takes comments and blank lines out of a text in GLSL. */
+void  kernel_strip(char *text);
 
 /* Compiles a kernel, or takes it from the cache, and adds the time it took. */
 bool kernel_create(Gpu *gpu, Kernel *kernel, const KernelSource *source, VkPipelineLayout layout,

@@ -2,7 +2,7 @@
 # cache.sh: compiled shaders are kept from run to run, and no picture shows it.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 22
+plan 26
 export XDG_CACHE_HOME="$work/caches"
 cache=$XDG_CACHE_HOME/krs
 
@@ -47,6 +47,23 @@ run render other.krs --size 41x33 --quiet -o c.exr
 [ "$status" -eq 0 ] && [ "$(count "$cache")" -gt "$(wc -l <first)" ] &&
     [ "$(files "$cache" | comm -12 - first | wc -l)" -eq "$(wc -l <first)" ]
 result $? "another scene has entries of its own"
+
+# What is said about a scene beside it, and where it lies, is no part of what is compiled.
+files "$cache" >others
+mkdir -p elsewhere/deep
+known() {
+    run render "$1" --size 41x33 --quiet -o c.exr
+    [ "$status" -eq 0 ] && files "$cache" | cmp -s - others
+}
+{ printf '// A comment, */ and /* another.\n\n/* several\nlines */\n'; cat other.krs; } >commented.krs
+known commented.krs
+result $? "a scene with comments in front compiles nothing"
+cp other.krs renamed.krs && known renamed.krs
+result $? "neither does one with another name"
+cp other.krs elsewhere/deep/other.krs && known elsewhere/deep/other.krs
+result $? "nor one in another folder"
+odd=$(printf 'odd\nname') && cp other.krs "$odd.krs" && known "$odd.krs"
+result $? "nor one with a line break in its name"
 
 echo 'show field(y - 0.1 * sin(time * x)).within(box([2, 1, 2]));' >wave.krs
 run render wave.krs --size 41x33 --quiet --time 1 -o one.exr

@@ -188,6 +188,34 @@ static void some_kernels_come_along(void **state)
     assert_int_equal(count_files(".spirv", name), 0);
 }
 
+/* The key of the cache is of what is compiled: comments, blank lines and blanks before a line's end
+   are no part of it, and nothing else is lost. */
+static void comments_are_not_compiled(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *given, *left;
+    } texts[] = {
+        {"", ""},
+        {"// only this", " "},
+        {"a;\n// b\nc;\n", "a;\nc;\n"},
+        {"a; // b\n\n \t\nc; \r\n", "a;\nc;\n"},
+        {"a/* b */c\n", "a c\n"},
+        {"a /* b\n// c */ d\n", "a   d\n"},
+        {"a // b /* c\nd // */ e\n", "a\nd\n"},
+        {"#define A(b) b / 2 // half\nA(c) / d;\n", "#define A(b) b / 2\nA(c) / d;\n"},
+        {"a /*/ b */ c\n", "a   c\n"},
+        {"a /* never closed\nb", "a  "},
+        {"    indented;\n", "    indented;\n"},
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        char text[64];
+        snprintf(text, sizeof text, "%s", texts[i].given);
+        kernel_strip(text);
+        assert_string_equal(text, texts[i].left);
+    }
+}
+
 /* Several variants of a kernel: all are made, or the reason is told. */
 static void kernels_are_compiled_together(void **state)
 {
@@ -452,6 +480,7 @@ int main(void)
         in_folder(lavapipe_keeps_none),
         in_folder(pipelines_are_kept),
         cmocka_unit_test(graphics_cards_do_not_rehearse),
+        cmocka_unit_test(comments_are_not_compiled),
         cmocka_unit_test(threads_may_compile_at_once),
     };
     return cmocka_run_group_tests_name("compiled", tests, NULL, NULL);
