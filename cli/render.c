@@ -39,6 +39,15 @@ static const char *find_pattern(const char *path, int *width, size_t *length)
     return NULL;
 }
 
+/* Whether a name has places for several numbers, of which only one would be the frame's. */
+static bool has_two_patterns(const char *path)
+{
+    int         width;
+    size_t      length;
+    const char *first = find_pattern(path, &width, &length);
+    return first && find_pattern(first + length, &width, &length);
+}
+
 /* The name of an output for a frame; without --frames, names are taken as they are. */
 static const char *frame_path(const Options *options, const char *path, uint32_t frame)
 {
@@ -69,25 +78,50 @@ static void choose_outputs(Render *render)
     render->output_count = 1;
 }
 
+/* Whether two outputs are one file in some frame.  Names that differ in the number's width only are
+   equal from some power of ten on. */
+static bool are_one_file(const Options *options, const char *a, const char *b)
+{
+    uint32_t first = options->first_frame, last = options->last_frame;
+    if (output_is_same(frame_path(options, a, first), frame_path(options, b, first)) ||
+        output_is_same(frame_path(options, a, last), frame_path(options, b, last)))
+        return true;
+    for (uint32_t frame = 10; frame < last; frame *= 10)
+        if (frame > first &&
+            output_is_same(frame_path(options, a, frame), frame_path(options, b, frame)))
+            return true;
+    return false;
+}
+
+static KrsStatus check_name(const Render *render, size_t index)
+{
+    const Options *options = render->options;
+    const char *path = render->outputs[index];
+    int width;
+    size_t length;
+    if (file_form(path) == FORM_UNKNOWN)
+        return say_usage(options, "the output `%s` ends in neither .exr nor .png", path);
+    if (options->animated && !find_pattern(path, &width, &length))
+        return say_usage(options, "with --frames, `%s` needs a place for the number: %%04d", path);
+    if (options->animated && has_two_patterns(path))
+        return say_usage(options, "`%s` has more than one place for the number of the frame", path);
+    for (size_t other = 0; other < index; other++)
+        if (are_one_file(options, render->outputs[other], path))
+            return say_usage(options, "the output `%s` is asked for twice", path);
+    return KRS_OK;
+}
+
 static KrsStatus check_outputs(const Render *render)
 {
     const Options *options = render->options;
     for (size_t i = 0; i < render->output_count; i++) {
-        const char *path = render->outputs[i];
-        int width;
-        size_t length;
+        const char *path = frame_path(options, render->outputs[i], options->first_frame);
         OutputError error;
-        if (file_form(path) == FORM_UNKNOWN)
-            return say_usage(options, "the output `%s` ends in neither .exr nor .png", path);
-        if (options->animated && !find_pattern(path, &width, &length))
-            return say_usage(options, "with --frames, `%s` needs a place for the number: %%04d",
-                             path);
-        for (size_t other = 0; other < i; other++)
-            if (strcmp(render->outputs[other], path) == 0)
-                return say_usage(options, "the output `%s` is asked for twice", path);
-        path = frame_path(options, path, options->first_frame);
-        if (scene_is_kept(options, path) != KRS_OK)
-            return KRS_BAD_ARGUMENT;
+        KrsStatus status = check_name(render, i);
+        if (status == KRS_OK)
+            status = scene_is_kept(options, path);
+        if (status != KRS_OK)
+            return status;
         if (output_check(path, &error) != KRS_OK) {
             say("%s", error.message);
             return error.status;

@@ -98,6 +98,8 @@ KrsStatus write_output(const char *path, Fill *fill, const void *user)
     }
     if (error.status != KRS_OK && error.status != KRS_INTERRUPTED)
         say("%s", error.message);
+    else if (error.warning[0])
+        say("warning: %s", error.warning);
     return error.status;
 }
 

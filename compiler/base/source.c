@@ -21,6 +21,31 @@ static void find_lines(Arena *arena, Source *source)
             source->lines[source->line_count++] = i + 1;
 }
 
+static bool begins_character(char byte) { return (byte & 0xC0) != 0x80; }
+
+static void count_characters(Arena *arena, Source *source)
+{
+    uint32_t count     = 0;
+    source->characters = arena_new_array(arena, uint32_t, source->length / SOURCE_BLOCK + 1);
+    for (uint32_t i = 0; i < source->length; i++) {
+        if (i % SOURCE_BLOCK == 0)
+            source->characters[i / SOURCE_BLOCK] = count;
+        count += begins_character(source->text[i]);
+    }
+    if (source->length % SOURCE_BLOCK == 0)
+        source->characters[source->length / SOURCE_BLOCK] = count;
+}
+
+/* Characters that begin before a byte. */
+static uint32_t characters_before(const Source *source, uint32_t offset)
+{
+    offset         = offset < source->length ? offset : source->length;
+    uint32_t block = offset / SOURCE_BLOCK, count = source->characters[block];
+    for (uint32_t i = block * SOURCE_BLOCK; i < offset; i++)
+        count += begins_character(source->text[i]);
+    return count;
+}
+
 static void push_source(Sources *sources, const char *name, const char *text, size_t length,
                         bool library)
 {
@@ -31,6 +56,7 @@ static void push_source(Sources *sources, const char *name, const char *text, si
         .library = library,
     };
     find_lines(sources->arena, &source);
+    count_characters(sources->arena, &source);
     array_push(sources->arena, sources, source);
 }
 
@@ -53,11 +79,10 @@ Position source_position(const Source *source, uint32_t offset)
         else
             high = middle;
     }
-    uint32_t column = 1;
-    for (uint32_t i = source->lines[low]; i < offset && i < source->length; i++)
-        column += (source->text[i] & 0xC0) != 0x80; /* bytes that begin a character */
+    uint32_t column =
+        1 + characters_before(source, offset) - characters_before(source, source->lines[low]);
     /* A place in the middle of a character counts as its beginning. */
-    if (offset < source->length && (source->text[offset] & 0xC0) == 0x80 && column > 1)
+    if (offset < source->length && !begins_character(source->text[offset]) && column > 1)
         column--;
     return (Position){low + 1, column};
 }

@@ -22,7 +22,10 @@ typedef struct Source {
     bool        library; /* part of the standard library */
     uint32_t   *lines;   /* offset of the first byte of each line */
     uint32_t    line_count;
+    uint32_t   *characters; /* how many begin before each SOURCE_BLOCK-th byte */
 } Source;
+
+enum { SOURCE_BLOCK = 256 }; /* bytes that are looked through to find a column, at most twice */
 
 typedef struct Sources {
     Arena  *arena;

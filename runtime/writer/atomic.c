@@ -11,13 +11,16 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <libgen.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { BUFFER_SIZE = 1 << 16, ATTEMPTS = 1000 };
+#include "runtime/writer/temporary.h"
+
+enum { BUFFER_SIZE = 1 << 16, MOST_LINKS = 40 };
 
 struct OutputFile {
     OutputError *error;
@@ -28,6 +31,9 @@ struct OutputFile {
     char    *temporary; /* spool file in case of a direct target, else in `folder` */
     int      fd;
     bool     direct;    /* the target is no regular file */
+    bool     exists;    /* and is as `before` says, which the new file will be, too */
+    struct stat before;
+    mode_t   mode;      /* of a target that does not exist */
     uint64_t end;       /* where the longest write so far ended */
     uint64_t buffered_at;
     size_t   buffered;
@@ -81,27 +87,80 @@ static char *folder_of(const char *path)
     return folder;
 }
 
+/* "real/folder/name" of a file that does not exist, in a folder that does. */
+static char *place_missing(const char *path)
+{
+    char *folder = folder_of(path), *real = folder ? realpath(folder, NULL) : NULL, *place = NULL;
+    const char *slash = strrchr(path, '/');
+    if (real && asprintf(&place, "%s/%s", strcmp(real, "/") == 0 ? "" : real,
+                         slash ? slash + 1 : path) < 0)
+        place = NULL;
+    free(folder);
+    free(real);
+    return place;
+}
+
+/* What a symbolic link leads to, as seen from the link; NULL when it is none. */
+static char *follow_link(const char *path)
+{
+    char  to[PATH_MAX], *folder, *place = NULL;
+    ssize_t length = readlink(path, to, sizeof to - 1);
+    if (length < 0)
+        return NULL;
+    to[length] = '\0';
+    if (to[0] == '/')
+        return strdup(to);
+    folder = folder_of(path);
+    if (folder && asprintf(&place, "%s/%s", folder, to) < 0)
+        place = NULL;
+    free(folder);
+    return place;
+}
+
+/* Where a file is or would be made, by way of links that may lead to nothing; NULL with errno. */
+static char *find_place(const char *path)
+{
+    char *place = strdup(path);
+    for (int links = 0; place && links < MOST_LINKS; links++) {
+        char *real = realpath(place, NULL), *next = NULL;
+        bool  missing = !real && errno == ENOENT;
+        if (missing && !(next = follow_link(place)))
+            real = place_missing(place);
+        free(place);
+        if (!next)
+            return real;
+        place = next;
+    }
+    free(place);
+    errno = ELOOP;
+    return NULL;
+}
+
+bool output_is_same(const char *a, const char *b)
+{
+    char *first = find_place(a), *second = find_place(b);
+    bool  same = strcmp(a, b) == 0 || (first && second && strcmp(first, second) == 0);
+    free(first);
+    free(second);
+    return same;
+}
+
 /* Where the bytes will go in the end: the file behind a symbolic link is replaced, not the
    link. */
 static bool find_target(OutputFile *file)
 {
-    struct stat info;
-    if (file->shown[0] == '\0') {
-        errno = ENOENT;
+    struct stat *info = &file->before;
+    size_t       length = strlen(file->shown);
+    file->exists = stat(file->shown, info) == 0;
+    if (length == 0 || (file->exists && S_ISDIR(info->st_mode)) ||
+        file->shown[length - 1] == '/') {
+        errno = length == 0 ? ENOENT : EISDIR;
         return fail_create(file);
     }
-    if (stat(file->shown, &info) == 0) {
-        if (S_ISDIR(info.st_mode)) {
-            errno = EISDIR;
-            return fail_create(file);
-        }
-        if (access(file->shown, W_OK) != 0)
-            return fail_create(file);
-        file->direct = !S_ISREG(info.st_mode);
-        file->target = file->direct ? strdup(file->shown) : realpath(file->shown, NULL);
-    } else if (errno == ENOENT) {
-        file->target = strdup(file->shown); /* may also be a link that leads nowhere */
-    }
+    if (file->exists && access(file->shown, W_OK) != 0)
+        return fail_create(file);
+    file->direct = file->exists && !S_ISREG(info->st_mode);
+    file->target = file->direct ? strdup(file->shown) : find_place(file->shown);
     if (!file->target)
         return fail_create(file);
 
@@ -112,24 +171,13 @@ static bool find_target(OutputFile *file)
     return file->folder || fail_create(file);
 }
 
-/* The name does not contain the target's, which may already be as long as a name can be. */
+/* Nobody else may read what is being written; what the file becomes is decided beside. */
 static bool create_temporary(OutputFile *file)
 {
-    for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
-        free(file->temporary);
-        if (asprintf(&file->temporary, "%s/.krs-%ld-%d.tmp", file->folder, (long)getpid(),
-                     attempt) < 0) {
-            file->temporary = NULL;
-            errno = ENOMEM;
-            return fail_create(file);
-        }
-        file->fd = open(file->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (file->fd >= 0)
-            return true;
-        if (errno != EEXIST)
-            break;
-    }
-    return fail_create(file);
+    if (!file->exists)
+        file->mode = temporary_mode(file->folder);
+    file->fd = temporary_create(file->folder, &file->temporary);
+    return file->fd >= 0 || fail_create(file);
 }
 
 OutputFile *output_open(const char *path, const volatile sig_atomic_t *cancelled,
@@ -233,42 +281,68 @@ static bool copy_to_target(OutputFile *file)
     return done;
 }
 
-static bool close_temporary(OutputFile *file)
+/* What went wrong when the file was there already, whole. */
+static void warn(OutputFile *file, const char *words)
 {
-    int fd = file->fd;
-    file->fd = -1;
-    return close(fd) == 0 || fail_write(file);
+    OutputError *error = file->error;
+    if (error->warning[0] == '\0')
+        snprintf(error->warning, sizeof error->warning, "`%s` is written, but %s: %s", file->shown,
+                 words, strerror(errno));
+}
+
+/* Gives the new file owner, group and permissions of the one that it replaces.  Where the group
+   cannot be kept, it may no more than everybody. */
+static void keep_mode(OutputFile *file)
+{
+    const struct stat *before = &file->before;
+    struct stat        now = {0};
+    mode_t             mode = file->exists ? before->st_mode & 0777 : file->mode;
+    bool               known = file->exists && fstat(file->fd, &now) == 0;
+    if (known && now.st_uid != before->st_uid && fchown(file->fd, before->st_uid, (gid_t)-1) != 0)
+        errno = 0; /* only the administrator may; the file is the writer's then */
+    if (known && now.st_gid != before->st_gid && fchown(file->fd, (uid_t)-1, before->st_gid) != 0)
+        mode = (mode & ~(mode_t)0070) | (mode & 0007) << 3;
+    if (fchmod(file->fd, mode) != 0)
+        warn(file, "its permissions could not be set");
 }
 
 /* Some file systems cannot flush a folder (EINVAL) and keep the order by themselves. */
-static bool flush_folder(OutputFile *file)
+static void flush_folder(OutputFile *file)
 {
     int folder = open(file->folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (folder < 0)
-        return errno == EACCES || fail_write(file); /* may write there, but not look */
-    bool done = fsync(folder) == 0 || errno == EINVAL || fail_write(file);
-    close(folder);
-    return done;
+    if (folder < 0 && errno == EACCES)
+        return; /* may write there, but not look */
+    if (folder < 0 || (fsync(folder) != 0 && errno != EINVAL))
+        warn(file, "its name may not survive a power failure");
+    if (folder >= 0)
+        close(folder);
+}
+
+/* Flushes, closes and renames.  The lock, which belongs to the open file and not to its number,
+   stays until the name is changed: a file without it counts as abandoned. */
+static bool put_in_place(OutputFile *file)
+{
+    keep_mode(file);
+    int  held = fcntl(file->fd, F_DUPFD_CLOEXEC, 0), fd = file->fd;
+    bool done = fsync(fd) == 0 || fail_write(file);
+    file->fd = held;
+    done = (close(fd) == 0 || fail_write(file)) && done;
+    if (done && file->cancelled && *file->cancelled)
+        done = output_fail(file->error, KRS_INTERRUPTED, file->shown, 0);
+    return done && (rename(file->temporary, file->target) == 0 || fail_write(file));
 }
 
 KrsStatus output_commit(OutputFile *file)
 {
     OutputError *error = file->error;
-    bool written = error->status == KRS_OK && flush_buffer(file);
-    if (written && file->direct) {
-        written = copy_to_target(file);
-    } else if (written) {
-        written = fsync(file->fd) == 0 || fail_write(file);
-        written = written && close_temporary(file);
-        if (written && file->cancelled && *file->cancelled)
-            written = output_fail(error, KRS_INTERRUPTED, file->shown, 0);
-        if (written && rename(file->temporary, file->target) == 0) {
+    if (error->status == KRS_OK && flush_buffer(file)) {
+        if (file->direct) {
+            copy_to_target(file);
+        } else if (put_in_place(file)) {
             flush_folder(file);
             output_free(file);
             return error->status;
         }
-        if (written)
-            fail_write(file);
     }
     output_abandon(file);
     return error->status;
@@ -293,7 +367,9 @@ KrsStatus output_text(const char *path, const char *text, size_t length,
 KrsStatus output_check(const char *path, OutputError *error)
 {
     OutputFile *file = output_open(path, NULL, error);
-    if (file)
+    if (file) {
+        temporary_clean(file->folder);
         output_abandon(file);
+    }
     return error->status;
 }

@@ -3,7 +3,9 @@
  *
  * What is written goes to a temporary file in the folder of the target; committing flushes it
  * to the disk and renames it over the target, so a reader sees the old file or the new one and
- * nothing between.  Whatever goes wrong before, the target stays as it was.  A target that
+ * nothing between.  Whatever goes wrong before, the target stays as it was.  A file that takes the
+ * place of another keeps its owner and permissions; until then it is the user's alone.  A symbolic
+ * link is followed, also one that leads to nothing yet.  A target that
  * cannot be renamed over (a pipe, a terminal, /dev/full) is written in one go when committing.
  */
 #ifndef KRS_ATOMIC_H
@@ -20,6 +22,7 @@
 typedef struct OutputError {
     KrsStatus status; /* KRS_OK as long as nothing has gone wrong */
     char      message[1024];
+    char      warning[1024]; /* the file is there, but: empty when there is nothing to say */
 } OutputError;
 
 typedef struct OutputFile OutputFile;
@@ -49,7 +52,11 @@ void      output_abandon(OutputFile *file);
 KrsStatus output_text(const char *path, const char *text, size_t length,
                       const volatile sig_atomic_t *cancelled, OutputError *error);
 
-/* Whether output_open would be refused now: asked before hours of work. */
+/* Whether output_open would be refused now: asked before hours of work.  Removes on the way what
+   killed writers have left in that folder. */
 KrsStatus output_check(const char *path, OutputError *error);
+
+/* Whether two paths lead to the same file, which need not exist. */
+bool output_is_same(const char *a, const char *b);
 
 #endif

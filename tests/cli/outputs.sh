@@ -2,7 +2,7 @@
 # outputs.sh: an output appears whole or not at all, and says why not.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 27
+plan 34
 small="--size 16x12 --quiet"
 
 # shellcheck disable=SC2086 # the options are separate words
@@ -17,6 +17,12 @@ result $? "several outputs"
 
 picture -o a.png -o a.exr -o a.png
 said 2 "the output \`a.png\` is asked for twice" "an output that is asked for twice"
+picture -o q.png -o ./q.png
+said 2 "the output \`./q.png\` is asked for twice" "an output that is asked for by two paths"
+picture --frames 9..10 -o 'q%d.png' -o 'q%02d.png'
+said 2 "the output \`q%02d.png\` is asked for twice" "names that are equal in one frame"
+picture --frames 1..2 -o 'a%d%d.png'
+said 2 "\`a%d%d.png\` has more than one place for the number" "two places for the frame's number"
 cp ball.krs named.png && ln -s "$work/named.png" link.png
 for output in ./named.png link.png; do
     run render named.png --size 16x12 --quiet -o $output
@@ -87,6 +93,29 @@ ln -s target.exr link.exr
 picture -o link.exr
 [ "$status" -eq 0 ] && [ -L link.exr ] && [ "$(wc -c <target.exr)" -gt 100 ]
 result $? "a symbolic link is followed"
+ln -s elsewhere.exr dangling.exr
+picture -o dangling.exr
+[ "$status" -eq 0 ] && [ -L dangling.exr ] && [ "$(wc -c <elsewhere.exr)" -gt 100 ]
+result $? "also one that leads to nothing"
+chmod 640 target.exr
+picture -o target.exr -o fresh.png
+[ "$status" -eq 0 ] && [ "$(stat -c %a target.exr)" = 640 ] &&
+    [ "$(stat -c %a fresh.png)" = "$(: >made && stat -c %a made)" ]
+result $? "a picture that is written again keeps its permissions"
+: >.krs-1-1.tmp
+picture -o target.exr
+[ "$status" -eq 0 ] && no_temporaries
+result $? "what a killed run has left is removed"
+if strace -o /dev/null true 2>/dev/null; then
+    # shellcheck disable=SC2086
+    strace -f -o /dev/null -e trace=fsync -e inject=fsync:error=EIO:when=2 \
+        "$krs" render ball.krs $small -o target.exr >out 2>err
+    status=$?
+    said 0 "warning: \`target.exr\` is written, but its name may not survive" \
+        "a folder that cannot be flushed is a warning"
+else
+    skip "a folder that cannot be flushed is a warning" "no strace, or no right to use it"
+fi
 
 "$krs" info ball.krs >&- 2>err
 status=$?

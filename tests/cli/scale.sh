@@ -2,7 +2,7 @@
 # scale.sh: large and deep scenes end, in time and in 2 GB: checked, or refused with one reason.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 28
+plan 30
 
 # within COMMAND [OPTION]...: of scene.krs; a minute is far more than any of these needs.
 within() {
@@ -56,6 +56,14 @@ echo "def f(n) = if n == 0 then 0 else f(n - 1) + f(n - 1); show sphere(f(40));"
 refused E0503 "a function that calls itself 2^40 times"
 
 # ---- much text ----
+
+repeated 60000 "let a# = [#, #, #];" | tr -d '\n' >scene.krs
+echo "show sphere(1);" >>scene.krs
+for stage in tokens syntax; do
+    within dump --after=$stage
+    [ "$status" -eq 0 ] && [ ! -s err ] && tail -n 3 out | grep -q '1:20555'
+    result $? "$stage of a line of 2 MB"
+done
 
 shape="sphere(radius: 1.#).move([#.25, 3.125, 0.#]).rotate([0, 1, 0], #deg)"
 { repeated 10000 "let shape_number_# = $shape;"; echo "show shape_number_7;"; } >scene.krs

@@ -15,6 +15,7 @@
 
 #include "compiler/front/names.h"
 #include "compiler/front/parse.h"
+#include "tests/support/random.h"
 
 /* ---- reading a scene ---- */
 
@@ -235,6 +236,48 @@ static void places_count_characters(void **state)
     assert_int_equal(position.line, 4);
     assert_int_equal(position.column, 1);
     reading_free(r);
+}
+
+/* By counting from the beginning. */
+static Position position_by_walking(const Source *source, uint32_t offset)
+{
+    Position position = {1, 1};
+    for (uint32_t i = 0; i < offset && i < source->length; i++) {
+        bool begins = ((unsigned char)source->text[i + 1] & 0xC0) != 0x80;
+        position    = source->text[i] == '\n' ? (Position){position.line + 1, 1}
+                                              : (Position){position.line, position.column + begins};
+    }
+    return position;
+}
+
+/* In lines that are short and that are longer than what is counted at once. */
+static void places_are_found_in_long_lines(void **state)
+{
+    (void)state;
+    static const char *const pieces[] = {"a", "\xC3\xA9", "\xF0\x9F\x98\x80", " ", "let"};
+    Random                   random   = {7};
+    for (int lines = 1; lines <= 64; lines *= 4) {
+        char   text[4 * SOURCE_BLOCK + 8];
+        size_t length = 0;
+        while (length < 4 * SOURCE_BLOCK)
+            if (random_below(&random, 4 * SOURCE_BLOCK) < lines)
+                text[length++] = '\n';
+            else
+                for (const char *c = pieces[random_below(&random, 5)]; *c; c++)
+                    text[length++] = *c;
+        text[length]         = '\0';
+        Reading      *r      = read_bytes(text, length);
+        const Source *source = &r->sources.items[1];
+        for (uint32_t offset = 0; offset <= length; offset++) {
+            if (((unsigned char)text[offset] & 0xC0) == 0x80)
+                continue;
+            Position found = source_position(source, offset);
+            Position right = position_by_walking(source, offset);
+            assert_int_equal(found.line, right.line);
+            assert_int_equal(found.column, right.column);
+        }
+        reading_free(r);
+    }
 }
 
 /* ---- lexer ---- */
@@ -844,6 +887,7 @@ int main(void)
         cmocka_unit_test(names_are_kept_once),
         cmocka_unit_test(misspelt_names_are_recognised),
         cmocka_unit_test(places_count_characters),
+        cmocka_unit_test(places_are_found_in_long_lines),
         cmocka_unit_test(tokens_are_split),
         cmocka_unit_test(numbers_are_read),
         cmocka_unit_test(numbers_do_not_depend_on_the_locale),
