@@ -39,8 +39,9 @@ DOORSTEP := $(addprefix compiler/, compile.c roots.c limits.c keep.c groups.c pr
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer film writer))))
 CLI      := $(sort $(wildcard cli/*.c))
 
-# Text files that the program carries: the standard library and the kernels.
+# Text files that the program carries: the standard library, what scenes and kernels share, kernels.
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))
+HELPERS  := $(sort $(wildcard compiler/graph/*.glsl))
 SHADERS  := $(sort $(wildcard runtime/shaders/*.comp runtime/shaders/*.glsl))
 # Kernels without a scene are compiled here and now, not on every machine again; what is optimized
 # here, drivers need not.
@@ -55,7 +56,7 @@ LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLC
 
 COMPILER := $(BASE) $(FRONT) $(GRAPH) $(GEOMETRY) $(SHADER) $(DOORSTEP)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
-            $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o
+            $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o
 
 all: $(B)/krs
 $(B)/krs: $(CLI:%.c=$(B)/%.o) $(B)/libkrs.a
@@ -77,14 +78,16 @@ $(B)/%.o: $(B)/%.c
 	@$(CC) $(STYLE) $(CFLAGS) -c -o $@ $<
 $(B)/library_files.c: $(B)/embed $(LIBRARY)
 	@$(B)/embed library_files compiler/library/ $(LIBRARY) >$@
+$(B)/helper_files.c: $(B)/embed $(HELPERS)
+	@$(B)/embed helper_files compiler/graph/ $(HELPERS) >$@
 $(B)/shader_files.c: $(B)/embed $(SHADERS)
 	@$(B)/embed shader_files runtime/shaders/ $(SHADERS) >$@
 $(B)/module_files.c: $(B)/embed $(MODULES)
 	@$(B)/embed module_files $(B)/modules/ $(MODULES) >$@
-$(B)/modules/%.spv: runtime/shaders/% $(SHADERS)
+$(B)/modules/%.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
 	@mkdir -p $(@D)
 	@echo "shader $<"
-	@glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -o $@ $< >/dev/null
+	@glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -Icompiler/graph -o $@ $< >/dev/null
 	@spirv-opt --target-env=vulkan1.1 -O $@ -o $@
 	@spirv-val --target-env vulkan1.1 $@
 $(B)/embed: compiler/base/embed/embed.c

@@ -14,12 +14,18 @@ enum { BUFFER_BINDING = 1 };
 
 /* ---- Text ---- */
 
-static const char *runtime_file(const char *name, size_t length)
+static const char *find_in(const EmbeddedFile *file, const char *name, size_t length)
 {
-    for (const EmbeddedFile *file = shader_files; file->name; file++)
+    for (; file->name; file++)
         if (strlen(file->name) == length && strncmp(file->name, name, length) == 0)
             return file->text;
     return NULL;
+}
+
+static const char *runtime_file(const char *name, size_t length)
+{
+    const char *text = find_in(shader_files, name, length);
+    return text ? text : find_in(helper_files, name, length);
 }
 
 static const char *included_text(Bench *bench, const char *path, const char *name, size_t length)

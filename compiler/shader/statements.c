@@ -354,20 +354,32 @@ void emit_frame(Emitter *e, const Node *roots, size_t count)
                 "}\n\n", e->graph->parameters.count);
 }
 
+typedef struct Helpers {
+    const char **items;
+    size_t       count, capacity;
+} Helpers;
+
+static bool holds(const Helpers *helpers, const char *text)
+{
+    for (size_t i = 0; i < helpers->count; i++)
+        if (helpers->items[i] == text)
+            return true;
+    return false;
+}
+
 void emit_helpers(Emitter *e, const Node *roots, size_t count)
 {
-    const char *done[OP_COUNT];
-    size_t      done_count = 0;
+    Helpers done = {0};
     count_uses(e, roots, count, true); /* of the whole graph */
     for (size_t k = 0; k < e->needed.count; k++) {
-        const char *helper = op_helper((Op)e->graph->items[e->needed.items[k]].op);
-        for (size_t i = 0; helper && i < done_count; i++)
-            if (done[i] == helper)
-                helper = NULL;
-        if (!helper)
-            continue;
-        done[done_count++] = helper;
-        text_add(e->out, helper);
-        text_add(e->out, "\n");
+        Op          op = (Op)e->graph->items[e->needed.items[k]].op;
+        const char *helper;
+        for (uint32_t i = 0; (helper = op_helper(op, i)); i++) {
+            if (holds(&done, helper))
+                continue;
+            array_push(e->scratch, &done, helper);
+            text_add(e->out, helper);
+            text_add(e->out, "\n");
+        }
     }
 }

@@ -12,56 +12,52 @@
 #include "compiler/base/embedded.h"
 #include "compiler/compile.h"
 
-static const char *find_file(const char *name, size_t length)
+static const char *find_in(const EmbeddedFile *file, const char *name, size_t length)
 {
-    for (const EmbeddedFile *file = shader_files; file->name; file++)
+    for (; file->name; file++)
         if (strlen(file->name) == length && strncmp(file->name, name, length) == 0)
             return file->text;
     return NULL;
 }
 
-/* What a line of a kernel stands for: itself, a file that it includes, or, after the version,
-   also the defines.  Returns false when a file is missing. */
-static bool find_parts(const char *line, size_t length, const KernelSource *source,
-                       const char **part, size_t *part_length)
+static const char *find_file(const char *name, size_t length)
 {
-    static const char include[] = "#include \"";
-    *part = line;
-    *part_length = length;
-    if (strncmp(line, include, sizeof include - 1) != 0)
-        return true;
-    const char *name = line + sizeof include - 1;
-    size_t      name_length = strcspn(name, "\"");
-    bool        is_scene = strncmp(name, "scene.glsl", name_length) == 0;
-    *part = is_scene ? source->scene : find_file(name, name_length);
-    *part_length = *part ? strlen(*part) : 0;
-    return *part != NULL;
+    const char *text = find_in(shader_files, name, length);
+    return text ? text : find_in(helper_files, name, length);
 }
 
-/* Copies `text` to `out` (NULL: only counts) with its includes, which include nothing themselves,
-   and its defines in place.  Returns the length, or 0 when a file is missing. */
-static size_t expand(const char *text, const KernelSource *source, char *out)
+/* A kernel's text as it grows. */
+typedef struct Expansion {
+    const KernelSource *source;
+    char  *out; /* NULL: it is only counted */
+    size_t length;
+} Expansion;
+
+static void append(Expansion *to, const char *bytes, size_t count)
 {
-    size_t      length = 0;
-    const char *defines = source->defines ? source->defines : "";
-    for (bool first = true; *text; first = false) {
-        size_t      line = strcspn(text, "\n") + (strchr(text, '\n') != NULL), bytes;
-        const char *part;
-        if (!find_parts(text, line, source, &part, &bytes))
-            return 0;
-        if (out)
-            memcpy(out + length, part, bytes);
-        length += bytes;
-        text += line;
-        if (first) { /* the version, before which nothing may stand */
-            if (out)
-                memcpy(out + length, defines, strlen(defines));
-            length += strlen(defines);
-        }
+    if (to->out)
+        memcpy(to->out + to->length, bytes, count);
+    to->length += count;
+}
+
+/* With the files that it includes in place of the lines that say so; false: one is missing. */
+static bool append_file(Expansion *to, const char *name, size_t name_length)
+{
+    static const char include[] = "#include \"";
+    bool        is_scene = strncmp(name, "scene.glsl", name_length) == 0;
+    const char *text = is_scene ? to->source->scene : find_file(name, name_length);
+    if (is_scene && text)
+        append(to, text, strlen(text));
+    for (; !is_scene && text && *text; text += strcspn(text, "\n"), text += *text == '\n') {
+        const char *file = text + sizeof include - 1;
+        if (strncmp(text, include, sizeof include - 1) != 0)
+            append(to, text, strcspn(text, "\n") + (strchr(text, '\n') != NULL));
+        else if (!append_file(to, file, strcspn(file, "\"")))
+            return false;
+        if (to->source->defines && strncmp(text, "#version", 8) == 0) /* nothing may be before it */
+            append(to, to->source->defines, strlen(to->source->defines));
     }
-    if (out)
-        out[length] = '\0';
-    return length;
+    return text != NULL;
 }
 
 /* The end of the comment that begins at `text`, at the line's end or behind the closing mark; NULL
@@ -100,19 +96,19 @@ void kernel_strip(char *text)
 
 char *kernel_text(Gpu *gpu, const KernelSource *source)
 {
-    const char *text = find_file(source->file, strlen(source->file));
-    size_t      length = text ? expand(text, source, NULL) : 0;
-    if (length == 0) {
+    Expansion expansion = {source, NULL, 0};
+    if (!append_file(&expansion, source->file, strlen(source->file))) {
         gpu_refuse(gpu, KRS_INTERNAL, "the kernel `%s`, or a file that it includes, is missing",
                    source->file);
         return NULL;
     }
-    char *whole = gpu_alloc(gpu, length + 1, 1, "put a kernel together");
-    if (whole) {
-        expand(text, source, whole);
-        kernel_strip(whole);
+    expansion.out = gpu_alloc(gpu, expansion.length + 1, 1, "put a kernel together");
+    expansion.length = 0;
+    if (expansion.out) { /* zeroed memory: the text ends */
+        append_file(&expansion, source->file, strlen(source->file));
+        kernel_strip(expansion.out);
     }
-    return whole;
+    return expansion.out;
 }
 
 /* A kernel on its way to SPIR-V, in a thread of its own when it must be compiled. */

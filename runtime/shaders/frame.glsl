@@ -6,6 +6,10 @@
  * is in runtime/tracer/blocks.h.
  */
 
+#ifdef PANORAMIC // a camera of the scene is: sines would be found for every ray
+#include "sines.glsl"
+#endif
+
 const float PI       = 3.14159265358979;
 const float INFINITE = 1e38;
 const float ROUNDING = 2.4e-7; // four units in the last place of 1
@@ -206,12 +210,13 @@ void find_ray(vec2 place, out vec3 origin, out vec3 direction, out float base, o
         origin += plane.x * frame.right.xyz + plane.y * frame.up.xyz;
         direction = frame.forward.xyz;
     }
-#ifdef PANORAMIC // a camera of the scene is: sines and cosines would be found for every ray
+#ifdef PANORAMIC
     if (control.projection == PANORAMA) {
         float longitude = plane.x * PI, latitude = plane.y * 0.5 * PI;
-        vec3  level = cos(longitude) * frame.forward.xyz + sin(longitude) * frame.right.xyz;
+        vec3  level = krs_cos(longitude) * frame.forward.xyz +
+                      krs_sin(longitude) * frame.right.xyz;
         origin = frame.eye.xyz;
-        direction = cos(latitude) * level + sin(latitude) * frame.up.xyz;
+        direction = krs_cos(latitude) * level + krs_sin(latitude) * frame.up.xyz;
     }
 #endif
 }

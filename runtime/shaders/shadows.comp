@@ -17,6 +17,7 @@
 #include "scene.glsl"
 #include "frame.glsl"
 #include "solid.glsl"
+#include "sines.glsl"
 
 const uint SHADOW_STEPS = 1024u;
 
@@ -94,7 +95,7 @@ vec2 disc_point(vec2 pixel_seed)
 {
     vec2  even = fract(pixel_seed + vec2(0.6287067, 0.5385973) * float(control.ray));
     float angle = 2.0 * PI * even.x;
-    return sqrt(even.y) * vec2(cos(angle), sin(angle));
+    return sqrt(even.y) * vec2(krs_cos(angle), krs_sin(angle));
 }
 
 // The ray begins so far above the surface.
@@ -140,7 +141,7 @@ void begin_group(uint first)
     lost = 0u;
     light = find_light(control.light);
     positional = (light.kind & POSITIONAL) != 0u;
-    radius = positional ? light.softness : tan(0.5 * min(light.softness, 3.0));
+    radius = positional ? light.softness : krs_tan(0.5 * min(light.softness, 3.0));
 }
 
 void begin_item(uint number, bool saved)

@@ -184,6 +184,72 @@ static void functions_agree(void **context)
     }
 }
 
+/* The sine, cosine and tangent that the device finds of scale x at points along x, through the
+   emission of a surface; scale is a power of two, so that arguments are exact. */
+static void sample_sines(double scale, double *arguments, KrsSurfacePoint *found)
+{
+    char          text[200];
+    KrsScene     *scene;
+    KrsFrame     *frame;
+    KrsRendering *rendering;
+    float        *distances   = malloc(POINTS * sizeof *distances);
+    float       (*points)[3] = calloc(POINTS, sizeof *points);
+    for (size_t i = 0; i < POINTS; i++) {
+        points[i][0] = (float)uniform(-2.5, 2.5);
+        arguments[i] = scale * points[i][0];
+    }
+    snprintf(text, sizeof text,
+             "material waves { emission: [sin(%.17g * x), cos(%.17g * x), tan(%.17g * x)] }"
+             "show sphere(1).paint(waves);",
+             scale, scale, scale);
+    assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
+    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_rendering_new_for(renderer, scene, KRS_FOR_QUESTIONS, &rendering), KRS_OK);
+    assert_int_equal(krs_sample(rendering, frame, (const float (*)[3])points, POINTS, distances,
+                                found), KRS_OK);
+    krs_rendering_free(rendering);
+    krs_frame_free(frame);
+    krs_scene_free(scene);
+    free(distances);
+    free(points);
+}
+
+/* Up to 2^14 pi, sines are good to 2^-22, tangents to as much times how steep they are; beyond, to
+   what the last digit of the argument is worth.  However large that is, sines are at most 1. */
+static void sines_are_accurate(void **context)
+{
+    static const double scales[] = {1, 0x1p4, 0x1p8, 0x1p11, 0x1p14, 0x1p15, 0x1p18, 0x1p21, 0x1p60};
+    double          *arguments = malloc(POINTS * sizeof *arguments);
+    KrsSurfacePoint *found     = malloc(POINTS * sizeof *found);
+    (void)context;
+    for (size_t k = 0; k < sizeof scales / sizeof *scales; k++) {
+        double worst = 0, worst_tangent = 0, largest = 0;
+        sample_sines(scales[k], arguments, found);
+        for (size_t i = 0; i < POINTS; i++) {
+            double a = arguments[i], tangent = tan(a);
+            double digit = fabs(a) > 16384 * acos(-1) ? 0x1p-23 * fabs(a) : 0;
+            double allowed = 0x1p-22 + digit;
+            for (int j = 0; j < 2; j++) {
+                double excess = fabs(found[i].emission[j] - (j ? cos(a) : sin(a))) / allowed;
+                worst   = excess <= worst ? worst : excess;
+                largest = fmax(largest, fabs(found[i].emission[j]));
+            }
+            if (digit > 0 || fabs(tangent) > 1000)
+                continue;
+            double excess = fabs(found[i].emission[2] - tangent) / (allowed * (1 + tangent * tangent));
+            worst_tangent = excess <= worst_tangent ? worst_tangent : excess;
+        }
+        if (!(worst <= 1) || !(worst_tangent <= 1) || !(largest <= 1 + 0x1p-22))
+            fprintf(stderr, "sines up to %g: %.3g of what is permitted, tangents %.3g; up to %.9g\n",
+                    2.5 * scales[k], worst, worst_tangent, largest);
+        assert_true(worst <= 1);
+        assert_true(worst_tangent <= 1);
+        assert_true(largest <= 1 + 0x1p-22);
+    }
+    free(arguments);
+    free(found);
+}
+
 static void sequences_agree(void **context)
 {
     (void)context;
@@ -322,7 +388,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(primitives_agree), cmocka_unit_test(operations_agree),
-        cmocka_unit_test(functions_agree),  cmocka_unit_test(sequences_agree),
+        cmocka_unit_test(functions_agree),  cmocka_unit_test(sines_are_accurate),
+        cmocka_unit_test(sequences_agree),
         cmocka_unit_test(fractals_agree),
         cmocka_unit_test(inversions_agree),
         cmocka_unit_test(parameters_agree), cmocka_unit_test(frames_agree),
