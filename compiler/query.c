@@ -273,12 +273,12 @@ static Fate march_step(March *march)
     double at = march->t + march->gap, room = march_room(march, at);
     double least = rounding_at(march, at), open = march->tolerance / 16 + least;
     double doubtful = march->gap - march->room;
-    if (room <= least && doubtful <= march->tolerance + open) {
+    if (room <= 0 && doubtful <= march->tolerance + open) {
         march->t   = find_crossing(march, room);
         march->gap = 0;
         return march->t <= march->ray.end ? HIT : MISS;
     }
-    if (room > least && doubtful <= room + 1.01 * open) {
+    if (room > 0 && doubtful <= room + 1.01 * open) {
         double slope = march->gap > 0 ? (room - march->room) / march->gap : -1;
         march->slope += 0.3 * (slope - march->slope);
         march->t    = at;

@@ -136,17 +136,19 @@ static Terms terms_of(Elaboration *e, Node formula, Box box)
     return terms;
 }
 
-/* (|head + m| - h) / slope for a rest in `range`; NODE_NONE: the slope has no bound. */
+/* (|head + m| - h) / slope for a rest in `range` = m +- h; NODE_NONE: the slope has no bound.  It is
+   written by the ends of the range, since where one of them is small nothing may cancel. */
 static Node head_distance(Elaboration *e, Node head, Range range, Box box)
 {
     Graph *g     = e->graph;
     double slope = slope_over(e, head, box, HEAD_CELLS);
     if (!isfinite(slope))
         return NODE_NONE;
-    Node size   = graph_number(g, (0.5 * range.high - 0.5 * range.low) * (1 + 1e-12));
-    Node middle = graph_number(g, 0.5 * range.low + 0.5 * range.high);
-    Node whole  = graph_op1(g, OP_abs, graph_op2(g, OP_add, head, middle));
-    return divide_by_slope(g, graph_op2(g, OP_sub, whole, size), slope);
+    Node low   = graph_number(g, range.low - 1e-12 * fabs(range.low));
+    Node high  = graph_number(g, range.high + 1e-12 * fabs(range.high));
+    Node above = graph_op2(g, OP_add, head, low), below = graph_op2(g, OP_add, head, high);
+    Node size  = graph_op2(g, OP_max, above, graph_op1(g, OP_neg, below));
+    return divide_by_slope(g, size, slope);
 }
 
 /* The longest by all heads; NODE_NONE: the formula is not such a sum. */
@@ -252,9 +254,22 @@ static double distance_along(const March *m, const Tape *tape, Node root, const 
     return values[root].v[0];
 }
 
+/* How far a ray goes through the box. */
+static double length_through(Box box, const TrialRay *ray)
+{
+    double length = HUGE_VAL;
+    for (int k = 0; k < 3; k++) {
+        double side = ray->direction[k] > 0 ? box.axis[k].high : box.axis[k].low;
+        if (ray->direction[k] != 0)
+            length = fmin(length, (side - ray->from[k]) / ray->direction[k]);
+    }
+    return length;
+}
+
 /* Evaluations up to the surface or the sides of the box.  As the tracer's, a step is as long as
-   balls of empty space around its ends are expected to meet, and is taken back if they do not. */
-static uint32_t count_steps(const March *m, const Tape *tape, Node root, const TrialRay *ray,
+   balls of empty space around its ends are expected to meet, and is taken back if they do not.
+   When MOST_STEPS do not suffice, the others are taken to be as long. */
+static double count_steps(const March *m, const Tape *tape, Node root, const TrialRay *ray,
                             NodeValue *values)
 {
     double   t = 0, step = 0, change = -1;
@@ -274,7 +289,7 @@ static uint32_t count_steps(const March *m, const Tape *tape, Node root, const T
         t += step;
         radius = next;
     }
-    return count;
+    return radius > 0 ? count * fmax(length_through(m->box, ray) / t, 1) : count;
 }
 
 /* Multiply-adds of all steps by a distance. */
@@ -313,11 +328,12 @@ static March march_new(Elaboration *e, Box box)
 
 /* ---- the choice ---- */
 
-/* The larger of a distance and a bound that knows no sign. */
-static Node lengthened(Graph *g, Node distance, Node bound)
+/* The larger of a distance and a bound that knows no sign.  The sign is that of the formula, of
+   which single precision may leave nothing in the distance. */
+static Node lengthened(Graph *g, Node formula, Node distance, Node bound)
 {
     Node size = graph_op2(g, OP_max, graph_op1(g, OP_abs, distance), bound);
-    return graph_op2(g, OP_mul, graph_op1(g, OP_sign, distance), size);
+    return graph_op2(g, OP_mul, graph_op1(g, OP_sign, formula), size);
 }
 
 /* The cheapest of some distances (NODE_NONE: not there), if it is clearly cheaper than the one that
@@ -339,27 +355,29 @@ static Node cheapest(const March *march, Node present, const Node *others, int c
 
 FieldBounds field_bounds(Elaboration *e, Node formula, double slope, Box box, bool even)
 {
-    static const double shares[] = {0.25, 1.0 / 64}; /* of the slope, what a local one may be */
+    /* Of the slope, what a local one may be: fields may be flatter by far where the surface is. */
+    static const double shares[] = {0.25, 0x1p-6, 0x1p-11, 0x1p-17, 0x1p-24, 0x1p-32, 0x1p-42};
+    enum { SHARES = sizeof shares / sizeof *shares };
     Graph      *g      = e->graph;
     March       march  = march_new(e, box);
     FieldBounds bounds = {divide_by_slope(g, formula, slope), NODE_NONE};
     Node        heads  = by_heads(e, formula, box), order = by_second_order(e, formula, box);
-    Node        steady[3] = {NODE_NONE, NODE_NONE, NODE_NONE}, sharp[2] = {NODE_NONE, NODE_NONE};
+    Node        steady[3] = {NODE_NONE, NODE_NONE, NODE_NONE}, sharp[SHARES];
     double      cost      = HUGE_VAL;
     if (even && order != NODE_NONE)
-        bounds.steady = lengthened(g, bounds.steady, order);
+        bounds.steady = lengthened(g, formula, bounds.steady, order);
     else if (order != NODE_NONE)
-        steady[0] = lengthened(g, bounds.steady, order);
+        steady[0] = lengthened(g, formula, bounds.steady, order);
     if (heads != NODE_NONE)
-        steady[1] = lengthened(g, bounds.steady, heads);
+        steady[1] = lengthened(g, formula, bounds.steady, heads);
     if (heads != NODE_NONE && steady[0] != NODE_NONE)
-        steady[2] = lengthened(g, steady[0], heads);
+        steady[2] = lengthened(g, formula, steady[0], heads);
     cost          = march_cost(&march, bounds.steady);
     bounds.steady = cheapest(&march, bounds.steady, steady, 3, &cost);
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < SHARES; i++) {
         Node local = by_local_slope(e, formula, box, slope * shares[i]);
-        sharp[i]   = local == NODE_NONE ? local : lengthened(g, bounds.steady, local);
+        sharp[i]   = local == NODE_NONE ? local : lengthened(g, formula, bounds.steady, local);
     }
-    bounds.sharp = cheapest(&march, NODE_NONE, sharp, 2, &cost);
+    bounds.sharp = cheapest(&march, NODE_NONE, sharp, SHARES, &cost);
     return bounds;
 }

@@ -340,6 +340,28 @@ static Part size_part(const Nearby *x, Node value, Part u)
     return part;
 }
 
+/* Between edges that are known: t^2 (3 - 2 t), t = (u - low) / (high - low) within 0 and 1.  Its
+   second derivative by t is at most 6, and 0 where t does not come within 0 and 1. */
+static Part smoothstep_part(Nearby *x, Node value, Node low, Node high, Part u)
+{
+    Graph      *g = x->graph;
+    const Expr *a = &g->items[low], *b = &g->items[high];
+    if (a->op != OP_CONSTANT || b->op != OP_CONSTANT || !(a->number[0] < b->number[0]))
+        return opaque_part(x, value);
+    Node   whole  = number(x, 1 / (b->number[0] - a->number[0])), half = number(x, 0.5);
+    Node   across = times(x, minus(x, u.value, low), whole), zero = number(x, 0);
+    Node   t      = graph_op3(g, OP_clamp, across, zero, number(x, 1));
+    Curve  curve  = {times(x, times(x, t, minus(x, number(x, 1), t)), number(x, 6)), NODE_NONE};
+    Part   scaled = scale_part(x, across, u, whole);
+    if (has_radius(x)) {
+        Node reach = times(x, steepness(x, &scaled), x->radius);
+        Node away  = minus(x, size_of(x, minus(x, across, half)), half);
+        Node level = graph_op2(g, OP_less, reach, away);
+        curve.bend = graph_op3(g, OP_select, level, zero, number(x, 6));
+    }
+    return bend_part(x, value, scaled, curve);
+}
+
 static Node choose(const Nearby *x, Node which, Node a, Node b)
 {
     return a == b ? a : graph_op3(x->graph, OP_select, which, a, b);
@@ -475,6 +497,7 @@ static Part component_part(Nearby *x, Op op, Node value, Part a, Part b, Part c)
         return choice_part(x, OP_min, value, above, c);
     }
     case OP_mix: return mix_parts(x, value, a, b, c);
+    case OP_smoothstep: return smoothstep_part(x, value, a.value, b.value, c);
     case OP_pow:
         if (power->op != OP_CONSTANT)
             return opaque_part(x, value);
@@ -488,7 +511,8 @@ static bool is_componentwise(Op op)
 {
     switch (op) {
     case OP_add: case OP_sub: case OP_neg: case OP_mul: case OP_scale: case OP_div: case OP_abs:
-    case OP_min: case OP_max: case OP_clamp: case OP_mix: case OP_pow: return true;
+    case OP_min: case OP_max: case OP_clamp: case OP_mix: case OP_pow: case OP_smoothstep:
+        return true;
     default: return is_curved(op);
     }
 }

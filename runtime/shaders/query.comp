@@ -98,9 +98,9 @@ void take_distance(float distance)
     float doubtful = gap - clear; // as long as may hide something
     steps++;
     // Twice: a gap of `open` beyond what is clear may be rounded up.
-    if (fate == CLOSING || (room <= least && doubtful <= frame.error + 2.0 * open)) {
+    if (fate == CLOSING || (room <= 0.0 && doubtful <= frame.error + 2.0 * open)) {
         close_in(clear - seam, room - seam, open);
-    } else if (room > least && doubtful <= room + 1.01 * open) {
+    } else if (room > 0.0 && doubtful <= room + 1.01 * open) {
         slope = mix(slope, gap > 0.0 ? (room - clear) / gap : -1.0, LEARNING);
         t = at;
         clear = room;

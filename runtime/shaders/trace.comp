@@ -8,9 +8,10 @@
  * of empty space around `t` and the one around the next place must meet, or something may be in
  * between: then the ray goes back to four fifths of the way to the middle of what they leave open,
  * and so on, until they meet or what is open is no longer than a sixteenth of the permitted error.
- * A ray hits where the distance is not above 0, never where it is only small, so that thin things
- * are as thick as they are, however coarse the steps.  A ray from inside of a solid sees the
- * solid's inner wall.
+ * A ray hits where the distance is not above 0, never where it is only small: thin things are as
+ * thick as they are, however coarse the steps, and a bound that is far too small shows nothing.  A
+ * ray that runs out of steps before it is unresolved: it is counted, and shows the background.  A
+ * ray from inside of a solid sees the solid's inner wall.
  *
  * How far a gap is, is the method's affair (TRACE): the distance (plain), 1.2 times as much
  * (relaxed), or up to where the balls just meet if the distance goes on as it did (automatic), and
@@ -70,8 +71,6 @@ struct March {
     float room;      // nor for this long behind it
     float gap;       // from t to the next place to look at
     float slope;     // of the room along the ray, as it was on average
-    float nearest_t; // of all places so far the one with the least room for its pixel's width,
-    float nearest;   // and the room
     float side;      // as of a Ray; 0: not known
     uint  steps;
     uint  fate;
@@ -231,8 +230,8 @@ vec2 inside_width() { return -SEAM * ROUNDING * vec2(rounding, 1.0); }
 March unpack_march(uvec4 low, uvec4 high)
 {
     vec4 rest = uintBitsToFloat(high);
-    return March(low.x, uintBitsToFloat(low.z), uintBitsToFloat(low.w), rest.x, rest.y, rest.z,
-                 rest.w, float(low.y >> 2u & 3u) - 1.0, low.y >> 4u, low.y & 3u);
+    return March(low.x, uintBitsToFloat(low.z), uintBitsToFloat(low.w), rest.x, rest.y,
+                 float(low.y >> 2u & 3u) - 1.0, low.y >> 4u, low.y & 3u);
 }
 
 void save_item()
@@ -240,7 +239,7 @@ void save_item()
     uint at = 2u * (control.writing + atomicAdd(counts.queued, 1u));
     uint bits = march.fate | uint(march.side + 1.0) << 2u | march.steps << 4u;
     queue[at] = uvec4(march.index, bits, floatBitsToUint(vec2(march.t, march.room)));
-    queue[at + 1u] = floatBitsToUint(vec4(march.gap, march.slope, march.nearest_t, march.nearest));
+    queue[at + 1u] = floatBitsToUint(vec4(march.gap, march.slope, 0.0, 0.0));
 }
 
 // The march of a ray or a beam that starts where nothing is before `start`.
@@ -250,8 +249,6 @@ void begin_march(uint index, float start, bool is_ray)
     march.t = start;
     march.room = march.gap = 0.0;
     march.slope = -1.0 / (1.0 - LEARNING); // -1 after the first step
-    march.nearest_t = 0.0;
-    march.nearest = INFINITE;
     // No side yet: the first distance tells, unless something empty lies behind the ray.
     march.side = march.t > 0.0 || !is_ray ? 1.0 : 0.0;
     march.steps = 0u;
@@ -301,7 +298,7 @@ void begin_item(uint number, bool saved)
     uint at_pixel = saved ? march.index : index;
     if (exists && is_ray) {
         Ray known = find_end(at_pixel);
-        end = known.fate == HIT ? min(end, known.t) : end;
+        end = known.fate == HIT || known.lost ? min(end, known.t) : end;
     }
 #endif
 #ifdef FLATS
@@ -342,18 +339,6 @@ float item_distance(vec3 place)
 #endif
 }
 
-// Whether a surface is nearer to a place of the ray than a pixel is wide there.  With early outs a
-// march goes by bounds, which are small near surfaces and elsewhere: then the distance decides.
-bool is_near(float t, float room)
-{
-    float pixel = pixel_base + pixel_slope * t;
-#if defined(EARLY_OUTS) && !defined(GROUP) && !defined(ALONG)
-    return room < pixel && abs(krs_distance(origin + t * direction)) < pixel;
-#else
-    return room < pixel;
-#endif
-}
-
 // With PROBE the middle of a ball.
 vec3 item_place() { return origin + (march.t + march.gap) * direction; }
 
@@ -386,16 +371,10 @@ float find_gap(float room, float last_slope, float slope, float permitted, float
 void take_distance(float larger)
 {
     float radius = march.gap, empty = float(larger > 1.0);
-    float at = march.t + radius, pixel = pixel_base + pixel_slope * at;
+    float at = march.t + radius;
     float room = radius * larger; // at the middle, about
     march.side = 1.0;
     march.steps++;
-    // A surface is in a ball that is not empty, but how near to the middle is not known.
-    if (empty == 0.0 &&
-        radius * (pixel_base + pixel_slope * march.nearest_t) < march.nearest * pixel) {
-        march.nearest = radius;
-        march.nearest_t = at;
-    }
     float least = 0.5 * open_at(at);
     if (empty == 0.0 && radius <= 1.01 * least) {
         march.t = at;
@@ -432,14 +411,10 @@ void take_distance(float distance)
     float taken = width.x + width.y * at;
     float room = (march.side * distance - taken) * shrinking;
     float rounded = ROUNDING * (rounding + at), open = open_share * pixel + rounded;
-    float least = max(rounded, (WIDER - 1.0) * taken);
+    float least = is_ray ? 0.0 : max(rounded, (WIDER - 1.0) * taken);
     float doubtful = march.gap - march.room; // as long as may hide something
     float permitted = is_ray ? frame.error * pixel : 0.0;
     march.steps++;
-    if (abs(room) * (pixel_base + pixel_slope * march.nearest_t) < march.nearest * pixel) {
-        march.nearest = abs(room);
-        march.nearest_t = at;
-    }
     bool met = room <= least && (doubtful <= permitted + open || !is_ray) || closing;
     bool passed = !met && room > least && doubtful <= room + 1.01 * open;
     bool accurate = doubtful <= 2.0 * open || closing || !is_ray ||
@@ -461,26 +436,22 @@ void take_distance(float distance)
 }
 #endif
 
-// A ray that has run out of steps ends where it came closest to a surface, if that was within
-// its pixel; a beam ends anywhere, since everything before is empty.
+// Of a ray that has run out of steps nothing is known beyond where it is; a beam ends anywhere,
+// since everything before is empty.
 void end_item()
 {
     bool is_ray = control.phase == RAYS;
     bool lost = is_ray && (march.fate == MARCHING || march.fate == CLOSING);
     uint group = 0u;
-    if (lost) {
-        bool near = is_near(march.nearest_t, march.nearest);
-        march.t = near ? march.nearest_t : march.t;
-        march.fate = near ? HIT : MISS;
-    }
+    march.fate = lost ? MISS : march.fate;
     // From inside of a solid nothing leaves the box around all of them.
-    if (is_ray && march.fate == MISS && march.side < 0.0 && walls) {
+    if (is_ray && !lost && march.fate == MISS && march.side < 0.0 && walls) {
         march.fate = HIT;
         march.t = end;
     }
 #ifdef FLATS
     // Planes are met where nothing else was; a beam whose rays may meet one is not done with.
-    if (march.fate == MISS && flat_ahead < INFINITE) {
+    if (!lost && march.fate == MISS && flat_ahead < INFINITE) {
         march.fate = HIT;
         march.t = flat_ahead;
         march.side = 1.0;
@@ -491,19 +462,20 @@ void end_item()
     }
 #endif
 #ifdef GROUP
-    // What other groups have found stays, unless this is nearer.
+    // What other groups have found stays, unless this is nearer; so does where they gave up.
     if (exists && is_ray) {
         Ray known = find_end(march.index);
-        bool farther = march.fate == MISS || known.fate == HIT && known.t < march.t;
+        bool ends = march.fate == HIT || lost, ended = known.fate == HIT || known.lost;
+        bool farther = !ends || ended && known.t < march.t;
         march.t = farther ? known.t : march.t;
-        march.fate = farther ? known.fate : HIT;
+        march.fate = farther ? known.fate : march.fate;
         march.steps += known.steps;
         group = uint(GROUP);
 #ifdef FLATS
         group = march.t < flat_ahead ? group : 0u;
 #endif
         group = farther ? known.group : group;
-        lost = lost || known.lost;
+        lost = farther ? known.lost : lost;
     }
 #endif
     if (!is_ray && march.fate == MISS)

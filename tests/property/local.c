@@ -62,6 +62,7 @@ static Node tame(Bench *b, int kind, Node p, Node q)
     case 22: return graph_op1(g, OP_sinh, graph_op1(g, OP_sin, p));
     case 23: return graph_op1(g, OP_cosh, graph_op1(g, OP_sin, p));
     case 24: return graph_op2(g, OP_mul, graph_parameter(g, 0, TYPE_FLOAT), p);
+    case 25: return graph_op3(g, OP_smoothstep, number(b, -0.3), number(b, 0.4), p);
     default: return graph_op2(g, OP_div, p, number(b, 1.7));
     }
 }
@@ -89,7 +90,7 @@ static Node expression(Bench *b, int depth)
     int  other = uniform(b) < 0.5 ? depth - 1 : 0;
     Node p = expression(b, depth - 1), q = expression(b, other);
     return uniform(b) < 0.2 ? wild(b, (int)(7 * uniform(b)), p, q)
-                            : tame(b, (int)(26 * uniform(b)), p, q);
+                            : tame(b, (int)(27 * uniform(b)), p, q);
 }
 
 static void random_point(Bench *b, double size, double point[3])
