@@ -213,11 +213,12 @@ static void add_stats_json(Text *json, const KrsRenderStats *stats, const KrsPro
     text_format(json, "\"total\": %.3f, \"wall\": %.3f}, \"device_time\": %s, \"rays\": %llu, "
                       "\"evaluations\": %llu, \"evaluations_per_ray\": {\"mean\": %.3f, "
                       "\"maximum\": %u}, \"flops_per_evaluation\": %.3f, \"gflops\": %.3f, "
-                      "\"unresolved\": %llu, \"device\": ",
+                      "\"unresolved\": %llu, \"submissions\": %llu, \"device\": ",
                 stats->total_ms, stats->wall_ms, stats->device_time ? "true" : "false",
                 (unsigned long long)stats->rays, (unsigned long long)stats->evaluations,
                 stats->evaluations_per_ray, stats->most_evaluations_per_ray,
-                stats->flops_per_evaluation, stats->gflops, (unsigned long long)stats->unresolved);
+                stats->flops_per_evaluation, stats->gflops, (unsigned long long)stats->unresolved,
+                (unsigned long long)stats->submissions);
     text_json(json, stats->device);
     text_format(json, ", \"peak_memory_bytes\": %llu",
                 (unsigned long long)stats->peak_memory_bytes);
@@ -237,7 +238,8 @@ static void print_stats(const KrsRenderStats *stats, const KrsProgram *program)
            stats->evaluations_per_ray, stats->most_evaluations_per_ray);
     printf("arithmetic     %.0f flops per evaluation, %.2f Gflop/s\n", stats->flops_per_evaluation,
            stats->gflops);
-    printf("unresolved     %llu\npeak memory    %.1f MiB\n", (unsigned long long)stats->unresolved,
+    printf("unresolved     %llu\nsubmissions    %llu\npeak memory    %.1f MiB\n",
+           (unsigned long long)stats->unresolved, (unsigned long long)stats->submissions,
            (double)stats->peak_memory_bytes / (1 << 20));
 }
 

@@ -235,6 +235,7 @@ typedef struct KrsRenderStats {
     double   flops_per_evaluation;
     double   gflops;                     /* of the primary phase */
     uint64_t unresolved;                 /* primary and shadow rays that ran out of steps */
+    uint64_t submissions;                /* pieces of work that the host waited for */
     uint64_t peak_memory_bytes;          /* the most held at once on the device, and the picture */
     char     device[256];
 } KrsRenderStats;

@@ -23,11 +23,13 @@ static bool find_type(const Gpu *gpu, uint32_t permitted, VkMemoryPropertyFlags 
 
 static bool find_type_for(const Gpu *gpu, uint32_t permitted, Where where, uint32_t *type)
 {
-    if (where == SHARED)
-        return find_type(gpu, permitted,
-                         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
-                         VK_MEMORY_PROPERTY_HOST_CACHED_BIT, type);
-    return find_type(gpu, permitted, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, type);
+    const VkMemoryPropertyFlags mapped =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    if (where == ON_DEVICE)
+        return find_type(gpu, permitted, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, type);
+    return find_type(gpu, permitted, mapped,
+                     where == SHARED ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
+                                     : VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, type);
 }
 
 bool buffer_create(Gpu *gpu, Buffer *buffer, VkDeviceSize size, Where where, const char *name)
@@ -41,7 +43,7 @@ bool buffer_create(Gpu *gpu, Buffer *buffer, VkDeviceSize size, Where where, con
         .size = size,
         .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
                  VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
-                 VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
+                 VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
     }, NULL, &buffer->buffer));
     gpu_name(gpu, VK_OBJECT_TYPE_BUFFER, (uint64_t)(uintptr_t)buffer->buffer, name);
 
@@ -62,7 +64,7 @@ bool buffer_create(Gpu *gpu, Buffer *buffer, VkDeviceSize size, Where where, con
     if (gpu->memory_used > gpu->memory_peak)
         gpu->memory_peak = gpu->memory_used;
     TRY(gpu, attempt, vkBindBufferMemory(gpu->device, buffer->buffer, buffer->memory, 0));
-    if (where == SHARED)
+    if (where != ON_DEVICE)
         TRY(gpu, attempt,
             vkMapMemory(gpu->device, buffer->memory, 0, VK_WHOLE_SIZE, 0, &buffer->bytes));
     return true;

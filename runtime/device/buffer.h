@@ -8,7 +8,8 @@
 
 typedef enum Where {
     ON_DEVICE, /* fastest for the device; not for the host */
-    SHARED     /* mapped at `bytes`; writes need no flush */
+    SHARED,    /* mapped at `bytes`; writes need no flush */
+    UPLOADED   /* as SHARED, for the host to write: nearer to the device where that can be */
 } Where;
 
 typedef struct Buffer {
@@ -16,7 +17,7 @@ typedef struct Buffer {
     VkDeviceMemory memory;
     VkDeviceSize   size;
     VkDeviceSize   held; /* what the device set aside for it */
-    void          *bytes; /* SHARED only */
+    void          *bytes; /* but ON_DEVICE */
     VkBufferView   texels; /* what is in it, for kernels that read it so (buffer_view) */
 } Buffer;
 

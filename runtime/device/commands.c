@@ -20,9 +20,10 @@ static void memory_barrier(VkCommandBuffer commands, VkPipelineStageFlags after,
 /* What was written can be used, and written again. */
 static void barrier(VkCommandBuffer commands)
 {
-    memory_barrier(commands, WORK, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT |
-                                   VK_ACCESS_UNIFORM_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT |
-                                   VK_ACCESS_TRANSFER_WRITE_BIT);
+    memory_barrier(commands, WORK | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+                   VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT |
+                       VK_ACCESS_UNIFORM_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT |
+                       VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
 }
 
 void gpu_barrier(Gpu *gpu)
@@ -37,8 +38,9 @@ bool gpu_begin(Gpu *gpu)
         .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
         .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
     }));
+    gpu->marks = 0;
     if (gpu->times) {
-        vkCmdResetQueryPool(gpu->commands, gpu->times, 0, 2);
+        vkCmdResetQueryPool(gpu->commands, gpu->times, 0, 2 + MOST_MARKS);
         vkCmdWriteTimestamp(gpu->commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, gpu->times, 0);
     }
     gpu_barrier(gpu);
@@ -48,28 +50,53 @@ failed:
     return false;
 }
 
-static bool measure(Gpu *gpu, double *ms)
+/* The timestamps: the first, the marks in their order, and after these the last. */
+void gpu_mark(Gpu *gpu)
 {
-    uint64_t ticks[2];
+    gpu->marks++;
+    if (gpu->times)
+        vkCmdWriteTimestamp(gpu->commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, gpu->times,
+                            gpu->marks);
+}
+
+static bool read_clock(Gpu *gpu, uint32_t query, uint64_t *ticks)
+{
     TRY(gpu, "read the device's clock",
-        vkGetQueryPoolResults(gpu->device, gpu->times, 0, 2, sizeof ticks, ticks, sizeof ticks[0],
-                              VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
-    uint64_t passed = (ticks[1] - ticks[0]) & gpu->time_mask;
-    *ms += (double)passed * (double)gpu->properties.limits.timestampPeriod / 1e6;
+        vkGetQueryPoolResults(gpu->device, gpu->times, query, 1, sizeof *ticks, ticks,
+                              sizeof *ticks, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
     return true;
 
 failed:
     return false;
 }
 
+/* Adds the time from one timestamp to another. */
+static bool measure(Gpu *gpu, uint32_t from, uint32_t to, double *ms)
+{
+    uint64_t start, end;
+    if (!read_clock(gpu, from, &start) || !read_clock(gpu, to, &end))
+        return false;
+    uint64_t passed = (end - start) & gpu->time_mask;
+    *ms += (double)passed * (double)gpu->properties.limits.timestampPeriod / 1e6;
+    return true;
+}
+
+bool gpu_marked(Gpu *gpu, uint32_t mark, double *ms)
+{
+    *ms = 0;
+    return !gpu->times || measure(gpu, mark, mark + 1, ms);
+}
+
 bool gpu_finish(Gpu *gpu, double *ms)
 {
     if (gpu->times)
-        vkCmdWriteTimestamp(gpu->commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, gpu->times, 1);
+        vkCmdWriteTimestamp(gpu->commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, gpu->times,
+                            1 + gpu->marks);
     memory_barrier(gpu->commands, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
     TRY(gpu, "record work", vkEndCommandBuffer(gpu->commands));
 
     double start = clock_ms();
+    gpu->submissions++;
     TRY(gpu, "submit work", vkQueueSubmit(gpu->queue, 1, &(VkSubmitInfo){
         .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
         .commandBufferCount = 1,
@@ -79,7 +106,7 @@ bool gpu_finish(Gpu *gpu, double *ms)
         vkWaitForFences(gpu->device, 1, &gpu->fence, VK_TRUE, UINT64_MAX));
     TRY(gpu, "wait for the device", vkResetFences(gpu->device, 1, &gpu->fence));
     if (gpu->times)
-        return measure(gpu, ms);
+        return measure(gpu, 0, 1 + gpu->marks, ms);
     *ms += clock_ms() - start;
     return true;
 

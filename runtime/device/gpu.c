@@ -451,7 +451,7 @@ static bool device_create(Gpu *gpu, unsigned pretence)
         TRY(gpu, attempt, vkCreateQueryPool(gpu->device, &(VkQueryPoolCreateInfo){
             .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
             .queryType = VK_QUERY_TYPE_TIMESTAMP,
-            .queryCount = 2,
+            .queryCount = 2 + MOST_MARKS,
         }, NULL, &gpu->times));
     gpu_name(gpu, VK_OBJECT_TYPE_COMMAND_BUFFER, (uint64_t)(uintptr_t)gpu->commands, "slice");
     return true;

@@ -27,7 +27,8 @@ typedef struct Gpu {
     VkCommandPool    pool, rehearsals;
     VkCommandBuffer  commands; /* the one that is recorded, run and waited for */
     VkFence          fence;
-    VkQueryPool      times;    /* two timestamps; none when the queue has no clock */
+    VkQueryPool      times;    /* timestamps; none when the queue has no clock */
+    uint32_t         marks;    /* of them, since recording began */
     uint64_t         time_mask;
 
     VkPhysicalDeviceProperties       properties;
@@ -36,6 +37,7 @@ typedef struct Gpu {
     bool     texels;        /* kernels read what they only read as texels, not as buffers */
     uint32_t refill_lanes; /* of a group whose lanes exchange numbers: 8, or 4; 0: they cannot */
     uint64_t memory_used, memory_peak; /* bytes of device memory */
+    uint64_t submissions;  /* that were waited for */
 
     Cache           cache;            /* of shaders; zero when none was asked for */
     VkPipelineCache pipelines;        /* the driver's, or none */
@@ -77,6 +79,12 @@ void gpu_name(Gpu *gpu, VkObjectType type, uint64_t handle, const char *name);
 
 /* Starts recording.  What earlier work wrote can be read from here on. */
 bool gpu_begin(Gpu *gpu);
+/* Notes the time when all that was recorded so far has run; at most MOST_MARKS times. */
+enum { MOST_MARKS = 64 };
+void gpu_mark(Gpu *gpu);
+/* After gpu_finish: milliseconds up to the mark of this number, from the one before or from the
+   start; 0 without a clock. */
+bool gpu_marked(Gpu *gpu, uint32_t mark, double *ms);
 /* Between two commands of which the second uses what the first wrote. */
 void gpu_barrier(Gpu *gpu);
 /* Runs what was recorded, waits, and adds its milliseconds to *ms: by the device's clock where

@@ -51,6 +51,9 @@ typedef struct LightBlock {
 } LightBlock;
 static_assert(sizeof(LightBlock) == 32, "std430");
 
+/* Dispatches of a chain, at most. */
+enum { MOST_CHAINED = 48 };
+
 /* buffer Control, std430. */
 typedef struct ControlBlock {
     uint32_t projection; /* the enum of KrsCamera */
@@ -71,6 +74,9 @@ typedef struct ControlBlock {
     /* counted by the kernels: */
     uint32_t queued, left, tiles, solid, anchors, rest, unresolved, evaluations, most_evaluations;
     uint32_t of_group[9]; /* KRS_MOST_GROUPS and 1 */
+    /* by plan.comp: the groups of the next dispatch, the one of the chain where it stopped, and how
+       many groups each had: */
+    uint32_t groups[3], stopped, ran[MOST_CHAINED];
 } ControlBlock;
 
 /* Results of results.glsl: rows of four numbers, each for all pixels of a band. */

@@ -2,9 +2,7 @@
  * phases.c: from rays to light.
  *
  * For each ray of the pixels of a band the phases follow one another: beams, primary rays,
- * normals, occlusion, shadows, and the sum of all light.  Each phase is cut into slices of
- * workgroups, short enough that no watchdog minds and an interruption is heard at once; how many
- * that is, is learned on the way, and shows in nothing but the time.
+ * normals, occlusion, shadows, and the sum of all light; dispatch.c runs them.
  */
 #include "runtime/tracer/phases.h"
 
@@ -18,93 +16,10 @@
 #define MOST_BEAM_STEPS 256   /* of a beam, as in trace.comp */
 #define MOST_PASS_STEPS 2048  /* of rays that are left over, in one more pass */
 
-/* ---- Slices ---- */
-
-/* How many groups to take next, after `groups` took `ms`. */
-static uint32_t next_slice(uint32_t groups, double ms, double aim)
-{
-    double factor = ms > 0 ? aim / ms : 4;
-    double next = groups * fmin(fmax(factor, 0.1), 4);
-    return next < 1 ? 1 : next > 65535 ? 65535 : (uint32_t)next;
-}
-
-/* A phase may turn out to have more parts than was thought, but progress never goes back. */
-static bool report(Job *job, double within_phase)
-{
-    job->shown = fmax(job->shown, fmin(job->done + job->share * within_phase, 1));
-    if (job->options.progress && !job->options.progress(job->options.user, job->shown)) {
-        gpu_refuse(job->gpu, KRS_INTERRUPTED, "interrupted");
-        return false;
-    }
-    return true;
-}
-
-/* What was learned about slices of a kernel in a phase: kernels without the scene cost next to
-   nothing, and tell nothing about the others. */
-static uint32_t *groups_at_once(Job *job, KrsPhase phase, const Kernel *kernel)
-{
-    const KrsRenderer *renderer = job->rendering->renderer;
-    bool panoramic = job->rendering->panoramic;
-    bool has_scene = kernel != &renderer->background[panoramic] &&
-                     kernel != &renderer->fill[panoramic];
-    return &job->rendering->groups_at_once[phase][has_scene];
-}
-
-static bool run_groups(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
-                       uint32_t groups)
-{
-    uint32_t *at_once = groups_at_once(job, phase, kernel);
-    for (uint32_t first = 0; first < groups;) {
-        uint32_t count = *at_once < groups - first ? *at_once : groups - first;
-        double   ms = 0;
-        work->first = first;
-        work->groups = count;
-        work->stride = rendering_spread(job->rendering, count);
-        if (!gpu_begin(job->gpu))
-            return false;
-        rendering_dispatch(job->rendering, kernel, job->rendering->band_set, work, sizeof *work,
-                           count);
-        if (!gpu_finish(job->gpu, &ms))
-            return false;
-        job->picture->stats.phase_ms[phase] += ms;
-        /* The last slice may be too small to learn much from. */
-        if (count == *at_once || ms > job->options.slice_ms)
-            *at_once = next_slice(count, ms, job->options.slice_ms);
-        first += count;
-        if (!report(job, (double)first / groups))
-            return false;
-    }
-    return true;
-}
-
-/* Runs a kernel over items that all cost alike (pixels.glsl), of which lavapipe's lanes take so
-   many. */
-#define ITEMS_OF_LANE 8
-
-static uint32_t items_of_lane(const Job *job) { return gpu_is_cpu(job->gpu) ? ITEMS_OF_LANE : 1; }
-
-static bool run_all(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
-                    uint32_t items)
-{
-    ControlBlock *control = job->rendering->control.bytes;
-    control->items = items;
-    control->share = items_of_lane(job);
-    return run_groups(job, phase, kernel, work,
-                      (items + 64 * control->share - 1) / (64 * control->share));
-}
-
-/* ---- The phases of one ray per pixel ---- */
-
 static uint32_t turns_within(const Job *job, uint32_t wanted)
 {
     return rendering_turns(job->rendering, wanted);
 }
-
-/* How items are dealt out (schedule.glsl): to so many lanes a group, to a lane so many; and how
-   many steps a lane has in a dispatch. */
-typedef struct Dealing {
-    uint32_t lanes, share, steps;
-} Dealing;
 
 static Dealing dealing(const Job *job)
 {
@@ -117,86 +32,7 @@ static Dealing dealing(const Job *job)
     return (Dealing){64, 1, steps};
 }
 
-/* Runs a kernel over items of which each takes the steps that it needs (schedule.glsl). */
-static bool run_items(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
-                      uint32_t items, Dealing deal)
-{
-    ControlBlock *control = job->rendering->control.bytes;
-    uint32_t      in_group = deal.lanes * deal.share;
-    control->items = items;
-    control->share = deal.share;
-    work->steps = deal.steps;
-    return run_groups(job, phase, kernel, work, (items + in_group - 1) / in_group);
-}
-
-/* One of several dispatches of a phase: what the control block tells it. */
-typedef struct Errand {
-    const Kernel *kernel;
-    ControlBlock  control;
-    uint32_t      steps, groups;
-} Errand;
-
-static Errand errand(const Job *job, const Kernel *kernel, uint32_t phase, uint32_t items,
-                     Dealing deal)
-{
-    uint32_t in_group = deal.lanes * deal.share;
-    Errand   errand   = {.kernel = kernel, .steps = deal.steps};
-    errand.control         = *(const ControlBlock *)job->rendering->control.bytes;
-    errand.control.phase   = phase;
-    errand.control.source  = ITEMS_FRESH;
-    errand.control.items   = items;
-    errand.control.share   = deal.share;
-    errand.groups          = (items + in_group - 1) / in_group;
-    return errand;
-}
-
-static bool run_each(Job *job, KrsPhase phase, const Errand *errands, size_t count,
-                     WorkBlock *work)
-{
-    ControlBlock *control = job->rendering->control.bytes;
-    for (size_t i = 0; i < count; i++) {
-        memcpy(control, &errands[i].control, offsetof(ControlBlock, queued));
-        work->steps = errands[i].steps;
-        if (!run_groups(job, phase, errands[i].kernel, work, errands[i].groups))
-            return false;
-    }
-    return true;
-}
-
-/* Runs one after the other, none of which leaves an item over: in one submission, as that costs
-   what thousands of rays do, if all together are no longer than a slice. */
-static bool run_errands(Job *job, KrsPhase phase, const Errand *errands, size_t count,
-                        WorkBlock *work)
-{
-    uint32_t *at_once = groups_at_once(job, phase, errands[0].kernel), groups = 0;
-    double    ms = 0;
-    for (size_t i = 0; i < count; i++)
-        groups += errands[i].groups;
-    if (groups == 0 || groups > *at_once)
-        return run_each(job, phase, errands, count, work);
-    if (!gpu_begin(job->gpu))
-        return false;
-    for (size_t i = 0; i < count; i++) {
-        if (errands[i].groups == 0)
-            continue;
-        work->first  = 0;
-        work->groups = errands[i].groups;
-        work->stride = rendering_spread(job->rendering, errands[i].groups);
-        work->steps  = errands[i].steps;
-        vkCmdUpdateBuffer(job->gpu->commands, job->rendering->control.buffer, 0,
-                          offsetof(ControlBlock, queued), &errands[i].control);
-        gpu_barrier(job->gpu);
-        rendering_dispatch(job->rendering, errands[i].kernel, job->rendering->band_set, work,
-                           sizeof *work, errands[i].groups);
-        gpu_barrier(job->gpu);
-    }
-    if (!gpu_finish(job->gpu, &ms))
-        return false;
-    job->picture->stats.phase_ms[phase] += ms;
-    if (ms > job->options.slice_ms)
-        *at_once = next_slice(groups, ms, job->options.slice_ms);
-    return report(job, 1);
-}
+/* ---- Beams and primary rays ---- */
 
 static uint32_t tiles_of_band(const WorkBlock *work)
 {
@@ -213,11 +49,12 @@ static bool clear_ends(Job *job)
     return gpu_finish(gpu, &job->picture->stats.phase_ms[KRS_PHASE_BEAMS]);
 }
 
-/* Those that may have rays that hit something. */
-static uint32_t tiles_of_rays(const Job *job, const WorkBlock *work)
+/* The pixels of tiles whose rays may hit something. */
+static Items pixels_of_rays(const Job *job, const WorkBlock *work)
 {
     const ControlBlock *control = job->rendering->control.bytes;
-    return control->listed ? control->tiles : tiles_of_band(work);
+    return control->listed ? ITEMS_COUNTED(TILE * TILE, tiles)
+                           : ITEMS_KNOWN(tiles_of_band(work) * TILE * TILE);
 }
 
 /* The tiles that both the band and the job's window have a part of, as the control block has it;
@@ -263,50 +100,95 @@ static Dealing deal_beams(const Job *job, uint32_t most)
 /* Beams of tiles, counted in the whole picture, that the band and the window have a part of.  Those
    of 8x8 pixels that find something are listed; the rays of all others miss.  The quarters of the
    listed ones may have beams, too. */
-static bool march_beams(Job *job, WorkBlock *work, double flops)
+static bool march_beams(Job *job, const WorkBlock *work, double flops)
 {
     static const struct { uint32_t phase, side; } sizes[] = {{TRACE_BEAMS_32, 32},
                                                              {TRACE_BEAMS_8, 8}};
     ControlBlock *control = job->rendering->control.bytes;
     Dealing       deal = deal_beams(job, 2); /* a slot each, of two that a lane keeps */
-    Errand        beams[2];
+    Dispatch      beams[2];
     control->tiles = 0;
-    for (int i = 0; i < 2; i++) {
+    control->source = ITEMS_FRESH;
+    for (uint32_t i = 0; i < 2; i++) {
         uint32_t tiles = choose_tiles(job, work, sizes[i].side);
-        beams[i] = errand(job, job->beams, sizes[i].phase, tiles, deal);
-        beams[i].control.follow = i > 0;
+        control->phase = sizes[i].phase;
+        control->follow = i;
+        beams[i] = dispatch_of(job, KRS_PHASE_BEAMS, job->beams, work, ITEMS_KNOWN(tiles), deal);
     }
-    if (!run_errands(job, KRS_PHASE_BEAMS, beams, 2, work))
+    if (!dispatch_together(job, beams, 2))
         return false;
     control->follow = control->listed = 1;
     if (flops < FLOPS_WORTH_QUARTERS)
         return true;
     control->phase = TRACE_BEAMS_4;
-    control->source = ITEMS_FRESH;
-    if (!run_items(job, KRS_PHASE_BEAMS, job->beams, work, 4 * control->tiles,
-                   deal_beams(job, 8))) /* four of a slot */
+    if (!dispatch_items(job, KRS_PHASE_BEAMS, job->beams, work, ITEMS_COUNTED(4, tiles),
+                        deal_beams(job, 8))) /* four of a slot */
         return false;
     control->follow = 2;
     return true;
 }
 
+/* Each pass twice as long as the one before, so that they are few even for the longest rays: the
+   first is of rays that have begun, all at the same time. */
+static uint32_t next_steps(const Job *job, const ControlBlock *control, uint32_t steps)
+{
+    if (control->source != ITEMS_QUEUED)
+        steps = job->options.steps_at_once;
+    else if (steps < MOST_PASS_STEPS)
+        steps *= 2;
+    return turns_within(job, steps);
+}
+
+/* The next pass reads the queue that the last one has written, and writes the other one. */
+static void turn_queue(ControlBlock *control, const WorkBlock *work)
+{
+    uint32_t pixels = work->extent[0] * work->extent[1];
+    control->source = ITEMS_QUEUED;
+    control->reading = control->writing;
+    control->writing = pixels - control->reading;
+}
+
+/* Passes of a chain: none is left over by most of them, and those that have no rays cost little. */
+#define PASSES_AT_ONCE 5
+
+/* As `trace` does it where the host does not look at how many rays are left after each pass. */
+static bool trace_in_chain(Job *job, const WorkBlock *work, Dealing deal)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    Items         items = pixels_of_rays(job, work);
+    do {
+        for (int pass = 0; pass <= PASSES_AT_ONCE; pass++) {
+            if (!dispatch_items(job, KRS_PHASE_PRIMARY, job->trace, work, items, deal))
+                return false;
+            deal.steps = next_steps(job, control, deal.steps);
+            turn_queue(control, work);
+            items = (Items){1, WORD_OF(queued), .taken = true};
+        }
+        if (!dispatch_finish(job))
+            return false;
+    } while (control->queued > 0);
+    return true;
+}
+
 /* First every pixel of the band, or of the listed tiles, until all have been begun; then, pass by
    pass, the rays that are not done. */
-static bool trace(Job *job, WorkBlock *work)
+static bool trace(Job *job, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
     Dealing       deal = dealing(job);
-    uint32_t      pixels = work->extent[0] * work->extent[1];
-    uint32_t      items = tiles_of_rays(job, work) * TILE * TILE;
-    while (deal.lanes * deal.share > 128 && items / (deal.lanes * deal.share) < 64)
-        deal.share /= 2; /* groups enough for every core of the device */
+    Items         items = pixels_of_rays(job, work);
     control->phase = TRACE_RAYS;
     control->source = ITEMS_FRESH;
     control->queued = control->writing = 0;
+    if (dispatch_chains(job))
+        return trace_in_chain(job, work, deal);
+    while (deal.lanes * deal.share > 128 &&
+           items_now(job, items) / (deal.lanes * deal.share) < 64)
+        deal.share /= 2; /* groups enough for every core of the device */
     for (double left = job->share;; left -= job->share) {
         control->left = 0;
         job->share = 0.9 * left; /* few rays need a second pass */
-        if (!run_items(job, KRS_PHASE_PRIMARY, job->trace, work, items, deal))
+        if (!dispatch_items(job, KRS_PHASE_PRIMARY, job->trace, work, items, deal))
             return false;
         job->done += job->share;
         if (control->left > 0) {
@@ -315,16 +197,10 @@ static bool trace(Job *job, WorkBlock *work)
         }
         if (control->queued == 0)
             return true;
-        /* Each pass twice as long, so that they are few even for the longest rays. */
-        deal.steps = control->source != ITEMS_QUEUED ? job->options.steps_at_once
-                   : deal.steps < MOST_PASS_STEPS    ? 2 * deal.steps
-                                                     : deal.steps;
-        deal.steps = turns_within(job, deal.steps);
-        control->source = ITEMS_QUEUED;
-        items = control->queued;
+        deal.steps = next_steps(job, control, deal.steps);
+        turn_queue(control, work);
+        items = ITEMS_KNOWN(control->queued);
         control->queued = 0;
-        control->reading = control->writing;
-        control->writing = pixels - control->reading;
         deal.share = 1;
     }
 }
@@ -336,7 +212,7 @@ static bool has_beams(const Job *job)
 }
 
 /* Beams, then rays, of one kernel, whose distance costs so much. */
-static bool march(Job *job, WorkBlock *work, double flops)
+static bool march(Job *job, const WorkBlock *work, double flops)
 {
     ControlBlock *control = job->rendering->control.bytes;
     const double  share = job->share;
@@ -348,7 +224,7 @@ static bool march(Job *job, WorkBlock *work, double flops)
     return trace(job, work);
 }
 
-static bool march_all(Job *job, WorkBlock *work)
+static bool march_all(Job *job, const WorkBlock *work)
 {
     FrameBlock *frame = job->rendering->frame.bytes;
     Kernel     *whole = job->trace;
@@ -386,6 +262,8 @@ static bool march_all(Job *job, WorkBlock *work)
     return good;
 }
 
+/* ---- What follows a hit ---- */
+
 /* Of the pixels of a list. */
 static Dealing deal_around(const Job *job, uint32_t count)
 {
@@ -400,19 +278,19 @@ static Dealing deal_around(const Job *job, uint32_t count)
 
 /* Normals, occlusion or what is seen of a light, for the pixels of a list: rays to lights take the
    steps that they need. */
-static bool look_around(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
-                        uint32_t list, uint32_t count)
+static bool look_around(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
+                        uint32_t list, Items items)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    Dealing       deal = deal_around(job, count);
     control->phase = phase == KRS_PHASE_OCCLUSION ? AROUND_OCCLUSION : AROUND_NORMALS;
     control->source = ITEMS_FRESH;
     control->reading = list * work->extent[0] * work->extent[1];
     if (phase != KRS_PHASE_SHADOWS)
-        return run_all(job, phase, kernel, work, count);
-    do {
+        return dispatch_pixels(job, phase, kernel, work, items);
+    do { /* in a chain no item is left over */
         control->left = 0;
-        if (!run_items(job, phase, kernel, work, count, deal))
+        if (!dispatch_items(job, phase, kernel, work, items,
+                            deal_around(job, items_now(job, items))))
             return false;
         control->source = ITEMS_REST;
     } while (control->left > 0);
@@ -429,7 +307,7 @@ static uint32_t find_sun(const Job *job, uint32_t light)
 }
 
 /* The sky and the first sun, and the lists of what hits something; then each other sun. */
-static bool resolve(Job *job, WorkBlock *work)
+static bool resolve(Job *job, const WorkBlock *work)
 {
     KrsRendering *r = job->rendering;
     ControlBlock *control = r->control.bytes;
@@ -440,8 +318,8 @@ static bool resolve(Job *job, WorkBlock *work)
     memset(control->of_group, 0, sizeof control->of_group);
     do {
         control->light = sun;
-        if (!run_all(job, KRS_PHASE_RESOLVE, &r->renderer->background[r->panoramic], work,
-                     tiles_of_band(work) * TILE))
+        if (!dispatch_pixels(job, KRS_PHASE_RESOLVE, &r->renderer->background[r->panoramic], work,
+                             ITEMS_KNOWN(tiles_of_band(work) * TILE)))
             return false;
         control->phase = BACKGROUND_SUN;
         sun = find_sun(job, sun + 1);
@@ -451,40 +329,45 @@ static bool resolve(Job *job, WorkBlock *work)
 
 /* Where components were marched by themselves, so is the normal of each found: at the surface of
    one the others do not count. */
-static bool find_normals(Job *job, WorkBlock *work)
+static bool find_normals(Job *job, const WorkBlock *work)
 {
-    const ControlBlock *control = job->rendering->control.bytes;
-    Errand              errands[1 + KRS_MOST_GROUPS];
+    ControlBlock *control = job->rendering->control.bytes;
+    Dispatch      parts[1 + KRS_MOST_GROUPS];
     if (!control->parts)
-        return look_around(job, KRS_PHASE_NORMALS, job->around, work, LIST_ALL, control->solid);
+        return look_around(job, KRS_PHASE_NORMALS, job->around, work, LIST_ALL,
+                           ITEMS_COUNTED(1, solid));
+    control->phase = AROUND_NORMALS;
+    control->source = ITEMS_FRESH;
     for (uint32_t i = 0; i <= job->part_count; i++) {
         bool     part  = i < job->part_count; /* else what belongs to none: planes */
         uint32_t group = part ? job->parts[i].group + 1 : 0;
-        errands[i] = errand(job, part ? job->parts[i].normals : job->around, AROUND_NORMALS,
-                            control->of_group[group], (Dealing){64, items_of_lane(job), 0});
-        errands[i].control.reading =
-            (LIST_OF_GROUP + group) * work->extent[0] * work->extent[1];
+        Items    items = {1, WORD_OF(of_group) + group, false};
+        control->reading = (LIST_OF_GROUP + group) * work->extent[0] * work->extent[1];
+        parts[i] = dispatch_of(job, KRS_PHASE_NORMALS, part ? job->parts[i].normals : job->around,
+                               work, items, deal_pixels(job));
     }
-    return run_errands(job, KRS_PHASE_NORMALS, errands, 1 + job->part_count, work);
+    return dispatch_together(job, parts, 1 + job->part_count);
 }
 
 /* As much for a quarter of the pixels; the others are filled in where that cannot be seen, and
    looked at where it could. */
-static bool look_sparsely(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work)
+static bool look_sparsely(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
     Kernel       *fill = &job->rendering->renderer->fill[job->rendering->panoramic];
     if (!job->sparse)
-        return look_around(job, phase, kernel, work, LIST_ALL, control->solid);
-    if (!look_around(job, phase, kernel, work, LIST_ANCHORS, control->anchors))
+        return look_around(job, phase, kernel, work, LIST_ALL, ITEMS_COUNTED(1, solid));
+    if (!look_around(job, phase, kernel, work, LIST_ANCHORS, ITEMS_COUNTED(1, anchors)))
         return false;
-    control->rest = 0;
     control->phase = FILL_JUDGE;
-    if (!run_all(job, phase, fill, work, tiles_of_band(work)))
+    Dispatch judge = dispatch_of(job, phase, fill, work, ITEMS_KNOWN(tiles_of_band(work)),
+                                 deal_pixels(job));
+    judge.clears = WORD_OF(rest);
+    if (!dispatch_run(job, &judge))
         return false;
     control->phase = FILL_FILL;
-    return run_all(job, phase, fill, work, control->solid) &&
-           look_around(job, phase, kernel, work, LIST_REST, control->rest);
+    return dispatch_pixels(job, phase, fill, work, ITEMS_COUNTED(1, solid)) &&
+           look_around(job, phase, kernel, work, LIST_REST, ITEMS_COUNTED(1, rest));
 }
 
 bool lights_by_points(const Job *job, const KrsLight *light)
@@ -493,16 +376,16 @@ bool lights_by_points(const Job *job, const KrsLight *light)
 }
 
 /* A ray that goes from root to root knows of no way beside it, so none is filled in. */
-static bool find_visible(Job *job, const KrsLight *light, WorkBlock *work)
+static bool find_visible(Job *job, const KrsLight *light, const WorkBlock *work)
 {
-    const ControlBlock *control = job->rendering->control.bytes;
     if (!job->roots || !lights_by_points(job, light))
         return look_sparsely(job, KRS_PHASE_SHADOWS, job->shadows, work);
-    return look_around(job, KRS_PHASE_SHADOWS, job->roots, work, LIST_ALL, control->solid);
+    return look_around(job, KRS_PHASE_SHADOWS, job->roots, work, LIST_ALL,
+                       ITEMS_COUNTED(1, solid));
 }
 
 /* How much is visible of each of the lights from `first` on that are shaded at once. */
-static bool find_lights(Job *job, uint32_t first, WorkBlock *work)
+static bool find_lights(Job *job, uint32_t first, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
     for (uint32_t i = 0; i < LIGHTS_AT_ONCE && first + i < job->view.light_count; i++) {
@@ -517,7 +400,7 @@ static bool find_lights(Job *job, uint32_t first, WorkBlock *work)
 }
 
 /* Some lights at a time; all else with the first, of which there may be none. */
-static bool light_up(Job *job, WorkBlock *work)
+static bool light_up(Job *job, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
     uint32_t      count = (uint32_t)job->view.light_count, first = 0;
@@ -529,7 +412,7 @@ static bool light_up(Job *job, WorkBlock *work)
         control->reading = 0;
         double share = job->share;
         job->share = 0;
-        if (!run_all(job, KRS_PHASE_SHADING, job->shade, work, control->solid))
+        if (!dispatch_pixels(job, KRS_PHASE_SHADING, job->shade, work, ITEMS_COUNTED(1, solid)))
             return false;
         job->share = share;
         first += LIGHTS_AT_ONCE;
@@ -560,7 +443,7 @@ typedef enum Step {
 } Step;
 static const double step_share[STEP_COUNT] = {0.5, 0.02, 0.1, 0.1, 0.28};
 
-static bool run_step(Job *job, Step step, WorkBlock *work)
+static bool run_step(Job *job, Step step, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
     switch (step) {
@@ -595,6 +478,6 @@ bool phases_run(Job *job, WorkBlock *work, uint32_t index)
         if (!run_step(job, step, work))
             return false;
     }
-    return true;
+    return dispatch_finish(job);
 }
 

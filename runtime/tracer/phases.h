@@ -4,6 +4,7 @@
 #ifndef KRS_PHASES_H
 #define KRS_PHASES_H
 
+#include "runtime/tracer/dispatch.h"
 #include "runtime/tracer/renderer.h"
 
 /* A group of components, to be marched by itself. */
@@ -35,6 +36,7 @@ typedef struct Job {
     KrsPicture      *picture;
     double           done, share; /* of the whole: before this phase, and of it */
     double           shown;       /* the progress that was reported */
+    Chain            chain;
 } Job;
 
 /* Whether rays to a light go to points of it, not to all of it at once. */

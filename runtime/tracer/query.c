@@ -110,7 +110,8 @@ static bool prepare(KrsRendering *rendering)
             return false;
         rendering_bind(rendering, rendering->points_set, wanted[i].binding, wanted[i].buffer);
     }
-    rendering_bind(rendering, rendering->points_set, CONTROL_BINDING, &rendering->control);
+    rendering_bind(rendering, rendering->points_set, CONTROL_BINDING,
+                   rendering_control(rendering));
     return true;
 }
 
@@ -159,10 +160,10 @@ static bool march(KrsRendering *rendering, uint32_t count)
     for (bool more = kernel != NULL; more; control->source = ITEMS_REST) {
         double ms = 0;
         control->left = 0;
-        if (!gpu_begin(gpu))
+        if (!rendering_begin(rendering))
             return false;
         rendering_dispatch(rendering, kernel, rendering->points_set, &work, sizeof work, groups);
-        if (!gpu_finish(gpu, &ms))
+        if (!rendering_finish(rendering, &ms))
             return false;
         more = control->left > 0;
     }

@@ -425,13 +425,15 @@ static bool render(Job *job, KrsFrame *frame)
     job->shade = rendering_shade(job->rendering);
     if (!job->around || !job->shade || !find_shadows(job) || !wait_for_kernels(job))
         return false;
-    double start = clock_ms();
+    double   start = clock_ms();
+    uint64_t submissions = job->gpu->submissions;
     for (uint32_t from = 0; from < job->cover.height; from += rows) {
         uint32_t left = job->cover.height - from;
         if (!render_band(job, from, left < rows ? left : rows))
             return false;
     }
     job->picture->stats.wall_ms = clock_ms() - start;
+    job->picture->stats.submissions = job->gpu->submissions - submissions;
     return true;
 }
 

@@ -3,6 +3,7 @@
  */
 #include "runtime/tracer/renderer.h"
 
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,9 +44,11 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
     const KernelRequest kernels[] = {
         {&renderer->background[0], {.file = "background.comp", .defines = defines}},
         {&renderer->fill[0], {.file = "fill.comp", .defines = defines}},
+        {&renderer->plan, {.file = "plan.comp"}},
     };
+    const size_t count = sizeof kernels / sizeof kernels[0] - (gpu_is_cpu(&renderer->gpu) ? 1 : 0);
     if (!stage_create(renderer) ||
-        !stage_make_kernels(renderer, VK_NULL_HANDLE, kernels, sizeof kernels / sizeof kernels[0],
+        !stage_make_kernels(renderer, VK_NULL_HANDLE, kernels, count,
                             &renderer->spirv_ms, &renderer->pipeline_ms))
         return renderer->gpu.status;
     return KRS_OK;
@@ -62,6 +65,7 @@ void krs_renderer_free(KrsRenderer *renderer)
             kernel_destroy(gpu, &renderer->background[panoramic]);
             kernel_destroy(gpu, &renderer->fill[panoramic]);
         }
+        kernel_destroy(gpu, &renderer->plan);
         stage_destroy(renderer);
     }
     gpu_close(gpu);
@@ -142,14 +146,16 @@ static bool buffers_create(KrsRendering *rendering)
                    rendering->program->parameter_slots);
         return false;
     }
-    if (!buffer_create(gpu, &rendering->parameters, (VkDeviceSize)slots * 4 * sizeof(float), SHARED,
-                       "scene's parameters") ||
-        !buffer_create(gpu, &rendering->frame, sizeof(FrameBlock), SHARED, "camera") ||
-        !buffer_create(gpu, &rendering->control, sizeof(ControlBlock), SHARED, "control block"))
+    if (!buffer_create(gpu, &rendering->parameters, (VkDeviceSize)slots * 4 * sizeof(float),
+                       UPLOADED, "scene's parameters") ||
+        !buffer_create(gpu, &rendering->frame, sizeof(FrameBlock), UPLOADED, "camera") ||
+        !buffer_create(gpu, &rendering->control, sizeof(ControlBlock), SHARED, "control block") ||
+        (!gpu_is_cpu(gpu) && !buffer_create(gpu, &rendering->device_control, sizeof(ControlBlock),
+                                            ON_DEVICE, "control block")))
         return false;
     rendering_bind(rendering, rendering->scene_set, 0, &rendering->parameters);
     rendering_bind(rendering, rendering->band_set, FRAME_BINDING, &rendering->frame);
-    rendering_bind(rendering, rendering->band_set, CONTROL_BINDING, &rendering->control);
+    rendering_bind(rendering, rendering->band_set, CONTROL_BINDING, rendering_control(rendering));
     return true;
 }
 
@@ -554,7 +560,7 @@ void krs_rendering_free(KrsRendering *rendering)
     Gpu    *gpu = &rendering->renderer->gpu;
     Band   *band = &rendering->band;
     Buffer *buffers[] = {&rendering->parameters, &rendering->frame, &rendering->control,
-                         &rendering->lights, &rendering->points, &rendering->answers,
+                         &rendering->device_control, &rendering->lights, &rendering->points, &rendering->answers,
                          &rendering->questions, &rendering->ways, &rendering->shares,
                          &band->ends, &band->hits, &band->results, &band->fetched,
                          &band->queue, &band->taken, &band->tiles};
@@ -577,7 +583,7 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
     VkDeviceSize bytes = buffer_texel_bytes((count + LIGHTS_AT_ONCE) * sizeof(LightBlock));
     if (buffer->size < bytes) {
         buffer_destroy(gpu, buffer);
-        if (!buffer_create(gpu, buffer, bytes, SHARED, "lights") ||
+        if (!buffer_create(gpu, buffer, bytes, UPLOADED, "lights") ||
             !stage_view(gpu, LIGHTS_BINDING, buffer, "lights"))
             return false;
         rendering_bind(rendering, rendering->band_set,
@@ -664,8 +670,38 @@ uint32_t rendering_spread(const KrsRendering *rendering, uint32_t count)
     }
 }
 
-void rendering_dispatch(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,
-                        const void *work, uint32_t work_bytes, uint32_t groups)
+const Buffer *rendering_control(const KrsRendering *rendering)
+{
+    return rendering->device_control.buffer ? &rendering->device_control : &rendering->control;
+}
+
+bool rendering_begin(KrsRendering *rendering)
+{
+    Gpu *gpu = &rendering->renderer->gpu;
+    if (!gpu_begin(gpu))
+        return false;
+    if (rendering->device_control.buffer) {
+        vkCmdCopyBuffer(gpu->commands, rendering->control.buffer, rendering->device_control.buffer,
+                        1, &(VkBufferCopy){0, 0, sizeof(ControlBlock)});
+        gpu_barrier(gpu);
+    }
+    return true;
+}
+
+bool rendering_finish(KrsRendering *rendering, double *ms)
+{
+    Gpu               *gpu = &rendering->renderer->gpu;
+    const VkDeviceSize counters = offsetof(ControlBlock, queued);
+    if (rendering->device_control.buffer) {
+        gpu_barrier(gpu);
+        vkCmdCopyBuffer(gpu->commands, rendering->device_control.buffer, rendering->control.buffer,
+                        1, &(VkBufferCopy){counters, counters, sizeof(ControlBlock) - counters});
+    }
+    return gpu_finish(gpu, ms);
+}
+
+static void bind_kernel(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,
+                        const void *work, uint32_t work_bytes)
 {
     VkCommandBuffer  commands = rendering->renderer->gpu.commands;
     VkPipelineLayout layout = rendering->renderer->layout;
@@ -673,5 +709,19 @@ void rendering_dispatch(KrsRendering *rendering, const Kernel *kernel, VkDescrip
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 2,
                             (VkDescriptorSet[]){rendering->scene_set, set}, 0, NULL);
     vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, work_bytes, work);
-    vkCmdDispatch(commands, groups, 1, 1);
+}
+
+void rendering_dispatch(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,
+                        const void *work, uint32_t work_bytes, uint32_t groups)
+{
+    bind_kernel(rendering, kernel, set, work, work_bytes);
+    vkCmdDispatch(rendering->renderer->gpu.commands, groups, 1, 1);
+}
+
+void rendering_dispatch_counted(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,
+                                const void *work, uint32_t work_bytes)
+{
+    bind_kernel(rendering, kernel, set, work, work_bytes);
+    vkCmdDispatchIndirect(rendering->renderer->gpu.commands, rendering_control(rendering)->buffer,
+                          offsetof(ControlBlock, groups));
 }

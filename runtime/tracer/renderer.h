@@ -20,6 +20,7 @@ struct KrsRenderer {
     VkDescriptorSetLayout frame_layout; /* set 1: what frame.glsl declares */
     VkPipelineLayout      layout;       /* of every kernel */
     Kernel                background[2], fill[2]; /* [1]: for scenes with panoramas, when needed */
+    Kernel                plan;     /* on graphics cards (dispatch.c) */
     double                spirv_ms, pipeline_ms; /* of the former */
     VkDescriptorPool      idle_pool;             /* for rehearsals: */
     VkDescriptorSet       idle_scene, idle_frame; /* with nothing in them, */
@@ -63,6 +64,8 @@ struct KrsRendering {
     VkDescriptorPool  pool;
     VkDescriptorSet   scene_set, band_set, points_set;
     Buffer            parameters, frame, control, lights;
+    Buffer            device_control; /* what kernels use of the control block, of which the host
+                                         has a copy; none where they use the host's */
     Band              band;
     Buffer            points, answers; /* of sample.comp */
     Buffer            questions, ways, shares; /* of query.comp */
@@ -118,9 +121,19 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
 /* Points a binding of set 1 at a buffer. */
 void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding,
                     const Buffer *buffer);
+/* As gpu_begin and gpu_finish: with what the control block says, and then counts. */
+bool rendering_begin(KrsRendering *rendering);
+bool rendering_finish(KrsRendering *rendering, double *ms);
+/* The control block that kernels use. */
+const Buffer *rendering_control(const KrsRendering *rendering);
 /* Records that a kernel runs with these push constants on `groups` workgroups. */
 void rendering_dispatch(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,
                         const void *work, uint32_t work_bytes, uint32_t groups);
+/* The same on as many as the control block says (`groups`). */
+void rendering_dispatch_counted(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,
+                                const void *work, uint32_t work_bytes);
+/* The most workgroups of a dispatch on any device. */
+enum { MOST_GROUPS = 65535 };
 /* ---- sample.c ---- */
 enum { POINTS_AT_ONCE = 16384 };
 /* Makes room for that many points, and their answers. */

@@ -134,6 +134,18 @@ static const Case cases[] = {
     {"a polynomial", "camera { eye: [3, 2, 3], fov: 0.6 }"
                      "show algebraic(x ^ 4 + y ^ 4 + z ^ 4 == 1).within(sphere(1.5));",
      {.width = 100, .height = 70, .schedule = KRS_SCHEDULE_QUEUE}},
+    {"the shortest slices", "camera { eye: [2, 6, 22], fov: 0.6 }"
+                            "show krs { kernel sphere(0.45); for i in 0..12 {"
+                            "reflect plane(random_direction(i), 0.4 + 0.22 * i); } };",
+     {.width = 60, .height = 50, .steps_at_once = 3, .slice_ms = 1e-3,
+      .schedule = KRS_SCHEDULE_QUEUE}},
+    {"components by themselves", "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
+                                 "def tree(x) = krs { kernel sphere(0.3); for i in 0..9 {"
+                                 "reflect plane(random_direction(i), 0.1 + 0.1 * i); } }"
+                                 ".move([x, 1, 0]);"
+                                 "show tree(-1); show tree(1); show plane([0, 1, 0], 0);",
+     {.width = 90, .height = 60, .schedule = KRS_SCHEDULE_QUEUE,
+      .components = KRS_COMPONENTS_APART}},
 };
 
 /* Renders a case as the device is, and as it is taken for. */
@@ -186,6 +198,59 @@ static void a_flipped_bit_is_found(void **state)
     close_stage(&stage);
 }
 
+/* ---- Submissions ---- */
+
+/* What the host waits for: two times to clear, rays, light, and the results. */
+enum { SUBMISSIONS_OF_CARD = 5 };
+
+static void a_card_is_seldom_waited_for(void **state)
+{
+    (void)state;
+    Stage            stage = open_stage(cases[0].text, KRS_PRETEND_CARD);
+    KrsRenderOptions options = cases[0].options;
+    options.slice_ms = 1e6; /* a slice is all of it */
+    for (int frame = 0; frame < 2; frame++) {
+        KrsPicture *picture = render(&stage, &options);
+        assert_in_range(picture->stats.submissions, 1, SUBMISSIONS_OF_CARD);
+        krs_picture_free(picture);
+    }
+    close_stage(&stage);
+}
+
+/* Says stop at the call that `user` has counted down to. */
+static bool count_down(void *user, double done)
+{
+    int *left = user;
+    (void)done;
+    return --*left >= 0;
+}
+
+/* Wherever it is interrupted, and the next picture is whole. */
+static void a_card_is_interrupted(void **state)
+{
+    (void)state;
+    Stage            stage = open_stage(cases[0].text, KRS_PRETEND_CARD);
+    KrsRenderOptions options = cases[0].options;
+    KrsPicture      *whole = render(&stage, &options);
+    int              interrupted = 0, left;
+    options.progress = count_down;
+    options.user = &left;
+    for (int calls = 0; calls < 20; calls++) {
+        KrsPicture *picture;
+        left = calls;
+        KrsStatus status = krs_render(stage.rendering, stage.frame, &options, &picture);
+        if (status == KRS_OK)
+            assert_int_equal(difference(whole, picture), 0);
+        else
+            assert_int_equal(status, KRS_INTERRUPTED);
+        interrupted += status != KRS_OK;
+        krs_picture_free(picture);
+    }
+    assert_in_range(interrupted, 1, 19);
+    krs_picture_free(whole);
+    close_stage(&stage);
+}
+
 /* ---- Questions ---- */
 
 enum { RAYS = 300 };
@@ -228,6 +293,8 @@ int main(void)
         cmocka_unit_test(short_texel_buffers_are_not_seen),
         cmocka_unit_test(a_card_is_not_seen),
         cmocka_unit_test(a_flipped_bit_is_found),
+        cmocka_unit_test(a_card_is_seldom_waited_for),
+        cmocka_unit_test(a_card_is_interrupted),
         cmocka_unit_test(answers_are_the_same),
     };
     spirv_start(); /* held for all, so that no renderer starts the shader compiler anew */

@@ -1,0 +1,306 @@
+/*
+ * dispatch.c: slices and chains.
+ *
+ * A slice is short enough that no watchdog minds and an interruption is heard at once; how many
+ * groups that is, is learned on the way, and shows in nothing but the time.  In a chain no dispatch
+ * has more groups than a slice: where one would, the chain stops, and the host runs that one slice
+ * by slice.
+ */
+#include "runtime/tracer/dispatch.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "runtime/tracer/phases.h"
+
+/* As plan.comp has them. */
+static_assert(WORD_OF(items) == 10 && WORD_OF(groups) == 38 && WORD_OF(stopped) == 41 &&
+              WORD_OF(ran) == 42, "plan.comp");
+typedef struct PlanBlock {
+    uint32_t counter, each, taken, in_group, most, number;
+} PlanBlock;
+static_assert(sizeof(PlanBlock) <= sizeof(WorkBlock), "push constants");
+
+bool dispatch_chains(const Job *job)
+{
+    return !gpu_is_cpu(job->gpu) && job->options.schedule != KRS_SCHEDULE_REFILL;
+}
+
+/* ---- Slices ---- */
+
+/* How many groups to take next, after `groups` took `ms`. */
+static uint32_t next_slice(double groups, double ms, double aim)
+{
+    double factor = ms > 0 ? aim / ms : 4;
+    double next = groups * fmin(fmax(factor, 0.1), 4);
+    return next < 1 ? 1 : next > MOST_GROUPS ? MOST_GROUPS : (uint32_t)next;
+}
+
+/* A phase may turn out to have more parts than was thought, but progress never goes back. */
+static bool report(Job *job, double within_phase)
+{
+    job->shown = fmax(job->shown, fmin(job->done + job->share * within_phase, 1));
+    if (job->options.progress && !job->options.progress(job->options.user, job->shown)) {
+        gpu_refuse(job->gpu, KRS_INTERRUPTED, "interrupted");
+        return false;
+    }
+    return true;
+}
+
+static bool has_scene(const Job *job, const Kernel *kernel)
+{
+    const KrsRenderer *renderer = job->rendering->renderer;
+    bool               panoramic = job->rendering->panoramic;
+    return kernel != &renderer->background[panoramic] && kernel != &renderer->fill[panoramic];
+}
+
+/* What was learned about slices of a kernel in a phase: kernels without the scene cost next to
+   nothing, and tell nothing about the others. */
+static uint32_t *groups_at_once(Job *job, KrsPhase phase, const Kernel *kernel)
+{
+    return &job->rendering->groups_at_once[phase][has_scene(job, kernel)];
+}
+
+static bool run_groups(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock *work,
+                       uint32_t groups)
+{
+    uint32_t *at_once = groups_at_once(job, phase, kernel);
+    for (uint32_t first = 0; first < groups;) {
+        uint32_t count = *at_once < groups - first ? *at_once : groups - first;
+        double   ms = 0;
+        work->first = first;
+        work->groups = count;
+        work->stride = rendering_spread(job->rendering, count);
+        if (!rendering_begin(job->rendering))
+            return false;
+        rendering_dispatch(job->rendering, kernel, job->rendering->band_set, work, sizeof *work,
+                           count);
+        if (!rendering_finish(job->rendering, &ms))
+            return false;
+        job->picture->stats.phase_ms[phase] += ms;
+        /* The last slice may be too small to learn much from. */
+        if (count == *at_once || ms > job->options.slice_ms)
+            *at_once = next_slice(count, ms, job->options.slice_ms);
+        first += count;
+        if (!report(job, (double)first / groups))
+            return false;
+    }
+    return true;
+}
+
+/* ---- Dispatches ---- */
+
+static uint32_t *word_of(const Job *job, uint32_t counter)
+{
+    return (uint32_t *)job->rendering->control.bytes + counter;
+}
+
+uint32_t items_now(const Job *job, Items items)
+{
+    return items.counter ? items.each * *word_of(job, items.counter) : items.each;
+}
+
+static uint32_t groups_of(const Dispatch *dispatch, uint32_t items)
+{
+    return (items + dispatch->in_group - 1) / dispatch->in_group;
+}
+
+Dispatch dispatch_of(const Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
+                     Items items, Dealing deal)
+{
+    Dispatch dispatch = {.phase = phase, .kernel = kernel, .work = *work, .items = items,
+                         .in_group = deal.lanes * deal.share};
+    dispatch.control = *(const ControlBlock *)job->rendering->control.bytes;
+    dispatch.control.share = deal.share;
+    dispatch.work.steps = deal.steps;
+    return dispatch;
+}
+
+/* In slices; the host knows the counters. */
+static bool run_in_slices(Job *job, const Dispatch *dispatch)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    WorkBlock     work = dispatch->work;
+    uint32_t      items = items_now(job, dispatch->items);
+    memcpy(control, &dispatch->control, offsetof(ControlBlock, queued));
+    control->items = items;
+    if (dispatch->items.taken)
+        *word_of(job, dispatch->items.counter) = 0;
+    if (dispatch->clears)
+        *word_of(job, dispatch->clears) = 0;
+    return run_groups(job, dispatch->phase, dispatch->kernel, &work, groups_of(dispatch, items));
+}
+
+/* ---- Chains ---- */
+
+/* What a group of it costs more than others of its phase: later passes of rays have more steps. */
+static double weight_of(const Job *job, const Dispatch *dispatch)
+{
+    double steps = job->options.steps_at_once;
+    return dispatch->phase == KRS_PHASE_PRIMARY ? fmax(dispatch->work.steps / steps, 1) : 1;
+}
+
+static uint32_t most_groups(Job *job, const Dispatch *dispatch)
+{
+    uint32_t at_once = *groups_at_once(job, dispatch->phase, dispatch->kernel);
+    double   most = at_once / weight_of(job, dispatch);
+    return most < 1 ? 1 : (uint32_t)most;
+}
+
+static void record(Job *job, uint32_t i)
+{
+    KrsRendering   *r = job->rendering;
+    const Dispatch *dispatch = &job->chain.list[i];
+    const Items    *items = &dispatch->items;
+    VkBuffer        control = rendering_control(r)->buffer;
+    PlanBlock       plan = {items->counter, items->each, items->taken, dispatch->in_group,
+                            most_groups(job, dispatch), i + 1};
+    WorkBlock       work = dispatch->work;
+    work.first = 0;
+    work.groups = UINT32_MAX; /* in their order */
+    work.stride = 1;
+    if (dispatch->clears)
+        vkCmdFillBuffer(job->gpu->commands, control, dispatch->clears * sizeof(uint32_t),
+                        sizeof(uint32_t), 0);
+    vkCmdUpdateBuffer(job->gpu->commands, control, 0, offsetof(ControlBlock, queued),
+                      &dispatch->control);
+    gpu_barrier(job->gpu);
+    rendering_dispatch(r, &r->renderer->plan, r->band_set, &plan, sizeof plan, 1);
+    gpu_barrier(job->gpu);
+    rendering_dispatch_counted(r, dispatch->kernel, r->band_set, &work, sizeof work);
+    gpu_barrier(job->gpu);
+}
+
+/* Of dispatches [first, end) of the chain, which are of one phase and took `ms`. */
+static void learn(Job *job, uint32_t first, uint32_t end, double ms)
+{
+    const ControlBlock *control = job->rendering->control.bytes;
+    const Dispatch     *list = job->chain.list, *told = &list[first];
+    double              groups = 0, aim = job->options.slice_ms;
+    for (uint32_t i = first; i < end; i++)
+        if (has_scene(job, list[i].kernel))
+            told = &list[i];
+    for (uint32_t i = first; i < end; i++)
+        if (has_scene(job, list[i].kernel) == has_scene(job, told->kernel))
+            groups += control->ran[i] * weight_of(job, &list[i]);
+    uint32_t *at_once = groups_at_once(job, told->phase, told->kernel);
+    uint32_t  next = next_slice(groups, ms, aim);
+    if (groups > 0 && (ms > aim || next > *at_once))
+        *at_once = next;
+    job->picture->stats.phase_ms[told->phase] += ms;
+}
+
+/* Sends the dispatches from `first` on; those of a phase that follow one another are timed
+   together. */
+static bool submit(Job *job, uint32_t first)
+{
+    const Chain *chain = &job->chain;
+    double       whole = 0, ms;
+    if (!rendering_begin(job->rendering))
+        return false;
+    for (uint32_t i = first; i < chain->count; i++) {
+        record(job, i);
+        if (i + 1 == chain->count || chain->list[i + 1].phase != chain->list[i].phase)
+            gpu_mark(job->gpu);
+    }
+    if (!rendering_finish(job->rendering, &whole))
+        return false;
+    for (uint32_t mark = 0, i = first; i < chain->count; mark++) {
+        uint32_t from = i++;
+        while (i < chain->count && chain->list[i].phase == chain->list[from].phase)
+            i++;
+        if (!gpu_marked(job->gpu, mark, &ms))
+            return false;
+        learn(job, from, i, job->gpu->times ? ms : mark == 0 ? whole : 0);
+    }
+    return true;
+}
+
+bool dispatch_finish(Job *job)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    Chain        *chain = &job->chain;
+    for (uint32_t first = 0; first < chain->count;) {
+        control->stopped = 0;
+        if (!submit(job, first) || !report(job, 1))
+            return false;
+        if (control->stopped == 0)
+            break;
+        first = control->stopped;
+        if (!run_in_slices(job, &chain->list[first - 1]))
+            return false;
+    }
+    chain->count = 0;
+    return true;
+}
+
+bool dispatch_run(Job *job, const Dispatch *dispatch)
+{
+    Chain *chain = &job->chain;
+    if (!dispatch_chains(job))
+        return run_in_slices(job, dispatch);
+    if (chain->count == MOST_CHAINED && !dispatch_finish(job))
+        return false;
+    chain->list[chain->count++] = *dispatch;
+    return true;
+}
+
+bool dispatch_together(Job *job, const Dispatch *dispatches, size_t count)
+{
+    KrsPhase  phase = dispatches[0].phase;
+    uint32_t *at_once = groups_at_once(job, phase, dispatches[0].kernel), groups = 0;
+    double    ms = 0;
+    bool      good = true;
+    for (size_t i = 0; i < count; i++)
+        groups += groups_of(&dispatches[i], items_now(job, dispatches[i].items));
+    if (dispatch_chains(job) || groups == 0 || groups > *at_once) {
+        for (size_t i = 0; i < count && good; i++)
+            good = dispatch_run(job, &dispatches[i]);
+        return good;
+    }
+    if (!rendering_begin(job->rendering))
+        return false;
+    for (size_t i = 0; i < count; i++) {
+        Dispatch dispatch = dispatches[i];
+        uint32_t own = groups_of(&dispatch, items_now(job, dispatch.items));
+        if (own == 0)
+            continue;
+        dispatch.control.items = items_now(job, dispatch.items);
+        dispatch.work.first  = 0;
+        dispatch.work.groups = own;
+        dispatch.work.stride = rendering_spread(job->rendering, own);
+        vkCmdUpdateBuffer(job->gpu->commands, rendering_control(job->rendering)->buffer, 0,
+                          offsetof(ControlBlock, queued), &dispatch.control);
+        gpu_barrier(job->gpu);
+        rendering_dispatch(job->rendering, dispatch.kernel, job->rendering->band_set,
+                           &dispatch.work, sizeof dispatch.work, own);
+        gpu_barrier(job->gpu);
+    }
+    if (!rendering_finish(job->rendering, &ms))
+        return false;
+    job->picture->stats.phase_ms[phase] += ms;
+    if (ms > job->options.slice_ms)
+        *at_once = next_slice(groups, ms, job->options.slice_ms);
+    return report(job, 1);
+}
+
+bool dispatch_items(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
+                    Items items, Dealing deal)
+{
+    Dispatch dispatch = dispatch_of(job, phase, kernel, work, items, deal);
+    return dispatch_run(job, &dispatch);
+}
+
+/* Of items that all cost alike lavapipe's lanes take so many. */
+#define ITEMS_OF_LANE 8
+
+Dealing deal_pixels(const Job *job)
+{
+    return (Dealing){64, gpu_is_cpu(job->gpu) ? ITEMS_OF_LANE : 1, 0};
+}
+
+bool dispatch_pixels(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
+                     Items items)
+{
+    return dispatch_items(job, phase, kernel, work, items, deal_pixels(job));
+}
