@@ -34,7 +34,7 @@ GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c a
                 lower_images.c)
 SHADER   := $(addprefix compiler/shader/, emit.c statements.c mirrors.c early_outs.c march.c spirv.c)
 BORDER   := compiler/shader/glslang_border.cpp
-DOORSTEP := $(addprefix compiler/, compile.c roots.c limits.c keep.c groups.c program.c \
+DOORSTEP := $(addprefix compiler/, compile.c roots.c precision.c limits.c keep.c groups.c program.c \
                 framing.c frame.c query.c search.c refute.c bounds.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer film writer))))
 CLI      := $(sort $(wildcard cli/*.c))

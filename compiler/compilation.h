@@ -46,6 +46,10 @@ static inline bool is_flat(const Component *component)
 /* roots.c: from shapes to what is asked of the graph, scene->roots. */
 bool lower_scene(Compilation *c, Graph *graph);
 
+/* precision.c: whether a camera may see something so closely, so far from the origin, that points
+   need an anchor; `distances` are those of the components, ROOT_COUNT apart. */
+bool may_need_anchor(const Scene *scene, Graph *graph, const Node *distances, Arena *scratch);
+
 /* limits.c: what no compiler of shaders, or no shader, can have. */
 bool check_operations(Compilation *c);
 bool check_numbers(Compilation *c);

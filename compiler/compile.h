@@ -125,6 +125,9 @@ const char *krs_camera_name(const KrsScene *scene, size_t index);
 size_t krs_zone_count(const KrsScene *scene);
 /* Camera `camera`, lights, sky and image at the frame's parameters and time. */
 KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view);
+/* Whether what single precision does not tell of such a coordinate shows in pixels of that width,
+   so that points have to be given from an anchor. */
+bool krs_needs_anchor(double coordinate, double pixel);
 /* What kernels with an anchor get for it, precise_slots vec4s, found in double precision. */
 size_t krs_frame_anchor(KrsFrame *frame, const double anchor[3], float (*block)[4]);
 /* The zones of the caller (center, radius), to stand behind the parameter block when the GLSL is

@@ -12,33 +12,17 @@
 #include "compiler/graph/anchor.h"
 #include "compiler/graph/derive.h"
 
-/* Beyond this, single precision may show: a unit is known to a sixteen-thousandth there. */
-static const double FAR_OUT = 1000;
-
-/* Whether a camera may stand, and something be, so far out that points need an anchor. */
-static bool reaches_far(const Scene *s)
+static size_t anchored_roots(const Scene *s)
 {
-    bool far = false;
-    for (size_t i = 0; i < 3 * s->components.count; i++) {
-        Range side = s->components.items[i / 3].shape->box.axis[i % 3];
-        far = far || (isfinite(side.low) && side.low < -FAR_OUT) ||
-              (isfinite(side.high) && side.high > FAR_OUT);
-    }
-    for (size_t i = 0; i < s->cameras.count && !s->cameras.items[i].standing_in; i++) {
-        const Expr *eye = &s->graph->items[s->cameras.items[i].eye];
-        for (int k = 0; k < 3; k++)
-            far = far || (eye->op == OP_CONSTANT && fabs(eye->number[k]) > FAR_OUT);
-    }
-    return far && s->zone_count == 0;
+    return s->components.count * ROOT_COUNT + FLAT_ROOTS;
 }
 
-/* Room for all roots, one kind behind the other. */
+/* Room for all roots, one kind behind the other; those near an anchor come last. */
 static void make_room(Compilation *c)
 {
     const Scene *s        = &c->elaborated;
     Roots       *r        = &c->scene->roots;
     size_t       count    = s->components.count;
-    bool         anchored = c->scene->program.anchored;
     const struct {
         Node **place;
         size_t count;
@@ -51,8 +35,8 @@ static void make_room(Compilation *c)
                  {&r->along, count * ALONG_COUNT},
                  {&r->flats, FLAT_ROOTS},
                  {&r->gradients, (count + 1) * GRADIENT_ROOTS},
-                 {&r->anchored, anchored ? count * ROOT_COUNT + FLAT_ROOTS : 0},
-                 {&r->slopes, s->slopes.count}};
+                 {&r->slopes, s->slopes.count},
+                 {&r->anchored, anchored_roots(s)}};
     enum { KINDS = sizeof kinds / sizeof *kinds };
     r->count = 0;
     for (size_t i = 0; i < KINDS; i++)
@@ -192,18 +176,22 @@ static void lower_anchored(Compilation *c, Graph *g)
 bool lower_scene(Compilation *c, Graph *graph)
 {
     const Scene *s = &c->elaborated;
-    c->scene->program.anchored = reaches_far(s);
+    Roots       *roots = &c->scene->roots;
     make_room(c);
     if (!lower_components(c, graph))
         return false;
-    gather_view(s, &c->scene->roots);
+    bool anchored = may_need_anchor(s, graph, roots->components, &c->scratch);
+    gather_view(s, roots);
     lower_marches(c, graph);
     lower_flats(c, graph);
     arena_free(&c->scratch);
     lower_gradients(c, graph);
-    if (c->scene->program.anchored)
-        lower_anchored(c, graph);
     for (size_t i = 0; i < s->slopes.count; i++)
-        c->scene->roots.slopes[i] = s->slopes.items[i].formula;
+        roots->slopes[i] = s->slopes.items[i].formula;
+    c->scene->program.anchored = anchored;
+    if (anchored)
+        lower_anchored(c, graph);
+    else
+        roots->count -= anchored_roots(s); /* they are the last */
     return true;
 }

@@ -14,7 +14,7 @@ UNIT        := front film tracer methods writer memory validate refute frame que
 PROPERTY    := ops noise graph derive series local along anchor slope parity reach
 ORACLES     := self primitives krs_expand trees maps moebius operators deform moving normals \
                fields surfaces rays algebraic fractals device query picture seams shading coverage \
-               shadows loose bounds stencils light steep
+               shadows loose bounds stencils light steep scales
 FUZZ        := sentences
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)

@@ -95,17 +95,21 @@ static float normal_reach(const KrsRenderOptions *options)
     return options->no_filter || options->samples > 1 || one_sided ? 0.5f : 0.7f;
 }
 
-/* So far from the origin single precision may show. */
-#define FAR_OUT 500
-
-/* An eye that is far out is an anchor: points on the device are then what is seen from there. */
-static void choose_anchor(Job *job, const KrsFrame *frame)
+/* The eye is an anchor where single precision would show in what is nearest to it: points on the
+   device are then what is seen from there. */
+static void choose_anchor(Job *job, KrsFrame *frame)
 {
-    float         zones[KRS_MOST_ZONES][4];
-    const double *eye = job->view.camera.eye;
-    bool          far = fmax(fabs(eye[0]), fmax(fabs(eye[1]), fabs(eye[2]))) > FAR_OUT;
-    if (far && job->rendering->program->anchored && krs_frame_zones(frame, zones) == 0)
-        memcpy(job->anchor, eye, sizeof job->anchor);
+    const KrsCamera *camera = &job->view.camera;
+    float            zones[KRS_MOST_ZONES][4];
+    double           nearest = 0, far = 0;
+    if (!job->rendering->program->anchored || krs_frame_zones(frame, zones) > 0)
+        return;
+    for (int i = 0; i < 3; i++)
+        far = fmax(far, fabs(camera->eye[i]));
+    if (krs_distance(frame, &camera->eye, 1, &nearest) != KRS_OK)
+        nearest = 0;
+    if (krs_needs_anchor(far, view_pixel(camera, job->options.height, fabs(nearest))))
+        memcpy(job->anchor, camera->eye, sizeof job->anchor);
 }
 
 static bool is_anchored(const Job *job)

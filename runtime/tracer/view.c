@@ -210,6 +210,18 @@ static void place_ends(const KrsView *view, const double low[3], const double hi
         block->occlusion_reach = (float)(0.15 * distance);
 }
 
+double view_pixel(const KrsCamera *camera, uint32_t height, double distance)
+{
+    double extent[2];
+    half_extent(camera, 1, 1, extent);
+    switch (camera->projection) {
+    case KRS_ORTHOGRAPHIC: return 2 * extent[1] / height;
+    case KRS_PANORAMA:     return PI / height * distance;
+    case KRS_PERSPECTIVE:  break;
+    }
+    return 2 * extent[1] / height * distance;
+}
+
 bool view_prepare(const KrsView *view, const double low[3], const double high[3], uint32_t width,
                   uint32_t height, FrameBlock *block)
 {
@@ -232,11 +244,8 @@ bool view_prepare(const KrsView *view, const double low[3], const double high[3]
     to_floats(view->sky.horizon, block->horizon);
     to_floats(view->sky.ground, block->ground);
 
-    double pixel = camera->projection == KRS_PANORAMA ? PI / height : 2 * extent[1] / height;
-    if (camera->projection == KRS_ORTHOGRAPHIC)
-        block->pixel_base = (float)pixel;
-    else
-        block->pixel_slope = (float)pixel;
+    block->pixel_base  = (float)view_pixel(camera, height, 0);
+    block->pixel_slope = (float)(view_pixel(camera, height, 1) - view_pixel(camera, height, 0));
     view_place_box(view, low, high, block);
     place_ends(view, low, high, basis.distance, block);
     return isfinite(block->farthest);

@@ -13,6 +13,9 @@
 bool view_prepare(const KrsView *view, const double low[3], const double high[3], uint32_t width,
                   uint32_t height, FrameBlock *block);
 
+/* How wide a pixel in the middle of the picture is at a distance from the eye. */
+double view_pixel(const KrsCamera *camera, uint32_t height, double distance);
+
 /* The box that rays are clipped to: this one, a little larger, since surfaces may touch it and
    single precision must not lose them. */
 void view_place_box(const KrsView *view, const double low[3], const double high[3],

@@ -1,0 +1,150 @@
+/*
+ * precision.c: where single precision shows, so that points have to be given from an anchor.
+ *
+ * A coordinate is known to a few units in its last place, so the larger it is the less is known of
+ * it.  That shows where it is more than a part of a pixel.  What is nearest to the eye is seen by
+ * the narrowest pixels, so the eye and its distance decide.  The renderer asks this of the frame
+ * that it has; the compiler has to tell before whether there may be such a frame, since the code
+ * for it costs time.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "compiler/compilation.h"
+#include "compiler/graph/evaluate.h"
+#include "compiler/graph/facts.h"
+
+/* What a kernel takes a coordinate to be known to, relative (ROUNDING in frame.glsl). */
+static const double ROUNDING = 2.4e-7;
+/* Of a pixel: as much as a march leaves open (MOST_OPEN in trace.comp). */
+static const double MOST_OF_PIXEL = 1.0 / 64;
+
+bool krs_needs_anchor(double coordinate, double pixel)
+{
+    return ROUNDING * coordinate > MOST_OF_PIXEL * pixel;
+}
+
+/* An eye that moves may come near to anything: then what is farther out than this, in units,
+   needs it. */
+static const double FAR_OUT = 64;
+/* The narrowest pixels that pictures have: lines of twice the height that the scene says. */
+enum { USUAL_HEIGHT = 720, TIMES_HEIGHT = 2 };
+
+static double largest(const double v[3]) { return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))); }
+
+/* How far out the boxes of the components are, where they end. */
+static double reach_of_boxes(const Scene *s)
+{
+    double reach = 0;
+    for (size_t i = 0; i < 3 * s->components.count; i++) {
+        Range side = s->components.items[i / 3].shape->box.axis[i % 3];
+        if (isfinite(side.low) && isfinite(side.high))
+            reach = fmax(reach, fmax(fabs(side.low), fabs(side.high)));
+    }
+    return reach;
+}
+
+/* All distances, and what is asked of the cameras. */
+typedef struct Sight {
+    const Scene *scene;
+    Graph       *graph;
+    const Node  *distances; /* ROOT_COUNT apart */
+    Tape         tape;
+    NodeValue   *values;
+    Arena       *scratch;
+} Sight;
+
+static void run_defaults(Sight *sight)
+{
+    const Scene *s     = sight->scene;
+    size_t       count = 0;
+    Node *roots = arena_new_array(sight->scratch, Node,
+                                  s->components.count + 3 * s->cameras.count + 1);
+    for (size_t i = 0; i < s->components.count; i++)
+        roots[count++] = sight->distances[i * ROOT_COUNT + ROOT_DISTANCE];
+    for (size_t i = 0; i < s->cameras.count; i++) {
+        roots[count++] = s->cameras.items[i].eye;
+        roots[count++] = s->cameras.items[i].fov;
+        roots[count++] = s->cameras.items[i].height;
+    }
+    size_t     slots      = sight->graph->parameters.count;
+    NodeValue *parameters = arena_new_array(sight->scratch, NodeValue, slots + 1);
+    for (size_t i = 0; i < s->parameters.count; i++)
+        memcpy(parameters[s->parameters.items[i].slot].v, s->parameters.items[i].value,
+               sizeof s->parameters.items[i].value);
+    sight->tape   = tape_new(sight->graph, roots, count, sight->scratch);
+    sight->values = arena_new_array(sight->scratch, NodeValue, sight->graph->count);
+    tape_run_frame(&sight->tape, parameters, sight->values);
+}
+
+/* At the defaults of the parameters. */
+static double nearest_to(const Sight *sight, const double eye[3])
+{
+    double nearest = HUGE_VAL;
+    tape_run_point(&sight->tape, eye, sight->values);
+    for (size_t i = 0; i < sight->scene->components.count; i++) {
+        Node distance = sight->distances[i * ROOT_COUNT + ROOT_DISTANCE];
+        nearest       = fmin(nearest, fabs(sight->values[distance].v[0]));
+    }
+    return nearest;
+}
+
+/* How far out the eye may be for any values of the parameters. */
+static double reach_of_eye(const Sight *sight, Node eye)
+{
+    double reach = 0;
+    Fact   fact  = graph_frame_fact(sight->graph, eye, sight->scratch);
+    for (int i = 0; i < 3; i++)
+        reach = fmax(reach, fmax(fabs(fact.value[i].low), fabs(fact.value[i].high)));
+    return reach;
+}
+
+static double lines_of(const Scene *s)
+{
+    return TIMES_HEIGHT * (s->image.height ? s->image.height : USUAL_HEIGHT);
+}
+
+/* What the camera sees may be narrow as it is by default. */
+static bool camera_needs_anchor(const Sight *sight, const SceneCamera *camera)
+{
+    const double *eye     = sight->values[camera->eye].v;
+    double        nearest = nearest_to(sight, eye), lines = lines_of(sight->scene);
+    double        pixel   = camera->projection == KRS_ORTHOGRAPHIC
+                                ? sight->values[camera->height].v[0] / lines
+                            : camera->projection == KRS_PANORAMA
+                                ? M_PI * nearest / lines
+                                : 2 * tan(sight->values[camera->fov].v[0] / 2) * nearest / lines;
+    return krs_needs_anchor(largest(eye), pixel);
+}
+
+/* A camera that the compiler places stands as far away as the scene is large (framing.c). */
+static bool scene_needs_anchor(const Scene *s)
+{
+    double size = 0;
+    for (int i = 0; i < 3; i++)
+        if (isfinite(s->box.axis[i].high - s->box.axis[i].low))
+            size = fmax(size, s->box.axis[i].high - s->box.axis[i].low);
+    return krs_needs_anchor(reach_of_boxes(s), 0.5 * size / lines_of(s));
+}
+
+bool may_need_anchor(const Scene *scene, Graph *graph, const Node *distances, Arena *scratch)
+{
+    Sight sight = {.scene = scene, .graph = graph, .distances = distances, .scratch = scratch};
+    bool  needs = false, moves = scene->cameras.count == 0;
+    if (scene->zone_count > 0)
+        return false;
+    run_defaults(&sight);
+    for (size_t i = 0; i < sight.tape.count && !moves; i++)
+        moves = graph->items[sight.tape.nodes[i]].time == TIME_FRAME;
+    for (size_t i = 0; i < scene->cameras.count && !needs; i++) {
+        const SceneCamera *camera = &scene->cameras.items[i];
+        if (camera->standing_in)
+            needs = scene_needs_anchor(scene) ||
+                    (moves && reach_of_boxes(scene) > FAR_OUT);
+        else
+            needs = camera_needs_anchor(&sight, camera) ||
+                    (moves && reach_of_eye(&sight, camera->eye) > FAR_OUT);
+    }
+    arena_free(scratch);
+    return needs;
+}
