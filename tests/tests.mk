@@ -7,14 +7,14 @@
 # What tests of several kinds share; nothing of it knows what is tested.
 SUPPORT     := $(addprefix tests/support/, bench.c device.c random.c renderer.c \
                scarce.c)
-ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c \
-               formulas.c rooms.c montecarlo.c)
+ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c chain.c \
+               exact.c formulas.c rooms.c montecarlo.c)
 UNIT        := front film tracer methods writer memory validate refute frame query cache compiled \
                apart stencils drivers
 PROPERTY    := ops noise graph derive series local along anchor slope parity reach
-ORACLES     := self primitives krs_expand trees maps moebius operators deform moving normals \
-               fields surfaces rays algebraic fractals device query picture seams shading coverage \
-               shadows loose bounds stencils light steep scales
+ORACLES     := self primitives krs_expand trees maps moebius operators combinations deform chains \
+               moving normals fields surfaces rays algebraic fractals device query picture seams \
+               shading coverage shadows loose bounds stencils light steep scales
 FUZZ        := sentences
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)

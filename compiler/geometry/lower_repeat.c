@@ -199,6 +199,14 @@ Lowered lower_repeat(Lowering *l, const Shape *shape, Place place)
     return outside_of_box(l, shape, place, result);
 }
 
+static bool range_is_finite(Range range) { return isfinite(range.low) && isfinite(range.high); }
+
+/* Whether a box ends in all directions across y. */
+static bool ends_across(Box box)
+{
+    return range_is_finite(box.axis[0]) && range_is_finite(box.axis[2]);
+}
+
 /* Rotation about y that brings an angle to the x axis. */
 static Node turn_about_y(Graph *g, Node point, double angle)
 {
@@ -207,17 +215,20 @@ static Node turn_about_y(Graph *g, Node point, double angle)
     return angle == 0 ? point : graph_op4(g, OP_turn, point, r0, r1, r2);
 }
 
-/* How far the content, turned by -angle, stays from the walls of the sector around +x. */
+/* How far the content, turned by -angle, stays from the walls of the sector around +x.  What has no
+   end across the axis is taken to cross them. */
 static double sector_margin(Box content, double angle, double half_sector)
 {
     double least = INFINITY, c = cos(angle), s = sin(angle);
+    if (!ends_across(content))
+        return -INFINITY;
     for (int corner = 0; corner < 4; corner++) {
         double x = corner & 1 ? content.axis[0].high : content.axis[0].low;
         double z = corner & 2 ? content.axis[2].high : content.axis[2].low;
         double along = c * x + s * z, across = -s * x + c * z;
         least = fmin(least, along * sin(half_sector) - fabs(across) * cos(half_sector));
     }
-    return isnan(least) ? -INFINITY : least;
+    return least;
 }
 
 /* A copy that stands turned about y. */
@@ -277,7 +288,7 @@ Lowered lower_repeat_polar(Lowering *l, const Shape *shape, Place place)
     Box    content     = shape->children[0]->box;
     double centre[3];
     box_centre(content, centre);
-    double angle  = box_is_finite(content) ? atan2(centre[2], centre[0]) : 0;
+    double angle  = ends_across(content) ? atan2(centre[2], centre[0]) : 0;
     double margin = sector_margin(content, angle, half_sector);
     if (shape->cells[0] < 3 || margin < 0)
         return all_around(l, shape, place, 0, shape->cells[0]);

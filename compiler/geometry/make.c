@@ -299,6 +299,8 @@ const Shape *make_revolve(Elaboration *e, const Shape *figure, Node offset, Span
 const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const uint32_t cells[3],
                          const Syntax *place)
 {
+    if (box_is_empty(shape->box))
+        return shape;
     Shape *repeat     = wrap(e, SHAPE_REPEAT, "repeat", shape, place->span);
     repeat->values[0] = period;
     repeat->exact     = false; /* walls of cells are bounds */
@@ -309,7 +311,7 @@ const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const 
         if (!repeats)
             continue;
         double margin = cell_margin(shape->box.axis[i], range.low);
-        if (!(margin >= -1e-9 * range.low) || box_is_empty(shape->box)) {
+        if (!(margin >= -1e-9 * range.low)) {
             Range is   = shape->box.axis[i];
             Diag *diag = diag_add(e->diags, DIAG_OUTSIDE_CELL, place->span,
                                   "the shape reaches from %.4g to %.4g on the %c axis, "
@@ -330,11 +332,11 @@ const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const 
 const Shape *make_repeat_polar(Elaboration *e, const Shape *shape, uint32_t count,
                                const Syntax *place)
 {
+    if (box_is_empty(shape->box))
+        return shape;
     Shape *repeat    = wrap(e, SHAPE_REPEAT_POLAR, "repeat_polar", shape, place->span);
     repeat->cells[0] = count;
     repeat->exact    = false;
-    if (box_is_empty(shape->box))
-        return repeat;
     double most = 0;
     for (int i = 0; i < 3; i += 2)
         most = hypot(most, fmax(fabs(shape->box.axis[i].low), fabs(shape->box.axis[i].high)));

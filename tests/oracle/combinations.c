@@ -1,0 +1,517 @@
+/*
+ * Every method on every family of shapes, and pairs of methods.
+ *
+ * A family is asked alone, as a scene of its own, what is inside of it; other oracles hold that
+ * against its definition.  Here a method is undone on points, and the shape behind the method must
+ * have what the family has there.  Methods that go by a distance have no such answer: they are held
+ * to what they must contain, and to themselves.  A method without a row here fails the test, so
+ * that a new one is tried on everything.
+ */
+#include "tests/oracle/judge.h"
+#include "tests/oracle/product.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const double PI = 3.14159265358979323846;
+
+/* ---- families ---- */
+
+/* In every scene; shapes are about as large as 1, and nowhere symmetric if they can help it. */
+static const char prelude[] =
+    "use \"std/surfaces.krs\";\n"
+    "let tool = sphere(0.6).move([0.35, 0.25, 0.1]);\n"
+    "let block = box([0.9, 0.6, 0.7]).rotate([1, 2, 0], 0.4).move([-0.2, 0.1, 0]);\n"
+    "let lump = algebraic((x - 0.2)^2 + 2 * y^2 + z^2 == 0.4);\n";
+
+typedef struct Family {
+    const char *name, *text;
+} Family;
+
+static const Family families[] = {
+    {"sphere", "sphere(0.5).move([0.3, 0.1, 0.2])"},
+    {"box", "block"},
+    {"cylinder", "cylinder(0.4, 0.9)"},
+    {"cone", "cone(0.5, 0.9)"},
+    {"capped cone", "capped_cone(0.5, 0.2, 0.8)"},
+    {"capsule", "capsule([-0.3, -0.2, 0], [0.4, 0.5, 0.2], 0.2)"},
+    {"round cone", "round_cone([0, -0.4, 0], [0.2, 0.4, 0], 0.4, 0.15)"},
+    {"arc", "arc_capsule([-0.6, -0.3, 0], [0, 0.4, 0], [0.6, -0.2, 0.1], 0.2, 0.05)"},
+    {"torus", "torus(0.6, 0.2)"},
+    {"ellipsoid", "ellipsoid([0.8, 0.5, 0.3])"},
+    {"link", "link(0.5, 0.4, 0.12)"},
+    {"octahedron", "octahedron(0.8)"},
+    {"tetrahedron", "tetrahedron(0.9)"},
+    {"dodecahedron", "dodecahedron(0.8)"},
+    {"icosahedron", "icosahedron(0.8)"},
+    {"prism", "prism(5, 0.6, 0.7)"},
+    {"pyramid", "pyramid(1, 0.9)"},
+    {"wedge", "wedge(70deg)"},
+    {"plane", "plane([0.2, 1, 0.1], 0.1)"},
+    {"convex", "convex(exponent: 8).scale(0.5)"},
+    {"extruded figure", "polygon([[0.1, 0], [0.7, -0.1], [0.4, 0.6]]).extrude(0.5)"},
+    {"revolved figure", "rectangle([0.3, 0.5]).revolve(0.4)"},
+    {"algebraic", "lump"},
+    {"algebraic, cut", "lump.within(block)"},
+    {"algebraic of degree 6", "barth_sextic(within: 1).scale(0.7)"},
+    {"algebraic sheet", "algebraic(x^2 + y^2 - z^2 == 0.1).within(sphere(0.8), open: true)"},
+    {"field", "field(length(p) - 0.5 + 0.1 * sin(3 * x))"},
+    {"field, cut", "field(sin(4 * x) * cos(4 * y) + sin(4 * y) * cos(4 * z) + sin(4 * z)"
+                   " * cos(4 * x)).within(sphere(0.8))"},
+    {"field sheet", "field(y - 0.3 * sin(4 * x) * z).within(block, open: true)"},
+    {"julia", "julia([-0.2, 0.6, 0.2, 0.1], iterations: 4).scale(0.5)"},
+    {"mandelbulb", "mandelbulb(iterations: 3).scale(0.6)"},
+    {"meta", "meta([tool, capsule([-0.7, 0, 0], [0, 0.4, 0], 0.1)], reach: 0.3)"},
+    {"union", "block | tool"},
+    {"blend", "union(block, tool, blend: 0.2)"},
+    {"intersection", "block & tool"},
+    {"difference", "block - tool"},
+    {"endless difference", "plane([0, 1, 0], 0) - tool"},
+    {"xor", "xor(block, tool)"},
+    {"morph", "morph(block, tool, 0.4)"},
+    {"sequence", "krs { kernel block; reflect plane([1, 0.1, 0], 0.2); kernel tool.scale(0.5);"
+                 " reflect plane([0, 1, 0.3], 0.3); }"},
+    {"sequence that inverts", "krs { kernel tool; mobius invert([0.2, 1.9, 0], 1.4);"
+                              " reflect plane([1, 0, 0], 0.1); }"},
+    {"endless sequence", "krs { kernel lump; reflect plane([1, 0.1, 0], 0.3); kernel tool; }"},
+    {"moved", "(block - tool).rotate([1, 2, -0.5], 0.8).scale(0.8).move([0.3, -0.2, 0.4])"},
+    {"stretched", "block.scale([1.2, 0.6, 1])"},
+    {"inverted", "block.transform(invert([0.3, 1.9, 0.4], 1.5))"},
+    {"inverted, endless", "block.transform(invert([-0.2, 0.1, 0.1], 0.5))"},
+    {"mirrored", "block.mirror(plane([1, 0.2, -0.1], 0.1))"},
+    {"repeated", "tool.scale(0.4).repeat([0.8, 0.8, 0.8], [2, 3, 1])"},
+    {"repeated for ever", "tool.scale(0.4).repeat([0.9, 0, 1])"},
+    {"around", "capsule([0.3, -0.2, 0.1], [0.5, 0.3, -0.1], 0.1).repeat_polar(5)"},
+    {"grown", "block.offset(0.1)"},
+    {"shrunk", "block.offset(-0.1)"},
+    {"round", "box([0.9, 0.6, 0.7]).round(0.1)"},
+    {"hollow", "block.shell(0.1)"},
+    {"elongated", "tool.elongate([0.3, 0.2, 0.4])"},
+    {"twisted", "block.twist([0, 1, 0.2], 1.2)"},
+    {"bent", "block.bend([1, 0, 0], 0.6)"},
+    {"tapered", "block.taper([0, 1, 0], 1, 0.5)"},
+    {"displaced", "block.displace(sin(5 * x) * cos(4 * z), 0.1)"},
+    {"painted", "block.paint(#ff8040)"},
+    {"smooth mirrors", "block.mirror(plane([1, 0, 0], 0.1)).smooth_mirrors(0.1)"},
+    {"nothing", "block & tool.move([5, 0, 0])"},
+};
+enum { FAMILIES = sizeof families / sizeof *families };
+
+/* ---- methods ---- */
+
+/* A family behind up to two methods. */
+typedef struct Method Method;
+typedef struct Case {
+    const Family *family;
+    const Method *methods[2];
+    int           count;
+    Product       alone; /* the family */
+} Case;
+
+/* What is inside after `done` methods. */
+static bool inside(const Case *c, int done, Vec p);
+
+typedef bool Undo(const Case *c, int before, Vec p);
+
+struct Method {
+    const char *name;   /* in methods.def, or a function or a block */
+    const char *before, *after; /* of the text of a shape */
+    Undo       *undo;   /* NULL: it goes by a distance */
+    double      grows;  /* without `undo`: by at most, of the family's box */
+    bool        keeps;  /* without `undo`: what was inside stays so */
+    const char *refusals; /* why the language may refuse it */
+};
+
+static bool in_tool(Vec p) { return vec_distance(p, vec(0.35, 0.25, 0.1)) <= 0.6; }
+
+static bool undo_move(const Case *c, int k, Vec p) { return inside(c, k, vec_sub(p, vec(0.3, -0.4, 0.5))); }
+static bool undo_rotate(const Case *c, int k, Vec p) { return inside(c, k, vec_turn(p, vec(1, 2, -0.5), -0.8)); }
+static bool undo_scale(const Case *c, int k, Vec p) { return inside(c, k, vec_scale(1 / 0.6, p)); }
+static bool undo_stretch(const Case *c, int k, Vec p)
+{
+    return inside(c, k, vec(p.x / 1.3, p.y / 0.7, p.z / 0.9));
+}
+static bool undo_align(const Case *c, int k, Vec p)
+{
+    Vec from = vec_unit(vec(0, 0.3, 1)), to = vec_unit(vec(1, -0.6, 0.2));
+    return inside(c, k, vec_turn(p, vec_cross(from, to), -acos(vec_dot(from, to))));
+}
+static Vec folded(Vec p, Vec normal, double offset)
+{
+    double size = vec_length(normal), excess = (vec_dot(normal, p) - offset) / size;
+    return vec_sub(p, vec_scale(2 * fmax(excess, 0) / size, normal));
+}
+static bool undo_mirror(const Case *c, int k, Vec p)
+{
+    return inside(c, k, folded(p, vec(1, 0.2, -0.1), 0.2));
+}
+static Vec inverted(Vec p, Vec centre, double radius)
+{
+    Vec away = vec_sub(p, centre);
+    return vec_add(centre, vec_scale(radius * radius / vec_dot(away, away), away));
+}
+static bool undo_invert(const Case *c, int k, Vec p)
+{
+    return inside(c, k, inverted(p, vec(0.3, 2.5, 0.4), 1.5));
+}
+static bool undo_repeat(const Case *c, int k, Vec p)
+{
+    for (int i = 0; i < 6; i++)
+        if (inside(c, k, vec_sub(p, vec(5 * (i % 2 - 0.5), 0, 5.5 * (i / 2 - 1)))))
+            return true;
+    return false;
+}
+static bool undo_repeat_for_ever(const Case *c, int k, Vec p)
+{
+    for (int i = -2; i <= 2; i++)
+        if (inside(c, k, vec_sub(p, vec(5 * i, 0, 0))))
+            return true;
+    return false;
+}
+static bool around(const Case *c, int k, Vec p, Vec axis, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (inside(c, k, vec_turn(p, axis, 2 * PI * i / count)))
+            return true;
+    return false;
+}
+static bool undo_polar(const Case *c, int k, Vec p) { return around(c, k, p, vec(0, 1, 0), 5); }
+static bool undo_polar_far(const Case *c, int k, Vec p)
+{
+    for (int i = 0; i < 6; i++)
+        if (inside(c, k, vec_sub(vec_turn(p, vec(0, 1, 0), PI * i / 3), vec(0, 0, 3))))
+            return true;
+    return false;
+}
+static bool undo_polar_aside(const Case *c, int k, Vec p) { return around(c, k, p, vec(1, 0, 1), 2); }
+static double pulled(double x, double half) { return x - fmax(-half, fmin(x, half)); }
+static bool undo_elongate(const Case *c, int k, Vec p)
+{
+    return inside(c, k, vec(pulled(p.x, 0.15), pulled(p.y, 0.1), pulled(p.z, 0.05)));
+}
+static bool undo_twist(const Case *c, int k, Vec p)
+{
+    return inside(c, k, vec_turn(p, vec(0, 1, 0), -0.7 * p.y));
+}
+static bool undo_bend(const Case *c, int k, Vec p)
+{
+    double radius = 1 / 0.2 - p.z, angle = atan2(p.y, radius);
+    return inside(c, k, vec(p.x, angle / 0.2, 1 / 0.2 - hypot(p.y, radius)));
+}
+static bool undo_nothing(const Case *c, int k, Vec p) { return inside(c, k, p); }
+static bool undo_within(const Case *c, int k, Vec p) { return in_tool(p) && inside(c, k, p); }
+static bool undo_union(const Case *c, int k, Vec p) { return in_tool(p) || inside(c, k, p); }
+static bool undo_difference(const Case *c, int k, Vec p) { return inside(c, k, p) && !in_tool(p); }
+static bool undo_cut_from(const Case *c, int k, Vec p) { return in_tool(p) && !inside(c, k, p); }
+static bool undo_xor(const Case *c, int k, Vec p) { return in_tool(p) != inside(c, k, p); }
+static bool undo_sequence(const Case *c, int k, Vec p)
+{
+    Vec q = folded(p, vec(0.3, 1, 0), 0.1);
+    return inside(c, k, q) || in_tool(vec_scale(1 / 0.5, p));
+}
+static bool undo_mobius(const Case *c, int k, Vec p)
+{
+    Vec q = inverted(folded(p, vec(1, 0, 0), 0.1), vec(-0.3, -2.4, 0.2), 1.6);
+    return inside(c, k, vec_turn(q, vec(0, 1, 0), -0.5));
+}
+
+/* Endless; inverted when endless; estimates; fields without a slope; larger than a cell. */
+#define ENDS     "E0408 "
+#define INVERTS  "E0407 "
+#define MEASURED "E0409 "
+#define STEEP    "E0402 "
+#define CELLS    "E0403 "
+
+static const Method methods[] = {
+    {"move", "", ".move([0.3, -0.4, 0.5])", undo_move, 0, false, ""},
+    {"rotate", "", ".rotate([1, 2, -0.5], 0.8)", undo_rotate, 0, false, ""},
+    {"scale", "", ".scale(0.6)", undo_scale, 0, false, ""},
+    {"scale", "", ".scale([1.3, 0.7, 0.9])", undo_stretch, 0, false, ""},
+    {"align", "", ".align([0, 0.3, 1], [1, -0.6, 0.2])", undo_align, 0, false, ""},
+    {"mirror", "", ".mirror(plane([1, 0.2, -0.1], 0.2))", undo_mirror, 0, false, ""},
+    {"transform", "", ".transform(invert([0.3, 2.5, 0.4], 1.5))", undo_invert, 0, false, INVERTS},
+    {"repeat", "", ".repeat([5, 0, 5.5], [2, 1, 3])", undo_repeat, 0, false, CELLS},
+    {"repeat", "", ".repeat([5, 0, 0])", undo_repeat_for_ever, 0, false, CELLS},
+    {"repeat_polar", "", ".repeat_polar(5)", undo_polar, 0, false, ""},
+    {"repeat_polar", "", ".move([0, 0, 3]).repeat_polar(6)", undo_polar_far, 0, false, ""},
+    {"repeat_polar", "", ".repeat_polar(2, [1, 0, 1])", undo_polar_aside, 0, false, ""},
+    {"round", "", ".round(0.05)", NULL, 0.05, false, MEASURED},
+    {"offset", "", ".offset(0.1)", NULL, 0.1, true, MEASURED},
+    {"shell", "", ".shell(0.1)", NULL, 0.05, false, MEASURED},
+    {"elongate", "", ".elongate([0.3, 0.2, 0.1])", undo_elongate, 0, false, ""},
+    {"paint", "", ".paint(#ff8040)", undo_nothing, 0, false, ""},
+    {"within", "", ".within(tool)", undo_within, 0, false, ""},
+    {"within", "", ".within(tool, open: true)", NULL, 0.01, false, MEASURED STEEP},
+    {"twist", "", ".twist([0, 1, 0], 0.7)", undo_twist, 0, false, ENDS MEASURED},
+    {"bend", "", ".bend([1, 0, 0], 0.2)", undo_bend, 0, false, ENDS MEASURED "E0309 "},
+    {"taper", "", ".taper([0, 1, 0], 1, 0.6)", NULL, 0, false, ENDS MEASURED},
+    {"displace", "", ".displace(1 + sin(3 * x), 0.05)", NULL, 0.1, true, MEASURED},
+    {"color_by", "", ".color_by(0.5 + 0.1 * x)", undo_nothing, 0, false, ""},
+    {"smooth_mirrors", "", ".smooth_mirrors(0.1)", undo_nothing, 0, false, ""},
+    {"|", "(", ") | tool", undo_union, 0, false, ""},
+    {"&", "(", ") & tool", undo_within, 0, false, ""},
+    {"-", "(", ") - tool", undo_difference, 0, false, ""},
+    {"- from", "tool - (", ")", undo_cut_from, 0, false, ""},
+    {"xor", "xor(", ", tool)", undo_xor, 0, false, ""},
+    {"union", "union(", ", tool, blend: 0.2)", NULL, 1, true, MEASURED},
+    {"morph", "morph(", ", tool, 0.4)", NULL, 1, false, MEASURED},
+    {"meta", "meta([", ", tool])", NULL, 2, true, MEASURED ENDS},
+    {"krs", "krs { kernel ", "; reflect plane([0.3, 1, 0], 0.1); kernel tool.scale(0.5); }",
+     undo_sequence, 0, false, ""},
+    {"mobius", "krs { kernel ", "; mobius invert([-0.3, -2.4, 0.2], 1.6) * rotate([0, 1, 0], 0.5);"
+     " reflect plane([1, 0, 0], 0.1); }", undo_mobius, 0, false, INVERTS},
+    /* Figures only, or not there yet. */
+    {"extrude", NULL, NULL, NULL, 0, false, ""},
+    {"revolve", NULL, NULL, NULL, 0, false, ""},
+    {"sweep", NULL, NULL, NULL, 0, false, ""},
+};
+enum { METHODS = sizeof methods / sizeof *methods };
+
+static bool inside(const Case *c, int done, Vec p)
+{
+    if (done == 0)
+        return product_distance(&c->alone, p) <= 0;
+    return c->methods[done - 1]->undo(c, done - 1, p);
+}
+
+static bool inside_case(const void *c, Vec p)
+{
+    return inside(c, ((const Case *)c)->count, p);
+}
+
+/* ---- what is asked ---- */
+
+typedef struct Said {
+    char   codes[64];
+    size_t length;
+} Said;
+
+static void note_code(void *user, const KrsDiagnostic *diagnostic)
+{
+    Said *said = user;
+    if (diagnostic->error && said->length + 8 < sizeof said->codes)
+        said->length += (size_t)snprintf(said->codes + said->length, 8, "%s ", diagnostic->code);
+}
+
+/* False: refused, for the reasons in `said`. */
+static bool compile_quietly(const char *text, Product *product, Said *said)
+{
+    KrsOptions options = {.diagnostic = note_code, .user = said};
+    *said              = (Said){.length = 0};
+    if (krs_compile_text(text, strlen(text), "combination.krs", &options, &product->scene) !=
+        KRS_OK)
+        return false;
+    assert_int_equal(krs_frame_new(product->scene, &product->frame), KRS_OK);
+    return true;
+}
+
+/* `steady`: as below something that moves the surface, where distances must not be steep. */
+static void write_case(const Case *c, bool steady, SceneText *text)
+{
+    scene_write(text, "%sshow ", prelude);
+    for (int i = c->count; i-- > 0;)
+        scene_write(text, "(%s", c->methods[i]->before);
+    scene_write(text, "(%s)", c->family->text);
+    for (int i = 0; i < c->count; i++)
+        scene_write(text, "%s)", c->methods[i]->after);
+    scene_write(text, "%s;\ncamera { eye: [0, 0, 9], target: [0, 0, 0] }\n",
+                steady ? ".offset(0)" : "");
+}
+
+typedef struct Tally {
+    int cases, refused, wrong, near, hits;
+} Tally;
+
+static void complain(const char *text, const char *what, Vec p, double is, Tally *tally)
+{
+    tally->wrong++;
+    fprintf(stderr, "# %s at (%.9g, %.9g, %.9g): %.9g\n# %s", what, p.x, p.y, p.z, is,
+            text + strlen(prelude));
+}
+
+/* The distance against a membership: that of points, or its own sign. */
+static void judge_case(const Product *product, Inside *membership, const void *user,
+                       bool steady, const char *text, uint64_t seed, Tally *tally)
+{
+    Trial   trial = {product_field, product, membership, user, vec(0, 0, 0), 2, 24, seed};
+    Verdict near  = judge(&trial);
+    trial.half    = 8;
+    trial.points  = 8;
+    Verdict far   = judge(&trial);
+    int     slopes = steady ? near.slope_errors + far.slope_errors : 0;
+    if (near.sign_errors + far.sign_errors)
+        complain(text, "wrong side", vec(0, 0, 0), near.sign_errors + far.sign_errors, tally);
+    else if (near.ball_errors + far.ball_errors)
+        complain(text, "ball not empty", vec(0, 0, 0), near.ball_errors + far.ball_errors, tally);
+    else if (slopes)
+        complain(text, "too steep", vec(0, 0, 0), fmax(near.steepest, far.steepest), tally);
+}
+
+static bool is_negative(const void *product, Vec p) { return product_distance(product, p) <= 0; }
+
+/* A method that goes by a distance: nothing beyond the box that it may fill, and all that was
+   inside, if it keeps that. */
+static void check_growth(const Product *product, const Case *c, const char *text, Random *random,
+                         Tally *tally)
+{
+    const Method *last = c->methods[c->count - 1];
+    Case          before = *c;
+    before.count--;
+    for (int i = 0; i < 200 && last->keeps; i++) {
+        Vec p = random_in_cube(random, i % 2 ? 2 : 0.8);
+        if (inside_case(&before, p) && product_distance(product, p) > 1e-9) {
+            complain(text, "lost", p, product_distance(product, p), tally);
+            return;
+        }
+    }
+}
+
+/* A ray ends where the membership along it changes, within what equal steps see. */
+static void check_ray(const Product *product, Inside *membership, const void *user, Vec origin,
+                      Vec target, const char *text, Tally *tally)
+{
+    enum { STEPS = 300 };
+    const double farthest = 8, tolerance = 1e-6;
+    Vec    direction = vec_unit(vec_sub(target, origin));
+    bool   start     = membership(user, origin);
+    double change    = HUGE_VAL;
+    for (int i = 1; i <= STEPS && change == HUGE_VAL; i++) {
+        Vec p = vec_add(origin, vec_scale(farthest * i / STEPS, direction));
+        if (membership(user, p) != start)
+            change = farthest * i / STEPS;
+    }
+    KrsHit hit = product_raycast(product, origin, direction, farthest, tolerance);
+    if (change < HUGE_VAL && !hit.unresolved && !(hit.hit && hit.t <= change + 2 * tolerance))
+        complain(text, "late ray", origin, hit.hit ? hit.t : HUGE_VAL, tally);
+    if (hit.hit && fabs(product_distance(product, vec(hit.point[0], hit.point[1], hit.point[2]))) >
+                       4 * tolerance)
+        complain(text, "ray that ends in the open", origin, hit.t, tally);
+    tally->hits += hit.hit;
+}
+
+/* Whether each of the reasons is one for which a method of the case may be refused. */
+static bool may_be_refused(const Case *c, const Said *said)
+{
+    bool expected = said->length > 0;
+    for (const char *code = said->codes; *code; code += 6) {
+        char one[8]  = {0};
+        bool allowed = false;
+        memcpy(one, code, 5);
+        for (int i = 0; i < c->count; i++)
+            allowed = allowed || strstr(c->methods[i]->refusals, one);
+        expected = expected && allowed;
+    }
+    return expected;
+}
+
+/* Asked what is there, and, where its surface may be moved, how steep it is. */
+static void check_case(const Case *c, uint64_t seed, Tally *tally)
+{
+    SceneText text = {.length = 0}, steady_text = {.length = 0};
+    Product   product, steady;
+    Said      said;
+    Random    random = {seed};
+    int       wrong  = tally->wrong;
+    write_case(c, false, &text);
+    write_case(c, true, &steady_text);
+    tally->cases++;
+    if (!compile_quietly(text.bytes, &product, &said)) {
+        tally->refused++;
+        if (!may_be_refused(c, &said))
+            complain(text.bytes, said.codes, vec(0, 0, 0), 0, tally);
+        return;
+    }
+    bool undone = true;
+    for (int i = 0; i < c->count; i++)
+        undone = undone && c->methods[i]->undo;
+    Inside     *membership = undone ? inside_case : is_negative;
+    const void *user       = undone ? (const void *)c : &product;
+    judge_case(&product, membership, user, false, text.bytes, seed, tally);
+    if (tally->wrong == wrong && compile_quietly(steady_text.bytes, &steady, &said)) {
+        judge_case(&steady, membership, user, true, steady_text.bytes, seed, tally);
+        product_free(&steady);
+    }
+    if (c->methods[c->count - 1]->keeps && (c->count == 1 || c->methods[0]->undo))
+        check_growth(&product, c, text.bytes, &random, tally);
+    for (int i = 0; i < 8 && tally->wrong == wrong; i++)
+        check_ray(&product, membership, user, random_in_cube(&random, i % 2 ? 3 : 1),
+                  random_in_cube(&random, 0.7), text.bytes, tally);
+    product_free(&product);
+}
+
+/* ---- tests ---- */
+
+static Product family_alone(const Family *family)
+{
+    return product_format("%sshow %s;", prelude, family->text);
+}
+
+static void tell(const char *what, const Tally *tally)
+{
+    print_message("# %s: %d cases, %d refused, %d hits\n", what, tally->cases, tally->refused,
+                  tally->hits);
+    if (tally->wrong)
+        fail_msg("%d of %d are wrong", tally->wrong, tally->cases);
+}
+
+static void every_method_on(void **state)
+{
+    const Family *family = *state;
+    Case  c     = {.family = family, .count = 1, .alone = family_alone(family)};
+    Tally tally = {0};
+    for (int i = 0; i < METHODS; i++) {
+        c.methods[0] = &methods[i];
+        if (methods[i].before)
+            check_case(&c, (uint64_t)i, &tally);
+    }
+    product_free(&c.alone);
+    tell(family->name, &tally);
+}
+
+static void pairs_of_methods(void **state)
+{
+    enum { PAIRS = 8 };
+    (void)state;
+    Tally  tally  = {0};
+    Random random = {2};
+    for (int f = 0; f < FAMILIES; f++) {
+        Case c = {.family = &families[f], .count = 2, .alone = family_alone(&families[f])};
+        for (int i = 0; i < PAIRS; i++) {
+            do {
+                c.methods[0] = &methods[random_below(&random, METHODS)];
+                c.methods[1] = &methods[random_below(&random, METHODS)];
+            } while (!c.methods[0]->before || !c.methods[1]->before);
+            check_case(&c, (uint64_t)i, &tally);
+        }
+        product_free(&c.alone);
+    }
+    tell("pairs", &tally);
+}
+
+static void every_method_has_a_row(void **state)
+{
+    static const char *const names[] = {
+#define METHOD(name, parameters, function, meaning) #name,
+#include "compiler/geometry/methods.def"
+#undef METHOD
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        bool found = false;
+        for (int k = 0; k < METHODS; k++)
+            found = found || strcmp(names[i], methods[k].name) == 0;
+        if (!found)
+            fail_msg("`.%s` is not tried on anything", names[i]);
+    }
+}
+
+int main(void)
+{
+    struct CMUnitTest tests[FAMILIES + 2];
+    for (int i = 0; i < FAMILIES; i++)
+        tests[i] = (struct CMUnitTest){families[i].name, every_method_on, NULL, NULL,
+                                       (void *)(uintptr_t)&families[i]};
+    tests[FAMILIES]     = (struct CMUnitTest)cmocka_unit_test(pairs_of_methods);
+    tests[FAMILIES + 1] = (struct CMUnitTest)cmocka_unit_test(every_method_has_a_row);
+    return _cmocka_run_group_tests("methods of families", tests, FAMILIES + 2, NULL, NULL);
+}
