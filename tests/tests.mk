@@ -13,8 +13,8 @@ UNIT        := front film tracer methods writer memory validate refute frame que
                apart stencils drivers
 PROPERTY    := ops noise graph derive series local along anchor slope parity reach
 ORACLES     := self primitives krs_expand trees maps moebius operators combinations deform chains \
-               moving normals fields surfaces rays algebraic fractals device query picture seams \
-               shading coverage shadows loose bounds stencils light steep scales
+               chain_pictures moving normals fields surfaces rays algebraic fractals device query \
+               picture seams shading coverage shadows loose bounds stencils light steep scales
 FUZZ        := sentences
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)

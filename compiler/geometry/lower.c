@@ -147,12 +147,10 @@ Node beyond_sides(Graph *g, Node point, Box box)
     return most;
 }
 
-/*
- * A shape whose distance is looked at where it is not 0.  What is only a bound may be small far
- * from the shape; the distance to the sides of its box is a bound as well, and with it the place
- * where it is r lies within r of the box, as the boxes of make.c say.
- */
-static Lowered lower_operand(Lowering *l, const Shape *shape, Place place)
+/* What is only a bound may be small far from the shape; the distance to the sides of its box is a
+   bound as well, and with it the place where it is r lies within r of the box, as the boxes of make.c
+   say. */
+Lowered lower_operand(Lowering *l, const Shape *shape, Place place)
 {
     Lowered result = lower_shape(l, shape, place_steady(place));
     if (result.distance == NODE_NONE || shape->exact)

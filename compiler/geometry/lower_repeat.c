@@ -145,6 +145,43 @@ static Node wall_distance(Graph *g, const Lattice *cells, Node local, Node numbe
     return graph_op2(g, OP_add, nearer, margin);
 }
 
+/*
+ * Which neighbour counts changes in the middle of a cell.  Of exact distances the cell's own is the
+ * least there.  Of bounds either neighbour's may be, and where something above needs the slope, the
+ * distance must not jump.  So it is limited: in the middle of a cell to the distance to the sides
+ * of the next copy's box, and copies' distances are made no less than that.  From there the limit
+ * grows with the coordinate, and it is the same on both sides of a wall.
+ */
+static bool needs_limit(const Shape *content, Place place)
+{
+    return place.lipschitz && !content->exact;
+}
+
+static Node limit_in_cell(Graph *g, const Lattice *cells, Range content, Node local)
+{
+    Node half = graph_number(g, fmax(-content.low, content.high));
+    Node away = graph_op1(g, OP_abs, local);
+    Node next = graph_op2(g, OP_sub, cells->period, half);
+    return graph_op2(g, OP_add, away, next);
+}
+
+/* With limits the distance is small far from all copies; that to the sides of their box is not, and
+   it is a bound. */
+static Lowered cut_to_limit(Lowering *l, const Shape *shape, Place place, Lowered result,
+                            Node limit)
+{
+    Graph *g = l->graph;
+    if (limit == NODE_NONE || result.distance == NODE_NONE)
+        return result;
+    result.distance = graph_op2(g, OP_min, result.distance, limit);
+    if (box_is_finite(shape->box))
+        return outside_of_box(l, shape, place, result);
+    Node beyond = beyond_sides(g, place.point, shape->box);
+    if (beyond != NODE_NONE)
+        result.distance = graph_op2(g, OP_max, result.distance, beyond);
+    return result;
+}
+
 /* The copy in the point's own cell, joined with those in the neighbour cells that count: at
    most one on each axis, so the cells of a corner. */
 static Lowered join_neighbours(Lowering *l, const Shape *shape, Place place, const Node own[3],
@@ -161,9 +198,11 @@ static Lowered join_neighbours(Lowering *l, const Shape *shape, Place place, con
         }
         if (!exists)
             continue;
-        Node    point = graph_op(l->graph, OP_vec3, parts);
-        Lowered copy  = lower_shape(l, shape->children[0], place_at(place, point));
-        result        = join_two(l, blend_sharp, result, copy);
+        const Shape *content = shape->children[0];
+        Place        there   = place_at(place, graph_op(l->graph, OP_vec3, parts));
+        Lowered      copy    = needs_limit(content, place) ? lower_operand(l, content, there)
+                                                           : lower_shape(l, content, there);
+        result = join_two(l, blend_sharp, result, copy);
     }
     return result;
 }
@@ -171,7 +210,7 @@ static Lowered join_neighbours(Lowering *l, const Shape *shape, Place place, con
 Lowered lower_repeat(Lowering *l, const Shape *shape, Place place)
 {
     Graph *g = l->graph;
-    Node   own[3], other[3], walls = NODE_NONE;
+    Node   own[3], other[3], walls = NODE_NONE, limit = NODE_NONE;
     bool   neighbour[3];
     Node   plain = graph_leaf(g, OP_POINT);
     for (uint32_t i = 0; i < 3; i++) {
@@ -187,12 +226,17 @@ Lowered lower_repeat(Lowering *l, const Shape *shape, Place place)
         neighbour[i]    = joining == NEIGHBOURS;
         if (neighbour[i])
             other[i] = in_neighbour(g, &cells, own[i], number);
+        if (neighbour[i] && needs_limit(shape->children[0], place)) {
+            Range content = shape->children[0]->box.axis[i];
+            limit = nearer_of(g, limit, limit_in_cell(g, &cells, content, own[i]));
+        }
         if (joining == WALLS) {
             Node wall = wall_distance(g, &cells, own[i], number);
             walls     = walls == NODE_NONE ? wall : graph_op2(g, OP_min, walls, wall);
         }
     }
     Lowered result = join_neighbours(l, shape, place, own, other, neighbour);
+    result         = cut_to_limit(l, shape, place, result, limit);
     if (walls == NODE_NONE || result.distance == NODE_NONE)
         return result;
     result.distance = graph_op2(g, OP_min, result.distance, walls);
@@ -251,65 +295,89 @@ static Lowered all_around(Lowering *l, const Shape *shape, Place place, uint32_t
     return join_two(l, blend_sharp, a, b);
 }
 
-/* The copy in the sector on the side of a point that lies in its own, turned towards +x. */
-static Lowered lower_next_sector(Lowering *l, const Shape *shape, Place place, Node local,
-                                 double angle)
+/* Where a point is, seen from the sector next to its own on its side, turned towards +x. */
+static Node in_next_sector(Graph *g, const Shape *shape, Node local)
 {
-    Graph *g      = l->graph;
     double sector = 2 * (M_PI / shape->cells[0]);
     Node   z      = graph_component(g, local, 2), zero = graph_number(g, 0);
     Node   right  = graph_op2(g, OP_less, zero, z);
     Node   plus   = turn_about_y(g, local, sector);
     Node   minus  = turn_about_y(g, local, -sector);
-    Node   next   = graph_op3(g, OP_select, right, plus, minus);
-    Node   point  = turn_about_y(g, next, -angle);
-    return lower_turned(l, shape->children[0], place, point);
+    return graph_op3(g, OP_select, right, plus, minus);
 }
 
-/* Distance to the nearer wall of the sector around +x, plus the margin behind it. */
-static Node sector_wall(Graph *g, Node local, double half_sector, double margin)
+/* A sector around +x and its content, which stands turned by `angle` and keeps a margin from both
+   walls. */
+typedef struct Sector {
+    double half, angle, margin;
+} Sector;
+
+/* x sin(half) + factor |z| cos(half): with -1 the distance to the nearer wall, and with 1 what is
+   the same in the middle and grows from there. */
+static Node across_sector(Graph *g, const Sector *sector, Node local, double factor)
 {
     Node z      = graph_component(g, local, 2), x = graph_component(g, local, 0);
-    Node sine   = graph_number(g, sin(half_sector)), cosine = graph_number(g, cos(half_sector));
+    Node sine   = graph_number(g, sin(sector->half));
+    Node cosine = graph_number(g, factor * cos(sector->half));
     Node along  = graph_op2(g, OP_mul, x, sine);
     Node aside  = graph_op1(g, OP_abs, z);
     aside       = graph_op2(g, OP_mul, aside, cosine);
-    Node wall   = graph_op2(g, OP_sub, along, aside);
-    Node behind = graph_number(g, margin);
-    return graph_op2(g, OP_add, wall, behind);
+    return graph_op2(g, OP_add, along, aside);
+}
+
+/* Distance to the nearer wall, plus the margin behind it; or what takes its place as a limit. */
+static Node sector_wall(Graph *g, const Sector *sector, Node local, double factor)
+{
+    Node wall = across_sector(g, sector, local, factor);
+    return graph_op2(g, OP_add, wall, graph_number(g, sector->margin));
+}
+
+/* The content, seen from a place in its sector or next to it. */
+static Lowered lower_in_sector(Lowering *l, const Shape *shape, Place place, const Sector *sector,
+                               Node local)
+{
+    Graph   *g      = l->graph;
+    Node     point  = turn_about_y(g, local, -sector->angle);
+    Lowered  result = lower_turned(l, shape->children[0], place, point);
+    if (result.distance == NODE_NONE || !needs_limit(shape->children[0], place))
+        return result;
+    Node wall       = across_sector(g, sector, local, -1);
+    Node beyond     = graph_op2(g, OP_sub, graph_number(g, sector->margin), wall);
+    result.distance = graph_op2(g, OP_max, result.distance, beyond);
+    return result;
 }
 
 /* Copies around y: the point is turned into the sector of the content, and the sectors join as
    cells do.  Content that crosses the walls is written out, copy by copy. */
 Lowered lower_repeat_polar(Lowering *l, const Shape *shape, Place place)
 {
-    Graph *g           = l->graph;
-    double half_sector = M_PI / shape->cells[0];
-    Box    content     = shape->children[0]->box;
-    double centre[3];
-    box_centre(content, centre);
-    double angle  = ends_across(content) ? atan2(centre[2], centre[0]) : 0;
-    double margin = sector_margin(content, angle, half_sector);
-    if (shape->cells[0] < 3 || margin < 0)
+    Graph       *g       = l->graph;
+    const Shape *content = shape->children[0];
+    double       centre[3];
+    box_centre(content->box, centre);
+    Sector sector = {.half = M_PI / shape->cells[0]};
+    sector.angle  = ends_across(content->box) ? atan2(centre[2], centre[0]) : 0;
+    sector.margin = sector_margin(content->box, sector.angle, sector.half);
+    if (shape->cells[0] < 3 || sector.margin < 0)
         return all_around(l, shape, place, 0, shape->cells[0]);
 
-    Node    facing = turn_about_y(g, place.point, angle);
+    Node    facing = turn_about_y(g, place.point, sector.angle);
     Node    count  = graph_number(g, shape->cells[0]);
     Node    local  = graph_op2(g, OP_cell_polar, facing, count);
-    Node    back   = turn_about_y(g, local, -angle);
-    Lowered result = lower_turned(l, shape->children[0], place, back);
-    Node    mapped = turn_about_y(g, graph_leaf(g, OP_POINT), -angle);
-    double  width  = hypot(centre[0], centre[2]) * sin(half_sector);
-    Joining joining = choose_joining(l, shape->children[0], mapped, 2, margin, width, place);
-    if (joining == SYMMETRIC)
+    Lowered result = lower_in_sector(l, shape, place, &sector, local);
+    Node    mapped = turn_about_y(g, graph_leaf(g, OP_POINT), -sector.angle);
+    double  width  = hypot(centre[0], centre[2]) * sin(sector.half);
+    Joining joining = choose_joining(l, content, mapped, 2, sector.margin, width, place);
+    if (joining == SYMMETRIC || result.distance == NODE_NONE)
         return result;
     if (joining == NEIGHBOURS) {
-        Lowered copy = lower_next_sector(l, shape, place, local, angle);
-        return join_two(l, blend_sharp, result, copy);
+        Node    next = in_next_sector(g, shape, local);
+        Lowered copy = lower_in_sector(l, shape, place, &sector, next);
+        bool    cut  = needs_limit(content, place);
+        Node    limit = cut ? sector_wall(g, &sector, local, 1) : NODE_NONE;
+        return cut_to_limit(l, shape, place, join_two(l, blend_sharp, result, copy), limit);
     }
-    if (result.distance == NODE_NONE)
-        return result;
-    Node wall       = sector_wall(g, local, half_sector, margin);
+    Node wall       = sector_wall(g, &sector, local, -1);
     result.distance = graph_op2(g, OP_min, result.distance, wall);
     return outside_of_box(l, shape, place, result);
 }

@@ -106,7 +106,10 @@ Node unit_normal(Graph *g, Node normal, Node otherwise);
 
 /* ---- lower.c ---- */
 Lowered lower_shape(Lowering *l, const Shape *shape, Place place);
-/* The same behind maps that have been taken down, at a point there. */
+/* A shape whose distance is looked at where it is not 0: it is no less than that to the sides of the
+   shape's box. */
+Lowered lower_operand(Lowering *l, const Shape *shape, Place place);
+/* The same as lower_shape behind maps that have been taken down, at a point there. */
 Lowered lower_behind(Lowering *l, const Shape *child, Place place, const NormalPath *path,
                      Node point);
 /* The union of two distances, sharp or blended. */

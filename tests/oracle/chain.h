@@ -33,7 +33,7 @@ typedef struct Link {
     double   number;    /* a radius, an angle, a rate, a factor */
     double   least, most; /* of the parameter */
     Vec      v, w;      /* sizes, a shift or an axis; a centre, or counts */
-    double   low, high; /* TAPER: where its ends are */
+    double   low, high; /* TAPER: where its ends are; BEND: as far as what is bent reaches */
     int      solids[2];
 } Link;
 
@@ -55,8 +55,7 @@ typedef struct Refusals {
     int tried, refused;
 } Refusals;
 
-/* False: nothing came of it. */
-bool chain_random(Chain *chain, const Recipe *recipe, Random *random, Refusals *refusals);
+void chain_random(Chain *chain, const Recipe *recipe, Random *random, Refusals *refusals);
 void chain_write(const Chain *chain, SceneText *text);
 bool chain_contains(const void *chain, Vec point);
 /* The box that the compiler gives for the whole; false where it is endless. */

@@ -19,7 +19,6 @@ static const double PI = 3.14159265358979323846;
 
 /* In every scene; shapes are about as large as 1, and nowhere symmetric if they can help it. */
 static const char prelude[] =
-    "use \"std/surfaces.krs\";\n"
     "let tool = sphere(0.6).move([0.35, 0.25, 0.1]);\n"
     "let block = box([0.9, 0.6, 0.7]).rotate([1, 2, 0], 0.4).move([-0.2, 0.1, 0]);\n"
     "let lump = algebraic((x - 0.2)^2 + 2 * y^2 + z^2 == 0.4);\n";
@@ -53,7 +52,8 @@ static const Family families[] = {
     {"revolved figure", "rectangle([0.3, 0.5]).revolve(0.4)"},
     {"algebraic", "lump"},
     {"algebraic, cut", "lump.within(block)"},
-    {"algebraic of degree 6", "barth_sextic(within: 1).scale(0.7)"},
+    {"algebraic of degree 6", "algebraic((x^2 + 9/4 * z^2 + y^2 - 1)^3 == x^2 * y^3 + 9/80 * z^2"
+                              " * y^3).within(sphere(1.4)).scale(0.6)"},
     {"algebraic sheet", "algebraic(x^2 + y^2 - z^2 == 0.1).within(sphere(0.8), open: true)"},
     {"field", "field(length(p) - 0.5 + 0.1 * sin(3 * x))"},
     {"field, cut", "field(sin(4 * x) * cos(4 * y) + sin(4 * y) * cos(4 * z) + sin(4 * z)"
@@ -124,8 +124,14 @@ struct Method {
 
 static bool in_tool(Vec p) { return vec_distance(p, vec(0.35, 0.25, 0.1)) <= 0.6; }
 
-static bool undo_move(const Case *c, int k, Vec p) { return inside(c, k, vec_sub(p, vec(0.3, -0.4, 0.5))); }
-static bool undo_rotate(const Case *c, int k, Vec p) { return inside(c, k, vec_turn(p, vec(1, 2, -0.5), -0.8)); }
+static bool undo_move(const Case *c, int k, Vec p)
+{
+    return inside(c, k, vec_sub(p, vec(0.3, -0.4, 0.5)));
+}
+static bool undo_rotate(const Case *c, int k, Vec p)
+{
+    return inside(c, k, vec_turn(p, vec(1, 2, -0.5), -0.8));
+}
 static bool undo_scale(const Case *c, int k, Vec p) { return inside(c, k, vec_scale(1 / 0.6, p)); }
 static bool undo_stretch(const Case *c, int k, Vec p)
 {
@@ -183,7 +189,10 @@ static bool undo_polar_far(const Case *c, int k, Vec p)
             return true;
     return false;
 }
-static bool undo_polar_aside(const Case *c, int k, Vec p) { return around(c, k, p, vec(1, 0, 1), 2); }
+static bool undo_polar_aside(const Case *c, int k, Vec p)
+{
+    return around(c, k, p, vec(1, 0, 1), 2);
+}
 static double pulled(double x, double half) { return x - fmax(-half, fmin(x, half)); }
 static bool undo_elongate(const Case *c, int k, Vec p)
 {

@@ -434,9 +434,45 @@ static void normals_are_gradients(void **state)
     product_free(&product);
 }
 
+/* ---- copies of what is only bounded ---- */
+
+static bool is_negative(const void *product, Vec p) { return product_distance(product, p) <= 0; }
+
+/* Of copies, the nearer ones are looked at; which those are changes in the middles of cells and at
+   their walls.  Where a distance is far below the true one on one side only, it must not jump
+   there: an offset would have a wall. */
+static void copies_of_bounds_are_steady(void **state)
+{
+    static const char *const shapes[] = {
+        "slab.repeat([2, 0, 0])",
+        "slab.repeat([2, 0, 2], [3, 1, 2])",
+        "slab.rotate([0, 1, 0], 90deg).repeat([2, 2.1, 2], [1, 2, 3])",
+        "flat.repeat([2.4, 0, 0], [3, 1, 1])",
+        "flat.repeat([2.4, 2.4, 2.4], [2, 3, 2])",
+        "slab.scale(0.5).move([1.2, 0, 0.2]).repeat_polar(5)",
+        "flat.move([3.5, 0, 0]).repeat_polar(4)",
+        "flat.move([0, 0, 2.8]).rotate([0, 1, 0], 0.3).repeat_polar(3)",
+    };
+    static const double radii[] = {0, 0.8};
+    (void)state;
+    for (size_t i = 0; i < sizeof shapes / sizeof *shapes * 2; i++) {
+        Product product =
+            product_format("let slab = box([1.8, 1.8, 1.8]) - box([1.6, 2, 2]).move([-0.2, 0, 0]);"
+                           "let flat = sphere(1).scale([1, 0.2, 0.1]).rotate([0, 1, 1], 0.6)"
+                           "    .move([0.2, 0, -0.1]);"
+                           "show %s.offset(%g);", shapes[i / 2], radii[i % 2]);
+        for (int size = 0; size < 2; size++) {
+            Trial trial = {product_field, &product, is_negative, &product, vec(0, 0, 0),
+                           size ? 12 : 4, 400, i};
+            judge_acquits(&trial, shapes[i / 2]);
+        }
+        product_free(&product);
+    }
+}
+
 int main(void)
 {
-    struct CMUnitTest tests[OPERATIONS + BLENDS + 5];
+    struct CMUnitTest tests[OPERATIONS + BLENDS + 6];
     size_t count = 0;
     for (size_t i = 0; i < OPERATIONS; i++)
         tests[count++] = (struct CMUnitTest){operations[i].text, operation_means_what_it_says, NULL,
@@ -449,5 +485,6 @@ int main(void)
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(components_are_joined);
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(normals_are_gradients);
     tests[count++] = (struct CMUnitTest)cmocka_unit_test(boxes_hold_what_is_grown);
+    tests[count++] = (struct CMUnitTest)cmocka_unit_test(copies_of_bounds_are_steady);
     return _cmocka_run_group_tests("operators", tests, count, NULL, NULL);
 }
