@@ -5,8 +5,8 @@
 # address and undefined-behaviour sanitizers, and everything compiles under clang as well.
 
 # What tests of several kinds share; nothing of it knows what is tested.
-SUPPORT     := $(addprefix tests/support/, bench.c device.c random.c renderer.c \
-               scarce.c)
+SUPPORT     := $(addprefix tests/support/, agreement.c bench.c device.c random.c \
+               renderer.c scarce.c)
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c chain.c \
                exact.c formulas.c rooms.c montecarlo.c)
 UNIT        := front film tracer methods writer memory validate refute frame query cache compiled \
@@ -16,6 +16,9 @@ ORACLES     := self primitives krs_expand trees maps moebius operators combinati
                chain_pictures moving normals fields surfaces rays algebraic fractals device query \
                picture seams shading coverage shadows loose bounds stencils light steep scales
 FUZZ        := sentences
+# On SwiftShader, unless another device is tested: what shows that drivers agree.
+DRIVERS     := tests/oracle/drivers
+SECOND      := $(DRIVERS) $(addprefix tests/, unit/tracer oracle/device oracle/picture oracle/query)
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
@@ -45,7 +48,7 @@ $(B)/tests/%: $(B)/tests/%.o $(B)/tests/support/support.a $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
 .SECONDARY:
 
-test-programs: $(PROGRAMS:%=$(B)/%)
+test-programs: $(PROGRAMS:%=$(B)/%) $(DRIVERS:%=$(B)/%)
 sanitized-programs: $(SANITIZED:%=$(B)/%) $(B)/krs
 sanitize:
 	@$(MAKE) --no-print-directory sanitized-programs B=$(B)/asan \
@@ -79,6 +82,7 @@ test: deps
 	@$(MAKE) --no-print-directory sanitize
 	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=300 \
 	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") $(PROGRAMS:%=$(B)/%) $(SCRIPTS) \
-	    $(SANITIZED:%=$(B)/asan/%) tests/errors-sanitized.sh tests/fuzz/fuzz.sh
+	    $(SANITIZED:%=$(B)/asan/%) tests/errors-sanitized.sh tests/fuzz/fuzz.sh \
+	    $(if $(DEVICE),$(DRIVERS:%=$(B)/%),KRS_DEVICE=swiftshader $(SECOND:%=$(B)/%))
 .PHONY: test test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers \
         fuzz-programs lint bless
