@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { RAYS = 512, FEWEST_RAYS = 64, ROUNDS = 3 };
+enum { RAYS = 512, FEWEST_RAYS = 64, ROUNDS = 3, BATCH = 8, MOST_UNRESOLVED = 4 };
 
 /* With a distance of more flops there are fewer rays: no scene waits long for its camera. */
 static const double FLOPS_OF_ALL_RAYS = 2500;
@@ -79,6 +79,22 @@ typedef struct Extent {
     double low[3], high[3];
 } Extent;
 
+/* Distances that are much too short need many steps.  After a few rays that do not end, false: the
+   scene is looked at from farther away, and soon. */
+static bool cast_rays(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
+                      int count, double radius, KrsHit *hits)
+{
+    int unresolved = 0;
+    for (int i = 0; i < count && unresolved <= MOST_UNRESOLVED; i++) {
+        if (i % BATCH == 0)
+            krs_raycast(frame, origins + i, directions + i,
+                        (size_t)(count - i < BATCH ? count - i : BATCH), 4 * radius, 1e-3 * radius,
+                        hits + i);
+        unresolved += hits[i].unresolved;
+    }
+    return unresolved <= MOST_UNRESOLVED;
+}
+
 static void add_hits(const KrsScene *scene, const KrsHit *hits, int count, Extent *seen)
 {
     for (int i = 0; i < count; i++) {
@@ -123,8 +139,9 @@ KrsStatus frame_scene(KrsScene *scene)
     /* What is found sharpens the ball, and the next round's rays. */
     for (int round = 0; round < ROUNDS; round++) {
         make_rays(&ball, rays, origins, directions);
-        krs_raycast(frame, (const double(*)[3])origins, (const double(*)[3])directions,
-                    (size_t)rays, 4 * ball.radius, 1e-3 * ball.radius, hits);
+        if (!cast_rays(frame, (const double(*)[3])origins, (const double(*)[3])directions, rays,
+                       ball.radius, hits))
+            break;
         add_hits(scene, hits, rays, &seen);
         if (!inner_ball(&seen, &ball))
             break;

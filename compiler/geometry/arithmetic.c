@@ -26,7 +26,13 @@ Value value_of_node(Elaboration *e, Node node)
 Value value_list(Elaboration *e, Value *items, size_t count)
 {
     List *list = arena_new(e->arena, List);
-    *list      = (List){count, items};
+    *list      = (List){count, items, TIME_COMPILE, 0};
+    for (size_t i = 0; i < count; i++) {
+        BindingTime time = value_time(e, items[i]);
+        size_t      more = items[i].type == VALUE_LIST ? items[i].list->total : 0;
+        list->time       = time > list->time ? time : list->time;
+        list->total      = more < SIZE_MAX - list->total ? list->total + more + 1 : SIZE_MAX;
+    }
     return (Value){.type = VALUE_LIST, .list = list};
 }
 
@@ -124,13 +130,7 @@ BindingTime value_time(const Elaboration *e, Value value)
 {
     if (value.type == VALUE_EXPRESSION)
         return e->graph->items[value.node].time;
-    BindingTime latest = TIME_COMPILE;
-    if (value.type == VALUE_LIST)
-        for (size_t i = 0; i < value.list->count; i++) {
-            BindingTime time = value_time(e, value.list->items[i]);
-            latest           = time > latest ? time : latest;
-        }
-    return latest;
+    return value.type == VALUE_LIST ? value.list->time : TIME_COMPILE;
 }
 
 static Value not_finite(Elaboration *e, const Syntax *syntax, bool by_zero)

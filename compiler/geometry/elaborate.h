@@ -94,6 +94,8 @@ bool evaluate_each(Elaboration *e, const Environment *env, const Syntax *syntax,
                    void *user);
 /* The environment with one more name, which hides any equal one. */
 Environment bind(Elaboration *e, const Environment *env, const char *name, Value value);
+/* Whether one may go through all shapes of a list and of the lists in it; false: reported. */
+bool check_shape_count(Elaboration *e, const List *list, Span span);
 /* The value of a top-level definition, evaluated when it is first needed, at `use`. */
 Value run_definition(Elaboration *e, Definition *definition, Span use);
 

@@ -30,6 +30,13 @@ static bool step(Elaboration *e, Span span)
     return !e->stopped;
 }
 
+bool check_shape_count(Elaboration *e, const List *list, Span span)
+{
+    if (list->total > MOST_SHAPE_PARTS)
+        limit_reached(e, span, "a list of more than 100,000 shapes, counted as often as they occur");
+    return !e->stopped;
+}
+
 Environment bind(Elaboration *e, const Environment *env, const char *name, Value value)
 {
     Binding *binding = arena_new(e->arena, Binding);

@@ -61,16 +61,30 @@ typedef struct Terms {
     Term     items[MOST_TERMS];
 } Terms;
 
-/* Whether there are terms below products and signs. */
-static bool has_terms(const Graph *g, Node node)
+/* Looks at no more than *nodes: expressions are shared, and there may be far more ways through one
+   than it has nodes. */
+static bool has_terms_among(const Graph *g, Node node, uint32_t *nodes)
 {
     const Expr *e = &g->items[node];
+    if (*nodes == 0)
+        return false;
+    --*nodes;
     switch (e->op) {
     case OP_add: case OP_sub: return e->type == TYPE_FLOAT;
-    case OP_neg: case OP_div: return has_terms(g, e->operands[0]);
-    case OP_mul: return has_terms(g, e->operands[0]) || has_terms(g, e->operands[1]);
-    default:     return false;
+    case OP_neg: case OP_div: return has_terms_among(g, e->operands[0], nodes);
+    case OP_mul:
+        return has_terms_among(g, e->operands[0], nodes) ||
+               has_terms_among(g, e->operands[1], nodes);
+    default: return false;
     }
+}
+
+/* Whether there are terms below products and signs; one that is not found is no mistake, as a
+   product can be a term itself. */
+static bool has_terms(const Graph *g, Node node)
+{
+    uint32_t nodes = 1000;
+    return has_terms_among(g, node, &nodes);
 }
 
 /* Adds `factor` times an expression, term by term. */

@@ -63,6 +63,8 @@ bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax 
                     Values *shapes)
 {
     if (value.type == VALUE_LIST) {
+        if (!check_shape_count(e, value.list, place->span))
+            return false;
         for (size_t i = 0; i < value.list->count; i++)
             if (!collect_shapes(e, call, value.list->items[i], place, shapes))
                 return false;

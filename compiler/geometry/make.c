@@ -72,6 +72,7 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
     shape->formula      = shape->declared = NODE_NONE;
     shape->plane_normal = shape->plane_offset = NODE_NONE;
     shape->values[0] = shape->values[1] = NODE_NONE;
+    uint64_t parts = 1;
     double sequences = 0; /* instances of the sequences among the parts; other parts make one */
     for (uint32_t i = 0; i < count; i++) {
         const Shape *child = children[i];
@@ -90,6 +91,7 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
         shape->without_uv  = shape->without_uv ? shape->without_uv : child->without_uv;
         sequences += child->levels > 0 ? child->instances : 0;
         shape->depth = child->depth >= shape->depth ? child->depth + 1 : shape->depth;
+        parts += child->parts;
         shape->levels = child->levels > shape->levels ? child->levels : shape->levels;
         if (child->inversions > shape->inversions)
             shape->inversions = child->inversions;
@@ -98,8 +100,12 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
     shape->instances = sequences > 0 ? sequences : kind != SHAPE_EMPTY;
     if (count == 1)
         shape->box = children[0]->box;
-    if (shape->depth > MOST_SHAPE_DEPTH && !e->stopped) {
-        diag_add(e->diags, DIAG_LIMIT, span, "shapes are nested more than 1,000 deep");
+    shape->parts = parts < UINT32_MAX ? (uint32_t)parts : UINT32_MAX;
+    if ((shape->depth > MOST_SHAPE_DEPTH || parts > MOST_SHAPE_PARTS) && !e->stopped) {
+        diag_add(e->diags, DIAG_LIMIT, span,
+                 parts > MOST_SHAPE_PARTS
+                     ? "a shape of more than 100,000 parts, each counted where it is used"
+                     : "shapes are nested more than 1,000 deep");
         e->stopped = true;
     }
     return shape;

@@ -111,6 +111,8 @@ enum { MOST_BEND_PARTS = 16 };
 
 /* Walks of the tree are recursive. */
 enum { MOST_SHAPE_DEPTH = 1000 };
+/* And go through a part as often as it is used, which is more often than there are shapes. */
+enum { MOST_SHAPE_PARTS = 100000 };
 
 struct Shape {
     ShapeKind     kind;
@@ -119,6 +121,7 @@ struct Shape {
     const Shape **children;
     uint32_t      child_count;
     uint32_t      depth; /* of the tree below, at most MOST_SHAPE_DEPTH */
+    uint32_t      parts; /* of that tree and itself, each where it is used; MOST_SHAPE_PARTS */
 
     Box    box;     /* around the solid, for all values of the parameters */
     double slope;   /* Lipschitz constant of what it lowers to */

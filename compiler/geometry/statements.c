@@ -171,6 +171,8 @@ static bool show_one(Elaboration *e, Value value, void *user)
 {
     const Syntax *syntax = user;
     if (value.type == VALUE_LIST) {
+        if (!check_shape_count(e, value.list, syntax->span))
+            return false;
         for (size_t i = 0; i < value.list->count; i++)
             if (!show_one(e, value.list->items[i], user))
                 return false;

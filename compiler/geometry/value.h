@@ -54,9 +54,13 @@ struct Value {
     };
 };
 
+/* A list may be in many others, so nothing about it is found by walking through all of it. */
 struct List {
-    size_t count;
-    Value *items;
+    size_t      count;
+    Value      *items;
+    BindingTime time; /* the latest of its elements' */
+    size_t      total; /* of elements, those of lists in it counted as often as they occur;
+                          SIZE_MAX: that or more */
 };
 
 /* A list that grows. */

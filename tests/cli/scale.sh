@@ -2,7 +2,7 @@
 # scale.sh: large and deep scenes end, in time and in 2 GB: checked, or refused with one reason.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 30
+plan 38
 
 # within COMMAND [OPTION]...: of scene.krs; a minute is far more than any of these needs.
 within() {
@@ -54,6 +54,32 @@ echo "def f(n) = g(n); def g(n) = f(n); show sphere(f(1));" >scene.krs
 refused E0503 "functions that call each other for ever"
 echo "def f(n) = if n == 0 then 0 else f(n - 1) + f(n - 1); show sphere(f(40));" >scene.krs
 refused E0503 "a function that calls itself 2^40 times"
+
+# ---- what is used many times ----
+
+# doubled FIRST NEXT: what each of forty lines has twice of the one before.
+doubled() {
+    echo "let s0 = $1;"
+    repeated 40 "$2" | awk '{ gsub("@", NR - 1); print }'
+}
+
+{ doubled "[1, 2]" "let s# = [s@, s@];"; echo "show sphere(s40);"; } >scene.krs
+refused E0301 "a list of 2^40 numbers as a radius"
+{ doubled "[1, 2]" "let s# = [s@, s@];"; echo "def f(n) = 1; show sphere(f(s40));"; } >scene.krs
+passed "a list of 2^40 numbers as an argument"
+{ doubled "[sphere(1)]" "let s# = [s@, s@];"; echo "show union(s40);"; } >scene.krs
+refused E0503 "a union of a list of 2^40 shapes"
+{ doubled "[]" "let s# = [s@, s@];"; echo "show s40;"; } >scene.krs
+refused E0503 "2^40 empty lists"
+{ doubled "sphere(1)" "let s# = s@ - s@.move([#, 0, 0]);"; echo "show s40;"; } >scene.krs
+refused E0503 "a difference of 2^40 shapes"
+{ doubled "sphere(1)" "let s# = krs { kernel s@; kernel s@; reflect plane([1, 0, 0], #); };"
+    echo "show s40;"; } >scene.krs
+refused E0503 "2^40 kernels"
+{ doubled "x" "let s# = s@ * s@;"; echo "show field(s40 + y).within(box([1, 1, 1]));"; } >scene.krs
+passed "x^(2^40)"
+{ doubled "x" "let s# = s@ * y - s@;"; echo "show sphere(1).displace(sin(s40), 0.1);"; } >scene.krs
+passed "a displacement as steep as 2^40, framed by the compiler"
 
 # ---- much text ----
 
