@@ -20,7 +20,7 @@ CLANG   ?= clang-14
 DEVICE  ?= $(KRS_DEVICE)
 
 # Sources in the order of the pipeline: reading down this list is reading the program.
-BASE     := $(addprefix compiler/base/, arena.c text.c source.c diag.c diag_text.c)
+BASE     := $(addprefix compiler/base/, arena.c text.c source.c beneath.c loader.c diag.c diag_text.c)
 FRONT    := $(addprefix compiler/front/, lexer.c syntax.c parser.c parse_expression.c parse.c \
                 names.c)
 GRAPH    := $(addprefix compiler/graph/, graph.c derive.c series.c local.c anchor.c simplify.c \

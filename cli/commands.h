@@ -36,8 +36,10 @@ typedef struct DiagnosticSink {
     size_t         errors, warnings; /* printed so far */
 } DiagnosticSink;
 
-/* For krs_compile_file and krs_dump; `sink` must outlive the call. */
-KrsOptions scene_options(DiagnosticSink *sink);
+/* For krs_compile_file and krs_dump of that scene; `sink` must outlive the call. */
+KrsOptions scene_options(DiagnosticSink *sink, const char *path);
+/* From here on the scene of that file is compiled. */
+void scene_enter_compile(const char *path);
 /* "2 errors, 1 warning", unless there were none. */
 void scene_print_counts(const DiagnosticSink *sink);
 

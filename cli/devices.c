@@ -92,7 +92,8 @@ KrsStatus open_renderer(const Options *options, KrsRenderer **renderer)
 {
     const char        *device = options->device ? options->device : getenv("KRS_DEVICE");
     KrsRendererOptions with = {.device = device, .cache = cache_folder(options),
-                               .early_outs = options->early_outs};
+                               .early_outs = options->early_outs,
+                               .patience = DEVICE_PATIENCE * options->deadline};
     stage_enter(STAGE_DEVICE);
     KrsStatus status = krs_renderer_new(&with, renderer);
     stage_enter(STAGE_START);

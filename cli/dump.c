@@ -51,8 +51,8 @@ KrsStatus command_dump(Options *options)
         return status;
     char *text = NULL;
     DiagnosticSink sink = {.options = options};
-    KrsOptions with = scene_options(&sink);
-    stage_enter(STAGE_COMPILE);
+    KrsOptions with = scene_options(&sink, path);
+    scene_enter_compile(path);
     status = krs_dump(path, stage, &with, &text);
     scene_print_counts(&sink);
     stage_enter(STAGE_ANSWER);

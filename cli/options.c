@@ -165,6 +165,16 @@ static KrsStatus find_command(Options *options, const char *word)
     return say_usage(options, "there is no command `%s`", word);
 }
 
+/* What an untrusted scene may, unless options say otherwise. */
+static void limit_untrusted(Limits *limits)
+{
+    static const Limits most = {60, (uint64_t)2 << 30, (uint64_t)1 << 26, 4096};
+    limits->time = limits->time > 0 ? limits->time : most.time;
+    limits->memory = limits->memory ? limits->memory : most.memory;
+    limits->pixels = limits->pixels ? limits->pixels : most.pixels;
+    limits->samples = limits->samples ? limits->samples : most.samples;
+}
+
 /* What no single option can see. */
 static KrsStatus check_together(Options *options)
 {
@@ -222,6 +232,8 @@ KrsStatus options_parse(Options *options, int argc, char **argv)
             next++;
         }
     }
+    if (options->untrusted)
+        limit_untrusted(&options->limits);
     if (status == KRS_OK && !options->help)
         status = check_together(options);
     return status;

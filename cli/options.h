@@ -16,7 +16,8 @@
 enum {
     MANY_FILES = -1,      /* a command that takes one or more files */
     SIDE_LIMIT = 16384,   /* pixels along a side of a picture in this version */
-    SAMPLES_LIMIT = 65536
+    SAMPLES_LIMIT = 65536,
+    DEVICE_PATIENCE = 5 /* deadlines that one step of a device may take */
 };
 
 typedef enum CommandId {
@@ -71,6 +72,13 @@ typedef struct ExitPair {
     int from, to;
 } ExitPair;
 
+/* --limit; 0: none */
+typedef struct Limits {
+    double   time;   /* seconds, of the whole command */
+    uint64_t memory; /* bytes */
+    uint64_t pixels, samples;
+} Limits;
+
 typedef struct Options {
     CommandId command;
     bool      help;
@@ -104,6 +112,9 @@ typedef struct Options {
     uint64_t    seed, points;
     double      seconds;  /* of the search of `krs validate` */
     double      deadline; /* seconds */
+    Limits      limits;
+    const char *root; /* NULL: not given */
+    bool        untrusted;
     double      tolerance, farthest; /* of rays that are asked about; tolerance 0: not given */
     bool        on_device;
     StatsForm   stats;

@@ -156,8 +156,24 @@ static KrsStatus find_camera(const Options *options, const KrsScene *scene, size
 static bool show_progress(void *user, double done)
 {
     Render *render = user;
+    stage_goes_on();
     progress_show(&render->progress, done);
     return !*interrupted();
+}
+
+/* What --limit allows beats what the scene asks for; what the command line asks for beyond it makes no
+   sense. */
+static KrsStatus check_limit(const Options *options, const char *name, uint64_t asked, uint64_t most,
+                             bool by_scene)
+{
+    if (most == 0 || asked <= most)
+        return KRS_OK;
+    if (!by_scene)
+        return say_usage(options, "%llu %s are more than --limit %s=%llu", (unsigned long long)asked,
+                         name, name, (unsigned long long)most);
+    say("the scene asks for %llu %s, of which --limit %s=%llu allows fewer",
+        (unsigned long long)asked, name, name, (unsigned long long)most);
+    return KRS_BAD_SCENE;
 }
 
 /* Size, crop and what else the options and the scene's image block say together. */
@@ -181,6 +197,16 @@ static KrsStatus choose_how(Render *render)
     uint32_t height = options->height    ? options->height
                       : view.image.height ? view.image.height
                                           : 720;
+    uint32_t samples = options->samples     ? options->samples
+                       : view.image.samples ? view.image.samples
+                                            : 1;
+    status = check_limit(options, "pixels", (uint64_t)width * height, options->limits.pixels,
+                         !(options->width && options->height));
+    if (status == KRS_OK)
+        status = check_limit(options, "samples", samples, options->limits.samples,
+                             !options->samples);
+    if (status != KRS_OK)
+        return status;
     const uint32_t *crop = options->crop;
     if (options->cropped && (crop[0] + crop[2] > width || crop[1] + crop[3] > height))
         return say_usage(options, "--crop %u,%u,%u,%u is not inside of a picture of %ux%u", crop[0],

@@ -37,10 +37,22 @@ static void print_diagnostic(void *user, const KrsDiagnostic *diagnostic)
         fputc('\n', stderr);
 }
 
-KrsOptions scene_options(DiagnosticSink *sink)
+/* The folder that scenes may read from; NULL: any. */
+static const char *scene_root(const Options *options, const char *path)
 {
+    const char *slash = strrchr(path, '/');
+    if (options->root || !options->untrusted)
+        return options->root;
+    return slash ? arena_copy_text(options->arena, path, (size_t)(slash - path) + 1) : ".";
+}
+
+KrsOptions scene_options(DiagnosticSink *sink, const char *path)
+{
+    const Options *options = sink->options;
     return (KrsOptions){.diagnostic = print_diagnostic, .user = sink,
-                        .gradients = sink->options->normals == KRS_NORMALS_ANALYTIC};
+                        .gradients = options->normals == KRS_NORMALS_ANALYTIC,
+                        .memory_limit = options->limits.memory,
+                        .root = scene_root(options, path)};
 }
 
 void scene_print_counts(const DiagnosticSink *sink)
@@ -92,17 +104,32 @@ KrsStatus say_status(KrsStatus status, const char *path)
     return status; /* a wrong scene has been told about in diagnostics */
 }
 
+static long long file_size(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 ? (long long)info.st_size : 0;
+}
+
+void scene_enter_compile(const char *path)
+{
+    stage_size("`%s` has %lld bytes, and may use more", path, file_size(path));
+    stage_enter(STAGE_COMPILE);
+}
+
 KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene)
 {
     *scene = NULL;
     KrsStatus status = scene_readable(path);
     if (status != KRS_OK)
         return status;
-    stage_enter(STAGE_COMPILE);
+    scene_enter_compile(path);
     DiagnosticSink sink = {.options = options};
-    KrsOptions with = scene_options(&sink);
+    KrsOptions with = scene_options(&sink, path);
     status = krs_compile_file(path, &with, scene);
     scene_print_counts(&sink);
+    if (status == KRS_OK)
+        stage_size("`%s` makes %zu bytes of distance code in %zu components", path,
+                   krs_scene_program(*scene)->glsl_length, krs_component_count(*scene));
     stage_enter(STAGE_START);
     return say_status(status, path);
 }

@@ -9,6 +9,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdarg.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,6 +27,7 @@ typedef struct Shared {
     _Atomic uint64_t entered; /* when, milliseconds of clock_now */
     atomic_int       open;    /* whether `temporary` exists */
     char             temporary[4096];
+    char             size[256]; /* of what is compiled, in words */
 } Shared;
 
 static Shared *shared;
@@ -33,19 +35,20 @@ static volatile sig_atomic_t interrupt_flag;
 
 typedef struct StageInfo {
     const char *name, *doing;
-    bool        timed;  /* stands under the deadline */
-    bool        polite; /* notices an interrupt by itself */
+    double      deadlines; /* how many it may take, or be without progress; 0: any time */
+    bool        slow;      /* what takes long is the scene's fault, not a bug */
+    bool        polite;    /* notices an interrupt by itself */
 } StageInfo;
 
 static const StageInfo stage_info[STAGE_COUNT] = {
-    [STAGE_START]    = {"start", "starting", false, false},
-    [STAGE_COMPILE]  = {"compile", "compiling the scene", true, false},
-    [STAGE_SHADERS]  = {"shaders", "compiling the shaders", true, false},
-    [STAGE_DEVICE]   = {"device", "starting the device", false, false},
-    [STAGE_RENDER]   = {"render", "rendering", false, true},
-    [STAGE_VALIDATE] = {"validate", "validating", false, true},
-    [STAGE_WRITE]    = {"write", "writing", false, true},
-    [STAGE_ANSWER]   = {"answer", "printing the answer", false, false},
+    [STAGE_START]    = {"start", "starting", 0, false, false},
+    [STAGE_COMPILE]  = {"compile", "compiling the scene", 1, true, false},
+    [STAGE_SHADERS]  = {"shaders", "compiling the shaders", 1, true, false},
+    [STAGE_DEVICE]   = {"device", "starting the device", 1, false, false},
+    [STAGE_RENDER]   = {"render", "rendering", 2 * DEVICE_PATIENCE, false, true},
+    [STAGE_VALIDATE] = {"validate", "validating", 0, false, true},
+    [STAGE_WRITE]    = {"write", "writing", 0, false, true},
+    [STAGE_ANSWER]   = {"answer", "printing the answer", 0, false, false},
 };
 
 /* The child. */
@@ -72,6 +75,16 @@ void stage_enter(Stage stage)
     atomic_store(&shared->entered, milliseconds());
     atomic_store(&shared->stage, (int)stage);
     crash_for_test(stage);
+}
+
+void stage_goes_on(void) { atomic_store(&shared->entered, milliseconds()); }
+
+void stage_size(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(shared->size, sizeof shared->size, format, arguments);
+    va_end(arguments);
 }
 
 const volatile sig_atomic_t *interrupted(void) { return &interrupt_flag; }
@@ -121,16 +134,32 @@ KrsStatus write_output_text(const char *path, const char *text, size_t length)
 }
 
 /* A signal that was ignored when we were started (nohup) stays ignored. */
+static bool is_ignored(int number)
+{
+    struct sigaction now;
+    return sigaction(number, NULL, &now) == 0 && now.sa_handler == SIG_IGN;
+}
+
 static void catch_signal(int number)
 {
-    struct sigaction old, action = {.sa_handler = interrupt_child, .sa_flags = SA_RESTART};
-    sigaction(number, NULL, &old);
-    if (old.sa_handler != SIG_IGN)
+    struct sigaction action = {.sa_handler = interrupt_child, .sa_flags = SA_RESTART};
+    if (!is_ignored(number))
         sigaction(number, &action, NULL);
+}
+
+/* Of what is written to: drivers for cards reserve far more than they use. */
+static void limit_memory(uint64_t bytes)
+{
+    struct rlimit limit;
+    if (bytes == 0 || getrlimit(RLIMIT_DATA, &limit) != 0 || limit.rlim_cur <= bytes)
+        return;
+    limit.rlim_cur = bytes;
+    setrlimit(RLIMIT_DATA, &limit);
 }
 
 static _Noreturn void run_child(Options *options, Work *work, const sigset_t *mask)
 {
+    limit_memory(options->limits.memory);
     prctl(PR_SET_PDEATHSIG, SIGTERM); /* nobody would read what we do */
     catch_signal(SIGINT);
     catch_signal(SIGTERM);
@@ -146,8 +175,8 @@ static _Noreturn void run_child(Options *options, Work *work, const sigset_t *ma
 
 typedef struct Watch {
     pid_t  child;
-    bool   interrupted, late; /* why we stopped the child */
-    double interrupted_at;
+    bool   interrupted, late, over; /* why we stopped the child; over: the limit of time */
+    double started_at, interrupted_at;
 } Watch;
 
 /* Of a regular file only: a pipe may never have a writer, a device never end. */
@@ -258,16 +287,34 @@ static bool is_out_of_time(void)
            (rlim_t)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1 >= limit.rlim_cur;
 }
 
+/* What takes long to compile is large, or a bug; nobody can tell, and only the former has a cure. */
+static int report_late(const Options *options, const StageInfo *stage)
+{
+    char story[256];
+    if (stage->slow) {
+        shared->size[sizeof shared->size - 1] = '\0';
+        say("gave up %s after %g seconds: %s; --deadline SECONDS allows it longer", stage->doing,
+            options->deadline * stage->deadlines, shared->size);
+        return KRS_BAD_SCENE;
+    }
+    snprintf(story, sizeof story, "gave up %s after %g seconds without progress", stage->doing,
+             options->deadline * stage->deadlines);
+    return report_bug(options, story);
+}
+
 static int judge_death(const Options *options, const Watch *watch, int signal_number)
 {
     char story[256];
-    const char *doing = stage_info[atomic_load(&shared->stage)].doing;
+    const StageInfo *stage = &stage_info[atomic_load(&shared->stage)];
+    const char *doing = stage->doing;
     if (watch->interrupted)
         return KRS_INTERRUPTED;
-    if (watch->late) {
-        snprintf(story, sizeof story, "gave up %s after %g seconds", doing, options->deadline);
-        return report_bug(options, story);
+    if (watch->over) {
+        say("stopped while %s: --limit time=%g allows no longer", doing, options->limits.time);
+        return KRS_BAD_SCENE;
     }
+    if (watch->late)
+        return report_late(options, stage);
     if ((signal_number == SIGKILL || signal_number == SIGXCPU) && is_out_of_time()) {
         say("stopped while %s: the processor time that `ulimit -t` allows is used up", doing);
         return KRS_INTERRUPTED;
@@ -278,10 +325,11 @@ static int judge_death(const Options *options, const Watch *watch, int signal_nu
     }
     if (signal_number == SIGINT || signal_number == SIGTERM || signal_number == SIGHUP)
         return KRS_INTERRUPTED;
-    uint64_t allowed = memory_allowed();
+    uint64_t limit = options->limits.memory, allowed = limit ? limit : memory_allowed();
     if (allowed > 0) {
-        say("crashed while %s (SIG%s), probably for want of memory: `ulimit -v` allows %llu MiB",
-            doing, signal_name(signal_number), (unsigned long long)(allowed >> 20));
+        say("crashed while %s (SIG%s), probably for want of memory: %s allows %llu MiB", doing,
+            signal_name(signal_number), limit ? "--limit" : "`ulimit -v`",
+            (unsigned long long)(allowed >> 20));
         return KRS_OUT_OF_MEMORY;
     }
     snprintf(story, sizeof story, "crashed while %s (SIG%s)", doing, signal_name(signal_number));
@@ -291,8 +339,9 @@ static int judge_death(const Options *options, const Watch *watch, int signal_nu
 /* Whether a stage with a deadline has passed it. */
 static bool is_late(const Options *options)
 {
+    const StageInfo *stage = &stage_info[atomic_load(&shared->stage)];
     double seconds = (double)(milliseconds() - atomic_load(&shared->entered)) / 1000;
-    return stage_info[atomic_load(&shared->stage)].timed && seconds > options->deadline;
+    return stage->deadlines > 0 && seconds > stage->deadlines * options->deadline;
 }
 
 /* Passes interrupts on and watches the clock until the child has ended; returns how. */
@@ -309,14 +358,24 @@ static int wait_for_child(const Options *options, Watch *watch, const sigset_t *
             watch->interrupted = true;
             kill(watch->child, number);
         }
-        if (!watch->interrupted && !watch->late && is_late(options)) {
-            watch->late = true;
-            kill(watch->child, SIGKILL);
-        }
         if (watch->interrupted && clock_now() - watch->interrupted_at > patience)
+            kill(watch->child, SIGKILL);
+        if (watch->interrupted || watch->late || watch->over)
+            continue;
+        watch->over = options->limits.time > 0 &&
+                      clock_now() - watch->started_at > options->limits.time;
+        watch->late = !watch->over && is_late(options);
+        if (watch->over || watch->late)
             kill(watch->child, SIGKILL);
     }
     return ended;
+}
+
+/* A signal that is ignored would still be taken once it is blocked. */
+static void add_signal(sigset_t *signals, int number)
+{
+    if (!is_ignored(number))
+        sigaddset(signals, number);
 }
 
 int supervise(Options *options, Work *work)
@@ -328,14 +387,14 @@ int supervise(Options *options, Work *work)
     }
     sigset_t signals, before;
     sigemptyset(&signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGTERM);
-    sigaddset(&signals, SIGHUP);
+    add_signal(&signals, SIGINT);
+    add_signal(&signals, SIGTERM);
+    add_signal(&signals, SIGHUP);
     sigaddset(&signals, SIGCHLD);
     signal(SIGCHLD, SIG_DFL); /* ignored, children could not be waited for */
     sigprocmask(SIG_BLOCK, &signals, &before);
 
-    Watch watch = {.child = fork()};
+    Watch watch = {.child = fork(), .started_at = clock_now()};
     if (watch.child < 0) {
         say("cannot start a process: %s", strerror(errno));
         return errno == ENOMEM ? KRS_OUT_OF_MEMORY : KRS_INTERNAL;

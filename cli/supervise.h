@@ -20,8 +20,9 @@ typedef KrsStatus Work(Options *options);
 
 /* Runs `work` in a child and returns the exit status of the command:
      - what `work` returns;
-     - 70 after a crash, or when compiling takes longer than options->deadline, with a line on
-       standard error and a folder that keeps what is needed to see it again;
+     - 70 after a crash, or when a device makes no progress for several of options->deadline, with
+       a line on standard error and a folder that keeps what is needed to see it again;
+     - 1 when compiling takes longer than options->deadline, or all longer than its limit;
      - 71 when the system killed the child, which it does for want of memory;
      - 130 after SIGINT, SIGTERM or SIGHUP, which are passed on. */
 int supervise(Options *options, Work *work);
@@ -32,6 +33,11 @@ int supervise(Options *options, Work *work);
    process crash on entering a stage (start, compile, shaders, device, render, validate, write,
    answer); STAGE:9 sends itself that signal instead, STAGE:hang never returns. */
 void stage_enter(Stage stage);
+
+/* Tells the parent that the work of this stage goes on: the deadline begins anew. */
+void stage_goes_on(void);
+/* How large what is compiled is, should it take too long: "`a.krs` has 12 bytes". */
+void stage_size(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* Nonzero once the user has asked to stop.  In STAGE_RENDER, STAGE_VALIDATE and STAGE_WRITE it
    is for the work to notice; in the others the process just ends. */

@@ -369,7 +369,7 @@ static KrsStatus try_search(Validation *v)
     const Options   *options = v->options;
     size_t           count   = options->settings.count;
     DiagnosticSink   sink    = {.options = options};
-    KrsOptions       with    = scene_options(&sink);
+    KrsOptions       with    = scene_options(&sink, v->path);
     struct KrsFixed *fixed   = arena_new_array(options->arena, struct KrsFixed, count + 1);
     for (size_t i = 0; i < count; i++) {
         const Setting *setting = &options->settings.items[i];

@@ -209,6 +209,56 @@ bool read_exit_map(Options *options, const char *word)
     }
 }
 
+/* "512M" */
+static bool read_bytes(char *word, uint64_t *bytes)
+{
+    static const char units[] = "KMG";
+    size_t      length = strlen(word);
+    const char *unit = length > 1 ? strchr(units, word[length - 1]) : NULL;
+    int         shift = unit ? 10 * (int)(unit - units + 1) : 0;
+    if (unit)
+        word[length - 1] = '\0';
+    if (!read_whole(word, 1, UINT64_MAX >> 30, bytes))
+        return false;
+    *bytes <<= shift;
+    return true;
+}
+
+/* "memory=512M"; the word changes. */
+static bool read_limit(char *word, Limits *limits)
+{
+    char *value = strchr(word, '=');
+    if (!value)
+        return false;
+    *value++ = '\0';
+    if (strcmp(word, "time") == 0)
+        return read_number(value, 0.001, 1e9, &limits->time);
+    if (strcmp(word, "memory") == 0)
+        return read_bytes(value, &limits->memory);
+    if (strcmp(word, "pixels") == 0)
+        return read_whole(value, 1, UINT64_MAX, &limits->pixels);
+    if (strcmp(word, "samples") == 0)
+        return read_whole(value, 1, UINT64_MAX, &limits->samples);
+    return false;
+}
+
+bool read_limits(const char *word, Limits *limits)
+{
+    for (;; word++) {
+        char   limit[64];
+        size_t length = strcspn(word, ",");
+        if (length >= sizeof limit)
+            return false;
+        memcpy(limit, word, length);
+        limit[length] = '\0';
+        if (!read_limit(limit, limits))
+            return false;
+        word += length;
+        if (*word == '\0')
+            return true;
+    }
+}
+
 bool read_frames(Options *options, const char *word)
 {
     enum { FRAMES_LIMIT = 1000000 };

@@ -34,6 +34,8 @@ typedef struct Compilation {
     size_t     length;
     const Request    *request;
     const KrsOptions *options;
+    const Loader     *loader;
+    bool       outside; /* the scene itself is no file that may be read */
     Text       dump;
     double     started;
 } Compilation;

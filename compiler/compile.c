@@ -55,7 +55,7 @@ static Graph *elaborate_scene(Compilation *c)
                            .sources    = &c->sources,
                            .graph      = graph,
                            .scene      = &c->elaborated,
-                           .read_file  = source_read,
+                           .loader     = c->loader,
                            .text_total = c->length};
     elaborate(&e, source, c->name);
     arena_free(&c->scratch);
@@ -138,15 +138,22 @@ static KrsStatus inspect(Compilation *c)
                                &(Inspected){&c->elaborated, &c->diags, &c->work, &c->scratch});
 }
 
+/* A mistake of the whole scene, of which nothing is shown. */
+static KrsStatus refuse_scene(Compilation *c, DiagCode code, const char *message)
+{
+    uint32_t source = source_add(&c->sources, c->name, "", 0, false);
+    diag_add(&c->diags, code, (Span){source, 0, 0}, "%s", message);
+    return KRS_BAD_SCENE;
+}
+
 /* Text to program; ends at the first step that found mistakes. */
 static KrsStatus run(Compilation *c)
 {
-    if (c->length > MOST_SOURCE_BYTES) {
-        uint32_t source = source_add(&c->sources, c->name, "", 0, false);
-        diag_add(&c->diags, DIAG_LIMIT, (Span){source, 0, 0},
-                 "the file is longer than %d MiB", MOST_SOURCE_BYTES >> 20);
-        return KRS_BAD_SCENE;
-    }
+    if (c->outside)
+        return refuse_scene(c, DIAG_OUTSIDE_ROOT,
+                            "the scene is outside of the folder that scenes may read from");
+    if (c->length > MOST_SOURCE_BYTES)
+        return refuse_scene(c, DIAG_LIMIT, "the file is longer than 16 MiB");
     Graph *graph = elaborate_scene(c);
     if (c->diags.errors || !lower_scene(c, graph))
         return KRS_BAD_SCENE;
@@ -211,12 +218,9 @@ static KrsStatus run_guarded(Compilation *c)
     return status;
 }
 
-static KrsStatus compile(const char *text, size_t length, const char *name,
+static KrsStatus compile(const Loaded *loaded, const char *name, const Loader *loader,
                          const KrsOptions *options, const Request *request, KrsScene **result)
 {
-    static const KrsOptions defaults = {0};
-    options                          = options ? options : &defaults;
-    *result                          = NULL;
     const KrsAllocator *allocator    = &options->allocator;
     KrsScene *scene = allocator->allocate ? allocator->allocate(allocator->user, sizeof *scene)
                                           : malloc(sizeof *scene);
@@ -224,8 +228,10 @@ static KrsStatus compile(const char *text, size_t length, const char *name,
         return KRS_OUT_OF_MEMORY;
     memset(scene, 0, sizeof *scene);
     Compilation c = {.scene      = scene,
-                     .text       = text,
-                     .length     = length,
+                     .text       = loaded->text,
+                     .length     = loaded->length,
+                     .outside    = loaded->outside,
+                     .loader     = loader,
                      .name       = name,
                      .request    = request,
                      .options    = options,
@@ -253,24 +259,39 @@ static KrsStatus compile(const char *text, size_t length, const char *name,
     return KRS_OK;
 }
 
+/* Of a text, or, when that is NULL, of the file `name`. */
+static KrsStatus load_and_compile(const char *text, size_t length, const char *name,
+                                  const KrsOptions *options, const Request *request,
+                                  KrsScene **scene)
+{
+    static const KrsOptions defaults = {0};
+    options          = options ? options : &defaults;
+    *scene           = NULL;
+    Loader    loader = {.supplier = options->load, .user = options->load_user};
+    KrsStatus status = KRS_OUT_OF_MEMORY;
+    if (loader_open(&loader, options->root, name)) {
+        Loaded loaded = {.text = text, .length = length};
+        if (!text)
+            loaded = loader_read_scene(&loader, name);
+        status = loaded.text || loaded.outside
+                     ? compile(&loaded, name, &loader, options, request, scene)
+                     : KRS_IO_ERROR;
+        free(loaded.owned);
+    }
+    loader_close(&loader);
+    return status;
+}
+
 KrsStatus krs_compile_text(const char *text, size_t length, const char *name,
                            const KrsOptions *options, KrsScene **scene)
 {
-    return compile(text, length, name, options, &scene_alone, scene);
+    return load_and_compile(text ? text : "", length, name, options, &scene_alone, scene);
 }
 
 static KrsStatus compile_path(const char *path, const KrsOptions *options, const Request *request,
                               KrsScene **scene)
 {
-    size_t      length;
-    const char *reason;
-    *scene     = NULL;
-    char *text = source_read(path, &length, &reason);
-    if (!text)
-        return KRS_IO_ERROR;
-    KrsStatus status = compile(text, length, path, options, request, scene);
-    free(text);
-    return status;
+    return load_and_compile(NULL, 0, path, options, request, scene);
 }
 
 KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene **scene)

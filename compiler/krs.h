@@ -58,6 +58,11 @@ typedef struct KrsAllocator {
     void *user;
 } KrsAllocator;
 
+/* Supplies the text of a file that a scene uses, by the path that diagnostics show: relative to the
+   scene's folder, as the scene's own name is given.  NULL: there is none.  The text must stay until
+   the next call, or until compiling has ended. */
+typedef const char *KrsLoadCallback(void *user, const char *path, size_t *length);
+
 typedef struct KrsOptions {
     KrsAllocator           allocator;
     KrsDiagnosticCallback *diagnostic; /* may be NULL */
@@ -65,6 +70,12 @@ typedef struct KrsOptions {
     size_t                 memory_limit; /* of a scene, while it is compiled; bytes; 0: 2 GiB */
     bool                   gradients;    /* derivatives as well, for KRS_NORMALS_ANALYTIC and for
                                             whoever embeds the GLSL: krs_gradient */
+    /* Files are read from this folder and those below only, whatever a scene names and wherever
+       symbolic links lead: E0504.  That goes for the scene itself in krs_compile_file; with
+       krs_compile_text, `name` must be in it for `use` to work.  NULL: any. */
+    const char            *root;
+    KrsLoadCallback       *load;      /* instead of reading files that are used; may be NULL */
+    void                  *load_user; /* handed to `load` */
 } KrsOptions;
 
 /* Compiles a text in memory (`name` is used in diagnostics, and `use` is relative to its

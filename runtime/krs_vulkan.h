@@ -61,6 +61,9 @@ typedef struct KrsRendererOptions {
     KrsEarlyOuts           early_outs;
     unsigned               pretence;   /* bits of KrsPretence */
     KrsAllocator           allocator;  /* our memory; the driver's and glslang's is their own */
+    double                 patience;   /* seconds that the device may take over one step, of which a
+                                          picture has many; then it counts as lost, with
+                                          KRS_INTERNAL.  0: five minutes */
 } KrsRendererOptions;
 
 /* The devices of this machine, in Vulkan's order.  *count is how many there are, of which the

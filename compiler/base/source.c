@@ -4,10 +4,12 @@
 #include "compiler/base/source.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 static void find_lines(Arena *arena, Source *source)
 {
@@ -98,14 +100,25 @@ Span span_join(Span from, Span to)
 char *source_read(const char *path, size_t *length, const char **reason)
 {
     struct stat about;
-    FILE       *file = fopen(path, "rb");
-    char       *text = NULL;
+    int         fd = open(path, O_RDONLY | O_CLOEXEC);
     *reason = strerror(errno);
-    if (!file)
+    if (fd < 0)
         return NULL;
-    if (fstat(fileno(file), &about) == 0 && S_ISDIR(about.st_mode)) {
+    if (fstat(fd, &about) == 0 && S_ISDIR(about.st_mode)) {
         *reason = "it is a folder";
-        fclose(file);
+        close(fd);
+        return NULL;
+    }
+    return source_read_open(fd, length, reason);
+}
+
+char *source_read_open(int fd, size_t *length, const char **reason)
+{
+    FILE *file = fdopen(fd, "rb");
+    char *text = NULL;
+    *reason = "there is not enough memory";
+    if (!file) {
+        close(fd);
         return NULL;
     }
     size_t capacity = 0;

@@ -43,6 +43,8 @@ enum { MOST_SOURCE_BYTES = 16 << 20 };
 /* The whole of a file, which the caller frees with free(); NULL, and *reason is a static text.  Of
    one that is longer than a source, no more than shows that. */
 char *source_read(const char *path, size_t *length, const char **reason);
+/* The same of an open file, which is closed. */
+char *source_read_open(int fd, size_t *length, const char **reason);
 
 /* Adds a copy of a text of at most MOST_SOURCE_BYTES and returns its number. */
 uint32_t source_add(Sources *sources, const char *name, const char *text, size_t length,

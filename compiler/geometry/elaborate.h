@@ -11,11 +11,9 @@
 #ifndef KRS_ELABORATE_H
 #define KRS_ELABORATE_H
 
+#include "compiler/base/loader.h"
 #include "compiler/geometry/cover.h"
 #include "compiler/geometry/shape.h"
-
-/* Reads a file that a `use` names: malloc'ed bytes, or NULL with *reason set. */
-typedef char *FileReader(const char *path, size_t *length, const char **reason);
 
 typedef struct Binding {
     const char           *name;
@@ -64,7 +62,7 @@ typedef struct Elaboration {
     /* Shape declarations whose claims have been put to the test. */
     struct { const Syntax **items; size_t count, capacity; } single; /* sky, image, camera */
     struct { const Syntax **items; size_t count, capacity; } checked;
-    FileReader *read_file;
+    const Loader *loader; /* of files that a `use` names */
     uint64_t    steps;        /* of evaluation, so far */
     uint32_t    depth, calls; /* how deep expressions and calls are nested now */
     size_t      text_total;   /* bytes of all files read */

@@ -96,28 +96,6 @@ static Scope *find_loaded(const Elaboration *e, const char *path)
     return NULL;
 }
 
-/* Takes "folder/../" and "./" out of a path, so that a file has one name. */
-static void simplify_path(char *path)
-{
-    char *to = path;
-    for (const char *from = path; *from;) {
-        size_t length = strcspn(from, "/");
-        bool   last   = from[length] == '\0';
-        char  *back   = to > path ? to - 1 : NULL; /* the slash behind the folder before */
-        while (back && back > path && back[-1] != '/')
-            back--;
-        bool folder = back && !(to - back == 3 && strncmp(back, "../", 3) == 0) && back < to - 1;
-        if (length == 2 && strncmp(from, "..", 2) == 0 && folder)
-            to = back;
-        else if (!(length == 1 && from[0] == '.' && !last)) {
-            memmove(to, from, length + !last);
-            to += length + !last;
-        }
-        from += length + !last;
-    }
-    *to = '\0';
-}
-
 /* "folder/used.krs" for a `use "used.krs"` in "folder/file.krs". */
 static const char *resolve_path(Elaboration *e, const char *from, const char *path)
 {
@@ -125,7 +103,7 @@ static const char *resolve_path(Elaboration *e, const char *from, const char *pa
     Text        text  = {.arena = e->arena};
     text_add_bytes(&text, from, slash ? (size_t)(slash - from + 1) : 0);
     text_add(&text, path);
-    simplify_path(text.bytes);
+    path_simplify(text.bytes);
     return text.bytes;
 }
 
@@ -148,32 +126,37 @@ static const char *used_path(Elaboration *e, const Scope *from, const Syntax *us
     return is_library(use) ? use->name : resolve_path(e, from->path, use->name);
 }
 
+static void refuse_used(Elaboration *e, const Syntax *use, const char *path, const Loaded *file)
+{
+    Diag *diag = file->outside
+                     ? diag_add(e->diags, DIAG_OUTSIDE_ROOT, use->name_span,
+                                "`%s` is outside of the folder that scenes may read from", path)
+                     : diag_add(e->diags, DIAG_CANNOT_READ, use->name_span, "cannot read `%s`: %s",
+                                path, file->reason);
+    diag->label = "used here";
+}
+
 /* Reads a used file into e->sources; false: reported. */
 static bool read_used(Elaboration *e, const Syntax *use, const char *path, uint32_t *source)
 {
-    char       *owned  = NULL; /* to be freed */
-    size_t      length = 0;
-    const char *reason = "there is no such file in the library";
-    const char *text;
+    Loaded file = {.reason = "there is no such file in the library"};
     if (is_library(use))
-        text = read_library(path, &length);
+        file.text = read_library(path, &file.length);
     else
-        text = owned = e->read_file(path, &length, &reason);
-    if (!text) {
-        Diag *diag  = diag_add(e->diags, DIAG_CANNOT_READ, use->name_span, "cannot read `%s`: %s",
-                               path, reason);
-        diag->label = "used here";
+        file = loader_read(e->loader, path);
+    if (!file.text) {
+        refuse_used(e, use, path, &file);
         return false;
     }
-    e->text_total += length;
-    bool fits = length <= MOST_SOURCE_BYTES && e->text_total <= MOST_TOTAL_BYTES &&
+    e->text_total += file.length;
+    bool fits = file.length <= MOST_SOURCE_BYTES && e->text_total <= MOST_TOTAL_BYTES &&
                 e->scopes.count < MOST_FILES;
     if (fits)
-        *source = source_add(e->sources, path, text, length, is_library(use));
+        *source = source_add(e->sources, path, file.text, file.length, is_library(use));
     else
         diag_add(e->diags, DIAG_LIMIT, use->name_span,
                  "too much text: a file may have 16 MiB, all together 64 MiB in 1,024 files");
-    free(owned);
+    free(file.owned);
     return fits;
 }
 

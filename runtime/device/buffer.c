@@ -106,7 +106,7 @@ failed:
 
 void buffer_destroy(Gpu *gpu, Buffer *buffer)
 {
-    if (gpu->device) {
+    if (gpu->device && !gpu->stuck) {
         vkDestroyBufferView(gpu->device, buffer->texels, NULL);
         vkDestroyBuffer(gpu->device, buffer->buffer, NULL);
         vkFreeMemory(gpu->device, buffer->memory, NULL); /* unmaps it, too */

@@ -33,6 +33,8 @@ void gpu_barrier(Gpu *gpu)
 
 bool gpu_begin(Gpu *gpu)
 {
+    if (gpu->stuck)
+        return false; /* and why has been said */
     TRY(gpu, "record work", vkResetCommandPool(gpu->device, gpu->pool, 0));
     TRY(gpu, "record work", vkBeginCommandBuffer(gpu->commands, &(VkCommandBufferBeginInfo){
         .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
@@ -87,6 +89,26 @@ bool gpu_marked(Gpu *gpu, uint32_t mark, double *ms)
     return !gpu->times || measure(gpu, mark, mark + 1, ms);
 }
 
+/* A device that never answers leaves a message, and nothing that could be freed. */
+static bool wait_for_fence(Gpu *gpu)
+{
+    const char *attempt = "wait for the device";
+    VkResult    result = vkWaitForFences(gpu->device, 1, &gpu->fence, VK_TRUE,
+                                         (uint64_t)(gpu->patience * 1e9));
+    if (result == VK_TIMEOUT) {
+        gpu->stuck = true;
+        gpu_refuse(gpu, KRS_INTERNAL, "the device has not finished a step within %g seconds",
+                   gpu->patience);
+        return false;
+    }
+    TRY(gpu, attempt, result);
+    TRY(gpu, attempt, vkResetFences(gpu->device, 1, &gpu->fence));
+    return true;
+
+failed:
+    return false;
+}
+
 bool gpu_finish(Gpu *gpu, double *ms)
 {
     if (gpu->times)
@@ -102,9 +124,8 @@ bool gpu_finish(Gpu *gpu, double *ms)
         .commandBufferCount = 1,
         .pCommandBuffers = &gpu->commands,
     }, gpu->fence));
-    TRY(gpu, "wait for the device",
-        vkWaitForFences(gpu->device, 1, &gpu->fence, VK_TRUE, UINT64_MAX));
-    TRY(gpu, "wait for the device", vkResetFences(gpu->device, 1, &gpu->fence));
+    if (!wait_for_fence(gpu))
+        return false;
     if (gpu->times)
         return measure(gpu, 0, 1 + gpu->marks, ms);
     *ms += clock_ms() - start;
@@ -150,8 +171,10 @@ failed:
 
 bool gpu_wait(Gpu *gpu)
 {
-    TRY(gpu, "wait for the device", vkQueueWaitIdle(gpu->queue));
-    return true;
+    if (gpu->stuck)
+        return false;
+    TRY(gpu, "wait for the device", vkQueueSubmit(gpu->queue, 0, NULL, gpu->fence));
+    return wait_for_fence(gpu);
 
 failed:
     return false;

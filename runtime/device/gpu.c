@@ -12,6 +12,7 @@
 #include <time.h>
 
 #include "runtime/device/pipelines.h"
+#include "runtime/device/threads.h"
 
 #define VALIDATION_LAYER "VK_LAYER_KHRONOS_validation"
 /* Where fewer texels than that can be read, buffers are: the lowest band of the widest picture has
@@ -460,6 +461,22 @@ failed:
     return false;
 }
 
+static const double DEFAULT_PATIENCE = 300; /* seconds; a first submission also compiles */
+
+static bool check_threads(Gpu *gpu)
+{
+    VkPhysicalDeviceProperties properties;
+    vkGetPhysicalDeviceProperties(gpu->physical, &properties);
+    bool     software = properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    unsigned wanted = software ? threads_of_software_device() : 1, count = threads_available(wanted);
+    if (count == wanted)
+        return true;
+    gpu_refuse(gpu, KRS_OUT_OF_MEMORY, "cannot open the device: its driver makes %u threads, of "
+               "which the system allows %u (`ulimit -u`, or the limits of a container)", wanted,
+               count);
+    return false;
+}
+
 bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
 {
     static const KrsRendererOptions defaults;
@@ -469,10 +486,11 @@ bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
         .allocator = options->allocator,
         .complaint = options->complaint,
         .user = options->user,
+        .patience = options->patience > 0 ? options->patience : DEFAULT_PATIENCE,
     };
     cache_open(&gpu->cache, options->cache, options->allocator);
     if (instance_create(gpu, options->validation) && choose_device(gpu, options->device) &&
-        device_create(gpu, options->pretence)) {
+        check_threads(gpu) && device_create(gpu, options->pretence)) {
         pipelines_open(gpu);
         return true;
     }
@@ -482,7 +500,8 @@ bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
 
 bool gpu_open_beside(Gpu *gpu, const Gpu *other)
 {
-    *gpu = (Gpu){.physical = other->physical, .family = other->family};
+    *gpu = (Gpu){.physical = other->physical, .family = other->family,
+                 .patience = other->patience};
     if (device_create(gpu, other->texels ? 0 : KRS_PRETEND_LEAST_LIMITS))
         return true;
     gpu_close(gpu);
@@ -491,6 +510,10 @@ bool gpu_open_beside(Gpu *gpu, const Gpu *other)
 
 void gpu_close(Gpu *gpu)
 {
+    if (gpu->stuck) { /* its driver would wait for it, too: all of it stays until the process ends */
+        cache_close(&gpu->cache);
+        return;
+    }
     if (gpu->device) {
         pipelines_close(gpu);
         vkDestroyQueryPool(gpu->device, gpu->times, NULL);

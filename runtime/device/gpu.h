@@ -49,6 +49,9 @@ typedef struct Gpu {
     void                            *user;
     uint64_t                         complaints;
 
+    double patience; /* seconds that a submission may take */
+    bool   stuck;    /* one took longer */
+
     KrsStatus status; /* of the last call that failed */
     char      message[512];
 } Gpu;

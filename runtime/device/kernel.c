@@ -310,7 +310,7 @@ bool kernel_create(Gpu *gpu, Kernel *kernel, const KernelSource *source, VkPipel
 
 void kernel_destroy(Gpu *gpu, Kernel *kernel)
 {
-    if (gpu->device)
+    if (gpu->device && !gpu->stuck)
         vkDestroyPipeline(gpu->device, kernel->pipeline, NULL);
     *kernel = (Kernel){0};
 }

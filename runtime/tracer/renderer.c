@@ -570,7 +570,8 @@ void krs_rendering_free(KrsRendering *rendering)
     kernels_destroy(gpu, &rendering->kernels);
     kernels_destroy(gpu, &rendering->zoned);
     kernels_destroy(gpu, &rendering->anchored);
-    vkDestroyDescriptorPool(gpu->device, rendering->pool, NULL);
+    if (!gpu->stuck)
+        vkDestroyDescriptorPool(gpu->device, rendering->pool, NULL);
     gpu_release(gpu, rendering);
 }
 

@@ -169,7 +169,7 @@ bool stage_create(KrsRenderer *renderer)
 void stage_destroy(KrsRenderer *renderer)
 {
     Gpu *gpu = &renderer->gpu;
-    if (!gpu->device)
+    if (!gpu->device || gpu->stuck)
         return;
     vkDestroyDescriptorPool(gpu->device, renderer->idle_pool, NULL);
     for (TexelKind kind = NO_TEXELS; kind < TEXEL_KINDS; kind++)

@@ -2,7 +2,7 @@
 # failures.sh: crashes, interrupts, missing devices and missing memory.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 29
+plan 35
 small="--size 16x12 --quiet"
 
 for stage in start compile shaders device render write; do
@@ -28,7 +28,16 @@ status=$?
 said 71 "probably for want of memory" "killed by the system"
 KRS_TEST_CRASH=compile:hang "$krs" check --deadline 0.3 ball.krs >out 2>err
 status=$?
-said 70 "gave up compiling the scene after 0.3 seconds" "compiling that does not end"
+said 1 "gave up compiling the scene after 0.3 seconds: \`ball.krs\` has 189 bytes" \
+    "compiling that does not end"
+grep -q -- '--deadline SECONDS allows it longer' err && ! grep -q bug err
+result $? "how to give it more time is said, and that it is a bug is not"
+KRS_TEST_CRASH=shaders:hang "$krs" render --quiet --deadline 2 ball.krs -o a.exr >out 2>err
+status=$?
+said 1 "bytes of distance code in 1 components; --deadline" "compiling shaders that does not end"
+KRS_TEST_CRASH=device:hang "$krs" render --quiet --deadline 2 ball.krs -o a.exr >out 2>err
+status=$?
+said 70 "gave up starting the device after 2 seconds without progress" "a device that does not start"
 
 without_driver() { # arguments of krs
     VK_ICD_FILENAMES=/nonexistent VK_DRIVER_FILES=/nonexistent VK_ADD_DRIVER_FILES="" \
@@ -104,6 +113,39 @@ if strace -o /dev/null true 2>/dev/null; then
     result $? "SIGKILL while writing"
 else
     skip "SIGKILL while writing" "no strace, or no right to use it"
+fi
+
+# A signal that is ignored from the start, as by nohup, changes nothing.
+(
+    trap '' HUP
+    KRS_TEST_CRASH=compile:hang exec "$krs" check --deadline 3 ball.krs >out 2>err
+) &
+process=$!
+sleep 1
+kill -s HUP "$process"
+wait "$process"
+status=$?
+said 1 "gave up compiling the scene after 3 seconds" "an ignored SIGHUP stays ignored"
+
+# Threads that cannot be made: at once, or when the driver has begun.  Nothing waits for them.
+if "${CC:-cc}" -std=c17 -D_GNU_SOURCE -shared -fPIC -o few.so "$root/tests/cli/few_threads.c" \
+    2>/dev/null; then
+    # shellcheck disable=SC2086
+    FEW_THREADS=0 LD_PRELOAD=./few.so "$krs" render ball.krs $small --device cpu -o a.exr >out 2>err
+    status=$?
+    [ "$status" -eq 71 ] && [ "$(wc -l <err)" -eq 1 ] && grep -q 'threads, of which the system' err
+    result $? "no thread can be made"
+    needed=$(sed -n 's/.*makes \([0-9]*\) threads.*/\1/p' err)
+    # shellcheck disable=SC2086
+    FEW_THREADS=$((needed + 1)) LD_PRELOAD=./few.so "$krs" render ball.krs $small --device cpu \
+        --deadline 2 -o a.exr >out 2>err
+    status=$?
+    [ "$status" -ne 0 ] && [ "$status" -ne 130 ] && [ "$(wc -l <err)" -eq 1 ] &&
+        grep -q 'not finished a step within 10 seconds\|gave up' err
+    result $? "a device whose threads are missing is given up"
+else
+    skip "no thread can be made" "no compiler"
+    skip "a device whose threads are missing is given up" "no compiler"
 fi
 
 # Nine megabytes of text; the command itself needs far less than the limit.

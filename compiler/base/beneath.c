@@ -1,0 +1,94 @@
+/*
+ * beneath.c: files within a folder, and never one outside of it.
+ */
+#include "compiler/base/beneath.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <linux/openat2.h>
+#include <stdbool.h>
+#include <string.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+/* Devices and pipes must not keep us waiting; the caller looks at what was opened. */
+static const int READ_FLAGS = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
+
+/* Takes out "." and "name/.."; false when the path leads out.  Without links it means the same. */
+static bool simplify(const char *path, char simple[PATH_MAX])
+{
+    size_t length = 0;
+    if (path[0] == '/' || strlen(path) >= PATH_MAX)
+        return false;
+    simple[0] = '\0';
+    while (*path) {
+        size_t part = strcspn(path, "/");
+        if (part == 2 && strncmp(path, "..", 2) == 0) {
+            char *slash = strrchr(simple, '/');
+            if (length == 0)
+                return false;
+            length         = slash ? (size_t)(slash - simple) : 0;
+            simple[length] = '\0';
+        } else if (part > 0 && !(part == 1 && path[0] == '.')) {
+            if (length > 0)
+                simple[length++] = '/';
+            memcpy(simple + length, path, part);
+            length += part;
+            simple[length] = '\0';
+        }
+        path += part + (path[part] == '/');
+    }
+    return true;
+}
+
+/* `name`, a single one, in a folder. */
+static int open_step(int folder, const char *name, bool last)
+{
+    int flags = last ? READ_FLAGS | O_NOFOLLOW : O_PATH | O_CLOEXEC | O_NOFOLLOW | O_DIRECTORY;
+    int fd    = openat(folder, name, flags);
+    char link[1];
+    if (fd < 0 && (errno == ELOOP || errno == ENOTDIR)) {
+        int reason = errno;
+        errno = readlinkat(folder, name, link, sizeof link) >= 0 ? EXDEV : reason;
+    }
+    return fd;
+}
+
+int open_beneath_by_steps(int root, const char *path)
+{
+    char simple[PATH_MAX], *name = simple;
+    int  folder = root;
+    if (!simplify(path, simple)) {
+        errno = EXDEV;
+        return -1;
+    }
+    for (;;) {
+        size_t length = strcspn(name, "/");
+        bool   last   = name[length] == '\0';
+        name[length]  = '\0';
+        int next = open_step(folder, length > 0 ? name : ".", last);
+        int reason = errno;
+        if (folder != root)
+            close(folder);
+        errno = reason;
+        if (last || next < 0)
+            return next;
+        folder = next;
+        name += length + 1;
+    }
+}
+
+int open_beneath(int root, const char *path)
+{
+    struct open_how how = {.flags   = (unsigned)READ_FLAGS,
+                           .resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS};
+    for (int attempt = 0; attempt < 10; attempt++) {
+        int fd = (int)syscall(SYS_openat2, root, path, &how, sizeof how);
+        if (fd >= 0 || errno != EAGAIN)
+            return fd >= 0 || (errno != ENOSYS && errno != EPERM)
+                       ? fd
+                       : open_beneath_by_steps(root, path);
+    }
+    return open_beneath_by_steps(root, path); /* something is moved about all the time */
+}

@@ -1,0 +1,164 @@
+/*
+ * loader.c: where the texts of a scene and of the files that it uses come from.
+ */
+#include "compiler/base/loader.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "compiler/base/beneath.h"
+#include "compiler/base/source.h"
+
+/* The bytes of "folder/" before the name. */
+static size_t folder_length(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* Takes "folder/../" and "./" out of a path, so that a file has one name. */
+void path_simplify(char *path)
+{
+    char *to = path;
+    for (const char *from = path; *from;) {
+        size_t length = strcspn(from, "/");
+        bool   last   = from[length] == '\0';
+        char  *back   = to > path ? to - 1 : NULL; /* the slash behind the folder before */
+        while (back && back > path && back[-1] != '/')
+            back--;
+        bool folder = back && !(to - back == 3 && strncmp(back, "../", 3) == 0) && back < to - 1;
+        if (length == 2 && strncmp(from, "..", 2) == 0 && folder)
+            to = back;
+        else if (!(length == 1 && from[0] == '.' && !last)) {
+            memmove(to, from, length + !last);
+            to += length + !last;
+        }
+        from += length + !last;
+    }
+    *to = '\0';
+}
+
+/* Where the folder of the scene is, as seen from the root: "" or "a/b/"; NULL: not in it. */
+static char *find_inside(const char *root, const char *scene)
+{
+    size_t length = folder_length(scene);
+    char  *folder = length ? strndup(scene, length) : strdup(".");
+    char  *whole = realpath(root, NULL), *real = folder ? realpath(folder, NULL) : NULL;
+    char  *inside = NULL;
+    size_t start  = whole && strcmp(whole, "/") != 0 ? strlen(whole) : 0;
+    if (whole && real && strncmp(real, whole, start) == 0 &&
+        (real[start] == '/' || real[start] == '\0')) {
+        const char *rest = real + start + (real[start] == '/');
+        if (asprintf(&inside, "%s%s", rest, *rest ? "/" : "") < 0)
+            inside = NULL;
+    }
+    free(folder);
+    free(whole);
+    free(real);
+    return inside;
+}
+
+bool loader_open(Loader *loader, const char *root, const char *scene)
+{
+    loader->confined = root != NULL;
+    loader->root     = -1;
+    loader->scene    = strdup(scene);
+    loader->inside   = NULL;
+    if (!loader->scene)
+        return false;
+    path_simplify(loader->scene);
+    if (root) {
+        loader->root   = open(root, O_PATH | O_DIRECTORY | O_CLOEXEC);
+        loader->inside = find_inside(root, scene);
+    }
+    return true;
+}
+
+void loader_close(Loader *loader)
+{
+    if (loader->root >= 0)
+        close(loader->root);
+    free(loader->scene);
+    free(loader->inside);
+    *loader = (Loader){.root = -1};
+}
+
+/* The path from the root to a file whose path is given like the scene's: up from the scene's folder
+   to where both paths part, and down again.  NULL: it is not known to be in there, or no memory. */
+static char *path_from_root(const Loader *loader, const char *path)
+{
+    const char *folder = loader->scene;
+    size_t      length = folder_length(folder), common = 0;
+    char       *whole  = NULL, *up;
+    if (!loader->inside || (path[0] == '/') != (folder[0] == '/' && length > 0))
+        return NULL;
+    for (size_t i = 0; i < length && path[i] == folder[i]; i++)
+        if (path[i] == '/')
+            common = i + 1;
+    size_t levels = 0;
+    for (size_t i = common; i < length; i++)
+        levels += folder[i] == '/';
+    up = malloc(3 * levels + 1);
+    if (!up)
+        return NULL;
+    for (size_t i = 0; i < levels; i++)
+        memcpy(up + 3 * i, "../", 3);
+    up[3 * levels] = '\0';
+    if (asprintf(&whole, "%s%s%s", loader->inside, up, path + common) < 0)
+        whole = NULL;
+    free(up);
+    return whole;
+}
+
+/* Takes over the path from the root; NULL: there is none. */
+static Loaded read_confined(const Loader *loader, char *path)
+{
+    struct stat about;
+    Loaded      loaded = {.reason = "it is outside of the root", .outside = true};
+    int         fd     = path && loader->root >= 0 ? open_beneath(loader->root, path) : -1;
+    if (path && loader->root >= 0 && (fd >= 0 || errno != EXDEV))
+        loaded = (Loaded){.reason = fd < 0 ? strerror(errno) : "it is not a regular file"};
+    if (fd >= 0 && fstat(fd, &about) == 0 && S_ISREG(about.st_mode))
+        loaded.owned = source_read_open(fd, &loaded.length, &loaded.reason);
+    else if (fd >= 0)
+        close(fd);
+    loaded.text = loaded.owned;
+    free(path);
+    return loaded;
+}
+
+static Loaded read_file(const char *path)
+{
+    Loaded loaded = {0};
+    loaded.owned  = source_read(path, &loaded.length, &loaded.reason);
+    loaded.text   = loaded.owned;
+    return loaded;
+}
+
+Loaded loader_read_scene(const Loader *loader, const char *path)
+{
+    char *inside = NULL;
+    if (!loader->confined)
+        return read_file(path);
+    if (loader->inside &&
+        asprintf(&inside, "%s%s", loader->inside, path + folder_length(path)) < 0)
+        inside = NULL;
+    return read_confined(loader, inside);
+}
+
+Loaded loader_read(const Loader *loader, const char *path)
+{
+    Loaded loaded = {0};
+    if (!loader->supplier)
+        return loader->confined ? read_confined(loader, path_from_root(loader, path))
+                                : read_file(path);
+    loaded.text   = loader->supplier(loader->user, path, &loaded.length);
+    loaded.reason = loaded.text ? NULL : "it is not supplied";
+    return loaded;
+}

@@ -1,0 +1,42 @@
+/*
+ * threads.c: whether a driver will get the threads that it needs.
+ *
+ * Where the user or a container may have no more, lavapipe waits for ever for those that could not
+ * be made.  So they are made once before, with the same stacks, and at the same time.
+ */
+#include "runtime/device/threads.h"
+
+#include <pthread.h>
+#include <unistd.h>
+
+enum { MOST_CORES = 32, MOST_THREADS = 2 * MOST_CORES + 1 };
+
+/* Ends when the gate opens. */
+static void *wait_at(void *gate)
+{
+    pthread_mutex_lock(gate);
+    pthread_mutex_unlock(gate);
+    return NULL;
+}
+
+unsigned threads_available(unsigned wanted)
+{
+    pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
+    pthread_t       threads[MOST_THREADS];
+    unsigned        count = 0;
+    pthread_mutex_lock(&gate);
+    while (count < wanted && count < MOST_THREADS &&
+           pthread_create(&threads[count], NULL, wait_at, &gate) == 0)
+        count++;
+    pthread_mutex_unlock(&gate);
+    for (unsigned i = 0; i < count; i++)
+        pthread_join(threads[i], NULL);
+    pthread_mutex_destroy(&gate);
+    return count;
+}
+
+unsigned threads_of_software_device(void)
+{
+    long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    return 2 * (unsigned)(cores < 1 ? 1 : cores > MOST_CORES ? MOST_CORES : cores) + 1;
+}
