@@ -11,10 +11,11 @@ ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c prod
                exact.c formulas.c rooms.c montecarlo.c)
 UNIT        := front film tracer methods writer memory validate refute frame query cache compiled \
                apart stencils drivers
-PROPERTY    := ops noise graph derive series local along anchor slope parity reach
+PROPERTY    := ops noise graph derive series zeros local along anchor slope parity reach
 ORACLES     := self primitives krs_expand trees maps moebius operators combinations deform chains \
                chain_pictures moving normals fields surfaces rays algebraic fractals device query \
-               picture seams shading coverage shadows loose bounds stencils light steep scales
+               picture seams shading coverage shadows loose bounds stencils light steep scales \
+               far
 FUZZ        := sentences
 # On SwiftShader, unless another device is tested: what shows that drivers agree.
 DRIVERS     := tests/oracle/drivers
@@ -25,7 +26,8 @@ PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%
 SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/validate \
                tests/unit/refute tests/unit/memory tests/unit/cache tests/unit/frame \
                tests/unit/query tests/property/ops tests/property/noise tests/property/graph \
-               tests/property/derive tests/property/series tests/property/local \
+               tests/property/derive tests/property/series tests/property/zeros \
+               tests/property/local \
                tests/property/along tests/property/anchor tests/property/slope \
                tests/property/parity tests/property/reach tests/oracle/primitives \
                tests/oracle/krs_expand tests/oracle/bounds tests/oracle/maps tests/oracle/moebius \

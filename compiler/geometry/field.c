@@ -8,7 +8,8 @@
  * the series about p + h is at most the one about p, shifted by |h|, so a ball around p holds the
  * balls around its points.  (The k-th order of the shifted series is bounded by derivatives of
  * the orders above, and sup |D Q| = k sup |Q| on the unit sphere for a form Q of degree k, by
- * Banach.)  So it may be blended and offset, and stand in sequences and under maps.
+ * Banach.)  So it may be blended and offset, and stand in sequences and under maps.  Where all zeros
+ * are in a box (zeros.h), points outside of it go by their nearest point in it, as below.
  *
  * Other expressions are divided by their slope.  Where that has no bound, or a bad one, a region
  * C is needed: `.within` hands it down.  At a point q with its nearest point c in C,
@@ -90,6 +91,31 @@ static Node at_nearest(Elaboration *e, Node formula, Box box)
     return graph_substitute(e->graph, formula, with, e->scratch);
 }
 
+static Node opposite(Graph *g, Node a) { return graph_op1(g, OP_neg, a); }
+
+/* Outside of the box that holds all zeros the polynomial is not looked at: thousands of units away
+   its value is too large for single precision, or what is left of numbers that cancel. */
+static Node near_zeros(Elaboration *e, Node distance, ZeroBox zeros)
+{
+    Graph *g = e->graph;
+    if (!box_is_finite(zeros.box))
+        return distance;
+    distance = at_nearest(e, distance, zeros.box);
+    return zeros.sign > 0 ? brought_out(g, distance, zeros.box)
+                          : opposite(g, brought_out(g, opposite(g, distance), zeros.box));
+}
+
+static void settle_polynomial(Elaboration *e, Shape *shape, const Series *series)
+{
+    Node distance   = series_distance(e->graph, series);
+    shape->degree   = series->degree;
+    shape->zeros    = graph_zero_box(e->graph, shape->formula, e->scratch);
+    shape->distance = near_zeros(e, distance, shape->zeros);
+    shape->fields   = !box_is_finite(shape->zeros.box);
+    if (shape->zeros.sign > 0)
+        shape->box = shape->zeros.box;
+}
+
 Node bring_out(Elaboration *e, Node formula, const Steepness *slope)
 {
     Node inner = at_nearest(e, formula, slope->region);
@@ -150,7 +176,7 @@ const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Synt
                                   place->span, NULL, 0);
     if (!depends_on_point(e, formula))
         return refuse_constant(e, shape);
-    shape->box     = box_infinite;
+    shape->box     = shape->region = box_infinite;
     shape->exact   = false;
     shape->formula = formula;
     shape->fields  = true;
@@ -158,9 +184,7 @@ const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Synt
     if (graph_ball_series(e->graph, formula, point, &series, &fault, e->scratch)) {
         if (series_is_constant(e->graph, &series))
             return refuse_constant(e, shape);
-        shape->distance = series_distance(e->graph, &series);
-        shape->degree   = series.degree;
-        shape->fields   = false;
+        settle_polynomial(e, shape, &series);
     } else if (algebraic) {
         return refuse_polynomial(e, fault, place);
     } else {
@@ -172,13 +196,26 @@ const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Synt
 
 /* ---- regions ---- */
 
+/* An endless polynomial is looked at in the region alone, too: the distance at the nearest point
+   there is none to more than is in the region, and as steep. */
+static void restrict_polynomial(Elaboration *e, Shape *restricted, Box box)
+{
+    restricted->region   = box_grow(box, 1e-3 * box_diagonal(box));
+    restricted->fields   = false;
+    restricted->distance = at_nearest(e, restricted->distance, restricted->region);
+}
+
 static const Shape *restrict_field(Elaboration *e, const Shape *shape, Box box, bool even)
 {
-    if (shape->degree > 0 || !box_is_finite(box))
+    if (!box_is_finite(box))
         return shape;
     Shape *restricted = arena_new(e->arena, Shape);
     *restricted       = *shape;
     restricted->bound = NODE_NONE;
+    if (shape->degree > 0) {
+        restrict_polynomial(e, restricted, box);
+        return restricted;
+    }
     settle(e, restricted, box, even);
     arena_free(e->scratch);
     return restricted;

@@ -129,10 +129,89 @@ static Node along_series(Lowering *l, Series *s)
     return graph_op2(g, OP_mul, step, sign);
 }
 
+static const double FAR = 1e30; /* farther than anything is; and 1e18, than any box is large */
+
+/* Where a ray is in a box that may be endless on some sides: from here or from `enter` on; not at
+   all where `leave` is less. */
+static void clip_ray(Lowering *l, Box box, Ray ray, Node *enter, Node *leave)
+{
+    Graph *g = l->graph;
+    *enter   = number(l, 0);
+    *leave   = number(l, FAR);
+    for (uint32_t i = 0; i < 3; i++) {
+        Range side = box.axis[i];
+        if (!isfinite(side.low) && !isfinite(side.high))
+            continue;
+        Node from = graph_component(g, ray.point, i), way = graph_component(g, ray.direction, i);
+        Node tiny = number(l, 1e-18);
+        way       = graph_op3(g, OP_select, graph_op2(g, OP_less, graph_op1(g, OP_abs, way), tiny),
+                              tiny, way);
+        Node low  = graph_op2(g, OP_sub, number(l, fmax(side.low, -1e18)), from);
+        Node high = graph_op2(g, OP_sub, number(l, fmin(side.high, 1e18)), from);
+        low       = graph_op2(g, OP_div, low, way);
+        high      = graph_op2(g, OP_div, high, way);
+        *enter    = graph_op2(g, OP_max, *enter, graph_op2(g, OP_min, low, high));
+        *leave    = graph_op2(g, OP_min, *leave, graph_op2(g, OP_max, low, high));
+    }
+}
+
+static Node clamp_to(Lowering *l, Node point, Box box)
+{
+    double low[3], high[3];
+    for (int i = 0; i < 3; i++) {
+        low[i]  = fmax(box.axis[i].low, -1e18);
+        high[i] = fmin(box.axis[i].high, 1e18);
+    }
+    Node least = graph_constant(l->graph, TYPE_VEC3, low);
+    return graph_op3(l->graph, OP_clamp, point, least, graph_constant(l->graph, TYPE_VEC3, high));
+}
+
+/* The place of a ray where it enters a box; in the box, whatever is rounded. */
+static Node entrance(Lowering *l, Box box, Ray ray, Node enter)
+{
+    Node way = graph_op2(l->graph, OP_scale, ray.direction, enter);
+    return clamp_to(l, graph_op2(l->graph, OP_add, ray.point, way), box);
+}
+
+/* Where all zeros are in a box, a ray from outside goes there first, and the series is that about
+   where it comes in: from far away no digit of it would be right. */
+static Node along_boxed(Lowering *l, const Shape *shape, Ray ray)
+{
+    Graph      *g = l->graph;
+    Series      s;
+    SeriesFault fault;
+    Node        enter, leave, side = number(l, shape->zeros.sign);
+    clip_ray(l, shape->zeros.box, ray, &enter, &leave);
+    Node origin = entrance(l, shape->zeros.box, ray, enter);
+    if (!graph_line_series(g, shape->formula, origin, ray.direction, &s, &fault, l->scratch))
+        return NODE_NONE;
+    Node step   = graph_op2(g, OP_add, along_series(l, &s), graph_op2(g, OP_mul, side, enter));
+    Node misses = graph_op2(g, OP_less, leave, enter);
+    return graph_op3(g, OP_select, misses, number(l, FAR * shape->zeros.sign), step);
+}
+
+/* What is cut to a region is not looked at outside of it, where the region says how far to go. */
+static Node along_cut(Lowering *l, const Shape *shape, Ray ray)
+{
+    Graph      *g = l->graph;
+    Series      s;
+    SeriesFault fault;
+    Node        origin = clamp_to(l, ray.point, shape->region);
+    if (!graph_line_series(g, shape->formula, origin, ray.direction, &s, &fault, l->scratch))
+        return NODE_NONE;
+    Node away    = graph_op2(g, OP_sub, ray.point, origin);
+    Node outside = graph_op2(g, OP_less, number(l, 0), graph_op2(g, OP_dot, away, away));
+    return graph_op3(g, OP_select, outside, number(l, 0), along_series(l, &s));
+}
+
 static Node along_polynomial(Lowering *l, const Shape *shape, Ray ray)
 {
     Series      s;
     SeriesFault fault;
+    if (box_is_finite(shape->region))
+        return along_cut(l, shape, ray);
+    if (shape->zeros.sign != 0)
+        return along_boxed(l, shape, ray);
     return graph_line_series(l->graph, shape->formula, ray.point, ray.direction, &s, &fault,
                              l->scratch)
                ? along_series(l, &s)

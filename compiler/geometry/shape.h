@@ -10,6 +10,7 @@
 
 #include "compiler/geometry/box.h"
 #include "compiler/geometry/value.h"
+#include "compiler/graph/zeros.h"
 
 /*
  * Kinds, with their children and values (nodes).  `slope` says how the Lipschitz constant of
@@ -144,7 +145,8 @@ struct Shape {
     Node       formula; /* of a field, algebraic surface (field.c) or DISPLACE, else NODE_NONE */
     double     overlap; /* BEND: by how much the parts reach beyond their ends */
     double     reach;   /* DISPLACE: largest size of the formula in the box */
-    uint32_t   degree;  /* of a formula that is a polynomial, else 0 */
+    uint32_t   degree;  /* of a formula that is a polynomial, else 0, */
+    ZeroBox    zeros;   /* and where that may be 0 */
     Span       blame;   /* what a field without a bound owes that to */
     bool       fields;  /* in the tree is a field whose bound follows from a region */
     Node       distance, bound, uv, trap;

@@ -112,6 +112,26 @@ Fact graph_frame_fact(const Graph *graph, Node node, Arena *scratch)
     return *study_fact(&study, node);
 }
 
+RangeTask range_task(const Graph *graph, const Node *roots, size_t count, Arena *arena)
+{
+    RangeTask task = {.tape = tape_new(graph, roots, count, arena)};
+    task.facts     = arena_new_array(arena, Fact, task.tape.count);
+    Study study    = {.graph = graph, .tape = task.tape, .facts = task.facts};
+    study_run(&study, (Box){0}, 0, task.tape.frame_count);
+    return task;
+}
+
+void range_task_run(const RangeTask *task, Box box)
+{
+    Study study = {.graph = task->tape.graph, .tape = task->tape, .facts = task->facts};
+    study_run(&study, box, task->tape.frame_count, task->tape.count);
+}
+
+Range range_task_value(const RangeTask *task, Node node)
+{
+    return task->facts[tape_place(&task->tape, node)].value[0];
+}
+
 /* ---- the slope of an expression, over parts of a box ---- */
 
 /* Parts of the box in a heap, the steepest first. */

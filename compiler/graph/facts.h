@@ -54,6 +54,18 @@ size_t slope_task_room(const SlopeTask *task);
 double slope_task_run(const SlopeTask *task, const double (*parameters)[4], void *room,
                       Node *blame);
 
+/* Ranges of some expressions, to be found over one box after the other. */
+typedef struct RangeTask {
+    Tape  tape;
+    Fact *facts;
+} RangeTask;
+
+/* Task and facts are in the arena; the graph must live as long. */
+RangeTask range_task(const Graph *graph, const Node *roots, size_t count, Arena *arena);
+void      range_task_run(const RangeTask *task, Box box);
+/* Of a FLOAT that a root needs, over the box of the last run. */
+Range     range_task_value(const RangeTask *task, Node node);
+
 /* The fact of one operation from the facts of its operands: the rule of its row. */
 Fact op_fact(Op op, GraphType type, uint32_t index, const GraphType *types, const Fact *operands,
              const double *constant);
