@@ -11,7 +11,7 @@ const char *const link_names[LINK_KINDS] = {
     "box", "ball", "rod", "ring", "capsule", "grown", "hollow", "wavy", "blend", "polynomial",
     "figure", "move", "turn", "scale", "stretch", "mirror", "repeat", "polar", "twist", "bend",
     "taper", "elongate", "invert", "within", "union", "intersection", "difference", "xor",
-    "sequence"};
+    "sequence", "mobius"};
 
 /* ---- what is inside ---- */
 
@@ -117,7 +117,7 @@ static Vec undone(const Link *link, Vec p)
     case LINK_TAPER:   return untapered(link, p);
     case LINK_ELONGATE: return vec(pulled(p.x, v.x), pulled(p.y, v.y), pulled(p.z, v.z));
     default: {
-        Vec away = vec_sub(p, v); /* INVERT */
+        Vec away = vec_sub(p, v); /* INVERT, MOBIUS */
         return vec_add(v, vec_scale(square(link->number) / vec_dot(away, away), away));
     }
     }
@@ -176,7 +176,8 @@ static bool contains(const Chain *chain, int at, Vec p)
     case LINK_INTERSECTION: return contains(chain, a, p) && contains(chain, b, p);
     case LINK_DIFFERENCE:   return contains(chain, a, p) && !contains(chain, b, p);
     case LINK_XOR:          return contains(chain, a, p) != contains(chain, b, p);
-    case LINK_SEQUENCE:     return contains(chain, a, undone(link, p)) || contains(chain, b, p);
+    case LINK_SEQUENCE: case LINK_MOBIUS:
+        return contains(chain, a, undone(link, p)) || contains(chain, b, p);
     default:                return contains(chain, a, undone(link, p));
     }
 }
@@ -286,12 +287,13 @@ static void write_link(const Chain *chain, int at, SceneText *text)
         write_method(chain, link, text);
         return;
     }
-    bool sequence = link->kind == LINK_SEQUENCE;
+    bool sequence = link->kind == LINK_SEQUENCE || link->kind == LINK_MOBIUS;
     scene_write(text, sequence ? "krs { kernel " : "%s(",
                 sequence ? "" : joints[link->kind - LINK_METHODS]);
     write_link(chain, link->solids[0], text);
     if (sequence)
-        scene_write(text, "; reflect plane([%.17g, %.17g, %.17g], %s); kernel ", link->v.x,
+        scene_write(text, "; %s([%.17g, %.17g, %.17g], %s); kernel ",
+                    link->kind == LINK_MOBIUS ? "mobius invert" : "reflect plane", link->v.x,
                     link->v.y, link->v.z, number_text(chain, link, number));
     else
         scene_write(text, ", ");
@@ -525,7 +527,13 @@ static int random_solid(Chain *chain, const Recipe *recipe, int joints, Random *
                      .v = random_axis(random), .number = random_between(random, -0.3, 0.6)};
         link.solids[0] = random_solid(chain, recipe, left, random, refusals);
         link.solids[1] = random_solid(chain, recipe, joints - 1 - left, random, refusals);
-        solid          = add(chain, link);
+        if (link.kind == LINK_MOBIUS) {
+            link.v      = random_in_cube(random, 2);
+            link.number = random_between(random, 0.7, 2.5);
+        }
+        solid = add(chain, link);
+        if (ask_about(chain, solid, NULL).refused) /* what is endless is not inverted */
+            chain->links[solid].kind = LINK_UNION;
     } else
         solid = random_primitive(chain, recipe, random);
     int   methods = random_below(random, recipe->methods + 1);

@@ -215,13 +215,13 @@ typedef struct Run {
 } Run;
 
 static const Run runs[] = {
-    {"methods", {4, 0, false, 0}, 220, 1},
-    {"joints and sequences", {2, 3, false, 0}, 120, 2},
-    {"parameters", {3, 1, true, 0}, 80, 3},
+    {"methods", {4, 0, false, 0}, 120, 1},
+    {"joints and sequences", {2, 3, false, 0}, 80, 2},
+    {"parameters", {3, 1, true, 0}, 40, 3},
     {"bends of what was moved",
-     {5, 0, false, 1u << LINK_MOVE | 1u << LINK_TURN | 1u << LINK_SCALE | 1u << LINK_BEND}, 120, 4},
+     {5, 0, false, 1u << LINK_MOVE | 1u << LINK_TURN | 1u << LINK_SCALE | 1u << LINK_BEND}, 80, 4},
     {"images",
-     {4, 1, false, 1u << LINK_MOVE | 1u << LINK_INVERT | 1u << LINK_MIRROR | 1u << LINK_POLAR}, 80,
+     {3, 2, false, 1u << LINK_MOVE | 1u << LINK_INVERT | 1u << LINK_MIRROR | 1u << LINK_POLAR}, 60,
      5},
 };
 enum { RUNS = sizeof runs / sizeof *runs };

@@ -413,33 +413,33 @@ static bool may_be_refused(const Case *c, const Said *said)
     return expected;
 }
 
-/* Asked what is there, and, where its surface may be moved, how steep it is. */
-static void check_case(const Case *c, uint64_t seed, Tally *tally)
+/* `steady`: as below something that moves the surface, where that can be. */
+static void check_case(const Case *c, bool steady, uint64_t seed, Tally *tally)
 {
-    SceneText text = {.length = 0}, steady_text = {.length = 0};
-    Product   product, steady;
+    SceneText text = {.length = 0};
+    Product   product;
     Said      said;
     Random    random = {seed};
-    int       wrong  = tally->wrong;
-    write_case(c, false, &text);
-    write_case(c, true, &steady_text);
+    write_case(c, steady, &text);
+    bool made = compile_quietly(text.bytes, &product, &said);
+    if (!made && steady && strstr(said.codes, "E0409")) {
+        check_case(c, false, seed, tally);
+        return;
+    }
     tally->cases++;
-    if (!compile_quietly(text.bytes, &product, &said)) {
+    if (!made) {
         tally->refused++;
         if (!may_be_refused(c, &said))
             complain(text.bytes, said.codes, vec(0, 0, 0), 0, tally);
         return;
     }
     bool undone = true;
+    int  wrong  = tally->wrong;
     for (int i = 0; i < c->count; i++)
         undone = undone && c->methods[i]->undo;
     Inside     *membership = undone ? inside_case : is_negative;
     const void *user       = undone ? (const void *)c : &product;
-    judge_case(&product, membership, user, false, text.bytes, seed, tally);
-    if (tally->wrong == wrong && compile_quietly(steady_text.bytes, &steady, &said)) {
-        judge_case(&steady, membership, user, true, steady_text.bytes, seed, tally);
-        product_free(&steady);
-    }
+    judge_case(&product, membership, user, steady, text.bytes, seed, tally);
     if (c->methods[c->count - 1]->keeps && (c->count == 1 || c->methods[0]->undo))
         check_growth(&product, c, text.bytes, &random, tally);
     for (int i = 0; i < 8 && tally->wrong == wrong; i++)
@@ -471,7 +471,7 @@ static void every_method_on(void **state)
     for (int i = 0; i < METHODS; i++) {
         c.methods[0] = &methods[i];
         if (methods[i].before)
-            check_case(&c, (uint64_t)i, &tally);
+            check_case(&c, (i + (family - families)) % 2, (uint64_t)i, &tally);
     }
     product_free(&c.alone);
     tell(family->name, &tally);
@@ -479,7 +479,7 @@ static void every_method_on(void **state)
 
 static void pairs_of_methods(void **state)
 {
-    enum { PAIRS = 8 };
+    enum { PAIRS = 6 };
     (void)state;
     Tally  tally  = {0};
     Random random = {2};
@@ -490,7 +490,7 @@ static void pairs_of_methods(void **state)
                 c.methods[0] = &methods[random_below(&random, METHODS)];
                 c.methods[1] = &methods[random_below(&random, METHODS)];
             } while (!c.methods[0]->before || !c.methods[1]->before);
-            check_case(&c, (uint64_t)i, &tally);
+            check_case(&c, i % 2, (uint64_t)i, &tally);
         }
         product_free(&c.alone);
     }

@@ -21,7 +21,8 @@ void scene_write(SceneText *text, const char *format, ...)
 static void print_diagnostic(void *user, const KrsDiagnostic *diagnostic)
 {
     (void)user;
-    fprintf(stderr, "%s\n", diagnostic->text);
+    if (diagnostic->error)
+        fprintf(stderr, "%s\n", diagnostic->text);
 }
 
 /* With a camera, or the compiler would look for one that sees everything: that takes it longer than
