@@ -238,7 +238,7 @@ static void write_primitive(const Chain *chain, const Link *link, SceneText *tex
 static void write_method(const Chain *chain, const Link *link, SceneText *text)
 {
     char number[32];
-    Vec  v = link->v, w = link->w;
+    Vec  v = link->v, w = link->w, axis = vec_scale(link->length, v);
     const char *n = number_text(chain, link, number);
     switch (link->kind) {
     case LINK_MOVE:    scene_write(text, ".move([%s, %.17g, %.17g])", n, v.y, v.z); return;
@@ -261,13 +261,14 @@ static void write_method(const Chain *chain, const Link *link, SceneText *text)
         scene_write(text, ".transform(invert([%.17g, %.17g, %.17g], %s))", v.x, v.y, v.z, n);
         return;
     case LINK_POLAR:
-        scene_write(text, ".repeat_polar(%g, [%.17g, %.17g, %.17g])", w.x, v.x, v.y, v.z);
+        scene_write(text, ".repeat_polar(%g, [%.17g, %.17g, %.17g])", w.x, axis.x, axis.y,
+                    axis.z);
         return;
     default: break;
     }
     scene_write(text, ".%s([%.17g, %.17g, %.17g], %s", link->kind == LINK_TURN ? "rotate" :
                 link->kind == LINK_TWIST ? "twist" : link->kind == LINK_BEND ? "bend" : "taper",
-                v.x, v.y, v.z, n);
+                axis.x, axis.y, axis.z, n);
     if (link->kind == LINK_TAPER)
         scene_write(text, ", %.17g", w.x);
     scene_write(text, ")");
@@ -367,14 +368,14 @@ static int add(Chain *chain, Link link)
     return chain->count++;
 }
 
+static double random_side(Random *random) { return random_below(random, 2) ? 1 : -1; }
+
 static Vec random_axis(Random *random)
 {
     static const Vec axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     int axis = random_below(random, 5);
-    return axis < 3 ? axes[axis] : random_unit(random);
+    return axis < 3 ? vec_scale(random_side(random), axes[axis]) : random_unit(random);
 }
-
-static double random_side(Random *random) { return random_below(random, 2) ? 1 : -1; }
 
 /* With a range around the number, in which it keeps its sign. */
 static void let_move(Link *link, Random *random)
@@ -433,7 +434,8 @@ static bool chain_touches(const Chain *chain)
 static bool fill_method(Chain *chain, Link *link, const Known *known, Random *random)
 {
     double size = known->bounded ? size_of(known) : 2;
-    link->v     = random_axis(random);
+    link->v      = random_axis(random);
+    link->length = random_below(random, 2) ? 1 : random_between(random, 0.2, 3);
     switch (link->kind) {
     case LINK_MOVE:
         link->v      = random_in_cube(random, random_below(random, 3) ? 1.5 : 5);

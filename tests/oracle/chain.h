@@ -32,7 +32,8 @@ typedef struct Link {
     bool     touches;   /* REPEAT: cells are as large as what is in them */
     double   number;    /* a radius, an angle, a rate, a factor */
     double   least, most; /* of the parameter */
-    Vec      v, w;      /* sizes, a shift or an axis; a centre, or counts */
+    Vec      v, w;      /* sizes, a shift or a unit axis; a centre, or counts */
+    double   length;    /* of the axis, as it is written */
     double   low, high; /* TAPER: where its ends are; BEND: as far as what is bent reaches */
     int      solids[2];
 } Link;
