@@ -6,6 +6,7 @@
 # make bench      measures, writes bench/results/; bench-quick: only whether it can
 # make bench-normals    how normals are found
 # make bench-algebraic  algebraic surfaces beside other programs
+# make check-device DEVICE=...  what to know of a Vulkan device first, in ten minutes
 # make minify     how well one sample shows what is finer than a pixel
 # make fuzz       the front end under libFuzzer for FUZZ_SECONDS (30)
 # make lint       kernels by themselves, shell scripts

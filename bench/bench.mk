@@ -48,10 +48,20 @@ $(B)/bench/algebraic/algebraic: $(ALGEBRAIC:%=$(B)/%) $(B)/tests/oracle/oracle.a
 bench-algebraic: $(B)/bench/algebraic/algebraic $(B)/krs
 	@$(B)/bench/algebraic/algebraic $(B)/krs
 
+# What one wants to know of a device first, in ten minutes (bench/README.md).
+DEVICES := $(addprefix $(B)/bench/device/, device.o limits.o accuracy.o examples.o methods.o \
+             kernels.o)
+$(B)/bench/device/device: $(DEVICES) $(STAGE) $(B)/tests/support/support.a $(B)/libkrs.a
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
+CHECKED := tests/unit/methods tests/oracle/device tests/property/ops tests/oracle/coverage
+check-device: deps
+	@$(MAKE) --no-print-directory $(B)/krs $(B)/bench/device/device $(CHECKED:%=$(B)/%)
+	@B=$(B) KRS_DEVICE="$(DEVICE)" REVISION=$(REVISION) tools/check-device.sh $(CHECKED:%=$(B)/%)
+
 # For `make test`.
 SCRIPTS += tests/bench.sh
 test-programs: $(B)/bench/bench
 clang-objects: $(BENCH:%.c=$(B)/%.o) $(STAGE) $(MINIFY) \
                $(B)/bench/iterations/iterations.o $(B)/bench/inverted/inverted.o \
-               $(B)/bench/normals/normals.o $(ALGEBRAIC:%=$(B)/%)
-.PHONY: bench bench-quick minify iterations inverted bench-normals bench-algebraic
+               $(B)/bench/normals/normals.o $(ALGEBRAIC:%=$(B)/%) $(DEVICES)
+.PHONY: bench bench-quick minify iterations inverted bench-normals bench-algebraic check-device

@@ -22,8 +22,9 @@ static void complain(void *user, const KrsDiagnostic *diagnostic)
 
 KrsRenderer *device_open(void)
 {
-    KrsRenderer *renderer;
-    if (krs_renderer_new(NULL, &renderer) != KRS_OK)
+    KrsRenderer       *renderer;
+    KrsRendererOptions options = {.device = getenv("KRS_DEVICE")};
+    if (krs_renderer_new(&options, &renderer) != KRS_OK)
         give_up("cannot open the device", renderer ? krs_renderer_message(renderer) : "no memory");
     return renderer;
 }

@@ -19,7 +19,7 @@ typedef struct Stage {
 /* Prints what went wrong, and ends the process: so does all else here that fails. */
 _Noreturn void give_up(const char *what, const char *why);
 
-/* The default device. */
+/* The device that KRS_DEVICE names, in the words of `krs --device`, else that which krs takes. */
 KrsRenderer *device_open(void);
 
 /* Compiles a text, or the file of this name where that is NULL.  `gradients`: normals by

@@ -1,0 +1,45 @@
+/*
+ * kernels.c: what glslang and the driver take for each kernel of a scene.
+ */
+#include <stdio.h>
+#include <string.h>
+
+#include "bench/device/device.h"
+
+static void print_kernel(KrsRendering *rendering, const char *scene, const char *kernel,
+                         Kernel *made, double *spirv_ms, double *pipeline_ms)
+{
+    double start = clock_ms();
+    if (!made || !gpu_wait(&rendering->renderer->gpu)) /* some compile when a kernel first runs */
+        give_up(scene, krs_renderer_message(rendering->renderer));
+    printf("| %s | %s | %.0f | %.0f |\n", scene, kernel, rendering->spirv_ms - *spirv_ms,
+           rendering->pipeline_ms - *pipeline_ms + clock_ms() - start);
+    fflush(stdout);
+    *spirv_ms = rendering->spirv_ms;
+    *pipeline_ms = rendering->pipeline_ms;
+}
+
+void print_kernels(KrsRenderer *renderer, const char *path)
+{
+    const char *name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+    Stage       stage = {.name = path, .renderer = renderer};
+    double      start = clock_ms(), spirv = renderer->spirv_ms, pipeline = renderer->pipeline_ms;
+    KrsTrace    trace = KRS_TRACE_DEFAULT;
+    KrsSchedule schedule = KRS_SCHEDULE_DEFAULT;
+    if (krs_compile_file(path, NULL, &stage.scene) != KRS_OK ||
+        krs_frame_new(stage.scene, &stage.frame) != KRS_OK)
+        give_up(path, "it does not compile");
+    printf("| %s | front end | %.0f | |\n", name, clock_ms() - start);
+    if (krs_rendering_new_for(renderer, stage.scene, KRS_FOR_QUESTIONS, &stage.rendering))
+        give_up(path, krs_renderer_message(renderer));
+    KrsRendering *r = stage.rendering;
+    rendering_choose(r, &trace, &schedule);
+    print_kernel(r, name, "query, sample", rendering_sample(r), &spirv, &pipeline);
+    print_kernel(r, name, "trace", rendering_trace(r, trace, schedule, 0), &spirv, &pipeline);
+    print_kernel(r, name, "normals, occlusion", rendering_around(r, KRS_NORMALS_DEFAULT, 0), &spirv,
+                 &pipeline);
+    print_kernel(r, name, "shadows", rendering_shadows(r, schedule, KRS_SHADOWS_SOFT, false), &spirv,
+                 &pipeline);
+    print_kernel(r, name, "shade", rendering_shade(r), &spirv, &pipeline);
+    stage_close(&stage);
+}

@@ -1,0 +1,90 @@
+/*
+ * methods.c: the ways to render a scene, side by side.
+ */
+#include <stdio.h>
+
+#include "bench/device/device.h"
+#include "tests/support/agreement.h"
+
+enum { REPEATS = 3 };
+
+typedef struct Way {
+    const char      *name;
+    KrsRenderOptions options;
+    uint64_t         band; /* pixels of a band at most; 0: as the renderer has it */
+} Way;
+
+static const Way ways[] = {
+    {"default", {0}, 0},
+    {"schedule pixel", {.schedule = KRS_SCHEDULE_PIXEL}, 0},
+    {"schedule refill", {.schedule = KRS_SCHEDULE_REFILL}, 0},
+    {"schedule queue", {.schedule = KRS_SCHEDULE_QUEUE}, 0},
+    {"without beams", {.no_beams = true}, 0},
+    {"plain steps", {.trace = KRS_TRACE_PLAIN}, 0},
+    {"components together", {.components = KRS_COMPONENTS_TOGETHER}, 0},
+    {"components apart", {.components = KRS_COMPONENTS_APART}, 0},
+    {"components packed", {.components = KRS_COMPONENTS_PACKED}, 0},
+    {"bands of 2^14 pixels", {0}, 1 << 14},
+    {"bands of 2^16 pixels", {0}, 1 << 16},
+    {"slices of 5 ms", {.slice_ms = 5}, 0},
+    {"slices of 500 ms", {.slice_ms = 500}, 0},
+};
+
+/* A band is as large as the buffer of its results may be: 80 bytes a pixel. */
+static void limit_band(KrsRenderer *renderer, uint64_t pixels, uint32_t usual)
+{
+    uint32_t *limit = &renderer->gpu.properties.limits.maxStorageBufferRange;
+    *limit = pixels > 0 ? (uint32_t)(pixels + 16) * RESULT_ROWS * RESULT_BYTES : usual;
+}
+
+/* Of some pictures that which took least. */
+static KrsPicture *render_best(const Stage *stage, const KrsRenderOptions *options)
+{
+    KrsPicture *best = stage_render(stage, options); /* compiles what is new */
+    for (int i = 0; i < REPEATS; i++) {
+        KrsPicture *picture = stage_render(stage, options);
+        bool        better = i == 0 || picture->stats.total_ms < best->stats.total_ms;
+        krs_picture_free(better ? best : picture);
+        best = better ? picture : best;
+    }
+    return best;
+}
+
+static void print_row(const char *name, bool early_outs, const KrsPicture *picture,
+                      const KrsPicture *first)
+{
+    const KrsRenderStats *stats = &picture->stats;
+    Agreement             found = agreement_of(first, picture, 0.5);
+    printf("| %s, early outs %s | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.1f | %zu |\n",
+           name, early_outs ? "on" : "off", stats->phase_ms[KRS_PHASE_BEAMS],
+           stats->phase_ms[KRS_PHASE_PRIMARY], stats->phase_ms[KRS_PHASE_NORMALS],
+           stats->phase_ms[KRS_PHASE_SHADOWS], stats->phase_ms[KRS_PHASE_OCCLUSION],
+           stats->total_ms, stats->wall_ms, stats->evaluations_per_ray, agreement_faults(&found));
+    fflush(stdout);
+}
+
+void print_methods(KrsRenderer *renderer, const char *path, Size size, bool early_outs)
+{
+    uint32_t    usual = renderer->gpu.properties.limits.maxStorageBufferRange;
+    KrsPicture *first = NULL;
+    renderer->early_outs = early_outs;
+    Stage stage = stage_open(renderer, path, NULL, false);
+    for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
+        KrsRenderOptions options = ways[i].options;
+        options.width = size.width;
+        options.height = size.height;
+        options.samples = 1;
+        krs_rendering_free(stage.rendering); /* and its band */
+        limit_band(renderer, ways[i].band, usual);
+        if (krs_rendering_new_for(renderer, stage.scene, KRS_FOR_QUESTIONS, &stage.rendering))
+            give_up(path, krs_renderer_message(renderer));
+        KrsPicture *picture = render_best(&stage, &options);
+        print_row(ways[i].name, early_outs, picture, first ? first : picture);
+        if (first)
+            krs_picture_free(picture);
+        else
+            first = picture;
+    }
+    krs_picture_free(first);
+    stage_close(&stage);
+}
