@@ -10,7 +10,7 @@ SUPPORT     := $(addprefix tests/support/, agreement.c bench.c device.c random.c
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c chain.c \
                exact.c formulas.c rooms.c montecarlo.c)
 UNIT        := front film tracer methods writer memory validate refute frame query cache compiled \
-               apart stencils drivers
+               apart stencils glslang drivers
 PROPERTY    := ops noise graph derive series zeros local along anchor slope parity reach
 ORACLES     := self primitives krs_expand trees maps moebius operators combinations deform chains \
                chain_pictures moving normals fields surfaces rays algebraic fractals device query \

@@ -1,17 +1,23 @@
 /*
- * glslang_border.cpp: the one C++ file: calls glslang's C interface and the SPIR-V optimizer, and
- * catches what they throw.
+ * glslang_border.cpp: the one C++ file: calls glslang's C interface and SPIRV-Tools, and catches what
+ * they throw.
  */
 #include "compiler/shader/glslang_border.h"
 
 #include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <new>
 #include <vector>
 
 #include <glslang/Include/glslang_c_interface.h>
 #include <glslang/Public/resource_limits_c.h>
+#include <spirv-tools/libspirv.h>
 #include <spirv-tools/optimizer.hpp>
+
+/* glslang's own lock, which it does not give back when something is thrown; by threads that do not
+   hold it nothing is released. */
+namespace glslang { void ReleaseGlobalLock(); }
 
 static BorderResult refuse(const char *text, char **log)
 {
@@ -98,18 +104,125 @@ static BorderResult compile(const char *glsl, uint32_t **words, size_t *word_cou
     return BORDER_OK;
 }
 
-BorderResult border_compile(const char *glsl, uint32_t **words, size_t *word_count, char **log)
+/* What `work` returns, or why it could not. */
+template <typename Work> static BorderResult guarded(Work work, char **log)
 {
-    *words = nullptr;
-    *log   = nullptr;
+    *log = nullptr;
     try {
-        return compile(glsl, words, word_count, log);
+        return work();
     } catch (const std::bad_alloc &) {
         return BORDER_NO_MEMORY;
     } catch (...) {
-        return refuse("glslang failed with an exception", log);
+        return refuse("an exception", log);
     }
 }
 
-void border_start(void) { glslang_initialize_process(); }
-void border_stop(void) { glslang_finalize_process(); }
+BorderResult border_compile(const char *glsl, uint32_t **words, size_t *word_count, char **log)
+{
+    *words = nullptr;
+    BorderResult result = guarded([=] { return compile(glsl, words, word_count, log); }, log);
+    if (result != BORDER_OK)
+        glslang::ReleaseGlobalLock();
+    return result;
+}
+
+/* The tables of built-in names are made with the first text of a version, under glslang's lock, and
+   what is thrown then leaves them half made.  So the first text, of the version that kernels have, is
+   one that nobody waits for. */
+static BorderResult start(bool *started, char **log)
+{
+    static const char first[] = "#version 440\nlayout(local_size_x = 1) in;\nvoid main() {}\n";
+    uint32_t *words = nullptr;
+    size_t    count;
+    *started = true; /* should it throw */
+    *started = glslang_initialize_process() != 0;
+    BorderResult result = *started ? compile(first, &words, &count, log) : BORDER_NO_MEMORY;
+    free(words);
+    return result;
+}
+
+BorderResult border_start(void)
+{
+    char        *log;
+    bool         started = false;
+    BorderResult result  = guarded([&] { return start(&started, &log); }, &log);
+    free(log);
+    if (result != BORDER_OK && started) {
+        glslang::ReleaseGlobalLock();
+        border_stop();
+    }
+    return result;
+}
+
+void border_stop(void)
+{
+    char *log;
+    guarded([] { glslang_finalize_process(); return BORDER_OK; }, &log);
+    free(log);
+}
+
+/* ---- SPIRV-Tools ---- */
+
+struct SpirvFree {
+    void operator()(spv_context_t *context) const { spvContextDestroy(context); }
+    void operator()(spv_diagnostic_t *diagnostic) const { spvDiagnosticDestroy(diagnostic); }
+    void operator()(spv_validator_options_t *options) const { spvValidatorOptionsDestroy(options); }
+    void operator()(spv_text_t *text) const { spvTextDestroy(text); }
+};
+template <typename Thing> using Owned = std::unique_ptr<Thing, SpirvFree>;
+
+/* Names for people are made for messages only: of a thousand values that glslang names alike, each
+   is tried against all before it. */
+static spv_result_t run_validator(const uint32_t *words, size_t word_count, bool names,
+                                  spv_context context, spv_diagnostic *diagnostic)
+{
+    Owned<spv_validator_options_t> options(spvValidatorOptionsCreate());
+    spv_const_binary_t             binary = {words, word_count};
+    if (!options)
+        return SPV_ERROR_OUT_OF_MEMORY;
+    spvValidatorOptionsSetFriendlyNames(options.get(), names);
+    return spvValidateWithOptions(context, options.get(), &binary, diagnostic);
+}
+
+static BorderResult validate(const uint32_t *words, size_t word_count, char **log)
+{
+    Owned<spv_context_t> context(spvContextCreate(SPV_ENV_VULKAN_1_1));
+    spv_diagnostic       diagnostic = nullptr;
+    if (!context)
+        return BORDER_NO_MEMORY;
+    if (run_validator(words, word_count, false, context.get(), nullptr) == SPV_SUCCESS)
+        return BORDER_OK;
+    spv_result_t result = run_validator(words, word_count, true, context.get(), &diagnostic);
+    Owned<spv_diagnostic_t> owned(diagnostic);
+    if (result == SPV_ERROR_OUT_OF_MEMORY)
+        return BORDER_NO_MEMORY;
+    return refuse(diagnostic ? diagnostic->error : nullptr, log);
+}
+
+BorderResult border_validate(const uint32_t *words, size_t word_count, char **log)
+{
+    return guarded([=] { return validate(words, word_count, log); }, log);
+}
+
+static BorderResult disassemble(const uint32_t *words, size_t word_count, char **assembly)
+{
+    Owned<spv_context_t> context(spvContextCreate(SPV_ENV_VULKAN_1_1));
+    spv_text             text  = nullptr;
+    uint32_t             style =
+        SPV_BINARY_TO_TEXT_OPTION_FRIENDLY_NAMES | SPV_BINARY_TO_TEXT_OPTION_INDENT;
+    if (!context)
+        return BORDER_NO_MEMORY;
+    spv_result_t result = spvBinaryToText(context.get(), words, word_count, style, &text, nullptr);
+    Owned<spv_text_t> owned(text);
+    if (result == SPV_SUCCESS)
+        *assembly = strdup(text->str);
+    return *assembly ? BORDER_OK : BORDER_REFUSED;
+}
+
+char *border_disassemble(const uint32_t *words, size_t word_count)
+{
+    char *log, *assembly = nullptr;
+    guarded([&] { return disassemble(words, word_count, &assembly); }, &log);
+    free(log);
+    return assembly;
+}

@@ -3,6 +3,7 @@
  */
 #include <glslang/build_info.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,37 +14,64 @@
 #include "compiler/shader/glslang_border.h"
 #include "compiler/shader/spirv.h"
 
-/* glslang belongs to the process, and cannot be started by one thread while another uses it. */
+/* glslang belongs to the process.  Who compiles holds the lock to read; it is started and stopped
+   by one thread while nobody compiles. */
 static struct {
-    pthread_mutex_t lock;
-    size_t          users;
-    bool            runs;
-} glslang = {.lock = PTHREAD_MUTEX_INITIALIZER};
+    pthread_rwlock_t lock;
+    size_t           users;
+    bool             runs;
+    atomic_bool      spoiled; /* memory ran out in it: what it knows may be half of it */
+} glslang = {.lock = PTHREAD_RWLOCK_INITIALIZER};
+
+/* With the lock held to write. */
+static void stop(void)
+{
+    if (glslang.runs)
+        border_stop();
+    glslang.runs = false;
+    atomic_store(&glslang.spoiled, false);
+}
 
 void spirv_start(void)
 {
-    pthread_mutex_lock(&glslang.lock);
+    pthread_rwlock_wrlock(&glslang.lock);
     glslang.users++;
-    pthread_mutex_unlock(&glslang.lock);
+    pthread_rwlock_unlock(&glslang.lock);
 }
 
 void spirv_stop(void)
 {
-    pthread_mutex_lock(&glslang.lock);
-    if (--glslang.users == 0 && glslang.runs) {
-        border_stop();
-        glslang.runs = false;
-    }
-    pthread_mutex_unlock(&glslang.lock);
+    pthread_rwlock_wrlock(&glslang.lock);
+    if (--glslang.users == 0)
+        stop();
+    pthread_rwlock_unlock(&glslang.lock);
 }
 
-static void start_when_needed(void)
+/* Holds the lock to read when it is BORDER_OK. */
+static BorderResult begin_use(void)
 {
-    pthread_mutex_lock(&glslang.lock);
-    if (!glslang.runs)
-        border_start();
-    glslang.runs = true;
-    pthread_mutex_unlock(&glslang.lock);
+    BorderResult result = BORDER_OK;
+    while (result == BORDER_OK) {
+        pthread_rwlock_rdlock(&glslang.lock);
+        if (glslang.runs && !atomic_load(&glslang.spoiled))
+            return BORDER_OK;
+        pthread_rwlock_unlock(&glslang.lock);
+        pthread_rwlock_wrlock(&glslang.lock);
+        if (atomic_load(&glslang.spoiled))
+            stop();
+        if (!glslang.runs)
+            result = border_start();
+        glslang.runs = result == BORDER_OK;
+        pthread_rwlock_unlock(&glslang.lock);
+    }
+    return result;
+}
+
+static void end_use(BorderResult result)
+{
+    if (result == BORDER_NO_MEMORY)
+        atomic_store(&glslang.spoiled, true);
+    pthread_rwlock_unlock(&glslang.lock);
 }
 
 #define WORD(number)  #number
@@ -69,59 +97,34 @@ static char *name_log(const char *entry, const char *tool, char *words_of_tool)
     return log;
 }
 
-/* Names for people are made for messages only: of a thousand values that glslang names alike, each
-   is tried against all before it. */
-static spv_result_t run_validator(const uint32_t *words, size_t word_count, bool names,
-                                  spv_context context, spv_diagnostic *diagnostic)
+/* What the border says, in the words of the library; takes over `words_of_tool`. */
+static KrsStatus judge(BorderResult result, const char *entry, const char *tool,
+                       char *words_of_tool, char **log)
 {
-    spv_validator_options options = spvValidatorOptionsCreate();
-    spv_const_binary_t    binary  = {words, word_count};
-    if (!options)
-        return SPV_ERROR_OUT_OF_MEMORY;
-    spvValidatorOptionsSetFriendlyNames(options, names);
-    spv_result_t result = spvValidateWithOptions(context, options, &binary, diagnostic);
-    spvValidatorOptionsDestroy(options);
-    return result;
-}
-
-static KrsStatus validate(const char *entry, const uint32_t *words, size_t word_count, char **log)
-{
-    spv_context    context    = spvContextCreate(SPV_ENV_VULKAN_1_1);
-    spv_diagnostic diagnostic = NULL;
-    if (!context)
-        return KRS_OUT_OF_MEMORY;
-    spv_result_t result = run_validator(words, word_count, false, context, NULL);
-    KrsStatus    status = KRS_OK;
-    if (result != SPV_SUCCESS) {
-        result = run_validator(words, word_count, true, context, &diagnostic);
-        const char *reason =
-            diagnostic && diagnostic->error ? diagnostic->error : "no reason given";
-        char       *copy   = strdup(reason);
-        status = result == SPV_ERROR_OUT_OF_MEMORY ? KRS_OUT_OF_MEMORY : KRS_INTERNAL;
-        if (copy)
-            *log = name_log(entry, "the SPIR-V validator", copy);
-    }
-    spvDiagnosticDestroy(diagnostic);
-    spvContextDestroy(context);
-    return status;
+    bool refused = result == BORDER_REFUSED && words_of_tool;
+    *log = refused ? name_log(entry, tool, words_of_tool) : NULL;
+    if (!refused)
+        free(words_of_tool);
+    return result == BORDER_OK        ? KRS_OK
+           : result == BORDER_REFUSED ? KRS_INTERNAL
+                                      : KRS_OUT_OF_MEMORY;
 }
 
 KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, size_t *word_count,
                         char **log)
 {
-    start_when_needed();
     char        *refusal = NULL;
-    BorderResult result  = border_compile(glsl, words, word_count, &refusal);
-    *log                 = NULL;
-    if (result == BORDER_REFUSED) {
-        *log = name_log(entry, "glslang", refusal);
-        return KRS_INTERNAL;
+    BorderResult result  = begin_use();
+    *words               = NULL;
+    if (result == BORDER_OK) {
+        result = border_compile(glsl, words, word_count, &refusal);
+        end_use(result);
     }
-    if (result == BORDER_NO_MEMORY) {
-        free(refusal);
-        return KRS_OUT_OF_MEMORY;
-    }
-    KrsStatus status = validate(entry, *words, *word_count, log);
+    KrsStatus status = judge(result, entry, "glslang", refusal, log);
+    if (status != KRS_OK)
+        return status;
+    result = border_validate(*words, *word_count, &refusal);
+    status = judge(result, entry, "the SPIR-V validator", refusal, log);
     if (status != KRS_OK) {
         free(*words);
         *words = NULL;
@@ -131,13 +134,5 @@ KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, s
 
 char *spirv_disassemble(const uint32_t *words, size_t word_count)
 {
-    spv_context context = spvContextCreate(SPV_ENV_VULKAN_1_1);
-    spv_text    text    = NULL;
-    char       *copy    = NULL;
-    uint32_t style = SPV_BINARY_TO_TEXT_OPTION_FRIENDLY_NAMES | SPV_BINARY_TO_TEXT_OPTION_INDENT;
-    if (context && spvBinaryToText(context, words, word_count, style, &text, NULL) == SPV_SUCCESS)
-        copy = strdup(text->str);
-    spvTextDestroy(text);
-    spvContextDestroy(context);
-    return copy;
+    return border_disassemble(words, word_count);
 }
