@@ -7,6 +7,7 @@
 # make bench-normals    how normals are found
 # make bench-algebraic  algebraic surfaces beside other programs
 # make check-device DEVICE=...  what to know of a Vulkan device first, in ten minutes
+# make bench-registers  registers, waves and spills of each kernel on a graphics card
 # make minify     how well one sample shows what is finer than a pixel
 # make fuzz       the front end under libFuzzer for FUZZ_SECONDS (30)
 # make lint       kernels by themselves, shell scripts

@@ -58,10 +58,18 @@ check-device: deps
 	@$(MAKE) --no-print-directory $(B)/krs $(B)/bench/device/device $(CHECKED:%=$(B)/%)
 	@B=$(B) KRS_DEVICE="$(DEVICE)" REVISION=$(REVISION) tools/check-device.sh $(CHECKED:%=$(B)/%)
 
+# Registers of each kernel, as a compiler for a graphics card that is not there has them.
+$(B)/bench/registers/registers: $(B)/bench/registers/registers.o $(STAGE) $(B)/libkrs.a
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+bench-registers: $(B)/bench/registers/registers $(B)/krs
+	@B=$(B) REVISION=$(REVISION) tools/bench-registers.sh
+
 # For `make test`.
 SCRIPTS += tests/bench.sh
 test-programs: $(B)/bench/bench
 clang-objects: $(BENCH:%.c=$(B)/%.o) $(STAGE) $(MINIFY) \
                $(B)/bench/iterations/iterations.o $(B)/bench/inverted/inverted.o \
-               $(B)/bench/normals/normals.o $(ALGEBRAIC:%=$(B)/%) $(DEVICES)
-.PHONY: bench bench-quick minify iterations inverted bench-normals bench-algebraic check-device
+               $(B)/bench/normals/normals.o $(ALGEBRAIC:%=$(B)/%) $(DEVICES) \
+               $(B)/bench/registers/registers.o
+.PHONY: bench bench-quick minify iterations inverted bench-normals bench-algebraic check-device \
+        bench-registers

@@ -1,8 +1,9 @@
 # tests.mk: what `make test` runs.
 #
 # Every test speaks TAP; tests/run.sh counts.  `make test DEVICE=...` runs all on another Vulkan
-# device, in the words of `krs --device`; `DEVICE=swiftshader` on one that every Debian can have.  The compiler's tests run a second time under the
-# address and undefined-behaviour sanitizers, and everything compiles under clang as well.
+# device, in the words of `krs --device`; `DEVICE=swiftshader` on one that every Debian can have.
+# The compiler's tests run a second time under the address and undefined-behaviour sanitizers, and
+# everything compiles under clang as well.
 
 # What tests of several kinds share; nothing of it knows what is tested.
 SUPPORT     := $(addprefix tests/support/, agreement.c bench.c device.c random.c \

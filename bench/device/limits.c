@@ -102,6 +102,7 @@ void print_limits(KrsRenderer *renderer)
     print_features(gpu->physical);
     print_memory(&gpu->memory);
     print_queues(gpu->physical);
-    printf("| krs: early outs | %s |\n| krs: lanes that refill | %u |\n| krs: reads texels | %s |\n",
-           renderer->early_outs ? "on" : "off", gpu->refill_lanes, gpu->texels ? "yes" : "no");
+    printf("| krs: early outs | %s |\n| krs: lanes that refill | %u |\n",
+           renderer->early_outs ? "on" : "off", gpu->refill_lanes);
+    printf("| krs: reads texels | %s |\n", gpu->texels ? "yes" : "no");
 }
