@@ -240,7 +240,7 @@ KrsStatus options_parse(Options *options, int argc, char **argv)
 }
 
 const char exit_statuses[] =
-    "0 done; 1 the scene is wrong; 2 wrong usage; 69 no device; 70 a bug, or\n"
+    "0 done; 1 the scene is wrong or beyond a limit; 2 wrong usage; 69 no device; 70 a bug, or\n"
     "the driver's; 71 out of memory; 73 cannot create the output; 74 cannot read the scene\n"
     "or write the output; 130 interrupted.\n";
 

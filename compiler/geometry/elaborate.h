@@ -83,6 +83,10 @@ Scope      *scope_load(Elaboration *e, uint32_t source, const char *path);
 /* A definition of the file or of the files that it uses, or NULL. */
 Definition *scope_find(const Scope *scope, const char *name);
 
+/* How far from the origin shapes, cameras and lights may be: single precision, in which devices
+   compute, ends at 3e38, and its squares much earlier. */
+static const double MOST_EXTENT = 1e12;
+
 /* ---- expression.c ---- */
 /* VALUE_ERROR: a mistake was found, and has been reported. */
 Value evaluate(Elaboration *e, const Environment *env, const Syntax *syntax);

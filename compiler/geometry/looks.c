@@ -125,6 +125,26 @@ static Node vector_property(Elaboration *e, const Environment *env, const Syntax
     return node == NODE_NONE ? graph_constant(e->graph, TYPE_VEC3, otherwise) : node;
 }
 
+/* A place.  A `param` without a range may be anything, and says so at its frame. */
+static Node place_property(Elaboration *e, const Environment *env, const Syntax *block,
+                           const char *name, const double otherwise[3])
+{
+    Node          place  = vector_property(e, env, block, name, otherwise);
+    const Syntax *syntax = find_property(block, name);
+    for (uint32_t i = 0; syntax && i < 3; i++) {
+        Range  range = node_range(e, place, i);
+        double far   = fmax(isfinite(range.low) ? fabs(range.low) : 0,
+                            isfinite(range.high) ? fabs(range.high) : 0);
+        if (far <= MOST_EXTENT)
+            continue;
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span,
+                               "`%s` reaches to %.3g on the %c axis", name, far, "xyz"[i]);
+        diag->label = "farther than 1e12, which devices cannot compute with";
+        break;
+    }
+    return place;
+}
+
 /* A number that must be known when the scene is compiled. */
 static double constant_property(Elaboration *e, const Environment *env, const Syntax *block,
                                 const char *name, double least, double most, double otherwise)
@@ -253,8 +273,8 @@ static void add_camera(Elaboration *e, const Environment *env, const Syntax *syn
     static const char *const projections[] = {"perspective", "orthographic", "panorama"};
     static const double      eye[3]        = {4, 3, 6};
     SceneCamera camera = {.name = syntax->name};
-    camera.eye         = vector_property(e, env, syntax, "eye", eye);
-    camera.target      = vector_property(e, env, syntax, "target", ORIGIN);
+    camera.eye         = place_property(e, env, syntax, "eye", eye);
+    camera.target      = place_property(e, env, syntax, "target", ORIGIN);
     camera.up          = vector_property(e, env, syntax, "up", UP);
     camera.fov         = number_property(e, env, syntax, "fov", 40 * M_PI / 180);
     camera.height      = number_property(e, env, syntax, "height", 4);
@@ -289,7 +309,8 @@ static void add_light(Elaboration *e, const Environment *env, const Syntax *synt
         diag->help = "for example `light sun { direction: [-1, 2, 1], intensity: 3 }`";
         return;
     }
-    light.vector   = vector_property(e, env, syntax, position ? "position" : "direction", UP);
+    light.vector   = position ? place_property(e, env, syntax, "position", UP)
+                              : vector_property(e, env, syntax, "direction", UP);
     Node color     = vector_property(e, env, syntax, "color", WHITE);
     Node intensity = number_property(e, env, syntax, "intensity", 1);
     light.color    = graph_op2(e->graph, OP_scale, color, intensity);

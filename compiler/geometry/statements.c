@@ -148,16 +148,13 @@ static const char *component_name(Elaboration *e, const Syntax *syntax)
     return diag_text(e->diags, "component %zu", e->scene->components.count + 1);
 }
 
-/* An EachElement: shows a shape, or all shapes of a list; `user` is the expression shown. */
-/* Single precision, in which devices compute, ends at 3e38 and its squares much earlier. */
 static bool check_extent(Elaboration *e, const Shape *shape, const Syntax *syntax)
 {
-    const double most = 1e12;
     for (int i = 0; i < 3; i++) {
         Range  axis  = shape->box.axis[i];
         double reach = fmax(isfinite(axis.low) ? fabs(axis.low) : 0,
                             isfinite(axis.high) ? fabs(axis.high) : 0);
-        if (reach <= most)
+        if (reach <= MOST_EXTENT)
             continue;
         Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span,
                                "the shape reaches to %.3g on the %c axis", reach, "xyz"[i]);
@@ -167,6 +164,7 @@ static bool check_extent(Elaboration *e, const Shape *shape, const Syntax *synta
     return true;
 }
 
+/* An EachElement: shows a shape, or all shapes of a list; `user` is the expression shown. */
 static bool show_one(Elaboration *e, Value value, void *user)
 {
     const Syntax *syntax = user;
