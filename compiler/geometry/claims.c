@@ -177,7 +177,8 @@ static void refuse_claim(Elaboration *e, const Syntax *declaration, const char *
     diag_note(e->diags, diag,
               diag_text(e->diags, "%s at [%.4g, %.4g, %.4g]", found, point[0], point[1], point[2]));
     if (strcmp(claim, "exact") == 0)
-        diag->help = "leave `exact` out: the compiler then derives a safe slope";
+        diag->help = "leave `exact` out: the compiler then derives a safe slope; where it is a bound "
+                     "that rises no faster than the distance, claim `slope: 1`";
 }
 
 /* ---- slope and box ---- */
@@ -222,6 +223,58 @@ static bool check_slope_and_box(Elaboration *e, const Shape *shape, double slope
             refuse_claim(e, shape->declaration, "within", "there is something outside of it", a);
             return false;
         }
+    }
+    return true;
+}
+
+/* ---- exact ---- */
+
+/* The unit gradient of a number; false: it is flat there. */
+static bool gradient_at(const Sampling *s, Node number, const double point[3], double gradient[3])
+{
+    double step = 1e-6 * s->size, length = 0;
+    for (int i = 0; i < 3; i++) {
+        double after[3], before[3];
+        memcpy(after, point, sizeof after);
+        memcpy(before, point, sizeof before);
+        after[i] += step;
+        before[i] -= step;
+        sample_at(s, after);
+        gradient[i] = s->values[number].v[0];
+        sample_at(s, before);
+        gradient[i] -= s->values[number].v[0];
+        length = hypot(length, gradient[i]);
+    }
+    for (int i = 0; i < 3; i++)
+        gradient[i] /= length > 0 ? length : 1;
+    return length > 0 && isfinite(length);
+}
+
+/* From outside, the surface lies against the gradient, as far away as an exact distance says. */
+static bool check_exact(Elaboration *e, const Shape *shape)
+{
+    Node     distance = shape->declared;
+    Sampling s;
+    if (!start_sampling(e, &s, &distance, 1, shape->box))
+        return true;
+    s.flat = shape->figure;
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        double point[3], gradient[3], end[3];
+        sample_point(i, s.around, point);
+        sample_at(&s, point);
+        double way = s.values[distance].v[0];
+        if (!(way > 0) || !gradient_at(&s, distance, point, gradient))
+            continue;
+        for (int k = 0; k < 3; k++)
+            end[k] = point[k] - way * gradient[k];
+        sample_at(&s, end);
+        double rest = s.values[distance].v[0];
+        if (rest <= 1e-4 * way + 1e-5 * s.size)
+            continue;
+        const char *found = diag_text(e->diags, "the surface is not %.4g away, as it says, but "
+                                      "farther,", way);
+        refuse_claim(e, shape->declaration, "exact", found, point);
+        return false;
     }
     return true;
 }
@@ -401,7 +454,8 @@ bool check_claims(Elaboration *e, const Shape *shape, double slope)
     if (is_of_library(e, shape))
         return true;
     ShapeClaims claims = claims_of(e->graph, shape, e->scratch);
-    return check_pairs(e, shape, &claims) && check_at_surface(e, shape);
+    return (!shape->exact || check_exact(e, shape)) && check_pairs(e, shape, &claims) &&
+           check_at_surface(e, shape);
 }
 
 bool check_core(Elaboration *e, const Shape *shape, const Shape *core, Node rounding)
