@@ -8,8 +8,8 @@ report() { # name, status
 for kernel in runtime/shaders/*.comp; do
     glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -Icompiler/graph -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL" $?
-    glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -DNO_TEXELS -o /dev/null \
-        "$kernel" >/dev/null
+    glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -Icompiler/graph -DNO_TEXELS \
+        -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL without texels" $?
 done
 for script in tools/*.sh tests/*.sh tests/*/*.sh .ci/run; do

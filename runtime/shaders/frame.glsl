@@ -6,6 +6,7 @@
  * is in runtime/tracer/blocks.h.
  */
 
+#include "grid.glsl"
 #ifdef PANORAMIC // a camera of the scene is: sines would be found for every ray
 #include "sines.glsl"
 #endif
@@ -175,14 +176,6 @@ Ray find_end(uint index)
     uint  bits = row.y;
     return Ray(uintBitsToFloat(row.x), (bits & 4u) != 0u ? -1.0 : 1.0, bits >> 8u, bits & 3u,
                (bits & 8u) != 0u, bits >> 4u & 15u);
-}
-
-// Column and row of the `number`th cell of a grid, row by row.  Whole numbers below 2^22 come out
-// exact, and on lavapipe, which divides integers lane by lane, twenty times faster.
-uvec2 find_cell(uint number, uint across)
-{
-    uint row = uint((float(number) + 0.5) / float(across));
-    return uvec2(number - row * across, row);
 }
 
 // The tiles of `side` pixels a side, counted in the whole picture, that the band has a part of:

@@ -139,11 +139,14 @@ static const Case cases[] = {
                             "reflect plane(random_direction(i), 0.4 + 0.22 * i); } };",
      {.width = 60, .height = 50, .steps_at_once = 3, .slice_ms = 1e-3,
       .schedule = KRS_SCHEDULE_QUEUE}},
-    {"components by themselves", "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
-                                 "def tree(x) = krs { kernel sphere(0.3); for i in 0..9 {"
-                                 "reflect plane(random_direction(i), 0.1 + 0.1 * i); } }"
-                                 ".move([x, 1, 0]);"
-                                 "show tree(-1); show tree(1); show plane([0, 1, 0], 0);",
+    {"components by themselves",
+     "def tree(seed) = krs { kernel capsule([0, 0, 0], [0, 0.3, 0], 0.04).move([0, 0.4, 0]);"
+     "    for i in 0..6 { reflect plane(random_direction(seed + i), 0.12 * i + 0.05);"
+     "        kernel capsule([0, 0, 0], [0.1 * i, 0.3, 0], 0.05 + 0.01 * i); } };"
+     "let bushes = [tree(1), tree(20), tree(40), tree(60)];"
+     "show bushes[0].move([-4.5, 0, 0]); show bushes[1].move([-1.5, 0, 1.5]);"
+     "show bushes[2].move([1.5, 0, 3]); show bushes[3].move([4.5, 0, 4.5]);"
+     "show plane([0, 1, 0], -1); camera { eye: [3, 3, 14], target: [0, 0, 0], fov: 0.6 }",
      {.width = 90, .height = 60, .schedule = KRS_SCHEDULE_QUEUE,
       .components = KRS_COMPONENTS_APART}},
 };
