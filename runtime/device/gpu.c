@@ -539,3 +539,14 @@ bool gpu_is_cpu(const Gpu *gpu)
 {
     return gpu->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && !gpu->pretends_card;
 }
+
+uint64_t gpu_memory(const Gpu *gpu)
+{
+    uint64_t most = 0;
+    for (uint32_t i = 0; i < gpu->memory.memoryHeapCount; i++) {
+        const VkMemoryHeap *heap = &gpu->memory.memoryHeaps[i];
+        if ((heap->flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) && heap->size > most)
+            most = heap->size;
+    }
+    return most;
+}

@@ -67,6 +67,8 @@ void gpu_close(Gpu *gpu);
 bool gpu_list(Gpu *gpu, KrsDevice *devices, size_t capacity, size_t *count);
 KrsDevice gpu_describe(VkPhysicalDevice physical);
 bool      gpu_is_cpu(const Gpu *gpu);
+/* Bytes of the largest memory that is the device's own. */
+uint64_t  gpu_memory(const Gpu *gpu);
 
 /* Zeroed memory of the host, or NULL with the failure noted. */
 void *gpu_alloc(Gpu *gpu, size_t count, size_t size, const char *attempt);

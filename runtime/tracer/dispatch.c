@@ -227,8 +227,10 @@ bool dispatch_finish(Job *job)
         if (control->stopped == 0)
             break;
         first = control->stopped;
+        ControlBlock next = *control; /* what the host says already to those behind the chain */
         if (!run_in_slices(job, &chain->list[first - 1]))
             return false;
+        memcpy(control, &next, offsetof(ControlBlock, queued));
     }
     chain->count = 0;
     return true;

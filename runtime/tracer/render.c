@@ -12,10 +12,12 @@
 #include "runtime/tracer/stage.h"
 #include "runtime/tracer/view.h"
 
-/* Pixels of a band: room for 80 MB of buffers, none larger than the smallest devices bind; on a
-   processor half as many, which stay nearer to it and are made of pages that must be cleared. */
-#define BAND_PIXELS     (UINT64_C(1) << 18)
+/* Pixels of a band: on a graphics card all of a common picture, in 560 MB of buffers, or as many
+   as a part of its memory has room for; on a processor few, which stay near to it, and are made of
+   pages that must be cleared. */
+#define BAND_PIXELS     (UINT64_C(1) << 21)
 #define BAND_PIXELS_CPU (UINT64_C(1) << 17)
+#define PART_OF_MEMORY  4
 /* Bands are halved when the device lacks memory, down to this. */
 #define BAND_PIXELS_MIN (UINT64_C(1) << 12)
 #define LARGEST_SIDE    16384
@@ -218,15 +220,24 @@ static uint32_t rows_within(uint32_t width, uint64_t pixels)
     return rows < TILE ? TILE : (uint32_t)rows;
 }
 
-/* As many pixels as a band may have for none of its buffers to be longer than kernels may read. */
+/* What the buffers of a band hold for a pixel, about. */
+#define BAND_BYTES (END_BYTES + HIT_BYTES + 2 * RESULT_ROWS * RESULT_BYTES + 2 * MARCH_BYTES + 4)
+
+/* As many pixels as a band may have, for it to fit into the device's memory and for none of its
+   buffers to be longer than kernels may read. */
 static uint64_t most_pixels(const Gpu *gpu)
 {
+    const uint64_t usual = gpu_is_cpu(gpu) ? BAND_PIXELS_CPU : BAND_PIXELS;
     const VkPhysicalDeviceLimits *limits = &gpu->properties.limits;
     const uint64_t slack = buffer_texel_bytes(1); /* what rounding adds at most */
     const uint64_t in_range = (limits->maxStorageBufferRange - slack) / (RESULT_ROWS * RESULT_BYTES);
     const uint64_t in_texels = (limits->maxTexelBufferElements - slack / sizeof(uint32_t)) /
                                (2 * MARCH_BYTES / sizeof(uint32_t));
-    return gpu->texels && in_texels < in_range ? in_texels : in_range;
+    const uint64_t in_memory = gpu_memory(gpu) / PART_OF_MEMORY / BAND_BYTES;
+    uint64_t       most = in_range < in_memory ? in_range : in_memory;
+    most = gpu->texels && in_texels < most ? in_texels : most;
+    most = most < usual ? most : usual;
+    return most > BAND_PIXELS_MIN ? most : BAND_PIXELS_MIN;
 }
 
 /* Makes room for a band of the picture, for a smaller one when memory is short, and returns its
@@ -235,9 +246,7 @@ static uint32_t make_room(Job *job)
 {
     const KrsWindow *window = &job->cover;
     const uint64_t   across = (window->width + TILE - 1) / TILE * TILE; /* tiles may end outside */
-    const uint64_t   usual = gpu_is_cpu(job->gpu) ? BAND_PIXELS_CPU : BAND_PIXELS;
-    const uint64_t   most = most_pixels(job->gpu);
-    for (uint64_t pixels = usual < most ? usual : most; pixels >= BAND_PIXELS_MIN; pixels /= 2) {
+    for (uint64_t pixels = most_pixels(job->gpu); pixels >= BAND_PIXELS_MIN; pixels /= 2) {
         uint32_t rows = rows_within(window->width, pixels);
         rows = rows < window->height ? rows : window->height;
         if (band_create(job->rendering, (rows + TILE - 1) / TILE * TILE * across)) {

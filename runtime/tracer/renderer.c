@@ -3,6 +3,7 @@
  */
 #include "runtime/tracer/renderer.h"
 
+#include <math.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -520,6 +521,30 @@ static void kernels_destroy(Gpu *gpu, SceneKernels *kernels)
     *kernels = (SceneKernels){0};
 }
 
+/* What a kernel with the scene does for an item before it may be interrupted, in distances, about;
+   without the scene it does as much as some operations. */
+static const double distances_of_item[KRS_PHASE_COUNT] = {
+    [KRS_PHASE_BEAMS] = 64,     [KRS_PHASE_PRIMARY] = 16, [KRS_PHASE_NORMALS] = 7,
+    [KRS_PHASE_SHADOWS] = 64,   [KRS_PHASE_OCCLUSION] = 5, [KRS_PHASE_SHADING] = 4,
+    [KRS_PHASE_RESOLVE] = 1,
+};
+#define FLOPS_WITHOUT_SCENE 1000
+
+/* The first slice, in groups: 50 ms on a slow device of its kind, until more is known.  A processor
+   is interrupted at every look of its driver, so there it may be short. */
+static uint32_t guess_slice(const KrsRendering *rendering, int phase, bool has_scene)
+{
+    static const double slow[] = { /* flops of 50 ms, where a tenth of what is promised is reached */
+        [KRS_DEVICE_OTHER] = 5e8,      [KRS_DEVICE_CPU] = 5e8,      [KRS_DEVICE_VIRTUAL] = 5e8,
+        [KRS_DEVICE_INTEGRATED] = 1e9, [KRS_DEVICE_DISCRETE] = 1e10,
+    };
+    const Gpu *gpu = &rendering->renderer->gpu;
+    double flops = has_scene ? rendering->program->flops * distances_of_item[phase]
+                             : FLOPS_WITHOUT_SCENE;
+    double groups = slow[gpu_describe(gpu->physical).kind] / (64 * fmax(flops, 1));
+    return gpu_is_cpu(gpu) ? 8 : (uint32_t)fmin(fmax(groups, 1), MOST_GROUPS);
+}
+
 KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRendering **out)
 {
     return krs_rendering_new_for(renderer, scene, KRS_FOR_PICTURES, out);
@@ -541,8 +566,9 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
     rendering->panoramic = krs_scene_is_panoramic(scene);
     rendering->spirv_ms = renderer->spirv_ms;
     rendering->pipeline_ms = renderer->pipeline_ms;
-    for (int i = 0; i < 2 * KRS_PHASE_COUNT; i++)
-        rendering->groups_at_once[i / 2][i % 2] = gpu_is_cpu(&renderer->gpu) ? 8 : 1024;
+    for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
+        for (int has_scene = 0; has_scene < 2; has_scene++)
+            rendering->groups_at_once[phase][has_scene] = guess_slice(rendering, phase, has_scene);
     if (!sets_create(rendering) || !buffers_create(rendering) || !panoramic_create(rendering) ||
         !kernels_create(rendering, purpose)) {
         KrsStatus status = renderer->gpu.status;

@@ -134,11 +134,18 @@ static const Case cases[] = {
     {"a polynomial", "camera { eye: [3, 2, 3], fov: 0.6 }"
                      "show algebraic(x ^ 4 + y ^ 4 + z ^ 4 == 1).within(sphere(1.5));",
      {.width = 100, .height = 70, .schedule = KRS_SCHEDULE_QUEUE}},
-    {"the shortest slices", "camera { eye: [2, 6, 22], fov: 0.6 }"
-                            "show krs { kernel sphere(0.45); for i in 0..12 {"
-                            "reflect plane(random_direction(i), 0.4 + 0.22 * i); } };",
-     {.width = 60, .height = 50, .steps_at_once = 3, .slice_ms = 1e-3,
+    /* Rays that take more steps than a chain has. */
+    {"the shortest slices", "camera { eye: [3, 4, 7], fov: 0.6 }"
+                            "show torus(0.5, 0.15).repeat([1.4, 0.9, 1.4], [5, 3, 5]);",
+     {.width = 60, .height = 50, .steps_at_once = 1, .slice_ms = 1e-3, .trace = KRS_TRACE_PLAIN,
+      .no_beams = true,
       .schedule = KRS_SCHEDULE_QUEUE}},
+    /* More groups than the first slice has, and rays with more steps than a chain. */
+    {"a chain that stops at once", "camera { eye: [2, 6, 22], fov: 0.6 }"
+                                   "show krs { kernel sphere(0.45); for i in 0..12 {"
+                                   "reflect plane(random_direction(i), 0.4 + 0.22 * i); } };",
+     {.width = 400, .height = 300, .steps_at_once = 1, .slice_ms = 1e6, .trace = KRS_TRACE_PLAIN,
+      .no_beams = true, .schedule = KRS_SCHEDULE_QUEUE}},
     {"components by themselves",
      "def tree(seed) = krs { kernel capsule([0, 0, 0], [0, 0.3, 0], 0.04).move([0, 0.4, 0]);"
      "    for i in 0..6 { reflect plane(random_direction(seed + i), 0.12 * i + 0.05);"
