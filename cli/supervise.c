@@ -397,7 +397,7 @@ int supervise(Options *options, Work *work)
     Watch watch = {.child = fork(), .started_at = clock_now()};
     if (watch.child < 0) {
         say("cannot start a process: %s", strerror(errno));
-        return errno == ENOMEM ? KRS_OUT_OF_MEMORY : KRS_INTERNAL;
+        return KRS_OUT_OF_MEMORY; /* or as many processes as the user may have */
     }
     if (watch.child == 0)
         run_child(options, work, &before);

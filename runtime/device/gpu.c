@@ -12,7 +12,7 @@
 #include <time.h>
 
 #include "runtime/device/pipelines.h"
-#include "runtime/device/threads.h"
+#include "runtime/device/resources.h"
 
 #define VALIDATION_LAYER "VK_LAYER_KHRONOS_validation"
 /* Where fewer texels than that can be read, buffers are: the lowest band of the widest picture has
@@ -67,6 +67,10 @@ void gpu_refuse(Gpu *gpu, KrsStatus status, const char *format, ...)
 
 void gpu_fail(Gpu *gpu, VkResult result, const char *attempt)
 {
+    bool starts = result != VK_ERROR_INCOMPATIBLE_DRIVER &&
+                  result != VK_ERROR_INITIALIZATION_FAILED; /* what a loader says in want of memory */
+    if (!starts && !memory_suffices_to_start())
+        result = VK_ERROR_OUT_OF_HOST_MEMORY;
     switch (result) {
     case VK_ERROR_OUT_OF_HOST_MEMORY:
         gpu_refuse(gpu, KRS_OUT_OF_MEMORY, "cannot %s: out of memory", attempt);

@@ -2,7 +2,7 @@
 # failures.sh: crashes, interrupts, missing devices and missing memory.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 35
+plan 37
 small="--size 16x12 --quiet"
 
 for stage in start compile shaders device render write; do
@@ -147,6 +147,24 @@ else
     skip "no thread can be made" "no compiler"
     skip "a device whose threads are missing is given up" "no compiler"
 fi
+
+if strace -o /dev/null true 2>/dev/null; then
+    strace -o /dev/null -e trace=clone -e inject=clone:error=EAGAIN:when=1 "$krs" check ball.krs \
+        >out 2>err
+    status=$?
+    said 71 "cannot start a process" "no process can be made"
+else
+    skip "no process can be made" "no strace, or no right to use it"
+fi
+(
+    # shellcheck disable=SC3045
+    ulimit -v 150000
+    # shellcheck disable=SC2086
+    "$krs" render ball.krs $small --device cpu -o a.exr >out 2>err
+)
+status=$?
+[ "$status" -eq 71 ] && [ "$(wc -l <err)" -eq 1 ] && grep -q 'memory' err
+result $? "no memory for a driver to start"
 
 # Nine megabytes of text; the command itself needs far less than the limit.
 awk 'BEGIN { for (i = 0; i < 300000; i++) printf "let a%d = [%d, %d, %d];\n", i, i, i, i }' >big.krs

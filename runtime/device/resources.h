@@ -1,8 +1,10 @@
 /*
- * threads.h: whether a driver will get the threads that it needs.
+ * resources.h: whether a driver will get the threads and the memory that it needs.
  */
-#ifndef KRS_THREADS_H
-#define KRS_THREADS_H
+#ifndef KRS_RESOURCES_H
+#define KRS_RESOURCES_H
+
+#include <stdbool.h>
 
 /* How many of `wanted` threads can be there at the same time. */
 unsigned threads_available(unsigned wanted);
@@ -10,5 +12,8 @@ unsigned threads_available(unsigned wanted);
 /* How many a driver that computes on the processor makes: for each core one for triangles and one
    for kernels, of up to 32 cores, and one for the queue. */
 unsigned threads_of_software_device(void);
+
+/* Whether there is as much memory as drivers take to start at all. */
+bool memory_suffices_to_start(void);
 
 #endif

@@ -1,12 +1,13 @@
 /*
- * threads.c: whether a driver will get the threads that it needs.
+ * resources.c: whether a driver will get the threads and the memory that it needs.
  *
  * Where the user or a container may have no more, lavapipe waits for ever for those that could not
  * be made.  So they are made once before, with the same stacks, and at the same time.
  */
-#include "runtime/device/threads.h"
+#include "runtime/device/resources.h"
 
 #include <pthread.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 enum { MOST_CORES = 32, MOST_THREADS = 2 * MOST_CORES + 1 };
@@ -39,4 +40,15 @@ unsigned threads_of_software_device(void)
 {
     long cores = sysconf(_SC_NPROCESSORS_ONLN);
     return 2 * (unsigned)(cores < 1 ? 1 : cores > MOST_CORES ? MOST_CORES : cores) + 1;
+}
+
+/* lavapipe and its compiler take 200 MiB of addresses before anything is drawn. */
+bool memory_suffices_to_start(void)
+{
+    const size_t bytes = (size_t)256 << 20;
+    void *block = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (block == MAP_FAILED)
+        return false;
+    munmap(block, bytes);
+    return true;
 }
