@@ -34,7 +34,7 @@ GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c a
                 declare.c claims.c empty.c methods.c looks.c palette.c scope.c statements.c print.c lower.c lower_normal.c lower_repeat.c \
                 lower_deform.c lower_krs.c lower_along.c lower_guards.c lower_moebius.c \
                 lower_images.c)
-SHADER   := $(addprefix compiler/shader/, emit.c statements.c mirrors.c early_outs.c march.c spirv.c)
+SHADER   := $(addprefix compiler/shader/, emit.c statements.c frame_values.c mirrors.c early_outs.c march.c spirv.c)
 BORDER   := compiler/shader/glslang_border.cpp
 DOORSTEP := $(addprefix compiler/, compile.c roots.c precision.c limits.c keep.c groups.c program.c \
                 framing.c frame.c query.c search.c refute.c bounds.c)

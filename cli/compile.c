@@ -42,7 +42,8 @@ static KrsStatus write_description(const Options *options, const KrsScene *scene
     text_json(&json, name);
     text_add(&json, ", ");
     info_add_json(&json, scene);
-    text_format(&json, ", \"parameter_slots\": %zu, \"entries\": [", krs_parameter_slots(scene));
+    text_format(&json, ", \"parameter_slots\": %zu, \"value_slots\": %zu, \"entries\": [",
+                krs_parameter_slots(scene), krs_value_slots(scene));
     for (size_t i = 0; i < modules->count; i++) {
         text_add(&json, i == 0 ? "" : ", ");
         module_add_json(&json, &modules->items[i]);

@@ -117,15 +117,17 @@ static void emit(Compilation *c)
                        .groups       = program->group_count ? groups : NULL,
                        .flat         = program->flats ? flat : NULL,
                        .anchored     = program->anchored ? roots->anchored : NULL,
-                       .precise_slot = slots + KRS_MOST_ZONES,
+                       .zone_slots   = KRS_MOST_ZONES,
                        .ahead        = roots->flats,
                        .slopes       = scene->slope_count > 0,
                        .gradient     = program->gradients ? roots->gradients : NULL};
     emit_glsl(scene->graph, &c->sources, roots->components, count, zone_root(scene), &march,
-              &c->scratch, &glsl);
+              &c->scratch, &glsl, &scene->found);
     program->glsl            = glsl.bytes;
     program->glsl_length     = glsl.length;
     program->parameter_slots = slots;
+    program->value_slots     = scene->found.plain.slots;
+    program->anchored_slots  = scene->found.anchored.slots;
     if (dumps(c, DUMP_GLSL))
         text_add(&c->dump, glsl.bytes);
 }

@@ -38,9 +38,10 @@
  * A scene of several heavy components has groups of them (KrsGroup): with GROUP defined as the
  * number of one there is krs_distance alone, and of that group alone.
  *
- * N is parameter_slots (at least 1), what is in them is told at krs_frame_parameters.  Zones
- * of the scene have been cut out of distances.  With ZONES defined, as many slots follow for zones
- * of the caller (krs_frame_zones).
+ * N is parameter_slots (at least 1), what is in them is told at krs_frame_parameters.  With
+ * FRAME_VALUES defined, value_slots more follow (krs_frame_values), and lanes need not find what
+ * depends on the frame alone.  Zones of the scene have been cut out of distances.  With ZONES
+ * defined, as many slots follow for zones of the caller (krs_frame_zones).
  */
 typedef struct KrsCamera {
     enum { KRS_PERSPECTIVE, KRS_ORTHOGRAPHIC, KRS_PANORAMA } projection;
@@ -91,6 +92,7 @@ typedef struct KrsProgram {
     const char *glsl;         /* promised functions, readable, with comments of source lines */
     size_t      glsl_length;
     uint32_t    parameter_slots;
+    uint32_t    value_slots;  /* how many follow for kernels with #define FRAME_VALUES */
     double      low[3], high[3]; /* box around all components; infinite where unbounded */
     size_t      operations;   /* of krs_distance */
     double      flops;        /* of krs_distance, weighted as op_cost has it */
@@ -98,7 +100,7 @@ typedef struct KrsProgram {
     bool        flats;        /* there is krs_ahead, for kernels with #define FLATS */
     double      rest_low[3], rest_high[3]; /* with flats: the box around what is left to march */
     bool        anchored;     /* points may be given from an anchor, with #define ANCHORED */
-    size_t      precise_slots; /* then: how many more slots follow those of the zones */
+    uint32_t    anchored_slots; /* then: how many more slots follow those of the zones */
     bool        gradients;    /* there is krs_gradient, for kernels with #define GRADIENT */
     bool        algebraic;    /* normals are by krs_gradient unless asked for otherwise */
     bool        along;        /* there is krs_along, for kernels with #define ALONG */
@@ -128,8 +130,8 @@ KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view);
 /* Whether what single precision does not tell of such a coordinate shows in pixels of that width,
    so that points have to be given from an anchor. */
 bool krs_needs_anchor(double coordinate, double pixel);
-/* What kernels with an anchor get for it, precise_slots vec4s, found in double precision. */
-size_t krs_frame_anchor(KrsFrame *frame, const double anchor[3], float (*block)[4]);
+/* What kernels with an anchor get for it, anchored_slots vec4s, found in double precision. */
+void krs_frame_anchor(KrsFrame *frame, const double anchor[3], float (*block)[4]);
 /* The zones of the caller (center, radius), to stand behind the parameter block when the GLSL is
    compiled with ZONES defined as that many or more; the others must have a radius that is far
    below 0.  Returns how many. */

@@ -204,17 +204,18 @@ size_t krs_frame_zones(const KrsFrame *frame, float (*zones)[4])
 }
 
 /* The anchor has the last slot. */
-size_t krs_frame_anchor(KrsFrame *frame, const double anchor[3], float (*block)[4])
+void krs_frame_anchor(KrsFrame *frame, const double anchor[3], float (*block)[4])
 {
     const KrsScene *scene = frame->scene;
     if (!scene->program.anchored)
-        return 0;
+        return;
     memcpy(frame->parameters[scene->program.parameter_slots - 1].v, anchor, 3 * sizeof *anchor);
-    tape_run_frame(&scene->precise, frame->parameters, frame->values);
-    for (size_t i = 0; i < scene->precise_count; i++)
-        for (int k = 0; k < 4; k++)
-            block[i][k] = (float)frame->values[scene->precise_nodes[i]].v[k];
-    return scene->precise_count;
+    frame_values_find(&scene->found.anchored, frame->parameters, frame->values, block);
+}
+
+void krs_frame_values(const KrsFrame *frame, float (*block)[4])
+{
+    frame_values_find(&frame->scene->found.plain, frame->parameters, frame->values, block);
 }
 
 void krs_frame_parameters(const KrsFrame *frame, float (*block)[4])

@@ -117,21 +117,6 @@ void keep_scene(Compilation *c)
     }
 }
 
-/* Everything that the host finds for kernels with an anchor, in the order of its slots. */
-static Tape precise_tape(Compilation *c)
-{
-    KrsScene    *scene = c->scene;
-    const Graph *graph = scene->graph;
-    Node        *found = arena_new_array(&scene->arena, Node, graph->count + 1);
-    size_t       count = 0;
-    for (Node n = 0; n < graph->count; n++)
-        if (graph->items[n].op == OP_precise)
-            found[count++] = n;
-    scene->precise_nodes = found;
-    scene->precise_count = count;
-    return tape_new(graph, found, count, &scene->arena);
-}
-
 /* Of which components there are steps along rays, and which of those are for inversions. */
 static void find_steps(KrsScene *scene, const Node *distances)
 {
@@ -163,9 +148,6 @@ void keep_tapes(Compilation *c)
                                (size_t)(roots->cameras - roots->components), &scene->arena);
     scene->view     = tape_new(scene->graph, roots->cameras,
                                (size_t)(roots->guarded - roots->cameras), &scene->arena);
-    if (scene->program.anchored)
-        scene->precise = precise_tape(c);
-    scene->program.precise_slots = scene->precise_count;
     scene->program.operations = scene->distance.count - scene->distance.frame_count;
     scene->program.flops      = tape_flops(&scene->distance);
     scene->program.loops      = tape_loops(&scene->distance);

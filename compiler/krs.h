@@ -124,6 +124,13 @@ const char *krs_frame_unbounded(const KrsFrame *frame);
  */
 size_t krs_parameter_slots(const KrsScene *scene);
 void   krs_frame_parameters(const KrsFrame *frame, float (*block)[4]);
+/*
+ * With FRAME_VALUES defined, that GLSL reads what else depends on the frame alone (turns by a
+ * parameter, sines of the time) from krs_value_slots more slots, behind those, instead of finding
+ * it for each point anew: fewer registers, and the digits of double precision.
+ */
+size_t krs_value_slots(const KrsScene *scene);
+void   krs_frame_values(const KrsFrame *frame, float (*block)[4]);
 /* The slot of slope `index`, and the place of its expression; KRS_BAD_ARGUMENT when there is
    none. */
 typedef struct KrsFrameSlope {

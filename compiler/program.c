@@ -20,6 +20,7 @@ size_t      krs_zone_count(const KrsScene *scene) { return scene->zone_count; }
 const char *krs_scene_hash(const KrsScene *scene) { return scene->hash; }
 size_t      krs_parameter_count(const KrsScene *scene) { return scene->parameter_count; }
 size_t      krs_parameter_slots(const KrsScene *scene) { return scene->program.parameter_slots; }
+size_t      krs_value_slots(const KrsScene *scene) { return scene->program.value_slots; }
 size_t      krs_frame_slope_count(const KrsScene *scene) { return scene->slope_count; }
 size_t      krs_component_count(const KrsScene *scene) { return scene->component_count; }
 

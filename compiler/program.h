@@ -8,6 +8,7 @@
 #include "compiler/compile.h"
 #include "compiler/geometry/lower.h"
 #include "compiler/graph/evaluate.h"
+#include "compiler/shader/emit.h"
 
 /* How many roots each has. */
 enum { CAMERA_ROOTS = 5, LIGHT_ROOTS = 3, SKY_ROOTS = 3, FLAT_ROOTS = 2, GRADIENT_ROOTS = 2 };
@@ -60,9 +61,7 @@ struct KrsScene {
     Tape         distance; /* of all components, and zones */
     Tape         guarded;  /* of all components: roots.guarded, with what may be left out */
     Tape         surface;  /* all roots of all components */
-    Tape         precise;  /* OP_precise, of which there are precise_count: precise_nodes */
-    const Node  *precise_nodes;
-    size_t       precise_count;
+    EmittedFrame found;    /* what kernels get from the host for a frame, and for an anchor */
     Tape         view;     /* cameras, lights and sky */
 };
 

@@ -17,10 +17,10 @@ static void emit_zones(Emitter *e, Node zone)
         emit_body(e, &zone, 1);
         text_format(e->out, "    return %s;\n}\n\n", e->text[zone]);
     }
-    text_format(e->out,
+    text_add(e->out,
                 "// The distance where zones have been cut out: those of the scene, and ZONES of\n"
-                "// the caller, of which slot %zu holds the first: center and radius.\n"
-                "float krs_cut(vec3 p, float d)\n{\n", e->graph->parameters.count);
+                "// the caller, of which slot KRS_SLOTS holds the first: center and radius.\n"
+                "float krs_cut(vec3 p, float d)\n{\n");
     if (zone != NODE_NONE)
         text_add(e->out, "    d = max(d, krs_zone_depth(p));\n");
     text_add(e->out, "#ifdef ZONES\n"
@@ -199,30 +199,23 @@ static void emit_struct(Emitter *e)
 
 /* ---- the whole ---- */
 
-/* Numbers what the host finds; returns how many slots that takes. */
-static uint32_t number_precise(Emitter *e, uint32_t slot)
-{
-    uint32_t first = slot;
-    for (Node n = 0; n < e->graph->count; n++)
-        if (e->graph->items[n].op == OP_precise)
-            e->precise[n] = slot++;
-    return slot - first;
-}
-
 /* The whole again for kernels far from the origin, to whom points are given from an anchor. */
-static void emit_anchored(Emitter *e, const EmitMarch *march, size_t components)
+static void emit_anchored(Emitter *e, const EmitMarch *march, size_t components,
+                          FrameValues *values)
 {
     const Node *roots = march->anchored, *ahead = roots + components * ROOT_COUNT;
-    uint32_t    slots = number_precise(e, march->precise_slot);
     EmitMarch   plain = {.flat = march->flat, .ahead = ahead};
+    emit_lay_out(e, roots, components * ROOT_COUNT + 2, values);
+    e->from_host = true;
     text_format(e->out,
                 "#ifdef ANCHORED // p is given from an anchor near it: graph/anchor.h\n"
                 "layout(std140, set = 0, binding = 0) uniform KrsParameters "
                 "{ vec4 krs_parameter[%u]; };\n\n",
-                march->precise_slot + slots + 1);
+                values->first_slot + values->slots + 1);
     emit_struct(e);
     emit_helpers(e, roots, components * ROOT_COUNT + 2);
-    emit_frame(e, roots, components * ROOT_COUNT + 2);
+    emit_frame(e, roots, components * ROOT_COUNT + 2, values);
+    e->from_host = false;
     text_add(e->out, "float krs_cut(vec3 p, float d) { return d; }\n\n");
     emit_distances(e, roots, components, NULL, march->flat);
     emit_parts(e, NULL, march->flat, components);
@@ -241,8 +234,8 @@ static Emitter emitter_new(const Graph *graph, const Sources *sources, Arena *sc
     e.nesting = arena_new_array(scratch, uint8_t, count);
     e.uses    = arena_new_array(scratch, uint32_t, count);
     e.beyond  = arena_new_array(scratch, const char *, count);
+    e.place   = arena_new_array(scratch, uint32_t, count);
     e.feeds_mirror = arena_new_array(scratch, uint8_t, count);
-    e.precise = arena_new_array(scratch, uint32_t, count);
     return e;
 }
 
@@ -291,35 +284,49 @@ static void emit_head(Emitter *e, const EmitMarch *march)
              "#endif\n");
 }
 
-static void emit_parameters(Emitter *e)
+static void emit_parameters(Emitter *e, const FrameValues *values)
 {
     size_t slots = e->graph->parameters.count;
-    text_format(e->out,
-                "#ifdef ZONES\n"
-                "layout(std140, set = 0, binding = 0) uniform KrsParameters "
-                "{ vec4 krs_parameter[%zu + ZONES]; };\n"
-                "vec4 krs_zones[ZONES];\n"
-                "#else\n"
-                "layout(std140, set = 0, binding = 0) uniform KrsParameters "
-                "{ vec4 krs_parameter[%zu]; };\n"
-                "#endif\n\n",
-                slots, slots);
+    if (values->slots > 0)
+        text_format(e->out,
+                    "// With FRAME_VALUES defined, %u more slots hold what else depends on the\n"
+                    "// frame alone: krs_frame_values in krs.h.\n"
+                    "#ifdef FRAME_VALUES\n"
+                    "#define KRS_SLOTS %zu\n"
+                    "#else\n"
+                    "#define KRS_SLOTS %zu\n"
+                    "#endif\n", values->slots, slots + values->slots, slots);
+    else
+        text_format(e->out, "#define KRS_SLOTS %zu\n", slots);
+    text_add(e->out,
+             "#ifdef ZONES\n"
+             "layout(std140, set = 0, binding = 0) uniform KrsParameters "
+             "{ vec4 krs_parameter[KRS_SLOTS + ZONES]; };\n"
+             "vec4 krs_zones[ZONES];\n"
+             "#else\n"
+             "layout(std140, set = 0, binding = 0) uniform KrsParameters "
+             "{ vec4 krs_parameter[KRS_SLOTS]; };\n"
+             "#endif\n\n");
 }
 
 void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
-               size_t component_count, Node zone, const EmitMarch *march, Arena *scratch, Text *out)
+               size_t component_count, Node zone, const EmitMarch *march, Arena *scratch, Text *out,
+               EmittedFrame *frame)
 {
     Emitter e = emitter_new(graph, sources, scratch, out);
     size_t  count;
     Node   *all = gather_roots(roots, component_count * ROOT_COUNT + (zone != NODE_NONE), march,
                                component_count, scratch, &count);
+    *frame = (EmittedFrame){.plain.first_slot = (uint32_t)graph->parameters.count};
+    emit_lay_out(&e, all, count, &frame->plain);
+    frame->anchored.first_slot = frame->plain.first_slot + frame->plain.slots + march->zone_slots;
     emit_head(&e, march);
     if (march->anchored)
-        emit_anchored(&e, march, component_count);
-    emit_parameters(&e);
+        emit_anchored(&e, march, component_count, &frame->anchored);
+    emit_parameters(&e, &frame->plain);
     emit_struct(&e);
     emit_helpers(&e, all, count);
-    emit_frame(&e, all, count);
+    emit_frame(&e, all, count, &frame->plain);
     emit_zones(&e, zone);
     emit_distances(&e, roots, component_count, march->groups, march->flat);
     emit_flats(&e, march);

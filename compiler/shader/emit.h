@@ -5,6 +5,7 @@
 #define KRS_EMIT_H
 
 #include "compiler/geometry/lower.h"
+#include "compiler/shader/frame_values.h"
 
 /* How components are to be marched. */
 typedef struct EmitMarch {
@@ -15,7 +16,7 @@ typedef struct EmitMarch {
     const bool *flat;       /* whether each is a plane that krs_ahead knows; NULL: none is */
     const Node *anchored;   /* NULL, or all roots of all components and the two of `ahead` again, by
                                graph_anchor, for kernels with #define ANCHORED */
-    uint32_t    precise_slot; /* where what the host finds for them begins in the parameter block */
+    uint32_t    zone_slots; /* before what the host finds for those */
     const Node *ahead;      /* with `flat`: where a ray meets one, and how steeply it falls */
     bool        slopes;     /* there are slots of slopes */
     const Node *gradient;   /* of each component and of the zones: lower_gradient's two; FLOATs
@@ -25,11 +26,16 @@ typedef struct EmitMarch {
 /* In how many parts so many components are marched, where each ray goes on with the one that comes
    next. */
 uint32_t emit_part_count(size_t components);
+/* What the host finds for each frame, and for each anchor. */
+typedef struct EmittedFrame {
+    FrameValues plain, anchored;
+} EmittedFrame;
+
 /* Text of a program with `component_count` components; the roots of component i are
    roots[i * ROOT_COUNT + ...], nodes of a simplified graph.  `zone`, the depth in zones, follows
    them, or is NODE_NONE. */
 void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
                size_t component_count, Node zone, const EmitMarch *march, Arena *scratch,
-               Text *out);
+               Text *out, EmittedFrame *frame);
 
 #endif

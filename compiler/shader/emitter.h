@@ -24,7 +24,8 @@ typedef struct Emitter {
     const char   **beyond;  /* of mirrors in a row: the name of how far beyond it the point is */
     uint32_t       next;    /* number of the next local name */
     uint32_t       globals;
-    uint32_t      *precise; /* of OP_precise: its slot in the parameter block */
+    uint32_t      *place;   /* of values that the host finds: their number + 1 */
+    bool           from_host; /* there is nothing but what the host finds of the frame */
     Regions        regions; /* of the function being written, where it has guards */
     Span           last;    /* the line that was commented last */
 } Emitter;
@@ -34,8 +35,10 @@ typedef struct Emitter {
 /* Statements for all that the roots need, in a function of the point; e->text has what stands for
    each root then. */
 void emit_body(Emitter *e, const Node *roots, size_t count);
-/* krs_prepare, and the globals that it sets: frame values that functions of the point need. */
-void emit_frame(Emitter *e, const Node *roots, size_t count);
+/* Gives all that functions of the point need of the frame their places. */
+void emit_lay_out(Emitter *e, const Node *roots, size_t count, FrameValues *values);
+/* krs_prepare, and the globals that it sets: those values. */
+void emit_frame(Emitter *e, const Node *roots, size_t count, const FrameValues *values);
 /* The functions that operations call. */
 void emit_helpers(Emitter *e, const Node *roots, size_t count);
 /* A function that is not a list of statements: what it needs, with names for what is constant in

@@ -145,11 +145,12 @@ static const char *fill_template(Emitter *e, const Expr *expr)
     return text.bytes;
 }
 
-static const char *slot_text(Emitter *e, uint32_t slot, GraphType type)
+/* `width` components of a slot. */
+static const char *slot_text(Emitter *e, uint32_t slot, uint32_t first, uint32_t width)
 {
-    static const char *const swizzle[] = {"", ".x", ".xy", ".xyz", ""};
     Text text = {.arena = e->scratch};
-    text_format(&text, "krs_parameter[%u]%s", slot, swizzle[type]);
+    text_format(&text, width == 4 ? "krs_parameter[%u]" : "krs_parameter[%u].%.*s", slot,
+                (int)width, "xyzw" + first);
     return text.bytes;
 }
 
@@ -170,8 +171,7 @@ static const char *node_text(Emitter *e, const Expr *expr)
     case OP_NORMAL:   return "normal";
     case OP_FOOTPRINT: return "footprint";
     case OP_DIRECTION: return "direction";
-    case OP_precise: return slot_text(e, e->precise[expr - e->graph->items], expr->type);
-    case OP_PARAMETER: return slot_text(e, expr->index, expr->type);
+    case OP_PARAMETER: return slot_text(e, expr->index, 0, expr->type);
     case OP_COMPONENT:
         text_format(&text, "%s.%c", e->text[expr->operands[0]], "xyzw"[expr->index]);
         return text.bytes;
@@ -242,8 +242,8 @@ static void count_uses(Emitter *e, const Node *roots, size_t count, bool frame)
         use(e, roots[i], 2); /* a root needs a name */
     for (size_t i = 0; i < e->needed.count; i++) {
         const Expr *expr = &e->graph->items[e->needed.items[i]];
-        if ((!frame && expr->time != TIME_POINT) || expr->op == OP_precise)
-            continue; /* what is precise, the host finds */
+        if (!frame && expr->time != TIME_POINT)
+            continue;
         for (uint32_t k = 0; k < expr->operand_count; k++)
             use(e, expr->operands[k], repeats_operand(e, expr, expr->operands[k]) ? 2 : 1);
         if (expr->op == OP_fold)
@@ -325,13 +325,73 @@ static size_t emit_globals(Emitter *e, const Node *roots, size_t count, Node *se
     return globals;
 }
 
-void emit_frame(Emitter *e, const Node *roots, size_t count)
+void emit_lay_out(Emitter *e, const Node *roots, size_t count, FrameValues *values)
 {
-    Node  *set       = arena_new_array(e->scratch, Node, e->graph->count);
-    bool  *is_global = arena_new_array(e->scratch, bool, e->graph->count);
-    size_t globals   = emit_globals(e, roots, count, set, is_global);
-    text_add(e->out, "\n// Everything that stays the same within a frame: call it first.\n"
-                     "void krs_prepare()\n{\n");
+    count_uses(e, roots, count, false);
+    frame_values_place(values, e->graph, e->needed.items, e->needed.count, e->out->arena,
+                       e->scratch);
+}
+
+static const char *number_text(Emitter *e, const FrameValue *value, uint32_t k)
+{
+    return value->at[k] == NO_PLACE ? emit_number(e, value->constant[k])
+                                    : slot_text(e, value->at[k] / 4, value->at[k] % 4, 1);
+}
+
+/* What the host has found, out of its slots. */
+static const char *found_text(Emitter *e, const FrameValue *value)
+{
+    GraphType type = (GraphType)e->graph->items[value->node].type;
+    uint32_t  last = value->width - 1;
+    bool      together = true;
+    for (uint32_t k = 0; k <= last; k++)
+        together = together && value->at[k] != NO_PLACE && value->at[k] == value->at[0] + k;
+    Text text = {.arena = e->scratch};
+    if (type == TYPE_BOOL)
+        text_format(&text, "(%s != 0.0)", number_text(e, value, 0));
+    else if (type == TYPE_UINT && value->at[0] == NO_PLACE)
+        text_format(&text, "%.0fu", value->constant[0]);
+    else if (type == TYPE_UINT)
+        text_format(&text, "floatBitsToUint(%s)", number_text(e, value, 0));
+    else if (together && value->at[0] / 4 == value->at[last] / 4)
+        return slot_text(e, value->at[0] / 4, value->at[0] % 4, value->width);
+    else if (type == TYPE_FLOAT)
+        return number_text(e, value, 0);
+    else {
+        text_format(&text, "%s(", type_name(type));
+        for (uint32_t k = 0; k <= last; k++)
+            text_format(&text, "%s%s", number_text(e, value, k), k < last ? ", " : ")");
+    }
+    return text.bytes;
+}
+
+/* A value of the frame as kernels get it from the host. */
+static const char *read_text(Emitter *e, const FrameValues *values, Node n)
+{
+    const Expr *expr = &e->graph->items[n];
+    if (e->place[n])
+        return found_text(e, &values->items[e->place[n] - 1]);
+    if (expr->op == OP_COMPONENT && frame_value_is_given(e->graph, n))
+        return slot_text(e, e->graph->items[expr->operands[0]].index, expr->index, 1);
+    for (uint32_t k = 0; k < expr->operand_count; k++) /* a leaf has none */
+        e->text[expr->operands[k]] = read_text(e, values, expr->operands[k]);
+    return node_text(e, expr);
+}
+
+/* The globals from the parameter block, in which the host has put them. */
+static void emit_reads(Emitter *e, const Node *set, size_t globals, const FrameValues *values)
+{
+    memset(e->place, 0, e->graph->count * sizeof *e->place);
+    for (size_t i = 0; i < values->count; i++)
+        e->place[values->items[i].node] = (uint32_t)i + 1;
+    for (size_t i = 0; i < globals; i++)
+        text_format(e->out, "    %s = %s;\n", e->frame[set[i]],
+                    emit_bare(e, read_text(e, values, set[i])));
+}
+
+/* The globals by operations. */
+static void emit_definitions(Emitter *e, const Node *set, size_t globals, const bool *is_global)
+{
     count_uses(e, set, globals, true);
     e->next = 0;
     for (size_t i = 0; i < e->needed.count; i++) {
@@ -346,12 +406,30 @@ void emit_frame(Emitter *e, const Node *roots, size_t count)
         e->text[n]    = e->frame[n];
         e->nesting[n] = 0;
     }
-    text_format(e->out,
-                "#ifdef ZONES\n"
-                "    for (int i = 0; i < ZONES; i++)\n"
-                "        krs_zones[i] = krs_parameter[%zu + i];\n"
-                "#endif\n"
-                "}\n\n", e->graph->parameters.count);
+}
+
+void emit_frame(Emitter *e, const Node *roots, size_t count, const FrameValues *values)
+{
+    Node  *set       = arena_new_array(e->scratch, Node, e->graph->count);
+    bool  *is_global = arena_new_array(e->scratch, bool, e->graph->count);
+    size_t globals   = emit_globals(e, roots, count, set, is_global);
+    text_add(e->out, "\n// Everything that stays the same within a frame: call it first.\n"
+                     "void krs_prepare()\n{\n");
+    if (!e->from_host && values->slots > 0)
+        text_add(e->out, "#ifdef FRAME_VALUES // the host has found them\n");
+    if (e->from_host || values->slots > 0)
+        emit_reads(e, set, globals, values);
+    if (!e->from_host && values->slots > 0)
+        text_add(e->out, "#else\n");
+    if (!e->from_host)
+        emit_definitions(e, set, globals, is_global);
+    if (!e->from_host && values->slots > 0)
+        text_add(e->out, "#endif\n");
+    text_add(e->out, "#ifdef ZONES\n"
+                     "    for (int i = 0; i < ZONES; i++)\n"
+                     "        krs_zones[i] = krs_parameter[KRS_SLOTS + i];\n"
+                     "#endif\n"
+                     "}\n\n");
 }
 
 typedef struct Helpers {

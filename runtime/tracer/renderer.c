@@ -137,12 +137,30 @@ failed:
     return false;
 }
 
+/* Of the parameter block, aside from values of the frame that kernels may find by themselves. */
+static uint32_t slots_without_values(const KrsProgram *program)
+{
+    return program->parameter_slots + KRS_MOST_ZONES + program->anchored_slots + 1;
+}
+
+static uint32_t most_slots(const KrsRendering *rendering)
+{
+    return rendering->renderer->gpu.properties.limits.maxUniformBufferRange / (4 * sizeof(float));
+}
+
+/* How many slots of such values the host fills in: all, or none where the device has no room. */
+static uint32_t value_slots(const KrsRendering *rendering)
+{
+    const KrsProgram *program = rendering->program;
+    uint32_t          slots = slots_without_values(program) + program->value_slots;
+    return program->anchored || slots <= most_slots(rendering) ? program->value_slots : 0;
+}
+
 static bool buffers_create(KrsRendering *rendering)
 {
     Gpu     *gpu = &rendering->renderer->gpu;
-    uint32_t slots = rendering->program->parameter_slots + KRS_MOST_ZONES +
-                     (uint32_t)rendering->program->precise_slots + 1;
-    if (slots > gpu->properties.limits.maxUniformBufferRange / (4 * sizeof(float))) {
+    uint32_t slots = slots_without_values(rendering->program) + value_slots(rendering);
+    if (slots > most_slots(rendering)) {
         gpu_refuse(gpu, KRS_NO_DEVICE, "the device has no room for the scene's %u parameters",
                    rendering->program->parameter_slots);
         return false;
@@ -240,7 +258,7 @@ bool rendering_marches_packed(const KrsRendering *rendering, KrsComponents compo
 }
 
 typedef struct Variant {
-    char defines[256];
+    char defines[320];
 } Variant;
 
 /* By the numbers of AlongMethod. */
@@ -260,11 +278,12 @@ static Variant name_variant(const KrsRendering *rendering, KrsTrace trace, KrsSc
     bool     by_ray = trace >= KRS_TRACE_EXACT;
     Variant  variant;
     int      length = snprintf(variant.defines, sizeof variant.defines,
-                               "#define TRACE %du\n#define REFILL %d\n%s%s%s%s%s",
+                               "#define TRACE %du\n#define REFILL %d\n%s%s%s%s%s%s",
                                (int)(by_ray ? KRS_TRACE_PLAIN : trace),
                                schedule == KRS_SCHEDULE_REFILL
                                    ? (int)rendering->renderer->gpu.refill_lanes : 0,
                                rendering->renderer->gpu.texels ? "" : NO_TEXELS,
+                               value_slots(rendering) > 0 ? "#define FRAME_VALUES\n" : "",
                                rendering->panoramic ? PANORAMIC : "",
                                anchored ? "#define ANCHORED\n" : "",
                                rendering->renderer->early_outs && !anchored
@@ -650,12 +669,15 @@ bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame)
 {
     /* Into memory of the host first: the compiler may read back what it writes. */
     Gpu   *gpu = &rendering->renderer->gpu;
-    size_t slots = rendering->program->parameter_slots;
+    size_t first_value = rendering->program->parameter_slots;
+    size_t values = value_slots(rendering), slots = first_value + values;
     float (*block)[4] = gpu_alloc(gpu, slots + KRS_MOST_ZONES, sizeof *block,
                                   "set the scene's parameters");
     if (!block)
         return false;
     krs_frame_parameters(frame, block);
+    if (values > 0)
+        krs_frame_values(frame, block + first_value);
     size_t zones = krs_frame_zones(frame, block + slots);
     for (size_t i = zones; i < KRS_MOST_ZONES; i++)
         block[slots + i][3] = NO_ZONE;
@@ -667,8 +689,9 @@ bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame)
 bool rendering_set_anchor(KrsRendering *rendering, KrsFrame *frame, const double anchor[3])
 {
     Gpu   *gpu   = &rendering->renderer->gpu;
-    size_t first = rendering->program->parameter_slots + KRS_MOST_ZONES;
-    size_t slots = rendering->program->precise_slots;
+    size_t first = rendering->program->parameter_slots + rendering->program->value_slots +
+                   KRS_MOST_ZONES;
+    size_t slots = rendering->program->anchored_slots;
     float (*block)[4] = gpu_alloc(gpu, slots + 1, sizeof *block, "set the scene's anchor");
     if (!block)
         return false;

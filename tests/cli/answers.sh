@@ -113,7 +113,7 @@ run info --json wave.krs
 result $? "and so does its JSON"
 run compile wave.krs -o compiled
 [ "$status" -eq 0 ] && is_json <compiled/wave.json && grep -qF "$slopes" compiled/wave.json &&
-    grep -q '"parameter_slots": 3' compiled/wave.json &&
+    grep -q '"parameter_slots": 3, "value_slots": 1' compiled/wave.json &&
     grep -q 'krs_parameter\[2\].x' compiled/wave.glsl
 result $? "compile says in which slot of the GLSL it is"
 run query --time 2 wave.krs

@@ -326,6 +326,13 @@ static void parameters_agree(void **context)
            "    .scale(1 + 0.5 * sin(a)).paint(c);"
            "show sphere(0.3 + 0.1 * a).move([2, cos(a), 0]);",
            32);
+    /* Truth values, vectors with constants in them, signs and components. */
+    agrees("param a = 0.7 in [0, 2]; param w = [0.3, 0.2, 0.1]; param n = 3 in [1, 5];"
+           "let far = if a > 0.5 and n < 4 then 1.5 else 3;"
+           "show box([1, w[1] + 1, 1]).move([0, -far * a, 0]).rotate([0, 1, 0], n * a);"
+           "show sphere(0.4).move([0, -cos(a), w[2]]).move(if n > 2 then -w else 2 * w);"
+           "show capsule([0, 0, 0], [0, sin(a), 0], 0.1 + w[0]).repeat_polar(5).move([0, 0, far]);",
+           32);
 }
 
 /* Largest difference, over what is permitted; `late`: the device is asked before a frame is set. */

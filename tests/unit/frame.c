@@ -82,6 +82,47 @@ static void frames_that_are_not_finite_are_refused(void **state)
     close_scene(frame, scene);
 }
 
+static bool holds_number(const float *numbers, size_t count, double number)
+{
+    bool found = false;
+    for (size_t i = 0; i < count; i++)
+        found = found || fabs(numbers[i]) == fabs((double)(float)number);
+    return found;
+}
+
+/* What depends on the frame alone is found in double precision, after each change; what is the same
+   in all frames has no place, and neither has a parameter. */
+static void values_of_frames_are_found(void **state)
+{
+    (void)state;
+    KrsScene *scene;
+    float     block[4][4];
+    KrsFrame *frame = open_scene("param a = 0.3 in [0, 2]; param on = 1 in [0, 1];\n"
+                                 "show sphere(1.5 + sin(a)).move([0 * a, cos(a + time), a]);\n"
+                                 "show sphere(if on > 0.5 then exp(a) else 7).move([9, 0, 0]);",
+                                 &scene);
+    assert_in_range(krs_value_slots(scene), 1, 4);
+    for (double a = 0.3; a < 2; a += 0.7) {
+        assert_int_equal(krs_frame_set(frame, "a", &a, 1), KRS_OK);
+        assert_int_equal(krs_frame_set_time(frame, 3 * a), KRS_OK);
+        krs_frame_values(frame, block);
+        size_t count = 4 * krs_value_slots(scene);
+        assert_true(holds_number(block[0], count, 1.5 + sin(a)));
+        assert_true(holds_number(block[0], count, cos(4 * a)));
+        assert_true(holds_number(block[0], count, exp(a)));
+        assert_false(holds_number(block[0], count, a));
+        assert_int_equal(krs_frame_set(frame, "on", (double[]){a < 1}, 1), KRS_OK);
+        krs_frame_values(frame, block);
+        assert_true(holds_number(block[0], count, a < 1 ? exp(a) : 7));
+        assert_int_equal(krs_frame_set(frame, "on", (double[]){1}, 1), KRS_OK);
+    }
+    close_scene(frame, scene);
+
+    frame = open_scene("show sphere(1);", &scene);
+    assert_int_equal(krs_value_slots(scene), 0);
+    close_scene(frame, scene);
+}
+
 /* A frame in which something has no slope is refused by name, and leaves everything as it was. */
 static void frames_without_a_slope_are_refused(void **state)
 {
@@ -215,6 +256,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parameters_move_the_scene),
         cmocka_unit_test(frames_that_are_not_finite_are_refused),
+        cmocka_unit_test(values_of_frames_are_found),
         cmocka_unit_test(frames_without_a_slope_are_refused),
         cmocka_unit_test(nothing_over_nothing_has_no_slope),
         cmocka_unit_test(a_cut_field_has_one_slope),
