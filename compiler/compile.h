@@ -107,7 +107,6 @@ typedef struct KrsProgram {
     bool        inverts;      /* there are its variants for sequences with maps that invert */
     bool        seams;        /* solids touch, face to face, for kernels with #define SEAMS */
     bool        shadows;      /* a light casts some */
-    bool        loose;        /* a component is (shape_is_loose), for kernels with #define LOOSE */
     KrsGroup    groups[KRS_MOST_GROUPS];
     size_t      group_count;  /* 0: all components belong together */
     bool        apart;        /* taking turns is worth it */

@@ -46,7 +46,6 @@ static void keep_components(Compilation *c)
             to->low[k]  = from->shape->box.axis[k].low;
             to->high[k] = from->shape->box.axis[k].high;
         }
-        scene->program.loose = scene->program.loose || shape_is_loose(from->shape);
         scene->program.seams = scene->program.seams || from->shape->seams || touches_others(s, i);
         bounds_of(from->shape, &c->sources, &scene->bounds[i], &scene->arena, &c->scratch);
         arena_free(&c->scratch);

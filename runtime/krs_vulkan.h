@@ -186,8 +186,9 @@ extern const char *const krs_normals_names[KRS_NORMALS_COUNT]; /* "default", "fo
 
 /* The shadows of lights that have a size. */
 typedef enum KrsShadows {
-    KRS_SHADOWS_SOFT, /* one ray to the light's middle tells how much is hidden, about */
-    KRS_SHADOWS_AREA, /* each ray of a pixel sees another point of the light: right with many */
+    KRS_SHADOWS_SOFT, /* pixels share their rays to it with those around, the less the more they
+                         have: little noise with one */
+    KRS_SHADOWS_AREA, /* each pixel has its own: right with many, noise with few */
     KRS_SHADOWS_COUNT
 } KrsShadows;
 extern const char *const krs_shadows_names[KRS_SHADOWS_COUNT];
@@ -209,8 +210,8 @@ typedef struct KrsRenderOptions {
     KrsComponents components;
     KrsNormals  normals;
     bool      no_beams;      /* each ray is marched by itself all the way */
-    bool      no_upsampling; /* shadows and occlusion are found for every pixel, not for a quarter
-                                of them where the others can be seen to be alike */
+    bool      no_upsampling; /* neighbours do not share what their rays to lights find, and none
+                                is left out where all of a light is proven to be seen */
     bool      no_occlusion;  /* the light of the sky comes from everywhere, also into corners */
     bool      no_filter;     /* normals are those of the very point, about, and roughness is what
                                 the material says, however much finer than a pixel detail is */

@@ -26,23 +26,6 @@ Range node_range(Elaboration *e, Node node, uint32_t component)
     return range;
 }
 
-/* A primitive whose author knows it to be near the true distance. */
-static bool is_tight(const Shape *shape)
-{
-    return shape->bound != NODE_NONE || (shape->claimed && shape->derived <= 1);
-}
-
-bool shape_is_loose(const Shape *shape)
-{
-    bool steep = shape->slope > 1 || shape->inversions > 0;
-    switch (shape->kind) {
-    case SHAPE_PRIMITIVE: return steep || !(shape->exact || is_tight(shape));
-    case SHAPE_STRETCH: case SHAPE_MORPH: case SHAPE_META: case SHAPE_TWIST: case SHAPE_BEND:
-    case SHAPE_TAPER: case SHAPE_DISPLACE: return true;
-    default: return steep || shape->loose_parts;
-    }
-}
-
 /* By their boxes.  Where those touch and the solids do not, seams are looked for in vain. */
 static bool parts_touch(const Shape *const *parts, uint32_t count)
 {
@@ -80,7 +63,6 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
         shape->slope       = fmax(shape->slope, child->slope);
         shape->derived     = fmax(shape->derived, child->derived);
         shape->exact       = shape->exact && child->exact;
-        shape->loose_parts = shape->loose_parts || shape_is_loose(child);
         shape->seams       = shape->seams || child->seams;
         shape->estimate    = shape->estimate || child->estimate;
         shape->per_frame   = shape->per_frame || child->per_frame;

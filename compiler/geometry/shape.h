@@ -129,7 +129,6 @@ struct Shape {
     double derived; /* PRIMITIVE: the slope of its expression, by which it is divided; else the
                        largest in the tree */
     bool   exact;   /* the distance outside is the true one */
-    bool   loose_parts; /* shape_is_loose of a child */
     bool   seams;   /* in the tree are parts that touch, face to face */
     bool   claimed; /* PRIMITIVE: its slope is claimed, not derived */
     Box    region;  /* PRIMITIVE: over which its slope was derived; infinite: over all space */
@@ -237,11 +236,6 @@ typedef struct Scene {
     SceneImage image;
     Box        box; /* around all components */
 } Scene;
-
-/* Whether a distance may be far below the true one also where one surface alone is near: what is
-   steep goes by its slope, what is bent or stretched by where that is least.  Joints, blends and
-   mirrors do not make it so: there it is less only between two surfaces. */
-bool shape_is_loose(const Shape *shape);
 
 /* The scene as indented text, for `krs dump --after=scene`. */
 void scene_print(const Scene *scene, const Sources *sources, Text *out);

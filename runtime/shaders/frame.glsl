@@ -64,6 +64,8 @@ struct Control {
     uint open;       // 1: occlusion is not looked for
     uint window;     // of the tiles of beams, counted in the band, the first: column | row << 16,
     uint across;     // and how many in a row
+    uint rays;       // of each pixel
+    uint filters;    // 1: neighbours share what their rays find (filter.comp)
 };
 
 // A ray that is done.
@@ -126,7 +128,7 @@ layout(std430, set = 1, binding = 4) buffer ControlBlock {
     uint    left;             // and items that nobody has begun
     uint    tiles;            // counts listed tiles,
     uint    solid, anchors;   // pixels that see something (solid.glsl),
-    uint    rest;             // and those that fill.comp does not fill in
+    uint    rest;             // and those that need rays of their own (filter.comp)
     uint    unresolved;       // counts rays that ran out of steps
     uint    evaluations;      // counts distances spent on beams and rays; the most on one of these
     uint    most_evaluations;

@@ -24,10 +24,14 @@ static_assert(sizeof(FrameBlock) == 176, "std140");
 
 /* Phases of the kernels. */
 enum { TRACE_RAYS, TRACE_BEAMS_32, TRACE_BEAMS_8, TRACE_BEAMS_4 };
-enum { AROUND_NORMALS, AROUND_OCCLUSION };
-enum { FILL_JUDGE, FILL_FILL };
+enum { RAYS_CONES, RAYS_TO_LIGHT, RAYS_OVER_HEMISPHERE };
+enum {
+    FILTER_LIST_UNPROVEN, FILTER_SHADOW_NEAR, FILTER_SHADOW, FILTER_OCCLUSION_NEAR,
+    FILTER_OCCLUSION, FILTER_OCCLUSION_OF_REST
+};
 enum { BACKGROUND_FIRST, BACKGROUND_SUN };
-enum { LIST_ALL, LIST_ANCHORS, LIST_REST, LIST_OF_GROUP = 4 }; /* of solid.glsl */
+/* Of solid.glsl, and of shared.glsl: two. */
+enum { LIST_ALL, LIST_ANCHORS, LIST_REST, LIST_OF_GROUP = 4, LIST_SHARED = 13, SHARED_LISTS = 2 };
 
 enum { LIGHTS_AT_ONCE = 3 }; /* of a dispatch of shade.comp */
 enum { VALUE_OCCLUSION, VALUE_VISIBLE }; /* that and the next ones of those lights */
@@ -71,6 +75,8 @@ typedef struct ControlBlock {
     uint32_t parts;
     uint32_t open;  /* 1: no occlusion */
     uint32_t window, across;
+    uint32_t rays;    /* of each pixel */
+    uint32_t filters; /* 1: neighbours share */
     /* counted by the kernels: */
     uint32_t queued, left, tiles, solid, anchors, rest, unresolved, evaluations, most_evaluations;
     uint32_t of_group[9]; /* KRS_MOST_GROUPS and 1 */

@@ -14,8 +14,8 @@
 #include "runtime/tracer/phases.h"
 
 /* As plan.comp has them. */
-static_assert(WORD_OF(items) == 10 && WORD_OF(groups) == 38 && WORD_OF(stopped) == 41 &&
-              WORD_OF(ran) == 42, "plan.comp");
+static_assert(WORD_OF(items) == 10 && WORD_OF(groups) == 40 && WORD_OF(stopped) == 43 &&
+              WORD_OF(ran) == 44, "plan.comp");
 typedef struct PlanBlock {
     uint32_t counter, each, taken, in_group, most, number;
 } PlanBlock;
@@ -51,7 +51,7 @@ static bool has_scene(const Job *job, const Kernel *kernel)
 {
     const KrsRenderer *renderer = job->rendering->renderer;
     bool               panoramic = job->rendering->panoramic;
-    return kernel != &renderer->background[panoramic] && kernel != &renderer->fill[panoramic];
+    return kernel != &renderer->background[panoramic] && kernel != &renderer->filter[panoramic];
 }
 
 /* What was learned about slices of a kernel in a phase: kernels without the scene cost next to
@@ -116,6 +116,29 @@ Dispatch dispatch_of(const Job *job, KrsPhase phase, const Kernel *kernel, const
     return dispatch;
 }
 
+/* Records that no ray has shared anything yet. */
+static void record_unshared(const Job *job, const WorkBlock *work)
+{
+    const VkDeviceSize list  = (VkDeviceSize)work->extent[0] * work->extent[1];
+    const VkDeviceSize tiles = (VkDeviceSize)((work->extent[0] + TILE - 1) / TILE) *
+                               ((work->extent[1] + TILE - 1) / TILE);
+    const VkDeviceSize words = SHARED_LISTS * tiles * TILE * TILE;
+    vkCmdFillBuffer(job->gpu->commands, job->rendering->band.queue.buffer,
+                    LIST_SHARED * list * sizeof(uint32_t), words * sizeof(uint32_t), 0);
+}
+
+static bool clear_shared(Job *job, const Dispatch *dispatch)
+{
+    double ms = 0;
+    if (!rendering_begin(job->rendering))
+        return false;
+    record_unshared(job, &dispatch->work);
+    if (!rendering_finish(job->rendering, &ms))
+        return false;
+    job->picture->stats.phase_ms[dispatch->phase] += ms;
+    return true;
+}
+
 /* In slices; the host knows the counters. */
 static bool run_in_slices(Job *job, const Dispatch *dispatch)
 {
@@ -128,6 +151,8 @@ static bool run_in_slices(Job *job, const Dispatch *dispatch)
         *word_of(job, dispatch->items.counter) = 0;
     if (dispatch->clears)
         *word_of(job, dispatch->clears) = 0;
+    if (dispatch->clears_shared && !clear_shared(job, dispatch))
+        return false;
     return run_groups(job, dispatch->phase, dispatch->kernel, &work, groups_of(dispatch, items));
 }
 
@@ -162,6 +187,8 @@ static void record(Job *job, uint32_t i)
     if (dispatch->clears)
         vkCmdFillBuffer(job->gpu->commands, control, dispatch->clears * sizeof(uint32_t),
                         sizeof(uint32_t), 0);
+    if (dispatch->clears_shared)
+        record_unshared(job, &work);
     vkCmdUpdateBuffer(job->gpu->commands, control, 0, offsetof(ControlBlock, queued),
                       &dispatch->control);
     gpu_barrier(job->gpu);

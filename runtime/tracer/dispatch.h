@@ -39,6 +39,7 @@ typedef struct Dispatch {
     Items         items;
     uint32_t      in_group; /* items of a group */
     uint32_t      clears;   /* the counter that is 0 before it, as in Items */
+    bool          clears_shared; /* rays have shared nothing before it (shared.glsl) */
 } Dispatch;
 
 /* Dispatches that wait to be sent together. */

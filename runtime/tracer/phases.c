@@ -264,8 +264,8 @@ static bool march_all(Job *job, const WorkBlock *work)
 
 /* ---- What follows a hit ---- */
 
-/* Of the pixels of a list. */
-static Dealing deal_around(const Job *job, uint32_t count)
+/* Rays from the pixels of a list. */
+static Dealing deal_secondary(const Job *job, uint32_t count)
 {
     Dealing deal = dealing(job);
     deal.steps = turns_within(job, MOST_TURNS);
@@ -276,25 +276,48 @@ static Dealing deal_around(const Job *job, uint32_t count)
     return deal;
 }
 
-/* Normals, occlusion or what is seen of a light, for the pixels of a list: rays to lights take the
-   steps that they need. */
-static bool look_around(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
-                        uint32_t list, Items items)
+/* Points the kernels that follow at a list of pixels. */
+static void read_list(Job *job, const WorkBlock *work, uint32_t list)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    control->phase = phase == KRS_PHASE_OCCLUSION ? AROUND_OCCLUSION : AROUND_NORMALS;
-    control->source = ITEMS_FRESH;
     control->reading = list * work->extent[0] * work->extent[1];
-    if (phase != KRS_PHASE_SHADOWS)
-        return dispatch_pixels(job, phase, kernel, work, items);
+}
+
+/* Rays from the hits of a list, each of which takes the steps that it needs; `first`: none has been
+   shared before. */
+static bool send_rays(Job *job, KrsPhase phase, uint32_t rays, const WorkBlock *work, uint32_t list,
+                      Items items, bool first)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    Dealing       deal = deal_secondary(job, items_now(job, items));
+    control->phase = rays;
+    control->source = ITEMS_FRESH;
+    read_list(job, work, list);
     do { /* in a chain no item is left over */
         control->left = 0;
-        if (!dispatch_items(job, phase, kernel, work, items,
-                            deal_around(job, items_now(job, items))))
+        Dispatch dispatch = dispatch_of(job, phase, job->secondary, work, items, deal);
+        dispatch.clears_shared = first && control->source == ITEMS_FRESH;
+        if (!dispatch_run(job, &dispatch))
             return false;
         control->source = ITEMS_REST;
     } while (control->left > 0);
     return true;
+}
+
+/* What neighbours share, for the pixels of a list; `lists`: those are listed that need rays of their
+   own. */
+static bool filter(Job *job, KrsPhase phase, uint32_t what, const WorkBlock *work, uint32_t list,
+                   Items items, bool lists)
+{
+    KrsRendering *r = job->rendering;
+    ControlBlock *control = r->control.bytes;
+    control->phase = what;
+    control->source = ITEMS_FRESH;
+    read_list(job, work, list);
+    Dispatch dispatch = dispatch_of(job, phase, &r->renderer->filter[r->panoramic], work, items,
+                                    deal_pixels(job));
+    dispatch.clears = lists ? WORD_OF(rest) : 0;
+    return dispatch_run(job, &dispatch);
 }
 
 /* The first light from this one on that has a disc in the sky. */
@@ -333,55 +356,65 @@ static bool find_normals(Job *job, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
     Dispatch      parts[1 + KRS_MOST_GROUPS];
+    read_list(job, work, LIST_ALL);
     if (!control->parts)
-        return look_around(job, KRS_PHASE_NORMALS, job->around, work, LIST_ALL,
-                           ITEMS_COUNTED(1, solid));
-    control->phase = AROUND_NORMALS;
+        return dispatch_pixels(job, KRS_PHASE_NORMALS, job->around, work,
+                               ITEMS_COUNTED(1, solid));
     control->source = ITEMS_FRESH;
     for (uint32_t i = 0; i <= job->part_count; i++) {
         bool     part  = i < job->part_count; /* else what belongs to none: planes */
         uint32_t group = part ? job->parts[i].group + 1 : 0;
         Items    items = {1, WORD_OF(of_group) + group, false};
-        control->reading = (LIST_OF_GROUP + group) * work->extent[0] * work->extent[1];
+        read_list(job, work, LIST_OF_GROUP + group);
         parts[i] = dispatch_of(job, KRS_PHASE_NORMALS, part ? job->parts[i].normals : job->around,
                                work, items, deal_pixels(job));
     }
     return dispatch_together(job, parts, 1 + job->part_count);
 }
 
-/* As much for a quarter of the pixels; the others are filled in where that cannot be seen, and
-   looked at where it could. */
-static bool look_sparsely(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work)
+/* A ray over the hemisphere of each pixel, and always the means of neighbours: what a surface gives
+   back of the light that it closes off is no linear function of how open it is (shade.comp), so
+   the mean of noise would be too dark. */
+static bool find_occlusion(Job *job, const WorkBlock *work)
 {
-    ControlBlock *control = job->rendering->control.bytes;
-    Kernel       *fill = &job->rendering->renderer->fill[job->rendering->panoramic];
-    if (!job->sparse)
-        return look_around(job, phase, kernel, work, LIST_ALL, ITEMS_COUNTED(1, solid));
-    if (!look_around(job, phase, kernel, work, LIST_ANCHORS, ITEMS_COUNTED(1, anchors)))
-        return false;
-    control->phase = FILL_JUDGE;
-    Dispatch judge = dispatch_of(job, phase, fill, work, ITEMS_KNOWN(tiles_of_band(work)),
-                                 deal_pixels(job));
-    judge.clears = WORD_OF(rest);
-    if (!dispatch_run(job, &judge))
-        return false;
-    control->phase = FILL_FILL;
-    return dispatch_pixels(job, phase, fill, work, ITEMS_COUNTED(1, solid)) &&
-           look_around(job, phase, kernel, work, LIST_REST, ITEMS_COUNTED(1, rest));
+    const KrsPhase phase = KRS_PHASE_OCCLUSION;
+    const Items    all = ITEMS_COUNTED(1, solid), anchors = ITEMS_COUNTED(1, anchors);
+    ControlBlock  *control = job->rendering->control.bytes;
+    control->value = VALUE_OCCLUSION;
+    control->filters = 1;
+    return control->open ||
+           (send_rays(job, phase, RAYS_OVER_HEMISPHERE, work, LIST_ALL, all, true) &&
+            filter(job, phase, FILTER_OCCLUSION_NEAR, work, LIST_ANCHORS, anchors, false) &&
+            filter(job, phase, FILTER_OCCLUSION, work, LIST_ALL, all, true) &&
+            filter(job, phase, FILTER_OCCLUSION_OF_REST, work, LIST_REST, ITEMS_COUNTED(1, rest),
+                   false));
 }
 
-bool lights_by_points(const Job *job, const KrsLight *light)
+/* Cones first, of a quarter of the pixels: where they are empty all of the light is seen. */
+static bool list_unproven(Job *job, const WorkBlock *work)
 {
-    return light->shadow && (job->options.shadows == KRS_SHADOWS_AREA || light->softness <= 0);
+    const KrsPhase phase = KRS_PHASE_SHADOWS;
+    return send_rays(job, phase, RAYS_CONES, work, LIST_ANCHORS, ITEMS_COUNTED(1, anchors), true) &&
+           filter(job, phase, FILTER_LIST_UNPROVEN, work, LIST_ALL,
+                  ITEMS_KNOWN(tiles_of_band(work) * TILE), true);
 }
 
-/* A ray that goes from root to root knows of no way beside it, so none is filled in. */
+/* A ray of each pixel to a point of the light; the mean of neighbours, where it has a size.  Rays
+   that go from root to root know of no room around them, so there are no cones. */
 static bool find_visible(Job *job, const KrsLight *light, const WorkBlock *work)
 {
-    if (!job->roots || !lights_by_points(job, light))
-        return look_sparsely(job, KRS_PHASE_SHADOWS, job->shadows, work);
-    return look_around(job, KRS_PHASE_SHADOWS, job->roots, work, LIST_ALL,
-                       ITEMS_COUNTED(1, solid));
+    const KrsPhase phase = KRS_PHASE_SHADOWS;
+    ControlBlock  *control = job->rendering->control.bytes;
+    const bool     cones   = job->shares && !job->by_roots;
+    const uint32_t list    = cones ? LIST_REST : LIST_ALL;
+    const Items    items   = cones ? ITEMS_COUNTED(1, rest) : ITEMS_COUNTED(1, solid);
+    control->filters = job->shares && light->softness > 0;
+    if (cones && !list_unproven(job, work))
+        return false;
+    return send_rays(job, phase, RAYS_TO_LIGHT, work, list, items, !cones) &&
+           (!control->filters ||
+            (filter(job, phase, FILTER_SHADOW_NEAR, work, list, items, false) &&
+             filter(job, phase, FILTER_SHADOW, work, list, items, false)));
 }
 
 /* How much is visible of each of the lights from `first` on that are shaded at once. */
@@ -445,7 +478,6 @@ static const double step_share[STEP_COUNT] = {0.5, 0.02, 0.1, 0.1, 0.28};
 
 static bool run_step(Job *job, Step step, const WorkBlock *work)
 {
-    ControlBlock *control = job->rendering->control.bytes;
     switch (step) {
     case STEP_TRACE:
         return march_all(job, work);
@@ -454,9 +486,7 @@ static bool run_step(Job *job, Step step, const WorkBlock *work)
     case STEP_NORMALS:
         return find_normals(job, work);
     case STEP_OCCLUSION:
-        control->value = VALUE_OCCLUSION;
-        return control->open ||
-               look_sparsely(job, KRS_PHASE_OCCLUSION, job->around, work);
+        return find_occlusion(job, work);
     case STEP_LIGHTS:
         return light_up(job, work);
     case STEP_COUNT: break;
@@ -470,6 +500,7 @@ bool phases_run(Job *job, WorkBlock *work, uint32_t index)
     ControlBlock *control = job->rendering->control.bytes;
     place_ray(index, job->options.seed, work->offset);
     control->ray = index;
+    control->rays = job->options.samples;
     control->first_ray = index == 0;
     double done = job->done;
     for (Step step = 0; step < STEP_COUNT; done += whole * step_share[step], step++) {

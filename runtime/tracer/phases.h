@@ -25,22 +25,20 @@ typedef struct Job {
     FrameBlock       frame;
     double           anchor[3]; /* that points are given from on the device; 0: they are not */
     Kernel          *trace, *beams, *around, *shade;
-    Kernel          *shadows, *roots; /* of rays to lights, and to points of lights where those go
-                                         from root to root; NULL where no light needs it */
+    Kernel          *secondary; /* NULL: there is neither occlusion nor a light with shadows */
+    bool             by_roots;  /* its rays go from root to root */
     MarchPart        parts[KRS_MOST_GROUPS]; /* the nearest first */
     bool             rest;                   /* planes are not marched, but known (FLATS) */
     uint32_t         part_count;             /* 0: all are marched together, by `trace` */
-    bool             sparse; /* shadows and occlusion are found for a quarter of the pixels */
+    bool             shares; /* neighbours share what rays to lights find */
     KrsWindow        window; /* of the picture: where rays may meet what is marched now */
-    KrsWindow        cover;  /* the tiles that the crop has a part of: what is traced */
+    KrsWindow        cover;  /* the tiles that the crop has a part of */
+    uint32_t         halo;   /* so many pixels around what is asked for are traced as well */
     KrsPicture      *picture;
     double           done, share; /* of the whole: before this phase, and of it */
     double           shown;       /* the progress that was reported */
     Chain            chain;
 } Job;
-
-/* Whether rays to a light go to points of it, not to all of it at once. */
-bool lights_by_points(const Job *job, const KrsLight *light);
 
 /* Traces ray number `index` of every pixel of the band and adds what it sees to the results.
    `done` and `share` of the job are its own. */

@@ -213,6 +213,9 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels)
     return true;
 }
 
+/* Tiles may end outside of the picture. */
+static uint32_t round_to_tiles(uint32_t pixels) { return (pixels + TILE - 1) / TILE * TILE; }
+
 /* Rows of a band of at most `pixels`: whole tiles, and at least one. */
 static uint32_t rows_within(uint32_t width, uint64_t pixels)
 {
@@ -245,11 +248,12 @@ static uint64_t most_pixels(const Gpu *gpu)
 static uint32_t make_room(Job *job)
 {
     const KrsWindow *window = &job->cover;
-    const uint64_t   across = (window->width + TILE - 1) / TILE * TILE; /* tiles may end outside */
+    const uint64_t   across = round_to_tiles(window->width) + 2 * job->halo;
     for (uint64_t pixels = most_pixels(job->gpu); pixels >= BAND_PIXELS_MIN; pixels /= 2) {
-        uint32_t rows = rows_within(window->width, pixels);
+        uint32_t rows = rows_within((uint32_t)across, pixels);
+        rows = rows > 2 * job->halo + TILE ? rows - 2 * job->halo : TILE;
         rows = rows < window->height ? rows : window->height;
-        if (band_create(job->rendering, (rows + TILE - 1) / TILE * TILE * across)) {
+        if (band_create(job->rendering, (round_to_tiles(rows) + 2 * job->halo) * across)) {
             renderer_clear(job->rendering->renderer);
             return rows;
         }
@@ -306,18 +310,19 @@ static void place_positions(Job *job, const float *places, size_t first, size_t 
         }
 }
 
-/* Takes the rows of a band over, as far as they are in the crop. */
-static void take_band(Job *job, uint32_t from, uint32_t rows)
+/* Takes the rows of the cover from `from` on over from what was traced for them, as far as they are
+   in the crop. */
+static void take_band(Job *job, const KrsWindow *traced, uint32_t from, uint32_t rows)
 {
     const KrsWindow *cover = &job->cover, *crop = &job->options.crop;
     const Band      *buffers = &job->rendering->band;
     const float     *results = buffers->results.bytes ? buffers->results.bytes
                                                       : buffers->fetched.bytes;
-    size_t           band = (size_t)rows * cover->width;
+    size_t           band = (size_t)traced->height * traced->width;
     for (uint32_t y = cover->y + from; y < cover->y + from + rows; y++) {
         if (y < crop->y || y >= crop->y + crop->height)
             continue;
-        size_t row = (size_t)(y - cover->y - from) * cover->width + (crop->x - cover->x);
+        size_t row = (size_t)(y - traced->y) * traced->width + (crop->x - traced->x);
         size_t first = (size_t)(y - crop->y) * crop->width;
         picture_take(job->picture, results + row * RESULT_NUMBERS, band, first, crop->width,
                      job->options.samples);
@@ -326,15 +331,29 @@ static void take_band(Job *job, uint32_t from, uint32_t rows)
     }
 }
 
+/* A window and the halo around it, as far as the picture reaches. */
+static KrsWindow with_halo(const Job *job, KrsWindow window)
+{
+    const uint32_t halo  = job->halo;
+    const uint32_t right = window.x + window.width + halo, bottom = window.y + window.height + halo;
+    window.x      = window.x > halo ? window.x - halo : 0;
+    window.y      = window.y > halo ? window.y - halo : 0;
+    window.width  = (right < job->options.width ? right : job->options.width) - window.x;
+    window.height = (bottom < job->options.height ? bottom : job->options.height) - window.y;
+    return window;
+}
+
 static bool render_band(Job *job, uint32_t from, uint32_t rows)
 {
     const KrsWindow *cover = &job->cover;
+    const KrsWindow  band = {cover->x, cover->y + from, cover->width, rows};
+    const KrsWindow  traced = with_halo(job, band);
     ControlBlock    *control = job->rendering->control.bytes;
     KrsRenderStats  *stats = &job->picture->stats;
-    VkDeviceSize     row_bytes = (VkDeviceSize)rows * cover->width * RESULT_BYTES;
+    VkDeviceSize     row_bytes = (VkDeviceSize)traced.height * traced.width * RESULT_BYTES;
     WorkBlock        work = {
-        .corner = {cover->x, cover->y + from},
-        .extent = {cover->width, rows},
+        .corner = {traced.x, traced.y},
+        .extent = {traced.width, traced.height},
     };
     *control = (ControlBlock){
         .projection = (uint32_t)job->view.camera.projection,
@@ -359,7 +378,7 @@ static bool render_band(Job *job, uint32_t from, uint32_t rows)
     }
     if (!fetch(job, control->rows, row_bytes))
         return false;
-    take_band(job, from, rows);
+    take_band(job, &traced, from, rows);
     return true;
 }
 
@@ -407,27 +426,30 @@ static bool find_marches(Job *job, KrsFrame *frame)
     return job->trace && job->beams;
 }
 
-/* The kernels of rays to lights that are needed. */
-static bool find_shadows(Job *job)
+/* Whether there is occlusion, or a light that casts shadows. */
+static bool needs_secondary(const Job *job)
+{
+    bool needed = !job->options.no_occlusion;
+    for (size_t i = 0; i < job->view.light_count; i++)
+        needed = needed || job->view.lights[i].shadow;
+    return needed;
+}
+
+/* The kernel of rays to lights and for occlusion, if it is needed. */
+static bool find_secondary(Job *job)
 {
     const KrsRenderOptions *options = &job->options;
-    bool                    has_roots = rendering_has_roots(job->rendering, options->trace);
-    for (size_t i = 0; i < job->view.light_count; i++) {
-        const KrsLight *light    = &job->view.lights[i];
-        bool            by_roots = has_roots && lights_by_points(job, light);
-        Kernel        **kernel   = by_roots ? &job->roots : &job->shadows;
-        if (!light->shadow)
-            continue;
-        *kernel = rendering_shadows(job->rendering, options->schedule, options->shadows, by_roots);
-        if (!*kernel)
-            return false;
-    }
-    return true;
+    if (!needs_secondary(job))
+        return true;
+    job->by_roots  = rendering_has_roots(job->rendering, options->trace);
+    job->secondary = rendering_secondary(job->rendering, options->schedule, job->by_roots);
+    return job->secondary != NULL;
 }
 
 static bool render(Job *job, KrsFrame *frame)
 {
-    job->sparse = !job->options.no_upsampling && job->options.shadows == KRS_SHADOWS_SOFT;
+    job->shares = !job->options.no_upsampling && job->options.shadows == KRS_SHADOWS_SOFT;
+    job->halo = !job->options.no_occlusion || (job->shares && needs_secondary(job)) ? TILE : 0;
     job->cover = whole_tiles(&job->options);
     uint32_t rows = make_room(job);
     if (rows == 0)
@@ -436,7 +458,7 @@ static bool render(Job *job, KrsFrame *frame)
         return false;
     job->around = rendering_around(job->rendering, job->options.normals, 0);
     job->shade = rendering_shade(job->rendering);
-    if (!job->around || !job->shade || !find_shadows(job) || !wait_for_kernels(job))
+    if (!job->around || !job->shade || !find_secondary(job) || !wait_for_kernels(job))
         return false;
     double   start = clock_ms();
     uint64_t submissions = job->gpu->submissions;

@@ -44,7 +44,7 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
     const char         *defines = renderer->gpu.texels ? NULL : NO_TEXELS;
     const KernelRequest kernels[] = {
         {&renderer->background[0], {.file = "background.comp", .defines = defines}},
-        {&renderer->fill[0], {.file = "fill.comp", .defines = defines}},
+        {&renderer->filter[0], {.file = "filter.comp", .defines = defines}},
         {&renderer->plan, {.file = "plan.comp"}},
     };
     const size_t count = sizeof kernels / sizeof kernels[0] - (gpu_is_cpu(&renderer->gpu) ? 1 : 0);
@@ -64,7 +64,7 @@ void krs_renderer_free(KrsRenderer *renderer)
         gpu_wait(gpu);
         for (int panoramic = 0; panoramic < 2; panoramic++) {
             kernel_destroy(gpu, &renderer->background[panoramic]);
-            kernel_destroy(gpu, &renderer->fill[panoramic]);
+            kernel_destroy(gpu, &renderer->filter[panoramic]);
         }
         kernel_destroy(gpu, &renderer->plan);
         stage_destroy(renderer);
@@ -356,8 +356,7 @@ static Variant name_secondary(const KrsRendering *rendering, KrsTrace trace, Krs
     const KrsProgram *program = rendering->program;
     Variant           variant = name_variant(rendering, trace, schedule);
     size_t            length  = strlen(variant.defines);
-    snprintf(variant.defines + length, sizeof variant.defines - length, "%s%s%s",
-             program->loose ? "#define LOOSE\n" : "",
+    snprintf(variant.defines + length, sizeof variant.defines - length, "%s%s",
              program->along && !program->inverts ? "#define ROOTS\n" : "",
              program->seams ? "#define SEAMS\n" : "");
     return variant;
@@ -379,34 +378,23 @@ static Variant name_around(const KrsRendering *rendering, KrsNormals normals, ui
     return variant;
 }
 
-static Variant name_shadows(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
-                            KrsShadows shadows)
-{
-    Variant variant = name_secondary(rendering, trace, schedule);
-    size_t  length  = strlen(variant.defines);
-    if (shadows == KRS_SHADOWS_AREA)
-        snprintf(variant.defines + length, sizeof variant.defines - length, "#define AREA\n");
-    return variant;
-}
-
 bool rendering_has_roots(const KrsRendering *rendering, KrsTrace trace)
 {
     return trace == KRS_TRACE_EXACT && rendering->program->along && !rendering->in_use->anchored;
 }
 
-Kernel *rendering_shadows(KrsRendering *rendering, KrsSchedule schedule, KrsShadows shadows,
-                          bool by_roots)
+Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots)
 {
     schedule = schedule_of_kernel(schedule);
     KrsTrace trace = by_roots ? KRS_TRACE_EXACT : KRS_TRACE_PLAIN;
-    return find_kernel(rendering, &rendering->in_use->shadows[schedule][shadows][by_roots],
-                       "shadows.comp", name_shadows(rendering, trace, schedule, shadows));
+    return find_variant(rendering, &rendering->in_use->secondary[schedule][by_roots],
+                        "secondary.comp", trace, schedule);
 }
 
 Kernel *rendering_around(KrsRendering *rendering, KrsNormals normals, uint32_t group)
 {
     normals = rendering_normals(rendering, normals);
-    return find_kernel(rendering, &rendering->in_use->around[normals][group], "around.comp",
+    return find_kernel(rendering, &rendering->in_use->around[normals][group], "normals.comp",
                        name_around(rendering, normals, group));
 }
 
@@ -436,7 +424,7 @@ static bool panoramic_create(KrsRendering *rendering)
     const char         *defines = renderer->gpu.texels ? PANORAMIC : PANORAMIC NO_TEXELS;
     const KernelRequest kernels[] = {
         {&renderer->background[1], {.file = "background.comp", .defines = defines}},
-        {&renderer->fill[1], {.file = "fill.comp", .defines = defines}},
+        {&renderer->filter[1], {.file = "filter.comp", .defines = defines}},
     };
     return !rendering->panoramic || renderer->background[1].pipeline ||
            stage_make_kernels(renderer, VK_NULL_HANDLE, kernels,
@@ -480,7 +468,7 @@ static void request_marches(Requests *requests, KrsRendering *rendering, KrsTrac
             rendering_schedule_of_group(rendering, KRS_SCHEDULE_DEFAULT, group));
         request(requests, rendering, &to->trace[trace][own][group], "trace.comp",
                 name_group(rendering, trace, own, group));
-        request(requests, rendering, &to->around[usual][group], "around.comp",
+        request(requests, rendering, &to->around[usual][group], "normals.comp",
                 name_around(rendering, usual, group));
     }
 }
@@ -490,13 +478,14 @@ static void request_pictures(Requests *requests, KrsRendering *rendering, KrsTra
 {
     SceneKernels *to = rendering->in_use;
     KrsNormals    usual = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
-    request(requests, rendering, &to->around[usual][0], "around.comp",
+    request(requests, rendering, &to->around[usual][0], "normals.comp",
             name_around(rendering, usual, 0));
     request(requests, rendering, &to->shade, "shade.comp",
             name_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL));
-    if (rendering->program->shadows)
-        request(requests, rendering, &to->shadows[schedule][KRS_SHADOWS_SOFT][0], "shadows.comp",
-                name_shadows(rendering, KRS_TRACE_PLAIN, schedule, KRS_SHADOWS_SOFT));
+    bool     by_roots = rendering_has_roots(rendering, trace);
+    KrsTrace along    = by_roots ? KRS_TRACE_EXACT : KRS_TRACE_PLAIN;
+    request(requests, rendering, &to->secondary[schedule][by_roots], "secondary.comp",
+            name_variant(rendering, along, schedule));
     request_marches(requests, rendering, trace, schedule);
 }
 
@@ -530,9 +519,8 @@ static void kernels_destroy(Gpu *gpu, SceneKernels *kernels)
             kernel_destroy(gpu, &kernels->around[normals][group]);
     for (int schedule = 0; schedule < KRS_SCHEDULE_COUNT; schedule++) {
         kernel_destroy(gpu, &kernels->query[schedule]);
-        for (int shadows = 0; shadows < KRS_SHADOWS_COUNT; shadows++)
-            for (int by_roots = 0; by_roots < 2; by_roots++)
-                kernel_destroy(gpu, &kernels->shadows[schedule][shadows][by_roots]);
+        for (int by_roots = 0; by_roots < 2; by_roots++)
+            kernel_destroy(gpu, &kernels->secondary[schedule][by_roots]);
         for (int trace = 0; trace < KRS_TRACE_COUNT; trace++)
             for (uint32_t group = 0; group < GROUP_KINDS; group++)
                 kernel_destroy(gpu, &kernels->trace[trace][schedule][group]);

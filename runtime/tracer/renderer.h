@@ -19,7 +19,7 @@ struct KrsRenderer {
     VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters */
     VkDescriptorSetLayout frame_layout; /* set 1: what frame.glsl declares */
     VkPipelineLayout      layout;       /* of every kernel */
-    Kernel                background[2], fill[2]; /* [1]: for scenes with panoramas, when needed */
+    Kernel                background[2], filter[2]; /* [1]: for scenes with panoramas, when needed */
     Kernel                plan;     /* on graphics cards (dispatch.c) */
     double                spirv_ms, pipeline_ms; /* of the former */
     VkDescriptorPool      idle_pool;             /* for rehearsals: */
@@ -46,7 +46,7 @@ typedef struct SceneKernels {
     Kernel   shade, sample;
     Kernel   trace[KRS_TRACE_COUNT][KRS_SCHEDULE_COUNT][GROUP_KINDS]; /* [0]: of all */
     Kernel   around[KRS_NORMALS_COUNT][1 + KRS_MOST_GROUPS]; /* likewise */
-    Kernel   shadows[KRS_SCHEDULE_COUNT][KRS_SHADOWS_COUNT][2]; /* [1]: from root to root */
+    Kernel   secondary[KRS_SCHEDULE_COUNT][2]; /* [1]: from root to root */
     Kernel   query[KRS_SCHEDULE_COUNT];
 } SceneKernels;
 
@@ -84,13 +84,12 @@ Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule sch
 bool rendering_knows_flats(const KrsRendering *rendering);
 /* The normals that are meant: by derivatives where all is algebraic, else the octahedron's. */
 KrsNormals rendering_normals(const KrsRendering *rendering, KrsNormals normals);
-/* That of normals and occlusion; of a group for normals alone. */
+/* That of normals; of a group. */
 Kernel *rendering_around(KrsRendering *rendering, KrsNormals normals, uint32_t group);
-/* Whether primary rays by this method go from root to root.  Then so do those to points of lights,
-   by a kernel of their own. */
+/* Whether primary rays by this method go from root to root.  Then so do secondary ones. */
 bool    rendering_has_roots(const KrsRendering *rendering, KrsTrace trace);
-Kernel *rendering_shadows(KrsRendering *rendering, KrsSchedule schedule, KrsShadows shadows,
-                          bool by_roots);
+/* The kernel of rays to lights and for occlusion. */
+Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots);
 Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule);
 /* Likewise. */
 Kernel *rendering_shade(KrsRendering *rendering);

@@ -1,24 +1,17 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
- * around.comp: what the distance around a hit tells: its normal, and how open it is.
+ * normals.comp: the normal of each hit, from the distance at a few places around it.
  *
- * Both look at a few places that are known before, so a lane does pixel after pixel (pixels.glsl):
- * lanes that loop together are done together, but where something is looked at again.  The two are
- * dispatches of one kernel, so that the scene is compiled once for them and its distance stands
- * once, in one loop.
+ * The places are known before, so a lane does pixel after pixel (pixels.glsl): lanes that loop
+ * together are done together, but where something is looked at again.
  *
- * LOOSE: a distance is only a bound, so occlusion looks for how near things are (looks.glsl).
- * SEAMS: solids touch, face to face (look_again).
+ * SEAMS: solids touch, face to face (look_again).  ROOTS: rays go from root to root.
  */
 #include "scene.glsl"
 #include "frame.glsl"
 #include "solid.glsl"
 #include "stencil.glsl"
-
-const uint NORMALS = 0u, OCCLUSION = 1u; // control.phase
-const uint OCCLUSION_TAPS = 5u;
-const float LEAST_STEEPNESS = 1e-6;
 
 // Differences for normals reach as far as a pixel asks for, but less of the coordinates would be
 // noise.
@@ -37,39 +30,15 @@ float extent;      // of their directions: the sum of their squares
 bool  again;       // they are looked at once more, farther out,
 float middle;      // where the distance in their middle is this,
 float even;        // and so even was it before,
-vec3  facing_before; // with this normal,
-float steepness_before;
+vec3  facing_before; // with this normal
 #ifdef GRADIENT
-bool  derived;     // the normal is by derivatives,
-float outside;     // and this the distance where one unit is away, as the tap outside says
-#ifdef LOOSE
-const uint BOUND_TAPS = 1u;
+bool  derived;     // the normal is by derivatives
+#if defined(ROOTS) && STENCIL == 3
+#define TAPS_OUTSIDE 1u // that say whether these can be believed
 #else
-const uint BOUND_TAPS = 0u;
+#define TAPS_OUTSIDE 0u
 #endif
 #endif
-float steepness;   // of the distance around the hit
-float blocked, weight; // of the taps of occlusion
-
-#ifdef LOOSE
-#include "looks.glsl"
-
-// In bounds.  Near taps see one bound give way to another at once, which shows as a contour in what
-// is as broad as occlusion.
-const float REACH = 0.5;
-#endif
-
-// How steep the distance is, 1 unless it is a bound.  In a hollow edge the differences of its two
-// sides cancel in part, and the rest is in the level, below 0; on a convex one they may.
-float find_steepness(float reach)
-{
-#ifdef GRADIENT
-    if (derived)
-        return clamp(outside, LEAST_STEEPNESS, 1.0);
-#endif
-    float found = length(vec2(length(sum), length(min(level, 0.0)))) / (extent * reach / 3.0);
-    return found > LEAST_STEEPNESS ? min(found, 1.0) : LEAST_STEEPNESS;
-}
 
 // Where the ray comes from that hits here, unit.
 vec3 find_backwards()
@@ -101,7 +70,6 @@ void begin_normal()
     begin_taps();
 #ifdef GRADIENT
     derived = false;
-    outside = 1.0;
 #ifndef ANCHORED
     // Differences are for where derivatives are no numbers.
     vec3 gradient = krs_gradient(place.position, t);
@@ -111,8 +79,7 @@ void begin_normal()
     if (derived) {
         sum = place.side * normalize(gradient);
         way = sum;
-        extent = 3.0 / t; // its own unit
-        limit = BOUND_TAPS;
+        limit = TAPS_OUTSIDE;
     }
 #if defined(ROOTS) && STENCIL == 3
     else
@@ -122,75 +89,21 @@ void begin_normal()
 #endif
 }
 
-void begin_occlusion()
-{
-    taps = 0u;
-    limit = OCCLUSION_TAPS;
-    way = find_hit(FACING, place.slot).xyz;
-    t = 0.0625 * frame.occlusion_reach;
-    steepness = find_hit(LIGHTING, place.slot).x;
-    blocked = 0.0;
-    weight = 0.33;
-}
-
 void begin_item(uint number)
 {
     place = find_place(number);
     start = place.position;
-#ifdef LOOSE
-    looks = 0u;
-#endif
-    if (control.phase == OCCLUSION)
-        begin_occlusion();
-    else
-        begin_normal();
+    begin_normal();
 }
 
 bool item_wants_more()
 {
-#ifdef LOOSE
-    if (looks > 0u)
-        return true;
-#endif
     return taps < limit;
 }
 
 vec3 item_place()
 {
-#ifdef LOOSE
-    if (looks > 0u)
-        return tap_point();
-#endif
     return start + t * way;
-}
-
-// How much less room there is than an open surface would leave, at five scales.
-void take_room(float room)
-{
-    blocked += weight * clamp(1.0 - room / t, 0.0, 1.0);
-    weight *= 0.75;
-    t *= 2.0;
-}
-
-#ifdef LOOSE
-// The bound is expected to be as steep as at the hit.
-void take_looks()
-{
-    float fall = find_fall(find_sum(steepness * find_scale()));
-    take_room(look_bound / min(fall, steepness));
-}
-#endif
-
-void take_occlusion(float distance)
-{
-    float room = distance / steepness;
-#ifdef LOOSE
-    if (distance > 0.0 && room < t) {
-        begin_looks(item_place(), distance, REACH);
-        return;
-    }
-#endif
-    take_room(room);
 }
 
 // The parts of the sum that do not cancel: where all is flat, opposite taps do; on an edge, or
@@ -248,7 +161,6 @@ float find_flatness() { return again ? even : find_evenness(); }
 void look_again()
 {
     facing_before = normalize(sum);
-    steepness_before = find_steepness(t);
     start = place.position + t * facing_before;
     again = true;
     begin_taps();
@@ -282,64 +194,47 @@ void take_difference(float distance)
 float find_flatness() { return find_evenness(); }
 #endif
 
-#ifdef GRADIENT
-// Where the bound falls less than that towards the surface, derivatives may be next to nothing but
-// rounding, as near a curve on which a polynomial vanishes several times.
+#if defined(GRADIENT) && defined(ROOTS) && STENCIL == 3
+// Where the distance rises by less than that from the surface, derivatives may be next to nothing
+// but rounding, as near a curve on which a polynomial vanishes several times.
 const float LEAST_OUTSIDE = 0.4;
-void take_outside(float distance)
+void take_outside(float rise)
 {
-    outside = distance;
-#if defined(ROOTS) && STENCIL == 3
-    if (outside >= LEAST_OUTSIDE)
+    if (rise >= LEAST_OUTSIDE)
         return;
     derived = false;
     begin_nearer();
-#endif
 }
 #endif
 
-// And how steep the distance is.
-float find_normal()
+void keep_normal()
 {
     float size = length(sum), flatness = find_flatness();
     vec3  normal = size > 0.0 && size < INFINITE ? sum / size : find_backwards();
-    float found = find_steepness(t);
 #if !(defined(ROOTS) && STENCIL == 3) // there facing_before is never set, and nearer is better
     if (again && flatness < max(even, EVEN_OUTSIDE)) {
         normal = facing_before;
         flatness = even;
-        found = steepness_before;
     }
 #endif
     keep_hit(FACING, place.slot, vec4(normal, flatness));
-    return found;
 }
 
 void take_distance(float distance)
 {
     distance *= place.side;
-#ifdef LOOSE
-    if (looks > 0u) {
-        take_tap(distance);
-        if (looks == 0u)
-            take_looks();
+    taps++;
+#if defined(GRADIENT) && defined(ROOTS) && STENCIL == 3
+    if (derived) {
+        take_outside(distance / t);
         return;
     }
 #endif
-    taps++;
-    if (control.phase == OCCLUSION)
-        take_occlusion(distance);
-#ifdef GRADIENT
-    else if (derived)
-        take_outside(distance / t);
-#endif
-    else
-        take_difference(distance);
+    take_difference(distance);
 }
 
 void begin_group() { krs_prepare(); }
 
-// One number for both phases: of each store lavapipe makes a loop.
 void do_item(uint number)
 {
     begin_item(number);
@@ -348,9 +243,7 @@ void do_item(uint number)
         if (item_wants_more())
             take_distance(distance);
     } while (item_wants_more());
-    // Light finds its way in by reflection.
-    float found = control.phase == OCCLUSION ? exp2(-2.5 * blocked) : find_normal();
-    keep_lighting(control.value, place.slot, found);
+    keep_normal();
 }
 
 #include "pixels.glsl"

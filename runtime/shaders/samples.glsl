@@ -1,0 +1,62 @@
+/*
+ * samples.glsl: points of the unit square for the rays of pixels, so that neighbours together fill
+ * it evenly.
+ *
+ * Pixels are numbered along the Z-order curve.  This number, its bits scrambled from the highest to
+ * the lowest, says which point of Sobol's (0, 2)-sequence a pixel takes (Ahmed and Wonka,
+ * Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error, 2020).  So each square of 2^n by
+ * 2^n pixels has points one to each box of its area, whatever the box's shape, and what is left as
+ * noise differs most between neighbours.  Each further ray of a pixel goes on by the steps of R4
+ * (multiples of powers of a root of x^5 = x + 1, modulo 1), whose first two dimensions are the
+ * ray's place in its pixel (place_ray in phases.c): both together fill the pixel and the square.
+ */
+
+// The bits of a number of 16 bits, with a 0 before each.
+uint spread_bits(uint bits)
+{
+    bits = (bits | bits << 8u) & 0x00ff00ffu;
+    bits = (bits | bits << 4u) & 0x0f0f0f0fu;
+    bits = (bits | bits << 2u) & 0x33333333u;
+    return (bits | bits << 1u) & 0x55555555u;
+}
+
+// Each bit is turned over or not by chance, which hangs on the lower bits (Laine and Karras 2011,
+// with the constants of Vegdahl 2021).
+uint scramble_bits(uint bits, uint seed)
+{
+    bits ^= bits * 0x3d20adeau;
+    bits += seed;
+    bits *= seed >> 16u | 1u;
+    bits ^= bits * 0x05526c56u;
+    return bits ^ bits * 0x53a22864u;
+}
+
+// A number that looks random (PCG, O'Neill 2014).
+uint hash_bits(uint bits)
+{
+    bits = bits * 747796405u + 2891336453u;
+    bits = (bits >> (bits >> 28u) + 4u ^ bits) * 277803737u;
+    return bits >> 22u ^ bits;
+}
+
+// For ray `ray` of a pixel; uses with different numbers are independent.
+vec2 sample_square(uvec2 pixel, uint ray, uint use, uint seed)
+{
+    uint number = spread_bits(pixel.x) | spread_bits(pixel.y) << 1u;
+    uint own = hash_bits(use + 977u * seed);
+    uint x = scramble_bits(bitfieldReverse(number), own);
+    uint y = x ^ (x & 0x55555555u) << 1u; // Pascal's triangle modulo 2 makes the second dimension
+    y ^= (y & 0x33333333u) << 2u;
+    y ^= (y & 0x0f0f0f0fu) << 4u;
+    y ^= (y & 0x00ff00ffu) << 8u;
+    y ^= (y & 0x0000ffffu) << 16u;
+    y ^= hash_bits(own);
+    return fract(vec2(x >> 8u, y >> 8u) / 16777216.0 + vec2(0.6287067, 0.5385973) * float(ray));
+}
+
+// The unit disc from the unit square, areas in proportion.
+vec2 disc_of_square(vec2 square)
+{
+    float angle = 2.0 * PI * square.x;
+    return sqrt(square.y) * vec2(krs_cos(angle), krs_sin(angle));
+}

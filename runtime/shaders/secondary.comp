@@ -1,0 +1,294 @@
+#version 440
+#extension GL_GOOGLE_include_directive : enable
+#extension GL_KHR_shader_subgroup_shuffle : enable
+/*
+ * secondary.comp: rays that start at hits: to lights, and over the hemisphere for occlusion.
+ *
+ * Such a ray is blocked where it is inside of something, not where the distance is small: a
+ * distance may be a bound far below the true one, and light must not depend on how it was derived.
+ * What is seen of a light, and how open a hit is, are shares of rays; filter.comp takes the means
+ * of neighbours.  A cone from a hit to the whole of a light saves rays where it proves to be empty:
+ * then all points of the light are seen, from the pixels around as well.
+ *
+ * ALONG: there is krs_along, by which rays go from root to root.
+ */
+#ifndef REFILL // which variant: the renderer says so; this one suits every device
+#define REFILL 0
+#endif
+#include "scene.glsl"
+#include "frame.glsl"
+#include "solid.glsl"
+#include "shared.glsl"
+#include "samples.glsl"
+
+const uint CONES = 0u, TO_LIGHT = 1u, OVER_HEMISPHERE = 2u; // control.phase
+
+const uint MOST_STEPS = 1024u;
+// Rays to lights start so many pixels above the surface, and rays for occlusion by so much of
+// their reach where that is more: finer detail does not count for these.
+const float LIFT = 0.5, LIFT_OF_REACH = 1.0 / 128.0;
+// For so many pixels from the start a distance may be as small a part of the true one as there.
+const float NEAR_START = 8.0;
+// A ray steps by at least so much of the permitted error, or of a pixel, and by so much more with
+// each step, so that it leaves the surface along which it creeps.
+const float LEAST_STEP = 0.0625, LEAST_STEP_IN_PIXELS = 0.015625, IMPATIENCE = 1.008;
+// An empty cone is empty for pixels so far away, in pixels.
+const float CLEARANCE = 3.0;
+// Where a surface is seen at a grazing angle its pixels are apart by up to so much more.
+const float MOST_STRETCHED = 4.0;
+// Relaxation: of the gap between balls that would still meet; how fast the slope is learned, and
+// the steepest that is counted on.
+const float CAUTION = 0.6, LEARNING = 0.5, STEEPEST = 0.9;
+
+// What a dispatch is about.
+Light light;
+bool  positional;
+float radius;      // of the light, where a directional one is 1 away
+
+// The item.
+Place place;
+vec3  start, direction; // the next distance is asked for at start + t direction
+float t;
+float end;         // of the ray
+float facing;      // cosine between the normal and the direction
+float lift;        // of the start above the surface
+bool  is_cone;     // else a ray
+float spread;      // radius of the cone per distance
+float margin;      // around the cone that must be empty, too
+bool  blocked;
+bool  below;       // its point of the light is behind the surface
+float before, gap; // the distance at the step before, which was so long
+bool  crept;       // whatever the distance was
+float least_step;
+float slope;       // of the distance along the ray, as it was on average
+float share;       // of the true distance that the distance is at the start
+uint  taps, limit; // so far, and at most
+
+uint  lost;        // rays of this lane that ran out of steps
+
+void begin_ray(vec3 normal, vec3 toward)
+{
+    direction = toward;
+    facing = dot(normal, direction);
+    float box_end = clip_ray(start, direction, end).y;
+    // From inside of a solid nothing leaves the box around all of them.
+    blocked = place.side < 0.0 && box_end < end;
+    end = min(end, box_end);
+    limit = blocked || below ? 0u : MOST_STEPS;
+}
+
+// Two directions at right angles to a third (Duff et al. 2017).
+void find_frame(vec3 axis, out vec3 right, out vec3 up)
+{
+    float side = axis.z < 0.0 ? -1.0 : 1.0;
+    float a = -1.0 / (side + axis.z), b = axis.x * axis.y * a;
+    right = vec3(1.0 + side * axis.x * axis.x * a, side * b, -side * axis.x);
+    up = vec3(b, side + axis.y * axis.y * a, -axis.y);
+}
+
+vec2 sample_disc(uint use)
+{
+    uvec2 pixel = work.corner + pixel_of(place.slot);
+    return disc_of_square(sample_square(pixel, control.ray, use, control.seed));
+}
+
+// Where the axis of a cone leaves the box around the scene, and its whole width has, too.
+float find_end_of_cone()
+{
+    vec3 apart = mix(start - frame.low.xyz, frame.high.xyz - start,
+                     greaterThan(direction, vec3(0.0)));
+    vec3 speed = abs(direction) - spread;
+    vec3 ends = mix(vec3(INFINITE), max(apart + margin, 0.0) / max(speed, 1e-6),
+                    greaterThan(speed, vec3(1e-6)));
+    return min(min(ends.x, ends.y), min(ends.z, end));
+}
+
+// From the hit to the light: to its middle, or to a point of its disc.
+void aim_at_light(vec3 normal)
+{
+    lift = LIFT * place.width + 4.0 * place.rounding;
+    start = place.position + normal * lift;
+    vec3  toward = positional ? light.vector - start : light.vector;
+    float remote = max(length(toward), 1e-12);
+    vec3  axis = toward / remote;
+    end = positional ? remote : frame.eye.w;
+    if (is_cone) {
+        float turned = max(-dot(normal, place.direction), 1.0 / MOST_STRETCHED);
+        begin_ray(normal, axis);
+        spread = radius / remote;
+        margin = CLEARANCE * place.width / turned;
+        end = min(positional ? remote : frame.eye.w, find_end_of_cone());
+        blocked = blocked || facing <= 2.0 * spread;
+        limit = blocked ? 0u : MOST_STEPS;
+        return;
+    }
+    if (radius > 0.0) {
+        vec3 right, up;
+        vec2 point = radius * sample_disc(1u + control.light);
+        find_frame(axis, right, up);
+        toward += point.x * right + point.y * up;
+        remote = length(toward);
+        end = positional ? remote : end;
+    }
+    below = dot(normal, toward) <= 0.0;
+    begin_ray(normal, toward / remote);
+}
+
+// By a cosine around the normal, as light from there counts.
+void aim_over_hemisphere(vec3 normal)
+{
+    vec3 right, up;
+    vec2 point = sample_disc(0u);
+    lift = max(LIFT * place.width, LIFT_OF_REACH * frame.occlusion_reach) + 4.0 * place.rounding;
+    start = place.position + normal * lift;
+    end = frame.occlusion_reach;
+    find_frame(normal, right, up);
+    float rise = sqrt(max(1.0 - dot(point, point), 0.0));
+    begin_ray(normal, point.x * right + point.y * up + rise * normal);
+}
+
+void look_up_item(uint number) {}
+
+void begin_group(uint first)
+{
+    lost = 0u;
+    light = find_light(control.light);
+    positional = (light.kind & POSITIONAL) != 0u;
+    radius = light_radius(light);
+    is_cone = control.phase == CONES;
+}
+
+void begin_item(uint number, bool saved)
+{
+    place = find_place(number);
+    spread = margin = 0.0;
+    below = false;
+    vec3 normal = find_hit(FACING, place.slot).xyz;
+    if (control.phase == OVER_HEMISPHERE)
+        aim_over_hemisphere(normal);
+    else
+        aim_at_light(normal);
+    t = 0.0;
+    slope = facing;
+    taps = 0u;
+    before = gap = 0.0;
+    crept = true;
+    float least = min(LEAST_STEP * frame.error, LEAST_STEP_IN_PIXELS);
+    least_step = (is_cone ? 1.0 : least) * place.width + place.rounding;
+}
+
+bool item_wants_more() { return taps < limit; }
+
+float item_distance(vec3 position)
+{
+#ifdef ALONG
+    return krs_along(position, direction);
+#else
+    return krs_distance(position);
+#endif
+}
+
+vec3 item_place() { return start + t * direction; }
+
+// How much room there must be around the axis of a cone.  The surface that it starts from falls
+// away by the cosine.
+float find_room_needed(float at) { return spread * at + min(margin, 0.5 * facing * at); }
+
+// A gap beyond the distance, as long as may be if the distance goes on as it did.
+float relax(float distance)
+{
+#ifdef ALONG // it is what is free ahead, and tells nothing of what is behind
+    return distance;
+#endif
+    float needed = find_room_needed(t);
+    float aside = sqrt(max(distance * distance - needed * needed, 0.0));
+    return max(2.0 * CAUTION / (1.0 - clamp(slope, -1.0, STEEPEST)) * aside, distance);
+}
+
+// Whether the balls of empty space of this step and the last leave too little room where they meet:
+// so far behind here, so far aside (math.md 6).
+bool has_gone_too_far(float distance, float per_gap)
+{
+    float back = 0.5 * (gap + (distance - before) * (distance + before) * per_gap);
+    float aside = max(distance * distance - back * back, 0.0);
+    float needed = find_room_needed(t - back);
+    bool  narrow = back > 0.0 && back < gap && aside < needed * needed;
+    return !crept && gap > before && (narrow || gap > before + distance);
+}
+
+// A ray is blocked inside of something.  Near the start even what is open may have a small
+// distance, where that is only a bound.
+bool is_blocked(float distance)
+{
+    float near = mix(share, 1.0, min(t / (NEAR_START * place.width), 1.0));
+    return distance < (is_cone ? find_room_needed(t) : near * place.rounding);
+}
+
+void take_distance(float distance)
+{
+    distance *= place.side;
+    taps++;
+    float first = clamp(distance / lift, 0.0625, 1.0);
+    share = taps == 1u ? first : share;
+    float per_gap = 1.0 / max(gap, 1e-30);
+    bool  inside = is_blocked(distance);
+    bool  back = has_gone_too_far(distance, per_gap) && !(inside && !is_cone);
+    float risen = mix(slope, (distance - before) * per_gap, LEARNING);
+    slope = back ? -1.0 : gap > 0.0 ? risen : slope;
+    blocked = blocked || inside && !back;
+    bool  arrives = t + max(distance, least_step) >= end;
+    limit = !back && (inside || arrives) ? 0u : limit;
+    crept = !back && distance < least_step;
+    // Where the way in is between the last step and this one.
+    float crossing = gap * distance / max(before - distance, 1e-30);
+    float next = crept ? least_step : max(relax(distance), least_step);
+    next = min(next, max(end - t, 0.0));
+    least_step *= IMPATIENCE;
+    t += back ? before - gap : inside && !is_cone ? min(crossing, 0.0) : next;
+    gap = back ? before : next;
+    before = back ? before : distance;
+}
+
+// How wide the penumbra of what blocks the light is at the hit, in pixels.
+float find_penumbra()
+{
+    float width = 2.0 * radius * t;
+    if (positional)
+        width /= max(length(light.vector - start) - t, 1e-30);
+    return width / place.width;
+}
+
+// How much of the sky comes past what a ray hits after this share of its reach.
+float openness_of_hit(float part) { return part * part; }
+
+void end_item()
+{
+    float at = find_end(index_of(pixel_of(place.slot))).t;
+    if (is_cone) {
+        if (!blocked && limit == 0u)
+            keep_shared(RAYS_SHARED, place.slot, at, LIT);
+        return;
+    }
+    lost += limit > 0u ? 1u : 0u;
+    float visible = blocked || below ? 0.0 : 1.0;
+    uint  code = below ? BELOW_HORIZON : blocked ? code_of_width(find_penumbra()) : LIT;
+    if (control.phase == OVER_HEMISPHERE) {
+        visible = blocked ? openness_of_hit(t / frame.occlusion_reach) : 1.0;
+        code = code_of_openness(visible);
+    }
+    if (control.filters != 0u)
+        keep_shared(RAYS_SHARED, place.slot, at, code);
+    else
+        keep_lighting(control.value, place.slot, visible);
+}
+
+void end_group(uint turns)
+{
+    if (lost > 0u)
+        atomicAdd(counts.unresolved, lost);
+}
+
+const bool SAVES = false;
+void save_item() {}
+
+#include "schedule.glsl"

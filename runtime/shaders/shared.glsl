@@ -1,0 +1,59 @@
+/*
+ * shared.glsl: what a ray from a hit finds, for the pixels around it: a word a pixel.
+ *
+ * The upper 24 bits are those of how far along its ray the pixel's hit is, so that its position is
+ * known from the word alone; the lower 8 are a code.  A word of 0 is of a pixel without a ray.
+ */
+#include "sines.glsl"
+
+// Of the disc that a hit sees of a light; a directional one is 1 away.
+float light_radius(Light light)
+{
+    bool positional = (light.kind & POSITIONAL) != 0u;
+    return max(positional ? light.softness : krs_tan(0.5 * min(light.softness, 3.0)), 0.0);
+}
+
+// Codes of rays to a light: it is lit; the point of the light lies behind the surface itself;
+// others are blocked, and tell how wide the penumbra is.
+const uint LIT = 1u, BELOW_HORIZON = 255u, NARROWEST = 2u, WIDEST = 254u;
+// Codes of the widths of penumbrae, in pixels: powers of 2^(1/8), from 2^-4 on.
+const float WIDTHS_A_DOUBLING = 8.0, NARROWEST_LOG = -4.0;
+// Codes of rays over the hemisphere: from closed to open.
+const uint CLOSED = 1u;
+const float OPEN_CODES = 254.0;
+
+// Words of slots, behind the lists of solid.glsl: of rays, and of means of these by filter.comp,
+// whose codes are all from closed to open.
+const uint RAYS_SHARED = 0u, MEANS_SHARED = 1u, FIRST_SHARED = 13u;
+
+// Tiles may reach beyond the band, so there are more slots than pixels.
+uint shared_at(uint list, uint slot)
+{
+    uvec2 tiles = (work.extent + 7u) / 8u;
+    return FIRST_SHARED * band_pixels() + 64u * tiles.x * tiles.y * list + slot;
+}
+
+void keep_shared(uint list, uint slot, float t, uint code)
+{
+    solid[shared_at(list, slot)] = floatBitsToUint(t) & 0xffffff00u | code;
+}
+
+uint find_shared(uint list, uint slot)
+{
+    return find_listed(shared_at(list, slot));
+}
+
+uint code_of_width(float pixels)
+{
+    float code = WIDTHS_A_DOUBLING * (log2(max(pixels, 1e-6)) - NARROWEST_LOG);
+    return NARROWEST + uint(clamp(code, 0.0, float(WIDEST - NARROWEST)));
+}
+
+float width_of_code(uint code)
+{
+    return exp2(float(code - NARROWEST) / WIDTHS_A_DOUBLING + NARROWEST_LOG);
+}
+
+uint code_of_openness(float open) { return CLOSED + uint(OPEN_CODES * open + 0.5); }
+
+float openness_of_code(uint code) { return float(code - CLOSED) / OPEN_CODES; }
