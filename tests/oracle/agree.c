@@ -1,0 +1,509 @@
+/*
+ * agree.c: what a picture, a query of the device and one of the host say of one ray.
+ *
+ * Rays through random pixels of examples and of random scenes are asked for on the host, in double
+ * precision, and on the device, and held against the picture: the same hit, as deep, of the same
+ * component, level and instance.  Where the picture and the host disagree about a hit the ray must
+ * graze something: what it goes through, or what it passes by, is then a small part of a pixel.
+ * Crops are the picture bit by bit, and so are tracing methods but for the permitted error.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "compiler/compile.h"
+#include "tests/oracle/exact.h"
+#include "tests/oracle/product.h"
+#include "tests/support/renderer.h"
+
+/* In pixels at the place: how far a hit may be off, the permitted error and what stays open; and
+   how deep or how near it is what rays may graze. */
+#define MOST_OFF   (0.25 + 2.0 / 64)
+#define MOST_GRAZE (1.0 / 16)
+/* The share of rays that graze, or end where several copies meet. */
+#define MOST_EXCUSED 0.05
+
+enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT, ASKED = 400 };
+
+typedef struct Stage {
+    const char   *name;
+    KrsScene     *scene;
+    KrsFrame     *frame;
+    KrsRendering *rendering;
+    KrsView       view;
+    Lens          lens;
+} Stage;
+
+static Vec vec_of(const double v[3]) { return vec(v[0], v[1], v[2]); }
+
+static void stage_open(Stage *stage, KrsStatus status)
+{
+    if (status != KRS_OK)
+        fail_msg("%s does not compile", stage->name);
+    assert_int_equal(krs_frame_new(stage->scene, &stage->frame), KRS_OK);
+    if (krs_rendering_new(renderer, stage->scene, &stage->rendering) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(renderer));
+    assert_int_equal(krs_frame_view(stage->frame, 0, &stage->view), KRS_OK);
+    const KrsCamera *camera = &stage->view.camera;
+    assert_int_equal(camera->projection, KRS_PERSPECTIVE);
+    stage->lens = lens_make(vec_of(camera->eye), vec_of(camera->target), tan(camera->fov / 2),
+                            false, WIDTH, HEIGHT);
+}
+
+static void stage_close(Stage *stage)
+{
+    krs_rendering_free(stage->rendering);
+    krs_frame_free(stage->frame);
+    krs_scene_free(stage->scene);
+}
+
+static KrsPicture *stage_render(Stage *stage, KrsRenderOptions options)
+{
+    KrsPicture *picture;
+    options.width   = WIDTH;
+    options.height  = HEIGHT;
+    options.samples = 1;
+    if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
+        fail_msg("%s: %s", stage->name, krs_renderer_message(renderer));
+    return picture;
+}
+
+/* ---- one ray ---- */
+
+/* What is said of it; `t` HUGE_VAL: nothing is hit. */
+typedef struct Answer {
+    double   t;
+    uint32_t component, level, instance;
+} Answer;
+
+static Answer answer_of(const KrsHit *hit)
+{
+    return (Answer){hit->hit ? hit->t : HUGE_VAL, hit->component, hit->level, hit->instance};
+}
+
+static Answer seen_at(const Stage *stage, const KrsPicture *picture, int pixel, Line ray)
+{
+    double stretch = vec_dot(ray.direction, stage->lens.forward);
+    return (Answer){picture->component[pixel] ? picture->depth[pixel] / stretch : HUGE_VAL,
+                    picture->component[pixel], picture->level[pixel], picture->instance[pixel]};
+}
+
+static double distance_at(Stage *stage, Vec p)
+{
+    const double point[1][3] = {{p.x, p.y, p.z}};
+    double       distance;
+    assert_int_equal(krs_distance(stage->frame, point, 1, &distance), KRS_OK);
+    return distance;
+}
+
+/* The deepest, or where nothing is the nearest, that a ray comes to a solid within some pixels
+   around a place. */
+static double least_around(Stage *stage, Line ray, double t, double pixel)
+{
+    double least = HUGE_VAL;
+    for (int i = -64; i <= 256; i++)
+        least = fmin(least, distance_at(stage, line_at(ray, t + i / 16.0 * pixel)));
+    return least;
+}
+
+static double pixel_at(const Stage *stage, double t) { return lens_pixel(&stage->lens, t); }
+
+typedef enum Verdict { AGREED, GRAZED, MANY_MEET, WRONG_HIT, WRONG_IDS, VERDICTS } Verdict;
+
+/* Whether the ids are those of a point nearby. */
+static bool is_of_neighbour(Stage *stage, Line ray, const Answer *said, double pixel)
+{
+    Vec at = line_at(ray, said->t);
+    for (int i = 0; i < 27; i++) {
+        Vec p = vec_add(at, vec((i % 3 - 1) * pixel, (i / 3 % 3 - 1) * pixel, (i / 9 - 1) * pixel));
+        const double point[1][3] = {{p.x, p.y, p.z}};
+        KrsHit       hit;
+        assert_int_equal(krs_probe(stage->frame, point, 1, &hit), KRS_OK);
+        if (hit.component == said->component && hit.level == said->level &&
+            hit.instance == said->instance)
+            return true;
+    }
+    return false;
+}
+
+/* `rounding`: how much more the one who answers may be off. */
+static Verdict judge(Stage *stage, Line ray, const Answer *truth, const Answer *said,
+                     double rounding)
+{
+    double first = fmin(truth->t, said->t);
+    if (first == HUGE_VAL)
+        return AGREED;
+    double pixel = pixel_at(stage, first), most = MOST_OFF * pixel + rounding;
+    if (fabs(truth->t - said->t) > most) {
+        /* The one that goes farther has gone through, or passed by, next to nothing. */
+        bool   through = truth->t < said->t;
+        double least = through ? least_around(stage, ray, first, pixel)
+                               : distance_at(stage, line_at(ray, first));
+        double graze = MOST_GRAZE * pixel + rounding;
+        return (through ? least > -graze : least < graze) ? GRAZED : WRONG_HIT;
+    }
+    if (truth->component == said->component && truth->level == said->level &&
+        truth->instance == said->instance)
+        return AGREED;
+    return is_of_neighbour(stage, ray, said, pixel) ? MANY_MEET : WRONG_IDS;
+}
+
+static void tell(const Stage *stage, const char *who, Verdict verdict, int pixel, const Answer *truth,
+                 const Answer *said)
+{
+    print_message("# %s, %s, pixel %d %d: %s; host t %.9g, %u %u %u; said t %.9g, %u %u %u\n",
+                  stage->name, who, pixel % WIDTH, pixel / WIDTH,
+                  verdict == WRONG_HIT ? "another hit" : "other ids", truth->t, truth->component,
+                  truth->level, truth->instance, said->t, said->component, said->level,
+                  said->instance);
+}
+
+typedef struct Tally {
+    const char *who;
+    size_t      verdicts[VERDICTS], hits;
+} Tally;
+
+static void count(Tally *tally, const Stage *stage, Verdict verdict, int pixel,
+                  const Answer *truth, const Answer *said)
+{
+    tally->verdicts[verdict]++;
+    tally->hits += said->t < HUGE_VAL;
+    if (verdict >= WRONG_HIT && tally->verdicts[verdict] <= 3)
+        tell(stage, tally->who, verdict, pixel, truth, said);
+}
+
+static bool is_right(const Stage *stage, const Tally *tally, size_t asked)
+{
+    size_t wrong = tally->verdicts[WRONG_HIT] + tally->verdicts[WRONG_IDS];
+    size_t excused = tally->verdicts[GRAZED] + tally->verdicts[MANY_MEET];
+    if (wrong == 0 && (double)excused <= MOST_EXCUSED * (double)asked)
+        return true;
+    print_message("# %s, %s: %zu rays, %zu hits, %zu graze, %zu where several meet, %zu hits and %zu ids "
+                  "wrong\n", stage->name, tally->who, asked, tally->hits, tally->verdicts[GRAZED],
+                  tally->verdicts[MANY_MEET], tally->verdicts[WRONG_HIT],
+                  tally->verdicts[WRONG_IDS]);
+    return false;
+}
+
+/* ---- scenes ---- */
+
+static void put(double to[3], Vec v)
+{
+    to[0] = v.x;
+    to[1] = v.y;
+    to[2] = v.z;
+}
+
+static bool is_border(const KrsPicture *picture, int k)
+{
+    const int neighbours[2] = {k + 1, k + WIDTH};
+    for (int i = 0; i < 2; i++) {
+        int n = neighbours[i];
+        if (n < PIXELS && (picture->component[k] != picture->component[n] ||
+                           picture->instance[k] != picture->instance[n] ||
+                           fabsf(picture->depth[k] - picture->depth[n]) > 0.05f * picture->depth[k]))
+            return true;
+    }
+    return false;
+}
+
+/* Any pixel, or one at a border, if there is one. */
+static int choose_pixel(Random *random, const KrsPicture *picture, bool at_border)
+{
+    int pixel = random_below(random, PIXELS);
+    for (int i = 0; at_border && i < PIXELS && !is_border(picture, pixel); i++)
+        pixel = random_below(random, PIXELS);
+    return pixel;
+}
+
+/* Rays through the middles of pixels, every second at a border. */
+static size_t wrong_rays(Stage *stage, const KrsPicture *picture)
+{
+    static double  places[ASKED][3], directions[ASKED][3];
+    const double (*origins)[3] = (const double(*)[3])places;
+    const double (*ways)[3]    = (const double(*)[3])directions;
+    static KrsHit  host[ASKED], device[ASKED];
+    static int     pixels[ASKED];
+    Random random = {(uint64_t)strlen(stage->name) + 3};
+    Tally  seen = {.who = "picture"}, asked = {.who = "query of the device"};
+    double size = vec_length(stage->lens.eye);
+    for (int i = 0; i < ASKED; i++) {
+        pixels[i] = choose_pixel(&random, picture, i % 2 == 1);
+        Line ray  = lens_ray(&stage->lens, pixels[i] % WIDTH + 0.5, pixels[i] / WIDTH + 0.5);
+        put(places[i], ray.origin);
+        put(directions[i], ray.direction);
+    }
+    assert_int_equal(krs_raycast(stage->frame, origins, ways, ASKED, HUGE_VAL, 1e-7 * (1 + size),
+                                 host), KRS_OK);
+    double nearest = HUGE_VAL;
+    for (int i = 0; i < ASKED; i++)
+        if (host[i].hit)
+            nearest = fmin(nearest, host[i].t);
+    double tolerance = nearest < HUGE_VAL ? 0.25 * pixel_at(stage, nearest) : 1e-3;
+    if (krs_device_raycast(stage->rendering, stage->frame, origins, ways, ASKED, HUGE_VAL,
+                           tolerance, device) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(renderer));
+    for (int i = 0; i < ASKED; i++) {
+        Line   ray      = {vec_of(origins[i]), vec_of(ways[i])};
+        Answer truth    = answer_of(&host[i]);
+        Answer picked   = seen_at(stage, picture, pixels[i], ray);
+        Answer answered = answer_of(&device[i]);
+        double far = fmin(truth.t, picked.t) < HUGE_VAL ? fmin(truth.t, picked.t) : 0;
+        double rounding = 2e-6 * (size + far); /* some units in the last place */
+        count(&seen, stage, judge(stage, ray, &truth, &picked, 2e-6 * far), pixels[i], &truth,
+              &picked);
+        count(&asked, stage, judge(stage, ray, &truth, &answered, rounding), pixels[i], &truth,
+              &answered);
+    }
+    /* Queries of the device have no anchor: far out they have as little as single precision. */
+    bool has_digits = nearest == HUGE_VAL || 2.4e-7 * size < pixel_at(stage, nearest) / 64;
+    bool right = is_right(stage, &seen, ASKED);
+    return !right + (has_digits && !is_right(stage, &asked, ASKED));
+}
+
+static bool rows_are_equal(const void *whole, const void *crop, const KrsWindow *window, size_t size)
+{
+    for (uint32_t y = 0; y < window->height; y++)
+        if (memcmp((const char *)whole + ((window->y + y) * WIDTH + window->x) * size,
+                   (const char *)crop + y * window->width * size, window->width * size) != 0)
+            return false;
+    return true;
+}
+
+static size_t wrong_crops(Stage *stage, const KrsPicture *whole)
+{
+    Random random = {5};
+    size_t wrong  = 0;
+    for (int i = 0; i < 3; i++) {
+        KrsWindow window = {.x = (uint32_t)random_below(&random, WIDTH - 40),
+                            .y = (uint32_t)random_below(&random, HEIGHT - 30)};
+        window.width  = 1 + (uint32_t)random_below(&random, 39);
+        window.height = 1 + (uint32_t)random_below(&random, 29);
+        KrsPicture *crop = stage_render(stage, (KrsRenderOptions){.crop = window});
+        bool equal = rows_are_equal(whole->depth, crop->depth, &window, sizeof(float)) &&
+                     rows_are_equal(whole->position, crop->position, &window, 3 * sizeof(float)) &&
+                     rows_are_equal(whole->normal, crop->normal, &window, 3 * sizeof(float)) &&
+                     rows_are_equal(whole->color, crop->color, &window, 4 * sizeof(float)) &&
+                     rows_are_equal(whole->albedo, crop->albedo, &window, 3 * sizeof(float)) &&
+                     rows_are_equal(whole->component, crop->component, &window, 4) &&
+                     rows_are_equal(whole->level, crop->level, &window, 4) &&
+                     rows_are_equal(whole->instance, crop->instance, &window, 4);
+        if (!equal)
+            print_message("# %s: the crop %u %u %u %u is another picture\n", stage->name, window.x,
+                          window.y, window.width, window.height);
+        wrong += !equal;
+        krs_picture_free(crop);
+    }
+    return wrong;
+}
+
+/* A position is where the ray is at its depth. */
+static size_t wrong_positions(const Stage *stage, const KrsPicture *picture)
+{
+    size_t wrong = 0;
+    for (int k = 0; k < PIXELS; k++) {
+        if (!picture->component[k])
+            continue;
+        Line   ray = lens_ray(&stage->lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
+        double t   = picture->depth[k] / vec_dot(ray.direction, stage->lens.forward);
+        Vec    at  = line_at(ray, t);
+        Vec    said = vec(picture->position[3 * k], picture->position[3 * k + 1],
+                          picture->position[3 * k + 2]);
+        wrong += !(vec_distance(at, said) <= 1e-5 * (vec_length(at) + t + 1));
+    }
+    if (wrong)
+        print_message("# %s: %zu positions are not where rays end\n", stage->name, wrong);
+    return wrong;
+}
+
+static size_t wrong_scene(Stage *stage, KrsTrace trace)
+{
+    KrsPicture *picture = stage_render(stage, (KrsRenderOptions){.trace = trace});
+    size_t      wrong   = wrong_rays(stage, picture) + wrong_positions(stage, picture);
+    if (picture->stats.unresolved)
+        print_message("# %s: %llu rays are unresolved\n", stage->name,
+                      (unsigned long long)picture->stats.unresolved);
+    if (trace == KRS_TRACE_DEFAULT)
+        wrong += wrong_crops(stage, picture);
+    krs_picture_free(picture);
+    return wrong;
+}
+
+static void examples_agree(void **state)
+{
+    (void)state;
+    static const char *const paths[] = {"examples/01-hello.krs", "examples/05-rock.krs",
+                                        "examples/14-inversion.krs"};
+    size_t wrong = 0;
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        Stage stage = {.name = paths[i]};
+        stage_open(&stage, krs_compile_file(paths[i], NULL, &stage.scene));
+        wrong += wrong_scene(&stage, KRS_TRACE_DEFAULT);
+        stage_close(&stage);
+    }
+    assert_int_equal(wrong, 0);
+}
+
+/* A picture of something else does not pass: moved by two pixels, or of other ids. */
+static void other_pictures_are_found(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "param aside = 0;\n"
+        "camera { eye: [0, 1, 5], target: [0, 0, 0], fov: 0.6 }\n"
+        "show krs { kernel box([0.6, 0.5, 0.7]).move([-0.5 + aside, 0.1, 0]);\n"
+        "           reflect plane([1, 0.2, 0], 0.3); };\n";
+    Stage stage = {.name = "two boxes"};
+    stage_open(&stage, krs_compile_text(text, strlen(text), "scene.krs", NULL, &stage.scene));
+    KrsPicture *picture = stage_render(&stage, (KrsRenderOptions){0});
+    assert_int_equal(wrong_rays(&stage, picture), 0);
+    for (int k = 0; k < PIXELS; k++)
+        picture->instance[k] ^= 1;
+    assert_true(wrong_rays(&stage, picture) > 0);
+    krs_picture_free(picture);
+    const double aside = 2 * pixel_at(&stage, 5), none = 0;
+    assert_int_equal(krs_frame_set(stage.frame, "aside", &aside, 1), KRS_OK);
+    picture = stage_render(&stage, (KrsRenderOptions){0});
+    assert_int_equal(krs_frame_set(stage.frame, "aside", &none, 1), KRS_OK);
+    assert_true(wrong_rays(&stage, picture) > 0);
+    krs_picture_free(picture);
+    stage_close(&stage);
+}
+
+/* ---- random scenes ---- */
+
+static Vec any_vec(Random *random, double size)
+{
+    return vec(random_between(random, -size, size), random_between(random, -size, size),
+               random_between(random, -size, size));
+}
+
+static void write_vec(SceneText *text, const char *before, Vec v, const char *after)
+{
+    scene_write(text, "%s[%.9g, %.9g, %.9g]%s", before, v.x, v.y, v.z, after);
+}
+
+/* About as large as 1, around the origin. */
+static void write_solid(SceneText *text, Random *random)
+{
+    static const char *const solids[] = {
+        "sphere(0.7)", "box([1.1, 0.6, 0.9])", "box([1, 1, 0.02])", "torus(0.6, 0.2)",
+        "cylinder(0.4, 1.2)", "cone(0.6, 1.1)", "ellipsoid([0.8, 0.2, 0.5])",
+        "capsule([-0.5, -0.3, 0], [0.5, 0.4, 0.1], 0.15)", "octahedron(0.8)",
+        "algebraic(x^4 + y^4 + z^4 == 0.3).within(box([1.6, 1.6, 1.6]))",
+        "algebraic(x^2 + y^2 == z^2 * (0.8 - z) + 0.02).within(box([1.6, 1.6, 1.6]))",
+        "field(sin(6 * x) * cos(6 * y) + sin(6 * y) * cos(6 * z) + sin(6 * z) * cos(6 * x))"
+        ".within(sphere(0.8))",
+        "union(sphere(0.5), box([1, 0.3, 0.3]), blend: 0.2)",
+        "box([1, 1, 1]).round(0.1).shell(0.05)", "star(5, 0.8).extrude(0.3)",
+        "(box([1, 1, 1]) - sphere(0.62))", "(sphere(0.7) & box([1, 1, 1]).move([0.4, 0.3, 0.2]))"};
+    scene_write(text, "%s", solids[random_below(random, sizeof solids / sizeof *solids)]);
+}
+
+/* Something done to a solid. */
+static void write_change(SceneText *text, Random *random)
+{
+    switch (random_below(random, 9)) {
+    case 0: write_vec(text, ".rotate(", any_vec(random, 1), ", 0.7)"); break;
+    case 1: scene_write(text, ".scale(%.6g)", random_between(random, 0.3, 1.4)); break;
+    case 2: scene_write(text, ".scale([1, %.6g, 1.2])", random_between(random, 0.4, 2)); break;
+    case 3: scene_write(text, ".twist([0, 1, 0], %.6g)", random_between(random, -1.5, 1.5)); break;
+    case 4: scene_write(text, ".mirror(plane([1, 0.2, 0], 0.1))"); break;
+    case 5: scene_write(text, ".repeat([2.6, 0, 2.6], [3, 1, 2])"); break;
+    case 6: write_vec(text, ".move(", any_vec(random, 0.5), ")"); break;
+    case 7: scene_write(text, ".offset(%.6g)", random_between(random, 0, 0.1)); break;
+    default: break;
+    }
+}
+
+static void write_sequence(SceneText *text, Random *random)
+{
+    bool inverts = random_below(random, 3) == 0;
+    scene_write(text, "krs { kernel ");
+    write_solid(text, random);
+    scene_write(text, ".scale(0.5)");
+    write_vec(text, ".move(", any_vec(random, 0.3), ");\n");
+    for (int i = 0, count = 1 + random_below(random, 6); i < count; i++) {
+        write_vec(text, "  reflect plane(", random_unit(random), ", ");
+        scene_write(text, "%.6g);\n", random_between(random, 0.1, 0.6));
+    }
+    if (inverts)
+        scene_write(text, "  mobius invert([0.4, 2.6, 0.3], 2);\n");
+    scene_write(text, "}");
+}
+
+/* Solids around `at`, as large as `size`, and an eye that sees them. */
+static void write_scene(SceneText *text, Random *random, Vec at, double size)
+{
+    bool   narrow = random_below(random, 4) == 0;
+    double away   = narrow ? 200 : pow(10, random_between(random, -0.5, 1));
+    Vec    eye    = vec_add(at, vec_scale(size * away, random_unit(random)));
+    write_vec(text, "camera { eye: ", eye, ", ");
+    write_vec(text, "target: ", at, ", ");
+    scene_write(text, "fov: %g }\nlight { direction: [1, 2, 3], shadow: false }\n",
+                narrow ? 0.02 : 0.6);
+    for (int i = 0, count = 1 + random_below(random, 3); i < count; i++) {
+        scene_write(text, "show ");
+        if (random_below(random, 3) == 0)
+            write_sequence(text, random);
+        else {
+            write_solid(text, random);
+            for (int k = random_below(random, 3); k > 0; k--)
+                write_change(text, random);
+        }
+        write_vec(text, ".move(", any_vec(random, 1), ")");
+        scene_write(text, ".scale(%.9g)", size);
+        write_vec(text, ".move(", at, ");\n");
+    }
+    if (random_below(random, 3) == 0)
+        scene_write(text, "show plane([0, 1, 0], %.9g);\n", at.y - 1.3 * size);
+}
+
+static const KrsTrace methods[] = {KRS_TRACE_PLAIN, KRS_TRACE_RELAXED, KRS_TRACE_EXACT,
+                                   KRS_TRACE_TAYLOR, KRS_TRACE_DIRECTIONAL};
+
+/* Every third is far out, and of any size. */
+static size_t wrong_random_scene(int number)
+{
+    Random    random = {(uint64_t)number + 1000};
+    SceneText text   = {.length = 0};
+    bool      far    = number % 3 == 2;
+    double    size   = far ? pow(10, random_between(&random, -2, 1)) : 1;
+    char      name[40];
+    snprintf(name, sizeof name, "random scene %d", number);
+    write_scene(&text, &random, far ? any_vec(&random, 3000) : vec(0, 0, 0), size);
+    Stage  stage = {.name = name};
+    size_t method = (size_t)number % (sizeof methods / sizeof *methods);
+    stage_open(&stage, krs_compile_text(text.bytes, text.length, "scene.krs", NULL, &stage.scene));
+    size_t wrong = wrong_scene(&stage, KRS_TRACE_DEFAULT) + wrong_scene(&stage, methods[method]);
+    if (wrong)
+        print_message("%s\n", text.bytes);
+    stage_close(&stage);
+    return wrong;
+}
+
+static void random_scenes_agree(void **state)
+{
+    (void)state;
+    size_t wrong = 0;
+    for (int i = 0; i < 6; i++)
+        wrong += wrong_random_scene(i);
+    assert_int_equal(wrong, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(other_pictures_are_found),
+        cmocka_unit_test(examples_agree),
+        cmocka_unit_test(random_scenes_agree),
+    };
+    return cmocka_run_group_tests_name("agree", tests, renderer_open, renderer_close);
+}
