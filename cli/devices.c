@@ -88,11 +88,18 @@ static const char *cache_folder(const Options *options)
     return path.bytes;
 }
 
+/* The driver's time is no part of a deadline while it works. */
+static void go_on(void *user)
+{
+    (void)user;
+    stage_goes_on();
+}
+
 KrsStatus open_renderer(const Options *options, KrsRenderer **renderer)
 {
     const char        *device = options->device ? options->device : getenv("KRS_DEVICE");
     KrsRendererOptions with = {.device = device, .cache = cache_folder(options),
-                               .early_outs = options->early_outs,
+                               .early_outs = options->early_outs, .working = go_on,
                                .patience = DEVICE_PATIENCE * options->deadline};
     stage_enter(STAGE_DEVICE);
     KrsStatus status = krs_renderer_new(&with, renderer);

@@ -34,6 +34,10 @@ typedef struct KrsDevice {
 /* A complaint of Vulkan's validation layers; the text lives until the callback returns. */
 typedef void KrsValidationCallback(void *user, const char *message);
 
+/* Called about once a second while the driver compiles and the processor is busy with it: what takes
+   long is not stuck. */
+typedef void KrsWorkingCallback(void *user);
+
 /* Whether rays leave out by branches what is far away for its size.  The default is to, but not on
    devices of type CPU: those that are known run both sides of a branch. */
 typedef enum KrsEarlyOuts {
@@ -54,7 +58,8 @@ typedef struct KrsRendererOptions {
     const char            *device;
     bool                   validation; /* core and synchronization validation */
     KrsValidationCallback *complaint;  /* may be NULL: complaints are counted all the same */
-    void                  *user;       /* handed to `complaint` */
+    KrsWorkingCallback    *working;    /* may be NULL */
+    void                  *user;       /* handed to both */
     /* A folder for what is compiled, so that another time it need not be; it is made if it is
        missing, and need not be writable.  NULL: none.  Without one nothing is written to disk. */
     const char            *cache;

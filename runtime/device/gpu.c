@@ -489,6 +489,7 @@ bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
     *gpu = (Gpu){
         .allocator = options->allocator,
         .complaint = options->complaint,
+        .working = options->working,
         .user = options->user,
         .patience = options->patience > 0 ? options->patience : DEFAULT_PATIENCE,
     };

@@ -46,6 +46,7 @@ typedef struct Gpu {
     VkDebugUtilsMessengerEXT         messenger;
     PFN_vkSetDebugUtilsObjectNameEXT set_name; /* NULL without validation */
     KrsValidationCallback           *complaint;
+    KrsWorkingCallback              *working;
     void                            *user;
     uint64_t                         complaints;
 

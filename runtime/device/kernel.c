@@ -4,10 +4,14 @@
  */
 #include "runtime/device/kernel.h"
 
+#include <errno.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
+#include <unistd.h>
 
 #include "compiler/base/embedded.h"
 #include "compiler/compile.h"
@@ -286,15 +290,105 @@ failed:
     return ready;
 }
 
+/* ---- Side by side ---- */
+
+/* Kernels that several threads make: each takes the next that nobody has. */
+typedef struct Loading {
+    const KernelRequest *requests;
+    const KernelCode    *codes;
+    size_t               count;
+    VkPipelineLayout     layout;
+    atomic_size_t        next;
+} Loading;
+
+enum { MOST_LOADERS = 16 };
+typedef struct Loader {
+    Loading  *loading;
+    Gpu       gpu; /* a copy, which takes the note when something fails */
+    pthread_t thread;
+    bool      started, ready;
+} Loader;
+
+static void *load_some(void *user)
+{
+    Loader  *loader = user;
+    Loading *loading = loader->loading;
+    double   ms = 0;
+    for (size_t i; loader->ready &&
+                   (i = atomic_fetch_add(&loading->next, 1)) < loading->count;)
+        loader->ready = kernel_load(&loader->gpu, loading->requests[i].kernel, &loading->codes[i],
+                                    loading->layout, &ms);
+    return NULL;
+}
+
+static double processor_ms(void)
+{
+    struct timespec used;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
+    return (double)used.tv_sec * 1e3 + (double)used.tv_nsec / 1e6;
+}
+
+/* Tells once a second whether the process has worked for a part of it. */
+static void await(const Gpu *gpu, pthread_t thread)
+{
+    struct timespec until;
+    double          worked = processor_ms();
+    clock_gettime(CLOCK_REALTIME, &until);
+    for (until.tv_sec++; pthread_timedjoin_np(thread, NULL, &until) == ETIMEDOUT; until.tv_sec++) {
+        double now = processor_ms();
+        if (gpu->working && now > worked + 50)
+            gpu->working(gpu->user);
+        worked = now;
+    }
+}
+
+/* The validation layers' callback is for one thread. */
+static size_t count_loaders(const Gpu *gpu, size_t kernels)
+{
+    long   cores = sysconf(_SC_NPROCESSORS_ONLN);
+    size_t most = cores < 1 ? 1 : cores < MOST_LOADERS ? (size_t)cores : MOST_LOADERS;
+    return gpu->messenger ? 0 : kernels < most ? kernels : most;
+}
+
+bool kernel_load_all(Gpu *gpu, const KernelRequest *requests, const KernelCode *codes, size_t count,
+                     VkPipelineLayout layout)
+{
+    Loading loading = {requests, codes, count, layout, 0};
+    size_t  loaders = count_loaders(gpu, count);
+    Loader *all = gpu_alloc(gpu, 1 + loaders, sizeof *all, "prepare the kernels");
+    bool    ready = all != NULL;
+    for (size_t i = 0; i < count; i++)
+        *requests[i].kernel = (Kernel){0};
+    for (size_t i = 0; ready && i < loaders; i++) {
+        all[i] = (Loader){.loading = &loading, .gpu = *gpu, .ready = true};
+        all[i].started = pthread_create(&all[i].thread, NULL, load_some, &all[i]) == 0;
+    }
+    for (size_t i = 0; all && i < loaders; i++)
+        if (all[i].started)
+            await(gpu, all[i].thread);
+    if (ready) { /* what is left where no thread could be had */
+        all[loaders] = (Loader){.loading = &loading, .gpu = *gpu, .ready = true};
+        load_some(&all[loaders]);
+    }
+    for (size_t i = 0; all && i <= loaders; i++)
+        if (!all[i].ready) {
+            gpu_refuse(gpu, all[i].gpu.status, "%s", all[i].gpu.message);
+            ready = false;
+        }
+    gpu_release(gpu, all);
+    return ready;
+}
+
 bool kernel_create_all(Gpu *gpu, const KernelRequest *requests, size_t count,
                        VkPipelineLayout layout, double *spirv_ms, double *pipeline_ms)
 {
     KernelCode *codes = gpu_alloc(gpu, count, sizeof *codes, "compile the kernels");
     bool ready = codes && kernel_compile_all(gpu, requests, count, codes, spirv_ms);
+    double start = clock_ms();
     for (size_t i = 0; i < count; i++)
         *requests[i].kernel = (Kernel){0};
-    for (size_t i = 0; i < count && ready; i++)
-        ready = kernel_load(gpu, requests[i].kernel, &codes[i], layout, pipeline_ms);
+    ready = ready && kernel_load_all(gpu, requests, codes, count, layout);
+    *pipeline_ms += clock_ms() - start;
     for (size_t i = 0; i < count && codes; i++)
         kernel_code_release(gpu, &codes[i]);
     gpu_release(gpu, codes);

@@ -41,13 +41,15 @@ typedef struct KernelRequest {
     KernelSource source;
 } KernelRequest;
 
-/* The two halves of it: several kernels are compiled at the same time, and each becomes a
-   pipeline of a device.  Codes are the caller's to release, in either case; a kernel that was not
-   made is zero. */
+/* The two halves of it: several kernels are compiled at the same time, and become pipelines of a
+   device.  Codes are the caller's to release, in either case; a kernel that was not made is
+   zero. */
 bool kernel_compile_all(Gpu *gpu, const KernelRequest *requests, size_t count, KernelCode *codes,
                         double *spirv_ms);
 bool kernel_load(Gpu *gpu, Kernel *kernel, const KernelCode *code, VkPipelineLayout layout,
                  double *pipeline_ms);
+bool kernel_load_all(Gpu *gpu, const KernelRequest *requests, const KernelCode *codes, size_t count,
+                     VkPipelineLayout layout);
 void kernel_code_release(Gpu *gpu, KernelCode *code);
 
 /* The same for several kernels, which are compiled at the same time.  On failure some may have

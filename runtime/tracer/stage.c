@@ -258,11 +258,10 @@ bool stage_make_kernels(KrsRenderer *renderer, VkDescriptorSet scene_set,
     Gpu       *gpu = &renderer->gpu;
     KernelCode codes[KERNELS_AT_ONCE];
     bool       ready = kernel_compile_all(gpu, requests, count, codes, spirv_ms);
-    double     start = clock_ms(), ms = 0;
+    double     start = clock_ms();
     for (size_t i = 0; i < count; i++)
         *requests[i].kernel = (Kernel){0};
-    for (size_t i = 0; i < count && ready; i++)
-        ready = kernel_load(gpu, requests[i].kernel, &codes[i], renderer->layout, &ms);
+    ready = ready && kernel_load_all(gpu, requests, codes, count, renderer->layout);
     if (gpu_is_cpu(gpu))
         ready = ready && rehearse_all(renderer, scene_set, requests, codes, count);
     for (size_t i = 0; i < count; i++)
