@@ -289,7 +289,7 @@ static void chains_are_right(void **state)
     print_message("\n");
     assert_true(tally.unresolved * 1000 <= tally.rays);
     assert_true(tally.empty * 2 < tally.frames);
-    assert_true(tally.refusals.refused * 4 < tally.refusals.tried);
+    assert_true(tally.refusals.refused * 2 < tally.refusals.tried);
     if (tally.wrong)
         fail_msg("%d of %d chains are wrong", tally.wrong, tally.chains);
 }
