@@ -22,11 +22,15 @@ const float LEARNING = 0.3; // of the mean slope
 // the seam between two.
 const float SEAM = 4.0;     // roundings
 
+// Where a ray begins nearer than this to a surface, rounding may have decided on which side.
+const float DOUBTFUL = 64.0; // roundings
+const uint  UNSURE = 0x80000000u, INSIDE = 0x40000000u; // as in blocks.h
+
 const float BEGINS_OUTSIDE = 1.0, ENDS_AT_WALLS = 2.0; // as in blocks.h
 
 // Two rows a ray: origin, and where it ends; unit direction, and its kind.
 layout(std430, set = 1, binding = 5) readonly buffer Questions { vec4 questions[]; };
-// Bits of t; fate; place of the point; steps.
+// Bits of t; fate; place of the point; steps, UNSURE and INSIDE.
 layout(std430, set = 1, binding = 3) writeonly buffer Ways { uvec4 ways[]; };
 // Where rays hit, or were given up, for sample.comp.
 layout(std430, set = 1, binding = 1) writeonly buffer Points { vec4 points[]; };
@@ -40,6 +44,7 @@ float slope;              // of the room along the ray, as it was on average
 float side;               // as of a Ray; 0: not known
 bool  walls;              // all solids end at `end`
 uint  steps, fate;
+uint  unsure;             // UNSURE, INSIDE: on which side the ray begins
 
 void look_up_item(uint number) {}
 void begin_group(uint first) {}
@@ -56,7 +61,7 @@ void begin_item(uint number, bool saved)
     slope = -1.0;
     side = way.w == BEGINS_OUTSIDE ? 1.0 : 0.0;
     walls = way.w == ENDS_AT_WALLS;
-    steps = 0u;
+    steps = unsure = 0u;
     fate = end >= 0.0 ? MARCHING : MISS;
 }
 
@@ -91,8 +96,13 @@ void close_in(float before, float room, float open)
 void take_distance(float distance)
 {
     float at = t + gap;
-    side = side == 0.0 ? (distance < 0.0 ? -1.0 : 1.0) : side;
     float least = ROUNDING * (rounding + at), open = OPEN * frame.error + least;
+    if (side == 0.0) {
+        side = distance < 0.0 ? -1.0 : 1.0;
+        unsure = abs(distance) > DOUBTFUL * least ? 0u
+                 : distance < 0.0                 ? UNSURE | INSIDE
+                                                  : UNSURE;
+    }
     float seam = side < 0.0 ? SEAM * least : 0.0;
     float room = side * distance + seam;
     float doubtful = gap - clear; // as long as may hide something
@@ -123,7 +133,7 @@ void end_item()
         place = atomicAdd(counts.solid, 1u);
         points[place] = vec4(origin + t * direction, 0.0);
     }
-    ways[index] = uvec4(floatBitsToUint(t), fate, place, steps);
+    ways[index] = uvec4(floatBitsToUint(t), fate, place, steps | unsure);
 }
 
 void save_item() {}

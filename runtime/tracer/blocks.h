@@ -126,6 +126,10 @@ typedef struct QuestionBlock {
 enum { ENDS_ANYWHERE, BEGINS_OUTSIDE, ENDS_AT_WALLS };
 
 enum { QUERY_MARCHING, QUERY_HIT, QUERY_MISS }; /* the fates of frame.glsl */
+/* Bits among the steps of a ray that began so near to a surface that rounding may have decided on
+   which side: that it did, and that the side was the inner one. */
+#define QUERY_UNSURE 0x80000000u
+#define QUERY_INSIDE 0x40000000u
 typedef struct WayBlock {
     float    t;
     uint32_t fate, place, steps;

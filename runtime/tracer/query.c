@@ -3,7 +3,9 @@
  *
  * Rays are marched by query.comp; then sample.comp says what is where they hit, as it does at
  * points.  Both work on a batch at a time.  What can be done in double precision before and
- * after is: rays are brought to the box around the scene, and t is counted from the origin.
+ * after is: rays are brought to the box around the scene, t is counted from the origin, and rays
+ * that begin on a surface, as far as the device can tell, are followed by the host if the device
+ * took the wrong side.
  */
 #include <math.h>
 #include <string.h>
@@ -192,9 +194,19 @@ static void take_way(const KrsRay *ray, const WayBlock *way, const AnswerBlock *
     describe(&answers[way->place], hit);
 }
 
-static bool raycast_batch(KrsRendering *rendering, const double (*origins)[3],
+/* Single precision cannot tell on which side of a surface a ray begins that is as near to it as
+   rounding: on the wrong one it would go through the solid, or past its end.  The host can. */
+static bool took_wrong_side(KrsFrame *frame, const WayBlock *way, const double (*origin)[3])
+{
+    bool   inside = way->steps & QUERY_INSIDE;
+    double distance;
+    return (way->steps & QUERY_UNSURE) && krs_distance(frame, origin, 1, &distance) == KRS_OK &&
+           (distance < 0) != inside;
+}
+
+static bool raycast_batch(KrsRendering *rendering, KrsFrame *frame, const double (*origins)[3],
                           const double (*directions)[3], uint32_t count, double farthest,
-                          KrsHit *hits)
+                          double tolerance, KrsHit *hits)
 {
     const KrsScene *scene = rendering->scene;
     QuestionBlock  *questions = rendering->questions.bytes;
@@ -217,6 +229,8 @@ static bool raycast_batch(KrsRendering *rendering, const double (*origins)[3],
     for (uint32_t i = 0; i < count; i++) {
         KrsRay ray = krs_ray(scene, origins[i], directions[i], farthest);
         take_way(&ray, &ways[i], rendering->answers.bytes, &hits[i]);
+        if (took_wrong_side(frame, &ways[i], origins + i))
+            krs_raycast(frame, origins + i, directions + i, 1, farthest, tolerance, hits + i);
     }
     return true;
 }
@@ -234,8 +248,8 @@ KrsStatus krs_device_raycast(KrsRendering *rendering, KrsFrame *frame, const dou
         return rendering->renderer->gpu.status;
     set_frame(rendering, tolerance);
     for (size_t first = 0; first < count; first += POINTS_AT_ONCE)
-        if (!raycast_batch(rendering, origins + first, directions + first,
-                           batch_of(count - first), farthest, hits + first))
+        if (!raycast_batch(rendering, frame, origins + first, directions + first,
+                           batch_of(count - first), farthest, tolerance, hits + first))
             return rendering->renderer->gpu.status;
     return KRS_OK;
 }

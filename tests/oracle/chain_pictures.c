@@ -195,7 +195,7 @@ static double change_along(const Chain *chain, Vec from, Vec to)
 static Vec random_origin(const Chain *chain, Vec low, Vec high, Random *random)
 {
     Vec    from = between(random, low, high), to = between(random, low, high);
-    double at = change_along(chain, from, to), reach = pow(10, random_between(random, -3.5, 0));
+    double at = change_along(chain, from, to), reach = pow(10, random_between(random, -8, 0));
     return vec_add(vec_mix(from, to, at), vec_scale(at < 1 ? reach : 0, random_unit(random)));
 }
 
