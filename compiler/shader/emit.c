@@ -278,8 +278,8 @@ static void emit_head(Emitter *e, const EmitMarch *march)
              "#define KRS_MAX(a, b) max(a, b)\n"
              "#define KRS_BACK(back, here) here\n"
              "#else\n"
-             "#define KRS_MIN(a, b) ((b) < (a) ? (b) : (a))\n"
-             "#define KRS_MAX(a, b) ((a) < (b) ? (b) : (a))\n"
+             "#define KRS_MIN(a, b) mix(a, b, (b) < (a))\n"
+             "#define KRS_MAX(a, b) mix(a, b, (a) < (b))\n"
              "#define KRS_BACK(back, here) back\n"
              "#endif\n");
 }

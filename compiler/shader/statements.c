@@ -162,6 +162,21 @@ static bool picks_variable(const Emitter *e, const Expr *expr)
            e->graph->items[expr->operands[1]].op != OP_CONSTANT;
 }
 
+/* Of numbers by mix, which is no branch; it knows no others. */
+static const char *select_text(Emitter *e, const Expr *expr)
+{
+    const Node *o = expr->operands;
+    Text        text = {.arena = e->scratch};
+    if (expr->type == TYPE_BOOL || expr->type == TYPE_UINT)
+        return fill_template(e, expr);
+    text_format(&text, "mix(%s, %s, ", e->text[o[2]], e->text[o[1]]);
+    if (expr->type == TYPE_FLOAT)
+        text_format(&text, "%s)", emit_bare(e, e->text[o[0]]));
+    else
+        text_format(&text, "bvec%d(%s))", (int)expr->type, emit_bare(e, e->text[o[0]]));
+    return text.bytes;
+}
+
 static const char *node_text(Emitter *e, const Expr *expr)
 {
     Text text = {.arena = e->scratch};
@@ -181,6 +196,7 @@ static const char *node_text(Emitter *e, const Expr *expr)
         text_format(&text, "%s(%s, %s)", expr->op == OP_min ? "KRS_MIN" : "KRS_MAX",
                     e->text[expr->operands[0]], e->text[expr->operands[1]]);
         return text.bytes;
+    case OP_select: return select_text(e, expr);
     case OP_fold: {
         const char *mirror = mirror_text(e, expr);
         return mirror ? mirror : fill_template(e, expr);
