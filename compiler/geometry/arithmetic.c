@@ -308,6 +308,21 @@ static Value compare(Elaboration *e, const Syntax *syntax, Value a, Value b)
     return value_of_node(e, graph_op2(e->graph, ops[syntax->op], left, right));
 }
 
+/* Of maps that stay apart a product has as many as both have. */
+static Value multiply_maps(Elaboration *e, const Syntax *syntax, const Map *a, const Map *b)
+{
+    size_t count = 0;
+    for (const Map *map = a; map; map = map->first)
+        count++;
+    for (const Map *map = b; map; map = map->first)
+        count++;
+    if (count <= MOST_SHAPE_DEPTH)
+        return value_map(map_product(e, a, b));
+    diag_add(e->diags, DIAG_LIMIT, syntax->span,
+             "a product of more than 1,000 inversions that cannot be one map");
+    return value_error();
+}
+
 Value value_binary(Elaboration *e, const Syntax *syntax, Value a, Value b)
 {
     if (a.type == VALUE_ERROR || b.type == VALUE_ERROR)
@@ -333,7 +348,7 @@ Value value_binary(Elaboration *e, const Syntax *syntax, Value a, Value b)
         if (syntax->op == TOKEN_MINUS && a.type == VALUE_SHAPE && b.type == VALUE_SHAPE)
             return join_shapes(e, syntax, a.shape, b.shape);
         if (syntax->op == TOKEN_STAR && a.type == VALUE_MAP && b.type == VALUE_MAP)
-            return value_map(map_product(e, a.map, b.map));
+            return multiply_maps(e, syntax, a.map, b.map);
         break;
     default:
         return compare(e, syntax, a, b);

@@ -2,7 +2,7 @@
 # scale.sh: large and deep scenes end, in time and in 2 GB: checked, or refused with one reason.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 38
+plan 39
 
 # within COMMAND [OPTION]...: of scene.krs; a minute is far more than any of these needs.
 within() {
@@ -78,6 +78,10 @@ refused E0503 "a difference of 2^40 shapes"
 refused E0503 "2^40 kernels"
 { doubled "x" "let s# = s@ * s@;"; echo "show field(s40 + y).within(box([1, 1, 1]));"; } >scene.krs
 passed "x^(2^40)"
+{ echo "param q = 0 in [-0.001, 0.001];"
+    doubled "invert([0, 0, 0], 1) * translate([q, 0, 0])" "let s# = s@ * s@;"
+    echo "show sphere(0.2).move([0, 0, 0.5]).transform(s40);"; } >scene.krs
+refused E0503 "2^40 inversions that stay apart"
 { doubled "x" "let s# = s@ * y - s@;"; echo "show sphere(1).displace(sin(s40), 0.1);"; } >scene.krs
 passed "a displacement as steep as 2^40, framed by the compiler"
 
