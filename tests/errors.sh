@@ -2,7 +2,7 @@
 # errors.sh: every diagnostic code has a scene in tests/errors/ whose output is as blessed in the
 # .err file beside it, and a mark in the scene (//~ E0203) that no blessing can change: that code
 # is reported on that line.  `errors.sh --bless` writes the .err files.  A scene that begins with
-# "// krs check --untrusted" is checked with that option, one that begins with
+# "// krs check --root FOLDER" is checked with that option, one that begins with
 # "// krs validate" is refused by that only; what it finds depends on rounding, so numbers in its
 # notes are not compared.
 cd "$(dirname "$0")/.." || exit 1
@@ -20,8 +20,8 @@ for scene in tests/errors/*.krs; do
         status=$?
         sed -i '/^ *= note/s/[-+.0-9][-+.0-9e]*/#/g; /^error/s/ [-+.0-9e]* times/ # times/' "$got"
     else
-        confined=$(sed -n '1s,^// krs check \(--untrusted\)$,\1,p' "$scene")
-        "$krs" check --color never ${confined:+"$confined"} "$scene" >"$got" 2>&1
+        root=$(sed -n '1s,^// krs check --root \(.*\)$,\1,p' "$scene")
+        "$krs" check --color never ${root:+--root "$root"} "$scene" >"$got" 2>&1
         status=$?
     fi
     case $scene in */W*) wanted=0 ;; *) wanted=1 ;; esac
