@@ -150,7 +150,7 @@ static const char *slot_text(Emitter *e, uint32_t slot, uint32_t first, uint32_t
 {
     Text text = {.arena = e->scratch};
     text_format(&text, width == 4 ? "krs_parameter[%u]" : "krs_parameter[%u].%.*s", slot,
-                (int)width, "xyzw" + first);
+                (int)width, &"xyzw"[first]);
     return text.bytes;
 }
 
