@@ -399,8 +399,7 @@ static void write_solid(SceneText *text, Random *random)
         "capsule([-0.5, -0.3, 0], [0.5, 0.4, 0.1], 0.15)", "octahedron(0.8)",
         "algebraic(x^4 + y^4 + z^4 == 0.3).within(box([1.6, 1.6, 1.6]))",
         "algebraic(x^2 + y^2 == z^2 * (0.8 - z) + 0.02).within(box([1.6, 1.6, 1.6]))",
-        "field(sin(6 * x) * cos(6 * y) + sin(6 * y) * cos(6 * z) + sin(6 * z) * cos(6 * x))"
-        ".within(sphere(0.8))",
+        "field(sin(6 * x) * cos(6 * y) + sin(6 * z) * cos(5 * x)).within(sphere(0.8))",
         "union(sphere(0.5), box([1, 0.3, 0.3]), blend: 0.2)",
         "box([1, 1, 1]).round(0.1).shell(0.05)", "star(5, 0.8).extrude(0.3)",
         "(box([1, 1, 1]) - sphere(0.62))", "(sphere(0.7) & box([1, 1, 1]).move([0.4, 0.3, 0.2]))"};
