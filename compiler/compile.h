@@ -105,7 +105,7 @@ typedef struct KrsProgram {
     bool        algebraic;    /* normals are by krs_gradient unless asked for otherwise */
     bool        along;        /* there is krs_along, for kernels with #define ALONG */
     bool        inverts;      /* there are its variants for sequences with maps that invert */
-    bool        seams;        /* solids touch, face to face, for kernels with #define SEAMS */
+    bool        plain;        /* no component is curved (shape_is_curved): #define PLAIN */
     bool        shadows;      /* a light casts some */
     KrsGroup    groups[KRS_MOST_GROUPS];
     size_t      group_count;  /* 0: all components belong together */

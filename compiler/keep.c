@@ -13,17 +13,6 @@ static const char *keep(Compilation *c, const char *text)
     return text ? arena_copy_text(&c->scene->arena, text, strlen(text)) : NULL;
 }
 
-/* Whether a component has a face on one before it; among too many, it is taken to have. */
-static bool touches_others(const Scene *scene, size_t component)
-{
-    enum { MANY = 100 };
-    const Component *items = scene->components.items;
-    for (size_t i = 0; i < component && component < MANY; i++)
-        if (boxes_touch(items[i].shape->box, items[component].shape->box))
-            return true;
-    return component >= MANY;
-}
-
 static void keep_components(Compilation *c)
 {
     KrsScene    *scene = c->scene;
@@ -31,6 +20,7 @@ static void keep_components(Compilation *c)
     scene->component_count = s->components.count;
     scene->components      = arena_new_array(&scene->arena, KrsComponent, s->components.count + 1);
     scene->bounds          = arena_new_array(&scene->arena, KrsBounds, s->components.count + 1);
+    scene->program.plain   = true;
     for (size_t i = 0; i < s->components.count; i++) {
         const Component *from = &s->components.items[i];
         KrsComponent    *to   = &scene->components[i];
@@ -46,7 +36,7 @@ static void keep_components(Compilation *c)
             to->low[k]  = from->shape->box.axis[k].low;
             to->high[k] = from->shape->box.axis[k].high;
         }
-        scene->program.seams = scene->program.seams || from->shape->seams || touches_others(s, i);
+        scene->program.plain = scene->program.plain && !shape_is_curved(from->shape);
         bounds_of(from->shape, &c->sources, &scene->bounds[i], &scene->arena, &c->scratch);
         arena_free(&c->scratch);
     }

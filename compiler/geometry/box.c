@@ -87,20 +87,6 @@ double cell_margin(Range content, double period)
     return fmin(0.5 * period - content.high, 0.5 * period + content.low);
 }
 
-bool boxes_touch(Box a, Box b)
-{
-    int  faces = 0;
-    bool apart = !box_is_finite(a) || !box_is_finite(b);
-    double near = apart ? 0 : 1e-6 * fmin(box_diagonal(a), box_diagonal(b));
-    for (int i = 0; i < 3 && !apart; i++) {
-        Range x = a.axis[i], y = b.axis[i];
-        bool  meets = fabs(x.high - y.low) <= near || fabs(y.high - x.low) <= near;
-        faces += meets;
-        apart = !meets && (x.high < y.low || y.high < x.low);
-    }
-    return !apart && faces == 1;
-}
-
 double box_diagonal(Box box)
 {
     double sum = 0;

@@ -17,8 +17,6 @@ Box  box_grow(Box box, double by);
 Box  box_move(Box box, const Range by[3]);
 /* The box around a box after a linear map with these rows, each entry a range. */
 Box  box_turn(Box box, Range rows[3][3]);
-/* Whether a face of one lies on a face of the other, of finite boxes but for rounding. */
-bool   boxes_touch(Box a, Box b);
 double box_diagonal(Box box);
 /* Of a finite box. */
 void   box_centre(Box box, double centre[3]);

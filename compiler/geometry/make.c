@@ -26,15 +26,14 @@ Range node_range(Elaboration *e, Node node, uint32_t component)
     return range;
 }
 
-/* By their boxes.  Where those touch and the solids do not, seams are looked for in vain. */
-static bool parts_touch(const Shape *const *parts, uint32_t count)
+bool shape_is_curved(const Shape *shape)
 {
-    enum { MANY = 100 };
-    for (uint32_t i = 0; i < count && count <= MANY; i++)
-        for (uint32_t k = 0; k < i; k++)
-            if (boxes_touch(parts[i]->box, parts[k]->box))
-                return true;
-    return count > MANY;
+    switch (shape->kind) {
+    case SHAPE_PRIMITIVE: return !shape->exact && shape->bound == NODE_NONE && !shape->claimed;
+    case SHAPE_STRETCH: case SHAPE_MORPH: case SHAPE_META: case SHAPE_TWIST: case SHAPE_BEND:
+    case SHAPE_TAPER: case SHAPE_DISPLACE: return true;
+    default: return shape->blend.width != NODE_NONE || shape->levels > 0 || shape->curved_parts;
+    }
 }
 
 Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
@@ -63,7 +62,7 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
         shape->slope       = fmax(shape->slope, child->slope);
         shape->derived     = fmax(shape->derived, child->derived);
         shape->exact       = shape->exact && child->exact;
-        shape->seams       = shape->seams || child->seams;
+        shape->curved_parts = shape->curved_parts || shape_is_curved(child);
         shape->estimate    = shape->estimate || child->estimate;
         shape->per_frame   = shape->per_frame || child->per_frame;
         shape->trapped     = shape->trapped || child->trapped;
@@ -78,7 +77,6 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
         if (child->inversions > shape->inversions)
             shape->inversions = child->inversions;
     }
-    shape->seams = shape->seams || (kind == SHAPE_UNION && parts_touch(children, count));
     shape->instances = sequences > 0 ? sequences : kind != SHAPE_EMPTY;
     if (count == 1)
         shape->box = children[0]->box;
@@ -309,7 +307,6 @@ const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const 
             diag->help  = "use a larger period, or a smaller shape that is centred in its cell";
             return NULL;
         }
-        repeat->seams = repeat->seams || margin <= 1e-6 * range.low;
         double reach = cells[i] ? 0.5 * (cells[i] - 1) * range.high : INFINITY;
         repeat->box.axis[i] =
             (Range){shape->box.axis[i].low - reach, shape->box.axis[i].high + reach};

@@ -129,7 +129,7 @@ struct Shape {
     double derived; /* PRIMITIVE: the slope of its expression, by which it is divided; else the
                        largest in the tree */
     bool   exact;   /* the distance outside is the true one */
-    bool   seams;   /* in the tree are parts that touch, face to face */
+    bool   curved_parts; /* shape_is_curved of a child */
     bool   claimed; /* PRIMITIVE: its slope is claimed, not derived */
     Box    region;  /* PRIMITIVE: over which its slope was derived; infinite: over all space */
     bool   estimate; /* nothing is proven of the distance: a primitive in it is measured only */
@@ -236,6 +236,10 @@ typedef struct Scene {
     SceneImage image;
     Box        box; /* around all components */
 } Scene;
+
+/* Whether it is curved nearly everywhere, or finer than a pixel as a rule, so that where its normal
+   turns there need be no edge: blends, sequences, fields, and what is bent or stretched. */
+bool shape_is_curved(const Shape *shape);
 
 /* The scene as indented text, for `krs dump --after=scene`. */
 void scene_print(const Scene *scene, const Sources *sources, Text *out);

@@ -4,9 +4,9 @@
  * normals.comp: the normal of each hit, from the distance at a few places around it.
  *
  * The places are known before, so a lane does pixel after pixel (pixels.glsl): lanes that loop
- * together are done together, but where something is looked at again.
+ * together are done together, but where something is looked at again (sides.glsl).
  *
- * SEAMS: solids touch, face to face (look_again).  ROOTS: rays go from root to root.
+ * ROOTS: rays go from root to root.
  */
 #include "scene.glsl"
 #include "frame.glsl"
@@ -16,9 +16,8 @@
 // Differences for normals reach as far as a pixel asks for, but less of the coordinates would be
 // noise.
 const float NOISE = 3e-4;
-// What is so even is flat, and seen from outside already what is so EVEN_OUTSIDE; taps that lose
-// all of the solid still leave as much as LEAST_EVEN.
-const float EVEN = 0.9995, EVEN_OUTSIDE = 0.998, LEAST_EVEN = 0.7;
+// What is so even is flat.
+const float EVEN = 0.9995;
 
 // The item.
 Place place;
@@ -26,11 +25,14 @@ vec3  start, way;  // the next distance is asked for at start + t way
 float t;
 uint  taps, limit; // so far, and at most
 vec3  sum, level;  // of the taps of a normal, with the signs of their directions and without
-float extent;      // of their directions: the sum of their squares
-bool  again;       // they are looked at once more, farther out,
-float middle;      // where the distance in their middle is this,
-float even;        // and so even was it before,
-vec3  facing_before; // with this normal
+#if STENCIL == 3 && defined(ROOTS)
+bool  again;       // they are looked at from nearer,
+float even;        // where all was so even
+#elif STENCIL == 3
+void begin_taps();
+vec3 find_backwards();
+#include "sides.glsl"
+#endif
 #ifdef GRADIENT
 bool  derived;     // the normal is by derivatives
 #if defined(ROOTS) && STENCIL == 3
@@ -54,7 +56,6 @@ void begin_taps()
     limit = TAPS;
     way = stencil(0u);
     sum = level = vec3(0.0);
-    extent = 0.0;
 }
 
 #if defined(ROOTS) && STENCIL == 3
@@ -65,8 +66,11 @@ void begin_normal()
 {
     // Differences over a pixel or so: finer detail would only be noise.
     t = max(frame.blur * place.width, NOISE * largest(place.position) + place.rounding);
+#if STENCIL == 3 && defined(ROOTS)
     again = false;
-    middle = 0.0;
+#elif STENCIL == 3
+    look = WIDE;
+#endif
     begin_taps();
 #ifdef GRADIENT
     derived = false;
@@ -145,7 +149,6 @@ void take_difference(float distance)
     float weight = taps > TAPS ? 1.125 : 1.0;
     sum += weight * distance * way;
     level += weight * distance * abs(way);
-    extent += weight * dot(way, way);
     way = taps < TAPS ? stencil(taps) : corner(taps - TAPS);
     if (taps < TAPS || again)
         return;
@@ -156,42 +159,27 @@ void take_difference(float distance)
 
 float find_flatness() { return again ? even : find_evenness(); }
 #else
-// Solids that touch have a seam, where taps inside find a surface that is none.  So what is not
-// even is looked at again from so far outside that no tap is inside if it is flat.
-void look_again()
-{
-    facing_before = normalize(sum);
-    start = place.position + t * facing_before;
-    again = true;
-    begin_taps();
-    limit = TAPS + 1u;
-    way = vec3(0.0);
-}
-
+#if STENCIL != 3
 void take_difference(float distance)
 {
 #if STENCIL == 1
     sum += distance * (taps == 1u ? vec3(-1.0) : way);
-    extent += dot(way, way);
-    way = stencil(taps);
 #else
-    if (again && taps == 1u)
-        middle = distance;
     sum += distance * way;
-    level += (distance - middle) * abs(way);
-    extent += dot(way, way);
-    way = stencil(again ? taps - 1u : taps);
-    if (taps < limit || again)
-        return;
-#ifdef SEAMS
-    even = find_evenness();
-    if (even > LEAST_EVEN && even < EVEN)
-        look_again();
+    level += distance * abs(way);
 #endif
-#endif
+    way = stencil(taps);
 }
+#endif
 
-float find_flatness() { return find_evenness(); }
+float find_flatness()
+{
+#if STENCIL == 3
+    if (look == ONE_SIDE)
+        return 1.0;
+#endif
+    return find_evenness();
+}
 #endif
 
 #if defined(GRADIENT) && defined(ROOTS) && STENCIL == 3
@@ -211,12 +199,6 @@ void keep_normal()
 {
     float size = length(sum), flatness = find_flatness();
     vec3  normal = size > 0.0 && size < INFINITE ? sum / size : find_backwards();
-#if !(defined(ROOTS) && STENCIL == 3) // there facing_before is never set, and nearer is better
-    if (again && flatness < max(even, EVEN_OUTSIDE)) {
-        normal = facing_before;
-        flatness = even;
-    }
-#endif
     keep_hit(FACING, place.slot, vec4(normal, flatness));
 }
 
@@ -233,16 +215,33 @@ void take_distance(float distance)
     take_difference(distance);
 }
 
+// What is looked at again is so in a loop of its own: what it needs to know would have to be
+// carried through each step of the other.
+bool item_begins_anew()
+{
+#if STENCIL == 3 && !defined(ROOTS)
+#ifdef GRADIENT
+    if (derived)
+        return false;
+#endif
+    return looks_again();
+#else
+    return false;
+#endif
+}
+
 void begin_group() { krs_prepare(); }
 
 void do_item(uint number)
 {
     begin_item(number);
     do { // lavapipe goes through the body of another loop once more
-        float distance = krs_distance(item_place());
-        if (item_wants_more())
-            take_distance(distance);
-    } while (item_wants_more());
+        do {
+            float distance = krs_distance(item_place());
+            if (item_wants_more())
+                take_distance(distance);
+        } while (item_wants_more());
+    } while (item_begins_anew());
     keep_normal();
 }
 

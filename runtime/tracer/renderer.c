@@ -358,7 +358,7 @@ static Variant name_secondary(const KrsRendering *rendering, KrsTrace trace, Krs
     size_t            length  = strlen(variant.defines);
     snprintf(variant.defines + length, sizeof variant.defines - length, "%s%s",
              program->along && !program->inverts ? "#define ROOTS\n" : "",
-             program->seams ? "#define SEAMS\n" : "");
+             program->plain ? "#define PLAIN\n" : "");
     return variant;
 }
 

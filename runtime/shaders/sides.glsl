@@ -1,0 +1,119 @@
+/*
+ * sides.glsl: the normal of one side, where a hit is next to an edge or where solids touch.
+ *
+ * Differences that reach across an edge find what is between the normals of its sides, which shines
+ * where neither does.  So where they bend all is looked at from nearer, where most hits have one
+ * side alone; where an edge is nearer still, from a little outside, or inside.  What is found
+ * counts if the wider differences bear it out: the surface is flat and ends at an edge.  Then of
+ * each two opposite taps one sees the same plane, since the least or greatest of some planes lies
+ * on one side of each of them.  All else is curved or finer than a pixel, and keeps the mean that
+ * the wider differences are.
+ *
+ * Who includes this has the octahedron's vec3 sum and level, float t, and vec3 start.
+ */
+const float NEARER = 0.02;         // as far as the wider taps
+const float NOISE_NEARER = 4e-5;   // of the coordinates: less would be rounding
+const float ASIDE = 3.0;           // outside or inside, in reaches of the nearer taps
+const float FLAT_ENOUGH = 0.0175;  // bends of what is flat
+#ifdef PLAIN
+const float SHARP = FLAT_ENOUGH;   // and of what is looked at again: all else,
+const float THIN = 4.0;
+#else
+const float SHARP = 0.5;           // and of what is looked at again: what cannot be curved alone,
+const float THIN = 1.0;            // nor so thin that taps on both sides are outside
+#endif
+const float KINK = 0.06;           // a bend so near that an edge runs between the taps
+const float FLATTER = 0.008;       // what is curved bends in proportion to the reach
+const float FACING_ALIKE = 0.3;    // the least cosine between a side and the mean
+const float ON_PLANE = 0.06;       // in parts of the reach
+
+const uint WIDE = 0u, AT_HIT = 1u, OUTSIDE = 2u, INSIDE = 3u, ONE_SIDE = 4u, MEAN = 5u;
+#ifdef PLAIN
+const uint FIRST = AT_HIT, LAST = INSIDE;
+#else // most else is finer than a pixel
+const uint FIRST = OUTSIDE, LAST = OUTSIDE;
+#endif
+uint  look;            // which one it is
+vec3  sum_wide, level_wide;
+float middle;          // the distance in the middle of the taps; 0 of the wider ones
+float reach;           // of these,
+float bend_wide;       // and how they bend
+float at_hit;          // the distance there
+
+// How far from a plane all is, in parts of the reach.
+float find_bend() { return length(level - 2.0 * middle) / length(sum); }
+
+void begin_look(uint which)
+{
+    float aside = which == OUTSIDE ? ASIDE : which == INSIDE ? -ASIDE : 0.0;
+    look = which;
+    t = max(NEARER * reach, NOISE_NEARER * largest(place.position) + place.rounding);
+    start = place.position + aside * t * (normalize(sum_wide) + find_backwards());
+    begin_taps();
+    limit = TAPS + 1u; // the first in their middle
+    way = vec3(0.0);
+}
+
+void take_difference(float distance)
+{
+    bool wide = look == WIDE;
+    middle = taps == 1u ? wide ? 0.0 : distance : middle;
+    sum += distance * way;
+    level += distance * abs(way);
+    way = stencil(wide ? taps : taps - 1u);
+}
+
+// Whether the wider taps see the plane of the nearer ones, up to an edge.
+bool is_borne_out()
+{
+    vec3 rise = reach / t * 0.5 * sum;
+    vec3 ahead = 0.5 * (level_wide + sum_wide) - at_hit;
+    vec3 behind = 0.5 * (level_wide - sum_wide) - at_hit;
+    vec3 off = min(abs(ahead - rise), abs(behind + rise));
+    return largest(off) < ON_PLANE * length(rise);
+}
+
+void end_wide_look()
+{
+    bend_wide = find_bend();
+    if (!(bend_wide > SHARP && bend_wide < THIN))
+        return;
+    sum_wide = sum;
+    level_wide = level;
+    reach = t;
+    at_hit = 0.0;
+    begin_look(FIRST);
+}
+
+// What is so flat may be a seam within, but that faces another way.
+bool is_one_side(float bend)
+{
+    bool alike = dot(sum, sum_wide) > FACING_ALIKE * length(sum) * length(sum_wide);
+    return alike && look != INSIDE && bend < FLATTER * bend_wide ||
+           bend < FLAT_ENOUGH && is_borne_out();
+}
+
+void end_nearer_look()
+{
+    float bend = find_bend();
+    at_hit = look == AT_HIT ? middle : at_hit;
+    if (bend > KINK && look < LAST)
+        begin_look(look + 1u);
+    else
+        look = is_one_side(bend) ? ONE_SIDE : MEAN;
+}
+
+// Whether there is more to look at.
+bool looks_again()
+{
+    if (look == WIDE)
+        end_wide_look();
+    else
+        end_nearer_look();
+    if (look == MEAN) {
+        sum = sum_wide;
+        level = level_wide;
+        t = reach;
+    }
+    return look != WIDE && look < ONE_SIDE;
+}
