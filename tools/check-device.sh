@@ -3,13 +3,14 @@
 # check-device DEVICE=...` runs it.  Prints it, and writes bench/results/DATE-device-NAME.md.
 #
 # KRS_DEVICE is the device, in the words of `krs --device`.  SIZE (640x360) is that of the examples,
-# METHODS_SIZE (1920x1080) that of the tree.  What takes longer than SECONDS_EACH (120), or dies, is
-# told and left out.
+# METHODS_SIZE (1920x1080) that of the tree; EXAMPLES are those to look at (all).  What takes longer
+# than SECONDS_EACH (120), or dies, is told and left out.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 . tests/support/drivers.sh
 build=${B:-build} size=${SIZE:-640x360} methods_size=${METHODS_SIZE:-1920x1080}
 device=$build/bench/device/device
+examples=${EXAMPLES:-$(echo examples/*.krs)}
 add_driver_of "${KRS_DEVICE:-}" || exit 1
 export KRS_DEVICE="${KRS_DEVICE:-}"
 names=$("$device" name) || exit 1
@@ -63,7 +64,7 @@ say "more than half the width of a pixel; those at outlines are told, and not co
 say ""
 say "| example | first | device | wall | unresolved | lavapipe | differ, at outlines | what |"
 say "| --- | --- | --- | --- | --- | --- | --- | --- |"
-for scene in examples/*.krs; do
+for scene in $examples; do
     tell "${scene##*/}" example "$size" "$scene"
 done
 say ""
@@ -90,7 +91,7 @@ say ""
 say "| scene | kernel | glslang | driver |"
 say "| --- | --- | --- | --- |"
 export MESA_SHADER_CACHE_DISABLE=true __GL_SHADER_DISK_CACHE=0
-for scene in bench/scenes/tree28.krs examples/*.krs; do
+for scene in bench/scenes/tree28.krs $examples; do
     tell "${scene##*/}" kernels "$scene"
 done
 unset MESA_SHADER_CACHE_DISABLE __GL_SHADER_DISK_CACHE
@@ -99,7 +100,7 @@ if [ $# -gt 0 ]; then
     say "## Tests"
     say ""
     say '```'
-    KRS_TEST_SECONDS=${SECONDS_EACH:-300} tests/run.sh ${KRS_DEVICE:+KRS_DEVICE="$KRS_DEVICE"} "$@" 2>&1 |
+    KRS_TEST_SECONDS=${KRS_TEST_SECONDS:-300} tests/run.sh ${KRS_DEVICE:+KRS_DEVICE="$KRS_DEVICE"} "$@" 2>&1 |
         grep -E '^(====|     |not ok|[0-9]+ passed)' | tee -a "$sheet.new"
     say '```'
 fi

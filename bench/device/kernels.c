@@ -36,10 +36,10 @@ void print_kernels(KrsRenderer *renderer, const char *path)
     rendering_choose(r, &trace, &schedule);
     print_kernel(r, name, "query, sample", rendering_sample(r), &spirv, &pipeline);
     print_kernel(r, name, "trace", rendering_trace(r, trace, schedule, 0), &spirv, &pipeline);
-    print_kernel(r, name, "normals, occlusion", rendering_around(r, KRS_NORMALS_DEFAULT, 0), &spirv,
+    print_kernel(r, name, "normals", rendering_around(r, KRS_NORMALS_DEFAULT, 0), &spirv,
                  &pipeline);
-    print_kernel(r, name, "shadows", rendering_shadows(r, schedule, KRS_SHADOWS_SOFT, false),
-                 &spirv, &pipeline);
+    print_kernel(r, name, "shadows, occlusion", rendering_secondary(r, schedule, false), &spirv,
+                 &pipeline);
     print_kernel(r, name, "shade", rendering_shade(r), &spirv, &pipeline);
     stage_close(&stage);
 }
