@@ -11,6 +11,9 @@ for kernel in runtime/shaders/*.comp; do
     glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -Icompiler/graph -DNO_TEXELS \
         -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL without texels" $?
+    glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -Icompiler/graph -DSUBGROUPS \
+        -o /dev/null "$kernel" >/dev/null
+    report "$kernel is valid GLSL with sums of subgroups" $?
 done
 for script in tools/*.sh tests/*.sh tests/*/*.sh .ci/run; do
     shellcheck -x -P SCRIPTDIR "$script"

@@ -405,6 +405,11 @@ static void read_properties(Gpu *gpu, unsigned pretence)
     gpu->texels = limits->maxTexelBufferElements >= LEAST_TEXELS;
     bool shuffles = subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT &&
                     subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
+    const VkSubgroupFeatureFlags sums = VK_SUBGROUP_FEATURE_BASIC_BIT |
+                                        VK_SUBGROUP_FEATURE_ARITHMETIC_BIT |
+                                        VK_SUBGROUP_FEATURE_BALLOT_BIT;
+    gpu->sums_lanes = subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT &&
+                      (subgroups.supportedOperations & sums) == sums;
     gpu->refill_lanes = !shuffles || subgroups.subgroupSize < 4 ? 0
                       : subgroups.subgroupSize < 8              ? 4
                                                                 : 8;

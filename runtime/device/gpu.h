@@ -35,6 +35,7 @@ typedef struct Gpu {
     VkPhysicalDeviceMemoryProperties memory;
     bool     pretends_card; /* a device of type CPU is treated as a graphics card */
     bool     texels;        /* kernels read what they only read as texels, not as buffers */
+    bool     sums_lanes;    /* lanes of a subgroup can add up before they count */
     uint32_t refill_lanes; /* of a group whose lanes exchange numbers: 8, or 4; 0: they cannot */
     uint64_t memory_used, memory_peak; /* bytes of device memory */
     uint64_t submissions;  /* that were waited for */

@@ -1,6 +1,8 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
 #extension GL_KHR_shader_subgroup_shuffle : enable
+#extension GL_KHR_shader_subgroup_arithmetic : enable
+#extension GL_KHR_shader_subgroup_ballot : enable
 /*
  * trace.comp: primary rays, by sphere tracing, behind beams.
  *
@@ -234,9 +236,22 @@ March unpack_march(uvec4 low, uvec4 high)
                  float(low.y >> 2u & 3u) - 1.0, low.y >> 4u, low.y & 3u);
 }
 
+// In the queue.  On a graphics card lanes that go together take their places at once (SUBGROUPS).
+uint take_place()
+{
+#ifdef SUBGROUPS
+    uint before = subgroupExclusiveAdd(1u), all = subgroupAdd(1u), first = 0u;
+    if (subgroupElect())
+        first = atomicAdd(counts.queued, all);
+    return subgroupBroadcastFirst(first) + before;
+#else
+    return atomicAdd(counts.queued, 1u);
+#endif
+}
+
 void save_item()
 {
-    uint at = 2u * (control.writing + atomicAdd(counts.queued, 1u));
+    uint at = 2u * (control.writing + take_place());
     uint bits = march.fate | uint(march.side + 1.0) << 2u | march.steps << 4u;
     queue[at] = uvec4(march.index, bits, floatBitsToUint(vec2(march.t, march.room)));
     queue[at + 1u] = floatBitsToUint(vec4(march.gap, march.slope, 0.0, 0.0));
@@ -495,10 +510,17 @@ void end_group(uint turns)
             uvec2 cell = cell_of_beam(first_slot + (slot & ~15u) + uint(findLSB(finds)));
             tiles[atomicAdd(counts.tiles, 1u)] = cell.y * count_8.x + cell.x;
         }
-    if (turns > 0u)
-        atomicAdd(counts.evaluations, turns);
-    if (most_steps > 0u)
-        atomicMax(counts.most_evaluations, most_steps);
+    uint sum = turns, most = most_steps;
+#ifdef SUBGROUPS
+    sum = subgroupAdd(sum);
+    most = subgroupMax(most);
+    if (!subgroupElect())
+        return;
+#endif
+    if (sum > 0u)
+        atomicAdd(counts.evaluations, sum);
+    if (most > 0u)
+        atomicMax(counts.most_evaluations, most);
 }
 
 #include "schedule.glsl"

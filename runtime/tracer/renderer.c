@@ -271,6 +271,9 @@ static const char *const along_names[KRS_TRACE_COUNT] = {
     [KRS_TRACE_PREDICTED]   = "#define ALONG 4\n#define PROBE 2\n",
 };
 
+/* Of a sum lavapipe makes a loop over the lanes. */
+static bool sums_lanes(const Gpu *gpu) { return !gpu_is_cpu(gpu) && gpu->sums_lanes; }
+
 static Variant name_variant(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule)
 {
     uint32_t zones = rendering->in_use->zones;
@@ -278,11 +281,12 @@ static Variant name_variant(const KrsRendering *rendering, KrsTrace trace, KrsSc
     bool     by_ray = trace >= KRS_TRACE_EXACT;
     Variant  variant;
     int      length = snprintf(variant.defines, sizeof variant.defines,
-                               "#define TRACE %du\n#define REFILL %d\n%s%s%s%s%s%s",
+                               "#define TRACE %du\n#define REFILL %d\n%s%s%s%s%s%s%s",
                                (int)(by_ray ? KRS_TRACE_PLAIN : trace),
                                schedule == KRS_SCHEDULE_REFILL
                                    ? (int)rendering->renderer->gpu.refill_lanes : 0,
                                rendering->renderer->gpu.texels ? "" : NO_TEXELS,
+                               sums_lanes(&rendering->renderer->gpu) ? "#define SUBGROUPS\n" : "",
                                value_slots(rendering) > 0 ? "#define FRAME_VALUES\n" : "",
                                rendering->panoramic ? PANORAMIC : "",
                                anchored ? "#define ANCHORED\n" : "",
