@@ -30,18 +30,6 @@ static const double OUTLINES = 0.001; /* of the pixels */
 
 static KrsRenderer *lavapipe;
 
-/* Not yet: a kernel of theirs takes SwiftShader minutes to compile. */
-static const char *const slow[] = {"02-gear", "03-machined-part", "06-temple", "07-grove",
-                                   "08-reef", "10-olive", "20-cabinet", "21-sextic"};
-
-static bool is_slow(const char *path)
-{
-    for (size_t i = 0; i < sizeof slow / sizeof *slow; i++)
-        if (strstr(path, slow[i]))
-            return strstr(krs_renderer_device(renderer).name, "SwiftShader") != NULL;
-    return false;
-}
-
 /* Both devices; lavapipe against itself shows nothing. */
 static bool both_are_open(void)
 {
@@ -85,7 +73,7 @@ static bool agree(const KrsPicture *expected, const KrsPicture *picture)
 static void an_example_agrees(void **state)
 {
     KrsScene *scene;
-    if (!both_are_open() || is_slow(*state))
+    if (!both_are_open())
         skip();
     assert_int_equal(krs_compile_file(*state, NULL, &scene), KRS_OK);
     KrsPicture *expected = render_on(lavapipe, scene), *picture = render_on(renderer, scene);
