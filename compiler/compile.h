@@ -104,6 +104,8 @@ typedef struct KrsProgram {
     bool        gradients;    /* there is krs_gradient, for kernels with #define GRADIENT */
     bool        algebraic;    /* normals are by krs_gradient unless asked for otherwise */
     bool        along;        /* there is krs_along, for kernels with #define ALONG */
+    bool        sheets;       /* surfaces without thickness, where krs_distance is not negative: rays
+                                 go by krs_along, normals by krs_gradient, with #define SHEETS */
     bool        inverts;      /* there are its variants for sequences with maps that invert */
     bool        plain;        /* no component is curved (shape_is_curved): #define PLAIN */
     bool        shadows;      /* a light casts some */
@@ -144,6 +146,8 @@ typedef struct KrsRay {
 } KrsRay;
 KrsRay krs_ray(const KrsScene *scene, const double origin[3], const double direction[3],
                double farthest);
+/* Where there are sheets the normals of a hit face where its ray comes from. */
+void krs_face(const KrsRay *ray, KrsHit *hit);
 /* Whether these are arguments that krs_raycast accepts. */
 bool krs_rays_are_sound(const double (*origins)[3], const double (*directions)[3], size_t count,
                         double farthest, double tolerance);

@@ -113,6 +113,8 @@ void frame_refresh(KrsFrame *frame)
     tape_run_frame(&frame->scene->surface, frame->parameters, frame->values);
     tape_run_frame(&frame->scene->distance, frame->parameters, frame->values);
     tape_run_frame(&frame->scene->guarded, frame->parameters, frame->values);
+    tape_run_frame(&frame->scene->ahead, frame->parameters, frame->values);
+    tape_run_frame(&frame->scene->turned, frame->parameters, frame->values);
     tape_run_frame(&frame->scene->view, frame->parameters, frame->values);
     frame->fresh = true;
 }

@@ -133,6 +133,13 @@ void keep_tapes(Compilation *c)
     count += scene->zone_count > 0;
     scene->guarded  = tape_new_guarded(scene->graph, guarded, count, &scene->arena);
     scene->distance = tape_new(scene->graph, distances, count, &scene->arena);
+    if (scene->program.sheets) {
+        memcpy(guarded, roots->along + ALONG_EXACT * scene->component_count,
+               scene->component_count * sizeof *guarded);
+        scene->ahead  = tape_new(scene->graph, guarded, count, &scene->arena);
+        scene->turned = tape_new(scene->graph, roots->gradients,
+                                 scene->component_count * GRADIENT_ROOTS, &scene->arena);
+    }
     scene->surface  = tape_new(scene->graph, roots->components,
                                (size_t)(roots->cameras - roots->components), &scene->arena);
     scene->view     = tape_new(scene->graph, roots->cameras,

@@ -60,6 +60,8 @@ struct KrsScene {
     char         hash[17];
     Tape         distance; /* of all components, and zones */
     Tape         guarded;  /* of all components: roots.guarded, with what may be left out */
+    Tape         ahead;    /* with sheets: of all components, and zones, how far rays may go */
+    Tape         turned;   /* with sheets: gradients of all components */
     Tape         surface;  /* all roots of all components */
     EmittedFrame found;    /* what kernels get from the host for a frame, and for an anchor */
     Tape         view;     /* cameras, lights and sky */

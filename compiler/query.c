@@ -58,6 +58,20 @@ static double distance_at(KrsFrame *frame, const double point[3], uint32_t *near
     return least < depth ? depth : least;
 }
 
+/* Where rays have to go from root to root: how far this one may go from a point, the last place
+   having been `gap` behind. */
+static double way_ahead(KrsFrame *frame, const double point[3], const double direction[3],
+                        double gap)
+{
+    const KrsScene *scene = frame->scene;
+    const Node     *ahead = scene->roots.along + ALONG_EXACT * scene->component_count;
+    double          least = INFINITY;
+    tape_run_surface(&scene->ahead, point, direction, gap, frame->values);
+    for (size_t i = 0; i < scene->component_count; i++)
+        least = fmin(least, frame->values[ahead[i]].v[0]);
+    return fmax(least, zone_depth(frame, point));
+}
+
 /* No more than the distance, and cheaper: levels of sequences that are far for their size are not
    looked at (lower_guarded). */
 static double room_at(KrsFrame *frame, const double point[3])
@@ -81,11 +95,31 @@ KrsStatus krs_distance(KrsFrame *frame, const double (*points)[3], size_t count,
     return KRS_OK;
 }
 
+/* By derivatives, where differences would see both sides of a sheet.  False: there are none. */
+static bool derived_normal(KrsFrame *frame, const double point[3], double normal[3])
+{
+    const KrsScene *scene = frame->scene;
+    uint32_t        nearest = 0;
+    if (!scene->program.sheets || distance_at(frame, point, &nearest) <= zone_depth(frame, point))
+        return false;
+    Node gradient = scene->roots.gradients[(nearest - 1) * GRADIENT_ROOTS];
+    if (scene->graph->items[gradient].type != TYPE_VEC3)
+        return false;
+    tape_run_point(&scene->turned, point, frame->values);
+    frame_copy(frame, gradient, normal);
+    bool known = largest3(normal) > 0 && largest3(normal) < INFINITY;
+    if (known)
+        vector_normalize(normal);
+    return known;
+}
+
 /* Central differences: in double precision their error is far below what a normal needs. */
 static void normal_at(KrsFrame *frame, const double point[3], double normal[3])
 {
     double   step = 1e-6 * (1 + largest3(point));
     uint32_t nearest;
+    if (derived_normal(frame, point, normal))
+        return;
     for (int i = 0; i < 3; i++) {
         double before[3] = {point[0], point[1], point[2]};
         double after[3]  = {point[0], point[1], point[2]};
@@ -226,7 +260,11 @@ static double march_room(March *march, double t)
 {
     double point[3];
     march_point(march, t, point);
-    double distance = room_at(march->frame, point);
+    bool   sheets   = march->frame->scene->program.sheets;
+    /* Some roundings farther back: what was just before a sheet there must not be behind it here. */
+    double back     = t > march->t ? t - march->t + 2 * rounding_at(march, t) : 0;
+    double distance = sheets ? way_ahead(march->frame, point, march->ray.direction, back)
+                             : room_at(march->frame, point);
     if (march->side == 0)
         march->side = distance < 0 ? -1 : 1;
     return march->side < 0 ? SEAM * rounding_at(march, t) - distance : distance;
@@ -283,12 +321,26 @@ static Fate march_step(March *march)
         march->slope += 0.3 * (slope - march->slope);
         march->t    = at;
         march->room = room;
-        march->gap  = room * fmax(1, 2 / (1 - fmin(march->slope, 0.98))) + open;
+        /* Of roots nothing behind the place is known. */
+        double factor = march->frame->scene->program.sheets
+                            ? 1 : fmax(1, 2 / (1 - fmin(march->slope, 0.98)));
+        march->gap  = room * factor + open;
         return at + room > march->ray.end ? MISS : MARCHING;
     }
     march->gap   = fmax(0.5 * (march->gap + march->room - fmax(room, 0)), march->room + open);
     march->slope = -1;
     return MARCHING;
+}
+
+void krs_face(const KrsRay *ray, KrsHit *hit)
+{
+    double along = 0;
+    for (int k = 0; k < 3; k++)
+        along += hit->normal[k] * ray->direction[k];
+    for (int k = 0; k < 3 && along > 0; k++) {
+        hit->normal[k]  = -hit->normal[k];
+        hit->shading[k] = -hit->shading[k];
+    }
 }
 
 static void trace(KrsFrame *frame, KrsRay ray, double tolerance, KrsHit *hit)
@@ -313,6 +365,8 @@ static void trace(KrsFrame *frame, KrsRay ray, double tolerance, KrsHit *hit)
     double point[3];
     march_point(&march, march.t, point);
     probe(frame, point, hit);
+    if (frame->scene->program.sheets)
+        krs_face(&ray, hit);
     hit->t          = march.t;
     hit->hit        = fate == HIT;
     hit->unresolved = fate == MARCHING;

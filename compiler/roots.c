@@ -143,7 +143,7 @@ static void lower_gradients(Compilation *c, Graph *g)
     const Roots *roots   = &c->scene->roots;
     KrsProgram  *program = &c->scene->program;
     program->algebraic   = is_algebraic(s, roots);
-    program->gradients   = program->algebraic || c->options->gradients;
+    program->gradients   = program->algebraic || program->sheets || c->options->gradients;
     for (size_t i = 0; i <= s->components.count; i++) {
         bool zones = i == s->components.count, known = false;
         Node near = s->zone_count > 0 ? s->zone : graph_number(g, 0), gradient = NODE_NONE;
@@ -180,7 +180,10 @@ bool lower_scene(Compilation *c, Graph *graph)
     make_room(c);
     if (!lower_components(c, graph))
         return false;
-    bool anchored = may_need_anchor(s, graph, roots->components, &c->scratch);
+    for (size_t i = 0; i < s->components.count; i++)
+        c->scene->program.sheets |= has_thin_sheets(s->components.items[i].shape);
+    bool anchored = !c->scene->program.sheets &&
+                    may_need_anchor(s, graph, roots->components, &c->scratch);
     gather_view(s, roots);
     lower_marches(c, graph);
     lower_flats(c, graph);

@@ -16,7 +16,7 @@ PROPERTY    := ops noise graph derive series zeros local along anchor slope pari
 ORACLES     := self primitives krs_expand trees maps moebius operators combinations deform chains \
                chain_pictures moving normals fields surfaces rays algebraic fractals device query \
                picture seams shading coverage shadows loose bounds stencils light sides steep scales agree \
-               far
+               far sheets
 FUZZ        := sentences
 # On SwiftShader, unless another device is tested: what shows that drivers agree.
 DRIVERS     := tests/oracle/drivers

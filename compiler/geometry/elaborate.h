@@ -325,6 +325,8 @@ const Shape *make_offset(Elaboration *e, const Shape *shape, Node radius, Span s
 const Shape *make_rounded(Elaboration *e, const Shape *shape, const Shape *core, Node radius,
                           Span span);
 const Shape *make_shell(Elaboration *e, const Shape *shape, Node thickness, Span span);
+/* The surface alone; thick only where something needs a distance to it. */
+const Shape *make_sheet(Elaboration *e, const Shape *shape, Node thickness, Span span);
 const Shape *make_elongate(Elaboration *e, const Shape *shape, Node half, Span span);
 const Shape *make_extrude(Elaboration *e, const Shape *figure, Node height, Span span);
 const Shape *make_revolve(Elaboration *e, const Shape *figure, Node offset, Span span);

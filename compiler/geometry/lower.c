@@ -522,12 +522,29 @@ static Lowered lower_offset(Lowering *l, const Shape *shape, Place place)
     return result;
 }
 
+/* What is nowhere negative.  A gradient is that of the solid: it does not turn at the sheet. */
+static Lowered thin_sheet(Lowering *l, Lowered solid)
+{
+    Graph *g    = l->graph;
+    Node   size = graph_op1(g, OP_abs, solid.distance);
+    if (l->still) {
+        Node more = graph_op2(g, OP_sub, size, solid.distance);
+        array_push(l->scratch, l->still, more);
+        size = graph_op2(g, OP_add, solid.distance, more);
+    }
+    solid.distance = size;
+    return solid;
+}
+
 static Lowered lower_shell(Lowering *l, const Shape *shape, Place place)
 {
-    Graph  *g      = l->graph;
-    Lowered result = lower_operand(l, shape->children[0], place);
-    if (result.distance == NODE_NONE)
-        return result;
+    Graph  *g    = l->graph;
+    bool    thin = l->thin && shape->sheet;
+    l->thin      = false;
+    Lowered result = thin ? lower_shape(l, shape->children[0], place)
+                          : lower_operand(l, shape->children[0], place);
+    if (result.distance == NODE_NONE || thin)
+        return thin && result.distance != NODE_NONE ? thin_sheet(l, result) : result;
     Node half       = graph_number(g, 0.5);
     half            = graph_op2(g, OP_mul, shape->values[0], half);
     Node size       = graph_op1(g, OP_abs, result.distance);
@@ -569,13 +586,42 @@ static Lowered lower_kind(Lowering *l, const Shape *shape, Place place)
     return lowered_nothing;
 }
 
+bool rays_pass(const Shape *shape)
+{
+    switch (shape->kind) {
+    case SHAPE_PRIMITIVE: case SHAPE_TRANSFORM: case SHAPE_STRETCH: case SHAPE_PAINT:
+    case SHAPE_SMOOTH: return true;
+    case SHAPE_SHELL:  return shape->sheet;
+    case SHAPE_UNION: case SHAPE_INTERSECTION: return shape->blend.width == NODE_NONE;
+    case SHAPE_DIFFERENCE:
+        for (uint32_t i = 1; i < shape->child_count; i++)
+            if (shape->children[i]->sheets)
+                return false;
+        return shape->blend.width == NODE_NONE;
+    default: return false;
+    }
+}
+
+bool has_thin_sheets(const Shape *shape)
+{
+    if (!shape->sheets || !rays_pass(shape))
+        return false;
+    bool found = shape->sheet;
+    for (uint32_t i = 0; i < shape->child_count; i++)
+        found = found || has_thin_sheets(shape->children[i]);
+    return found;
+}
+
 Lowered lower_shape(Lowering *l, const Shape *shape, Place place)
 {
+    bool thin = l->thin;
     l->graph->here = shape->span;
     l->overflow    = l->overflow || l->graph->count > l->most;
     if (l->overflow)
         return lowered_nothing;
+    l->thin        = thin && rays_pass(shape);
     Lowered result = lower_kind(l, shape, place);
+    l->thin        = thin;
     /* Where no mirror is smooth, the normal that came in is the one that comes out. */
     if (result.distance != NODE_NONE && place.smoothing == NODE_NONE && !shape->smooth)
         result.surface.normal = place.normal;
@@ -596,7 +642,7 @@ static Node or_else(Node node, Node otherwise) { return node == NODE_NONE ? othe
 
 bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roots)
 {
-    Lowering l     = {.graph = graph, .scratch = scratch, .surfaces = true,
+    Lowering l     = {.graph = graph, .scratch = scratch, .surfaces = true, .thin = true,
                       .most = graph->count + MOST_LOWERED};
     Place    place = place_bare(graph_leaf(graph, OP_POINT), false);
     place.normal    = graph_leaf(graph, OP_NORMAL);
@@ -617,7 +663,7 @@ bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roo
 
 Node lower_guarded(Graph *graph, const Shape *shape, Node plain, Arena *scratch)
 {
-    Lowering l   = {.graph = graph, .scratch = scratch, .guarded = true,
+    Lowering l   = {.graph = graph, .scratch = scratch, .guarded = true, .thin = true,
                     .unit = graph_number(graph, 1), .most = graph->count + MOST_LOWERED};
     Lowered  all = lower_shape(&l, shape, place_bare(graph_leaf(graph, OP_POINT), false));
     if (all.distance == NODE_NONE || l.overflow)
@@ -631,7 +677,7 @@ enum { MOST_DERIVED = 20000 };
 bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near, Arena *scratch)
 {
     Nodes    still = {0};
-    Lowering l     = {.graph = graph, .scratch = scratch, .still = &still,
+    Lowering l     = {.graph = graph, .scratch = scratch, .still = &still, .thin = true,
                       .most = graph->count + MOST_DERIVED};
     Lowered  all   = lower_shape(&l, shape, place_bare(graph_leaf(graph, OP_POINT), false));
     if (all.distance == NODE_NONE || l.overflow)

@@ -62,6 +62,10 @@ Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod metho
  */
 bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near, Arena *scratch);
 
+/* Whether there are sheets in it that have no thickness: its distance is 0 there, and nowhere
+   negative around; only lower_along tells where a ray meets them. */
+bool has_thin_sheets(const Shape *shape);
+
 /* Distance to a finite box, 0 inside. */
 Node box_distance(Graph *graph, Node point, Box box);
 /* How far outside of a box a point is along the axis where that is most; negative inside.

@@ -14,6 +14,10 @@
  * Near a simple zero that is Newton's step, from the safe side; expanding about the point itself
  * keeps single precision good where it matters (math.md, section 3).
  *
+ * A sheet is where the sign changes.  At a point of a ray it is asked for between that point and the
+ * one before, which is OP_FOOTPRINT behind; there all steps before have said that nothing is but
+ * within what may stay open.  So a sheet needs no thickness, and has two sides.
+ *
  * Unions, intersections and differences join such numbers as they join distances; affine maps keep
  * them, as t counts the ray's own steps; whatever else there is counts with its distance.
  */
@@ -26,6 +30,7 @@
 /* A ray in the space of a shape: point + t direction, with the same t everywhere. */
 typedef struct Ray {
     Node point, direction, speed; /* speed: the length of direction */
+    Node back;  /* how far behind a point its sheets are looked for: up to the place before */
 } Ray;
 
 /* How far a term alone may fall over the piece, in c0; of 1 .. 16, few evaluations.  Twice the
@@ -243,6 +248,65 @@ static Node opposite(Lowering *l, Node a)
     return a == NODE_NONE ? a : graph_op1(l->graph, OP_neg, a);
 }
 
+/* A number that is negative inside. */
+static Node value_at(Lowering *l, const Shape *shape, Node point)
+{
+    Graph *g = l->graph;
+    switch (shape->kind) {
+    case SHAPE_PRIMITIVE:
+        if (shape->formula == NODE_NONE)
+            break;
+        return graph_substitute(g, shape->formula, substitute_point(point), l->scratch);
+    case SHAPE_TRANSFORM:
+        return value_at(l, shape->children[0], before_map(g, &shape->map, point));
+    case SHAPE_STRETCH:
+        return value_at(l, shape->children[0], graph_op2(g, OP_div, point, shape->values[0]));
+    case SHAPE_PAINT: case SHAPE_SMOOTH: return value_at(l, shape->children[0], point);
+    default: break;
+    }
+    return lower_shape(l, shape, place_bare(point, false)).distance;
+}
+
+/* A place of the ray behind its point. */
+static Node place_behind_point(Lowering *l, Ray ray)
+{
+    Node way = graph_op2(l->graph, OP_scale, ray.direction, ray.back);
+    return graph_op2(l->graph, OP_sub, ray.point, way);
+}
+
+/* How far behind a point sheets are looked for in what cuts them, `ahead` along the ray: up to the
+   place before if that is in it as well, else no farther than it surely reaches. */
+static Node back_within(Lowering *l, const Shape *shape, Ray ray, Node ahead)
+{
+    Graph *g      = l->graph;
+    Node   behind = place_behind_point(l, ray), before = NODE_NONE;
+    for (uint32_t i = 0; i < shape->child_count; i++)
+        if (!shape->children[i]->sheets)
+            before = joined(l, OP_max, before, value_at(l, shape->children[i], behind));
+    Node depth  = at_least(l, graph_op1(g, OP_neg, ahead), 0);
+    Node within = graph_op2(g, OP_less, before, number(l, 0));
+    return graph_op3(g, OP_select, within, ray.back, graph_op2(g, OP_min, ray.back, depth));
+}
+
+/* What is cut comes last: its sheets are looked for in the rest. */
+static Node along_intersection(Lowering *l, const Shape *shape, Ray ray)
+{
+    Node all = NODE_NONE;
+    for (int sheets = 0; sheets < 2; sheets++) {
+        if (sheets && shape->sheets && all != NODE_NONE)
+            ray.back = back_within(l, shape, ray, all);
+        for (uint32_t i = 0; i < shape->child_count; i++) {
+            if (shape->children[i]->sheets != (sheets == 1))
+                continue;
+            Node next = along(l, shape->children[i], ray);
+            if (next == NODE_NONE)
+                return NODE_NONE;
+            all = joined(l, OP_max, all, next);
+        }
+    }
+    return all;
+}
+
 static Node along_joint(Lowering *l, const Shape *shape, Ray ray)
 {
     Node first = along(l, shape->children[0], ray), rest = NODE_NONE;
@@ -250,12 +314,7 @@ static Node along_joint(Lowering *l, const Shape *shape, Ray ray)
         rest = first;
     for (uint32_t i = 1; i < shape->child_count; i++) {
         Node next = along(l, shape->children[i], ray);
-        if (shape->kind == SHAPE_INTERSECTION) {
-            if (first == NODE_NONE || next == NODE_NONE)
-                return NODE_NONE;
-            first = joined(l, OP_max, first, next);
-        } else
-            rest = joined(l, OP_min, rest, next);
+        rest      = joined(l, OP_min, rest, next);
     }
     if (shape->kind == SHAPE_UNION)
         return rest;
@@ -271,7 +330,7 @@ static Node along_map(Lowering *l, const Shape *shape, Ray ray)
     Map    linear = shape->map;
     linear.shift  = graph_vec3(g, 0, 0, 0);
     Ray inner = {before_map(g, &shape->map, ray.point), before_map(g, &linear, ray.direction),
-                 graph_op2(g, OP_div, ray.speed, shape->map.scale)};
+                 graph_op2(g, OP_div, ray.speed, shape->map.scale), ray.back};
     return along(l, shape->children[0], inner);
 }
 
@@ -279,9 +338,26 @@ static Node along_stretch(Lowering *l, const Shape *shape, Ray ray)
 {
     Graph *g = l->graph;
     Ray inner = {graph_op2(g, OP_div, ray.point, shape->values[0]),
-                 graph_op2(g, OP_div, ray.direction, shape->values[0]), NODE_NONE};
+                 graph_op2(g, OP_div, ray.direction, shape->values[0]), NODE_NONE, ray.back};
     inner.speed = graph_op1(g, OP_length, inner.direction);
     return along(l, shape->children[0], inner);
+}
+
+/* Up to where the sign changes next; negative if it has since the place before. */
+static Node along_sheet(Lowering *l, const Shape *shape, Ray ray)
+{
+    Graph *g    = l->graph;
+    Node   step = along(l, shape->children[0], ray);
+    if (step == NODE_NONE)
+        return step;
+    Node here   = value_at(l, shape->children[0], ray.point);
+    Node before = value_at(l, shape->children[0], place_behind_point(l, ray));
+    Node turned = graph_op2(g, OP_mul, graph_op1(g, OP_sign, here), graph_op1(g, OP_sign, before));
+    Node size   = graph_op1(g, OP_abs, here), all = graph_op1(g, OP_abs, before);
+    all         = at_least(l, graph_op2(g, OP_add, size, all), TINY);
+    Node inside = graph_op2(g, OP_mul, ray.back, graph_op2(g, OP_div, size, all));
+    return graph_op3(g, OP_select, graph_op2(g, OP_less, turned, number(l, 0)),
+                     graph_op1(g, OP_neg, inside), graph_op1(g, OP_abs, step));
 }
 
 /* Whether a polynomial can be seen from here through what `along` can see through. */
@@ -290,6 +366,7 @@ static bool sees_polynomial(const Shape *shape)
     bool sharp = shape->blend.width == NODE_NONE;
     switch (shape->kind) {
     case SHAPE_PRIMITIVE: return shape->formula != NODE_NONE && shape->degree > 0;
+    case SHAPE_SHELL:     return shape->sheet;
     case SHAPE_UNION: case SHAPE_INTERSECTION: case SHAPE_DIFFERENCE:
         for (uint32_t i = 0; sharp && i < shape->child_count; i++)
             if (sees_polynomial(shape->children[i]))
@@ -307,12 +384,14 @@ static Node along(Lowering *l, const Shape *shape, Ray ray)
 {
     l->graph->here = shape->span;
     l->overflow    = l->overflow || l->graph->count > l->most;
-    if (l->overflow || !sees_polynomial(shape))
+    if (l->overflow || !sees_polynomial(shape) || !rays_pass(shape))
         return l->overflow ? NODE_NONE : along_distance(l, shape, ray);
     switch (shape->kind) {
     case SHAPE_PRIMITIVE: return along_polynomial(l, shape, ray);
     case SHAPE_TRANSFORM: return along_map(l, shape, ray);
     case SHAPE_STRETCH:   return along_stretch(l, shape, ray);
+    case SHAPE_SHELL:     return along_sheet(l, shape, ray);
+    case SHAPE_INTERSECTION: return along_intersection(l, shape, ray);
     case SHAPE_PAINT: case SHAPE_SMOOTH: return along(l, shape->children[0], ray);
     default: return along_joint(l, shape, ray);
     }
@@ -325,9 +404,9 @@ Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod metho
     if (!sees_polynomial(shape))
         return plain;
     Lowering l   = {.graph = graph, .scratch = scratch, .most = graph->count + MOST_LOWERED,
-                    .method = method};
+                    .method = method, .thin = true};
     Ray      ray = {graph_leaf(graph, OP_POINT), graph_leaf(graph, OP_DIRECTION),
-                    graph_number(graph, 1)};
+                    graph_number(graph, 1), graph_leaf(graph, OP_FOOTPRINT)};
     Node     all = along(&l, shape, ray);
     return l.overflow || all == NODE_NONE ? plain : all;
 }

@@ -330,7 +330,7 @@ Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod metho
     if (!sees_inversion(shape))
         return plain;
     Lowering l     = {.graph = graph, .scratch = scratch, .most = graph->count + MOST_LOWERED,
-                      .method = method};
+                      .method = method, .thin = true};
     Image    image = {.bow = NODE_NONE, .tilt = NODE_NONE, .square = NODE_NONE,
                       .ahead = NODE_NONE, .cut = NODE_NONE};
     image.passage   = passage_new(graph, graph_leaf(graph, OP_POINT));

@@ -39,6 +39,7 @@ typedef struct Lowering {
     Arena *scratch;
     bool   surfaces; /* else the distance alone */
     AlongMethod method; /* of lower_along.c */
+    bool   thin;     /* rays pass all that is around: sheets have no thickness */
     bool   guarded;  /* what is far is left out (guards.c) */
     Node   unit;     /* guarded: how long 1 is outside of everything */
     size_t most;     /* nodes that the graph may have */
@@ -105,6 +106,8 @@ Place place_behind(const NormalPath *path, Place place, Node point);
 Node unit_normal(Graph *g, Node normal, Node otherwise);
 
 /* ---- lower.c ---- */
+/* Whether rays that go from root to root of what is in a shape are rays to the shape. */
+bool rays_pass(const Shape *shape);
 Lowered lower_shape(Lowering *l, const Shape *shape, Place place);
 /* A shape whose distance is looked at where it is not 0: it is no less than that to the sides of the
    shape's box. */

@@ -7,6 +7,8 @@
 
 #include <math.h>
 
+#include "compiler/graph/derive.h"
+
 #include "compiler/graph/evaluate.h"
 
 const BlendInfo blend_info[BLEND_COUNT] = {
@@ -68,6 +70,7 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
         shape->trapped     = shape->trapped || child->trapped;
         shape->figure      = shape->figure || child->figure;
         shape->fields      = shape->fields || child->fields;
+        shape->sheets      = shape->sheets || child->sheets;
         shape->smooth      = shape->smooth || child->smooth;
         shape->without_uv  = shape->without_uv ? shape->without_uv : child->without_uv;
         sequences += child->levels > 0 ? child->instances : 0;
@@ -242,6 +245,29 @@ const Shape *make_shell(Elaboration *e, const Shape *shape, Node thickness, Span
     shell->box       = box_grow(shape->box, 0.5 * node_range(e, thickness, 0).high);
     check_steady(e, shell, "a shell", span);
     return shell;
+}
+
+/* Whether normals follow from derivatives: differences see both sides of a sheet. */
+static bool is_derivable(Elaboration *e, const Shape *shape)
+{
+    Node gradient, number = shape->formula != NODE_NONE ? shape->formula : shape->distance;
+    if (shape->kind == SHAPE_PRIMITIVE &&
+        graph_gradient(e->graph, number, &gradient, NULL, e->scratch) == DERIVED_NOT)
+        return false;
+    for (uint32_t i = 0; i < shape->child_count; i++)
+        if (!is_derivable(e, shape->children[i]))
+            return false;
+    return true;
+}
+
+const Shape *make_sheet(Elaboration *e, const Shape *shape, Node thickness, Span span)
+{
+    Shape *sheet = arena_new(e->arena, Shape);
+    *sheet       = *make_shell(e, shape, thickness, span);
+    sheet->name  = "sheet";
+    sheet->sheet  = is_derivable(e, shape);
+    sheet->sheets = sheet->sheets || sheet->sheet;
+    return sheet;
 }
 
 const Shape *make_elongate(Elaboration *e, const Shape *shape, Node half, Span span)

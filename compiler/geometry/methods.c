@@ -256,12 +256,17 @@ static Value method_smooth_mirrors(Elaboration *e, const Shape *shape, Call *cal
     return value_shape(make_smooth(e, shape, width, call->syntax->span));
 }
 
-/* A sheet is thin enough to look like a surface: a thousandth of the region. */
-static double sheet_thickness(const Shape *region) { return 1e-3 * box_diagonal(region->box); }
+/* Of a sheet where a distance to it is needed, unless it is given: it looks like a surface. */
+static Node sheet_thickness(Elaboration *e, const Shape *region, const Call *call)
+{
+    if (is_given(call, 2))
+        return want_number(e, call, 2, 0);
+    return graph_number(e->graph, 1e-3 * box_diagonal(region->box));
+}
 
 /* The surface alone. */
 static const Shape *sheet_of(Elaboration *e, const Shape *shape, const Shape *region,
-                             const Call *call)
+                             Node thickness, const Call *call)
 {
     if (!box_is_finite(region->box) || box_is_empty(region->box)) {
         Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[0].syntax->span,
@@ -269,8 +274,7 @@ static const Shape *sheet_of(Elaboration *e, const Shape *shape, const Shape *re
         diag->label = "endless";
         return NULL;
     }
-    Node thickness = graph_number(e->graph, sheet_thickness(region));
-    return make_shell(e, shape, thickness, call->syntax->span);
+    return make_sheet(e, shape, thickness, call->syntax->span);
 }
 
 static Value method_within(Elaboration *e, const Shape *shape, Call *call)
@@ -281,12 +285,17 @@ static Value method_within(Elaboration *e, const Shape *shape, Call *call)
     bool open = false;
     if (!want_flag(e, call, 1, &open))
         return value_error();
-    Box box = region->box;
+    Box  box       = region->box;
+    Node thickness = sheet_thickness(e, region, call);
+    if (thickness == NODE_NONE ||
+        (is_given(call, 2) &&
+         !check_not_negative(e, thickness, call->arguments[2].syntax, "a thickness")))
+        return value_error();
     /* A field's solid ends at the sides of its box, where no sheet shall be. */
     if (open && box_is_finite(box) && !box_is_empty(box))
-        box = box_grow(box, 2 * sheet_thickness(region));
+        box = box_grow(box, 2 * fmax(node_range(e, thickness, 0).high, 1e-3 * box_diagonal(box)));
     shape = restrict_shape(e, shape, box, open);
-    if (open && !(shape = sheet_of(e, shape, region, call)))
+    if (open && !(shape = sheet_of(e, shape, region, thickness, call)))
         return value_error();
     const Shape *both[] = {shape, region};
     return value_shape(make_joint(e, SHAPE_INTERSECTION, both, 2, blend_sharp, call->syntax->span));

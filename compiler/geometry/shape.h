@@ -136,6 +136,8 @@ struct Shape {
     bool   per_frame; /* in the tree is a slope that is found anew for each frame (FrameSlope) */
     bool   trapped; /* in the tree is a fractal: `orbit_trap` means something */
     bool   figure;  /* a plane figure in x and y */
+    bool   sheet;   /* SHELL: has no thickness where rays can go from root to root (rays_pass) */
+    bool   sheets;  /* in the tree are some */
     double instances; /* copies of kernels that reflections make; 1 without a sequence */
     uint32_t levels;  /* reflections of the outermost sequence in it */
     uint32_t inversions; /* maps of that sequence that invert, or of `.transform` on the way */

@@ -134,8 +134,9 @@ static const char about_probe[] =
     "float krs_probe(vec3 p, float footprint)\n{\n    float t = 1e30;\n";
 static const char about_along[] =
     "// How far a ray from p along a unit direction may go before it can meet a surface: at\n"
-    "// least the distance, and farther where polynomials or maps tell; negative inside.\n"
-    "float krs_along(vec3 p, vec3 direction)\n{\n    float t = 1e30;\n";
+    "// least the distance, and farther where polynomials or maps tell; negative inside, and\n"
+    "// where a surface without thickness lies between p and the last place, `footprint` behind.\n"
+    "float krs_along(vec3 p, vec3 direction, float footprint)\n{\n    float t = 1e30;\n";
 
 /* krs_along by one method, or krs_probe. */
 static void emit_along_by(Emitter *e, AlongMethod method, const EmitMarch *march, const Node *roots,
@@ -147,7 +148,7 @@ static void emit_along_by(Emitter *e, AlongMethod method, const EmitMarch *march
         if (along[i] == roots[i * ROOT_COUNT + ROOT_DISTANCE])
             continue;
         open_component(e, march, i);
-        emit_one_along(e, along[i], i, probe ? "float footprint" : "vec3 direction");
+        emit_one_along(e, along[i], i, probe ? "float footprint" : "vec3 direction, float footprint");
         close_component(e, march, i);
     }
     text_add(e->out, probe ? about_probe : about_along);
@@ -155,10 +156,13 @@ static void emit_along_by(Emitter *e, AlongMethod method, const EmitMarch *march
         bool plain = along[i] == roots[i * ROOT_COUNT + ROOT_DISTANCE];
         open_component(e, march, i);
         text_format(e->out, "    t = min(t, krs_%s_%zu(p%s));\n", plain ? "distance" : "along",
-                    i + 1, plain ? "" : probe ? ", footprint" : ", direction");
+                    i + 1, plain ? "" : probe ? ", footprint" : ", direction, footprint");
         close_component(e, march, i);
     }
     text_format(e->out, "    return krs_cut(p, t)%s;\n}\n", probe ? " / footprint" : "");
+    if (!probe)
+        text_add(e->out, "\nfloat krs_along(vec3 p, vec3 direction)\n{\n"
+                         "    return krs_along(p, direction, 0.0);\n}\n");
 }
 
 void emit_along(Emitter *e, const EmitMarch *march, const Node *roots, size_t components)

@@ -79,6 +79,10 @@ void begin_normal()
     vec3 gradient = krs_gradient(place.position, t);
     // Differences are as well for where rounding makes what is seen face away.
     float facing_eye = place.side * dot(gradient, find_backwards());
+#ifdef SHEETS // of which either side is seen
+    gradient *= facing_eye < 0.0 ? -1.0 : 1.0;
+    facing_eye = abs(facing_eye);
+#endif
     derived = facing_eye > 0.0 && dot(gradient, gradient) < INFINITE;
     if (derived) {
         sum = place.side * normalize(gradient);
@@ -188,10 +192,12 @@ float find_flatness()
 const float LEAST_OUTSIDE = 0.4;
 void take_outside(float rise)
 {
+#ifndef SHEETS // of which differences see both sides
     if (rise >= LEAST_OUTSIDE)
         return;
     derived = false;
     begin_nearer();
+#endif
 }
 #endif
 

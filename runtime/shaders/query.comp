@@ -73,7 +73,11 @@ bool item_wants_more()
 // What is far for its size need not be looked at, where a branch saves work.
 float item_distance(vec3 place)
 {
-#ifdef EARLY_OUTS
+#ifdef ALONG
+    // Some roundings farther back than the ray has been: what was just before a surface without
+    // thickness there must not be behind it here.
+    return krs_along(place, direction, gap > 0.0 ? gap + 2.0 * ROUNDING * (rounding + t) : 0.0);
+#elif defined(EARLY_OUTS)
     return krs_distance_lod(place, 0.0);
 #else
     return krs_distance(place);
@@ -114,7 +118,11 @@ void take_distance(float distance)
         slope = mix(slope, gap > 0.0 ? (room - clear) / gap : -1.0, LEARNING);
         t = at;
         clear = room;
+#ifdef ALONG // it is what is free ahead, and tells nothing of what is behind
+        gap = room + open;
+#else
         gap = room * max(1.0, 2.0 / (1.0 - min(slope, 0.98))) + open;
+#endif
         fate = at + room > end ? MISS : MARCHING;
     } else {
         gap = max(0.5 * (gap + clear - max(room, 0.0)), clear + open);

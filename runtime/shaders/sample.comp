@@ -36,6 +36,10 @@ vec4 look_around(vec3 p)
         float distance = krs_distance(p + step * way);
         found += axis == 0u ? vec4(0.0, 0.0, 0.0, distance) : vec4(distance * way, 0.0);
     }
+#ifdef SHEETS // the distance is nowhere negative: differences see both sides
+    vec3 gradient = krs_gradient(p, step);
+    found.xyz = work.taps > 1u && dot(gradient, gradient) > 0.0 ? gradient : found.xyz;
+#endif
     float steepness = length(found.xyz);
     found.xyz /= steepness > 0.0 ? steepness : 1.0;
     return found;

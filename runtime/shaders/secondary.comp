@@ -182,7 +182,10 @@ bool item_wants_more() { return taps < limit; }
 float item_distance(vec3 position)
 {
 #ifdef ALONG
-    return krs_along(position, direction);
+    // Some roundings farther back than the ray has been: what was just before a surface without
+    // thickness there must not be behind it here.
+    float some = 2.0 * ROUNDING * (largest(position) + t);
+    return krs_along(position, direction, gap > 0.0 ? gap + some : 0.0);
 #else
     return krs_distance(position);
 #endif

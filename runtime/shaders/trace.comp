@@ -338,6 +338,16 @@ bool item_wants_more()
     return exists && (march.fate == MARCHING || march.fate == CLOSING) && march.steps < most;
 }
 
+#ifdef ALONG
+// Where the ray has been before, and some roundings farther: what was just before a surface without
+// thickness there must not be behind it here.
+float look_back()
+{
+    float some = 2.0 * ROUNDING * (rounding + march.t + march.gap);
+    return march.gap > 0.0 ? march.gap + some : 0.0;
+}
+#endif
+
 // What is far for its size need not be looked at, where a branch saves work.
 float item_distance(vec3 place)
 {
@@ -346,7 +356,7 @@ float item_distance(vec3 place)
 #elif defined(PACKED)
     return krs_distance_of(part, place);
 #elif defined(ALONG)
-    return krs_along(place, direction);
+    return krs_along(place, direction, look_back());
 #elif defined(EARLY_OUTS) && !defined(GROUP)
     return krs_distance_lod(place, 0.0);
 #else

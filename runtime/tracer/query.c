@@ -180,8 +180,8 @@ bool ways_are_sound(const WayBlock *ways, uint32_t count, uint32_t ends)
     return sound;
 }
 
-static void take_way(const KrsRay *ray, const WayBlock *way, const AnswerBlock *answers,
-                     KrsHit *hit)
+static void take_way(const KrsRay *ray, bool sheets, const WayBlock *way,
+                     const AnswerBlock *answers, KrsHit *hit)
 {
     *hit = (KrsHit){0};
     if (way->fate == QUERY_MISS)
@@ -192,6 +192,8 @@ static void take_way(const KrsRay *ray, const WayBlock *way, const AnswerBlock *
     for (int k = 0; k < 3; k++)
         hit->point[k] = ray->origin[k] + hit->t * ray->direction[k];
     describe(&answers[way->place], hit);
+    if (sheets)
+        krs_face(ray, hit);
 }
 
 /* Single precision cannot tell on which side of a surface a ray begins that is as near to it as
@@ -228,7 +230,7 @@ static bool raycast_batch(KrsRendering *rendering, KrsFrame *frame, const double
         return false;
     for (uint32_t i = 0; i < count; i++) {
         KrsRay ray = krs_ray(scene, origins[i], directions[i], farthest);
-        take_way(&ray, &ways[i], rendering->answers.bytes, &hits[i]);
+        take_way(&ray, rendering->program->sheets, &ways[i], rendering->answers.bytes, &hits[i]);
         if (took_wrong_side(frame, &ways[i], origins + i))
             krs_raycast(frame, origins + i, directions + i, 1, farthest, tolerance, hits + i);
     }

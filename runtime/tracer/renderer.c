@@ -190,6 +190,9 @@ void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedul
     bool       heavy = rendering->program->flops >= FLOPS_WORTH_REFILL && gpu->refill_lanes > 0;
     if (*trace == KRS_TRACE_DEFAULT)
         *trace = rendering->program->along ? KRS_TRACE_EXACT : KRS_TRACE_AUTO;
+    /* What has no thickness is met by roots alone. */
+    if (rendering->program->sheets && (*trace < KRS_TRACE_EXACT || *trace >= KRS_TRACE_DIRECTIONAL))
+        *trace = KRS_TRACE_EXACT;
     if (*schedule == KRS_SCHEDULE_DEFAULT)
         *schedule = !software ? KRS_SCHEDULE_QUEUE
                   : heavy     ? KRS_SCHEDULE_REFILL
@@ -281,7 +284,7 @@ static Variant name_variant(const KrsRendering *rendering, KrsTrace trace, KrsSc
     bool     by_ray = trace >= KRS_TRACE_EXACT;
     Variant  variant;
     int      length = snprintf(variant.defines, sizeof variant.defines,
-                               "#define TRACE %du\n#define REFILL %d\n%s%s%s%s%s%s%s",
+                               "#define TRACE %du\n#define REFILL %d\n%s%s%s%s%s%s%s%s",
                                (int)(by_ray ? KRS_TRACE_PLAIN : trace),
                                schedule == KRS_SCHEDULE_REFILL
                                    ? (int)rendering->renderer->gpu.refill_lanes : 0,
@@ -292,7 +295,8 @@ static Variant name_variant(const KrsRendering *rendering, KrsTrace trace, KrsSc
                                anchored ? "#define ANCHORED\n" : "",
                                rendering->renderer->early_outs && !anchored
                                    ? "#define EARLY_OUTS\n" : "",
-                               goes_along(rendering, trace) ? along_names[trace] : "");
+                               goes_along(rendering, trace) ? along_names[trace] : "",
+                               rendering->program->sheets ? "#define SHEETS\n" : "");
     if (zones > 0)
         snprintf(variant.defines + length, sizeof variant.defines - (size_t)length,
                  "#define ZONES %u\n", zones);
@@ -349,6 +353,8 @@ Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule sch
 
 KrsNormals rendering_normals(const KrsRendering *rendering, KrsNormals normals)
 {
+    if (rendering->program->sheets)
+        return KRS_NORMALS_ANALYTIC; /* differences see both sides of a sheet */
     if (normals != KRS_NORMALS_DEFAULT)
         return normals;
     return rendering->program->algebraic ? KRS_NORMALS_ANALYTIC : KRS_NORMALS_OCTAHEDRON;
@@ -384,7 +390,8 @@ static Variant name_around(const KrsRendering *rendering, KrsNormals normals, ui
 
 bool rendering_has_roots(const KrsRendering *rendering, KrsTrace trace)
 {
-    return trace == KRS_TRACE_EXACT && rendering->program->along && !rendering->in_use->anchored;
+    return (trace == KRS_TRACE_EXACT || rendering->program->sheets) && rendering->program->along &&
+           !rendering->in_use->anchored;
 }
 
 Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots)
@@ -402,11 +409,16 @@ Kernel *rendering_around(KrsRendering *rendering, KrsNormals normals, uint32_t g
                        name_around(rendering, normals, group));
 }
 
+static KrsTrace trace_of_questions(const KrsRendering *rendering)
+{
+    return rendering->program->sheets ? KRS_TRACE_EXACT : KRS_TRACE_AUTO;
+}
+
 Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule)
 {
     schedule = schedule_of_kernel(schedule);
     return find_variant(rendering, &rendering->in_use->query[schedule], "query.comp",
-                        KRS_TRACE_AUTO, schedule);
+                        trace_of_questions(rendering), schedule);
 }
 
 Kernel *rendering_shade(KrsRendering *rendering)
@@ -415,10 +427,20 @@ Kernel *rendering_shade(KrsRendering *rendering)
                         KRS_SCHEDULE_PIXEL);
 }
 
+/* Differences of a distance see both sides of a sheet. */
+static Variant name_sample(const KrsRendering *rendering)
+{
+    Variant variant = name_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    size_t  length  = strlen(variant.defines);
+    if (rendering->program->sheets)
+        snprintf(variant.defines + length, sizeof variant.defines - length, "#define GRADIENT\n");
+    return variant;
+}
+
 Kernel *rendering_sample(KrsRendering *rendering)
 {
-    return find_variant(rendering, &rendering->in_use->sample, "sample.comp", KRS_TRACE_PLAIN,
-                        KRS_SCHEDULE_PIXEL);
+    return find_kernel(rendering, &rendering->in_use->sample, "sample.comp",
+                       name_sample(rendering));
 }
 
 /* The renderer's kernels for panoramas. */
@@ -506,9 +528,8 @@ static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
         request_pictures(&requests, rendering, trace, schedule);
     } else {
         request(&requests, rendering, &to->query[schedule], "query.comp",
-                name_variant(rendering, KRS_TRACE_AUTO, schedule));
-        request(&requests, rendering, &to->sample, "sample.comp",
-                name_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL));
+                name_variant(rendering, trace_of_questions(rendering), schedule));
+        request(&requests, rendering, &to->sample, "sample.comp", name_sample(rendering));
     }
     return stage_make_kernels(rendering->renderer, rendering->scene_set, requests.items,
                               requests.count, &rendering->spirv_ms, &rendering->pipeline_ms);
