@@ -20,14 +20,14 @@
 const uint LIST_UNPROVEN = 0u, SHADOW_NEAR = 1u, SHADOW = 2u, OCCLUSION_NEAR = 3u, OCCLUSION = 4u,
            OCCLUSION_OF_REST = 5u;
 
-// Of an anchor's empty cone: who is so near to it in pixels, about, on its plane and faces its way.
-const float PROVEN_NEAR = 2.5, PROVEN_ON_PLANE = 1.0, FACING_ALIKE = 0.9;
+// Of an empty cone: who is so near to its start in pixels, about, on its plane and faces its way.
+const float PROVEN_NEAR = 3.0, PROVEN_ON_PLANE = 1.0, FACING_ALIKE = 0.9;
 // The mean of a shadow reaches so far, for the width of the penumbra; in pixels at least, or there
 // is none, and at least for a second mean.
 const float BLUR_OF_PENUMBRA = 0.5, LEAST_BLUR = 0.75, NEAR_BLUR = 2.0;
 // The mean of occlusion is over places so near to the plane, in pixels, and asks for so much weight;
 // it reaches so many pixels, and less where a pixel has several rays.
-const float ON_PLANE = 1.5, LEAST_WEIGHT = 1.0, NEAR_REACH = 3.0, FAR_REACH = 6.0;
+const float ON_PLANE = 1.5, LEAST_WEIGHT = 0.5, NEAR_REACH = 3.0, FAR_REACH = 4.5;
 
 // A neighbour's word, and where its hit is.
 struct Neighbour {
@@ -58,55 +58,69 @@ uint find_word(uint list, ivec2 pixel)
 Neighbour find_neighbour(uint list, ivec2 pixel)
 {
     uint  word = find_word(list, pixel);
-    vec3  origin, direction;
-    float base, slope;
-    find_ray(vec2(ivec2(work.corner) + pixel) + work.offset, origin, direction, base, slope);
+    vec3  origin, axis;
+    find_axis(vec2(ivec2(work.corner) + pixel) + work.offset, origin, axis);
     return Neighbour(word != 0u, word & 255u,
-                     origin + uintBitsToFloat(word & 0xffffff00u) * direction);
+                     origin + uintBitsToFloat(word & 0xffffff00u) * axis);
+}
+
+// The next of the offsets from -reach to reach in both directions: lavapipe divides integers lane by
+// lane.
+ivec2 next_offset(ivec2 offset, int reach)
+{
+    bool ends = offset.x == reach;
+    return ivec2(ends ? -reach : offset.x + 1, offset.y + int(ends));
 }
 
 // ---- Cones ----
 
-// The anchor that is nearest to a pixel of its tile.
-uint anchor_of(uint slot)
+// Whether the empty cone of one pixel, which faces that way, tells that the light is seen from
+// another.
+bool is_proven(Place here, vec3 normal, Place cone, vec3 facing)
 {
-    uint column = 0x77552220u >> 4u * (slot & 7u) & 7u, row = 0x77552220u >> 4u * (slot >> 3u & 7u) & 7u;
-    return (slot & ~63u) + 8u * row + column;
+    vec3  apart = here.position - cone.position;
+    float turned = max(-dot(facing, cone.direction), 0.25) / here.width;
+    return dot(normal, facing) > FACING_ALIKE &&
+           abs(dot(apart, facing)) < PROVEN_ON_PLANE * here.width &&
+           dot(apart, apart) * turned * turned < PROVEN_NEAR * PROVEN_NEAR;
 }
 
-// Whether an anchor's empty cone tells that the light is seen from another pixel.
-bool is_proven(Place here, vec3 normal, uint anchor)
+// Of half a row of a tile, which has one cone: the bits of its pixels that are not proven.
+uint prove_half(uint first, uint index, uint count)
 {
-    Place there = find_place_of(anchor);
-    vec3  facing = find_hit(FACING, anchor).xyz, apart = here.position - there.position;
-    float turned = max(-dot(facing, there.direction), 0.25);
-    return dot(normal, facing) > FACING_ALIKE && abs(dot(apart, facing)) < PROVEN_ON_PLANE * here.width &&
-           dot(apart, apart) * turned * turned < PROVEN_NEAR * PROVEN_NEAR * here.width * here.width;
+    uint  cone = cone_of(first), rest = 0u, column = 0u;
+    bool  empty = find_shared(RAYS_SHARED, cone) != 0u;
+    Place there = find_place_of(cone);
+    vec3  facing = find_hit(FACING, cone).xyz;
+    do { // as in pixels.glsl
+        uint slot = first + column;
+        bool hits = column < count && find_end(index + min(column, max(count, 1u) - 1u)).fate == HIT;
+        bool proven = false;
+        if (hits && empty) {
+            Place here = find_place_of(slot);
+            proven = cone == slot || is_proven(here, find_hit(FACING, slot).xyz, there, facing);
+            if (proven) {
+                keep_lighting(control.value, slot, 1.0);
+                keep_shared(MEANS_SHARED, slot, find_depth(here), code_of_openness(1.0));
+            }
+            if (proven && cone != slot)
+                keep_shared(RAYS_SHARED, slot, find_depth(here), LIT);
+        }
+        rest |= uint(hits && !proven) << column;
+        column++;
+    } while (column < 4u);
+    return rest;
 }
 
 // Of a row of a tile: room in the list is taken for all at once.
 void list_unproven(uint row)
 {
-    uint  first = 8u * row, rest = 0u, column = 0u;
+    uint  first = 8u * row;
     uvec2 pixel = pixel_of(first);
+    uint  index = index_of(pixel);
     uint  end = pixel.y < work.extent.y ? min(work.extent.x - pixel.x, 8u) : 0u;
-    while (column < end) {
-        uint slot = first + column, anchor = anchor_of(slot);
-        Ray  ray = find_end(index_of(pixel) + column);
-        if (ray.fate == HIT) {
-            bool proven = find_shared(RAYS_SHARED, anchor) != 0u;
-            if (proven && anchor != slot)
-                proven = is_proven(find_place_of(slot), find_hit(FACING, slot).xyz, anchor);
-            if (proven) {
-                keep_lighting(control.value, slot, 1.0);
-                keep_shared(MEANS_SHARED, slot, ray.t, code_of_openness(1.0));
-                if (anchor != slot)
-                    keep_shared(RAYS_SHARED, slot, ray.t, LIT);
-            }
-            rest |= uint(!proven) << column;
-        }
-        column++;
-    }
+    uint  rest = prove_half(first, index, min(end, 4u));
+    rest |= prove_half(first + 4u, index + 4u, max(end, 4u) - 4u) << 4u;
     if (rest == 0u)
         return;
     uint at = 2u * band_pixels() + atomicAdd(counts.rest, bitCount(rest));
@@ -137,19 +151,20 @@ float find_part_above(Light light, Place place, vec3 normal)
 }
 
 // How far the mean of a shadow reaches, in pixels: by what every second of 9x9 pixels say.  0 where
-// they agree that the light is seen.
+// none of them sees the light.  Fewer would often agree by chance at the ends of a penumbra, and
+// make it narrower.
 float find_blur(ivec2 pixel)
 {
     float lit = 0.0, hidden = 0.0, width = 0.0;
-    int   i = 0;
+    ivec2 offset = ivec2(-2);
     do {
-        uint code = find_word(RAYS_SHARED, pixel + 2 * (ivec2(i % 5, i / 5) - 2)) & 255u;
+        uint code = find_word(RAYS_SHARED, pixel + 2 * offset) & 255u;
         bool hides = code >= NARROWEST && code <= WIDEST;
         lit += float(code == LIT);
         hidden += float(hides);
         width += hides ? width_of_code(code) : 0.0;
-        i++;
-    } while (i < 25);
+        offset = next_offset(offset, 2);
+    } while (offset.y <= 2);
     float blur = BLUR_OF_PENUMBRA * width / max(hidden, 1.0) * inversesqrt(float(control.rays));
     return lit > 0.0 ? blur : 0.0;
 }
@@ -159,9 +174,9 @@ float find_mean(uint list, ivec2 pixel, Place place, int stride, float blur)
 {
     vec2  sums = vec2(0.0);
     float within = 1.0 / (blur * place.width), edge = 1.0 / (2.0 * float(stride) + 1.0);
-    int   i = 0;
+    ivec2 step = ivec2(-2);
     do {
-        ivec2     offset = stride * (ivec2(i % 5, i / 5) - 2);
+        ivec2     offset = stride * step;
         Neighbour there = find_neighbour(list, pixel + offset);
         vec3      apart = (there.position - place.position) * within;
         vec2      aside = vec2(offset) * edge;
@@ -170,11 +185,19 @@ float find_mean(uint list, ivec2 pixel, Place place, int stride, float blur)
                                              : openness_of_code(there.code);
         bool      knows = there.exists && (list == MEANS_SHARED || there.code != BELOW_HORIZON);
         sums += knows ? weight * vec2(seen, 1.0) : vec2(0.0);
-        i++;
-    } while (i < 25);
+        step = next_offset(step, 2);
+    } while (step.y <= 2);
     return sums.y > 0.0 ? sums.x / sums.y : 1.0;
 }
 
+void keep_shadow(uint slot, Place place, float share)
+{
+    vec3 normal = find_hit(FACING, slot).xyz;
+    keep_lighting(control.value, slot,
+                  share * find_part_above(find_light(control.light), place, normal));
+}
+
+// By all around; who needs a wider mean is listed.
 void filter_shadow_near(uint slot)
 {
     ivec2 pixel = ivec2(pixel_of(slot));
@@ -183,17 +206,17 @@ void filter_shadow_near(uint slot)
     if (blur > LEAST_BLUR)
         share = find_mean(RAYS_SHARED, pixel, find_place_of(slot), 1, blur);
     keep_shared(MEANS_SHARED, slot, uintBitsToFloat(word), code_of_openness(share));
+    if (blur > NEAR_BLUR)
+        solid[3u * band_pixels() + atomicAdd(counts.wide, 1u)] = slot;
+    else
+        keep_shadow(slot, find_place_of(slot), share);
 }
 
 void filter_shadow(uint slot)
 {
     Place place = find_place_of(slot);
     ivec2 pixel = ivec2(pixel_of(slot));
-    float part = find_part_above(find_light(control.light), place, find_hit(FACING, slot).xyz);
-    float share = openness_of_code(find_shared(MEANS_SHARED, slot) & 255u), blur = find_blur(pixel);
-    if (blur > NEAR_BLUR)
-        share = find_mean(MEANS_SHARED, pixel, place, 2, blur);
-    keep_lighting(control.value, slot, share * part);
+    keep_shadow(slot, place, find_mean(MEANS_SHARED, pixel, place, 2, find_blur(pixel)));
 }
 
 // ---- Occlusion ----
@@ -222,44 +245,41 @@ ivec2 anchor_at(ivec2 pixel)
     return 4 * (pixel >> 3) + within;
 }
 
-// Of an anchor, by all around.
+// The mean of all around.
 float find_open_near(uint slot)
 {
     Place place = find_place_of(slot);
     vec3  normal = find_hit(FACING, slot).xyz;
     ivec2 pixel = ivec2(pixel_of(slot));
     vec2  sums = vec2(0.0);
-    int   i = 0;
+    ivec2 step = ivec2(-2);
     do {
-        ivec2 offset = ivec2(i % 5, i / 5) - 2;
-        add_open(place, normal, find_neighbour(RAYS_SHARED, pixel + offset), vec2(offset) / NEAR_REACH,
+        add_open(place, normal, find_neighbour(RAYS_SHARED, pixel + step), vec2(step) / NEAR_REACH,
                  sums);
-        i++;
-    } while (i < 25);
+        step = next_offset(step, 2);
+    } while (step.y <= 2);
     return sums.x / max(sums.y, 1e-6);
 }
 
 void filter_occlusion_near(uint slot)
 {
-    float at = uintBitsToFloat(find_shared(RAYS_SHARED, slot));
-    keep_shared(MEANS_SHARED, slot, at, code_of_openness(find_open_near(slot)));
+    float depth = uintBitsToFloat(find_shared(RAYS_SHARED, slot));
+    keep_shared(MEANS_SHARED, slot, depth, code_of_openness(find_open_near(slot)));
 }
 
-// By the anchors around; who has none on its surface is listed.
+// By the means of the anchors around; who has none on its surface is listed.
 void filter_occlusion(uint slot)
 {
     Place place = find_place_of(slot);
     vec3  normal = find_hit(FACING, slot).xyz;
-    ivec2 pixel = ivec2(pixel_of(slot)), nearest = anchor_at(pixel);
-    float reach = max(FAR_REACH * inversesqrt(sqrt(float(control.rays))), NEAR_REACH);
+    ivec2 pixel = ivec2(pixel_of(slot)), nearest = anchor_at(pixel), step = ivec2(-1);
     vec2  sums = vec2(0.0);
-    int   i = 0;
     do {
-        ivec2 there = pixel_of_anchor(nearest + ivec2(i % 5, i / 5) - 2);
-        add_open(place, normal, find_neighbour(MEANS_SHARED, there), vec2(there - pixel) / reach,
-                 sums);
-        i++;
-    } while (i < 25);
+        ivec2 there = pixel_of_anchor(nearest + step);
+        add_open(place, normal, find_neighbour(MEANS_SHARED, there),
+                 vec2(there - pixel) / FAR_REACH, sums);
+        step = next_offset(step, 1);
+    } while (step.y <= 1);
     if (sums.y > LEAST_WEIGHT)
         keep_lighting(control.value, slot, sums.x / sums.y);
     else

@@ -132,6 +132,7 @@ layout(std430, set = 1, binding = 4) buffer ControlBlock {
     uint    unresolved;       // counts rays that ran out of steps
     uint    evaluations;      // counts distances spent on beams and rays; the most on one of these
     uint    most_evaluations;
+    uint    wide;             // pixels that need a wide mean of a shadow (filter.comp)
     uint    of_group[9];      // pixels that see something, by the group of their ray
 } counts;
 

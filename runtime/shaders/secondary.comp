@@ -158,9 +158,21 @@ void begin_group(uint first)
     is_cone = control.phase == CONES;
 }
 
+// Cones stand at the middles of the quarters of all tiles, if something is hit there.
+bool has_cone(uint slot)
+{
+    uvec2 pixel = pixel_of(slot);
+    bool  exists = pixel.x < work.extent.x && pixel.y < work.extent.y;
+    return exists && find_end(exists ? index_of(pixel) : 0u).fate == HIT;
+}
+
 void begin_item(uint number, bool saved)
 {
-    place = find_place(number);
+    bool exists = !is_cone || has_cone(slot_of_cone(number));
+    if (!is_cone)
+        place = find_place(number);
+    else if (exists)
+        place = find_place_of(slot_of_cone(number));
     spread = margin = 0.0;
     below = false;
     vec3 normal = find_hit(FACING, place.slot).xyz;
@@ -168,6 +180,8 @@ void begin_item(uint number, bool saved)
         aim_over_hemisphere(normal);
     else
         aim_at_light(normal);
+    blocked = blocked || !exists;
+    limit = exists ? limit : 0u;
     t = 0.0;
     slope = facing;
     taps = 0u;
@@ -266,10 +280,9 @@ float openness_of_hit(float part) { return part * part; }
 
 void end_item()
 {
-    float at = find_end(index_of(pixel_of(place.slot))).t;
     if (is_cone) {
         if (!blocked && limit == 0u)
-            keep_shared(RAYS_SHARED, place.slot, at, LIT);
+            keep_shared(RAYS_SHARED, place.slot, find_depth(place), LIT);
         return;
     }
     lost += limit > 0u ? 1u : 0u;
@@ -280,7 +293,7 @@ void end_item()
         code = code_of_openness(visible);
     }
     if (control.filters != 0u)
-        keep_shared(RAYS_SHARED, place.slot, at, code);
+        keep_shared(RAYS_SHARED, place.slot, find_depth(place), code);
     else
         keep_lighting(control.value, place.slot, visible);
 }

@@ -1,7 +1,7 @@
 /*
  * shared.glsl: what a ray from a hit finds, for the pixels around it: a word a pixel.
  *
- * The upper 24 bits are those of how far along its ray the pixel's hit is, so that its position is
+ * The upper 24 bits are those of how far along its axis the pixel's hit is, so that its position is
  * known from the word alone; the lower 8 are a code.  A word of 0 is of a pixel without a ray.
  */
 #include "sines.glsl"
@@ -33,15 +33,45 @@ uint shared_at(uint list, uint slot)
     return FIRST_SHARED * band_pixels() + 64u * tiles.x * tiles.y * list + slot;
 }
 
-void keep_shared(uint list, uint slot, float t, uint code)
+// A pixel's ray, not a unit vector where that would cost a root: in perspective it is 1 along the
+// view.
+void find_axis(vec2 place, out vec3 origin, out vec3 axis)
 {
-    solid[shared_at(list, slot)] = floatBitsToUint(t) & 0xffffff00u | code;
+    if (control.projection == PERSPECTIVE) {
+        vec2 plane = vec2(2.0 * place.x / frame.size.x - 1.0, 1.0 - 2.0 * place.y / frame.size.y);
+        origin = frame.eye.xyz;
+        axis = frame.forward.xyz + plane.x * frame.right.xyz + plane.y * frame.up.xyz;
+    } else {
+        float base, slope;
+        find_ray(place, origin, axis, base, slope);
+    }
+}
+
+// How far along its axis a place is.
+float find_depth(Place place)
+{
+    return control.projection == PERSPECTIVE
+               ? dot(place.position - frame.eye.xyz, frame.forward.xyz)
+               : find_end(index_of(pixel_of(place.slot))).t;
+}
+
+void keep_shared(uint list, uint slot, float depth, uint code)
+{
+    solid[shared_at(list, slot)] = floatBitsToUint(depth) & 0xffffff00u | code;
 }
 
 uint find_shared(uint list, uint slot)
 {
     return find_listed(shared_at(list, slot));
 }
+
+// Of four to a tile: the middle of each quarter, about.
+uint slot_of_cone(uint number)
+{
+    return 64u * (number / 4u) + 18u + 3u * (number & 1u) + 24u * (number >> 1u & 1u);
+}
+
+uint cone_of(uint slot) { return (slot & ~63u) + 18u + 3u * (slot >> 2u & 1u) + 24u * (slot >> 5u & 1u); }
 
 uint code_of_width(float pixels)
 {

@@ -5,11 +5,11 @@
  * A pixel is known by its slot: 64 times its tile of 8x8 pixels, and its number in there.  So lie
  * the hits in memory, as what is near in the picture is looked at together.
  *
- * A quarter of the pixels, those in columns and rows 0, 2, 5 and 7 of their tile, are anchors:
- * they have rays first, and the others only where those do not tell enough.  Lists lie where the
- * queue of rays was, each with room for all pixels: all, the anchors, and the rest that need rays
- * of their own; a fourth is not used.  Where groups of components were marched one after the
- * other, lists of what each of them shows follow; last is what rays share (shared.glsl).
+ * A quarter of the pixels, those in columns and rows 0, 2, 5 and 7 of their tile, are anchors, at
+ * which means of occlusion are taken.  Lists lie where the queue of rays was, each with room for
+ * all pixels: all, the anchors, the rest that need rays of their own, and those whose shadow needs
+ * a wide mean.  Where groups of components were marched one after the other, lists of what each of
+ * them shows follow; last is what rays share (shared.glsl).
  */
 #ifdef NO_TEXELS
 layout(std430, set = 1, binding = 6) buffer Solid { uint solid[]; };

@@ -23,6 +23,7 @@ typedef struct FrameBlock {
 static_assert(sizeof(FrameBlock) == 176, "std140");
 
 /* Phases of the kernels. */
+enum { CONES_OF_TILE = 4 }; /* shared.glsl */
 enum { TRACE_RAYS, TRACE_BEAMS_32, TRACE_BEAMS_8, TRACE_BEAMS_4 };
 enum { RAYS_CONES, RAYS_TO_LIGHT, RAYS_OVER_HEMISPHERE };
 enum {
@@ -31,7 +32,7 @@ enum {
 };
 enum { BACKGROUND_FIRST, BACKGROUND_SUN };
 /* Of solid.glsl, and of shared.glsl: two. */
-enum { LIST_ALL, LIST_ANCHORS, LIST_REST, LIST_OF_GROUP = 4, LIST_SHARED = 13, SHARED_LISTS = 2 };
+enum { LIST_ALL, LIST_ANCHORS, LIST_REST, LIST_WIDE, LIST_OF_GROUP, LIST_SHARED = 13, SHARED_LISTS = 2 };
 
 enum { LIGHTS_AT_ONCE = 3 }; /* of a dispatch of shade.comp */
 enum { VALUE_OCCLUSION, VALUE_VISIBLE }; /* that and the next ones of those lights */
@@ -79,6 +80,7 @@ typedef struct ControlBlock {
     uint32_t filters; /* 1: neighbours share */
     /* counted by the kernels: */
     uint32_t queued, left, tiles, solid, anchors, rest, unresolved, evaluations, most_evaluations;
+    uint32_t wide;
     uint32_t of_group[9]; /* KRS_MOST_GROUPS and 1 */
     /* by plan.comp: the groups of the next dispatch, the one of the chain where it stopped, and how
        many groups each had: */

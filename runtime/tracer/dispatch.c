@@ -14,8 +14,8 @@
 #include "runtime/tracer/phases.h"
 
 /* As plan.comp has them. */
-static_assert(WORD_OF(items) == 10 && WORD_OF(groups) == 40 && WORD_OF(stopped) == 43 &&
-              WORD_OF(ran) == 44, "plan.comp");
+static_assert(WORD_OF(items) == 10 && WORD_OF(groups) == 41 && WORD_OF(stopped) == 44 &&
+              WORD_OF(ran) == 45, "plan.comp");
 typedef struct PlanBlock {
     uint32_t counter, each, taken, in_group, most, number;
 } PlanBlock;

@@ -304,10 +304,9 @@ static bool send_rays(Job *job, KrsPhase phase, uint32_t rays, const WorkBlock *
     return true;
 }
 
-/* What neighbours share, for the pixels of a list; `lists`: those are listed that need rays of their
-   own. */
+/* What neighbours share, for the pixels of a list; `counter`: of those that it lists, 0 for none. */
 static bool filter(Job *job, KrsPhase phase, uint32_t what, const WorkBlock *work, uint32_t list,
-                   Items items, bool lists)
+                   Items items, uint32_t counter)
 {
     KrsRendering *r = job->rendering;
     ControlBlock *control = r->control.bytes;
@@ -316,7 +315,7 @@ static bool filter(Job *job, KrsPhase phase, uint32_t what, const WorkBlock *wor
     read_list(job, work, list);
     Dispatch dispatch = dispatch_of(job, phase, &r->renderer->filter[r->panoramic], work, items,
                                     deal_pixels(job));
-    dispatch.clears = lists ? WORD_OF(rest) : 0;
+    dispatch.clears = counter;
     return dispatch_run(job, &dispatch);
 }
 
@@ -372,31 +371,34 @@ static bool find_normals(Job *job, const WorkBlock *work)
     return dispatch_together(job, parts, 1 + job->part_count);
 }
 
-/* A ray over the hemisphere of each pixel, and always the means of neighbours: what a surface gives
-   back of the light that it closes off is no linear function of how open it is (shade.comp), so
-   the mean of noise would be too dark. */
+/* A ray over the hemisphere of each pixel, and always the means of neighbours: what a surface gives back of the
+   light that it closes off is no linear function of how open it is (shade.comp), so the mean of
+   noise would be too dark. */
 static bool find_occlusion(Job *job, const WorkBlock *work)
 {
     const KrsPhase phase = KRS_PHASE_OCCLUSION;
     const Items    all = ITEMS_COUNTED(1, solid), anchors = ITEMS_COUNTED(1, anchors);
+    const Items    rest = ITEMS_COUNTED(1, rest);
     ControlBlock  *control = job->rendering->control.bytes;
     control->value = VALUE_OCCLUSION;
     control->filters = 1;
-    return control->open ||
-           (send_rays(job, phase, RAYS_OVER_HEMISPHERE, work, LIST_ALL, all, true) &&
-            filter(job, phase, FILTER_OCCLUSION_NEAR, work, LIST_ANCHORS, anchors, false) &&
-            filter(job, phase, FILTER_OCCLUSION, work, LIST_ALL, all, true) &&
-            filter(job, phase, FILTER_OCCLUSION_OF_REST, work, LIST_REST, ITEMS_COUNTED(1, rest),
-                   false));
+    if (control->open)
+        return true;
+    return send_rays(job, phase, RAYS_OVER_HEMISPHERE, work, LIST_ALL, all, true) &&
+           filter(job, phase, FILTER_OCCLUSION_NEAR, work, LIST_ANCHORS, anchors, 0) &&
+           filter(job, phase, FILTER_OCCLUSION, work, LIST_ALL, all, WORD_OF(rest)) &&
+           filter(job, phase, FILTER_OCCLUSION_OF_REST, work, LIST_REST, rest, 0);
 }
 
-/* Cones first, of a quarter of the pixels: where they are empty all of the light is seen. */
+/* Cones first, four to a tile: where they are empty all of the light is seen. */
 static bool list_unproven(Job *job, const WorkBlock *work)
 {
     const KrsPhase phase = KRS_PHASE_SHADOWS;
-    return send_rays(job, phase, RAYS_CONES, work, LIST_ANCHORS, ITEMS_COUNTED(1, anchors), true) &&
-           filter(job, phase, FILTER_LIST_UNPROVEN, work, LIST_ALL,
-                  ITEMS_KNOWN(tiles_of_band(work) * TILE), true);
+    const uint32_t tiles = tiles_of_band(work);
+    return send_rays(job, phase, RAYS_CONES, work, LIST_ALL, ITEMS_KNOWN(tiles * CONES_OF_TILE),
+                     true) &&
+           filter(job, phase, FILTER_LIST_UNPROVEN, work, LIST_ALL, ITEMS_KNOWN(tiles * TILE),
+                  WORD_OF(rest));
 }
 
 /* A ray of each pixel to a point of the light; the mean of neighbours, where it has a size.  Rays
@@ -413,8 +415,8 @@ static bool find_visible(Job *job, const KrsLight *light, const WorkBlock *work)
         return false;
     return send_rays(job, phase, RAYS_TO_LIGHT, work, list, items, !cones) &&
            (!control->filters ||
-            (filter(job, phase, FILTER_SHADOW_NEAR, work, list, items, false) &&
-             filter(job, phase, FILTER_SHADOW, work, list, items, false)));
+            (filter(job, phase, FILTER_SHADOW_NEAR, work, list, items, WORD_OF(wide)) &&
+             filter(job, phase, FILTER_SHADOW, work, LIST_WIDE, ITEMS_COUNTED(1, wide), 0)));
 }
 
 /* How much is visible of each of the lights from `first` on that are shaded at once. */

@@ -16,7 +16,7 @@
    as a part of its memory has room for; on a processor few, which stay near to it, and are made of
    pages that must be cleared. */
 #define BAND_PIXELS     (UINT64_C(1) << 21)
-#define BAND_PIXELS_CPU (UINT64_C(1) << 17)
+#define BAND_PIXELS_CPU (UINT64_C(1) << 19)
 #define PART_OF_MEMORY  4
 /* Bands are halved when the device lacks memory, down to this. */
 #define BAND_PIXELS_MIN (UINT64_C(1) << 12)

@@ -33,8 +33,8 @@
 #define BLUR_REACH       8      /* pixels: so far from a penumbra nothing is shared */
 /* Of means of 5x5 pixels, as shares of the light: root of the mean square in and near the penumbra
    for 1 and for 4 rays a pixel, and the worst of all. */
-#define MOST_OFF_1       0.025
-#define MOST_OFF_4       0.02
+#define MOST_OFF_1       0.02
+#define MOST_OFF_4       0.012
 #define MOST_OFF_AT_ALL  0.15
 #define MOST_ASYMMETRY   0.03   /* of means of 20x20 pixels */
 #define MOST_MISJUDGED   0.02   /* of openness, of means of 5x5 pixels */
@@ -948,12 +948,12 @@ static bool rises_to_open(const double *row, int count)
     return right;
 }
 
-/* The ground to the right of the wall, but for the pixel at its very foot, whose normal is that of
-   the crease: the means of all rows, which all see the same. */
+/* The ground to the right of the wall, but for the first pixel, some of whose rays hit the wall: the
+   means of all rows, which all see the same. */
 static int ground_of_rows(const KrsPicture *picture, double *mean)
 {
     int count = 0;
-    bool foot = true;
+    bool edge = true;
     for (int x = 0; x < 160; x++) {
         double sum = 0;
         int    seen = 0;
@@ -962,9 +962,9 @@ static int ground_of_rows(const KrsPicture *picture, double *mean)
                 sum += openness_to_sky(picture, y * 160 + x);
                 seen++;
             }
-        if (seen == 48 && !foot)
+        if (seen == 48 && !edge)
             mean[count++] = sum / seen;
-        foot = foot && seen < 48;
+        edge = edge && seen < 48;
     }
     return count;
 }
