@@ -129,9 +129,9 @@ KrsStatus krs_refute(const char *path, const KrsOptions *options, const KrsRefut
     return search_refutes ? KRS_BAD_SCENE : KRS_OK;
 }
 
-KrsOptions scene_options(DiagnosticSink *sink)
+KrsOptions scene_options(DiagnosticSink *sink, const char *path)
 {
-    (void)sink;
+    (void)sink, (void)path;
     return (KrsOptions){0};
 }
 
