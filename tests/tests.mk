@@ -68,7 +68,8 @@ HARNESSES   := front_fuzz scene_fuzz
 FUZZED      := $(filter-out compiler/shader/spirv.c, $(COMPILER))
 fuzz-programs: $(HARNESSES:%=$(B)/tests/fuzz/%)
 $(HARNESSES:%=$(B)/tests/fuzz/%): $(B)/tests/fuzz/%: $(B)/tests/fuzz/%.o \
-                                    $(FUZZED:%.c=$(B)/%.o) $(B)/library_files.o
+                                    $(FUZZED:%.c=$(B)/%.o) $(B)/library_files.o \
+                                    $(B)/helper_files.o
 	@$(CC) $(CFLAGS) -fsanitize=fuzzer -o $@ $^ -lm
 fuzzers:
 	@$(MAKE) --no-print-directory fuzz-programs B=$(B)/fuzz CC=$(CLANG) \
