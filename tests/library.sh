@@ -1,11 +1,11 @@
 #!/bin/sh
 # library.sh: the program in docs/library.md compiles, against the library as it is, and prints
-# what the page says; and so does the part of one that asks a device.
+# what the page says; and so do the parts of programs that load files and that ask a device.
 cd "$(dirname "$0")/.." || exit 1
 build=${B:-build}
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 failed=0
-echo "1..4"
+echo "1..5"
 report() { # status, number and name
     [ "$1" -eq 0 ] && echo "ok $2" && return
     echo "not ok $2"
@@ -41,7 +41,7 @@ report $? "2 - and prints what the page says"
     echo 'const double origins[1][3] = {{0, 0, 9}}, directions[1][3] = {{0, 0, -1}};'
     echo 'if (krs_compile_text("show sphere(1);", 15, "a", NULL, &scene) != KRS_OK) return 2;'
     echo 'if (krs_frame_new(scene, &frame) != KRS_OK) return 2;'
-    block 3 c
+    block 4 c
     echo 'return !(hits[0].hit && hits[0].t > 7.99 && hits[0].t < 8.01); }'
 } >"$work/device.c"
 compile "$work/device.c" >"$work/said" 2>&1 && "$work/program" >"$work/said" 2>&1
@@ -59,4 +59,15 @@ report $? "3 - a device answers as the page asks it"
 } >"$work/block.c"
 compile "$work/block.c" >"$work/said" 2>&1 && "$work/program" >"$work/said" 2>&1
 report $? "4 - a frame fills the parameters of a shader"
+{
+    echo '#include "compiler/krs.h"'
+    echo 'typedef struct Archive { const char *text; } Archive;'
+    echo 'static const char *archive_find(const Archive *a, const char *path, size_t *length)'
+    echo '{ (void)path; *length = 15; return a->text; }'
+    block 3 c | sed 's/^KrsOptions options = .*/Archive in = {"let radius = 1;"}, *archive = \&in;\nint main(void) {\n&/'
+    echo 'KrsScene *scene; const char text[] = "use \"a.krs\"; show sphere(radius);";'
+    echo 'return krs_compile_text(text, sizeof text - 1, "b", &options, &scene) != KRS_OK; }'
+} >"$work/loader.c"
+compile "$work/loader.c" >"$work/said" 2>&1 && "$work/program" >"$work/said" 2>&1
+report $? "5 - files are loaded as the page says"
 exit $failed
