@@ -85,42 +85,50 @@ bool is_proven(Place here, vec3 normal, Place cone, vec3 facing)
            dot(apart, apart) * turned * turned < PROVEN_NEAR * PROVEN_NEAR;
 }
 
-// Of half a row of a tile, which has one cone: the bits of its pixels that are not proven.
-uint prove_half(uint first, uint index, uint count)
+// Of half a row of a tile, whose hits are these bits and which has one cone: those that it proves.
+uint prove_half(uint first, uint hits)
 {
-    uint  cone = cone_of(first), rest = 0u, column = 0u;
-    bool  empty = find_shared(RAYS_SHARED, cone) != 0u;
+    uint cone = cone_of(first), proven = 0u;
+    uint left = find_shared(RAYS_SHARED, cone) != 0u ? hits : 0u;
+    if (left == 0u)
+        return 0u;
     Place there = find_place_of(cone);
     vec3  facing = find_hit(FACING, cone).xyz;
-    do { // as in pixels.glsl
-        uint slot = first + column;
-        bool hits = column < count && find_end(index + min(column, max(count, 1u) - 1u)).fate == HIT;
-        bool proven = false;
-        if (hits && empty) {
-            Place here = find_place_of(slot);
-            proven = cone == slot || is_proven(here, find_hit(FACING, slot).xyz, there, facing);
-            if (proven) {
-                keep_lighting(control.value, slot, 1.0);
-                keep_shared(MEANS_SHARED, slot, find_depth(here), code_of_openness(1.0));
-            }
-            if (proven && cone != slot)
-                keep_shared(RAYS_SHARED, slot, find_depth(here), LIT);
-        }
-        rest |= uint(hits && !proven) << column;
+    for (; left != 0u; left &= left - 1u) {
+        uint  slot = first + uint(findLSB(left));
+        Place here = find_place_of(slot);
+        if (cone != slot && !is_proven(here, find_hit(FACING, slot).xyz, there, facing))
+            continue;
+        proven |= left & ~left + 1u;
+        keep_lighting(control.value, slot, 1.0);
+        keep_shared(MEANS_SHARED, slot, find_depth(here), code_of_openness(1.0));
+        if (cone != slot)
+            keep_shared(RAYS_SHARED, slot, find_depth(here), LIT);
+    }
+    return proven;
+}
+
+uint hits_of_row(uint first)
+{
+    uint  hits = 0u, column = 0u;
+    uvec2 pixel = pixel_of(first);
+    uint  index = index_of(pixel);
+    uint  end = pixel.y < work.extent.y ? min(work.extent.x - pixel.x, 8u) : 0u;
+    while (column < end) {
+        hits |= uint(find_end(index + column).fate == HIT) << column;
         column++;
-    } while (column < 4u);
-    return rest;
+    }
+    return hits;
 }
 
 // Of a row of a tile: room in the list is taken for all at once.
 void list_unproven(uint row)
 {
-    uint  first = 8u * row;
-    uvec2 pixel = pixel_of(first);
-    uint  index = index_of(pixel);
-    uint  end = pixel.y < work.extent.y ? min(work.extent.x - pixel.x, 8u) : 0u;
-    uint  rest = prove_half(first, index, min(end, 4u));
-    rest |= prove_half(first + 4u, index + 4u, max(end, 4u) - 4u) << 4u;
+    uint first = 8u * row, hits = hits_of_row(first);
+    if (hits == 0u)
+        return;
+    uint rest = hits & ~prove_half(first, hits & 15u);
+    rest &= ~(prove_half(first + 4u, hits >> 4u) << 4u);
     if (rest == 0u)
         return;
     uint at = 2u * band_pixels() + atomicAdd(counts.rest, bitCount(rest));
