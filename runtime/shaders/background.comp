@@ -5,7 +5,7 @@
  * has a disc in it; the pixels of the others are listed.  More lights with a disc take it once
  * more each.
  *
- * An item is a row of a tile of 8x8 pixels.
+ * An item is a quarter of a tile of 8x8 pixels.
  */
 #include "frame.glsl"
 #include "solid.glsl"
@@ -27,17 +27,20 @@ void begin_group()
     keeps_counts = control.phase == FIRST && control.first_ray != 0u && is_wanted(COUNTS);
 }
 
-// In the order of the pixels, whatever hits something in between.  Room is taken for a row at once:
-// what lanes count together costs each of them as much as many distances.
-void list(uint first, uint hits, uint anchors)
+// In the order of quarters, whatever hits something in between.  Room is taken for all at once: what
+// lanes count together costs each of them as much as many distances.
+void list(uint quarter, uint hits)
 {
+    uint first = slot_of_quarter(quarter), anchors = hits & anchors_of_quarter(quarter);
     uint at = 0u, anchor_at = 0u;
-    if (hits != 0u)
+    if (hits != 0u) {
         at = atomicAdd(counts.solid, bitCount(hits));
+        solid[quarter_at(LISTED_QUARTERS, atomicAdd(counts.quarters, 1u))] = quarter;
+    }
     if (anchors != 0u)
         anchor_at = band_pixels() + atomicAdd(counts.anchors, bitCount(anchors));
     do { // as in pixels.glsl
-        uint bit = hits & ~hits + 1u, slot = first + bitCount(bit - 1u);
+        uint bit = hits & ~hits + 1u, slot = slot_of_bit(first, bit);
         if (hits != 0u)
             solid[at++] = slot;
         if ((anchors & bit) != 0u)
@@ -47,19 +50,19 @@ void list(uint first, uint hits, uint anchors)
 }
 
 // What is not often asked for: how many steps there were, and lists by groups of components.
-void keep_more(uint index, uint first, uint exist, uint hits)
+void keep_more(uint quarter, uint exist, uint hits)
 {
     bool parts = control.parts != 0u;
-    uint column = parts || keeps_counts ? 0u : 7u;
-    do {
-        Ray ray = find_end(index + column);
-        if (keeps_counts && (exist >> column & 1u) != 0u)
-            results[COUNTS * band_pixels() + index + column] = uvec4(0u, ray.steps, 0u, 0u);
-        if (parts && (hits >> column & 1u) != 0u)
+    uint first = slot_of_quarter(quarter), left = parts || keeps_counts ? exist : 0u;
+    for (; left != 0u; left &= left - 1u) {
+        uint slot = slot_of_bit(first, left), index = index_of(pixel_of(slot));
+        Ray  ray = find_end(index);
+        if (keeps_counts)
+            results[COUNTS * band_pixels() + index] = uvec4(0u, ray.steps, 0u, 0u);
+        if (parts && (hits & left & ~left + 1u) != 0u)
             solid[(4u + ray.group) * band_pixels() + atomicAdd(counts.of_group[ray.group], 1u)] =
-                first + column;
-        column++;
-    } while (column < 8u);
+                slot;
+    }
 }
 
 vec3 find_radiance(uvec2 pixel)
@@ -71,28 +74,40 @@ vec3 find_radiance(uvec2 pixel)
                  sun_radiance(direction, sun.vector, sun.color, sun.softness));
 }
 
-void do_item(uint row)
+// A bit for each pixel of the band in the quarter that begins at this one.
+uint find_existing(uvec2 corner)
 {
-    uint  first = 8u * row, hits = 0u, lost = 0u, column = 0u;
-    uvec2 pixel = pixel_of(first);
-    uint  index = index_of(pixel);
-    uint  end = pixel.y < work.extent.y ? min(work.extent.x - pixel.x, 8u) : 0u;
+    uvec2 size = min(max(work.extent, corner) - corner, uvec2(4u));
+    return ((1u << size.x) - 1u) * (0x1111u & (1u << 4u * size.y) - 1u);
+}
+
+void do_item(uint quarter)
+{
+    uvec2 corner = pixel_of(slot_of_quarter(quarter));
+    uint  exist = find_existing(corner), hits = 0u, lost = 0u, bit = 0u;
     do {
-        Ray  ray = find_end(index + column);
-        hits |= uint(ray.fate == HIT) << column;
-        lost |= uint(ray.lost) << column;
-        vec3 radiance = find_radiance(pixel + uvec2(column, 0u));
-        if (column < end && ray.fate != HIT)
-            add_light(index + column, radiance);
-        column++;
-    } while (column < 8u);
-    uint exist = control.phase == FIRST ? (1u << end) - 1u : 0u;
+        uvec2 pixel = corner + uvec2(bit & 3u, bit >> 2u);
+        uint  index = index_of(pixel);
+        bool  exists = (exist >> bit & 1u) != 0u;
+        Ray   ray = find_end(exists ? index : 0u);
+        vec3  radiance = find_radiance(pixel);
+        hits |= uint(ray.fate == HIT) << bit;
+        lost |= uint(ray.lost) << bit;
+        if (exists && ray.fate != HIT)
+            add_light(index, radiance);
+        bit++;
+    } while (bit < 16u);
+    exist = control.phase == FIRST ? exist : 0u;
     lost &= exist;
     hits &= exist;
     if (lost != 0u)
         atomicAdd(counts.unresolved, bitCount(lost));
-    list(first, hits, is_anchor(first) ? hits & 0xa5u : 0u);
-    keep_more(index, first, exist, hits);
+    if (control.phase == FIRST) {
+        solid[quarter_at(HITS_OF_QUARTERS, quarter)] = hits;
+        solid[quarter_at(LIGHT_OF_QUARTERS, quarter)] = 0u; // for good where nothing is hit
+    }
+    list(quarter, hits);
+    keep_more(quarter, exist, hits);
 }
 
 #include "pixels.glsl"

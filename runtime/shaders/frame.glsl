@@ -65,7 +65,7 @@ struct Control {
     uint window;     // of the tiles of beams, counted in the band, the first: column | row << 16,
     uint across;     // and how many in a row
     uint rays;       // of each pixel
-    uint filters;    // 1: neighbours share what their rays find (filter.comp)
+    uint filters;    // 1: neighbours share what their rays find (shared.glsl)
 };
 
 // A ray that is done.
@@ -128,11 +128,12 @@ layout(std430, set = 1, binding = 4) buffer ControlBlock {
     uint    left;             // and items that nobody has begun
     uint    tiles;            // counts listed tiles,
     uint    solid, anchors;   // pixels that see something (solid.glsl),
-    uint    rest;             // and those that need rays of their own (filter.comp)
+    uint    rest;             // and those that need rays of their own
     uint    unresolved;       // counts rays that ran out of steps
     uint    evaluations;      // counts distances spent on beams and rays; the most on one of these
     uint    most_evaluations;
-    uint    wide;             // pixels that need a wide mean of a shadow (filter.comp)
+    uint    wide;             // pixels that need a wide mean of a shadow (shadow.comp),
+    uint    quarters;         // and quarters of tiles that see something
     uint    of_group[9];      // pixels that see something, by the group of their ray
 } counts;
 

@@ -19,7 +19,7 @@ layout(push_constant) uniform Plan {
 
 // The control block (blocks.h) as words, and where in it these begin.
 layout(std430, set = 1, binding = 4) buffer ControlWords { uint words[]; };
-const uint ITEMS = 10u, GROUPS = 41u, STOPPED = 44u, RAN = 45u;
+const uint ITEMS = 10u, GROUPS = 42u, STOPPED = 45u, RAN = 46u;
 
 void main()
 {

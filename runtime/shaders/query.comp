@@ -13,6 +13,7 @@
 #include "scene.glsl"
 #include "frame.glsl"
 
+const uint HUNGRY = 2u;
 const bool SAVES = false;
 
 // What may be left open between two balls, of the permitted error.

@@ -14,12 +14,13 @@
  *     void end_item()                      stores what it has found
  *     void save_item()                     stores how far it is
  *     void end_group(uint turns)           last of all, after so many steps
+ *     const uint HUNGRY                    lanes that are done, until they take up new items together
  *     const bool SAVES                     whether items are saved when the dispatch has had its
  *                                          steps; else those that are begun are finished
  *
  * On lavapipe, where a branch skips nothing and eight lanes go through a loop together, a lane that
  * is done takes the group's next item while the others march on (REFILL): the loop over steps ends
- * when a lane can do so.  What is in these loops stands on every lane's way, so saving and resuming
+ * when so many lanes can do so.  What is in these loops stands on every lane's way, so saving and resuming
  * are outside.  On a graphics card a lane has one item.
  */
 // Whether a lane may go on with its item after so many steps.
@@ -77,7 +78,8 @@ void work_on_items(uint group, uint turns_allowed, inout uint turns)
             hungry = !going && next < limit && turns < turns_allowed;
         } while (any_lane(hungry));
         uint wants;
-        do { // until one is done while there is something left, or all are
+        bool waiting;
+        do { // until some are done while there is something left, or all are
             float distance = item_distance(item_place());
             if (going) {
                 take_distance(distance);
@@ -85,8 +87,9 @@ void work_on_items(uint group, uint turns_allowed, inout uint turns)
                 going = may_go_on(turns, turns_allowed);
             }
             hungry = !going && next < limit && turns < turns_allowed;
-            wants = join_lanes(uint(going) | uint(hungry) << 1u);
-        } while (wants == 1u);
+            wants = join_lanes((uint(going) | uint(hungry) << LANES) << lane);
+            waiting = bitCount(wants >> LANES) < HUNGRY;
+        } while (waiting && (wants & (1u << LANES) - 1u) != 0u);
         going = wants != 0u;
     } while (going);
     if (holding && item_wants_more())

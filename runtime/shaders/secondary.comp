@@ -6,8 +6,8 @@
  *
  * Such a ray is blocked where it is inside of something, not where the distance is small: a
  * distance may be a bound far below the true one, and light must not depend on how it was derived.
- * What is seen of a light, and how open a hit is, are shares of rays; filter.comp takes the means
- * of neighbours.  A cone from a hit to the whole of a light saves rays where it proves to be empty:
+ * What is seen of a light, and how open a hit is, are shares of rays: means of neighbours
+ * (shadow.comp, occlusion.comp).  A cone from a hit to the whole of a light saves rays where it proves to be empty:
  * then all points of the light are seen, from the pixels around as well.
  *
  * ALONG: there is krs_along, by which rays go from root to root.
@@ -158,21 +158,10 @@ void begin_group(uint first)
     is_cone = control.phase == CONES;
 }
 
-// Cones stand at the middles of the quarters of all tiles, if something is hit there.
-bool has_cone(uint slot)
-{
-    uvec2 pixel = pixel_of(slot);
-    bool  exists = pixel.x < work.extent.x && pixel.y < work.extent.y;
-    return exists && find_end(exists ? index_of(pixel) : 0u).fate == HIT;
-}
-
 void begin_item(uint number, bool saved)
 {
-    bool exists = !is_cone || has_cone(slot_of_cone(number));
-    if (!is_cone)
-        place = find_place(number);
-    else if (exists)
-        place = find_place_of(slot_of_cone(number));
+    uint listed = find_listed(control.reading + number), cone = cone_of_quarter(listed);
+    place = find_place_of(is_cone ? cone : listed);
     spread = margin = 0.0;
     below = false;
     vec3 normal = find_hit(FACING, place.slot).xyz;
@@ -180,8 +169,6 @@ void begin_item(uint number, bool saved)
         aim_over_hemisphere(normal);
     else
         aim_at_light(normal);
-    blocked = blocked || !exists;
-    limit = exists ? limit : 0u;
     t = 0.0;
     slope = facing;
     taps = 0u;
@@ -304,6 +291,7 @@ void end_group(uint turns)
         atomicAdd(counts.unresolved, lost);
 }
 
+const uint HUNGRY = 3u;
 const bool SAVES = false;
 void save_item() {}
 

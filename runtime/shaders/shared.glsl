@@ -22,37 +22,34 @@ const float WIDTHS_A_DOUBLING = 8.0, NARROWEST_LOG = -4.0;
 const uint CLOSED = 1u;
 const float OPEN_CODES = 254.0;
 
-// Words of slots, behind the lists of solid.glsl: of rays, and of means of these by filter.comp,
-// whose codes are all from closed to open.
-const uint RAYS_SHARED = 0u, MEANS_SHARED = 1u, FIRST_SHARED = 13u;
+// Words of slots (solid.glsl): of rays, and of means of these, whose codes are all from closed to
+// open.
+const uint RAYS_SHARED = 0u, MEANS_SHARED = 1u;
 
-// Tiles may reach beyond the band, so there are more slots than pixels.
-uint shared_at(uint list, uint slot)
-{
-    uvec2 tiles = (work.extent + 7u) / 8u;
-    return FIRST_SHARED * band_pixels() + 64u * tiles.x * tiles.y * list + slot;
-}
-
-// A pixel's ray, not a unit vector where that would cost a root: in perspective it is 1 along the
-// view.
+// A pixel's ray, not a unit vector where that would cost a root: it is 1 along the view.
 void find_axis(vec2 place, out vec3 origin, out vec3 axis)
 {
-    if (control.projection == PERSPECTIVE) {
-        vec2 plane = vec2(2.0 * place.x / frame.size.x - 1.0, 1.0 - 2.0 * place.y / frame.size.y);
-        origin = frame.eye.xyz;
-        axis = frame.forward.xyz + plane.x * frame.right.xyz + plane.y * frame.up.xyz;
-    } else {
-        float base, slope;
+    vec2  plane = vec2(2.0 * place.x / frame.size.x - 1.0, 1.0 - 2.0 * place.y / frame.size.y);
+    vec3  aside = plane.x * frame.right.xyz + plane.y * frame.up.xyz;
+    float spreads = control.projection == PERSPECTIVE ? 1.0 : 0.0;
+    origin = frame.eye.xyz + (1.0 - spreads) * aside;
+    axis = frame.forward.xyz + spreads * aside;
+#ifdef PANORAMIC
+    float base, slope;
+    if (control.projection == PANORAMA)
         find_ray(place, origin, axis, base, slope);
-    }
+#endif
 }
 
 // How far along its axis a place is.
 float find_depth(Place place)
 {
-    return control.projection == PERSPECTIVE
-               ? dot(place.position - frame.eye.xyz, frame.forward.xyz)
-               : find_end(index_of(pixel_of(place.slot))).t;
+    float along = dot(place.position - frame.eye.xyz, frame.forward.xyz);
+#ifdef PANORAMIC
+    if (control.projection == PANORAMA)
+        along = find_end(index_of(pixel_of(place.slot))).t;
+#endif
+    return along;
 }
 
 void keep_shared(uint list, uint slot, float depth, uint code)
@@ -64,14 +61,6 @@ uint find_shared(uint list, uint slot)
 {
     return find_listed(shared_at(list, slot));
 }
-
-// Of four to a tile: the middle of each quarter, about.
-uint slot_of_cone(uint number)
-{
-    return 64u * (number / 4u) + 18u + 3u * (number & 1u) + 24u * (number >> 1u & 1u);
-}
-
-uint cone_of(uint slot) { return (slot & ~63u) + 18u + 3u * (slot >> 2u & 1u) + 24u * (slot >> 5u & 1u); }
 
 uint code_of_width(float pixels)
 {
@@ -87,3 +76,21 @@ float width_of_code(uint code)
 uint code_of_openness(float open) { return CLOSED + uint(OPEN_CODES * open + 0.5); }
 
 float openness_of_code(uint code) { return float(code - CLOSED) / OPEN_CODES; }
+
+// What is known of the light around: how many pixels see it, how many do not, and the sum of the
+// widths of penumbrae of the latter, in pixels.
+struct Penumbrae {
+    float lit, hidden, width;
+};
+
+// Of a quarter of a tile, in which neither is more than 16.
+uint pack_penumbrae(Penumbrae of)
+{
+    return packHalf2x16(vec2(of.width, 0.0)) | uint(of.lit) << 16u | uint(of.hidden) << 24u;
+}
+
+Penumbrae unpack_penumbrae(uint word)
+{
+    return Penumbrae(float(word >> 16u & 255u), float(word >> 24u),
+                     unpackHalf2x16(word & 0xffffu).x);
+}

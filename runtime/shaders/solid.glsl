@@ -9,7 +9,10 @@
  * which means of occlusion are taken.  Lists lie where the queue of rays was, each with room for
  * all pixels: all, the anchors, the rest that need rays of their own, and those whose shadow needs
  * a wide mean.  Where groups of components were marched one after the other, lists of what each of
- * them shows follow; last is what rays share (shared.glsl).
+ * them shows follow, and behind these is what rays share (shared.glsl).
+ *
+ * Last are words of the quarters of tiles, of 4x4 pixels: the list of those in which something is
+ * hit; of each, a bit for every pixel that is; and of each, what is known of a light there.
  */
 #ifdef NO_TEXELS
 layout(std430, set = 1, binding = 6) buffer Solid { uint solid[]; };
@@ -22,6 +25,28 @@ uint find_listed(uint number) { return texelFetch(solid_texels, int(number)).x; 
 
 uint band_pixels() { return work.extent.x * work.extent.y; }
 
+uint band_tiles()
+{
+    uvec2 tiles = (work.extent + 7u) / 8u;
+    return tiles.x * tiles.y;
+}
+
+// Behind the lists: words of slots by shared.glsl, two lists of them, and words of tiles.  Tiles may
+// reach beyond the band, so there are more slots than pixels.
+const uint FIRST_SHARED = 13u, SHARED_LISTS = 2u;
+
+uint shared_at(uint list, uint slot)
+{
+    return FIRST_SHARED * band_pixels() + 64u * band_tiles() * list + slot;
+}
+
+const uint LISTED_QUARTERS = 0u, HITS_OF_QUARTERS = 1u, LIGHT_OF_QUARTERS = 2u;
+
+uint quarter_at(uint list, uint number)
+{
+    return shared_at(SHARED_LISTS, 0u) + 4u * band_tiles() * list + number;
+}
+
 // In the band.
 uvec2 pixel_of(uint slot)
 {
@@ -32,7 +57,36 @@ uvec2 pixel_of(uint slot)
 // Of a pixel among those of the band, row by row.
 uint index_of(uvec2 pixel) { return pixel.y * work.extent.x + pixel.x; }
 
-bool is_anchor(uint slot) { return (0xA5u >> (slot & 7u) & 0xA5u >> (slot >> 3u & 7u) & 1u) != 0u; }
+uint slot_of_pixel(uvec2 pixel)
+{
+    uint across = (work.extent.x + 7u) / 8u;
+    return 64u * (pixel.y / 8u * across + pixel.x / 8u) + (pixel.y & 7u) * 8u + (pixel.x & 7u);
+}
+
+// The first slot of a quarter of a tile; the others are in four rows of four.
+uint slot_of_quarter(uint number)
+{
+    return 64u * (number / 4u) + 4u * (number & 1u) + 32u * (number >> 1u & 1u);
+}
+
+// That of a bit, where a quarter begins at this one.
+uint slot_of_bit(uint first, uint bit)
+{
+    uint number = uint(findLSB(bit));
+    return first + 8u * (number >> 2u) + (number & 3u);
+}
+
+// That of its cone: the one nearest to the middle of the tile but one, both ways.
+uint cone_of_quarter(uint number)
+{
+    return 64u * (number / 4u) + 18u + 3u * (number & 1u) + 24u * (number >> 1u & 1u);
+}
+
+// Bits of the anchors of a quarter: every second column and row, from its outer ones on.
+uint anchors_of_quarter(uint number)
+{
+    return ((number & 1u) == 0u ? 0x0505u : 0x0a0au) << ((number & 2u) == 0u ? 0u : 4u);
+}
 
 // The ray of a pixel of the list, and where it hits.  That is found anew wherever it is asked for:
 // it costs no more than to fetch it.

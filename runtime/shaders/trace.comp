@@ -65,6 +65,7 @@ const bool SAVES = false; // there is a march of each part
 #else
 const bool SAVES = true;
 #endif
+const uint HUNGRY = 2u;
 
 // A ray under way; in the queue two rows of four numbers.
 struct March {

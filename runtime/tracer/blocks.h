@@ -23,16 +23,16 @@ typedef struct FrameBlock {
 static_assert(sizeof(FrameBlock) == 176, "std140");
 
 /* Phases of the kernels. */
-enum { CONES_OF_TILE = 4 }; /* shared.glsl */
+enum { QUARTERS_OF_TILE = 4 }; /* each with a cone (solid.glsl) */
 enum { TRACE_RAYS, TRACE_BEAMS_32, TRACE_BEAMS_8, TRACE_BEAMS_4 };
 enum { RAYS_CONES, RAYS_TO_LIGHT, RAYS_OVER_HEMISPHERE };
-enum {
-    FILTER_LIST_UNPROVEN, FILTER_SHADOW_NEAR, FILTER_SHADOW, FILTER_OCCLUSION_NEAR,
-    FILTER_OCCLUSION, FILTER_OCCLUSION_OF_REST
-};
+enum { SHADOW_NEAR, SHADOW_WIDE };
+enum { OCCLUSION_AT_ANCHORS, OCCLUSION_BY_ANCHORS, OCCLUSION_OF_REST };
 enum { BACKGROUND_FIRST, BACKGROUND_SUN };
-/* Of solid.glsl, and of shared.glsl: two. */
-enum { LIST_ALL, LIST_ANCHORS, LIST_REST, LIST_WIDE, LIST_OF_GROUP, LIST_SHARED = 13, SHARED_LISTS = 2 };
+/* Of solid.glsl; from LIST_SHARED on, with room for whole tiles, words of shared.glsl, and then the
+   list of quarters of tiles. */
+enum { LIST_ALL, LIST_ANCHORS, LIST_REST, LIST_WIDE, LIST_OF_GROUP, LIST_SHARED = 13 };
+enum { SHARED_LISTS = 2 };
 
 enum { LIGHTS_AT_ONCE = 3 }; /* of a dispatch of shade.comp */
 enum { VALUE_OCCLUSION, VALUE_VISIBLE }; /* that and the next ones of those lights */
@@ -80,7 +80,7 @@ typedef struct ControlBlock {
     uint32_t filters; /* 1: neighbours share */
     /* counted by the kernels: */
     uint32_t queued, left, tiles, solid, anchors, rest, unresolved, evaluations, most_evaluations;
-    uint32_t wide;
+    uint32_t wide, quarters;
     uint32_t of_group[9]; /* KRS_MOST_GROUPS and 1 */
     /* by plan.comp: the groups of the next dispatch, the one of the chain where it stopped, and how
        many groups each had: */

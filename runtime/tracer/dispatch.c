@@ -14,8 +14,8 @@
 #include "runtime/tracer/phases.h"
 
 /* As plan.comp has them. */
-static_assert(WORD_OF(items) == 10 && WORD_OF(groups) == 41 && WORD_OF(stopped) == 44 &&
-              WORD_OF(ran) == 45, "plan.comp");
+static_assert(WORD_OF(items) == 10 && WORD_OF(groups) == 42 && WORD_OF(stopped) == 45 &&
+              WORD_OF(ran) == 46, "plan.comp");
 typedef struct PlanBlock {
     uint32_t counter, each, taken, in_group, most, number;
 } PlanBlock;
@@ -49,9 +49,11 @@ static bool report(Job *job, double within_phase)
 
 static bool has_scene(const Job *job, const Kernel *kernel)
 {
-    const KrsRenderer *renderer = job->rendering->renderer;
-    bool               panoramic = job->rendering->panoramic;
-    return kernel != &renderer->background[panoramic] && kernel != &renderer->filter[panoramic];
+    const Kernel *pixels = job->rendering->renderer->pixels[job->rendering->panoramic];
+    bool          is_pixels = false;
+    for (int i = 0; i < PIXEL_KERNELS; i++)
+        is_pixels = is_pixels || kernel == &pixels[i];
+    return !is_pixels;
 }
 
 /* What was learned about slices of a kernel in a phase: kernels without the scene cost next to

@@ -276,23 +276,28 @@ static Dealing deal_secondary(const Job *job, uint32_t count)
     return deal;
 }
 
-/* Points the kernels that follow at a list of pixels. */
-static void read_list(Job *job, const WorkBlock *work, uint32_t list)
+/* Where a list of pixels begins, */
+static uint32_t list_at(const WorkBlock *work, uint32_t list)
 {
-    ControlBlock *control = job->rendering->control.bytes;
-    control->reading = list * work->extent[0] * work->extent[1];
+    return list * work->extent[0] * work->extent[1];
 }
 
-/* Rays from the hits of a list, each of which takes the steps that it needs; `first`: none has been
-   shared before. */
-static bool send_rays(Job *job, KrsPhase phase, uint32_t rays, const WorkBlock *work, uint32_t list,
-                      Items items, bool first)
+/* and that of quarters of tiles. */
+static uint32_t quarters_at(const WorkBlock *work)
+{
+    return list_at(work, LIST_SHARED) + SHARED_LISTS * TILE * TILE * (uint32_t)tiles_of_band(work);
+}
+
+/* Rays from the hits of the list that begins there, each of which takes the steps that it needs;
+   `first`: none has been shared before. */
+static bool send_rays(Job *job, KrsPhase phase, uint32_t rays, const WorkBlock *work,
+                      uint32_t reading, Items items, bool first)
 {
     ControlBlock *control = job->rendering->control.bytes;
     Dealing       deal = deal_secondary(job, items_now(job, items));
     control->phase = rays;
     control->source = ITEMS_FRESH;
-    read_list(job, work, list);
+    control->reading = reading;
     do { /* in a chain no item is left over */
         control->left = 0;
         Dispatch dispatch = dispatch_of(job, phase, job->secondary, work, items, deal);
@@ -304,17 +309,18 @@ static bool send_rays(Job *job, KrsPhase phase, uint32_t rays, const WorkBlock *
     return true;
 }
 
-/* What neighbours share, for the pixels of a list; `counter`: of those that it lists, 0 for none. */
-static bool filter(Job *job, KrsPhase phase, uint32_t what, const WorkBlock *work, uint32_t list,
-                   Items items, uint32_t counter)
+/* What neighbours share, for the items of the list that begins there, by one of the kernels and a
+   phase of it; `counter`: of those that it lists, 0 for none. */
+static bool share(Job *job, KrsPhase phase, PixelKernel kernel, uint32_t what,
+                  const WorkBlock *work, uint32_t reading, Items items, uint32_t counter)
 {
     KrsRendering *r = job->rendering;
     ControlBlock *control = r->control.bytes;
     control->phase = what;
     control->source = ITEMS_FRESH;
-    read_list(job, work, list);
-    Dispatch dispatch = dispatch_of(job, phase, &r->renderer->filter[r->panoramic], work, items,
-                                    deal_pixels(job));
+    control->reading = reading;
+    Dispatch dispatch = dispatch_of(job, phase, &r->renderer->pixels[r->panoramic][kernel], work,
+                                    items, deal_pixels(job));
     dispatch.clears = counter;
     return dispatch_run(job, &dispatch);
 }
@@ -334,14 +340,14 @@ static bool resolve(Job *job, const WorkBlock *work)
     KrsRendering *r = job->rendering;
     ControlBlock *control = r->control.bytes;
     uint32_t      sun = find_sun(job, 0);
-    control->solid = control->anchors = control->value = 0;
+    control->solid = control->anchors = control->quarters = control->value = 0;
     control->parts = job->part_count > 0 && job->parts[0].normals;
     control->phase = BACKGROUND_FIRST;
     memset(control->of_group, 0, sizeof control->of_group);
     do {
         control->light = sun;
-        if (!dispatch_pixels(job, KRS_PHASE_RESOLVE, &r->renderer->background[r->panoramic], work,
-                             ITEMS_KNOWN(tiles_of_band(work) * TILE)))
+        if (!dispatch_pixels(job, KRS_PHASE_RESOLVE, &r->renderer->pixels[r->panoramic][PIXELS_BACKGROUND],
+                             work, ITEMS_KNOWN(tiles_of_band(work) * QUARTERS_OF_TILE)))
             return false;
         control->phase = BACKGROUND_SUN;
         sun = find_sun(job, sun + 1);
@@ -355,7 +361,7 @@ static bool find_normals(Job *job, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
     Dispatch      parts[1 + KRS_MOST_GROUPS];
-    read_list(job, work, LIST_ALL);
+    control->reading = list_at(work, LIST_ALL);
     if (!control->parts)
         return dispatch_pixels(job, KRS_PHASE_NORMALS, job->around, work,
                                ITEMS_COUNTED(1, solid));
@@ -364,7 +370,7 @@ static bool find_normals(Job *job, const WorkBlock *work)
         bool     part  = i < job->part_count; /* else what belongs to none: planes */
         uint32_t group = part ? job->parts[i].group + 1 : 0;
         Items    items = {1, WORD_OF(of_group) + group, false};
-        read_list(job, work, LIST_OF_GROUP + group);
+        control->reading = list_at(work, LIST_OF_GROUP + group);
         parts[i] = dispatch_of(job, KRS_PHASE_NORMALS, part ? job->parts[i].normals : job->around,
                                work, items, deal_pixels(job));
     }
@@ -384,39 +390,48 @@ static bool find_occlusion(Job *job, const WorkBlock *work)
     control->filters = 1;
     if (control->open)
         return true;
-    return send_rays(job, phase, RAYS_OVER_HEMISPHERE, work, LIST_ALL, all, true) &&
-           filter(job, phase, FILTER_OCCLUSION_NEAR, work, LIST_ANCHORS, anchors, 0) &&
-           filter(job, phase, FILTER_OCCLUSION, work, LIST_ALL, all, WORD_OF(rest)) &&
-           filter(job, phase, FILTER_OCCLUSION_OF_REST, work, LIST_REST, rest, 0);
+    const PixelKernel kernel = PIXELS_OCCLUSION;
+    return send_rays(job, phase, RAYS_OVER_HEMISPHERE, work, list_at(work, LIST_ALL), all, true) &&
+           share(job, phase, kernel, OCCLUSION_AT_ANCHORS, work, list_at(work, LIST_ANCHORS),
+                 anchors, 0) &&
+           share(job, phase, kernel, OCCLUSION_BY_ANCHORS, work, list_at(work, LIST_ALL), all,
+                 WORD_OF(rest)) &&
+           share(job, phase, kernel, OCCLUSION_OF_REST, work, list_at(work, LIST_REST), rest, 0);
 }
 
-/* Cones first, four to a tile: where they are empty all of the light is seen. */
+/* Cones first: where they are empty all of the light is seen.  Rays that go from root to root know
+   of no room around them, so there are no cones, and nothing is proven. */
 static bool list_unproven(Job *job, const WorkBlock *work)
 {
     const KrsPhase phase = KRS_PHASE_SHADOWS;
-    const uint32_t tiles = tiles_of_band(work);
-    return send_rays(job, phase, RAYS_CONES, work, LIST_ALL, ITEMS_KNOWN(tiles * CONES_OF_TILE),
-                     true) &&
-           filter(job, phase, FILTER_LIST_UNPROVEN, work, LIST_ALL, ITEMS_KNOWN(tiles * TILE),
-                  WORD_OF(rest));
+    const Items    quarters = ITEMS_COUNTED(1, quarters);
+    const Items    cones = job->by_roots ? ITEMS_KNOWN(0) : quarters;
+    return send_rays(job, phase, RAYS_CONES, work, quarters_at(work), cones, true) &&
+           share(job, phase, PIXELS_UNPROVEN, 0, work, quarters_at(work), quarters, WORD_OF(rest));
 }
 
-/* A ray of each pixel to a point of the light; the mean of neighbours, where it has a size.  Rays
-   that go from root to root know of no room around them, so there are no cones. */
-static bool find_visible(Job *job, const KrsLight *light, const WorkBlock *work)
+/* The means of what rays to a light have found. */
+static bool find_means(Job *job, const WorkBlock *work)
 {
     const KrsPhase phase = KRS_PHASE_SHADOWS;
+    const uint32_t unproven = list_at(work, LIST_REST), wide = list_at(work, LIST_WIDE);
+    return share(job, phase, PIXELS_PENUMBRAE, 0, work, quarters_at(work),
+                 ITEMS_COUNTED(1, quarters), 0) &&
+           share(job, phase, PIXELS_SHADOW, SHADOW_NEAR, work, unproven, ITEMS_COUNTED(1, rest),
+                 WORD_OF(wide)) &&
+           share(job, phase, PIXELS_SHADOW, SHADOW_WIDE, work, wide, ITEMS_COUNTED(1, wide), 0);
+}
+
+/* A ray of each pixel to a point of the light; the mean of neighbours, where it has a size. */
+static bool find_visible(Job *job, const KrsLight *light, const WorkBlock *work)
+{
+    const uint32_t list = list_at(work, job->shares ? LIST_REST : LIST_ALL);
+    const Items    items = job->shares ? ITEMS_COUNTED(1, rest) : ITEMS_COUNTED(1, solid);
     ControlBlock  *control = job->rendering->control.bytes;
-    const bool     cones   = job->shares && !job->by_roots;
-    const uint32_t list    = cones ? LIST_REST : LIST_ALL;
-    const Items    items   = cones ? ITEMS_COUNTED(1, rest) : ITEMS_COUNTED(1, solid);
     control->filters = job->shares && light->softness > 0;
-    if (cones && !list_unproven(job, work))
-        return false;
-    return send_rays(job, phase, RAYS_TO_LIGHT, work, list, items, !cones) &&
-           (!control->filters ||
-            (filter(job, phase, FILTER_SHADOW_NEAR, work, list, items, WORD_OF(wide)) &&
-             filter(job, phase, FILTER_SHADOW, work, LIST_WIDE, ITEMS_COUNTED(1, wide), 0)));
+    return (!job->shares || list_unproven(job, work)) &&
+           send_rays(job, KRS_PHASE_SHADOWS, RAYS_TO_LIGHT, work, list, items, !job->shares) &&
+           (!control->filters || find_means(job, work));
 }
 
 /* How much is visible of each of the lights from `first` on that are shaded at once. */

@@ -27,6 +27,22 @@ KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
 
 /* ---- The renderer ---- */
 
+static void request_pixels(KrsRenderer *renderer, bool panoramic, KernelRequest *requests)
+{
+    static const char *const files[PIXEL_KERNELS] = {
+        [PIXELS_BACKGROUND] = "background.comp",
+        [PIXELS_UNPROVEN] = "unproven.comp",
+        [PIXELS_PENUMBRAE] = "penumbrae.comp",
+        [PIXELS_SHADOW] = "shadow.comp",
+        [PIXELS_OCCLUSION] = "occlusion.comp",
+    };
+    static const char *const defines[2][2] = {{NO_TEXELS, NULL}, {PANORAMIC NO_TEXELS, PANORAMIC}};
+    for (int i = 0; i < PIXEL_KERNELS; i++)
+        requests[i] = (KernelRequest){&renderer->pixels[panoramic][i],
+                                      {.file = files[i],
+                                       .defines = defines[panoramic][renderer->gpu.texels]}};
+}
+
 KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
 {
     Gpu allocating = {.allocator = options ? options->allocator : (KrsAllocator){0}};
@@ -41,13 +57,10 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
                                                                  : early_outs == KRS_EARLY_OUTS_ON;
     spirv_start();
     renderer->compiler_started = true;
-    const char         *defines = renderer->gpu.texels ? NULL : NO_TEXELS;
-    const KernelRequest kernels[] = {
-        {&renderer->background[0], {.file = "background.comp", .defines = defines}},
-        {&renderer->filter[0], {.file = "filter.comp", .defines = defines}},
-        {&renderer->plan, {.file = "plan.comp"}},
-    };
-    const size_t count = sizeof kernels / sizeof kernels[0] - (gpu_is_cpu(&renderer->gpu) ? 1 : 0);
+    KernelRequest kernels[PIXEL_KERNELS + 1] = {[PIXEL_KERNELS] = {&renderer->plan,
+                                                                   {.file = "plan.comp"}}};
+    request_pixels(renderer, false, kernels);
+    const size_t count = PIXEL_KERNELS + (gpu_is_cpu(&renderer->gpu) ? 0 : 1);
     if (!stage_create(renderer) ||
         !stage_make_kernels(renderer, VK_NULL_HANDLE, kernels, count,
                             &renderer->spirv_ms, &renderer->pipeline_ms))
@@ -62,9 +75,9 @@ void krs_renderer_free(KrsRenderer *renderer)
     Gpu *gpu = &renderer->gpu;
     if (gpu->device) {
         gpu_wait(gpu);
-        for (int panoramic = 0; panoramic < 2; panoramic++) {
-            kernel_destroy(gpu, &renderer->background[panoramic]);
-            kernel_destroy(gpu, &renderer->filter[panoramic]);
+        for (int i = 0; i < PIXEL_KERNELS; i++) {
+            kernel_destroy(gpu, &renderer->pixels[0][i]);
+            kernel_destroy(gpu, &renderer->pixels[1][i]);
         }
         kernel_destroy(gpu, &renderer->plan);
         stage_destroy(renderer);
@@ -446,16 +459,12 @@ Kernel *rendering_sample(KrsRendering *rendering)
 /* The renderer's kernels for panoramas. */
 static bool panoramic_create(KrsRendering *rendering)
 {
-    KrsRenderer        *renderer = rendering->renderer;
-    const char         *defines = renderer->gpu.texels ? PANORAMIC : PANORAMIC NO_TEXELS;
-    const KernelRequest kernels[] = {
-        {&renderer->background[1], {.file = "background.comp", .defines = defines}},
-        {&renderer->filter[1], {.file = "filter.comp", .defines = defines}},
-    };
-    return !rendering->panoramic || renderer->background[1].pipeline ||
-           stage_make_kernels(renderer, VK_NULL_HANDLE, kernels,
-                              sizeof kernels / sizeof kernels[0], &rendering->spirv_ms,
-                              &rendering->pipeline_ms);
+    KrsRenderer  *renderer = rendering->renderer;
+    KernelRequest kernels[PIXEL_KERNELS];
+    request_pixels(renderer, true, kernels);
+    return !rendering->panoramic || renderer->pixels[1][0].pipeline ||
+           stage_make_kernels(renderer, VK_NULL_HANDLE, kernels, PIXEL_KERNELS,
+                              &rendering->spirv_ms, &rendering->pipeline_ms);
 }
 
 /* Kernels of the scene that are made at the same time. */

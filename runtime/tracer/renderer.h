@@ -9,6 +9,13 @@
 #include "runtime/device/kernel.h"
 #include "runtime/tracer/blocks.h"
 
+/* The kernels without a scene that do one thing for every pixel of a list, row or quarter of a tile:
+   on lavapipe a kernel takes as long as all of its branches. */
+typedef enum PixelKernel {
+    PIXELS_BACKGROUND, PIXELS_UNPROVEN, PIXELS_PENUMBRAE, PIXELS_SHADOW, PIXELS_OCCLUSION,
+    PIXEL_KERNELS
+} PixelKernel;
+
 /* How many numbers a texel has. */
 typedef enum TexelKind { NO_TEXELS, ONE_NUMBER, TWO_NUMBERS, FOUR_NUMBERS, TEXEL_KINDS } TexelKind;
 
@@ -19,7 +26,7 @@ struct KrsRenderer {
     VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters */
     VkDescriptorSetLayout frame_layout; /* set 1: what frame.glsl declares */
     VkPipelineLayout      layout;       /* of every kernel */
-    Kernel                background[2], filter[2]; /* [1]: for scenes with panoramas, when needed */
+    Kernel                pixels[2][PIXEL_KERNELS]; /* [1]: for scenes with panoramas, when needed */
     Kernel                plan;     /* on graphics cards (dispatch.c) */
     double                spirv_ms, pipeline_ms; /* of the former */
     VkDescriptorPool      idle_pool;             /* for rehearsals: */

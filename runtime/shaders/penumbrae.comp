@@ -1,0 +1,34 @@
+#version 440
+#extension GL_GOOGLE_include_directive : enable
+/*
+ * penumbrae.comp: how many pixels of each quarter of a tile see the light, how many do not, and how
+ * wide the penumbrae of what blocks it are, so that shadow.comp knows how far to look around.
+ *
+ * An item is a quarter of the list, of which unproven.comp has left two bits a pixel.
+ */
+#include "frame.glsl"
+#include "solid.glsl"
+#include "shared.glsl"
+
+// No mean reaches farther.
+const float WIDEST_PENUMBRA = 1024.0;
+
+void begin_group() {}
+
+void do_item(uint number)
+{
+    uint  quarter = find_listed(control.reading + number), first = slot_of_quarter(quarter);
+    uint  at = quarter_at(LIGHT_OF_QUARTERS, quarter), bits = find_listed(at);
+    uint  lit = bitCount(bits >> 16u), hidden = 0u;
+    float width = 0.0;
+    for (uint left = bits & 0xffffu; left != 0u; left &= left - 1u) {
+        uint code = find_shared(RAYS_SHARED, slot_of_bit(first, left)) & 255u;
+        bool hides = code >= NARROWEST && code <= WIDEST;
+        lit += uint(code == LIT);
+        hidden += uint(hides);
+        width += hides ? min(width_of_code(code), WIDEST_PENUMBRA) : 0.0;
+    }
+    solid[at] = pack_penumbrae(Penumbrae(float(lit), float(hidden), width));
+}
+
+#include "pixels.glsl"
