@@ -24,9 +24,11 @@
 const uint CONES = 0u, TO_LIGHT = 1u, OVER_HEMISPHERE = 2u; // control.phase
 
 const uint MOST_STEPS = 1024u;
-// Rays to lights start so many pixels above the surface, and rays for occlusion by so much of
-// their reach where that is more: finer detail does not count for these.
-const float LIFT = 0.5, LIFT_OF_REACH = 1.0 / 128.0;
+// Rays to lights start so many pixels above the surface, where it is even and where it is not, and
+// rays for occlusion by so much of their reach where that is more: finer detail does not count for
+// these.
+const float LIFT_OF_EVEN = 0.125, LIFT = 0.5, LIFT_OF_REACH = 1.0 / 128.0;
+const float UNEVEN = 0.9, EVEN = 0.99;
 // For so many pixels from the start a distance may be as small a part of the true one as there.
 const float NEAR_START = 8.0;
 // A ray steps by at least so much of the permitted error, or of a pixel, and by so much more with
@@ -51,7 +53,8 @@ vec3  start, direction; // the next distance is asked for at start + t direction
 float t;
 float end;         // of the ray
 float facing;      // cosine between the normal and the direction
-float lift;        // of the start above the surface
+float lift;        // of the start above the surface,
+float lift_in_pixels;
 bool  is_cone;     // else a ray
 float spread;      // radius of the cone per distance
 float margin;      // around the cone that must be empty, too
@@ -106,7 +109,7 @@ float find_end_of_cone()
 // From the hit to the light: to its middle, or to a point of its disc.
 void aim_at_light(vec3 normal)
 {
-    lift = LIFT * place.width + 4.0 * place.rounding;
+    lift = lift_in_pixels * place.width + 4.0 * place.rounding;
     start = place.position + normal * lift;
     vec3  toward = positional ? light.vector - start : light.vector;
     float remote = max(length(toward), 1e-12);
@@ -139,7 +142,7 @@ void aim_over_hemisphere(vec3 normal)
 {
     vec3 right, up;
     vec2 point = sample_disc(0u);
-    lift = max(LIFT * place.width, LIFT_OF_REACH * frame.occlusion_reach) + 4.0 * place.rounding;
+    lift = max(lift_in_pixels * place.width, LIFT_OF_REACH * frame.occlusion_reach) + 4.0 * place.rounding;
     start = place.position + normal * lift;
     end = frame.occlusion_reach;
     find_frame(normal, right, up);
@@ -164,7 +167,9 @@ void begin_item(uint number, bool saved)
     place = find_place_of(is_cone ? cone : listed);
     spread = margin = 0.0;
     below = false;
-    vec3 normal = find_hit(FACING, place.slot).xyz;
+    vec4 facing_and_evenness = find_hit(FACING, place.slot);
+    vec3 normal = facing_and_evenness.xyz;
+    lift_in_pixels = mix(LIFT, LIFT_OF_EVEN, smoothstep(UNEVEN, EVEN, facing_and_evenness.w));
     if (control.phase == OVER_HEMISPHERE)
         aim_over_hemisphere(normal);
     else

@@ -24,7 +24,7 @@ enum { WIDTH = 192, HEIGHT = 108, SAMPLES = 100 };
 
 /* What is asked for: pixels that are wrong, of those at an edge. */
 #define MOST_WRONG 0.01
-#define LIFT       0.5 /* pixels: where a ray to a light starts, above the surface */
+#define LIFT       0.125 /* pixels: where a ray to a light starts, above even ground */
 #define HIGH       4.5 /* of the picture */
 
 /* ---- Formulas: negative inside ---- */

@@ -28,13 +28,14 @@
 /* What is asked for.  Noise as a share of that of independent rays, lift in pixels, widths and
    numbers of subpixels as shares of what there is; all others are openness and light, up to 1. */
 #define MOST_NOISE       0.6
+#define LIFT             0.125  /* where rays start above even ground */
 #define MOST_LIFT        1.25   /* a pixel, and what the permitted error makes */
 #define MOST_WIDTH_ERROR 0.03
 #define BLUR_REACH       8      /* pixels: so far from a penumbra nothing is shared */
 /* Of means of 5x5 pixels, as shares of the light: root of the mean square in and near the penumbra
    for 1 and for 4 rays a pixel, and the worst of all. */
-#define MOST_OFF_1       0.02
-#define MOST_OFF_4       0.012
+#define MOST_OFF_1       0.025
+#define MOST_OFF_4       0.015
 #define MOST_OFF_AT_ALL  0.15
 #define MOST_ASYMMETRY   0.03   /* of means of 20x20 pixels */
 #define MOST_MISJUDGED   0.02   /* of openness, of means of 5x5 pixels */
@@ -654,7 +655,7 @@ static SharedMatch match_shared(const KrsPicture *picture, const Shot *shot, Tru
 {
     SharedMatch match = {0};
     double      squares = 0;
-    compute_truths(truth, shot, 1);
+    compute_truths(truth, shot, LIFT);
     for (int k = 0; k < truths.width * truths.height; k++) {
         int    x = k % truths.width, y = k / truths.width;
         double seen = seen_at(picture, k), low, high;
