@@ -6,8 +6,9 @@
  * side alone; where an edge is nearer still, from a little outside, or inside.  What is found
  * counts if the wider differences bear it out: the surface is flat and ends at an edge.  Then of
  * each two opposite taps one sees the same plane, since the least or greatest of some planes lies
- * on one side of each of them.  All else is curved or finer than a pixel, and keeps the mean that
- * the wider differences are.
+ * on one side of each of them.  Where solids touch, the distance inside is that to the face on
+ * which they do, and bears nothing out; so the plane is looked for beside the edge as well.  All
+ * else is curved or finer than a pixel, and keeps the mean that the wider differences are.
  *
  * Who includes this has the octahedron's vec3 sum and level, float t, and vec3 start.
  */
@@ -26,8 +27,9 @@ const float KINK = 0.06;           // a bend so near that an edge runs between t
 const float FLATTER = 0.008;       // what is curved bends in proportion to the reach
 const float FACING_ALIKE = 0.3;    // the least cosine between a side and the mean
 const float ON_PLANE = 0.06;       // in parts of the reach
+const float FACING_SAME = 0.999;   // the least cosine between a plane and what is beside the edge
 
-const uint WIDE = 0u, AT_HIT = 1u, OUTSIDE = 2u, INSIDE = 3u, ONE_SIDE = 4u, MEAN = 5u;
+const uint WIDE = 0u, AT_HIT = 1u, OUTSIDE = 2u, INSIDE = 3u, BESIDE = 4u, ONE_SIDE = 5u, MEAN = 6u;
 #ifdef PLAIN
 const uint FIRST = AT_HIT, LAST = INSIDE;
 #else // most else is finer than a pixel
@@ -39,6 +41,7 @@ float middle;          // the distance in the middle of the taps; 0 of the wider
 float reach;           // of these,
 float bend_wide;       // and how they bend
 float at_hit;          // the distance there
+vec3  found;           // the plane that is looked for beside the edge
 
 // How far from a plane all is, in parts of the reach.
 float find_bend() { return length(level - 2.0 * middle) / length(sum); }
@@ -93,14 +96,35 @@ bool is_one_side(float bend)
            bend < FLAT_ENOUGH && is_borne_out();
 }
 
+// From the edge on which another solid stands: a reach away from that one along the plane.
+void begin_beside()
+{
+    found = normalize(sum);
+    vec3 wide = normalize(sum_wide), away = wide - dot(wide, found) * found;
+    begin_look(BESIDE);
+    t = reach;
+    start = place.position + reach * away / max(length(away), 1e-6);
+}
+
+void end_beside()
+{
+    bool same = find_bend() < FLAT_ENOUGH && dot(sum, found) > FACING_SAME * length(sum);
+    look = same ? ONE_SIDE : MEAN;
+    sum = found;
+}
+
 void end_nearer_look()
 {
     float bend = find_bend();
     at_hit = look == AT_HIT ? middle : at_hit;
     if (bend > KINK && look < LAST)
         begin_look(look + 1u);
+    else if (is_one_side(bend))
+        look = ONE_SIDE;
+    else if (bend < FLAT_ENOUGH && look != INSIDE)
+        begin_beside();
     else
-        look = is_one_side(bend) ? ONE_SIDE : MEAN;
+        look = MEAN;
 }
 
 // Whether there is more to look at.
@@ -108,6 +132,8 @@ bool looks_again()
 {
     if (look == WIDE)
         end_wide_look();
+    else if (look == BESIDE)
+        end_beside();
     else
         end_nearer_look();
     if (look == MEAN) {

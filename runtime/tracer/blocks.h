@@ -27,7 +27,7 @@ enum { QUARTERS_OF_TILE = 4 }; /* each with a cone (solid.glsl) */
 enum { TRACE_RAYS, TRACE_BEAMS_32, TRACE_BEAMS_8, TRACE_BEAMS_4 };
 enum { RAYS_CONES, RAYS_TO_LIGHT, RAYS_OVER_HEMISPHERE };
 enum { SHADOW_NEAR, SHADOW_WIDE };
-enum { OCCLUSION_AT_ANCHORS, OCCLUSION_BY_ANCHORS, OCCLUSION_OF_REST };
+enum { OCCLUSION_AT_ANCHORS, OCCLUSION_WIDER, OCCLUSION_BY_ANCHORS, OCCLUSION_OF_REST };
 enum { BACKGROUND_FIRST, BACKGROUND_SUN };
 /* Of solid.glsl; from LIST_SHARED on, with room for whole tiles, words of shared.glsl, and then the
    list of quarters of tiles. */

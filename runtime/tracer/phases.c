@@ -394,6 +394,8 @@ static bool find_occlusion(Job *job, const WorkBlock *work)
     return send_rays(job, phase, RAYS_OVER_HEMISPHERE, work, list_at(work, LIST_ALL), all, true) &&
            share(job, phase, kernel, OCCLUSION_AT_ANCHORS, work, list_at(work, LIST_ANCHORS),
                  anchors, 0) &&
+           share(job, phase, kernel, OCCLUSION_WIDER, work, list_at(work, LIST_ANCHORS), anchors,
+                 0) &&
            share(job, phase, kernel, OCCLUSION_BY_ANCHORS, work, list_at(work, LIST_ALL), all,
                  WORD_OF(rest)) &&
            share(job, phase, kernel, OCCLUSION_OF_REST, work, list_at(work, LIST_REST), rest, 0);

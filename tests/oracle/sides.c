@@ -23,7 +23,7 @@
 
 enum { WIDTH = 320, HEIGHT = 240, PIXELS = WIDTH * HEIGHT };
 #define MOST_OFF    1.0   /* degrees */
-#define MOST_WRONG  8e-4  /* of the pixels: an edge may be nearer than single precision shows */
+#define MOST_WRONG  4e-4  /* of the pixels: an edge may be nearer than single precision shows */
 
 /* ---- Solids, and the sides that they have ---- */
 
