@@ -39,7 +39,7 @@ ivec2 anchor_at(ivec2 pixel)
 float find_wide_reach(Place place, float open)
 {
     float away = frame.occlusion_reach * sqrt(open); // root of the mean square
-    return min(WIDE_REACH, REACH_OF_HITS * away / place.width);
+    return min(WIDE_REACH, REACH_OF_HITS * away / place.width) * inversesqrt(float(control.rays));
 }
 
 // The sum of how open those around are, times their weights, and of these: all of 5x5 pixels, or

@@ -107,3 +107,20 @@ Seen see(const Setting *setting, Line ray, int rays, Random *random)
         seen.visible = find_visible(setting, seen.point, seen.normal, rays, random);
     return seen;
 }
+
+double openness(const Setting *setting, Vec point, Vec normal, double reach, double above, int rays,
+                Random *random)
+{
+    Vec    start = vec_add(point, vec_scale(above, normal));
+    Vec    aside = vec_across(normal), other = vec_cross(normal, aside);
+    double turn = random_between(random, 0, 1), shift = random_between(random, 0, 1), sum = 0;
+    for (int i = 0; i < rays; i++) {
+        double away = sqrt((i + shift) / rays), angle = 2 * M_PI * (turn + 0.6180339887 * i);
+        Vec    way = vec_add(vec_scale(sqrt(fmax(1 - away * away, 0)), normal),
+                             vec_add(vec_scale(away * cos(angle), aside),
+                                     vec_scale(away * sin(angle), other)));
+        double part = fmin(first_inside(setting, (Line){start, way}, 0, reach) / reach, 1);
+        sum += part * part;
+    }
+    return sum / rays;
+}
