@@ -9,7 +9,7 @@
  * A ray advances from a place where the distance was known, `t`, by a gap to the next.  The ball
  * of empty space around `t` and the one around the next place must meet, or something may be in
  * between: then the ray goes back to four fifths of the way to the middle of what they leave open,
- * and so on, until they meet or what is open is no longer than a sixteenth of the permitted error.
+ * and so on, until they meet or what is open is no longer than a twentieth of the permitted error.
  * A ray hits where the distance is not above 0, never where it is only small: thin things are as
  * thick as they are, however coarse the steps, and a bound that is far too small shows nothing.  A
  * ray that runs out of steps before it is unresolved: it is counted, and shows the background.  A
@@ -42,8 +42,8 @@ const uint MOST_BEAM_STEPS = 256u;                   // the rest is left to the 
 
 // What may be left open between two balls: of the permitted error, and of a pixel at most.  Twigs
 // of a tenth of a pixel lose less than 1 % by it (tests/oracle/coverage.c).
-const float OPEN = 0.0625;
-const float MOST_OPEN = 0.015625;
+const float OPEN = 0.05;
+const float MOST_OPEN = 0.0125;
 // Relaxation: how far beyond the distance; how fast the mean slope is learned.
 const float RELAXATION = 1.2;
 const float LEARNING = 0.3;

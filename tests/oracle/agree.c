@@ -104,11 +104,11 @@ static double distance_at(Stage *stage, Vec p)
 }
 
 /* The deepest, or where nothing is the nearest, that a ray comes to a solid within some pixels
-   around a place. */
-static double least_around(Stage *stage, Line ray, double t, double pixel)
+   around a place, before the end. */
+static double least_around(Stage *stage, Line ray, double t, double end, double pixel)
 {
     double least = HUGE_VAL;
-    for (int i = -64; i <= 256; i++)
+    for (int i = -64; i <= 256 && t + i / 16.0 * pixel < end; i++)
         least = fmin(least, distance_at(stage, line_at(ray, t + i / 16.0 * pixel)));
     return least;
 }
@@ -144,7 +144,7 @@ static Verdict judge(Stage *stage, Line ray, const Answer *truth, const Answer *
     if (fabs(truth->t - said->t) > most) {
         /* The one that goes farther has gone through, or passed by, next to nothing. */
         bool   through = truth->t < said->t;
-        double least = through ? least_around(stage, ray, first, pixel)
+        double least = through ? least_around(stage, ray, first, said->t - pixel / 16, pixel)
                                : distance_at(stage, line_at(ray, first));
         double graze = MOST_GRAZE * pixel + rounding;
         return (through ? least > -graze : least < graze) ? GRAZED : WRONG_HIT;

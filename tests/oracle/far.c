@@ -195,7 +195,7 @@ static void floors_are_plain(void **state)
         strange += clear && (picture->component[k] == 1) != below;
         dark += below && clear && picture->component[k] == 1 && !(color[0] > 0.99F * color[1]);
     }
-    if (floors < 500 || strange > 0 || dark > 0 || shaded < 20)
+    if (floors < 500 || strange > 0 || dark > 0 || shaded < 10)
         fail_msg("%s: of %d pixels of the floor far away %d show something else, %d are in shadow; "
                  "%d near the surface", form->name, floors, strange, dark, shaded);
     assert_int_equal(picture->stats.unresolved, 0);

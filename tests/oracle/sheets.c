@@ -244,7 +244,7 @@ static void sheets_cast_shadows(void **state)
             continue;
         Line  ray    = lens_ray(&lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
         Vec   ground = line_at(ray, -(ray.origin.y + up) / ray.direction.y);
-        ground.y += 0.5 * lens_pixel(&lens, 1); /* where a ray to a light starts */
+        ground.y += 0.125 * lens_pixel(&lens, 1); /* where a ray to a light starts */
         Entry entry  = surface_crossing(c.formula, c.radius, ground, vec_unit(light));
         bool  hidden = entry.fate == RAY_HITS;
         edge += hidden != before;
