@@ -6,7 +6,9 @@
  *
  * A shadow is a function of the place alone: a mean over places much nearer to each other than the
  * penumbra is wide blurs nothing.  So the radius of the mean comes from how far away the blockers
- * are, and which surfaces the neighbours are on does not matter.
+ * are, and which surfaces the neighbours are on does not matter.  Along the way to the light a
+ * shadow changes little up to half the way to the blockers, so what is near is counted aside from
+ * that: where light is grazing a surface its penumbrae are long.
  *
  * Means are taken twice where penumbrae are wide: of all pixels nearby, whose rays together are
  * spread evenly, and then of some of these means, farther apart.
@@ -18,9 +20,9 @@
 
 const uint NEAR = 0u, WIDE = 1u; // control.phase
 
-// The mean reaches so far, for the width of the penumbra; in pixels at least, or there is none, and
-// at least for a second mean.
-const float BLUR_OF_PENUMBRA = 0.5, LEAST_BLUR = 0.75, NEAR_BLUR = 2.0;
+// The mean reaches so far, for the width of the penumbra; in pixels at least, and at least for a
+// second mean, where light falls straight, and where it is grazing.
+const float BLUR_OF_PENUMBRA = 0.5, LEAST_BLUR = 1.25, NEAR_BLUR = 2.0, GRAZING = 0.25;
 
 // What part of a disc is above a line that is so far below its middle, in radii.
 float part_above(float depth)
@@ -31,15 +33,26 @@ float part_above(float depth)
     return h < 0.0 ? segment : 1.0 - segment;
 }
 
-// The share of the light's disc that is in front of the surface.
-float find_part_above(Light light, Place place, vec3 normal)
+// The light as a place sees it.
+struct Disc {
+    vec3  toward; // its middle, unit
+    float spread; // its radius at distance 1
+};
+
+Disc find_disc(Light light, Place place)
 {
     bool  positional = (light.kind & POSITIONAL) != 0u;
     vec3  toward = positional ? light.vector - place.position : light.vector;
-    float remote = max(length(toward), 1e-30), rise = dot(normal, toward) / remote;
-    float across = sqrt(max(1.0 - rise * rise, 0.0)), radius = light_radius(light);
-    return radius > 0.0 ? part_above(rise * remote / max(radius * across, 1e-30))
-                        : float(rise > 0.0);
+    float remote = max(length(toward), 1e-30);
+    return Disc(toward / remote, light_radius(light) / remote);
+}
+
+// The share of the light's disc that is in front of the surface.
+float find_part_above(Disc disc, float rise)
+{
+    float across = sqrt(max(1.0 - rise * rise, 0.0));
+    return disc.spread > 0.0 ? part_above(rise / max(disc.spread * across, 1e-30))
+                             : float(rise > 0.0);
 }
 
 // What a quarter of a tile adds to the penumbrae around a pixel.
@@ -55,8 +68,8 @@ Penumbrae find_quarter(ivec2 quarter, float weight)
     return Penumbrae(weight * of.lit, weight * of.hidden, weight * of.width);
 }
 
-// How far the mean reaches, in pixels, by the four quarters around.  0 where nothing in them sees
-// the light.  Fewer pixels would often agree by chance at the ends of a penumbra, and make it
+// How far the mean reaches, in pixels, by the four quarters around.  0 where all of them see the
+// light, or nothing does.  Fewer pixels would often agree by chance at the ends of a penumbra, and make it
 // narrower.
 float find_blur(ivec2 pixel)
 {
@@ -71,20 +84,22 @@ float find_blur(ivec2 pixel)
         width += found.width;
         step = ivec2(1 - step.x, step.y + step.x);
     } while (step.y < 2);
-    float blur = BLUR_OF_PENUMBRA * width / max(hidden, 1e-6) * inversesqrt(float(control.rays));
-    return lit > 0.0 ? blur : 0.0;
+    float blur = max(BLUR_OF_PENUMBRA * width / max(hidden, 1e-6), LEAST_BLUR);
+    return lit > 0.0 && hidden > 0.0 ? blur * inversesqrt(float(control.rays)) : 0.0;
 }
 
 // The mean of what is seen, of every `stride`th of 5x5 pixels, as far as their places are near.
-float find_mean(uint list, ivec2 pixel, Place place, int stride, float blur)
+float find_mean(uint list, ivec2 pixel, Place place, Disc disc, int stride, float blur)
 {
     vec2  sums = vec2(0.0);
-    float within = 1.0 / (blur * place.width), edge = 1.0 / (2.0 * float(stride) + 1.0);
+    float within = 1.0 / max(blur * place.width, 1e-30), edge = 1.0 / (2.0 * float(stride) + 1.0);
+    float stretched = 1.0 - min(2.0 * disc.spread, 1.0); // towards the light
     ivec2 step = ivec2(-2);
     do {
         ivec2     offset = stride * step;
         Neighbour there = find_neighbour(list, pixel + offset);
         vec3      apart = (there.position - place.position) * within;
+        apart -= stretched * dot(apart, disc.toward) * disc.toward;
         vec2      aside = vec2(offset) * edge;
         float     weight = max(1.0 - dot(apart, apart), 0.0) * max(1.0 - dot(aside, aside), 0.0);
         float     seen = list == RAYS_SHARED ? float(there.code == LIT)
@@ -92,7 +107,7 @@ float find_mean(uint list, ivec2 pixel, Place place, int stride, float blur)
         bool      knows = there.exists && (list == MEANS_SHARED || there.code != BELOW_HORIZON);
         sums += knows ? weight * vec2(seen, 1.0) : vec2(0.0);
         step = next_offset(step, 2);
-    } while (step.y <= 2 && blur > LEAST_BLUR);
+    } while (step.y <= 2 && blur > 0.0);
     return sums.y > 0.0 ? sums.x / sums.y : 1.0;
 }
 
@@ -107,16 +122,17 @@ void do_item(uint number)
     ivec2 pixel = ivec2(pixel_of(slot));
     uint  word = find_shared(RAYS_SHARED, slot), own = word & 255u;
     float blur = find_blur(pixel), share = own == BELOW_HORIZON || own == LIT ? 1.0 : 0.0;
-    float mean = find_mean(wide ? MEANS_SHARED : RAYS_SHARED, pixel, place, wide ? 2 : 1, blur);
-    share = blur > LEAST_BLUR ? mean : share;
-    vec3  normal = find_hit(FACING, slot).xyz;
-    float above = find_part_above(find_light(control.light), place, normal);
+    Disc  disc = find_disc(find_light(control.light), place);
+    uint  list = wide ? MEANS_SHARED : RAYS_SHARED;
+    float mean = find_mean(list, pixel, place, disc, wide ? 2 : 1, blur);
+    share = blur > 0.0 ? mean : share;
+    float rise = dot(find_hit(FACING, slot).xyz, disc.toward);
     if (!wide)
         keep_shared(MEANS_SHARED, slot, uintBitsToFloat(word), code_of_openness(share));
-    if (!wide && blur > NEAR_BLUR)
+    if (!wide && blur > NEAR_BLUR * clamp(rise, GRAZING, 1.0))
         solid[3u * band_pixels() + atomicAdd(counts.wide, 1u)] = slot;
     else
-        keep_lighting(control.value, slot, share * above);
+        keep_lighting(control.value, slot, share * find_part_above(disc, rise));
 }
 
 #include "pixels.glsl"
