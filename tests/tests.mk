@@ -36,7 +36,7 @@ SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/val
                tests/oracle/operators tests/oracle/moving tests/oracle/fractals \
                tests/oracle/normals tests/fuzz/sentences
 SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/editors.sh \
-               tests/lint.sh tests/errors.sh tests/examples.sh tests/library.sh tests/docs.sh \
+               tests/lint.sh tests/errors.sh tests/golden.sh tests/examples.sh tests/library.sh tests/docs.sh \
                $(sort $(filter-out tests/cli/common.sh, $(wildcard tests/cli/*.sh)))
 
 $(B)/tests/oracle/oracle.a: $(ORACLE:%.c=$(B)/%.o)
@@ -51,6 +51,10 @@ $(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/oracle.a \
 $(B)/tests/%: $(B)/tests/%.o $(B)/tests/support/support.a $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
 .SECONDARY:
+
+# Pictures under every option, bit for bit as they were: for changes that should not be seen.
+golden: all $(B)/tests/golden/pictures
+	@B=$(B) tests/golden/pictures.sh
 
 test-programs: $(PROGRAMS:%=$(B)/%) $(DRIVERS:%=$(B)/%)
 sanitized-programs: $(SANITIZED:%=$(B)/%) $(B)/krs
@@ -89,5 +93,5 @@ test: deps
 	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") $(PROGRAMS:%=$(B)/%) $(SCRIPTS) \
 	    $(SANITIZED:%=$(B)/asan/%) tests/errors-sanitized.sh tests/fuzz/fuzz.sh \
 	    $(if $(DEVICE),$(DRIVERS:%=$(B)/%),KRS_DEVICE=swiftshader $(SECOND:%=$(B)/%))
-.PHONY: test test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers \
+.PHONY: test golden test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers \
         fuzz-programs lint bless
