@@ -2,7 +2,7 @@
 # pictures.sh: pictures of all examples and scenes of the bench, under every method, schedule, way
 # with components and stencil of normals, are bit for bit those of pictures.txt beside this file.
 #
-#     make golden                                compare all: half an hour on 2 cores
+#     make golden                                compare all: three minutes on 2 cores
 #     tests/golden/pictures.sh SCENE.krs...      compare these
 #     tests/golden/pictures.sh --bless           write pictures.txt anew
 #
