@@ -10,7 +10,9 @@
 # make bench-registers  registers, waves and spills of each kernel on a graphics card
 # make minify     how well one sample shows what is finer than a pixel
 # make fuzz       the front end under libFuzzer for FUZZ_SECONDS (30)
-# make lint       kernels by themselves, shell scripts
+# make golden     pictures under every option, bit for bit as they were: after changes that nobody should see
+# make lint       kernels by themselves, shell scripts, style of C
+# make format     brings that style about
 # make bless      writes the expected text of tests/errors/; read the difference
 # make deps       installs what is missing (Debian packages)
 # make install    to PREFIX (/usr/local), below DESTDIR; uninstall: takes it away

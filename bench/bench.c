@@ -15,7 +15,12 @@
 #include "bench/sheet.h"
 
 typedef enum Part {
-    PART_GROWTH, PART_KRS, PART_TRIANGLES, PART_QUESTIONS, PART_FIRST_PICTURE, PART_COUNT
+    PART_GROWTH,
+    PART_KRS,
+    PART_TRIANGLES,
+    PART_QUESTIONS,
+    PART_FIRST_PICTURE,
+    PART_COUNT
 } Part;
 static const char *const part_names[PART_COUNT] = {"growth", "krs", "triangles", "questions",
                                                    "first-picture"};
@@ -93,10 +98,10 @@ static bool is_part(const char *name)
 static void read_options(Bench *bench, int argc, char **argv)
 {
     static const struct option options[] = {
-        {"quick", no_argument, NULL, 'q'},           {"repeats", required_argument, NULL, 'n'},
-        {"only", required_argument, NULL, 's'},      {"krs", required_argument, NULL, 'k'},
-        {"folder", required_argument, NULL, 'f'},    {"device", required_argument, NULL, 'd'},
-        {"revision", required_argument, NULL, 'r'},  {0},
+        {"quick", no_argument, NULL, 'q'},          {"repeats", required_argument, NULL, 'n'},
+        {"only", required_argument, NULL, 's'},     {"krs", required_argument, NULL, 'k'},
+        {"folder", required_argument, NULL, 'f'},   {"device", required_argument, NULL, 'd'},
+        {"revision", required_argument, NULL, 'r'}, {0},
     };
     uint32_t repeats = 0;
     for (int letter; (letter = getopt_long(argc, argv, "", options, NULL)) != -1;) {
@@ -108,9 +113,7 @@ static void read_options(Bench *bench, int argc, char **argv)
         case 'f': bench->folder = optarg; break;
         case 'd': bench->device = optarg; break;
         case 'r': bench->revision = optarg; break;
-        default:
-            fputs(usage, stderr);
-            exit(2);
+        default: fputs(usage, stderr); exit(2);
         }
     }
     if (optind != argc || repeats > 50) {
@@ -120,8 +123,8 @@ static void read_options(Bench *bench, int argc, char **argv)
     if (bench->only && !is_scene(bench->only) && !is_part(bench->only))
         fail("there is no scene or part called %s", bench->only);
     bench->repeats = repeats ? repeats : bench->quick ? 1 : 5;
-    bench->width = bench->quick ? 320 : 1280;
-    bench->height = bench->quick ? 180 : 720;
+    bench->width   = bench->quick ? 320 : 1280;
+    bench->height  = bench->quick ? 180 : 720;
 }
 
 /* Shaders are compiled as if for the first time: what is kept from earlier runs would make the
@@ -201,8 +204,7 @@ static void write_results(const Bench *bench, const Results *results)
     if (bench->only)
         return;
     mkdir(bench->folder, 0777); /* it may be there; if it cannot be made, writing will tell */
-    text_format(&path, "%s/%s-bench-%s.json", bench->folder, results->date,
-                results->machine.slug);
+    text_format(&path, "%s/%s-bench-%s.json", bench->folder, results->date, results->machine.slug);
     write_file(path.bytes, &json);
     memcpy(path.bytes + path.length - 4, "md", 3);
     write_file(path.bytes, &text);
@@ -212,11 +214,11 @@ int main(int argc, char **argv)
 {
     jmp_buf exhausted;
     Memory  memory = {.exhausted = &exhausted};
-    Arena   arena = {.memory = &memory};
+    Arena   arena  = {.memory = &memory};
     if (setjmp(exhausted) != 0)
         fail("out of memory");
-    Bench bench = {.arena = &arena, .krs = "build/krs", .folder = "bench/results",
-                   .revision = "unknown"};
+    Bench bench = {
+        .arena = &arena, .krs = "build/krs", .folder = "bench/results", .revision = "unknown"};
     read_options(&bench, argc, argv);
     forget_caches();
     open_device(&bench);

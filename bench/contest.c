@@ -56,7 +56,7 @@ void contest_judge(const Bench *bench, const Contest *contest, Text *complaints)
     const double tolerance = bench->quick ? QUICK_TOLERANCE : METHOD_TOLERANCE;
     for (size_t i = 0; i < contest->methods; i++) {
         const Entry *entry = &contest->entries[i];
-        double       off = fabs(coverage_error(contest, entry->coverage));
+        double       off   = fabs(coverage_error(contest, entry->coverage));
         if (!(off <= tolerance))
             complain(complaints, contest, entry->name, "error of coverage", off, tolerance);
         if (!(entry->agreement.inside_differs <= INSIDE_TOLERANCE))
@@ -80,17 +80,17 @@ void contest_judge(const Bench *bench, const Contest *contest, Text *complaints)
 static Entry *add_entry(Bench *bench, Contest *contest)
 {
     Entry *entry = &contest->entries[contest->count++];
-    entry->runs = arena_new_array(bench->arena, Times, bench->repeats);
+    entry->runs  = arena_new_array(bench->arena, Times, bench->repeats);
     return entry;
 }
 
 static void add_methods(Bench *bench, Contest *contest)
 {
     for (size_t i = 0; i < METHODS; i++) {
-        Entry *entry = add_entry(bench, contest);
-        entry->options = methods[i];
+        Entry *entry         = add_entry(bench, contest);
+        entry->options       = methods[i];
         entry->options.error = entry->error = PERMITTED_ERROR;
-        bool is_default = methods[i].trace == KRS_TRACE_DEFAULT;
+        bool is_default                     = methods[i].trace == KRS_TRACE_DEFAULT;
         snprintf(entry->name, sizeof entry->name, "%s%s%s%s", krs_trace_names[methods[i].trace],
                  is_default ? "" : " ", is_default ? "" : krs_schedule_names[methods[i].schedule],
                  !is_default && !methods[i].no_beams ? " beams" : "");
@@ -103,12 +103,12 @@ static const Entry *add_written(Bench *bench, Contest *contest, Handwritten *wri
 {
     Entry *entry = add_entry(bench, contest);
     handwritten_count(bench, written, contest->row->handwritten, &subject->view);
-    entry->written = written;
-    entry->error = written->error;
+    entry->written             = written;
+    entry->error               = written->error;
     entry->evaluations_per_ray = written->evaluations_per_ray;
-    entry->unresolved = written->unresolved;
-    entry->spirv_ms = written->shader.spirv_ms;
-    entry->pipeline_ms = written->shader.pipeline_ms;
+    entry->unresolved          = written->unresolved;
+    entry->spirv_ms            = written->shader.spirv_ms;
+    entry->pipeline_ms         = written->shader.pipeline_ms;
     snprintf(entry->name, sizeof entry->name, "by hand, %g pixels", written->error);
     return entry;
 }
@@ -129,13 +129,13 @@ static void add_handwritten(Bench *bench, Contest *contest, const Subject *subje
         Handwritten *written = arena_new(bench->arena, Handwritten);
         handwritten_create(bench, written, contest->row->handwritten, &subject->view, errors[i]);
         double coverage = coverage_of(bench, written);
-        bool   covers = fabs(coverage_error(contest, coverage)) <= COVERAGE_TOLERANCE;
+        bool   covers   = fabs(coverage_error(contest, coverage)) <= COVERAGE_TOLERANCE;
         if (i > 0 && !covers) {
             handwritten_destroy(bench, written);
             continue;
         }
-        const Entry *entry = add_written(bench, contest, written, subject);
-        contest->same_error = i == 0 ? entry : contest->same_error;
+        const Entry *entry     = add_written(bench, contest, written, subject);
+        contest->same_error    = i == 0 ? entry : contest->same_error;
         contest->same_coverage = covers ? entry : NULL;
     }
 }
@@ -144,13 +144,15 @@ static void add_handwritten(Bench *bench, Contest *contest, const Subject *subje
 
 static void draw_reference(Bench *bench, Contest *contest, Subject *subject, Image *reference)
 {
-    const KrsRenderOptions options = {.trace = KRS_TRACE_PLAIN, .schedule = KRS_SCHEDULE_PIXEL,
-                                      .no_beams = true, .error = REFERENCE_ERROR};
-    KrsRenderStats stats;
+    const KrsRenderOptions options = {.trace    = KRS_TRACE_PLAIN,
+                                      .schedule = KRS_SCHEDULE_PIXEL,
+                                      .no_beams = true,
+                                      .error    = REFERENCE_ERROR};
+    KrsRenderStats         stats;
     subject_render(bench, subject, &options, &stats, reference);
-    contest->reference_coverage = image_coverage(reference);
+    contest->reference_coverage            = image_coverage(reference);
     contest->reference_evaluations_per_ray = stats.evaluations_per_ray;
-    contest->reference_unresolved = stats.unresolved;
+    contest->reference_unresolved          = stats.unresolved;
     if (!(contest->reference_coverage > 0))
         fail("%s: the picture is empty", contest->row->name);
 }
@@ -175,8 +177,7 @@ static void run_entry(Bench *bench, Subject *subject, Entry *entry, size_t turn,
     if (entry->written)
         entry->runs[turn] = handwritten_run(bench, entry->written, image);
     else
-        entry->runs[turn] =
-            subject_render(bench, subject, &entry->options, &entry->stats, image);
+        entry->runs[turn] = subject_render(bench, subject, &entry->options, &entry->stats, image);
 }
 
 static void run_all(Bench *bench, Contest *contest, Subject *subject, const Image *reference)
@@ -184,15 +185,15 @@ static void run_all(Bench *bench, Contest *contest, Subject *subject, const Imag
     for (size_t turn = 0; turn < bench->repeats; turn++)
         for (size_t i = 0; i < contest->count; i++) {
             Entry *entry = &contest->entries[i];
-            bool   last = turn + 1 == bench->repeats;
+            bool   last  = turn + 1 == bench->repeats;
             Image  image;
             run_entry(bench, subject, entry, turn, last ? &image : NULL);
             if (!last)
                 continue;
-            entry->coverage = image_coverage(&image);
+            entry->coverage  = image_coverage(&image);
             entry->agreement = image_compare(&image, reference, subject->pixel);
-            entry->median = times_median(entry->runs, bench->repeats);
-            entry->least = times_least(entry->runs, bench->repeats);
+            entry->median    = times_median(entry->runs, bench->repeats);
+            entry->least     = times_least(entry->runs, bench->repeats);
             image_destroy(&image);
         }
 }
@@ -200,15 +201,15 @@ static void run_all(Bench *bench, Contest *contest, Subject *subject, const Imag
 static void sum_up(Contest *contest, double pixels)
 {
     for (size_t i = 0; i < contest->count; i++) {
-        Entry *entry = &contest->entries[i];
+        Entry *entry      = &contest->entries[i];
         entry->ns_per_ray = times_without_secondary(&entry->median) * 1e6 / pixels;
         if (entry->written)
             continue;
         const double *phase = entry->median.phase;
-        double flops = (double)entry->stats.evaluations * contest->flops_per_evaluation;
-        entry->gflops = flops / (phase[KRS_PHASE_BEAMS] + phase[KRS_PHASE_PRIMARY]) / 1e6;
+        double        flops = (double)entry->stats.evaluations * contest->flops_per_evaluation;
+        entry->gflops       = flops / (phase[KRS_PHASE_BEAMS] + phase[KRS_PHASE_PRIMARY]) / 1e6;
         entry->evaluations_per_ray = entry->stats.evaluations_per_ray;
-        entry->unresolved = (double)entry->stats.unresolved;
+        entry->unresolved          = (double)entry->stats.unresolved;
     }
 }
 
@@ -220,7 +221,7 @@ static void warm_up(Bench *bench, Contest *contest, Subject *subject)
         subject_warm_up(bench, subject, &contest->entries[i].options, &stats);
         if (i > 0)
             continue;
-        contest->entries[0].spirv_ms = stats.spirv_ms;
+        contest->entries[0].spirv_ms    = stats.spirv_ms;
         contest->entries[0].pipeline_ms = stats.pipeline_ms;
     }
 }
@@ -229,8 +230,7 @@ void contest_run(Bench *bench, const SceneRow *row, Contest *contest)
 {
     Subject subject;
     Image   reference;
-    *contest = (Contest){.row = row,
-                         .entries = arena_new_array(bench->arena, Entry, MOST_ENTRIES)};
+    *contest = (Contest){.row = row, .entries = arena_new_array(bench->arena, Entry, MOST_ENTRIES)};
     tell("%s: compiling", row->name);
     subject_open(bench, &subject, row->path, row->levels);
     contest->flops_per_evaluation = subject.program->flops;

@@ -20,17 +20,17 @@ extern const size_t   scene_count;
 /* One way to render the scene, and what came of it. */
 typedef struct Entry {
     char             name[48];
-    KrsRenderOptions options;  /* ours */
-    Handwritten     *written;  /* or a shader by hand */
-    double           error;    /* permitted, in pixels */
+    KrsRenderOptions options; /* ours */
+    Handwritten     *written; /* or a shader by hand */
+    double           error;   /* permitted, in pixels */
     Times           *runs, median;
     double           least; /* of the runs, without shadows and occlusion */
-    KrsRenderStats   stats;    /* of ours: of the last run */
+    KrsRenderStats   stats; /* of ours: of the last run */
     double           evaluations_per_ray, unresolved;
     double           ns_per_ray; /* without shadows and occlusion */
     double           gflops;     /* of ours: of beams and primary rays */
     double           coverage;
-    Agreement        agreement; /* with the reference */
+    Agreement        agreement;             /* with the reference */
     double           spirv_ms, pipeline_ms; /* to the first picture, cold; of ours: the first */
 } Entry;
 

@@ -27,44 +27,45 @@ static void plant(Bench *bench, Tree *tree, uint32_t levels, const KrsRenderOpti
                   const Buffer *ends)
 {
     static const char path[] = "bench/distance.comp";
-    tree->pictures = arena_new_array(bench->arena, Times, bench->repeats);
-    tree->distances = arena_new_array(bench->arena, double, bench->repeats);
+    tree->pictures           = arena_new_array(bench->arena, Times, bench->repeats);
+    tree->distances          = arena_new_array(bench->arena, double, bench->repeats);
     subject_open(bench, &tree->subject, "bench/scenes/tree28.krs", levels);
     subject_warm_up(bench, &tree->subject, options, &tree->stats);
     Text sizes = {.arena = bench->arena};
     text_format(&sizes, "#define EVALUATIONS %d\n", EVALUATIONS);
-    char *text = shader_text(bench, path, (StandIn[]){
-        {"scene.glsl", tree->subject.program->glsl}, {"sizes.glsl", sizes.bytes}, {0}});
+    char *text = shader_text(
+        bench, path,
+        (StandIn[]){{"scene.glsl", tree->subject.program->glsl}, {"sizes.glsl", sizes.bytes}, {0}});
     shader_create(bench, &tree->distance, text, path, ends);
 }
 
 static void take_figures(Bench *bench, Growth *growth, size_t i, Tree *tree)
 {
-    Times  times = times_median(tree->pictures, bench->repeats);
-    double primary = times.phase[KRS_PHASE_BEAMS] + times.phase[KRS_PHASE_PRIMARY];
-    double distances = (double)GROUPS * LANES * EVALUATIONS;
-    growth->ns_per_distance[i] = median(tree->distances, bench->repeats) * 1e6 / distances;
+    Times  times                 = times_median(tree->pictures, bench->repeats);
+    double primary               = times.phase[KRS_PHASE_BEAMS] + times.phase[KRS_PHASE_PRIMARY];
+    double distances             = (double)GROUPS * LANES * EVALUATIONS;
+    growth->ns_per_distance[i]   = median(tree->distances, bench->repeats) * 1e6 / distances;
     growth->ns_per_evaluation[i] = primary * 1e6 / (double)tree->stats.evaluations;
-    growth->total_ms[i] = times_without_secondary(&times);
+    growth->total_ms[i]          = times_without_secondary(&times);
 }
 
 static void run_in_turns(Bench *bench, Tree *trees, size_t count, const KrsRenderOptions *options)
 {
     for (size_t turn = 0; turn < bench->repeats; turn++)
         for (size_t i = 0; i < count; i++) {
-            Tree *tree = &trees[i];
-            tree->pictures[turn] =
-                subject_render(bench, &tree->subject, options, &tree->stats, NULL);
+            Tree *tree            = &trees[i];
+            tree->pictures[turn]  = subject_render(bench, &tree->subject, options, &tree->stats,
+                                                   NULL);
             tree->distances[turn] = shader_run(bench, &tree->distance, GROUPS);
         }
 }
 
 void growth_run(Bench *bench, Growth *growth)
 {
-    const uint32_t        *sizes = bench->quick ? quick_sizes : all_sizes;
-    const KrsRenderOptions options = {.error = PERMITTED_ERROR};
-    Tree   trees[MOST_SIZES] = {0};
-    Buffer ends;
+    const uint32_t        *sizes             = bench->quick ? quick_sizes : all_sizes;
+    const KrsRenderOptions options           = {.error = PERMITTED_ERROR};
+    Tree                   trees[MOST_SIZES] = {0};
+    Buffer                 ends;
     *growth = (Growth){.count = bench->quick ? sizeof quick_sizes / sizeof quick_sizes[0]
                                              : sizeof all_sizes / sizeof all_sizes[0]};
     tell("growth: compiling");
@@ -82,8 +83,8 @@ void growth_run(Bench *bench, Growth *growth)
         subject_close(&trees[i].subject);
     }
     buffer_destroy(&bench->gpu, &ends);
-    growth->distance_line = line_through(growth->levels, growth->ns_per_distance, growth->count);
-    growth->evaluation_line =
-        line_through(growth->levels, growth->ns_per_evaluation, growth->count);
-    growth->total_line = line_through(growth->levels, growth->total_ms, growth->count);
+    growth->distance_line   = line_through(growth->levels, growth->ns_per_distance, growth->count);
+    growth->evaluation_line = line_through(growth->levels, growth->ns_per_evaluation,
+                                           growth->count);
+    growth->total_line      = line_through(growth->levels, growth->total_ms, growth->count);
 }

@@ -20,8 +20,8 @@ static char *view_text(Bench *bench, const KrsView *view, double error, bool cou
         view->camera.projection != KRS_PERSPECTIVE)
         fail("hand-written shaders have one directional light and a perspective camera");
     Text text = {.arena = bench->arena};
-    text_format(&text, "#define WIDTH %u\n#define HEIGHT %u\n#define MOST_STEPS %d\n",
-                bench->width, bench->height, MOST_STEPS);
+    text_format(&text, "#define WIDTH %u\n#define HEIGHT %u\n#define MOST_STEPS %d\n", bench->width,
+                bench->height, MOST_STEPS);
     text_format(&text, "#define ERROR %.9g\n#define FOV %.9g\n#define SUN_SOFTNESS %.9g\n", error,
                 view->camera.fov, view->lights->softness);
     define_vector(&text, "EYE", view->camera.eye);
@@ -51,13 +51,12 @@ static VkDeviceSize picture_bytes(const Bench *bench)
 void handwritten_create(Bench *bench, Handwritten *written, const char *path, const KrsView *view,
                         double error)
 {
-    *written = (Handwritten){.error = error};
+    *written           = (Handwritten){.error = error};
     VkDeviceSize bytes = picture_bytes(bench);
     if (!buffer_create(&bench->gpu, &written->picture, bytes, ON_DEVICE, "picture") ||
         !buffer_create(&bench->gpu, &written->fetched, bytes, SHARED, "picture to read"))
         fail("%s", bench->gpu.message);
-    compile(bench, &written->shader, path, view_text(bench, view, error, false),
-            &written->picture);
+    compile(bench, &written->shader, path, view_text(bench, view, error, false), &written->picture);
 }
 
 void handwritten_destroy(Bench *bench, Handwritten *written)
@@ -92,7 +91,7 @@ static void take_image(const Bench *bench, const float (*pixels)[4], Image *imag
     if (!image_create(image, bench->width, bench->height))
         fail("out of memory");
     for (size_t i = 0; i < (size_t)bench->width * bench->height; i++) {
-        bool hit = pixels[i][3] > 0;
+        bool hit        = pixels[i][3] > 0;
         image->alpha[i] = hit;
         image->depth[i] = hit ? pixels[i][3] : INFINITY;
     }
@@ -101,10 +100,10 @@ static void take_image(const Bench *bench, const float (*pixels)[4], Image *imag
 Times handwritten_run(Bench *bench, const Handwritten *written, Image *image)
 {
     double start = clock_ms(), used = cpu_ms();
-    Times  times = {.total = shader_run(bench, &written->shader, group_count(bench))};
-    const float (*pixels)[4] = fetch(bench, written);
-    times.wall = clock_ms() - start;
-    times.cpu = cpu_ms() - used;
+    Times  times            = {.total = shader_run(bench, &written->shader, group_count(bench))};
+    const float(*pixels)[4] = fetch(bench, written);
+    times.wall              = clock_ms() - start;
+    times.cpu               = cpu_ms() - used;
     if (image)
         take_image(bench, pixels, image);
     return times;
@@ -113,14 +112,13 @@ Times handwritten_run(Bench *bench, const Handwritten *written, Image *image)
 void handwritten_count(Bench *bench, Handwritten *written, const char *path, const KrsView *view)
 {
     Shader shader;
-    compile(bench, &shader, path, view_text(bench, view, written->error, true),
-            &written->picture);
+    compile(bench, &shader, path, view_text(bench, view, written->error, true), &written->picture);
     shader_run(bench, &shader, group_count(bench));
     shader_destroy(bench, &shader);
 
-    const float (*pixels)[4] = fetch(bench, written);
-    size_t count = (size_t)bench->width * bench->height;
-    double steps = 0;
+    const float(*pixels)[4] = fetch(bench, written);
+    size_t count            = (size_t)bench->width * bench->height;
+    double steps            = 0;
     for (size_t i = 0; i < count; i++) {
         steps += pixels[i][0];
         written->unresolved += pixels[i][0] >= MOST_STEPS;

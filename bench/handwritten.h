@@ -12,7 +12,7 @@
 typedef struct Handwritten {
     Shader shader;
     Buffer picture, fetched; /* on the device, and for the host */
-    double error; /* permitted, in pixels */
+    double error;            /* permitted, in pixels */
     double evaluations_per_ray;
     double unresolved; /* rays that ran out of steps */
 } Handwritten;

@@ -26,7 +26,7 @@ void image_destroy(Image *image)
 double image_coverage(const Image *image)
 {
     size_t pixels = (size_t)image->width * image->height;
-    double sum = 0;
+    double sum    = 0;
     for (size_t i = 0; i < pixels; i++)
         sum += image->alpha[i];
     return sum / (double)pixels;
@@ -59,12 +59,12 @@ static bool is_inside(const Image *image, uint32_t x, uint32_t y, double pixel)
 Agreement image_compare(const Image *image, const Image *reference, double pixel)
 {
     size_t    pixels = (size_t)image->width * image->height, both = 0;
-    Agreement found = {0};
+    Agreement found  = {0};
     double   *errors = malloc(pixels * sizeof *errors);
     for (uint32_t y = 0; y < image->height; y++)
         for (uint32_t x = 0; x < image->width; x++) {
-            size_t     i = (size_t)y * image->width + x;
-            Difference here = difference(image->depth[i], reference->depth[i], pixel);
+            size_t     i      = (size_t)y * image->width + x;
+            Difference here   = difference(image->depth[i], reference->depth[i], pixel);
             bool       inside = is_inside(reference, x, y, pixel);
             found.hit_differs += here == OTHER_FATE;
             found.depth_differs += here == OTHER_DEPTH;

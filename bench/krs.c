@@ -22,29 +22,44 @@ static const uint32_t all_levels[] = {4, 8, 14, 20, 28}, quick_levels[] = {4};
 #define NEAR     "bench/scenes/bundle-near.krs"
 #define COMPOUND "bench/scenes/compound.krs"
 #define THICKET  "bench/scenes/thicket.krs"
-#define TOGETHER {.components = KRS_COMPONENTS_TOGETHER}
-#define PACKED   {.components = KRS_COMPONENTS_PACKED}
-#define APART    {.components = KRS_COMPONENTS_APART}
+#define TOGETHER                              \
+    {                                         \
+        .components = KRS_COMPONENTS_TOGETHER \
+    }
+#define PACKED                              \
+    {                                       \
+        .components = KRS_COMPONENTS_PACKED \
+    }
+#define APART                              \
+    {                                      \
+        .components = KRS_COMPONENTS_APART \
+    }
 #define BY_PIXEL .schedule = KRS_SCHEDULE_PIXEL
 const StandRow stand_rows[STAND_COUNT] = {
-    [STAND_TREE_STRAIGHTFORWARD] =
-        {"tree, straightforward", TREE, 28, STAND_TREE_STRAIGHTFORWARD,
-         {.trace = KRS_TRACE_PLAIN, BY_PIXEL, .no_beams = true}},
-    [STAND_TREE_BEAMS] = {"tree, the same and beams", TREE, 28, STAND_TREE_STRAIGHTFORWARD,
-                          {.trace = KRS_TRACE_PLAIN, BY_PIXEL}},
-    [STAND_TREE]       = {"tree", TREE, 28, STAND_TREE_STRAIGHTFORWARD, {0}},
-    [STAND_STRAIGHT]   = {"similarities", STRAIGHT, 28, STAND_STRAIGHT, {0}},
-    [STAND_BENT_STRAIGHTFORWARD] =
-        {"Moebius, straightforward", BENT, 28, STAND_STRAIGHT,
-         {.trace = KRS_TRACE_BINARY, BY_PIXEL, .no_beams = true}},
-    [STAND_BENT_BINARY] = {"Moebius, binary", BENT, 28, STAND_STRAIGHT,
-                           {.trace = KRS_TRACE_BINARY}},
-    [STAND_BENT_PREDICTED] = {"Moebius, predicted", BENT, 28, STAND_STRAIGHT,
-                              {.trace = KRS_TRACE_PREDICTED}},
-    [STAND_BENT_DIRECTIONAL] = {"Moebius, directional", BENT, 28, STAND_STRAIGHT,
-                                {.trace = KRS_TRACE_DIRECTIONAL}},
-    [STAND_BENT_PLAIN] = {"Moebius, centred", BENT, 28, STAND_STRAIGHT,
-                          {.trace = KRS_TRACE_PLAIN}},
+    [STAND_TREE_STRAIGHTFORWARD] = {"tree, straightforward",
+                                    TREE,
+                                    28,
+                                    STAND_TREE_STRAIGHTFORWARD,
+                                    {.trace = KRS_TRACE_PLAIN, BY_PIXEL, .no_beams = true}},
+    [STAND_TREE_BEAMS]           = {"tree, the same and beams",
+                                    TREE,
+                                    28,
+                                    STAND_TREE_STRAIGHTFORWARD,
+                                    {.trace = KRS_TRACE_PLAIN, BY_PIXEL}},
+    [STAND_TREE]                 = {"tree", TREE, 28, STAND_TREE_STRAIGHTFORWARD, {0}},
+    [STAND_STRAIGHT]             = {"similarities", STRAIGHT, 28, STAND_STRAIGHT, {0}},
+    [STAND_BENT_STRAIGHTFORWARD] = {"Moebius, straightforward",
+                                    BENT,
+                                    28,
+                                    STAND_STRAIGHT,
+                                    {.trace = KRS_TRACE_BINARY, BY_PIXEL, .no_beams = true}},
+    [STAND_BENT_BINARY] =
+        {"Moebius, binary", BENT, 28, STAND_STRAIGHT, {.trace = KRS_TRACE_BINARY}},
+    [STAND_BENT_PREDICTED] =
+        {"Moebius, predicted", BENT, 28, STAND_STRAIGHT, {.trace = KRS_TRACE_PREDICTED}},
+    [STAND_BENT_DIRECTIONAL] =
+        {"Moebius, directional", BENT, 28, STAND_STRAIGHT, {.trace = KRS_TRACE_DIRECTIONAL}},
+    [STAND_BENT_PLAIN] = {"Moebius, centred", BENT, 28, STAND_STRAIGHT, {.trace = KRS_TRACE_PLAIN}},
     [STAND_BENT]       = {"Moebius", BENT, 28, STAND_STRAIGHT, {0}},
     [STAND_BUNDLE]     = {"eight kernels a level", BUNDLE, 28, STAND_BUNDLE, {0}},
     [STAND_COMPOUND_TOGETHER] = {"eight trees, as one", COMPOUND, 14, STAND_BUNDLE, TOGETHER},
@@ -105,10 +120,10 @@ static void set_out(Bench *bench, Runner *runners, int stand, uint32_t levels)
     *runner = (Runner){.options = row->options};
     if (levels > row->most_levels)
         return;
-    runner->options.error = PERMITTED_ERROR;
+    runner->options.error        = PERMITTED_ERROR;
     runner->options.no_occlusion = true; /* which is not told either */
-    runner->subject = find_subject(bench, runners, stand, levels);
-    runner->runs = arena_new_array(bench->arena, Times, MOST_TURNS);
+    runner->subject              = find_subject(bench, runners, stand, levels);
+    runner->runs                 = arena_new_array(bench->arena, Times, MOST_TURNS);
     subject_warm_up(bench, runner->subject, &runner->options, &stats);
 }
 
@@ -127,9 +142,9 @@ static void run_once(Bench *bench, Sequences *sequences, Runner *runner, int sta
     KrsRenderStats stats;
     Image          image;
     runner->runs[turn] = subject_render(bench, runner->subject, &runner->options, &stats, &image);
-    sequences->coverage[stand][at] = image_coverage(&image);
+    sequences->coverage[stand][at]    = image_coverage(&image);
     sequences->evaluations[stand][at] = stats.evaluations_per_ray;
-    sequences->flops[stand][at] = stats.flops_per_evaluation;
+    sequences->flops[stand][at]       = stats.flops_per_evaluation;
     sequences->unresolved += (double)stats.unresolved;
     image_destroy(&image);
 }
@@ -147,10 +162,10 @@ static void run_levels(Bench *bench, Sequences *sequences, size_t at, uint32_t l
         sequences->ms[i][at] = NAN;
         if (!runners[i].runs)
             continue;
-        Times times = times_median(runners[i].runs, sequences->turns);
-        sequences->ms[i][at] = march_ms(&times);
+        Times times                = times_median(runners[i].runs, sequences->turns);
+        sequences->ms[i][at]       = march_ms(&times);
         sequences->beams_ms[i][at] = times.phase[KRS_PHASE_BEAMS];
-        sequences->cpu_ms[i][at] = times.cpu;
+        sequences->cpu_ms[i][at]   = times.cpu;
     }
     close_subjects(runners);
 }

@@ -11,17 +11,31 @@
 enum { MOST_LEVELS = 8, MOST_TURNS = 3 };
 
 typedef enum Stand {
-    STAND_TREE_STRAIGHTFORWARD, STAND_TREE_BEAMS, STAND_TREE, STAND_STRAIGHT,
-    STAND_BENT_STRAIGHTFORWARD, STAND_BENT_BINARY, STAND_BENT_PREDICTED, STAND_BENT_DIRECTIONAL,
-    STAND_BENT_PLAIN, STAND_BENT, STAND_BUNDLE, STAND_COMPOUND_TOGETHER, STAND_COMPOUND_PACKED,
-    STAND_COMPOUND, STAND_BUNDLE_NEAR, STAND_THICKET_TOGETHER, STAND_THICKET_PACKED,
-    STAND_THICKET, STAND_COUNT
+    STAND_TREE_STRAIGHTFORWARD,
+    STAND_TREE_BEAMS,
+    STAND_TREE,
+    STAND_STRAIGHT,
+    STAND_BENT_STRAIGHTFORWARD,
+    STAND_BENT_BINARY,
+    STAND_BENT_PREDICTED,
+    STAND_BENT_DIRECTIONAL,
+    STAND_BENT_PLAIN,
+    STAND_BENT,
+    STAND_BUNDLE,
+    STAND_COMPOUND_TOGETHER,
+    STAND_COMPOUND_PACKED,
+    STAND_COMPOUND,
+    STAND_BUNDLE_NEAR,
+    STAND_THICKET_TOGETHER,
+    STAND_THICKET_PACKED,
+    STAND_THICKET,
+    STAND_COUNT
 } Stand;
 
 typedef struct StandRow {
     const char      *name, *path;
-    uint32_t         most_levels;  /* what has more is left out: it takes minutes */
-    Stand            yardstick;    /* what its time is told beside; itself for none */
+    uint32_t         most_levels; /* what has more is left out: it takes minutes */
+    Stand            yardstick;   /* what its time is told beside; itself for none */
     KrsRenderOptions options;
 } StandRow;
 extern const StandRow stand_rows[STAND_COUNT];
@@ -30,13 +44,13 @@ extern const StandRow stand_rows[STAND_COUNT];
 typedef struct Sequences {
     size_t count, turns; /* numbers of levels; pictures of each */
     double levels[MOST_LEVELS];
-    double ms[STAND_COUNT][MOST_LEVELS];       /* beams, primary rays and normals: the median */
-    double cpu_ms[STAND_COUNT][MOST_LEVELS];   /* of all threads, for the whole picture */
+    double ms[STAND_COUNT][MOST_LEVELS];     /* beams, primary rays and normals: the median */
+    double cpu_ms[STAND_COUNT][MOST_LEVELS]; /* of all threads, for the whole picture */
     double beams_ms[STAND_COUNT][MOST_LEVELS];
     double coverage[STAND_COUNT][MOST_LEVELS];
-    double flops[STAND_COUNT][MOST_LEVELS];    /* of a distance */
+    double flops[STAND_COUNT][MOST_LEVELS];       /* of a distance */
     double evaluations[STAND_COUNT][MOST_LEVELS]; /* for a ray */
-    Line   lines[STAND_COUNT];                 /* of ms by the levels */
+    Line   lines[STAND_COUNT];                    /* of ms by the levels */
     double unresolved;
 } Sequences;
 
@@ -55,8 +69,8 @@ double march_ms(const Times *times);
 
 /* What the paper says of figure 12, in the order of its five cases. */
 typedef struct PaperRow {
-    const char *name;      /* what was measured there */
-    Stand       stand;     /* of ours */
+    const char *name;  /* what was measured there */
+    Stand       stand; /* of ours */
     double      levels;
     double      kiloflops; /* a ray, there */
 } PaperRow;

@@ -20,7 +20,7 @@ enum { MOST_RUNS = 5 };
 
 /* What says where caches are, or that there are none. */
 static const char *const cache_variables[] = {
-    "XDG_CACHE_HOME", "MESA_SHADER_CACHE_DIR", "MESA_SHADER_CACHE_DISABLE",
+    "XDG_CACHE_HOME",         "MESA_SHADER_CACHE_DIR",       "MESA_SHADER_CACHE_DISABLE",
     "__GL_SHADER_DISK_CACHE", "__GL_SHADER_DISK_CACHE_PATH",
 };
 
@@ -44,8 +44,8 @@ static char **environment(Bench *bench, const char *folder)
     for (size_t i = 0; i < count; i++)
         if (!is_about_caches(environ[i]))
             settings[kept++] = environ[i];
-    static const char *const folders[] = {
-        "XDG_CACHE_HOME", "MESA_SHADER_CACHE_DIR", "__GL_SHADER_DISK_CACHE_PATH"};
+    static const char *const folders[] = {"XDG_CACHE_HOME", "MESA_SHADER_CACHE_DIR",
+                                          "__GL_SHADER_DISK_CACHE_PATH"};
     for (size_t i = 0; i < sizeof folders / sizeof folders[0]; i++) {
         Text setting = {.arena = bench->arena};
         text_format(&setting, "%s=%s", folders[i], folder);
@@ -58,9 +58,17 @@ static double first_picture_ms(Bench *bench, const char *folder, char **settings
 {
     Text picture = {.arena = bench->arena};
     text_format(&picture, "%s/picture.exr", folder);
-    char *arguments[] = {(char *)bench->krs, "render", "examples/01-hello.krs", "--size", "640x360",
-                         "--quiet", "-o", picture.bytes, bench->device ? "--device" : NULL,
-                         (char *)bench->device, NULL};
+    char  *arguments[] = {(char *)bench->krs,
+                          "render",
+                          "examples/01-hello.krs",
+                          "--size",
+                          "640x360",
+                          "--quiet",
+                          "-o",
+                          picture.bytes,
+                         bench->device ? "--device" : NULL,
+                          (char *)bench->device,
+                          NULL};
     pid_t  child;
     int    status;
     double start = clock_ms();
@@ -88,14 +96,14 @@ void latency_run(Bench *bench, Latency *latency)
     double cold[MOST_RUNS], warm[MOST_RUNS];
     tell("first picture, %zu times", count);
     for (size_t i = 0; i < count; i++) {
-        const char *base = getenv("TMPDIR");
+        const char *base   = getenv("TMPDIR");
         Text        folder = {.arena = bench->arena};
         text_format(&folder, "%s/krs-bench-XXXXXX", base ? base : "/tmp");
         if (!mkdtemp(folder.bytes))
             fail("cannot make a temporary folder");
         char **settings = environment(bench, folder.bytes);
-        cold[i] = first_picture_ms(bench, folder.bytes, settings);
-        warm[i] = first_picture_ms(bench, folder.bytes, settings);
+        cold[i]         = first_picture_ms(bench, folder.bytes, settings);
+        warm[i]         = first_picture_ms(bench, folder.bytes, settings);
         nftw(folder.bytes, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
     }
     *latency = (Latency){median(cold, count), median(warm, count)};

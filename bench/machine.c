@@ -22,7 +22,7 @@
 static const char *find_line(Bench *bench, const char *path, const char *key, const char *trimmed)
 {
     char  line[512];
-    FILE *file = fopen(path, "r");
+    FILE *file  = fopen(path, "r");
     Text  found = {.arena = bench->arena};
     while (file && found.length == 0 && fgets(line, sizeof line, file)) {
         if (strncmp(line, key, strlen(key)) != 0)
@@ -55,8 +55,8 @@ static const char *describe_processor(Bench *bench)
 static const char *describe_memory(Bench *bench)
 {
     Text text = {.arena = bench->arena};
-    text_format(&text, "%.1f GiB", (double)sysconf(_SC_PHYS_PAGES) *
-                                       (double)sysconf(_SC_PAGESIZE) / (1 << 30));
+    text_format(&text, "%.1f GiB",
+                (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE) / (1 << 30));
     return text.bytes;
 }
 
@@ -65,9 +65,8 @@ static const char *describe_system(Bench *bench)
     struct utsname names;
     uname(&names);
     Text text = {.arena = bench->arena};
-    text_format(&text, "%s, %s %s %s",
-                find_line(bench, "/etc/os-release", "PRETTY_NAME=", "\"\n"), names.sysname,
-                names.release, names.machine);
+    text_format(&text, "%s, %s %s %s", find_line(bench, "/etc/os-release", "PRETTY_NAME=", "\"\n"),
+                names.sysname, names.release, names.machine);
     return text.bytes;
 }
 
@@ -79,7 +78,7 @@ static const char *describe_driver(Bench *bench)
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
     vkGetPhysicalDeviceProperties2(bench->gpu.physical, &properties);
     uint32_t version = properties.properties.apiVersion;
-    Text     text = {.arena = bench->arena};
+    Text     text    = {.arena = bench->arena};
     text_format(&text, "%s %s, Vulkan %u.%u.%u", driver.driverName, driver.driverInfo,
                 VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
                 VK_API_VERSION_PATCH(version));
@@ -117,7 +116,7 @@ static const char *make_slug(Bench *bench, const char *device)
 void machine_describe(Bench *bench, Machine *machine)
 {
     const char *device = bench->gpu.properties.deviceName;
-    *machine = (Machine){.slug = make_slug(bench, device)};
+    *machine           = (Machine){.slug = make_slug(bench, device)};
     add_fact(machine, "device", device);
     add_fact(machine, "driver", describe_driver(bench));
     add_fact(machine, "processor", describe_processor(bench));

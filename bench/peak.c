@@ -14,7 +14,7 @@ static const double LEAST_MS = 50;
 static void compile(Bench *bench, Peak *peak, uint32_t chains)
 {
     static const char path[] = "bench/peak.comp";
-    Text sizes = {.arena = bench->arena};
+    Text              sizes  = {.arena = bench->arena};
     text_format(&sizes, "#define CHAINS %u\n#define TURNS %d\n", chains, TURNS);
     peak->chains = chains;
     shader_create(bench, &peak->shader,
@@ -35,8 +35,8 @@ static double run(Bench *bench, Peak *peak)
 void peak_open(Bench *bench, Peak *peak)
 {
     static const uint32_t chains[] = {2, 3, 4, 6, 8};
-    uint32_t best = chains[0];
-    *peak = (Peak){.groups = 64};
+    uint32_t              best     = chains[0];
+    *peak                          = (Peak){.groups = 64};
     if (!buffer_create(&bench->gpu, &peak->sums, sizeof(float[LANES][VECTOR]), ON_DEVICE, "sums"))
         fail("%s", bench->gpu.message);
     for (size_t i = 0; i < sizeof chains / sizeof chains[0]; i++) {
@@ -44,7 +44,7 @@ void peak_open(Bench *bench, Peak *peak)
         double gflops = run(bench, peak);
         if (gflops > peak->gflops) {
             peak->gflops = gflops;
-            best = chains[i];
+            best         = chains[i];
         }
         shader_destroy(bench, &peak->shader);
     }

@@ -18,14 +18,14 @@ typedef struct Inquiry {
     KrsFrame     *frame;
     KrsRendering *rendering;
     size_t        count; /* of questions that there are */
-    double      (*points)[3], (*aims)[3];
-    KrsHit       *hits[ANSWERER_COUNT];
+    double (*points)[3], (*aims)[3];
+    KrsHit *hits[ANSWERER_COUNT];
 } Inquiry;
 
 static void inquiry_open(Bench *bench, Inquiry *in, size_t count)
 {
     const char *path = "bench/scenes/tree28.krs";
-    *in = (Inquiry){.count = count};
+    *in              = (Inquiry){.count = count};
     if (krs_compile_file(path, NULL, &in->scene) != KRS_OK ||
         krs_frame_new(in->scene, &in->frame) != KRS_OK)
         fail("cannot compile %s", path);
@@ -33,7 +33,7 @@ static void inquiry_open(Bench *bench, Inquiry *in, size_t count)
         KRS_OK)
         fail("%s", krs_renderer_message(bench->renderer));
     in->points = arena_alloc(bench->arena, count * sizeof *in->points, sizeof(double));
-    in->aims = arena_alloc(bench->arena, count * sizeof *in->aims, sizeof(double));
+    in->aims   = arena_alloc(bench->arena, count * sizeof *in->aims, sizeof(double));
     for (int i = 0; i < ANSWERER_COUNT; i++)
         in->hits[i] = arena_new_array(bench->arena, KrsHit, count);
 }
@@ -49,9 +49,9 @@ static void inquiry_close(Inquiry *in)
    four dimensions (R4). */
 static void make_questions(Inquiry *in)
 {
-    static const double step[] = {0.8566748838545029, 0.733891856627126, 0.6287067210378087,
-                                  0.5385972572236101};
-    const double center[3] = {0, 1.5, 0}, radius = 3, half = 1.2;
+    static const double step[]    = {0.8566748838545029, 0.733891856627126, 0.6287067210378087,
+                                     0.5385972572236101};
+    const double        center[3] = {0, 1.5, 0}, radius = 3, half = 1.2;
     for (size_t i = 0; i < in->count; i++) {
         double at[4];
         for (int k = 0; k < 4; k++)
@@ -59,9 +59,9 @@ static void make_questions(Inquiry *in)
         double up = 2 * at[3] - 1, ring = sqrt(1 - up * up), turn = 2.399963229728653 * (double)i;
         double away[3] = {ring * cos(turn), up, ring * sin(turn)};
         for (int k = 0; k < 3; k++) {
-            double target = center[k] + half * (2 * at[k] - 1);
+            double target    = center[k] + half * (2 * at[k] - 1);
             in->points[i][k] = center[k] + radius * away[k];
-            in->aims[i][k] = target - in->points[i][k];
+            in->aims[i][k]   = target - in->points[i][k];
         }
     }
 }
@@ -70,9 +70,9 @@ static void make_questions(Inquiry *in)
 static double ask(Bench *bench, Inquiry *in, int answerer, bool rays, size_t count)
 {
     const double(*points)[3] = (const double(*)[3])in->points;
-    const double(*aims)[3] = (const double(*)[3])in->aims;
-    KrsHit   *hits = in->hits[answerer];
-    double    start = clock_ms();
+    const double(*aims)[3]   = (const double(*)[3])in->aims;
+    KrsHit   *hits           = in->hits[answerer];
+    double    start          = clock_ms();
     KrsStatus status;
     if (answerer == ANSWERER_HOST)
         status = rays ? krs_raycast(in->frame, points, aims, count, INFINITY, 0, hits)
@@ -96,9 +96,9 @@ static double disagreement(const Inquiry *in, size_t count)
 
 void questions_run(Bench *bench, Questions *questions)
 {
-    Inquiry       in;
-    const size_t  most = bench->quick ? 4096 : 65536, host = bench->quick ? 100 : 1000;
-    const size_t  counts[ANSWERER_COUNT] = {host, most};
+    Inquiry      in;
+    const size_t most = bench->quick ? 4096 : 65536, host = bench->quick ? 100 : 1000;
+    const size_t counts[ANSWERER_COUNT] = {host, most};
     enum { MOST_REPEATS = 50 };
     double ms[ANSWERER_COUNT][2][MOST_REPEATS], alone[MOST_REPEATS];
     tell("questions, %u times", bench->repeats);
@@ -116,8 +116,8 @@ void questions_run(Bench *bench, Questions *questions)
     }
     for (int i = 0; i < ANSWERER_COUNT; i++) {
         questions->points[i] = questions->rays[i] = counts[i];
-        questions->points_per_second[i] =
-            1e3 * (double)counts[i] / median(ms[i][0], bench->repeats);
+        questions->points_per_second[i]           = 1e3 * (double)counts[i] /
+                                          median(ms[i][0], bench->repeats);
         questions->rays_per_second[i] = 1e3 * (double)counts[i] / median(ms[i][1], bench->repeats);
     }
     questions->alone_ms = median(alone, bench->repeats);

@@ -13,8 +13,8 @@ extern const char *const answerer_names[ANSWERER_COUNT];
 typedef struct Questions {
     size_t points[ANSWERER_COUNT], rays[ANSWERER_COUNT]; /* asked at once */
     double points_per_second[ANSWERER_COUNT], rays_per_second[ANSWERER_COUNT];
-    double alone_ms;   /* from one question to the device until its answer */
-    double disagree;   /* share of rays that hit for one of them only */
+    double alone_ms; /* from one question to the device until its answer */
+    double disagree; /* share of rays that hit for one of them only */
 } Questions;
 
 void questions_run(Bench *bench, Questions *questions);

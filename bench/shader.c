@@ -54,8 +54,8 @@ static void add_lines(Bench *bench, Text *out, const char *path, const char *tex
     while (*text) {
         size_t line = strcspn(text, "\n") + (strchr(text, '\n') != NULL);
         if (strncmp(text, include, sizeof include - 1) == 0) {
-            const char *name = text + sizeof include - 1;
-            size_t      length = strcspn(name, "\"");
+            const char *name     = text + sizeof include - 1;
+            size_t      length   = strcspn(name, "\"");
             const char *stand_in = stand_in_text(stand_ins, name, length);
             if (stand_in)
                 text_add(out, stand_in);
@@ -80,26 +80,32 @@ char *shader_text(Bench *bench, const char *path, const StandIn *stand_ins)
 static bool layout_create(Gpu *gpu, Shader *shader)
 {
     VkDescriptorSetLayoutBinding binding = {
-        .binding = BUFFER_BINDING,
-        .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+        .binding         = BUFFER_BINDING,
+        .descriptorType  = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
         .descriptorCount = 1,
-        .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
+        .stageFlags      = VK_SHADER_STAGE_COMPUTE_BIT,
     };
     TRY(gpu, "prepare a shader",
-        vkCreateDescriptorSetLayout(gpu->device, &(VkDescriptorSetLayoutCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-            .bindingCount = 1,
-            .pBindings = &binding,
-        }, NULL, &shader->set_layout));
+        vkCreateDescriptorSetLayout(
+            gpu->device,
+            &(VkDescriptorSetLayoutCreateInfo){
+                .sType        = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                .bindingCount = 1,
+                .pBindings    = &binding,
+            },
+            NULL, &shader->set_layout));
     TRY(gpu, "prepare a shader",
-        vkCreatePipelineLayout(gpu->device, &(VkPipelineLayoutCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-            .setLayoutCount = 1,
-            .pSetLayouts = &shader->set_layout,
-            .pushConstantRangeCount = 1,
-            .pPushConstantRanges =
-                &(VkPushConstantRange){VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(int32_t)},
-        }, NULL, &shader->layout));
+        vkCreatePipelineLayout(
+            gpu->device,
+            &(VkPipelineLayoutCreateInfo){
+                .sType                  = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                .setLayoutCount         = 1,
+                .pSetLayouts            = &shader->set_layout,
+                .pushConstantRangeCount = 1,
+                .pPushConstantRanges    = &(VkPushConstantRange){VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                                                                 sizeof(int32_t)},
+            },
+            NULL, &shader->layout));
     return true;
 
 failed:
@@ -108,27 +114,36 @@ failed:
 
 static bool set_create(Gpu *gpu, Shader *shader, const Buffer *buffer)
 {
-    TRY(gpu, "prepare a shader", vkCreateDescriptorPool(gpu->device, &(VkDescriptorPoolCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-        .maxSets = 1,
-        .poolSizeCount = 1,
-        .pPoolSizes = &(VkDescriptorPoolSize){VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-    }, NULL, &shader->pool));
     TRY(gpu, "prepare a shader",
-        vkAllocateDescriptorSets(gpu->device, &(VkDescriptorSetAllocateInfo){
-            .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-            .descriptorPool = shader->pool,
-            .descriptorSetCount = 1,
-            .pSetLayouts = &shader->set_layout,
-        }, &shader->set));
-    vkUpdateDescriptorSets(gpu->device, 1, &(VkWriteDescriptorSet){
-        .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-        .dstSet = shader->set,
-        .dstBinding = BUFFER_BINDING,
-        .descriptorCount = 1,
-        .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-        .pBufferInfo = &(VkDescriptorBufferInfo){buffer->buffer, 0, buffer->size},
-    }, 0, NULL);
+        vkCreateDescriptorPool(
+            gpu->device,
+            &(VkDescriptorPoolCreateInfo){
+                .sType         = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                .maxSets       = 1,
+                .poolSizeCount = 1,
+                .pPoolSizes    = &(VkDescriptorPoolSize){VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
+            },
+            NULL, &shader->pool));
+    TRY(gpu, "prepare a shader",
+        vkAllocateDescriptorSets(gpu->device,
+                                 &(VkDescriptorSetAllocateInfo){
+                                     .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                     .descriptorPool     = shader->pool,
+                                     .descriptorSetCount = 1,
+                                     .pSetLayouts        = &shader->set_layout,
+                                 },
+                                 &shader->set));
+    vkUpdateDescriptorSets(
+        gpu->device, 1,
+        &(VkWriteDescriptorSet){
+            .sType           = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+            .dstSet          = shader->set,
+            .dstBinding      = BUFFER_BINDING,
+            .descriptorCount = 1,
+            .descriptorType  = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+            .pBufferInfo     = &(VkDescriptorBufferInfo){buffer->buffer, 0, buffer->size},
+        },
+        0, NULL);
     return true;
 
 failed:
@@ -137,24 +152,31 @@ failed:
 
 static bool pipeline_create(Gpu *gpu, Shader *shader, const uint32_t *words, size_t count)
 {
-    bool           ready = false;
+    bool           ready  = false;
     VkShaderModule module = VK_NULL_HANDLE;
-    TRY(gpu, "load a shader", vkCreateShaderModule(gpu->device, &(VkShaderModuleCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-        .codeSize = count * sizeof *words,
-        .pCode = words,
-    }, NULL, &module));
-    TRY(gpu, "prepare a shader", vkCreateComputePipelines(gpu->device, VK_NULL_HANDLE, 1,
-        &(VkComputePipelineCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-            .stage = {
-                .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                .module = module,
-                .pName = "main",
+    TRY(gpu, "load a shader",
+        vkCreateShaderModule(gpu->device,
+                             &(VkShaderModuleCreateInfo){
+                                 .sType    = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                 .codeSize = count * sizeof *words,
+                                 .pCode    = words,
+                             },
+                             NULL, &module));
+    TRY(gpu, "prepare a shader",
+        vkCreateComputePipelines(
+            gpu->device, VK_NULL_HANDLE, 1,
+            &(VkComputePipelineCreateInfo){
+                .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                .stage =
+                    {
+                        .sType  = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                        .stage  = VK_SHADER_STAGE_COMPUTE_BIT,
+                        .module = module,
+                        .pName  = "main",
+                    },
+                .layout = shader->layout,
             },
-            .layout = shader->layout,
-        }, NULL, &shader->pipeline));
+            NULL, &shader->pipeline));
     ready = true;
 
 failed:
@@ -165,11 +187,11 @@ failed:
 void shader_create(Bench *bench, Shader *shader, const char *text, const char *name,
                    const Buffer *buffer)
 {
-    Gpu      *gpu = &bench->gpu;
+    Gpu      *gpu   = &bench->gpu;
     uint32_t *words = NULL;
     size_t    count = 0;
-    char     *log = NULL;
-    *shader = (Shader){0};
+    char     *log   = NULL;
+    *shader         = (Shader){0};
 
     double start = clock_ms();
     if (spirv_compile(text, name, &words, &count, &log) != KRS_OK)
@@ -181,7 +203,7 @@ void shader_create(Bench *bench, Shader *shader, const char *text, const char *n
     free(words);
     free(log);
     shader_run(bench, shader, 1);
-    shader->spirv_ms = compiled - start;
+    shader->spirv_ms    = compiled - start;
     shader->pipeline_ms = clock_ms() - compiled;
 }
 
@@ -197,9 +219,9 @@ void shader_destroy(Bench *bench, Shader *shader)
 
 double shader_run(Bench *bench, const Shader *shader, uint32_t groups)
 {
-    Gpu          *gpu = &bench->gpu;
+    Gpu          *gpu  = &bench->gpu;
     const int32_t zero = 0;
-    double        ms = 0;
+    double        ms   = 0;
     if (!gpu_begin(gpu))
         fail("%s", gpu->message);
     vkCmdBindPipeline(gpu->commands, VK_PIPELINE_BIND_POINT_COMPUTE, shader->pipeline);

@@ -49,11 +49,10 @@ static void print_head(const Sheet *sheet, const char *date, const char *command
 {
     struct utsname names;
     const char    *revision = getenv("REVISION");
-    double         load = 0;
+    double         load     = 0;
     uname(&names);
     sheet_print(sheet, "- date: %s\n- device: %s\n- processor: %ld cores, %s, %s %s\n", date,
-                device, sysconf(_SC_NPROCESSORS_ONLN), names.machine, names.sysname,
-                names.release);
+                device, sysconf(_SC_NPROCESSORS_ONLN), names.machine, names.sysname, names.release);
     if (getloadavg(&load, 1) == 1)
         sheet_print(sheet, "- load before: %.2f\n", load);
     sheet_print(sheet, "- krs: %s, revision %s\n- command: %s\n\n", KRS_VERSION,
@@ -63,7 +62,7 @@ static void print_head(const Sheet *sheet, const char *date, const char *command
 Sheet sheet_open(const char *bench, const char *title, const char *command,
                  const KrsRenderer *renderer, bool part)
 {
-    Sheet           sheet = {.bench = bench};
+    Sheet           sheet  = {.bench = bench};
     const KrsDevice device = krs_renderer_device(renderer);
     char            date[16], slug[64];
     date_today(date, sizeof date);

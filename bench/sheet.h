@@ -20,10 +20,9 @@ typedef struct Sheet {
    REVISION in the environment is the revision of the source. */
 Sheet sheet_open(const char *bench, const char *title, const char *command,
                  const KrsRenderer *renderer, bool part);
-void  sheet_print(const Sheet *sheet, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+void sheet_print(const Sheet *sheet, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Only now the file has its name. */
-void  sheet_close(Sheet *sheet);
+void sheet_close(Sheet *sheet);
 
 /* "llvmpipe (LLVM 15.0.6, 256 bits)" is llvmpipe for the names of files. */
 void device_slug(const char *device, char *slug, size_t size);

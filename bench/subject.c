@@ -21,7 +21,7 @@ static void complain(void *user, const KrsDiagnostic *diagnostic)
 static char *with_levels(Bench *bench, const char *text, const char *path, uint32_t levels)
 {
     static const char before[] = "\nlet levels = ";
-    const char *place = strstr(text, before);
+    const char       *place    = strstr(text, before);
     if (!place)
         fail("%s has no levels to be changed", path);
     place += sizeof before - 1;
@@ -34,7 +34,7 @@ static char *with_levels(Bench *bench, const char *text, const char *path, uint3
 
 void subject_open(Bench *bench, Subject *subject, const char *path, uint32_t levels)
 {
-    *subject = (Subject){0};
+    *subject   = (Subject){0};
     char *text = read_file(bench->arena, path);
     if (levels > 0)
         text = with_levels(bench, text, path, levels);
@@ -47,7 +47,7 @@ void subject_open(Bench *bench, Subject *subject, const char *path, uint32_t lev
     if (krs_rendering_new(bench->renderer, subject->scene, &subject->rendering) != KRS_OK)
         fail("%s: %s", path, krs_renderer_message(bench->renderer));
     subject->program = krs_scene_program(subject->scene);
-    subject->pixel = 2 * tan(subject->view.camera.fov / 2) / bench->height;
+    subject->pixel   = 2 * tan(subject->view.camera.fov / 2) / bench->height;
 }
 
 void subject_close(Subject *subject)
@@ -61,7 +61,7 @@ void subject_close(Subject *subject)
 static KrsPicture *render(Bench *bench, Subject *subject, KrsRenderOptions options)
 {
     KrsPicture *picture;
-    options.width = bench->width;
+    options.width  = bench->width;
     options.height = bench->height;
     options.planes = PLANES;
     if (krs_render(subject->rendering, subject->frame, &options, &picture) != KRS_OK)
@@ -84,7 +84,7 @@ Times subject_render(Bench *bench, Subject *subject, const KrsRenderOptions *opt
 {
     double      start = clock_ms(), used = cpu_ms();
     KrsPicture *picture = render(bench, subject, *options);
-    Times       times = {.cpu = cpu_ms() - used, .wall = clock_ms() - start};
+    Times       times   = {.cpu = cpu_ms() - used, .wall = clock_ms() - start};
     memcpy(times.phase, picture->stats.phase_ms, sizeof times.phase);
     times.total = picture->stats.total_ms;
     if (stats)
@@ -99,8 +99,8 @@ void subject_warm_up(Bench *bench, Subject *subject, const KrsRenderOptions *opt
                      KrsRenderStats *stats)
 {
     KrsRenderOptions third = *options;
-    third.crop = (KrsWindow){0, bench->height / 3, bench->width, bench->height / 3};
-    KrsPicture *picture = render(bench, subject, third);
-    *stats = picture->stats;
+    third.crop             = (KrsWindow){0, bench->height / 3, bench->width, bench->height / 3};
+    KrsPicture *picture    = render(bench, subject, third);
+    *stats                 = picture->stats;
     krs_picture_free(picture);
 }

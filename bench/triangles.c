@@ -38,17 +38,17 @@ static Line line_of(const double *times, size_t count)
     for (size_t i = 0; i < count; i++)
         if (!isnan(times[i])) {
             doublings[kept] = triangle_rows[i].doublings;
-            there[kept++] = times[i];
+            there[kept++]   = times[i];
         }
     return line_through(doublings, there, kept);
 }
 
 static void run_row(Bench *bench, Triangles *triangles, size_t at)
 {
-    Subject subjects[GROWING_COUNT];
-    Times  *runs[GROWING_COUNT];
+    Subject                subjects[GROWING_COUNT];
+    Times                 *runs[GROWING_COUNT];
     const KrsRenderOptions options = {.error = PERMITTED_ERROR};
-    const TriangleRow     *row = &triangle_rows[at];
+    const TriangleRow     *row     = &triangle_rows[at];
     for (int i = 0; i < GROWING_COUNT; i++) {
         KrsRenderStats stats;
         runs[i] = arena_new_array(bench->arena, Times, bench->repeats);
@@ -66,9 +66,9 @@ static void run_row(Bench *bench, Triangles *triangles, size_t at)
         triangles->ns_per_ray[i][at] = NAN;
         if (!is_there(row, i))
             continue;
-        Times times = times_median(runs[i], bench->repeats);
-        triangles->ns_per_ray[i][at] =
-            march_ms(&times) * 1e6 / ((double)bench->width * bench->height);
+        Times times                  = times_median(runs[i], bench->repeats);
+        triangles->ns_per_ray[i][at] = march_ms(&times) * 1e6 /
+                                       ((double)bench->width * bench->height);
         subject_close(&subjects[i]);
     }
 }
@@ -83,7 +83,7 @@ void triangles_run(Bench *bench, Triangles *triangles)
         double theirs[ROWS];
         for (size_t i = 0; i < ROWS; i++)
             theirs[i] = triangle_rows[i].paper_us[k];
-        triangles->lines[k] = line_of(triangles->ns_per_ray[k], triangles->count);
+        triangles->lines[k]       = line_of(triangles->ns_per_ray[k], triangles->count);
         triangles->paper_lines[k] = line_of(theirs, ROWS);
     }
 }

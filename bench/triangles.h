@@ -26,7 +26,7 @@ extern const TriangleRow triangle_rows[];
 
 typedef struct Triangles {
     size_t count;
-    double ns_per_ray[GROWING_COUNT][MOST_EQUIVALENTS]; /* NAN: left out */
+    double ns_per_ray[GROWING_COUNT][MOST_EQUIVALENTS];      /* NAN: left out */
     Line   lines[GROWING_COUNT], paper_lines[GROWING_COUNT]; /* ns, by doublings; theirs in us */
 } Triangles;
 

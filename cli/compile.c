@@ -56,8 +56,8 @@ static KrsStatus write_description(const Options *options, const KrsScene *scene
 static KrsStatus write_all(const Options *options, const KrsScene *scene, const Modules *modules)
 {
     const KrsProgram *program = krs_scene_program(scene);
-    const char *name = scene_name(options->arena, options->files.items[0]);
-    Text base = {.arena = options->arena};
+    const char       *name    = scene_name(options->arena, options->files.items[0]);
+    Text              base    = {.arena = options->arena};
     text_format(&base, "%s/%s", options->outputs.items[0], name);
     Text glsl = {.arena = options->arena};
     text_add(&glsl, compiled_defines(options));
@@ -68,7 +68,7 @@ static KrsStatus write_all(const Options *options, const KrsScene *scene, const 
         status = write_part(options, base.bytes, ".glsl", glsl.bytes, glsl.length);
     for (size_t i = 0; i < modules->count && status == KRS_OK; i++) {
         const Module *module = &modules->items[i];
-        Text ending = {.arena = options->arena};
+        Text          ending = {.arena = options->arena};
         text_format(&ending, ".%s.spv", module->entry);
         status = write_part(options, base.bytes, ending.bytes, module->words,
                             module->word_count * sizeof *module->words);
@@ -81,7 +81,7 @@ static KrsStatus write_all(const Options *options, const KrsScene *scene, const 
 KrsStatus command_compile(Options *options)
 {
     KrsScene *scene;
-    Modules modules;
+    Modules   modules;
     KrsStatus status = scene_open(options, options->files.items[0], &scene);
     if (status != KRS_OK)
         return status;

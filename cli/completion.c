@@ -18,13 +18,13 @@
 static bool find_choices(const OptionInfo *option, char *words, size_t size)
 {
     bool        optional = option->argument[0] == '[';
-    const char *from = strchr(option->argument, '|') || optional ? option->argument + optional
-                                                                  : option->wants;
-    size_t length = 0;
-    bool   listed = optional;
+    const char *from     = strchr(option->argument, '|') || optional ? option->argument + optional
+                                                                     : option->wants;
+    size_t      length   = 0;
+    bool        listed   = optional;
     for (; *from && *from != ']' && length + 2 < size; from++) {
         if (strncmp(from, " or ", 4) == 0 || strncmp(from, ", ", 2) == 0 || *from == '|') {
-            listed         = true;
+            listed          = true;
             words[length++] = ' ';
             from += *from == '|' ? 0 : *from == ',' ? 1 : 3;
         } else if (islower((unsigned char)*from) || *from == '-')
@@ -125,7 +125,8 @@ static void print_bash(FILE *out)
           "    COMPREPLY=()\n"
           "    [ \"$COMP_CWORD\" -gt 1 ] || before=first\n"
           "    case $before in\n"
-          "    first) words='--help --version", out);
+          "    first) words='--help --version",
+          out);
     for (CommandId command = 0; command < COMMAND_COUNT; command++)
         fprintf(out, " %s", command_table[command].name);
     fputs("' ;;\n", out);
@@ -134,7 +135,8 @@ static void print_bash(FILE *out)
     print_codes(out);
     fputs("' ;;\n"
           "    *)\n"
-          "        case ${COMP_WORDS[1]} in\n", out);
+          "        case ${COMP_WORDS[1]} in\n",
+          out);
     print_bash_options(out);
     fputs("        esac\n"
           "        [[ $word == -* ]] || words=''\n"
@@ -142,7 +144,8 @@ static void print_bash(FILE *out)
           "    esac\n"
           "    [ -z \"$words\" ] || mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$word\")\n"
           "}\n"
-          "complete -o filenames -F _krs krs\n", out);
+          "complete -o filenames -F _krs krs\n",
+          out);
 }
 
 /* ---- zsh ---- */
@@ -199,7 +202,8 @@ static void print_zsh(FILE *out)
     fputs("#compdef krs\n"
           "# _krs: completion of command lines of krs.\n"
           "local -a commands\n"
-          "commands=(\n", out);
+          "commands=(\n",
+          out);
     for (CommandId command = 0; command < COMMAND_COUNT; command++) {
         fprintf(out, "    '%s:", command_table[command].name);
         print_zsh_text(out, command_table[command].summary);
@@ -213,7 +217,8 @@ static void print_zsh(FILE *out)
           "fi\n"
           "shift words\n"
           "(( CURRENT-- ))\n"
-          "case $words[1] in\n", out);
+          "case $words[1] in\n",
+          out);
     for (CommandId command = 0; command < COMMAND_COUNT; command++) {
         fprintf(out, "%s)\n    _arguments", command_table[command].name);
         for (OptionId id = 0; id < OPTION_COUNT; id++)
@@ -255,8 +260,10 @@ static void print_fish_files(FILE *out, CommandId command)
     }
     for (const char *at = find_endings(command); sscanf(at, "%15s", ending) == 1;
          at += strlen(ending) + (at[strlen(ending)] == ' '))
-        fprintf(out, "complete -c krs -n '__fish_seen_subcommand_from %s' -k -a "
-                "'(__fish_complete_suffix %s)'\n", name, ending);
+        fprintf(out,
+                "complete -c krs -n '__fish_seen_subcommand_from %s' -k -a "
+                "'(__fish_complete_suffix %s)'\n",
+                name, ending);
 }
 
 static void print_fish(FILE *out)
@@ -265,7 +272,8 @@ static void print_fish(FILE *out)
           "complete -c krs -f\n"
           "complete -c krs -n __fish_use_subcommand -l help -d 'the commands'\n"
           "complete -c krs -n __fish_use_subcommand -l version "
-          "-d 'versions of krs and its libraries'\n", out);
+          "-d 'versions of krs and its libraries'\n",
+          out);
     for (CommandId command = 0; command < COMMAND_COUNT; command++) {
         const CommandInfo *info = &command_table[command];
         fprintf(out, "complete -c krs -n __fish_use_subcommand -a %s -d '", info->name);

@@ -80,15 +80,17 @@ double clock_now(void)
 
 void progress_start(Progress *progress, const Options *options, size_t parts)
 {
-    *progress = (Progress){.off = options->quiet, .terminal = isatty(STDERR_FILENO) != 0,
-                           .percent = -1, .parts = parts};
+    *progress = (Progress){.off      = options->quiet,
+                           .terminal = isatty(STDERR_FILENO) != 0,
+                           .percent  = -1,
+                           .parts    = parts};
 }
 
 static void draw_bar(const Progress *progress)
 {
     enum { WIDTH = 40 };
     char bar[WIDTH + 1];
-    int filled = progress->percent * WIDTH / 100;
+    int  filled = progress->percent * WIDTH / 100;
     memset(bar, ' ', WIDTH);
     memset(bar, '#', (size_t)filled);
     bar[WIDTH] = '\0';
@@ -99,15 +101,15 @@ static void draw_bar(const Progress *progress)
 
 void progress_show(Progress *progress, double fraction)
 {
-    double now = clock_now();
-    double total = ((double)progress->part + fraction) / (double)progress->parts;
-    int percent = (int)(100 * fmin(fmax(total, 0), 1));
-    double pause = progress->terminal ? 0.1 : 1;
+    double now     = clock_now();
+    double total   = ((double)progress->part + fraction) / (double)progress->parts;
+    int    percent = (int)(100 * fmin(fmax(total, 0), 1));
+    double pause   = progress->terminal ? 0.1 : 1;
     if (progress->off || percent == progress->percent ||
         (progress->shown_at > 0 && now - progress->shown_at < pause))
         return;
     progress->shown_at = now;
-    progress->percent = percent;
+    progress->percent  = percent;
     if (progress->terminal)
         draw_bar(progress);
     else

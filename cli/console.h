@@ -27,8 +27,8 @@ double clock_now(void);
 /* How far the work is: a bar on a terminal; else, at most once a second, "Progress: 42%". */
 typedef struct Progress {
     bool   off, terminal;
-    double shown_at;   /* when something was last shown; 0: never */
-    int    percent;    /* last shown */
+    double shown_at;    /* when something was last shown; 0: never */
+    int    percent;     /* last shown */
     size_t part, parts; /* of several frames, the one being made */
 } Progress;
 

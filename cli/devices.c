@@ -9,9 +9,11 @@
 #include "cli/console.h"
 #include "cli/supervise.h"
 
-static const char *const kind_names[] = {
-    [KRS_DEVICE_OTHER] = "other", [KRS_DEVICE_CPU] = "cpu", [KRS_DEVICE_VIRTUAL] = "virtual",
-    [KRS_DEVICE_INTEGRATED] = "integrated", [KRS_DEVICE_DISCRETE] = "discrete"};
+static const char *const kind_names[] = {[KRS_DEVICE_OTHER]      = "other",
+                                         [KRS_DEVICE_CPU]        = "cpu",
+                                         [KRS_DEVICE_VIRTUAL]    = "virtual",
+                                         [KRS_DEVICE_INTEGRATED] = "integrated",
+                                         [KRS_DEVICE_DISCRETE]   = "discrete"};
 
 typedef struct Version {
     unsigned major, minor, patch;
@@ -41,8 +43,9 @@ static void print_json(Arena *arena, const KrsDevice *devices, size_t count)
         Version version = unpack(devices[i].api_version);
         text_format(&json, "%s{\"index\": %zu, \"name\": ", i == 0 ? "" : ", ", i);
         text_json(&json, devices[i].name);
-        text_format(&json, ", \"kind\": \"%s\", \"vulkan\": \"%u.%u.%u\", \"usable\": %s, "
-                           "\"preferred\": %s}",
+        text_format(&json,
+                    ", \"kind\": \"%s\", \"vulkan\": \"%u.%u.%u\", \"usable\": %s, "
+                    "\"preferred\": %s}",
                     kind_names[devices[i].kind], version.major, version.minor, version.patch,
                     devices[i].usable ? "true" : "false", devices[i].preferred ? "true" : "false");
     }
@@ -54,9 +57,9 @@ KrsStatus command_devices(Options *options)
 {
     size_t count = 0;
     stage_enter(STAGE_DEVICE);
-    KrsStatus status = krs_devices(NULL, 0, &count);
-    KrsDevice *devices = arena_new_array(options->arena, KrsDevice, count + 1);
-    size_t capacity = count;
+    KrsStatus  status   = krs_devices(NULL, 0, &count);
+    KrsDevice *devices  = arena_new_array(options->arena, KrsDevice, count + 1);
+    size_t     capacity = count;
     if (status == KRS_OK)
         status = krs_devices(devices, capacity, &count);
     if (status == KRS_NO_DEVICE)
@@ -77,7 +80,7 @@ static const char *cache_folder(const Options *options)
 {
     if (options->cache)
         return strcmp(options->cache, "off") == 0 ? NULL : options->cache;
-    Text        path = {.arena = options->arena};
+    Text        path   = {.arena = options->arena};
     const char *caches = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
     if (caches && caches[0] == '/')
         text_format(&path, "%s/krs", caches);
@@ -98,9 +101,11 @@ static void go_on(void *user)
 KrsStatus open_renderer(const Options *options, KrsRenderer **renderer)
 {
     const char        *device = options->device ? options->device : getenv("KRS_DEVICE");
-    KrsRendererOptions with = {.device = device, .cache = cache_folder(options),
-                               .early_outs = options->early_outs, .working = go_on,
-                               .patience = DEVICE_PATIENCE * options->deadline};
+    KrsRendererOptions with   = {.device     = device,
+                                 .cache      = cache_folder(options),
+                                 .early_outs = options->early_outs,
+                                 .working    = go_on,
+                                 .patience   = DEVICE_PATIENCE * options->deadline};
     stage_enter(STAGE_DEVICE);
     KrsStatus status = krs_renderer_new(&with, renderer);
     stage_enter(STAGE_START);

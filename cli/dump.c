@@ -14,7 +14,7 @@
 static KrsStatus dump_spirv(const Options *options, const char *path)
 {
     KrsScene *scene;
-    Modules modules;
+    Modules   modules;
     KrsStatus status = scene_open(options, path, &scene);
     if (status != KRS_OK)
         return status;
@@ -42,16 +42,16 @@ static DumpStage find_stage(const char *name)
 
 KrsStatus command_dump(Options *options)
 {
-    const char *path = options->files.items[0];
-    DumpStage stage = find_stage(options->after);
+    const char *path  = options->files.items[0];
+    DumpStage   stage = find_stage(options->after);
     if (stage == DUMP_STAGE_COUNT)
         return dump_spirv(options, path);
     KrsStatus status = scene_readable(path);
     if (status != KRS_OK)
         return status;
-    char *text = NULL;
+    char          *text = NULL;
     DiagnosticSink sink = {.options = options};
-    KrsOptions with = scene_options(&sink, path);
+    KrsOptions     with = scene_options(&sink, path);
     scene_enter_compile(path);
     status = krs_dump(path, stage, &with, &text);
     scene_print_counts(&sink);

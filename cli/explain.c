@@ -21,9 +21,9 @@ KrsStatus command_explain(Options *options)
         print_list();
         return KRS_OK;
     }
-    char *code = arena_copy_text(options->arena, options->files.items[0],
-                                 strlen(options->files.items[0]));
-    code[0] = (char)toupper((unsigned char)code[0]); /* e0203, too */
+    char *code           = arena_copy_text(options->arena, options->files.items[0],
+                                           strlen(options->files.items[0]));
+    code[0]              = (char)toupper((unsigned char)code[0]); /* e0203, too */
     const DiagInfo *info = diag_find(code);
     if (!info)
         return say_usage(options, "there is no diagnostic `%s`; `krs explain` lists them",

@@ -32,10 +32,7 @@ static bool refuse_equation(const Equation *equation, const char *what)
                          equation->at, column, what);
 }
 
-static void skip_blanks(Equation *equation)
-{
-    equation->at += strspn(equation->at, " \t\r\n\f");
-}
+static void skip_blanks(Equation *equation) { equation->at += strspn(equation->at, " \t\r\n\f"); }
 
 /* Takes `sign` and the blanks around it. */
 static bool take(Equation *equation, char sign)
@@ -64,8 +61,8 @@ static bool parse_number(Equation *equation)
     return true;
 }
 
-static const char *const functions[] = {"sin", "cos", "tan", "asin", "acos", "atan", "exp",
-                                        "log", "sqrt", "ceil", "floor", "abs", "sign"};
+static const char *const functions[] = {"sin", "cos",  "tan",  "asin",  "acos", "atan", "exp",
+                                        "log", "sqrt", "ceil", "floor", "abs",  "sign"};
 enum { FUNCTIONS = sizeof functions / sizeof *functions };
 
 /* A parameter's name in the scene: most names of the language are longer than a letter. */
@@ -77,8 +74,8 @@ static void add_parameter_name(Text *text, const char *name)
 
 static bool use_parameter(Equation *equation, const char *name)
 {
-    Surface        *surface = equation->surface;
-    Text            key     = {.arena = surface->import->arena};
+    Surface *surface = equation->surface;
+    Text     key     = {.arena = surface->import->arena};
     text_format(&key, "surface_parameter_%s", name);
     const Property *property = jsurf_property(surface, key.bytes);
     if (!property)
@@ -206,8 +203,11 @@ bool jsurf_equation(Surface *surface, Text *text)
     const Property *property = jsurf_property(surface, "surface_equation");
     if (!property)
         return import_refuse(surface->import, 1, "there is no surface_equation");
-    Equation equation = {.surface = surface, .line = property->line, .start = property->value,
-                         .at = property->value, .text = {.arena = surface->import->arena}};
+    Equation equation = {.surface = surface,
+                         .line    = property->line,
+                         .start   = property->value,
+                         .at      = property->value,
+                         .text    = {.arena = surface->import->arena}};
     if (!parse_sum(&equation))
         return false;
     skip_blanks(&equation);

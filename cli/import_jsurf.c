@@ -62,14 +62,13 @@ static bool read_space(const Surface *surface, const char *key, Space *space)
    or mirrored.  Files have seven digits. */
 static double space_factor(const Space *space)
 {
-    const double CLOSE = 1e-4;
+    const double  CLOSE = 1e-4;
     const double *a = space->rows[0], *b = space->rows[1], *c = space->rows[2];
-    double cross[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                       a[0] * b[1] - a[1] * b[0]};
-    double square = dot(a, a), slack = CLOSE * square;
-    bool   even = fabs(dot(b, b) - square) <= slack && fabs(dot(c, c) - square) <= slack;
-    bool   upright = fabs(dot(a, b)) <= slack && fabs(dot(a, c)) <= slack &&
-                     fabs(dot(b, c)) <= slack;
+    double        cross[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                              a[0] * b[1] - a[1] * b[0]};
+    double        square = dot(a, a), slack = CLOSE * square;
+    bool          even = fabs(dot(b, b) - square) <= slack && fabs(dot(c, c) - square) <= slack;
+    bool upright = fabs(dot(a, b)) <= slack && fabs(dot(a, c)) <= slack && fabs(dot(b, c)) <= slack;
     return square > 0 && even && upright && dot(cross, c) > 0 ? sqrt(square) : 0;
 }
 
@@ -112,9 +111,9 @@ static bool read_spaces(Surface *surface, Space *camera)
         !read_space(surface, "surface_transform_matrix", &surfaces) ||
         !jsurf_numbers(surface, "scale_factor", &zoom, 1))
         return false;
-    own     = inverse_turn(&own);
-    turn    = space_after(&turn, &own);
-    *camera = space_after(&whole, &turn);
+    own           = inverse_turn(&own);
+    turn          = space_after(&turn, &own);
+    *camera       = space_after(&whole, &turn);
     double factor = space_factor(&surfaces), off = 0;
     for (int i = 0; i < 3; i++) {
         off = fmax(off, fabs(surfaces.rows[i][3]));
@@ -152,7 +151,7 @@ static bool read_color(const Surface *surface, const char *key, const double oth
         return false;
     hex[0] = '#';
     for (int i = 0; i < 3; i++) {
-        int level = (int)lround(255 * fmin(fmax(color[i], 0), 1));
+        int level      = (int)lround(255 * fmin(fmax(color[i], 0), 1));
         hex[2 * i + 1] = "0123456789abcdef"[level / 16];
         hex[2 * i + 2] = "0123456789abcdef"[level % 16];
     }
@@ -165,9 +164,9 @@ static bool read_color(const Surface *surface, const char *key, const double oth
 static bool write_camera(const Surface *surface, const Space *camera)
 {
     static const double origin[3] = {0, 0, 0}, back[3] = {0, 0, 1}, upwards[3] = {0, 1, 0};
-    const Property *type = jsurf_property(surface, "camera_type");
-    bool   flat = !type || strcmp(type->value, "ORTHOGRAPHIC_CAMERA") == 0;
-    double eye[3], away[3], up[3], height = 2, fov = 60, target[3];
+    const Property     *type = jsurf_property(surface, "camera_type");
+    bool                flat = !type || strcmp(type->value, "ORTHOGRAPHIC_CAMERA") == 0;
+    double              eye[3], away[3], up[3], height = 2, fov = 60, target[3];
     if (!flat && strcmp(type->value, "PERSPECTIVE_CAMERA") != 0)
         return import_refuse(surface->import, type->line, "no camera is a `%.60s`", type->value);
     if (!jsurf_numbers(surface, "camera_height", &height, 1) ||
@@ -203,8 +202,8 @@ static bool write_camera(const Surface *surface, const Space *camera)
 static bool write_light(const Surface *surface, const Space *camera, int number)
 {
     static const double white[3] = {1, 1, 1};
-    char   key[64], color[8];
-    double position[3] = {0, 0, 0}, intensity = 1, place[3];
+    char                key[64], color[8];
+    double              position[3] = {0, 0, 0}, intensity = 1, place[3];
     snprintf(key, sizeof key, "light_status_%d", number);
     const Property *status = jsurf_property(surface, key);
     if (!status || strcmp(status->value, "ON") != 0)
@@ -233,8 +232,8 @@ static bool write_light(const Surface *surface, const Space *camera, int number)
 static bool write_looks(const Surface *surface, const Space *camera)
 {
     static const double grey[3] = {0.5, 0.5, 0.5}, white[3] = {1, 1, 1};
-    char   front[8], back[8], sky[8];
-    double shininess = 30;
+    char                front[8], back[8], sky[8];
+    double              shininess = 30;
     if (!read_color(surface, "front_material_color", grey, front) ||
         !read_color(surface, "back_material_color", grey, back) ||
         !read_color(surface, "background_color", white, sky) ||
@@ -247,8 +246,9 @@ static bool write_looks(const Surface *surface, const Space *camera)
     else
         text_format(scene, "if equation > 0 then %s else %s", front, back);
     text_format(scene, ",\n    roughness: %.2f\n}\n", sqrt(2 / (fmax(shininess, 0) + 2)));
-    text_format(scene, "show algebraic(equation == 0).within(sphere(%.7g), open: true)"
-                       ".paint(sides);\n\n",
+    text_format(scene,
+                "show algebraic(equation == 0).within(sphere(%.7g), open: true)"
+                ".paint(sides);\n\n",
                 surface->scale);
     if (!write_camera(surface, camera))
         return false;
@@ -270,7 +270,9 @@ bool import_jsurf(Import *import)
     text_format(&import->scene, "// From %s.\n\n", import->name);
     if (!jsurf_write_parameters(&surface))
         return false;
-    text_format(&import->scene, "// Without `open: true` it is a solid, below 0.\nlet equation =\n"
-                                "    %s;\n", equation.bytes);
+    text_format(&import->scene,
+                "// Without `open: true` it is a solid, below 0.\nlet equation =\n"
+                "    %s;\n",
+                equation.bytes);
     return write_looks(&surface, &camera);
 }

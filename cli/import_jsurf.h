@@ -15,7 +15,10 @@ typedef struct Property {
 
 typedef struct Surface {
     Import *import;
-    struct { Property *items; size_t count, capacity; } properties;
+    struct {
+        Property *items;
+        size_t    count, capacity;
+    } properties;
     const Property *used[MOST_PARAMETERS]; /* parameters of the equation, as it names them */
     size_t          used_count;
     double          scale; /* radius of the ball in the space of the equation */

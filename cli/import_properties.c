@@ -23,7 +23,7 @@ static int hexadecimal(const char **at)
     int code = 0;
     for (int i = 0; i < 4 && isxdigit((unsigned char)**at); i++, (*at)++) {
         int digit = isdigit((unsigned char)**at) ? **at - '0' : tolower(**at) - 'a' + 10;
-        code = 16 * code + digit;
+        code      = 16 * code + digit;
     }
     return code > 0 && code < 128 ? code : '?'; /* nothing that counts here is beyond ASCII */
 }
@@ -46,9 +46,11 @@ static int next_character(Reader *reader, bool *escaped)
         reader->at += strspn(reader->at, " \t\f");
         return next_character(reader, escaped);
     case 't': return '\t';
-    case 'n': case 'r': case 'f': return ' ';
+    case 'n':
+    case 'r':
+    case 'f': return ' ';
     case 'u': return hexadecimal(&reader->at);
-    default:  return next;
+    default: return next;
     }
 }
 
@@ -91,7 +93,7 @@ bool jsurf_read(Surface *surface)
             return import_refuse(surface->import, reader.line, "more than %d properties",
                                  MOST_PROPERTIES);
         Property property = {.line = reader.line};
-        property.key = read_piece(surface, &reader, true);
+        property.key      = read_piece(surface, &reader, true);
         reader.at += strspn(reader.at, " \t\f");
         reader.at += *reader.at == '=' || *reader.at == ':';
         reader.at += strspn(reader.at, " \t\f");
@@ -120,14 +122,13 @@ bool jsurf_numbers(const Surface *surface, const char *key, double *numbers, int
         char  *end;
         double number = strtod(at, &end);
         if (end == at || !isfinite(number) || fabs(number) > MOST)
-            return import_refuse(surface->import, property->line,
-                                 "`%s` needs %d number%s up to %g", key, count,
-                                 count == 1 ? "" : "s", MOST);
+            return import_refuse(surface->import, property->line, "`%s` needs %d number%s up to %g",
+                                 key, count, count == 1 ? "" : "s", MOST);
         numbers[i] = number;
         at         = end;
     }
     at += strspn(at, " \t");
-    return *at == '\0' || import_refuse(surface->import, property->line,
-                                        "`%s` has more than %d number%s", key, count,
-                                        count == 1 ? "" : "s");
+    return *at == '\0' ||
+           import_refuse(surface->import, property->line, "`%s` has more than %d number%s", key,
+                         count, count == 1 ? "" : "s");
 }

@@ -75,7 +75,10 @@ typedef struct Tape {
     Import  *import;
     unsigned line;
     Names    names;
-    struct { Step *items; size_t count, capacity; } steps;
+    struct {
+        Step  *items;
+        size_t count, capacity;
+    } steps;
     Meaning *meanings; /* a hash table, open, twice as large as there can be names */
 } Tape;
 
@@ -163,7 +166,7 @@ static bool read_argument(Tape *tape, Step *step, int index, const char **at)
         return import_refuse(tape->import, tape->line, "no line before this one is called `%s`",
                              word_text(tape, word));
     step->arguments[index] = meaning->step;
-    step->varies = step->varies || tape->steps.items[meaning->step].varies;
+    step->varies           = step->varies || tape->steps.items[meaning->step].varies;
     return true;
 }
 
@@ -190,7 +193,7 @@ static bool read_line(Tape *tape, const char *at)
     if (next_word(&at).length > 0)
         return import_refuse(tape->import, tape->line, "`%s` has too many arguments",
                              step.operation->name);
-    const char *interned = name_intern(&tape->names, name.start, (size_t)name.length);
+    const char *interned          = name_intern(&tape->names, name.start, (size_t)name.length);
     *find_meaning(tape, interned) = (Meaning){interned, tape->steps.count};
     array_push(tape->import->arena, &tape->steps, step);
     return true;
@@ -248,7 +251,7 @@ static void write_step(const Tape *tape, const Step *step)
 static void write_tape(Tape *tape)
 {
     size_t last = tape->steps.count - 1, place = 0;
-    Text  *text = &tape->import->scene;
+    Text  *text                    = &tape->import->scene;
     tape->steps.items[last].counts = true;
     for (size_t i = last + 1; i-- > 0;) {
         const Step *step = &tape->steps.items[i];
@@ -271,7 +274,7 @@ static void write_tape(Tape *tape)
 
 bool import_tape(Import *import)
 {
-    Tape tape = {.import = import, .names = {.arena = import->arena}};
+    Tape tape     = {.import = import, .names = {.arena = import->arena}};
     tape.meanings = arena_new_array(import->arena, Meaning, MEANINGS);
     if (!read_tape(&tape))
         return false;

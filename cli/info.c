@@ -78,10 +78,10 @@ static void print_component(const KrsComponent *component, size_t number)
     print_vector(component->high, 3);
     fputs("\n    slope      ", stdout);
     printf("%.6g", component->slope);
-    puts(component->exact      ? " (the distance is exact, by claim)"
+    puts(component->exact       ? " (the distance is exact, by claim)"
          : component->per_frame ? " (the distance is a bound, derived for each frame: at first)"
-         : component->estimate ? " (the distance is an estimate: `krs validate` measures it)"
-                               : " (the distance is a bound, derived)");
+         : component->estimate  ? " (the distance is an estimate: `krs validate` measures it)"
+                                : " (the distance is a bound, derived)");
     if (component->levels > 0) {
         printf("    levels     %u\n    instances  ", component->levels);
         printf("%.0f", component->instances);
@@ -150,8 +150,7 @@ static void add_bound(Text *json, const KrsBound *bound)
     text_add(json, ", \"high\": ");
     json_vector(json, bound->high, 3);
     text_format(json, ", \"exact\": %s, \"estimate\": %s, \"levels\": %u, \"instances\": ",
-                bound->exact ? "true" : "false", bound->estimate ? "true" : "false",
-                bound->levels);
+                bound->exact ? "true" : "false", bound->estimate ? "true" : "false", bound->levels);
     json_number(json, bound->instances);
     text_format(json, ", \"alike\": %u, \"same\": %zu}", bound->alike, bound->same);
 }

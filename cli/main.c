@@ -39,9 +39,9 @@ static void hold_standard_streams(void)
 
 static KrsStatus print_version(void)
 {
-    int major, minor, patch;
+    int         major, minor, patch;
     const char *extra;
-    uint32_t vulkan = VK_API_VERSION_1_0;
+    uint32_t    vulkan = VK_API_VERSION_1_0;
     exr_get_library_version(&major, &minor, &patch, &extra);
     vkEnumerateInstanceVersion(&vulkan);
     printf("krs %s\n", KRS_VERSION);
@@ -106,7 +106,7 @@ static int run(Options *options, int argc, char **argv)
         return KRS_OUT_OF_MEMORY;
     }
     options->arena->memory->exhausted = &exhausted;
-    KrsStatus status = options_parse(options, argc, argv);
+    KrsStatus status                  = options_parse(options, argc, argv);
     if (status != KRS_OK)
         return status;
     if (options->help) {
@@ -138,10 +138,10 @@ int main(int argc, char **argv)
     int status;
     if (print_installed(argc, argv, &status))
         return status;
-    Memory  memory = {.limit = 0};
-    Arena   arena = {.memory = &memory};
+    Memory  memory  = {.limit = 0};
+    Arena   arena   = {.memory = &memory};
     Options options = {.arena = &arena};
-    status = map_exit(&options, run(&options, argc, argv));
+    status          = map_exit(&options, run(&options, argc, argv));
     arena_free(&arena);
     return status;
 }

@@ -14,9 +14,16 @@
 
 /* The parts of a module that are looked at, with their numbers in the SPIR-V specification. */
 enum {
-    HEADER_WORDS = 5, BOUND_WORD = 3, /* ids are below the bound */
-    OP_NAME = 5, OP_EXECUTION_MODE = 16, OP_TYPE_POINTER = 32, OP_VARIABLE = 59, OP_DECORATE = 71,
-    MODE_LOCAL_SIZE = 17, DECORATION_BINDING = 33, DECORATION_SET = 34
+    HEADER_WORDS       = 5,
+    BOUND_WORD         = 3, /* ids are below the bound */
+    OP_NAME            = 5,
+    OP_EXECUTION_MODE  = 16,
+    OP_TYPE_POINTER    = 32,
+    OP_VARIABLE        = 59,
+    OP_DECORATE        = 71,
+    MODE_LOCAL_SIZE    = 17,
+    DECORATION_BINDING = 33,
+    DECORATION_SET     = 34
 };
 
 static bool is_kernel(const char *file)
@@ -33,15 +40,15 @@ const char *compiled_defines(const Options *options)
 static KrsStatus compile_kernel(const Options *options, const char *glsl, const char *file,
                                 Modules *modules)
 {
-    Gpu   gpu = {0}; /* stays closed: it only carries the reason of a failure */
+    Gpu   gpu  = {0}; /* stays closed: it only carries the reason of a failure */
     char *text = kernel_text(&gpu, &(KernelSource){file, glsl, compiled_defines(options)});
-    char *log = NULL;
+    char *log  = NULL;
     if (!text) {
         say("%s", gpu.message);
         return gpu.status;
     }
-    Module module = {.file = file,
-                     .entry = arena_copy_text(options->arena, file, strlen(file) - 5)};
+    Module    module = {.file  = file,
+                        .entry = arena_copy_text(options->arena, file, strlen(file) - 5)};
     KrsStatus status = spirv_compile(text, file, &module.words, &module.word_count, &log);
     if (status == KRS_OK)
         array_push(options->arena, modules, module);
@@ -57,9 +64,9 @@ static KrsStatus compile_kernel(const Options *options, const char *glsl, const 
 
 KrsStatus modules_compile(const Options *options, const KrsScene *scene, Modules *modules)
 {
-    const char *glsl = krs_scene_program(scene)->glsl;
-    KrsStatus status = KRS_OK;
-    *modules = (Modules){0};
+    const char *glsl   = krs_scene_program(scene)->glsl;
+    KrsStatus   status = KRS_OK;
+    *modules           = (Modules){0};
     stage_enter(STAGE_SHADERS);
     spirv_start();
     for (const EmbeddedFile *file = shader_files; file->name && status == KRS_OK; file++)
@@ -98,7 +105,7 @@ static void read_instruction(const uint32_t *word, uint32_t op, IdInfo *ids, uin
         ids[word[1]].set = word[3];
     if (op == OP_DECORATE && word[2] == DECORATION_BINDING) {
         ids[word[1]].binding = word[3];
-        ids[word[1]].bound = true;
+        ids[word[1]].bound   = true;
     }
 }
 

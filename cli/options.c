@@ -18,14 +18,14 @@
 #define ON_COMPILING (ON_ALL & ~(ON(DEVICES) | ON(EXPLAIN) | ON(IMPORT)))
 
 const CommandInfo command_table[COMMAND_COUNT] = {
-#define COMMAND(id, name, arguments, files, summary, examples)                                  \
+#define COMMAND(id, name, arguments, files, summary, examples) \
     [COMMAND_##id] = {name, arguments, files, summary, examples},
 #include "cli/commands.def"
 #undef COMMAND
 };
 
 const OptionInfo option_info[OPTION_COUNT] = {
-#define OPTION(id, letter, name, argument, commands, take, wants, help)                         \
+#define OPTION(id, letter, name, argument, commands, take, wants, help) \
     [OPTION_##id] = {letter, name, argument, commands, wants, help},
 #include "cli/options.def"
 #undef OPTION
@@ -63,8 +63,10 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
     if (status != KRS_OK)
         return status;
     switch (id) {
-#define OPTION(id, letter, name, argument, commands, take, wants, help)                         \
-    case OPTION_##id: taken = (take); break;
+#define OPTION(id, letter, name, argument, commands, take, wants, help) \
+    case OPTION_##id:                                                   \
+        taken = (take);                                                 \
+        break;
 #include "cli/options.def"
 #undef OPTION
     case OPTION_COUNT: break;
@@ -77,11 +79,11 @@ static KrsStatus option_take(Options *options, OptionId id, const char *value)
 static KrsStatus unknown_option(const Options *options, const char *name, size_t length)
 {
     const char *candidates[OPTION_COUNT];
-    size_t count = 0;
+    size_t      count = 0;
     for (OptionId id = 0; id < OPTION_COUNT; id++)
         if (option_belongs(id, options->command))
             candidates[count++] = option_info[id].name;
-    const char *word = arena_copy_text(options->arena, name, length);
+    const char *word    = arena_copy_text(options->arena, name, length);
     const char *nearest = nearest_name(word, candidates, count);
     const char *command = command_table[options->command].name;
     if (nearest)
@@ -133,8 +135,8 @@ static KrsStatus take_option(Options *options, int *next)
 {
     const char *word = options->argv[(*next)++];
     if (word[1] == '-') {
-        size_t length = strcspn(word + 2, "=");
-        OptionId id = option_find(options, word + 2, length);
+        size_t   length = strcspn(word + 2, "=");
+        OptionId id     = option_find(options, word + 2, length);
         if (id == OPTION_COUNT)
             return unknown_option(options, word + 2, length);
         const char *equals = word + 2 + length;
@@ -169,17 +171,17 @@ static KrsStatus find_command(Options *options, const char *word)
 static void limit_untrusted(Limits *limits)
 {
     static const Limits most = {60, (uint64_t)2 << 30, (uint64_t)1 << 26, 4096};
-    limits->time = limits->time > 0 ? limits->time : most.time;
-    limits->memory = limits->memory ? limits->memory : most.memory;
-    limits->pixels = limits->pixels ? limits->pixels : most.pixels;
-    limits->samples = limits->samples ? limits->samples : most.samples;
+    limits->time             = limits->time > 0 ? limits->time : most.time;
+    limits->memory           = limits->memory ? limits->memory : most.memory;
+    limits->pixels           = limits->pixels ? limits->pixels : most.pixels;
+    limits->samples          = limits->samples ? limits->samples : most.samples;
 }
 
 /* What no single option can see. */
 static KrsStatus check_together(Options *options)
 {
-    const CommandInfo *info = &command_table[options->command];
-    size_t files = options->files.count;
+    const CommandInfo *info  = &command_table[options->command];
+    size_t             files = options->files.count;
     if (options->command == COMMAND_EXPLAIN) {
         if (files > 1)
             return say_usage(options, "explain takes one code, not %zu", files);
@@ -207,19 +209,19 @@ static KrsStatus check_together(Options *options)
 
 KrsStatus options_parse(Options *options, int argc, char **argv)
 {
-    options->argc = argc;
-    options->argv = argv;
-    options->command = COMMAND_COUNT;
-    options->aovs = AOV_ALL;
-    options->fps = 24;
-    options->points = 20000;
-    options->seconds = 2;
+    options->argc     = argc;
+    options->argv     = argv;
+    options->command  = COMMAND_COUNT;
+    options->aovs     = AOV_ALL;
+    options->fps      = 24;
+    options->points   = 20000;
+    options->seconds  = 2;
     options->farthest = 1e9; /* far beyond any scene, and finite */
     options->deadline = 60;
     if (argc < 2)
         return say_usage(options, "no command is given");
-    KrsStatus status = find_command(options, argv[1]);
-    bool words_only = false; /* after "--" */
+    KrsStatus status     = find_command(options, argv[1]);
+    bool      words_only = false; /* after "--" */
     for (int next = 2; next < argc && status == KRS_OK;) {
         const char *word = argv[next];
         if (!words_only && strcmp(word, "--") == 0) {
@@ -249,11 +251,14 @@ void help_print(FILE *out)
     fputs("krs renders scenes of implicit surfaces.\n\n"
           "    krs render ring.krs -o ring.png\n"
           "    krs check ring.krs\n\n"
-          "usage: krs COMMAND [OPTION]... [FILE]...\n\n", out);
+          "usage: krs COMMAND [OPTION]... [FILE]...\n\n",
+          out);
     for (CommandId command = 0; command < COMMAND_COUNT; command++)
         fprintf(out, "    %-10s %s\n", command_table[command].name, command_table[command].summary);
-    fprintf(out, "\n`krs COMMAND --help` shows examples and options, `krs --version` the version.\n"
-            "Exit status: %s", exit_statuses);
+    fprintf(out,
+            "\n`krs COMMAND --help` shows examples and options, `krs --version` the version.\n"
+            "Exit status: %s",
+            exit_statuses);
 }
 
 void help_print_command(CommandId command, FILE *out)
@@ -265,7 +270,7 @@ void help_print_command(CommandId command, FILE *out)
         if (!option_belongs(id, command))
             continue;
         const OptionInfo *option = &option_info[id];
-        char form[64], letter[8] = "";
+        char              form[64], letter[8] = "";
         if (option->letter)
             snprintf(letter, sizeof letter, "-%c, ", option->letter);
         snprintf(form, sizeof form, "%s--%s %s", letter, option->name,

@@ -14,9 +14,9 @@
 #include "runtime/film/film.h"
 
 enum {
-    MANY_FILES = -1,      /* a command that takes one or more files */
-    SIDE_LIMIT = 16384,   /* pixels along a side of a picture in this version */
-    SAMPLES_LIMIT = 65536,
+    MANY_FILES      = -1,    /* a command that takes one or more files */
+    SIDE_LIMIT      = 16384, /* pixels along a side of a picture in this version */
+    SAMPLES_LIMIT   = 65536,
     DEVICE_PATIENCE = 5 /* deadlines that one step of a device may take */
 };
 
@@ -55,7 +55,13 @@ bool option_belongs(OptionId id, CommandId command);
 
 /* What `--aov` chooses; colour and alpha are always there. */
 typedef enum Aov {
-    AOV_Z = 1, AOV_P = 2, AOV_N = 4, AOV_ALBEDO = 8, AOV_ID = 16, AOV_STEPS = 32, AOV_ALL = 63
+    AOV_Z      = 1,
+    AOV_P      = 2,
+    AOV_N      = 4,
+    AOV_ALBEDO = 8,
+    AOV_ID     = 16,
+    AOV_STEPS  = 32,
+    AOV_ALL    = 63
 } Aov;
 
 typedef enum When { WHEN_AUTO, WHEN_ALWAYS, WHEN_NEVER } When;
@@ -85,41 +91,50 @@ typedef struct Options {
     int       argc; /* the whole command line, for a report of a crash */
     char    **argv;
 
-    struct { const char **items; size_t count, capacity; } files, outputs;
-    struct { Setting *items; size_t count, capacity; } settings;
-    struct { ExitPair *items; size_t count, capacity; } exit_map;
-    double      zones[KRS_MOST_ZONES][4];
-    size_t      zone_count;
+    struct {
+        const char **items;
+        size_t       count, capacity;
+    } files, outputs;
+    struct {
+        Setting *items;
+        size_t   count, capacity;
+    } settings;
+    struct {
+        ExitPair *items;
+        size_t    count, capacity;
+    } exit_map;
+    double zones[KRS_MOST_ZONES][4];
+    size_t zone_count;
 
-    uint32_t    width, height, samples; /* 0: not given */
-    const char *camera, *device, *cache, *after; /* NULL: not given */
-    bool        cropped;
-    uint32_t    crop[4]; /* x, y, width, height */
-    bool        animated;
-    uint32_t    first_frame, last_frame;
-    double      fps, time;
-    unsigned    aovs;
-    bool        exposed, tone_mapped; /* --exposure, --tone-map were given */
-    double      exposure;
-    ToneMap     tone_map;
-    bool        no_beams, no_upsampling, no_occlusion, no_filter, area_shadows;
-    KrsEarlyOuts early_outs;
+    uint32_t      width, height, samples;          /* 0: not given */
+    const char   *camera, *device, *cache, *after; /* NULL: not given */
+    bool          cropped;
+    uint32_t      crop[4]; /* x, y, width, height */
+    bool          animated;
+    uint32_t      first_frame, last_frame;
+    double        fps, time;
+    unsigned      aovs;
+    bool          exposed, tone_mapped; /* --exposure, --tone-map were given */
+    double        exposure;
+    ToneMap       tone_map;
+    bool          no_beams, no_upsampling, no_occlusion, no_filter, area_shadows;
+    KrsEarlyOuts  early_outs;
     KrsComponents components;
-    KrsNormals   normals;
-    double      error; /* 0: not given */
-    KrsTrace    trace;
-    KrsSchedule schedule;
-    uint64_t    seed, points;
-    double      seconds;  /* of the search of `krs validate` */
-    double      deadline; /* seconds */
-    Limits      limits;
-    const char *root; /* NULL: not given */
-    bool        untrusted;
-    double      tolerance, farthest; /* of rays that are asked about; tolerance 0: not given */
-    bool        on_device;
-    StatsForm   stats;
-    bool        stamp, binary, json, no_device, json_diagnostics, quiet;
-    When        color;
+    KrsNormals    normals;
+    double        error; /* 0: not given */
+    KrsTrace      trace;
+    KrsSchedule   schedule;
+    uint64_t      seed, points;
+    double        seconds;  /* of the search of `krs validate` */
+    double        deadline; /* seconds */
+    Limits        limits;
+    const char   *root; /* NULL: not given */
+    bool          untrusted;
+    double        tolerance, farthest; /* of rays that are asked about; tolerance 0: not given */
+    bool          on_device;
+    StatsForm     stats;
+    bool          stamp, binary, json, no_device, json_diagnostics, quiet;
+    When          color;
 
     Arena *arena; /* for whatever a command needs until the process ends */
 } Options;

@@ -26,24 +26,24 @@ typedef struct ChannelRow {
 
 #define PLANE(member) offsetof(KrsPicture, member)
 static const ChannelRow channel_rows[] = {
-    {"R",            SAMPLE_HALF,  0,          KRS_PLANE_COLOR,    PLANE(color),     4, 0},
-    {"G",            SAMPLE_HALF,  0,          KRS_PLANE_COLOR,    PLANE(color),     4, 1},
-    {"B",            SAMPLE_HALF,  0,          KRS_PLANE_COLOR,    PLANE(color),     4, 2},
-    {"A",            SAMPLE_HALF,  0,          KRS_PLANE_COLOR,    PLANE(color),     4, 3},
-    {"Z",            SAMPLE_FLOAT, AOV_Z,      KRS_PLANE_DEPTH,    PLANE(depth),     1, 0},
-    {"P.X",          SAMPLE_FLOAT, AOV_P,      KRS_PLANE_POSITION, PLANE(position),  3, 0},
-    {"P.Y",          SAMPLE_FLOAT, AOV_P,      KRS_PLANE_POSITION, PLANE(position),  3, 1},
-    {"P.Z",          SAMPLE_FLOAT, AOV_P,      KRS_PLANE_POSITION, PLANE(position),  3, 2},
-    {"N.X",          SAMPLE_FLOAT, AOV_N,      KRS_PLANE_NORMAL,   PLANE(normal),    3, 0},
-    {"N.Y",          SAMPLE_FLOAT, AOV_N,      KRS_PLANE_NORMAL,   PLANE(normal),    3, 1},
-    {"N.Z",          SAMPLE_FLOAT, AOV_N,      KRS_PLANE_NORMAL,   PLANE(normal),    3, 2},
-    {"albedo.R",     SAMPLE_HALF,  AOV_ALBEDO, KRS_PLANE_ALBEDO,   PLANE(albedo),    3, 0},
-    {"albedo.G",     SAMPLE_HALF,  AOV_ALBEDO, KRS_PLANE_ALBEDO,   PLANE(albedo),    3, 1},
-    {"albedo.B",     SAMPLE_HALF,  AOV_ALBEDO, KRS_PLANE_ALBEDO,   PLANE(albedo),    3, 2},
-    {"id.component", SAMPLE_UINT,  AOV_ID,     KRS_PLANE_IDS,      PLANE(component), 1, 0},
-    {"id.level",     SAMPLE_UINT,  AOV_ID,     KRS_PLANE_IDS,      PLANE(level),     1, 0},
-    {"id.instance",  SAMPLE_UINT,  AOV_ID,     KRS_PLANE_IDS,      PLANE(instance),  1, 0},
-    {"steps",        SAMPLE_UINT,  AOV_STEPS,  KRS_PLANE_STEPS,    PLANE(steps),     1, 0},
+    {"R", SAMPLE_HALF, 0, KRS_PLANE_COLOR, PLANE(color), 4, 0},
+    {"G", SAMPLE_HALF, 0, KRS_PLANE_COLOR, PLANE(color), 4, 1},
+    {"B", SAMPLE_HALF, 0, KRS_PLANE_COLOR, PLANE(color), 4, 2},
+    {"A", SAMPLE_HALF, 0, KRS_PLANE_COLOR, PLANE(color), 4, 3},
+    {"Z", SAMPLE_FLOAT, AOV_Z, KRS_PLANE_DEPTH, PLANE(depth), 1, 0},
+    {"P.X", SAMPLE_FLOAT, AOV_P, KRS_PLANE_POSITION, PLANE(position), 3, 0},
+    {"P.Y", SAMPLE_FLOAT, AOV_P, KRS_PLANE_POSITION, PLANE(position), 3, 1},
+    {"P.Z", SAMPLE_FLOAT, AOV_P, KRS_PLANE_POSITION, PLANE(position), 3, 2},
+    {"N.X", SAMPLE_FLOAT, AOV_N, KRS_PLANE_NORMAL, PLANE(normal), 3, 0},
+    {"N.Y", SAMPLE_FLOAT, AOV_N, KRS_PLANE_NORMAL, PLANE(normal), 3, 1},
+    {"N.Z", SAMPLE_FLOAT, AOV_N, KRS_PLANE_NORMAL, PLANE(normal), 3, 2},
+    {"albedo.R", SAMPLE_HALF, AOV_ALBEDO, KRS_PLANE_ALBEDO, PLANE(albedo), 3, 0},
+    {"albedo.G", SAMPLE_HALF, AOV_ALBEDO, KRS_PLANE_ALBEDO, PLANE(albedo), 3, 1},
+    {"albedo.B", SAMPLE_HALF, AOV_ALBEDO, KRS_PLANE_ALBEDO, PLANE(albedo), 3, 2},
+    {"id.component", SAMPLE_UINT, AOV_ID, KRS_PLANE_IDS, PLANE(component), 1, 0},
+    {"id.level", SAMPLE_UINT, AOV_ID, KRS_PLANE_IDS, PLANE(level), 1, 0},
+    {"id.instance", SAMPLE_UINT, AOV_ID, KRS_PLANE_IDS, PLANE(instance), 1, 0},
+    {"steps", SAMPLE_UINT, AOV_STEPS, KRS_PLANE_STEPS, PLANE(steps), 1, 0},
 };
 enum { CHANNELS = sizeof channel_rows / sizeof *channel_rows, TEXTS = 8 };
 
@@ -110,8 +110,8 @@ static const char *describe_number(const Options *options, double number)
 
 static const char *describe_now(const Options *options)
 {
-    char date[32];
-    time_t now = time(NULL);
+    char      date[32];
+    time_t    now = time(NULL);
     struct tm utc;
     gmtime_r(&now, &utc);
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", &utc);
@@ -121,7 +121,7 @@ static const char *describe_now(const Options *options)
 static size_t collect_texts(const Options *options, const KrsPicture *source,
                             const PictureNotes *notes, PictureText texts[TEXTS])
 {
-    size_t count = 0;
+    size_t count   = 0;
     texts[count++] = (PictureText){"software", "krs " KRS_VERSION};
     texts[count++] = (PictureText){"krs:scene", krs_scene_hash(notes->scene)};
     texts[count++] = (PictureText){"krs:parameters", describe_parameters(options, notes->scene)};
@@ -131,8 +131,8 @@ static size_t collect_texts(const Options *options, const KrsPicture *source,
     if (options->stamp) {
         texts[count++] = (PictureText){"krs:date", describe_now(options)};
         texts[count++] = (PictureText){"krs:device", source->stats.device};
-        texts[count++] =
-            (PictureText){"krs:seconds", describe_number(options, source->stats.wall_ms / 1000)};
+        texts[count++] = (PictureText){"krs:seconds",
+                                       describe_number(options, source->stats.wall_ms / 1000)};
     }
     return count;
 }
@@ -147,9 +147,10 @@ static size_t collect_channels(const Options *options, const KrsPicture *source,
             continue;
         const char *plane; /* floats and integers alike: the pointer is taken as bytes */
         memcpy(&plane, (const char *)source + row->offset, sizeof plane);
-        channels[count++] = (PictureChannel){.name = row->name, .type = row->type,
+        channels[count++] = (PictureChannel){.name    = row->name,
+                                             .type    = row->type,
                                              .samples = plane + row->index * sizeof(float),
-                                             .stride = row->stride};
+                                             .stride  = row->stride};
     }
     return count;
 }
@@ -174,13 +175,13 @@ static KrsStatus write_exr(const Options *options, const KrsPicture *source, Pic
                            const char *path)
 {
     PictureChannel channels[CHANNELS];
-    PictureMatrix to_camera, to_ndc;
+    PictureMatrix  to_camera, to_ndc;
     memcpy(to_camera.m, source->world_to_camera, sizeof to_camera.m);
     memcpy(to_ndc.m, source->world_to_ndc, sizeof to_ndc.m);
-    picture->channels = channels;
-    picture->channel_count = collect_channels(options, source, channels);
+    picture->channels        = channels;
+    picture->channel_count   = collect_channels(options, source, channels);
     picture->world_to_camera = &to_camera;
-    picture->world_to_ndc = &to_ndc;
+    picture->world_to_ndc    = &to_ndc;
     return write_output(path, fill_exr, picture);
 }
 
@@ -196,15 +197,18 @@ static KrsStatus write_png(const KrsPicture *source, const Picture *picture,
     return status;
 }
 
-KrsStatus picture_write(const Options *options, const KrsPicture *source,
-                        const PictureNotes *notes, const char *path)
+KrsStatus picture_write(const Options *options, const KrsPicture *source, const PictureNotes *notes,
+                        const char *path)
 {
     PictureText texts[TEXTS];
-    Picture picture = {
-        .width = source->width, .height = source->height,
-        .crop_x = source->window.x, .crop_y = source->window.y,
-        .crop_width = source->window.width, .crop_height = source->window.height,
-        .texts = texts, .text_count = collect_texts(options, source, notes, texts)};
+    Picture     picture = {.width       = source->width,
+                           .height      = source->height,
+                           .crop_x      = source->window.x,
+                           .crop_y      = source->window.y,
+                           .crop_width  = source->window.width,
+                           .crop_height = source->window.height,
+                           .texts       = texts,
+                           .text_count  = collect_texts(options, source, notes, texts)};
     return file_form(path) == FORM_EXR ? write_exr(options, source, &picture, path)
                                        : write_png(source, &picture, &notes->film, path);
 }

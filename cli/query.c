@@ -18,10 +18,10 @@
 #include "cli/supervise.h"
 
 enum {
-    BATCH = 16384,
-    INPUT_SIZE = 1 << 20,     /* also the longest line */
-    RECORD_IN = 6 * 8,        /* bytes of a binary question */
-    RECORD_OUT = 10           /* numbers of a binary answer */
+    BATCH      = 16384,
+    INPUT_SIZE = 1 << 20, /* also the longest line */
+    RECORD_IN  = 6 * 8,   /* bytes of a binary question */
+    RECORD_OUT = 10       /* numbers of a binary answer */
 };
 
 typedef struct Query {
@@ -147,7 +147,7 @@ static bool add_question(Query *query, const double *numbers, bool is_ray)
 static bool read_line(Query *query, const char *line)
 {
     double numbers[6] = {0};
-    int count = 0;
+    int    count      = 0;
     query->line++;
     for (;;) {
         line += strspn(line, " \t\r");
@@ -169,7 +169,7 @@ static bool read_line(Query *query, const char *line)
 static size_t take_input(Query *query, char *input, size_t length, bool *good)
 {
     size_t used = 0;
-    *good = true;
+    *good       = true;
     while (*good && query->options->binary && length - used >= RECORD_IN) {
         double numbers[6];
         for (int i = 0; i < 6; i++) {
@@ -179,17 +179,16 @@ static size_t take_input(Query *query, char *input, size_t length, bool *good)
             memcpy(&numbers[i], &bits, sizeof bits);
         }
         query->line++;
-        *good = add_question(query, numbers,
-                             numbers[3] != 0 || numbers[4] != 0 || numbers[5] != 0);
+        *good = add_question(query, numbers, numbers[3] != 0 || numbers[4] != 0 || numbers[5] != 0);
         used += RECORD_IN;
     }
     char *newline;
     while (*good && !query->options->binary &&
            (newline = memchr(input + used, '\n', length - used))) {
-        *newline = '\0';
+        *newline   = '\0';
         bool whole = strlen(input + used) == (size_t)(newline - input) - used;
-        *good = read_line(query, input + used) && whole;
-        used = (size_t)(newline - input) + 1;
+        *good      = read_line(query, input + used) && whole;
+        used       = (size_t)(newline - input) + 1;
     }
     return used;
 }
@@ -214,7 +213,7 @@ static KrsStatus finish_input(Query *query, char *input, size_t length)
         good = false;
     } else if (length > 0) {
         input[length] = '\0';
-        good = read_line(query, input) && strlen(input) == length;
+        good          = read_line(query, input) && strlen(input) == length;
     }
     answer_batch(query);
     return !good && query->status == KRS_OK ? refuse_input(query) : query->status;
@@ -235,7 +234,7 @@ static KrsStatus answer_input(Query *query, char *input)
             return finish_input(query, input, length);
         length += (size_t)got;
 
-        bool good;
+        bool   good;
         size_t used = take_input(query, input, length, &good);
         answer_batch(query);
         if (query->status != KRS_OK)
@@ -272,10 +271,10 @@ KrsStatus command_query(Options *options)
     KrsStatus status = scene_open(options, options->files.items[0], &scene);
     if (status != KRS_OK)
         return status;
-    Query *query = arena_new(options->arena, Query);
-    char *input = arena_alloc(options->arena, INPUT_SIZE + 1, 1);
+    Query *query   = arena_new(options->arena, Query);
+    char  *input   = arena_alloc(options->arena, INPUT_SIZE + 1, 1);
     query->options = options;
-    status = scene_frame(options, scene, &query->frame);
+    status         = scene_frame(options, scene, &query->frame);
     if (status == KRS_OK && options->on_device)
         status = open_device(query, scene);
     if (status == KRS_OK) {

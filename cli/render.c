@@ -14,15 +14,15 @@
 #include "cli/supervise.h"
 
 typedef struct Render {
-    const Options *options;
-    const char   **outputs;
-    size_t         output_count;
-    KrsScene      *scene;
-    KrsFrame      *frame;
-    KrsRenderer   *renderer;
-    KrsRendering  *rendering;
+    const Options   *options;
+    const char     **outputs;
+    size_t           output_count;
+    KrsScene        *scene;
+    KrsFrame        *frame;
+    KrsRenderer     *renderer;
+    KrsRendering    *rendering;
     KrsRenderOptions how;
-    Progress       progress;
+    Progress         progress;
 } Render;
 
 /* Where the frame's number goes in the name of an output: "%d", "%04d".  NULL without one. */
@@ -31,7 +31,7 @@ static const char *find_pattern(const char *path, int *width, size_t *length)
     for (const char *percent = path; (percent = strchr(percent, '%')); percent++) {
         size_t digits = strspn(percent + 1, "0123456789");
         if (digits <= 2 && percent[1 + digits] == 'd') {
-            *width = atoi(percent + 1);
+            *width  = atoi(percent + 1);
             *length = digits + 2;
             return percent;
         }
@@ -51,8 +51,8 @@ static bool has_two_patterns(const char *path)
 /* The name of an output for a frame; without --frames, names are taken as they are. */
 static const char *frame_path(const Options *options, const char *path, uint32_t frame)
 {
-    int width = 0;
-    size_t length = 0;
+    int         width   = 0;
+    size_t      length  = 0;
     const char *pattern = options->animated ? find_pattern(path, &width, &length) : NULL;
     if (!pattern)
         return path;
@@ -66,15 +66,15 @@ static const char *frame_path(const Options *options, const char *path, uint32_t
 static void choose_outputs(Render *render)
 {
     const Options *options = render->options;
-    render->outputs = options->outputs.items;
-    render->output_count = options->outputs.count;
+    render->outputs        = options->outputs.items;
+    render->output_count   = options->outputs.count;
     if (render->output_count > 0)
         return;
     Text text = {.arena = options->arena};
     text_format(&text, "%s%s.exr", scene_name(options->arena, options->files.items[0]),
                 options->animated ? "-%04d" : "");
-    render->outputs = arena_new(options->arena, const char *);
-    render->outputs[0] = text.bytes;
+    render->outputs      = arena_new(options->arena, const char *);
+    render->outputs[0]   = text.bytes;
     render->output_count = 1;
 }
 
@@ -96,9 +96,9 @@ static bool are_one_file(const Options *options, const char *a, const char *b)
 static KrsStatus check_name(const Render *render, size_t index)
 {
     const Options *options = render->options;
-    const char *path = render->outputs[index];
-    int width;
-    size_t length;
+    const char    *path    = render->outputs[index];
+    int            width;
+    size_t         length;
     if (file_form(path) == FORM_UNKNOWN)
         return say_usage(options, "the output `%s` ends in neither .exr nor .png", path);
     if (options->animated && !find_pattern(path, &width, &length))
@@ -117,7 +117,7 @@ static KrsStatus check_outputs(const Render *render)
     for (size_t i = 0; i < render->output_count; i++) {
         const char *path = frame_path(options, render->outputs[i], options->first_frame);
         OutputError error;
-        KrsStatus status = check_name(render, i);
+        KrsStatus   status = check_name(render, i);
         if (status == KRS_OK)
             status = scene_is_kept(options, path);
         if (status != KRS_OK)
@@ -132,9 +132,9 @@ static KrsStatus check_outputs(const Render *render)
 
 static KrsStatus find_camera(const Options *options, const KrsScene *scene, size_t *camera)
 {
-    size_t count = krs_camera_count(scene), named = 0;
+    size_t       count = krs_camera_count(scene), named = 0;
     const char **names = arena_new_array(options->arena, const char *, count + 1);
-    *camera = 0;
+    *camera            = 0;
     for (size_t i = 0; options->camera && i < count; i++) {
         const char *name = krs_camera_name(scene, i);
         if (name && strcmp(name, options->camera) == 0) {
@@ -163,14 +163,14 @@ static bool show_progress(void *user, double done)
 
 /* What --limit allows beats what the scene asks for; what the command line asks for beyond it makes no
    sense. */
-static KrsStatus check_limit(const Options *options, const char *name, uint64_t asked, uint64_t most,
-                             bool by_scene)
+static KrsStatus check_limit(const Options *options, const char *name, uint64_t asked,
+                             uint64_t most, bool by_scene)
 {
     if (most == 0 || asked <= most)
         return KRS_OK;
     if (!by_scene)
-        return say_usage(options, "%llu %s are more than --limit %s=%llu", (unsigned long long)asked,
-                         name, name, (unsigned long long)most);
+        return say_usage(options, "%llu %s are more than --limit %s=%llu",
+                         (unsigned long long)asked, name, name, (unsigned long long)most);
     say("the scene asks for %llu %s, of which --limit %s=%llu allows fewer",
         (unsigned long long)asked, name, name, (unsigned long long)most);
     return KRS_BAD_SCENE;
@@ -180,9 +180,9 @@ static KrsStatus check_limit(const Options *options, const char *name, uint64_t 
 static KrsStatus choose_how(Render *render)
 {
     const Options *options = render->options;
-    KrsView view;
-    size_t camera;
-    KrsStatus status = find_camera(options, render->scene, &camera);
+    KrsView        view;
+    size_t         camera;
+    KrsStatus      status = find_camera(options, render->scene, &camera);
     if (status == KRS_OK)
         status = krs_frame_view(render->frame, camera, &view);
     if (status != KRS_OK)
@@ -190,13 +190,12 @@ static KrsStatus choose_how(Render *render)
     const char *integrator = view.image.integrator;
     if (integrator && strcmp(integrator, "preview") != 0 && !options->quiet)
         say("the scene asks for the integrator `%s`, which is not in this version; it is rendered "
-            "by preview", integrator);
-    uint32_t width = options->width    ? options->width
-                     : view.image.width ? view.image.width
-                                        : 1280;
-    uint32_t height = options->height    ? options->height
-                      : view.image.height ? view.image.height
-                                          : 720;
+            "by preview",
+            integrator);
+    uint32_t width   = options->width ? options->width : view.image.width ? view.image.width : 1280;
+    uint32_t height  = options->height     ? options->height
+                       : view.image.height ? view.image.height
+                                           : 720;
     uint32_t samples = options->samples     ? options->samples
                        : view.image.samples ? view.image.samples
                                             : 1;
@@ -214,16 +213,25 @@ static KrsStatus choose_how(Render *render)
     bool exr = false;
     for (size_t i = 0; i < render->output_count; i++)
         exr = exr || file_form(render->outputs[i]) == FORM_EXR;
-    render->how = (KrsRenderOptions){
-        .width = width, .height = height, .samples = options->samples, .camera = camera,
-        .seed = options->seed, .error = options->error, .trace = options->trace,
-        .schedule = options->schedule, .components = options->components,
-        .no_beams = options->no_beams, .no_upsampling = options->no_upsampling,
-        .no_occlusion = options->no_occlusion, .no_filter = options->no_filter,
-        .normals = options->normals,
-        .shadows = options->area_shadows ? KRS_SHADOWS_AREA : KRS_SHADOWS_SOFT,
-        .planes = picture_planes(options, exr),
-        .progress = show_progress, .user = render};
+    render->how = (KrsRenderOptions){.width         = width,
+                                     .height        = height,
+                                     .samples       = options->samples,
+                                     .camera        = camera,
+                                     .seed          = options->seed,
+                                     .error         = options->error,
+                                     .trace         = options->trace,
+                                     .schedule      = options->schedule,
+                                     .components    = options->components,
+                                     .no_beams      = options->no_beams,
+                                     .no_upsampling = options->no_upsampling,
+                                     .no_occlusion  = options->no_occlusion,
+                                     .no_filter     = options->no_filter,
+                                     .normals       = options->normals,
+                                     .shadows       = options->area_shadows ? KRS_SHADOWS_AREA
+                                                                            : KRS_SHADOWS_SOFT,
+                                     .planes        = picture_planes(options, exr),
+                                     .progress      = show_progress,
+                                     .user          = render};
     if (options->cropped)
         render->how.crop = (KrsWindow){crop[0], crop[1], crop[2], crop[3]};
     return KRS_OK;
@@ -231,15 +239,17 @@ static KrsStatus choose_how(Render *render)
 
 static void add_stats_json(Text *json, const KrsRenderStats *stats, const KrsProgram *program)
 {
-    text_format(json, "\"compile\": {\"front\": %.3f, \"glsl\": %.3f, \"spirv\": %.3f, "
-                      "\"pipeline\": %.3f}, \"render\": {",
+    text_format(json,
+                "\"compile\": {\"front\": %.3f, \"glsl\": %.3f, \"spirv\": %.3f, "
+                "\"pipeline\": %.3f}, \"render\": {",
                 program->front_ms, program->glsl_ms, stats->spirv_ms, stats->pipeline_ms);
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         text_format(json, "\"%s\": %.3f, ", krs_phase_names[phase], stats->phase_ms[phase]);
-    text_format(json, "\"total\": %.3f, \"wall\": %.3f}, \"device_time\": %s, \"rays\": %llu, "
-                      "\"evaluations\": %llu, \"evaluations_per_ray\": {\"mean\": %.3f, "
-                      "\"maximum\": %u}, \"flops_per_evaluation\": %.3f, \"gflops\": %.3f, "
-                      "\"unresolved\": %llu, \"submissions\": %llu, \"device\": ",
+    text_format(json,
+                "\"total\": %.3f, \"wall\": %.3f}, \"device_time\": %s, \"rays\": %llu, "
+                "\"evaluations\": %llu, \"evaluations_per_ray\": {\"mean\": %.3f, "
+                "\"maximum\": %u}, \"flops_per_evaluation\": %.3f, \"gflops\": %.3f, "
+                "\"unresolved\": %llu, \"submissions\": %llu, \"device\": ",
                 stats->total_ms, stats->wall_ms, stats->device_time ? "true" : "false",
                 (unsigned long long)stats->rays, (unsigned long long)stats->evaluations,
                 stats->evaluations_per_ray, stats->most_evaluations_per_ray,
@@ -272,7 +282,7 @@ static void print_stats(const KrsRenderStats *stats, const KrsProgram *program)
 /* One object a frame, each on a line of its own. */
 static void show_stats(Render *render, const KrsRenderStats *stats, uint32_t frame)
 {
-    const Options *options = render->options;
+    const Options    *options = render->options;
     const KrsProgram *program = krs_scene_program(render->scene);
     if (options->stats != STATS_NONE)
         progress_end(&render->progress);
@@ -293,10 +303,11 @@ static KrsStatus write_outputs(const Render *render, const KrsPicture *picture, 
                                uint32_t frame)
 {
     const Options *options = render->options;
-    KrsView view;
-    KrsStatus status = krs_frame_view(render->frame, render->how.camera, &view);
-    PictureNotes notes = {.scene = render->scene, .time = time,
-                          .film = {.tone_map = options->tone_map, .exposure = options->exposure}};
+    KrsView        view;
+    KrsStatus      status = krs_frame_view(render->frame, render->how.camera, &view);
+    PictureNotes   notes  = {.scene = render->scene,
+                             .time  = time,
+                             .film = {.tone_map = options->tone_map, .exposure = options->exposure}};
     if (!options->exposed)
         notes.film.exposure = view.image.exposure;
     if (!options->tone_mapped && view.image.tone_map)
@@ -310,9 +321,9 @@ static KrsStatus write_outputs(const Render *render, const KrsPicture *picture, 
 static KrsStatus render_frame(Render *render, uint32_t frame)
 {
     const Options *options = render->options;
-    double time = options->time + (options->animated ? frame / options->fps : 0);
-    KrsPicture *picture = NULL;
-    KrsStatus status = scene_set_time(options, render->frame, time);
+    double         time    = options->time + (options->animated ? frame / options->fps : 0);
+    KrsPicture    *picture = NULL;
+    KrsStatus      status  = scene_set_time(options, render->frame, time);
     if (status != KRS_OK)
         return status;
     stage_enter(STAGE_RENDER);
@@ -334,7 +345,7 @@ static KrsStatus render_frame(Render *render, uint32_t frame)
 static KrsStatus make_ready(Render *render)
 {
     const Options *options = render->options;
-    KrsStatus status = scene_open(options, options->files.items[0], &render->scene);
+    KrsStatus      status  = scene_open(options, options->files.items[0], &render->scene);
     if (status == KRS_OK)
         status = scene_frame(options, render->scene, &render->frame);
     if (status == KRS_OK)
@@ -352,7 +363,7 @@ static KrsStatus make_ready(Render *render)
 
 KrsStatus command_render(Options *options)
 {
-    Render *render = arena_new(options->arena, Render);
+    Render *render  = arena_new(options->arena, Render);
     render->options = options;
     choose_outputs(render);
     KrsStatus status = check_outputs(render);
@@ -363,7 +374,7 @@ KrsStatus command_render(Options *options)
     for (uint32_t frame = options->first_frame; frame <= options->last_frame && status == KRS_OK;
          frame++) {
         render->progress.part = frame - options->first_frame;
-        status = render_frame(render, frame);
+        status                = render_frame(render, frame);
     }
     progress_end(&render->progress);
     krs_rendering_free(render->rendering);

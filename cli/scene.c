@@ -49,10 +49,11 @@ static const char *scene_root(const Options *options, const char *path)
 KrsOptions scene_options(DiagnosticSink *sink, const char *path)
 {
     const Options *options = sink->options;
-    return (KrsOptions){.diagnostic = print_diagnostic, .user = sink,
-                        .gradients = options->normals == KRS_NORMALS_ANALYTIC,
+    return (KrsOptions){.diagnostic   = print_diagnostic,
+                        .user         = sink,
+                        .gradients    = options->normals == KRS_NORMALS_ANALYTIC,
                         .memory_limit = options->limits.memory,
-                        .root = scene_root(options, path)};
+                        .root         = scene_root(options, path)};
 }
 
 void scene_print_counts(const DiagnosticSink *sink)
@@ -70,10 +71,10 @@ void scene_print_counts(const DiagnosticSink *sink)
 KrsStatus scene_readable(const char *path)
 {
     struct stat info;
-    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    bool readable = file >= 0 && fstat(file, &info) == 0;
+    int         file     = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    bool        readable = file >= 0 && fstat(file, &info) == 0;
     if (readable && S_ISDIR(info.st_mode)) {
-        errno = EISDIR;
+        errno    = EISDIR;
         readable = false;
     }
     if (!readable)
@@ -118,14 +119,14 @@ void scene_enter_compile(const char *path)
 
 KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene)
 {
-    *scene = NULL;
+    *scene           = NULL;
     KrsStatus status = scene_readable(path);
     if (status != KRS_OK)
         return status;
     scene_enter_compile(path);
     DiagnosticSink sink = {.options = options};
-    KrsOptions with = scene_options(&sink, path);
-    status = krs_compile_file(path, &with, scene);
+    KrsOptions     with = scene_options(&sink, path);
+    status              = krs_compile_file(path, &with, scene);
     scene_print_counts(&sink);
     if (status == KRS_OK)
         stage_size("`%s` makes %zu bytes of distance code in %zu components", path,
@@ -136,9 +137,9 @@ KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene)
 
 const char *scene_name(Arena *arena, const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    const char *name = slash ? slash + 1 : path;
-    size_t length = strlen(name);
+    const char *slash  = strrchr(path, '/');
+    const char *name   = slash ? slash + 1 : path;
+    size_t      length = strlen(name);
     if (length > 4 && strcmp(name + length - 4, ".krs") == 0)
         length -= 4;
     return arena_copy_text(arena, name, length);
@@ -147,7 +148,7 @@ const char *scene_name(Arena *arena, const char *path)
 static KrsStatus say_unknown_parameter(const Options *options, const KrsScene *scene,
                                        const char *name)
 {
-    size_t count = krs_parameter_count(scene);
+    size_t       count = krs_parameter_count(scene);
     const char **names = arena_new_array(options->arena, const char *, count + 1);
     for (size_t i = 0; i < count; i++) {
         KrsParameter parameter;
@@ -165,7 +166,7 @@ static KrsStatus say_refused_setting(const Options *options, const KrsScene *sce
                                      const KrsFrame *frame, const Setting *setting)
 {
     KrsParameter parameter;
-    size_t index = 0;
+    size_t       index = 0;
     while (krs_parameter(scene, index, &parameter) == KRS_OK &&
            strcmp(parameter.name, setting->name) != 0)
         index++;
@@ -181,8 +182,10 @@ static KrsStatus say_refused_setting(const Options *options, const KrsScene *sce
                              parameter.low[i], parameter.high[i], setting->values[i]);
     const char *place = krs_frame_unbounded(frame);
     if (place)
-        return say_usage(options, "with this value of param `%s` the slope of the expression at %s "
-                         "has no bound", setting->name, place);
+        return say_usage(options,
+                         "with this value of param `%s` the slope of the expression at %s "
+                         "has no bound",
+                         setting->name, place);
     return say_usage(options, "with this value of param `%s` something in the scene is not finite",
                      setting->name);
 }
@@ -193,8 +196,8 @@ KrsStatus scene_set_time(const Options *options, KrsFrame *frame, double time)
         return KRS_OK;
     const char *place = krs_frame_unbounded(frame);
     if (place)
-        return say_usage(options, "at time %g the slope of the expression at %s has no bound",
-                         time, place);
+        return say_usage(options, "at time %g the slope of the expression at %s has no bound", time,
+                         place);
     return say_usage(options, "at time %g something in the scene is not finite", time);
 }
 

@@ -30,7 +30,7 @@ typedef struct Shared {
     char             size[256]; /* of what is compiled, in words */
 } Shared;
 
-static Shared *shared;
+static Shared               *shared;
 static volatile sig_atomic_t interrupt_flag;
 
 typedef struct StageInfo {
@@ -57,8 +57,8 @@ static uint64_t milliseconds(void) { return (uint64_t)(clock_now() * 1000); }
 
 static void crash_for_test(Stage stage)
 {
-    const char *wish = getenv("KRS_TEST_CRASH");
-    size_t length = strlen(stage_info[stage].name);
+    const char *wish   = getenv("KRS_TEST_CRASH");
+    size_t      length = strlen(stage_info[stage].name);
     if (!wish || strncmp(wish, stage_info[stage].name, length) != 0)
         return;
     if (wish[length] == '\0')
@@ -166,7 +166,7 @@ static _Noreturn void run_child(Options *options, Work *work, const sigset_t *ma
     catch_signal(SIGHUP);
     sigprocmask(SIG_SETMASK, mask, NULL);
     stage_enter(STAGE_START);
-    KrsStatus status = work(options);
+    KrsStatus status  = work(options);
     KrsStatus printed = console_finish();
     exit(status == KRS_OK ? printed : status);
 }
@@ -213,7 +213,7 @@ static void copy_scenes(const Options *options, const char *folder)
 {
     for (size_t i = 0; i < options->files.count; i++) {
         const char *from = options->files.items[i], *slash = strrchr(from, '/');
-        char *to;
+        char       *to;
         if (asprintf(&to, "%s/%zu-%s", folder, i + 1, slash ? slash + 1 : from) < 0)
             return;
         copy_file(from, to);
@@ -245,7 +245,7 @@ static void write_command(const Options *options, const char *folder, const char
 /* Says what happened, and keeps what is needed to see it again: scenes and command line. */
 static int report_bug(const Options *options, const char *story)
 {
-    char *folder;
+    char       *folder;
     const char *parent = getenv("TMPDIR");
     if (asprintf(&folder, "%s/krs-crash-XXXXXX", parent && *parent ? parent : "/tmp") < 0)
         folder = NULL;
@@ -273,7 +273,7 @@ static uint64_t memory_allowed(void)
 {
     const uint64_t plenty = (uint64_t)4 << 30;
     struct rlimit  limit;
-    bool limited = getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur < plenty;
+    bool           limited = getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur < plenty;
     return limited ? limit.rlim_cur : 0;
 }
 
@@ -304,9 +304,9 @@ static int report_late(const Options *options, const StageInfo *stage)
 
 static int judge_death(const Options *options, const Watch *watch, int signal_number)
 {
-    char story[256];
+    char             story[256];
     const StageInfo *stage = &stage_info[atomic_load(&shared->stage)];
-    const char *doing = stage->doing;
+    const char      *doing = stage->doing;
     if (watch->interrupted)
         return KRS_INTERRUPTED;
     if (watch->over) {
@@ -339,8 +339,8 @@ static int judge_death(const Options *options, const Watch *watch, int signal_nu
 /* Whether a stage with a deadline has passed it. */
 static bool is_late(const Options *options)
 {
-    const StageInfo *stage = &stage_info[atomic_load(&shared->stage)];
-    double seconds = (double)(milliseconds() - atomic_load(&shared->entered)) / 1000;
+    const StageInfo *stage   = &stage_info[atomic_load(&shared->stage)];
+    double           seconds = (double)(milliseconds() - atomic_load(&shared->entered)) / 1000;
     return stage->deadlines > 0 && seconds > stage->deadlines * options->deadline;
 }
 
@@ -348,10 +348,10 @@ static bool is_late(const Options *options)
 static int wait_for_child(const Options *options, Watch *watch, const sigset_t *signals)
 {
     const double patience = 10; /* seconds from an interrupt to force: a slice and a file */
-    int ended;
+    int          ended;
     while (waitpid(watch->child, &ended, WNOHANG) == 0) {
-        struct timespec pause = {.tv_nsec = 100 * 1000 * 1000};
-        int number = sigtimedwait(signals, NULL, &pause);
+        struct timespec pause  = {.tv_nsec = 100 * 1000 * 1000};
+        int             number = sigtimedwait(signals, NULL, &pause);
         if (number == SIGINT || number == SIGTERM || number == SIGHUP) {
             if (!watch->interrupted)
                 watch->interrupted_at = clock_now();
@@ -402,7 +402,7 @@ int supervise(Options *options, Work *work)
     if (watch.child == 0)
         run_child(options, work, &before);
 
-    int ended = wait_for_child(options, &watch, &signals);
+    int ended  = wait_for_child(options, &watch, &signals);
     int status = WIFEXITED(ended) ? WEXITSTATUS(ended)
                                   : judge_death(options, &watch, WTERMSIG(ended));
     if (atomic_load(&shared->open))

@@ -12,8 +12,15 @@
 
 /* What the child is doing; the parent names it should the child die. */
 typedef enum Stage {
-    STAGE_START, STAGE_COMPILE, STAGE_SHADERS, STAGE_DEVICE, STAGE_RENDER, STAGE_VALIDATE,
-    STAGE_WRITE, STAGE_ANSWER, STAGE_COUNT
+    STAGE_START,
+    STAGE_COMPILE,
+    STAGE_SHADERS,
+    STAGE_DEVICE,
+    STAGE_RENDER,
+    STAGE_VALIDATE,
+    STAGE_WRITE,
+    STAGE_ANSWER,
+    STAGE_COUNT
 } Stage;
 
 typedef KrsStatus Work(Options *options);
@@ -46,7 +53,7 @@ const volatile sig_atomic_t *interrupted(void);
 /* Writes an output file by `fill`, in STAGE_WRITE, and says why when it cannot be.  The parent
    removes the temporary if the child does not live to do so. */
 typedef bool Fill(const void *user, OutputFile *file, OutputError *error);
-KrsStatus write_output(const char *path, Fill *fill, const void *user);
+KrsStatus    write_output(const char *path, Fill *fill, const void *user);
 /* The same for a text. */
 KrsStatus write_output_text(const char *path, const char *text, size_t length);
 

@@ -37,24 +37,24 @@ static const double TOLERANCE_OF_SCALE = 1e-5, TOLERANCE_OF_VALUE = 1e-4;
 
 typedef struct Validation {
     const Options *options;
-    const char *path;
-    KrsScene  *scene;
-    KrsFrame  *frame;
-    uint64_t   random;      /* state of the generator */
-    double     low[3], high[3], size; /* the box that is tried, and its diagonal */
-    uint64_t   balls;       /* probes inside of balls so far */
-    uint64_t   ways;        /* from points to a surface that has an estimate, */
-    double     reached;     /* and the largest part of such a way that the estimate was */
-    double     difference;  /* largest of the device so far, in tolerances */
-    double     points[BATCH][3];
+    const char    *path;
+    KrsScene      *scene;
+    KrsFrame      *frame;
+    uint64_t       random;                /* state of the generator */
+    double         low[3], high[3], size; /* the box that is tried, and its diagonal */
+    uint64_t       balls;                 /* probes inside of balls so far */
+    uint64_t       ways;                  /* from points to a surface that has an estimate, */
+    double         reached;    /* and the largest part of such a way that the estimate was */
+    double         difference; /* largest of the device so far, in tolerances */
+    double         points[BATCH][3];
 } Validation;
 
 /* splitmix64: the same points on every machine. */
 static uint64_t random_next(uint64_t *state)
 {
     uint64_t z = *state += 0x9e3779b97f4a7c15;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
-    z = (z ^ z >> 27) * 0x94d049bb133111eb;
+    z          = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
+    z          = (z ^ z >> 27) * 0x94d049bb133111eb;
     return z ^ z >> 31;
 }
 
@@ -64,9 +64,9 @@ static void random_direction(uint64_t *state, double direction[3])
 {
     double z = 2 * random_unit(state) - 1, angle = 2 * acos(-1) * random_unit(state);
     double radius = sqrt(fmax(0, 1 - z * z));
-    direction[0] = radius * cos(angle);
-    direction[1] = radius * sin(angle);
-    direction[2] = z;
+    direction[0]  = radius * cos(angle);
+    direction[1]  = radius * sin(angle);
+    direction[2]  = z;
 }
 
 /* The box around the scene, half as large again; where the scene goes on for ever, a cut; around
@@ -74,18 +74,18 @@ static void random_direction(uint64_t *state, double direction[3])
 static void choose_box(Validation *v)
 {
     const KrsProgram *program = krs_scene_program(v->scene);
-    double square = 0;
+    double            square  = 0;
     for (int axis = 0; axis < 3; axis++) {
-        double low = fmax(program->low[axis], -UNBOUNDED);
+        double low  = fmax(program->low[axis], -UNBOUNDED);
         double high = fmin(program->high[axis], UNBOUNDED);
         if (isfinite(program->low[axis]) && isfinite(program->high[axis])) {
-            low = program->low[axis];
+            low  = program->low[axis];
             high = program->high[axis];
         }
         if (program->low[axis] > program->high[axis])
             low = high = 0;
         double margin = low < high ? (high - low) / 4 : 1;
-        v->low[axis] = fmin(low, high) - margin;
+        v->low[axis]  = fmin(low, high) - margin;
         v->high[axis] = fmax(low, high) + margin;
         square += (v->high[axis] - v->low[axis]) * (v->high[axis] - v->low[axis]);
     }
@@ -113,15 +113,15 @@ static void choose_points(Validation *v)
 {
     for (size_t i = 0; i < BATCH; i++)
         for (int axis = 0; axis < 3; axis++)
-            v->points[i][axis] =
-                v->low[axis] + random_unit(&v->random) * (v->high[axis] - v->low[axis]);
+            v->points[i][axis] = v->low[axis] +
+                                 random_unit(&v->random) * (v->high[axis] - v->low[axis]);
     march_to_surface(v);
     /* Rays that missed are far away, where nothing can be learned: back into the box. */
     for (size_t i = 1; i < BATCH; i += 2)
         for (int axis = 0; axis < 3; axis++)
             if (!(v->points[i][axis] >= v->low[axis] && v->points[i][axis] <= v->high[axis]))
-                v->points[i][axis] =
-                    v->low[axis] + random_unit(&v->random) * (v->high[axis] - v->low[axis]);
+                v->points[i][axis] = v->low[axis] +
+                                     random_unit(&v->random) * (v->high[axis] - v->low[axis]);
 }
 
 static void print_point(const char *words, const double point[3])
@@ -136,7 +136,7 @@ static void print_point(const char *words, const double point[3])
 /* " of component 2 (`ring`)" at the place of a counter-example. */
 static void print_component(const Validation *v, const double point[3])
 {
-    KrsHit hit;
+    KrsHit       hit;
     KrsComponent component;
     krs_probe(v->frame, (const double(*)[3])point, 1, &hit);
     if (hit.component > 0 && krs_component(v->scene, hit.component - 1, &component) == KRS_OK)
@@ -262,7 +262,7 @@ static KrsStatus try_balls(Validation *v)
 /* Both sides are asked about the same float positions. */
 static KrsStatus try_device(Validation *v, KrsRenderer *renderer, KrsRendering *rendering)
 {
-    float given[BATCH][3], answered[BATCH];
+    float  given[BATCH][3], answered[BATCH];
     double rounded[BATCH][3], expected[BATCH];
     for (size_t i = 0; i < BATCH; i++)
         for (int axis = 0; axis < 3; axis++)
@@ -275,7 +275,7 @@ static KrsStatus try_device(Validation *v, KrsRenderer *renderer, KrsRendering *
     }
     krs_distance(v->frame, (const double(*)[3])rounded, BATCH, expected);
     for (size_t i = 0; i < BATCH; i++) {
-        double tolerance = TOLERANCE_OF_SCALE * v->size + TOLERANCE_OF_VALUE * fabs(expected[i]);
+        double tolerance  = TOLERANCE_OF_SCALE * v->size + TOLERANCE_OF_VALUE * fabs(expected[i]);
         double difference = fabs(answered[i] - expected[i]) / tolerance;
         if (difference <= 1 || (isinf(expected[i]) && answered[i] > 1e30f)) {
             v->difference = fmax(v->difference, isfinite(difference) ? difference : 0);
@@ -295,9 +295,9 @@ static KrsStatus try_device(Validation *v, KrsRenderer *renderer, KrsRendering *
 /* All points, in batches; `rendering` is NULL without a device. */
 static KrsStatus try_points(Validation *v, KrsRenderer *renderer, KrsRendering *rendering)
 {
-    Progress progress;
+    Progress  progress;
     KrsStatus status = KRS_OK;
-    uint64_t tried = 0;
+    uint64_t  tried  = 0;
     stage_enter(STAGE_VALIDATE);
     progress_start(&progress, v->options, 1);
     while (tried < v->options->points && status == KRS_OK) {
@@ -327,7 +327,7 @@ static KrsStatus try_points(Validation *v, KrsRenderer *renderer, KrsRendering *
 
 static KrsStatus try_modules(const Validation *v)
 {
-    Modules modules;
+    Modules   modules;
     KrsStatus status = modules_compile(v->options, v->scene, &modules);
     if (status == KRS_OK)
         printf("%s: %zu modules are valid SPIR-V\n", v->path, modules.count);
@@ -351,8 +351,9 @@ static KrsStatus report_search(const Validation *v, KrsStatus status, const KrsR
     if (status != KRS_OK)
         return status;
     printf("%s: %zu shapes searched, at %zu settings, by %llu distances: "
-           "no slope above %.6g of 1\n", v->path, result->shapes, result->settings,
-           (unsigned long long)result->evaluations, result->steepest);
+           "no slope above %.6g of 1\n",
+           v->path, result->shapes, result->settings, (unsigned long long)result->evaluations,
+           result->steepest);
     if (result->refused > 0)
         printf("%s: %zu times no setting was found that is finite everywhere\n", v->path,
                result->refused);
@@ -373,14 +374,18 @@ static KrsStatus try_search(Validation *v)
     struct KrsFixed *fixed   = arena_new_array(options->arena, struct KrsFixed, count + 1);
     for (size_t i = 0; i < count; i++) {
         const Setting *setting = &options->settings.items[i];
-        fixed[i] = (struct KrsFixed){.name = setting->name, .count = setting->count};
+        fixed[i]               = (struct KrsFixed){.name = setting->name, .count = setting->count};
         memcpy(fixed[i].values, setting->values, sizeof fixed[i].values);
     }
     Progress         progress;
     KrsRefutation    result;
-    KrsRefuteOptions how = {.seconds = options->seconds, .seed = options->seed,
-                            .time = options->time, .fixed = fixed, .fixed_count = count,
-                            .go_on = go_on, .user = &progress};
+    KrsRefuteOptions how = {.seconds     = options->seconds,
+                            .seed        = options->seed,
+                            .time        = options->time,
+                            .fixed       = fixed,
+                            .fixed_count = count,
+                            .go_on       = go_on,
+                            .user        = &progress};
     stage_enter(STAGE_VALIDATE);
     progress_start(&progress, options, 1);
     KrsStatus status = krs_refute(v->path, &with, &how, &result);
@@ -393,7 +398,7 @@ static KrsStatus try_search(Validation *v)
 static KrsStatus validate_scene(Validation *v, KrsRenderer *renderer)
 {
     KrsRendering *rendering = NULL;
-    KrsStatus status = scene_open(v->options, v->path, &v->scene);
+    KrsStatus     status    = scene_open(v->options, v->path, &v->scene);
     if (status != KRS_OK)
         return status;
     choose_box(v);
@@ -420,13 +425,13 @@ static KrsStatus validate_scene(Validation *v, KrsRenderer *renderer)
 KrsStatus command_validate(Options *options)
 {
     KrsRenderer *renderer = NULL;
-    KrsStatus worst = options->no_device ? KRS_OK : open_renderer(options, &renderer);
+    KrsStatus    worst    = options->no_device ? KRS_OK : open_renderer(options, &renderer);
     if (worst != KRS_OK)
         return worst;
     for (size_t i = 0; i < options->files.count && !*interrupted(); i++) {
         Validation *v = arena_new(options->arena, Validation);
-        *v = (Validation){.options = options, .path = options->files.items[i],
-                          .random = options->seed};
+        *v            = (Validation){
+                       .options = options, .path = options->files.items[i], .random = options->seed};
         KrsStatus status = validate_scene(v, renderer);
         if (worst == KRS_OK)
             worst = status;

@@ -14,9 +14,9 @@ bool read_whole(const char *word, uint64_t low, uint64_t high, uint64_t *value)
     char *end;
     if (!isdigit((unsigned char)word[0]))
         return false; /* strtoull would take blanks and signs */
-    errno = 0;
+    errno                     = 0;
     unsigned long long number = strtoull(word, &end, 10);
-    *value = number;
+    *value                    = number;
     return errno == 0 && *end == '\0' && number >= low && number <= high;
 }
 
@@ -24,21 +24,20 @@ bool read_whole(const char *word, uint64_t low, uint64_t high, uint64_t *value)
 static bool read_number_prefix(const char *word, const char **end, double *value)
 {
     size_t length = strspn(word, "+-0123456789.eE");
-    char copy[64], *stop;
+    char   copy[64], *stop;
     if (length == 0 || length >= sizeof copy)
         return false;
     memcpy(copy, word, length);
     copy[length] = '\0';
-    *value = strtod(copy, &stop);
-    *end = word + length;
+    *value       = strtod(copy, &stop);
+    *end         = word + length;
     return *stop == '\0' && isfinite(*value);
 }
 
 bool read_number(const char *word, double low, double high, double *value)
 {
     const char *end;
-    return read_number_prefix(word, &end, value) && *end == '\0' && *value >= low &&
-           *value <= high;
+    return read_number_prefix(word, &end, value) && *end == '\0' && *value >= low && *value <= high;
 }
 
 bool read_count(const char *word, uint32_t low, uint32_t high, uint32_t *value)
@@ -55,7 +54,7 @@ static bool read_wholes(const char *word, char separator, uint64_t low, uint64_t
 {
     char part[16];
     for (size_t i = 0; i < count; i++) {
-        size_t length = strcspn(word, (char[]){separator, '\0'});
+        size_t   length = strcspn(word, (char[]){separator, '\0'});
         uint64_t value;
         if (length >= sizeof part)
             return false;
@@ -130,20 +129,20 @@ static bool read_vector(const char *word, Setting *setting)
 
 bool read_setting(Options *options, const char *word)
 {
-    const char *equals = strchr(word, '=');
-    Setting setting = {.count = 0};
+    const char *equals  = strchr(word, '=');
+    Setting     setting = {.count = 0};
     if (!equals || equals == word)
         return false;
-    setting.name = arena_copy_text(options->arena, word, (size_t)(equals - word));
+    setting.name      = arena_copy_text(options->arena, word, (size_t)(equals - word));
     const char *value = equals + 1;
-    bool done;
+    bool        done;
     if (*value == '#') {
         done = read_color(value, &setting);
     } else if (*value == '[') {
         done = read_vector(value, &setting);
     } else {
         setting.count = 1;
-        done = read_parameter_number(value, &value, &setting.values[0]) && *value == '\0';
+        done          = read_parameter_number(value, &value, &setting.values[0]) && *value == '\0';
     }
     if (done)
         array_push(options->arena, &options->settings, setting);
@@ -168,7 +167,7 @@ bool read_zone(Options *options, const char *word)
 bool read_aovs(const char *word, unsigned *aovs)
 {
     static const char *const names[] = {"Z", "P", "N", "albedo", "id", "steps"};
-    *aovs = 0;
+    *aovs                            = 0;
     if (strcmp(word, "all") == 0)
         *aovs = AOV_ALL;
     if (strcmp(word, "all") == 0 || strcmp(word, "none") == 0)
@@ -189,9 +188,9 @@ bool read_aovs(const char *word, unsigned *aovs)
 bool read_exit_map(Options *options, const char *word)
 {
     for (;; word++) {
-        char pair[16], *equals;
+        char     pair[16], *equals;
         uint64_t from, to;
-        size_t length = strcspn(word, ",");
+        size_t   length = strcspn(word, ",");
         if (length >= sizeof pair)
             return false;
         memcpy(pair, word, length);
@@ -213,9 +212,9 @@ bool read_exit_map(Options *options, const char *word)
 static bool read_bytes(char *word, uint64_t *bytes)
 {
     static const char units[] = "KMG";
-    size_t      length = strlen(word);
-    const char *unit = length > 1 ? strchr(units, word[length - 1]) : NULL;
-    int         shift = unit ? 10 * (int)(unit - units + 1) : 0;
+    size_t            length  = strlen(word);
+    const char       *unit    = length > 1 ? strchr(units, word[length - 1]) : NULL;
+    int               shift   = unit ? 10 * (int)(unit - units + 1) : 0;
     if (unit)
         word[length - 1] = '\0';
     if (!read_whole(word, 1, UINT64_MAX >> 30, bytes))
@@ -263,13 +262,13 @@ bool read_frames(Options *options, const char *word)
 {
     enum { FRAMES_LIMIT = 1000000 };
     const char *dots = strstr(word, "..");
-    uint64_t first, last;
+    uint64_t    first, last;
     if (!dots || !read_whole(dots + 2, 0, FRAMES_LIMIT, &last) ||
         !read_whole(arena_copy_text(options->arena, word, (size_t)(dots - word)), 0, last, &first))
         return false;
-    options->animated = true;
+    options->animated    = true;
     options->first_frame = (uint32_t)first;
-    options->last_frame = (uint32_t)last;
+    options->last_frame  = (uint32_t)last;
     return true;
 }
 
@@ -278,7 +277,7 @@ bool read_size(Options *options, const char *word)
     uint32_t size[2];
     if (!read_wholes(word, 'x', 1, SIDE_LIMIT, size, 2))
         return false;
-    options->width = size[0];
+    options->width  = size[0];
     options->height = size[1];
     return true;
 }
@@ -308,7 +307,7 @@ bool read_stage(const char *word, const char **stage)
 {
     static const char *const stages[] = {"tokens",   "syntax", "scene", "graph",
                                          "simplify", "glsl",   "spirv"};
-    *stage = NULL;
+    *stage                            = NULL;
     for (size_t i = 0; i < sizeof stages / sizeof *stages; i++)
         if (strcmp(word, stages[i]) == 0)
             *stage = stages[i];

@@ -131,14 +131,14 @@ static size_t entry_of(const Listing *l, const Shape *shape)
 static void fill_entry(Listing *l, const Shape *shape, KrsBound *entry)
 {
     const Source *source = &l->sources->items[shape->span.source];
-    entry->name     = arena_copy_text(l->arena, shape->name, strlen(shape->name));
-    entry->source   = arena_copy_text(l->arena, source->name, strlen(source->name));
-    entry->rule     = rule_of(l, shape);
-    entry->slope    = shape->slope;
-    entry->exact    = shape->exact;
-    entry->estimate = shape->estimate;
-    entry->levels    = shape->levels;
-    entry->instances = shape->instances;
+    entry->name          = arena_copy_text(l->arena, shape->name, strlen(shape->name));
+    entry->source        = arena_copy_text(l->arena, source->name, strlen(source->name));
+    entry->rule          = rule_of(l, shape);
+    entry->slope         = shape->slope;
+    entry->exact         = shape->exact;
+    entry->estimate      = shape->estimate;
+    entry->levels        = shape->levels;
+    entry->instances     = shape->instances;
     if (shape->span.source) {
         Position position = source_position(source, shape->span.start);
         entry->line       = position.line;
@@ -157,10 +157,10 @@ static void list_shape(Listing *l, const Shape *shape, uint32_t depth, uint32_t 
         list->more++;
         return;
     }
-    size_t    same  = entry_of(l, shape);
-    KrsBound *entry = &list->items[list->count];
+    size_t    same           = entry_of(l, shape);
+    KrsBound *entry          = &list->items[list->count];
     l->shapes[list->count++] = shape;
-    *entry = (KrsBound){.depth = depth, .alike = alike, .same = same};
+    *entry                   = (KrsBound){.depth = depth, .alike = alike, .same = same};
     fill_entry(l, shape, entry);
     for (uint32_t i = 0; i < shape->child_count && !same;) {
         uint32_t next = i + 1;

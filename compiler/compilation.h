@@ -24,20 +24,20 @@ typedef struct Request {
    diagnostics and the elaborated scene until the end of the run, `scratch` what one step needs.
    The syntax tree, which elaboration leaves, has one of its own. */
 typedef struct Compilation {
-    KrsScene  *scene;
-    Arena      work, syntax, scratch;
-    Sources    sources;
-    Names      names;
-    Diags      diags;
-    Scene      elaborated;
-    const char *text, *name;
-    size_t     length;
+    KrsScene         *scene;
+    Arena             work, syntax, scratch;
+    Sources           sources;
+    Names             names;
+    Diags             diags;
+    Scene             elaborated;
+    const char       *text, *name;
+    size_t            length;
     const Request    *request;
     const KrsOptions *options;
     const Loader     *loader;
-    bool       outside; /* the scene itself is no file that may be read */
-    Text       dump;
-    double     started;
+    bool              outside; /* the scene itself is no file that may be read */
+    Text              dump;
+    double            started;
 } Compilation;
 
 static inline bool is_flat(const Component *component)
@@ -57,7 +57,7 @@ bool check_operations(Compilation *c);
 bool check_numbers(Compilation *c);
 /* The frame at time 0 with all defaults, which is every caller's first; after emit. */
 KrsStatus check_defaults(Compilation *c);
-bool check_length(Compilation *c);
+bool      check_length(Compilation *c);
 /* Reports that the scene is too large; `operations`: of that component, its largest; 0 when they
    were too many to be counted. */
 void refuse_component(Compilation *c, size_t component, size_t operations);

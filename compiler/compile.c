@@ -13,8 +13,8 @@
 
 static const size_t DEFAULT_MEMORY = (size_t)2 << 30;
 
-const char *const dump_stage_names[DUMP_STAGE_COUNT] = {
-    "tokens", "syntax", "scene", "graph", "simplify", "glsl"};
+const char *const dump_stage_names[DUMP_STAGE_COUNT] = {"tokens", "syntax",   "scene",
+                                                        "graph",  "simplify", "glsl"};
 
 static const Request scene_alone = {.stage = DUMP_STAGE_COUNT};
 
@@ -45,18 +45,18 @@ static Graph *elaborate_scene(Compilation *c)
 {
     uint32_t source = source_add(&c->sources, c->name, c->text, c->length, false);
     dump_front(c, source);
-    Graph *graph        = graph_new(&c->work);
-    c->elaborated       = (Scene){.graph = graph, .zenith = NODE_NONE, .zone = NODE_NONE};
-    Elaboration e       = {.arena      = &c->work,
-                           .syntax     = &c->syntax,
-                           .scratch    = &c->scratch,
-                           .diags      = &c->diags,
-                           .names      = &c->names,
-                           .sources    = &c->sources,
-                           .graph      = graph,
-                           .scene      = &c->elaborated,
-                           .loader     = c->loader,
-                           .text_total = c->length};
+    Graph *graph  = graph_new(&c->work);
+    c->elaborated = (Scene){.graph = graph, .zenith = NODE_NONE, .zone = NODE_NONE};
+    Elaboration e = {.arena      = &c->work,
+                     .syntax     = &c->syntax,
+                     .scratch    = &c->scratch,
+                     .diags      = &c->diags,
+                     .names      = &c->names,
+                     .sources    = &c->sources,
+                     .graph      = graph,
+                     .scene      = &c->elaborated,
+                     .loader     = c->loader,
+                     .text_total = c->length};
     elaborate(&e, source, c->name);
     arena_free(&c->scratch);
     if (dumps(c, DUMP_SCENE) && c->diags.errors == 0)
@@ -87,9 +87,9 @@ static void find_rest(Compilation *c, Box *boxes, bool *flat)
     Box         rest    = box_empty;
     for (size_t i = 0; i < c->scene->component_count; i++) {
         const Component *component = &c->elaborated.components.items[i];
-        boxes[i] = component->shape->box;
-        flat[i]  = is_flat(component);
-        rest     = flat[i] ? rest : box_hull(rest, boxes[i]);
+        boxes[i]                   = component->shape->box;
+        flat[i]                    = is_flat(component);
+        rest                       = flat[i] ? rest : box_hull(rest, boxes[i]);
     }
     for (int k = 0; k < 3; k++) {
         program->rest_low[k]  = box_is_empty(rest) ? 0 : rest.axis[k].low;
@@ -110,17 +110,17 @@ static void emit(Compilation *c)
     uint32_t    *groups  = arena_new_array(&c->scratch, uint32_t, count + 1);
     find_rest(c, boxes, flat);
     form_groups(c, groups);
-    program->parts = emit_part_count(count);
-    EmitMarch march = {.guarded      = roots->guarded,
-                       .along        = roots->along,
-                       .boxes        = boxes,
-                       .groups       = program->group_count ? groups : NULL,
-                       .flat         = program->flats ? flat : NULL,
-                       .anchored     = program->anchored ? roots->anchored : NULL,
-                       .zone_slots   = KRS_MOST_ZONES,
-                       .ahead        = roots->flats,
-                       .slopes       = scene->slope_count > 0,
-                       .gradient     = program->gradients ? roots->gradients : NULL};
+    program->parts  = emit_part_count(count);
+    EmitMarch march = {.guarded    = roots->guarded,
+                       .along      = roots->along,
+                       .boxes      = boxes,
+                       .groups     = program->group_count ? groups : NULL,
+                       .flat       = program->flats ? flat : NULL,
+                       .anchored   = program->anchored ? roots->anchored : NULL,
+                       .zone_slots = KRS_MOST_ZONES,
+                       .ahead      = roots->flats,
+                       .slopes     = scene->slope_count > 0,
+                       .gradient   = program->gradients ? roots->gradients : NULL};
     emit_glsl(scene->graph, &c->sources, roots->components, count, zone_root(scene), &march,
               &c->scratch, &glsl, &scene->found);
     program->glsl            = glsl.bytes;
@@ -223,28 +223,32 @@ static KrsStatus run_guarded(Compilation *c)
 static KrsStatus compile(const Loaded *loaded, const char *name, const Loader *loader,
                          const KrsOptions *options, const Request *request, KrsScene **result)
 {
-    const KrsAllocator *allocator    = &options->allocator;
+    const KrsAllocator *allocator = &options->allocator;
     KrsScene *scene = allocator->allocate ? allocator->allocate(allocator->user, sizeof *scene)
                                           : malloc(sizeof *scene);
     if (!scene)
         return KRS_OUT_OF_MEMORY;
     memset(scene, 0, sizeof *scene);
-    Compilation c = {.scene      = scene,
-                     .text       = loaded->text,
-                     .length     = loaded->length,
-                     .outside    = loaded->outside,
-                     .loader     = loader,
-                     .name       = name,
-                     .request    = request,
-                     .options    = options,
-                     .started    = now_ms()};
-    scene->memory = (Memory){allocator->allocate, allocator->release, allocator->user, 0,
-                             options->memory_limit ? options->memory_limit : DEFAULT_MEMORY, NULL};
+    Compilation c = {.scene   = scene,
+                     .text    = loaded->text,
+                     .length  = loaded->length,
+                     .outside = loaded->outside,
+                     .loader  = loader,
+                     .name    = name,
+                     .request = request,
+                     .options = options,
+                     .started = now_ms()};
+    scene->memory = (Memory){allocator->allocate,
+                             allocator->release,
+                             allocator->user,
+                             0,
+                             options->memory_limit ? options->memory_limit : DEFAULT_MEMORY,
+                             NULL};
     scene->arena = c.work = c.syntax = c.scratch = (Arena){.memory = &scene->memory};
-    c.sources = (Sources){.arena = &c.work};
-    c.names   = (Names){.arena = &c.work};
-    c.diags   = (Diags){.arena = &c.work, .sources = &c.sources};
-    c.dump    = (Text){.arena = &c.work};
+    c.sources                                    = (Sources){.arena = &c.work};
+    c.names                                      = (Names){.arena = &c.work};
+    c.diags                                      = (Diags){.arena = &c.work, .sources = &c.sources};
+    c.dump                                       = (Text){.arena = &c.work};
 
     KrsStatus status = run_guarded(&c);
     if (request->dump && status != KRS_OUT_OF_MEMORY)
@@ -267,10 +271,10 @@ static KrsStatus load_and_compile(const char *text, size_t length, const char *n
                                   KrsScene **scene)
 {
     static const KrsOptions defaults = {0};
-    options          = options ? options : &defaults;
-    *scene           = NULL;
-    Loader    loader = {.supplier = options->load, .user = options->load_user};
-    KrsStatus status = KRS_OUT_OF_MEMORY;
+    options                          = options ? options : &defaults;
+    *scene                           = NULL;
+    Loader    loader                 = {.supplier = options->load, .user = options->load_user};
+    KrsStatus status                 = KRS_OUT_OF_MEMORY;
     if (loader_open(&loader, options->root, name)) {
         Loaded loaded = {.text = text, .length = length};
         if (!text)

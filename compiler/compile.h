@@ -51,10 +51,10 @@ typedef struct KrsCamera {
 } KrsCamera;
 
 typedef struct KrsLight {
-    bool   positional;     /* else directional */
-    double vector[3];      /* position, or unit direction towards the light */
-    double color[3];       /* linear, already times intensity */
-    double softness;       /* directional: angular diameter, radians; positional: radius */
+    bool   positional; /* else directional */
+    double vector[3];  /* position, or unit direction towards the light */
+    double color[3];   /* linear, already times intensity */
+    double softness;   /* directional: angular diameter, radians; positional: radius */
     bool   shadow;
 } KrsLight;
 
@@ -73,47 +73,47 @@ typedef struct KrsImage {
 
 /* Everything about a picture that the host evaluates once per frame. */
 typedef struct KrsView {
-    KrsCamera camera;
-    KrsSky    sky;
-    KrsImage  image;
-    size_t    light_count;
+    KrsCamera       camera;
+    KrsSky          sky;
+    KrsImage        image;
+    size_t          light_count;
     const KrsLight *lights; /* lives as long as the frame, until the next krs_frame_view */
 } KrsView;
 
 /* Components that are best marched by themselves, one group after another: with GROUP defined as
    the number of a group, from 1, krs_distance is that of the group's components alone. */
 typedef struct KrsGroup {
-    double flops;            /* as below, of its components */
-    double low[3], high[3];  /* box around them */
+    double flops;           /* as below, of its components */
+    double low[3], high[3]; /* box around them */
 } KrsGroup;
 enum { KRS_MOST_GROUPS = 8 };
 
 typedef struct KrsProgram {
-    const char *glsl;         /* promised functions, readable, with comments of source lines */
+    const char *glsl; /* promised functions, readable, with comments of source lines */
     size_t      glsl_length;
     uint32_t    parameter_slots;
-    uint32_t    value_slots;  /* how many follow for kernels with #define FRAME_VALUES */
+    uint32_t    value_slots;     /* how many follow for kernels with #define FRAME_VALUES */
     double      low[3], high[3]; /* box around all components; infinite where unbounded */
-    size_t      operations;   /* of krs_distance */
-    double      flops;        /* of krs_distance, weighted as op_cost has it */
-    uint32_t    loops;        /* iterations of loops in it, at most */
-    bool        flats;        /* there is krs_ahead, for kernels with #define FLATS */
+    size_t      operations;      /* of krs_distance */
+    double      flops;           /* of krs_distance, weighted as op_cost has it */
+    uint32_t    loops;           /* iterations of loops in it, at most */
+    bool        flats;           /* there is krs_ahead, for kernels with #define FLATS */
     double      rest_low[3], rest_high[3]; /* with flats: the box around what is left to march */
-    bool        anchored;     /* points may be given from an anchor, with #define ANCHORED */
+    bool        anchored;       /* points may be given from an anchor, with #define ANCHORED */
     uint32_t    anchored_slots; /* then: how many more slots follow those of the zones */
-    bool        gradients;    /* there is krs_gradient, for kernels with #define GRADIENT */
-    bool        algebraic;    /* normals are by krs_gradient unless asked for otherwise */
-    bool        along;        /* there is krs_along, for kernels with #define ALONG */
-    bool        sheets;       /* surfaces without thickness, where krs_distance is not negative: rays
+    bool        gradients;      /* there is krs_gradient, for kernels with #define GRADIENT */
+    bool        algebraic;      /* normals are by krs_gradient unless asked for otherwise */
+    bool        along;          /* there is krs_along, for kernels with #define ALONG */
+    bool        sheets;  /* surfaces without thickness, where krs_distance is not negative: rays
                                  go by krs_along, normals by krs_gradient, with #define SHEETS */
-    bool        inverts;      /* there are its variants for sequences with maps that invert */
-    bool        plain;        /* no component is curved (shape_is_curved): #define PLAIN */
-    bool        shadows;      /* a light casts some */
+    bool        inverts; /* there are its variants for sequences with maps that invert */
+    bool        plain;   /* no component is curved (shape_is_curved): #define PLAIN */
+    bool        shadows; /* a light casts some */
     KrsGroup    groups[KRS_MOST_GROUPS];
-    size_t      group_count;  /* 0: all components belong together */
-    bool        apart;        /* taking turns is worth it */
-    uint32_t    parts;        /* of krs_distance_of, for kernels with #define PACKED */
-    uint32_t    heavy;        /* components that are worth being marched by themselves */
+    size_t      group_count;       /* 0: all components belong together */
+    bool        apart;             /* taking turns is worth it */
+    uint32_t    parts;             /* of krs_distance_of, for kernels with #define PACKED */
+    uint32_t    heavy;             /* components that are worth being marched by themselves */
     double      front_ms, glsl_ms; /* time spent */
 } KrsProgram;
 
@@ -162,17 +162,17 @@ const char *krs_scene_hash(const KrsScene *scene);
 typedef struct KrsRefuteOptions {
     double   seconds; /* of counted work, so that every machine does and finds the same */
     uint64_t seed;
-    double   time;    /* of the first attempt */
+    double   time; /* of the first attempt */
     /* Parameters that keep these values; the others vary. */
     struct KrsFixed {
         const char *name;
         double      values[4];
         size_t      count;
     } const *fixed;
-    size_t fixed_count;
+    size_t   fixed_count;
     /* Called now and then with the part that is done; false: stop.  May be NULL. */
     bool (*go_on)(void *user, double fraction);
-    void  *user;
+    void *user;
 } KrsRefuteOptions;
 
 typedef struct KrsRefutation {
@@ -192,7 +192,13 @@ KrsStatus krs_refute(const char *path, const KrsOptions *options, const KrsRefut
                      KrsRefutation *result);
 
 typedef enum DumpStage {
-    DUMP_TOKENS, DUMP_SYNTAX, DUMP_SCENE, DUMP_GRAPH, DUMP_SIMPLIFY, DUMP_GLSL, DUMP_STAGE_COUNT
+    DUMP_TOKENS,
+    DUMP_SYNTAX,
+    DUMP_SCENE,
+    DUMP_GRAPH,
+    DUMP_SIMPLIFY,
+    DUMP_GLSL,
+    DUMP_STAGE_COUNT
 } DumpStage;
 extern const char *const dump_stage_names[DUMP_STAGE_COUNT];
 

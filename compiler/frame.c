@@ -53,8 +53,8 @@ static bool depends_on(const Tape *tape, uint32_t slot)
 /* Finds the slopes that depend on a slot; false, with `unbounded` set: one has no bound. */
 static bool find_slopes(KrsFrame *frame, uint32_t changed)
 {
-    const double (*parameters)[4] = (const double(*)[4])frame->parameters;
-    frame->unbounded = NULL;
+    const double(*parameters)[4] = (const double(*)[4])frame->parameters;
+    frame->unbounded             = NULL;
     for (size_t i = 0; i < frame->scene->slope_count; i++) {
         const KeptSlope *slope = &frame->scene->slopes[i];
         if (!depends_on(&slope->task.tape, changed))
@@ -251,7 +251,7 @@ KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view)
         return KRS_BAD_ARGUMENT;
     frame_refresh(frame);
     const Node *root = scene->roots.cameras + camera * CAMERA_ROOTS, *sky = scene->roots.sky;
-    *view = (KrsView){.light_count = scene->light_count, .lights = frame->lights};
+    *view                   = (KrsView){.light_count = scene->light_count, .lights = frame->lights};
     view->camera.projection = scene->cameras[camera].projection;
     frame_copy(frame, root[0], view->camera.eye);
     frame_copy(frame, root[1], view->camera.target);
@@ -268,9 +268,9 @@ KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view)
     for (size_t i = 0; i < scene->light_count; i++) {
         const Node *light = scene->roots.lights + i * LIGHT_ROOTS;
         KrsLight   *to    = &frame->lights[i];
-        *to = (KrsLight){.positional = scene->lights[i].positional,
-                         .shadow     = scene->lights[i].shadow,
-                         .softness   = frame->values[light[2]].v[0]};
+        *to               = (KrsLight){.positional = scene->lights[i].positional,
+                                       .shadow     = scene->lights[i].shadow,
+                                       .softness   = frame->values[light[2]].v[0]};
         frame_copy(frame, light[0], to->vector);
         frame_copy(frame, light[1], to->color);
         if (!to->positional)

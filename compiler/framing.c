@@ -151,7 +151,7 @@ KrsStatus frame_scene(KrsScene *scene)
     scene->framed = true;
     memcpy(scene->framed_target, ball.centre, sizeof ball.centre);
     for (int k = 0; k < 3; k++)
-        scene->framed_eye[k] =
-            ball.centre[k] + towards[k] * ball.radius / sin(0.5 * view.camera.fov);
+        scene->framed_eye[k] = ball.centre[k] +
+                               towards[k] * ball.radius / sin(0.5 * view.camera.fov);
     return KRS_OK;
 }

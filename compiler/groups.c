@@ -10,8 +10,9 @@ static const double HEAVY_FLOPS = 100, SCATTERED_FLOPS = 1000, MIXED_FLOPS = 200
 static double component_flops(Compilation *c, size_t component)
 {
     const KrsScene *scene = c->scene;
-    Tape tape = tape_new(scene->graph, &scene->roots.components[component * ROOT_COUNT +
-                                                                ROOT_DISTANCE], 1, &c->scratch);
+    Tape            tape  = tape_new(scene->graph,
+                                     &scene->roots.components[component * ROOT_COUNT + ROOT_DISTANCE], 1,
+                                     &c->scratch);
     return tape_flops(&tape);
 }
 
@@ -27,7 +28,7 @@ static size_t choose_group(const KrsProgram *program, double flops, Box box)
 static void add_group(KrsProgram *program, double flops, Box box)
 {
     KrsGroup *group = &program->groups[program->group_count++];
-    group->flops = flops;
+    group->flops    = flops;
     for (int i = 0; i < 3; i++) {
         group->low[i]  = box.axis[i].low;
         group->high[i] = box.axis[i].high;
@@ -55,10 +56,10 @@ void form_groups(Compilation *c, uint32_t *groups)
     double      light   = 0;
     for (size_t i = 0; i < c->scene->component_count; i++) {
         const Component *component = &c->elaborated.components.items[i];
-        groups[i] = 0;
+        groups[i]                  = 0;
         if (program->flats && is_flat(component))
             continue;
-        double flops = component_flops(c, i);
+        double flops                  = component_flops(c, i);
         c->scene->components[i].flops = flops;
         program->heavy += flops >= HEAVY_FLOPS;
         size_t group = choose_group(program, flops, component->shape->box);

@@ -15,8 +15,8 @@ static const char *keep(Compilation *c, const char *text)
 
 static void keep_components(Compilation *c)
 {
-    KrsScene    *scene = c->scene;
-    const Scene *s     = &c->elaborated;
+    KrsScene    *scene     = c->scene;
+    const Scene *s         = &c->elaborated;
     scene->component_count = s->components.count;
     scene->components      = arena_new_array(&scene->arena, KrsComponent, s->components.count + 1);
     scene->bounds          = arena_new_array(&scene->arena, KrsBounds, s->components.count + 1);
@@ -24,14 +24,14 @@ static void keep_components(Compilation *c)
     for (size_t i = 0; i < s->components.count; i++) {
         const Component *from = &s->components.items[i];
         KrsComponent    *to   = &scene->components[i];
-        *to = (KrsComponent){.name      = keep(c, from->name),
-                             .slope     = from->shape->slope * from->shape->derived,
-                             .per_frame = from->shape->per_frame,
-                             .exact     = from->shape->exact,
-                             .estimate  = from->shape->estimate,
-                             .levels    = from->shape->levels,
-                             .instances = from->shape->instances,
-                             .inversions = from->shape->inversions};
+        *to                   = (KrsComponent){.name       = keep(c, from->name),
+                                               .slope      = from->shape->slope * from->shape->derived,
+                                               .per_frame  = from->shape->per_frame,
+                                               .exact      = from->shape->exact,
+                                               .estimate   = from->shape->estimate,
+                                               .levels     = from->shape->levels,
+                                               .instances  = from->shape->instances,
+                                               .inversions = from->shape->inversions};
         for (int k = 0; k < 3; k++) {
             to->low[k]  = from->shape->box.axis[k].low;
             to->high[k] = from->shape->box.axis[k].high;
@@ -119,9 +119,9 @@ static void find_steps(KrsScene *scene, const Node *distances)
 
 void keep_tapes(Compilation *c)
 {
-    KrsScene    *scene = c->scene;
-    const Roots *roots = &scene->roots;
-    size_t       count = scene->component_count;
+    KrsScene    *scene     = c->scene;
+    const Roots *roots     = &scene->roots;
+    size_t       count     = scene->component_count;
     Node        *distances = arena_new_array(&c->scratch, Node, count + 1);
     Node        *guarded   = arena_new_array(&c->scratch, Node, count + 1);
     for (size_t i = 0; i < count; i++)
@@ -140,10 +140,10 @@ void keep_tapes(Compilation *c)
         scene->turned = tape_new(scene->graph, roots->gradients,
                                  scene->component_count * GRADIENT_ROOTS, &scene->arena);
     }
-    scene->surface  = tape_new(scene->graph, roots->components,
-                               (size_t)(roots->cameras - roots->components), &scene->arena);
-    scene->view     = tape_new(scene->graph, roots->cameras,
-                               (size_t)(roots->guarded - roots->cameras), &scene->arena);
+    scene->surface = tape_new(scene->graph, roots->components,
+                              (size_t)(roots->cameras - roots->components), &scene->arena);
+    scene->view = tape_new(scene->graph, roots->cameras, (size_t)(roots->guarded - roots->cameras),
+                           &scene->arena);
     scene->program.operations = scene->distance.count - scene->distance.frame_count;
     scene->program.flops      = tape_flops(&scene->distance);
     scene->program.loops      = tape_loops(&scene->distance);

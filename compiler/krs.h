@@ -22,15 +22,15 @@ extern "C" {
 
 /* The command's exit statuses are these numbers too. */
 typedef enum KrsStatus {
-    KRS_OK              = 0,
-    KRS_BAD_SCENE       = 1,  /* diagnostics say why */
-    KRS_BAD_ARGUMENT    = 2,  /* wrong use of this interface */
-    KRS_NO_DEVICE       = 69, /* no usable Vulkan device */
-    KRS_INTERNAL        = 70, /* a bug of krs or of the driver */
-    KRS_OUT_OF_MEMORY   = 71,
-    KRS_CANNOT_CREATE   = 73, /* an output cannot be created */
-    KRS_IO_ERROR        = 74, /* the scene cannot be read, or an output not be written */
-    KRS_INTERRUPTED     = 130
+    KRS_OK            = 0,
+    KRS_BAD_SCENE     = 1,  /* diagnostics say why */
+    KRS_BAD_ARGUMENT  = 2,  /* wrong use of this interface */
+    KRS_NO_DEVICE     = 69, /* no usable Vulkan device */
+    KRS_INTERNAL      = 70, /* a bug of krs or of the driver */
+    KRS_OUT_OF_MEMORY = 71,
+    KRS_CANNOT_CREATE = 73, /* an output cannot be created */
+    KRS_IO_ERROR      = 74, /* the scene cannot be read, or an output not be written */
+    KRS_INTERRUPTED   = 130
 } KrsStatus;
 
 typedef struct KrsScene KrsScene;
@@ -42,7 +42,7 @@ typedef struct KrsDiagnostic {
     bool        error; /* else a warning */
     const char *code;  /* "E0312" */
     const char *message;
-    const char *source; /* name of the text it is about */
+    const char *source;       /* name of the text it is about */
     uint32_t    line, column; /* from 1 */
     const char *text, *json;
 } KrsDiagnostic;
@@ -65,17 +65,17 @@ typedef const char *KrsLoadCallback(void *user, const char *path, size_t *length
 
 typedef struct KrsOptions {
     KrsAllocator           allocator;
-    KrsDiagnosticCallback *diagnostic; /* may be NULL */
-    void                  *user;       /* handed to `diagnostic` */
+    KrsDiagnosticCallback *diagnostic;   /* may be NULL */
+    void                  *user;         /* handed to `diagnostic` */
     size_t                 memory_limit; /* of a scene, while it is compiled; bytes; 0: 2 GiB */
     bool                   gradients;    /* derivatives as well, for KRS_NORMALS_ANALYTIC and for
                                             whoever embeds the GLSL: krs_gradient */
     /* Files are read from this folder and those below only, whatever a scene names and wherever
        symbolic links lead: E0504.  That goes for the scene itself in krs_compile_file; with
        krs_compile_text, `name` must be in it for `use` to work.  NULL: any. */
-    const char            *root;
-    KrsLoadCallback       *load;      /* instead of reading files that are used; may be NULL */
-    void                  *load_user; /* handed to `load` */
+    const char      *root;
+    KrsLoadCallback *load;      /* instead of reading files that are used; may be NULL */
+    void            *load_user; /* handed to `load` */
 } KrsOptions;
 
 /* Compiles a text in memory (`name` is used in diagnostics, and `use` is relative to its
@@ -86,15 +86,15 @@ KrsStatus krs_compile_text(const char *text, size_t length, const char *name,
                            const KrsOptions *options, KrsScene **scene);
 KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene **scene);
 /* Its frames and renderings must be freed before.  NULL is ignored, here as in all that frees. */
-void      krs_scene_free(KrsScene *scene);
+void krs_scene_free(KrsScene *scene);
 
 /* What the functions below say of a scene lives as long as the scene: names, places, rules. */
 
 /* A `param` of the scene.  Angles are in radians, colours linear Rec.709. */
 typedef struct KrsParameter {
     const char *name;
-    uint32_t    components;    /* 1 for a number, 2..4 for a vector or colour */
-    double      value[4];      /* the default */
+    uint32_t    components;      /* 1 for a number, 2..4 for a vector or colour */
+    double      value[4];        /* the default */
     double      low[4], high[4]; /* the permitted range; may be infinite */
 } KrsParameter;
 
@@ -135,7 +135,7 @@ void   krs_frame_values(const KrsFrame *frame, float (*block)[4]);
    none. */
 typedef struct KrsFrameSlope {
     uint32_t    slot;
-    const char *place;         /* "scene.krs:3:14" */
+    const char *place;           /* "scene.krs:3:14" */
     double      low[3], high[3]; /* of the box over which it is found; may be infinite */
 } KrsFrameSlope;
 size_t    krs_frame_slope_count(const KrsScene *scene);
@@ -154,41 +154,41 @@ KrsStatus krs_frame_set_zones(KrsFrame *frame, const double (*zones)[4], size_t 
 
 /* A component of the scene: what one `show` shows. */
 typedef struct KrsComponent {
-    const char *name;      /* the variable it was shown by, or "component 3" */
+    const char *name;            /* the variable it was shown by, or "component 3" */
     double      low[3], high[3]; /* a box around it in world units; may be infinite */
-    double      slope;     /* the derived bound on the slope of its expression */
-    bool        per_frame; /* that is of the first frame, and found anew for each */
-    bool        exact;     /* the distance is exact outside wherever docs/math.md says so */
-    bool        estimate;  /* nothing is proven of the distance; else it is a bound */
-    uint32_t    levels;    /* reflections of its outermost sequence; 0 without one */
-    double      instances; /* copies of kernels, counted with their reflections */
+    double      slope;           /* the derived bound on the slope of its expression */
+    bool        per_frame;       /* that is of the first frame, and found anew for each */
+    bool        exact;           /* the distance is exact outside wherever docs/math.md says so */
+    bool        estimate;        /* nothing is proven of the distance; else it is a bound */
+    uint32_t    levels;          /* reflections of its outermost sequence; 0 without one */
+    double      instances;       /* copies of kernels, counted with their reflections */
     uint32_t    inversions; /* maps of its outermost sequence that invert, or of `.transform` */
-    double      flops;     /* of its distance, at one point: in multiply-adds */
+    double      flops;      /* of its distance, at one point: in multiply-adds */
 } KrsComponent;
 
-size_t    krs_component_count(const KrsScene *scene);
+size_t krs_component_count(const KrsScene *scene);
 /* Component `index`, from 0 in the order of the text; KRS_BAD_ARGUMENT when there is none. */
 KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *component);
 
 /* What is known of the distance of one shape of a component, in the shape's own space. */
 typedef struct KrsBound {
-    uint32_t    depth;     /* 0: all of the component; its parts follow it, one deeper */
-    const char *name;      /* "torus", "union" */
-    const char *source;    /* where the shape is made: name of a text, */
-    uint32_t    line, column; /* from 1; 0: nowhere */
-    const char *rule;      /* by which its bound follows: "exact, by claim" */
-    double      slope;     /* of the distance that it lowers to; divided out at the root */
+    uint32_t    depth;           /* 0: all of the component; its parts follow it, one deeper */
+    const char *name;            /* "torus", "union" */
+    const char *source;          /* where the shape is made: name of a text, */
+    uint32_t    line, column;    /* from 1; 0: nowhere */
+    const char *rule;            /* by which its bound follows: "exact, by claim" */
+    double      slope;           /* of the distance that it lowers to; divided out at the root */
     double      low[3], high[3]; /* a box around it; may be infinite */
     bool        exact, estimate; /* as of components */
     uint32_t    levels;
     double      instances;
-    uint32_t    alike;     /* parts like it, made in the same place, that have no entry */
-    size_t      same;      /* from 1: the entry where its parts are; 0: behind this one */
+    uint32_t    alike; /* parts like it, made in the same place, that have no entry */
+    size_t      same;  /* from 1: the entry where its parts are; 0: behind this one */
 } KrsBound;
 
 /* How many entries there are, at most 256, and how many shapes there was no room for (`more` may be
    NULL); 0 of a component that does not exist. */
-size_t    krs_bound_count(const KrsScene *scene, size_t component, size_t *more);
+size_t krs_bound_count(const KrsScene *scene, size_t component, size_t *more);
 /* KRS_BAD_ARGUMENT when there is no such entry. */
 KrsStatus krs_bound(const KrsScene *scene, size_t component, size_t index, KrsBound *bound);
 
@@ -207,9 +207,9 @@ KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count,
 
 /* What is at a point, or where a ray ends. */
 typedef struct KrsHit {
-    bool     hit;       /* for rays; always true for points */
+    bool     hit;        /* for rays; always true for points */
     bool     unresolved; /* for rays: given up after KRS_MOST_STEPS steps, clear up to `t` */
-    double   t;         /* for rays: world units along the unit direction */
+    double   t;          /* for rays: world units along the unit direction */
     double   point[3];
     double   distance;  /* at that point */
     double   normal[3]; /* unit gradient of the distance; 0 where there is none */

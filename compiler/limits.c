@@ -29,8 +29,8 @@ static size_t count_operations(Compilation *c, const Node *roots, size_t count)
 void refuse_component(Compilation *c, size_t component, size_t operations)
 {
     const Component *shown = &c->elaborated.components.items[component];
-    Diag *diag  = diag_add(&c->diags, DIAG_TOO_LARGE, shown->span,
-                           "the scene needs more than %d operations", MOST_OPERATIONS);
+    Diag            *diag  = diag_add(&c->diags, DIAG_TOO_LARGE, shown->span,
+                                      "the scene needs more than %d operations", MOST_OPERATIONS);
     diag->label = operations ? diag_text(&c->diags, "`%s` is the largest component, with %zu",
                                          shown->name, operations)
                              : diag_text(&c->diags, "`%s` alone needs more", shown->name);
@@ -99,8 +99,8 @@ static void refuse_number(Compilation *c, const Component *shown, Span span)
 static Node find_beyond_numbers(Compilation *c, size_t first, size_t count)
 {
     const Graph *graph = c->scene->graph;
-    Tape tape  = tape_new(graph, &c->scene->roots.components[first * ROOT_COUNT],
-                          count * ROOT_COUNT, &c->scratch);
+    Tape tape = tape_new(graph, &c->scene->roots.components[first * ROOT_COUNT], count * ROOT_COUNT,
+                         &c->scratch);
     Node found = NODE_NONE;
     for (size_t k = 0; k < tape.count && found == NODE_NONE; k++)
         if (is_beyond_numbers(graph, &graph->items[tape.nodes[k]]))
@@ -190,8 +190,8 @@ bool check_length(Compilation *c)
     for (size_t i = 0; i < c->elaborated.components.count; i++) {
         const Node *root       = &c->scene->roots.components[i * ROOT_COUNT];
         size_t      operations = count_operations(c, root, ROOT_COUNT);
-        largest = operations > most ? i : largest;
-        most    = operations > most ? operations : most;
+        largest                = operations > most ? i : largest;
+        most                   = operations > most ? operations : most;
     }
     refuse_length(c, largest, most);
     return false;

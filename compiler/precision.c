@@ -58,8 +58,8 @@ static void run_defaults(Sight *sight)
 {
     const Scene *s     = sight->scene;
     size_t       count = 0;
-    Node *roots = arena_new_array(sight->scratch, Node,
-                                  s->components.count + 3 * s->cameras.count + 1);
+    Node        *roots = arena_new_array(sight->scratch, Node,
+                                         s->components.count + 3 * s->cameras.count + 1);
     for (size_t i = 0; i < s->components.count; i++)
         roots[count++] = sight->distances[i * ROOT_COUNT + ROOT_DISTANCE];
     for (size_t i = 0; i < s->cameras.count; i++) {
@@ -109,11 +109,11 @@ static bool camera_needs_anchor(const Sight *sight, const SceneCamera *camera)
 {
     const double *eye     = sight->values[camera->eye].v;
     double        nearest = nearest_to(sight, eye), lines = lines_of(sight->scene);
-    double        pixel   = camera->projection == KRS_ORTHOGRAPHIC
-                                ? sight->values[camera->height].v[0] / lines
-                            : camera->projection == KRS_PANORAMA
-                                ? M_PI * nearest / lines
-                                : 2 * tan(sight->values[camera->fov].v[0] / 2) * nearest / lines;
+    double        pixel = camera->projection == KRS_ORTHOGRAPHIC
+                              ? sight->values[camera->height].v[0] / lines
+                          : camera->projection == KRS_PANORAMA
+                              ? M_PI * nearest / lines
+                              : 2 * tan(sight->values[camera->fov].v[0] / 2) * nearest / lines;
     return krs_needs_anchor(largest(eye), pixel);
 }
 
@@ -139,8 +139,7 @@ bool may_need_anchor(const Scene *scene, Graph *graph, const Node *distances, Ar
     for (size_t i = 0; i < scene->cameras.count && !needs; i++) {
         const SceneCamera *camera = &scene->cameras.items[i];
         if (camera->standing_in)
-            needs = scene_needs_anchor(scene) ||
-                    (moves && reach_of_boxes(scene) > FAR_OUT);
+            needs = scene_needs_anchor(scene) || (moves && reach_of_boxes(scene) > FAR_OUT);
         else
             needs = camera_needs_anchor(&sight, camera) ||
                     (moves && reach_of_eye(&sight, camera->eye) > FAR_OUT);

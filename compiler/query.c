@@ -9,10 +9,7 @@
 
 #include "compiler/program.h"
 
-static double largest3(const double v[3])
-{
-    return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
-}
+static double largest3(const double v[3]) { return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))); }
 
 static bool are_finite(const double (*vectors)[3], size_t count)
 {
@@ -31,10 +28,10 @@ static double zone_depth(const KrsFrame *frame, const double point[3])
     Node   zone  = zone_root(frame->scene);
     double depth = zone == NODE_NONE ? -INFINITY : frame->values[zone].v[0];
     for (size_t i = 0; i < frame->zone_count; i++) {
-        const double *at = frame->zones[i];
-        double away[3]   = {point[0] - at[0], point[1] - at[1], point[2] - at[2]};
-        double distance  = sqrt(away[0] * away[0] + away[1] * away[1] + away[2] * away[2]);
-        depth            = fmax(depth, at[3] - distance);
+        const double *at       = frame->zones[i];
+        double        away[3]  = {point[0] - at[0], point[1] - at[1], point[2] - at[2]};
+        double        distance = sqrt(away[0] * away[0] + away[1] * away[1] + away[2] * away[2]);
+        depth                  = fmax(depth, at[3] - distance);
     }
     return depth;
 }
@@ -98,7 +95,7 @@ KrsStatus krs_distance(KrsFrame *frame, const double (*points)[3], size_t count,
 /* By derivatives, where differences would see both sides of a sheet.  False: there are none. */
 static bool derived_normal(KrsFrame *frame, const double point[3], double normal[3])
 {
-    const KrsScene *scene = frame->scene;
+    const KrsScene *scene   = frame->scene;
     uint32_t        nearest = 0;
     if (!scene->program.sheets || distance_at(frame, point, &nearest) <= zone_depth(frame, point))
         return false;
@@ -194,8 +191,8 @@ static void clip_axis(double low, double high, double from, double along, KrsRay
         b = -a;
     } else if (along < 0) {
         double swap = a;
-        a = b;
-        b = swap;
+        a           = b;
+        b           = swap;
     }
     ray->start = fmax(ray->start, a);
     ray->end   = fmin(ray->end, b);
@@ -236,9 +233,9 @@ enum { SEAM = 16 }; /* roundings */
 typedef struct March {
     KrsFrame *frame;
     KrsRay    ray;
-    double    size;  /* of the origin's coordinates: what rounding goes by */
+    double    size; /* of the origin's coordinates: what rounding goes by */
     double    tolerance;
-    double    side;  /* -1 from inside of a solid; 0: not known */
+    double    side; /* -1 from inside of a solid; 0: not known */
     double    t, room, gap;
     double    slope; /* of the room along the ray, as it was on average */
 } March;
@@ -260,7 +257,7 @@ static double march_room(March *march, double t)
 {
     double point[3];
     march_point(march, t, point);
-    bool   sheets   = march->frame->scene->program.sheets;
+    bool sheets = march->frame->scene->program.sheets;
     /* Some roundings farther back: what was just before a sheet there must not be behind it here. */
     double back     = t > march->t ? t - march->t + 2 * rounding_at(march, t) : 0;
     double distance = sheets ? way_ahead(march->frame, point, march->ray.direction, back)
@@ -278,7 +275,7 @@ static double find_crossing(March *march, double room)
     enum { MOST_ROUNDS = 100 };
     double low = march->t, high = march->t + march->gap, below = march->room, above = room;
     double enough = fmax(rounding_at(march, high), march->tolerance / 16);
-    int    moved = 0;
+    int    moved  = 0;
     for (int i = 0; i < MOST_ROUNDS && above < 0 && below > 0 && high - low > enough; i++) {
         double t = low + (high - low) * below / (below - above);
         t        = fmin(fmax(t, low + 0.25 * enough), high - 0.25 * enough);
@@ -323,8 +320,9 @@ static Fate march_step(March *march)
         march->room = room;
         /* Of roots nothing behind the place is known. */
         double factor = march->frame->scene->program.sheets
-                            ? 1 : fmax(1, 2 / (1 - fmin(march->slope, 0.98)));
-        march->gap  = room * factor + open;
+                            ? 1
+                            : fmax(1, 2 / (1 - fmin(march->slope, 0.98)));
+        march->gap    = room * factor + open;
         return at + room > march->ray.end ? MISS : MARCHING;
     }
     march->gap   = fmax(0.5 * (march->gap + march->room - fmax(room, 0)), march->room + open);
@@ -352,7 +350,7 @@ static void trace(KrsFrame *frame, KrsRay ray, double tolerance, KrsHit *hit)
                    .side      = ray.start > 0 ? 1 : 0,
                    .t         = ray.start,
                    .slope     = -1};
-    Fate  fate = ray.start <= ray.end ? MARCHING : MISS;
+    Fate  fate  = ray.start <= ray.end ? MARCHING : MISS;
     for (int i = 0; i < KRS_MOST_STEPS && fate == MARCHING; i++)
         fate = march_step(&march);
     *hit = (KrsHit){0};

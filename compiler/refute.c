@@ -52,14 +52,17 @@ typedef struct Refuter {
     const Inspected        *in;
     const KrsRefuteOptions *how;
     KrsRefutation          *result;
-    Graph    *graph;
-    uint64_t  random, total, done;
-    SlopeTask *slopes; /* of the scene's, in its order */
-    void      *room;
-    Tape       frames;       /* all components: what frames are refused by */
-    NodeValue *frame_values;
-    struct { Suspect *items; size_t count, capacity; } suspects;
-    bool      stopped;
+    Graph                  *graph;
+    uint64_t                random, total, done;
+    SlopeTask              *slopes; /* of the scene's, in its order */
+    void                   *room;
+    Tape                    frames; /* all components: what frames are refused by */
+    NodeValue              *frame_values;
+    struct {
+        Suspect *items;
+        size_t   count, capacity;
+    } suspects;
+    bool stopped;
 } Refuter;
 
 /* ---- shapes ---- */
@@ -90,8 +93,10 @@ static void add_suspects(Refuter *r, const Shape *shape, uint32_t component, siz
 
 static Lowering lowering_of(Refuter *r, Visits *visits)
 {
-    return (Lowering){.graph = r->graph, .scratch = r->in->scratch, .visits = visits,
-                      .most = r->graph->count + MOST_LOWERED};
+    return (Lowering){.graph   = r->graph,
+                      .scratch = r->in->scratch,
+                      .visits  = visits,
+                      .most    = r->graph->count + MOST_LOWERED};
 }
 
 /* The distance of a shape in its own space; NODE_NONE: of nothing, or of too much. */
@@ -168,7 +173,7 @@ static bool find_slopes(const Refuter *r, NodeValue *values)
 {
     const Scene *scene = r->in->scene;
     for (size_t i = 0; i < scene->slopes.count; i++) {
-        const double (*parameters)[4] = (const double(*)[4])values;
+        const double(*parameters)[4] = (const double(*)[4])values;
         double slope = frame_slope_upward(slope_task_run(&r->slopes[i], parameters, r->room, NULL));
         values[scene->slopes.items[i].slot].v[0] = slope;
         if (!isfinite(slope))
@@ -188,9 +193,9 @@ static void prepare_slopes(Refuter *r)
         Node              root  = slope->formula;
         Graph            *plain = graph_simplify(r->graph, &root, 1, r->in->arena);
         uint32_t          cells = frame_slope_cells(slope->region);
-        r->slopes[i] = slope_task(plain, root, slope->region, cells, r->in->arena);
-        size_t room  = slope_task_room(&r->slopes[i]);
-        most         = room > most ? room : most;
+        r->slopes[i]            = slope_task(plain, root, slope->region, cells, r->in->arena);
+        size_t room             = slope_task_room(&r->slopes[i]);
+        most                    = room > most ? room : most;
     }
     r->room = arena_alloc(r->in->arena, most, 1);
 }
@@ -330,7 +335,7 @@ static bool try_shape(Refuter *r, size_t suspect, uint64_t operations, Finding *
     }
     if (!shape->estimate)
         steady = lower_alone(r, shape, true, NULL);
-    plain = lower_alone(r, shape, false, NULL);
+    plain     = lower_alone(r, shape, false, NULL);
     bool both = steady != NODE_NONE && plain != steady;
     if (steady != NODE_NONE && search_of(r, shape, steady, true, &search))
         refuted = try_settings(r, shape, &search, both ? operations / 2 : operations, finding);
@@ -369,9 +374,9 @@ static bool try_claims(Refuter *r, size_t suspect, uint64_t operations, Finding 
 static Node lower_claim(Refuter *r, const Shape *shape, Claim claim, Node plain)
 {
     Arena *scratch = r->in->scratch;
-    return claim == CLAIM_GUARDED ? lower_guarded(r->graph, shape, plain, scratch)
-                                  : lower_along(r->graph, shape, plain,
-                                                (AlongMethod)(claim - CLAIM_ALONG), scratch);
+    return claim == CLAIM_GUARDED
+               ? lower_guarded(r->graph, shape, plain, scratch)
+               : lower_along(r->graph, shape, plain, (AlongMethod)(claim - CLAIM_ALONG), scratch);
 }
 
 /* The guarded distance of a component, and its steps along rays, where there are such. */
@@ -411,7 +416,8 @@ static double visit_ratio(const Visit *visit, bool steady, const NodeValue *at_p
         size += fabs(p[i]);
     }
     double rise = steady && !visit->shape->estimate ? fabs(a - b)
-                  : (a > 0) != (b > 0)              ? fmax(fabs(a), fabs(b)) : 0;
+                  : (a > 0) != (b > 0)              ? fmax(fabs(a), fabs(b))
+                                                    : 0;
     return fmax(0, rise / visit->shape->slope - 1e-9 * size) / fmax(sqrt(square), 1e-9 * size);
 }
 
@@ -467,8 +473,8 @@ static size_t suspect_of(const Refuter *r, const Shape *shape)
 static bool refute_from(Refuter *r, size_t suspect, const double p[3], const double q[3],
                         uint64_t operations, Finding *finding)
 {
-    const Shape *shape = r->suspects.items[suspect].shape;
-    bool         steady = finding->steady && !shape->estimate;
+    const Shape *shape    = r->suspects.items[suspect].shape;
+    bool         steady   = finding->steady && !shape->estimate;
     Node         distance = lower_alone(r, shape, steady, NULL);
     Search       search;
     if (distance == NODE_NONE || !search_of(r, shape, distance, steady, &search))
@@ -499,7 +505,7 @@ static bool descend(Refuter *r, Finding *finding, uint64_t operations)
     for (size_t i = 0; i < trail.visits.count; i++) {
         const Visit *visit = &trail.visits.items[i];
         double       ratio = visit_ratio(visit, finding->steady, trail.at_p, trail.at_q);
-        bool less = !best || visit->shape->depth < best->shape->depth ||
+        bool         less  = !best || visit->shape->depth < best->shape->depth ||
                     (visit->shape->depth == best->shape->depth && ratio > worst);
         if (is_wrapper(visit->shape) || !(ratio > 1 + 1e-6) || !less)
             continue;
@@ -507,9 +513,8 @@ static bool descend(Refuter *r, Finding *finding, uint64_t operations)
         worst = ratio;
     }
     size_t suspect = best ? suspect_of(r, best->shape) : SIZE_MAX;
-    return suspect != SIZE_MAX &&
-           refute_from(r, suspect, trail.at_p[best->point].v, trail.at_q[best->point].v, operations,
-                       finding);
+    return suspect != SIZE_MAX && refute_from(r, suspect, trail.at_p[best->point].v,
+                                              trail.at_q[best->point].v, operations, finding);
 }
 
 /* The same where no part is refuted in these points: each part is searched by itself. */
@@ -559,12 +564,12 @@ static const char *fault_text(Refuter *r, const Witness *w)
     case FAULT_LONG:
         return diag_text(r->in->diags, "it is %.6g times as long as the way to the surface",
                          w->ratio);
-    case FAULT_OUTSIDE:  return "something of it is outside of its box";
+    case FAULT_OUTSIDE: return "something of it is outside of its box";
     case FAULT_CONSTANT: return "a number in it that is the same at all points is not finite";
-    case FAULT_BOX:      return "a side of its box is not a number";
+    case FAULT_BOX: return "a side of its box is not a number";
     case FAULT_CLAIM: /* report_claim */
     case FAULT_NAN:
-    case FAULT_NONE:    break;
+    case FAULT_NONE: break;
     }
     return "it is not a number somewhere";
 }
@@ -580,8 +585,8 @@ static void note_points(Refuter *r, Diag *diag, const Witness *w)
     const char *p     = point_text(r, w->p);
     if (w->fault == FAULT_STEEP || w->fault == FAULT_LONG)
         diag_note(diags, diag,
-                  diag_text(diags, "the distance is %.6g at %s and %.6g at %s, %.6g apart",
-                            w->at_p, p, w->at_q, point_text(r, w->q), apart(w->p, w->q)));
+                  diag_text(diags, "the distance is %.6g at %s and %.6g at %s, %.6g apart", w->at_p,
+                            p, w->at_q, point_text(r, w->q), apart(w->p, w->q)));
     else if (has_place(w))
         diag_note(diags, diag, diag_text(diags, "the distance is %.6g at %s", w->at_p, p));
 }
@@ -595,12 +600,14 @@ static void note_parameters(Refuter *r, Diag *diag, const NodeValue *parameters)
         const Parameter *parameter = &scene->parameters.items[i];
         text_format(&text, "%s%s = ", i ? ", " : "with ", parameter->name);
         for (uint32_t k = 0; k < parameter->components; k++)
-            text_format(&text, "%s%.6g", k ? ", " : parameter->components > 1 ? "[" : "",
+            text_format(&text, "%s%.6g",
+                        k                           ? ", "
+                        : parameter->components > 1 ? "["
+                                                    : "",
                         parameters[parameter->slot].v[k]);
         text_add(&text, parameter->components > 1 ? "]" : "");
     }
-    text_format(&text, "%stime = %.6g", scene->parameters.count ? ", " : "at ",
-                parameters[0].v[0]);
+    text_format(&text, "%stime = %.6g", scene->parameters.count ? ", " : "at ", parameters[0].v[0]);
     diag_note(r->in->diags, diag, text.bytes);
 }
 
@@ -619,8 +626,10 @@ static void note_surface(Refuter *r, Diag *diag, const Finding *finding)
     if (distance != NODE_NONE && search_of(r, shape, distance, false, &search) &&
         search_start(&search, finding->parameters) && search_surface(&search, from, surface))
         diag_note(r->in->diags, diag,
-                  diag_text(r->in->diags, "nothing is to be within %.6g of %s, but the surface is "
-                            "at %s, %.6g away", said, point_text(r, from), point_text(r, surface),
+                  diag_text(r->in->diags,
+                            "nothing is to be within %.6g of %s, but the surface is "
+                            "at %s, %.6g away",
+                            said, point_text(r, from), point_text(r, surface),
                             apart(from, surface)));
     arena_free(r->in->scratch);
 }
@@ -655,11 +664,11 @@ static void place_caller(Refuter *r, Diag *diag, const Finding *finding)
 }
 
 static const char *const claim_texts[] = {
-    [CLAIM_DISTANCE]                = "distance",
-    [CLAIM_GUARDED]                 = "distance that leaves out what is far",
-    [CLAIM_ALONG + ALONG_EXACT]     = "step along a ray (exact)",
-    [CLAIM_ALONG + ALONG_TAYLOR]    = "step along a ray (taylor)",
-    [CLAIM_ALONG + ALONG_ROOT_FREE] = "step along a ray (root-free)",
+    [CLAIM_DISTANCE]                  = "distance",
+    [CLAIM_GUARDED]                   = "distance that leaves out what is far",
+    [CLAIM_ALONG + ALONG_EXACT]       = "step along a ray (exact)",
+    [CLAIM_ALONG + ALONG_TAYLOR]      = "step along a ray (taylor)",
+    [CLAIM_ALONG + ALONG_ROOT_FREE]   = "step along a ray (root-free)",
     [CLAIM_ALONG + ALONG_DIRECTIONAL] = "step along a ray (directional)",
 };
 
@@ -668,7 +677,7 @@ static void report(Refuter *r, const Finding *whole, const Finding *finding)
     const Shape *shape = r->suspects.items[finding->suspect].shape;
     Diags       *diags = r->in->diags;
     bool         claim = shape->kind == SHAPE_PRIMITIVE && (shape->exact || shape->claimed) &&
-                         finding->claim == CLAIM_DISTANCE;
+                 finding->claim == CLAIM_DISTANCE;
     Diag *diag  = diag_add(diags, DIAG_REFUTED, shape->span, "the %s of `%s` is refuted: %s",
                            claim_texts[finding->claim], shape->name,
                            fault_text(r, &finding->witness));
@@ -769,8 +778,8 @@ KrsStatus refute_inspected(const Inspected *in, const KrsRefuteOptions *how, Krs
                  .random = how->seed,
                  .total  = (uint64_t)(fmin(how->seconds, 1e9) * OPERATIONS_PER_SECOND) + 1};
     start_refuter(&r);
-    Finding finding = {.parameters =
-                           arena_new_array(in->arena, NodeValue, r.graph->parameters.count)};
+    Finding finding = {
+        .parameters = arena_new_array(in->arena, NodeValue, r.graph->parameters.count)};
     KrsStatus status = try_all(&r, true, &finding);
     return status == KRS_OK ? try_all(&r, false, &finding) : status;
 }

@@ -7,7 +7,6 @@
 #include "compiler/inspect.h"
 
 /* What krs_refute does between compiling and the end; a finding is added to in->diags. */
-KrsStatus refute_inspected(const Inspected *in, const KrsRefuteOptions *how,
-                           KrsRefutation *result);
+KrsStatus refute_inspected(const Inspected *in, const KrsRefuteOptions *how, KrsRefutation *result);
 
 #endif

@@ -20,9 +20,9 @@ static size_t anchored_roots(const Scene *s)
 /* Room for all roots, one kind behind the other; those near an anchor come last. */
 static void make_room(Compilation *c)
 {
-    const Scene *s        = &c->elaborated;
-    Roots       *r        = &c->scene->roots;
-    size_t       count    = s->components.count;
+    const Scene *s     = &c->elaborated;
+    Roots       *r     = &c->scene->roots;
+    size_t       count = s->components.count;
     const struct {
         Node **place;
         size_t count;
@@ -104,20 +104,20 @@ static void lower_flats(Compilation *c, Graph *g)
     Node        *roots = c->scene->roots.flats;
     Node         point = graph_leaf(g, OP_POINT), direction = graph_leaf(g, OP_DIRECTION);
     Node         far = graph_number(g, 1e30), zero = graph_number(g, 0);
-    roots[0]         = far;
-    roots[1]         = graph_number(g, 1);
+    roots[0] = far;
+    roots[1] = graph_number(g, 1);
     for (size_t i = 0; i < s->components.count && s->zone_count == 0; i++) {
         const Component *component = &s->components.items[i];
         if (!is_flat(component))
             continue;
         c->scene->program.flats = true;
-        Node rise  = graph_op2(g, OP_dot, component->plane_normal, direction);
-        Node depth = graph_op2(g, OP_dot, component->plane_normal, point);
-        Node room  = graph_op2(g, OP_sub, component->plane_offset, depth);
-        Node falls = graph_op2(g, OP_less, rise, zero);
-        Node way   = graph_op3(g, OP_select, falls, graph_op2(g, OP_div, room, rise), far);
-        roots[0]   = graph_op2(g, OP_min, roots[0], way);
-        roots[1]   = graph_op2(g, OP_min, roots[1], rise);
+        Node rise               = graph_op2(g, OP_dot, component->plane_normal, direction);
+        Node depth              = graph_op2(g, OP_dot, component->plane_normal, point);
+        Node room               = graph_op2(g, OP_sub, component->plane_offset, depth);
+        Node falls              = graph_op2(g, OP_less, rise, zero);
+        Node way = graph_op3(g, OP_select, falls, graph_op2(g, OP_div, room, rise), far);
+        roots[0] = graph_op2(g, OP_min, roots[0], way);
+        roots[1] = graph_op2(g, OP_min, roots[1], rise);
     }
 }
 
@@ -162,10 +162,10 @@ static void lower_gradients(Compilation *c, Graph *g)
 /* The roots of the components, and those of planes, for points given from an anchor. */
 static void lower_anchored(Compilation *c, Graph *g)
 {
-    const Roots   *roots = &c->scene->roots;
-    size_t         count = c->elaborated.components.count * ROOT_COUNT;
+    const Roots   *roots    = &c->scene->roots;
+    size_t         count    = c->elaborated.components.count * ROOT_COUNT;
     GraphParameter anywhere = {{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL, HUGE_VAL}};
-    Node anchor = graph_parameter(g, (uint32_t)g->parameters.count, TYPE_VEC3);
+    Node           anchor   = graph_parameter(g, (uint32_t)g->parameters.count, TYPE_VEC3);
     array_push(&c->scene->arena, &g->parameters, anywhere);
     memcpy(roots->anchored, roots->components, count * sizeof(Node));
     memcpy(roots->anchored + count, roots->flats, FLAT_ROOTS * sizeof(Node));
@@ -175,7 +175,7 @@ static void lower_anchored(Compilation *c, Graph *g)
 
 bool lower_scene(Compilation *c, Graph *graph)
 {
-    const Scene *s = &c->elaborated;
+    const Scene *s     = &c->elaborated;
     Roots       *roots = &c->scene->roots;
     make_room(c);
     if (!lower_components(c, graph))

@@ -18,14 +18,14 @@
 
 /* Where on the way from smooth to steep an expression is looked at. */
 typedef enum Goal {
-    GOAL_EQUAL,   /* a = b */
-    GOAL_ZERO,    /* a = 0 */
-    GOAL_WHOLE,   /* a is a whole number */
-    GOAL_HALF,    /* a is halfway between two */
-    GOAL_UNIT,    /* |a| = 1 */
-    GOAL_HIGH,    /* a is largest */
-    GOAL_FRONT,   /* a lies in the plane of unit normal b and offset c */
-    GOAL_WALL     /* a lies between two cells of period b */
+    GOAL_EQUAL, /* a = b */
+    GOAL_ZERO,  /* a = 0 */
+    GOAL_WHOLE, /* a is a whole number */
+    GOAL_HALF,  /* a is halfway between two */
+    GOAL_UNIT,  /* |a| = 1 */
+    GOAL_HIGH,  /* a is largest */
+    GOAL_FRONT, /* a lies in the plane of unit normal b and offset c */
+    GOAL_WALL   /* a lies between two cells of period b */
 } Goal;
 
 struct Target {
@@ -54,8 +54,8 @@ static const double NOWHERE = 1e29;
 static uint64_t random_next(uint64_t *state)
 {
     uint64_t z = *state += 0x9e3779b97f4a7c15;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
-    z = (z ^ z >> 27) * 0x94d049bb133111eb;
+    z          = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
+    z          = (z ^ z >> 27) * 0x94d049bb133111eb;
     return z ^ z >> 31;
 }
 
@@ -91,9 +91,9 @@ static void random_direction(Search *s, double direction[3])
 {
     double angle = between(s, 0, 2 * M_PI), z = s->figure ? 0 : between(s, -1, 1);
     double radius = sqrt(fmax(0, 1 - z * z));
-    direction[0] = radius * cos(angle);
-    direction[1] = radius * sin(angle);
-    direction[2] = z;
+    direction[0]  = radius * cos(angle);
+    direction[1]  = radius * sin(angle);
+    direction[2]  = z;
 }
 
 static void random_point(Search *s, double point[3])
@@ -150,7 +150,7 @@ static double distance_at(Search *s, double p[3])
         if (distance > rounding_at(s, p) && !is_settled(s))
             note(s, FAULT_CLAIM, INFINITY, p, p, distance, distance);
     } else if (s->side == s->distance && distance < -rounding_at(s, p) &&
-             outside(s, p) > 1e3 * rounding_at(s, p) && !is_settled(s))
+               outside(s, p) > 1e3 * rounding_at(s, p) && !is_settled(s))
         note(s, FAULT_OUTSIDE, INFINITY, p, p, distance, distance);
     return distance;
 }
@@ -184,7 +184,7 @@ static double ratio_of(const Search *s, const Pair *pair)
         return 0; /* nothing is anywhere, or a wall is */
     if (s->claim) /* none is refuted here: uphill is towards 0 */
         return 1 / (1 + fabs(fmax(a, b)) / s->size);
-    double rise = s->steep ? fabs(a - b)
+    double rise = s->steep                                          ? fabs(a - b)
                   : are_sides_different(pair->side_p, pair->side_q) ? fmax(fabs(a), fabs(b))
                                                                     : 0;
     return fmax(0, rise - rounding) / way;
@@ -299,16 +299,16 @@ static bool gradient_at(Search *s, const double p[3], double gradient[3])
 static double target_value(const Search *s, const Target *t)
 {
     const double *a = s->values[t->a].v, *b = s->values[t->b].v, *c = s->values[t->c].v;
-    double x = a[t->component];
+    double        x = a[t->component];
     switch (t->goal) {
     case GOAL_EQUAL: return x - b[t->component];
     case GOAL_ZERO:
-    case GOAL_HIGH:  return x;
+    case GOAL_HIGH: return x;
     case GOAL_WHOLE: return x - floor(x + 0.5);
-    case GOAL_HALF:  return x - floor(x) - 0.5;
-    case GOAL_UNIT:  return fabs(x) - 1;
+    case GOAL_HALF: return x - floor(x) - 0.5;
+    case GOAL_UNIT: return fabs(x) - 1;
     case GOAL_FRONT: return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] - c[0];
-    case GOAL_WALL:  return x / b[t->component] - floor(x / b[t->component]) - 0.5;
+    case GOAL_WALL: return x / b[t->component] - floor(x / b[t->component]) - 0.5;
     }
     return 0;
 }
@@ -336,11 +336,19 @@ static void add_target(Search *s, Arena *arena, Goal goal, const Graph *g, const
 static void add_targets(Search *s, Arena *arena, const Graph *g, const Expr *e)
 {
     switch ((Op)e->op) {
-    case OP_less: case OP_less_equal: case OP_equal: case OP_not_equal: case OP_min: case OP_max:
-    case OP_step: case OP_smin_quadratic: case OP_smin_cubic: case OP_smin_circular:
-    case OP_smin_exponential: case OP_smin_chamfer: case OP_smin_stairs:
-        add_target(s, arena, GOAL_EQUAL, g, e, 0, 1);
-        break;
+    case OP_less:
+    case OP_less_equal:
+    case OP_equal:
+    case OP_not_equal:
+    case OP_min:
+    case OP_max:
+    case OP_step:
+    case OP_smin_quadratic:
+    case OP_smin_cubic:
+    case OP_smin_circular:
+    case OP_smin_exponential:
+    case OP_smin_chamfer:
+    case OP_smin_stairs: add_target(s, arena, GOAL_EQUAL, g, e, 0, 1); break;
     case OP_clamp:
         add_target(s, arena, GOAL_EQUAL, g, e, 0, 1);
         add_target(s, arena, GOAL_EQUAL, g, e, 0, 2);
@@ -349,30 +357,41 @@ static void add_targets(Search *s, Arena *arena, const Graph *g, const Expr *e)
         add_target(s, arena, GOAL_EQUAL, g, e, 2, 0);
         add_target(s, arena, GOAL_EQUAL, g, e, 2, 1);
         break;
-    case OP_pow: case OP_atan2:
+    case OP_pow:
+    case OP_atan2:
         add_target(s, arena, GOAL_ZERO, g, e, 0, 0);
         add_target(s, arena, GOAL_ZERO, g, e, 1, 1);
         break;
-    case OP_abs: case OP_sign: case OP_sqrt: case OP_inversesqrt: case OP_log: case OP_log2:
-    case OP_length: case OP_normalize:
-        add_target(s, arena, GOAL_ZERO, g, e, 0, 0);
-        break;
+    case OP_abs:
+    case OP_sign:
+    case OP_sqrt:
+    case OP_inversesqrt:
+    case OP_log:
+    case OP_log2:
+    case OP_length:
+    case OP_normalize: add_target(s, arena, GOAL_ZERO, g, e, 0, 0); break;
     case OP_div: add_target(s, arena, GOAL_ZERO, g, e, 1, 1); break;
     case OP_mod: add_target(s, arena, GOAL_WALL, g, e, 0, 1); break;
-    case OP_floor: case OP_ceil: case OP_fract: add_target(s, arena, GOAL_WHOLE, g, e, 0, 0); break;
+    case OP_floor:
+    case OP_ceil:
+    case OP_fract: add_target(s, arena, GOAL_WHOLE, g, e, 0, 0); break;
     case OP_round: add_target(s, arena, GOAL_HALF, g, e, 0, 0); break;
-    case OP_asin: case OP_acos: add_target(s, arena, GOAL_UNIT, g, e, 0, 0); break;
-    case OP_exp: case OP_exp2: case OP_sinh: case OP_cosh:
-        add_target(s, arena, GOAL_HIGH, g, e, 0, 0);
-        break;
-    case OP_tanh: case OP_atan: add_target(s, arena, GOAL_ZERO, g, e, 0, 0); break;
+    case OP_asin:
+    case OP_acos: add_target(s, arena, GOAL_UNIT, g, e, 0, 0); break;
+    case OP_exp:
+    case OP_exp2:
+    case OP_sinh:
+    case OP_cosh: add_target(s, arena, GOAL_HIGH, g, e, 0, 0); break;
+    case OP_tanh:
+    case OP_atan: add_target(s, arena, GOAL_ZERO, g, e, 0, 0); break;
     case OP_guard: {
         Guard guard = {{GOAL_ZERO, e->operands[0], e->operands[0], e->operands[0], 0},
                        {GOAL_ZERO, e->operands[2], e->operands[2], e->operands[2], 0}};
         array_push(arena, &s->guards, guard);
         break;
     }
-    case OP_fold: case OP_front: add_target(s, arena, GOAL_FRONT, g, e, 0, 1); break;
+    case OP_fold:
+    case OP_front: add_target(s, arena, GOAL_FRONT, g, e, 0, 1); break;
     case OP_cell: add_target(s, arena, GOAL_WALL, g, e, 0, 1); break;
     default: break;
     }
@@ -589,13 +608,13 @@ static bool slide_down(Search *s, const Target *distance, double p[3], double ax
 static Pair best_past_guard(Search *s)
 {
     const Guard *guard = &s->guards.items[choose(s, s->guards.count)];
-    Pair         best  = {.ratio = -1}, pair = {.ratio = 0};
+    Pair         best = {.ratio = -1}, pair = {.ratio = 0};
     double       axis[3];
     random_point(s, pair.q);
     if (!slide_down(s, &guard->rest, pair.q, axis))
         return best;
     add_scaled(pair.q, pair.q, -4 * NEAREST * s->size, axis); /* into it */
-    double out = target_at(s, &guard->bound, pair.q);
+    double out   = target_at(s, &guard->bound, pair.q);
     double slope = target_slope(s, &guard->bound, pair.q, out, axis);
     if (!(out > 0) || !(slope > 0) || !isfinite(slope) || side_now(s) > 0)
         return best;
@@ -621,9 +640,7 @@ static Pair changed(Search *s, const Pair *pair)
         add_scaled(next.p, next.p, move, shift);
         add_scaled(next.q, next.q, move, shift);
         break;
-    case 1:
-        add_scaled(next.q, next.q, way * random_unit(&s->random), shift);
-        break;
+    case 1: add_scaled(next.q, next.q, way * random_unit(&s->random), shift); break;
     default: {
         double factor = exp2(between(s, -2, 1));
         for (int i = 0; i < 3; i++)
@@ -674,14 +691,13 @@ static void choose_around(Search *search)
     double outer = search->guards.count > 0 ? 0.3 * box_diagonal(box) : 0;
     for (int i = 0; i < 3; i++) {
         double low = box.axis[i].low, high = box.axis[i].high;
-        double margin = fmax(0.25 * fabs(high - low), outer) + 1e-3;
+        double margin          = fmax(0.25 * fabs(high - low), outer) + 1e-3;
         search->around.axis[i] = (Range){fmin(low, high) - margin, fmax(low, high) + margin};
     }
     search->size = box_diagonal(search->around);
 }
 
-bool search_new(Search *search, const Graph *graph, Node distance, Node side, Box box,
-                Arena *arena)
+bool search_new(Search *search, const Graph *graph, Node distance, Node side, Box box, Arena *arena)
 {
     *search = (Search){.distance = distance, .side = side, .box = box, .aim = {1}, .cost = 1};
     if (graph->items[distance].time != TIME_POINT)
@@ -704,8 +720,8 @@ bool search_new(Search *search, const Graph *graph, Node distance, Node side, Bo
 
 bool search_new_claim(Search *search, Graph *graph, Node a, Node b, Box box, Arena *arena)
 {
-    Node  roots[3] = {a, b, graph_op2(graph, OP_min, a, b)};
-    Graph *simple  = graph_simplify(graph, roots, 3, arena);
+    Node   roots[3] = {a, b, graph_op2(graph, OP_min, a, b)};
+    Graph *simple   = graph_simplify(graph, roots, 3, arena);
     if (!search_new(search, simple, roots[2], roots[2], box, arena))
         return false;
     search->claim = true;

@@ -40,28 +40,37 @@ typedef struct Target Target;
 typedef struct Guard Guard;
 
 typedef struct Search {
-    Tape       tape;
-    Node       distance; /* FLOAT */
-    Node       side;     /* FLOAT: which side of the surface a point is on; `distance`, or another
+    Tape     tape;
+    Node     distance; /* FLOAT */
+    Node     side;     /* FLOAT: which side of the surface a point is on; `distance`, or another
                             one where that is a step from a guard or along a ray */
-    Box        box;      /* claimed; may be infinite */
-    bool       steep;    /* FAULT_STEEP is looked for, else FAULT_LONG */
-    bool       figure;   /* z stays 0 */
-    bool       claim;    /* `distance` is the lesser of two numbers that are nowhere above 0 both */
-    bool       aimed;    /* the distance is that along a ray, OP_DIRECTION */
-    double     aim[3];   /* then: the ray's direction */
-    uint64_t   random;   /* state of the generator */
-    uint64_t   spent;    /* operations so far */
-    uint64_t   cost;     /* of one evaluation */
-    uint64_t   evaluations;
-    Witness    worst;    /* largest ratio, or what is refuted without one */
+    Box      box;      /* claimed; may be infinite */
+    bool     steep;    /* FAULT_STEEP is looked for, else FAULT_LONG */
+    bool     figure;   /* z stays 0 */
+    bool     claim;    /* `distance` is the lesser of two numbers that are nowhere above 0 both */
+    bool     aimed;    /* the distance is that along a ray, OP_DIRECTION */
+    double   aim[3];   /* then: the ray's direction */
+    uint64_t random;   /* state of the generator */
+    uint64_t spent;    /* operations so far */
+    uint64_t cost;     /* of one evaluation */
+    uint64_t evaluations;
+    Witness  worst; /* largest ratio, or what is refuted without one */
 
     NodeValue *values;
-    Box        around;   /* finite: where points are taken */
-    double     size;     /* its diagonal */
-    struct { Target *items; size_t count, capacity; } targets;
-    struct { Guard *items; size_t count, capacity; } guards;
-    struct { Node *items; size_t count, capacity; } landmarks; /* points that the frame knows */
+    Box        around; /* finite: where points are taken */
+    double     size;   /* its diagonal */
+    struct {
+        Target *items;
+        size_t  count, capacity;
+    } targets;
+    struct {
+        Guard *items;
+        size_t count, capacity;
+    } guards;
+    struct {
+        Node  *items;
+        size_t count, capacity;
+    } landmarks; /* points that the frame knows */
 } Search;
 
 /* A search for `distance`, whose tape and lists are in the arena; everything else is set by the

@@ -20,7 +20,11 @@ typedef struct KrsRenderer  KrsRenderer;
 typedef struct KrsRendering KrsRendering;
 
 typedef enum KrsDeviceKind {
-    KRS_DEVICE_OTHER, KRS_DEVICE_CPU, KRS_DEVICE_VIRTUAL, KRS_DEVICE_INTEGRATED, KRS_DEVICE_DISCRETE
+    KRS_DEVICE_OTHER,
+    KRS_DEVICE_CPU,
+    KRS_DEVICE_VIRTUAL,
+    KRS_DEVICE_INTEGRATED,
+    KRS_DEVICE_DISCRETE
 } KrsDeviceKind;
 
 typedef struct KrsDevice {
@@ -41,13 +45,15 @@ typedef void KrsWorkingCallback(void *user);
 /* Whether rays leave out by branches what is far away for its size.  The default is to, but not on
    devices of type CPU: those that are known run both sides of a branch. */
 typedef enum KrsEarlyOuts {
-    KRS_EARLY_OUTS_DEFAULT, KRS_EARLY_OUTS_ON, KRS_EARLY_OUTS_OFF
+    KRS_EARLY_OUTS_DEFAULT,
+    KRS_EARLY_OUTS_ON,
+    KRS_EARLY_OUTS_OFF
 } KrsEarlyOuts;
 
 /* For tests, as bits: what the host takes a device for.  Pictures are the same. */
 typedef enum KrsPretence {
-    KRS_PRETEND_CARD = 1,        /* a graphics card, whatever its type */
-    KRS_PRETEND_LEAST_LIMITS = 2 /* one whose buffers are no longer than any device's may be */
+    KRS_PRETEND_CARD         = 1, /* a graphics card, whatever its type */
+    KRS_PRETEND_LEAST_LIMITS = 2  /* one whose buffers are no longer than any device's may be */
 } KrsPretence;
 
 /* Zero asks for the defaults. */
@@ -62,11 +68,11 @@ typedef struct KrsRendererOptions {
     void                  *user;       /* handed to both */
     /* A folder for what is compiled, so that another time it need not be; it is made if it is
        missing, and need not be writable.  NULL: none.  Without one nothing is written to disk. */
-    const char            *cache;
-    KrsEarlyOuts           early_outs;
-    unsigned               pretence;   /* bits of KrsPretence */
-    KrsAllocator           allocator;  /* our memory; the driver's and glslang's is their own */
-    double                 patience;   /* seconds that the device may take over one step, of which a
+    const char  *cache;
+    KrsEarlyOuts early_outs;
+    unsigned     pretence;  /* bits of KrsPretence */
+    KrsAllocator allocator; /* our memory; the driver's and glslang's is their own */
+    double       patience;  /* seconds that the device may take over one step, of which a
                                           picture has many; then it counts as lost, with
                                           KRS_INTERNAL.  0: five minutes */
 } KrsRendererOptions;
@@ -85,7 +91,7 @@ void      krs_renderer_free(KrsRenderer *renderer); /* its renderings must be fr
    did not.  Lives until the next such call. */
 const char *krs_renderer_message(const KrsRenderer *renderer);
 /* The device that was opened. */
-KrsDevice   krs_renderer_device(const KrsRenderer *renderer);
+KrsDevice krs_renderer_device(const KrsRenderer *renderer);
 /* Complaints of the validation layers so far. */
 uint64_t krs_renderer_complaints(const KrsRenderer *renderer);
 
@@ -127,21 +133,21 @@ typedef bool KrsProgressCallback(void *user, double done);
    `make bench` found fastest for the kind of device. */
 typedef enum KrsTrace {
     KRS_TRACE_DEFAULT,
-    KRS_TRACE_PLAIN,   /* by the distance (Hart 1996) */
-    KRS_TRACE_RELAXED, /* by 1.2 times as much, and back where that was too far (Keinert et al.
+    KRS_TRACE_PLAIN,     /* by the distance (Hart 1996) */
+    KRS_TRACE_RELAXED,   /* by 1.2 times as much, and back where that was too far (Keinert et al.
                           2014, 3.1, corrected) */
-    KRS_TRACE_AUTO,    /* by as much as the slope of the last steps lets expect (automatic
+    KRS_TRACE_AUTO,      /* by as much as the slope of the last steps lets expect (automatic
                           relaxation) */
-    KRS_TRACE_EXACT,   /* by what lies ahead on the ray: the next zero of polynomials; where there
+    KRS_TRACE_EXACT,     /* by what lies ahead on the ray: the next zero of polynomials; where there
                           are none, plain.  By their Bernstein coefficients, */
-    KRS_TRACE_TAYLOR,  /* or by the slope that the Taylor series on the ray permits (Ban and
+    KRS_TRACE_TAYLOR,    /* or by the slope that the Taylor series on the ray permits (Ban and
                           Valasek 2023, with the safe one of its iterates), */
     KRS_TRACE_ROOT_FREE, /* or by the radius within which it cannot be 0 */
     KRS_TRACE_DIRECTIONAL, /* in sequences with maps that invert, by where the ray leaves empty
                               balls that were found behind the maps; where there are none, plain; */
-    KRS_TRACE_BINARY,    /* or by balls that are tried, the next twice or half as large (KRS 2016,
+    KRS_TRACE_BINARY,      /* or by balls that are tried, the next twice or half as large (KRS 2016,
                             algorithm 2, corrected), if the camera is outside of everything, */
-    KRS_TRACE_PREDICTED, /* or as large as the last lets expect */
+    KRS_TRACE_PREDICTED,   /* or as large as the last lets expect */
     KRS_TRACE_COUNT
 } KrsTrace;
 extern const char *const krs_trace_names[KRS_TRACE_COUNT]; /* "default", "plain", ... */
@@ -172,15 +178,15 @@ extern const char *const krs_components_names[KRS_COMPONENTS_COUNT];
 
 /* Where the distance is looked at around a hit for its normal: see bench/README.md, Normals. */
 typedef enum KrsNormals {
-    KRS_NORMALS_DEFAULT,      /* analytic where rays go by roots of polynomials, else the
+    KRS_NORMALS_DEFAULT,     /* analytic where rays go by roots of polynomials, else the
                                  octahedron: the least error for its price */
-    KRS_NORMALS_FORWARD,      /* there and a step along each axis: an error of first order */
-    KRS_NORMALS_TETRAHEDRON,  /* at 4 corners: likewise */
-    KRS_NORMALS_OCTAHEDRON,   /* at 6, 8, 12 or 20 corners: an error of second order */
+    KRS_NORMALS_FORWARD,     /* there and a step along each axis: an error of first order */
+    KRS_NORMALS_TETRAHEDRON, /* at 4 corners: likewise */
+    KRS_NORMALS_OCTAHEDRON,  /* at 6, 8, 12 or 20 corners: an error of second order */
     KRS_NORMALS_CUBE,
     KRS_NORMALS_ICOSAHEDRON,
     KRS_NORMALS_DODECAHEDRON,
-    KRS_NORMALS_ANALYTIC,     /* by derivatives, at the hit alone, of a scene that was compiled with
+    KRS_NORMALS_ANALYTIC, /* by derivatives, at the hit alone, of a scene that was compiled with
                                  `gradients`; by the octahedron for components in which something
                                  has none (noise, fractals), and where points have an anchor.
                                  Neither these nor those by steps to one side tell what is finer
@@ -200,52 +206,58 @@ extern const char *const krs_shadows_names[KRS_SHADOWS_COUNT];
 
 /* Zero asks for the defaults. */
 typedef struct KrsRenderOptions {
-    uint32_t  width, height; /* 0: what the scene says, else 1280x720; at most 16384 */
-    KrsWindow crop;          /* width 0: everything */
-    uint32_t  samples;       /* rays per pixel; 0: what the scene says, else 1; at most 65536 */
-    size_t    camera;        /* its number */
-    uint64_t  seed;          /* moves the samples of a pixel, but the first stays at its centre */
-    double    error;         /* permitted distance from the surface, pixels; 0: as above, or 0.25 */
-    uint32_t  planes;        /* bits of KrsPlane; 0: all */
-    uint32_t  most_steps;    /* of a primary ray; 0: 16384, which is also the most */
-    uint32_t  steps_at_once; /* of a primary ray in one dispatch; 0: 512; at most 8192 */
-    KrsTrace    trace;
-    KrsSchedule schedule;
-    KrsShadows  shadows;
+    uint32_t      width, height; /* 0: what the scene says, else 1280x720; at most 16384 */
+    KrsWindow     crop;          /* width 0: everything */
+    uint32_t      samples;       /* rays per pixel; 0: what the scene says, else 1; at most 65536 */
+    size_t        camera;        /* its number */
+    uint64_t      seed;   /* moves the samples of a pixel, but the first stays at its centre */
+    double        error;  /* permitted distance from the surface, pixels; 0: as above, or 0.25 */
+    uint32_t      planes; /* bits of KrsPlane; 0: all */
+    uint32_t      most_steps;    /* of a primary ray; 0: 16384, which is also the most */
+    uint32_t      steps_at_once; /* of a primary ray in one dispatch; 0: 512; at most 8192 */
+    KrsTrace      trace;
+    KrsSchedule   schedule;
+    KrsShadows    shadows;
     KrsComponents components;
-    KrsNormals  normals;
-    bool      no_beams;      /* each ray is marched by itself all the way */
-    bool      no_upsampling; /* neighbours do not share what their rays to lights find, and none
+    KrsNormals    normals;
+    bool          no_beams;      /* each ray is marched by itself all the way */
+    bool          no_upsampling; /* neighbours do not share what their rays to lights find, and none
                                 is left out where all of a light is proven to be seen */
-    bool      no_occlusion;  /* the light of the sky comes from everywhere, also into corners */
-    bool      no_filter;     /* normals are those of the very point, about, and roughness is what
+    bool          no_occlusion;  /* the light of the sky comes from everywhere, also into corners */
+    bool          no_filter; /* normals are those of the very point, about, and roughness is what
                                 the material says, however much finer than a pixel detail is */
-    double    slice_ms;      /* aim for dispatches this long; 0: 50 */
+    double        slice_ms;  /* aim for dispatches this long; 0: 50 */
     KrsProgressCallback *progress; /* may be NULL */
     void                *user;     /* handed to `progress` */
 } KrsRenderOptions;
 
 typedef enum KrsPhase {
-    KRS_PHASE_BEAMS, KRS_PHASE_PRIMARY, KRS_PHASE_NORMALS, KRS_PHASE_SHADOWS,
-    KRS_PHASE_OCCLUSION, KRS_PHASE_SHADING, KRS_PHASE_RESOLVE, KRS_PHASE_COUNT
+    KRS_PHASE_BEAMS,
+    KRS_PHASE_PRIMARY,
+    KRS_PHASE_NORMALS,
+    KRS_PHASE_SHADOWS,
+    KRS_PHASE_OCCLUSION,
+    KRS_PHASE_SHADING,
+    KRS_PHASE_RESOLVE,
+    KRS_PHASE_COUNT
 } KrsPhase;
 extern const char *const krs_phase_names[KRS_PHASE_COUNT]; /* "beams", ... */
 
 typedef struct KrsRenderStats {
-    double   spirv_ms, pipeline_ms;      /* making the scene ready: our compiler, the driver's */
-    double   phase_ms[KRS_PHASE_COUNT];  /* on the device */
-    double   total_ms;                   /* their sum */
-    double   wall_ms;                    /* of krs_render, without making ready */
-    bool     device_time;                /* by timestamp queries, else by the host's clock */
-    uint64_t rays;                       /* primary rays */
-    uint64_t evaluations;                /* of the distance, spent on them */
-    double   evaluations_per_ray;        /* the mean */
+    double   spirv_ms, pipeline_ms;     /* making the scene ready: our compiler, the driver's */
+    double   phase_ms[KRS_PHASE_COUNT]; /* on the device */
+    double   total_ms;                  /* their sum */
+    double   wall_ms;                   /* of krs_render, without making ready */
+    bool     device_time;               /* by timestamp queries, else by the host's clock */
+    uint64_t rays;                      /* primary rays */
+    uint64_t evaluations;               /* of the distance, spent on them */
+    double   evaluations_per_ray;       /* the mean */
     uint32_t most_evaluations_per_ray;
     double   flops_per_evaluation;
-    double   gflops;                     /* of the primary phase */
-    uint64_t unresolved;                 /* primary and shadow rays that ran out of steps */
-    uint64_t submissions;                /* pieces of work that the host waited for */
-    uint64_t peak_memory_bytes;          /* the most held at once on the device, and the picture */
+    double   gflops;            /* of the primary phase */
+    uint64_t unresolved;        /* primary and shadow rays that ran out of steps */
+    uint64_t submissions;       /* pieces of work that the host waited for */
+    uint64_t peak_memory_bytes; /* the most held at once on the device, and the picture */
     char     device[256];
 } KrsRenderStats;
 
@@ -264,11 +276,11 @@ typedef struct KrsPicture {
     float    *albedo;        /* R G B */
     uint32_t *component;     /* from 1; 0 for nothing */
     uint32_t *level, *instance;
-    uint32_t *steps;         /* distance evaluations spent on the ray through the centre */
+    uint32_t *steps; /* distance evaluations spent on the ray through the centre */
     /* Row vectors times these: camera space is x right, y up, z along the view axis; in NDC
        x and y run from -1 to 1, and z, in perspective, from 0 at distance 0.001 to 1 at
        infinity.  For a panorama NDC is camera space. */
-    float world_to_camera[4][4], world_to_ndc[4][4];
+    float          world_to_camera[4][4], world_to_ndc[4][4];
     KrsRenderStats stats;
     KrsAllocator   allocator; /* where the memory came from */
 } KrsPicture;

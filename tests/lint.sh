@@ -1,5 +1,6 @@
 #!/bin/sh
-# lint.sh: every kernel is GLSL by itself, every script passes shellcheck.
+# lint.sh: every kernel is GLSL by itself, every script passes shellcheck, and all C has the style of
+# .clang-format (`make format` brings it about).  Another version of clang-format has other tastes.
 cd "$(dirname "$0")/.." || exit 1
 failed=0
 report() { # name, status
@@ -19,4 +20,8 @@ for script in tools/*.sh tests/*.sh tests/*/*.sh .ci/run; do
     shellcheck -x -P SCRIPTDIR "$script"
     report "$script passes shellcheck" $?
 done
+formatted=$(find bench cli compiler runtime tests -name '*.[ch]' -o -name '*.cpp')
+# shellcheck disable=SC2086 # the list is words
+clang-format-14 --dry-run --Werror $formatted
+report "C has the style of .clang-format" $?
 exit $failed

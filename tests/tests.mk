@@ -83,6 +83,8 @@ fuzz: fuzzers
 
 lint:
 	@tests/lint.sh
+format:
+	@clang-format-14 -i $$(find bench cli compiler runtime tests -name '*.[ch]' -o -name '*.cpp')
 bless: $(B)/krs
 	@tests/errors.sh --bless
 
@@ -94,4 +96,4 @@ test: deps
 	    $(SANITIZED:%=$(B)/asan/%) tests/errors-sanitized.sh tests/fuzz/fuzz.sh \
 	    $(if $(DEVICE),$(DRIVERS:%=$(B)/%),KRS_DEVICE=swiftshader $(SECOND:%=$(B)/%))
 .PHONY: test golden test-programs sanitize sanitized-programs clang-check clang-objects fuzz fuzzers \
-        fuzz-programs lint bless
+        fuzz-programs lint format bless

@@ -20,7 +20,6 @@
 #include "bench/algebraic/processes.h"
 #include "runtime/krs_vulkan.h"
 
-
 static const Subject subjects[] = {
 #define SURFACE(name, call, oracle, degree, radius, text) \
     {name, call, oracle, degree, radius, text},
@@ -83,7 +82,8 @@ double middle(double *numbers, size_t count)
 
 static View view_of(const Subject *subject)
 {
-    View   view = {.back = {0.42, 0.31, 0.853}, .height = 1.4 * subject->radius,
+    View   view = {.back     = {0.42, 0.31, 0.853},
+                   .height   = 1.4 * subject->radius,
                    .distance = 3 * subject->radius};
     double size = sqrt(0.42 * 0.42 + 0.31 * 0.31 + 0.853 * 0.853), across;
     for (int i = 0; i < 3; i++)
@@ -149,9 +149,12 @@ static void stage_close(Stage *stage)
 static KrsPicture *shoot(const Stage *stage, const struct Way *way)
 {
     KrsPicture      *picture;
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .trace = way->trace,
-                                .normals = way->normals, .no_occlusion = true,
-                                .planes = KRS_PLANE_COLOR};
+    KrsRenderOptions options = {.width        = WIDTH,
+                                .height       = HEIGHT,
+                                .trace        = way->trace,
+                                .normals      = way->normals,
+                                .no_occlusion = true,
+                                .planes       = KRS_PLANE_COLOR};
     if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
         give_up(way->name, krs_renderer_message(stage->renderer));
     return picture;
@@ -191,11 +194,11 @@ static void run_methods(const Stage *stage, const Subject *subject, const View *
     }
     for (size_t turn = 0; turn < repeats; turn++)
         for (int m = 0; m < WAYS; m++) {
-            double      before      = cpu_ms();
-            KrsPicture *picture     = shoot(stage, &ways[m]);
-            methods[m].cpu[turn]    = cpu_ms() - before;
-            methods[m].frame[turn]  = picture->stats.total_ms;
-            methods[m].rays[turn]   = picture->stats.phase_ms[KRS_PHASE_BEAMS] +
+            double      before     = cpu_ms();
+            KrsPicture *picture    = shoot(stage, &ways[m]);
+            methods[m].cpu[turn]   = cpu_ms() - before;
+            methods[m].frame[turn] = picture->stats.total_ms;
+            methods[m].rays[turn]  = picture->stats.phase_ms[KRS_PHASE_BEAMS] +
                                     picture->stats.phase_ms[KRS_PHASE_PRIMARY];
             krs_picture_free(picture);
         }
@@ -215,14 +218,14 @@ static Frame print_tracers(KrsRenderer *renderer, const Subject *subject, const 
         Method *method = &methods[m];
         double  cpu = middle(method->cpu, repeats), rays = middle(method->rays, repeats);
         say("| %s | %d | %s | %.0f | %.0f | %.1f | %.1f | %.1f | %zu / %zu / %zu | %llu |\n",
-            subject->name, subject->degree, ways[m].name, cpu, middle(method->frame, repeats),
-            rays, rays * 1e6 / (WIDTH * HEIGHT), method->evaluations, method->judgement.missed,
+            subject->name, subject->degree, ways[m].name, cpu, middle(method->frame, repeats), rays,
+            rays * 1e6 / (WIDTH * HEIGHT), method->evaluations, method->judgement.missed,
             method->judgement.extra, method->judgement.apart,
             (unsigned long long)method->unresolved);
     }
-    frame.cpu       = middle(methods[CHOSEN].cpu, repeats);
+    frame.cpu         = middle(methods[CHOSEN].cpu, repeats);
     frame.stencil_cpu = middle(methods[CHOSEN + 1].cpu, repeats);
-    frame.judgement = methods[CHOSEN].judgement;
+    frame.judgement   = methods[CHOSEN].judgement;
     stage_close(&stage);
     return frame;
 }
@@ -254,7 +257,8 @@ static void print_heads(size_t repeats, const char *device, double load)
 {
     say("# Algebraic surfaces on %s\n\n%dx%d, medians of %zu in turns, without shadows and "
         "occlusion; %ld processors, load %.1f at the start. bench/README.md says what the columns "
-        "mean.\n\n", device, WIDTH, HEIGHT, repeats, sysconf(_SC_NPROCESSORS_ONLN), load);
+        "mean.\n\n",
+        device, WIDTH, HEIGHT, repeats, sysconf(_SC_NPROCESSORS_ONLN), load);
     for (size_t i = 0; i < program_count; i++)
         if (!program_is_installed(programs[i].command))
             say("%s is left out: `%s` is not installed.\n", programs[i].name, programs[i].command);
@@ -329,8 +333,8 @@ int main(int count, char **arguments)
     if (count < 2)
         give_up("usage", "algebraic KRS [REPEATS [SURFACE|trees|julias]]");
     size_t repeats = count > 2 ? strtoul(arguments[2], NULL, 10) : 3;
-    repeats = repeats < 1 ? 1 : repeats > MOST_REPEATS ? MOST_REPEATS : repeats;
-    kept    = open_memstream(&text, &length);
+    repeats        = repeats < 1 ? 1 : repeats > MOST_REPEATS ? MOST_REPEATS : repeats;
+    kept           = open_memstream(&text, &length);
     if (!kept)
         give_up("cannot begin", "no memory");
     double load = 0;

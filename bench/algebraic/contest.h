@@ -9,8 +9,14 @@
 
 #include "bench/algebraic/polynomial.h"
 
-enum { WIDTH = 1280, HEIGHT = 720, MOST_REPEATS = 15, MOST_PROGRAMS = 8,
-       MOST_SUBJECTS = 16, FOLDER_ROOM = 64 };
+enum {
+    WIDTH         = 1280,
+    HEIGHT        = 720,
+    MOST_REPEATS  = 15,
+    MOST_PROGRAMS = 8,
+    MOST_SUBJECTS = 16,
+    FOLDER_ROOM   = 64
+};
 
 typedef struct Subject {
     const char *name, *call, *oracle;
@@ -43,10 +49,10 @@ double middle(double *numbers, size_t count);
 /* ---- programs.c ---- */
 /* A run of a program, from its start to its end. */
 typedef struct Run {
-    double wall, cpu; /* ms */
-    double frame;     /* ms of all threads, by its own statistics; 0: it tells none */
-    double memory;    /* MB, the most that was resident */
-    double coverage;  /* share of the pixels that are not background */
+    double    wall, cpu; /* ms */
+    double    frame;     /* ms of all threads, by its own statistics; 0: it tells none */
+    double    memory;    /* MB, the most that was resident */
+    double    coverage;  /* share of the pixels that are not background */
     Judgement judgement;
 } Run;
 

@@ -60,16 +60,16 @@ static Real estimate(Formula *formula, const Real p[3], Real f, int order)
 static bool march(const Subject *subject, Vec origin, Vec way, Real least, int order, Tally *tally)
 {
     Formula *formula = surface_named(subject->oracle)->formula;
-    Real     middle = -(origin.x * way.x + origin.y * way.y + origin.z * way.z);
-    Real     square = vec_dot(origin, origin) - middle * middle;
-    Real     half   = (Real)subject->radius * subject->radius - square;
+    Real     middle  = -(origin.x * way.x + origin.y * way.y + origin.z * way.z);
+    Real     square  = vec_dot(origin, origin) - middle * middle;
+    Real     half    = (Real)subject->radius * subject->radius - square;
     if (half <= 0)
         return false;
     half   = sqrtl(half);
     Real t = middle - half;
     for (int step = 0; step < MOST_STEPS; step++) {
         Real p[3] = {origin.x + t * way.x, origin.y + t * way.y, origin.z + t * way.z};
-        Real f = formula(p);
+        Real f    = formula(p);
         tally->evaluations++;
         if (f <= 0)
             return true;
@@ -87,7 +87,7 @@ static Tally march_all(const Subject *subject, const View *view, int order)
     Real  least = view->height / HEIGHT / 64;
     for (int y = 0; y < HEIGHT; y += SPARSE)
         for (int x = 0; x < WIDTH; x += SPARSE) {
-            Vec  origin, way;
+            Vec origin, way;
             find_ray(view, x, y, &origin, &way);
             bool seen = march(subject, origin, way, least, order, &tally);
             tally.rays++;
@@ -101,9 +101,8 @@ void estimates_print(const Subject *subject, const View *view)
     static const char *const names[ORDERS] = {"linear", "quadratic"};
     for (int order = 1; order <= ORDERS; order++) {
         Tally t = march_all(subject, view, order);
-        say("| %s | %d | %s, 1 ray of 64 | | | | | %.1f | %zu / %zu / %zu | %zu |\n",
-            subject->name, subject->degree, names[order - 1],
-            (double)t.evaluations / (double)t.rays, t.judgement.missed, t.judgement.extra,
-            t.judgement.apart, t.unresolved);
+        say("| %s | %d | %s, 1 ray of 64 | | | | | %.1f | %zu / %zu / %zu | %zu |\n", subject->name,
+            subject->degree, names[order - 1], (double)t.evaluations / (double)t.rays,
+            t.judgement.missed, t.judgement.extra, t.judgement.apart, t.unresolved);
     }
 }

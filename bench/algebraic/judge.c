@@ -45,8 +45,8 @@ static void find_rows(Known *k, int first)
 {
     for (int y = first; y < SEEN_ROWS; y += 2)
         for (int x = 0; x < SEEN_COLUMNS; x++)
-            k->fates[y * SEEN_COLUMNS + x] =
-                (unsigned char)fate_of(k->subject, k->view, k->drawn, x * STRIDE, y * STRIDE);
+            k->fates[y * SEEN_COLUMNS + x] = (unsigned char)fate_of(k->subject, k->view, k->drawn,
+                                                                    x * STRIDE, y * STRIDE);
 }
 
 static void *find_odd_rows(void *known)
@@ -114,12 +114,12 @@ Judgement judge(const Subject *subject, const View *view, Drawn drawn,
 void check_text(const Subject *subject)
 {
     const Surface *surface = surface_named(subject->oracle);
-    Polynomial     p = polynomial_read(subject->text, definitions);
-    double         ratio = 0;
+    Polynomial     p       = polynomial_read(subject->text, definitions);
+    double         ratio   = 0;
     for (int i = 0; i < 20; i++) {
-        double at[3] = {sin(3.1 * i + 0.4), sin(1.7 * i + 1), sin(2.3 * i + 2)};
+        double at[3]   = {sin(3.1 * i + 0.4), sin(1.7 * i + 1), sin(2.3 * i + 2)};
         Real   same[3] = {at[0], at[1], at[2]};
-        double next = polynomial_value(&p, at) / (double)surface->formula(same);
+        double next    = polynomial_value(&p, at) / (double)surface->formula(same);
         if (i > 0 && fabs(next / ratio - 1) > 1e-6)
             give_up(subject->name, "the text is another polynomial than the library's");
         ratio = next;

@@ -17,8 +17,8 @@ enum { STRIDE = 4, SEEN_ROWS = HEIGHT / STRIDE, SEEN_COLUMNS = WIDTH / STRIDE };
 void find_ray(const View *view, int x, int y, Vec *origin, Vec *way);
 
 /* Counts one pixel, of those that are looked at. */
-void judge_one(const Subject *subject, const View *view, Drawn drawn, int x, int y, bool seen,
-               Judgement *judgement);
+void      judge_one(const Subject *subject, const View *view, Drawn drawn, int x, int y, bool seen,
+                    Judgement *judgement);
 Judgement judge(const Subject *subject, const View *view, Drawn drawn,
                 bool seen[SEEN_ROWS][SEEN_COLUMNS]);
 

@@ -14,7 +14,7 @@
 
 enum { STEPS = 8, PLACES = 2048 };
 
-static const double C[4] = {-0.083, 0, -0.83, -0.025};
+static const double C[4]   = {-0.083, 0, -0.83, -0.025};
 static const double WINDOW = 2.6, REACH = 1.6; /* of the picture upwards; of the set, and more */
 
 /* ---- what there is ---- */
@@ -29,7 +29,7 @@ static bool is_inside(double x, double y, double z)
     double escape = 0.5 + sqrt(0.25 + norm4(C)), q[4] = {x, y, z, 0};
     for (int i = 0; i < STEPS; i++) {
         double real = q[0];
-        q[0] = real * real - q[1] * q[1] - q[2] * q[2] - q[3] * q[3] + C[0];
+        q[0]        = real * real - q[1] * q[1] - q[2] * q[2] - q[3] * q[3] + C[0];
         for (int k = 1; k < 4; k++)
             q[k] = 2 * real * q[k] + C[k];
         if (norm4(q) > escape)
@@ -40,7 +40,7 @@ static bool is_inside(double x, double y, double z)
 
 static bool is_hit(int x, int y)
 {
-    double unit = WINDOW / HEIGHT;
+    double unit   = WINDOW / HEIGHT;
     double across = (0.5 * WIDTH - x - 0.5) * unit, up = (0.5 * HEIGHT - y - 0.5) * unit;
     for (int i = 0; i < PLACES; i++)
         if (is_inside(across, up, REACH * (2.0 * i / PLACES - 1)))
@@ -65,8 +65,8 @@ static Judgement judge_julia(bool seen[SEEN_ROWS][SEEN_COLUMNS])
             bool hit = is_hit(x * STRIDE, y * STRIDE);
             judgement.asked++;
             judgement.missed += hit && !seen[y][x];
-            judgement.extra  += !hit && seen[y][x];
-            judgement.apart  += hit != seen[y][x] && !is_near(x * STRIDE, y * STRIDE, seen[y][x]);
+            judgement.extra += !hit && seen[y][x];
+            judgement.apart += hit != seen[y][x] && !is_near(x * STRIDE, y * STRIDE, seen[y][x]);
         }
     return judgement;
 }
@@ -78,13 +78,14 @@ static void write_pov_julia(const char *path)
     FILE *file = fopen(path, "wb");
     if (!file)
         give_up(path, "cannot write it");
-    fprintf(file, "#version 3.7;\nglobal_settings { assumed_gamma 1 max_trace_level 1 }\n"
-                  "background { color rgb 0 }\n"
-                  "camera { orthographic location <0, 0, -6> direction <0, 0, 1> "
-                  "up <0, %.17g, 0> right <%.17g, 0, 0> }\n"
-                  "light_source { <0, 0, -1000> color rgb 1 shadowless }\n"
-                  "julia_fractal { <%g, %g, %g, %g> quaternion sqr max_iteration %d precision 40\n"
-                  "pigment { color rgb 0.8 } finish { ambient 0.1 diffuse 0.8 } }\n",
+    fprintf(file,
+            "#version 3.7;\nglobal_settings { assumed_gamma 1 max_trace_level 1 }\n"
+            "background { color rgb 0 }\n"
+            "camera { orthographic location <0, 0, -6> direction <0, 0, 1> "
+            "up <0, %.17g, 0> right <%.17g, 0, 0> }\n"
+            "light_source { <0, 0, -1000> color rgb 1 shadowless }\n"
+            "julia_fractal { <%g, %g, %g, %g> quaternion sqr max_iteration %d precision 40\n"
+            "pigment { color rgb 0.8 } finish { ambient 0.1 diffuse 0.8 } }\n",
             WINDOW, -WINDOW * WIDTH / HEIGHT, C[0], C[1], C[2], C[3], STEPS + 1);
     fclose(file);
 }
@@ -96,15 +97,15 @@ static void run_pov_julia(const char *folder, bool seen[SEEN_ROWS][SEEN_COLUMNS]
     snprintf(output, sizeof output, "+O%s/julia.ppm", folder);
     snprintf(said, sizeof said, "%s/julia.txt", folder);
     write_pov_julia(input + 2);
-    char *const arguments[] = {"povray", input, output, "+FP", "+W1280", "+H720", "-D", "-A", "-P",
-                               "-V", "+WT2", NULL};
+    char *const arguments[] = {"povray", input, output, "+FP", "+W1280", "+H720",
+                               "-D",     "-A",  "-P",   "-V",  "+WT2",   NULL};
     if (!run_command(arguments, said, run) ||
         !read_picture(output + 2, &run->coverage, &seen[0][0]))
         give_up("povray", "it failed");
 }
 
-static void run_krs_julia(const char *krs, const char *folder,
-                          bool seen[SEEN_ROWS][SEEN_COLUMNS], Run *run)
+static void run_krs_julia(const char *krs, const char *folder, bool seen[SEEN_ROWS][SEEN_COLUMNS],
+                          Run *run)
 {
     char text[1024], picture[512];
     snprintf(text, sizeof text,
@@ -141,8 +142,8 @@ void julias_run(Julias *julias, const char *krs, size_t repeats)
 static void print_julia(const char *name, Runs *runs, double krs_cpu, const Judgement *judged)
 {
     runs_settle(runs);
-    say("| %s | %.0f | %.0f | %.0f | %.2f | %.1f %% | %zu / %zu / %zu |\n", name,
-        runs->median.wall, runs->median.cpu, runs->median.memory, runs->median.cpu / krs_cpu,
+    say("| %s | %.0f | %.0f | %.0f | %.2f | %.1f %% | %zu / %zu / %zu |\n", name, runs->median.wall,
+        runs->median.cpu, runs->median.memory, runs->median.cpu / krs_cpu,
         100 * runs->median.coverage, judged->missed, judged->extra, judged->apart);
 }
 

@@ -67,8 +67,8 @@ void run_krs(const char *krs, const char *folder, const char *cache, const char 
     FILE *file = fopen(scene, "wb");
     if (!file || fputs(text, file) == EOF || fclose(file) != 0)
         give_up(scene, "cannot write it");
-    char *arguments[9 + MOST_OPTIONS] = {(char *)krs, "render", scene, "-o", picture, "--quiet",
-                                         "--occlusion", "off"};
+    char *arguments[9 + MOST_OPTIONS] = {(char *)krs, "render",  scene,         "-o",
+                                         picture,     "--quiet", "--occlusion", "off"};
     for (size_t i = 0; options && options[i] && i < MOST_OPTIONS; i++)
         arguments[8 + i] = options[i];
     if (!run_command(arguments, said, run))
@@ -84,8 +84,8 @@ static void run_ours(const char *krs, const char *folder, size_t turn, const cha
                      Runs ours[OURS])
 {
     static char *const stencil[] = {"--normals", "octahedron", NULL};
-    Run  run = {0};
-    char cache[32];
+    Run                run       = {0};
+    char               cache[32];
     snprintf(cache, sizeof cache, "cache%zu", turn);
     run_krs(krs, folder, cache, text, NULL, &run);
     runs_take(&ours[COLD], &run);
@@ -103,8 +103,8 @@ static bool takes_part(const Program *program, const Subject *subject, size_t tu
            subject->degree >= program->least_degree && (!program->slow || turn == 0);
 }
 
-void processes_run(Processes *processes, const char *krs, const Subject *subject,
-                   const View *view, const char *text, size_t repeats)
+void processes_run(Processes *processes, const char *krs, const Subject *subject, const View *view,
+                   const char *text, size_t repeats)
 {
     char folder[FOLDER_ROOM];
     folder_make(folder);
@@ -122,8 +122,8 @@ void processes_run(Processes *processes, const char *krs, const Subject *subject
     folder_remove(folder);
 }
 
-static void print_run(const Subject *subject, const char *name, const Run *run,
-                      const Frame *frame, double krs_cpu)
+static void print_run(const Subject *subject, const char *name, const Run *run, const Frame *frame,
+                      double krs_cpu)
 {
     say("| %s | %d | %s | %.0f | %.0f | %.0f |", subject->name, subject->degree, name, run->wall,
         run->cpu, run->memory);

@@ -41,8 +41,8 @@ typedef struct Processes {
  * A surface by krs and by all other programs, in turns.  A process counts as its own what its
  * parent had in memory when it began, so this comes before all that needs much.
  */
-void processes_run(Processes *processes, const char *krs, const Subject *subject,
-                   const View *view, const char *text, size_t repeats);
+void processes_run(Processes *processes, const char *krs, const Subject *subject, const View *view,
+                   const char *text, size_t repeats);
 void processes_print(Processes *processes, const Subject *subject, const Frame *frame);
 
 /* ---- trees.c ---- */

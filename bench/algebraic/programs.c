@@ -51,9 +51,9 @@ static double milliseconds(struct timeval time)
 bool run_command(char *const *arguments, const char *output, Run *run)
 {
     posix_spawn_file_actions_t actions;
-    pid_t         child;
-    int           status;
-    struct rusage usage;
+    pid_t                      child;
+    int                        status;
+    struct rusage              usage;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, 1, output, O_WRONLY | O_CREAT | O_TRUNC, 0600);
     posix_spawn_file_actions_adddup2(&actions, 1, 2);
@@ -62,8 +62,8 @@ bool run_command(char *const *arguments, const char *output, Run *run)
     posix_spawn_file_actions_destroy(&actions);
     if (!began || wait4(child, &status, 0, &usage) != child)
         return false;
-    run->wall = now_ms() - start;
-    run->cpu  = milliseconds(usage.ru_utime) + milliseconds(usage.ru_stime);
+    run->wall   = now_ms() - start;
+    run->cpu    = milliseconds(usage.ru_utime) + milliseconds(usage.ru_stime);
     run->memory = (double)usage.ru_maxrss / 1024;
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
@@ -87,7 +87,7 @@ static bool read_number(FILE *file, int *number)
 
 bool read_picture(const char *path, double *coverage, bool *seen)
 {
-    FILE         *file = fopen(path, "rb");
+    FILE         *file  = fopen(path, "rb");
     int           width = 0, height = 0, most = 0;
     unsigned char pixel[3];
     size_t        bright = 0;
@@ -97,7 +97,7 @@ bool read_picture(const char *path, double *coverage, bool *seen)
                 read_number(file, &most) && width == WIDTH && height == HEIGHT && most == 255;
     good = good && fgetc(file) == '\n';
     for (int i = 0; i < WIDTH * HEIGHT && good; i++) {
-        good = fread(pixel, 1, 3, file) == 3;
+        good      = fread(pixel, 1, 3, file) == 3;
         bool here = pixel[0] + pixel[1] + pixel[2] > 0;
         bright += here;
         if (seen && i % WIDTH % STRIDE == 0 && i / WIDTH % STRIDE == 0)
@@ -113,9 +113,9 @@ void read_png(const char *path, double *coverage, bool *seen)
     png_image image = {.version = PNG_IMAGE_VERSION};
     if (!png_image_begin_read_from_file(&image, path))
         give_up(path, "cannot read it");
-    image.format   = PNG_FORMAT_RGB;
-    png_byte *rgb  = malloc(PNG_IMAGE_SIZE(image));
-    size_t    lit  = 0, width = image.width, pixels = width * image.height;
+    image.format  = PNG_FORMAT_RGB;
+    png_byte *rgb = malloc(PNG_IMAGE_SIZE(image));
+    size_t    lit = 0, width = image.width, pixels = width * image.height;
     if (!rgb || !png_image_finish_read(&image, NULL, rgb, 0, NULL))
         give_up(path, "cannot read it");
     for (size_t i = 0; i < pixels; i++) {
@@ -211,8 +211,10 @@ static void write_pov(const char *path, const Subject *subject, const View *view
     } else {
         fprintf(file, "isosurface { function { ");
         write_products(file, subject->text, subject->text + strlen(subject->text));
-        fprintf(file, " }\ncontained_by { sphere { 0, %.17g } }\n"
-                      "evaluate 1, 1.2, 0.95 accuracy 1e-4\n", subject->radius);
+        fprintf(file,
+                " }\ncontained_by { sphere { 0, %.17g } }\n"
+                "evaluate 1, 1.2, 0.95 accuracy 1e-4\n",
+                subject->radius);
     }
     fprintf(file, "pigment { color rgb 0.8 } finish { ambient 0.1 diffuse 0.8 }\n}\n");
     fclose(file);
@@ -223,7 +225,7 @@ static double read_trace_time(const char *path)
 {
     char   line[1024];
     double seconds = 0;
-    FILE  *file = fopen(path, "rb");
+    FILE  *file    = fopen(path, "rb");
     while (file && fgets(line, sizeof line, file)) {
         const char *with = strstr(line, "CPU-seconds") ? strstr(line, "with ") : NULL;
         if (with)
@@ -243,8 +245,8 @@ static bool run_pov(const char *folder, const Subject *subject, const View *view
     snprintf(output, sizeof output, "+O%s/pov.ppm", folder);
     snprintf(said, sizeof said, "%s/pov.txt", folder);
     write_pov(scene, subject, view, expanded);
-    char *const arguments[] = {"povray", input, output, "+FP", "+W1280", "+H720", "-D", "-A", "-P",
-                               "-V", "+WT2", NULL};
+    char *const arguments[] = {"povray", input, output, "+FP", "+W1280", "+H720",
+                               "-D",     "-A",  "-P",   "-V",  "+WT2",   NULL};
     if (!run_command(arguments, said, run) ||
         !judge_file(output + 2, subject, view, CUT_SOLID, run))
         return false;
@@ -284,7 +286,7 @@ static void write_surf(const char *path, const char *picture, const Subject *sub
     fprintf(file, "width = %d; height = %d;\n", WIDTH, HEIGHT);
     for (int i = 0; i < 3; i++)
         fprintf(file, "poly %c = (%.17g)*x + (%.17g)*y + (%.17g)*z;\n", "uvw"[i],
-                view->right[i] * unit, view->up[i] * unit, view->back[i] * unit);
+                view -> right[i] * unit, view -> up[i] * unit, view -> back[i] * unit);
     for (const Definition *d = definitions; d->name; d++) {
         fprintf(file, "poly %s = ", d->name);
         write_turned(file, d->text);
@@ -292,15 +294,17 @@ static void write_surf(const char *path, const char *picture, const Subject *sub
     }
     fprintf(file, "surface = ");
     write_turned(file, subject->text);
-    fprintf(file, ";\nperspective = parallel;\nclip = sphere;\nradius = %.17g;\n"
-                  "clip_front = 100;\nclip_back = -100;\n"
-                  "background_red = 0;\nbackground_green = 0;\nbackground_blue = 0;\n"
-                  "ambient = 10;\ndiffuse = 80;\nreflected = 0;\ntransmitted = 0;\n"
-                  "light1_x = 0;\nlight1_y = 0;\nlight1_z = 1000;\nlight1_vol = 100;\n"
-                  "surface_red = 200;\nsurface_green = 200;\nsurface_blue = 200;\n"
-                  "inside_red = 200;\ninside_green = 200;\ninside_blue = 200;\n"
-                  "draw_surface;\nfilename = \"%s\";\ncolor_file_format = ppm;\n"
-                  "save_color_image;\n", subject->radius / unit, picture);
+    fprintf(file,
+            ";\nperspective = parallel;\nclip = sphere;\nradius = %.17g;\n"
+            "clip_front = 100;\nclip_back = -100;\n"
+            "background_red = 0;\nbackground_green = 0;\nbackground_blue = 0;\n"
+            "ambient = 10;\ndiffuse = 80;\nreflected = 0;\ntransmitted = 0;\n"
+            "light1_x = 0;\nlight1_y = 0;\nlight1_z = 1000;\nlight1_vol = 100;\n"
+            "surface_red = 200;\nsurface_green = 200;\nsurface_blue = 200;\n"
+            "inside_red = 200;\ninside_green = 200;\ninside_blue = 200;\n"
+            "draw_surface;\nfilename = \"%s\";\ncolor_file_format = ppm;\n"
+            "save_color_image;\n",
+            subject->radius / unit, picture);
     fclose(file);
 }
 

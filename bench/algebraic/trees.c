@@ -71,11 +71,11 @@ static size_t grow(Limb limbs[MOST_BRANCHES])
 {
     Fork   forks[WRITTEN_LEVELS] = {{.ahead = {-sin(5 * DEGREE), cos(5 * DEGREE), 0},
                                      .aside = {cos(5 * DEGREE), sin(5 * DEGREE), 0}}};
-    size_t count = 0;
+    size_t count                 = 0;
     for (int i = 1; i < WRITTEN_LEVELS; i++)
         forks[i] = next_fork(&forks[i - 1], i - 1);
     for (int i = WRITTEN_LEVELS - 1; i >= 0; i--) {
-        Limb *limb = &limbs[count++];
+        Limb  *limb = &limbs[count++];
         double half = 0.5 * bend_of(i);
         point_of(&forks[i], 0, 0, limb->points[0]);
         point_of(&forks[i], half, 0.5 * reach_of(i) / cos(half), limb->points[1]);
@@ -94,26 +94,28 @@ static size_t grow(Limb limbs[MOST_BRANCHES])
 
 static size_t write_pov_tree(const char *path)
 {
-    FILE  *file  = fopen(path, "wb");
-    Limb  *limbs = calloc(MOST_BRANCHES, sizeof *limbs);
+    FILE *file  = fopen(path, "wb");
+    Limb *limbs = calloc(MOST_BRANCHES, sizeof *limbs);
     if (!file || !limbs)
         give_up(path, "cannot write it");
     size_t count = grow(limbs);
     double rise = TARGET[1] - EYE[1], back = TARGET[2] - EYE[2], length = hypot(rise, back);
-    fprintf(file, "#version 3.7;\nglobal_settings { assumed_gamma 1 max_trace_level 1 }\n"
-                  "background { color rgb 0 }\n"
-                  "#default { pigment { color rgb 0.8 } finish { ambient 0.1 diffuse 0.8 } }\n"
-                  "camera { location <%g, %g, %g> right <%.17g, 0, 0> up <0, %.17g, %.17g> "
-                  "direction <0, %.17g, %.17g> }\n"
-                  "light_source { <%g, %g, %g> color rgb 1 shadowless }\n",
+    fprintf(file,
+            "#version 3.7;\nglobal_settings { assumed_gamma 1 max_trace_level 1 }\n"
+            "background { color rgb 0 }\n"
+            "#default { pigment { color rgb 0.8 } finish { ambient 0.1 diffuse 0.8 } }\n"
+            "camera { location <%g, %g, %g> right <%.17g, 0, 0> up <0, %.17g, %.17g> "
+            "direction <0, %.17g, %.17g> }\n"
+            "light_source { <%g, %g, %g> color rgb 1 shadowless }\n",
             EYE[0], EYE[1], EYE[2], (double)WIDTH / HEIGHT, -back / length, rise / length,
             0.5 / tan(0.5 * FOV * DEGREE) * rise / length,
             0.5 / tan(0.5 * FOV * DEGREE) * back / length, EYE[0], EYE[1], EYE[2]);
     for (size_t i = 0; i < 2 * count; i++) {
         const double *a = limbs[i / 2].points[i % 2], *b = limbs[i / 2].points[i % 2 + 1];
         double        radius = limbs[i / 2].radius;
-        fprintf(file, "cylinder { <%.9g,%.9g,%.9g>, <%.9g,%.9g,%.9g>, %.9g }\n"
-                      "sphere { <%.9g,%.9g,%.9g>, %.9g }\n",
+        fprintf(file,
+                "cylinder { <%.9g,%.9g,%.9g>, <%.9g,%.9g,%.9g>, %.9g }\n"
+                "sphere { <%.9g,%.9g,%.9g>, %.9g }\n",
                 a[0], a[1], a[2], b[0], b[1], b[2], radius, b[0], b[1], b[2], radius);
     }
     fclose(file);
@@ -127,8 +129,8 @@ static void run_pov_tree(const char *folder, Run *run)
     snprintf(input, sizeof input, "+I%s/tree.pov", folder);
     snprintf(output, sizeof output, "+O%s/tree.ppm", folder);
     snprintf(said, sizeof said, "%s/tree.txt", folder);
-    char *const arguments[] = {"povray", input, output, "+FP", "+W1280", "+H720", "-D", "-A", "-P",
-                               "-V", "+WT2", NULL};
+    char *const arguments[] = {"povray", input, output, "+FP", "+W1280", "+H720",
+                               "-D",     "-A",  "-P",   "-V",  "+WT2",   NULL};
     if (!run_command(arguments, said, run) || !read_picture(output + 2, &run->coverage, NULL))
         give_up("povray", "it failed");
 }
@@ -138,7 +140,7 @@ static void run_pov_tree(const char *folder, Run *run)
 static void write_krs_tree(int levels, char text[TEXT_ROOM])
 {
     static const char path[] = "bench/scenes/tree.krs";
-    FILE  *file = fopen(path, "rb");
+    FILE             *file   = fopen(path, "rb");
     if (!file)
         give_up(path, "cannot read it");
     size_t length = fread(text, 1, TEXT_ROOM / 2, file);

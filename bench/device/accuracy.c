@@ -16,35 +16,88 @@
 
 enum { LANES = 64, GROUPS = 1024, COUNT = LANES * GROUPS };
 
-static double by_division(double a, double b)  { return a / b; }
-static double by_sum(double a, double b)       { return a + b; }
-static double by_product(double a, double b)   { return a * b; }
-static double by_sin(double a, double b)       { (void)b; return sin(a); }
-static double by_cos(double a, double b)       { (void)b; return cos(a); }
-static double by_tan(double a, double b)       { (void)b; return tan(a); }
-static double by_asin(double a, double b)      { (void)b; return asin(a); }
-static double by_acos(double a, double b)      { (void)b; return acos(a); }
-static double by_atan(double a, double b)      { (void)b; return atan(a); }
-static double by_sqrt(double a, double b)      { (void)b; return sqrt(a); }
-static double by_inverse(double a, double b)   { (void)b; return 1 / sqrt(a); }
-static double by_exp(double a, double b)       { (void)b; return exp(a); }
-static double by_exp2(double a, double b)      { (void)b; return exp2(a); }
-static double by_log(double a, double b)       { (void)b; return log(a); }
-static double by_log2(double a, double b)      { (void)b; return log2(a); }
-static double by_floor(double a, double b)     { (void)b; return floor(a); }
-static double by_fma(double a, double b)       { return a * b - 1; }
+static double by_division(double a, double b) { return a / b; }
+static double by_sum(double a, double b) { return a + b; }
+static double by_product(double a, double b) { return a * b; }
+static double by_sin(double a, double b)
+{
+    (void)b;
+    return sin(a);
+}
+static double by_cos(double a, double b)
+{
+    (void)b;
+    return cos(a);
+}
+static double by_tan(double a, double b)
+{
+    (void)b;
+    return tan(a);
+}
+static double by_asin(double a, double b)
+{
+    (void)b;
+    return asin(a);
+}
+static double by_acos(double a, double b)
+{
+    (void)b;
+    return acos(a);
+}
+static double by_atan(double a, double b)
+{
+    (void)b;
+    return atan(a);
+}
+static double by_sqrt(double a, double b)
+{
+    (void)b;
+    return sqrt(a);
+}
+static double by_inverse(double a, double b)
+{
+    (void)b;
+    return 1 / sqrt(a);
+}
+static double by_exp(double a, double b)
+{
+    (void)b;
+    return exp(a);
+}
+static double by_exp2(double a, double b)
+{
+    (void)b;
+    return exp2(a);
+}
+static double by_log(double a, double b)
+{
+    (void)b;
+    return log(a);
+}
+static double by_log2(double a, double b)
+{
+    (void)b;
+    return log2(a);
+}
+static double by_floor(double a, double b)
+{
+    (void)b;
+    return floor(a);
+}
+static double by_fma(double a, double b) { return a * b - 1; }
 
 /* An operation on a and b, each of a range; a range from above 0 is gone through by its logarithm.
    `op`: whose helpers are needed. */
 typedef struct Operation {
     const char *glsl;
-    double    (*exact)(double, double);
-    double      low[2], high[2];
-    Op          op;
+    double (*exact)(double, double);
+    double low[2], high[2];
+    Op     op;
 } Operation;
 
-#define PI  3.14159265358979
-#define ONE_ARGUMENT(low, high) {low, 0}, {high, 0}
+#define PI 3.14159265358979
+#define ONE_ARGUMENT(low, high) \
+    {low, 0}, { high, 0 }
 
 static const Operation operations[] = {
     {"a + b", by_sum, {-100, -100}, {100, 100}, OP_add},
@@ -87,39 +140,57 @@ static VkDescriptorSet       set;
 static bool prepare(Gpu *gpu, const Buffer *buffer)
 {
     const char *attempt = "prepare the operations";
-    TRY(gpu, attempt, vkCreateDescriptorSetLayout(gpu->device, &(VkDescriptorSetLayoutCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-        .bindingCount = 1,
-        .pBindings = &(VkDescriptorSetLayoutBinding){
-            .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+    TRY(gpu, attempt,
+        vkCreateDescriptorSetLayout(
+            gpu->device,
+            &(VkDescriptorSetLayoutCreateInfo){
+                .sType        = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                .bindingCount = 1,
+                .pBindings =
+                    &(VkDescriptorSetLayoutBinding){
+                        .descriptorType  = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                        .descriptorCount = 1,
+                        .stageFlags      = VK_SHADER_STAGE_COMPUTE_BIT,
+                    },
+            },
+            NULL, &set_layout));
+    TRY(gpu, attempt,
+        vkCreatePipelineLayout(gpu->device,
+                               &(VkPipelineLayoutCreateInfo){
+                                   .sType          = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                   .setLayoutCount = 1,
+                                   .pSetLayouts    = &set_layout,
+                               },
+                               NULL, &layout));
+    TRY(gpu, attempt,
+        vkCreateDescriptorPool(
+            gpu->device,
+            &(VkDescriptorPoolCreateInfo){
+                .sType         = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                .maxSets       = 1,
+                .poolSizeCount = 1,
+                .pPoolSizes    = &(VkDescriptorPoolSize){VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
+            },
+            NULL, &pool));
+    TRY(gpu, attempt,
+        vkAllocateDescriptorSets(gpu->device,
+                                 &(VkDescriptorSetAllocateInfo){
+                                     .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                     .descriptorPool     = pool,
+                                     .descriptorSetCount = 1,
+                                     .pSetLayouts        = &set_layout,
+                                 },
+                                 &set));
+    vkUpdateDescriptorSets(
+        gpu->device, 1,
+        &(VkWriteDescriptorSet){
+            .sType           = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+            .dstSet          = set,
             .descriptorCount = 1,
-            .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
+            .descriptorType  = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+            .pBufferInfo     = &(VkDescriptorBufferInfo){buffer->buffer, 0, buffer->size},
         },
-    }, NULL, &set_layout));
-    TRY(gpu, attempt, vkCreatePipelineLayout(gpu->device, &(VkPipelineLayoutCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-        .setLayoutCount = 1,
-        .pSetLayouts = &set_layout,
-    }, NULL, &layout));
-    TRY(gpu, attempt, vkCreateDescriptorPool(gpu->device, &(VkDescriptorPoolCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-        .maxSets = 1,
-        .poolSizeCount = 1,
-        .pPoolSizes = &(VkDescriptorPoolSize){VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
-    }, NULL, &pool));
-    TRY(gpu, attempt, vkAllocateDescriptorSets(gpu->device, &(VkDescriptorSetAllocateInfo){
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-        .descriptorPool = pool,
-        .descriptorSetCount = 1,
-        .pSetLayouts = &set_layout,
-    }, &set));
-    vkUpdateDescriptorSets(gpu->device, 1, &(VkWriteDescriptorSet){
-        .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-        .dstSet = set,
-        .descriptorCount = 1,
-        .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-        .pBufferInfo = &(VkDescriptorBufferInfo){buffer->buffer, 0, buffer->size},
-    }, 0, NULL);
+        0, NULL);
     return true;
 
 failed:
@@ -145,13 +216,15 @@ static int glsl_length(const char *text)
 static void write_kernel(const Operation *operation, FILE *out)
 {
     const char *helper;
-    fprintf(out, "#version 440\nlayout(local_size_x = %d) in;\n"
-                 "layout(std430, set = 0, binding = 0) buffer Numbers { vec4 numbers[]; };\n",
+    fprintf(out,
+            "#version 440\nlayout(local_size_x = %d) in;\n"
+            "layout(std430, set = 0, binding = 0) buffer Numbers { vec4 numbers[]; };\n",
             LANES);
     for (uint32_t i = 0; (helper = op_helper(operation->op, i)); i++)
         fputs(helper, out);
-    fprintf(out, "void main()\n{\n    uint i = gl_GlobalInvocationID.x;\n"
-                 "    float a = numbers[i].x, b = numbers[i].y;\n    numbers[i].z = %.*s;\n}\n",
+    fprintf(out,
+            "void main()\n{\n    uint i = gl_GlobalInvocationID.x;\n"
+            "    float a = numbers[i].x, b = numbers[i].y;\n    numbers[i].z = %.*s;\n}\n",
             glsl_length(operation->glsl), operation->glsl);
 }
 
@@ -159,7 +232,7 @@ static void run(Gpu *gpu, const Operation *operation)
 {
     char      *text = NULL, *log = NULL;
     size_t     length = 0, words = 0;
-    FILE      *out = open_memstream(&text, &length);
+    FILE      *out  = open_memstream(&text, &length);
     KernelCode code = {.file = operation->glsl};
     Kernel     kernel;
     double     ms = 0;

@@ -56,7 +56,7 @@ int main(int argc, char **argv)
     }
     spirv_start();
     KrsRenderer *renderer = device_open();
-    bool         known = run(renderer, argc, argv);
+    bool         known    = run(renderer, argc, argv);
     krs_renderer_free(renderer);
     spirv_stop();
     if (!known)

@@ -17,10 +17,10 @@ typedef struct Timed {
 static Timed render_twice(KrsRenderer *renderer, const char *path, Size size)
 {
     KrsRenderOptions options = {.width = size.width, .height = size.height, .samples = 1};
-    double           start = clock_ms();
-    Stage            stage = stage_open(renderer, path, NULL, false);
+    double           start   = clock_ms();
+    Stage            stage   = stage_open(renderer, path, NULL, false);
     krs_picture_free(stage_render(&stage, &options));
-    double      ready = clock_ms() - start;
+    double      ready   = clock_ms() - start;
     KrsPicture *picture = stage_render(&stage, &options);
     stage_close(&stage);
     return (Timed){picture, ready, picture->stats.total_ms, picture->stats.wall_ms};
@@ -29,8 +29,8 @@ static Timed render_twice(KrsRenderer *renderer, const char *path, Size size)
 void print_example(KrsRenderer *renderer, const char *path, Size size)
 {
     KrsRenderer *lavapipe = NULL;
-    const char  *name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
-    Timed        here = render_twice(renderer, path, size);
+    const char  *name     = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+    Timed        here     = render_twice(renderer, path, size);
     printf("| %s | %.0f | %.1f | %.1f | %llu ", name, here.ready_ms, here.total_ms, here.wall_ms,
            (unsigned long long)here.picture->stats.unresolved);
     fflush(stdout);
@@ -42,9 +42,10 @@ void print_example(KrsRenderer *renderer, const char *path, Size size)
         Timed     there = render_twice(lavapipe, path, size);
         Agreement found = agreement_of(there.picture, here.picture, PERMITTED);
         printf("| %.1f | %zu, %zu | %s: hits %zu, components %zu, levels %zu, instances %zu,"
-               " depths %zu, largest %.3f pixels |\n", there.total_ms, agreement_faults(&found),
-               found.outline, agreement_faults(&found) ? "DIFFERENT" : "the same", found.hits,
-               found.components, found.levels, found.instances, found.depths, found.deepest);
+               " depths %zu, largest %.3f pixels |\n",
+               there.total_ms, agreement_faults(&found), found.outline,
+               agreement_faults(&found) ? "DIFFERENT" : "the same", found.hits, found.components,
+               found.levels, found.instances, found.depths, found.deepest);
         krs_picture_free(there.picture);
     }
     krs_picture_free(here.picture);

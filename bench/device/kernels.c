@@ -15,16 +15,16 @@ static void print_kernel(KrsRendering *rendering, const char *scene, const char 
     printf("| %s | %s | %.0f | %.0f |\n", scene, kernel, rendering->spirv_ms - *spirv_ms,
            rendering->pipeline_ms - *pipeline_ms + clock_ms() - start);
     fflush(stdout);
-    *spirv_ms = rendering->spirv_ms;
+    *spirv_ms    = rendering->spirv_ms;
     *pipeline_ms = rendering->pipeline_ms;
 }
 
 void print_kernels(KrsRenderer *renderer, const char *path)
 {
-    const char *name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+    const char *name  = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
     Stage       stage = {.name = path, .renderer = renderer};
     double      start = clock_ms(), spirv = renderer->spirv_ms, pipeline = renderer->pipeline_ms;
-    KrsTrace    trace = KRS_TRACE_DEFAULT;
+    KrsTrace    trace    = KRS_TRACE_DEFAULT;
     KrsSchedule schedule = KRS_SCHEDULE_DEFAULT;
     if (krs_compile_file(path, NULL, &stage.scene) != KRS_OK ||
         krs_frame_new(stage.scene, &stage.frame) != KRS_OK)

@@ -26,7 +26,7 @@ static void print_driver(const Gpu *gpu)
     printf("| subgroup operations | %#x%s%s |\n", subgroups.supportedOperations,
            subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT ? ", shuffle" : "",
            subgroups.supportedOperations & VK_SUBGROUP_FEATURE_ARITHMETIC_BIT ? ", arithmetic"
-                                                                               : "");
+                                                                              : "");
     printf("| float32: keeps NaN and infinity, denormals, rounds to even | %s, %s, %s |\n",
            floats.shaderSignedZeroInfNanPreserveFloat32 ? "yes" : "no",
            floats.shaderDenormPreserveFloat32 ? "yes" : "no",

@@ -34,7 +34,7 @@ static const Way ways[] = {
 static void limit_band(KrsRenderer *renderer, uint64_t pixels, uint32_t usual)
 {
     uint32_t *limit = &renderer->gpu.properties.limits.maxStorageBufferRange;
-    *limit = pixels > 0 ? (uint32_t)(pixels + 16) * RESULT_ROWS * RESULT_BYTES : usual;
+    *limit          = pixels > 0 ? (uint32_t)(pixels + 16) * RESULT_ROWS * RESULT_BYTES : usual;
 }
 
 /* Of some pictures that which took least. */
@@ -43,7 +43,7 @@ static KrsPicture *render_best(const Stage *stage, const KrsRenderOptions *optio
     KrsPicture *best = stage_render(stage, options); /* compiles what is new */
     for (int i = 0; i < REPEATS; i++) {
         KrsPicture *picture = stage_render(stage, options);
-        bool        better = i == 0 || picture->stats.total_ms < best->stats.total_ms;
+        bool        better  = i == 0 || picture->stats.total_ms < best->stats.total_ms;
         krs_picture_free(better ? best : picture);
         best = better ? picture : best;
     }
@@ -65,15 +65,15 @@ static void print_row(const char *name, bool early_outs, const KrsPicture *pictu
 
 void print_methods(KrsRenderer *renderer, const char *path, Size size, bool early_outs)
 {
-    uint32_t    usual = renderer->gpu.properties.limits.maxStorageBufferRange;
-    KrsPicture *first = NULL;
+    uint32_t    usual    = renderer->gpu.properties.limits.maxStorageBufferRange;
+    KrsPicture *first    = NULL;
     renderer->early_outs = early_outs;
-    Stage stage = stage_open(renderer, path, NULL, false);
+    Stage stage          = stage_open(renderer, path, NULL, false);
     for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
         KrsRenderOptions options = ways[i].options;
-        options.width = size.width;
-        options.height = size.height;
-        options.samples = 1;
+        options.width            = size.width;
+        options.height           = size.height;
+        options.samples          = 1;
         krs_rendering_free(stage.rendering); /* and its band */
         limit_band(renderer, ways[i].band, usual);
         if (krs_rendering_new_for(renderer, stage.scene, KRS_FOR_QUESTIONS, &stage.rendering))

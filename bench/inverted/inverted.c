@@ -44,9 +44,14 @@ static Sheet sheet;
 
 static KrsPicture *shoot(const Stage *stage, KrsTrace trace, bool beams, double error)
 {
-    return stage_render(stage, &(KrsRenderOptions){
-        .width = WIDTH, .height = HEIGHT, .samples = 1, .trace = trace, .no_beams = !beams,
-        .error = error, .no_upsampling = true, .planes = KRS_PLANE_DEPTH | KRS_PLANE_IDS});
+    return stage_render(stage, &(KrsRenderOptions){.width         = WIDTH,
+                                                   .height        = HEIGHT,
+                                                   .samples       = 1,
+                                                   .trace         = trace,
+                                                   .no_beams      = !beams,
+                                                   .error         = error,
+                                                   .no_upsampling = true,
+                                                   .planes = KRS_PLANE_DEPTH | KRS_PLANE_IDS});
 }
 
 /* Where only one of two pictures shows something, or its depth is off by a hundredth. */
@@ -71,10 +76,10 @@ static double hits_of(const KrsPicture *picture)
 
 static void measure(const Stage *stage, const KrsPicture *fine, Row *row, size_t turn)
 {
-    double      used = cpu_ms();
-    KrsPicture *picture = shoot(stage, row->trace, row->beams, 0.25);
-    used = cpu_ms() - used;
-    row->cpu_ms = turn == 0 ? used : fmin(row->cpu_ms, used);
+    double      used            = cpu_ms();
+    KrsPicture *picture         = shoot(stage, row->trace, row->beams, 0.25);
+    used                        = cpu_ms() - used;
+    row->cpu_ms                 = turn == 0 ? used : fmin(row->cpu_ms, used);
     const KrsRenderStats *stats = &picture->stats;
     row->ms[turn]    = stats->phase_ms[KRS_PHASE_BEAMS] + stats->phase_ms[KRS_PHASE_PRIMARY];
     row->evaluations = stats->evaluations_per_ray;
@@ -97,8 +102,8 @@ static void print_row(const char *name, Row *row, size_t repeats)
 static void compare(KrsRenderer *renderer, const struct Subject *subject, size_t repeats)
 {
     Row         rows[2 * TRACES] = {0};
-    Stage       stage = stage_open(renderer, subject->path, NULL, false);
-    KrsPicture *fine  = shoot(&stage, KRS_TRACE_PLAIN, false, 0.01);
+    Stage       stage            = stage_open(renderer, subject->path, NULL, false);
+    KrsPicture *fine             = shoot(&stage, KRS_TRACE_PLAIN, false, 0.01);
     /* Nothing is timed that has not run before. */
     for (size_t turn = 0; turn <= repeats; turn++)
         for (size_t i = 0; i < 2 * TRACES; i++) {

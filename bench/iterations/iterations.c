@@ -28,7 +28,7 @@ static Sheet sheet;
 static void shade(uint32_t steps, uint8_t *rgb)
 {
     uint8_t gray = steps > BLACK ? 0 : (uint8_t)(255 - 255 * steps / BLACK);
-    rgb[0] = steps > BLACK ? 200 : gray;
+    rgb[0]       = steps > BLACK ? 200 : gray;
     rgb[1] = rgb[2] = gray;
 }
 
@@ -45,9 +45,9 @@ static void put(const KrsPicture *picture, int place)
 static void write_strip(const char *name)
 {
     OutputError   error = {0};
-    const Picture frame = {.width = WIDTH * WAYS, .height = HEIGHT, .crop_width = WIDTH * WAYS,
-                           .crop_height = HEIGHT};
-    OutputFile   *file = output_open(name, NULL, &error);
+    const Picture frame = {
+        .width = WIDTH * WAYS, .height = HEIGHT, .crop_width = WIDTH * WAYS, .crop_height = HEIGHT};
+    OutputFile *file = output_open(name, NULL, &error);
     if (!file || !png_write(&frame, strip, file, &error) || output_commit(file) != KRS_OK)
         give_up(name, error.message);
 }
@@ -55,7 +55,7 @@ static void write_strip(const char *name)
 /* Of the pixels that cost something at all. */
 static void tell(const KrsPicture *picture, KrsTrace way)
 {
-    double   sum = 0;
+    double   sum   = 0;
     size_t   count = 0, dark = 0;
     uint32_t most = 0;
     for (int i = 0; i < PIXELS; i++) {
@@ -66,15 +66,19 @@ static void tell(const KrsPicture *picture, KrsTrace way)
         most = steps > most ? steps : most;
     }
     sheet_print(&sheet, "| %s | %.1f | %u | %.2f %% |\n", krs_trace_names[way],
-           sum / (double)(count ? count : 1), most, 100.0 * (double)dark / PIXELS);
+                sum / (double)(count ? count : 1), most, 100.0 * (double)dark / PIXELS);
 }
 
 static void shoot(const Stage *stage, KrsTrace way, int place)
 {
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1, .no_beams = true,
-                                .planes = KRS_PLANE_COLOR | KRS_PLANE_STEPS,
-                                .trace = way, .schedule = KRS_SCHEDULE_PIXEL};
-    KrsPicture *picture = stage_render(stage, &options);
+    KrsRenderOptions options = {.width    = WIDTH,
+                                .height   = HEIGHT,
+                                .samples  = 1,
+                                .no_beams = true,
+                                .planes   = KRS_PLANE_COLOR | KRS_PLANE_STEPS,
+                                .trace    = way,
+                                .schedule = KRS_SCHEDULE_PIXEL};
+    KrsPicture      *picture = stage_render(stage, &options);
     put(picture, place);
     tell(picture, way);
     krs_picture_free(picture);
@@ -99,8 +103,10 @@ int main(int count, char **arguments)
         snprintf(name, sizeof name, "%s", arguments[1]);
     else /* beside the table */
         snprintf(name, sizeof name, "%.*s.png", (int)(strlen(sheet.path) - 3), sheet.path);
-    sheet_print(&sheet, "| %dx%d | iterations of a pixel that has any | most | more than %d |\n"
-           "| --- | --- | --- | --- |\n", WIDTH, HEIGHT, BLACK);
+    sheet_print(&sheet,
+                "| %dx%d | iterations of a pixel that has any | most | more than %d |\n"
+                "| --- | --- | --- | --- |\n",
+                WIDTH, HEIGHT, BLACK);
     for (int i = 0; i < WAYS; i++)
         shoot(&stage, ways[i], i);
     sheet_print(&sheet, "\n![iterations](%s)\n", base_name(name));

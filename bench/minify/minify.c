@@ -51,7 +51,7 @@ static Sheet sheet;
 static char *text_of(const struct Flight *flight)
 {
     static char text[20000];
-    FILE  *file = fopen(flight->path, "rb");
+    FILE       *file = fopen(flight->path, "rb");
     if (!file)
         give_up(flight->path, "cannot read it");
     size_t length = fread(text, 1, sizeof text - 1000, file);
@@ -73,12 +73,15 @@ static Stage stage_of(KrsRenderer *renderer, const struct Flight *flight)
 
 static void shoot(const Stage *stage, int frame, uint32_t samples, bool plain, Shot *shot)
 {
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = samples,
-                                .planes = KRS_PLANE_COLOR, .no_filter = plain,
-                                .seed = samples > 16 ? 7 : 0};
+    KrsRenderOptions options = {.width     = WIDTH,
+                                .height    = HEIGHT,
+                                .samples   = samples,
+                                .planes    = KRS_PLANE_COLOR,
+                                .no_filter = plain,
+                                .seed      = samples > 16 ? 7 : 0};
     krs_frame_set_time(stage->frame, frame);
     KrsPicture *picture = stage_render(stage, &options);
-    shot->ms = 0;
+    shot->ms            = 0;
     for (int i = KRS_PHASE_NORMALS; i <= KRS_PHASE_SHADING; i++)
         shot->ms += picture->stats.phase_ms[i];
     for (int i = 0; i < PIXELS; i++) {
@@ -96,7 +99,7 @@ static void shoot(const Stage *stage, int frame, uint32_t samples, bool plain, S
 /* Root mean square over the pixels that show something in either. */
 static double error_of(const Shot *shot, const Shot *truth)
 {
-    double sum = 0;
+    double sum   = 0;
     size_t count = 0;
     for (int i = 0; i < PIXELS; i++) {
         if (shot->alpha[i] == 0 && truth->alpha[i] == 0)
@@ -117,10 +120,10 @@ static void cover(const Shot *shot, const Shot *truth, const Shot *sky, Shot *co
     for (int i = 0; i < PIXELS; i++) {
         double mapped[3], seen[3];
         for (int k = 0; k < 3; k++) {
-            double share = truth->alpha[i];
+            double share  = truth->alpha[i];
             double behind = (1 - share) * sky->linear[i][k];
-            double solid = share > 0 ? (truth->linear[i][k] - behind) / share : shot->linear[i][k];
-            seen[k] = shot->alpha[i] * solid + (1 - shot->alpha[i]) * sky->linear[i][k];
+            double solid  = share > 0 ? (truth->linear[i][k] - behind) / share : shot->linear[i][k];
+            seen[k]       = shot->alpha[i] * solid + (1 - shot->alpha[i]) * sky->linear[i][k];
         }
         tone_map_apply(TONE_NEUTRAL, seen, mapped);
         for (int k = 0; k < 3; k++)
@@ -130,7 +133,7 @@ static void cover(const Shot *shot, const Shot *truth, const Shot *sky, Shot *co
 
 static double change_of(const Shot *a, const Shot *b)
 {
-    double sum = 0;
+    double sum   = 0;
     size_t count = 0;
     for (int i = 0; i < PIXELS; i++) {
         if (a->alpha[i] == 0 && b->alpha[i] == 0)
@@ -161,12 +164,12 @@ static double mean_light(const Shot *shot)
 
 static void fly(KrsRenderer *renderer, const struct Flight *flight, uint32_t samples)
 {
-    static Shot truth[FRAMES], shots[WAYS][FRAMES], sky, covered;
-    Stage  stage = stage_of(renderer, flight);
+    static Shot   truth[FRAMES], shots[WAYS][FRAMES], sky, covered;
+    Stage         stage   = stage_of(renderer, flight);
     struct Flight nothing = *flight;
-    nothing.path = "bench/minify/nothing.krs";
-    Stage  empty = stage_of(renderer, &nothing);
-    double still = 0;
+    nothing.path          = "bench/minify/nothing.krs";
+    Stage  empty          = stage_of(renderer, &nothing);
+    double still          = 0;
     for (int f = 0; f < FRAMES; f++) {
         shoot(&stage, f, samples, true, &truth[f]);
         for (int w = 0; w < WAYS; w++)
@@ -199,11 +202,14 @@ enum { LARGE_WIDTH = 1280, LARGE_HEIGHT = 720, TURNS = 7 };
 
 static void time_once(const Stage *stage, bool plain, double *normals, double *all)
 {
-    KrsRenderOptions options = {.width = LARGE_WIDTH, .height = LARGE_HEIGHT, .samples = 1,
-                                .planes = KRS_PLANE_COLOR, .no_filter = plain};
-    KrsPicture *picture = stage_render(stage, &options);
-    *normals = picture->stats.phase_ms[KRS_PHASE_NORMALS];
-    *all = picture->stats.total_ms;
+    KrsRenderOptions options = {.width     = LARGE_WIDTH,
+                                .height    = LARGE_HEIGHT,
+                                .samples   = 1,
+                                .planes    = KRS_PLANE_COLOR,
+                                .no_filter = plain};
+    KrsPicture      *picture = stage_render(stage, &options);
+    *normals                 = picture->stats.phase_ms[KRS_PHASE_NORMALS];
+    *all                     = picture->stats.total_ms;
     krs_picture_free(picture);
 }
 
@@ -228,9 +234,12 @@ static void time_filter(KrsRenderer *renderer, const struct Flight *flight)
 
 static void widen(KrsRenderer *renderer, const struct Flight *flight)
 {
-    Stage            stage = stage_of(renderer, flight);
-    KrsRenderOptions options = {.width = FINE * WIDTH, .height = FINE * HEIGHT, .samples = 1,
-                                .planes = KRS_PLANE_COLOR, .no_filter = true};
+    Stage            stage   = stage_of(renderer, flight);
+    KrsRenderOptions options = {.width     = FINE * WIDTH,
+                                .height    = FINE * HEIGHT,
+                                .samples   = 1,
+                                .planes    = KRS_PLANE_COLOR,
+                                .no_filter = true};
     krs_frame_set_time(stage.frame, 0);
     KrsPicture *fine = stage_render(&stage, &options);
     pixel_filter_rows(&sheet, flight->name, fine);
@@ -251,17 +260,21 @@ int main(int count, char **arguments)
     KrsRenderer *renderer = device_open();
     sheet = sheet_open("minify", "What is finer than a pixel", "make minify", renderer, count > 1);
     if (samples > 0)
-        sheet_print(&sheet, "%dx%d, %d frames, against %u samples\n\n"
-               "| scene | samples | filtered | error | of coverage | flicker | alpha | light | ms"
-               " |\n"
-               "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
-               WIDTH, HEIGHT, FRAMES, samples);
+        sheet_print(
+            &sheet,
+            "%dx%d, %d frames, against %u samples\n\n"
+            "| scene | samples | filtered | error | of coverage | flicker | alpha | light | ms"
+            " |\n"
+            "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n",
+            WIDTH, HEIGHT, FRAMES, samples);
     for (int i = 0; i < FLIGHTS && samples > 0; i++)
         if (is_wanted(&flights[i], count, arguments))
             fly(renderer, &flights[i], samples);
-    sheet_print(&sheet, "\n%dx%d, one sample, medians of %d in turns, ms\n\n"
-           "| scene | normals | normals, filtered | total | total, filtered | times |\n"
-           "| --- | --- | --- | --- | --- | --- |\n", LARGE_WIDTH, LARGE_HEIGHT, TURNS);
+    sheet_print(&sheet,
+                "\n%dx%d, one sample, medians of %d in turns, ms\n\n"
+                "| scene | normals | normals, filtered | total | total, filtered | times |\n"
+                "| --- | --- | --- | --- | --- | --- |\n",
+                LARGE_WIDTH, LARGE_HEIGHT, TURNS);
     for (int i = 0; i < FLIGHTS; i++)
         if (is_wanted(&flights[i], count, arguments))
             time_filter(renderer, &flights[i]);

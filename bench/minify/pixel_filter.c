@@ -90,7 +90,7 @@ static Filtered filter_picture(const KrsPicture *fine, Filter filter, int step)
 /* Root mean square of what a screen shows, over the pixels that show something in either. */
 static double error_of(const Filtered *picture, const Filtered *truth)
 {
-    double sum = 0;
+    double sum   = 0;
     size_t count = 0;
     for (uint32_t i = 0; i < truth->width * truth->height; i++) {
         const double *found = picture->pixels[i], *right = truth->pixels[i];
@@ -108,9 +108,11 @@ static double error_of(const Filtered *picture, const Filtered *truth)
 
 void pixel_filter_titles(const Sheet *sheet)
 {
-    sheet_print(sheet, "\nErrors of few samples by the filter of pixels, each against what that"
-                       " filter makes of %d samples; `sharp`: against the box's\n\n"
-                       "| scene | samples | box |", FINE * FINE);
+    sheet_print(sheet,
+                "\nErrors of few samples by the filter of pixels, each against what that"
+                " filter makes of %d samples; `sharp`: against the box's\n\n"
+                "| scene | samples | box |",
+                FINE * FINE);
     for (int f = 1; f < FILTERS; f++)
         sheet_print(sheet, " Gaussian %g | box / it | sharp |", filters[f].sigma);
     sheet_print(sheet, "\n| --- | --- | --- |");
@@ -129,8 +131,8 @@ void pixel_filter_rows(const Sheet *sheet, const char *scene, const KrsPicture *
         sheet_print(sheet, "| %s | %d |", scene, side * side);
         for (int f = 0; f < FILTERS; f++) {
             Filtered picture = filter_picture(fine, filters[f], FINE / side);
-            double   error = error_of(&picture, &truths[f]);
-            box = f == 0 ? error : box;
+            double   error   = error_of(&picture, &truths[f]);
+            box              = f == 0 ? error : box;
             sheet_print(sheet, " %.2f |", error);
             if (f > 0)
                 sheet_print(sheet, " %.2f | %.2f |", box / error, error_of(&picture, &truths[0]));

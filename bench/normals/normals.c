@@ -26,8 +26,10 @@ static Sheet sheet;
 
 static KrsPicture *shoot(const Stage *stage, KrsNormals normals, double error, bool plain)
 {
-    return stage_render(stage, &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT,
-                                                   .error = error, .normals = normals,
+    return stage_render(stage, &(KrsRenderOptions){.width     = WIDTH,
+                                                   .height    = HEIGHT,
+                                                   .error     = error,
+                                                   .normals   = normals,
                                                    .no_filter = plain});
 }
 
@@ -65,12 +67,12 @@ static void bumpy_normal(const double p[3], double n[3])
 static void barth_normal(const double p[3], double n[3])
 {
     const double g = (1 + sqrt(5)) / 2, h = g * g;
-    double s[3] = {p[0] * p[0], p[1] * p[1], p[2] * p[2]};
-    double a = h * s[0] - s[1], b = h * s[1] - s[2], c = h * s[2] - s[0];
-    double ball = 4 * (1 + 2 * g) * (s[0] + s[1] + s[2] - 1);
-    n[0] = p[0] * (ball - 8 * (h * b * c - a * b));
-    n[1] = p[1] * (ball - 8 * (h * a * c - b * c));
-    n[2] = p[2] * (ball - 8 * (h * a * b - a * c));
+    double       s[3] = {p[0] * p[0], p[1] * p[1], p[2] * p[2]};
+    double       a = h * s[0] - s[1], b = h * s[1] - s[2], c = h * s[2] - s[0];
+    double       ball = 4 * (1 + 2 * g) * (s[0] + s[1] + s[2] - 1);
+    n[0]              = p[0] * (ball - 8 * (h * b * c - a * b));
+    n[1]              = p[1] * (ball - 8 * (h * a * c - b * c));
+    n[2]              = p[2] * (ball - 8 * (h * a * b - a * c));
 }
 
 static const struct Surface {
@@ -100,10 +102,10 @@ typedef struct Sight {
 static size_t choose_sights(const Stage *stage, const struct Surface *surface, Sight *sights)
 {
     KrsPicture *picture = shoot(stage, KRS_NORMALS_ANALYTIC, 0.01, true);
-    size_t      count = 0;
+    size_t      count   = 0;
     for (size_t k = 0; k < PIXELS && count < POINTS; k++) {
-        size_t       i = k * 100003 % PIXELS; /* a prime: every pixel once, far from the last */
-        const float *p = &picture->position[3 * i];
+        size_t       i   = k * 100003 % PIXELS; /* a prime: every pixel once, far from the last */
+        const float *p   = &picture->position[3 * i];
         double       out = sqrt((double)p[0] * p[0] + (double)p[1] * p[1] + (double)p[2] * p[2]);
         if (isinf(picture->depth[i]) || out > surface->radius)
             continue;
@@ -121,18 +123,18 @@ static size_t choose_sights(const Stage *stage, const struct Surface *surface, S
 static void find_normals(const Stage *stage, KrsNormals normals, float reach, const Sight *sights,
                          size_t count, double (*found)[3])
 {
-    Stencil stencil = find_stencil(normals);
-    float (*points)[3] = malloc(count * stencil.taps * sizeof *points);
-    float *distances   = malloc(count * stencil.taps * sizeof *distances);
+    Stencil stencil   = find_stencil(normals);
+    float(*points)[3] = malloc(count * stencil.taps * sizeof *points);
+    float *distances  = malloc(count * stencil.taps * sizeof *distances);
     for (size_t i = 0; i < count * stencil.taps; i++) {
         vec3         v = stencil.corner((uint)(i % stencil.taps));
         const float *p = sights[i / stencil.taps].point;
-        points[i][0] = p[0] + reach * v.x;
-        points[i][1] = p[1] + reach * v.y;
-        points[i][2] = p[2] + reach * v.z;
+        points[i][0]   = p[0] + reach * v.x;
+        points[i][1]   = p[1] + reach * v.y;
+        points[i][2]   = p[2] + reach * v.z;
     }
-    if (krs_sample(stage->rendering, stage->frame, (const float (*)[3])points,
-                   count * stencil.taps, distances, NULL) != KRS_OK)
+    if (krs_sample(stage->rendering, stage->frame, (const float(*)[3])points, count * stencil.taps,
+                   distances, NULL) != KRS_OK)
         give_up("cannot sample", krs_renderer_message(stage->renderer));
     for (size_t i = 0; i < count; i++) {
         float sum[3] = {0};
@@ -174,7 +176,7 @@ static Error error_of(Truth *truth, const Sight *sights, double (*found)[3], siz
 static void print_stencil(const Stage *stage, const struct Surface *surface, KrsNormals normals,
                           const Sight *sights, size_t count)
 {
-    double (*found)[3] = malloc(count * sizeof *found);
+    double(*found)[3] = malloc(count * sizeof *found);
     sheet_print(&sheet, "| %s | %u |", krs_normals_names[normals], find_stencil(normals).taps);
     double best = HUGE_VAL, at = 0;
     for (int i = 0; i < REACHES; i++) {
@@ -194,11 +196,13 @@ static void print_stencil(const Stage *stage, const struct Surface *surface, Krs
 static void print_angles(KrsRenderer *renderer, const struct Surface *surface)
 {
     static Sight sights[POINTS];
-    Stage  stage = stage_open(renderer, surface->name, surface->text, true);
-    size_t count = choose_sights(&stage, surface, sights);
-    sheet_print(&sheet, "\n%s, %zu points: median / largest angle in degrees, by the length of the"
-                        " steps\n\n"
-           "| normals | taps |", surface->name, count);
+    Stage        stage = stage_open(renderer, surface->name, surface->text, true);
+    size_t       count = choose_sights(&stage, surface, sights);
+    sheet_print(&sheet,
+                "\n%s, %zu points: median / largest angle in degrees, by the length of the"
+                " steps\n\n"
+                "| normals | taps |",
+                surface->name, count);
     for (int i = 0; i < REACHES; i++)
         sheet_print(&sheet, " %.0e |", reaches[i]);
     sheet_print(&sheet, " least median |\n| --- | --- |");
@@ -220,7 +224,7 @@ static void print_angles(KrsRenderer *renderer, const struct Surface *surface)
 static double difference(const KrsPicture *a, const KrsPicture *b)
 {
     double *angles = malloc(PIXELS * sizeof *angles), n[2][3];
-    size_t  count = 0;
+    size_t  count  = 0;
     for (size_t i = 0; i < PIXELS; i++) {
         if (isinf(a->depth[i]) || isinf(b->depth[i]))
             continue;
@@ -239,9 +243,9 @@ static void print_pictures(KrsRenderer *renderer, const char *name, const char *
                            const char *text)
 {
     static double ms[KRS_NORMALS_COUNT][TURNS], total[KRS_NORMALS_COUNT][TURNS];
-    Stage       stage = stage_open(renderer, path, text, true);
-    KrsPicture *truth = shoot(&stage, KRS_NORMALS_ANALYTIC, 0, true);
-    double      apart[KRS_NORMALS_COUNT];
+    Stage         stage = stage_open(renderer, path, text, true);
+    KrsPicture   *truth = shoot(&stage, KRS_NORMALS_ANALYTIC, 0, true);
+    double        apart[KRS_NORMALS_COUNT];
     for (KrsNormals normals = KRS_NORMALS_FORWARD; normals < KRS_NORMALS_COUNT; normals++) {
         KrsPicture *picture = shoot(&stage, normals, 0, true);
         apart[normals]      = difference(truth, picture);
@@ -256,7 +260,7 @@ static void print_pictures(KrsRenderer *renderer, const char *name, const char *
         }
     for (KrsNormals normals = KRS_NORMALS_FORWARD; normals < KRS_NORMALS_COUNT; normals++)
         sheet_print(&sheet, "| %s | %s | %.2f | %.1f | %.2g |\n", name, krs_normals_names[normals],
-               median(ms[normals], TURNS), median(total[normals], TURNS), apart[normals]);
+                    median(ms[normals], TURNS), median(total[normals], TURNS), apart[normals]);
     fflush(stdout);
     krs_picture_free(truth);
     stage_close(&stage);
@@ -268,12 +272,13 @@ int main(void)
     sheet = sheet_open("normals", "How normals are found", "make bench-normals", renderer, false);
     for (int i = 0; i < SURFACES; i++)
         print_angles(renderer, &surfaces[i]);
-    sheet_print(&sheet, "\nPictures of %dx%d, medians of %d in turns: milliseconds of the normals"
-                        " and of all, "
-           "and the median\nangle in degrees between these normals and those by derivatives, "
-           "without filtering\n\n"
-           "| scene | normals | ms | total ms | apart |\n| --- | --- | --- | --- | --- |\n",
-           WIDTH, HEIGHT, TURNS);
+    sheet_print(&sheet,
+                "\nPictures of %dx%d, medians of %d in turns: milliseconds of the normals"
+                " and of all, "
+                "and the median\nangle in degrees between these normals and those by derivatives, "
+                "without filtering\n\n"
+                "| scene | normals | ms | total ms | apart |\n| --- | --- | --- | --- | --- |\n",
+                WIDTH, HEIGHT, TURNS);
     for (int i = 0; i < SURFACES; i++)
         print_pictures(renderer, surfaces[i].name, surfaces[i].name, surfaces[i].text);
     print_pictures(renderer, "flange", "bench/scenes/csg.krs", NULL);

@@ -23,10 +23,10 @@ enum { MOST_STATISTICS = 64, MOST_BINDINGS = 64, SETS = 2 };
 static const struct {
     const char *column, *name;
 } columns[] = {
-    {"vector registers", "VGPRs"},     {"scalar registers", "SGPRs"},
+    {"vector registers", "VGPRs"},       {"scalar registers", "SGPRs"},
     {"spilled vector", "Spilled VGPRs"}, {"spilled scalar", "Spilled SGPRs"},
-    {"waves", "Subgroups per SIMD"},   {"scratch", "Scratch size"},
-    {"instructions", "Instructions"},  {"code bytes", "Code size"},
+    {"waves", "Subgroups per SIMD"},     {"scratch", "Scratch size"},
+    {"instructions", "Instructions"},    {"code bytes", "Code size"},
 };
 enum { COLUMNS = sizeof columns / sizeof columns[0] };
 
@@ -43,7 +43,7 @@ static void check(VkResult result, const char *what)
 static bool has_statistics(VkPhysicalDevice physical)
 {
     uint32_t               count = 0;
-    VkExtensionProperties *all = NULL;
+    VkExtensionProperties *all   = NULL;
     bool                   found = false;
     check(vkEnumerateDeviceExtensionProperties(physical, NULL, &count, NULL), "extensions");
     all = calloc(count + 1, sizeof *all);
@@ -60,8 +60,8 @@ static bool has_statistics(VkPhysicalDevice physical)
 static VkPhysicalDevice find_device(VkInstance instance, char *name)
 {
     VkPhysicalDevice devices[16];
-    uint32_t         count = 16;
-    const char      *asked = getenv("KRS_DEVICE");
+    uint32_t         count    = 16;
+    const char      *asked    = getenv("KRS_DEVICE");
     bool             is_asked = asked && *asked;
     check(vkEnumeratePhysicalDevices(instance, &count, devices), "list the devices");
     for (uint32_t i = 0; i < count; i++) {
@@ -79,24 +79,28 @@ static VkPhysicalDevice find_device(VkInstance instance, char *name)
 
 static VkDevice open_device(VkPhysicalDevice physical)
 {
-    VkDevice device;
+    VkDevice                                                device;
     VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR statistics = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR,
         .pipelineExecutableInfo = VK_TRUE,
     };
     const char *extension = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
-    check(vkCreateDevice(physical, &(VkDeviceCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-        .pNext = &statistics,
-        .queueCreateInfoCount = 1,
-        .pQueueCreateInfos = &(VkDeviceQueueCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-            .queueCount = 1,
-            .pQueuePriorities = &(float){1},
-        },
-        .enabledExtensionCount = 1,
-        .ppEnabledExtensionNames = &extension,
-    }, NULL, &device), "open the device");
+    check(vkCreateDevice(physical,
+                         &(VkDeviceCreateInfo){
+                             .sType                = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                             .pNext                = &statistics,
+                             .queueCreateInfoCount = 1,
+                             .pQueueCreateInfos =
+                                 &(VkDeviceQueueCreateInfo){
+                                     .sType            = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                     .queueCount       = 1,
+                                     .pQueuePriorities = &(float){1},
+                                 },
+                             .enabledExtensionCount   = 1,
+                             .ppEnabledExtensionNames = &extension,
+                         },
+                         NULL, &device),
+          "open the device");
     return device;
 }
 
@@ -109,9 +113,9 @@ typedef struct Module {
 
 static Module read_module(const char *path)
 {
-    FILE  *file = fopen(path, "rb");
+    FILE  *file   = fopen(path, "rb");
     Module module = {0};
-    long   bytes = 0;
+    long   bytes  = 0;
     if (file && fseek(file, 0, SEEK_END) == 0 && (bytes = ftell(file)) > 0) {
         rewind(file);
         module.words = malloc((size_t)bytes);
@@ -132,20 +136,24 @@ typedef struct IdInfo {
 
 static void read_instruction(const uint32_t *word, IdInfo *ids)
 {
-    enum { TYPE_IMAGE = 25, TYPE_SAMPLED_IMAGE = 27, TYPE_POINTER = 32, VARIABLE = 59,
-           DECORATE = 71, BUFFER_BLOCK = 3, BINDING = 33, DESCRIPTOR_SET = 34 };
+    enum {
+        TYPE_IMAGE         = 25,
+        TYPE_SAMPLED_IMAGE = 27,
+        TYPE_POINTER       = 32,
+        VARIABLE           = 59,
+        DECORATE           = 71,
+        BUFFER_BLOCK       = 3,
+        BINDING            = 33,
+        DESCRIPTOR_SET     = 34
+    };
     switch (*word & 0xffff) {
     case TYPE_IMAGE:
-    case TYPE_SAMPLED_IMAGE:
-        ids[word[1]].is_texels = true;
-        break;
+    case TYPE_SAMPLED_IMAGE: ids[word[1]].is_texels = true; break;
     case TYPE_POINTER:
         ids[word[1]].storage = word[2];
-        ids[word[1]].type = word[3];
+        ids[word[1]].type    = word[3];
         break;
-    case VARIABLE:
-        ids[word[2]].type = word[1];
-        break;
+    case VARIABLE: ids[word[2]].type = word[1]; break;
     case DECORATE:
         if (word[2] == BUFFER_BLOCK)
             ids[word[1]].is_old_buffer = true;
@@ -153,7 +161,7 @@ static void read_instruction(const uint32_t *word, IdInfo *ids)
             ids[word[1]].set = word[3];
         if (word[2] == BINDING) {
             ids[word[1]].binding = word[3];
-            ids[word[1]].bound = true;
+            ids[word[1]].bound   = true;
         }
         break;
     }
@@ -164,8 +172,9 @@ static VkDescriptorType kind_of(const IdInfo *ids, const IdInfo *variable)
     enum { UNIFORM = 2 };
     const IdInfo *pointer = &ids[variable->type], *type = &ids[pointer->type];
     return type->is_texels ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
-         : pointer->storage == UNIFORM && !type->is_old_buffer ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
-                                                               : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+           : pointer->storage == UNIFORM && !type->is_old_buffer
+               ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+               : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
 /* The layout that the module's own bindings ask for. */
@@ -183,25 +192,33 @@ static VkPipelineLayout make_layout(VkDevice device, const Module *module,
     for (uint32_t id = 0; id < bound; id++)
         if (ids[id].bound && ids[id].set < SETS && counts[ids[id].set] < MOST_BINDINGS)
             bindings[ids[id].set][counts[ids[id].set]++] = (VkDescriptorSetLayoutBinding){
-                .binding = ids[id].binding,
-                .descriptorType = kind_of(ids, &ids[id]),
+                .binding         = ids[id].binding,
+                .descriptorType  = kind_of(ids, &ids[id]),
                 .descriptorCount = 1,
-                .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
+                .stageFlags      = VK_SHADER_STAGE_COMPUTE_BIT,
             };
     free(ids);
     for (int i = 0; i < SETS; i++)
-        check(vkCreateDescriptorSetLayout(device, &(VkDescriptorSetLayoutCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-            .bindingCount = counts[i],
-            .pBindings = bindings[i],
-        }, NULL, &sets[i]), "a layout");
-    check(vkCreatePipelineLayout(device, &(VkPipelineLayoutCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-        .setLayoutCount = SETS,
-        .pSetLayouts = sets,
-        .pushConstantRangeCount = 1,
-        .pPushConstantRanges = &(VkPushConstantRange){VK_SHADER_STAGE_COMPUTE_BIT, 0, 128},
-    }, NULL, &layout), "a layout");
+        check(vkCreateDescriptorSetLayout(
+                  device,
+                  &(VkDescriptorSetLayoutCreateInfo){
+                      .sType        = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                      .bindingCount = counts[i],
+                      .pBindings    = bindings[i],
+                  },
+                  NULL, &sets[i]),
+              "a layout");
+    check(vkCreatePipelineLayout(device,
+                                 &(VkPipelineLayoutCreateInfo){
+                                     .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                     .setLayoutCount         = SETS,
+                                     .pSetLayouts            = sets,
+                                     .pushConstantRangeCount = 1,
+                                     .pPushConstantRanges    = &(
+                                         VkPushConstantRange){VK_SHADER_STAGE_COMPUTE_BIT, 0, 128},
+                                 },
+                                 NULL, &layout),
+          "a layout");
     return layout;
 }
 
@@ -220,15 +237,17 @@ static unsigned long long value_of(const VkPipelineExecutableStatisticKHR *stati
 
 static void print_statistics(VkDevice device, VkPipeline pipeline)
 {
-    static VkPipelineExecutableStatisticKHR statistics[MOST_STATISTICS];
-    uint32_t                                count = MOST_STATISTICS;
-    PFN_vkGetPipelineExecutableStatisticsKHR get = (PFN_vkGetPipelineExecutableStatisticsKHR)
+    static VkPipelineExecutableStatisticKHR  statistics[MOST_STATISTICS];
+    uint32_t                                 count = MOST_STATISTICS;
+    PFN_vkGetPipelineExecutableStatisticsKHR get   = (PFN_vkGetPipelineExecutableStatisticsKHR)
         vkGetDeviceProcAddr(device, "vkGetPipelineExecutableStatisticsKHR");
     for (uint32_t i = 0; i < MOST_STATISTICS; i++)
         statistics[i].sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR;
-    check(get(device, &(VkPipelineExecutableInfoKHR){
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR, .pipeline = pipeline},
-        &count, statistics), "statistics");
+    check(get(device,
+              &(VkPipelineExecutableInfoKHR){
+                  .sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR, .pipeline = pipeline},
+              &count, statistics),
+          "statistics");
     for (int column = 0; column < COLUMNS; column++) {
         bool found = false;
         for (uint32_t i = 0; i < count && !found; i++) {
@@ -247,7 +266,7 @@ static void print_statistics(VkDevice device, VkPipeline pipeline)
 /* "out/04-school.trace.spv" is kernel trace of scene 04-school. */
 static void print_names(const char *path)
 {
-    const char *scene = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+    const char *scene  = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
     int         length = (int)strcspn(scene, ".");
     const char *kernel = scene + length + (scene[length] == '.');
     printf("| %.*s | %.*s |", length, scene, (int)strcspn(kernel, "."), kernel);
@@ -260,18 +279,27 @@ static void print_row(VkDevice device, const char *path)
     VkPipelineLayout      layout = make_layout(device, &module, sets);
     VkShaderModule        shader;
     VkPipeline            pipeline;
-    check(vkCreateShaderModule(device, &(VkShaderModuleCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-        .codeSize = module.count * sizeof *module.words,
-        .pCode = module.words,
-    }, NULL, &shader), path);
-    check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &(VkComputePipelineCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .flags = VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT, .module = shader, .pName = "main"},
-        .layout = layout,
-    }, NULL, &pipeline), path);
+    check(vkCreateShaderModule(device,
+                               &(VkShaderModuleCreateInfo){
+                                   .sType    = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                   .codeSize = module.count * sizeof *module.words,
+                                   .pCode    = module.words,
+                               },
+                               NULL, &shader),
+          path);
+    check(vkCreateComputePipelines(
+              device, VK_NULL_HANDLE, 1,
+              &(VkComputePipelineCreateInfo){
+                  .sType  = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                  .flags  = VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR,
+                  .stage  = {.sType  = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                             .stage  = VK_SHADER_STAGE_COMPUTE_BIT,
+                             .module = shader,
+                             .pName  = "main"},
+                  .layout = layout,
+              },
+              NULL, &pipeline),
+          path);
     print_names(path);
     print_statistics(device, pipeline);
     putchar('\n');
@@ -289,13 +317,17 @@ int main(int argc, char **argv)
     VkInstance instance;
     char       name[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
     setenv("RADV_FORCE_FAMILY", card, 0);
-    check(vkCreateInstance(&(VkInstanceCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-        .pApplicationInfo = &(VkApplicationInfo){
-            .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_1},
-    }, NULL, &instance), "start Vulkan");
+    check(vkCreateInstance(
+              &(VkInstanceCreateInfo){
+                  .sType            = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                  .pApplicationInfo = &(
+                      VkApplicationInfo){.sType      = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                         .apiVersion = VK_API_VERSION_1_1},
+              },
+              NULL, &instance),
+          "start Vulkan");
     VkPhysicalDevice physical = find_device(instance, name);
-    VkDevice         device = open_device(physical);
+    VkDevice         device   = open_device(physical);
     printf("%s\n\n| scene | kernel |", name);
     for (int i = 0; i < COLUMNS; i++)
         printf(" %s |", columns[i].column);

@@ -17,8 +17,8 @@ typedef struct Memory {
     void *(*allocate)(void *user, size_t size); /* NULL means malloc */
     void (*release)(void *user, void *block);   /* NULL means free */
     void    *user;
-    size_t   used;  /* bytes now held */
-    size_t   limit; /* most bytes that may be held; 0 means no limit */
+    size_t   used;      /* bytes now held */
+    size_t   limit;     /* most bytes that may be held; 0 means no limit */
     jmp_buf *exhausted; /* where running out leads; must be set before the first allocation */
 } Memory;
 
@@ -50,11 +50,11 @@ void *arena_grow(Arena *arena, void *items, size_t count, size_t *capacity, size
 /* Growing arrays are structs with these three members, in the arena given at each push:
        typedef struct { Token *items; size_t count, capacity; } Tokens;
        array_push(arena, &tokens, token);                                                     */
-#define array_push(arena, array, item)                                                          \
-    ((array)->count == (array)->capacity                                                        \
-         ? (void)((array)->items = arena_grow((arena), (array)->items, (array)->count,          \
-                                              &(array)->capacity, sizeof *(array)->items))      \
-         : (void)0,                                                                             \
+#define array_push(arena, array, item)                                                     \
+    ((array)->count == (array)->capacity                                                   \
+         ? (void)((array)->items = arena_grow((arena), (array)->items, (array)->count,     \
+                                              &(array)->capacity, sizeof *(array)->items)) \
+         : (void)0,                                                                        \
      (void)((array)->items[(array)->count++] = (item)))
 
 #endif

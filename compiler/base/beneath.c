@@ -45,12 +45,12 @@ static bool simplify(const char *path, char simple[PATH_MAX])
 /* `name`, a single one, in a folder. */
 static int open_step(int folder, const char *name, bool last)
 {
-    int flags = last ? READ_FLAGS | O_NOFOLLOW : O_PATH | O_CLOEXEC | O_NOFOLLOW | O_DIRECTORY;
-    int fd    = openat(folder, name, flags);
+    int  flags = last ? READ_FLAGS | O_NOFOLLOW : O_PATH | O_CLOEXEC | O_NOFOLLOW | O_DIRECTORY;
+    int  fd    = openat(folder, name, flags);
     char link[1];
     if (fd < 0 && (errno == ELOOP || errno == ENOTDIR)) {
         int reason = errno;
-        errno = readlinkat(folder, name, link, sizeof link) >= 0 ? EXDEV : reason;
+        errno      = readlinkat(folder, name, link, sizeof link) >= 0 ? EXDEV : reason;
     }
     return fd;
 }
@@ -67,8 +67,8 @@ int open_beneath_by_steps(int root, const char *path)
         size_t length = strcspn(name, "/");
         bool   last   = name[length] == '\0';
         name[length]  = '\0';
-        int next = open_step(folder, length > 0 ? name : ".", last);
-        int reason = errno;
+        int next      = open_step(folder, length > 0 ? name : ".", last);
+        int reason    = errno;
         if (folder != root)
             close(folder);
         errno = reason;

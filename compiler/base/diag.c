@@ -10,7 +10,7 @@
 #define SEVERITY_WARNING DIAG_WARNING
 
 const DiagInfo diag_info[DIAG_CODE_COUNT] = {
-#define DIAG(code, severity, name, title, explanation)                                          \
+#define DIAG(code, severity, name, title, explanation) \
     [DIAG_##name] = {#code, SEVERITY_##severity, title, explanation},
 #include "compiler/base/diag.def"
 #undef DIAG

@@ -42,8 +42,14 @@ typedef struct Diag {
     const char *label;       /* stands after the ^^^^ marks; may be NULL */
     const char *help;        /* may be NULL */
     const char *replacement; /* text to put in place of `span`; may be NULL */
-    struct { DiagPlace *items; size_t count, capacity; } places;
-    struct { const char **items; size_t count, capacity; } notes;
+    struct {
+        DiagPlace *items;
+        size_t     count, capacity;
+    } places;
+    struct {
+        const char **items;
+        size_t       count, capacity;
+    } notes;
 } Diag;
 
 typedef struct Diags {
@@ -64,8 +70,8 @@ Diag *diag_add(Diags *diags, DiagCode code, Span span, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 /* Text formatted into the arena of the diagnostics, for labels and help. */
 const char *diag_text(Diags *diags, const char *format, ...) __attribute__((format(printf, 2, 3)));
-void diag_note(Diags *diags, Diag *diag, const char *note);
-void diag_place(Diags *diags, Diag *diag, Span span, const char *label);
+void        diag_note(Diags *diags, Diag *diag, const char *note);
+void        diag_place(Diags *diags, Diag *diag, Span span, const char *label);
 
 /* Whether further errors would not be shown, so that a stage may stop looking for them. */
 bool diags_full(const Diags *diags);

@@ -9,16 +9,21 @@
 
 #include <string.h>
 
-enum { TAB_COLUMNS = 4, LONG_LINE_BYTES = 120, WINDOW_BEFORE = 40, WINDOW_CHARACTERS = 100,
-       LONG_TEXT_BYTES = 400 };
+enum {
+    TAB_COLUMNS       = 4,
+    LONG_LINE_BYTES   = 120,
+    WINDOW_BEFORE     = 40,
+    WINDOW_CHARACTERS = 100,
+    LONG_TEXT_BYTES   = 400
+};
 
 /* A place to be marked, cut to its first line. */
 typedef struct Mark {
     Span        span;
     const char *label;
     bool        primary;
-    uint32_t    line;        /* from 0 */
-    uint32_t    start, end;  /* bytes of the line to mark */
+    uint32_t    line;       /* from 0 */
+    uint32_t    start, end; /* bytes of the line to mark */
     bool        drawn;
 } Mark;
 
@@ -27,7 +32,10 @@ typedef struct Picture {
     Text        *out;
     bool         color, error;
     int          gutter; /* columns of the largest line number */
-    struct { Mark *items; size_t count, capacity; } marks;
+    struct {
+        Mark  *items;
+        size_t count, capacity;
+    } marks;
 } Picture;
 
 /* ---- characters ---- */
@@ -61,10 +69,10 @@ static bool is_combining(uint32_t c)
 
 static bool is_wide(uint32_t c)
 {
-    static const CharacterRange ranges[] = {
-        {0x1100, 0x115F}, {0x2E80, 0x303E},   {0x3041, 0xA4CF},  {0xAC00, 0xD7A3}, {0xF900, 0xFAFF},
-        {0xFE30, 0xFE6F}, {0xFF00, 0xFF60},   {0xFFE0, 0xFFE6},
-        {0x1F300, 0x1FAFF}, {0x20000, 0x3FFFD}};
+    static const CharacterRange ranges[] = {{0x1100, 0x115F},  {0x2E80, 0x303E}, {0x3041, 0xA4CF},
+                                            {0xAC00, 0xD7A3},  {0xF900, 0xFAFF}, {0xFE30, 0xFE6F},
+                                            {0xFF00, 0xFF60},  {0xFFE0, 0xFFE6}, {0x1F300, 0x1FAFF},
+                                            {0x20000, 0x3FFFD}};
     return is_among(c, ranges, sizeof ranges / sizeof *ranges);
 }
 
@@ -73,17 +81,17 @@ static bool is_wide(uint32_t c)
 static uint32_t add_visible(Text *out, const char *bytes, size_t length)
 {
     static const char replacement[] = "\xEF\xBF\xBD";
-    uint32_t          columns = 0;
+    uint32_t          columns       = 0;
     for (size_t i = 0; i < length;) {
         uint32_t    c;
-        size_t      used   = text_character(bytes + i, length - i, &c);
-        const char *shown  = bytes + i;
+        size_t      used         = text_character(bytes + i, length - i, &c);
+        const char *shown        = bytes + i;
         size_t      shown_length = used;
-        char        picture[] = "\xE2\x90\x80"; /* U+2400, the first of the control pictures */
-        bool        ascii  = c < 0x80;
-        uint32_t    width  = !ascii && is_combining(c) ? 0 : !ascii && is_wide(c) ? 2 : 1;
+        char        picture[]    = "\xE2\x90\x80"; /* U+2400, the first of the control pictures */
+        bool        ascii        = c < 0x80;
+        uint32_t    width        = !ascii && is_combining(c) ? 0 : !ascii && is_wide(c) ? 2 : 1;
         if (c == '\t') {
-            shown = "    ";
+            shown        = "    ";
             shown_length = width = TAB_COLUMNS;
         } else if (c < 0x20 || c == 0x7F) {
             picture[2]   = (char)(0x80 + (c == 0x7F ? 0x21 : c));
@@ -155,9 +163,9 @@ static void add_mark(Picture *picture, Span span, const char *label, bool primar
     if (span.source == 0)
         return;
     const Source *source = source_of(picture, span);
-    uint32_t line = source_position(source, span.start).line - 1;
-    uint32_t end  = line_end(source, line);
-    Mark mark = {span, label, primary, line, span.start, span.end, false};
+    uint32_t      line   = source_position(source, span.start).line - 1;
+    uint32_t      end    = line_end(source, line);
+    Mark          mark   = {span, label, primary, line, span.start, span.end, false};
     if (mark.start > end)
         mark.start = end;
     if (mark.end > end)

@@ -95,7 +95,7 @@ static char *path_from_root(const Loader *loader, const char *path)
 {
     const char *folder = loader->scene;
     size_t      length = folder_length(folder), common = 0;
-    char       *whole  = NULL, *up;
+    char       *whole = NULL, *up;
     if (!loader->inside || (path[0] == '/') != (folder[0] == '/' && length > 0))
         return NULL;
     for (size_t i = 0; i < length && path[i] == folder[i]; i++)
@@ -146,8 +146,7 @@ Loaded loader_read_scene(const Loader *loader, const char *path)
     char *inside = NULL;
     if (!loader->confined)
         return read_file(path);
-    if (loader->inside &&
-        asprintf(&inside, "%s%s", loader->inside, path + folder_length(path)) < 0)
+    if (loader->inside && asprintf(&inside, "%s%s", loader->inside, path + folder_length(path)) < 0)
         inside = NULL;
     return read_confined(loader, inside);
 }

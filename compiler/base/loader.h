@@ -15,12 +15,12 @@ typedef struct Loader {
     void         *user;
     bool          confined; /* to the folder `root`; -1 where it could not be opened */
     int           root;
-    char         *scene;    /* the scene's path, simplified, as those of files it uses begin */
-    char         *inside;   /* its folder, as seen from the root; NULL: outside of it */
+    char         *scene;  /* the scene's path, simplified, as those of files it uses begin */
+    char         *inside; /* its folder, as seen from the root; NULL: outside of it */
 } Loader;
 
 typedef struct Loaded {
-    const char *text;    /* NULL: there is none, for that reason */
+    const char *text; /* NULL: there is none, for that reason */
     size_t      length;
     const char *reason;  /* static */
     bool        outside; /* of the root */
@@ -28,10 +28,10 @@ typedef struct Loaded {
 } Loaded;
 
 /* Takes "." and "name/.." out of a path, in place. */
-void   path_simplify(char *path);
+void path_simplify(char *path);
 /* `root` NULL: nothing is confined.  False: no memory. */
-bool   loader_open(Loader *loader, const char *root, const char *scene);
-void   loader_close(Loader *loader);
+bool loader_open(Loader *loader, const char *root, const char *scene);
+void loader_close(Loader *loader);
 /* The text of a file; the scene's own is read from disk, the others as the loader says. */
 Loaded loader_read(const Loader *loader, const char *path);
 Loaded loader_read_scene(const Loader *loader, const char *path);

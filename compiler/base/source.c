@@ -81,8 +81,8 @@ Position source_position(const Source *source, uint32_t offset)
         else
             high = middle;
     }
-    uint32_t column =
-        1 + characters_before(source, offset) - characters_before(source, source->lines[low]);
+    uint32_t column = 1 + characters_before(source, offset) -
+                      characters_before(source, source->lines[low]);
     /* A place in the middle of a character counts as its beginning. */
     if (offset < source->length && !begins_character(source->text[offset]) && column > 1)
         column--;
@@ -101,7 +101,7 @@ char *source_read(const char *path, size_t *length, const char **reason)
 {
     struct stat about;
     int         fd = open(path, O_RDONLY | O_CLOEXEC);
-    *reason = strerror(errno);
+    *reason        = strerror(errno);
     if (fd < 0)
         return NULL;
     if (fstat(fd, &about) == 0 && S_ISDIR(about.st_mode)) {
@@ -116,7 +116,7 @@ char *source_read_open(int fd, size_t *length, const char **reason)
 {
     FILE *file = fdopen(fd, "rb");
     char *text = NULL;
-    *reason = "there is not enough memory";
+    *reason    = "there is not enough memory";
     if (!file) {
         close(fd);
         return NULL;

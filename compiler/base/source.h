@@ -16,8 +16,8 @@ typedef struct Span {
 } Span;
 
 typedef struct Source {
-    const char *name;    /* as the user gave it; shown in diagnostics */
-    const char *text;    /* NUL-terminated; may hold NUL bytes before its end */
+    const char *name; /* as the user gave it; shown in diagnostics */
+    const char *text; /* NUL-terminated; may hold NUL bytes before its end */
     uint32_t    length;
     bool        library; /* part of the standard library */
     uint32_t   *lines;   /* offset of the first byte of each line */

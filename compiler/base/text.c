@@ -131,7 +131,7 @@ size_t text_character(const char *bytes, size_t length, uint32_t *character)
         return 0;
     }
     static const unsigned char first_bits[5] = {0, 0x7F, 0x1F, 0x0F, 0x07};
-    *character = s[0] & first_bits[used];
+    *character                               = s[0] & first_bits[used];
     for (size_t i = 1; i < used; i++)
         *character = *character << 6 | (s[i] & 0x3Fu);
     return used;
@@ -231,9 +231,9 @@ static size_t edit_distance(const char *a, size_t a_length, const char *b, size_
                 row[j] = least(row[j], before[j - 2] + 1);
         }
         size_t *oldest = before;
-        before = above;
-        above  = row;
-        row    = oldest;
+        before         = above;
+        above          = row;
+        row            = oldest;
     }
     return above[b_length];
 }

@@ -12,29 +12,35 @@
 #include <string.h>
 
 typedef struct Lexer {
-    const char    *text;
-    uint32_t       length, at;
-    uint32_t       source;
-    uint32_t       line_end; /* of the line that was last asked for; or 0 */
-    Names         *names;
-    Diags         *diags;
-    Arena         *arena;
-    Tokens         tokens;
-    Text           doc;     /* the `///` lines since the last token */
-    Text           scratch; /* of the number or string being read */
-    bool           begins[256]; /* find_beginnings */
+    const char *text;
+    uint32_t    length, at;
+    uint32_t    source;
+    uint32_t    line_end; /* of the line that was last asked for; or 0 */
+    Names      *names;
+    Diags      *diags;
+    Arena      *arena;
+    Tokens      tokens;
+    Text        doc;         /* the `///` lines since the last token */
+    Text        scratch;     /* of the number or string being read */
+    bool        begins[256]; /* find_beginnings */
 } Lexer;
 
 /* ---- rows of token.def ---- */
 
 typedef enum TokenClass {
-    SPECIAL, STATEMENT, CONTROL, OPERATOR_WORD, CONSTANT, PUNCTUATION, OPERATOR
+    SPECIAL,
+    STATEMENT,
+    CONTROL,
+    OPERATOR_WORD,
+    CONSTANT,
+    PUNCTUATION,
+    OPERATOR
 } TokenClass;
 
 typedef struct TokenRow {
     const char *spelling, *quoted;
     uint32_t    length;
-    TokenClass  class;
+    TokenClass class;
 } TokenRow;
 
 static const TokenRow rows[TOKEN_KIND_COUNT] = {
@@ -46,13 +52,13 @@ static const TokenRow rows[TOKEN_KIND_COUNT] = {
 const char *token_kind_text(TokenKind kind)
 {
     switch (kind) {
-    case TOKEN_END:    return "the end of the file";
-    case TOKEN_ERROR:  return "text that cannot be read";
+    case TOKEN_END: return "the end of the file";
+    case TOKEN_ERROR: return "text that cannot be read";
     case TOKEN_NUMBER: return "a number";
     case TOKEN_COLOUR: return "a colour";
     case TOKEN_STRING: return "a string";
-    case TOKEN_NAME:   return "a name";
-    default:           return rows[kind].quoted;
+    case TOKEN_NAME: return "a name";
+    default: return rows[kind].quoted;
     }
 }
 
@@ -319,7 +325,7 @@ static void lex_colour(Lexer *lexer)
     while (is_word(peek(lexer, 0)))
         lexer->at++;
     const char *digits = lexer->text + start + 1;
-    bool good = lexer->at - start == 7 && strspn(digits, "0123456789abcdefABCDEF") >= 6;
+    bool        good   = lexer->at - start == 7 && strspn(digits, "0123456789abcdefABCDEF") >= 6;
     if (!good)
         bad_number(lexer, start, "a colour has six hexadecimal digits", "for example `#c8553d`",
                    six_digits(lexer, start));
@@ -386,9 +392,9 @@ static void lex_string(Lexer *lexer, char quote)
     if (lexer->at < end) {
         lexer->at++;
         if (quote == '\'') {
-            Diag *diag = report(lexer, DIAG_UNEXPECTED_TOKEN, start,
-                                "a string in single quotes", NULL);
-            diag->help        = "strings have double quotes";
+            Diag *diag = report(lexer, DIAG_UNEXPECTED_TOKEN, start, "a string in single quotes",
+                                NULL);
+            diag->help = "strings have double quotes";
             diag->replacement = diag_text(lexer->diags, "\"%s\"", lexer->scratch.bytes);
         }
     } else {
@@ -398,9 +404,9 @@ static void lex_string(Lexer *lexer, char quote)
         add_token(lexer, TOKEN_ERROR, start); /* it has swallowed the rest of the statement */
         return;
     }
-    const Text *read = &lexer->scratch;
-    add_token(lexer, TOKEN_STRING, start)->name =
-        name_intern(lexer->names, read->bytes, read->length);
+    const Text *read                            = &lexer->scratch;
+    add_token(lexer, TOKEN_STRING, start)->name = name_intern(lexer->names, read->bytes,
+                                                              read->length);
 }
 
 /* ---- words and signs ---- */
@@ -435,11 +441,11 @@ static const Lookalike lookalikes[] = {
     {"<>", "!=", TOKEN_NOT_EQUAL},
     {"=>", ">=", TOKEN_GREATER_EQUAL},
     {"=<", "<=", TOKEN_LESS_EQUAL},
-    {"\xE2\x88\x92", "-", TOKEN_MINUS},         /* minus */
-    {"\xE2\x80\x93", "-", TOKEN_MINUS},         /* dash */
-    {"\xC3\x97", "*", TOKEN_STAR},              /* multiplication cross */
-    {"\xC2\xB7", "*", TOKEN_STAR},              /* multiplication point */
-    {"\xC3\xB7", "/", TOKEN_SLASH},             /* division */
+    {"\xE2\x88\x92", "-", TOKEN_MINUS}, /* minus */
+    {"\xE2\x80\x93", "-", TOKEN_MINUS}, /* dash */
+    {"\xC3\x97", "*", TOKEN_STAR},      /* multiplication cross */
+    {"\xC2\xB7", "*", TOKEN_STAR},      /* multiplication point */
+    {"\xC3\xB7", "/", TOKEN_SLASH},     /* division */
     {"\xE2\x89\xA4", "<=", TOKEN_LESS_EQUAL},
     {"\xE2\x89\xA5", ">=", TOKEN_GREATER_EQUAL},
     {"\xE2\x89\xA0", "!=", TOKEN_NOT_EQUAL},
@@ -447,11 +453,11 @@ static const Lookalike lookalikes[] = {
     {"\xC2\xB3", "^3", TOKEN_ERROR},
     {"\xC2\xB0", "deg", TOKEN_ERROR},
     {"\xCF\x80", "pi", TOKEN_ERROR},
-    {"\xE2\x80\x9C", "\"", TOKEN_ERROR},        /* quotes */
+    {"\xE2\x80\x9C", "\"", TOKEN_ERROR}, /* quotes */
     {"\xE2\x80\x9D", "\"", TOKEN_ERROR},
     {"\xE2\x80\x98", "\"", TOKEN_ERROR},
     {"\xE2\x80\x99", "\"", TOKEN_ERROR},
-    {"\xC2\xA0", " ", TOKEN_END},               /* no-break space */
+    {"\xC2\xA0", " ", TOKEN_END}, /* no-break space */
 };
 
 static bool lex_lookalike(Lexer *lexer)
@@ -529,7 +535,7 @@ static void lex_stray(Lexer *lexer)
         uint32_t    character;
         const char *here   = lexer->text + lexer->at;
         size_t      length = text_character(here, lexer->length - lexer->at, &character);
-        utf8 = utf8 && length > 0;
+        utf8               = utf8 && length > 0;
         lexer->at += length ? (uint32_t)length : 1;
     } while (lexer->at < lexer->length && !is_known_byte(lexer));
 
@@ -561,9 +567,14 @@ static void lex_token(Lexer *lexer)
 Tokens lex(uint32_t source, const Sources *sources, Names *names, Diags *diags, Arena *arena)
 {
     const Source *text  = &sources->items[source];
-    Lexer         lexer = {.text = text->text, .length = text->length, .source = source,
-                           .names = names, .diags = diags, .arena = arena,
-                           .doc = {.arena = arena}, .scratch = {.arena = arena}};
+    Lexer         lexer = {.text    = text->text,
+                           .length  = text->length,
+                           .source  = source,
+                           .names   = names,
+                           .diags   = diags,
+                           .arena   = arena,
+                           .doc     = {.arena = arena},
+                           .scratch = {.arena = arena}};
     if (is_next(&lexer, "\xEF\xBB\xBF")) /* a byte order mark */
         lexer.at = 3;
     find_beginnings(lexer.begins);

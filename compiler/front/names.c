@@ -12,7 +12,10 @@
 /* A top-level definition, a node of the graph of needs. */
 typedef struct Definition {
     const Syntax *syntax;
-    struct { struct Need *items; size_t count, capacity; } needs;
+    struct {
+        struct Need *items;
+        size_t       count, capacity;
+    } needs;
     const struct Definition *user; /* the last that noted its need of this one */
     /* for the search */
     uint32_t number, low; /* order of discovery from 1, and the least that can be reached */
@@ -52,7 +55,10 @@ typedef struct Checker {
     uint32_t    depth;
     Definition *current; /* NULL outside of top-level definitions */
     bool        blind;   /* names may be missing because of mistakes reported before */
-    struct { Definition **items; size_t count, capacity; } definitions;
+    struct {
+        Definition **items;
+        size_t       count, capacity;
+    } definitions;
 } Checker;
 
 /* ---- the table ---- */
@@ -100,7 +106,7 @@ static Slot *find_slot(Checker *c, const char *name)
 static void add_meaning(Checker *c, Slot *slot, Span span, Definition *definition)
 {
     Meaning *meaning = arena_new(c->arena, Meaning);
-    *meaning = (Meaning){slot, span, definition, c->depth, slot->meaning, c->newest};
+    *meaning         = (Meaning){slot, span, definition, c->depth, slot->meaning, c->newest};
     slot->meaning = c->newest = meaning;
 }
 
@@ -147,7 +153,10 @@ static void define_syntax(Checker *c, const Syntax *syntax)
 /* The nearest visible name; those of inner scopes come first. */
 static const char *suggest(Checker *c, const char *name)
 {
-    struct { const char **items; size_t count, capacity; } visible = {0};
+    struct {
+        const char **items;
+        size_t       count, capacity;
+    } visible = {0};
     for (const Meaning *meaning = c->newest; meaning; meaning = meaning->older)
         array_push(c->arena, &visible, meaning->slot->name);
     return nearest_name(name, visible.items, visible.count);
@@ -256,12 +265,12 @@ static void walk_block(Checker *c, const Syntax *syntax)
 static void walk(Checker *c, const Syntax *syntax)
 {
     switch (syntax->kind) {
-    case SYNTAX_NAME:          use_name(c, syntax); break;
+    case SYNTAX_NAME: use_name(c, syntax); break;
     case SYNTAX_COMPREHENSION: walk_comprehension(c, syntax); break;
     case SYNTAX_KRS:
-    case SYNTAX_BLOCK:         walk_block(c, syntax); break;
+    case SYNTAX_BLOCK: walk_block(c, syntax); break;
     case SYNTAX_DEF:
-    case SYNTAX_SHAPE:         walk_function(c, syntax); break;
+    case SYNTAX_SHAPE: walk_function(c, syntax); break;
     case SYNTAX_LET_IN:
     case SYNTAX_FOR:
         walk(c, syntax->children[0]);
@@ -270,7 +279,11 @@ static void walk(Checker *c, const Syntax *syntax)
         walk(c, syntax->children[1]);
         leave_scope(c);
         break;
-    case SYNTAX_MATERIAL: case SYNTAX_CAMERA: case SYNTAX_LIGHT: case SYNTAX_SKY: case SYNTAX_IMAGE:
+    case SYNTAX_MATERIAL:
+    case SYNTAX_CAMERA:
+    case SYNTAX_LIGHT:
+    case SYNTAX_SKY:
+    case SYNTAX_IMAGE:
     case SYNTAX_ZONE:
         walk_children(c, syntax);
         check_properties(c, syntax);
@@ -362,8 +375,14 @@ static void report_circle(Checker *c, Definition *start)
     const Definition *here = find_way(c, start, &need);
     if (!here)
         return;
-    struct { const Definition **items; size_t count, capacity; } way = {0};
-    struct { const Need **items; size_t count, capacity; } needs = {0};
+    struct {
+        const Definition **items;
+        size_t             count, capacity;
+    } way = {0};
+    struct {
+        const Need **items;
+        size_t       count, capacity;
+    } needs = {0};
     for (; here != start; need = here->found_by, here = here->found_from) {
         array_push(c->arena, &way, here);
         array_push(c->arena, &needs, need);
@@ -372,9 +391,9 @@ static void report_circle(Checker *c, Definition *start)
     array_push(c->arena, &needs, need);
 
     const char *name = start->syntax->name;
-    Diag *diag  = diag_add(c->diags, DIAG_CYCLE, start->syntax->name_span,
-                           "the value of `%s` depends on itself", name);
-    diag->label = "this definition needs its own value";
+    Diag       *diag = diag_add(c->diags, DIAG_CYCLE, start->syntax->name_span,
+                                "the value of `%s` depends on itself", name);
+    diag->label      = "this definition needs its own value";
     for (size_t i = way.count; i-- > 0;) {
         if (way.count - i > MOST_PLACES) {
             diag_note(c->diags, diag, diag_text(c->diags, "and %zu more", i + 1));
@@ -421,9 +440,9 @@ static bool is_incomplete(const Checker *c, const Syntax *file)
         if (file->children[i]->kind == SYNTAX_ERROR)
             return true;
     for (size_t i = 0; i < c->diags->count; i++) {
-        const Diag *diag = c->diags->items[i];
-        bool elsewhere   = diag->span.source != file->span.source;
-        bool grammar     = diag->code < DIAG_UNKNOWN_NAME;
+        const Diag *diag      = c->diags->items[i];
+        bool        elsewhere = diag->span.source != file->span.source;
+        bool        grammar   = diag->code < DIAG_UNKNOWN_NAME;
         if ((elsewhere && grammar) || diag->code == DIAG_CANNOT_READ || diag->code == DIAG_LIMIT ||
             diag->code == DIAG_CIRCULAR_USE)
             return true;
@@ -434,7 +453,7 @@ static bool is_incomplete(const Checker *c, const Syntax *file)
 void names_check(const Syntax *file, const NameScope *scope, Diags *diags, Arena *arena)
 {
     Checker checker = {.arena = arena, .diags = diags}, *c = &checker;
-    bool incomplete = is_incomplete(c, file);
+    bool    incomplete = is_incomplete(c, file);
     for (size_t i = scope->known_count; i-- > 0;) /* the first shall be the newest */
         add_meaning(c, find_slot(c, scope->known[i]), (Span){0}, NULL);
 

@@ -109,7 +109,8 @@ static bool accept_separator(Parser *p)
     Span end = {token_before(p)->span.source, token_before(p)->span.end, token_before(p)->span.end};
     if (kind_here(p) == TOKEN_SEMICOLON) {
         report_at(p, DIAG_UNEXPECTED_TOKEN, token_here(p)->span,
-                  "expected `,` or `}` after a property, found `;`")->replacement = ",";
+                  "expected `,` or `}` after a property, found `;`")
+            ->replacement = ",";
         advance(p);
         return true;
     }
@@ -141,8 +142,8 @@ static void parse_properties(Parser *p, const char *what, const char *example)
 static Syntax *parse_shape(Parser *p)
 {
     static const char example[] = "for example `shape ball(r = 1) { distance: length(p) - r }`";
-    Span   start = token_here(p)->span;
-    size_t first = begin_children(p);
+    Span              start     = token_here(p)->span;
+    size_t            first     = begin_children(p);
     advance(p);
     const Token *name = expect_name(p, "of a shape");
     parse_parameters(p, "`(` after the name of a shape", example);
@@ -214,10 +215,10 @@ static Syntax *parse_surroundings(Parser *p)
 {
     switch (kind_here(p)) {
     case TOKEN_CAMERA: return parse_camera(p);
-    case TOKEN_LIGHT:  return parse_light(p);
-    case TOKEN_SKY:    return parse_sky(p);
-    case TOKEN_ZONE:   return parse_zone(p);
-    default:           return parse_image(p);
+    case TOKEN_LIGHT: return parse_light(p);
+    case TOKEN_SKY: return parse_sky(p);
+    case TOKEN_ZONE: return parse_zone(p);
+    default: return parse_image(p);
     }
 }
 
@@ -283,8 +284,8 @@ typedef struct BlockRules {
 
 static Syntax *parse_braces(Parser *p, ParseFunction *statement, BlockKind kind)
 {
-    Span   start  = token_here(p)->span;
-    size_t first  = begin_children(p), opener = p->here.at;
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p), opener = p->here.at;
     enter(p);
     if (expect(p, TOKEN_LEFT_BRACE, "`{`", NULL))
         parse_statements(p, opener, statement, kind);
@@ -338,7 +339,8 @@ static Syntax *parse_block(Parser *p)
 }
 
 static const BlockRules scene_rules = {
-    parse_block, parse_if,
+    parse_block,
+    parse_if,
     "for example `for i in 0..5 { show sphere(0.3).move([i, 0, 0]); }`",
     "as a statement: `if n > 3 { show a; } else { show b; }`",
 };
@@ -353,17 +355,18 @@ static Syntax *parse_if(Parser *p) { return parse_choice(p, &scene_rules); }
 static Syntax *parse_block_statement(Parser *p)
 {
     switch (kind_here(p)) {
-    case TOKEN_LET:   return parse_let(p);
-    case TOKEN_DEF:   return parse_def(p);
+    case TOKEN_LET: return parse_let(p);
+    case TOKEN_DEF: return parse_def(p);
     case TOKEN_SHAPE: return parse_shape(p);
-    case TOKEN_CAMERA: case TOKEN_LIGHT: case TOKEN_SKY: case TOKEN_IMAGE: case TOKEN_ZONE:
-        return parse_surroundings(p);
+    case TOKEN_CAMERA:
+    case TOKEN_LIGHT:
+    case TOKEN_SKY:
+    case TOKEN_IMAGE:
+    case TOKEN_ZONE: return parse_surroundings(p);
     case TOKEN_SHOW: return parse_show(p);
-    case TOKEN_FOR:  return parse_for(p);
-    case TOKEN_IF:   return parse_if(p);
-    default:
-        expected(p, "`let`, `show`, `for`, `if` or `}` in a block");
-        return error_node(p);
+    case TOKEN_FOR: return parse_for(p);
+    case TOKEN_IF: return parse_if(p);
+    default: expected(p, "`let`, `show`, `for`, `if` or `}` in a block"); return error_node(p);
     }
 }
 
@@ -379,7 +382,8 @@ static Syntax *parse_krs_block(Parser *p)
 }
 
 static const BlockRules krs_rules = {
-    parse_krs_block, parse_krs_if,
+    parse_krs_block,
+    parse_krs_if,
     "for example `for i in 0..5 { reflect plane([1, 0, 0], i); }`",
     "as a statement: `if i > 3 { kernel a; } else { kernel b; }`",
 };
@@ -411,7 +415,7 @@ static Syntax *parse_krs_statement(Parser *p)
     switch (kind_here(p)) {
     case TOKEN_LET: return parse_let(p);
     case TOKEN_FOR: return parse_krs_for(p);
-    case TOKEN_IF:  return parse_krs_if(p);
+    case TOKEN_IF: return parse_krs_if(p);
     default: {
         Diag *diag = expected(p, "`kernel`, `reflect`, `mobius`, `let`, `for`, `if` or `}`");
         diag_note(p->diags, diag, "the statements of a `krs` block build one set, in order");
@@ -479,11 +483,11 @@ static Syntax *no_statement(Parser *p)
 static Syntax *parse_definition(Parser *p)
 {
     switch (kind_here(p)) {
-    case TOKEN_LET:   return parse_let(p);
-    case TOKEN_DEF:   return parse_def(p);
+    case TOKEN_LET: return parse_let(p);
+    case TOKEN_DEF: return parse_def(p);
     case TOKEN_PARAM: return parse_param(p);
     case TOKEN_SHAPE: return parse_shape(p);
-    default:          return parse_material(p);
+    default: return parse_material(p);
     }
 }
 
@@ -491,14 +495,20 @@ static Syntax *parse_definition(Parser *p)
 static Syntax *parse_statement(Parser *p)
 {
     switch (kind_here(p)) {
-    case TOKEN_LET: case TOKEN_DEF: case TOKEN_PARAM: case TOKEN_SHAPE: case TOKEN_MATERIAL:
-        return parse_definition(p);
-    case TOKEN_CAMERA: case TOKEN_LIGHT: case TOKEN_SKY: case TOKEN_IMAGE: case TOKEN_ZONE:
-        return parse_surroundings(p);
+    case TOKEN_LET:
+    case TOKEN_DEF:
+    case TOKEN_PARAM:
+    case TOKEN_SHAPE:
+    case TOKEN_MATERIAL: return parse_definition(p);
+    case TOKEN_CAMERA:
+    case TOKEN_LIGHT:
+    case TOKEN_SKY:
+    case TOKEN_IMAGE:
+    case TOKEN_ZONE: return parse_surroundings(p);
     case TOKEN_SHOW: return parse_show(p);
-    case TOKEN_USE:  return parse_use(p);
-    case TOKEN_FOR:  return parse_for(p);
-    case TOKEN_IF:   return parse_if(p);
+    case TOKEN_USE: return parse_use(p);
+    case TOKEN_FOR: return parse_for(p);
+    case TOKEN_IF: return parse_if(p);
     case TOKEN_RIGHT_BRACE: return stray_brace(p);
     case TOKEN_NAME:
         return kind_after(p) == TOKEN_ASSIGN ? parse_forgotten_let(p) : no_statement(p);

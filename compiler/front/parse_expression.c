@@ -12,9 +12,9 @@
 static Syntax *parse_let_in(Parser *p)
 {
     enter(p);
-    Span         start = token_here(p)->span;
-    size_t       first = begin_children(p);
-    const char  *example = "for example `let r = 2 in r * r`";
+    Span        start   = token_here(p)->span;
+    size_t      first   = begin_children(p);
+    const char *example = "for example `let r = 2 in r * r`";
     advance(p);
     const Token *name = expect_name(p, "of a `let`");
     expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` after the name of a `let`");
@@ -29,8 +29,8 @@ static Syntax *parse_let_in(Parser *p)
 static Syntax *parse_if_then_else(Parser *p)
 {
     enter(p);
-    Span        start = token_here(p)->span;
-    size_t      first = begin_children(p);
+    Span        start   = token_here(p)->span;
+    size_t      first   = begin_children(p);
     const char *example = "for example `if a < b then a else b`";
     advance(p);
     add_child(p, parse_expression(p));
@@ -69,7 +69,7 @@ static Syntax *parse_left(Parser *p, ParseFunction *operand, TokenKind a, TokenK
     while (kind_here(p) == a || kind_here(p) == b || kind_here(p) == c) {
         const Token *op    = advance(p);
         Syntax      *right = operand(p);
-        left = binary(p, op, left, right);
+        left               = binary(p, op, left, right);
     }
     return left;
 }
@@ -149,9 +149,12 @@ static Syntax *parse_range(Parser *p)
 static bool at_comparison(Parser *p)
 {
     switch (kind_here(p)) {
-    case TOKEN_EQUAL_EQUAL: case TOKEN_NOT_EQUAL: case TOKEN_LESS: case TOKEN_GREATER:
-    case TOKEN_LESS_EQUAL: case TOKEN_GREATER_EQUAL:
-        return true;
+    case TOKEN_EQUAL_EQUAL:
+    case TOKEN_NOT_EQUAL:
+    case TOKEN_LESS:
+    case TOKEN_GREATER:
+    case TOKEN_LESS_EQUAL:
+    case TOKEN_GREATER_EQUAL: return true;
     case TOKEN_ASSIGN: {
         Diag *diag        = report_at(p, DIAG_UNEXPECTED_TOKEN, token_here(p)->span,
                                       "`=` within an expression");
@@ -159,8 +162,7 @@ static bool at_comparison(Parser *p)
         diag->replacement = "==";
         return true;
     }
-    default:
-        return false;
+    default: return false;
     }
 }
 
@@ -209,8 +211,8 @@ Syntax *parse_expression(Parser *p)
 {
     switch (kind_here(p)) {
     case TOKEN_LET: return parse_let_in(p);
-    case TOKEN_IF:  return parse_if_then_else(p);
-    default:        return parse_or(p);
+    case TOKEN_IF: return parse_if_then_else(p);
+    default: return parse_or(p);
     }
 }
 
@@ -316,10 +318,10 @@ static Syntax *parse_postfix(Parser *p)
     Syntax *node = parse_primary(p);
     for (;;) {
         switch (kind_here(p)) {
-        case TOKEN_LEFT_PAREN:   node = parse_call(p, node); break;
-        case TOKEN_DOT:          node = parse_method(p, node); break;
+        case TOKEN_LEFT_PAREN: node = parse_call(p, node); break;
+        case TOKEN_DOT: node = parse_method(p, node); break;
         case TOKEN_LEFT_BRACKET: node = parse_index(p, node); break;
-        default:                 return node;
+        default: return node;
         }
     }
 }
@@ -365,8 +367,8 @@ static Syntax *parse_list(Parser *p)
 {
     Span        start = token_here(p)->span;
     size_t      first = begin_children(p), opener = p->here.at;
-    SyntaxKind  kind  = SYNTAX_LIST;
-    const char *what  = "`,` or `]` after an element of a list";
+    SyntaxKind  kind = SYNTAX_LIST;
+    const char *what = "`,` or `]` after an element of a list";
     enter(p);
     advance(p);
     while (!p->failed && kind_here(p) != TOKEN_RIGHT_BRACKET) {
@@ -416,9 +418,9 @@ static Syntax *parse_token(Parser *p, SyntaxKind kind)
 /* No expression begins here: the word on what was probably meant. */
 static Syntax *no_expression(Parser *p)
 {
-    TokenKind found    = kind_here(p);
-    bool      keyword  = token_is_statement_word(found) && !begins_declaration(p);
-    Diag     *diag     = expected(p, "an expression");
+    TokenKind found   = kind_here(p);
+    bool      keyword = token_is_statement_word(found) && !begins_declaration(p);
+    Diag     *diag    = expected(p, "an expression");
     if (found == TOKEN_IF || found == TOKEN_LET || found == TOKEN_NOT)
         diag->help = "put it in parentheses, as in `1 + (if a < b then a else b)`";
     else if (found == TOKEN_PLUS)
@@ -436,15 +438,15 @@ static Syntax *no_expression(Parser *p)
 static Syntax *parse_primary(Parser *p)
 {
     switch (kind_here(p)) {
-    case TOKEN_NUMBER:       return parse_token(p, SYNTAX_NUMBER);
-    case TOKEN_COLOUR:       return parse_token(p, SYNTAX_COLOUR);
-    case TOKEN_STRING:       return parse_token(p, SYNTAX_STRING);
+    case TOKEN_NUMBER: return parse_token(p, SYNTAX_NUMBER);
+    case TOKEN_COLOUR: return parse_token(p, SYNTAX_COLOUR);
+    case TOKEN_STRING: return parse_token(p, SYNTAX_STRING);
     case TOKEN_TRUE:
-    case TOKEN_FALSE:        return parse_token(p, SYNTAX_BOOLEAN);
-    case TOKEN_NAME:         return parse_token(p, SYNTAX_NAME);
+    case TOKEN_FALSE: return parse_token(p, SYNTAX_BOOLEAN);
+    case TOKEN_NAME: return parse_token(p, SYNTAX_NAME);
     case TOKEN_LEFT_BRACKET: return parse_list(p);
-    case TOKEN_KRS:          return parse_krs(p);
-    case TOKEN_LEFT_PAREN:   return parse_parentheses(p);
-    default:                 return no_expression(p);
+    case TOKEN_KRS: return parse_krs(p);
+    case TOKEN_LEFT_PAREN: return parse_parentheses(p);
+    default: return no_expression(p);
     }
 }

@@ -132,9 +132,9 @@ Diag *expected(Parser *p, const char *what)
     Diag        *diag  = &p->diags->scrap;
     if (!said) {
         const char *text = describe(p, found);
-        diag = report_at(p, DIAG_UNEXPECTED_TOKEN, span_here(p),
-                         diag_text(p->diags, "expected %s, found %s", what, text));
-        bool unit = found->kind == TOKEN_NAME && strcmp(found->name, "deg") == 0;
+        diag             = report_at(p, DIAG_UNEXPECTED_TOKEN, span_here(p),
+                                     diag_text(p->diags, "expected %s, found %s", what, text));
+        bool unit        = found->kind == TOKEN_NAME && strcmp(found->name, "deg") == 0;
         if (unit && p->here.at > 0 && token_before(p)->kind == TOKEN_NUMBER)
             diag->help = "`deg` touches its number: `30deg`";
     }
@@ -175,10 +175,10 @@ const Token *expect_label(Parser *p, const char *what)
 static void report_unclosed(Parser *p, TokenKind closer, size_t opener)
 {
     if (p->unclosed != p->here.at || p->here.at == 0) {
-        const Token *open = &p->tokens[opener];
+        const Token *open    = &p->tokens[opener];
         const char  *message = diag_text(p->diags, "%s is not closed", token_kind_text(open->kind));
-        Diag *diag  = report_at(p, DIAG_UNCLOSED, open->span, message);
-        diag->label = "opened here";
+        Diag        *diag    = report_at(p, DIAG_UNCLOSED, open->span, message);
+        diag->label          = "opened here";
         diag_place(p->diags, diag, span_here(p),
                    diag_text(p->diags, "%s is missing before this", token_kind_text(closer)));
     }
@@ -228,9 +228,9 @@ void expect_or_mend(Parser *p, TokenKind wanted, TokenKind written, const char *
     const Token *found = token_here(p);
     Diag        *diag;
     if (kind_here(p) == written) {
-        const char *text = token_kind_text(written);
-        diag = report_at(p, DIAG_UNEXPECTED_TOKEN, found->span,
-                         diag_text(p->diags, "expected %s, found %s", what, text));
+        const char *text  = token_kind_text(written);
+        diag              = report_at(p, DIAG_UNEXPECTED_TOKEN, found->span,
+                                      diag_text(p->diags, "expected %s, found %s", what, text));
         diag->replacement = wanted == TOKEN_COLON ? ":" : "=";
         diag->help        = wanted == TOKEN_COLON ? "`:` gives a property or an argument its value"
                                                   : "`=` defines a name";
@@ -257,8 +257,8 @@ bool block_is_left(const Parser *p, size_t opener, BlockKind kind)
 {
     if (p->failed || !begins_declaration(p))
         return false;
-    TokenKind here  = kind_here(p);
-    bool      fits  = here != TOKEN_PARAM && here != TOKEN_MATERIAL && here != TOKEN_USE;
+    TokenKind here = kind_here(p);
+    bool      fits = here != TOKEN_PARAM && here != TOKEN_MATERIAL && here != TOKEN_USE;
     return (kind == KRS_BLOCK || !fits) && !brace_is_closed(p, opener);
 }
 

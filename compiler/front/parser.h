@@ -31,9 +31,12 @@ typedef struct Parser {
     Level        here;
     bool         failed;
     bool         abandoned; /* nested too deeply: only the file goes on, no block within */
-    uint32_t     depth;    /* nesting now */
-    size_t       unclosed; /* the token at which something unclosed was last noticed */
-    struct { Syntax **items; size_t count, capacity; } pending; /* children of unfinished nodes */
+    uint32_t     depth;     /* nesting now */
+    size_t       unclosed;  /* the token at which something unclosed was last noticed */
+    struct {
+        Syntax **items;
+        size_t   count, capacity;
+    } pending; /* children of unfinished nodes */
 } Parser;
 
 typedef Syntax *ParseFunction(Parser *p);

@@ -6,46 +6,46 @@
 const char *syntax_kind_name(SyntaxKind kind)
 {
     static const char *const names[SYNTAX_KIND_COUNT] = {
-        [SYNTAX_ERROR] = "error",
-        [SYNTAX_NUMBER] = "number",
-        [SYNTAX_COLOUR] = "colour",
-        [SYNTAX_STRING] = "string",
-        [SYNTAX_BOOLEAN] = "boolean",
-        [SYNTAX_NAME] = "name",
-        [SYNTAX_LIST] = "list",
+        [SYNTAX_ERROR]         = "error",
+        [SYNTAX_NUMBER]        = "number",
+        [SYNTAX_COLOUR]        = "colour",
+        [SYNTAX_STRING]        = "string",
+        [SYNTAX_BOOLEAN]       = "boolean",
+        [SYNTAX_NAME]          = "name",
+        [SYNTAX_LIST]          = "list",
         [SYNTAX_COMPREHENSION] = "comprehension",
-        [SYNTAX_FOR_CLAUSE] = "for clause",
-        [SYNTAX_IF_CLAUSE] = "if clause",
-        [SYNTAX_RANGE] = "range",
-        [SYNTAX_UNARY] = "unary",
-        [SYNTAX_BINARY] = "binary",
-        [SYNTAX_IF] = "if then else",
-        [SYNTAX_LET_IN] = "let in",
-        [SYNTAX_CALL] = "call",
-        [SYNTAX_METHOD] = "method",
-        [SYNTAX_ARGUMENT] = "argument",
-        [SYNTAX_INDEX] = "index",
-        [SYNTAX_KRS] = "krs",
-        [SYNTAX_BLOCK] = "block",
-        [SYNTAX_LET] = "let",
-        [SYNTAX_DEF] = "def",
-        [SYNTAX_PARAMETER] = "parameter",
-        [SYNTAX_PARAM] = "param",
-        [SYNTAX_SHAPE] = "shape",
-        [SYNTAX_MATERIAL] = "material",
-        [SYNTAX_CAMERA] = "camera",
-        [SYNTAX_LIGHT] = "light",
-        [SYNTAX_SKY] = "sky",
-        [SYNTAX_IMAGE] = "image",
-        [SYNTAX_ZONE] = "zone",
-        [SYNTAX_PROPERTY] = "property",
-        [SYNTAX_SHOW] = "show",
-        [SYNTAX_USE] = "use",
-        [SYNTAX_FOR] = "for",
-        [SYNTAX_IF_STATEMENT] = "if",
-        [SYNTAX_KERNEL] = "kernel",
-        [SYNTAX_REFLECT] = "reflect",
-        [SYNTAX_MOBIUS] = "mobius",
+        [SYNTAX_FOR_CLAUSE]    = "for clause",
+        [SYNTAX_IF_CLAUSE]     = "if clause",
+        [SYNTAX_RANGE]         = "range",
+        [SYNTAX_UNARY]         = "unary",
+        [SYNTAX_BINARY]        = "binary",
+        [SYNTAX_IF]            = "if then else",
+        [SYNTAX_LET_IN]        = "let in",
+        [SYNTAX_CALL]          = "call",
+        [SYNTAX_METHOD]        = "method",
+        [SYNTAX_ARGUMENT]      = "argument",
+        [SYNTAX_INDEX]         = "index",
+        [SYNTAX_KRS]           = "krs",
+        [SYNTAX_BLOCK]         = "block",
+        [SYNTAX_LET]           = "let",
+        [SYNTAX_DEF]           = "def",
+        [SYNTAX_PARAMETER]     = "parameter",
+        [SYNTAX_PARAM]         = "param",
+        [SYNTAX_SHAPE]         = "shape",
+        [SYNTAX_MATERIAL]      = "material",
+        [SYNTAX_CAMERA]        = "camera",
+        [SYNTAX_LIGHT]         = "light",
+        [SYNTAX_SKY]           = "sky",
+        [SYNTAX_IMAGE]         = "image",
+        [SYNTAX_ZONE]          = "zone",
+        [SYNTAX_PROPERTY]      = "property",
+        [SYNTAX_SHOW]          = "show",
+        [SYNTAX_USE]           = "use",
+        [SYNTAX_FOR]           = "for",
+        [SYNTAX_IF_STATEMENT]  = "if",
+        [SYNTAX_KERNEL]        = "kernel",
+        [SYNTAX_REFLECT]       = "reflect",
+        [SYNTAX_MOBIUS]        = "mobius",
     };
     return names[kind];
 }
@@ -55,16 +55,16 @@ static void print_content(const Syntax *syntax, Text *out)
 {
     uint32_t numbers = 0;
     switch (syntax->kind) {
-    case SYNTAX_NUMBER:  numbers = 1; break;
-    case SYNTAX_COLOUR:  numbers = 3; break;
+    case SYNTAX_NUMBER: numbers = 1; break;
+    case SYNTAX_COLOUR: numbers = 3; break;
     case SYNTAX_BOOLEAN: text_add(out, syntax->number[0] != 0 ? " true" : " false"); break;
-    case SYNTAX_STRING: case SYNTAX_USE:
+    case SYNTAX_STRING:
+    case SYNTAX_USE:
         text_add(out, " ");
         text_json(out, syntax->name);
         return;
-    case SYNTAX_UNARY: case SYNTAX_BINARY:
-        text_format(out, " %s", token_kind_text(syntax->op));
-        break;
+    case SYNTAX_UNARY:
+    case SYNTAX_BINARY: text_format(out, " %s", token_kind_text(syntax->op)); break;
     default: break;
     }
     if (syntax->name)
@@ -94,11 +94,13 @@ void syntax_print(const Syntax *syntax, const Sources *sources, Text *out)
 bool syntax_defines(const Syntax *syntax)
 {
     switch (syntax->kind) {
-    case SYNTAX_LET: case SYNTAX_DEF: case SYNTAX_PARAM: case SYNTAX_SHAPE: case SYNTAX_MATERIAL:
-        return true;
-    case SYNTAX_CAMERA: case SYNTAX_LIGHT:
-        return syntax->name != NULL;
-    default:
-        return false;
+    case SYNTAX_LET:
+    case SYNTAX_DEF:
+    case SYNTAX_PARAM:
+    case SYNTAX_SHAPE:
+    case SYNTAX_MATERIAL: return true;
+    case SYNTAX_CAMERA:
+    case SYNTAX_LIGHT: return syntax->name != NULL;
+    default: return false;
     }
 }

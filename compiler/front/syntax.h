@@ -14,7 +14,7 @@
 
 /* kind            name             children, and what else is set */
 typedef enum SyntaxKind {
-    SYNTAX_ERROR,         /* -      none: something was wrong here and has been reported */
+    SYNTAX_ERROR, /* -      none: something was wrong here and has been reported */
     /* expressions */
     SYNTAX_NUMBER,        /* -      none; number[0] (degrees are already radians) */
     SYNTAX_COLOUR,        /* -      none; number[0..2], linear Rec.709 */
@@ -36,26 +36,26 @@ typedef enum SyntaxKind {
     SYNTAX_INDEX,         /* -      [0] list, [1] index */
     SYNTAX_KRS,           /* -      statements: KERNEL REFLECT MOBIUS LET FOR IF_STATEMENT */
     /* statements */
-    SYNTAX_BLOCK,         /* -      statements (of a `for` or `if`, and of the whole file) */
-    SYNTAX_LET,           /* name   [0] value */
-    SYNTAX_DEF,           /* name   [0..n-2] PARAMETER, [n-1] body; doc */
-    SYNTAX_PARAMETER,     /* name   [0] default, [1] range (any expression); no [1], or no child */
-    SYNTAX_PARAM,         /* name   [0] default, [1] range (any expression), or no [1] */
-    SYNTAX_SHAPE,         /* name   PARAMETER..., PROPERTY...; doc */
-    SYNTAX_MATERIAL,      /* name   PROPERTY... */
-    SYNTAX_CAMERA,        /* name?  PROPERTY... */
-    SYNTAX_LIGHT,         /* name?  PROPERTY... */
-    SYNTAX_SKY,           /* -      PROPERTY... */
-    SYNTAX_IMAGE,         /* -      PROPERTY... */
-    SYNTAX_ZONE,          /* -      PROPERTY... */
-    SYNTAX_PROPERTY,      /* name   [0] value */
-    SYNTAX_SHOW,          /* -      [0] value */
-    SYNTAX_USE,           /* path   none; the name is the path */
-    SYNTAX_FOR,           /* name   [0] the list, [1] BLOCK */
-    SYNTAX_IF_STATEMENT,  /* -      [0] condition, [1] BLOCK, [2] BLOCK, IF_STATEMENT, or none */
-    SYNTAX_KERNEL,        /* -      [0] shape */
-    SYNTAX_REFLECT,       /* -      [0] plane */
-    SYNTAX_MOBIUS,        /* -      [0] map */
+    SYNTAX_BLOCK,        /* -      statements (of a `for` or `if`, and of the whole file) */
+    SYNTAX_LET,          /* name   [0] value */
+    SYNTAX_DEF,          /* name   [0..n-2] PARAMETER, [n-1] body; doc */
+    SYNTAX_PARAMETER,    /* name   [0] default, [1] range (any expression); no [1], or no child */
+    SYNTAX_PARAM,        /* name   [0] default, [1] range (any expression), or no [1] */
+    SYNTAX_SHAPE,        /* name   PARAMETER..., PROPERTY...; doc */
+    SYNTAX_MATERIAL,     /* name   PROPERTY... */
+    SYNTAX_CAMERA,       /* name?  PROPERTY... */
+    SYNTAX_LIGHT,        /* name?  PROPERTY... */
+    SYNTAX_SKY,          /* -      PROPERTY... */
+    SYNTAX_IMAGE,        /* -      PROPERTY... */
+    SYNTAX_ZONE,         /* -      PROPERTY... */
+    SYNTAX_PROPERTY,     /* name   [0] value */
+    SYNTAX_SHOW,         /* -      [0] value */
+    SYNTAX_USE,          /* path   none; the name is the path */
+    SYNTAX_FOR,          /* name   [0] the list, [1] BLOCK */
+    SYNTAX_IF_STATEMENT, /* -      [0] condition, [1] BLOCK, [2] BLOCK, IF_STATEMENT, or none */
+    SYNTAX_KERNEL,       /* -      [0] shape */
+    SYNTAX_REFLECT,      /* -      [0] plane */
+    SYNTAX_MOBIUS,       /* -      [0] map */
     SYNTAX_KIND_COUNT
 } SyntaxKind;
 

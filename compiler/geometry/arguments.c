@@ -57,9 +57,9 @@ void type_error(Elaboration *e, const Syntax *syntax, Value found, const char *w
     if (found.type == VALUE_ERROR)
         return;
     const char *name = value_type_name(e, found);
-    Diag *diag =
-        diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span, "expected %s, found %s", wanted, name);
-    diag->label = diag_text(e->diags, "this is %s", name);
+    Diag       *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span, "expected %s, found %s",
+                                wanted, name);
+    diag->label      = diag_text(e->diags, "this is %s", name);
     point_at_definition(e, diag, syntax);
 }
 
@@ -80,8 +80,8 @@ void point_error(Elaboration *e, const Syntax *syntax, const char *what)
 
 void not_supported(Elaboration *e, Span span, const char *what)
 {
-    Diag *diag =
-        diag_add(e->diags, DIAG_NOT_SUPPORTED, span, "this version of krs does not have %s", what);
+    Diag *diag  = diag_add(e->diags, DIAG_NOT_SUPPORTED, span,
+                           "this version of krs does not have %s", what);
     diag->label = "not in this version";
 }
 
@@ -148,7 +148,7 @@ bool check_finite(Elaboration *e, Node node, const Syntax *syntax)
     }
     g->parameters.items[0].low[0]  = -LONGEST_SECONDS;
     g->parameters.items[0].high[0] = LONGEST_SECONDS;
-    bool finite = true;
+    bool finite                    = true;
     for (uint32_t k = 0; k < g->items[node].type; k++) {
         Range range = node_range(e, node, k);
         finite      = finite && isfinite(range.low) && isfinite(range.high);
@@ -203,8 +203,8 @@ bool check_direction(Elaboration *e, Node vector, const Syntax *syntax, const ch
         if (range.low != 0 || range.high != 0)
             return true;
     }
-    Diag *diag =
-        diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "%s cannot be the zero vector", what);
+    Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "%s cannot be the zero vector",
+                           what);
     diag->label = "no direction";
     return false;
 }
@@ -214,8 +214,8 @@ bool check_positive(Elaboration *e, Node number, const Syntax *syntax, const cha
     Range range = node_range(e, number, 0);
     if (range.low > 0)
         return true;
-    Diag *diag =
-        diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "%s must be greater than 0", what);
+    Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "%s must be greater than 0",
+                           what);
     diag->label = range.low == range.high ? diag_text(e->diags, "this is %g", range.low)
                                           : diag_text(e->diags, "this can be %g", range.low);
     if (range.low != range.high)
@@ -289,9 +289,9 @@ bool want_constant(Elaboration *e, const Call *call, uint32_t index, double *num
         return true;
     }
     if (argument->value.type == VALUE_EXPRESSION)
-        constant_error(e, argument->syntax,
-                       diag_text(e->diags, "`%s` needs a number that is known at compile time",
-                                 call->name));
+        constant_error(
+            e, argument->syntax,
+            diag_text(e->diags, "`%s` needs a number that is known at compile time", call->name));
     else
         type_error(e, argument->syntax, argument->value, "a number");
     return false;
@@ -372,8 +372,8 @@ static uint32_t split_parameters(const char *parameters, ParameterWord *words)
 {
     uint32_t count = 0;
     while (*parameters) {
-        size_t length = strcspn(parameters, " ");
-        ParameterWord word = {parameters, length, false, false};
+        size_t        length = strcspn(parameters, " ");
+        ParameterWord word   = {parameters, length, false, false};
         if (length > 3 && strncmp(parameters + length - 3, "...", 3) == 0) {
             word.variadic = true;
             word.length -= 3;
@@ -422,9 +422,9 @@ bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_s
 {
     ParameterWord words[MAX_PARAMETERS];
     uint32_t      count = split_parameters(parameters, words), next = 0;
-    bool          good  = true;
-    *call      = (Call){.syntax = call_syntax, .name = name};
-    call->rest = arena_new_array(e->arena, Argument, call_syntax->count + 1);
+    bool          good = true;
+    *call              = (Call){.syntax = call_syntax, .name = name};
+    call->rest         = arena_new_array(e->arena, Argument, call_syntax->count + 1);
     for (uint32_t i = first; i < call_syntax->count; i++) {
         const Syntax *argument = call_syntax->children[i];
         if (argument->kind != SYNTAX_ARGUMENT)
@@ -439,7 +439,7 @@ bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_s
             }
         } else if (next < count && words[next].variadic) {
             call->rest[call->rest_count++] = (Argument){value, argument->children[0]};
-            good = good && value.type != VALUE_ERROR;
+            good                           = good && value.type != VALUE_ERROR;
             continue;
         } else if (next++ >= count) {
             too_many_arguments(e, argument, name, count);

@@ -85,16 +85,16 @@ static bool is_declaration(Value function)
 const char *value_type_name(Elaboration *e, Value value)
 {
     switch (value.type) {
-    case VALUE_ERROR:    return "an error";
-    case VALUE_NUMBER:   return "a number";
-    case VALUE_BOOLEAN:  return "a truth value";
-    case VALUE_STRING:   return "a string";
+    case VALUE_ERROR: return "an error";
+    case VALUE_NUMBER: return "a number";
+    case VALUE_BOOLEAN: return "a truth value";
+    case VALUE_STRING: return "a string";
     case VALUE_FUNCTION: return is_declaration(value) ? "a shape declaration" : "a function";
-    case VALUE_SHAPE:    return "a shape";
-    case VALUE_MAP:      return "a map of space";
+    case VALUE_SHAPE: return "a shape";
+    case VALUE_MAP: return "a map of space";
     case VALUE_MATERIAL: return "a material";
     case VALUE_EXPRESSION:
-    case VALUE_LIST:     break;
+    case VALUE_LIST: break;
     }
     if (is_scalar(e, value))
         return "a number";
@@ -110,11 +110,11 @@ Node value_node(Elaboration *e, Value value)
 {
     Graph *g = e->graph;
     switch (value.type) {
-    case VALUE_NUMBER:     return graph_number(g, value.number);
-    case VALUE_BOOLEAN:    return graph_bool(g, value.boolean);
+    case VALUE_NUMBER: return graph_number(g, value.number);
+    case VALUE_BOOLEAN: return graph_bool(g, value.boolean);
     case VALUE_EXPRESSION: return value.node;
-    case VALUE_LIST:       break;
-    default:               return NODE_NONE;
+    case VALUE_LIST: break;
+    default: return NODE_NONE;
     }
     uint32_t length = vector_length(e, value);
     if (!length)
@@ -137,7 +137,7 @@ static Value not_finite(Elaboration *e, const Syntax *syntax, bool by_zero)
 {
     const char *what = by_zero ? "division by zero" : "the result is not a finite number";
     Diag       *diag = diag_add(e->diags, DIAG_NOT_A_NUMBER, syntax->span, "%s", what);
-    diag->label = "this has no finite value";
+    diag->label      = "this has no finite value";
     return value_error();
 }
 
@@ -186,13 +186,13 @@ Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count
 static bool fold_numbers(TokenKind op, double a, double b, double *result)
 {
     switch (op) {
-    case TOKEN_PLUS:    *result = a + b; break;
-    case TOKEN_MINUS:   *result = a - b; break;
-    case TOKEN_STAR:    *result = a * b; break;
-    case TOKEN_SLASH:   *result = a / b; break;
+    case TOKEN_PLUS: *result = a + b; break;
+    case TOKEN_MINUS: *result = a - b; break;
+    case TOKEN_STAR: *result = a * b; break;
+    case TOKEN_SLASH: *result = a / b; break;
     case TOKEN_PERCENT: *result = a - b * floor(a / b); break;
-    case TOKEN_CARET:   *result = pow(a, b); break;
-    default:            return false;
+    case TOKEN_CARET: *result = pow(a, b); break;
+    default: return false;
     }
     return true;
 }
@@ -218,7 +218,7 @@ static Value arithmetic(Elaboration *e, const Syntax *syntax, Value a, Value b)
         return value_error();
     }
     static const Op ops[TOKEN_KIND_COUNT] = {
-        [TOKEN_PLUS] = OP_add, [TOKEN_MINUS] = OP_sub, [TOKEN_STAR] = OP_mul,
+        [TOKEN_PLUS] = OP_add,  [TOKEN_MINUS] = OP_sub,   [TOKEN_STAR] = OP_mul,
         [TOKEN_SLASH] = OP_div, [TOKEN_PERCENT] = OP_mod, [TOKEN_CARET] = OP_pow};
     if (syntax->op == TOKEN_CARET && b.type == VALUE_NUMBER && a.type == VALUE_EXPRESSION) {
         e->graph->here = syntax->span;
@@ -253,14 +253,15 @@ static void place_types(Elaboration *e, Diag *diag, Syntax *const *pair, const c
 static Value mismatch(Elaboration *e, const Syntax *syntax, Value a, Value b)
 {
     static const char *const words[TOKEN_KIND_COUNT] = {
-        [TOKEN_PLUS] = "+", [TOKEN_MINUS] = "-", [TOKEN_STAR] = "*", [TOKEN_SLASH] = "/",
-        [TOKEN_PERCENT] = "%", [TOKEN_CARET] = "^", [TOKEN_AMPERSAND] = "&", [TOKEN_BAR] = "|",
-        [TOKEN_LESS] = "<", [TOKEN_LESS_EQUAL] = "<=", [TOKEN_GREATER] = ">",
-        [TOKEN_GREATER_EQUAL] = ">=", [TOKEN_EQUAL_EQUAL] = "==", [TOKEN_NOT_EQUAL] = "!=",
-        [TOKEN_AND] = "and", [TOKEN_OR] = "or"};
+        [TOKEN_PLUS] = "+",         [TOKEN_MINUS] = "-",      [TOKEN_STAR] = "*",
+        [TOKEN_SLASH] = "/",        [TOKEN_PERCENT] = "%",    [TOKEN_CARET] = "^",
+        [TOKEN_AMPERSAND] = "&",    [TOKEN_BAR] = "|",        [TOKEN_LESS] = "<",
+        [TOKEN_LESS_EQUAL] = "<=",  [TOKEN_GREATER] = ">",    [TOKEN_GREATER_EQUAL] = ">=",
+        [TOKEN_EQUAL_EQUAL] = "==", [TOKEN_NOT_EQUAL] = "!=", [TOKEN_AND] = "and",
+        [TOKEN_OR] = "or"};
     const char *left = value_type_name(e, a), *right = value_type_name(e, b);
-    Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->name_span,
-                          "`%s` does not go with %s and %s", words[syntax->op], left, right);
+    Diag       *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->name_span,
+                                "`%s` does not go with %s and %s", words[syntax->op], left, right);
     place_types(e, diag, syntax->children, left, right);
     point_at_definition(e, diag, syntax->children[0]);
     point_at_definition(e, diag, syntax->children[1]);
@@ -276,8 +277,9 @@ static Value mismatch(Elaboration *e, const Syntax *syntax, Value a, Value b)
 
 static Value join_shapes(Elaboration *e, const Syntax *syntax, const Shape *a, const Shape *b)
 {
-    ShapeKind kind = syntax->op == TOKEN_BAR ? SHAPE_UNION
-                     : syntax->op == TOKEN_AMPERSAND ? SHAPE_INTERSECTION : SHAPE_DIFFERENCE;
+    ShapeKind kind = syntax->op == TOKEN_BAR         ? SHAPE_UNION
+                     : syntax->op == TOKEN_AMPERSAND ? SHAPE_INTERSECTION
+                                                     : SHAPE_DIFFERENCE;
     if (a->figure != b->figure && a->kind != SHAPE_EMPTY && b->kind != SHAPE_EMPTY) {
         Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->name_span,
                               "a plane figure and a solid cannot be joined");
@@ -298,12 +300,12 @@ static Value compare(Elaboration *e, const Syntax *syntax, Value a, Value b)
     if (!is_scalar(e, a) || !is_scalar(e, b))
         return mismatch(e, syntax, a, b);
     static const Op ops[TOKEN_KIND_COUNT] = {
-        [TOKEN_LESS] = OP_less, [TOKEN_LESS_EQUAL] = OP_less_equal,
-        [TOKEN_GREATER] = OP_less, [TOKEN_GREATER_EQUAL] = OP_less_equal,
+        [TOKEN_LESS] = OP_less,         [TOKEN_LESS_EQUAL] = OP_less_equal,
+        [TOKEN_GREATER] = OP_less,      [TOKEN_GREATER_EQUAL] = OP_less_equal,
         [TOKEN_EQUAL_EQUAL] = OP_equal, [TOKEN_NOT_EQUAL] = OP_not_equal};
-    bool  swap  = syntax->op == TOKEN_GREATER || syntax->op == TOKEN_GREATER_EQUAL;
-    Node  left  = value_node(e, swap ? b : a);
-    Node  right = value_node(e, swap ? a : b);
+    bool swap      = syntax->op == TOKEN_GREATER || syntax->op == TOKEN_GREATER_EQUAL;
+    Node left      = value_node(e, swap ? b : a);
+    Node right     = value_node(e, swap ? a : b);
     e->graph->here = syntax->span;
     return value_of_node(e, graph_op2(e->graph, ops[syntax->op], left, right));
 }
@@ -341,8 +343,12 @@ Value value_binary(Elaboration *e, const Syntax *syntax, Value a, Value b)
             return value_of_node(e, graph_op2(e->graph, op, left, right));
         }
         break;
-    case TOKEN_PLUS: case TOKEN_MINUS: case TOKEN_STAR:
-    case TOKEN_SLASH: case TOKEN_PERCENT: case TOKEN_CARET:
+    case TOKEN_PLUS:
+    case TOKEN_MINUS:
+    case TOKEN_STAR:
+    case TOKEN_SLASH:
+    case TOKEN_PERCENT:
+    case TOKEN_CARET:
         if (is_numeric(e, a) && is_numeric(e, b))
             return arithmetic(e, syntax, a, b);
         if (syntax->op == TOKEN_MINUS && a.type == VALUE_SHAPE && b.type == VALUE_SHAPE)
@@ -350,8 +356,7 @@ Value value_binary(Elaboration *e, const Syntax *syntax, Value a, Value b)
         if (syntax->op == TOKEN_STAR && a.type == VALUE_MAP && b.type == VALUE_MAP)
             return multiply_maps(e, syntax, a.map, b.map);
         break;
-    default:
-        return compare(e, syntax, a, b);
+    default: return compare(e, syntax, a, b);
     }
     return mismatch(e, syntax, a, b);
 }
@@ -379,7 +384,7 @@ Value value_select(Elaboration *e, const Syntax *syntax, Value condition, Value 
         return value_error();
     Node a = value_node(e, yes), b = value_node(e, no);
     if (a == NODE_NONE || b == NODE_NONE) {
-        const char *other = value_type_name(e, a == NODE_NONE ? yes : no);
+        const char *other   = value_type_name(e, a == NODE_NONE ? yes : no);
         const char *message = diag_text(
             e->diags, "the condition must be known at compile time to choose %s", other);
         constant_error(e, syntax->children[0], message);
@@ -387,8 +392,8 @@ Value value_select(Elaboration *e, const Syntax *syntax, Value condition, Value 
     }
     if (e->graph->items[a].type != e->graph->items[b].type) {
         const char *left = value_type_name(e, yes), *right = value_type_name(e, no);
-        Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span,
-                              "the branches of `if` have different types: %s and %s", left, right);
+        Diag       *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span,
+                                    "the branches of `if` have different types: %s and %s", left, right);
         place_types(e, diag, syntax->children + 1, left, right);
         return value_error();
     }

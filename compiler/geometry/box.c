@@ -180,11 +180,11 @@ static Box clip_to_half_space(Box box, const Range u[3], Range w)
             if (j != i)
                 rest = range_sub(rest, range_mul(u[j], box.axis[j]));
         if (u[i].low > 1e-12)
-            box.axis[i].high =
-                fmin(box.axis[i].high, fmax(rest.high / u[i].low, rest.high / u[i].high));
+            box.axis[i].high = fmin(box.axis[i].high,
+                                    fmax(rest.high / u[i].low, rest.high / u[i].high));
         if (u[i].high < -1e-12)
-            box.axis[i].low =
-                fmax(box.axis[i].low, fmin(rest.high / u[i].low, rest.high / u[i].high));
+            box.axis[i].low = fmax(box.axis[i].low,
+                                   fmin(rest.high / u[i].low, rest.high / u[i].high));
         if (box.axis[i].low > box.axis[i].high)
             return box_empty;
     }

@@ -13,13 +13,13 @@ bool box_is_finite(Box box);
 Box  box_hull(Box a, Box b);
 Box  box_common(Box a, Box b);
 /* Larger by `by` on every side. */
-Box  box_grow(Box box, double by);
-Box  box_move(Box box, const Range by[3]);
+Box box_grow(Box box, double by);
+Box box_move(Box box, const Range by[3]);
 /* The box around a box after a linear map with these rows, each entry a range. */
-Box  box_turn(Box box, Range rows[3][3]);
+Box    box_turn(Box box, Range rows[3][3]);
 double box_diagonal(Box box);
 /* Of a finite box. */
-void   box_centre(Box box, double centre[3]);
+void box_centre(Box box, double centre[3]);
 /* How far the side `content` of a box stays from the walls of a cell that is centred at 0;
    < 0: it sticks out. */
 double cell_margin(Range content, double period);
@@ -37,6 +37,6 @@ Ball ball_hull(Ball a, Ball b);
    balls"), for a unit vector and an offset that may move in their ranges. */
 Ball ball_fold(Ball ball, const Range u[3], Range w);
 /* The box around the same set; ranges for mirrors that move. */
-Box  box_fold(Box box, const Range u[3], Range w);
+Box box_fold(Box box, const Range u[3], Range w);
 
 #endif

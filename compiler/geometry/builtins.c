@@ -70,10 +70,7 @@ static Value builtin_rotate(Elaboration *e, Call *call)
     return value_map(want_rotation(e, call));
 }
 
-static Value builtin_scale(Elaboration *e, Call *call)
-{
-    return value_map(want_scaling(e, call));
-}
+static Value builtin_scale(Elaboration *e, Call *call) { return value_map(want_scaling(e, call)); }
 
 static Value builtin_reflect(Elaboration *e, Call *call)
 {
@@ -89,8 +86,8 @@ static Value builtin_invert(Elaboration *e, Call *call)
     Node center = want_vector(e, call, 0, ORIGIN), radius = want_number(e, call, 1, 1);
     if (center == NODE_NONE || radius == NODE_NONE)
         return value_error();
-    if (is_given(call, 1) && !check_positive(e, radius, call->arguments[1].syntax,
-                                             "the radius of an inversion"))
+    if (is_given(call, 1) &&
+        !check_positive(e, radius, call->arguments[1].syntax, "the radius of an inversion"))
         return value_error();
     return value_map(map_inversion(e, center, radius));
 }
@@ -126,7 +123,7 @@ static Value builtin_matrix(Elaboration *e, Call *call)
     for (uint32_t i = 0; i < 4; i++)
         if (!quaternion_argument(e, call, i, entries[i]))
             return value_error();
-    const Map *map = map_of_matrix(e, (const double (*)[4])entries, &reason);
+    const Map *map = map_of_matrix(e, (const double(*)[4])entries, &reason);
     if (map)
         return value_map(map);
     Diag *diag  = diag_add(e->diags, DIAG_NOT_A_MAP, call->syntax->span,
@@ -178,7 +175,7 @@ static Value builtin_not_supported(Elaboration *e, Call *call)
 
 static const Builtin builtins[] = {
 #define NUMERIC(name, parameters, op, meaning) {#name, parameters, OP_##op, NULL},
-#define SPECIAL(name, parameters, function, meaning)                                               \
+#define SPECIAL(name, parameters, function, meaning) \
     {#name, parameters, OP_COUNT, builtin_##function},
 #include "compiler/geometry/functions.def"
 #undef NUMERIC
@@ -195,8 +192,8 @@ const Builtin *builtin_find(const char *name)
 }
 
 static const char *const constants[] = {
-    "pi", "tau", "x", "y", "z", "p", "time", "level", "instance", "u", "v", "normal", "identity",
-    "orbit_trap", "orbit_step", "rounding"};
+    "pi",       "tau", "x", "y",      "z",        "p",          "time",       "level",
+    "instance", "u",   "v", "normal", "identity", "orbit_trap", "orbit_step", "rounding"};
 enum { CONSTANT_COUNT = sizeof constants / sizeof *constants };
 
 size_t builtin_names(const char **names, size_t capacity)
@@ -239,8 +236,8 @@ static Value rounding_name(Elaboration *e, Span span)
 {
     if (e->rounding != NODE_NONE)
         return value_of_node(e, e->rounding);
-    Diag *diag =
-        diag_add(e->diags, DIAG_OUT_OF_PLACE, span, "`rounding` has a meaning in `core:` only");
+    Diag *diag  = diag_add(e->diags, DIAG_OUT_OF_PLACE, span,
+                           "`rounding` has a meaning in `core:` only");
     diag->label = "not in the core of a shape declaration";
     return value_error();
 }

@@ -34,8 +34,7 @@ static double unit_random(double seed, uint64_t stream)
 Value builtin_random(Elaboration *e, Call *call)
 {
     double seed = 0;
-    return want_constant(e, call, 0, &seed) ? value_number(unit_random(seed, 0))
-                                                : value_error();
+    return want_constant(e, call, 0, &seed) ? value_number(unit_random(seed, 0)) : value_error();
 }
 
 /* Marsaglia (1972): a point of the unit disc gives a point of the sphere by products and roots
@@ -100,7 +99,7 @@ static Node octave_start(Graph *g, GraphType type, uint32_t octave)
 
 Value builtin_fbm(Elaboration *e, Call *call)
 {
-    Graph   *g = e->graph;
+    Graph   *g     = e->graph;
     Node     place = noise_place(e, call);
     Node     gain = want_number(e, call, 2, 0.5), lacunarity = want_number(e, call, 3, 2);
     uint32_t octaves;

@@ -28,8 +28,8 @@ static const Shape *declared_in(const Shape *shape)
 static void add_claim(ShapeClaims *claims, const Shape *shape, const char *property,
                       const char *wrong, Node a, Node b)
 {
-    const Shape *declared = declared_in(shape);
-    Span         span     = find_property(declared->declaration, property)->span;
+    const Shape *declared          = declared_in(shape);
+    Span         span              = find_property(declared->declaration, property)->span;
     claims->items[claims->count++] = (ShapeClaim){property, wrong, a, b, declared, span};
 }
 
@@ -37,8 +37,8 @@ static void add_claim(ShapeClaims *claims, const Shape *shape, const char *prope
 static void claim_flat(Graph *g, ShapeClaims *claims, const Shape *shape, Node number,
                        const char *wrong, Arena *scratch)
 {
-    Node zero  = graph_number(g, 0), point = graph_leaf(g, OP_POINT);
-    Node x     = graph_component(g, point, 0), y = graph_component(g, point, 1);
+    Node zero = graph_number(g, 0), point = graph_leaf(g, OP_POINT);
+    Node x = graph_component(g, point, 0), y = graph_component(g, point, 1);
     Node flat  = graph_op3(g, OP_vec3, x, y, zero);
     Node other = graph_substitute(g, number, substitute_point(flat), scratch);
     if (other == number)
@@ -54,8 +54,8 @@ static void claim_figure(Graph *g, ShapeClaims *claims, const Shape *shape, Aren
     if (shape->bound != NODE_NONE)
         claim_flat(g, claims, shape, shape->bound, "its `bound` changes with z", scratch);
     for (uint32_t i = 0; i < 2 && shape->uv != NODE_NONE; i++)
-        claim_flat(g, claims, shape, graph_component(g, shape->uv, i),
-                   "its `uv` changes with z", scratch);
+        claim_flat(g, claims, shape, graph_component(g, shape->uv, i), "its `uv` changes with z",
+                   scratch);
 }
 
 static void claim_plane(Graph *g, ShapeClaims *claims, const Shape *shape)
@@ -65,15 +65,16 @@ static void claim_plane(Graph *g, ShapeClaims *claims, const Shape *shape)
     Node height = graph_op2(g, OP_dot, shape->plane_normal, point);
     height      = graph_op2(g, OP_sub, height, shape->plane_offset);
     height      = graph_op2(g, OP_div, height, size);
-    Node depth  = graph_op1(g, OP_neg, height), inside = graph_op1(g, OP_neg, shape->distance);
+    Node depth = graph_op1(g, OP_neg, height), inside = graph_op1(g, OP_neg, shape->distance);
     add_claim(claims, shape, "plane", "it is solid outside of the half-space", height, inside);
-    add_claim(claims, shape, "plane", "it is empty inside of the half-space", depth, shape->distance);
+    add_claim(claims, shape, "plane", "it is empty inside of the half-space", depth,
+              shape->distance);
 }
 
 /* The distance of a shape where an offset is above it. */
 static Node offset_distance(Graph *g, const Shape *shape, Arena *scratch)
 {
-    Lowering l = {.graph = g, .scratch = scratch, .most = g->count + MOST_LOWERED};
+    Lowering l   = {.graph = g, .scratch = scratch, .most = g->count + MOST_LOWERED};
     Lowered  all = lower_shape(&l, shape, place_bare(graph_leaf(g, OP_POINT), true));
     return l.overflow || all.distance == NODE_NONE ? NODE_NONE
                                                    : divide_by_slope(g, all.distance, shape->slope);
@@ -90,9 +91,10 @@ static void claim_core(Graph *g, ShapeClaims *claims, const Shape *shape, const 
         return;
     Node grown = graph_op2(g, OP_sub, rounding, inner);
     Node deep  = graph_op1(g, OP_neg, graph_op2(g, OP_add, outer, rounding));
-    add_claim(claims, shape, "core", "grown by `rounding` it is outside of the shape", grown, outer);
-    add_claim(claims, shape, "core", "it leaves out what is deeper in the shape than `rounding`", deep,
-              inner);
+    add_claim(claims, shape, "core", "grown by `rounding` it is outside of the shape", grown,
+              outer);
+    add_claim(claims, shape, "core", "it leaves out what is deeper in the shape than `rounding`",
+              deep, inner);
 }
 
 ShapeClaims claims_of(Graph *graph, const Shape *shape, Arena *scratch)
@@ -108,7 +110,8 @@ ShapeClaims claims_of(Graph *graph, const Shape *shape, Arena *scratch)
         claim_plane(graph, &claims, shape);
     if (shape->bound != NODE_NONE) {
         Node inside = graph_op1(graph, OP_neg, shape->distance);
-        add_claim(&claims, shape, "bound", "it is above 0 inside of the shape", shape->bound, inside);
+        add_claim(&claims, shape, "bound", "it is above 0 inside of the shape", shape->bound,
+                  inside);
     }
     return claims;
 }
@@ -148,9 +151,9 @@ static void parameter_values(const Elaboration *e, NodeValue *values)
 static bool start_sampling(Elaboration *e, Sampling *s, const Node *roots, size_t count, Box box)
 {
     NodeValue *parameters = arena_new_array(e->scratch, NodeValue, e->graph->parameters.count);
-    s->tape   = tape_new(e->graph, roots, count, e->scratch);
-    s->values = arena_new_array(e->scratch, NodeValue, e->graph->count);
-    s->flat   = false;
+    s->tape               = tape_new(e->graph, roots, count, e->scratch);
+    s->values             = arena_new_array(e->scratch, NodeValue, e->graph->count);
+    s->flat               = false;
     parameter_values(e, parameters);
     tape_run_frame(&s->tape, parameters, s->values);
     s->around   = box_is_finite(box) ? box_grow(box, 0.3 * box_diagonal(box) + 0.1)
@@ -177,8 +180,9 @@ static void refuse_claim(Elaboration *e, const Syntax *declaration, const char *
     diag_note(e->diags, diag,
               diag_text(e->diags, "%s at [%.4g, %.4g, %.4g]", found, point[0], point[1], point[2]));
     if (strcmp(claim, "exact") == 0)
-        diag->help = "leave `exact` out: the compiler then derives a safe slope; where it is a bound "
-                     "that rises no faster than the distance, claim `slope: 1`";
+        diag->help =
+            "leave `exact` out: the compiler then derives a safe slope; where it is a bound "
+            "that rises no faster than the distance, claim `slope: 1`";
 }
 
 /* ---- slope and box ---- */
@@ -214,8 +218,8 @@ static bool check_slope_and_box(Elaboration *e, const Shape *shape, double slope
         sample_at(&s, b);
         double at_b = s.values[distance].v[0];
         if (slope > 0 && !(fabs(at_a - at_b) <= slope * sqrt(moved) * (1 + 1e-6) + s.rounding)) {
-            const char *found =
-                diag_text(e->diags, "its slope is %.4g", fabs(at_a - at_b) / sqrt(moved));
+            const char *found = diag_text(e->diags, "its slope is %.4g",
+                                          fabs(at_a - at_b) / sqrt(moved));
             refuse_claim(e, shape->declaration, shape->exact ? "exact" : "slope", found, a);
             return false;
         }
@@ -271,8 +275,10 @@ static bool check_exact(Elaboration *e, const Shape *shape)
         double rest = s.values[distance].v[0];
         if (rest <= 1e-4 * way + 1e-5 * s.size)
             continue;
-        const char *found = diag_text(e->diags, "the surface is not %.4g away, as it says, but "
-                                      "farther,", way);
+        const char *found = diag_text(e->diags,
+                                      "the surface is not %.4g away, as it says, but "
+                                      "farther,",
+                                      way);
         refuse_claim(e, shape->declaration, "exact", found, point);
         return false;
     }
@@ -340,7 +346,7 @@ static bool check_pairs(Elaboration *e, const Shape *shape, const ShapeClaims *c
         return true;
     for (uint32_t k = 0; k < claims->count; k++) {
         const ShapeClaim *claim = &claims->items[k];
-        s.flat = shape->figure && strcmp(claim->property, "figure") != 0;
+        s.flat                  = shape->figure && strcmp(claim->property, "figure") != 0;
         for (uint32_t i = 0; i < SAMPLES; i++) {
             double before[3], point[3];
             sample_point(i, s.around, before);
@@ -385,7 +391,7 @@ static double way_to(const Surfaces *surfaces, const double p[3])
     double least = HUGE_VAL;
     for (uint32_t i = 0; i < surfaces->count; i++) {
         const double *at = surfaces->points[i];
-        least = fmin(least, hypot(hypot(at[0] - p[0], at[1] - p[1]), at[2] - p[2]));
+        least            = fmin(least, hypot(hypot(at[0] - p[0], at[1] - p[1]), at[2] - p[2]));
     }
     return least;
 }

@@ -10,11 +10,11 @@
 #include "compiler/geometry/shape.h"
 
 typedef struct ShapeClaim {
-    const char *property; /* of the declaration */
-    const char *wrong;    /* what is so at a point where both numbers are above 0 */
-    Node        a, b;
-    const Shape *shape;   /* of the declaration */
-    Span         span;    /* of the property's value */
+    const char  *property; /* of the declaration */
+    const char  *wrong;    /* what is so at a point where both numbers are above 0 */
+    Node         a, b;
+    const Shape *shape; /* of the declaration */
+    Span         span;  /* of the property's value */
 } ShapeClaim;
 
 enum { MOST_SHAPE_CLAIMS = 8 };

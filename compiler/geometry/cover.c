@@ -38,10 +38,10 @@ static double middle_of(const Range range[3], double centre[3])
 /* The part about a centre in its ranges. */
 static CoverPart part_about(const Range centre[3], double radius, bool outside)
 {
-    CoverPart part  = {.outside = outside};
-    double    leave = middle_of(centre, part.ball.centre);
+    CoverPart part   = {.outside = outside};
+    double    leave  = middle_of(centre, part.ball.centre);
     part.ball.radius = outside ? radius * (1 - ROUNDING) - leave : radius * (1 + ROUNDING) + leave;
-    bool finite = part.ball.radius >= 0 && part.ball.radius <= FARTHEST &&
+    bool finite      = part.ball.radius >= 0 && part.ball.radius <= FARTHEST &&
                   dot(part.ball.centre, part.ball.centre) <= FARTHEST * FARTHEST;
     return finite ? part : everything;
 }
@@ -97,7 +97,7 @@ Box cover_box(const Cover *cover)
 static CoverPart invert(CoverPart part, Range s)
 {
     const double *c = part.ball.centre;
-    double r = part.ball.radius, square = dot(c, c), d = square - r * r;
+    double        r = part.ball.radius, square = dot(c, c), d = square - r * r;
     if (!(fabs(d) > ON_SURFACE * (square + r * r)))
         return everything;
     Range centre[3];
@@ -167,7 +167,7 @@ static Cluster cluster_of(const Cover *cover, size_t from, size_t to)
     box_centre(box, cluster.ball.centre);
     for (size_t i = from; i < to; i++) {
         const Ball *ball = &cover->items[i].ball;
-        double way[3];
+        double      way[3];
         for (int k = 0; k < 3; k++)
             way[k] = ball->centre[k] - cluster.ball.centre[k];
         cluster.ball.radius = fmax(cluster.ball.radius, sqrt(dot(way, way)) + ball->radius);
@@ -240,8 +240,8 @@ static void rise(Cluster *heap, size_t count, Cluster cluster)
 static void merge_balls(Arena *arena, Cover *cover, size_t from)
 {
     size_t   count = 1, most = MOST_PARTS - from;
-    Cluster *heap  = arena_new_array(arena, Cluster, most);
-    heap[0]        = cluster_of(cover, from, cover->count);
+    Cluster *heap = arena_new_array(arena, Cluster, most);
+    heap[0]       = cluster_of(cover, from, cover->count);
     while (count < most && size_of(&heap[0]) >= 0) {
         Cluster whole = heap[0];
         size_t  cut   = part_cluster(cover, &whole);

@@ -12,8 +12,8 @@
 
 #include "compiler/geometry/lower.h"
 
-static const char *const property_names[] = {
-    "distance", "bound", "exact", "slope", "within", "uv", "plane", "figure", "core", "example"};
+static const char *const property_names[] = {"distance", "bound", "exact",  "slope", "within",
+                                             "uv",       "plane", "figure", "core",  "example"};
 enum { PROPERTY_COUNT = sizeof property_names / sizeof *property_names };
 
 static bool check_properties(Elaboration *e, const Syntax *declaration)
@@ -126,8 +126,7 @@ static void warn_if_empty(Elaboration *e, const Shape *shape)
         flat = flat || !(shape->box.axis[i].low < shape->box.axis[i].high);
     if (!flat || e->sources->items[shape->span.source].library)
         return;
-    Diag *diag =
-        diag_add(e->diags, DIAG_NO_EFFECT, shape->span, "this `%s` is empty", shape->name);
+    Diag *diag = diag_add(e->diags, DIAG_NO_EFFECT, shape->span, "this `%s` is empty", shape->name);
     diag->label = "a size is 0 or less";
 }
 
@@ -137,12 +136,12 @@ static void report_steep(Elaboration *e, const Syntax *declaration, const Syntax
                          Span blame)
 {
     Span  span  = blame.source ? blame : distance->span;
-    Diag *diag =
-        diag_add(e->diags, DIAG_STEEP, span, "the slope of `%s` has no bound", declaration->name);
+    Diag *diag  = diag_add(e->diags, DIAG_STEEP, span, "the slope of `%s` has no bound",
+                           declaration->name);
     diag->label = "this can change arbitrarily fast";
     diag_place(e->diags, diag, distance->span, "the distance is this expression");
-    diag->help  = "give the shape a bounded `within`, or keep this part away from divisions by "
-                  "zero and jumps";
+    diag->help = "give the shape a bounded `within`, or keep this part away from divisions by "
+                 "zero and jumps";
 }
 
 /* The slope is derived over all space; where that has no bound, over `within`, and the distance
@@ -264,8 +263,8 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
     if (first && !check_properties(e, declaration))
         return value_error();
 
-    Shape *shape  = shape_new(e, SHAPE_PRIMITIVE, function->name, span, NULL, 0);
-    Span   caller = e->graph->here;
+    Shape *shape       = shape_new(e, SHAPE_PRIMITIVE, function->name, span, NULL, 0);
+    Span   caller      = e->graph->here;
     shape->declaration = declaration;
     if (!read_properties(e, env, declaration, shape) ||
         !settle_slope(e, env, declaration, first, shape))

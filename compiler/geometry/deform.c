@@ -44,7 +44,7 @@ static bool check_deformable(Elaboration *e, const Shape *shape, const Call *cal
 static Node want_axis(Elaboration *e, const Call *call)
 {
     static const double UP[3] = {0, 1, 0};
-    Node axis = want_vector(e, call, 0, UP);
+    Node                axis  = want_vector(e, call, 0, UP);
     if (axis == NODE_NONE ||
         !check_direction(e, axis, call->arguments[0].syntax, "the axis of a deformation"))
         return NODE_NONE;
@@ -117,12 +117,12 @@ static Box twist_box(Box box, Range rate)
 {
     double radius = box_radius(box);
     Range  across = {-radius, radius};
-    Box    whole  = {{across, box.axis[1], across}}, hull = box_empty;
+    Box    whole = {{across, box.axis[1], across}}, hull = box_empty;
     for (int i = 0; i < CELLS; i++) {
         Range angle = range_mul(rate, range_cell(box.axis[1], i));
         Range c = range_cos(angle), s = range_sin(angle), one = range_of(1), zero = range_of(0);
         Range rows[3][3] = {{c, zero, s}, {zero, one, zero}, {range_neg(s), zero, c}};
-        hull = box_hull(hull, box_turn(box, rows));
+        hull             = box_hull(hull, box_turn(box, rows));
     }
     return box_common(whole, hull);
 }
@@ -164,7 +164,7 @@ static Range range_sinc(Range a)
 static Box bend_box(Box box, Range rate)
 {
     Range z = box.axis[2], half = range_of(0.5);
-    Box   bent = box_empty;
+    Box   bent  = box_empty;
     int   parts = range_is_single(rate) ? 1 : CELLS;
     for (int i = 0; i < parts * CELLS; i++) {
         Range k = parts == 1 ? rate : range_cell(rate, i / CELLS);
@@ -172,9 +172,9 @@ static Box bend_box(Box box, Range rate)
         Range lean = range_mul(half, angle), sinc = range_sinc(lean);
         Range along = range_mul(y, range_sinc(angle)); /* of the line z = 0 */
         Range aside = range_mul(range_mul(y, lean), range_square(sinc));
-        Box   cell = {{box.axis[0], range_sub(along, range_mul(z, range_sin(angle))),
-                       range_add(aside, range_mul(z, range_cos(angle)))}};
-        bent = box_hull(bent, cell);
+        Box   cell  = {{box.axis[0], range_sub(along, range_mul(z, range_sin(angle))),
+                        range_add(aside, range_mul(z, range_cos(angle)))}};
+        bent        = box_hull(bent, cell);
     }
     return bent;
 }
@@ -201,7 +201,7 @@ static bool check_bend(Elaboration *e, const Call *call, Box box, Range rate)
     double high = z.high > 0 ? (1 - LEAST_LENGTH) / z.high : INFINITY;
     double low  = z.low < 0 ? (1 - LEAST_LENGTH) / z.low : -INFINITY;
     Diag  *diag = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[1].syntax->span,
-                           reaches ? "so bent, the shape would reach the axis of the bend"
+                          reaches ? "so bent, the shape would reach the axis of the bend"
                                    : "so bent, the shape would turn around more than %d times",
                            MOST_BEND_PARTS / 4);
     diag->label = range_is_single(rate) ? diag_text(e->diags, "this is %g", rate.low)
@@ -224,8 +224,8 @@ static const Shape *make_bend(Elaboration *e, const Shape *shape, const Call *ca
     bent->cells[0]  = bend_parts(shape->box, rate);
     bent->box       = bend_box(shape->box, rate);
     /* Parts overlap by the depth of the solid, so that they have no walls between them. */
-    double depth    = 0.5 * (shape->box.axis[2].high - shape->box.axis[2].low);
-    bent->overlap   = fmin(depth, 0.6 / fmax(range_largest(rate), 1e-9));
+    double depth  = 0.5 * (shape->box.axis[2].high - shape->box.axis[2].low);
+    bent->overlap = fmin(depth, 0.6 / fmax(range_largest(rate), 1e-9));
     return bent;
 }
 
@@ -237,15 +237,15 @@ static const Map *bend_turn(Elaboration *e, Node axis)
     Node   x = graph_vec3(g, 1, 0, 0), y = graph_vec3(g, 0, 1, 0);
     if (axis == x)
         return NULL;
-    Map *turn   = map_new(e);
-    Node unit   = graph_op1(g, OP_normalize, axis);
-    Node height = graph_component(g, unit, 1);
-    Node steep  = graph_op1(g, OP_abs, height);
-    Node upright = graph_op2(g, OP_less, graph_number(g, 0.999), steep);
-    Node stands = graph_op3(g, OP_select, upright, x, y);
-    Node along  = graph_op2(g, OP_dot, stands, unit);
-    Node part   = graph_op2(g, OP_scale, unit, along);
-    Node across = graph_op2(g, OP_sub, stands, part);
+    Map *turn     = map_new(e);
+    Node unit     = graph_op1(g, OP_normalize, axis);
+    Node height   = graph_component(g, unit, 1);
+    Node steep    = graph_op1(g, OP_abs, height);
+    Node upright  = graph_op2(g, OP_less, graph_number(g, 0.999), steep);
+    Node stands   = graph_op3(g, OP_select, upright, x, y);
+    Node along    = graph_op2(g, OP_dot, stands, unit);
+    Node part     = graph_op2(g, OP_scale, unit, along);
+    Node across   = graph_op2(g, OP_sub, stands, part);
     turn->rows[0] = unit;
     turn->rows[1] = graph_op1(g, OP_normalize, across);
     turn->rows[2] = graph_op2(g, OP_cross, unit, turn->rows[1]);
@@ -270,7 +270,7 @@ static const Shape *make_taper(Elaboration *e, const Shape *shape, const Call *c
     Shape *tapered     = deformed_shape(e, SHAPE_TAPER, "taper", shape, call);
     tapered->values[0] = values[0];
     tapered->values[1] = values[1];
-    Range scale = range_hull(node_range(e, values[0], 0), node_range(e, values[1], 0));
+    Range scale        = range_hull(node_range(e, values[0], 0), node_range(e, values[1], 0));
     for (int i = 0; i < 3; i += 2)
         tapered->box.axis[i] = range_mul(shape->box.axis[i], scale);
     double height = shape->box.axis[1].high - shape->box.axis[1].low;
@@ -280,7 +280,7 @@ static const Shape *make_taper(Elaboration *e, const Shape *shape, const Call *c
 
 Value method_taper(Elaboration *e, const Shape *shape, Call *call)
 {
-    Node axis = want_axis(e, call);
+    Node axis      = want_axis(e, call);
     Node values[2] = {want_number(e, call, 1, 1), want_number(e, call, 2, 1)};
     if (axis == NODE_NONE || values[0] == NODE_NONE || values[1] == NODE_NONE ||
         !check_positive(e, values[0], call->arguments[1].syntax, "a factor of a taper") ||
@@ -352,14 +352,14 @@ Value method_displace(Elaboration *e, const Shape *shape, Call *call)
         return value_error();
     if (box_is_empty(shape->box))
         return value_shape(shape);
-    Shape *displaced   = deformed_shape(e, SHAPE_DISPLACE, "displace", shape, call);
-    displaced->formula = value_node(e, expression->value);
+    Shape *displaced     = deformed_shape(e, SHAPE_DISPLACE, "displace", shape, call);
+    displaced->formula   = value_node(e, expression->value);
     displaced->values[0] = amplitude;
-    Bump bump  = {.root = displaced->formula, .amplitude = node_range(e, amplitude, 0)};
-    bump.graph = graph_simplify(e->graph, &bump.root, 1, e->scratch);
-    displaced->reach = bump_reach(e, &bump, shape->box);
-    double grown     = product_upward(range_largest(bump.amplitude), displaced->reach);
-    displaced->box   = isfinite(grown) ? box_grow(shape->box, grown) : box_infinite;
+    Bump bump            = {.root = displaced->formula, .amplitude = node_range(e, amplitude, 0)};
+    bump.graph           = graph_simplify(e->graph, &bump.root, 1, e->scratch);
+    displaced->reach     = bump_reach(e, &bump, shape->box);
+    double grown         = product_upward(range_largest(bump.amplitude), displaced->reach);
+    displaced->box       = isfinite(grown) ? box_grow(shape->box, grown) : box_infinite;
     /* The slope everywhere or, failing that, where the displaced surface can be. */
     Box       regions[2] = {box_infinite, displaced->box};
     Steepness slope;

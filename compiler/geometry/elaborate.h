@@ -29,46 +29,61 @@ struct Environment {
 
 /* A top-level name. */
 typedef struct Definition {
-    const char    *name;
-    const Syntax  *syntax;
-    struct Scope  *scope;
+    const char   *name;
+    const Syntax *syntax;
+    struct Scope *scope;
     enum { DEFINITION_NEW, DEFINITION_RUNNING, DEFINITION_DONE } state;
-    Value          value;
+    Value value;
 } Definition;
 
 /* A file, its definitions, and the files that it uses. */
 typedef struct Scope {
-    const char    *path;
-    const Syntax  *file;
-    bool           loading;
-    Environment    environment; /* no locals, this scope */
-    struct { Definition **items; size_t count, capacity; } definitions;
-    Definition   **slots; /* hash table by the address of the name */
-    size_t         slot_count;
-    struct { struct Scope **items; size_t count, capacity; } used;
+    const char   *path;
+    const Syntax *file;
+    bool          loading;
+    Environment   environment; /* no locals, this scope */
+    struct {
+        Definition **items;
+        size_t       count, capacity;
+    } definitions;
+    Definition **slots; /* hash table by the address of the name */
+    size_t       slot_count;
+    struct {
+        struct Scope **items;
+        size_t         count, capacity;
+    } used;
 } Scope;
 
 typedef struct Elaboration {
-    Arena      *arena;  /* values, shapes and the scene */
-    Arena      *syntax; /* trees of used files */
-    Arena      *scratch;
-    Diags      *diags;
-    Names      *names;
-    Sources    *sources;
-    Graph      *graph;
-    Scene      *scene;
-    Scope      *library;
-    struct { Scope **items; size_t count, capacity; } scopes;
+    Arena   *arena;  /* values, shapes and the scene */
+    Arena   *syntax; /* trees of used files */
+    Arena   *scratch;
+    Diags   *diags;
+    Names   *names;
+    Sources *sources;
+    Graph   *graph;
+    Scene   *scene;
+    Scope   *library;
+    struct {
+        Scope **items;
+        size_t  count, capacity;
+    } scopes;
     /* Shape declarations whose claims have been put to the test. */
-    struct { const Syntax **items; size_t count, capacity; } single; /* sky, image, camera */
-    struct { const Syntax **items; size_t count, capacity; } checked;
-    const Loader *loader; /* of files that a `use` names */
-    uint64_t    steps;        /* of evaluation, so far */
-    uint32_t    depth, calls; /* how deep expressions and calls are nested now */
-    size_t      text_total;   /* bytes of all files read */
-    bool        stopped;      /* a limit was reached: everything is an error from here, silently */
-    Node        rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
-    bool        in_material;  /* level, instance, u, v and normal have a meaning */
+    struct {
+        const Syntax **items;
+        size_t         count, capacity;
+    } single; /* sky, image, camera */
+    struct {
+        const Syntax **items;
+        size_t         count, capacity;
+    } checked;
+    const Loader *loader;       /* of files that a `use` names */
+    uint64_t      steps;        /* of evaluation, so far */
+    uint32_t      depth, calls; /* how deep expressions and calls are nested now */
+    size_t        text_total;   /* bytes of all files read */
+    bool          stopped;     /* a limit was reached: everything is an error from here, silently */
+    Node          rounding;    /* what the name `rounding` means in `core:`, or NODE_NONE */
+    bool          in_material; /* level, instance, u, v and normal have a meaning */
 } Elaboration;
 
 /* Evaluates a file, whose source is already in e->sources, into e->scene; e->scene is complete
@@ -77,9 +92,9 @@ void elaborate(Elaboration *e, uint32_t source, const char *path);
 
 /* ---- scope.c ---- */
 /* Makes e->library of the embedded files that every scene sees. */
-void        scope_load_library(Elaboration *e);
+void scope_load_library(Elaboration *e);
 /* Reads a file and all that it uses; its names are checked.  Mistakes are reported. */
-Scope      *scope_load(Elaboration *e, uint32_t source, const char *path);
+Scope *scope_load(Elaboration *e, uint32_t source, const char *path);
 /* A definition of the file or of the files that it uses, or NULL. */
 Definition *scope_find(const Scope *scope, const char *name);
 
@@ -187,8 +202,8 @@ bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_s
 /* Report; the strings of `parameters` must live as long as the diagnostics. */
 Diag *too_many_arguments(Elaboration *e, const Syntax *argument, const char *name, uint32_t count);
 Diag *missing_argument(Elaboration *e, const Syntax *call, const char *name, const char *parameter);
-void unknown_parameter(Elaboration *e, const Syntax *argument, const char *name,
-                       const char *const *parameters, uint32_t count);
+void  unknown_parameter(Elaboration *e, const Syntax *argument, const char *name,
+                        const char *const *parameters, uint32_t count);
 /* A value of another type than `wanted` ("a number"); silent for VALUE_ERROR. */
 void type_error(Elaboration *e, const Syntax *syntax, Value found, const char *wanted);
 /* A value that must be known at compile time, and is not. */
@@ -208,7 +223,7 @@ typedef Value BuiltinFunction(Elaboration *e, Call *call);
 typedef struct Builtin {
     const char      *name;
     const char      *parameters;
-    Op               op; /* of componentwise functions, else OP_COUNT */
+    Op               op;       /* of componentwise functions, else OP_COUNT */
     BuiltinFunction *function; /* NULL: componentwise `op` */
 } Builtin;
 const Builtin *builtin_find(const char *name);
@@ -226,8 +241,7 @@ BuiltinFunction builtin_sum, builtin_product, builtin_any, builtin_all, builtin_
 BuiltinFunction builtin_random, builtin_random_direction, builtin_noise, builtin_fbm;
 
 /* ---- joining.c ---- */
-BuiltinFunction builtin_union, builtin_intersection, builtin_difference, builtin_xor,
-    builtin_morph;
+BuiltinFunction builtin_union, builtin_intersection, builtin_difference, builtin_xor, builtin_morph;
 /* The shapes of a call: a shape, or the elements of a list; `place` is blamed.  False: reported. */
 bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *place,
                     Values *shapes);
@@ -311,8 +325,8 @@ Value method_displace(Elaboration *e, const Shape *shape, Call *call);
 
 /* ---- make.c: shapes from shapes, each with its rule for box and slope ---- */
 /* A shape with these children, and what most kinds take over from them. */
-Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
-                 const Shape *const *children, uint32_t count);
+Shape       *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
+                       const Shape *const *children, uint32_t count);
 const Shape *make_empty(Elaboration *e, Span span);
 /* NULL: an inversion of something endless, which is reported. */
 const Shape *make_transform(Elaboration *e, const Shape *shape, const Map *map, Span span);
@@ -364,9 +378,9 @@ const Map *map_reflection(Elaboration *e, Node normal, Node offset);
 /* f(g(x)). */
 const Map *map_product(Elaboration *e, const Map *f, const Map *g);
 const Map *map_inverse(Elaboration *e, const Map *f);
-Node map_turn(Elaboration *e, const Map *f, Node vector); /* rows times vector */
-Node map_apply(Elaboration *e, const Map *f, Node point); /* without `first` */
-void turn_product(Elaboration *e, const Node a[3], const Node b[3], Node product[3]);
+Node       map_turn(Elaboration *e, const Map *f, Node vector); /* rows times vector */
+Node       map_apply(Elaboration *e, const Map *f, Node point); /* without `first` */
+void       turn_product(Elaboration *e, const Node a[3], const Node b[3], Node product[3]);
 /* For all values of the parameters, without `first`; the box around the image of a box under a
    similarity. */
 MapRange map_range(Elaboration *e, const Map *f);
@@ -385,11 +399,11 @@ const Map *inversion_inverse(Elaboration *e, const Map *f);
 /* ---- looks.c: cameras, lights, sky, image, materials ---- */
 /* The value of `name:` in a block of properties, or NULL. */
 const Syntax *find_property(const Syntax *block, const char *name);
-Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *syntax);
+Value         elaborate_material(Elaboration *e, const Environment *env, const Syntax *syntax);
 /* Adds a camera or light to the scene, or sets its sky or image. */
-void  elaborate_look(Elaboration *e, const Environment *env, const Syntax *syntax);
+void elaborate_look(Elaboration *e, const Environment *env, const Syntax *syntax);
 /* Adds what the scene leaves out: a camera, a sun, a sky. */
-void  finish_looks(Elaboration *e);
+void finish_looks(Elaboration *e);
 /* A material, or a colour that becomes one; NULL: reported. */
 const Material *to_material(Elaboration *e, Value value, const Syntax *syntax);
 

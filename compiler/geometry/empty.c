@@ -48,11 +48,10 @@ static Box half_of(Box box, int half)
 {
     int longest = 0;
     for (int i = 1; i < 3; i++)
-        if (box.axis[i].high - box.axis[i].low >
-            box.axis[longest].high - box.axis[longest].low)
+        if (box.axis[i].high - box.axis[i].low > box.axis[longest].high - box.axis[longest].low)
             longest = i;
-    Range *side   = &box.axis[longest];
-    double middle = 0.5 * (side->low + side->high);
+    Range *side                        = &box.axis[longest];
+    double middle                      = 0.5 * (side->low + side->high);
     *(half ? &side->low : &side->high) = middle;
     return box;
 }
@@ -79,9 +78,9 @@ static bool cells_are_empty(const Tape *tape, Node distance, Box box, NodeValue 
 /* Known to be empty by the distance; only what no parameter changes is looked at. */
 static bool is_nowhere(Elaboration *e, const Shape *shape)
 {
-    Graph   *g = e->graph;
-    Lowering l = {.graph = g, .scratch = e->scratch, .most = g->count + MOST_LOWERED};
-    Lowered  all = lower_shape(&l, shape, place_bare(graph_leaf(g, OP_POINT), true));
+    Graph   *g     = e->graph;
+    Lowering l     = {.graph = g, .scratch = e->scratch, .most = g->count + MOST_LOWERED};
+    Lowered  all   = lower_shape(&l, shape, place_bare(graph_leaf(g, OP_POINT), true));
     bool     empty = all.distance == NODE_NONE;
     if (!l.overflow && !empty) {
         Node       distance   = divide_by_slope(g, all.distance, shape->slope);

@@ -33,7 +33,8 @@ static bool step(Elaboration *e, Span span)
 bool check_shape_count(Elaboration *e, const List *list, Span span)
 {
     if (list->total > MOST_SHAPE_PARTS)
-        limit_reached(e, span, "a list of more than 100,000 shapes, counted as often as they occur");
+        limit_reached(e, span,
+                      "a list of more than 100,000 shapes, counted as often as they occur");
     return !e->stopped;
 }
 
@@ -186,8 +187,8 @@ static bool run_clause(Elaboration *e, const Comprehension *c)
 
 static Value evaluate_comprehension(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    Values result = {0};
-    Comprehension c = {env, syntax, 1, &result};
+    Values        result = {0};
+    Comprehension c      = {env, syntax, 1, &result};
     if (!run_clause(e, &c))
         return value_error();
     return value_list(e, result.items, result.count);
@@ -226,12 +227,12 @@ static Value evaluate_if(Elaboration *e, const Environment *env, const Syntax *s
 
 static Value evaluate_index(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    Value list = evaluate(e, env, syntax->children[0]);
+    Value  list = evaluate(e, env, syntax->children[0]);
     double index;
     if (list.type == VALUE_ERROR ||
         !constant_number(e, env, syntax->children[1], "an index", &index))
         return value_error();
-    bool   node  = list.type == VALUE_EXPRESSION && e->graph->items[list.node].type >= TYPE_VEC2 &&
+    bool node = list.type == VALUE_EXPRESSION && e->graph->items[list.node].type >= TYPE_VEC2 &&
                 e->graph->items[list.node].type <= TYPE_VEC4;
     size_t count = node                      ? e->graph->items[list.node].type
                    : list.type == VALUE_LIST ? list.list->count
@@ -241,11 +242,11 @@ static Value evaluate_index(Elaboration *e, const Environment *env, const Syntax
         return value_error();
     }
     if (!(index >= 0 && index < (double)count) || index != floor(index)) {
-        Diag *diag = diag_add(e->diags, DIAG_INDEX_RANGE, syntax->children[1]->span,
-                              "index %g of a list of %zu", index, count);
-        diag->label =
-            count ? diag_text(e->diags, "whole numbers from 0 to %zu are possible", count - 1)
-                  : "the list is empty";
+        Diag *diag  = diag_add(e->diags, DIAG_INDEX_RANGE, syntax->children[1]->span,
+                               "index %g of a list of %zu", index, count);
+        diag->label = count ? diag_text(e->diags, "whole numbers from 0 to %zu are possible",
+                                        count - 1)
+                            : "the list is empty";
         return value_error();
     }
     if (!node)
@@ -289,23 +290,23 @@ static Value evaluate_let(Elaboration *e, const Environment *env, const Syntax *
 static Value evaluate_inner(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     switch (syntax->kind) {
-    case SYNTAX_NUMBER:        return value_number(syntax->number[0]);
-    case SYNTAX_COLOUR:        return value_vector(e, syntax->number, 3);
-    case SYNTAX_STRING:        return (Value){.type = VALUE_STRING, .string = syntax->name};
-    case SYNTAX_BOOLEAN:       return value_boolean(syntax->number[0] != 0);
-    case SYNTAX_NAME:          return evaluate_name(e, env, syntax);
-    case SYNTAX_LIST:          return evaluate_list(e, env, syntax);
+    case SYNTAX_NUMBER: return value_number(syntax->number[0]);
+    case SYNTAX_COLOUR: return value_vector(e, syntax->number, 3);
+    case SYNTAX_STRING: return (Value){.type = VALUE_STRING, .string = syntax->name};
+    case SYNTAX_BOOLEAN: return value_boolean(syntax->number[0] != 0);
+    case SYNTAX_NAME: return evaluate_name(e, env, syntax);
+    case SYNTAX_LIST: return evaluate_list(e, env, syntax);
     case SYNTAX_COMPREHENSION: return evaluate_comprehension(e, env, syntax);
-    case SYNTAX_RANGE:         return evaluate_range(e, env, syntax);
-    case SYNTAX_UNARY:         return value_unary(e, syntax, evaluate(e, env, syntax->children[0]));
-    case SYNTAX_BINARY:        return evaluate_binary(e, env, syntax);
-    case SYNTAX_IF:            return evaluate_if(e, env, syntax);
-    case SYNTAX_LET_IN:        return evaluate_let(e, env, syntax);
-    case SYNTAX_CALL:          return evaluate_call(e, env, syntax);
-    case SYNTAX_METHOD:        return call_method(e, env, syntax);
-    case SYNTAX_INDEX:         return evaluate_index(e, env, syntax);
-    case SYNTAX_KRS:           return elaborate_krs(e, env, syntax);
-    default:                   return value_error(); /* SYNTAX_ERROR: reported by the parser */
+    case SYNTAX_RANGE: return evaluate_range(e, env, syntax);
+    case SYNTAX_UNARY: return value_unary(e, syntax, evaluate(e, env, syntax->children[0]));
+    case SYNTAX_BINARY: return evaluate_binary(e, env, syntax);
+    case SYNTAX_IF: return evaluate_if(e, env, syntax);
+    case SYNTAX_LET_IN: return evaluate_let(e, env, syntax);
+    case SYNTAX_CALL: return evaluate_call(e, env, syntax);
+    case SYNTAX_METHOD: return call_method(e, env, syntax);
+    case SYNTAX_INDEX: return evaluate_index(e, env, syntax);
+    case SYNTAX_KRS: return elaborate_krs(e, env, syntax);
+    default: return value_error(); /* SYNTAX_ERROR: reported by the parser */
     }
 }
 

@@ -72,7 +72,7 @@ static Node brought_out(Graph *g, Node bound, Box box)
 {
     if (!box_is_finite(box))
         return bound;
-    Node point   = graph_leaf(g, OP_POINT), zero = graph_number(g, 0);
+    Node point = graph_leaf(g, OP_POINT), zero = graph_number(g, 0);
     Node away    = box_distance(g, point, box);
     Node outside = graph_op2(g, OP_max, bound, zero);
     Node sides   = beyond_sides(g, point, box);
@@ -172,15 +172,15 @@ const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Synt
 {
     Series      series;
     SeriesFault fault;
-    Shape      *shape = shape_new(e, SHAPE_PRIMITIVE, algebraic ? "algebraic" : "field",
-                                  place->span, NULL, 0);
+    Shape *shape = shape_new(e, SHAPE_PRIMITIVE, algebraic ? "algebraic" : "field", place->span,
+                             NULL, 0);
     if (!depends_on_point(e, formula))
         return refuse_constant(e, shape);
-    shape->box     = shape->region = box_infinite;
-    shape->exact   = false;
-    shape->formula = formula;
-    shape->fields  = true;
-    Node point     = graph_leaf(e->graph, OP_POINT);
+    shape->box = shape->region = box_infinite;
+    shape->exact               = false;
+    shape->formula             = formula;
+    shape->fields              = true;
+    Node point                 = graph_leaf(e->graph, OP_POINT);
     if (graph_ball_series(e->graph, formula, point, &series, &fault, e->scratch)) {
         if (series_is_constant(e->graph, &series))
             return refuse_constant(e, shape);
@@ -238,8 +238,10 @@ const Shape *restrict_shape(Elaboration *e, const Shape *shape, Box box, bool ev
     const Shape *child = shape->child_count ? shape->children[0] : NULL;
     switch (shape->kind) {
     case SHAPE_PRIMITIVE: return restrict_field(e, shape, box, even);
-    case SHAPE_UNION: case SHAPE_INTERSECTION: case SHAPE_DIFFERENCE: case SHAPE_XOR:
-        return restrict_joint(e, shape, box, even);
+    case SHAPE_UNION:
+    case SHAPE_INTERSECTION:
+    case SHAPE_DIFFERENCE:
+    case SHAPE_XOR: return restrict_joint(e, shape, box, even);
     case SHAPE_OFFSET: {
         double r = range_largest(node_range(e, shape->values[0], 0));
         child    = restrict_shape(e, child, box_grow(box, r), even);
@@ -278,13 +280,13 @@ bool check_bounded(Elaboration *e, const Shape *shape)
     if (isfinite(shape->slope))
         return true;
     const Shape *field = find_unbounded(shape);
-    Span  span  = field->blame.source ? field->blame : field->span;
-    Diag *diag  = diag_add(e->diags, DIAG_STEEP, span, "the slope of a field has no bound");
-    diag->label = "this can change arbitrarily fast";
+    Span         span  = field->blame.source ? field->blame : field->span;
+    Diag        *diag  = diag_add(e->diags, DIAG_STEEP, span, "the slope of a field has no bound");
+    diag->label        = "this can change arbitrarily fast";
     diag_place(e->diags, diag, field->span, "in this field");
-    diag->help  = box_is_finite(field->region)
-                      ? "keep this part away from divisions by zero and jumps"
-                      : "cut it to a region: `.within(box([4, 4, 4]))`; or keep this part away "
-                        "from divisions by zero and jumps";
+    diag->help = box_is_finite(field->region)
+                     ? "keep this part away from divisions by zero and jumps"
+                     : "cut it to a region: `.within(box([4, 4, 4]))`; or keep this part away "
+                       "from divisions by zero and jumps";
     return false;
 }

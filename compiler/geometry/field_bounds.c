@@ -70,8 +70,10 @@ static bool has_terms_among(const Graph *g, Node node, uint32_t *nodes)
         return false;
     --*nodes;
     switch (e->op) {
-    case OP_add: case OP_sub: return e->type == TYPE_FLOAT;
-    case OP_neg: case OP_div: return has_terms_among(g, e->operands[0], nodes);
+    case OP_add:
+    case OP_sub: return e->type == TYPE_FLOAT;
+    case OP_neg:
+    case OP_div: return has_terms_among(g, e->operands[0], nodes);
     case OP_mul:
         return has_terms_among(g, e->operands[0], nodes) ||
                has_terms_among(g, e->operands[1], nodes);
@@ -101,7 +103,8 @@ static void add_terms(Terms *terms, Node node, Node factor)
     Node opposite = graph_op1(g, OP_neg, factor);
     int  inner    = e.op == OP_mul && !has_terms(g, e.operands[0]);
     switch (e.op) {
-    case OP_add: case OP_sub:
+    case OP_add:
+    case OP_sub:
         add_terms(terms, e.operands[0], factor);
         add_terms(terms, e.operands[1], e.op == OP_add ? factor : opposite);
         break;
@@ -109,8 +112,7 @@ static void add_terms(Terms *terms, Node node, Node factor)
     case OP_mul:
         add_terms(terms, e.operands[inner], graph_op2(g, OP_mul, factor, e.operands[1 - inner]));
         break;
-    default:
-        add_terms(terms, e.operands[0], graph_op2(g, OP_div, factor, e.operands[1]));
+    default: add_terms(terms, e.operands[0], graph_op2(g, OP_div, factor, e.operands[1]));
     }
 }
 
@@ -161,7 +163,7 @@ static Node head_distance(Elaboration *e, Node head, Range range, Box box)
     Node low   = graph_number(g, range.low - 1e-12 * fabs(range.low));
     Node high  = graph_number(g, range.high + 1e-12 * fabs(range.high));
     Node above = graph_op2(g, OP_add, head, low), below = graph_op2(g, OP_add, head, high);
-    Node size  = graph_op2(g, OP_max, above, graph_op1(g, OP_neg, below));
+    Node size = graph_op2(g, OP_max, above, graph_op1(g, OP_neg, below));
     return divide_by_slope(g, size, slope);
 }
 
@@ -240,9 +242,9 @@ static TrialRay trial_ray(Box box, uint32_t i)
     TrialRay            ray;
     double              length = 0, place[6];
     for (int k = 0; k < 6; k++) {
-        Range side = box.axis[k % 3];
-        double t   = fmod(0.5 + (i + 1) * pow(root, -(k + 1)), 1);
-        place[k]   = side.low + t * (side.high - side.low);
+        Range  side = box.axis[k % 3];
+        double t    = fmod(0.5 + (i + 1) * pow(root, -(k + 1)), 1);
+        place[k]    = side.low + t * (side.high - side.low);
     }
     for (int k = 0; k < 3; k++) {
         ray.from[k]      = place[k];
@@ -284,7 +286,7 @@ static double length_through(Box box, const TrialRay *ray)
    balls of empty space around its ends are expected to meet, and is taken back if they do not.
    When MOST_STEPS do not suffice, the others are taken to be as long. */
 static double count_steps(const March *m, const Tape *tape, Node root, const TrialRay *ray,
-                            NodeValue *values)
+                          NodeValue *values)
 {
     double   t = 0, step = 0, change = -1;
     double   radius = distance_along(m, tape, root, ray, 0, values);
@@ -312,9 +314,9 @@ static double march_cost(const March *m, Node distance)
     const double OVERHEAD = 20; /* of the tracer, a step */
     Tape         tape     = tape_new(m->graph, &distance, 1, m->scratch);
     NodeValue   *values   = arena_new_array(m->scratch, NodeValue, m->graph->count);
-    double       cost     = OVERHEAD, steps = 0;
+    double       cost = OVERHEAD, steps = 0;
     for (size_t i = tape.frame_count; i < tape.count; i++) {
-        const Expr *e = &m->graph->items[tape.nodes[i]];
+        const Expr *e                   = &m->graph->items[tape.nodes[i]];
         GraphType   types[MAX_OPERANDS] = {0};
         for (int k = 0; k < e->operand_count; k++)
             types[k] = (GraphType)m->graph->items[e->operands[k]].type;
@@ -354,15 +356,15 @@ static Node lengthened(Graph *g, Node formula, Node distance, Node bound)
    there is already; *cost follows. */
 static Node cheapest(const March *march, Node present, const Node *others, int count, double *cost)
 {
-    const double LEAD = 0.85;
-    Node         best = present;
+    const double LEAD  = 0.85;
+    Node         best  = present;
     double       least = LEAD * *cost;
     for (int i = 0; i < count; i++) {
         double tried = others[i] == NODE_NONE ? HUGE_VAL : march_cost(march, others[i]);
         if (tried >= least)
             continue;
         least = *cost = tried;
-        best  = others[i];
+        best          = others[i];
     }
     return best;
 }
@@ -375,7 +377,7 @@ FieldBounds field_bounds(Elaboration *e, Node formula, double slope, Box box, bo
     Graph      *g      = e->graph;
     March       march  = march_new(e, box);
     FieldBounds bounds = {divide_by_slope(g, formula, slope), NODE_NONE};
-    Node        heads  = by_heads(e, formula, box), order = by_second_order(e, formula, box);
+    Node        heads = by_heads(e, formula, box), order = by_second_order(e, formula, box);
     Node        steady[3] = {NODE_NONE, NODE_NONE, NODE_NONE}, sharp[SHARES];
     double      cost      = HUGE_VAL;
     if (even && order != NODE_NONE)

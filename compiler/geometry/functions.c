@@ -45,7 +45,7 @@ static bool gather(Elaboration *e, const Environment *env, const Syntax *call,
                    const Syntax *definition, Value *values, const Syntax **places)
 {
     uint32_t count = parameter_count(definition), next = 0;
-    bool     good  = true;
+    bool     good = true;
     for (uint32_t i = 1; i < call->count; i++) {
         const Syntax *argument = call->children[i];
         if (argument->kind != SYNTAX_ARGUMENT)
@@ -85,10 +85,10 @@ static bool fits_default(Elaboration *e, const Environment *env, const Function 
     if (value_size(e, usual) == 0 || value_size(e, usual) == value_size(e, value))
         return true;
     const char *found = value_type_name(e, value);
-    Diag *diag =
-        diag_add(e->diags, DIAG_TYPE_MISMATCH, place->span, "`%s` of `%s` must be %s, found %s",
-                 parameter->name, function->name, value_type_name(e, usual), found);
-    diag->label = diag_text(e->diags, "this is %s", found);
+    Diag       *diag  = diag_add(e->diags, DIAG_TYPE_MISMATCH, place->span,
+                                 "`%s` of `%s` must be %s, found %s", parameter->name, function->name,
+                                 value_type_name(e, usual), found);
+    diag->label       = diag_text(e->diags, "this is %s", found);
     note_signature(e, diag, function->syntax);
     point_at_definition(e, diag, place);
     return false;
@@ -237,8 +237,7 @@ static void note_arguments(Elaboration *e, Diag *diag, const Function *function,
  * to the call, and the place in the library becomes the second one.
  */
 static void blame_caller(Elaboration *e, size_t first, const Syntax *syntax,
-                         const Function *function, const Value *values,
-                         const Syntax *const *places)
+                         const Function *function, const Value *values, const Syntax *const *places)
 {
     const Source *sources = e->sources->items;
     if (sources[syntax->span.source].library)

@@ -25,7 +25,7 @@ static bool blend_kind(Elaboration *e, const Argument *name, BlendKind *kind)
     Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, name->syntax->span, "no blend is called \"%s\"",
                           name->value.string);
     const char *near = nearest_name(name->value.string, spellings, BLEND_COUNT);
-    diag->label = "unknown kind of blend";
+    diag->label      = "unknown kind of blend";
     if (near)
         diag->replacement = diag_text(e->diags, "\"%s\"", near);
     diag->help = "there are \"quadratic\", \"cubic\", \"exponential\", \"circular\", "
@@ -123,10 +123,7 @@ static Value join_rest(Elaboration *e, Call *call, ShapeKind kind)
     return join(e, call, kind, &shapes, 1);
 }
 
-Value builtin_union(Elaboration *e, Call *call)
-{
-    return join_rest(e, call, SHAPE_UNION);
-}
+Value builtin_union(Elaboration *e, Call *call) { return join_rest(e, call, SHAPE_UNION); }
 
 Value builtin_intersection(Elaboration *e, Call *call)
 {

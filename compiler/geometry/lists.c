@@ -45,8 +45,8 @@ static Value reduce(Elaboration *e, Op op, const Value *items, size_t count, con
 static Value reduce_list(Elaboration *e, Call *call, Op op, Value empty)
 {
     if (call->arguments[0].value.type == VALUE_EXPRESSION) { /* a vector known only as a node */
-        Node  vector = call->arguments[0].value.node;
-        Value parts[4];
+        Node     vector = call->arguments[0].value.node;
+        Value    parts[4];
         uint32_t type = e->graph->items[vector].type;
         if (type > TYPE_VEC4) {
             type_error(e, call->arguments[0].syntax, call->arguments[0].value, "a list");
@@ -132,7 +132,7 @@ Value builtin_range(Elaboration *e, Call *call)
     if (!(by != 0) || !(count <= 1e6)) {
         bool  ends  = by != 0;
         Diag *diag  = diag_add(e->diags, ends ? DIAG_LIMIT : DIAG_BAD_VALUE, call->syntax->span,
-                               ends ? "a range of more than a million elements"
+                              ends ? "a range of more than a million elements"
                                     : "a range with steps of 0 does not end");
         diag->label = "this range";
         return value_error();

@@ -13,28 +13,47 @@ static const struct LookProperty {
     const char *name;
     bool        later;
 } look_properties[] = {
-    {SYNTAX_MATERIAL, "color", false},     {SYNTAX_MATERIAL, "roughness", false},
-    {SYNTAX_MATERIAL, "metallic", false},  {SYNTAX_MATERIAL, "emission", false},
-    {SYNTAX_MATERIAL, "transmission", true}, {SYNTAX_MATERIAL, "ior", true},
+    {SYNTAX_MATERIAL, "color", false},
+    {SYNTAX_MATERIAL, "roughness", false},
+    {SYNTAX_MATERIAL, "metallic", false},
+    {SYNTAX_MATERIAL, "emission", false},
+    {SYNTAX_MATERIAL, "transmission", true},
+    {SYNTAX_MATERIAL, "ior", true},
     {SYNTAX_MATERIAL, "absorption", true},
-    {SYNTAX_CAMERA, "eye", false},         {SYNTAX_CAMERA, "target", false},
-    {SYNTAX_CAMERA, "up", false},          {SYNTAX_CAMERA, "fov", false},
-    {SYNTAX_CAMERA, "projection", false},  {SYNTAX_CAMERA, "height", false},
-    {SYNTAX_CAMERA, "aperture", true},     {SYNTAX_CAMERA, "focus", true},
+    {SYNTAX_CAMERA, "eye", false},
+    {SYNTAX_CAMERA, "target", false},
+    {SYNTAX_CAMERA, "up", false},
+    {SYNTAX_CAMERA, "fov", false},
+    {SYNTAX_CAMERA, "projection", false},
+    {SYNTAX_CAMERA, "height", false},
+    {SYNTAX_CAMERA, "aperture", true},
+    {SYNTAX_CAMERA, "focus", true},
     {SYNTAX_CAMERA, "shutter", true},
-    {SYNTAX_LIGHT, "direction", false},    {SYNTAX_LIGHT, "position", false},
-    {SYNTAX_LIGHT, "color", false},        {SYNTAX_LIGHT, "intensity", false},
-    {SYNTAX_LIGHT, "softness", false},     {SYNTAX_LIGHT, "radius", false},
-    {SYNTAX_LIGHT, "shadow", false},       {SYNTAX_LIGHT, "size", true},
-    {SYNTAX_SKY, "zenith", false},         {SYNTAX_SKY, "horizon", false},
-    {SYNTAX_SKY, "ground", false},         {SYNTAX_SKY, "sun", false},
-    {SYNTAX_SKY, "image", true},           {SYNTAX_SKY, "rotation", true},
-    {SYNTAX_IMAGE, "size", false},         {SYNTAX_IMAGE, "samples", false},
-    {SYNTAX_IMAGE, "integrator", false},   {SYNTAX_IMAGE, "exposure", false},
-    {SYNTAX_IMAGE, "tone_map", false},     {SYNTAX_IMAGE, "error", false},
-    {SYNTAX_IMAGE, "frames", true},        {SYNTAX_IMAGE, "rate", true},
+    {SYNTAX_LIGHT, "direction", false},
+    {SYNTAX_LIGHT, "position", false},
+    {SYNTAX_LIGHT, "color", false},
+    {SYNTAX_LIGHT, "intensity", false},
+    {SYNTAX_LIGHT, "softness", false},
+    {SYNTAX_LIGHT, "radius", false},
+    {SYNTAX_LIGHT, "shadow", false},
+    {SYNTAX_LIGHT, "size", true},
+    {SYNTAX_SKY, "zenith", false},
+    {SYNTAX_SKY, "horizon", false},
+    {SYNTAX_SKY, "ground", false},
+    {SYNTAX_SKY, "sun", false},
+    {SYNTAX_SKY, "image", true},
+    {SYNTAX_SKY, "rotation", true},
+    {SYNTAX_IMAGE, "size", false},
+    {SYNTAX_IMAGE, "samples", false},
+    {SYNTAX_IMAGE, "integrator", false},
+    {SYNTAX_IMAGE, "exposure", false},
+    {SYNTAX_IMAGE, "tone_map", false},
+    {SYNTAX_IMAGE, "error", false},
+    {SYNTAX_IMAGE, "frames", true},
+    {SYNTAX_IMAGE, "rate", true},
     {SYNTAX_IMAGE, "bounces", true},
-    {SYNTAX_ZONE, "center", false},        {SYNTAX_ZONE, "radius", false},
+    {SYNTAX_ZONE, "center", false},
+    {SYNTAX_ZONE, "radius", false},
 };
 enum { LOOK_PROPERTY_COUNT = sizeof look_properties / sizeof *look_properties };
 
@@ -42,11 +61,11 @@ static const char *block_name(SyntaxKind kind)
 {
     switch (kind) {
     case SYNTAX_MATERIAL: return "a material";
-    case SYNTAX_CAMERA:   return "a camera";
-    case SYNTAX_LIGHT:    return "a light";
-    case SYNTAX_SKY:      return "the sky";
-    case SYNTAX_ZONE:     return "a zone";
-    default:              return "the image";
+    case SYNTAX_CAMERA: return "a camera";
+    case SYNTAX_LIGHT: return "a light";
+    case SYNTAX_SKY: return "the sky";
+    case SYNTAX_ZONE: return "a zone";
+    default: return "the image";
     }
 }
 
@@ -134,7 +153,7 @@ static Node place_property(Elaboration *e, const Environment *env, const Syntax 
     for (uint32_t i = 0; syntax && i < 3; i++) {
         Range  range = node_range(e, place, i);
         double far   = fmax(isfinite(range.low) ? fabs(range.low) : 0,
-                            isfinite(range.high) ? fabs(range.high) : 0);
+                          isfinite(range.high) ? fabs(range.high) : 0);
         if (far <= MOST_EXTENT)
             continue;
         Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span,
@@ -163,8 +182,8 @@ static double constant_property(Elaboration *e, const Environment *env, const Sy
         return otherwise;
     }
     if (!(number >= least && number <= most)) {
-        Diag *diag =
-            diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "`%s` cannot be %g", name, number);
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "`%s` cannot be %g", name,
+                               number);
         diag->label = diag_text(e->diags, "from %g to %g is possible", least, most);
         return otherwise;
     }
@@ -238,14 +257,14 @@ static Material *material_new(Elaboration *e, const char *name)
 Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     check_block(e, syntax);
-    Material *material  = material_new(e, syntax->name);
-    bool      outer     = e->in_material;
-    e->in_material      = true;
+    Material *material = material_new(e, syntax->name);
+    bool      outer    = e->in_material;
+    e->in_material     = true;
     looking_property(e, env, syntax, "color", TYPE_VEC3, &material->color);
     looking_property(e, env, syntax, "roughness", TYPE_FLOAT, &material->roughness);
     looking_property(e, env, syntax, "metallic", TYPE_FLOAT, &material->metallic);
     looking_property(e, env, syntax, "emission", TYPE_VEC3, &material->emission);
-    e->in_material      = outer;
+    e->in_material = outer;
     return (Value){.type = VALUE_MATERIAL, .material = material};
 }
 
@@ -272,13 +291,13 @@ static void add_camera(Elaboration *e, const Environment *env, const Syntax *syn
 {
     static const char *const projections[] = {"perspective", "orthographic", "panorama"};
     static const double      eye[3]        = {4, 3, 6};
-    SceneCamera camera = {.name = syntax->name};
-    camera.eye         = place_property(e, env, syntax, "eye", eye);
-    camera.target      = place_property(e, env, syntax, "target", ORIGIN);
-    camera.up          = vector_property(e, env, syntax, "up", UP);
-    camera.fov         = number_property(e, env, syntax, "fov", 40 * M_PI / 180);
-    camera.height      = number_property(e, env, syntax, "height", 4);
-    const char *word   = word_property(e, env, syntax, "projection", projections, 3, 0);
+    SceneCamera              camera        = {.name = syntax->name};
+    camera.eye                             = place_property(e, env, syntax, "eye", eye);
+    camera.target                          = place_property(e, env, syntax, "target", ORIGIN);
+    camera.up                              = vector_property(e, env, syntax, "up", UP);
+    camera.fov       = number_property(e, env, syntax, "fov", 40 * M_PI / 180);
+    camera.height    = number_property(e, env, syntax, "height", 4);
+    const char *word = word_property(e, env, syntax, "projection", projections, 3, 0);
     while (word && projections[camera.projection] != word)
         camera.projection++;
     const Syntax *fov  = find_property(syntax, "fov");
@@ -291,7 +310,7 @@ static void add_camera(Elaboration *e, const Environment *env, const Syntax *syn
     const Syntax *height = find_property(syntax, "height");
     if (height)
         check_positive(e, camera.height, height, "the height of the picture");
-    Node same = graph_op2(e->graph, OP_sub, camera.eye, camera.target);
+    Node          same   = graph_op2(e->graph, OP_sub, camera.eye, camera.target);
     const Syntax *target = find_property(syntax, "target");
     check_direction(e, same, target ? target : syntax, "the view of a camera, from eye to target,");
     array_push(e->arena, &e->scene->cameras, camera);
@@ -303,9 +322,9 @@ static void add_light(Elaboration *e, const Environment *env, const Syntax *synt
     const Syntax *position  = find_property(syntax, "position");
     SceneLight    light     = {.positional = position != NULL, .shadow = true};
     if (!direction == !position) {
-        Diag *diag =
-            diag_add(e->diags, direction ? DIAG_TOO_MANY_ARGUMENTS : DIAG_MISSING_ARGUMENT,
-                     syntax->name_span, "a light has either a `direction` or a `position`");
+        Diag *diag = diag_add(e->diags, direction ? DIAG_TOO_MANY_ARGUMENTS : DIAG_MISSING_ARGUMENT,
+                              syntax->name_span,
+                              "a light has either a `direction` or a `position`");
         diag->help = "for example `light sun { direction: [-1, 2, 1], intensity: 3 }`";
         return;
     }
@@ -331,9 +350,9 @@ static void set_sky(Elaboration *e, const Environment *env, const Syntax *syntax
     static const double zenith[3]  = {0.17, 0.26, 0.42};
     static const double horizon[3] = {0.56, 0.6, 0.66};
     static const double ground[3]  = {0.17, 0.165, 0.16};
-    e->scene->zenith  = vector_property(e, env, syntax, "zenith", zenith);
-    e->scene->horizon = vector_property(e, env, syntax, "horizon", horizon);
-    e->scene->ground  = vector_property(e, env, syntax, "ground", ground);
+    e->scene->zenith               = vector_property(e, env, syntax, "zenith", zenith);
+    e->scene->horizon              = vector_property(e, env, syntax, "horizon", horizon);
+    e->scene->ground               = vector_property(e, env, syntax, "ground", ground);
     /* `sun:` names the light that is the sun; every light is in the sky anyway. */
     const Syntax *sun = find_property(syntax, "sun");
     if (sun && sun->kind != SYNTAX_NAME)
@@ -363,8 +382,8 @@ static void set_image(Elaboration *e, const Environment *env, const Syntax *synt
 {
     static const char *const integrators[] = {"preview", "direct", "path"};
     static const char *const tone_maps[]   = {"neutral", "aces", "none"};
-    SceneImage   *image = &e->scene->image;
-    const Syntax *size  = find_property(syntax, "size");
+    SceneImage              *image         = &e->scene->image;
+    const Syntax            *size          = find_property(syntax, "size");
     if (size)
         set_size(e, size, evaluate(e, env, size));
     image->samples    = (uint32_t)constant_property(e, env, syntax, "samples", 1, 65536, 0);
@@ -392,11 +411,11 @@ static void add_zone(Elaboration *e, const Environment *env, const Syntax *synta
             diag->help = "give the `param` a range that is not negative, or use `max(..., 0)`";
         return;
     }
-    g->here    = syntax->span;
-    Node point = graph_leaf(g, OP_POINT);
-    Node away  = graph_op2(g, OP_sub, point, center);
-    Node depth = graph_op1(g, OP_length, away);
-    depth      = graph_op2(g, OP_sub, radius, depth);
+    g->here     = syntax->span;
+    Node point  = graph_leaf(g, OP_POINT);
+    Node away   = graph_op2(g, OP_sub, point, center);
+    Node depth  = graph_op1(g, OP_length, away);
+    depth       = graph_op2(g, OP_sub, radius, depth);
     scene->zone = scene->zone == NODE_NONE ? depth : graph_op2(g, OP_max, scene->zone, depth);
     scene->zone_count++;
 }
@@ -425,10 +444,10 @@ void elaborate_look(Elaboration *e, const Environment *env, const Syntax *syntax
     check_single(e, syntax);
     switch (syntax->kind) {
     case SYNTAX_CAMERA: add_camera(e, env, syntax); break;
-    case SYNTAX_LIGHT:  add_light(e, env, syntax); break;
-    case SYNTAX_SKY:    set_sky(e, env, syntax); break;
-    case SYNTAX_ZONE:   add_zone(e, env, syntax); break;
-    default:            set_image(e, env, syntax); break;
+    case SYNTAX_LIGHT: add_light(e, env, syntax); break;
+    case SYNTAX_SKY: set_sky(e, env, syntax); break;
+    case SYNTAX_ZONE: add_zone(e, env, syntax); break;
+    default: set_image(e, env, syntax); break;
     }
 }
 
@@ -441,7 +460,7 @@ static void default_camera(Elaboration *e)
     for (size_t i = 0; i < e->scene->components.count; i++)
         if (box_is_finite(e->scene->components.items[i].shape->box))
             box = box_hull(box, e->scene->components.items[i].shape->box);
-    double target[3] = {0, 0, 0}, eye[3], radius = 2, fov = 35 * M_PI / 180;
+    double              target[3] = {0, 0, 0}, eye[3], radius = 2, fov = 35 * M_PI / 180;
     static const double towards[3] = {0.53, 0.37, 0.76};
     if (!box_is_empty(box)) {
         box_centre(box, target);
@@ -450,11 +469,11 @@ static void default_camera(Elaboration *e)
     for (int i = 0; i < 3; i++)
         eye[i] = target[i] + towards[i] * radius / sin(0.5 * fov);
     SceneCamera camera = {.standing_in = true,
-                          .eye    = graph_constant(e->graph, TYPE_VEC3, eye),
-                          .target = graph_constant(e->graph, TYPE_VEC3, target),
-                          .up     = graph_constant(e->graph, TYPE_VEC3, UP),
-                          .fov    = graph_number(e->graph, fov),
-                          .height = graph_number(e->graph, 2 * radius)};
+                          .eye         = graph_constant(e->graph, TYPE_VEC3, eye),
+                          .target      = graph_constant(e->graph, TYPE_VEC3, target),
+                          .up          = graph_constant(e->graph, TYPE_VEC3, UP),
+                          .fov         = graph_number(e->graph, fov),
+                          .height      = graph_number(e->graph, 2 * radius)};
     array_push(e->arena, &e->scene->cameras, camera);
 }
 

@@ -20,9 +20,9 @@
 /* Farther than any scene: the distance to nothing.  Finite, so that sums stay numbers. */
 static const double NOWHERE = 1e30;
 
-const Lowered lowered_nothing = {
-    NODE_NONE, {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE,
-                NODE_NONE, NODE_NONE}};
+const Lowered lowered_nothing = {NODE_NONE,
+                                 {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE,
+                                  NODE_NONE, NODE_NONE, NODE_NONE}};
 
 Place place_bare(Node point, bool lipschitz)
 {
@@ -219,7 +219,7 @@ static Lowered lower_xor(Lowering *l, const Shape *shape, Place place)
         return join_two(l, shape->blend, a, b);
     Lowered result = join_two(l, shape->blend, a, b);
     /* What they share is the complement of: */
-    Lowered shared = join_two(l, shape->blend, complement(l, a), complement(l, b));
+    Lowered shared  = join_two(l, shape->blend, complement(l, a), complement(l, b));
     result.distance = graph_op2(l->graph, OP_max, result.distance, shared.distance);
     return result;
 }
@@ -230,10 +230,10 @@ static Lowered lower_morph(Lowering *l, const Shape *shape, Place place)
     Lowered b = lower_shape(l, shape->children[1], place_steady(place));
     if (a.distance == NODE_NONE || b.distance == NODE_NONE)
         return a.distance == NODE_NONE ? b : a;
-    Graph  *g      = l->graph;
-    Lowered result = lowered_nothing;
-    Node    one    = graph_number(g, 1);
-    Node    weight = graph_op2(g, OP_sub, one, shape->values[0]);
+    Graph  *g       = l->graph;
+    Lowered result  = lowered_nothing;
+    Node    one     = graph_number(g, 1);
+    Node    weight  = graph_op2(g, OP_sub, one, shape->values[0]);
     result.distance = graph_op3(g, OP_mix, a.distance, b.distance, shape->values[0]);
     if (l->surfaces) {
         Node half      = graph_number(g, 0.5);
@@ -300,11 +300,11 @@ static Lowered lower_stretch(Lowering *l, const Shape *shape, Place place)
 {
     Graph *g = l->graph;
     Node   x = graph_component(g, shape->values[0], 0), y = graph_component(g, shape->values[0], 1);
-    Node   z = graph_component(g, shape->values[0], 2);
-    Node   least   = graph_op2(g, OP_min, x, y);
-    least          = graph_op2(g, OP_min, least, z);
-    Node   point   = graph_op2(g, OP_div, place.point, shape->values[0]);
-    NormalPath path = normal_path(l, place, 1);
+    Node   z         = graph_component(g, shape->values[0], 2);
+    Node   least     = graph_op2(g, OP_min, x, y);
+    least            = graph_op2(g, OP_min, least, z);
+    Node       point = graph_op2(g, OP_div, place.point, shape->values[0]);
+    NormalPath path  = normal_path(l, place, 1);
     normal_stretch(l, &path, shape->values[0], least);
     Node    unit   = enter_scale(l, least);
     Lowered result = lower_behind(l, shape->children[0], place, &path, point);
@@ -358,36 +358,36 @@ Node box_distance(Graph *g, Node point, Box box)
 
 static Lowered lower_extrude(Lowering *l, const Shape *shape, Place place)
 {
-    Graph *g    = l->graph;
-    Node   x    = graph_component(g, place.point, 0), y = graph_component(g, place.point, 1);
-    Node   zero = graph_number(g, 0);
-    Node   flat = graph_op3(g, OP_vec3, x, y, zero);
+    Graph  *g = l->graph;
+    Node    x = graph_component(g, place.point, 0), y = graph_component(g, place.point, 1);
+    Node    zero   = graph_number(g, 0);
+    Node    flat   = graph_op3(g, OP_vec3, x, y, zero);
     Lowered result = lower_shape(l, shape->children[0], place_at(place, flat));
     if (result.distance == NODE_NONE)
         return result;
-    Node height  = graph_component(g, place.point, 2);
-    height       = graph_op1(g, OP_abs, height);
-    height       = graph_op2(g, OP_sub, height, shape->values[0]);
-    Node inside  = graph_op2(g, OP_max, result.distance, height);
-    inside       = graph_op2(g, OP_min, inside, zero);
-    Node across  = graph_op2(g, OP_max, result.distance, zero);
-    Node along   = graph_op2(g, OP_max, height, zero);
-    Node outside = graph_op2(g, OP_vec2, across, along);
-    outside      = graph_op1(g, OP_length, outside);
+    Node height     = graph_component(g, place.point, 2);
+    height          = graph_op1(g, OP_abs, height);
+    height          = graph_op2(g, OP_sub, height, shape->values[0]);
+    Node inside     = graph_op2(g, OP_max, result.distance, height);
+    inside          = graph_op2(g, OP_min, inside, zero);
+    Node across     = graph_op2(g, OP_max, result.distance, zero);
+    Node along      = graph_op2(g, OP_max, height, zero);
+    Node outside    = graph_op2(g, OP_vec2, across, along);
+    outside         = graph_op1(g, OP_length, outside);
     result.distance = graph_op2(g, OP_add, inside, outside);
     return result;
 }
 
 static Lowered lower_revolve(Lowering *l, const Shape *shape, Place place)
 {
-    Graph *g    = l->graph;
-    Node   x    = graph_component(g, place.point, 0), y = graph_component(g, place.point, 1);
-    Node   z    = graph_component(g, place.point, 2);
-    Node   axis = graph_op2(g, OP_vec2, x, z);
-    Node   away = graph_op1(g, OP_length, axis);
-    away        = graph_op2(g, OP_sub, away, shape->values[0]);
-    Node   zero = graph_number(g, 0);
-    Node   flat = graph_op3(g, OP_vec3, away, y, zero);
+    Graph *g = l->graph;
+    Node   x = graph_component(g, place.point, 0), y = graph_component(g, place.point, 1);
+    Node   z        = graph_component(g, place.point, 2);
+    Node   axis     = graph_op2(g, OP_vec2, x, z);
+    Node   away     = graph_op1(g, OP_length, axis);
+    away            = graph_op2(g, OP_sub, away, shape->values[0]);
+    Node       zero = graph_number(g, 0);
+    Node       flat = graph_op3(g, OP_vec3, away, y, zero);
     NormalPath path = normal_path(l, place, 1);
     normal_turn_about_y(l, &path, place.point, graph_vec3(g, 1, 0, 0));
     return lower_behind(l, shape->children[0], place, &path, flat);
@@ -503,8 +503,9 @@ static Lowered lower_paint(Lowering *l, const Shape *shape, Place place)
     Lowered result = lower_shape(l, shape->children[0], place);
     if (!l->surfaces || result.distance == NODE_NONE)
         return result;
-    Substitution    with     = {place.point, result.surface.instance, result.surface.level,
-                                result.surface.uv, NODE_NONE, result.surface.trap};
+    Substitution with = {
+        place.point, result.surface.instance, result.surface.level, result.surface.uv,
+        NODE_NONE,   result.surface.trap};
     const Material *material = shape->material;
     with.normal              = unit_normal(l->graph, result.surface.normal, place.normal);
     paint_with(l, &result.surface.color, material->color, with);
@@ -538,9 +539,9 @@ static Lowered thin_sheet(Lowering *l, Lowered solid)
 
 static Lowered lower_shell(Lowering *l, const Shape *shape, Place place)
 {
-    Graph  *g    = l->graph;
-    bool    thin = l->thin && shape->sheet;
-    l->thin      = false;
+    Graph *g       = l->graph;
+    bool   thin    = l->thin && shape->sheet;
+    l->thin        = false;
     Lowered result = thin ? lower_shape(l, shape->children[0], place)
                           : lower_operand(l, shape->children[0], place);
     if (result.distance == NODE_NONE || thin)
@@ -555,32 +556,32 @@ static Lowered lower_shell(Lowering *l, const Shape *shape, Place place)
 static Lowered lower_kind(Lowering *l, const Shape *shape, Place place)
 {
     switch (shape->kind) {
-    case SHAPE_EMPTY:        return lowered_nothing;
-    case SHAPE_PRIMITIVE:    return lower_primitive(l, shape, place);
-    case SHAPE_TRANSFORM:    return lower_transform(l, shape, place);
-    case SHAPE_INVERSION:    return lower_inversion(l, shape, place);
-    case SHAPE_STRETCH:      return lower_stretch(l, shape, place);
-    case SHAPE_UNION:        return lower_union(l, shape, joint_place(shape, place));
+    case SHAPE_EMPTY: return lowered_nothing;
+    case SHAPE_PRIMITIVE: return lower_primitive(l, shape, place);
+    case SHAPE_TRANSFORM: return lower_transform(l, shape, place);
+    case SHAPE_INVERSION: return lower_inversion(l, shape, place);
+    case SHAPE_STRETCH: return lower_stretch(l, shape, place);
+    case SHAPE_UNION: return lower_union(l, shape, joint_place(shape, place));
     case SHAPE_INTERSECTION: return lower_intersection(l, shape, joint_place(shape, place));
-    case SHAPE_DIFFERENCE:   return lower_difference(l, shape, joint_place(shape, place));
-    case SHAPE_XOR:          return lower_xor(l, shape, joint_place(shape, place));
-    case SHAPE_MORPH:        return lower_morph(l, shape, place);
-    case SHAPE_META:         return lower_meta(l, shape, place);
-    case SHAPE_OFFSET:       return lower_offset(l, shape, place);
-    case SHAPE_SHELL:        return lower_shell(l, shape, place);
-    case SHAPE_ELONGATE:     return lower_elongate(l, shape, place);
-    case SHAPE_EXTRUDE:      return lower_extrude(l, shape, place);
-    case SHAPE_REVOLVE:      return lower_revolve(l, shape, place);
-    case SHAPE_REPEAT:       return lower_repeat(l, shape, place);
+    case SHAPE_DIFFERENCE: return lower_difference(l, shape, joint_place(shape, place));
+    case SHAPE_XOR: return lower_xor(l, shape, joint_place(shape, place));
+    case SHAPE_MORPH: return lower_morph(l, shape, place);
+    case SHAPE_META: return lower_meta(l, shape, place);
+    case SHAPE_OFFSET: return lower_offset(l, shape, place);
+    case SHAPE_SHELL: return lower_shell(l, shape, place);
+    case SHAPE_ELONGATE: return lower_elongate(l, shape, place);
+    case SHAPE_EXTRUDE: return lower_extrude(l, shape, place);
+    case SHAPE_REVOLVE: return lower_revolve(l, shape, place);
+    case SHAPE_REPEAT: return lower_repeat(l, shape, place);
     case SHAPE_REPEAT_POLAR: return lower_repeat_polar(l, shape, place);
-    case SHAPE_MIRROR:       return lower_mirror(l, shape, place);
-    case SHAPE_TWIST:        return lower_twist(l, shape, place);
-    case SHAPE_BEND:         return lower_bend(l, shape, place);
-    case SHAPE_TAPER:        return lower_taper(l, shape, place);
-    case SHAPE_DISPLACE:     return lower_displace(l, shape, place);
-    case SHAPE_SMOOTH:       return lower_smooth(l, shape, place);
-    case SHAPE_PAINT:        return lower_paint(l, shape, place);
-    case SHAPE_KRS:          return lower_krs(l, shape, place);
+    case SHAPE_MIRROR: return lower_mirror(l, shape, place);
+    case SHAPE_TWIST: return lower_twist(l, shape, place);
+    case SHAPE_BEND: return lower_bend(l, shape, place);
+    case SHAPE_TAPER: return lower_taper(l, shape, place);
+    case SHAPE_DISPLACE: return lower_displace(l, shape, place);
+    case SHAPE_SMOOTH: return lower_smooth(l, shape, place);
+    case SHAPE_PAINT: return lower_paint(l, shape, place);
+    case SHAPE_KRS: return lower_krs(l, shape, place);
     }
     assert(!"every kind of shape has a rule");
     return lowered_nothing;
@@ -589,10 +590,14 @@ static Lowered lower_kind(Lowering *l, const Shape *shape, Place place)
 bool rays_pass(const Shape *shape)
 {
     switch (shape->kind) {
-    case SHAPE_PRIMITIVE: case SHAPE_TRANSFORM: case SHAPE_STRETCH: case SHAPE_PAINT:
+    case SHAPE_PRIMITIVE:
+    case SHAPE_TRANSFORM:
+    case SHAPE_STRETCH:
+    case SHAPE_PAINT:
     case SHAPE_SMOOTH: return true;
-    case SHAPE_SHELL:  return shape->sheet;
-    case SHAPE_UNION: case SHAPE_INTERSECTION: return shape->blend.width == NODE_NONE;
+    case SHAPE_SHELL: return shape->sheet;
+    case SHAPE_UNION:
+    case SHAPE_INTERSECTION: return shape->blend.width == NODE_NONE;
     case SHAPE_DIFFERENCE:
         for (uint32_t i = 1; i < shape->child_count; i++)
             if (shape->children[i]->sheets)
@@ -614,7 +619,7 @@ bool has_thin_sheets(const Shape *shape)
 
 Lowered lower_shape(Lowering *l, const Shape *shape, Place place)
 {
-    bool thin = l->thin;
+    bool thin      = l->thin;
     l->graph->here = shape->span;
     l->overflow    = l->overflow || l->graph->count > l->most;
     if (l->overflow)
@@ -642,13 +647,16 @@ static Node or_else(Node node, Node otherwise) { return node == NODE_NONE ? othe
 
 bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roots)
 {
-    Lowering l     = {.graph = graph, .scratch = scratch, .surfaces = true, .thin = true,
-                      .most = graph->count + MOST_LOWERED};
-    Place    place = place_bare(graph_leaf(graph, OP_POINT), false);
-    place.normal    = graph_leaf(graph, OP_NORMAL);
-    place.footprint = graph_leaf(graph, OP_FOOTPRINT);
-    Lowered  all    = lower_shape(&l, shape, place);
-    Node     distance = or_else(all.distance, graph_number(graph, NOWHERE));
+    Lowering l            = {.graph    = graph,
+                             .scratch  = scratch,
+                             .surfaces = true,
+                             .thin     = true,
+                             .most     = graph->count + MOST_LOWERED};
+    Place    place        = place_bare(graph_leaf(graph, OP_POINT), false);
+    place.normal          = graph_leaf(graph, OP_NORMAL);
+    place.footprint       = graph_leaf(graph, OP_FOOTPRINT);
+    Lowered all           = lower_shape(&l, shape, place);
+    Node    distance      = or_else(all.distance, graph_number(graph, NOWHERE));
     roots[ROOT_DISTANCE]  = divide_by_slope(graph, distance, shape->slope);
     roots[ROOT_COLOR]     = or_else(all.surface.color, graph_vec3(graph, 0.6, 0.6, 0.6));
     roots[ROOT_ROUGHNESS] = or_else(all.surface.roughness, graph_number(graph, 0.6));
@@ -663,8 +671,12 @@ bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roo
 
 Node lower_guarded(Graph *graph, const Shape *shape, Node plain, Arena *scratch)
 {
-    Lowering l   = {.graph = graph, .scratch = scratch, .guarded = true, .thin = true,
-                    .unit = graph_number(graph, 1), .most = graph->count + MOST_LOWERED};
+    Lowering l   = {.graph   = graph,
+                    .scratch = scratch,
+                    .guarded = true,
+                    .thin    = true,
+                    .unit    = graph_number(graph, 1),
+                    .most    = graph->count + MOST_LOWERED};
     Lowered  all = lower_shape(&l, shape, place_bare(graph_leaf(graph, OP_POINT), false));
     if (all.distance == NODE_NONE || l.overflow)
         return plain;
@@ -677,14 +689,16 @@ enum { MOST_DERIVED = 20000 };
 bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near, Arena *scratch)
 {
     Nodes    still = {0};
-    Lowering l     = {.graph = graph, .scratch = scratch, .still = &still, .thin = true,
-                      .most = graph->count + MOST_DERIVED};
+    Lowering l     = {.graph   = graph,
+                      .scratch = scratch,
+                      .still   = &still,
+                      .thin    = true,
+                      .most    = graph->count + MOST_DERIVED};
     Lowered  all   = lower_shape(&l, shape, place_bare(graph_leaf(graph, OP_POINT), false));
     if (all.distance == NODE_NONE || l.overflow)
         return false;
-    *near = divide_by_slope(graph, all.distance, shape->slope);
+    *near     = divide_by_slope(graph, all.distance, shape->slope);
     Tape tape = tape_new(graph, near, 1, scratch);
-    return tape.count <= MOST_DERIVED &&
-           graph_gradient_of(graph, *near, still.items, still.count, gradient, NULL, scratch) !=
-               DERIVED_NOT;
+    return tape.count <= MOST_DERIVED && graph_gradient_of(graph, *near, still.items, still.count,
+                                                           gradient, NULL, scratch) != DERIVED_NOT;
 }

@@ -30,7 +30,7 @@
 /* A ray in the space of a shape: point + t direction, with the same t everywhere. */
 typedef struct Ray {
     Node point, direction, speed; /* speed: the length of direction */
-    Node back;  /* how far behind a point its sheets are looked for: up to the place before */
+    Node back; /* how far behind a point its sheets are looked for: up to the place before */
 } Ray;
 
 /* How far a term alone may fall over the piece, in c0; of 1 .. 16, few evaluations.  Twice the
@@ -149,8 +149,8 @@ static void clip_ray(Lowering *l, Box box, Ray ray, Node *enter, Node *leave)
             continue;
         Node from = graph_component(g, ray.point, i), way = graph_component(g, ray.direction, i);
         Node tiny = number(l, 1e-18);
-        way       = graph_op3(g, OP_select, graph_op2(g, OP_less, graph_op1(g, OP_abs, way), tiny),
-                              tiny, way);
+        way = graph_op3(g, OP_select, graph_op2(g, OP_less, graph_op1(g, OP_abs, way), tiny), tiny,
+                        way);
         Node low  = graph_op2(g, OP_sub, number(l, fmax(side.low, -1e18)), from);
         Node high = graph_op2(g, OP_sub, number(l, fmin(side.high, 1e18)), from);
         low       = graph_op2(g, OP_div, low, way);
@@ -257,11 +257,11 @@ static Node value_at(Lowering *l, const Shape *shape, Node point)
         if (shape->formula == NODE_NONE)
             break;
         return graph_substitute(g, shape->formula, substitute_point(point), l->scratch);
-    case SHAPE_TRANSFORM:
-        return value_at(l, shape->children[0], before_map(g, &shape->map, point));
+    case SHAPE_TRANSFORM: return value_at(l, shape->children[0], before_map(g, &shape->map, point));
     case SHAPE_STRETCH:
         return value_at(l, shape->children[0], graph_op2(g, OP_div, point, shape->values[0]));
-    case SHAPE_PAINT: case SHAPE_SMOOTH: return value_at(l, shape->children[0], point);
+    case SHAPE_PAINT:
+    case SHAPE_SMOOTH: return value_at(l, shape->children[0], point);
     default: break;
     }
     return lower_shape(l, shape, place_bare(point, false)).distance;
@@ -326,20 +326,20 @@ static Node along_joint(Lowering *l, const Shape *shape, Ray ray)
 /* Through x -> rows x scale + shift. */
 static Node along_map(Lowering *l, const Shape *shape, Ray ray)
 {
-    Graph *g = l->graph;
+    Graph *g      = l->graph;
     Map    linear = shape->map;
     linear.shift  = graph_vec3(g, 0, 0, 0);
-    Ray inner = {before_map(g, &shape->map, ray.point), before_map(g, &linear, ray.direction),
-                 graph_op2(g, OP_div, ray.speed, shape->map.scale), ray.back};
+    Ray inner     = {before_map(g, &shape->map, ray.point), before_map(g, &linear, ray.direction),
+                     graph_op2(g, OP_div, ray.speed, shape->map.scale), ray.back};
     return along(l, shape->children[0], inner);
 }
 
 static Node along_stretch(Lowering *l, const Shape *shape, Ray ray)
 {
-    Graph *g = l->graph;
-    Ray inner = {graph_op2(g, OP_div, ray.point, shape->values[0]),
-                 graph_op2(g, OP_div, ray.direction, shape->values[0]), NODE_NONE, ray.back};
-    inner.speed = graph_op1(g, OP_length, inner.direction);
+    Graph *g     = l->graph;
+    Ray    inner = {graph_op2(g, OP_div, ray.point, shape->values[0]),
+                    graph_op2(g, OP_div, ray.direction, shape->values[0]), NODE_NONE, ray.back};
+    inner.speed  = graph_op1(g, OP_length, inner.direction);
     return along(l, shape->children[0], inner);
 }
 
@@ -353,7 +353,7 @@ static Node along_sheet(Lowering *l, const Shape *shape, Ray ray)
     Node here   = value_at(l, shape->children[0], ray.point);
     Node before = value_at(l, shape->children[0], place_behind_point(l, ray));
     Node turned = graph_op2(g, OP_mul, graph_op1(g, OP_sign, here), graph_op1(g, OP_sign, before));
-    Node size   = graph_op1(g, OP_abs, here), all = graph_op1(g, OP_abs, before);
+    Node size = graph_op1(g, OP_abs, here), all = graph_op1(g, OP_abs, before);
     all         = at_least(l, graph_op2(g, OP_add, size, all), TINY);
     Node inside = graph_op2(g, OP_mul, ray.back, graph_op2(g, OP_div, size, all));
     return graph_op3(g, OP_select, graph_op2(g, OP_less, turned, number(l, 0)),
@@ -366,14 +366,18 @@ static bool sees_polynomial(const Shape *shape)
     bool sharp = shape->blend.width == NODE_NONE;
     switch (shape->kind) {
     case SHAPE_PRIMITIVE: return shape->formula != NODE_NONE && shape->degree > 0;
-    case SHAPE_SHELL:     return shape->sheet;
-    case SHAPE_UNION: case SHAPE_INTERSECTION: case SHAPE_DIFFERENCE:
+    case SHAPE_SHELL: return shape->sheet;
+    case SHAPE_UNION:
+    case SHAPE_INTERSECTION:
+    case SHAPE_DIFFERENCE:
         for (uint32_t i = 0; sharp && i < shape->child_count; i++)
             if (sees_polynomial(shape->children[i]))
                 return true;
         return false;
-    case SHAPE_TRANSFORM: case SHAPE_STRETCH: case SHAPE_PAINT: case SHAPE_SMOOTH:
-        return sees_polynomial(shape->children[0]);
+    case SHAPE_TRANSFORM:
+    case SHAPE_STRETCH:
+    case SHAPE_PAINT:
+    case SHAPE_SMOOTH: return sees_polynomial(shape->children[0]);
     default: return false;
     }
 }
@@ -389,10 +393,11 @@ static Node along(Lowering *l, const Shape *shape, Ray ray)
     switch (shape->kind) {
     case SHAPE_PRIMITIVE: return along_polynomial(l, shape, ray);
     case SHAPE_TRANSFORM: return along_map(l, shape, ray);
-    case SHAPE_STRETCH:   return along_stretch(l, shape, ray);
-    case SHAPE_SHELL:     return along_sheet(l, shape, ray);
+    case SHAPE_STRETCH: return along_stretch(l, shape, ray);
+    case SHAPE_SHELL: return along_sheet(l, shape, ray);
     case SHAPE_INTERSECTION: return along_intersection(l, shape, ray);
-    case SHAPE_PAINT: case SHAPE_SMOOTH: return along(l, shape->children[0], ray);
+    case SHAPE_PAINT:
+    case SHAPE_SMOOTH: return along(l, shape->children[0], ray);
     default: return along_joint(l, shape, ray);
     }
 }
@@ -403,10 +408,13 @@ Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod metho
         return lower_image(graph, shape, plain, method, scratch);
     if (!sees_polynomial(shape))
         return plain;
-    Lowering l   = {.graph = graph, .scratch = scratch, .most = graph->count + MOST_LOWERED,
-                    .method = method, .thin = true};
-    Ray      ray = {graph_leaf(graph, OP_POINT), graph_leaf(graph, OP_DIRECTION),
-                    graph_number(graph, 1), graph_leaf(graph, OP_FOOTPRINT)};
-    Node     all = along(&l, shape, ray);
+    Lowering l = {.graph   = graph,
+                  .scratch = scratch,
+                  .most    = graph->count + MOST_LOWERED,
+                  .method  = method,
+                  .thin    = true};
+    Ray ray = {graph_leaf(graph, OP_POINT), graph_leaf(graph, OP_DIRECTION), graph_number(graph, 1),
+               graph_leaf(graph, OP_FOOTPRINT)};
+    Node all = along(&l, shape, ray);
     return l.overflow || all == NODE_NONE ? plain : all;
 }

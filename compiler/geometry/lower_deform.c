@@ -52,8 +52,8 @@ static Node shear_norm(Graph *g, Node b)
 static Node over_angle(Graph *g, Op f, Node a)
 {
     Node small = graph_number(g, SMALL_ANGLE), size = graph_op1(g, OP_abs, a);
-    size       = most(g, size, small);
-    Node top   = graph_op1(g, f, size);
+    size     = most(g, size, small);
+    Node top = graph_op1(g, f, size);
     return over(g, top, size);
 }
 
@@ -161,28 +161,28 @@ static void undo_twist(Lowering *l, Node point, Node rate, Undone *undone)
     undone->shrink = NODE_NONE;
     if (!l->surfaces)
         return;
-    Node against = graph_op1(g, OP_neg, rate);
-    Node x = mul(g, graph_component(g, undone->point, 2), against);
-    Node z = mul(g, graph_component(g, undone->point, 0), rate);
-    Node back = row(g, x, zero, z), turned[3];
+    Node against   = graph_op1(g, OP_neg, rate);
+    Node x         = mul(g, graph_component(g, undone->point, 2), against);
+    Node z         = mul(g, graph_component(g, undone->point, 0), rate);
+    Node back      = row(g, x, zero, z), turned[3];
     undone->out[0] = row(g, c, zero, s);
     undone->out[1] = row(g, x, one, z);
     undone->out[2] = row(g, minus, zero, c);
     transpose_rows(g, rows, turned);
-    Node level     = graph_op4(g, OP_turn, back, turned[0], turned[1], turned[2]);
-    undone->in[0]  = rows[0];
-    undone->in[1]  = sub(g, rows[1], level);
-    undone->in[2]  = rows[2];
+    Node level    = graph_op4(g, OP_turn, back, turned[0], turned[1], turned[2]);
+    undone->in[0] = rows[0];
+    undone->in[1] = sub(g, rows[1], level);
+    undone->in[2] = rows[2];
 }
 
 Lowered lower_twist(Lowering *l, const Shape *shape, Place place)
 {
-    Graph *g      = l->graph;
-    Box    box    = shape->children[0]->box;
-    Node   zero   = graph_number(g, 0), rate = shape->values[0];
+    Graph *g    = l->graph;
+    Box    box  = shape->children[0]->box;
+    Node   zero = graph_number(g, 0), rate = shape->values[0];
     Node   radius = graph_number(g, axis_radius(box));
-    Node   low    = graph_number(g, box.axis[1].low), high = graph_number(g, box.axis[1].high);
-    Node   y      = graph_component(g, place.point, 1), r = radius_of(g, place.point);
+    Node   low = graph_number(g, box.axis[1].low), high = graph_number(g, box.axis[1].high);
+    Node   y = graph_component(g, place.point, 1), r = radius_of(g, place.point);
     Node   level  = graph_op3(g, OP_clamp, y, low, high);
     Node   inside = over(g, radius, most(g, r, radius));
     Node   beyond = most(g, sub(g, r, radius), zero);
@@ -215,14 +215,14 @@ static Part bend_part(Graph *g, const Shape *shape, uint32_t i)
     Range  side = shape->children[0]->box.axis[1];
     double step = (side.high - side.low) / shape->cells[0], middle = side.low + (i + 0.5) * step;
     double beyond = shape->cells[0] > 1 ? shape->overlap : 0;
-    Part   part = {.rate = shape->values[0], .middle = graph_number(g, middle)};
-    part.half   = graph_number(g, 0.5 * step + beyond);
+    Part   part   = {.rate = shape->values[0], .middle = graph_number(g, middle)};
+    part.half     = graph_number(g, 0.5 * step + beyond);
     Node zero = graph_number(g, 0), half = graph_number(g, 0.5);
     Node angle = mul(g, part.rate, part.middle), lean = mul(g, angle, half);
     Node c = graph_op1(g, OP_cos, angle), s = graph_op1(g, OP_sin, angle);
-    Node chord = mul(g, part.middle, over_angle(g, OP_sin, lean)); /* from the origin */
-    Node along = mul(g, chord, graph_op1(g, OP_cos, lean));
-    Node aside = mul(g, chord, graph_op1(g, OP_sin, lean));
+    Node chord         = mul(g, part.middle, over_angle(g, OP_sin, lean)); /* from the origin */
+    Node along         = mul(g, chord, graph_op1(g, OP_cos, lean));
+    Node aside         = mul(g, chord, graph_op1(g, OP_sin, lean));
     part.place.scale   = graph_number(g, 1);
     part.place.rows[0] = graph_vec3(g, 1, 0, 0);
     part.place.rows[1] = row(g, zero, c, graph_op1(g, OP_neg, s));
@@ -260,13 +260,13 @@ static void undo_bend(Lowering *l, const Part *part, Node point, Undone *undone,
     Node   x = graph_component(g, point, 0), y = graph_component(g, point, 1);
     Node   z = graph_component(g, point, 2);
     Node   u = mul(g, part->rate, y), w = sub(g, one, mul(g, part->rate, z));
-    Node   along   = over_angle(g, OP_atan, over(g, u, w));
-    Node   y_less  = over(g, y, w), y_old = mul(g, y_less, along);
+    Node   along  = over_angle(g, OP_atan, over(g, u, w));
+    Node   y_less = over(g, y, w), y_old = mul(g, y_less, along);
     Node   y_part  = mul(g, u, y); /* z (2 - rate z) - rate y^2 over 1 + lengths */
     Node   z_part  = mul(g, z, add(g, w, one));
     *lengths       = length_of(g, u, w);
-    Node   both    = add(g, *lengths, one);
-    Node   z_old   = over(g, sub(g, z_part, y_part), both);
+    Node both      = add(g, *lengths, one);
+    Node z_old     = over(g, sub(g, z_part, y_part), both);
     undone->point  = row(g, x, y_old, z_old);
     undone->shrink = NODE_NONE;
     if (!l->surfaces)
@@ -274,10 +274,10 @@ static void undo_bend(Lowering *l, const Part *part, Node point, Undone *undone,
     Node s = over(g, u, *lengths), c = over(g, w, *lengths), minus = graph_op1(g, OP_neg, s);
     Node s_less = over(g, s, *lengths), c_less = over(g, c, *lengths);
     undone->in[0] = undone->out[0] = graph_vec3(g, 1, 0, 0);
-    undone->in[1]  = row(g, zero, w, u);
-    undone->in[2]  = row(g, zero, minus, c);
-    undone->out[1] = row(g, zero, c_less, minus);
-    undone->out[2] = row(g, zero, s_less, c);
+    undone->in[1]                  = row(g, zero, w, u);
+    undone->in[2]                  = row(g, zero, minus, c);
+    undone->out[1]                 = row(g, zero, c_less, minus);
+    undone->out[2]                 = row(g, zero, s_less, c);
 }
 
 /* A part, at a place in its own space. */
@@ -294,7 +294,7 @@ static Lowered lower_part(Lowering *l, const Shape *shape, Place place, const Pa
     Node height  = graph_component(g, undone.point, 1);
     Node whole_y = add(g, height, part->middle);
     Node x = graph_component(g, undone.point, 0), z = graph_component(g, undone.point, 2);
-    undone.point = row(g, x, whole_y, z);
+    undone.point   = row(g, x, whole_y, z);
     Lowered result = lower_undone(l, shape, place, &undone);
     if (result.distance == NODE_NONE)
         return result;
@@ -319,12 +319,12 @@ Lowered lower_bend(Lowering *l, const Shape *shape, Place place)
         NormalPath path  = normal_path(l, place, 1);
         Node       point = before_map(l->graph, &part.place, place.point);
         normal_turn(l, &path, part.place.rows, part.place.scale);
-        Place   inner = place_behind(&path, place, point);
-        Lowered bent  = lower_part(l, shape, inner, &part);
+        Place   inner       = place_behind(&path, place, point);
+        Lowered bent        = lower_part(l, shape, inner, &part);
         bent.surface.normal = bent.surface.normal == inner.normal
                                   ? place.normal
                                   : normal_out(l, &path, bent.surface.normal);
-        result = join_two(l, blend_sharp, result, bent);
+        result              = join_two(l, blend_sharp, result, bent);
     }
     return result;
 }
@@ -333,7 +333,7 @@ Lowered lower_bend(Lowering *l, const Shape *shape, Place place)
 
 /* The radius of the frustum at its ends, and where they are. */
 typedef struct Frustum {
-    Node low, high, bottom, top; /* radii, y */
+    Node   low, high, bottom, top; /* radii, y */
     double height;
 } Frustum;
 
@@ -343,17 +343,17 @@ static Node frustum_nearest(Graph *g, const Frustum *f, Node r, Node y)
 {
     Node zero = graph_number(g, 0), one = graph_number(g, 1), middle = graph_number(g, 0.5);
     Node place = graph_op2(g, OP_vec2, r, y), foot = graph_op2(g, OP_vec2, f->low, f->bottom);
-    Node tip   = graph_op2(g, OP_vec2, f->high, f->top), side = sub(g, tip, foot);
-    Node along = graph_op2(g, OP_dot, sub(g, place, foot), side);
-    Node part  = over(g, along, graph_op2(g, OP_dot, side, side));
-    part       = graph_op3(g, OP_clamp, part, zero, one);
-    Node slant = add(g, foot, graph_op2(g, OP_scale, side, part));
-    Node level = sub(g, y, f->bottom);
-    level      = over(g, level, graph_number(g, f->height));
-    Node upper = graph_op2(g, OP_less, middle, level);
-    Node ring  = graph_op3(g, OP_select, upper, f->high, f->low);
-    Node edge  = graph_op3(g, OP_select, upper, f->top, f->bottom);
-    Node end   = graph_op2(g, OP_vec2, least(g, r, ring), edge);
+    Node tip = graph_op2(g, OP_vec2, f->high, f->top), side = sub(g, tip, foot);
+    Node along    = graph_op2(g, OP_dot, sub(g, place, foot), side);
+    Node part     = over(g, along, graph_op2(g, OP_dot, side, side));
+    part          = graph_op3(g, OP_clamp, part, zero, one);
+    Node slant    = add(g, foot, graph_op2(g, OP_scale, side, part));
+    Node level    = sub(g, y, f->bottom);
+    level         = over(g, level, graph_number(g, f->height));
+    Node upper    = graph_op2(g, OP_less, middle, level);
+    Node ring     = graph_op3(g, OP_select, upper, f->high, f->low);
+    Node edge     = graph_op3(g, OP_select, upper, f->top, f->bottom);
+    Node end      = graph_op2(g, OP_vec2, least(g, r, ring), edge);
     Node to_slant = graph_op1(g, OP_length, sub(g, place, slant));
     Node to_end   = graph_op1(g, OP_length, sub(g, place, end));
     Node nearer   = graph_op2(g, OP_less, to_end, to_slant);
@@ -375,9 +375,9 @@ static void undo_taper(Lowering *l, Node point, Node scale, Node rise, Undone *u
     undone->shrink = less;
     if (!l->surfaces)
         return;
-    Node x    = mul(g, graph_component(g, undone->point, 0), rise);
-    Node z    = mul(g, graph_component(g, undone->point, 2), rise);
-    Node back = graph_op1(g, OP_neg, less);
+    Node x         = mul(g, graph_component(g, undone->point, 0), rise);
+    Node z         = mul(g, graph_component(g, undone->point, 2), rise);
+    Node back      = graph_op1(g, OP_neg, less);
     undone->in[0]  = row(g, scale, zero, zero);
     undone->in[1]  = row(g, x, one, z);
     undone->in[2]  = row(g, zero, zero, scale);
@@ -393,26 +393,26 @@ Lowered lower_taper(Lowering *l, const Shape *shape, Place place)
     Box     box    = shape->children[0]->box;
     double  radius = axis_radius(box);
     Range   side   = box.axis[1];
-    Node    wide   = graph_number(g, radius), tiny = graph_number(g, 1e-20);
-    Node    one    = graph_number(g, 1), cost;
-    Frustum f = {.bottom = graph_number(g, side.low), .top = graph_number(g, side.high)};
-    f.low     = mul(g, wide, shape->values[0]);
-    f.high    = mul(g, wide, shape->values[1]);
-    f.height  = fmax(side.high - side.low, 1e-9);
-    Node y = graph_component(g, place.point, 1), r = radius_of(g, place.point);
-    Node nearest = frustum_nearest(g, &f, r, y), away = graph_op2(g, OP_vec2, r, y);
-    Node inner_r = graph_component(g, nearest, 0), inner_y = graph_component(g, nearest, 1);
-    Node inside  = over(g, inner_r, most(g, r, tiny));
-    Node height  = graph_number(g, f.height);
-    Node level   = over(g, sub(g, inner_y, f.bottom), height);
-    Node scale   = graph_op3(g, OP_mix, shape->values[0], shape->values[1], level);
-    Node rise    = over(g, sub(g, shape->values[1], shape->values[0]), height);
+    Node    wide = graph_number(g, radius), tiny = graph_number(g, 1e-20);
+    Node    one = graph_number(g, 1), cost;
+    Frustum f   = {.bottom = graph_number(g, side.low), .top = graph_number(g, side.high)};
+    f.low       = mul(g, wide, shape->values[0]);
+    f.high      = mul(g, wide, shape->values[1]);
+    f.height    = fmax(side.high - side.low, 1e-9);
+    Node   y = graph_component(g, place.point, 1), r = radius_of(g, place.point);
+    Node   nearest = frustum_nearest(g, &f, r, y), away = graph_op2(g, OP_vec2, r, y);
+    Node   inner_r = graph_component(g, nearest, 0), inner_y = graph_component(g, nearest, 1);
+    Node   inside = over(g, inner_r, most(g, r, tiny));
+    Node   height = graph_number(g, f.height);
+    Node   level  = over(g, sub(g, inner_y, f.bottom), height);
+    Node   scale  = graph_op3(g, OP_mix, shape->values[0], shape->values[1], level);
+    Node   rise   = over(g, sub(g, shape->values[1], shape->values[0]), height);
     Undone undone = {.away = graph_op1(g, OP_length, sub(g, away, nearest))};
     undo_taper(l, across_scaled(g, place.point, inner_y, inside), scale, rise, &undone);
     Lowered result = lower_undone(l, shape, place, &undone);
     if (result.distance == NODE_NONE)
         return result;
-    Node steep  = graph_op1(g, OP_abs, rise), shear = mul(g, steep, wide);
+    Node steep = graph_op1(g, OP_abs, rise), shear = mul(g, steep, wide);
     Node cut    = cut_distance(g, result.distance, radius, steep, &cost);
     Node weight = least(g, scale, one), slope = add(g, shear_norm(g, shear), cost);
     result.distance = over(g, mul(g, cut, weight), slope);
@@ -424,10 +424,10 @@ Lowered lower_taper(Lowering *l, const Shape *shape, Place place)
 /* How far above the high side and below the low one, the most of all axes; negative within. */
 static Node box_excess(Graph *g, Node point, Node low, Node high, Node *outside)
 {
-    Node below  = sub(g, low, point), above = sub(g, point, high);
+    Node below = sub(g, low, point), above = sub(g, point, high);
     Node excess = most(g, below, above);
     Node x = graph_component(g, excess, 0), y = graph_component(g, excess, 1);
-    Node z    = graph_component(g, excess, 2), zero = graph_number(g, 0);
+    Node z = graph_component(g, excess, 2), zero = graph_number(g, 0);
     Node flat = most(g, x, y);
     *outside  = graph_op1(g, OP_length, most(g, excess, zero));
     return most(g, flat, z);
@@ -481,10 +481,10 @@ Lowered lower_displace(Lowering *l, const Shape *shape, Place place)
     Lowered result = lower_shape(l, child, place_steady(place_at(place, point)));
     if (result.distance == NODE_NONE)
         return result;
-    Node bump  = graph_substitute(g, shape->formula, substitute_point(point), l->scratch);
-    Node steep = mul(g, size, shape->values[1]);
-    Node slope = add(g, steep, graph_number(g, child->slope));
-    Node moved = sub(g, result.distance, mul(g, bump, shape->values[0]));
+    Node bump       = graph_substitute(g, shape->formula, substitute_point(point), l->scratch);
+    Node steep      = mul(g, size, shape->values[1]);
+    Node slope      = add(g, steep, graph_number(g, child->slope));
+    Node moved      = sub(g, result.distance, mul(g, bump, shape->values[0]));
     result.distance = over(g, moved, slope);
     if (!ends)
         return result;

@@ -25,9 +25,9 @@ static const double NOWHERE = 1e30;
    so not where a slope is needed. */
 bool may_stop(const Lowering *l, const Shape *krs, uint32_t stage, Place place)
 {
-    const LevelBound *bound = &krs->bounds[stage];
-    bool last   = stage + 1 == krs->stage_count;
-    bool mapped = krs->stages[stage].kind == STAGE_KERNEL &&
+    const LevelBound *bound  = &krs->bounds[stage];
+    bool              last   = stage + 1 == krs->stage_count;
+    bool              mapped = krs->stages[stage].kind == STAGE_KERNEL &&
                   (last || krs->stages[stage + 1].kind != STAGE_KERNEL);
     return l->guarded && !place.lipschitz && (last || mapped) && bound->ball.radius > 0 &&
            isfinite(bound->ball.radius) && box_is_finite(bound->box);
@@ -59,8 +59,8 @@ Node guard_stops(Lowering *l, const Stop *stops, uint32_t count, Node whole)
 {
     Graph *g = l->graph;
     for (uint32_t i = count; i-- > 0 && whole != NODE_NONE;) {
-        const Stop *stop   = &stops[i];
-        Box         box    = stop->bound->box;
+        const Stop *stop    = &stops[i];
+        Box         box     = stop->bound->box;
         double      largest = 0;
         for (int k = 0; k < 3; k++)
             largest = fmax(largest, fmax(fabs(box.axis[k].low), fabs(box.axis[k].high)));

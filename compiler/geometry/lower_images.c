@@ -30,12 +30,12 @@ static const double TINY = 1e-30;
 /* What has been taken through maps, so far. */
 typedef struct Image {
     Passage passage;
-    Node    direction;      /* DIRECTIONAL: w */
-    Node    bow;            /* h; NODE_NONE: 0, nothing has inverted, */
-    Node    tilt, square;   /* and with it h.w, h.h */
-    Node    ahead;          /* 1 / t of the first mirror that is crossed, by those so far; */
-    Node    cut;            /* by those farther out than an inversion; NODE_NONE: there are none */
-    Node    radius;         /* PROBE */
+    Node    direction;    /* DIRECTIONAL: w */
+    Node    bow;          /* h; NODE_NONE: 0, nothing has inverted, */
+    Node    tilt, square; /* and with it h.w, h.h */
+    Node    ahead;        /* 1 / t of the first mirror that is crossed, by those so far; */
+    Node    cut;          /* by those farther out than an inversion; NODE_NONE: there are none */
+    Node    radius;       /* PROBE */
 } Image;
 
 static Node number(Lowering *l, double value) { return graph_number(l->graph, value); }
@@ -137,17 +137,17 @@ static void bend_ray(Lowering *l, Image *image, const Map *map, const Inversion 
 /* Returns what the pole lets pass of a ball outside, as its worth. */
 static Node invert_ball(Lowering *l, Image *image, const Map *map)
 {
-    Graph *g      = l->graph;
-    Node   way    = graph_op2(g, OP_sub, image->passage.point, map->shift);
-    Node   square = graph_op2(g, OP_dot, way, way);
-    Node   room   = difference(l, square, graph_op1(g, OP_square, image->radius));
-    Node   least  = product(l, square, number(l, NEAR_POLE));
-    least         = sum(l, least, number(l, TINY));
-    Node   factor = graph_op2(g, OP_div, map->scale, larger(l, room, least));
-    Node   reach  = graph_op1(g, OP_length, way);
-    reach         = product(l, reach, number(l, 1 - NEAR_POLE));
-    Node   worth  = worth_of(l, image, reach);
-    Node   centre = graph_op2(g, OP_scale, turn_behind(g, map, way), factor);
+    Graph *g             = l->graph;
+    Node   way           = graph_op2(g, OP_sub, image->passage.point, map->shift);
+    Node   square        = graph_op2(g, OP_dot, way, way);
+    Node   room          = difference(l, square, graph_op1(g, OP_square, image->radius));
+    Node   least         = product(l, square, number(l, NEAR_POLE));
+    least                = sum(l, least, number(l, TINY));
+    Node factor          = graph_op2(g, OP_div, map->scale, larger(l, room, least));
+    Node reach           = graph_op1(g, OP_length, way);
+    reach                = product(l, reach, number(l, 1 - NEAR_POLE));
+    Node worth           = worth_of(l, image, reach);
+    Node centre          = graph_op2(g, OP_scale, turn_behind(g, map, way), factor);
     image->passage.point = graph_op2(g, OP_add, centre, map->pole);
     image->radius        = product(l, image->radius, factor);
     return worth;
@@ -213,10 +213,10 @@ static void image_mirror(Lowering *l, Image *image, Node axis, Node offset)
         mirrored   = reflected(l, image->bow, axis);
         image->bow = graph_op3(g, OP_select, front, mirrored, image->bow);
     }
-    Node away  = graph_op2(g, OP_dot, axis, point);
-    away       = graph_op1(g, OP_abs, difference(l, away, offset));
-    Node speed = graph_op2(g, OP_dot, axis, image->direction);
-    speed      = product(l, speed, shrink_of(l, image));
+    Node away    = graph_op2(g, OP_dot, axis, point);
+    away         = graph_op1(g, OP_abs, difference(l, away, offset));
+    Node speed   = graph_op2(g, OP_dot, axis, image->direction);
+    speed        = product(l, speed, shrink_of(l, image));
     image->ahead = larger(l, image->ahead, crossing(l, image, axis, away, speed));
 }
 
@@ -241,7 +241,7 @@ static Node hull_worth(Lowering *l, const Image *image, const Map *map, Ball bal
 
 static Node image_inversion(Lowering *l, const Shape *shape, Image image)
 {
-    Node hull = hull_worth(l, &image, &shape->map, ball_around(shape->children[0]->box));
+    Node hull  = hull_worth(l, &image, &shape->map, ball_around(shape->children[0]->box));
     Node pole  = image_map(l, &image, &shape->map);
     Node inner = image_shape(l, shape->children[0], image);
     return inner == NODE_NONE ? NODE_NONE : larger(l, nearer_of(l->graph, inner, pole), hull);
@@ -251,8 +251,8 @@ static Node image_inversion(Lowering *l, const Shape *shape, Image image)
    that holds its pole passes, but what is outside of its hull and of those farther out. */
 static Node image_krs(Lowering *l, const Shape *shape, Image image)
 {
-    Graph   *g     = l->graph;
-    Node     hull  = NODE_NONE, nearest = NODE_NONE;
+    Graph   *g    = l->graph;
+    Node     hull = NODE_NONE, nearest = NODE_NONE;
     uint32_t first = 0; /* kernel: what comes before it has nothing to be applied to */
     while (first < shape->stage_count && shape->stages[first].kind != STAGE_KERNEL)
         first++;
@@ -262,7 +262,7 @@ static Node image_krs(Lowering *l, const Shape *shape, Image image)
         Node         found = NODE_NONE;
         switch (stage->kind) {
         case STAGE_REFLECT: image_mirror(l, &image, stage->normal, stage->offset); break;
-        case STAGE_KERNEL:  found = image_shape(l, shape->children[stage->kernel], image); break;
+        case STAGE_KERNEL: found = image_shape(l, shape->children[stage->kernel], image); break;
         case STAGE_MAP:
             if (map->pole != NODE_NONE)
                 hull = larger(l, hull, hull_worth(l, &image, map, shape->bounds[i - 1].ball));
@@ -298,7 +298,9 @@ static bool sees_inversion(const Shape *shape)
         if (shape->blend.width != NODE_NONE)
             return false;
         break;
-    case SHAPE_TRANSFORM: case SHAPE_PAINT: case SHAPE_SMOOTH: break;
+    case SHAPE_TRANSFORM:
+    case SHAPE_PAINT:
+    case SHAPE_SMOOTH: break;
     default: return false;
     }
     for (uint32_t i = 0; i < shape->child_count; i++)
@@ -317,8 +319,8 @@ static Node image_shape(Lowering *l, const Shape *shape, Image image)
         return image_distance(l, shape, image);
     switch (shape->kind) {
     case SHAPE_INVERSION: return image_inversion(l, shape, image);
-    case SHAPE_KRS:       return image_krs(l, shape, image);
-    case SHAPE_UNION:     return image_union(l, shape, image);
+    case SHAPE_KRS: return image_krs(l, shape, image);
+    case SHAPE_UNION: return image_union(l, shape, image);
     case SHAPE_TRANSFORM: image_map(l, &image, &shape->map); break;
     default: break;
     }
@@ -329,10 +331,16 @@ Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod metho
 {
     if (!sees_inversion(shape))
         return plain;
-    Lowering l     = {.graph = graph, .scratch = scratch, .most = graph->count + MOST_LOWERED,
-                      .method = method, .thin = true};
-    Image    image = {.bow = NODE_NONE, .tilt = NODE_NONE, .square = NODE_NONE,
-                      .ahead = NODE_NONE, .cut = NODE_NONE};
+    Lowering l      = {.graph   = graph,
+                       .scratch = scratch,
+                       .most    = graph->count + MOST_LOWERED,
+                       .method  = method,
+                       .thin    = true};
+    Image    image  = {.bow    = NODE_NONE,
+                       .tilt   = NODE_NONE,
+                       .square = NODE_NONE,
+                       .ahead  = NODE_NONE,
+                       .cut    = NODE_NONE};
     image.passage   = passage_new(graph, graph_leaf(graph, OP_POINT));
     image.direction = graph_leaf(graph, OP_DIRECTION);
     image.radius    = graph_leaf(graph, OP_FOOTPRINT);

@@ -19,7 +19,7 @@ typedef struct Walk {
     NormalPath   path;
     Node         id;
     uint32_t     level;
-    Lowered      result;   /* of the kernels so far */
+    Lowered      result; /* of the kernels so far */
     Hulls        hulls;
     Node         inside;   /* distance of those that the last hull is around, */
     Node         distance; /* and of the others, none nearer than the hulls around it */
@@ -47,7 +47,8 @@ static void take_mirror(Lowering *l, Walk *walk, const Stage *stage)
 static void leave_hull(Lowering *l, Walk *walk)
 {
     Node bound     = walk->inside == NODE_NONE
-                   ? NODE_NONE : farther_of(l->graph, walk->inside, walk->hulls.distance);
+                         ? NODE_NONE
+                         : farther_of(l->graph, walk->inside, walk->hulls.distance);
     walk->distance = nearer_of(l->graph, walk->distance, bound);
     walk->inside   = NODE_NONE;
 }
@@ -111,11 +112,11 @@ Lowered lower_krs(Lowering *l, const Shape *shape, Place place)
     for (uint32_t i = count; i-- > 0;) {
         const Stage *stage = &shape->stages[i];
         if (may_stop(l, shape, i, place))
-            walk.stops[walk.stop_count++] =
-                (Stop){&shape->bounds[i], walk.passage, walk.result.distance};
+            walk.stops[walk.stop_count++] = (Stop){&shape->bounds[i], walk.passage,
+                                                   walk.result.distance};
         switch (stage->kind) {
         case STAGE_REFLECT: take_mirror(l, &walk, stage); break;
-        case STAGE_MAP:     take_map(l, &walk, stage, i ? &shape->bounds[i - 1] : NULL); break;
+        case STAGE_MAP: take_map(l, &walk, stage, i ? &shape->bounds[i - 1] : NULL); break;
         case STAGE_KERNEL:
             prepare_fold(l, &walk, i ? stage - 1 : NULL);
             take_kernel(l, &walk, shape->children[stage->kernel]);

@@ -74,8 +74,8 @@ static void passage_invert(Lowering *l, Passage *passage, const Map *map, Normal
     passage->shrink = graph_op2(g, OP_mul, passage->shrink, at.sigma);
     passage->point  = behind_inversion(g, map, at.way, at.sigma);
     if (l->surfaces) {
-        Node one    = graph_number(g, 1);
-        Node grown  = graph_op2(g, OP_div, one, at.sigma);
+        Node one   = graph_number(g, 1);
+        Node grown = graph_op2(g, OP_div, one, at.sigma);
         normal_flip(l, path, at.axis);
         normal_turn(l, path, map->rows, grown);
     }
@@ -133,7 +133,7 @@ Node passage_hull(Lowering *l, const Passage *passage, const Map *map, Ball *bal
     Graph *g = l->graph;
     if (ball->radius < 0 || isinf(ball->radius))
         return NODE_NONE;
-    Node   way     = graph_constant(g, TYPE_VEC3, ball->centre);
+    Node way       = graph_constant(g, TYPE_VEC3, ball->centre);
     way            = graph_op2(g, OP_sub, way, map->pole);
     Node   square  = graph_op2(g, OP_dot, way, way);
     Range  away    = frame_range(l, square, 0);
@@ -145,17 +145,17 @@ Node passage_hull(Lowering *l, const Passage *passage, const Map *map, Ball *bal
         return NODE_NONE;
     ball->radius = radius;
     /* Centre and radius: scale (R way, radius) / (|way|^2 - radius^2); outside that is < 0. */
-    Node rest   = graph_number(g, radius * radius);
-    rest        = graph_op2(g, OP_sub, square, rest);
-    Node factor = graph_op2(g, OP_div, map->scale, rest);
-    Node centre = graph_op4(g, OP_turn, way, map->rows[0], map->rows[1], map->rows[2]);
-    centre      = graph_op2(g, OP_scale, centre, factor);
-    centre      = graph_op2(g, OP_add, centre, map->shift);
-    Node size   = graph_number(g, radius);
-    size        = graph_op2(g, OP_mul, size, factor);
-    Node away_from_centre = graph_op2(g, OP_sub, passage->point, centre);
-    Node length           = graph_op1(g, OP_length, away_from_centre);
-    Lowered bound         = lowered_nothing;
+    Node rest                = graph_number(g, radius * radius);
+    rest                     = graph_op2(g, OP_sub, square, rest);
+    Node factor              = graph_op2(g, OP_div, map->scale, rest);
+    Node centre              = graph_op4(g, OP_turn, way, map->rows[0], map->rows[1], map->rows[2]);
+    centre                   = graph_op2(g, OP_scale, centre, factor);
+    centre                   = graph_op2(g, OP_add, centre, map->shift);
+    Node size                = graph_number(g, radius);
+    size                     = graph_op2(g, OP_mul, size, factor);
+    Node    away_from_centre = graph_op2(g, OP_sub, passage->point, centre);
+    Node    length           = graph_op1(g, OP_length, away_from_centre);
+    Lowered bound            = lowered_nothing;
     if (outside)
         length = graph_op1(g, OP_neg, length);
     bound.distance = graph_op2(g, OP_sub, length, size);
@@ -245,10 +245,10 @@ Lowered lower_inversion(Lowering *l, const Shape *shape, Place place)
     Ball       ball    = ball_around(shape->children[0]->box);
     Node       hull    = passage_hull(l, &passage, &shape->map, &ball);
     passage_map(l, &passage, &shape->map, &path);
-    Node    unit    = enter_passage(l, &passage);
-    Lowered result  = lower_behind(l, shape->children[0], place, &path, passage.point);
-    l->unit         = unit;
-    result          = passage_out(l, &passage, result);
+    Node    unit   = enter_passage(l, &passage);
+    Lowered result = lower_behind(l, shape->children[0], place, &path, passage.point);
+    l->unit        = unit;
+    result         = passage_out(l, &passage, result);
     if (result.distance != NODE_NONE)
         result.distance = farther_of(l->graph, result.distance, hull);
     return result;

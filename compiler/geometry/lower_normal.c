@@ -101,11 +101,11 @@ static void rows_about_y(Graph *g, Node from, Node to, Node rows[3])
     Node a[2][2], zero = graph_number(g, 0);
     for (int i = 0; i < 2; i++) {
         Node point = i ? to : from;
-        Node x     = graph_component(g, point, 0), z = graph_component(g, point, 2);
-        Node flat  = graph_op2(g, OP_vec2, x, z);
-        flat       = graph_op1(g, OP_normalize, flat);
-        a[i][0]    = graph_component(g, flat, 0);
-        a[i][1]    = graph_component(g, flat, 1);
+        Node x = graph_component(g, point, 0), z = graph_component(g, point, 2);
+        Node flat = graph_op2(g, OP_vec2, x, z);
+        flat      = graph_op1(g, OP_normalize, flat);
+        a[i][0]   = graph_component(g, flat, 0);
+        a[i][1]   = graph_component(g, flat, 1);
     }
     Node xx     = graph_op2(g, OP_mul, a[0][0], a[1][0]);
     Node zz     = graph_op2(g, OP_mul, a[0][1], a[1][1]);
@@ -152,14 +152,14 @@ void normal_fold(Lowering *l, NormalPath *path, Node point, Node axis, Node offs
     Graph *g = l->graph;
     if (!l->surfaces)
         return;
-    Place bare      = path->innermost;
-    bare.smoothing  = NODE_NONE;
-    Node along      = graph_op2(g, OP_dot, axis, point);
-    Node front      = graph_op2(g, OP_sub, along, offset);
-    Node behind     = graph_op3(g, OP_front, point, axis, offset);
-    Node hard       = share_of(g, bare, front, behind);
-    NormalStep step = {.kind = NORMAL_MIRROR, .axis = axis};
-    step.share      = share_of(g, path->innermost, front, behind);
+    Place bare        = path->innermost;
+    bare.smoothing    = NODE_NONE;
+    Node       along  = graph_op2(g, OP_dot, axis, point);
+    Node       front  = graph_op2(g, OP_sub, along, offset);
+    Node       behind = graph_op3(g, OP_front, point, axis, offset);
+    Node       hard   = share_of(g, bare, front, behind);
+    NormalStep step   = {.kind = NORMAL_MIRROR, .axis = axis};
+    step.share        = share_of(g, path->innermost, front, behind);
     add_step(path, step);
     path->innermost.normal = mirrored(g, path->innermost.normal, axis, hard);
 }

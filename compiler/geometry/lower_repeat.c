@@ -58,10 +58,10 @@ static Joining choose_joining(Lowering *l, const Shape *content, Node mapped, ui
 }
 
 typedef struct Lattice {
-    Node   period;        /* of the axis */
-    Node   shifted;       /* coordinate, moved so that cells have whole numbers */
-    Node   low, high;     /* numbers of the first and the last cell; NODE_NONE: endless */
-    double margin;        /* of the content */
+    Node   period;    /* of the axis */
+    Node   shifted;   /* coordinate, moved so that cells have whole numbers */
+    Node   low, high; /* numbers of the first and the last cell; NODE_NONE: endless */
+    double margin;    /* of the content */
     double least_period;
     bool   repeats;
 } Lattice;
@@ -106,10 +106,10 @@ static Node within_lattice(Graph *g, const Lattice *cells, Node number)
 /* Coordinate within the nearest cell. */
 static Node in_cell(Graph *g, const Lattice *cells, Node *number)
 {
-    Node ratio  = graph_op2(g, OP_div, cells->shifted, cells->period);
-    ratio       = graph_op1(g, OP_round, ratio);
-    *number     = within_lattice(g, cells, ratio);
-    Node start  = graph_op2(g, OP_mul, *number, cells->period);
+    Node ratio = graph_op2(g, OP_div, cells->shifted, cells->period);
+    ratio      = graph_op1(g, OP_round, ratio);
+    *number    = within_lattice(g, cells, ratio);
+    Node start = graph_op2(g, OP_mul, *number, cells->period);
     return graph_op2(g, OP_sub, cells->shifted, start);
 }
 
@@ -117,22 +117,22 @@ static Node in_cell(Graph *g, const Lattice *cells, Node *number)
    where there is no neighbour. */
 static Node in_neighbour(Graph *g, const Lattice *cells, Node local, Node number)
 {
-    Node zero   = graph_number(g, 0), one = graph_number(g, 1), minus = graph_number(g, -1);
-    Node left   = graph_op2(g, OP_less, local, zero);
-    Node side   = graph_op3(g, OP_select, left, minus, one);
-    Node next   = graph_op2(g, OP_add, number, side);
-    next        = within_lattice(g, cells, next);
-    Node start  = graph_op2(g, OP_mul, next, cells->period);
+    Node zero = graph_number(g, 0), one = graph_number(g, 1), minus = graph_number(g, -1);
+    Node left  = graph_op2(g, OP_less, local, zero);
+    Node side  = graph_op3(g, OP_select, left, minus, one);
+    Node next  = graph_op2(g, OP_add, number, side);
+    next       = within_lattice(g, cells, next);
+    Node start = graph_op2(g, OP_mul, next, cells->period);
     return graph_op2(g, OP_sub, cells->shifted, start);
 }
 
 /* Distance to the wall of the nearest existing neighbour, plus the margin behind it. */
 static Node wall_distance(Graph *g, const Lattice *cells, Node local, Node number)
 {
-    Node half   = graph_number(g, 0.5);
-    Node wall   = graph_op2(g, OP_mul, cells->period, half);
-    Node right  = graph_op2(g, OP_sub, wall, local);
-    Node left   = graph_op2(g, OP_add, wall, local);
+    Node half  = graph_number(g, 0.5);
+    Node wall  = graph_op2(g, OP_mul, cells->period, half);
+    Node right = graph_op2(g, OP_sub, wall, local);
+    Node left  = graph_op2(g, OP_add, wall, local);
     if (cells->low != NODE_NONE) {
         Node far   = graph_number(g, NOWHERE);
         Node first = graph_op2(g, OP_less_equal, number, cells->low);
@@ -202,7 +202,7 @@ static Lowered join_neighbours(Lowering *l, const Shape *shape, Place place, con
         Place        there   = place_at(place, graph_op(l->graph, OP_vec3, parts));
         Lowered      copy    = needs_limit(content, place) ? lower_operand(l, content, there)
                                                            : lower_shape(l, content, there);
-        result = join_two(l, blend_sharp, result, copy);
+        result               = join_two(l, blend_sharp, result, copy);
     }
     return result;
 }
@@ -228,7 +228,7 @@ Lowered lower_repeat(Lowering *l, const Shape *shape, Place place)
             other[i] = in_neighbour(g, &cells, own[i], number);
         if (neighbour[i] && needs_limit(shape->children[0], place)) {
             Range content = shape->children[0]->box.axis[i];
-            limit = nearer_of(g, limit, limit_in_cell(g, &cells, content, own[i]));
+            limit         = nearer_of(g, limit, limit_in_cell(g, &cells, content, own[i]));
         }
         if (joining == WALLS) {
             Node wall = wall_distance(g, &cells, own[i], number);
@@ -267,8 +267,8 @@ static double sector_margin(Box content, double angle, double half_sector)
     if (!ends_across(content))
         return -INFINITY;
     for (int corner = 0; corner < 4; corner++) {
-        double x = corner & 1 ? content.axis[0].high : content.axis[0].low;
-        double z = corner & 2 ? content.axis[2].high : content.axis[2].low;
+        double x     = corner & 1 ? content.axis[0].high : content.axis[0].low;
+        double z     = corner & 2 ? content.axis[2].high : content.axis[2].low;
         double along = c * x + s * z, across = -s * x + c * z;
         least = fmin(least, along * sin(half_sector) - fabs(across) * cos(half_sector));
     }
@@ -299,10 +299,10 @@ static Lowered all_around(Lowering *l, const Shape *shape, Place place, uint32_t
 static Node in_next_sector(Graph *g, const Shape *shape, Node local)
 {
     double sector = 2 * (M_PI / shape->cells[0]);
-    Node   z      = graph_component(g, local, 2), zero = graph_number(g, 0);
-    Node   right  = graph_op2(g, OP_less, zero, z);
-    Node   plus   = turn_about_y(g, local, sector);
-    Node   minus  = turn_about_y(g, local, -sector);
+    Node   z = graph_component(g, local, 2), zero = graph_number(g, 0);
+    Node   right = graph_op2(g, OP_less, zero, z);
+    Node   plus  = turn_about_y(g, local, sector);
+    Node   minus = turn_about_y(g, local, -sector);
     return graph_op3(g, OP_select, right, plus, minus);
 }
 
@@ -316,7 +316,7 @@ typedef struct Sector {
    the same in the middle and grows from there. */
 static Node across_sector(Graph *g, const Sector *sector, Node local, double factor)
 {
-    Node z      = graph_component(g, local, 2), x = graph_component(g, local, 0);
+    Node z = graph_component(g, local, 2), x = graph_component(g, local, 0);
     Node sine   = graph_number(g, sin(sector->half));
     Node cosine = graph_number(g, factor * cos(sector->half));
     Node along  = graph_op2(g, OP_mul, x, sine);
@@ -336,9 +336,9 @@ static Node sector_wall(Graph *g, const Sector *sector, Node local, double facto
 static Lowered lower_in_sector(Lowering *l, const Shape *shape, Place place, const Sector *sector,
                                Node local)
 {
-    Graph   *g      = l->graph;
-    Node     point  = turn_about_y(g, local, -sector->angle);
-    Lowered  result = lower_turned(l, shape->children[0], place, point);
+    Graph  *g      = l->graph;
+    Node    point  = turn_about_y(g, local, -sector->angle);
+    Lowered result = lower_turned(l, shape->children[0], place, point);
     if (result.distance == NODE_NONE || !needs_limit(shape->children[0], place))
         return result;
     Node wall       = across_sector(g, sector, local, -1);
@@ -361,19 +361,19 @@ Lowered lower_repeat_polar(Lowering *l, const Shape *shape, Place place)
     if (shape->cells[0] < 3 || sector.margin < 0)
         return all_around(l, shape, place, 0, shape->cells[0]);
 
-    Node    facing = turn_about_y(g, place.point, sector.angle);
-    Node    count  = graph_number(g, shape->cells[0]);
-    Node    local  = graph_op2(g, OP_cell_polar, facing, count);
-    Lowered result = lower_in_sector(l, shape, place, &sector, local);
-    Node    mapped = turn_about_y(g, graph_leaf(g, OP_POINT), -sector.angle);
-    double  width  = hypot(centre[0], centre[2]) * sin(sector.half);
+    Node    facing  = turn_about_y(g, place.point, sector.angle);
+    Node    count   = graph_number(g, shape->cells[0]);
+    Node    local   = graph_op2(g, OP_cell_polar, facing, count);
+    Lowered result  = lower_in_sector(l, shape, place, &sector, local);
+    Node    mapped  = turn_about_y(g, graph_leaf(g, OP_POINT), -sector.angle);
+    double  width   = hypot(centre[0], centre[2]) * sin(sector.half);
     Joining joining = choose_joining(l, content, mapped, 2, sector.margin, width, place);
     if (joining == SYMMETRIC || result.distance == NODE_NONE)
         return result;
     if (joining == NEIGHBOURS) {
-        Node    next = in_next_sector(g, shape, local);
-        Lowered copy = lower_in_sector(l, shape, place, &sector, next);
-        bool    cut  = needs_limit(content, place);
+        Node    next  = in_next_sector(g, shape, local);
+        Lowered copy  = lower_in_sector(l, shape, place, &sector, next);
+        bool    cut   = needs_limit(content, place);
         Node    limit = cut ? sector_wall(g, &sector, local, 1) : NODE_NONE;
         return cut_to_limit(l, shape, place, join_two(l, blend_sharp, result, copy), limit);
     }

@@ -35,17 +35,17 @@ typedef struct Nodes {
 } Nodes;
 
 typedef struct Lowering {
-    Graph *graph;
-    Arena *scratch;
-    bool   surfaces; /* else the distance alone */
-    AlongMethod method; /* of lower_along.c */
-    bool   thin;     /* rays pass all that is around: sheets have no thickness */
-    bool   guarded;  /* what is far is left out (guards.c) */
-    Node   unit;     /* guarded: how long 1 is outside of everything */
-    size_t most;     /* nodes that the graph may have */
-    bool   overflow;
-    Nodes *still;    /* NULL, or, of lower_gradient, what counts as constant */
-    Visits *visits; /* NULL, or what takes down every shape that is met, parts first */
+    Graph      *graph;
+    Arena      *scratch;
+    bool        surfaces; /* else the distance alone */
+    AlongMethod method;   /* of lower_along.c */
+    bool        thin;     /* rays pass all that is around: sheets have no thickness */
+    bool        guarded;  /* what is far is left out (guards.c) */
+    Node        unit;     /* guarded: how long 1 is outside of everything */
+    size_t      most;     /* nodes that the graph may have */
+    bool        overflow;
+    Nodes      *still;  /* NULL, or, of lower_gradient, what counts as constant */
+    Visits     *visits; /* NULL, or what takes down every shape that is met, parts first */
 } Lowering;
 
 /* Where a shape stands: the mapped point, and the sequence around it.  `lipschitz` says that
@@ -107,7 +107,7 @@ Node unit_normal(Graph *g, Node normal, Node otherwise);
 
 /* ---- lower.c ---- */
 /* Whether rays that go from root to root of what is in a shape are rays to the shape. */
-bool rays_pass(const Shape *shape);
+bool    rays_pass(const Shape *shape);
 Lowered lower_shape(Lowering *l, const Shape *shape, Place place);
 /* A shape whose distance is looked at where it is not 0: it is no less than that to the sides of the
    shape's box. */
@@ -118,7 +118,7 @@ Lowered lower_behind(Lowering *l, const Shape *child, Place place, const NormalP
 /* The union of two distances, sharp or blended. */
 Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b);
 /* R^T (point - shift) / scale: where the point was before the map. */
-Node before_map(Graph *g, const Map *map, Node point);
+Node    before_map(Graph *g, const Map *map, Node point);
 Lowered scale_distance(Lowering *l, Lowered result, Node factor);
 /* Takes up the unit behind a map that enlarges; returns the one to go back to. */
 Node enter_scale(Lowering *l, Node scale);
@@ -141,15 +141,15 @@ typedef struct Inversion {
 
 Inversion inversion_at(Graph *g, const Map *map, Node point);
 /* A direction behind a map, but not reflected in the inversion. */
-Node      turn_behind(Graph *g, const Map *map, Node way);
+Node turn_behind(Graph *g, const Map *map, Node way);
 
 Passage passage_new(Graph *g, Node point);
 /* Behind a map without `first`; normals take at most two steps. */
-void    passage_map(Lowering *l, Passage *passage, const Map *map, NormalPath *path);
+void passage_map(Lowering *l, Passage *passage, const Map *map, NormalPath *path);
 /* What was lowered behind the maps, as distances outside. */
 Lowered passage_out(Lowering *l, const Passage *passage, Lowered result);
 /* As enter_scale, behind all of the maps. */
-Node    enter_passage(Lowering *l, const Passage *passage);
+Node enter_passage(Lowering *l, const Passage *passage);
 
 /* Of what lies in a ball before the map that is next on the way inwards, seen from outside of
    everything: the distance to it is at least this; NODE_NONE: nothing is known.  The ball becomes
@@ -168,8 +168,8 @@ void hulls_fold(Lowering *l, Hulls *hulls, Node normal, Node offset);
 /* Before passage_map.  `ball`: around what the map is applied to.  Whether there is one more. */
 bool hulls_map(Lowering *l, Hulls *hulls, const Passage *passage, const Map *map, Ball ball);
 /* Of two distances, each of which may be NODE_NONE. */
-Node nearer_of(Graph *g, Node a, Node b);
-Node farther_of(Graph *g, Node a, Node b);
+Node    nearer_of(Graph *g, Node a, Node b);
+Node    farther_of(Graph *g, Node a, Node b);
 Lowered lower_inversion(Lowering *l, const Shape *shape, Place place);
 
 /* ---- lower_images.c ---- */

@@ -32,8 +32,13 @@ bool shape_is_curved(const Shape *shape)
 {
     switch (shape->kind) {
     case SHAPE_PRIMITIVE: return !shape->exact && shape->bound == NODE_NONE && !shape->claimed;
-    case SHAPE_STRETCH: case SHAPE_MORPH: case SHAPE_META: case SHAPE_TWIST: case SHAPE_BEND:
-    case SHAPE_TAPER: case SHAPE_DISPLACE: return true;
+    case SHAPE_STRETCH:
+    case SHAPE_MORPH:
+    case SHAPE_META:
+    case SHAPE_TWIST:
+    case SHAPE_BEND:
+    case SHAPE_TAPER:
+    case SHAPE_DISPLACE: return true;
     default: return shape->blend.width != NODE_NONE || shape->levels > 0 || shape->curved_parts;
     }
 }
@@ -41,38 +46,38 @@ bool shape_is_curved(const Shape *shape)
 Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
                  const Shape *const *children, uint32_t count)
 {
-    Shape *shape        = arena_new(e->arena, Shape);
-    shape->kind         = kind;
-    shape->name         = name;
-    shape->span         = span;
-    shape->children     = arena_new_array(e->arena, const Shape *, count + 1);
-    shape->child_count  = count;
-    shape->box          = box_empty;
-    shape->slope        = 1;
-    shape->derived      = 1;
-    shape->exact        = true;
-    shape->blend        = blend_sharp;
-    shape->distance     = shape->bound = shape->uv = shape->trap = NODE_NONE;
-    shape->formula      = shape->declared = NODE_NONE;
+    Shape *shape       = arena_new(e->arena, Shape);
+    shape->kind        = kind;
+    shape->name        = name;
+    shape->span        = span;
+    shape->children    = arena_new_array(e->arena, const Shape *, count + 1);
+    shape->child_count = count;
+    shape->box         = box_empty;
+    shape->slope       = 1;
+    shape->derived     = 1;
+    shape->exact       = true;
+    shape->blend       = blend_sharp;
+    shape->distance = shape->bound = shape->uv = shape->trap = NODE_NONE;
+    shape->formula = shape->declared = NODE_NONE;
     shape->plane_normal = shape->plane_offset = NODE_NONE;
     shape->values[0] = shape->values[1] = NODE_NONE;
-    uint64_t parts = 1;
-    double sequences = 0; /* instances of the sequences among the parts; other parts make one */
+    uint64_t parts                      = 1;
+    double   sequences = 0; /* instances of the sequences among the parts; other parts make one */
     for (uint32_t i = 0; i < count; i++) {
-        const Shape *child = children[i];
-        shape->children[i] = child;
-        shape->slope       = fmax(shape->slope, child->slope);
-        shape->derived     = fmax(shape->derived, child->derived);
-        shape->exact       = shape->exact && child->exact;
+        const Shape *child  = children[i];
+        shape->children[i]  = child;
+        shape->slope        = fmax(shape->slope, child->slope);
+        shape->derived      = fmax(shape->derived, child->derived);
+        shape->exact        = shape->exact && child->exact;
         shape->curved_parts = shape->curved_parts || shape_is_curved(child);
-        shape->estimate    = shape->estimate || child->estimate;
-        shape->per_frame   = shape->per_frame || child->per_frame;
-        shape->trapped     = shape->trapped || child->trapped;
-        shape->figure      = shape->figure || child->figure;
-        shape->fields      = shape->fields || child->fields;
-        shape->sheets      = shape->sheets || child->sheets;
-        shape->smooth      = shape->smooth || child->smooth;
-        shape->without_uv  = shape->without_uv ? shape->without_uv : child->without_uv;
+        shape->estimate     = shape->estimate || child->estimate;
+        shape->per_frame    = shape->per_frame || child->per_frame;
+        shape->trapped      = shape->trapped || child->trapped;
+        shape->figure       = shape->figure || child->figure;
+        shape->fields       = shape->fields || child->fields;
+        shape->sheets       = shape->sheets || child->sheets;
+        shape->smooth       = shape->smooth || child->smooth;
+        shape->without_uv   = shape->without_uv ? shape->without_uv : child->without_uv;
         sequences += child->levels > 0 ? child->instances : 0;
         shape->depth = child->depth >= shape->depth ? child->depth + 1 : shape->depth;
         parts += child->parts;
@@ -128,7 +133,7 @@ static const Shape *make_inversion(Elaboration *e, const Shape *shape, const Map
     inverted->map   = *map;
     inverted->exact = false;
     inverted->inversions++;
-    inverted->box   = cover_box(&cover);
+    inverted->box = cover_box(&cover);
     return inverted;
 }
 
@@ -173,11 +178,12 @@ const Shape *make_stretch(Elaboration *e, const Shape *shape, Node factors, Span
 const Shape *make_joint(Elaboration *e, ShapeKind kind, const Shape *const *shapes, uint32_t count,
                         Blend blend, Span span)
 {
-    static const char *const names[] = {
-        [SHAPE_UNION] = "union", [SHAPE_INTERSECTION] = "intersection",
-        [SHAPE_DIFFERENCE] = "difference", [SHAPE_XOR] = "xor"};
-    Shape *joint = shape_new(e, kind, names[kind], span, shapes, count);
-    joint->blend = blend;
+    static const char *const names[] = {[SHAPE_UNION]        = "union",
+                                        [SHAPE_INTERSECTION] = "intersection",
+                                        [SHAPE_DIFFERENCE]   = "difference",
+                                        [SHAPE_XOR]          = "xor"};
+    Shape                   *joint   = shape_new(e, kind, names[kind], span, shapes, count);
+    joint->blend                     = blend;
     if (blend.width != NODE_NONE)
         check_steady(e, joint, "a blend", span);
     /* Outside, the least of exact distances is exact; every other joint only bounds it. */
@@ -208,7 +214,7 @@ const Shape *make_morph(Elaboration *e, const Shape *a, const Shape *b, Node t, 
     Shape       *morph      = shape_new(e, SHAPE_MORPH, "morph", span, children, 2);
     morph->values[0]        = t;
     check_steady(e, morph, "`morph`", span);
-    morph->exact            = false;
+    morph->exact = false;
     /* Where the mix is 0 one of the distances is at most 0, or both are. */
     morph->box = box_hull(a->box, b->box);
     return morph;
@@ -262,9 +268,9 @@ static bool is_derivable(Elaboration *e, const Shape *shape)
 
 const Shape *make_sheet(Elaboration *e, const Shape *shape, Node thickness, Span span)
 {
-    Shape *sheet = arena_new(e->arena, Shape);
-    *sheet       = *make_shell(e, shape, thickness, span);
-    sheet->name  = "sheet";
+    Shape *sheet  = arena_new(e->arena, Shape);
+    *sheet        = *make_shell(e, shape, thickness, span);
+    sheet->name   = "sheet";
     sheet->sheet  = is_derivable(e, shape);
     sheet->sheets = sheet->sheets || sheet->sheet;
     return sheet;
@@ -317,25 +323,25 @@ const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const 
     repeat->values[0] = period;
     repeat->exact     = false; /* walls of cells are bounds */
     for (uint32_t i = 0; i < 3; i++) {
-        Range  range     = node_range(e, period, i);
-        bool   repeats   = cells[i] != 1 && range.high > 0;
+        Range range      = node_range(e, period, i);
+        bool  repeats    = cells[i] != 1 && range.high > 0;
         repeat->cells[i] = repeats ? cells[i] : 1;
         if (!repeats)
             continue;
         double margin = cell_margin(shape->box.axis[i], range.low);
         if (!(margin >= -1e-9 * range.low)) {
-            Range is   = shape->box.axis[i];
-            Diag *diag = diag_add(e->diags, DIAG_OUTSIDE_CELL, place->span,
-                                  "the shape reaches from %.4g to %.4g on the %c axis, "
-                                  "its cell from %.4g to %.4g",
-                                  is.low, is.high, "xyz"[i], -0.5 * range.low, 0.5 * range.low);
+            Range is    = shape->box.axis[i];
+            Diag *diag  = diag_add(e->diags, DIAG_OUTSIDE_CELL, place->span,
+                                   "the shape reaches from %.4g to %.4g on the %c axis, "
+                                    "its cell from %.4g to %.4g",
+                                   is.low, is.high, "xyz"[i], -0.5 * range.low, 0.5 * range.low);
             diag->label = "does not fit its cell";
             diag->help  = "use a larger period, or a smaller shape that is centred in its cell";
             return NULL;
         }
-        double reach = cells[i] ? 0.5 * (cells[i] - 1) * range.high : INFINITY;
-        repeat->box.axis[i] =
-            (Range){shape->box.axis[i].low - reach, shape->box.axis[i].high + reach};
+        double reach        = cells[i] ? 0.5 * (cells[i] - 1) * range.high : INFINITY;
+        repeat->box.axis[i] = (Range){shape->box.axis[i].low - reach,
+                                      shape->box.axis[i].high + reach};
     }
     return repeat;
 }
@@ -348,7 +354,7 @@ const Shape *make_repeat_polar(Elaboration *e, const Shape *shape, uint32_t coun
     Shape *repeat    = wrap(e, SHAPE_REPEAT_POLAR, "repeat_polar", shape, place->span);
     repeat->cells[0] = count;
     repeat->exact    = false;
-    double most = 0;
+    double most      = 0;
     for (int i = 0; i < 3; i += 2)
         most = hypot(most, fmax(fabs(shape->box.axis[i].low), fabs(shape->box.axis[i].high)));
     repeat->box.axis[0] = repeat->box.axis[2] = (Range){-most, most};
@@ -405,11 +411,11 @@ const Shape *make_paint(Elaboration *e, const Shape *shape, const Material *mate
     }
     if (shape->without_uv && material_needs(e, material, OP_UV)) {
         const Shape *without = shape->without_uv;
-        Diag *diag  = diag_add(e->diags, DIAG_OUT_OF_PLACE, span,
-                               "`u` and `v` have no meaning on `%s`", without->name);
-        diag->label = "this material needs them";
+        Diag        *diag    = diag_add(e->diags, DIAG_OUT_OF_PLACE, span,
+                                        "`u` and `v` have no meaning on `%s`", without->name);
+        diag->label          = "this material needs them";
         diag_place(e->diags, diag, without->span, "declared without `uv`");
-        diag->help  = "give the declaration of the shape a `uv: [...]`";
+        diag->help = "give the declaration of the shape a `uv: [...]`";
         return NULL;
     }
     Shape *painted    = wrap(e, SHAPE_PAINT, "paint", shape, span);

@@ -30,11 +30,11 @@ void check_steady(Elaboration *e, const Shape *shape, const char *what, Span spa
     if (!shape->estimate)
         return;
     const Shape *source = find_estimate(shape);
-    Diag *diag  = diag_add(e->diags, DIAG_ESTIMATE, span,
-                           "%s needs a distance whose slope is known", what);
+    Diag *diag = diag_add(e->diags, DIAG_ESTIMATE, span, "%s needs a distance whose slope is known",
+                          what);
     diag->label = diag_text(e->diags, "that of `%s` is an estimate", source->name);
     diag_place(e->diags, diag, source->span, "nothing is proven of this distance");
-    diag->help  = "join it with `|`, `&` or `-`, which work with estimates, too";
+    diag->help = "join it with `|`, `&` or `-`, which work with estimates, too";
 }
 
 /* ---- arguments ---- */
@@ -46,13 +46,13 @@ static bool want_iterations(Elaboration *e, const Call *call, uint32_t index, do
     Node node = want_number(e, call, index, otherwise);
     if (node == NODE_NONE)
         return false;
-    Range range = node_range(e, node, 0);
+    Range range  = node_range(e, node, 0);
     bool  broken = range.low == range.high && range.low != floor(range.low);
     if (!(range.low >= 1 && range.high < MOST_ITERATIONS + 1) || broken) {
         const Syntax *syntax = call->arguments[index].syntax;
-        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span,
-                               "the iterations of `%s` must be whole numbers from 1 to %d",
-                               call->name, MOST_ITERATIONS);
+        Diag         *diag   = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span,
+                                        "the iterations of `%s` must be whole numbers from 1 to %d",
+                                        call->name, MOST_ITERATIONS);
         diag->label = diag_text(e->diags, range.low == range.high ? "this is %g" : "from %g to %g",
                                 range.low, range.high);
         if (range.low != range.high)
@@ -114,8 +114,8 @@ static Node radius_node(Elaboration *e, Node c, uint32_t power)
         return graph_number(g, julia_radius(g->items[size].number[0], power));
     Node whole = graph_number(g, power), less = graph_number(g, power - 1);
     Node one = graph_number(g, 1), twice = graph_op2(g, OP_mul, size, graph_number(g, 2));
-    Node r   = graph_op2(g, OP_pow, twice, graph_number(g, 1.0 / power));
-    r = graph_op2(g, OP_max, r, graph_number(g, exp2(1.0 / (power - 1))));
+    Node r = graph_op2(g, OP_pow, twice, graph_number(g, 1.0 / power));
+    r      = graph_op2(g, OP_max, r, graph_number(g, exp2(1.0 / (power - 1))));
     for (int i = 0; i < 4; i++) {
         Node lower = graph_power(g, r, less);
         Node above = graph_op2(g, OP_mul, graph_op2(g, OP_mul, lower, r), less);
@@ -149,7 +149,7 @@ Value builtin_julia(Elaboration *e, Call *call)
     Node   point    = graph_leaf(g, OP_POINT);
     Node   radius   = radius_node(e, c, power);
     Node   settings = graph_op2(g, OP_vec2, iterations, radius), range = pair(e, power, most);
-    double largest  = largest_size(e, c);
+    double largest = largest_size(e, c);
     /* Roots of single precision may be larger by a little. */
     double reach    = isfinite(largest) ? julia_radius(largest, power) * (1 + 1e-6) : INFINITY;
     Shape *shape    = fractal_new(e, call, reach);
@@ -166,10 +166,10 @@ Value builtin_mandelbulb(Elaboration *e, Call *call)
     if (!want_count(e, call, 0, 2, MOST_POWER, 8, &power) ||
         !want_iterations(e, call, 1, usual_iterations(power), &iterations, &most))
         return value_error();
-    Graph *g        = e->graph;
-    g->here         = call->syntax->span;
-    double reach    = mandelbulb_radius(power);
-    Node   point    = graph_leaf(g, OP_POINT), radius = graph_number(g, reach);
+    Graph *g     = e->graph;
+    g->here      = call->syntax->span;
+    double reach = mandelbulb_radius(power);
+    Node   point = graph_leaf(g, OP_POINT), radius = graph_number(g, reach);
     Node   settings = graph_op2(g, OP_vec2, iterations, radius), range = pair(e, power, most);
     Shape *shape    = fractal_new(e, call, reach);
     shape->estimate = true;

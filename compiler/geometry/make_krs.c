@@ -29,11 +29,11 @@ static bool read_stage(Elaboration *e, const Shape *krs, const Stage *stage, Rea
     } else {
         double scale;
         reach->kind = REACH_MAP;
-        known = read_number(node_range(e, stage->map.scale, 0), &scale);
+        known       = read_number(node_range(e, stage->map.scale, 0), &scale);
         for (uint32_t i = 0; i < 3; i++) {
             for (uint32_t j = 0; j < 3; j++) {
                 double *entry = &reach->rows[i][j];
-                known = read_number(node_range(e, stage->map.rows[i], j), entry) && known;
+                known         = read_number(node_range(e, stage->map.rows[i], j), entry) && known;
                 *entry *= scale;
             }
             known = read_number(node_range(e, stage->map.shift, i), &reach->shift[i]) && known;
@@ -127,7 +127,7 @@ static uint32_t count_inversions(const Shape *krs)
 /* What is inverted must not be endless; reported at the first inversion after it. */
 static bool check_kernels(Elaboration *e, const Shape *krs)
 {
-    bool        good = true;
+    bool         good      = true;
     const Stage *inversion = NULL;
     for (uint32_t i = krs->stage_count; i-- > 0;) {
         const Stage *stage = &krs->stages[i];

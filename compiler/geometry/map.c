@@ -48,8 +48,8 @@ const Map *map_scaling(Elaboration *e, Node scale)
 /* Rodrigues: R = cos I + (1 - cos) a a^T + sin [a]x, row by row. */
 static void rotation_rows(Elaboration *e, Node axis, Node cosine, Node sine, Node rows[3])
 {
-    Graph *g     = e->graph;
-    Node   one   = graph_number(g, 1);
+    Graph *g       = e->graph;
+    Node   one     = graph_number(g, 1);
     Node   versine = graph_op2(g, OP_sub, one, cosine);
     for (int i = 0; i < 3; i++) {
         Node unit     = unit_axis(g, i);
@@ -91,10 +91,10 @@ const Map *map_reflection(Elaboration *e, Node normal, Node offset)
     Map   *map = map_new(e);
     Node   two = graph_number(g, 2);
     for (int i = 0; i < 3; i++) {
-        Node entry  = graph_component(g, normal, (uint32_t)i);
-        Node factor = graph_op2(g, OP_mul, entry, two);
-        Node outer  = graph_op2(g, OP_scale, normal, factor);
-        Node unit   = unit_axis(g, i);
+        Node entry   = graph_component(g, normal, (uint32_t)i);
+        Node factor  = graph_op2(g, OP_mul, entry, two);
+        Node outer   = graph_op2(g, OP_scale, normal, factor);
+        Node unit    = unit_axis(g, i);
         map->rows[i] = graph_op2(g, OP_sub, unit, outer);
     }
     Node twice = graph_op2(g, OP_mul, offset, two);
@@ -116,16 +116,16 @@ const Map *map_alignment(Elaboration *e, Node from, Node to)
     Node   size = graph_op1(g, OP_length, sum);
     /* Perpendicular to a: a x (the axis in which a is least). */
     Node ax = graph_component(g, a, 0), small = graph_number(g, 0.8);
-    ax             = graph_op1(g, OP_abs, ax);
-    Node along_x   = graph_op2(g, OP_less, ax, small);
-    Node other     = unit_axis(g, 0), third = unit_axis(g, 1);
-    other          = graph_op3(g, OP_select, along_x, other, third);
-    Node aside     = graph_op2(g, OP_cross, a, other);
-    Node tiny      = graph_number(g, 1e-9);
-    Node opposite  = graph_op2(g, OP_less, size, tiny);
-    Node bisector  = graph_op3(g, OP_select, opposite, aside, sum);
-    bisector       = graph_op1(g, OP_normalize, bisector);
-    Node zero      = graph_number(g, 0);
+    ax           = graph_op1(g, OP_abs, ax);
+    Node along_x = graph_op2(g, OP_less, ax, small);
+    Node other = unit_axis(g, 0), third = unit_axis(g, 1);
+    other            = graph_op3(g, OP_select, along_x, other, third);
+    Node aside       = graph_op2(g, OP_cross, a, other);
+    Node tiny        = graph_number(g, 1e-9);
+    Node opposite    = graph_op2(g, OP_less, size, tiny);
+    Node bisector    = graph_op3(g, OP_select, opposite, aside, sum);
+    bisector         = graph_op1(g, OP_normalize, bisector);
+    Node       zero  = graph_number(g, 0);
     const Map *first = map_reflection(e, bisector, zero);
     /* The first takes a to -b; when they are opposite it leaves a, which is -b, where it is. */
     Node turned       = map_turn(e, first, a);
@@ -227,10 +227,10 @@ void transpose_rows(Graph *graph, const Node rows[3], Node transposed[3])
 
 static const Map *similarity_inverse(Elaboration *e, const Map *f)
 {
-    Graph *g    = e->graph;
-    Map   *map  = map_new(e);
-    Node   one  = graph_number(g, 1);
-    map->scale  = graph_op2(g, OP_div, one, f->scale);
+    Graph *g   = e->graph;
+    Map   *map = map_new(e);
+    Node   one = graph_number(g, 1);
+    map->scale = graph_op2(g, OP_div, one, f->scale);
     transpose_rows(g, f->rows, map->rows);
     Node back   = map_turn(e, map, f->shift);
     Node factor = graph_op1(g, OP_neg, map->scale);

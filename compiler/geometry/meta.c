@@ -58,10 +58,10 @@ static bool want_falloff(Elaboration *e, const Argument *name, FalloffKind *kind
         if (strcmp(spellings[i], name->value.string) == 0)
             return true;
     }
-    Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, name->syntax->span,
-                          "no falloff is called \"%s\"", name->value.string);
+    Diag       *diag = diag_add(e->diags, DIAG_BAD_VALUE, name->syntax->span,
+                                "no falloff is called \"%s\"", name->value.string);
     const char *near = nearest_name(name->value.string, spellings, FALLOFF_COUNT);
-    diag->label = "unknown falloff";
+    diag->label      = "unknown falloff";
     if (near)
         diag->replacement = diag_text(e->diags, "\"%s\"", near);
     diag->help = "there are \"wyvill\", \"soft\", \"gaussian\" and \"exponential\"";
@@ -81,8 +81,8 @@ static Node want_positive(Elaboration *e, const Call *call, uint32_t index, doub
 
 Value builtin_meta(Elaboration *e, Call *call)
 {
-    Values      values = {0};
-    FalloffKind kind;
+    Values          values = {0};
+    FalloffKind     kind;
     const Argument *list = &call->arguments[0];
     if (!collect_shapes(e, call, list->value, list->syntax, &values) ||
         !want_falloff(e, &call->arguments[2], &kind))
@@ -94,8 +94,8 @@ Value builtin_meta(Elaboration *e, Call *call)
     const Shape **shapes = joinable_shapes(e, call, &values);
     if (!shapes)
         return value_error();
-    Span   span = call->syntax->span;
-    Shape *meta = shape_new(e, SHAPE_META, "meta", span, shapes, (uint32_t)values.count);
+    Span   span     = call->syntax->span;
+    Shape *meta     = shape_new(e, SHAPE_META, "meta", span, shapes, (uint32_t)values.count);
     meta->values[0] = level;
     meta->values[1] = reach;
     meta->falloff   = kind;
@@ -125,7 +125,7 @@ static Node falloff_at(Graph *g, FalloffKind kind, Node t)
     Node one = graph_number(g, 1), square = graph_op1(g, OP_square, t);
     switch (kind) {
     case FALLOFF_WYVILL: {
-        Node rest = graph_op2(g, OP_sub, one, square);
+        Node rest  = graph_op2(g, OP_sub, one, square);
         Node twice = graph_op1(g, OP_square, rest);
         return graph_op2(g, OP_mul, twice, rest);
     }
@@ -137,9 +137,9 @@ static Node falloff_at(Graph *g, FalloffKind kind, Node t)
         sum      = graph_op2(g, OP_mul, sum, square);
         return graph_op2(g, OP_add, sum, one);
     }
-    case FALLOFF_GAUSSIAN:    return faded(g, square);
+    case FALLOFF_GAUSSIAN: return faded(g, square);
     case FALLOFF_EXPONENTIAL: return faded(g, t);
-    case FALLOFF_COUNT:       break;
+    case FALLOFF_COUNT: break;
     }
     return NODE_NONE;
 }
@@ -185,8 +185,8 @@ static double stretch_around(const Tape *tape, Node distance, Box box, double re
     for (int i = 0; i < 6 * FACE_LEVELS * FACE_POINTS * FACE_POINTS; i++) {
         int    place = i % (FACE_POINTS * FACE_POINTS), face = i / (FACE_POINTS * FACE_POINTS);
         double above = reach * (1 + face / 6) / FACE_LEVELS, point[3];
-        double u = place % FACE_POINTS / (FACE_POINTS - 1.0);
-        double v = place / FACE_POINTS / (FACE_POINTS - 1.0);
+        double u     = place % FACE_POINTS / (FACE_POINTS - 1.0);
+        double v     = place / FACE_POINTS / (FACE_POINTS - 1.0);
         point_above(box, face % 6, u, v, above, point);
         tape_run_point(tape, point, values);
         most = fmax(most, fmin(above / fmax(values[distance].v[0], 1e-30), MOST_STRETCH));
@@ -238,19 +238,19 @@ static void mix_in(Lowering *l, Parts *parts, Surface surface, Node share)
         parts->total   = share;
         return;
     }
-    Node total    = graph_op2(g, OP_add, parts->total, share);
-    Node divisor  = graph_op2(g, OP_max, total, graph_number(g, 1e-30));
-    Node weight   = graph_op2(g, OP_div, share, divisor);
-    Node half     = graph_number(g, 0.5);
-    Node nearer   = graph_op2(g, OP_less, half, weight);
+    Node total     = graph_op2(g, OP_add, parts->total, share);
+    Node divisor   = graph_op2(g, OP_max, total, graph_number(g, 1e-30));
+    Node weight    = graph_op2(g, OP_div, share, divisor);
+    Node half      = graph_number(g, 0.5);
+    Node nearer    = graph_op2(g, OP_less, half, weight);
     parts->surface = mix_surface(g, nearer, weight, surface, parts->surface);
     parts->total   = total;
 }
 
 static void add_part(Lowering *l, const Shape *meta, const Shape *child, Place place, Parts *parts)
 {
-    Graph  *g     = l->graph;
-    Node    zero  = graph_number(g, 0), one = graph_number(g, 1), reach = meta->values[1];
+    Graph  *g    = l->graph;
+    Node    zero = graph_number(g, 0), one = graph_number(g, 1), reach = meta->values[1];
     bool    loose = !child->exact && box_is_finite(child->box);
     Lowered part  = lower_shape(l, child, place_steady(place));
     if (part.distance == NODE_NONE)
@@ -304,11 +304,11 @@ static Node step_of(const Parts *parts, Node room, Node most, bool lipschitz)
 
 Lowered lower_meta(Lowering *l, const Shape *shape, Place place)
 {
-    Graph  *g     = l->graph;
-    Parts   parts = {.graph = g, .surface = lowered_nothing.surface};
-    Lowered all   = lowered_nothing;
-    parts.shares  = arena_new_array(l->scratch, Node, shape->child_count + 1);
-    parts.gaps    = arena_new_array(l->scratch, Node, shape->child_count + 1);
+    Graph  *g       = l->graph;
+    Parts   parts   = {.graph = g, .surface = lowered_nothing.surface};
+    Lowered all     = lowered_nothing;
+    parts.shares    = arena_new_array(l->scratch, Node, shape->child_count + 1);
+    parts.gaps      = arena_new_array(l->scratch, Node, shape->child_count + 1);
     parts.stretches = arena_new_array(l->scratch, double, shape->child_count + 1);
     for (uint32_t i = 0; i < shape->child_count; i++)
         add_part(l, shape, shape->children[i], place, &parts);

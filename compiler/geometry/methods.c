@@ -76,8 +76,8 @@ static bool check_not_negative(Elaboration *e, Node node, const Syntax *syntax, 
         if (range.low >= 0)
             continue;
         bool  known = range.low == range.high;
-        Diag *diag =
-            diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "%s cannot be negative", what);
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "%s cannot be negative",
+                               what);
         diag->label = known ? "negative" : diag_text(e->diags, "this can be %g", range.low);
         if (!known)
             diag->help = "give the `param` a range that is not negative, or use `max(..., 0)`";
@@ -100,7 +100,7 @@ static bool cell_counts(Elaboration *e, const Call *call, uint32_t cells[3])
         return true;
     }
     for (uint32_t i = 0; i < 3; i++) {
-        Call one            = *call;
+        Call one               = *call;
         one.arguments[1].value = count->value.list->items[i];
         if (!want_count(e, &one, 1, 1, 1000000, 1, &cells[i]))
             return false;
@@ -143,9 +143,9 @@ static Value method_repeat_polar(Elaboration *e, const Shape *shape, Call *call)
     /* About another axis: turn it up, repeat, turn it back. */
     if (!check_direction(e, axis, call->arguments[1].syntax, "an axis"))
         return value_error();
-    const Map *raise  = map_alignment(e, axis, up);
-    const Shape      *raised = make_transform(e, shape, raise, call->syntax->span);
-    const Shape      *copies = make_repeat_polar(e, raised, count, call->syntax);
+    const Map   *raise  = map_alignment(e, axis, up);
+    const Shape *raised = make_transform(e, shape, raise, call->syntax->span);
+    const Shape *copies = make_repeat_polar(e, raised, count, call->syntax);
     return value_shape(make_transform(e, copies, map_inverse(e, raise), call->syntax->span));
 }
 
@@ -163,7 +163,7 @@ static const Shape *core_of(Elaboration *e, const Shape *shape, Node r, const Ca
 {
     if (shape->kind == SHAPE_PRIMITIVE && shape->core) {
         const Shape *core = declared_core(e, shape, r);
-        *good = core && (!needs_check(e, shape->core) || check_core(e, shape, core, r));
+        *good             = core && (!needs_check(e, shape->core) || check_core(e, shape, core, r));
         return core;
     }
     if (shape->kind != SHAPE_TRANSFORM)
@@ -353,8 +353,8 @@ Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax)
         bool outer     = e->in_material;
         e->in_material = outer || methods[i].method == method_paint || /* a colour is a material */
                          methods[i].method == method_color_by;
-        bool bound =
-            bind_arguments(e, env, syntax, 1, methods[i].name, methods[i].parameters, &call);
+        bool bound     = bind_arguments(e, env, syntax, 1, methods[i].name, methods[i].parameters,
+                                        &call);
         e->in_material = outer;
         if (!bound)
             return value_error();

@@ -25,7 +25,7 @@ const Map *map_inversion(Elaboration *e, Node center, Node radius)
 {
     Map *map   = map_new(e);
     map->scale = graph_op2(e->graph, OP_mul, radius, radius);
-    map->pole  = map->shift = center;
+    map->pole = map->shift = center;
     return map;
 }
 
@@ -68,8 +68,8 @@ static const Map *concentric_inversions(Elaboration *e, const Map *f, const Map 
     Map   *map   = map_new(e);
     map->scale   = graph_op2(graph, OP_div, f->scale, g->scale);
     turn_product(e, f->rows, g->rows, map->rows);
-    Node moved   = map_apply(e, map, g->pole); /* while its shift is still 0 */
-    map->shift   = graph_op2(graph, OP_sub, f->shift, moved);
+    Node moved = map_apply(e, map, g->pole); /* while its shift is still 0 */
+    map->shift = graph_op2(graph, OP_sub, f->shift, moved);
     return map;
 }
 
@@ -174,12 +174,12 @@ static void rows_of(Elaboration *e, Quaternion q, double sign, Node rows[3])
 static const char *refusal(Elaboration *e, Quaternion a, Quaternion b, Quaternion c, Quaternion d)
 {
     const double tolerance = 1e-9;
-    double ac = times(conjugate(a), c).re, bd = times(conjugate(b), d).re;
-    double sizes[] = {sqrt(square_of(a)), sqrt(square_of(b)), sqrt(square_of(c)),
-                      sqrt(square_of(d))};
-    Quaternion l = plus(times(conjugate(a), d), times(conjugate(c), b));
-    double imaginary = sqrt(l.i * l.i + l.j * l.j + l.k * l.k);
-    double size      = sizes[0] * sizes[3] + sizes[1] * sizes[2];
+    double       ac = times(conjugate(a), c).re, bd = times(conjugate(b), d).re;
+    double       sizes[]   = {sqrt(square_of(a)), sqrt(square_of(b)), sqrt(square_of(c)),
+                              sqrt(square_of(d))};
+    Quaternion   l         = plus(times(conjugate(a), d), times(conjugate(c), b));
+    double       imaginary = sqrt(l.i * l.i + l.j * l.j + l.k * l.k);
+    double       size      = sizes[0] * sizes[3] + sizes[1] * sizes[2];
     if (fabs(ac) > tolerance * sizes[0] * sizes[2])
         return diag_text(e->diags, "the real part of conj(a) c is %g, not 0", ac);
     if (fabs(bd) > tolerance * sizes[1] * sizes[3])

@@ -28,13 +28,16 @@ static void refuse_name(Elaboration *e, const Argument *argument)
     Text        list = {.arena = e->diags->arena};
     for (size_t i = 0; i < PALETTE_COUNT; i++) {
         names[i] = palettes[i].name;
-        text_format(&list, "%s\"%s\"", i == 0 ? "" : i + 1 < PALETTE_COUNT ? ", " : " and ",
+        text_format(&list, "%s\"%s\"",
+                    i == 0                  ? ""
+                    : i + 1 < PALETTE_COUNT ? ", "
+                                            : " and ",
                     names[i]);
     }
-    Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, argument->syntax->span,
-                          "no palette is called \"%s\"", argument->value.string);
+    Diag       *diag = diag_add(e->diags, DIAG_BAD_VALUE, argument->syntax->span,
+                                "no palette is called \"%s\"", argument->value.string);
     const char *near = nearest_name(argument->value.string, names, PALETTE_COUNT);
-    diag->label = "unknown palette";
+    diag->label      = "unknown palette";
     if (near)
         diag->replacement = diag_text(e->diags, "\"%s\"", near);
     diag->help = diag_text(e->diags, "there are %s; a list of colours is one, too", list.bytes);
@@ -77,7 +80,7 @@ static uint32_t listed_colors(Elaboration *e, const Argument *argument, Node *co
 static Node color_at(Graph *g, Node field, const Node *colors, uint32_t count)
 {
     Node zero = graph_number(g, 0), one = graph_number(g, 1), color = colors[0];
-    Node at   = graph_op2(g, OP_mul, field, graph_number(g, count - 1));
+    Node at = graph_op2(g, OP_mul, field, graph_number(g, count - 1));
     for (uint32_t i = 0; i + 1 < count; i++) {
         Node past = graph_op2(g, OP_sub, at, graph_number(g, i));
         past      = graph_op3(g, OP_clamp, past, zero, one);
@@ -100,7 +103,7 @@ Value method_color_by(Elaboration *e, const Shape *shape, Call *call)
         return value_error();
     Material *material = arena_new(e->arena, Material);
     Node      number   = value_node(e, field->value);
-    *material = (Material){"palette", color_at(e->graph, number, colors, count),
-                           NODE_NONE, NODE_NONE, NODE_NONE};
+    *material          = (Material){"palette", color_at(e->graph, number, colors, count), NODE_NONE,
+                                    NODE_NONE, NODE_NONE};
     return value_shape(make_paint(e, shape, material, call->syntax->span));
 }

@@ -26,9 +26,9 @@ typedef struct Branch {
 /* A heap, the branch with the largest bound on top. */
 typedef struct Search {
     const ReachStage *stages;
-    Branch   heap[MOST_BRANCHES];
-    uint32_t count;
-    double   reached; /* by a kernel's box */
+    Branch            heap[MOST_BRANCHES];
+    uint32_t          count;
+    double            reached; /* by a kernel's box */
 } Search;
 
 static double dot(const double a[3], const double b[3])
@@ -52,7 +52,7 @@ static double bound_of(const ReachStage *stage, const Branch *branch)
     const double *u = branch->direction;
     if (box_is_empty(stage->box) || stage->ball.radius < 0)
         return -INFINITY;
-    double by_box = box_support(stage->box, u);
+    double by_box  = box_support(stage->box, u);
     double by_ball = dot(u, stage->ball.centre) + stage->ball.radius * sqrt(dot(u, u));
     return fmin(by_box, by_ball) + branch->beyond;
 }
@@ -60,8 +60,8 @@ static double bound_of(const ReachStage *stage, const Branch *branch)
 static void swap(Branch *a, Branch *b)
 {
     Branch c = *a;
-    *a = *b;
-    *b = c;
+    *a       = *b;
+    *b       = c;
 }
 
 /* False when there is no room: then nothing may be opened any more. */
@@ -74,7 +74,7 @@ static bool push(Search *search, Branch branch)
         return true;
     if (search->count == MOST_BRANCHES)
         return false;
-    uint32_t at = search->count++;
+    uint32_t at      = search->count++;
     search->heap[at] = branch;
     for (; at > 0 && search->heap[(at - 1) / 2].bound < search->heap[at].bound; at = (at - 1) / 2)
         swap(&search->heap[at], &search->heap[(at - 1) / 2]);
@@ -83,11 +83,10 @@ static bool push(Search *search, Branch branch)
 
 static Branch pop(Search *search)
 {
-    Branch top = search->heap[0];
+    Branch top      = search->heap[0];
     search->heap[0] = search->heap[--search->count];
     for (uint32_t at = 0, child; (child = 2 * at + 1) < search->count; at = child) {
-        if (child + 1 < search->count &&
-            search->heap[child + 1].bound > search->heap[child].bound)
+        if (child + 1 < search->count && search->heap[child + 1].bound > search->heap[child].bound)
             child++;
         if (search->heap[at].bound >= search->heap[child].bound)
             break;
@@ -99,16 +98,16 @@ static Branch pop(Search *search)
 /* What the set after the branch's last stage is made of. */
 static bool open_branch(Search *search, const Branch *branch)
 {
-    const ReachStage *stage = &search->stages[branch->stages - 1];
-    Branch before = *branch;
+    const ReachStage *stage  = &search->stages[branch->stages - 1];
+    Branch            before = *branch;
     before.stages--;
     if (stage->kind == REACH_KERNEL) {
         if (!box_is_empty(stage->kernel))
-            search->reached = fmax(search->reached, box_support(stage->kernel, branch->direction) +
-                                                        branch->beyond);
+            search->reached = fmax(search->reached,
+                                   box_support(stage->kernel, branch->direction) + branch->beyond);
     } else if (stage->kind == REACH_REFLECT) {
         Branch mirrored = before;
-        double along = dot(branch->direction, stage->normal);
+        double along    = dot(branch->direction, stage->normal);
         for (int i = 0; i < 3; i++)
             mirrored.direction[i] -= 2 * along * stage->normal[i];
         mirrored.beyond += 2 * along * stage->offset;
@@ -130,7 +129,7 @@ static double find_support(const ReachStage *stages, uint32_t count, const doubl
                            double tolerance)
 {
     Search search = {.stages = stages, .reached = -INFINITY};
-    Branch whole = {.stages = count, .direction = {u[0], u[1], u[2]}};
+    Branch whole  = {.stages = count, .direction = {u[0], u[1], u[2]}};
     push(&search, whole);
     for (int opened = 0; search.count > 0 && opened < MOST_OPENED; opened++) {
         Branch top = pop(&search);
@@ -146,13 +145,13 @@ void reach_tighten(ReachStage *stages, uint32_t count)
     if (box_is_empty(last->box) || !box_is_finite(last->box))
         return;
     double tolerance = TOLERANCE * 0.5 * box_diagonal(last->box);
-    Box    box = last->box;
+    Box    box       = last->box;
     for (int i = 0; i < 3; i++) {
         double u[3] = {0};
-        u[i] = 1;
+        u[i]        = 1;
         double high = find_support(stages, count, u, tolerance);
-        u[i] = -1;
-        double low = -find_support(stages, count, u, tolerance);
+        u[i]        = -1;
+        double low  = -find_support(stages, count, u, tolerance);
         box.axis[i] = (Range){fmax(box.axis[i].low, low), fmin(box.axis[i].high, high)};
     }
     /* Rounding of at most some thousand sums of such numbers. */

@@ -128,11 +128,11 @@ static const char *used_path(Elaboration *e, const Scope *from, const Syntax *us
 
 static void refuse_used(Elaboration *e, const Syntax *use, const char *path, const Loaded *file)
 {
-    Diag *diag = file->outside
-                     ? diag_add(e->diags, DIAG_OUTSIDE_ROOT, use->name_span,
-                                "`%s` is outside of the folder that scenes may read from", path)
-                     : diag_add(e->diags, DIAG_CANNOT_READ, use->name_span, "cannot read `%s`: %s",
-                                path, file->reason);
+    Diag *diag  = file->outside
+                      ? diag_add(e->diags, DIAG_OUTSIDE_ROOT, use->name_span,
+                                 "`%s` is outside of the folder that scenes may read from", path)
+                      : diag_add(e->diags, DIAG_CANNOT_READ, use->name_span, "cannot read `%s`: %s",
+                                 path, file->reason);
     diag->label = "used here";
 }
 
@@ -166,8 +166,8 @@ static void load_used(Elaboration *e, Scope *scope, const Syntax *use)
     const char *path = used_path(e, scope, use);
     Scope      *used = find_loaded(e, path);
     if (used && used->loading) {
-        Diag *diag =
-            diag_add(e->diags, DIAG_CIRCULAR_USE, use->name_span, "`%s` uses itself", path);
+        Diag *diag  = diag_add(e->diags, DIAG_CIRCULAR_USE, use->name_span, "`%s` uses itself",
+                               path);
         diag->label = "this closes the circle";
         return;
     }

@@ -71,9 +71,9 @@ typedef enum BlendKind {
 
 typedef struct BlendInfo {
     const char *spelling;
-    Op          op;      /* smooth minimum of (a, b, width) */
-    double      slope;   /* slope of the result over the larger slope of the operands */
-    double      bulge;   /* how far min(a, b) may exceed the result, in widths */
+    Op          op;    /* smooth minimum of (a, b, width) */
+    double      slope; /* slope of the result over the larger slope of the operands */
+    double      bulge; /* how far min(a, b) may exceed the result, in widths */
 } BlendInfo;
 extern const BlendInfo blend_info[BLEND_COUNT];
 
@@ -95,10 +95,10 @@ extern const Blend blend_sharp;
 /* One statement of a `krs` block. */
 typedef struct Stage {
     enum { STAGE_KERNEL, STAGE_REFLECT, STAGE_MAP } kind;
-    uint32_t   kernel;         /* KERNEL: index of the child */
-    Node       normal, offset; /* REFLECT: unit normal and offset */
-    Map        map;            /* MAP, without `first` */
-    Span       span;
+    uint32_t kernel;         /* KERNEL: index of the child */
+    Node     normal, offset; /* REFLECT: unit normal and offset */
+    Map      map;            /* MAP, without `first` */
+    Span     span;
 } Stage;
 
 /* Around all that the stages of a sequence up to one have made, where that one leaves it. */
@@ -124,46 +124,46 @@ struct Shape {
     uint32_t      depth; /* of the tree below, at most MOST_SHAPE_DEPTH */
     uint32_t      parts; /* of that tree and itself, each where it is used; MOST_SHAPE_PARTS */
 
-    Box    box;     /* around the solid, for all values of the parameters */
-    double slope;   /* Lipschitz constant of what it lowers to */
-    double derived; /* PRIMITIVE: the slope of its expression, by which it is divided; else the
+    Box      box;     /* around the solid, for all values of the parameters */
+    double   slope;   /* Lipschitz constant of what it lowers to */
+    double   derived; /* PRIMITIVE: the slope of its expression, by which it is divided; else the
                        largest in the tree */
-    bool   exact;   /* the distance outside is the true one */
-    bool   curved_parts; /* shape_is_curved of a child */
-    bool   claimed; /* PRIMITIVE: its slope is claimed, not derived */
-    Box    region;  /* PRIMITIVE: over which its slope was derived; infinite: over all space */
-    bool   estimate; /* nothing is proven of the distance: a primitive in it is measured only */
-    bool   per_frame; /* in the tree is a slope that is found anew for each frame (FrameSlope) */
-    bool   trapped; /* in the tree is a fractal: `orbit_trap` means something */
-    bool   figure;  /* a plane figure in x and y */
-    bool   sheet;   /* SHELL: has no thickness where rays can go from root to root (rays_pass) */
-    bool   sheets;  /* in the tree are some */
-    double instances; /* copies of kernels that reflections make; 1 without a sequence */
-    uint32_t levels;  /* reflections of the outermost sequence in it */
+    bool     exact;   /* the distance outside is the true one */
+    bool     curved_parts; /* shape_is_curved of a child */
+    bool     claimed;      /* PRIMITIVE: its slope is claimed, not derived */
+    Box      region;    /* PRIMITIVE: over which its slope was derived; infinite: over all space */
+    bool     estimate;  /* nothing is proven of the distance: a primitive in it is measured only */
+    bool     per_frame; /* in the tree is a slope that is found anew for each frame (FrameSlope) */
+    bool     trapped;   /* in the tree is a fractal: `orbit_trap` means something */
+    bool     figure;    /* a plane figure in x and y */
+    bool     sheet;  /* SHELL: has no thickness where rays can go from root to root (rays_pass) */
+    bool     sheets; /* in the tree are some */
+    double   instances;  /* copies of kernels that reflections make; 1 without a sequence */
+    uint32_t levels;     /* reflections of the outermost sequence in it */
     uint32_t inversions; /* maps of that sequence that invert, or of `.transform` on the way */
 
     /* PRIMITIVE, in its own coordinates; bound, uv and trap (VEC2) may be NODE_NONE. */
-    Node       formula; /* of a field, algebraic surface (field.c) or DISPLACE, else NODE_NONE */
-    double     overlap; /* BEND: by how much the parts reach beyond their ends */
-    double     reach;   /* DISPLACE: largest size of the formula in the box */
-    uint32_t   degree;  /* of a formula that is a polynomial, else 0, */
-    ZeroBox    zeros;   /* and where that may be 0 */
-    Span       blame;   /* what a field without a bound owes that to */
-    bool       fields;  /* in the tree is a field whose bound follows from a region */
-    Node       distance, bound, uv, trap;
+    Node     formula; /* of a field, algebraic surface (field.c) or DISPLACE, else NODE_NONE */
+    double   overlap; /* BEND: by how much the parts reach beyond their ends */
+    double   reach;   /* DISPLACE: largest size of the formula in the box */
+    uint32_t degree;  /* of a formula that is a polynomial, else 0, */
+    ZeroBox  zeros;   /* and where that may be 0 */
+    Span     blame;   /* what a field without a bound owes that to */
+    bool     fields;  /* in the tree is a field whose bound follows from a region */
+    Node     distance, bound, uv, trap;
     const struct Shape *without_uv; /* a primitive in the tree that has none, or NULL */
-    bool       smooth;          /* mirrors in the tree are smooth */
-    Node       values[2];       /* see ShapeKind; NODE_NONE where there are fewer */
-    Map        map; /* without `first` */
-    Blend      blend;    /* of joints */
-    FalloffKind falloff; /* META */
-    uint32_t   cells[3]; /* REPEAT: copies per axis, 0 for endless */
+    bool                smooth;     /* mirrors in the tree are smooth */
+    Node                values[2];  /* see ShapeKind; NODE_NONE where there are fewer */
+    Map                 map;        /* without `first` */
+    Blend               blend;      /* of joints */
+    FalloffKind         falloff;    /* META */
+    uint32_t            cells[3];   /* REPEAT: copies per axis, 0 for endless */
 
     Node          plane_normal, plane_offset; /* PRIMITIVE that is a half-space, else NODE_NONE */
-    const Syntax *declaration; /* PRIMITIVE that a declaration made, else NULL */
-    Node          declared;    /* of such a primitive: its `distance` as it is written */
+    const Syntax *declaration;                /* PRIMITIVE that a declaration made, else NULL */
+    Node          declared;      /* of such a primitive: its `distance` as it is written */
     const struct Shape *rounded; /* OFFSET that .round made of a core: what is rounded; or NULL */
-    const Syntax *core; /* PRIMITIVE: what .round(r) grows by r, using `rounding`; or NULL */
+    const Syntax       *core; /* PRIMITIVE: what .round(r) grows by r, using `rounding`; or NULL */
     const struct Environment *core_names; /* what that expression sees */
     const Material           *material;
     const Stage              *stages;
@@ -225,13 +225,31 @@ enum { MOST_FRAME_SLOPES = 256 };
 
 typedef struct Scene {
     Graph *graph;
-    struct { Component *items; size_t count, capacity; } components;
-    struct { Parameter *items; size_t count, capacity; } parameters;
-    struct { FrameSlope *items; size_t count, capacity; } slopes;
+    struct {
+        Component *items;
+        size_t     count, capacity;
+    } components;
+    struct {
+        Parameter *items;
+        size_t     count, capacity;
+    } parameters;
+    struct {
+        FrameSlope *items;
+        size_t      count, capacity;
+    } slopes;
     /* Declared half-spaces, which may be in no component: mirrors. */
-    struct { const Shape **items; size_t count, capacity; } half_spaces;
-    struct { SceneCamera *items; size_t count, capacity; } cameras;
-    struct { SceneLight *items; size_t count, capacity; } lights;
+    struct {
+        const Shape **items;
+        size_t        count, capacity;
+    } half_spaces;
+    struct {
+        SceneCamera *items;
+        size_t       count, capacity;
+    } cameras;
+    struct {
+        SceneLight *items;
+        size_t      count, capacity;
+    } lights;
     Node       zenith, horizon, ground;
     Node       zone; /* the depth of OP_POINT in zones, negative outside; NODE_NONE without any */
     size_t     zone_count;

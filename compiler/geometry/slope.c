@@ -69,7 +69,7 @@ static void try_values(const Scene *scene, Graph *plain, int trial)
 static bool bounded_in_frames(Elaboration *e, const Graph *plain, Node root, Box region,
                               Steepness *found)
 {
-    Graph tried = *plain;
+    Graph tried            = *plain;
     tried.parameters.items = arena_new_array(e->scratch, GraphParameter, plain->parameters.count);
     memcpy(tried.parameters.items, plain->parameters.items,
            plain->parameters.count * sizeof *plain->parameters.items);
@@ -129,7 +129,7 @@ bool find_slope(Elaboration *e, Node formula, const Box *regions, int count, Spa
         Node blame    = NODE_NONE;
         found->region = regions[i];
         found->bound  = graph_slope(plain, root, regions[i], NULL,
-                                    box_is_finite(regions[i]) ? CELLS : 1, &blame, e->scratch);
+                                   box_is_finite(regions[i]) ? CELLS : 1, &blame, e->scratch);
         found->blame  = blame == NODE_NONE ? (Span){0, 0, 0} : plain->items[blame].span;
         if (isfinite(found->bound))
             return true;

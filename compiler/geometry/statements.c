@@ -8,8 +8,14 @@
 
 /* Where the statements of a `krs` block go; those at the top level have none (NULL). */
 typedef struct Sequence {
-    struct { Stage *items; size_t count, capacity; } stages;
-    struct { const Shape **items; size_t count, capacity; } kernels;
+    struct {
+        Stage *items;
+        size_t count, capacity;
+    } stages;
+    struct {
+        const Shape **items;
+        size_t        count, capacity;
+    } kernels;
     bool wrong; /* a mistake was reported: the block has no value */
 } Sequence;
 
@@ -17,10 +23,10 @@ typedef struct Sequence {
 
 static Value function_value(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    Environment *closure  = arena_new(e->arena, Environment);
-    *closure              = *env;
-    Function    *function = arena_new(e->arena, Function);
-    *function             = (Function){.name = syntax->name, .syntax = syntax, .closure = closure};
+    Environment *closure = arena_new(e->arena, Environment);
+    *closure             = *env;
+    Function *function   = arena_new(e->arena, Function);
+    *function            = (Function){.name = syntax->name, .syntax = syntax, .closure = closure};
     return (Value){.type = VALUE_FUNCTION, .function = function};
 }
 
@@ -31,8 +37,9 @@ static uint32_t constants_of(Elaboration *e, Value value, const Syntax *syntax, 
         numbers[0] = value.number;
         return 1;
     }
-    uint32_t count =
-        value.type == VALUE_LIST && value.list->count <= 4 ? (uint32_t)value.list->count : 0;
+    uint32_t count = value.type == VALUE_LIST && value.list->count <= 4
+                         ? (uint32_t)value.list->count
+                         : 0;
     for (uint32_t i = 0; i < count; i++) {
         if (value.list->items[i].type != VALUE_NUMBER)
             count = 0;
@@ -66,8 +73,8 @@ static bool param_range(Elaboration *e, const Environment *env, const Syntax *sy
         return false;
     bool good = range.type == VALUE_LIST && range.list->count == 2;
     for (uint32_t side = 0; good && side < 2; side++) {
-        uint32_t count =
-            constants_of(e, range.list->items[side], syntax->children[1], bounds[side]);
+        uint32_t count = constants_of(e, range.list->items[side], syntax->children[1],
+                                      bounds[side]);
         if (!count)
             return false;
         for (uint32_t i = 0; count == 1 && i < 4; i++)
@@ -90,8 +97,8 @@ static bool param_range(Elaboration *e, const Environment *env, const Syntax *sy
 
 static Value define_param(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
-    Parameter parameter  = {.name = syntax->name};
-    Value     value      = evaluate(e, env, syntax->children[0]);
+    Parameter parameter = {.name = syntax->name};
+    Value     value     = evaluate(e, env, syntax->children[0]);
     if (value.type == VALUE_ERROR)
         return value;
     parameter.components = constants_of(e, value, syntax->children[0], parameter.value);
@@ -119,17 +126,17 @@ Value run_definition(Elaboration *e, Definition *definition, Span use)
         diag_place(e->diags, diag, use, "needed here");
         return value_error();
     }
-    definition->state       = DEFINITION_RUNNING;
-    const Syntax *syntax    = definition->syntax;
-    Environment  *env       = &definition->scope->environment;
-    Span          caller    = e->graph->here;
+    definition->state    = DEFINITION_RUNNING;
+    const Syntax *syntax = definition->syntax;
+    Environment  *env    = &definition->scope->environment;
+    Span          caller = e->graph->here;
     switch (syntax->kind) {
-    case SYNTAX_LET:      definition->value = evaluate(e, env, syntax->children[0]); break;
-    case SYNTAX_PARAM:    definition->value = define_param(e, env, syntax); break;
+    case SYNTAX_LET: definition->value = evaluate(e, env, syntax->children[0]); break;
+    case SYNTAX_PARAM: definition->value = define_param(e, env, syntax); break;
     case SYNTAX_MATERIAL: definition->value = elaborate_material(e, env, syntax); break;
     case SYNTAX_DEF:
-    case SYNTAX_SHAPE:    definition->value = function_value(e, env, syntax); break;
-    default:              definition->value = value_number(0); break; /* cameras, lights: names */
+    case SYNTAX_SHAPE: definition->value = function_value(e, env, syntax); break;
+    default: definition->value = value_number(0); break; /* cameras, lights: names */
     }
     e->graph->here    = caller;
     definition->state = DEFINITION_DONE;
@@ -181,16 +188,16 @@ static bool show_one(Elaboration *e, Value value, void *user)
         return false;
     }
     if (value.shape->figure) {
-        Diag *diag =
-            diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span, "a plane figure cannot be shown");
+        Diag *diag  = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span,
+                               "a plane figure cannot be shown");
         diag->label = "this has no thickness";
         diag->help  = "make it solid with `.extrude(height)` or `.revolve()`";
         return false;
     }
     if (!check_bounded(e, value.shape) || !check_extent(e, value.shape, syntax))
         return false;
-    Component component = {.name = component_name(e, syntax), .shape = value.shape,
-                           .span = syntax->span};
+    Component component = {
+        .name = component_name(e, syntax), .shape = value.shape, .span = syntax->span};
     if (!shape_plane(e, value.shape, &component.plane_normal, &component.plane_offset))
         component.plane_normal = component.plane_offset = NODE_NONE;
     array_push(e->arena, &e->scene->components, component);
@@ -235,9 +242,9 @@ static void add_mirror(Elaboration *e, const Environment *env, const Syntax *syn
     if (value.type == VALUE_ERROR)
         return;
     const char *type = value_type_name(e, value);
-    Diag *diag  = diag_add(e->diags, DIAG_NEEDS_PLANE, argument->span,
-                           "`reflect` needs a plane, found %s", type);
-    diag->label = diag_text(e->diags, "this is %s", type);
+    Diag       *diag = diag_add(e->diags, DIAG_NEEDS_PLANE, argument->span,
+                                "`reflect` needs a plane, found %s", type);
+    diag->label      = diag_text(e->diags, "this is %s", type);
     if (value.type == VALUE_SHAPE)
         diag->help = "planes are written `plane(normal: [1, 0, 0], offset: 2)`; for an inversion "
                      "in a sphere there is `mobius invert(center: [0, 0, 0], radius: 2);`";
@@ -305,9 +312,7 @@ static void run_statement(Elaboration *e, Environment *env, const Syntax *syntax
         *env = bind(e, env, syntax->name, evaluate(e, env, syntax->children[0]));
         break;
     case SYNTAX_DEF:
-    case SYNTAX_SHAPE:
-        *env = bind(e, env, syntax->name, function_value(e, env, syntax));
-        break;
+    case SYNTAX_SHAPE: *env = bind(e, env, syntax->name, function_value(e, env, syntax)); break;
     case SYNTAX_FOR:
         if (!evaluate_each(e, env, syntax->children[0], run_turn, &loop) && sequence)
             sequence->wrong = true;
@@ -316,12 +321,14 @@ static void run_statement(Elaboration *e, Environment *env, const Syntax *syntax
     case SYNTAX_SHOW:
         show_one(e, evaluate(e, env, syntax->children[0]), syntax->children[0]);
         break;
-    case SYNTAX_KERNEL:       add_kernel(e, env, syntax, sequence); break;
-    case SYNTAX_REFLECT:      add_mirror(e, env, syntax, sequence); break;
-    case SYNTAX_MOBIUS:       add_map(e, env, syntax, sequence); break;
-    case SYNTAX_CAMERA: case SYNTAX_LIGHT: case SYNTAX_SKY: case SYNTAX_IMAGE: case SYNTAX_ZONE:
-        elaborate_look(e, env, syntax);
-        break;
+    case SYNTAX_KERNEL: add_kernel(e, env, syntax, sequence); break;
+    case SYNTAX_REFLECT: add_mirror(e, env, syntax, sequence); break;
+    case SYNTAX_MOBIUS: add_map(e, env, syntax, sequence); break;
+    case SYNTAX_CAMERA:
+    case SYNTAX_LIGHT:
+    case SYNTAX_SKY:
+    case SYNTAX_IMAGE:
+    case SYNTAX_ZONE: elaborate_look(e, env, syntax); break;
     default: break; /* errors of the parser */
     }
 }
@@ -367,9 +374,9 @@ Value elaborate_krs(Elaboration *e, const Environment *env, const Syntax *syntax
         diag->label = "no `kernel` in here";
         return value_shape(make_empty(e, syntax->span));
     }
-    const Shape *krs =
-        make_krs(e, sequence.stages.items, (uint32_t)sequence.stages.count, sequence.kernels.items,
-                 (uint32_t)sequence.kernels.count, syntax->span);
+    const Shape *krs = make_krs(e, sequence.stages.items, (uint32_t)sequence.stages.count,
+                                sequence.kernels.items, (uint32_t)sequence.kernels.count,
+                                syntax->span);
     return value_shape(krs);
 }
 
@@ -381,8 +388,11 @@ static void run_file(Elaboration *e, Scope *scope)
     for (uint32_t i = 0; i < scope->file->count && !e->stopped; i++) {
         const Syntax *syntax = scope->file->children[i];
         switch (syntax->kind) {
-        case SYNTAX_LET: case SYNTAX_PARAM: case SYNTAX_MATERIAL:
-        case SYNTAX_DEF: case SYNTAX_SHAPE: {
+        case SYNTAX_LET:
+        case SYNTAX_PARAM:
+        case SYNTAX_MATERIAL:
+        case SYNTAX_DEF:
+        case SYNTAX_SHAPE: {
             Definition *definition = scope_find(scope, syntax->name);
             if (definition && definition->syntax == syntax)
                 run_definition(e, definition, syntax->name_span);
@@ -419,8 +429,8 @@ void elaborate(Elaboration *e, uint32_t source, const char *path)
         e->scene->box = box_hull(e->scene->box, e->scene->components.items[i].shape->box);
     finish_looks(e);
     if (e->scene->components.count == 0 && e->diags->errors == 0) {
-        Diag *diag =
-            diag_add(e->diags, DIAG_NOTHING_SHOWN, scope->file->span, "the scene shows nothing");
+        Diag *diag = diag_add(e->diags, DIAG_NOTHING_SHOWN, scope->file->span,
+                              "the scene shows nothing");
         diag->help = "write `show` and a shape, for example `show sphere(1);`";
     }
 }

@@ -24,33 +24,33 @@ typedef enum ValueType {
     VALUE_MATERIAL
 } ValueType;
 
-typedef struct Value Value;
-typedef struct Shape Shape;
-typedef struct Map Map;
+typedef struct Value    Value;
+typedef struct Shape    Shape;
+typedef struct Map      Map;
 typedef struct Material Material;
-typedef struct List List;
+typedef struct List     List;
 typedef struct Function Function;
 
 /* A `def`, a shape declaration, or a built-in function, with the names it can see. */
 struct Function {
-    const char                   *name;
-    const Syntax                 *syntax;  /* SYNTAX_DEF or SYNTAX_SHAPE; NULL for built-in */
-    const struct Builtin         *builtin; /* row of functions.def */
-    const struct Environment     *closure;
+    const char               *name;
+    const Syntax             *syntax;  /* SYNTAX_DEF or SYNTAX_SHAPE; NULL for built-in */
+    const struct Builtin     *builtin; /* row of functions.def */
+    const struct Environment *closure;
 };
 
 struct Value {
     ValueType type;
     union {
-        double            number;
-        bool              boolean;
-        Node              node;
-        const char       *string;
-        const List       *list;
-        const Function   *function;
-        const Shape      *shape;
-        const Map        *map;
-        const Material   *material;
+        double          number;
+        bool            boolean;
+        Node            node;
+        const char     *string;
+        const List     *list;
+        const Function *function;
+        const Shape    *shape;
+        const Map      *map;
+        const Material *material;
     };
 };
 
@@ -58,7 +58,7 @@ struct Value {
 struct List {
     size_t      count;
     Value      *items;
-    BindingTime time; /* the latest of its elements' */
+    BindingTime time;  /* the latest of its elements' */
     size_t      total; /* of elements, those of lists in it counted as often as they occur;
                           SIZE_MAX: that or more */
 };

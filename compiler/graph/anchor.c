@@ -55,8 +55,7 @@ static Pair add_pairs(Graph *g, Op op, Pair a, Pair b)
         b = (Pair){b.rest, zero = zero_like(g, b.rest)};
     if (a.base == NODE_NONE || b.base == NODE_NONE) {
         bool first = a.base != NODE_NONE;
-        sum.base   = first || op == OP_add ? (first ? a.base : b.base)
-                                           : graph_op1(g, OP_neg, b.base);
+        sum.base = first || op == OP_add ? (first ? a.base : b.base) : graph_op1(g, OP_neg, b.base);
     } else
         sum.base = graph_op2(g, op, a.base, b.base);
     sum.rest = graph_op2(g, op, a.rest, b.rest);
@@ -97,7 +96,7 @@ static Node offset_seen(Graph *g, const Expr *e, Pair a)
 
 static Pair fold_pair(Graph *g, const Expr *e, Pair a)
 {
-    Node seen   = offset_seen(g, e, a), zero = graph_number(g, 0);
+    Node seen = offset_seen(g, e, a), zero = graph_number(g, 0);
     Node before = graph_op3(g, OP_front, a.base, e->operands[1], e->operands[2]);
     Node kept   = graph_op3(g, OP_select, before, zero, seen);
     Node depth  = graph_op2(g, OP_dot, e->operands[1], a.rest);
@@ -174,29 +173,41 @@ static Pair anchored(Graph *g, const Expr *e, const Pair *p)
         return plain_pair(g, e, p);
     int first = p[0].base != NODE_NONE ? 0 : 1;
     switch (e->op) {
-    case OP_add: case OP_sub: return add_pairs(g, e->op, p[0], p[1]);
-    case OP_neg:       return map_pair(g, e, p[0], 0);
+    case OP_add:
+    case OP_sub: return add_pairs(g, e->op, p[0], p[1]);
+    case OP_neg: return map_pair(g, e, p[0], 0);
     case OP_COMPONENT:
         return (Pair){graph_component(g, p[0].base, e->index),
                       graph_component(g, p[0].rest, e->index)};
-    case OP_splat2: case OP_splat3: case OP_splat4:
-    case OP_vec2: case OP_vec3: case OP_vec4: return make_vector(g, e, p);
-    case OP_mul: case OP_dot: case OP_scale:
+    case OP_splat2:
+    case OP_splat3:
+    case OP_splat4:
+    case OP_vec2:
+    case OP_vec3:
+    case OP_vec4: return make_vector(g, e, p);
+    case OP_mul:
+    case OP_dot:
+    case OP_scale:
         return others_are_still(g, e, p, first) ? map_pair(g, e, p[first], first)
                                                 : plain_pair(g, e, p);
-    case OP_div: case OP_turn:
+    case OP_div:
+    case OP_turn:
         return others_are_still(g, e, p, 0) ? map_pair(g, e, p[0], 0) : plain_pair(g, e, p);
-    case OP_fold:
-        return others_are_still(g, e, p, 0) ? fold_pair(g, e, p[0]) : plain_pair(g, e, p);
+    case OP_fold: return others_are_still(g, e, p, 0) ? fold_pair(g, e, p[0]) : plain_pair(g, e, p);
     case OP_front:
         if (!others_are_still(g, e, p, 0))
             return plain_pair(g, e, p);
-        return whole(graph_op3(g, OP_front, p[0].rest, e->operands[1],
-                               precise(g, offset_seen(g, e, p[0]))));
-    case OP_round: case OP_floor: case OP_ceil: return round_pair(g, e, p[0]);
-    case OP_min: case OP_max: case OP_clamp:
+        return whole(
+            graph_op3(g, OP_front, p[0].rest, e->operands[1], precise(g, offset_seen(g, e, p[0]))));
+    case OP_round:
+    case OP_floor:
+    case OP_ceil: return round_pair(g, e, p[0]);
+    case OP_min:
+    case OP_max:
+    case OP_clamp:
         return others_are_still(g, e, p, 0) ? limit_pair(g, e, p[0]) : plain_pair(g, e, p);
-    case OP_less: case OP_less_equal: return whole(compare_pairs(g, e, p[0], p[1]));
+    case OP_less:
+    case OP_less_equal: return whole(compare_pairs(g, e, p[0], p[1]));
     default: return plain_pair(g, e, p);
     }
 }

@@ -133,7 +133,7 @@ static double largest_singular_value(double m[4][3], uint32_t size)
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             deviation += a[i][j] * a[i][j] / 6;
-    deviation = sqrt(deviation);
+    deviation          = sqrt(deviation);
     double determinant = a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) -
                          a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
                          a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
@@ -243,8 +243,7 @@ static double slope_convex(int arity, const Fact *operands, const Partials *rows
     return slope;
 }
 
-Fact fact_map(Norm norm, int arity, const Fact *operands, const Partials *rows,
-                     uint32_t size)
+Fact fact_map(Norm norm, int arity, const Fact *operands, const Partials *rows, uint32_t size)
 {
     Fact fact = {.slope = slope_sum(0, arity, operands, rows, size)};
     if (mixes(norm, rows, size)) {

@@ -103,46 +103,46 @@ static Node smoothstep_slope(Derivation *d, Node a, Node b, Node c, int operand)
     return between(d, slope);
 }
 
-#define ZERO number(d, 0)
-#define ONE number(d, 1)
-#define TWO number(d, 2)
-#define HALF number(d, 0.5)
-#define LN2 number(d, M_LN2)
-#define MINUS_ONE number(d, -1)
-#define ANYTHING between(d, ZERO)
-#define jumps(steps) between(d, ZERO)
-#define unless_jumps(steps, derivative) between(d, derivative)
-#define range_sign(a) between(d, graph_op1(d->graph, OP_sign, a))
-#define range_mul(a, b) times(d, a, b)
-#define range_div(a, b) over(d, a, b)
-#define range_add(a, b) graph_op2(d->graph, OP_add, a, b)
-#define range_sub(a, b) graph_op2(d->graph, OP_sub, a, b)
-#define range_neg(a) graph_op1(d->graph, OP_neg, a)
-#define range_square(a) graph_op1(d->graph, OP_square, a)
-#define range_sin(a) graph_op1(d->graph, OP_sin, a)
-#define range_cos(a) graph_op1(d->graph, OP_cos, a)
-#define range_sinh(a) graph_op1(d->graph, OP_sinh, a)
-#define range_cosh(a) graph_op1(d->graph, OP_cosh, a)
-#define range_floor(a) graph_op1(d->graph, OP_floor, a)
-#define range_max(a, b) graph_op2(d->graph, OP_max, a, b)
-#define range_above(a, least) (a)
-#define range_inversesqrt_slope(a, r) inversesqrt_slope(d, r)
-#define range_tan_slope(r) one_and_square(d, r, OP_add)
-#define range_asin_slope(a) asin_slope(d, a)
-#define range_sech_square(a) sech_square(d, a)
-#define range_pow_slope(a, b) pow_slope(d, a, b)
-#define range_pow_slope_exponent(a, r) times(d, r, graph_op1(d->graph, OP_log, a))
-#define range_atan2_slope(a, b, numerator) atan2_slope(d, a, b, numerator)
-#define range_is_less(a, b) is_less(d, a, b)
+#define ZERO                                     number(d, 0)
+#define ONE                                      number(d, 1)
+#define TWO                                      number(d, 2)
+#define HALF                                     number(d, 0.5)
+#define LN2                                      number(d, M_LN2)
+#define MINUS_ONE                                number(d, -1)
+#define ANYTHING                                 between(d, ZERO)
+#define jumps(steps)                             between(d, ZERO)
+#define unless_jumps(steps, derivative)          between(d, derivative)
+#define range_sign(a)                            between(d, graph_op1(d->graph, OP_sign, a))
+#define range_mul(a, b)                          times(d, a, b)
+#define range_div(a, b)                          over(d, a, b)
+#define range_add(a, b)                          graph_op2(d->graph, OP_add, a, b)
+#define range_sub(a, b)                          graph_op2(d->graph, OP_sub, a, b)
+#define range_neg(a)                             graph_op1(d->graph, OP_neg, a)
+#define range_square(a)                          graph_op1(d->graph, OP_square, a)
+#define range_sin(a)                             graph_op1(d->graph, OP_sin, a)
+#define range_cos(a)                             graph_op1(d->graph, OP_cos, a)
+#define range_sinh(a)                            graph_op1(d->graph, OP_sinh, a)
+#define range_cosh(a)                            graph_op1(d->graph, OP_cosh, a)
+#define range_floor(a)                           graph_op1(d->graph, OP_floor, a)
+#define range_max(a, b)                          graph_op2(d->graph, OP_max, a, b)
+#define range_above(a, least)                    (a)
+#define range_inversesqrt_slope(a, r)            inversesqrt_slope(d, r)
+#define range_tan_slope(r)                       one_and_square(d, r, OP_add)
+#define range_asin_slope(a)                      asin_slope(d, a)
+#define range_sech_square(a)                     sech_square(d, a)
+#define range_pow_slope(a, b)                    pow_slope(d, a, b)
+#define range_pow_slope_exponent(a, r)           times(d, r, graph_op1(d->graph, OP_log, a))
+#define range_atan2_slope(a, b, numerator)       atan2_slope(d, a, b, numerator)
+#define range_is_less(a, b)                      is_less(d, a, b)
 #define range_smoothstep_slope(a, b, c, operand) smoothstep_slope(d, a, b, c, operand)
 
 /* The derivative of a row by operand `which`; r is the row's own node. */
 typedef Node Partial(Derivation *d, int which, Node a, Node b, Node c, Node r);
-#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning)                            \
-    static Node partial_##name(Derivation *d, int which, Node a, Node b, Node c, Node r)           \
-    {                                                                                              \
-        (void)a, (void)b, (void)c, (void)r;                                                        \
-        return which == 0 ? (da) : which == 1 ? (db) : (dc);                                       \
+#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning)                  \
+    static Node partial_##name(Derivation *d, int which, Node a, Node b, Node c, Node r) \
+    {                                                                                    \
+        (void)a, (void)b, (void)c, (void)r;                                              \
+        return which == 0 ? (da) : which == 1 ? (db) : (dc);                             \
     }
 #define OP(name, signature, glsl, evaluate, facts, meaning)
 #include "compiler/graph/ops.def"
@@ -150,7 +150,7 @@ typedef Node Partial(Derivation *d, int which, Node a, Node b, Node c, Node r);
 #undef OP
 
 static Partial *const partials[OP_COUNT] = {
-#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning)                         \
+#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning) \
     [OP_##name] = partial_##name,
 #define OP(name, signature, glsl, evaluate, facts, meaning)
 #include "compiler/graph/ops.def"
@@ -162,7 +162,7 @@ static Partial *const partials[OP_COUNT] = {
 
 static bool is_zero(const Graph *graph, Node node)
 {
-    const Expr *e = &graph->items[node];
+    const Expr *e    = &graph->items[node];
     bool        zero = e->op == OP_CONSTANT;
     for (uint32_t i = 0; zero && e->type <= TYPE_VEC4 && i < (uint32_t)e->type; i++)
         zero = e->number[i] == 0;
@@ -201,10 +201,10 @@ static Node derive_choice(Derivation *d, const Expr *e, const Node *inner)
 /* Sum over the operands of the row's derivative times the operand's own. */
 static Node derive_map(Derivation *d, Node node, const Node *inner)
 {
-    Expr  e  = d->graph->items[node];
-    Node  a  = e.operands[0], b = e.operand_count > 1 ? e.operands[1] : a;
-    Node  c  = e.operand_count > 2 ? e.operands[2] : a;
-    Node  sum = zero_of(d->graph, e.type);
+    Expr e = d->graph->items[node];
+    Node a = e.operands[0], b = e.operand_count > 1 ? e.operands[1] : a;
+    Node c   = e.operand_count > 2 ? e.operands[2] : a;
+    Node sum = zero_of(d->graph, e.type);
     for (int i = 0; i < e.operand_count; i++) {
         if (is_zero(d->graph, inner[i]))
             continue;
@@ -238,12 +238,12 @@ static Node derive_length(Derivation *d, const Expr *e, Node node, const Node *i
 /* (a' - n (n.a')) / |a| */
 static Node derive_normalize(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
-    Graph *g    = d->graph;
-    Node along  = graph_op2(g, OP_dot, node, inner[0]);
-    Node radial = graph_op2(g, OP_scale, node, along);
-    Node across = graph_op2(g, OP_sub, inner[0], radial);
-    Node size   = graph_op1(g, OP_length, e->operands[0]);
-    size        = not_zero(d, size);
+    Graph *g      = d->graph;
+    Node   along  = graph_op2(g, OP_dot, node, inner[0]);
+    Node   radial = graph_op2(g, OP_scale, node, along);
+    Node   across = graph_op2(g, OP_sub, inner[0], radial);
+    Node   size   = graph_op1(g, OP_length, e->operands[0]);
+    size          = not_zero(d, size);
     return graph_op2(g, OP_scale, across, over(d, number(d, 1), size));
 }
 
@@ -273,10 +273,10 @@ static Node derive_turn(Graph *g, const Expr *e, const Node *inner)
 /* Folds mirror directions as they mirror points: b the unit normal. */
 static Node derive_fold(Derivation *d, const Expr *e, const Node *inner)
 {
-    Graph *g     = d->graph;
-    Node   front = graph_op3(g, OP_front, e->operands[0], e->operands[1], e->operands[2]);
-    Node   along = graph_op2(g, OP_dot, e->operands[1], inner[0]);
-    Node   twice = graph_op2(g, OP_mul, along, graph_number(g, 2));
+    Graph *g        = d->graph;
+    Node   front    = graph_op3(g, OP_front, e->operands[0], e->operands[1], e->operands[2]);
+    Node   along    = graph_op2(g, OP_dot, e->operands[1], inner[0]);
+    Node   twice    = graph_op2(g, OP_mul, along, graph_number(g, 2));
     Node   mirrored = graph_op2(g, OP_sub, inner[0], graph_op2(g, OP_scale, e->operands[1], twice));
     return between(d, graph_op3(g, OP_select, front, mirrored, inner[0]));
 }
@@ -310,8 +310,8 @@ static Node derive_cell_polar(Derivation *d, const Expr *e, Node node, const Nod
 static void sharp_shares(Derivation *d, Node a, Node b, Node share[2])
 {
     Node less = graph_op2(d->graph, OP_less, a, b), one = number(d, 1), zero = number(d, 0);
-    share[0]  = graph_op3(d->graph, OP_select, less, one, zero);
-    share[1]  = graph_op3(d->graph, OP_select, less, zero, one);
+    share[0] = graph_op3(d->graph, OP_select, less, one, zero);
+    share[1] = graph_op3(d->graph, OP_select, less, zero, one);
 }
 
 /* Those that give the farther one a share of 1/2 at most, the less the farther it is. */
@@ -319,8 +319,8 @@ static void smooth_shares(Derivation *d, Op op, Node a, Node b, Node width, Node
 {
     Graph *g     = d->graph;
     Node   apart = graph_op1(g, OP_abs, graph_op2(g, OP_sub, a, b)), one = number(d, 1), far;
-    width        = not_zero(d, width);
-    apart        = over(d, apart, width);
+    width = not_zero(d, width);
+    apart = over(d, apart, width);
     if (op == OP_smin_exponential) {
         far = graph_op1(g, OP_exp, graph_op1(g, OP_neg, apart));
         far = over(d, far, graph_op2(g, OP_add, one, far));
@@ -331,8 +331,8 @@ static void smooth_shares(Derivation *d, Op op, Node a, Node b, Node width, Node
         far = times(d, far, number(d, 0.5));
     }
     Node less = graph_op2(g, OP_less, a, b), near = graph_op2(g, OP_sub, one, far);
-    share[0]  = graph_op3(g, OP_select, less, near, far);
-    share[1]  = graph_op3(g, OP_select, less, far, near);
+    share[0] = graph_op3(g, OP_select, less, near, far);
+    share[1] = graph_op3(g, OP_select, less, far, near);
 }
 
 /* max(k, min(a, b)) - length(max(k - a, 0), max(k - b, 0)) */
@@ -351,9 +351,9 @@ static void circular_shares(Derivation *d, Node a, Node b, Node width, Node shar
 /* min(a, b, (a + b - k) / sqrt(2)) */
 static void chamfer_shares(Derivation *d, Node a, Node b, Node width, Node share[2])
 {
-    Graph *g    = d->graph;
-    Node   half = number(d, M_SQRT1_2);
-    Node   cut  = graph_op2(g, OP_sub, graph_op2(g, OP_add, a, b), width);
+    Graph *g     = d->graph;
+    Node   half  = number(d, M_SQRT1_2);
+    Node   cut   = graph_op2(g, OP_sub, graph_op2(g, OP_add, a, b), width);
     Node   least = graph_op2(g, OP_min, a, b);
     Node   cuts  = graph_op2(g, OP_less, times(d, cut, half), least);
     for (int i = 0; i < 2; i++)
@@ -363,22 +363,22 @@ static void chamfer_shares(Derivation *d, Node a, Node b, Node width, Node share
 /* min(a, b, (b - k + a + |mod(b - k - a + s, 2 s) - s|) / 2), s the width of a step */
 static void stairs_shares(Derivation *d, Node node, Node a, Node b, Node share[2])
 {
-    Graph *g      = d->graph;
-    Expr   e      = g->items[node];
-    Node   width  = not_zero(d, e.operands[2]);
-    Node   steps  = graph_op2(g, OP_max, e.operands[3], number(d, 1));
-    Node   step   = over(d, width, steps);
-    Node   level  = graph_op2(g, OP_sub, b, width);
-    level         = graph_op2(g, OP_sub, level, a);
-    level         = graph_op2(g, OP_add, level, step);
-    Node   within = graph_op2(g, OP_mod, level, graph_op2(g, OP_add, step, step));
-    Node   rises  = graph_op2(g, OP_less, step, within);
-    Node   stairs = graph_op2(g, OP_less, node, graph_op2(g, OP_min, a, b));
-    Node   zero = number(d, 0), one = number(d, 1);
-    Node   by_b = graph_op3(g, OP_select, rises, one, zero);
-    Node   by_a = graph_op3(g, OP_select, rises, zero, one);
-    share[0]    = graph_op3(g, OP_select, stairs, by_a, share[0]);
-    share[1]    = graph_op3(g, OP_select, stairs, by_b, share[1]);
+    Graph *g     = d->graph;
+    Expr   e     = g->items[node];
+    Node   width = not_zero(d, e.operands[2]);
+    Node   steps = graph_op2(g, OP_max, e.operands[3], number(d, 1));
+    Node   step  = over(d, width, steps);
+    Node   level = graph_op2(g, OP_sub, b, width);
+    level        = graph_op2(g, OP_sub, level, a);
+    level        = graph_op2(g, OP_add, level, step);
+    Node within  = graph_op2(g, OP_mod, level, graph_op2(g, OP_add, step, step));
+    Node rises   = graph_op2(g, OP_less, step, within);
+    Node stairs  = graph_op2(g, OP_less, node, graph_op2(g, OP_min, a, b));
+    Node zero = number(d, 0), one = number(d, 1);
+    Node by_b = graph_op3(g, OP_select, rises, one, zero);
+    Node by_a = graph_op3(g, OP_select, rises, zero, one);
+    share[0]  = graph_op3(g, OP_select, stairs, by_a, share[0]);
+    share[1]  = graph_op3(g, OP_select, stairs, by_b, share[1]);
 }
 
 static Node derive_blend(Derivation *d, const Expr *e, Node node, const Node *inner)
@@ -389,9 +389,9 @@ static Node derive_blend(Derivation *d, const Expr *e, Node node, const Node *in
     memcpy(share, sharp, sizeof share);
     switch (e->op) {
     case OP_smin_circular: circular_shares(d, a, b, width, share); break;
-    case OP_smin_chamfer:  chamfer_shares(d, a, b, width, share); break;
-    case OP_smin_stairs:   stairs_shares(d, node, a, b, share); break;
-    default:               smooth_shares(d, (Op)e->op, a, b, width, share); break;
+    case OP_smin_chamfer: chamfer_shares(d, a, b, width, share); break;
+    case OP_smin_stairs: stairs_shares(d, node, a, b, share); break;
+    default: smooth_shares(d, (Op)e->op, a, b, width, share); break;
     }
     Node blends = graph_op2(d->graph, OP_less, number(d, 0), width), sum[2];
     for (int i = 0; i < 2; i++) {
@@ -429,21 +429,26 @@ static Node derive_node(Derivation *d, Node node, const Node *inner)
         return zero_of(g, e.type);
     switch (e.op) {
     case OP_COMPONENT: return graph_component(g, inner[0], e.index);
-    case OP_splat2: case OP_splat3: case OP_splat4:
-    case OP_vec2: case OP_vec3: case OP_vec4: return graph_op(g, e.op, inner);
-    case OP_dot: case OP_cross: case OP_scale: return derive_bilinear(g, e.op, &e, inner);
-    case OP_length:    return derive_length(d, &e, node, inner);
+    case OP_splat2:
+    case OP_splat3:
+    case OP_splat4:
+    case OP_vec2:
+    case OP_vec3:
+    case OP_vec4: return graph_op(g, e.op, inner);
+    case OP_dot:
+    case OP_cross:
+    case OP_scale: return derive_bilinear(g, e.op, &e, inner);
+    case OP_length: return derive_length(d, &e, node, inner);
     case OP_normalize: return derive_normalize(d, &e, node, inner);
-    case OP_select:
-        return between(d, graph_op3(g, OP_select, e.operands[0], inner[1], inner[2]));
+    case OP_select: return between(d, graph_op3(g, OP_select, e.operands[0], inner[1], inner[2]));
     case OP_guard: {
-        Node limit = graph_op2(g, OP_min, e.operands[1], e.operands[3]);
-        Node out   = graph_op2(g, OP_less_equal, limit, e.operands[0]);
+        Node limit     = graph_op2(g, OP_min, e.operands[1], e.operands[3]);
+        Node out       = graph_op2(g, OP_less_equal, limit, e.operands[0]);
         Node least_far = graph_op2(g, OP_min, e.operands[3], number(d, 0));
-        least_far  = graph_op2(g, OP_less, least_far, e.operands[0]);
-        out        = graph_op2(g, OP_and, out, least_far);
-        Node least = graph_op2(g, OP_less, e.operands[0], e.operands[1]);
-        least      = graph_op3(g, OP_select, least, inner[0], inner[1]);
+        least_far      = graph_op2(g, OP_less, least_far, e.operands[0]);
+        out            = graph_op2(g, OP_and, out, least_far);
+        Node least     = graph_op2(g, OP_less, e.operands[0], e.operands[1]);
+        least          = graph_op3(g, OP_select, least, inner[0], inner[1]);
         return between(d, graph_op3(g, OP_select, out, least, inner[2]));
     }
     case OP_turn: return derive_turn(g, &e, inner);
@@ -451,13 +456,17 @@ static Node derive_node(Derivation *d, Node node, const Node *inner)
     case OP_cell: return others_are_still(g, inner, 1, 4) ? between(d, inner[0]) : NODE_NONE;
     case OP_cell_polar:
         return is_zero(g, inner[1]) ? derive_cell_polar(d, &e, node, inner) : NODE_NONE;
-    case OP_smin_quadratic: case OP_smin_cubic: case OP_smin_exponential:
-    case OP_smin_circular: case OP_smin_chamfer: case OP_smin_stairs:
+    case OP_smin_quadratic:
+    case OP_smin_cubic:
+    case OP_smin_exponential:
+    case OP_smin_circular:
+    case OP_smin_chamfer:
+    case OP_smin_stairs:
         return others_are_still(g, inner, 2, e.operand_count) ? derive_blend(d, &e, node, inner)
                                                               : NODE_NONE;
     case OP_blend_weight:
         return is_zero(g, inner[2]) ? derive_blend_weight(d, &e, inner) : NODE_NONE;
-    default:      return NODE_NONE;
+    default: return NODE_NONE;
     }
 }
 

@@ -112,11 +112,11 @@ static NodeValue evaluate_scale(const NodeValue *o, uint32_t size)
     return result;
 }
 
-#define TRUTH(name, condition)                                                                     \
-    static NodeValue evaluate_##name(const NodeValue *o, uint32_t size)                            \
-    {                                                                                              \
-        (void)size;                                                                                \
-        return number(condition);                                                                  \
+#define TRUTH(name, condition)                                          \
+    static NodeValue evaluate_##name(const NodeValue *o, uint32_t size) \
+    {                                                                   \
+        (void)size;                                                     \
+        return number(condition);                                       \
     }
 TRUTH(less, o[0].v[0] < o[1].v[0])
 TRUTH(less_equal, o[0].v[0] <= o[1].v[0])
@@ -219,7 +219,7 @@ static uint32_t lattice_bits(uint32_t row, uint32_t cell) { return scramble(row 
 static double slope_of_2(uint32_t h, double x, double y)
 {
     double straight = (h & 2 ? y : x) * sqrt(2), diagonal = h & 2 ? x - y : x + y;
-    double along    = h & 4 ? straight : diagonal;
+    double along = h & 4 ? straight : diagonal;
     return h & 1 ? -along : along;
 }
 
@@ -242,10 +242,10 @@ static NodeValue evaluate_noise2(const NodeValue *o, uint32_t size)
     }
     for (uint32_t i = 0; i < 2; i++) {
         uint32_t column = scramble(cell[0] + i);
-        double   x = f[0] - i;
-        double   low  = slope_of_2(lattice_bits(column, cell[1]), x, f[1]);
-        double   high = slope_of_2(lattice_bits(column, cell[1] + 1), x, f[1] - 1);
-        rows[i] = between(low, high, fade(f[1]));
+        double   x      = f[0] - i;
+        double   low    = slope_of_2(lattice_bits(column, cell[1]), x, f[1]);
+        double   high   = slope_of_2(lattice_bits(column, cell[1] + 1), x, f[1] - 1);
+        rows[i]         = between(low, high, fade(f[1]));
     }
     return number(NOISE_UNIT_2 * between(rows[0], rows[1], fade(f[0])));
 }
@@ -266,7 +266,7 @@ static NodeValue evaluate_noise3(const NodeValue *o, uint32_t size)
             double   x = f[0] - i, y = f[1] - k;
             double   low  = slope_of_3(lattice_bits(row, cell[2]), x, y, f[2]);
             double   high = slope_of_3(lattice_bits(row, cell[2] + 1), x, y, f[2] - 1);
-            rows[k] = between(low, high, fade(f[2]));
+            rows[k]       = between(low, high, fade(f[2]));
         }
         planes[i] = between(rows[0], rows[1], fade(f[1]));
     }
@@ -333,12 +333,12 @@ static double smin_chamfer(double a, double b, double k)
     return fmin(fmin(a, b), (a + b - k) * sqrt(0.5));
 }
 
-#define SMOOTH_MINIMUM(name)                                                                       \
-    static NodeValue evaluate_##name(const NodeValue *o, uint32_t size)                            \
-    {                                                                                              \
-        (void)size;                                                                                \
-        double a = o[0].v[0], b = o[1].v[0], k = o[2].v[0];                                        \
-        return number(k > 0 ? name(a, b, k) : fmin(a, b));                                         \
+#define SMOOTH_MINIMUM(name)                                            \
+    static NodeValue evaluate_##name(const NodeValue *o, uint32_t size) \
+    {                                                                   \
+        (void)size;                                                     \
+        double a = o[0].v[0], b = o[1].v[0], k = o[2].v[0];             \
+        return number(k > 0 ? name(a, b, k) : fmin(a, b));              \
     }
 SMOOTH_MINIMUM(smin_quadratic)
 SMOOTH_MINIMUM(smin_cubic)
@@ -379,26 +379,23 @@ static NodeValue value_of_row(Op op, GraphType type, uint32_t index, const Graph
     NodeValue result = {0};
     uint32_t  size   = components(type);
     switch (op) {
-    case OP_COMPONENT:
-        return number(operands[0].v[index]);
-#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning)                            \
-    case OP_##name:                                                                                \
-        for (uint32_t i = 0; i < size; i++) {                                                      \
-            double a = operands[0].v[i], b = arity > 1 ? operands[arity > 1].v[i] : 0;             \
-            double c = arity > 2 ? operands[arity > 2 ? 2 : 0].v[i] : 0;                           \
-            (void)b, (void)c;                                                                      \
-            result.v[i] = (value);                                                                 \
-        }                                                                                          \
+    case OP_COMPONENT: return number(operands[0].v[index]);
+#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning)                \
+    case OP_##name:                                                                    \
+        for (uint32_t i = 0; i < size; i++) {                                          \
+            double a = operands[0].v[i], b = arity > 1 ? operands[arity > 1].v[i] : 0; \
+            double c = arity > 2 ? operands[arity > 2 ? 2 : 0].v[i] : 0;               \
+            (void)b, (void)c;                                                          \
+            result.v[i] = (value);                                                     \
+        }                                                                              \
         return result;
-#define OP(name, signature, glsl, evaluate, facts, meaning)                                        \
-    case OP_##name:                                                                                \
+#define OP(name, signature, glsl, evaluate, facts, meaning) \
+    case OP_##name:                                         \
         return evaluate(operands, components(types[0]) > size ? components(types[0]) : size);
 #include "compiler/graph/ops.def"
 #undef MAP
 #undef OP
-    default:
-        assert(!"a leaf has no value by itself");
-        return result;
+    default: assert(!"a leaf has no value by itself"); return result;
     }
 }
 
@@ -492,9 +489,9 @@ static void lay_out(Layout *layout, uint32_t region)
 {
     const Regions *regions = layout->regions;
     for (Node node = regions->list.items[region].first; node != NODE_NONE;
-         node = regions->next[node]) {
+         node      = regions->next[node]) {
         if (regions->body[node] != NO_REGION) {
-            size_t test = layout->count;
+            size_t test                    = layout->count;
             layout->nodes[layout->count++] = node;
             lay_out(layout, regions->body[node]);
             layout->skips[test] = (uint32_t)(layout->count - test);
@@ -508,9 +505,9 @@ Tape tape_new_guarded(const Graph *graph, const Node *roots, size_t root_count, 
     Tape    tape    = tape_new(graph, roots, root_count, arena);
     Regions regions = {0};
     graph_regions(&regions, graph, roots, root_count, arena);
-    size_t  most    = tape.count + regions.list.count;
-    Layout  layout  = {&regions, arena_new_array(arena, Node, most + 1),
-                       arena_new_array(arena, uint32_t, most + 1), tape.frame_count};
+    size_t most   = tape.count + regions.list.count;
+    Layout layout = {&regions, arena_new_array(arena, Node, most + 1),
+                     arena_new_array(arena, uint32_t, most + 1), tape.frame_count};
     memcpy(layout.nodes, tape.nodes, tape.frame_count * sizeof *layout.nodes);
     lay_out(&layout, REGION_ALWAYS);
     tape.nodes = layout.nodes;
@@ -539,7 +536,7 @@ uint32_t tape_loops(const Tape *tape)
     const Expr *items = tape->graph->items;
     uint32_t    loops = 0;
     for (size_t i = tape->frame_count; i < tape->count; i++) {
-        const Expr *expr = &items[tape->nodes[i]];
+        const Expr *expr  = &items[tape->nodes[i]];
         uint32_t    range = expr->op == OP_julia ? 2 : expr->op == OP_mandelbulb ? 1 : 0;
         if (range > 0) /* always a constant (make_fractal.c) */
             loops += fractal_loops((Op)expr->op, items[expr->operands[range]].number[1]);
@@ -550,7 +547,7 @@ uint32_t tape_loops(const Tape *tape)
 size_t tape_place(const Tape *tape, Node node)
 {
     bool   point = tape->graph->items[node].time == TIME_POINT;
-    size_t low   = point ? tape->frame_count : 0, high = point ? tape->count : tape->frame_count;
+    size_t low = point ? tape->frame_count : 0, high = point ? tape->count : tape->frame_count;
     while (high - low > 1) {
         size_t middle = low + (high - low) / 2;
         if (tape->nodes[middle] <= node)
@@ -567,22 +564,19 @@ static inline void run_row(const Expr *e, const NodeValue *values, NodeValue *re
                            const Expr *nodes)
 {
     const NodeValue *x = &values[e->operands[0]], *y = &values[e->operands[1]];
-    const NodeValue *z = &values[e->operands[2]];
+    const NodeValue *z    = &values[e->operands[2]];
     uint32_t         size = components(e->type);
     switch ((Op)e->op) {
-    case OP_COMPONENT:
-        *result = number(x->v[e->index]);
+    case OP_COMPONENT: *result = number(x->v[e->index]); return;
+#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning)                   \
+    case OP_##name:                                                                       \
+        for (uint32_t i = 0; i < size; i++) {                                             \
+            double a = x->v[i], b = arity > 1 ? y->v[i] : 0, c = arity > 2 ? z->v[i] : 0; \
+            (void)b, (void)c;                                                             \
+            result->v[i] = (value) + 0.0;                                                 \
+        }                                                                                 \
         return;
-#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning)                            \
-    case OP_##name:                                                                                \
-        for (uint32_t i = 0; i < size; i++) {                                                      \
-            double a = x->v[i], b = arity > 1 ? y->v[i] : 0, c = arity > 2 ? z->v[i] : 0;          \
-            (void)b, (void)c;                                                                      \
-            result->v[i] = (value) + 0.0;                                                          \
-        }                                                                                          \
-        return;
-#define OP(name, signature, glsl, evaluate, facts, meaning)                                        \
-    case OP_##name:
+#define OP(name, signature, glsl, evaluate, facts, meaning) case OP_##name:
 #include "compiler/graph/ops.def"
 #undef MAP
 #undef OP
@@ -664,29 +658,16 @@ void tape_run_surface(const Tape *tape, const double point[3], const double norm
     for (size_t i = tape->frame_count; i < tape->count; i++) {
         Node node = tape->nodes[i];
         switch ((Op)tape->graph->items[node].op) {
-        case OP_POINT:
-            memcpy(values[node].v, point, 3 * sizeof *point);
-            break;
-        case OP_INSTANCE:
-            values[node] = number(1);
-            break;
+        case OP_POINT: memcpy(values[node].v, point, 3 * sizeof *point); break;
+        case OP_INSTANCE: values[node] = number(1); break;
         case OP_LEVEL:
         case OP_UV:
-        case OP_TRAP:
-            values[node] = number(0);
-            break;
-        case OP_guard:
-            i += run_guard(tape, i, values);
-            break;
+        case OP_TRAP: values[node] = number(0); break;
+        case OP_guard: i += run_guard(tape, i, values); break;
         case OP_NORMAL:
-        case OP_DIRECTION:
-            memcpy(values[node].v, normal, 3 * sizeof *normal);
-            break;
-        case OP_FOOTPRINT:
-            values[node] = number(footprint);
-            break;
-        default:
-            tape_run_node(tape->graph, node, values);
+        case OP_DIRECTION: memcpy(values[node].v, normal, 3 * sizeof *normal); break;
+        case OP_FOOTPRINT: values[node] = number(footprint); break;
+        default: tape_run_node(tape->graph, node, values);
         }
     }
 }

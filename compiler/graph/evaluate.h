@@ -19,11 +19,11 @@ NodeValue op_evaluate(Op op, GraphType type, uint32_t index, const GraphType *ty
 
 /* A list of the nodes that a set of roots needs, in order, ready to be run many times. */
 typedef struct Tape {
-    const Graph *graph;
-    const Node  *nodes;        /* all needed nodes, operands first */
-    size_t       count;
-    size_t       frame_count;  /* the first frame_count of them are compile or frame time */
-    const uint32_t *skips;     /* NULL, or how many to skip at each when it is a guard that leaves
+    const Graph    *graph;
+    const Node     *nodes; /* all needed nodes, operands first */
+    size_t          count;
+    size_t          frame_count; /* the first frame_count of them are compile or frame time */
+    const uint32_t *skips;       /* NULL, or how many to skip at each when it is a guard that leaves
                                   something out */
 } Tape;
 

@@ -22,7 +22,7 @@ typedef struct Study {
     Tape         tape;
     bool         whole; /* facts of all nodes, else of those on the tape, in its order */
     const double (*parameters)[4];
-    Fact        *facts;
+    Fact *facts;
 } Study;
 
 static Fact *study_fact(const Study *study, Node node)
@@ -37,9 +37,9 @@ static Range hit_range(Op op)
     case OP_INSTANCE: return (Range){0, UINT32_MAX};
     case OP_NORMAL:
     case OP_DIRECTION: return (Range){-1, 1};
-    case OP_UV:       return ANYTHING;
-    case OP_TRAP:     return (Range){0, 1};
-    default:          return (Range){0, HUGE_VAL};
+    case OP_UV: return ANYTHING;
+    case OP_TRAP: return (Range){0, 1};
+    default: return (Range){0, HUGE_VAL};
     }
 }
 
@@ -53,7 +53,7 @@ static Fact leaf_fact(const Study *study, const Expr *e, Box box)
         for (int i = 0; i < 3; i++)
             fact.gradient[i][i] = range_of(1);
     } else if (e->op == OP_PARAMETER) {
-        fact = (Fact){0};
+        fact                    = (Fact){0};
         const GraphParameter *p = e->index < study->graph->parameters.count
                                       ? &study->graph->parameters.items[e->index]
                                       : NULL;
@@ -207,9 +207,9 @@ static void heap_refine(const Study *study, Node root, Part *heap, size_t cells)
         Part worst = heap[0];
         if (!(worst.slope > 0) || !cutting_helps(study, root, worst))
             return;
-        int    axis = widest_axis(worst.box);
-        double cut  = range_cut(worst.box.axis[axis]);
-        Part   halves[2] = {worst, worst};
+        int    axis                   = widest_axis(worst.box);
+        double cut                    = range_cut(worst.box.axis[axis]);
+        Part   halves[2]              = {worst, worst};
         halves[0].box.axis[axis].high = cut;
         halves[1].box.axis[axis].low  = cut;
         for (int i = 0; i < 2; i++)
@@ -226,7 +226,7 @@ static Node study_blame(const Study *study, Node root)
     Node   worst = root;
     double most  = 0;
     for (Node node = root;;) {
-        const Expr *e = &study->graph->items[node];
+        const Expr *e   = &study->graph->items[node];
         double      own = study_fact(study, node)->slope, steepest = 0;
         Node        next = node;
         for (int i = 0; i < e->operand_count; i++) {
@@ -256,8 +256,7 @@ size_t slope_task_room(const SlopeTask *task)
     return task->tape.count * sizeof(Fact) + ((size_t)task->cells + 1) * sizeof(Part);
 }
 
-double slope_task_run(const SlopeTask *task, const double (*parameters)[4], void *room,
-                      Node *blame)
+double slope_task_run(const SlopeTask *task, const double (*parameters)[4], void *room, Node *blame)
 {
     Study study = {task->tape.graph, task->tape, false, parameters, room};
     Part *heap  = (Part *)(study.facts + task->tape.count);

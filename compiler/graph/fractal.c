@@ -101,7 +101,7 @@ static void julia_step(double z[4], const double c[4], int power)
    times `power`, by powers of complex numbers.  Returns |sin(power t) / sin t| |w|^(power - 1). */
 static double triplex_step(double w[3], const double c[3], int power)
 {
-    double across = hypot(w[0], w[2]), tilt[2], turn[2];
+    double across   = hypot(w[0], w[2]), tilt[2], turn[2];
     double about[2] = {across > 0 ? w[2] / across : 1, across > 0 ? w[0] / across : 0};
     raise(tilt, (double[]){w[1], 1}, power, across * across);
     raise(turn, about, power, 1);
@@ -112,10 +112,7 @@ static double triplex_step(double w[3], const double c[3], int power)
 }
 
 /* The powers are constants from 2 to MOST_POWER in every scene; random graphs have anything. */
-static int power_of(const NodeValue *range)
-{
-    return (int)fmin(fmax(range->v[0], 1), MOST_POWER);
-}
+static int power_of(const NodeValue *range) { return (int)fmin(fmax(range->v[0], 1), MOST_POWER); }
 
 static int iterations_of(const NodeValue *range, const NodeValue *settings)
 {
@@ -155,7 +152,7 @@ NodeValue evaluate_julia(const NodeValue *o, uint32_t size)
     (void)size;
     int    power = power_of(&o[2]), last = iterations_of(&o[2], &o[3]), n = 0;
     double radius = o[3].v[1], sizes[MOST_ITERATIONS + 1];
-    double z[4] = {o[0].v[0], o[0].v[1], o[0].v[2], 0};
+    double z[4]   = {o[0].v[0], o[0].v[1], o[0].v[2], 0};
     for (sizes[0] = norm(z, 4); n < last && sizes[n] <= 2 * radius; sizes[++n] = norm(z, 4))
         julia_step(z, o[1].v, power);
     bool   outside = sizes[n] > radius;
@@ -193,11 +190,11 @@ static double least_size(double power) { return pow(4 * power, -1 / (power - 1))
 NodeValue evaluate_mandelbulb(const NodeValue *o, uint32_t size)
 {
     (void)size;
-    int           last = iterations_of(&o[1], &o[2]);
-    const double *c = o[0].v;
-    double  power = o[1].v[0], radius = o[2].v[1], core = mandelbulb_core(power);
-    double  least = least_size(power), w[3] = {c[0], c[1], c[2]}, from_origin = norm(c, 3);
-    double  away = from_origin, steep = 1, sum = 0, distance;
+    int           last  = iterations_of(&o[1], &o[2]);
+    const double *c     = o[0].v;
+    double        power = o[1].v[0], radius = o[2].v[1], core = mandelbulb_core(power);
+    double        least = least_size(power), w[3] = {c[0], c[1], c[2]}, from_origin = norm(c, 3);
+    double        away = from_origin, steep = 1, sum = 0, distance;
     if (from_origin > MANDELBULB_NEAR * radius)
         return (NodeValue){{from_origin - radius}};
     for (int n = 0; n < last && away <= bailout(power); n++) {

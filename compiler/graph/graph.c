@@ -23,20 +23,15 @@ typedef struct OpInfo {
 } OpInfo;
 
 static const OpInfo op_info[OP_COUNT] = {
-    [OP_CONSTANT]  = {.name = "constant"},
-    [OP_PARAMETER] = {.name = "parameter"},
-    [OP_POINT]     = {.name = "point"},
-    [OP_INSTANCE]  = {.name = "instance"},
-    [OP_LEVEL]     = {.name = "level"},
-    [OP_UV]        = {.name = "uv"},
-    [OP_TRAP]      = {.name = "trap"},
-    [OP_NORMAL]    = {.name = "normal"},
-    [OP_FOOTPRINT] = {.name = "footprint"},
-    [OP_DIRECTION] = {.name = "direction"},
+    [OP_CONSTANT] = {.name = "constant"},   [OP_PARAMETER] = {.name = "parameter"},
+    [OP_POINT] = {.name = "point"},         [OP_INSTANCE] = {.name = "instance"},
+    [OP_LEVEL] = {.name = "level"},         [OP_UV] = {.name = "uv"},
+    [OP_TRAP] = {.name = "trap"},           [OP_NORMAL] = {.name = "normal"},
+    [OP_FOOTPRINT] = {.name = "footprint"}, [OP_DIRECTION] = {.name = "direction"},
     [OP_COMPONENT] = {.name = "component"},
-#define MAP(name_, arity_, glsl_, value, range, da, db, dc, norm, meaning)                         \
+#define MAP(name_, arity_, glsl_, value, range, da, db, dc, norm, meaning) \
     [OP_##name_] = {.name = #name_, .glsl = glsl_, .arity = arity_},
-#define OP(name_, signature_, glsl_, evaluate, facts, meaning)                                     \
+#define OP(name_, signature_, glsl_, evaluate, facts, meaning) \
     [OP_##name_] = {.name = #name_, .glsl = glsl_, .signature = signature_},
 #include "compiler/graph/ops.def"
 #undef MAP
@@ -95,46 +90,76 @@ static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_
 static double op_weight(Op op, double n)
 {
     switch (op) {
-    case OP_CONSTANT: case OP_PARAMETER: case OP_POINT: case OP_INSTANCE: case OP_LEVEL:
-    case OP_UV: case OP_TRAP: case OP_NORMAL: case OP_FOOTPRINT: case OP_DIRECTION:
-    case OP_COMPONENT: case OP_vec2: case OP_vec3: case OP_vec4: case OP_splat2: case OP_splat3:
-    case OP_splat4:        return 0;
-    case OP_div:           return 1.4;
-    case OP_sqrt:          return 1.6;
-    case OP_inversesqrt:   return 2.9;
-    case OP_exp: case OP_exp2: case OP_log: case OP_log2: return 4.2;
-    case OP_asin: case OP_acos: return 8;
-    case OP_sin:           return 5.6;
-    case OP_cos:           return 6.6;
-    case OP_atan:          return 8.5;
-    case OP_pow:           return 8.7;
-    case OP_tan: case OP_atan2: return 11;
-    case OP_sinh: case OP_cosh: case OP_tanh: return 7;
-    case OP_fract: case OP_round: case OP_clamp: case OP_mix: return 2;
-    case OP_mod:           return 4.4;
-    case OP_smoothstep:    return 8;
-    case OP_dot: case OP_scale: return n;
-    case OP_length:        return n + 1.6;
-    case OP_normalize:     return 2 * n + 3.9;
-    case OP_cross:         return 6;
-    case OP_select:        return n;
-    case OP_turn:          return 9;
-    case OP_fold:          return 8;
-    case OP_front:         return 3;
-    case OP_cell:          return 20;
-    case OP_cell_polar:    return 30;
-    case OP_noise2:        return 90;
-    case OP_noise3:        return 220;
-    case OP_julia: case OP_julia_trap:           return 400; /* of some ten iterations */
-    case OP_mandelbulb: case OP_mandelbulb_trap: return 300;
-    case OP_push_id: case OP_hash_id: case OP_join_id: case OP_id_unit: return 5;
-    case OP_smin_quadratic: case OP_smin_cubic: return 7;
+    case OP_CONSTANT:
+    case OP_PARAMETER:
+    case OP_POINT:
+    case OP_INSTANCE:
+    case OP_LEVEL:
+    case OP_UV:
+    case OP_TRAP:
+    case OP_NORMAL:
+    case OP_FOOTPRINT:
+    case OP_DIRECTION:
+    case OP_COMPONENT:
+    case OP_vec2:
+    case OP_vec3:
+    case OP_vec4:
+    case OP_splat2:
+    case OP_splat3:
+    case OP_splat4: return 0;
+    case OP_div: return 1.4;
+    case OP_sqrt: return 1.6;
+    case OP_inversesqrt: return 2.9;
+    case OP_exp:
+    case OP_exp2:
+    case OP_log:
+    case OP_log2: return 4.2;
+    case OP_asin:
+    case OP_acos: return 8;
+    case OP_sin: return 5.6;
+    case OP_cos: return 6.6;
+    case OP_atan: return 8.5;
+    case OP_pow: return 8.7;
+    case OP_tan:
+    case OP_atan2: return 11;
+    case OP_sinh:
+    case OP_cosh:
+    case OP_tanh: return 7;
+    case OP_fract:
+    case OP_round:
+    case OP_clamp:
+    case OP_mix: return 2;
+    case OP_mod: return 4.4;
+    case OP_smoothstep: return 8;
+    case OP_dot:
+    case OP_scale: return n;
+    case OP_length: return n + 1.6;
+    case OP_normalize: return 2 * n + 3.9;
+    case OP_cross: return 6;
+    case OP_select: return n;
+    case OP_turn: return 9;
+    case OP_fold: return 8;
+    case OP_front: return 3;
+    case OP_cell: return 20;
+    case OP_cell_polar: return 30;
+    case OP_noise2: return 90;
+    case OP_noise3: return 220;
+    case OP_julia:
+    case OP_julia_trap: return 400; /* of some ten iterations */
+    case OP_mandelbulb:
+    case OP_mandelbulb_trap: return 300;
+    case OP_push_id:
+    case OP_hash_id:
+    case OP_join_id:
+    case OP_id_unit: return 5;
+    case OP_smin_quadratic:
+    case OP_smin_cubic: return 7;
     case OP_smin_exponential: return 13;
     case OP_smin_circular: return 9;
-    case OP_smin_chamfer:  return 5;
-    case OP_smin_stairs:   return 14;
-    case OP_blend_weight:  return 5;
-    default:               return 1;
+    case OP_smin_chamfer: return 5;
+    case OP_smin_stairs: return 14;
+    case OP_blend_weight: return 5;
+    default: return 1;
     }
 }
 
@@ -185,7 +210,7 @@ static bool letter_fits(char letter, GraphType type, GraphType *vector, GraphTyp
 static GraphType signature_type(const char *signature, const GraphType *operands, uint32_t count)
 {
     GraphType vector = 0, any = 0;
-    uint32_t  i      = 0;
+    uint32_t  i = 0;
     for (; signature[i] != '>'; i++)
         if (i >= count || !letter_fits(signature[i], operands[i], &vector, &any))
             return 0;
@@ -295,8 +320,8 @@ static Node node_intern(Graph *graph, Expr e)
 
 Graph *graph_new(Arena *arena)
 {
-    Graph *graph = arena_new(arena, Graph);
-    graph->arena = arena;
+    Graph *graph        = arena_new(arena, Graph);
+    graph->arena        = arena;
     GraphParameter time = {{-HUGE_VAL}, {HUGE_VAL}};
     array_push(arena, &graph->parameters, time);
     return graph;
@@ -342,9 +367,9 @@ Node graph_leaf(Graph *graph, Op op)
 {
     assert(op >= OP_POINT && op <= OP_DIRECTION);
     GraphType type = op == OP_POINT || op == OP_NORMAL || op == OP_DIRECTION ? TYPE_VEC3
-                     : op == OP_INSTANCE               ? TYPE_UINT
-                     : op == OP_UV || op == OP_TRAP    ? TYPE_VEC2
-                                                       : TYPE_FLOAT;
+                     : op == OP_INSTANCE                                     ? TYPE_UINT
+                     : op == OP_UV || op == OP_TRAP                          ? TYPE_VEC2
+                                                                             : TYPE_FLOAT;
     return node_intern(graph, (Expr){.op = (uint8_t)op, .type = (uint8_t)type, .time = TIME_POINT});
 }
 
@@ -397,7 +422,7 @@ static Node spread(Graph *graph, Node number, GraphType type)
 
 Node graph_op(Graph *graph, Op op, const Node *operands)
 {
-    Expr      e = {.op = (uint8_t)op, .operand_count = (uint8_t)op_arity(op)};
+    Expr      e                   = {.op = (uint8_t)op, .operand_count = (uint8_t)op_arity(op)};
     GraphType types[MAX_OPERANDS] = {0};
     assert(e.operand_count > 0);
     for (int i = 0; i < e.operand_count; i++) {
@@ -414,10 +439,7 @@ Node graph_op(Graph *graph, Op op, const Node *operands)
     return operation(graph, e);
 }
 
-Node graph_op1(Graph *graph, Op op, Node a)
-{
-    return graph_op(graph, op, &a);
-}
+Node graph_op1(Graph *graph, Op op, Node a) { return graph_op(graph, op, &a); }
 
 Node graph_op2(Graph *graph, Op op, Node a, Node b)
 {
@@ -443,8 +465,11 @@ Node graph_component(Graph *graph, Node vector, uint32_t index)
     assert(type <= TYPE_VEC4 && index < components(type));
     if (type == TYPE_FLOAT)
         return vector;
-    return operation(graph, (Expr){.op = OP_COMPONENT, .type = TYPE_FLOAT, .index = index,
-                                   .operand_count = 1, .operands = {vector}});
+    return operation(graph, (Expr){.op            = OP_COMPONENT,
+                                   .type          = TYPE_FLOAT,
+                                   .index         = index,
+                                   .operand_count = 1,
+                                   .operands      = {vector}});
 }
 
 /* ---- powers ---- */
@@ -466,8 +491,8 @@ static Node power_positive(Graph *graph, Node base, uint32_t n)
 
 Node graph_power(Graph *graph, Node base, Node exponent)
 {
-    const Expr *e = &graph->items[exponent];
-    double      n = e->number[0];
+    const Expr *e       = &graph->items[exponent];
+    double      n       = e->number[0];
     bool        uniform = e->op == OP_CONSTANT;
     for (uint32_t i = 1; i < components(e->type); i++)
         uniform = uniform && e->number[i] == n;
@@ -543,20 +568,20 @@ Node graph_substitute(Graph *graph, Node root, Substitution with, Arena *scratch
 
 static const char *node_mistake(const Graph *graph, Node node)
 {
-    const Expr *e = &graph->items[node];
+    const Expr *e                   = &graph->items[node];
     GraphType   types[MAX_OPERANDS] = {0};
-    uint8_t     latest = e->op == OP_CONSTANT    ? TIME_COMPILE
-                         : e->op == OP_PARAMETER ? TIME_FRAME
-                         : e->operand_count == 0 ? TIME_POINT
-                                                 : TIME_FRAME;
+    uint8_t     latest              = e->op == OP_CONSTANT    ? TIME_COMPILE
+                                      : e->op == OP_PARAMETER ? TIME_FRAME
+                                      : e->operand_count == 0 ? TIME_POINT
+                                                              : TIME_FRAME;
     if (e->op >= OP_COUNT || e->operand_count != op_arity(e->op))
         return "wrong number of operands";
     for (int i = 0; i < e->operand_count; i++) {
         if (e->operands[i] >= node)
             return "an operand does not come first";
         const Expr *operand = &graph->items[e->operands[i]];
-        types[i] = operand->type;
-        latest   = operand->time > latest ? operand->time : latest;
+        types[i]            = operand->type;
+        latest              = operand->time > latest ? operand->time : latest;
         if (op_info[e->op].arity && operand->type != e->type)
             return "an operand that was not spread";
     }

@@ -41,7 +41,7 @@ typedef enum Op {
     OP_DIRECTION, /* point time, VEC3: unit, of the ray on which the point lies */
     OP_COMPONENT, /* component `index` of a vector: FLOAT */
 #define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning) OP_##name,
-#define OP(name, signature, glsl, evaluate, facts, meaning) OP_##name,
+#define OP(name, signature, glsl, evaluate, facts, meaning)             OP_##name,
 #include "compiler/graph/ops.def"
 #undef MAP
 #undef OP
@@ -53,10 +53,10 @@ enum { MAX_OPERANDS = 4 };
 typedef struct Expr {
     uint8_t  op, type, time;
     uint8_t  operand_count;
-    uint32_t index;                 /* OP_COMPONENT, OP_PARAMETER */
+    uint32_t index; /* OP_COMPONENT, OP_PARAMETER */
     Node     operands[MAX_OPERANDS];
-    double   number[4];             /* OP_CONSTANT */
-    Span     span;                  /* where the author wrote it, for blame */
+    double   number[4]; /* OP_CONSTANT */
+    Span     span;      /* where the author wrote it, for blame */
 } Expr;
 
 /* The range a parameter may have, for slopes that must hold over all of it. */
@@ -75,8 +75,11 @@ typedef struct Graph {
     size_t     count, capacity;
     GraphSlot *slots;
     size_t     slot_count;
-    struct { GraphParameter *items; size_t count, capacity; } parameters; /* [0] is time */
-    Span      here;  /* span given to nodes made now */
+    struct {
+        GraphParameter *items;
+        size_t          count, capacity;
+    } parameters; /* [0] is time */
+    Span here;    /* span given to nodes made now */
 } Graph;
 
 /* An empty graph whose parameter 0 is `time`, in (-inf, inf). */
@@ -127,7 +130,7 @@ typedef struct Substitution {
 } Substitution;
 /* Of the point alone. */
 Substitution substitute_point(Node point);
-Node graph_substitute(Graph *graph, Node root, Substitution with, Arena *scratch);
+Node         graph_substitute(Graph *graph, Node root, Substitution with, Arena *scratch);
 
 /* Algebraic simplification of everything `roots` need, into a new graph (same parameters):
    the roots are renumbered in place.  Rules keep values: x+0, x*1, x*0 (x finite), --x,

@@ -230,23 +230,23 @@ static Curve curve_of(Nearby *x, Op op, Part u, Node value, Node reach)
     Node   one = number(x, 1);
     switch (op) {
     case OP_square: return (Curve){times(x, u.value, number(x, 2)), number(x, 2)};
-    case OP_sin:    return (Curve){graph_op1(g, OP_cos, u.value), one};
-    case OP_cos:    return (Curve){negative(x, graph_op1(g, OP_sin, u.value)), one};
+    case OP_sin: return (Curve){graph_op1(g, OP_cos, u.value), one};
+    case OP_cos: return (Curve){negative(x, graph_op1(g, OP_sin, u.value)), one};
     case OP_atan:
         return (Curve){over(x, one, plus(x, one, graph_op1(g, OP_square, u.value))),
                        number(x, 0.6496)};
-    case OP_tanh:
-        return (Curve){minus(x, one, graph_op1(g, OP_square, value)), number(x, 0.7699)};
-    case OP_exp:
-        return (Curve){value, has_radius(x) ? times(x, value, growth(x, u, reach)) : one};
+    case OP_tanh: return (Curve){minus(x, one, graph_op1(g, OP_square, value)), number(x, 0.7699)};
+    case OP_exp: return (Curve){value, has_radius(x) ? times(x, value, growth(x, u, reach)) : one};
     case OP_exp2:
-        u = scale_part(x, u.value, u, number(x, M_LN2));
+        u     = scale_part(x, u.value, u, number(x, M_LN2));
         reach = has_radius(x) ? times(x, reach, number(x, M_LN2)) : reach;
-        return (Curve){times(x, value, number(x, M_LN2)),
-                       has_radius(x) ? times(x, times(x, value, growth(x, u, reach)),
-                                             number(x, M_LN2 * M_LN2)) : one};
-    case OP_sinh: case OP_cosh: {
-        Node cosh = graph_op1(g, OP_cosh, u.value);
+        return (Curve){
+            times(x, value, number(x, M_LN2)),
+            has_radius(x) ? times(x, times(x, value, growth(x, u, reach)), number(x, M_LN2 * M_LN2))
+                          : one};
+    case OP_sinh:
+    case OP_cosh: {
+        Node cosh  = graph_op1(g, OP_cosh, u.value);
         Node slope = op == OP_sinh ? cosh : graph_op1(g, OP_sinh, u.value);
         return (Curve){slope, has_radius(x) ? times(x, cosh, growth(x, u, reach)) : one};
     }
@@ -299,7 +299,7 @@ static Part power_part(Nearby *x, Node value, Part u, double n)
     Curve  curve = {over(x, times(x, value, number(x, n)), base), NODE_NONE};
     if (!has_radius(x))
         return bend_part(x, value, u, curve);
-    reach = times(x, steepness(x, &u), x->radius);
+    reach       = times(x, steepness(x, &u), x->radius);
     Node factor = number(x, fabs(n * (n - 1))), exponent = number(x, n - 2);
     if (n <= 1) {
         Node least = clear_of_zero(x, u, &reach);
@@ -330,13 +330,13 @@ static Node over_kink(const Nearby *x, Node w, Node steep)
 
 static Part size_part(const Nearby *x, Node value, Part u)
 {
-    Graph *g    = x->graph;
-    Part   part = u;
-    Node   sign = graph_op2(g, OP_less, u.value, number(x, 0));
-    part.value  = value;
+    Graph *g      = x->graph;
+    Part   part   = u;
+    Node   sign   = graph_op2(g, OP_less, u.value, number(x, 0));
+    part.value    = value;
     part.gradient = graph_op3(g, OP_select, sign, negative(x, u.gradient), u.gradient);
-    Node more   = over_kink(x, u.value, steepness(x, &u));
-    part.first  = plus(x, part.first, times(x, more, number(x, 2)));
+    Node more     = over_kink(x, u.value, steepness(x, &u));
+    part.first    = plus(x, part.first, times(x, more, number(x, 2)));
     return part;
 }
 
@@ -348,11 +348,11 @@ static Part smoothstep_part(Nearby *x, Node value, Node low, Node high, Part u)
     const Expr *a = &g->items[low], *b = &g->items[high];
     if (a->op != OP_CONSTANT || b->op != OP_CONSTANT || !(a->number[0] < b->number[0]))
         return opaque_part(x, value);
-    Node   whole  = number(x, 1 / (b->number[0] - a->number[0])), half = number(x, 0.5);
-    Node   across = times(x, minus(x, u.value, low), whole), zero = number(x, 0);
-    Node   t      = graph_op3(g, OP_clamp, across, zero, number(x, 1));
-    Curve  curve  = {times(x, times(x, t, minus(x, number(x, 1), t)), number(x, 6)), NODE_NONE};
-    Part   scaled = scale_part(x, across, u, whole);
+    Node  whole = number(x, 1 / (b->number[0] - a->number[0])), half = number(x, 0.5);
+    Node  across = times(x, minus(x, u.value, low), whole), zero = number(x, 0);
+    Node  t      = graph_op3(g, OP_clamp, across, zero, number(x, 1));
+    Curve curve  = {times(x, times(x, t, minus(x, number(x, 1), t)), number(x, 6)), NODE_NONE};
+    Part  scaled = scale_part(x, across, u, whole);
     if (has_radius(x)) {
         Node reach = times(x, steepness(x, &scaled), x->radius);
         Node away  = minus(x, size_of(x, minus(x, across, half)), half);
@@ -370,10 +370,10 @@ static Node choose(const Nearby *x, Node which, Node a, Node b)
 /* min and max. */
 static Part choice_part(const Nearby *x, Op op, Node value, Part a, Part b)
 {
-    Graph *g      = x->graph;
-    Node   less   = graph_op2(g, OP_less, a.value, b.value);
-    Node   apart  = minus(x, a.value, b.value);
-    Part   left   = op == OP_min ? a : b, right = op == OP_min ? b : a;
+    Graph *g     = x->graph;
+    Node   less  = graph_op2(g, OP_less, a.value, b.value);
+    Node   apart = minus(x, a.value, b.value);
+    Part   left = op == OP_min ? a : b, right = op == OP_min ? b : a;
     Part   away   = add_parts(x, apart, a, negate_part(x, b.value, b));
     Part   chosen = {value, choose(x, less, left.gradient, right.gradient),
                      choose(x, less, left.first, right.first),
@@ -402,9 +402,9 @@ static Node steepness_squared(const Nearby *x, Node vector, const Parts *parts)
     Node sum    = number(x, 0);
     for (uint32_t i = 0; i < parts->count; i++) {
         const Part *part = &parts->items[i];
-        linear = linear && graph_is_constant(x->graph, part->gradient) &&
+        linear           = linear && graph_is_constant(x->graph, part->gradient) &&
                  is_number(x, part->first, 0) && is_number(x, part->second, 0);
-        sum    = plus(x, sum, graph_op1(x->graph, OP_square, steepness(x, part)));
+        sum = plus(x, sum, graph_op1(x->graph, OP_square, steepness(x, part)));
     }
     if (!linear)
         return sum;
@@ -435,8 +435,8 @@ static Part dot_part(const Nearby *x, Node node, const Parts *a, const Parts *b)
 /* |v + h| is between |v| + n.h and that and |h|^2 / (2 |v|), n = v / |v|. */
 static Part length_part(const Nearby *x, Node node, const Parts *a)
 {
-    const Expr e   = x->graph->items[node];
-    Part       sum = still_part(x, node);
+    const Expr e     = x->graph->items[node];
+    Part       sum   = still_part(x, node);
     Node       least = at_least(x, node, SMALL);
     for (uint32_t i = 0; i < a->count; i++) {
         Part part = part_of(a, i);
@@ -454,9 +454,18 @@ static Part length_part(const Nearby *x, Node node, const Parts *a)
 static bool is_curved(Op op)
 {
     switch (op) {
-    case OP_square: case OP_sin: case OP_cos: case OP_atan: case OP_tanh: case OP_exp:
-    case OP_exp2: case OP_sinh: case OP_cosh: case OP_log: case OP_sqrt: case OP_inversesqrt:
-        return true;
+    case OP_square:
+    case OP_sin:
+    case OP_cos:
+    case OP_atan:
+    case OP_tanh:
+    case OP_exp:
+    case OP_exp2:
+    case OP_sinh:
+    case OP_cosh:
+    case OP_log:
+    case OP_sqrt:
+    case OP_inversesqrt: return true;
     default: return false;
     }
 }
@@ -481,16 +490,18 @@ static Part mix_parts(Nearby *x, Node value, Part a, Part b, Part t)
 /* Component `value` of an operation; operands not all there are filled up with the first. */
 static Part component_part(Nearby *x, Op op, Node value, Part a, Part b, Part c)
 {
-    Graph      *g = x->graph;
+    Graph      *g     = x->graph;
     const Expr *power = &g->items[b.value];
     switch (op) {
     case OP_add: return add_parts(x, value, a, b);
     case OP_sub: return add_parts(x, value, a, negate_part(x, b.value, b));
     case OP_neg: return negate_part(x, value, a);
-    case OP_mul: case OP_scale: return multiply_parts(x, value, a, b);
+    case OP_mul:
+    case OP_scale: return multiply_parts(x, value, a, b);
     case OP_div: return divide_parts(x, value, a, b);
     case OP_abs: return size_part(x, value, a);
-    case OP_min: case OP_max: return choice_part(x, op, value, a, b);
+    case OP_min:
+    case OP_max: return choice_part(x, op, value, a, b);
     case OP_clamp: {
         Node raised = graph_op2(g, OP_max, a.value, b.value);
         Part above  = choice_part(x, OP_max, raised, a, b);
@@ -510,9 +521,19 @@ static Part component_part(Nearby *x, Op op, Node value, Part a, Part b, Part c)
 static bool is_componentwise(Op op)
 {
     switch (op) {
-    case OP_add: case OP_sub: case OP_neg: case OP_mul: case OP_scale: case OP_div: case OP_abs:
-    case OP_min: case OP_max: case OP_clamp: case OP_mix: case OP_pow: case OP_smoothstep:
-        return true;
+    case OP_add:
+    case OP_sub:
+    case OP_neg:
+    case OP_mul:
+    case OP_scale:
+    case OP_div:
+    case OP_abs:
+    case OP_min:
+    case OP_max:
+    case OP_clamp:
+    case OP_mix:
+    case OP_pow:
+    case OP_smoothstep: return true;
     default: return is_curved(op);
     }
 }
@@ -521,14 +542,18 @@ static void find_operation(Nearby *x, Node node, const Parts *operands, Parts *r
 {
     Expr e = x->graph->items[node];
     for (uint32_t i = 0; i < result->count; i++) {
-        Node value = graph_component(x->graph, node, i);
-        Part *part = &result->items[i];
-        int   last = e.operand_count - 1;
+        Node  value = graph_component(x->graph, node, i);
+        Part *part  = &result->items[i];
+        int   last  = e.operand_count - 1;
         switch (e.op) {
         case OP_COMPONENT: *part = part_of(&operands[0], e.index); break;
-        case OP_splat2: case OP_splat3: case OP_splat4: *part = operands[0].items[0]; break;
-        case OP_vec2: case OP_vec3: case OP_vec4:       *part = operands[i].items[0]; break;
-        case OP_dot:    *part = dot_part(x, node, &operands[0], &operands[1]); break;
+        case OP_splat2:
+        case OP_splat3:
+        case OP_splat4: *part = operands[0].items[0]; break;
+        case OP_vec2:
+        case OP_vec3:
+        case OP_vec4: *part = operands[i].items[0]; break;
+        case OP_dot: *part = dot_part(x, node, &operands[0], &operands[1]); break;
         case OP_length: *part = length_part(x, node, &operands[0]); break;
         default:
             *part = is_componentwise(e.op)
@@ -589,9 +614,9 @@ bool graph_local_bound(Graph *graph, Node root, Box box, double least, LocalBoun
     Part   here = find(&x, root);
     if (!x.bounded)
         return false;
-    Node slope = graph_op2(graph, OP_max, slope_here(&x, &here), graph_number(graph, least));
-    x.radius   = graph_op2(graph, OP_div, size_of(&x, root), slope);
-    Part ball  = find(&x, root);
+    Node slope    = graph_op2(graph, OP_max, slope_here(&x, &here), graph_number(graph, least));
+    x.radius      = graph_op2(graph, OP_div, size_of(&x, root), slope);
+    Part ball     = find(&x, root);
     bound->radius = x.limit == NODE_NONE ? x.radius : graph_op2(graph, OP_min, x.radius, x.limit);
     bound->first  = slope_here(&x, &ball);
     bound->second = ball.second;

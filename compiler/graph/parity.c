@@ -51,19 +51,24 @@ static uint8_t component_parity(const Expr *e, const Parity *const *operands, ui
 {
     uint8_t a = operands[0]->of[k], b = e->operand_count > 1 ? operands[1]->of[k] : NEITHER;
     switch ((Op)e->op) {
-    case OP_neg: case OP_sign: case OP_sin: case OP_tan: case OP_asin: case OP_atan:
-    case OP_sinh: case OP_tanh:
-        return a;
-    case OP_abs: case OP_square: case OP_cos: case OP_cosh:
-        return unsign(a);
-    case OP_add: case OP_sub:
-        return a & b;
-    case OP_mul: case OP_div:
-        return product(a, b);
-    case OP_scale:
-        return product(a, operands[1]->of[0]);
-    default:
-        return NEITHER;
+    case OP_neg:
+    case OP_sign:
+    case OP_sin:
+    case OP_tan:
+    case OP_asin:
+    case OP_atan:
+    case OP_sinh:
+    case OP_tanh: return a;
+    case OP_abs:
+    case OP_square:
+    case OP_cos:
+    case OP_cosh: return unsign(a);
+    case OP_add:
+    case OP_sub: return a & b;
+    case OP_mul:
+    case OP_div: return product(a, b);
+    case OP_scale: return product(a, operands[1]->of[0]);
+    default: return NEITHER;
     }
 }
 
@@ -89,20 +94,20 @@ static Parity node_parity(const Graph *graph, const Expr *e, const Parity *const
         return leaf_parity(e, axis);
     uint32_t first = size_of(&graph->items[e->operands[0]]);
     switch ((Op)e->op) {
-    case OP_COMPONENT:
-        parity.of[0] = operands[0]->of[e->index];
-        return parity;
-    case OP_vec2: case OP_vec3: case OP_vec4:
+    case OP_COMPONENT: parity.of[0] = operands[0]->of[e->index]; return parity;
+    case OP_vec2:
+    case OP_vec3:
+    case OP_vec4:
         for (uint32_t k = 0; k < size; k++)
             parity.of[k] = operands[k]->of[0];
         return parity;
-    case OP_splat2: case OP_splat3: case OP_splat4:
+    case OP_splat2:
+    case OP_splat3:
+    case OP_splat4:
         for (uint32_t k = 0; k < size; k++)
             parity.of[k] = operands[0]->of[0];
         return parity;
-    case OP_dot:
-        parity.of[0] = sum_of_products(operands[0], operands[1], first);
-        return parity;
+    case OP_dot: parity.of[0] = sum_of_products(operands[0], operands[1], first); return parity;
     case OP_length:
         parity.of[0] = EVEN;
         for (uint32_t k = 0; k < first; k++)
@@ -112,8 +117,7 @@ static Parity node_parity(const Graph *graph, const Expr *e, const Parity *const
         for (uint32_t k = 0; k < 3; k++)
             parity.of[k] = sum_of_products(operands[k + 1], operands[0], 3);
         return parity;
-    default:
-        break;
+    default: break;
     }
     bool even = all_even(e, operands, graph);
     for (uint32_t k = 0; k < size; k++)

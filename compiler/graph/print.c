@@ -10,7 +10,9 @@ static const char *const type_names[] = {
 };
 
 static const char *const time_names[] = {
-    [TIME_COMPILE] = "constant", [TIME_FRAME] = "frame", [TIME_POINT] = "point",
+    [TIME_COMPILE] = "constant",
+    [TIME_FRAME]   = "frame",
+    [TIME_POINT]   = "point",
 };
 
 static void print_constant(const Expr *e, Text *out)

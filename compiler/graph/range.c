@@ -22,10 +22,7 @@ Range range_intersect(Range a, Range b)
 
 double range_largest(Range a) { return fmax(fabs(a.low), fabs(a.high)); }
 
-double range_least(Range a)
-{
-    return a.low > 0 ? a.low : a.high < 0 ? -a.high : 0;
-}
+double range_least(Range a) { return a.low > 0 ? a.low : a.high < 0 ? -a.high : 0; }
 
 /* ---- directed rounding ---- */
 
@@ -113,10 +110,7 @@ static Range widened_within(double low, double high, double least, double most)
 Range range_neg(Range a) { return (Range){-a.high, -a.low}; }
 Range range_abs(Range a) { return (Range){range_least(a), range_largest(a)}; }
 
-Range range_sign(Range a)
-{
-    return (Range){a.low < 0 ? -1 : 1, a.high > 0 ? 1 : -1};
-}
+Range range_sign(Range a) { return (Range){a.low < 0 ? -1 : 1, a.high > 0 ? 1 : -1}; }
 
 Range range_sign_of(Range a)
 {
@@ -337,8 +331,8 @@ Range range_atan2(Range a, Range b)
 {
     if (crosses_cut(a, b))
         return widened(-PI, PI);
-    Range angle = range_corners(angle_of, a, b);
-    bool origin = range_least(a) == 0 && range_least(b) == 0;
+    Range angle  = range_corners(angle_of, a, b);
+    bool  origin = range_least(a) == 0 && range_least(b) == 0;
     return origin ? range_hull(angle, range_of(0)) : angle;
 }
 
@@ -361,10 +355,7 @@ Range range_is_less(Range a, Range b)
     return (Range){0, b.high <= a.low ? 0 : 1};
 }
 
-Range range_step(Range edge, Range a)
-{
-    return (Range){a.low >= edge.high, a.high >= edge.low};
-}
+Range range_step(Range edge, Range a) { return (Range){a.low >= edge.high, a.high >= edge.low}; }
 
 /* ---- three operands ---- */
 
@@ -374,10 +365,10 @@ Range range_mix(Range a, Range b, Range c)
     Range mixed = {HUGE_VAL, -HUGE_VAL};
     for (int corner = 0; corner < 8; corner++) {
         Range x = range_of(corner & 1 ? a.low : a.high), y = range_of(corner & 2 ? b.low : b.high);
-        Range t = range_of(corner & 4 ? c.low : c.high);
+        Range t     = range_of(corner & 4 ? c.low : c.high);
         Range rest  = range_mul(x, range_sub(range_of(1), t));
         Range share = range_mul(y, t);
-        mixed = range_hull(mixed, range_add(rest, share));
+        mixed       = range_hull(mixed, range_add(rest, share));
     }
     return isnan(mixed.low) ? ANYTHING : widened(mixed.low, mixed.high);
 }
@@ -426,10 +417,10 @@ Range range_smoothstep_slope(Range a, Range b, Range c, int operand)
         return range_of(0);
     if (width.low <= 0 && width.high >= 0)
         return ANYTHING;
-    Range  t    = smoothstep_progress(a, b, c);
-    double low  = 6 * t.low * (1 - t.low), high = 6 * t.high * (1 - t.high);
-    bool   peak = t.low <= 0.5 && t.high >= 0.5;
-    Range  rise = widened_within(fmin(low, high), peak ? 1.5 : fmax(low, high), 0, 1.5);
+    Range  t   = smoothstep_progress(a, b, c);
+    double low = 6 * t.low * (1 - t.low), high = 6 * t.high * (1 - t.high);
+    bool   peak  = t.low <= 0.5 && t.high >= 0.5;
+    Range  rise  = widened_within(fmin(low, high), peak ? 1.5 : fmax(low, high), 0, 1.5);
     Range  by[3] = {range_sub(t, range_of(1)), range_neg(t), range_of(1)};
     return range_div(range_mul(rise, by[operand]), width);
 }

@@ -15,10 +15,10 @@
 static inline Range range_of(double number) { return (Range){number, number}; }
 static inline bool  range_is_zero(Range a) { return a.low == 0 && a.high == 0; }
 static inline bool  range_is_single(Range a) { return a.low == a.high; }
-Range  range_hull(Range a, Range b);
-Range  range_intersect(Range a, Range b); /* of ranges that must overlap; else a */
-double range_largest(Range a);            /* greatest size of a value */
-double range_least(Range a);              /* least size of a value */
+Range               range_hull(Range a, Range b);
+Range               range_intersect(Range a, Range b); /* of ranges that must overlap; else a */
+double              range_largest(Range a);            /* greatest size of a value */
+double              range_least(Range a);              /* least size of a value */
 
 /* Bounds that are never below the exact sum or product of numbers >= 0; 0 * inf is 0. */
 double sum_upward(double a, double b);

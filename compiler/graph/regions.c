@@ -23,7 +23,7 @@ static uint32_t common(const Regions *regions, uint32_t a, uint32_t b)
 static void use(Regions *regions, Node node, uint32_t from)
 {
     uint32_t *of = &regions->of[node];
-    *of = *of == NO_REGION ? from : common(regions, *of, from);
+    *of          = *of == NO_REGION ? from : common(regions, *of, from);
 }
 
 static uint32_t open_region(Regions *regions, Node guard, Arena *arena)
@@ -55,12 +55,11 @@ void graph_regions(Regions *regions, const Graph *graph, const Node *roots, size
         uint32_t    of = regions->of[node];
         if (of == NO_REGION || e->time != TIME_POINT)
             continue;
-        regions->next[node] = regions->list.items[of].first;
+        regions->next[node]           = regions->list.items[of].first;
         regions->list.items[of].first = node;
         if (e->op == OP_guard)
             regions->body[node] = open_region(regions, node, arena);
         for (int i = 0; i < e->operand_count; i++)
-            use(regions, e->operands[i],
-                e->op == OP_guard && i == REST ? regions->body[node] : of);
+            use(regions, e->operands[i], e->op == OP_guard && i == REST ? regions->body[node] : of);
     }
 }

@@ -14,16 +14,19 @@
 #define NO_REGION     UINT32_MAX /* of what is not needed; the body of what is no guard */
 
 typedef struct Region {
-    Node     guard;         /* NODE_NONE for REGION_ALWAYS */
+    Node     guard; /* NODE_NONE for REGION_ALWAYS */
     uint32_t parent, depth;
-    Node     first;         /* the region's nodes in order, by `next`; NODE_NONE ends */
+    Node     first; /* the region's nodes in order, by `next`; NODE_NONE ends */
 } Region;
 
 typedef struct Regions {
     uint32_t *of;   /* of a node: its region; of a guard, the one that it is in */
     uint32_t *body; /* of a guard: the region of its rest */
     Node     *next;
-    struct { Region *items; size_t count, capacity; } list;
+    struct {
+        Region *items;
+        size_t  count, capacity;
+    } list;
 } Regions;
 
 /* Of all nodes of point time that the roots need; `of` and `body` have graph->count elements,

@@ -41,8 +41,8 @@ static Fact fact_vector(const Call *call)
 static double slope_product(const Call *call)
 {
     const Fact *u = &call->operands[0], *v = &call->operands[1];
-    double left  = product_upward(fact_size(u, type_size(call->types[0])).high, v->slope);
-    double right = product_upward(fact_size(v, type_size(call->types[1])).high, u->slope);
+    double      left  = product_upward(fact_size(u, type_size(call->types[0])).high, v->slope);
+    double      right = product_upward(fact_size(v, type_size(call->types[1])).high, u->slope);
     return sum_upward(left, right);
 }
 
@@ -91,9 +91,9 @@ static Fact fact_length(const Call *call)
     for (int j = 0; j < 3; j++) {
         double longest = 0;
         for (uint32_t i = 0; i < call->size; i++) {
-            Range unit = unit_component(v, i, whole);
+            Range unit      = unit_component(v, i, whole);
             jet.gradient[j] = range_add(jet.gradient[j], range_mul(unit, v->gradient[i][j]));
-            longest = hypot_upward(longest, range_largest(v->gradient[i][j]));
+            longest         = hypot_upward(longest, range_largest(v->gradient[i][j]));
         }
         jet.gradient[j] = range_intersect(jet.gradient[j], (Range){-longest, longest});
     }
@@ -105,11 +105,11 @@ static Fact fact_length(const Call *call)
 /* The derivative of v, less its part along v, over the length of v. */
 static Fact fact_normalize(const Call *call)
 {
-    const Fact *v     = &call->operands[0];
-    Range       whole = fact_size(v, call->size);
-    Fact        fact  = fact_unknown(call->size);
+    const Fact *v        = &call->operands[0];
+    Range       whole    = fact_size(v, call->size);
+    Fact        fact     = fact_unknown(call->size);
     double      steepest = whole.low > 0 ? 1 / whole.low * (1 + 0x1p-50) : HUGE_VAL;
-    fact.slope = product_upward(v->slope, steepest);
+    fact.slope           = product_upward(v->slope, steepest);
     for (uint32_t i = 0; i < call->size; i++)
         fact.value[i] = loosened(unit_component(v, i, whole), 1);
     for (uint32_t i = 0; whole.low > 0 && i < call->size; i++)
@@ -117,7 +117,7 @@ static Fact fact_normalize(const Call *call)
             Range along = range_of(0);
             for (uint32_t k = 0; k < call->size; k++)
                 along = range_add(along, range_mul(fact.value[k], v->gradient[k][j]));
-            Range across = range_sub(v->gradient[i][j], range_mul(fact.value[i], along));
+            Range across        = range_sub(v->gradient[i][j], range_mul(fact.value[i], along));
             fact.gradient[i][j] = range_div(across, whole);
         }
     return fact;
@@ -236,27 +236,24 @@ static Fact rule_of_row(const Call *call, uint32_t index, const double *constant
         for (uint32_t i = 0; i < call->size; i++)
             fact.value[i] = range_of(constant[i]);
         return fact;
-    case OP_COMPONENT:
-        return fact_component(&o[0], index);
-#define MAP(name, arity, glsl, value_, range, da, db, dc, norm, meaning)                           \
-    case OP_##name:                                                                                \
-        for (uint32_t i = 0; i < call->size; i++) {                                                \
-            Range a = o[0].value[i], b = arity > 1 ? o[arity > 1].value[i] : ZERO;                 \
-            Range c = arity > 2 ? o[arity > 2 ? 2 : 0].value[i] : ZERO;                            \
-            Range r = (range);                                                                     \
-            (void)b, (void)c;                                                                      \
-            rows[i] = (Partials){r, {da, db, dc}};                                                 \
-        }                                                                                          \
+    case OP_COMPONENT: return fact_component(&o[0], index);
+#define MAP(name, arity, glsl, value_, range, da, db, dc, norm, meaning)           \
+    case OP_##name:                                                                \
+        for (uint32_t i = 0; i < call->size; i++) {                                \
+            Range a = o[0].value[i], b = arity > 1 ? o[arity > 1].value[i] : ZERO; \
+            Range c = arity > 2 ? o[arity > 2 ? 2 : 0].value[i] : ZERO;            \
+            Range r = (range);                                                     \
+            (void)b, (void)c;                                                      \
+            rows[i] = (Partials){r, {da, db, dc}};                                 \
+        }                                                                          \
         return fact_map(norm, arity, o, rows, call->size);
-#define OP(name, signature, glsl, evaluate, facts, meaning)                                        \
-    case OP_##name:                                                                                \
+#define OP(name, signature, glsl, evaluate, facts, meaning) \
+    case OP_##name:                                         \
         return facts(call);
 #include "compiler/graph/ops.def"
 #undef MAP
 #undef OP
-    default:
-        assert(!"leaves have facts of their own");
-        return fact_unknown(call->size);
+    default: assert(!"leaves have facts of their own"); return fact_unknown(call->size);
     }
 }
 

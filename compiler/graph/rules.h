@@ -37,17 +37,17 @@ Jet  jet_sub(Jet a, Jet b);
 Jet  jet_mul(Jet a, Jet b);
 Jet  jet_hull(Jet a, Jet b);
 /* The jet times a factor that is the same all over the box. */
-Jet  jet_times(Jet a, Range factor);
-Jet  jet_dot(const Fact *a, const Fact *b, uint32_t size);
+Jet jet_times(Jet a, Range factor);
+Jet jet_dot(const Fact *a, const Fact *b, uint32_t size);
 
 /* Nothing is known of `size` components; rules put in what they can say. */
-Fact  fact_unknown(uint32_t size);
+Fact fact_unknown(uint32_t size);
 /* Range of the Euclidean length of a vector. */
 Range fact_size(const Fact *fact, uint32_t size);
 /* Room for the rounding of a computation with numbers of this size. */
 Range loosened(Range range, double scale);
 /* Whether the operands from `first` up to `count` are the same all over the box. */
-bool  operands_constant(const Call *call, uint32_t first, uint32_t count);
+bool operands_constant(const Call *call, uint32_t first, uint32_t count);
 
 /* How slopes combine: ops.def. */
 typedef enum Norm { NORM_SUM, NORM_CONVEX, NORM_MIX, NORM_NONE } Norm;

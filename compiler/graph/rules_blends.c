@@ -7,8 +7,8 @@
 
 static double smooth_corner(const Call *call, double a, double b, double k, double n)
 {
-    static const GraphType types[] = {TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT};
-    NodeValue operands[] = {{{a}}, {{b}}, {{k}}, {{n}}};
+    static const GraphType types[]    = {TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT};
+    NodeValue              operands[] = {{{a}}, {{b}}, {{k}}, {{n}}};
     return op_evaluate(call->op, TYPE_FLOAT, 0, types, operands).v[0];
 }
 
@@ -16,10 +16,10 @@ static double smooth_corner(const Call *call, double a, double b, double k, doub
 static Range smooth_range(const Call *call, double n)
 {
     Range  a = call->operands[0].value[0], b = call->operands[1].value[0];
-    Range  k = call->operands[2].value[0];
-    double low  = smooth_corner(call, a.low, b.low, k.high, n);
-    double high = smooth_corner(call, a.high, b.high, k.low, n);
-    Range range = {isnan(low) ? -HUGE_VAL : low, isnan(high) ? HUGE_VAL : high};
+    Range  k     = call->operands[2].value[0];
+    double low   = smooth_corner(call, a.low, b.low, k.high, n);
+    double high  = smooth_corner(call, a.high, b.high, k.low, n);
+    Range  range = {isnan(low) ? -HUGE_VAL : low, isnan(high) ? HUGE_VAL : high};
     double scale = fmin(range_largest(a) + range_largest(b), 1e300) + fmin(fabs(k.high), 1e300);
     return loosened(range, scale);
 }
@@ -41,8 +41,8 @@ static Fact fact_smooth(const Call *call, uint32_t count, Range value, double sl
 static Fact smooth_mean(const Call *call, uint32_t count, Range value)
 {
     const Fact *a = &call->operands[0], *b = &call->operands[1];
-    Jet    left = jet_of(a, 0), right = jet_of(b, 0);
-    double width = fmax(call->operands[2].value[0].high, 0);
+    Jet         left = jet_of(a, 0), right = jet_of(b, 0);
+    double      width = fmax(call->operands[2].value[0].high, 0);
     if (call->op != OP_smin_exponential && left.value.high + width <= right.value.low)
         return fact_smooth(call, count, value, a->slope, left);
     if (call->op != OP_smin_exponential && right.value.high + width <= left.value.low)
@@ -57,9 +57,9 @@ Fact fact_smin(const Call *call) { return smooth_mean(call, 3, smooth_range(call
 Fact fact_smin_circular(const Call *call)
 {
     const Fact *a = &call->operands[0], *b = &call->operands[1];
-    Jet    left = jet_of(a, 0), right = jet_of(b, 0);
-    double width = call->operands[2].value[0].high;
-    Range  value = smooth_range(call, 0), share = {0, 1};
+    Jet         left = jet_of(a, 0), right = jet_of(b, 0);
+    double      width = call->operands[2].value[0].high;
+    Range       value = smooth_range(call, 0), share = {0, 1};
     if (left.value.low >= fmax(width, right.value.high))
         return fact_smooth(call, 3, value, b->slope, right);
     if (right.value.low >= fmax(width, left.value.high))
@@ -72,16 +72,15 @@ Fact fact_smin_circular(const Call *call)
 Fact fact_smin_chamfer(const Call *call)
 {
     const Fact *a = &call->operands[0], *b = &call->operands[1];
-    Jet    candidates[3] = {jet_of(a, 0), jet_of(b, 0)};
-    double both      = product_upward(sqrt(0.5) * (1 + 0x1p-50), sum_upward(a->slope, b->slope));
-    double slopes[3] = {a->slope, b->slope, both}, slope = 0;
-    Range  root      = {sqrt(0.5) * (1 - 0x1p-50), sqrt(0.5) * (1 + 0x1p-50)};
-    Jet    sum       = jet_add(candidates[0], candidates[1]);
+    Jet         candidates[3] = {jet_of(a, 0), jet_of(b, 0)};
+    double      both = product_upward(sqrt(0.5) * (1 + 0x1p-50), sum_upward(a->slope, b->slope));
+    double      slopes[3] = {a->slope, b->slope, both}, slope = 0;
+    Range       root = {sqrt(0.5) * (1 - 0x1p-50), sqrt(0.5) * (1 + 0x1p-50)};
+    Jet         sum  = jet_add(candidates[0], candidates[1]);
     sum.value        = range_sub(sum.value, range_above(call->operands[2].value[0], 0));
     candidates[2]    = jet_times(sum, root);
     double least     = fmin(candidates[0].value.high, candidates[1].value.high);
-    Jet    hull      = {.gradient = {{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL},
-                                     {HUGE_VAL, -HUGE_VAL}}};
+    Jet hull = {.gradient = {{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}}};
     for (int i = 0; i < 3; i++)
         if (candidates[i].value.low <= least) {
             hull  = jet_hull(hull, candidates[i]);
@@ -93,11 +92,11 @@ Fact fact_smin_chamfer(const Call *call)
 /* On each step one of a and b has the derivative 1 and the other 0 (evaluate.c). */
 Fact fact_smin_stairs(const Call *call)
 {
-    Range a = call->operands[0].value[0], b = call->operands[1].value[0];
-    Range k = call->operands[2].value[0], n = call->operands[3].value[0];
-    Range value = range_min(a, b);
+    Range  a = call->operands[0].value[0], b = call->operands[1].value[0];
+    Range  k = call->operands[2].value[0], n = call->operands[3].value[0];
+    Range  value  = range_min(a, b);
     double lowest = sum_upward(sum_upward(-a.low, -b.low), fmax(k.high, 0)) / -2;
-    value.low = fmin(value.low, lowest);
+    value.low     = fmin(value.low, lowest);
     if (range_is_single(k) && range_is_single(n))
         value = range_intersect(value, smooth_range(call, n.low));
     double scale = range_largest(a) + range_largest(b) + range_largest(k);
@@ -107,8 +106,8 @@ Fact fact_smin_stairs(const Call *call)
 Fact fact_blend_weight(const Call *call)
 {
     const Fact *a = &call->operands[0], *b = &call->operands[1];
-    Range  k     = call->operands[2].value[0], value = {1, 0};
-    double ks[2] = {k.low, k.high};
+    Range       k = call->operands[2].value[0], value = {1, 0};
+    double      ks[2] = {k.low, k.high};
     for (int i = 0; i < 2; i++) {
         double low  = smooth_corner(call, a->value[0].high, b->value[0].low, ks[i], 0);
         double high = smooth_corner(call, a->value[0].low, b->value[0].high, ks[i], 0);

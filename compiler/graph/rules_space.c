@@ -61,11 +61,11 @@ Fact fact_front(const Call *call)
 /* Of p - period * k for the cell k in [low, high] that is nearest. */
 static Range cell_range(Range p, Range period, Range low, Range high)
 {
-    Range cell    = range_min(range_max(range_round(range_div(p, period)), low), high);
-    Range moved   = range_sub(p, range_mul(period, cell));
-    Range first   = range_sub(p, range_mul(period, low));
-    Range last    = range_sub(p, range_mul(period, high));
-    Range within  = {fmin(-period.high / 2, first.low), fmax(period.high / 2, last.high)};
+    Range  cell   = range_min(range_max(range_round(range_div(p, period)), low), high);
+    Range  moved  = range_sub(p, range_mul(period, cell));
+    Range  first  = range_sub(p, range_mul(period, low));
+    Range  last   = range_sub(p, range_mul(period, high));
+    Range  within = {fmin(-period.high / 2, first.low), fmax(period.high / 2, last.high)};
     double scale  = range_largest(p);
     return range_intersect(moved, loosened(within, isfinite(scale) ? scale : period.high));
 }
@@ -93,17 +93,17 @@ Fact fact_cell(const Call *call)
 /* The turned pair (x, z) has lengths in `radius`; so have its derivatives in x', z'. */
 static void sector_bounds(const Fact *p, Range count, Fact *fact)
 {
-    Fact   plane = {.value = {p->value[0], p->value[2]}};
-    Range  radius = fact_size(&plane, 2);
-    double half   = acos(-1) / count.low;
-    bool   narrow = count.low >= 2;
-    Range  x = {narrow ? radius.low * cos(half) : -radius.high, radius.high};
-    double z = narrow ? radius.high * sin(half) : radius.high;
+    Fact   plane   = {.value = {p->value[0], p->value[2]}};
+    Range  radius  = fact_size(&plane, 2);
+    double half    = acos(-1) / count.low;
+    bool   narrow  = count.low >= 2;
+    Range  x       = {narrow ? radius.low * cos(half) : -radius.high, radius.high};
+    double z       = narrow ? radius.high * sin(half) : radius.high;
     fact->value[0] = loosened(x, radius.high);
     fact->value[2] = loosened((Range){-z, z}, radius.high);
     for (int j = 0; j < 3; j++) {
-        double most = hypot_upward(range_largest(p->gradient[0][j]),
-                                   range_largest(p->gradient[2][j]));
+        double most          = hypot_upward(range_largest(p->gradient[0][j]),
+                                            range_largest(p->gradient[2][j]));
         fact->gradient[0][j] = fact->gradient[2][j] = (Range){-most, most};
     }
 }
@@ -111,8 +111,8 @@ static void sector_bounds(const Fact *p, Range count, Fact *fact)
 /* Within a sector it is a turn, and a known one when the box lies in one sector. */
 Fact fact_cell_polar(const Call *call)
 {
-    const Fact *p = &call->operands[0];
-    Range count = call->operands[1].value[0];
+    const Fact *p     = &call->operands[0];
+    Range       count = call->operands[1].value[0];
     if (count.high < 1 || call->operands[1].slope != 0)
         return count.high < 1 ? *p : fact_unknown(3);
     Fact fact = *p;
@@ -148,9 +148,9 @@ static Fact fact_noise(const Call *call, double steepest)
     Fact        fact   = {.slope = product_upward(steepest, p->slope)};
     Jet         jet    = {.value = {-1, 1}};
     for (uint32_t i = 0; i < call->size; i++) {
-        Range side   = p->value[i];
-        middle.v[i]  = side.low / 2 + side.high / 2;
-        reach        = hypot_upward(reach, fmax(side.high - middle.v[i], middle.v[i] - side.low));
+        Range side  = p->value[i];
+        middle.v[i] = side.low / 2 + side.high / 2;
+        reach       = hypot_upward(reach, fmax(side.high - middle.v[i], middle.v[i] - side.low));
         for (int j = 0; j < 3; j++) {
             Range part      = range_mul((Range){-steepest, steepest}, p->gradient[i][j]);
             jet.gradient[j] = range_add(jet.gradient[j], part);
@@ -188,12 +188,12 @@ Fact fact_id_unit(const Call *call) { return fact_steps(call, 1, 1); }
 static bool fractal_middle(const Call *call, uint32_t others, double *middle, double *reach)
 {
     NodeValue operands[MAX_OPERANDS] = {0};
-    *reach = 0;
+    *reach                           = 0;
     for (uint32_t i = 0; i < 3; i++) {
         Range at         = call->operands[0].value[i];
         operands[0].v[i] = at.low / 2 + at.high / 2;
-        *reach = hypot_upward(*reach, fmax(sum_upward(at.high, -operands[0].v[i]),
-                                           sum_upward(operands[0].v[i], -at.low)));
+        *reach           = hypot_upward(*reach, fmax(sum_upward(at.high, -operands[0].v[i]),
+                                                     sum_upward(operands[0].v[i], -at.low)));
     }
     for (uint32_t i = 1; i <= others; i++)
         for (uint32_t k = 0; k < type_size(call->types[i]); k++) {
@@ -210,8 +210,8 @@ Fact fact_julia(const Call *call)
 {
     Fact        fact  = fact_unknown(1);
     const Fact *point = &call->operands[0];
-    Range  size = fact_size(point, 3), radius = call->operands[3].value[1];
-    double middle, reach;
+    Range       size = fact_size(point, 3), radius = call->operands[3].value[1];
+    double      middle, reach;
     fact.value[0] = (Range){size.low - radius.high, sum_upward(size.high, radius.high)};
     if (fractal_middle(call, 3, &middle, &reach)) {
         Range near    = {middle - reach, middle + reach};
@@ -227,8 +227,8 @@ Fact fact_mandelbulb(const Call *call)
 {
     Fact        fact  = fact_unknown(1);
     const Fact *point = &call->operands[0];
-    Range  size = fact_size(point, 3), radius = call->operands[2].value[1];
-    Range  power = call->operands[1].value[0];
+    Range       size = fact_size(point, 3), radius = call->operands[2].value[1];
+    Range       power = call->operands[1].value[0];
     if (!range_is_single(power) || !(power.low >= 2) || !(radius.low > 0))
         return fact; /* what no scene can write */
     double core  = mandelbulb_core(power.low);

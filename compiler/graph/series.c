@@ -30,9 +30,9 @@ typedef struct Parts {
 } Parts;
 
 typedef struct Expansion {
-    Graph *graph;
-    Arena *scratch;
-    Node   origin, direction; /* direction: NODE_NONE in a ball */
+    Graph       *graph;
+    Arena       *scratch;
+    Node         origin, direction; /* direction: NODE_NONE in a ball */
     SeriesFault *fault;
 } Expansion;
 
@@ -96,7 +96,7 @@ static double largest_bend(double a[3][3])
             m[i][j] = a[i][j] - (i == j ? mean : 0);
             deviation += m[i][j] * m[i][j] / 6;
         }
-    deviation = sqrt(deviation);
+    deviation          = sqrt(deviation);
     double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
                          m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                          m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
@@ -126,7 +126,7 @@ static Node no_gradient(const Expansion *x)
 
 static Part constant_part(const Expansion *x, Node node)
 {
-    Part part = {.gradient = no_gradient(x), .quadric = in_ball(x)};
+    Part part        = {.gradient = no_gradient(x), .quadric = in_ball(x)};
     part.series.c[0] = node;
     return part;
 }
@@ -134,7 +134,7 @@ static Part constant_part(const Expansion *x, Node node)
 /* Coordinate i of the point. */
 static Part coordinate_part(const Expansion *x, uint32_t i)
 {
-    Part part = {.series = {.degree = 1}, .quadric = in_ball(x)};
+    Part part        = {.series = {.degree = 1}, .quadric = in_ball(x)};
     part.series.c[0] = graph_component(x->graph, x->origin, i);
     if (in_ball(x)) {
         part.gradient    = graph_vec3(x->graph, i == 0, i == 1, i == 2);
@@ -148,15 +148,14 @@ static Part coordinate_part(const Expansion *x, uint32_t i)
 
 static Part add_parts(const Expansion *x, Part a, Part b)
 {
-    Graph       *g = x->graph;
+    Graph        *g = x->graph;
     const Series *s = &a.series, *t = &b.series;
-    Part         sum = {.series = {.degree = s->degree > t->degree ? s->degree : t->degree}};
+    Part          sum = {.series = {.degree = s->degree > t->degree ? s->degree : t->degree}};
     for (uint32_t k = 0; k <= sum.series.degree; k++)
         sum.series.c[k] = k > s->degree   ? t->c[k]
                           : k > t->degree ? s->c[k]
                                           : plus(g, s->c[k], t->c[k]);
-    set_gradient(x, &sum,
-                 in_ball(x) ? plus(g, a.gradient, b.gradient) : NODE_NONE);
+    set_gradient(x, &sum, in_ball(x) ? plus(g, a.gradient, b.gradient) : NODE_NONE);
     sum.quadric = a.quadric && b.quadric;
     for (int i = 0; i < 9; i++)
         sum.hessian[i / 3][i % 3] = a.hessian[i / 3][i % 3] + b.hessian[i / 3][i % 3];
@@ -278,12 +277,12 @@ static bool cross_parts(Expansion *x, Node node, const Parts *a, const Parts *b,
 static bool expand_component(Expansion *x, Node node, Op op, Part a, Part b, Part *result)
 {
     switch (op) {
-    case OP_add:    *result = add_parts(x, a, b); return true;
-    case OP_sub:    *result = add_parts(x, a, negate_part(x, b)); return true;
-    case OP_neg:    *result = negate_part(x, a); return true;
+    case OP_add: *result = add_parts(x, a, b); return true;
+    case OP_sub: *result = add_parts(x, a, negate_part(x, b)); return true;
+    case OP_neg: *result = negate_part(x, a); return true;
     case OP_square: return multiply(x, node, a, a, result);
     case OP_mul:
-    case OP_scale:  return multiply(x, node, a, b, result);
+    case OP_scale: return multiply(x, node, a, b, result);
     case OP_div:
         if (!is_constant(b))
             return false;
@@ -298,15 +297,19 @@ static bool expand_op(Expansion *x, Node node, const Parts *operands, Parts *res
     Expr e = x->graph->items[node];
     switch (e.op) {
     case OP_COMPONENT: result->items[0] = part_of(&operands[0], e.index); return true;
-    case OP_splat2: case OP_splat3: case OP_splat4:
+    case OP_splat2:
+    case OP_splat3:
+    case OP_splat4:
         for (uint32_t i = 0; i < result->count; i++)
             result->items[i] = operands[0].items[0];
         return true;
-    case OP_vec2: case OP_vec3: case OP_vec4:
+    case OP_vec2:
+    case OP_vec3:
+    case OP_vec4:
         for (uint32_t i = 0; i < result->count; i++)
             result->items[i] = operands[i].items[0];
         return true;
-    case OP_dot:   return dot_parts(x, node, &operands[0], &operands[1], &result->items[0]);
+    case OP_dot: return dot_parts(x, node, &operands[0], &operands[1], &result->items[0]);
     case OP_cross: return cross_parts(x, node, &operands[0], &operands[1], result);
     case OP_turn:
         for (uint32_t i = 0; i < 3; i++)
@@ -325,7 +328,7 @@ static bool expand_op(Expansion *x, Node node, const Parts *operands, Parts *res
 /* A node of point time whose operands are expanded. */
 static bool expand_node(Expansion *x, Node node, const Tape *tape, const Parts *all, Parts *result)
 {
-    Expr e = x->graph->items[node];
+    Expr e         = x->graph->items[node];
     x->graph->here = e.span;
     *result        = new_parts(x, e.type <= TYPE_VEC4 ? e.type : 1);
     if (e.time != TIME_POINT) {

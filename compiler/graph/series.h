@@ -19,8 +19,8 @@ typedef struct Series {
 
 /* What graph_series could not make, and why. */
 typedef struct SeriesFault {
-    Node     blame;    /* an operation that no polynomial has, or */
-    uint32_t degree;   /* one whose degree is more than MOST_DEGREE; else 0 */
+    Node     blame;  /* an operation that no polynomial has, or */
+    uint32_t degree; /* one whose degree is more than MOST_DEGREE; else 0 */
 } SeriesFault;
 
 /* `root` (FLOAT) along the line origin + t direction (VEC3 nodes).  False when it is not a

@@ -20,19 +20,19 @@ typedef struct Simplifier {
 
 /* A node about to be rebuilt: its operands in the new graph. */
 typedef struct Step {
-    Graph      *graph;
-    Op          op;
-    GraphType   type;
-    uint32_t    index;
-    Node        o[MAX_OPERANDS];
-    bool        finite[MAX_OPERANDS]; /* of each operand */
+    Graph    *graph;
+    Op        op;
+    GraphType type;
+    uint32_t  index;
+    Node      o[MAX_OPERANDS];
+    bool      finite[MAX_OPERANDS]; /* of each operand */
 } Step;
 
 /* ---- what rules ask about ---- */
 
 static const Expr *expr(const Step *s, Node node) { return &s->graph->items[node]; }
-static bool is(const Step *s, Node node, Op op) { return expr(s, node)->op == op; }
-static bool constant(const Step *s, Node node) { return is(s, node, OP_CONSTANT); }
+static bool        is(const Step *s, Node node, Op op) { return expr(s, node)->op == op; }
+static bool        constant(const Step *s, Node node) { return is(s, node, OP_CONSTANT); }
 
 static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
 
@@ -78,9 +78,9 @@ static Node gather(const Step *s, Op op, Node x, Op join, Node c, Node d)
 
 /* ---- rules: each gives the node to use instead, or NODE_NONE ---- */
 
-#define RULE(condition, result)                                                                    \
-    if (condition)                                                                                 \
-        return (result)
+#define RULE(condition, result) \
+    if (condition)              \
+    return (result)
 
 /* Of operations that may take their operands in either order: the older first, a constant
    last. */
@@ -195,8 +195,8 @@ static bool sum_of_squares(const Step *s, Node sum, Node *roots, uint32_t *count
 static Node simplify_sqrt(const Step *s)
 {
     static const Op vectors[] = {OP_vec2, OP_vec3, OP_vec4};
-    Node     a = s->o[0], roots[4];
-    uint32_t count = 0;
+    Node            a         = s->o[0], roots[4];
+    uint32_t        count     = 0;
     RULE(is(s, a, OP_square), graph_op1(s->graph, OP_abs, operand(s, a, 0)));
     RULE(is(s, a, OP_dot) && operand(s, a, 0) == operand(s, a, 1),
          graph_op1(s->graph, OP_length, operand(s, a, 0)));
@@ -225,11 +225,11 @@ static Node simplify_ramp(const Step *s)
     Node span = op2(s, OP_sub, s->o[1], from), steep = span;
     if (is(s, x, OP_add) && constant(s, operand(s, x, 1))) {
         from = op2(s, OP_add, from, op2(s, OP_mul, span, operand(s, x, 1)));
-        x = operand(s, x, 0);
+        x    = operand(s, x, 0);
     }
     if (is(s, x, OP_mul) && constant(s, operand(s, x, 1))) {
         steep = gathered(s, OP_mul, span, operand(s, x, 1));
-        x = operand(s, x, 0);
+        x     = operand(s, x, 0);
     }
     if (steep == NODE_NONE || !constant(s, from))
         return NODE_NONE;
@@ -258,12 +258,13 @@ static Node simplify_component(const Step *s)
 {
     Node a = s->o[0];
     switch ((Op)expr(s, a)->op) {
-    case OP_vec2: case OP_vec3: case OP_vec4:
-        return operand(s, a, (int)s->index);
-    case OP_splat2: case OP_splat3: case OP_splat4:
-        return operand(s, a, 0);
-    default:
-        return NODE_NONE;
+    case OP_vec2:
+    case OP_vec3:
+    case OP_vec4: return operand(s, a, (int)s->index);
+    case OP_splat2:
+    case OP_splat3:
+    case OP_splat4: return operand(s, a, 0);
+    default: return NODE_NONE;
     }
 }
 
@@ -271,9 +272,9 @@ static Node simplify_component(const Step *s)
 static Node simplify_vector(const Step *s)
 {
     static const Op splats[] = {OP_splat2, OP_splat3, OP_splat4};
-    uint32_t size  = s->type;
-    Node     first = s->o[0];
-    bool     equal = true, whole = is(s, first, OP_COMPONENT);
+    uint32_t        size     = s->type;
+    Node            first    = s->o[0];
+    bool            equal = true, whole = is(s, first, OP_COMPONENT);
     for (uint32_t i = 0; i < size; i++) {
         equal = equal && s->o[i] == first;
         whole = whole && is(s, s->o[i], OP_COMPONENT) && expr(s, s->o[i])->index == i &&
@@ -334,29 +335,39 @@ static Node simplify_smin(const Step *s)
 static Node simplify_by_rule(Step *s)
 {
     switch (s->op) {
-    case OP_add:           order_operands(s); return simplify_add(s);
-    case OP_mul:           order_operands(s); return simplify_mul(s);
-    case OP_min: case OP_max: order_operands(s); return simplify_extremum(s);
-    case OP_and: case OP_or:  order_operands(s); return simplify_logic(s);
-    case OP_dot: case OP_equal: case OP_not_equal: order_operands(s); return NODE_NONE;
-    case OP_sub:           return simplify_sub(s);
-    case OP_div:           return simplify_div(s);
-    case OP_neg:           return simplify_neg(s);
-    case OP_abs:           return simplify_abs(s);
-    case OP_square:        return simplify_square(s);
-    case OP_sqrt:          return simplify_sqrt(s);
-    case OP_pow:           return simplify_pow(s);
-    case OP_mix:           return simplify_mix(s);
-    case OP_scale:         return simplify_scale(s);
-    case OP_COMPONENT:     return simplify_component(s);
-    case OP_vec2: case OP_vec3: case OP_vec4: return simplify_vector(s);
-    case OP_not:           return simplify_not(s);
-    case OP_select:        return simplify_select(s);
-    case OP_turn:          return simplify_turn(s);
-    case OP_cell:          return simplify_cell(s);
-    case OP_smin_quadratic: case OP_smin_cubic: case OP_smin_exponential:
-    case OP_smin_circular: case OP_smin_chamfer: case OP_smin_stairs: return simplify_smin(s);
-    default:               return NODE_NONE;
+    case OP_add: order_operands(s); return simplify_add(s);
+    case OP_mul: order_operands(s); return simplify_mul(s);
+    case OP_min:
+    case OP_max: order_operands(s); return simplify_extremum(s);
+    case OP_and:
+    case OP_or: order_operands(s); return simplify_logic(s);
+    case OP_dot:
+    case OP_equal:
+    case OP_not_equal: order_operands(s); return NODE_NONE;
+    case OP_sub: return simplify_sub(s);
+    case OP_div: return simplify_div(s);
+    case OP_neg: return simplify_neg(s);
+    case OP_abs: return simplify_abs(s);
+    case OP_square: return simplify_square(s);
+    case OP_sqrt: return simplify_sqrt(s);
+    case OP_pow: return simplify_pow(s);
+    case OP_mix: return simplify_mix(s);
+    case OP_scale: return simplify_scale(s);
+    case OP_COMPONENT: return simplify_component(s);
+    case OP_vec2:
+    case OP_vec3:
+    case OP_vec4: return simplify_vector(s);
+    case OP_not: return simplify_not(s);
+    case OP_select: return simplify_select(s);
+    case OP_turn: return simplify_turn(s);
+    case OP_cell: return simplify_cell(s);
+    case OP_smin_quadratic:
+    case OP_smin_cubic:
+    case OP_smin_exponential:
+    case OP_smin_circular:
+    case OP_smin_chamfer:
+    case OP_smin_stairs: return simplify_smin(s);
+    default: return NODE_NONE;
     }
 }
 
@@ -366,11 +377,19 @@ static Node simplify_by_rule(Step *s)
 static bool op_stays_finite(Op op)
 {
     switch (op) {
-    case OP_div: case OP_mod: case OP_sqrt: case OP_inversesqrt: case OP_log: case OP_log2:
-    case OP_exp: case OP_exp2: case OP_sinh: case OP_cosh: case OP_tan: case OP_pow:
-        return false;
-    default:
-        return true;
+    case OP_div:
+    case OP_mod:
+    case OP_sqrt:
+    case OP_inversesqrt:
+    case OP_log:
+    case OP_log2:
+    case OP_exp:
+    case OP_exp2:
+    case OP_sinh:
+    case OP_cosh:
+    case OP_tan:
+    case OP_pow: return false;
+    default: return true;
     }
 }
 
@@ -387,12 +406,9 @@ static bool node_stays_finite(const Simplifier *simplifier, const Expr *e)
 static Node rebuild_leaf(Graph *graph, const Expr *e)
 {
     switch ((Op)e->op) {
-    case OP_CONSTANT:
-        return graph_constant(graph, e->type, e->number);
-    case OP_PARAMETER:
-        return graph_parameter(graph, e->index, e->type);
-    default:
-        return graph_leaf(graph, e->op);
+    case OP_CONSTANT: return graph_constant(graph, e->type, e->number);
+    case OP_PARAMETER: return graph_parameter(graph, e->index, e->type);
+    default: return graph_leaf(graph, e->op);
     }
 }
 
@@ -421,13 +437,13 @@ static Graph *rebuild_all(const Graph *old, Node *roots, size_t root_count, bool
     Tape       tape       = tape_new(old, roots, root_count, arena);
     Simplifier simplifier = {.old = old, .graph = graph_new(arena)};
     bool      *needed     = arena_new_array(arena, bool, old->count + 1);
-    simplifier.nodes  = arena_new_array(arena, Node, old->count + 1);
-    simplifier.finite = arena_new_array(arena, bool, old->count + 1);
+    simplifier.nodes      = arena_new_array(arena, Node, old->count + 1);
+    simplifier.finite     = arena_new_array(arena, bool, old->count + 1);
     for (size_t i = 0; i < tape.count; i++)
         needed[tape.nodes[i]] = true;
     for (Node node = 0; node < old->count; node++)
         if (needed[node]) {
-            const Expr *e            = &old->items[node];
+            const Expr *e           = &old->items[node];
             simplifier.finite[node] = node_stays_finite(&simplifier, e);
             simplifier.nodes[node]  = rebuild(&simplifier, e, with_rules);
         }

@@ -23,7 +23,7 @@ static const double MOST_WORK = 1e5;
 enum { MOST_DEPTH = 6, LEAST_DEPTH = 2, SLAB_DEPTH = 5, MOST_ROUNDS = 40 };
 
 typedef struct Hunt {
-    RangeTask task;  /* of the forms; later of the polynomial */
+    RangeTask task; /* of the forms; later of the polynomial */
     Node      root;
     Series    forms; /* c_k, of the point as q */
     double    work;  /* what is left */
@@ -47,9 +47,9 @@ static int sign_of(Range a) { return a.low > 0 ? 1 : a.high < 0 ? -1 : 0; }
 static double outweighed_until(const Hunt *hunt)
 {
     uint32_t n = hunt->forms.degree;
-    double   falls[MOST_DEGREE + 1], lead = range_least(range_task_value(&hunt->task,
-                                                                         hunt->forms.c[n]));
-    double   low = 0, high = 0;
+    double   falls[MOST_DEGREE + 1],
+        lead   = range_least(range_task_value(&hunt->task, hunt->forms.c[n]));
+    double low = 0, high = 0;
     for (uint32_t k = 0; k < n; k++) {
         Range c  = range_task_value(&hunt->task, hunt->forms.c[k]);
         falls[k] = fmax(hunt->sign > 0 ? -c.low : c.high, 0);
@@ -90,13 +90,14 @@ static bool bound_cell(Hunt *hunt, Box cell, int depth, Box *zeros)
     if (sign != 0 && sign == hunt->sign && depth >= LEAST_DEPTH) {
         double reach = outweighed_until(hunt);
         for (int i = 0; i < 3; i++)
-            zeros->axis[i] = range_hull(zeros->axis[i], (Range){fmin(reach * cell.axis[i].low, 0),
-                                                                fmax(reach * cell.axis[i].high, 0)});
+            zeros->axis[i] = range_hull(
+                zeros->axis[i],
+                (Range){fmin(reach * cell.axis[i].low, 0), fmax(reach * cell.axis[i].high, 0)});
         return isfinite(reach);
     }
     if (depth == MOST_DEPTH || !may_be_definite(hunt, cell))
         return false;
-    Box  parts[4] = {cell, cell, cell, cell};
+    Box parts[4] = {cell, cell, cell, cell};
     for (int i = 0, bit = 1; i < 3; i++) {
         if (range_is_single(cell.axis[i]))
             continue;
@@ -115,7 +116,7 @@ static bool bound_by_leading_form(Hunt *hunt, Box *zeros)
 {
     *zeros = (Box){{{0, 0}, {0, 0}, {0, 0}}};
     for (int face = 0; face < 6; face++) {
-        Box cell = {{{-1, 1}, {-1, 1}, {-1, 1}}};
+        Box cell            = {{{-1, 1}, {-1, 1}, {-1, 1}}};
         cell.axis[face / 2] = range_of(face % 2 ? 1 : -1);
         if (!may_be_definite(hunt, cell) || !bound_cell(hunt, cell, 0, zeros))
             return false;
@@ -148,12 +149,12 @@ static bool has_sign(Hunt *hunt, Box box, int sign, int depth)
     for (int i = 1; i < 3; i++)
         if (box.axis[i].high - box.axis[i].low > box.axis[widest].high - box.axis[widest].low)
             widest = i;
-    Box    half = box;
-    double cut  = cut_of(box.axis[widest]);
+    Box    half            = box;
+    double cut             = cut_of(box.axis[widest]);
     half.axis[widest].high = cut;
     if (!has_sign(hunt, half, sign, depth - 1))
         return false;
-    half = box;
+    half                  = box;
     half.axis[widest].low = cut;
     return has_sign(hunt, half, sign, depth - 1);
 }
@@ -161,9 +162,9 @@ static bool has_sign(Hunt *hunt, Box box, int sign, int depth)
 /* Moves one side of the box inwards to `at` if there is no zero beyond. */
 static bool cut_side(Hunt *hunt, Box *box, int side, double at, int sign)
 {
-    Box    slab  = *box;
-    Range *axis  = &box->axis[side / 2];
-    double *ends[2] = {&axis->low, &axis->high};
+    Box     slab                                                       = *box;
+    Range  *axis                                                       = &box->axis[side / 2];
+    double *ends[2]                                                    = {&axis->low, &axis->high};
     *(side % 2 ? &slab.axis[side / 2].low : &slab.axis[side / 2].high) = at;
     if (!has_sign(hunt, slab, sign, SLAB_DEPTH))
         return false;
@@ -192,12 +193,11 @@ static bool cut_endless_side(Hunt *hunt, Box *box, int side, int sign)
 static bool cut_finite_side(Hunt *hunt, Box *box, int side, int sign)
 {
     static const double shares[] = {0.5, 0.25, 0.1, 0.03};
-    Range axis = box->axis[side / 2];
+    Range               axis     = box->axis[side / 2];
     for (size_t i = 0; i < sizeof shares / sizeof *shares; i++) {
         double part = shares[i] * (axis.high - axis.low);
         double at   = side % 2 ? axis.high - part : axis.low + part;
-        if (part > 1e-6 * (fabs(axis.low) + fabs(axis.high)) &&
-            cut_side(hunt, box, side, at, sign))
+        if (part > 1e-6 * (fabs(axis.low) + fabs(axis.high)) && cut_side(hunt, box, side, at, sign))
             return true;
     }
     return false;
@@ -215,7 +215,8 @@ static void cut_sides(Hunt *hunt, Box *box, int sign)
             if (ends && !isfinite(axis.high - axis.low))
                 continue; /* no part of it is finite: the other side first */
             any = (ends ? cut_finite_side(hunt, box, side, sign)
-                        : cut_endless_side(hunt, box, side, sign)) || any;
+                        : cut_endless_side(hunt, box, side, sign)) ||
+                  any;
         }
     }
 }

@@ -40,7 +40,7 @@ static void emit_guard(Emitter *e, const Regions *regions, Node guard)
 {
     const Node *o     = e->graph->items[guard].operands;
     const char *bound = e->text[o[0]], *least = e->text[o[1]];
-    Text        name  = {.arena = e->scratch};
+    Text        name = {.arena = e->scratch};
     text_format(&name, "t%u", e->next++);
     text_format(e->out, "    float %s = min(%s, %s);\n    if (!(%s)) {\n", name.bytes, bound, least,
                 guard_text(e, o));
@@ -112,8 +112,7 @@ static void emit_guarded_component(Emitter *e, size_t component, Box box, bool f
 }
 
 /* What marches by branches: endless components first, then the others where they may be nearer. */
-void emit_early_outs(Emitter *e, const EmitMarch *march, const Node *roots,
-                            size_t components)
+void emit_early_outs(Emitter *e, const EmitMarch *march, const Node *roots, size_t components)
 {
     text_add(e->out, "#ifdef EARLY_OUTS\n");
     for (size_t i = 0; i < components; i++)

@@ -18,9 +18,9 @@ static void emit_zones(Emitter *e, Node zone)
         text_format(e->out, "    return %s;\n}\n\n", e->text[zone]);
     }
     text_add(e->out,
-                "// The distance where zones have been cut out: those of the scene, and ZONES of\n"
-                "// the caller, of which slot KRS_SLOTS holds the first: center and radius.\n"
-                "float krs_cut(vec3 p, float d)\n{\n");
+             "// The distance where zones have been cut out: those of the scene, and ZONES of\n"
+             "// the caller, of which slot KRS_SLOTS holds the first: center and radius.\n"
+             "float krs_cut(vec3 p, float d)\n{\n");
     if (zone != NODE_NONE)
         text_add(e->out, "    d = max(d, krs_zone_depth(p));\n");
     text_add(e->out, "#ifdef ZONES\n"
@@ -60,8 +60,8 @@ static void emit_group_distances(Emitter *e, size_t components, const uint32_t *
     text_add(e->out, "#endif\n");
 }
 
-static void emit_distances(Emitter *e, const Node *roots, size_t components,
-                           const uint32_t *groups, const bool *flat)
+static void emit_distances(Emitter *e, const Node *roots, size_t components, const uint32_t *groups,
+                           const bool *flat)
 {
     for (size_t i = 0; i < components; i++) {
         Node root = roots[i * ROOT_COUNT + ROOT_DISTANCE];
@@ -97,14 +97,16 @@ static void emit_gradient_of(Emitter *e, size_t component, const Node *roots)
                     e->text[roots[1]]);
         return;
     }
-    text_format(e->out, "    vec4 found = vec4(0.0);\n"
-                        "    for (uint i = 0u; i < 7u; i++) {\n"
-                        "        vec3 way = vec3(i >> 1u == 0u, i >> 1u == 1u, i >> 1u == 2u);\n"
-                        "        way *= (i & 1u) == 0u ? reach : -reach;\n"
-                        "        float d = krs_distance_%zu(p + way);\n"
-                        "        found += i < 6u ? vec4(d * way, 0.0) : vec4(0.0, 0.0, 0.0, d);\n"
-                        "    }\n"
-                        "    return found;\n}\n\n", component + 1);
+    text_format(e->out,
+                "    vec4 found = vec4(0.0);\n"
+                "    for (uint i = 0u; i < 7u; i++) {\n"
+                "        vec3 way = vec3(i >> 1u == 0u, i >> 1u == 1u, i >> 1u == 2u);\n"
+                "        way *= (i & 1u) == 0u ? reach : -reach;\n"
+                "        float d = krs_distance_%zu(p + way);\n"
+                "        found += i < 6u ? vec4(d * way, 0.0) : vec4(0.0, 0.0, 0.0, d);\n"
+                "    }\n"
+                "    return found;\n}\n\n",
+                component + 1);
 }
 
 /* Where zones cut, their walls are the surface. */
@@ -135,8 +137,10 @@ static void emit_gradients(Emitter *e, const EmitMarch *march, size_t components
              "vec3 krs_gradient(vec3 p, float reach)\n{\n"
              "    vec4 nearest = vec4(0.0, 0.0, 0.0, 1e30), other;\n");
     for (size_t i = 0; i < components; i++)
-        text_format(e->out, "    other = krs_gradient_%zu(p, reach);\n"
-                            "    nearest = other.w < nearest.w ? other : nearest;\n", i + 1);
+        text_format(e->out,
+                    "    other = krs_gradient_%zu(p, reach);\n"
+                    "    nearest = other.w < nearest.w ? other : nearest;\n",
+                    i + 1);
     emit_zone_gradients(e, zone, march->gradient + 2 * components);
     text_add(e->out, "    return nearest.xyz;\n}\n#endif\n\n");
 }
@@ -147,16 +151,14 @@ static void emit_surfaces(Emitter *e, const Node *roots, size_t components)
 {
     for (size_t i = 0; i < components; i++) {
         const Node *root = &roots[i * ROOT_COUNT];
-        text_format(e->out,
-                    "KrsSurface krs_surface_%zu(vec3 p, vec3 normal, float footprint)\n{\n",
+        text_format(e->out, "KrsSurface krs_surface_%zu(vec3 p, vec3 normal, float footprint)\n{\n",
                     i + 1);
         emit_body(e, root, ROOT_COUNT);
-        text_format(e->out,
-                    "    return KrsSurface(%s, %s, %s, %s, %s, %zuu, uint(%s), %s, %s);\n}\n\n",
-                    e->text[root[ROOT_DISTANCE]], e->text[root[ROOT_COLOR]],
-                    e->text[root[ROOT_ROUGHNESS]], e->text[root[ROOT_METALLIC]],
-                    e->text[root[ROOT_EMISSION]], i + 1, e->text[root[ROOT_LEVEL]],
-                    e->text[root[ROOT_INSTANCE]], e->text[root[ROOT_NORMAL]]);
+        text_format(
+            e->out, "    return KrsSurface(%s, %s, %s, %s, %s, %zuu, uint(%s), %s, %s);\n}\n\n",
+            e->text[root[ROOT_DISTANCE]], e->text[root[ROOT_COLOR]], e->text[root[ROOT_ROUGHNESS]],
+            e->text[root[ROOT_METALLIC]], e->text[root[ROOT_EMISSION]], i + 1,
+            e->text[root[ROOT_LEVEL]], e->text[root[ROOT_INSTANCE]], e->text[root[ROOT_NORMAL]]);
     }
     const char *empty =
         "    return KrsSurface(1e30, vec3(0.0), 1.0, 0.0, vec3(0.0), 0u, 0u, 0u, normal);\n";
@@ -185,16 +187,16 @@ static void emit_surfaces(Emitter *e, const Node *roots, size_t components)
 static void emit_struct(Emitter *e)
 {
     text_add(e->out, "struct KrsSurface {\n"
-                  "    float distance;\n"
-                  "    vec3  color;\n"
-                  "    float roughness;\n"
-                  "    float metallic;\n"
-                  "    vec3  emission;\n"
-                  "    uint  component;\n"
-                  "    uint  level;\n"
-                  "    uint  instance;\n"
-                  "    vec3  normal;\n"
-                  "};\n\n");
+                     "    float distance;\n"
+                     "    vec3  color;\n"
+                     "    float roughness;\n"
+                     "    float metallic;\n"
+                     "    vec3  emission;\n"
+                     "    uint  component;\n"
+                     "    uint  level;\n"
+                     "    uint  instance;\n"
+                     "    vec3  normal;\n"
+                     "};\n\n");
 }
 
 /* ---- the whole ---- */
@@ -227,14 +229,14 @@ static void emit_anchored(Emitter *e, const EmitMarch *march, size_t components,
 /* Room for what is known of each node. */
 static Emitter emitter_new(const Graph *graph, const Sources *sources, Arena *scratch, Text *out)
 {
-    size_t  count = graph->count + 1;
-    Emitter e     = {.graph = graph, .sources = sources, .scratch = scratch, .out = out};
-    e.text    = arena_new_array(scratch, const char *, count);
-    e.frame   = arena_new_array(scratch, const char *, count);
-    e.nesting = arena_new_array(scratch, uint8_t, count);
-    e.uses    = arena_new_array(scratch, uint32_t, count);
-    e.beyond  = arena_new_array(scratch, const char *, count);
-    e.place   = arena_new_array(scratch, uint32_t, count);
+    size_t  count  = graph->count + 1;
+    Emitter e      = {.graph = graph, .sources = sources, .scratch = scratch, .out = out};
+    e.text         = arena_new_array(scratch, const char *, count);
+    e.frame        = arena_new_array(scratch, const char *, count);
+    e.nesting      = arena_new_array(scratch, uint8_t, count);
+    e.uses         = arena_new_array(scratch, uint32_t, count);
+    e.beyond       = arena_new_array(scratch, const char *, count);
+    e.place        = arena_new_array(scratch, uint32_t, count);
     e.feeds_mirror = arena_new_array(scratch, uint8_t, count);
     return e;
 }
@@ -269,19 +271,18 @@ static void emit_head(Emitter *e, const EmitMarch *march)
     if (march->slopes)
         text_add(e->out, "// Behind them slopes that the host finds for each frame: "
                          "krs_frame_parameters in krs.h.\n");
-    text_add(e->out,
-             "// Where branches save work there are many threads, and operations count.\n"
-             "// Elsewhere what has to be waited for counts, and built-in min and max of\n"
-             "// variables are three instructions, since they mind what is not a number.\n"
-             "#ifdef EARLY_OUTS\n"
-             "#define KRS_MIN(a, b) min(a, b)\n"
-             "#define KRS_MAX(a, b) max(a, b)\n"
-             "#define KRS_BACK(back, here) here\n"
-             "#else\n"
-             "#define KRS_MIN(a, b) mix(a, b, (b) < (a))\n"
-             "#define KRS_MAX(a, b) mix(a, b, (a) < (b))\n"
-             "#define KRS_BACK(back, here) back\n"
-             "#endif\n");
+    text_add(e->out, "// Where branches save work there are many threads, and operations count.\n"
+                     "// Elsewhere what has to be waited for counts, and built-in min and max of\n"
+                     "// variables are three instructions, since they mind what is not a number.\n"
+                     "#ifdef EARLY_OUTS\n"
+                     "#define KRS_MIN(a, b) min(a, b)\n"
+                     "#define KRS_MAX(a, b) max(a, b)\n"
+                     "#define KRS_BACK(back, here) here\n"
+                     "#else\n"
+                     "#define KRS_MIN(a, b) mix(a, b, (b) < (a))\n"
+                     "#define KRS_MAX(a, b) mix(a, b, (a) < (b))\n"
+                     "#define KRS_BACK(back, here) back\n"
+                     "#endif\n");
 }
 
 static void emit_parameters(Emitter *e, const FrameValues *values)
@@ -295,18 +296,18 @@ static void emit_parameters(Emitter *e, const FrameValues *values)
                     "#define KRS_SLOTS %zu\n"
                     "#else\n"
                     "#define KRS_SLOTS %zu\n"
-                    "#endif\n", values->slots, slots + values->slots, slots);
+                    "#endif\n",
+                    values->slots, slots + values->slots, slots);
     else
         text_format(e->out, "#define KRS_SLOTS %zu\n", slots);
-    text_add(e->out,
-             "#ifdef ZONES\n"
-             "layout(std140, set = 0, binding = 0) uniform KrsParameters "
-             "{ vec4 krs_parameter[KRS_SLOTS + ZONES]; };\n"
-             "vec4 krs_zones[ZONES];\n"
-             "#else\n"
-             "layout(std140, set = 0, binding = 0) uniform KrsParameters "
-             "{ vec4 krs_parameter[KRS_SLOTS]; };\n"
-             "#endif\n\n");
+    text_add(e->out, "#ifdef ZONES\n"
+                     "layout(std140, set = 0, binding = 0) uniform KrsParameters "
+                     "{ vec4 krs_parameter[KRS_SLOTS + ZONES]; };\n"
+                     "vec4 krs_zones[ZONES];\n"
+                     "#else\n"
+                     "layout(std140, set = 0, binding = 0) uniform KrsParameters "
+                     "{ vec4 krs_parameter[KRS_SLOTS]; };\n"
+                     "#endif\n\n");
 }
 
 void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
@@ -317,7 +318,7 @@ void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
     size_t  count;
     Node   *all = gather_roots(roots, component_count * ROOT_COUNT + (zone != NODE_NONE), march,
                                component_count, scratch, &count);
-    *frame = (EmittedFrame){.plain.first_slot = (uint32_t)graph->parameters.count};
+    *frame      = (EmittedFrame){.plain.first_slot = (uint32_t)graph->parameters.count};
     emit_lay_out(&e, all, count, &frame->plain);
     frame->anchored.first_slot = frame->plain.first_slot + frame->plain.slots + march->zone_slots;
     emit_head(&e, march);

@@ -9,11 +9,11 @@
 
 /* How components are to be marched. */
 typedef struct EmitMarch {
-    const Node *guarded; /* of each component: lower_guarded */
-    const Node *along;   /* of each component, method by method: lower_along */
-    const Box  *boxes;
+    const Node     *guarded; /* of each component: lower_guarded */
+    const Node     *along;   /* of each component, method by method: lower_along */
+    const Box      *boxes;
     const uint32_t *groups; /* the group of each, or NULL: all together */
-    const bool *flat;       /* whether each is a plane that krs_ahead knows; NULL: none is */
+    const bool     *flat;   /* whether each is a plane that krs_ahead knows; NULL: none is */
     const Node *anchored;   /* NULL, or all roots of all components and the two of `ahead` again, by
                                graph_anchor, for kernels with #define ANCHORED */
     uint32_t    zone_slots; /* before what the host finds for those */
@@ -35,7 +35,7 @@ typedef struct EmittedFrame {
    roots[i * ROOT_COUNT + ...], nodes of a simplified graph.  `zone`, the depth in zones, follows
    them, or is NODE_NONE. */
 void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
-               size_t component_count, Node zone, const EmitMarch *march, Arena *scratch,
-               Text *out, EmittedFrame *frame);
+               size_t component_count, Node zone, const EmitMarch *march, Arena *scratch, Text *out,
+               EmittedFrame *frame);
 
 #endif

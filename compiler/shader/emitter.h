@@ -18,16 +18,19 @@ typedef struct Emitter {
     const char   **text;    /* of a node in the function being written: its name or expression */
     uint8_t       *nesting; /* of that expression */
     uint32_t      *uses;    /* in the function being written */
-    struct { Node *items; size_t count, capacity; } needed; /* all that have uses, in order */
-    const char   **frame;   /* names of the globals that krs_prepare sets */
-    uint8_t       *feeds_mirror; /* whether a mirror (OP_fold) uses it */
-    const char   **beyond;  /* of mirrors in a row: the name of how far beyond it the point is */
-    uint32_t       next;    /* number of the next local name */
-    uint32_t       globals;
-    uint32_t      *place;   /* of values that the host finds: their number + 1 */
-    bool           from_host; /* there is nothing but what the host finds of the frame */
-    Regions        regions; /* of the function being written, where it has guards */
-    Span           last;    /* the line that was commented last */
+    struct {
+        Node  *items;
+        size_t count, capacity;
+    } needed;                  /* all that have uses, in order */
+    const char **frame;        /* names of the globals that krs_prepare sets */
+    uint8_t     *feeds_mirror; /* whether a mirror (OP_fold) uses it */
+    const char **beyond;       /* of mirrors in a row: the name of how far beyond it the point is */
+    uint32_t     next;         /* number of the next local name */
+    uint32_t     globals;
+    uint32_t    *place;     /* of values that the host finds: their number + 1 */
+    bool         from_host; /* there is nothing but what the host finds of the frame */
+    Regions      regions;   /* of the function being written, where it has guards */
+    Span         last;      /* the line that was commented last */
 } Emitter;
 
 /* ---- statements.c ---- */

@@ -25,12 +25,14 @@ bool frame_value_is_given(const Graph *graph, Node node)
 bool frame_value_is_arranged(const Graph *graph, Node node)
 {
     switch (graph->items[node].op) {
-    case OP_vec2: case OP_vec3: case OP_vec4:
-    case OP_splat2: case OP_splat3: case OP_splat4:
-    case OP_neg:
-        return true;
-    default:
-        return false;
+    case OP_vec2:
+    case OP_vec3:
+    case OP_vec4:
+    case OP_splat2:
+    case OP_splat3:
+    case OP_splat4:
+    case OP_neg: return true;
+    default: return false;
     }
 }
 
@@ -47,8 +49,8 @@ static Nodes find_values(const Graph *graph, const Node *wanted, size_t count, A
     for (size_t i = count; i-- > 0;)
         array_push(scratch, &rest, wanted[i]);
     while (rest.count > 0) {
-        Node        node = rest.items[--rest.count];
-        const Expr *e    = &graph->items[node];
+        Node        node     = rest.items[--rest.count];
+        const Expr *e        = &graph->items[node];
         bool        arranged = frame_value_is_arranged(graph, node);
         if (seen[node] || e->time != TIME_FRAME || frame_value_is_given(graph, node))
             continue;
@@ -95,7 +97,7 @@ void frame_values_place(FrameValues *values, const Graph *graph, const Node *wan
         const Fact *fact  = &facts[tape_place(&values->tape, found.items[i])];
         *value = (FrameValue){.node = found.items[i], .width = width_of(graph, found.items[i])};
         for (uint32_t k = 0; k < value->width; k++) {
-            bool same = range_is_single(fact->value[k]) && isfinite(fact->value[k].low);
+            bool same          = range_is_single(fact->value[k]) && isfinite(fact->value[k].low);
             value->at[k]       = same ? NO_PLACE : used++;
             value->constant[k] = fact->value[k].low;
         }
@@ -121,7 +123,7 @@ void frame_values_find(const FrameValues *values, const NodeValue *parameters, N
         for (uint32_t k = 0; k < value->width; k++) {
             if (value->at[k] == NO_PLACE)
                 continue;
-            uint32_t at   = value->at[k] - 4 * values->first_slot, bits = (uint32_t)found[k];
+            uint32_t at = value->at[k] - 4 * values->first_slot, bits = (uint32_t)found[k];
             float    number = to_single(found[k]);
             bool     whole  = graph->items[value->node].type == TYPE_UINT;
             memcpy(&block[at / 4][at % 4], whole ? (void *)&bits : (void *)&number, sizeof number);

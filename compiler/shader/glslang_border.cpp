@@ -17,7 +17,10 @@
 
 /* glslang's own lock, which it does not give back when something is thrown; by threads that do not
    hold it nothing is released. */
-namespace glslang { void ReleaseGlobalLock(); }
+namespace glslang
+{
+void ReleaseGlobalLock();
+}
 
 static BorderResult refuse(const char *text, char **log)
 {
@@ -61,18 +64,18 @@ static bool inline_calls(std::vector<uint32_t> &words)
 
 static BorderResult compile(const char *glsl, uint32_t **words, size_t *word_count, char **log)
 {
-    glslang_input_t input                   = {};
-    input.language                          = GLSLANG_SOURCE_GLSL;
-    input.stage                             = GLSLANG_STAGE_COMPUTE;
-    input.client                            = GLSLANG_CLIENT_VULKAN;
-    input.client_version                    = GLSLANG_TARGET_VULKAN_1_1;
-    input.target_language                   = GLSLANG_TARGET_SPV;
-    input.target_language_version           = GLSLANG_TARGET_SPV_1_3;
-    input.code                              = glsl;
-    input.default_version                   = 450;
-    input.default_profile                   = GLSLANG_NO_PROFILE;
-    input.messages                          = GLSLANG_MSG_DEFAULT_BIT;
-    input.resource                          = glslang_default_resource();
+    glslang_input_t input         = {};
+    input.language                = GLSLANG_SOURCE_GLSL;
+    input.stage                   = GLSLANG_STAGE_COMPUTE;
+    input.client                  = GLSLANG_CLIENT_VULKAN;
+    input.client_version          = GLSLANG_TARGET_VULKAN_1_1;
+    input.target_language         = GLSLANG_TARGET_SPV;
+    input.target_language_version = GLSLANG_TARGET_SPV_1_3;
+    input.code                    = glsl;
+    input.default_version         = 450;
+    input.default_profile         = GLSLANG_NO_PROFILE;
+    input.messages                = GLSLANG_MSG_DEFAULT_BIT;
+    input.resource                = glslang_default_resource();
 
     Work work;
     work.shader = glslang_shader_create(&input);
@@ -119,7 +122,7 @@ template <typename Work> static BorderResult guarded(Work work, char **log)
 
 BorderResult border_compile(const char *glsl, uint32_t **words, size_t *word_count, char **log)
 {
-    *words = nullptr;
+    *words              = nullptr;
     BorderResult result = guarded([=] { return compile(glsl, words, word_count, log); }, log);
     if (result != BORDER_OK)
         glslang::ReleaseGlobalLock();
@@ -132,10 +135,10 @@ BorderResult border_compile(const char *glsl, uint32_t **words, size_t *word_cou
 static BorderResult start(bool *started, char **log)
 {
     static const char first[] = "#version 440\nlayout(local_size_x = 1) in;\nvoid main() {}\n";
-    uint32_t *words = nullptr;
-    size_t    count;
-    *started = true; /* should it throw */
-    *started = glslang_initialize_process() != 0;
+    uint32_t         *words   = nullptr;
+    size_t            count;
+    *started            = true; /* should it throw */
+    *started            = glslang_initialize_process() != 0;
     BorderResult result = *started ? compile(first, &words, &count, log) : BORDER_NO_MEMORY;
     free(words);
     return result;
@@ -157,7 +160,12 @@ BorderResult border_start(void)
 void border_stop(void)
 {
     char *log;
-    guarded([] { glslang_finalize_process(); return BORDER_OK; }, &log);
+    guarded(
+        [] {
+            glslang_finalize_process();
+            return BORDER_OK;
+        },
+        &log);
     free(log);
 }
 
@@ -207,9 +215,8 @@ BorderResult border_validate(const uint32_t *words, size_t word_count, char **lo
 static BorderResult disassemble(const uint32_t *words, size_t word_count, char **assembly)
 {
     Owned<spv_context_t> context(spvContextCreate(SPV_ENV_VULKAN_1_1));
-    spv_text             text  = nullptr;
-    uint32_t             style =
-        SPV_BINARY_TO_TEXT_OPTION_FRIENDLY_NAMES | SPV_BINARY_TO_TEXT_OPTION_INDENT;
+    spv_text             text = nullptr;
+    uint32_t style = SPV_BINARY_TO_TEXT_OPTION_FRIENDLY_NAMES | SPV_BINARY_TO_TEXT_OPTION_INDENT;
     if (!context)
         return BORDER_NO_MEMORY;
     spv_result_t result = spvBinaryToText(context.get(), words, word_count, style, &text, nullptr);

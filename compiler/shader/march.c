@@ -48,8 +48,10 @@ static void emit_part_distance(Emitter *e, size_t part, const bool *flat, size_t
         for (size_t i = first_of_part(part, components); i < first_of_part(part + 1, components);
              i++) {
             text_add(e->out, flat && flat[i] ? "#ifndef FLATS\n" : "");
-            text_format(e->out, guarded ? "        d = min(d, krs_distance_lod_%zu(p, 0.0));\n"
-                                        : "        d = min(d, krs_distance_%zu(p));\n", i + 1);
+            text_format(e->out,
+                        guarded ? "        d = min(d, krs_distance_lod_%zu(p, 0.0));\n"
+                                : "        d = min(d, krs_distance_%zu(p));\n",
+                        i + 1);
             text_add(e->out, flat && flat[i] ? "#endif\n" : "");
         }
     }
@@ -80,12 +82,14 @@ void emit_parts(Emitter *e, const Box *boxes, const bool *flat, size_t component
     size_t parts = emit_part_count(components);
     if (parts < 2)
         return;
-    text_format(e->out, "#ifdef PACKED\n"
-                        "// Parts of the scene, most of them one component: the distance of one,"
-                        " and a box\n// around it; where there is none the box stays empty.\n"
-                        "const uint KRS_PARTS = %zuu;\n\n"
-                        "float krs_distance_of(uint part, vec3 p)\n{\n"
-                        "    float d = 1e30;\n    switch (part) {\n", parts);
+    text_format(e->out,
+                "#ifdef PACKED\n"
+                "// Parts of the scene, most of them one component: the distance of one,"
+                " and a box\n// around it; where there is none the box stays empty.\n"
+                "const uint KRS_PARTS = %zuu;\n\n"
+                "float krs_distance_of(uint part, vec3 p)\n{\n"
+                "    float d = 1e30;\n    switch (part) {\n",
+                parts);
     for (size_t part = 0; part < parts; part++)
         emit_part_distance(e, part, flat, components);
     text_add(e->out, "    }\n    return krs_cut(p, d);\n}\n\n"
@@ -148,7 +152,8 @@ static void emit_along_by(Emitter *e, AlongMethod method, const EmitMarch *march
         if (along[i] == roots[i * ROOT_COUNT + ROOT_DISTANCE])
             continue;
         open_component(e, march, i);
-        emit_one_along(e, along[i], i, probe ? "float footprint" : "vec3 direction, float footprint");
+        emit_one_along(e, along[i], i,
+                       probe ? "float footprint" : "vec3 direction, float footprint");
         close_component(e, march, i);
     }
     text_add(e->out, probe ? about_probe : about_along);
@@ -156,7 +161,10 @@ static void emit_along_by(Emitter *e, AlongMethod method, const EmitMarch *march
         bool plain = along[i] == roots[i * ROOT_COUNT + ROOT_DISTANCE];
         open_component(e, march, i);
         text_format(e->out, "    t = min(t, krs_%s_%zu(p%s));\n", plain ? "distance" : "along",
-                    i + 1, plain ? "" : probe ? ", footprint" : ", direction, footprint");
+                    i + 1,
+                    plain   ? ""
+                    : probe ? ", footprint"
+                            : ", direction, footprint");
         close_component(e, march, i);
     }
     text_format(e->out, "    return krs_cut(p, t)%s;\n}\n", probe ? " / footprint" : "");
@@ -170,8 +178,8 @@ void emit_along(Emitter *e, const EmitMarch *march, const Node *roots, size_t co
     for (AlongMethod method = 0; method < ALONG_COUNT; method++) {
         bool any = false;
         for (size_t i = 0; i < components; i++)
-            any = any || march->along[method * components + i] !=
-                             roots[i * ROOT_COUNT + ROOT_DISTANCE];
+            any = any ||
+                  march->along[method * components + i] != roots[i * ROOT_COUNT + ROOT_DISTANCE];
         if (!any)
             continue;
         text_format(e->out, "#if defined(ALONG) && ALONG == %d\n", (int)method);

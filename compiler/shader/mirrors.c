@@ -31,8 +31,8 @@ static int fold_axis(const Emitter *e, const Expr *fold)
    operations that what follows has to wait for, or one. */
 static const char *across_axis(Emitter *e, const Expr *fold, int axis)
 {
-    Text        text   = {.arena = e->scratch};
-    const char *point  = e->text[fold->operands[0]], *offset = e->text[fold->operands[2]];
+    Text        text  = {.arena = e->scratch};
+    const char *point = e->text[fold->operands[0]], *offset = e->text[fold->operands[2]];
     const Expr *place  = &e->graph->items[fold->operands[2]];
     bool        middle = place->op == OP_CONSTANT && place->number[0] == 0;
     text_add(&text, "vec3(");
@@ -80,8 +80,8 @@ static Node mirror_before(const Emitter *e, Node n)
 static void subtract_move(Emitter *e, Text *text, const Expr *fold, Node mirror)
 {
     const Expr   *items = e->graph->items;
-    const double *n = items[fold->operands[1]].number;
-    const double *b = items[items[mirror].operands[1]].number;
+    const double *n     = items[fold->operands[1]].number;
+    const double *b     = items[items[mirror].operands[1]].number;
     text_format(text, " - KRS_BACK(%s * %s, 0.0)", e->beyond[mirror],
                 emit_number(e, 2 * (n[0] * b[0] + n[1] * b[1] + n[2] * b[2])));
 }

@@ -80,8 +80,8 @@ static void end_use(BorderResult result)
 /* It is linked statically, so its version is known when compiling. */
 const char *spirv_glslang_version(void)
 {
-    return WORDS(GLSLANG_VERSION_MAJOR) "." WORDS(GLSLANG_VERSION_MINOR) "."
-           WORDS(GLSLANG_VERSION_PATCH);
+    return WORDS(GLSLANG_VERSION_MAJOR) "." WORDS(GLSLANG_VERSION_MINOR) "." WORDS(
+        GLSLANG_VERSION_PATCH);
 }
 
 const char *spirv_tools_version(void) { return spvSoftwareVersionString(); }
@@ -102,7 +102,7 @@ static KrsStatus judge(BorderResult result, const char *entry, const char *tool,
                        char *words_of_tool, char **log)
 {
     bool refused = result == BORDER_REFUSED && words_of_tool;
-    *log = refused ? name_log(entry, tool, words_of_tool) : NULL;
+    *log         = refused ? name_log(entry, tool, words_of_tool) : NULL;
     if (!refused)
         free(words_of_tool);
     return result == BORDER_OK        ? KRS_OK

@@ -22,11 +22,11 @@ static const char *type_name(GraphType type)
 {
     switch (type) {
     case TYPE_FLOAT: return "float";
-    case TYPE_VEC2:  return "vec2";
-    case TYPE_VEC3:  return "vec3";
-    case TYPE_VEC4:  return "vec4";
-    case TYPE_BOOL:  return "bool";
-    case TYPE_UINT:  return "uint";
+    case TYPE_VEC2: return "vec2";
+    case TYPE_VEC3: return "vec3";
+    case TYPE_VEC4: return "vec4";
+    case TYPE_BOOL: return "bool";
+    case TYPE_UINT: return "uint";
     }
     return "float";
 }
@@ -36,9 +36,9 @@ static char type_letter(GraphType type)
 {
     switch (type) {
     case TYPE_FLOAT: return 't';
-    case TYPE_BOOL:  return 'b';
-    case TYPE_UINT:  return 'n';
-    default:         return 'v';
+    case TYPE_BOOL: return 'b';
+    case TYPE_UINT: return 'n';
+    default: return 'v';
     }
 }
 
@@ -122,8 +122,8 @@ void emit_comment(Emitter *e, Span span)
    semicolon is a statement that comes before, and sets a local of its own, $t. */
 static const char *fill_template(Emitter *e, const Expr *expr)
 {
-    Text        text = {.arena = e->scratch};
-    const char *from = op_glsl((Op)expr->op);
+    Text        text  = {.arena = e->scratch};
+    const char *from  = op_glsl((Op)expr->op);
     uint32_t    local = strchr(from, ';') ? e->next++ : 0;
     while (*from) {
         size_t plain = strcspn(from, "$;");
@@ -165,7 +165,7 @@ static bool picks_variable(const Emitter *e, const Expr *expr)
 /* Of numbers by mix, which is no branch; it knows no others. */
 static const char *select_text(Emitter *e, const Expr *expr)
 {
-    const Node *o = expr->operands;
+    const Node *o    = expr->operands;
     Text        text = {.arena = e->scratch};
     if (expr->type == TYPE_BOOL || expr->type == TYPE_UINT)
         return fill_template(e, expr);
@@ -182,15 +182,16 @@ static const char *node_text(Emitter *e, const Expr *expr)
     Text text = {.arena = e->scratch};
     switch (expr->op) {
     case OP_CONSTANT: return constant_text(e, expr);
-    case OP_POINT:    return "p";
-    case OP_NORMAL:   return "normal";
+    case OP_POINT: return "p";
+    case OP_NORMAL: return "normal";
     case OP_FOOTPRINT: return "footprint";
     case OP_DIRECTION: return "direction";
     case OP_PARAMETER: return slot_text(e, expr->index, 0, expr->type);
     case OP_COMPONENT:
         text_format(&text, "%s.%c", e->text[expr->operands[0]], "xyzw"[expr->index]);
         return text.bytes;
-    case OP_min: case OP_max:
+    case OP_min:
+    case OP_max:
         if (!picks_variable(e, expr))
             return fill_template(e, expr);
         text_format(&text, "%s(%s, %s)", expr->op == OP_min ? "KRS_MIN" : "KRS_MAX",
@@ -269,10 +270,7 @@ static void count_uses(Emitter *e, const Node *roots, size_t count, bool frame)
         qsort(e->needed.items, e->needed.count, sizeof *e->needed.items, compare_nodes);
 }
 
-static bool is_leaf(const Expr *expr)
-{
-    return expr->operand_count == 0;
-}
+static bool is_leaf(const Expr *expr) { return expr->operand_count == 0; }
 
 /* Writes the statement of a node, or keeps its expression for the one place that needs it. */
 void emit_node(Emitter *e, Node n)
@@ -291,8 +289,7 @@ void emit_node(Emitter *e, Node n)
     emit_comment(e, expr->span);
     Text name = {.arena = e->scratch};
     text_format(&name, "%c%u", type_letter(expr->type), e->next++);
-    text_format(e->out, "    %s %s = %s;\n", type_name(expr->type), name.bytes,
-                emit_bare(e, text));
+    text_format(e->out, "    %s %s = %s;\n", type_name(expr->type), name.bytes, emit_bare(e, text));
     e->text[n]    = name.bytes;
     e->nesting[n] = 0;
 }
@@ -333,7 +330,7 @@ static size_t emit_globals(Emitter *e, const Node *roots, size_t count, Node *se
             continue;
         set[globals++] = n;
         is_global[n]   = true;
-        Text name = {.arena = e->scratch};
+        Text name      = {.arena = e->scratch};
         text_format(&name, "krs_frame%u", e->globals++);
         e->frame[n] = name.bytes;
         text_format(e->out, "%s %s;\n", type_name(g->items[n].type), name.bytes);
@@ -357,8 +354,8 @@ static const char *number_text(Emitter *e, const FrameValue *value, uint32_t k)
 /* What the host has found, out of its slots. */
 static const char *found_text(Emitter *e, const FrameValue *value)
 {
-    GraphType type = (GraphType)e->graph->items[value->node].type;
-    uint32_t  last = value->width - 1;
+    GraphType type     = (GraphType)e->graph->items[value->node].type;
+    uint32_t  last     = value->width - 1;
     bool      together = true;
     for (uint32_t k = 0; k <= last; k++)
         together = together && value->at[k] != NO_PLACE && value->at[k] == value->at[0] + k;

@@ -23,13 +23,14 @@ static bool find_type(const Gpu *gpu, uint32_t permitted, VkMemoryPropertyFlags 
 
 static bool find_type_for(const Gpu *gpu, uint32_t permitted, Where where, uint32_t *type)
 {
-    const VkMemoryPropertyFlags mapped =
-        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    const VkMemoryPropertyFlags mapped = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                         VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     if (where == ON_DEVICE)
         return find_type(gpu, permitted, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, type);
     return find_type(gpu, permitted, mapped,
                      where == SHARED ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
-                                     : VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, type);
+                                     : VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT,
+                     type);
 }
 
 bool buffer_create(Gpu *gpu, Buffer *buffer, VkDeviceSize size, Where where, const char *name)
@@ -38,13 +39,18 @@ bool buffer_create(Gpu *gpu, Buffer *buffer, VkDeviceSize size, Where where, con
     snprintf(attempt, sizeof attempt, "make room for the %s", name);
     *buffer = (Buffer){.size = size};
 
-    TRY(gpu, attempt, vkCreateBuffer(gpu->device, &(VkBufferCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-        .size = size,
-        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
-                 VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
-                 VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
-    }, NULL, &buffer->buffer));
+    TRY(gpu, attempt,
+        vkCreateBuffer(
+            gpu->device,
+            &(VkBufferCreateInfo){
+                .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                .size  = size,
+                .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                         VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                         VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
+                         VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
+            },
+            NULL, &buffer->buffer));
     gpu_name(gpu, VK_OBJECT_TYPE_BUFFER, (uint64_t)(uintptr_t)buffer->buffer, name);
 
     VkMemoryRequirements needs;
@@ -54,11 +60,14 @@ bool buffer_create(Gpu *gpu, Buffer *buffer, VkDeviceSize size, Where where, con
         gpu_fail(gpu, VK_ERROR_OUT_OF_DEVICE_MEMORY, attempt);
         goto failed;
     }
-    TRY(gpu, attempt, vkAllocateMemory(gpu->device, &(VkMemoryAllocateInfo){
-        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-        .allocationSize = needs.size,
-        .memoryTypeIndex = type,
-    }, NULL, &buffer->memory));
+    TRY(gpu, attempt,
+        vkAllocateMemory(gpu->device,
+                         &(VkMemoryAllocateInfo){
+                             .sType           = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                             .allocationSize  = needs.size,
+                             .memoryTypeIndex = type,
+                         },
+                         NULL, &buffer->memory));
     buffer->held = needs.size;
     gpu->memory_used += buffer->held;
     if (gpu->memory_used > gpu->memory_peak)
@@ -76,13 +85,12 @@ failed:
 
 VkDeviceSize buffer_texel_bytes(VkDeviceSize bytes)
 {
-    const VkDeviceSize page = 4096;
+    const VkDeviceSize page  = 4096;
     VkDeviceSize       pages = (bytes + page - 1) / page;
     return (pages < 3 ? 3 : pages | 1) * page;
 }
 
-bool buffer_view(Gpu *gpu, Buffer *buffer, VkFormat format, uint32_t texel_bytes,
-                 const char *name)
+bool buffer_view(Gpu *gpu, Buffer *buffer, VkFormat format, uint32_t texel_bytes, const char *name)
 {
     char attempt[128];
     snprintf(attempt, sizeof attempt, "make room for the %s", name);
@@ -92,12 +100,15 @@ bool buffer_view(Gpu *gpu, Buffer *buffer, VkFormat format, uint32_t texel_bytes
         gpu_fail(gpu, VK_ERROR_OUT_OF_DEVICE_MEMORY, attempt);
         return false;
     }
-    TRY(gpu, attempt, vkCreateBufferView(gpu->device, &(VkBufferViewCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
-        .buffer = buffer->buffer,
-        .format = format,
-        .range = VK_WHOLE_SIZE,
-    }, NULL, &buffer->texels));
+    TRY(gpu, attempt,
+        vkCreateBufferView(gpu->device,
+                           &(VkBufferViewCreateInfo){
+                               .sType  = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                               .buffer = buffer->buffer,
+                               .format = format,
+                               .range  = VK_WHOLE_SIZE,
+                           },
+                           NULL, &buffer->texels));
     return true;
 
 failed:

@@ -16,8 +16,8 @@ typedef struct Buffer {
     VkBuffer       buffer;
     VkDeviceMemory memory;
     VkDeviceSize   size;
-    VkDeviceSize   held; /* what the device set aside for it */
-    void          *bytes; /* but ON_DEVICE */
+    VkDeviceSize   held;   /* what the device set aside for it */
+    void          *bytes;  /* but ON_DEVICE */
     VkBufferView   texels; /* what is in it, for kernels that read it so (buffer_view) */
 } Buffer;
 
@@ -28,8 +28,7 @@ bool buffer_create(Gpu *gpu, Buffer *buffer, VkDeviceSize size, Where where, con
    the size of one becomes a power of two, or 256 times it a multiple of that; this is neither. */
 VkDeviceSize buffer_texel_bytes(VkDeviceSize bytes);
 /* Makes it readable as texels of so many bytes and that format, where it is not so far. */
-bool buffer_view(Gpu *gpu, Buffer *buffer, VkFormat format, uint32_t texel_bytes,
-                 const char *name);
+bool buffer_view(Gpu *gpu, Buffer *buffer, VkFormat format, uint32_t texel_bytes, const char *name);
 void buffer_destroy(Gpu *gpu, Buffer *buffer);
 
 #endif

@@ -18,10 +18,10 @@
 #include <xxhash.h>
 
 enum {
-    FORMAT = 1,       /* rises with every change of Header */
-    KEY_DIGITS = 2 * sizeof(CacheKey),
-    NAME_SIZE = 64,
-    TOUCH_SECONDS = 60,      /* uses closer together than this count as one */
+    FORMAT           = 1, /* rises with every change of Header */
+    KEY_DIGITS       = 2 * sizeof(CacheKey),
+    NAME_SIZE        = 64,
+    TOUCH_SECONDS    = 60,   /* uses closer together than this count as one */
     ORPHANED_SECONDS = 3600, /* nobody writes to a temporary file for so long */
 };
 
@@ -33,7 +33,7 @@ static const char temporary_prefix[] = ".krs-cache-";
 typedef struct Header {
     char     magic[8];
     uint32_t format, kind;
-    uint64_t length; /* of the content */
+    uint64_t length;    /* of the content */
     CacheKey key, hash; /* hash: of the content */
 } Header;
 
@@ -57,8 +57,12 @@ CacheKey cache_key(const char *maker, const void *content, size_t length)
 
 static Header make_header(CacheKind kind, CacheKey key, const void *bytes, size_t length)
 {
-    return (Header){.magic = "krskept", .format = FORMAT, .kind = kind, .length = length,
-                    .key = key, .hash = hash_bytes(bytes, length)};
+    return (Header){.magic  = "krskept",
+                    .format = FORMAT,
+                    .kind   = kind,
+                    .length = length,
+                    .key    = key,
+                    .hash   = hash_bytes(bytes, length)};
 }
 
 static void make_name(char name[NAME_SIZE], CacheKind kind, CacheKey key)
@@ -151,7 +155,7 @@ static void *read_entry(const Cache *cache, int fd, CacheKind kind, CacheKey key
         !read_fully(fd, &found, sizeof found) || found.length > CACHE_ENTRY_BYTES ||
         (uint64_t)info.st_size != sizeof found + found.length)
         return NULL;
-    *length = (size_t)found.length;
+    *length     = (size_t)found.length;
     void *bytes = get_memory(cache, *length > 0 ? *length : 1);
     if (!bytes)
         return NULL;
@@ -212,7 +216,7 @@ static bool next_entry(const Cache *cache, Kept *kept)
     const struct dirent *found;
     struct stat          info;
     while ((found = readdir(cache->folder))) {
-        const char *name = found->d_name;
+        const char *name  = found->d_name;
         bool        entry = is_entry(name);
         if ((!entry && name[0] != '.') ||
             fstatat(dirfd(cache->folder), name, &info, AT_SYMLINK_NOFOLLOW) != 0 ||
@@ -314,8 +318,8 @@ static int create_temporary(const Cache *cache, char name[NAME_SIZE])
     for (unsigned attempt = 0; attempt < 100; attempt++) {
         struct timespec now;
         clock_gettime(CLOCK_REALTIME, &now);
-        snprintf(name, NAME_SIZE, "%s%ld-%ld-%u.tmp", temporary_prefix, (long)getpid(),
-                 now.tv_nsec, attempt);
+        snprintf(name, NAME_SIZE, "%s%ld-%ld-%u.tmp", temporary_prefix, (long)getpid(), now.tv_nsec,
+                 attempt);
         int fd = openat(dirfd(cache->folder), name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
         if (fd >= 0 || errno != EEXIST)
             return fd;
@@ -331,9 +335,9 @@ void cache_store(Cache *cache, CacheKind kind, CacheKey key, const void *bytes, 
     int fd = create_temporary(cache, temporary);
     if (fd < 0)
         return;
-    Header header = make_header(kind, key, bytes, length);
+    Header header  = make_header(kind, key, bytes, length);
     bool   written = write_fully(fd, &header, sizeof header) && write_fully(fd, bytes, length);
-    written = close(fd) == 0 && written;
+    written        = close(fd) == 0 && written;
     make_name(name, kind, key);
     int folder = dirfd(cache->folder);
     if (written && renameat(folder, temporary, folder, name) == 0)

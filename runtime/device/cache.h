@@ -48,6 +48,6 @@ CacheKey cache_key(const char *maker, const void *content, size_t length);
    is none. */
 void *cache_load(Cache *cache, CacheKind kind, CacheKey key, size_t *length);
 /* Writes an entry, or replaces it. */
-void  cache_store(Cache *cache, CacheKind kind, CacheKey key, const void *bytes, size_t length);
+void cache_store(Cache *cache, CacheKind kind, CacheKey key, const void *bytes, size_t length);
 
 #endif

@@ -4,17 +4,20 @@
  */
 #include "runtime/device/gpu.h"
 
-static const VkPipelineStageFlags WORK =
-    VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+static const VkPipelineStageFlags WORK = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT |
+                                         VK_PIPELINE_STAGE_TRANSFER_BIT;
 
 static void memory_barrier(VkCommandBuffer commands, VkPipelineStageFlags after,
                            VkAccessFlags seen_by)
 {
-    vkCmdPipelineBarrier(commands, WORK, after, 0, 1, &(VkMemoryBarrier){
-        .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-        .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
-        .dstAccessMask = seen_by,
-    }, 0, NULL, 0, NULL);
+    vkCmdPipelineBarrier(
+        commands, WORK, after, 0, 1,
+        &(VkMemoryBarrier){
+            .sType         = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+            .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
+            .dstAccessMask = seen_by,
+        },
+        0, NULL, 0, NULL);
 }
 
 /* What was written can be used, and written again. */
@@ -26,20 +29,19 @@ static void barrier(VkCommandBuffer commands)
                        VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
 }
 
-void gpu_barrier(Gpu *gpu)
-{
-    barrier(gpu->commands);
-}
+void gpu_barrier(Gpu *gpu) { barrier(gpu->commands); }
 
 bool gpu_begin(Gpu *gpu)
 {
     if (gpu->stuck)
         return false; /* and why has been said */
     TRY(gpu, "record work", vkResetCommandPool(gpu->device, gpu->pool, 0));
-    TRY(gpu, "record work", vkBeginCommandBuffer(gpu->commands, &(VkCommandBufferBeginInfo){
-        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
-    }));
+    TRY(gpu, "record work",
+        vkBeginCommandBuffer(gpu->commands,
+                             &(VkCommandBufferBeginInfo){
+                                 .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                 .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
+                             }));
     gpu->marks = 0;
     if (gpu->times) {
         vkCmdResetQueryPool(gpu->commands, gpu->times, 0, 2 + MOST_MARKS);
@@ -93,8 +95,8 @@ bool gpu_marked(Gpu *gpu, uint32_t mark, double *ms)
 static bool wait_for_fence(Gpu *gpu)
 {
     const char *attempt = "wait for the device";
-    VkResult    result = vkWaitForFences(gpu->device, 1, &gpu->fence, VK_TRUE,
-                                         (uint64_t)(gpu->patience * 1e9));
+    VkResult    result  = vkWaitForFences(gpu->device, 1, &gpu->fence, VK_TRUE,
+                                          (uint64_t)(gpu->patience * 1e9));
     if (result == VK_TIMEOUT) {
         gpu->stuck = true;
         gpu_refuse(gpu, KRS_INTERNAL, "the device has not finished a step within %g seconds",
@@ -119,11 +121,14 @@ bool gpu_finish(Gpu *gpu, double *ms)
 
     double start = clock_ms();
     gpu->submissions++;
-    TRY(gpu, "submit work", vkQueueSubmit(gpu->queue, 1, &(VkSubmitInfo){
-        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
-        .commandBufferCount = 1,
-        .pCommandBuffers = &gpu->commands,
-    }, gpu->fence));
+    TRY(gpu, "submit work",
+        vkQueueSubmit(gpu->queue, 1,
+                      &(VkSubmitInfo){
+                          .sType              = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                          .commandBufferCount = 1,
+                          .pCommandBuffers    = &gpu->commands,
+                      },
+                      gpu->fence));
     if (!wait_for_fence(gpu))
         return false;
     if (gpu->times)
@@ -140,16 +145,20 @@ bool gpu_rehearse(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
 {
     const char     *attempt = "try a kernel out";
     VkCommandBuffer commands; /* the pool's, until it is destroyed */
-    TRY(gpu, attempt, vkAllocateCommandBuffers(gpu->device, &(VkCommandBufferAllocateInfo){
-        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-        .commandPool = gpu->rehearsals,
-        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-        .commandBufferCount = 1,
-    }, &commands));
-    TRY(gpu, attempt, vkBeginCommandBuffer(commands, &(VkCommandBufferBeginInfo){
-        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
-    }));
+    TRY(gpu, attempt,
+        vkAllocateCommandBuffers(gpu->device,
+                                 &(VkCommandBufferAllocateInfo){
+                                     .sType       = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                     .commandPool = gpu->rehearsals,
+                                     .level       = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                     .commandBufferCount = 1,
+                                 },
+                                 &commands));
+    TRY(gpu, attempt,
+        vkBeginCommandBuffer(commands, &(VkCommandBufferBeginInfo){
+                                           .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                           .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
+                                       }));
     barrier(commands); /* all rehearsals use the same buffers */
     uint32_t first = sets[0] == VK_NULL_HANDLE;
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
@@ -158,11 +167,14 @@ bool gpu_rehearse(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
     vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, bytes, constants);
     vkCmdDispatch(commands, 1, 1, 1);
     TRY(gpu, attempt, vkEndCommandBuffer(commands));
-    TRY(gpu, attempt, vkQueueSubmit(gpu->queue, 1, &(VkSubmitInfo){
-        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
-        .commandBufferCount = 1,
-        .pCommandBuffers = &commands,
-    }, VK_NULL_HANDLE));
+    TRY(gpu, attempt,
+        vkQueueSubmit(gpu->queue, 1,
+                      &(VkSubmitInfo){
+                          .sType              = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                          .commandBufferCount = 1,
+                          .pCommandBuffers    = &commands,
+                      },
+                      VK_NULL_HANDLE));
     return true;
 
 failed:

@@ -22,7 +22,7 @@
 #define LEAST_TEXEL_LIMIT (1u << 16)
 #define LEAST_RANGE_LIMIT (1u << 27)
 
-#define NO_DEVICE                                                                               \
+#define NO_DEVICE \
     "no usable Vulkan device: install a driver, for example Debian's mesa-vulkan-drivers"
 
 double clock_ms(void)
@@ -35,7 +35,7 @@ double clock_ms(void)
 void *gpu_alloc(Gpu *gpu, size_t count, size_t size, const char *attempt)
 {
     const KrsAllocator *allocator = &gpu->allocator;
-    void               *block = NULL;
+    void               *block     = NULL;
     if (size == 0 || count <= SIZE_MAX / size) {
         size_t bytes = count * size > 0 ? count * size : 1;
         if (!allocator->allocate)
@@ -68,7 +68,8 @@ void gpu_refuse(Gpu *gpu, KrsStatus status, const char *format, ...)
 void gpu_fail(Gpu *gpu, VkResult result, const char *attempt)
 {
     bool starts = result != VK_ERROR_INCOMPATIBLE_DRIVER &&
-                  result != VK_ERROR_INITIALIZATION_FAILED; /* what a loader says in want of memory */
+                  result !=
+                      VK_ERROR_INITIALIZATION_FAILED; /* what a loader says in want of memory */
     if (!starts && !memory_suffices_to_start())
         result = VK_ERROR_OUT_OF_HOST_MEMORY;
     switch (result) {
@@ -82,14 +83,13 @@ void gpu_fail(Gpu *gpu, VkResult result, const char *attempt)
     case VK_ERROR_TOO_MANY_OBJECTS:
         gpu_refuse(gpu, KRS_OUT_OF_MEMORY, "cannot %s: out of memory on the device", attempt);
         break;
-    case VK_ERROR_INCOMPATIBLE_DRIVER:
-        gpu_refuse(gpu, KRS_NO_DEVICE, NO_DEVICE);
-        break;
+    case VK_ERROR_INCOMPATIBLE_DRIVER: gpu_refuse(gpu, KRS_NO_DEVICE, NO_DEVICE); break;
     case VK_ERROR_LAYER_NOT_PRESENT:
     case VK_ERROR_EXTENSION_NOT_PRESENT:
         gpu_refuse(gpu, KRS_NO_DEVICE,
                    "cannot %s: the validation layers are not installed (Debian:"
-                   " vulkan-validationlayers)", attempt);
+                   " vulkan-validationlayers)",
+                   attempt);
         break;
     case VK_ERROR_INITIALIZATION_FAILED:
         gpu_refuse(gpu, KRS_NO_DEVICE, "cannot %s: the Vulkan driver does not start", attempt);
@@ -106,10 +106,9 @@ void gpu_fail(Gpu *gpu, VkResult result, const char *attempt)
 
 /* ---- Instance and validation ---- */
 
-static VKAPI_ATTR VkBool32 VKAPI_CALL
-take_complaint(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
-               VkDebugUtilsMessageTypeFlagsEXT type,
-               const VkDebugUtilsMessengerCallbackDataEXT *data, void *user)
+static VKAPI_ATTR VkBool32 VKAPI_CALL take_complaint(
+    VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtilsMessageTypeFlagsEXT type,
+    const VkDebugUtilsMessengerCallbackDataEXT *data, void *user)
 {
     (void)severity;
     (void)type;
@@ -127,13 +126,13 @@ take_complaint(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
 /* Whether an extension is among those that are offered: by a device, or without one by Vulkan. */
 static bool is_offered(Gpu *gpu, VkPhysicalDevice physical, const char *extension)
 {
-    uint32_t count = 0;
-    bool     found = false;
-    VkResult result = physical
-        ? vkEnumerateDeviceExtensionProperties(physical, NULL, &count, NULL)
-        : vkEnumerateInstanceExtensionProperties(NULL, &count, NULL);
-    VkExtensionProperties *offered =
-        result == VK_SUCCESS ? gpu_alloc(gpu, count, sizeof *offered, "list extensions") : NULL;
+    uint32_t count  = 0;
+    bool     found  = false;
+    VkResult result = physical ? vkEnumerateDeviceExtensionProperties(physical, NULL, &count, NULL)
+                               : vkEnumerateInstanceExtensionProperties(NULL, &count, NULL);
+    VkExtensionProperties *offered = result == VK_SUCCESS
+                                         ? gpu_alloc(gpu, count, sizeof *offered, "list extensions")
+                                         : NULL;
     if (offered)
         result = physical ? vkEnumerateDeviceExtensionProperties(physical, NULL, &count, offered)
                           : vkEnumerateInstanceExtensionProperties(NULL, &count, offered);
@@ -145,10 +144,10 @@ static bool is_offered(Gpu *gpu, VkPhysicalDevice physical, const char *extensio
 
 static bool instance_create(Gpu *gpu, bool validation)
 {
-    const char *layers[] = {VALIDATION_LAYER}, *extensions[3];
+    const char *layers[]        = {VALIDATION_LAYER}, *extensions[3];
     uint32_t    extension_count = 0;
-    bool portability = is_offered(gpu, VK_NULL_HANDLE,
-                                  VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+    bool        portability     = is_offered(gpu, VK_NULL_HANDLE,
+                                             VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
     if (portability)
         extensions[extension_count++] = VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME;
     if (validation) {
@@ -158,34 +157,38 @@ static bool instance_create(Gpu *gpu, bool validation)
     VkValidationFeatureEnableEXT enables[] = {
         VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
     VkDebugUtilsMessengerCreateInfoEXT listen = {
-        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+        .sType           = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
         .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
                            VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
-        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
+        .messageType     = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
         .pfnUserCallback = take_complaint,
-        .pUserData = gpu,
+        .pUserData       = gpu,
     };
     VkValidationFeaturesEXT features = {
         .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
         .pNext = &listen, /* also while the instance itself is made and unmade */
         .enabledValidationFeatureCount = 1,
-        .pEnabledValidationFeatures = enables,
+        .pEnabledValidationFeatures    = enables,
     };
-    TRY(gpu, "start Vulkan", vkCreateInstance(&(VkInstanceCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-        .pNext = validation ? &features : NULL,
-        .flags = portability ? VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR : 0,
-        .pApplicationInfo = &(VkApplicationInfo){
-            .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-            .pApplicationName = "krs",
-            .pEngineName = "krs",
-            .apiVersion = VK_API_VERSION_1_1,
-        },
-        .enabledLayerCount = validation,
-        .ppEnabledLayerNames = layers,
-        .enabledExtensionCount = extension_count,
-        .ppEnabledExtensionNames = extensions,
-    }, NULL, &gpu->instance));
+    TRY(gpu, "start Vulkan",
+        vkCreateInstance(
+            &(VkInstanceCreateInfo){
+                .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                .pNext = validation ? &features : NULL,
+                .flags = portability ? VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR : 0,
+                .pApplicationInfo =
+                    &(VkApplicationInfo){
+                        .sType            = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                        .pApplicationName = "krs",
+                        .pEngineName      = "krs",
+                        .apiVersion       = VK_API_VERSION_1_1,
+                    },
+                .enabledLayerCount       = validation,
+                .ppEnabledLayerNames     = layers,
+                .enabledExtensionCount   = extension_count,
+                .ppEnabledExtensionNames = extensions,
+            },
+            NULL, &gpu->instance));
 
     if (validation) {
         PFN_vkCreateDebugUtilsMessengerEXT create = (PFN_vkCreateDebugUtilsMessengerEXT)
@@ -193,8 +196,8 @@ static bool instance_create(Gpu *gpu, bool validation)
         if (create)
             TRY(gpu, "listen to the validation layers",
                 create(gpu->instance, &listen, NULL, &gpu->messenger));
-        gpu->set_name = (PFN_vkSetDebugUtilsObjectNameEXT)
-            vkGetInstanceProcAddr(gpu->instance, "vkSetDebugUtilsObjectNameEXT");
+        gpu->set_name = (PFN_vkSetDebugUtilsObjectNameEXT)vkGetInstanceProcAddr(
+            gpu->instance, "vkSetDebugUtilsObjectNameEXT");
     }
     return true;
 
@@ -206,11 +209,11 @@ void gpu_name(Gpu *gpu, VkObjectType type, uint64_t handle, const char *name)
 {
     if (gpu->set_name)
         gpu->set_name(gpu->device, &(VkDebugUtilsObjectNameInfoEXT){
-            .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
-            .objectType = type,
-            .objectHandle = handle,
-            .pObjectName = name,
-        });
+                                       .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+                                       .objectType   = type,
+                                       .objectHandle = handle,
+                                       .pObjectName  = name,
+                                   });
 }
 
 /* ---- Choice ---- */
@@ -231,7 +234,7 @@ static bool find_family(VkPhysicalDevice physical, uint32_t *family, uint32_t *c
     vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families);
     for (uint32_t i = 0; i < count; i++)
         if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) {
-            *family = i;
+            *family     = i;
             *clock_bits = families[i].timestampValidBits;
             return true;
         }
@@ -245,15 +248,15 @@ KrsDevice gpu_describe(VkPhysicalDevice physical)
     vkGetPhysicalDeviceProperties(physical, &properties);
     KrsDevice device = {
         .api_version = properties.apiVersion,
-        .usable = is_capable(&properties) && find_family(physical, &family, &clock_bits),
+        .usable      = is_capable(&properties) && find_family(physical, &family, &clock_bits),
     };
     snprintf(device.name, sizeof device.name, "%s", properties.deviceName);
     switch (properties.deviceType) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:   device.kind = KRS_DEVICE_DISCRETE; break;
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: device.kind = KRS_DEVICE_DISCRETE; break;
     case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: device.kind = KRS_DEVICE_INTEGRATED; break;
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:    device.kind = KRS_DEVICE_VIRTUAL; break;
-    case VK_PHYSICAL_DEVICE_TYPE_CPU:            device.kind = KRS_DEVICE_CPU; break;
-    default:                                     device.kind = KRS_DEVICE_OTHER;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: device.kind = KRS_DEVICE_VIRTUAL; break;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU: device.kind = KRS_DEVICE_CPU; break;
+    default: device.kind = KRS_DEVICE_OTHER;
     }
     return device;
 }
@@ -305,7 +308,7 @@ static bool wanted(const KrsDevice *device, uint32_t index, const char *words)
    the best kind.  `count` when there is none. */
 static uint32_t choose(const VkPhysicalDevice *devices, uint32_t count, const char *words)
 {
-    uint32_t      best = count;
+    uint32_t      best      = count;
     KrsDeviceKind best_kind = KRS_DEVICE_OTHER;
     for (uint32_t i = 0; i < count; i++) {
         KrsDevice device = gpu_describe(devices[i]);
@@ -314,7 +317,7 @@ static uint32_t choose(const VkPhysicalDevice *devices, uint32_t count, const ch
         if (words && *words)
             return i;
         if (best == count || device.kind > best_kind) { /* the enum rises from worse to better */
-            best = i;
+            best      = i;
             best_kind = device.kind;
         }
     }
@@ -326,13 +329,13 @@ bool gpu_list(Gpu *gpu, KrsDevice *devices, size_t capacity, size_t *count)
     *count = 0;
     if (!instance_create(gpu, false))
         return false;
-    uint32_t          found = 0;
+    uint32_t          found    = 0;
     VkPhysicalDevice *physical = find_devices(gpu, &found);
     if (physical) {
         uint32_t preferred = choose(physical, found, NULL);
-        *count = found;
+        *count             = found;
         for (uint32_t i = 0; i < found && i < capacity; i++) {
-            devices[i] = gpu_describe(physical[i]);
+            devices[i]           = gpu_describe(physical[i]);
             devices[i].preferred = i == preferred;
         }
     }
@@ -366,15 +369,15 @@ static void refuse_devices(Gpu *gpu, const VkPhysicalDevice *devices, uint32_t c
 
 static bool choose_device(Gpu *gpu, const char *words)
 {
-    uint32_t          count = 0;
+    uint32_t          count   = 0;
     VkPhysicalDevice *devices = find_devices(gpu, &count);
     if (!devices)
         return false;
     uint32_t chosen = choose(devices, count, words);
-    uint32_t bits = 0;
-    bool     found = chosen < count && find_family(devices[chosen], &gpu->family, &bits);
+    uint32_t bits   = 0;
+    bool     found  = chosen < count && find_family(devices[chosen], &gpu->family, &bits);
     if (found) {
-        gpu->physical = devices[chosen];
+        gpu->physical  = devices[chosen];
         gpu->time_mask = bits >= 64 ? UINT64_MAX : (UINT64_C(1) << bits) - 1;
     } else {
         refuse_devices(gpu, devices, count, words);
@@ -395,15 +398,15 @@ static void read_properties(Gpu *gpu, unsigned pretence)
         .pNext = &subgroups,
     };
     vkGetPhysicalDeviceProperties2(gpu->physical, &properties);
-    gpu->properties = properties.properties;
+    gpu->properties                = properties.properties;
     VkPhysicalDeviceLimits *limits = &gpu->properties.limits;
     if (pretence & KRS_PRETEND_LEAST_LIMITS) {
         limits->maxTexelBufferElements = LEAST_TEXEL_LIMIT;
-        limits->maxStorageBufferRange = LEAST_RANGE_LIMIT;
+        limits->maxStorageBufferRange  = LEAST_RANGE_LIMIT;
     }
     gpu->pretends_card = pretence & KRS_PRETEND_CARD;
-    gpu->texels = limits->maxTexelBufferElements >= LEAST_TEXELS;
-    bool shuffles = subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT &&
+    gpu->texels        = limits->maxTexelBufferElements >= LEAST_TEXELS;
+    bool shuffles      = subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT &&
                     subgroups.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT;
     const VkSubgroupFeatureFlags sums = VK_SUBGROUP_FEATURE_BASIC_BIT |
                                         VK_SUBGROUP_FEATURE_ARITHMETIC_BIT |
@@ -411,7 +414,7 @@ static void read_properties(Gpu *gpu, unsigned pretence)
     gpu->sums_lanes = subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT &&
                       (subgroups.supportedOperations & sums) == sums;
     gpu->refill_lanes = !shuffles || subgroups.subgroupSize < 4 ? 0
-                      : subgroups.subgroupSize < 8              ? 4
+                        : subgroups.subgroupSize < 8            ? 4
                                                                 : 8;
 }
 
@@ -426,43 +429,57 @@ static bool device_create(Gpu *gpu, unsigned pretence)
     taken.robustBufferAccess = offered.robustBufferAccess && !gpu->messenger;
 
     const char *attempt = "open the device";
-    TRY(gpu, attempt, vkCreateDevice(gpu->physical, &(VkDeviceCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-        .queueCreateInfoCount = 1,
-        .pQueueCreateInfos = &(VkDeviceQueueCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-            .queueFamilyIndex = gpu->family,
-            .queueCount = 1,
-            .pQueuePriorities = &(float){1},
-        },
-        .enabledExtensionCount = is_offered(gpu, gpu->physical, PORTABILITY_SUBSET),
-        .ppEnabledExtensionNames = extensions,
-        .pEnabledFeatures = &taken,
-    }, NULL, &gpu->device));
+    TRY(gpu, attempt,
+        vkCreateDevice(
+            gpu->physical,
+            &(VkDeviceCreateInfo){
+                .sType                = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                .queueCreateInfoCount = 1,
+                .pQueueCreateInfos =
+                    &(VkDeviceQueueCreateInfo){
+                        .sType            = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                        .queueFamilyIndex = gpu->family,
+                        .queueCount       = 1,
+                        .pQueuePriorities = &(float){1},
+                    },
+                .enabledExtensionCount   = is_offered(gpu, gpu->physical, PORTABILITY_SUBSET),
+                .ppEnabledExtensionNames = extensions,
+                .pEnabledFeatures        = &taken,
+            },
+            NULL, &gpu->device));
     vkGetDeviceQueue(gpu->device, gpu->family, 0, &gpu->queue);
 
     const VkCommandPoolCreateInfo pool = {
-        .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-        .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
+        .sType            = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+        .flags            = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
         .queueFamilyIndex = gpu->family,
     };
     TRY(gpu, attempt, vkCreateCommandPool(gpu->device, &pool, NULL, &gpu->pool));
     TRY(gpu, attempt, vkCreateCommandPool(gpu->device, &pool, NULL, &gpu->rehearsals));
-    TRY(gpu, attempt, vkAllocateCommandBuffers(gpu->device, &(VkCommandBufferAllocateInfo){
-        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-        .commandPool = gpu->pool,
-        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-        .commandBufferCount = 1,
-    }, &gpu->commands));
-    TRY(gpu, attempt, vkCreateFence(gpu->device, &(VkFenceCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO,
-    }, NULL, &gpu->fence));
+    TRY(gpu, attempt,
+        vkAllocateCommandBuffers(gpu->device,
+                                 &(VkCommandBufferAllocateInfo){
+                                     .sType       = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                     .commandPool = gpu->pool,
+                                     .level       = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                     .commandBufferCount = 1,
+                                 },
+                                 &gpu->commands));
+    TRY(gpu, attempt,
+        vkCreateFence(gpu->device,
+                      &(VkFenceCreateInfo){
+                          .sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO,
+                      },
+                      NULL, &gpu->fence));
     if (gpu->time_mask != 0)
-        TRY(gpu, attempt, vkCreateQueryPool(gpu->device, &(VkQueryPoolCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
-            .queryType = VK_QUERY_TYPE_TIMESTAMP,
-            .queryCount = 2 + MOST_MARKS,
-        }, NULL, &gpu->times));
+        TRY(gpu, attempt,
+            vkCreateQueryPool(gpu->device,
+                              &(VkQueryPoolCreateInfo){
+                                  .sType      = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                  .queryType  = VK_QUERY_TYPE_TIMESTAMP,
+                                  .queryCount = 2 + MOST_MARKS,
+                              },
+                              NULL, &gpu->times));
     gpu_name(gpu, VK_OBJECT_TYPE_COMMAND_BUFFER, (uint64_t)(uintptr_t)gpu->commands, "slice");
     return true;
 
@@ -477,12 +494,14 @@ static bool check_threads(Gpu *gpu)
     VkPhysicalDeviceProperties properties;
     vkGetPhysicalDeviceProperties(gpu->physical, &properties);
     bool     software = properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-    unsigned wanted = software ? threads_of_software_device() : 1, count = threads_available(wanted);
+    unsigned wanted   = software ? threads_of_software_device() : 1,
+             count    = threads_available(wanted);
     if (count == wanted)
         return true;
-    gpu_refuse(gpu, KRS_OUT_OF_MEMORY, "cannot open the device: its driver makes %u threads, of "
-               "which the system allows %u (`ulimit -u`, or the limits of a container)", wanted,
-               count);
+    gpu_refuse(gpu, KRS_OUT_OF_MEMORY,
+               "cannot open the device: its driver makes %u threads, of "
+               "which the system allows %u (`ulimit -u`, or the limits of a container)",
+               wanted, count);
     return false;
 }
 
@@ -494,9 +513,9 @@ bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
     *gpu = (Gpu){
         .allocator = options->allocator,
         .complaint = options->complaint,
-        .working = options->working,
-        .user = options->user,
-        .patience = options->patience > 0 ? options->patience : DEFAULT_PATIENCE,
+        .working   = options->working,
+        .user      = options->user,
+        .patience  = options->patience > 0 ? options->patience : DEFAULT_PATIENCE,
     };
     cache_open(&gpu->cache, options->cache, options->allocator);
     if (instance_create(gpu, options->validation) && choose_device(gpu, options->device) &&
@@ -510,8 +529,7 @@ bool gpu_open(Gpu *gpu, const KrsRendererOptions *options)
 
 bool gpu_open_beside(Gpu *gpu, const Gpu *other)
 {
-    *gpu = (Gpu){.physical = other->physical, .family = other->family,
-                 .patience = other->patience};
+    *gpu = (Gpu){.physical = other->physical, .family = other->family, .patience = other->patience};
     if (device_create(gpu, other->texels ? 0 : KRS_PRETEND_LEAST_LIMITS))
         return true;
     gpu_close(gpu);
@@ -540,9 +558,9 @@ void gpu_close(Gpu *gpu)
     if (gpu->instance)
         vkDestroyInstance(gpu->instance, NULL);
     cache_close(&gpu->cache);
-    gpu->device = VK_NULL_HANDLE;
+    gpu->device    = VK_NULL_HANDLE;
     gpu->messenger = VK_NULL_HANDLE;
-    gpu->instance = VK_NULL_HANDLE;
+    gpu->instance  = VK_NULL_HANDLE;
 }
 
 bool gpu_is_cpu(const Gpu *gpu)

@@ -27,8 +27,8 @@ typedef struct Gpu {
     VkCommandPool    pool, rehearsals;
     VkCommandBuffer  commands; /* the one that is recorded, run and waited for */
     VkFence          fence;
-    VkQueryPool      times;    /* timestamps; none when the queue has no clock */
-    uint32_t         marks;    /* of them, since recording began */
+    VkQueryPool      times; /* timestamps; none when the queue has no clock */
+    uint32_t         marks; /* of them, since recording began */
     uint64_t         time_mask;
 
     VkPhysicalDeviceProperties       properties;
@@ -36,9 +36,9 @@ typedef struct Gpu {
     bool     pretends_card; /* a device of type CPU is treated as a graphics card */
     bool     texels;        /* kernels read what they only read as texels, not as buffers */
     bool     sums_lanes;    /* lanes of a subgroup can add up before they count */
-    uint32_t refill_lanes; /* of a group whose lanes exchange numbers: 8, or 4; 0: they cannot */
+    uint32_t refill_lanes;  /* of a group whose lanes exchange numbers: 8, or 4; 0: they cannot */
     uint64_t memory_used, memory_peak; /* bytes of device memory */
-    uint64_t submissions;  /* that were waited for */
+    uint64_t submissions;              /* that were waited for */
 
     Cache           cache;            /* of shaders; zero when none was asked for */
     VkPipelineCache pipelines;        /* the driver's, or none */
@@ -66,11 +66,11 @@ bool gpu_open_beside(Gpu *gpu, const Gpu *other);
 void gpu_close(Gpu *gpu);
 
 /* The devices there are, as krs_devices. */
-bool gpu_list(Gpu *gpu, KrsDevice *devices, size_t capacity, size_t *count);
+bool      gpu_list(Gpu *gpu, KrsDevice *devices, size_t capacity, size_t *count);
 KrsDevice gpu_describe(VkPhysicalDevice physical);
 bool      gpu_is_cpu(const Gpu *gpu);
 /* Bytes of the largest memory that is the device's own. */
-uint64_t  gpu_memory(const Gpu *gpu);
+uint64_t gpu_memory(const Gpu *gpu);
 
 /* Zeroed memory of the host, or NULL with the failure noted. */
 void *gpu_alloc(Gpu *gpu, size_t count, size_t size, const char *attempt);

@@ -33,8 +33,8 @@ static const char *find_file(const char *name, size_t length)
 /* A kernel's text as it grows. */
 typedef struct Expansion {
     const KernelSource *source;
-    char  *out; /* NULL: it is only counted */
-    size_t length;
+    char               *out; /* NULL: it is only counted */
+    size_t              length;
 } Expansion;
 
 static void append(Expansion *to, const char *bytes, size_t count)
@@ -48,8 +48,8 @@ static void append(Expansion *to, const char *bytes, size_t count)
 static bool append_file(Expansion *to, const char *name, size_t name_length)
 {
     static const char include[] = "#include \"";
-    bool        is_scene = strncmp(name, "scene.glsl", name_length) == 0;
-    const char *text = is_scene ? to->source->scene : find_file(name, name_length);
+    bool              is_scene  = strncmp(name, "scene.glsl", name_length) == 0;
+    const char       *text      = is_scene ? to->source->scene : find_file(name, name_length);
     if (is_scene && text)
         append(to, text, strlen(text));
     for (; !is_scene && text && *text; text += strcspn(text, "\n"), text += *text == '\n') {
@@ -83,8 +83,8 @@ void kernel_strip(char *text)
     char *to = text, *line = text; /* where the line begins in what has been written */
     for (const char *from = text; *from;) {
         const char *behind = comment_end(from);
-        char        next = behind ? ' ' : *from;
-        from = behind ? behind : from + 1;
+        char        next   = behind ? ' ' : *from;
+        from               = behind ? behind : from + 1;
         if (next != '\n') {
             *to++ = next;
             continue;
@@ -106,7 +106,7 @@ char *kernel_text(Gpu *gpu, const KernelSource *source)
                    source->file);
         return NULL;
     }
-    expansion.out = gpu_alloc(gpu, expansion.length + 1, 1, "put a kernel together");
+    expansion.out    = gpu_alloc(gpu, expansion.length + 1, 1, "put a kernel together");
     expansion.length = 0;
     if (expansion.out) { /* zeroed memory: the text ends */
         append_file(&expansion, source->file, strlen(source->file));
@@ -122,7 +122,7 @@ typedef struct Making {
     CacheKey    key;
     uint32_t   *found, *made; /* in the cache, or by the compiler; one of them, when done */
     size_t      bytes;
-    KrsStatus   status;       /* of the compiler */
+    KrsStatus   status; /* of the compiler */
     char       *log;
     pthread_t   thread;
     bool        started; /* the thread */
@@ -131,10 +131,9 @@ typedef struct Making {
 static void *compile(void *user)
 {
     Making *making = user;
-    size_t  count = 0;
-    making->status =
-        spirv_compile(making->text, making->file, &making->made, &count, &making->log);
-    making->bytes = count * sizeof *making->made;
+    size_t  count  = 0;
+    making->status = spirv_compile(making->text, making->file, &making->made, &count, &making->log);
+    making->bytes  = count * sizeof *making->made;
     return NULL;
 }
 
@@ -152,9 +151,9 @@ static const EmbeddedFile *find_module(const KernelSource *source)
 /* Takes the kernel from the program itself, or puts its text together and looks into the cache. */
 static bool begin(Gpu *gpu, Making *making, const KernelSource *source)
 {
-    char maker[160];
+    char                maker[160];
     const EmbeddedFile *module = find_module(source);
-    *making = (Making){.file = source->file};
+    *making                    = (Making){.file = source->file};
     if (module) {
         making->bytes = module->length;
         making->found = gpu_alloc(gpu, module->length, 1, "load a kernel");
@@ -167,7 +166,7 @@ static bool begin(Gpu *gpu, Making *making, const KernelSource *source)
         return false;
     snprintf(maker, sizeof maker, "%s: krs %s, glslang %s, SPIRV-Tools %s, inlined", source->file,
              KRS_VERSION, spirv_glslang_version(), spirv_tools_version());
-    making->key = cache_key(maker, making->text, strlen(making->text));
+    making->key   = cache_key(maker, making->text, strlen(making->text));
     making->found = cache_load(&gpu->cache, CACHE_SPIRV, making->key, &making->bytes);
     return true;
 }
@@ -231,9 +230,9 @@ static KernelCode take_code(Making *making)
 bool kernel_compile_all(Gpu *gpu, const KernelRequest *requests, size_t count, KernelCode *codes,
                         double *spirv_ms)
 {
-    double  start = clock_ms();
+    double  start   = clock_ms();
     Making *makings = gpu_alloc(gpu, count, sizeof *makings, "compile the kernels");
-    bool    ready = makings != NULL;
+    bool    ready   = makings != NULL;
     for (size_t i = 0; i < count && ready; i++)
         ready = begin(gpu, &makings[i], &requests[i].source);
     if (ready)
@@ -261,26 +260,33 @@ void kernel_code_release(Gpu *gpu, KernelCode *code)
 bool kernel_load(Gpu *gpu, Kernel *kernel, const KernelCode *code, VkPipelineLayout layout,
                  double *pipeline_ms)
 {
-    double         start = clock_ms();
+    double         start  = clock_ms();
     VkShaderModule module = VK_NULL_HANDLE;
-    bool           ready = false;
-    *kernel = (Kernel){0};
-    TRY(gpu, "load a kernel", vkCreateShaderModule(gpu->device, &(VkShaderModuleCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-        .codeSize = code->bytes,
-        .pCode = code->words,
-    }, NULL, &module));
-    TRY(gpu, "prepare a kernel", vkCreateComputePipelines(gpu->device, gpu->pipelines, 1,
-        &(VkComputePipelineCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-            .stage = {
-                .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                .module = module,
-                .pName = "main",
+    bool           ready  = false;
+    *kernel               = (Kernel){0};
+    TRY(gpu, "load a kernel",
+        vkCreateShaderModule(gpu->device,
+                             &(VkShaderModuleCreateInfo){
+                                 .sType    = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                 .codeSize = code->bytes,
+                                 .pCode    = code->words,
+                             },
+                             NULL, &module));
+    TRY(gpu, "prepare a kernel",
+        vkCreateComputePipelines(
+            gpu->device, gpu->pipelines, 1,
+            &(VkComputePipelineCreateInfo){
+                .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                .stage =
+                    {
+                        .sType  = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                        .stage  = VK_SHADER_STAGE_COMPUTE_BIT,
+                        .module = module,
+                        .pName  = "main",
+                    },
+                .layout = layout,
             },
-            .layout = layout,
-        }, NULL, &kernel->pipeline));
+            NULL, &kernel->pipeline));
     gpu_name(gpu, VK_OBJECT_TYPE_PIPELINE, (uint64_t)(uintptr_t)kernel->pipeline, code->file);
     ready = true;
 
@@ -311,11 +317,10 @@ typedef struct Loader {
 
 static void *load_some(void *user)
 {
-    Loader  *loader = user;
+    Loader  *loader  = user;
     Loading *loading = loader->loading;
-    double   ms = 0;
-    for (size_t i; loader->ready &&
-                   (i = atomic_fetch_add(&loading->next, 1)) < loading->count;)
+    double   ms      = 0;
+    for (size_t i; loader->ready && (i = atomic_fetch_add(&loading->next, 1)) < loading->count;)
         loader->ready = kernel_load(&loader->gpu, loading->requests[i].kernel, &loading->codes[i],
                                     loading->layout, &ms);
     return NULL;
@@ -346,7 +351,7 @@ static void await(const Gpu *gpu, pthread_t thread)
 static size_t count_loaders(const Gpu *gpu, size_t kernels)
 {
     long   cores = sysconf(_SC_NPROCESSORS_ONLN);
-    size_t most = cores < 1 ? 1 : cores < MOST_LOADERS ? (size_t)cores : MOST_LOADERS;
+    size_t most  = cores < 1 ? 1 : cores < MOST_LOADERS ? (size_t)cores : MOST_LOADERS;
     return gpu->messenger ? 0 : kernels < most ? kernels : most;
 }
 
@@ -355,12 +360,12 @@ bool kernel_load_all(Gpu *gpu, const KernelRequest *requests, const KernelCode *
 {
     Loading loading = {requests, codes, count, layout, 0};
     size_t  loaders = count_loaders(gpu, count);
-    Loader *all = gpu_alloc(gpu, 1 + loaders, sizeof *all, "prepare the kernels");
-    bool    ready = all != NULL;
+    Loader *all     = gpu_alloc(gpu, 1 + loaders, sizeof *all, "prepare the kernels");
+    bool    ready   = all != NULL;
     for (size_t i = 0; i < count; i++)
         *requests[i].kernel = (Kernel){0};
     for (size_t i = 0; ready && i < loaders; i++) {
-        all[i] = (Loader){.loading = &loading, .gpu = *gpu, .ready = true};
+        all[i]         = (Loader){.loading = &loading, .gpu = *gpu, .ready = true};
         all[i].started = pthread_create(&all[i].thread, NULL, load_some, &all[i]) == 0;
     }
     for (size_t i = 0; all && i < loaders; i++)
@@ -383,8 +388,8 @@ bool kernel_create_all(Gpu *gpu, const KernelRequest *requests, size_t count,
                        VkPipelineLayout layout, double *spirv_ms, double *pipeline_ms)
 {
     KernelCode *codes = gpu_alloc(gpu, count, sizeof *codes, "compile the kernels");
-    bool ready = codes && kernel_compile_all(gpu, requests, count, codes, spirv_ms);
-    double start = clock_ms();
+    bool        ready = codes && kernel_compile_all(gpu, requests, count, codes, spirv_ms);
+    double      start = clock_ms();
     for (size_t i = 0; i < count; i++)
         *requests[i].kernel = (Kernel){0};
     ready = ready && kernel_load_all(gpu, requests, codes, count, layout);

@@ -22,7 +22,7 @@ typedef struct KernelSource {
    caller's to release; NULL with the failure noted. */
 char *kernel_text(Gpu *gpu, const KernelSource *source);
 /* Takes comments and blank lines out of a text in GLSL. */
-void  kernel_strip(char *text);
+void kernel_strip(char *text);
 
 /* Compiles a kernel, or takes it from the cache, and adds the time it took. */
 bool kernel_create(Gpu *gpu, Kernel *kernel, const KernelSource *source, VkPipelineLayout layout,

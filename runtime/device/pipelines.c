@@ -31,11 +31,13 @@ static CacheKey device_key(const VkPhysicalDeviceProperties *device)
 
 static VkResult create(Gpu *gpu, const void *bytes, size_t length)
 {
-    return vkCreatePipelineCache(gpu->device, &(VkPipelineCacheCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
-        .initialDataSize = length,
-        .pInitialData = bytes,
-    }, NULL, &gpu->pipelines);
+    return vkCreatePipelineCache(gpu->device,
+                                 &(VkPipelineCacheCreateInfo){
+                                     .sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
+                                     .initialDataSize = length,
+                                     .pInitialData    = bytes,
+                                 },
+                                 NULL, &gpu->pipelines);
 }
 
 void pipelines_open(Gpu *gpu)
@@ -43,7 +45,7 @@ void pipelines_open(Gpu *gpu)
     if (!gpu->cache.folder)
         return;
     size_t length = 0;
-    void  *bytes = cache_load(&gpu->cache, CACHE_PIPELINES, device_key(&gpu->properties), &length);
+    void  *bytes  = cache_load(&gpu->cache, CACHE_PIPELINES, device_key(&gpu->properties), &length);
     if (bytes && length < LARGE && pipelines_fit(&gpu->properties, bytes, length) &&
         create(gpu, bytes, length) == VK_SUCCESS)
         gpu->pipelines_loaded = length;

@@ -27,14 +27,14 @@ static double most_of(double a, double b) { return a > b ? a : b; }
 static void apply_neutral(const double color[3], double out[3])
 {
     const double start = 0.8 - 0.04, desaturation = 0.15;
-    double least = least_of(color[0], least_of(color[1], color[2]));
-    double offset = least < 0.08 ? least - 6.25 * least * least : 0.04;
-    double peak = most_of(color[0], most_of(color[1], color[2])) - offset;
-    double top = peak, white = 0;
+    double       least  = least_of(color[0], least_of(color[1], color[2]));
+    double       offset = least < 0.08 ? least - 6.25 * least * least : 0.04;
+    double       peak   = most_of(color[0], most_of(color[1], color[2])) - offset;
+    double       top = peak, white = 0;
     if (peak >= start) {
         double room = 1 - start;
-        top = 1 - room * room / (peak + room - start);
-        white = 1 - 1 / (desaturation * (peak - top) + 1);
+        top         = 1 - room * room / (peak + room - start);
+        white       = 1 - 1 / (desaturation * (peak - top) + 1);
     }
     double scale = peak > 0 ? top / peak : 1;
     for (int i = 0; i < 3; i++)
@@ -74,13 +74,13 @@ void tone_map_apply(ToneMap tone_map, const double color[3], double out[3])
 {
     /* Far beyond any curve's shoulder: keeps infinity from becoming a quotient of infinities. */
     const double brightest = 1e9;
-    double light[3];
+    double       light[3];
     for (int i = 0; i < 3; i++)
         light[i] = color[i] > 0 ? least_of(color[i], brightest) : 0;
     switch (tone_map) {
     case TONE_NEUTRAL: apply_neutral(light, out); break;
-    case TONE_ACES:    apply_aces(light, out); break;
-    default:           memcpy(out, light, sizeof light);
+    case TONE_ACES: apply_aces(light, out); break;
+    default: memcpy(out, light, sizeof light);
     }
     for (int i = 0; i < 3; i++)
         out[i] = clamp_unit(out[i]);
@@ -119,7 +119,7 @@ static double encode(const Encoding *encoding, double linear)
 static uint8_t to_byte(const Encoding *encoding, double linear, double step)
 {
     const double doubt = 1e-3;
-    double value = 255 * encode(encoding, linear) + step, behind = value - (int)value;
+    double       value = 255 * encode(encoding, linear) + step, behind = value - (int)value;
     if (behind < doubt || behind > 1 - doubt)
         value = 255 * srgb_encode(linear) + step;
     return (uint8_t)value;
@@ -138,19 +138,19 @@ static double noise(double x, double y)
 void film_to_srgb8(const KrsPicture *picture, const FilmOptions *options, uint8_t *rgb)
 {
     const KrsWindow *window = &picture->window;
-    const double     gain = exp2(options->exposure);
+    const double     gain   = exp2(options->exposure);
     Encoding         encoding;
     encoding_fill(&encoding);
     for (uint32_t y = 0; y < window->height; y++)
         for (uint32_t x = 0; x < window->width; x++) {
-            size_t       index = (size_t)y * window->width + x;
-            const float *from = &picture->color[4 * index];
+            size_t       index    = (size_t)y * window->width + x;
+            const float *from     = &picture->color[4 * index];
             const double light[3] = {gain * from[0], gain * from[1], gain * from[2]};
             double       shown[3];
             tone_map_apply(options->tone_map, light, shown);
             for (int i = 0; i < 3; i++) {
                 /* The channels' noise differs, by a shift, so that greys are dithered finer. */
-                double step = noise(window->x + x + 47.0 * i, window->y + y + 17.0 * i);
+                double step        = noise(window->x + x + 47.0 * i, window->y + y + 17.0 * i);
                 rgb[3 * index + i] = to_byte(&encoding, shown[i], step);
             }
         }

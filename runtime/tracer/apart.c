@@ -18,7 +18,7 @@ bool begins_outside(const Job *job, KrsFrame *frame)
     const KrsCamera  *camera  = &job->view.camera;
     double            room    = 0;
     if (camera->projection != KRS_ORTHOGRAPHIC)
-        return krs_distance(frame, (const double(*)[3])&camera->eye, 1, &room) == KRS_OK &&
+        return krs_distance(frame, (const double(*)[3]) & camera->eye, 1, &room) == KRS_OK &&
                room > 0;
     for (int corner = 0; corner < 8; corner++) {
         double ahead = 0;

@@ -34,7 +34,7 @@ enum { BACKGROUND_FIRST, BACKGROUND_SUN };
 enum { LIST_ALL, LIST_ANCHORS, LIST_REST, LIST_WIDE, LIST_OF_GROUP, LIST_SHARED = 13 };
 enum { SHARED_LISTS = 2 };
 
-enum { LIGHTS_AT_ONCE = 3 }; /* of a dispatch of shade.comp */
+enum { LIGHTS_AT_ONCE = 3 };             /* of a dispatch of shade.comp */
 enum { VALUE_OCCLUSION, VALUE_VISIBLE }; /* that and the next ones of those lights */
 enum { ITEMS_FRESH, ITEMS_QUEUED, ITEMS_REST };
 enum { LIGHT_POSITIONAL = 1, LIGHT_CASTS_SHADOWS = 2 };
@@ -74,7 +74,7 @@ typedef struct ControlBlock {
     uint32_t value; /* VALUE_... */
     uint32_t rows;  /* bits of ResultRow */
     uint32_t parts;
-    uint32_t open;  /* 1: no occlusion */
+    uint32_t open; /* 1: no occlusion */
     uint32_t window, across;
     uint32_t rays;    /* of each pixel */
     uint32_t filters; /* 1: neighbours share */

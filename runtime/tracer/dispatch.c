@@ -15,7 +15,8 @@
 
 /* As plan.comp has them. */
 static_assert(WORD_OF(items) == 10 && WORD_OF(groups) == 42 && WORD_OF(stopped) == 45 &&
-              WORD_OF(ran) == 46, "plan.comp");
+                  WORD_OF(ran) == 46,
+              "plan.comp");
 typedef struct PlanBlock {
     uint32_t counter, each, taken, in_group, most, number;
 } PlanBlock;
@@ -32,7 +33,7 @@ bool dispatch_chains(const Job *job)
 static uint32_t next_slice(double groups, double ms, double aim)
 {
     double factor = ms > 0 ? aim / ms : 4;
-    double next = groups * fmin(fmax(factor, 0.1), 4);
+    double next   = groups * fmin(fmax(factor, 0.1), 4);
     return next < 1 ? 1 : next > MOST_GROUPS ? MOST_GROUPS : (uint32_t)next;
 }
 
@@ -49,7 +50,7 @@ static bool report(Job *job, double within_phase)
 
 static bool has_scene(const Job *job, const Kernel *kernel)
 {
-    const Kernel *pixels = job->rendering->renderer->pixels[job->rendering->panoramic];
+    const Kernel *pixels    = job->rendering->renderer->pixels[job->rendering->panoramic];
     bool          is_pixels = false;
     for (int i = 0; i < PIXEL_KERNELS; i++)
         is_pixels = is_pixels || kernel == &pixels[i];
@@ -69,10 +70,10 @@ static bool run_groups(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock
     uint32_t *at_once = groups_at_once(job, phase, kernel);
     for (uint32_t first = 0; first < groups;) {
         uint32_t count = *at_once < groups - first ? *at_once : groups - first;
-        double   ms = 0;
-        work->first = first;
-        work->groups = count;
-        work->stride = rendering_spread(job->rendering, count);
+        double   ms    = 0;
+        work->first    = first;
+        work->groups   = count;
+        work->stride   = rendering_spread(job->rendering, count);
         if (!rendering_begin(job->rendering))
             return false;
         rendering_dispatch(job->rendering, kernel, job->rendering->band_set, work, sizeof *work,
@@ -110,11 +111,14 @@ static uint32_t groups_of(const Dispatch *dispatch, uint32_t items)
 Dispatch dispatch_of(const Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
                      Items items, Dealing deal)
 {
-    Dispatch dispatch = {.phase = phase, .kernel = kernel, .work = *work, .items = items,
-                         .in_group = deal.lanes * deal.share};
-    dispatch.control = *(const ControlBlock *)job->rendering->control.bytes;
+    Dispatch dispatch      = {.phase    = phase,
+                              .kernel   = kernel,
+                              .work     = *work,
+                              .items    = items,
+                              .in_group = deal.lanes * deal.share};
+    dispatch.control       = *(const ControlBlock *)job->rendering->control.bytes;
     dispatch.control.share = deal.share;
-    dispatch.work.steps = deal.steps;
+    dispatch.work.steps    = deal.steps;
     return dispatch;
 }
 
@@ -145,8 +149,8 @@ static bool clear_shared(Job *job, const Dispatch *dispatch)
 static bool run_in_slices(Job *job, const Dispatch *dispatch)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    WorkBlock     work = dispatch->work;
-    uint32_t      items = items_now(job, dispatch->items);
+    WorkBlock     work    = dispatch->work;
+    uint32_t      items   = items_now(job, dispatch->items);
     memcpy(control, &dispatch->control, offsetof(ControlBlock, queued));
     control->items = items;
     if (dispatch->items.taken)
@@ -170,22 +174,23 @@ static double weight_of(const Job *job, const Dispatch *dispatch)
 static uint32_t most_groups(Job *job, const Dispatch *dispatch)
 {
     uint32_t at_once = *groups_at_once(job, dispatch->phase, dispatch->kernel);
-    double   most = at_once / weight_of(job, dispatch);
+    double   most    = at_once / weight_of(job, dispatch);
     return most < 1 ? 1 : (uint32_t)most;
 }
 
 static void record(Job *job, uint32_t i)
 {
-    KrsRendering   *r = job->rendering;
+    KrsRendering   *r        = job->rendering;
     const Dispatch *dispatch = &job->chain.list[i];
-    const Items    *items = &dispatch->items;
-    VkBuffer        control = rendering_control(r)->buffer;
-    PlanBlock       plan = {items->counter, items->each, items->taken, dispatch->in_group,
-                            most_groups(job, dispatch), i + 1};
-    WorkBlock       work = dispatch->work;
-    work.first = 0;
-    work.groups = UINT32_MAX; /* in their order */
-    work.stride = 1;
+    const Items    *items    = &dispatch->items;
+    VkBuffer        control  = rendering_control(r)->buffer;
+    PlanBlock       plan     = {
+                  items->counter, items->each, items->taken, dispatch->in_group, most_groups(job, dispatch),
+                  i + 1};
+    WorkBlock work = dispatch->work;
+    work.first     = 0;
+    work.groups    = UINT32_MAX; /* in their order */
+    work.stride    = 1;
     if (dispatch->clears)
         vkCmdFillBuffer(job->gpu->commands, control, dispatch->clears * sizeof(uint32_t),
                         sizeof(uint32_t), 0);
@@ -213,7 +218,7 @@ static void learn(Job *job, uint32_t first, uint32_t end, double ms)
         if (has_scene(job, list[i].kernel) == has_scene(job, told->kernel))
             groups += control->ran[i] * weight_of(job, &list[i]);
     uint32_t *at_once = groups_at_once(job, told->phase, told->kernel);
-    uint32_t  next = next_slice(groups, ms, aim);
+    uint32_t  next    = next_slice(groups, ms, aim);
     if (groups > 0 && (ms > aim || next > *at_once))
         *at_once = next;
     job->picture->stats.phase_ms[told->phase] += ms;
@@ -248,14 +253,14 @@ static bool submit(Job *job, uint32_t first)
 bool dispatch_finish(Job *job)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    Chain        *chain = &job->chain;
+    Chain        *chain   = &job->chain;
     for (uint32_t first = 0; first < chain->count;) {
         control->stopped = 0;
         if (!submit(job, first) || !report(job, 1))
             return false;
         if (control->stopped == 0)
             break;
-        first = control->stopped;
+        first             = control->stopped;
         ControlBlock next = *control; /* what the host says already to those behind the chain */
         if (!run_in_slices(job, &chain->list[first - 1]))
             return false;
@@ -278,9 +283,9 @@ bool dispatch_run(Job *job, const Dispatch *dispatch)
 
 bool dispatch_together(Job *job, const Dispatch *dispatches, size_t count)
 {
-    KrsPhase  phase = dispatches[0].phase;
+    KrsPhase  phase   = dispatches[0].phase;
     uint32_t *at_once = groups_at_once(job, phase, dispatches[0].kernel), groups = 0;
-    double    ms = 0;
+    double    ms   = 0;
     bool      good = true;
     for (size_t i = 0; i < count; i++)
         groups += groups_of(&dispatches[i], items_now(job, dispatches[i].items));
@@ -293,13 +298,13 @@ bool dispatch_together(Job *job, const Dispatch *dispatches, size_t count)
         return false;
     for (size_t i = 0; i < count; i++) {
         Dispatch dispatch = dispatches[i];
-        uint32_t own = groups_of(&dispatch, items_now(job, dispatch.items));
+        uint32_t own      = groups_of(&dispatch, items_now(job, dispatch.items));
         if (own == 0)
             continue;
         dispatch.control.items = items_now(job, dispatch.items);
-        dispatch.work.first  = 0;
-        dispatch.work.groups = own;
-        dispatch.work.stride = rendering_spread(job->rendering, own);
+        dispatch.work.first    = 0;
+        dispatch.work.groups   = own;
+        dispatch.work.stride   = rendering_spread(job->rendering, own);
         vkCmdUpdateBuffer(job->gpu->commands, rendering_control(job->rendering)->buffer, 0,
                           offsetof(ControlBlock, queued), &dispatch.control);
         gpu_barrier(job->gpu);

@@ -21,9 +21,9 @@ typedef struct Items {
     uint32_t counter; /* its number among the words of the block; 0: none */
     bool     taken;
 } Items;
-#define WORD_OF(counter)            (offsetof(ControlBlock, counter) / sizeof(uint32_t))
-#define ITEMS_COUNTED(each, name)   ((Items){(each), WORD_OF(name), false})
-#define ITEMS_KNOWN(count)          ((Items){(count), 0, false})
+#define WORD_OF(counter)          (offsetof(ControlBlock, counter) / sizeof(uint32_t))
+#define ITEMS_COUNTED(each, name) ((Items){(each), WORD_OF(name), false})
+#define ITEMS_KNOWN(count)        ((Items){(count), 0, false})
 
 /* How items are dealt out (schedule.glsl): to so many lanes a group, to a lane so many; and how
    many steps a lane has in a dispatch. */
@@ -37,8 +37,8 @@ typedef struct Dispatch {
     ControlBlock  control; /* what the host tells the kernel; no counters */
     WorkBlock     work;
     Items         items;
-    uint32_t      in_group; /* items of a group */
-    uint32_t      clears;   /* the counter that is 0 before it, as in Items */
+    uint32_t      in_group;      /* items of a group */
+    uint32_t      clears;        /* the counter that is 0 before it, as in Items */
     bool          clears_shared; /* rays have shared nothing before it (shared.glsl) */
 } Dispatch;
 
@@ -52,8 +52,8 @@ typedef struct Chain {
 bool dispatch_chains(const Job *job);
 
 /* A dispatch by what the control block says now, but for its items. */
-Dispatch dispatch_of(const Job *job, KrsPhase phase, const Kernel *kernel,
-                     const WorkBlock *work, Items items, Dealing deal);
+Dispatch dispatch_of(const Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
+                     Items items, Dealing deal);
 /* Runs it, or adds it to the chain. */
 bool dispatch_run(Job *job, const Dispatch *dispatch);
 /* One after the other, none of which leaves an item over or counts for the next: in one submission
@@ -66,8 +66,8 @@ bool dispatch_finish(Job *job);
 bool dispatch_items(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
                     Items items, Dealing deal);
 /* or that all cost alike (pixels.glsl): as such items are dealt out. */
-bool dispatch_pixels(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
-                     Items items);
+bool    dispatch_pixels(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
+                        Items items);
 Dealing deal_pixels(const Job *job);
 /* How many there are, where the host knows what was counted. */
 uint32_t items_now(const Job *job, Items items);

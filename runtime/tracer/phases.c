@@ -61,7 +61,7 @@ static Items pixels_of_rays(const Job *job, const WorkBlock *work)
    returns how many. */
 static uint32_t choose_tiles(const Job *job, const WorkBlock *work, uint32_t side)
 {
-    ControlBlock  *control = job->rendering->control.bytes;
+    ControlBlock  *control      = job->rendering->control.bytes;
     const uint32_t window[2][2] = {{job->window.x, job->window.x + job->window.width},
                                    {job->window.y, job->window.y + job->window.height}};
     uint32_t       first[2], count[2];
@@ -84,7 +84,7 @@ static uint32_t choose_tiles(const Job *job, const WorkBlock *work, uint32_t sid
 static Dealing deal_beams(const Job *job, uint32_t most)
 {
     Dealing deal = dealing(job);
-    deal.share = deal.share < most ? deal.share : most;
+    deal.share   = deal.share < most ? deal.share : most;
     for (; deal.share > 1; deal.share /= 2) {
         uint32_t half = (deal.share + 1) * MOST_BEAM_STEPS / 2; /* as in has_beams */
         if (turns_within(job, half) == half)
@@ -102,16 +102,17 @@ static Dealing deal_beams(const Job *job, uint32_t most)
    listed ones may have beams, too. */
 static bool march_beams(Job *job, const WorkBlock *work, double flops)
 {
-    static const struct { uint32_t phase, side; } sizes[] = {{TRACE_BEAMS_32, 32},
-                                                             {TRACE_BEAMS_8, 8}};
+    static const struct {
+        uint32_t phase, side;
+    } sizes[]             = {{TRACE_BEAMS_32, 32}, {TRACE_BEAMS_8, 8}};
     ControlBlock *control = job->rendering->control.bytes;
-    Dealing       deal = deal_beams(job, 2); /* a slot each, of two that a lane keeps */
+    Dealing       deal    = deal_beams(job, 2); /* a slot each, of two that a lane keeps */
     Dispatch      beams[2];
-    control->tiles = 0;
+    control->tiles  = 0;
     control->source = ITEMS_FRESH;
     for (uint32_t i = 0; i < 2; i++) {
-        uint32_t tiles = choose_tiles(job, work, sizes[i].side);
-        control->phase = sizes[i].phase;
+        uint32_t tiles  = choose_tiles(job, work, sizes[i].side);
+        control->phase  = sizes[i].phase;
         control->follow = i;
         beams[i] = dispatch_of(job, KRS_PHASE_BEAMS, job->beams, work, ITEMS_KNOWN(tiles), deal);
     }
@@ -142,8 +143,8 @@ static uint32_t next_steps(const Job *job, const ControlBlock *control, uint32_t
 /* The next pass reads the queue that the last one has written, and writes the other one. */
 static void turn_queue(ControlBlock *control, const WorkBlock *work)
 {
-    uint32_t pixels = work->extent[0] * work->extent[1];
-    control->source = ITEMS_QUEUED;
+    uint32_t pixels  = work->extent[0] * work->extent[1];
+    control->source  = ITEMS_QUEUED;
     control->reading = control->writing;
     control->writing = pixels - control->reading;
 }
@@ -155,7 +156,7 @@ static void turn_queue(ControlBlock *control, const WorkBlock *work)
 static bool trace_in_chain(Job *job, const WorkBlock *work, Dealing deal)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    Items         items = pixels_of_rays(job, work);
+    Items         items   = pixels_of_rays(job, work);
     do {
         for (int pass = 0; pass <= PASSES_AT_ONCE; pass++) {
             if (!dispatch_items(job, KRS_PHASE_PRIMARY, job->trace, work, items, deal))
@@ -175,19 +176,18 @@ static bool trace_in_chain(Job *job, const WorkBlock *work, Dealing deal)
 static bool trace(Job *job, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    Dealing       deal = dealing(job);
-    Items         items = pixels_of_rays(job, work);
-    control->phase = TRACE_RAYS;
-    control->source = ITEMS_FRESH;
+    Dealing       deal    = dealing(job);
+    Items         items   = pixels_of_rays(job, work);
+    control->phase        = TRACE_RAYS;
+    control->source       = ITEMS_FRESH;
     control->queued = control->writing = 0;
     if (dispatch_chains(job))
         return trace_in_chain(job, work, deal);
-    while (deal.lanes * deal.share > 128 &&
-           items_now(job, items) / (deal.lanes * deal.share) < 64)
+    while (deal.lanes * deal.share > 128 && items_now(job, items) / (deal.lanes * deal.share) < 64)
         deal.share /= 2; /* groups enough for every core of the device */
     for (double left = job->share;; left -= job->share) {
         control->left = 0;
-        job->share = 0.9 * left; /* few rays need a second pass */
+        job->share    = 0.9 * left; /* few rays need a second pass */
         if (!dispatch_items(job, KRS_PHASE_PRIMARY, job->trace, work, items, deal))
             return false;
         job->done += job->share;
@@ -199,9 +199,9 @@ static bool trace(Job *job, const WorkBlock *work)
             return true;
         deal.steps = next_steps(job, control, deal.steps);
         turn_queue(control, work);
-        items = ITEMS_KNOWN(control->queued);
+        items           = ITEMS_KNOWN(control->queued);
         control->queued = 0;
-        deal.share = 1;
+        deal.share      = 1;
     }
 }
 
@@ -215,9 +215,9 @@ static bool has_beams(const Job *job)
 static bool march(Job *job, const WorkBlock *work, double flops)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    const double  share = job->share;
+    const double  share   = job->share;
     control->follow = control->listed = 0;
-    job->share = 0; /* of beams: too short to be seen */
+    job->share                        = 0; /* of beams: too short to be seen */
     if (has_beams(job) && !march_beams(job, work, flops))
         return false;
     job->share = share;
@@ -226,9 +226,9 @@ static bool march(Job *job, const WorkBlock *work, double flops)
 
 static bool march_all(Job *job, const WorkBlock *work)
 {
-    FrameBlock *frame = job->rendering->frame.bytes;
-    Kernel     *whole = job->trace;
-    bool        good = (!has_beams(job) && job->part_count == 0) || clear_ends(job);
+    FrameBlock       *frame   = job->rendering->frame.bytes;
+    Kernel           *whole   = job->trace;
+    bool              good    = (!has_beams(job) && job->part_count == 0) || clear_ends(job);
     const KrsProgram *program = job->rendering->program;
     if (job->rest) {
         double low[3], high[3];
@@ -243,17 +243,17 @@ static bool march_all(Job *job, const WorkBlock *work)
         good = good && march(job, work, program->flops);
     job->share /= job->part_count ? job->part_count : 1;
     for (uint32_t i = 0; i < job->part_count && good; i++) {
-        const MarchPart *part = &job->parts[i];
+        const MarchPart *part  = &job->parts[i];
         const KrsGroup  *group = &job->rendering->program->groups[part->group];
         view_place_box(&job->view, group->low, group->high, frame);
         /* The first one's rays find the planes, which are all around. */
         if (i > 0 || !rendering_knows_flats(job->rendering))
             job->window = view_window(frame, &job->view.camera);
         job->trace = job->beams = part->trace;
-        job->schedule = part->schedule;
-        double share = job->share;
-        good = march(job, work, group->flops);
-        job->share = share;
+        job->schedule           = part->schedule;
+        double share            = job->share;
+        good                    = march(job, work, group->flops);
+        job->share              = share;
     }
     job->schedule = job->options.schedule;
     memcpy(frame->low, job->frame.low, sizeof frame->low);
@@ -268,10 +268,9 @@ static bool march_all(Job *job, const WorkBlock *work)
 static Dealing deal_secondary(const Job *job, uint32_t count)
 {
     Dealing deal = dealing(job);
-    deal.steps = turns_within(job, MOST_TURNS);
-    bool loops = job->rendering->program->loops > 0; /* which leave turns for few items */
-    while (deal.lanes * deal.share > 64 &&
-           (loops || count / (deal.lanes * deal.share) < 64))
+    deal.steps   = turns_within(job, MOST_TURNS);
+    bool loops   = job->rendering->program->loops > 0; /* which leave turns for few items */
+    while (deal.lanes * deal.share > 64 && (loops || count / (deal.lanes * deal.share) < 64))
         deal.share /= 2; /* groups enough for every core of the device */
     return deal;
 }
@@ -294,13 +293,13 @@ static bool send_rays(Job *job, KrsPhase phase, uint32_t rays, const WorkBlock *
                       uint32_t reading, Items items, bool first)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    Dealing       deal = deal_secondary(job, items_now(job, items));
-    control->phase = rays;
-    control->source = ITEMS_FRESH;
-    control->reading = reading;
+    Dealing       deal    = deal_secondary(job, items_now(job, items));
+    control->phase        = rays;
+    control->source       = ITEMS_FRESH;
+    control->reading      = reading;
     do { /* in a chain no item is left over */
-        control->left = 0;
-        Dispatch dispatch = dispatch_of(job, phase, job->secondary, work, items, deal);
+        control->left          = 0;
+        Dispatch dispatch      = dispatch_of(job, phase, job->secondary, work, items, deal);
         dispatch.clears_shared = first && control->source == ITEMS_FRESH;
         if (!dispatch_run(job, &dispatch))
             return false;
@@ -314,14 +313,14 @@ static bool send_rays(Job *job, KrsPhase phase, uint32_t rays, const WorkBlock *
 static bool share(Job *job, KrsPhase phase, PixelKernel kernel, uint32_t what,
                   const WorkBlock *work, uint32_t reading, Items items, uint32_t counter)
 {
-    KrsRendering *r = job->rendering;
+    KrsRendering *r       = job->rendering;
     ControlBlock *control = r->control.bytes;
-    control->phase = what;
-    control->source = ITEMS_FRESH;
-    control->reading = reading;
+    control->phase        = what;
+    control->source       = ITEMS_FRESH;
+    control->reading      = reading;
     Dispatch dispatch = dispatch_of(job, phase, &r->renderer->pixels[r->panoramic][kernel], work,
                                     items, deal_pixels(job));
-    dispatch.clears = counter;
+    dispatch.clears   = counter;
     return dispatch_run(job, &dispatch);
 }
 
@@ -337,20 +336,21 @@ static uint32_t find_sun(const Job *job, uint32_t light)
 /* The sky and the first sun, and the lists of what hits something; then each other sun. */
 static bool resolve(Job *job, const WorkBlock *work)
 {
-    KrsRendering *r = job->rendering;
+    KrsRendering *r       = job->rendering;
     ControlBlock *control = r->control.bytes;
-    uint32_t      sun = find_sun(job, 0);
+    uint32_t      sun     = find_sun(job, 0);
     control->solid = control->anchors = control->quarters = control->value = 0;
     control->parts = job->part_count > 0 && job->parts[0].normals;
     control->phase = BACKGROUND_FIRST;
     memset(control->of_group, 0, sizeof control->of_group);
     do {
         control->light = sun;
-        if (!dispatch_pixels(job, KRS_PHASE_RESOLVE, &r->renderer->pixels[r->panoramic][PIXELS_BACKGROUND],
-                             work, ITEMS_KNOWN(tiles_of_band(work) * QUARTERS_OF_TILE)))
+        if (!dispatch_pixels(job, KRS_PHASE_RESOLVE,
+                             &r->renderer->pixels[r->panoramic][PIXELS_BACKGROUND], work,
+                             ITEMS_KNOWN(tiles_of_band(work) * QUARTERS_OF_TILE)))
             return false;
         control->phase = BACKGROUND_SUN;
-        sun = find_sun(job, sun + 1);
+        sun            = find_sun(job, sun + 1);
     } while (sun < job->view.light_count);
     return true;
 }
@@ -363,13 +363,12 @@ static bool find_normals(Job *job, const WorkBlock *work)
     Dispatch      parts[1 + KRS_MOST_GROUPS];
     control->reading = list_at(work, LIST_ALL);
     if (!control->parts)
-        return dispatch_pixels(job, KRS_PHASE_NORMALS, job->around, work,
-                               ITEMS_COUNTED(1, solid));
+        return dispatch_pixels(job, KRS_PHASE_NORMALS, job->around, work, ITEMS_COUNTED(1, solid));
     control->source = ITEMS_FRESH;
     for (uint32_t i = 0; i <= job->part_count; i++) {
-        bool     part  = i < job->part_count; /* else what belongs to none: planes */
-        uint32_t group = part ? job->parts[i].group + 1 : 0;
-        Items    items = {1, WORD_OF(of_group) + group, false};
+        bool     part    = i < job->part_count; /* else what belongs to none: planes */
+        uint32_t group   = part ? job->parts[i].group + 1 : 0;
+        Items    items   = {1, WORD_OF(of_group) + group, false};
         control->reading = list_at(work, LIST_OF_GROUP + group);
         parts[i] = dispatch_of(job, KRS_PHASE_NORMALS, part ? job->parts[i].normals : job->around,
                                work, items, deal_pixels(job));
@@ -384,10 +383,10 @@ static bool find_occlusion(Job *job, const WorkBlock *work)
 {
     const KrsPhase phase = KRS_PHASE_OCCLUSION;
     const Items    all = ITEMS_COUNTED(1, solid), anchors = ITEMS_COUNTED(1, anchors);
-    const Items    rest = ITEMS_COUNTED(1, rest);
+    const Items    rest    = ITEMS_COUNTED(1, rest);
     ControlBlock  *control = job->rendering->control.bytes;
-    control->value = VALUE_OCCLUSION;
-    control->filters = 1;
+    control->value         = VALUE_OCCLUSION;
+    control->filters       = 1;
     if (control->open)
         return true;
     const PixelKernel kernel = PIXELS_OCCLUSION;
@@ -405,9 +404,9 @@ static bool find_occlusion(Job *job, const WorkBlock *work)
    of no room around them, so there are no cones, and nothing is proven. */
 static bool list_unproven(Job *job, const WorkBlock *work)
 {
-    const KrsPhase phase = KRS_PHASE_SHADOWS;
+    const KrsPhase phase    = KRS_PHASE_SHADOWS;
     const Items    quarters = ITEMS_COUNTED(1, quarters);
-    const Items    cones = job->by_roots ? ITEMS_KNOWN(0) : quarters;
+    const Items    cones    = job->by_roots ? ITEMS_KNOWN(0) : quarters;
     return send_rays(job, phase, RAYS_CONES, work, quarters_at(work), cones, true) &&
            share(job, phase, PIXELS_UNPROVEN, 0, work, quarters_at(work), quarters, WORD_OF(rest));
 }
@@ -415,7 +414,7 @@ static bool list_unproven(Job *job, const WorkBlock *work)
 /* The means of what rays to a light have found. */
 static bool find_means(Job *job, const WorkBlock *work)
 {
-    const KrsPhase phase = KRS_PHASE_SHADOWS;
+    const KrsPhase phase    = KRS_PHASE_SHADOWS;
     const uint32_t unproven = list_at(work, LIST_REST), wide = list_at(work, LIST_WIDE);
     return share(job, phase, PIXELS_PENUMBRAE, 0, work, quarters_at(work),
                  ITEMS_COUNTED(1, quarters), 0) &&
@@ -427,10 +426,10 @@ static bool find_means(Job *job, const WorkBlock *work)
 /* A ray of each pixel to a point of the light; the mean of neighbours, where it has a size. */
 static bool find_visible(Job *job, const KrsLight *light, const WorkBlock *work)
 {
-    const uint32_t list = list_at(work, job->shares ? LIST_REST : LIST_ALL);
-    const Items    items = job->shares ? ITEMS_COUNTED(1, rest) : ITEMS_COUNTED(1, solid);
+    const uint32_t list    = list_at(work, job->shares ? LIST_REST : LIST_ALL);
+    const Items    items   = job->shares ? ITEMS_COUNTED(1, rest) : ITEMS_COUNTED(1, solid);
     ControlBlock  *control = job->rendering->control.bytes;
-    control->filters = job->shares && light->softness > 0;
+    control->filters       = job->shares && light->softness > 0;
     return (!job->shares || list_unproven(job, work)) &&
            send_rays(job, KRS_PHASE_SHADOWS, RAYS_TO_LIGHT, work, list, items, !job->shares) &&
            (!control->filters || find_means(job, work));
@@ -442,8 +441,8 @@ static bool find_lights(Job *job, uint32_t first, const WorkBlock *work)
     ControlBlock *control = job->rendering->control.bytes;
     for (uint32_t i = 0; i < LIGHTS_AT_ONCE && first + i < job->view.light_count; i++) {
         const KrsLight *light = &job->view.lights[first + i];
-        control->light = first + i;
-        control->value = VALUE_VISIBLE + i;
+        control->light        = first + i;
+        control->value        = VALUE_VISIBLE + i;
         if (light->shadow && !find_visible(job, light, work))
             return false;
         job->done += job->share;
@@ -460,10 +459,10 @@ static bool light_up(Job *job, const WorkBlock *work)
     do {
         if (!find_lights(job, first, work))
             return false;
-        control->light = first;
+        control->light   = first;
         control->reading = 0;
-        double share = job->share;
-        job->share = 0;
+        double share     = job->share;
+        job->share       = 0;
         if (!dispatch_pixels(job, KRS_PHASE_SHADING, job->shade, work, ITEMS_COUNTED(1, solid)))
             return false;
         job->share = share;
@@ -480,34 +479,34 @@ static void place_ray(uint32_t index, uint64_t seed, float offset[2])
     static const double step[2] = {0.75487766624669276, 0.56984029099805327};
     for (int i = 0; i < 2; i++) {
         uint64_t hash = seed * 2 + (uint64_t)i; /* splitmix64 */
-        hash = (hash ^ hash >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-        hash = (hash ^ hash >> 27) * UINT64_C(0x94d049bb133111eb);
+        hash          = (hash ^ hash >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+        hash          = (hash ^ hash >> 27) * UINT64_C(0x94d049bb133111eb);
         hash ^= hash >> 31;
         double moved = seed && index ? (double)(hash >> 11) / 9007199254740992.0 : 0;
         double place = 0.5 + step[i] * index + moved;
-        offset[i] = (float)(place - floor(place));
+        offset[i]    = (float)(place - floor(place));
     }
 }
 
 /* The steps from rays to light, and their shares of the time, about. */
 typedef enum Step {
-    STEP_TRACE, STEP_RESOLVE, STEP_NORMALS, STEP_OCCLUSION, STEP_LIGHTS, STEP_COUNT
+    STEP_TRACE,
+    STEP_RESOLVE,
+    STEP_NORMALS,
+    STEP_OCCLUSION,
+    STEP_LIGHTS,
+    STEP_COUNT
 } Step;
 static const double step_share[STEP_COUNT] = {0.5, 0.02, 0.1, 0.1, 0.28};
 
 static bool run_step(Job *job, Step step, const WorkBlock *work)
 {
     switch (step) {
-    case STEP_TRACE:
-        return march_all(job, work);
-    case STEP_RESOLVE:
-        return resolve(job, work);
-    case STEP_NORMALS:
-        return find_normals(job, work);
-    case STEP_OCCLUSION:
-        return find_occlusion(job, work);
-    case STEP_LIGHTS:
-        return light_up(job, work);
+    case STEP_TRACE: return march_all(job, work);
+    case STEP_RESOLVE: return resolve(job, work);
+    case STEP_NORMALS: return find_normals(job, work);
+    case STEP_OCCLUSION: return find_occlusion(job, work);
+    case STEP_LIGHTS: return light_up(job, work);
     case STEP_COUNT: break;
     }
     return false;
@@ -515,19 +514,18 @@ static bool run_step(Job *job, Step step, const WorkBlock *work)
 
 bool phases_run(Job *job, WorkBlock *work, uint32_t index)
 {
-    const double  whole = job->share;
+    const double  whole   = job->share;
     ControlBlock *control = job->rendering->control.bytes;
     place_ray(index, job->options.seed, work->offset);
-    control->ray = index;
-    control->rays = job->options.samples;
+    control->ray       = index;
+    control->rays      = job->options.samples;
     control->first_ray = index == 0;
-    double done = job->done;
+    double done        = job->done;
     for (Step step = 0; step < STEP_COUNT; done += whole * step_share[step], step++) {
-        job->done = done;
+        job->done  = done;
         job->share = whole * step_share[step];
         if (!run_step(job, step, work))
             return false;
     }
     return dispatch_finish(job);
 }
-

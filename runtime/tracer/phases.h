@@ -9,16 +9,16 @@
 
 /* A group of components, to be marched by itself. */
 typedef struct MarchPart {
-    uint32_t group;
-    Kernel  *trace;
-    Kernel  *normals; /* NULL: they are found by the whole distance */
+    uint32_t    group;
+    Kernel     *trace;
+    Kernel     *normals; /* NULL: they are found by the whole distance */
     KrsSchedule schedule;
 } MarchPart;
 
 typedef struct Job {
     KrsRendering    *rendering;
     Gpu             *gpu;
-    KrsRenderOptions options; /* with nothing left to be defaulted */
+    KrsRenderOptions options;  /* with nothing left to be defaulted */
     KrsSchedule      asked;    /* for */
     KrsSchedule      schedule; /* of the items that are dealt out now */
     KrsView          view;
@@ -30,7 +30,7 @@ typedef struct Job {
     MarchPart        parts[KRS_MOST_GROUPS]; /* the nearest first */
     bool             rest;                   /* planes are not marched, but known (FLATS) */
     uint32_t         part_count;             /* 0: all are marched together, by `trace` */
-    bool             shares; /* neighbours share what rays to lights find */
+    bool             shares;                 /* neighbours share what rays to lights find */
     KrsWindow        window; /* of the picture: where rays may meet what is marched now */
     KrsWindow        cover;  /* the tiles that the crop has a part of */
     uint32_t         halo;   /* so many pixels around what is asked for are traced as well */

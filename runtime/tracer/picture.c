@@ -8,14 +8,16 @@
 
 /* The planes: all are arrays of 32-bit numbers. */
 static const struct Plane {
-    size_t   member;  /* offset of its pointer in a KrsPicture */
-    uint32_t bit;
-    size_t   bytes;   /* per pixel */
+    size_t    member; /* offset of its pointer in a KrsPicture */
+    uint32_t  bit;
+    size_t    bytes;  /* per pixel */
     ResultRow row;    /* that has it, */
-    size_t   number;  /* from this of its numbers on */
+    size_t    number; /* from this of its numbers on */
 } planes[] = {
-#define PLANE(name, bit, numbers, row, number)                                                  \
-    {offsetof(KrsPicture, name), bit, 4 * numbers, row, number}
+#define PLANE(name, bit, numbers, row, number)                    \
+    {                                                             \
+        offsetof(KrsPicture, name), bit, 4 * numbers, row, number \
+    }
     PLANE(color, KRS_PLANE_COLOR, 4, ROW_COLORS, 0),
     PLANE(depth, KRS_PLANE_DEPTH, 1, ROW_PLACES, DEPTH_NUMBER),
     PLANE(position, KRS_PLANE_POSITION, 3, ROW_PLACES, 0),
@@ -48,9 +50,9 @@ KrsPicture *picture_new(Gpu *gpu, uint32_t width, uint32_t height, KrsWindow win
     KrsPicture *picture = gpu_alloc(gpu, 1, sizeof *picture, "make a picture");
     if (!picture)
         return NULL;
-    picture->width = width;
-    picture->height = height;
-    picture->window = window;
+    picture->width     = width;
+    picture->height    = height;
+    picture->window    = window;
     picture->allocator = gpu->allocator;
 
     size_t pixels = (size_t)window.width * window.height;

@@ -36,16 +36,16 @@ static KrsStatus refuse(KrsRendering *rendering, const char *words)
 
 static void describe(const AnswerBlock *answer, KrsHit *hit)
 {
-    hit->distance = answer->distance;
+    hit->distance  = answer->distance;
     hit->component = answer->component;
-    hit->level = answer->level;
-    hit->instance = answer->instance;
+    hit->level     = answer->level;
+    hit->instance  = answer->instance;
     hit->roughness = answer->roughness;
-    hit->metallic = answer->metallic;
+    hit->metallic  = answer->metallic;
     for (int k = 0; k < 3; k++) {
-        hit->normal[k] = answer->gradient[k];
+        hit->normal[k]  = answer->gradient[k];
         hit->shading[k] = answer->normal[k];
-        hit->color[k] = answer->color[k];
+        hit->color[k]   = answer->color[k];
     }
 }
 
@@ -112,8 +112,7 @@ static bool prepare(KrsRendering *rendering)
             return false;
         rendering_bind(rendering, rendering->points_set, wanted[i].binding, wanted[i].buffer);
     }
-    rendering_bind(rendering, rendering->points_set, CONTROL_BINDING,
-                   rendering_control(rendering));
+    rendering_bind(rendering, rendering->points_set, CONTROL_BINDING, rendering_control(rendering));
     return true;
 }
 
@@ -126,13 +125,13 @@ static void set_frame(KrsRendering *rendering, double tolerance)
 /* A ray of the device begins where the box around the scene does. */
 static QuestionBlock ask(const KrsRay *ray)
 {
-    const double  nowhere = 1e18;
-    QuestionBlock question = {.end = (float)fmin(ray->end - ray->start, nowhere),
+    const double  nowhere  = 1e18;
+    QuestionBlock question = {.end  = (float)fmin(ray->end - ray->start, nowhere),
                               .kind = ray->start > 0 ? BEGINS_OUTSIDE
                                       : ray->walls   ? ENDS_AT_WALLS
                                                      : ENDS_ANYWHERE};
     for (int k = 0; k < 3; k++) {
-        question.origin[k] = (float)(ray->origin[k] + ray->start * ray->direction[k]);
+        question.origin[k]    = (float)(ray->origin[k] + ray->start * ray->direction[k]);
         question.direction[k] = (float)ray->direction[k];
     }
     if (!(ray->start <= ray->end))
@@ -144,23 +143,23 @@ static QuestionBlock ask(const KrsRay *ray)
    a dispatch had no turns for is for the next. */
 static bool march(KrsRendering *rendering, uint32_t count)
 {
-    Gpu         *gpu = &rendering->renderer->gpu;
-    KrsTrace     trace = KRS_TRACE_DEFAULT;
-    KrsSchedule  schedule = KRS_SCHEDULE_DEFAULT;
+    Gpu        *gpu      = &rendering->renderer->gpu;
+    KrsTrace    trace    = KRS_TRACE_DEFAULT;
+    KrsSchedule schedule = KRS_SCHEDULE_DEFAULT;
     rendering_choose(rendering, &trace, &schedule);
-    bool         refill = schedule == KRS_SCHEDULE_REFILL;
-    uint32_t     lanes = refill ? gpu->refill_lanes : 64, share = refill ? 128 : 1;
+    bool          refill = schedule == KRS_SCHEDULE_REFILL;
+    uint32_t      lanes = refill ? gpu->refill_lanes : 64, share = refill ? 128 : 1;
     const Kernel *kernel = rendering_query(rendering, schedule);
     while (lanes * share > 64 && count / (lanes * share) < 64)
         share /= 2; /* groups enough for every core of the device */
-    uint32_t      groups = (count + lanes * share - 1) / (lanes * share);
-    WorkBlock     work = {.steps = rendering_turns(rendering, refill ? MOST_TURNS : MOST_STEPS),
-                          .groups = groups,
-                          .stride = rendering_spread(rendering, groups)};
+    uint32_t      groups  = (count + lanes * share - 1) / (lanes * share);
+    WorkBlock     work    = {.steps  = rendering_turns(rendering, refill ? MOST_TURNS : MOST_STEPS),
+                             .groups = groups,
+                             .stride = rendering_spread(rendering, groups)};
     ControlBlock *control = rendering->control.bytes;
-    *control = (ControlBlock){.source = ITEMS_FRESH, .items = count, .share = share};
+    *control              = (ControlBlock){.source = ITEMS_FRESH, .items = count, .share = share};
     for (bool more = kernel != NULL; more; control->source = ITEMS_REST) {
-        double ms = 0;
+        double ms     = 0;
         control->left = 0;
         if (!rendering_begin(rendering))
             return false;
@@ -186,9 +185,9 @@ static void take_way(const KrsRay *ray, bool sheets, const WayBlock *way,
     *hit = (KrsHit){0};
     if (way->fate == QUERY_MISS)
         return;
-    hit->hit = way->fate == QUERY_HIT;
+    hit->hit        = way->fate == QUERY_HIT;
     hit->unresolved = !hit->hit;
-    hit->t = ray->start + (double)way->t;
+    hit->t          = ray->start + (double)way->t;
     for (int k = 0; k < 3; k++)
         hit->point[k] = ray->origin[k] + hit->t * ray->direction[k];
     describe(&answers[way->place], hit);
@@ -206,21 +205,21 @@ static bool took_wrong_side(KrsFrame *frame, const WayBlock *way, const double (
            (distance < 0) != inside;
 }
 
-static bool raycast_batch(KrsRendering *rendering, KrsFrame *frame, const double (*origins)[3],
+static bool raycast_batch(KrsRendering *rendering, KrsFrame      *frame, const double (*origins)[3],
                           const double (*directions)[3], uint32_t count, double farthest,
                           double tolerance, KrsHit *hits)
 {
-    const KrsScene *scene = rendering->scene;
+    const KrsScene *scene     = rendering->scene;
     QuestionBlock  *questions = rendering->questions.bytes;
     for (uint32_t i = 0; i < count; i++) {
-        KrsRay ray = krs_ray(scene, origins[i], directions[i], farthest);
+        KrsRay ray   = krs_ray(scene, origins[i], directions[i], farthest);
         questions[i] = ask(&ray);
     }
     if (!march(rendering, count))
         return false;
     const ControlBlock *control = rendering->control.bytes;
-    const WayBlock     *ways = rendering->ways.bytes;
-    uint32_t            ends = control->solid;
+    const WayBlock     *ways    = rendering->ways.bytes;
+    uint32_t            ends    = control->solid;
     if (!ways_are_sound(ways, count, ends)) {
         gpu_refuse(&rendering->renderer->gpu, KRS_INTERNAL,
                    "cannot read where rays end: the device answers with numbers that cannot be");

@@ -26,10 +26,10 @@
 /* All loops of an invocation together stay under 32768 iterations: some devices end them
    silently after 65535. */
 #define MOST_STEPS_AT_ONCE 8192
-#define MOST_TURNS      16384 /* of a lane that takes item after item */
-#define MOST_BEAM_STEPS 256   /* of a beam, as in trace.comp */
+#define MOST_TURNS         16384 /* of a lane that takes item after item */
+#define MOST_BEAM_STEPS    256   /* of a beam, as in trace.comp */
 /* Steps of a pass of the queue: more leave lanes idle, fewer cost passes. */
-#define QUEUE_STEPS     16
+#define QUEUE_STEPS 16
 
 /* ---- What is asked for ---- */
 
@@ -47,13 +47,13 @@ static uint32_t first_of(uint32_t asked, uint32_t scene, uint32_t otherwise)
 /* Puts the scene's wishes and the defaults where the caller has none, and checks all. */
 static bool settle_options(Job *job)
 {
-    KrsRenderOptions *o = &job->options;
+    KrsRenderOptions *o     = &job->options;
     const KrsImage   *image = &job->view.image;
-    o->width = first_of(o->width, image->width, 1280);
-    o->height = first_of(o->height, image->height, 720);
-    o->samples = first_of(o->samples, image->samples, 1);
-    o->planes = first_of(o->planes, 0, KRS_PLANE_ALL);
-    o->most_steps = first_of(o->most_steps, 0, MOST_STEPS);
+    o->width                = first_of(o->width, image->width, 1280);
+    o->height               = first_of(o->height, image->height, 720);
+    o->samples              = first_of(o->samples, image->samples, 1);
+    o->planes               = first_of(o->planes, 0, KRS_PLANE_ALL);
+    o->most_steps           = first_of(o->most_steps, 0, MOST_STEPS);
     if ((unsigned)o->trace >= KRS_TRACE_COUNT || (unsigned)o->schedule >= KRS_SCHEDULE_COUNT ||
         (unsigned)o->shadows >= KRS_SHADOWS_COUNT ||
         (unsigned)o->components >= KRS_COMPONENTS_COUNT ||
@@ -67,10 +67,10 @@ static bool settle_options(Job *job)
     job->schedule = o->schedule;
     if (o->schedule == KRS_SCHEDULE_REFILL && job->gpu->refill_lanes == 0)
         return refuse(job, "the device's lanes cannot exchange numbers, which `refill` needs");
-    o->steps_at_once =
-        first_of(o->steps_at_once, 0, o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
-    o->error = o->error != 0 ? o->error : image->error != 0 ? image->error : 0.25;
-    o->slice_ms = o->slice_ms != 0 ? o->slice_ms : 50;
+    o->steps_at_once = first_of(o->steps_at_once, 0,
+                                o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
+    o->error         = o->error != 0 ? o->error : image->error != 0 ? image->error : 0.25;
+    o->slice_ms      = o->slice_ms != 0 ? o->slice_ms : 50;
     if (o->crop.width == 0)
         o->crop = (KrsWindow){0, 0, o->width, o->height};
 
@@ -128,20 +128,20 @@ static bool settle_frame(Job *job, KrsFrame *frame)
         return false;
     choose_anchor(job, frame);
     const KrsProgram *program = job->rendering->program;
-    KrsView           seen = job->view;
+    KrsView           seen    = job->view;
     double            low[3], high[3];
     for (int i = 0; i < 3; i++) {
         seen.camera.eye[i] -= job->anchor[i];
         seen.camera.target[i] -= job->anchor[i];
-        low[i] = program->low[i] - job->anchor[i];
+        low[i]  = program->low[i] - job->anchor[i];
         high[i] = program->high[i] - job->anchor[i];
     }
     if (!view_prepare(&seen, low, high, job->options.width, job->options.height, &job->frame))
         return refuse(job, "the camera sees nothing: its eye is at its target, or its angle or"
                            " height is not one");
-    job->frame.error = (float)job->options.error;
+    job->frame.error      = (float)job->options.error;
     job->frame.most_steps = job->options.most_steps;
-    job->frame.blur = normal_reach(&job->options);
+    job->frame.blur       = normal_reach(&job->options);
     memcpy(job->rendering->frame.bytes, &job->frame, sizeof job->frame);
     return rendering_set_parameters(job->rendering, frame) &&
            (!is_anchored(job) || rendering_set_anchor(job->rendering, frame, job->anchor)) &&
@@ -153,7 +153,7 @@ static bool settle_frame(Job *job, KrsFrame *frame)
 
 static void band_destroy(Gpu *gpu, Band *band)
 {
-    Buffer *buffers[] = {&band->ends, &band->hits, &band->results, &band->fetched,
+    Buffer *buffers[] = {&band->ends,  &band->hits,  &band->results, &band->fetched,
                          &band->queue, &band->taken, &band->tiles};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         buffer_destroy(gpu, buffers[i]);
@@ -230,16 +230,17 @@ static uint32_t rows_within(uint32_t width, uint64_t pixels)
    buffers to be longer than kernels may read. */
 static uint64_t most_pixels(const Gpu *gpu)
 {
-    const uint64_t usual = gpu_is_cpu(gpu) ? BAND_PIXELS_CPU : BAND_PIXELS;
-    const VkPhysicalDeviceLimits *limits = &gpu->properties.limits;
-    const uint64_t slack = buffer_texel_bytes(1); /* what rounding adds at most */
-    const uint64_t in_range = (limits->maxStorageBufferRange - slack) / (RESULT_ROWS * RESULT_BYTES);
+    const uint64_t                usual    = gpu_is_cpu(gpu) ? BAND_PIXELS_CPU : BAND_PIXELS;
+    const VkPhysicalDeviceLimits *limits   = &gpu->properties.limits;
+    const uint64_t                slack    = buffer_texel_bytes(1); /* what rounding adds at most */
+    const uint64_t                in_range = (limits->maxStorageBufferRange - slack) /
+                              (RESULT_ROWS * RESULT_BYTES);
     const uint64_t in_texels = (limits->maxTexelBufferElements - slack / sizeof(uint32_t)) /
                                (2 * MARCH_BYTES / sizeof(uint32_t));
     const uint64_t in_memory = gpu_memory(gpu) / PART_OF_MEMORY / BAND_BYTES;
-    uint64_t       most = in_range < in_memory ? in_range : in_memory;
-    most = gpu->texels && in_texels < most ? in_texels : most;
-    most = most < usual ? most : usual;
+    uint64_t       most      = in_range < in_memory ? in_range : in_memory;
+    most                     = gpu->texels && in_texels < most ? in_texels : most;
+    most                     = most < usual ? most : usual;
     return most > BAND_PIXELS_MIN ? most : BAND_PIXELS_MIN;
 }
 
@@ -251,8 +252,8 @@ static uint32_t make_room(Job *job)
     const uint64_t   across = round_to_tiles(window->width) + 2 * job->halo;
     for (uint64_t pixels = most_pixels(job->gpu); pixels >= BAND_PIXELS_MIN; pixels /= 2) {
         uint32_t rows = rows_within((uint32_t)across, pixels);
-        rows = rows > 2 * job->halo + TILE ? rows - 2 * job->halo : TILE;
-        rows = rows < window->height ? rows : window->height;
+        rows          = rows > 2 * job->halo + TILE ? rows - 2 * job->halo : TILE;
+        rows          = rows < window->height ? rows : window->height;
         if (band_create(job->rendering, (round_to_tiles(rows) + 2 * job->halo) * across)) {
             renderer_clear(job->rendering->renderer);
             return rows;
@@ -304,9 +305,9 @@ static void place_positions(Job *job, const float *places, size_t first, size_t 
     float *position = job->picture->position;
     for (size_t k = 0; position && k < count; k++)
         for (int i = 0; i < 3; i++) {
-            float *number = &position[3 * (first + k) + i];
+            float *number   = &position[3 * (first + k) + i];
             bool   is_place = isfinite(places[k * RESULT_NUMBERS + DEPTH_NUMBER]);
-            *number = is_place ? (float)(*number + job->anchor[i]) : 0;
+            *number         = is_place ? (float)(*number + job->anchor[i]) : 0;
         }
 }
 
@@ -316,13 +317,12 @@ static void take_band(Job *job, const KrsWindow *traced, uint32_t from, uint32_t
 {
     const KrsWindow *cover = &job->cover, *crop = &job->options.crop;
     const Band      *buffers = &job->rendering->band;
-    const float     *results = buffers->results.bytes ? buffers->results.bytes
-                                                      : buffers->fetched.bytes;
-    size_t           band = (size_t)traced->height * traced->width;
+    const float *results = buffers->results.bytes ? buffers->results.bytes : buffers->fetched.bytes;
+    size_t       band    = (size_t)traced->height * traced->width;
     for (uint32_t y = cover->y + from; y < cover->y + from + rows; y++) {
         if (y < crop->y || y >= crop->y + crop->height)
             continue;
-        size_t row = (size_t)(y - traced->y) * traced->width + (crop->x - traced->x);
+        size_t row   = (size_t)(y - traced->y) * traced->width + (crop->x - traced->x);
         size_t first = (size_t)(y - crop->y) * crop->width;
         picture_take(job->picture, results + row * RESULT_NUMBERS, band, first, crop->width,
                      job->options.samples);
@@ -345,29 +345,29 @@ static KrsWindow with_halo(const Job *job, KrsWindow window)
 
 static bool render_band(Job *job, uint32_t from, uint32_t rows)
 {
-    const KrsWindow *cover = &job->cover;
-    const KrsWindow  band = {cover->x, cover->y + from, cover->width, rows};
-    const KrsWindow  traced = with_halo(job, band);
-    ControlBlock    *control = job->rendering->control.bytes;
-    KrsRenderStats  *stats = &job->picture->stats;
+    const KrsWindow *cover     = &job->cover;
+    const KrsWindow  band      = {cover->x, cover->y + from, cover->width, rows};
+    const KrsWindow  traced    = with_halo(job, band);
+    ControlBlock    *control   = job->rendering->control.bytes;
+    KrsRenderStats  *stats     = &job->picture->stats;
     VkDeviceSize     row_bytes = (VkDeviceSize)traced.height * traced.width * RESULT_BYTES;
-    WorkBlock        work = {
-        .corner = {traced.x, traced.y},
-        .extent = {traced.width, traced.height},
+    WorkBlock        work      = {
+                    .corner = {traced.x, traced.y},
+                    .extent = {traced.width, traced.height},
     };
     *control = (ControlBlock){
         .projection = (uint32_t)job->view.camera.projection,
-        .lights = (uint32_t)job->view.light_count,
-        .seed = (uint32_t)(job->options.seed ^ job->options.seed >> 32),
-        .rows = picture_rows(job->picture),
-        .open = job->options.no_occlusion,
+        .lights     = (uint32_t)job->view.light_count,
+        .seed       = (uint32_t)(job->options.seed ^ job->options.seed >> 32),
+        .rows       = picture_rows(job->picture),
+        .open       = job->options.no_occlusion,
     };
     if (!clear_results(job, control->rows, row_bytes))
         return false;
     for (uint32_t i = 0; i < job->options.samples; i++) {
         double band_share = (double)rows / cover->height;
-        job->share = band_share / job->options.samples;
-        job->done = (double)from / cover->height + job->share * i;
+        job->share        = band_share / job->options.samples;
+        job->done         = (double)from / cover->height + job->share * i;
         if (!phases_run(job, &work, i))
             return false;
         stats->unresolved += control->unresolved;
@@ -394,12 +394,12 @@ static bool wait_for_kernels(Job *job)
 /* What a tile has in common must not depend on the crop, so whole tiles are traced. */
 static KrsWindow whole_tiles(const KrsRenderOptions *options)
 {
-    const KrsWindow *crop = &options->crop;
-    KrsWindow cover = {crop->x / TILE * TILE, crop->y / TILE * TILE, 0, 0};
-    uint32_t  right = (crop->x + crop->width + TILE - 1) / TILE * TILE;
-    uint32_t  bottom = (crop->y + crop->height + TILE - 1) / TILE * TILE;
-    cover.width = (right < options->width ? right : options->width) - cover.x;
-    cover.height = (bottom < options->height ? bottom : options->height) - cover.y;
+    const KrsWindow *crop   = &options->crop;
+    KrsWindow        cover  = {crop->x / TILE * TILE, crop->y / TILE * TILE, 0, 0};
+    uint32_t         right  = (crop->x + crop->width + TILE - 1) / TILE * TILE;
+    uint32_t         bottom = (crop->y + crop->height + TILE - 1) / TILE * TILE;
+    cover.width             = (right < options->width ? right : options->width) - cover.x;
+    cover.height            = (bottom < options->height ? bottom : options->height) - cover.y;
     return cover;
 }
 
@@ -415,14 +415,14 @@ static bool find_marches(Job *job, KrsFrame *frame)
     if (job->part_count > 0)
         return true;
     bool outside = begins_outside(job, frame);
-    job->rest = rendering_knows_flats(job->rendering) && outside;
-    bool     packed = outside && rendering_marches_packed(job->rendering, options->components,
-                                                          options->trace);
+    job->rest    = rendering_knows_flats(job->rendering) && outside;
+    bool packed  = outside &&
+                  rendering_marches_packed(job->rendering, options->components, options->trace);
     uint32_t group = packed ? GROUP_PACKED : job->rest ? GROUP_REST : 0;
-    job->trace = rendering_trace(job->rendering, options->trace, options->schedule, group);
-    job->beams = options->no_beams
-                     ? job->trace
-                     : rendering_beams(job->rendering, options->trace, options->schedule, group);
+    job->trace     = rendering_trace(job->rendering, options->trace, options->schedule, group);
+    job->beams     = options->no_beams
+                         ? job->trace
+                         : rendering_beams(job->rendering, options->trace, options->schedule, group);
     return job->trace && job->beams;
 }
 
@@ -448,44 +448,44 @@ static bool find_secondary(Job *job)
 
 static bool render(Job *job, KrsFrame *frame)
 {
-    job->shares = !job->options.no_upsampling && job->options.shadows == KRS_SHADOWS_SOFT;
-    job->halo = !job->options.no_occlusion || (job->shares && needs_secondary(job)) ? TILE : 0;
-    job->cover = whole_tiles(&job->options);
+    job->shares   = !job->options.no_upsampling && job->options.shadows == KRS_SHADOWS_SOFT;
+    job->halo     = !job->options.no_occlusion || (job->shares && needs_secondary(job)) ? TILE : 0;
+    job->cover    = whole_tiles(&job->options);
     uint32_t rows = make_room(job);
     if (rows == 0)
         return false;
     if (!find_marches(job, frame))
         return false;
     job->around = rendering_around(job->rendering, job->options.normals, 0);
-    job->shade = rendering_shade(job->rendering);
+    job->shade  = rendering_shade(job->rendering);
     if (!job->around || !job->shade || !find_secondary(job) || !wait_for_kernels(job))
         return false;
-    double   start = clock_ms();
+    double   start       = clock_ms();
     uint64_t submissions = job->gpu->submissions;
     for (uint32_t from = 0; from < job->cover.height; from += rows) {
         uint32_t left = job->cover.height - from;
         if (!render_band(job, from, left < rows ? left : rows))
             return false;
     }
-    job->picture->stats.wall_ms = clock_ms() - start;
+    job->picture->stats.wall_ms     = clock_ms() - start;
     job->picture->stats.submissions = job->gpu->submissions - submissions;
     return true;
 }
 
 static void finish_stats(Job *job)
 {
-    KrsRenderStats   *stats = &job->picture->stats;
+    KrsRenderStats   *stats   = &job->picture->stats;
     const KrsProgram *program = job->rendering->program;
-    stats->spirv_ms = job->rendering->spirv_ms;
-    stats->pipeline_ms = job->rendering->pipeline_ms;
-    stats->device_time = job->gpu->times != VK_NULL_HANDLE;
+    stats->spirv_ms           = job->rendering->spirv_ms;
+    stats->pipeline_ms        = job->rendering->pipeline_ms;
+    stats->device_time        = job->gpu->times != VK_NULL_HANDLE;
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         stats->total_ms += stats->phase_ms[phase];
-    const KrsWindow *window = &job->options.crop;
-    stats->rays = (uint64_t)job->options.samples * window->width * window->height;
-    stats->evaluations_per_ray = (double)stats->evaluations / (double)stats->rays;
+    const KrsWindow *window     = &job->options.crop;
+    stats->rays                 = (uint64_t)job->options.samples * window->width * window->height;
+    stats->evaluations_per_ray  = (double)stats->evaluations / (double)stats->rays;
     stats->flops_per_evaluation = program->flops;
-    double primary = stats->phase_ms[KRS_PHASE_PRIMARY];
+    double primary              = stats->phase_ms[KRS_PHASE_PRIMARY];
     stats->gflops = primary > 0 ? (double)stats->evaluations * program->flops / primary / 1e6 : 0;
     stats->peak_memory_bytes += job->gpu->memory_peak;
     memcpy(stats->device, job->gpu->properties.deviceName, sizeof stats->device);

@@ -30,40 +30,37 @@ KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
 static void request_pixels(KrsRenderer *renderer, bool panoramic, KernelRequest *requests)
 {
     static const char *const files[PIXEL_KERNELS] = {
-        [PIXELS_BACKGROUND] = "background.comp",
-        [PIXELS_UNPROVEN] = "unproven.comp",
-        [PIXELS_PENUMBRAE] = "penumbrae.comp",
-        [PIXELS_SHADOW] = "shadow.comp",
+        [PIXELS_BACKGROUND] = "background.comp", [PIXELS_UNPROVEN] = "unproven.comp",
+        [PIXELS_PENUMBRAE] = "penumbrae.comp",   [PIXELS_SHADOW] = "shadow.comp",
         [PIXELS_OCCLUSION] = "occlusion.comp",
     };
     static const char *const defines[2][2] = {{NO_TEXELS, NULL}, {PANORAMIC NO_TEXELS, PANORAMIC}};
     for (int i = 0; i < PIXEL_KERNELS; i++)
-        requests[i] = (KernelRequest){&renderer->pixels[panoramic][i],
-                                      {.file = files[i],
-                                       .defines = defines[panoramic][renderer->gpu.texels]}};
+        requests[i] = (KernelRequest){
+            &renderer->pixels[panoramic][i],
+            {.file = files[i], .defines = defines[panoramic][renderer->gpu.texels]}};
 }
 
 KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
 {
-    Gpu allocating = {.allocator = options ? options->allocator : (KrsAllocator){0}};
-    KrsRenderer *renderer = gpu_alloc(&allocating, 1, sizeof *renderer, "make a renderer");
-    *out = renderer;
+    Gpu          allocating = {.allocator = options ? options->allocator : (KrsAllocator){0}};
+    KrsRenderer *renderer   = gpu_alloc(&allocating, 1, sizeof *renderer, "make a renderer");
+    *out                    = renderer;
     if (!renderer)
         return KRS_OUT_OF_MEMORY;
     if (!gpu_open(&renderer->gpu, options))
         return renderer->gpu.status;
     KrsEarlyOuts early_outs = options ? options->early_outs : KRS_EARLY_OUTS_DEFAULT;
     renderer->early_outs    = early_outs == KRS_EARLY_OUTS_DEFAULT ? !gpu_is_cpu(&renderer->gpu)
-                                                                 : early_outs == KRS_EARLY_OUTS_ON;
+                                                                   : early_outs == KRS_EARLY_OUTS_ON;
     spirv_start();
-    renderer->compiler_started = true;
-    KernelRequest kernels[PIXEL_KERNELS + 1] = {[PIXEL_KERNELS] = {&renderer->plan,
-                                                                   {.file = "plan.comp"}}};
+    renderer->compiler_started               = true;
+    KernelRequest kernels[PIXEL_KERNELS + 1] = {
+        [PIXEL_KERNELS] = {&renderer->plan, {.file = "plan.comp"}}};
     request_pixels(renderer, false, kernels);
     const size_t count = PIXEL_KERNELS + (gpu_is_cpu(&renderer->gpu) ? 0 : 1);
-    if (!stage_create(renderer) ||
-        !stage_make_kernels(renderer, VK_NULL_HANDLE, kernels, count,
-                            &renderer->spirv_ms, &renderer->pipeline_ms))
+    if (!stage_create(renderer) || !stage_make_kernels(renderer, VK_NULL_HANDLE, kernels, count,
+                                                       &renderer->spirv_ms, &renderer->pipeline_ms))
         return renderer->gpu.status;
     return KRS_OK;
 }
@@ -97,7 +94,7 @@ const char *krs_renderer_message(const KrsRenderer *renderer)
 void renderer_clear(KrsRenderer *renderer)
 {
     renderer->gpu.message[0] = '\0';
-    renderer->gpu.status = KRS_OK;
+    renderer->gpu.status     = KRS_OK;
 }
 
 KrsDevice krs_renderer_device(const KrsRenderer *renderer)
@@ -105,10 +102,7 @@ KrsDevice krs_renderer_device(const KrsRenderer *renderer)
     return gpu_describe(renderer->gpu.physical);
 }
 
-uint64_t krs_renderer_complaints(const KrsRenderer *renderer)
-{
-    return renderer->gpu.complaints;
-}
+uint64_t krs_renderer_complaints(const KrsRenderer *renderer) { return renderer->gpu.complaints; }
 
 /* ---- The rendering ---- */
 
@@ -120,29 +114,38 @@ void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t bindi
 
 static bool sets_create(KrsRendering *rendering)
 {
-    Gpu        *gpu = &rendering->renderer->gpu;
+    Gpu        *gpu     = &rendering->renderer->gpu;
     const char *attempt = "prepare the scene";
-    TRY(gpu, attempt, vkCreateDescriptorPool(gpu->device, &(VkDescriptorPoolCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-        .maxSets = 3,
-        .poolSizeCount = 3,
-        .pPoolSizes = (VkDescriptorPoolSize[]){
-            {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 3},
-            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * BUFFER_BINDINGS},
-            {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 2 * TEXEL_BINDINGS},
-        },
-    }, NULL, &rendering->pool));
+    TRY(gpu, attempt,
+        vkCreateDescriptorPool(
+            gpu->device,
+            &(VkDescriptorPoolCreateInfo){
+                .sType         = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                .maxSets       = 3,
+                .poolSizeCount = 3,
+                .pPoolSizes =
+                    (VkDescriptorPoolSize[]){
+                        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 3},
+                        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * BUFFER_BINDINGS},
+                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 2 * TEXEL_BINDINGS},
+                    },
+            },
+            NULL, &rendering->pool));
     VkDescriptorSet sets[3];
-    TRY(gpu, attempt, vkAllocateDescriptorSets(gpu->device, &(VkDescriptorSetAllocateInfo){
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-        .descriptorPool = rendering->pool,
-        .descriptorSetCount = 3,
-        .pSetLayouts = (VkDescriptorSetLayout[]){rendering->renderer->scene_layout,
-                                                 rendering->renderer->frame_layout,
-                                                 rendering->renderer->frame_layout},
-    }, sets));
-    rendering->scene_set = sets[0];
-    rendering->band_set = sets[1];
+    TRY(gpu, attempt,
+        vkAllocateDescriptorSets(
+            gpu->device,
+            &(VkDescriptorSetAllocateInfo){
+                .sType              = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                .descriptorPool     = rendering->pool,
+                .descriptorSetCount = 3,
+                .pSetLayouts        = (VkDescriptorSetLayout[]){rendering->renderer->scene_layout,
+                                                                rendering->renderer->frame_layout,
+                                                                rendering->renderer->frame_layout},
+            },
+            sets));
+    rendering->scene_set  = sets[0];
+    rendering->band_set   = sets[1];
     rendering->points_set = sets[2];
     return true;
 
@@ -165,13 +168,13 @@ static uint32_t most_slots(const KrsRendering *rendering)
 static uint32_t value_slots(const KrsRendering *rendering)
 {
     const KrsProgram *program = rendering->program;
-    uint32_t          slots = slots_without_values(program) + program->value_slots;
+    uint32_t          slots   = slots_without_values(program) + program->value_slots;
     return program->anchored || slots <= most_slots(rendering) ? program->value_slots : 0;
 }
 
 static bool buffers_create(KrsRendering *rendering)
 {
-    Gpu     *gpu = &rendering->renderer->gpu;
+    Gpu     *gpu   = &rendering->renderer->gpu;
     uint32_t slots = slots_without_values(rendering->program) + value_slots(rendering);
     if (slots > most_slots(rendering)) {
         gpu_refuse(gpu, KRS_NO_DEVICE, "the device has no room for the scene's %u parameters",
@@ -198,9 +201,9 @@ static bool buffers_create(KrsRendering *rendering)
 
 void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule)
 {
-    const Gpu *gpu = &rendering->renderer->gpu;
+    const Gpu *gpu      = &rendering->renderer->gpu;
     bool       software = gpu_is_cpu(gpu);
-    bool       heavy = rendering->program->flops >= FLOPS_WORTH_REFILL && gpu->refill_lanes > 0;
+    bool       heavy    = rendering->program->flops >= FLOPS_WORTH_REFILL && gpu->refill_lanes > 0;
     if (*trace == KRS_TRACE_DEFAULT)
         *trace = rendering->program->along ? KRS_TRACE_EXACT : KRS_TRACE_AUTO;
     /* What has no thickness is met by roots alone. */
@@ -208,7 +211,7 @@ void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedul
         *trace = KRS_TRACE_EXACT;
     if (*schedule == KRS_SCHEDULE_DEFAULT)
         *schedule = !software ? KRS_SCHEDULE_QUEUE
-                  : heavy     ? KRS_SCHEDULE_REFILL
+                    : heavy   ? KRS_SCHEDULE_REFILL
                               : KRS_SCHEDULE_PIXEL;
 }
 
@@ -292,24 +295,22 @@ static bool sums_lanes(const Gpu *gpu) { return !gpu_is_cpu(gpu) && gpu->sums_la
 
 static Variant name_variant(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule)
 {
-    uint32_t zones = rendering->in_use->zones;
+    uint32_t zones    = rendering->in_use->zones;
     bool     anchored = rendering->in_use->anchored; /* has the distance and the surface alone */
-    bool     by_ray = trace >= KRS_TRACE_EXACT;
+    bool     by_ray   = trace >= KRS_TRACE_EXACT;
     Variant  variant;
-    int      length = snprintf(variant.defines, sizeof variant.defines,
-                               "#define TRACE %du\n#define REFILL %d\n%s%s%s%s%s%s%s%s",
-                               (int)(by_ray ? KRS_TRACE_PLAIN : trace),
-                               schedule == KRS_SCHEDULE_REFILL
-                                   ? (int)rendering->renderer->gpu.refill_lanes : 0,
-                               rendering->renderer->gpu.texels ? "" : NO_TEXELS,
-                               sums_lanes(&rendering->renderer->gpu) ? "#define SUBGROUPS\n" : "",
-                               value_slots(rendering) > 0 ? "#define FRAME_VALUES\n" : "",
-                               rendering->panoramic ? PANORAMIC : "",
-                               anchored ? "#define ANCHORED\n" : "",
-                               rendering->renderer->early_outs && !anchored
-                                   ? "#define EARLY_OUTS\n" : "",
-                               goes_along(rendering, trace) ? along_names[trace] : "",
-                               rendering->program->sheets ? "#define SHEETS\n" : "");
+    int      length = snprintf(
+             variant.defines, sizeof variant.defines,
+             "#define TRACE %du\n#define REFILL %d\n%s%s%s%s%s%s%s%s",
+             (int)(by_ray ? KRS_TRACE_PLAIN : trace),
+        schedule == KRS_SCHEDULE_REFILL ? (int)rendering->renderer->gpu.refill_lanes : 0,
+        rendering->renderer->gpu.texels ? "" : NO_TEXELS,
+        sums_lanes(&rendering->renderer->gpu) ? "#define SUBGROUPS\n" : "",
+        value_slots(rendering) > 0 ? "#define FRAME_VALUES\n" : "",
+        rendering->panoramic ? PANORAMIC : "", anchored ? "#define ANCHORED\n" : "",
+        rendering->renderer->early_outs && !anchored ? "#define EARLY_OUTS\n" : "",
+        goes_along(rendering, trace) ? along_names[trace] : "",
+        rendering->program->sheets ? "#define SHEETS\n" : "");
     if (zones > 0)
         snprintf(variant.defines + length, sizeof variant.defines - (size_t)length,
                  "#define ZONES %u\n", zones);
@@ -409,7 +410,7 @@ bool rendering_has_roots(const KrsRendering *rendering, KrsTrace trace)
 
 Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots)
 {
-    schedule = schedule_of_kernel(schedule);
+    schedule       = schedule_of_kernel(schedule);
     KrsTrace trace = by_roots ? KRS_TRACE_EXACT : KRS_TRACE_PLAIN;
     return find_variant(rendering, &rendering->in_use->secondary[schedule][by_roots],
                         "secondary.comp", trace, schedule);
@@ -477,19 +478,19 @@ typedef struct Requests {
 static void request(Requests *requests, const KrsRendering *rendering, Kernel *kernel,
                     const char *file, Variant variant)
 {
-    Variant *kept = &requests->variants[requests->count];
-    *kept = variant;
-    requests->items[requests->count++] =
-        (KernelRequest){kernel, {file, rendering->program->glsl, kept->defines}};
+    Variant *kept                      = &requests->variants[requests->count];
+    *kept                              = variant;
+    requests->items[requests->count++] = (KernelRequest){
+        kernel, {file, rendering->program->glsl, kept->defines}};
 }
 
 /* Where components take turns each of them has its own march, and normals. */
 static void request_marches(Requests *requests, KrsRendering *rendering, KrsTrace trace,
                             KrsSchedule schedule)
 {
-    SceneKernels *to = rendering->in_use;
-    KrsNormals    usual = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
-    bool          apart = rendering_marches_apart(rendering, KRS_COMPONENTS_DEFAULT);
+    SceneKernels *to     = rendering->in_use;
+    KrsNormals    usual  = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
+    bool          apart  = rendering_marches_apart(rendering, KRS_COMPONENTS_DEFAULT);
     bool          packed = rendering_marches_packed(rendering, KRS_COMPONENTS_DEFAULT, trace);
     uint32_t      whole = packed ? GROUP_PACKED : rendering_knows_flats(rendering) ? GROUP_REST : 0;
     if (trace == KRS_TRACE_EXACT)
@@ -511,7 +512,7 @@ static void request_marches(Requests *requests, KrsRendering *rendering, KrsTrac
 static void request_pictures(Requests *requests, KrsRendering *rendering, KrsTrace trace,
                              KrsSchedule schedule)
 {
-    SceneKernels *to = rendering->in_use;
+    SceneKernels *to    = rendering->in_use;
     KrsNormals    usual = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
     request(requests, rendering, &to->around[usual][0], "normals.comp",
             name_around(rendering, usual, 0));
@@ -527,8 +528,8 @@ static void request_pictures(Requests *requests, KrsRendering *rendering, KrsTra
 /* Those that a picture by default, or questions, need. */
 static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
 {
-    SceneKernels *to = rendering->in_use;
-    KrsTrace      trace = KRS_TRACE_DEFAULT;
+    SceneKernels *to       = rendering->in_use;
+    KrsTrace      trace    = KRS_TRACE_DEFAULT;
     KrsSchedule   schedule = KRS_SCHEDULE_DEFAULT;
     Requests      requests = {.count = 0};
     rendering_choose(rendering, &trace, &schedule);
@@ -565,8 +566,8 @@ static void kernels_destroy(Gpu *gpu, SceneKernels *kernels)
 /* What a kernel with the scene does for an item before it may be interrupted, in distances, about;
    without the scene it does as much as some operations. */
 static const double distances_of_item[KRS_PHASE_COUNT] = {
-    [KRS_PHASE_BEAMS] = 64,     [KRS_PHASE_PRIMARY] = 16, [KRS_PHASE_NORMALS] = 7,
-    [KRS_PHASE_SHADOWS] = 64,   [KRS_PHASE_OCCLUSION] = 5, [KRS_PHASE_SHADING] = 4,
+    [KRS_PHASE_BEAMS] = 64,   [KRS_PHASE_PRIMARY] = 16,  [KRS_PHASE_NORMALS] = 7,
+    [KRS_PHASE_SHADOWS] = 64, [KRS_PHASE_OCCLUSION] = 5, [KRS_PHASE_SHADING] = 4,
     [KRS_PHASE_RESOLVE] = 1,
 };
 #define FLOPS_WITHOUT_SCENE 1000
@@ -575,14 +576,15 @@ static const double distances_of_item[KRS_PHASE_COUNT] = {
    is interrupted at every look of its driver, so there it may be short. */
 static uint32_t guess_slice(const KrsRendering *rendering, int phase, bool has_scene)
 {
-    static const double slow[] = { /* flops of 50 ms, where a tenth of what is promised is reached */
-        [KRS_DEVICE_OTHER] = 5e8,      [KRS_DEVICE_CPU] = 5e8,      [KRS_DEVICE_VIRTUAL] = 5e8,
+    static const double slow[] = {
+        /* flops of 50 ms, where a tenth of what is promised is reached */
+        [KRS_DEVICE_OTHER] = 5e8,      [KRS_DEVICE_CPU] = 5e8,       [KRS_DEVICE_VIRTUAL] = 5e8,
         [KRS_DEVICE_INTEGRATED] = 1e9, [KRS_DEVICE_DISCRETE] = 1e10,
     };
-    const Gpu *gpu = &rendering->renderer->gpu;
-    double flops = has_scene ? rendering->program->flops * distances_of_item[phase]
-                             : FLOPS_WITHOUT_SCENE;
-    double groups = slow[gpu_describe(gpu->physical).kind] / (64 * fmax(flops, 1));
+    const Gpu *gpu    = &rendering->renderer->gpu;
+    double     flops  = has_scene ? rendering->program->flops * distances_of_item[phase]
+                                  : FLOPS_WITHOUT_SCENE;
+    double     groups = slow[gpu_describe(gpu->physical).kind] / (64 * fmax(flops, 1));
     return gpu_is_cpu(gpu) ? 8 : (uint32_t)fmin(fmax(groups, 1), MOST_GROUPS);
 }
 
@@ -599,13 +601,13 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
     KrsRendering *rendering = gpu_alloc(&renderer->gpu, 1, sizeof *rendering, "prepare the scene");
     if (!rendering)
         return renderer->gpu.status;
-    rendering->renderer = renderer;
-    rendering->scene = scene;
-    rendering->program = krs_scene_program(scene);
-    rendering->in_use = &rendering->kernels;
-    rendering->purpose = purpose;
-    rendering->panoramic = krs_scene_is_panoramic(scene);
-    rendering->spirv_ms = renderer->spirv_ms;
+    rendering->renderer    = renderer;
+    rendering->scene       = scene;
+    rendering->program     = krs_scene_program(scene);
+    rendering->in_use      = &rendering->kernels;
+    rendering->purpose     = purpose;
+    rendering->panoramic   = krs_scene_is_panoramic(scene);
+    rendering->spirv_ms    = renderer->spirv_ms;
     rendering->pipeline_ms = renderer->pipeline_ms;
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         for (int has_scene = 0; has_scene < 2; has_scene++)
@@ -624,13 +626,25 @@ void krs_rendering_free(KrsRendering *rendering)
 {
     if (!rendering)
         return;
-    Gpu    *gpu = &rendering->renderer->gpu;
-    Band   *band = &rendering->band;
-    Buffer *buffers[] = {&rendering->parameters, &rendering->frame, &rendering->control,
-                         &rendering->device_control, &rendering->lights, &rendering->points, &rendering->answers,
-                         &rendering->questions, &rendering->ways, &rendering->shares,
-                         &band->ends, &band->hits, &band->results, &band->fetched,
-                         &band->queue, &band->taken, &band->tiles};
+    Gpu    *gpu       = &rendering->renderer->gpu;
+    Band   *band      = &rendering->band;
+    Buffer *buffers[] = {&rendering->parameters,
+                         &rendering->frame,
+                         &rendering->control,
+                         &rendering->device_control,
+                         &rendering->lights,
+                         &rendering->points,
+                         &rendering->answers,
+                         &rendering->questions,
+                         &rendering->ways,
+                         &rendering->shares,
+                         &band->ends,
+                         &band->hits,
+                         &band->results,
+                         &band->fetched,
+                         &band->queue,
+                         &band->taken,
+                         &band->tiles};
     gpu_wait(gpu); /* rehearsals may still run; a device that is lost has none */
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         buffer_destroy(gpu, buffers[i]);
@@ -645,8 +659,8 @@ void krs_rendering_free(KrsRendering *rendering)
 bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count,
                           const double anchor[3])
 {
-    Gpu         *gpu = &rendering->renderer->gpu;
-    Buffer      *buffer = &rendering->lights;
+    Gpu    *gpu    = &rendering->renderer->gpu;
+    Buffer *buffer = &rendering->lights;
     /* Kernels load as many at once, and those beyond the last as well. */
     VkDeviceSize bytes = buffer_texel_bytes((count + LIGHTS_AT_ONCE) * sizeof(LightBlock));
     if (buffer->size < bytes) {
@@ -660,12 +674,12 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
     LightBlock *blocks = buffer->bytes;
     for (size_t i = 0; i < count; i++) {
         const KrsLight *light = &lights[i];
-        blocks[i].kind = (light->positional ? LIGHT_POSITIONAL : 0) |
+        blocks[i].kind        = (light->positional ? LIGHT_POSITIONAL : 0) |
                          (light->shadow ? LIGHT_CASTS_SHADOWS : 0);
         blocks[i].softness = (float)light->softness;
         for (int k = 0; k < 3; k++) {
             blocks[i].vector[k] = (float)(light->vector[k] - (light->positional ? anchor[k] : 0));
-            blocks[i].color[k] = (float)light->color[k];
+            blocks[i].color[k]  = (float)light->color[k];
         }
     }
     return true;
@@ -674,9 +688,9 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
 /* Kernels with room for so many zones: 1, 2, 4, 8 or 16; those that have more room stay. */
 static bool choose_zones(KrsRendering *rendering, size_t count)
 {
-    Gpu          *gpu = &rendering->renderer->gpu;
+    Gpu          *gpu   = &rendering->renderer->gpu;
     SceneKernels *zoned = &rendering->zoned;
-    rendering->in_use = count > 0 ? zoned : &rendering->kernels;
+    rendering->in_use   = count > 0 ? zoned : &rendering->kernels;
     if (count <= zoned->zones)
         return true;
     if (!gpu_wait(gpu)) /* rehearsals of the old ones */
@@ -690,11 +704,11 @@ static bool choose_zones(KrsRendering *rendering, size_t count)
 bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame)
 {
     /* Into memory of the host first: the compiler may read back what it writes. */
-    Gpu   *gpu = &rendering->renderer->gpu;
+    Gpu   *gpu         = &rendering->renderer->gpu;
     size_t first_value = rendering->program->parameter_slots;
     size_t values = value_slots(rendering), slots = first_value + values;
-    float (*block)[4] = gpu_alloc(gpu, slots + KRS_MOST_ZONES, sizeof *block,
-                                  "set the scene's parameters");
+    float(*block)[4] = gpu_alloc(gpu, slots + KRS_MOST_ZONES, sizeof *block,
+                                 "set the scene's parameters");
     if (!block)
         return false;
     krs_frame_parameters(frame, block);
@@ -713,8 +727,8 @@ bool rendering_set_anchor(KrsRendering *rendering, KrsFrame *frame, const double
     Gpu   *gpu   = &rendering->renderer->gpu;
     size_t first = rendering->program->parameter_slots + rendering->program->value_slots +
                    KRS_MOST_ZONES;
-    size_t slots = rendering->program->anchored_slots;
-    float (*block)[4] = gpu_alloc(gpu, slots + 1, sizeof *block, "set the scene's anchor");
+    size_t slots     = rendering->program->anchored_slots;
+    float(*block)[4] = gpu_alloc(gpu, slots + 1, sizeof *block, "set the scene's anchor");
     if (!block)
         return false;
     krs_frame_anchor(frame, anchor, block);
@@ -734,8 +748,8 @@ uint32_t rendering_spread(const KrsRendering *rendering, uint32_t count)
         uint32_t a = count, b = step;
         while (b != 0) {
             uint32_t rest = a % b;
-            a = b;
-            b = rest;
+            a             = b;
+            b             = rest;
         }
         if (a == 1)
             return step;
@@ -762,7 +776,7 @@ bool rendering_begin(KrsRendering *rendering)
 
 bool rendering_finish(KrsRendering *rendering, double *ms)
 {
-    Gpu               *gpu = &rendering->renderer->gpu;
+    Gpu               *gpu      = &rendering->renderer->gpu;
     const VkDeviceSize counters = offsetof(ControlBlock, queued);
     if (rendering->device_control.buffer) {
         gpu_barrier(gpu);
@@ -776,7 +790,7 @@ static void bind_kernel(KrsRendering *rendering, const Kernel *kernel, VkDescrip
                         const void *work, uint32_t work_bytes)
 {
     VkCommandBuffer  commands = rendering->renderer->gpu.commands;
-    VkPipelineLayout layout = rendering->renderer->layout;
+    VkPipelineLayout layout   = rendering->renderer->layout;
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel->pipeline);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 2,
                             (VkDescriptorSet[]){rendering->scene_set, set}, 0, NULL);

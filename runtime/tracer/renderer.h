@@ -12,7 +12,11 @@
 /* The kernels without a scene that do one thing for every pixel of a list, row or quarter of a tile:
    on lavapipe a kernel takes as long as all of its branches. */
 typedef enum PixelKernel {
-    PIXELS_BACKGROUND, PIXELS_UNPROVEN, PIXELS_PENUMBRAE, PIXELS_SHADOW, PIXELS_OCCLUSION,
+    PIXELS_BACKGROUND,
+    PIXELS_UNPROVEN,
+    PIXELS_PENUMBRAE,
+    PIXELS_SHADOW,
+    PIXELS_OCCLUSION,
     PIXEL_KERNELS
 } PixelKernel;
 
@@ -22,16 +26,16 @@ typedef enum TexelKind { NO_TEXELS, ONE_NUMBER, TWO_NUMBERS, FOUR_NUMBERS, TEXEL
 struct KrsRenderer {
     Gpu                   gpu;
     bool                  compiler_started;
-    bool                  early_outs; /* of kernels that march */
-    VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters */
-    VkDescriptorSetLayout frame_layout; /* set 1: what frame.glsl declares */
-    VkPipelineLayout      layout;       /* of every kernel */
-    Kernel                pixels[2][PIXEL_KERNELS]; /* [1]: for scenes with panoramas, when needed */
-    Kernel                plan;     /* on graphics cards (dispatch.c) */
-    double                spirv_ms, pipeline_ms; /* of the former */
-    VkDescriptorPool      idle_pool;             /* for rehearsals: */
-    VkDescriptorSet       idle_scene, idle_frame; /* with nothing in them, */
-    Buffer                idle[TEXEL_KINDS];     /* all of it in these */
+    bool                  early_outs;          /* of kernels that march */
+    VkDescriptorSetLayout scene_layout;        /* set 0: the scene's parameters */
+    VkDescriptorSetLayout frame_layout;        /* set 1: what frame.glsl declares */
+    VkPipelineLayout      layout;              /* of every kernel */
+    Kernel           pixels[2][PIXEL_KERNELS]; /* [1]: for scenes with panoramas, when needed */
+    Kernel           plan;                     /* on graphics cards (dispatch.c) */
+    double           spirv_ms, pipeline_ms;    /* of the former */
+    VkDescriptorPool idle_pool;                /* for rehearsals: */
+    VkDescriptorSet  idle_scene, idle_frame;   /* with nothing in them, */
+    Buffer           idle[TEXEL_KINDS];        /* all of it in these */
 };
 
 /* The buffers that hold a band of the picture. */
@@ -48,12 +52,12 @@ enum { GROUP_PACKED = 1 + GROUP_REST, GROUP_KINDS };
 
 /* The kernels with the scene in them, each compiled when it is first needed. */
 typedef struct SceneKernels {
-    uint32_t zones; /* of the caller, that they have room for */
+    uint32_t zones;    /* of the caller, that they have room for */
     bool     anchored; /* points are given from an anchor */
     Kernel   shade, sample;
     Kernel   trace[KRS_TRACE_COUNT][KRS_SCHEDULE_COUNT][GROUP_KINDS]; /* [0]: of all */
-    Kernel   around[KRS_NORMALS_COUNT][1 + KRS_MOST_GROUPS]; /* likewise */
-    Kernel   secondary[KRS_SCHEDULE_COUNT][2]; /* [1]: from root to root */
+    Kernel   around[KRS_NORMALS_COUNT][1 + KRS_MOST_GROUPS];          /* likewise */
+    Kernel   secondary[KRS_SCHEDULE_COUNT][2];                        /* [1]: from root to root */
     Kernel   query[KRS_SCHEDULE_COUNT];
 } SceneKernels;
 
@@ -65,18 +69,18 @@ struct KrsRendering {
     SceneKernels      anchored;       /* for eyes that are far from the origin */
     SceneKernels     *in_use;         /* those for the zones of the last frame */
     KrsPurpose        purpose;
-    bool              panoramic;      /* a camera of the scene is a panorama */
+    bool              panoramic; /* a camera of the scene is a panorama */
     double            spirv_ms, pipeline_ms;
 
-    VkDescriptorPool  pool;
-    VkDescriptorSet   scene_set, band_set, points_set;
-    Buffer            parameters, frame, control, lights;
-    Buffer            device_control; /* what kernels use of the control block, of which the host
+    VkDescriptorPool pool;
+    VkDescriptorSet  scene_set, band_set, points_set;
+    Buffer           parameters, frame, control, lights;
+    Buffer           device_control; /* what kernels use of the control block, of which the host
                                          has a copy; none where they use the host's */
-    Band              band;
-    Buffer            points, answers; /* of sample.comp */
-    Buffer            questions, ways, shares; /* of query.comp */
-    uint32_t          groups_at_once[KRS_PHASE_COUNT][2]; /* learned from the last slices */
+    Band             band;
+    Buffer           points, answers;                    /* of sample.comp */
+    Buffer           questions, ways, shares;            /* of query.comp */
+    uint32_t         groups_at_once[KRS_PHASE_COUNT][2]; /* learned from the last slices */
 };
 
 /* The kernel of primary rays for a method and a schedule (neither is the default), of a group of
@@ -94,7 +98,7 @@ KrsNormals rendering_normals(const KrsRendering *rendering, KrsNormals normals);
 /* That of normals; of a group. */
 Kernel *rendering_around(KrsRendering *rendering, KrsNormals normals, uint32_t group);
 /* Whether primary rays by this method go from root to root.  Then so do secondary ones. */
-bool    rendering_has_roots(const KrsRendering *rendering, KrsTrace trace);
+bool rendering_has_roots(const KrsRendering *rendering, KrsTrace trace);
 /* The kernel of rays to lights and for occlusion. */
 Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots);
 Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule);

@@ -31,12 +31,12 @@ static void take_answer(const AnswerBlock *answer, float *distance, KrsSurfacePo
     if (!surface)
         return;
     *surface = (KrsSurfacePoint){
-        .distance = answer->surface_distance,
+        .distance  = answer->surface_distance,
         .roughness = answer->roughness,
-        .metallic = answer->metallic,
+        .metallic  = answer->metallic,
         .component = answer->component,
-        .level = answer->level,
-        .instance = answer->instance,
+        .level     = answer->level,
+        .instance  = answer->instance,
     };
     memcpy(surface->color, answer->color, sizeof surface->color);
     memcpy(surface->emission, answer->emission, sizeof surface->emission);
@@ -46,9 +46,9 @@ static void take_answer(const AnswerBlock *answer, float *distance, KrsSurfacePo
 bool sample_run(KrsRendering *rendering, uint32_t count, bool normals)
 {
     const uint32_t work[] = {count, normals ? 7 : 1}; /* of sample.comp */
-    Gpu    *gpu = &rendering->renderer->gpu;
-    Kernel *kernel = rendering_sample(rendering);
-    double  ms = 0;
+    Gpu           *gpu    = &rendering->renderer->gpu;
+    Kernel        *kernel = rendering_sample(rendering);
+    double         ms     = 0;
     if (!kernel || !gpu_begin(gpu))
         return false;
     rendering_dispatch(rendering, kernel, rendering->points_set, work, sizeof work,
@@ -63,9 +63,9 @@ KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*poi
     if (!sample_prepare(rendering) || !rendering_set_parameters(rendering, frame))
         return rendering->renderer->gpu.status;
     for (size_t first = 0; first < count; first += POINTS_AT_ONCE) {
-        size_t      left = count - first;
+        size_t      left  = count - first;
         uint32_t    batch = left < POINTS_AT_ONCE ? (uint32_t)left : POINTS_AT_ONCE;
-        PointBlock *to = rendering->points.bytes;
+        PointBlock *to    = rendering->points.bytes;
         for (uint32_t i = 0; i < batch; i++)
             memcpy(to[i].point, points[first + i], sizeof points[0]);
         if (!sample_run(rendering, batch, surfaces != NULL))

@@ -17,13 +17,16 @@
 /* ---- Layouts ---- */
 
 /* What a texel is at a binding, by the TexelKinds. */
-static const struct { VkFormat format; uint32_t bytes; } texel_kinds[TEXEL_KINDS] = {
+static const struct {
+    VkFormat format;
+    uint32_t bytes;
+} texel_kinds[TEXEL_KINDS] = {
     [ONE_NUMBER]   = {VK_FORMAT_R32_UINT, 4},
     [TWO_NUMBERS]  = {VK_FORMAT_R32G32_UINT, 8},
     [FOUR_NUMBERS] = {VK_FORMAT_R32G32B32A32_UINT, 16},
 };
 static const TexelKind texels_of[BINDING_COUNT] = {
-    [LIGHTS_BINDING] = FOUR_NUMBERS, [END_TEXELS] = TWO_NUMBERS, [HIT_TEXELS] = FOUR_NUMBERS,
+    [LIGHTS_BINDING] = FOUR_NUMBERS, [END_TEXELS] = TWO_NUMBERS,     [HIT_TEXELS] = FOUR_NUMBERS,
     [SOLID_TEXELS] = ONE_NUMBER,     [RESULT_TEXELS] = FOUR_NUMBERS,
 };
 
@@ -32,7 +35,7 @@ static_assert((int)BUFFER_BINDINGS <= (int)STORAGE_BUFFERS, "devices are asked f
 static VkDescriptorType type_of(uint32_t binding)
 {
     return binding == FRAME_BINDING ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
-         : texels_of[binding]       ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
+           : texels_of[binding]     ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
                                     : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
@@ -46,18 +49,17 @@ static bool set_layout_create(Gpu *gpu, uint32_t count, VkDescriptorSetLayout *l
     VkDescriptorSetLayoutBinding bindings[BINDING_COUNT];
     for (uint32_t i = 0; i < count; i++)
         bindings[i] = (VkDescriptorSetLayoutBinding){
-            .binding = i,
-            .descriptorType = type_of(i),
+            .binding         = i,
+            .descriptorType  = type_of(i),
             .descriptorCount = is_bound(gpu, i),
-            .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
+            .stageFlags      = VK_SHADER_STAGE_COMPUTE_BIT,
         };
     VkDescriptorSetLayoutCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+        .sType        = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
         .bindingCount = count,
-        .pBindings = bindings,
+        .pBindings    = bindings,
     };
-    TRY(gpu, "prepare the renderer",
-        vkCreateDescriptorSetLayout(gpu->device, &info, NULL, layout));
+    TRY(gpu, "prepare the renderer", vkCreateDescriptorSetLayout(gpu->device, &info, NULL, layout));
     return true;
 
 failed:
@@ -72,11 +74,11 @@ static bool layouts_create(KrsRenderer *renderer)
         return false;
     VkPushConstantRange        work = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(WorkBlock)};
     VkPipelineLayoutCreateInfo info = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+        .sType          = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
         .setLayoutCount = 2,
-        .pSetLayouts = (VkDescriptorSetLayout[]){renderer->scene_layout, renderer->frame_layout},
+        .pSetLayouts    = (VkDescriptorSetLayout[]){renderer->scene_layout, renderer->frame_layout},
         .pushConstantRangeCount = 1,
-        .pPushConstantRanges = &work,
+        .pPushConstantRanges    = &work,
     };
     TRY(gpu, "prepare the renderer",
         vkCreatePipelineLayout(gpu->device, &info, NULL, &renderer->layout));
@@ -100,15 +102,18 @@ void stage_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *b
 {
     if (!is_bound(gpu, binding))
         return;
-    vkUpdateDescriptorSets(gpu->device, 1, &(VkWriteDescriptorSet){
-        .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-        .dstSet = set,
-        .dstBinding = binding,
-        .descriptorCount = 1,
-        .descriptorType = type_of(binding),
-        .pTexelBufferView = &buffer->texels,
-        .pBufferInfo = &(VkDescriptorBufferInfo){buffer->buffer, 0, buffer->size},
-    }, 0, NULL);
+    vkUpdateDescriptorSets(
+        gpu->device, 1,
+        &(VkWriteDescriptorSet){
+            .sType            = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+            .dstSet           = set,
+            .dstBinding       = binding,
+            .descriptorCount  = 1,
+            .descriptorType   = type_of(binding),
+            .pTexelBufferView = &buffer->texels,
+            .pBufferInfo      = &(VkDescriptorBufferInfo){buffer->buffer, 0, buffer->size},
+        },
+        0, NULL);
 }
 
 /* Room for any scene's parameters, where the device has no more of it than most have. */
@@ -121,7 +126,7 @@ static VkDeviceSize idle_bytes(const Gpu *gpu)
 /* Sets of buffers that hold zeros: no kernel finds any item in them. */
 static bool idle_create(KrsRenderer *renderer)
 {
-    Gpu            *gpu = &renderer->gpu;
+    Gpu            *gpu     = &renderer->gpu;
     const char     *attempt = "prepare the renderer";
     VkDescriptorSet sets[2];
     const char     *name = "rehearsals";
@@ -129,27 +134,37 @@ static bool idle_create(KrsRenderer *renderer)
         Buffer      *idle  = &renderer->idle[kind];
         VkDeviceSize bytes = kind == NO_TEXELS ? idle_bytes(gpu) : buffer_texel_bytes(1);
         if (!buffer_create(gpu, idle, bytes, SHARED, name) ||
-            (kind != NO_TEXELS && !buffer_view(gpu, idle, texel_kinds[kind].format,
-                                               texel_kinds[kind].bytes, name)))
+            (kind != NO_TEXELS &&
+             !buffer_view(gpu, idle, texel_kinds[kind].format, texel_kinds[kind].bytes, name)))
             return false;
         memset(idle->bytes, 0, idle->size);
     }
-    TRY(gpu, attempt, vkCreateDescriptorPool(gpu->device, &(VkDescriptorPoolCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-        .maxSets = 2,
-        .poolSizeCount = 3,
-        .pPoolSizes = (VkDescriptorPoolSize[]){
-            {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2},
-            {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BUFFER_BINDINGS},
-            {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, TEXEL_BINDINGS},
-        },
-    }, NULL, &renderer->idle_pool));
-    TRY(gpu, attempt, vkAllocateDescriptorSets(gpu->device, &(VkDescriptorSetAllocateInfo){
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-        .descriptorPool = renderer->idle_pool,
-        .descriptorSetCount = 2,
-        .pSetLayouts = (VkDescriptorSetLayout[]){renderer->scene_layout, renderer->frame_layout},
-    }, sets));
+    TRY(gpu, attempt,
+        vkCreateDescriptorPool(
+            gpu->device,
+            &(VkDescriptorPoolCreateInfo){
+                .sType         = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                .maxSets       = 2,
+                .poolSizeCount = 3,
+                .pPoolSizes =
+                    (VkDescriptorPoolSize[]){
+                        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2},
+                        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BUFFER_BINDINGS},
+                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, TEXEL_BINDINGS},
+                    },
+            },
+            NULL, &renderer->idle_pool));
+    TRY(gpu, attempt,
+        vkAllocateDescriptorSets(
+            gpu->device,
+            &(VkDescriptorSetAllocateInfo){
+                .sType              = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                .descriptorPool     = renderer->idle_pool,
+                .descriptorSetCount = 2,
+                .pSetLayouts        = (VkDescriptorSetLayout[]){renderer->scene_layout,
+                                                                renderer->frame_layout},
+            },
+            sets));
     renderer->idle_scene = sets[0];
     renderer->idle_frame = sets[1];
     stage_bind(gpu, renderer->idle_scene, 0, &renderer->idle[0]);
@@ -184,7 +199,7 @@ void stage_destroy(KrsRenderer *renderer)
 static bool rehearse(KrsRenderer *renderer, VkDescriptorSet scene_set, const Kernel *kernel)
 {
     const VkDescriptorSet sets[2] = {scene_set, renderer->idle_frame};
-    const WorkBlock       work = {.groups = 1, .stride = 1};
+    const WorkBlock       work    = {.groups = 1, .stride = 1};
     return gpu_rehearse(&renderer->gpu, kernel->pipeline, renderer->layout, sets, &work,
                         sizeof work);
 }
@@ -205,8 +220,7 @@ static bool worth_sharing(const Gpu *gpu, const KernelCode *codes, size_t count)
     size_t compiled = 0;
     for (size_t i = 0; i < count; i++)
         compiled += codes[i].compiled;
-    return compiled > 1 && gpu_is_cpu(gpu) && !gpu->messenger &&
-           sysconf(_SC_NPROCESSORS_ONLN) > 1;
+    return compiled > 1 && gpu_is_cpu(gpu) && !gpu->messenger && sysconf(_SC_NPROCESSORS_ONLN) > 1;
 }
 
 /* The second device's thread.  If anything fails, or nothing is kept on disk, the first device
@@ -214,12 +228,12 @@ static bool worth_sharing(const Gpu *gpu, const KernelCode *codes, size_t count)
 static void *assist(void *user)
 {
     Sharing    *sharing = user;
-    KrsRenderer second = {0};
-    bool        ready = gpu_open_beside(&second.gpu, sharing->gpu) && stage_create(&second);
+    KrsRenderer second  = {0};
+    bool        ready   = gpu_open_beside(&second.gpu, sharing->gpu) && stage_create(&second);
     for (size_t i; ready && (i = atomic_fetch_add(&sharing->next, 1)) < sharing->count;) {
         Kernel kernel;
         double ms = 0;
-        ready = kernel_load(&second.gpu, &kernel, &sharing->codes[i], second.layout, &ms) &&
+        ready     = kernel_load(&second.gpu, &kernel, &sharing->codes[i], second.layout, &ms) &&
                 rehearse(&second, second.idle_scene, &kernel) && gpu_wait(&second.gpu);
         kernel_destroy(&second.gpu, &kernel);
     }
@@ -238,7 +252,7 @@ static bool rehearse_all(KrsRenderer *renderer, VkDescriptorSet scene_set,
     bool      shared = worth_sharing(&renderer->gpu, codes, count) &&
                   pthread_create(&thread, NULL, assist, &sharing) == 0;
     while (shared && ready) {
-        ready = gpu_wait(&renderer->gpu); /* takes no more than it can work on */
+        ready    = gpu_wait(&renderer->gpu); /* takes no more than it can work on */
         size_t i = atomic_fetch_add(&sharing.next, 1);
         if (i >= count)
             break;

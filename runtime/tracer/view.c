@@ -56,7 +56,7 @@ static bool camera_basis(const KrsCamera *camera, Basis *basis)
     cross3(basis->forward, camera->up, basis->right);
     if (!(dot3(basis->right, basis->right) > 1e-18 * dot3(camera->up, camera->up)) ||
         !normalize3(basis->right)) {
-        double other[3] = {0};
+        double other[3]                              = {0};
         other[fabs(basis->forward[2]) < 0.9 ? 2 : 0] = -1;
         cross3(basis->forward, other, basis->right);
         if (!normalize3(basis->right))
@@ -70,10 +70,10 @@ static bool camera_basis(const KrsCamera *camera, Basis *basis)
 static void half_extent(const KrsCamera *camera, uint32_t width, uint32_t height, double extent[2])
 {
     double half = camera->projection == KRS_PERSPECTIVE    ? tan(camera->fov / 2)
-                : camera->projection == KRS_ORTHOGRAPHIC ? camera->height / 2
-                                                         : 1;
-    extent[1] = half;
-    extent[0] = camera->projection == KRS_PANORAMA ? 1 : half * width / height;
+                  : camera->projection == KRS_ORTHOGRAPHIC ? camera->height / 2
+                                                           : 1;
+    extent[1]   = half;
+    extent[0]   = camera->projection == KRS_PANORAMA ? 1 : half * width / height;
 }
 
 static bool camera_is_sound(const KrsCamera *camera)
@@ -130,7 +130,7 @@ void view_place_box(const KrsView *view, const double low[3], const double high[
     }
     double margin = 1e-4 * size + 1e-6 * reach;
     for (int i = 0; i < 3; i++) {
-        block->low[i] = (float)fmin(fmax(low[i] - margin, -UNBOUNDED), UNBOUNDED);
+        block->low[i]  = (float)fmin(fmax(low[i] - margin, -UNBOUNDED), UNBOUNDED);
         block->high[i] = (float)fmin(fmax(high[i] + margin, -UNBOUNDED), UNBOUNDED);
     }
 }
@@ -154,7 +154,7 @@ static bool project(const FrameBlock *block, const double point[3], bool perspec
     double ahead = perspective ? dot_floats(way, block->forward) : 1;
     for (int i = 0; i < 2; i++) {
         const double axis[3] = {axes[i][0], axes[i][1], axes[i][2]};
-        place[i] = dot_floats(way, axes[i]) / (dot_floats(axis, axes[i]) * ahead);
+        place[i]             = dot_floats(way, axes[i]) / (dot_floats(axis, axes[i]) * ahead);
     }
     return !perspective || ahead > 1e-3 * length;
 }
@@ -162,9 +162,9 @@ static bool project(const FrameBlock *block, const double point[3], bool perspec
 KrsWindow view_window(const FrameBlock *block, const KrsCamera *camera)
 {
     const double size[2] = {block->size[0], block->size[1]};
-    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
-    bool   known = camera->projection != KRS_PANORAMA;
-    bool   widens = camera->projection == KRS_PERSPECTIVE;
+    double       low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    bool         known  = camera->projection != KRS_PANORAMA;
+    bool         widens = camera->projection == KRS_PERSPECTIVE;
     for (int corner = 0; corner < 8; corner++) {
         double point[3], place[2];
         for (int i = 0; i < 3; i++)
@@ -194,16 +194,16 @@ static void place_ends(const KrsView *view, const double low[3], const double hi
     if (is_bounded(low, high)) {
         double farthest = 0;
         for (int i = 0; i < 3; i++) {
-            double eye = view->camera.eye[i];
+            double eye  = view->camera.eye[i];
             double side = fmax(fabs(low[i] - eye), fabs(high[i] - eye));
             farthest += side * side;
         }
         /* An orthographic ray starts beside the eye, by no more than the box is away. */
-        block->farthest = (float)(2.1 * sqrt(farthest) + 2 * view->camera.height);
+        block->farthest        = (float)(2.1 * sqrt(farthest) + 2 * view->camera.height);
         block->occlusion_reach = (float)(0.15 * size);
     } else {
-        double scale = fmax(size, distance);
-        block->farthest = (float)(HORIZON * scale);
+        double scale           = fmax(size, distance);
+        block->farthest        = (float)(HORIZON * scale);
         block->occlusion_reach = (float)(0.15 * (size > 0 ? fmin(size, distance) : distance));
     }
     if (!(block->occlusion_reach > 0))
@@ -216,8 +216,8 @@ double view_pixel(const KrsCamera *camera, uint32_t height, double distance)
     half_extent(camera, 1, 1, extent);
     switch (camera->projection) {
     case KRS_ORTHOGRAPHIC: return 2 * extent[1] / height;
-    case KRS_PANORAMA:     return PI / height * distance;
-    case KRS_PERSPECTIVE:  break;
+    case KRS_PANORAMA: return PI / height * distance;
+    case KRS_PERSPECTIVE: break;
     }
     return 2 * extent[1] / height * distance;
 }
@@ -258,7 +258,7 @@ void view_matrices(const KrsCamera *camera, uint32_t width, uint32_t height, Krs
     camera_basis(camera, &basis);
     half_extent(camera, width, height, extent);
 
-    const double *axes[3] = {basis.right, basis.up, basis.forward};
+    const double *axes[3]            = {basis.right, basis.up, basis.forward};
     double        camera_space[4][4] = {{0}};
     for (int column = 0; column < 3; column++) {
         for (int row = 0; row < 3; row++)
@@ -268,14 +268,14 @@ void view_matrices(const KrsCamera *camera, uint32_t width, uint32_t height, Krs
     camera_space[3][3] = 1;
 
     for (int row = 0; row < 4; row++) {
-        const double *from = camera_space[row];
+        const double *from        = camera_space[row];
         const bool    perspective = camera->projection == KRS_PERSPECTIVE;
         for (int column = 0; column < 4; column++)
             picture->world_to_camera[row][column] = (float)from[column];
         picture->world_to_ndc[row][0] = (float)(from[0] / extent[0]);
         picture->world_to_ndc[row][1] = (float)(from[1] / extent[1]);
-        picture->world_to_ndc[row][2] =
-            (float)(perspective ? from[2] - NDC_NEAR * from[3] : from[2]);
+        picture->world_to_ndc[row][2] = (float)(perspective ? from[2] - NDC_NEAR * from[3]
+                                                            : from[2]);
         picture->world_to_ndc[row][3] = (float)(perspective ? from[2] : from[3]);
     }
 }

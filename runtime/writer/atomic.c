@@ -23,21 +23,21 @@
 enum { BUFFER_SIZE = 1 << 16, MOST_LINKS = 40 };
 
 struct OutputFile {
-    OutputError *error;
+    OutputError                 *error;
     const volatile sig_atomic_t *cancelled;
-    char    *shown;     /* the path as the user gave it */
-    char    *target;    /* with symbolic links followed */
-    char    *folder;
-    char    *temporary; /* spool file in case of a direct target, else in `folder` */
-    int      fd;
-    bool     direct;    /* the target is no regular file */
-    bool     exists;    /* and is as `before` says, which the new file will be, too */
+    char                        *shown;  /* the path as the user gave it */
+    char                        *target; /* with symbolic links followed */
+    char                        *folder;
+    char       *temporary; /* spool file in case of a direct target, else in `folder` */
+    int         fd;
+    bool        direct; /* the target is no regular file */
+    bool        exists; /* and is as `before` says, which the new file will be, too */
     struct stat before;
-    mode_t   mode;      /* of a target that does not exist */
-    uint64_t end;       /* where the longest write so far ended */
-    uint64_t buffered_at;
-    size_t   buffered;
-    char     buffer[BUFFER_SIZE];
+    mode_t      mode; /* of a target that does not exist */
+    uint64_t    end;  /* where the longest write so far ended */
+    uint64_t    buffered_at;
+    size_t      buffered;
+    char        buffer[BUFFER_SIZE];
 };
 
 static bool output_fail(OutputError *error, KrsStatus status, const char *path, int reason)
@@ -81,7 +81,7 @@ static void output_free(OutputFile *file)
 
 static char *folder_of(const char *path)
 {
-    char *copy = strdup(path);
+    char *copy   = strdup(path);
     char *folder = copy ? strdup(dirname(copy)) : NULL;
     free(copy);
     return folder;
@@ -92,8 +92,8 @@ static char *place_missing(const char *path)
 {
     char *folder = folder_of(path), *real = folder ? realpath(folder, NULL) : NULL, *place = NULL;
     const char *slash = strrchr(path, '/');
-    if (real && asprintf(&place, "%s/%s", strcmp(real, "/") == 0 ? "" : real,
-                         slash ? slash + 1 : path) < 0)
+    if (real &&
+        asprintf(&place, "%s/%s", strcmp(real, "/") == 0 ? "" : real, slash ? slash + 1 : path) < 0)
         place = NULL;
     free(folder);
     free(real);
@@ -103,7 +103,7 @@ static char *place_missing(const char *path)
 /* What a symbolic link leads to, as seen from the link; NULL when it is none. */
 static char *follow_link(const char *path)
 {
-    char  to[PATH_MAX], *folder, *place = NULL;
+    char    to[PATH_MAX], *folder, *place = NULL;
     ssize_t length = readlink(path, to, sizeof to - 1);
     if (length < 0)
         return NULL;
@@ -149,11 +149,10 @@ bool output_is_same(const char *a, const char *b)
    link. */
 static bool find_target(OutputFile *file)
 {
-    struct stat *info = &file->before;
+    struct stat *info   = &file->before;
     size_t       length = strlen(file->shown);
-    file->exists = stat(file->shown, info) == 0;
-    if (length == 0 || (file->exists && S_ISDIR(info->st_mode)) ||
-        file->shown[length - 1] == '/') {
+    file->exists        = stat(file->shown, info) == 0;
+    if (length == 0 || (file->exists && S_ISDIR(info->st_mode)) || file->shown[length - 1] == '/') {
         errno = length == 0 ? ENOENT : EISDIR;
         return fail_create(file);
     }
@@ -183,7 +182,7 @@ static bool create_temporary(OutputFile *file)
 OutputFile *output_open(const char *path, const volatile sig_atomic_t *cancelled,
                         OutputError *error)
 {
-    *error = (OutputError){0};
+    *error           = (OutputError){0};
     OutputFile *file = calloc(1, sizeof *file);
     if (!file) {
         output_fail(error, KRS_OUT_OF_MEMORY, path, ENOMEM);
@@ -228,7 +227,7 @@ static bool write_fully(OutputFile *file, int fd, const char *bytes, size_t leng
 
 static bool flush_buffer(OutputFile *file)
 {
-    size_t length = file->buffered;
+    size_t length  = file->buffered;
     file->buffered = 0;
     return write_fully(file, file->fd, file->buffer, length, (int64_t)file->buffered_at);
 }
@@ -295,9 +294,9 @@ static void warn(OutputFile *file, const char *words)
 static void keep_mode(OutputFile *file)
 {
     const struct stat *before = &file->before;
-    struct stat        now = {0};
-    mode_t             mode = file->exists ? before->st_mode & 0777 : file->mode;
-    bool               known = file->exists && fstat(file->fd, &now) == 0;
+    struct stat        now    = {0};
+    mode_t             mode   = file->exists ? before->st_mode & 0777 : file->mode;
+    bool               known  = file->exists && fstat(file->fd, &now) == 0;
     if (known && now.st_uid != before->st_uid && fchown(file->fd, before->st_uid, (gid_t)-1) != 0)
         errno = 0; /* only the administrator may; the file is the writer's then */
     if (known && now.st_gid != before->st_gid && fchown(file->fd, (uid_t)-1, before->st_gid) != 0)
@@ -325,8 +324,8 @@ static bool put_in_place(OutputFile *file)
     keep_mode(file);
     int  held = fcntl(file->fd, F_DUPFD_CLOEXEC, 0), fd = file->fd;
     bool done = fsync(fd) == 0 || fail_write(file);
-    file->fd = held;
-    done = (close(fd) == 0 || fail_write(file)) && done;
+    file->fd  = held;
+    done      = (close(fd) == 0 || fail_write(file)) && done;
     if (done && file->cancelled && *file->cancelled)
         done = output_fail(file->error, KRS_INTERRUPTED, file->shown, 0);
     return done && (rename(file->temporary, file->target) == 0 || fail_write(file));

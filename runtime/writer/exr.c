@@ -17,9 +17,9 @@
 #include <string.h>
 
 enum {
-    ZIP_LEVEL = 2,   /* zlib's 2: 3 % more than 4, which is within 2 % of 9, in two thirds of its
+    ZIP_LEVEL    = 2, /* zlib's 2: 3 % more than 4, which is within 2 % of 9, in two thirds of its
                         time; 9 takes four times that of 4 */
-    MOST_WORKERS = 8 /* one of them writes at any time, and each needs memory for a chunk */
+    MOST_WORKERS = 8  /* one of them writes at any time, and each needs memory for a chunk */
 };
 
 typedef struct ExrWriter {
@@ -41,11 +41,11 @@ typedef struct Chunks {
 } Chunks;
 
 typedef struct Worker {
-    Chunks    *chunks;
-    pthread_t  thread;
-    uint32_t   chunk;  /* that it has taken */
-    uint32_t  *block;  /* packed lines of all channels, in the picture's order */
-    bool       begun;  /* the pipeline is set up */
+    Chunks               *chunks;
+    pthread_t             thread;
+    uint32_t              chunk;    /* that it has taken */
+    uint32_t             *block;    /* packed lines of all channels, in the picture's order */
+    bool                  begun;    /* the pipeline is set up */
     exr_encode_pipeline_t pipeline; /* keeps its buffers from chunk to chunk */
 } Worker;
 
@@ -67,11 +67,11 @@ uint16_t half_from_float(float number)
     /* `kept` holds the result and `lost` what is cut off, as a fraction of `unit`. */
     uint32_t kept, lost, unit;
     if (size < 0x38800000) { /* the result is subnormal: the leading 1 becomes explicit */
-        uint32_t shift = 126 - (size >> 23);
+        uint32_t shift    = 126 - (size >> 23);
         uint32_t fraction = (size & 0x7fffff) | 0x800000;
-        kept = fraction >> shift;
-        unit = 1u << shift;
-        lost = fraction & (unit - 1);
+        kept              = fraction >> shift;
+        unit              = 1u << shift;
+        lost              = fraction & (unit - 1);
     } else {
         kept = (size - 0x38000000) >> 13;
         unit = 1u << 13;
@@ -106,8 +106,7 @@ static bool exr_try(ExrWriter *writer, exr_result_t result)
     if (result == EXR_ERR_CORRUPT_CHUNK)
         result = EXR_ERR_OUT_OF_MEMORY; /* of a writer: zlib found no memory to compress a chunk */
     if (writer->error->status == KRS_OK) {
-        writer->error->status =
-            result == EXR_ERR_OUT_OF_MEMORY ? KRS_OUT_OF_MEMORY : KRS_INTERNAL;
+        writer->error->status = result == EXR_ERR_OUT_OF_MEMORY ? KRS_OUT_OF_MEMORY : KRS_INTERNAL;
         snprintf(writer->error->message, sizeof writer->error->message,
                  "cannot make an EXR file: %s", exr_get_default_error_message(result));
     }
@@ -116,25 +115,24 @@ static bool exr_try(ExrWriter *writer, exr_result_t result)
 
 static bool write_layout(ExrWriter *writer)
 {
-    const Picture *picture = writer->picture;
+    const Picture   *picture = writer->picture;
     exr_attr_box2i_t display = {
         .max = {.x = (int32_t)picture->width - 1, .y = (int32_t)picture->height - 1}};
-    exr_attr_box2i_t data = {
-        .min = {.x = (int32_t)picture->crop_x, .y = (int32_t)picture->crop_y},
-        .max = {.x = (int32_t)(picture->crop_x + picture->crop_width) - 1,
-                .y = (int32_t)(picture->crop_y + picture->crop_height) - 1}};
-    exr_attr_v2f_t center = {.x = 0, .y = 0};
-    int part;
+    exr_attr_box2i_t data = {.min = {.x = (int32_t)picture->crop_x, .y = (int32_t)picture->crop_y},
+                             .max = {.x = (int32_t)(picture->crop_x + picture->crop_width) - 1,
+                                     .y = (int32_t)(picture->crop_y + picture->crop_height) - 1}};
+    exr_attr_v2f_t   center = {.x = 0, .y = 0};
+    int              part;
     if (!exr_try(writer, exr_add_part(writer->context, "krs", EXR_STORAGE_SCANLINE, &part)) ||
-        !exr_try(writer, exr_initialize_required_attr(
-                             writer->context, 0, &display, &data, 1, &center, 1,
-                             EXR_LINEORDER_INCREASING_Y, EXR_COMPRESSION_ZIP)) ||
+        !exr_try(writer,
+                 exr_initialize_required_attr(writer->context, 0, &display, &data, 1, &center, 1,
+                                              EXR_LINEORDER_INCREASING_Y, EXR_COMPRESSION_ZIP)) ||
         !exr_try(writer, exr_set_zip_compression_level(writer->context, 0, ZIP_LEVEL)))
         return false;
 
-    static const exr_pixel_type_t types[] = {[SAMPLE_HALF] = EXR_PIXEL_HALF,
+    static const exr_pixel_type_t types[] = {[SAMPLE_HALF]  = EXR_PIXEL_HALF,
                                              [SAMPLE_FLOAT] = EXR_PIXEL_FLOAT,
-                                             [SAMPLE_UINT] = EXR_PIXEL_UINT};
+                                             [SAMPLE_UINT]  = EXR_PIXEL_UINT};
     for (size_t i = 0; i < picture->channel_count; i++)
         if (!exr_try(writer, exr_add_channel(writer->context, 0, picture->channels[i].name,
                                              types[picture->channels[i].type],
@@ -154,12 +152,17 @@ static bool write_matrix(ExrWriter *writer, const char *name, const PictureMatri
 
 static bool write_attributes(ExrWriter *writer)
 {
-    const Picture *picture = writer->picture;
-    const exr_attr_chromaticities_t rec709 = {
-        .red_x = 0.64f, .red_y = 0.33f, .green_x = 0.3f, .green_y = 0.6f,
-        .blue_x = 0.15f, .blue_y = 0.06f, .white_x = 0.3127f, .white_y = 0.329f};
-    if (!exr_try(writer, exr_attr_set_chromaticities(writer->context, 0, "chromaticities",
-                                                     &rec709)) ||
+    const Picture                  *picture = writer->picture;
+    const exr_attr_chromaticities_t rec709  = {.red_x   = 0.64f,
+                                               .red_y   = 0.33f,
+                                               .green_x = 0.3f,
+                                               .green_y = 0.6f,
+                                               .blue_x  = 0.15f,
+                                               .blue_y  = 0.06f,
+                                               .white_x = 0.3127f,
+                                               .white_y = 0.329f};
+    if (!exr_try(writer,
+                 exr_attr_set_chromaticities(writer->context, 0, "chromaticities", &rec709)) ||
         !write_matrix(writer, "worldToCamera", picture->world_to_camera) ||
         !write_matrix(writer, "worldToNDC", picture->world_to_ndc))
         return false;
@@ -175,10 +178,10 @@ static void pack_lines(const Picture *picture, const PictureChannel *channel, si
                        size_t count, void *block)
 {
     size_t samples = count * picture->crop_width;
-    size_t start = first * picture->crop_width;
+    size_t start   = first * picture->crop_width;
     if (channel->type == SAMPLE_UINT) {
         const uint32_t *source = (const uint32_t *)channel->samples + start * channel->stride;
-        uint32_t *target = block;
+        uint32_t       *target = block;
         for (size_t i = 0; i < samples; i++)
             target[i] = source[i * channel->stride];
         return;
@@ -198,21 +201,21 @@ static void pack_lines(const Picture *picture, const PictureChannel *channel, si
 /* The library sorts channels by name; ours are found by theirs. */
 static void pack_chunk(Worker *worker)
 {
-    const Picture         *picture = worker->chunks->writer->picture;
+    const Picture         *picture  = worker->chunks->writer->picture;
     exr_encode_pipeline_t *pipeline = &worker->pipeline;
-    size_t first = (size_t)pipeline->chunk.start_y - picture->crop_y;
+    size_t                 first    = (size_t)pipeline->chunk.start_y - picture->crop_y;
     for (int c = 0; c < pipeline->channel_count; c++) {
         exr_coding_channel_info_t *target = &pipeline->channels[c];
-        size_t i = 0;
+        size_t                     i      = 0;
         while (strcmp(picture->channels[i].name, target->channel_name) != 0)
             i++;
         void *packed = worker->block + i * worker->chunks->lines * picture->crop_width;
         pack_lines(picture, &picture->channels[i], first, (size_t)target->height, packed);
-        target->encode_from_ptr = packed;
+        target->encode_from_ptr        = packed;
         target->user_bytes_per_element = target->bytes_per_element;
-        target->user_data_type = target->data_type;
-        target->user_pixel_stride = target->bytes_per_element;
-        target->user_line_stride = target->bytes_per_element * target->width;
+        target->user_data_type         = target->data_type;
+        target->user_pixel_stride      = target->bytes_per_element;
+        target->user_line_stride       = target->bytes_per_element * target->width;
     }
 }
 
@@ -243,12 +246,12 @@ static bool take_chunk(Worker *worker)
 
 static exr_result_t write_chunk(Worker *worker)
 {
-    const Chunks          *chunks = worker->chunks;
-    exr_context_t          context = chunks->writer->context;
+    const Chunks          *chunks   = worker->chunks;
+    exr_context_t          context  = chunks->writer->context;
     exr_encode_pipeline_t *pipeline = &worker->pipeline;
-    uint32_t         y = chunks->writer->picture->crop_y + worker->chunk * chunks->lines;
-    exr_chunk_info_t info;
-    exr_result_t     result = exr_write_scanline_chunk_info(context, 0, (int)y, &info);
+    uint32_t               y = chunks->writer->picture->crop_y + worker->chunk * chunks->lines;
+    exr_chunk_info_t       info;
+    exr_result_t           result = exr_write_scanline_chunk_info(context, 0, (int)y, &info);
     if (result != EXR_ERR_SUCCESS)
         return result;
     result = worker->begun ? exr_encoding_update(context, 0, &info, pipeline)
@@ -258,10 +261,10 @@ static exr_result_t write_chunk(Worker *worker)
     pack_chunk(worker);
     if (!worker->begun) {
         worker->begun = true;
-        result = exr_encoding_choose_default_routines(context, 0, pipeline);
+        result        = exr_encoding_choose_default_routines(context, 0, pipeline);
         if (result != EXR_ERR_SUCCESS)
             return result;
-        pipeline->encoding_user_data = worker;
+        pipeline->encoding_user_data   = worker;
         pipeline->yield_until_ready_fn = wait_for_turn;
     }
     return exr_encoding_run(context, 0, pipeline);
@@ -304,8 +307,8 @@ static void run_workers(Chunks *chunks)
     size_t         samples = picture->channel_count * chunks->lines * picture->crop_width;
     for (; count < wanted; count++) {
         Worker *worker = &workers[count];
-        *worker = (Worker){.chunks = chunks, .pipeline = EXR_ENCODE_PIPELINE_INITIALIZER};
-        worker->block = malloc(samples * sizeof *worker->block);
+        *worker        = (Worker){.chunks = chunks, .pipeline = EXR_ENCODE_PIPELINE_INITIALIZER};
+        worker->block  = malloc(samples * sizeof *worker->block);
         if (!worker->block)
             break;
         if (count > 0 && pthread_create(&worker->thread, NULL, work, worker) != 0) {
@@ -330,10 +333,13 @@ static bool write_chunks(ExrWriter *writer)
     int32_t lines;
     if (!exr_try(writer, exr_get_scanlines_per_chunk(writer->context, 0, &lines)))
         return false;
-    Chunks chunks = {
-        .writer = writer, .lines = (uint32_t)lines, .result = EXR_ERR_SUCCESS,
-        .count = (writer->picture->crop_height + (uint32_t)lines - 1) / (uint32_t)lines,
-        .lock = PTHREAD_MUTEX_INITIALIZER, .next = PTHREAD_COND_INITIALIZER};
+    Chunks chunks = {.writer = writer,
+                     .lines  = (uint32_t)lines,
+                     .result = EXR_ERR_SUCCESS,
+                     .count  = (writer->picture->crop_height + (uint32_t)lines - 1) /
+                              (uint32_t)lines,
+                     .lock = PTHREAD_MUTEX_INITIALIZER,
+                     .next = PTHREAD_COND_INITIALIZER};
     run_workers(&chunks);
     pthread_cond_destroy(&chunks.next);
     pthread_mutex_destroy(&chunks.lock);
@@ -342,19 +348,19 @@ static bool write_chunks(ExrWriter *writer)
 
 bool exr_write(const Picture *picture, OutputFile *file, OutputError *error)
 {
-    ExrWriter writer = {.picture = picture, .file = file, .error = error};
-    exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    setup.error_handler_fn = ignore_message;
-    setup.user_data = &writer;
-    setup.write_fn = write_callback;
+    ExrWriter                 writer = {.picture = picture, .file = file, .error = error};
+    exr_context_initializer_t setup  = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    setup.error_handler_fn           = ignore_message;
+    setup.user_data                  = &writer;
+    setup.write_fn                   = write_callback;
 
-    bool done = exr_try(&writer, exr_start_write(&writer.context, "picture",
-                                                 EXR_WRITE_FILE_DIRECTLY, &setup));
+    bool done = exr_try(
+        &writer, exr_start_write(&writer.context, "picture", EXR_WRITE_FILE_DIRECTLY, &setup));
     if (done) {
         done = write_layout(&writer) && write_attributes(&writer) &&
                exr_try(&writer, exr_write_header(writer.context)) && write_chunks(&writer);
         exr_result_t finished = exr_finish(&writer.context); /* writes the table of chunks */
-        done = done && exr_try(&writer, finished);
+        done                  = done && exr_try(&writer, finished);
     }
     return done;
 }

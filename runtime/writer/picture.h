@@ -15,7 +15,7 @@
 typedef enum SampleType { SAMPLE_HALF, SAMPLE_FLOAT, SAMPLE_UINT } SampleType;
 
 typedef struct PictureChannel {
-    const char *name;    /* "R", "albedo.G", "id.component" */
+    const char *name; /* "R", "albedo.G", "id.component" */
     SampleType  type;
     const void *samples; /* float, or uint32_t for SAMPLE_UINT; row 0 is the top */
     size_t      stride;  /* samples from one pixel to the next: 4 for interleaved RGBA */
@@ -32,9 +32,9 @@ typedef struct PictureMatrix {
 } PictureMatrix;
 
 typedef struct Picture {
-    uint32_t width, height;           /* of the whole picture: EXR's displayWindow */
-    uint32_t crop_x, crop_y;          /* the part that is there: EXR's dataWindow */
-    uint32_t crop_width, crop_height; /* the size of every channel */
+    uint32_t              width, height;           /* of the whole picture: EXR's displayWindow */
+    uint32_t              crop_x, crop_y;          /* the part that is there: EXR's dataWindow */
+    uint32_t              crop_width, crop_height; /* the size of every channel */
     const PictureChannel *channels;
     size_t                channel_count;
     const PictureText    *texts;

@@ -35,7 +35,7 @@ static _Noreturn void error_callback(png_structp png, png_const_charp message)
     PngWriter *writer = png_get_error_ptr(png);
     if (writer->error->status == KRS_OK) {
         /* libpng has no codes; the second is what it says when its list of texts cannot grow. */
-        bool memory = strstr(message, "emory") || strstr(message, "too many text chunks");
+        bool memory           = strstr(message, "emory") || strstr(message, "too many text chunks");
         writer->error->status = memory ? KRS_OUT_OF_MEMORY : KRS_INTERNAL;
         snprintf(writer->error->message, sizeof writer->error->message,
                  "cannot make a PNG file: %s", message);
@@ -43,10 +43,7 @@ static _Noreturn void error_callback(png_structp png, png_const_charp message)
     png_longjmp(png, 1);
 }
 
-static void warning_callback(png_structp png, png_const_charp message)
-{
-    (void)png, (void)message;
-}
+static void warning_callback(png_structp png, png_const_charp message) { (void)png, (void)message; }
 
 static bool fail_memory(OutputError *error)
 {
@@ -60,11 +57,11 @@ static void write_texts(PngWriter *writer, const Picture *picture)
 {
     for (size_t i = 0; i < picture->text_count; i++) {
         const PictureText *text = &picture->texts[i];
-        bool software = strcmp(text->name, "software") == 0; /* PNG has its own spelling */
+        bool software    = strcmp(text->name, "software") == 0; /* PNG has its own spelling */
         writer->texts[i] = (png_text){
             .compression = PNG_ITXT_COMPRESSION_NONE,
-            .key = (char *)(software ? "Software" : text->name),
-            .text = (char *)text->value,
+            .key         = (char *)(software ? "Software" : text->name),
+            .text        = (char *)text->value,
             .itxt_length = strlen(text->value),
         };
     }
@@ -100,13 +97,13 @@ static bool write_file(PngWriter *writer, const Picture *picture, const uint8_t 
 bool png_write(const Picture *picture, const uint8_t *rgb, OutputFile *file, OutputError *error)
 {
     PngWriter writer = {.file = file, .error = error};
-    writer.texts = calloc(picture->text_count + 1, sizeof *writer.texts);
+    writer.texts     = calloc(picture->text_count + 1, sizeof *writer.texts);
     if (!writer.texts)
         return fail_memory(error);
-    writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, error_callback,
-                                         warning_callback);
+    writer.png  = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, error_callback,
+                                          warning_callback);
     writer.info = writer.png ? png_create_info_struct(writer.png) : NULL;
-    bool done = writer.info ? write_file(&writer, picture, rgb) : fail_memory(error);
+    bool done   = writer.info ? write_file(&writer, picture, rgb) : fail_memory(error);
     if (writer.png)
         png_destroy_write_struct(&writer.png, &writer.info);
     free(writer.texts);

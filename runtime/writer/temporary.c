@@ -89,15 +89,14 @@ mode_t temporary_mode(const char *folder)
 static bool is_temporary(const char *name)
 {
     size_t length = strlen(name), before = sizeof prefix - 1, behind = sizeof ending - 1;
-    return length > before + behind && strncmp(name, prefix, before) == 0 &&
-           name[before] >= '0' && name[before] <= '9' &&
-           strcmp(name + length - behind, ending) == 0;
+    return length > before + behind && strncmp(name, prefix, before) == 0 && name[before] >= '0' &&
+           name[before] <= '9' && strcmp(name + length - behind, ending) == 0;
 }
 
 static void remove_abandoned(int folder, const char *name)
 {
     struct stat info;
-    int fd = openat(folder, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    int         fd = openat(folder, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (fd < 0)
         return;
     if (fstat(fd, &info) == 0 && S_ISREG(info.st_mode) && info.st_uid == geteuid() &&

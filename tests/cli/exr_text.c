@@ -51,11 +51,11 @@ static void print_chunk(exr_decode_pipeline_t *pipeline, const char *only, uint8
 int main(int argc, char **argv)
 {
     enum { CHANNELS = 64 };
-    exr_context_t context;
-    exr_attr_box2i_t window;
+    exr_context_t         context;
+    exr_attr_box2i_t      window;
     exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
-    uint8_t *buffers[CHANNELS];
-    int32_t lines;
+    uint8_t              *buffers[CHANNELS];
+    int32_t               lines;
     if (argc < 2)
         return 2;
     must(exr_start_read(&context, argv[1], NULL));
@@ -72,12 +72,12 @@ int main(int argc, char **argv)
                                : exr_decoding_update(context, 0, &chunk, &pipeline));
         for (int c = 0; c < pipeline.channel_count; c++) {
             exr_coding_channel_info_t *channel = &pipeline.channels[c];
-            bool integer = channel->data_type == EXR_PIXEL_UINT;
-            channel->decode_to_ptr = buffers[c];
-            channel->user_bytes_per_element = 4;
-            channel->user_data_type = integer ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
-            channel->user_pixel_stride = 4;
-            channel->user_line_stride = 4 * channel->width;
+            bool                       integer = channel->data_type == EXR_PIXEL_UINT;
+            channel->decode_to_ptr             = buffers[c];
+            channel->user_bytes_per_element    = 4;
+            channel->user_data_type            = integer ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
+            channel->user_pixel_stride         = 4;
+            channel->user_line_stride          = 4 * channel->width;
         }
         if (y == window.min.y)
             must(exr_decoding_choose_default_routines(context, 0, &pipeline));

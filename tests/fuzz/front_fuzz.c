@@ -51,14 +51,14 @@ static void check_diags(const Diags *diags, size_t size, Arena *arena)
 static void read_scene(const char *bytes, size_t size, Arena *arena)
 {
     static const char *const known[] = {"x", "y", "z", "p", "u", "v", "time", "sphere", "plane"};
-    NameScope scope   = {.known = known, .known_count = sizeof known / sizeof *known};
-    Sources   sources = {.arena = arena};
-    Names     names   = {.arena = arena};
-    Diags     diags   = {.arena = arena, .sources = &sources};
-    uint32_t  source  = source_add(&sources, "fuzz.krs", bytes, size, false);
-    Tokens    tokens  = lex(source, &sources, &names, &diags, arena);
-    Syntax   *file    = parse(&tokens, &diags, arena);
-    bool      gap     = check_tree(file, size);
+    NameScope                scope = {.known = known, .known_count = sizeof known / sizeof *known};
+    Sources                  sources = {.arena = arena};
+    Names                    names   = {.arena = arena};
+    Diags                    diags   = {.arena = arena, .sources = &sources};
+    uint32_t                 source  = source_add(&sources, "fuzz.krs", bytes, size, false);
+    Tokens                   tokens  = lex(source, &sources, &names, &diags, arena);
+    Syntax                  *file    = parse(&tokens, &diags, arena);
+    bool                     gap     = check_tree(file, size);
     demand(!gap || diags.errors > 0);
     names_check(file, &scope, &diags, arena);
     diags_sort(&diags);

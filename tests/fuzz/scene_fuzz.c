@@ -35,9 +35,9 @@ static void check_planted(const char *bytes, size_t size)
 static void ask(const KrsScene *scene)
 {
     static const double points[4][3] = {{0, 0, 0}, {1, 2, 3}, {-4, 0.5, 10}, {100, -100, 3}};
-    double    distances[4];
-    KrsFrame *frame;
-    KrsView   view;
+    double              distances[4];
+    KrsFrame           *frame;
+    KrsView             view;
     if (krs_frame_new(scene, &frame) != KRS_OK)
         return;
     krs_distance(frame, points, 4, distances);
@@ -50,10 +50,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
 {
     size_t     errors  = 0;
-    KrsOptions options = {.diagnostic = count_errors,
-                          .user = &errors,
-                          .memory_limit = (size_t)1 << 30};
-    KrsScene  *scene;
+    KrsOptions options = {
+        .diagnostic = count_errors, .user = &errors, .memory_limit = (size_t)1 << 30};
+    KrsScene *scene;
     check_planted((const char *)bytes, size);
     KrsStatus status = krs_compile_text((const char *)bytes, size, "fuzz.krs", &options, &scene);
     demand(status == KRS_OK || status == KRS_BAD_SCENE || status == KRS_OUT_OF_MEMORY);

@@ -16,7 +16,12 @@
 /* ---- the grammar ---- */
 
 typedef enum PartKind {
-    PART_SEQUENCE, PART_CHOICE, PART_OPTIONAL, PART_REPEAT, PART_WORD, PART_RULE
+    PART_SEQUENCE,
+    PART_CHOICE,
+    PART_OPTIONAL,
+    PART_REPEAT,
+    PART_WORD,
+    PART_RULE
 } PartKind;
 
 /* A piece of the right side of a rule. */
@@ -24,8 +29,11 @@ typedef struct Part {
     PartKind    kind;
     const char *word; /* WORD: the text, or the name of a class like NUMBER; RULE: its name */
     bool        quoted;
-    struct { struct Part **items; size_t count, capacity; } parts;
-    int         height; /* rules that must be entered at least */
+    struct {
+        struct Part **items;
+        size_t        count, capacity;
+    } parts;
+    int height; /* rules that must be entered at least */
 } Part;
 
 typedef struct Rule {
@@ -36,7 +44,10 @@ typedef struct Rule {
 
 typedef struct Grammar {
     Arena *arena;
-    struct { Rule *items; size_t count, capacity; } rules;
+    struct {
+        Rule  *items;
+        size_t count, capacity;
+    } rules;
     const char *at; /* while reading */
     uint64_t    random;
     int         words; /* that the sentence may still have before it is brought to an end */
@@ -74,7 +85,7 @@ static Part *read_choice(Grammar *g, char closer);
 static Part *read_part(Grammar *g)
 {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_";
-    Part *part;
+    Part             *part;
     if (*g->at == '(' || *g->at == '[' || *g->at == '{') {
         char open = *g->at++;
         part = part_new(g, open == '[' ? PART_OPTIONAL : open == '{' ? PART_REPEAT : PART_SEQUENCE);
@@ -194,9 +205,9 @@ static const char *example_of(Grammar *g, const char *class)
                                           "1e-3", "30deg", "2.5e+10", "007"};
     static const char *const colours[] = {"#000000", "#c8553d", "#FFffFF"};
     static const char *const strings[] = {"\"\"", "\"std/trees.krs\"", "\"a \\\"b\\\" \\n\""};
-    static const char *const names[]   = {"a", "kernel", "_private", "reflect", "n2", "Mobius",
-                                          "x", "deg", "e1", "iffy", "mobius"};
-    static const char *const words[] = {
+    static const char *const names[]   = {"a", "kernel", "_private", "reflect", "n2",    "Mobius",
+                                          "x", "deg",    "e1",       "iffy",    "mobius"};
+    static const char *const words[]   = {
 #define STATEMENT(spelling) spelling,
 #define SPECIAL(spelling)
 #define CONTROL(spelling)
@@ -224,8 +235,8 @@ static const char *example_of(Grammar *g, const char *class)
 
 static void add_word(Grammar *g, const char *word, Text *out)
 {
-    static const char *const blanks[] = {" ", " ", " ", " ", "\n", "\t", "\r\n", " // words\n",
-                                         " /* ; */ ", "\n/// a note\n"};
+    static const char *const blanks[] = {
+        " ", " ", " ", " ", "\n", "\t", "\r\n", " // words\n", " /* ; */ ", "\n/// a note\n"};
     text_add(out, word);
     text_add(out, PICK(g, blanks));
     g->words--;
@@ -234,14 +245,12 @@ static void add_word(Grammar *g, const char *word, Text *out)
 /* Writes something that fits a part; with little `room` left the shortest way is taken. */
 static void make(Grammar *g, const Part *part, int room, Text *out)
 {
-    const Part *only = part->parts.count ? part->parts.items[0] : NULL;
+    const Part *only  = part->parts.count ? part->parts.items[0] : NULL;
     uint32_t    times = 0;
     if (g->words <= 0)
         room = 0;
     switch (part->kind) {
-    case PART_WORD:
-        add_word(g, part->quoted ? part->word : example_of(g, part->word), out);
-        break;
+    case PART_WORD: add_word(g, part->quoted ? part->word : example_of(g, part->word), out); break;
     case PART_RULE: {
         Rule *rule = find_rule(g, part->word);
         rule->used = true;
@@ -321,12 +330,12 @@ static bool report(int number, bool good, const char *name)
 
 int main(int argc, char **argv)
 {
-    long     count = argc > 1 ? strtol(argv[1], NULL, 10) : 5000;
-    long     seed  = argc > 2 ? strtol(argv[2], NULL, 10) : 1;
-    jmp_buf  exhausted;
-    Memory   memory = {.exhausted = &exhausted};
-    Arena    fixed = {.memory = &memory}, each = {.memory = &memory};
-    Grammar  grammar = {.arena = &fixed};
+    long          count = argc > 1 ? strtol(argv[1], NULL, 10) : 5000;
+    long          seed  = argc > 2 ? strtol(argv[2], NULL, 10) : 1;
+    jmp_buf       exhausted;
+    Memory        memory = {.exhausted = &exhausted};
+    Arena         fixed = {.memory = &memory}, each = {.memory = &memory};
+    Grammar       grammar = {.arena = &fixed};
     volatile long refused = 0, wrong = 0, cut = 0;
     if (setjmp(exhausted)) {
         printf("Bail out! out of memory\n");
@@ -339,7 +348,7 @@ int main(int argc, char **argv)
         Text sentence  = {.arena = &each};
         text_add(&sentence, "");
         grammar.words = (int)random_below(&grammar, 600);
-        int room = 40 + (int)random_below(&grammar, 100);
+        int room      = 40 + (int)random_below(&grammar, 100);
         make(&grammar, find_rule(&grammar, "file")->part, room, &sentence);
         refused += !is_accepted(sentence.bytes, sentence.length, true, &each);
         if (drop_closer(&grammar, &sentence)) {

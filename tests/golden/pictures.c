@@ -24,7 +24,8 @@ typedef struct Show {
     bool          failed;
 } Show;
 
-static void render(Show *show, const char *option, const char *name, const KrsRenderOptions *options)
+static void render(Show *show, const char *option, const char *name,
+                   const KrsRenderOptions *options)
 {
     KrsPicture *picture;
     if (krs_render(show->rendering, show->frame, options, &picture) != KRS_OK) {
@@ -37,10 +38,10 @@ static void render(Show *show, const char *option, const char *name, const KrsRe
         const void *numbers;
         size_t      each;
     } planes[] = {
-        {"color", picture->color, 16},       {"position", picture->position, 12},
-        {"depth", picture->depth, 4},        {"normal", picture->normal, 12},
-        {"albedo", picture->albedo, 12},     {"component", picture->component, 4},
-        {"level", picture->level, 4},        {"instance", picture->instance, 4},
+        {"color", picture->color, 16},   {"position", picture->position, 12},
+        {"depth", picture->depth, 4},    {"normal", picture->normal, 12},
+        {"albedo", picture->albedo, 12}, {"component", picture->component, 4},
+        {"level", picture->level, 4},    {"instance", picture->instance, 4},
         {"steps", picture->steps, 4},
     };
     printf("%s %s=%s", show->path, option, name);

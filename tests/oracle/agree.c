@@ -144,9 +144,9 @@ static Verdict judge(Stage *stage, Line ray, const Answer *truth, const Answer *
     if (fabs(truth->t - said->t) > most) {
         /* The one that goes farther has gone through, or passed by, next to nothing. */
         bool   through = truth->t < said->t;
-        double least = through ? least_around(stage, ray, first, said->t - pixel / 16, pixel)
-                               : distance_at(stage, line_at(ray, first));
-        double graze = MOST_GRAZE * pixel + rounding;
+        double least   = through ? least_around(stage, ray, first, said->t - pixel / 16, pixel)
+                                 : distance_at(stage, line_at(ray, first));
+        double graze   = MOST_GRAZE * pixel + rounding;
         return (through ? least > -graze : least < graze) ? GRAZED : WRONG_HIT;
     }
     if (truth->component == said->component && truth->level == said->level &&
@@ -155,8 +155,8 @@ static Verdict judge(Stage *stage, Line ray, const Answer *truth, const Answer *
     return is_of_neighbour(stage, ray, said, pixel) ? MANY_MEET : WRONG_IDS;
 }
 
-static void tell(const Stage *stage, const char *who, Verdict verdict, int pixel, const Answer *truth,
-                 const Answer *said)
+static void tell(const Stage *stage, const char *who, Verdict verdict, int pixel,
+                 const Answer *truth, const Answer *said)
 {
     print_message("# %s, %s, pixel %d %d: %s; host t %.9g, %u %u %u; said t %.9g, %u %u %u\n",
                   stage->name, who, pixel % WIDTH, pixel / WIDTH,
@@ -170,8 +170,8 @@ typedef struct Tally {
     size_t      verdicts[VERDICTS], hits;
 } Tally;
 
-static void count(Tally *tally, const Stage *stage, Verdict verdict, int pixel,
-                  const Answer *truth, const Answer *said)
+static void count(Tally *tally, const Stage *stage, Verdict verdict, int pixel, const Answer *truth,
+                  const Answer *said)
 {
     tally->verdicts[verdict]++;
     tally->hits += said->t < HUGE_VAL;
@@ -181,14 +181,15 @@ static void count(Tally *tally, const Stage *stage, Verdict verdict, int pixel,
 
 static bool is_right(const Stage *stage, const Tally *tally, size_t asked)
 {
-    size_t wrong = tally->verdicts[WRONG_HIT] + tally->verdicts[WRONG_IDS];
+    size_t wrong   = tally->verdicts[WRONG_HIT] + tally->verdicts[WRONG_IDS];
     size_t excused = tally->verdicts[GRAZED] + tally->verdicts[MANY_MEET];
     if (wrong == 0 && (double)excused <= MOST_EXCUSED * (double)asked)
         return true;
-    print_message("# %s, %s: %zu rays, %zu hits, %zu graze, %zu where several meet, %zu hits and %zu ids "
-                  "wrong\n", stage->name, tally->who, asked, tally->hits, tally->verdicts[GRAZED],
-                  tally->verdicts[MANY_MEET], tally->verdicts[WRONG_HIT],
-                  tally->verdicts[WRONG_IDS]);
+    print_message(
+        "# %s, %s: %zu rays, %zu hits, %zu graze, %zu where several meet, %zu hits and %zu ids "
+        "wrong\n",
+        stage->name, tally->who, asked, tally->hits, tally->verdicts[GRAZED],
+        tally->verdicts[MANY_MEET], tally->verdicts[WRONG_HIT], tally->verdicts[WRONG_IDS]);
     return false;
 }
 
@@ -206,9 +207,10 @@ static bool is_border(const KrsPicture *picture, int k)
     const int neighbours[2] = {k + 1, k + WIDTH};
     for (int i = 0; i < 2; i++) {
         int n = neighbours[i];
-        if (n < PIXELS && (picture->component[k] != picture->component[n] ||
-                           picture->instance[k] != picture->instance[n] ||
-                           fabsf(picture->depth[k] - picture->depth[n]) > 0.05f * picture->depth[k]))
+        if (n < PIXELS &&
+            (picture->component[k] != picture->component[n] ||
+             picture->instance[k] != picture->instance[n] ||
+             fabsf(picture->depth[k] - picture->depth[n]) > 0.05f * picture->depth[k]))
             return true;
     }
     return false;
@@ -226,22 +228,22 @@ static int choose_pixel(Random *random, const KrsPicture *picture, bool at_borde
 /* Rays through the middles of pixels, every second at a border. */
 static size_t wrong_rays(Stage *stage, const KrsPicture *picture)
 {
-    static double  places[ASKED][3], directions[ASKED][3];
-    const double (*origins)[3] = (const double(*)[3])places;
-    const double (*ways)[3]    = (const double(*)[3])directions;
-    static KrsHit  host[ASKED], device[ASKED];
-    static int     pixels[ASKED];
-    Random random = {(uint64_t)strlen(stage->name) + 3};
-    Tally  seen = {.who = "picture"}, asked = {.who = "query of the device"};
-    double size = vec_length(stage->lens.eye);
+    static double places[ASKED][3], directions[ASKED][3];
+    const double(*origins)[3] = (const double(*)[3])places;
+    const double(*ways)[3]    = (const double(*)[3])directions;
+    static KrsHit host[ASKED], device[ASKED];
+    static int    pixels[ASKED];
+    Random        random = {(uint64_t)strlen(stage->name) + 3};
+    Tally         seen = {.who = "picture"}, asked = {.who = "query of the device"};
+    double        size = vec_length(stage->lens.eye);
     for (int i = 0; i < ASKED; i++) {
         pixels[i] = choose_pixel(&random, picture, i % 2 == 1);
         Line ray  = lens_ray(&stage->lens, pixels[i] % WIDTH + 0.5, pixels[i] / WIDTH + 0.5);
         put(places[i], ray.origin);
         put(directions[i], ray.direction);
     }
-    assert_int_equal(krs_raycast(stage->frame, origins, ways, ASKED, HUGE_VAL, 1e-7 * (1 + size),
-                                 host), KRS_OK);
+    assert_int_equal(
+        krs_raycast(stage->frame, origins, ways, ASKED, HUGE_VAL, 1e-7 * (1 + size), host), KRS_OK);
     double nearest = HUGE_VAL;
     for (int i = 0; i < ASKED; i++)
         if (host[i].hit)
@@ -255,7 +257,7 @@ static size_t wrong_rays(Stage *stage, const KrsPicture *picture)
         Answer truth    = answer_of(&host[i]);
         Answer picked   = seen_at(stage, picture, pixels[i], ray);
         Answer answered = answer_of(&device[i]);
-        double far = fmin(truth.t, picked.t) < HUGE_VAL ? fmin(truth.t, picked.t) : 0;
+        double far      = fmin(truth.t, picked.t) < HUGE_VAL ? fmin(truth.t, picked.t) : 0;
         double rounding = 2e-6 * (size + far); /* some units in the last place */
         count(&seen, stage, judge(stage, ray, &truth, &picked, 2e-6 * far), pixels[i], &truth,
               &picked);
@@ -264,11 +266,12 @@ static size_t wrong_rays(Stage *stage, const KrsPicture *picture)
     }
     /* Queries of the device have no anchor: far out they have as little as single precision. */
     bool has_digits = nearest == HUGE_VAL || 2.4e-7 * size < pixel_at(stage, nearest) / 64;
-    bool right = is_right(stage, &seen, ASKED);
+    bool right      = is_right(stage, &seen, ASKED);
     return !right + (has_digits && !is_right(stage, &asked, ASKED));
 }
 
-static bool rows_are_equal(const void *whole, const void *crop, const KrsWindow *window, size_t size)
+static bool rows_are_equal(const void *whole, const void *crop, const KrsWindow *window,
+                           size_t size)
 {
     for (uint32_t y = 0; y < window->height; y++)
         if (memcmp((const char *)whole + ((window->y + y) * WIDTH + window->x) * size,
@@ -282,12 +285,12 @@ static size_t wrong_crops(Stage *stage, const KrsPicture *whole)
     Random random = {5};
     size_t wrong  = 0;
     for (int i = 0; i < 3; i++) {
-        KrsWindow window = {.x = (uint32_t)random_below(&random, WIDTH - 40),
-                            .y = (uint32_t)random_below(&random, HEIGHT - 30)};
-        window.width  = 1 + (uint32_t)random_below(&random, 39);
-        window.height = 1 + (uint32_t)random_below(&random, 29);
-        KrsPicture *crop = stage_render(stage, (KrsRenderOptions){.crop = window});
-        bool equal = rows_are_equal(whole->depth, crop->depth, &window, sizeof(float)) &&
+        KrsWindow window  = {.x = (uint32_t)random_below(&random, WIDTH - 40),
+                             .y = (uint32_t)random_below(&random, HEIGHT - 30)};
+        window.width      = 1 + (uint32_t)random_below(&random, 39);
+        window.height     = 1 + (uint32_t)random_below(&random, 29);
+        KrsPicture *crop  = stage_render(stage, (KrsRenderOptions){.crop = window});
+        bool        equal = rows_are_equal(whole->depth, crop->depth, &window, sizeof(float)) &&
                      rows_are_equal(whole->position, crop->position, &window, 3 * sizeof(float)) &&
                      rows_are_equal(whole->normal, crop->normal, &window, 3 * sizeof(float)) &&
                      rows_are_equal(whole->color, crop->color, &window, 4 * sizeof(float)) &&
@@ -311,9 +314,9 @@ static size_t wrong_positions(const Stage *stage, const KrsPicture *picture)
     for (int k = 0; k < PIXELS; k++) {
         if (!picture->component[k])
             continue;
-        Line   ray = lens_ray(&stage->lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
-        double t   = picture->depth[k] / vec_dot(ray.direction, stage->lens.forward);
-        Vec    at  = line_at(ray, t);
+        Line   ray  = lens_ray(&stage->lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
+        double t    = picture->depth[k] / vec_dot(ray.direction, stage->lens.forward);
+        Vec    at   = line_at(ray, t);
         Vec    said = vec(picture->position[3 * k], picture->position[3 * k + 1],
                           picture->position[3 * k + 2]);
         wrong += !(vec_distance(at, said) <= 1e-5 * (vec_length(at) + t + 1));
@@ -341,7 +344,7 @@ static void examples_agree(void **state)
     (void)state;
     static const char *const paths[] = {"examples/01-hello.krs", "examples/05-rock.krs",
                                         "examples/14-inversion.krs"};
-    size_t wrong = 0;
+    size_t                   wrong   = 0;
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
         Stage stage = {.name = paths[i]};
         stage_open(&stage, krs_compile_file(paths[i], NULL, &stage.scene));
@@ -394,15 +397,23 @@ static void write_vec(SceneText *text, const char *before, Vec v, const char *af
 static void write_solid(SceneText *text, Random *random)
 {
     static const char *const solids[] = {
-        "sphere(0.7)", "box([1.1, 0.6, 0.9])", "box([1, 1, 0.02])", "torus(0.6, 0.2)",
-        "cylinder(0.4, 1.2)", "cone(0.6, 1.1)", "ellipsoid([0.8, 0.2, 0.5])",
-        "capsule([-0.5, -0.3, 0], [0.5, 0.4, 0.1], 0.15)", "octahedron(0.8)",
+        "sphere(0.7)",
+        "box([1.1, 0.6, 0.9])",
+        "box([1, 1, 0.02])",
+        "torus(0.6, 0.2)",
+        "cylinder(0.4, 1.2)",
+        "cone(0.6, 1.1)",
+        "ellipsoid([0.8, 0.2, 0.5])",
+        "capsule([-0.5, -0.3, 0], [0.5, 0.4, 0.1], 0.15)",
+        "octahedron(0.8)",
         "algebraic(x^4 + y^4 + z^4 == 0.3).within(box([1.6, 1.6, 1.6]))",
         "algebraic(x^2 + y^2 == z^2 * (0.8 - z) + 0.02).within(box([1.6, 1.6, 1.6]))",
         "field(sin(6 * x) * cos(6 * y) + sin(6 * z) * cos(5 * x)).within(sphere(0.8))",
         "union(sphere(0.5), box([1, 0.3, 0.3]), blend: 0.2)",
-        "box([1, 1, 1]).round(0.1).shell(0.05)", "star(5, 0.8).extrude(0.3)",
-        "(box([1, 1, 1]) - sphere(0.62))", "(sphere(0.7) & box([1, 1, 1]).move([0.4, 0.3, 0.2]))"};
+        "box([1, 1, 1]).round(0.1).shell(0.05)",
+        "star(5, 0.8).extrude(0.3)",
+        "(box([1, 1, 1]) - sphere(0.62))",
+        "(sphere(0.7) & box([1, 1, 1]).move([0.4, 0.3, 0.2]))"};
     scene_write(text, "%s", solids[random_below(random, sizeof solids / sizeof *solids)]);
 }
 
@@ -478,7 +489,7 @@ static size_t wrong_random_scene(int number)
     char      name[40];
     snprintf(name, sizeof name, "random scene %d", number);
     write_scene(&text, &random, far ? any_vec(&random, 3000) : vec(0, 0, 0), size);
-    Stage  stage = {.name = name};
+    Stage  stage  = {.name = name};
     size_t method = (size_t)number % (sizeof methods / sizeof *methods);
     stage_open(&stage, krs_compile_text(text.bytes, text.length, "scene.krs", NULL, &stage.scene));
     size_t wrong = wrong_scene(&stage, KRS_TRACE_DEFAULT) + wrong_scene(&stage, methods[method]);

@@ -21,8 +21,8 @@ static const double FOV = 40 * 0.017453292519943295;
 static KrsRenderer *renderer;
 
 typedef struct Pixel {
-    Vec    origin, direction;
-    Entry  entry;
+    Vec   origin, direction;
+    Entry entry;
 } Pixel;
 
 /* Pixel (i, j) looks through (i + 0.5, j + 0.5), row 0 is the top, fov is vertical. */
@@ -32,11 +32,12 @@ static void look(const Surface *surface, Vec eye, Pixel *pixels)
     Vec    right = vec_unit(vec_cross(forward, vec(0, 1, 0))), up = vec_cross(right, forward);
     double half = tan(0.5 * FOV);
     for (int k = 0; k < PIXELS; k++) {
-        double u = ((k % WIDTH + 0.5) / WIDTH * 2 - 1) * half * WIDTH / HEIGHT;
-        double v = (1 - (k / WIDTH + 0.5) / HEIGHT * 2) * half;
+        double u     = ((k % WIDTH + 0.5) / WIDTH * 2 - 1) * half * WIDTH / HEIGHT;
+        double v     = (1 - (k / WIDTH + 0.5) / HEIGHT * 2) * half;
         Pixel *pixel = &pixels[k];
-        *pixel = (Pixel){.origin = eye, .direction = vec_unit(vec_add(forward,
-                                        vec_add(vec_scale(u, right), vec_scale(v, up))))};
+        *pixel       = (Pixel){.origin    = eye,
+                               .direction = vec_unit(
+                                   vec_add(forward, vec_add(vec_scale(u, right), vec_scale(v, up))))};
         pixel->entry = surface_entry(surface->formula, surface->radius, eye, pixel->direction);
     }
 }
@@ -80,7 +81,7 @@ static Verdict judge_picture(const Surface *surface, const KrsPicture *picture, 
     Verdict verdict = {0};
     for (int k = 0; k < PIXELS; k++) {
         const Pixel *pixel = &pixels[k];
-        bool         seen  = picture->component[k] != 0, is = pixel->entry.fate == RAY_HITS;
+        bool         seen = picture->component[k] != 0, is = pixel->entry.fate == RAY_HITS;
         if (!is_inside(surface, pixels, k))
             continue;
         verdict.inside++;
@@ -89,11 +90,11 @@ static Verdict judge_picture(const Surface *surface, const KrsPicture *picture, 
         verdict.invented += seen && !is;
         if (!is || !seen)
             continue;
-        const float *at   = &picture->position[3 * k];
+        const float *at    = &picture->position[3 * k];
         Vec          place = vec(at[0], at[1], at[2]);
-        double       size = 2 * tan(0.5 * FOV) / HEIGHT * vec_distance(place, pixel->origin);
-        double       off  = distance_from(surface, pixel, place) / size;
-        verdict.farthest = fmax(verdict.farthest, off);
+        double       size  = 2 * tan(0.5 * FOV) / HEIGHT * vec_distance(place, pixel->origin);
+        double       off   = distance_from(surface, pixel, place) / size;
+        verdict.farthest   = fmax(verdict.farthest, off);
         verdict.misplaced += off > 0.25;
     }
     return verdict;
@@ -119,9 +120,11 @@ static void judge_by(const char *name, KrsTrace first, KrsTrace last, double pla
     assert_int_equal(krs_rendering_new(renderer, product.scene, &rendering), KRS_OK);
     look(surface, eye, pixels);
     for (KrsTrace trace = first; trace <= last; trace++) {
-        KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .trace = trace,
+        KrsRenderOptions options = {.width  = WIDTH,
+                                    .height = HEIGHT,
+                                    .trace  = trace,
                                     .planes = KRS_PLANE_POSITION | KRS_PLANE_IDS};
-        KrsPicture *picture;
+        KrsPicture      *picture;
         if (krs_render(rendering, product.frame, &options, &picture) != KRS_OK)
             fail_msg("%s: %s", name, krs_renderer_message(renderer));
         Verdict verdict = judge_picture(surface, picture, pixels);
@@ -183,8 +186,9 @@ static int close_device(void **state)
 int main(void)
 {
     static const char *const thorough[] = {"kummer of a param", "barth_sextic", "labs_septic"};
-    static const char *const exact[] = {"clebsch", "cayley", "togliatti", "endrass_octic",
-                                        "barth_decic", "sarti_dodecic", "chmutov of degree 14"};
+    static const char *const exact[]    = {
+           "clebsch",     "cayley",        "togliatti",           "endrass_octic",
+           "barth_decic", "sarti_dodecic", "chmutov of degree 14"};
     enum { THOROUGH = sizeof thorough / sizeof *thorough, EXACT = sizeof exact / sizeof *exact };
     struct CMUnitTest tests[THOROUGH + EXACT + 1];
     size_t            count = 0;

@@ -31,8 +31,8 @@ static March march_new(const Product *product)
     const KrsScene *scene  = product->scene;
     NodeValue      *values = calloc(scene->graph->count, sizeof *values);
     uint32_t        slots  = scene->program.parameter_slots;
-    float         (*block)[4]   = calloc(slots, sizeof *block);
-    NodeValue      *parameters  = calloc(slots, sizeof *parameters);
+    float(*block)[4]       = calloc(slots, sizeof *block);
+    NodeValue *parameters  = calloc(slots, sizeof *parameters);
     assert_true(values && block && parameters);
     krs_frame_parameters(product->frame, block);
     for (uint32_t i = 0; i < slots; i++)
@@ -85,8 +85,8 @@ static Sequence random_sequence(const Flavour *flavour, Random *random)
         if (level < flavour->mirrors)
             sequence.mirrors[level] = (Half){random_unit(random),
                                              random_between(random, flavour->near, flavour->far)};
-        Body body = {.level = level, .from = random_in_cube(random, flavour->reach)};
-        body.to = vec_add(body.from, random_in_cube(random, flavour->size));
+        Body body   = {.level = level, .from = random_in_cube(random, flavour->reach)};
+        body.to     = vec_add(body.from, random_in_cube(random, flavour->size));
         body.radius = flavour->size * random_between(random, 0.1, 0.6);
         if (level == 0 || random_below(random, 3) > 0)
             sequence.bodies[sequence.body_count++] = body;
@@ -107,9 +107,10 @@ static Product compile_sequence(const Sequence *sequence, double slack)
         for (int i = 0; i < sequence->body_count; i++) {
             const Body *b = &sequence->bodies[i];
             if (b->level == level)
-                scene_write(&text, "kernel capsule([%.17g, %.17g, %.17g], [%.17g, %.17g, %.17g],"
-                                   " %.17g);\n", b->from.x, b->from.y, b->from.z, b->to.x,
-                            b->to.y, b->to.z, b->radius);
+                scene_write(&text,
+                            "kernel capsule([%.17g, %.17g, %.17g], [%.17g, %.17g, %.17g],"
+                            " %.17g);\n",
+                            b->from.x, b->from.y, b->from.z, b->to.x, b->to.y, b->to.z, b->radius);
         }
         if (level == sequence->mirror_count)
             break;
@@ -136,7 +137,7 @@ static Vec random_point(Random *random, const Expansion *expansion, double half)
 
 static void check_point(March *march, const Product *product, const Expansion *expansion, Vec point)
 {
-    double room  = march_field(march, point), distance = product_distance(product, point);
+    double room = march_field(march, point), distance = product_distance(product, point);
     bool   sure;
     if (expansion_contains(expansion, point)) {
         if (!(room <= 1e-9))
@@ -241,14 +242,14 @@ static void balls_are_empty(void **state)
     const char *text    = *state;
     Product     product = product_compile(text);
     March       march   = march_new(&product);
-    Trial trial = {march_field, &march, plain_inside, &product, vec(0, 0, 0), 3, 3000, 11};
-    Verdict verdict = judge(&trial);
+    Trial       trial   = {march_field, &march, plain_inside, &product, vec(0, 0, 0), 3, 3000, 11};
+    Verdict     verdict = judge(&trial);
     if (verdict.sign_errors || verdict.ball_errors)
         fail_msg("%d wrong signs, %d balls that are not empty:\n%s", verdict.sign_errors,
                  verdict.ball_errors, text);
     Exaggeration larger = {march_field, &march, 1.5};
-    trial.field      = exaggerated_field;
-    trial.field_user = &larger;
+    trial.field         = exaggerated_field;
+    trial.field_user    = &larger;
     assert_true(judge(&trial).ball_errors > 0);
     free(march.values);
     product_free(&product);
@@ -261,7 +262,7 @@ static void far_away_little_is_run(void **state)
     Product product = product_format("%s", scenes[2]);
     March   march   = march_new(&product);
     Vec     far     = vec(40, 50, 30);
-    double  room    = march_field(&march, far), distance = plain_field(&product, far);
+    double  room = march_field(&march, far), distance = plain_field(&product, far);
     assert_true(room > 0.5 * distance && room <= distance + 1e-9);
     const KrsScene *scene = product.scene;
     size_t          run   = 0;
@@ -278,7 +279,7 @@ int main(void)
     struct CMUnitTest tests[2 * FLAVOURS + SCENES + 1];
     size_t            count = 0;
     for (int i = 0; i < FLAVOURS; i++) {
-        void *flavour = (void *)(uintptr_t)&flavours[i];
+        void *flavour  = (void *)(uintptr_t)&flavours[i];
         tests[count++] = (struct CMUnitTest){flavours[i].name, room_is_never_above_the_distance,
                                              NULL, NULL, flavour};
         tests[count++] = (struct CMUnitTest){"parameters_do_not_break_bounds",

@@ -19,11 +19,11 @@ Vec vec_across(Vec a)
 
 Vec vec_turn(Vec p, Vec axis, double angle)
 {
-    Vec up = vec_unit(axis);
+    Vec up    = vec_unit(axis);
     Vec along = vec_scale(vec_dot(p, up), up);
-    Vec out = vec_sub(p, along);
-    return vec_add(along, vec_add(vec_scale(cos(angle), out),
-                                  vec_scale(sin(angle), vec_cross(up, out))));
+    Vec out   = vec_sub(p, along);
+    return vec_add(along,
+                   vec_add(vec_scale(cos(angle), out), vec_scale(sin(angle), vec_cross(up, out))));
 }
 
 Vec random_in_cube(Random *random, double half)
@@ -36,7 +36,7 @@ Vec random_in_cube(Random *random, double half)
 Vec random_unit(Random *random)
 {
     for (;;) {
-        Vec v = random_in_cube(random, 1);
+        Vec    v      = random_in_cube(random, 1);
         double length = vec_length(v);
         if (length > 0.1 && length <= 1)
             return vec_scale(1 / length, v);
@@ -45,8 +45,8 @@ Vec random_unit(Random *random)
 
 Vec random_in_ball(Random *random, Vec centre, double radius)
 {
-    bool rim = random_below(random, 2);
-    double r = rim ? random_between(random, 0.99, 1) : cbrt(random_between(random, 0, 1));
+    bool   rim = random_below(random, 2);
+    double r   = rim ? random_between(random, 0.99, 1) : cbrt(random_between(random, 0, 1));
     return vec_add(centre, vec_scale(radius * r, random_unit(random)));
 }
 
@@ -60,14 +60,14 @@ void cloud_add(Cloud *cloud, Vec point)
 {
     if (cloud->count == cloud->capacity) {
         cloud->capacity = cloud->capacity ? 2 * cloud->capacity : 4096;
-        cloud->points = realloc(cloud->points, cloud->capacity * sizeof *cloud->points);
+        cloud->points   = realloc(cloud->points, cloud->capacity * sizeof *cloud->points);
         if (!cloud->points) {
             fprintf(stderr, "no memory for a cloud of %zu points\n", cloud->capacity);
             exit(EXIT_FAILURE);
         }
     }
     cloud->points[cloud->count++] = point;
-    cloud->indexed = 0;
+    cloud->indexed                = 0;
 }
 
 /* The length of the longest of a few lines of a patch, along u or along v. */
@@ -79,9 +79,8 @@ static double patch_extent(Patch *patch, const void *user, bool along_u)
         double across = line / (LINES - 1.0), length = 0;
         for (int i = 0; i < PIECES; i++) {
             double a = (double)i / PIECES, b = (i + 1.0) / PIECES;
-            double piece = along_u
-                               ? vec_distance(patch(user, a, across), patch(user, b, across))
-                               : vec_distance(patch(user, across, a), patch(user, across, b));
+            double piece = along_u ? vec_distance(patch(user, a, across), patch(user, b, across))
+                                   : vec_distance(patch(user, across, a), patch(user, across, b));
             length += isnan(piece) ? 0 : piece;
         }
         longest = fmax(longest, length);
@@ -92,16 +91,16 @@ static double patch_extent(Patch *patch, const void *user, bool along_u)
 /* The longest side or diagonal of the cell whose corners are the first two of both rows. */
 static double cell_size(const Vec *row, const Vec *next)
 {
-    double sides = fmax(vec_distance(row[0], row[1]), vec_distance(row[0], next[0]));
+    double sides     = fmax(vec_distance(row[0], row[1]), vec_distance(row[0], next[0]));
     double diagonals = fmax(vec_distance(row[0], next[1]), vec_distance(row[1], next[0]));
     return fmax(sides, diagonals);
 }
 
 void cloud_patch(Cloud *cloud, Patch *patch, Keep *keep, const void *user, double step)
 {
-    size_t rows = 2 + (size_t)(patch_extent(patch, user, true) / step);
+    size_t rows    = 2 + (size_t)(patch_extent(patch, user, true) / step);
     size_t columns = 2 + (size_t)(patch_extent(patch, user, false) / step);
-    Vec *before = calloc(columns, sizeof *before), *row = calloc(columns, sizeof *row);
+    Vec   *before = calloc(columns, sizeof *before), *row = calloc(columns, sizeof *row);
     if (!before || !row)
         exit(EXIT_FAILURE);
 
@@ -115,8 +114,8 @@ void cloud_patch(Cloud *cloud, Patch *patch, Keep *keep, const void *user, doubl
         for (size_t j = 0; i > 0 && j + 1 < columns; j++)
             longest = fmax(longest, cell_size(before + j, row + j));
         Vec *swap = before;
-        before = row;
-        row = swap;
+        before    = row;
+        row       = swap;
     }
     free(before);
     free(row);
@@ -136,7 +135,7 @@ static void split_range(Vec *points, size_t count, int axis)
 {
     ptrdiff_t low = 0, high = (ptrdiff_t)count - 1, middle = (ptrdiff_t)count / 2;
     while (low < high) {
-        double pivot = vec_axis(&points[middle], axis);
+        double    pivot = vec_axis(&points[middle], axis);
         ptrdiff_t i = low, j = high;
         while (i <= j) {
             while (vec_axis(&points[i], axis) < pivot)
@@ -144,7 +143,7 @@ static void split_range(Vec *points, size_t count, int axis)
             while (vec_axis(&points[j], axis) > pivot)
                 j--;
             if (i <= j) {
-                Vec swap = points[i];
+                Vec swap    = points[i];
                 points[i++] = points[j];
                 points[j--] = swap;
             }
@@ -171,13 +170,13 @@ static double nearest_in_range(const Vec *points, size_t count, int axis, Vec p,
 {
     if (count == 0)
         return best;
-    size_t middle = count / 2;
-    Vec to = vec_sub(points[middle], p);
-    best = fmin(best, vec_dot(to, to));
-    double beyond = vec_axis(&p, axis) - vec_axis(&points[middle], axis);
-    const Vec *upper = points + middle + 1;
-    size_t above = count - middle - 1;
-    int next = (axis + 1) % 3;
+    size_t middle     = count / 2;
+    Vec    to         = vec_sub(points[middle], p);
+    best              = fmin(best, vec_dot(to, to));
+    double     beyond = vec_axis(&p, axis) - vec_axis(&points[middle], axis);
+    const Vec *upper  = points + middle + 1;
+    size_t     above  = count - middle - 1;
+    int        next   = (axis + 1) % 3;
     if (beyond < 0) {
         best = nearest_in_range(points, middle, next, p, best);
         return beyond * beyond < best ? nearest_in_range(upper, above, next, p, best) : best;

@@ -19,15 +19,15 @@ typedef struct Vec {
     double x, y, z;
 } Vec;
 
-static inline Vec vec(double x, double y, double z) { return (Vec){x, y, z}; }
-static inline Vec vec_add(Vec a, Vec b) { return vec(a.x + b.x, a.y + b.y, a.z + b.z); }
-static inline Vec vec_sub(Vec a, Vec b) { return vec(a.x - b.x, a.y - b.y, a.z - b.z); }
-static inline Vec vec_scale(double s, Vec a) { return vec(s * a.x, s * a.y, s * a.z); }
+static inline Vec    vec(double x, double y, double z) { return (Vec){x, y, z}; }
+static inline Vec    vec_add(Vec a, Vec b) { return vec(a.x + b.x, a.y + b.y, a.z + b.z); }
+static inline Vec    vec_sub(Vec a, Vec b) { return vec(a.x - b.x, a.y - b.y, a.z - b.z); }
+static inline Vec    vec_scale(double s, Vec a) { return vec(s * a.x, s * a.y, s * a.z); }
 static inline double vec_dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 static inline double vec_length(Vec a) { return sqrt(vec_dot(a, a)); }
 static inline double vec_distance(Vec a, Vec b) { return vec_length(vec_sub(a, b)); }
-static inline Vec vec_unit(Vec a) { return vec_scale(1 / vec_length(a), a); }
-static inline Vec vec_mix(Vec a, Vec b, double t)
+static inline Vec    vec_unit(Vec a) { return vec_scale(1 / vec_length(a), a); }
+static inline Vec    vec_mix(Vec a, Vec b, double t)
 {
     return vec_add(vec_scale(1 - t, a), vec_scale(t, b));
 }
@@ -47,8 +47,8 @@ typedef struct Half {
 } Half;
 static inline double half_excess(Half half, Vec p) { return vec_dot(half.normal, p) - half.offset; }
 
-Vec    random_unit(Random *random);
-Vec    random_in_cube(Random *random, double half);
+Vec random_unit(Random *random);
+Vec random_in_cube(Random *random, double half);
 /* In the ball around `centre`, half of the time within a hundredth of its surface. */
 Vec random_in_ball(Random *random, Vec centre, double radius);
 

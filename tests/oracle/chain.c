@@ -8,10 +8,10 @@
 static const double PI = 3.14159265358979323846;
 
 const char *const link_names[LINK_KINDS] = {
-    "box", "ball", "rod", "ring", "capsule", "grown", "hollow", "wavy", "blend", "polynomial",
-    "figure", "move", "turn", "scale", "stretch", "mirror", "repeat", "polar", "twist", "bend",
-    "taper", "elongate", "invert", "within", "union", "intersection", "difference", "xor",
-    "sequence", "mobius"};
+    "box",    "ball",         "rod",        "ring", "capsule",  "grown",    "hollow",  "wavy",
+    "blend",  "polynomial",   "figure",     "move", "turn",     "scale",    "stretch", "mirror",
+    "repeat", "polar",        "twist",      "bend", "taper",    "elongate", "invert",  "within",
+    "union",  "intersection", "difference", "xor",  "sequence", "mobius"};
 
 /* ---- what is inside ---- */
 
@@ -49,19 +49,17 @@ static bool primitive_contains(const Link *link, Vec p)
     Vec    v = link->v;
     double n = link->number;
     switch (link->kind) {
-    case LINK_BALL:    return vec_length(p) <= n;
-    case LINK_ROD:     return hypot(p.x, p.z) <= n && fabs(p.y) <= v.y;
-    case LINK_RING:    return hypot(hypot(p.x, p.z) - v.x, p.y) <= n;
+    case LINK_BALL: return vec_length(p) <= n;
+    case LINK_ROD: return hypot(p.x, p.z) <= n && fabs(p.y) <= v.y;
+    case LINK_RING: return hypot(hypot(p.x, p.z) - v.x, p.y) <= n;
     case LINK_CAPSULE: return segment_distance(p, v) <= n;
-    case LINK_GROWN:   return box_depth(p, v) <= n;
-    case LINK_HOLLOW:  return fabs(box_depth(p, v)) <= n;
-    case LINK_WAVY:    return box_depth(p, v) <= n * sin(4 * p.x + p.y);
-    case LINK_BLEND:
-        return blended(box_depth(p, v), vec_distance(p, link->w) - 0.4, n) <= 0;
-    case LINK_POLYNOMIAL:
-        return square(p.x / v.x) + square(p.y / v.y) + square(p.z / v.z) < n;
-    case LINK_FIGURE:  return fabs(p.z) <= n && in_figure(p, v);
-    default:           return box_depth(p, v) <= 0;
+    case LINK_GROWN: return box_depth(p, v) <= n;
+    case LINK_HOLLOW: return fabs(box_depth(p, v)) <= n;
+    case LINK_WAVY: return box_depth(p, v) <= n * sin(4 * p.x + p.y);
+    case LINK_BLEND: return blended(box_depth(p, v), vec_distance(p, link->w) - 0.4, n) <= 0;
+    case LINK_POLYNOMIAL: return square(p.x / v.x) + square(p.y / v.y) + square(p.z / v.z) < n;
+    case LINK_FIGURE: return fabs(p.z) <= n && in_figure(p, v);
+    default: return box_depth(p, v) <= 0;
     }
 }
 
@@ -82,14 +80,13 @@ static Vec unbent(const Link *link, Vec p, int turn)
     double y = vec_dot(p, along), z = vec_dot(p, aside);
     double angle  = atan2(side * y, side * (1 / rate - z)) + 2 * PI * turn;
     double radius = hypot(y, 1 / rate - z);
-    Vec    flat   = vec_add(vec_scale(angle / rate, along),
-                            vec_scale(1 / rate - side * radius, aside));
+    Vec flat = vec_add(vec_scale(angle / rate, along), vec_scale(1 / rate - side * radius, aside));
     return vec_add(vec_scale(vec_dot(p, link->v), link->v), flat);
 }
 
 static Vec untapered(const Link *link, Vec p)
 {
-    double t = (vec_dot(p, link->v) - link->low) / (link->high - link->low);
+    double t       = (vec_dot(p, link->v) - link->low) / (link->high - link->low);
     double factor  = link->number + (link->w.x - link->number) * fmin(fmax(t, 0), 1);
     Vec    on_axis = vec_scale(vec_dot(p, link->v), link->v);
     return vec_add(on_axis, vec_scale(1 / factor, vec_sub(p, on_axis)));
@@ -108,13 +105,14 @@ static Vec undone(const Link *link, Vec p)
 {
     Vec v = link->v;
     switch (link->kind) {
-    case LINK_MOVE:    return vec_sub(p, vec(link->number, v.y, v.z));
-    case LINK_TURN:    return vec_turn(p, v, -link->number);
-    case LINK_SCALE:   return vec_scale(1 / link->number, p);
+    case LINK_MOVE: return vec_sub(p, vec(link->number, v.y, v.z));
+    case LINK_TURN: return vec_turn(p, v, -link->number);
+    case LINK_SCALE: return vec_scale(1 / link->number, p);
     case LINK_STRETCH: return vec(p.x / link->number, p.y / v.y, p.z / v.z);
-    case LINK_MIRROR: case LINK_SEQUENCE: return folded(link, p);
-    case LINK_TWIST:   return vec_turn(p, v, -link->number * vec_dot(p, vec_unit(v)));
-    case LINK_TAPER:   return untapered(link, p);
+    case LINK_MIRROR:
+    case LINK_SEQUENCE: return folded(link, p);
+    case LINK_TWIST: return vec_turn(p, v, -link->number * vec_dot(p, vec_unit(v)));
+    case LINK_TAPER: return untapered(link, p);
     case LINK_ELONGATE: return vec(pulled(p.x, v.x), pulled(p.y, v.y), pulled(p.z, v.z));
     default: {
         Vec away = vec_sub(p, v); /* INVERT, MOBIUS */
@@ -163,22 +161,21 @@ static bool in_bent(const Chain *chain, const Link *link, Vec p)
 static bool contains(const Chain *chain, int at, Vec p)
 {
     const Link *link = &chain->links[at];
-    int a = link->solids[0], b = link->solids[1];
+    int         a = link->solids[0], b = link->solids[1];
     if (link->kind < LINK_PRIMITIVES)
         return primitive_contains(link, p);
     switch (link->kind) {
-    case LINK_REPEAT:       return in_copies(chain, link, p);
-    case LINK_POLAR:        return around(chain, link, p);
-    case LINK_BEND:         return in_bent(chain, link, p);
-    case LINK_WITHIN:
-        return vec_distance(p, link->w) <= link->number && contains(chain, a, p);
-    case LINK_UNION:        return contains(chain, a, p) || contains(chain, b, p);
+    case LINK_REPEAT: return in_copies(chain, link, p);
+    case LINK_POLAR: return around(chain, link, p);
+    case LINK_BEND: return in_bent(chain, link, p);
+    case LINK_WITHIN: return vec_distance(p, link->w) <= link->number && contains(chain, a, p);
+    case LINK_UNION: return contains(chain, a, p) || contains(chain, b, p);
     case LINK_INTERSECTION: return contains(chain, a, p) && contains(chain, b, p);
-    case LINK_DIFFERENCE:   return contains(chain, a, p) && !contains(chain, b, p);
-    case LINK_XOR:          return contains(chain, a, p) != contains(chain, b, p);
-    case LINK_SEQUENCE: case LINK_MOBIUS:
-        return contains(chain, a, undone(link, p)) || contains(chain, b, p);
-    default:                return contains(chain, a, undone(link, p));
+    case LINK_DIFFERENCE: return contains(chain, a, p) && !contains(chain, b, p);
+    case LINK_XOR: return contains(chain, a, p) != contains(chain, b, p);
+    case LINK_SEQUENCE:
+    case LINK_MOBIUS: return contains(chain, a, undone(link, p)) || contains(chain, b, p);
+    default: return contains(chain, a, undone(link, p));
     }
 }
 
@@ -202,12 +199,12 @@ static const char *number_text(const Chain *chain, const Link *link, char text[3
 
 static void write_primitive(const Chain *chain, const Link *link, SceneText *text)
 {
-    char number[32];
-    Vec  v = link->v, s = vec_scale(2, v), w = link->w;
+    char        number[32];
+    Vec         v = link->v, s = vec_scale(2, v), w = link->w;
     const char *n = number_text(chain, link, number);
     switch (link->kind) {
     case LINK_BALL: scene_write(text, "sphere(%s)", n); return;
-    case LINK_ROD:  scene_write(text, "cylinder(%s, %.17g)", n, s.y); return;
+    case LINK_ROD: scene_write(text, "cylinder(%s, %.17g)", n, s.y); return;
     case LINK_RING: scene_write(text, "torus(%.17g, %s)", v.x, n); return;
     case LINK_CAPSULE:
         scene_write(text, "capsule([0, 0, 0], [%.17g, %.17g, %.17g], %s)", v.x, v.y, v.z, n);
@@ -217,8 +214,10 @@ static void write_primitive(const Chain *chain, const Link *link, SceneText *tex
                     1 / (v.x * v.x), 1 / (v.y * v.y), 1 / (v.z * v.z), n);
         return;
     case LINK_FIGURE:
-        scene_write(text, "polygon([[-0.3, -0.3], [0.7, -0.3], [0.7, 0.1], [0.1, 0.1], [0.1, 0.7], "
-                    "[-0.3, 0.7]]).scale([%.17g, %.17g, 1]).extrude(2 * %s)", v.x, v.y, n);
+        scene_write(text,
+                    "polygon([[-0.3, -0.3], [0.7, -0.3], [0.7, 0.1], [0.1, 0.1], [0.1, 0.7], "
+                    "[-0.3, 0.7]]).scale([%.17g, %.17g, 1]).extrude(2 * %s)",
+                    v.x, v.y, n);
         return;
     default: break;
     }
@@ -237,12 +236,12 @@ static void write_primitive(const Chain *chain, const Link *link, SceneText *tex
 
 static void write_method(const Chain *chain, const Link *link, SceneText *text)
 {
-    char number[32];
-    Vec  v = link->v, w = link->w, axis = vec_scale(link->length, v);
+    char        number[32];
+    Vec         v = link->v, w = link->w, axis = vec_scale(link->length, v);
     const char *n = number_text(chain, link, number);
     switch (link->kind) {
-    case LINK_MOVE:    scene_write(text, ".move([%s, %.17g, %.17g])", n, v.y, v.z); return;
-    case LINK_SCALE:   scene_write(text, ".scale(%s)", n); return;
+    case LINK_MOVE: scene_write(text, ".move([%s, %.17g, %.17g])", n, v.y, v.z); return;
+    case LINK_SCALE: scene_write(text, ".scale(%s)", n); return;
     case LINK_STRETCH: scene_write(text, ".scale([%s, %.17g, %.17g])", n, v.y, v.z); return;
     case LINK_ELONGATE:
         scene_write(text, ".elongate([%.17g, %.17g, %.17g])", v.x, v.y, v.z);
@@ -261,13 +260,15 @@ static void write_method(const Chain *chain, const Link *link, SceneText *text)
         scene_write(text, ".transform(invert([%.17g, %.17g, %.17g], %s))", v.x, v.y, v.z, n);
         return;
     case LINK_POLAR:
-        scene_write(text, ".repeat_polar(%g, [%.17g, %.17g, %.17g])", w.x, axis.x, axis.y,
-                    axis.z);
+        scene_write(text, ".repeat_polar(%g, [%.17g, %.17g, %.17g])", w.x, axis.x, axis.y, axis.z);
         return;
     default: break;
     }
-    scene_write(text, ".%s([%.17g, %.17g, %.17g], %s", link->kind == LINK_TURN ? "rotate" :
-                link->kind == LINK_TWIST ? "twist" : link->kind == LINK_BEND ? "bend" : "taper",
+    scene_write(text, ".%s([%.17g, %.17g, %.17g], %s",
+                link->kind == LINK_TURN    ? "rotate"
+                : link->kind == LINK_TWIST ? "twist"
+                : link->kind == LINK_BEND  ? "bend"
+                                           : "taper",
                 axis.x, axis.y, axis.z, n);
     if (link->kind == LINK_TAPER)
         scene_write(text, ", %.17g", w.x);
@@ -277,8 +278,8 @@ static void write_method(const Chain *chain, const Link *link, SceneText *text)
 static void write_link(const Chain *chain, int at, SceneText *text)
 {
     static const char *const joints[] = {"union", "intersection", "difference", "xor"};
-    const Link *link = &chain->links[at];
-    char        number[32];
+    const Link              *link     = &chain->links[at];
+    char                     number[32];
     if (link->kind < LINK_PRIMITIVES) {
         write_primitive(chain, link, text);
         return;
@@ -337,9 +338,9 @@ typedef struct Known {
 static Known ask_about(Chain *chain, int root, const Vec *turned)
 {
     static SceneText text;
-    Known known = {.refused = true};
-    chain->root = root;
-    text.length = 0;
+    Known            known = {.refused = true};
+    chain->root            = root;
+    text.length            = 0;
     chain_write(chain, &text);
     if (turned) {
         text.length -= 2;
@@ -373,7 +374,7 @@ static double random_side(Random *random) { return random_below(random, 2) ? 1 :
 static Vec random_axis(Random *random)
 {
     static const Vec axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    int axis = random_below(random, 5);
+    int              axis    = random_below(random, 5);
     return axis < 3 ? vec_scale(random_side(random), axes[axis]) : random_unit(random);
 }
 
@@ -388,9 +389,9 @@ static void let_move(Link *link, Random *random)
 
 static int random_primitive(Chain *chain, const Recipe *recipe, Random *random)
 {
-    Link link = {.kind = random_below(random, LINK_PRIMITIVES), .solids = {-1, -1}};
-    link.v = vec(random_between(random, 0.15, 0.7), random_between(random, 0.15, 0.9),
-                 random_between(random, 0.15, 0.7));
+    Link link   = {.kind = random_below(random, LINK_PRIMITIVES), .solids = {-1, -1}};
+    link.v      = vec(random_between(random, 0.15, 0.7), random_between(random, 0.15, 0.9),
+                      random_between(random, 0.15, 0.7));
     link.number = random_between(random, 0.1, 0.5);
     if (link.kind == LINK_RING)
         link.v.x += 0.5;
@@ -406,14 +407,14 @@ static int random_primitive(Chain *chain, const Recipe *recipe, Random *random)
 /* Cells that the solid fits: as large as its box or larger. */
 static bool fill_repeat(Link *link, const Known *known, Random *random)
 {
-    const double low[3] = {known->low.x, known->low.y, known->low.z};
+    const double low[3]  = {known->low.x, known->low.y, known->low.z};
     const double high[3] = {known->high.x, known->high.y, known->high.z};
-    double period[3], count[3];
+    double       period[3], count[3];
     for (int i = 0; i < 3; i++) {
-        double half = fmax(fabs(low[i]), fabs(high[i]));
-        count[i]    = 1 + random_below(random, 3);
-        bool touches = random_below(random, 3) == 0;
-        period[i]    = 2 * half * (touches ? 1 : random_between(random, 1, 1.4));
+        double half   = fmax(fabs(low[i]), fabs(high[i]));
+        count[i]      = 1 + random_below(random, 3);
+        bool touches  = random_below(random, 3) == 0;
+        period[i]     = 2 * half * (touches ? 1 : random_between(random, 1, 1.4));
         link->touches = link->touches || touches;
     }
     link->v = vec(period[0], period[1], period[2]);
@@ -433,7 +434,7 @@ static bool chain_touches(const Chain *chain)
 /* The numbers of a method on a solid of which this is known; false: that is not to be had. */
 static bool fill_method(Chain *chain, Link *link, const Known *known, Random *random)
 {
-    double size = known->bounded ? size_of(known) : 2;
+    double size  = known->bounded ? size_of(known) : 2;
     link->v      = random_axis(random);
     link->length = random_below(random, 2) ? 1 : random_between(random, 0.2, 3);
     switch (link->kind) {
@@ -441,24 +442,15 @@ static bool fill_method(Chain *chain, Link *link, const Known *known, Random *ra
         link->v      = random_in_cube(random, random_below(random, 3) ? 1.5 : 5);
         link->number = link->v.x;
         return true;
-    case LINK_TURN:
-        link->number = random_between(random, -4, 4);
-        return true;
-    case LINK_SCALE:
-        link->number = random_between(random, 0.4, 1.7);
-        return true;
+    case LINK_TURN: link->number = random_between(random, -4, 4); return true;
+    case LINK_SCALE: link->number = random_between(random, 0.4, 1.7); return true;
     case LINK_STRETCH:
-        link->v = vec(0, random_between(random, 0.5, 1.6), random_between(random, 0.5, 1.6));
+        link->v      = vec(0, random_between(random, 0.5, 1.6), random_between(random, 0.5, 1.6));
         link->number = random_between(random, 0.5, 1.6);
         return true;
-    case LINK_MIRROR:
-        link->number = random_between(random, -0.4, 0.8) * size;
-        return true;
-    case LINK_REPEAT:
-        return known->bounded && fill_repeat(link, known, random);
-    case LINK_POLAR:
-        link->w.x = 2 + random_below(random, 6);
-        return true;
+    case LINK_MIRROR: link->number = random_between(random, -0.4, 0.8) * size; return true;
+    case LINK_REPEAT: return known->bounded && fill_repeat(link, known, random);
+    case LINK_POLAR: link->w.x = 2 + random_below(random, 6); return true;
     case LINK_TWIST:
         link->number = random_side(random) * pow(10, random_between(random, -1, 0.3));
         return known->bounded;
@@ -524,9 +516,10 @@ static int random_solid(Chain *chain, const Recipe *recipe, int joints, Random *
 {
     int solid;
     if (joints > 0 && chain->count < MOST_LINKS / 2) {
-        int  left = random_below(random, joints);
-        Link link = {.kind = LINK_METHODS + random_below(random, LINK_KINDS - LINK_METHODS),
-                     .v = random_axis(random), .number = random_between(random, -0.3, 0.6)};
+        int  left      = random_below(random, joints);
+        Link link      = {.kind   = LINK_METHODS + random_below(random, LINK_KINDS - LINK_METHODS),
+                          .v      = random_axis(random),
+                          .number = random_between(random, -0.3, 0.6)};
         link.solids[0] = random_solid(chain, recipe, left, random, refusals);
         link.solids[1] = random_solid(chain, recipe, joints - 1 - left, random, refusals);
         if (link.kind == LINK_MOBIUS) {
@@ -549,7 +542,7 @@ static int random_solid(Chain *chain, const Recipe *recipe, int joints, Random *
 
 static void note_kinds(Chain *chain, int at)
 {
-    const Link *link = &chain->links[at];
+    const Link *link         = &chain->links[at];
     chain->shown[link->kind] = true;
     for (int i = 0; i < 2 && link->kind >= LINK_PRIMITIVES; i++)
         if (link->solids[i] >= 0)
@@ -558,9 +551,9 @@ static void note_kinds(Chain *chain, int at)
 
 void chain_random(Chain *chain, const Recipe *recipe, Random *random, Refusals *refusals)
 {
-    *chain = (Chain){.count = 0};
-    int joints = recipe->joints ? random_below(random, recipe->joints + 1) : 0;
-    int root   = random_solid(chain, recipe, joints, random, refusals);
+    *chain      = (Chain){.count = 0};
+    int joints  = recipe->joints ? random_below(random, recipe->joints + 1) : 0;
+    int root    = random_solid(chain, recipe, joints, random, refusals);
     chain->root = root;
     note_kinds(chain, root);
 }

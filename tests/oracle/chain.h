@@ -12,13 +12,37 @@
 #include "tests/oracle/product.h"
 
 typedef enum LinkKind {
-    LINK_BOX, LINK_BALL, LINK_ROD, LINK_RING, LINK_CAPSULE, LINK_GROWN, LINK_HOLLOW, LINK_WAVY,
-    LINK_BLEND, LINK_POLYNOMIAL, LINK_FIGURE,
+    LINK_BOX,
+    LINK_BALL,
+    LINK_ROD,
+    LINK_RING,
+    LINK_CAPSULE,
+    LINK_GROWN,
+    LINK_HOLLOW,
+    LINK_WAVY,
+    LINK_BLEND,
+    LINK_POLYNOMIAL,
+    LINK_FIGURE,
     LINK_PRIMITIVES,
-    LINK_MOVE = LINK_PRIMITIVES, LINK_TURN, LINK_SCALE, LINK_STRETCH, LINK_MIRROR, LINK_REPEAT,
-    LINK_POLAR, LINK_TWIST, LINK_BEND, LINK_TAPER, LINK_ELONGATE, LINK_INVERT, LINK_WITHIN,
+    LINK_MOVE = LINK_PRIMITIVES,
+    LINK_TURN,
+    LINK_SCALE,
+    LINK_STRETCH,
+    LINK_MIRROR,
+    LINK_REPEAT,
+    LINK_POLAR,
+    LINK_TWIST,
+    LINK_BEND,
+    LINK_TAPER,
+    LINK_ELONGATE,
+    LINK_INVERT,
+    LINK_WITHIN,
     LINK_METHODS,
-    LINK_UNION = LINK_METHODS, LINK_INTERSECTION, LINK_DIFFERENCE, LINK_XOR, LINK_SEQUENCE,
+    LINK_UNION = LINK_METHODS,
+    LINK_INTERSECTION,
+    LINK_DIFFERENCE,
+    LINK_XOR,
+    LINK_SEQUENCE,
     LINK_MOBIUS,
     LINK_KINDS
 } LinkKind;
@@ -29,13 +53,13 @@ enum { MOST_LINKS = 40 };
 /* A primitive, or what is done to one or two solids. */
 typedef struct Link {
     LinkKind kind;
-    bool     moves;     /* `number` is a parameter of the scene, with a range */
-    bool     touches;   /* REPEAT: cells are as large as what is in them */
-    double   number;    /* a radius, an angle, a rate, a factor */
+    bool     moves;       /* `number` is a parameter of the scene, with a range */
+    bool     touches;     /* REPEAT: cells are as large as what is in them */
+    double   number;      /* a radius, an angle, a rate, a factor */
     double   least, most; /* of the parameter */
-    Vec      v, w;      /* sizes, a shift or a unit axis; a centre, or counts */
-    double   length;    /* of the axis, as it is written */
-    double   low, high; /* TAPER: where its ends are; BEND: as far as what is bent reaches */
+    Vec      v, w;        /* sizes, a shift or a unit axis; a centre, or counts */
+    double   length;      /* of the axis, as it is written */
+    double   low, high;   /* TAPER: where its ends are; BEND: as far as what is bent reaches */
     int      solids[2];
 } Link;
 
@@ -46,10 +70,10 @@ typedef struct Chain {
 } Chain;
 
 typedef struct Recipe {
-    int  methods;  /* on each primitive, at most */
-    int  joints;   /* at most */
-    bool moving;   /* with parameters */
-    unsigned only; /* bits of the methods to choose from; 0: all */
+    int      methods; /* on each primitive, at most */
+    int      joints;  /* at most */
+    bool     moving;  /* with parameters */
+    unsigned only;    /* bits of the methods to choose from; 0: all */
 } Recipe;
 
 /* How many steps the language refused, of how many. */

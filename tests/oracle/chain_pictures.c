@@ -28,10 +28,10 @@ static View view_of(Vec low, Vec high, Random *random)
     Vec    middle = vec_mix(low, high, 0.5), way = random_unit(random);
     double radius = 0.5 * vec_distance(low, high);
     View   view   = {.half = tan(0.35), .farthest = 5 * radius};
-    view.eye     = vec_add(middle, vec_scale(2.9 * radius, way));
-    view.forward = vec_scale(-1, way);
-    view.right   = vec_unit(vec_cross(view.forward, vec(0, 1, 0)));
-    view.up      = vec_cross(view.right, view.forward);
+    view.eye      = vec_add(middle, vec_scale(2.9 * radius, way));
+    view.forward  = vec_scale(-1, way);
+    view.right    = vec_unit(vec_cross(view.forward, vec(0, 1, 0)));
+    view.up       = vec_cross(view.right, view.forward);
     return view;
 }
 
@@ -39,8 +39,8 @@ static Vec direction_of(const View *view, int i, int j)
 {
     double u = ((i + 0.5) / WIDTH * 2 - 1) * view->half * WIDTH / HEIGHT;
     double v = (1 - (j + 0.5) / HEIGHT * 2) * view->half;
-    return vec_unit(vec_add(view->forward, vec_add(vec_scale(u, view->right),
-                                                   vec_scale(v, view->up))));
+    return vec_unit(
+        vec_add(view->forward, vec_add(vec_scale(u, view->right), vec_scale(v, view->up))));
 }
 
 /* Along the view axis; HUGE_VAL: nothing is there. */
@@ -48,7 +48,7 @@ static double depth_of(const Chain *chain, const View *view, int i, int j)
 {
     enum { STEPS = 500, HALVINGS = 30 };
     Vec    direction = direction_of(view, i, j);
-    double step = view->farthest / STEPS;
+    double step      = view->farthest / STEPS;
     for (int k = 1; k <= STEPS; k++) {
         double low = (k - 1) * step, high = k * step;
         if (!chain_contains(chain, vec_add(view->eye, vec_scale(high, direction))))
@@ -140,14 +140,16 @@ static void look_at(const Chain *chain, Random *random, Tally *tally)
     product_free(&product);
     if (!bounded)
         low = vec(-3, -3, -3), high = vec(3, 3, 3);
-    View view = view_of(low, high, random);
+    View view   = view_of(low, high, random);
     Vec  target = vec_add(view.eye, view.forward);
     if (chain_contains(chain, view.eye))
         return;
-    scene_write(&text, "camera { eye: [%.17g, %.17g, %.17g], target: [%.17g, %.17g, %.17g], "
-                "fov: 0.7 }\n", view.eye.x, view.eye.y, view.eye.z, target.x, target.y, target.z);
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1,
-                                .planes = KRS_PLANE_DEPTH | KRS_PLANE_IDS};
+    scene_write(&text,
+                "camera { eye: [%.17g, %.17g, %.17g], target: [%.17g, %.17g, %.17g], "
+                "fov: 0.7 }\n",
+                view.eye.x, view.eye.y, view.eye.z, target.x, target.y, target.z);
+    KrsRenderOptions options = {
+        .width = WIDTH, .height = HEIGHT, .samples = 1, .planes = KRS_PLANE_DEPTH | KRS_PLANE_IDS};
     KrsPicture *picture = picture_of(text.bytes, &options);
     for (int k = 0; k < PIXELS; k++)
         depths[k] = depth_of(chain, &view, k % WIDTH, k / WIDTH);
@@ -225,10 +227,10 @@ static bool is_passed(const Chain *chain, Vec o, Vec d, double from, double to, 
 static void check_rays(const Chain *chain, const SceneText *text, const Product *product, Vec low,
                        Vec high, Random *random, RayTally *tally)
 {
-    static double  origins[RAYS][3], directions[RAYS][3];
-    static KrsHit  hits[RAYS];
-    const double   tolerance = 1e-4, allowed = 4 * tolerance, farthest = vec_distance(low, high);
-    KrsRendering  *rendering;
+    static double origins[RAYS][3], directions[RAYS][3];
+    static KrsHit hits[RAYS];
+    const double  tolerance = 1e-4, allowed = 4 * tolerance, farthest = vec_distance(low, high);
+    KrsRendering *rendering;
     for (int i = 0; i < RAYS; i++) {
         Vec o = random_origin(chain, low, high, random);
         Vec d = vec_unit(vec_sub(between(random, low, high), o));
@@ -239,22 +241,24 @@ static void check_rays(const Chain *chain, const SceneText *text, const Product 
                      KRS_OK);
     assert_int_equal(krs_device_raycast(rendering, product->frame, (const double(*)[3])origins,
                                         (const double(*)[3])directions, RAYS, farthest, tolerance,
-                                        hits), KRS_OK);
+                                        hits),
+                     KRS_OK);
     krs_rendering_free(rendering);
     int late = 0, early = 0;
     for (int i = 0; i < RAYS; i++) {
-        Vec    o = vec(origins[i][0], origins[i][1], origins[i][2]);
-        Vec    d = vec(directions[i][0], directions[i][1], directions[i][2]);
-        double change = farthest * change_along(chain, o, vec_add(o, vec_scale(farthest, d)));
-        double t      = hits[i].hit || hits[i].unresolved ? hits[i].t : farthest;
-        bool   is_late  = t > change + allowed &&
-                       is_passed(chain, o, d, change, t, allowed, random);
+        Vec    o       = vec(origins[i][0], origins[i][1], origins[i][2]);
+        Vec    d       = vec(directions[i][0], directions[i][1], directions[i][2]);
+        double change  = farthest * change_along(chain, o, vec_add(o, vec_scale(farthest, d)));
+        double t       = hits[i].hit || hits[i].unresolved ? hits[i].t : farthest;
+        bool   is_late = t > change + allowed && is_passed(chain, o, d, change, t, allowed, random);
         bool   is_early = hits[i].hit && t < change - allowed &&
                         !surface_is_near(chain, vec_add(o, vec_scale(t, d)), allowed, random);
         if ((is_late || is_early) && late + early == 0)
-            fprintf(stderr, "# %s ray from (%.9g, %.9g, %.9g) along (%.9g, %.9g, %.9g): %.9g, in "
-                    "truth %.9g\n%s", is_late ? "late" : "early", o.x, o.y, o.z, d.x, d.y, d.z, t,
-                    change, text->bytes);
+            fprintf(stderr,
+                    "# %s ray from (%.9g, %.9g, %.9g) along (%.9g, %.9g, %.9g): %.9g, in "
+                    "truth %.9g\n%s",
+                    is_late ? "late" : "early", o.x, o.y, o.z, d.x, d.y, d.z, t, change,
+                    text->bytes);
         late += is_late;
         early += is_early;
         tally->hits += hits[i].hit;
@@ -281,7 +285,7 @@ static void pictures_are_right(void **state)
     };
     enum { RECIPES = sizeof recipes / sizeof *recipes };
     (void)state;
-    Tally    tally = {0};
+    Tally    tally    = {0};
     Refusals refusals = {0};
     uint64_t seed = setting("SEED", 1), count = setting("CHAINS", 9);
     for (uint64_t i = 0; i < count; i++) {
@@ -307,7 +311,7 @@ static void rays_are_right(void **state)
     enum { RECIPES = sizeof recipes / sizeof *recipes };
     static SceneText text;
     (void)state;
-    RayTally tally = {0};
+    RayTally tally    = {0};
     Refusals refusals = {0};
     uint64_t seed = setting("SEED", 2), count = setting("CHAINS", 8);
     for (uint64_t i = 0; i < count; i++) {

@@ -93,10 +93,10 @@ static Vec random_place(const Case *c, Random *random)
 static void check_points(Case *c, int points, Random *random)
 {
     for (int i = 0; i < points; i++) {
-        Vec    p = random_place(c, random);
+        Vec    p        = random_place(c, random);
         double distance = product_distance(&c->product, p), size = 1 + vec_length(p);
-        bool   inside   = chain_contains(&c->chain, p);
-        double truth    = cloud_nearest(&c->cloud, p);
+        bool   inside = chain_contains(&c->chain, p);
+        double truth  = cloud_nearest(&c->cloud, p);
         if (fabs(distance) > ROUNDING * size && (distance < 0) != inside)
             complain(c, p, inside ? "outside" : "inside", distance, truth);
         if (!(fabs(distance) <= truth + ROUNDING * size))
@@ -151,12 +151,12 @@ static void check_ray(Case *c, Vec origin, Vec direction, double tolerance, Rand
                       Tally *tally)
 {
     double farthest = vec_distance(c->low, c->high), allowed = fmax(10 * tolerance, 1e-7);
-    double change   = first_change(&c->chain, origin, direction, farthest);
-    KrsHit hit      = product_raycast(&c->product, origin, direction, farthest, tolerance);
-    double t        = hit.hit || hit.unresolved ? hit.t : farthest;
-    Vec    end      = vec_add(origin, vec_scale(t, direction));
-    bool   late     = !(t <= change + allowed);
-    bool   early    = hit.hit && t < change - allowed && !is_near(c, end, allowed, random);
+    double change = first_change(&c->chain, origin, direction, farthest);
+    KrsHit hit    = product_raycast(&c->product, origin, direction, farthest, tolerance);
+    double t      = hit.hit || hit.unresolved ? hit.t : farthest;
+    Vec    end    = vec_add(origin, vec_scale(t, direction));
+    bool   late   = !(t <= change + allowed);
+    bool   early  = hit.hit && t < change - allowed && !is_near(c, end, allowed, random);
     if (late || early) {
         complain(c, origin, late ? "late ray" : "early ray", t, change);
         fprintf(stderr, "# along (%.17g, %.17g, %.17g), tolerance %g\n", direction.x, direction.y,
@@ -189,9 +189,9 @@ static void check_slope(Case *c, int points, uint64_t seed)
     if (!c->steady.scene)
         return; /* too large for the language */
     Vec    middle = vec_mix(c->low, c->high, 0.5);
-    double half   = 0.5 * fmax(c->high.x - c->low.x, fmax(c->high.y - c->low.y,
-                                                         c->high.z - c->low.z));
-    Trial  trial  = {product_field, &c->steady, inside_case, c, middle, half, points, seed};
+    double half   = 0.5 *
+                  fmax(c->high.x - c->low.x, fmax(c->high.y - c->low.y, c->high.z - c->low.z));
+    Trial   trial   = {product_field, &c->steady, inside_case, c, middle, half, points, seed};
     Verdict verdict = judge(&trial);
     if (verdict.sign_errors + verdict.ball_errors + verdict.slope_errors)
         complain(c, middle, "slope, or ball that is not empty", verdict.steepest, 1);
@@ -219,9 +219,12 @@ static const Run runs[] = {
     {"joints and sequences", {2, 3, false, 0}, 80, 2},
     {"parameters", {3, 1, true, 0}, 40, 3},
     {"bends of what was moved",
-     {5, 0, false, 1u << LINK_MOVE | 1u << LINK_TURN | 1u << LINK_SCALE | 1u << LINK_BEND}, 80, 4},
+     {5, 0, false, 1u << LINK_MOVE | 1u << LINK_TURN | 1u << LINK_SCALE | 1u << LINK_BEND},
+     80,
+     4},
     {"images",
-     {3, 2, false, 1u << LINK_MOVE | 1u << LINK_INVERT | 1u << LINK_MIRROR | 1u << LINK_POLAR}, 60,
+     {3, 2, false, 1u << LINK_MOVE | 1u << LINK_INVERT | 1u << LINK_MIRROR | 1u << LINK_POLAR},
+     60,
      5},
 };
 enum { RUNS = sizeof runs / sizeof *runs };
@@ -241,12 +244,12 @@ static void look_at(Case *c, Random *random, Tally *tally)
 static void check_chain(const Run *run, Random *random, Tally *tally)
 {
     static SceneText text, steady;
-    Case c = {.text = text.bytes, .seed = random->state};
-    text.length = 0;
+    Case             c = {.text = text.bytes, .seed = random->state};
+    text.length        = 0;
     chain_random(&c.chain, &run->recipe, random, &tally->refusals);
     chain_write(&c.chain, &text);
     c.product = product_compile(text.bytes);
-    steady = text;
+    steady    = text;
     steady.length -= 2;
     scene_write(&steady, ".offset(0);\ncamera { eye: [0, 0, 9], target: [0, 0, 0] }\n");
     if (krs_compile_text(steady.bytes, steady.length, "steady.krs", NULL, &c.steady.scene) ==
@@ -256,8 +259,8 @@ static void check_chain(const Run *run, Random *random, Tally *tally)
     if (!c.bounded)
         c.low = vec(-4, -4, -4), c.high = vec(4, 4, 4);
     Vec margin = vec_add(vec_scale(0.15, vec_sub(c.high, c.low)), vec(0.1, 0.1, 0.1));
-    c.low  = vec_sub(c.low, margin);
-    c.high = vec_add(c.high, margin);
+    c.low      = vec_sub(c.low, margin);
+    c.high     = vec_add(c.high, margin);
     for (int frame = 0; frame < (run->recipe.moving ? 3 : 1); frame++) {
         if (frame)
             chain_move(&c.chain, &c.product, &c.steady, random);
@@ -281,9 +284,9 @@ static void chains_are_right(void **state)
         check_chain(run, &random, &tally);
     }
     print_message("# %s: %d chains, %d of %d frames empty, %d of %d rays hit, %d unresolved; %d of "
-                  "%d steps refused;", run->name, tally.chains, tally.empty, tally.frames,
-                  tally.hits, tally.rays, tally.unresolved, tally.refusals.refused,
-                  tally.refusals.tried);
+                  "%d steps refused;",
+                  run->name, tally.chains, tally.empty, tally.frames, tally.hits, tally.rays,
+                  tally.unresolved, tally.refusals.refused, tally.refusals.tried);
     for (int k = 0; k < LINK_KINDS; k++)
         print_message(" %s %d", link_names[k], tally.kinds[k]);
     print_message("\n");

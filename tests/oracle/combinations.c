@@ -114,12 +114,12 @@ static bool inside(const Case *c, int done, Vec p);
 typedef bool Undo(const Case *c, int before, Vec p);
 
 struct Method {
-    const char *name;   /* in methods.def, or a function or a block */
+    const char *name;           /* in methods.def, or a function or a block */
     const char *before, *after; /* of the text of a shape */
-    Undo       *undo;   /* NULL: it goes by a distance */
-    double      grows;  /* without `undo`: by at most, of the family's box */
-    bool        keeps;  /* without `undo`: what was inside stays so */
-    const char *refusals; /* why the language may refuse it */
+    Undo       *undo;           /* NULL: it goes by a distance */
+    double      grows;          /* without `undo`: by at most, of the family's box */
+    bool        keeps;          /* without `undo`: what was inside stays so */
+    const char *refusals;       /* why the language may refuse it */
 };
 
 static bool in_tool(Vec p) { return vec_distance(p, vec(0.35, 0.25, 0.1)) <= 0.6; }
@@ -194,7 +194,7 @@ static bool undo_polar_aside(const Case *c, int k, Vec p)
     return around(c, k, p, vec(1, 0, 1), 2);
 }
 static double pulled(double x, double half) { return x - fmax(-half, fmin(x, half)); }
-static bool undo_elongate(const Case *c, int k, Vec p)
+static bool   undo_elongate(const Case *c, int k, Vec p)
 {
     return inside(c, k, vec(pulled(p.x, 0.15), pulled(p.y, 0.1), pulled(p.z, 0.05)));
 }
@@ -267,8 +267,10 @@ static const Method methods[] = {
     {"meta", "meta([", ", tool])", NULL, 2, true, MEASURED ENDS},
     {"krs", "krs { kernel ", "; reflect plane([0.3, 1, 0], 0.1); kernel tool.scale(0.5); }",
      undo_sequence, 0, false, ""},
-    {"mobius", "krs { kernel ", "; mobius invert([-0.3, -2.4, 0.2], 1.6) * rotate([0, 1, 0], 0.5);"
-     " reflect plane([1, 0, 0], 0.1); }", undo_mobius, 0, false, INVERTS},
+    {"mobius", "krs { kernel ",
+     "; mobius invert([-0.3, -2.4, 0.2], 1.6) * rotate([0, 1, 0], 0.5);"
+     " reflect plane([1, 0, 0], 0.1); }",
+     undo_mobius, 0, false, INVERTS},
     /* Figures only, or not there yet. */
     {"extrude", NULL, NULL, NULL, 0, false, ""},
     {"revolve", NULL, NULL, NULL, 0, false, ""},
@@ -283,10 +285,7 @@ static bool inside(const Case *c, int done, Vec p)
     return c->methods[done - 1]->undo(c, done - 1, p);
 }
 
-static bool inside_case(const void *c, Vec p)
-{
-    return inside(c, ((const Case *)c)->count, p);
-}
+static bool inside_case(const void *c, Vec p) { return inside(c, ((const Case *)c)->count, p); }
 
 /* ---- what is asked ---- */
 
@@ -339,14 +338,14 @@ static void complain(const char *text, const char *what, Vec p, double is, Tally
 }
 
 /* The distance against a membership: that of points, or its own sign. */
-static void judge_case(const Product *product, Inside *membership, const void *user,
-                       bool steady, const char *text, uint64_t seed, Tally *tally)
+static void judge_case(const Product *product, Inside *membership, const void *user, bool steady,
+                       const char *text, uint64_t seed, Tally *tally)
 {
-    Trial   trial = {product_field, product, membership, user, vec(0, 0, 0), 2, 24, seed};
-    Verdict near  = judge(&trial);
-    trial.half    = 8;
-    trial.points  = 8;
-    Verdict far   = judge(&trial);
+    Trial   trial  = {product_field, product, membership, user, vec(0, 0, 0), 2, 24, seed};
+    Verdict near   = judge(&trial);
+    trial.half     = 8;
+    trial.points   = 8;
+    Verdict far    = judge(&trial);
     int     slopes = steady ? near.slope_errors + far.slope_errors : 0;
     if (near.sign_errors + far.sign_errors)
         complain(text, "wrong side", vec(0, 0, 0), near.sign_errors + far.sign_errors, tally);
@@ -363,7 +362,7 @@ static bool is_negative(const void *product, Vec p) { return product_distance(pr
 static void check_growth(const Product *product, const Case *c, const char *text, Random *random,
                          Tally *tally)
 {
-    const Method *last = c->methods[c->count - 1];
+    const Method *last   = c->methods[c->count - 1];
     Case          before = *c;
     before.count--;
     for (int i = 0; i < 200 && last->keeps; i++) {
@@ -381,9 +380,9 @@ static void check_ray(const Product *product, Inside *membership, const void *us
 {
     enum { STEPS = 300 };
     const double farthest = 8, tolerance = 1e-6;
-    Vec    direction = vec_unit(vec_sub(target, origin));
-    bool   start     = membership(user, origin);
-    double change    = HUGE_VAL;
+    Vec          direction = vec_unit(vec_sub(target, origin));
+    bool         start     = membership(user, origin);
+    double       change    = HUGE_VAL;
     for (int i = 1; i <= STEPS && change == HUGE_VAL; i++) {
         Vec p = vec_add(origin, vec_scale(farthest * i / STEPS, direction));
         if (membership(user, p) != start)
@@ -466,8 +465,8 @@ static void tell(const char *what, const Tally *tally)
 static void every_method_on(void **state)
 {
     const Family *family = *state;
-    Case  c     = {.family = family, .count = 1, .alone = family_alone(family)};
-    Tally tally = {0};
+    Case          c      = {.family = family, .count = 1, .alone = family_alone(family)};
+    Tally         tally  = {0};
     for (int i = 0; i < METHODS; i++) {
         c.methods[0] = &methods[i];
         if (methods[i].before)

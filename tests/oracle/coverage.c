@@ -29,17 +29,22 @@
 #define MOST_OFF       0.001 /* the share of hits whose depth is off by more than is permitted */
 #define PLANTED_ERROR  0.1   /* a fault shows at least this much */
 
-#define DEFAULT_ERROR  0.25 /* krs_vulkan.h */
-#define ROUGH_ERROR    0.5  /* of a scene that asks for it */
+#define DEFAULT_ERROR 0.25 /* krs_vulkan.h */
+#define ROUGH_ERROR   0.5  /* of a scene that asks for it */
 
 enum { WIDTH = 400, HEIGHT = 225, PIXELS = WIDTH * HEIGHT };
 enum { ROUND, FLAT, CAMERAS }; /* perspective and orthographic */
 
-
 /* ---- Scenes ---- */
 
 typedef enum SceneKind {
-    THICKET, HEAP, WALLED_THICKET, WALLED_HEAP, TREE, ROUGH, SCENES
+    THICKET,
+    HEAP,
+    WALLED_THICKET,
+    WALLED_HEAP,
+    TREE,
+    ROUGH,
+    SCENES
 } SceneKind;
 
 /* Capsules, known here copy by copy.  The scene's parameter `size` is the length of which all
@@ -71,7 +76,7 @@ static void write_looks(Scene *scene, const char *more)
                     i == FLAT ? "flat " : "", eye.x, eye.y, eye.z, target.x, target.y, target.z,
                     scene->fov, i == FLAT ? "orthographic" : "perspective", height);
     if (scene->walled) {
-        Vec sides = vec_sub(scene->high, scene->low);
+        Vec sides  = vec_sub(scene->high, scene->low);
         Vec middle = vec_mix(scene->low, scene->high, 0.5);
         scene_write(&scene->text, "let wall = box([%.17g, %.17g, %.17g]);\n", sides.x, sides.y,
                     sides.z);
@@ -82,8 +87,8 @@ static void write_looks(Scene *scene, const char *more)
 
 static void write_capsule(SceneText *text, Vec from, Vec to, double radius)
 {
-    scene_write(text, "capsule([%.17g, %.17g, %.17g], [%.17g, %.17g, %.17g], %.17g * size)",
-                from.x, from.y, from.z, to.x, to.y, to.z, radius);
+    scene_write(text, "capsule([%.17g, %.17g, %.17g], [%.17g, %.17g, %.17g], %.17g * size)", from.x,
+                from.y, from.z, to.x, to.y, to.z, radius);
 }
 
 static void show_wall(Scene *scene)
@@ -114,8 +119,8 @@ static void show_sequence(Scene *scene, const Sequence *sequence)
     scene_write(&scene->text, "};\n");
 
     Expansion expansion = expand(sequence);
-    scene->count = expansion.count;
-    scene->rods = calloc(scene->count, sizeof *scene->rods);
+    scene->count        = expansion.count;
+    scene->rods         = calloc(scene->count, sizeof *scene->rods);
     assert_non_null(scene->rods);
     for (size_t i = 0; i < scene->count; i++)
         scene->rods[i] = rod_of_copy(&expansion.copies[i]);
@@ -126,25 +131,25 @@ static void show_sequence(Scene *scene, const Sequence *sequence)
 static void make_thicket(Scene *scene, const char *more)
 {
     enum { TWIGS = 24, MIRRORS = 9 };
-    const Vec axes[3] = {vec(1, 0, 0), vec(0, 1, 0), vec(0, 0, 1)};
+    const Vec axes[3]  = {vec(1, 0, 0), vec(0, 1, 0), vec(0, 0, 1)};
     Sequence  sequence = {.mirror_count = MIRRORS, .body_count = TWIGS};
-    Random    random = {7};
+    Random    random   = {7};
     for (int i = 0; i < MIRRORS; i++)
         sequence.mirrors[i] = (Half){axes[i % 3], (1 << i / 3) - 1};
     for (int i = 0; i < TWIGS; i++) {
-        Body *body = &sequence.bodies[i];
+        Body *body   = &sequence.bodies[i];
         Vec   middle = vec(-0.5, -0.5, -0.5);
-        body->from = vec_add(middle, random_in_cube(&random, 0.45));
+        body->from   = vec_add(middle, random_in_cube(&random, 0.45));
         do
             body->to = vec_add(middle, random_in_cube(&random, 0.45));
         while (vec_distance(body->from, body->to) < 0.6);
         body->radius = 1;
     }
     scene->target = vec(3, 3, 3);
-    scene->eye = vec(11.3, 7.1, 18.2);
-    scene->fov = 0.45;
-    scene->low = vec(-20, -20, -2.3);
-    scene->high = vec(20, 20, -2);
+    scene->eye    = vec(11.3, 7.1, 18.2);
+    scene->fov    = 0.45;
+    scene->low    = vec(-20, -20, -2.3);
+    scene->high   = vec(20, 20, -2);
     write_looks(scene, more);
     show_sequence(scene, &sequence);
     show_wall(scene);
@@ -156,23 +161,23 @@ static void make_heap(Scene *scene)
 {
     enum { TWIGS = 160 };
     Random random = {11};
-    scene->eye = vec(1, 2, 10);
-    scene->fov = 0.6;
-    scene->low = vec(-9, -7, -5.5);
-    scene->high = vec(9, 7, -5);
-    Lens lens = lens_make(scene->eye, scene->target, tan(scene->fov / 2), false, 16, 9);
-    scene->count = TWIGS;
-    scene->rods = calloc(TWIGS, sizeof *scene->rods);
+    scene->eye    = vec(1, 2, 10);
+    scene->fov    = 0.6;
+    scene->low    = vec(-9, -7, -5.5);
+    scene->high   = vec(9, 7, -5);
+    Lens lens     = lens_make(scene->eye, scene->target, tan(scene->fov / 2), false, 16, 9);
+    scene->count  = TWIGS;
+    scene->rods   = calloc(TWIGS, sizeof *scene->rods);
     assert_non_null(scene->rods);
     write_looks(scene, "");
     scene_write(&scene->text, "show union([\n");
     for (size_t i = 0; i < TWIGS; i++) {
         double across = random_between(&random, 0, 16);
-        Line   ray = lens_ray(&lens, across, random_between(&random, 0, 9));
+        Line   ray    = lens_ray(&lens, across, random_between(&random, 0, 9));
         double way = random_between(&random, 7, 13), share = way / vec_length(scene->eye);
         Vec    middle = line_at(ray, way), aside = vec_scale(0.5 * share, random_unit(&random));
-        Rod   *rod = &scene->rods[i];
-        *rod = (Rod){.from = vec_sub(middle, aside), .to = vec_add(middle, aside)};
+        Rod   *rod  = &scene->rods[i];
+        *rod        = (Rod){.from = vec_sub(middle, aside), .to = vec_add(middle, aside)};
         rod->radius = vec_dot(vec_sub(middle, lens.eye), lens.forward) / vec_length(scene->eye);
         write_capsule(&scene->text, rod->from, rod->to, rod->radius);
         scene_write(&scene->text, i + 1 < TWIGS ? ",\n" : "]);\n");
@@ -188,21 +193,21 @@ static void make_tree(Scene *scene)
     Vec      fork = vec(0, 0, 0), before = vec(0, 1, 0);
     for (int i = 0; i < LEVELS; i++) {
         double lean = 0.42 + 0.02 * i, turn = 2.4 * i;
-        Vec    heading = vec(sin(lean) * cos(turn), cos(lean), sin(lean) * sin(turn));
-        Vec    end = vec_add(fork, vec_scale(0.9 * pow(0.88, i), heading));
+        Vec    heading     = vec(sin(lean) * cos(turn), cos(lean), sin(lean) * sin(turn));
+        Vec    end         = vec_add(fork, vec_scale(0.9 * pow(0.88, i), heading));
         sequence.bodies[i] = (Body){
             .from = fork, .to = end, .radius = pow(0.75, i - LEVELS + 1), .level = LEVELS - 1 - i};
         if (i > 0) {
-            Vec aside = vec_sub(vec_scale(vec_dot(heading, before), before), heading);
+            Vec aside  = vec_sub(vec_scale(vec_dot(heading, before), before), heading);
             Vec normal = vec_unit(aside);
             sequence.mirrors[LEVELS - 1 - i] = (Half){normal, vec_dot(normal, fork)};
         }
-        fork = end;
+        fork   = end;
         before = heading;
     }
     scene->target = vec(0, 2.6, 0);
-    scene->eye = vec(2, 3.2, 11);
-    scene->fov = 0.5;
+    scene->eye    = vec(2, 3.2, 11);
+    scene->fov    = 0.5;
     write_looks(scene, "");
     show_sequence(scene, &sequence);
 }
@@ -216,9 +221,9 @@ static Scene *use_scene(SceneKind kind)
     switch (kind) {
     case HEAP:
     case WALLED_HEAP: make_heap(scene); break;
-    case TREE:        make_tree(scene); break;
-    case ROUGH:       make_thicket(scene, "image { error: 0.5 }\n"); break;
-    default:          make_thicket(scene, "");
+    case TREE: make_tree(scene); break;
+    case ROUGH: make_thicket(scene, "image { error: 0.5 }\n"); break;
+    default: make_thicket(scene, "");
     }
     scene->product = product_compile(scene->text.bytes);
     if (krs_rendering_new(renderer, scene->product.scene, &scene->rendering) != KRS_OK)
@@ -241,7 +246,7 @@ typedef struct Shot {
 static Lens shot_lens(const Shot *shot, int width, int height)
 {
     const Scene *scene = use_scene(shot->kind);
-    double       half = tan(scene->fov / 2);
+    double       half  = tan(scene->fov / 2);
     if (shot->camera == FLAT)
         half *= vec_distance(scene->eye, scene->target);
     return lens_make(scene->eye, scene->target, half, shot->camera == FLAT, width, height);
@@ -264,11 +269,13 @@ static double shot_error(const Shot *shot)
 static KrsPicture *shot_render(const Shot *shot, const Lens *lens, uint32_t samples)
 {
     Scene           *scene = use_scene(shot->kind);
-    double           size = shot_size(scene, lens, shot->wide + 2 * shot->grown);
+    double           size  = shot_size(scene, lens, shot->wide + 2 * shot->grown);
     KrsPicture      *picture;
-    KrsRenderOptions options = {
-        .width = (uint32_t)lens->width, .height = (uint32_t)lens->height, .samples = samples,
-        .error = shot->error, .camera = (size_t)shot->camera};
+    KrsRenderOptions options = {.width   = (uint32_t)lens->width,
+                                .height  = (uint32_t)lens->height,
+                                .samples = samples,
+                                .error   = shot->error,
+                                .camera  = (size_t)shot->camera};
     assert_int_equal(krs_frame_set(scene->product.frame, "size", &size, 1), KRS_OK);
     if (krs_render(scene->rendering, scene->product.frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
@@ -281,9 +288,9 @@ static KrsPicture *shot_render(const Shot *shot, const Lens *lens, uint32_t samp
 static double *shot_truth(const Shot *shot, const Lens *lens, double x, double y)
 {
     const Scene *scene = use_scene(shot->kind);
-    double       size = shot_size(scene, lens, shot->wide);
+    double       size  = shot_size(scene, lens, shot->wide);
     double      *enter = calloc((size_t)(lens->width * lens->height), sizeof *enter);
-    Rod         *rods = calloc(scene->count, sizeof *rods);
+    Rod         *rods  = calloc(scene->count, sizeof *rods);
     assert_non_null(enter);
     assert_non_null(rods);
     for (size_t i = 0; i < scene->count; i++) {
@@ -294,7 +301,7 @@ static double *shot_truth(const Shot *shot, const Lens *lens, double x, double y
     rods_seen(rods, scene->count, lens, x, y, enter);
     free(rods);
     for (int k = 0; scene->walled && k < lens->width * lens->height; k++) {
-        Line ray = lens_ray(lens, k % lens->width + x, k / lens->width + y);
+        Line  ray  = lens_ray(lens, k % lens->width + x, k / lens->width + y);
         Chord wall = chord_of_box(ray, scene->low, scene->high);
         if (!chord_is_empty(wall) && wall.enter <= enter[k])
             enter[k] = HUGE_VAL;
@@ -322,7 +329,7 @@ static Verdict compare_rays(const KrsPicture *picture, const double *enter, cons
         verdict.extra += seen && !there;
         if (!there || !seen)
             continue;
-        Line   ray = lens_ray(lens, k % lens->width + 0.5, k / lens->width + 0.5);
+        Line   ray     = lens_ray(lens, k % lens->width + 0.5, k / lens->width + 0.5);
         double stretch = vec_dot(ray.direction, lens->forward), depth = picture->depth[k];
         double pixels = (depth / stretch - enter[k]) / lens_pixel(lens, depth);
         verdict.common++;
@@ -345,28 +352,30 @@ static double net_noise(const Verdict *verdict)
 
 static void print_shot(const Shot *shot)
 {
-    static const char *const names[SCENES] = {
-        "thicket", "heap", "thicket, wall", "heap, wall", "tree", "thicket, error in scene"};
+    static const char *const names[SCENES] = {"thicket",    "heap", "thicket, wall",
+                                              "heap, wall", "tree", "thicket, error in scene"};
     print_message("# %s, %s, %g pixels wide, error %g%s: ", names[shot->kind],
                   shot->camera == FLAT ? "orthographic" : "perspective", shot->wide,
                   shot_error(shot),
-                  shot->grown > 0 ? ", GROWN" : shot->uncut ? ", UNCUT" : "");
+                  shot->grown > 0 ? ", GROWN"
+                  : shot->uncut   ? ", UNCUT"
+                                  : "");
 }
 
 static Verdict judge_shot(const Shot *shot)
 {
-    Lens        lens = shot_lens(shot, WIDTH, HEIGHT);
-    double     *enter = shot_truth(shot, &lens, 0.5, 0.5);
+    Lens        lens    = shot_lens(shot, WIDTH, HEIGHT);
+    double     *enter   = shot_truth(shot, &lens, 0.5, 0.5);
     KrsPicture *picture = shot_render(shot, &lens, 1);
     Verdict     verdict = compare_rays(picture, enter, &lens, shot_error(shot));
     krs_picture_free(picture);
     free(enter);
     print_shot(shot);
     print_message("%zu hits, missed %.2f %%, too many %.2f %%, net %+.2f %% (noise up to %.2f %%), "
-                  "depth off %.3f %%\n", verdict.hits,
-                  100.0 * (double)verdict.missed / (double)verdict.hits,
-                  100.0 * (double)verdict.extra / (double)verdict.hits,
-                  100 * net_error(&verdict), 100 * net_noise(&verdict),
+                  "depth off %.3f %%\n",
+                  verdict.hits, 100.0 * (double)verdict.missed / (double)verdict.hits,
+                  100.0 * (double)verdict.extra / (double)verdict.hits, 100 * net_error(&verdict),
+                  100 * net_noise(&verdict),
                   100.0 * (double)verdict.off / fmax(1, (double)verdict.common));
     assert_true(verdict.hits >= 2000);
     return verdict;
@@ -393,11 +402,10 @@ static bool shot_is_right(Shot shot)
 static size_t wrong_shots(SceneKind kind, const double *widths, size_t width_count)
 {
     static const double errors[] = {0, 0.5, 0.1};
-    size_t wrong = 0;
+    size_t              wrong    = 0;
     for (size_t i = 0; i < width_count; i++) {
         for (size_t k = 0; k < sizeof errors / sizeof errors[0]; k++)
-            wrong += !shot_is_right((Shot){
-                .kind = kind, .wide = widths[i], .error = errors[k]});
+            wrong += !shot_is_right((Shot){.kind = kind, .wide = widths[i], .error = errors[k]});
         wrong += !shot_is_right((Shot){.kind = kind, .wide = widths[i], .camera = FLAT});
     }
     return wrong;
@@ -423,10 +431,9 @@ static void twigs_before_a_wall_are_covered(void **state)
     size_t wrong = 0;
     for (int camera = 0; camera < CAMERAS; camera++)
         for (int i = 0; i < 2; i++) {
-            wrong += !shot_is_right((Shot){
-                .kind = WALLED_THICKET, .wide = THIN[i], .camera = camera});
-            wrong += !shot_is_right((Shot){
-                .kind = WALLED_HEAP, .wide = WIDE[i], .camera = camera});
+            wrong += !shot_is_right(
+                (Shot){.kind = WALLED_THICKET, .wide = THIN[i], .camera = camera});
+            wrong += !shot_is_right((Shot){.kind = WALLED_HEAP, .wide = WIDE[i], .camera = camera});
         }
     assert_int_equal(wrong, 0);
 }
@@ -443,7 +450,7 @@ static void the_error_of_a_scene_counts(void **state)
     (void)state;
     Shot        rough = {.kind = ROUGH, .wide = 0.3};
     Shot        asked = {.kind = THICKET, .wide = 0.3, .error = ROUGH_ERROR};
-    Lens        lens = shot_lens(&rough, WIDTH, HEIGHT);
+    Lens        lens  = shot_lens(&rough, WIDTH, HEIGHT);
     KrsPicture *a = shot_render(&rough, &lens, 1), *b = shot_render(&asked, &lens, 1);
     assert_memory_equal(a->depth, b->depth, PIXELS * sizeof *a->depth);
     assert_memory_equal(a->steps, b->steps, PIXELS * sizeof *a->steps);
@@ -457,10 +464,10 @@ static void inflation_is_found(void **state)
 {
     (void)state;
     for (int i = 0; i < 2; i++) {
-        Verdict thin = judge_shot(&(Shot){
-            .kind = THICKET, .wide = THIN[i], .grown = DEFAULT_ERROR});
-        Verdict wide = judge_shot(&(Shot){
-            .kind = HEAP, .wide = WIDE[i], .grown = DEFAULT_ERROR, .camera = FLAT});
+        Verdict thin = judge_shot(
+            &(Shot){.kind = THICKET, .wide = THIN[i], .grown = DEFAULT_ERROR});
+        Verdict wide = judge_shot(
+            &(Shot){.kind = HEAP, .wide = WIDE[i], .grown = DEFAULT_ERROR, .camera = FLAT});
         assert_true(net_error(&thin) > PLANTED_ERROR);
         assert_true(net_error(&wide) > PLANTED_ERROR);
     }
@@ -489,7 +496,7 @@ static Coverage true_coverage(const Shot *shot, const Lens *lens)
     for (int place = 0; place < SIDE * SIDE; place++) {
         double *enter = shot_truth(shot, lens, (place % SIDE + 0.5) / SIDE,
                                    (place / SIDE + 0.5) / SIDE);
-        double share = 0;
+        double  share = 0;
         for (int k = 0; k < lens->width * lens->height; k++)
             share += enter[k] < HUGE_VAL;
         free(enter);
@@ -503,8 +510,8 @@ static Coverage true_coverage(const Shot *shot, const Lens *lens)
 
 static bool samples_are_right(Shot shot, uint32_t samples)
 {
-    Lens        lens = shot_lens(&shot, WIDTH / 2, HEIGHT / 2);
-    Coverage    truth = true_coverage(&shot, &lens);
+    Lens        lens    = shot_lens(&shot, WIDTH / 2, HEIGHT / 2);
+    Coverage    truth   = true_coverage(&shot, &lens);
     KrsPicture *picture = shot_render(&shot, &lens, samples);
     double      mean = 0, noise = truth.spread / sqrt(samples) / truth.mean;
     for (int k = 0; k < lens.width * lens.height; k++)
@@ -571,7 +578,7 @@ static bool check_chord(Line line, const Rod *rod, bool box)
     for (int i = 0; i <= STEPS; i++) {
         double t = 6.0 * i / STEPS - 3, over = excess(rod, box, line_at(line, t));
         if (fabs(over) > 1e-9)
-            assert_int_equal(over < 0, t > chord.enter && t < chord.leave);
+            assert_int_equal(over<0, t> chord.enter && t < chord.leave);
     }
     if (chord_is_empty(chord))
         return false;
@@ -585,11 +592,13 @@ static void chords_are_what_marching_finds(void **state)
     (void)state;
     enum { TRIALS = 600 };
     Random random = {3};
-    int    met = 0;
+    int    met    = 0;
     for (int i = 0; i < TRIALS; i++) {
         bool box = i % 5 == 0;
-        Rod  rod = {.from = random_in_cube(&random, 1), .to = random_in_cube(&random, 1),
-                    .radius = random_between(&random, 0.01, 0.6), .cut_count = i % 4};
+        Rod  rod = {.from      = random_in_cube(&random, 1),
+                    .to        = random_in_cube(&random, 1),
+                    .radius    = random_between(&random, 0.01, 0.6),
+                    .cut_count = i % 4};
         for (int k = 0; k < rod.cut_count; k++)
             rod.cuts[k] = (Half){random_unit(&random), random_between(&random, -0.3, 0.8)};
         if (box)
@@ -608,22 +617,23 @@ static void chords_are_what_marching_finds(void **state)
 static void pictures_are_what_rays_see(void **state)
 {
     (void)state;
-    const Shot shots[] = {{.kind = TREE, .wide = 3}, {.kind = HEAP, .wide = 30},
+    const Shot shots[] = {{.kind = TREE, .wide = 3},
+                          {.kind = HEAP, .wide = 30},
                           {.kind = HEAP, .wide = 1, .camera = FLAT}};
     for (size_t n = 0; n < sizeof shots / sizeof shots[0]; n++) {
         const Scene *scene = use_scene(shots[n].kind);
-        Lens         lens = shot_lens(&shots[n], WIDTH, HEIGHT);
+        Lens         lens  = shot_lens(&shots[n], WIDTH, HEIGHT);
         double      *enter = shot_truth(&shots[n], &lens, 0.3, 0.8);
-        double       size = shot_size(scene, &lens, shots[n].wide);
-        int          hits = 0;
+        double       size  = shot_size(scene, &lens, shots[n].wide);
+        int          hits  = 0;
         for (int k = 0; k < PIXELS; k += 7) {
-            Line   ray = lens_ray(&lens, k % WIDTH + 0.3, k / WIDTH + 0.8);
+            Line   ray   = lens_ray(&lens, k % WIDTH + 0.3, k / WIDTH + 0.8);
             double first = HUGE_VAL;
             for (size_t i = 0; i < scene->count; i++) {
                 Rod rod = scene->rods[i];
                 rod.radius *= size;
                 Chord chord = chord_of_rod(ray, &rod);
-                first = chord_is_empty(chord) ? first : fmin(first, chord.enter);
+                first       = chord_is_empty(chord) ? first : fmin(first, chord.enter);
             }
             assert_true(enter[k] == first);
             hits += first < HUGE_VAL;
@@ -639,9 +649,9 @@ static void rods_are_those_of_the_scene(void **state)
     (void)state;
     for (SceneKind kind = 0; kind < SCENES; kind++) {
         Scene *scene = use_scene(kind);
-        Shot   shot = {.kind = kind, .wide = 2};
-        Lens   lens = shot_lens(&shot, WIDTH, HEIGHT);
-        double size = shot_size(scene, &lens, shot.wide);
+        Shot   shot  = {.kind = kind, .wide = 2};
+        Lens   lens  = shot_lens(&shot, WIDTH, HEIGHT);
+        double size  = shot_size(scene, &lens, shot.wide);
         assert_int_equal(krs_frame_set(scene->product.frame, "size", &size, 1), KRS_OK);
         double *enter = shot_truth(&shot, &lens, 0.5, 0.5);
         for (int k = 0; k < PIXELS; k += 11) {

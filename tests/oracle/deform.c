@@ -59,10 +59,10 @@ static void solid_write(SceneText *text, const Solid *solid)
 
 typedef struct Deed {
     enum { DEED_TWIST, DEED_BEND, DEED_TAPER } kind;
-    Vec    axis;        /* of unit length; of a taper x, y or z */
+    Vec    axis; /* of unit length; of a taper x, y or z */
     double rate;
-    double from, to;    /* factors at the ends of the taper */
-    double low, high;   /* where they are on the axis */
+    double from, to;  /* factors at the ends of the taper */
+    double low, high; /* where they are on the axis */
 } Deed;
 
 /* What stands upright for an axis of a bend, and the direction to which it bends. */
@@ -92,8 +92,8 @@ static Vec deed_forward(const Deed *deed, Vec p)
     Vec along, aside;
     bend_frame(deed->axis, &along, &aside);
     double angle = deed->rate * vec_dot(p, along), radius = 1 / deed->rate - vec_dot(p, aside);
-    Vec    bent  = vec_add(vec_scale(radius * sin(angle), along),
-                           vec_scale(1 / deed->rate - radius * cos(angle), aside));
+    Vec    bent = vec_add(vec_scale(radius * sin(angle), along),
+                          vec_scale(1 / deed->rate - radius * cos(angle), aside));
     return vec_add(vec_scale(height, deed->axis), bent);
 }
 
@@ -113,8 +113,7 @@ static Vec deed_backward(const Deed *deed, Vec p, int turn)
     double angle  = side * atan2(side * y, side * (1 / deed->rate - z)) + 2 * PI * turn;
     double radius = hypot(y, 1 / deed->rate - z);
     double before = (angle * side) / fabs(deed->rate) * side;
-    Vec    flat   = vec_add(vec_scale(before, along),
-                            vec_scale(1 / deed->rate - side * radius, aside));
+    Vec flat = vec_add(vec_scale(before, along), vec_scale(1 / deed->rate - side * radius, aside));
     return vec_add(vec_scale(height, deed->axis), flat);
 }
 
@@ -166,12 +165,12 @@ static bool chain_contains(const void *chain, Vec p)
 static Deed deed_random(Random *random, const Solid *solid, bool first)
 {
     static const Vec axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    Deed   deed = {.kind = random_below(random, first ? 3 : 2)};
-    double side = random_below(random, 2) ? 1 : -1;
-    int    axis = random_below(random, 3);
-    deed.axis   = deed.kind != DEED_TAPER && random_below(random, 3) == 0 ? random_unit(random)
-                                                                          : axes[axis];
-    deed.rate   = side * pow(10, random_between(random, -2, deed.kind == DEED_TWIST ? 0.3 : -0.1));
+    Deed             deed    = {.kind = random_below(random, first ? 3 : 2)};
+    double           side    = random_below(random, 2) ? 1 : -1;
+    int              axis    = random_below(random, 3);
+    deed.axis = deed.kind != DEED_TAPER && random_below(random, 3) == 0 ? random_unit(random)
+                                                                        : axes[axis];
+    deed.rate = side * pow(10, random_between(random, -2, deed.kind == DEED_TWIST ? 0.3 : -0.1));
     if (deed.kind == DEED_BEND) {
         double reach = first ? vec_length(solid->centre) + vec_length(solid->half) : 5;
         deed.rate    = side * random_between(random, 0.02, 0.95) / reach;
@@ -219,7 +218,7 @@ static void chain_write(SceneText *text, const Chain *chain, const char *rate)
 
 static Chain chain_random(Random *random, int deeds, int mirrors)
 {
-    Chain chain = {.solid = solid_random(random), .deed_count = deeds, .mirror_count = mirrors};
+    Chain chain  = {.solid = solid_random(random), .deed_count = deeds, .mirror_count = mirrors};
     chain.before = mirrors ? random_below(random, deeds + 1) : deeds;
     for (int i = 0; i < deeds; i++)
         chain.deeds[i] = deed_random(random, &chain.solid, i == 0 && chain.before > 0);
@@ -285,12 +284,12 @@ static void long_bends_are_safe(void **state)
     (void)state;
     Random random = {104};
     for (int i = 0; i < 24; i++) {
-        Chain chain = {.deed_count = 1, .before = 1};
-        chain.solid = (Solid){SOLID_BOX, {0, 0, 0}, {0.3, 3, 0.2}};
-        chain.solid.kind  = random_below(&random, 2) ? SOLID_BOX : SOLID_ROD;
+        Chain chain        = {.deed_count = 1, .before = 1};
+        chain.solid        = (Solid){SOLID_BOX, {0, 0, 0}, {0.3, 3, 0.2}};
+        chain.solid.kind   = random_below(&random, 2) ? SOLID_BOX : SOLID_ROD;
         chain.solid.centre = vec(0, random_between(&random, -3, 3), 0);
-        double turn  = (i % 2 ? 1 : -1) * random_between(&random, 0.3, 2.5) * PI;
-        chain.deeds[0] = (Deed){DEED_BEND, {1, 0, 0}, turn / 6, 1, 1, 0, 1};
+        double turn        = (i % 2 ? 1 : -1) * random_between(&random, 0.3, 2.5) * PI;
+        chain.deeds[0]     = (Deed){DEED_BEND, {1, 0, 0}, turn / 6, 1, 1, 0, 1};
         if (chain.solid.kind == SOLID_ROD)
             chain.solid.half.z = chain.solid.half.x;
         check_chain(&chain, (uint64_t)i);
@@ -304,7 +303,7 @@ static void rings_are_solid(void **state)
     Product ring = product_compile("show cylinder(0.2, 6).bend([1, 0, 0], 1);");
     for (int i = 0; i <= 1000; i++) {
         double angle = -3 + 0.006 * i, depth = fmin(0.2, 3 - fabs(angle));
-        Vec    p     = vec(0, sin(angle), 1 - cos(angle));
+        Vec    p = vec(0, sin(angle), 1 - cos(angle));
         assert_true(product_distance(&ring, p) <= -0.5 * depth);
     }
     product_free(&ring);
@@ -320,14 +319,14 @@ static void frames_are_safe(void **state)
         Chain chain = chain_random(&random, 1, 0);
         while (chain.deeds[0].kind == DEED_TAPER)
             chain = chain_random(&random, 1, 0);
-        Deed     *deed  = &chain.deeds[0];
+        Deed     *deed = &chain.deeds[0];
         double    most = fabs(deed->rate);
         SceneText text = {.length = 0};
         scene_write(&text, "param k = 0 in [%.17g, %.17g];\n", -most, most);
         chain_write(&text, &chain, "k * cos(time)");
         Product product = product_compile(text.bytes);
         for (int frame = 0; frame < 5; frame++) {
-            double k = frame ? random_between(&random, -most, most) : 0;
+            double k    = frame ? random_between(&random, -most, most) : 0;
             double time = random_between(&random, -9, 9);
             assert_int_equal(krs_frame_set(product.frame, "k", &k, 1), KRS_OK);
             assert_int_equal(krs_frame_set_time(product.frame, time), KRS_OK);
@@ -357,8 +356,8 @@ static void moving_tapers_are_safe(void **state)
         Product product = product_compile(text.bytes);
         for (int frame = 0; frame < 5; frame++) {
             double time = random_between(&random, -9, 9);
-            deed->from = random_between(&random, 0.3, 1.5);
-            deed->to   = 0.9 + 0.3 * sin(deed->from + time);
+            deed->from  = random_between(&random, 0.3, 1.5);
+            deed->to    = 0.9 + 0.3 * sin(deed->from + time);
             assert_int_equal(krs_frame_set(product.frame, "a", &deed->from, 1), KRS_OK);
             assert_int_equal(krs_frame_set_time(product.frame, time), KRS_OK);
             Trial trial = chain_trial(&product, &chain, (uint64_t)i);
@@ -372,7 +371,7 @@ static void moving_tapers_are_safe(void **state)
 static void a_twist_needs_no_range(void **state)
 {
     (void)state;
-    Chain chain = {.solid = {SOLID_BOX, {0, 0, 0}, {0.4, 1, 0.3}}, .deed_count = 1, .before = 1};
+    Chain chain    = {.solid = {SOLID_BOX, {0, 0, 0}, {0.4, 1, 0.3}}, .deed_count = 1, .before = 1};
     chain.deeds[0] = (Deed){DEED_TWIST, {0, 1, 0}, 0, 1, 1, 0, 1};
     SceneText text = {.length = 0};
     scene_write(&text, "param k = 0;\n");
@@ -383,7 +382,7 @@ static void a_twist_needs_no_range(void **state)
         assert_int_equal(krs_frame_set(product.frame, "k", &k, 1), KRS_OK);
         assert_int_equal(krs_frame_set_time(product.frame, time), KRS_OK);
         chain.deeds[0].rate = k + 0.3 * time;
-        Trial trial = chain_trial(&product, &chain, (uint64_t)i);
+        Trial trial         = chain_trial(&product, &chain, (uint64_t)i);
         judge_acquits(&trial, text.bytes);
     }
     product_free(&product);
@@ -428,9 +427,9 @@ static void displacements_are_safe(void **state)
     (void)state;
     Random random = {106};
     for (int i = 0; i < 60; i++) {
-        int       field = i % 3;
-        Bumps     bumps = {fields[field].text, fields[field].value, 0, solid_random(&random)};
-        SceneText text  = {.length = 0};
+        int       field  = i % 3;
+        Bumps     bumps  = {fields[field].text, fields[field].value, 0, solid_random(&random)};
+        SceneText text   = {.length = 0};
         bumps.solid.kind = i % 2 ? SOLID_BALL : SOLID_BOX;
         scene_write(&text, "param a = 0 in [-0.5, 0.5]; show ");
         solid_write(&text, &bumps.solid);
@@ -439,8 +438,8 @@ static void displacements_are_safe(void **state)
         for (int frame = 0; frame < 3; frame++) {
             bumps.amplitude = random_between(&random, -0.5, 0.5);
             assert_int_equal(krs_frame_set(product.frame, "a", &bumps.amplitude, 1), KRS_OK);
-            Trial trial = {product_field, &product, inside_bumps, &bumps, vec(0, 0, 0), 3, 250,
-                           (uint64_t)i};
+            Trial trial = {product_field, &product, inside_bumps, &bumps,
+                           vec(0, 0, 0),  3,        250,          (uint64_t)i};
             judge_acquits(&trial, text.bytes);
             trial.half   = 30;
             trial.points = 60;
@@ -457,7 +456,8 @@ static bool is_negative(const void *product, Vec p) { return product_distance(pr
 static void others_are_safe(void **state)
 {
     static const char *const shapes[] = {
-        "sphere(1).displace(noise(3 * p), 0.3)", "box([1, 2, 1]).displace(fbm(2 * p, 4), 0.5)",
+        "sphere(1).displace(noise(3 * p), 0.3)",
+        "box([1, 2, 1]).displace(fbm(2 * p, 4), 0.5)",
         "plane([0, 1, 0], 0).displace(fbm([x, z], 3, gain: 0.4), 0.4)",
         "torus(1, 0.3).displace(fbm(p + [0, 3 * time, 0], 3, lacunarity: 2.3), 0.3)",
         "sphere(1).displace(noise(4 * p), 0.2).twist([0, 1, 0], 1).bend([1, 0, 0], 0.4)",
@@ -503,7 +503,7 @@ typedef struct Piece {
 
 static Vec solid_point(const Solid *solid, int piece, double u, double v)
 {
-    Vec h = solid->half, q = vec(0, 0, 0);
+    Vec    h = solid->half, q = vec(0, 0, 0);
     double a = 2 * PI * u, s = 2 * u - 1, t = 2 * v - 1, side = piece % 2 ? 1 : -1;
     if (solid->kind == SOLID_BALL)
         q = vec(h.x * sin(PI * v) * cos(a), h.x * cos(PI * v), h.x * sin(PI * v) * sin(a));
@@ -523,7 +523,7 @@ static Vec solid_point(const Solid *solid, int piece, double u, double v)
 static Vec piece_point(const void *user, double u, double v)
 {
     const Piece *piece = user;
-    Vec p = solid_point(&piece->chain->solid, piece->number, u, v);
+    Vec          p     = solid_point(&piece->chain->solid, piece->number, u, v);
     for (int i = 0; i < piece->chain->deed_count; i++)
         p = deed_forward(&piece->chain->deeds[i], p);
     return p;
@@ -532,7 +532,7 @@ static Vec piece_point(const void *user, double u, double v)
 static Cloud chain_cloud(const Chain *chain)
 {
     static const int pieces[] = {[SOLID_BOX] = 6, [SOLID_BALL] = 1, [SOLID_ROD] = 3};
-    Cloud cloud = {0};
+    Cloud            cloud    = {0};
     for (int i = 0; i < pieces[chain->solid.kind]; i++) {
         Piece piece = {chain, i};
         cloud_patch(&cloud, piece_point, NULL, &piece, 0.03);
@@ -547,7 +547,7 @@ static void check_box(const Product *product, const Cloud *cloud, const Chain *c
     Vec    axis = chain->deeds[0].axis;
     double most = chain->deed_count == 1 && fmax(axis.x, fmax(axis.y, axis.z)) == 1 ? 1.7 : 100;
     KrsComponent component;
-    Vec low = vec(HUGE_VAL, HUGE_VAL, HUGE_VAL), high = vec_scale(-1, low);
+    Vec          low = vec(HUGE_VAL, HUGE_VAL, HUGE_VAL), high = vec_scale(-1, low);
     assert_int_equal(krs_component(product->scene, 0, &component), KRS_OK);
     for (size_t i = 0; i < cloud->count; i++) {
         Vec p = cloud->points[i];
@@ -555,10 +555,10 @@ static void check_box(const Product *product, const Cloud *cloud, const Chain *c
         high  = vec(fmax(high.x, p.x), fmax(high.y, p.y), fmax(high.z, p.z));
     }
     const double *l = component.low, *h = component.high;
-    bool holds = l[0] <= low.x + 1e-9 && l[1] <= low.y + 1e-9 && l[2] <= low.z + 1e-9 &&
+    bool          holds = l[0] <= low.x + 1e-9 && l[1] <= low.y + 1e-9 && l[2] <= low.z + 1e-9 &&
                  h[0] >= high.x - 1e-9 && h[1] >= high.y - 1e-9 && h[2] >= high.z - 1e-9;
-    double size = vec_distance(low, high), given = vec_distance(vec(l[0], l[1], l[2]),
-                                                                vec(h[0], h[1], h[2]));
+    double size  = vec_distance(low, high),
+           given = vec_distance(vec(l[0], l[1], l[2]), vec(h[0], h[1], h[2]));
     if (!holds || given > most * size)
         fail_msg("the box of %s from (%g, %g, %g) to (%g, %g, %g)%s", text, l[0], l[1], l[2], h[0],
                  h[1], h[2], holds ? " is too large" : " leaves something out");
@@ -568,10 +568,10 @@ static void check_box(const Product *product, const Cloud *cloud, const Chain *c
 static double mean_share(const Product *product, const Chain *chain, Cloud *cloud, double half,
                          Random *random)
 {
-    double sum = 0;
+    double sum   = 0;
     int    count = 0;
     for (int i = 0; i < 400; i++) {
-        Vec    p = random_in_cube(random, half);
+        Vec    p    = random_in_cube(random, half);
         double away = cloud_nearest(cloud, p), bound = product_distance(product, p);
         if (fabs(bound) > away + 1e-9)
             fail_msg("at (%g, %g, %g) %.9g, but a surface point is %.9g away", p.x, p.y, p.z, bound,
@@ -586,9 +586,9 @@ static double mean_share(const Product *product, const Chain *chain, Cloud *clou
 
 typedef struct Shares {
     const char *name;
-    int         kind;        /* of all deeds; -1: any */
+    int         kind; /* of all deeds; -1: any */
     int         deeds;
-    double      near, far;   /* at least, on average */
+    double      near, far; /* at least, on average */
 } Shares;
 
 static void bounds_are_of_use(void **state)
@@ -637,9 +637,9 @@ static void materials_see_the_solid(void **state)
     (void)state;
     Random random = {110};
     for (int i = 0; i < 40; i++) {
-        Chain chain = {.deed_count = 1, .before = 1};
-        chain.solid = (Solid){SOLID_BOX, {0, 0, 0}, {0.3, 0.8, 0.4}};
-        chain.deeds[0] = deed_random(&random, &chain.solid, true);
+        Chain chain        = {.deed_count = 1, .before = 1};
+        chain.solid        = (Solid){SOLID_BOX, {0, 0, 0}, {0.3, 0.8, 0.4}};
+        chain.deeds[0]     = deed_random(&random, &chain.solid, true);
         SceneText texts[2] = {{.length = 0}, {.length = 0}};
         for (int k = 0; k < 2; k++) {
             scene_write(&texts[k], "show box([0.6, 1.6, 0.8]).paint(%s)",
@@ -651,11 +651,11 @@ static void materials_see_the_solid(void **state)
         for (int face = 0; face < 6; face++) {
             double u = random_between(&random, -0.9, 0.9), v = random_between(&random, -0.9, 0.9);
             double side = face % 2 ? 1 : -1;
-            Vec h = chain.solid.half;
-            Vec p = face / 2 == 0   ? vec(h.x * side, h.y * u, h.z * v)
-                    : face / 2 == 1 ? vec(h.x * u, h.y * side, h.z * v)
-                                    : vec(h.x * u, h.y * v, h.z * side);
-            Vec n = vec_scale(side, vec(face / 2 == 0, face / 2 == 1, face / 2 == 2));
+            Vec    h    = chain.solid.half;
+            Vec    p    = face / 2 == 0   ? vec(h.x * side, h.y * u, h.z * v)
+                          : face / 2 == 1 ? vec(h.x * u, h.y * side, h.z * v)
+                                          : vec(h.x * u, h.y * v, h.z * side);
+            Vec    n    = vec_scale(side, vec(face / 2 == 0, face / 2 == 1, face / 2 == 2));
             check_face(&places, &normals, &chain, p, n);
         }
         product_free(&places);
@@ -667,17 +667,18 @@ static void materials_see_the_solid(void **state)
    space of the kernels and come out again. */
 static void normals_come_out_again(void **state)
 {
-    static const char *const deeds[] = {".twist([0, 1, 0], 0.9)", ".bend([1, 0, 0], 0.5)",
-                                        ".bend([0, 0, 1], 0.9)", ".taper([0, 1, 0], 1, 0.4)",
-                                        ".displace(sin(4 * x + y), 0.1)",
-                                        ".taper([1, 0, 0], 0.5, 1.2).twist([1, 1, 0], 0.7)"};
+    static const char *const deeds[] = {
+        ".twist([0, 1, 0], 0.9)",         ".bend([1, 0, 0], 0.5)",
+        ".bend([0, 0, 1], 0.9)",          ".taper([0, 1, 0], 1, 0.4)",
+        ".displace(sin(4 * x + y), 0.1)", ".taper([1, 0, 0], 0.5, 1.2).twist([1, 1, 0], 0.7)"};
     (void)state;
     Random random = {111};
     for (size_t i = 0; i < sizeof deeds / sizeof *deeds; i++) {
         Product product = product_format("let a = box([0.4, 1.5, 0.3]).move([-0.4, 0, 0.1]);"
                                          "show krs { kernel a; reflect plane([1, 0.1, 0], 0.05); }"
-                                         ".smooth_mirrors(0.001)%s;", deeds[i]);
-        int seen = 0, wrong = 0;
+                                         ".smooth_mirrors(0.001)%s;",
+                                         deeds[i]);
+        int     seen = 0, wrong = 0;
         for (int k = 0; k < 3000; k++) {
             Vec    p   = random_in_cube(&random, 1);
             KrsHit hit = product_probe(&product, p);
@@ -689,7 +690,7 @@ static void normals_come_out_again(void **state)
             hit = product_probe(&product, p);
             if (hit.distance > 0 || hit.distance < -0.02)
                 continue;
-            n = vec(hit.normal[0], hit.normal[1], hit.normal[2]);
+            n         = vec(hit.normal[0], hit.normal[1], hit.normal[2]);
             Vec light = vec(hit.shading[0], hit.shading[1], hit.shading[2]);
             seen++;
             wrong += vec_distance(n, light) > 0.01;
@@ -705,7 +706,7 @@ static void normals_come_out_again(void **state)
 static void larger_bounds_are_refuted(void **state)
 {
     (void)state;
-    Random random = {108};
+    Random random  = {108};
     int    refuted = 0;
     enum { CHAINS = 30 };
     for (int i = 0; i < CHAINS; i++) {
@@ -715,9 +716,9 @@ static void larger_bounds_are_refuted(void **state)
         Product      product = product_compile(text.bytes);
         Exaggeration wrong   = {product_field, &product, 1.5};
         Trial        trial   = chain_trial(&product, &chain, (uint64_t)i);
-        trial.field      = exaggerated_field;
-        trial.field_user = &wrong;
-        Verdict verdict = judge(&trial);
+        trial.field          = exaggerated_field;
+        trial.field_user     = &wrong;
+        Verdict verdict      = judge(&trial);
         refuted += verdict.ball_errors > 0 && verdict.slope_errors > 0;
         product_free(&product);
     }
@@ -747,30 +748,30 @@ static void directions_are_as_written(void **state)
 
 int main(void)
 {
-    static Shares shares[] = {{"twist", DEED_TWIST, 1, 0.7, 0.9},
-                              {"bend", DEED_BEND, 1, 0.75, 0.9},
-                              {"taper", DEED_TAPER, 1, 0.6, 0.9},
-                              {"three deformations", -1, 3, 0.55, 0.85}};
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(directions_are_as_written),
-        cmocka_unit_test(one_is_safe),
-        cmocka_unit_test(several_are_safe),
-        cmocka_unit_test(sequences_are_safe),
-        cmocka_unit_test(long_bends_are_safe),
-        cmocka_unit_test(rings_are_solid),
-        cmocka_unit_test(frames_are_safe),
-        cmocka_unit_test(moving_tapers_are_safe),
-        cmocka_unit_test(a_twist_needs_no_range),
-        cmocka_unit_test(displacements_are_safe),
-        cmocka_unit_test(others_are_safe),
-        cmocka_unit_test(narrowing_is_safe),
-        {"twists are of use", bounds_are_of_use, NULL, NULL, &shares[0]},
-        {"bends are of use", bounds_are_of_use, NULL, NULL, &shares[1]},
-        {"tapers are of use", bounds_are_of_use, NULL, NULL, &shares[2]},
-        {"chains are of use", bounds_are_of_use, NULL, NULL, &shares[3]},
-        cmocka_unit_test(materials_see_the_solid),
-        cmocka_unit_test(normals_come_out_again),
-        cmocka_unit_test(larger_bounds_are_refuted),
+    static Shares           shares[] = {{"twist", DEED_TWIST, 1, 0.7, 0.9},
+                                        {"bend", DEED_BEND, 1, 0.75, 0.9},
+                                        {"taper", DEED_TAPER, 1, 0.6, 0.9},
+                                        {"three deformations", -1, 3, 0.55, 0.85}};
+    const struct CMUnitTest tests[]  = {
+         cmocka_unit_test(directions_are_as_written),
+         cmocka_unit_test(one_is_safe),
+         cmocka_unit_test(several_are_safe),
+         cmocka_unit_test(sequences_are_safe),
+         cmocka_unit_test(long_bends_are_safe),
+         cmocka_unit_test(rings_are_solid),
+         cmocka_unit_test(frames_are_safe),
+         cmocka_unit_test(moving_tapers_are_safe),
+         cmocka_unit_test(a_twist_needs_no_range),
+         cmocka_unit_test(displacements_are_safe),
+         cmocka_unit_test(others_are_safe),
+         cmocka_unit_test(narrowing_is_safe),
+         {"twists are of use", bounds_are_of_use, NULL, NULL, &shares[0]},
+         {"bends are of use", bounds_are_of_use, NULL, NULL, &shares[1]},
+         {"tapers are of use", bounds_are_of_use, NULL, NULL, &shares[2]},
+         {"chains are of use", bounds_are_of_use, NULL, NULL, &shares[3]},
+         cmocka_unit_test(materials_see_the_solid),
+         cmocka_unit_test(normals_come_out_again),
+         cmocka_unit_test(larger_bounds_are_refuted),
     };
     return cmocka_run_group_tests_name("deformations", tests, NULL, NULL);
 }

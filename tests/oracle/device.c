@@ -52,9 +52,9 @@ typedef struct Comparison {
 /* `planted` multiplies what the device says: 1, except to show that a fault is found. */
 static Comparison compare_scene(const char *text, double roughness, double planted)
 {
-    KrsOptions options = {.diagnostic = print_diagnostic};
-    KrsScene  *scene;
-    KrsFrame  *frame;
+    KrsOptions    options = {.diagnostic = print_diagnostic};
+    KrsScene     *scene;
+    KrsFrame     *frame;
     KrsRendering *rendering;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", &options, &scene), KRS_OK);
     assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
@@ -63,17 +63,17 @@ static Comparison compare_scene(const char *text, double roughness, double plant
         fprintf(stderr, "%s\n", krs_renderer_message(renderer));
     assert_int_equal(status, KRS_OK);
 
-    double (*points)[3]  = malloc(POINTS * sizeof *points);
-    float (*rounded)[3]  = malloc(POINTS * sizeof *rounded);
-    float  *device       = malloc(POINTS * sizeof *device);
-    double *host         = malloc(POINTS * sizeof *host);
-    KrsHit *hits         = malloc(IDENTITIES * sizeof *hits);
+    double(*points)[3]        = malloc(POINTS * sizeof *points);
+    float(*rounded)[3]        = malloc(POINTS * sizeof *rounded);
+    float           *device   = malloc(POINTS * sizeof *device);
+    double          *host     = malloc(POINTS * sizeof *host);
+    KrsHit          *hits     = malloc(IDENTITIES * sizeof *hits);
     KrsSurfacePoint *surfaces = malloc(POINTS * sizeof *surfaces);
     scatter(points, rounded);
-    status = krs_sample(rendering, frame, (const float (*)[3])rounded, POINTS, device, surfaces);
+    status = krs_sample(rendering, frame, (const float(*)[3])rounded, POINTS, device, surfaces);
     assert_int_equal(status, KRS_OK);
-    krs_distance(frame, (const double (*)[3])points, POINTS, host);
-    krs_probe(frame, (const double (*)[3])points, IDENTITIES, hits);
+    krs_distance(frame, (const double(*)[3])points, POINTS, host);
+    krs_probe(frame, (const double(*)[3])points, IDENTITIES, hits);
 
     Comparison result = {0};
     for (size_t i = 0; i < POINTS; i++) {
@@ -116,14 +116,29 @@ static void agrees(const char *text, double roughness)
 static void primitives_agree(void **context)
 {
     static const char *const solids[] = {
-        "sphere(0.8)", "box([1, 2, 0.7])", "cylinder(0.6, 1.3)", "cone(0.7, 1.2)",
-        "capped_cone(0.8, 0.3, 1)", "capsule([-0.5, 0, 0.2], [0.6, 0.7, 0], 0.2)",
+        "sphere(0.8)",
+        "box([1, 2, 0.7])",
+        "cylinder(0.6, 1.3)",
+        "cone(0.7, 1.2)",
+        "capped_cone(0.8, 0.3, 1)",
+        "capsule([-0.5, 0, 0.2], [0.6, 0.7, 0], 0.2)",
         "round_cone([-0.6, 0, 0], [0.7, 0.4, 0.1], 0.4, 0.15)",
-        "arc_capsule([-0.8, 0, 0], [0, 0.7, 0.1], [0.9, 0.1, 0], 0.15, 0.15)", "torus(0.8, 0.25)",
-        "ellipsoid([1, 0.5, 0.7])", "link(0.6, 0.4, 0.12)", "octahedron(1)", "tetrahedron(1)",
-        "dodecahedron(0.9)", "icosahedron(0.9)", "prism(6, 0.8, 1)", "pyramid(1.2, 1)",
-        "wedge(70deg)", "plane([0.3, 1, 0.2], 0.1)", "circle(0.7).extrude(0.5)",
-        "rectangle([1, 0.6]).revolve(1)", "regular(5, 0.8).extrude(0.4)", "star().extrude(0.3)",
+        "arc_capsule([-0.8, 0, 0], [0, 0.7, 0.1], [0.9, 0.1, 0], 0.15, 0.15)",
+        "torus(0.8, 0.25)",
+        "ellipsoid([1, 0.5, 0.7])",
+        "link(0.6, 0.4, 0.12)",
+        "octahedron(1)",
+        "tetrahedron(1)",
+        "dodecahedron(0.9)",
+        "icosahedron(0.9)",
+        "prism(6, 0.8, 1)",
+        "pyramid(1.2, 1)",
+        "wedge(70deg)",
+        "plane([0.3, 1, 0.2], 0.1)",
+        "circle(0.7).extrude(0.5)",
+        "rectangle([1, 0.6]).revolve(1)",
+        "regular(5, 0.8).extrude(0.4)",
+        "star().extrude(0.3)",
         "polygon([[-1, -0.5], [1, -0.6], [0.2, 0.1], [0.5, 0.9]]).extrude(0.6)"};
     (void)context;
     for (size_t i = 0; i < sizeof solids / sizeof *solids; i++) {
@@ -137,19 +152,35 @@ static void primitives_agree(void **context)
 static void operations_agree(void **context)
 {
     static const char *const shapes[] = {
-        "a | b", "a & b", "a - b", "xor(a, b)", "morph(a, b, 0.3)", "union(a, b, blend: 0.3)",
+        "a | b",
+        "a & b",
+        "a - b",
+        "xor(a, b)",
+        "morph(a, b, 0.3)",
+        "union(a, b, blend: 0.3)",
         "intersection(a, b, blend: 0.3, kind: \"cubic\")",
         "difference(a, b, blend: 0.2, kind: \"exponential\")",
         "union(a, b, blend: 0.4, kind: \"circular\")",
         "union(a, b, blend: 0.4, kind: \"chamfer\")",
-        "union(a, b, blend: 0.4, kind: \"stairs\")", "a.scale(1.7)", "a.scale([1, 2, 0.5])",
-        "a.shell(0.1)", "a.round(0.1)", "a.offset(0.2)", "a.elongate([0.5, 0, 1])",
-        "a.mirror(plane([1, 1, 0], 0.3))", "a.align([1, 2, 3], [0, -1, 0.2])",
+        "union(a, b, blend: 0.4, kind: \"stairs\")",
+        "a.scale(1.7)",
+        "a.scale([1, 2, 0.5])",
+        "a.shell(0.1)",
+        "a.round(0.1)",
+        "a.offset(0.2)",
+        "a.elongate([0.5, 0, 1])",
+        "a.mirror(plane([1, 1, 0], 0.3))",
+        "a.align([1, 2, 3], [0, -1, 0.2])",
         "a.scale(0.3).repeat([1, 1.2, 0], [4, 3, 1])",
-        "a.scale(0.2).move([1.5, 0, 0]).repeat_polar(7)", "a.scale(0.3).repeat(0.8)",
-        "a.twist([0, 1, 0], 0.8)", "a.twist([1, 2, 0.5], -0.4)", "a.bend([1, 0, 0], 0.4)",
-        "a.scale([0.4, 3, 0.4]).bend([0, 0, 1], -1.1)", "a.taper([0, 1, 0], 1.2, 0.4)",
-        "a.displace(sin(3 * x) * cos(2 * y), 0.2)", "(a | b).displace(fbm(p, 3), 0.3)",
+        "a.scale(0.2).move([1.5, 0, 0]).repeat_polar(7)",
+        "a.scale(0.3).repeat(0.8)",
+        "a.twist([0, 1, 0], 0.8)",
+        "a.twist([1, 2, 0.5], -0.4)",
+        "a.bend([1, 0, 0], 0.4)",
+        "a.scale([0.4, 3, 0.4]).bend([0, 0, 1], -1.1)",
+        "a.taper([0, 1, 0], 1.2, 0.4)",
+        "a.displace(sin(3 * x) * cos(2 * y), 0.2)",
+        "(a | b).displace(fbm(p, 3), 0.3)",
         "(a - b).taper([1, 0, 0], 0.5, 1).twist([0, 1, 0], 0.5).bend([1, 0, 0], 0.2)"};
     (void)context;
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
@@ -163,16 +194,39 @@ static void operations_agree(void **context)
 
 static void functions_agree(void **context)
 {
-    static const char *const fields[] = {
-        "sin(x) + cos(2 * y)", "tan(0.1 * z)", "asin(clamp(x, -0.9, 0.9))",
-        "acos(clamp(0.3 * y, -0.9, 0.9))", "atan(x * y)", "atan2(y, x + 20)", "sqrt(x * x + 1)",
-        "inversesqrt(y * y + 0.5)", "exp(0.2 * x)", "exp2(0.3 * x)", "log(1 + x * x)",
-        "log2(2 + y * y)", "sinh(0.2 * x)", "cosh(0.2 * y)", "tanh(z)", "abs(x) - sign(y + 100)",
-        "pow(1 + x * x, 0.7)", "x ^ 3 * 0.01", "mix(x, y, 0.3)", "smoothstep(-1, 2, x)",
-        "clamp(x, -1, y)", "min(x, y, z)", "max([x, y, z])", "length(p - [1, 2, 3])",
-        "dot(p, [1, 0.5, 0.2])", "length(cross(p, [0, 1, 0]))", "normalize(p + [20, 0, 0])[0]",
-        "distance(p, [1, 1, 1])", "sum([x, y, 2 * z])", "noise(p)", "noise([z, x])", "noise(3 * y)",
-        "fbm(p, 4)"};
+    static const char *const fields[] = {"sin(x) + cos(2 * y)",
+                                         "tan(0.1 * z)",
+                                         "asin(clamp(x, -0.9, 0.9))",
+                                         "acos(clamp(0.3 * y, -0.9, 0.9))",
+                                         "atan(x * y)",
+                                         "atan2(y, x + 20)",
+                                         "sqrt(x * x + 1)",
+                                         "inversesqrt(y * y + 0.5)",
+                                         "exp(0.2 * x)",
+                                         "exp2(0.3 * x)",
+                                         "log(1 + x * x)",
+                                         "log2(2 + y * y)",
+                                         "sinh(0.2 * x)",
+                                         "cosh(0.2 * y)",
+                                         "tanh(z)",
+                                         "abs(x) - sign(y + 100)",
+                                         "pow(1 + x * x, 0.7)",
+                                         "x ^ 3 * 0.01",
+                                         "mix(x, y, 0.3)",
+                                         "smoothstep(-1, 2, x)",
+                                         "clamp(x, -1, y)",
+                                         "min(x, y, z)",
+                                         "max([x, y, z])",
+                                         "length(p - [1, 2, 3])",
+                                         "dot(p, [1, 0.5, 0.2])",
+                                         "length(cross(p, [0, 1, 0]))",
+                                         "normalize(p + [20, 0, 0])[0]",
+                                         "distance(p, [1, 1, 1])",
+                                         "sum([x, y, 2 * z])",
+                                         "noise(p)",
+                                         "noise([z, x])",
+                                         "noise(3 * y)",
+                                         "fbm(p, 4)"};
     (void)context;
     for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
         char text[400];
@@ -192,8 +246,8 @@ static void sample_sines(double scale, double *arguments, KrsSurfacePoint *found
     KrsScene     *scene;
     KrsFrame     *frame;
     KrsRendering *rendering;
-    float        *distances   = malloc(POINTS * sizeof *distances);
-    float       (*points)[3] = calloc(POINTS, sizeof *points);
+    float        *distances = malloc(POINTS * sizeof *distances);
+    float(*points)[3]       = calloc(POINTS, sizeof *points);
     for (size_t i = 0; i < POINTS; i++) {
         points[i][0] = (float)uniform(-2.5, 2.5);
         arguments[i] = scale * points[i][0];
@@ -205,8 +259,8 @@ static void sample_sines(double scale, double *arguments, KrsSurfacePoint *found
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
     assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
     assert_int_equal(krs_rendering_new_for(renderer, scene, KRS_FOR_QUESTIONS, &rendering), KRS_OK);
-    assert_int_equal(krs_sample(rendering, frame, (const float (*)[3])points, POINTS, distances,
-                                found), KRS_OK);
+    assert_int_equal(
+        krs_sample(rendering, frame, (const float(*)[3])points, POINTS, distances, found), KRS_OK);
     krs_rendering_free(rendering);
     krs_frame_free(frame);
     krs_scene_free(scene);
@@ -218,29 +272,32 @@ static void sample_sines(double scale, double *arguments, KrsSurfacePoint *found
    what the last digit of the argument is worth.  However large that is, sines are at most 1. */
 static void sines_are_accurate(void **context)
 {
-    static const double scales[] = {1, 0x1p4, 0x1p8, 0x1p11, 0x1p14, 0x1p15, 0x1p18, 0x1p21, 0x1p60};
-    double          *arguments = malloc(POINTS * sizeof *arguments);
-    KrsSurfacePoint *found     = malloc(POINTS * sizeof *found);
+    static const double scales[]  = {1,      0x1p4,  0x1p8,  0x1p11, 0x1p14,
+                                     0x1p15, 0x1p18, 0x1p21, 0x1p60};
+    double             *arguments = malloc(POINTS * sizeof *arguments);
+    KrsSurfacePoint    *found     = malloc(POINTS * sizeof *found);
     (void)context;
     for (size_t k = 0; k < sizeof scales / sizeof *scales; k++) {
         double worst = 0, worst_tangent = 0, largest = 0;
         sample_sines(scales[k], arguments, found);
         for (size_t i = 0; i < POINTS; i++) {
             double a = arguments[i], tangent = tan(a);
-            double digit = fabs(a) > 16384 * acos(-1) ? 0x1p-23 * fabs(a) : 0;
+            double digit   = fabs(a) > 16384 * acos(-1) ? 0x1p-23 * fabs(a) : 0;
             double allowed = 0x1p-22 + digit;
             for (int j = 0; j < 2; j++) {
                 double excess = fabs(found[i].emission[j] - (j ? cos(a) : sin(a))) / allowed;
-                worst   = excess <= worst ? worst : excess;
-                largest = fmax(largest, fabs(found[i].emission[j]));
+                worst         = excess <= worst ? worst : excess;
+                largest       = fmax(largest, fabs(found[i].emission[j]));
             }
             if (digit > 0 || fabs(tangent) > 1000)
                 continue;
-            double excess = fabs(found[i].emission[2] - tangent) / (allowed * (1 + tangent * tangent));
+            double excess = fabs(found[i].emission[2] - tangent) /
+                            (allowed * (1 + tangent * tangent));
             worst_tangent = excess <= worst_tangent ? worst_tangent : excess;
         }
         if (!(worst <= 1) || !(worst_tangent <= 1) || !(largest <= 1 + 0x1p-22))
-            fprintf(stderr, "sines up to %g: %.3g of what is permitted, tangents %.3g; up to %.9g\n",
+            fprintf(stderr,
+                    "sines up to %g: %.3g of what is permitted, tangents %.3g; up to %.9g\n",
                     2.5 * scales[k], worst, worst_tangent, largest);
         assert_true(worst <= 1);
         assert_true(worst_tangent <= 1);
@@ -297,10 +354,12 @@ static void inversions_agree(void **context)
 static void fractals_agree(void **context)
 {
     static const char *const scenes[] = {
-        "show julia(c: [-0.2, 0.6, 0.2, 0.1]);", "show julia(c: [-1, 0.2, 0, 0], iterations: 5);",
+        "show julia(c: [-0.2, 0.6, 0.2, 0.1]);",
+        "show julia(c: [-1, 0.2, 0, 0], iterations: 5);",
         "show julia(c: [-0.2, 0.6, 0.2, 0.1], power: 3, iterations: 6).rotate([1, 2, 3], 0.7);",
         "show julia(c: [0.4, 0.3, 0.5, 0.1], power: 8, iterations: 3);",
-        "show mandelbulb(iterations: 3);", "show mandelbulb(power: 2, iterations: 8);",
+        "show mandelbulb(iterations: 3);",
+        "show mandelbulb(power: 2, iterations: 8);",
         "show mandelbulb(power: 4, iterations: 4) | mandelbulb(6, 3).move([2, 0, 0])"
         "   | mandelbulb(7, 3).move([0, 0, 2]) | mandelbulb(12, 2).move([2, 0, 2]);",
         "show mandelbulb(16, 2) | mandelbulb(3, 9).move([2, 0, 0]);",
@@ -396,15 +455,13 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(primitives_agree), cmocka_unit_test(operations_agree),
         cmocka_unit_test(functions_agree),  cmocka_unit_test(sines_are_accurate),
-        cmocka_unit_test(sequences_agree),
-        cmocka_unit_test(fractals_agree),
-        cmocka_unit_test(inversions_agree),
-        cmocka_unit_test(parameters_agree), cmocka_unit_test(frames_agree),
-        cmocka_unit_test(a_fault_is_found),
+        cmocka_unit_test(sequences_agree),  cmocka_unit_test(fractals_agree),
+        cmocka_unit_test(inversions_agree), cmocka_unit_test(parameters_agree),
+        cmocka_unit_test(frames_agree),     cmocka_unit_test(a_fault_is_found),
     };
     spirv_start();
-    int failed =
-        cmocka_run_group_tests_name("device and evaluator", tests, renderer_open, renderer_close);
+    int failed = cmocka_run_group_tests_name("device and evaluator", tests, renderer_open,
+                                             renderer_close);
     spirv_stop();
     return failed;
 }

@@ -25,8 +25,8 @@
 #include "tests/support/renderer.h"
 
 enum { WIDTH = 160, HEIGHT = 90 };
-static const double PERMITTED = 0.5; /* widths of a pixel */
-static const double OUTLINES = 0.001; /* of the pixels */
+static const double PERMITTED = 0.5;   /* widths of a pixel */
+static const double OUTLINES  = 0.001; /* of the pixels */
 
 static KrsRenderer *lavapipe;
 
@@ -38,14 +38,14 @@ static bool both_are_open(void)
         krs_renderer_free(lavapipe);
         lavapipe = NULL;
     }
-    return lavapipe && strcmp(krs_renderer_device(lavapipe).name,
-                              krs_renderer_device(renderer).name) != 0;
+    return lavapipe &&
+           strcmp(krs_renderer_device(lavapipe).name, krs_renderer_device(renderer).name) != 0;
 }
 
 static KrsPicture *render_on(KrsRenderer *on, const KrsScene *scene)
 {
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .planes = AGREEMENT_PLANES,
-                                .samples = 1};
+    KrsRenderOptions options = {
+        .width = WIDTH, .height = HEIGHT, .planes = AGREEMENT_PLANES, .samples = 1};
     KrsRendering *rendering;
     KrsFrame     *frame;
     KrsPicture   *picture = NULL;
@@ -64,8 +64,9 @@ static bool agree(const KrsPicture *expected, const KrsPicture *picture)
     Agreement found = agreement_list(expected, picture, PERMITTED, stdout, "# ", 10);
     print_message("# of %zu pixels %zu show something; %zu differ at outlines, elsewhere %zu in"
                   " hits, %zu components, %zu levels, %zu instances, %zu depths; %.3f pixels at"
-                  " most\n", found.pixels, found.solid, found.outline, found.hits,
-                  found.components, found.levels, found.instances, found.depths, found.deepest);
+                  " most\n",
+                  found.pixels, found.solid, found.outline, found.hits, found.components,
+                  found.levels, found.instances, found.depths, found.deepest);
     return agreement_faults(&found) == 0 && found.solid > found.pixels / 10 &&
            (double)found.outline <= OUTLINES * (double)found.pixels;
 }
@@ -89,11 +90,11 @@ static void a_planted_fault_is_seen(void **state)
 {
     (void)state;
     KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .planes = AGREEMENT_PLANES};
-    KrsPicture *a = picture_of("show sphere(1);", &options);
-    KrsPicture *b = picture_of("show sphere(1);", &options);
-    size_t      k = (size_t)HEIGHT / 2 * WIDTH + WIDTH / 2;
-    float       depth = b->depth[k];
-    Agreement same = agreement_of(a, b, 0);
+    KrsPicture      *a       = picture_of("show sphere(1);", &options);
+    KrsPicture      *b       = picture_of("show sphere(1);", &options);
+    size_t           k       = (size_t)HEIGHT / 2 * WIDTH + WIDTH / 2;
+    float            depth   = b->depth[k];
+    Agreement        same    = agreement_of(a, b, 0);
     assert_int_equal(agreement_faults(&same) + same.outline, 0);
 
     b->depth[k] *= 1.02f;
@@ -124,8 +125,8 @@ int main(int argc, char **argv)
 {
     enum { MOST = 64 };
     struct CMUnitTest tests[MOST + 1] = {cmocka_unit_test(a_planted_fault_is_seen)};
-    size_t            count = 1;
-    glob_t            examples = {0};
+    size_t            count           = 1;
+    glob_t            examples        = {0};
     if (argc == 1 && glob("examples/*.krs", 0, NULL, &examples) == 0) {
         argc = (int)examples.gl_pathc + 1;
         argv = examples.gl_pathv - 1;

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 static const Chord NONE = {HUGE_VAL, -HUGE_VAL};
-static const Chord ALL = {-HUGE_VAL, HUGE_VAL};
+static const Chord ALL  = {-HUGE_VAL, HUGE_VAL};
 
 /* Where a + b t is at most `limit`. */
 static Chord chord_below(double a, double b, double limit)
@@ -43,7 +43,7 @@ static double line_nearest(Line line, Vec point)
 Chord chord_of_ball(Line line, Vec centre, double radius)
 {
     double middle = line_nearest(line, centre);
-    Vec    apart = vec_sub(line_at(line, middle), centre);
+    Vec    apart  = vec_sub(line_at(line, middle), centre);
     double square = radius * radius - vec_dot(apart, apart);
     if (square < 0)
         return NONE;
@@ -53,12 +53,12 @@ Chord chord_of_ball(Line line, Vec centre, double radius)
 Chord chord_of_half(Line line, Half half)
 {
     return chord_below(vec_dot(half.normal, line.origin), vec_dot(half.normal, line.direction),
-                      half.offset);
+                       half.offset);
 }
 
 Chord chord_of_box(Line line, Vec low, Vec high)
 {
-    Vec  o = line.origin, d = line.direction;
+    Vec   o = line.origin, d = line.direction;
     Chord x = chord_meet(chord_below(o.x, d.x, high.x), chord_below(-o.x, -d.x, -low.x));
     Chord y = chord_meet(chord_below(o.y, d.y, high.y), chord_below(-o.y, -d.y, -low.y));
     Chord z = chord_meet(chord_below(o.z, d.z, high.z), chord_below(-o.z, -d.z, -low.z));
@@ -69,8 +69,8 @@ Chord chord_of_box(Line line, Vec low, Vec high)
 static Chord chord_of_tube(Line line, Vec point, Vec axis, double radius)
 {
     Vec o = vec_sub(line.origin, point), d = line.direction;
-    o = vec_sub(o, vec_scale(vec_dot(o, axis), axis));
-    d = vec_sub(d, vec_scale(vec_dot(d, axis), axis));
+    o        = vec_sub(o, vec_scale(vec_dot(o, axis), axis));
+    d        = vec_sub(d, vec_scale(vec_dot(d, axis), axis));
     double a = vec_dot(d, d), b = vec_dot(o, d), c = vec_dot(o, o) - radius * radius;
     if (a < 1e-30)
         return c <= 0 ? ALL : NONE;
@@ -82,11 +82,11 @@ static Chord chord_of_tube(Line line, Vec point, Vec axis, double radius)
 
 Chord chord_of_capsule(Line line, Vec from, Vec to, double radius)
 {
-    Vec    axis = vec_unit(vec_sub(to, from));
-    double near = line_nearest(line, from);
-    Line   moved = {line_at(line, near), line.direction};
+    Vec    axis   = vec_unit(vec_sub(to, from));
+    double near   = line_nearest(line, from);
+    Line   moved  = {line_at(line, near), line.direction};
     Half   before = {axis, vec_dot(axis, to)}, behind = {vec_scale(-1, axis), -vec_dot(axis, from)};
-    Chord   tube = chord_of_tube(moved, from, axis, radius);
+    Chord  tube = chord_of_tube(moved, from, axis, radius);
     tube = chord_meet(tube, chord_meet(chord_of_half(moved, before), chord_of_half(moved, behind)));
     Chord ends = chord_join(chord_of_ball(moved, from, radius), chord_of_ball(moved, to, radius));
     return chord_moved(chord_join(tube, ends), near);
@@ -110,14 +110,14 @@ static Vec turn_back(const Isometry *map, Vec v)
 Rod rod_of_copy(const Copy *copy)
 {
     const Isometry *pull = &copy->pull;
-    Rod rod = {
-        .from = turn_back(pull, vec_sub(copy->body->from, pull->shift)),
-        .to = turn_back(pull, vec_sub(copy->body->to, pull->shift)),
-        .radius = copy->body->radius,
-        .cut_count = copy->cut_count,
+    Rod             rod  = {
+                     .from      = turn_back(pull, vec_sub(copy->body->from, pull->shift)),
+                     .to        = turn_back(pull, vec_sub(copy->body->to, pull->shift)),
+                     .radius    = copy->body->radius,
+                     .cut_count = copy->cut_count,
     };
     for (int i = 0; i < rod.cut_count; i++) {
-        Half cut = copy->cuts[i];
+        Half cut    = copy->cuts[i];
         rod.cuts[i] = (Half){turn_back(pull, cut.normal),
                              cut.offset - vec_dot(cut.normal, pull->shift)};
     }
@@ -127,15 +127,15 @@ Rod rod_of_copy(const Copy *copy)
 Lens lens_make(Vec eye, Vec target, double half, bool parallel, int width, int height)
 {
     Vec forward = vec_unit(vec_sub(target, eye));
-    Vec right = vec_unit(vec_cross(forward, vec(0, 1, 0)));
+    Vec right   = vec_unit(vec_cross(forward, vec(0, 1, 0)));
     return (Lens){eye, right, vec_cross(right, forward), forward, half, parallel, width, height};
 }
 
 Line lens_ray(const Lens *lens, double x, double y)
 {
     double across = (2 * x - lens->width) / lens->height * lens->half;
-    double above = (1 - 2 * y / lens->height) * lens->half;
-    Vec    aside = vec_add(vec_scale(across, lens->right), vec_scale(above, lens->up));
+    double above  = (1 - 2 * y / lens->height) * lens->half;
+    Vec    aside  = vec_add(vec_scale(across, lens->right), vec_scale(above, lens->up));
     if (lens->parallel)
         return (Line){vec_add(lens->eye, aside), lens->forward};
     return (Line){lens->eye, vec_unit(vec_add(lens->forward, aside))};
@@ -168,11 +168,11 @@ static bool row_part(Vec from, Vec to, double y, double reach, double *left, dou
     double low = 0, high = 1, rise = to.y - from.y;
     if (rise != 0) {
         double a = (y - reach - from.y) / rise, b = (y + reach - from.y) / rise;
-        low = fmax(0, fmin(a, b));
+        low  = fmax(0, fmin(a, b));
         high = fmin(1, fmax(a, b));
     }
     double a = from.x + low * (to.x - from.x), b = from.x + high * (to.x - from.x);
-    *left = fmin(a, b) - reach;
+    *left  = fmin(a, b) - reach;
     *right = fmax(a, b) + reach;
     return low <= high;
 }
@@ -184,14 +184,14 @@ static void rod_seen(const Rod *rod, const Lens *lens, const Line *rays, double 
 {
     Vec    from = lens_place(lens, rod->from), to = lens_place(lens, rod->to);
     double nearest = fmin(from.z, to.z) - rod->radius, left, right;
-    double reach = 0.1 + 2 * rod->radius / lens_pixel(lens, nearest);
-    int    end = pixel_from(fmax(from.y, to.y) + reach, y, lens->height);
+    double reach   = 0.1 + 2 * rod->radius / lens_pixel(lens, nearest);
+    int    end     = pixel_from(fmax(from.y, to.y) + reach, y, lens->height);
     for (int j = pixel_from(fmin(from.y, to.y) - reach, y, lens->height); j < end; j++) {
         if (!row_part(from, to, j + y, reach, &left, &right))
             continue;
         int beyond = pixel_from(right, x, lens->width);
         for (int i = pixel_from(left, x, lens->width); i < beyond; i++) {
-            int   k = j * lens->width + i;
+            int   k     = j * lens->width + i;
             Chord chord = chord_of_rod(rays[k], rod);
             if (!chord_is_empty(chord))
                 enter[k] = fmin(enter[k], chord.enter);
@@ -202,11 +202,11 @@ static void rod_seen(const Rod *rod, const Lens *lens, const Line *rays, double 
 void rods_seen(const Rod *rods, size_t count, const Lens *lens, double x, double y, double *enter)
 {
     int   pixels = lens->width * lens->height;
-    Line *rays = calloc((size_t)pixels, sizeof *rays);
+    Line *rays   = calloc((size_t)pixels, sizeof *rays);
     if (!rays)
         exit(EXIT_FAILURE);
     for (int k = 0; k < pixels; k++) {
-        rays[k] = lens_ray(lens, k % lens->width + x, k / lens->width + y);
+        rays[k]  = lens_ray(lens, k % lens->width + x, k / lens->width + y);
         enter[k] = HUGE_VAL;
     }
     for (size_t n = 0; n < count; n++)

@@ -23,7 +23,7 @@ static inline Vec line_at(Line line, double t)
 typedef struct Chord {
     double enter, leave;
 } Chord;
-static inline bool chord_is_empty(Chord chord) { return !(chord.enter <= chord.leave); }
+static inline bool  chord_is_empty(Chord chord) { return !(chord.enter <= chord.leave); }
 static inline Chord chord_meet(Chord a, Chord b)
 {
     return (Chord){fmax(a.enter, b.enter), fmin(a.leave, b.leave)};

@@ -22,14 +22,15 @@ static Vec half_mirror(Half half, Vec p)
 static Isometry isometry_then_mirror(const Isometry *map, Half mirror)
 {
     Vec axes[3] = {vec(1, 0, 0), vec(0, 1, 0), vec(0, 0, 1)}, columns[3];
-    Vec shift = half_mirror(mirror, map->shift);
+    Vec shift   = half_mirror(mirror, map->shift);
     for (int i = 0; i < 3; i++) {
-        Vec image = isometry_apply(map, axes[i]);
+        Vec image  = isometry_apply(map, axes[i]);
         columns[i] = vec_sub(half_mirror(mirror, image), shift);
     }
     return (Isometry){{vec(columns[0].x, columns[1].x, columns[2].x),
                        vec(columns[0].y, columns[1].y, columns[2].y),
-                       vec(columns[0].z, columns[1].z, columns[2].z)}, shift};
+                       vec(columns[0].z, columns[1].z, columns[2].z)},
+                      shift};
 }
 
 /* The half-space of all x whose mirror image is in `half`. */
@@ -46,15 +47,14 @@ static Vec body_project(const Body *body, double shrink, Vec p)
     if (body->box) {
         Vec q = vec_turn(vec_sub(p, body->from), body->axis, -body->angle);
         Vec s = vec_sub(body->sides, vec(shrink, shrink, shrink));
-        q = vec(fmax(-s.x, fmin(q.x, s.x)), fmax(-s.y, fmin(q.y, s.y)),
-                fmax(-s.z, fmin(q.z, s.z)));
+        q = vec(fmax(-s.x, fmin(q.x, s.x)), fmax(-s.y, fmin(q.y, s.y)), fmax(-s.z, fmin(q.z, s.z)));
         return vec_add(body->from, vec_turn(q, body->axis, body->angle));
     }
-    Vec along = vec_sub(body->to, body->from);
+    Vec    along  = vec_sub(body->to, body->from);
     double square = vec_dot(along, along), t = 0;
     if (square > 0)
         t = fmax(0, fmin(vec_dot(vec_sub(p, body->from), along) / square, 1));
-    Vec spine = vec_mix(body->from, body->to, t);
+    Vec    spine    = vec_mix(body->from, body->to, t);
     double distance = vec_distance(p, spine), radius = body->radius - shrink;
     return distance <= radius ? p : vec_mix(spine, p, radius / distance);
 }
@@ -80,7 +80,7 @@ static double body_reach(const Body *body)
 /* The point that an isometry takes to `point`. */
 static Vec isometry_undo(const Isometry *map, Vec point)
 {
-    Vec at = vec_sub(point, map->shift);
+    Vec at  = vec_sub(point, map->shift);
     Vec sum = vec_add(vec_scale(at.x, map->rows[0]), vec_scale(at.y, map->rows[1]));
     return vec_add(sum, vec_scale(at.z, map->rows[2]));
 }
@@ -98,13 +98,13 @@ static bool copy_is_cut_off(const Copy *copy)
    it would have to go. */
 static double copy_violation(const Copy *copy, double margin, Vec p, Vec *better)
 {
-    Vec q = body_project(copy->body, margin, p);
+    Vec    q     = body_project(copy->body, margin, p);
     double worst = vec_distance(p, q);
-    *better = q;
+    *better      = q;
     for (int i = 0; i < copy->cut_count; i++) {
         double excess = half_excess(copy->cuts[i], p) + margin;
         if (excess > worst) {
-            worst = excess;
+            worst   = excess;
             *better = vec_sub(p, vec_scale(excess, copy->cuts[i].normal));
         }
     }
@@ -116,7 +116,7 @@ static void copy_find_interior(Copy *copy)
 {
     for (int halvings = 1; halvings <= 6; halvings++) {
         double margin = body_thickness(copy->body) * pow(0.5, halvings);
-        Vec p = copy->body->from, better;
+        Vec    p      = copy->body->from, better;
         for (int step = 0; step < 100; step++) {
             if (copy_violation(copy, margin, p, &better) < margin / 2) {
                 copy->interior = p;
@@ -132,8 +132,8 @@ static void add_copies(const Sequence *sequence, Expansion *expansion, const Cop
 {
     for (int i = 0; i < sequence->body_count; i++)
         if (sequence->bodies[i].level == level) {
-            Copy *copy = &expansion->copies[expansion->count++];
-            *copy = *place;
+            Copy *copy   = &expansion->copies[expansion->count++];
+            *copy        = *place;
             copy->body   = &sequence->bodies[i];
             copy->middle = isometry_undo(&copy->pull, body_middle(copy->body));
             copy->reach  = body_reach(copy->body);
@@ -147,7 +147,7 @@ static void add_copies(const Sequence *sequence, Expansion *expansion, const Cop
     Half mirror = sequence->mirrors[level - 1];
     for (uint32_t bit = 0; bit < 2; bit++) {
         Copy inner = *place;
-        inner.id = 2 * place->id + bit;
+        inner.id   = 2 * place->id + bit;
         if (bit) {
             inner.pull = isometry_then_mirror(&place->pull, mirror);
             for (int i = 0; i < inner.cut_count; i++)
@@ -168,7 +168,7 @@ Expansion expand(const Sequence *sequence)
         fprintf(stderr, "no memory for %zu copies\n", total);
         exit(EXIT_FAILURE);
     }
-    Copy world = {.id = 1};
+    Copy world         = {.id = 1};
     world.pull.rows[0] = vec(1, 0, 0);
     world.pull.rows[1] = vec(0, 1, 0);
     world.pull.rows[2] = vec(0, 0, 1);
@@ -213,8 +213,8 @@ bool expansion_contains(const Expansion *expansion, Vec point)
 
 double copy_distance_uncut(const Copy *copy, Vec point, bool *survives)
 {
-    Vec q = isometry_apply(&copy->pull, point);
-    Vec foot = body_project(copy->body, 0, q);
+    Vec q     = isometry_apply(&copy->pull, point);
+    Vec foot  = body_project(copy->body, 0, q);
     *survives = copy_keeps(copy, foot, 1e-12);
     return vec_distance(q, foot);
 }
@@ -222,7 +222,7 @@ double copy_distance_uncut(const Copy *copy, Vec point, bool *survives)
 /* The least share of the way to the interior point that brings `p` inside everything. */
 static Vec move_inside(const Copy *copy, Vec p)
 {
-    Vec better;
+    Vec    better;
     double low = 0, high = 1;
     if (copy_violation(copy, 0, p, &better) <= 0)
         return p;
@@ -249,7 +249,7 @@ static double copy_distance(const Copy *copy, Vec point)
                 p = body_project(copy->body, 0, from);
             } else {
                 double excess = fmax(half_excess(copy->cuts[i], from), 0);
-                p = vec_sub(from, vec_scale(excess, copy->cuts[i].normal));
+                p             = vec_sub(from, vec_scale(excess, copy->cuts[i].normal));
             }
             correction[i] = vec_sub(from, p);
         }
@@ -262,7 +262,7 @@ static double copy_distance(const Copy *copy, Vec point)
 double expansion_distance(const Expansion *expansion, Vec point, bool *sure)
 {
     double best = HUGE_VAL;
-    *sure = true;
+    *sure       = true;
     for (size_t i = 0; i < expansion->count; i++) {
         bool survives;
         if (is_beyond(&expansion->copies[i], point, best))
@@ -273,7 +273,7 @@ double expansion_distance(const Expansion *expansion, Vec point, bool *sure)
     }
     for (size_t i = 0; i < expansion->count; i++) {
         const Copy *copy = &expansion->copies[i];
-        bool survives;
+        bool        survives;
         if (is_beyond(copy, point, best))
             continue;
         double distance = copy_distance_uncut(copy, point, &survives);
@@ -303,8 +303,8 @@ static void clip_body(const Body *body, Vec origin, Vec direction, double *enter
 {
     Vec o = vec_sub(origin, body->from);
     if (body->box) {
-        Vec a = vec_turn(o, body->axis, -body->angle);
-        Vec d = vec_turn(direction, body->axis, -body->angle), s = body->sides;
+        Vec    a = vec_turn(o, body->axis, -body->angle);
+        Vec    d = vec_turn(direction, body->axis, -body->angle), s = body->sides;
         double from[3] = {a.x, a.y, a.z}, slope[3] = {d.x, d.y, d.z}, side[3] = {s.x, s.y, s.z};
         for (int i = 0; i < 3; i++) {
             clip_below(from[i], slope[i], side[i], enter, leave);
@@ -314,22 +314,22 @@ static void clip_body(const Body *body, Vec origin, Vec direction, double *enter
     }
     assert(vec_distance(body->from, body->to) == 0);
     double half_b = vec_dot(o, direction);
-    Vec across = vec_sub(o, vec_scale(half_b, direction));
+    Vec    across = vec_sub(o, vec_scale(half_b, direction));
     double square = body->radius * body->radius - vec_dot(across, across);
-    double chord = square > 0 ? sqrt(square) : 0;
-    *enter = square > 0 ? fmax(*enter, -half_b - chord) : HUGE_VAL;
-    *leave = fmin(*leave, -half_b + chord);
+    double chord  = square > 0 ? sqrt(square) : 0;
+    *enter        = square > 0 ? fmax(*enter, -half_b - chord) : HUGE_VAL;
+    *leave        = fmin(*leave, -half_b + chord);
 }
 
 double expansion_enter(const Expansion *expansion, Vec origin, Vec direction)
 {
     double best = HUGE_VAL;
     for (size_t i = 0; i < expansion->count; i++) {
-        const Copy *copy = &expansion->copies[i];
-        Vec o = isometry_apply(&copy->pull, origin);
-        Vec tip = isometry_apply(&copy->pull, vec_add(origin, direction));
-        Vec d = vec_unit(vec_sub(tip, o));
-        double enter = 0, leave = HUGE_VAL;
+        const Copy *copy  = &expansion->copies[i];
+        Vec         o     = isometry_apply(&copy->pull, origin);
+        Vec         tip   = isometry_apply(&copy->pull, vec_add(origin, direction));
+        Vec         d     = vec_unit(vec_sub(tip, o));
+        double      enter = 0, leave = HUGE_VAL;
         clip_body(copy->body, o, d, &enter, &leave);
         for (int k = 0; k < copy->cut_count; k++)
             clip_below(vec_dot(copy->cuts[k].normal, o), vec_dot(copy->cuts[k].normal, d),

@@ -48,8 +48,7 @@ static Real saddle(const Real p[3]) { return power(p[0], 3) - 3 * p[0] * p[2] * 
 static Real sextic(const Real p[3])
 {
     Real g = (3 + sqrtl(5)) / 2, x = p[0] * p[0], y = p[1] * p[1], z = p[2] * p[2];
-    return (2 + sqrtl(5)) * power(x + y + z - 1, 2) -
-           4 * (g * x - y) * (g * y - z) * (g * z - x);
+    return (2 + sqrtl(5)) * power(x + y + z - 1, 2) - 4 * (g * x - y) * (g * y - z) * (g * z - x);
 }
 
 /* The solid within the ball of this radius, which is part of the text unless all of it is there. */
@@ -108,9 +107,9 @@ static int count_wrong(const struct Form *form, const KrsHit *hits, const char *
         const Entry *entry = &entries[i];
         if (entry->fate == RAY_DOUBTFUL)
             continue;
-        bool   is = entry->fate == RAY_HITS;
-        Vec    p  = vec(hits[i].point[0], hits[i].point[1], hits[i].point[2]);
-        Vec    v  = vec(directions[i][0], directions[i][1], directions[i][2]);
+        bool   is    = entry->fate == RAY_HITS;
+        Vec    p     = vec(hits[i].point[0], hits[i].point[1], hits[i].point[2]);
+        Vec    v     = vec(directions[i][0], directions[i][1], directions[i][2]);
         double steep = 1;
         if (is && !entry->on_ball) {
             Vec slope = surface_slope(form->formula, p);
@@ -123,28 +122,31 @@ static int count_wrong(const struct Form *form, const KrsHit *hits, const char *
         wrong += !right;
         if (!right && wrong <= 3)
             print_message("# %s, %s: ray %d from %g units away ends at %.9g (%s), not at %.9Lg "
-                          "(%d)\n", form->name, who, i, hypot(hypot(origins[i][0], origins[i][1]),
-                          origins[i][2]), hits[i].t, hits[i].unresolved ? "unresolved" :
-                          hits[i].hit ? "hit" : "miss", entry->t, entry->fate);
+                          "(%d)\n",
+                          form->name, who, i,
+                          hypot(hypot(origins[i][0], origins[i][1]), origins[i][2]), hits[i].t,
+                          hits[i].unresolved ? "unresolved"
+                          : hits[i].hit      ? "hit"
+                                             : "miss",
+                          entry->t, entry->fate);
     }
     return wrong;
 }
 
 static void rays_end_at_roots(void **state)
 {
-    const struct Form *form   = *state;
-    Random             random = {11};
+    const struct Form *form    = *state;
+    Random             random  = {11};
     Product            product = product_format("%sshow %s;", golden, form->text);
     KrsRendering      *rendering;
     static KrsHit      hits[RAYS];
     draw_rays(form, &random);
-    assert_int_equal(krs_raycast(product.frame, FROM, WAYS, RAYS, 1e6, 1e-3, hits),
-                     KRS_OK);
+    assert_int_equal(krs_raycast(product.frame, FROM, WAYS, RAYS, 1e6, 1e-3, hits), KRS_OK);
     assert_int_equal(count_wrong(form, hits, "the host"), 0);
-    assert_int_equal(krs_rendering_new_for(renderer, product.scene, KRS_FOR_QUESTIONS,
-                                           &rendering), KRS_OK);
-    assert_int_equal(krs_device_raycast(rendering, product.frame, FROM, WAYS, RAYS, 1e6,
-                                        1e-3, hits), KRS_OK);
+    assert_int_equal(krs_rendering_new_for(renderer, product.scene, KRS_FOR_QUESTIONS, &rendering),
+                     KRS_OK);
+    assert_int_equal(
+        krs_device_raycast(rendering, product.frame, FROM, WAYS, RAYS, 1e6, 1e-3, hits), KRS_OK);
     assert_int_equal(count_wrong(form, hits, "the device"), 0);
     krs_rendering_free(rendering);
     product_free(&product);
@@ -157,7 +159,7 @@ enum { WIDTH = 160, HEIGHT = 90 };
 /* The pixel's row is below the horizon of a level eye; -1: near it. */
 static int sees_floor(const Lens *lens, int k)
 {
-    Line ray = lens_ray(lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
+    Line   ray   = lens_ray(lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
     double pixel = lens_pixel(lens, 1);
     return fabs(ray.direction.y) < pixel ? -1 : ray.direction.y < 0;
 }
@@ -166,15 +168,16 @@ static void floors_are_plain(void **state)
 {
     const struct Form *form = *state;
     const Vec          eye = {1, 3.6, 9}, target = {0.4, 1.1, -0.5};
-    const double       fov = 36 * 0.017453292519943295;
-    Lens    lens = lens_make(eye, target, tan(0.5 * fov), false, WIDTH, HEIGHT);
-    Product product = product_format(
-        "%slight red { direction: [-1.1, 1.6, 1.2], color: [1, 0, 0] }\n"
-        "light green { direction: [-1.1, 1.6, 1.2], color: [0, 1, 0], shadow: false }\n"
-        "sky { zenith: #000000, horizon: #000000, ground: #000000 }\n"
-        "image { tone_map: \"none\" }\nmaterial white { color: [1, 1, 1], roughness: 1 }\n"
-        "show plane([0, 1, 0], 0).paint(white);\nshow %s.scale(0.5).move([0, 1, 0]);\n"
-        "camera { eye: [1, 3.6, 9], target: [0.4, 1.1, -0.5], fov: 36deg }", golden, form->text);
+    const double       fov     = 36 * 0.017453292519943295;
+    Lens               lens    = lens_make(eye, target, tan(0.5 * fov), false, WIDTH, HEIGHT);
+    Product            product = product_format(
+                   "%slight red { direction: [-1.1, 1.6, 1.2], color: [1, 0, 0] }\n"
+                              "light green { direction: [-1.1, 1.6, 1.2], color: [0, 1, 0], shadow: false }\n"
+                              "sky { zenith: #000000, horizon: #000000, ground: #000000 }\n"
+                              "image { tone_map: \"none\" }\nmaterial white { color: [1, 1, 1], roughness: 1 }\n"
+                              "show plane([0, 1, 0], 0).paint(white);\nshow %s.scale(0.5).move([0, 1, 0]);\n"
+                              "camera { eye: [1, 3.6, 9], target: [0.4, 1.1, -0.5], fov: 36deg }",
+                   golden, form->text);
     KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1};
     KrsRendering    *rendering;
     KrsPicture      *picture = NULL;
@@ -183,9 +186,9 @@ static void floors_are_plain(void **state)
         krs_render(rendering, product.frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     for (int k = 0; k < WIDTH * HEIGHT; k++) {
-        Line   ray   = lens_ray(&lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
-        int    below = sees_floor(&lens, k);
-        double t     = below == 1 ? -eye.y / ray.direction.y : 1e9;
+        Line         ray   = lens_ray(&lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
+        int          below = sees_floor(&lens, k);
+        double       t     = below == 1 ? -eye.y / ray.direction.y : 1e9;
         const float *color = &picture->color[4 * k];
         shaded += picture->component[k] == 1 && color[0] < 0.5F * color[1];
         if (below < 0 || t < 25)
@@ -197,7 +200,8 @@ static void floors_are_plain(void **state)
     }
     if (floors < 500 || strange > 0 || dark > 0 || shaded < 10)
         fail_msg("%s: of %d pixels of the floor far away %d show something else, %d are in shadow; "
-                 "%d near the surface", form->name, floors, strange, dark, shaded);
+                 "%d near the surface",
+                 form->name, floors, strange, dark, shaded);
     assert_int_equal(picture->stats.unresolved, 0);
     krs_picture_free(picture);
     krs_rendering_free(rendering);

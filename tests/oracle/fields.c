@@ -80,14 +80,13 @@ static double ripples(Vec p)
 }
 static double cliffs(Vec p) { return p.y - 0.1 * exp(1.5 * sin(2 * p.x) + p.z); }
 static double swell(Vec p) { return exp(p.x) + exp(2 * p.y) + exp(-p.z) * p.x - 4; }
-#define CHMUTOV(x)                                                                                 \
-    "8192 * " #x "^14 - 28672 * " #x "^12 + 39424 * " #x "^10 - 26880 * " #x "^8"                  \
+#define CHMUTOV(x)                                                                \
+    "8192 * " #x "^14 - 28672 * " #x "^12 + 39424 * " #x "^10 - 26880 * " #x "^8" \
     " + 9408 * " #x "^6 - 1568 * " #x "^4 + 98 * " #x "^2 - 1"
 
 static const Solid solids[] = {
     {"quadric", "show algebraic(x^2 + y^2 + z^2 == 1);", quadric, 2, 0.6, 0},
-    {"cayley", "show algebraic(4 * (x^2 + y^2 + z^2) + 16 * x * y * z == 1);", cayley, 1.5, 0.3,
-     0},
+    {"cayley", "show algebraic(4 * (x^2 + y^2 + z^2) + 16 * x * y * z == 1);", cayley, 1.5, 0.3, 0},
     {"ding-dong", "show algebraic(x^2 + z^2 == (1 - y) * y^2);", ding_dong, 1.5, 0.3, 0},
     {"kummer",
      "let l = 2.9 / 1.7;\nshow algebraic((x^2 + y^2 + z^2 - 1.3)^2 == l * ((1 - z)^2 - 2 * x^2)"
@@ -103,12 +102,10 @@ static const Solid solids[] = {
      " - 2 * (x^2 * y^2 + x^2 * z^2 + y^2 * z^2)) + (3 + 5 * g) * (x^2 + y^2 + z^2 - 1)^2"
      " * (x^2 + y^2 + z^2 - n)^2 == 0);",
      barth_decic, 1.5, 0.1, 0},
-    {"Chmutov",
-     "show algebraic(" CHMUTOV(x) " + (" CHMUTOV(y) ") + (" CHMUTOV(z) ") + 1 == 0);", chmutov,
-     1.05, 0.05, 0},
-    {"heart",
-     "show algebraic((x^2 + 9 / 4 * z^2 + y^2 - 1)^3 == x^2 * y^3 + 9 / 80 * z^2 * y^3);", heart,
-     1.5, 0.2, 0},
+    {"Chmutov", "show algebraic(" CHMUTOV(x) " + (" CHMUTOV(y) ") + (" CHMUTOV(z) ") + 1 == 0);",
+     chmutov, 1.05, 0.05, 0},
+    {"heart", "show algebraic((x^2 + 9 / 4 * z^2 + y^2 - 1)^3 == x^2 * y^3 + 9 / 80 * z^2 * y^3);",
+     heart, 1.5, 0.2, 0},
     {"gyroid", "show field(sin(x) * cos(y) + sin(y) * cos(z) + sin(z) * cos(x));", gyroid, 4, 0.35,
      0},
     {"waves", "show field(y - 0.3 * sin(2 * x) * exp(0.4 * z)).within(box([4, 4, 4]));", waves, 1.9,
@@ -137,14 +134,14 @@ static double box_side(Vec p, double half)
 
 static bool inside(const void *user, Vec p)
 {
-    const Solid *solid = user;
-    bool within = solid->cut == 0 || box_side(p, solid->cut) <= 0;
+    const Solid *solid  = user;
+    bool         within = solid->cut == 0 || box_side(p, solid->cut) <= 0;
     return solid->formula(p) <= 0 && within;
 }
 
 static void is_safe(void **state)
 {
-    const Solid *solid = *state;
+    const Solid *solid   = *state;
     Product      product = product_compile(solid->text);
     Trial trial = {product_field, &product, inside, solid, vec(0, 0, 0), solid->half, 800, 17};
     judge_acquits(&trial, solid->name);
@@ -156,11 +153,11 @@ static bool nearby_surface(Formula *f, Vec p, Vec *found)
 {
     const double h = 1e-6;
     for (int i = 0; i < 60; i++) {
-        double value = f(p);
+        double value    = f(p);
         Vec    gradient = vec((f(vec(p.x + h, p.y, p.z)) - f(vec(p.x - h, p.y, p.z))) / (2 * h),
                               (f(vec(p.x, p.y + h, p.z)) - f(vec(p.x, p.y - h, p.z))) / (2 * h),
                               (f(vec(p.x, p.y, p.z + h)) - f(vec(p.x, p.y, p.z - h))) / (2 * h));
-        double squared = vec_dot(gradient, gradient);
+        double squared  = vec_dot(gradient, gradient);
         if (fabs(value) <= 1e-10 * (1 + sqrt(squared))) {
             *found = p;
             return true;
@@ -178,7 +175,7 @@ static void is_of_use(void **state)
     if (solid->cut != 0)
         return;
     Product product = product_compile(solid->text);
-    Random  random = {23};
+    Random  random  = {23};
     double  sum = 0, most = 0;
     int     count = 0;
     for (int i = 0; i < 600; i++) {
@@ -231,19 +228,18 @@ static void rays_end_at_roots(void **state)
         if (solid->formula != cushion && solid->formula != swell && solid->formula != superquadric)
             continue;
         Product product = product_compile(solid->text);
-        int     hits = 0;
+        int     hits    = 0;
         for (int k = 0; k < 150; k++) {
             Vec    origin = vec_scale(4, random_unit(&random)), target = random_in_cube(&random, 1);
-            Vec    way = vec_sub(target, origin);
+            Vec    way       = vec_sub(target, origin);
             Vec    direction = vec_scale(1 / vec_distance(target, origin), way);
-            double root = first_root(solid, origin, direction);
-            KrsHit hit = product_raycast(&product, origin, direction, 8, TOLERANCE);
+            double root      = first_root(solid, origin, direction);
+            KrsHit hit       = product_raycast(&product, origin, direction, 8, TOLERANCE);
             if (!isfinite(root))
                 continue;
             hits++;
             if (!hit.hit || fabs(hit.t - root) > 10 * TOLERANCE)
-                fail_msg("%s: a ray ends after %.9g, not after %.9g", solid->name, hit.t,
-                         root);
+                fail_msg("%s: a ray ends after %.9g, not after %.9g", solid->name, hit.t, root);
         }
         assert_true(hits > 40);
         product_free(&product);
@@ -255,9 +251,9 @@ static void rays_end_at_roots(void **state)
 static double steepness(Formula *f, Vec p)
 {
     const double h = 1e-6;
-    double x = f(vec(p.x + h, p.y, p.z)) - f(vec(p.x - h, p.y, p.z));
-    double y = f(vec(p.x, p.y + h, p.z)) - f(vec(p.x, p.y - h, p.z));
-    double z = f(vec(p.x, p.y, p.z + h)) - f(vec(p.x, p.y, p.z - h));
+    double       x = f(vec(p.x + h, p.y, p.z)) - f(vec(p.x - h, p.y, p.z));
+    double       y = f(vec(p.x, p.y + h, p.z)) - f(vec(p.x, p.y - h, p.z));
+    double       z = f(vec(p.x, p.y, p.z + h)) - f(vec(p.x, p.y, p.z - h));
     return hypot(hypot(x, y), z) / (2 * h);
 }
 
@@ -271,24 +267,24 @@ static void sheets_are_thin(void **state)
         "show field(y - 0.1 * exp(1.5 * sin(2 * x) + z)).within(box([4, 4, 4]), open: true);",
     };
     static Formula *const formulas[] = {swell, waves, cliffs};
-    const double          half = 0.5e-3 * 4 * sqrt(3);
+    const double          half       = 0.5e-3 * 4 * sqrt(3);
     (void)state;
     Random random = {41};
     for (int i = 0; i < 3; i++) {
         Product product = product_compile(text[i]);
-        int     zeros = 0;
+        int     zeros   = 0;
         for (int k = 0; k < 2000; k++) {
-            Vec    p = random_in_cube(&random, 2), surface;
+            Vec    p    = random_in_cube(&random, 2), surface;
             double side = k % 2 ? 2 : p.x;
-            p = vec(side, p.y, p.z);
+            p           = vec(side, p.y, p.z);
             double away = fabs(formulas[i](p)) / steepness(formulas[i], p);
             if (away > 0.3)
                 assert_true(product_distance(&product, p) > 0);
             if (!nearby_surface(formulas[i], p, &surface) || box_side(surface, 1.99) > 0)
                 continue;
-            Vec normal = vec_scale(1 / vec_distance(p, surface), vec_sub(p, surface));
-            Vec beside = vec_add(surface, vec_scale(3 * half, normal));
-            double near = fabs(formulas[i](beside)) / steepness(formulas[i], surface);
+            Vec    normal = vec_scale(1 / vec_distance(p, surface), vec_sub(p, surface));
+            Vec    beside = vec_add(surface, vec_scale(3 * half, normal));
+            double near   = fabs(formulas[i](beside)) / steepness(formulas[i], surface);
             assert_true(fabs(product_distance(&product, surface)) <= 1e-6);
             if (near > 2 * half)
                 assert_true(product_distance(&product, beside) > 0);
@@ -311,7 +307,7 @@ typedef struct Polynomial {
 static bool in_polynomial(const void *user, Vec p)
 {
     const Polynomial *poly = user;
-    double            sum = -0.1;
+    double            sum  = -0.1;
     for (int i = 0; i < poly->terms; i++)
         sum += poly->factors[i] * power(p.x, poly->exponents[i][0]) *
                power(p.y, poly->exponents[i][1]) * power(p.z, poly->exponents[i][2]);
@@ -320,7 +316,7 @@ static bool in_polynomial(const void *user, Vec p)
 
 static Polynomial random_polynomial(Random *random, SceneText *text)
 {
-    Polynomial poly = {.terms = 2 + random_below(random, MOST_TERMS - 1)};
+    Polynomial poly   = {.terms = 2 + random_below(random, MOST_TERMS - 1)};
     int        degree = 1 + random_below(random, 9);
     scene_write(text, "show algebraic(");
     for (int k = 0; k < poly.terms; k++) {
@@ -341,17 +337,17 @@ static void random_polynomials_are_safe(void **state)
 {
     (void)state;
     static SceneText text;
-    Random           random = {5};
+    Random           random  = {5};
     int              refuted = 0;
     for (int i = 0; i < 150; i++) {
-        text.length = 0;
-        Polynomial poly = random_polynomial(&random, &text);
+        text.length        = 0;
+        Polynomial poly    = random_polynomial(&random, &text);
         Product    product = product_compile(text.bytes);
         Trial trial = {product_field, &product, in_polynomial, &poly, vec(0, 0, 0), 1.5, 120, 29};
         judge_acquits(&trial, text.bytes);
         Exaggeration larger = {product_field, &product, 3};
-        trial.field = exaggerated_field;
-        trial.field_user = &larger;
+        trial.field         = exaggerated_field;
+        trial.field_user    = &larger;
         refuted += judge(&trial).ball_errors > 0;
         product_free(&product);
     }

@@ -125,7 +125,7 @@ static Real septic(const Real p[3])
     Real a1 = (-84 * a * a - 384 * a - 56) / 49, a2 = (-224 * a * a + 24 * a - 196) / 49;
     Real a3 = (-196 * a * a + 24 * a - 196) / 49, a4 = (-56 * a * a + 8 * a - 56) / 49;
     Real a5 = 49 * a * a - 7 * a + 50, z = p[2];
-    Real q  = (z + 1) * (sq(p[0]) + sq(p[1])) + ((a1 * z + a2) * z + a3) * z + a4;
+    Real q = (z + 1) * (sq(p[0]) + sq(p[1])) + ((a1 * z + a2) * z + a3) * z + a4;
     return (z + a5) * sq(q) - 64 * planes(p, 7, z);
 }
 
@@ -152,7 +152,7 @@ static Real decic(const Real p[3])
 static Real power12(Real a) { return cube(sq(sq(a))); }
 static Real dodecic(const Real p[3])
 {
-    Real q[4] = {p[1], p[0], p[2], 1}, sum = 0, half[4];
+    Real             q[4] = {p[1], p[0], p[2], 1}, sum = 0, half[4];
     static const int even[12][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 0, 3, 2},
                                     {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 0, 1, 3}, {2, 1, 3, 0},
                                     {2, 3, 0, 1}, {3, 0, 2, 1}, {3, 1, 0, 2}, {3, 2, 1, 0}};
@@ -287,9 +287,8 @@ static Real chord_value(const Chord *chord, Real t)
 static bool chord_new(Chord *chord, Formula *formula, Real radius, Vec origin, Vec direction)
 {
     Vec v  = vec_unit(direction);
-    *chord = (Chord){.formula   = formula,
-                     .origin    = {origin.x, origin.y, origin.z},
-                     .direction = {v.x, v.y, v.z}};
+    *chord = (Chord){
+        .formula = formula, .origin = {origin.x, origin.y, origin.z}, .direction = {v.x, v.y, v.z}};
     Real middle = -(Real)vec_dot(origin, v), nearest = 0;
     for (int i = 0; i < 3; i++)
         nearest += sq(chord->origin[i] + middle * chord->direction[i]);
@@ -305,7 +304,7 @@ static bool chord_new(Chord *chord, Formula *formula, Real radius, Vec origin, V
 static Real bisect(const Chord *chord, Real low, Real high, Real side)
 {
     for (int i = 0; i < 70; i++) {
-        Real middle = 0.5L * (low + high);
+        Real middle                                             = 0.5L * (low + high);
         *(chord_value(chord, middle) * side > 0 ? &low : &high) = middle;
     }
     return high;
@@ -415,7 +414,7 @@ double surface_leeway(Formula *formula, double radius, Vec p, Vec direction)
     double fall = fabs(vec_dot(surface_slope(formula, p), direction));
     for (int i = 0; i < 8; i++) {
         Real corner[3] = {i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half};
-        size = fmaxl(size, fabsl(formula(corner)));
+        size           = fmaxl(size, fabsl(formula(corner)));
     }
     return 1e-8 * radius + 1e-13 * (double)size / fall;
 }

@@ -12,7 +12,7 @@
 #include "tests/oracle/brute.h"
 
 typedef long double Real;
-typedef Real Formula(const Real p[3]);
+typedef Real        Formula(const Real p[3]);
 
 typedef struct Surface {
     const char *name;

@@ -54,8 +54,7 @@ static void product_free(Product *product)
 static double distance_at(const Product *product, Vec p)
 {
     double point[1][3] = {{p.x, p.y, p.z}}, distance;
-    assert_int_equal(krs_distance(product->frame, (const double (*)[3])point, 1, &distance),
-                     KRS_OK);
+    assert_int_equal(krs_distance(product->frame, (const double(*)[3])point, 1, &distance), KRS_OK);
     return distance;
 }
 
@@ -84,7 +83,7 @@ static Quaternion hamilton(Quaternion a, Quaternion b)
 static double escape_radius(const double c[4], int power)
 {
     double size = sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2] + c[3] * c[3]);
-    double low  = pow(power, -1.0 / (power - 1)), high = 2 + size;
+    double low = pow(power, -1.0 / (power - 1)), high = 2 + size;
     for (int i = 0; i < 200; i++) {
         double middle = (low + high) / 2;
         if (pow(middle, power) - middle < size)
@@ -125,7 +124,7 @@ static bool in_bulb(const Fractal *f, Vec c, double *trap)
         if (size > f->radius)
             return false;
         double tilt = size > 0 ? f->power * acos(w.y / size) : 0, turn = f->power * atan2(w.x, w.z);
-        double r    = pow(size, f->power);
+        double r = pow(size, f->power);
         w = vec_add(c, vec(r * sin(tilt) * sin(turn), r * cos(tilt), r * sin(tilt) * cos(turn)));
     }
     return true;
@@ -200,10 +199,10 @@ static void voxels_free(Voxels *v)
 /* The length of the shortest way found from p to a point of the other side. */
 static double way_to_other_side(const Fractal *f, const Voxels *v, Random *random, Vec p)
 {
-    bool       own  = inside(f, p);
-    const Vec *all  = own ? v->empty : v->solid;
+    bool       own   = inside(f, p);
+    const Vec *all   = own ? v->empty : v->solid;
     size_t     count = own ? v->empty_count : v->solid_count;
-    Vec        best = vec(1e9, 0, 0);
+    Vec        best  = vec(1e9, 0, 0);
     for (size_t i = 0; i < count; i++)
         if (vec_distance(p, all[i]) < vec_distance(p, best))
             best = all[i];
@@ -236,9 +235,9 @@ static Measure measure(const Product *product, const Fractal *f, int points)
     for (int i = 0; i < points; i++) {
         Vec p = random_in_cube(&random, 1.3 * f->radius);
         if (i % 3 == 0 && v.solid_count > 0) {
-            Vec border = v.solid[random_below(&random, (int)v.solid_count)];
-            double away = random_between(&random, 0, 3 * v.side);
-            p = vec_add(border, vec_scale(away, random_unit(&random)));
+            Vec    border = v.solid[random_below(&random, (int)v.solid_count)];
+            double away   = random_between(&random, 0, 3 * v.side);
+            p             = vec_add(border, vec_scale(away, random_unit(&random)));
         }
         double way = way_to_other_side(f, &v, &random, p), d = distance_at(product, p);
         bool   own = inside(f, p);
@@ -264,11 +263,16 @@ typedef struct Set {
 } Set;
 
 static const Set julia_sets[] = {
-    {"connected", {-0.2, 0.6, 0.2, 0.2}, 2, 10},   {"basilica", {-1, 0.2, 0, 0}, 2, 12},
-    {"curled", {-0.125, -0.256, 0.847, 0.0895}, 2, 9}, {"dust", {0.45, 0.55, 0.3, 0}, 2, 6},
-    {"ball", {0, 0, 0, 0}, 2, 12},                 {"cubic", {-0.2, 0.4, -0.4, -0.4}, 3, 6},
-    {"cubic of the page", {-0.2, 0.6, 0.2, 0.1}, 3, 8}, {"torn", {0.6, 0.6, 0.4, 0.2}, 3, 4},
-    {"quartic", {0.3, 0.6, 0.1, 0.2}, 4, 5},       {"eighth", {0.4, 0.3, 0.5, 0.1}, 8, 3},
+    {"connected", {-0.2, 0.6, 0.2, 0.2}, 2, 10},
+    {"basilica", {-1, 0.2, 0, 0}, 2, 12},
+    {"curled", {-0.125, -0.256, 0.847, 0.0895}, 2, 9},
+    {"dust", {0.45, 0.55, 0.3, 0}, 2, 6},
+    {"ball", {0, 0, 0, 0}, 2, 12},
+    {"cubic", {-0.2, 0.4, -0.4, -0.4}, 3, 6},
+    {"cubic of the page", {-0.2, 0.6, 0.2, 0.1}, 3, 8},
+    {"torn", {0.6, 0.6, 0.4, 0.2}, 3, 4},
+    {"quartic", {0.3, 0.6, 0.1, 0.2}, 4, 5},
+    {"eighth", {0.4, 0.3, 0.5, 0.1}, 8, 3},
     {"one step", {-0.5, 0.3, 0.2, 0}, 2, 1},
 };
 
@@ -305,7 +309,7 @@ static void a_fault_is_found(void **state)
 {
     (void)state;
     char    text[200];
-    Fractal f = julia_of(&julia_sets[4], text, sizeof text);
+    Fractal f       = julia_of(&julia_sets[4], text, sizeof text);
     Product product = product_new("show julia(c: [0, 0, 0, 0], iterations: 12).scale(1.02);");
     Measure m       = measure(&product, &f, 500);
     assert_true(m.most_inside > 1);
@@ -399,7 +403,8 @@ static void frames_may_change_them(void **state)
         double a = 0.1 * n - 0.5, number = fmin(n + 0.4, 9);
         snprintf(text, sizeof text,
                  "show julia(c: [%.17g, 0.6, 0.2, %.17g], power: 3, iterations: %d);"
-                 "show mandelbulb(iterations: %d).move([4, 0, 0]);", a, a, n, n);
+                 "show mandelbulb(iterations: %d).move([4, 0, 0]);",
+                 a, a, n, n);
         Product still = product_new(text);
         set_parameter(&moving, "n", &number, 1);
         set_parameter(&moving, "a", &a, 1);
@@ -424,7 +429,7 @@ static void color_at(const Product *product, Vec p, double color[3])
 {
     double point[1][3] = {{p.x, p.y, p.z}};
     KrsHit hit;
-    assert_int_equal(krs_probe(product->frame, (const double (*)[3])point, 1, &hit), KRS_OK);
+    assert_int_equal(krs_probe(product->frame, (const double(*)[3])point, 1, &hit), KRS_OK);
     memcpy(color, hit.color, sizeof hit.color);
 }
 
@@ -458,7 +463,7 @@ static void palettes_mix(void **state)
 static void traps_are_traps(void **state)
 {
     (void)state;
-    Random  random  = {.state = 3};
+    Random  random = {.state = 3};
     char    text[200];
     Fractal julia   = julia_of(&julia_sets[6], text, sizeof text);
     Fractal bulb    = {.bulb = true, .power = 8, .iterations = 5, .radius = pow(2, 1.0 / 7)};
@@ -507,9 +512,9 @@ static double falloff(int kind, double t)
         return 0;
     double u = t * t;
     switch (kind) {
-    case 0:  return pow(1 - u, 3);
-    case 1:  return 1 - 22.0 / 9 * u + 17.0 / 9 * u * u - 4.0 / 9 * u * u * u;
-    case 2:  return (exp(-4 * u) - exp(-4)) / (1 - exp(-4));
+    case 0: return pow(1 - u, 3);
+    case 1: return 1 - 22.0 / 9 * u + 17.0 / 9 * u * u - 4.0 / 9 * u * u * u;
+    case 2: return (exp(-4 * u) - exp(-4)) / (1 - exp(-4));
     default: return (exp(-4 * t) - exp(-4)) / (1 - exp(-4));
     }
 }
@@ -532,7 +537,7 @@ static Meta meta_new(Random *random, int kind, char *text, size_t size)
     meta.reach  = random_between(random, 0.3, 1.5);
     used += (size_t)snprintf(text, size, "meta([");
     for (int i = 0; i < meta.count; i++) {
-        Blob b = {random_in_cube(random, 1.2), random_between(random, 0.05, 0.5)};
+        Blob b        = {random_in_cube(random, 1.2), random_between(random, 0.05, 0.5)};
         meta.blobs[i] = b;
         used += (size_t)snprintf(text + used, size - used,
                                  "%ssphere(%.17g).move([%.17g, %.17g, %.17g])", i ? ", " : "",
@@ -575,10 +580,10 @@ static void meta_bounds_hold(void **state)
     (void)state;
     Random random = {.state = 11};
     for (int trial = 0; trial < 40; trial++) {
-        char    text[4000], scene[4100];
-        double  most = 0, sum = 0;
-        Meta    meta = meta_new(&random, trial % 4, text, sizeof text);
-        int     near = 0;
+        char   text[4000], scene[4100];
+        double most = 0, sum = 0;
+        Meta   meta = meta_new(&random, trial % 4, text, sizeof text);
+        int    near = 0;
         snprintf(scene, sizeof scene, "show %s;", text);
         Product product = product_new(scene);
         for (int i = 0; i < 150; i++) {
@@ -673,9 +678,9 @@ static void meta_is_steady(void **state)
         Product product = product_new(scene);
         assert_int_equal(krs_component(product.scene, 0, &component), KRS_OK);
         for (int i = 0; i < 4000; i++) {
-            Vec    a = random_in_cube(&random, 3);
-            Vec    b = vec_add(a, vec_scale(pow(10, random_between(&random, -5, 0)),
-                                            random_unit(&random)));
+            Vec a = random_in_cube(&random, 3);
+            Vec b = vec_add(
+                a, vec_scale(pow(10, random_between(&random, -5, 0)), random_unit(&random)));
             double da = distance_at(&product, a), db = distance_at(&product, b);
             assert_true(fabs(da - db) <= vec_distance(a, b) * (1 + 1e-9) + 1e-12);
             assert_true((da <= 0) == (excess(&meta, a) >= 0) || fabs(da) < 1e-12);
@@ -694,9 +699,9 @@ static void meta_of_other_shapes(void **state)
     (void)state;
     Random  random = {.state = 17};
     Product meta   = product_new("show meta([box([1, 2, 0.5]), box([2, 0.4, 1]) - sphere(0.7),"
-                                 "  torus(1.5, 0.2)], level: 1, reach: 0.3);");
+                                   "  torus(1.5, 0.2)], level: 1, reach: 0.3);");
     Product plain  = product_new("show union(box([1, 2, 0.5]), box([2, 0.4, 1]) - sphere(0.7),"
-                                 "  torus(1.5, 0.2));");
+                                  "  torus(1.5, 0.2));");
     for (int i = 0; i < 5000; i++) {
         Vec p = random_in_cube(&random, 2);
         if (distance_at(&plain, p) < -1e-9)
@@ -718,7 +723,7 @@ static void fractals_can_be_cut(void **state)
     char    text[200];
     Fractal f    = julia_of(&julia_sets[6], text, sizeof text);
     Product cut  = product_new("show julia(c: [-0.2, 0.6, 0.2, 0.1], power: 3, iterations: 8)"
-                               "     - half_space([0, 1, 0], 0.1);");
+                                "     - half_space([0, 1, 0], 0.1);");
     Product man  = product_new("show (sphere(1) - wedge(60deg)).move([-3, 0, 0]);");
     Product mold = product_new("show box([3, 3, 3]) - mandelbulb(iterations: 4);");
     Fractal bulb = {.bulb = true, .power = 8, .iterations = 4, .radius = pow(2, 1.0 / 7)};

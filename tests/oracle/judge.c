@@ -28,9 +28,9 @@ static int count_steep_pairs(const Trial *trial, Random *random, Vec point, doub
     int steep = 0;
     for (int i = 0; i < NEIGHBOURS; i++) {
         double reach = trial->half * pow(10, random_between(random, -6, 0));
-        Vec other = vec_add(point, vec_scale(reach, random_unit(random)));
-        double rise = fabs(trial->field(trial->field_user, other) - value);
-        *steepest = fmax(*steepest, rise / (reach + ROUNDING));
+        Vec    other = vec_add(point, vec_scale(reach, random_unit(random)));
+        double rise  = fabs(trial->field(trial->field_user, other) - value);
+        *steepest    = fmax(*steepest, rise / (reach + ROUNDING));
         steep += !(rise <= reach * (1 + 1e-7) + ROUNDING);
     }
     return steep;
@@ -39,11 +39,11 @@ static int count_steep_pairs(const Trial *trial, Random *random, Vec point, doub
 Verdict judge(const Trial *trial)
 {
     Verdict verdict = {0};
-    Random random = {trial->seed};
+    Random  random  = {trial->seed};
     for (int i = 0; i < trial->points; i++) {
-        Vec point = vec_add(trial->centre, random_in_cube(&random, trial->half));
-        double value = trial->field(trial->field_user, point);
-        bool inside = trial->inside(trial->inside_user, point);
+        Vec    point  = vec_add(trial->centre, random_in_cube(&random, trial->half));
+        double value  = trial->field(trial->field_user, point);
+        bool   inside = trial->inside(trial->inside_user, point);
         double radius = 0.999 * fabs(value) - ROUNDING;
         if (radius > 0) {
             verdict.sign_errors += (value < 0) != inside;
@@ -66,16 +66,17 @@ void judge_acquits(const Trial *trial, const char *what)
     Verdict verdict = judge(trial);
     if (verdict.sign_errors + verdict.ball_errors + verdict.slope_errors > 0)
         fail_msg("%s: of %d points, %d on the wrong side, %d farther than the surface, "
-                 "%d steep pairs (slope %.9g)", what, trial->points, verdict.sign_errors,
-                 verdict.ball_errors, verdict.slope_errors, verdict.steepest);
+                 "%d steep pairs (slope %.9g)",
+                 what, trial->points, verdict.sign_errors, verdict.ball_errors,
+                 verdict.slope_errors, verdict.steepest);
 }
 
 static Verdict judge_exaggerated(const Trial *trial, double factor)
 {
-    Exaggeration wrong = {trial->field, trial->field_user, factor};
-    Trial planted = *trial;
-    planted.field = exaggerated_field;
-    planted.field_user = &wrong;
+    Exaggeration wrong   = {trial->field, trial->field_user, factor};
+    Trial        planted = *trial;
+    planted.field        = exaggerated_field;
+    planted.field_user   = &wrong;
     return judge(&planted);
 }
 
@@ -91,6 +92,5 @@ void judge_refutes_steeper(const Trial *trial, double factor, const char *what)
 {
     Verdict verdict = judge_exaggerated(trial, factor);
     if (verdict.slope_errors == 0)
-        fail_msg("%s: %g times the field is not refuted: slope %g", what, factor,
-                 verdict.steepest);
+        fail_msg("%s: %g times the field is not refuted: slope %g", what, factor, verdict.steepest);
 }

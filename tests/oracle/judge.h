@@ -20,7 +20,7 @@ typedef struct Trial {
     const void *field_user;
     Inside     *inside;
     const void *inside_user;
-    Vec         centre;  /* points are drawn from the cube around it, of this half size */
+    Vec         centre; /* points are drawn from the cube around it, of this half size */
     double      half;
     int         points;
     uint64_t    seed;

@@ -17,9 +17,9 @@
 typedef struct Flavour {
     const char *name;
     int         mirrors;
-    double      near, far;  /* offsets of the mirrors */
-    double      reach;      /* kernels lie in the cube of this half size */
-    double      size;       /* of kernels */
+    double      near, far;   /* offsets of the mirrors */
+    double      reach;       /* kernels lie in the cube of this half size */
+    double      size;        /* of kernels */
     int         most_bodies; /* per level */
     bool        capsules;
     uint64_t    seed;
@@ -41,13 +41,13 @@ enum { FLAVOURS = sizeof flavours / sizeof *flavours, REPEATS = 4 };
 static Body random_body(const Flavour *flavour, Random *random, int level)
 {
     double size = flavour->size;
-    Body body = {.level = level, .from = random_in_cube(random, flavour->reach)};
-    body.to = body.from;
-    body.axis = random_unit(random);
+    Body   body = {.level = level, .from = random_in_cube(random, flavour->reach)};
+    body.to     = body.from;
+    body.axis   = random_unit(random);
     body.radius = size * random_between(random, 0.2, 1);
-    int kind = random_below(random, flavour->capsules ? 3 : 2);
+    int kind    = random_below(random, flavour->capsules ? 3 : 2);
     if (kind == 1) {
-        body.box = true;
+        body.box   = true;
         body.sides = vec_add(vec(0.6 * size, 0.6 * size, 0.6 * size),
                              random_in_cube(random, 0.4 * size));
         body.angle = random_between(random, -3, 3);
@@ -77,8 +77,8 @@ static void write_body(SceneText *text, const Body *b)
     scene_write(text, "    kernel ");
     if (b->box)
         scene_write(text, "box([%.17g, %.17g, %.17g]).rotate([%.17g, %.17g, %.17g], %.17g)",
-                    2 * b->sides.x, 2 * b->sides.y, 2 * b->sides.z, b->axis.x, b->axis.y,
-                    b->axis.z, b->angle);
+                    2 * b->sides.x, 2 * b->sides.y, 2 * b->sides.z, b->axis.x, b->axis.y, b->axis.z,
+                    b->angle);
     else if (vec_distance(b->from, b->to) == 0)
         scene_write(text, "sphere(%.17g)", b->radius);
     else {
@@ -100,11 +100,11 @@ static Product compile_sequence(const Sequence *sequence)
                 write_body(&text, &sequence->bodies[i]);
         if (level == sequence->mirror_count)
             break;
-        Half m = sequence->mirrors[level];
+        Half   m      = sequence->mirrors[level];
         double length = 0.5 + level % 4;
-        Vec normal = vec_scale(length, m.normal);
-        scene_write(&text, "    reflect plane([%.17g, %.17g, %.17g], %.17g);\n", normal.x,
-                    normal.y, normal.z, length * m.offset);
+        Vec    normal = vec_scale(length, m.normal);
+        scene_write(&text, "    reflect plane([%.17g, %.17g, %.17g], %.17g);\n", normal.x, normal.y,
+                    normal.z, length * m.offset);
     }
     scene_write(&text, "};\n");
     return product_compile(text.bytes);
@@ -120,10 +120,10 @@ static double named_distance(const Expansion *expansion, const KrsHit *hit, Vec 
         const Copy *copy = &expansion->copies[i];
         if (copy->id != hit->instance || copy->body->level != (int)hit->level)
             continue;
-        bool uncut;
+        bool   uncut;
         double distance = copy_distance_uncut(copy, point, &uncut);
         if (distance < best) {
-            best = distance;
+            best      = distance;
             *survives = uncut;
         }
     }
@@ -137,7 +137,7 @@ typedef struct Tally {
 static void check_point(const Product *product, const Sequence *sequence,
                         const Expansion *expansion, Vec point, Tally *tally)
 {
-    KrsHit hit = product_probe(product, point);
+    KrsHit hit      = product_probe(product, point);
     double distance = product_distance(product, point);
     assert_true(fabs(hit.distance - distance) <= 1e-12 * (1 + fabs(distance)));
 
@@ -146,7 +146,7 @@ static void check_point(const Product *product, const Sequence *sequence,
         return;
     }
     assert_true(distance >= -1e-9);
-    bool sure, survives = false;
+    bool   sure, survives = false;
     double truth = expansion_distance(expansion, point, &sure);
     if (!(distance <= truth + 1e-9))
         fail_msg("distance %.12g is above the true %.12g", distance, truth);
@@ -170,13 +170,13 @@ static void check_point(const Product *product, const Sequence *sequence,
 static void distances_and_copies(void **state)
 {
     const Flavour *flavour = *state;
-    Random random = {flavour->seed};
-    Tally tally = {0};
-    int points = flavour->mirrors > 8 ? 100 : 400;
+    Random         random  = {flavour->seed};
+    Tally          tally   = {0};
+    int            points  = flavour->mirrors > 8 ? 100 : 400;
     for (int repeat = 0; repeat < REPEATS; repeat++) {
-        Sequence sequence = random_sequence(flavour, &random);
+        Sequence  sequence  = random_sequence(flavour, &random);
         Expansion expansion = expand(&sequence);
-        Product product = compile_sequence(&sequence);
+        Product   product   = compile_sequence(&sequence);
         for (int i = 0; i < points; i++)
             check_point(&product, &sequence, &expansion,
                         random_in_cube(&random, i % 2 ? 1.5 : 5 + flavour->mirrors), &tally);
@@ -193,8 +193,8 @@ static void check_ray(const Product *product, const Expansion *expansion, Vec or
                       int *hits)
 {
     const double farthest = 60, tolerance = 1e-7;
-    KrsHit hit = product_raycast(product, origin, direction, farthest, tolerance);
-    double truth = expansion_enter(expansion, origin, vec_unit(direction));
+    KrsHit       hit   = product_raycast(product, origin, direction, farthest, tolerance);
+    double       truth = expansion_enter(expansion, origin, vec_unit(direction));
     if (truth < farthest && !hit.hit)
         fail_msg("the ray misses what it meets at %.12g", truth);
     if (!hit.hit)
@@ -203,8 +203,8 @@ static void check_ray(const Product *product, const Expansion *expansion, Vec or
     if (!(hit.t <= truth + 2 * tolerance))
         fail_msg("the ray ends at %.12g, behind %.12g", hit.t, truth);
     bool sure;
-    Vec point = vec(hit.point[0], hit.point[1], hit.point[2]);
-    Vec along = vec_add(origin, vec_scale(hit.t, vec_unit(direction)));
+    Vec  point = vec(hit.point[0], hit.point[1], hit.point[2]);
+    Vec  along = vec_add(origin, vec_scale(hit.t, vec_unit(direction)));
     assert_true(vec_distance(point, along) <= 1e-9);
     if (!expansion_contains(expansion, point))
         assert_true(expansion_distance(expansion, point, &sure) <= 2 * tolerance);
@@ -213,14 +213,14 @@ static void check_ray(const Product *product, const Expansion *expansion, Vec or
 static void rays_end_where_copies_are(void **state)
 {
     const Flavour *flavour = *state;
-    Random random = {flavour->seed + 1000};
-    int hits = 0;
+    Random         random  = {flavour->seed + 1000};
+    int            hits    = 0;
     for (int repeat = 0; repeat < REPEATS; repeat++) {
-        Sequence sequence = random_sequence(flavour, &random);
+        Sequence  sequence  = random_sequence(flavour, &random);
         Expansion expansion = expand(&sequence);
-        Product product = compile_sequence(&sequence);
+        Product   product   = compile_sequence(&sequence);
         for (int i = 0; i < 150; i++) {
-            Vec origin = vec_scale(6, random_unit(&random));
+            Vec origin    = vec_scale(6, random_unit(&random));
             Vec direction = vec_sub(random_in_cube(&random, 1.5), origin);
             if (!expansion_contains(&expansion, origin))
                 check_ray(&product, &expansion, origin, direction, &hits);
@@ -238,11 +238,11 @@ static bool inside_expansion(const void *expansion, Vec point)
 
 static void slope_and_empty_balls(void **state)
 {
-    const Flavour *flavour = *state;
-    Random random = {flavour->seed + 2000};
-    Sequence sequence = random_sequence(flavour, &random);
-    Expansion expansion = expand(&sequence);
-    Product product = compile_sequence(&sequence);
+    const Flavour *flavour   = *state;
+    Random         random    = {flavour->seed + 2000};
+    Sequence       sequence  = random_sequence(flavour, &random);
+    Expansion      expansion = expand(&sequence);
+    Product        product   = compile_sequence(&sequence);
     Trial trial = {product_field, &product, inside_expansion, &expansion, vec(0, 0, 0), 3, 1500, 5};
     judge_acquits(&trial, flavour->name);
     product_free(&product);
@@ -257,10 +257,10 @@ static void nested_is_flat(void **state)
                         "kernel box([0.2, 0.5, 0.3]); reflect plane([0.2, 1, 0], 0.6);";
     const char *outer = "kernel sphere(0.2).move([0, 0, 0.5]); reflect plane([0, 0.1, 1], 0.7);";
     Product nested = product_format("let a = krs { %s }; show krs { kernel a; %s };", inner, outer);
-    Product flat = product_format("show krs { %s %s };", inner, outer);
-    Random random = {11};
+    Product flat   = product_format("show krs { %s %s };", inner, outer);
+    Random  random = {11};
     for (int i = 0; i < 2000; i++) {
-        Vec point = random_in_cube(&random, 4);
+        Vec    point = random_in_cube(&random, 4);
         double a = product_distance(&nested, point), b = product_distance(&flat, point);
         assert_true(fabs(a - b) <= 1e-12 * (1 + fabs(a)));
     }
@@ -272,7 +272,8 @@ static void nested_is_flat(void **state)
 static Product compile_row(int mirrors)
 {
     return product_format("show krs { kernel sphere(0.25).move([0, 0.1, 0]);"
-                          "for i in 0..%d { reflect plane([1, 0, 0], 2 ^ i - 0.5); } };", mirrors);
+                          "for i in 0..%d { reflect plane([1, 0, 0], 2 ^ i - 0.5); } };",
+                          mirrors);
 }
 
 static double row_distance(Vec point, double count)
@@ -286,7 +287,7 @@ static void more_mirrors_than_bits(void **state)
     (void)state;
     enum { MIRRORS = 36 };
     Product product = compile_row(MIRRORS);
-    Random random = {36};
+    Random  random  = {36};
     for (int i = 0; i < 2000; i++) {
         Vec point = random_in_cube(&random, 2);
         point.x += ldexp(random_between(&random, 0, 1), random_below(&random, MIRRORS));
@@ -294,9 +295,9 @@ static void more_mirrors_than_bits(void **state)
         double truth = row_distance(point, 0x1p36), rounding = 1e-9 + 1e-14 * fabs(point.x);
         assert_true(fabs(distance - truth) <= rounding);
     }
-    KrsHit first = product_probe(&product, vec(0x1p34, 1, 0));
+    KrsHit first  = product_probe(&product, vec(0x1p34, 1, 0));
     KrsHit second = product_probe(&product, vec(0x1p34 + 1, 1, 0));
-    KrsHit third = product_probe(&product, vec(1, 1, 0));
+    KrsHit third  = product_probe(&product, vec(1, 1, 0));
     assert_int_not_equal(first.instance, second.instance);
     assert_int_not_equal(first.instance, third.instance);
     assert_int_equal(first.level, 0);
@@ -307,7 +308,7 @@ static void more_mirrors_than_bits(void **state)
 static void many_levels_compile_quickly(void **state)
 {
     (void)state;
-    clock_t start = clock();
+    clock_t start   = clock();
     Product product = compile_row(28);
     print_message("# 28 levels: %.3f s of CPU time to compile\n",
                   (double)(clock() - start) / CLOCKS_PER_SEC);
@@ -329,8 +330,8 @@ static void numbers_are_unique(void **state)
 {
     (void)state;
     enum { MIRRORS = 10 };
-    Product product = compile_row(MIRRORS);
-    bool seen[1 << MIRRORS] = {false};
+    Product product            = compile_row(MIRRORS);
+    bool    seen[1 << MIRRORS] = {false};
     for (int i = 0; i < 1 << MIRRORS; i++) {
         KrsHit hit = product_probe(&product, vec(i, 0.5, 0));
         assert_in_range(hit.instance, 1 << MIRRORS, (2 << MIRRORS) - 1);
@@ -351,8 +352,8 @@ static size_t add_test(struct CMUnitTest *tests, size_t count, char *name, const
 int main(void)
 {
     struct CMUnitTest tests[3 * FLAVOURS + 4];
-    char names[3 * FLAVOURS][80];
-    size_t count = 0;
+    char              names[3 * FLAVOURS][80];
+    size_t            count = 0;
     for (const Flavour *f = flavours; f < flavours + FLAVOURS; f++) {
         count = add_test(tests, count, names[count], "distances, copies", distances_and_copies, f);
         if (f->mirrors <= 6)

@@ -25,22 +25,22 @@
 #include "tests/support/renderer.h"
 
 enum { WIDTH = 64, HEIGHT = 48, PIXELS = WIDTH * HEIGHT, SETTINGS = 3 };
-#define SHADOWS    KRS_SHADOWS_SOFT /* the default */
+#define SHADOWS    KRS_SHADOWS_SOFT       /* the default */
 #define PLASTIC    1.32471795724474602596 /* x^3 = x + 1 */
-#define SAME_PLACE 0.05     /* as seen by the reference and in a picture */
-enum { MEAN = 5 };          /* pixels of a mean, a side */
-enum { CENTRE_RAYS = 16 };  /* to the light, of the reference: from the centre of a pixel, */
+#define SAME_PLACE 0.05                   /* as seen by the reference and in a picture */
+enum { MEAN = 5 };                        /* pixels of a mean, a side */
+enum { CENTRE_RAYS = 16 }; /* to the light, of the reference: from the centre of a pixel, */
 /* and from the places in it that a picture of so many samples looks at: the multiples of the powers
    of 1 over the plastic number */
 enum { PLACES = 4, PLACE_RAYS = 8 };
 
 /* What is asked for.  In parts of the mean light: */
-#define MOST_WRONG     0.05 /* the mean of what is wrong with four rays, */
-#define MOST_UNSHADED  0.01 /* and where nothing casts shadows */
+#define MOST_WRONG    0.05 /* the mean of what is wrong with four rays, */
+#define MOST_UNSHADED 0.01 /* and where nothing casts shadows */
 /* With one ray, of means of 5x5 pixels: */
-#define MOST_NOISE     1.5  /* what is wrong, for what it is of independent rays, */
-#define LEAST_NOISE    0.025/* and so much more, as edges are somewhere in a pixel */
-#define MOST_SEEN      0.4  /* wrong anywhere */
+#define MOST_NOISE  1.5   /* what is wrong, for what it is of independent rays, */
+#define LEAST_NOISE 0.025 /* and so much more, as edges are somewhere in a pixel */
+#define MOST_SEEN   0.4   /* wrong anywhere */
 
 /* ---- The truth ---- */
 
@@ -59,7 +59,7 @@ static void look_at_pixel(const Setting *setting, const Lens *lens, int k, Rando
     truth.red[k] = truth.green[k] = 0;
     for (int i = 0; i < PLACES; i++) {
         double right = 0.5 + i / PLASTIC, down = 0.5 + i / (PLASTIC * PLASTIC);
-        Line   ray = lens_ray(lens, x + right - floor(right), y + down - floor(down));
+        Line   ray  = lens_ray(lens, x + right - floor(right), y + down - floor(down));
         Seen   seen = see(setting, ray, PLACE_RAYS, random);
         truth.red[k] += seen.light * seen.visible / PLACES;
         truth.green[k] += seen.light / PLACES;
@@ -89,15 +89,16 @@ typedef struct Stage {
 static Stage open_stage(const Room *room)
 {
     static SceneText text;
-    const char *where = room->lamp ? "position" : "direction";
-    const char *wide = room->lamp ? "radius" : "softness";
-    Stage       stage;
+    const char      *where = room->lamp ? "position" : "direction";
+    const char      *wide  = room->lamp ? "radius" : "softness";
+    Stage            stage;
     text.length = 0;
     for (int i = 0; i < ROOM_NUMBERS && room->numbers[i].high > room->numbers[i].low; i++)
         scene_write(&text, "param %c = %g in [%.17g, %.17g];\n", 'a' + i,
                     (room->numbers[i].low + room->numbers[i].high) / 2, room->numbers[i].low,
                     room->numbers[i].high);
-    scene_write(&text, "param at = [0, 1, 0];\nparam wide = 0.1 in [0, 1];\n"
+    scene_write(&text,
+                "param at = [0, 1, 0];\nparam wide = 0.1 in [0, 1];\n"
                 "light red { %s: at, %s: wide, color: [1, 0, 0] }\n"
                 "light green { %s: at, %s: wide, color: [0, 1, 0], shadow: false }\n"
                 "sky { zenith: #000000, horizon: #000000, ground: #000000 }\n"
@@ -119,21 +120,24 @@ static void close_stage(Stage *stage)
 
 static void set_numbers(Stage *stage, const Setting *setting)
 {
-    const Room *room = setting->room;
+    const Room *room  = setting->room;
     KrsFrame   *frame = stage->product.frame;
-    Vec         at = setting->light;
+    Vec         at    = setting->light;
     for (int i = 0; i < ROOM_NUMBERS && room->numbers[i].high > room->numbers[i].low; i++)
-        assert_int_equal(krs_frame_set(frame, (char[]){(char)('a' + i), 0}, &setting->numbers[i],
-                                       1), KRS_OK);
+        assert_int_equal(
+            krs_frame_set(frame, (char[]){(char)('a' + i), 0}, &setting->numbers[i], 1), KRS_OK);
     assert_int_equal(krs_frame_set(frame, "at", (double[]){at.x, at.y, at.z}, 3), KRS_OK);
     assert_int_equal(krs_frame_set(frame, "wide", &setting->wide, 1), KRS_OK);
 }
 
 static KrsPicture *take_picture(Stage *stage, KrsShadows shadows, uint32_t samples)
 {
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = samples,
-                                .shadows = shadows, .no_occlusion = true};
-    KrsPicture *picture;
+    KrsRenderOptions options = {.width        = WIDTH,
+                                .height       = HEIGHT,
+                                .samples      = samples,
+                                .shadows      = shadows,
+                                .no_occlusion = true};
+    KrsPicture      *picture;
     if (krs_render(stage->rendering, stage->product.frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     assert_int_equal(picture->stats.unresolved, 0);
@@ -194,8 +198,8 @@ static bool find_off(const KrsPicture *picture, int k, double *off, double *vari
         vec_distance(point, seen->point) > SAME_PLACE)
         return false;
     double weight = green / fmax(green, truth.mean_green);
-    *off = weight * (red / green - seen->visible);
-    *variance = weight * weight * seen->visible * (1 - seen->visible);
+    *off          = weight * (red / green - seen->visible);
+    *variance     = weight * weight * seen->visible * (1 - seen->visible);
     return true;
 }
 
@@ -216,9 +220,9 @@ static Noise find_noise(const KrsPicture *picture)
             noise.worst = fmax(noise.worst, fabs(mean));
             means++;
         }
-    noise.single = sqrt(noise.single / count);
+    noise.single      = sqrt(noise.single / count);
     noise.independent = sqrt(noise.independent / count) / MEAN;
-    noise.mean = sqrt(noise.mean / means);
+    noise.mean        = sqrt(noise.mean / means);
     return noise;
 }
 
@@ -226,14 +230,15 @@ static Noise find_noise(const KrsPicture *picture)
 
 static bool light_is_right(const char *name, const KrsPicture *one, const KrsPicture *four)
 {
-    double red = mean_wrong(four, 0, truth.red, truth.mean_red);
+    double red   = mean_wrong(four, 0, truth.red, truth.mean_red);
     double green = mean_wrong(four, 1, truth.green, truth.mean_green);
     Noise  noise = find_noise(one);
     bool   right = red < MOST_WRONG && green < MOST_UNSHADED && noise.worst < MOST_SEEN &&
                  noise.mean < MOST_NOISE * noise.independent + LEAST_NOISE;
     print_message("# %s%s: wrong by %.3f, unshaded by %.3f; one ray: %.3f, of 5x5 %.3f (of "
-                  "independent rays %.3f), the worst %.3f\n", name, right ? "" : ", WRONG", red,
-                  green, noise.single, noise.mean, noise.independent, noise.worst);
+                  "independent rays %.3f), the worst %.3f\n",
+                  name, right ? "" : ", WRONG", red, green, noise.single, noise.mean,
+                  noise.independent, noise.worst);
     return right;
 }
 
@@ -241,14 +246,14 @@ static bool light_is_right(const char *name, const KrsPicture *one, const KrsPic
 static size_t count_wrong(const Room *room, KrsShadows shadows)
 {
     Random random = {(uint64_t)(room - rooms) + 1};
-    Stage  stage = open_stage(room);
-    size_t wrong = 0;
+    Stage  stage  = open_stage(room);
+    size_t wrong  = 0;
     for (int i = 0; i < SETTINGS; i++) {
         char    name[80];
         Setting setting = setting_choose(room, &random);
         set_numbers(&stage, &setting);
         find_truth(&setting);
-        KrsPicture *one = take_picture(&stage, shadows, 1);
+        KrsPicture *one  = take_picture(&stage, shadows, 1);
         KrsPicture *four = take_picture(&stage, shadows, PLACES);
         snprintf(name, sizeof name, "%s, %d", room->name, i);
         wrong += !light_is_right(name, one, four);
@@ -270,23 +275,28 @@ static void rooms_are_lit_right(void **state)
 
 /* A fault planted in a right picture: red light is multiplied by this. */
 typedef double Fault(double x, double y);
-static double darker(double x, double y) { (void)x; (void)y; return 0.94; }
+static double  darker(double x, double y)
+{
+    (void)x;
+    (void)y;
+    return 0.94;
+}
 static double contours(double x, double y) { return 1 + 0.2 * sin(0.8 * x + 0.3 * y); }
 static double hole(double x, double y) { return hypot(x - 32, y - 30) < 4 ? 0.2 : 1; }
 
 static void faults_are_found(void **state)
 {
     (void)state;
-    static Fault *const faults[] = {darker, contours, hole};
-    static const char *const names[] = {"PLANTED darkness", "PLANTED contours", "PLANTED hole"};
-    const Room *room = &rooms[3];
-    Random      random = {4};
-    Stage       stage = open_stage(room);
-    Setting     setting = setting_choose(room, &random);
+    static Fault *const      faults[] = {darker, contours, hole};
+    static const char *const names[]  = {"PLANTED darkness", "PLANTED contours", "PLANTED hole"};
+    const Room              *room     = &rooms[3];
+    Random                   random   = {4};
+    Stage                    stage    = open_stage(room);
+    Setting                  setting  = setting_choose(room, &random);
     set_numbers(&stage, &setting);
     find_truth(&setting);
     for (int i = 0; i < 3; i++) {
-        KrsPicture *one = take_picture(&stage, SHADOWS, 1);
+        KrsPicture *one  = take_picture(&stage, SHADOWS, 1);
         KrsPicture *four = take_picture(&stage, SHADOWS, 4);
         assert_true(light_is_right("right", one, four));
         for (int k = 0; k < PIXELS; k++) {

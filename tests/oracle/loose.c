@@ -25,7 +25,7 @@ enum { WIDTH = 192, HEIGHT = 108, SAMPLES = 100 };
 /* What is asked for: pixels that are wrong, of those at an edge. */
 #define MOST_WRONG 0.01
 #define LIFT       0.125 /* pixels: where a ray to a light starts, above even ground */
-#define HIGH       4.5 /* of the picture */
+#define HIGH       4.5   /* of the picture */
 
 /* ---- Formulas: negative inside ---- */
 
@@ -46,11 +46,13 @@ static double long_ball(Vec p) { return p.z * p.z / 2.25 + (p.x * p.x + p.y * p.
 
 static const struct Form {
     const char *name, *text;
-    double    (*formula)(Vec p);
-    double      radius; /* of the ball that it is in, or cut by */
+    double (*formula)(Vec p);
+    double radius; /* of the ball that it is in, or cut by */
 } forms[] = {
-    {"Barth's sextic", "algebraic(4 * (g^2 * x^2 - y^2) * (g^2 * y^2 - z^2) * (g^2 * z^2 - x^2) =="
-                       " (1 + 2 * g) * (x^2 + y^2 + z^2 - 1)^2).within(sphere(1.5))", barth, 1.5},
+    {"Barth's sextic",
+     "algebraic(4 * (g^2 * x^2 - y^2) * (g^2 * y^2 - z^2) * (g^2 * z^2 - x^2) =="
+     " (1 + 2 * g) * (x^2 + y^2 + z^2 - 1)^2).within(sphere(1.5))",
+     barth, 1.5},
     {"a ring", "field((x^2 + y^2 + z^2 + 0.6)^2 - 2.56 * (x^2 + z^2)).within(sphere(1.2))", ring,
      1.2},
     {"a long ball", "sphere(0.15).scale([1, 1, 10])", long_ball, 1.6},
@@ -79,7 +81,7 @@ static double least_between(const struct Form *form, Line line, double a, double
 /* Whether a line from a point towards the light meets the form. */
 static bool is_hidden(const struct Form *form, Vec point)
 {
-    Line   line = {vec_sub(point, centre), vec_unit(light)};
+    Line   line  = {vec_sub(point, centre), vec_unit(light)};
     Chord  chord = chord_of_ball(line, vec(0, 0, 0), form->radius);
     double values[SAMPLES + 1], step = (chord.leave - chord.enter) / SAMPLES;
     if (chord_is_empty(chord))
@@ -91,8 +93,8 @@ static bool is_hidden(const struct Form *form, Vec point)
     }
     for (int i = 1; i < SAMPLES; i++)
         if (values[i] <= values[i - 1] && values[i] <= values[i + 1] &&
-            least_between(form, line, chord.enter + (i - 1) * step,
-                          chord.enter + (i + 1) * step) <= 0)
+            least_between(form, line, chord.enter + (i - 1) * step, chord.enter + (i + 1) * step) <=
+                0)
             return true;
     return false;
 }
@@ -118,10 +120,10 @@ static void find_truth(const struct Form *form, double lift, bool *lit)
 {
     Lens lens = camera();
     for (int k = 0; k < WIDTH * HEIGHT; k++) {
-        Line ray = lens_ray(&lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
+        Line ray    = lens_ray(&lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
         Vec  ground = line_at(ray, -ray.origin.y / ray.direction.y);
-        ground.y = lift * lens_pixel(&lens, 1);
-        lit[k] = !is_hidden(form, ground);
+        ground.y    = lift * lens_pixel(&lens, 1);
+        lit[k]      = !is_hidden(form, ground);
     }
 }
 
@@ -137,11 +139,11 @@ static KrsPicture *take(const struct Form *form, double softness, KrsShadows sha
         "camera { eye: [%g, 50, %g], target: [%g, 0, %g], projection: \"orthographic\","
         " height: %g }\n"
         "show plane([0, 1, 0], 0).paint(white);\n"
-        "show %s.move([%g, %g, %g]);\n", light.x, light.y, light.z, softness, light.x, light.y,
-        light.z, target.x, target.z + 50, target.x, target.z, HIGH, form->text, centre.x, centre.y,
-        centre.z);
-    KrsRendering *rendering;
-    KrsPicture   *picture = NULL;
+        "show %s.move([%g, %g, %g]);\n",
+        light.x, light.y, light.z, softness, light.x, light.y, light.z, target.x, target.z + 50,
+        target.x, target.z, HIGH, form->text, centre.x, centre.y, centre.z);
+    KrsRendering    *rendering;
+    KrsPicture      *picture = NULL;
     KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .shadows = shadows, .samples = 1};
     if (krs_rendering_new(renderer, product.scene, &rendering) != KRS_OK ||
         krs_render(rendering, product.frame, &options, &picture) != KRS_OK)

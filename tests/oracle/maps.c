@@ -35,10 +35,10 @@ static void start(void)
     arena_free(&arena);
     arena_free(&scratch);
     arena = scratch = (Arena){.memory = &memory};
-    sources     = (Sources){.arena = &arena};
-    diags       = (Diags){.arena = &arena, .sources = &sources};
-    elaboration = (Elaboration){
-        .arena = &arena, .scratch = &scratch, .diags = &diags, .graph = graph_new(&arena)};
+    sources         = (Sources){.arena = &arena};
+    diags           = (Diags){.arena = &arena, .sources = &sources};
+    elaboration     = (Elaboration){
+            .arena = &arena, .scratch = &scratch, .diags = &diags, .graph = graph_new(&arena)};
 }
 
 static int setup(void **state)
@@ -92,7 +92,7 @@ static Word random_word(int count, int inversions)
         word.letters[i] = random_letter(i < inversions ? INVERT : other);
     }
     for (int i = count - 1; i > 0; i--) {
-        int j = random_below(&randomness, i + 1);
+        int        j    = random_below(&randomness, i + 1);
         Elementary l    = word.letters[i];
         word.letters[i] = word.letters[j];
         word.letters[j] = l;
@@ -105,11 +105,10 @@ static Vec letter_apply(const Elementary *l, Vec p)
     Vec z = vec_sub(p, l->vector);
     switch (l->letter) {
     case TRANSLATE: return vec_add(p, l->vector);
-    case ROTATE:    return vec_turn(p, l->vector, l->number);
-    case SCALE:     return vec_scale(l->number, p);
-    case REFLECT:
-        return vec_sub(p, vec_scale(2 * (vec_dot(l->vector, p) - l->number), l->vector));
-    default:        return vec_add(l->vector, vec_scale(l->number * l->number / vec_dot(z, z), z));
+    case ROTATE: return vec_turn(p, l->vector, l->number);
+    case SCALE: return vec_scale(l->number, p);
+    case REFLECT: return vec_sub(p, vec_scale(2 * (vec_dot(l->vector, p) - l->number), l->vector));
+    default: return vec_add(l->vector, vec_scale(l->number * l->number / vec_dot(z, z), z));
     }
 }
 
@@ -125,8 +124,8 @@ static double word_hardness(const Word *word, Vec p)
 {
     double hardness = 1;
     for (int i = 0; i < word->count; i++) {
-        const Elementary *l = &word->letters[i];
-        double size = vec_length(p), away = vec_distance(p, l->vector) / l->number;
+        const Elementary *l    = &word->letters[i];
+        double            size = vec_length(p), away = vec_distance(p, l->vector) / l->number;
         hardness = fmax(hardness, size);
         if (l->letter == INVERT)
             hardness = fmax(hardness, fmax(1 / away, away));
@@ -208,7 +207,7 @@ static Matrix letter_matrix(const Elementary *l)
     default: {
         /* To the origin, q / |q|^2 times the square of the radius, and back. */
         Matrix there = {one, quat_mul(real(-1), v), zero, one}, back = {one, v, zero, one};
-        Matrix flip  = {zero, real(-l->number * l->number), one, zero};
+        Matrix flip = {zero, real(-l->number * l->number), one, zero};
         return matrix_mul(back, matrix_mul(flip, there));
     }
     }
@@ -229,13 +228,13 @@ static Node vec_node(Vec v) { return graph_vec3(elaboration.graph, v.x, v.y, v.z
 static const Map *letter_map(const Elementary *l)
 {
     Elaboration *e = &elaboration;
-    Node v = vec_node(l->vector), n = graph_number(e->graph, l->number);
+    Node         v = vec_node(l->vector), n = graph_number(e->graph, l->number);
     switch (l->letter) {
     case TRANSLATE: return map_translation(e, v);
-    case ROTATE:    return map_rotation(e, v, n);
-    case SCALE:     return map_scaling(e, n);
-    case REFLECT:   return map_reflection(e, v, n);
-    default:        return map_inversion(e, v, n);
+    case ROTATE: return map_rotation(e, v, n);
+    case SCALE: return map_scaling(e, n);
+    case REFLECT: return map_reflection(e, v, n);
+    default: return map_inversion(e, v, n);
     }
 }
 
@@ -244,7 +243,7 @@ static const Map *word_map(const Word *word, int from, int to)
 {
     if (to - from == 1)
         return letter_map(&word->letters[from]);
-    int cut = from + 1 + random_below(&randomness, to - from - 1);
+    int        cut   = from + 1 + random_below(&randomness, to - from - 1);
     const Map *first = word_map(word, from, cut), *second = word_map(word, cut, to);
     return map_product(&elaboration, second, first);
 }
@@ -311,7 +310,7 @@ static void products_and_inverses(void **state)
             /* Poles that almost meet, a hundredth of a radius apart. */
             Elementary ball = random_letter(INVERT);
             Vec        way  = vec_scale(0.01 * ball.number, random_unit(&randomness));
-            word = (Word){{ball, {TRANSLATE, way, 0}, ball}, 3};
+            word            = (Word){{ball, {TRANSLATE, way, 0}, ball}, 3};
         }
         const Map *map  = word_map(&word, 0, word.count);
         const Map *back = map_inverse(&elaboration, map);
@@ -324,8 +323,7 @@ static void products_and_inverses(void **state)
                 continue;
             assert_near(map_at(map, p, no_parameters), q, 1e-12 * pow(hardness, 3));
             double back_scale = fmax(1, 1 / word_scale(&word, p));
-            assert_near(map_at(back, q, no_parameters), p,
-                        1e-12 * pow(hardness, 3) * back_scale);
+            assert_near(map_at(back, q, no_parameters), p, 1e-12 * pow(hardness, 3) * back_scale);
         }
     }
     print_message("# %d of 1500 products are several maps\n", several);
@@ -337,21 +335,22 @@ static void matrices(void **state)
     (void)state;
     for (int trial = 0; trial < 1500; trial++) {
         start();
-        Word   word = random_word(1 + trial % MOST_LETTERS, random_below(&randomness, 4));
-        Matrix m    = word_matrix(&word);
-        double f    = exp(between(-2, 2)) * (trial % 2 ? 1 : -1);
-        double entries[4][4];
+        Word       word = random_word(1 + trial % MOST_LETTERS, random_below(&randomness, 4));
+        Matrix     m    = word_matrix(&word);
+        double     f    = exp(between(-2, 2)) * (trial % 2 ? 1 : -1);
+        double     entries[4][4];
         const Quat parts[4] = {m.a, m.b, m.c, m.d};
         for (int i = 0; i < 4; i++)
-            memcpy(entries[i], (double[]){f * parts[i].w, f * parts[i].v.x, f * parts[i].v.y,
-                                          f * parts[i].v.z}, sizeof entries[i]);
+            memcpy(entries[i],
+                   (double[]){f * parts[i].w, f * parts[i].v.x, f * parts[i].v.y, f * parts[i].v.z},
+                   sizeof entries[i]);
         const char *reason;
-        const Map  *map = map_of_matrix(&elaboration, (const double (*)[4])entries, &reason);
+        const Map  *map = map_of_matrix(&elaboration, (const double(*)[4])entries, &reason);
         if (!map)
             fail_msg("refused: %s", reason);
         for (int i = 0; i < 4; i++) {
             Vec    p = random_in_cube(&randomness, 4), q = word_apply(&word, p);
-            Quat   l = matrix_apply(&m, p);
+            Quat   l        = matrix_apply(&m, p);
             double hardness = word_hardness(&word, p);
             if (hardness > 300)
                 continue;
@@ -368,11 +367,11 @@ static void other_matrices_are_refused(void **state)
     (void)state;
     start();
     for (int trial = 0; trial < 500; trial++) {
-        Word   word = random_word(3, 1);
-        Matrix m    = word_matrix(&word);
-        double entries[4][4];
+        Word        word = random_word(3, 1);
+        Matrix      m    = word_matrix(&word);
+        double      entries[4][4];
         const char *reason;
-        const Quat parts[4] = {m.a, m.b, m.c, m.d};
+        const Quat  parts[4] = {m.a, m.b, m.c, m.d};
         for (int i = 0; i < 4; i++)
             memcpy(entries[i], (double[]){parts[i].w, parts[i].v.x, parts[i].v.y, parts[i].v.z},
                    sizeof entries[i]);
@@ -381,15 +380,15 @@ static void other_matrices_are_refused(void **state)
         entries[wrong / 4][wrong % 4] += 1e-3;
         for (int i = 0; i < 16 && trial % 2; i++)
             entries[i / 4][i % 4] = between(-2, 2);
-        Matrix n = {quat(entries[0][0], vec(entries[0][1], entries[0][2], entries[0][3])),
-                    quat(entries[1][0], vec(entries[1][1], entries[1][2], entries[1][3])),
-                    quat(entries[2][0], vec(entries[2][1], entries[2][2], entries[2][3])),
-                    quat(entries[3][0], vec(entries[3][1], entries[3][2], entries[3][3]))};
+        Matrix n         = {quat(entries[0][0], vec(entries[0][1], entries[0][2], entries[0][3])),
+                            quat(entries[1][0], vec(entries[1][1], entries[1][2], entries[1][3])),
+                            quat(entries[2][0], vec(entries[2][1], entries[2][2], entries[2][3])),
+                            quat(entries[3][0], vec(entries[3][1], entries[3][2], entries[3][3]))};
         double real_part = 0;
         for (int i = 0; i < 10; i++)
             real_part = fmax(real_part, fabs(matrix_apply(&n, random_in_cube(&randomness, 2)).w));
         bool leaves = real_part > 1e-7;
-        bool taken  = map_of_matrix(&elaboration, (const double (*)[4])entries, &reason) != NULL;
+        bool taken  = map_of_matrix(&elaboration, (const double(*)[4])entries, &reason) != NULL;
         if (leaves == taken)
             fail_msg("trial %d: real parts up to %.3g, %s", trial, real_part,
                      taken ? "taken" : reason);
@@ -407,12 +406,12 @@ static void expect_matrix(const double entries[4][4], Vec p, Vec wanted)
 /* Table 1 of the paper as it should be (math.md, section 7), and matrices that are singular. */
 static void elementary_matrices(void **state)
 {
-    static const double half[4][4] = {{0, -1, 0, 0}, {0}, {0}, {0, 1, 0, 0}};
-    static const double inverse[4][4] = {{0}, {1}, {1}, {0}};
-    static const double inversion[4][4] = {{0}, {-1}, {1}, {0}};
-    static const double mirror[4][4] = {{0, 0, 1, 0}, {3}, {0}, {0, 0, -1, 0}};
+    static const double half[4][4]        = {{0, -1, 0, 0}, {0}, {0}, {0, 1, 0, 0}};
+    static const double inverse[4][4]     = {{0}, {1}, {1}, {0}};
+    static const double inversion[4][4]   = {{0}, {-1}, {1}, {0}};
+    static const double mirror[4][4]      = {{0, 0, 1, 0}, {3}, {0}, {0, 0, -1, 0}};
     static const double singular[2][4][4] = {{{1}, {1}, {-1}, {1}}, {{0}}};
-    const char *reason;
+    const char         *reason;
     (void)state;
     start();
     expect_matrix(half, vec(1, 2, 3), vec(-1, 2, 3));
@@ -441,11 +440,11 @@ static void what_is_no_inversion_is_none(void **state)
         assert_near(map_at(one, p, no_parameters), p, 1e-11);
         /* Two balls about one centre, with a turn between. */
         Elementary inner = random_letter(INVERT), outer = inner;
-        outer.number     = 2;
-        const Map *two   = map_product(e, letter_map(&outer), letter_map(&inner));
+        outer.number   = 2;
+        const Map *two = map_product(e, letter_map(&outer), letter_map(&inner));
         assert_true(two->pole == NODE_NONE);
-        p      = random_in_cube(&randomness, 3);
-        Vec q  = letter_apply(&outer, letter_apply(&inner, p));
+        p     = random_in_cube(&randomness, 3);
+        Vec q = letter_apply(&outer, letter_apply(&inner, p));
         assert_near(map_at(two, p, no_parameters), q, 1e-10);
     }
 }
@@ -454,27 +453,27 @@ static void what_is_no_inversion_is_none(void **state)
    other value must be followed, also where it makes poles meet. */
 static void parameters(void **state)
 {
-    Elaboration   *e     = &elaboration;
-    GraphParameter range = {{-1, 0, 0, 0}, {1, 0, 0, 0}};
-    int several = 0;
+    Elaboration   *e       = &elaboration;
+    GraphParameter range   = {{-1, 0, 0, 0}, {1, 0, 0, 0}};
+    int            several = 0;
     (void)state;
     for (int trial = 0; trial < 300; trial++) {
         start();
         Graph *graph = e->graph;
         array_push(&arena, &graph->parameters, range);
-        Node t = graph_parameter(graph, 1, TYPE_FLOAT);
+        Node       t = graph_parameter(graph, 1, TYPE_FLOAT);
         Elementary a = random_letter(INVERT), b = random_letter(INVERT), c = random_letter(ROTATE);
-        bool meeting = trial % 3 == 0;
-        Vec  way     = random_in_cube(&randomness, 0.5);
+        bool       meeting = trial % 3 == 0;
+        Vec        way     = random_in_cube(&randomness, 0.5);
         if (meeting)
             b.vector = a.vector; /* at t = 0 */
-        Node shift  = graph_op2(graph, OP_scale, vec_node(way), t);
-        Node centre = graph_op2(graph, OP_add, vec_node(b.vector), shift);
-        Node angle  = graph_op2(graph, OP_mul, graph_number(graph, c.number), t);
-        const Map *turn  = map_rotation(e, vec_node(c.vector), angle);
-        const Map *outer = map_inversion(e, centre, graph_number(graph, b.number));
-        const Map *both  = map_product(e, outer, letter_map(&a));
-        const Map *all   = map_product(e, turn, both);
+        Node       shift  = graph_op2(graph, OP_scale, vec_node(way), t);
+        Node       centre = graph_op2(graph, OP_add, vec_node(b.vector), shift);
+        Node       angle  = graph_op2(graph, OP_mul, graph_number(graph, c.number), t);
+        const Map *turn   = map_rotation(e, vec_node(c.vector), angle);
+        const Map *outer  = map_inversion(e, centre, graph_number(graph, b.number));
+        const Map *both   = map_product(e, outer, letter_map(&a));
+        const Map *all    = map_product(e, turn, both);
         several += map_count(all) > 1;
         assert_true(!meeting || map_count(all) == 2);
         for (int i = 0; i < 5; i++) {
@@ -483,7 +482,7 @@ static void parameters(void **state)
             Elementary moved = b, turned = c;
             moved.vector  = vec_add(b.vector, vec_scale(at, way));
             turned.number = c.number * at;
-            Word word     = {{a, moved, turned}, 3};
+            Word   word   = {{a, moved, turned}, 3};
             Vec    p = random_in_cube(&randomness, 3), q = word_apply(&word, p);
             double hardness = word_hardness(&word, p);
             if (hardness > 300)
@@ -503,12 +502,9 @@ static void parameters(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(products_and_inverses),
-        cmocka_unit_test(matrices),
-        cmocka_unit_test(other_matrices_are_refused),
-        cmocka_unit_test(elementary_matrices),
-        cmocka_unit_test(what_is_no_inversion_is_none),
-        cmocka_unit_test(parameters),
+        cmocka_unit_test(products_and_inverses),        cmocka_unit_test(matrices),
+        cmocka_unit_test(other_matrices_are_refused),   cmocka_unit_test(elementary_matrices),
+        cmocka_unit_test(what_is_no_inversion_is_none), cmocka_unit_test(parameters),
     };
     return cmocka_run_group_tests_name("maps of space", tests, setup, teardown);
 }

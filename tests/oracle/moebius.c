@@ -42,12 +42,10 @@ static Vec elementary_apply(const Elementary *l, Vec p, bool undo)
     Vec z = vec_sub(p, l->vector);
     switch (l->kind) {
     case TRANSLATE: return undo ? z : vec_add(p, l->vector);
-    case ROTATE:    return vec_turn(p, l->vector, undo ? -l->number : l->number);
-    case SCALE:     return vec_scale(undo ? 1 / l->number : l->number, p);
-    case REFLECT:
-        return vec_sub(p, vec_scale(2 * (vec_dot(l->vector, p) - l->number), l->vector));
-    case INVERT:
-        return vec_add(l->vector, vec_scale(l->number * l->number / vec_dot(z, z), z));
+    case ROTATE: return vec_turn(p, l->vector, undo ? -l->number : l->number);
+    case SCALE: return vec_scale(undo ? 1 / l->number : l->number, p);
+    case REFLECT: return vec_sub(p, vec_scale(2 * (vec_dot(l->vector, p) - l->number), l->vector));
+    case INVERT: return vec_add(l->vector, vec_scale(l->number * l->number / vec_dot(z, z), z));
     }
     return p;
 }
@@ -79,7 +77,7 @@ static void write_word(SceneText *text, const Word *word)
         scene_write(text, "identity");
     for (int i = word->count; i-- > 0;) {
         const Elementary *l = &word->letters[i];
-        double x = l->vector.x, y = l->vector.y, z = l->vector.z, n = l->number;
+        double            x = l->vector.x, y = l->vector.y, z = l->vector.z, n = l->number;
         switch (l->kind) {
         case TRANSLATE: scene_write(text, "translate([%.17g, %.17g, %.17g])", x, y, z); break;
         case ROTATE: scene_write(text, "rotate([%.17g, %.17g, %.17g], %.17g)", x, y, z, n); break;
@@ -100,10 +98,10 @@ static void write_word(SceneText *text, const Word *word)
 /* The points within `radius` of a segment, or a turned box; or the set of another sequence. */
 typedef struct Kernel {
     const struct Chain *chain;
-    bool   box;
-    Vec    from, to, sides, axis;
-    double angle, radius;
-    Word   placed;
+    bool                box;
+    Vec                 from, to, sides, axis;
+    double              angle, radius;
+    Word                placed;
 } Kernel;
 
 typedef struct Statement {
@@ -137,7 +135,7 @@ static double solid_distance(const Kernel *k, Vec p)
     }
     Vec    way = vec_sub(k->to, k->from), z = vec_sub(p, k->from);
     double along = vec_dot(way, way) > 0 ? vec_dot(z, way) / vec_dot(way, way) : 0;
-    along = fmax(0, fmin(1, along));
+    along        = fmax(0, fmin(1, along));
     return vec_distance(z, vec_scale(along, way)) - k->radius;
 }
 
@@ -204,7 +202,7 @@ static Vec random_on_solid(const Kernel *k, Random *random)
     if (k->box) {
         Vec    q = random_in_cube(random, 1);
         double m = fmax(fabs(q.x), fmax(fabs(q.y), fabs(q.z)));
-        q = vec(q.x / m * k->sides.x, q.y / m * k->sides.y, q.z / m * k->sides.z);
+        q        = vec(q.x / m * k->sides.x, q.y / m * k->sides.y, q.z / m * k->sides.z);
         return vec_add(k->from, vec_turn(q, k->axis, k->angle));
     }
     Vec way = vec_sub(k->to, k->from), u = random_unit(random);
@@ -263,8 +261,8 @@ static Cloud chain_cloud(const Chain *chain, int each, Random *random)
 typedef struct Flavour {
     const char *name;
     int         levels, chains;
-    double      near, far;   /* how far poles are from the origin, about which the set is */
-    double      inverting;   /* the share of maps that invert; the rest are similarities */
+    double      near, far; /* how far poles are from the origin, about which the set is */
+    double      inverting; /* the share of maps that invert; the rest are similarities */
     bool        mirrors, nested, placed;
     uint64_t    seed;
 } Flavour;
@@ -308,7 +306,7 @@ static Kernel random_kernel(const Flavour *flavour, Random *random)
     Kernel kernel = {.from = random_in_cube(random, 0.5), .axis = random_unit(random)};
     kernel.to     = kernel.from;
     kernel.radius = random_between(random, 0.1, 0.35);
-    int kind = random_below(random, 3);
+    int kind      = random_below(random, 3);
     if (kind == 1) {
         kernel.box   = true;
         kernel.sides = vec_add(vec(0.2, 0.2, 0.2), random_in_cube(random, 0.15));
@@ -334,8 +332,8 @@ static Chain random_chain(const Flavour *flavour, const Chain *inner, Random *ra
             chain.statements[chain.count++] = kernel;
         if (level == flavour->levels)
             break;
-        Statement mirror = {.kind = MIRROR, .mirror = {random_unit(random), 0}};
-        Statement map    = {.kind = MAP, .map = random_word(flavour, random)};
+        Statement mirror     = {.kind = MIRROR, .mirror = {random_unit(random), 0}};
+        Statement map        = {.kind = MAP, .map = random_word(flavour, random)};
         mirror.mirror.offset = random_between(random, -0.1, 0.8);
         if (flavour->mirrors && random_below(random, 4)) {
             chain.statements[chain.count++] = mirror;
@@ -359,9 +357,11 @@ static void write_kernel(SceneText *text, const Kernel *k)
     if (k->chain)
         write_chain(text, k->chain);
     else if (k->box)
-        scene_write(text, "box([%.17g, %.17g, %.17g]).rotate([%.17g, %.17g, %.17g], %.17g)"
-                    ".move([%.17g, %.17g, %.17g])", 2 * k->sides.x, 2 * k->sides.y, 2 * k->sides.z,
-                    k->axis.x, k->axis.y, k->axis.z, k->angle, a.x, a.y, a.z);
+        scene_write(text,
+                    "box([%.17g, %.17g, %.17g]).rotate([%.17g, %.17g, %.17g], %.17g)"
+                    ".move([%.17g, %.17g, %.17g])",
+                    2 * k->sides.x, 2 * k->sides.y, 2 * k->sides.z, k->axis.x, k->axis.y, k->axis.z,
+                    k->angle, a.x, a.y, a.z);
     else if (vec_distance(a, b) == 0)
         scene_write(text, "sphere(%.17g).move([%.17g, %.17g, %.17g])", k->radius, a.x, a.y, a.z);
     else
@@ -469,9 +469,9 @@ static void check_box(const Product *product, const Cloud *cloud, Tally *tally)
 static int check_ray(const Product *product, const Chain *chain, Vec origin, Vec target)
 {
     const double farthest = 12, tolerance = 1e-7;
-    const int    samples  = 1500;
-    Vec    direction = vec_unit(vec_sub(target, origin));
-    double entry     = HUGE_VAL;
+    const int    samples   = 1500;
+    Vec          direction = vec_unit(vec_sub(target, origin));
+    double       entry     = HUGE_VAL;
     if (chain_contains(chain, origin))
         return 0;
     for (int i = 0; i < samples && entry == HUGE_VAL; i++) {
@@ -494,7 +494,7 @@ static int check_ray(const Product *product, const Chain *chain, Vec origin, Vec
 
 static Vec random_near(const Cloud *cloud, Random *random)
 {
-    Vec p = cloud->points[random_below(random, (int)cloud->count)];
+    Vec    p     = cloud->points[random_below(random, (int)cloud->count)];
     double reach = exp(random_between(random, -6, 1));
     return vec_add(p, vec_scale(reach, random_unit(random)));
 }
@@ -502,16 +502,16 @@ static Vec random_near(const Cloud *cloud, Random *random)
 static void chains(void **state)
 {
     const Flavour *flavour = *state;
-    Random random = {flavour->seed};
-    Tally  tally  = {0};
-    int    hits   = 0;
+    Random         random  = {flavour->seed};
+    Tally          tally   = {0};
+    int            hits    = 0;
     for (int repeat = 0; repeat < flavour->chains; repeat++) {
         Flavour innermost = *flavour;
         innermost.nested  = false;
-        Chain   inner   = random_chain(&innermost, NULL, &random);
-        Chain   chain   = random_chain(flavour, flavour->nested ? &inner : NULL, &random);
-        Product product = compile_chain(&chain);
-        Cloud   cloud   = chain_cloud(&chain, flavour->levels > 4 ? 400 : 1500, &random);
+        Chain   inner     = random_chain(&innermost, NULL, &random);
+        Chain   chain     = random_chain(flavour, flavour->nested ? &inner : NULL, &random);
+        Product product   = compile_chain(&chain);
+        Cloud   cloud     = chain_cloud(&chain, flavour->levels > 4 ? 400 : 1500, &random);
         if (cloud.count) {
             check_box(&product, &cloud, &tally);
             for (int i = 0; i < 150; i++)
@@ -545,12 +545,12 @@ static void chains(void **state)
 static void slope_and_empty_balls(void **state)
 {
     const Flavour *flavour = *state;
-    Random random = {flavour->seed + 100};
+    Random         random  = {flavour->seed + 100};
     for (int repeat = 0; repeat < 3; repeat++) {
         Chain   chain   = random_chain(flavour, NULL, &random);
         Product product = compile_chain(&chain);
-        Trial   trial   = {product_field, &product, chain_contains, &chain, vec(0, 0, 0), 2, 1000,
-                           flavour->seed};
+        Trial   trial   = {product_field, &product, chain_contains, &chain,
+                           vec(0, 0, 0),  2,        1000,           flavour->seed};
         judge_acquits(&trial, flavour->name);
         product_free(&product);
     }
@@ -594,7 +594,7 @@ static bool meets(const Chain *chain, Vec p, Vec direction, double length, int s
 }
 
 typedef struct Progress {
-    int    steps, longer; /* than by the distance */
+    int    steps, longer;              /* than by the distance */
     int    rays, directional, centred; /* evaluations of all rays */
     int    balls, empty, centred_empty;
     double gain;
@@ -623,8 +623,8 @@ static void check_march(const Asked *asked, const Chain *chain, Vec origin, Vec 
                         Progress *progress)
 {
     const double farthest = 12, tolerance = 1e-6;
-    Vec    direction = vec_unit(vec_sub(target, origin)), p = origin;
-    double step = 1, t = 0;
+    Vec          direction = vec_unit(vec_sub(target, origin)), p = origin;
+    double       step = 1, t = 0;
     if (chain_contains(chain, origin))
         return;
     progress->rays++;
@@ -667,19 +667,19 @@ static void check_ball(const Asked *asked, const Chain *chain, Cloud *cloud, Vec
 static void images(void **state)
 {
     const Flavour *flavour = *state;
-    Random   random = {flavour->seed + 200};
-    Progress all    = {0};
+    Random         random  = {flavour->seed + 200};
+    Progress       all     = {0};
     for (int repeat = 0; repeat < flavour->chains; repeat++) {
         Flavour innermost = *flavour;
         innermost.nested  = false;
-        Chain   inner   = random_chain(&innermost, NULL, &random);
-        Chain   chain   = random_chain(flavour, flavour->nested ? &inner : NULL, &random);
-        Product product = compile_chain(&chain);
-        Cloud   cloud   = chain_cloud(&chain, flavour->levels > 4 ? 200 : 800, &random);
-        Asked   steps   = asked_new(product, ALONG_DIRECTIONAL);
-        Asked   balls   = asked_new(product, ALONG_PROBE);
+        Chain   inner     = random_chain(&innermost, NULL, &random);
+        Chain   chain     = random_chain(flavour, flavour->nested ? &inner : NULL, &random);
+        Product product   = compile_chain(&chain);
+        Cloud   cloud     = chain_cloud(&chain, flavour->levels > 4 ? 200 : 800, &random);
+        Asked   steps     = asked_new(product, ALONG_DIRECTIONAL);
+        Asked   balls     = asked_new(product, ALONG_PROBE);
         for (int i = 0; i < 200 && cloud.count; i++) {
-            Vec p = i % 3 ? random_near(&cloud, &random) : random_in_cube(&random, 3);
+            Vec p  = i % 3 ? random_near(&cloud, &random) : random_in_cube(&random, 3);
             Vec to = vec_sub(cloud.points[random_below(&random, (int)cloud.count)], p);
             check_step(&steps, &chain, p, i % 2 ? vec_unit(to) : random_unit(&random), &all);
             check_ball(&balls, &chain, &cloud, p,
@@ -693,7 +693,8 @@ static void images(void **state)
     }
     print_message("# %s: %d steps, %d longer than the distance, %.2f times on average; %.1f "
                   "evaluations a ray, by distances %.1f; %d of %d balls empty, and %d of those by "
-                  "distances\n", flavour->name, all.steps, all.longer, all.gain / all.steps,
+                  "distances\n",
+                  flavour->name, all.steps, all.longer, all.gain / all.steps,
                   (double)all.directional / all.rays, (double)all.centred / all.rays, all.empty,
                   all.balls, all.centred_empty);
     assert_true(all.longer * 4 > all.steps || flavour->inverting == 0);
@@ -713,8 +714,8 @@ static bool world_pole(const Chain *chain, int statement, Vec *pole)
         return false;
     for (int i = 0; i < word->count; i++) {
         const Elementary *l = &word->letters[i];
-        *pole = l->kind == INVERT ? l->vector : elementary_apply(l, *pole, false);
-        found = found || l->kind == INVERT;
+        *pole               = l->kind == INVERT ? l->vector : elementary_apply(l, *pole, false);
+        found               = found || l->kind == INVERT;
     }
     for (int i = statement + 1; found && i < chain->count; i++) {
         const Statement *s = &chain->statements[i];
@@ -736,9 +737,9 @@ static void poles_are_empty(void **state)
     (void)state;
     for (int repeat = 0; repeat < 40; repeat++) {
         const Flavour *flavour = &flavours[repeat % 4 < 3 ? repeat % 4 : 6];
-        Chain   chain   = random_chain(flavour, NULL, &random);
-        Product product = compile_chain(&chain);
-        Cloud   cloud   = chain_cloud(&chain, 1000, &random);
+        Chain          chain   = random_chain(flavour, NULL, &random);
+        Product        product = compile_chain(&chain);
+        Cloud          cloud   = chain_cloud(&chain, 1000, &random);
         for (int i = 0; i < chain.count; i++) {
             Vec pole = vec(0, 0, 0);
             if (!cloud.count || !world_pole(&chain, i, &pole))
@@ -748,7 +749,7 @@ static void poles_are_empty(void **state)
             if (!(truth > 1e-2) || chain_contains(&chain, aside))
                 continue;
             for (double away = 1e-3; away > 1e-13; away *= 0.1) {
-                Vec p = vec_add(pole, vec_scale(away > 1e-12 ? away : 0, random_unit(&random)));
+                Vec    p = vec_add(pole, vec_scale(away > 1e-12 ? away : 0, random_unit(&random)));
                 double distance = product_distance(&product, p);
                 if (!(distance > 0 && distance <= truth + away))
                     fail_msg("distance %.12g at %g from a pole, %.12g from the set", distance, away,
@@ -771,8 +772,8 @@ static void poles_are_empty(void **state)
    ball of radius 0.5 / 0.75 about (0, 1 / 0.75, 0). */
 static void offsets_do_not_show_poles(void **state)
 {
-    const char *ball = "sphere(0.5).move([0, 1, 0]).transform(invert())";
-    Random random = {78};
+    const char *ball   = "sphere(0.5).move([0, 1, 0]).transform(invert())";
+    Random      random = {78};
     (void)state;
     Product plain  = product_format("show %s;", ball);
     Product grown  = product_format("show %s.offset(0.1);", ball);
@@ -798,13 +799,15 @@ static void offsets_do_not_show_poles(void **state)
 /* A chain in which everything moves; at 0.5 the poles of the two inversions meet. */
 static Chain moving_chain(double t)
 {
-    Chain     chain = {.count = 0};
-    Kernel    ball  = {.from = {0.2, 0.1, 0}, .to = {0.2, 0.1, 0}, .axis = {0, 0, 1},
-                       .radius = 0.3 + 0.1 * t};
-    Kernel    rod   = {.from = {0, 0, 0}, .to = {0.3, 0.5, 0.1}, .axis = {0, 0, 1}, .radius = 0.1};
+    Chain  chain = {.count = 0};
+    Kernel ball  = {
+         .from = {0.2, 0.1, 0}, .to = {0.2, 0.1, 0}, .axis = {0, 0, 1}, .radius = 0.3 + 0.1 * t};
+    Kernel    rod = {.from = {0, 0, 0}, .to = {0.3, 0.5, 0.1}, .axis = {0, 0, 1}, .radius = 0.1};
     Statement statements[6] = {{.kind = KERNEL, .kernel = ball},
                                {.kind = MIRROR, .mirror = {{1, 0, 0}, 0.3 - 0.2 * t}},
-                               {.kind = MAP}, {.kind = MAP}, {.kind = KERNEL, .kernel = rod},
+                               {.kind = MAP},
+                               {.kind = MAP},
+                               {.kind = KERNEL, .kernel = rod},
                                {.kind = MIRROR, .mirror = {{0, 0, 1}, 0.2}}};
     word_add(&statements[2].map, ROTATE, vec(0, 1, 0), t);
     word_add(&statements[2].map, INVERT, vec(0, -2 + t, 0.3), 2);
@@ -852,15 +855,15 @@ static void pole_leaves_the_set(void **state)
 {
     Product product = product_compile("param t = 1 in [0.1, 3];"
                                       "show sphere(0.5).transform(invert([t, 0, 0], 1));");
-    Random random = {80};
+    Random  random  = {80};
     (void)state;
     for (int i = 0; i <= 29; i++) {
         double t = fmin(0.1 + 0.1 * i, 3), d = t * t - 0.25;
         assert_int_equal(krs_frame_set(product.frame, "t", &t, 1), KRS_OK);
         for (int k = 0; k < 300 && fabs(d) > 1e-6; k++) {
-            Vec    p     = k ? random_in_cube(&random, k % 2 ? 5 : 1) : vec(t, 0, 0);
-            double truth = vec_distance(p, vec(t - t / d, 0, 0)) - 0.5 / fabs(d);
-            truth        = d < 0 ? -truth : truth;
+            Vec    p        = k ? random_in_cube(&random, k % 2 ? 5 : 1) : vec(t, 0, 0);
+            double truth    = vec_distance(p, vec(t - t / d, 0, 0)) - 0.5 / fabs(d);
+            truth           = d < 0 ? -truth : truth;
             double distance = product_distance(&product, p);
             assert_true((distance <= 0) == (truth <= 0));
             if (truth > 0 && !(distance <= truth + 1e-12 && (k || distance > 0.1 * truth)))
@@ -873,16 +876,14 @@ static void pole_leaves_the_set(void **state)
 int main(void)
 {
     struct CMUnitTest tests[3 * FLAVOURS + 4];
-    char   names[3 * FLAVOURS][80];
-    size_t count = 0;
+    char              names[3 * FLAVOURS][80];
+    size_t            count = 0;
     for (const Flavour *f = flavours; f < flavours + FLAVOURS; f++) {
         snprintf(names[count], sizeof names[count], "%s", f->name);
-        tests[count] = (struct CMUnitTest){names[count], chains, NULL, NULL,
-                                           (void *)(uintptr_t)f};
+        tests[count] = (struct CMUnitTest){names[count], chains, NULL, NULL, (void *)(uintptr_t)f};
         count++;
         snprintf(names[count], sizeof names[count], "images: %s", f->name);
-        tests[count] = (struct CMUnitTest){names[count], images, NULL, NULL,
-                                           (void *)(uintptr_t)f};
+        tests[count] = (struct CMUnitTest){names[count], images, NULL, NULL, (void *)(uintptr_t)f};
         count++;
         if (f->nested)
             continue;

@@ -3,10 +3,10 @@
  */
 #include "tests/oracle/montecarlo.h"
 
-#define FARTHEST    100.0
-#define LEAST_STEP  2e-4 /* a ray may miss what is thinner */
-#define ABOVE       5e-4 /* where rays from a surface begin */
-#define DEGREE      (M_PI / 180)
+#define FARTHEST   100.0
+#define LEAST_STEP 2e-4 /* a ray may miss what is thinner */
+#define ABOVE      5e-4 /* where rays from a surface begin */
+#define DEGREE     (M_PI / 180)
 
 static double bound_at(const Setting *setting, Vec p)
 {
@@ -38,10 +38,10 @@ static double first_inside(const Setting *setting, Line line, double t, double e
 static Vec gradient_at(const Setting *setting, Vec p)
 {
     const double step = 1e-6;
-    double d[3];
+    double       d[3];
     for (int i = 0; i < 3; i++) {
         Vec by = vec(i == 0 ? step : 0, i == 1 ? step : 0, i == 2 ? step : 0);
-        d[i] = bound_at(setting, vec_add(p, by)) - bound_at(setting, vec_sub(p, by));
+        d[i]   = bound_at(setting, vec_add(p, by)) - bound_at(setting, vec_sub(p, by));
     }
     return vec_unit(vec(d[0], d[1], d[2]));
 }
@@ -54,7 +54,7 @@ Setting setting_choose(const Room *room, Random *random)
     setting.light = vec(random_between(random, room->light_low.x, room->light_high.x),
                         random_between(random, room->light_low.y, room->light_high.y),
                         random_between(random, room->light_low.z, room->light_high.z));
-    setting.wide = random_between(random, room->wide.low, room->wide.high);
+    setting.wide  = random_between(random, room->wide.low, room->wide.high);
     if (!room->lamp)
         setting.wide *= DEGREE;
     return setting;
@@ -64,7 +64,7 @@ Setting setting_choose(const Room *room, Random *random)
 static double reflect_white(Vec normal, Vec toward_eye, Vec toward_light)
 {
     double light = vec_dot(normal, toward_light), eye = fmax(vec_dot(normal, toward_eye), 1e-3);
-    Vec    halfway = vec_unit(vec_add(toward_eye, toward_light));
+    Vec    halfway  = vec_unit(vec_add(toward_eye, toward_light));
     double mirrored = 0.04 + 0.96 * pow(1 - vec_dot(toward_eye, halfway), 5);
     if (light <= 0)
         return 0;
@@ -74,18 +74,18 @@ static double reflect_white(Vec normal, Vec toward_eye, Vec toward_light)
 /* The part of the light's disc that nothing hides from a point. */
 static double find_visible(const Setting *setting, Vec point, Vec normal, int rays, Random *random)
 {
-    Vec    start = vec_add(point, vec_scale(ABOVE, normal));
-    Vec    apart = setting->room->lamp ? vec_sub(setting->light, start) : vec_unit(setting->light);
+    Vec    start  = vec_add(point, vec_scale(ABOVE, normal));
+    Vec    apart  = setting->room->lamp ? vec_sub(setting->light, start) : vec_unit(setting->light);
     double radius = setting->room->lamp ? setting->wide : tan(setting->wide / 2);
     Vec    axis = vec_unit(apart), aside = vec_across(axis), other = vec_cross(axis, aside);
     double turn = random_between(random, 0, 1), shift = random_between(random, 0, 1);
     int    open = 0;
     for (int i = 0; i < rays; i++) {
-        double away = radius * sqrt((i + shift) / rays);
+        double away  = radius * sqrt((i + shift) / rays);
         double angle = 2 * M_PI * (turn + 0.6180339887 * i);
-        Vec    way = vec_add(apart, vec_add(vec_scale(away * cos(angle), aside),
-                                            vec_scale(away * sin(angle), other)));
-        double end = setting->room->lamp ? vec_length(way) : FARTHEST;
+        Vec    way   = vec_add(apart, vec_add(vec_scale(away * cos(angle), aside),
+                                              vec_scale(away * sin(angle), other)));
+        double end   = setting->room->lamp ? vec_length(way) : FARTHEST;
         open += first_inside(setting, (Line){start, vec_unit(way)}, 0, end) > end;
     }
     return (double)open / rays;
@@ -94,13 +94,13 @@ static double find_visible(const Setting *setting, Vec point, Vec normal, int ra
 Seen see(const Setting *setting, Line ray, int rays, Random *random)
 {
     Seen   seen = {0};
-    double t = first_inside(setting, ray, 0, FARTHEST);
+    double t    = first_inside(setting, ray, 0, FARTHEST);
     if (t > FARTHEST)
         return seen;
-    seen.hit = true;
-    seen.point = line_at(ray, t);
-    seen.normal = gradient_at(setting, seen.point);
-    Vec    apart = setting->room->lamp ? vec_sub(setting->light, seen.point) : setting->light;
+    seen.hit      = true;
+    seen.point    = line_at(ray, t);
+    seen.normal   = gradient_at(setting, seen.point);
+    Vec    apart  = setting->room->lamp ? vec_sub(setting->light, seen.point) : setting->light;
     double square = setting->room->lamp ? vec_dot(apart, apart) : 1;
     seen.light = reflect_white(seen.normal, vec_scale(-1, ray.direction), vec_unit(apart)) / square;
     if (seen.light > 0)
@@ -116,9 +116,9 @@ double openness(const Setting *setting, Vec point, Vec normal, double reach, dou
     double turn = random_between(random, 0, 1), shift = random_between(random, 0, 1), sum = 0;
     for (int i = 0; i < rays; i++) {
         double away = sqrt((i + shift) / rays), angle = 2 * M_PI * (turn + 0.6180339887 * i);
-        Vec    way = vec_add(vec_scale(sqrt(fmax(1 - away * away, 0)), normal),
-                             vec_add(vec_scale(away * cos(angle), aside),
-                                     vec_scale(away * sin(angle), other)));
+        Vec    way = vec_add(
+               vec_scale(sqrt(fmax(1 - away * away, 0)), normal),
+               vec_add(vec_scale(away * cos(angle), aside), vec_scale(away * sin(angle), other)));
         double part = fmin(first_inside(setting, (Line){start, way}, 0, reach) / reach, 1);
         sum += part * part;
     }

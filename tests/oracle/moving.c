@@ -55,14 +55,14 @@ static double mirrored(Vec p, Frame f)
 static const Solid solids[] = {
     {"a shape", WOBBLE "show wobble();", wobble, NULL, 2, 0, 1.2},
     {"a sheet", "show field(y - 0.2 * sin(time * x) * cos(z));", sheet, NULL, 2, 0, 1.5},
-    {"a cut field", "show field(z + 0.3 * sin(x * y * time)).within(box([3, 3, 3]));",
-     product_wave, NULL, 1.8, 1.5, 1.6},
-    {"a parameter",
-     "param k = 1; show field(length([x, y]) - 0.7 + 0.2 * sin(k * k * z + time));", rod, NULL, 2,
-     0, 1.5},
+    {"a cut field", "show field(z + 0.3 * sin(x * y * time)).within(box([3, 3, 3]));", product_wave,
+     NULL, 1.8, 1.5, 1.6},
+    {"a parameter", "param k = 1; show field(length([x, y]) - 0.7 + 0.2 * sin(k * k * z + time));",
+     rod, NULL, 2, 0, 1.5},
     {"a bounded shape",
      "shape bowl() { distance: max(y - time * x * x, max(max(abs(x), abs(y)), abs(z)) - 0.9),"
-     " within: box([2, 2, 2]) }\nshow bowl();", bowl, NULL, 1.5, 0, 2},
+     " within: box([2, 2, 2]) }\nshow bowl();",
+     bowl, NULL, 1.5, 0, 2},
     {"a displacement", "param k = 1;\nshow sphere(1).displace(sin(time * x) + cos(k * z), 0.15);",
      bump, bumpy, 1.8, 0, 1.6},
     {"a sequence", WOBBLE "show krs { kernel wobble(); reflect plane([1, 0, 0], 0.5); };", wobble,
@@ -124,8 +124,8 @@ static double steepest(const Solid *solid, Frame frame, double half)
     Random random = {31};
     double most = 0, step = 1e-5 / (1 + fabs(frame.time) + frame.k * frame.k);
     for (int i = 0; i < 4000; i++) {
-        Vec p = random_in_cube(&random, half), way = vec_scale(step, random_unit(&random));
-        Vec gradient;
+        Vec    p = random_in_cube(&random, half), way = vec_scale(step, random_unit(&random));
+        Vec    gradient;
         double at = solid->formula(p, frame);
         if (i % 2) { /* up the gradient */
             gradient = vec(solid->formula(vec(p.x + step, p.y, p.z), frame) - at,
@@ -165,10 +165,10 @@ static void stale_slopes_are_refuted(void **state)
     double fresh = fmax(slope_in_block(&product), 1);
     Asked  asked = {solid, frames[FAST]};
     /* What is displaced is divided by the sum of both slopes. */
-    double factor = solid->formula == bump ? (1 + 0.15 * fresh) / (1 + 0.15 * stale)
-                                           : fresh / stale;
-    Exaggeration wrong = {product_field, &product, factor};
-    Trial trial = {exaggerated_field, &wrong, inside, &asked, vec(0, 0, 0), solid->half, 200, 17};
+    double       factor = solid->formula == bump ? (1 + 0.15 * fresh) / (1 + 0.15 * stale)
+                                                 : fresh / stale;
+    Exaggeration wrong  = {product_field, &product, factor};
+    Trial   trial = {exaggerated_field, &wrong, inside, &asked, vec(0, 0, 0), solid->half, 200, 17};
     Verdict verdict = judge(&trial);
     assert_true(factor > 1.5);
     if (verdict.slope_errors == 0 || verdict.ball_errors == 0)
@@ -179,7 +179,7 @@ static void stale_slopes_are_refuted(void **state)
 int main(void)
 {
     static const struct {
-        const char *what;
+        const char        *what;
         CMUnitTestFunction test;
     } kinds[] = {{"is safe", is_safe},
                  {"has the slope of the frame", slopes_are_those_of_the_frame},

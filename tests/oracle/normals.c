@@ -29,8 +29,9 @@ static const Vec AXIS = {1, 2, 3};
 
 static Chain random_chain(Random *random, double scale)
 {
-    Chain chain = {.mirrors = 1 + random_below(random, MOST_MIRRORS), .scale = scale,
-                   .angle = scale == 1 ? 0 : random_between(random, -1, 1)};
+    Chain chain  = {.mirrors = 1 + random_below(random, MOST_MIRRORS),
+                    .scale   = scale,
+                    .angle   = scale == 1 ? 0 : random_between(random, -1, 1)};
     chain.radius = random_between(random, 0.3, 0.8);
     for (int i = 0; i <= chain.mirrors; i++)
         chain.centre[i] = random_in_cube(random, 1);
@@ -101,8 +102,8 @@ static Expected expect(const Chain *chain, Vec point, double width)
         excess[level - 1]   = half_excess(chain->mirror[level - 1], point);
         to_world[level - 1] = stretch;
         result.margin       = fmin(result.margin, fabs(excess[level - 1]));
-        point = vec_sub(point, vec_scale(2 * fmax(excess[level - 1], 0),
-                                         chain->mirror[level - 1].normal));
+        point               = vec_sub(point,
+                                      vec_scale(2 * fmax(excess[level - 1], 0), chain->mirror[level - 1].normal));
     }
     result.smooth = vec_unit(result.smooth);
     return result;
@@ -119,7 +120,7 @@ static void is_near(const double found[3], Vec expected, double tolerance, const
 static void mirrors_are_smooth(void **state)
 {
     (void)state;
-    Random random = {4};
+    Random random  = {4};
     int    blended = 0, checked = 0;
     for (int trial = 0; trial < 60; trial++) {
         double width = trial % 3 ? 0.4 : 0.05, scale = trial % 2 ? 1 : 0.8;
@@ -127,7 +128,7 @@ static void mirrors_are_smooth(void **state)
         char   smoothing[60];
         snprintf(smoothing, sizeof smoothing, ".smooth_mirrors(%.17g)", width);
         Product smooth = compile_chain(&chain, smoothing), hard = compile_chain(&chain, "");
-        Product pixel  = compile_chain(&chain, ".smooth_mirrors()");
+        Product pixel = compile_chain(&chain, ".smooth_mirrors()");
         for (int i = 0; i < 60; i++) {
             Vec      point  = random_in_cube(&random, 2);
             Expected should = expect(&chain, point, width);
@@ -159,7 +160,7 @@ static void ridges_have_the_bisector(void **state)
     (void)state;
     Product product = product_format("show krs { kernel sphere(1).move([-0.6, 0.1, 0.2]);"
                                      " reflect plane([1, 0, 0], 0); }.smooth_mirrors(0.3);");
-    Random random = {5};
+    Random  random  = {5};
     for (int i = 0; i < 200; i++) {
         double angle = random_between(&random, 0, 7);
         Vec    point = vec(0, 0.1 + 0.8 * cos(angle), 0.2 + 0.8 * sin(angle));
@@ -169,8 +170,8 @@ static void ridges_have_the_bisector(void **state)
                 "the normal on the ridge");
     }
     product_free(&product);
-    product = product_format("show krs { kernel plane([1, 0, 0], 0);"
-                             " reflect plane([1, 0, 0], 0); }.smooth_mirrors(0.3);");
+    product    = product_format("show krs { kernel plane([1, 0, 0], 0);"
+                                   " reflect plane([1, 0, 0], 0); }.smooth_mirrors(0.3);");
     KrsHit hit = product_probe(&product, vec(-1e-4, 0.3, 0.2));
     assert_true(fabs(hit.shading[0] * hit.shading[0] + hit.shading[1] * hit.shading[1] +
                      hit.shading[2] * hit.shading[2] - 1) < 1e-6);
@@ -181,7 +182,7 @@ static void ridges_have_the_bisector(void **state)
 static void smoothness_is_inherited(void **state)
 {
     (void)state;
-    static const char ball[] = "sphere(1).move([-0.6, 0, 0])";
+    static const char        ball[] = "sphere(1).move([-0.6, 0, 0])";
     static const char *const same[] = {
         "krs { kernel %s; reflect plane([1, 0, 0], 0); }.smooth_mirrors(0.3)",
         "krs { kernel %s; reflect plane([1, 0, 0], 0); }.smooth_mirrors(2).smooth_mirrors(0.3)",
@@ -218,7 +219,7 @@ static void smoothness_is_inherited(void **state)
 /* A unit ball, painted with its normal and then mapped: where its point `at` goes. */
 typedef struct Move {
     const char *method;
-    Vec       (*map)(Vec at);
+    Vec (*map)(Vec at);
 } Move;
 
 static Vec stay(Vec at) { return at; }
@@ -272,7 +273,8 @@ static void materials_see_the_normal(void **state)
     Random random = {7};
     for (size_t k = 0; k < sizeof moves / sizeof *moves; k++) {
         Product product = product_format("material m { color: 0.5 + 0.5 * normal }"
-                                         "show sphere(1).paint(m)%s;", moves[k].method);
+                                         "show sphere(1).paint(m)%s;",
+                                         moves[k].method);
         for (int i = 0; i < 100; i++) {
             Vec    at  = random_unit(&random);
             KrsHit hit = product_probe(&product, moves[k].map(at));
@@ -327,8 +329,8 @@ static void materials_see_u_and_v(void **state)
                                      "kernel sphere(1).move([-2, 0, 0]);"
                                      "reflect plane([1, 0, 0], 0); }.paint(m);");
     for (int i = 0; i < 50; i++) {
-        Vec    at  = random_unit(&random);
-        KrsHit hit = product_probe(&product, vec(2 - at.x, at.y, at.z));
+        Vec    at    = random_unit(&random);
+        KrsHit hit   = product_probe(&product, vec(2 - at.x, at.y, at.z));
         Vec    right = vec((4 + atan2(at.z, at.x)) / 8, (4 + asin(at.y)) / 8, 0);
         is_near(hit.color, right, 1e-9, "u and v in a sequence");
     }
@@ -339,18 +341,40 @@ static void materials_see_u_and_v(void **state)
 static void primitives_have_u_and_v(void **state)
 {
     (void)state;
-    static const char *const primitives[] = {
-        "sphere()", "box()", "cylinder()", "cone()", "capped_cone()", "capsule()", "round_cone()",
-        "arc_capsule()", "torus()", "ellipsoid()", "link()", "octahedron()", "tetrahedron()",
-        "dodecahedron()", "icosahedron()", "prism()", "pyramid()", "wedge()", "plane()",
-        "half_space()", "convex()", "circle().extrude(1)", "rectangle().revolve(1)",
-        "polygon().extrude(1)", "regular().extrude(1)", "star().extrude(1)", "segment().extrude(1)",
-        "arc().extrude(1)", "bezier().extrude(1)"};
-    Random random = {10};
+    static const char *const primitives[] = {"sphere()",
+                                             "box()",
+                                             "cylinder()",
+                                             "cone()",
+                                             "capped_cone()",
+                                             "capsule()",
+                                             "round_cone()",
+                                             "arc_capsule()",
+                                             "torus()",
+                                             "ellipsoid()",
+                                             "link()",
+                                             "octahedron()",
+                                             "tetrahedron()",
+                                             "dodecahedron()",
+                                             "icosahedron()",
+                                             "prism()",
+                                             "pyramid()",
+                                             "wedge()",
+                                             "plane()",
+                                             "half_space()",
+                                             "convex()",
+                                             "circle().extrude(1)",
+                                             "rectangle().revolve(1)",
+                                             "polygon().extrude(1)",
+                                             "regular().extrude(1)",
+                                             "star().extrude(1)",
+                                             "segment().extrude(1)",
+                                             "arc().extrude(1)",
+                                             "bezier().extrude(1)"};
+    Random                   random       = {10};
     for (size_t k = 0; k < sizeof primitives / sizeof *primitives; k++) {
         Product product = product_format("material m { color: [u, v, 0] } show %s.paint(m);",
                                          primitives[k]);
-        double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+        double  low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
         for (int i = 0; i < 300; i++) {
             KrsHit hit = product_probe(&product, random_in_cube(&random, 1));
             for (int c = 0; c < 2; c++) {

@@ -22,13 +22,13 @@
 #include "tests/support/renderer.h"
 
 /* What is asked for, of means of 5x5 pixels of openness. */
-#define MOST_MISJUDGED   0.02   /* root of the mean square */
-#define MOST_UNLIKE      5e-3   /* by how much openness changes with a bound, on average */
-#define LEAST_CONVEX     0.998
-#define MOST_WRONG       0.035  /* in random rooms on average, in parts of the mean */
+#define MOST_MISJUDGED 0.02 /* root of the mean square */
+#define MOST_UNLIKE    5e-3 /* by how much openness changes with a bound, on average */
+#define LEAST_CONVEX   0.998
+#define MOST_WRONG     0.035 /* in random rooms on average, in parts of the mean */
 
-#define REACH            0.15   /* of the way from the eye to the target */
-#define LIFT             128    /* rays begin so little a part of the reach above the surface */
+#define REACH 0.15 /* of the way from the eye to the target */
+#define LIFT  128  /* rays begin so little a part of the reach above the surface */
 
 enum { WIDTH = 320, HEIGHT = 180 };
 
@@ -37,11 +37,12 @@ enum { WIDTH = 320, HEIGHT = 180 };
 /* White sky, no light, and a surface that reflects half of red, no green and all of blue.  What
    its coat reflects is the same in all colours.  Blue light below the coat is what a white surface
    gives back, all of it however closed it is; of red so much is left as says how open it is. */
-#define WHITE_SKY \
+#define WHITE_SKY                                                        \
     "sky { zenith: [1, 1, 1], horizon: [1, 1, 1], ground: [1, 1, 1] }\n" \
     "light none { direction: [0, 1, 0], intensity: 0, shadow: false }\n" \
     "material striped { color: [0.5, 0, 1], roughness: 1 }\n"
-#define OPEN_SKY WHITE_SKY \
+#define OPEN_SKY                                                                                \
+    WHITE_SKY                                                                                   \
     "camera { eye: [2, 40, 40], target: [2, 0, 0], projection: \"orthographic\", height: 9 }\n" \
     "show plane([0, 1, 0], 0).paint(striped);\n"
 
@@ -86,10 +87,10 @@ static bool rises_to_open(const double *row, int count)
    means of all rows, which all see the same. */
 static int ground_of_rows(const KrsPicture *picture, double *mean)
 {
-    int count = 0;
-    bool edge = true;
+    int  count = 0;
+    bool edge  = true;
     for (int x = 0; x < 160; x++) {
-        double sum = 0;
+        double sum  = 0;
         int    seen = 0;
         for (int y = 0; y < 48; y++)
             if (picture->component[y * 160 + x] == 1) {
@@ -109,10 +110,10 @@ static void a_wall_closes_the_ground_at_its_foot(void **state)
     static const bool ways[2] = {true, false};
     for (int i = 0; i < 2; i++) {
         KrsRenderOptions options = WALL_VIEW;
-        options.no_upsampling = ways[i];
-        options.samples = 16;
-        KrsPicture *picture = picture_of(
-            OPEN_SKY "show box([40, 3, 80]).move([-20, 1.5, 0]).paint(striped);", &options);
+        options.no_upsampling    = ways[i];
+        options.samples          = 16;
+        KrsPicture *picture      = picture_of(
+                 OPEN_SKY "show box([40, 3, 80]).move([-20, 1.5, 0]).paint(striped);", &options);
         double row[160];
         int    count = ground_of_rows(picture, row);
         print_message("# occlusion: %.3f at the foot of a wall, then %.3f, %.3f, %.3f\n", row[0],
@@ -133,22 +134,25 @@ static void a_wall_closes_the_ground_at_its_foot(void **state)
 static KrsPicture *take_room(double slope, double radius)
 {
     SceneText text = {0};
-    scene_write(&text, WHITE_SKY "shape room() {\n"
+    scene_write(&text,
+                WHITE_SKY
+                "shape room() {\n"
                 "    distance: min(min(x, z), min(y, length(p - [1.5, 1, 1.5]) - %.17g)),\n"
                 "    slope: %.17g\n}\n"
                 "camera { eye: [9, 6, 7], target: [1, 0.5, 1], fov: 30deg }\n"
-                "show room().paint(striped);\n", radius, slope);
-    return picture_of(text.bytes, &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT,
-                                                     .no_filter = true});
+                "show room().paint(striped);\n",
+                radius, slope);
+    return picture_of(text.bytes,
+                      &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .no_filter = true});
 }
 
 /* Where a ray from within the room ends, as a share of what occlusion reaches; 1: beyond. */
 static double part_of_reach(Line line, double reach)
 {
     const double origin[3] = {line.origin.x, line.origin.y, line.origin.z};
-    const double along[3] = {line.direction.x, line.direction.y, line.direction.z};
-    Chord        ball = chord_of_ball(line, vec(1.5, 1, 1.5), 1);
-    double       nearest = chord_is_empty(ball) || ball.leave < 0 ? reach : fmax(ball.enter, 0);
+    const double along[3]  = {line.direction.x, line.direction.y, line.direction.z};
+    Chord        ball      = chord_of_ball(line, vec(1.5, 1, 1.5), 1);
+    double       nearest   = chord_is_empty(ball) || ball.leave < 0 ? reach : fmax(ball.enter, 0);
     for (int i = 0; i < 3; i++)
         if (along[i] < 0)
             nearest = fmin(nearest, -origin[i] / along[i]);
@@ -165,9 +169,9 @@ static double openness_of_room(Vec p, Vec normal, double reach)
     for (int i = 0; i < RINGS; i++)
         for (int k = 0; k < SPOKES; k++) {
             double away = sqrt((i + 0.5) / RINGS), turn = 2 * M_PI * (k + 0.618 * i) / SPOKES;
-            Vec    way = vec_add(vec_add(vec_scale(away * cos(turn), aside),
-                                         vec_scale(away * sin(turn), other)),
-                                 vec_scale(sqrt(1 - away * away), normal));
+            Vec    way = vec_add(
+                   vec_add(vec_scale(away * cos(turn), aside), vec_scale(away * sin(turn), other)),
+                   vec_scale(sqrt(1 - away * away), normal));
             double part = part_of_reach((Line){p, way}, reach);
             sum += part * part;
         }
@@ -182,11 +186,12 @@ static double misjudge_room(const KrsPicture *picture, double reach, int *count)
     double        squares = 0;
     for (int k = 0; k < WIDTH * HEIGHT; k++) {
         const float *at = picture->position + 3 * k, *up = picture->normal + 3 * k;
-        Vec normal = vec((double)up[0], (double)up[1], (double)up[2]);
-        Vec p = vec_add(vec((double)at[0], (double)at[1], (double)at[2]),
-                        vec_scale(reach / LIFT, normal)); /* where rays start */
-        off[k] = picture->component[k] == 1
-                     ? openness_to_sky(picture, k) - openness_of_room(p, normal, reach) : NAN;
+        Vec          normal = vec((double)up[0], (double)up[1], (double)up[2]);
+        Vec          p      = vec_add(vec((double)at[0], (double)at[1], (double)at[2]),
+                                      vec_scale(reach / LIFT, normal)); /* where rays start */
+        off[k]              = picture->component[k] == 1
+                                  ? openness_to_sky(picture, k) - openness_of_room(p, normal, reach)
+                                  : NAN;
     }
     *count = 0;
     for (int y = 2; y < HEIGHT - 2; y++)
@@ -216,7 +221,7 @@ static void occlusion_is_a_share_of_the_hemisphere(void **state)
     const double reach = REACH * vec_distance(vec(9, 6, 7), vec(1, 0.5, 1));
     int          count;
     KrsPicture  *picture = take_room(1, 1);
-    double       off = misjudge_room(picture, reach, &count);
+    double       off     = misjudge_room(picture, reach, &count);
     print_message("# occlusion: off by %.4f, %d pixels\n", off, count);
     assert_true(count > 20000);
     assert_true(off < MOST_MISJUDGED);
@@ -229,10 +234,10 @@ static void bounds_close_as_much_as_distances(void **state)
 {
     (void)state;
     static const double slopes[] = {4, 32};
-    KrsPicture *exact = take_room(1, 1);
+    KrsPicture         *exact    = take_room(1, 1);
     for (int i = 0; i < 2; i++) {
         KrsPicture *picture = take_room(slopes[i], 1);
-        double      apart = openness_apart(exact, picture);
+        double      apart   = openness_apart(exact, picture);
         print_message("# occlusion, distance / %g: off by %.5f\n", slopes[i], apart);
         assert_true(apart < MOST_UNLIKE);
         krs_picture_free(picture);
@@ -251,29 +256,32 @@ static void convex_solids_are_open(void **state)
     static const struct {
         const char *text;
         double      least;
-    } solids[] = {
-        {"sphere(1)", LEAST_CONVEX}, {"sphere(1).scale([5, 1, 1])", LEAST_CONVEX},
-        {"box([2, 1, 1]).rotate([1, 2, 3], 1).scale([1, 1, 6])", LEAST_CONVEX},
-        {"algebraic(x^2 + y^2 + z^2 == 1)", LEAST_CONVEX},
-        {"algebraic(x^8 + y^8 + z^8 == 1)", LEAST_CONVEX},
-        {"field(x^2 + y^2 + abs(z)^2 - 1).within(box([8, 8, 8]))", LEAST_CONVEX},
-        {"sphere(1).twist([0, 1, 0], 1)", LEAST_CONVEX},
-        {"sphere(1).transform(invert([3, 0, 0], 3))", LEAST_CONVEX}};
+    } solids[] = {{"sphere(1)", LEAST_CONVEX},
+                  {"sphere(1).scale([5, 1, 1])", LEAST_CONVEX},
+                  {"box([2, 1, 1]).rotate([1, 2, 3], 1).scale([1, 1, 6])", LEAST_CONVEX},
+                  {"algebraic(x^2 + y^2 + z^2 == 1)", LEAST_CONVEX},
+                  {"algebraic(x^8 + y^8 + z^8 == 1)", LEAST_CONVEX},
+                  {"field(x^2 + y^2 + abs(z)^2 - 1).within(box([8, 8, 8]))", LEAST_CONVEX},
+                  {"sphere(1).twist([0, 1, 0], 1)", LEAST_CONVEX},
+                  {"sphere(1).transform(invert([3, 0, 0], 3))", LEAST_CONVEX}};
     for (size_t i = 0; i < sizeof solids / sizeof solids[0]; i++) {
         SceneText text = {0};
-        scene_write(&text, WHITE_SKY "camera { eye: [9, 4, 6], target: [1, 0, 0], fov: 40deg }\n"
-                    "show %s.paint(striped);\n", solids[i].text);
-        KrsPicture *picture = picture_of(text.bytes, &(KrsRenderOptions){
-            .width = WIDTH, .height = HEIGHT, .no_upsampling = true});
-        int    seen = 0;
+        scene_write(&text,
+                    WHITE_SKY "camera { eye: [9, 4, 6], target: [1, 0, 0], fov: 40deg }\n"
+                              "show %s.paint(striped);\n",
+                    solids[i].text);
+        KrsPicture *picture = picture_of(
+            text.bytes,
+            &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .no_upsampling = true});
+        int    seen  = 0;
         double least = 1;
         for (int k = 0; k < WIDTH * HEIGHT; k++)
             if (picture->component[k] == 1) {
                 least = fmin(least, openness_to_sky(picture, k));
                 seen++;
             }
-        print_message("# occlusion, %s: %d pixels, open by %.4f at least\n", solids[i].text,
-                      seen, least);
+        print_message("# occlusion, %s: %d pixels, open by %.4f at least\n", solids[i].text, seen,
+                      least);
         assert_true(seen > 1000);
         assert_true(least > solids[i].least);
         krs_picture_free(picture);
@@ -293,24 +301,25 @@ static void write_room(SceneText *text, const Setting *setting)
     for (int i = 0; i < ROOM_NUMBERS && room->numbers[i].high > room->numbers[i].low; i++)
         scene_write(text, "param %c = %.17g in [%.17g, %.17g];\n", 'a' + i, setting->numbers[i],
                     room->numbers[i].low, room->numbers[i].high);
-    scene_write(text, WHITE_SKY "material white { color: [0.5, 0, 1], roughness: 1 }\n"
-                "camera { eye: [%g, %g, %g], target: [%g, %g, %g], fov: %gdeg }\n%s"
-                "show plane([0, 1, 0], -30);\n", eye.x, eye.y, eye.z, target.x, target.y, target.z,
-                room->fov, room->text);
+    scene_write(text,
+                WHITE_SKY "material white { color: [0.5, 0, 1], roughness: 1 }\n"
+                          "camera { eye: [%g, %g, %g], target: [%g, %g, %g], fov: %gdeg }\n%s"
+                          "show plane([0, 1, 0], -30);\n",
+                eye.x, eye.y, eye.z, target.x, target.y, target.z, room->fov, room->text);
 }
 
 /* How open the centres of pixels are, if occlusion reaches so far; NAN where nothing is seen. */
 static void find_openness(const Setting *setting, double reach, double *open)
 {
     const Room *room = setting->room;
-    Lens        lens = lens_make(room->eye, room->target, tan(room->fov * M_PI / 360), false, ACROSS,
-                                 DOWN);
-    Random      random = {1};
+    Lens   lens   = lens_make(room->eye, room->target, tan(room->fov * M_PI / 360), false, ACROSS,
+                              DOWN);
+    Random random = {1};
     for (int k = 0; k < PIXELS; k++) {
         Seen seen = see(setting, lens_ray(&lens, k % ACROSS + 0.5, k / ACROSS + 0.5), 1, &random);
-        open[k] = seen.hit ? openness(setting, seen.point, seen.normal, reach, reach / LIFT, RAYS,
-                                      &random)
-                           : NAN;
+        open[k]   = seen.hit ? openness(setting, seen.point, seen.normal, reach, reach / LIFT, RAYS,
+                                        &random)
+                             : NAN;
     }
 }
 
@@ -343,18 +352,20 @@ static bool room_is_right(const Setting *setting, double part)
 {
     static SceneText text;
     static double    open[PIXELS];
-    const Room      *room = setting->room;
+    const Room      *room  = setting->room;
     double           reach = part * vec_distance(room->eye, room->target), mean, wrong[2];
     write_room(&text, setting);
     find_openness(setting, reach, open);
     for (int i = 0; i < 2; i++) {
-        KrsPicture *picture = picture_of(text.bytes, &(KrsRenderOptions){
-            .width = ACROSS, .height = DOWN, .samples = i ? 4 : 1, .no_filter = true});
-        wrong[i] = mean_wrong(picture, open, &mean) / mean;
+        KrsPicture *picture = picture_of(text.bytes, &(KrsRenderOptions){.width     = ACROSS,
+                                                                         .height    = DOWN,
+                                                                         .samples   = i ? 4 : 1,
+                                                                         .no_filter = true});
+        wrong[i]            = mean_wrong(picture, open, &mean) / mean;
         krs_picture_free(picture);
     }
-    print_message("# %s: open by %.2f, wrong by %.3f with a ray, %.3f with four\n", room->name, mean,
-                  wrong[0], wrong[1]);
+    print_message("# %s: open by %.2f, wrong by %.3f with a ray, %.3f with four\n", room->name,
+                  mean, wrong[0], wrong[1]);
     return wrong[0] < MOST_WRONG && wrong[1] < MOST_WRONG;
 }
 
@@ -363,7 +374,7 @@ static void rooms_are_as_open_as_rays_say(void **state)
     (void)state;
     size_t wrong = 0;
     for (int i = 0; i < ROOMS; i++) {
-        Random random = {(uint64_t)i + 1};
+        Random  random  = {(uint64_t)i + 1};
         Setting setting = setting_choose(&rooms[i], &random);
         wrong += !room_is_right(&setting, REACH);
     }
@@ -374,7 +385,7 @@ static void rooms_are_as_open_as_rays_say(void **state)
 static void wrong_openness_is_found(void **state)
 {
     (void)state;
-    Random  random = {1};
+    Random  random  = {1};
     Setting setting = setting_choose(&rooms[0], &random);
     assert_false(room_is_right(&setting, 1.33 * REACH));
 }

@@ -27,8 +27,8 @@ static double box_distance(Vec p, Vec sides)
 }
 static double rod_distance(Vec p, Vec from, Vec to, double radius)
 {
-    Vec along = vec_sub(to, from);
-    double t = vec_dot(vec_sub(p, from), along) / vec_dot(along, along);
+    Vec    along = vec_sub(to, from);
+    double t     = vec_dot(vec_sub(p, from), along) / vec_dot(along, along);
     return vec_distance(p, vec_mix(from, to, fmax(0, fmin(t, 1)))) - radius;
 }
 static double a_distance(Vec p)
@@ -71,13 +71,10 @@ static bool aligned(Vec p)
     Vec from = vec_unit(vec(0, 0.3, 1)), to = vec_unit(vec(1, -0.6, 0.2));
     return a_less_b(vec_turn(p, vec_cross(from, to), -acos(vec_dot(from, to))));
 }
-static bool turned_over(Vec p)
-{
-    return fabs(p.y) <= 0.5 && hypot(p.x, p.z) <= 0.7 * (0.5 + p.y);
-}
+static bool turned_over(Vec p) { return fabs(p.y) <= 0.5 && hypot(p.x, p.z) <= 0.7 * (0.5 + p.y); }
 static bool mirrored(Vec p)
 {
-    Vec normal = vec_unit(vec(1, 0.2, -0.1));
+    Vec    normal = vec_unit(vec(1, 0.2, -0.1));
     double excess = vec_dot(normal, p) - 0.2 / vec_length(vec(1, 0.2, -0.1));
     return a_less_b(vec_sub(p, vec_scale(2 * fmax(excess, 0), normal)));
 }
@@ -113,16 +110,13 @@ static bool six_on_the_seam(Vec p)
 }
 
 static double pull(double x, double half) { return x - fmax(-half, fmin(x, half)); }
-static bool pulled_apart(Vec p)
+static bool   pulled_apart(Vec p)
 {
     return a_less_b(vec(pull(p.x, 0.3), pull(p.y, 0), pull(p.z, 0.25)));
 }
 static bool grown(Vec p) { return a_distance(p) <= 0.25; }
 static bool shrunk(Vec p) { return a_distance(p) <= -0.2; }
-static bool rounded(Vec p)
-{
-    return box_distance(p, vec(1.2 - 0.3, 0.8 - 0.3, 1 - 0.3)) <= 0.15;
-}
+static bool rounded(Vec p) { return box_distance(p, vec(1.2 - 0.3, 0.8 - 0.3, 1 - 0.3)) <= 0.15; }
 static bool hollow(Vec p) { return fabs(a_distance(p)) <= 0.05; }
 static bool mixed(Vec p) { return 0.7 * a_distance(p) + 0.3 * b_distance(p) <= 0; }
 static bool cut_to_b(Vec p) { return both(p); }
@@ -157,7 +151,8 @@ static const Operation operations[] = {
     {"(a - b).move([0.4, 0, 0]).scale(0.7).rotate([0, 1, 1], 0.5).move([0.2, 0.1, -0.3])", placed,
      false, 1.5},
     {"(a - b).transform(translate([0.2, 0.1, -0.3]) * rotate([0, 1, 1], 0.5) * scale(0.7)"
-     " * translate([0.4, 0, 0]))", placed, false, 1.5},
+     " * translate([0.4, 0, 0]))",
+     placed, false, 1.5},
     {"(a - b).align([0, 0.3, 1], [1, -0.6, 0.2])", aligned, false, 1.5},
     {"cone(0.7, 1).align([0, 1, 0], [0, -1, 0])", turned_over, true, 1.5},
     {"(a - b).mirror(plane([1, 0.2, -0.1], 0.2))", mirrored, false, 1.8},
@@ -185,9 +180,9 @@ static bool inside_operation(const void *operation, Vec p)
 static void operation_means_what_it_says(void **state)
 {
     const Operation *operation = *state;
-    Product product = product_format("%sshow %s;\n", prelude, operation->text);
-    Trial trial = {product_field, &product, inside_operation, operation, vec(0, 0, 0),
-                   operation->region, POINTS, 21};
+    Product          product   = product_format("%sshow %s;\n", prelude, operation->text);
+    Trial            trial     = {product_field, &product,          inside_operation, operation,
+                                  vec(0, 0, 0),  operation->region, POINTS,           21};
     judge_acquits(&trial, operation->text);
     product_keeps_claim(&product, operation->text, operation->region, 22);
     if (operation->exact)
@@ -236,7 +231,7 @@ typedef struct Blend {
 } Blend;
 
 static const Blend blends[] = {
-    {"quadratic", quadratic, 1},   {"cubic", cubic, 1},     {"exponential", exponential, 1},
+    {"quadratic", quadratic, 1},    {"cubic", cubic, 1},          {"exponential", exponential, 1},
     {"circular", circular, 1.4143}, {"chamfer", chamfer, 1.4143}, {"stairs", stairs, 1.4143},
 };
 enum { BLENDS = sizeof blends / sizeof *blends };
@@ -265,20 +260,20 @@ static bool inside_joint(const void *joint, Vec p) { return joint_value(joint, p
 
 static void check_joint(const Joint *joint)
 {
-    char name[80];
+    char         name[80];
     const Blend *blend = joint->blend;
     snprintf(name, sizeof name, "%s(a, b, blend: %.17g, kind: \"%s\")", joint->function,
              joint->width, blend->kind);
     Product product = product_format("%sshow %s;\n", prelude, name);
-    Trial trial = {product_field, &product, inside_joint, joint, vec(0, 0, 0), 1.5, POINTS, 31};
+    Trial   trial   = {product_field, &product, inside_joint, joint, vec(0, 0, 0), 1.5, POINTS, 31};
     judge_acquits(&trial, name);
     judge_refutes_steeper(&trial, 1.15 * blend->slope, name);
 
     Random random = {32};
     for (int i = 0; i < POINTS; i++) {
-        Vec point = random_in_cube(&random, 1.5);
+        Vec    point = random_in_cube(&random, 1.5);
         double value = product_distance(&product, point), truth = joint_value(joint, point);
-        bool between_bounds = fabs(value) <= fabs(truth) + 1e-9 &&
+        bool   between_bounds = fabs(value) <= fabs(truth) + 1e-9 &&
                               fabs(value) >= fabs(truth) / blend->slope - 1e-9;
         if (!between_bounds)
             fail_msg("%s at (%g, %g, %g): %.9g, by the formula %.9g", name, point.x, point.y,
@@ -304,9 +299,9 @@ static void blends_are_quadratic_by_default(void **state)
     (void)state;
     Product named = product_format("%sshow union(a, b, blend: 0.3, kind: \"quadratic\");", prelude);
     Product silent = product_format("%sshow union(a, b, blend: 0.3);", prelude);
-    Random random = {33};
+    Random  random = {33};
     for (int i = 0; i < 500; i++) {
-        Vec point = random_in_cube(&random, 1.5);
+        Vec    point    = random_in_cube(&random, 1.5);
         double at_named = product_distance(&named, point);
         assert_true(at_named == product_distance(&silent, point));
     }
@@ -322,11 +317,12 @@ static void frames_are_scenes(void **state)
     (void)state;
     Product moving = product_format("%sparam r = 0.1 in [0.05, 0.6]; param shift = [0, 0, 0];\n"
                                     "show union(a.move(shift), b.rotate([0, 1, 0], time),"
-                                    " blend: r);", prelude);
-    Random random = {41};
+                                    " blend: r);",
+                                    prelude);
+    Random  random = {41};
     for (int set = 0; set < 6; set++) {
         double r = random_between(&random, 0.05, 0.6), time = random_between(&random, -4, 4);
-        Vec v = random_in_cube(&random, 1);
+        Vec    v = random_in_cube(&random, 1);
         assert_int_equal(krs_frame_set(moving.frame, "r", &r, 1), KRS_OK);
         const double shift[3] = {v.x, v.y, v.z};
         assert_int_equal(krs_frame_set(moving.frame, "shift", shift, 3), KRS_OK);
@@ -335,7 +331,7 @@ static void frames_are_scenes(void **state)
                                        " b.rotate([0, 1, 0], %.17g), blend: %.17g);",
                                        prelude, v.x, v.y, v.z, time, r);
         for (int i = 0; i < 300; i++) {
-            Vec point = random_in_cube(&random, 2);
+            Vec    point    = random_in_cube(&random, 2);
             double moved_to = product_distance(&moving, point);
             assert_true(fabs(moved_to - product_distance(&still, point)) <= 1e-12);
         }
@@ -356,10 +352,10 @@ static void components_are_joined(void **state)
     assert_int_equal(krs_component_count(product.scene), 3);
     Random random = {51};
     for (int i = 0; i < 1000; i++) {
-        Vec p = random_in_cube(&random, 3);
-        double distances[3] = {a_distance(vec_add(p, vec(1, 0, 0))), b_distance(p),
-                               c_distance(vec_sub(p, vec(1, 0, 0)))};
-        uint32_t nearest = 0;
+        Vec      p            = random_in_cube(&random, 3);
+        double   distances[3] = {a_distance(vec_add(p, vec(1, 0, 0))), b_distance(p),
+                                 c_distance(vec_sub(p, vec(1, 0, 0)))};
+        uint32_t nearest      = 0;
         for (uint32_t k = 1; k < 3; k++)
             if (distances[k] < distances[nearest])
                 nearest = k;
@@ -384,12 +380,12 @@ static void boxes_hold_what_is_grown(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof solids / sizeof *solids; i++) {
         Product      product = product_format("show %s;", solids[i]);
-        Random       random = {71};
+        Random       random  = {71};
         KrsComponent component;
         int          inside = 0;
         assert_int_equal(krs_component(product.scene, 0, &component), KRS_OK);
         for (int k = 0; k < 20000; k++) {
-            Vec  p = random_in_cube(&random, 6);
+            Vec  p    = random_in_cube(&random, 6);
             bool held = p.x >= component.low[0] && p.x <= component.high[0] &&
                         p.y >= component.low[1] && p.y <= component.high[1] &&
                         p.z >= component.low[2] && p.z <= component.high[2];
@@ -408,23 +404,23 @@ static void boxes_hold_what_is_grown(void **state)
 static void normals_are_gradients(void **state)
 {
     (void)state;
-    Product product = product_format("%sshow union(a, b, c, blend: 0.2).rotate([1, 1, 0], 1);",
-                                     prelude);
-    const double h = 1e-5;
-    Random random = {61};
-    int smooth = 0;
+    Product      product = product_format("%sshow union(a, b, c, blend: 0.2).rotate([1, 1, 0], 1);",
+                                          prelude);
+    const double h       = 1e-5;
+    Random       random  = {61};
+    int          smooth  = 0;
     for (int i = 0; i < 500; i++) {
         Vec p = random_in_cube(&random, 1.5), axes[3] = {vec(h, 0, 0), vec(0, h, 0), vec(0, 0, h)};
         double rise[3], bend = 0, at_p = product_distance(&product, p);
         for (int k = 0; k < 3; k++) {
-            double ahead = product_distance(&product, vec_add(p, axes[k]));
+            double ahead  = product_distance(&product, vec_add(p, axes[k]));
             double behind = product_distance(&product, vec_sub(p, axes[k]));
-            rise[k] = ahead - behind;
-            bend = fmax(bend, fabs(ahead + behind - 2 * at_p));
+            rise[k]       = ahead - behind;
+            bend          = fmax(bend, fabs(ahead + behind - 2 * at_p));
         }
-        KrsHit hit = product_probe(&product, p);
-        Vec normal = vec(hit.normal[0], hit.normal[1], hit.normal[2]);
-        Vec slope = vec(rise[0], rise[1], rise[2]);
+        KrsHit hit    = product_probe(&product, p);
+        Vec    normal = vec(hit.normal[0], hit.normal[1], hit.normal[2]);
+        Vec    slope  = vec(rise[0], rise[1], rise[2]);
         if (bend > 1e-8 || vec_length(slope) < h)
             continue; /* on a ridge, or nearly level */
         smooth++;
@@ -456,14 +452,15 @@ static void copies_of_bounds_are_steady(void **state)
     static const double radii[] = {0, 0.8};
     (void)state;
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes * 2; i++) {
-        Product product =
-            product_format("let slab = box([1.8, 1.8, 1.8]) - box([1.6, 2, 2]).move([-0.2, 0, 0]);"
-                           "let flat = sphere(1).scale([1, 0.2, 0.1]).rotate([0, 1, 1], 0.6)"
-                           "    .move([0.2, 0, -0.1]);"
-                           "show %s.offset(%g);", shapes[i / 2], radii[i % 2]);
+        Product product = product_format(
+            "let slab = box([1.8, 1.8, 1.8]) - box([1.6, 2, 2]).move([-0.2, 0, 0]);"
+            "let flat = sphere(1).scale([1, 0.2, 0.1]).rotate([0, 1, 1], 0.6)"
+            "    .move([0.2, 0, -0.1]);"
+            "show %s.offset(%g);",
+            shapes[i / 2], radii[i % 2]);
         for (int size = 0; size < 2; size++) {
-            Trial trial = {product_field, &product, is_negative, &product, vec(0, 0, 0),
-                           size ? 12 : 4, 400, i};
+            Trial trial = {product_field, &product,      is_negative, &product,
+                           vec(0, 0, 0),  size ? 12 : 4, 400,         i};
             judge_acquits(&trial, shapes[i / 2]);
         }
         product_free(&product);
@@ -473,7 +470,7 @@ static void copies_of_bounds_are_steady(void **state)
 int main(void)
 {
     struct CMUnitTest tests[OPERATIONS + BLENDS + 6];
-    size_t count = 0;
+    size_t            count = 0;
     for (size_t i = 0; i < OPERATIONS; i++)
         tests[count++] = (struct CMUnitTest){operations[i].text, operation_means_what_it_says, NULL,
                                              NULL, (void *)(uintptr_t)&operations[i]};

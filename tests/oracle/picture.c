@@ -27,12 +27,12 @@ typedef struct Vec {
     double x, y, z;
 } Vec;
 
-static Vec of(const double v[3]) { return (Vec){v[0], v[1], v[2]}; }
-static Vec add(Vec a, Vec b) { return (Vec){a.x + b.x, a.y + b.y, a.z + b.z}; }
-static Vec sub(Vec a, Vec b) { return (Vec){a.x - b.x, a.y - b.y, a.z - b.z}; }
-static Vec times(Vec a, double s) { return (Vec){a.x * s, a.y * s, a.z * s}; }
+static Vec    of(const double v[3]) { return (Vec){v[0], v[1], v[2]}; }
+static Vec    add(Vec a, Vec b) { return (Vec){a.x + b.x, a.y + b.y, a.z + b.z}; }
+static Vec    sub(Vec a, Vec b) { return (Vec){a.x - b.x, a.y - b.y, a.z - b.z}; }
+static Vec    times(Vec a, double s) { return (Vec){a.x * s, a.y * s, a.z * s}; }
 static double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static Vec cross(Vec a, Vec b)
+static Vec    cross(Vec a, Vec b)
 {
     return (Vec){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
@@ -128,12 +128,12 @@ static Verdict compare(const char *text, double planted)
     assert_int_equal(picture->stats.unresolved, 0);
     assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);
 
-    double (*origins)[3]    = malloc(PIXELS * sizeof *origins);
-    double (*directions)[3] = malloc(PIXELS * sizeof *directions);
+    double(*origins)[3]    = malloc(PIXELS * sizeof *origins);
+    double(*directions)[3] = malloc(PIXELS * sizeof *directions);
     KrsHit *hits           = malloc(PIXELS * sizeof *hits);
     view.camera.eye[0] += planted;
     double pixel = make_rays(&view.camera, origins, directions);
-    krs_raycast(frame, (const double (*)[3])origins, (const double (*)[3])directions, PIXELS, 1e3,
+    krs_raycast(frame, (const double(*)[3])origins, (const double(*)[3])directions, PIXELS, 1e3,
                 1e-8, hits);
     Verdict verdict = judge(picture, hits, pixel);
     free(origins);
@@ -189,12 +189,11 @@ static void the_inside_of_solids_agrees(void **state)
 {
     static const char *const lights[] = {"intensity: 3", "intensity: 0",
                                          "intensity: 3, shadow: false"};
-    static const char inside[] =
-        "camera { eye: [-0.3, 0.1, 0.2], target: [1.5, 0, 0], fov: 90deg }"
-        "show box([1, 1, 1]); show box([1, 1, 1]).move([1, 0, 0]);"
-        "light sun { direction: [-1, 2, 1], %s }";
-    KrsPicture *pictures[3];
-    char        text[400];
+    static const char inside[] = "camera { eye: [-0.3, 0.1, 0.2], target: [1.5, 0, 0], fov: 90deg }"
+                                 "show box([1, 1, 1]); show box([1, 1, 1]).move([1, 0, 0]);"
+                                 "light sun { direction: [-1, 2, 1], %s }";
+    KrsPicture       *pictures[3];
+    char              text[400];
     (void)state;
     for (int i = 0; i < 3; i++) {
         snprintf(text, sizeof text, inside, lights[i]);

@@ -63,9 +63,9 @@ static void ellipsoid_surface(const Solid *s, Cloud *cloud, double step)
 /* Within `minor` of some point of the circle: the nearest one has the same direction. */
 static bool in_torus(const void *user, Vec p)
 {
-    const Solid *s = user;
-    double out = hypot(p.x, p.z);
-    Vec on_circle = out > 0 ? vec_scale(s->a[0] / out, vec(p.x, 0, p.z)) : vec(s->a[0], 0, 0);
+    const Solid *s   = user;
+    double       out = hypot(p.x, p.z);
+    Vec on_circle    = out > 0 ? vec_scale(s->a[0] / out, vec(p.x, 0, p.z)) : vec(s->a[0], 0, 0);
     return vec_distance(p, on_circle) <= s->a[1];
 }
 static void torus_surface(const Solid *s, Cloud *cloud, double step)
@@ -127,8 +127,8 @@ static void sweep_surface(const Solid *s, Cloud *cloud, double step)
 }
 static void make_sweep(Solid *s, Curve curve, double radius, double radius_end)
 {
-    s->sweep = (Sweep){.curves = {curve}, .curve_count = 1, .radius = radius,
-                       .radius_end = radius_end};
+    s->sweep = (Sweep){
+        .curves = {curve}, .curve_count = 1, .radius = radius, .radius_end = radius_end};
 }
 static void make_capsule(Solid *s)
 {
@@ -147,9 +147,9 @@ static void make_arc_capsule(Solid *s)
 static void make_link(Solid *s)
 {
     double half = s->a[0] / 2, major = s->a[1];
-    Vec right = vec(major, half, 0), left = vec(-major, half, 0);
-    Vec low_right = vec(major, -half, 0), low_left = vec(-major, -half, 0);
-    s->sweep = (Sweep){.curve_count = 4, .radius = s->a[2], .radius_end = s->a[2]};
+    Vec    right = vec(major, half, 0), left = vec(-major, half, 0);
+    Vec    low_right = vec(major, -half, 0), low_left = vec(-major, -half, 0);
+    s->sweep           = (Sweep){.curve_count = 4, .radius = s->a[2], .radius_end = s->a[2]};
     s->sweep.curves[0] = curve_segment(low_right, right);
     s->sweep.curves[1] = curve_arc(right, vec(0, half + major, 0), left);
     s->sweep.curves[2] = curve_segment(left, low_left);
@@ -259,7 +259,7 @@ static bool in_half_space(const void *user, Vec p)
 static void plane_surface(const Solid *s, Cloud *cloud, double step)
 {
     Vec normal = argument_vec(s, 0), side = vec_scale(2 * VISIBLE, vec_across(normal));
-    Vec other = vec_cross(vec_unit(normal), side);
+    Vec other  = vec_cross(vec_unit(normal), side);
     Vec middle = vec_scale(s->a[3] / vec_dot(normal, normal), normal);
     Vec corner = vec_sub(middle, vec_scale(0.5, vec_add(side, other)));
     cloud_patch(cloud, sheet_patch, NULL, &(Sheet){corner, side, other}, 2 * step);
@@ -287,7 +287,7 @@ static double generalised(const Solid *s, Vec p)
     return pow(pow(x, s->a[3]) + pow(y, s->a[3]) + pow(z, s->a[3]), 1 / s->a[3]);
 }
 static bool in_convex(const void *user, Vec p) { return generalised(user, p) <= 1; }
-static Vec convex_patch(const void *user, double u, double v)
+static Vec  convex_patch(const void *user, double u, double v)
 {
     Vec direction = vec(sin(PI * u) * cos(2 * PI * v), cos(PI * u), sin(PI * u) * sin(2 * PI * v));
     return vec_scale(1 / generalised(user, direction), direction);
@@ -319,10 +319,10 @@ static void revolution_surface(const Solid *s, Cloud *cloud, double step)
 }
 static void make_stroke(Solid *s, Curve curve, double radius)
 {
-    s->figure.stroke = (Sweep){.curves = {curve}, .curve_count = 1, .radius = radius,
-                               .radius_end = radius};
+    s->figure.stroke = (Sweep){
+        .curves = {curve}, .curve_count = 1, .radius = radius, .radius_end = radius};
 }
-static Vec argument_corner(const Solid *s, int at) { return vec(s->a[at], s->a[at + 1], 0); }
+static Vec  argument_corner(const Solid *s, int at) { return vec(s->a[at], s->a[at + 1], 0); }
 static void make_circle(Solid *s)
 {
     make_stroke(s, curve_segment(vec(0, 0, 0), vec(0, 0, 0)), s->a[0]);
@@ -339,8 +339,9 @@ static void make_arc(Solid *s)
 }
 static void make_bezier(Solid *s)
 {
-    make_stroke(s, curve_bezier(argument_corner(s, 0), argument_corner(s, 2),
-                                argument_corner(s, 4)), s->a[6] / 2);
+    make_stroke(s,
+                curve_bezier(argument_corner(s, 0), argument_corner(s, 2), argument_corner(s, 4)),
+                s->a[6] / 2);
 }
 static void make_rectangle(Solid *s)
 {
@@ -372,40 +373,94 @@ static void make_star(Solid *s)
     }
 }
 
-#define SIZE {0.3, 1.5}
-#define PLACE {-0.9, 0.9}
-#define TUBE {0.05, 0.4}
-#define HULL in_hull, hull_surface
-#define SWEEP in_sweep, sweep_surface
+#define SIZE     \
+    {            \
+        0.3, 1.5 \
+    }
+#define PLACE     \
+    {             \
+        -0.9, 0.9 \
+    }
+#define TUBE      \
+    {             \
+        0.05, 0.4 \
+    }
+#define HULL     in_hull, hull_surface
+#define SWEEP    in_sweep, sweep_surface
 #define EXTRUDED in_extrusion, extrusion_surface
-#define TURNED in_revolution, revolution_surface
-#define LAST [ARGUMENTS - 1]
+#define TURNED   in_revolution, revolution_surface
+#define LAST     [ARGUMENTS - 1]
 
 static const Primitive primitives[] = {
     {"sphere", "sphere($a)", make_nothing, in_sphere, sphere_surface, true, {SIZE}},
     {"box", "box([$a, $b, $c])", make_box, HULL, true, {SIZE, SIZE, SIZE}},
-    {"cylinder", "cylinder($a, $b)", make_nothing, in_cylinder, cylinder_surface, true,
+    {"cylinder",
+     "cylinder($a, $b)",
+     make_nothing,
+     in_cylinder,
+     cylinder_surface,
+     true,
      {SIZE, SIZE}},
-    {"cone", "cone($a, $b)", make_nothing, in_pointed_cone, pointed_cone_surface, true,
+    {"cone",
+     "cone($a, $b)",
+     make_nothing,
+     in_pointed_cone,
+     pointed_cone_surface,
+     true,
      {SIZE, SIZE}},
-    {"capped cone", "capped_cone($a, $b, $c)", make_nothing, in_capped_cone, capped_cone_surface,
-     true, {SIZE, SIZE, SIZE}},
-    {"capsule", "capsule([$a, $b, $c], [$d, $e, $f], $g)", make_capsule, SWEEP, true,
+    {"capped cone",
+     "capped_cone($a, $b, $c)",
+     make_nothing,
+     in_capped_cone,
+     capped_cone_surface,
+     true,
+     {SIZE, SIZE, SIZE}},
+    {"capsule",
+     "capsule([$a, $b, $c], [$d, $e, $f], $g)",
+     make_capsule,
+     SWEEP,
+     true,
      {PLACE, PLACE, PLACE, PLACE, PLACE, PLACE, TUBE}},
-    {"round cone", "round_cone([$a, $b, $c], [$d, $e, $f], $g, $h)", make_round_cone, SWEEP, true,
+    {"round cone",
+     "round_cone([$a, $b, $c], [$d, $e, $f], $g, $h)",
+     make_round_cone,
+     SWEEP,
+     true,
      {PLACE, PLACE, PLACE, PLACE, PLACE, PLACE, TUBE, TUBE}},
-    {"round cone, one ball in the other", "round_cone([$a, $b, $c], [$d, $e, $f], $g, $h)",
-     make_round_cone, SWEEP, true,
+    {"round cone, one ball in the other",
+     "round_cone([$a, $b, $c], [$d, $e, $f], $g, $h)",
+     make_round_cone,
+     SWEEP,
+     true,
      {{-0.2, 0}, {-0.2, 0}, {-0.2, 0}, {0, 0.1}, {0, 0.1}, {0, 0.1}, {0.8, 1}, {0.1, 0.2}}},
-    {"arc capsule", "arc_capsule([$a, $b, $c], [$d, $e, $f], [$g, $h, $i], $j, $j)",
-     make_arc_capsule, SWEEP, true,
-     {PLACE, {-0.9, -0.5}, PLACE, PLACE, {-0.2, 0.2}, PLACE, PLACE, {0.5, 0.9}, PLACE,
+    {"arc capsule",
+     "arc_capsule([$a, $b, $c], [$d, $e, $f], [$g, $h, $i], $j, $j)",
+     make_arc_capsule,
+     SWEEP,
+     true,
+     {PLACE,
+      {-0.9, -0.5},
+      PLACE,
+      PLACE,
+      {-0.2, 0.2},
+      PLACE,
+      PLACE,
+      {0.5, 0.9},
+      PLACE,
       {0.05, 0.2}}},
-    {"arc capsule, straight", "arc_capsule([$a, 0, 0], [0, 0, 0], [$g, 0, 0], $j, $j)",
-     make_arc_capsule, SWEEP, true,
+    {"arc capsule, straight",
+     "arc_capsule([$a, 0, 0], [0, 0, 0], [$g, 0, 0], $j, $j)",
+     make_arc_capsule,
+     SWEEP,
+     true,
      {{-1, -0.5}, {0, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 0}, {0.5, 1}, {0, 0}, {0, 0}, TUBE}},
     {"torus", "torus($a, $b)", make_nothing, in_torus, torus_surface, true, {{0.5, 1.2}, TUBE}},
-    {"ellipsoid", "ellipsoid([$a, $b, $c])", make_nothing, in_ellipsoid, ellipsoid_surface, false,
+    {"ellipsoid",
+     "ellipsoid([$a, $b, $c])",
+     make_nothing,
+     in_ellipsoid,
+     ellipsoid_surface,
+     false,
      {SIZE, SIZE, SIZE}},
     {"link", "link($a, $b, $c)", make_link, SWEEP, true, {SIZE, {0.4, 0.8}, {0.1, 0.3}}},
     {"octahedron", "octahedron($a)", make_octahedron, HULL, true, {SIZE}},
@@ -418,49 +473,138 @@ static const Primitive primitives[] = {
     {"pyramid", "pyramid($a, $b)", make_pyramid, HULL, true, {SIZE, SIZE}},
     {"wedge", "wedge($a)", make_nothing, in_wedge, wedge_surface, true, {{0.2, 3}}},
     {"wide wedge", "wedge($a)", make_nothing, in_wedge, wedge_surface, true, {{3.3, 6}}},
-    {"plane", "plane([$a, $b, $c], $d)", make_nothing, in_half_space, plane_surface, true,
+    {"plane",
+     "plane([$a, $b, $c], $d)",
+     make_nothing,
+     in_half_space,
+     plane_surface,
+     true,
      {SIZE, PLACE, PLACE, {-0.5, 0.5}}},
-    {"half-space", "half_space([$a, $b, $c], $d)", make_nothing, in_half_space, plane_surface, true,
+    {"half-space",
+     "half_space([$a, $b, $c], $d)",
+     make_nothing,
+     in_half_space,
+     plane_surface,
+     true,
      {PLACE, SIZE, PLACE, {-0.5, 0.5}}},
-    {"convex", "convex([[[1, 0, 0], $a], [[-1, 0, 0], $a], [[0, 1, 0], $b], [[0, -1, 0], $b],"
-     " [[0, 0, 1], $c], [[0, 0, -1], $c]], $d)", make_nothing, in_convex, convex_surface, false,
+    {"convex",
+     "convex([[[1, 0, 0], $a], [[-1, 0, 0], $a], [[0, 1, 0], $b], [[0, -1, 0], $b],"
+     " [[0, 0, 1], $c], [[0, 0, -1], $c]], $d)",
+     make_nothing,
+     in_convex,
+     convex_surface,
+     false,
      {SIZE, SIZE, SIZE, {2, 12}}},
-    {"circle, extruded", "circle($a).extrude($l)", make_circle, EXTRUDED, true,
+    {"circle, extruded",
+     "circle($a).extrude($l)",
+     make_circle,
+     EXTRUDED,
+     true,
      {SIZE, LAST = SIZE}},
-    {"circle, revolved", "circle($a).revolve($l)", make_circle, TURNED, true,
+    {"circle, revolved",
+     "circle($a).revolve($l)",
+     make_circle,
+     TURNED,
+     true,
      {{0.1, 0.4}, LAST = {0.5, 1}}},
-    {"rectangle, extruded", "rectangle([$a, $b]).extrude($l)", make_rectangle, EXTRUDED, true,
+    {"rectangle, extruded",
+     "rectangle([$a, $b]).extrude($l)",
+     make_rectangle,
+     EXTRUDED,
+     true,
      {SIZE, SIZE, LAST = SIZE}},
-    {"rectangle, revolved", "rectangle([$a, $b]).revolve($l)", make_rectangle, TURNED, true,
+    {"rectangle, revolved",
+     "rectangle([$a, $b]).revolve($l)",
+     make_rectangle,
+     TURNED,
+     true,
      {{0.2, 0.8}, SIZE, LAST = {0.5, 1}}},
-    {"concave polygon", "polygon([[$a, $b], [$c, $d], [$e, $f], [$g, $h], [$i, $j]]).extrude($l)",
-     make_polygon, EXTRUDED, true,
-     {{-0.9, -0.7}, {-0.9, -0.7}, {0.7, 0.9}, {-0.9, -0.7}, {-0.1, 0.1}, {-0.2, 0.1},
-      {0.7, 0.9}, {0.7, 0.9}, {-0.9, -0.7}, {0.7, 0.9}, LAST = SIZE}},
-    {"clockwise polygon", "polygon([[$a, $b], [$c, $d], [$e, $f], [$g, $h], [$i, $j]]).extrude($l)",
-     make_polygon, EXTRUDED, true,
-     {{-0.9, -0.7}, {0.7, 0.9}, {0.7, 0.9}, {0.7, 0.9}, {-0.1, 0.1}, {-0.2, 0.1},
-      {0.7, 0.9}, {-0.9, -0.7}, {-0.9, -0.7}, {-0.9, -0.7}, LAST = SIZE}},
-    {"regular pentagon", "regular(5, $b).extrude($l)", make_regular, EXTRUDED, true,
-     {{5, 5}, SIZE, LAST = SIZE}},
-    {"regular octagon", "regular(8, $b).revolve($l)", make_regular, TURNED, true,
-     {{8, 8}, {0.2, 0.4}, LAST = {0.6, 1}}},
-    {"star", "star(5, $b, $c).extrude($l)", make_star, EXTRUDED, true,
-     {{5, 5}, {0.7, 1.2}, {0.2, 0.5}, LAST = SIZE}},
-    {"blunt star", "star(4, $b, $c).revolve($l)", make_star, TURNED, true,
-     {{4, 4}, {0.2, 0.3}, {0.3, 0.4}, LAST = {0.6, 1}}},
-    {"segment", "segment([$a, $b], [$c, $d], $e).extrude($l)", make_segment, EXTRUDED, true,
-     {PLACE, PLACE, PLACE, PLACE, {0.1, 0.6}, LAST = SIZE}},
-    {"arc", "arc($a, $b, $c).extrude($l)", make_arc, EXTRUDED, true,
-     {SIZE, {0.5, 5}, {0.05, 0.3}, LAST = SIZE}},
-    {"arc, revolved", "arc($a, $b, $c).revolve($l)", make_arc, TURNED, true,
-     {{0.2, 0.4}, {0.5, 5}, {0.05, 0.3}, LAST = {0.7, 1}}},
-    {"bezier", "bezier([$a, $b], [$c, $d], [$e, $f], $g).extrude($l)", make_bezier, EXTRUDED,
-     true, {PLACE, {-0.9, -0.5}, PLACE, {-0.2, 0.2}, PLACE, {0.5, 0.9}, {0.1, 0.4}, LAST = SIZE}},
-    {"straight bezier", "bezier([$a, $b], [0, 0], [0.5, 0.5], $g).extrude($l)", make_bezier,
-     EXTRUDED, true,
-     {{-0.5, -0.5}, {-0.5, -0.5}, {0, 0}, {0, 0}, {0.5, 0.5}, {0.5, 0.5}, {0.1, 0.4},
+    {"concave polygon",
+     "polygon([[$a, $b], [$c, $d], [$e, $f], [$g, $h], [$i, $j]]).extrude($l)",
+     make_polygon,
+     EXTRUDED,
+     true,
+     {{-0.9, -0.7},
+      {-0.9, -0.7},
+      {0.7, 0.9},
+      {-0.9, -0.7},
+      {-0.1, 0.1},
+      {-0.2, 0.1},
+      {0.7, 0.9},
+      {0.7, 0.9},
+      {-0.9, -0.7},
+      {0.7, 0.9},
       LAST = SIZE}},
+    {"clockwise polygon",
+     "polygon([[$a, $b], [$c, $d], [$e, $f], [$g, $h], [$i, $j]]).extrude($l)",
+     make_polygon,
+     EXTRUDED,
+     true,
+     {{-0.9, -0.7},
+      {0.7, 0.9},
+      {0.7, 0.9},
+      {0.7, 0.9},
+      {-0.1, 0.1},
+      {-0.2, 0.1},
+      {0.7, 0.9},
+      {-0.9, -0.7},
+      {-0.9, -0.7},
+      {-0.9, -0.7},
+      LAST = SIZE}},
+    {"regular pentagon",
+     "regular(5, $b).extrude($l)",
+     make_regular,
+     EXTRUDED,
+     true,
+     {{5, 5}, SIZE, LAST = SIZE}},
+    {"regular octagon",
+     "regular(8, $b).revolve($l)",
+     make_regular,
+     TURNED,
+     true,
+     {{8, 8}, {0.2, 0.4}, LAST = {0.6, 1}}},
+    {"star",
+     "star(5, $b, $c).extrude($l)",
+     make_star,
+     EXTRUDED,
+     true,
+     {{5, 5}, {0.7, 1.2}, {0.2, 0.5}, LAST = SIZE}},
+    {"blunt star",
+     "star(4, $b, $c).revolve($l)",
+     make_star,
+     TURNED,
+     true,
+     {{4, 4}, {0.2, 0.3}, {0.3, 0.4}, LAST = {0.6, 1}}},
+    {"segment",
+     "segment([$a, $b], [$c, $d], $e).extrude($l)",
+     make_segment,
+     EXTRUDED,
+     true,
+     {PLACE, PLACE, PLACE, PLACE, {0.1, 0.6}, LAST = SIZE}},
+    {"arc",
+     "arc($a, $b, $c).extrude($l)",
+     make_arc,
+     EXTRUDED,
+     true,
+     {SIZE, {0.5, 5}, {0.05, 0.3}, LAST = SIZE}},
+    {"arc, revolved",
+     "arc($a, $b, $c).revolve($l)",
+     make_arc,
+     TURNED,
+     true,
+     {{0.2, 0.4}, {0.5, 5}, {0.05, 0.3}, LAST = {0.7, 1}}},
+    {"bezier",
+     "bezier([$a, $b], [$c, $d], [$e, $f], $g).extrude($l)",
+     make_bezier,
+     EXTRUDED,
+     true,
+     {PLACE, {-0.9, -0.5}, PLACE, {-0.2, 0.2}, PLACE, {0.5, 0.9}, {0.1, 0.4}, LAST = SIZE}},
+    {"straight bezier",
+     "bezier([$a, $b], [0, 0], [0.5, 0.5], $g).extrude($l)",
+     make_bezier,
+     EXTRUDED,
+     true,
+     {{-0.5, -0.5}, {-0.5, -0.5}, {0, 0}, {0, 0}, {0.5, 0.5}, {0.5, 0.5}, {0.1, 0.4}, LAST = SIZE}},
 };
 enum { PRIMITIVES = sizeof primitives / sizeof *primitives };
 
@@ -502,9 +646,9 @@ static void definitions_agree(void **state)
     (void)state;
     for (size_t k = 0; k < PRIMITIVES; k++) {
         const Primitive *primitive = &primitives[k];
-        Random random = {k};
-        Solid solid = random_solid(primitive, &random);
-        Cloud cloud = {0};
+        Random           random    = {k};
+        Solid            solid     = random_solid(primitive, &random);
+        Cloud            cloud     = {0};
         primitive->surface(&solid, &cloud, 0.05);
         for (int i = 0; i < 60; i++) {
             Vec on = cloud.points[random_below(&random, (int)cloud.count)];
@@ -512,9 +656,9 @@ static void definitions_agree(void **state)
                 !ball_has(primitive, &solid, &random, on, 1e-3, false))
                 fail_msg("%s: (%g, %g, %g) is not on the surface", primitive->name, on.x, on.y,
                          on.z);
-            Vec off = random_in_cube(&random, 1.5);
+            Vec    off    = random_in_cube(&random, 1.5);
             double radius = cloud_nearest(&cloud, off) - cloud.spacing;
-            bool side = primitive->inside(&solid, off);
+            bool   side   = primitive->inside(&solid, off);
             if (radius > 0 && ball_has(primitive, &solid, &random, off, radius, !side))
                 fail_msg("%s: a surface near (%g, %g, %g) is missing", primitive->name, off.x,
                          off.y, off.z);
@@ -532,7 +676,7 @@ static void check_brackets(const Primitive *primitive, const Product *product, b
     primitive->surface(solid, &cloud, 0.025);
     assert_true(cloud.count > 500 && cloud.spacing < 0.2);
     for (int i = 0; i < POINTS; i++) {
-        Vec point = random_in_cube(random, i % 2 ? 1 : 2);
+        Vec    point    = random_in_cube(random, i % 2 ? 1 : 2);
         double distance = product_distance(product, point), nearest = cloud_nearest(&cloud, point);
         if (!(fabs(distance) <= nearest + 1e-9))
             fail_msg("%s at (%g, %g, %g): %.9g, but a point of it is %.9g away", primitive->name,
@@ -549,9 +693,9 @@ static void check_sweep(const Primitive *primitive, const Product *product, bool
                         const Solid *solid, Random *random)
 {
     for (int i = 0; i < POINTS; i++) {
-        Vec point = random_in_cube(random, 2);
+        Vec    point    = random_in_cube(random, 2);
         double distance = product_distance(product, point);
-        double truth = sweep_depth(&solid->sweep, point);
+        double truth    = sweep_depth(&solid->sweep, point);
         if (truth > 0 && !(distance <= truth + 1e-7 && (!exact || distance >= truth - 1e-7)))
             fail_msg("%s at (%g, %g, %g): %.9g, truly %.9g", primitive->name, point.x, point.y,
                      point.z, distance, truth);
@@ -561,13 +705,13 @@ static void check_sweep(const Primitive *primitive, const Product *product, bool
 static void primitive_is_its_definition(void **state)
 {
     const Primitive *primitive = *state;
-    Random random = {(uint64_t)(primitive - primitives)};
+    Random           random    = {(uint64_t)(primitive - primitives)};
     for (int set = 0; set < SETS; set++) {
-        Solid solid = random_solid(primitive, &random);
-        SceneText text = {.length = 0};
+        Solid     solid = random_solid(primitive, &random);
+        SceneText text  = {.length = 0};
         write_call(&text, primitive->text, solid.a);
 
-        Product product = product_compile(text.bytes);
+        Product      product = product_compile(text.bytes);
         KrsComponent component;
         assert_int_equal(krs_component(product.scene, 0, &component), KRS_OK);
         bool exact = primitive->exact || component.exact;
@@ -575,7 +719,7 @@ static void primitive_is_its_definition(void **state)
         if (solid.sweep.curve_count)
             check_sweep(primitive, &product, exact, &solid, &random);
         Trial trial = {product_field, &product, primitive->inside, &solid, vec(0, 0, 0), 1.8,
-                       POINTS, 77};
+                       POINTS,        77};
         judge_acquits(&trial, text.bytes);
         if (exact)
             judge_refutes_larger(&trial, 1.15, text.bytes);
@@ -597,17 +741,19 @@ static void tapered_arcs(void **state)
         from.y -= 0.7;
         to.y += 0.7;
         double radius = random_between(&random, 0.1, 0.3), end = random_between(&random, 0.02, 0.1);
-        Sweep sweep = {.curves = {curve_arc(from, via, to)}, .curve_count = 1, .radius = radius,
-                       .radius_end = end};
+        Sweep  sweep    = {.curves      = {curve_arc(from, via, to)},
+                           .curve_count = 1,
+                           .radius      = radius,
+                           .radius_end  = end};
         Product product = product_format(
             "show arc_capsule([%.17g, %.17g, %.17g], [%.17g, %.17g, %.17g], [%.17g, %.17g, %.17g],"
-            " %.17g, %.17g);", from.x, from.y, from.z, via.x, via.y, via.z, to.x, to.y, to.z,
-            radius, end);
+            " %.17g, %.17g);",
+            from.x, from.y, from.z, via.x, via.y, via.z, to.x, to.y, to.z, radius, end);
         Trial trial = {product_field, &product, negative, &product, vec(0, 0, 0), 1.5, POINTS, 79};
         judge_acquits(&trial, "tapered arc");
         product_keeps_claim(&product, "tapered arc", 1.5, 80);
         for (int i = 0; i < POINTS; i++) {
-            Vec point = random_in_cube(&random, 1.2);
+            Vec    point = random_in_cube(&random, 1.2);
             double depth = sweep_depth(&sweep, point), slack = (radius - end) / 3;
             double distance = product_distance(&product, point);
             assert_true(depth <= slack || distance > 0);
@@ -619,21 +765,21 @@ static void tapered_arcs(void **state)
 
 /* All names of the language reference, with nothing said about their sizes. */
 static const char *const solids[] = {
-    "sphere", "box", "cylinder", "cone", "capped_cone", "capsule", "round_cone", "arc_capsule",
-    "torus", "ellipsoid", "link", "octahedron", "tetrahedron", "dodecahedron", "icosahedron",
-    "prism", "pyramid", "wedge", "plane", "half_space", "convex",
+    "sphere",      "box",   "cylinder",  "cone",  "capped_cone", "capsule",     "round_cone",
+    "arc_capsule", "torus", "ellipsoid", "link",  "octahedron",  "tetrahedron", "dodecahedron",
+    "icosahedron", "prism", "pyramid",   "wedge", "plane",       "half_space",  "convex",
 };
-static const char *const figures[] = {"circle", "rectangle", "polygon", "regular", "star",
-                                      "segment", "arc", "bezier"};
+static const char *const figures[] = {"circle", "rectangle", "polygon", "regular",
+                                      "star",   "segment",   "arc",     "bezier"};
 
 /* With its defaults a shape is somewhere solid, somewhere not, and no steeper than distance. */
 static void check_default(const char *name, const char *rest)
 {
     Product product = product_format("show %s()%s;", name, rest);
-    Random random = {12};
-    int inside = 0, outside = 0;
+    Random  random  = {12};
+    int     inside = 0, outside = 0;
     for (int i = 0; i < 4000; i++) {
-        Vec a = random_in_cube(&random, 1.5), b = random_in_ball(&random, a, 0.5);
+        Vec    a = random_in_cube(&random, 1.5), b = random_in_ball(&random, a, 0.5);
         double at_a = product_distance(&product, a), at_b = product_distance(&product, b);
         inside += at_a < 0;
         outside += at_a > 0;
@@ -659,8 +805,8 @@ static void defaults_are_shapes(void **state)
 int main(void)
 {
     struct CMUnitTest tests[PRIMITIVES + 3];
-    size_t count = 0;
-    tests[count++] = (struct CMUnitTest)cmocka_unit_test(definitions_agree);
+    size_t            count = 0;
+    tests[count++]          = (struct CMUnitTest)cmocka_unit_test(definitions_agree);
     for (const Primitive *p = primitives; p < primitives + PRIMITIVES; p++)
         tests[count++] = (struct CMUnitTest){p->name, primitive_is_its_definition, NULL, NULL,
                                              (void *)(uintptr_t)p};

@@ -9,7 +9,7 @@
 
 void scene_write(SceneText *text, const char *format, ...)
 {
-    size_t left = sizeof text->bytes - text->length;
+    size_t  left = sizeof text->bytes - text->length;
     va_list arguments;
     va_start(arguments, format);
     int length = vsnprintf(text->bytes + text->length, left, format, arguments);
@@ -43,9 +43,9 @@ static KrsStatus compile(const char *text, const KrsOptions *options, KrsScene *
 
 Product product_compile(const char *text)
 {
-    Product product = {0};
+    Product    product = {0};
     KrsOptions options = {.diagnostic = print_diagnostic};
-    KrsStatus status = compile(text, &options, &product.scene);
+    KrsStatus  status  = compile(text, &options, &product.scene);
     if (status != KRS_OK)
         fail_msg("status %d for the scene:\n%s", (int)status, text);
     assert_int_equal(krs_frame_new(product.scene, &product.frame), KRS_OK);
@@ -54,7 +54,7 @@ Product product_compile(const char *text)
 
 Product product_format(const char *format, ...)
 {
-    char text[4096];
+    char    text[4096];
     va_list arguments;
     va_start(arguments, format);
     int length = vsnprintf(text, sizeof text, format, arguments);
@@ -91,7 +91,7 @@ KrsHit product_raycast(const Product *product, Vec origin, Vec direction, double
                        double tolerance)
 {
     KrsHit hit;
-    double origins[1][3] = {{origin.x, origin.y, origin.z}};
+    double origins[1][3]    = {{origin.x, origin.y, origin.z}};
     double directions[1][3] = {{direction.x, direction.y, direction.z}};
     krs_raycast(product->frame, (const double(*)[3])origins, (const double(*)[3])directions, 1,
                 farthest, tolerance, &hit);
@@ -101,16 +101,16 @@ KrsHit product_raycast(const Product *product, Vec origin, Vec direction, double
 void product_keeps_claim(const Product *product, const char *what, double region, uint64_t seed)
 {
     KrsComponent component;
-    Random random = {seed};
+    Random       random = {seed};
     assert_int_equal(krs_component(product->scene, 0, &component), KRS_OK);
     for (int i = 0; component.exact && i < 1000; i++) {
-        Vec point = random_in_cube(&random, region);
-        KrsHit hit = product_probe(product, point);
-        Vec normal = vec(hit.normal[0], hit.normal[1], hit.normal[2]);
-        double rest = product_distance(product, vec_sub(point, vec_scale(hit.distance, normal)));
+        Vec    point  = random_in_cube(&random, region);
+        KrsHit hit    = product_probe(product, point);
+        Vec    normal = vec(hit.normal[0], hit.normal[1], hit.normal[2]);
+        double rest   = product_distance(product, vec_sub(point, vec_scale(hit.distance, normal)));
         if (hit.distance > 0 && fabs(rest) > 1e-4)
             fail_msg("%s claims to be exact, but from (%g, %g, %g), %.9g away, the way down the "
-                     "gradient ends %.9g away", what, point.x, point.y, point.z, hit.distance,
-                     rest);
+                     "gradient ends %.9g away",
+                     what, point.x, point.y, point.z, hit.distance, rest);
     }
 }

@@ -161,7 +161,7 @@ static void rays_agree(Scene s, size_t count, double size, double tolerance, dou
     cast_device(s, count, farthest, tolerance);
     for (size_t i = 0; i < count; i++) {
         double allowed = tolerance + roughness * 0x1p-23 * (1 + 2 * size);
-        worst = fmax(worst, contradiction(s, i, farthest) / allowed);
+        worst          = fmax(worst, contradiction(s, i, farthest) / allowed);
         hits += found[i].hit;
         unresolved += found[i].unresolved;
         misses += !found[i].hit && !found[i].unresolved;
@@ -215,8 +215,9 @@ static void rays_agree_everywhere(void **context)
 static void thin_twigs_are_hit_as_thick_as_they_are(void **context)
 {
     (void)context;
-    Scene  s = scene_of("show capsule([-5, 0, 0], [5, 0, 0], 0.001);"
-                        "show sphere(1).move([0, 5, 0]);", KRS_FOR_QUESTIONS); /* widens the box */
+    Scene  s    = scene_of("show capsule([-5, 0, 0], [5, 0, 0], 0.001);"
+                               "show sphere(1).move([0, 5, 0]);",
+                           KRS_FOR_QUESTIONS); /* widens the box */
     size_t hits = 0;
     for (int i = 0; i < 2000; i++) {
         memcpy(points[i], (double[]){uniform(-4, 4), 0.01 * (i + 0.5) / 2000, 3}, sizeof *points);
@@ -259,7 +260,7 @@ static void zones_come_and_go(void **context)
             zones[i][3] = uniform(0.1, 0.4);
         }
         const Kernel before = s.rendering->zoned.sample;
-        const size_t room = s.rendering->zoned.zones;
+        const size_t room   = s.rendering->zoned.zones;
         assert_int_equal(krs_frame_set_zones(s.frame, (const double(*)[4])zones, count), KRS_OK);
         points_agree(s, 2000, 1.5, 16);
         for (size_t i = 0; i < 2000; i++)
@@ -280,11 +281,10 @@ static const char zoned[] =
 static const char bare[] =
     "camera { eye: [3, 2, 4], target: [0, 0, 0] }"
     "show sphere(1).paint(#c04020); show plane([0, 1, 0], -1).paint(#4060a0);";
-static const char difference[] =
-    "camera { eye: [3, 2, 4], target: [0, 0, 0] }"
-    "let hole = sphere(0.7).move([0.6, 0.6, 0.7]);"
-    "show sphere(1).paint(#c04020) - hole.paint(#c04020);"
-    "show plane([0, 1, 0], -1).paint(#4060a0) - hole.paint(#4060a0);";
+static const char difference[] = "camera { eye: [3, 2, 4], target: [0, 0, 0] }"
+                                 "let hole = sphere(0.7).move([0.6, 0.6, 0.7]);"
+                                 "show sphere(1).paint(#c04020) - hole.paint(#c04020);"
+                                 "show plane([0, 1, 0], -1).paint(#4060a0) - hole.paint(#4060a0);";
 
 static KrsPicture *shoot(Scene s)
 {
@@ -310,10 +310,10 @@ static void a_zone_looks_like_a_difference(void **context)
 {
     const double zone[1][4] = {{0.6, 0.6, 0.7, 0.7}}, nearer[1][4] = {{0.6, 0.6, 0.7, 0.6}};
     (void)context;
-    Scene by_language = scene_of(zoned, KRS_FOR_PICTURES);
-    Scene by_caller = scene_of(bare, KRS_FOR_PICTURES);
-    Scene by_hand = scene_of(difference, KRS_FOR_PICTURES);
-    KrsPicture *whole = shoot(by_caller);
+    Scene       by_language = scene_of(zoned, KRS_FOR_PICTURES);
+    Scene       by_caller   = scene_of(bare, KRS_FOR_PICTURES);
+    Scene       by_hand     = scene_of(difference, KRS_FOR_PICTURES);
+    KrsPicture *whole       = shoot(by_caller);
     assert_int_equal(krs_frame_set_zones(by_caller.frame, zone, 1), KRS_OK);
     KrsPicture *a = shoot(by_language), *b = shoot(by_caller), *c = shoot(by_hand);
     assert_true(same_pictures(a, b));
@@ -339,7 +339,7 @@ static void a_zone_looks_like_a_difference(void **context)
 static void any_number_is_answered(void **context)
 {
     static const size_t counts[] = {0, 1, 7, POINTS_AT_ONCE, POINTS_AT_ONCE + 1, MOST};
-    uint64_t            held = 0;
+    uint64_t            held     = 0;
     (void)context;
     Scene s = scene_of("show sphere(1);", KRS_FOR_QUESTIONS);
     for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
@@ -368,7 +368,7 @@ static void any_number_is_answered(void **context)
 static void hard_rays_are_told(void **context)
 {
     (void)context;
-    Scene  s = scene_of("show plane([0.1, 1, 0], 0);", KRS_FOR_QUESTIONS);
+    Scene  s             = scene_of("show plane([0.1, 1, 0], 0);", KRS_FOR_QUESTIONS);
     double hard[4][2][3] = {
         {{0, 1e-3, 0}, {1, -0.1, 0}}, /* along an endless plane */
         {{0, 5, 0}, {1, -0.2, 0}},    /* hits far out */
@@ -410,7 +410,7 @@ static void seams_do_not_end_rays(void **context)
     enum { COUNT = 2000 };
     (void)context;
     for (size_t run = 0; run < sizeof touching / sizeof *touching * 3; run++) {
-        Scene  s = scene_of(touching[run / 3], KRS_FOR_QUESTIONS);
+        Scene  s         = scene_of(touching[run / 3], KRS_FOR_QUESTIONS);
         double tolerance = tolerances[run % 3];
         for (int i = 0; i < COUNT; i++)
             for (int k = 0; k < 3; k++) {
@@ -442,7 +442,7 @@ static void wrong_questions_are_refused(void **context)
     static const double wrong[][3] = {{NAN, 0, 0}, {0, INFINITY, 0}, {0, 0, 1e19}};
     const double        good[1][3] = {{0, 0, 5}}, down[1][3] = {{0, 0, -1}}, still[1][3] = {{0}};
     (void)context;
-    Scene s = scene_of("show sphere(1);", KRS_FOR_QUESTIONS);
+    Scene         s = scene_of("show sphere(1);", KRS_FOR_QUESTIONS);
     KrsRendering *r = s.rendering;
     KrsFrame     *f = s.frame;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
@@ -464,14 +464,18 @@ static void wrong_questions_are_refused(void **context)
 static void wrong_answers_are_refused(void **context)
 {
     (void)context;
-    const WayBlock good[4] = {{1, QUERY_HIT, 1, 9}, {9, QUERY_MISS, 77, 2},
-                              {2, QUERY_HIT, 0, 8}, {3, QUERY_MARCHING, 2, 99}};
+    const WayBlock good[4] = {{1, QUERY_HIT, 1, 9},
+                              {9, QUERY_MISS, 77, 2},
+                              {2, QUERY_HIT, 0, 8},
+                              {3, QUERY_MARCHING, 2, 99}};
     assert_true(ways_are_sound(good, 4, 3));
     assert_true(ways_are_sound(good, 0, 0));
     assert_false(ways_are_sound(good, 4, 2)); /* the last ray has no place */
     assert_false(ways_are_sound(good, 4, 5)); /* more places than rays */
-    const WayBlock faults[] = {{1, QUERY_HIT, 3, 9}, {1, QUERY_HIT, UINT32_MAX, 9},
-                               {1, QUERY_MARCHING, 3, 9}, {1, QUERY_MISS + 1, 0, 9}};
+    const WayBlock faults[] = {{1, QUERY_HIT, 3, 9},
+                               {1, QUERY_HIT, UINT32_MAX, 9},
+                               {1, QUERY_MARCHING, 3, 9},
+                               {1, QUERY_MISS + 1, 0, 9}};
     for (size_t fault = 0; fault < sizeof faults / sizeof *faults; fault++)
         for (int at = 0; at < 4; at++) {
             WayBlock ways[4];
@@ -484,14 +488,14 @@ static void wrong_answers_are_refused(void **context)
 /* Memory that runs out at any allocation of ours ends the call with its status. */
 static void memory_may_run_out(void **context)
 {
-    Scarce             scarce = {0};
-    KrsRendererOptions options = {.device = tested_device(),
-                                  .allocator = scarce_allocator(&scarce)};
-    KrsRenderer       *shared = renderer, *own;
+    Scarce             scarce     = {0};
+    KrsRendererOptions options    = {.device    = tested_device(),
+                                     .allocator = scarce_allocator(&scarce)};
+    KrsRenderer       *shared     = renderer, *own;
     const double       zone[1][4] = {{0, 0, 1, 0.5}};
     (void)context;
     assert_int_equal(krs_renderer_new(&options, &own), KRS_OK);
-    renderer = own;
+    renderer        = own;
     size_t failures = 0;
     for (int64_t failing = 1; failing <= 200; failing++) {
         Scene s = scene_of("show sphere(1);", KRS_FOR_QUESTIONS);
@@ -499,10 +503,10 @@ static void memory_may_run_out(void **context)
             assert_int_equal(krs_frame_set_zones(s.frame, zone, 1), KRS_OK);
         memcpy(points[0], (double[]){0, 0, 5}, sizeof *points);
         memcpy(aims[0], (double[]){0, 0, -1}, sizeof *aims);
-        scarce.failing = scarce.made + (failing + 1) / 2;
-        KrsStatus status = krs_device_raycast(s.rendering, s.frame, POINTS, AIMS, 1, 9, 0, found);
+        scarce.failing    = scarce.made + (failing + 1) / 2;
+        KrsStatus status  = krs_device_raycast(s.rendering, s.frame, POINTS, AIMS, 1, 9, 0, found);
         bool      reached = scarce.made >= scarce.failing;
-        scarce.failing = 0;
+        scarce.failing    = 0;
         assert_int_equal(status, reached ? KRS_OUT_OF_MEMORY : KRS_OK);
         failures += reached;
         /* The next call is as if nothing had been. */

@@ -22,7 +22,7 @@ typedef struct Steps {
 static const char *const method_names[ALONG_POLYNOMIALS] = {"exact", "taylor", "root-free"};
 /* A ray has arrived where its steps are so short, in radii of the region; then it is as near to its
    root, which is where the other methods take many steps. */
-static const double enough[ALONG_POLYNOMIALS] = {1e-10, 1e-6, 1e-6};
+static const double enough[ALONG_POLYNOMIALS]  = {1e-10, 1e-6, 1e-6};
 static const double arrived[ALONG_POLYNOMIALS] = {1e-8, 2e-3, 2e-3};
 /* How many steps a ray may need on average and at most. */
 static const int mean_steps[ALONG_POLYNOMIALS] = {20, 100, 100};
@@ -75,7 +75,7 @@ static int march_rays(const Steps *steps, Formula *formula, double radius, int r
                       const char *what)
 {
     Random random = {7};
-    int    count = 0;
+    int    count  = 0;
     for (int i = 0; i < rays; i++) {
         Vec origin, direction;
         random_ray(&random, radius, &origin, &direction);
@@ -95,10 +95,11 @@ static void surfaces_are_not_overshot(void **state)
     for (size_t i = 0; i < SURFACES; i++) {
         const Surface *surface = &surfaces[i];
         Steps steps = steps_new(product_format("use \"std/surfaces.krs\";\n%sshow %sopen: false);",
-                                               surface->before, surface->call), method);
-        int hits = 0;
-        int count = march_rays(&steps, surface->formula, surface->radius, rays, &hits,
-                               surface->name);
+                                               surface->before, surface->call),
+                                method);
+        int   hits  = 0;
+        int   count = march_rays(&steps, surface->formula, surface->radius, rays, &hits,
+                                 surface->name);
         if (hits < 3 || count > rays * mean_steps[method])
             fail_msg("%s, %s: %d hits, %d steps", surface->name, method_names[method], hits, count);
         product_free(&steps.product);
@@ -196,8 +197,8 @@ int main(void)
         void *state = (void *)(uintptr_t)i;
         snprintf(names[2 * i], sizeof names[0], "surfaces of the library, %s", method_names[i]);
         snprintf(names[2 * i + 1], sizeof names[0], "random polynomials, %s", method_names[i]);
-        tests[2 * i] = (struct CMUnitTest){names[2 * i], surfaces_are_not_overshot, NULL, NULL,
-                                           state};
+        tests[2 * i]     = (struct CMUnitTest){names[2 * i], surfaces_are_not_overshot, NULL, NULL,
+                                               state};
         tests[2 * i + 1] = (struct CMUnitTest){
             names[2 * i + 1], random_polynomials_are_not_overshot, NULL, NULL, state};
     }

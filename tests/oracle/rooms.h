@@ -18,13 +18,13 @@ typedef struct Range {
 typedef struct Room {
     const char *name, *text;
     /* Negative inside of the solids, and never farther from 0 than the surface is away. */
-    double    (*bound)(Vec p, const double numbers[ROOM_NUMBERS]);
-    Range       numbers[ROOM_NUMBERS];
-    Vec         eye, target;
-    double      fov;  /* vertical, in degrees */
-    bool        lamp; /* its light has a place, else it is a sun, to which these are directions */
-    Vec         light_low, light_high;
-    Range       wide; /* radius of a lamp; angular diameter of a sun, in degrees */
+    double (*bound)(Vec p, const double numbers[ROOM_NUMBERS]);
+    Range  numbers[ROOM_NUMBERS];
+    Vec    eye, target;
+    double fov;  /* vertical, in degrees */
+    bool   lamp; /* its light has a place, else it is a sun, to which these are directions */
+    Vec    light_low, light_high;
+    Range  wide; /* radius of a lamp; angular diameter of a sun, in degrees */
 } Room;
 
 enum { ROOMS = 18 };

@@ -32,11 +32,11 @@ typedef enum Kind { BALL, POLYNOMIAL, BLOCK, KINDS } Kind;
 
 /* Its numbers are parameters, so that one program shows it at all sizes and places. */
 static const char *const texts[KINDS] = {
-    [BALL]  = "show sphere(size).move(at);\n",
+    [BALL]       = "show sphere(size).move(at);\n",
     [POLYNOMIAL] = "show algebraic(x^2 + y^2 + z^2 == 1).within(box([3, 3, 3]))"
                    ".scale(size).move(at);\n",
-    [BLOCK] = "param sides = [1, 1, 1]; param axis = [0, 0, 1]; param angle = 0;\n"
-              "show box(sides).rotate(axis, angle).move(at);\n",
+    [BLOCK]      = "param sides = [1, 1, 1]; param axis = [0, 0, 1]; param angle = 0;\n"
+                   "show box(sides).rotate(axis, angle).move(at);\n",
 };
 
 typedef struct Scene {
@@ -53,7 +53,8 @@ static Scene *use_scene(Kind kind)
     scene->product = product_format(
         "param at = [0, 0, 0]; param eye = [0, 0, 3]; param size = 1 in [1e-4, 1e4];\n"
         "camera { eye: eye, target: at, fov: %.17g }\n"
-        "light sun { direction: [1, 2, 1], shadow: false }\n%s", FOV, texts[kind]);
+        "light sun { direction: [1, 2, 1], shadow: false }\n%s",
+        FOV, texts[kind]);
     if (krs_rendering_new(renderer, scene->product.scene, &scene->rendering) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     return scene;
@@ -63,8 +64,8 @@ static Scene *use_scene(Kind kind)
 typedef struct Shot {
     Kind     kind;
     Vec      at, eye;
-    double   size;         /* radius of the ball */
-    Vec      sides, axis;  /* of the box */
+    double   size;        /* radius of the ball */
+    Vec      sides, axis; /* of the box */
     double   angle;
     KrsTrace trace;
 } Shot;
@@ -77,10 +78,10 @@ static void set_vector(const Scene *scene, const char *name, Vec v)
 
 static KrsPicture *shot_render(const Shot *shot)
 {
-    Scene           *scene = use_scene(shot->kind);
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1,
-                                .trace = shot->trace};
-    KrsPicture      *picture;
+    Scene           *scene   = use_scene(shot->kind);
+    KrsRenderOptions options = {
+        .width = WIDTH, .height = HEIGHT, .samples = 1, .trace = shot->trace};
+    KrsPicture *picture;
     set_vector(scene, "at", shot->at);
     set_vector(scene, "eye", shot->eye);
     if (shot->kind == BLOCK) {
@@ -109,7 +110,7 @@ static bool is_met(const Shot *shot, Line ray, double more)
     for (int i = 0; i < 3; i++)
         half[i] += fmax(more, -0.1 * half[i]);
     Vec   corner = vec(half[0], half[1], half[2]);
-    Chord chord = chord_of_box(turned, vec_scale(-1, corner), corner);
+    Chord chord  = chord_of_box(turned, vec_scale(-1, corner), corner);
     return !chord_is_empty(chord) && chord.leave > 0;
 }
 
@@ -118,13 +119,13 @@ static double shot_distance(const Shot *shot) { return vec_distance(shot->eye, s
 /* How many pixels are wrong. */
 static size_t judge_shot(const Shot *shot, size_t *hits)
 {
-    Lens        lens = lens_make(shot->eye, shot->at, tan(FOV / 2), false, WIDTH, HEIGHT);
+    Lens        lens    = lens_make(shot->eye, shot->at, tan(FOV / 2), false, WIDTH, HEIGHT);
     KrsPicture *picture = shot_render(shot);
-    double      slack = SLACK * lens_pixel(&lens, shot_distance(shot));
+    double      slack   = SLACK * lens_pixel(&lens, shot_distance(shot));
     size_t      missed = 0, extra = 0;
     *hits = 0;
     for (int k = 0; k < PIXELS; k++) {
-        Line ray = lens_ray(&lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
+        Line ray  = lens_ray(&lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
         bool seen = picture->component[k] != 0;
         missed += !seen && is_met(shot, ray, -slack);
         extra += seen && !is_met(shot, ray, slack);
@@ -132,10 +133,11 @@ static size_t judge_shot(const Shot *shot, size_t *hits)
     }
     extra += picture->stats.unresolved;
     if (missed + extra > 0)
-        print_message("# kind %d, trace %s, %.3g units out, %.3g away: %zu hits, %zu missed, %zu too "
-                      "many, %llu unresolved\n", shot->kind, krs_trace_names[shot->trace],
-                      vec_length(shot->at), shot_distance(shot), *hits, missed, extra,
-                      (unsigned long long)picture->stats.unresolved);
+        print_message(
+            "# kind %d, trace %s, %.3g units out, %.3g away: %zu hits, %zu missed, %zu too "
+            "many, %llu unresolved\n",
+            shot->kind, krs_trace_names[shot->trace], vec_length(shot->at), shot_distance(shot),
+            *hits, missed, extra, (unsigned long long)picture->stats.unresolved);
     krs_picture_free(picture);
     return missed + extra;
 }
@@ -153,7 +155,7 @@ static void place(Shot *shot, Random *random, double far, double away)
     shot->eye   = vec_add(shot->at, vec_scale(away, heading));
 }
 
-static const double OUT[] = {0, 1, 30, 64, 300, 900, 1100, 5000, 1e5};
+static const double OUT[]   = {0, 1, 30, 64, 300, 900, 1100, 5000, 1e5};
 static const double SIZES[] = {1e-3, 0.01, 0.3, 20, 400};
 enum { OUTS = sizeof OUT / sizeof *OUT, SIZE_COUNT = sizeof SIZES / sizeof *SIZES };
 
@@ -182,7 +184,7 @@ static void balls_are_so_by_roots(void **state)
 {
     (void)state;
     static const KrsTrace methods[] = {KRS_TRACE_EXACT, KRS_TRACE_TAYLOR, KRS_TRACE_ROOT_FREE};
-    size_t wrong = 0;
+    size_t                wrong     = 0;
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
         wrong += wrong_balls(POLYNOMIAL, methods[i]);
     assert_int_equal(wrong, 0);

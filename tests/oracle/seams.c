@@ -32,8 +32,8 @@ static size_t count_different(const KrsPicture *parts, const KrsPicture *whole)
         bool         inside = whole->component[k] != 0, differs = false;
         for (int i = 0; i < 9; i++) {
             size_t       near = k + (size_t)(i % 3) + (size_t)(i / 3) * WIDTH - WIDTH - 1;
-            const float *c = &whole->color[4 * near];
-            inside = inside && whole->component[near] != 0;
+            const float *c    = &whole->color[4 * near];
+            inside            = inside && whole->component[near] != 0;
             for (int n = 0; n < 3; n++)
                 inside = inside && fabsf(c[n] - b[n]) < 0.04f;
         }
@@ -48,7 +48,9 @@ static size_t count_different(const KrsPicture *parts, const KrsPicture *whole)
 
 static void blocks_look_like_a_wall(void **state)
 {
-    static const struct { const char *parts, *whole, *around; } walls[] = {
+    static const struct {
+        const char *parts, *whole, *around;
+    } walls[] = {
         {"box([1, 1, 1]).repeat([1, 1, 1], [3, 3, 3])", "box([3, 3, 3])",
          ".rotate([1, 2, 3], 0.4)"},
         {"union([box([1, 3, 3]).move([i - 1, 0, 0]) for i in 0..3])", "box([3, 3, 3])",
@@ -65,7 +67,7 @@ static void blocks_look_like_a_wall(void **state)
         snprintf(text, sizeof text, "show (%s)%s;", walls[i].whole, walls[i].around);
         KrsPicture *whole = picture_of(text, &usual);
         snprintf(text, sizeof text, "show (%s)%s;", walls[i].parts, walls[i].around);
-        KrsPicture *parts = picture_of(text, &usual);
+        KrsPicture *parts     = picture_of(text, &usual);
         size_t      different = count_different(parts, whole);
         if (different > 0)
             print_message("%zu pixels show: %s\n", different, text);
@@ -88,12 +90,13 @@ static void a_heart_has_no_belt(void **state)
 {
     (void)state;
     KrsPicture *picture = picture_of("use \"std/surfaces.krs\"; show heart();"
-                                     "camera { eye: [2.6, 0.3, 3], fov: 30deg }", &usual);
-    size_t wrong = 0, belt = 0;
-    double worst = 0;
+                                     "camera { eye: [2.6, 0.3, 3], fov: 30deg }",
+                                     &usual);
+    size_t      wrong = 0, belt = 0;
+    double      worst = 0;
     for (size_t k = 0; k < PIXELS; k++) {
         const float *p = &picture->position[3 * k], *n = &picture->normal[3 * k];
-        double       right[3], along = 0;
+        double       right[3], along                   = 0;
         if (picture->component[k] == 0 || fabsf(p[1]) > 0.1f)
             continue;
         heart_normal(p, right);

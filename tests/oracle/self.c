@@ -14,13 +14,13 @@ static void nearest_is_the_nearest(void **state)
 {
     (void)state;
     Random random = {1};
-    Cloud cloud = {0};
+    Cloud  cloud  = {0};
     assert_true(cloud_nearest(&cloud, vec(0, 0, 0)) == HUGE_VAL);
     for (int i = 0; i < 3000; i++)
         cloud_add(&cloud, random_in_cube(&random, i % 2 ? 1 : 0.1));
     for (int i = 0; i < 1000; i++) {
-        Vec point = random_in_cube(&random, 1.5);
-        double best = HUGE_VAL;
+        Vec    point = random_in_cube(&random, 1.5);
+        double best  = HUGE_VAL;
         for (size_t k = 0; k < cloud.count; k++)
             best = fmin(best, vec_distance(point, cloud.points[k]));
         assert_true(fabs(cloud_nearest(&cloud, point) - best) <= 1e-12);
@@ -45,10 +45,7 @@ static double capsule_distance(Vec p)
 {
     return vec_distance(p, vec(0, fmax(-0.4, fmin(p.y, 0.4)), 0)) - 0.3;
 }
-static double upright_cylinder_distance(Vec p)
-{
-    return cylinder_distance(vec(p.x, p.z, p.y));
-}
+static double upright_cylinder_distance(Vec p) { return cylinder_distance(vec(p.x, p.z, p.y)); }
 
 static void sphere_cloud(Cloud *cloud) { ellipsoid_cloud(cloud, vec(0.8, 0.8, 0.8), 0.02); }
 static void ring_cloud(Cloud *cloud) { torus_cloud(cloud, 0.7, 0.2, 0.02); }
@@ -69,7 +66,7 @@ static void can_cloud(Cloud *cloud)
 }
 static void capsule_cloud(Cloud *cloud)
 {
-    Sweep sweep = {.curve_count = 1, .radius = 0.3, .radius_end = 0.3};
+    Sweep sweep     = {.curve_count = 1, .radius = 0.3, .radius_end = 0.3};
     sweep.curves[0] = curve_segment(vec(0, -0.4, 0), vec(0, 0.4, 0));
     sweep_cloud(&sweep, cloud, 0.02);
 }
@@ -122,11 +119,11 @@ static void clouds_bracket_known_distances(void **state)
     (void)state;
     for (const Known *k = known; k < known + KNOWN; k++) {
         Random random = {2};
-        Cloud cloud = {0};
+        Cloud  cloud  = {0};
         k->cloud(&cloud);
         assert_true(cloud.spacing > 0.005 && cloud.spacing < 0.06);
         for (int i = 0; i < 2000; i++) {
-            Vec point = random_in_cube(&random, 1.4);
+            Vec    point = random_in_cube(&random, 1.4);
             double truth = fabs(k->distance(point)), found = cloud_nearest(&cloud, point);
             if (!(truth <= found + 1e-9 && found <= truth + cloud.spacing))
                 fail_msg("%s: true distance %g, found %g, spacing %g", k->name, truth, found,
@@ -141,9 +138,9 @@ static void arcs_go_through_their_points(void **state)
     (void)state;
     Random random = {3};
     for (int i = 0; i < 200; i++) {
-        Vec a = random_in_cube(&random, 1), b = random_in_cube(&random, 1);
-        Vec c = random_in_cube(&random, 1);
-        Curve arc = curve_arc(a, b, c);
+        Vec   a = random_in_cube(&random, 1), b = random_in_cube(&random, 1);
+        Vec   c     = random_in_cube(&random, 1);
+        Curve arc   = curve_arc(a, b, c);
         Sweep spine = {.curves = {arc}, .curve_count = 1};
         assert_true(vec_distance(curve_at(&arc, 0), a) < 1e-9);
         assert_true(vec_distance(curve_at(&arc, 1), c) < 1e-9);
@@ -154,8 +151,8 @@ static void arcs_go_through_their_points(void **state)
 static void swept_depth_of_a_capsule(void **state)
 {
     (void)state;
-    Random random = {4};
-    Sweep sweep = {.curve_count = 1, .radius = 0.3, .radius_end = 0.3};
+    Random random   = {4};
+    Sweep  sweep    = {.curve_count = 1, .radius = 0.3, .radius_end = 0.3};
     sweep.curves[0] = curve_segment(vec(0, -0.4, 0), vec(0, 0.4, 0));
     for (int i = 0; i < 2000; i++) {
         Vec point = random_in_cube(&random, 1.5);
@@ -186,14 +183,14 @@ static void hulls_have_their_faces(void **state)
 static void concave_polygons(void **state)
 {
     (void)state;
-    Figure l = {0};
+    Figure       l             = {0};
     const double corners[6][2] = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
     for (int i = 0; i < 6; i++)
         figure_add(&l, corners[i][0], corners[i][1]);
     Random random = {5};
     for (int i = 0; i < 2000; i++) {
         double x = random_between(&random, -0.5, 2.5), y = random_between(&random, -0.5, 2.5);
-        bool inside = x > 0 && y > 0 && ((x < 2 && y < 1) || (x < 1 && y < 2));
+        bool   inside = x > 0 && y > 0 && ((x < 2 && y < 1) || (x < 1 && y < 2));
         assert_int_equal(figure_contains(&l, x, y), inside);
     }
 }
@@ -204,12 +201,12 @@ static Sequence sample_sequence(Random *random, int mirrors)
     for (int i = 0; i < mirrors; i++)
         sequence.mirrors[i] = (Half){random_unit(random), random_between(random, -0.3, 0.6)};
     for (int level = 0; level <= mirrors; level++) {
-        Body *body = &sequence.bodies[sequence.body_count++];
-        *body = (Body){.level = level, .from = random_in_cube(random, 0.6), .radius = 0.3};
-        body->to = level % 3 == 1 ? random_in_cube(random, 0.6) : body->from;
-        body->box = level % 3 == 2;
+        Body *body  = &sequence.bodies[sequence.body_count++];
+        *body       = (Body){.level = level, .from = random_in_cube(random, 0.6), .radius = 0.3};
+        body->to    = level % 3 == 1 ? random_in_cube(random, 0.6) : body->from;
+        body->box   = level % 3 == 2;
         body->sides = vec(0.3, 0.2, 0.4);
-        body->axis = random_unit(random);
+        body->axis  = random_unit(random);
         body->angle = random_between(random, -3, 3);
     }
     return sequence;
@@ -222,7 +219,7 @@ static bool body_contains(const Body *body, Vec p)
         return fabs(q.x) <= body->sides.x && fabs(q.y) <= body->sides.y &&
                fabs(q.z) <= body->sides.z;
     }
-    Sweep sweep = {.curve_count = 1, .radius = body->radius, .radius_end = body->radius};
+    Sweep sweep     = {.curve_count = 1, .radius = body->radius, .radius_end = body->radius};
     sweep.curves[0] = curve_segment(body->from, body->to);
     return sweep_depth(&sweep, p) <= 0;
 }
@@ -235,9 +232,9 @@ static bool level_contains(const Sequence *sequence, int level, Vec p)
             return true;
     if (level == 0)
         return false;
-    Half mirror = sequence->mirrors[level - 1];
+    Half   mirror = sequence->mirrors[level - 1];
     double excess = half_excess(mirror, p);
-    Vec image = vec_sub(p, vec_scale(2 * excess, mirror.normal));
+    Vec    image  = vec_sub(p, vec_scale(2 * excess, mirror.normal));
     return level_contains(sequence, level - 1, excess <= 0 ? p : image);
 }
 
@@ -245,12 +242,12 @@ static void expansions_contain_what_the_model_says(void **state)
 {
     (void)state;
     Random random = {6};
-    int inside = 0;
+    int    inside = 0;
     for (int repeat = 0; repeat < 6; repeat++) {
-        Sequence sequence = sample_sequence(&random, repeat);
+        Sequence  sequence  = sample_sequence(&random, repeat);
         Expansion expansion = expand(&sequence);
         for (int i = 0; i < 1000; i++) {
-            Vec point = random_in_cube(&random, 1.2);
+            Vec  point = random_in_cube(&random, 1.2);
             bool truth = level_contains(&sequence, sequence.mirror_count, point);
             inside += truth;
             assert_int_equal(expansion_contains(&expansion, point), truth);
@@ -264,10 +261,10 @@ static void expansions_contain_what_the_model_says(void **state)
 static void expansion_distances_are_tight(void **state)
 {
     (void)state;
-    Random random = {7};
-    Sequence sequence = sample_sequence(&random, 5);
+    Random    random    = {7};
+    Sequence  sequence  = sample_sequence(&random, 5);
     Expansion expansion = expand(&sequence);
-    Cloud inner = {0};
+    Cloud     inner     = {0};
     while (inner.count < 12000) {
         Vec point = random_in_cube(&random, 3);
         if (expansion_contains(&expansion, point))
@@ -278,9 +275,9 @@ static void expansion_distances_are_tight(void **state)
         Vec point = random_in_cube(&random, 3);
         if (expansion_contains(&expansion, point))
             continue;
-        bool sure;
+        bool   sure;
         double distance = expansion_distance(&expansion, point, &sure);
-        double found = cloud_nearest(&inner, point);
+        double found    = cloud_nearest(&inner, point);
         assert_true(distance <= found + 1e-6);
         assert_true(found <= distance + 0.2);
         cut += !sure;
@@ -293,19 +290,19 @@ static void expansion_distances_are_tight(void **state)
 static void rays_enter_where_points_are_inside(void **state)
 {
     (void)state;
-    Random random = {8};
+    Random   random   = {8};
     Sequence sequence = sample_sequence(&random, 4);
-    int kept = 0, hits = 0;
+    int      kept = 0, hits = 0;
     for (int i = 0; i < sequence.body_count; i++)
         if (sequence.bodies[i].level % 3 != 1)
             sequence.bodies[kept++] = sequence.bodies[i];
     sequence.body_count = kept;
     Expansion expansion = expand(&sequence);
     for (int i = 0; i < 200; i++) {
-        Vec origin = vec_scale(4, random_unit(&random));
-        Vec direction = vec_unit(vec_sub(random_in_cube(&random, 1), origin));
-        double enter = expansion_enter(&expansion, origin, direction);
-        bool sure;
+        Vec    origin    = vec_scale(4, random_unit(&random));
+        Vec    direction = vec_unit(vec_sub(random_in_cube(&random, 1), origin));
+        double enter     = expansion_enter(&expansion, origin, direction);
+        bool   sure;
         if (enter < HUGE_VAL) {
             Vec end = vec_add(origin, vec_scale(enter, direction));
             assert_true(expansion_distance(&expansion, end, &sure) < 1e-6);
@@ -326,7 +323,7 @@ static double ball_field(const void *user, Vec p)
 static double inverted_field(const void *user, Vec p) { return -ball_field(user, p); }
 static double swollen_field(const void *user, Vec p) { return ball_field(user, p) - 0.05; }
 static double broken_field(const void *user, Vec p) { return p.x > 0 ? NAN : ball_field(user, p); }
-static bool ball_inside(const void *user, Vec p) { return ball_field(user, p) <= 0; }
+static bool   ball_inside(const void *user, Vec p) { return ball_field(user, p) <= 0; }
 
 static void the_judge_can_refute(void **state)
 {

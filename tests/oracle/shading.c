@@ -58,15 +58,16 @@ static void smooth_normals_on_the_device(void **state)
         double width = k ? 0.5 : 0.2;
         snprintf(text, sizeof text,
                  "%s show krs { kernel sphere(1).move([-0.6, 0, 0]);"
-                 " reflect plane([1, 0, 0], 0); }.smooth_mirrors(%g);", CAMERA, width);
+                 " reflect plane([1, 0, 0], 0); }.smooth_mirrors(%g);",
+                 CAMERA, width);
         KrsPicture *picture = take(text, (KrsRenderOptions){0});
         size_t      checked = 0, blended = 0;
         for (int i = 0; i < PIXELS; i++) {
             if (!is_clear(picture, i))
                 continue;
             Vec    p = read(picture->position, i), found = read(picture->normal, i);
-            double share = fmin(fmax(p.x / width + 0.5, 0), 1);
-            Vec    kernel = vec_unit(vec(-fabs(p.x) + 0.6, p.y, p.z));
+            double share    = fmin(fmax(p.x / width + 0.5, 0), 1);
+            Vec    kernel   = vec_unit(vec(-fabs(p.x) + 0.6, p.y, p.z));
             Vec    expected = vec_unit(vec((1 - 2 * share) * kernel.x, kernel.y, kernel.z));
             /* Within the reach of the differences the two sides' normals are mixed before. */
             double tolerance = fabs(p.x) < 0.06 ? 0.15 : 0.01;
@@ -87,18 +88,22 @@ static void a_pixel_is_the_least_width(void **state)
 {
     (void)state;
     char text[600], plain[600];
-    snprintf(text, sizeof text, "%s show sphere(1).move([-0.6, 0, 0])"
-             ".mirror(plane([1, 0, 0], 0)).smooth_mirrors();", CAMERA);
-    snprintf(plain, sizeof plain, "%s show sphere(1).move([-0.6, 0, 0])"
-             ".mirror(plane([1, 0, 0], 0));", CAMERA);
-    KrsRenderOptions sharp = {.no_filter = true};
-    KrsPicture *smooth = take(text, sharp), *hard = take(plain, sharp);
-    double      pixel = 2 * tan(12 * acos(-1) / 180) * 7.3 / HEIGHT;
-    size_t      changed = 0;
+    snprintf(text, sizeof text,
+             "%s show sphere(1).move([-0.6, 0, 0])"
+             ".mirror(plane([1, 0, 0], 0)).smooth_mirrors();",
+             CAMERA);
+    snprintf(plain, sizeof plain,
+             "%s show sphere(1).move([-0.6, 0, 0])"
+             ".mirror(plane([1, 0, 0], 0));",
+             CAMERA);
+    KrsRenderOptions sharp  = {.no_filter = true};
+    KrsPicture      *smooth = take(text, sharp), *hard = take(plain, sharp);
+    double           pixel   = 2 * tan(12 * acos(-1) / 180) * 7.3 / HEIGHT;
+    size_t           changed = 0;
     for (int i = 0; i < PIXELS; i++) {
         if (!is_clear(hard, i))
             continue;
-        Vec    p = read(hard->position, i);
+        Vec    p   = read(hard->position, i);
         double off = vec_distance(read(smooth->normal, i), read(hard->normal, i));
         if (fabs(p.x) > 1.5 * pixel)
             assert_true(off < 1e-4);
@@ -119,14 +124,15 @@ static void materials_on_the_device(void **state)
         char text[600];
         snprintf(text, sizeof text,
                  "%s material m { color: %s } show sphere(1).paint(m).scale([1.3, 1, 0.8])"
-                 ".rotate([0, 0, 1], 0.6);", CAMERA, materials[k]);
+                 ".rotate([0, 0, 1], 0.6);",
+                 CAMERA, materials[k]);
         KrsPicture *picture = take(text, (KrsRenderOptions){0});
         size_t      checked = 0;
         for (int i = 0; i < PIXELS; i++) {
             if (!is_clear(picture, i))
                 continue;
-            Vec p = vec_turn(read(picture->position, i), vec(0, 0, 1), -0.6);
-            Vec at = vec_unit(vec(p.x / 1.3, p.y, p.z / 0.8));
+            Vec p        = vec_turn(read(picture->position, i), vec(0, 0, 1), -0.6);
+            Vec at       = vec_unit(vec(p.x / 1.3, p.y, p.z / 0.8));
             Vec expected = k == 0 ? vec_scale(0.5, vec_add(vec(1, 1, 1), at))
                                   : vec(0.5 + 0.1 * atan2(at.z, at.x), 0.5 + 0.1 * asin(at.y), 0);
             if (vec_distance(read(picture->albedo, i), expected) > 5e-3)
@@ -146,11 +152,11 @@ static double filtering(const char *shown, uint32_t samples, double *worst)
     snprintf(text, sizeof text,
              "%s material steel { color: [0.9, 0.9, 0.9], metallic: 1, roughness: 0.15 } show %s;",
              CAMERA, shown);
-    KrsPicture *soft = take(text, (KrsRenderOptions){.samples = samples});
-    KrsPicture *hard = take(text, (KrsRenderOptions){.samples = samples, .no_filter = true});
-    double      sum = 0;
+    KrsPicture *soft  = take(text, (KrsRenderOptions){.samples = samples});
+    KrsPicture *hard  = take(text, (KrsRenderOptions){.samples = samples, .no_filter = true});
+    double      sum   = 0;
     size_t      count = 0;
-    *worst = 0;
+    *worst            = 0;
     for (int i = 0; i < PIXELS; i++) {
         assert_true(soft->color[4 * i + 3] == hard->color[4 * i + 3]); /* coverage is the rays' */
         if (!is_clear(hard, i))
@@ -165,8 +171,8 @@ static double filtering(const char *shown, uint32_t samples, double *worst)
     assert_true(count > 3000);
     krs_picture_free(soft);
     krs_picture_free(hard);
-    print_message("# %s: %u samples, mean %.5f, worst %.5f\n", shown, samples,
-                  sum / (double)count, *worst);
+    print_message("# %s: %u samples, mean %.5f, worst %.5f\n", shown, samples, sum / (double)count,
+                  *worst);
     return sum / (double)count;
 }
 
@@ -177,7 +183,7 @@ static void only_fine_detail_is_filtered(void **state)
     (void)state;
     static const char grooves[] = "(box([2, 2, 0.4]) - cylinder(0.006, 3).repeat([0.013, 0, 0])"
                                   ".move([0, 0, 0.2])).paint(steel)";
-    double worst;
+    double            worst;
     assert_true(filtering("sphere(1).paint(steel)", 1, &worst) < 1e-3);
     assert_true(filtering("box([3, 3, 0.1]).paint(steel)", 1, &worst) < 1e-4);
     assert_true(filtering("sphere(1).scale([1.4, 1, 0.6]).paint(steel)", 1, &worst) < 2e-3);

@@ -28,24 +28,23 @@
 /* What is asked for.  Noise as a share of that of independent rays, lift in pixels, widths and
    numbers of subpixels as shares of what there is; all others are openness and light, up to 1. */
 #define MOST_NOISE       0.6
-#define LIFT             0.125  /* where rays start above even ground */
-#define MOST_LIFT        1.25   /* a pixel, and what the permitted error makes */
+#define LIFT             0.125 /* where rays start above even ground */
+#define MOST_LIFT        1.25  /* a pixel, and what the permitted error makes */
 #define MOST_WIDTH_ERROR 0.03
-#define BLUR_REACH       8      /* pixels: so far from a penumbra nothing is shared */
+#define BLUR_REACH       8 /* pixels: so far from a penumbra nothing is shared */
 /* Of means of 5x5 pixels, as shares of the light: root of the mean square in and near the penumbra
    for 1 and for 4 rays a pixel, and the worst of all. */
-#define MOST_OFF_1       0.025
-#define MOST_OFF_4       0.015
-#define MOST_OFF_AT_ALL  0.15
-#define MOST_ASYMMETRY   0.03   /* of means of 20x20 pixels */
-#define MOST_OFF_SHARED  0.02   /* of means of 5x5 pixels of colours, root of the mean square */
-#define MOST_OVER_1      1e-3
-#define MOST_OVER_4      2e-4
+#define MOST_OFF_1      0.025
+#define MOST_OFF_4      0.015
+#define MOST_OFF_AT_ALL 0.15
+#define MOST_ASYMMETRY  0.03 /* of means of 20x20 pixels */
+#define MOST_OFF_SHARED 0.02 /* of means of 5x5 pixels of colours, root of the mean square */
+#define MOST_OVER_1     1e-3
+#define MOST_OVER_4     2e-4
 
 #define DEGREE (M_PI / 180)
 
 enum { WIDTH = 320, HEIGHT = 180 };
-
 
 /* ---- Scenes: solids over white ground, which is y = 0 ---- */
 
@@ -58,14 +57,23 @@ typedef struct Solid {
 } Solid;
 
 typedef enum StageKind {
-    LEDGE, LEDGE_LAMP, BALLS, BALL_LAMP, TWIGS,
-    BOUNDS, FAR_BOUNDS, POLYNOMIALS, FIELDS, TWISTS, STAGES
+    LEDGE,
+    LEDGE_LAMP,
+    BALLS,
+    BALL_LAMP,
+    TWIGS,
+    BOUNDS,
+    FAR_BOUNDS,
+    POLYNOMIALS,
+    FIELDS,
+    TWISTS,
+    STAGES
 } StageKind;
 enum { FROM_ABOVE, FROM_THE_SIDE }; /* cameras: orthographic and perspective */
 enum { MOST_SOLIDS = 24, MOST_PIXELS = 1 << 16 };
 
 typedef struct Stage {
-    bool          lamp; /* its light has a place, else it is a sun */
+    bool          lamp;  /* its light has a place, else it is a sun */
     double        slope; /* balls have a distance so many times too small; 0: the true one */
     const char   *ball;  /* what they are made of: a ball of radius 1; NULL: spheres */
     Vec           target;
@@ -78,35 +86,35 @@ typedef struct Stage {
 } Stage;
 
 static const Solid A_LEDGE = {SLAB, {-20, 0, -20}, {0, 2, 20}, 0};
-static const Solid A_BALL = {BALL, {0, 1.6, 0}, {0, 0, 0}, 0.9};
+static const Solid A_BALL  = {BALL, {0, 1.6, 0}, {0, 0, 0}, 0.9};
 
 static Stage stages[STAGES] = {
-    [LEDGE] = {.target = {1.5, 0, 0}, .high = 4},
-    [LEDGE_LAMP] = {.lamp = true, .target = {1.5, 0, 0}, .high = 4},
-    [BALLS] = {.target = {1.2, 0, 0}, .high = 5},
-    [BALL_LAMP] = {.lamp = true, .target = {1.2, 0, 0}, .high = 5},
-    [TWIGS] = {.target = {0, 0, 0}, .high = 4},
-    [BOUNDS] = {.slope = 4, .target = {1.2, 0, 0}, .high = 5},
-    [FAR_BOUNDS] = {.slope = 20, .target = {1.2, 0, 0}, .high = 5},
+    [LEDGE]       = {.target = {1.5, 0, 0}, .high = 4},
+    [LEDGE_LAMP]  = {.lamp = true, .target = {1.5, 0, 0}, .high = 4},
+    [BALLS]       = {.target = {1.2, 0, 0}, .high = 5},
+    [BALL_LAMP]   = {.lamp = true, .target = {1.2, 0, 0}, .high = 5},
+    [TWIGS]       = {.target = {0, 0, 0}, .high = 4},
+    [BOUNDS]      = {.slope = 4, .target = {1.2, 0, 0}, .high = 5},
+    [FAR_BOUNDS]  = {.slope = 20, .target = {1.2, 0, 0}, .high = 5},
     [POLYNOMIALS] = {.ball = "algebraic(x^2 + y^2 + z^2 == 1)", .target = {1.2, 0, 0}, .high = 5},
-    [FIELDS] = {.ball = "field(x^2 + y^2 + abs(z)^2 - 1).within(box([8, 8, 8]))",
-                .target = {1.2, 0, 0}, .high = 5},
-    [TWISTS] = {.ball = "sphere(1).twist([0, 1, 0], 1)", .target = {1.2, 0, 0}, .high = 5},
+    [FIELDS]      = {.ball   = "field(x^2 + y^2 + abs(z)^2 - 1).within(box([8, 8, 8]))",
+                     .target = {1.2, 0, 0},
+                     .high   = 5},
+    [TWISTS]      = {.ball = "sphere(1).twist([0, 1, 0], 1)", .target = {1.2, 0, 0}, .high = 5},
 };
 
 /* Twigs in all directions that lie above the ground. */
 static void scatter_twigs(Stage *stage)
 {
     Random random = {5};
-    stage->count = 20;
+    stage->count  = 20;
     for (int i = 0; i < stage->count; i++) {
         double turn = random_between(&random, 0, M_PI), length = random_between(&random, 0.5, 1.2);
-        Vec    middle = vec(random_between(&random, -3, 3), random_between(&random, 0.6, 1),
-                            random_between(&random, -2, 2));
-        Vec    aside = vec(0.5 * length * cos(turn), random_between(&random, -0.2, 0.2),
-                           0.5 * length * sin(turn));
-        stage->solids[i] =
-            (Solid){TWIG, vec_sub(middle, aside), vec_add(middle, aside), 1};
+        Vec    middle    = vec(random_between(&random, -3, 3), random_between(&random, 0.6, 1),
+                               random_between(&random, -2, 2));
+        Vec    aside     = vec(0.5 * length * cos(turn), random_between(&random, -0.2, 0.2),
+                               0.5 * length * sin(turn));
+        stage->solids[i] = (Solid){TWIG, vec_sub(middle, aside), vec_add(middle, aside), 1};
     }
 }
 
@@ -117,7 +125,7 @@ static void place_solids(StageKind kind)
         scatter_twigs(stage);
         return;
     }
-    bool ledge = kind == LEDGE || kind == LEDGE_LAMP;
+    bool ledge                    = kind == LEDGE || kind == LEDGE_LAMP;
     stage->solids[stage->count++] = ledge ? A_LEDGE : A_BALL;
     if (kind == BALLS || stage->slope > 0 || stage->ball) /* one that lies on the ground */
         stage->solids[stage->count++] = (Solid){BALL, {-1.5, 0.4, 1.5}, {0, 0, 0}, 0.4};
@@ -129,35 +137,44 @@ static void write_solid(SceneText *text, const Stage *stage, const Solid *solid)
     switch (solid->kind) {
     case BALL:
         scene_write(text, "show %s.scale(%.17g).move([%.17g, %.17g, %.17g]).paint(white);\n",
-                    stage->slope > 0 ? "ball()" : stage->ball ? stage->ball : "sphere(1)",
+                    stage->slope > 0 ? "ball()"
+                    : stage->ball    ? stage->ball
+                                     : "sphere(1)",
                     solid->radius, a.x, a.y, a.z);
         break;
     case SLAB:
-        scene_write(text, "show box([%.17g, %.17g, %.17g]).move([%.17g, %.17g, %.17g])"
-                    ".paint(white);\n", sides.x, sides.y, sides.z, middle.x, middle.y, middle.z);
+        scene_write(text,
+                    "show box([%.17g, %.17g, %.17g]).move([%.17g, %.17g, %.17g])"
+                    ".paint(white);\n",
+                    sides.x, sides.y, sides.z, middle.x, middle.y, middle.z);
         break;
     case TWIG:
-        scene_write(text, "show capsule([%.17g, %.17g, %.17g], [%.17g, %.17g, %.17g], "
-                    "%.17g * size).paint(white);\n", a.x, a.y, a.z, b.x, b.y, b.z, solid->radius);
+        scene_write(text,
+                    "show capsule([%.17g, %.17g, %.17g], [%.17g, %.17g, %.17g], "
+                    "%.17g * size).paint(white);\n",
+                    a.x, a.y, a.z, b.x, b.y, b.z, solid->radius);
     }
 }
 
 static void write_looks(SceneText *text, const Stage *stage)
 {
     const char *where = stage->lamp ? "position" : "direction";
-    const char *wide = stage->lamp ? "radius" : "softness";
-    Vec         t = stage->target;
-    scene_write(text, "param at = [-1, 2, 0.5];\nparam wide = 0 in [0, 1];\n"
+    const char *wide  = stage->lamp ? "radius" : "softness";
+    Vec         t     = stage->target;
+    scene_write(text,
+                "param at = [-1, 2, 0.5];\nparam wide = 0 in [0, 1];\n"
                 "param size = 0.01 in [1e-6, 1];\n"
                 "light red { %s: at, %s: wide, color: [1, 0, 0] }\n"
                 "light green { %s: at, %s: wide, color: [0, 1, 0], shadow: false }\n"
                 "sky { zenith: #000000, horizon: #000000, ground: #000000 }\n"
                 "image { tone_map: \"none\" }\n"
                 "material white { color: [1, 1, 1], roughness: 1 }\n"
-                "show plane([0, 1, 0], 0).paint(white);\n", where, wide, where, wide);
-    scene_write(text, "camera above { eye: [%g, 50, %g], target: [%g, %g, %g], "
-                "projection: \"orthographic\", height: %g }\n", t.x, t.z + 50, t.x, t.y, t.z,
-                stage->high);
+                "show plane([0, 1, 0], 0).paint(white);\n",
+                where, wide, where, wide);
+    scene_write(text,
+                "camera above { eye: [%g, 50, %g], target: [%g, %g, %g], "
+                "projection: \"orthographic\", height: %g }\n",
+                t.x, t.z + 50, t.x, t.y, t.z, stage->high);
     scene_write(text, "camera aside { eye: [%g, 5, %g], target: [%g, %g, %g], fov: 40deg }\n",
                 t.x + 4, t.z + 7, t.x, t.y, t.z);
 }
@@ -176,8 +193,10 @@ static Stage *use_stage(StageKind kind)
     place_solids(kind);
     write_looks(&stage->text, stage);
     if (stage->slope > 0)
-        scene_write(&stage->text, "shape ball(radius = 1) { distance: length(p) - radius, "
-                    "slope: %.17g, within: box(2 * radius * [1, 1, 1]) }\n", stage->slope);
+        scene_write(&stage->text,
+                    "shape ball(radius = 1) { distance: length(p) - radius, "
+                    "slope: %.17g, within: box(2 * radius * [1, 1, 1]) }\n",
+                    stage->slope);
     for (int i = 0; i < stage->count; i++)
         write_solid(&stage->text, stage, &stage->solids[i]);
     stage->product = product_compile(stage->text.bytes);
@@ -230,7 +249,7 @@ static KrsPicture *shoot(const Shot *shot)
 static Lens shot_lens(const Shot *shot)
 {
     const Stage *stage = use_stage(shot->stage);
-    Vec          t = stage->target;
+    Vec          t     = stage->target;
     int          width = (int)shot->options.width, height = (int)shot->options.height;
     if (shot->options.camera == FROM_ABOVE)
         return lens_make(vec(t.x, 50, t.z + 50), t, stage->high / 2, true, width, height);
@@ -280,7 +299,7 @@ static Chord chord_of(Line line, const Solid *solid, double size)
     switch (solid->kind) {
     case BALL: return chord_of_ball(line, solid->a, solid->radius);
     case SLAB: return chord_of_box(line, solid->a, solid->b);
-    default:   return chord_of_capsule(line, solid->a, solid->b, size * solid->radius);
+    default: return chord_of_capsule(line, solid->a, solid->b, size * solid->radius);
     }
 }
 
@@ -288,8 +307,8 @@ static Chord chord_of(Line line, const Solid *solid, double size)
 static bool is_hidden(const Shot *shot, Vec point, Vec way, bool endless)
 {
     const Stage *stage = &stages[shot->stage];
-    Line         line = {point, vec_unit(way)};
-    double       end = endless ? HUGE_VAL : vec_length(way);
+    Line         line  = {point, vec_unit(way)};
+    double       end   = endless ? HUGE_VAL : vec_length(way);
     for (int i = 0; i < stage->count; i++) {
         Chord chord = chord_of(line, &stage->solids[i], shot->size);
         if (i + 1 != shot->without && !chord_is_empty(chord) && chord.leave > 0 &&
@@ -303,16 +322,16 @@ static bool is_hidden(const Shot *shot, Vec point, Vec way, bool endless)
 static double share_by_rays(const Shot *shot, Vec point)
 {
     enum { RINGS = 16, SPOKES = 24 };
-    Disc disc = disc_from(shot, point);
+    Disc disc  = disc_from(shot, point);
     Vec  aside = vec_across(disc.axis), other = vec_cross(disc.axis, aside);
     int  open = 0;
     for (int i = 0; i < RINGS; i++)
         for (int k = 0; k < SPOKES; k++) {
             double away = disc.radius * sqrt((i + 0.5) / RINGS);
             double turn = 2 * M_PI * (k + 0.618 * i) / SPOKES;
-            Vec    at = vec_add(vec_scale(away * cos(turn), aside),
-                                vec_scale(away * sin(turn), other));
-            Vec    way = vec_add(vec_scale(disc.remote, disc.axis), at);
+            Vec    at   = vec_add(vec_scale(away * cos(turn), aside),
+                                  vec_scale(away * sin(turn), other));
+            Vec    way  = vec_add(vec_scale(disc.remote, disc.axis), at);
             open += !is_hidden(shot, point, way, disc.endless);
         }
     return (double)open / (RINGS * SPOKES);
@@ -322,12 +341,12 @@ static double share_by_rays(const Shot *shot, Vec point)
    all rays go up and towards the ledge. */
 static double share_above_edge(const Shot *shot, Vec point)
 {
-    Disc   disc = disc_from(shot, point);
+    Disc   disc    = disc_from(shot, point);
     Vec    to_edge = vec(A_LEDGE.b.x - point.x, A_LEDGE.b.y - point.y, 0);
-    Vec    open = vec_unit(vec_cross(to_edge, vec(0, 0, 1))); /* away from the ledge */
-    Vec    across = vec_sub(open, vec_scale(vec_dot(open, disc.axis), disc.axis));
-    double cut = -vec_dot(open, disc.axis) * disc.remote / (disc.radius * vec_length(across));
-    cut = fmax(-1, fmin(cut, 1));
+    Vec    open    = vec_unit(vec_cross(to_edge, vec(0, 0, 1))); /* away from the ledge */
+    Vec    across  = vec_sub(open, vec_scale(vec_dot(open, disc.axis), disc.axis));
+    double cut     = -vec_dot(open, disc.axis) * disc.remote / (disc.radius * vec_length(across));
+    cut            = fmax(-1, fmin(cut, 1));
     return (acos(cut) - cut * sqrt(1 - cut * cut)) / M_PI;
 }
 
@@ -345,11 +364,15 @@ static Truths truths; /* the last computed */
 /* Whether the last truths are those of another shot of the same solids. */
 static bool are_known(Truth *truth, const Shot *shot, double lift)
 {
-    static struct { Truth *truth; double lift; Shot shot; } last;
+    static struct {
+        Truth *truth;
+        double lift;
+        Shot   shot;
+    } last;
     const Stage *stage = &stages[shot->stage], *before = &stages[last.shot.stage];
     Shot         alike = *shot;
-    alike.stage = last.shot.stage;
-    bool known = last.truth == truth && !(last.lift < lift) && !(last.lift > lift) &&
+    alike.stage        = last.shot.stage;
+    bool known         = last.truth == truth && !(last.lift < lift) && !(last.lift > lift) &&
                  memcmp(&alike, &last.shot, sizeof alike) == 0 && stage->lamp == before->lamp &&
                  stage->count == before->count &&
                  memcmp(&stage->target, &before->target, sizeof stage->target) == 0 &&
@@ -364,15 +387,15 @@ static void compute_truths(Truth *truth, const Shot *shot, double lift)
 {
     if (are_known(truth, shot, lift))
         return;
-    Lens      lens = shot_lens(shot);
+    Lens      lens   = shot_lens(shot);
     KrsWindow window = shot->options.crop;
-    truths.width = (int)window.width;
-    truths.height = (int)window.height;
+    truths.width     = (int)window.width;
+    truths.height    = (int)window.height;
     assert_in_range(truths.width * truths.height, 1, MOST_PIXELS);
     for (int k = 0; k < truths.width * truths.height; k++) {
-        Vec ground = ground_at(&lens, &window, k % truths.width, k / truths.width);
-        truths.low[k] = truth(shot, ground);
-        ground.y = lift * pixel_at(&lens, ground);
+        Vec ground       = ground_at(&lens, &window, k % truths.width, k / truths.width);
+        truths.low[k]    = truth(shot, ground);
+        ground.y         = lift * pixel_at(&lens, ground);
         truths.lifted[k] = truth(shot, ground);
     }
 }
@@ -383,12 +406,12 @@ static double truth_high(int k) { return fmax(truths.low[k], truths.lifted[k]); 
 /* The least and the greatest truth of a pixel and those around it. */
 static void truths_around(int k, double *low, double *high)
 {
-    *low = HUGE_VAL;
+    *low  = HUGE_VAL;
     *high = -HUGE_VAL;
     for (int y = k / truths.width - 1; y <= k / truths.width + 1; y++)
         for (int x = k % truths.width - 1; x <= k % truths.width + 1; x++)
             if (x >= 0 && y >= 0 && x < truths.width && y < truths.height) {
-                *low = fmin(*low, truth_low(y * truths.width + x));
+                *low  = fmin(*low, truth_low(y * truths.width + x));
                 *high = fmax(*high, truth_high(y * truths.width + x));
             }
 }
@@ -400,12 +423,12 @@ typedef struct Match {
     int    wrong;                /* of umbra that are lit, of lit ones that are not */
     double noise;                /* of the penumbra, root of the mean square */
     double expected;             /* if the rays of a pixel were independent */
-    double lift; /* where rays seem to start, in pixels above the surface */
+    double lift;                 /* where rays seem to start, in pixels above the surface */
 } Match;
 
 static Match match_area(const KrsPicture *picture, const Shot *shot, Truth *truth)
 {
-    Match  match = {0};
+    Match  match   = {0};
     double squares = 0, variance = 0, along = 0, steep = 0;
     compute_truths(truth, shot, 1);
     for (int k = 0; k < truths.width * truths.height; k++) {
@@ -425,8 +448,8 @@ static Match match_area(const KrsPicture *picture, const Shot *shot, Truth *trut
         along += off * rise;
         steep += rise * rise;
     }
-    match.lift = along / steep;
-    match.noise = sqrt((squares - match.lift * along) / match.penumbra);
+    match.lift     = along / steep;
+    match.noise    = sqrt((squares - match.lift * along) / match.penumbra);
     match.expected = sqrt(variance / match.penumbra / shot->options.samples);
     return match;
 }
@@ -486,16 +509,32 @@ enum { LIGHTINGS = sizeof lightings / sizeof lightings[0] };
 
 static Shot edge_shot(const struct Lighting *lighting, KrsShadows shadows, uint32_t samples)
 {
-    return (Shot){lighting->ledge, lighting->edge_light, lighting->wide, 0,
-                  {.width = 640, .height = 360, .crop = {192, 174, 448, 12}, .shadows = shadows,
-                   .samples = samples, .no_upsampling = true}, 0};
+    return (Shot){lighting->ledge,
+                  lighting->edge_light,
+                  lighting->wide,
+                  0,
+                  {.width         = 640,
+                   .height        = 360,
+                   .crop          = {192, 174, 448, 12},
+                   .shadows       = shadows,
+                   .samples       = samples,
+                   .no_upsampling = true},
+                  0};
 }
 
 static Shot ball_shot(const struct Lighting *lighting, KrsShadows shadows, uint32_t samples)
 {
-    return (Shot){lighting->ball, lighting->ball_light, lighting->wide, 0,
-                  {.width = 320, .height = 180, .crop = {110, 65, 165, 90}, .shadows = shadows,
-                   .samples = samples, .no_upsampling = true}, 0};
+    return (Shot){lighting->ball,
+                  lighting->ball_light,
+                  lighting->wide,
+                  0,
+                  {.width         = 320,
+                   .height        = 180,
+                   .crop          = {110, 65, 165, 90},
+                   .shadows       = shadows,
+                   .samples       = samples,
+                   .no_upsampling = true},
+                  0};
 }
 
 static void area_shadows_are_shares_of_the_disc(void **state)
@@ -503,11 +542,11 @@ static void area_shadows_are_shares_of_the_disc(void **state)
     (void)state;
     size_t wrong = 0;
     for (int i = 0; i < LIGHTINGS; i++) {
-        Shot edge = edge_shot(&lightings[i], KRS_SHADOWS_AREA, 64);
-        Shot ball = ball_shot(&lightings[i], KRS_SHADOWS_AREA, 64);
-        ball.options.width = 480;
+        Shot edge           = edge_shot(&lightings[i], KRS_SHADOWS_AREA, 64);
+        Shot ball           = ball_shot(&lightings[i], KRS_SHADOWS_AREA, 64);
+        ball.options.width  = 480;
         ball.options.height = 270;
-        ball.options.crop = (KrsWindow){256, 125, 100, 40}; /* the far end of the shadow */
+        ball.options.crop   = (KrsWindow){256, 125, 100, 40}; /* the far end of the shadow */
         KrsPicture *of_edge = shoot(&edge), *of_ball = shoot(&ball);
         print_message("# %s\n", lightings[i].name);
         wrong += !area_is_right("edge", of_edge, &edge, share_above_edge);
@@ -525,9 +564,9 @@ static void area_shadows_converge(void **state)
     (void)state;
     double noise[2];
     for (int i = 0; i < 2; i++) {
-        Shot        shot = edge_shot(&lightings[1], KRS_SHADOWS_AREA, i ? 256 : 16);
+        Shot        shot    = edge_shot(&lightings[1], KRS_SHADOWS_AREA, i ? 256 : 16);
         KrsPicture *picture = shoot(&shot);
-        noise[i] = match_area(picture, &shot, share_above_edge).noise;
+        noise[i]            = match_area(picture, &shot, share_above_edge).noise;
         krs_picture_free(picture);
     }
     print_message("# area: noise of 16 rays %.4f, of 256 %.4f\n", noise[0], noise[1]);
@@ -561,14 +600,22 @@ static double noise_of_columns(const KrsPicture *picture, double *expected)
 /* Of pixels almost as wide as the penumbra: noise as a share of that of 256 independent rays. */
 static double narrow_noise(double degrees, uint32_t samples)
 {
-    Shot shot = {LEDGE, {-1, 1.3, 0}, degrees * DEGREE, 0,
-                 {.width = 72, .height = 40, .crop = {24, 0, 36, 40}, .samples = samples,
-                  .shadows = KRS_SHADOWS_AREA}, 0};
+    Shot        shot    = {LEDGE,
+                           {-1, 1.3, 0},
+                           degrees * DEGREE,
+                           0,
+                           {.width   = 72,
+                            .height  = 40,
+                            .crop    = {24, 0, 36, 40},
+                            .samples = samples,
+                            .shadows = KRS_SHADOWS_AREA},
+                           0};
     KrsPicture *picture = shoot(&shot);
     double      expected, noise = noise_of_columns(picture, &expected);
     krs_picture_free(picture);
     print_message("# area, edge, %g degrees, large pixels, %u samples: noise %.4f (256 independent "
-                  "rays: %.4f)\n", degrees, samples, noise, expected / 16);
+                  "rays: %.4f)\n",
+                  degrees, samples, noise, expected / 16);
     return noise / (expected / 16);
 }
 
@@ -578,7 +625,7 @@ static void narrow_penumbras_converge(void **state)
 {
     (void)state;
     static const double angles[] = {1.5, 3, 8};
-    size_t wrong = 0;
+    size_t              wrong    = 0;
     for (int i = 0; i < 3; i++) {
         double of_few = narrow_noise(angles[i], 16), of_many = narrow_noise(angles[i], 256);
         wrong += !(of_many < MOST_NOISE);
@@ -593,10 +640,10 @@ static void seeds_move_the_rays_to_the_light(void **state)
 {
     (void)state;
     enum { SEEDS = 16 };
-    Shot        shot = edge_shot(&lightings[1], KRS_SHADOWS_AREA, 16);
-    KrsPicture *sum = shoot(&shot);
+    Shot        shot    = edge_shot(&lightings[1], KRS_SHADOWS_AREA, 16);
+    KrsPicture *sum     = shoot(&shot);
     size_t      numbers = 4 * (size_t)shot.options.crop.width * shot.options.crop.height;
-    double      one = match_area(sum, &shot, share_above_edge).noise;
+    double      one     = match_area(sum, &shot, share_above_edge).noise;
     for (shot.options.seed = 1; shot.options.seed < SEEDS; shot.options.seed++) {
         KrsPicture *picture = shoot(&shot);
         for (size_t i = 0; i < numbers; i++)
@@ -605,8 +652,7 @@ static void seeds_move_the_rays_to_the_light(void **state)
     }
     double all = match_area(sum, &shot, share_above_edge).noise;
     krs_picture_free(sum);
-    print_message("# area: noise of 16 rays %.4f, of the mean of %d seeds %.4f\n", one, SEEDS,
-                  all);
+    print_message("# area: noise of 16 rays %.4f, of the mean of %d seeds %.4f\n", one, SEEDS, all);
     assert_true(all < one / 2.5);
 }
 
@@ -615,12 +661,12 @@ static void seeds_move_the_rays_to_the_light(void **state)
 /* The least and the greatest truth of the pixels up to so far away. */
 static void truths_within(int k, int reach, double *low, double *high)
 {
-    *low = HUGE_VAL;
+    *low  = HUGE_VAL;
     *high = -HUGE_VAL;
     for (int y = k / truths.width - reach; y <= k / truths.width + reach; y++)
         for (int x = k % truths.width - reach; x <= k % truths.width + reach; x++)
             if (x >= 0 && y >= 0 && x < truths.width && y < truths.height) {
-                *low = fmin(*low, truth_low(y * truths.width + x));
+                *low  = fmin(*low, truth_low(y * truths.width + x));
                 *high = fmax(*high, truth_high(y * truths.width + x));
             }
 }
@@ -631,7 +677,7 @@ static double mean_off(const KrsPicture *picture, int x, int y)
 {
     double seen = 0, low = 0, high = 0;
     for (int i = 0; i < 25; i++) {
-        int    k = (y + i / 5 - 2) * truths.width + x + i % 5 - 2;
+        int    k    = (y + i / 5 - 2) * truths.width + x + i % 5 - 2;
         double here = seen_at(picture, k);
         if (here < 0)
             return NAN;
@@ -650,7 +696,7 @@ typedef struct SharedMatch {
 
 static SharedMatch match_shared(const KrsPicture *picture, const Shot *shot, Truth *truth)
 {
-    SharedMatch match = {0};
+    SharedMatch match   = {0};
     double      squares = 0;
     compute_truths(truth, shot, LIFT);
     for (int k = 0; k < truths.width * truths.height; k++) {
@@ -679,11 +725,11 @@ static SharedMatch match_shared(const KrsPicture *picture, const Shot *shot, Tru
 static bool shared_is_right(const char *name, const KrsPicture *picture, const Shot *shot,
                             Truth *truth)
 {
-    SharedMatch m = match_shared(picture, shot, truth);
+    SharedMatch m    = match_shared(picture, shot, truth);
     double      most = shot->options.samples > 1 ? MOST_OFF_4 : MOST_OFF_1;
     print_message("# soft, %s, %u samples: %d pixels of umbra, %d of penumbra, %d lit, %d wrong; "
-                  "off by %.4f, at most %.4f\n", name, shot->options.samples, m.umbra, m.penumbra,
-                  m.lit, m.wrong, m.off, m.worst);
+                  "off by %.4f, at most %.4f\n",
+                  name, shot->options.samples, m.umbra, m.penumbra, m.lit, m.wrong, m.off, m.worst);
     assert_true(m.umbra > 100 && m.penumbra > 200 && m.lit > 200);
     return m.wrong == 0 && m.off < most && m.worst < MOST_OFF_AT_ALL;
 }
@@ -694,10 +740,10 @@ static void soft_shadows_are_shares_of_the_disc(void **state)
     size_t wrong = 0;
     for (int i = 0; i < 2 * LIGHTINGS; i++) {
         const struct Lighting *lighting = &lightings[i / 2];
-        Shot edge = edge_shot(lighting, KRS_SHADOWS_SOFT, i % 2 ? 4 : 1);
-        Shot ball = ball_shot(lighting, KRS_SHADOWS_SOFT, i % 2 ? 4 : 1);
+        Shot                   edge     = edge_shot(lighting, KRS_SHADOWS_SOFT, i % 2 ? 4 : 1);
+        Shot                   ball     = ball_shot(lighting, KRS_SHADOWS_SOFT, i % 2 ? 4 : 1);
         edge.options.no_upsampling = ball.options.no_upsampling = false;
-        edge.options.crop.height = 24;
+        edge.options.crop.height                                = 24;
         KrsPicture *of_edge = shoot(&edge), *of_ball = shoot(&ball);
         print_message("# %s\n", lighting->name);
         wrong += !shared_is_right("edge", of_edge, &edge, share_above_edge);
@@ -715,11 +761,11 @@ static void soft_shadows_of_bounds_are_the_same(void **state)
     size_t wrong = 0;
     for (int i = 0; i < 2 * (STAGES - BOUNDS); i++) {
         const struct Lighting *lighting = &lightings[i / (STAGES - BOUNDS)];
-        Shot ball = ball_shot(lighting, KRS_SHADOWS_SOFT, 1);
-        ball.stage = (StageKind)(BOUNDS + i % (STAGES - BOUNDS));
-        ball.options.no_upsampling = false;
-        KrsPicture *picture = shoot(&ball);
-        const Stage *stage = &stages[ball.stage];
+        Shot                   ball     = ball_shot(lighting, KRS_SHADOWS_SOFT, 1);
+        ball.stage                      = (StageKind)(BOUNDS + i % (STAGES - BOUNDS));
+        ball.options.no_upsampling      = false;
+        KrsPicture  *picture            = shoot(&ball);
+        const Stage *stage              = &stages[ball.stage];
         print_message("# %s, %s / %g\n", lighting->name, stage->ball ? stage->ball : "distance",
                       fmax(stage->slope, 1));
         wrong += !shared_is_right("ball", picture, &ball, share_by_rays);
@@ -758,7 +804,7 @@ static void mark_edges(const Shot *shot, double lift, bool *edge)
 /* `lift`: shadows of a low sun move by as much as that makes. */
 static HardMatch match_hard(const KrsPicture *picture, const Shot *shot, double lift)
 {
-    HardMatch match = {0};
+    HardMatch match             = {0};
     bool      edge[MOST_PIXELS] = {false};
     for (int i = 2; i > 0 && lift > 0; i--)
         mark_edges(shot, 0.5 * lift * i, edge);
@@ -782,8 +828,8 @@ static bool hard_is_right(const char *name, const KrsPicture *picture, const Sho
 {
     HardMatch m = match_hard(picture, shot, lift);
     print_message("# hard, %s, lift up to %g: %d pixels dark, %d lit, %d at edges, of which %d are "
-                  "not as rays say; %d elsewhere\n", name, lift, m.dark, m.lit, m.edge, m.off,
-                  m.wrong);
+                  "not as rays say; %d elsewhere\n",
+                  name, lift, m.dark, m.lit, m.edge, m.off, m.wrong);
     assert_true(m.dark > 200 && m.lit > 200);
     return m.wrong == 0;
 }
@@ -805,9 +851,16 @@ enum { HARD_CASES = sizeof hard_cases / sizeof hard_cases[0] };
 
 static Shot hard_shot(const struct HardCase *hard, int camera)
 {
-    return (Shot){hard->stage, hard->light, 0, 0.04,
-                  {.width = WIDTH, .height = HEIGHT, .crop = {0, 0, WIDTH, HEIGHT},
-                   .camera = (size_t)camera, .no_upsampling = true}, 0};
+    return (Shot){hard->stage,
+                  hard->light,
+                  0,
+                  0.04,
+                  {.width         = WIDTH,
+                   .height        = HEIGHT,
+                   .crop          = {0, 0, WIDTH, HEIGHT},
+                   .camera        = (size_t)camera,
+                   .no_upsampling = true},
+                  0};
 }
 
 static void hard_shadows_end_where_rays_say(void **state)
@@ -815,7 +868,7 @@ static void hard_shadows_end_where_rays_say(void **state)
     (void)state;
     size_t wrong = 0;
     for (int i = 0; i < 2 * HARD_CASES; i++) {
-        Shot        shot = hard_shot(&hard_cases[i / 2], i % 2);
+        Shot        shot    = hard_shot(&hard_cases[i / 2], i % 2);
         KrsPicture *picture = shoot(&shot);
         print_message("# %s\n", i % 2 == FROM_ABOVE ? "from above" : "from the side");
         wrong += !hard_is_right(hard_cases[i / 2].name, picture, &shot, hard_cases[i / 2].lift);
@@ -828,14 +881,14 @@ static void hard_shadows_end_where_rays_say(void **state)
 static int count_dark_sides(const KrsPicture *picture, const Shot *shot, int *open)
 {
     Shot others = *shot;
-    int  dark = 0;
-    *open = 0;
+    int  dark   = 0;
+    *open       = 0;
     for (int k = 0; k < WIDTH * HEIGHT; k++) {
         const float *at = picture->position + 3 * k, *color = picture->color + 4 * k;
         if (picture->component[k] < 2 || color[1] < 0.01F)
             continue; /* grazing light cannot be told from shadow */
         others.without = (int)picture->component[k] - 1; /* component 1 is the ground */
-        bool lit = open_or_not(&others, vec((double)at[0], (double)at[1], (double)at[2])) > 0;
+        bool lit       = open_or_not(&others, vec((double)at[0], (double)at[1], (double)at[2])) > 0;
         *open += lit;
         dark += lit && color[0] != color[1];
     }
@@ -846,7 +899,7 @@ static int count_dark_sides(const KrsPicture *picture, const Shot *shot, int *op
 static void lit_sides_are_lit(void **state)
 {
     (void)state;
-    Shot        shot = hard_shot(&hard_cases[1], FROM_THE_SIDE);
+    Shot        shot    = hard_shot(&hard_cases[1], FROM_THE_SIDE);
     KrsPicture *picture = shoot(&shot);
     int         open, dark = count_dark_sides(picture, &shot, &open), last = WIDTH * HEIGHT;
     print_message("# hard, balls themselves: %d pixels open to the light, %d dark\n", open, dark);
@@ -919,8 +972,8 @@ static void symmetric_scenes_have_symmetric_pictures(void **state)
         "show box([0.4, 1.6, 3]).move([0, 0.8, 0]);\n"
         "show sphere(0.6).move([1.2, 0.6, 0.3]) | sphere(0.6).move([-1.2, 0.6, 0.3]);\n";
     for (int way = 0; way < 2; way++) {
-        KrsPicture *picture = picture_of(text, &(KrsRenderOptions){
-            .width = WIDTH, .height = HEIGHT, .no_upsampling = way});
+        KrsPicture *picture = picture_of(
+            text, &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .no_upsampling = way});
         double most = asymmetry(picture);
         print_message("# symmetry: off by %.2g%s\n", most, way ? "" : " with upsampling");
         assert_true(most < MOST_ASYMMETRY);
@@ -951,14 +1004,14 @@ static void to_screen(const KrsImage *image, const float color[4], double out[3]
 
 static Difference compare_pictures(const KrsImage *image, const KrsPicture *a, const KrsPicture *b)
 {
-    Difference difference = {0};
-    const double each = 1.0 / (3 * WIDTH * HEIGHT);
+    Difference   difference = {0};
+    const double each       = 1.0 / (3 * WIDTH * HEIGHT);
     for (int k = 0; k < WIDTH * HEIGHT; k++) {
         double here[3], there[3];
         to_screen(image, a->color + 4 * k, here);
         to_screen(image, b->color + 4 * k, there);
         for (int i = 0; i < 3; i++) {
-            double off = fabs(here[i] - there[i]);
+            double off      = fabs(here[i] - there[i]);
             difference.most = fmax(difference.most, off);
             difference.over_1 += off > 1 ? each : 0;
             difference.over_4 += off > 4 ? each : 0;
@@ -976,8 +1029,9 @@ static bool is_unseen(Difference difference)
 static void take_both(KrsRendering *rendering, KrsFrame *frame, KrsPicture *pictures[2])
 {
     for (int i = 0; i < 2; i++)
-        pictures[i] = take_picture(rendering, frame, (KrsRenderOptions){
-            .width = WIDTH, .height = HEIGHT, .samples = 1, .no_upsampling = i});
+        pictures[i] = take_picture(
+            rendering, frame,
+            (KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .samples = 1, .no_upsampling = i});
 }
 
 static bool upsampling_is_unseen(const char *name, KrsFrame *frame, KrsPicture *pictures[2])
@@ -986,7 +1040,8 @@ static bool upsampling_is_unseen(const char *name, KrsFrame *frame, KrsPicture *
     assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);
     Difference d = compare_pictures(&view.image, pictures[0], pictures[1]);
     print_message("# upsampling, %s: off by %.1f of 255 at most, %.3f %% by more than 1, %.3f %% "
-                  "by more than 4\n", name, d.most, 100 * d.over_1, 100 * d.over_4);
+                  "by more than 4\n",
+                  name, d.most, 100 * d.over_1, 100 * d.over_4);
     return is_unseen(d);
 }
 
@@ -996,9 +1051,9 @@ static KrsPicture *take_reference(KrsRendering *rendering, KrsFrame *frame)
 {
     enum { SEEDS = 16 };
     const size_t     numbers = 4 * (size_t)WIDTH * HEIGHT;
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1,
-                                .no_upsampling = true};
-    KrsPicture      *sum = take_picture(rendering, frame, options);
+    KrsRenderOptions options = {
+        .width = WIDTH, .height = HEIGHT, .samples = 1, .no_upsampling = true};
+    KrsPicture *sum = take_picture(rendering, frame, options);
     for (options.seed = 1; options.seed < SEEDS; options.seed++) {
         KrsPicture *picture = take_picture(rendering, frame, options);
         for (size_t i = 0; i < numbers; i++)
@@ -1034,9 +1089,9 @@ static double means_apart(const KrsPicture *a, const KrsPicture *b)
 static bool sharing_is_unseen(const char *name, KrsRendering *rendering, KrsFrame *frame)
 {
     KrsPicture *reference = take_reference(rendering, frame);
-    KrsPicture *picture = take_picture(rendering, frame, (KrsRenderOptions){
-        .width = WIDTH, .height = HEIGHT, .samples = 1});
-    double      apart = means_apart(picture, reference);
+    KrsPicture *picture   = take_picture(
+          rendering, frame, (KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .samples = 1});
+    double apart = means_apart(picture, reference);
     print_message("# %s, neighbours share: means off by %.4f of the mean\n", name, apart);
     for (int k = 0; k < WIDTH * HEIGHT / 8; k++) /* a planted fault: an eighth is darker */
         for (int i = 0; i < 3; i++)
@@ -1066,15 +1121,17 @@ static void sharing_does_not_change_algebraic_surfaces(void **state)
 {
     (void)state;
     static const double angles[] = {40, 10};
-    size_t wrong = 0;
+    size_t              wrong    = 0;
     for (int i = 0; i < 2; i++) {
         SceneText     text = {0};
         KrsRendering *rendering;
-        scene_write(&text, "let g = (1 + sqrt(5)) / 2;\n"
+        scene_write(&text,
+                    "let g = (1 + sqrt(5)) / 2;\n"
                     "show algebraic((1 + 2 * g) * (x^2 + y^2 + z^2 - 1)^2 ==\n"
                     "    4 * (g^2 * x^2 - y^2) * (g^2 * y^2 - z^2) * (g^2 * z^2 - x^2))\n"
                     "    .within(sphere(1.8));\n"
-                    "camera { eye: [0, 2, 5], target: [0, -0.7, 0], fov: %gdeg }\n", angles[i]);
+                    "camera { eye: [0, 2, 5], target: [0, -0.7, 0], fov: %gdeg }\n",
+                    angles[i]);
         Product product = product_compile(text.bytes);
         open_rendering(&product, &rendering);
         wrong += !sharing_is_unseen("a sextic", rendering, product.frame);
@@ -1088,7 +1145,7 @@ static void sharing_does_not_change_examples(void **state)
 {
     (void)state;
     static const char *const paths[] = {"examples/02-gear.krs", "examples/06-temple.krs"};
-    size_t wrong = 0;
+    size_t                   wrong   = 0;
     for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++)
         wrong += !example_is_unharmed(paths[i]);
     assert_int_equal(wrong, 0);
@@ -1098,7 +1155,7 @@ static void sharing_does_not_change_examples(void **state)
 static size_t count_holes(KrsPicture *const pictures[2], size_t *dark)
 {
     size_t holes = 0;
-    *dark = 0;
+    *dark        = 0;
     for (int k = 0; k < WIDTH * HEIGHT; k++) {
         double first = seen_at(pictures[0], k), second = seen_at(pictures[1], k);
         if (second < 0 || second >= 0.5)
@@ -1113,14 +1170,18 @@ static void upsampling_keeps_thin_shadows(void **state)
 {
     (void)state;
     static const double widths[] = {1, 2, 4}; /* pixels */
-    size_t wrong = 0;
+    size_t              wrong    = 0;
     for (int i = 0; i < 3; i++) {
         char        name[40];
         KrsPicture *pictures[2];
         Stage      *stage = use_stage(TWIGS);
         size_t      dark, holes;
-        Shot shot = {TWIGS, {-0.5, 1.4, -0.4}, 0, 0.5 * widths[i] * stage->high / HEIGHT,
-                     {.width = WIDTH, .height = HEIGHT}, 0};
+        Shot        shot = {TWIGS,
+                            {-0.5, 1.4, -0.4},
+                            0,
+                            0.5 * widths[i] * stage->high / HEIGHT,
+                            {.width = WIDTH, .height = HEIGHT},
+                            0};
         set_lighting(&shot);
         take_both(stage->rendering, stage->product.frame, pictures);
         snprintf(name, sizeof name, "shadows %g pixels wide", widths[i]);
@@ -1151,24 +1212,34 @@ static bool is_part_of(const KrsPicture *whole, const KrsPicture *part)
 static const Shot cropped_shots[] = {
     {TWIGS, {-0.5, 1.4, -0.4}, DEGREE, 0.02, {.width = WIDTH, .height = HEIGHT}, 0},
     {BALLS, {-1, 1.4, -0.6}, 10 * DEGREE, 0, {.width = WIDTH, .height = HEIGHT}, 0},
-    {BALLS, {-1, 1.4, -0.6}, 10 * DEGREE, 0,
-     {.width = WIDTH, .height = HEIGHT, .samples = 4, .shadows = KRS_SHADOWS_AREA}, 0},
-    {BALL_LAMP, {-3, 5.5, -1.6}, 0.4, 0,
-     {.width = WIDTH, .height = HEIGHT, .samples = 4, .shadows = KRS_SHADOWS_AREA}, 0},
+    {BALLS,
+     {-1, 1.4, -0.6},
+     10 * DEGREE,
+     0,
+     {.width = WIDTH, .height = HEIGHT, .samples = 4, .shadows = KRS_SHADOWS_AREA},
+     0},
+    {BALL_LAMP,
+     {-3, 5.5, -1.6},
+     0.4,
+     0,
+     {.width = WIDTH, .height = HEIGHT, .samples = 4, .shadows = KRS_SHADOWS_AREA},
+     0},
 };
 
 static void crops_are_parts_of_the_picture(void **state)
 {
     (void)state;
-    static const KrsWindow crops[] = {
-        {133, 77, 101, 60}, {161, 82, 7, 5}, {0, 99, 320, 1}, {187, 0, 1, 180},
-        {203, 103, 117, 77}};
+    static const KrsWindow crops[] = {{133, 77, 101, 60},
+                                      {161, 82, 7, 5},
+                                      {0, 99, 320, 1},
+                                      {187, 0, 1, 180},
+                                      {203, 103, 117, 77}};
     for (size_t i = 0; i < sizeof cropped_shots / sizeof cropped_shots[0]; i++) {
-        Shot        shot = cropped_shots[i];
+        Shot        shot  = cropped_shots[i];
         KrsPicture *whole = shoot(&shot);
         for (size_t k = 0; k < sizeof crops / sizeof crops[0]; k++) {
             shot.options.crop = crops[k];
-            KrsPicture *part = shoot(&shot);
+            KrsPicture *part  = shoot(&shot);
             assert_true(is_part_of(whole, part));
             part->color[4 * (crops[k].width * crops[k].height - 1)] += 1e-6F; /* a planted fault */
             assert_false(is_part_of(whole, part));
@@ -1201,11 +1272,11 @@ static void wrong_area_shadows_are_found(void **state)
 static void wrong_soft_shadows_are_found(void **state)
 {
     (void)state;
-    Shot ball = ball_shot(&lightings[1], KRS_SHADOWS_SOFT, 4), wrong;
+    Shot ball                  = ball_shot(&lightings[1], KRS_SHADOWS_SOFT, 4), wrong;
     ball.options.no_upsampling = false;
-    KrsPicture *picture = shoot(&ball);
+    KrsPicture *picture        = shoot(&ball);
     assert_true(shared_is_right("ball", picture, &ball, share_by_rays));
-    wrong = ball;
+    wrong      = ball;
     wrong.wide = 1.5 * ball.wide;
     assert_false(shared_is_right("ball, PLANTED larger light", picture, &wrong, share_by_rays));
     wrong.wide = 0.7 * ball.wide;
@@ -1235,7 +1306,7 @@ static void wrong_pixels_are_found(void **state)
 {
     (void)state;
     enum { FEW = 40 };
-    Shot        shot = cropped_shots[1];
+    Shot        shot  = cropped_shots[1];
     KrsImage    image = {.tone_map = "none"};
     size_t      dark;
     KrsPicture *pictures[2] = {shoot(&shot), shoot(&shot)};

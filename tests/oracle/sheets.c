@@ -25,7 +25,7 @@
 
 enum { WIDTH = 112, HEIGHT = 84, PIXELS = WIDTH * HEIGHT };
 
-#define FOV   0.6981317007977318       /* 40 degrees */
+#define FOV   0.6981317007977318            /* 40 degrees */
 #define PIXEL (2 * tan(0.5 * FOV) / HEIGHT) /* wide, at distance 1 */
 
 static Real gyroid(const Real p[3])
@@ -33,19 +33,16 @@ static Real gyroid(const Real p[3])
     return sinl(4 * p[0]) * cosl(4 * p[1]) + sinl(4 * p[1]) * cosl(4 * p[2]) +
            sinl(4 * p[2]) * cosl(4 * p[0]);
 }
-static Real swell(const Real p[3])
-{
-    return expl(p[0]) + expl(2 * p[1]) + expl(-p[2]) * p[0] - 4;
-}
+static Real swell(const Real p[3]) { return expl(p[0]) + expl(2 * p[1]) + expl(-p[2]) * p[0] - 4; }
 static Real cone(const Real p[3]) { return p[0] * p[0] + p[1] * p[1] - p[2] * p[2] - 0.1L; }
 static Real waves(const Real p[3]) { return p[1] - 0.3L * sinl(3 * p[0]) * cosl(2 * p[2]); }
 
 static const struct Sheet {
     const char *name;
-    const char *text;   /* without its region; NULL: one of the library's surfaces */
+    const char *text; /* without its region; NULL: one of the library's surfaces */
     Formula    *formula;
     double      radius;
-    Vec         eye;    /* the direction that it is seen from */
+    Vec         eye; /* the direction that it is seen from */
 } sheets[] = {
     {"clebsch", NULL, NULL, 0, {0.3, 0.5, 0.8}},
     {"cayley", NULL, NULL, 0, {-0.7, 0.2, 0.6}},
@@ -57,8 +54,10 @@ static const struct Sheet {
     {"barth_sextic", NULL, NULL, 0, {0.42, 0.31, 0.853}},
     {"labs_septic", NULL, NULL, 0, {-0.5, -0.6, 0.3}},
     {"a gyroid",
-     "field(sin(4 * x) * cos(4 * y) + sin(4 * y) * cos(4 * z) + sin(4 * z) * cos(4 * x))", gyroid,
-     1.2, {0.5, 0.6, 0.7}},
+     "field(sin(4 * x) * cos(4 * y) + sin(4 * y) * cos(4 * z) + sin(4 * z) * cos(4 * x))",
+     gyroid,
+     1.2,
+     {0.5, 0.6, 0.7}},
     {"a swell", "field(exp(x) + exp(2 * y) + exp(-z) * x - 4)", swell, 1.5, {-0.8, 0.7, 0.1}},
     {"waves", "field(y - 0.3 * sin(3 * x) * cos(2 * z))", waves, 1.5, {0.4, 0.5, 0.9}},
     {"a hyperboloid", "algebraic(x^2 + y^2 == z^2 + 0.1)", cone, 1.3, {0.9, 0.2, 0.4}},
@@ -66,9 +65,9 @@ static const struct Sheet {
 enum { SHEETS = sizeof sheets / sizeof sheets[0] };
 
 typedef struct Case {
-    Formula *formula;
-    double   radius;
-    char     text[512]; /* the sheet */
+    Formula    *formula;
+    double      radius;
+    char        text[512]; /* the sheet */
     const char *before;
 } Case;
 
@@ -81,9 +80,9 @@ static Case case_of(const struct Sheet *sheet)
         return c;
     }
     const Surface *surface = surface_named(sheet->name);
-    c.formula = surface->formula;
-    c.radius  = surface->radius;
-    c.before  = surface->before;
+    c.formula              = surface->formula;
+    c.radius               = surface->radius;
+    c.before               = surface->before;
     snprintf(c.text, sizeof c.text, "%sopen: true)", surface->call);
     return c;
 }
@@ -112,10 +111,10 @@ typedef struct Verdict {
 static void judge_ray(const Case *c, int k, bool seen, double t, const Vec *normal, double leeway,
                       Verdict *v)
 {
-    const Entry *entry = &entries[k];
-    bool         is    = entry->fate == RAY_HITS;
-    Chord  chord  = chord_of_ball(rays[k], vec(0, 0, 0), c->radius);
-    double inside = fmin((double)entry->t - chord.enter, chord.leave - (double)entry->t);
+    const Entry *entry  = &entries[k];
+    bool         is     = entry->fate == RAY_HITS;
+    Chord        chord  = chord_of_ball(rays[k], vec(0, 0, 0), c->radius);
+    double       inside = fmin((double)entry->t - chord.enter, chord.leave - (double)entry->t);
     if (entry->fate == RAY_DOUBTFUL || (is && inside < 0.05 * PIXEL * (double)entry->t)) {
         v->doubtful++;
         return;
@@ -125,8 +124,8 @@ static void judge_ray(const Case *c, int k, bool seen, double t, const Vec *norm
     v->missed += is && !seen;
     if (!is || !seen)
         return;
-    Vec    p     = line_at(rays[k], (double)entry->t), slope = surface_slope(c->formula, p);
-    double size  = vec_length(slope), cosine = vec_dot(slope, rays[k].direction) / size;
+    Vec    p = line_at(rays[k], (double)entry->t), slope = surface_slope(c->formula, p);
+    double size = vec_length(slope), cosine = vec_dot(slope, rays[k].direction) / size;
     if (!(fabs(cosine) > 0.05))
         return; /* it grazes, or the surface meets itself */
     v->off += !(fabs(t - (double)entry->t) <= leeway / fabs(cosine));
@@ -139,26 +138,28 @@ static void must_be_right(const char *name, const char *who, const Verdict *v)
     if (v->hits < 400 || v->doubtful > PIXELS / 20 || v->extra + v->missed + v->off > 0 ||
         v->turned * 100 > v->hits)
         fail_msg("%s, %s: of %d hits (%d doubtful) %d are too much, %d missed, %d off, %d with "
-                 "another normal", name, who, v->hits, v->doubtful, v->extra, v->missed, v->off,
-                 v->turned);
+                 "another normal",
+                 name, who, v->hits, v->doubtful, v->extra, v->missed, v->off, v->turned);
 }
 
 static void judge_picture(const char *name, const Case *c, const Product *product, KrsTrace trace)
 {
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1, .trace = trace,
-                                .planes = KRS_PLANE_POSITION | KRS_PLANE_IDS | KRS_PLANE_NORMAL};
-    KrsRendering *rendering;
-    KrsPicture   *picture = NULL;
-    Verdict       v = {0};
+    KrsRenderOptions options = {.width   = WIDTH,
+                                .height  = HEIGHT,
+                                .samples = 1,
+                                .trace   = trace,
+                                .planes  = KRS_PLANE_POSITION | KRS_PLANE_IDS | KRS_PLANE_NORMAL};
+    KrsRendering    *rendering;
+    KrsPicture      *picture = NULL;
+    Verdict          v       = {0};
     if (krs_rendering_new(renderer, product->scene, &rendering) != KRS_OK ||
         krs_render(rendering, product->frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     for (int k = 0; k < PIXELS; k++) {
         const float *at = &picture->position[3 * k], *n = &picture->normal[3 * k];
         Vec          normal = vec(n[0], n[1], n[2]);
-        double       t = vec_distance(vec(at[0], at[1], at[2]), rays[k].origin);
-        judge_ray(c, k, picture->component[k] != 0, t, &normal,
-                  0.02 * PIXEL * t, &v);
+        double       t      = vec_distance(vec(at[0], at[1], at[2]), rays[k].origin);
+        judge_ray(c, k, picture->component[k] != 0, t, &normal, 0.02 * PIXEL * t, &v);
     }
     assert_int_equal(picture->stats.unresolved, 0);
     must_be_right(name, krs_trace_names[trace], &v);
@@ -176,18 +177,20 @@ static void judge_questions(const char *name, const Case *c, const Product *prod
             origins[k][i]    = (&rays[k].origin.x)[i];
             directions[k][i] = (&rays[k].direction.x)[i];
         }
-    const double(*from)[3] = (const double(*)[3])origins, (*way)[3] = (const double(*)[3])directions;
+    const double(*from)[3] = (const double(*)[3])origins,
+          (*way)[3]        = (const double(*)[3])directions;
     assert_int_equal(krs_raycast(product->frame, from, way, PIXELS, 1e3, 0, hits[0]), KRS_OK);
-    assert_int_equal(krs_rendering_new_for(renderer, product->scene, KRS_FOR_QUESTIONS,
-                                           &rendering), KRS_OK);
+    assert_int_equal(krs_rendering_new_for(renderer, product->scene, KRS_FOR_QUESTIONS, &rendering),
+                     KRS_OK);
     assert_int_equal(krs_device_raycast(rendering, product->frame, from, way, PIXELS, 1e3,
-                                        1e-3 * c->radius, hits[1]), KRS_OK);
+                                        1e-3 * c->radius, hits[1]),
+                     KRS_OK);
     krs_rendering_free(rendering);
     for (int device = 0; device < 2; device++) {
         Verdict v = {0};
         for (int k = 0; k < PIXELS; k++) {
-            const KrsHit *hit = &hits[device][k];
-            Vec normal = vec(hit->normal[0], hit->normal[1], hit->normal[2]);
+            const KrsHit *hit    = &hits[device][k];
+            Vec           normal = vec(hit->normal[0], hit->normal[1], hit->normal[2]);
             assert_false(hit->unresolved && entries[k].fate != RAY_DOUBTFUL);
             judge_ray(c, k, hit->hit, hit->t, &normal, (device ? 1e-3 : 1e-7) * c->radius, &v);
         }
@@ -201,8 +204,8 @@ static void sheets_are_where_signs_change(void **state)
     Case                c     = case_of(sheet);
     Vec                 eye   = look(&c, sheet);
     Product product = product_format("use \"std/surfaces.krs\";\n%sshow %s;\ncamera { eye: [%.17g, "
-                                     "%.17g, %.17g], target: [0, 0, 0], fov: 40deg }", c.before,
-                                     c.text, eye.x, eye.y, eye.z);
+                                     "%.17g, %.17g], target: [0, 0, 0], fov: 40deg }",
+                                     c.before, c.text, eye.x, eye.y, eye.z);
     judge_picture(sheet->name, &c, &product, KRS_TRACE_DEFAULT);
     if (sheet == sheets)
         for (KrsTrace trace = KRS_TRACE_PLAIN; trace < KRS_TRACE_COUNT; trace++)
@@ -219,22 +222,22 @@ static void sheets_cast_shadows(void **state)
     Case                c     = case_of(sheet);
     const Vec           light = {-0.35, 1, 0.25};
     double              up    = 1.2 * c.radius;
-    Vec eye  = vec(0, 8 * c.radius, 8 * c.radius), target = vec(0, -up, 0);
-    Lens lens = lens_make(eye, target, 2 * c.radius, true, WIDTH, HEIGHT);
-    Product product = product_format(
-        "use \"std/surfaces.krs\";\n%slight red { direction: [-0.35, 1, 0.25], softness: 0, "
-        "color: [1, 0, 0] }\n"
-        "light green { direction: [-0.35, 1, 0.25], color: [0, 1, 0], shadow: false }\n"
-        "sky { zenith: #000000, horizon: #000000, ground: #000000 }\nimage { tone_map: \"none\" }\n"
-        "material white { color: [1, 1, 1], roughness: 1 }\n"
-        "show plane([0, 1, 0], %.17g).paint(white);\nshow %s;\ncamera { eye: [0, %.17g, %.17g], "
-        "target: [0, %.17g, 0], projection: \"orthographic\", height: %.17g }",
-        c.before, -up, c.text, eye.y, eye.z, -up, 4 * c.radius);
+    Vec                 eye = vec(0, 8 * c.radius, 8 * c.radius), target = vec(0, -up, 0);
+    Lens                lens    = lens_make(eye, target, 2 * c.radius, true, WIDTH, HEIGHT);
+    Product             product = product_format(
+                    "use \"std/surfaces.krs\";\n%slight red { direction: [-0.35, 1, 0.25], softness: 0, "
+                                "color: [1, 0, 0] }\n"
+                                "light green { direction: [-0.35, 1, 0.25], color: [0, 1, 0], shadow: false }\n"
+                                "sky { zenith: #000000, horizon: #000000, ground: #000000 }\nimage { tone_map: \"none\" }\n"
+                                "material white { color: [1, 1, 1], roughness: 1 }\n"
+                                "show plane([0, 1, 0], %.17g).paint(white);\nshow %s;\ncamera { eye: [0, %.17g, %.17g], "
+                                "target: [0, %.17g, 0], projection: \"orthographic\", height: %.17g }",
+                    c.before, -up, c.text, eye.y, eye.z, -up, 4 * c.radius);
     KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1};
-    KrsRendering *rendering;
-    KrsPicture   *picture = NULL;
-    int           dark = 0, wrong = 0, edge = 0;
-    bool          before = false;
+    KrsRendering    *rendering;
+    KrsPicture      *picture = NULL;
+    int              dark = 0, wrong = 0, edge = 0;
+    bool             before = false;
     if (krs_rendering_new(renderer, product.scene, &rendering) != KRS_OK ||
         krs_render(rendering, product.frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
@@ -242,8 +245,8 @@ static void sheets_cast_shadows(void **state)
         const float *color = &picture->color[4 * k];
         if (picture->component[k] != 1)
             continue;
-        Line  ray    = lens_ray(&lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
-        Vec   ground = line_at(ray, -(ray.origin.y + up) / ray.direction.y);
+        Line ray    = lens_ray(&lens, k % WIDTH + 0.5, k / WIDTH + 0.5);
+        Vec  ground = line_at(ray, -(ray.origin.y + up) / ray.direction.y);
         ground.y += 0.125 * lens_pixel(&lens, 1); /* where a ray to a light starts */
         Entry entry  = surface_crossing(c.formula, c.radius, ground, vec_unit(light));
         bool  hidden = entry.fate == RAY_HITS;
@@ -284,7 +287,7 @@ int main(void)
     static char       names[SHEETS][80];
     size_t            count = 0;
     for (size_t i = 0; i < SHEETS; i++) {
-        void *sheet = (void *)(uintptr_t)&sheets[i];
+        void *sheet    = (void *)(uintptr_t)&sheets[i];
         tests[count++] = (struct CMUnitTest){sheets[i].name, sheets_are_where_signs_change, NULL,
                                              NULL, sheet};
         if (i % 4 != 1)

@@ -73,7 +73,7 @@ static void face_cloud(const Hull *hull, Half face, Cloud *cloud, double step)
             corners[count++] = hull->vertices[i];
     for (int a = 1; a < count; a++)
         for (int b = 1; b < count; b++) {
-            Vec out = vec_cross(vec_sub(corners[b], corners[a]), face.normal);
+            Vec  out  = vec_cross(vec_sub(corners[b], corners[a]), face.normal);
             bool edge = a != b;
             for (int i = 0; i < count && edge; i++)
                 edge = vec_dot(out, vec_sub(corners[i], corners[a])) <= 1e-9;
@@ -110,18 +110,18 @@ static double turn_between(Vec right, Vec up, Vec v)
 
 Curve curve_arc(Vec from, Vec via, Vec to)
 {
-    Vec a = vec_sub(from, to), b = vec_sub(via, to), n = vec_cross(a, b);
+    Vec    a = vec_sub(from, to), b = vec_sub(via, to), n = vec_cross(a, b);
     double square = vec_dot(n, n);
     if (square < 1e-18)
         return curve_segment(from, to);
-    Vec toward = vec_sub(vec_scale(vec_dot(a, a), b), vec_scale(vec_dot(b, b), a));
-    Vec middle = vec_add(to, vec_scale(0.5 / square, vec_cross(toward, n)));
-    Curve arc = {.kind = CURVE_ARC, .from = from, .via = via, .to = to, .middle = middle};
-    arc.right = vec_sub(from, middle);
-    arc.up = vec_cross(vec_unit(n), arc.right);
-    arc.angle = turn_between(arc.right, arc.up, vec_sub(to, middle));
+    Vec   toward = vec_sub(vec_scale(vec_dot(a, a), b), vec_scale(vec_dot(b, b), a));
+    Vec   middle = vec_add(to, vec_scale(0.5 / square, vec_cross(toward, n)));
+    Curve arc    = {.kind = CURVE_ARC, .from = from, .via = via, .to = to, .middle = middle};
+    arc.right    = vec_sub(from, middle);
+    arc.up       = vec_cross(vec_unit(n), arc.right);
+    arc.angle    = turn_between(arc.right, arc.up, vec_sub(to, middle));
     if (turn_between(arc.right, arc.up, vec_sub(via, middle)) > arc.angle) {
-        arc.up = vec_scale(-1, arc.up);
+        arc.up    = vec_scale(-1, arc.up);
         arc.angle = 2 * PI - arc.angle;
     }
     return arc;
@@ -130,10 +130,8 @@ Curve curve_arc(Vec from, Vec via, Vec to)
 Vec curve_at(const Curve *c, double t)
 {
     switch (c->kind) {
-    case CURVE_SEGMENT:
-        return vec_mix(c->from, c->to, t);
-    case CURVE_BEZIER:
-        return vec_mix(vec_mix(c->from, c->via, t), vec_mix(c->via, c->to, t), t);
+    case CURVE_SEGMENT: return vec_mix(c->from, c->to, t);
+    case CURVE_BEZIER: return vec_mix(vec_mix(c->from, c->via, t), vec_mix(c->via, c->to, t), t);
     default:
         return vec_add(c->middle, vec_add(vec_scale(cos(t * c->angle), c->right),
                                           vec_scale(sin(t * c->angle), c->up)));
@@ -143,8 +141,7 @@ Vec curve_at(const Curve *c, double t)
 static Vec curve_velocity(const Curve *c, double t)
 {
     switch (c->kind) {
-    case CURVE_SEGMENT:
-        return vec_sub(c->to, c->from);
+    case CURVE_SEGMENT: return vec_sub(c->to, c->from);
     case CURVE_BEZIER:
         return vec_scale(2, vec_mix(vec_sub(c->via, c->from), vec_sub(c->to, c->via), t));
     default:
@@ -162,9 +159,9 @@ static double ball_depth(const Sweep *sweep, const Curve *curve, Vec point, doub
 /* How much the depth can change, at most, while t goes from 0 to 1. */
 static double depth_change(const Sweep *sweep, const Curve *c)
 {
-    double way = c->kind == CURVE_ARC ? c->angle * vec_length(c->right)
-                                      : 2 * fmax(vec_distance(c->from, c->via),
-                                                 vec_distance(c->via, c->to));
+    double way = c->kind == CURVE_ARC
+                     ? c->angle * vec_length(c->right)
+                     : 2 * fmax(vec_distance(c->from, c->via), vec_distance(c->via, c->to));
     return way + fabs(sweep->radius - sweep->radius_end);
 }
 
@@ -173,16 +170,16 @@ static double refine_depth(const Sweep *sweep, const Curve *curve, Vec point, do
                            double high)
 {
     const double golden = 0.61803398874989485;
-    double a = high - golden * (high - low), b = low + golden * (high - low);
+    double       a = high - golden * (high - low), b = low + golden * (high - low);
     double at_a = ball_depth(sweep, curve, point, a), at_b = ball_depth(sweep, curve, point, b);
     for (int i = 0; i < 40; i++) {
         if (at_a < at_b) {
             high = b, b = a, at_b = at_a;
-            a = high - golden * (high - low);
+            a    = high - golden * (high - low);
             at_a = ball_depth(sweep, curve, point, a);
         } else {
             low = a, a = b, at_a = at_b;
-            b = low + golden * (high - low);
+            b    = low + golden * (high - low);
             at_b = ball_depth(sweep, curve, point, b);
         }
     }
@@ -195,10 +192,10 @@ double sweep_depth(const Sweep *sweep, Vec point)
     double best = HUGE_VAL;
     for (int k = 0; k < sweep->curve_count; k++) {
         const Curve *curve = &sweep->curves[k];
-        double depth[PIECES + 1], slack = depth_change(sweep, curve) / PIECES;
+        double       depth[PIECES + 1], slack = depth_change(sweep, curve) / PIECES;
         for (int i = 0; i <= PIECES; i++) {
             depth[i] = ball_depth(sweep, curve, point, (double)i / PIECES);
-            best = fmin(best, depth[i]);
+            best     = fmin(best, depth[i]);
         }
         for (int i = 0; i <= PIECES; i++) {
             bool valley = (i == 0 || depth[i] < depth[i - 1]) &&
@@ -219,8 +216,8 @@ typedef struct Ellipsoid {
 
 static Vec ellipsoid_patch(const void *user, double u, double v)
 {
-    const Ellipsoid *e = user;
-    double ring = sin(PI * u);
+    const Ellipsoid *e    = user;
+    double           ring = sin(PI * u);
     return vec_add(e->centre, vec(e->radii.x * ring * cos(2 * PI * v),
                                   e->radii.y * ring * sin(2 * PI * v), e->radii.z * cos(PI * u)));
 }
@@ -242,14 +239,14 @@ static Vec curve_side(const Curve *curve, Vec tangent)
 /* Where a ball touches the hull of its neighbours: n.c' = -r' (canal surface). */
 static Vec tube_patch(const void *user, double u, double v)
 {
-    const SweepPiece *piece = user;
-    const Sweep *sweep = piece->sweep;
-    Vec velocity = curve_velocity(piece->curve, u), tangent = vec_unit(velocity);
-    Vec side = curve_side(piece->curve, tangent), other = vec_cross(tangent, side);
-    double back = -(sweep->radius_end - sweep->radius) / vec_length(velocity);
-    double out = sqrt(fmax(0, 1 - back * back));
-    Vec around = vec_add(vec_scale(cos(2 * PI * v), side), vec_scale(sin(2 * PI * v), other));
-    Vec normal = vec_add(vec_scale(back, tangent), vec_scale(out, around));
+    const SweepPiece *piece    = user;
+    const Sweep      *sweep    = piece->sweep;
+    Vec               velocity = curve_velocity(piece->curve, u), tangent = vec_unit(velocity);
+    Vec               side = curve_side(piece->curve, tangent), other = vec_cross(tangent, side);
+    double            back = -(sweep->radius_end - sweep->radius) / vec_length(velocity);
+    double            out  = sqrt(fmax(0, 1 - back * back));
+    Vec    around = vec_add(vec_scale(cos(2 * PI * v), side), vec_scale(sin(2 * PI * v), other));
+    Vec    normal = vec_add(vec_scale(back, tangent), vec_scale(out, around));
     double radius = (1 - u) * sweep->radius + u * sweep->radius_end;
     return vec_add(curve_at(piece->curve, u), vec_scale(radius, normal));
 }
@@ -276,7 +273,7 @@ void sweep_cloud(const Sweep *sweep, Cloud *cloud, double step)
             cloud_patch(cloud, tube_patch, on_sweep, &piece, step);
         for (int end = 0; end < 2; end++) {
             double radius = end ? sweep->radius_end : sweep->radius;
-            piece.end = (Ellipsoid){curve_at(piece.curve, end), vec(radius, radius, radius)};
+            piece.end     = (Ellipsoid){curve_at(piece.curve, end), vec(radius, radius, radius)};
             cloud_patch(cloud, end_patch, on_sweep, &piece, step);
         }
     }
@@ -294,8 +291,8 @@ typedef struct Frustum {
 
 static Vec frustum_patch(const void *user, double u, double v)
 {
-    const Frustum *f = user;
-    double radius = (1 - u) * f->radius + u * f->radius_end;
+    const Frustum *f      = user;
+    double         radius = (1 - u) * f->radius + u * f->radius_end;
     return vec(radius * cos(2 * PI * v), (1 - u) * f->y + u * f->y_end, radius * sin(2 * PI * v));
 }
 
@@ -312,8 +309,8 @@ typedef struct Torus {
 
 static Vec torus_patch(const void *user, double u, double v)
 {
-    const Torus *t = user;
-    double out = t->major + t->minor * cos(2 * PI * v);
+    const Torus *t   = user;
+    double       out = t->major + t->minor * cos(2 * PI * v);
     return vec(out * cos(2 * PI * u), t->minor * sin(2 * PI * v), out * sin(2 * PI * u));
 }
 
@@ -360,12 +357,12 @@ static int outline_count(const Figure *figure)
 static Vec outline_at(const Outline *outline, double t)
 {
     const Figure *figure = outline->figure;
-    const Sweep *stroke = &figure->stroke;
+    const Sweep  *stroke = &figure->stroke;
     if (figure->corner_count)
         return vec_mix(figure->corners[outline->line],
                        figure->corners[(outline->line + 1) % figure->corner_count], t);
     const Curve *curve = &stroke->curves[outline->line / 4];
-    int part = outline->line % 4;
+    int          part  = outline->line % 4;
     Vec velocity = curve_velocity(curve, t), normal = vec(cos(2 * PI * t), sin(2 * PI * t), 0);
     if (part >= 2)
         return vec_add(curve_at(curve, part - 2), vec_scale(stroke->radius, normal));
@@ -382,7 +379,7 @@ static bool on_outline(const Figure *figure, double x, double y)
 static Vec wall_patch(const void *user, double u, double v)
 {
     const Outline *outline = user;
-    Vec point = outline_at(outline, u);
+    Vec            point   = outline_at(outline, u);
     return vec(point.x, point.y, outline->height * (v - 0.5));
 }
 
@@ -427,8 +424,8 @@ void extrusion_cloud(const Figure *figure, double height, Cloud *cloud, double s
 static Vec turned_patch(const void *user, double u, double v)
 {
     const Outline *outline = user;
-    Vec point = outline_at(outline, u);
-    double out = point.x + outline->offset;
+    Vec            point   = outline_at(outline, u);
+    double         out     = point.x + outline->offset;
     if (out < 0)
         out = NAN;
     return vec(out * cos(2 * PI * v), point.y, out * sin(2 * PI * v));
@@ -438,7 +435,7 @@ static Vec turned_patch(const void *user, double u, double v)
 static bool on_turned(const void *user, Vec point)
 {
     const Outline *outline = user;
-    double out = hypot(point.x, point.z) - outline->offset;
+    double         out     = hypot(point.x, point.z) - outline->offset;
     return !isnan(out) && on_outline(outline->figure, out, point.y);
 }
 

@@ -54,8 +54,8 @@ static const struct Field {
     const char *name, *text;
     Formula    *formula;
 } fields[] = {
-    {"a ball and a step far from it",
-     "(length(p) - 1) * (1 + 1000 * smoothstep(1.5, 1.6, x))", smallest},
+    {"a ball and a step far from it", "(length(p) - 1) * (1 + 1000 * smoothstep(1.5, 1.6, x))",
+     smallest},
     {"a power of e", "exp(x^2 + y^2 + z^2) - 3", bell},
     {"16th powers", "pow(abs(x), 16) + pow(abs(y), 16) + pow(abs(z), 16) - 1", power_16},
     {"24th powers", "pow(abs(x), 24) + pow(abs(y / 0.7), 24) + pow(abs(z), 4) - 1", power_24},
@@ -69,7 +69,7 @@ static const struct Field {
 };
 enum { FIELDS = sizeof fields / sizeof fields[0] };
 
-static const Vec eye = {1.9, 2.6, 4.4};
+static const Vec    eye = {1.9, 2.6, 4.4};
 static const double FOV = 50 * 0.017453292519943295;
 
 /* ---- Truth ---- */
@@ -86,7 +86,7 @@ static double first_root(Formula *formula, Line line)
         if (!(formula(line_at(line, high)) <= 0))
             continue;
         for (int k = 0; i > 0 && k < 50; k++) {
-            double middle = 0.5 * (low + high);
+            double middle                                         = 0.5 * (low + high);
             *(formula(line_at(line, middle)) <= 0 ? &high : &low) = middle;
         }
         return high;
@@ -155,10 +155,13 @@ static int count_wrong(const KrsPicture *picture, const Line *rays, const double
 
 static KrsPicture *take(const Product *product, KrsTrace trace)
 {
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1, .trace = trace,
-                                .planes = KRS_PLANE_POSITION | KRS_PLANE_IDS};
-    KrsRendering *rendering;
-    KrsPicture   *picture = NULL;
+    KrsRenderOptions options = {.width   = WIDTH,
+                                .height  = HEIGHT,
+                                .samples = 1,
+                                .trace   = trace,
+                                .planes  = KRS_PLANE_POSITION | KRS_PLANE_IDS};
+    KrsRendering    *rendering;
+    KrsPicture      *picture = NULL;
     if (krs_rendering_new(renderer, product->scene, &rendering) != KRS_OK ||
         krs_render(rendering, product->frame, &options, &picture) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
@@ -202,8 +205,8 @@ static void rays_end_at_roots(void **state)
         KrsHit hit = product_raycast(&product, rays[k].origin, rays[k].direction, 20, 1e-6);
         asked++;
         unresolved += hit.unresolved;
-        if (!hit.unresolved && (hit.hit != isfinite(roots[k]) ||
-                                (hit.hit && !(fabs(hit.t - roots[k]) <= 1e-4))))
+        if (!hit.unresolved &&
+            (hit.hit != isfinite(roots[k]) || (hit.hit && !(fabs(hit.t - roots[k]) <= 1e-4))))
             fail_msg("%s: the ray of pixel %d ends at %g, its root is at %g", field->name, k, hit.t,
                      roots[k]);
     }

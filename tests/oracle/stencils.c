@@ -63,7 +63,10 @@ static void stage_close(Stage *stage)
 static KrsPicture *shoot(Stage *stage, KrsNormals normals)
 {
     KrsPicture      *picture;
-    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .error = 0.01, .no_filter = true,
+    KrsRenderOptions options = {.width     = WIDTH,
+                                .height    = HEIGHT,
+                                .error     = 0.01,
+                                .no_filter = true,
                                 .planes = KRS_PLANE_NORMAL | KRS_PLANE_POSITION | KRS_PLANE_DEPTH |
                                           KRS_PLANE_IDS,
                                 .normals = normals};
@@ -100,12 +103,12 @@ static void normal_of_torus(const double p[3], double n[3])
 static void normal_of_barth(const double p[3], double n[3])
 {
     const double g = (1 + sqrt(5)) / 2, h = g * g;
-    double s[3] = {p[0] * p[0], p[1] * p[1], p[2] * p[2]};
-    double a = h * s[0] - s[1], b = h * s[1] - s[2], c = h * s[2] - s[0];
-    double ball = 4 * (1 + 2 * g) * (s[0] + s[1] + s[2] - 1);
-    n[0] = p[0] * (ball - 8 * (h * b * c - a * b));
-    n[1] = p[1] * (ball - 8 * (h * a * c - b * c));
-    n[2] = p[2] * (ball - 8 * (h * a * b - a * c));
+    double       s[3] = {p[0] * p[0], p[1] * p[1], p[2] * p[2]};
+    double       a = h * s[0] - s[1], b = h * s[1] - s[2], c = h * s[2] - s[0];
+    double       ball = 4 * (1 + 2 * g) * (s[0] + s[1] + s[2] - 1);
+    n[0]              = p[0] * (ball - 8 * (h * b * c - a * b));
+    n[1]              = p[1] * (ball - 8 * (h * a * c - b * c));
+    n[2]              = p[2] * (ball - 8 * (h * a * b - a * c));
 }
 
 static void agrees_with(const char *text, Closed *closed, double largest, double radius)
@@ -150,7 +153,7 @@ static bool differences(KrsFrame *frame, const float at[3], double n[3])
         double points[2][3] = {{at[0], at[1], at[2]}, {at[0], at[1], at[2]}};
         points[0][i % 3] -= steps[i / 3];
         points[1][i % 3] += steps[i / 3];
-        krs_probe(frame, (const double (*)[3])points, 2, hits);
+        krs_probe(frame, (const double(*)[3])points, 2, hits);
         found[i / 3][i % 3] = (hits[1].distance - hits[0].distance) / (2 * steps[i / 3]);
     }
     for (int k = 0; k < 3; k++) {
@@ -173,7 +176,7 @@ static void agrees_with_differences(const char *text)
         if (isinf(picture->depth[i]) || !differences(stage.frame, &picture->position[3 * i], n))
             continue;
         double off = angle(&picture->normal[3 * i], n);
-        worst = fmax(worst, off);
+        worst      = fmax(worst, off);
         wrong += off > 5e-3;
         seen++;
     }
@@ -224,27 +227,26 @@ enum { TOGETHER = 6 };
 static void check_examples(const char *path)
 {
     static char line[1024], text[8192];
-    FILE  *file = fopen(path, "rb");
-    int    count = 0;
-    size_t length = 0;
+    FILE       *file   = fopen(path, "rb");
+    int         count  = 0;
+    size_t      length = 0;
     assert_non_null(file);
     bool more = true;
     while (more) {
-        more             = fgets(line, sizeof line, file) != NULL;
+        more                = fgets(line, sizeof line, file) != NULL;
         const char *example = more ? strstr(line, "example:") : NULL;
         /* A plane would hide the others. */
         if (example && !strstr(example, " plane(")) {
-            length += (size_t)snprintf(text + length, sizeof text - length,
-                                       "show (%.*s).move([%d, 0, %d]);",
-                                       (int)strcspn(example + 8, "\n"), example + 8,
-                                       3 * (count % 3), 3 * (count / 3));
+            length += (size_t)snprintf(
+                text + length, sizeof text - length, "show (%.*s).move([%d, 0, %d]);",
+                (int)strcspn(example + 8, "\n"), example + 8, 3 * (count % 3), 3 * (count / 3));
             count++;
         }
         if (count == TOGETHER || (!more && count > 0)) {
             snprintf(text + length, sizeof text - length,
                      "camera { eye: [3.5, 6, 8], target: [3, 0, 1.5], fov: 48deg }");
             agrees_with_differences(text);
-            count = 0;
+            count  = 0;
             length = 0;
         }
     }
@@ -265,12 +267,12 @@ static void stencils_keep_their_order(void **state)
 {
     (void)state;
     static const double curvature = 1 / 0.4;
-    Stage       stage = stage_open("camera { eye: [1, 3, 3], fov: 40deg } show torus(1, 0.4);");
+    Stage stage = stage_open("camera { eye: [1, 3, 3], fov: 40deg } show torus(1, 0.4);");
     for (KrsNormals normals = KRS_NORMALS_DEFAULT; normals < KRS_NORMALS_ANALYTIC; normals++) {
         KrsPicture *picture = shoot(&stage, normals);
         bool        first   = normals == KRS_NORMALS_FORWARD || normals == KRS_NORMALS_TETRAHEDRON;
-        double      worst   = 0, most = 0;
-        size_t      seen    = 0;
+        double      worst = 0, most = 0;
+        size_t      seen = 0;
         for (size_t i = 0; i < PIXELS; i++) {
             double p[3], n[3];
             if (isinf(picture->depth[i]))
@@ -282,9 +284,9 @@ static void stencils_keep_their_order(void **state)
             double reach = fmax(0.5 * away * 2 * tan(0.5 * 40 * acos(-1) / 180) / HEIGHT, 3e-4 * 2);
             double error = angle(&picture->normal[3 * i], n);
             double bound = reach * curvature;
-            bound = (first ? bound : bound * bound) + 1e-3;
-            worst = fmax(worst, error / bound);
-            most  = fmax(most, error);
+            bound        = (first ? bound : bound * bound) + 1e-3;
+            worst        = fmax(worst, error / bound);
+            most         = fmax(most, error);
             seen++;
         }
         krs_picture_free(picture);
@@ -304,8 +306,8 @@ static void stencils_keep_their_order(void **state)
 static void components_without_derivatives_have_differences(void **state)
 {
     (void)state;
-    Stage stage = stage_open("camera { eye: [3, 2, 4] } show julia([-0.2, 0.6, 0.2, 0.2]);"
-                             "show torus(1, 0.2).move([0, 1.2, 0]);");
+    Stage       stage    = stage_open("camera { eye: [3, 2, 4] } show julia([-0.2, 0.6, 0.2, 0.2]);"
+                                               "show torus(1, 0.2).move([0, 1.2, 0]);");
     KrsPicture *analytic = shoot(&stage, KRS_NORMALS_ANALYTIC);
     KrsPicture *corners  = shoot(&stage, KRS_NORMALS_OCTAHEDRON);
     size_t      seen[2] = {0}, other[2] = {0};
@@ -329,9 +331,9 @@ static void components_without_derivatives_have_differences(void **state)
 static void analytic_normals_are_asked_for_in_time(void **state)
 {
     (void)state;
-    const char   *text = "show sphere(1);";
-    Stage         stage;
-    KrsPicture   *picture;
+    const char      *text = "show sphere(1);";
+    Stage            stage;
+    KrsPicture      *picture;
     KrsRenderOptions options = {.width = 16, .height = 16, .normals = KRS_NORMALS_ANALYTIC};
     assert_int_equal(krs_compile_text(text, strlen(text), "s.krs", NULL, &stage.scene), KRS_OK);
     assert_int_equal(krs_frame_new(stage.scene, &stage.frame), KRS_OK);

@@ -36,8 +36,13 @@ static void is_safe(void **state)
 {
     const Surface *surface = *state;
     Product        product = surface_compile(surface, surface->radius, false);
-    Trial trial = {.field = product_field, .field_user = &product, .inside = is_inside,
-                   .inside_user = surface, .half = 1.3 * surface->radius, .points = 300, .seed = 3};
+    Trial          trial   = {.field       = product_field,
+                              .field_user  = &product,
+                              .inside      = is_inside,
+                              .inside_user = surface,
+                              .half        = 1.3 * surface->radius,
+                              .points      = 300,
+                              .seed        = 3};
     judge_acquits(&trial, surface->name);
     product_free(&product);
 }
@@ -50,10 +55,10 @@ static Vec point_of(const KrsHit *hit) { return vec(hit->point[0], hit->point[1]
    bends too much, to have a direction in double precision. */
 static double turn_at(const Surface *surface, const KrsHit *hit)
 {
-    Vec  normal = vec(hit->normal[0], hit->normal[1], hit->normal[2]), p = point_of(hit);
+    Vec normal = vec(hit->normal[0], hit->normal[1], hit->normal[2]), p = point_of(hit);
     Vec a = surface_slope(surface->formula, p);
     for (int i = 0; i < 3; i++) {
-        double h = 1e-4 * surface->radius;
+        double h      = 1e-4 * surface->radius;
         Vec    beside = vec_add(p, vec(h * (i == 0), h * (i == 1), h * (i == 2)));
         Vec    b      = surface_slope(surface->formula, beside);
         if (vec_length(vec_cross(vec_unit(a), vec_unit(b))) > 0.005)
@@ -102,16 +107,16 @@ static void rays_find_first_roots(void **state)
    where the bound is small, which is up to 20 times as thick where many sheets are close. */
 static void sheets_are_thin(void **state)
 {
-    const Surface *surface = *state;
-    Product        product = surface_compile(surface, surface->radius, true);
-    Random         random  = {12};
-    int            hits = 0;
+    const Surface *surface   = *state;
+    Product        product   = surface_compile(surface, surface->radius, true);
+    Random         random    = {12};
+    int            hits      = 0;
     const double   thickness = 1e-3 * 2 * sqrt(3) * surface->radius;
     for (int i = 0; i < 120; i++) {
         Vec origin, direction, near;
         random_ray(&random, surface->radius, &origin, &direction);
-        Entry entry = surface_crossing(surface->formula, surface->radius, origin, direction);
-        KrsHit hit = product_raycast(&product, origin, direction, 100 * surface->radius, 0);
+        Entry  entry = surface_crossing(surface->formula, surface->radius, origin, direction);
+        KrsHit hit   = product_raycast(&product, origin, direction, 100 * surface->radius, 0);
         if (hit.unresolved || (entry.fate == RAY_HITS && !(hit.t <= entry.t + 1e-6)))
             fail_msg("%s: ray %d goes through the sheet at %.12Lg", surface->name, i, entry.t);
         if (!hit.hit)
@@ -218,10 +223,14 @@ typedef struct Census {
 } Census;
 
 static const Census censuses[] = {
-    {"clebsch", 3, 0, 400, 0, 0},          {"cayley", 2, 4, 100, 0, 0},
-    {"ding_dong", 1, 1, 100, 0, 0},        {"octdong", 1, 1, 100, 0, 0},
-    {"tanglecube", 3, 0, 400, 0, 0},       {"dupin_cyclide", 4, 0, 400, 0, 0},
-    {"kummer", 2, 16, 1000, 0, 0},         {"togliatti", 10, 31, 1000, TURNS, 5},
+    {"clebsch", 3, 0, 400, 0, 0},
+    {"cayley", 2, 4, 100, 0, 0},
+    {"ding_dong", 1, 1, 100, 0, 0},
+    {"octdong", 1, 1, 100, 0, 0},
+    {"tanglecube", 3, 0, 400, 0, 0},
+    {"dupin_cyclide", 4, 0, 400, 0, 0},
+    {"kummer", 2, 16, 1000, 0, 0},
+    {"togliatti", 10, 31, 1000, TURNS, 5},
     {"barth_sextic", 2, 50, 400, SIGNS | CYCLES, 0},
     {"labs_septic", 18, 99, 2500, TURNS, 7},
     {"endrass_octic", 2.5, 112, 1500, TURNS | FLIP, 8},
@@ -274,7 +283,7 @@ static void find_nodes(const Census *census, Formula *formula, Nodes *nodes)
     }
     for (int i = 0; i < nodes->count; i++) {
         Vec  point = nodes->points[i];
-        Real p[3] = {point.x, point.y, point.z}, twins[MOST_TWINS][3];
+        Real p[3]  = {point.x, point.y, point.z}, twins[MOST_TWINS][3];
         int  count = twins_of(census, p, twins);
         for (int k = 0; k < count; k++)
             if (find_node(formula, twins[k]))
@@ -297,7 +306,7 @@ static void distances_reach_nodes(const Surface *surface, const Nodes *nodes)
         double zero = fabs(product_distance(&product, node));
         if (zero > 1e-6 * size)
             fail_msg("%s: at a node the distance is %g", surface->name, zero);
-        double far  = 1e-3 * size, near = 1e-4 * size;
+        double far = 1e-3 * size, near = 1e-4 * size;
         double more = fabs(product_distance(&product, vec_add(node, vec_scale(far, away)))) / far;
         double less = fabs(product_distance(&product, vec_add(node, vec_scale(near, away)))) / near;
         if (more > 1 + 1e-6 || less > 1 + 1e-6)
@@ -329,7 +338,7 @@ static void has_its_nodes(void **state)
    (g, 1, 1 / g, 0) / 2, with all signs. */
 static int corners_of_600_cell(double corners[120][4])
 {
-    const double g = 1.6180339887498949;
+    const double g     = 1.6180339887498949;
     int          count = 0;
     for (int i = 0; i < 8; i++, count++)
         for (int k = 0; k < 4; k++)
@@ -366,8 +375,8 @@ static void sarti_has_its_nodes(void **state)
 {
     static Nodes   nodes;
     static double  corners[120][4];
-    const Surface *surface = surface_named("sarti_dodecic");
-    const double   edge    = 0.80901699437494745; /* the cosine of what neighbours are apart */
+    const Surface *surface  = surface_named("sarti_dodecic");
+    const double   edge     = 0.80901699437494745; /* the cosine of what neighbours are apart */
     int            infinite = 0, triangles = 0;
     (void)state;
     assert_int_equal(corners_of_600_cell(corners), 120);
@@ -405,21 +414,21 @@ static void is_well_in_view(void **state)
     const Surface *surface = *state;
     int            name = (int)strcspn(surface->name, " "), hits = 0, on_edge = 0;
     KrsView        view;
-    Product product = product_format("use \"std/surfaces.krs\";\nshow %.*s();\n"
-                                     "camera { eye: %.*s_view }",
-                                     name, surface->name, name, surface->name);
+    Product        product = product_format("use \"std/surfaces.krs\";\nshow %.*s();\n"
+                                                   "camera { eye: %.*s_view }",
+                                            name, surface->name, name, surface->name);
     assert_int_equal(krs_frame_view(product.frame, 0, &view), KRS_OK);
-    Vec    eye = vec(view.camera.eye[0], view.camera.eye[1], view.camera.eye[2]);
+    Vec    eye     = vec(view.camera.eye[0], view.camera.eye[1], view.camera.eye[2]);
     Vec    forward = vec_unit(vec_scale(-1, eye)), up = vec(0, 1, 0);
     Vec    right = vec_unit(vec_cross(forward, up));
-    double half = tan(20 * M_PI / 180);
-    up = vec_cross(right, forward);
+    double half  = tan(20 * M_PI / 180);
+    up           = vec_cross(right, forward);
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
         int    column = i % WIDTH, row = i / WIDTH;
-        double u = half * WIDTH / HEIGHT * (2 * (column + 0.5) / WIDTH - 1);
-        double v = half * (2 * (row + 0.5) / HEIGHT - 1);
-        Vec    way = vec_add(forward, vec_add(vec_scale(u, right), vec_scale(v, up)));
-        bool   hit = product_raycast(&product, eye, way, 1e3, 0.01).hit;
+        double u    = half * WIDTH / HEIGHT * (2 * (column + 0.5) / WIDTH - 1);
+        double v    = half * (2 * (row + 0.5) / HEIGHT - 1);
+        Vec    way  = vec_add(forward, vec_add(vec_scale(u, right), vec_scale(v, up)));
+        bool   hit  = product_raycast(&product, eye, way, 1e3, 0.01).hit;
         bool   edge = row == 0 || row == HEIGHT - 1 || column == 0 || column == WIDTH - 1;
         hits += hit;
         on_edge += hit && edge;

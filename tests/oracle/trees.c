@@ -11,8 +11,8 @@
 
 typedef struct Family {
     const char *file, *shape;
-    uint32_t levels;
-    double instances; /* 0: not counted */
+    uint32_t    levels;
+    double      instances; /* 0: not counted */
 } Family;
 
 static const Family families[] = {
@@ -45,10 +45,10 @@ static void families_make_what_they_say(void **state)
 {
     (void)state;
     for (size_t i = 0; i < sizeof families / sizeof *families; i++) {
-        const Family *family = &families[i];
-        Product product =
-            product_format("use \"std/%s.krs\"; show %s;", family->file, family->shape);
-        KrsComponent component;
+        const Family *family  = &families[i];
+        Product       product = product_format("use \"std/%s.krs\"; show %s;", family->file,
+                                               family->shape);
+        KrsComponent  component;
         assert_int_equal(krs_component_count(product.scene), 1);
         assert_int_equal(krs_component(product.scene, 0, &component), KRS_OK);
         print_message("# %s: %u levels, %.0f instances\n", family->shape, component.levels,
@@ -69,9 +69,9 @@ enum { BRANCHES = 4, STEPS = 64 };
 
 static const Vec forks[BRANCHES + 1] = {
     {0, 0, 0}, {0, 2, 0.1}, {0.5, 3, 0.3}, {0.9, 3.6, 0.2}, {1.1, 3.9, 0.4}};
-static const Vec bends[BRANCHES] = {{0.1, 1, 0}, {0.1, 2.4, 0}, {0.8, 3.2, 0.4}, {1, 3.8, 0.2}};
+static const Vec    bends[BRANCHES]  = {{0.1, 1, 0}, {0.1, 2.4, 0}, {0.8, 3.2, 0.4}, {1, 3.8, 0.2}};
 static const double widths[BRANCHES] = {0.3, 0.16, 0.09, 0.05};
-static const Vec normals[BRANCHES - 1] = {{1, 0.1, 0.3}, {0.2, 1, 0.4}, {-1, 0.3, 0.2}};
+static const Vec    normals[BRANCHES - 1] = {{1, 0.1, 0.3}, {0.2, 1, 0.4}, {-1, 0.3, 0.2}};
 
 static void write_points(SceneText *text, const char *name, const Vec *points, int count)
 {
@@ -98,19 +98,19 @@ static Vec circle_centre(Vec a, Vec b, Vec c)
 {
     double along_a = pow(vec_distance(b, c), 2), along_b = pow(vec_distance(c, a), 2),
            along_c = pow(vec_distance(a, b), 2);
-    double of_a = along_a * (along_b + along_c - along_a),
-           of_b = along_b * (along_c + along_a - along_b),
-           of_c = along_c * (along_a + along_b - along_c);
-    Vec sum = vec_add(vec_add(vec_scale(of_a, a), vec_scale(of_b, b)), vec_scale(of_c, c));
+    double of_a    = along_a * (along_b + along_c - along_a),
+           of_b    = along_b * (along_c + along_a - along_b),
+           of_c    = along_c * (along_a + along_b - along_c);
+    Vec sum        = vec_add(vec_add(vec_scale(of_a, a), vec_scale(of_b, b)), vec_scale(of_c, c));
     return vec_scale(1 / (of_a + of_b + of_c), sum);
 }
 
 /* The point at the share t of the way along the arc from a by b to c. */
 static Vec arc_point(Vec a, Vec b, Vec c, double t)
 {
-    Vec centre = circle_centre(a, b, c);
-    Vec from = vec_sub(a, centre), axis = vec_unit(vec_cross(vec_sub(b, a), vec_sub(c, b)));
-    Vec aside = vec_cross(axis, from), to = vec_sub(c, centre);
+    Vec    centre = circle_centre(a, b, c);
+    Vec    from = vec_sub(a, centre), axis = vec_unit(vec_cross(vec_sub(b, a), vec_sub(c, b)));
+    Vec    aside = vec_cross(axis, from), to = vec_sub(c, centre);
     double angle = atan2(vec_dot(to, aside), vec_dot(to, from));
     if (angle < 0)
         angle += 2 * acos(-1);
@@ -131,7 +131,7 @@ static Half mirror_at(int i)
 static bool image_of(Vec *point, int i, unsigned choice)
 {
     for (; i >= 1; i--) {
-        Half half = mirror_at(i);
+        Half   half   = mirror_at(i);
         double beyond = half_excess(half, *point);
         if (beyond > 1e-12)
             return false;
@@ -144,8 +144,8 @@ static bool image_of(Vec *point, int i, unsigned choice)
 static void branches_are_inside_all_along(void **state)
 {
     (void)state;
-    Product tree = compile_tree();
-    int there = 0, cut = 0;
+    Product tree  = compile_tree();
+    int     there = 0, cut = 0;
     for (int branch = 0; branch < BRANCHES; branch++)
         for (unsigned choice = 0; choice < 1u << branch; choice++)
             for (int step = 0; step <= STEPS; step++) {
@@ -179,7 +179,7 @@ static void leaves_are_at_the_tips(void **state)
     /* It goes on as the twig arrives: along the tangent of the circle. */
     Vec from = vec(0, 1, 0), via = vec(0.1, 1.5, 0);
     Vec before = arc_point(from, via, tip, 1 - 1e-6);
-    Vec on = vec_add(tip, vec_scale(0.4, vec_unit(vec_sub(tip, before))));
+    Vec on     = vec_add(tip, vec_scale(0.4, vec_unit(vec_sub(tip, before))));
     assert_true(fabs(product_distance(&leaf, on) + 0.01) < 1e-5);
     product_free(&leaf);
 }

@@ -50,8 +50,8 @@ static double less_ball(const double p[3])
     return fmax(fmax(quartic(p), ball(p, 0, 0, 0, 2)), -ball(p, 0.3, 0.4, 0, 0.5));
 }
 
-#define SEXTIC                                                                                     \
-    "let g = (1 + sqrt(5)) / 2;\nlet s = algebraic((1 + 2 * g) * (x^2 + y^2 + z^2 - 1)^2 =="       \
+#define SEXTIC                                                                               \
+    "let g = (1 + sqrt(5)) / 2;\nlet s = algebraic((1 + 2 * g) * (x^2 + y^2 + z^2 - 1)^2 ==" \
     " 4 * (g^2 * x^2 - y^2) * (g^2 * y^2 - z^2) * (g^2 * z^2 - x^2)).within(sphere(1.5));\n"
 
 static const struct Case {
@@ -113,9 +113,9 @@ static double along_at(KrsFrame *frame, const Tape *tape, Node root, const doubl
 static void steps_stay_before_the_surface(void **state)
 {
     const struct Case *c = *state;
-    KrsScene *scene;
-    KrsFrame *frame;
-    uint32_t  seed = 3;
+    KrsScene          *scene;
+    KrsFrame          *frame;
+    uint32_t           seed = 3;
     assert_int_equal(krs_compile_text(c->text, strlen(c->text), c->name, NULL, &scene), KRS_OK);
     assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
     assert_true(krs_scene_program(scene)->along);

@@ -27,10 +27,10 @@ static jmp_buf out_of_memory;
 static int bench_start(void **state)
 {
     static Bench bench;
-    bench        = (Bench){.memory = {.exhausted = &out_of_memory}, .seed = 5};
-    bench.arena  = (Arena){.memory = &bench.memory};
-    bench.graph  = graph_new(&bench.arena);
-    bench.point  = graph_leaf(bench.graph, OP_POINT);
+    bench                   = (Bench){.memory = {.exhausted = &out_of_memory}, .seed = 5};
+    bench.arena             = (Arena){.memory = &bench.memory};
+    bench.graph             = graph_new(&bench.arena);
+    bench.point             = graph_leaf(bench.graph, OP_POINT);
     GraphParameter anywhere = {{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL, HUGE_VAL}};
     array_push(&bench.arena, &bench.graph->parameters, anywhere);
     bench.anchor = graph_parameter(bench.graph, 1, TYPE_VEC3);
@@ -54,9 +54,9 @@ static double uniform(Bench *b)
 static double evaluate(Bench *b, Node root, const double point[3], const double anchor[3],
                        bool single)
 {
-    const Graph *g    = b->graph;
-    Tape         tape = tape_new(g, &root, 1, &b->arena);
-    NodeValue   *values = arena_new_array(&b->arena, NodeValue, g->count);
+    const Graph *g             = b->graph;
+    Tape         tape          = tape_new(g, &root, 1, &b->arena);
+    NodeValue   *values        = arena_new_array(&b->arena, NodeValue, g->count);
     NodeValue    parameters[2] = {{{0.4}}, {{anchor[0], anchor[1], anchor[2]}}};
     tape_run_frame(&tape, parameters, values);
     for (size_t i = 0; i < tape.count; i++) {
@@ -87,8 +87,8 @@ static Node vector(Bench *b, double size)
 /* Moves, turns, mirrors, copies, and at the end the distance to a ball or a box. */
 static Node chain(Bench *b, double reach)
 {
-    Graph *g    = b->graph;
-    Node   p    = b->point;
+    Graph *g     = b->graph;
+    Node   p     = b->point;
     int    steps = 1 + (int)(6 * fabs(uniform(b)));
     for (int i = 0; i < steps; i++) {
         Node normal = graph_op1(g, OP_normalize, vector(b, 1));
@@ -97,16 +97,15 @@ static Node chain(Bench *b, double reach)
         case 0: p = graph_op2(g, OP_sub, p, vector(b, reach)); break;
         case 1: p = graph_op4(g, OP_turn, p, rows[0], rows[1], rows[2]); break;
         case 2: p = graph_op2(g, OP_scale, p, graph_number(g, 0.5)); break;
-        case 3: case 4:
-            p = graph_op3(g, OP_fold, p, normal, graph_number(g, reach * uniform(b)));
-            break;
+        case 3:
+        case 4: p = graph_op3(g, OP_fold, p, normal, graph_number(g, reach * uniform(b))); break;
         case 5: {
-            Node x    = graph_component(g, p, 0), period = graph_number(g, 3);
+            Node x = graph_component(g, p, 0), period = graph_number(g, 3);
             Node cell = graph_op1(g, OP_round, graph_op2(g, OP_div, x, period));
-            Node low  = graph_number(g, -1e6), high = graph_number(g, 4e6);
-            cell      = graph_op3(g, OP_clamp, cell, low, high);
-            x         = graph_op2(g, OP_sub, x, graph_op2(g, OP_mul, cell, period));
-            p = graph_op3(g, OP_vec3, x, graph_component(g, p, 1), graph_component(g, p, 2));
+            Node low = graph_number(g, -1e6), high = graph_number(g, 4e6);
+            cell = graph_op3(g, OP_clamp, cell, low, high);
+            x    = graph_op2(g, OP_sub, x, graph_op2(g, OP_mul, cell, period));
+            p    = graph_op3(g, OP_vec3, x, graph_component(g, p, 1), graph_component(g, p, 2));
             break;
         }
         default: {
@@ -114,7 +113,7 @@ static Node chain(Bench *b, double reach)
             Node behind = graph_op2(g, OP_less, y, graph_number(g, reach * uniform(b)));
             Node front  = graph_op3(g, OP_front, p, normal, graph_number(g, reach));
             Node both   = graph_op2(g, OP_and, behind, front);
-            p = graph_op3(g, OP_select, both, graph_op1(g, OP_neg, p), p);
+            p           = graph_op3(g, OP_select, both, graph_op1(g, OP_neg, p), p);
         }
         }
     }
@@ -147,8 +146,8 @@ static void values_are_the_same(void **state)
 /* Along a row of cells that goes far: in single precision the plain expression is lost there. */
 static void single_precision_is_enough(void **state)
 {
-    Bench *b = *state;
-    Graph *g = b->graph;
+    Bench *b           = *state;
+    Graph *g           = b->graph;
     double worst_plain = 0, worst_near = 0;
     Node   p = b->point;
     for (int i = 20; i-- > 0;)

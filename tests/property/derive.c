@@ -75,7 +75,7 @@ static void mixed_operands(Bench *b, Node operands[3])
 {
     Graph *g    = b->graph;
     Node   half = graph_number(g, 0.5);
-    Node sine   = graph_op1(g, OP_sin, b->x), part = graph_op2(g, OP_mul, b->y, half);
+    Node   sine = graph_op1(g, OP_sin, b->x), part = graph_op2(g, OP_mul, b->y, half);
     operands[0] = graph_op2(g, OP_add, sine, part);
     operands[1] = graph_op2(g, OP_sub, graph_op2(g, OP_mul, b->y, b->z), half);
     operands[2] = graph_op2(g, OP_add, graph_op1(g, OP_square, b->z), b->x);
@@ -95,7 +95,11 @@ static void small_operands(Bench *b, Node operands[3])
 
 static void componentwise_rows_derive(void **state)
 {
-    static const struct { Op op; int arity; const char *name; } rows[] = {
+    static const struct {
+        Op          op;
+        int         arity;
+        const char *name;
+    } rows[] = {
 #define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning) {OP_##name, arity, #name},
 #define OP(name, signature, glsl, evaluate, facts, meaning)
 #include "compiler/graph/ops.def"
@@ -121,8 +125,8 @@ static void vector_rules_derive(void **state)
     Graph *g = b->graph;
     Node   o[3], q;
     mixed_operands(b, o);
-    q = graph_op(g, OP_vec3, o);
-    Node axis   = graph_vec3(g, 0.6, 0, 0.8), number = graph_op2(g, OP_add, o[1], b->x);
+    q         = graph_op(g, OP_vec3, o);
+    Node axis = graph_vec3(g, 0.6, 0, 0.8), number = graph_op2(g, OP_add, o[1], b->x);
     Node rows[] = {graph_vec3(g, 0, 1, 0), graph_vec3(g, -1, 0, 0), graph_vec3(g, 0, 0, 1)};
     Node less   = graph_op2(g, OP_less, o[0], o[1]);
     Node made[] = {
@@ -150,10 +154,13 @@ static void vector_rules_derive(void **state)
 /* Blends, at points where both count, on steps and cuts, and where the width is nothing. */
 static void blends_derive(void **state)
 {
-    static const struct { Op op; const char *name; } rows[] = {
-        {OP_smin_quadratic, "quadratic"}, {OP_smin_cubic, "cubic"},
+    static const struct {
+        Op          op;
+        const char *name;
+    } rows[] = {
+        {OP_smin_quadratic, "quadratic"},     {OP_smin_cubic, "cubic"},
         {OP_smin_exponential, "exponential"}, {OP_smin_circular, "circular"},
-        {OP_smin_chamfer, "chamfer"}, {OP_blend_weight, "weight"},
+        {OP_smin_chamfer, "chamfer"},         {OP_blend_weight, "weight"},
     };
     Bench *b = *state;
     Graph *g = b->graph;
@@ -199,10 +206,10 @@ static void derivatives_of_boxes_are_numbers(void **state)
     Node   size    = graph_op1(g, OP_abs, b->point);
     Node   excess  = graph_op2(g, OP_sub, size, graph_vec3(g, 1, 2, 3));
     Node   outside = graph_op1(g, OP_length, graph_op2(g, OP_max, excess, zero));
-    Node   across  = graph_component(g, excess, 0), up = graph_component(g, excess, 1);
-    Node   most    = graph_op2(g, OP_max, across, up);
-    most           = graph_op2(g, OP_max, most, graph_component(g, excess, 2));
-    Node   box     = graph_op2(g, OP_add, outside, graph_op2(g, OP_min, most, zero));
+    Node   across = graph_component(g, excess, 0), up = graph_component(g, excess, 1);
+    Node   most = graph_op2(g, OP_max, across, up);
+    most        = graph_op2(g, OP_max, most, graph_component(g, excess, 2));
+    Node box    = graph_op2(g, OP_add, outside, graph_op2(g, OP_min, most, zero));
     assert_int_equal(graph_derive(g, box, partial, NULL, &b->arena), DERIVED_BETWEEN);
     const double inside[3] = {0.9, 0.5, -0.3}, face[3] = {1, 0.5, -0.3}, out[3] = {4, 6, 3.5};
     for (int i = 0; i < 3; i++) {
@@ -227,7 +234,7 @@ static void what_is_still_has_no_derivative(void **state)
     const double point[3] = {1.3, -0.4, 0.9}, size = sqrt(0.16 + 1.69 + 1);
     for (uint32_t i = 0; i < 3; i++)
         assert_near(value_at(b, graph_component(g, of_share, i), point),
-                           (double[]){-0.4, 1.3, -1}[i] / size, 1e-12);
+                    (double[]){-0.4, 1.3, -1}[i] / size, 1e-12);
 }
 
 static void smooth_ones_derive_twice(void **state)
@@ -236,9 +243,9 @@ static void smooth_ones_derive_twice(void **state)
     Graph *g = b->graph;
     Node   o[3], partial[3];
     mixed_operands(b, o);
-    Node quotient = graph_op2(g, OP_div, o[0], graph_op2(g, OP_add, graph_op1(g, OP_square, o[1]),
-                                                         graph_number(g, 1)));
-    Node root     = graph_op2(g, OP_mul, quotient, graph_op1(g, OP_exp, o[2]));
+    Node quotient = graph_op2(
+        g, OP_div, o[0], graph_op2(g, OP_add, graph_op1(g, OP_square, o[1]), graph_number(g, 1)));
+    Node root = graph_op2(g, OP_mul, quotient, graph_op1(g, OP_exp, o[2]));
     assert_int_equal(graph_derive(g, root, partial, NULL, &b->arena), DERIVED_SMOOTH);
     for (int i = 0; i < 3; i++)
         assert_true(check_derivatives(b, "second derivative", partial[i]) > 150);

@@ -27,22 +27,18 @@ typedef struct Place {
 
 static NodeValue evaluate(const Graph *graph, Node node, const Place *place)
 {
-    const Expr *e = &graph->items[node];
+    const Expr *e     = &graph->items[node];
     NodeValue   value = {{0}}, operands[MAX_OPERANDS] = {0};
     GraphType   types[MAX_OPERANDS] = {0};
     switch ((Op)e->op) {
-    case OP_CONSTANT:
-        memcpy(value.v, e->number, sizeof value.v);
-        return value;
-    case OP_PARAMETER:
-        return place->parameters[e->index];
-    case OP_POINT:
-        memcpy(value.v, place->point, sizeof place->point);
-        return value;
-    case OP_INSTANCE:
-        return (NodeValue){{1}};
-    case OP_LEVEL: case OP_UV: case OP_NORMAL: case OP_FOOTPRINT:
-        return value;
+    case OP_CONSTANT: memcpy(value.v, e->number, sizeof value.v); return value;
+    case OP_PARAMETER: return place->parameters[e->index];
+    case OP_POINT: memcpy(value.v, place->point, sizeof place->point); return value;
+    case OP_INSTANCE: return (NodeValue){{1}};
+    case OP_LEVEL:
+    case OP_UV:
+    case OP_NORMAL:
+    case OP_FOOTPRINT: return value;
     default:
         for (int i = 0; i < e->operand_count; i++) {
             types[i]    = graph->items[e->operands[i]].type;
@@ -92,7 +88,7 @@ static GraphType random_type(Bench *b) { return (GraphType)(1 + random_below(&b-
 static Node grow(Bench *b, const Garden *garden)
 {
     for (;;) {
-        Op op = (Op)(OP_COMPONENT + random_below(&b->random, OP_COUNT - OP_COMPONENT));
+        Op        op = (Op)(OP_COMPONENT + random_below(&b->random, OP_COUNT - OP_COMPONENT));
         GraphType types[MAX_OPERANDS];
         Node      operands[MAX_OPERANDS];
         GraphType usual = random_type(b);
@@ -112,8 +108,8 @@ static Node grow(Bench *b, const Garden *garden)
 
 static Garden random_garden(Bench *b, uint32_t count)
 {
-    Garden garden = {0};
-    Node   point  = graph_leaf(b->graph, OP_POINT);
+    Garden garden                = {0};
+    Node   point                 = graph_leaf(b->graph, OP_POINT);
     garden.nodes[garden.count++] = point;
     for (uint32_t i = 0; i < 3; i++)
         garden.nodes[garden.count++] = graph_component(b->graph, point, i);
@@ -155,7 +151,7 @@ static bool values_same(GraphType type, const NodeValue *a, const NodeValue *b)
 
 static void equal_expressions_are_one_node(void **state)
 {
-    Bench *b = *state;
+    Bench *b     = *state;
     Garden first = random_garden(b, 60);
     size_t count = b->graph->count;
     b->random    = (Random){0};
@@ -177,9 +173,9 @@ static void equal_expressions_are_one_node(void **state)
 
 static void numbers_are_spread_over_vectors(void **state)
 {
-    Bench *b = *state;
+    Bench *b     = *state;
     Node   point = graph_leaf(b->graph, OP_POINT), x = graph_component(b->graph, point, 0);
-    Node   sum   = graph_op2(b->graph, OP_add, x, point);
+    Node   sum = graph_op2(b->graph, OP_add, x, point);
     assert_int_equal(b->graph->items[sum].type, TYPE_VEC3);
     Place     place = {.point = {1, 2, 3}};
     NodeValue value = evaluate(b->graph, sum, &place);
@@ -193,8 +189,8 @@ static void numbers_are_spread_over_vectors(void **state)
 
 static void binding_time_is_the_latest_of_operands(void **state)
 {
-    Bench *b = *state;
-    Graph *g = b->graph;
+    Bench *b    = *state;
+    Graph *g    = b->graph;
     Node   time = graph_parameter(g, 0, TYPE_FLOAT), two = graph_number(g, 2);
     Node   twice = graph_op2(g, OP_mul, time, two), four = graph_op2(g, OP_mul, two, two);
     Node   level = graph_leaf(g, OP_LEVEL), late = graph_op2(g, OP_add, twice, level);
@@ -205,8 +201,8 @@ static void binding_time_is_the_latest_of_operands(void **state)
 
 static void constants_are_folded_when_finite(void **state)
 {
-    Bench *b = *state;
-    Graph *g = b->graph;
+    Bench *b   = *state;
+    Graph *g   = b->graph;
     Node   two = graph_number(g, 2), zero = graph_number(g, 0);
     Node   endless = graph_op2(g, OP_div, two, zero);
     assert_false(graph_is_constant(g, endless));
@@ -219,9 +215,9 @@ static void constants_are_folded_when_finite(void **state)
 
 static void spans_are_those_of_the_author(void **state)
 {
-    Bench *b = *state;
-    Graph *g = b->graph;
-    Node point = graph_leaf(g, OP_POINT), length = graph_op1(g, OP_length, point);
+    Bench *b     = *state;
+    Graph *g     = b->graph;
+    Node   point = graph_leaf(g, OP_POINT), length = graph_op1(g, OP_length, point);
     assert_int_equal(g->items[length].span.source, 0);
     g->here = (Span){1, 10, 20};
     assert_int_equal(graph_op1(g, OP_length, point), length);
@@ -232,14 +228,14 @@ static void spans_are_those_of_the_author(void **state)
 
 static void powers_are_products(void **state)
 {
-    Bench *b = *state;
-    Graph *g = b->graph;
-    Node   point = graph_leaf(g, OP_POINT), x = graph_component(g, point, 0);
+    Bench              *b     = *state;
+    Graph              *g     = b->graph;
+    Node                point = graph_leaf(g, OP_POINT), x = graph_component(g, point, 0);
     static const double exponents[] = {1, 2, 3, 7, 10, 63, -1, -2, -5, 0.5, -0.5, 0, 2.5, 65};
     for (size_t i = 0; i < sizeof exponents / sizeof *exponents; i++) {
         double n        = exponents[i];
         Node   exponent = graph_number(g, n), power = graph_power(g, x, exponent);
-        bool   by_pow   = g->items[power].op == OP_pow;
+        bool   by_pow = g->items[power].op == OP_pow;
         assert_int_equal(by_pow, n == 2.5 || n == 65);
         for (double a = 0.5; a < 2; a += 0.25) {
             Place  place = {.point = {a}};
@@ -290,13 +286,13 @@ static void folding_gives_what_evaluation_gives(void **state)
         Place  place  = random_place(b);
         Node   at     = graph_vec3(b->graph, place.point[0], place.point[1], place.point[2]);
         for (uint32_t i = 0; i < garden.count; i++) {
-            Node      root = garden.nodes[i], one = graph_uint(b->graph, 1);
-            NodeValue expected = evaluate(b->graph, root, &place);
-            Substitution with = substitute_point(at);
-            with.instance     = one;
-            Node      fixed = graph_substitute(b->graph, root, with, &b->arena);
-            Expr      e = b->graph->items[fixed];
-            NodeValue value = evaluate(b->graph, fixed, &place);
+            Node         root = garden.nodes[i], one = graph_uint(b->graph, 1);
+            NodeValue    expected = evaluate(b->graph, root, &place);
+            Substitution with     = substitute_point(at);
+            with.instance         = one;
+            Node      fixed       = graph_substitute(b->graph, root, with, &b->arena);
+            Expr      e           = b->graph->items[fixed];
+            NodeValue value       = evaluate(b->graph, fixed, &place);
             assert_true(values_same(e.type, &expected, &value));
             assert_int_not_equal(e.time, TIME_POINT);
             folded += e.op == OP_CONSTANT;
@@ -312,22 +308,22 @@ static void substitution_moves_the_point(void **state)
     for (int turn = 0; turn < 100; turn++) {
         b->graph      = graph_new(&b->arena);
         Garden garden = random_garden(b, 60);
-        Node   point  = garden.nodes[0], twice = graph_op2(b->graph, OP_add, point, point);
-        Node   root   = garden.nodes[garden.count - 1];
-        Node   moved  = graph_substitute(b->graph, root, substitute_point(twice), &b->arena);
-        Place  place  = random_place(b), far = place;
+        Node   point = garden.nodes[0], twice = graph_op2(b->graph, OP_add, point, point);
+        Node   root  = garden.nodes[garden.count - 1];
+        Node   moved = graph_substitute(b->graph, root, substitute_point(twice), &b->arena);
+        Place  place = random_place(b), far = place;
         for (int i = 0; i < 3; i++)
             far.point[i] *= 2;
         NodeValue expected = evaluate(b->graph, root, &far);
         NodeValue value    = evaluate(b->graph, moved, &place);
         assert_true(values_same(b->graph->items[root].type, &expected, &value));
     }
-    Node instance = graph_leaf(b->graph, OP_INSTANCE), seven = graph_uint(b->graph, 7);
-    Node unit     = graph_op1(b->graph, OP_id_unit, instance);
+    Node         instance = graph_leaf(b->graph, OP_INSTANCE), seven = graph_uint(b->graph, 7);
+    Node         unit = graph_op1(b->graph, OP_id_unit, instance);
     Substitution with = substitute_point(NODE_NONE);
-    Node kept     = graph_substitute(b->graph, unit, with, &b->arena);
-    with.instance = seven;
-    Node known    = graph_substitute(b->graph, unit, with, &b->arena);
+    Node         kept = graph_substitute(b->graph, unit, with, &b->arena);
+    with.instance     = seven;
+    Node known        = graph_substitute(b->graph, unit, with, &b->arena);
     assert_true(graph_is_constant(b->graph, known));
     assert_int_equal(kept, unit);
 }
@@ -340,29 +336,29 @@ static double sensitivity(const Graph *graph, Node root, const Place *place)
     NodeValue value = evaluate(graph, root, place);
     double    most  = 0;
     for (int i = 0; i < 8; i++) {
-        Place near = *place;
+        Place  near   = *place;
         double factor = 1 + (i % 2 ? 1 : -1) * 1e-13;
         for (int j = 0; j < 3; j++)
             near.point[j] *= i / 2 == j || i / 2 == 3 ? factor : 1;
         near.parameters[0].v[0] *= i / 2 == 3 ? factor : 1;
         near.parameters[1].v[0] *= i / 2 == 3 ? factor : 1;
         NodeValue other = evaluate(graph, root, &near);
-        most = fmax(most, value_apart(type, &value, &other));
+        most            = fmax(most, value_apart(type, &value, &other));
     }
     return most;
 }
 
 static void simplification_keeps_values(void **state)
 {
-    Bench *b = *state;
+    Bench *b      = *state;
     size_t before = 0, after = 0, compared = 0, exact = 0;
     for (int turn = 0; turn < 2000; turn++) {
         arena_free(&b->arena);
-        b->graph      = graph_new(&b->arena);
-        Garden garden = random_garden(b, 50);
-        Node   root   = garden.nodes[garden.count - 1 - random_below(&b->random, 15)];
+        b->graph           = graph_new(&b->arena);
+        Garden garden      = random_garden(b, 50);
+        Node   root        = garden.nodes[garden.count - 1 - random_below(&b->random, 15)];
         Node   simple_root = root;
-        Graph *simple = graph_simplify(b->graph, &simple_root, 1, &b->arena);
+        Graph *simple      = graph_simplify(b->graph, &simple_root, 1, &b->arena);
         graph_validate(simple, "graph_simplify");
         GraphType type = b->graph->items[root].type;
         assert_int_equal(simple->items[simple_root].type, type);
@@ -408,7 +404,7 @@ static Box random_box(Bench *b)
     for (int i = 0; i < 3; i++) {
         double middle = random_between(&b->random, -2, 2);
         double half   = random_below(&b->random, 3) ? random_between(&b->random, 0, 0.5) : 2;
-        box.axis[i] = (Range){random_below(&b->random, 6) ? middle - half : -HUGE_VAL,
+        box.axis[i]   = (Range){random_below(&b->random, 6) ? middle - half : -HUGE_VAL,
                               random_below(&b->random, 6) ? middle + half : HUGE_VAL};
     }
     return box;
@@ -418,9 +414,9 @@ static Place place_in_box(Bench *b, Box box)
 {
     Place place = random_place(b);
     for (int i = 0; i < 3; i++) {
-        Range  a    = box.axis[i];
-        double low  = a.low > -HUGE_VAL ? a.low : fmin(a.high, 2) - 4;
-        double high = a.high < HUGE_VAL ? a.high : fmax(a.low, -2) + 4;
+        Range  a       = box.axis[i];
+        double low     = a.low > -HUGE_VAL ? a.low : fmin(a.high, 2) - 4;
+        double high    = a.high < HUGE_VAL ? a.high : fmax(a.low, -2) + 4;
         place.point[i] = random_between(&b->random, low, high);
     }
     return place;
@@ -442,8 +438,8 @@ static bool fact_makes_sense(const Fact *fact, uint32_t size)
 static bool is_at_a_jump(const Graph *graph, const Expr *e, const NodeValue *values)
 {
     static const double AWAY = 1e-12;
-    GraphType types[MAX_OPERANDS];
-    NodeValue above[MAX_OPERANDS], below[MAX_OPERANDS];
+    GraphType           types[MAX_OPERANDS];
+    NodeValue           above[MAX_OPERANDS], below[MAX_OPERANDS];
     for (int i = 0; i < e->operand_count; i++) {
         types[i] = graph->items[e->operands[i]].type;
         above[i] = below[i] = values[e->operands[i]];
@@ -471,8 +467,8 @@ static bool is_defined(const Graph *graph, Node node, const NodeValue *values, c
     for (int i = 0; i < e->operand_count; i++)
         if (!defined[e->operands[i]])
             return false;
-    bool jumps = e->op == OP_floor || e->op == OP_round || e->op == OP_fract ||
-                 e->op == OP_mod || e->op == OP_sign || e->op == OP_step;
+    bool jumps = e->op == OP_floor || e->op == OP_round || e->op == OP_fract || e->op == OP_mod ||
+                 e->op == OP_sign || e->op == OP_step;
     return !jumps || !is_at_a_jump(graph, e, values);
 }
 
@@ -486,8 +482,8 @@ static bool fact_holds(const Fact *fact, GraphType type, const NodeValue *value)
 }
 
 /* Between two places where the value is defined. */
-static bool slope_holds(const Fact *fact, GraphType type, const Place places[2],
-                        const NodeValue *a, const NodeValue *b)
+static bool slope_holds(const Fact *fact, GraphType type, const Place places[2], const NodeValue *a,
+                        const NodeValue *b)
 {
     double moved = 0, changed = 0, scale = fmax(value_size(type, a), value_size(type, b));
     for (int j = 0; j < 3; j++)
@@ -503,12 +499,12 @@ static void facts_hold_over_any_box(void **state)
     Bench *b = *state;
     for (int turn = 0; turn < 2000; turn++) {
         arena_free(&b->arena);
-        b->graph      = graph_new(&b->arena);
-        Garden garden = random_garden(b, 50);
-        Box    box    = random_box(b);
-        Fact  *facts  = graph_facts(b->graph, box, NULL, &b->arena);
-        Place  places[2] = {place_in_box(b, box), place_in_box(b, box)};
-        Tape   tape   = tape_new(b->graph, garden.nodes, garden.count, &b->arena);
+        b->graph             = graph_new(&b->arena);
+        Garden     garden    = random_garden(b, 50);
+        Box        box       = random_box(b);
+        Fact      *facts     = graph_facts(b->graph, box, NULL, &b->arena);
+        Place      places[2] = {place_in_box(b, box), place_in_box(b, box)};
+        Tape       tape      = tape_new(b->graph, garden.nodes, garden.count, &b->arena);
         NodeValue *values[2];
         bool      *defined[2];
         for (int k = 0; k < 2; k++) {
@@ -549,14 +545,14 @@ static const char *simplified(Bench *b, Node root)
 
 static void rules_do_what_they_say(void **state)
 {
-    Bench *b = *state;
-    Graph *g = b->graph;
-    Node point = graph_leaf(g, OP_POINT), x = graph_component(g, point, 0);
-    Node y = graph_component(g, point, 1), z = graph_component(g, point, 2);
-    Node zero = graph_number(g, 0), one = graph_number(g, 1), two = graph_number(g, 2);
-    const char *only_x = "%0 vec3 point = point\n%1 float point = component %0 0\nroot %1\n";
+    Bench      *b     = *state;
+    Graph      *g     = b->graph;
+    Node        point = graph_leaf(g, OP_POINT), x = graph_component(g, point, 0);
+    Node        y = graph_component(g, point, 1), z = graph_component(g, point, 2);
+    Node        zero = graph_number(g, 0), one = graph_number(g, 1), two = graph_number(g, 2);
+    const char *only_x     = "%0 vec3 point = point\n%1 float point = component %0 0\nroot %1\n";
     const char *only_point = "%0 vec3 point = point\nroot %0\n";
-    const char *nothing = "%0 float constant = 0\nroot %0\n";
+    const char *nothing    = "%0 float constant = 0\nroot %0\n";
 
     Node minus = graph_op1(g, OP_neg, x), back = graph_op1(g, OP_neg, minus);
     assert_string_equal(simplified(b, graph_op2(g, OP_add, x, zero)), only_x);
@@ -580,12 +576,12 @@ static void rules_do_what_they_say(void **state)
     Node inverse = graph_op2(g, OP_div, one, x), not_zero = graph_op2(g, OP_mul, inverse, zero);
     assert_non_null(strstr(simplified(b, not_zero), "mul"));
     Node none = graph_op2(g, OP_sub, inverse, inverse), scaled = graph_op1(g, OP_splat3, inverse);
-    scaled    = graph_op2(g, OP_scale, scaled, zero);
+    scaled = graph_op2(g, OP_scale, scaled, zero);
     assert_non_null(strstr(simplified(b, none), "sub"));
     assert_non_null(strstr(simplified(b, scaled), "scale"));
 
     Node xx = graph_op2(g, OP_mul, x, x), yy = graph_op2(g, OP_mul, y, y);
-    Node zz = graph_op2(g, OP_mul, z, z);
+    Node zz  = graph_op2(g, OP_mul, z, z);
     Node sum = graph_op2(g, OP_add, xx, yy), all = graph_op2(g, OP_add, sum, zz);
     assert_string_equal(simplified(b, graph_op1(g, OP_sqrt, all)),
                         "%0 vec3 point = point\n%1 float point = length %0\nroot %1\n");
@@ -593,20 +589,20 @@ static void rules_do_what_they_say(void **state)
 
 static void rules_leave_what_they_do_not_mean(void **state)
 {
-    Bench *b = *state;
-    Graph *g = b->graph;
+    Bench *b     = *state;
+    Graph *g     = b->graph;
     Node   point = graph_leaf(g, OP_POINT), x = graph_component(g, point, 0);
     Node   y = graph_component(g, point, 1), z = graph_component(g, point, 2);
     Node   ex = graph_vec3(g, 1, 0, 0), ey = graph_vec3(g, 0, 1, 0), ez = graph_vec3(g, 0, 0, 1);
-    Node   still = graph_op4(g, OP_turn, point, ex, ey, ez);
+    Node   still  = graph_op4(g, OP_turn, point, ex, ey, ez);
     Node   turned = graph_op4(g, OP_turn, point, ey, ez, ex);
     assert_string_equal(simplified(b, still), "%0 vec3 point = point\nroot %0\n");
     assert_non_null(strstr(simplified(b, turned), "turn"));
 
-    Node less = graph_op2(g, OP_less, x, y), opposite = graph_op1(g, OP_not, less);
-    Node choice = graph_op3(g, OP_select, opposite, y, z), simple_choice = choice;
+    Node   less = graph_op2(g, OP_less, x, y), opposite = graph_op1(g, OP_not, less);
+    Node   choice = graph_op3(g, OP_select, opposite, y, z), simple_choice = choice;
     Graph *simple = graph_simplify(g, &simple_choice, 1, &b->arena);
-    Place place   = {.point = {1, 2, 3}}, swapped = {.point = {2, 1, 3}};
+    Place  place = {.point = {1, 2, 3}}, swapped = {.point = {2, 1, 3}};
     assert_true(evaluate(simple, simple_choice, &place).v[0] == 3);
     assert_true(evaluate(simple, simple_choice, &swapped).v[0] == 1);
     assert_null(strstr(simplified(b, choice), "not"));

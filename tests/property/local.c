@@ -34,19 +34,19 @@ static Node positive(Bench *b, Node a)
 /* What has a slope everywhere. */
 static Node tame(Bench *b, int kind, Node p, Node q)
 {
-    Graph *g   = b->graph;
+    Graph *g    = b->graph;
     Node   size = graph_op1(g, OP_abs, p), three = graph_op3(g, OP_vec3, p, q, number(b, 0.3));
     switch (kind) {
-    case 0:  return graph_op2(g, OP_add, p, q);
-    case 1:  return graph_op2(g, OP_sub, p, q);
-    case 2:  return graph_op2(g, OP_mul, p, q);
-    case 3:  return graph_op1(g, OP_sin, p);
-    case 4:  return graph_op1(g, OP_cos, p);
-    case 5:  return graph_op1(g, OP_atan, p);
-    case 6:  return graph_op1(g, OP_tanh, p);
-    case 7:  return graph_op1(g, OP_exp, graph_op1(g, OP_sin, p));
-    case 8:  return graph_op1(g, OP_exp2, graph_op1(g, OP_tanh, p));
-    case 9:  return graph_op1(g, OP_sqrt, positive(b, p));
+    case 0: return graph_op2(g, OP_add, p, q);
+    case 1: return graph_op2(g, OP_sub, p, q);
+    case 2: return graph_op2(g, OP_mul, p, q);
+    case 3: return graph_op1(g, OP_sin, p);
+    case 4: return graph_op1(g, OP_cos, p);
+    case 5: return graph_op1(g, OP_atan, p);
+    case 6: return graph_op1(g, OP_tanh, p);
+    case 7: return graph_op1(g, OP_exp, graph_op1(g, OP_sin, p));
+    case 8: return graph_op1(g, OP_exp2, graph_op1(g, OP_tanh, p));
+    case 9: return graph_op1(g, OP_sqrt, positive(b, p));
     case 10: return size;
     case 11: return graph_op2(g, OP_min, p, q);
     case 12: return graph_op2(g, OP_max, p, q);
@@ -72,12 +72,12 @@ static Node wild(Bench *b, int kind, Node p, Node q)
 {
     Graph *g = b->graph;
     switch (kind) {
-    case 0:  return graph_op2(g, OP_div, q, p);
-    case 1:  return graph_op1(g, OP_sqrt, p);
-    case 2:  return graph_op1(g, OP_log, p);
-    case 3:  return graph_op1(g, OP_inversesqrt, p);
-    case 4:  return graph_power(g, p, number(b, 0.3));
-    case 5:  return graph_power(g, graph_op1(g, OP_abs, p), number(b, 1.2));
+    case 0: return graph_op2(g, OP_div, q, p);
+    case 1: return graph_op1(g, OP_sqrt, p);
+    case 2: return graph_op1(g, OP_log, p);
+    case 3: return graph_op1(g, OP_inversesqrt, p);
+    case 4: return graph_power(g, p, number(b, 0.3));
+    case 5: return graph_power(g, graph_op1(g, OP_abs, p), number(b, 1.2));
     default: return graph_op1(g, OP_exp, p);
     }
 }
@@ -122,8 +122,8 @@ typedef struct Known {
 } Known;
 
 /* From `known` at `from` to `value` at `to`; the rest of a bound is what is beyond its gradient. */
-static void count_change(const Known *known, const double from[3], const double to[3],
-                         double value, double r, bool derived, Counts *counts)
+static void count_change(const Known *known, const double from[3], const double to[3], double value,
+                         double r, bool derived, Counts *counts)
 {
     double along = 0, steep = 0, most = known->first * r + known->second * r * r;
     double slack = 1e-9 * (1 + fabs(known->value) + most), change = value - known->value;
@@ -145,7 +145,7 @@ static void try_expression(Bench *b, Node root, Counts *counts)
     Node       gradient = b->point;
     if (!graph_local_bound(b->graph, root, BOX, LEAST, &bound, &b->arena))
         return;
-    bool derived = graph_gradient(b->graph, root, &gradient, NULL, &b->arena) != DERIVED_NOT;
+    bool       derived = graph_gradient(b->graph, root, &gradient, NULL, &b->arena) != DERIVED_NOT;
     Node       roots[] = {root, bound.radius, bound.first, bound.second, gradient};
     Tape       tape    = tape_new(b->graph, roots, 5, &b->arena);
     NodeValue *values  = arena_new_array(&b->arena, NodeValue, b->graph->count);
@@ -156,10 +156,12 @@ static void try_expression(Bench *b, Node root, Counts *counts)
         random_point(b, 1.5, from);
         tape_run_point(&tape, from, values);
         const double *g     = values[gradient].v;
-        Known         known = {values[root].v[0], values[bound.radius].v[0],
-                               values[bound.first].v[0], values[bound.second].v[0],
+        Known         known = {values[root].v[0],
+                               values[bound.radius].v[0],
+                               values[bound.first].v[0],
+                               values[bound.second].v[0],
                                {g[0], g[1], g[2]}};
-        double r = go(b, from, fmin(known.radius, 1), to);
+        double        r     = go(b, from, fmin(known.radius, 1), to);
         tape_run_point(&tape, to, values);
         count_change(&known, from, to, values[root].v[0], r, derived, counts);
     }
@@ -176,16 +178,16 @@ static void changes_are_bounded(void **state)
         b->point = graph_leaf(b->graph, OP_POINT);
     }
     if (counts.wrong > 0 || counts.tried < 12000 || counts.close < counts.tried / 10)
-        fail_msg("of %d changes %d are larger than the bound, %d at least half of it",
-                 counts.tried, counts.wrong, counts.close);
+        fail_msg("of %d changes %d are larger than the bound, %d at least half of it", counts.tried,
+                 counts.wrong, counts.close);
 }
 
 /* Where there is a gradient, the bound of a small ball is its length. */
 static void near_the_point_it_is_the_gradient(void **state)
 {
-    Bench *b   = *state;
-    Graph *g   = b->graph;
-    Node   x   = graph_component(g, b->point, 0), y = graph_component(g, b->point, 1);
+    Bench *b = *state;
+    Graph *g = b->graph;
+    Node   x = graph_component(g, b->point, 0), y = graph_component(g, b->point, 1);
     Node   two = graph_number(g, 2);
     Node   f   = graph_op1(g, OP_exp, graph_op1(g, OP_sin, graph_op2(g, OP_mul, x, two)));
     f          = graph_op2(g, OP_mul, f, graph_op1(g, OP_sqrt, positive(b, y)));
@@ -208,8 +210,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(changes_are_bounded, bench_start, bench_stop),
-        cmocka_unit_test_setup_teardown(near_the_point_it_is_the_gradient, bench_start,
-                                        bench_stop),
+        cmocka_unit_test_setup_teardown(near_the_point_it_is_the_gradient, bench_start, bench_stop),
     };
     cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests(tests, NULL, NULL);

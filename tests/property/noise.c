@@ -56,9 +56,9 @@ static double claimed_slope(int size)
 static double fade(int order, double t)
 {
     switch (order) {
-    case 0:  return t * t * t * (t * (6 * t - 15) + 10);
-    case 1:  return 30 * t * t * (t - 1) * (t - 1);
-    case 2:  return 60 * t * (2 * t - 1) * (t - 1);
+    case 0: return t * t * t * (t * (6 * t - 15) + 10);
+    case 1: return 30 * t * t * (t - 1) * (t - 1);
+    case 2: return 60 * t * (2 * t - 1) * (t - 1);
     default: return 360 * t * t - 360 * t + 60;
     }
 }
@@ -130,7 +130,7 @@ typedef struct Part {
     double middle[3], half[3];
     double edges[4][3]; /* none: it is the value that is bounded */
     int    edge_count;
-    double square[4];   /* SLOPE in space: the cone's part of a face of the cube */
+    double square[4]; /* SLOPE in space: the cone's part of a face of the cube */
     int    face, depth;
 } Part;
 
@@ -211,15 +211,15 @@ static double expand(const Part *part, const Side *sides, const double *v, doubl
     for (int i = 0; i < size; i++)
         at[i] = (v ? w * v[i] : 0) + along * sides[i].offset;
     for (int j = 0; j < size; j++) {
-        int first[3] = {j == 0, j == 1, j == 2};
+        int    first[3] = {j == 0, j == 1, j == 2};
         double dw = product_at(size, sides, first), dalong = along_at(size, sides, first, v);
         for (int i = 0; i < size; i++)
             by[j][i] = (v ? dw * v[i] : 0) + dalong * sides[i].offset + (i == j ? along : 0);
         for (int k = 0; k < size; k++) {
-            int second[3] = {first[0] + (k == 0), first[1] + (k == 1), first[2] + (k == 2)};
-            double area = 0.5 * part->half[j] * part->half[k];
-            double bend = product_most(size, sides, second);
-            double turn = along_most(size, sides, second, v);
+            int    second[3] = {first[0] + (k == 0), first[1] + (k == 1), first[2] + (k == 2)};
+            double area      = 0.5 * part->half[j] * part->half[k];
+            double bend      = product_most(size, sides, second);
+            double turn      = along_most(size, sides, second, v);
             for (int i = 0; i < size; i++)
                 rest[i] += area * ((v ? bend * fabs(v[i]) : 0) + turn * sides[i].reach +
                                    (i == k ? along_most(size, sides, first, v) : 0) * 2);
@@ -267,9 +267,9 @@ static void cone_edges(Part *part)
 {
     part->edge_count = part->size == 2 ? 2 : 4;
     for (int e = 0; e < part->edge_count; e++) {
-        double *edge = part->edges[e];
-        edge[part->face]                       = 1;
-        edge[(part->face + 1) % part->size]    = part->square[e & 1];
+        double *edge                        = part->edges[e];
+        edge[part->face]                    = 1;
+        edge[(part->face + 1) % part->size] = part->square[e & 1];
         if (part->size == 3)
             edge[(part->face + 2) % 3] = part->square[2 + (e >> 1)];
         else
@@ -311,7 +311,7 @@ static bool holds(Part part, double bound, long *left)
     if (largest * excess <= bound)
         return true;
     double widest = 0;
-    int    axis = 0;
+    int    axis   = 0;
     for (int i = 0; i < part.size; i++)
         if (part.half[i] > widest) {
             widest = part.half[i];
@@ -319,9 +319,11 @@ static bool holds(Part part, double bound, long *left)
         }
     Part halves[2] = {part, part};
     if (part.edge_count && largest * (excess - 1) > missing) {
-        int    side = part.size == 3 && part.square[3] - part.square[2] >
-                                            part.square[1] - part.square[0] ? 2 : 0;
-        double cut  = 0.5 * (part.square[side] + part.square[side + 1]);
+        int    side                = part.size == 3 &&
+                           part.square[3] - part.square[2] > part.square[1] - part.square[0]
+                                         ? 2
+                                         : 0;
+        double cut                 = 0.5 * (part.square[side] + part.square[side + 1]);
         halves[0].square[side + 1] = halves[1].square[side] = cut;
     } else
         for (int i = 0; i < 2; i++) {
@@ -347,9 +349,9 @@ static bool values_hold(int size, double bound)
 static bool slopes_hold(int size, double bound)
 {
     for (int face = 0; face < size; face++) {
-        long left = 3000000;
-        Part part = quarter(size);
-        part.face = face;
+        long left       = 3000000;
+        Part part       = quarter(size);
+        part.face       = face;
         part.edge_count = 4;
         part.square[0] = part.square[2] = -1;
         part.square[1] = part.square[3] = 1;
@@ -375,9 +377,9 @@ static void is_bounded(void **context)
 static void is_seen_to_vary(void **context)
 {
     enum { SAMPLES = 400000 };
-    const double step = 1e-6;
-    int    size = *(const int *)*context;
-    double highest = 0, steepest = 0, sum = 0, squares = 0;
+    const double step    = 1e-6;
+    int          size    = *(const int *)*context;
+    double       highest = 0, steepest = 0, sum = 0, squares = 0;
     for (int k = 0; k < SAMPLES; k++) {
         double p[3], slope = 0, value;
         for (int i = 0; i < 3; i++)
@@ -427,7 +429,7 @@ static void has_no_pattern(void **context)
 /* Far out it stays what it was at 2^30, and what is no number stays none. */
 static void ends_well(void **context)
 {
-    int    size = *(const int *)*context;
+    int    size   = *(const int *)*context;
     double far[3] = {INFINITY, 0.3, 0.4}, end[3] = {0x1p30, 0.3, 0.4}, none[3] = {0, NAN, 0};
     assert_true(noise(size, far) == noise(size, end));
     far[0] = -1e300;
@@ -438,7 +440,7 @@ static void ends_well(void **context)
 
 int main(void)
 {
-    static int sizes[] = {2, 3};
+    static int              sizes[] = {2, 3};
     const struct CMUnitTest tests[] = {
         {"plane: made of gradients", is_made_of_gradients, NULL, NULL, &sizes[0]},
         {"space: made of gradients", is_made_of_gradients, NULL, NULL, &sizes[1]},

@@ -38,14 +38,17 @@ static const struct {
     Op          op;
     const char *kinds;
 } special_operands[] = {
-    {OP_turn, "mrrr"},          {OP_fold, "muc"},           {OP_front, "muc"},
-    {OP_cell, "mplh"},          {OP_cell_polar, "mn"},      {OP_smin_quadratic, "mmw"},
-    {OP_smin_cubic, "mmw"},     {OP_smin_exponential, "mmw"}, {OP_smin_circular, "mmw"},
-    {OP_smin_chamfer, "mmw"},   {OP_smin_stairs, "mmwn"},   {OP_blend_weight, "mmw"},
-    {OP_less, "ee"},            {OP_less_equal, "ee"},      {OP_equal, "ee"},
-    {OP_not_equal, "ee"},       {OP_noise2, "s"},           {OP_noise3, "s"},
-    {OP_julia, "mqkk"},         {OP_julia_trap, "mqkk"},    {OP_mandelbulb, "mkk"},
-    {OP_mandelbulb_trap, "mkk"},
+    {OP_turn, "mrrr"},         {OP_fold, "muc"},
+    {OP_front, "muc"},         {OP_cell, "mplh"},
+    {OP_cell_polar, "mn"},     {OP_smin_quadratic, "mmw"},
+    {OP_smin_cubic, "mmw"},    {OP_smin_exponential, "mmw"},
+    {OP_smin_circular, "mmw"}, {OP_smin_chamfer, "mmw"},
+    {OP_smin_stairs, "mmwn"},  {OP_blend_weight, "mmw"},
+    {OP_less, "ee"},           {OP_less_equal, "ee"},
+    {OP_equal, "ee"},          {OP_not_equal, "ee"},
+    {OP_noise2, "s"},          {OP_noise3, "s"},
+    {OP_julia, "mqkk"},        {OP_julia_trap, "mqkk"},
+    {OP_mandelbulb, "mkk"},    {OP_mandelbulb_trap, "mkk"},
 };
 
 typedef struct Row {
@@ -59,17 +62,16 @@ static const char *const map_signatures[] = {"", "g>g", "gg>g", "ggg>g"};
 static Row row_of(Op op)
 {
     switch (op) {
-#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning)                            \
-    case OP_##name:                                                                                \
+#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning) \
+    case OP_##name:                                                     \
         return (Row){op, #name, map_signatures[arity]};
-#define OP(name, signature, glsl, evaluate, facts, meaning)                                        \
-    case OP_##name:                                                                                \
+#define OP(name, signature, glsl, evaluate, facts, meaning) \
+    case OP_##name:                                         \
         return (Row){op, #name, signature};
 #include "compiler/graph/ops.def"
 #undef MAP
 #undef OP
-    default:
-        return (Row){op, NULL, NULL};
+    default: return (Row){op, NULL, NULL};
     }
 }
 
@@ -116,11 +118,11 @@ typedef struct Operand {
 } Operand;
 
 typedef struct Trial {
-    Row      row;
-    uint32_t arity;
+    Row       row;
+    uint32_t  arity;
     GraphType types[MAX_OPERANDS], type;
-    Operand  operands[MAX_OPERANDS];
-    double   half[3]; /* the box is [-half, half] */
+    Operand   operands[MAX_OPERANDS];
+    double    half[3]; /* the box is [-half, half] */
 } Trial;
 
 static NodeValue operand_value(const Operand *operand, const double p[3])
@@ -199,7 +201,7 @@ static double fixed_number(Random *random, char kind)
     case 'q': return random_between(random, -0.5, 0.5);
     case 'l': return -(double)random_below(random, 3);
     case 'h': return random_below(random, 3);
-    default:  return random_between(random, -2, 2);
+    default: return random_between(random, -2, 2);
     }
 }
 
@@ -207,17 +209,22 @@ static double fixed_number(Random *random, char kind)
 static int moving_eighths(char kind)
 {
     switch (kind) {
-    case 'm': case 's':           return 7;
-    case 'b': case 'i': case 'e': return 4;
-    case 'c': case 'p': case 'w': return 1;
-    default:                      return 0;
+    case 'm':
+    case 's': return 7;
+    case 'b':
+    case 'i':
+    case 'e': return 4;
+    case 'c':
+    case 'p':
+    case 'w': return 1;
+    default: return 0;
     }
 }
 
 /* Of some places halfway between whole numbers, the one where noise rises most along an axis. */
 static void steep_place(Random *random, Operand *operand)
 {
-    Op     op = operand->type == TYPE_VEC2 ? OP_noise2 : OP_noise3;
+    Op     op       = operand->type == TYPE_VEC2 ? OP_noise2 : OP_noise3;
     double steepest = -1;
     for (int k = 0; k < 40; k++) {
         NodeValue place = {{0}};
@@ -239,7 +246,7 @@ static void steep_place(Random *random, Operand *operand)
 static void operand_make(Random *random, Operand *operand, char kind, GraphType type,
                          const double shared[3], const double row[3])
 {
-    *operand = (Operand){.type = type, .size = type <= TYPE_VEC4 ? type : 1};
+    *operand    = (Operand){.type = type, .size = type <= TYPE_VEC4 ? type : 1};
     bool narrow = random_below(random, 3) == 0; /* near what happens at 0 and whole numbers */
     for (uint32_t i = 0; i < operand->size; i++) {
         operand->base[i] = fixed_number(random, kind);
@@ -282,7 +289,7 @@ static GraphType letter_type(char letter, GraphType map, GraphType vector, Graph
     case 'g': return map;
     case 'v': return vector;
     case 't': return any;
-    default:  return (GraphType)(letter - '0');
+    default: return (GraphType)(letter - '0');
     }
 }
 
@@ -344,8 +351,8 @@ typedef enum Mutation {
 } Mutation;
 
 static const char *const mutation_names[] = {
-    "right",     "smaller slope", "smaller gradient", "smaller range",
-    "forget a",  "forget b",      "forget c",         "forget d",
+    "right",    "smaller slope", "smaller gradient", "smaller range",
+    "forget a", "forget b",      "forget c",         "forget d",
 };
 
 static Range shrunk(Range range, double factor)
@@ -459,7 +466,7 @@ static const char *refutation(Random *random, const Trial *trial, const Fact *fa
     Sample   samples[POINTS];
     uint32_t size = trial->type <= TYPE_VEC4 ? trial->type : 1, count = 0;
     for (int k = 0; k < POINTS; k++) {
-        double p[3] = {0};
+        double p[3]   = {0};
         bool   corner = random_below(random, 3) == 0;
         for (int j = 0; j < 3 && k > 0; j++) /* the first is the middle, where operands are exact */
             p[j] = corner ? (random_below(random, 2) ? 1 : -1) * trial->half[j]
@@ -473,8 +480,8 @@ static const char *refutation(Random *random, const Trial *trial, const Fact *fa
             if (same_piece(&samples[other], &sample) &&
                 !slope_holds(fact, &samples[other], &sample, size))
                 return "slope";
-        int j = (int)random_below(random, 3);
-        p[j]  = random_between(random, -trial->half[j], trial->half[j]);
+        int j         = (int)random_below(random, 3);
+        p[j]          = random_between(random, -trial->half[j], trial->half[j]);
         Sample beside = sample_at(trial, p);
         if (sample_defined(trial, &beside, size) && same_piece(&beside, &sample) &&
             !gradient_holds(fact, &sample, &beside, j, size))
@@ -518,14 +525,26 @@ static void keeps_its_promises(void **state)
 static bool only_jumps(Op op)
 {
     switch (op) {
-    case OP_sign: case OP_floor: case OP_ceil: case OP_round: case OP_step:
-    case OP_less: case OP_less_equal: case OP_equal: case OP_not_equal: case OP_front:
-    case OP_and: case OP_or: case OP_not:
-    case OP_push_id: case OP_hash_id: case OP_join_id: case OP_id_unit:
-    case OP_julia_trap: case OP_mandelbulb_trap:
-        return true;
-    default:
-        return false;
+    case OP_sign:
+    case OP_floor:
+    case OP_ceil:
+    case OP_round:
+    case OP_step:
+    case OP_less:
+    case OP_less_equal:
+    case OP_equal:
+    case OP_not_equal:
+    case OP_front:
+    case OP_and:
+    case OP_or:
+    case OP_not:
+    case OP_push_id:
+    case OP_hash_id:
+    case OP_join_id:
+    case OP_id_unit:
+    case OP_julia_trap:
+    case OP_mandelbulb_trap: return true;
+    default: return false;
     }
 }
 

@@ -34,8 +34,8 @@ static double value_at(const Graph *graph, Node root, double x, double y, double
 /* A random FLOAT of the coordinates and constants. */
 static Node random_float(Graph *g, uint32_t depth)
 {
-    static const Op unary[] = {
-        OP_neg, OP_abs, OP_sin, OP_cos, OP_square, OP_atan, OP_floor, OP_tanh};
+    static const Op unary[]  = {OP_neg,    OP_abs,  OP_sin,   OP_cos,
+                                OP_square, OP_atan, OP_floor, OP_tanh};
     static const Op binary[] = {OP_add, OP_sub, OP_mul, OP_min, OP_max};
     if (depth == 0 || draw(6) == 0) {
         Node point = graph_leaf(g, OP_POINT);
@@ -49,7 +49,7 @@ static Node random_float(Graph *g, uint32_t depth)
         return graph_op1(g, OP_length, v);
     }
     case 2: {
-        Node b    = random_float(g, depth - 1), c = random_float(g, depth - 1);
+        Node b = random_float(g, depth - 1), c = random_float(g, depth - 1);
         Node less = graph_op2(g, OP_less, a, b);
         return graph_op3(g, OP_select, less, b, c);
     }
@@ -72,11 +72,11 @@ static void random_expressions_keep_their_word(void **context)
         even += said;
         bool differs = false;
         for (int i = 0; i < 8; i++) {
-            double x     = draw(1000) * 0.0037 - 1.7;
-            double y     = draw(1000) * 0.004 - 2, z = draw(1000) * 0.004 - 2;
+            double x = draw(1000) * 0.0037 - 1.7;
+            double y = draw(1000) * 0.004 - 2, z = draw(1000) * 0.004 - 2;
             double here  = value_at(graph, root, x, y, z, &arena);
             double there = value_at(graph, root, -x, y, z, &arena);
-            differs = differs || fabs(here - there) > 1e-9 * (1 + fabs(here));
+            differs      = differs || fabs(here - there) > 1e-9 * (1 + fabs(here));
         }
         refuted += differs;
         assert_false(said && differs);
@@ -92,8 +92,8 @@ static void what_libraries_write_is_seen(void **context)
     Arena  arena = {.memory = &memory};
     Graph *g     = graph_new(&arena);
     Node   point = graph_leaf(g, OP_POINT);
-    Node   half  = graph_vec3(g, 1, 2, 3), zero = graph_number(g, 0);
-    Node   ball  = graph_op1(g, OP_length, point);
+    Node   half = graph_vec3(g, 1, 2, 3), zero = graph_number(g, 0);
+    Node   ball = graph_op1(g, OP_length, point);
     assert_true(graph_is_even(g, ball, 0, &arena));
 
     Node size    = graph_op1(g, OP_abs, point);

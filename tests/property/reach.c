@@ -194,8 +194,8 @@ static Box random_box(Random *random)
     bool flat = random_below(random, 10) == 0;
     for (int i = 0; i < 3; i++) {
         double centre = random_between(random, -2, 2), half = random_between(random, 0.02, 1);
-        half          = flat && i == 1 ? 0 : half;
-        box.axis[i]   = (Range){centre - half, centre + half};
+        half        = flat && i == 1 ? 0 : half;
+        box.axis[i] = (Range){centre - half, centre + half};
     }
     if (random_below(random, 10) == 0)
         box.axis[random_below(random, 3)] = (Range){1, -1};
@@ -432,7 +432,7 @@ static void copy_tighten(ReachStage *stages, uint32_t count, Fault fault)
 {
     ReachStage *last = &stages[count - 1];
     double      more = 1e-9 * (1 + diagonal(last->box)), longest = 0;
-    Box         box  = last->box;
+    Box         box = last->box;
     if (is_empty(box) || fault == NOTHING_DONE)
         return;
     for (int i = 0; i < 3; i++) {
@@ -511,8 +511,8 @@ static void judge_sequence(Bench *bench, Random *random, Fault fault, Verdict *v
     bench->clipped.count = bench->whole.count = 0;
     for (uint32_t i = 0; i < count; i++) {
         ReachStage *stage = &stages[i], *before = i > 0 ? stage - 1 : NULL;
-        *stage            = random_stage(random, before);
-        Instance kernel   = random_instance(random, stage->kernel);
+        *stage          = random_stage(random, before);
+        Instance kernel = random_instance(random, stage->kernel);
         grow_crowd(&bench->clipped, stage, &kernel);
         grow_crowd(&bench->whole, stage, &kernel);
         bound_loosely(stage, before, cut);
@@ -630,14 +630,17 @@ static const Box wide_box = {{{-9, 9}, {-9, 9}, {-9, 9}}};
 
 static ReachStage kernel_stage(Box kernel, Box loose)
 {
-    return (ReachStage){.kind = REACH_KERNEL, .kernel = kernel, .box = loose,
-                        .ball = {{0, 0, 0}, 20}};
+    return (ReachStage){
+        .kind = REACH_KERNEL, .kernel = kernel, .box = loose, .ball = {{0, 0, 0}, 20}};
 }
 
 static ReachStage mirror_stage(double x, double y, double z, double offset, Box loose)
 {
-    return (ReachStage){.kind = REACH_REFLECT, .normal = {x, y, z}, .offset = offset, .box = loose,
-                        .ball = {{0, 0, 0}, 20}};
+    return (ReachStage){.kind   = REACH_REFLECT,
+                        .normal = {x, y, z},
+                        .offset = offset,
+                        .box    = loose,
+                        .ball   = {{0, 0, 0}, 20}};
 }
 
 /* The box holds the expected one, and is larger by no more than the search may leave. */
@@ -684,9 +687,9 @@ static void single_kernels_reach_as_far_as_they_are(void **state)
 static void infinite_boxes_are_left_alone(void **state)
 {
     (void)state;
-    Box        half = {{{-HUGE_VAL, 5}, {0, 1}, {0, 1}}}, line = half;
-    line.axis[0].high = HUGE_VAL;
-    ReachStage lines[] = {kernel_stage(line, line), mirror_stage(0, 1, 0, 2, line)};
+    Box half = {{{-HUGE_VAL, 5}, {0, 1}, {0, 1}}}, line = half;
+    line.axis[0].high         = HUGE_VAL;
+    ReachStage lines[]        = {kernel_stage(line, line), mirror_stage(0, 1, 0, 2, line)};
     lines[1].box.axis[1].high = 4;
     lines[1].ball             = (Ball){{0, 0, 0}, HUGE_VAL};
     ReachStage before         = lines[1];
@@ -714,15 +717,15 @@ typedef struct Branch {
 static Branch next_branch(Branch branch, int number, Box *box)
 {
     const double degree = acos(-1) / 180, turn = 100 * degree;
-    double bend  = (number == 0 ? 5 : 14) * degree, width = 0.075 * pow(0.75, number);
-    double reach = number == 0 ? 0.7 : pow(0.72, number), left[3], up[3];
-    Branch next  = branch;
-    *box         = box_empty;
+    double       bend = (number == 0 ? 5 : 14) * degree, width = 0.075 * pow(0.75, number);
+    double       reach = number == 0 ? 0.7 : pow(0.72, number), left[3], up[3];
+    Branch       next  = branch;
+    *box               = box_empty;
     for (int part = 0; part <= 2; part++) {
         double angle = 0.5 * bend * part, length = reach * sin(angle) / sin(bend);
         for (int i = 0; i < 3; i++)
-            next.at[i] = branch.at[i] + length * (cos(angle) * branch.ahead[i] +
-                                                  sin(angle) * branch.side[i]);
+            next.at[i] = branch.at[i] +
+                         length * (cos(angle) * branch.ahead[i] + sin(angle) * branch.side[i]);
         include(box, next.at);
     }
     for (int i = 0; i < 3; i++) {
@@ -759,7 +762,7 @@ static void grow_tree(ReachStage stages[TREE_STAGES])
 /* A random point of a random instance; false when a mirror cut it off. */
 static bool random_point(Random *random, const ReachStage stages[TREE_STAGES], double p[3])
 {
-    uint32_t    from = 2 * random_below(random, MIRRORS + 1);
+    uint32_t     from = 2 * random_below(random, MIRRORS + 1);
     const Range *side = stages[from].kernel.axis;
     for (int i = 0; i < 3; i++)
         p[i] = random_between(random, side[i].low, side[i].high);
@@ -846,7 +849,7 @@ static void random_outside(Random *random, Box box, double far, double p[3])
     do
         for (int i = 0; i < 3; i++) {
             double more = far * diagonal(box);
-            p[i] = random_between(random, box.axis[i].low - more, box.axis[i].high + more);
+            p[i]        = random_between(random, box.axis[i].low - more, box.axis[i].high + more);
         }
     while (in_box(box, p));
 }
@@ -879,8 +882,8 @@ static void nothing_solid_is_outside_of_reported_bounds(void **state)
     assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
     assert_int_equal(krs_component_count(scene), 1);
     assert_int_equal(krs_component(scene, 0, &tree), KRS_OK);
-    Box    box = {{{tree.low[0], tree.high[0]}, {tree.low[1], tree.high[1]},
-                   {tree.low[2], tree.high[2]}}};
+    Box box = {
+        {{tree.low[0], tree.high[0]}, {tree.low[1], tree.high[1]}, {tree.low[2], tree.high[2]}}};
     Random random = {4};
     for (int i = 0; i < 10000; i++) {
         double p[3], distance;

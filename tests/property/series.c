@@ -33,7 +33,7 @@ static double evaluate(Bench *b, Node node, const double point[3])
 /* A random polynomial with all the operations that polynomials have. */
 static Node polynomial(Bench *b, int depth)
 {
-    Graph *g = b->graph;
+    Graph *g    = b->graph;
     int    kind = (int)(uniform(b) * (depth > 0 ? 9 : 2));
     if (kind == 0)
         return graph_number(g, 2 * uniform(b) - 1);
@@ -52,8 +52,8 @@ static Node polynomial(Bench *b, int depth)
         return graph_op2(g, OP_sub, graph_op2(g, OP_dot, moved, moved), p);
     }
     default: {
-        Node v     = graph_op3(g, OP_vec3, p, q, graph_number(g, 0.4));
-        Node cross = graph_op2(g, OP_cross, v, b->point);
+        Node v      = graph_op3(g, OP_vec3, p, q, graph_number(g, 0.4));
+        Node cross  = graph_op2(g, OP_cross, v, b->point);
         Node rows[] = {graph_vec3(g, 0, 1, 0), graph_vec3(g, 0, 0, 1), graph_vec3(g, 1, 0, 0)};
         Node turned = graph_op4(g, OP_turn, cross, rows[0], rows[1], rows[2]);
         Node time   = graph_parameter(g, 0, TYPE_FLOAT);
@@ -163,7 +163,7 @@ static void quadrics_are_sharp(void **state)
     Graph      *g = b->graph;
     Series      ball;
     SeriesFault fault;
-    Node        sum = graph_number(g, -1);
+    Node        sum      = graph_number(g, -1);
     double      point[3] = {0.3, 0.4, 1.2};
     for (uint32_t i = 0; i < 3; i++)
         sum = graph_op2(g, OP_add, sum, graph_op1(g, OP_square, graph_component(g, b->point, i)));

@@ -15,7 +15,10 @@
 
 #include "tests/support/bench.h"
 
-#define ENDLESS {-HUGE_VAL, HUGE_VAL}
+#define ENDLESS             \
+    {                       \
+        -HUGE_VAL, HUGE_VAL \
+    }
 static const Box everywhere = {{ENDLESS, ENDLESS, ENDLESS}};
 static const Box around     = {{{-2, 2}, {-2, 2}, {-2, 2}}};
 
@@ -60,8 +63,8 @@ static void gyroid_bounds_shrink_with_cells(void **state)
 
 static void distances_have_slope_one(void **state)
 {
-    Bench *b = *state;
-    Graph *g = b->graph;
+    Bench *b   = *state;
+    Graph *g   = b->graph;
     Node   one = graph_number(g, 1), length = graph_op1(g, OP_length, b->point);
     Node   sphere = graph_op2(g, OP_sub, length, one);
     assert_true(slope_over(b, sphere, everywhere, 1) == 1);
@@ -69,7 +72,7 @@ static void distances_have_slope_one(void **state)
 
     Node size = graph_op1(g, OP_abs, b->point), half = graph_vec3(g, 1, 2, 3);
     Node beyond = graph_op2(g, OP_sub, size, half), zero = graph_number(g, 0);
-    Node outside = graph_op2(g, OP_max, beyond, zero);
+    Node outside  = graph_op2(g, OP_max, beyond, zero);
     Node distance = graph_op1(g, OP_length, outside);
     assert_true(slope_over(b, distance, everywhere, 1) <= 1.0000001);
 }
@@ -85,11 +88,11 @@ static void products_are_unbounded_only_without_a_box(void **state)
 
 static void cutting_finds_what_a_whole_box_hides(void **state)
 {
-    Bench *b = *state;
-    Graph *g = b->graph;
+    Bench *b  = *state;
+    Graph *g  = b->graph;
     Node   up = graph_op2(g, OP_mul, b->x, b->x), down = graph_op1(g, OP_neg, up);
     Node   cube = graph_op2(g, OP_mul, up, b->x), mixed = graph_op2(g, OP_mul, down, b->y);
-    Node   sum  = graph_op2(g, OP_add, cube, mixed);
+    Node   sum   = graph_op2(g, OP_add, cube, mixed);
     double whole = slope_over(b, sum, around, 1), cut = slope_over(b, sum, around, 512);
     double truth = hypot(3 * 4 + 2 * 2 * 2, 4); /* at (2, -2) */
     assert_true(cut >= truth && cut <= whole);
@@ -107,8 +110,8 @@ static void jumps_are_found_on_the_seam_of_parts(void **state)
 
 static void parameters_count_with_their_range_or_value(void **state)
 {
-    Bench *b = *state;
-    Graph *g = b->graph;
+    Bench         *b     = *state;
+    Graph         *g     = b->graph;
     GraphParameter range = {{-1}, {3}};
     array_push(g->arena, &g->parameters, range);
     Node parameter = graph_parameter(g, 1, TYPE_FLOAT);
@@ -125,11 +128,11 @@ static void parameters_count_with_their_range_or_value(void **state)
 /* One task, run for several values, gives what each would have got by itself. */
 static void tasks_follow_their_parameters(void **state)
 {
-    Bench *b = *state;
-    Graph *g = b->graph;
-    Node   time = graph_parameter(g, 0, TYPE_FLOAT);
-    Node   wave = graph_op1(g, OP_sin, graph_op2(g, OP_mul, time, b->x));
-    Node   root = graph_op2(g, OP_add, graph_op2(g, OP_mul, wave, b->y), b->z);
+    Bench    *b    = *state;
+    Graph    *g    = b->graph;
+    Node      time = graph_parameter(g, 0, TYPE_FLOAT);
+    Node      wave = graph_op1(g, OP_sin, graph_op2(g, OP_mul, time, b->x));
+    Node      root = graph_op2(g, OP_add, graph_op2(g, OP_mul, wave, b->y), b->z);
     SlopeTask task = slope_task(g, root, around, 64, &b->arena);
     void     *room = arena_alloc(&b->arena, slope_task_room(&task), 1);
     for (int i = -20; i <= 20; i++) {
@@ -140,7 +143,7 @@ static void tasks_follow_their_parameters(void **state)
         assert_true(slope <= 1.1 * (2 * size + 2));
     }
     /* Quotients by 0 have no slope, those of 0 neither. */
-    Node none = graph_op2(g, OP_div, graph_op2(g, OP_mul, b->x, time), time);
+    Node         none          = graph_op2(g, OP_div, graph_op2(g, OP_mul, b->x, time), time);
     const double at_zero[1][4] = {{0}}, at_one[1][4] = {{1}};
     assert_true(graph_slope(g, none, around, at_zero, 1, NULL, &b->arena) == HUGE_VAL);
     assert_true(graph_slope(g, none, around, at_one, 1, NULL, &b->arena) == 1);
@@ -148,9 +151,9 @@ static void tasks_follow_their_parameters(void **state)
 
 static void blame_goes_to_the_unbounded_operand(void **state)
 {
-    Bench *b = *state;
-    Graph *g = b->graph;
-    Node   root  = graph_op1(g, OP_sqrt, b->x), harmless = graph_op1(g, OP_sin, b->y);
+    Bench *b    = *state;
+    Graph *g    = b->graph;
+    Node   root = graph_op1(g, OP_sqrt, b->x), harmless = graph_op1(g, OP_sin, b->y);
     Node   sum   = graph_op2(g, OP_add, harmless, root);
     Node   blame = NODE_NONE;
     assert_true(graph_slope(g, sum, around, NULL, 8, &blame, &b->arena) == HUGE_VAL);
@@ -165,10 +168,10 @@ static void blame_goes_to_the_unbounded_operand(void **state)
 /* Every node of the gyroid keeps its facts at points of the box. */
 static void facts_of_a_graph_hold(void **state)
 {
-    Bench *b    = *state;
-    Node   root = gyroid(b);
-    Fact  *facts = graph_facts(b->graph, around, NULL, &b->arena);
-    Tape   tape  = tape_new(b->graph, &root, 1, &b->arena);
+    Bench     *b      = *state;
+    Node       root   = gyroid(b);
+    Fact      *facts  = graph_facts(b->graph, around, NULL, &b->arena);
+    Tape       tape   = tape_new(b->graph, &root, 1, &b->arena);
     NodeValue *values = arena_new_array(&b->arena, NodeValue, b->graph->count);
     NodeValue  time   = {{0}};
     tape_run_frame(&tape, &time, values);

@@ -32,7 +32,7 @@ static Node random_polynomial(Bench *b, int degree)
     bool bounded = uniform(b) < 0.7;
     for (int i = 0; bounded && i < 3; i++) {
         Node even = power(b, axes[i], degree - degree % 2);
-        sum = plus(b, sum, times(b, number(b, 0.2 + uniform(b)), even));
+        sum       = plus(b, sum, times(b, number(b, 0.2 + uniform(b)), even));
     }
     for (int term = 0; term < 5; term++) {
         Node product = number(b, random_between(&b->random, -1, 1));
@@ -61,22 +61,22 @@ static bool draw_outside(Bench *b, Box box, double point[3])
         double low   = isfinite(side.low) ? side.low : -size;
         double high  = isfinite(side.high) ? side.high : size;
         double grown = uniform(b) < 0.5 ? far : 0.01 * size * uniform(b);
-        point[i] = low - grown + (high - low + 2 * grown) * uniform(b);
-        outside  = outside || point[i] < side.low || point[i] > side.high;
+        point[i]     = low - grown + (high - low + 2 * grown) * uniform(b);
+        outside      = outside || point[i] < side.low || point[i] > side.high;
     }
     return outside;
 }
 
 static void signs_are_kept(void **state)
 {
-    Bench *b = *state;
+    Bench *b       = *state;
     int    bounded = 0, asked = 0;
     for (int i = 0; i < 120; i++) {
-        int       degree = 2 + (int)(11 * uniform(b));
-        Node      root   = random_polynomial(b, degree);
-        Arena     arena  = {.memory = b->arena.memory};
-        ZeroBox   found  = graph_zero_box(b->graph, root, &arena);
-        Tape      tape   = tape_new(b->graph, &root, 1, &arena);
+        int        degree = 2 + (int)(11 * uniform(b));
+        Node       root   = random_polynomial(b, degree);
+        Arena      arena  = {.memory = b->arena.memory};
+        ZeroBox    found  = graph_zero_box(b->graph, root, &arena);
+        Tape       tape   = tape_new(b->graph, &root, 1, &arena);
         NodeValue *values = arena_new_array(&arena, NodeValue, b->graph->count), time = {{0}};
         tape_run_frame(&tape, &time, values);
         bounded += found.sign != 0;
@@ -112,7 +112,7 @@ static void assert_reach(Bench *b, Node polynomial, int sign, double slack, doub
 
 static void known_extents_are_found(void **state)
 {
-    Bench *b = *state;
+    Bench *b  = *state;
     Node   x2 = power(b, b->x, 2), y2 = power(b, b->y, 2), z2 = power(b, b->z, 2);
     Node   square = plus(b, plus(b, x2, y2), z2), one = number(b, 1);
     assert_reach(b, minus(b, square, one), 1, 1.1, 1, 1, 1);

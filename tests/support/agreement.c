@@ -77,7 +77,7 @@ static size_t *find_difference(const Pair *pair, size_t k, double permitted, dou
 Agreement agreement_list(const KrsPicture *a, const KrsPicture *b, double permitted, FILE *report,
                          const char *prefix, size_t most)
 {
-    Pair      pair = pair_of(a, b);
+    Pair      pair   = pair_of(a, b);
     Agreement counts = {0};
     for (uint32_t y = 0; y < a->window.height; y++)
         for (uint32_t x = 0; x < a->window.width; x++) {
@@ -94,10 +94,11 @@ Agreement agreement_list(const KrsPicture *a, const KrsPicture *b, double permit
                 continue;
             ++*counter;
             if (counter != &counts.outline && report && agreement_faults(&counts) <= most)
-                fprintf(report, "%s%u,%u: component %u level %u instance %u depth %.7g;"
-                                " %u %u %u %.7g\n", prefix, x, y, a->component[k], a->level[k],
-                        a->instance[k], a->depth[k], b->component[k], b->level[k],
-                        b->instance[k], b->depth[k]);
+                fprintf(report,
+                        "%s%u,%u: component %u level %u instance %u depth %.7g;"
+                        " %u %u %u %.7g\n",
+                        prefix, x, y, a->component[k], a->level[k], a->instance[k], a->depth[k],
+                        b->component[k], b->level[k], b->instance[k], b->depth[k]);
         }
     return counts;
 }

@@ -15,10 +15,10 @@ enum { AGREEMENT_PLANES = KRS_PLANE_DEPTH | KRS_PLANE_IDS };
 /* Pixels that differ, by what differs, each counted once, in this order.  A pixel at an outline,
    where the first picture shows something else beside it, may show either side. */
 typedef struct Agreement {
-    size_t pixels, solid;            /* all, and those that show something in the first picture */
-    size_t outline;                  /* differ in any way, at an outline */
+    size_t pixels, solid; /* all, and those that show something in the first picture */
+    size_t outline;       /* differ in any way, at an outline */
     size_t hits, components, levels, instances, depths; /* elsewhere */
-    double deepest;                  /* difference of depths elsewhere, in widths of a pixel */
+    double deepest; /* difference of depths elsewhere, in widths of a pixel */
 } Agreement;
 
 /* Two pictures of one size and camera.  Depths may differ by `permitted` widths of a pixel. */

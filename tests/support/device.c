@@ -5,7 +5,4 @@
 
 #include <stdlib.h>
 
-const char *tested_device(void)
-{
-    return getenv("KRS_DEVICE");
-}
+const char *tested_device(void) { return getenv("KRS_DEVICE"); }

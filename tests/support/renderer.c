@@ -20,7 +20,7 @@ int renderer_open(void **state)
 {
     (void)state;
     KrsRendererOptions options = {.device = tested_device()};
-    KrsStatus          status = krs_renderer_new(&options, &renderer);
+    KrsStatus          status  = krs_renderer_new(&options, &renderer);
     if (status != KRS_OK && renderer)
         fprintf(stderr, "%s\n", krs_renderer_message(renderer));
     return status != KRS_OK;

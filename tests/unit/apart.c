@@ -25,14 +25,14 @@
 
 enum { WIDTH = 160, HEIGHT = 100, PIXELS = WIDTH * HEIGHT };
 
-#define TREES                                                                                      \
-    "def tree(seed) = krs { kernel capsule([0, 0, 0], [0, 0.3, 0], 0.04).move([0, 0.4, 0]);"       \
-    "    for i in 0..6 { reflect plane(random_direction(seed + i), 0.12 * i + 0.05);"              \
-    "        kernel capsule([0, 0, 0], [0.1 * i, 0.3, 0], 0.05 + 0.01 * i); } };"                  \
+#define TREES                                                                                \
+    "def tree(seed) = krs { kernel capsule([0, 0, 0], [0, 0.3, 0], 0.04).move([0, 0.4, 0]);" \
+    "    for i in 0..6 { reflect plane(random_direction(seed + i), 0.12 * i + 0.05);"        \
+    "        kernel capsule([0, 0, 0], [0.1 * i, 0.3, 0], 0.05 + 0.01 * i); } };"            \
     "let bushes = [tree(1), tree(20), tree(40), tree(60)];"
-#define SHOWN(places)                                                                              \
-    "def at(i) = " places ";"                                                                      \
-    "show bushes[0].move(at(0)); show bushes[1].move(at(1));"                                      \
+#define SHOWN(places)                                         \
+    "def at(i) = " places ";"                                 \
+    "show bushes[0].move(at(0)); show bushes[1].move(at(1));" \
     "show bushes[2].move(at(2)); show bushes[3].move(at(3));"
 
 typedef struct Scene {
@@ -44,24 +44,37 @@ typedef struct Scene {
 
 enum { SCATTERED, MIXED, GROUND, ORTHOGRAPHIC, PANORAMA, INSIDE, ZONED, SCENES };
 static Scene scenes[SCENES] = {
-    [SCATTERED] = {.name = "scattered", .text = TREES SHOWN("[3 * i - 4.5, 0, 0.7 * i]")
-        "camera { eye: [0, 2, 16], target: [0, 0.3, 0], fov: 0.6 }"},
-    [MIXED] = {.name = "within each other", .text = TREES SHOWN("[0.2 * i, 0.1 * i, 0.1]")
-        "camera { eye: [1, 2, 8], target: [0, 0.3, 0], fov: 0.5 }"},
-    [GROUND] = {.name = "on a plane", .text = TREES SHOWN("[3 * i - 4.5, 0, 1.5 * i]")
-        "show plane([0, 1, 0], -1); show sphere(0.4).move([0, 0, 3]);"
-        "camera { eye: [3, 3, 14], target: [0, 0, 0], fov: 0.6 }"},
-    [ORTHOGRAPHIC] = {.name = "orthographic", .text = TREES SHOWN("[2 * i - 3, 0, 2 * i]")
-        "camera { projection: \"orthographic\", eye: [2, 3, 20], target: [0, 0, 2],"
-        "         height: 6 }"},
-    [PANORAMA] = {.name = "all around", .text =
-        TREES SHOWN("[1.5 * cos(2 * i), 0, 1.5 * sin(2 * i)]")
-        "camera { projection: \"panorama\", eye: [0, 0.2, 0], target: [1, 0.2, 0] }"},
-    [INSIDE] = {.name = "from inside of a solid", .text = TREES SHOWN("[3 * i - 4.5, 0, 0]")
-        "show sphere(30) - sphere(0.9);"
-        "camera { eye: [2, 0.2, 0], target: [0, 0, 0], fov: 1 }"},
-    [ZONED] = {.name = "with a zone", .text = TREES SHOWN("[3 * i - 4.5, 0, 0.7 * i]")
-        "camera { eye: [0, 2, 16], target: [0, 0.3, 0], fov: 0.6 }"},
+    [SCATTERED] = {.name = "scattered",
+                   .text = TREES SHOWN(
+                       "[3 * i - 4.5, 0, 0.7 * i]") "camera { eye: [0, 2, 16], target: [0, 0.3, "
+                                                    "0], fov: 0.6 }"},
+    [MIXED] =
+        {.name = "within each other",
+         .text = TREES SHOWN(
+             "[0.2 * i, 0.1 * i, 0.1]") "camera { eye: [1, 2, 8], target: [0, 0.3, 0], fov: 0.5 }"},
+    [GROUND]       = {.name = "on a plane",
+                      .text = TREES SHOWN("[3 * i - 4.5, 0, 1.5 * i]") "show plane([0, 1, 0], -1); show "
+                                                                             "sphere(0.4).move([0, 0, 3]);"
+                                                                             "camera { eye: [3, 3, 14], "
+                                                                             "target: [0, 0, 0], fov: 0.6 }"},
+    [ORTHOGRAPHIC] = {.name = "orthographic",
+                      .text = TREES SHOWN(
+                          "[2 * i - 3, 0, 2 * i]") "camera { projection: \"orthographic\", eye: "
+                                                   "[2, 3, 20], target: [0, 0, 2],"
+                                                   "         height: 6 }"},
+    [PANORAMA] =
+        {.name = "all around",
+         .text = TREES SHOWN(
+             "[1.5 * cos(2 * i), 0, 1.5 * sin(2 * i)]") "camera { projection: \"panorama\", eye: "
+                                                        "[0, 0.2, 0], target: [1, 0.2, 0] }"},
+    [INSIDE] =
+        {.name = "from inside of a solid",
+         .text = TREES SHOWN(
+             "[3 * i - 4.5, 0, 0]") "show sphere(30) - sphere(0.9);"
+                                    "camera { eye: [2, 0.2, 0], target: [0, 0, 0], fov: 1 }"},
+    [ZONED] = {.name = "with a zone",
+               .text = TREES SHOWN("[3 * i - 4.5, 0, 0.7 * i]") "camera { eye: [0, 2, 16], target: "
+                                                                "[0, 0.3, 0], fov: 0.6 }"},
 };
 
 static KrsRenderer *plain, *early;
@@ -81,15 +94,15 @@ static void print_complaint(void *user, const char *message)
 static int open_scenes(void **state)
 {
     (void)state;
-    KrsRendererOptions options = {.device = tested_device(), .validation = true,
-                                  .complaint = print_complaint};
-    KrsOptions with   = {.diagnostic = print_diagnostic};
-    KrsStatus  status = krs_renderer_new(&options, &plain);
+    KrsRendererOptions options = {
+        .device = tested_device(), .validation = true, .complaint = print_complaint};
+    KrsOptions with    = {.diagnostic = print_diagnostic};
+    KrsStatus  status  = krs_renderer_new(&options, &plain);
     options.early_outs = KRS_EARLY_OUTS_ON;
     if (status == KRS_OK)
         status = krs_renderer_new(&options, &early);
     for (int i = 0; i < SCENES && status == KRS_OK; i++) {
-        Scene       *s = &scenes[i];
+        Scene       *s       = &scenes[i];
         const double zone[4] = {-4.5, 0, 0, 0.8};
         status = krs_compile_text(s->text, strlen(s->text), s->name, &with, &s->scene);
         if (status == KRS_OK)
@@ -138,10 +151,10 @@ typedef struct Difference {
     int    hits;   /* of one of the two alone */
     int    depths; /* farther apart than a surface seen at a small angle explains */
     int    components;
-    int    places; /* of level and instance, where the components are the same */
+    int    places;  /* of level and instance, where the components are the same */
     int    normals; /* farther apart than 0.2 */
-    int    seen;   /* in both */
-    double mean;   /* of the depths, in pixels' widths, where both hit */
+    int    seen;    /* in both */
+    double mean;    /* of the depths, in pixels' widths, where both hit */
 } Difference;
 
 static Difference compare(const KrsPicture *a, const KrsPicture *b, double pixel)
@@ -174,8 +187,8 @@ static void check_same(const Scene *scene, const KrsPicture *a, const KrsPicture
 {
     Difference d = compare(a, b, 0.6 / HEIGHT);
     print_message("# %s: of %d: %d hits, %d depths, %d components, %d places, %d normals differ; "
-                  "depths by %.4f pixels\n", scene->name, d.seen, d.hits, d.depths, d.components,
-                  d.places, d.normals, d.mean);
+                  "depths by %.4f pixels\n",
+                  scene->name, d.seen, d.hits, d.depths, d.components, d.places, d.normals, d.mean);
     assert_true(d.seen > PIXELS / 50);
     assert_true(d.hits <= PIXELS / 2000);
     assert_true(d.depths <= PIXELS / 2000);
@@ -189,7 +202,7 @@ static void check_same(const Scene *scene, const KrsPicture *a, const KrsPicture
 
 static const KrsRenderOptions together = {.components = KRS_COMPONENTS_TOGETHER};
 static const KrsRenderOptions by_turns = {.components = KRS_COMPONENTS_APART};
-static const KrsRenderOptions packed = {.components = KRS_COMPONENTS_PACKED};
+static const KrsRenderOptions packed   = {.components = KRS_COMPONENTS_PACKED};
 
 static void parts_make_the_union(void **state)
 {
@@ -243,13 +256,13 @@ static void crops_and_schedules_change_nothing(void **state)
     const Scene     *scene = &scenes[GROUND];
     KrsRenderOptions apart = {.components = KRS_COMPONENTS_APART};
     KrsPicture      *whole = render(scene, false, apart);
-    apart.crop = (KrsWindow){37, 21, 60, 50};
-    KrsPicture *part = render(scene, false, apart);
+    apart.crop             = (KrsWindow){37, 21, 60, 50};
+    KrsPicture *part       = render(scene, false, apart);
     check_equal(whole, part);
     krs_picture_free(part);
     for (int schedule = KRS_SCHEDULE_PIXEL; schedule < KRS_SCHEDULE_COUNT; schedule++) {
         apart.schedule = (KrsSchedule)schedule;
-        part = render(scene, false, apart);
+        part           = render(scene, false, apart);
         check_equal(whole, part);
         krs_picture_free(part);
     }
@@ -312,8 +325,10 @@ static void any_number_is_packed(void **state)
 static void zones_are_packed(void **state)
 {
     (void)state;
-    spiral_is_the_union(9, 0, "show plane([0, 1, 0], -1);"
-                              "zone { center: [0.5, 0, 1.5], radius: 0.9 }", "a spiral in a zone");
+    spiral_is_the_union(9, 0,
+                        "show plane([0, 1, 0], -1);"
+                        "zone { center: [0.5, 0, 1.5], radius: 0.9 }",
+                        "a spiral in a zone");
 }
 
 static void far_away_is_packed(void **state)
@@ -329,17 +344,17 @@ static void packed_in_every_way(void **state)
     KrsPicture  *whole = render(scene, false, packed);
     for (int schedule = KRS_SCHEDULE_PIXEL; schedule < KRS_SCHEDULE_COUNT; schedule++) {
         KrsRenderOptions options = packed;
-        options.schedule = (KrsSchedule)schedule;
-        options.crop     = (KrsWindow){41, 21, 70, 50};
-        KrsPicture *part = render(scene, false, options);
+        options.schedule         = (KrsSchedule)schedule;
+        options.crop             = (KrsWindow){41, 21, 70, 50};
+        KrsPicture *part         = render(scene, false, options);
         check_equal(whole, part);
         krs_picture_free(part);
     }
     for (int trace = KRS_TRACE_PLAIN; trace <= KRS_TRACE_RELAXED; trace++) {
         KrsRenderOptions options = packed;
-        options.trace    = (KrsTrace)trace;
-        options.no_beams = true;
-        KrsPicture *other = render(scene, false, options);
+        options.trace            = (KrsTrace)trace;
+        options.no_beams         = true;
+        KrsPicture *other        = render(scene, false, options);
         check_same(scene, whole, other);
         krs_picture_free(other);
     }
@@ -355,7 +370,7 @@ static void only_what_is_heavy_is_apart(void **state)
     (void)state;
     static const char cheap[] = "show sphere(1); show box([1, 1, 1]).move([3, 0, 0]);"
                                 "show torus(1, 0.2).move([0, 0, 3]);";
-    KrsScene *scene;
+    KrsScene         *scene;
     assert_int_equal(krs_compile_text(cheap, strlen(cheap), "cheap", NULL, &scene), KRS_OK);
     assert_int_equal(krs_scene_program(scene)->group_count, 0);
     assert_int_equal(krs_scene_program(scene)->heavy, 0);

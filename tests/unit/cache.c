@@ -73,8 +73,8 @@ static CacheKey key_of(int number) { return cache_key("test", &number, sizeof nu
 static bool holds(CacheKey key, const char *content)
 {
     size_t length = 0;
-    char  *bytes = cache_load(&cache, CACHE_SPIRV, key, &length);
-    bool   same = bytes && length == strlen(content) && memcmp(bytes, content, length) == 0;
+    char  *bytes  = cache_load(&cache, CACHE_SPIRV, key, &length);
+    bool   same   = bytes && length == strlen(content) && memcmp(bytes, content, length) == 0;
     assert_true(!bytes || same); /* never anything else */
     free(bytes);
     return same;
@@ -139,9 +139,9 @@ static void what_was_written_comes_back(void **state)
 static void keys_tell_everything_apart(void **state)
 {
     static const char *const makers[] = {"", "a", "ab", "abc", "krs 1", "krs 2"};
-    static const char *const texts[] = {"", "a", "bc", "c", "abc", "main"};
-    CacheKey keys[36];
-    size_t   count = 0;
+    static const char *const texts[]  = {"", "a", "bc", "c", "abc", "main"};
+    CacheKey                 keys[36];
+    size_t                   count = 0;
     (void)state;
     for (int m = 0; m < 6; m++)
         for (int t = 0; t < 6; t++)
@@ -158,7 +158,7 @@ static void keys_tell_everything_apart(void **state)
 static void every_damage_is_found_and_repaired(void **state)
 {
     static const char content[] = "the words of a shader";
-    char   name[NAME_MAX + 1], good[512], bad[513];
+    char              name[NAME_MAX + 1], good[512], bad[513];
     (void)state;
     put(key_of(1), content);
     assert_int_equal(count_files(name), 1);
@@ -417,7 +417,7 @@ static void nothing_is_kept_in(const char *place)
     Cache  nowhere;
     size_t length;
     fflush(NULL);
-    int said = open("said", O_RDWR | O_CREAT | O_TRUNC, 0600);
+    int said       = open("said", O_RDWR | O_CREAT | O_TRUNC, 0600);
     int streams[2] = {dup(1), dup(2)};
     assert_true(said >= 0 && dup2(said, 1) == 1 && dup2(said, 2) == 2);
     cache_open(&nowhere, place, (KrsAllocator){0});
@@ -510,7 +510,7 @@ static void memory_that_runs_out_is_a_miss(void **state)
     assert_int_equal(count_files(NULL), 8);
 
     scarce.failing = scarce.made + 2; /* one is enough for either */
-    void *bytes = cache_load(&poor, CACHE_SPIRV, key_of(8), &length);
+    void *bytes    = cache_load(&poor, CACHE_SPIRV, key_of(8), &length);
     assert_non_null(bytes);
     assert_int_equal(scarce.held, 1);
     scarce_allocator(&scarce).release(&scarce, bytes);
@@ -528,10 +528,14 @@ static void data_of_another_device_is_refused(void **state)
     (void)state;
     VkPhysicalDeviceProperties device = {
         .vendorID = 0x10de, .deviceID = 0x2330, .pipelineCacheUUID = {1, 2, 3, 4, 5}};
-    struct { VkPipelineCacheHeaderVersionOne header; char data[8]; } blob = {
-        .header = {.headerSize = sizeof blob.header,
-                   .headerVersion = VK_PIPELINE_CACHE_HEADER_VERSION_ONE,
-                   .vendorID = 0x10de, .deviceID = 0x2330, .pipelineCacheUUID = {1, 2, 3, 4, 5}}};
+    struct {
+        VkPipelineCacheHeaderVersionOne header;
+        char                            data[8];
+    } blob = {.header = {.headerSize        = sizeof blob.header,
+                         .headerVersion     = VK_PIPELINE_CACHE_HEADER_VERSION_ONE,
+                         .vendorID          = 0x10de,
+                         .deviceID          = 0x2330,
+                         .pipelineCacheUUID = {1, 2, 3, 4, 5}}};
     assert_true(pipelines_fit(&device, &blob, sizeof blob));
     for (size_t length = 0; length <= sizeof blob.header; length++)
         assert_false(pipelines_fit(&device, &blob, length));

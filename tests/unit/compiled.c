@@ -99,7 +99,7 @@ static ino_t number_of(const char *name)
 static void a_kernel_is_compiled_once(void **state)
 {
     (void)state;
-    char name[NAME_MAX + 1];
+    char               name[NAME_MAX + 1];
     KrsRendererOptions options = {.device = tested_device(), .cache = folder};
     assert_int_equal(prepare_scene(&options), KRS_OK);
     int kernels = count_files(".spirv", name);
@@ -149,20 +149,31 @@ static VkPipelineLayout make_layout(Gpu *gpu)
     VkDescriptorSetLayout        sets[SETS];
     VkPipelineLayout             layout;
     for (uint32_t i = 0; i < BINDINGS; i++)
-        bindings[i] = (VkDescriptorSetLayoutBinding){
-            .binding = i, .descriptorCount = 1, .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
-            .descriptorType = type_of_binding(i)};
+        bindings[i] = (VkDescriptorSetLayoutBinding){.binding         = i,
+                                                     .descriptorCount = 1,
+                                                     .stageFlags      = VK_SHADER_STAGE_COMPUTE_BIT,
+                                                     .descriptorType  = type_of_binding(i)};
     for (int i = 0; i < SETS; i++)
-        assert_int_equal(vkCreateDescriptorSetLayout(gpu->device,
-            &(VkDescriptorSetLayoutCreateInfo){
-                .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-                .bindingCount = BINDINGS, .pBindings = bindings}, NULL, &sets[i]), VK_SUCCESS);
-    assert_int_equal(vkCreatePipelineLayout(gpu->device, &(VkPipelineLayoutCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-        .setLayoutCount = SETS, .pSetLayouts = sets,
-        .pushConstantRangeCount = 1,
-        .pPushConstantRanges = &(VkPushConstantRange){VK_SHADER_STAGE_COMPUTE_BIT, 0, 128},
-    }, NULL, &layout), VK_SUCCESS);
+        assert_int_equal(vkCreateDescriptorSetLayout(
+                             gpu->device,
+                             &(VkDescriptorSetLayoutCreateInfo){
+                                 .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                 .bindingCount = BINDINGS,
+                                 .pBindings    = bindings},
+                             NULL, &sets[i]),
+                         VK_SUCCESS);
+    assert_int_equal(
+        vkCreatePipelineLayout(
+            gpu->device,
+            &(VkPipelineLayoutCreateInfo){
+                .sType                  = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                .setLayoutCount         = SETS,
+                .pSetLayouts            = sets,
+                .pushConstantRangeCount = 1,
+                .pPushConstantRanges = &(VkPushConstantRange){VK_SHADER_STAGE_COMPUTE_BIT, 0, 128},
+            },
+            NULL, &layout),
+        VK_SUCCESS);
     for (int i = 0; i < SETS; i++)
         vkDestroyDescriptorSetLayout(gpu->device, sets[i], NULL);
     return layout;
@@ -182,7 +193,7 @@ static const char *find_kernel(void)
 static void some_kernels_come_along(void **state)
 {
     (void)state;
-    char name[NAME_MAX + 1];
+    char               name[NAME_MAX + 1];
     KrsRendererOptions options = {.device = tested_device(), .cache = folder};
     assert_int_equal(open_and_close(&options), KRS_OK);
     assert_int_equal(count_files(".spirv", name), 0);
@@ -221,14 +232,14 @@ static void kernels_are_compiled_together(void **state)
 {
     enum { KERNELS = 4 };
     (void)state;
-    Gpu           gpu;
-    const char   *file = find_kernel();
-    Kernel        kernels[KERNELS];
-    KernelRequest requests[KERNELS];
-    double        spirv_ms = 0, pipeline_ms = 0;
-    char          name[NAME_MAX + 1];
-    static const char *const defines[KERNELS] = {
-        "#define VARIANT 0\n", "#define VARIANT 1\n", "#define VARIANT 2\n", "#error refused\n"};
+    Gpu                      gpu;
+    const char              *file = find_kernel();
+    Kernel                   kernels[KERNELS];
+    KernelRequest            requests[KERNELS];
+    double                   spirv_ms = 0, pipeline_ms = 0;
+    char                     name[NAME_MAX + 1];
+    static const char *const defines[KERNELS] = {"#define VARIANT 0\n", "#define VARIANT 1\n",
+                                                 "#define VARIANT 2\n", "#error refused\n"};
     assert_true(gpu_open(&gpu, &(KrsRendererOptions){.device = tested_device(), .cache = folder}));
     VkPipelineLayout layout = make_layout(&gpu);
     for (int i = 0; i < KERNELS; i++)
@@ -236,8 +247,8 @@ static void kernels_are_compiled_together(void **state)
 
     spirv_start();
     for (int kept = 0; kept < 2; kept++) { /* compiled, then from the cache */
-        assert_true(kernel_create_all(&gpu, requests, KERNELS - 1, layout, &spirv_ms,
-                                      &pipeline_ms));
+        assert_true(
+            kernel_create_all(&gpu, requests, KERNELS - 1, layout, &spirv_ms, &pipeline_ms));
         for (int i = 0; i < KERNELS - 1; i++) {
             assert_true(kernels[i].pipeline != VK_NULL_HANDLE);
             kernel_destroy(&gpu, &kernels[i]);
@@ -259,9 +270,9 @@ static void kernels_are_compiled_together(void **state)
 
 static KrsStatus open_with(Scarce scarce)
 {
-    KrsRendererOptions options = {.device = tested_device(), .cache = folder,
-                                  .allocator = scarce_allocator(&scarce)};
-    KrsStatus          status = open_and_close(&options);
+    KrsRendererOptions options = {
+        .device = tested_device(), .cache = folder, .allocator = scarce_allocator(&scarce)};
+    KrsStatus status = open_and_close(&options);
     assert_true(status == KRS_OK || status == KRS_OUT_OF_MEMORY);
     assert_int_equal(scarce.held, 0);
     return status;
@@ -293,14 +304,18 @@ static const char small_text[] = "#version 440\n"
    Mesa lacks the driver. */
 static bool pretend_to_open(Gpu *gpu)
 {
-    uint32_t count = 8;
+    uint32_t         count = 8;
     VkPhysicalDevice devices[8];
     setenv("RADV_FORCE_FAMILY", "navi21", 1);
-    assert_int_equal(vkCreateInstance(&(VkInstanceCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-        .pApplicationInfo = &(VkApplicationInfo){
-            .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO, .apiVersion = VK_API_VERSION_1_1},
-    }, NULL, &gpu->instance), VK_SUCCESS);
+    assert_int_equal(vkCreateInstance(
+                         &(VkInstanceCreateInfo){
+                             .sType            = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                             .pApplicationInfo = &(
+                                 VkApplicationInfo){.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                                    .apiVersion = VK_API_VERSION_1_1},
+                         },
+                         NULL, &gpu->instance),
+                     VK_SUCCESS);
     assert_true(vkEnumeratePhysicalDevices(gpu->instance, &count, devices) >= VK_SUCCESS);
     unsetenv("RADV_FORCE_FAMILY");
     for (uint32_t i = 0; i < count && !gpu->physical; i++) {
@@ -312,15 +327,19 @@ static bool pretend_to_open(Gpu *gpu)
         vkDestroyInstance(gpu->instance, NULL);
         return false;
     }
-    assert_int_equal(vkCreateDevice(gpu->physical, &(VkDeviceCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-        .queueCreateInfoCount = 1,
-        .pQueueCreateInfos = &(VkDeviceQueueCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-            .queueCount = 1,
-            .pQueuePriorities = &(float){1},
-        },
-    }, NULL, &gpu->device), VK_SUCCESS);
+    assert_int_equal(vkCreateDevice(gpu->physical,
+                                    &(VkDeviceCreateInfo){
+                                        .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                        .queueCreateInfoCount = 1,
+                                        .pQueueCreateInfos =
+                                            &(VkDeviceQueueCreateInfo){
+                                                .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                                .queueCount       = 1,
+                                                .pQueuePriorities = &(float){1},
+                                            },
+                                    },
+                                    NULL, &gpu->device),
+                     VK_SUCCESS);
     return true;
 }
 
@@ -329,17 +348,30 @@ static void make_pipeline(const Gpu *gpu, const uint32_t *words, size_t bytes)
     VkShaderModule   module;
     VkPipelineLayout layout;
     VkPipeline       pipeline;
-    assert_int_equal(vkCreateShaderModule(gpu->device, &(VkShaderModuleCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-        .codeSize = bytes, .pCode = words}, NULL, &module), VK_SUCCESS);
-    assert_int_equal(vkCreatePipelineLayout(gpu->device, &(VkPipelineLayoutCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO}, NULL, &layout), VK_SUCCESS);
-    assert_int_equal(vkCreateComputePipelines(gpu->device, gpu->pipelines, 1,
-        &(VkComputePipelineCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-            .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                      .stage = VK_SHADER_STAGE_COMPUTE_BIT, .module = module, .pName = "main"},
-            .layout = layout}, NULL, &pipeline), VK_SUCCESS);
+    assert_int_equal(vkCreateShaderModule(gpu->device,
+                                          &(VkShaderModuleCreateInfo){
+                                              .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                              .codeSize = bytes,
+                                              .pCode    = words},
+                                          NULL, &module),
+                     VK_SUCCESS);
+    assert_int_equal(
+        vkCreatePipelineLayout(
+            gpu->device,
+            &(VkPipelineLayoutCreateInfo){.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO},
+            NULL, &layout),
+        VK_SUCCESS);
+    assert_int_equal(vkCreateComputePipelines(
+                         gpu->device, gpu->pipelines, 1,
+                         &(VkComputePipelineCreateInfo){
+                             .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                             .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                       .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                                       .module = module,
+                                       .pName  = "main"},
+                             .layout = layout},
+                         NULL, &pipeline),
+                     VK_SUCCESS);
     vkDestroyPipeline(gpu->device, pipeline, NULL);
     vkDestroyPipelineLayout(gpu->device, layout, NULL);
     vkDestroyShaderModule(gpu->device, module, NULL);
@@ -398,9 +430,9 @@ static void pipelines_are_kept(void **state)
 static void lavapipe_keeps_none(void **state)
 {
     (void)state;
-    char name[NAME_MAX + 1];
+    char               name[NAME_MAX + 1];
     KrsRendererOptions options = {.device = "llvmpipe", .cache = folder};
-    KrsStatus          status = open_and_close(&options);
+    KrsStatus          status  = open_and_close(&options);
     if (status == KRS_NO_DEVICE)
         skip(); /* another driver for the processor */
     assert_int_equal(status, KRS_OK);
@@ -414,18 +446,18 @@ static void lavapipe_keeps_none(void **state)
 static void graphics_cards_do_not_rehearse(void **state)
 {
     (void)state;
-    static const char  text[] = "show sphere(1);\n";
+    static const char  text[]  = "show sphere(1);\n";
     KrsRendererOptions options = {.device = tested_device()};
     KrsRenderer       *renderer;
     KrsRendering      *rendering;
     KrsScene          *scene;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
     assert_int_equal(krs_renderer_new(&options, &renderer), KRS_OK);
-    Gpu          *gpu = &renderer->gpu;
+    Gpu          *gpu        = &renderer->gpu;
     VkCommandPool rehearsals = gpu->rehearsals;
     assert_true(gpu_wait(gpu));
     gpu->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
-    gpu->rehearsals = VK_NULL_HANDLE;
+    gpu->rehearsals            = VK_NULL_HANDLE;
     assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
     gpu->rehearsals = rehearsals;
     krs_rendering_free(rendering);
@@ -438,7 +470,7 @@ static void graphics_cards_do_not_rehearse(void **state)
 static void *compile_a_few_times(void *user)
 {
     bool *done = user;
-    *done = true;
+    *done      = true;
     for (int i = 0; i < 3; i++) {
         uint32_t *words = NULL;
         size_t    count;

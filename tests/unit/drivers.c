@@ -39,8 +39,11 @@ typedef struct Stage {
 
 static Stage open_stage(const char *text, unsigned pretence)
 {
-    KrsRendererOptions options = {.device = tested_device(), .validation = true, .complaint = note_complaint,
-                                  .early_outs = KRS_EARLY_OUTS_OFF, .pretence = pretence};
+    KrsRendererOptions options = {.device     = tested_device(),
+                                  .validation = true,
+                                  .complaint  = note_complaint,
+                                  .early_outs = KRS_EARLY_OUTS_OFF,
+                                  .pretence   = pretence};
     Stage              stage;
     KrsStatus          status = krs_renderer_new(&options, &stage.renderer);
     if (status != KRS_OK)
@@ -85,7 +88,7 @@ static size_t differing_bytes(const void *a, const void *b, size_t bytes)
 static size_t differing_numbers(const float *a, const float *b, size_t count)
 {
     const float roundings = 8 * 0x1p-24f;
-    size_t      differ = 0;
+    size_t      differ    = 0;
     for (size_t i = 0; i < count; i++)
         differ += !(fabsf(a[i] - b[i]) <= roundings * fmaxf(fabsf(a[i]), fabsf(b[i])));
     return differ;
@@ -95,7 +98,7 @@ static size_t differing_numbers(const float *a, const float *b, size_t count)
    have a part of, so counts depend on the bands of a large picture. */
 static size_t difference_but_color(const KrsPicture *a, const KrsPicture *b)
 {
-    size_t pixels = (size_t)a->window.width * a->window.height;
+    size_t pixels      = (size_t)a->window.width * a->window.height;
     bool   is_one_band = pixels < 1 << 16;
     return differing_bytes(a->depth, b->depth, pixels * sizeof(float)) +
            differing_bytes(a->position, b->position, pixels * 3 * sizeof(float)) +
@@ -130,46 +133,67 @@ typedef struct Case {
 
 /* Each as a card has it, so that the schedule is the same. */
 static const Case cases[] = {
-    {"five lights", "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
-                    "light sun { direction: [1, 2, 1], softness: 4deg }"
-                    "light a { position: [2, 3, 0], intensity: 4 }"
-                    "light b { position: [-2, 3, 0], intensity: 4, color: #ff0000 }"
-                    "light c { direction: [-1, 1, 0.3], intensity: 0.4 }"
-                    "light d { position: [0, 4, 2], intensity: 4, color: #0000ff }"
-                    "show sphere(1).move([0, 1, 0]); show plane([0, 1, 0], 0);",
+    {"five lights",
+     "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
+     "light sun { direction: [1, 2, 1], softness: 4deg }"
+     "light a { position: [2, 3, 0], intensity: 4 }"
+     "light b { position: [-2, 3, 0], intensity: 4, color: #ff0000 }"
+     "light c { direction: [-1, 1, 0.3], intensity: 0.4 }"
+     "light d { position: [0, 4, 2], intensity: 4, color: #0000ff }"
+     "show sphere(1).move([0, 1, 0]); show plane([0, 1, 0], 0);",
      {.width = 150, .height = 93, .schedule = KRS_SCHEDULE_QUEUE}},
-    {"several bands", "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
-                      "show torus(1.2, 0.3).move([0, 1, 0]); show box([0.7, 0.7, 0.7]);",
+    {"several bands",
+     "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
+     "show torus(1.2, 0.3).move([0, 1, 0]); show box([0.7, 0.7, 0.7]);",
      {.width = 1100, .height = 500, .schedule = KRS_SCHEDULE_QUEUE}},
-    {"four samples of 12 mirrors", "camera { eye: [2, 6, 22], fov: 0.6 }"
-                                   "show krs { kernel sphere(0.45); for i in 0..12 {"
-                                   "reflect plane(random_direction(i), 0.4 + 0.22 * i); } };",
+    {"four samples of 12 mirrors",
+     "camera { eye: [2, 6, 22], fov: 0.6 }"
+     "show krs { kernel sphere(0.45); for i in 0..12 {"
+     "reflect plane(random_direction(i), 0.4 + 0.22 * i); } };",
      {.width = 131, .height = 70, .samples = 4, .schedule = KRS_SCHEDULE_QUEUE}},
-    {"area shadows", "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
-                     "show sphere(1).move([0, 1, 0]) - box([0.8, 0.8, 4]); show plane([0, 1, 0], 0);",
-     {.width = 97, .height = 61, .samples = 2, .shadows = KRS_SHADOWS_AREA,
+    {"area shadows",
+     "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
+     "show sphere(1).move([0, 1, 0]) - box([0.8, 0.8, 4]); show plane([0, 1, 0], 0);",
+     {.width    = 97,
+      .height   = 61,
+      .samples  = 2,
+      .shadows  = KRS_SHADOWS_AREA,
       .schedule = KRS_SCHEDULE_PIXEL}},
-    {"a panorama", "camera { eye: [0.1, 0.2, 0.3], projection: \"panorama\" }"
-                   "show box([4, 3, 5]) - sphere(0.8).move([1.5, 0, 0.2]);",
+    {"a panorama",
+     "camera { eye: [0.1, 0.2, 0.3], projection: \"panorama\" }"
+     "show box([4, 3, 5]) - sphere(0.8).move([1.5, 0, 0.2]);",
      {.width = 120, .height = 60, .schedule = KRS_SCHEDULE_REFILL}},
-    {"few steps", "camera { eye: [3, 4, 7], fov: 0.6 }"
-                  "show torus(0.5, 0.15).repeat([1.4, 0.9, 1.4], [5, 3, 5]);",
+    {"few steps",
+     "camera { eye: [3, 4, 7], fov: 0.6 }"
+     "show torus(0.5, 0.15).repeat([1.4, 0.9, 1.4], [5, 3, 5]);",
      {.width = 160, .height = 100, .most_steps = 9, .schedule = KRS_SCHEDULE_QUEUE}},
-    {"a polynomial", "camera { eye: [3, 2, 3], fov: 0.6 }"
-                     "show algebraic(x ^ 4 + y ^ 4 + z ^ 4 == 1).within(sphere(1.5));",
+    {"a polynomial",
+     "camera { eye: [3, 2, 3], fov: 0.6 }"
+     "show algebraic(x ^ 4 + y ^ 4 + z ^ 4 == 1).within(sphere(1.5));",
      {.width = 100, .height = 70, .schedule = KRS_SCHEDULE_QUEUE}},
     /* Rays that take more steps than a chain has. */
-    {"the shortest slices", "camera { eye: [3, 4, 7], fov: 0.6 }"
-                            "show torus(0.5, 0.15).repeat([1.4, 0.9, 1.4], [5, 3, 5]);",
-     {.width = 60, .height = 50, .steps_at_once = 1, .slice_ms = 1e-3, .trace = KRS_TRACE_PLAIN,
-      .no_beams = true,
-      .schedule = KRS_SCHEDULE_QUEUE}},
+    {"the shortest slices",
+     "camera { eye: [3, 4, 7], fov: 0.6 }"
+     "show torus(0.5, 0.15).repeat([1.4, 0.9, 1.4], [5, 3, 5]);",
+     {.width         = 60,
+      .height        = 50,
+      .steps_at_once = 1,
+      .slice_ms      = 1e-3,
+      .trace         = KRS_TRACE_PLAIN,
+      .no_beams      = true,
+      .schedule      = KRS_SCHEDULE_QUEUE}},
     /* More groups than the first slice has, and rays with more steps than a chain. */
-    {"a chain that stops at once", "camera { eye: [2, 6, 22], fov: 0.6 }"
-                                   "show krs { kernel sphere(0.45); for i in 0..12 {"
-                                   "reflect plane(random_direction(i), 0.4 + 0.22 * i); } };",
-     {.width = 400, .height = 300, .steps_at_once = 1, .slice_ms = 1e6, .trace = KRS_TRACE_PLAIN,
-      .no_beams = true, .schedule = KRS_SCHEDULE_QUEUE}},
+    {"a chain that stops at once",
+     "camera { eye: [2, 6, 22], fov: 0.6 }"
+     "show krs { kernel sphere(0.45); for i in 0..12 {"
+     "reflect plane(random_direction(i), 0.4 + 0.22 * i); } };",
+     {.width         = 400,
+      .height        = 300,
+      .steps_at_once = 1,
+      .slice_ms      = 1e6,
+      .trace         = KRS_TRACE_PLAIN,
+      .no_beams      = true,
+      .schedule      = KRS_SCHEDULE_QUEUE}},
     {"components by themselves",
      "def tree(seed) = krs { kernel capsule([0, 0, 0], [0, 0.3, 0], 0.04).move([0, 0.4, 0]);"
      "    for i in 0..6 { reflect plane(random_direction(seed + i), 0.12 * i + 0.05);"
@@ -178,7 +202,9 @@ static const Case cases[] = {
      "show bushes[0].move([-4.5, 0, 0]); show bushes[1].move([-1.5, 0, 1.5]);"
      "show bushes[2].move([1.5, 0, 3]); show bushes[3].move([4.5, 0, 4.5]);"
      "show plane([0, 1, 0], -1); camera { eye: [3, 3, 14], target: [0, 0, 0], fov: 0.6 }",
-     {.width = 90, .height = 60, .schedule = KRS_SCHEDULE_QUEUE,
+     {.width      = 90,
+      .height     = 60,
+      .schedule   = KRS_SCHEDULE_QUEUE,
       .components = KRS_COMPONENTS_APART}},
 };
 
@@ -241,9 +267,9 @@ enum { SUBMISSIONS_OF_CARD = 5 };
 static void a_card_is_seldom_waited_for(void **state)
 {
     (void)state;
-    Stage            stage = open_stage(cases[0].text, KRS_PRETEND_CARD);
+    Stage            stage   = open_stage(cases[0].text, KRS_PRETEND_CARD);
     KrsRenderOptions options = cases[0].options;
-    options.slice_ms = 1e6; /* a slice is all of it */
+    options.slice_ms         = 1e6; /* a slice is all of it */
     for (int frame = 0; frame < 2; frame++) {
         KrsPicture *picture = render(&stage, &options);
         assert_in_range(picture->stats.submissions, 1, SUBMISSIONS_OF_CARD);
@@ -264,15 +290,15 @@ static bool count_down(void *user, double done)
 static void a_card_is_interrupted(void **state)
 {
     (void)state;
-    Stage            stage = open_stage(cases[0].text, KRS_PRETEND_CARD);
-    KrsRenderOptions options = cases[0].options;
-    KrsPicture      *whole = render(&stage, &options);
+    Stage            stage       = open_stage(cases[0].text, KRS_PRETEND_CARD);
+    KrsRenderOptions options     = cases[0].options;
+    KrsPicture      *whole       = render(&stage, &options);
     int              interrupted = 0, left;
-    options.progress = count_down;
-    options.user = &left;
+    options.progress             = count_down;
+    options.user                 = &left;
     for (int calls = 0; calls < 20; calls++) {
         KrsPicture *picture;
-        left = calls;
+        left             = calls;
         KrsStatus status = krs_render(stage.rendering, stage.frame, &options, &picture);
         if (status == KRS_OK)
             assert_int_equal(difference(whole, picture), 0);
@@ -295,8 +321,8 @@ static void ask(unsigned pretence, KrsHit hits[RAYS])
     static double origins[RAYS][3], directions[RAYS][3];
     Stage         stage = open_stage(cases[0].text, pretence);
     for (int i = 0; i < RAYS; i++) {
-        origins[i][0] = 4;
-        origins[i][1] = 3;
+        origins[i][0]    = 4;
+        origins[i][1]    = 3;
         directions[i][0] = -1;
         directions[i][1] = 0.004 * (i % 20) - 0.6;
         directions[i][2] = 0.004 * (i / 20) - 0.03;

@@ -13,8 +13,7 @@
 
 #include "runtime/film/film.h"
 
-#define assert_near(value, expected, within)                                                    \
-    assert_true(fabs((value) - (expected)) <= (within))
+#define assert_near(value, expected, within) assert_true(fabs((value) - (expected)) <= (within))
 
 /* The definition of sRGB, backwards. */
 static double srgb_decode(double shown)
@@ -173,7 +172,7 @@ static void a_stop_is_a_doubling(void **state)
 {
     (void)state;
     static Flat brighter, doubled;
-    KrsWindow window = {0, 0, SIDE, SIDE};
+    KrsWindow   window = {0, 0, SIDE, SIDE};
     flat_develop(&brighter, 0.125, window, (FilmOptions){.tone_map = TONE_ACES, .exposure = 1});
     flat_develop(&doubled, 0.25, window, (FilmOptions){.tone_map = TONE_ACES});
     assert_memory_equal(brighter.rgb, doubled.rgb, sizeof doubled.rgb);
@@ -190,7 +189,7 @@ static uint8_t defined_byte(const float color[3], FilmOptions options, int chann
         light[i] = pow(2, options.exposure) * color[i];
     tone_map_apply(options.tone_map, light, shown);
     double noise = 0.06711056 * (x + 47 * channel) + 0.00583715 * (y + 17 * channel);
-    noise = 52.9829189 * (noise - floor(noise));
+    noise        = 52.9829189 * (noise - floor(noise));
     return (uint8_t)floor(255 * srgb_encode(shown[channel]) + noise - floor(noise));
 }
 
@@ -198,21 +197,24 @@ static void bytes_are_as_defined(void **state)
 {
     (void)state;
     enum { WIDTH = 157, HEIGHT = 41, COUNT = 4 * WIDTH * HEIGHT };
-    static const float odd[] = {NAN, INFINITY, -1, 1e-42f, 1e30f, 0, 1, 0.08f, 0.76f, 0.8f};
+    static const float  odd[]   = {NAN, INFINITY, -1, 1e-42f, 1e30f, 0, 1, 0.08f, 0.76f, 0.8f};
     static const double stops[] = {0, 1.3, -3, 140};
-    static float   color[COUNT];
-    static uint8_t rgb[COUNT];
-    uint32_t       chance = 7;
+    static float        color[COUNT];
+    static uint8_t      rgb[COUNT];
+    uint32_t            chance = 7;
     for (int kind = 0; kind < 12; kind++) {
         FilmOptions options = {(ToneMap)(kind % TONE_MAP_COUNT), stops[kind / TONE_MAP_COUNT]};
         for (int i = 0; i < COUNT; i++) {
-            chance = chance * 1664525 + 1013904223;
-            double part = (chance >> 8) / 16777216.0;
+            chance       = chance * 1664525 + 1013904223;
+            double part  = (chance >> 8) / 16777216.0;
             double light = exp(12 * part - 9) / pow(2, options.exposure);
-            color[i] = chance % 256 < 16 ? odd[(chance >> 8) % 10] : (float)light;
+            color[i]     = chance % 256 < 16 ? odd[(chance >> 8) % 10] : (float)light;
         }
-        film_to_srgb8(&(KrsPicture){.width = 2000, .height = 2000, .window = {911, 1204, WIDTH,
-                      HEIGHT}, .color = color}, &options, rgb);
+        film_to_srgb8(&(KrsPicture){.width  = 2000,
+                                    .height = 2000,
+                                    .window = {911, 1204, WIDTH, HEIGHT},
+                                    .color  = color},
+                      &options, rgb);
         for (int k = 0; k < WIDTH * HEIGHT; k++)
             for (int i = 0; i < 3; i++)
                 assert_int_equal(rgb[3 * k + i], defined_byte(&color[4 * k], options, i,

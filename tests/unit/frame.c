@@ -39,7 +39,8 @@ static void parameters_move_the_scene(void **state)
     KrsScene    *scene;
     KrsParameter parameter;
     KrsFrame    *frame = open_scene("param r = 1 in [0.5, 2]; param at = [1, 0, 0];"
-                                    "show sphere(r).move(at + [0, time, 0]);", &scene);
+                                       "show sphere(r).move(at + [0, time, 0]);",
+                                    &scene);
     assert_int_equal(krs_parameter_count(scene), 2);
     assert_int_equal(krs_parameter(scene, 0, &parameter), KRS_OK);
     assert_string_equal(parameter.name, "r");
@@ -131,7 +132,8 @@ static void frames_without_a_slope_are_refused(void **state)
     KrsFrameSlope slope;
     float         before[4][4], after[4][4];
     KrsFrame     *frame = open_scene("param k = 1;\nlet f = field(y - sin(k * x / (time - 2)));\n"
-                                     "show f; show f.move([0, 5, 0]);", &scene);
+                                         "show f; show f.move([0, 5, 0]);",
+                                     &scene);
     assert_int_equal(krs_frame_slope_count(scene), 1); /* one expression */
     assert_int_equal(krs_frame_slope(scene, 0, &slope), KRS_OK);
     assert_int_equal(krs_frame_slope(scene, 1, &slope), KRS_BAD_ARGUMENT);
@@ -177,8 +179,7 @@ static void a_cut_field_has_one_slope(void **state)
     (void)state;
     KrsScene     *scene;
     KrsFrameSlope slope;
-    KrsFrame     *frame = open_scene("show field(y - sin(x * time)).within(box([2, 2, 2]));",
-                                     &scene);
+    KrsFrame *frame = open_scene("show field(y - sin(x * time)).within(box([2, 2, 2]));", &scene);
     assert_int_equal(krs_frame_slope_count(scene), 1);
     assert_int_equal(krs_frame_slope(scene, 0, &slope), KRS_OK);
     assert_true(slope.low[0] == -1 && slope.high[2] == 1);
@@ -228,7 +229,8 @@ static void endless_components_are_not_framed(void **state)
     KrsScene *scene;
     KrsView   view;
     KrsFrame *frame = open_scene("show sphere(0.5); show cylinder(0.2, 0.9)"
-                                 ".move([1.5, 0, 0]).repeat([0, 1, 0]);", &scene);
+                                 ".move([1.5, 0, 0]).repeat([0, 1, 0]);",
+                                 &scene);
     assert_int_equal(krs_frame_view(frame, 0, &view), KRS_OK);
     for (int k = 0; k < 3; k++)
         assert_true(fabs(view.camera.target[k]) < 0.1);

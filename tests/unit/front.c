@@ -32,11 +32,11 @@ typedef struct Reading {
 
 static Reading *reading_new(void)
 {
-    Reading *r        = calloc(1, sizeof *r);
-    r->memory         = (Memory){.exhausted = &r->exhausted};
-    r->arena          = (Arena){.memory = &r->memory};
-    r->sources.arena  = r->names.arena = r->diags.arena = &r->arena;
-    r->diags.sources  = &r->sources;
+    Reading *r       = calloc(1, sizeof *r);
+    r->memory        = (Memory){.exhausted = &r->exhausted};
+    r->arena         = (Arena){.memory = &r->memory};
+    r->sources.arena = r->names.arena = r->diags.arena = &r->arena;
+    r->diags.sources                                   = &r->sources;
     return r;
 }
 
@@ -63,7 +63,7 @@ static Reading *read_text(const char *text) { return read_bytes(text, strlen(tex
 static void check_all_names(Reading *r)
 {
     static const char *const known[] = {"x", "y", "z", "p", "sphere", "box", "torus", "pi"};
-    NameScope scope = {.known = known, .known_count = sizeof known / sizeof *known};
+    NameScope                scope = {.known = known, .known_count = sizeof known / sizeof *known};
     names_check(r->file, &scope, &r->diags, &r->arena);
     diags_sort(&r->diags);
 }
@@ -297,7 +297,7 @@ static void tokens_are_split(void **state)
     expect_tokens("let a=0..n;", "1:1 `let`\n1:5 a name a\n1:6 `=`\n1:7 a number 0\n1:8 `..`\n"
                                  "1:10 a name n\n1:11 `;`\n1:12 the end of the file\n");
     expect_tokens("1.5.round//x\n/* \n */ <==", "1:1 a number 1.5\n1:4 `.`\n1:5 a name round\n"
-                                               "3:5 `<=`\n3:7 `=`\n3:8 the end of the file\n");
+                                                "3:5 `<=`\n3:7 `=`\n3:8 the end of the file\n");
     expect_tokens("\xEF\xBB\xBF#c8553d", "1:2 a colour #c8553d\n1:9 the end of the file\n");
 }
 
@@ -327,8 +327,8 @@ static void numbers_do_not_depend_on_the_locale(void **state)
 static void colours_become_linear(void **state)
 {
     (void)state;
-    Reading      *r       = read_text("#ff0a80");
-    const double *number  = r->tokens.items[0].number;
+    Reading      *r      = read_text("#ff0a80");
+    const double *number = r->tokens.items[0].number;
     assert_true(number[0] == 1);
     assert_true(fabs(number[1] - 10 / 255.0 / 12.92) < 1e-15);
     assert_true(fabs(number[2] - 0.21586050011389926) < 1e-15);
@@ -377,7 +377,7 @@ static void bytes_of_zero_are_reported(void **state)
 {
     (void)state;
     static const char scene[] = "let a = 1;\0\"b\0c\"";
-    Reading *r = read_bytes(scene, sizeof scene - 1);
+    Reading          *r       = read_bytes(scene, sizeof scene - 1);
     assert_string_equal(codes(r), "E0102@1:11 E0102@1:14");
     reading_free(r);
 }
@@ -390,7 +390,7 @@ static void write_grouped(const Syntax *syntax, Text *out)
     const char *op = token_kind_text(syntax->op);
     switch (syntax->kind) {
     case SYNTAX_NUMBER: text_number(out, syntax->number[0]); return;
-    case SYNTAX_NAME:   text_add(out, syntax->name); return;
+    case SYNTAX_NAME: text_add(out, syntax->name); return;
     case SYNTAX_UNARY:
     case SYNTAX_BINARY:
     case SYNTAX_RANGE:
@@ -460,10 +460,10 @@ static void operators_have_their_precedence(void **state)
 static void the_tree_is_printed(void **state)
 {
     (void)state;
-    Reading *r = read_text("param a = 30deg in [0, #ffffff];\n"
-                           "shape s(r = 1) { light: -r, }\n"
-                           "for i in 0..2 { if true { show \"t\"; } else { } }");
-    Text text = {.arena = &r->arena};
+    Reading *r    = read_text("param a = 30deg in [0, #ffffff];\n"
+                                 "shape s(r = 1) { light: -r, }\n"
+                                 "for i in 0..2 { if true { show \"t\"; } else { } }");
+    Text     text = {.arena = &r->arena};
     syntax_print(r->file, &r->sources, &text);
     assert_string_equal(text.bytes, "block 1:1\n"
                                     "  param a 1:1\n"
@@ -707,41 +707,40 @@ static void a_diagnostic_is_drawn(void **state)
 {
     (void)state;
     static const char scene[] = "\n\n\n\n\n\n\n\n\n\n\n\n\n        reflect sphere(2);\n";
-    Reading *r    = read_text("");
-    uint32_t file = source_add(&r->sources, "grove.krs", scene, sizeof scene - 1, false);
-    Diag    *diag = diag_add(&r->diags, DIAG_NEEDS_PLANE, (Span){file, 29, 38},
-                             "'reflect' needs a plane, found a shape");
-    diag->label   = "this is a shape";
-    diag->help    = "for an inversion in a sphere write "
-                    "'mobius invert(center: [0,0,0], radius: 2);'";
-    expect_picture(r,
-        "error[E0312]: 'reflect' needs a plane, found a shape\n"
-        "  --> grove.krs:14:17\n"
-        "   |\n"
-        "14 |         reflect sphere(2);\n"
-        "   |                 ^^^^^^^^^ this is a shape\n"
-        "   = help: for an inversion in a sphere write "
-        "'mobius invert(center: [0,0,0], radius: 2);'\n"
-        "\n"
-        "1 error\n");
+    Reading          *r       = read_text("");
+    uint32_t          file = source_add(&r->sources, "grove.krs", scene, sizeof scene - 1, false);
+    Diag             *diag = diag_add(&r->diags, DIAG_NEEDS_PLANE, (Span){file, 29, 38},
+                                      "'reflect' needs a plane, found a shape");
+    diag->label            = "this is a shape";
+    diag->help             = "for an inversion in a sphere write "
+                             "'mobius invert(center: [0,0,0], radius: 2);'";
+    expect_picture(r, "error[E0312]: 'reflect' needs a plane, found a shape\n"
+                      "  --> grove.krs:14:17\n"
+                      "   |\n"
+                      "14 |         reflect sphere(2);\n"
+                      "   |                 ^^^^^^^^^ this is a shape\n"
+                      "   = help: for an inversion in a sphere write "
+                      "'mobius invert(center: [0,0,0], radius: 2);'\n"
+                      "\n"
+                      "1 error\n");
 }
 
 static void several_places_are_drawn(void **state)
 {
     (void)state;
     static const char one[] = "let a = 1;\nlet b = 2;\n\nlet a = b;\n", two[] = "def c() = 1;";
-    Reading *r    = read_text("");
-    uint32_t file = source_add(&r->sources, "one.krs", one, sizeof one - 1, false);
-    uint32_t used = source_add(&r->sources, "two.krs", two, sizeof two - 1, false);
-    Diag    *diag = add(r, DIAG_DUPLICATE_NAME, file, 27, 28);
-    diag->label       = "again";
-    diag->replacement = "c";
+    Reading          *r    = read_text("");
+    uint32_t          file = source_add(&r->sources, "one.krs", one, sizeof one - 1, false);
+    uint32_t          used = source_add(&r->sources, "two.krs", two, sizeof two - 1, false);
+    Diag             *diag = add(r, DIAG_DUPLICATE_NAME, file, 27, 28);
+    diag->label            = "again";
+    diag->replacement      = "c";
     diag_place(&r->diags, diag, (Span){file, 4, 5}, "first");
     diag_place(&r->diags, diag, (Span){file, 31, 32}, "this, too");
     diag_place(&r->diags, diag, (Span){used, 0, 12}, "elsewhere");
     diag_note(&r->diags, diag, "a note\nof two lines");
-    diag       = add(r, DIAG_NO_EFFECT, used, 4, 5);
-    diag->help = "a name that is similar exists";
+    diag              = add(r, DIAG_NO_EFFECT, used, 4, 5);
+    diag->help        = "a name that is similar exists";
     diag->replacement = "d";
     expect_picture(r, "error[E0202]: a message\n"
                       " --> one.krs:4:5\n"
@@ -775,7 +774,7 @@ static void odd_text_is_drawn(void **state)
     (void)state;
     /* a tab, a wide and a narrow character, a control byte, a byte that is no UTF-8 */
     static const char scene[] = "\t\xE6\x9C\xA8\xC3\xA9\x1B\xFF here\r\nthere";
-    Reading *r = read_text("");
+    Reading          *r       = read_text("");
     source_add(&r->sources, "odd\x1B.krs", scene, sizeof scene - 1, false);
     add(r, DIAG_STRAY_BYTES, 2, 9, 20)->label = "to the end of the line";
     expect_picture(r, "error[E0102]: a message\n"
@@ -793,23 +792,22 @@ static void long_lines_are_cut(void **state)
     char scene[1001];
     for (int i = 0; i < 1000; i++)
         scene[i] = (char)('0' + i % 10);
-    scene[1000] = '\0';
+    scene[1000]   = '\0';
     Reading *r    = read_text("");
     uint32_t file = source_add(&r->sources, "long.krs", scene, 1000, false);
     Diag    *diag = add(r, DIAG_STRAY_BYTES, file, 500, 503);
     diag_place(&r->diags, diag, (Span){file, 0, 2}, "far away");
-    expect_picture(r,
-        "error[E0102]: a message\n"
-        " --> long.krs:1:501\n"
-        "  |\n"
-        "1 | ...01234567890123456789012345678901234567890123456789"
-        "01234567890123456789012345678901234567890123456789...\n"
-        "  |                                            ^^^\n"
-        "1 | 01234567890123456789012345678901234567890123456789"
-        "01234567890123456789012345678901234567890123456789...\n"
-        "  | -- far away\n"
-        "\n"
-        "1 error\n");
+    expect_picture(r, "error[E0102]: a message\n"
+                      " --> long.krs:1:501\n"
+                      "  |\n"
+                      "1 | ...01234567890123456789012345678901234567890123456789"
+                      "01234567890123456789012345678901234567890123456789...\n"
+                      "  |                                            ^^^\n"
+                      "1 | 01234567890123456789012345678901234567890123456789"
+                      "01234567890123456789012345678901234567890123456789...\n"
+                      "  | -- far away\n"
+                      "\n"
+                      "1 error\n");
 }
 
 static void a_diagnostic_without_a_place_is_drawn(void **state)
@@ -836,14 +834,15 @@ static void json_has_places_of_the_protocol(void **state)
 {
     (void)state;
     static const char scene[] = "a\n\xF0\x9F\x98\x80 b c";
-    Reading *r    = read_text("");
-    uint32_t file = source_add(&r->sources, "j.krs", scene, sizeof scene - 1, false);
-    Diag    *diag = add(r, DIAG_UNKNOWN_NAME, file, 7, 8);
-    diag->replacement = "d";
+    Reading          *r       = read_text("");
+    uint32_t          file    = source_add(&r->sources, "j.krs", scene, sizeof scene - 1, false);
+    Diag             *diag    = add(r, DIAG_UNKNOWN_NAME, file, 7, 8);
+    diag->replacement         = "d";
     diag_place(&r->diags, diag, (Span){file, 0, 1}, "a \"place\"");
     Text text = {.arena = &r->arena};
     diags_print_json(&r->diags, &text);
-    assert_string_equal(text.bytes,
+    assert_string_equal(
+        text.bytes,
         "{\"uri\":\"j.krs\",\"range\":{\"start\":{\"line\":1,\"character\":3},"
         "\"end\":{\"line\":1,\"character\":4}},\"severity\":1,\"code\":\"E0201\","
         "\"source\":\"krs\",\"message\":\"a message\","

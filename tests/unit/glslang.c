@@ -64,10 +64,10 @@ typedef struct Call {
 
 static void *compile(void *user)
 {
-    Call     *call  = user;
-    uint32_t *words = NULL;
-    size_t    count = 0;
-    char     *log   = NULL;
+    Call     *call   = user;
+    uint32_t *words  = NULL;
+    size_t    count  = 0;
+    char     *log    = NULL;
     allocations      = 0;
     lasting          = call->lasting;
     allocations_left = call->left;

@@ -18,8 +18,8 @@ typedef struct uvec2 {
 } uvec2;
 #define uvec2(x, y) ((uvec2){(x), (y)})
 #define uint(x)     ((uint)(x))
-#define int(x)      ((int)(x))
-#define float(x)    ((float)(x))
+#define int(x) ((int)(x))
+#define float(x) ((float)(x))
 #include "runtime/shaders/grid.glsl"
 #undef uvec2
 #undef uint
@@ -42,16 +42,16 @@ static float worst_quotient(uint number, uint across, int side)
 static size_t count_wrong(uint across, uvec2 (*find)(uint, uint, float))
 {
     Random random = {across};
-    size_t wrong = 0;
+    size_t wrong  = 0;
     for (int i = 0; i < 4000; i++) {
-        double   rows = fmin(MOST_ROWS, floor(0x7fffffff / across));
-        uint     row = (uint)(rows * (i < 2000 ? i / 2000.0 : random_between(&random, 0, 1)));
-        uint64_t first = (uint64_t)row * across;
+        double   rows      = fmin(MOST_ROWS, floor(0x7fffffff / across));
+        uint     row       = (uint)(rows * (i < 2000 ? i / 2000.0 : random_between(&random, 0, 1)));
+        uint64_t first     = (uint64_t)row * across;
         uint64_t numbers[] = {first, first + 1, first + across / 2, first + across - 1};
         for (int k = 0; k < 4; k++)
             for (int side = -1; side <= 1 && numbers[k] < 0x7fffffff; side++) {
                 uint  number = (uint)numbers[k];
-                uvec2 cell = find(number, across, worst_quotient(number, across, side));
+                uvec2 cell   = find(number, across, worst_quotient(number, across, side));
                 wrong += cell.x != number % across || cell.y != number / across;
             }
     }

@@ -47,7 +47,8 @@ static int make_folder(void **state)
     put("beyond/secret", "secret");
     put("root/file", "file");
     put("root/deep/file", "deep file");
-    bool linked = symlink("../secret", "root/out") == 0 && symlink(absolute, "root/absolute") == 0 &&
+    bool linked = symlink("../secret", "root/out") == 0 &&
+                  symlink(absolute, "root/absolute") == 0 &&
                   symlink("../beyond", "root/folder") == 0 &&
                   symlink("/proc/self/cwd", "root/magic") == 0 &&
                   symlink("../file", "root/deep/in") == 0;
@@ -83,10 +84,20 @@ static Opener *const openers[] = {open_beneath, open_beneath_by_steps};
 static void nothing_outside_is_opened(void **state)
 {
     (void)state;
-    static const char *const paths[] = {
-        "../secret", "/etc/passwd", "deep/../../secret", "deep/../../root/file", "out", "absolute",
-        "folder/secret", "magic/secret", "magic/root/file", "../missing", "..", "./../secret",
-        "deep/../../../../../../../../etc/passwd", "deep//..//..//secret"};
+    static const char *const paths[] = {"../secret",
+                                        "/etc/passwd",
+                                        "deep/../../secret",
+                                        "deep/../../root/file",
+                                        "out",
+                                        "absolute",
+                                        "folder/secret",
+                                        "magic/secret",
+                                        "magic/root/file",
+                                        "../missing",
+                                        "..",
+                                        "./../secret",
+                                        "deep/../../../../../../../../etc/passwd",
+                                        "deep//..//..//secret"};
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
         for (int k = 0; k < 2; k++) {
             assert_int_equal(first_of(openers[k], paths[i]), 0);
@@ -100,8 +111,8 @@ static void what_is_inside_is_opened(void **state)
     static const struct {
         const char *path;
         char        first;
-    } files[] = {{"file", 'f'}, {"./file", 'f'}, {"deep/file", 'd'}, {"deep/../file", 'f'},
-                 {"deep//file", 'd'}, {"deep/./../deep/file", 'd'}};
+    } files[] = {{"file", 'f'},         {"./file", 'f'},     {"deep/file", 'd'},
+                 {"deep/../file", 'f'}, {"deep//file", 'd'}, {"deep/./../deep/file", 'd'}};
     for (size_t i = 0; i < sizeof files / sizeof *files; i++)
         for (int k = 0; k < 2; k++)
             assert_int_equal(first_of(openers[k], files[i].path), files[i].first);
@@ -127,7 +138,8 @@ typedef struct Asked {
 static const char *supply(void *user, const char *path, size_t *length)
 {
     Asked      *asked = user;
-    const char *text  = strcmp(path, "scenes/size.krs") == 0     ? "let size = half * 2;\nuse \"a/b.krs\";"
+    const char *text  = strcmp(path, "scenes/size.krs") == 0
+                            ? "let size = half * 2;\nuse \"a/b.krs\";"
                         : strcmp(path, "scenes/a/b.krs") == 0 ? "let half = 0.75;"
                                                               : NULL;
     snprintf(asked->paths[asked->count++ % 8], 64, "%s", path);
@@ -153,12 +165,13 @@ static KrsStatus compile(const char *text, const char *name, KrsOptions options,
 static void a_caller_supplies_what_is_used(void **state)
 {
     (void)state;
-    Asked        asked   = {.count = 0};
-    KrsOptions   options = {.load = supply, .load_user = &asked, .diagnostic = note, .user = &asked};
-    KrsScene    *scene;
+    Asked      asked   = {.count = 0};
+    KrsOptions options = {.load = supply, .load_user = &asked, .diagnostic = note, .user = &asked};
+    KrsScene  *scene;
     KrsComponent ball;
-    assert_int_equal(compile("use \"size.krs\"; show sphere(size);", "scenes/main.krs", options,
-                             &scene), KRS_OK);
+    assert_int_equal(
+        compile("use \"size.krs\"; show sphere(size);", "scenes/main.krs", options, &scene),
+        KRS_OK);
     assert_int_equal(krs_component(scene, 0, &ball), KRS_OK);
     assert_true(ball.high[0] == 1.5);
     krs_scene_free(scene);
@@ -179,9 +192,9 @@ static void a_caller_supplies_what_is_used(void **state)
 static void a_library_is_confined(void **state)
 {
     (void)state;
-    Asked       asked = {.count = 0};
-    KrsScene   *scene;
-    KrsOptions  options = {.root = "root", .diagnostic = note, .user = &asked};
+    Asked      asked = {.count = 0};
+    KrsScene  *scene;
+    KrsOptions options = {.root = "root", .diagnostic = note, .user = &asked};
     put("root/size.krs", "let size = 1;");
     put("size.krs", "let size = 2;");
     static const char inner[] = "use \"size.krs\"; show sphere(size);";

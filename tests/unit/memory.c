@@ -30,15 +30,15 @@ static KrsStatus use_scene(const char *text, Scarce *scarce)
 {
     KrsOptions options = {.allocator = scarce_allocator(scarce)};
     KrsScene  *scene;
-    KrsFrame  *frame = NULL;
+    KrsFrame  *frame  = NULL;
     KrsStatus  status = krs_compile_text(text, strlen(text), "scene.krs", &options, &scene);
     if (status == KRS_OK)
         status = krs_frame_new(scene, &frame);
     if (status == KRS_OK) {
         double point[1][3] = {{1, 2, 3}}, distance;
         KrsHit hit;
-        krs_distance(frame, (const double (*)[3])point, 1, &distance);
-        krs_probe(frame, (const double (*)[3])point, 1, &hit);
+        krs_distance(frame, (const double(*)[3])point, 1, &distance);
+        krs_probe(frame, (const double(*)[3])point, 1, &hit);
     }
     krs_frame_free(frame);
     krs_scene_free(scene);
@@ -79,10 +79,9 @@ static void all_later_allocations_fail(void **state)
 static void the_limit_holds(void **state)
 {
     (void)state;
-    Scarce     scarce  = {0};
-    KrsOptions options = {.allocator    = scarce_allocator(&scarce),
-                          .memory_limit = 1 << 20};
-    const char *text   = "let a = [[i, i + 1, i + 2] for i in 0..900000]; show sphere(1);";
+    Scarce      scarce  = {0};
+    KrsOptions  options = {.allocator = scarce_allocator(&scarce), .memory_limit = 1 << 20};
+    const char *text    = "let a = [[i, i + 1, i + 2] for i in 0..900000]; show sphere(1);";
     KrsScene   *scene;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", &options, &scene),
                      KRS_OUT_OF_MEMORY);

@@ -41,42 +41,56 @@ typedef struct Scene {
 
 enum { LANDSCAPE, PART, CLOUD, GRID, INSIDE, CORAL, LATTICE, SCENES };
 static Scene scenes[SCENES] = {
-    [LANDSCAPE] = {.name = "sphere and plane", .fov = 0.7, .text =
-        "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
-        "show sphere(1).move([0, 1, 0]); show plane([0, 1, 0], 0);"},
-    [PART] = {.name = "blends", .fov = 0.6, .text =
-        "camera { eye: [3, 2, 3], fov: 0.6 }"
-        "show difference(union([box([1.6, 1, 1.2]), cylinder(0.5, 1.8)], blend: 0.2),"
-        "                sphere(0.6).move([0.6, 0.5, 0.5]), blend: 0.1);"
-        "show union([torus(1.2, 0.1), sphere(0.3).move([1, 0.2, 0])], blend: 0.2, kind: \"cubic\")"
-        "    .move([0, -0.7, 0]);"},
-    [CLOUD] = {.name = "12 mirrors", .fov = 0.6, .text =
-        "camera { eye: [2, 6, 22], fov: 0.6 }"
-        "show krs { kernel sphere(0.45);"
-        "    for i in 0..12 { reflect plane(random_direction(i), 0.4 + 0.22 * i); } };"},
-    [GRID] = {.name = "grid of tori", .fov = 0.6, .text =
-        "camera { eye: [3, 4, 7], fov: 0.6 }"
-        "show torus(0.5, 0.15).repeat([1.4, 0.9, 1.4], [5, 3, 5]);"},
-    [INSIDE] = {.name = "from inside", .fov = 1.2, .text =
-        "camera { eye: [0.1, 0.2, 0.3], target: [1, 0.4, 0.2], fov: 1.2 }"
-        "show box([4, 3, 5]) - sphere(0.8).move([1.5, 0, 0.2])"
-        "                   - cylinder(0.2, 9).move([1, 0, 1]);"},
-    [CORAL] = {.name = "coral", .fov = 0.6, .text =
-        "camera { eye: [0.3, 0.8, 1.5], target: [0.05, 0.5, 0], fov: 0.6 }"
-        "show krs { kernel sphere(0.2);"
-        "    for i in 0..5 {"
-        "        mobius translate([0, 0.42, 0]) * rotate([0, 1, 0], -1.2) * rotate([1, 0, 0], 0.5);"
-        "        mobius reflect(plane([0, 1, 0], 0)) * invert(center: [0, -2, 0], radius: 2);"
-        "        reflect plane([1, 0, 0], 0);"
-        "        kernel capsule([0, 0, 0], [0, 0.42, 0], radius: 0.085); } };"
-        "show sphere(0.25).move([0.5, 0.3, 0.3]);"},
+    [LANDSCAPE] = {.name = "sphere and plane",
+                   .fov  = 0.7,
+                   .text = "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 0.7 }"
+                           "show sphere(1).move([0, 1, 0]); show plane([0, 1, 0], 0);"},
+    [PART]      = {.name = "blends",
+                   .fov  = 0.6,
+                   .text = "camera { eye: [3, 2, 3], fov: 0.6 }"
+                                "show difference(union([box([1.6, 1, 1.2]), cylinder(0.5, 1.8)], blend: 0.2),"
+                                "                sphere(0.6).move([0.6, 0.5, 0.5]), blend: 0.1);"
+                                "show union([torus(1.2, 0.1), sphere(0.3).move([1, 0.2, 0])], blend: 0.2, "
+                                "kind: \"cubic\")"
+                                "    .move([0, -0.7, 0]);"},
+    [CLOUD]     = {.name = "12 mirrors",
+                   .fov  = 0.6,
+                   .text =
+                       "camera { eye: [2, 6, 22], fov: 0.6 }"
+                           "show krs { kernel sphere(0.45);"
+                           "    for i in 0..12 { reflect plane(random_direction(i), 0.4 + 0.22 * i); } };"},
+    [GRID]      = {.name = "grid of tori",
+                   .fov  = 0.6,
+                   .text = "camera { eye: [3, 4, 7], fov: 0.6 }"
+                                "show torus(0.5, 0.15).repeat([1.4, 0.9, 1.4], [5, 3, 5]);"},
+    [INSIDE]    = {.name = "from inside",
+                   .fov  = 1.2,
+                   .text = "camera { eye: [0.1, 0.2, 0.3], target: [1, 0.4, 0.2], fov: 1.2 }"
+                              "show box([4, 3, 5]) - sphere(0.8).move([1.5, 0, 0.2])"
+                              "                   - cylinder(0.2, 9).move([1, 0, 1]);"},
+    [CORAL] =
+        {.name = "coral",
+         .fov  = 0.6,
+         .text =
+             "camera { eye: [0.3, 0.8, 1.5], target: [0.05, 0.5, 0], fov: 0.6 }"
+             "show krs { kernel sphere(0.2);"
+             "    for i in 0..5 {"
+             "        mobius translate([0, 0.42, 0]) * rotate([0, 1, 0], -1.2) * rotate([1, 0, 0], "
+             "0.5);"
+             "        mobius reflect(plane([0, 1, 0], 0)) * invert(center: [0, -2, 0], radius: 2);"
+             "        reflect plane([1, 0, 0], 0);"
+             "        kernel capsule([0, 0, 0], [0, 0.42, 0], radius: 0.085); } };"
+             "show sphere(0.25).move([0.5, 0.3, 0.3]);"},
     /* The pole is in the middle of the picture. */
-    [LATTICE] = {.name = "lattice in a sphere", .fov = 0.6, .text =
-        "camera { eye: [0.2, 0.3, 3], fov: 0.6 }"
-        "show krs { kernel sphere(0.35); kernel box([1, 0.3, 0.3]);"
-        "    for i in 0..2 { reflect plane([1, 0, 0], 2 ^ i - 0.5);"
-        "        reflect plane([0, 1, 0], 2 ^ i - 0.5); reflect plane([0, 0, 1], 2 ^ i - 0.5); }"
-        "    mobius scale(1.2) * invert(radius: 1) * translate([-1.5, -1.5, 0.7]); };"},
+    [LATTICE] =
+        {.name = "lattice in a sphere",
+         .fov  = 0.6,
+         .text = "camera { eye: [0.2, 0.3, 3], fov: 0.6 }"
+                 "show krs { kernel sphere(0.35); kernel box([1, 0.3, 0.3]);"
+                 "    for i in 0..2 { reflect plane([1, 0, 0], 2 ^ i - 0.5);"
+                 "        reflect plane([0, 1, 0], 2 ^ i - 0.5); reflect plane([0, 0, 1], 2 ^ i - "
+                 "0.5); }"
+                 "    mobius scale(1.2) * invert(radius: 1) * translate([-1.5, -1.5, 0.7]); };"},
 };
 
 /* Methods that are plain steps where nothing is for them need not be tried on every scene. */
@@ -118,9 +132,9 @@ static void close_scene(Scene *scene)
 static int open_scenes(void **state)
 {
     (void)state;
-    KrsRendererOptions options = {.device = tested_device(), .validation = true,
-                                  .complaint = note_complaint};
-    KrsStatus          status = krs_renderer_new(&options, &renderer);
+    KrsRendererOptions options = {
+        .device = tested_device(), .validation = true, .complaint = note_complaint};
+    KrsStatus status = krs_renderer_new(&options, &renderer);
     for (int i = 0; i < SCENES && status == KRS_OK; i++)
         status = open_scene(&scenes[i]);
     if (status != KRS_OK && renderer)
@@ -152,7 +166,7 @@ static KrsPicture *render(const Scene *scene, KrsRenderOptions options)
 {
     KrsPicture *picture;
     if (options.width == 0) {
-        options.width = WIDTH;
+        options.width  = WIDTH;
         options.height = HEIGHT;
     }
     if (krs_render(scene->rendering, scene->frame, &options, &picture) != KRS_OK)
@@ -192,7 +206,7 @@ static const char *plane_row(const KrsPicture *picture, const struct Plane *plan
 static bool is_part_of(const Scene *scene, const KrsPicture *whole, KrsPicture *part,
                        const char *what)
 {
-    const KrsWindow w = part->window;
+    const KrsWindow w    = part->window;
     size_t          rows = 0;
     const char     *name = NULL;
     for (size_t i = 0; i < sizeof planes / sizeof planes[0]; i++)
@@ -261,8 +275,8 @@ static double apart(const Scene *scene, const KrsPicture *a, const KrsPicture *b
 /* Compares with the fine picture; what differs must be on outlines, and little. */
 static bool agrees(const Scene *scene, const KrsPicture *fine, KrsRenderOptions options)
 {
-    KrsPicture *picture = render(scene, options);
-    double      most = DEFAULT_ERROR + FINE_ERROR;
+    KrsPicture *picture  = render(scene, options);
+    double      most     = DEFAULT_ERROR + FINE_ERROR;
     int         outlines = 0, plain = 0, surface = 0;
     for (int k = 0; k < PIXELS; k++) {
         surface += fine->component[k] != 0;
@@ -285,12 +299,13 @@ static void methods_agree(void **state)
     (void)state;
     size_t wrong = 0;
     for (const Scene *scene = scenes; scene < scenes + SCENES; scene++) {
-        KrsPicture *fine = render(scene, (KrsRenderOptions){
-            .trace = KRS_TRACE_PLAIN, .no_beams = true, .error = FINE_ERROR});
+        KrsPicture *fine = render(
+            scene,
+            (KrsRenderOptions){.trace = KRS_TRACE_PLAIN, .no_beams = true, .error = FINE_ERROR});
         for (KrsTrace trace = 0; trace < KRS_TRACE_COUNT; trace++)
             for (int beams = 0; beams < 2 && !is_spared(scene, trace); beams++)
-                wrong += !agrees(scene, fine, (KrsRenderOptions){
-                    .trace = trace, .no_beams = !beams});
+                wrong += !agrees(scene, fine,
+                                 (KrsRenderOptions){.trace = trace, .no_beams = !beams});
         krs_picture_free(fine);
     }
     assert_int_equal(wrong, 0);
@@ -300,8 +315,8 @@ static void methods_agree(void **state)
 static void half_a_pixel_is_found(void **state)
 {
     (void)state;
-    const Scene *scene = &scenes[GRID];
-    KrsPicture  *fine = render(scene, (KrsRenderOptions){.error = FINE_ERROR});
+    const Scene *scene  = &scenes[GRID];
+    KrsPicture  *fine   = render(scene, (KrsRenderOptions){.error = FINE_ERROR});
     KrsPicture  *nearer = render(scene, (KrsRenderOptions){.error = FINE_ERROR});
     int          differ = 0;
     for (int k = 0; k < PIXELS; k++) /* as a coarse stop would leave it */
@@ -324,11 +339,13 @@ static void schedules_are_not_seen(void **state)
             if (is_spared(scene, way / 2))
                 continue;
             /* Automatic relaxation with several rays a pixel, too. */
-            KrsRenderOptions options = {
-                .width = SMALL_WIDTH, .height = SMALL_HEIGHT, .trace = way / 2,
-                .no_beams = way % 2, .samples = way / 2 == KRS_TRACE_AUTO ? 4 : 1,
-                .schedule = KRS_SCHEDULE_PIXEL};
-            KrsPicture *whole = render(scene, options);
+            KrsRenderOptions options = {.width    = SMALL_WIDTH,
+                                        .height   = SMALL_HEIGHT,
+                                        .trace    = way / 2,
+                                        .no_beams = way % 2,
+                                        .samples  = way / 2 == KRS_TRACE_AUTO ? 4 : 1,
+                                        .schedule = KRS_SCHEDULE_PIXEL};
+            KrsPicture      *whole   = render(scene, options);
             /* The default is one of the others, and one that is repeated is the same: once each. */
             KrsSchedule first = way == 0 ? KRS_SCHEDULE_DEFAULT : KRS_SCHEDULE_REFILL;
             for (KrsSchedule i = first; i < KRS_SCHEDULE_COUNT; i++) {
@@ -349,7 +366,7 @@ static void crops_are_not_seen(void **state)
     for (const Scene *scene = scenes; scene < scenes + SCENES; scene++)
         for (KrsSchedule schedule = 1; schedule < KRS_SCHEDULE_COUNT; schedule++) {
             KrsRenderOptions options = {.schedule = schedule, .samples = 4};
-            KrsPicture      *whole = render(scene, options);
+            KrsPicture      *whole   = render(scene, options);
             for (size_t i = 0; i < sizeof crops / sizeof crops[0]; i++) {
                 options.crop = crops[i];
                 wrong += !is_part_of(scene, whole, render(scene, options), words(&options));
@@ -370,13 +387,13 @@ static void slices_are_not_seen(void **state)
     size_t wrong = 0;
     for (const Scene *scene = scenes; scene < scenes + SCENES; scene++)
         for (KrsSchedule schedule = 1; schedule < KRS_SCHEDULE_COUNT; schedule++) {
-            KrsRenderOptions options = {.width = SMALL_WIDTH, .height = SMALL_HEIGHT,
-                                        .schedule = schedule, .samples = 2};
-            KrsPicture      *whole = render(scene, options);
+            KrsRenderOptions options = {
+                .width = SMALL_WIDTH, .height = SMALL_HEIGHT, .schedule = schedule, .samples = 2};
+            KrsPicture *whole = render(scene, options);
             for (size_t i = 0; i < sizeof slices / sizeof slices[0]; i++) {
                 options.steps_at_once = slices[i].steps_at_once;
-                options.slice_ms = slices[i].slice_ms;
-                options.crop = slices[i].crop;
+                options.slice_ms      = slices[i].slice_ms;
+                options.crop          = slices[i].crop;
                 wrong += !is_part_of(scene, whole, render(scene, options), words(&options));
             }
             krs_picture_free(whole);
@@ -392,8 +409,8 @@ static void the_shortest_slices_are_not_seen(void **state)
     size_t       wrong = 0;
     for (KrsSchedule schedule = 1; schedule < KRS_SCHEDULE_COUNT; schedule++) {
         KrsRenderOptions options = {.schedule = schedule, .steps_at_once = 3, .slice_ms = 1e-3};
-        KrsPicture      *whole = render(scene, (KrsRenderOptions){.schedule = schedule});
-        options.crop = (KrsWindow){30, 20, 100, 60};
+        KrsPicture      *whole   = render(scene, (KrsRenderOptions){.schedule = schedule});
+        options.crop             = (KrsWindow){30, 20, 100, 60};
         wrong += !is_part_of(scene, whole, render(scene, options), words(&options));
         krs_picture_free(whole);
     }
@@ -410,7 +427,7 @@ static void bands_are_not_seen(void **state)
     size_t       wrong = 0;
     for (KrsSchedule schedule = 1; schedule < KRS_SCHEDULE_COUNT; schedule++) {
         KrsRenderOptions options = {.width = 1000, .height = 600, .schedule = schedule};
-        KrsPicture      *whole = render(scene, options);
+        KrsPicture      *whole   = render(scene, options);
         for (size_t i = 0; i < sizeof crops / sizeof crops[0]; i++) {
             options.crop = crops[i];
             wrong += !is_part_of(scene, whole, render(scene, options), words(&options));
@@ -425,13 +442,13 @@ static void bands_are_not_seen(void **state)
 static void loops_within_distances_count(void **state)
 {
     (void)state;
-    Scene scene = {.name = "64 iterations", .text =
-        "camera { eye: [0, 0, -6], projection: \"orthographic\", height: 2.6 }"
-        "show julia(c: [-0.083, 0, -0.83, -0.025], power: 2, iterations: 64);"};
+    Scene scene = {.name = "64 iterations",
+                   .text = "camera { eye: [0, 0, -6], projection: \"orthographic\", height: 2.6 }"
+                           "show julia(c: [-0.083, 0, -0.83, -0.025], power: 2, iterations: 64);"};
     assert_int_equal(open_scene(&scene), KRS_OK);
     KrsRenderOptions options = {.width = 240, .height = 136, .schedule = KRS_SCHEDULE_PIXEL};
-    KrsPicture      *whole = render(&scene, options);
-    options.schedule = KRS_SCHEDULE_REFILL;
+    KrsPicture      *whole   = render(&scene, options);
+    options.schedule         = KRS_SCHEDULE_REFILL;
     assert_true(is_part_of(&scene, whole, render(&scene, options), words(&options)));
     krs_picture_free(whole);
     close_scene(&scene);
@@ -443,8 +460,8 @@ static void a_flipped_bit_is_found(void **state)
     (void)state;
     const Scene *scene = &scenes[GRID];
     KrsPicture  *whole = render(scene, (KrsRenderOptions){0});
-    KrsWindow    crop = {40, 30, 20, 20};
-    KrsPicture  *part = render(scene, (KrsRenderOptions){.crop = crop});
+    KrsWindow    crop  = {40, 30, 20, 20};
+    KrsPicture  *part  = render(scene, (KrsRenderOptions){.crop = crop});
     part->steps[20 * 20 - 1] ^= 1;
     assert_false(is_part_of(scene, whole, part, "a planted fault"));
     krs_picture_free(whole);
@@ -482,15 +499,17 @@ static void rays_that_run_out_show_nothing(void **state)
         for (unsigned way = 0; way < 2 * KRS_TRACE_COUNT; way++) {
             if (is_spared(scene, way / 2))
                 continue;
-            KrsRenderOptions options = {
-                .width = SMALL_WIDTH, .height = SMALL_HEIGHT, .trace = way / 2,
-                .no_beams = way % 2, .schedule = KRS_SCHEDULE_PIXEL};
-            KrsPicture *full = render(scene, options);
-            options.most_steps = FEW_STEPS;
-            KrsPicture *whole = render(scene, options);
+            KrsRenderOptions options = {.width    = SMALL_WIDTH,
+                                        .height   = SMALL_HEIGHT,
+                                        .trace    = way / 2,
+                                        .no_beams = way % 2,
+                                        .schedule = KRS_SCHEDULE_PIXEL};
+            KrsPicture      *full    = render(scene, options);
+            options.most_steps       = FEW_STEPS;
+            KrsPicture *whole        = render(scene, options);
             wrong += !ends_are_hits(scene, full, whole, words(&options));
             for (KrsSchedule i = KRS_SCHEDULE_REFILL; i < KRS_SCHEDULE_COUNT; i++) {
-                options.schedule = i;
+                options.schedule    = i;
                 KrsPicture *picture = render(scene, options);
                 wrong += picture->stats.unresolved != whole->stats.unresolved;
                 wrong += !is_part_of(scene, whole, picture, words(&options));
@@ -516,12 +535,14 @@ static void rays_with_early_outs_that_run_out_show_nothing(void **state)
             continue; /* nothing in them is left out */
         assert_int_equal(krs_rendering_new(early, scene.scene, &scene.rendering), KRS_OK);
         for (int k = 0; k < 2 * KRS_COMPONENTS_COUNT; k++) {
-            KrsRenderOptions rendering = {.width = SMALL_WIDTH, .height = SMALL_HEIGHT,
-                                          .no_beams = k % 2, .components = k / 2,
-                                          .schedule = KRS_SCHEDULE_PIXEL};
-            KrsPicture      *full = render(&scene, rendering);
-            rendering.most_steps  = FEW_STEPS;
-            KrsPicture *picture   = render(&scene, rendering);
+            KrsRenderOptions rendering = {.width      = SMALL_WIDTH,
+                                          .height     = SMALL_HEIGHT,
+                                          .no_beams   = k % 2,
+                                          .components = k / 2,
+                                          .schedule   = KRS_SCHEDULE_PIXEL};
+            KrsPicture      *full      = render(&scene, rendering);
+            rendering.most_steps       = FEW_STEPS;
+            KrsPicture *picture        = render(&scene, rendering);
             wrong += !ends_are_hits(&scene, full, picture, words(&rendering));
             krs_picture_free(picture);
             krs_picture_free(full);

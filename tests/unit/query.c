@@ -125,7 +125,7 @@ static void zones_cut_distances(void **context)
                                  "for c in [[0.2, 0.8, 0.4, 0.45], [-0.3, -0.2, 0.9, 0.6]] {"
                                  "    zone { center: [c[0], c[1], c[2]], radius: c[3] } }"
                                  "show sphere(1);");
-    Scene by_caller = scene_of("show sphere(1);");
+    Scene by_caller   = scene_of("show sphere(1);");
     assert_int_equal(krs_frame_set_zones(by_caller.frame, ZONES, 3), KRS_OK);
     for (int i = 0; i < 2000; i++) {
         double point[1][3], a, b;
@@ -186,7 +186,7 @@ static void zones_cut_rays(void **context)
 static void a_cut_shows_what_it_goes_through(void **context)
 {
     (void)context;
-    Scene  s = scene_of("show plane([0, 1, 0], -5); show sphere(1).paint(#ff0000);");
+    Scene  s          = scene_of("show plane([0, 1, 0], -5); show sphere(1).paint(#ff0000);");
     double zone[1][4] = {{0, 0, 2, 1.25}}, origin[3] = {0.3, 0.2, 9}, direction[3] = {0, 0, -1};
     KrsHit before = cast(s.frame, origin, direction, 100, 0);
     assert_int_equal(krs_frame_set_zones(s.frame, (const double(*)[4])zone, 1), KRS_OK);
@@ -209,8 +209,8 @@ static void a_cut_shows_what_it_goes_through(void **context)
 static void cuts_are_lit_by_their_own_normal(void **context)
 {
     (void)context;
-    Scene  s = scene_of("show krs { kernel sphere(1).move([-0.8, 0, 0]);"
-                        "    reflect plane([1, 0, 0], 0); }.smooth_mirrors(1);");
+    Scene  s          = scene_of("show krs { kernel sphere(1).move([-0.8, 0, 0]);"
+                                           "    reflect plane([1, 0, 0], 0); }.smooth_mirrors(1);");
     double zone[1][4] = {{0.2, 0, 1, 0.7}}, point[2][3] = {{0.2, 0, 0.3}, {0.2, 0, 0.8}};
     KrsHit cut, smooth;
     assert_int_equal(krs_probe(s.frame, (const double(*)[3])point + 1, 1, &smooth), KRS_OK);
@@ -247,9 +247,9 @@ static void zones_are_differences(void **context)
 static void bad_zones_change_nothing(void **context)
 {
     (void)context;
-    Scene        s = scene_of("show sphere(1);");
-    const double bad[][4] = {{0, 0, 0, -1},   {NAN, 0, 0, 1}, {0, INFINITY, 0, 1},
-                             {0, 0, 0, NAN},  {0, 0, 1e19, 1}, {0, 0, 0, INFINITY}};
+    Scene        s        = scene_of("show sphere(1);");
+    const double bad[][4] = {{0, 0, 0, -1},  {NAN, 0, 0, 1},  {0, INFINITY, 0, 1},
+                             {0, 0, 0, NAN}, {0, 0, 1e19, 1}, {0, 0, 0, INFINITY}};
     double       many[KRS_MOST_ZONES + 1][4] = {{0}}, point[1][3] = {{0.9, 0.1, 0}}, distance;
     assert_int_equal(krs_frame_set_zones(s.frame, ZONES, 1), KRS_OK);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
@@ -302,7 +302,7 @@ static void arrays_are_answered_in_order(void **context)
 static void an_empty_scene_is_far_from_everything(void **context)
 {
     (void)context;
-    Scene  s = scene_of("camera { eye: [0, 0, 5] }");
+    Scene  s           = scene_of("camera { eye: [0, 0, 5] }");
     double point[1][3] = {{1, 2, 3}}, distance, origin[3] = {0, 0, 5}, direction[3] = {0, 0, -1};
     KrsHit hit;
     assert_int_equal(krs_distance(s.frame, (const double(*)[3])point, 1, &distance), KRS_OK);
@@ -317,9 +317,9 @@ static void an_empty_scene_is_far_from_everything(void **context)
 static void wrong_arguments_are_refused(void **context)
 {
     (void)context;
-    Scene        s = scene_of("show sphere(1);");
-    const double good[2][3] = {{0, 0, 5}, {0, 0, -1}};
-    const double wrong[][3] = {{NAN, 0, 0}, {0, INFINITY, 0}, {0, 0, -INFINITY}};
+    Scene        s            = scene_of("show sphere(1);");
+    const double good[2][3]   = {{0, 0, 5}, {0, 0, -1}};
+    const double wrong[][3]   = {{NAN, 0, 0}, {0, INFINITY, 0}, {0, 0, -INFINITY}};
     const double origin[1][3] = {{0, 0, 5}}, still[1][3] = {{0, 0, 0}};
     double       distances[2] = {7, 7}, normals[2][3] = {{7}};
     KrsHit       hits[2] = {{.t = 7}, {.t = 7}};
@@ -352,17 +352,19 @@ static void wrong_arguments_are_refused(void **context)
 static void rays_start_anywhere(void **context)
 {
     (void)context;
-    Scene        s = scene_of("show sphere(1);");
+    Scene        s        = scene_of("show sphere(1);");
     const double along[3] = {0, 0, -3};
-    const struct { double z, farthest, t; } rays[] = {
-        {5, 100, 4},   {0, 100, 1},    {0.25, 100, 1.25},      /* inside: the inner wall */
-        {1, 100, 0},   {-1, 100, 0},                           /* on the surface */
-        {-5, 100, -1}, {5, 3.9, -1},   {5, 4.1, 4},            /* away; too far */
+    const struct {
+        double z, farthest, t;
+    } rays[] = {
+        {5, 100, 4},      {0, 100, 1},        {0.25, 100, 1.25}, /* inside: the inner wall */
+        {1, 100, 0},      {-1, 100, 0},                          /* on the surface */
+        {-5, 100, -1},    {5, 3.9, -1},       {5, 4.1, 4},       /* away; too far */
         {5, INFINITY, 4}, {-5, INFINITY, -1}, {1e6, 1e9, 999999}, {5, 0, -1}, {0, 0.5, -1},
     };
     for (size_t i = 0; i < sizeof rays / sizeof *rays; i++) {
         double origin[3] = {0, 0, rays[i].z};
-        KrsHit hit = cast(s.frame, origin, along, rays[i].farthest, 0);
+        KrsHit hit       = cast(s.frame, origin, along, rays[i].farthest, 0);
         assert_false(hit.unresolved);
         assert_int_equal(hit.hit, rays[i].t >= 0);
         if (hit.hit)
@@ -380,7 +382,7 @@ static void thin_things_keep_their_width(void **context)
 {
     (void)context;
     Scene  wire = scene_of("show capsule([-5, 0, 0], [5, 0, 0], 0.001);"
-                           "show sphere(1).move([0, 5, 0]);"); /* widens the box */
+                            "show sphere(1).move([0, 5, 0]);"); /* widens the box */
     size_t hits = 0;
     for (int i = 0; i < 1000; i++) {
         double origin[3] = {uniform(-4, 4), 0.01 * (i + 0.5) / 1000, 3}, down[3] = {0, 0, -1};
@@ -411,7 +413,7 @@ static void thin_things_keep_their_width(void **context)
 static void rays_that_run_out_are_told(void **context)
 {
     (void)context;
-    Scene  s = scene_of("show plane([0, 1, 0], 0); show sphere(1).move([1e8, 0, 0]);");
+    Scene  s       = scene_of("show plane([0, 1, 0], 0); show sphere(1).move([1e8, 0, 0]);");
     double near[3] = {0, 1e-4, 0}, high[3] = {0, 5, 0}, along[3] = {1, 0, 0};
     KrsHit hit = cast(s.frame, near, along, 1e9, 0);
     assert_true(hit.unresolved);
@@ -423,10 +425,10 @@ static void rays_that_run_out_are_told(void **context)
     hit = cast(s.frame, near, along, 10, 0); /* resolved where it need not go so far */
     assert_false(hit.hit || hit.unresolved);
     double down[3] = {1, -1e-3, 0};
-    hit = cast(s.frame, high, down, INFINITY, 0);
+    hit            = cast(s.frame, high, down, INFINITY, 0);
     assert_true(hit.hit && fabs(hit.t - 5e3 * length3(down)) < 1e-4);
     double up[3] = {1, 1e-3, 0.5};
-    hit = cast(s.frame, high, up, INFINITY, 0);
+    hit          = cast(s.frame, high, up, INFINITY, 0);
     assert_false(hit.hit || hit.unresolved);
     scene_close(s);
 }
@@ -459,7 +461,7 @@ static void seams_do_not_end_rays(void **context)
         }
         scene_close(s);
     }
-    Scene  s = scene_of("show box([1, 1, 1]); show box([1, 1, 1]).move([1.000001, 0, 0]);");
+    Scene  s         = scene_of("show box([1, 1, 1]); show box([1, 1, 1]).move([1.000001, 0, 0]);");
     double origin[3] = {-0.3, 0.1, 0.2}, along[3] = {1, 0, 0};
     KrsHit hit = cast(s.frame, origin, along, 100, 0);
     assert_true(hit.hit && fabs(hit.t - 0.8) < 1e-9);

@@ -36,7 +36,7 @@ static const Box around_ball = {{{-1, 1}, {-1, 1}, {-1, 1}}};
 static Node ball(Bench *b)
 {
     Node point = graph_leaf(b->graph, OP_POINT), one = graph_number(b->graph, 1);
-    Node away  = graph_op1(b->graph, OP_length, point);
+    Node away = graph_op1(b->graph, OP_length, point);
     return graph_op2(b->graph, OP_sub, away, one);
 }
 
@@ -44,7 +44,7 @@ static Node ball(Bench *b)
 static Node from_spot(Bench *b)
 {
     Node point = graph_leaf(b->graph, OP_POINT), spot = graph_vec3(b->graph, 0.36, 0.48, 0.82);
-    Node away  = graph_op2(b->graph, OP_sub, point, spot);
+    Node away = graph_op2(b->graph, OP_sub, point, spot);
     return graph_op1(b->graph, OP_length, away);
 }
 
@@ -87,9 +87,9 @@ static void a_small_jump_is_found(void **state)
 {
     Bench *b     = *state;
     Node   small = graph_number(b->graph, 0.004), high = graph_number(b->graph, 0.5);
-    Node   near  = graph_op2(b->graph, OP_less, from_spot(b), small);
-    Node   jump  = graph_op3(b->graph, OP_select, near, high, ball(b));
-    Search s     = search(b, jump, around_ball, true, 2000000);
+    Node   near = graph_op2(b->graph, OP_less, from_spot(b), small);
+    Node   jump = graph_op3(b->graph, OP_select, near, high, ball(b));
+    Search s    = search(b, jump, around_ball, true, 2000000);
     assert_true(search_refuted(&s));
     assert_true(s.worst.ratio > 1000);
     double off = hypot(hypot(s.worst.p[0] - 0.36, s.worst.p[1] - 0.48), s.worst.p[2] - 0.82);
@@ -125,8 +125,8 @@ static void what_is_not_a_number_is_found(void **state)
     Node   room = graph_op2(b->graph, OP_sub, from_spot(b), graph_number(b->graph, 0.001));
     Node   root = graph_op1(b->graph, OP_sqrt, room); /* of what is negative in a small ball */
     Node   bad  = graph_op2(b->graph, OP_min, ball(b), root);
-    bad         = graph_op2(b->graph, OP_add, bad, graph_op2(b->graph, OP_mul, root,
-                                                             graph_number(b->graph, 1e-9)));
+    bad         = graph_op2(b->graph, OP_add, bad,
+                            graph_op2(b->graph, OP_mul, root, graph_number(b->graph, 1e-9)));
     Search s    = search(b, bad, around_ball, true, 2000000);
     assert_true(search_refuted(&s));
     assert_int_equal(s.worst.fault, FAULT_NAN);
@@ -159,7 +159,7 @@ static KrsStatus refute(const char *text, double seconds, Said *said, KrsRefutat
 {
     char path[] = "/tmp/krs-refute-XXXXXX";
     write_scene(path, text);
-    *said = (Said){0};
+    *said                    = (Said){0};
     KrsOptions       options = {.diagnostic = take, .user = said};
     KrsRefuteOptions how     = {.seconds = seconds, .seed = 3};
     KrsStatus        status  = krs_refute(path, &options, &how, result);
@@ -227,8 +227,8 @@ static void other_claims_are_searched(void **state)
     } claims[] = {
         {"distance: y - k, exact: true, plane: [[0, 1, 0], %s]", "show a(k) & box([3, 3, 3]);",
          "k ^ 2", "k", "`plane` of `a`"},
-        {"distance: y - k, exact: true, plane: [[0, %s, 0], 2 * k]",
-         "show sphere(1).mirror(a(k));", "2 * k", "2", "`plane` of `a`"},
+        {"distance: y - k, exact: true, plane: [[0, %s, 0], 2 * k]", "show sphere(1).mirror(a(k));",
+         "2 * k", "2", "`plane` of `a`"},
         {"distance: y - k, exact: true, plane: [[0, 1, 0], k + %s]", /* a thousandth */
          "show krs { kernel sphere(1); reflect a(k); };", "0.001 * (k - 1)", "0", "`plane` of `a`"},
         {"distance: length([x, y + %s * z]) - 1, figure: true, within: [[-9, -9, 0], [9, 9, 0]]",
@@ -242,7 +242,8 @@ static void other_claims_are_searched(void **state)
          "show a(k).scale(2).round(0.1 * k);", "sqrt(k)", "k", "`core` of `a`"},
         {"distance: 0.5 * (length(p) - k), slope: 1, within: sphere(2), bound: length(p) - %s",
          "show a(k) | sphere(0.1);", "k ^ 0.9", "k", "`bound` of `a`"},
-        {"distance: 0.5 * (length(p) - 1), slope: 1, within: sphere(2), bound: %s * (length(p) - 1)",
+        {"distance: 0.5 * (length(p) - 1), slope: 1, within: sphere(2), bound: %s * (length(p) - "
+         "1)",
          "show a(k) | sphere(0.1);", "k", "1", "the distance of `a`"},
     };
     for (size_t i = 0; i < sizeof claims / sizeof *claims; i++)
@@ -250,10 +251,13 @@ static void other_claims_are_searched(void **state)
             char          claim[300], text[700];
             Said          said;
             KrsRefutation result;
-            snprintf(claim, sizeof claim, claims[i].shape, wrong ? claims[i].wrong : claims[i].right);
-            snprintf(text, sizeof text, "param k = 1 in [0.5, 2];\n"
+            snprintf(claim, sizeof claim, claims[i].shape,
+                     wrong ? claims[i].wrong : claims[i].right);
+            snprintf(text, sizeof text,
+                     "param k = 1 in [0.5, 2];\n"
                      "shape ball(r) { distance: length(p) - r, exact: true, within: sphere(r) }\n"
-                     "shape a(k) { %s }\n%s\n", claim, claims[i].use);
+                     "shape a(k) { %s }\n%s\n",
+                     claim, claims[i].use);
             KrsStatus status = refute(text, 0.2, &said, &result);
             if (status != (wrong ? KRS_BAD_SCENE : KRS_OK))
                 print_message("%s%s\n", text, said.text);
@@ -272,10 +276,12 @@ static void claims_of_the_library_are_true(void **state)
         "param k = 1 in [0.5, 2]; show box([k, 1, 2]).round(0.1 * k); show sphere(k).round(0.3);\n"
         "show cylinder(k, 1).round(0.2); show torus(k, 0.3).round(0.1);\n"
         "show link(k, 0.5, 0.2).round(0.1);",
-        "param k = 1 in [0.5, 2]; show octahedron(k).round(0.1 * k); show tetrahedron(k).round(0.05);\n"
+        "param k = 1 in [0.5, 2]; show octahedron(k).round(0.1 * k); show "
+        "tetrahedron(k).round(0.05);\n"
         "show dodecahedron(k).round(0.1); show icosahedron(k).round(0.1);\n"
         "show prism(5, k, 2).round(0.1);",
-        "param k = 1 in [0.5, 2]; show circle(k).round(0.1).extrude(1); show ellipsoid([k, 2, 0.3]);\n"
+        "param k = 1 in [0.5, 2]; show circle(k).round(0.1).extrude(1); show ellipsoid([k, 2, "
+        "0.3]);\n"
         "show rectangle([1, k]).round(0.1).extrude(1); show regular(7, k).round(0.1).revolve(3);\n"
         "show star(5, k).extrude(1); show polygon().extrude(k); show segment().extrude(k);\n"
         "show arc(k, 100deg).extrude(1); show bezier().extrude(k);",
@@ -379,7 +385,7 @@ static void steps_are_searched_beside_distances(void **state)
     for (int aimed = 0; aimed < 2; aimed++)
         for (int wrong = 0; wrong < 2; wrong++) {
             Search s;
-            Node   side  = ball(b), of = graph_leaf(b->graph, aimed ? OP_DIRECTION : OP_POINT);
+            Node   side = ball(b), of = graph_leaf(b->graph, aimed ? OP_DIRECTION : OP_POINT);
             Node   x     = graph_component(b->graph, of, 0);
             Node   limit = graph_number(b->graph, aimed ? 0.9 : 1.1);
             Node   there = graph_op2(b->graph, OP_less, limit, x);
@@ -402,7 +408,7 @@ static void steps_are_searched_beside_distances(void **state)
 
 typedef struct Breaking Breaking;
 struct Breaking {
-    void        (*how)(const Breaking *b, Shape *shape);
+    void (*how)(const Breaking *b, Shape *shape);
     uint32_t      stage; /* of a sequence */
     double        by;    /* part of a box's size that is taken away on all sides */
     KrsRefutation result;
@@ -420,7 +426,7 @@ static KrsStatus refute_broken(const char *text, Breaking *b, Said *said)
 {
     char path[] = "/tmp/krs-refute-XXXXXX";
     write_scene(path, text);
-    *said = (Said){0};
+    *said              = (Said){0};
     KrsOptions options = {.diagnostic = take, .user = said};
     KrsStatus  status  = inspect_file(path, &options, break_and_refute, b);
     unlink(path);

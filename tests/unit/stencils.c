@@ -16,7 +16,7 @@ typedef struct Solid {
     const char *name;
     KrsNormals  normals;
     uint        corners, neighbours; /* of a corner */
-    double      edge; /* for corners on the unit sphere */
+    double      edge;                /* for corners on the unit sphere */
 } Solid;
 
 static double dot(vec3 a, vec3 b)
@@ -31,7 +31,7 @@ static void corners_are_those_of_a_solid(const Solid *solid)
         fail_msg("%s: %u taps, and %u corners", solid->name, s.taps, solid->corners);
     for (uint i = 0; i < s.taps; i++) {
         uint neighbours = 0;
-        vec3 v = s.corner(i);
+        vec3 v          = s.corner(i);
         if (fabs(dot(v, v) - 1) > 1e-6)
             fail_msg("%s: corner %u has length %g", solid->name, i, sqrt(dot(v, v)));
         for (uint k = 0; k < s.taps; k++) {
@@ -47,10 +47,10 @@ static void corners_are_those_of_a_solid(const Solid *solid)
 
 static void squares_are_isotropic(const Solid *solid)
 {
-    Stencil s = find_stencil(solid->normals);
-    double sum[3][3] = {{0}};
+    Stencil s         = find_stencil(solid->normals);
+    double  sum[3][3] = {{0}};
     for (uint i = 0; i < s.taps; i++) {
-        vec3   v = s.corner(i);
+        vec3   v    = s.corner(i);
         double c[3] = {v.x, v.y, v.z};
         for (int k = 0; k < 9; k++)
             sum[k / 3][k % 3] += c[k / 3] * c[k % 3];
@@ -65,11 +65,11 @@ static void platonic_solids(void **state)
     (void)state;
     const double golden = (1 + sqrt(5)) / 2;
     const Solid  all[]  = {
-        {"tetrahedron", KRS_NORMALS_TETRAHEDRON, 4, 3, sqrt(8.0 / 3)},
-        {"octahedron", KRS_NORMALS_OCTAHEDRON, 6, 4, sqrt(2)},
-        {"cube", KRS_NORMALS_CUBE, 8, 3, 2 / sqrt(3)},
-        {"icosahedron", KRS_NORMALS_ICOSAHEDRON, 12, 5, 2 / sqrt(1 + golden * golden)},
-        {"dodecahedron", KRS_NORMALS_DODECAHEDRON, 20, 3, 2 / (golden * sqrt(3))},
+          {"tetrahedron", KRS_NORMALS_TETRAHEDRON, 4, 3, sqrt(8.0 / 3)},
+          {"octahedron", KRS_NORMALS_OCTAHEDRON, 6, 4, sqrt(2)},
+          {"cube", KRS_NORMALS_CUBE, 8, 3, 2 / sqrt(3)},
+          {"icosahedron", KRS_NORMALS_ICOSAHEDRON, 12, 5, 2 / sqrt(1 + golden * golden)},
+          {"dodecahedron", KRS_NORMALS_DODECAHEDRON, 20, 3, 2 / (golden * sqrt(3))},
     };
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         corners_are_those_of_a_solid(&all[i]);

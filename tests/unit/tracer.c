@@ -21,8 +21,7 @@
 #include "tests/support/device.h"
 #include "tests/support/scarce.h"
 
-#define assert_near(value, expected, within)                                                    \
-    assert_true(fabs((value) - (expected)) <= (within))
+#define assert_near(value, expected, within) assert_true(fabs((value) - (expected)) <= (within))
 
 static const char scene_text[] =
     "param size = 1 in [0.1, 1.5];\n"
@@ -42,17 +41,16 @@ static const char landscape_text[] =
     "show plane([0, 1, 0], 0);\n";
 
 /* The same on a ground that has to be marched. */
-static const char terrace_text[] =
-    "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 40deg }\n"
-    "show sphere(1).move([0, 1, 0]);\n"
-    "show box([0.9, 0.9, 0.9]).move([2, 0.5, 0.2]);\n"
-    "show box([80, 1, 80]).move([0, -0.5, 0]);\n";
+static const char terrace_text[] = "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 40deg }\n"
+                                   "show sphere(1).move([0, 1, 0]);\n"
+                                   "show box([0.9, 0.9, 0.9]).move([2, 0.5, 0.2]);\n"
+                                   "show box([80, 1, 80]).move([0, -0.5, 0]);\n";
 
 enum { FIRST, FLAT, ROUND, INNER, CAMERA_COUNT };
 enum { WIDTH = 97, HEIGHT = 61 };
 
 static const double CENTRE[3] = {0.3, 0.2, -0.1};
-static const double PI = 3.14159265358979323846;
+static const double PI        = 3.14159265358979323846;
 
 /* What most tests need: a renderer with validation, and the sphere on it. */
 typedef struct Stage {
@@ -106,7 +104,7 @@ static KrsPicture *render(Stage *stage, KrsRenderOptions options)
 {
     KrsPicture *picture;
     if (options.width == 0) {
-        options.width = WIDTH;
+        options.width  = WIDTH;
         options.height = HEIGHT;
     }
     if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
@@ -126,7 +124,7 @@ static int set_up(void **state)
 /* Every test that used the stage was watched. */
 static int tear_down(void **state)
 {
-    Stage   *stage = *state;
+    Stage   *stage      = *state;
     uint64_t complaints = krs_renderer_complaints(stage->renderer);
     stage_close(stage);
     if (complaints != 0 || stage->complaints != 0)
@@ -154,9 +152,10 @@ static void a_planted_hazard_is_reported(void **state)
     static Gpu gpu;
     Stage      stage = {0};
     Buffer     from, to;
-    assert_true(gpu_open(&gpu, &(KrsRendererOptions){
-        .device = tested_device(), .validation = true, .complaint = note_complaint,
-        .user = &stage}));
+    assert_true(gpu_open(&gpu, &(KrsRendererOptions){.device     = tested_device(),
+                                                     .validation = true,
+                                                     .complaint  = note_complaint,
+                                                     .user       = &stage}));
     assert_true(buffer_create(&gpu, &from, 1024, ON_DEVICE, "source"));
     assert_true(buffer_create(&gpu, &to, 1024, SHARED, "target"));
 
@@ -292,14 +291,14 @@ static TestRay pixel_ray(const KrsCamera *camera, unsigned i, unsigned j)
             ray.origin[k] += aside * right[k] + above * up[k];
             ray.direction[k] = ray.forward[k];
         } else {
-            double level = cos(x * PI) * ray.forward[k] + sin(x * PI) * right[k];
+            double level     = cos(x * PI) * ray.forward[k] + sin(x * PI) * right[k];
             ray.direction[k] = cos(y * PI / 2) * level + sin(y * PI / 2) * up[k];
         }
     }
     unit3(ray.direction);
-    ray.base = camera->projection == KRS_ORTHOGRAPHIC ? camera->height / HEIGHT : 0;
+    ray.base  = camera->projection == KRS_ORTHOGRAPHIC ? camera->height / HEIGHT : 0;
     ray.slope = camera->projection == KRS_PERSPECTIVE ? 2 * half / HEIGHT
-              : camera->projection == KRS_PANORAMA    ? PI / HEIGHT
+                : camera->projection == KRS_PANORAMA  ? PI / HEIGHT
                                                       : 0;
     return ray;
 }
@@ -310,13 +309,13 @@ static void check_pixel(const KrsPicture *picture, size_t index, const TestRay *
     double to_centre[3];
     for (int k = 0; k < 3; k++)
         to_centre[k] = CENTRE[k] - ray->origin[k];
-    double along = dot3(to_centre, ray->direction);
-    double passes = sqrt(fmax(dot3(to_centre, to_centre) - along * along, 0));
-    bool   inside = dot3(to_centre, to_centre) < radius * radius;
+    double along      = dot3(to_centre, ray->direction);
+    double passes     = sqrt(fmax(dot3(to_centre, to_centre) - along * along, 0));
+    bool   inside     = dot3(to_centre, to_centre) < radius * radius;
     double half_chord = sqrt(fmax(radius * radius - passes * passes, 0));
-    double t = inside ? along + half_chord : along - half_chord;
-    double pixel = ray->base + ray->slope * fmax(t, 0);
-    bool   hit = isfinite(picture->depth[index]);
+    double t          = inside ? along + half_chord : along - half_chord;
+    double pixel      = ray->base + ray->slope * fmax(t, 0);
+    bool   hit        = isfinite(picture->depth[index]);
 
     if (inside || (along > 0 && passes < radius - 1e-4 * pixel))
         assert_true(hit);
@@ -335,7 +334,7 @@ static void check_pixel(const KrsPicture *picture, size_t index, const TestRay *
     double outwards[3], normal[3], away = 0;
     for (int k = 0; k < 3; k++) {
         outwards[k] = picture->position[3 * index + k] - CENTRE[k];
-        normal[k] = picture->normal[3 * index + k];
+        normal[k]   = picture->normal[3 * index + k];
     }
     away = sqrt(dot3(outwards, outwards)) - radius;
     unit3(outwards);
@@ -357,7 +356,7 @@ static void sphere_is_where_it_should_be(void **state)
     Stage *stage = *state;
     for (size_t camera = 0; camera < CAMERA_COUNT; camera++) {
         KrsView     view;
-        size_t      hits = 0;
+        size_t      hits    = 0;
         KrsPicture *picture = render(stage, (KrsRenderOptions){.camera = camera});
         assert_int_equal(krs_frame_view(stage->frame, camera, &view), KRS_OK);
         for (unsigned j = 0; j < HEIGHT; j++)
@@ -375,9 +374,9 @@ static void sphere_is_where_it_should_be(void **state)
 
 static void parameters_need_no_compiling(void **state)
 {
-    Stage      *stage = *state;
-    double      size = 0.5;
-    KrsView     view;
+    Stage  *stage = *state;
+    double  size  = 0.5;
+    KrsView view;
     assert_int_equal(krs_frame_set(stage->frame, "size", &size, 1), KRS_OK);
     KrsPicture *picture = render(stage, (KrsRenderOptions){.camera = FLAT});
     assert_int_equal(krs_frame_view(stage->frame, FLAT, &view), KRS_OK);
@@ -422,14 +421,14 @@ static void matrices_lead_back_to_the_pixel(void **state)
 
 static void samples_converge_on_the_area(void **state)
 {
-    Stage *stage = *state;
-    double share = 0, pixel = 3.0 / HEIGHT;
+    Stage           *stage = *state;
+    double           share = 0, pixel = 3.0 / HEIGHT;
     KrsRenderOptions options = {.camera = FLAT, .error = 0.01, .no_filter = true};
-    KrsPicture      *one = render(stage, options);
-    options.samples = 32;
-    KrsPicture *many = render(stage, options);
-    options.seed = 5;
-    KrsPicture *other = render(stage, options);
+    KrsPicture      *one     = render(stage, options);
+    options.samples          = 32;
+    KrsPicture *many         = render(stage, options);
+    options.seed             = 5;
+    KrsPicture *other        = render(stage, options);
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
         float alpha = many->color[4 * i + 3];
         assert_true(alpha * 32 == floorf(alpha * 32) && alpha <= 1);
@@ -489,7 +488,7 @@ static void slices_are_not_seen(void **state)
     (void)state;
     Stage stage = {0};
     stage_open(&stage, landscape_text, NULL);
-    KrsPicture *whole = render(&stage, (KrsRenderOptions){.slice_ms = 1e6, .steps_at_once = 8192});
+    KrsPicture *whole  = render(&stage, (KrsRenderOptions){.slice_ms = 1e6, .steps_at_once = 8192});
     KrsPicture *sliced = render(&stage, (KrsRenderOptions){.slice_ms = 0.001, .steps_at_once = 3});
     assert_true(whole->stats.most_evaluations_per_ray > 30);
     assert_same_pictures(whole, sliced, (size_t)WIDTH * HEIGHT);
@@ -510,7 +509,7 @@ static void beams_are_not_seen(void **state)
     Stage stage = {0};
     stage_open(&stage, terrace_text, NULL);
     KrsPicture *behind = render(&stage, (KrsRenderOptions){.samples = 1});
-    KrsPicture *alone = render(&stage, (KrsRenderOptions){.samples = 1, .no_beams = true});
+    KrsPicture *alone  = render(&stage, (KrsRenderOptions){.samples = 1, .no_beams = true});
     unsigned    other = 0, apart = 0;
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
         other += behind->component[i] != alone->component[i];
@@ -537,13 +536,14 @@ static void marched_planes_look_the_same(void **state)
 {
     (void)state;
     static const double far_away[1][4] = {{0, -1e5, 0, 1}};
-    Stage stage = {0};
+    Stage               stage          = {0};
     stage_open(&stage,
                "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 40deg }\n"
                "camera below { eye: [3, -2, 5], target: [0, 0.5, 0] }\n"
                "show sphere(1).move([0, 0.4, 0]);\n"
                "show plane([0.1, 1, 0], 0);\n"
-               "show plane([0.5, 0.2, 1], -3).rotate([0, 1, 0], 20deg).paint(#4050c0);\n", NULL);
+               "show plane([0.5, 0.2, 1], -3).rotate([0, 1, 0], 20deg).paint(#4050c0);\n",
+               NULL);
     for (uint32_t camera = 0; camera < 2; camera++) {
         KrsPicture *known = render(&stage, (KrsRenderOptions){.samples = 1, .camera = camera});
         assert_int_equal(krs_frame_set_zones(stage.frame, far_away, 1), KRS_OK);
@@ -613,9 +613,9 @@ static void far_cells_look_like_near_ones(void **state)
 static void crops_are_parts(void **state)
 {
     Stage          *stage = *state;
-    const KrsWindow crop = {33, 17, 41, 30};
+    const KrsWindow crop  = {33, 17, 41, 30};
     KrsPicture     *whole = render(stage, (KrsRenderOptions){.samples = 2});
-    KrsPicture     *part = render(stage, (KrsRenderOptions){.samples = 2, .crop = crop});
+    KrsPicture     *part  = render(stage, (KrsRenderOptions){.samples = 2, .crop = crop});
     assert_int_equal(part->width, WIDTH);
     assert_memory_equal(&part->window, &crop, sizeof crop);
     for (uint32_t y = 0; y < crop.height; y++) {
@@ -637,11 +637,11 @@ static void crops_are_parts(void **state)
 static void bands_are_not_seen(void **state)
 {
     /* Wide enough for several bands; its middle row is also rendered alone. */
-    Stage           *stage = *state;
+    Stage           *stage   = *state;
     KrsRenderOptions options = {.width = 1000, .height = 600};
-    KrsPicture      *whole = render(stage, options);
-    options.crop = (KrsWindow){0, 300, 1000, 1};
-    KrsPicture *part = render(stage, options);
+    KrsPicture      *whole   = render(stage, options);
+    options.crop             = (KrsWindow){0, 300, 1000, 1};
+    KrsPicture *part         = render(stage, options);
     assert_memory_equal(part->color, &whole->color[4 * 1000 * 300], 4 * 1000 * sizeof(float));
     assert_int_equal(whole->stats.rays, 600000);
     krs_picture_free(whole);
@@ -662,7 +662,7 @@ static void interruption_is_heard(void **state)
     Stage      *stage = *state;
     KrsPicture *picture;
     for (int calls = 1; calls < 6; calls++) {
-        int              left = calls;
+        int              left    = calls;
         KrsRenderOptions options = {
             .width = WIDTH, .height = HEIGHT, .progress = stop_later, .user = &left};
         assert_int_equal(krs_render(stage->rendering, stage->frame, &options, &picture),
@@ -685,18 +685,19 @@ static void progress_goes_forwards(void **state)
 {
     (void)state;
     Stage  stage = {0};
-    double done = 0;
+    double done  = 0;
     stage_open(&stage, landscape_text, NULL);
-    krs_picture_free(render(&stage, (KrsRenderOptions){
-        .steps_at_once = 10, .samples = 3, .progress = never_back, .user = &done}));
+    krs_picture_free(render(
+        &stage, (KrsRenderOptions){
+                    .steps_at_once = 10, .samples = 3, .progress = never_back, .user = &done}));
     assert_near(done, 1, 1e-9);
     stage_close(&stage);
 }
 
 static void exhausted_rays_are_counted(void **state)
 {
-    Stage      *stage = *state;
-    KrsPicture *picture = render(stage, (KrsRenderOptions){.most_steps = 3});
+    Stage      *stage    = *state;
+    KrsPicture *picture  = render(stage, (KrsRenderOptions){.most_steps = 3});
     size_t      creeping = 0;
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
         assert_true(picture->steps[i] <= 3 + 3); /* a ray that is there may finish */
@@ -708,7 +709,7 @@ static void exhausted_rays_are_counted(void **state)
 
 static void wrong_use_is_refused(void **state)
 {
-    Stage *stage = *state;
+    Stage                 *stage   = *state;
     const KrsRenderOptions wrong[] = {
         {.width = 16385, .height = 10},
         {.width = 10, .height = 10, .crop = {0, 0, 11, 10}},
@@ -735,7 +736,7 @@ static void wrong_use_is_refused(void **state)
 
 static void only_wanted_planes_are_held(void **state)
 {
-    Stage           *stage = *state;
+    Stage           *stage   = *state;
     KrsRenderOptions options = {.planes = KRS_PLANE_DEPTH | KRS_PLANE_IDS};
     KrsPicture      *picture = render(stage, options);
     assert_non_null(picture->depth);
@@ -749,21 +750,23 @@ static void only_wanted_planes_are_held(void **state)
 /* What is not asked for is not made, and what is comes out the same. */
 static void planes_do_not_hang_on_others(void **state)
 {
-    Stage           *stage = *state;
-    const size_t     pixels = (size_t)WIDTH * HEIGHT;
+    Stage           *stage   = *state;
+    const size_t     pixels  = (size_t)WIDTH * HEIGHT;
     KrsRenderOptions options = {.samples = 3};
-    KrsPicture      *whole = render(stage, options);
+    KrsPicture      *whole   = render(stage, options);
     for (int bit = 0; KRS_PLANE_ALL >> bit; bit++) {
         /* What this leaves in memory is not to be taken for what has not been made. */
         krs_picture_free(render(stage, (KrsRenderOptions){.camera = ROUND}));
         options.planes   = 1u << bit;
         KrsPicture *part = render(stage, options);
-        const struct { const void *part, *whole; size_t numbers; } planes[] = {
-            {part->color, whole->color, 4},   {part->depth, whole->depth, 1},
-            {part->position, whole->position, 3}, {part->normal, whole->normal, 3},
-            {part->albedo, whole->albedo, 3}, {part->component, whole->component, 1},
-            {part->level, whole->level, 1},   {part->instance, whole->instance, 1},
-            {part->steps, whole->steps, 1}};
+        const struct {
+            const void *part, *whole;
+            size_t      numbers;
+        } planes[]  = {{part->color, whole->color, 4},       {part->depth, whole->depth, 1},
+                       {part->position, whole->position, 3}, {part->normal, whole->normal, 3},
+                       {part->albedo, whole->albedo, 3},     {part->component, whole->component, 1},
+                       {part->level, whole->level, 1},       {part->instance, whole->instance, 1},
+                       {part->steps, whole->steps, 1}};
         size_t held = 0;
         for (size_t i = 0; i < sizeof planes / sizeof *planes; i++) {
             held += planes[i].part != NULL;
@@ -782,8 +785,8 @@ static void planes_do_not_hang_on_others(void **state)
 static void evaluations_are_counted(void **state)
 {
     KrsPicture *picture = render(*state, (KrsRenderOptions){.no_beams = true});
-    uint64_t    sum = 0;
-    uint32_t    most = 0;
+    uint64_t    sum     = 0;
+    uint32_t    most    = 0;
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
         sum += picture->steps[i];
         most = picture->steps[i] > most ? picture->steps[i] : most;
@@ -799,7 +802,7 @@ static void occlusion_can_be_left_out(void **state)
     (void)state;
     Stage stage = {0};
     stage_open(&stage, landscape_text, NULL);
-    KrsPicture *with = render(&stage, (KrsRenderOptions){0});
+    KrsPicture *with    = render(&stage, (KrsRenderOptions){0});
     KrsPicture *without = render(&stage, (KrsRenderOptions){.no_occlusion = true});
     size_t      lighter = 0;
     for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
@@ -888,10 +891,10 @@ static KrsStatus render_with(Scarce *scarce, Stage *stage)
 {
     KrsRenderer       *renderer;
     KrsRendering      *rendering = NULL;
-    KrsPicture        *picture = NULL;
-    KrsRenderOptions   small = {.width = 16, .height = 16};
+    KrsPicture        *picture   = NULL;
+    KrsRenderOptions   small     = {.width = 16, .height = 16};
     KrsRendererOptions options = {.device = tested_device(), .allocator = scarce_allocator(scarce)};
-    KrsStatus status = krs_renderer_new(&options, &renderer);
+    KrsStatus          status  = krs_renderer_new(&options, &renderer);
     if (status == KRS_OK)
         status = krs_rendering_new(renderer, stage->scene, &rendering);
     if (status == KRS_OK)
@@ -907,12 +910,12 @@ static KrsStatus render_with(Scarce *scarce, Stage *stage)
 
 static void memory_that_runs_out_is_reported(void **state)
 {
-    Stage    *stage = *state;
+    Stage    *stage       = *state;
     int       allocations = 0;
     KrsStatus status;
     do {
         Scarce scarce = {.failing = ++allocations, .lasting = true};
-        status = render_with(&scarce, stage);
+        status        = render_with(&scarce, stage);
         assert_true(status == KRS_OK || status == KRS_OUT_OF_MEMORY);
     } while (status != KRS_OK && allocations < 100);
     assert_int_equal(status, KRS_OK);

@@ -26,7 +26,7 @@ static bool   search_refutes; /* what the directed search says */
 
 static double ball(const double point[3])
 {
-    double square = point[0] * point[0] + point[1] * point[1] + point[2] * point[2];
+    double square   = point[0] * point[0] + point[1] * point[1] + point[2] * point[2];
     double distance = sqrt(square) - 1;
     if (not_a_number && point[0] > 0)
         return NAN;
@@ -47,9 +47,9 @@ KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, Kr
     for (size_t i = 0; i < count; i++) {
         double size = fabs(sqrt(points[i][0] * points[i][0] + points[i][1] * points[i][1] +
                                 points[i][2] * points[i][2]));
-        hits[i] = (KrsHit){.hit = true, .component = 1, .distance = ball(points[i])};
+        hits[i]     = (KrsHit){.hit = true, .component = 1, .distance = ball(points[i])};
         for (int axis = 0; axis < 3; axis++) {
-            hits[i].point[axis] = points[i][axis];
+            hits[i].point[axis]  = points[i][axis];
             hits[i].normal[axis] = points[i][axis] / size;
         }
     }
@@ -62,7 +62,7 @@ KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*poi
     (void)rendering, (void)frame, (void)surfaces;
     for (size_t i = 0; i < count; i++) {
         double point[3] = {points[i][0], points[i][1], points[i][2]};
-        distances[i] = (float)(ball(point) + device_error);
+        distances[i]    = (float)(ball(point) + device_error);
     }
     return KRS_OK;
 }
@@ -168,8 +168,8 @@ static KrsStatus validate(void)
     jmp_buf exhausted;
     if (setjmp(exhausted) != 0)
         return KRS_OUT_OF_MEMORY;
-    Memory  memory = {.exhausted = &exhausted};
-    Arena   arena = {.memory = &memory};
+    Memory  memory  = {.exhausted = &exhausted};
+    Arena   arena   = {.memory = &memory};
     Options options = {.arena = &arena};
     char   *words[] = {"krs", "validate", "--quiet", "--points", "4000", "ball.krs"};
     assert_int_equal(options_parse(&options, 6, words), KRS_OK);
@@ -182,8 +182,8 @@ static int be_honest(void **state)
 {
     (void)state;
     exaggeration = inside_factor = 1;
-    not_a_number = false;
-    device_error = 0;
+    not_a_number                 = false;
+    device_error                 = 0;
     an_estimate = search_refutes = false;
     return 0;
 }

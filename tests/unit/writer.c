@@ -66,8 +66,7 @@ int fsync(int fd) { return fault(CALL_FSYNC) ? -1 : (int)syscall(SYS_fsync, fd);
 
 int rename(const char *from, const char *to)
 {
-    return fault(CALL_RENAME) ? -1
-                              : (int)syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0u);
+    return fault(CALL_RENAME) ? -1 : (int)syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0u);
 }
 
 /* A folder for each test. */
@@ -95,7 +94,7 @@ static int leave_folder(void **state)
 
 static int count_files(void)
 {
-    int count = 0;
+    int  count   = 0;
     DIR *listing = opendir(".");
     for (struct dirent *entry; (entry = readdir(listing));)
         count += entry->d_name[0] != '.' || strlen(entry->d_name) > 2;
@@ -113,8 +112,8 @@ static void put(const char *path, const char *text)
 
 static void assert_holds(const char *path, const char *text)
 {
-    char found[64] = "";
-    FILE *file = fopen(path, "r");
+    char  found[64] = "";
+    FILE *file      = fopen(path, "r");
     assert_non_null(file);
     size_t length = fread(found, 1, sizeof found - 1, file);
     fclose(file);
@@ -126,7 +125,7 @@ static void assert_holds(const char *path, const char *text)
 
 static double half_value(uint16_t half)
 {
-    int exponent = half >> 10 & 31, fraction = half & 1023;
+    int    exponent = half >> 10 & 31, fraction = half & 1023;
     double size = exponent ? ldexp(1024 + fraction, exponent - 25) : ldexp(fraction, -24);
     return half & 0x8000 ? -size : size;
 }
@@ -163,10 +162,10 @@ static void halves_of_extreme_numbers(void **state)
 enum { WIDTH = 37, HEIGHT = 203, CROP_X = 5, CROP_Y = 7, FULL_WIDTH = 50, FULL_HEIGHT = 220 };
 
 typedef struct Sample {
-    float    color[WIDTH * HEIGHT][4];
-    float    depth[WIDTH * HEIGHT];
-    uint32_t id[WIDTH * HEIGHT];
-    uint8_t  rgb[WIDTH * HEIGHT * 3];
+    float          color[WIDTH * HEIGHT][4];
+    float          depth[WIDTH * HEIGHT];
+    uint32_t       id[WIDTH * HEIGHT];
+    uint8_t        rgb[WIDTH * HEIGHT * 3];
     PictureChannel channels[4];
     PictureText    texts[2];
     PictureMatrix  matrix;
@@ -181,7 +180,7 @@ static Sample *sample_new(void)
         for (size_t c = 0; c < 4; c++)
             sample->color[i][c] = (float)((i * 7919 + c * 104729) % 1000) / 256;
         sample->depth[i] = i % 11 == 0 ? INFINITY : 1 + (float)i / 3;
-        sample->id[i] = (uint32_t)(i * 2654435761u);
+        sample->id[i]    = (uint32_t)(i * 2654435761u);
     }
     for (size_t i = 0; i < sizeof sample->rgb; i++)
         sample->rgb[i] = (uint8_t)(i * 31 + i / 256);
@@ -191,13 +190,19 @@ static Sample *sample_new(void)
     sample->channels[1] = (PictureChannel){"G", SAMPLE_HALF, &sample->color[0][1], 4};
     sample->channels[2] = (PictureChannel){"Z", SAMPLE_FLOAT, sample->depth, 1};
     sample->channels[3] = (PictureChannel){"id.component", SAMPLE_UINT, sample->id, 1};
-    sample->texts[0] = (PictureText){"krs:scene", "0123456789abcdef"};
-    sample->texts[1] = (PictureText){"software", "krs"};
-    sample->picture = (Picture){
-        .width = FULL_WIDTH, .height = FULL_HEIGHT, .crop_x = CROP_X, .crop_y = CROP_Y,
-        .crop_width = WIDTH, .crop_height = HEIGHT, .channels = sample->channels,
-        .channel_count = 4, .texts = sample->texts, .text_count = 2,
-        .world_to_camera = &sample->matrix};
+    sample->texts[0]    = (PictureText){"krs:scene", "0123456789abcdef"};
+    sample->texts[1]    = (PictureText){"software", "krs"};
+    sample->picture     = (Picture){.width           = FULL_WIDTH,
+                                    .height          = FULL_HEIGHT,
+                                    .crop_x          = CROP_X,
+                                    .crop_y          = CROP_Y,
+                                    .crop_width      = WIDTH,
+                                    .crop_height     = HEIGHT,
+                                    .channels        = sample->channels,
+                                    .channel_count   = 4,
+                                    .texts           = sample->texts,
+                                    .text_count      = 2,
+                                    .world_to_camera = &sample->matrix};
     return sample;
 }
 
@@ -221,21 +226,22 @@ static KrsStatus write_sample(const Sample *sample, Form form, const char *path)
 /* One channel of an EXR file, in the file's own type. */
 static void *read_channel(exr_context_t context, const char *name, size_t bytes)
 {
-    char *plane = calloc(WIDTH * HEIGHT, bytes);
+    char                 *plane    = calloc(WIDTH * HEIGHT, bytes);
     exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
-    int32_t lines;
+    int32_t               lines;
     assert_int_equal(exr_get_scanlines_per_chunk(context, 0, &lines), 0);
     for (int y = 0; y < HEIGHT; y += lines) {
         exr_chunk_info_t chunk;
         assert_int_equal(exr_read_scanline_chunk_info(context, 0, CROP_Y + y, &chunk), 0);
         assert_int_equal(y == 0 ? exr_decoding_initialize(context, 0, &chunk, &pipeline)
-                                : exr_decoding_update(context, 0, &chunk, &pipeline), 0);
+                                : exr_decoding_update(context, 0, &chunk, &pipeline),
+                         0);
         for (int c = 0; c < pipeline.channel_count; c++) {
             exr_coding_channel_info_t *channel = &pipeline.channels[c];
-            bool ours = strcmp(channel->channel_name, name) == 0;
-            channel->decode_to_ptr = ours ? (uint8_t *)plane + (size_t)y * WIDTH * bytes : NULL;
+            bool                       ours    = strcmp(channel->channel_name, name) == 0;
+            channel->decode_to_ptr     = ours ? (uint8_t *)plane + (size_t)y * WIDTH * bytes : NULL;
             channel->user_pixel_stride = (int32_t)bytes;
-            channel->user_line_stride = (int32_t)(WIDTH * bytes);
+            channel->user_line_stride  = (int32_t)(WIDTH * bytes);
         }
         if (y == 0)
             assert_int_equal(exr_decoding_choose_default_routines(context, 0, &pipeline), 0);
@@ -261,12 +267,11 @@ static void check_exr_header(exr_context_t context, const Sample *sample)
     exr_attr_m44f_t matrix;
     assert_int_equal(exr_attr_get_m44f(context, 0, "worldToCamera", &matrix), 0);
     assert_memory_equal(matrix.m, sample->matrix.m, sizeof matrix.m);
-    assert_int_equal(exr_attr_get_m44f(context, 0, "worldToNDC", &matrix),
-                     EXR_ERR_NO_ATTR_BY_NAME);
+    assert_int_equal(exr_attr_get_m44f(context, 0, "worldToNDC", &matrix), EXR_ERR_NO_ATTR_BY_NAME);
     exr_attr_chromaticities_t colors;
     assert_int_equal(exr_attr_get_chromaticities(context, 0, "chromaticities", &colors), 0);
     assert_true(colors.red_x == 0.64f && colors.white_y == 0.329f);
-    int32_t length;
+    int32_t     length;
     const char *text;
     assert_int_equal(exr_attr_get_string(context, 0, "krs:scene", &length, &text), 0);
     assert_string_equal(text, "0123456789abcdef");
@@ -275,15 +280,15 @@ static void check_exr_header(exr_context_t context, const Sample *sample)
 static void exr_reads_back(void **state)
 {
     (void)state;
-    Sample *sample = sample_new();
+    Sample       *sample = sample_new();
     exr_context_t context;
     assert_int_equal(write_sample(sample, EXR, "a.exr"), KRS_OK);
     assert_int_equal(exr_start_read(&context, "a.exr", NULL), 0);
     check_exr_header(context, sample);
 
     uint16_t *red = read_channel(context, "R", 2), *green = read_channel(context, "G", 2);
-    float *depth = read_channel(context, "Z", 4);
-    uint32_t *id = read_channel(context, "id.component", 4);
+    float    *depth = read_channel(context, "Z", 4);
+    uint32_t *id    = read_channel(context, "id.component", 4);
     for (size_t i = 0; i < WIDTH * HEIGHT; i++) {
         assert_int_equal(red[i], half_from_float(sample->color[i][0]));
         assert_int_equal(green[i], half_from_float(sample->color[i][1]));
@@ -342,9 +347,9 @@ static void png_reads_back(void **state)
     (void)state;
     Sample *sample = sample_new();
     assert_int_equal(write_sample(sample, PNG, "a.png"), KRS_OK);
-    FILE *file = fopen("a.png", "rb");
-    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
-    png_infop info = png_create_info_struct(png);
+    FILE       *file = fopen("a.png", "rb");
+    png_structp png  = png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
+    png_infop   info = png_create_info_struct(png);
     png_init_io(png, file);
     png_read_png(png, info, PNG_TRANSFORM_IDENTITY, NULL);
 
@@ -354,7 +359,7 @@ static void png_reads_back(void **state)
     assert_int_equal(png_get_bit_depth(png, info), 8);
     assert_int_equal(png_get_x_offset_pixels(png, info), CROP_X);
     assert_int_equal(png_get_y_offset_pixels(png, info), CROP_Y);
-    int intent, count;
+    int       intent, count;
     png_textp texts;
     assert_true(png_get_sRGB(png, info, &intent) != 0);
     png_get_text(png, info, &texts, &count);
@@ -373,9 +378,9 @@ static void png_reads_back(void **state)
 static void equal_pictures_are_equal_files(void **state)
 {
     (void)state;
-    Sample *sample = sample_new();
-    char *bytes[4];
-    long lengths[4];
+    Sample     *sample = sample_new();
+    char       *bytes[4];
+    long        lengths[4];
     const char *paths[] = {"a.exr", "b.exr", "a.png", "b.png"};
     for (int i = 0; i < 4; i++) {
         assert_int_equal(write_sample(sample, i < 2 ? EXR : PNG, paths[i]), KRS_OK);
@@ -403,12 +408,12 @@ static int fail_in_turn(const Sample *sample, Form form, Call call, int reason)
     for (int countdown = 1;; countdown++) {
         put("old", "before");
         memset(faults.seen, 0, sizeof faults.seen);
-        faults.armed = true;
-        faults.call = call;
+        faults.armed     = true;
+        faults.call      = call;
         faults.countdown = countdown;
-        faults.reason = reason;
+        faults.reason    = reason;
         KrsStatus status = write_sample(sample, form, "old");
-        faults.armed = false;
+        faults.armed     = false;
         assert_int_equal(count_files(), 1); /* no temporary is left */
         if (status == KRS_OK)
             return countdown - 1;
@@ -420,7 +425,7 @@ static int fail_in_turn(const Sample *sample, Form form, Call call, int reason)
 static void every_failing_call_is_told(void **state)
 {
     (void)state;
-    Sample *sample = sample_new();
+    Sample   *sample    = sample_new();
     const int reasons[] = {ENOSPC, EIO, EFBIG, EDQUOT};
     faults.short_writes = true; /* more calls to fail */
     for (size_t i = 0; i < sizeof reasons / sizeof *reasons; i++)
@@ -435,7 +440,7 @@ static void every_failing_call_is_told(void **state)
 static void interrupted_calls_are_repeated(void **state)
 {
     (void)state;
-    Sample *sample = sample_new();
+    Sample *sample      = sample_new();
     faults.short_writes = true;
     assert_int_equal(fail_in_turn(sample, EXR, CALL_PWRITE, EINTR), 0);
     free(sample);
@@ -481,10 +486,10 @@ static void a_folder_that_cannot_be_flushed_is_a_warning(void **state)
     (void)state;
     OutputError error;
     put("old", "before");
-    faults.armed = true;
-    faults.call = CALL_FSYNC;
+    faults.armed     = true;
+    faults.call      = CALL_FSYNC;
     faults.countdown = 2;
-    faults.reason = EIO;
+    faults.reason    = EIO;
     assert_int_equal(output_text("old", "after", 5, NULL, &error), KRS_OK);
     assert_non_null(strstr(error.warning, "`old` is written, but"));
     assert_holds("old", "after");
@@ -505,8 +510,8 @@ static void permissions_are_kept(void **state)
 {
     (void)state;
     static const mode_t masks[] = {022, 027, 077, 002}, modes[] = {0600, 0640, 0664, 0777};
-    OutputError error;
-    mode_t before = umask(022);
+    OutputError         error;
+    mode_t              before = umask(022);
     for (int i = 0; i < 4; i++) {
         umask(masks[i]);
         unlink("new");
@@ -543,7 +548,7 @@ static void temporaries_are_private(void **state)
 {
     (void)state;
     OutputError error;
-    mode_t before = umask(0);
+    mode_t      before = umask(0);
     put("old", "before");
     assert_int_equal(chmod("old", 0666), 0);
     for (int i = 0; i < 2; i++) {
@@ -561,8 +566,8 @@ static void abandoned_temporaries_are_removed(void **state)
 {
     (void)state;
     OutputError error;
-    int to_child[2], from_child[2];
-    char byte;
+    int         to_child[2], from_child[2];
+    char        byte;
     assert_int_equal(pipe(to_child), 0);
     assert_int_equal(pipe(from_child), 0);
     pid_t child = fork();
@@ -628,10 +633,15 @@ static void paths_to_one_file_are_known(void **state)
     static const struct {
         const char *a, *b;
         bool        same;
-    } pairs[] = {{"a", "a", true},           {"a", "./a", true},   {"a", "b", false},
-                 {"link", "a", true},        {"dangling", "new", true},
-                 {"new", ".//new", true},    {"dangling", "a", false},
-                 {"missing/a", "a", false},  {"missing/a", "missing/a", true},
+    } pairs[] = {{"a", "a", true},
+                 {"a", "./a", true},
+                 {"a", "b", false},
+                 {"link", "a", true},
+                 {"dangling", "new", true},
+                 {"new", ".//new", true},
+                 {"dangling", "a", false},
+                 {"missing/a", "a", false},
+                 {"missing/a", "missing/a", true},
                  {"../missing/x", "x", false}};
     put("a", "x");
     assert_int_equal(symlink("a", "link"), 0);
@@ -656,7 +666,7 @@ static void abandoned_files_leave_nothing(void **state)
 static void interrupts_stop_the_writing(void **state)
 {
     (void)state;
-    OutputError error;
+    OutputError           error;
     volatile sig_atomic_t cancelled = 0;
     put("old", "before");
     OutputFile *file = output_open("old", &cancelled, &error);
