@@ -163,8 +163,9 @@ void begin_group(uint first)
 
 void begin_item(uint number, bool saved)
 {
-    uint listed = find_listed(control.reading + number), cone = cone_of_quarter(listed);
-    place = find_place_of(is_cone ? cone : listed);
+    uint listed = find_listed(control.reading + number);
+    bool exists = !is_cone || has_cone(listed);
+    place = find_place_of(!exists ? 0u : is_cone ? cone_of_quarter(listed) : listed);
     spread = margin = 0.0;
     below = false;
     vec4 facing_and_evenness = find_hit(FACING, place.slot);
@@ -174,6 +175,8 @@ void begin_item(uint number, bool saved)
         aim_over_hemisphere(normal);
     else
         aim_at_light(normal);
+    blocked = blocked || !exists;
+    limit = exists ? limit : 0u;
     t = 0.0;
     slope = facing;
     taps = 0u;

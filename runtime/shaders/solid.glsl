@@ -82,6 +82,13 @@ uint cone_of_quarter(uint number)
     return 64u * (number / 4u) + 18u + 3u * (number & 1u) + 24u * (number >> 1u & 1u);
 }
 
+// Whether something is hit there.
+bool has_cone(uint number)
+{
+    uint column = 2u - (number & 1u), row = 2u - (number >> 1u & 1u);
+    return (find_listed(quarter_at(HITS_OF_QUARTERS, number)) >> 4u * row + column & 1u) != 0u;
+}
+
 // Bits of the anchors of a quarter: every second column and row, from its outer ones on.
 uint anchors_of_quarter(uint number)
 {
