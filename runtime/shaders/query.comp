@@ -146,6 +146,6 @@ void end_item()
 }
 
 void save_item() {}
-void end_group(uint turns) {}
+void end_group(uint steps) {}
 
 #include "schedule.glsl"

@@ -13,7 +13,7 @@
  *     void take_distance(float distance)   one step
  *     void end_item()                      stores what it has found
  *     void save_item()                     stores how far it is
- *     void end_group(uint turns)           last of all, after so many steps
+ *     void end_group(uint steps)           last of all, after so many of them by this lane
  *     const uint HUNGRY                    lanes that are done, until they take up new items together
  *     const bool SAVES                     whether items are saved when the dispatch has had its
  *                                          steps; else those that are begun are finished
@@ -46,8 +46,11 @@ uint join_lanes(uint bits)
 
 bool any_lane(bool says) { return join_lanes(uint(says)) != 0u; }
 
-void work_on_items(uint group, uint turns_allowed, inout uint turns)
+// Turns are counted for lanes that wait as well: lavapipe counts them, and ends loops without a word
+// when there are too many.
+void work_on_items(uint group, uint turns_allowed, inout uint steps)
 {
+    uint turns = 0u;
     uint lane = gl_LocalInvocationIndex, first = group * LANES * control.share, next = first;
     uint limit = min(first + LANES * control.share, control.items);
     bool holding = false, going, hungry;
@@ -83,9 +86,10 @@ void work_on_items(uint group, uint turns_allowed, inout uint turns)
             float distance = item_distance(item_place());
             if (going) {
                 take_distance(distance);
-                turns++;
-                going = may_go_on(turns, turns_allowed);
+                steps++;
             }
+            turns++;
+            going = going && may_go_on(turns, turns_allowed);
             hungry = !going && next < limit && turns < turns_allowed;
             wants = join_lanes((uint(going) | uint(hungry) << LANES) << lane);
             waiting = bitCount(wants >> LANES) < HUNGRY;
@@ -106,14 +110,14 @@ void work_on_items(uint group, uint turns_allowed, inout uint turns)
 #else
 layout(local_size_x = 64) in;
 
-void work_on_items(uint group, uint turns_allowed, inout uint turns)
+void work_on_items(uint group, uint turns_allowed, inout uint steps)
 {
     uint number = group * 64u + gl_LocalInvocationIndex;
     if (number >= control.items)
         return;
     look_up_item(number);
     begin_item(number, control.source == QUEUED);
-    for (; may_go_on(turns, turns_allowed); turns++)
+    for (; may_go_on(steps, turns_allowed); steps++)
         take_distance(item_distance(item_place()));
     if (item_wants_more())
         save_item();
@@ -126,8 +130,8 @@ void main()
 {
     load_frame();
     krs_prepare();
-    uint turns = 0u, group = work.first + gl_WorkGroupID.x * work.stride % work.groups;
+    uint steps = 0u, group = work.first + gl_WorkGroupID.x * work.stride % work.groups;
     begin_group(group * gl_WorkGroupSize.x * (REFILL != 0 ? control.share : 1u));
-    work_on_items(group, work.steps, turns);
-    end_group(turns);
+    work_on_items(group, work.steps, steps);
+    end_group(steps);
 }

@@ -293,7 +293,7 @@ void end_item()
         keep_lighting(control.value, place.slot, visible);
 }
 
-void end_group(uint turns)
+void end_group(uint steps)
 {
     if (lost > 0u)
         atomicAdd(counts.unresolved, lost);

@@ -514,14 +514,14 @@ void end_item()
     }
 }
 
-void end_group(uint turns)
+void end_group(uint steps)
 {
     if (control.phase == BEAMS_8)
         for (; finds != 0u; finds &= finds - 1u) {
             uvec2 cell = cell_of_beam(first_slot + (slot & ~15u) + uint(findLSB(finds)));
             tiles[atomicAdd(counts.tiles, 1u)] = cell.y * count_8.x + cell.x;
         }
-    uint sum = turns, most = most_steps;
+    uint sum = steps, most = most_steps;
 #ifdef SUBGROUPS
     sum = subgroupAdd(sum);
     most = subgroupMax(most);
