@@ -9,7 +9,7 @@
 # make check-device DEVICE=...  what to know of a Vulkan device first, in ten minutes
 # make bench-registers  registers, waves and spills of each kernel on a graphics card
 # make minify     how well one sample shows what is finer than a pixel
-# make fuzz       the front end under libFuzzer for FUZZ_SECONDS (30)
+# make fuzz       the front end under libFuzzer for FUZZ_SECONDS (20)
 # make golden     pictures under every option, bit for bit as they were: after changes that nobody should see
 # make lint       kernels by themselves, shell scripts, style of C
 # make format     brings that style about
@@ -19,9 +19,11 @@
 
 B       ?= build
 CFLAGS  ?= -g -O2
-FUZZ_SECONDS ?= 30
+FUZZ_SECONDS ?= 20
 CLANG   ?= clang-14
 DEVICE  ?= $(KRS_DEVICE)
+# Of `make test`, while it builds.
+JOBS    ?= $(shell nproc)
 
 # Sources in the order of the pipeline: reading down this list is reading the program.
 BASE     := $(addprefix compiler/base/, arena.c text.c source.c beneath.c loader.c diag.c diag_text.c)

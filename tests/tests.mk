@@ -89,8 +89,8 @@ bless: $(B)/krs
 	@tests/errors.sh --bless
 
 test: deps
-	@$(MAKE) --no-print-directory all test-programs clang-check fuzzers
-	@$(MAKE) --no-print-directory sanitize
+	@$(MAKE) --no-print-directory -j$(JOBS) all test-programs clang-check fuzzers
+	@$(MAKE) --no-print-directory -j$(JOBS) sanitize
 	@B=$(B) FUZZ_SECONDS=$(FUZZ_SECONDS) KRS=$(B)/krs KRS_TEST_SECONDS=300 \
 	    tests/run.sh $(if $(DEVICE),KRS_DEVICE="$(DEVICE)") $(PROGRAMS:%=$(B)/%) $(SCRIPTS) \
 	    $(SANITIZED:%=$(B)/asan/%) tests/errors-sanitized.sh tests/fuzz/fuzz.sh \
