@@ -28,7 +28,7 @@ JOBS    ?= $(shell nproc)
 # Sources in the order of the pipeline: reading down this list is reading the program.
 BASE     := $(addprefix compiler/base/, arena.c text.c source.c beneath.c loader.c diag.c diag_text.c)
 FRONT    := $(addprefix compiler/front/, lexer.c syntax.c parser.c parse_expression.c parse.c \
-                names.c)
+                names.c files.c)
 GRAPH    := $(addprefix compiler/graph/, graph.c derive.c series.c zeros.c local.c anchor.c simplify.c \
                 range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c regions.c \
                 fractal.c evaluate.c print.c)
@@ -40,8 +40,8 @@ GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c a
                 lower_images.c)
 SHADER   := $(addprefix compiler/shader/, emit.c statements.c frame_values.c mirrors.c early_outs.c march.c spirv.c)
 BORDER   := compiler/shader/glslang_border.cpp
-DOORSTEP := $(addprefix compiler/, compile.c roots.c precision.c limits.c keep.c groups.c program.c \
-                framing.c frame.c query.c search.c refute.c bounds.c)
+DOORSTEP := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c keep.c facts.c groups.c \
+                program.c framing.c frame.c query.c search.c refute.c bounds.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer film writer))))
 CLI      := $(sort $(wildcard cli/*.c))
 

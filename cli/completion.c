@@ -13,7 +13,7 @@
 
 /* ---- what the tables say ---- */
 
-/* The words of "on|off", "[json]" or "neutral, aces or none", a blank between two; false: other
+/* The words of "on|off", "[json]", "neutral, aces or none" or "load, tokens, or spirv", a blank between two; false: other
    values are possible as well. */
 static bool find_choices(const OptionInfo *option, char *words, size_t size)
 {
@@ -23,10 +23,15 @@ static bool find_choices(const OptionInfo *option, char *words, size_t size)
     size_t      length   = 0;
     bool        listed   = optional;
     for (; *from && *from != ']' && length + 2 < size; from++) {
-        if (strncmp(from, " or ", 4) == 0 || strncmp(from, ", ", 2) == 0 || *from == '|') {
+        size_t between = *from == '|'                     ? 1
+                         : strncmp(from, ", or ", 5) == 0 ? 5
+                         : strncmp(from, " or ", 4) == 0  ? 4
+                         : strncmp(from, ", ", 2) == 0    ? 2
+                                                          : 0;
+        if (between > 0) {
             listed          = true;
             words[length++] = ' ';
-            from += *from == '|' ? 0 : *from == ',' ? 1 : 3;
+            from += between - 1;
         } else if (islower((unsigned char)*from) || *from == '-')
             words[length++] = *from;
         else

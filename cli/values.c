@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/compile.h"
+
 bool read_whole(const char *word, uint64_t low, uint64_t high, uint64_t *value)
 {
     char *end;
@@ -303,15 +305,11 @@ bool read_stats(const char *word, StatsForm *stats)
     return !word || strcmp(word, "json") == 0;
 }
 
-bool read_stage(const char *word, const char **stage)
+bool read_pass(const char *word, const char **pass)
 {
-    static const char *const stages[] = {"tokens",   "syntax", "scene", "graph",
-                                         "simplify", "glsl",   "spirv"};
-    *stage                            = NULL;
-    for (size_t i = 0; i < sizeof stages / sizeof *stages; i++)
-        if (strcmp(word, stages[i]) == 0)
-            *stage = stages[i];
-    return *stage != NULL;
+    const KrsPass *found = krs_find_pass(word);
+    *pass                = found ? found->name : strcmp(word, "spirv") == 0 ? "spirv" : NULL;
+    return *pass != NULL;
 }
 
 bool read_when(const char *word, When *when)

@@ -31,7 +31,7 @@ bool read_limits(const char *word, Limits *limits);     /* "time=10,memory=1G" *
 bool read_aovs(const char *word, unsigned *aovs);       /* "all", "none", "Z,N" */
 bool read_early_outs(const char *word, KrsEarlyOuts *early_outs);
 bool read_stats(const char *word, StatsForm *stats); /* NULL: as text */
-bool read_stage(const char *word, const char **stage);
+bool read_pass(const char *word, const char **pass);
 bool read_when(const char *word, When *when);
 
 #endif

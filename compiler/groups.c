@@ -9,10 +9,8 @@ static const double HEAVY_FLOPS = 100, SCATTERED_FLOPS = 1000, MIXED_FLOPS = 200
 
 static double component_flops(Compilation *c, size_t component)
 {
-    const KrsScene *scene = c->scene;
-    Tape            tape  = tape_new(scene->graph,
-                                     &scene->roots.components[component * ROOT_COUNT + ROOT_DISTANCE], 1,
-                                     &c->scratch);
+    Node distance = distance_root(&c->scene->roots, component);
+    Tape tape     = tape_new(c->scene->graph, &distance, 1, &c->scratch);
     return tape_flops(&tape);
 }
 
@@ -49,9 +47,10 @@ static double flops_worth_splitting(const KrsProgram *program)
     return sum <= hull ? SCATTERED_FLOPS : MIXED_FLOPS;
 }
 
-void form_groups(Compilation *c, uint32_t *groups)
+void form_groups(Compilation *c)
 {
     KrsProgram *program = &c->scene->program;
+    uint32_t   *groups  = arena_new_array(&c->work, uint32_t, c->scene->component_count + 1);
     Box         rest    = box_empty;
     double      light   = 0;
     for (size_t i = 0; i < c->scene->component_count; i++) {
@@ -80,4 +79,5 @@ void form_groups(Compilation *c, uint32_t *groups)
     if (program->group_count < 2)
         program->group_count = 0;
     program->apart = program->group_count > 0 && program->flops >= flops_worth_splitting(program);
+    c->groups      = groups;
 }

@@ -48,7 +48,7 @@ static double reach_of_boxes(const Scene *s)
 typedef struct Sight {
     const Scene *scene;
     Graph       *graph;
-    const Node  *distances; /* ROOT_COUNT apart */
+    const Roots *roots;
     Tape         tape;
     NodeValue   *values;
     Arena       *scratch;
@@ -61,7 +61,7 @@ static void run_defaults(Sight *sight)
     Node        *roots = arena_new_array(sight->scratch, Node,
                                          s->components.count + 3 * s->cameras.count + 1);
     for (size_t i = 0; i < s->components.count; i++)
-        roots[count++] = sight->distances[i * ROOT_COUNT + ROOT_DISTANCE];
+        roots[count++] = distance_root(sight->roots, i);
     for (size_t i = 0; i < s->cameras.count; i++) {
         roots[count++] = s->cameras.items[i].eye;
         roots[count++] = s->cameras.items[i].fov;
@@ -83,7 +83,7 @@ static double nearest_to(const Sight *sight, const double eye[3])
     double nearest = HUGE_VAL;
     tape_run_point(&sight->tape, eye, sight->values);
     for (size_t i = 0; i < sight->scene->components.count; i++) {
-        Node distance = sight->distances[i * ROOT_COUNT + ROOT_DISTANCE];
+        Node distance = distance_root(sight->roots, i);
         nearest       = fmin(nearest, fabs(sight->values[distance].v[0]));
     }
     return nearest;
@@ -127,9 +127,9 @@ static bool scene_needs_anchor(const Scene *s)
     return krs_needs_anchor(reach_of_boxes(s), 0.5 * size / lines_of(s));
 }
 
-bool may_need_anchor(const Scene *scene, Graph *graph, const Node *distances, Arena *scratch)
+bool may_need_anchor(const Scene *scene, Graph *graph, const Roots *roots, Arena *scratch)
 {
-    Sight sight = {.scene = scene, .graph = graph, .distances = distances, .scratch = scratch};
+    Sight sight = {.scene = scene, .graph = graph, .roots = roots, .scratch = scratch};
     bool  needs = false, moves = scene->cameras.count == 0;
     if (scene->zone_count > 0)
         return false;

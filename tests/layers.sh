@@ -6,7 +6,7 @@ set -u
 cd "$(dirname "$0")/.." || exit 1
 layers="compiler/base compiler/front compiler/graph compiler/geometry compiler/shader compiler
         runtime/device runtime/tracer runtime/film runtime/writer runtime cli"
-doorstep="compiler/base/ compiler/compile.h compiler/krs.h compiler/shader/spirv.h
+doorstep="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h compiler/shader/spirv.h
           runtime/krs_vulkan.h"
 
 # Whether a header is one of the files, or in one of the folders (with a slash at the end).
