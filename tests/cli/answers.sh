@@ -2,7 +2,7 @@
 # answers.sh: what query, info, devices, dump, explain and validate answer.
 # shellcheck source-path=SCRIPTDIR
 . "$(dirname "$0")/common.sh"
-plan 37
+plan 39
 
 ask() { # question, options...
     question=$1
@@ -125,12 +125,22 @@ run devices --json
 result $? "devices as JSON"
 
 empty=""
-for stage in tokens syntax scene graph simplify glsl spirv; do
-    run dump --after=$stage ball.krs
-    [ "$status" -eq 0 ] && [ -s out ] || empty="$empty $stage"
+passes=$(sed -n 's/^PASS(\([a-z]*\), *"\([a-z]*\)".*/\1 \2/p' "$root/compiler/passes.def")
+for pass in tokens syntax scene graph simplify glsl spirv $passes; do
+    run dump --after="$pass" ball.krs
+    [ "$status" -eq 0 ] && [ -s out ] || empty="$empty $pass"
 done
-[ -z "$empty" ]
-result $? "every stage can be dumped$empty"
+[ -n "$passes" ] && [ -z "$empty" ]
+result $? "every pass can be dumped, by both of its names$empty"
+run dump --after=graphs ball.krs
+forms=$(echo "$passes" | awk '{ printf "%s, ", $2 }')
+said 2 "--after wants ${forms}or spirv, not \`graphs\`" "an unknown pass is told which there are"
+run dump --help
+missing=$(echo "$passes" | while read -r pass form; do
+    grep -q "^    $pass  *\($form \)*  *[a-z]" out || echo " $pass"
+done)
+[ "$status" -eq 0 ] && [ -z "$missing" ]
+result $? "the page of dump has all passes$missing"
 run explain E0101
 [ "$status" -eq 0 ] && grep -q '^error\[E0101\]: ' out
 result $? "a diagnostic is explained"

@@ -98,11 +98,12 @@ static void mistakes_end_the_passes(void **state)
 {
     static const struct {
         const char *text, *last; /* the pass that finds the mistake */
-    } scenes[] = {{"show sphere(1;\n", "names"},
-                  {"use \"nowhere.krs\"; show sphere(1);\n", "names"},
-                  {"show nothing_like_it;\n", "names"},
-                  {"show sphere(true);\n", "elaborate"},
-                  {"show sphere(1e39);\n", "limits"}};
+    } scenes[]  = {{"show sphere(1;\n", "names"},
+                   {"use \"nowhere.krs\"; show sphere(1);\n", "names"},
+                   {"show nothing_like_it;\n", "names"},
+                   {"show sphere(true);\n", "elaborate"},
+                   {"show field(x * 1e39);\n", "limits"},
+                   {"param a = 0 in [0, 1]; show field(x + 1 / a).within(sphere(2));\n", "check"}};
     char path[] = "/tmp/krs-passes-XXXXXX";
     int  file   = mkstemp(path);
     (void)state;
@@ -155,10 +156,11 @@ static void times_add_up(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_pass_prints),         cmocka_unit_test(words_are_unique),
-        cmocka_unit_test(dumps_say_what_was_found), cmocka_unit_test(mistakes_end_the_passes),
+        cmocka_unit_test(each_pass_prints),
+        cmocka_unit_test(words_are_unique),
+        cmocka_unit_test(dumps_say_what_was_found),
+        cmocka_unit_test(mistakes_end_the_passes),
         cmocka_unit_test(times_add_up),
     };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
     return cmocka_run_group_tests_name("passes of the compiler", tests, NULL, NULL);
 }
