@@ -29,8 +29,8 @@ JOBS    ?= $(shell nproc)
 BASE     := $(addprefix compiler/base/, arena.c text.c source.c beneath.c loader.c diag.c diag_text.c)
 FRONT    := $(addprefix compiler/front/, lexer.c syntax.c parser.c parse_expression.c parse.c \
                 names.c files.c)
-GRAPH    := $(addprefix compiler/graph/, graph.c substitute.c derive.c series.c zeros.c local.c anchor.c simplify.c \
-                range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c regions.c \
+GRAPH    := $(addprefix compiler/graph/, graph.c substitute.c derive.c series.c zeros.c local.c \
+                anchor.c simplify.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c regions.c \
                 fractal.c evaluate.c print.c)
 GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c arguments.c \
                 builtins.c lists.c chance.c joining.c functions.c expression.c map.c moebius.c \
@@ -40,8 +40,8 @@ GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c a
                 lower_images.c)
 SHADER   := $(addprefix compiler/shader/, emit.c statements.c frame_values.c mirrors.c early_outs.c march.c spirv.c)
 BORDER   := compiler/shader/glslang_border.cpp
-DOORSTEP := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c keep.c facts.c groups.c \
-                program.c framing.c frame.c query.c search.c refute.c bounds.c)
+DOORSTEP := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c keep.c facts.c \
+                groups.c program.c framing.c frame.c query.c search.c refute.c bounds.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer film writer))))
 CLI      := $(sort $(wildcard cli/*.c))
 

@@ -1,8 +1,9 @@
 #!/bin/sh
 # golden.sh: what passes of the compiler make of the scenes in tests/golden/ is as blessed in the
 # files beside them, by extension: NAME.scene (shapes and what surrounds them), NAME.graph (as it was
-# built), NAME.simplify (as it is printed), NAME.facts (what the renderer knows) and NAME.glsl.  `golden.sh --bless` writes them.  They say
-# that nothing has changed, not that it is right: that is for the oracles.
+# built), NAME.simplify (as it is printed), NAME.facts (what the renderer has to know) and NAME.glsl.
+# `golden.sh --bless` writes them.  They say that nothing has changed, not that it is right: that is
+# for the oracles.
 cd "$(dirname "$0")/.." || exit 1
 krs=${KRS:-build/krs}
 got=$(mktemp) && trap 'rm -f "$got"' EXIT
