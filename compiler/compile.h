@@ -112,8 +112,8 @@ typedef struct KrsProgram {
     KrsGroup    groups[KRS_MOST_GROUPS];
     size_t      group_count;       /* 0: all components belong together */
     bool        apart;             /* taking turns is worth it */
-    uint32_t    parts;             /* of krs_distance_of, for kernels with #define PACKED */
-    uint32_t    heavy;             /* components that are worth being marched by themselves */
+    uint32_t    scene_parts;       /* of krs_distance_of, for kernels with #define PACKED */
+    uint32_t    expensive;         /* components that are worth being marched by themselves */
     double      front_ms, glsl_ms; /* time spent */
 } KrsProgram;
 
@@ -149,7 +149,7 @@ KrsRay krs_ray(const KrsScene *scene, const double origin[3], const double direc
 /* Where there are sheets the normals of a hit face where its ray comes from. */
 void krs_face(const KrsRay *ray, KrsHit *hit);
 /* Whether these are arguments that krs_raycast accepts. */
-bool krs_rays_are_sound(const double (*origins)[3], const double (*directions)[3], size_t count,
+bool krs_rays_are_valid(const double (*origins)[3], const double (*directions)[3], size_t count,
                         double farthest, double tolerance);
 /* 64-bit FNV-1a of the whole text (used files included), 16 hexadecimal digits. */
 const char *krs_scene_hash(const KrsScene *scene);

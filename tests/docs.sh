@@ -79,7 +79,7 @@ sed -n 's/^\(BLEND\|FALLOFF\|PALETTE\)([A-Z_, ]*"\([a-z]*\)".*/\2/p' \
 none "every kind of blend and falloff and every palette is on the page"
 
 # The row of a block names its properties.
-tr '{' '\n' <compiler/geometry/looks.c |
+tr '{' '\n' <compiler/geometry/view.c |
     sed -n 's/^SYNTAX_\([A-Z]*\), "\([a-z_]*\)", false}.*/\1 \2/p' |
     while read -r block property; do
         row=$(echo "$block" | tr '[:upper:]' '[:lower:]')

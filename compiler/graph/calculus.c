@@ -19,10 +19,10 @@ Fact fact_unknown(uint32_t size)
     return fact;
 }
 
-bool operands_constant(const Call *call, uint32_t first, uint32_t count)
+bool operands_constant(const RuleInput *input, uint32_t first, uint32_t count)
 {
     for (uint32_t i = first; i < count; i++)
-        if (call->operands[i].slope != 0)
+        if (input->operands[i].slope != 0)
             return false;
     return true;
 }
@@ -106,11 +106,11 @@ Range fact_size(const Fact *fact, uint32_t size)
     return (Range){size > 1 && isfinite(least) ? least - least * 0x1p-50 : least, largest};
 }
 
-Fact fact_truth(const Call *call, uint32_t count, bool always, bool never)
+Fact fact_truth(const RuleInput *input, uint32_t count, bool always, bool never)
 {
     Fact fact     = fact_unknown(1);
     fact.value[0] = (Range){always, !never};
-    fact.slope    = always || never || operands_constant(call, 0, count) ? 0 : HUGE_VAL;
+    fact.slope    = always || never || operands_constant(input, 0, count) ? 0 : HUGE_VAL;
     return fact;
 }
 

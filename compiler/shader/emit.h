@@ -25,7 +25,7 @@ typedef struct EmitMarch {
 
 /* In how many parts so many components are marched, where each ray goes on with the one that comes
    next. */
-uint32_t emit_part_count(size_t components);
+uint32_t emit_scene_part_count(size_t components);
 /* What the host finds for each frame, and for each anchor. */
 typedef struct EmittedFrame {
     FrameValues plain, anchored;

@@ -1,5 +1,5 @@
 /*
- * looks.c: materials, cameras, lights, sky and image, and what stands in for those that a scene
+ * view.c: materials, cameras, lights, sky and image, and what stands in for those that a scene
  * leaves out.
  */
 #include "compiler/geometry/elaborate.h"
@@ -8,11 +8,11 @@
 #include <string.h>
 
 /* Which blocks may have which property; `later` ones are known but not in this version. */
-static const struct LookProperty {
+static const struct ViewProperty {
     SyntaxKind  block;
     const char *name;
     bool        later;
-} look_properties[] = {
+} view_properties[] = {
     {SYNTAX_MATERIAL, "color", false},
     {SYNTAX_MATERIAL, "roughness", false},
     {SYNTAX_MATERIAL, "metallic", false},
@@ -55,7 +55,7 @@ static const struct LookProperty {
     {SYNTAX_ZONE, "center", false},
     {SYNTAX_ZONE, "radius", false},
 };
-enum { LOOK_PROPERTY_COUNT = sizeof look_properties / sizeof *look_properties };
+enum { VIEW_PROPERTY_COUNT = sizeof view_properties / sizeof *view_properties };
 
 static const char *block_name(SyntaxKind kind)
 {
@@ -72,15 +72,15 @@ static const char *block_name(SyntaxKind kind)
 /* Whether a block may have a property; false: reported. */
 static bool check_property(Elaboration *e, const Syntax *block, const Syntax *property)
 {
-    const char *names[LOOK_PROPERTY_COUNT];
+    const char *names[VIEW_PROPERTY_COUNT];
     size_t      count = 0;
-    for (size_t i = 0; i < LOOK_PROPERTY_COUNT; i++) {
-        if (look_properties[i].block != block->kind)
+    for (size_t i = 0; i < VIEW_PROPERTY_COUNT; i++) {
+        if (view_properties[i].block != block->kind)
             continue;
-        names[count++] = look_properties[i].name;
-        if (strcmp(look_properties[i].name, property->name) != 0)
+        names[count++] = view_properties[i].name;
+        if (strcmp(view_properties[i].name, property->name) != 0)
             continue;
-        if (!look_properties[i].later)
+        if (!view_properties[i].later)
             return true;
         not_supported(e, property->name_span,
                       diag_text(e->diags, "`%s` of %s", property->name, block_name(block->kind)));
@@ -107,7 +107,7 @@ static void check_block(Elaboration *e, const Syntax *block)
                 block->children[k]->name == property->name) {
                 Diag *diag = diag_add(e->diags, DIAG_DUPLICATE_NAME, property->name_span,
                                       "`%s` is given twice", property->name);
-                diag_place(e->diags, diag, block->children[k]->name_span, "given here first");
+                diag_secondary(e->diags, diag, block->children[k]->name_span, "given here first");
                 break;
             }
     }
@@ -145,13 +145,13 @@ static Node vector_property(Elaboration *e, const Environment *env, const Syntax
 }
 
 /* A place.  A `param` without a range may be anything, and says so at its frame. */
-static Node place_property(Elaboration *e, const Environment *env, const Syntax *block,
-                           const char *name, const double otherwise[3])
+static Node position_property(Elaboration *e, const Environment *env, const Syntax *block,
+                              const char *name, const double otherwise[3])
 {
-    Node          place  = vector_property(e, env, block, name, otherwise);
-    const Syntax *syntax = find_property(block, name);
+    Node          position = vector_property(e, env, block, name, otherwise);
+    const Syntax *syntax   = find_property(block, name);
     for (uint32_t i = 0; syntax && i < 3; i++) {
-        Range  range = node_range(e, place, i);
+        Range  range = node_range(e, position, i);
         double far   = fmax(isfinite(range.low) ? fabs(range.low) : 0,
                           isfinite(range.high) ? fabs(range.high) : 0);
         if (far <= MOST_EXTENT)
@@ -161,7 +161,7 @@ static Node place_property(Elaboration *e, const Environment *env, const Syntax 
         diag->label = "farther than 1e12, which devices cannot compute with";
         break;
     }
-    return place;
+    return position;
 }
 
 /* A number that must be known when the scene is compiled. */
@@ -227,8 +227,8 @@ static const char *word_property(Elaboration *e, const Environment *env, const S
 /* ---- materials ---- */
 
 /* A number or a colour that may depend on the point; *property stays when it is not given. */
-static void looking_property(Elaboration *e, const Environment *env, const Syntax *block,
-                             const char *name, GraphType type, Node *property)
+static void material_property(Elaboration *e, const Environment *env, const Syntax *block,
+                              const char *name, GraphType type, Node *property)
 {
     const Syntax *syntax = find_property(block, name);
     if (!syntax)
@@ -260,10 +260,10 @@ Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *s
     Material *material = material_new(e, syntax->name);
     bool      outer    = e->in_material;
     e->in_material     = true;
-    looking_property(e, env, syntax, "color", TYPE_VEC3, &material->color);
-    looking_property(e, env, syntax, "roughness", TYPE_FLOAT, &material->roughness);
-    looking_property(e, env, syntax, "metallic", TYPE_FLOAT, &material->metallic);
-    looking_property(e, env, syntax, "emission", TYPE_VEC3, &material->emission);
+    material_property(e, env, syntax, "color", TYPE_VEC3, &material->color);
+    material_property(e, env, syntax, "roughness", TYPE_FLOAT, &material->roughness);
+    material_property(e, env, syntax, "metallic", TYPE_FLOAT, &material->metallic);
+    material_property(e, env, syntax, "emission", TYPE_VEC3, &material->emission);
     e->in_material = outer;
     return (Value){.type = VALUE_MATERIAL, .material = material};
 }
@@ -292,8 +292,8 @@ static void add_camera(Elaboration *e, const Environment *env, const Syntax *syn
     static const char *const projections[] = {"perspective", "orthographic", "panorama"};
     static const double      eye[3]        = {4, 3, 6};
     SceneCamera              camera        = {.name = syntax->name};
-    camera.eye                             = place_property(e, env, syntax, "eye", eye);
-    camera.target                          = place_property(e, env, syntax, "target", ORIGIN);
+    camera.eye                             = position_property(e, env, syntax, "eye", eye);
+    camera.target                          = position_property(e, env, syntax, "target", ORIGIN);
     camera.up                              = vector_property(e, env, syntax, "up", UP);
     camera.fov       = number_property(e, env, syntax, "fov", 40 * M_PI / 180);
     camera.height    = number_property(e, env, syntax, "height", 4);
@@ -328,7 +328,7 @@ static void add_light(Elaboration *e, const Environment *env, const Syntax *synt
         diag->help = "for example `light sun { direction: [-1, 2, 1], intensity: 3 }`";
         return;
     }
-    light.vector   = position ? place_property(e, env, syntax, "position", UP)
+    light.vector   = position ? position_property(e, env, syntax, "position", UP)
                               : vector_property(e, env, syntax, "direction", UP);
     Node color     = vector_property(e, env, syntax, "color", WHITE);
     Node intensity = number_property(e, env, syntax, "intensity", 1);
@@ -413,8 +413,8 @@ static void add_zone(Elaboration *e, const Environment *env, const Syntax *synta
     }
     g->here     = syntax->span;
     Node point  = graph_leaf(g, OP_POINT);
-    Node away   = graph_op2(g, OP_sub, point, center);
-    Node depth  = graph_op1(g, OP_length, away);
+    Node offset = graph_op2(g, OP_sub, point, center);
+    Node depth  = graph_op1(g, OP_length, offset);
     depth       = graph_op2(g, OP_sub, radius, depth);
     scene->zone = scene->zone == NODE_NONE ? depth : graph_op2(g, OP_max, scene->zone, depth);
     scene->zone_count++;
@@ -430,7 +430,7 @@ static void check_single(Elaboration *e, const Syntax *syntax)
             continue;
         Diag *diag = diag_add(e->diags, DIAG_DUPLICATE_NAME, syntax->span, "%s is described twice",
                               block_name(syntax->kind));
-        diag_place(e->diags, diag, e->single.items[i]->span, "described here first");
+        diag_secondary(e->diags, diag, e->single.items[i]->span, "described here first");
         if (syntax->kind == SYNTAX_CAMERA)
             diag->help = "give further cameras names: `camera side { ... }`";
         return;
@@ -438,7 +438,7 @@ static void check_single(Elaboration *e, const Syntax *syntax)
     array_push(e->arena, &e->single, syntax);
 }
 
-void elaborate_look(Elaboration *e, const Environment *env, const Syntax *syntax)
+void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     check_block(e, syntax);
     check_single(e, syntax);
@@ -486,7 +486,7 @@ static void default_sun(Elaboration *e)
     array_push(e->arena, &e->scene->lights, sun);
 }
 
-void finish_looks(Elaboration *e)
+void complete_view(Elaboration *e)
 {
     static const Syntax silent = {.kind = SYNTAX_SKY};
     if (e->scene->cameras.count == 0)
