@@ -33,7 +33,7 @@ typedef struct Progress {
 } Progress;
 
 void progress_start(Progress *progress, const Options *options, size_t frames);
-void progress_show(Progress *progress, double fraction); /* of the current part */
+void progress_show(Progress *progress, double fraction); /* of the current frame */
 /* Takes the bar away, so that other words can be said. */
 void progress_end(Progress *progress);
 

@@ -1,5 +1,5 @@
 /*
- * import_jsurf.h: a .jsurf file in parts: its properties, its equation, and what is made of them.
+ * import_jsurf.h: a .jsurf file: its properties, its equation, and what is made of them.
  */
 #ifndef KRS_IMPORT_JSURF_H
 #define KRS_IMPORT_JSURF_H

@@ -43,8 +43,8 @@ typedef struct Validation {
     uint64_t       random;                /* state of the generator */
     double         low[3], high[3], size; /* the box that is tried, and its diagonal */
     uint64_t       balls;                 /* probes inside of balls so far */
-    uint64_t       estimates;             /* from points to a surface that has an estimate, */
-    double         reached;    /* and the largest part of such a way that the estimate was */
+    uint64_t       estimates;             /* distances compared with estimates, */
+    double         reached;    /* and the largest ratio of the estimate to the true distance */
     double         difference; /* largest of the device so far, in tolerances */
     double         points[BATCH][3];
 } Validation;

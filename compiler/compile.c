@@ -179,7 +179,7 @@ static KrsStatus run(Compilation *c)
     return status == KRS_OK && c->request->inspect ? inspect(c) : status;
 }
 
-/* ---- the doorstep ---- */
+/* ---- the API ---- */
 
 static void hand_over(const Diags *diags, const Diag *diag, const KrsOptions *options, Arena *arena)
 {

@@ -16,7 +16,7 @@ static double component_flops(Compilation *c, size_t component)
     return tape_flops(&tape);
 }
 
-/* The group that a component joins: one of its own if it is heavy and bounded, while there are any;
+/* The group that a component joins: one of its own if it is expensive and bounded, while there are any;
    else the last, of all the others. */
 static size_t choose_group(const KrsProgram *program, double flops, Box box)
 {

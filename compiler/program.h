@@ -67,12 +67,12 @@ struct KrsScene {
     Tape           view;     /* cameras, lights and sky */
 };
 
-/* A frame: what varies, and room for the values of all nodes. */
+/* A frame: what varies, and memory for the values of all nodes. */
 struct KrsFrame {
     const KrsScene *scene;
     NodeValue      *parameters; /* the parameter block: slot 0 is the time; slopes are always those
                                    of the other values */
-    void           *workspace;  /* to find them in */
+    void           *workspace;  /* to find the slopes in */
     const char     *unbounded;  /* the place of one that had no bound in the frame refused last */
     NodeValue      *values;     /* of every node */
     KrsLight       *lights;

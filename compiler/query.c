@@ -56,7 +56,7 @@ static double distance_at(KrsFrame *frame, const double point[3], uint32_t *near
     return least < depth ? depth : least;
 }
 
-/* Where rays have to go from root to root: how far this one may go from a point, the last place
+/* Where rays have to go from root to root: how far this one may go from a point, the last point
    having been `step` behind. */
 static double step_ahead(KrsFrame *frame, const double point[3], const double direction[3],
                          double step)
@@ -229,8 +229,8 @@ bool krs_rays_are_valid(const double (*origins)[3], const double (*directions)[3
 
 enum { TOUCHING = 16 }; /* roundings */
 
-/* A ray under way.  Nothing is before `t`, nor for `clearance` behind it; `step` from there is the next
-   place to look at. */
+/* The state of a ray.  Nothing is hit before `t`, nor within `clearance` behind it; the distance is
+   next evaluated at t + step. */
 typedef struct RayMarch {
     KrsFrame *frame;
     KrsRay    ray;
@@ -238,7 +238,7 @@ typedef struct RayMarch {
     double    tolerance;
     double    side; /* -1 from inside of a solid; 0: not known */
     double    t, clearance, step;
-    double    slope; /* of the room along the ray, as it was on average */
+    double    slope; /* average change of the clearance along the ray */
 } RayMarch;
 
 static void march_point(const RayMarch *march, double t, double point[3])
@@ -252,8 +252,8 @@ static double rounding_at(const RayMarch *march, double t)
     return 4 * DBL_EPSILON * (march->size + t);
 }
 
-/* Solids that touch are one: from inside they count as grown by what rounding may leave open at
-   the seam between two. */
+/* Solids that touch are one: from inside they count as grown by the gap that rounding may leave
+   between two. */
 static double march_clearance(RayMarch *march, double t)
 {
     double point[3];
@@ -268,8 +268,8 @@ static double march_clearance(RayMarch *march, double t)
     return march->side < 0 ? TOUCHING * rounding_at(march, t) - distance : distance;
 }
 
-/* Where the surface is crossed between t, where there is room, and t + gap, where there is `clearance`
-   and so none: by false position, each end's weight halved when the other has moved twice
+/* Where the surface is crossed between t, where the clearance is positive, and t + step, where it
+   is `clearance` and not positive: by false position, each end's weight halved when the other has moved twice
    (the Illinois method). */
 static double find_crossing(RayMarch *march, double clearance)
 {
@@ -300,10 +300,10 @@ static double find_crossing(RayMarch *march, double clearance)
 typedef enum RayState { MARCHING, HIT, MISS } RayState;
 
 /*
- * One look, by the rule of trace.comp: the ball of empty space around t and the one around the
- * place looked at must meet; else the ray goes back to the middle of what they leave open, until
- * no more is open than a sixteenth of the tolerance.  So a gap may be as long as the balls are
- * expected to meet over if the room goes on as it did (automatic relaxation).
+ * One step, by the rule of trace.comp.  The ball of empty space around t and the one around t + step
+ * must meet; what lies between them is unverified.  Where they do not meet, the step is cut to end in
+ * the middle of that, until no more than a sixteenth of the tolerance is unverified.  So a step may be
+ * as long as the balls are expected to meet, if the clearance changes as before (automatic relaxation).
  */
 static RayState march_step(RayMarch *march)
 {
@@ -320,7 +320,7 @@ static RayState march_step(RayMarch *march)
         march->slope += 0.3 * (slope - march->slope);
         march->t         = at;
         march->clearance = clearance;
-        /* Of roots nothing behind the place is known. */
+        /* Where the distance is that to a root, nothing behind the point is known. */
         double factor = march->frame->scene->program.sheets
                             ? 1
                             : fmax(1, 2 / (1 - fmin(march->slope, 0.98)));

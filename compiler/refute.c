@@ -405,7 +405,7 @@ static bool try_steps(Refuter *r, size_t suspect, uint64_t operations, Finding *
 
 /* ---- whom to blame ---- */
 
-/* How far a shape that was met on the way is from its claim in two points; below 1: it is not. */
+/* By how much a lowered shape breaks its claim at two points; below 1: it does not. */
 static double claim_ratio(const LoweredShape *lowered, bool lipschitz, const NodeValue *at_p,
                           const NodeValue *at_q)
 {
@@ -423,7 +423,7 @@ static double claim_ratio(const LoweredShape *lowered, bool lipschitz, const Nod
     return fmax(0, rise / lowered->shape->slope - 1e-9 * size) / fmax(sqrt(square), 1e-9 * size);
 }
 
-/* All that is met on the way into a refuted shape, with the values at its two points. */
+/* All shapes that were lowered in a refuted shape, with their values at its two points. */
 typedef struct LoweringTrace {
     LoweredShapes lowered_shapes; /* those with a distance; nodes are of `graph` */
     Graph        *graph;
@@ -739,7 +739,7 @@ static KrsStatus conclude(Refuter *r, Finding *finding)
 
 static bool is_whole(const Refuter *r, size_t i) { return r->suspects.items[i].parent == SIZE_MAX; }
 
-/* Those of all components, or all others, from the last, whose parts are fewest. */
+/* Those of all components, or all others, from the last, whose trees are smallest. */
 static KrsStatus try_all(Refuter *r, bool whole, Finding *finding)
 {
     size_t count = 0;

@@ -1,7 +1,7 @@
 /*
  * roots.c: what is asked of the graph: everything that a scene shows, lowered.
  *
- * Of each component its distance and looks, and after these what only the march needs, so that
+ * Of each component its distance and material, and after these what only the march needs, so that
  * nothing else depends on it: guards, steps along a ray, planes, gradients, and the same again for
  * points that are given from an anchor.
  */

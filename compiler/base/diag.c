@@ -32,7 +32,7 @@ static bool same_span(Span a, Span b)
 }
 
 /* The statements of a loop are elaborated many times and would complain each time.  Only the
-   few diagnostics that are kept are compared; what has no place is never a repeat. */
+   few diagnostics that are stored are compared; one without a location is never a repeat. */
 static bool is_repeat(const Diags *diags, DiagCode code, Span span)
 {
     for (size_t i = 0; i < diags->count && span.source != 0; i++)

@@ -1,7 +1,7 @@
 /*
  * diag.h: what the compiler has to say to the author of a scene.
  *
- * Diagnostics are collected, not printed: each has a code (one row of diag.def), the place,
+ * Diagnostics are collected, not printed: each has a code (one row of diag.def), a location,
  * and whatever helps to mend it.  Messages start with a lower-case letter and do not end with
  * punctuation; only `help` suggests what to do.
  */
@@ -29,7 +29,7 @@ typedef struct DiagInfo {
 
 extern const DiagInfo diag_info[DIAG_CODE_COUNT];
 
-/* A second place that belongs to the story, marked with ---- and its own label. */
+/* A further location of a diagnostic, marked with ---- and its own label. */
 typedef struct SecondarySpan {
     Span        span;
     const char *label;

@@ -385,7 +385,7 @@ static void find_surfaces(const Sampling *s, Node distance, Surfaces *surfaces)
     }
 }
 
-/* The place of the surface that is nearest to a point: how far that is. */
+/* The distance from a point to the nearest point of the surface. */
 static double distance_to(const Surfaces *surfaces, const double p[3])
 {
     double least = HUGE_VAL;
@@ -396,7 +396,7 @@ static double distance_to(const Surfaces *surfaces, const double p[3])
     return least;
 }
 
-/* A `bound` is no longer than the way to any place of the surface. */
+/* A `bound` is no larger than the distance to any point of the surface. */
 static bool check_bound(Elaboration *e, const Shape *shape, const Sampling *s,
                         const Surfaces *surfaces)
 {

@@ -5,13 +5,13 @@
 
 #include <math.h>
 
-/* Parts of one box, at most about; parts of a cover, beyond which neighbours become one. */
+/* Cells that one box is cut into, about; cells of a cover, beyond which neighbours are merged. */
 enum { BOX_CELLS = 64, MOST_CELLS = 1024, MOST_OUTSIDE = 16 };
 
 /* Rounding, and how near to its surface the pole of an inversion counts as on it. */
 static const double ROUNDING = 1e-12, ON_SURFACE = 1e-6;
 
-/* What reaches farther is taken to be endless: a cover that is too loose near a pole. */
+/* A cell that reaches farther counts as endless: near a pole its ball is far too large. */
 static const double FARTHEST = 1e9;
 
 static const CoverCell everything = {.outside = true};
@@ -35,7 +35,7 @@ static double middle_of(const Range range[3], double centre[3])
     return leave * (1 + ROUNDING) + ROUNDING * size;
 }
 
-/* The part about a centre in its ranges. */
+/* The cell that holds a ball for every centre in the given ranges. */
 static CoverCell cell_about(const Range centre[3], double radius, bool outside)
 {
     CoverCell cell   = {.outside = outside};
@@ -145,7 +145,7 @@ void cover_map(Cover *cover, const MapRange *map)
 
 /* ---- neighbours become one ---- */
 
-/* Parts that stand side by side, and a ball around all of them. */
+/* Cells that stand side by side, and a ball around all of them. */
 typedef struct Cluster {
     size_t from, to;
     Ball   ball;
@@ -186,8 +186,8 @@ Ball cover_ball(const Cover *cover)
     return cluster_of(cover, 0, cover->count).ball;
 }
 
-/* The middle of the side on which the centres are spread most parts them; where they are all at
-   one place, their numbers do. */
+/* Parts the cells at the middle of the axis on which their centres are spread most; where all
+   centres are one point, by their numbers. */
 static size_t partition(Cover *cover, const Cluster *cluster)
 {
     int axis = 0;

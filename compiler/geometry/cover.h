@@ -9,7 +9,7 @@
 
 #include "compiler/geometry/box.h"
 
-/* A ball, or what is not inside of it: all of space where its radius is 0. */
+/* A ball, or the outside of it: all of space where its radius is 0. */
 typedef struct CoverCell {
     Ball ball;
     bool outside;

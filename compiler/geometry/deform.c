@@ -97,7 +97,7 @@ static void note_slope(Shape *deformed, double slope)
 /* (b + sqrt(b^2 + 4)) / 2, the norm of a shear by b. */
 static double shear_norm(double b) { return 0.5 * (b + hypot(b, 2)); }
 
-/* The part `i` of CELLS of a range. */
+/* Cell `i` of the CELLS of a range. */
 static Range range_cell(Range range, int i)
 {
     double width = (range.high - range.low) / CELLS, low = range.low + i * width;
@@ -160,7 +160,7 @@ static Range range_sinc(Range a)
     return (Range){fmax(value - rise, -0.2173), fmin(value + rise, 1)};
 }
 
-/* y and z of the bent box: where its cells go, for all parts of the range of the rate. */
+/* y and z of the bent box: where its cells go, for all cells of the range of the rate. */
 static Box bend_box(Box box, Range rate)
 {
     Range z = box.axis[2], half = range_of(0.5);
@@ -179,7 +179,7 @@ static Box bend_box(Box box, Range rate)
     return bent;
 }
 
-/* Parts of a quarter turn each, as far as the rate may go. */
+/* Segments of a quarter turn each, for the largest rate. */
 static uint32_t bend_segments(Box box, Range rate)
 {
     double turn = range_largest(rate) * (box.axis[1].high - box.axis[1].low);
@@ -223,7 +223,7 @@ static const Shape *make_bend(Elaboration *e, const Shape *shape, const Call *ca
     bent->values[0] = values[0];
     bent->cells[0]  = bend_segments(shape->box, rate);
     bent->box       = bend_box(shape->box, rate);
-    /* Parts overlap by the depth of the solid, so that they have no walls between them. */
+    /* Segments overlap by the depth of the solid, so that they have no walls between them. */
     double depth  = 0.5 * (shape->box.axis[2].high - shape->box.axis[2].low);
     bent->overlap = fmin(depth, 0.6 / fmax(range_largest(rate), 1e-9));
     return bent;

@@ -242,7 +242,7 @@ BuiltinFunction builtin_random, builtin_random_direction, builtin_noise, builtin
 
 /* ---- csg.c ---- */
 BuiltinFunction builtin_union, builtin_intersection, builtin_difference, builtin_xor, builtin_morph;
-/* The shapes of a call: a shape, or the elements of a list; `origin` is blamed.  False: reported. */
+/* The shapes of a call: a shape, or the elements of a list.  False: reported, at `origin`. */
 bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *origin,
                     Values *shapes);
 /* These shapes, if they are all solids or all figures; NULL: reported. */
@@ -297,8 +297,8 @@ const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Synt
 /* A bound on the distance to where an expression is 0 in the region over which it has this slope:
    that of the nearest point in it, brought out.  1-Lipschitz everywhere. */
 Node extend_from_region(Elaboration *e, Node formula, const Steepness *slope);
-/* The same shape where only what is in the box matters: fields in it get their bound there; `uniform`:
-   one that is about the distance near their surfaces, if it can be had. */
+/* The same shape where only what is in the box matters: fields in it get their bound there.
+   `uniform`: one that is about the distance near their surfaces, if possible. */
 const Shape *restrict_shape(Elaboration *e, const Shape *shape, Box box, bool uniform);
 /* Reports a field in the tree that has no bound. */
 bool check_bounded(Elaboration *e, const Shape *shape);

@@ -25,7 +25,7 @@
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/local.h"
 
-/* Into how many parts a region is cut for slopes: of gradients, which decide how long all steps
+/* Into how many cells a region is cut for slopes: of gradients, which decide how long all steps
    are, and of heads, of which there are many. */
 enum { CELLS = 512, HEAD_CELLS = 32 };
 

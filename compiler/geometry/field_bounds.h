@@ -12,8 +12,8 @@ typedef struct FieldBounds {
     Node sharp;     /* a longer one that is not, or NODE_NONE */
 } FieldBounds;
 
-/* Those that cost rays least, of an expression that has this slope over the box.  `uniform`: near the
-   surface the distance shall be about right everywhere, if it can be had. */
+/* The bounds that cost rays least, of an expression that has this slope over the box.  `uniform`:
+   near the surface the distance shall be about right everywhere, if possible. */
 FieldBounds field_bounds(Elaboration *e, Node formula, double slope, Box box, bool uniform);
 
 #endif

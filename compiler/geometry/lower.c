@@ -148,8 +148,8 @@ Node sides_excess(Graph *g, Node point, Box box)
 }
 
 /* What is only a bound may be small far from the shape; the distance to the sides of its box is a
-   bound as well, and with it the place where it is r lies within r of the box, as the boxes of shapes.c
-   say. */
+   bound as well, and with it the points where it is r lie within r of the box, as the boxes of
+   shapes.c say. */
 Lowered lower_operand(Lowering *l, const Shape *shape, LowerContext context)
 {
     Lowered result = lower_shape(l, shape, context_lipschitz(context));
@@ -396,7 +396,7 @@ static Lowered lower_revolve(Lowering *l, const Shape *shape, LowerContext conte
 
 /* ---- leaves, paint, and the walk ---- */
 
-/* A number with this value and this gradient: with n and the rest w held still, dot(n, q) + w
+/* A number with this value and this gradient: with n and the rest w held constant, dot(n, q) + w
    changes with the point q as a plane does. */
 static Node with_gradient(Lowering *l, Node value, Node n, Node point)
 {

@@ -59,7 +59,8 @@ static Node over_angle(Graph *g, Op f, Node a)
 
 /* ---- what deformations share ---- */
 
-/* A point in C as far as it is known: nearest to the point, how far from it, and undone. */
+/* The deformation undone at the point of C that is nearest to a point: how far that is, and the
+   point before the deformation. */
 typedef struct InverseDeformation {
     Node offset, point;
     Node in[3], out[3]; /* rows of matrices that take normals to the child's space, and back */
@@ -103,7 +104,7 @@ static Lowered lower_undone(Lowering *l, const Shape *shape, LowerContext contex
     return result;
 }
 
-/* With g in the place of the distance: the distance outside of C as well. */
+/* With g as the distance in C: the distance outside of C as well. */
 static Lowered with_region(Lowering *l, Lowered result, Node offset)
 {
     Graph *g        = l->graph;
@@ -114,7 +115,7 @@ static Lowered with_region(Lowering *l, Lowered result, Node offset)
     return result;
 }
 
-/* As much of a distance as a weight needs whose slope is `steep`: a part of the width of the solid
+/* As much of a distance as a weight needs whose slope is `steep`: a fraction of the width of the solid
    where that is less.  *cost is what the weight adds to the slope. */
 static Node cut_distance(Graph *g, Node distance, double width, Node steep, Node *cost)
 {
@@ -198,17 +199,17 @@ Lowered lower_twist(Lowering *l, const Shape *shape, LowerContext context)
     return with_region(l, result, inverse.offset);
 }
 
-/* ---- bend: C is a box for each part ---- */
+/* ---- bend: C is a box for each segment ---- */
 
 /*
  * Material at (x, y, z) goes along the circle through the origin with curvature k: to the angle
  * k y, at the distance 1 / k - z from the axis of the bend.  All formulas are such that they hold
- * for k = 0 too.  A part reaches from -half to half along y, less than a right angle to either
+ * for k = 0 too.  A segment reaches from -half to half along y, less than a right angle to either
  * side: more would have the axis in its convex hull, and turns that T cannot tell apart.
  */
 typedef struct BendSegment {
     Node rate, middle, half; /* where on y, and how far to both sides */
-    Map  map;                /* of the part about its middle, in the whole */
+    Map  map;                /* from the segment about its middle to the whole bend */
 } BendSegment;
 
 static BendSegment bend_segment(Graph *g, const Shape *shape, uint32_t i)
@@ -233,7 +234,7 @@ static BendSegment bend_segment(Graph *g, const Shape *shape, uint32_t i)
     return segment;
 }
 
-/* The box around the bent part; rate * z stays below 1 in the child's box. */
+/* The box around the bent segment; rate * z stays below 1 in the child's box. */
 static void segment_region(Graph *g, const BendSegment *segment, Box box, Node *low, Node *high)
 {
     Node one = graph_number(g, 1), half = graph_number(g, 0.5);
@@ -282,7 +283,7 @@ static void undo_bend(Lowering *l, const BendSegment *segment, Node point,
     inverse->out[2]                  = row(g, zero, s_less, c);
 }
 
-/* A part, at a place in its own space. */
+/* A segment, at a point of its own space. */
 static Lowered lower_segment(Lowering *l, const Shape *shape, LowerContext context,
                              const BendSegment *segment)
 {

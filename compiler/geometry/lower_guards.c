@@ -11,11 +11,11 @@
 
 #include <math.h>
 
-/* Boxes are made larger by this part of the size of their coordinates: single precision. */
+/* Boxes are made larger by this fraction of the size of their coordinates: single precision. */
 static const double ROUNDING = 1e-6;
 
-/* Farther than this part of its radius, a box stands for what is in it.  Smaller parts leave more
-   out and make more steps; on the processor all from 0.25 to 1 cost the same within 10 %. */
+/* Farther than this fraction of its radius, a box stands for what is in it.  Smaller fractions
+   leave more out and make more steps; on the processor all from 0.25 to 1 cost the same within 10 %. */
 static const double FAR = 0.5;
 
 /* Farther than any scene. */

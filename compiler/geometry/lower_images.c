@@ -174,8 +174,8 @@ static Node image_map(Lowering *l, RayImage *image, const Map *map)
     return NODE_NONE;
 }
 
-/* 1 / t where the ray crosses a mirror that is `distance`, towards which it goes at `speed`: the larger
-   root y of away y^2 + (2 away h.w - speed) y + away h.h - A h.axis = 0. */
+/* 1 / t where the ray crosses a mirror at this distance, which it approaches at `speed`: the larger
+   root y of distance y^2 + (2 distance h.w - speed) y + distance h.h - A h.axis = 0. */
 static Node crossing(Lowering *l, const RayImage *image, Node axis, Node distance, Node speed)
 {
     Graph *g    = l->graph;
@@ -247,7 +247,7 @@ static Node image_inversion(Lowering *l, const Shape *shape, RayImage image)
     return inner == NODE_NONE ? NODE_NONE : larger(l, nearer_of(l->graph, inner, pole), hull);
 }
 
-/* What is first inwards is nearest at once, so that nothing has to be kept: behind a map no ball
+/* What is first inwards is nearest at once, so that nothing has to be stored: behind a map no ball
    that holds its pole passes, but what is outside of its hull and of those farther out. */
 static Node image_krs(Lowering *l, const Shape *shape, RayImage image)
 {

@@ -11,7 +11,7 @@
 
 enum { MOST_HEAP_MIRRORS = 31 };
 
-/* How far the walk has come. */
+/* The state between two stages of a sequence, from the last to the first. */
 typedef struct SequenceState {
     const Shape *krs;
     LowerContext context; /* of the sequence */
@@ -21,8 +21,8 @@ typedef struct SequenceState {
     uint32_t     level;
     Lowered      result; /* of the kernels so far */
     PoleBounds   pole_bounds;
-    Node         inside;   /* distance of those that the last hull is around, */
-    Node         distance; /* and of the others, none nearer than the hulls around it */
+    Node         inside;   /* distance of the kernels within the last hull, */
+    Node         distance; /* and of the others, each no nearer than its hulls */
     GuardSite   *guard_sites;
     uint32_t     guard_site_count;
 } SequenceState;
@@ -54,7 +54,7 @@ static void leave_hull(Lowering *l, SequenceState *state)
 }
 
 /* `before`: around what the map is applied to, or NULL.  Where something above moves the surface,
-   it would show how far from a pole the hulls are: then all are there. */
+   it would show how far from a pole the hulls are: then all hulls are used. */
 static void take_map(Lowering *l, SequenceState *state, const SequenceStage *stage,
                      const LevelBound *before)
 {

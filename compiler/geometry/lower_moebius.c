@@ -12,14 +12,14 @@
 
 #include <math.h>
 
-/* X is no less than this part of the radius of the sphere, so that everything stays finite. */
+/* X is no less than this fraction of the radius of the sphere, so that everything stays finite. */
 static const double NEAR_POLE = 1e-6;
 
 /* How far a pole stays from a ball to be of no concern, in radii. */
 static const double CLEAR = 0.5;
 
-/* Balls are made larger by this part: single precision.  The surface of a ball that is inverted
-   keeps off the pole, by this part of its radius, so that its image is no half-space. */
+/* Balls are made larger by this fraction: single precision.  The surface of a ball that is inverted
+   keeps off the pole, by this fraction of its radius, so that its image is no half-space. */
 static const double ROUNDING = 1e-5, KEEP_OFF = 0.1;
 
 MapChain map_chain_new(Graph *g, Node point)
@@ -37,7 +37,7 @@ Node turn_behind(Graph *g, const Map *map, Node direction)
     return graph_op4(g, OP_turn, direction, rows[0], rows[1], rows[2]);
 }
 
-/* R^T way * factor + pole. */
+/* R^T offset * factor + pole. */
 static Node behind_inversion(Graph *g, const Map *map, Node offset, Node factor)
 {
     offset = graph_op2(g, OP_scale, turn_behind(g, map, offset), factor);
@@ -144,7 +144,7 @@ Node map_chain_hull(Lowering *l, const MapChain *chain, const Map *map, Ball *ba
     if (isinf(radius) || radius == 0)
         return NODE_NONE;
     ball->radius = radius;
-    /* Centre and radius: scale (R way, radius) / (|way|^2 - radius^2); outside that is < 0. */
+    /* Centre and radius: scale (R offset, radius) / (|offset|^2 - radius^2); outside that is < 0. */
     Node rest           = graph_number(g, radius * radius);
     rest                = graph_op2(g, OP_sub, square, rest);
     Node factor         = graph_op2(g, OP_div, map->scale, rest);
@@ -162,7 +162,7 @@ Node map_chain_hull(Lowering *l, const MapChain *chain, const Map *map, Ball *ba
     return map_chain_out(l, chain, bound).distance;
 }
 
-/* ---- hulls of sequences ---- */
+/* ---- bounds around the poles of sequences ---- */
 
 /* Around all places of a ball whose centre may move. */
 static Ball ball_about(Lowering *l, Node centre, double radius)

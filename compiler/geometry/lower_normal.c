@@ -3,7 +3,7 @@
  *
  * On the way in it is turned as space is, so that materials see it as they see the point.  It has
  * to come out again only where mirrors are smooth (math.md, section 1, "Smooth shading"): on the
- * way in a mirror reflects it or does not; on the way out it does so by a share that rises from 0
+ * way in a mirror reflects it or does not; on the way out it does so by an amount that rises from 0
  * to 1 across the mirror.  Everywhere else the normal is the one that came in.
  */
 #include "compiler/geometry/lowering.h"
@@ -13,7 +13,7 @@ static const double NO_WIDTH = 1e-30;
 /* Of a normal that the mirrors have shortened to nothing: its square. */
 static const double NO_LENGTH = 1e-8;
 
-/* normal - 2 share (axis . normal) axis: reflected where the share is 1. */
+/* normal - 2 amount (axis . normal) axis: reflected where the amount is 1. */
 static Node mirrored(Graph *g, Node normal, Node axis, Node amount)
 {
     Node along      = graph_op2(g, OP_dot, normal, axis);

@@ -19,7 +19,7 @@ typedef struct Lowered {
     Surface surface;
 } Lowered;
 
-/* A shape that was lowered on the way: where, and its distance there. */
+/* A shape that has been lowered, the point where, and its distance there. */
 typedef struct LoweredShape {
     const struct Shape *shape;
     Node                point, distance; /* `distance` may be NODE_NONE */
@@ -35,21 +35,20 @@ typedef struct Nodes {
 } Nodes;
 
 typedef struct Lowering {
-    Graph      *graph;
-    Arena      *scratch;
-    bool        surfaces; /* else the distance alone */
-    AlongMethod method;   /* of lower_along.c */
-    bool        thin;     /* rays pass all that is around: sheets have no thickness */
-    bool        guarded;  /* what is far is left out (guards.c) */
-    Node        unit;     /* guarded: how long 1 is outside of everything */
-    size_t      most;     /* nodes that the graph may have */
-    bool        overflow;
-    Nodes      *held_constant; /* NULL, or, of lower_gradient, what counts as constant */
-    LoweredShapes
-        *lowered_shapes; /* NULL, or what takes down every shape that is met, parts first */
+    Graph         *graph;
+    Arena         *scratch;
+    bool           surfaces; /* else the distance alone */
+    AlongMethod    method;   /* of lower_along.c */
+    bool           thin;     /* rays pass all that is around: sheets have no thickness */
+    bool           guarded;  /* what is far is left out (guards.c) */
+    Node           unit;     /* guarded: how long 1 is outside of everything */
+    size_t         most;     /* nodes that the graph may have */
+    bool           overflow;
+    Nodes         *held_constant;  /* for lower_gradient: nodes that count as constants; or NULL */
+    LoweredShapes *lowered_shapes; /* NULL, or a list of all shapes, children first */
 } Lowering;
 
-/* Where a shape stands: the mapped point, and the sequence around it.  `lipschitz` says that
+/* Where a shape is lowered: the mapped point, and the sequence around it.  `lipschitz` says that
    something above (a blend, an offset) moves the zero set and so needs the slope.  With surfaces
    also the normal of the surface and the radius of a pixel, in the shape's space. */
 typedef struct LowerContext {
@@ -59,12 +58,12 @@ typedef struct LowerContext {
     Node smoothing; /* the width over which normals change sides of a mirror; NODE_NONE: at once */
 } LowerContext;
 
-/* A place outside of everything, of a lowering without surfaces. */
+/* Outside of all shapes, for a lowering without surfaces. */
 LowerContext context_new(Node point, bool lipschitz);
 
 extern const Lowered lowered_nothing;
 
-/* The same place at another point; below something that needs the slope. */
+/* The same context at another point; the same below something that needs the slope. */
 LowerContext context_at(LowerContext context, Node point);
 LowerContext context_lipschitz(LowerContext context);
 
@@ -77,7 +76,7 @@ typedef struct NormalStep {
     Node normal, nearer; /* KERNEL: of its surface; that it is nearer than all further out */
 } NormalStep;
 
-/* The way of a normal from a place inwards; does nothing in a lowering without surfaces. */
+/* The maps that a normal passes, from outside inwards; empty in a lowering without surfaces. */
 typedef struct NormalPath {
     LowerContext innermost; /* normal, footprint and smoothing behind the steps so far */
     NormalStep  *steps;
@@ -101,7 +100,7 @@ void normal_kernel(Lowering *l, NormalPath *path, Lowered outer, Lowered kernel)
 /* The normal in the space where the path began, of what was lowered behind it: of its kernels, or
    `inner` where there is none. */
 Node normal_out(Lowering *l, const NormalPath *path, Node inner);
-/* The place behind the steps, at a point there. */
+/* The context behind the steps, at a point there. */
 LowerContext context_behind(const NormalPath *path, LowerContext context, Node point);
 /* A unit vector; `otherwise` where nothing is left of the normal. */
 Node unit_normal(Graph *g, Node normal, Node otherwise);
@@ -125,7 +124,7 @@ Lowered scale_distance(Lowering *l, Lowered result, Node factor);
 Node enter_scale(Lowering *l, Node scale);
 
 /* ---- lower_moebius.c ---- */
-/* How far a walk through maps has come, from outside inwards.  An empty ball of radius d around
+/* The maps passed so far, from outside inwards.  An empty ball of radius d around
    the point behind them is one of radius d * scale around the point outside or, once a map has
    inverted, d / (shrink + bend * |d|). */
 typedef struct MapChain {
@@ -157,16 +156,16 @@ Node enter_map_chain(Lowering *l, const MapChain *chain);
    the one, a little larger, whose image this is the distance to. */
 Node map_chain_hull(Lowering *l, const MapChain *chain, const Map *map, Ball *ball);
 
-/* The hulls that a walk through a sequence has come through.  Another one is worth its price where
-   the pole may be within those so far, as seen from outside; otherwise they are far from the pole,
-   and bound there what the next one would. */
+/* Bounds of a sequence near the poles of its maps: the hulls passed so far.  Another hull is worth
+   its price where the pole may be within those so far, as seen from outside; otherwise they are far
+   from the pole, and bound there what the next one would. */
 typedef struct PoleBounds {
     Node distance; /* to all of them: the largest; NODE_NONE: there are none */
     Ball within;   /* where the point is unless that is above 0; infinite: anywhere */
 } PoleBounds;
 
 void pole_bounds_fold(Lowering *l, PoleBounds *pole_bounds, Node normal, Node offset);
-/* Before map_chain_append.  `ball`: around what the map is applied to.  Whether there is one more. */
+/* Before map_chain_append.  `ball`: around what the map is applied to.  Whether a hull was added. */
 bool pole_bounds_append(Lowering *l, PoleBounds *pole_bounds, const MapChain *chain, const Map *map,
                         Ball ball);
 /* Of two distances, each of which may be NODE_NONE. */
@@ -179,16 +178,16 @@ Lowered lower_inversion(Lowering *l, const Shape *shape, LowerContext context);
 Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod method, Arena *scratch);
 
 /* ---- lower_guards.c ---- */
-/* A place between two stages of a sequence where what is left may be left out. */
+/* A point between two stages of a sequence where a guard may skip the remaining stages. */
 typedef struct GuardSite {
-    const LevelBound *bound; /* around all that is left */
+    const LevelBound *bound; /* around all that the remaining stages make */
     MapChain          chain;
     Node              so_far; /* the distance by the stages after; NODE_NONE: of nothing */
 } GuardSite;
 
-/* Whether there is to be one before a stage. */
+/* Whether a guard goes before a stage. */
 bool may_guard(const Lowering *l, const Shape *krs, uint32_t stage, LowerContext context);
-/* The distance of a sequence which is `whole` when nothing is left out; stops from the outermost
+/* The distance of a sequence, which is `whole` when nothing is left out; sites from the outermost
    to the innermost. */
 Node guard_at_sites(Lowering *l, const GuardSite *guard_sites, uint32_t count, Node whole);
 

@@ -4,22 +4,23 @@
  * Each shape counts 1 where it is, and less with the distance d from it: f(d / reach), 0 from the
  * end of its reach.  The solid is where the sum F is at least the level T.
  *
- * Within a step s the share of a shape can rise by L s, L = steepest / reach, and that of one whose
- * reach begins only after a gap by L (s - gap).  So s is safe as long as
- *     sum over all of max(s - gap_i, 0) <= (T - F) / L = room.
- * With all gaps and s counted from the nearest gap on, max(s - gap, 0) <= s max(1 - gap / most, 0)
- * for s <= most = T / L, and room is never more than that.  So
- *     s = nearest + room / sum of max(1 - (gap_i - nearest) / most, 0)
- * is safe.  The sum is at least 1, at least the number of shapes that can be felt (which serves
- * inside), and changes gradually, so that normals found by differences show no seams.
+ * Within a step s the falloff of a shape can rise by L s, L = steepest / reach.  A shape whose reach
+ * begins only after a distance, its entry, can rise by L (s - entry).  So s is safe as long as
+ *     sum over all of max(s - entry_i, 0) <= (T - F) / L = margin.
+ * Let all entries and s be counted from the nearest entry.  Then
+ *     max(s - entry, 0) <= s max(1 - entry / most, 0)   for s <= most = T / L,
+ * and the margin is never more than `most`.  So
+ *     s = nearest + margin / sum of max(1 - (entry_i - nearest) / most, 0)
+ * is safe.  The sum is at least 1.  Inside it is at least the number of shapes within reach, which is
+ * what matters there.  It changes gradually, so normals found by differences show no edges.
  *
- * Where something above needs the slope, the sum is no more than n: nearest + room / n is
- * 1-Lipschitz, since F is 0 wherever there is a gap.
+ * Where something above needs the slope, the sum is n: nearest + margin / n is 1-Lipschitz, since F is
+ * 0 outside of every reach.
  *
  * A bound d may be much below the distance, and then what counts by it is fat.  The distance to
  * the shape's box is a bound as well, but shows: flat faces.  So such a d is lengthened, by a
  * factor k for which it is the longer of the two around the box (found by looking).  Its shape
- * counts f(k d / reach), which rises by k L s in a step s, from a gap of d - reach / k on: so it
+ * counts f(k d / reach), which rises by k L s in a step s, from the entry d - reach / k on: so it
  * counts k times in the sums above, and all else holds.
  */
 #include "compiler/geometry/elaborate.h"
@@ -146,7 +147,7 @@ static Node falloff_at(Graph *g, FalloffKind kind, Node t)
 
 /* ---- bounds that are too short ---- */
 
-/* Points of a face of the box, and how far above it they are looked at, in parts of the reach. */
+/* Points of a face of the box, and how far above it they are looked at, in fractions of the reach. */
 enum { FACE_POINTS = 7, FACE_LEVELS = 3 };
 
 /* Beyond it, steps would be too short, and a box shows. */
@@ -210,13 +211,13 @@ static double stretch_of(const Lowering *l, const Shape *meta, const Shape *chil
     return stretch > 1 + 1e-6 ? stretch : 1;
 }
 
-/* The shapes of a metasurface that there are. */
+/* The shapes of a metasurface that are not empty. */
 typedef struct MetaTerms {
     Graph   *graph;
     Node    *falloffs, *entries;
     double  *stretches, stretched; /* by how much distances are lengthened; the sum of all */
     uint32_t count;
-    Surface  surface; /* mixed by the shares, `total` of them so far */
+    Surface  surface; /* mixed by the falloffs, whose sum so far is `total` */
     Node     total;
 } MetaTerms;
 
@@ -276,8 +277,8 @@ static void add_term(Lowering *l, const Shape *meta, const Shape *child, LowerCo
     terms->entries[terms->count++] = graph_op2(g, OP_max, entry, zero);
 }
 
-/* How many shapes a step can meet: those whose reach begins at once, and others less, down to 0 at
-   the longest there is, `most`. */
+/* How many shapes a step can reach: one each for those whose reach begins at once, less for others,
+   0 for those that the longest step, `most`, does not reach. */
 static Node count_reached(const MetaTerms *terms, Node nearest, Node most)
 {
     Graph *g    = terms->graph;

@@ -13,10 +13,10 @@
 
 enum { MOST_BRANCHES = 512, MOST_OPENED = 2000 };
 
-/* What is left to gain may be this part of the set's radius. */
+/* The search ends when no more than this fraction of the set's radius can be gained. */
 static const double TOLERANCE = 0.005;
 
-/* The largest direction.x + beyond over the set after the first `stages` stages. */
+/* The largest direction.x + offset over the set after the first `stages` stages. */
 typedef struct Branch {
     uint32_t stages;
     double   direction[3], offset;
@@ -64,7 +64,7 @@ static void swap(Branch *a, Branch *b)
     *b       = c;
 }
 
-/* False when there is no room: then nothing may be opened any more. */
+/* False when the heap is full: then no more branches may be opened. */
 static bool push(ReachSearch *search, Branch branch)
 {
     if (branch.stages == 0)

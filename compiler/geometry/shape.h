@@ -38,7 +38,7 @@ typedef enum ShapeKind {
     SHAPE_REPEAT_POLAR, /* [0]; cells[0] copies about y; slope of the child */
     SHAPE_MIRROR,       /* [0]; values[0] unit normal, values[1] offset; slope of the child */
     SHAPE_TWIST,        /* [0]; values[0] rate, about y; 1: see lower_deform.c, also for the next */
-    SHAPE_BEND,         /* [0]; values[0] rate, about x; cells[0] parts, which overlap; 1 */
+    SHAPE_BEND,         /* [0]; values[0] rate, about x; cells[0] segments, which overlap; 1 */
     SHAPE_TAPER,        /* [0]; values[0], values[1] factors at both ends of y; 1 */
     SHAPE_DISPLACE,     /* [0]; values[0] amplitude of `formula`, values[1] its slope; 1 */
     SHAPE_SMOOTH,       /* [0]; values[0] width or NODE_NONE; slope of the child */
@@ -112,7 +112,7 @@ enum { MOST_BEND_SEGMENTS = 16 };
 
 /* Walks of the tree are recursive. */
 enum { MOST_SHAPE_DEPTH = 1000 };
-/* And go through a part as often as it is used, which is more often than there are shapes. */
+/* Walks visit a shape as often as it is used, which is more often than there are shapes. */
 enum { MOST_TREE_SHAPES = 100000 };
 
 struct Shape {
@@ -144,7 +144,7 @@ struct Shape {
 
     /* PRIMITIVE, in its own coordinates; bound, uv and trap (VEC2) may be NODE_NONE. */
     Node     formula; /* of a field, algebraic surface (field.c) or DISPLACE, else NODE_NONE */
-    double   overlap; /* BEND: by how much the parts reach beyond their ends */
+    double   overlap; /* BEND: by how much the segments reach beyond their ends */
     double   reach;   /* DISPLACE: largest size of the formula in the box */
     uint32_t degree;  /* of a formula that is a polynomial, else 0, */
     ZeroBox  zeros;   /* and where that may be 0 */
@@ -217,7 +217,7 @@ typedef struct FrameSlope {
 /* The slot has a number of single precision that is no less than the slope; infinite: there is no
    bound. */
 double frame_slope_upward(double slope);
-/* Into how many parts the region is cut at most. */
+/* Into how many cells the region is cut at most. */
 uint32_t frame_slope_cells(Box region);
 
 /* The host finds each anew whenever anything changes. */

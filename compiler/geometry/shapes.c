@@ -62,7 +62,7 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
     shape->plane_normal = shape->plane_offset = NODE_NONE;
     shape->values[0] = shape->values[1] = NODE_NONE;
     uint64_t tree_shapes                = 1;
-    double   sequences = 0; /* instances of the sequences among the parts; other parts make one */
+    double   sequences = 0; /* instances of the sequences in the tree; any other shape counts one */
     for (uint32_t i = 0; i < count; i++) {
         const Shape *child  = children[i];
         shape->children[i]  = child;

@@ -144,7 +144,7 @@ static Node vector_property(Elaboration *e, const Environment *env, const Syntax
     return node == NODE_NONE ? graph_constant(e->graph, TYPE_VEC3, otherwise) : node;
 }
 
-/* A place.  A `param` without a range may be anything, and says so at its frame. */
+/* A position.  A `param` without a range may be anything, and says so at its frame. */
 static Node position_property(Elaboration *e, const Environment *env, const Syntax *block,
                               const char *name, const double otherwise[3])
 {

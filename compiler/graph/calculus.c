@@ -180,7 +180,7 @@ Fact fact_agreed(Fact fact, uint32_t size)
 
 /* ---- means, sums and products ---- */
 
-/* Whether the first two weights are shares of one, whose sum is not above 1. */
+/* Whether the first two are weights whose sum is not above 1. */
 static bool mixes(Norm norm, const Partials *rows, uint32_t size)
 {
     for (uint32_t i = 0; i < size; i++)
@@ -232,7 +232,7 @@ static double slope_sum(int first, int arity, const Fact *operands, const Partia
 }
 
 /* Of numbers the mean of slopes is at most the largest.  Components of vectors may take their
-   shares from different operands: |w|^2 <= |u|^2 + |v|^2. */
+   terms from different operands: |w|^2 <= |u|^2 + |v|^2. */
 static double slope_convex(int arity, const Fact *operands, const Partials *rows, uint32_t size)
 {
     double slope = 0;

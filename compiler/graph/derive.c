@@ -86,7 +86,7 @@ static Node atan2_slope(Derivation *d, Node a, Node b, Node numerator)
 }
 
 /* Of h^2 (3 - 2 h), h = (c - a) / (b - a) clamped: by c it is 6 h (1 - h) / (b - a), by the edges
-   the same less the parts that they have in h. */
+   the same less what they contribute to h. */
 static Node smoothstep_slope(Derivation *d, Node a, Node b, Node c, int operand)
 {
     Graph *g    = d->graph;
@@ -304,7 +304,7 @@ static Node derive_cell_polar(Derivation *d, const Expr *e, Node node, const Nod
     return between_jumps(d, graph_op3(g, OP_vec3, x, v[1], z));
 }
 
-/* ---- blends: share[0] da + share[1] db ---- */
+/* ---- blends: weight[0] da + weight[1] db ---- */
 
 /* Of a sharp minimum. */
 static void sharp_weights(Derivation *d, Node a, Node b, Node weight[2])
@@ -314,7 +314,7 @@ static void sharp_weights(Derivation *d, Node a, Node b, Node weight[2])
     weight[1] = graph_op3(d->graph, OP_select, less, zero, one);
 }
 
-/* Those that give the farther one a share of 1/2 at most, the less the farther it is. */
+/* The farther one has a weight of 1/2 at most, the less the farther it is. */
 static void smooth_weights(Derivation *d, Op op, Node a, Node b, Node width, Node weight[2])
 {
     Graph *g          = d->graph;

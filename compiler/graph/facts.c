@@ -16,7 +16,7 @@ static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_
 
 /* ---- facts of nodes ---- */
 
-/* What facts are computed for: the needed nodes, each with its place in `facts`. */
+/* What facts are computed for: the needed nodes, each with its index in `facts`. */
 typedef struct Analysis {
     const Graph *graph;
     Tape         tape;
@@ -133,7 +133,7 @@ Range range_task_value(const RangeTask *task, Node node)
     return task->facts[tape_index(&task->tape, node)].value[0];
 }
 
-/* ---- the slope of an expression, over parts of a box ---- */
+/* ---- the slope of an expression, over cells of a box ---- */
 
 /* Parts of the box in a heap, the steepest first. */
 typedef struct Cell {
@@ -169,7 +169,7 @@ static int widest_axis(Box box)
     return widest;
 }
 
-/* Puts a part into its place, from the top of the heap downwards. */
+/* Sinks a cell from the top of the heap to its position. */
 static void heap_sink(Cell *heap, size_t count, Cell cell)
 {
     size_t hole = 0;
@@ -191,7 +191,7 @@ static void heap_rise(Cell *heap, size_t count, Cell cell)
     heap[hole] = cell;
 }
 
-/* The part that holds the middle point is at least as steep as that point alone, however small
+/* The cell that holds the middle point is at least as steep as that point alone, however small
    it is cut: when that is as steep as the whole, cutting is of no use. */
 static bool cutting_helps(const Analysis *analysis, Node root, Cell cell)
 {
@@ -201,7 +201,7 @@ static bool cutting_helps(const Analysis *analysis, Node root, Cell cell)
     return cell_slope(analysis, root, middle) < cell.slope * (1 - 1e-9);
 }
 
-/* Cuts the steepest part in two until there are `cells`; the steepest is then the first. */
+/* Cuts the steepest cell in two until there are `cells`; the steepest is then the first. */
 static void heap_refine(const Analysis *analysis, Node root, Cell *heap, size_t cells)
 {
     for (size_t count = 1; count < cells; count++) {

@@ -32,7 +32,7 @@ Fact *graph_facts(const Graph *graph, Box box, const double (*parameters)[4], Ar
 /* Range of one node that does not depend on the point, over the ranges of the parameters. */
 Fact graph_frame_fact(const Graph *graph, Node node, Arena *scratch);
 
-/* The slope of `root` over a box, refined by cutting the box into at most `cells` parts; inf
+/* The slope of `root` over a box, refined by cutting the box into at most `cells` cells; inf
    when there is no bound. `*blame` (may be NULL) is the node whose slope first became infinite
    or contributes most. */
 double graph_slope(const Graph *graph, Node root, Box box, const double (*parameters)[4],

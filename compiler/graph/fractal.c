@@ -24,7 +24,7 @@
  * square over all directions, e^2 (2 + s^2) / 3, it is too long in one place of some thousands;
  * where that counts as 0.85 e^2 at least, so that many steps of small s do not add up, it was
  * never found to be.
- * Inside, d is tried so that what it becomes keeps below the room R - |w|, taking it to be
+ * Inside, d is chosen so that what it becomes keeps below the margin R - |w|, taking it to be
  *     x = |w'| d / (1 - g d),  as  (|w| + x)^p - |w|^p <= e x / (1 - (p - 1) x / (2 |w|))
  * coefficient by coefficient, by which each step adds (p - 1) |w'| / (2 |w|) to g.  What is nearer
  * to the origin than `least` counts as so near there.

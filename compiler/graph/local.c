@@ -41,7 +41,7 @@ typedef struct BallContext {
 /* Keeps quotients finite; what is smaller has no digits left in single precision. */
 static const double TINY = 1e-30, SMALL = 1e-6;
 
-/* How many parts the box is cut into for what has no rule. */
+/* How many cells the box is cut into for what has no rule. */
 enum { CELLS = 256 };
 
 /* ---- arithmetic that leaves out what is 0 or 1 ---- */
@@ -96,7 +96,7 @@ static Node at_least(const BallContext *x, Node node, double least)
     return graph_op2(x->graph, OP_max, node, number(x, least));
 }
 
-/* ---- parts ---- */
+/* ---- terms ---- */
 
 static bool has_radius(const BallContext *x) { return x->radius != NODE_NONE; }
 
@@ -142,7 +142,7 @@ static BallTerm negate_term(const BallContext *x, Node value, BallTerm a)
     return (BallTerm){value, negative(x, a.gradient), a.first, a.second, a.steep};
 }
 
-/* `factor` times the part, for a rule that adds the rest. */
+/* `factor` times the term, for a rule that adds the rest. */
 static BallTerm scale_term(const BallContext *x, Node value, BallTerm a, Node factor)
 {
     Node size = size_of(x, factor);

@@ -1,5 +1,5 @@
 /*
- * rules_blends.c: facts of smooth minima of a and b over a width k, and of the share of each.
+ * rules_blends.c: facts of smooth minima of a and b over a width k, and of the weight of each.
  */
 #include <math.h>
 

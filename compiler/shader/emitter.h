@@ -27,7 +27,7 @@ typedef struct Emitter {
     const char **excess;       /* of mirrors in a row: the name of how far beyond it the point is */
     uint32_t     next;         /* number of the next local name */
     uint32_t     globals;
-    uint32_t    *found_index; /* of values that the host finds: their number + 1 */
+    uint32_t    *found_index; /* of values that the host finds: their index + 1 */
     bool         from_host;   /* there is nothing but what the host finds of the frame */
     Regions      regions;     /* of the function being written, where it has guards */
     Span         last;        /* the line that was commented last */

@@ -23,9 +23,9 @@ void emit_flats(Emitter *e, const EmitMarch *march)
     text_format(e->out, "    return %s;\n}\n#endif\n\n", e->text[march->ahead[1]]);
 }
 
-/* ---- parts ---- */
+/* ---- scene parts: one component, or neighbours that share a distance function ---- */
 
-/* Beyond so many, neighbours share a part. */
+/* With more components, neighbours share a scene part. */
 enum { MOST_SCENE_PARTS = 64 };
 
 uint32_t emit_scene_part_count(size_t components)
@@ -33,13 +33,13 @@ uint32_t emit_scene_part_count(size_t components)
     return components < MOST_SCENE_PARTS ? (uint32_t)components : MOST_SCENE_PARTS;
 }
 
-/* The first component of a part, or of the one behind the last. */
+/* The first component of a scene part; for the number of parts, the number of components. */
 static size_t first_of_scene_part(size_t part, size_t components)
 {
     return part * components / emit_scene_part_count(components);
 }
 
-/* What is inside of a switch over parts. */
+/* A case of the switch over scene parts. */
 static void emit_scene_part_distance(Emitter *e, size_t part, const bool *flat, size_t components)
 {
     text_format(e->out, "    case %zuu:\n", part);
