@@ -34,10 +34,11 @@ GRAPH    := $(addprefix compiler/graph/, graph.c derive.c series.c zeros.c local
                 fractal.c evaluate.c print.c)
 GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c arguments.c \
                 builtins.c lists.c random.c csg.c functions.c expression.c map.c moebius.c \
-                shapes.c shapes_fractal.c metasurface.c shapes_krs.c slope.c field.c field_bounds.c deform.c \
-                declare.c claims.c empty.c methods.c view.c palette.c scope.c statements.c print.c lower.c lower_normal.c lower_repeat.c \
-                lower_deform.c lower_krs.c lower_along.c lower_guards.c lower_moebius.c \
-                lower_images.c)
+                shapes.c shapes_fractal.c metasurface.c shapes_krs.c slope.c field.c \
+                field_bounds.c deform.c declare.c claims.c empty.c methods.c properties.c \
+                material.c view.c palette.c scope.c statements.c print.c lower.c lower_normal.c \
+                lower_repeat.c lower_deform.c lower_krs.c lower_along.c lower_guards.c \
+                lower_moebius.c lower_images.c)
 SHADER   := $(addprefix compiler/shader/, emit.c statements.c frame_values.c mirrors.c early_outs.c march.c spirv.c)
 BORDER   := compiler/shader/glslang_border.cpp
 API      := $(addprefix compiler/, compile.c roots.c precision.c limits.c retain.c groups.c program.c \

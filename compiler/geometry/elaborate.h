@@ -396,16 +396,40 @@ const Map *map_of_matrix(Elaboration *e, const double entries[4][4], const char 
 const Map *moebius_product(Elaboration *e, const Map *f, const Map *g);
 const Map *inversion_inverse(Elaboration *e, const Map *f);
 
-/* ---- view.c: cameras, lights, sky, image, materials ---- */
+/* ---- properties.c: blocks with properties, and values of those ---- */
+/* Reports properties that a block of this kind may not have, and those that are given twice. */
+void check_block(Elaboration *e, const Syntax *block);
+/* "a camera", for messages. */
+const char *block_name(SyntaxKind kind);
 /* The value of `name:` in a block of properties, or NULL. */
 const Syntax *find_property(const Syntax *block, const char *name);
-Value         elaborate_material(Elaboration *e, const Environment *env, const Syntax *syntax);
-/* Adds a camera or light to the scene, or sets its sky or image. */
+/* A number or a vector that does not depend on the point; `otherwise` when it is not given, or is
+   of another type, which is reported. */
+Node number_property(Elaboration *e, const Environment *env, const Syntax *block, const char *name,
+                     double otherwise);
+Node vector_property(Elaboration *e, const Environment *env, const Syntax *block, const char *name,
+                     const double otherwise[3]);
+/* The same of a position, which must be near enough for devices to compute with. */
+Node position_property(Elaboration *e, const Environment *env, const Syntax *block,
+                       const char *name, const double otherwise[3]);
+/* A number that must be known when the scene is compiled, and lie in a range. */
+double constant_property(Elaboration *e, const Environment *env, const Syntax *block,
+                         const char *name, double least, double most, double otherwise);
+/* One of a few words, the last `later` of which are known but not in this version; NULL when it
+   is not given, or not one that is there. */
+const char *word_property(Elaboration *e, const Environment *env, const Syntax *block,
+                          const char *name, const char *const *words, size_t count, size_t later);
+
+/* ---- material.c ---- */
+Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *syntax);
+/* A material, or a colour that becomes one; NULL: reported. */
+const Material *to_material(Elaboration *e, Value value, const Syntax *syntax);
+
+/* ---- view.c: cameras, lights, sky, image, zones ---- */
+/* Adds a camera, a light or a zone to the scene, or sets its sky or image. */
 void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax);
 /* Adds what the scene leaves out: a camera, a sun, a sky. */
 void complete_view(Elaboration *e);
-/* A material, or a colour that becomes one; NULL: reported. */
-const Material *to_material(Elaboration *e, Value value, const Syntax *syntax);
 
 /* ---- statements.c ---- */
 /* The shape of a `krs` block. */
