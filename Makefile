@@ -33,14 +33,15 @@ GRAPH    := $(addprefix compiler/graph/, graph.c substitute.c derive.c series.c 
                 anchor.c simplify.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c regions.c \
                 fractal.c evaluate.c print.c)
 GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c arguments.c \
-                builtins.c lists.c chance.c joining.c functions.c expression.c map.c moebius.c \
-                make.c make_fractal.c meta.c make_krs.c slope.c field.c field_bounds.c deform.c \
-                declare.c claims.c empty.c methods.c looks.c palette.c scope.c statements.c print.c lower.c lower_normal.c lower_repeat.c \
-                lower_deform.c lower_krs.c lower_along.c lower_guards.c lower_moebius.c \
-                lower_images.c)
+                builtins.c lists.c random.c csg.c functions.c expression.c map.c moebius.c \
+                shapes.c shapes_fractal.c metasurface.c shapes_krs.c slope.c field.c \
+                field_bounds.c deform.c declare.c claims.c empty.c methods.c properties.c \
+                material.c view.c palette.c scope.c statements.c print.c lower.c lower_normal.c \
+                lower_repeat.c lower_deform.c lower_krs.c lower_along.c lower_guards.c \
+                lower_moebius.c lower_images.c)
 SHADER   := $(addprefix compiler/shader/, emit.c statements.c frame_values.c mirrors.c early_outs.c march.c spirv.c)
 BORDER   := compiler/shader/glslang_border.cpp
-DOORSTEP := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c keep.c facts.c \
+API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c retain.c facts.c \
                 groups.c program.c framing.c frame.c query.c search.c refute.c bounds.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer film writer))))
 CLI      := $(sort $(wildcard cli/*.c))
@@ -60,7 +61,7 @@ LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLC
             -lSPVRemapper -lglslang-default-resource-limits -lSPIRV-Tools-opt -lSPIRV-Tools \
             -lOpenEXRCore-3_1 -lpng -lxxhash -lvulkan -lstdc++ -lm -pthread
 
-COMPILER := $(BASE) $(FRONT) $(GRAPH) $(GEOMETRY) $(SHADER) $(DOORSTEP)
+COMPILER := $(BASE) $(FRONT) $(GRAPH) $(GEOMETRY) $(SHADER) $(API)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
             $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o
 

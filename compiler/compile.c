@@ -87,7 +87,7 @@ static KrsStatus inspect(Compilation *c)
                                &(Inspected){&c->elaborated, &c->diags, &c->work, &c->scratch});
 }
 
-/* ---- the doorstep ---- */
+/* ---- the API ---- */
 
 static void hand_over(const Diags *diags, const Diag *diag, const KrsOptions *options, Arena *arena)
 {

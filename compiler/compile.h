@@ -1,5 +1,5 @@
 /*
- * compile.h: text in, finished program out.  The compiler's doorstep: all that the runtime sees.
+ * compile.h: text in, finished program out.  The compiler's API: all that the runtime sees.
  */
 #ifndef KRS_COMPILE_H
 #define KRS_COMPILE_H
@@ -35,7 +35,7 @@
  * than `footprint`, the radius of a pixel's cone at p, counts as the box around it (0: nothing
  * does).  Where a branch saves no work, as on lavapipe, krs_distance costs less.
  *
- * A scene of several heavy components has groups of them (KrsGroup): with GROUP defined as the
+ * A scene of several expensive components has groups of them (KrsGroup): with GROUP defined as the
  * number of one there is krs_distance alone, and of that group alone.
  *
  * N is parameter_slots (at least 1), what is in them is told at krs_frame_parameters.  With
@@ -60,7 +60,7 @@ typedef struct KrsRefuteOptions {
         size_t      count;
     } const *fixed;
     size_t   fixed_count;
-    /* Called now and then with the part that is done; false: stop.  May be NULL. */
+    /* Called now and then with the fraction that is done; false: stop.  May be NULL. */
     bool (*go_on)(void *user, double fraction);
     void *user;
 } KrsRefuteOptions;
@@ -73,7 +73,7 @@ typedef struct KrsRefutation {
     size_t   skipped;     /* shapes too large to be searched by themselves */
     uint64_t evaluations; /* of distances */
     double   steepest;    /* largest slope of a distance, of 1 that is permitted */
-    double   longest;     /* largest part of the way to a surface that an estimate was */
+    double   longest;     /* largest ratio of an estimate to the true distance */
     size_t   estimates;   /* shapes of which nothing more is claimed */
 } KrsRefutation;
 

@@ -113,7 +113,7 @@ KrsRay krs_ray(const KrsScene *scene, const double origin[3], const double direc
 /* Where there are sheets the normals of a hit face where its ray comes from. */
 void krs_face(const KrsRay *ray, KrsHit *hit);
 /* Whether these are arguments that krs_raycast accepts. */
-bool krs_rays_are_sound(const double (*origins)[3], const double (*directions)[3], size_t count,
+bool krs_rays_are_valid(const double (*origins)[3], const double (*directions)[3], size_t count,
                         double farthest, double tolerance);
 /* 64-bit FNV-1a of the whole text (used files included), 16 hexadecimal digits. */
 const char *krs_scene_hash(const KrsScene *scene);

@@ -95,7 +95,7 @@ KrsStatus pass_facts(Compilation *c)
     find_additions(c);
     find_steps(c);
     form_groups(c); /* by boxes, costs and planes */
-    c->scene->program.parts = emit_part_count(c->scene->component_count);
+    c->scene->program.parts = emit_scene_part_count(c->scene->component_count);
     return KRS_OK;
 }
 
@@ -143,7 +143,7 @@ void print_facts(Compilation *c, Text *out)
     text_format(out, "operations  %zu\nflops  %.6g\nloops  %u\n", program->operations,
                 program->flops, program->loops);
     print_flags(program, out);
-    text_format(out, "parts  %u\nheavy  %u\ngroups  %zu\n", program->parts, program->heavy,
+    text_format(out, "parts  %u\nheavy  %u\ngroups  %zu\n", program->parts, program->expensive,
                 program->group_count);
     for (size_t i = 0; i < program->group_count; i++) {
         const KrsGroup *group = &program->groups[i];

@@ -42,8 +42,8 @@ typedef enum Claim {
 typedef struct Finding {
     size_t     suspect;
     Claim      claim;
-    ShapeClaim pair;   /* `property` is NULL, or what is claimed beside the distance */
-    bool       steady; /* of the distance that has to be 1-Lipschitz, else of the other */
+    ShapeClaim pair;      /* `property` is NULL, or what is claimed beside the distance */
+    bool       lipschitz; /* of the distance that has to be 1-Lipschitz, else of the other */
     Witness    witness;
     NodeValue *parameters;
 } Finding;
@@ -55,7 +55,7 @@ typedef struct Refuter {
     Graph                  *graph;
     uint64_t                random, total, done;
     SlopeTask              *slopes; /* of the scene's, in its order */
-    void                   *room;
+    void                   *workspace;
     Tape                    frames; /* all components: what frames are refused by */
     NodeValue              *frame_values;
     struct {
@@ -91,21 +91,22 @@ static void add_suspects(Refuter *r, const Shape *shape, uint32_t component, siz
         add_suspects(r, shape->children[i], component, own);
 }
 
-static Lowering lowering_of(Refuter *r, Visits *visits)
+static Lowering lowering_of(Refuter *r, LoweredShapes *lowered_shapes)
 {
-    return (Lowering){.graph   = r->graph,
-                      .scratch = r->in->scratch,
-                      .visits  = visits,
-                      .most    = r->graph->count + MOST_LOWERED};
+    return (Lowering){.graph          = r->graph,
+                      .scratch        = r->in->scratch,
+                      .lowered_shapes = lowered_shapes,
+                      .most           = r->graph->count + MOST_LOWERED};
 }
 
 /* The distance of a shape in its own space; NODE_NONE: of nothing, or of too much. */
-static Node lower_alone(Refuter *r, const Shape *shape, bool steady, Visits *visits)
+static Node lower_alone(Refuter *r, const Shape *shape, bool lipschitz,
+                        LoweredShapes *lowered_shapes)
 {
-    Lowering l     = lowering_of(r, visits);
-    Place    place = place_bare(graph_leaf(r->graph, OP_POINT), steady);
-    Lowered  all   = lower_shape(&l, shape, place);
-    r->result->skipped += l.overflow && !visits && !steady;
+    Lowering     l       = lowering_of(r, lowered_shapes);
+    LowerContext context = context_new(graph_leaf(r->graph, OP_POINT), lipschitz);
+    Lowered      all     = lower_shape(&l, shape, context);
+    r->result->skipped += l.overflow && !lowered_shapes && !lipschitz;
     if (l.overflow || all.distance == NODE_NONE)
         return NODE_NONE;
     return divide_by_slope(r->graph, all.distance, shape->slope);
@@ -113,7 +114,7 @@ static Node lower_alone(Refuter *r, const Shape *shape, bool steady, Visits *vis
 
 /* A search of one of the distances of a shape, or of a step beside the distance that tells on which
    side points are; false: there is nothing to search. */
-static bool search_step(Refuter *r, const Shape *shape, Node step, Node side, bool steady,
+static bool search_step(Refuter *r, const Shape *shape, Node step, Node side, bool lipschitz,
                         Search *search)
 {
     Arena *scratch  = r->in->scratch;
@@ -121,16 +122,16 @@ static bool search_step(Refuter *r, const Shape *shape, Node step, Node side, bo
     Graph *simple   = graph_simplify(r->graph, roots, 2, scratch);
     if (!search_new(search, simple, roots[0], roots[1], shape->box, scratch))
         return false;
-    search->steep  = steady;
+    search->steep  = lipschitz;
     search->figure = shape->figure;
     search->random = r->random;
     r->random += 0x9e3779b97f4a7c15;
     return true;
 }
 
-static bool search_of(Refuter *r, const Shape *shape, Node distance, bool steady, Search *search)
+static bool search_of(Refuter *r, const Shape *shape, Node distance, bool lipschitz, Search *search)
 {
-    return search_step(r, shape, distance, distance, steady, search);
+    return search_step(r, shape, distance, distance, lipschitz, search);
 }
 
 /* ---- parameters ---- */
@@ -174,7 +175,8 @@ static bool find_slopes(const Refuter *r, NodeValue *values)
     const Scene *scene = r->in->scene;
     for (size_t i = 0; i < scene->slopes.count; i++) {
         const double(*parameters)[4] = (const double(*)[4])values;
-        double slope = frame_slope_upward(slope_task_run(&r->slopes[i], parameters, r->room, NULL));
+        double slope                 = frame_slope_upward(
+                            slope_task_run(&r->slopes[i], parameters, r->workspace, NULL));
         values[scene->slopes.items[i].slot].v[0] = slope;
         if (!isfinite(slope))
             return false;
@@ -194,10 +196,10 @@ static void prepare_slopes(Refuter *r)
         Graph            *plain = graph_simplify(r->graph, &root, 1, r->in->arena);
         uint32_t          cells = frame_slope_cells(slope->region);
         r->slopes[i]            = slope_task(plain, root, slope->region, cells, r->in->arena);
-        size_t room             = slope_task_room(&r->slopes[i]);
-        most                    = room > most ? room : most;
+        size_t workspace        = slope_task_size(&r->slopes[i]);
+        most                    = workspace > most ? workspace : most;
     }
-    r->room = arena_alloc(r->in->arena, most, 1);
+    r->workspace = arena_alloc(r->in->arena, most, 1);
 }
 
 /* As frames have them: all components outside of everything. */
@@ -239,8 +241,8 @@ static bool needs_parameters(const Tape *tape)
 static void report_progress(Refuter *r, uint64_t operations)
 {
     r->done += operations;
-    double part = fmin(1, (double)r->done / (double)r->total);
-    if (r->how->go_on && !r->how->go_on(r->how->user, part))
+    double fraction = fmin(1, (double)r->done / (double)r->total);
+    if (r->how->go_on && !r->how->go_on(r->how->user, fraction))
         r->stopped = true;
 }
 
@@ -253,11 +255,11 @@ static void count_search(Refuter *r, const Search *search, const Shape *shape, d
         r->result->steepest = fmax(r->result->steepest, ratio);
 }
 
-static void find(Finding *finding, bool steady, Witness witness, const NodeValue *parameters,
-                 size_t slots)
+static void record(Finding *finding, bool lipschitz, Witness witness, const NodeValue *parameters,
+                   size_t slots)
 {
-    finding->steady  = steady;
-    finding->witness = witness;
+    finding->lipschitz = lipschitz;
+    finding->witness   = witness;
     memcpy(finding->parameters, parameters, slots * sizeof *parameters);
 }
 
@@ -288,7 +290,7 @@ static bool try_settings(Refuter *r, const Shape *shape, Search *search, uint64_
             continue;
         }
         if (!possible || !search_start(search, parameters)) {
-            find(finding, search->steep, (Witness){.fault = FAULT_CONSTANT}, parameters, slots);
+            record(finding, search->steep, (Witness){.fault = FAULT_CONSTANT}, parameters, slots);
             return true;
         }
         search->worst = (Witness){0};
@@ -305,7 +307,7 @@ static bool try_settings(Refuter *r, const Shape *shape, Search *search, uint64_
         if (!search_refuted(search) || (refuted && search->worst.ratio <= finding->witness.ratio))
             continue;
         refuted = true;
-        find(finding, search->steep, search->worst, parameters, slots);
+        record(finding, search->steep, search->worst, parameters, slots);
     }
     return refuted;
 }
@@ -321,8 +323,8 @@ static bool box_has_numbers(Box box)
 /* Both distances of a shape, where there are two. */
 static bool try_shape(Refuter *r, size_t suspect, uint64_t operations, Finding *finding)
 {
-    const Shape *shape  = r->suspects.items[suspect].shape;
-    Node         steady = NODE_NONE, plain = NODE_NONE;
+    const Shape *shape     = r->suspects.items[suspect].shape;
+    Node         lipschitz = NODE_NONE, plain = NODE_NONE;
     bool         refuted = false;
     Search       search;
     finding->suspect = suspect;
@@ -334,12 +336,12 @@ static bool try_shape(Refuter *r, size_t suspect, uint64_t operations, Finding *
         return true;
     }
     if (!shape->estimate)
-        steady = lower_alone(r, shape, true, NULL);
+        lipschitz = lower_alone(r, shape, true, NULL);
     plain     = lower_alone(r, shape, false, NULL);
-    bool both = steady != NODE_NONE && plain != steady;
-    if (steady != NODE_NONE && search_of(r, shape, steady, true, &search))
+    bool both = lipschitz != NODE_NONE && plain != lipschitz;
+    if (lipschitz != NODE_NONE && search_of(r, shape, lipschitz, true, &search))
         refuted = try_settings(r, shape, &search, both ? operations / 2 : operations, finding);
-    if (!refuted && plain != steady && plain != NODE_NONE &&
+    if (!refuted && plain != lipschitz && plain != NODE_NONE &&
         search_of(r, shape, plain, false, &search))
         refuted = try_settings(r, shape, &search, both ? operations / 2 : operations, finding);
     arena_free(r->in->scratch);
@@ -403,30 +405,30 @@ static bool try_steps(Refuter *r, size_t suspect, uint64_t operations, Finding *
 
 /* ---- whom to blame ---- */
 
-/* How far a shape that was met on the way is from its claim in two points; below 1: it is not. */
-static double visit_ratio(const Visit *visit, bool steady, const NodeValue *at_p,
+/* By how much a lowered shape breaks its claim at two points; below 1: it does not. */
+static double claim_ratio(const LoweredShape *lowered, bool lipschitz, const NodeValue *at_p,
                           const NodeValue *at_q)
 {
-    const double *p = at_p[visit->point].v, *q = at_q[visit->point].v;
-    double a = at_p[visit->distance].v[0], b = at_q[visit->distance].v[0], square = 0, size = 1;
+    const double *p = at_p[lowered->point].v, *q = at_q[lowered->point].v;
+    double a = at_p[lowered->distance].v[0], b = at_q[lowered->distance].v[0], square = 0, size = 1;
     if (isnan(a) || isnan(b))
         return isfinite(p[0] + p[1] + p[2]) ? INFINITY : 0;
     for (int i = 0; i < 3; i++) {
         square += (p[i] - q[i]) * (p[i] - q[i]);
         size += fabs(p[i]);
     }
-    double rise = steady && !visit->shape->estimate ? fabs(a - b)
-                  : (a > 0) != (b > 0)              ? fmax(fabs(a), fabs(b))
-                                                    : 0;
-    return fmax(0, rise / visit->shape->slope - 1e-9 * size) / fmax(sqrt(square), 1e-9 * size);
+    double rise = lipschitz && !lowered->shape->estimate ? fabs(a - b)
+                  : (a > 0) != (b > 0)                   ? fmax(fabs(a), fabs(b))
+                                                         : 0;
+    return fmax(0, rise / lowered->shape->slope - 1e-9 * size) / fmax(sqrt(square), 1e-9 * size);
 }
 
-/* All that is met on the way into a refuted shape, with the values at its two points. */
-typedef struct Trail {
-    Visits     visits; /* those with a distance; nodes are of `graph` */
-    Graph     *graph;
-    NodeValue *at_p, *at_q;
-} Trail;
+/* All shapes that were lowered in a refuted shape, with their values at its two points. */
+typedef struct LoweringTrace {
+    LoweredShapes lowered_shapes; /* those with a distance; nodes are of `graph` */
+    Graph        *graph;
+    NodeValue    *at_p, *at_q;
+} LoweringTrace;
 
 static void run_at(const Tape *tape, const NodeValue *parameters, const double point[3],
                    NodeValue *values)
@@ -435,29 +437,29 @@ static void run_at(const Tape *tape, const NodeValue *parameters, const double p
     tape_run_point(tape, point, values);
 }
 
-static Trail trail_of(Refuter *r, const Finding *finding)
+static LoweringTrace trace_of(Refuter *r, const Finding *finding)
 {
-    const Shape *shape = r->suspects.items[finding->suspect].shape;
-    Arena       *arena = r->in->scratch;
-    Trail        trail = {0};
-    Visits       all   = {0};
-    (void)lower_alone(r, shape, finding->steady, &all);
+    const Shape  *shape = r->suspects.items[finding->suspect].shape;
+    Arena        *arena = r->in->scratch;
+    LoweringTrace trace = {0};
+    LoweredShapes all   = {0};
+    (void)lower_alone(r, shape, finding->lipschitz, &all);
     for (size_t i = 0; i < all.count; i++)
         if (all.items[i].distance != NODE_NONE && all.items[i].shape != shape)
-            array_push(arena, &trail.visits, all.items[i]);
-    size_t count = trail.visits.count;
+            array_push(arena, &trace.lowered_shapes, all.items[i]);
+    size_t count = trace.lowered_shapes.count;
     Node  *roots = arena_new_array(arena, Node, 2 * count + 1);
     for (size_t i = 0; i < count; i++) {
-        roots[2 * i]     = trail.visits.items[i].point;
-        roots[2 * i + 1] = trail.visits.items[i].distance;
+        roots[2 * i]     = trace.lowered_shapes.items[i].point;
+        roots[2 * i + 1] = trace.lowered_shapes.items[i].distance;
     }
-    trail.graph = r->graph;
-    trail.at_p  = arena_new_array(arena, NodeValue, r->graph->count);
-    trail.at_q  = arena_new_array(arena, NodeValue, r->graph->count);
+    trace.graph = r->graph;
+    trace.at_p  = arena_new_array(arena, NodeValue, r->graph->count);
+    trace.at_q  = arena_new_array(arena, NodeValue, r->graph->count);
     Tape tape   = tape_new(r->graph, roots, 2 * count, arena);
-    run_at(&tape, finding->parameters, finding->witness.p, trail.at_p);
-    run_at(&tape, finding->parameters, finding->witness.q, trail.at_q);
-    return trail;
+    run_at(&tape, finding->parameters, finding->witness.p, trace.at_p);
+    run_at(&tape, finding->parameters, finding->witness.q, trace.at_q);
+    return trace;
 }
 
 static size_t suspect_of(const Refuter *r, const Shape *shape)
@@ -473,11 +475,11 @@ static size_t suspect_of(const Refuter *r, const Shape *shape)
 static bool refute_from(Refuter *r, size_t suspect, const double p[3], const double q[3],
                         uint64_t operations, Finding *finding)
 {
-    const Shape *shape    = r->suspects.items[suspect].shape;
-    bool         steady   = finding->steady && !shape->estimate;
-    Node         distance = lower_alone(r, shape, steady, NULL);
+    const Shape *shape     = r->suspects.items[suspect].shape;
+    bool         lipschitz = finding->lipschitz && !shape->estimate;
+    Node         distance  = lower_alone(r, shape, lipschitz, NULL);
     Search       search;
-    if (distance == NODE_NONE || !search_of(r, shape, distance, steady, &search))
+    if (distance == NODE_NONE || !search_of(r, shape, distance, lipschitz, &search))
         return false;
     bool constant = finding->witness.fault == FAULT_CONSTANT;
     if (search_start(&search, finding->parameters) == constant)
@@ -490,31 +492,31 @@ static bool refute_from(Refuter *r, size_t suspect, const double p[3], const dou
         search_run(&search, operations - (p ? operations / 4 : 0));
     if (!constant && !search_refuted(&search))
         return false;
-    finding->suspect = suspect;
-    finding->steady  = steady;
-    finding->witness = search.worst;
+    finding->suspect   = suspect;
+    finding->lipschitz = lipschitz;
+    finding->witness   = search.worst;
     return true;
 }
 
 /* From a refuted shape to a smaller one that is refuted; false: there is none. */
 static bool descend(Refuter *r, Finding *finding, uint64_t operations)
 {
-    Trail        trail = trail_of(r, finding);
-    const Visit *best  = NULL;
-    double       worst = 0;
-    for (size_t i = 0; i < trail.visits.count; i++) {
-        const Visit *visit = &trail.visits.items[i];
-        double       ratio = visit_ratio(visit, finding->steady, trail.at_p, trail.at_q);
-        bool         less  = !best || visit->shape->depth < best->shape->depth ||
-                    (visit->shape->depth == best->shape->depth && ratio > worst);
-        if (is_wrapper(visit->shape) || !(ratio > 1 + 1e-6) || !less)
+    LoweringTrace       trace = trace_of(r, finding);
+    const LoweredShape *best  = NULL;
+    double              worst = 0;
+    for (size_t i = 0; i < trace.lowered_shapes.count; i++) {
+        const LoweredShape *lowered = &trace.lowered_shapes.items[i];
+        double ratio = claim_ratio(lowered, finding->lipschitz, trace.at_p, trace.at_q);
+        bool   less  = !best || lowered->shape->depth < best->shape->depth ||
+                    (lowered->shape->depth == best->shape->depth && ratio > worst);
+        if (is_wrapper(lowered->shape) || !(ratio > 1 + 1e-6) || !less)
             continue;
-        best  = visit;
+        best  = lowered;
         worst = ratio;
     }
     size_t suspect = best ? suspect_of(r, best->shape) : SIZE_MAX;
-    return suspect != SIZE_MAX && refute_from(r, suspect, trail.at_p[best->point].v,
-                                              trail.at_q[best->point].v, operations, finding);
+    return suspect != SIZE_MAX && refute_from(r, suspect, trace.at_p[best->point].v,
+                                              trace.at_q[best->point].v, operations, finding);
 }
 
 /* The same where no part is refuted in these points: each part is searched by itself. */
@@ -551,7 +553,7 @@ static const char *point_text(Refuter *r, const double p[3])
     return diag_text(r->in->diags, "[%.6g, %.6g, %.6g]", p[0], p[1], p[2]);
 }
 
-static double apart(const double a[3], const double b[3])
+static double separation(const double a[3], const double b[3])
 {
     return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
 }
@@ -574,7 +576,7 @@ static const char *fault_text(Refuter *r, const Witness *w)
     return "it is not a number somewhere";
 }
 
-static bool has_place(const Witness *w)
+static bool has_point(const Witness *w)
 {
     return w->fault != FAULT_CONSTANT && w->fault != FAULT_BOX;
 }
@@ -586,8 +588,8 @@ static void note_points(Refuter *r, Diag *diag, const Witness *w)
     if (w->fault == FAULT_STEEP || w->fault == FAULT_LONG)
         diag_note(diags, diag,
                   diag_text(diags, "the distance is %.6g at %s and %.6g at %s, %.6g apart", w->at_p,
-                            p, w->at_q, point_text(r, w->q), apart(w->p, w->q)));
-    else if (has_place(w))
+                            p, w->at_q, point_text(r, w->q), separation(w->p, w->q)));
+    else if (has_point(w))
         diag_note(diags, diag, diag_text(diags, "the distance is %.6g at %s", w->at_p, p));
 }
 
@@ -620,7 +622,7 @@ static void note_surface(Refuter *r, Diag *diag, const Finding *finding)
     double         surface[3];
     if (w->fault != FAULT_STEEP && w->fault != FAULT_LONG)
         return;
-    Node          distance = lower_alone(r, shape, finding->steady, NULL);
+    Node          distance = lower_alone(r, shape, finding->lipschitz, NULL);
     const double *from     = fabs(w->at_p) >= fabs(w->at_q) ? w->p : w->q;
     double        said     = fmax(fabs(w->at_p), fabs(w->at_q));
     if (distance != NODE_NONE && search_of(r, shape, distance, false, &search) &&
@@ -630,7 +632,7 @@ static void note_surface(Refuter *r, Diag *diag, const Finding *finding)
                             "nothing is to be within %.6g of %s, but the surface is "
                             "at %s, %.6g away",
                             said, point_text(r, from), point_text(r, surface),
-                            apart(from, surface)));
+                            separation(from, surface)));
     arena_free(r->in->scratch);
 }
 
@@ -642,16 +644,16 @@ static void note_component(Refuter *r, Diag *diag, const Finding *whole, const F
     if (whole->suspect == finding->suspect && suspect->parent == SIZE_MAX)
         return;
     const char *text = diag_text(r->in->diags, "it is part of `%s`%s", component->name,
-                                 has_place(&finding->witness) ? "; points are in its own space"
+                                 has_point(&finding->witness) ? "; points are in its own space"
                                                               : "");
-    if (r->suspects.items[whole->suspect].parent == SIZE_MAX && has_place(&whole->witness))
+    if (r->suspects.items[whole->suspect].parent == SIZE_MAX && has_point(&whole->witness))
         text = diag_text(r->in->diags, "%s; there, %s is where it shows", text,
                          point_text(r, whole->witness.p));
     diag_note(r->in->diags, diag, text);
 }
 
 /* The text where the author can do something: what is made in the library was asked for there. */
-static void place_caller(Refuter *r, Diag *diag, const Finding *finding)
+static void mark_caller(Refuter *r, Diag *diag, const Finding *finding)
 {
     const Sources *sources = r->in->diags->sources;
     size_t         i       = finding->suspect;
@@ -660,7 +662,7 @@ static void place_caller(Refuter *r, Diag *diag, const Finding *finding)
     while (i != SIZE_MAX && sources->items[r->suspects.items[i].shape->span.source].library)
         i = r->suspects.items[i].parent;
     if (i != SIZE_MAX)
-        diag_place(r->in->diags, diag, r->suspects.items[i].shape->span, "for this");
+        diag_secondary(r->in->diags, diag, r->suspects.items[i].shape->span, "for this");
 }
 
 static const char *const claim_texts[] = {
@@ -683,9 +685,10 @@ static void report(Refuter *r, const Finding *whole, const Finding *finding)
                            fault_text(r, &finding->witness));
     diag->label = "this shape is to blame";
     if (claim && shape->distance != NODE_NONE)
-        diag_place(diags, diag, r->graph->items[shape->distance].span,
-                   shape->exact ? "`exact` is claimed of this" : "a `slope` is claimed of this");
-    place_caller(r, diag, finding);
+        diag_secondary(diags, diag, r->graph->items[shape->distance].span,
+                       shape->exact ? "`exact` is claimed of this"
+                                    : "a `slope` is claimed of this");
+    mark_caller(r, diag, finding);
     note_points(r, diag, &finding->witness);
     if (finding->claim == CLAIM_DISTANCE)
         note_surface(r, diag, finding);
@@ -710,8 +713,8 @@ static void report_claim(Refuter *r, const Finding *finding)
     Diag *diag  = diag_add(diags, DIAG_REFUTED, pair->shape->span, "`%s` of `%s` is refuted: %s",
                            pair->property, pair->shape->name, pair->wrong);
     diag->label = "this shape is to blame";
-    diag_place(diags, diag, pair->span, "claimed here");
-    place_caller(r, diag, finding);
+    diag_secondary(diags, diag, pair->span, "claimed here");
+    mark_caller(r, diag, finding);
     diag_note(diags, diag,
               diag_text(diags, "by %.6g at %s", finding->witness.at_p,
                         point_text(r, finding->witness.p)));
@@ -721,7 +724,7 @@ static void report_claim(Refuter *r, const Finding *finding)
 
 /* ---- the whole ---- */
 
-static KrsStatus settle(Refuter *r, Finding *finding)
+static KrsStatus conclude(Refuter *r, Finding *finding)
 {
     Finding whole = *finding;
     if (finding->claim == CLAIM_DISTANCE && !finding->pair.property)
@@ -736,7 +739,7 @@ static KrsStatus settle(Refuter *r, Finding *finding)
 
 static bool is_whole(const Refuter *r, size_t i) { return r->suspects.items[i].parent == SIZE_MAX; }
 
-/* Those of all components, or all others, from the last, whose parts are fewest. */
+/* Those of all components, or all others, from the last, whose trees are smallest. */
 static KrsStatus try_all(Refuter *r, bool whole, Finding *finding)
 {
     size_t count = 0;
@@ -748,7 +751,7 @@ static KrsStatus try_all(Refuter *r, bool whole, Finding *finding)
         if (try_shape(r, i, r->total / 2 / count, finding) ||
             try_claims(r, i, r->total / 8 / count, finding) ||
             (whole && try_steps(r, i, r->total / 8 / count, finding)))
-            return settle(r, finding);
+            return conclude(r, finding);
     }
     return r->stopped ? KRS_INTERRUPTED : KRS_OK;
 }

@@ -1,7 +1,7 @@
 /*
  * roots.c: what is asked of the graph: everything that a scene shows, lowered.
  *
- * Of each component its distance and looks, and after these what only the march needs, so that
+ * Of each component its distance and material, and after these what only the march needs, so that
  * nothing else depends on it: guards, steps along a ray, planes, gradients, and the same again for
  * points that are given from an anchor.
  */
@@ -13,7 +13,7 @@
 #include "compiler/graph/derive.h"
 
 /* Room for all roots, one kind behind the other; those near an anchor come last. */
-static void make_room(Compilation *c)
+static void allocate_roots(Compilation *c)
 {
     const Scene *s                  = &c->elaborated;
     Roots       *roots              = &c->scene->roots;
@@ -89,7 +89,7 @@ static void lower_flats(Compilation *c, Graph *g)
     PlaneRoots  *plane = plane_roots(&c->scene->roots);
     Node         point = graph_leaf(g, OP_POINT), direction = graph_leaf(g, OP_DIRECTION);
     Node         far = graph_number(g, 1e30), zero = graph_number(g, 0);
-    plane->way  = far;
+    plane->step = far;
     plane->rise = graph_number(g, 1);
     for (size_t i = 0; i < s->components.count && s->zone_count == 0; i++) {
         const Component *component = &s->components.items[i];
@@ -98,11 +98,11 @@ static void lower_flats(Compilation *c, Graph *g)
         c->additions.planes = true;
         Node rise           = graph_op2(g, OP_dot, component->plane_normal, direction);
         Node depth          = graph_op2(g, OP_dot, component->plane_normal, point);
-        Node room           = graph_op2(g, OP_sub, component->plane_offset, depth);
+        Node clearance      = graph_op2(g, OP_sub, component->plane_offset, depth);
         Node falls          = graph_op2(g, OP_less, rise, zero);
-        Node way            = graph_op3(g, OP_select, falls, graph_op2(g, OP_div, room, rise), far);
-        plane->way          = graph_op2(g, OP_min, plane->way, way);
-        plane->rise         = graph_op2(g, OP_min, plane->rise, rise);
+        Node step   = graph_op3(g, OP_select, falls, graph_op2(g, OP_div, clearance, rise), far);
+        plane->step = graph_op2(g, OP_min, plane->step, step);
+        plane->rise = graph_op2(g, OP_min, plane->rise, rise);
     }
 }
 
@@ -169,7 +169,7 @@ KrsStatus pass_lower(Compilation *c)
     const Scene *s     = &c->elaborated;
     Roots       *roots = &c->scene->roots;
     Additions   *more  = &c->additions;
-    make_room(c);
+    allocate_roots(c);
     if (!lower_components(c, s->graph))
         return KRS_BAD_SCENE;
     more->sheets   = any_thin_sheets(s);

@@ -38,7 +38,7 @@ struct Guard {
     Target bound, rest;
 };
 
-enum { BATCH = 24, KEPT = 4, CLIMB_STEPS = 48 };
+enum { BATCH = 24, BEST = 4, CLIMB_STEPS = 48 };
 
 /* The box that stands for a side without end, in world units. */
 static const double UNBOUNDED = 10;
@@ -61,12 +61,12 @@ static uint64_t random_next(uint64_t *state)
 
 double random_unit(uint64_t *state) { return (double)(random_next(state) >> 11) * 0x1p-53; }
 
-static double between(Search *s, double low, double high)
+static double random_between(Search *s, double low, double high)
 {
     return low + (high - low) * random_unit(&s->random);
 }
 
-static size_t choose(Search *s, size_t count) { return random_next(&s->random) % count; }
+static size_t random_index(Search *s, size_t count) { return random_next(&s->random) % count; }
 
 /* A length of any order of magnitude from `least` sizes to one. */
 static double any_scale(Search *s, double least)
@@ -82,14 +82,14 @@ static void add_scaled(double to[3], const double from[3], double factor, const 
         to[i] = from[i] + factor * v[i];
 }
 
-static double apart(const double a[3], const double b[3])
+static double separation(const double a[3], const double b[3])
 {
     return length3((double[3]){a[0] - b[0], a[1] - b[1], a[2] - b[2]});
 }
 
 static void random_direction(Search *s, double direction[3])
 {
-    double angle = between(s, 0, 2 * M_PI), z = s->figure ? 0 : between(s, -1, 1);
+    double angle = random_between(s, 0, 2 * M_PI), z = s->figure ? 0 : random_between(s, -1, 1);
     double radius = sqrt(fmax(0, 1 - z * z));
     direction[0]  = radius * cos(angle);
     direction[1]  = radius * sin(angle);
@@ -99,7 +99,7 @@ static void random_direction(Search *s, double direction[3])
 static void random_point(Search *s, double point[3])
 {
     for (int i = 0; i < 3; i++)
-        point[i] = between(s, s->around.axis[i].low, s->around.axis[i].high);
+        point[i] = random_between(s, s->around.axis[i].low, s->around.axis[i].high);
 }
 
 /* ---- what is claimed at a point ---- */
@@ -157,28 +157,29 @@ static double distance_at(Search *s, double p[3])
 
 /* ---- pairs ---- */
 
-typedef struct Pair {
+typedef struct PointPair {
     double p[3], q[3], at_p, at_q, side_p, side_q, ratio;
-} Pair;
+} PointPair;
 
 /* At the point that was looked at last. */
 static double side_now(const Search *s) { return s->values[s->side].v[0]; }
 
 static void aim_along(Search *s, const double from[3], const double to[3])
 {
-    double way = apart(from, to);
-    for (int i = 0; i < 3 && way > 0; i++)
-        s->aim[i] = (to[i] - from[i]) / way;
+    double length = separation(from, to);
+    for (int i = 0; i < 3 && length > 0; i++)
+        s->aim[i] = (to[i] - from[i]) / length;
 }
 
 static bool are_sides_different(double a, double b) { return (a > 0) != (b > 0); }
 
 /* How much of its claim a pair uses up; 0 where it says nothing. */
-static double ratio_of(const Search *s, const Pair *pair)
+static double ratio_of(const Search *s, const PointPair *pair)
 {
-    double way = apart(pair->p, pair->q), rounding = rounding_at(s, pair->p);
+    double length = separation(pair->p, pair->q), rounding = rounding_at(s, pair->p);
     double a = pair->at_p, b = pair->at_q;
-    if (!(way >= NEAREST * s->size) || isnan(a) || isnan(b) || isinf(pair->side_p + pair->side_q))
+    if (!(length >= NEAREST * s->size) || isnan(a) || isnan(b) ||
+        isinf(pair->side_p + pair->side_q))
         return 0;
     if (s->side == s->distance && (fabs(a) > NOWHERE || fabs(b) > NOWHERE))
         return 0; /* nothing is anywhere, or a wall is */
@@ -187,10 +188,10 @@ static double ratio_of(const Search *s, const Pair *pair)
     double rise = s->steep                                          ? fabs(a - b)
                   : are_sides_different(pair->side_p, pair->side_q) ? fmax(fabs(a), fabs(b))
                                                                     : 0;
-    return fmax(0, rise - rounding) / way;
+    return fmax(0, rise - rounding) / length;
 }
 
-static void weigh(Search *s, Pair *pair)
+static void weigh(Search *s, PointPair *pair)
 {
     pair->ratio = ratio_of(s, pair);
     if (!is_settled(s) && pair->ratio > s->worst.ratio)
@@ -198,7 +199,7 @@ static void weigh(Search *s, Pair *pair)
              pair->at_q);
 }
 
-static void judge(Search *s, Pair *pair)
+static void judge(Search *s, PointPair *pair)
 {
     aim_along(s, pair->p, pair->q);
     pair->at_p   = distance_at(s, pair->p);
@@ -210,12 +211,12 @@ static void judge(Search *s, Pair *pair)
 }
 
 /* The half that is steeper, or for sides that differ the one with the surface; false: too near. */
-static bool halve(Search *s, Pair *pair)
+static bool halve(Search *s, PointPair *pair)
 {
-    if (apart(pair->p, pair->q) < 2.5 * NEAREST * s->size)
+    if (separation(pair->p, pair->q) < 2.5 * NEAREST * s->size)
         return false;
-    Pair   first = *pair, second = *pair;
-    double middle[3];
+    PointPair first = *pair, second = *pair;
+    double    middle[3];
     for (int i = 0; i < 3; i++)
         middle[i] = 0.5 * (pair->p[i] + pair->q[i]);
     double at = distance_at(s, middle);
@@ -229,7 +230,7 @@ static bool halve(Search *s, Pair *pair)
 }
 
 /* Brings q as near to p as the other side is, along the segment. */
-static void tighten(Search *s, Pair *pair)
+static void tighten(Search *s, PointPair *pair)
 {
     double low = 0, high = 1, end[3];
     memcpy(end, pair->q, sizeof end);
@@ -251,7 +252,7 @@ static void tighten(Search *s, Pair *pair)
 }
 
 /* Marches from p until the side changes, at most `farthest`; then the pair is tightened. */
-static bool reach_surface(Search *s, Pair *pair, const double direction[3], double farthest)
+static bool reach_surface(Search *s, PointPair *pair, const double direction[3], double farthest)
 {
     memcpy(s->aim, direction, sizeof s->aim);
     pair->at_p   = distance_at(s, pair->p);
@@ -418,8 +419,8 @@ static void drive_to_zero(Search *s, const Target *t, double p[3], double axis[3
         double slope = target_slope(s, t, p, at, axis), next[3];
         if (!(slope > 0) || !isfinite(slope))
             return;
-        double way = fmax(-0.5 * s->size, fmin(0.5 * s->size, at / slope));
-        add_scaled(next, p, -way / slope, axis);
+        double length = fmax(-0.5 * s->size, fmin(0.5 * s->size, at / slope));
+        add_scaled(next, p, -length / slope, axis);
         double then = target_at(s, t, next);
         if (!isfinite(then))
             return;
@@ -432,7 +433,7 @@ static void drive_to_zero(Search *s, const Target *t, double p[3], double axis[3
             memcpy(first ? next : p, middle, sizeof middle);
             *(first ? &then : &at) = half;
         }
-        bool arrived = apart(p, next) < 1e-7 * s->size;
+        bool arrived = separation(p, next) < 1e-7 * s->size;
         memcpy(p, next, sizeof next);
         at = then;
         if (arrived)
@@ -493,16 +494,16 @@ static void start_at_surface(Search *s, double p[3])
 static void start_at_edge(Search *s, double p[3])
 {
     random_point(s, p);
-    size_t free_axis = choose(s, 4), second = choose(s, 4);
+    size_t free_axis = random_index(s, 4), second = random_index(s, 4);
     for (size_t i = 0; i < 3; i++)
         if (i != free_axis && (i != second || free_axis == 3) && box_is_finite(s->box))
-            p[i] = choose(s, 2) ? s->box.axis[i].low : s->box.axis[i].high;
+            p[i] = random_index(s, 2) ? s->box.axis[i].low : s->box.axis[i].high;
     nudge(s, p, 1e-5);
 }
 
 static void start_at_landmark(Search *s, double p[3])
 {
-    memcpy(p, s->values[s->landmarks.items[choose(s, s->landmarks.count)]].v, 3 * sizeof *p);
+    memcpy(p, s->values[s->landmarks.items[random_index(s, s->landmarks.count)]].v, 3 * sizeof *p);
     if (!(length3(p) < 1e6 * (s->size + 1)))
         random_point(s, p);
     nudge(s, p, 1e-6);
@@ -511,7 +512,7 @@ static void start_at_landmark(Search *s, double p[3])
 /* `axis` becomes the direction in which the target changes, else it stays. */
 static void start_at_target(Search *s, double p[3], double axis[3])
 {
-    const Target *target = &s->targets.items[choose(s, s->targets.count)];
+    const Target *target = &s->targets.items[random_index(s, s->targets.count)];
     random_point(s, p);
     if (target->goal == GOAL_HIGH)
         drive_up(s, target, p, axis);
@@ -522,14 +523,14 @@ static void start_at_target(Search *s, double p[3], double axis[3])
         axis[i] = length > 0 && isfinite(length) ? axis[i] / length : i == 0;
     if (!(length3(p) < 1e6 * (s->size + 1)))
         random_point(s, p);
-    if (choose(s, 2))
+    if (random_index(s, 2))
         nudge(s, p, 1e-5);
 }
 
 static void choose_start(Search *s, double p[3], double axis[3])
 {
     random_direction(s, axis);
-    size_t kind = choose(s, 10);
+    size_t kind = random_index(s, 10);
     if (kind < 4 && s->targets.count > 0)
         start_at_target(s, p, axis);
     else if (kind < 7)
@@ -543,12 +544,12 @@ static void choose_start(Search *s, double p[3], double axis[3])
 }
 
 /* The best of pairs around a point, along an axis, along the gradient, and in any direction. */
-static Pair best_around(Search *s, double p[3], const double axis[3])
+static PointPair best_around(Search *s, double p[3], const double axis[3])
 {
-    Pair best = {.ratio = -1};
+    PointPair best = {.ratio = -1};
     for (int i = 0; i < 6; i++) {
-        double direction[3];
-        Pair   pair;
+        double    direction[3];
+        PointPair pair;
         random_direction(s, direction);
         if (i < 3)
             memcpy(direction, axis, sizeof direction);
@@ -565,12 +566,12 @@ static Pair best_around(Search *s, double p[3], const double axis[3])
 }
 
 /* The pair of a point and the nearest surface that a few ways from it find. */
-static Pair best_way(Search *s, double p[3])
+static PointPair best_by_directions(Search *s, double p[3])
 {
-    Pair best = {.ratio = -1};
+    PointPair best = {.ratio = -1};
     for (int i = 0; i < 4; i++) {
-        double direction[3];
-        Pair   pair = {.ratio = 0};
+        double    direction[3];
+        PointPair pair = {.ratio = 0};
         memcpy(pair.p, p, sizeof pair.p);
         random_direction(s, direction);
         if (i == 0)
@@ -605,10 +606,10 @@ static bool slide_down(Search *s, const Target *distance, double p[3], double ax
 
 /* A point of what a guard may leave out, and one where the guard decides: a way too long for the
    bound if the first is not in the box. */
-static Pair best_past_guard(Search *s)
+static PointPair best_past_guard(Search *s)
 {
-    const Guard *guard = &s->guards.items[choose(s, s->guards.count)];
-    Pair         best = {.ratio = -1}, pair = {.ratio = 0};
+    const Guard *guard = &s->guards.items[random_index(s, s->guards.count)];
+    PointPair    best = {.ratio = -1}, pair = {.ratio = 0};
     double       axis[3];
     random_point(s, pair.q);
     if (!slide_down(s, &guard->rest, pair.q, axis))
@@ -618,8 +619,8 @@ static Pair best_past_guard(Search *s)
     double slope = target_slope(s, &guard->bound, pair.q, out, axis);
     if (!(out > 0) || !(slope > 0) || !isfinite(slope) || side_now(s) > 0)
         return best;
-    for (double way = s->size; way > 1e-4 * s->size; way *= 0.8) {
-        add_scaled(pair.p, pair.q, way / slope, axis);
+    for (double length = s->size; length > 1e-4 * s->size; length *= 0.8) {
+        add_scaled(pair.p, pair.q, length / slope, axis);
         judge(s, &pair);
         if (pair.ratio > best.ratio)
             best = pair;
@@ -630,19 +631,19 @@ static Pair best_past_guard(Search *s)
 /* ---- climbing ---- */
 
 /* A pair near another one: both points moved, turned about p, or nearer and farther. */
-static Pair changed(Search *s, const Pair *pair)
+static PointPair changed(Search *s, const PointPair *pair)
 {
-    Pair   next = *pair;
-    double shift[3], way = apart(pair->p, pair->q), move = any_scale(s, 1e-6);
+    PointPair next = *pair;
+    double    shift[3], length = separation(pair->p, pair->q), move = any_scale(s, 1e-6);
     random_direction(s, shift);
-    switch (choose(s, 3)) {
+    switch (random_index(s, 3)) {
     case 0:
         add_scaled(next.p, next.p, move, shift);
         add_scaled(next.q, next.q, move, shift);
         break;
-    case 1: add_scaled(next.q, next.q, way * random_unit(&s->random), shift); break;
+    case 1: add_scaled(next.q, next.q, length * random_unit(&s->random), shift); break;
     default: {
-        double factor = exp2(between(s, -2, 1));
+        double factor = exp2(random_between(s, -2, 1));
         for (int i = 0; i < 3; i++)
             next.q[i] = next.p[i] + factor * (next.q[i] - next.p[i]);
     }
@@ -650,10 +651,10 @@ static Pair changed(Search *s, const Pair *pair)
     return next;
 }
 
-static void climb(Search *s, Pair pair, int steps)
+static void climb(Search *s, PointPair pair, int steps)
 {
     for (int i = 0; i < steps && !is_settled(s); i++) {
-        Pair next = pair;
+        PointPair next = pair;
         if (s->steep && i % 4 == 0) {
             if (halve(s, &next) && next.ratio >= pair.ratio)
                 pair = next;
@@ -739,31 +740,32 @@ bool search_start(Search *search, const NodeValue *parameters)
     return tape_frame_infinite(&search->tape, search->values) == NODE_NONE;
 }
 
-static Pair best_pair(Search *s)
+static PointPair best_pair(Search *s)
 {
     double p[3], axis[3];
     choose_start(s, p, axis);
-    return s->steep ? best_around(s, p, axis) : best_way(s, p);
+    return s->steep ? best_around(s, p, axis) : best_by_directions(s, p);
 }
 
 /* The best KEPT of a batch of starts, and from these uphill. */
 static void search_batch(Search *s, uint64_t end)
 {
-    Pair kept[KEPT];
-    for (int i = 0; i < KEPT; i++)
-        kept[i].ratio = -1;
+    PointPair best[BEST];
+    for (int i = 0; i < BEST; i++)
+        best[i].ratio = -1;
     for (int i = 0; i < BATCH && s->spent < end && !is_settled(s); i++) {
-        Pair pair = s->guards.count > 0 && choose(s, 2) ? best_past_guard(s) : best_pair(s);
-        for (int k = 0; k < KEPT; k++)
-            if (pair.ratio > kept[k].ratio) {
-                Pair less = kept[k];
-                kept[k]   = pair;
-                pair      = less;
+        PointPair pair = s->guards.count > 0 && random_index(s, 2) ? best_past_guard(s)
+                                                                   : best_pair(s);
+        for (int k = 0; k < BEST; k++)
+            if (pair.ratio > best[k].ratio) {
+                PointPair less = best[k];
+                best[k]        = pair;
+                pair           = less;
             }
     }
-    for (int i = 0; i < KEPT && s->spent < end; i++)
-        if (kept[i].ratio > 0)
-            climb(s, kept[i], CLIMB_STEPS);
+    for (int i = 0; i < BEST && s->spent < end; i++)
+        if (best[i].ratio > 0)
+            climb(s, best[i], CLIMB_STEPS);
 }
 
 void search_run(Search *search, uint64_t operations)
@@ -775,8 +777,8 @@ void search_run(Search *search, uint64_t operations)
 
 void search_from(Search *search, const double p[3], const double q[3], uint64_t operations)
 {
-    uint64_t end = search->spent + operations;
-    Pair     pair;
+    uint64_t  end = search->spent + operations;
+    PointPair pair;
     memcpy(pair.p, p, sizeof pair.p);
     memcpy(pair.q, q, sizeof pair.q);
     judge(search, &pair);
@@ -792,8 +794,8 @@ bool search_refuted(const Search *search)
 
 bool search_surface(Search *search, const double p[3], double surface[3])
 {
-    Pair   pair, best = {.ratio = -1};
-    double direction[3];
+    PointPair pair, best = {.ratio = -1};
+    double    direction[3];
     memcpy(pair.p, p, sizeof pair.p);
     pair.at_p = distance_at(search, pair.p);
     for (int i = 0; i < 200 && isfinite(pair.at_p); i++) {
@@ -802,10 +804,10 @@ bool search_surface(Search *search, const double p[3], double surface[3])
             (void)gradient_at(search, p, direction);
         for (int k = 0; k < 3 && i == 0; k++)
             direction[k] *= pair.at_p > 0 ? -1 : 1;
-        Pair way = pair;
-        if (reach_surface(search, &way, direction, 0.999999 * fabs(pair.at_p)) &&
-            (best.ratio < 0 || apart(p, way.q) < apart(p, best.q))) {
-            best       = way;
+        PointPair candidate = pair;
+        if (reach_surface(search, &candidate, direction, 0.999999 * fabs(pair.at_p)) &&
+            (best.ratio < 0 || separation(p, candidate.q) < separation(p, best.q))) {
+            best       = candidate;
             best.ratio = 1;
         }
     }

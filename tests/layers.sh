@@ -1,6 +1,6 @@
 #!/bin/sh
 # layers.sh: each folder may include itself and the folders before it in this list; of the
-# compiler, the runtime and the command may see only its doorstep.  The installed headers (types
+# compiler, the runtime and the command may see only its api.  The installed headers (types
 # and prototypes for everybody) may be included by the half that they belong to.
 #
 # Units (NAME.c with NAME.h) do not include each other in circles, but for those listed here.
@@ -8,7 +8,7 @@ set -u
 cd "$(dirname "$0")/.." || exit 1
 layers="compiler/base compiler/front compiler/graph compiler/geometry compiler/shader compiler
         runtime/device runtime/tracer runtime/film runtime/writer runtime cli"
-doorstep="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h
+api="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h
           compiler/shader/spirv.h runtime/krs_vulkan.h"
 # "A>B": A includes B's header, and B needs A.  Without all of these there is no circle.
 circles="compiler/geometry/lowering>compiler/geometry/lower
@@ -66,7 +66,7 @@ describe() { # folder
 }
 
 for layer in $layers; do
-    [ "$layer" = runtime/device ] && places=$doorstep
+    [ "$layer" = runtime/device ] && places=$api
     places="$places $layer/"
     wrong=$(while read -r file header; do
         [ "${file%/*}" != "$layer" ] || allowed "$header" "$places" ||

@@ -15,7 +15,7 @@ UNIT        := front passes film tracer methods writer memory validate refute fr
 PROPERTY    := ops noise graph derive series zeros local along anchor slope parity reach
 ORACLES     := self primitives krs_expand trees maps moebius operators combinations deform chains \
                chain_pictures moving normals fields surfaces rays algebraic fractals device query \
-               picture seams shading coverage shadows occlusion loose bounds stencils light sides \
+               picture touching shading coverage shadows occlusion underestimates bounds stencils light sides \
                steep scales agree far sheets
 FUZZ        := sentences
 # On SwiftShader, unless another device is tested: what shows that drivers agree.

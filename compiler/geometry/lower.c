@@ -5,7 +5,7 @@
  * joined.  The same walk makes the distance alone, which is what is marched, and the distance
  * with all that a hit needs (material, level, instance), which is evaluated once per hit.
  *
- * Distances are 1-Lipschitz up to the slope that make.c derived, by which the root divides.
+ * Distances are 1-Lipschitz up to the slope that shapes.c derived, by which the root divides.
  * Where only sharp joints and maps of space lie above a primitive, its sharper `bound` serves:
  * it need not be Lipschitz, only never exceed the distance.
  */
@@ -24,21 +24,21 @@ const Lowered lowered_nothing = {NODE_NONE,
                                  {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE,
                                   NODE_NONE, NODE_NONE, NODE_NONE}};
 
-Place place_bare(Node point, bool lipschitz)
+LowerContext context_new(Node point, bool lipschitz)
 {
-    return (Place){point, NODE_NONE, NODE_NONE, lipschitz, NODE_NONE, NODE_NONE, NODE_NONE};
+    return (LowerContext){point, NODE_NONE, NODE_NONE, lipschitz, NODE_NONE, NODE_NONE, NODE_NONE};
 }
 
-Place place_at(Place place, Node point)
+LowerContext context_at(LowerContext context, Node point)
 {
-    place.point = point;
-    return place;
+    context.point = point;
+    return context;
 }
 
-Place place_steady(Place place)
+LowerContext context_lipschitz(LowerContext context)
 {
-    place.lipschitz = true;
-    return place;
+    context.lipschitz = true;
+    return context;
 }
 
 /* ---- surfaces ---- */
@@ -126,12 +126,12 @@ static Lowered complement(Lowering *l, Lowered a)
 }
 
 /* A blend moves the zero set. */
-static Place joint_place(const Shape *shape, Place place)
+static LowerContext joint_context(const Shape *shape, LowerContext context)
 {
-    return shape->blend.width == NODE_NONE ? place : place_steady(place);
+    return shape->blend.width == NODE_NONE ? context : context_lipschitz(context);
 }
 
-Node beyond_sides(Graph *g, Node point, Box box)
+Node sides_excess(Graph *g, Node point, Box box)
 {
     Node most = NODE_NONE;
     for (uint32_t i = 0; i < 3; i++) {
@@ -140,58 +140,59 @@ Node beyond_sides(Graph *g, Node point, Box box)
             continue;
         Node middle = graph_number(g, 0.5 * (side.low + side.high));
         Node half   = graph_number(g, 0.5 * (side.high - side.low));
-        Node away   = graph_op2(g, OP_sub, graph_component(g, point, i), middle);
-        Node beyond = graph_op2(g, OP_sub, graph_op1(g, OP_abs, away), half);
-        most        = most == NODE_NONE ? beyond : graph_op2(g, OP_max, most, beyond);
+        Node offset = graph_op2(g, OP_sub, graph_component(g, point, i), middle);
+        Node excess = graph_op2(g, OP_sub, graph_op1(g, OP_abs, offset), half);
+        most        = most == NODE_NONE ? excess : graph_op2(g, OP_max, most, excess);
     }
     return most;
 }
 
 /* What is only a bound may be small far from the shape; the distance to the sides of its box is a
-   bound as well, and with it the place where it is r lies within r of the box, as the boxes of make.c
-   say. */
-Lowered lower_operand(Lowering *l, const Shape *shape, Place place)
+   bound as well, and with it the points where it is r lie within r of the box, as the boxes of
+   shapes.c say. */
+Lowered lower_operand(Lowering *l, const Shape *shape, LowerContext context)
 {
-    Lowered result = lower_shape(l, shape, place_steady(place));
+    Lowered result = lower_shape(l, shape, context_lipschitz(context));
     if (result.distance == NODE_NONE || shape->exact)
         return result;
-    Node beyond = beyond_sides(l->graph, place.point, shape->box);
-    if (beyond != NODE_NONE)
-        result.distance = graph_op2(l->graph, OP_max, result.distance, beyond);
+    Node excess = sides_excess(l->graph, context.point, shape->box);
+    if (excess != NODE_NONE)
+        result.distance = graph_op2(l->graph, OP_max, result.distance, excess);
     return result;
 }
 
-static Lowered lower_joined(Lowering *l, const Shape *joint, const Shape *child, Place place)
+static Lowered lower_joined(Lowering *l, const Shape *joint, const Shape *child,
+                            LowerContext context)
 {
-    return joint->blend.width == NODE_NONE ? lower_shape(l, child, place)
-                                           : lower_operand(l, child, place);
+    return joint->blend.width == NODE_NONE ? lower_shape(l, child, context)
+                                           : lower_operand(l, child, context);
 }
 
 /* Joined in pairs, so that the graph stays shallow and a blend of many keeps its slope. */
 static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *children,
-                        uint32_t count, Place place)
+                        uint32_t count, LowerContext context)
 {
     if (count == 0)
         return lowered_nothing;
     if (count == 1)
-        return lower_joined(l, shape, children[0], place);
+        return lower_joined(l, shape, children[0], context);
     uint32_t half  = count / 2;
-    Lowered  left  = union_of(l, shape, children, half, place);
-    Lowered  right = union_of(l, shape, children + half, count - half, place);
+    Lowered  left  = union_of(l, shape, children, half, context);
+    Lowered  right = union_of(l, shape, children + half, count - half, context);
     return join_two(l, shape->blend, left, right);
 }
 
-static Lowered lower_union(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_union(Lowering *l, const Shape *shape, LowerContext context)
 {
-    return union_of(l, shape, shape->children, shape->child_count, place);
+    return union_of(l, shape, shape->children, shape->child_count, context);
 }
 
-static Lowered lower_intersection(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_intersection(Lowering *l, const Shape *shape, LowerContext context)
 {
     /* The complement of the union of the complements. */
-    Lowered all = lower_joined(l, shape, shape->children[0], place);
+    Lowered all = lower_joined(l, shape, shape->children[0], context);
     for (uint32_t i = 1; i < shape->child_count; i++) {
-        Lowered next = lower_joined(l, shape, shape->children[i], place);
+        Lowered next = lower_joined(l, shape, shape->children[i], context);
         if (all.distance == NODE_NONE || next.distance == NODE_NONE)
             return lowered_nothing;
         Lowered joined = join_two(l, shape->blend, complement(l, all), complement(l, next));
@@ -200,10 +201,10 @@ static Lowered lower_intersection(Lowering *l, const Shape *shape, Place place)
     return all;
 }
 
-static Lowered lower_difference(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_difference(Lowering *l, const Shape *shape, LowerContext context)
 {
-    Lowered left  = lower_joined(l, shape, shape->children[0], place);
-    Lowered right = union_of(l, shape, shape->children + 1, shape->child_count - 1, place);
+    Lowered left  = lower_joined(l, shape, shape->children[0], context);
+    Lowered right = union_of(l, shape, shape->children + 1, shape->child_count - 1, context);
     if (left.distance == NODE_NONE || right.distance == NODE_NONE)
         return left;
     Lowered joined = join_two(l, shape->blend, complement(l, left), right);
@@ -211,10 +212,10 @@ static Lowered lower_difference(Lowering *l, const Shape *shape, Place place)
 }
 
 /* What is in one of two: their union less what they share. */
-static Lowered lower_xor(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_xor(Lowering *l, const Shape *shape, LowerContext context)
 {
-    Lowered a = lower_joined(l, shape, shape->children[0], place);
-    Lowered b = lower_joined(l, shape, shape->children[1], place);
+    Lowered a = lower_joined(l, shape, shape->children[0], context);
+    Lowered b = lower_joined(l, shape, shape->children[1], context);
     if (a.distance == NODE_NONE || b.distance == NODE_NONE)
         return join_two(l, shape->blend, a, b);
     Lowered result = join_two(l, shape->blend, a, b);
@@ -224,10 +225,10 @@ static Lowered lower_xor(Lowering *l, const Shape *shape, Place place)
     return result;
 }
 
-static Lowered lower_morph(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_morph(Lowering *l, const Shape *shape, LowerContext context)
 {
-    Lowered a = lower_shape(l, shape->children[0], place_steady(place));
-    Lowered b = lower_shape(l, shape->children[1], place_steady(place));
+    Lowered a = lower_shape(l, shape->children[0], context_lipschitz(context));
+    Lowered b = lower_shape(l, shape->children[1], context_lipschitz(context));
     if (a.distance == NODE_NONE || b.distance == NODE_NONE)
         return a.distance == NODE_NONE ? b : a;
     Graph  *g       = l->graph;
@@ -269,10 +270,10 @@ Lowered scale_distance(Lowering *l, Lowered result, Node factor)
     return result;
 }
 
-Lowered lower_behind(Lowering *l, const Shape *child, Place place, const NormalPath *path,
+Lowered lower_behind(Lowering *l, const Shape *child, LowerContext context, const NormalPath *path,
                      Node point)
 {
-    Lowered result        = lower_shape(l, child, place_behind(path, place, point));
+    Lowered result        = lower_shape(l, child, context_behind(path, context, point));
     result.surface.normal = normal_out(l, path, result.surface.normal);
     return result;
 }
@@ -285,58 +286,58 @@ Node enter_scale(Lowering *l, Node scale)
     return unit;
 }
 
-static Lowered lower_transform(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_transform(Lowering *l, const Shape *shape, LowerContext context)
 {
-    NormalPath path  = normal_path(l, place, 1);
-    Node       point = before_map(l->graph, &shape->map, place.point);
+    NormalPath path  = normal_path(l, context, 1);
+    Node       point = before_map(l->graph, &shape->map, context.point);
     normal_turn(l, &path, shape->map.rows, shape->map.scale);
     Node    unit   = enter_scale(l, shape->map.scale);
-    Lowered result = lower_behind(l, shape->children[0], place, &path, point);
+    Lowered result = lower_behind(l, shape->children[0], context, &path, point);
     l->unit        = unit;
     return scale_distance(l, result, shape->map.scale);
 }
 
-static Lowered lower_stretch(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_stretch(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph *g = l->graph;
     Node   x = graph_component(g, shape->values[0], 0), y = graph_component(g, shape->values[0], 1);
     Node   z         = graph_component(g, shape->values[0], 2);
     Node   least     = graph_op2(g, OP_min, x, y);
     least            = graph_op2(g, OP_min, least, z);
-    Node       point = graph_op2(g, OP_div, place.point, shape->values[0]);
-    NormalPath path  = normal_path(l, place, 1);
+    Node       point = graph_op2(g, OP_div, context.point, shape->values[0]);
+    NormalPath path  = normal_path(l, context, 1);
     normal_stretch(l, &path, shape->values[0], least);
     Node    unit   = enter_scale(l, least);
-    Lowered result = lower_behind(l, shape->children[0], place, &path, point);
+    Lowered result = lower_behind(l, shape->children[0], context, &path, point);
     l->unit        = unit;
     return scale_distance(l, result, least);
 }
 
-static Lowered lower_mirror(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_mirror(Lowering *l, const Shape *shape, LowerContext context)
 {
-    NormalPath path = normal_path(l, place, 1);
-    normal_fold(l, &path, place.point, shape->values[0], shape->values[1]);
-    Node point = graph_op3(l->graph, OP_fold, place.point, shape->values[0], shape->values[1]);
-    return lower_behind(l, shape->children[0], place, &path, point);
+    NormalPath path = normal_path(l, context, 1);
+    normal_fold(l, &path, context.point, shape->values[0], shape->values[1]);
+    Node point = graph_op3(l->graph, OP_fold, context.point, shape->values[0], shape->values[1]);
+    return lower_behind(l, shape->children[0], context, &path, point);
 }
 
 /* The last of a chain counts, as with paint. */
-static Lowered lower_smooth(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_smooth(Lowering *l, const Shape *shape, LowerContext context)
 {
-    if (l->surfaces && place.smoothing == NODE_NONE)
-        place.smoothing = shape->values[0] != NODE_NONE
-                              ? shape->values[0]
-                              : graph_op2(l->graph, OP_add, place.footprint, place.footprint);
-    return lower_shape(l, shape->children[0], place);
+    if (l->surfaces && context.smoothing == NODE_NONE)
+        context.smoothing = shape->values[0] != NODE_NONE
+                                ? shape->values[0]
+                                : graph_op2(l->graph, OP_add, context.footprint, context.footprint);
+    return lower_shape(l, shape->children[0], context);
 }
 
-static Lowered lower_elongate(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_elongate(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph *g      = l->graph;
     Node   low    = graph_op1(g, OP_neg, shape->values[0]);
-    Node   inside = graph_op3(g, OP_clamp, place.point, low, shape->values[0]);
-    Node   point  = graph_op2(g, OP_sub, place.point, inside);
-    return lower_shape(l, shape->children[0], place_at(place, point));
+    Node   inside = graph_op3(g, OP_clamp, context.point, low, shape->values[0]);
+    Node   point  = graph_op2(g, OP_sub, context.point, inside);
+    return lower_shape(l, shape->children[0], context_at(context, point));
 }
 Node box_distance(Graph *g, Node point, Box box)
 {
@@ -356,16 +357,16 @@ Node box_distance(Graph *g, Node point, Box box)
 
 /* ---- figures made solid ---- */
 
-static Lowered lower_extrude(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_extrude(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph  *g = l->graph;
-    Node    x = graph_component(g, place.point, 0), y = graph_component(g, place.point, 1);
+    Node    x = graph_component(g, context.point, 0), y = graph_component(g, context.point, 1);
     Node    zero   = graph_number(g, 0);
     Node    flat   = graph_op3(g, OP_vec3, x, y, zero);
-    Lowered result = lower_shape(l, shape->children[0], place_at(place, flat));
+    Lowered result = lower_shape(l, shape->children[0], context_at(context, flat));
     if (result.distance == NODE_NONE)
         return result;
-    Node height     = graph_component(g, place.point, 2);
+    Node height     = graph_component(g, context.point, 2);
     height          = graph_op1(g, OP_abs, height);
     height          = graph_op2(g, OP_sub, height, shape->values[0]);
     Node inside     = graph_op2(g, OP_max, result.distance, height);
@@ -378,41 +379,41 @@ static Lowered lower_extrude(Lowering *l, const Shape *shape, Place place)
     return result;
 }
 
-static Lowered lower_revolve(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_revolve(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph *g = l->graph;
-    Node   x = graph_component(g, place.point, 0), y = graph_component(g, place.point, 1);
-    Node   z        = graph_component(g, place.point, 2);
+    Node   x = graph_component(g, context.point, 0), y = graph_component(g, context.point, 1);
+    Node   z        = graph_component(g, context.point, 2);
     Node   axis     = graph_op2(g, OP_vec2, x, z);
-    Node   away     = graph_op1(g, OP_length, axis);
-    away            = graph_op2(g, OP_sub, away, shape->values[0]);
+    Node   offset   = graph_op1(g, OP_length, axis);
+    offset          = graph_op2(g, OP_sub, offset, shape->values[0]);
     Node       zero = graph_number(g, 0);
-    Node       flat = graph_op3(g, OP_vec3, away, y, zero);
-    NormalPath path = normal_path(l, place, 1);
-    normal_turn_about_y(l, &path, place.point, graph_vec3(g, 1, 0, 0));
-    return lower_behind(l, shape->children[0], place, &path, flat);
+    Node       flat = graph_op3(g, OP_vec3, offset, y, zero);
+    NormalPath path = normal_path(l, context, 1);
+    normal_turn_about_y(l, &path, context.point, graph_vec3(g, 1, 0, 0));
+    return lower_behind(l, shape->children[0], context, &path, flat);
 }
 
 /* ---- leaves, paint, and the walk ---- */
 
-/* A number with this value and this gradient: with n and the rest w held still, dot(n, q) + w
+/* A number with this value and this gradient: with n and the rest w held constant, dot(n, q) + w
    changes with the point q as a plane does. */
 static Node with_gradient(Lowering *l, Node value, Node n, Node point)
 {
     Graph *g     = l->graph;
     Node   along = graph_op2(g, OP_dot, n, point);
     Node   w     = graph_op2(g, OP_sub, value, along);
-    array_push(l->scratch, l->still, n);
-    array_push(l->scratch, l->still, w);
+    array_push(l->scratch, l->held_constant, n);
+    array_push(l->scratch, l->held_constant, w);
     return graph_op2(g, OP_add, along, w);
 }
 
 /* What has a formula f has its gradient from that: the bound by which it is marched costs many
    times as much.  NODE_NONE: the formula has no derivative. */
-static Node tangent_by_formula(Lowering *l, const Shape *shape, Place place)
+static Node tangent_by_formula(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph       *g    = l->graph;
-    Substitution with = substitute_point(place.point);
+    Substitution with = substitute_point(context.point);
     Node         gradient;
     if (graph_gradient(g, shape->formula, &gradient, NULL, l->scratch) == DERIVED_NOT)
         return NODE_NONE;
@@ -421,7 +422,7 @@ static Node tangent_by_formula(Lowering *l, const Shape *shape, Place place)
     Node n     = graph_op1(g, OP_normalize, gradient);
     Node steep = graph_op1(g, OP_length, gradient);
     steep      = graph_op2(g, OP_max, steep, graph_number(g, 1e-30));
-    return with_gradient(l, graph_op2(g, OP_div, f, steep), n, place.point);
+    return with_gradient(l, graph_op2(g, OP_div, f, steep), n, context.point);
 }
 
 /* Whether a distance is the length of a vector that vanishes at the surface, with a sign: rounding
@@ -438,10 +439,11 @@ static bool is_signed_length(const Graph *g, Node distance)
 }
 
 /* Such a shape is looked at a thousandth of its coordinates to each side. */
-static Node tangent_by_differences(Lowering *l, const Shape *shape, Place place, Node distance)
+static Node tangent_by_differences(Lowering *l, const Shape *shape, LowerContext context,
+                                   Node distance)
 {
     Graph *g    = l->graph;
-    Node   size = graph_op1(g, OP_abs, place.point), sides[3], seen[2];
+    Node   size = graph_op1(g, OP_abs, context.point), sides[3], seen[2];
     for (uint32_t i = 0; i < 3; i++)
         sides[i] = graph_component(g, size, i);
     Node step = graph_op2(g, OP_max, sides[0], sides[1]);
@@ -449,39 +451,39 @@ static Node tangent_by_differences(Lowering *l, const Shape *shape, Place place,
     step      = graph_op2(g, OP_add, step, graph_number(g, 0.1));
     step      = graph_op2(g, OP_mul, step, graph_number(g, 1e-3));
     for (uint32_t i = 0; i < 3; i++) {
-        Node axis = graph_vec3(g, i == 0, i == 1, i == 2);
-        Node away = graph_op2(g, OP_scale, axis, step);
+        Node axis   = graph_vec3(g, i == 0, i == 1, i == 2);
+        Node offset = graph_op2(g, OP_scale, axis, step);
         for (int side = 0; side < 2; side++) {
-            Node point = graph_op2(g, side ? OP_sub : OP_add, place.point, away);
+            Node point = graph_op2(g, side ? OP_sub : OP_add, context.point, offset);
             seen[side] = graph_substitute(g, shape->distance, substitute_point(point), l->scratch);
         }
         sides[i] = graph_op2(g, OP_sub, seen[0], seen[1]);
     }
     Node n = graph_op1(g, OP_normalize, graph_op(g, OP_vec3, sides));
-    return with_gradient(l, distance, n, place.point);
+    return with_gradient(l, distance, n, context.point);
 }
 
-static Lowered lower_primitive(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_primitive(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph       *g    = l->graph;
-    Substitution with = substitute_point(place.point);
+    Substitution with = substitute_point(context.point);
     Lowered      leaf = lowered_nothing;
-    if (l->still && shape->formula != NODE_NONE && !place.lipschitz)
-        leaf.distance = tangent_by_formula(l, shape, place);
+    if (l->held_constant && shape->formula != NODE_NONE && !context.lipschitz)
+        leaf.distance = tangent_by_formula(l, shape, context);
     if (leaf.distance == NODE_NONE)
         leaf.distance = graph_substitute(g, shape->distance, with, l->scratch);
-    if (l->still && is_signed_length(g, shape->distance))
-        leaf.distance = tangent_by_differences(l, shape, place, leaf.distance);
-    if (l->still)
+    if (l->held_constant && is_signed_length(g, shape->distance))
+        leaf.distance = tangent_by_differences(l, shape, context, leaf.distance);
+    if (l->held_constant)
         return leaf;
-    if (shape->bound != NODE_NONE && !place.lipschitz) {
+    if (shape->bound != NODE_NONE && !context.lipschitz) {
         Node bound    = graph_substitute(g, shape->bound, with, l->scratch);
         leaf.distance = graph_op2(g, OP_max, leaf.distance, bound);
     }
     if (l->surfaces) {
-        leaf.surface.level    = place.level == NODE_NONE ? graph_number(g, 0) : place.level;
-        leaf.surface.instance = place.instance == NODE_NONE ? graph_uint(g, 1) : place.instance;
-        leaf.surface.normal   = place.normal;
+        leaf.surface.level    = context.level == NODE_NONE ? graph_number(g, 0) : context.level;
+        leaf.surface.instance = context.instance == NODE_NONE ? graph_uint(g, 1) : context.instance;
+        leaf.surface.normal   = context.normal;
         if (shape->uv != NODE_NONE)
             leaf.surface.uv = graph_substitute(g, shape->uv, with, l->scratch);
         if (shape->trap != NODE_NONE)
@@ -498,16 +500,16 @@ static void paint_with(Lowering *l, Node *property, Node paint, Substitution wit
 }
 
 /* The outermost paint counts, as the last method of a chain does. */
-static Lowered lower_paint(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_paint(Lowering *l, const Shape *shape, LowerContext context)
 {
-    Lowered result = lower_shape(l, shape->children[0], place);
+    Lowered result = lower_shape(l, shape->children[0], context);
     if (!l->surfaces || result.distance == NODE_NONE)
         return result;
     Substitution with = {
-        place.point, result.surface.instance, result.surface.level, result.surface.uv,
-        NODE_NONE,   result.surface.trap};
+        context.point, result.surface.instance, result.surface.level, result.surface.uv,
+        NODE_NONE,     result.surface.trap};
     const Material *material = shape->material;
-    with.normal              = unit_normal(l->graph, result.surface.normal, place.normal);
+    with.normal              = unit_normal(l->graph, result.surface.normal, context.normal);
     paint_with(l, &result.surface.color, material->color, with);
     paint_with(l, &result.surface.roughness, material->roughness, with);
     paint_with(l, &result.surface.metallic, material->metallic, with);
@@ -515,9 +517,9 @@ static Lowered lower_paint(Lowering *l, const Shape *shape, Place place)
     return result;
 }
 
-static Lowered lower_offset(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_offset(Lowering *l, const Shape *shape, LowerContext context)
 {
-    Lowered result = lower_operand(l, shape->children[0], place);
+    Lowered result = lower_operand(l, shape->children[0], context);
     if (result.distance != NODE_NONE)
         result.distance = graph_op2(l->graph, OP_sub, result.distance, shape->values[0]);
     return result;
@@ -528,22 +530,22 @@ static Lowered thin_sheet(Lowering *l, Lowered solid)
 {
     Graph *g    = l->graph;
     Node   size = graph_op1(g, OP_abs, solid.distance);
-    if (l->still) {
+    if (l->held_constant) {
         Node more = graph_op2(g, OP_sub, size, solid.distance);
-        array_push(l->scratch, l->still, more);
+        array_push(l->scratch, l->held_constant, more);
         size = graph_op2(g, OP_add, solid.distance, more);
     }
     solid.distance = size;
     return solid;
 }
 
-static Lowered lower_shell(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_shell(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph *g       = l->graph;
     bool   thin    = l->thin && shape->sheet;
     l->thin        = false;
-    Lowered result = thin ? lower_shape(l, shape->children[0], place)
-                          : lower_operand(l, shape->children[0], place);
+    Lowered result = thin ? lower_shape(l, shape->children[0], context)
+                          : lower_operand(l, shape->children[0], context);
     if (result.distance == NODE_NONE || thin)
         return thin && result.distance != NODE_NONE ? thin_sheet(l, result) : result;
     Node half       = graph_number(g, 0.5);
@@ -553,35 +555,35 @@ static Lowered lower_shell(Lowering *l, const Shape *shape, Place place)
     return result;
 }
 
-static Lowered lower_kind(Lowering *l, const Shape *shape, Place place)
+static Lowered lower_kind(Lowering *l, const Shape *shape, LowerContext context)
 {
     switch (shape->kind) {
     case SHAPE_EMPTY: return lowered_nothing;
-    case SHAPE_PRIMITIVE: return lower_primitive(l, shape, place);
-    case SHAPE_TRANSFORM: return lower_transform(l, shape, place);
-    case SHAPE_INVERSION: return lower_inversion(l, shape, place);
-    case SHAPE_STRETCH: return lower_stretch(l, shape, place);
-    case SHAPE_UNION: return lower_union(l, shape, joint_place(shape, place));
-    case SHAPE_INTERSECTION: return lower_intersection(l, shape, joint_place(shape, place));
-    case SHAPE_DIFFERENCE: return lower_difference(l, shape, joint_place(shape, place));
-    case SHAPE_XOR: return lower_xor(l, shape, joint_place(shape, place));
-    case SHAPE_MORPH: return lower_morph(l, shape, place);
-    case SHAPE_META: return lower_meta(l, shape, place);
-    case SHAPE_OFFSET: return lower_offset(l, shape, place);
-    case SHAPE_SHELL: return lower_shell(l, shape, place);
-    case SHAPE_ELONGATE: return lower_elongate(l, shape, place);
-    case SHAPE_EXTRUDE: return lower_extrude(l, shape, place);
-    case SHAPE_REVOLVE: return lower_revolve(l, shape, place);
-    case SHAPE_REPEAT: return lower_repeat(l, shape, place);
-    case SHAPE_REPEAT_POLAR: return lower_repeat_polar(l, shape, place);
-    case SHAPE_MIRROR: return lower_mirror(l, shape, place);
-    case SHAPE_TWIST: return lower_twist(l, shape, place);
-    case SHAPE_BEND: return lower_bend(l, shape, place);
-    case SHAPE_TAPER: return lower_taper(l, shape, place);
-    case SHAPE_DISPLACE: return lower_displace(l, shape, place);
-    case SHAPE_SMOOTH: return lower_smooth(l, shape, place);
-    case SHAPE_PAINT: return lower_paint(l, shape, place);
-    case SHAPE_KRS: return lower_krs(l, shape, place);
+    case SHAPE_PRIMITIVE: return lower_primitive(l, shape, context);
+    case SHAPE_TRANSFORM: return lower_transform(l, shape, context);
+    case SHAPE_INVERSION: return lower_inversion(l, shape, context);
+    case SHAPE_STRETCH: return lower_stretch(l, shape, context);
+    case SHAPE_UNION: return lower_union(l, shape, joint_context(shape, context));
+    case SHAPE_INTERSECTION: return lower_intersection(l, shape, joint_context(shape, context));
+    case SHAPE_DIFFERENCE: return lower_difference(l, shape, joint_context(shape, context));
+    case SHAPE_XOR: return lower_xor(l, shape, joint_context(shape, context));
+    case SHAPE_MORPH: return lower_morph(l, shape, context);
+    case SHAPE_META: return lower_meta(l, shape, context);
+    case SHAPE_OFFSET: return lower_offset(l, shape, context);
+    case SHAPE_SHELL: return lower_shell(l, shape, context);
+    case SHAPE_ELONGATE: return lower_elongate(l, shape, context);
+    case SHAPE_EXTRUDE: return lower_extrude(l, shape, context);
+    case SHAPE_REVOLVE: return lower_revolve(l, shape, context);
+    case SHAPE_REPEAT: return lower_repeat(l, shape, context);
+    case SHAPE_REPEAT_POLAR: return lower_repeat_polar(l, shape, context);
+    case SHAPE_MIRROR: return lower_mirror(l, shape, context);
+    case SHAPE_TWIST: return lower_twist(l, shape, context);
+    case SHAPE_BEND: return lower_bend(l, shape, context);
+    case SHAPE_TAPER: return lower_taper(l, shape, context);
+    case SHAPE_DISPLACE: return lower_displace(l, shape, context);
+    case SHAPE_SMOOTH: return lower_smooth(l, shape, context);
+    case SHAPE_PAINT: return lower_paint(l, shape, context);
+    case SHAPE_KRS: return lower_krs(l, shape, context);
     }
     assert(!"every kind of shape has a rule");
     return lowered_nothing;
@@ -617,7 +619,7 @@ bool has_thin_sheets(const Shape *shape)
     return found;
 }
 
-Lowered lower_shape(Lowering *l, const Shape *shape, Place place)
+Lowered lower_shape(Lowering *l, const Shape *shape, LowerContext context)
 {
     bool thin      = l->thin;
     l->graph->here = shape->span;
@@ -625,13 +627,14 @@ Lowered lower_shape(Lowering *l, const Shape *shape, Place place)
     if (l->overflow)
         return lowered_nothing;
     l->thin        = thin && rays_pass(shape);
-    Lowered result = lower_kind(l, shape, place);
+    Lowered result = lower_kind(l, shape, context);
     l->thin        = thin;
     /* Where no mirror is smooth, the normal that came in is the one that comes out. */
-    if (result.distance != NODE_NONE && place.smoothing == NODE_NONE && !shape->smooth)
-        result.surface.normal = place.normal;
-    if (l->visits)
-        array_push(l->scratch, l->visits, ((Visit){shape, place.point, result.distance}));
+    if (result.distance != NODE_NONE && context.smoothing == NODE_NONE && !shape->smooth)
+        result.surface.normal = context.normal;
+    if (l->lowered_shapes)
+        array_push(l->scratch, l->lowered_shapes,
+                   ((LoweredShape){shape, context.point, result.distance}));
     return result;
 }
 
@@ -647,15 +650,15 @@ static Node or_else(Node node, Node otherwise) { return node == NODE_NONE ? othe
 
 bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roots)
 {
-    Lowering l            = {.graph    = graph,
+    Lowering     l        = {.graph    = graph,
                              .scratch  = scratch,
                              .surfaces = true,
                              .thin     = true,
                              .most     = graph->count + MOST_LOWERED};
-    Place    place        = place_bare(graph_leaf(graph, OP_POINT), false);
-    place.normal          = graph_leaf(graph, OP_NORMAL);
-    place.footprint       = graph_leaf(graph, OP_FOOTPRINT);
-    Lowered all           = lower_shape(&l, shape, place);
+    LowerContext context  = context_new(graph_leaf(graph, OP_POINT), false);
+    context.normal        = graph_leaf(graph, OP_NORMAL);
+    context.footprint     = graph_leaf(graph, OP_FOOTPRINT);
+    Lowered all           = lower_shape(&l, shape, context);
     Node    distance      = or_else(all.distance, graph_number(graph, NOWHERE));
     roots[ROOT_DISTANCE]  = divide_by_slope(graph, distance, shape->slope);
     roots[ROOT_COLOR]     = or_else(all.surface.color, graph_vec3(graph, 0.6, 0.6, 0.6));
@@ -664,8 +667,8 @@ bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roo
     roots[ROOT_EMISSION]  = or_else(all.surface.emission, graph_vec3(graph, 0, 0, 0));
     roots[ROOT_LEVEL]     = or_else(all.surface.level, graph_number(graph, 0));
     roots[ROOT_INSTANCE]  = or_else(all.surface.instance, graph_uint(graph, 1));
-    Node normal           = or_else(all.surface.normal, place.normal);
-    roots[ROOT_NORMAL]    = unit_normal(graph, normal, place.normal);
+    Node normal           = or_else(all.surface.normal, context.normal);
+    roots[ROOT_NORMAL]    = unit_normal(graph, normal, context.normal);
     return !l.overflow;
 }
 
@@ -677,7 +680,7 @@ Node lower_guarded(Graph *graph, const Shape *shape, Node plain, Arena *scratch)
                     .thin    = true,
                     .unit    = graph_number(graph, 1),
                     .most    = graph->count + MOST_LOWERED};
-    Lowered  all = lower_shape(&l, shape, place_bare(graph_leaf(graph, OP_POINT), false));
+    Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(graph, OP_POINT), false));
     if (all.distance == NODE_NONE || l.overflow)
         return plain;
     return divide_by_slope(graph, all.distance, shape->slope);
@@ -688,17 +691,18 @@ enum { MOST_DERIVED = 20000 };
 
 bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near, Arena *scratch)
 {
-    Nodes    still = {0};
-    Lowering l     = {.graph   = graph,
-                      .scratch = scratch,
-                      .still   = &still,
-                      .thin    = true,
-                      .most    = graph->count + MOST_DERIVED};
-    Lowered  all   = lower_shape(&l, shape, place_bare(graph_leaf(graph, OP_POINT), false));
+    Nodes    held_constant = {0};
+    Lowering l             = {.graph         = graph,
+                              .scratch       = scratch,
+                              .held_constant = &held_constant,
+                              .thin          = true,
+                              .most          = graph->count + MOST_DERIVED};
+    Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(graph, OP_POINT), false));
     if (all.distance == NODE_NONE || l.overflow)
         return false;
     *near     = divide_by_slope(graph, all.distance, shape->slope);
     Tape tape = tape_new(graph, near, 1, scratch);
-    return tape.count <= MOST_DERIVED && graph_gradient_of(graph, *near, still.items, still.count,
-                                                           gradient, NULL, scratch) != DERIVED_NOT;
+    return tape.count <= MOST_DERIVED &&
+           graph_gradient_of(graph, *near, held_constant.items, held_constant.count, gradient, NULL,
+                             scratch) != DERIVED_NOT;
 }
