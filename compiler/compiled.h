@@ -75,8 +75,8 @@ typedef struct KrsProgram {
     KrsGroup      groups[KRS_MOST_GROUPS];
     size_t        group_count;       /* 0: all components belong together */
     bool          apart;             /* taking turns is worth it */
-    uint32_t      parts;             /* of krs_distance_of, for kernels with #define PACKED */
-    uint32_t      heavy;             /* components that are worth being marched by themselves */
+    uint32_t      scene_parts;       /* how many (emit.h), for kernels with #define PACKED */
+    uint32_t      expensive;         /* components that cost enough to be marched by themselves */
     const double *pass_ms;           /* time spent: in each pass (krs_pass, compile.h), */
     double        front_ms, glsl_ms; /* in all before `emit`, and in `emit` */
 } KrsProgram;

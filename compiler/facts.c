@@ -95,7 +95,7 @@ KrsStatus pass_facts(Compilation *c)
     find_additions(c);
     find_steps(c);
     form_groups(c); /* by boxes, costs and planes */
-    c->scene->program.parts = emit_scene_part_count(c->scene->component_count);
+    c->scene->program.scene_parts = emit_scene_part_count(c->scene->component_count);
     return KRS_OK;
 }
 
@@ -108,7 +108,7 @@ void validate_facts(const Compilation *c)
     assert(!program->apart || program->group_count > 0);
     assert(program->gradients || !(program->algebraic || program->sheets));
     assert(!program->sheets || !program->anchored);
-    assert(program->parts <= c->scene->component_count);
+    assert(program->scene_parts <= c->scene->component_count);
     (void)program;
 }
 
@@ -125,11 +125,11 @@ static void print_flags(const KrsProgram *program, Text *out)
     const struct {
         const char *name;
         bool        is;
-    } flags[] = {{"flats", program->flats},         {"anchored", program->anchored},
-                 {"gradients", program->gradients}, {"algebraic", program->algebraic},
-                 {"along", program->along},         {"inverts", program->inverts},
-                 {"sheets", program->sheets},       {"plain", program->plain},
-                 {"shadows", program->shadows},     {"apart", program->apart}};
+    } flags[] = {{"planes", program->flats},           {"camera-relative", program->anchored},
+                 {"gradients", program->gradients},    {"algebraic normals", program->algebraic},
+                 {"steps along rays", program->along}, {"maps that invert", program->inverts},
+                 {"sheets", program->sheets},          {"no curved shapes", program->plain},
+                 {"shadows", program->shadows},        {"march groups pay", program->apart}};
     for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
         text_format(out, "%s  %s\n", flags[i].name, flags[i].is ? "yes" : "no");
 }
@@ -143,11 +143,11 @@ void print_facts(Compilation *c, Text *out)
     text_format(out, "operations  %zu\nflops  %.6g\nloops  %u\n", program->operations,
                 program->flops, program->loops);
     print_flags(program, out);
-    text_format(out, "parts  %u\nheavy  %u\ngroups  %zu\n", program->parts, program->expensive,
-                program->group_count);
+    text_format(out, "scene parts  %u\nexpensive components  %u\nmarch groups  %zu\n",
+                program->scene_parts, program->expensive, program->group_count);
     for (size_t i = 0; i < program->group_count; i++) {
         const KrsGroup *group = &program->groups[i];
-        text_format(out, "group %zu  flops %.6g", i + 1, group->flops);
+        text_format(out, "march group %zu  flops %.6g", i + 1, group->flops);
         print_box("", group->low, group->high, out);
     }
 }

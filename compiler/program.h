@@ -40,7 +40,7 @@ typedef struct SkyRoots {
     Node zenith, horizon, ground;
 } SkyRoots;
 typedef struct PlaneRoots {
-    Node way, rise; /* where a ray meets it, and how steeply the ray falls */
+    Node step, rise; /* how far a ray is from it, and how steeply the ray falls */
 } PlaneRoots;
 typedef struct GradientRoots {
     Node gradient, near; /* lower_gradient's two; the same FLOAT twice where there is none */

@@ -77,8 +77,8 @@ static void dumps_say_what_was_found(void **state)
     line_with(text, " operations of 20000\n");
     free(text);
     text = dump(example, "facts", KRS_OK);
-    line_with(text, "flats  yes\n");
-    line_with(text, "group 3  flops");
+    line_with(text, "planes  yes\n");
+    line_with(text, "march group 3  flops");
     free(text);
     text = dump(example, "frame", KRS_OK);
     line_with(text, "camera 1  perspective  eye 4.4 4.3 7  target");
