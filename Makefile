@@ -30,7 +30,7 @@ BASE     := $(addprefix compiler/base/, arena.c text.c source.c beneath.c loader
 FRONT    := $(addprefix compiler/front/, lexer.c syntax.c parser.c parse_expression.c parse.c \
                 names.c files.c)
 GRAPH    := $(addprefix compiler/graph/, graph.c substitute.c derive.c series.c zeros.c local.c \
-                anchor.c simplify.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c regions.c \
+                rebase.c simplify.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c regions.c \
                 fractal.c evaluate.c print.c)
 GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c arguments.c \
                 builtins.c lists.c random.c csg.c functions.c expression.c map.c moebius.c \
@@ -42,7 +42,7 @@ GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c a
 SHADER   := $(addprefix compiler/shader/, emit.c statements.c frame_values.c mirrors.c early_outs.c march.c spirv.c)
 BORDER   := compiler/shader/glslang_border.cpp
 API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c retain.c facts.c \
-                groups.c program.c framing.c frame.c query.c search.c refute.c bounds.c)
+                march_groups.c program.c framing.c frame.c query.c search.c refute.c bounds.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer film writer))))
 CLI      := $(sort $(wildcard cli/*.c))
 

@@ -38,11 +38,11 @@ typedef struct Request {
 /* What is lowered beside the surfaces and the march of each component, and why: decided by `lower`,
    as it needs shapes and the graph before it is simplified. */
 typedef struct Additions {
-    bool planes;    /* components that are half-spaces, which rays meet without a march */
-    bool anchored;  /* points may be given from an anchor */
-    bool sheets;    /* there are surfaces without thickness */
-    bool algebraic; /* derivatives cost less than differences */
-    bool gradients; /* sheets or `algebraic` need them, or somebody asked for them */
+    bool planes;          /* components that are half-spaces, which rays meet without a march */
+    bool camera_relative; /* points may be relative to the camera */
+    bool sheets;          /* there are surfaces without thickness */
+    bool algebraic;       /* derivatives cost less than differences */
+    bool gradients;       /* sheets or `algebraic` need them, or somebody asked for them */
 } Additions;
 
 /* Three arenas for three lifetimes: scene->arena stays with the scene, `work` holds sources,
@@ -62,12 +62,12 @@ struct Compilation {
     Files             files;
     Scene             elaborated; /* its graph is the one that `lower` extends */
     Additions         additions;
-    size_t           *operations; /* of each component and, behind the last, of its zones */
-    uint32_t         *groups;     /* of each component, from 1; 0: it needs no march */
+    size_t           *operations;   /* of each component and, behind the last, of its zones */
+    uint32_t         *march_groups; /* of each component, from 1; 0: it needs no march */
     Text              dump;
 };
 
-static inline bool is_flat(const Component *component)
+static inline bool component_is_plane(const Component *component)
 {
     return component->plane_normal != NODE_NONE;
 }
@@ -78,14 +78,14 @@ void validate_simplified(const Compilation *c);
 void validate_facts(const Compilation *c);
 
 /* precision.c: whether a camera may see something so closely, so far from the origin, that points
-   need an anchor. */
-bool may_need_anchor(const Scene *scene, Graph *graph, const Roots *roots, Arena *scratch);
+   must be relative to it. */
+bool may_need_rebase(const Scene *scene, Graph *graph, const Roots *roots, Arena *scratch);
 
 /* limits.c: reports that the scene is too large; `operations`: of that component, its largest; 0
    when they were too many to be counted. */
 void refuse_component(Compilation *c, size_t component, size_t operations);
 
-/* groups.c: which components are marched by themselves: c->groups, and the program's. */
-void form_groups(Compilation *c);
+/* march_groups.c: which components are marched by themselves: c->march_groups, and the program's. */
+void form_march_groups(Compilation *c);
 
 #endif

@@ -35,8 +35,8 @@
  * than `footprint`, the radius of a pixel's cone at p, counts as the box around it (0: nothing
  * does).  Where a branch saves no work, as on lavapipe, krs_distance costs less.
  *
- * A scene of several expensive components has groups of them (KrsGroup): with GROUP defined as the
- * number of one there is krs_distance alone, and of that group alone.
+ * A scene of several expensive components has groups of them (KrsMarchGroup): with MARCH_GROUP
+ * defined as the number of one there is krs_distance alone, and of that group alone.
  *
  * N is parameter_slots (at least 1), what is in them is told at krs_frame_parameters.  With
  * FRAME_VALUES defined, value_slots more follow (krs_frame_values), and lanes need not find what

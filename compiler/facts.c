@@ -28,7 +28,7 @@ static void find_boxes(Compilation *c)
     Box              rest      = box_empty;
     for (size_t i = 0; i < c->elaborated.components.count; i++) {
         const Component *component = &c->elaborated.components.items[i];
-        rest = is_flat(component) ? rest : box_hull(rest, component->shape->box);
+        rest = component_is_plane(component) ? rest : box_hull(rest, component->shape->box);
     }
     copy_box(c->elaborated.box, program->low, program->high);
     copy_box(box_is_empty(rest) ? at_origin : rest, program->rest_low, program->rest_high);
@@ -63,12 +63,12 @@ static void find_kinds(Compilation *c)
 
 static void find_additions(Compilation *c)
 {
-    KrsProgram *program = &c->scene->program;
-    program->flats      = c->additions.planes;
-    program->anchored   = c->additions.anchored;
-    program->sheets     = c->additions.sheets;
-    program->algebraic  = c->additions.algebraic;
-    program->gradients  = c->additions.gradients;
+    KrsProgram *program      = &c->scene->program;
+    program->planes          = c->additions.planes;
+    program->camera_relative = c->additions.camera_relative;
+    program->sheets          = c->additions.sheets;
+    program->algebraic       = c->additions.algebraic;
+    program->gradients       = c->additions.gradients;
 }
 
 /* Steps along rays that are no mere distances, and those for maps that invert. */
@@ -94,7 +94,7 @@ KrsStatus pass_facts(Compilation *c)
     find_kinds(c);
     find_additions(c);
     find_steps(c);
-    form_groups(c); /* by boxes, costs and planes */
+    form_march_groups(c); /* by boxes, costs and planes */
     c->scene->program.scene_parts = emit_scene_part_count(c->scene->component_count);
     return KRS_OK;
 }
@@ -104,10 +104,10 @@ void validate_facts(const Compilation *c)
     const KrsProgram *program = &c->scene->program;
     assert(program->parameter_slots > 0); /* the time has one */
     assert(isfinite(program->flops) && program->flops >= 0);
-    assert(program->group_count != 1 && program->group_count <= KRS_MOST_GROUPS);
-    assert(!program->apart || program->group_count > 0);
+    assert(program->march_group_count != 1 && program->march_group_count <= KRS_MOST_MARCH_GROUPS);
+    assert(!program->per_component || program->march_group_count > 0);
     assert(program->gradients || !(program->algebraic || program->sheets));
-    assert(!program->sheets || !program->anchored);
+    assert(!program->sheets || !program->camera_relative);
     assert(program->scene_parts <= c->scene->component_count);
     (void)program;
 }
@@ -125,11 +125,12 @@ static void print_flags(const KrsProgram *program, Text *out)
     const struct {
         const char *name;
         bool        is;
-    } flags[] = {{"planes", program->flats},           {"camera-relative", program->anchored},
-                 {"gradients", program->gradients},    {"algebraic normals", program->algebraic},
-                 {"steps along rays", program->along}, {"maps that invert", program->inverts},
-                 {"sheets", program->sheets},          {"no curved shapes", program->plain},
-                 {"shadows", program->shadows},        {"march groups pay", program->apart}};
+    } flags[] = {
+        {"planes", program->planes},          {"camera-relative", program->camera_relative},
+        {"gradients", program->gradients},    {"algebraic normals", program->algebraic},
+        {"steps along rays", program->along}, {"maps that invert", program->inverts},
+        {"sheets", program->sheets},          {"no curved shapes", program->plain},
+        {"shadows", program->shadows},        {"march groups pay", program->per_component}};
     for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
         text_format(out, "%s  %s\n", flags[i].name, flags[i].is ? "yes" : "no");
 }
@@ -144,9 +145,9 @@ void print_facts(Compilation *c, Text *out)
                 program->flops, program->loops);
     print_flags(program, out);
     text_format(out, "scene parts  %u\nexpensive components  %u\nmarch groups  %zu\n",
-                program->scene_parts, program->expensive, program->group_count);
-    for (size_t i = 0; i < program->group_count; i++) {
-        const KrsGroup *group = &program->groups[i];
+                program->scene_parts, program->expensive, program->march_group_count);
+    for (size_t i = 0; i < program->march_group_count; i++) {
+        const KrsMarchGroup *group = &program->march_groups[i];
         text_format(out, "march group %zu  flops %.6g", i + 1, group->flops);
         print_box("", group->low, group->high, out);
     }

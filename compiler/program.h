@@ -21,12 +21,12 @@ typedef enum RootKind {
     ROOTS_LIGHT,
     ROOTS_SKY,
     /* From here on for the march alone; nothing else depends on these. */
-    ROOTS_GUARDED,  /* of each component: lower_guarded */
-    ROOTS_ALONG,    /* of each component, method by method: lower_along */
-    ROOTS_PLANE,    /* of the nearest half-space */
-    ROOTS_GRADIENT, /* of each component, and then of all zones */
-    ROOTS_SLOPE,    /* of each slope that is found for each frame */
-    ROOTS_ANCHORED, /* surfaces and plane again, for points given from an anchor, or nothing */
+    ROOTS_GUARDED,         /* of each component: lower_guarded */
+    ROOTS_ALONG,           /* of each component, method by method: lower_along */
+    ROOTS_PLANE,           /* of the nearest half-space */
+    ROOTS_GRADIENT,        /* of each component, and then of all zones */
+    ROOTS_SLOPE,           /* of each slope that is found for each frame */
+    ROOTS_CAMERA_RELATIVE, /* surfaces and plane again, for points that are, or nothing */
     ROOT_KINDS
 } RootKind;
 
@@ -147,8 +147,9 @@ struct KrsScene {
     Tape           ahead;    /* with sheets: of all components, and zones, how far rays may go */
     Tape           turned;   /* with sheets: gradients of all components */
     Tape           surface;  /* all roots of all components */
-    EmittedFrame   found;    /* what kernels get from the host for a frame, and for an anchor */
-    Tape           view;     /* cameras, lights and sky */
+    EmittedFrame
+         found; /* what kernels get from the host for a frame, and for an origin near the camera */
+    Tape view;  /* cameras, lights and sky */
 };
 
 /* A frame: what varies, and memory for the values of all nodes. */

@@ -3,33 +3,33 @@
  *
  * Of each component its distance and material, and after these what only the march needs, so that
  * nothing else depends on it: guards, steps along a ray, planes, gradients, and the same again for
- * points that are given from an anchor.
+ * camera-relative points.
  */
 #include <math.h>
 #include <string.h>
 
 #include "compiler/compilation.h"
-#include "compiler/graph/anchor.h"
+#include "compiler/graph/rebase.h"
 #include "compiler/graph/derive.h"
 
-/* Room for all roots, one kind behind the other; those near an anchor come last. */
+/* Room for all roots, one kind behind the other; those for camera-relative points come last. */
 static void allocate_roots(Compilation *c)
 {
     const Scene *s                  = &c->elaborated;
     Roots       *roots              = &c->scene->roots;
     size_t       components         = s->components.count;
     const size_t counts[ROOT_KINDS] = {
-        [ROOTS_SURFACE]  = components * ROOT_COUNT,
-        [ROOTS_ZONE]     = s->zone_count > 0,
-        [ROOTS_CAMERA]   = s->cameras.count * NODES_OF(CameraRoots),
-        [ROOTS_LIGHT]    = s->lights.count * NODES_OF(LightRoots),
-        [ROOTS_SKY]      = NODES_OF(SkyRoots),
-        [ROOTS_GUARDED]  = components,
-        [ROOTS_ALONG]    = components * ALONG_COUNT,
-        [ROOTS_PLANE]    = NODES_OF(PlaneRoots),
-        [ROOTS_GRADIENT] = (components + 1) * NODES_OF(GradientRoots),
-        [ROOTS_SLOPE]    = s->slopes.count,
-        [ROOTS_ANCHORED] = components * ROOT_COUNT + NODES_OF(PlaneRoots)};
+        [ROOTS_SURFACE]         = components * ROOT_COUNT,
+        [ROOTS_ZONE]            = s->zone_count > 0,
+        [ROOTS_CAMERA]          = s->cameras.count * NODES_OF(CameraRoots),
+        [ROOTS_LIGHT]           = s->lights.count * NODES_OF(LightRoots),
+        [ROOTS_SKY]             = NODES_OF(SkyRoots),
+        [ROOTS_GUARDED]         = components,
+        [ROOTS_ALONG]           = components * ALONG_COUNT,
+        [ROOTS_PLANE]           = NODES_OF(PlaneRoots),
+        [ROOTS_GRADIENT]        = (components + 1) * NODES_OF(GradientRoots),
+        [ROOTS_SLOPE]           = s->slopes.count,
+        [ROOTS_CAMERA_RELATIVE] = components * ROOT_COUNT + NODES_OF(PlaneRoots)};
     for (RootKind kind = 0; kind < ROOT_KINDS; kind++)
         roots->first[kind + 1] = roots->first[kind] + counts[kind];
     roots->all = arena_new_array(&c->scene->arena, Node, roots->first[ROOT_KINDS]);
@@ -83,7 +83,7 @@ static void lower_marches(Compilation *c, Graph *g)
  * at (w - n.p) / n.d, if n.d < 0.  The first root is the least of these, the second the least n.d.
  * Where there are zones, planes have holes, and are marched like the rest.
  */
-static void lower_flats(Compilation *c, Graph *g)
+static void lower_planes(Compilation *c, Graph *g)
 {
     const Scene *s     = &c->elaborated;
     PlaneRoots  *plane = plane_roots(&c->scene->roots);
@@ -93,7 +93,7 @@ static void lower_flats(Compilation *c, Graph *g)
     plane->rise = graph_number(g, 1);
     for (size_t i = 0; i < s->components.count && s->zone_count == 0; i++) {
         const Component *component = &s->components.items[i];
-        if (!is_flat(component))
+        if (!component_is_plane(component))
             continue;
         c->additions.planes = true;
         Node rise           = graph_op2(g, OP_dot, component->plane_normal, direction);
@@ -141,18 +141,18 @@ static void lower_gradients(Compilation *c, Graph *g)
     }
 }
 
-/* The roots of the components, and that of planes, for points given from an anchor. */
-static void lower_anchored(Compilation *c, Graph *g)
+/* The roots of the components, and that of planes, for points relative to the camera. */
+static void lower_camera_relative(Compilation *c, Graph *g)
 {
     const Roots   *roots    = &c->scene->roots;
     RootRange      surfaces = roots_of(roots, ROOTS_SURFACE), plane = roots_of(roots, ROOTS_PLANE);
-    RootRange      near     = roots_of(roots, ROOTS_ANCHORED);
+    RootRange      near     = roots_of(roots, ROOTS_CAMERA_RELATIVE);
     GraphParameter anywhere = {{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL, HUGE_VAL}};
-    Node           anchor   = graph_parameter(g, (uint32_t)g->parameters.count, TYPE_VEC3);
+    Node           rebase_origin = graph_parameter(g, (uint32_t)g->parameters.count, TYPE_VEC3);
     array_push(&c->scene->arena, &g->parameters, anywhere);
     memcpy(near.items, surfaces.items, surfaces.count * sizeof(Node));
     memcpy(near.items + surfaces.count, plane.items, plane.count * sizeof(Node));
-    graph_anchor(g, near.items, near.count, anchor, &c->scratch);
+    graph_rebase(g, near.items, near.count, rebase_origin, &c->scratch);
     arena_free(&c->scratch);
 }
 
@@ -172,21 +172,21 @@ KrsStatus pass_lower(Compilation *c)
     allocate_roots(c);
     if (!lower_components(c, s->graph))
         return KRS_BAD_SCENE;
-    more->sheets   = any_thin_sheets(s);
-    more->anchored = !more->sheets && may_need_anchor(s, s->graph, roots, &c->scratch);
+    more->sheets          = any_thin_sheets(s);
+    more->camera_relative = !more->sheets && may_need_rebase(s, s->graph, roots, &c->scratch);
     gather_view(s, roots);
     lower_marches(c, s->graph);
-    lower_flats(c, s->graph);
+    lower_planes(c, s->graph);
     arena_free(&c->scratch);
     more->algebraic = is_algebraic(s, roots);
     more->gradients = more->algebraic || more->sheets || c->options->gradients;
     lower_gradients(c, s->graph);
     for (size_t i = 0; i < s->slopes.count; i++)
         roots_of(roots, ROOTS_SLOPE).items[i] = s->slopes.items[i].formula;
-    if (more->anchored)
-        lower_anchored(c, s->graph);
+    if (more->camera_relative)
+        lower_camera_relative(c, s->graph);
     else
-        roots->first[ROOT_KINDS] = roots->first[ROOTS_ANCHORED];
+        roots->first[ROOT_KINDS] = roots->first[ROOTS_CAMERA_RELATIVE];
     return KRS_OK;
 }
 

@@ -13,7 +13,8 @@ api="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h
 # "A>B": A includes B's header, and B needs A.  Without all of these there is no circle.
 circles="compiler/geometry/lowering>compiler/geometry/lower
          compiler/shader/emitter>compiler/shader/emit
-         runtime/device/pipelines>runtime/device/gpu runtime/tracer/stage>runtime/tracer/renderer
+         runtime/device/pipelines>runtime/device/gpu runtime/tracer/layouts>runtime/tracer/renderer
+         runtime/tracer/warmup>runtime/tracer/renderer
          runtime/tracer/phases>runtime/tracer/dispatch
          cli/options>cli/console cli/options>cli/values"
 

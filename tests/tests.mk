@@ -11,8 +11,8 @@ SUPPORT     := $(addprefix tests/support/, agreement.c bench.c device.c random.c
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c chain.c \
                exact.c formulas.c rooms.c montecarlo.c)
 UNIT        := front passes film tracer methods writer memory validate refute frame query cache \
-               compiled apart stencils glslang loader drivers grid
-PROPERTY    := ops noise graph derive series zeros local along anchor slope parity reach
+               compiled per_component stencils glslang loader drivers grid
+PROPERTY    := ops noise graph derive series zeros local along rebase slope parity reach
 ORACLES     := self primitives krs_expand trees maps moebius operators combinations deform chains \
                chain_pictures moving normals fields surfaces rays algebraic fractals device query \
                picture touching shading coverage shadows occlusion underestimates bounds stencils light sides \
@@ -30,7 +30,7 @@ SANITIZED   := tests/unit/front tests/unit/passes tests/unit/film tests/unit/wri
                tests/unit/query tests/property/ops tests/property/noise tests/property/graph \
                tests/property/derive tests/property/series tests/property/zeros \
                tests/property/local \
-               tests/property/along tests/property/anchor tests/property/slope \
+               tests/property/along tests/property/rebase tests/property/slope \
                tests/property/parity tests/property/reach tests/oracle/primitives \
                tests/oracle/krs_expand tests/oracle/bounds tests/oracle/maps tests/oracle/moebius \
                tests/oracle/operators tests/oracle/moving tests/oracle/fractals \

@@ -455,7 +455,7 @@ static bool device_create(Gpu *gpu, unsigned pretence)
         .queueFamilyIndex = gpu->family,
     };
     TRY(gpu, attempt, vkCreateCommandPool(gpu->device, &pool, NULL, &gpu->pool));
-    TRY(gpu, attempt, vkCreateCommandPool(gpu->device, &pool, NULL, &gpu->rehearsals));
+    TRY(gpu, attempt, vkCreateCommandPool(gpu->device, &pool, NULL, &gpu->warm_up_pool));
     TRY(gpu, attempt,
         vkAllocateCommandBuffers(gpu->device,
                                  &(VkCommandBufferAllocateInfo){
@@ -546,7 +546,7 @@ void gpu_close(Gpu *gpu)
         pipelines_close(gpu);
         vkDestroyQueryPool(gpu->device, gpu->times, NULL);
         vkDestroyFence(gpu->device, gpu->fence, NULL);
-        vkDestroyCommandPool(gpu->device, gpu->rehearsals, NULL);
+        vkDestroyCommandPool(gpu->device, gpu->warm_up_pool, NULL);
         vkDestroyCommandPool(gpu->device, gpu->pool, NULL);
         vkDestroyDevice(gpu->device, NULL);
     }

@@ -66,11 +66,11 @@ typedef struct Deed {
 } Deed;
 
 /* What stands upright for an axis of a bend, and the direction to which it bends. */
-static void bend_frame(Vec axis, Vec *along, Vec *aside)
+static void bend_frame(Vec axis, Vec *along, Vec *lateral)
 {
-    Vec up = fabs(axis.y) > 0.999 ? vec(1, 0, 0) : vec(0, 1, 0);
-    *along = vec_unit(vec_sub(up, vec_scale(vec_dot(up, axis), axis)));
-    *aside = vec_cross(axis, *along);
+    Vec up   = fabs(axis.y) > 0.999 ? vec(1, 0, 0) : vec(0, 1, 0);
+    *along   = vec_unit(vec_sub(up, vec_scale(vec_dot(up, axis), axis)));
+    *lateral = vec_cross(axis, *along);
 }
 
 static double taper_factor(const Deed *deed, double height)
@@ -89,11 +89,11 @@ static Vec deed_forward(const Deed *deed, Vec p)
         return vec_add(on_axis, vec_scale(taper_factor(deed, height), vec_sub(p, on_axis)));
     }
     /* Around the axis of the bend, at the distance 1 / rate. */
-    Vec along, aside;
-    bend_frame(deed->axis, &along, &aside);
-    double angle = deed->rate * vec_dot(p, along), radius = 1 / deed->rate - vec_dot(p, aside);
+    Vec along, lateral;
+    bend_frame(deed->axis, &along, &lateral);
+    double angle = deed->rate * vec_dot(p, along), radius = 1 / deed->rate - vec_dot(p, lateral);
     Vec    bent = vec_add(vec_scale(radius * sin(angle), along),
-                          vec_scale(1 / deed->rate - radius * cos(angle), aside));
+                          vec_scale(1 / deed->rate - radius * cos(angle), lateral));
     return vec_add(vec_scale(height, deed->axis), bent);
 }
 
@@ -107,13 +107,14 @@ static Vec deed_backward(const Deed *deed, Vec p, int turn)
         Vec on_axis = vec_scale(height, deed->axis);
         return vec_add(on_axis, vec_scale(1 / taper_factor(deed, height), vec_sub(p, on_axis)));
     }
-    Vec along, aside;
-    bend_frame(deed->axis, &along, &aside);
-    double side = deed->rate > 0 ? 1 : -1, y = vec_dot(p, along), z = vec_dot(p, aside);
+    Vec along, lateral;
+    bend_frame(deed->axis, &along, &lateral);
+    double side = deed->rate > 0 ? 1 : -1, y = vec_dot(p, along), z = vec_dot(p, lateral);
     double angle  = side * atan2(side * y, side * (1 / deed->rate - z)) + 2 * PI * turn;
     double radius = hypot(y, 1 / deed->rate - z);
     double before = (angle * side) / fabs(deed->rate) * side;
-    Vec flat = vec_add(vec_scale(before, along), vec_scale(1 / deed->rate - side * radius, aside));
+    Vec    flat   = vec_add(vec_scale(before, along),
+                            vec_scale(1 / deed->rate - side * radius, lateral));
     return vec_add(vec_scale(height, deed->axis), flat);
 }
 
@@ -571,14 +572,14 @@ static double mean_share(const Product *product, const Chain *chain, Cloud *clou
     double sum   = 0;
     int    count = 0;
     for (int i = 0; i < 400; i++) {
-        Vec    p    = random_in_cube(random, half);
-        double away = cloud_nearest(cloud, p), bound = product_distance(product, p);
-        if (fabs(bound) > away + 1e-9)
+        Vec    p        = random_in_cube(random, half);
+        double distance = cloud_nearest(cloud, p), bound = product_distance(product, p);
+        if (fabs(bound) > distance + 1e-9)
             fail_msg("at (%g, %g, %g) %.9g, but a surface point is %.9g away", p.x, p.y, p.z, bound,
-                     away);
-        if (chain_contains(chain, p) || away < 5 * cloud->spacing)
+                     distance);
+        if (chain_contains(chain, p) || distance < 5 * cloud->spacing)
             continue;
-        sum += bound / away;
+        sum += bound / distance;
         count++;
     }
     return count ? sum / count : 1;

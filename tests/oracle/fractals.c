@@ -197,7 +197,7 @@ static void voxels_free(Voxels *v)
 }
 
 /* The length of the shortest way found from p to a point of the other side. */
-static double way_to_other_side(const Fractal *f, const Voxels *v, Random *random, Vec p)
+static double distance_to_other_side(const Fractal *f, const Voxels *v, Random *random, Vec p)
 {
     bool       own   = inside(f, p);
     const Vec *all   = own ? v->empty : v->solid;
@@ -235,19 +235,19 @@ static Measure measure(const Product *product, const Fractal *f, int points)
     for (int i = 0; i < points; i++) {
         Vec p = random_in_cube(&random, 1.3 * f->radius);
         if (i % 3 == 0 && v.solid_count > 0) {
-            Vec    border = v.solid[random_below(&random, (int)v.solid_count)];
-            double away   = random_between(&random, 0, 3 * v.side);
-            p             = vec_add(border, vec_scale(away, random_unit(&random)));
+            Vec    border   = v.solid[random_below(&random, (int)v.solid_count)];
+            double distance = random_between(&random, 0, 3 * v.side);
+            p               = vec_add(border, vec_scale(distance, random_unit(&random)));
         }
-        double way = way_to_other_side(f, &v, &random, p), d = distance_at(product, p);
+        double distance = distance_to_other_side(f, &v, &random, p), d = distance_at(product, p);
         bool   own = inside(f, p);
         m.wrong_sides += (d <= 0) != own && fabs(d) > 1e-12;
         m.count++;
         if (own)
-            m.most_inside = fmax(m.most_inside, -d / way);
+            m.most_inside = fmax(m.most_inside, -d / distance);
         else {
-            m.most = fmax(m.most, d / way);
-            m.mean += d / way;
+            m.most = fmax(m.most, d / distance);
+            m.mean += d / distance;
             outside++;
         }
     }
@@ -523,8 +523,8 @@ static double excess(const Meta *meta, Vec p)
 {
     double sum = -meta->level;
     for (int i = 0; i < meta->count; i++) {
-        double away = vec_distance(p, meta->blobs[i].centre) - meta->blobs[i].radius;
-        sum += falloff(meta->kind, fmax(away, 0) / meta->reach);
+        double distance = vec_distance(p, meta->blobs[i].centre) - meta->blobs[i].radius;
+        sum += falloff(meta->kind, fmax(distance, 0) / meta->reach);
     }
     return sum;
 }
@@ -549,7 +549,7 @@ static Meta meta_new(Random *random, int kind, char *text, size_t size)
 }
 
 /* The shortest way along `rays` rays to where the sum crosses the level; infinite if none does. */
-static double way_to_surface(const Meta *meta, Random *random, Vec p, int rays)
+static double distance_to_surface(const Meta *meta, Random *random, Vec p, int rays)
 {
     enum { STEPS = 200 };
     double nearest = INFINITY, own = excess(meta, p);
@@ -587,13 +587,14 @@ static void meta_bounds_hold(void **state)
         snprintf(scene, sizeof scene, "show %s;", text);
         Product product = product_new(scene);
         for (int i = 0; i < 150; i++) {
-            Vec    p = random_in_cube(&random, 2.5);
-            double d = distance_at(&product, p), way = way_to_surface(&meta, &random, p, 40);
+            Vec    p        = random_in_cube(&random, 2.5);
+            double d        = distance_at(&product, p),
+                   distance = distance_to_surface(&meta, &random, p, 40);
             assert_true((d <= 0) == (excess(&meta, p) >= 0) || fabs(d) < 1e-12);
-            assert_true(fabs(d) <= way);
-            most = fmax(most, fabs(d) / way);
-            if (isfinite(way) && d > 0) {
-                sum += d / way;
+            assert_true(fabs(d) <= distance);
+            most = fmax(most, fabs(d) / distance);
+            if (isfinite(distance) && d > 0) {
+                sum += d / distance;
                 near++;
             }
         }
@@ -624,10 +625,11 @@ static bool is_on_a_face(const Product *product, Vec p)
     const double h = 1e-5;
     double       slopes[3], size = 0, most = 0;
     for (int k = 0; k < 3; k++) {
-        Vec way   = vec(k == 0 ? h : 0, k == 1 ? h : 0, k == 2 ? h : 0);
-        slopes[k] = distance_at(product, vec_add(p, way)) - distance_at(product, vec_sub(p, way));
-        size      = hypot(size, slopes[k]);
-        most      = fmax(most, fabs(slopes[k]));
+        Vec direction = vec(k == 0 ? h : 0, k == 1 ? h : 0, k == 2 ? h : 0);
+        slopes[k]     = distance_at(product, vec_add(p, direction)) -
+                    distance_at(product, vec_sub(p, direction));
+        size = hypot(size, slopes[k]);
+        most = fmax(most, fabs(slopes[k]));
     }
     return most > size * (1 - 1e-5);
 }

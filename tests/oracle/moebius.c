@@ -133,10 +133,10 @@ static double solid_distance(const Kernel *k, Vec p)
         Vec o = vec(fmax(d.x, 0), fmax(d.y, 0), fmax(d.z, 0));
         return vec_length(o) + fmin(fmax(d.x, fmax(d.y, d.z)), 0);
     }
-    Vec    way = vec_sub(k->to, k->from), z = vec_sub(p, k->from);
-    double along = vec_dot(way, way) > 0 ? vec_dot(z, way) / vec_dot(way, way) : 0;
+    Vec    offset = vec_sub(k->to, k->from), z = vec_sub(p, k->from);
+    double along = vec_dot(offset, offset) > 0 ? vec_dot(z, offset) / vec_dot(offset, offset) : 0;
     along        = fmax(0, fmin(1, along));
-    return vec_distance(z, vec_scale(along, way)) - k->radius;
+    return vec_distance(z, vec_scale(along, offset)) - k->radius;
 }
 
 /* What is nearest by the distance without the bound, d over the scale of the maps. */
@@ -205,12 +205,12 @@ static Vec random_on_solid(const Kernel *k, Random *random)
         q        = vec(q.x / m * k->sides.x, q.y / m * k->sides.y, q.z / m * k->sides.z);
         return vec_add(k->from, vec_turn(q, k->axis, k->angle));
     }
-    Vec way = vec_sub(k->to, k->from), u = random_unit(random);
-    Vec end = vec_dot(u, way) > 0 ? k->to : k->from;
-    if (random_below(random, 2) || vec_length(way) == 0)
+    Vec offset = vec_sub(k->to, k->from), u = random_unit(random);
+    Vec end = vec_dot(u, offset) > 0 ? k->to : k->from;
+    if (random_below(random, 2) || vec_length(offset) == 0)
         return vec_add(end, vec_scale(k->radius, u));
-    Vec across = vec_unit(vec_cross(way, u));
-    return vec_add(vec_add(k->from, vec_scale(random_between(random, 0, 1), way)),
+    Vec across = vec_unit(vec_cross(offset, u));
+    return vec_add(vec_add(k->from, vec_scale(random_between(random, 0, 1), offset)),
                    vec_scale(k->radius, across));
 }
 
@@ -292,9 +292,9 @@ static Word random_word(const Flavour *flavour, Random *random)
     if (random_below(random, 4) == 0)
         word_add(&word, REFLECT, random_unit(random), random_between(random, -0.2, 0.2));
     if (random_between(random, 0, 1) < flavour->inverting) {
-        double away = random_between(random, flavour->near, flavour->far);
-        word_add(&word, INVERT, vec_scale(away, random_unit(random)),
-                 away * random_between(random, 0.8, 1.2));
+        double distance = random_between(random, flavour->near, flavour->far);
+        word_add(&word, INVERT, vec_scale(distance, random_unit(random)),
+                 distance * random_between(random, 0.8, 1.2));
     }
     if (random_below(random, 3) == 0)
         word_add(&word, SCALE, vec(0, 0, 0), random_between(random, 0.6, 1.4));
@@ -744,15 +744,15 @@ static void poles_are_empty(void **state)
             Vec pole = vec(0, 0, 0);
             if (!cloud.count || !world_pole(&chain, i, &pole))
                 continue;
-            Vec    aside = vec_add(pole, vec_scale(1e-7, random_unit(&random)));
-            double truth = cloud_nearest(&cloud, pole);
-            if (!(truth > 1e-2) || chain_contains(&chain, aside))
+            Vec    lateral = vec_add(pole, vec_scale(1e-7, random_unit(&random)));
+            double truth   = cloud_nearest(&cloud, pole);
+            if (!(truth > 1e-2) || chain_contains(&chain, lateral))
                 continue;
-            for (double away = 1e-3; away > 1e-13; away *= 0.1) {
-                Vec    p = vec_add(pole, vec_scale(away > 1e-12 ? away : 0, random_unit(&random)));
+            for (double gap = 1e-3; gap > 1e-13; gap *= 0.1) {
+                Vec    p = vec_add(pole, vec_scale(gap > 1e-12 ? gap : 0, random_unit(&random)));
                 double distance = product_distance(&product, p);
-                if (!(distance > 0 && distance <= truth + away))
-                    fail_msg("distance %.12g at %g from a pole, %.12g from the set", distance, away,
+                if (!(distance > 0 && distance <= truth + gap))
+                    fail_msg("distance %.12g at %g from a pole, %.12g from the set", distance, gap,
                              truth);
             }
             double part = product_distance(&product, pole) / truth;

@@ -112,9 +112,9 @@ static void scatter_twigs(Stage *stage)
         double turn = random_between(&random, 0, M_PI), length = random_between(&random, 0.5, 1.2);
         Vec    middle    = vec(random_between(&random, -3, 3), random_between(&random, 0.6, 1),
                                random_between(&random, -2, 2));
-        Vec    aside     = vec(0.5 * length * cos(turn), random_between(&random, -0.2, 0.2),
+        Vec    lateral   = vec(0.5 * length * cos(turn), random_between(&random, -0.2, 0.2),
                                0.5 * length * sin(turn));
-        stage->solids[i] = (Solid){TWIG, vec_sub(middle, aside), vec_add(middle, aside), 1};
+        stage->solids[i] = (Solid){TWIG, vec_sub(middle, lateral), vec_add(middle, lateral), 1};
     }
 }
 
@@ -303,12 +303,12 @@ static Chord chord_of(Line line, const Solid *solid, double size)
     }
 }
 
-/* Whether a solid stands between a point and another that is `way` off. */
-static bool is_hidden(const Shot *shot, Vec point, Vec way, bool endless)
+/* Whether a solid stands between a point and another that is `direction` off. */
+static bool is_hidden(const Shot *shot, Vec point, Vec direction, bool endless)
 {
     const Stage *stage = &stages[shot->stage];
-    Line         line  = {point, vec_unit(way)};
-    double       end   = endless ? HUGE_VAL : vec_length(way);
+    Line         line  = {point, vec_unit(direction)};
+    double       end   = endless ? HUGE_VAL : vec_length(direction);
     for (int i = 0; i < stage->count; i++) {
         Chord chord = chord_of(line, &stage->solids[i], shot->size);
         if (i + 1 != shot->without && !chord_is_empty(chord) && chord.leave > 0 &&
@@ -322,17 +322,17 @@ static bool is_hidden(const Shot *shot, Vec point, Vec way, bool endless)
 static double share_by_rays(const Shot *shot, Vec point)
 {
     enum { RINGS = 16, SPOKES = 24 };
-    Disc disc  = disc_from(shot, point);
-    Vec  aside = vec_across(disc.axis), other = vec_cross(disc.axis, aside);
+    Disc disc    = disc_from(shot, point);
+    Vec  lateral = vec_across(disc.axis), other = vec_cross(disc.axis, lateral);
     int  open = 0;
     for (int i = 0; i < RINGS; i++)
         for (int k = 0; k < SPOKES; k++) {
-            double away = disc.radius * sqrt((i + 0.5) / RINGS);
-            double turn = 2 * M_PI * (k + 0.618 * i) / SPOKES;
-            Vec    at   = vec_add(vec_scale(away * cos(turn), aside),
-                                  vec_scale(away * sin(turn), other));
-            Vec    way  = vec_add(vec_scale(disc.remote, disc.axis), at);
-            open += !is_hidden(shot, point, way, disc.endless);
+            double distance  = disc.radius * sqrt((i + 0.5) / RINGS);
+            double turn      = 2 * M_PI * (k + 0.618 * i) / SPOKES;
+            Vec    at        = vec_add(vec_scale(distance * cos(turn), lateral),
+                                       vec_scale(distance * sin(turn), other));
+            Vec    direction = vec_add(vec_scale(disc.remote, disc.axis), at);
+            open += !is_hidden(shot, point, direction, disc.endless);
         }
     return (double)open / (RINGS * SPOKES);
 }
@@ -971,11 +971,11 @@ static void symmetric_scenes_have_symmetric_pictures(void **state)
         "show plane([0, 1, 0], 0);\n"
         "show box([0.4, 1.6, 3]).move([0, 0.8, 0]);\n"
         "show sphere(0.6).move([1.2, 0.6, 0.3]) | sphere(0.6).move([-1.2, 0.6, 0.3]);\n";
-    for (int way = 0; way < 2; way++) {
+    for (int plain = 0; plain < 2; plain++) {
         KrsPicture *picture = picture_of(
-            text, &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .no_upsampling = way});
+            text, &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .no_upsampling = plain});
         double most = asymmetry(picture);
-        print_message("# symmetry: off by %.2g%s\n", most, way ? "" : " with upsampling");
+        print_message("# symmetry: off by %.2g%s\n", most, plain ? "" : " with upsampling");
         assert_true(most < MOST_ASYMMETRY);
         picture->color[4 * (HEIGHT / 2 * WIDTH + 20)] += 800 * MOST_ASYMMETRY; /* a planted fault */
         assert_false(asymmetry(picture) < MOST_ASYMMETRY);

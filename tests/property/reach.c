@@ -92,8 +92,8 @@ static bool in_box(Box box, const double p[3])
 
 static bool in_ball(Ball ball, const double p[3])
 {
-    double way[3] = {p[0] - ball.centre[0], p[1] - ball.centre[1], p[2] - ball.centre[2]};
-    return sqrt(dot(way, way)) <= ball.radius;
+    double offset[3] = {p[0] - ball.centre[0], p[1] - ball.centre[1], p[2] - ball.centre[2]};
+    return sqrt(dot(offset, offset)) <= ball.radius;
 }
 
 /* How far a point is in front of a mirror, where nothing is kept. */
@@ -310,14 +310,14 @@ static Ball loose_ball(const ReachStage *stage, Ball before)
     Ball ball = before;
     if (stage->kind == REACH_KERNEL && !is_empty(stage->kernel)) {
         Ball   kernel = {.radius = 0.5 * diagonal(stage->kernel)};
-        double way[3];
+        double offset[3];
         for (int i = 0; i < 3; i++) {
             kernel.centre[i] = middle(stage->kernel.axis[i]);
-            way[i]           = kernel.centre[i] - ball.centre[i];
+            offset[i]        = kernel.centre[i] - ball.centre[i];
         }
         if (ball.radius < 0)
             return kernel;
-        ball.radius = fmax(ball.radius, sqrt(dot(way, way)) + kernel.radius);
+        ball.radius = fmax(ball.radius, sqrt(dot(offset, offset)) + kernel.radius);
     } else if (stage->kind == REACH_REFLECT && ball.radius >= 0) {
         double ahead = excess(stage, ball.centre);
         ball.radius += fabs(ahead);
@@ -395,17 +395,17 @@ static double copy_bound(const ReachStage *stage, const double u[3], Fault fault
 }
 
 /* Instance by instance, depth first; skips what cannot reach farther. */
-static void copy_search(Copy *copy, uint32_t count, const double u[3], double beyond)
+static void copy_search(Copy *copy, uint32_t count, const double u[3], double excess)
 {
     Fault fault = copy->fault;
     if (count == 0 || (copy->opened++ > 20 && fault == ENDED_TOO_EARLY))
         return;
     const ReachStage *stage = &copy->stages[count - 1];
-    if (copy_bound(stage, u, fault) + beyond <= copy->reached)
+    if (copy_bound(stage, u, fault) + excess <= copy->reached)
         return;
     double v[3] = {u[0], u[1], u[2]}, sign = fault == MIRRORED_WITH_WRONG_SIGN ? -1 : 1;
     if (stage->kind == REACH_KERNEL) {
-        double reach = beyond;
+        double reach = excess;
         for (int i = 0; i < 3; i++)
             reach += fmax(u[i] * stage->kernel.axis[i].low, u[i] * stage->kernel.axis[i].high);
         if (!is_empty(stage->kernel))
@@ -417,15 +417,15 @@ static void copy_search(Copy *copy, uint32_t count, const double u[3], double be
         for (int i = 0; i < 3; i++)
             v[i] -= sign * 2 * along * stage->normal[i];
         sign = fault == MOVED_WITH_WRONG_SIGN ? -1 : 1;
-        copy_search(copy, count - 1, v, beyond + sign * 2 * along * stage->offset);
+        copy_search(copy, count - 1, v, excess + sign * 2 * along * stage->offset);
     } else if (stage->kind == REACH_MAP) {
         for (int i = 0; i < 3; i++) {
             double column[3] = {stage->rows[0][i], stage->rows[1][i], stage->rows[2][i]};
             v[i]             = dot(u, fault == MAP_NOT_TRANSPOSED ? stage->rows[i] : column);
         }
-        beyond += fault == MAP_NOT_SHIFTED ? 0 : dot(u, stage->shift);
+        excess += fault == MAP_NOT_SHIFTED ? 0 : dot(u, stage->shift);
     }
-    copy_search(copy, count - 1, stage->kind == REACH_MAP ? v : u, beyond);
+    copy_search(copy, count - 1, stage->kind == REACH_MAP ? v : u, excess);
 }
 
 static void copy_tighten(ReachStage *stages, uint32_t count, Fault fault)
@@ -829,11 +829,11 @@ static void trees_shrink_to_their_crowns(void **state)
    solid may be met outside of the box. */
 static bool walk(KrsFrame *frame, Box box, const double from[3], const double to[3], double p[3])
 {
-    double way[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]}, distance, t = 0;
-    double length = sqrt(dot(way, way));
+    double offset[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]}, distance, t = 0;
+    double length = sqrt(dot(offset, offset));
     while (t < 2 * length) {
         for (int i = 0; i < 3; i++)
-            p[i] = from[i] + way[i] * t / length;
+            p[i] = from[i] + offset[i] * t / length;
         krs_distance(frame, (const double(*)[3])p, 1, &distance);
         assert_true(distance > 0 || in_box(box, p));
         if (distance <= 0)
