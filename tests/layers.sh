@@ -5,7 +5,7 @@
 set -u
 cd "$(dirname "$0")/.." || exit 1
 layers="compiler/base compiler/front compiler/graph compiler/geometry compiler/shader compiler
-        runtime/device runtime/tracer runtime/film runtime/writer runtime cli"
+        runtime/device runtime/shared runtime/tracer runtime/film runtime/writer runtime cli"
 api="compiler/base/ compiler/compile.h compiler/krs.h compiler/shader/spirv.h
           runtime/krs_vulkan.h"
 

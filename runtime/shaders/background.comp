@@ -12,8 +12,6 @@
 #include "light.glsl"
 #include "results.glsl"
 
-const uint FIRST = 0u; // control.phase; else it is about the light alone
-
 Light sun;
 float sky; // 1: with the sky
 bool  keeps_counts;
@@ -23,8 +21,9 @@ void begin_group()
     sun = find_light(control.light);
     if (control.light >= control.lights)
         sun.softness = 0.0; // there is none
-    sky = control.phase == FIRST ? 1.0 : 0.0;
-    keeps_counts = control.phase == FIRST && control.first_ray != 0u && is_wanted(COUNTS);
+    sky = control.phase == BACKGROUND_FIRST ? 1.0 : 0.0;
+    keeps_counts = control.phase == BACKGROUND_FIRST && control.first_ray != 0u &&
+                   is_wanted(ROW_COUNTS);
 }
 
 // In the order of quarters, whatever hits something in between.  Room is taken for all at once: what
@@ -38,7 +37,7 @@ void list(uint quarter, uint hits)
         solid[quarter_at(LISTED_QUARTERS, atomicAdd(counts.quarters, 1u))] = quarter;
     }
     if (anchors != 0u)
-        anchor_at = band_pixels() + atomicAdd(counts.anchors, bitCount(anchors));
+        anchor_at = LIST_SPARSE * band_pixels() + atomicAdd(counts.anchors, bitCount(anchors));
     do { // as in pixels.glsl
         uint bit = hits & ~hits + 1u, slot = slot_of_bit(first, bit);
         if (hits != 0u)
@@ -58,10 +57,11 @@ void keep_more(uint quarter, uint exist, uint hits)
         uint slot = slot_of_bit(first, left), index = index_of(pixel_of(slot));
         Ray  ray = find_end(index);
         if (keeps_counts)
-            results[COUNTS * band_pixels() + index] = uvec4(0u, ray.steps, 0u, 0u);
-        if (parts && (hits & left & ~left + 1u) != 0u)
-            solid[(4u + ray.group) * band_pixels() + atomicAdd(counts.of_group[ray.group], 1u)] =
-                slot;
+            results[ROW_COUNTS * band_pixels() + index] = uvec4(0u, ray.steps, 0u, 0u);
+        if (parts && (hits & left & ~left + 1u) != 0u) {
+            uint first_of_list = (LIST_OF_MARCH_GROUP + ray.group) * band_pixels();
+            solid[first_of_list + atomicAdd(counts.of_group[ray.group], 1u)] = slot;
+        }
     }
 }
 
@@ -91,18 +91,18 @@ void do_item(uint quarter)
         bool  exists = (exist >> bit & 1u) != 0u;
         Ray   ray = find_end(exists ? index : 0u);
         vec3  radiance = find_radiance(pixel);
-        hits |= uint(ray.fate == HIT) << bit;
+        hits |= uint(ray.fate == STATE_HIT) << bit;
         lost |= uint(ray.lost) << bit;
-        if (exists && ray.fate != HIT)
+        if (exists && ray.fate != STATE_HIT)
             add_light(index, radiance);
         bit++;
     } while (bit < 16u);
-    exist = control.phase == FIRST ? exist : 0u;
+    exist = control.phase == BACKGROUND_FIRST ? exist : 0u;
     lost &= exist;
     hits &= exist;
     if (lost != 0u)
         atomicAdd(counts.unresolved, bitCount(lost));
-    if (control.phase == FIRST) {
+    if (control.phase == BACKGROUND_FIRST) {
         solid[quarter_at(HITS_OF_QUARTERS, quarter)] = hits;
         solid[quarter_at(LIGHT_OF_QUARTERS, quarter)] = 0u; // for good where nothing is hit
     }

@@ -14,8 +14,6 @@
 #include "shared.glsl"
 #include "neighbours.glsl"
 
-const uint AT_ANCHORS = 0u, WIDER = 1u, BY_ANCHORS = 2u, OF_REST = 3u; // control.phase
-
 // The mean is over places so near to the plane, in pixels, and asks for so much weight; it reaches
 // so many pixels.  The wider one goes less far than what is hit is away: nearer to it occlusion
 // changes within a pixel.
@@ -70,7 +68,8 @@ void begin_group() {}
 void do_item(uint number)
 {
     uint  slot = find_listed(control.reading + number);
-    bool  by_anchors = control.phase == BY_ANCHORS, wider = control.phase == WIDER;
+    bool  by_anchors = control.phase == OCCLUSION_UPSAMPLED;
+    bool  wider = control.phase == OCCLUSION_WIDER;
     uint  list = wider ? MEANS_SHARED : RAYS_SHARED;
     int   apart = wider ? 2 : by_anchors ? 1 : 0;
     Place place = find_place_of(slot);
@@ -80,13 +79,13 @@ void do_item(uint number)
     vec2  sums = add_open(list, ivec2(pixel_of(slot)), place, normal, apart, max(radius, 1.0));
     float open = sums.x / max(sums.y, 1e-6);
     // Of the rest anchors are asked as well: the mean there takes the place of the ray.
-    if (control.phase == AT_ANCHORS || wider)
+    if (control.phase == OCCLUSION_AT_SPARSE_PIXELS || wider)
         keep_shared(wider ? RAYS_SHARED : MEANS_SHARED, slot, find_depth(place),
                     code_of_openness(open));
     else if (!by_anchors || sums.y > LEAST_WEIGHT)
         keep_lighting(control.value, slot, open);
     else
-        solid[2u * band_pixels() + atomicAdd(counts.rest, 1u)] = slot;
+        solid[LIST_REMAINING * band_pixels() + atomicAdd(counts.rest, 1u)] = slot;
 }
 
 #include "pixels.glsl"

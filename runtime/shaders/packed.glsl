@@ -36,8 +36,8 @@ void keep_part()
 {
     part_march[part] = vec4(march.t, march.room, march.gap, march.slope);
     part_fate[part] = march.fate;
-    part_free[part] = march.fate == MISS ? INFINITE
-                    : march.fate == HIT  ? march.t : march.t + march.room;
+    part_free[part] = march.fate == STATE_MISS ? INFINITE
+                    : march.fate == STATE_HIT  ? march.t : march.t + march.room;
 }
 
 void find_next_part()
@@ -77,7 +77,7 @@ void begin_parts(bool is_ray)
         within = is_ray ? within : vec2(0.0, farthest);
         march.t = max(start, within.x);
         end = min(farthest, within.y);
-        march.fate = low.x <= high.x && march.t <= end ? MARCHING : MISS;
+        march.fate = low.x <= high.x && march.t <= end ? STATE_MARCHING : STATE_MISS;
         part_end[part] = end;
         keep_part();
     }

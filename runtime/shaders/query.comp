@@ -25,16 +25,11 @@ const float SEAM = 4.0;     // roundings
 
 // Where a ray begins nearer than this to a surface, rounding may have decided on which side.
 const float DOUBTFUL = 64.0; // roundings
-const uint  UNSURE = 0x80000000u, INSIDE = 0x40000000u; // as in blocks.h
 
-const float BEGINS_OUTSIDE = 1.0, ENDS_AT_WALLS = 2.0; // as in blocks.h
-
-// Two rows a ray: origin, and where it ends; unit direction, and its kind.
-layout(std430, set = 1, binding = 5) readonly buffer Questions { vec4 questions[]; };
-// Bits of t; fate; place of the point; steps, UNSURE and INSIDE.
-layout(std430, set = 1, binding = 3) writeonly buffer Ways { uvec4 ways[]; };
+layout(std430, set = 1, binding = 5) readonly buffer Questions { QueryRay questions[]; };
+layout(std430, set = 1, binding = 3) writeonly buffer Ways { RayHit ways[]; };
 // Where rays hit, or were given up, for sample.comp.
-layout(std430, set = 1, binding = 1) writeonly buffer Points { vec4 points[]; };
+layout(std430, set = 1, binding = 1) writeonly buffer Points { Point points[]; };
 
 uint  index;              // of the ray
 vec3  origin, direction;
@@ -45,30 +40,30 @@ float slope;              // of the room along the ray, as it was on average
 float side;               // as of a Ray; 0: not known
 bool  walls;              // all solids end at `end`
 uint  steps, fate;
-uint  unsure;             // UNSURE, INSIDE: on which side the ray begins
+uint  unsure;             // on which side the ray begins, as of a RayHit
 
 void look_up_item(uint number) {}
 void begin_group(uint first) {}
 
 void begin_item(uint number, bool saved)
 {
-    vec4 from = questions[2u * number], way = questions[2u * number + 1u];
+    QueryRay question = questions[number];
     index = number;
-    origin = from.xyz;
-    direction = way.xyz;
-    end = from.w;
+    origin = question.origin;
+    direction = question.direction;
+    end = question.end;
     rounding = largest(origin);
     t = clear = gap = 0.0;
     slope = -1.0;
-    side = way.w == BEGINS_OUTSIDE ? 1.0 : 0.0;
-    walls = way.w == ENDS_AT_WALLS;
+    side = question.kind == float(BEGINS_OUTSIDE) ? 1.0 : 0.0;
+    walls = question.kind == float(ENDS_AT_WALLS);
     steps = unsure = 0u;
-    fate = end >= 0.0 ? MARCHING : MISS;
+    fate = end >= 0.0 ? STATE_MARCHING : STATE_MISS;
 }
 
 bool item_wants_more()
 {
-    return (fate == MARCHING || fate == CLOSING) && steps < frame.most_steps;
+    return (fate == STATE_MARCHING || fate == STATE_REFINING) && steps < frame.most_steps;
 }
 
 // What is far for its size need not be looked at, where a branch saves work.
@@ -92,10 +87,10 @@ vec3 item_place() { return origin + (t + gap) * direction; }
 void close_in(float before, float room, float open)
 {
     float along = before > room ? clamp(before / (before - room), 0.0, 2.0) : 0.0;
-    bool  accurate = gap - clear <= 2.0 * open || fate == CLOSING;
+    bool  accurate = gap - clear <= 2.0 * open || fate == STATE_REFINING;
     gap *= along;
     t += accurate ? gap : 0.0;
-    fate = !accurate ? CLOSING : t <= end ? HIT : MISS;
+    fate = !accurate ? STATE_REFINING : t <= end ? STATE_HIT : STATE_MISS;
 }
 
 void take_distance(float distance)
@@ -105,15 +100,15 @@ void take_distance(float distance)
     if (side == 0.0) {
         side = distance < 0.0 ? -1.0 : 1.0;
         unsure = abs(distance) > DOUBTFUL * least ? 0u
-                 : distance < 0.0                 ? UNSURE | INSIDE
-                                                  : UNSURE;
+                 : distance < 0.0                 ? QUERY_SIDE_UNKNOWN | QUERY_BEGINS_INSIDE
+                                                  : QUERY_SIDE_UNKNOWN;
     }
     float seam = side < 0.0 ? SEAM * least : 0.0;
     float room = side * distance + seam;
     float doubtful = gap - clear; // as long as may hide something
     steps++;
     // Twice: a gap of `open` beyond what is clear may be rounded up.
-    if (fate == CLOSING || (room <= 0.0 && doubtful <= frame.error + 2.0 * open)) {
+    if (fate == STATE_REFINING || (room <= 0.0 && doubtful <= frame.error + 2.0 * open)) {
         close_in(clear - seam, room - seam, open);
     } else if (room > 0.0 && doubtful <= room + 1.01 * open) {
         slope = mix(slope, gap > 0.0 ? (room - clear) / gap : -1.0, LEARNING);
@@ -124,7 +119,7 @@ void take_distance(float distance)
 #else
         gap = room * max(1.0, 2.0 / (1.0 - min(slope, 0.98))) + open;
 #endif
-        fate = at + room > end ? MISS : MARCHING;
+        fate = at + room > end ? STATE_MISS : STATE_MARCHING;
     } else {
         gap = max(0.5 * (gap + clear - max(room, 0.0)), clear + open);
         slope = -1.0;
@@ -134,15 +129,15 @@ void take_distance(float distance)
 void end_item()
 {
     uint place = 0u;
-    if (fate == MISS && side < 0.0 && walls) {
-        fate = HIT;
+    if (fate == STATE_MISS && side < 0.0 && walls) {
+        fate = STATE_HIT;
         t = end;
     }
-    if (fate != MISS) {
+    if (fate != STATE_MISS) {
         place = atomicAdd(counts.solid, 1u);
-        points[place] = vec4(origin + t * direction, 0.0);
+        points[place] = Point(origin + t * direction, 0.0);
     }
-    ways[index] = uvec4(floatBitsToUint(t), fate, place, steps | unsure);
+    ways[index] = RayHit(t, fate, place, steps | unsure);
 }
 
 void save_item() {}

@@ -54,13 +54,13 @@ void work_on_items(uint group, uint turns_allowed, inout uint steps)
     uint lane = gl_LocalInvocationIndex, first = group * LANES * control.share, next = first;
     uint limit = min(first + LANES * control.share, control.items);
     bool holding = false, going, hungry;
-    if (control.source == QUEUED) {
+    if (control.source == ITEMS_QUEUED) {
         holding = first + lane < limit;
         if (holding)
             begin_item(first + lane, true);
         next = limit;
     }
-    if (control.source == REST)
+    if (control.source == ITEMS_UNTAKEN)
         next += taken[group];
     do {
         do { // until each lane marches, or there is nothing left
@@ -101,7 +101,7 @@ void work_on_items(uint group, uint turns_allowed, inout uint steps)
     else if (holding)
         end_item();
     next = min(next, limit);
-    if (lane == 0u && control.source != QUEUED) {
+    if (lane == 0u && control.source != ITEMS_QUEUED) {
         taken[group] = next - first;
         if (next < limit)
             atomicAdd(counts.left, limit - next);
@@ -116,7 +116,7 @@ void work_on_items(uint group, uint turns_allowed, inout uint steps)
     if (number >= control.items)
         return;
     look_up_item(number);
-    begin_item(number, control.source == QUEUED);
+    begin_item(number, control.source == ITEMS_QUEUED);
     for (; may_go_on(steps, turns_allowed); steps++)
         take_distance(item_distance(item_place()));
     if (item_wants_more())

@@ -18,8 +18,6 @@
 #include "shared.glsl"
 #include "neighbours.glsl"
 
-const uint NEAR = 0u, WIDE = 1u; // control.phase
-
 // The mean reaches so far, for the width of the penumbra; in pixels at least, and at least for a
 // second mean, where light falls straight, and where it is grazing.
 const float BLUR_OF_PENUMBRA = 0.5, LEAST_BLUR = 1.25, NEAR_BLUR = 2.0, GRAZING = 0.25;
@@ -41,7 +39,7 @@ struct Disc {
 
 Disc find_disc(Light light, Place place)
 {
-    bool  positional = (light.kind & POSITIONAL) != 0u;
+    bool  positional = (light.kind & LIGHT_POSITIONAL) != 0u;
     vec3  toward = positional ? light.vector - place.position : light.vector;
     float remote = max(length(toward), 1e-30);
     return Disc(toward / remote, light_radius(light) / remote);
@@ -117,7 +115,7 @@ void begin_group() {}
 void do_item(uint number)
 {
     uint  slot = find_listed(control.reading + number);
-    bool  wide = control.phase == WIDE;
+    bool  wide = control.phase == SHADOW_WIDE;
     Place place = find_place_of(slot);
     ivec2 pixel = ivec2(pixel_of(slot));
     uint  word = find_shared(RAYS_SHARED, slot), own = word & 255u;
@@ -130,7 +128,7 @@ void do_item(uint number)
     if (!wide)
         keep_shared(MEANS_SHARED, slot, uintBitsToFloat(word), code_of_openness(share));
     if (!wide && blur > NEAR_BLUR * clamp(rise, GRAZING, 1.0))
-        solid[3u * band_pixels() + atomicAdd(counts.wide, 1u)] = slot;
+        solid[LIST_WIDE * band_pixels() + atomicAdd(counts.wide, 1u)] = slot;
     else
         keep_lighting(control.value, slot, share * find_part_above(disc, rise));
 }

@@ -37,8 +37,7 @@
 #include "frame.glsl"
 
 const uint PLAIN = 1u, RELAXED = 2u, AUTOMATIC = 3u; // TRACE: as KrsTrace
-const uint RAYS = 0u, BEAMS_32 = 1u, BEAMS_8 = 2u, BEAMS_4 = 3u; // control.phase
-const uint MOST_BEAM_STEPS = 256u;                   // the rest is left to the rays
+const uint MOST_BEAM_STEPS = 256u; // the rest is left to the rays
 
 // What may be left open between two balls: of the permitted error, and of a pixel at most.  Twigs
 // of a tenth of a pixel lose less than 1 % by it (tests/oracle/coverage.c).
@@ -115,12 +114,14 @@ vec4  kept_starts, more_starts; // of the one, and of the other
 // Items go through slots one after the other, and through the quarters of each.
 uint slot_of(uint number)
 {
-    return number >> (control.phase == RAYS ? 6u : control.phase == BEAMS_4 ? 2u : 0u);
+    return number >> (control.phase == TRACE_RAYS ? 6u : control.phase == TRACE_BEAMS_4 ? 2u : 0u);
 }
 
 uint quarter_of(uint number)
 {
-    return control.phase == RAYS ? number >> 4u & 3u : control.phase == BEAMS_4 ? number & 3u : 0u;
+    return control.phase == TRACE_RAYS      ? number >> 4u & 3u
+           : control.phase == TRACE_BEAMS_4 ? number & 3u
+                                            : 0u;
 }
 
 // The tile of a beam, counted in the band.
@@ -150,9 +151,9 @@ float load_start(uint end) { return uintBitsToFloat(ends[end].x); }
 // 8x8 has, and that one where its beam of 32x32 has.
 Slot load_slot(uint number)
 {
-    bool  is_ray = control.phase == RAYS, large = control.phase == BEAMS_32;
-    bool  small = control.phase == BEAMS_4;
-    bool  exists = control.source != QUEUED && number <= slot_of(control.items - 1u);
+    bool  is_ray = control.phase == TRACE_RAYS, large = control.phase == TRACE_BEAMS_32;
+    bool  small = control.phase == TRACE_BEAMS_4;
+    bool  exists = control.source != ITEMS_QUEUED && number <= slot_of(control.items - 1u);
     if (exists && (is_ray || small) && control.listed != 0u)
         number = tiles[number];
     uvec2 cell = is_ray || small ? find_cell(number, count_8.x) : cell_of_beam(number);
@@ -199,7 +200,7 @@ void look_up_item(uint number)
 #else
     Slot found = load_slot(slot_of(number));
 #endif
-    uint quarter = control.phase == RAYS ? quarter_of(number) : 0u;
+    uint quarter = control.phase == TRACE_RAYS ? quarter_of(number) : 0u;
     vec2 starts = quarter < 2u ? found.starts.xy : found.starts.zw;
     item_tile = found.tile;
     item_start = (quarter & 1u) == 0u ? starts.x : starts.y;
@@ -268,7 +269,7 @@ void begin_march(uint index, float start, bool is_ray)
     // No side yet: the first distance tells, unless something empty lies behind the ray.
     march.side = march.t > 0.0 || !is_ray ? 1.0 : 0.0;
     march.steps = 0u;
-    march.fate = march.t <= end ? MARCHING : MISS;
+    march.fate = march.t <= end ? STATE_MARCHING : STATE_MISS;
 #ifdef PROBE
     // Beams end where there is no room for a tile.
     march.gap = start > 0.0 ? 3.0 * (pixel_base + pixel_slope * start)
@@ -283,8 +284,8 @@ void begin_march(uint index, float start, bool is_ray)
 
 void begin_item(uint number, bool saved)
 {
-    bool  is_ray = control.phase == RAYS, large = control.phase == BEAMS_32;
-    bool  small = control.phase == BEAMS_4;
+    bool  is_ray = control.phase == TRACE_RAYS, large = control.phase == TRACE_BEAMS_32;
+    bool  small = control.phase == TRACE_BEAMS_4;
     uint  quarter = quarter_of(number);
     uvec2 half_tile = uvec2(quarter & 1u, quarter >> 1u);
     uvec2 pixel = 8u * item_tile + 4u * half_tile + uvec2(number & 3u, number >> 2u & 3u);
@@ -307,19 +308,19 @@ void begin_item(uint number, bool saved)
     shrinking = 1.0 / (1.0 + width.y);
     if (saved && march.side < 0.0)
         width = inside_width();
-    vec2 range = is_ray ? clip_ray(origin, direction, frame.eye.w) : vec2(0.0, frame.eye.w);
+    vec2 range = is_ray ? clip_ray(origin, direction, frame.farthest) : vec2(0.0, frame.farthest);
     end = range.y;
-    walls = is_ray && end < frame.eye.w;
+    walls = is_ray && end < frame.farthest;
 #ifdef GROUP
     uint at_pixel = saved ? march.index : index;
     if (exists && is_ray) {
         Ray known = find_end(at_pixel);
-        end = known.fate == HIT || known.lost ? min(end, known.t) : end;
+        end = known.fate == STATE_HIT || known.lost ? min(end, known.t) : end;
     }
 #endif
 #ifdef FLATS
     flat_ahead = is_ray ? krs_ahead(origin, direction) : INFINITE;
-    flat_ahead = flat_ahead > frame.eye.w ? INFINITE : max(flat_ahead, 0.0);
+    flat_ahead = flat_ahead > frame.farthest ? INFINITE : max(flat_ahead, 0.0);
     end = min(end, flat_ahead);
 #endif
     if (saved)
@@ -335,8 +336,9 @@ void begin_item(uint number, bool saved)
 
 bool item_wants_more()
 {
-    uint most = control.phase == RAYS ? frame.most_steps : MOST_BEAM_STEPS;
-    return exists && (march.fate == MARCHING || march.fate == CLOSING) && march.steps < most;
+    uint most = control.phase == TRACE_RAYS ? frame.most_steps : MOST_BEAM_STEPS;
+    return exists && (march.fate == STATE_MARCHING || march.fate == STATE_REFINING) &&
+           march.steps < most;
 }
 
 #ifdef ALONG
@@ -404,7 +406,7 @@ void take_distance(float larger)
     float least = 0.5 * open_at(at);
     if (empty == 0.0 && radius <= 1.01 * least) {
         march.t = at;
-        march.fate = HIT;
+        march.fate = STATE_HIT;
         return;
     }
     if (PROBE == BINARY) {
@@ -423,12 +425,12 @@ void take_distance(float larger)
     }
     march.gap = max(march.gap, least);
     march.t += 2.0 * empty * radius;
-    march.fate = march.t > end ? MISS : MARCHING;
+    march.fate = march.t > end ? STATE_MISS : STATE_MARCHING;
 }
 #else
 void take_distance(float distance)
 {
-    bool  is_ray = control.phase == RAYS, closing = march.fate == CLOSING;
+    bool  is_ray = control.phase == TRACE_RAYS, closing = march.fate == STATE_REFINING;
     float at = march.t + march.gap, pixel = pixel_base + pixel_slope * at;
     if (march.side == 0.0) {
         march.side = distance < 0.0 ? -1.0 : 1.0;
@@ -455,7 +457,9 @@ void take_distance(float distance)
     march.gap = passed ? find_gap(room, last_slope, slope, permitted, open) : met ? crossing : back;
     march.room = passed ? room : march.room;
     march.slope = passed ? slope : -1.0;
-    march.fate = met ? (accurate ? HIT : CLOSING) : passed && at + room > end ? MISS : MARCHING;
+    march.fate = met                           ? (accurate ? STATE_HIT : STATE_REFINING)
+                 : passed && at + room > end ? STATE_MISS
+                                             : STATE_MARCHING;
 #ifdef PACKED
     turn_to_next_part();
 #endif
@@ -466,24 +470,24 @@ void take_distance(float distance)
 // since everything before is empty.
 void end_item()
 {
-    bool is_ray = control.phase == RAYS;
-    bool lost = is_ray && (march.fate == MARCHING || march.fate == CLOSING);
+    bool is_ray = control.phase == TRACE_RAYS;
+    bool lost = is_ray && (march.fate == STATE_MARCHING || march.fate == STATE_REFINING);
     uint group = 0u;
-    march.fate = lost ? MISS : march.fate;
+    march.fate = lost ? STATE_MISS : march.fate;
     // From inside of a solid nothing leaves the box around all of them.
-    if (is_ray && !lost && march.fate == MISS && march.side < 0.0 && walls) {
-        march.fate = HIT;
+    if (is_ray && !lost && march.fate == STATE_MISS && march.side < 0.0 && walls) {
+        march.fate = STATE_HIT;
         march.t = end;
     }
 #ifdef FLATS
     // Planes are met where nothing else was; a beam whose rays may meet one is not done with.
-    if (!lost && march.fate == MISS && flat_ahead < INFINITE) {
-        march.fate = HIT;
+    if (!lost && march.fate == STATE_MISS && flat_ahead < INFINITE) {
+        march.fate = STATE_HIT;
         march.t = flat_ahead;
         march.side = 1.0;
     }
-    if (!is_ray && march.fate == MISS && krs_rise(direction) < 1.01 * width.y + 1e-6) {
-        march.fate = HIT;
+    if (!is_ray && march.fate == STATE_MISS && krs_rise(direction) < 1.01 * width.y + 1e-6) {
+        march.fate = STATE_HIT;
         march.t = end;
     }
 #endif
@@ -491,7 +495,7 @@ void end_item()
     // What other groups have found stays, unless this is nearer; so does where they gave up.
     if (exists && is_ray) {
         Ray known = find_end(march.index);
-        bool ends = march.fate == HIT || lost, ended = known.fate == HIT || known.lost;
+        bool ends = march.fate == STATE_HIT || lost, ended = known.fate == STATE_HIT || known.lost;
         bool farther = !ends || ended && known.t < march.t;
         march.t = farther ? known.t : march.t;
         march.fate = farther ? known.fate : march.fate;
@@ -504,9 +508,9 @@ void end_item()
         lost = farther ? known.lost : lost;
     }
 #endif
-    if (!is_ray && march.fate == MISS)
+    if (!is_ray && march.fate == STATE_MISS)
         march.t = INFINITE;
-    finds |= march.fate != MISS ? 1u << (slot & 15u) : 0u;
+    finds |= march.fate != STATE_MISS ? 1u << (slot & 15u) : 0u;
     uint bits = pack_ray(Ray(march.t, march.side, march.steps, march.fate, lost, group));
     if (exists) {
         ends[march.index] = uvec2(floatBitsToUint(march.t), bits);
@@ -516,7 +520,7 @@ void end_item()
 
 void end_group(uint steps)
 {
-    if (control.phase == BEAMS_8)
+    if (control.phase == TRACE_BEAMS_8)
         for (; finds != 0u; finds &= finds - 1u) {
             uvec2 cell = cell_of_beam(first_slot + (slot & ~15u) + uint(findLSB(finds)));
             tiles[atomicAdd(counts.tiles, 1u)] = cell.y * count_8.x + cell.x;

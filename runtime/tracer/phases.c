@@ -45,7 +45,7 @@ static bool clear_ends(Job *job)
     Gpu *gpu = job->gpu;
     if (!gpu_begin(gpu))
         return false;
-    vkCmdFillBuffer(gpu->commands, job->rendering->band.ends.buffer, 0, VK_WHOLE_SIZE, FATE_MISS);
+    vkCmdFillBuffer(gpu->commands, job->rendering->band.ends.buffer, 0, VK_WHOLE_SIZE, STATE_MISS);
     return gpu_finish(gpu, &job->picture->stats.phase_ms[KRS_PHASE_BEAMS]);
 }
 
@@ -192,7 +192,7 @@ static bool trace(Job *job, const WorkBlock *work)
             return false;
         job->done += job->share;
         if (control->left > 0) {
-            control->source = ITEMS_REST;
+            control->source = ITEMS_UNTAKEN;
             continue;
         }
         if (control->queued == 0)
@@ -303,7 +303,7 @@ static bool send_rays(Job *job, KrsPhase phase, uint32_t rays, const WorkBlock *
         dispatch.clears_shared = first && control->source == ITEMS_FRESH;
         if (!dispatch_run(job, &dispatch))
             return false;
-        control->source = ITEMS_REST;
+        control->source = ITEMS_UNTAKEN;
     } while (control->left > 0);
     return true;
 }
@@ -369,7 +369,7 @@ static bool find_normals(Job *job, const WorkBlock *work)
         bool     part    = i < job->part_count; /* else what belongs to none: planes */
         uint32_t group   = part ? job->parts[i].group + 1 : 0;
         Items    items   = {1, WORD_OF(of_group) + group, false};
-        control->reading = list_at(work, LIST_OF_GROUP + group);
+        control->reading = list_at(work, LIST_OF_MARCH_GROUP + group);
         parts[i] = dispatch_of(job, KRS_PHASE_NORMALS, part ? job->parts[i].normals : job->around,
                                work, items, deal_pixels(job));
     }
@@ -391,13 +391,14 @@ static bool find_occlusion(Job *job, const WorkBlock *work)
         return true;
     const PixelKernel kernel = PIXELS_OCCLUSION;
     return send_rays(job, phase, RAYS_OVER_HEMISPHERE, work, list_at(work, LIST_ALL), all, true) &&
-           share(job, phase, kernel, OCCLUSION_AT_ANCHORS, work, list_at(work, LIST_ANCHORS),
+           share(job, phase, kernel, OCCLUSION_AT_SPARSE_PIXELS, work, list_at(work, LIST_SPARSE),
                  anchors, 0) &&
-           share(job, phase, kernel, OCCLUSION_WIDER, work, list_at(work, LIST_ANCHORS), anchors,
+           share(job, phase, kernel, OCCLUSION_WIDER, work, list_at(work, LIST_SPARSE), anchors,
                  0) &&
-           share(job, phase, kernel, OCCLUSION_BY_ANCHORS, work, list_at(work, LIST_ALL), all,
+           share(job, phase, kernel, OCCLUSION_UPSAMPLED, work, list_at(work, LIST_ALL), all,
                  WORD_OF(rest)) &&
-           share(job, phase, kernel, OCCLUSION_OF_REST, work, list_at(work, LIST_REST), rest, 0);
+           share(job, phase, kernel, OCCLUSION_OF_REMAINING, work, list_at(work, LIST_REMAINING),
+                 rest, 0);
 }
 
 /* Cones first: where they are empty all of the light is seen.  Rays that go from root to root know
@@ -415,7 +416,7 @@ static bool list_unproven(Job *job, const WorkBlock *work)
 static bool find_means(Job *job, const WorkBlock *work)
 {
     const KrsPhase phase    = KRS_PHASE_SHADOWS;
-    const uint32_t unproven = list_at(work, LIST_REST), wide = list_at(work, LIST_WIDE);
+    const uint32_t unproven = list_at(work, LIST_REMAINING), wide = list_at(work, LIST_WIDE);
     return share(job, phase, PIXELS_PENUMBRAE, 0, work, quarters_at(work),
                  ITEMS_COUNTED(1, quarters), 0) &&
            share(job, phase, PIXELS_SHADOW, SHADOW_NEAR, work, unproven, ITEMS_COUNTED(1, rest),
@@ -426,7 +427,7 @@ static bool find_means(Job *job, const WorkBlock *work)
 /* A ray of each pixel to a point of the light; the mean of neighbours, where it has a size. */
 static bool find_visible(Job *job, const KrsLight *light, const WorkBlock *work)
 {
-    const uint32_t list    = list_at(work, job->shares ? LIST_REST : LIST_ALL);
+    const uint32_t list    = list_at(work, job->shares ? LIST_REMAINING : LIST_ALL);
     const Items    items   = job->shares ? ITEMS_COUNTED(1, rest) : ITEMS_COUNTED(1, solid);
     ControlBlock  *control = job->rendering->control.bytes;
     control->filters       = job->shares && light->softness > 0;

@@ -8,19 +8,19 @@
 
 /* The planes: all are arrays of 32-bit numbers. */
 static const struct Plane {
-    size_t    member; /* offset of its pointer in a KrsPicture */
-    uint32_t  bit;
-    size_t    bytes;  /* per pixel */
-    ResultRow row;    /* that has it, */
-    size_t    number; /* from this of its numbers on */
+    size_t   member; /* offset of its pointer in a KrsPicture */
+    uint32_t bit;
+    size_t   bytes;  /* per pixel */
+    uint32_t row;    /* ROW_... that has it, */
+    size_t   number; /* from this of its numbers on */
 } planes[] = {
 #define PLANE(name, bit, numbers, row, number)                    \
     {                                                             \
         offsetof(KrsPicture, name), bit, 4 * numbers, row, number \
     }
     PLANE(color, KRS_PLANE_COLOR, 4, ROW_COLORS, 0),
-    PLANE(depth, KRS_PLANE_DEPTH, 1, ROW_PLACES, DEPTH_NUMBER),
-    PLANE(position, KRS_PLANE_POSITION, 3, ROW_PLACES, 0),
+    PLANE(depth, KRS_PLANE_DEPTH, 1, ROW_POSITIONS, DEPTH_NUMBER),
+    PLANE(position, KRS_PLANE_POSITION, 3, ROW_POSITIONS, 0),
     PLANE(normal, KRS_PLANE_NORMAL, 3, ROW_NORMALS, 0),
     PLANE(albedo, KRS_PLANE_ALBEDO, 3, ROW_ALBEDOS, 0),
     PLANE(component, KRS_PLANE_IDS, 1, ROW_NORMALS, 3),

@@ -99,8 +99,8 @@ static bool prepare(KrsRendering *rendering)
         size_t      size; /* for one ray */
         const char *name;
     } wanted[] = {
-        {&rendering->questions, QUESTIONS_BINDING, sizeof(QuestionBlock), "questions"},
-        {&rendering->ways, WAYS_BINDING, sizeof(WayBlock), "rays"},
+        {&rendering->questions, QUESTIONS_BINDING, sizeof(QueryRayBlock), "questions"},
+        {&rendering->ways, WAYS_BINDING, sizeof(RayHitBlock), "rays"},
         {&rendering->shares, SHARES_BINDING, sizeof(uint32_t), "shares of lanes"},
     };
     if (!sample_prepare(rendering))
@@ -123,10 +123,10 @@ static void set_frame(KrsRendering *rendering, double tolerance)
 }
 
 /* A ray of the device begins where the box around the scene does. */
-static QuestionBlock ask(const KrsRay *ray)
+static QueryRayBlock ask(const KrsRay *ray)
 {
     const double  nowhere  = 1e18;
-    QuestionBlock question = {.end  = (float)fmin(ray->end - ray->start, nowhere),
+    QueryRayBlock question = {.end  = (float)fmin(ray->end - ray->start, nowhere),
                               .kind = ray->start > 0 ? BEGINS_OUTSIDE
                                       : ray->walls   ? ENDS_AT_WALLS
                                                      : ENDS_ANYWHERE};
@@ -135,7 +135,7 @@ static QuestionBlock ask(const KrsRay *ray)
         question.direction[k] = (float)ray->direction[k];
     }
     if (!(ray->start <= ray->end))
-        question = (QuestionBlock){.end = -1};
+        question = (QueryRayBlock){.end = -1};
     return question;
 }
 
@@ -158,7 +158,7 @@ static bool march(KrsRendering *rendering, uint32_t count)
                              .stride = rendering_spread(rendering, groups)};
     ControlBlock *control = rendering->control.bytes;
     *control              = (ControlBlock){.source = ITEMS_FRESH, .items = count, .share = share};
-    for (bool more = kernel != NULL; more; control->source = ITEMS_REST) {
+    for (bool more = kernel != NULL; more; control->source = ITEMS_UNTAKEN) {
         double ms     = 0;
         control->left = 0;
         if (!rendering_begin(rendering))
@@ -171,21 +171,21 @@ static bool march(KrsRendering *rendering, uint32_t count)
     return kernel != NULL;
 }
 
-bool ways_are_sound(const WayBlock *ways, uint32_t count, uint32_t ends)
+bool ways_are_sound(const RayHitBlock *ways, uint32_t count, uint32_t ends)
 {
     bool sound = ends <= count;
     for (uint32_t i = 0; i < count && sound; i++)
-        sound = ways[i].fate == QUERY_MISS || (ways[i].fate < QUERY_MISS && ways[i].place < ends);
+        sound = ways[i].fate == STATE_MISS || (ways[i].fate < STATE_MISS && ways[i].place < ends);
     return sound;
 }
 
-static void take_way(const KrsRay *ray, bool sheets, const WayBlock *way,
+static void take_way(const KrsRay *ray, bool sheets, const RayHitBlock *way,
                      const AnswerBlock *answers, KrsHit *hit)
 {
     *hit = (KrsHit){0};
-    if (way->fate == QUERY_MISS)
+    if (way->fate == STATE_MISS)
         return;
-    hit->hit        = way->fate == QUERY_HIT;
+    hit->hit        = way->fate == STATE_HIT;
     hit->unresolved = !hit->hit;
     hit->t          = ray->start + (double)way->t;
     for (int k = 0; k < 3; k++)
@@ -197,12 +197,12 @@ static void take_way(const KrsRay *ray, bool sheets, const WayBlock *way,
 
 /* Single precision cannot tell on which side of a surface a ray begins that is as near to it as
    rounding: on the wrong one it would go through the solid, or past its end.  The host can. */
-static bool took_wrong_side(KrsFrame *frame, const WayBlock *way, const double (*origin)[3])
+static bool took_wrong_side(KrsFrame *frame, const RayHitBlock *way, const double (*origin)[3])
 {
-    bool   inside = way->steps & QUERY_INSIDE;
+    bool   inside = way->steps & QUERY_BEGINS_INSIDE;
     double distance;
-    return (way->steps & QUERY_UNSURE) && krs_distance(frame, origin, 1, &distance) == KRS_OK &&
-           (distance < 0) != inside;
+    return (way->steps & QUERY_SIDE_UNKNOWN) &&
+           krs_distance(frame, origin, 1, &distance) == KRS_OK && (distance < 0) != inside;
 }
 
 static bool raycast_batch(KrsRendering *rendering, KrsFrame      *frame, const double (*origins)[3],
@@ -210,7 +210,7 @@ static bool raycast_batch(KrsRendering *rendering, KrsFrame      *frame, const d
                           double tolerance, KrsHit *hits)
 {
     const KrsScene *scene     = rendering->scene;
-    QuestionBlock  *questions = rendering->questions.bytes;
+    QueryRayBlock  *questions = rendering->questions.bytes;
     for (uint32_t i = 0; i < count; i++) {
         KrsRay ray   = krs_ray(scene, origins[i], directions[i], farthest);
         questions[i] = ask(&ray);
@@ -218,7 +218,7 @@ static bool raycast_batch(KrsRendering *rendering, KrsFrame      *frame, const d
     if (!march(rendering, count))
         return false;
     const ControlBlock *control = rendering->control.bytes;
-    const WayBlock     *ways    = rendering->ways.bytes;
+    const RayHitBlock  *ways    = rendering->ways.bytes;
     uint32_t            ends    = control->solid;
     if (!ways_are_sound(ways, count, ends)) {
         gpu_refuse(&rendering->renderer->gpu, KRS_INTERNAL,

@@ -278,7 +278,7 @@ static bool clear_results(Job *job, uint32_t rows, VkDeviceSize row_bytes)
     for (VkDeviceSize row = 0; row < RESULT_ROWS; row++)
         if (rows >> row & 1)
             vkCmdFillBuffer(job->gpu->commands, results->buffer, row * row_bytes, row_bytes,
-                            row == ROW_PLACES ? infinite : 0);
+                            row == ROW_POSITIONS ? infinite : 0);
     return gpu_finish(job->gpu, &ms);
 }
 
@@ -326,7 +326,7 @@ static void take_band(Job *job, const KrsWindow *traced, uint32_t from, uint32_t
         size_t first = (size_t)(y - crop->y) * crop->width;
         picture_take(job->picture, results + row * RESULT_NUMBERS, band, first, crop->width,
                      job->options.samples);
-        place_positions(job, results + (ROW_PLACES * band + row) * RESULT_NUMBERS, first,
+        place_positions(job, results + (ROW_POSITIONS * band + row) * RESULT_NUMBERS, first,
                         crop->width);
     }
 }

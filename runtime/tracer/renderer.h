@@ -7,7 +7,7 @@
 #include "compiler/compile.h"
 #include "runtime/device/buffer.h"
 #include "runtime/device/kernel.h"
-#include "runtime/tracer/blocks.h"
+#include "runtime/shared/blocks.h"
 
 /* The kernels without a scene that do one thing for every pixel of a list, row or quarter of a tile:
    on lavapipe a kernel takes as long as all of its branches. */
@@ -154,7 +154,7 @@ bool sample_run(KrsRendering *rendering, uint32_t count, bool normals);
 /* ---- query.c ---- */
 /* Whether what the device says of `count` rays can be used: each has missed, or has its own place
    among the `ends` of rays. */
-bool ways_are_sound(const WayBlock *ways, uint32_t count, uint32_t ends);
+bool ways_are_sound(const RayHitBlock *ways, uint32_t count, uint32_t ends);
 
 /* Forgets the message of the call before. */
 void renderer_clear(KrsRenderer *renderer);
