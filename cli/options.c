@@ -212,7 +212,7 @@ KrsStatus options_parse(Options *options, int argc, char **argv)
     options->argc     = argc;
     options->argv     = argv;
     options->command  = COMMAND_COUNT;
-    options->aovs     = AOV_ALL;
+    options->aovs     = KRS_PLANE_ALL;
     options->fps      = 24;
     options->points   = 20000;
     options->seconds  = 2;

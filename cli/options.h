@@ -53,17 +53,6 @@ extern const OptionInfo option_info[OPTION_COUNT];
 
 bool option_belongs(OptionId id, CommandId command);
 
-/* What `--aov` chooses; colour and alpha are always there. */
-typedef enum Aov {
-    AOV_Z      = 1,
-    AOV_P      = 2,
-    AOV_N      = 4,
-    AOV_ALBEDO = 8,
-    AOV_ID     = 16,
-    AOV_STEPS  = 32,
-    AOV_ALL    = 63
-} Aov;
-
 typedef enum When { WHEN_AUTO, WHEN_ALWAYS, WHEN_NEVER } When;
 typedef enum StatsForm { STATS_NONE, STATS_TEXT, STATS_JSON } StatsForm;
 
@@ -113,7 +102,7 @@ typedef struct Options {
     bool          animated;
     uint32_t      first_frame, last_frame;
     double        fps, time;
-    unsigned      aovs;
+    uint32_t      aovs;                 /* bits of KrsPlane; colour is always there */
     bool          exposed, tone_mapped; /* --exposure, --tone-map were given */
     double        exposure;
     ToneMap       tone_map;

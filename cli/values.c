@@ -164,21 +164,34 @@ bool read_zone(Options *options, const char *word)
     return zone[3] >= 0;
 }
 
-bool read_aovs(const char *word, unsigned *aovs)
+/* The plane of which a part of a list is the name; 0: none is. */
+static uint32_t find_aov(const char *word, size_t length)
 {
-    static const char *const names[] = {"Z", "P", "N", "albedo", "id", "steps"};
-    *aovs                            = 0;
-    if (strcmp(word, "all") == 0)
-        *aovs = AOV_ALL;
-    if (strcmp(word, "all") == 0 || strcmp(word, "none") == 0)
+    static const struct {
+        const char *name;
+        KrsPlane    plane;
+    } aovs[] = {
+#define KRS_PLANE(id, bit, aov, about, arrays) {aov, KRS_PLANE_##id},
+#include "runtime/planes.def"
+#undef KRS_PLANE
+    };
+    for (size_t i = 0; length > 0 && i < sizeof aovs / sizeof *aovs; i++)
+        if (strlen(aovs[i].name) == length && strncmp(aovs[i].name, word, length) == 0)
+            return aovs[i].plane;
+    return 0;
+}
+
+bool read_aovs(const char *word, uint32_t *aovs)
+{
+    *aovs = strcmp(word, "all") == 0 ? KRS_PLANE_ALL : 0;
+    if (*aovs || strcmp(word, "none") == 0)
         return true;
     for (;; word++) {
-        size_t length = strcspn(word, ","), i = 0;
-        while (i < 6 && (strlen(names[i]) != length || strncmp(names[i], word, length) != 0))
-            i++;
-        if (i == 6)
+        size_t   length = strcspn(word, ",");
+        uint32_t plane  = find_aov(word, length);
+        if (plane == 0)
             return false;
-        *aovs |= 1u << i;
+        *aovs |= plane;
         word += length;
         if (*word == '\0')
             return true;

@@ -28,7 +28,7 @@ bool read_setting(Options *options, const char *word);  /* "r=0.5", "at=[1,2,3]"
 bool read_zone(Options *options, const char *word);     /* "X,Y,Z,R", of which there is room */
 bool read_exit_map(Options *options, const char *word); /* "71=33,75=99" */
 bool read_limits(const char *word, Limits *limits);     /* "time=10,memory=1G" */
-bool read_aovs(const char *word, unsigned *aovs);       /* "all", "none", "Z,N" */
+bool read_aovs(const char *word, uint32_t *aovs);       /* "all", "none", "Z,N" */
 bool read_early_outs(const char *word, KrsEarlyOuts *early_outs);
 bool read_stats(const char *word, StatsForm *stats); /* NULL: as text */
 bool read_stage(const char *word, const char **stage);

@@ -110,16 +110,15 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
                                 KrsRendering **rendering);
 void      krs_rendering_free(KrsRendering *rendering);
 
-/* The parts of a picture, as bits. */
+/* The parts of a picture, as bits: KRS_PLANE_COLOR and so on, a row of planes.def each. */
 typedef enum KrsPlane {
-    KRS_PLANE_COLOR    = 1,
-    KRS_PLANE_DEPTH    = 2,
-    KRS_PLANE_POSITION = 4,
-    KRS_PLANE_NORMAL   = 8,
-    KRS_PLANE_ALBEDO   = 16,
-    KRS_PLANE_IDS      = 32, /* component, level and instance */
-    KRS_PLANE_STEPS    = 64,
-    KRS_PLANE_ALL      = 127
+#define KRS_PLANE(id, bit, aov, about, arrays) KRS_PLANE_##id = 1 << bit,
+#include "runtime/planes.def"
+#undef KRS_PLANE
+    KRS_PLANE_ALL = 0
+#define KRS_PLANE(id, bit, aov, about, arrays) | 1 << bit
+#include "runtime/planes.def"
+#undef KRS_PLANE
 } KrsPlane;
 
 typedef struct KrsWindow {
@@ -269,14 +268,13 @@ typedef struct KrsRenderStats {
 typedef struct KrsPicture {
     uint32_t  width, height; /* of the whole picture */
     KrsWindow window;        /* the part of it that was rendered */
-    float    *color;         /* R G B A, scene-linear Rec.709; A is the share of rays that hit */
-    float    *depth;         /* along the view axis; along the ray for a panorama */
-    float    *position;      /* x y z of the hit, world units */
-    float    *normal;        /* x y z, unit, outwards */
-    float    *albedo;        /* R G B */
-    uint32_t *component;     /* from 1; 0 for nothing */
-    uint32_t *level, *instance;
-    uint32_t *steps; /* distance evaluations spent on the ray through the centre */
+    /* color, depth, position, normal, albedo, component, level, instance and steps: planes.def says
+       what they are, and how many numbers a pixel has. */
+#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) type *member;
+#define KRS_PLANE(id, bit, aov, about, arrays)                           arrays
+#include "runtime/planes.def"
+#undef KRS_ARRAY
+#undef KRS_PLANE
     /* Row vectors times these: camera space is x right, y up, z along the view axis; in NDC
        x and y run from -1 to 1, and z, in perspective, from 0 at distance 0.001 to 1 at
        infinity.  For a panorama NDC is camera space. */
