@@ -2,8 +2,8 @@
  * frame.glsl: what the kernels of a picture share: the frame, the work of a dispatch, the
  * state of each pixel between dispatches, and the rays of pixels.
  *
- * A picture is rendered in bands of rows; the buffers hold one band.  What the host knows as well is
- * in runtime/shared/blocks.h.
+ * A picture is rendered in bands of rows; the buffers hold one band.  What the host knows as well
+ * is in runtime/shared/blocks.h.
  */
 
 #include "runtime/shared/blocks.h"

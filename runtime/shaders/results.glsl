@@ -1,8 +1,8 @@
 /*
  * results.glsl: what becomes of each pixel, in rows of four numbers: first the colours of all
  * pixels of the band, then their places, and so on.  Rows that are not asked for are not written.
- * The first ray of a pixel goes through its centre and gives everything but the colour.  The rows are
- * in runtime/shared/blocks.h.
+ * The first ray of a pixel goes through its centre and gives everything but the colour.  The rows
+ * are in runtime/shared/blocks.h.
  */
 layout(std430, set = 1, binding = 3) writeonly buffer Colors { vec3 colors[]; }; // 16 bytes each
 #ifdef NO_TEXELS

@@ -31,8 +31,8 @@ uint band_tiles()
     return tiles.x * tiles.y;
 }
 
-// Behind the lists of pixels: words of slots by shared.glsl, and words of quarters.  Tiles may reach
-// beyond the band, so there are more slots than pixels.
+// Behind the lists of pixels: words of slots by shared.glsl, and words of quarters.  Tiles may
+// reach beyond the band, so there are more slots than pixels.
 uint shared_at(uint list, uint slot)
 {
     return LIST_SHARED * band_pixels() + 64u * band_tiles() * list + slot;

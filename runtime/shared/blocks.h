@@ -202,14 +202,14 @@ CONSTANT(LIST_SPARSE, 1);
 CONSTANT(LIST_REMAINING, 2);
 CONSTANT(LIST_WIDE, 3);
 CONSTANT(LIST_OF_MARCH_GROUP, 4);
-/* Behind them, with room for whole tiles: words of shared.glsl, of rays and of means of these, whose
-   codes are all from closed to open; */
+/* Behind them, with room for whole tiles: words of shared.glsl, of rays and of means of these,
+   whose codes are all from closed to open; */
 CONSTANT(LIST_SHARED, 13);
 CONSTANT(RAYS_SHARED, 0);
 CONSTANT(MEANS_SHARED, 1);
 CONSTANT(SHARED_LISTS, 2);
-/* and words of quarters of tiles: the list of those with hits; a bit for each pixel that is one; what
-   is known of a light there. */
+/* and words of quarters of tiles: the list of those with hits; a bit for each pixel that is one;
+   what is known of a light there. */
 CONSTANT(LISTED_QUARTERS, 0);
 CONSTANT(HITS_OF_QUARTERS, 1);
 CONSTANT(LIGHT_OF_QUARTERS, 2);
