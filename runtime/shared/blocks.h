@@ -196,7 +196,7 @@ CONSTANT(LIGHTING, 1); /* occlusion, 1: open, and before that is known how steep
                           there; how much of the lights that are shaded at once is visible */
 CONSTANT(HIT_ROWS, 2);
 
-/* Lists of pixels (solid.glsl), each with room for all; those by groups are the first and more. */
+/* Lists of pixels (solid.glsl), each with room for all; of those by groups the first. */
 CONSTANT(LIST_ALL, 0);
 CONSTANT(LIST_SPARSE, 1);
 CONSTANT(LIST_REMAINING, 2);
