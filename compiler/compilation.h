@@ -14,18 +14,16 @@
 typedef struct Compilation Compilation;
 
 typedef enum PassId {
-#define PASS(name, form, validate, meaning) PASS_##name,
+#define PASS(name, validate, meaning) PASS_##name,
 #include "compiler/passes.def"
-#undef PASS
     PASS_COUNT
 } PassId;
 
 /* What each pass does, and what it prints for a dump; `scratch` is free to use in both. */
-#define PASS(name, form, validate, meaning) \
-    KrsStatus pass_##name(Compilation *c);  \
+#define PASS(name, validate, meaning)      \
+    KrsStatus pass_##name(Compilation *c); \
     void      print_##name(Compilation *c, Text *out);
 #include "compiler/passes.def"
-#undef PASS
 
 /* What is wanted beside the scene. */
 typedef struct Request {

@@ -23,10 +23,10 @@ typedef struct Pass {
 } Pass;
 
 static const Pass passes[PASS_COUNT] = {
-#define PASS(name, form, validate, meaning) \
+#define PASS(name, validate, meaning) PASS_TO(#name, name, validate, meaning)
+#define PASS_TO(form, name, validate, meaning) \
     [PASS_##name] = {{#name, form, meaning}, pass_##name, validate, print_##name},
 #include "compiler/passes.def"
-#undef PASS
 };
 
 const KrsPass *krs_pass(size_t index) { return index < PASS_COUNT ? &passes[index].about : NULL; }

@@ -7,9 +7,9 @@
 set -u
 cd "$(dirname "$0")/.." || exit 1
 layers="compiler/base compiler/front compiler/graph compiler/geometry compiler/shader compiler
-        runtime/device runtime/tracer runtime/film runtime/writer runtime cli"
+        runtime/device runtime/shared runtime/tracer runtime/film runtime/writer runtime cli"
 api="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h
-          compiler/shader/spirv.h runtime/krs_vulkan.h"
+          compiler/shader/spirv.h runtime/krs_vulkan.h runtime/planes.def runtime/choices.def"
 # "A>B": A includes B's header, and B needs A.  Without all of these there is no circle.
 circles="compiler/geometry/lowering>compiler/geometry/lower
          compiler/shader/emitter>compiler/shader/emit
