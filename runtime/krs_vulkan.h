@@ -138,7 +138,7 @@ typedef enum KrsTrace {
 } KrsTrace;
 extern const char *const krs_trace_names[KRS_TRACE_COUNT]; /* "default", "plain", ... */
 
-/* How rays are dealt out to the lanes of the device: KRS_SCHEDULE_PIXEL and so on. */
+/* How rays are assigned to the lanes of the device: KRS_SCHEDULE_PIXEL and so on. */
 typedef enum KrsSchedule {
 #define KRS_SCHEDULE(id, name, about) KRS_SCHEDULE_##id,
 #include "runtime/choices.def"
@@ -156,9 +156,9 @@ typedef enum KrsComponents {
 extern const char *const krs_components_names[KRS_COMPONENTS_COUNT];
 
 /* Where the distance is looked at around a hit for its normal: KRS_NORMALS_FORWARD and so on.
-   KRS_NORMALS_ANALYTIC wants a scene that was compiled with `gradients`; where points have an anchor
-   it is the octahedron.  Neither this nor KRS_NORMALS_FORWARD tells what is finer than a pixel: as
-   with no_filter. */
+   KRS_NORMALS_ANALYTIC wants a scene that was compiled with `gradients`; where points are relative
+   to the camera it is the octahedron.  Neither this nor KRS_NORMALS_FORWARD tells what is finer
+   than a pixel: as with no_filter. */
 typedef enum KrsNormals {
 #define KRS_NORMALS(id, name, about) KRS_NORMALS_##id,
 #include "runtime/choices.def"
