@@ -10,11 +10,11 @@ function end_paragraph(   i, count, words, sentences) {
     for (i = 1; i <= count; i++) {
         gsub(/ [^A-Za-z0-9]+ /, " ", sentences[i])   # signs are no words
         if (split(sentences[i], words, " ") > most)
-            printf "%s:%d: %d words: %s\n", FILENAME, first, split(sentences[i], words, " "), sentences[i]
+            printf "%s:%d: %d words: %s\n", file, first, split(sentences[i], words, " "), sentences[i]
     }
     text = ""
 }
-FNR == 1 { end_paragraph(); code = 0 }
+FNR == 1 { end_paragraph(); code = 0; file = FILENAME }
 /^```/ { end_paragraph(); code = !code; next }
 code || /^\|/ || /^    / || /^#/ || /^ *$/ { end_paragraph(); next }
 /^ *([*-]|[0-9]+\.) / { end_paragraph(); sub(/^ *([*-]|[0-9]+\.) /, "") }
