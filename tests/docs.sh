@@ -162,7 +162,8 @@ done >"$work/said"
 none "every link leads to a file, and to a heading in it"
 
 # ---- sentences ----
-for page in docs/architecture.md docs/details.md docs/how-it-works.md docs/glossary.md; do
+for page in README.md docs/architecture.md docs/details.md docs/how-it-works.md docs/glossary.md \
+    docs/language.md docs/library.md bench/README.md bench/measurements.md; do
     awk -v most=30 -f tests/sentences.awk "$page"
 done >"$work/said"
 none "no sentence of these pages has more than 30 words"
