@@ -1,8 +1,8 @@
 #!/bin/sh
 # docs.sh: the pages agree with the program.  Every scene in them checks; every statement,
 # function, method, property, kind and solid that the tables know is on docs/language.md, with
-# its parameters; every option, code and file that a page names exists.  Pages for readers have no
-# long sentences.
+# its parameters; every option, code and file that a page names exists.  No page has long
+# sentences.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 krs=${KRS:-build/krs}
@@ -162,8 +162,7 @@ done >"$work/said"
 none "every link leads to a file, and to a heading in it"
 
 # ---- sentences ----
-for page in README.md docs/architecture.md docs/details.md docs/how-it-works.md docs/glossary.md \
-    docs/language.md docs/library.md bench/README.md bench/measurements.md; do
+for page in $pages; do
     awk -v most=30 -f tests/sentences.awk "$page"
 done >"$work/said"
 none "no sentence of these pages has more than 30 words"
