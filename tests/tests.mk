@@ -8,19 +8,22 @@
 # What tests of several kinds share; nothing of it knows what is tested.
 SUPPORT     := $(addprefix tests/support/, agreement.c bench.c device.c random.c \
                renderer.c scarce.c)
-ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c chain.c \
-               exact.c formulas.c shadow_stage.c shadow_truth.c map_chain.c primitive_solids.c primitive_figures.c deformed.c rooms.c montecarlo.c)
+ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c chain.c chain_random.c \
+               exact.c formulas.c shadow_stage.c twigs.c device_answers.c methods.c random_scene.c quaternions.c shadow_truth.c map_chain.c primitive_solids.c primitive_figures.c deformed.c rooms.c montecarlo.c)
+# What tests of properties share.
+PROPERTY_SHARED :=  $(addprefix tests/property/, garden.c op_trial.c reach_crowd.c)
 UNIT        := front film tracer methods writer memory validate refute frame query cache compiled \
                apart stencils glslang loader drivers grid
-PROPERTY    := ops noise graph derive series zeros local along anchor slope parity reach
+PROPERTY    := ops noise graph simplify facts derive series zeros local along anchor slope parity reach reach_trees
 ORACLES     := self primitives krs_expand trees maps moebius moebius_images operators combinations deform deform_bounds chains \
-               chain_pictures moving normals fields surfaces rays algebraic fractals metasurfaces device query \
-               picture seams shading coverage area_shadows soft_shadows hard_shadows upsampling occlusion loose bounds stencils light sides \
+               chain_pictures moving normals fields surfaces rays algebraic fractals metasurfaces device query query_limits \
+               picture seams shading coverage chords area_shadows soft_shadows hard_shadows upsampling occlusion loose bounds stencils light sides \
                steep scales agree far sheets
 FUZZ        := sentences
 # On SwiftShader, unless another device is tested: what shows that drivers agree.
 DRIVERS     := tests/oracle/drivers
-SECOND      := $(DRIVERS) $(addprefix tests/, unit/tracer oracle/device oracle/picture oracle/query)
+SECOND      := $(DRIVERS) $(addprefix tests/, unit/tracer oracle/device oracle/picture oracle/query \
+               oracle/query_limits)
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
@@ -28,10 +31,12 @@ SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/val
                tests/unit/loader tests/unit/grid \
                tests/unit/refute tests/unit/memory tests/unit/cache tests/unit/frame \
                tests/unit/query tests/property/ops tests/property/noise tests/property/graph \
+               tests/property/simplify tests/property/facts \
                tests/property/derive tests/property/series tests/property/zeros \
                tests/property/local \
                tests/property/along tests/property/anchor tests/property/slope \
-               tests/property/parity tests/property/reach tests/oracle/primitives \
+               tests/property/parity tests/property/reach \
+               tests/property/reach_trees tests/oracle/primitives \
                tests/oracle/krs_expand tests/oracle/bounds tests/oracle/maps tests/oracle/moebius \
                tests/oracle/moebius_images tests/oracle/metasurfaces \
                tests/oracle/operators tests/oracle/moving tests/oracle/fractals \
@@ -46,8 +51,14 @@ $(B)/tests/oracle/oracle.a: $(ORACLE:%.c=$(B)/%.o)
 $(B)/tests/support/support.a: $(SUPPORT:%.c=$(B)/%.o)
 	@rm -f $@
 	@$(AR) rcs $@ $^
+$(B)/tests/property/property.a: $(PROPERTY_SHARED:%.c=$(B)/%.o)
+	@rm -f $@
+	@$(AR) rcs $@ $^
 $(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/oracle.a \
                      $(B)/tests/support/support.a $(B)/libkrs.a
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
+$(B)/tests/property/%: $(B)/tests/property/%.o $(B)/tests/property/property.a \
+                       $(B)/tests/support/support.a $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
 $(B)/tests/%: $(B)/tests/%.o $(B)/tests/support/support.a $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
