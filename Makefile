@@ -33,15 +33,16 @@ GRAPH    := $(addprefix compiler/graph/, graph.c derive.c series.c zeros.c local
                 range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c regions.c \
                 fractal.c evaluate.c print.c)
 GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c arguments.c \
-                builtins.c lists.c chance.c joining.c functions.c expression.c map.c moebius.c \
-                make.c make_fractal.c meta.c make_krs.c slope.c field.c field_bounds.c deform.c \
-                declare.c claims.c empty.c methods.c looks.c palette.c scope.c statements.c print.c \
-                lower.c lower_primitive.c lower_surface.c lower_csg.c lower_place.c lower_figure.c \
+                builtins.c lists.c random.c csg.c functions.c expression.c map.c moebius.c \
+                shapes.c shapes_fractal.c metasurface.c shapes_krs.c slope.c field.c \
+                field_bounds.c deform.c declare.c claims.c empty.c methods.c properties.c \
+                material.c view.c palette.c scope.c statements.c print.c lower.c \
+                lower_primitive.c lower_surface.c lower_csg.c lower_place.c lower_figure.c \
                 lower_offset.c lower_box.c lower_normal.c lower_repeat.c lower_deform.c \
                 lower_krs.c lower_along.c lower_guards.c lower_moebius.c lower_images.c)
 SHADER   := $(addprefix compiler/shader/, emit.c statements.c frame_values.c mirrors.c early_outs.c march.c spirv.c)
 BORDER   := compiler/shader/glslang_border.cpp
-DOORSTEP := $(addprefix compiler/, compile.c roots.c precision.c limits.c keep.c groups.c program.c \
+API      := $(addprefix compiler/, compile.c roots.c precision.c limits.c retain.c groups.c program.c \
                 framing.c frame.c query.c search_pairs.c search_targets.c search_starts.c search.c \
                 refute.c refute_settings.c refute_blame.c refute_report.c bounds.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer film writer))))
@@ -62,7 +63,7 @@ LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLC
             -lSPVRemapper -lglslang-default-resource-limits -lSPIRV-Tools-opt -lSPIRV-Tools \
             -lOpenEXRCore-3_1 -lpng -lxxhash -lvulkan -lstdc++ -lm -pthread
 
-COMPILER := $(BASE) $(FRONT) $(GRAPH) $(GEOMETRY) $(SHADER) $(DOORSTEP)
+COMPILER := $(BASE) $(FRONT) $(GRAPH) $(GEOMETRY) $(SHADER) $(API)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
             $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o
 

@@ -28,7 +28,7 @@ KrsStatus scene_open(const Options *options, const char *path, KrsScene **scene)
 /* KRS_OK, or KRS_IO_ERROR and words: the file is missing, a folder, or not ours to read. */
 KrsStatus scene_readable(const char *path);
 /* KRS_OK, or wrong usage and words: `output` is the file that is read, by whatever name. */
-KrsStatus scene_is_kept(const Options *options, const char *output);
+KrsStatus check_scene_not_overwritten(const Options *options, const char *output);
 
 /* Prints diagnostics as they come, and counts them. */
 typedef struct DiagnosticSink {

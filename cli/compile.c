@@ -26,8 +26,8 @@ static KrsStatus make_folder(const char *folder)
     return KRS_CANNOT_CREATE;
 }
 
-static KrsStatus write_part(const Options *options, const char *base, const char *ending,
-                            const void *bytes, size_t length)
+static KrsStatus write_output_file(const Options *options, const char *base, const char *ending,
+                                   const void *bytes, size_t length)
 {
     Text path = {.arena = options->arena};
     text_format(&path, "%s%s", base, ending);
@@ -49,7 +49,7 @@ static KrsStatus write_description(const Options *options, const KrsScene *scene
         module_add_json(&json, &modules->items[i]);
     }
     text_add(&json, "]}\n");
-    return write_part(options, base, ".json", json.bytes, json.length);
+    return write_output_file(options, base, ".json", json.bytes, json.length);
 }
 
 /* Everything is compiled before anything is written. */
@@ -65,13 +65,13 @@ static KrsStatus write_all(const Options *options, const KrsScene *scene, const 
 
     KrsStatus status = make_folder(options->outputs.items[0]);
     if (status == KRS_OK)
-        status = write_part(options, base.bytes, ".glsl", glsl.bytes, glsl.length);
+        status = write_output_file(options, base.bytes, ".glsl", glsl.bytes, glsl.length);
     for (size_t i = 0; i < modules->count && status == KRS_OK; i++) {
         const Module *module = &modules->items[i];
         Text          ending = {.arena = options->arena};
         text_format(&ending, ".%s.spv", module->entry);
-        status = write_part(options, base.bytes, ending.bytes, module->words,
-                            module->word_count * sizeof *module->words);
+        status = write_output_file(options, base.bytes, ending.bytes, module->words,
+                                   module->word_count * sizeof *module->words);
     }
     if (status == KRS_OK)
         status = write_description(options, scene, modules, base.bytes, name);

@@ -78,12 +78,12 @@ double clock_now(void)
     return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
 }
 
-void progress_start(Progress *progress, const Options *options, size_t parts)
+void progress_start(Progress *progress, const Options *options, size_t frames)
 {
     *progress = (Progress){.off      = options->quiet,
                            .terminal = isatty(STDERR_FILENO) != 0,
                            .percent  = -1,
-                           .parts    = parts};
+                           .frames   = frames};
 }
 
 static void draw_bar(const Progress *progress)
@@ -95,14 +95,14 @@ static void draw_bar(const Progress *progress)
     memset(bar, '#', (size_t)filled);
     bar[WIDTH] = '\0';
     fprintf(stderr, "\r[%s] %3d%%", bar, progress->percent);
-    if (progress->parts > 1)
-        fprintf(stderr, " frame %zu of %zu", progress->part + 1, progress->parts);
+    if (progress->frames > 1)
+        fprintf(stderr, " frame %zu of %zu", progress->frame + 1, progress->frames);
 }
 
 void progress_show(Progress *progress, double fraction)
 {
     double now     = clock_now();
-    double total   = ((double)progress->part + fraction) / (double)progress->parts;
+    double total   = ((double)progress->frame + fraction) / (double)progress->frames;
     int    percent = (int)(100 * fmin(fmax(total, 0), 1));
     double pause   = progress->terminal ? 0.1 : 1;
     if (progress->off || percent == progress->percent ||

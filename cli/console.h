@@ -27,13 +27,13 @@ double clock_now(void);
 /* How far the work is: a bar on a terminal; else, at most once a second, "Progress: 42%". */
 typedef struct Progress {
     bool   off, terminal;
-    double shown_at;    /* when something was last shown; 0: never */
-    int    percent;     /* last shown */
-    size_t part, parts; /* of several frames, the one being made */
+    double shown_at;      /* when something was last shown; 0: never */
+    int    percent;       /* last shown */
+    size_t frame, frames; /* of several frames, the one being made */
 } Progress;
 
-void progress_start(Progress *progress, const Options *options, size_t parts);
-void progress_show(Progress *progress, double fraction); /* of the current part */
+void progress_start(Progress *progress, const Options *options, size_t frames);
+void progress_show(Progress *progress, double fraction); /* of the current frame */
 /* Takes the bar away, so that other words can be said. */
 void progress_end(Progress *progress);
 

@@ -84,7 +84,7 @@ static KrsStatus read_all(Import *import)
 static KrsStatus write_scene(const Options *options, const Text *scene)
 {
     const char *path = options->outputs.count > 0 ? options->outputs.items[0] : NULL;
-    if (path && scene_is_kept(options, path) != KRS_OK)
+    if (path && check_scene_not_overwritten(options, path) != KRS_OK)
         return KRS_BAD_ARGUMENT;
     if (path)
         return write_output_text(path, scene->bytes, scene->length);

@@ -14,11 +14,11 @@
 enum { MOST_DEPTH = 60 };
 
 typedef struct Equation {
-    Surface    *surface;
-    unsigned    line;
-    const char *start, *at;
-    int         depth;
-    Text        text; /* in the language of scenes: signs and factors are the same */
+    JsurfSurface *surface;
+    unsigned      line;
+    const char   *start, *at;
+    int           depth;
+    Text          text; /* in the language of scenes: signs and factors are the same */
 } Equation;
 
 static bool refuse_equation(const Equation *equation, const char *what)
@@ -35,7 +35,7 @@ static bool refuse_equation(const Equation *equation, const char *what)
 static void skip_blanks(Equation *equation) { equation->at += strspn(equation->at, " \t\r\n\f"); }
 
 /* Takes `sign` and the blanks around it. */
-static bool take(Equation *equation, char sign)
+static bool accept_sign(Equation *equation, char sign)
 {
     skip_blanks(equation);
     if (*equation->at != sign)
@@ -74,10 +74,10 @@ static void add_parameter_name(Text *text, const char *name)
 
 static bool use_parameter(Equation *equation, const char *name)
 {
-    Surface *surface = equation->surface;
-    Text     key     = {.arena = surface->import->arena};
+    JsurfSurface *surface = equation->surface;
+    Text          key     = {.arena = surface->import->arena};
     text_format(&key, "surface_parameter_%s", name);
-    const Property *property = jsurf_property(surface, key.bytes);
+    const JsurfProperty *property = jsurf_property(surface, key.bytes);
     if (!property)
         return import_refuse(surface->import, equation->line,
                              "the equation uses `%.60s`, but there is no %.80s", name, key.bytes);
@@ -96,12 +96,12 @@ static bool parse_sum(Equation *equation);
 
 static bool parse_parentheses(Equation *equation)
 {
-    if (!take(equation, '('))
+    if (!accept_sign(equation, '('))
         return refuse_equation(equation, "a parenthesis");
     text_add(&equation->text, "(");
     if (!parse_sum(equation))
         return false;
-    if (!take(equation, ')'))
+    if (!accept_sign(equation, ')'))
         return refuse_equation(equation, "an operator or a closing parenthesis");
     text_add(&equation->text, ")");
     return true;
@@ -151,7 +151,7 @@ static bool parse_power(Equation *equation)
         return import_refuse(equation->surface->import, equation->line,
                              "the equation is more than %d deep", MOST_DEPTH);
     bool good = parse_factor(equation);
-    if (good && take(equation, '^')) {
+    if (good && accept_sign(equation, '^')) {
         text_add(&equation->text, "^");
         good = parse_power(equation);
     }
@@ -161,7 +161,7 @@ static bool parse_power(Equation *equation)
 
 static bool parse_signed(Equation *equation)
 {
-    if (take(equation, '-'))
+    if (accept_sign(equation, '-'))
         text_add(&equation->text, "-");
     return parse_power(equation);
 }
@@ -171,9 +171,9 @@ static bool parse_product(Equation *equation)
     if (!parse_signed(equation))
         return false;
     for (;;) {
-        if (take(equation, '*'))
+        if (accept_sign(equation, '*'))
             text_add(&equation->text, " * ");
-        else if (take(equation, '/'))
+        else if (accept_sign(equation, '/'))
             text_add(&equation->text, " / ");
         else
             return true;
@@ -187,9 +187,9 @@ static bool parse_sum(Equation *equation)
     if (!parse_product(equation))
         return false;
     for (;;) {
-        if (take(equation, '+'))
+        if (accept_sign(equation, '+'))
             text_add(&equation->text, " + ");
-        else if (take(equation, '-'))
+        else if (accept_sign(equation, '-'))
             text_add(&equation->text, " - ");
         else
             return true;
@@ -198,9 +198,9 @@ static bool parse_sum(Equation *equation)
     }
 }
 
-bool jsurf_equation(Surface *surface, Text *text)
+bool jsurf_equation(JsurfSurface *surface, Text *text)
 {
-    const Property *property = jsurf_property(surface, "surface_equation");
+    const JsurfProperty *property = jsurf_property(surface, "surface_equation");
     if (!property)
         return import_refuse(surface->import, 1, "there is no surface_equation");
     Equation equation = {.surface = surface,
@@ -218,12 +218,12 @@ bool jsurf_equation(Surface *surface, Text *text)
     return true;
 }
 
-bool jsurf_write_parameters(const Surface *surface)
+bool jsurf_write_parameters(const JsurfSurface *surface)
 {
     Text *scene = &surface->import->scene;
     for (size_t i = 0; i < surface->used_count; i++) {
-        const Property *property = surface->used[i];
-        double          value;
+        const JsurfProperty *property = surface->used[i];
+        double               value;
         if (!jsurf_numbers(surface, property->key, &value, 1))
             return false;
         text_add(scene, "param ");

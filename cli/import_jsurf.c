@@ -49,7 +49,7 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static bool read_space(const Surface *surface, const char *key, Space *space)
+static bool read_space(const JsurfSurface *surface, const char *key, Space *space)
 {
     double numbers[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     if (!jsurf_numbers(surface, key, numbers, 16))
@@ -67,19 +67,19 @@ static double space_factor(const Space *space)
     double        cross[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
                               a[0] * b[1] - a[1] * b[0]};
     double        square = dot(a, a), slack = CLOSE * square;
-    bool          even = fabs(dot(b, b) - square) <= slack && fabs(dot(c, c) - square) <= slack;
+    bool same_length = fabs(dot(b, b) - square) <= slack && fabs(dot(c, c) - square) <= slack;
     bool upright = fabs(dot(a, b)) <= slack && fabs(dot(a, c)) <= slack && fabs(dot(b, c)) <= slack;
-    return square > 0 && even && upright && dot(cross, c) > 0 ? sqrt(square) : 0;
+    return square > 0 && same_length && upright && dot(cross, c) > 0 ? sqrt(square) : 0;
 }
 
-static bool refuse_space(const Surface *surface, const char *key, const char *why)
+static bool refuse_space(const JsurfSurface *surface, const char *key, const char *why)
 {
-    const Property *property = jsurf_property(surface, key);
+    const JsurfProperty *property = jsurf_property(surface, key);
     return import_refuse(surface->import, property ? property->line : 1, "`%s` %s", key, why);
 }
 
 /* A turn, without its inverse's need of division. */
-static bool read_turn(const Surface *surface, const char *key, Space *space)
+static bool read_turn(const JsurfSurface *surface, const char *key, Space *space)
 {
     if (!read_space(surface, key, space))
         return false;
@@ -101,7 +101,7 @@ static Space inverse_turn(const Space *space)
 }
 
 /* From the camera's space to that of the ball. */
-static bool read_spaces(Surface *surface, Space *camera)
+static bool read_spaces(JsurfSurface *surface, Space *camera)
 {
     Space  whole, turn, own, surfaces;
     double zoom = 0;
@@ -143,7 +143,7 @@ static void add_point(Text *scene, const double v[3], double size)
     text_add(scene, "]");
 }
 
-static bool read_color(const Surface *surface, const char *key, const double otherwise[3],
+static bool read_color(const JsurfSurface *surface, const char *key, const double otherwise[3],
                        char hex[8])
 {
     double color[3] = {otherwise[0], otherwise[1], otherwise[2]};
@@ -161,12 +161,12 @@ static bool read_color(const Surface *surface, const char *key, const double oth
 
 /* The ball's distance from the eye does not count for an orthographic camera, but the eye must be
    outside. */
-static bool write_camera(const Surface *surface, const Space *camera)
+static bool write_camera(const JsurfSurface *surface, const Space *camera)
 {
-    static const double origin[3] = {0, 0, 0}, back[3] = {0, 0, 1}, upwards[3] = {0, 1, 0};
-    const Property     *type = jsurf_property(surface, "camera_type");
-    bool                flat = !type || strcmp(type->value, "ORTHOGRAPHIC_CAMERA") == 0;
-    double              eye[3], away[3], up[3], height = 2, fov = 60, target[3];
+    static const double  origin[3] = {0, 0, 0}, back[3] = {0, 0, 1}, upwards[3] = {0, 1, 0};
+    const JsurfProperty *type = jsurf_property(surface, "camera_type");
+    bool                 flat = !type || strcmp(type->value, "ORTHOGRAPHIC_CAMERA") == 0;
+    double               eye[3], backward[3], up[3], height = 2, fov = 60, target[3];
     if (!flat && strcmp(type->value, "PERSPECTIVE_CAMERA") != 0)
         return import_refuse(surface->import, type->line, "no camera is a `%.60s`", type->value);
     if (!jsurf_numbers(surface, "camera_height", &height, 1) ||
@@ -175,13 +175,13 @@ static bool write_camera(const Surface *surface, const Space *camera)
     if (flat ? !(height > 0) : !(fov > 0 && fov < 180))
         return refuse_space(surface, flat ? "camera_height" : "camera_fov_y", "shows nothing");
     space_apply(camera, origin, 1, eye);
-    space_apply(camera, back, 0, away);
+    space_apply(camera, back, 0, backward);
     space_apply(camera, upwards, 0, up);
-    double ahead = dot(eye, away), distance = flat ? fmax(ahead, 4) : fmax(ahead, 0.1);
+    double ahead = dot(eye, backward), distance = flat ? fmax(ahead, 4) : fmax(ahead, 0.1);
     for (int i = 0; i < 3; i++) {
-        target[i] = surface->scale * (eye[i] - ahead * away[i]);
-        eye[i]    = target[i] + surface->scale * away[i] * (flat ? distance : ahead);
-        target[i] = eye[i] - surface->scale * away[i] * distance;
+        target[i] = surface->scale * (eye[i] - ahead * backward[i]);
+        eye[i]    = target[i] + surface->scale * backward[i] * (flat ? distance : ahead);
+        target[i] = eye[i] - surface->scale * backward[i] * distance;
     }
     Text *scene = &surface->import->scene;
     text_add(scene, "camera {\n    eye: ");
@@ -199,13 +199,13 @@ static bool write_camera(const Surface *surface, const Space *camera)
 }
 
 /* Lights of SURFER grow no weaker with distance, so they get as much stronger as they are far. */
-static bool write_light(const Surface *surface, const Space *camera, int number)
+static bool write_light(const JsurfSurface *surface, const Space *camera, int number)
 {
     static const double white[3] = {1, 1, 1};
     char                key[64], color[8];
-    double              position[3] = {0, 0, 0}, intensity = 1, place[3];
+    double              position[3] = {0, 0, 0}, intensity = 1, eye[3];
     snprintf(key, sizeof key, "light_status_%d", number);
-    const Property *status = jsurf_property(surface, key);
+    const JsurfProperty *status = jsurf_property(surface, key);
     if (!status || strcmp(status->value, "ON") != 0)
         return true;
     snprintf(key, sizeof key, "light_position_%d", number);
@@ -217,19 +217,19 @@ static bool write_light(const Surface *surface, const Space *camera, int number)
     snprintf(key, sizeof key, "light_color_%d", number);
     if (!read_color(surface, key, white, color))
         return false;
-    space_apply(camera, position, 1, place);
-    double size = surface->scale, distance = size * fmax(sqrt(dot(place, place)), 1);
+    space_apply(camera, position, 1, eye);
+    double size = surface->scale, distance = size * fmax(sqrt(dot(eye, eye)), 1);
     for (int i = 0; i < 3; i++)
-        place[i] *= size;
+        eye[i] *= size;
     Text *scene = &surface->import->scene;
     text_add(scene, "light { position: ");
-    add_point(scene, place, distance);
+    add_point(scene, eye, distance);
     text_format(scene, ", color: %s, intensity: %.4g }\n", color,
                 2 * fmax(intensity, 0) * distance * distance);
     return true;
 }
 
-static bool write_looks(const Surface *surface, const Space *camera)
+static bool write_view(const JsurfSurface *surface, const Space *camera)
 {
     static const double grey[3] = {0.5, 0.5, 0.5}, white[3] = {1, 1, 1};
     char                front[8], back[8], sky[8];
@@ -261,9 +261,9 @@ static bool write_looks(const Surface *surface, const Space *camera)
 
 bool import_jsurf(Import *import)
 {
-    Surface surface = {.import = import};
-    Space   camera;
-    Text    equation = {.arena = import->arena};
+    JsurfSurface surface = {.import = import};
+    Space        camera;
+    Text         equation = {.arena = import->arena};
     if (!jsurf_read(&surface) || !jsurf_equation(&surface, &equation) ||
         !read_spaces(&surface, &camera))
         return false;
@@ -274,5 +274,5 @@ bool import_jsurf(Import *import)
                 "// Without `open: true` it is a solid, below 0.\nlet equation =\n"
                 "    %s;\n",
                 equation.bytes);
-    return write_looks(&surface, &camera);
+    return write_view(&surface, &camera);
 }

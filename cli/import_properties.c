@@ -55,7 +55,7 @@ static int next_character(Reader *reader, bool *escaped)
 }
 
 /* Everything up to a blank, `=` or `:`, or all of the line. */
-static const char *read_piece(const Surface *surface, Reader *reader, bool key)
+static const char *read_piece(const JsurfSurface *surface, Reader *reader, bool key)
 {
     Text text = {.arena = surface->import->arena};
     text_add(&text, "");
@@ -75,7 +75,7 @@ static const char *read_piece(const Surface *surface, Reader *reader, bool key)
     return text.bytes ? text.bytes : "";
 }
 
-bool jsurf_read(Surface *surface)
+bool jsurf_read(JsurfSurface *surface)
 {
     Reader reader = {surface->import->bytes, 1};
     while (*reader.at != '\0') {
@@ -92,8 +92,8 @@ bool jsurf_read(Surface *surface)
         if (surface->properties.count == MOST_PROPERTIES)
             return import_refuse(surface->import, reader.line, "more than %d properties",
                                  MOST_PROPERTIES);
-        Property property = {.line = reader.line};
-        property.key      = read_piece(surface, &reader, true);
+        JsurfProperty property = {.line = reader.line};
+        property.key           = read_piece(surface, &reader, true);
         reader.at += strspn(reader.at, " \t\f");
         reader.at += *reader.at == '=' || *reader.at == ':';
         reader.at += strspn(reader.at, " \t\f");
@@ -103,7 +103,7 @@ bool jsurf_read(Surface *surface)
     return true;
 }
 
-const Property *jsurf_property(const Surface *surface, const char *key)
+const JsurfProperty *jsurf_property(const JsurfSurface *surface, const char *key)
 {
     for (size_t i = surface->properties.count; i-- > 0;)
         if (strcmp(surface->properties.items[i].key, key) == 0)
@@ -111,10 +111,10 @@ const Property *jsurf_property(const Surface *surface, const char *key)
     return NULL;
 }
 
-bool jsurf_numbers(const Surface *surface, const char *key, double *numbers, int count)
+bool jsurf_numbers(const JsurfSurface *surface, const char *key, double *numbers, int count)
 {
-    const double    MOST     = 1e6;
-    const Property *property = jsurf_property(surface, key);
+    const double         MOST     = 1e6;
+    const JsurfProperty *property = jsurf_property(surface, key);
     if (!property)
         return true;
     const char *at = property->value;

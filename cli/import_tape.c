@@ -57,35 +57,35 @@ static const Operation operations[] = {
 };
 enum { OPERATIONS = sizeof operations / sizeof *operations };
 
-typedef struct Step {
+typedef struct Instruction {
     const Operation *operation;
     size_t           arguments[MOST_ARGUMENTS]; /* earlier steps */
     double           number;                    /* of `const` */
     bool             counts, varies;            /* for the result; with the point */
-    size_t           place;                     /* among those that are written, from 1 */
-} Step;
+    size_t           ordinal;                   /* among those that are written, from 1 */
+} Instruction;
 
 /* Which step a name stands for at the moment; names are interned. */
-typedef struct Meaning {
+typedef struct WordMeaning {
     const char *name;
-    size_t      step;
-} Meaning;
+    size_t      instruction;
+} WordMeaning;
 
-typedef struct Tape {
+typedef struct ImportedTape {
     Import  *import;
     unsigned line;
     Names    names;
     struct {
-        Step  *items;
-        size_t count, capacity;
-    } steps;
-    Meaning *meanings; /* a hash table, open, twice as large as there can be names */
-} Tape;
+        Instruction *items;
+        size_t       count, capacity;
+    } instructions;
+    WordMeaning *meanings; /* a hash table, open, twice as large as there can be names */
+} ImportedTape;
 
 enum { MEANINGS = 1 << 18 };
 _Static_assert(MEANINGS >= 2 * MOST_LINES, "a table that is half empty");
 
-static Meaning *find_meaning(Tape *tape, const char *name)
+static WordMeaning *find_meaning(ImportedTape *tape, const char *name)
 {
     size_t slot = ((uintptr_t)name >> 3) * 0x9e3779b97f4a7c15u >> 40;
     for (slot &= MEANINGS - 1; tape->meanings[slot].name; slot = (slot + 1) & (MEANINGS - 1))
@@ -121,12 +121,12 @@ static const Operation *find_operation(Word word)
 }
 
 /* For words about it, of which a few are enough. */
-static const char *word_text(const Tape *tape, Word word)
+static const char *word_text(const ImportedTape *tape, Word word)
 {
     return arena_copy_text(tape->import->arena, word.start, word.length < 60 ? word.length : 60);
 }
 
-static bool refuse_operation(Tape *tape, Word word)
+static bool refuse_operation(ImportedTape *tape, Word word)
 {
     const char *names[OPERATIONS];
     for (size_t i = 0; i < OPERATIONS; i++)
@@ -139,67 +139,68 @@ static bool refuse_operation(Tape *tape, Word word)
     return import_refuse(tape->import, tape->line, "no operation is called `%s`", written);
 }
 
-static bool read_constant(Tape *tape, Step *step, const char **at)
+static bool read_constant(ImportedTape *tape, Instruction *instruction, const char **at)
 {
     Word        word   = next_word(at);
     const char *digits = arena_copy_text(tape->import->arena, word.start, word.length);
     char       *end;
-    step->number = strtod(digits, &end);
+    instruction->number = strtod(digits, &end);
     if (word.length == 0)
         return import_refuse(tape->import, tape->line, "`const` needs a number");
-    if (*end != '\0' || !isfinite(step->number))
+    if (*end != '\0' || !isfinite(instruction->number))
         return import_refuse(tape->import, tape->line, "`%s` is not a finite number",
                              word_text(tape, word));
     return true;
 }
 
-static bool read_argument(Tape *tape, Step *step, int index, const char **at)
+static bool read_argument(ImportedTape *tape, Instruction *instruction, int index, const char **at)
 {
     Word word = next_word(at);
     if (word.length == 0)
         return import_refuse(tape->import, tape->line, "`%s` needs %d argument%s",
-                             step->operation->name, step->operation->arguments,
-                             step->operation->arguments == 1 ? "" : "s");
-    const char    *name    = name_intern(&tape->names, word.start, word.length);
-    const Meaning *meaning = find_meaning(tape, name);
+                             instruction->operation->name, instruction->operation->arguments,
+                             instruction->operation->arguments == 1 ? "" : "s");
+    const char        *name    = name_intern(&tape->names, word.start, word.length);
+    const WordMeaning *meaning = find_meaning(tape, name);
     if (!meaning->name)
         return import_refuse(tape->import, tape->line, "no line before this one is called `%s`",
                              word_text(tape, word));
-    step->arguments[index] = meaning->step;
-    step->varies           = step->varies || tape->steps.items[meaning->step].varies;
+    instruction->arguments[index] = meaning->instruction;
+    instruction->varies           = instruction->varies ||
+                          tape->instructions.items[meaning->instruction].varies;
     return true;
 }
 
-static bool read_line(Tape *tape, const char *at)
+static bool read_line(ImportedTape *tape, const char *at)
 {
     Word name = next_word(&at);
     if (name.length == 0 || name.start[0] == '#')
         return true;
-    if (tape->steps.count == MOST_LINES)
+    if (tape->instructions.count == MOST_LINES)
         return import_refuse(tape->import, tape->line, "more than %d operations", MOST_LINES);
-    Word word = next_word(&at);
-    Step step = {.operation = find_operation(word)};
+    Word        word        = next_word(&at);
+    Instruction instruction = {.operation = find_operation(word)};
     if (word.length == 0)
         return import_refuse(tape->import, tape->line,
                              "a line is a name, an operation and its arguments: `_2 add _0 _1`");
-    if (!step.operation)
+    if (!instruction.operation)
         return refuse_operation(tape, word);
-    step.varies = step.operation->arguments == 0 && step.operation->text;
-    if (!step.operation->text && !read_constant(tape, &step, &at))
+    instruction.varies = instruction.operation->arguments == 0 && instruction.operation->text;
+    if (!instruction.operation->text && !read_constant(tape, &instruction, &at))
         return false;
-    for (int i = 0; i < step.operation->arguments; i++)
-        if (!read_argument(tape, &step, i, &at))
+    for (int i = 0; i < instruction.operation->arguments; i++)
+        if (!read_argument(tape, &instruction, i, &at))
             return false;
     if (next_word(&at).length > 0)
         return import_refuse(tape->import, tape->line, "`%s` has too many arguments",
-                             step.operation->name);
+                             instruction.operation->name);
     const char *interned          = name_intern(&tape->names, name.start, (size_t)name.length);
-    *find_meaning(tape, interned) = (Meaning){interned, tape->steps.count};
-    array_push(tape->import->arena, &tape->steps, step);
+    *find_meaning(tape, interned) = (WordMeaning){interned, tape->instructions.count};
+    array_push(tape->import->arena, &tape->instructions, instruction);
     return true;
 }
 
-static bool read_tape(Tape *tape)
+static bool read_tape(ImportedTape *tape)
 {
     const char *at = tape->import->bytes;
     while (*at != '\0') {
@@ -209,9 +210,9 @@ static bool read_tape(Tape *tape)
         at += strcspn(at, "\n");
         at += *at == '\n';
     }
-    if (tape->steps.count == 0)
+    if (tape->instructions.count == 0)
         return import_refuse(tape->import, tape->line + (tape->line == 0), "there is no operation");
-    if (!tape->steps.items[tape->steps.count - 1].varies)
+    if (!tape->instructions.items[tape->instructions.count - 1].varies)
         return import_refuse(tape->import, tape->line,
                              "what comes last does not depend on x, y or z");
     return true;
@@ -220,51 +221,51 @@ static bool read_tape(Tape *tape)
 /* ---- writing ---- */
 
 /* What a step is called where it is used. */
-static void write_name(const Tape *tape, size_t index)
+static void write_name(const ImportedTape *tape, size_t index)
 {
-    const Step *step = &tape->steps.items[index];
-    Text       *text = &tape->import->scene;
-    if (step->operation->arguments > 0) {
-        text_format(text, "n%zu", step->place);
-    } else if (step->operation->text) {
-        text_add(text, step->operation->text);
+    const Instruction *instruction = &tape->instructions.items[index];
+    Text              *text        = &tape->import->scene;
+    if (instruction->operation->arguments > 0) {
+        text_format(text, "n%zu", instruction->ordinal);
+    } else if (instruction->operation->text) {
+        text_add(text, instruction->operation->text);
     } else {
-        text_add(text, step->number < 0 ? "(" : "");
-        import_add_number(text, step->number);
-        text_add(text, step->number < 0 ? ")" : "");
+        text_add(text, instruction->number < 0 ? "(" : "");
+        import_add_number(text, instruction->number);
+        text_add(text, instruction->number < 0 ? ")" : "");
     }
 }
 
-static void write_step(const Tape *tape, const Step *step)
+static void write_instruction(const ImportedTape *tape, const Instruction *instruction)
 {
     Text *text = &tape->import->scene;
-    text_format(text, "let n%zu = ", step->place);
-    for (const char *at = step->operation->text; *at != '\0'; at++) {
+    text_format(text, "let n%zu = ", instruction->ordinal);
+    for (const char *at = instruction->operation->text; *at != '\0'; at++) {
         if (*at == '$')
-            write_name(tape, step->arguments[*++at - 'a']);
+            write_name(tape, instruction->arguments[*++at - 'a']);
         else
             text_add_bytes(text, at, 1);
     }
     text_add(text, ";\n");
 }
 
-static void write_tape(Tape *tape)
+static void write_tape(ImportedTape *tape)
 {
-    size_t last = tape->steps.count - 1, place = 0;
-    Text  *text                    = &tape->import->scene;
-    tape->steps.items[last].counts = true;
+    size_t last = tape->instructions.count - 1, ordinal = 0;
+    Text  *text                           = &tape->import->scene;
+    tape->instructions.items[last].counts = true;
     for (size_t i = last + 1; i-- > 0;) {
-        const Step *step = &tape->steps.items[i];
-        for (int k = 0; step->counts && k < step->operation->arguments; k++)
-            tape->steps.items[step->arguments[k]].counts = true;
+        const Instruction *instruction = &tape->instructions.items[i];
+        for (int k = 0; instruction->counts && k < instruction->operation->arguments; k++)
+            tape->instructions.items[instruction->arguments[k]].counts = true;
     }
     text_format(text, "// From %s.\n\n", tape->import->name);
     for (size_t i = 0; i <= last; i++) {
-        Step *step = &tape->steps.items[i];
-        if (!step->counts || step->operation->arguments == 0)
+        Instruction *instruction = &tape->instructions.items[i];
+        if (!instruction->counts || instruction->operation->arguments == 0)
             continue;
-        step->place = ++place;
-        write_step(tape, step);
+        instruction->ordinal = ++ordinal;
+        write_instruction(tape, instruction);
     }
     text_add(text, "\n// A tape has no bounds; this is what its viewers show unless asked.\n"
                    "show field(");
@@ -274,8 +275,8 @@ static void write_tape(Tape *tape)
 
 bool import_tape(Import *import)
 {
-    Tape tape     = {.import = import, .names = {.arena = import->arena}};
-    tape.meanings = arena_new_array(import->arena, Meaning, MEANINGS);
+    ImportedTape tape = {.import = import, .names = {.arena = import->arena}};
+    tape.meanings     = arena_new_array(import->arena, WordMeaning, MEANINGS);
     if (!read_tape(&tape))
         return false;
     write_tape(&tape);

@@ -119,7 +119,7 @@ static KrsStatus check_outputs(const Render *render)
         OutputError error;
         KrsStatus   status = check_name(render, i);
         if (status == KRS_OK)
-            status = scene_is_kept(options, path);
+            status = check_scene_not_overwritten(options, path);
         if (status != KRS_OK)
             return status;
         if (output_check(path, &error) != KRS_OK) {
@@ -373,8 +373,8 @@ KrsStatus command_render(Options *options)
                    (size_t)options->last_frame - options->first_frame + 1);
     for (uint32_t frame = options->first_frame; frame <= options->last_frame && status == KRS_OK;
          frame++) {
-        render->progress.part = frame - options->first_frame;
-        status                = render_frame(render, frame);
+        render->progress.frame = frame - options->first_frame;
+        status                 = render_frame(render, frame);
     }
     progress_end(&render->progress);
     krs_rendering_free(render->rendering);

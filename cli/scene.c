@@ -84,7 +84,7 @@ KrsStatus scene_readable(const char *path)
     return readable ? KRS_OK : KRS_IO_ERROR;
 }
 
-KrsStatus scene_is_kept(const Options *options, const char *output)
+KrsStatus check_scene_not_overwritten(const Options *options, const char *output)
 {
     struct stat from, to;
     const char *path = options->files.items[0];

@@ -55,7 +55,7 @@ static const StageInfo stage_info[STAGE_COUNT] = {
 
 static uint64_t milliseconds(void) { return (uint64_t)(clock_now() * 1000); }
 
-static void crash_for_test(Stage stage)
+static void crash_for_test(RunStage stage)
 {
     const char *wish   = getenv("KRS_TEST_CRASH");
     size_t      length = strlen(stage_info[stage].name);
@@ -70,7 +70,7 @@ static void crash_for_test(Stage stage)
         raise(atoi(wish + length + 1));
 }
 
-void stage_enter(Stage stage)
+void stage_enter(RunStage stage)
 {
     atomic_store(&shared->entered, milliseconds());
     atomic_store(&shared->stage, (int)stage);

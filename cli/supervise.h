@@ -11,7 +11,7 @@
 #include "runtime/writer/atomic.h"
 
 /* What the child is doing; the parent names it should the child die. */
-typedef enum Stage {
+typedef enum RunStage {
     STAGE_START,
     STAGE_COMPILE,
     STAGE_SHADERS,
@@ -21,7 +21,7 @@ typedef enum Stage {
     STAGE_WRITE,
     STAGE_ANSWER,
     STAGE_COUNT
-} Stage;
+} RunStage;
 
 typedef KrsStatus Work(Options *options);
 
@@ -39,7 +39,7 @@ int supervise(Options *options, Work *work);
 /* Tells the parent.  For the tests, the environment variable KRS_TEST_CRASH=STAGE makes the
    process crash on entering a stage (start, compile, shaders, device, render, validate, write,
    answer); STAGE:9 sends itself that signal instead, STAGE:hang never returns. */
-void stage_enter(Stage stage);
+void stage_enter(RunStage stage);
 
 /* Tells the parent that the work of this stage goes on: the deadline begins anew. */
 void stage_goes_on(void);

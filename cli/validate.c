@@ -43,8 +43,8 @@ typedef struct Validation {
     uint64_t       random;                /* state of the generator */
     double         low[3], high[3], size; /* the box that is tried, and its diagonal */
     uint64_t       balls;                 /* probes inside of balls so far */
-    uint64_t       ways;                  /* from points to a surface that has an estimate, */
-    double         reached;    /* and the largest part of such a way that the estimate was */
+    uint64_t       estimates;             /* distances compared with estimates, */
+    double         reached;    /* and the largest ratio of the estimate to the true distance */
     double         difference; /* largest of the device so far, in tolerances */
     double         points[BATCH][3];
 } Validation;
@@ -186,33 +186,33 @@ static bool is_estimate(const Validation *v, const KrsHit *hit)
 }
 
 /* Goes on from half the distance, by half of what is found there, until the sign changes. */
-static void measure_ways(Validation *v, const KrsHit *hits, bool straight)
+static void measure_estimates(Validation *v, const KrsHit *hits, bool straight)
 {
-    double directions[BATCH][3], ways[BATCH], places[BATCH][3], found[BATCH];
+    double directions[BATCH][3], lengths[BATCH], points[BATCH][3], found[BATCH];
     bool   going[BATCH], any = false;
     for (size_t i = 0; i < BATCH; i++) {
         random_direction(&v->random, directions[i]);
         double side = hits[i].distance > 0 ? -1 : 1;
         for (int axis = 0; axis < 3 && straight; axis++)
             directions[i][axis] = side * hits[i].normal[axis];
-        going[i] = is_worth_trying(v, hits[i].distance) && is_estimate(v, &hits[i]);
-        ways[i]  = 0.5 * fabs(hits[i].distance);
-        any      = any || going[i];
+        going[i]   = is_worth_trying(v, hits[i].distance) && is_estimate(v, &hits[i]);
+        lengths[i] = 0.5 * fabs(hits[i].distance);
+        any        = any || going[i];
     }
     for (int step = 0; any && step < MEASURE_STEPS; step++) {
         for (size_t i = 0; i < BATCH; i++)
             for (int axis = 0; axis < 3; axis++)
-                places[i][axis] = hits[i].point[axis] + ways[i] * directions[i][axis];
-        krs_distance(v->frame, (const double(*)[3])places, BATCH, found);
+                points[i][axis] = hits[i].point[axis] + lengths[i] * directions[i][axis];
+        krs_distance(v->frame, (const double(*)[3])points, BATCH, found);
         for (size_t i = 0; i < BATCH; i++) {
             if (!going[i])
                 continue;
             going[i] = hits[i].distance > 0 ? found[i] > 0 : found[i] < 0;
             if (!going[i]) {
-                v->ways++;
-                v->reached = fmax(v->reached, fabs(hits[i].distance) / ways[i]);
+                v->estimates++;
+                v->reached = fmax(v->reached, fabs(hits[i].distance) / lengths[i]);
             }
-            ways[i] += fmax(0.5 * fabs(found[i]), 1e-3 * fabs(hits[i].distance));
+            lengths[i] += fmax(0.5 * fabs(found[i]), 1e-3 * fabs(hits[i].distance));
         }
     }
 }
@@ -254,8 +254,8 @@ static KrsStatus try_balls(Validation *v)
                 return report_ball(v, v->points[i], hits[i].distance, inside[i], found[i]);
         }
     }
-    measure_ways(v, hits, true);
-    measure_ways(v, hits, false);
+    measure_estimates(v, hits, true);
+    measure_estimates(v, hits, false);
     return v->reached > ALL_OF_THE_WAY ? report_estimate(v) : KRS_OK;
 }
 
@@ -319,9 +319,9 @@ static KrsStatus try_points(Validation *v, KrsRenderer *renderer, KrsRendering *
         printf("; %s agrees, at most %.2g of the tolerance apart",
                krs_renderer_device(renderer).name, v->difference);
     putchar('\n');
-    if (v->ways > 0)
+    if (v->estimates > 0)
         printf("%s: estimates reach at most %.3f of the way to the surface, of %llu ways\n",
-               v->path, v->reached, (unsigned long long)v->ways);
+               v->path, v->reached, (unsigned long long)v->estimates);
     return KRS_OK;
 }
 

@@ -52,15 +52,15 @@ bool read_count(const char *word, uint32_t low, uint32_t high, uint32_t *value)
 static bool read_wholes(const char *word, char separator, uint64_t low, uint64_t high,
                         uint32_t *values, size_t count)
 {
-    char part[16];
+    char piece[16];
     for (size_t i = 0; i < count; i++) {
         size_t   length = strcspn(word, (char[]){separator, '\0'});
         uint64_t value;
-        if (length >= sizeof part)
+        if (length >= sizeof piece)
             return false;
-        memcpy(part, word, length);
-        part[length] = '\0';
-        if (!read_whole(part, low, high, &value))
+        memcpy(piece, word, length);
+        piece[length] = '\0';
+        if (!read_whole(piece, low, high, &value))
             return false;
         values[i] = (uint32_t)value;
         word += length;

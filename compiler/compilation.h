@@ -62,9 +62,9 @@ bool      check_length(Compilation *c);
    were too many to be counted. */
 void refuse_component(Compilation *c, size_t component, size_t operations);
 
-/* keep.c: copies what the program needs out of the elaborated scene, whose memory goes. */
-void keep_scene(Compilation *c);
-void keep_tapes(Compilation *c);
+/* retain.c: copies what the program needs out of the elaborated scene, whose memory goes. */
+void retain_scene(Compilation *c);
+void retain_tapes(Compilation *c);
 
 /* groups.c: which components are marched by themselves.  groups[i] gets the number of the group of
    each, from 1; 0 for those that need no march. */

@@ -110,17 +110,17 @@ static void emit(Compilation *c)
     uint32_t    *groups  = arena_new_array(&c->scratch, uint32_t, count + 1);
     find_rest(c, boxes, flat);
     form_groups(c, groups);
-    program->parts  = emit_part_count(count);
-    EmitMarch march = {.guarded    = roots->guarded,
-                       .along      = roots->along,
-                       .boxes      = boxes,
-                       .groups     = program->group_count ? groups : NULL,
-                       .flat       = program->flats ? flat : NULL,
-                       .anchored   = program->anchored ? roots->anchored : NULL,
-                       .zone_slots = KRS_MOST_ZONES,
-                       .ahead      = roots->flats,
-                       .slopes     = scene->slope_count > 0,
-                       .gradient   = program->gradients ? roots->gradients : NULL};
+    program->scene_parts = emit_scene_part_count(count);
+    EmitMarch march      = {.guarded    = roots->guarded,
+                            .along      = roots->along,
+                            .boxes      = boxes,
+                            .groups     = program->group_count ? groups : NULL,
+                            .flat       = program->flats ? flat : NULL,
+                            .anchored   = program->anchored ? roots->anchored : NULL,
+                            .zone_slots = KRS_MOST_ZONES,
+                            .ahead      = roots->flats,
+                            .slopes     = scene->slope_count > 0,
+                            .gradient   = program->gradients ? roots->gradients : NULL};
     emit_glsl(scene->graph, &c->sources, roots->components, count, zone_root(scene), &march,
               &c->scratch, &glsl, &scene->found);
     program->glsl            = glsl.bytes;
@@ -166,8 +166,8 @@ static KrsStatus run(Compilation *c)
     if (!check_operations(c) || !check_numbers(c))
         return KRS_BAD_SCENE;
     sources_hash(&c->sources, c->scene->hash);
-    keep_scene(c);
-    keep_tapes(c);
+    retain_scene(c);
+    retain_tapes(c);
     c->scene->program.front_ms = now_ms() - c->started;
     emit(c);
     c->scene->program.glsl_ms = now_ms() - c->started - c->scene->program.front_ms;
@@ -179,7 +179,7 @@ static KrsStatus run(Compilation *c)
     return status == KRS_OK && c->request->inspect ? inspect(c) : status;
 }
 
-/* ---- the doorstep ---- */
+/* ---- the API ---- */
 
 static void hand_over(const Diags *diags, const Diag *diag, const KrsOptions *options, Arena *arena)
 {

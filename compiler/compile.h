@@ -1,5 +1,5 @@
 /*
- * compile.h: text in, finished program out.  The compiler's doorstep: all that the runtime sees.
+ * compile.h: text in, finished program out.  The compiler's API: all that the runtime sees.
  */
 #ifndef KRS_COMPILE_H
 #define KRS_COMPILE_H
@@ -35,7 +35,7 @@
  * than `footprint`, the radius of a pixel's cone at p, counts as the box around it (0: nothing
  * does).  Where a branch saves no work, as on lavapipe, krs_distance costs less.
  *
- * A scene of several heavy components has groups of them (KrsGroup): with GROUP defined as the
+ * A scene of several expensive components has groups of them (KrsGroup): with GROUP defined as the
  * number of one there is krs_distance alone, and of that group alone.
  *
  * N is parameter_slots (at least 1), what is in them is told at krs_frame_parameters.  With
@@ -112,8 +112,8 @@ typedef struct KrsProgram {
     KrsGroup    groups[KRS_MOST_GROUPS];
     size_t      group_count;       /* 0: all components belong together */
     bool        apart;             /* taking turns is worth it */
-    uint32_t    parts;             /* of krs_distance_of, for kernels with #define PACKED */
-    uint32_t    heavy;             /* components that are worth being marched by themselves */
+    uint32_t    scene_parts;       /* how many (emit.h), for kernels with #define PACKED */
+    uint32_t    expensive;         /* components that cost enough to be marched by themselves */
     double      front_ms, glsl_ms; /* time spent */
 } KrsProgram;
 
@@ -149,7 +149,7 @@ KrsRay krs_ray(const KrsScene *scene, const double origin[3], const double direc
 /* Where there are sheets the normals of a hit face where its ray comes from. */
 void krs_face(const KrsRay *ray, KrsHit *hit);
 /* Whether these are arguments that krs_raycast accepts. */
-bool krs_rays_are_sound(const double (*origins)[3], const double (*directions)[3], size_t count,
+bool krs_rays_are_valid(const double (*origins)[3], const double (*directions)[3], size_t count,
                         double farthest, double tolerance);
 /* 64-bit FNV-1a of the whole text (used files included), 16 hexadecimal digits. */
 const char *krs_scene_hash(const KrsScene *scene);
@@ -170,7 +170,7 @@ typedef struct KrsRefuteOptions {
         size_t      count;
     } const *fixed;
     size_t   fixed_count;
-    /* Called now and then with the part that is done; false: stop.  May be NULL. */
+    /* Called now and then with the fraction that is done; false: stop.  May be NULL. */
     bool (*go_on)(void *user, double fraction);
     void *user;
 } KrsRefuteOptions;
@@ -183,7 +183,7 @@ typedef struct KrsRefutation {
     size_t   skipped;     /* shapes too large to be searched by themselves */
     uint64_t evaluations; /* of distances */
     double   steepest;    /* largest slope of a distance, of 1 that is permitted */
-    double   longest;     /* largest part of the way to a surface that an estimate was */
+    double   longest;     /* largest ratio of an estimate to the true distance */
     size_t   estimates;   /* shapes of which nothing more is claimed */
 } KrsRefutation;
 

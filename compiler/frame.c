@@ -9,7 +9,7 @@
 #include "compiler/program.h"
 
 /* Zeroed memory of the scene's allocator; NULL: there is none. */
-static void *take(const KrsScene *scene, size_t count, size_t size)
+static void *frame_alloc(const KrsScene *scene, size_t count, size_t size)
 {
     const Memory *memory = &scene->memory;
     size_t        bytes  = (count ? count : 1) * size;
@@ -19,7 +19,7 @@ static void *take(const KrsScene *scene, size_t count, size_t size)
     return block;
 }
 
-static void give(const KrsScene *scene, void *block)
+static void frame_release(const KrsScene *scene, void *block)
 {
     const Memory *memory = &scene->memory;
     if (block && memory->allocate)
@@ -30,12 +30,12 @@ static void give(const KrsScene *scene, void *block)
 
 #define ANY_SLOT UINT32_MAX
 
-static size_t slope_room(const KrsScene *scene)
+static size_t slope_workspace(const KrsScene *scene)
 {
     size_t most = 0;
     for (size_t i = 0; i < scene->slope_count; i++) {
-        size_t room = slope_task_room(&scene->slopes[i].task);
-        most        = room > most ? room : most;
+        size_t workspace = slope_task_size(&scene->slopes[i].task);
+        most             = workspace > most ? workspace : most;
     }
     return most;
 }
@@ -56,10 +56,10 @@ static bool find_slopes(KrsFrame *frame, uint32_t changed)
     const double(*parameters)[4] = (const double(*)[4])frame->parameters;
     frame->unbounded             = NULL;
     for (size_t i = 0; i < frame->scene->slope_count; i++) {
-        const KeptSlope *slope = &frame->scene->slopes[i];
+        const RetainedSlope *slope = &frame->scene->slopes[i];
         if (!depends_on(&slope->task.tape, changed))
             continue;
-        double found = slope_task_run(&slope->task, parameters, frame->room, NULL);
+        double found = slope_task_run(&slope->task, parameters, frame->workspace, NULL);
         found        = frame_slope_upward(found);
         frame->parameters[slope->slot].v[0] = found;
         if (!isfinite(found) && !frame->unbounded)
@@ -71,15 +71,16 @@ static bool find_slopes(KrsFrame *frame, uint32_t changed)
 KrsStatus krs_frame_new(const KrsScene *scene, KrsFrame **result)
 {
     *result         = NULL;
-    KrsFrame *frame = take(scene, 1, sizeof *frame);
+    KrsFrame *frame = frame_alloc(scene, 1, sizeof *frame);
     if (!frame)
         return KRS_OUT_OF_MEMORY;
     frame->scene      = scene;
-    frame->parameters = take(scene, scene->program.parameter_slots, sizeof *frame->parameters);
-    frame->values     = take(scene, scene->graph->count, sizeof *frame->values);
-    frame->lights     = take(scene, scene->light_count, sizeof *frame->lights);
-    frame->room       = take(scene, slope_room(scene), 1);
-    if (!frame->parameters || !frame->values || !frame->lights || !frame->room) {
+    frame->parameters = frame_alloc(scene, scene->program.parameter_slots,
+                                    sizeof *frame->parameters);
+    frame->values     = frame_alloc(scene, scene->graph->count, sizeof *frame->values);
+    frame->lights     = frame_alloc(scene, scene->light_count, sizeof *frame->lights);
+    frame->workspace  = frame_alloc(scene, slope_workspace(scene), 1);
+    if (!frame->parameters || !frame->values || !frame->lights || !frame->workspace) {
         krs_frame_free(frame);
         return KRS_OUT_OF_MEMORY;
     }
@@ -99,11 +100,11 @@ void krs_frame_free(KrsFrame *frame)
     if (!frame)
         return;
     const KrsScene *scene = frame->scene;
-    give(scene, frame->parameters);
-    give(scene, frame->values);
-    give(scene, frame->lights);
-    give(scene, frame->room);
-    give(scene, frame);
+    frame_release(scene, frame->parameters);
+    frame_release(scene, frame->values);
+    frame_release(scene, frame->lights);
+    frame_release(scene, frame->workspace);
+    frame_release(scene, frame);
 }
 
 void frame_refresh(KrsFrame *frame)
@@ -175,7 +176,7 @@ KrsStatus krs_frame_set_time(KrsFrame *frame, double time)
 }
 
 /* Single precision can square them. */
-static bool zone_is_sound(const double zone[4])
+static bool zone_is_valid(const double zone[4])
 {
     const double most = 1e18;
     for (int k = 0; k < 4; k++)
@@ -189,7 +190,7 @@ KrsStatus krs_frame_set_zones(KrsFrame *frame, const double (*zones)[4], size_t 
     if (count > KRS_MOST_ZONES)
         return KRS_BAD_ARGUMENT;
     for (size_t i = 0; i < count; i++)
-        if (!zone_is_sound(zones[i]))
+        if (!zone_is_valid(zones[i]))
             return KRS_BAD_ARGUMENT;
     if (count > 0)
         memmove(frame->zones, zones, count * sizeof *zones);

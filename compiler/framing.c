@@ -1,8 +1,8 @@
 /*
  * framing.c: a camera for a scene that has none.
  *
- * Boxes of sequences hold for all values of the parameters and are loose; a picture framed by
- * them shows a speck.  So a few hundred rays are cast from the ball around the box to points
+ * Boxes of sequences hold for all values of the parameters and are often much too large: a picture
+ * framed by them shows a speck.  So a few hundred rays are cast from the ball around the box to points
  * all over it, and the camera frames what they hit.
  */
 #include "compiler/framing.h"

@@ -5,7 +5,7 @@
 
 /* Components of so many flops are marched by themselves, in scenes of so many: as bench/krs.c
    found.  Less is gained where their boxes lie within each other. */
-static const double HEAVY_FLOPS = 100, SCATTERED_FLOPS = 1000, MIXED_FLOPS = 2000;
+static const double EXPENSIVE_FLOPS = 100, SCATTERED_FLOPS = 1000, MIXED_FLOPS = 2000;
 
 static double component_flops(Compilation *c, size_t component)
 {
@@ -16,11 +16,11 @@ static double component_flops(Compilation *c, size_t component)
     return tape_flops(&tape);
 }
 
-/* The group that a component joins: one of its own if it is heavy and bounded, while there are any;
+/* The group that a component joins: one of its own if it is expensive and bounded, while there are any;
    else the last, of all the others. */
 static size_t choose_group(const KrsProgram *program, double flops, Box box)
 {
-    bool own = flops >= HEAVY_FLOPS && box_is_finite(box) && !box_is_empty(box);
+    bool own = flops >= EXPENSIVE_FLOPS && box_is_finite(box) && !box_is_empty(box);
     return own && program->group_count < KRS_MOST_GROUPS - 1 ? program->group_count
                                                              : KRS_MOST_GROUPS - 1;
 }
@@ -61,7 +61,7 @@ void form_groups(Compilation *c, uint32_t *groups)
             continue;
         double flops                  = component_flops(c, i);
         c->scene->components[i].flops = flops;
-        program->heavy += flops >= HEAVY_FLOPS;
+        program->expensive += flops >= EXPENSIVE_FLOPS;
         size_t group = choose_group(program, flops, component->shape->box);
         groups[i]    = (uint32_t)group + 1;
         if (group < KRS_MOST_GROUPS - 1) {

@@ -76,12 +76,12 @@ bool check_operations(Compilation *c)
    constant that single precision does not have. */
 static bool is_beyond_numbers(const Graph *graph, const Expr *expr)
 {
-    bool constants = expr->operand_count > 0, beyond = false;
+    bool constants = expr->operand_count > 0, too_large = false;
     for (uint32_t i = 0; i < expr->operand_count; i++)
         constants = constants && graph->items[expr->operands[i]].op == OP_CONSTANT;
     for (uint32_t i = 0; i < 4 && expr->op == OP_CONSTANT; i++)
-        beyond = beyond || !(fabs(expr->number[i]) <= FLT_MAX);
-    return constants || beyond;
+        too_large = too_large || !(fabs(expr->number[i]) <= FLT_MAX);
+    return constants || too_large;
 }
 
 static void refuse_number(Compilation *c, const Component *shown, Span span)
@@ -92,7 +92,7 @@ static void refuse_number(Compilation *c, const Component *shown, Span span)
     /* Equal expressions are one node, whose place may be in another component. */
     if (span.source == shown->span.source && span.start > shown->span.start &&
         span.end <= shown->span.end)
-        diag_place(&c->diags, diag, span, "in here");
+        diag_secondary(&c->diags, diag, span, "in here");
 }
 
 /* The first node that the roots of some components need and no shader can have; else NODE_NONE. */

@@ -45,55 +45,55 @@ static double reach_of_boxes(const Scene *s)
 }
 
 /* All distances, and what is asked of the cameras. */
-typedef struct Sight {
+typedef struct ViewPrecision {
     const Scene *scene;
     Graph       *graph;
     const Node  *distances; /* ROOT_COUNT apart */
     Tape         tape;
     NodeValue   *values;
     Arena       *scratch;
-} Sight;
+} ViewPrecision;
 
-static void run_defaults(Sight *sight)
+static void run_defaults(ViewPrecision *view)
 {
-    const Scene *s     = sight->scene;
+    const Scene *s     = view->scene;
     size_t       count = 0;
-    Node        *roots = arena_new_array(sight->scratch, Node,
+    Node        *roots = arena_new_array(view->scratch, Node,
                                          s->components.count + 3 * s->cameras.count + 1);
     for (size_t i = 0; i < s->components.count; i++)
-        roots[count++] = sight->distances[i * ROOT_COUNT + ROOT_DISTANCE];
+        roots[count++] = view->distances[i * ROOT_COUNT + ROOT_DISTANCE];
     for (size_t i = 0; i < s->cameras.count; i++) {
         roots[count++] = s->cameras.items[i].eye;
         roots[count++] = s->cameras.items[i].fov;
         roots[count++] = s->cameras.items[i].height;
     }
-    size_t     slots      = sight->graph->parameters.count;
-    NodeValue *parameters = arena_new_array(sight->scratch, NodeValue, slots + 1);
+    size_t     slots      = view->graph->parameters.count;
+    NodeValue *parameters = arena_new_array(view->scratch, NodeValue, slots + 1);
     for (size_t i = 0; i < s->parameters.count; i++)
         memcpy(parameters[s->parameters.items[i].slot].v, s->parameters.items[i].value,
                sizeof s->parameters.items[i].value);
-    sight->tape   = tape_new(sight->graph, roots, count, sight->scratch);
-    sight->values = arena_new_array(sight->scratch, NodeValue, sight->graph->count);
-    tape_run_frame(&sight->tape, parameters, sight->values);
+    view->tape   = tape_new(view->graph, roots, count, view->scratch);
+    view->values = arena_new_array(view->scratch, NodeValue, view->graph->count);
+    tape_run_frame(&view->tape, parameters, view->values);
 }
 
 /* At the defaults of the parameters. */
-static double nearest_to(const Sight *sight, const double eye[3])
+static double nearest_to(const ViewPrecision *view, const double eye[3])
 {
     double nearest = HUGE_VAL;
-    tape_run_point(&sight->tape, eye, sight->values);
-    for (size_t i = 0; i < sight->scene->components.count; i++) {
-        Node distance = sight->distances[i * ROOT_COUNT + ROOT_DISTANCE];
-        nearest       = fmin(nearest, fabs(sight->values[distance].v[0]));
+    tape_run_point(&view->tape, eye, view->values);
+    for (size_t i = 0; i < view->scene->components.count; i++) {
+        Node distance = view->distances[i * ROOT_COUNT + ROOT_DISTANCE];
+        nearest       = fmin(nearest, fabs(view->values[distance].v[0]));
     }
     return nearest;
 }
 
 /* How far out the eye may be for any values of the parameters. */
-static double reach_of_eye(const Sight *sight, Node eye)
+static double reach_of_eye(const ViewPrecision *view, Node eye)
 {
     double reach = 0;
-    Fact   fact  = graph_frame_fact(sight->graph, eye, sight->scratch);
+    Fact   fact  = graph_frame_fact(view->graph, eye, view->scratch);
     for (int i = 0; i < 3; i++)
         reach = fmax(reach, fmax(fabs(fact.value[i].low), fabs(fact.value[i].high)));
     return reach;
@@ -105,15 +105,15 @@ static double lines_of(const Scene *s)
 }
 
 /* What the camera sees may be narrow as it is by default. */
-static bool camera_needs_anchor(const Sight *sight, const SceneCamera *camera)
+static bool camera_needs_anchor(const ViewPrecision *view, const SceneCamera *camera)
 {
-    const double *eye     = sight->values[camera->eye].v;
-    double        nearest = nearest_to(sight, eye), lines = lines_of(sight->scene);
+    const double *eye     = view->values[camera->eye].v;
+    double        nearest = nearest_to(view, eye), lines = lines_of(view->scene);
     double        pixel = camera->projection == KRS_ORTHOGRAPHIC
-                              ? sight->values[camera->height].v[0] / lines
+                              ? view->values[camera->height].v[0] / lines
                           : camera->projection == KRS_PANORAMA
                               ? M_PI * nearest / lines
-                              : 2 * tan(sight->values[camera->fov].v[0] / 2) * nearest / lines;
+                              : 2 * tan(view->values[camera->fov].v[0] / 2) * nearest / lines;
     return krs_needs_anchor(largest(eye), pixel);
 }
 
@@ -129,20 +129,21 @@ static bool scene_needs_anchor(const Scene *s)
 
 bool may_need_anchor(const Scene *scene, Graph *graph, const Node *distances, Arena *scratch)
 {
-    Sight sight = {.scene = scene, .graph = graph, .distances = distances, .scratch = scratch};
-    bool  needs = false, moves = scene->cameras.count == 0;
+    ViewPrecision view = {
+        .scene = scene, .graph = graph, .distances = distances, .scratch = scratch};
+    bool needs = false, moves = scene->cameras.count == 0;
     if (scene->zone_count > 0)
         return false;
-    run_defaults(&sight);
-    for (size_t i = 0; i < sight.tape.count && !moves; i++)
-        moves = graph->items[sight.tape.nodes[i]].time == TIME_FRAME;
+    run_defaults(&view);
+    for (size_t i = 0; i < view.tape.count && !moves; i++)
+        moves = graph->items[view.tape.nodes[i]].time == TIME_FRAME;
     for (size_t i = 0; i < scene->cameras.count && !needs; i++) {
         const SceneCamera *camera = &scene->cameras.items[i];
         if (camera->standing_in)
             needs = scene_needs_anchor(scene) || (moves && reach_of_boxes(scene) > FAR_OUT);
         else
-            needs = camera_needs_anchor(&sight, camera) ||
-                    (moves && reach_of_eye(&sight, camera->eye) > FAR_OUT);
+            needs = camera_needs_anchor(&view, camera) ||
+                    (moves && reach_of_eye(&view, camera->eye) > FAR_OUT);
     }
     arena_free(scratch);
     return needs;

@@ -45,8 +45,8 @@ KrsStatus krs_frame_slope(const KrsScene *scene, size_t index, KrsFrameSlope *sl
 {
     if (index >= scene->slope_count)
         return KRS_BAD_ARGUMENT;
-    const KeptSlope *from = &scene->slopes[index];
-    *slope                = (KrsFrameSlope){.slot = from->slot, .place = from->place};
+    const RetainedSlope *from = &scene->slopes[index];
+    *slope                    = (KrsFrameSlope){.slot = from->slot, .place = from->place};
     for (int i = 0; i < 3; i++) {
         slope->low[i]  = from->task.box.axis[i].low;
         slope->high[i] = from->task.box.axis[i].high;

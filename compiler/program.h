@@ -32,47 +32,47 @@ typedef struct Roots {
 } Roots;
 
 /* A slope that is found for each frame (geometry/slope.c). */
-typedef struct KeptSlope {
+typedef struct RetainedSlope {
     uint32_t    slot;
     SlopeTask   task;
     const char *place; /* "scene.krs:3:14" */
-} KeptSlope;
+} RetainedSlope;
 
 struct KrsScene {
-    Memory        memory;
-    Arena         arena; /* all that stays: graph, names, program */
-    KrsProgram    program;
-    const Graph  *graph;
-    Roots         roots;
-    size_t        component_count, camera_count, light_count;
-    size_t        zone_count; /* declared; all have one root */
-    KrsComponent *components;
-    KrsBounds    *bounds; /* of each component */
-    KeptSlope    *slopes; /* those that the program needs */
-    size_t        slope_count;
-    Parameter    *parameters;
-    size_t        parameter_count;
-    SceneCamera  *cameras; /* their nodes are not used: the roots are */
-    SceneLight   *lights;
-    bool          framed; /* the first camera stands in, and framing.c has placed it here: */
-    double        framed_eye[3], framed_target[3];
-    SceneImage    image;
-    char          hash[17];
-    Tape          distance; /* of all components, and zones */
-    Tape          guarded;  /* of all components: roots.guarded, with what may be left out */
-    Tape          ahead;    /* with sheets: of all components, and zones, how far rays may go */
-    Tape          turned;   /* with sheets: gradients of all components */
-    Tape          surface;  /* all roots of all components */
-    EmittedFrame  found;    /* what kernels get from the host for a frame, and for an anchor */
-    Tape          view;     /* cameras, lights and sky */
+    Memory         memory;
+    Arena          arena; /* all that stays: graph, names, program */
+    KrsProgram     program;
+    const Graph   *graph;
+    Roots          roots;
+    size_t         component_count, camera_count, light_count;
+    size_t         zone_count; /* declared; all have one root */
+    KrsComponent  *components;
+    KrsBounds     *bounds; /* of each component */
+    RetainedSlope *slopes; /* those that the program needs */
+    size_t         slope_count;
+    Parameter     *parameters;
+    size_t         parameter_count;
+    SceneCamera   *cameras; /* their nodes are not used: the roots are */
+    SceneLight    *lights;
+    bool           framed; /* the first camera stands in, and framing.c has placed it here: */
+    double         framed_eye[3], framed_target[3];
+    SceneImage     image;
+    char           hash[17];
+    Tape           distance; /* of all components, and zones */
+    Tape           guarded;  /* of all components: roots.guarded, with what may be left out */
+    Tape           ahead;    /* with sheets: of all components, and zones, how far rays may go */
+    Tape           turned;   /* with sheets: gradients of all components */
+    Tape           surface;  /* all roots of all components */
+    EmittedFrame   found;    /* what kernels get from the host for a frame, and for an anchor */
+    Tape           view;     /* cameras, lights and sky */
 };
 
-/* A frame: what varies, and room for the values of all nodes. */
+/* A frame: what varies, and memory for the values of all nodes. */
 struct KrsFrame {
     const KrsScene *scene;
     NodeValue      *parameters; /* the parameter block: slot 0 is the time; slopes are always those
                                    of the other values */
-    void           *room;       /* to find them in */
+    void           *workspace;  /* to find the slopes in */
     const char     *unbounded;  /* the place of one that had no bound in the frame refused last */
     NodeValue      *values;     /* of every node */
     KrsLight       *lights;

@@ -28,10 +28,11 @@ static double zone_depth(const KrsFrame *frame, const double point[3])
     Node   zone  = zone_root(frame->scene);
     double depth = zone == NODE_NONE ? -INFINITY : frame->values[zone].v[0];
     for (size_t i = 0; i < frame->zone_count; i++) {
-        const double *at       = frame->zones[i];
-        double        away[3]  = {point[0] - at[0], point[1] - at[1], point[2] - at[2]};
-        double        distance = sqrt(away[0] * away[0] + away[1] * away[1] + away[2] * away[2]);
-        depth                  = fmax(depth, at[3] - distance);
+        const double *at        = frame->zones[i];
+        double        offset[3] = {point[0] - at[0], point[1] - at[1], point[2] - at[2]};
+        double        distance  = sqrt(offset[0] * offset[0] + offset[1] * offset[1] +
+                                       offset[2] * offset[2]);
+        depth                   = fmax(depth, at[3] - distance);
     }
     return depth;
 }
@@ -55,15 +56,15 @@ static double distance_at(KrsFrame *frame, const double point[3], uint32_t *near
     return least < depth ? depth : least;
 }
 
-/* Where rays have to go from root to root: how far this one may go from a point, the last place
-   having been `gap` behind. */
-static double way_ahead(KrsFrame *frame, const double point[3], const double direction[3],
-                        double gap)
+/* Where rays have to go from root to root: how far this one may go from a point, the last point
+   having been `step` behind. */
+static double step_ahead(KrsFrame *frame, const double point[3], const double direction[3],
+                         double step)
 {
     const KrsScene *scene = frame->scene;
     const Node     *ahead = scene->roots.along + ALONG_EXACT * scene->component_count;
     double          least = INFINITY;
-    tape_run_surface(&scene->ahead, point, direction, gap, frame->values);
+    tape_run_surface(&scene->ahead, point, direction, step, frame->values);
     for (size_t i = 0; i < scene->component_count; i++)
         least = fmin(least, frame->values[ahead[i]].v[0]);
     return fmax(least, zone_depth(frame, point));
@@ -71,7 +72,7 @@ static double way_ahead(KrsFrame *frame, const double point[3], const double dir
 
 /* No more than the distance, and cheaper: levels of sequences that are far for their size are not
    looked at (lower_guarded). */
-static double room_at(KrsFrame *frame, const double point[3])
+static double clearance_at(KrsFrame *frame, const double point[3])
 {
     const KrsScene *scene = frame->scene;
     double          least = INFINITY;
@@ -140,7 +141,7 @@ KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count, d
 }
 
 /* Within 0 and 1, as pictures show it; what is not a number is 0. */
-static double part(double number) { return number > 0 ? fmin(number, 1) : 0; }
+static double saturate(double number) { return number > 0 ? fmin(number, 1) : 0; }
 
 static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
 {
@@ -156,10 +157,10 @@ static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
     hit->level       = (uint32_t)frame->values[root[ROOT_LEVEL]].v[0];
     hit->instance    = (uint32_t)frame->values[root[ROOT_INSTANCE]].v[0];
     frame_copy(frame, root[ROOT_COLOR], hit->color);
-    hit->roughness = part(frame->values[root[ROOT_ROUGHNESS]].v[0]);
-    hit->metallic  = part(frame->values[root[ROOT_METALLIC]].v[0]);
+    hit->roughness = saturate(frame->values[root[ROOT_ROUGHNESS]].v[0]);
+    hit->metallic  = saturate(frame->values[root[ROOT_METALLIC]].v[0]);
     for (int k = 0; k < 3; k++)
-        hit->color[k] = part(hit->color[k]);
+        hit->color[k] = saturate(hit->color[k]);
     /* No mirror is smooth where a zone cuts. */
     if (hit->distance > frame->values[root[ROOT_DISTANCE]].v[0])
         memcpy(hit->shading, hit->normal, sizeof hit->shading);
@@ -214,7 +215,7 @@ KrsRay krs_ray(const KrsScene *scene, const double origin[3], const double direc
     return ray;
 }
 
-bool krs_rays_are_sound(const double (*origins)[3], const double (*directions)[3], size_t count,
+bool krs_rays_are_valid(const double (*origins)[3], const double (*directions)[3], size_t count,
                         double farthest, double tolerance)
 {
     if (!(farthest >= 0) || !(tolerance >= 0) || isinf(tolerance) || !are_finite(origins, count) ||
@@ -226,60 +227,61 @@ bool krs_rays_are_sound(const double (*origins)[3], const double (*directions)[3
     return true;
 }
 
-enum { SEAM = 16 }; /* roundings */
+enum { TOUCHING = 16 }; /* roundings */
 
-/* A ray under way.  Nothing is before `t`, nor for `room` behind it; `gap` from there is the next
-   place to look at. */
-typedef struct March {
+/* The state of a ray.  Nothing is hit before `t`, nor within `clearance` behind it; the distance is
+   next evaluated at t + step. */
+typedef struct RayMarch {
     KrsFrame *frame;
     KrsRay    ray;
     double    size; /* of the origin's coordinates: what rounding goes by */
     double    tolerance;
     double    side; /* -1 from inside of a solid; 0: not known */
-    double    t, room, gap;
-    double    slope; /* of the room along the ray, as it was on average */
-} March;
+    double    t, clearance, step;
+    double    slope; /* average change of the clearance along the ray */
+} RayMarch;
 
-static void march_point(const March *march, double t, double point[3])
+static void march_point(const RayMarch *march, double t, double point[3])
 {
     for (int k = 0; k < 3; k++)
         point[k] = march->ray.origin[k] + t * march->ray.direction[k];
 }
 
-static double rounding_at(const March *march, double t)
+static double rounding_at(const RayMarch *march, double t)
 {
     return 4 * DBL_EPSILON * (march->size + t);
 }
 
-/* Solids that touch are one: from inside they count as grown by what rounding may leave open at
-   the seam between two. */
-static double march_room(March *march, double t)
+/* Solids that touch are one: from inside they count as grown by the gap that rounding may leave
+   between two. */
+static double march_clearance(RayMarch *march, double t)
 {
     double point[3];
     march_point(march, t, point);
     bool sheets = march->frame->scene->program.sheets;
     /* Some roundings farther back: what was just before a sheet there must not be behind it here. */
     double back     = t > march->t ? t - march->t + 2 * rounding_at(march, t) : 0;
-    double distance = sheets ? way_ahead(march->frame, point, march->ray.direction, back)
-                             : room_at(march->frame, point);
+    double distance = sheets ? step_ahead(march->frame, point, march->ray.direction, back)
+                             : clearance_at(march->frame, point);
     if (march->side == 0)
         march->side = distance < 0 ? -1 : 1;
-    return march->side < 0 ? SEAM * rounding_at(march, t) - distance : distance;
+    return march->side < 0 ? TOUCHING * rounding_at(march, t) - distance : distance;
 }
 
-/* Where the surface is crossed between t, where there is room, and t + gap, where there is `room`
-   and so none: by false position, each end's weight halved when the other has moved twice
+/* Where the surface is crossed between t, where the clearance is positive, and t + step, where it
+   is `clearance` and not positive: by false position, each end's weight halved when the other has moved twice
    (the Illinois method). */
-static double find_crossing(March *march, double room)
+static double find_crossing(RayMarch *march, double clearance)
 {
     enum { MOST_ROUNDS = 100 };
-    double low = march->t, high = march->t + march->gap, below = march->room, above = room;
+    double low = march->t, high = march->t + march->step, below = march->clearance,
+           above  = clearance;
     double enough = fmax(rounding_at(march, high), march->tolerance / 16);
     int    moved  = 0;
     for (int i = 0; i < MOST_ROUNDS && above < 0 && below > 0 && high - low > enough; i++) {
         double t = low + (high - low) * below / (below - above);
         t        = fmin(fmax(t, low + 0.25 * enough), high - 0.25 * enough);
-        double r = march_room(march, t);
+        double r = march_clearance(march, t);
         if (r > 0) {
             low   = t;
             below = r;
@@ -295,37 +297,38 @@ static double find_crossing(March *march, double room)
     return high;
 }
 
-typedef enum Fate { MARCHING, HIT, MISS } Fate;
+typedef enum RayState { MARCHING, HIT, MISS } RayState;
 
 /*
- * One look, by the rule of trace.comp: the ball of empty space around t and the one around the
- * place looked at must meet; else the ray goes back to the middle of what they leave open, until
- * no more is open than a sixteenth of the tolerance.  So a gap may be as long as the balls are
- * expected to meet over if the room goes on as it did (automatic relaxation).
+ * One step, by the rule of trace.comp.  The ball of empty space around t and the one around t + step
+ * must meet; what lies between them is unverified.  Where they do not meet, the step is cut to end in
+ * the middle of that, until no more than a sixteenth of the tolerance is unverified.  So a step may be
+ * as long as the balls are expected to meet, if the clearance changes as before (automatic relaxation).
  */
-static Fate march_step(March *march)
+static RayState march_step(RayMarch *march)
 {
-    double at = march->t + march->gap, room = march_room(march, at);
-    double least = rounding_at(march, at), open = march->tolerance / 16 + least;
-    double doubtful = march->gap - march->room;
-    if (room <= 0 && doubtful <= march->tolerance + open) {
-        march->t   = find_crossing(march, room);
-        march->gap = 0;
+    double at = march->t + march->step, clearance = march_clearance(march, at);
+    double least = rounding_at(march, at), permitted = march->tolerance / 16 + least;
+    double unverified = march->step - march->clearance;
+    if (clearance <= 0 && unverified <= march->tolerance + permitted) {
+        march->t    = find_crossing(march, clearance);
+        march->step = 0;
         return march->t <= march->ray.end ? HIT : MISS;
     }
-    if (room > 0 && doubtful <= room + 1.01 * open) {
-        double slope = march->gap > 0 ? (room - march->room) / march->gap : -1;
+    if (clearance > 0 && unverified <= clearance + 1.01 * permitted) {
+        double slope = march->step > 0 ? (clearance - march->clearance) / march->step : -1;
         march->slope += 0.3 * (slope - march->slope);
-        march->t    = at;
-        march->room = room;
-        /* Of roots nothing behind the place is known. */
+        march->t         = at;
+        march->clearance = clearance;
+        /* Where the distance is that to a root, nothing behind the point is known. */
         double factor = march->frame->scene->program.sheets
                             ? 1
                             : fmax(1, 2 / (1 - fmin(march->slope, 0.98)));
-        march->gap    = room * factor + open;
-        return at + room > march->ray.end ? MISS : MARCHING;
+        march->step   = clearance * factor + permitted;
+        return at + clearance > march->ray.end ? MISS : MARCHING;
     }
-    march->gap   = fmax(0.5 * (march->gap + march->room - fmax(room, 0)), march->room + open);
+    march->step  = fmax(0.5 * (march->step + march->clearance - fmax(clearance, 0)),
+                        march->clearance + permitted);
     march->slope = -1;
     return MARCHING;
 }
@@ -343,22 +346,22 @@ void krs_face(const KrsRay *ray, KrsHit *hit)
 
 static void trace(KrsFrame *frame, KrsRay ray, double tolerance, KrsHit *hit)
 {
-    March march = {.frame     = frame,
-                   .ray       = ray,
-                   .size      = largest3(ray.origin),
-                   .tolerance = tolerance > 0 ? tolerance : 1e-9,
-                   .side      = ray.start > 0 ? 1 : 0,
-                   .t         = ray.start,
-                   .slope     = -1};
-    Fate  fate  = ray.start <= ray.end ? MARCHING : MISS;
-    for (int i = 0; i < KRS_MOST_STEPS && fate == MARCHING; i++)
-        fate = march_step(&march);
+    RayMarch march = {.frame     = frame,
+                      .ray       = ray,
+                      .size      = largest3(ray.origin),
+                      .tolerance = tolerance > 0 ? tolerance : 1e-9,
+                      .side      = ray.start > 0 ? 1 : 0,
+                      .t         = ray.start,
+                      .slope     = -1};
+    RayState state = ray.start <= ray.end ? MARCHING : MISS;
+    for (int i = 0; i < KRS_MOST_STEPS && state == MARCHING; i++)
+        state = march_step(&march);
     *hit = (KrsHit){0};
-    if (fate == MISS && march.side < 0 && ray.walls) {
+    if (state == MISS && march.side < 0 && ray.walls) {
         march.t = ray.end;
-        fate    = HIT;
+        state   = HIT;
     }
-    if (fate == MISS)
+    if (state == MISS)
         return;
     double point[3];
     march_point(&march, march.t, point);
@@ -366,14 +369,14 @@ static void trace(KrsFrame *frame, KrsRay ray, double tolerance, KrsHit *hit)
     if (frame->scene->program.sheets)
         krs_face(&ray, hit);
     hit->t          = march.t;
-    hit->hit        = fate == HIT;
-    hit->unresolved = fate == MARCHING;
+    hit->hit        = state == HIT;
+    hit->unresolved = state == MARCHING;
 }
 
 KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
                       size_t count, double farthest, double tolerance, KrsHit *hits)
 {
-    if (!krs_rays_are_sound(origins, directions, count, farthest, tolerance))
+    if (!krs_rays_are_valid(origins, directions, count, farthest, tolerance))
         return KRS_BAD_ARGUMENT;
     frame_refresh(frame);
     for (size_t i = 0; i < count; i++)

@@ -14,8 +14,10 @@
 
 /* Of the machine whose seconds are counted; most of today's are as fast, or faster. */
 static const double OPERATIONS_PER_SECOND = 1e8;
+
 /* After so many somebody is asked whether to go on. */
 static const uint64_t SLICE = 10000000;
+
 enum { MOST_SHAPES = 4096, MOST_TRIALS = 6 };
 
 /* ---- shapes ---- */
@@ -43,20 +45,20 @@ static void add_suspects(Refuter *r, const Shape *shape, uint32_t component, siz
         add_suspects(r, shape->children[i], component, own);
 }
 
-static Lowering lowering_of(Refuter *r, Visits *visits)
+static Lowering lowering_of(Refuter *r, LoweredShapes *lowered_shapes)
 {
-    return (Lowering){.graph   = r->graph,
-                      .scratch = r->in->scratch,
-                      .visits  = visits,
-                      .most    = r->graph->count + MOST_LOWERED};
+    return (Lowering){.graph          = r->graph,
+                      .scratch        = r->in->scratch,
+                      .lowered_shapes = lowered_shapes,
+                      .most           = r->graph->count + MOST_LOWERED};
 }
 
-Node lower_alone(Refuter *r, const Shape *shape, bool steady, Visits *visits)
+Node lower_alone(Refuter *r, const Shape *shape, bool lipschitz, LoweredShapes *lowered_shapes)
 {
-    Lowering l     = lowering_of(r, visits);
-    Place    place = place_bare(graph_leaf(r->graph, OP_POINT), steady);
-    Lowered  all   = lower_shape(&l, shape, place);
-    r->result->skipped += l.overflow && !visits && !steady;
+    Lowering     l       = lowering_of(r, lowered_shapes);
+    LowerContext context = context_new(graph_leaf(r->graph, OP_POINT), lipschitz);
+    Lowered      all     = lower_shape(&l, shape, context);
+    r->result->skipped += l.overflow && !lowered_shapes && !lipschitz;
     if (l.overflow || all.distance == NODE_NONE)
         return NODE_NONE;
     return divide_by_slope(r->graph, all.distance, shape->slope);
@@ -64,7 +66,7 @@ Node lower_alone(Refuter *r, const Shape *shape, bool steady, Visits *visits)
 
 /* A search of one of the distances of a shape, or of a step beside the distance that tells on which
    side points are; false: there is nothing to search. */
-static bool search_step(Refuter *r, const Shape *shape, Node step, Node side, bool steady,
+static bool search_step(Refuter *r, const Shape *shape, Node step, Node side, bool lipschitz,
                         Search *search)
 {
     Arena *scratch  = r->in->scratch;
@@ -72,16 +74,16 @@ static bool search_step(Refuter *r, const Shape *shape, Node step, Node side, bo
     Graph *simple   = graph_simplify(r->graph, roots, 2, scratch);
     if (!search_new(search, simple, roots[0], roots[1], shape->box, scratch))
         return false;
-    search->steep  = steady;
+    search->steep  = lipschitz;
     search->figure = shape->figure;
     search->random = r->random;
     r->random += 0x9e3779b97f4a7c15;
     return true;
 }
 
-bool search_of(Refuter *r, const Shape *shape, Node distance, bool steady, Search *search)
+bool search_of(Refuter *r, const Shape *shape, Node distance, bool lipschitz, Search *search)
 {
-    return search_step(r, shape, distance, distance, steady, search);
+    return search_step(r, shape, distance, distance, lipschitz, search);
 }
 
 /* ---- looking at a shape ---- */
@@ -89,8 +91,8 @@ bool search_of(Refuter *r, const Shape *shape, Node distance, bool steady, Searc
 static void report_progress(Refuter *r, uint64_t operations)
 {
     r->done += operations;
-    double part = fmin(1, (double)r->done / (double)r->total);
-    if (r->how->go_on && !r->how->go_on(r->how->user, part))
+    double fraction = fmin(1, (double)r->done / (double)r->total);
+    if (r->how->go_on && !r->how->go_on(r->how->user, fraction))
         r->stopped = true;
 }
 
@@ -103,11 +105,11 @@ static void count_search(Refuter *r, const Search *search, const Shape *shape, d
         r->result->steepest = fmax(r->result->steepest, ratio);
 }
 
-static void find(Finding *finding, bool steady, Witness witness, const NodeValue *parameters,
-                 size_t slots)
+static void record(Finding *finding, bool lipschitz, Witness witness, const NodeValue *parameters,
+                   size_t slots)
 {
-    finding->steady  = steady;
-    finding->witness = witness;
+    finding->lipschitz = lipschitz;
+    finding->witness   = witness;
     memcpy(finding->parameters, parameters, slots * sizeof *parameters);
 }
 
@@ -126,7 +128,7 @@ static bool try_settings(Refuter *r, const Shape *shape, Search *search, uint64_
             continue;
         }
         if (!possible || !search_start(search, parameters)) {
-            find(finding, search->steep, (Witness){.fault = FAULT_CONSTANT}, parameters, slots);
+            record(finding, search->steep, (Witness){.fault = FAULT_CONSTANT}, parameters, slots);
             return true;
         }
         search->worst = (Witness){0};
@@ -143,7 +145,7 @@ static bool try_settings(Refuter *r, const Shape *shape, Search *search, uint64_
         if (!search_refuted(search) || (refuted && search->worst.ratio <= finding->witness.ratio))
             continue;
         refuted = true;
-        find(finding, search->steep, search->worst, parameters, slots);
+        record(finding, search->steep, search->worst, parameters, slots);
     }
     return refuted;
 }
@@ -159,8 +161,8 @@ static bool box_has_numbers(Box box)
 /* Both distances of a shape, where there are two. */
 static bool try_shape(Refuter *r, size_t suspect, uint64_t operations, Finding *finding)
 {
-    const Shape *shape  = r->suspects.items[suspect].shape;
-    Node         steady = NODE_NONE, plain = NODE_NONE;
+    const Shape *shape     = r->suspects.items[suspect].shape;
+    Node         lipschitz = NODE_NONE, plain = NODE_NONE;
     bool         refuted = false;
     Search       search;
     finding->suspect = suspect;
@@ -172,12 +174,12 @@ static bool try_shape(Refuter *r, size_t suspect, uint64_t operations, Finding *
         return true;
     }
     if (!shape->estimate)
-        steady = lower_alone(r, shape, true, NULL);
+        lipschitz = lower_alone(r, shape, true, NULL);
     plain     = lower_alone(r, shape, false, NULL);
-    bool both = steady != NODE_NONE && plain != steady;
-    if (steady != NODE_NONE && search_of(r, shape, steady, true, &search))
+    bool both = lipschitz != NODE_NONE && plain != lipschitz;
+    if (lipschitz != NODE_NONE && search_of(r, shape, lipschitz, true, &search))
         refuted = try_settings(r, shape, &search, both ? operations / 2 : operations, finding);
-    if (!refuted && plain != steady && plain != NODE_NONE &&
+    if (!refuted && plain != lipschitz && plain != NODE_NONE &&
         search_of(r, shape, plain, false, &search))
         refuted = try_settings(r, shape, &search, both ? operations / 2 : operations, finding);
     arena_free(r->in->scratch);
@@ -241,7 +243,7 @@ static bool try_steps(Refuter *r, size_t suspect, uint64_t operations, Finding *
 
 /* ---- the whole ---- */
 
-static KrsStatus settle(Refuter *r, Finding *finding)
+static KrsStatus conclude(Refuter *r, Finding *finding)
 {
     Finding whole = *finding;
     if (finding->claim == CLAIM_DISTANCE && !finding->pair.property)
@@ -256,7 +258,7 @@ static KrsStatus settle(Refuter *r, Finding *finding)
 
 static bool is_whole(const Refuter *r, size_t i) { return r->suspects.items[i].parent == SIZE_MAX; }
 
-/* Those of all components, or all others, from the last, whose parts are fewest. */
+/* Those of all components, or all others, from the last, whose trees are smallest. */
 static KrsStatus try_all(Refuter *r, bool whole, Finding *finding)
 {
     size_t count = 0;
@@ -268,7 +270,7 @@ static KrsStatus try_all(Refuter *r, bool whole, Finding *finding)
         if (try_shape(r, i, r->total / 2 / count, finding) ||
             try_claims(r, i, r->total / 8 / count, finding) ||
             (whole && try_steps(r, i, r->total / 8 / count, finding)))
-            return settle(r, finding);
+            return conclude(r, finding);
     }
     return r->stopped ? KRS_INTERRUPTED : KRS_OK;
 }

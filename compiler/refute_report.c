@@ -10,7 +10,7 @@ static const char *point_text(Refuter *r, const double p[3])
     return diag_text(r->in->diags, "[%.6g, %.6g, %.6g]", p[0], p[1], p[2]);
 }
 
-static double apart(const double a[3], const double b[3])
+static double separation(const double a[3], const double b[3])
 {
     return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
 }
@@ -33,7 +33,7 @@ static const char *fault_text(Refuter *r, const Witness *w)
     return "it is not a number somewhere";
 }
 
-static bool has_place(const Witness *w)
+static bool has_point(const Witness *w)
 {
     return w->fault != FAULT_CONSTANT && w->fault != FAULT_BOX;
 }
@@ -45,8 +45,8 @@ static void note_points(Refuter *r, Diag *diag, const Witness *w)
     if (w->fault == FAULT_STEEP || w->fault == FAULT_LONG)
         diag_note(diags, diag,
                   diag_text(diags, "the distance is %.6g at %s and %.6g at %s, %.6g apart", w->at_p,
-                            p, w->at_q, point_text(r, w->q), apart(w->p, w->q)));
-    else if (has_place(w))
+                            p, w->at_q, point_text(r, w->q), separation(w->p, w->q)));
+    else if (has_point(w))
         diag_note(diags, diag, diag_text(diags, "the distance is %.6g at %s", w->at_p, p));
 }
 
@@ -79,7 +79,7 @@ static void note_surface(Refuter *r, Diag *diag, const Finding *finding)
     double         surface[3];
     if (w->fault != FAULT_STEEP && w->fault != FAULT_LONG)
         return;
-    Node          distance = lower_alone(r, shape, finding->steady, NULL);
+    Node          distance = lower_alone(r, shape, finding->lipschitz, NULL);
     const double *from     = fabs(w->at_p) >= fabs(w->at_q) ? w->p : w->q;
     double        said     = fmax(fabs(w->at_p), fabs(w->at_q));
     if (distance != NODE_NONE && search_of(r, shape, distance, false, &search) &&
@@ -89,7 +89,7 @@ static void note_surface(Refuter *r, Diag *diag, const Finding *finding)
                             "nothing is to be within %.6g of %s, but the surface is "
                             "at %s, %.6g away",
                             said, point_text(r, from), point_text(r, surface),
-                            apart(from, surface)));
+                            separation(from, surface)));
     arena_free(r->in->scratch);
 }
 
@@ -101,16 +101,16 @@ static void note_component(Refuter *r, Diag *diag, const Finding *whole, const F
     if (whole->suspect == finding->suspect && suspect->parent == SIZE_MAX)
         return;
     const char *text = diag_text(r->in->diags, "it is part of `%s`%s", component->name,
-                                 has_place(&finding->witness) ? "; points are in its own space"
+                                 has_point(&finding->witness) ? "; points are in its own space"
                                                               : "");
-    if (r->suspects.items[whole->suspect].parent == SIZE_MAX && has_place(&whole->witness))
+    if (r->suspects.items[whole->suspect].parent == SIZE_MAX && has_point(&whole->witness))
         text = diag_text(r->in->diags, "%s; there, %s is where it shows", text,
                          point_text(r, whole->witness.p));
     diag_note(r->in->diags, diag, text);
 }
 
 /* The text where the author can do something: what is made in the library was asked for there. */
-static void place_caller(Refuter *r, Diag *diag, const Finding *finding)
+static void mark_caller(Refuter *r, Diag *diag, const Finding *finding)
 {
     const Sources *sources = r->in->diags->sources;
     size_t         i       = finding->suspect;
@@ -119,7 +119,7 @@ static void place_caller(Refuter *r, Diag *diag, const Finding *finding)
     while (i != SIZE_MAX && sources->items[r->suspects.items[i].shape->span.source].library)
         i = r->suspects.items[i].parent;
     if (i != SIZE_MAX)
-        diag_place(r->in->diags, diag, r->suspects.items[i].shape->span, "for this");
+        diag_secondary(r->in->diags, diag, r->suspects.items[i].shape->span, "for this");
 }
 
 static const char *const claim_texts[] = {
@@ -142,9 +142,10 @@ void report_finding(Refuter *r, const Finding *whole, const Finding *finding)
                            fault_text(r, &finding->witness));
     diag->label = "this shape is to blame";
     if (claim && shape->distance != NODE_NONE)
-        diag_place(diags, diag, r->graph->items[shape->distance].span,
-                   shape->exact ? "`exact` is claimed of this" : "a `slope` is claimed of this");
-    place_caller(r, diag, finding);
+        diag_secondary(diags, diag, r->graph->items[shape->distance].span,
+                       shape->exact ? "`exact` is claimed of this"
+                                    : "a `slope` is claimed of this");
+    mark_caller(r, diag, finding);
     note_points(r, diag, &finding->witness);
     if (finding->claim == CLAIM_DISTANCE)
         note_surface(r, diag, finding);
@@ -169,8 +170,8 @@ void report_claim(Refuter *r, const Finding *finding)
     Diag *diag  = diag_add(diags, DIAG_REFUTED, pair->shape->span, "`%s` of `%s` is refuted: %s",
                            pair->property, pair->shape->name, pair->wrong);
     diag->label = "this shape is to blame";
-    diag_place(diags, diag, pair->span, "claimed here");
-    place_caller(r, diag, finding);
+    diag_secondary(diags, diag, pair->span, "claimed here");
+    mark_caller(r, diag, finding);
     diag_note(diags, diag,
               diag_text(diags, "by %.6g at %s", finding->witness.at_p,
                         point_text(r, finding->witness.p)));

@@ -9,8 +9,6 @@
 
 enum { SETTING_ATTEMPTS = 8 };
 
-/* ---- parameters ---- */
-
 static const struct KrsFixed *fixed_value(const Refuter *r, const char *name)
 {
     for (size_t i = 0; i < r->how->fixed_count; i++)
@@ -49,7 +47,8 @@ static bool find_slopes(const Refuter *r, NodeValue *values)
     const Scene *scene = r->in->scene;
     for (size_t i = 0; i < scene->slopes.count; i++) {
         const double(*parameters)[4] = (const double(*)[4])values;
-        double slope = frame_slope_upward(slope_task_run(&r->slopes[i], parameters, r->room, NULL));
+        double slope                 = frame_slope_upward(
+                            slope_task_run(&r->slopes[i], parameters, r->workspace, NULL));
         values[scene->slopes.items[i].slot].v[0] = slope;
         if (!isfinite(slope))
             return false;
@@ -69,10 +68,10 @@ void prepare_slopes(Refuter *r)
         Graph            *plain = graph_simplify(r->graph, &root, 1, r->in->arena);
         uint32_t          cells = frame_slope_cells(slope->region);
         r->slopes[i]            = slope_task(plain, root, slope->region, cells, r->in->arena);
-        size_t room             = slope_task_room(&r->slopes[i]);
-        most                    = room > most ? room : most;
+        size_t workspace        = slope_task_size(&r->slopes[i]);
+        most                    = workspace > most ? workspace : most;
     }
-    r->room = arena_alloc(r->in->arena, most, 1);
+    r->workspace = arena_alloc(r->in->arena, most, 1);
 }
 
 /* As frames have them: all components outside of everything. */

@@ -29,8 +29,8 @@ typedef enum Claim {
 typedef struct Finding {
     size_t     suspect;
     Claim      claim;
-    ShapeClaim pair;   /* `property` is NULL, or what is claimed beside the distance */
-    bool       steady; /* of the distance that has to be 1-Lipschitz, else of the other */
+    ShapeClaim pair;      /* `property` is NULL, or what is claimed beside the distance */
+    bool       lipschitz; /* of the distance that has to be 1-Lipschitz, else of the other */
     Witness    witness;
     NodeValue *parameters;
 } Finding;
@@ -42,7 +42,7 @@ typedef struct Refuter {
     Graph                  *graph;
     uint64_t                random, total, done;
     SlopeTask              *slopes; /* of the scene's, in its order */
-    void                   *room;
+    void                   *workspace;
     Tape                    frames; /* all components: what frames are refused by */
     NodeValue              *frame_values;
     struct {
@@ -53,17 +53,23 @@ typedef struct Refuter {
 } Refuter;
 
 /* ---- refute.c ---- */
+
 /* Whether a shape adds nothing to the distance of what it holds. */
 bool is_wrapper(const Shape *shape);
+
 /* The distance of a shape in its own space; NODE_NONE: of nothing, or of too much. */
-Node lower_alone(Refuter *r, const Shape *shape, bool steady, Visits *visits);
+Node lower_alone(Refuter *r, const Shape *shape, bool lipschitz, LoweredShapes *lowered_shapes);
+
 /* A search of one of the distances of a shape; false: there is nothing to search. */
-bool search_of(Refuter *r, const Shape *shape, Node distance, bool steady, Search *search);
+bool search_of(Refuter *r, const Shape *shape, Node distance, bool lipschitz, Search *search);
 
 /* ---- refute_settings.c ---- */
+
 /* Slopes and frames of the scene, before any parameters are chosen. */
 void prepare_slopes(Refuter *r);
 void prepare_frames(Refuter *r);
+
+/* Whether what it computes depends on parameters of the scene. */
 bool needs_parameters(const Tape *tape);
 /* Defaults in the first trial, then anything that is permitted. */
 void choose_parameters(Refuter *r, uint32_t trial, NodeValue *values);
@@ -72,10 +78,12 @@ void choose_parameters(Refuter *r, uint32_t trial, NodeValue *values);
 bool choose_possible(Refuter *r, uint32_t trial, NodeValue *parameters);
 
 /* ---- refute_blame.c ---- */
+
 /* From what was refuted to the smallest shape that is refuted too. */
 void find_culprit(Refuter *r, Finding *finding);
 
 /* ---- refute_report.c ---- */
+
 /* The distance of a shape, found to be wrong in `whole`, is refuted in `finding`. */
 void report_finding(Refuter *r, const Finding *whole, const Finding *finding);
 /* A claim beside the distance is. */

@@ -1,7 +1,7 @@
 /*
  * roots.c: what is asked of the graph: everything that a scene shows, lowered.
  *
- * Of each component its distance and looks, and after these what only the march needs, so that
+ * Of each component its distance and material, and after these what only the march needs, so that
  * nothing else depends on it: guards, steps along a ray, planes, gradients, and the same again for
  * points that are given from an anchor.
  */
@@ -18,13 +18,13 @@ static size_t anchored_roots(const Scene *s)
 }
 
 /* Room for all roots, one kind behind the other; those near an anchor come last. */
-static void make_room(Compilation *c)
+static void allocate_roots(Compilation *c)
 {
     const Scene *s     = &c->elaborated;
     Roots       *r     = &c->scene->roots;
     size_t       count = s->components.count;
     const struct {
-        Node **place;
+        Node **nodes;
         size_t count;
     } kinds[] = {{&r->components, count * ROOT_COUNT},
                  {&r->zone, s->zone_count > 0},
@@ -43,7 +43,7 @@ static void make_room(Compilation *c)
         r->count += kinds[i].count;
     Node *next = arena_new_array(&c->scene->arena, Node, r->count);
     for (size_t i = 0; i < KINDS; i++) {
-        *kinds[i].place = next;
+        *kinds[i].nodes = next;
         next += kinds[i].count;
     }
 }
@@ -113,11 +113,11 @@ static void lower_flats(Compilation *c, Graph *g)
         c->scene->program.flats = true;
         Node rise               = graph_op2(g, OP_dot, component->plane_normal, direction);
         Node depth              = graph_op2(g, OP_dot, component->plane_normal, point);
-        Node room               = graph_op2(g, OP_sub, component->plane_offset, depth);
+        Node clearance          = graph_op2(g, OP_sub, component->plane_offset, depth);
         Node falls              = graph_op2(g, OP_less, rise, zero);
-        Node way = graph_op3(g, OP_select, falls, graph_op2(g, OP_div, room, rise), far);
-        roots[0] = graph_op2(g, OP_min, roots[0], way);
-        roots[1] = graph_op2(g, OP_min, roots[1], rise);
+        Node step = graph_op3(g, OP_select, falls, graph_op2(g, OP_div, clearance, rise), far);
+        roots[0]  = graph_op2(g, OP_min, roots[0], step);
+        roots[1]  = graph_op2(g, OP_min, roots[1], rise);
     }
 }
 
@@ -177,7 +177,7 @@ bool lower_scene(Compilation *c, Graph *graph)
 {
     const Scene *s     = &c->elaborated;
     Roots       *roots = &c->scene->roots;
-    make_room(c);
+    allocate_roots(c);
     if (!lower_components(c, graph))
         return false;
     for (size_t i = 0; i < s->components.count; i++)

@@ -6,27 +6,28 @@
 #include <math.h>
 #include <string.h>
 
-enum { BATCH = 24, KEPT = 4, CLIMB_STEPS = 48 };
+enum { BATCH = 24, BEST = 4, CLIMB_STEPS = 48 };
 
 /* The box that stands for a side without end, in world units. */
 static const double UNBOUNDED = 10;
+
 /* The relative part of what rounding may do. */
 static const double RELATIVE = 1e-6;
 
 /* ---- climbing ---- */
 
 /* A pair near another one: both points moved, turned about p, or nearer and farther. */
-static Pair changed(Search *s, const Pair *pair)
+static PointPair changed(Search *s, const PointPair *pair)
 {
-    Pair   next = *pair;
-    double shift[3], way = apart(pair->p, pair->q), move = any_scale(s, 1e-6);
+    PointPair next = *pair;
+    double    shift[3], length = separation(pair->p, pair->q), move = any_scale(s, 1e-6);
     random_direction(s, shift);
-    switch (search_choose(s, 3)) {
+    switch (search_index(s, 3)) {
     case 0:
         add_scaled(next.p, next.p, move, shift);
         add_scaled(next.q, next.q, move, shift);
         break;
-    case 1: add_scaled(next.q, next.q, way * random_unit(&s->random), shift); break;
+    case 1: add_scaled(next.q, next.q, length * random_unit(&s->random), shift); break;
     default: {
         double factor = exp2(search_between(s, -2, 1));
         for (int i = 0; i < 3; i++)
@@ -36,10 +37,10 @@ static Pair changed(Search *s, const Pair *pair)
     return next;
 }
 
-static void climb(Search *s, Pair pair, int steps)
+static void climb(Search *s, PointPair pair, int steps)
 {
     for (int i = 0; i < steps && !is_settled(s); i++) {
-        Pair next = pair;
+        PointPair next = pair;
         if (s->steep && i % 4 == 0) {
             if (halve_pair(s, &next) && next.ratio >= pair.ratio)
                 pair = next;
@@ -128,21 +129,22 @@ bool search_start(Search *search, const NodeValue *parameters)
 /* The best KEPT of a batch of starts, and from these uphill. */
 static void search_batch(Search *s, uint64_t end)
 {
-    Pair kept[KEPT];
-    for (int i = 0; i < KEPT; i++)
-        kept[i].ratio = -1;
+    PointPair best[BEST];
+    for (int i = 0; i < BEST; i++)
+        best[i].ratio = -1;
     for (int i = 0; i < BATCH && s->spent < end && !is_settled(s); i++) {
-        Pair pair = s->guards.count > 0 && search_choose(s, 2) ? best_past_guard(s) : best_pair(s);
-        for (int k = 0; k < KEPT; k++)
-            if (pair.ratio > kept[k].ratio) {
-                Pair less = kept[k];
-                kept[k]   = pair;
-                pair      = less;
+        PointPair pair = s->guards.count > 0 && search_index(s, 2) ? best_past_guard(s)
+                                                                   : best_pair(s);
+        for (int k = 0; k < BEST; k++)
+            if (pair.ratio > best[k].ratio) {
+                PointPair less = best[k];
+                best[k]        = pair;
+                pair           = less;
             }
     }
-    for (int i = 0; i < KEPT && s->spent < end; i++)
-        if (kept[i].ratio > 0)
-            climb(s, kept[i], CLIMB_STEPS);
+    for (int i = 0; i < BEST && s->spent < end; i++)
+        if (best[i].ratio > 0)
+            climb(s, best[i], CLIMB_STEPS);
 }
 
 void search_run(Search *search, uint64_t operations)
@@ -154,8 +156,8 @@ void search_run(Search *search, uint64_t operations)
 
 void search_from(Search *search, const double p[3], const double q[3], uint64_t operations)
 {
-    uint64_t end = search->spent + operations;
-    Pair     pair;
+    uint64_t  end = search->spent + operations;
+    PointPair pair;
     memcpy(pair.p, p, sizeof pair.p);
     memcpy(pair.q, q, sizeof pair.q);
     judge_pair(search, &pair);
@@ -171,8 +173,8 @@ bool search_refuted(const Search *search)
 
 bool search_surface(Search *search, const double p[3], double surface[3])
 {
-    Pair   pair, best = {.ratio = -1};
-    double direction[3];
+    PointPair pair, best = {.ratio = -1};
+    double    direction[3];
     memcpy(pair.p, p, sizeof pair.p);
     pair.at_p = distance_at(search, pair.p);
     for (int i = 0; i < 200 && isfinite(pair.at_p); i++) {
@@ -181,10 +183,10 @@ bool search_surface(Search *search, const double p[3], double surface[3])
             (void)gradient_at(search, p, direction);
         for (int k = 0; k < 3 && i == 0; k++)
             direction[k] *= pair.at_p > 0 ? -1 : 1;
-        Pair way = pair;
-        if (reach_surface(search, &way, direction, 0.999999 * fabs(pair.at_p)) &&
-            (best.ratio < 0 || apart(p, way.q) < apart(p, best.q))) {
-            best       = way;
+        PointPair candidate = pair;
+        if (reach_surface(search, &candidate, direction, 0.999999 * fabs(pair.at_p)) &&
+            (best.ratio < 0 || separation(p, candidate.q) < separation(p, best.q))) {
+            best       = candidate;
             best.ratio = 1;
         }
     }

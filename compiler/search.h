@@ -87,7 +87,7 @@ void search_run(Search *search, uint64_t operations);
 void search_from(Search *search, const double p[3], const double q[3], uint64_t operations);
 /* Whether `worst` is more than rounding. */
 bool search_refuted(const Search *search);
-/* A place of the surface that is nearer to p than the distance at p: false when none is found. */
+/* A point of the surface that is nearer to p than the distance at p: false when none is found. */
 bool search_surface(Search *search, const double p[3], double surface[3]);
 
 /* In [0, 1); splitmix64, the same on every machine. */

@@ -42,16 +42,16 @@ static void start_at_surface(Search *s, double p[3])
 static void start_at_edge(Search *s, double p[3])
 {
     random_point(s, p);
-    size_t free_axis = search_choose(s, 4), second = search_choose(s, 4);
+    size_t free_axis = search_index(s, 4), second = search_index(s, 4);
     for (size_t i = 0; i < 3; i++)
         if (i != free_axis && (i != second || free_axis == 3) && box_is_finite(s->box))
-            p[i] = search_choose(s, 2) ? s->box.axis[i].low : s->box.axis[i].high;
+            p[i] = search_index(s, 2) ? s->box.axis[i].low : s->box.axis[i].high;
     nudge(s, p, 1e-5);
 }
 
 static void start_at_landmark(Search *s, double p[3])
 {
-    memcpy(p, s->values[s->landmarks.items[search_choose(s, s->landmarks.count)]].v, 3 * sizeof *p);
+    memcpy(p, s->values[s->landmarks.items[search_index(s, s->landmarks.count)]].v, 3 * sizeof *p);
     if (!(length3(p) < 1e6 * (s->size + 1)))
         random_point(s, p);
     nudge(s, p, 1e-6);
@@ -60,7 +60,7 @@ static void start_at_landmark(Search *s, double p[3])
 /* `axis` becomes the direction in which the target changes, else it stays. */
 static void start_at_target(Search *s, double p[3], double axis[3])
 {
-    const Target *target = &s->targets.items[search_choose(s, s->targets.count)];
+    const Target *target = &s->targets.items[search_index(s, s->targets.count)];
     random_point(s, p);
     if (target->goal == GOAL_HIGH)
         drive_up(s, target, p, axis);
@@ -71,14 +71,14 @@ static void start_at_target(Search *s, double p[3], double axis[3])
         axis[i] = length > 0 && isfinite(length) ? axis[i] / length : i == 0;
     if (!(length3(p) < 1e6 * (s->size + 1)))
         random_point(s, p);
-    if (search_choose(s, 2))
+    if (search_index(s, 2))
         nudge(s, p, 1e-5);
 }
 
 static void choose_start(Search *s, double p[3], double axis[3])
 {
     random_direction(s, axis);
-    size_t kind = search_choose(s, 10);
+    size_t kind = search_index(s, 10);
     if (kind < 4 && s->targets.count > 0)
         start_at_target(s, p, axis);
     else if (kind < 7)
@@ -92,12 +92,12 @@ static void choose_start(Search *s, double p[3], double axis[3])
 }
 
 /* The best of pairs around a point, along an axis, along the gradient, and in any direction. */
-static Pair best_around(Search *s, double p[3], const double axis[3])
+static PointPair best_around(Search *s, double p[3], const double axis[3])
 {
-    Pair best = {.ratio = -1};
+    PointPair best = {.ratio = -1};
     for (int i = 0; i < 6; i++) {
-        double direction[3];
-        Pair   pair;
+        double    direction[3];
+        PointPair pair;
         random_direction(s, direction);
         if (i < 3)
             memcpy(direction, axis, sizeof direction);
@@ -114,12 +114,12 @@ static Pair best_around(Search *s, double p[3], const double axis[3])
 }
 
 /* The pair of a point and the nearest surface that a few ways from it find. */
-static Pair best_way(Search *s, double p[3])
+static PointPair best_by_directions(Search *s, double p[3])
 {
-    Pair best = {.ratio = -1};
+    PointPair best = {.ratio = -1};
     for (int i = 0; i < 4; i++) {
-        double direction[3];
-        Pair   pair = {.ratio = 0};
+        double    direction[3];
+        PointPair pair = {.ratio = 0};
         memcpy(pair.p, p, sizeof pair.p);
         random_direction(s, direction);
         if (i == 0)
@@ -135,6 +135,15 @@ static Pair best_way(Search *s, double p[3])
     }
     return best;
 }
+
+PointPair best_pair(Search *s)
+{
+    double p[3], axis[3];
+    choose_start(s, p, axis);
+    return s->steep ? best_around(s, p, axis) : best_by_directions(s, p);
+}
+
+/* ---- guards ---- */
 
 /* Down to where a distance is 0, along its gradient; `axis` is that, a unit vector.  False: it does
    not get there. */
@@ -152,10 +161,10 @@ static bool slide_down(Search *s, const Target *distance, double p[3], double ax
     return false;
 }
 
-Pair best_past_guard(Search *s)
+PointPair best_past_guard(Search *s)
 {
-    const Guard *guard = &s->guards.items[search_choose(s, s->guards.count)];
-    Pair         best = {.ratio = -1}, pair = {.ratio = 0};
+    const Guard *guard = &s->guards.items[search_index(s, s->guards.count)];
+    PointPair    best = {.ratio = -1}, pair = {.ratio = 0};
     double       axis[3];
     random_point(s, pair.q);
     if (!slide_down(s, &guard->rest, pair.q, axis))
@@ -165,18 +174,11 @@ Pair best_past_guard(Search *s)
     double slope = target_slope(s, &guard->bound, pair.q, out, axis);
     if (!(out > 0) || !(slope > 0) || !isfinite(slope) || side_now(s) > 0)
         return best;
-    for (double way = s->size; way > 1e-4 * s->size; way *= 0.8) {
-        add_scaled(pair.p, pair.q, way / slope, axis);
+    for (double length = s->size; length > 1e-4 * s->size; length *= 0.8) {
+        add_scaled(pair.p, pair.q, length / slope, axis);
         judge_pair(s, &pair);
         if (pair.ratio > best.ratio)
             best = pair;
     }
     return best;
-}
-
-Pair best_pair(Search *s)
-{
-    double p[3], axis[3];
-    choose_start(s, p, axis);
-    return s->steep ? best_around(s, p, axis) : best_way(s, p);
 }

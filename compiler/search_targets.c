@@ -142,8 +142,8 @@ void drive_to_zero(Search *s, const Target *t, double p[3], double axis[3])
         double slope = target_slope(s, t, p, at, axis), next[3];
         if (!(slope > 0) || !isfinite(slope))
             return;
-        double way = fmax(-0.5 * s->size, fmin(0.5 * s->size, at / slope));
-        add_scaled(next, p, -way / slope, axis);
+        double length = fmax(-0.5 * s->size, fmin(0.5 * s->size, at / slope));
+        add_scaled(next, p, -length / slope, axis);
         double then = target_at(s, t, next);
         if (!isfinite(then))
             return;
@@ -156,7 +156,7 @@ void drive_to_zero(Search *s, const Target *t, double p[3], double axis[3])
             memcpy(first ? next : p, middle, sizeof middle);
             *(first ? &then : &at) = half;
         }
-        bool arrived = apart(p, next) < 1e-7 * s->size;
+        bool arrived = separation(p, next) < 1e-7 * s->size;
         memcpy(p, next, sizeof next);
         at = then;
         if (arrived)

@@ -79,14 +79,14 @@ sed -n 's/^\(BLEND\|FALLOFF\|PALETTE\)([A-Z_, ]*"\([a-z]*\)".*/\2/p' \
 none "every kind of blend and falloff and every palette is on the page"
 
 # The row of a block names its properties.
-tr '{' '\n' <compiler/geometry/looks.c |
+tr '{' '\n' <compiler/geometry/properties.c |
     sed -n 's/^SYNTAX_\([A-Z]*\), "\([a-z_]*\)", false}.*/\1 \2/p' |
     while read -r block property; do
         row=$(echo "$block" | tr '[:upper:]' '[:lower:]')
         grep "^| \`${row}[ \`]" docs/language.md |
             grep -q "[\` ]${property}[\`:]" || echo "$property of $block"
     done >"$work/said"
-none "every property of a look is in the row of its block"
+none "every property of a block is in its row"
 sed -n '/property_names\[\]/,/};/p' compiler/geometry/declare.c | grep -o '"[a-z]*"' |
     tr -d '"' >"$work/properties"
 [ -s "$work/properties" ]

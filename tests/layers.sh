@@ -1,12 +1,12 @@
 #!/bin/sh
 # layers.sh: each folder may include itself and the folders before it in this list; of the
-# compiler, the runtime and the command may see only its doorstep.  The installed headers (types
+# compiler, the runtime and the command may see only its api.  The installed headers (types
 # and prototypes for everybody) may be included by the half that they belong to.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 layers="compiler/base compiler/front compiler/graph compiler/geometry compiler/shader compiler
         runtime/device runtime/tracer runtime/film runtime/writer runtime cli"
-doorstep="compiler/base/ compiler/compile.h compiler/krs.h compiler/shader/spirv.h
+api="compiler/base/ compiler/compile.h compiler/krs.h compiler/shader/spirv.h
           runtime/krs_vulkan.h"
 
 # Whether a header is one of the files, or in one of the folders (with a slash at the end).
@@ -24,7 +24,7 @@ echo "1..$(echo "$layers" | wc -w)"
 places="compiler/krs.h" number=0 bad=0
 for layer in $layers; do
     number=$((number + 1))
-    [ "$layer" = runtime/device ] && places=$doorstep
+    [ "$layer" = runtime/device ] && places=$api
     places="$places $layer/"
     wrong=""
     for hit in $(grep -Hn '^ *# *include *"' "$layer"/*.c "$layer"/*.h "$layer"/*.cpp \

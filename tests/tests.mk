@@ -24,8 +24,8 @@ PROPERTY    := ops noise graph simplify facts derive series zeros local along an
 ORACLES     := self primitives krs_expand trees maps moebius moebius_images operators \
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
-               seams shading coverage chords area_shadows soft_shadows hard_shadows upsampling \
-               occlusion loose bounds stencils light sides steep scales agree far sheets
+               touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling \
+               occlusion underestimates bounds stencils light sides steep scales agree far sheets
 FUZZ        := sentences
 # On SwiftShader, unless another device is tested: what shows that drivers agree.
 DRIVERS     := tests/oracle/drivers

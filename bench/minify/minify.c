@@ -169,14 +169,14 @@ static void fly(KrsRenderer *renderer, const struct Flight *flight, uint32_t sam
     struct Flight nothing = *flight;
     nothing.path          = "bench/minify/nothing.krs";
     Stage  empty          = stage_of(renderer, &nothing);
-    double still          = 0;
+    double true_change    = 0;
     for (int f = 0; f < FRAMES; f++) {
         shoot(&stage, f, samples, true, &truth[f]);
         for (int w = 0; w < WAYS; w++)
             shoot(&stage, f, ways[w].samples, ways[w].plain, &shots[w][f]);
     }
     for (int f = 1; f < FRAMES; f++)
-        still += change_of(&truth[f], &truth[f - 1]) / (FRAMES - 1);
+        true_change += change_of(&truth[f], &truth[f - 1]) / (FRAMES - 1);
     for (int w = 0; w < WAYS; w++) {
         double error = 0, cut = 0, change = 0, ms = 0;
         for (int f = 0; f < FRAMES; f++) {
@@ -189,7 +189,8 @@ static void fly(KrsRenderer *renderer, const struct Flight *flight, uint32_t sam
         }
         sheet_print(&sheet, "| %s | %u | %s | %.2f | %.2f | %.2f | %+.2f %% | %+.2f %% | %.0f |\n",
                     flight->name, ways[w].samples, ways[w].plain ? "no" : "yes", error, cut,
-                    change - still, 100 * (mean_alpha(&shots[w][0]) / mean_alpha(&truth[0]) - 1),
+                    change - true_change,
+                    100 * (mean_alpha(&shots[w][0]) / mean_alpha(&truth[0]) - 1),
                     100 * (mean_light(&shots[w][0]) / mean_light(&truth[0]) - 1), ms);
     }
     stage_close(&empty);

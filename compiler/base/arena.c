@@ -45,7 +45,7 @@ static void *block_bytes(ArenaBlock *block) { return (char *)block + HEADER_BYTE
 
 #ifdef KRS_ARENA_SEPARATE
 
-static void *take(Arena *arena, size_t bytes)
+static void *allocate(Arena *arena, size_t bytes)
 {
     ArenaBlock *block = block_new(arena->memory, bytes);
     block->older      = arena->newest;
@@ -58,13 +58,13 @@ static void *take(Arena *arena, size_t bytes)
 /* Starts a new block, each twice as large as the one before, up to a limit. */
 static void *take_from_new_block(Arena *arena, size_t bytes)
 {
-    size_t room = FIRST_BLOCK_BYTES;
+    size_t capacity = FIRST_BLOCK_BYTES;
     if (arena->newest)
-        room = arena->newest->size < LARGEST_BLOCK_BYTES ? 2 * arena->newest->size
-                                                         : LARGEST_BLOCK_BYTES;
-    room -= HEADER_BYTES;
-    ArenaBlock *block = block_new(arena->memory, bytes > room ? bytes : room);
-    if (bytes > room / 4 && arena->newest) {
+        capacity = arena->newest->size < LARGEST_BLOCK_BYTES ? 2 * arena->newest->size
+                                                             : LARGEST_BLOCK_BYTES;
+    capacity -= HEADER_BYTES;
+    ArenaBlock *block = block_new(arena->memory, bytes > capacity ? bytes : capacity);
+    if (bytes > capacity / 4 && arena->newest) {
         /* A large object goes behind the newest block, whose free bytes stay in use. */
         block->older         = arena->newest->older;
         arena->newest->older = block;
@@ -77,7 +77,7 @@ static void *take_from_new_block(Arena *arena, size_t bytes)
     return block_bytes(block);
 }
 
-static void *take(Arena *arena, size_t bytes)
+static void *allocate(Arena *arena, size_t bytes)
 {
     if (bytes > SIZE_MAX - ALIGNMENT)
         out_of_memory(arena->memory);
@@ -98,7 +98,7 @@ void *arena_alloc(Arena *arena, size_t count, size_t size)
 {
     if (size != 0 && count > SIZE_MAX / size)
         out_of_memory(arena->memory);
-    return take(arena, count * size);
+    return allocate(arena, count * size);
 }
 
 void arena_free(Arena *arena)

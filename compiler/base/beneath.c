@@ -23,21 +23,21 @@ static bool simplify(const char *path, char simple[PATH_MAX])
         return false;
     simple[0] = '\0';
     while (*path) {
-        size_t part = strcspn(path, "/");
-        if (part == 2 && strncmp(path, "..", 2) == 0) {
+        size_t name_length = strcspn(path, "/");
+        if (name_length == 2 && strncmp(path, "..", 2) == 0) {
             char *slash = strrchr(simple, '/');
             if (length == 0)
                 return false;
             length         = slash ? (size_t)(slash - simple) : 0;
             simple[length] = '\0';
-        } else if (part > 0 && !(part == 1 && path[0] == '.')) {
+        } else if (name_length > 0 && !(name_length == 1 && path[0] == '.')) {
             if (length > 0)
                 simple[length++] = '/';
-            memcpy(simple + length, path, part);
-            length += part;
+            memcpy(simple + length, path, name_length);
+            length += name_length;
             simple[length] = '\0';
         }
-        path += part + (path[part] == '/');
+        path += name_length + (path[name_length] == '/');
     }
     return true;
 }

@@ -32,7 +32,7 @@ static bool same_span(Span a, Span b)
 }
 
 /* The statements of a loop are elaborated many times and would complain each time.  Only the
-   few diagnostics that are kept are compared; what has no place is never a repeat. */
+   few diagnostics that are stored are compared; one without a location is never a repeat. */
 static bool is_repeat(const Diags *diags, DiagCode code, Span span)
 {
     for (size_t i = 0; i < diags->count && span.source != 0; i++)
@@ -45,14 +45,14 @@ bool diags_full(const Diags *diags) { return diags->errors > MOST_DIAGS; }
 
 static Diag *diag_new(Diags *diags, DiagCode code, Span span)
 {
-    bool repeat = is_repeat(diags, code, span), kept = false;
+    bool repeat = is_repeat(diags, code, span), retained = false;
     if (!repeat) {
         size_t *count = diag_info[code].severity == DIAG_ERROR ? &diags->errors : &diags->warnings;
-        kept          = ++*count <= MOST_DIAGS;
+        retained      = ++*count <= MOST_DIAGS;
     }
-    Diag *diag = kept ? arena_new(diags->arena, Diag) : &diags->scrap;
+    Diag *diag = retained ? arena_new(diags->arena, Diag) : &diags->scrap;
     *diag      = (Diag){.code = code, .span = span, .message = ""};
-    if (kept)
+    if (retained)
         array_push(diags->arena, diags, diag);
     return diag;
 }
@@ -87,11 +87,11 @@ void diag_note(Diags *diags, Diag *diag, const char *note)
         array_push(diags->arena, &diag->notes, note);
 }
 
-void diag_place(Diags *diags, Diag *diag, Span span, const char *label)
+void diag_secondary(Diags *diags, Diag *diag, Span span, const char *label)
 {
-    DiagPlace place = {span, label};
+    SecondarySpan secondary = {span, label};
     if (diag != &diags->scrap)
-        array_push(diags->arena, &diag->places, place);
+        array_push(diags->arena, &diag->secondary, secondary);
 }
 
 /* ---- order ---- */
@@ -139,7 +139,7 @@ static void json_position(const Source *source, uint32_t offset, Text *out)
     text_format(out, "{\"line\":%u,\"character\":%u}", line, units);
 }
 
-static void json_place(const Diags *diags, Span span, Text *out)
+static void json_location(const Diags *diags, Span span, Text *out)
 {
     if (span.source == 0) {
         text_add(out, "\"uri\":\"\",\"range\":{\"start\":{\"line\":0,\"character\":0},"
@@ -159,11 +159,11 @@ static void json_place(const Diags *diags, Span span, Text *out)
 static void json_related(const Diags *diags, const Diag *diag, Text *out)
 {
     text_add(out, ",\"relatedInformation\":[");
-    for (size_t i = 0; i < diag->places.count; i++) {
+    for (size_t i = 0; i < diag->secondary.count; i++) {
         text_add(out, i ? ",{\"location\":{" : "{\"location\":{");
-        json_place(diags, diag->places.items[i].span, out);
+        json_location(diags, diag->secondary.items[i].span, out);
         text_add(out, "},\"message\":");
-        text_json(out, diag->places.items[i].label ? diag->places.items[i].label : "");
+        text_json(out, diag->secondary.items[i].label ? diag->secondary.items[i].label : "");
         text_add(out, "}");
     }
     text_add(out, "]");
@@ -198,7 +198,7 @@ void diag_json_one(const Diags *diags, const Diag *diag, Text *out)
 {
     const DiagInfo *info = &diag_info[diag->code];
     text_add(out, "{");
-    json_place(diags, diag->span, out);
+    json_location(diags, diag->span, out);
     text_format(out, ",\"severity\":%d,\"code\":\"%s\",\"source\":\"krs\",\"message\":",
                 info->severity == DIAG_ERROR ? 1 : 2, info->code);
     text_json(out, diag->message);

@@ -1,7 +1,7 @@
 /*
  * diag.h: what the compiler has to say to the author of a scene.
  *
- * Diagnostics are collected, not printed: each has a code (one row of diag.def), the place,
+ * Diagnostics are collected, not printed: each has a code (one row of diag.def), a location,
  * and whatever helps to mend it.  Messages start with a lower-case letter and do not end with
  * punctuation; only `help` suggests what to do.
  */
@@ -29,11 +29,11 @@ typedef struct DiagInfo {
 
 extern const DiagInfo diag_info[DIAG_CODE_COUNT];
 
-/* A second place that belongs to the story, marked with ---- and its own label. */
-typedef struct DiagPlace {
+/* A further location of a diagnostic, marked with ---- and its own label. */
+typedef struct SecondarySpan {
     Span        span;
     const char *label;
-} DiagPlace;
+} SecondarySpan;
 
 typedef struct Diag {
     DiagCode    code;
@@ -43,9 +43,9 @@ typedef struct Diag {
     const char *help;        /* may be NULL */
     const char *replacement; /* text to put in place of `span`; may be NULL */
     struct {
-        DiagPlace *items;
-        size_t     count, capacity;
-    } places;
+        SecondarySpan *items;
+        size_t         count, capacity;
+    } secondary;
     struct {
         const char **items;
         size_t       count, capacity;
@@ -71,7 +71,7 @@ Diag *diag_add(Diags *diags, DiagCode code, Span span, const char *format, ...)
 /* Text formatted into the arena of the diagnostics, for labels and help. */
 const char *diag_text(Diags *diags, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void        diag_note(Diags *diags, Diag *diag, const char *note);
-void        diag_place(Diags *diags, Diag *diag, Span span, const char *label);
+void        diag_secondary(Diags *diags, Diag *diag, Span span, const char *label);
 
 /* Whether further errors would not be shown, so that a stage may stop looking for them. */
 bool diags_full(const Diags *diags);

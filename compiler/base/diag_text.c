@@ -27,7 +27,7 @@ typedef struct Mark {
     bool        drawn;
 } Mark;
 
-typedef struct Picture {
+typedef struct Excerpt {
     const Diags *diags;
     Text        *out;
     bool         color, error;
@@ -36,7 +36,7 @@ typedef struct Picture {
         Mark  *items;
         size_t count, capacity;
     } marks;
-} Picture;
+} Excerpt;
 
 /* ---- characters ---- */
 
@@ -87,15 +87,15 @@ static uint32_t add_visible(Text *out, const char *bytes, size_t length)
         size_t      used         = text_character(bytes + i, length - i, &c);
         const char *shown        = bytes + i;
         size_t      shown_length = used;
-        char        picture[]    = "\xE2\x90\x80"; /* U+2400, the first of the control pictures */
+        char        excerpt[]    = "\xE2\x90\x80"; /* U+2400, the first of the control pictures */
         bool        ascii        = c < 0x80;
         uint32_t    width        = !ascii && is_combining(c) ? 0 : !ascii && is_wide(c) ? 2 : 1;
         if (c == '\t') {
             shown        = "    ";
             shown_length = width = TAB_COLUMNS;
         } else if (c < 0x20 || c == 0x7F) {
-            picture[2]   = (char)(0x80 + (c == 0x7F ? 0x21 : c));
-            shown        = picture;
+            excerpt[2]   = (char)(0x80 + (c == 0x7F ? 0x21 : c));
+            shown        = excerpt;
             shown_length = 3;
         } else if (used == 0 || (!ascii && is_deceptive(c))) {
             shown        = replacement;
@@ -130,25 +130,25 @@ static void add_lines(Text *out, const char *string, int indent)
 
 /* ---- colours ---- */
 
-static void paint(const Picture *picture, const char *code)
+static void paint(const Excerpt *excerpt, const char *code)
 {
-    if (picture->color)
-        text_format(picture->out, "\033[%sm", code);
+    if (excerpt->color)
+        text_format(excerpt->out, "\033[%sm", code);
 }
 
-static void paint_severity(const Picture *picture)
+static void paint_severity(const Excerpt *excerpt)
 {
-    paint(picture, picture->error ? "1;31" : "1;33");
+    paint(excerpt, excerpt->error ? "1;31" : "1;33");
 }
 
-static void paint_frame(const Picture *picture) { paint(picture, "1;34"); }
-static void paint_nothing(const Picture *picture) { paint(picture, "0"); }
+static void paint_frame(const Excerpt *excerpt) { paint(excerpt, "1;34"); }
+static void paint_nothing(const Excerpt *excerpt) { paint(excerpt, "0"); }
 
 /* ---- marks ---- */
 
-static const Source *source_of(const Picture *picture, Span span)
+static const Source *source_of(const Excerpt *excerpt, Span span)
 {
-    return &picture->diags->sources->items[span.source];
+    return &excerpt->diags->sources->items[span.source];
 }
 
 /* The end of a line without what ends it. */
@@ -158,11 +158,11 @@ static uint32_t line_end(const Source *source, uint32_t line)
     return end > source->lines[line] && source->text[end - 1] == '\r' ? end - 1 : end;
 }
 
-static void add_mark(Picture *picture, Span span, const char *label, bool primary)
+static void add_mark(Excerpt *excerpt, Span span, const char *label, bool primary)
 {
     if (span.source == 0)
         return;
-    const Source *source = source_of(picture, span);
+    const Source *source = source_of(excerpt, span);
     uint32_t      line   = source_position(source, span.start).line - 1;
     uint32_t      end    = line_end(source, line);
     Mark          mark   = {span, label, primary, line, span.start, span.end, false};
@@ -172,7 +172,7 @@ static void add_mark(Picture *picture, Span span, const char *label, bool primar
         mark.end = end;
     if (mark.end < mark.start)
         mark.end = mark.start;
-    array_push(picture->out->arena, &picture->marks, mark);
+    array_push(excerpt->out->arena, &excerpt->marks, mark);
 }
 
 /* Bytes [start, end) of a source to show for a mark: the whole line unless it is long. */
@@ -203,158 +203,158 @@ static Window window_around(const Source *source, const Mark *mark)
 
 /* ---- drawing ---- */
 
-static void draw_gutter(const Picture *picture, const char *sign)
+static void draw_gutter(const Excerpt *excerpt, const char *sign)
 {
-    paint_frame(picture);
-    text_format(picture->out, "%*s %s", picture->gutter, "", sign);
-    paint_nothing(picture);
+    paint_frame(excerpt);
+    text_format(excerpt->out, "%*s %s", excerpt->gutter, "", sign);
+    paint_nothing(excerpt);
 }
 
-static void draw_source_line(const Picture *picture, const Mark *mark, Window window)
+static void draw_source_line(const Excerpt *excerpt, const Mark *mark, Window window)
 {
-    const Source *source = source_of(picture, mark->span);
-    paint_frame(picture);
-    text_format(picture->out, "%*u |", picture->gutter, mark->line + 1);
-    paint_nothing(picture);
+    const Source *source = source_of(excerpt, mark->span);
+    paint_frame(excerpt);
+    text_format(excerpt->out, "%*u |", excerpt->gutter, mark->line + 1);
+    paint_nothing(excerpt);
     if (window.end > window.start)
-        text_add(picture->out, " ");
-    text_add(picture->out, window.cut_before ? "..." : "");
-    add_visible(picture->out, source->text + window.start, window.end - window.start);
-    text_add(picture->out, window.cut_after ? "...\n" : "\n");
+        text_add(excerpt->out, " ");
+    text_add(excerpt->out, window.cut_before ? "..." : "");
+    add_visible(excerpt->out, source->text + window.start, window.end - window.start);
+    text_add(excerpt->out, window.cut_after ? "...\n" : "\n");
 }
 
-static void draw_marks(const Picture *picture, const Mark *mark, Window window)
+static void draw_marks(const Excerpt *excerpt, const Mark *mark, Window window)
 {
-    const char *text  = source_of(picture, mark->span)->text;
+    const char *text  = source_of(excerpt, mark->span)->text;
     uint32_t    end   = mark->end < window.end ? mark->end : window.end;
     uint32_t    blank = add_visible(NULL, text + window.start, mark->start - window.start);
     uint32_t    bytes = end > mark->start ? end - mark->start : 0;
     uint32_t    width = add_visible(NULL, text + mark->start, bytes);
-    draw_gutter(picture, "|");
-    text_format(picture->out, " %*s", (int)blank + (window.cut_before ? 3 : 0), "");
+    draw_gutter(excerpt, "|");
+    text_format(excerpt->out, " %*s", (int)blank + (window.cut_before ? 3 : 0), "");
     if (mark->primary)
-        paint_severity(picture);
+        paint_severity(excerpt);
     else
-        paint_frame(picture);
+        paint_frame(excerpt);
     for (uint32_t i = 0; i < (width ? width : 1); i++)
-        text_add(picture->out, mark->primary ? "^" : "-");
+        text_add(excerpt->out, mark->primary ? "^" : "-");
     if (mark->label) {
-        text_add(picture->out, " ");
-        add_lines(picture->out, mark->label, picture->gutter + 4);
+        text_add(excerpt->out, " ");
+        add_lines(excerpt->out, mark->label, excerpt->gutter + 4);
     }
-    paint_nothing(picture);
-    text_add(picture->out, "\n");
+    paint_nothing(excerpt);
+    text_add(excerpt->out, "\n");
 }
 
 /* Draws a line with the marks on it, the primary one first.  Marks that the window around the
    first does not show wait for a picture of their own. */
-static void draw_line(Picture *picture, Mark *first)
+static void draw_line(Excerpt *excerpt, Mark *first)
 {
-    Window window = window_around(source_of(picture, first->span), first);
-    draw_source_line(picture, first, window);
-    for (Mark *mark = first; mark < picture->marks.items + picture->marks.count; mark++) {
+    Window window = window_around(source_of(excerpt, first->span), first);
+    draw_source_line(excerpt, first, window);
+    for (Mark *mark = first; mark < excerpt->marks.items + excerpt->marks.count; mark++) {
         bool here = mark->span.source == first->span.source && mark->line == first->line &&
                     mark->start >= window.start && mark->start <= window.end;
         if (here && !mark->drawn) {
-            draw_marks(picture, mark, window);
+            draw_marks(excerpt, mark, window);
             mark->drawn = true;
         }
     }
 }
 
 /* The next mark to draw in a file: of the undrawn ones on the topmost line, the first given. */
-static Mark *next_mark(const Picture *picture, uint32_t source)
+static Mark *next_mark(const Excerpt *excerpt, uint32_t source)
 {
     Mark *next = NULL;
-    for (size_t i = 0; i < picture->marks.count; i++) {
-        Mark *mark = &picture->marks.items[i];
+    for (size_t i = 0; i < excerpt->marks.count; i++) {
+        Mark *mark = &excerpt->marks.items[i];
         if (!mark->drawn && mark->span.source == source && (!next || mark->line < next->line))
             next = mark;
     }
     return next;
 }
 
-static void draw_file(Picture *picture, const Mark *named, const char *arrow)
+static void draw_file(Excerpt *excerpt, const Mark *named, const char *arrow)
 {
-    const Source *source   = source_of(picture, named->span);
+    const Source *source   = source_of(excerpt, named->span);
     Position      position = source_position(source, named->span.start);
-    paint_frame(picture);
-    text_format(picture->out, "%*s%s ", picture->gutter, "", arrow);
-    paint_nothing(picture);
-    add_visible(picture->out, source->name, strlen(source->name));
-    text_format(picture->out, ":%u:%u\n", position.line, position.column);
-    draw_gutter(picture, "|");
-    text_add(picture->out, "\n");
+    paint_frame(excerpt);
+    text_format(excerpt->out, "%*s%s ", excerpt->gutter, "", arrow);
+    paint_nothing(excerpt);
+    add_visible(excerpt->out, source->name, strlen(source->name));
+    text_format(excerpt->out, ":%u:%u\n", position.line, position.column);
+    draw_gutter(excerpt, "|");
+    text_add(excerpt->out, "\n");
     const Mark *above = NULL;
-    for (Mark *mark; (mark = next_mark(picture, named->span.source)) != NULL; above = mark) {
+    for (Mark *mark; (mark = next_mark(excerpt, named->span.source)) != NULL; above = mark) {
         if (above && mark->line > above->line + 1)
-            text_add(picture->out, "...\n");
-        draw_line(picture, mark);
+            text_add(excerpt->out, "...\n");
+        draw_line(excerpt, mark);
     }
 }
 
 /* Text under the picture, and code, if any, in quotes behind it. */
-static void draw_remark(const Picture *picture, const char *kind, const char *text,
+static void draw_remark(const Excerpt *excerpt, const char *kind, const char *text,
                         const char *separator, const char *code)
 {
-    draw_gutter(picture, "= ");
-    paint(picture, "1");
-    text_format(picture->out, "%s: ", kind);
-    paint_nothing(picture);
-    add_lines(picture->out, text, picture->gutter + 5 + (int)strlen(kind));
+    draw_gutter(excerpt, "= ");
+    paint(excerpt, "1");
+    text_format(excerpt->out, "%s: ", kind);
+    paint_nothing(excerpt);
+    add_lines(excerpt->out, text, excerpt->gutter + 5 + (int)strlen(kind));
     if (code) {
-        text_format(picture->out, "%s`", separator);
-        add_lines(picture->out, code, picture->gutter + 5 + (int)strlen(kind));
-        text_add(picture->out, "`");
+        text_format(excerpt->out, "%s`", separator);
+        add_lines(excerpt->out, code, excerpt->gutter + 5 + (int)strlen(kind));
+        text_add(excerpt->out, "`");
     }
-    text_add(picture->out, "\n");
+    text_add(excerpt->out, "\n");
 }
 
 /* The replacement stands behind the help, unless the help quotes it already. */
-static void draw_help(const Picture *picture, const Diag *diag)
+static void draw_help(const Excerpt *excerpt, const Diag *diag)
 {
     if (diag->help && (!diag->replacement || strstr(diag->help, diag->replacement)))
-        draw_remark(picture, "help", diag->help, "", NULL);
+        draw_remark(excerpt, "help", diag->help, "", NULL);
     else if (diag->help)
-        draw_remark(picture, "help", diag->help, ": ", diag->replacement);
+        draw_remark(excerpt, "help", diag->help, ": ", diag->replacement);
     else if (diag->replacement && *diag->replacement)
-        draw_remark(picture, "help", "write", " ", diag->replacement);
+        draw_remark(excerpt, "help", "write", " ", diag->replacement);
     else if (diag->replacement)
-        draw_remark(picture, "help", "leave this out", "", NULL);
+        draw_remark(excerpt, "help", "leave this out", "", NULL);
 }
 
-static void draw_title(const Picture *picture, const Diag *diag)
+static void draw_title(const Excerpt *excerpt, const Diag *diag)
 {
-    paint_severity(picture);
-    text_add(picture->out, picture->error ? "error" : "warning");
-    text_format(picture->out, "[%s]", diag_info[diag->code].code);
-    paint_nothing(picture);
-    paint(picture, "1");
-    text_add(picture->out, ": ");
-    add_lines(picture->out, diag->message, 4);
-    paint_nothing(picture);
-    text_add(picture->out, "\n");
+    paint_severity(excerpt);
+    text_add(excerpt->out, excerpt->error ? "error" : "warning");
+    text_format(excerpt->out, "[%s]", diag_info[diag->code].code);
+    paint_nothing(excerpt);
+    paint(excerpt, "1");
+    text_add(excerpt->out, ": ");
+    add_lines(excerpt->out, diag->message, 4);
+    paint_nothing(excerpt);
+    text_add(excerpt->out, "\n");
 }
 
 void diag_print_one(const Diags *diags, const Diag *diag, bool color, Text *out)
 {
-    Picture picture = {.diags = diags, .out = out, .color = color, .gutter = 1};
-    picture.error   = diag_info[diag->code].severity == DIAG_ERROR;
-    add_mark(&picture, diag->span, diag->label, true);
-    for (size_t i = 0; i < diag->places.count; i++)
-        add_mark(&picture, diag->places.items[i].span, diag->places.items[i].label, false);
-    for (size_t i = 0; i < picture.marks.count; i++)
-        for (uint32_t n = picture.marks.items[i].line + 1, digits = 1; n > 0; n /= 10, digits++)
-            if ((int)digits > picture.gutter)
-                picture.gutter = (int)digits;
+    Excerpt excerpt = {.diags = diags, .out = out, .color = color, .gutter = 1};
+    excerpt.error   = diag_info[diag->code].severity == DIAG_ERROR;
+    add_mark(&excerpt, diag->span, diag->label, true);
+    for (size_t i = 0; i < diag->secondary.count; i++)
+        add_mark(&excerpt, diag->secondary.items[i].span, diag->secondary.items[i].label, false);
+    for (size_t i = 0; i < excerpt.marks.count; i++)
+        for (uint32_t n = excerpt.marks.items[i].line + 1, digits = 1; n > 0; n /= 10, digits++)
+            if ((int)digits > excerpt.gutter)
+                excerpt.gutter = (int)digits;
 
-    draw_title(&picture, diag);
-    for (size_t i = 0; i < picture.marks.count; i++)
-        if (!picture.marks.items[i].drawn)
-            draw_file(&picture, &picture.marks.items[i], i == 0 ? "-->" : ":::");
+    draw_title(&excerpt, diag);
+    for (size_t i = 0; i < excerpt.marks.count; i++)
+        if (!excerpt.marks.items[i].drawn)
+            draw_file(&excerpt, &excerpt.marks.items[i], i == 0 ? "-->" : ":::");
     for (size_t i = 0; i < diag->notes.count; i++)
-        draw_remark(&picture, "note", diag->notes.items[i], "", NULL);
-    draw_help(&picture, diag);
+        draw_remark(&excerpt, "note", diag->notes.items[i], "", NULL);
+    draw_help(&excerpt, diag);
 }
 
 static void print_count(size_t count, const char *what, Text *out)

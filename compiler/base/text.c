@@ -39,9 +39,9 @@ void text_format_list(Text *text, const char *format, va_list arguments)
     va_list again;
     va_copy(again, arguments);
     text_reserve(text, USUAL_LENGTH);
-    size_t room   = text->capacity - text->length;
-    int    length = vsnprintf(text->bytes + text->length, room, format, arguments);
-    if (length >= 0 && (size_t)length >= room) {
+    size_t space  = text->capacity - text->length;
+    int    length = vsnprintf(text->bytes + text->length, space, format, arguments);
+    if (length >= 0 && (size_t)length >= space) {
         text_reserve(text, (size_t)length);
         vsnprintf(text->bytes + text->length, (size_t)length + 1, format, again);
     }

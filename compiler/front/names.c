@@ -10,54 +10,54 @@
 #include <string.h>
 
 /* A top-level definition, a node of the graph of needs. */
-typedef struct Definition {
+typedef struct CheckedDefinition {
     const Syntax *syntax;
     struct {
         struct Need *items;
         size_t       count, capacity;
     } needs;
-    const struct Definition *user; /* the last that noted its need of this one */
+    const struct CheckedDefinition *user; /* the last that noted its need of this one */
     /* for the search */
     uint32_t number, low; /* order of discovery from 1, and the least that can be reached */
     size_t   next;        /* the need to follow next */
     uint32_t circle;      /* the strongly connected component, from 1 */
-    const struct Need       *found_by; /* of the shortest way */
-    const struct Definition *found_from;
-} Definition;
+    const struct Need              *found_by; /* of the shortest way */
+    const struct CheckedDefinition *found_from;
+} CheckedDefinition;
 
 typedef struct Need {
-    Definition *of;
-    Span        use;
+    CheckedDefinition *of;
+    Span               use;
 } Need;
 
 /* What a name means at some place. */
 typedef struct Meaning {
-    struct Slot    *slot;
-    Span            span;
-    Definition     *definition; /* NULL unless it is a top-level name of this file */
-    uint32_t        depth;      /* of the scope that defines it; 0: from outside */
-    struct Meaning *hidden;     /* what the name meant outside */
-    struct Meaning *older;      /* the meaning that was added before this one */
+    struct NameSlot   *slot;
+    Span               span;
+    CheckedDefinition *definition; /* NULL unless it is a top-level name of this file */
+    uint32_t           depth;      /* of the scope that defines it; 0: from outside */
+    struct Meaning    *hidden;     /* what the name meant outside */
+    struct Meaning    *older;      /* the meaning that was added before this one */
 } Meaning;
 
-typedef struct Slot {
+typedef struct NameSlot {
     const char *name;
     Meaning    *meaning; /* NULL: none at the moment */
     bool        reported;
-} Slot;
+} NameSlot;
 
 typedef struct Checker {
-    Arena      *arena;
-    Diags      *diags;
-    Slot      **slots; /* hash table; the capacity is a power of two */
-    size_t      count, capacity;
-    Meaning    *newest;
-    uint32_t    depth;
-    Definition *current; /* NULL outside of top-level definitions */
-    bool        blind;   /* names may be missing because of mistakes reported before */
+    Arena             *arena;
+    Diags             *diags;
+    NameSlot         **slots; /* hash table; the capacity is a power of two */
+    size_t             count, capacity;
+    Meaning           *newest;
+    uint32_t           depth;
+    CheckedDefinition *current; /* NULL outside of top-level definitions */
+    bool               blind;   /* names may be missing because of mistakes reported before */
     struct {
-        Definition **items;
-        size_t       count, capacity;
+        CheckedDefinition **items;
+        size_t              count, capacity;
     } definitions;
 } Checker;
 
@@ -71,7 +71,7 @@ static size_t hash_name(const char *name)
     return (size_t)(hash ^ hash >> 32);
 }
 
-static Slot **find_place(Slot **slots, size_t capacity, const char *name)
+static NameSlot **find_bucket(NameSlot **slots, size_t capacity, const char *name)
 {
     size_t i = hash_name(name) & (capacity - 1);
     while (slots[i] && slots[i]->name != name && strcmp(slots[i]->name, name) != 0)
@@ -81,29 +81,29 @@ static Slot **find_place(Slot **slots, size_t capacity, const char *name)
 
 static void grow_table(Checker *c)
 {
-    size_t capacity = c->capacity ? 2 * c->capacity : 1024;
-    Slot **slots    = arena_new_array(c->arena, Slot *, capacity);
+    size_t     capacity = c->capacity ? 2 * c->capacity : 1024;
+    NameSlot **slots    = arena_new_array(c->arena, NameSlot *, capacity);
     for (size_t i = 0; i < c->capacity; i++)
         if (c->slots[i])
-            *find_place(slots, capacity, c->slots[i]->name) = c->slots[i];
+            *find_bucket(slots, capacity, c->slots[i]->name) = c->slots[i];
     c->slots    = slots;
     c->capacity = capacity;
 }
 
-static Slot *find_slot(Checker *c, const char *name)
+static NameSlot *find_slot(Checker *c, const char *name)
 {
     if (2 * c->count >= c->capacity)
         grow_table(c);
-    Slot **place = find_place(c->slots, c->capacity, name);
-    if (!*place) {
-        *place         = arena_new(c->arena, Slot);
-        (*place)->name = name;
+    NameSlot **bucket = find_bucket(c->slots, c->capacity, name);
+    if (!*bucket) {
+        *bucket         = arena_new(c->arena, NameSlot);
+        (*bucket)->name = name;
         c->count++;
     }
-    return *place;
+    return *bucket;
 }
 
-static void add_meaning(Checker *c, Slot *slot, Span span, Definition *definition)
+static void add_meaning(Checker *c, NameSlot *slot, Span span, CheckedDefinition *definition)
 {
     Meaning *meaning = arena_new(c->arena, Meaning);
     *meaning         = (Meaning){slot, span, definition, c->depth, slot->meaning, c->newest};
@@ -130,13 +130,13 @@ static void warn_of_coordinate(Checker *c, const char *name, Span span)
     diag->label = "from here on it means this";
 }
 
-static void define(Checker *c, const char *name, Span span, Definition *definition)
+static void define(Checker *c, const char *name, Span span, CheckedDefinition *definition)
 {
-    Slot *slot = find_slot(c, name);
+    NameSlot *slot = find_slot(c, name);
     if (slot->meaning && slot->meaning->depth == c->depth) {
         Diag *diag  = diag_add(c->diags, DIAG_DUPLICATE_NAME, span, "`%s` is defined twice", name);
         diag->label = "defined again here";
-        diag_place(c->diags, diag, slot->meaning->span, "defined here first");
+        diag_secondary(c->diags, diag, slot->meaning->span, "defined here first");
         return;
     }
     warn_of_coordinate(c, name, span);
@@ -162,7 +162,7 @@ static const char *suggest(Checker *c, const char *name)
     return nearest_name(name, visible.items, visible.count);
 }
 
-static void report_unknown(Checker *c, Slot *slot, Span span)
+static void report_unknown(Checker *c, NameSlot *slot, Span span)
 {
     if (slot->reported || c->blind)
         return;
@@ -178,12 +178,12 @@ static void report_unknown(Checker *c, Slot *slot, Span span)
 
 static void use_name(Checker *c, const Syntax *syntax)
 {
-    Slot *slot = find_slot(c, syntax->name);
+    NameSlot *slot = find_slot(c, syntax->name);
     if (!slot->meaning) {
         report_unknown(c, slot, syntax->span);
         return;
     }
-    Definition *used = slot->meaning->definition;
+    CheckedDefinition *used = slot->meaning->definition;
     if (!used || !c->current || used->user == c->current)
         return;
     used->user = c->current;
@@ -223,12 +223,12 @@ static void check_properties(Checker *c, const Syntax *syntax)
         const Syntax *property = syntax->children[i];
         if (property->kind != SYNTAX_PROPERTY)
             continue;
-        Slot *slot = find_slot(c, property->name);
+        NameSlot *slot = find_slot(c, property->name);
         if (slot->meaning && slot->meaning->depth == c->depth) {
             Diag *diag  = diag_add(c->diags, DIAG_DUPLICATE_NAME, property->name_span,
                                    "`%s` is given twice", property->name);
             diag->label = "given again here";
-            diag_place(c->diags, diag, slot->meaning->span, "given here first");
+            diag_secondary(c->diags, diag, slot->meaning->span, "given here first");
         } else
             add_meaning(c, slot, property->name_span, NULL);
     }
@@ -295,22 +295,22 @@ static void walk(Checker *c, const Syntax *syntax)
 /* ---- circles ---- */
 
 /* A function may call itself; the value of anything else cannot need itself. */
-static bool may_need_itself(const Definition *definition)
+static bool may_need_itself(const CheckedDefinition *definition)
 {
     return definition->syntax->kind == SYNTAX_DEF || definition->syntax->kind == SYNTAX_SHAPE;
 }
 
 typedef struct DefinitionStack {
-    Definition **items;
-    size_t       count, capacity;
+    CheckedDefinition **items;
+    size_t              count, capacity;
 } DefinitionStack;
 
 static uint32_t least(uint32_t a, uint32_t b) { return a < b ? a : b; }
 
 /* Takes a finished component off the stack. */
-static void close_circle(DefinitionStack *open, const Definition *first, uint32_t circle)
+static void close_circle(DefinitionStack *open, const CheckedDefinition *first, uint32_t circle)
 {
-    Definition *last;
+    CheckedDefinition *last;
     do {
         last         = open->items[--open->count];
         last->circle = circle;
@@ -318,16 +318,17 @@ static void close_circle(DefinitionStack *open, const Definition *first, uint32_
 }
 
 /* Tarjan's algorithm from one definition, without recursion: chains of definitions are long. */
-static void find_components(Checker *c, Definition *root, uint32_t *numbers, uint32_t *circles)
+static void find_components(Checker *c, CheckedDefinition *root, uint32_t *numbers,
+                            uint32_t *circles)
 {
     DefinitionStack path = {0}, open = {0};
     root->number = root->low = ++*numbers;
     array_push(c->arena, &path, root);
     array_push(c->arena, &open, root);
     while (path.count > 0) {
-        Definition *here = path.items[path.count - 1];
+        CheckedDefinition *here = path.items[path.count - 1];
         if (here->next < here->needs.count) {
-            Definition *other = here->needs.items[here->next++].of;
+            CheckedDefinition *other = here->needs.items[here->next++].of;
             if (other->number == 0) {
                 other->number = other->low = ++*numbers;
                 array_push(c->arena, &path, other);
@@ -346,12 +347,12 @@ static void find_components(Checker *c, Definition *root, uint32_t *numbers, uin
 
 /* The shortest way from a definition back to itself, in breadth; NULL when there is none.  The
    result is the last definition on the way, and found_from leads back. */
-static const Definition *find_way(Checker *c, Definition *start, const Need **last)
+static const CheckedDefinition *find_cycle(Checker *c, CheckedDefinition *start, const Need **last)
 {
     DefinitionStack queue = {0};
     array_push(c->arena, &queue, start);
     for (size_t i = 0; i < queue.count; i++) {
-        Definition *here = queue.items[i];
+        CheckedDefinition *here = queue.items[i];
         for (size_t k = 0; k < here->needs.count; k++) {
             const Need *need = &here->needs.items[k];
             if (need->of == start) {
@@ -368,40 +369,40 @@ static const Definition *find_way(Checker *c, Definition *start, const Need **la
     return NULL;
 }
 
-static void report_circle(Checker *c, Definition *start)
+static void report_circle(Checker *c, CheckedDefinition *start)
 {
-    enum { MOST_PLACES = 10 };
-    const Need       *need = NULL;
-    const Definition *here = find_way(c, start, &need);
+    enum { MOST_CYCLE_LINES = 10 };
+    const Need              *need = NULL;
+    const CheckedDefinition *here = find_cycle(c, start, &need);
     if (!here)
         return;
     struct {
-        const Definition **items;
-        size_t             count, capacity;
-    } way = {0};
+        const CheckedDefinition **items;
+        size_t                    count, capacity;
+    } cycle = {0};
     struct {
         const Need **items;
         size_t       count, capacity;
     } needs = {0};
     for (; here != start; need = here->found_by, here = here->found_from) {
-        array_push(c->arena, &way, here);
+        array_push(c->arena, &cycle, here);
         array_push(c->arena, &needs, need);
     }
-    array_push(c->arena, &way, start);
+    array_push(c->arena, &cycle, start);
     array_push(c->arena, &needs, need);
 
     const char *name = start->syntax->name;
     Diag       *diag = diag_add(c->diags, DIAG_CYCLE, start->syntax->name_span,
                                 "the value of `%s` depends on itself", name);
     diag->label      = "this definition needs its own value";
-    for (size_t i = way.count; i-- > 0;) {
-        if (way.count - i > MOST_PLACES) {
+    for (size_t i = cycle.count; i-- > 0;) {
+        if (cycle.count - i > MOST_CYCLE_LINES) {
             diag_note(c->diags, diag, diag_text(c->diags, "and %zu more", i + 1));
             break;
         }
-        const char *label = diag_text(c->diags, "`%s` needs `%s`", way.items[i]->syntax->name,
+        const char *label = diag_text(c->diags, "`%s` needs `%s`", cycle.items[i]->syntax->name,
                                       needs.items[i]->of->syntax->name);
-        diag_place(c->diags, diag, needs.items[i]->use, label);
+        diag_secondary(c->diags, diag, needs.items[i]->use, label);
     }
 }
 
@@ -413,7 +414,7 @@ static void check_circles(Checker *c)
             find_components(c, c->definitions.items[i], &numbers, &circles);
     bool *reported = arena_new_array(c->arena, bool, circles + 1);
     for (size_t i = 0; i < c->definitions.count && !diags_full(c->diags); i++) {
-        Definition *definition = c->definitions.items[i];
+        CheckedDefinition *definition = c->definitions.items[i];
         if (may_need_itself(definition) || reported[definition->circle])
             continue;
         reported[definition->circle] = true;
@@ -459,9 +460,9 @@ void names_check(const Syntax *file, const NameScope *scope, Diags *diags, Arena
 
     enter_scope(c);
     for (uint32_t i = 0; i < file->count; i++) {
-        const Syntax *syntax     = file->children[i];
-        Definition   *definition = arena_new(arena, Definition);
-        definition->syntax       = syntax;
+        const Syntax      *syntax     = file->children[i];
+        CheckedDefinition *definition = arena_new(arena, CheckedDefinition);
+        definition->syntax            = syntax;
         array_push(arena, &c->definitions, definition);
         if (syntax_defines(syntax))
             define(c, syntax->name, syntax->name_span, definition);

@@ -40,7 +40,7 @@ static Syntax *parse_if_then_else(Parser *p)
         Diag *diag  = expected(p, "`else`");
         diag->label = "an `if` needs a value for either case";
         diag->help  = example;
-        diag_place(p->diags, diag, start, "the `if` begins here");
+        diag_secondary(p->diags, diag, start, "the `if` begins here");
     }
     add_child(p, parse_expression(p));
     leave(p);
@@ -178,7 +178,7 @@ static Syntax *parse_comparison(Parser *p)
             Diag *diag = report_at(p, DIAG_CHAINED_COMPARISON, op->span,
                                    "comparisons do not chain");
             diag->help = "write `a < b and b < c`";
-            diag_place(p->diags, diag, previous->span, "the comparison before");
+            diag_secondary(p->diags, diag, previous->span, "the comparison before");
         }
         previous = op;
         left     = binary(p, op, left, right);
@@ -245,7 +245,7 @@ static Syntax *parse_positional(Parser *p, const Token *named_before)
         Diag *diag  = report_at(p, DIAG_UNEXPECTED_TOKEN, argument->span,
                                 "an argument without a name behind one with a name");
         diag->label = "name this one too";
-        diag_place(p->diags, diag, named_before->span, "arguments have names from here on");
+        diag_secondary(p->diags, diag, named_before->span, "arguments have names from here on");
     }
     return argument;
 }

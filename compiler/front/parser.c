@@ -179,8 +179,8 @@ static void report_unclosed(Parser *p, TokenKind closer, size_t opener)
         const char  *message = diag_text(p->diags, "%s is not closed", token_kind_text(open->kind));
         Diag        *diag    = report_at(p, DIAG_UNCLOSED, open->span, message);
         diag->label          = "opened here";
-        diag_place(p->diags, diag, span_here(p),
-                   diag_text(p->diags, "%s is missing before this", token_kind_text(closer)));
+        diag_secondary(p->diags, diag, span_here(p),
+                       diag_text(p->diags, "%s is missing before this", token_kind_text(closer)));
     }
     p->unclosed = p->here.at;
 }
@@ -196,7 +196,7 @@ void expect_closer(Parser *p, TokenKind closer, size_t opener, const char *what)
     else
         unclosed = unclosed || is_closer(found) || found == TOKEN_SEMICOLON;
     if (!unclosed) {
-        diag_place(p->diags, expected(p, what), p->tokens[opener].span, "opened here");
+        diag_secondary(p->diags, expected(p, what), p->tokens[opener].span, "opened here");
         return;
     }
     report_unclosed(p, closer, opener);

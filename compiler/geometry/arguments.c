@@ -44,8 +44,8 @@ void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax)
         const Definition *definition = definition_of(e, syntax);
         if (!definition || !definition->syntax)
             return;
-        diag_place(e->diags, diag, definition->syntax->name_span,
-                   diag_text(e->diags, "`%s` is defined here", syntax->name));
+        diag_secondary(e->diags, diag, definition->syntax->name_span,
+                       diag_text(e->diags, "`%s` is defined here", syntax->name));
         /* The chain of definitions, down to the `param` that began it. */
         bool on = late && definition->syntax->kind == SYNTAX_LET;
         syntax  = on ? find_late_name(e, definition->syntax->children[0]) : NULL;
@@ -137,8 +137,8 @@ bool check_finite(Elaboration *e, Node node, const Syntax *syntax)
     if (g->items[node].op == OP_CONSTANT || g->items[node].type > TYPE_VEC4)
         return true;
     size_t          count = g->parameters.count;
-    GraphParameter *kept  = arena_new_array(e->arena, GraphParameter, count);
-    memcpy(kept, g->parameters.items, count * sizeof *kept);
+    GraphParameter *copy  = arena_new_array(e->arena, GraphParameter, count);
+    memcpy(copy, g->parameters.items, count * sizeof *copy);
     for (size_t i = 0; i < e->scene->parameters.count; i++) {
         const Parameter *parameter = &e->scene->parameters.items[i];
         GraphParameter  *range     = &g->parameters.items[parameter->slot];
@@ -153,7 +153,7 @@ bool check_finite(Elaboration *e, Node node, const Syntax *syntax)
         Range range = node_range(e, node, k);
         finite      = finite && isfinite(range.low) && isfinite(range.high);
     }
-    memcpy(g->parameters.items, kept, count * sizeof *kept);
+    memcpy(g->parameters.items, copy, count * sizeof *copy);
     if (finite)
         return true;
     Diag *diag  = diag_add(e->diags, DIAG_NOT_A_NUMBER, syntax->span,
@@ -410,7 +410,7 @@ static bool store(Elaboration *e, Argument *slot, const Syntax *argument, Value 
     if (slot->syntax) {
         Diag *diag = diag_add(e->diags, DIAG_TOO_MANY_ARGUMENTS, argument->span,
                               "an argument of `%s` is given twice", name);
-        diag_place(e->diags, diag, slot->syntax->span, "given here first");
+        diag_secondary(e->diags, diag, slot->syntax->span, "given here first");
         return false;
     }
     *slot = (Argument){value, argument->children[0]};

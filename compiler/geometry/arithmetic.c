@@ -120,10 +120,10 @@ Node value_node(Elaboration *e, Value value)
     if (!length)
         return NODE_NONE;
     static const Op build[] = {[2] = OP_vec2, [3] = OP_vec3, [4] = OP_vec4};
-    Node            parts[4];
+    Node            elements[4];
     for (uint32_t i = 0; i < length; i++)
-        parts[i] = value_node(e, value.list->items[i]);
-    return graph_op(g, build[length], parts);
+        elements[i] = value_node(e, value.list->items[i]);
+    return graph_op(g, build[length], elements);
 }
 
 BindingTime value_time(const Elaboration *e, Value value)
@@ -143,14 +143,15 @@ static Value not_finite(Elaboration *e, const Syntax *syntax, bool by_zero)
 
 /* An operation on lists of `length` numbers, element by element: the result is such a list. */
 static Value map_elements(Elaboration *e, Op op, const Value *arguments, uint32_t count,
-                          uint32_t length, const Syntax *place)
+                          uint32_t length, const Syntax *origin)
 {
     Value *items = arena_new_array(e->arena, Value, length);
     for (uint32_t k = 0; k < length; k++) {
-        Value parts[MAX_OPERANDS];
+        Value elements[MAX_OPERANDS];
         for (uint32_t i = 0; i < count; i++)
-            parts[i] = arguments[i].type == VALUE_LIST ? arguments[i].list->items[k] : arguments[i];
-        items[k] = value_map_op(e, op, parts, count, place);
+            elements[i] = arguments[i].type == VALUE_LIST ? arguments[i].list->items[k]
+                                                          : arguments[i];
+        items[k] = value_map_op(e, op, elements, count, origin);
         if (items[k].type == VALUE_ERROR)
             return value_error();
     }
@@ -158,7 +159,7 @@ static Value map_elements(Elaboration *e, Op op, const Value *arguments, uint32_
 }
 
 Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count,
-                   const Syntax *place)
+                   const Syntax *origin)
 {
     uint32_t length = 0;
     bool     whole  = false; /* some operand is a vector known only as a node */
@@ -168,17 +169,17 @@ Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count
         whole      = whole || (n && arguments[i].type == VALUE_EXPRESSION);
     }
     if (length && !whole)
-        return map_elements(e, op, arguments, count, length, place);
+        return map_elements(e, op, arguments, count, length, origin);
     Node nodes[MAX_OPERANDS];
     bool constant = true;
     for (uint32_t i = 0; i < count; i++) {
         nodes[i] = value_node(e, arguments[i]);
         constant = constant && graph_is_constant(e->graph, nodes[i]);
     }
-    e->graph->here = place->span;
+    e->graph->here = origin->span;
     Node result    = graph_op(e->graph, op, nodes);
     if (constant && !graph_is_constant(e->graph, result))
-        return not_finite(e, place, op == OP_div || op == OP_mod);
+        return not_finite(e, origin, op == OP_div || op == OP_mod);
     return value_of_node(e, result);
 }
 
@@ -211,10 +212,10 @@ static Value arithmetic(Elaboration *e, const Syntax *syntax, Value a, Value b)
     if (n && m && n != m) {
         Diag *diag = diag_add(e->diags, DIAG_LENGTH_MISMATCH, syntax->name_span,
                               "a vector of %u and a vector of %u do not go together", n, m);
-        diag_place(e->diags, diag, syntax->children[0]->span,
-                   diag_text(e->diags, "this has %u elements", n));
-        diag_place(e->diags, diag, syntax->children[1]->span,
-                   diag_text(e->diags, "this has %u elements", m));
+        diag_secondary(e->diags, diag, syntax->children[0]->span,
+                       diag_text(e->diags, "this has %u elements", n));
+        diag_secondary(e->diags, diag, syntax->children[1]->span,
+                       diag_text(e->diags, "this has %u elements", m));
         return value_error();
     }
     static const Op ops[TOKEN_KIND_COUNT] = {
@@ -243,11 +244,11 @@ static bool is_numeric(const Elaboration *e, Value value)
 }
 
 /* Says of two expressions what type each has. */
-static void place_types(Elaboration *e, Diag *diag, Syntax *const *pair, const char *left,
+static void label_types(Elaboration *e, Diag *diag, Syntax *const *pair, const char *left,
                         const char *right)
 {
-    diag_place(e->diags, diag, pair[0]->span, diag_text(e->diags, "this is %s", left));
-    diag_place(e->diags, diag, pair[1]->span, diag_text(e->diags, "this is %s", right));
+    diag_secondary(e->diags, diag, pair[0]->span, diag_text(e->diags, "this is %s", left));
+    diag_secondary(e->diags, diag, pair[1]->span, diag_text(e->diags, "this is %s", right));
 }
 
 static Value mismatch(Elaboration *e, const Syntax *syntax, Value a, Value b)
@@ -262,7 +263,7 @@ static Value mismatch(Elaboration *e, const Syntax *syntax, Value a, Value b)
     const char *left = value_type_name(e, a), *right = value_type_name(e, b);
     Diag       *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->name_span,
                                 "`%s` does not go with %s and %s", words[syntax->op], left, right);
-    place_types(e, diag, syntax->children, left, right);
+    label_types(e, diag, syntax->children, left, right);
     point_at_definition(e, diag, syntax->children[0]);
     point_at_definition(e, diag, syntax->children[1]);
     if (a.type == VALUE_SHAPE && is_scalar(e, b) &&
@@ -394,7 +395,7 @@ Value value_select(Elaboration *e, const Syntax *syntax, Value condition, Value 
         const char *left = value_type_name(e, yes), *right = value_type_name(e, no);
         Diag       *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span,
                                     "the branches of `if` have different types: %s and %s", left, right);
-        place_types(e, diag, syntax->children + 1, left, right);
+        label_types(e, diag, syntax->children + 1, left, right);
         return value_error();
     }
     e->graph->here = syntax->span;

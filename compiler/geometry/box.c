@@ -126,10 +126,10 @@ Ball ball_hull(Ball a, Ball b)
         return a;
     if (isinf(a.radius) || isinf(b.radius))
         return (Ball){{0, 0, 0}, INFINITY};
-    double way[3], distance = 0;
+    double offset[3], distance = 0;
     for (int i = 0; i < 3; i++) {
-        way[i] = b.centre[i] - a.centre[i];
-        distance += way[i] * way[i];
+        offset[i] = b.centre[i] - a.centre[i];
+        distance += offset[i] * offset[i];
     }
     distance = sqrt(distance);
     if (distance + b.radius <= a.radius)
@@ -138,7 +138,7 @@ Ball ball_hull(Ball a, Ball b)
         return b;
     Ball hull = {.radius = 0.5 * (distance + a.radius + b.radius)};
     for (int i = 0; i < 3; i++)
-        hull.centre[i] = a.centre[i] + way[i] * (hull.radius - a.radius) / distance;
+        hull.centre[i] = a.centre[i] + offset[i] * (hull.radius - a.radius) / distance;
     hull.radius *= 1 + 1e-14;
     return hull;
 }
@@ -195,9 +195,9 @@ Box box_fold(Box box, const Range u[3], Range w)
 {
     if (box_is_empty(box))
         return box;
-    Box kept = clip_to_half_space(box, u, w);
-    if (box_is_empty(kept))
-        return kept;
+    Box retained = clip_to_half_space(box, u, w);
+    if (box_is_empty(retained))
+        return retained;
     /* The image is x - 2 (u.x - w) u, that is, (I - 2 u u^T) x + 2 w u. */
     Range rows[3][3], shift[3];
     for (int i = 0; i < 3; i++) {
@@ -207,5 +207,5 @@ Box box_fold(Box box, const Range u[3], Range w)
         }
         shift[i] = range_mul(range_of(2), range_mul(w, u[i]));
     }
-    return box_hull(kept, box_move(box_turn(kept, rows), shift));
+    return box_hull(retained, box_move(box_turn(retained, rows), shift));
 }

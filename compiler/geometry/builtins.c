@@ -41,10 +41,10 @@ static Value builtin_normalize(Elaboration *e, Call *call)
 
 static Value builtin_distance(Elaboration *e, Call *call)
 {
-    Value way = vector_op(e, call, OP_sub, 2);
-    if (way.type == VALUE_ERROR)
-        return way;
-    return value_of_node(e, graph_op1(e->graph, OP_length, value_node(e, way)));
+    Value offset = vector_op(e, call, OP_sub, 2);
+    if (offset.type == VALUE_ERROR)
+        return offset;
+    return value_of_node(e, graph_op1(e->graph, OP_length, value_node(e, offset)));
 }
 
 static Value scaled(Elaboration *e, Call *call, double factor)

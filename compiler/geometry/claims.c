@@ -75,7 +75,7 @@ static void claim_plane(Graph *g, ShapeClaims *claims, const Shape *shape)
 static Node offset_distance(Graph *g, const Shape *shape, Arena *scratch)
 {
     Lowering l   = {.graph = g, .scratch = scratch, .most = g->count + MOST_LOWERED};
-    Lowered  all = lower_shape(&l, shape, place_bare(graph_leaf(g, OP_POINT), true));
+    Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(g, OP_POINT), true));
     return l.overflow || all.distance == NODE_NONE ? NODE_NONE
                                                    : divide_by_slope(g, all.distance, shape->slope);
 }
@@ -266,19 +266,19 @@ static bool check_exact(Elaboration *e, const Shape *shape)
         double point[3], gradient[3], end[3];
         sample_point(i, s.around, point);
         sample_at(&s, point);
-        double way = s.values[distance].v[0];
-        if (!(way > 0) || !gradient_at(&s, distance, point, gradient))
+        double length = s.values[distance].v[0];
+        if (!(length > 0) || !gradient_at(&s, distance, point, gradient))
             continue;
         for (int k = 0; k < 3; k++)
-            end[k] = point[k] - way * gradient[k];
+            end[k] = point[k] - length * gradient[k];
         sample_at(&s, end);
         double rest = s.values[distance].v[0];
-        if (rest <= 1e-4 * way + 1e-5 * s.size)
+        if (rest <= 1e-4 * length + 1e-5 * s.size)
             continue;
         const char *found = diag_text(e->diags,
                                       "the surface is not %.4g away, as it says, but "
                                       "farther,",
-                                      way);
+                                      length);
         refuse_claim(e, shape->declaration, "exact", found, point);
         return false;
     }
@@ -290,16 +290,16 @@ static bool check_exact(Elaboration *e, const Shape *shape)
 /* Brings two points with different signs of a number to a millionth of the size, at its surface. */
 static void find_surface(const Sampling *s, Node number, double above[3], double below[3])
 {
-    double middle[3], apart;
+    double middle[3], separation;
     do {
-        apart = 0;
+        separation = 0;
         for (int i = 0; i < 3; i++) {
-            middle[i] = 0.5 * (above[i] + below[i]);
-            apart     = fmax(apart, fabs(above[i] - below[i]));
+            middle[i]  = 0.5 * (above[i] + below[i]);
+            separation = fmax(separation, fabs(above[i] - below[i]));
         }
         sample_at(s, middle);
         memcpy(s->values[number].v[0] > 0 ? above : below, middle, sizeof middle);
-    } while (apart > 1e-6 * s->size);
+    } while (separation > 1e-6 * s->size);
 }
 
 static bool refutes(const Sampling *s, const ShapeClaim *claim, double point[3])
@@ -385,8 +385,8 @@ static void find_surfaces(const Sampling *s, Node distance, Surfaces *surfaces)
     }
 }
 
-/* The place of the surface that is nearest to a point: how far that is. */
-static double way_to(const Surfaces *surfaces, const double p[3])
+/* The distance from a point to the nearest point of the surface. */
+static double distance_to(const Surfaces *surfaces, const double p[3])
 {
     double least = HUGE_VAL;
     for (uint32_t i = 0; i < surfaces->count; i++) {
@@ -396,7 +396,7 @@ static double way_to(const Surfaces *surfaces, const double p[3])
     return least;
 }
 
-/* A `bound` is no longer than the way to any place of the surface. */
+/* A `bound` is no larger than the distance to any point of the surface. */
 static bool check_bound(Elaboration *e, const Shape *shape, const Sampling *s,
                         const Surfaces *surfaces)
 {
@@ -407,11 +407,11 @@ static bool check_bound(Elaboration *e, const Shape *shape, const Sampling *s,
         double bound = s->values[shape->bound].v[0];
         if (!(s->values[shape->distance].v[0] > 0))
             continue;
-        double way = way_to(surfaces, point);
-        if (bound <= way * (1 + 1e-6) + 1e-6 * s->size)
+        double length = distance_to(surfaces, point);
+        if (bound <= length * (1 + 1e-6) + 1e-6 * s->size)
             continue;
         const char *found = diag_text(e->diags, "it is %.4g, and the surface %.4g away,", bound,
-                                      way);
+                                      length);
         refuse_claim(e, shape->declaration, "bound", found, point);
         return false;
     }

@@ -5,16 +5,16 @@
 
 #include <math.h>
 
-/* Parts of one box, at most about; parts of a cover, beyond which neighbours become one. */
-enum { BOX_PARTS = 64, MOST_PARTS = 1024, MOST_OUTSIDE = 16 };
+/* Cells that one box is cut into, about; cells of a cover, beyond which neighbours are merged. */
+enum { BOX_CELLS = 64, MOST_CELLS = 1024, MOST_OUTSIDE = 16 };
 
 /* Rounding, and how near to its surface the pole of an inversion counts as on it. */
 static const double ROUNDING = 1e-12, ON_SURFACE = 1e-6;
 
-/* What reaches farther is taken to be endless: a cover that is too loose near a pole. */
+/* A cell that reaches farther counts as endless: near a pole its ball is far too large. */
 static const double FARTHEST = 1e9;
 
-static const CoverPart everything = {.outside = true};
+static const CoverCell everything = {.outside = true};
 
 static double dot(const double a[3], const double b[3])
 {
@@ -35,15 +35,15 @@ static double middle_of(const Range range[3], double centre[3])
     return leave * (1 + ROUNDING) + ROUNDING * size;
 }
 
-/* The part about a centre in its ranges. */
-static CoverPart part_about(const Range centre[3], double radius, bool outside)
+/* The cell that holds a ball for every centre in the given ranges. */
+static CoverCell cell_about(const Range centre[3], double radius, bool outside)
 {
-    CoverPart part   = {.outside = outside};
-    double    leave  = middle_of(centre, part.ball.centre);
-    part.ball.radius = outside ? radius * (1 - ROUNDING) - leave : radius * (1 + ROUNDING) + leave;
-    bool finite      = part.ball.radius >= 0 && part.ball.radius <= FARTHEST &&
-                  dot(part.ball.centre, part.ball.centre) <= FARTHEST * FARTHEST;
-    return finite ? part : everything;
+    CoverCell cell   = {.outside = outside};
+    double    leave  = middle_of(centre, cell.ball.centre);
+    cell.ball.radius = outside ? radius * (1 - ROUNDING) - leave : radius * (1 + ROUNDING) + leave;
+    bool finite      = cell.ball.radius >= 0 && cell.ball.radius <= FARTHEST &&
+                  dot(cell.ball.centre, cell.ball.centre) <= FARTHEST * FARTHEST;
+    return finite ? cell : everything;
 }
 
 void cover_add(Arena *arena, Cover *cover, Box box)
@@ -57,22 +57,22 @@ void cover_add(Arena *arena, Cover *cover, Box box)
         most     = fmax(most, sides[i]);
     }
     for (int i = 0; i < 3; i++)
-        volume *= fmax(sides[i], most / BOX_PARTS);
-    double step = most > 0 ? cbrt(volume / BOX_PARTS) : 1;
+        volume *= fmax(sides[i], most / BOX_CELLS);
+    double step = most > 0 ? cbrt(volume / BOX_CELLS) : 1;
     for (int i = 0; i < 3; i++)
-        counts[i] = (size_t)fmax(1, fmin(round(sides[i] / step), BOX_PARTS));
+        counts[i] = (size_t)fmax(1, fmin(round(sides[i] / step), BOX_CELLS));
     for (size_t k = 0; k < counts[0] * counts[1] * counts[2]; k++) {
         size_t cell[3] = {k % counts[0], k / counts[0] % counts[1], k / counts[0] / counts[1]};
-        Box    part;
+        Box    piece;
         for (int i = 0; i < 3; i++) {
-            double width = sides[i] / (double)counts[i];
-            part.axis[i] = (Range){box.axis[i].low + width * (double)cell[i],
-                                   box.axis[i].low + width * (double)(cell[i] + 1)};
+            double width  = sides[i] / (double)counts[i];
+            piece.axis[i] = (Range){box.axis[i].low + width * (double)cell[i],
+                                    box.axis[i].low + width * (double)(cell[i] + 1)};
         }
-        Ball  ball      = ball_around(part);
+        Ball  ball      = ball_around(piece);
         Range centre[3] = {range_of(ball.centre[0]), range_of(ball.centre[1]),
                            range_of(ball.centre[2])};
-        array_push(arena, cover, part_about(centre, ball.radius, false));
+        array_push(arena, cover, cell_about(centre, ball.radius, false));
     }
 }
 
@@ -94,37 +94,37 @@ Box cover_box(const Cover *cover)
  * s r / |D|.  A ball around the pole (D < 0) goes to what is outside of that ball, and what is
  * outside of a ball around the pole goes to the inside.
  */
-static CoverPart invert(CoverPart part, Range s)
+static CoverCell invert(CoverCell cell, Range s)
 {
-    const double *c = part.ball.centre;
-    double        r = part.ball.radius, square = dot(c, c), d = square - r * r;
+    const double *c = cell.ball.centre;
+    double        r = cell.ball.radius, square = dot(c, c), d = square - r * r;
     if (!(fabs(d) > ON_SURFACE * (square + r * r)))
         return everything;
     Range centre[3];
     for (int i = 0; i < 3; i++)
         centre[i] = range_mul(s, range_of(c[i] / d));
-    bool outside = part.outside == (d > 0);
-    return part_about(centre, (outside ? s.low : s.high) * r / fabs(d), outside);
+    bool outside = cell.outside == (d > 0);
+    return cell_about(centre, (outside ? s.low : s.high) * r / fabs(d), outside);
 }
 
-static CoverPart map_part(CoverPart part, const MapRange *map)
+static CoverCell map_cell(CoverCell cell, const MapRange *map)
 {
     Range  c[3], turned[3];
     Range  scale  = map->scale;
-    double radius = part.ball.radius;
+    double radius = cell.ball.radius;
     for (int i = 0; i < 3; i++)
-        c[i] = range_of(part.ball.centre[i]);
+        c[i] = range_of(cell.ball.centre[i]);
     if (map->inverts) {
         for (int i = 0; i < 3; i++)
             c[i] = range_sub(c[i], map->pole[i]);
-        part = part_about(c, radius, part.outside);
-        if (part.outside && part.ball.radius == 0)
+        cell = cell_about(c, radius, cell.outside);
+        if (cell.outside && cell.ball.radius == 0)
             return everything;
-        part   = invert(part, scale);
+        cell   = invert(cell, scale);
         scale  = range_of(1);
-        radius = part.ball.radius;
+        radius = cell.ball.radius;
         for (int i = 0; i < 3; i++)
-            c[i] = range_of(part.ball.centre[i]);
+            c[i] = range_of(cell.ball.centre[i]);
     }
     for (int i = 0; i < 3; i++) {
         turned[i] = range_mul(map->rows[i][0], c[0]);
@@ -132,20 +132,20 @@ static CoverPart map_part(CoverPart part, const MapRange *map)
             turned[i] = range_add(turned[i], range_mul(map->rows[i][j], c[j]));
         turned[i] = range_add(range_mul(scale, turned[i]), map->shift[i]);
     }
-    if (part.outside && radius == 0)
+    if (cell.outside && radius == 0)
         return everything;
-    return part_about(turned, radius * (part.outside ? scale.low : scale.high), part.outside);
+    return cell_about(turned, radius * (cell.outside ? scale.low : scale.high), cell.outside);
 }
 
 void cover_map(Cover *cover, const MapRange *map)
 {
     for (size_t i = 0; i < cover->count; i++)
-        cover->items[i] = map_part(cover->items[i], map);
+        cover->items[i] = map_cell(cover->items[i], map);
 }
 
 /* ---- neighbours become one ---- */
 
-/* Parts that stand side by side, and a ball around all of them. */
+/* Cells that stand side by side, and a ball around all of them. */
 typedef struct Cluster {
     size_t from, to;
     Ball   ball;
@@ -167,10 +167,10 @@ static Cluster cluster_of(const Cover *cover, size_t from, size_t to)
     box_centre(box, cluster.ball.centre);
     for (size_t i = from; i < to; i++) {
         const Ball *ball = &cover->items[i].ball;
-        double      way[3];
+        double      offset[3];
         for (int k = 0; k < 3; k++)
-            way[k] = ball->centre[k] - cluster.ball.centre[k];
-        cluster.ball.radius = fmax(cluster.ball.radius, sqrt(dot(way, way)) + ball->radius);
+            offset[k] = ball->centre[k] - cluster.ball.centre[k];
+        cluster.ball.radius = fmax(cluster.ball.radius, sqrt(dot(offset, offset)) + ball->radius);
     }
     cluster.ball.radius *= 1 + ROUNDING;
     return cluster;
@@ -186,9 +186,9 @@ Ball cover_ball(const Cover *cover)
     return cluster_of(cover, 0, cover->count).ball;
 }
 
-/* The middle of the side on which the centres are spread most parts them; where they are all at
-   one place, their numbers do. */
-static size_t part_cluster(Cover *cover, const Cluster *cluster)
+/* Parts the cells at the middle of the axis on which their centres are spread most; where all
+   centres are one point, by their numbers. */
+static size_t partition(Cover *cover, const Cluster *cluster)
 {
     int axis = 0;
     for (int k = 1; k < 3; k++)
@@ -198,14 +198,14 @@ static size_t part_cluster(Cover *cover, const Cluster *cluster)
     double cut = middle(cluster->centres[axis]);
     size_t low = cluster->from;
     for (size_t i = cluster->from; i < cluster->to; i++) {
-        CoverPart part = cover->items[i];
-        if (part.ball.centre[axis] > cut)
+        CoverCell cell = cover->items[i];
+        if (cell.ball.centre[axis] > cut)
             continue;
         cover->items[i]     = cover->items[low];
-        cover->items[low++] = part;
+        cover->items[low++] = cell;
     }
-    bool apart = low > cluster->from && low < cluster->to;
-    return apart ? low : cluster->from + (cluster->to - cluster->from) / 2;
+    bool split = low > cluster->from && low < cluster->to;
+    return split ? low : cluster->from + (cluster->to - cluster->from) / 2;
 }
 
 /* What is worth parting: a single ball is not. */
@@ -239,32 +239,32 @@ static void rise(Cluster *heap, size_t count, Cluster cluster)
 /* From all balls in one, the largest cluster is parted until there are enough. */
 static void merge_balls(Arena *arena, Cover *cover, size_t from)
 {
-    size_t   count = 1, most = MOST_PARTS - from;
+    size_t   count = 1, most = MOST_CELLS - from;
     Cluster *heap = arena_new_array(arena, Cluster, most);
     heap[0]       = cluster_of(cover, from, cover->count);
     while (count < most && size_of(&heap[0]) >= 0) {
         Cluster whole = heap[0];
-        size_t  cut   = part_cluster(cover, &whole);
+        size_t  cut   = partition(cover, &whole);
         sink(heap, count, cluster_of(cover, whole.from, cut));
         rise(heap, count++, cluster_of(cover, cut, whole.to));
     }
     cover->count = from + count;
     for (size_t i = 0; i < count; i++)
-        cover->items[from + i] = (CoverPart){.ball = heap[i].ball};
+        cover->items[from + i] = (CoverCell){.ball = heap[i].ball};
 }
 
-/* At most MOST_PARTS; what is outside of balls comes first. */
+/* At most MOST_CELLS; what is outside of balls comes first. */
 static void merge(Arena *arena, Cover *cover)
 {
     size_t outside = 0;
-    if (cover->count <= MOST_PARTS)
+    if (cover->count <= MOST_CELLS)
         return;
     for (size_t i = 0; i < cover->count; i++) {
-        CoverPart part = cover->items[i];
-        if (!part.outside)
+        CoverCell cell = cover->items[i];
+        if (!cell.outside)
             continue;
         cover->items[i]         = cover->items[outside];
-        cover->items[outside++] = part;
+        cover->items[outside++] = cell;
     }
     if (outside > MOST_OUTSIDE) {
         cover->items[0] = everything;
@@ -276,37 +276,37 @@ static void merge(Arena *arena, Cover *cover)
 
 /* ---- mirrors ---- */
 
-static CoverPart mirrored(CoverPart part, const Range u[3], Range e)
+static CoverCell mirrored(CoverCell cell, const Range u[3], Range e)
 {
     Range centre[3];
-    if (part.outside && part.ball.radius == 0)
-        return part;
+    if (cell.outside && cell.ball.radius == 0)
+        return cell;
     for (int i = 0; i < 3; i++)
-        centre[i] = range_sub(range_of(part.ball.centre[i]),
+        centre[i] = range_sub(range_of(cell.ball.centre[i]),
                               range_mul(range_of(2), range_mul(e, u[i])));
-    return part_about(centre, part.ball.radius, part.outside);
+    return cell_about(centre, cell.ball.radius, cell.outside);
 }
 
 void cover_fold(Arena *arena, Cover *cover, const Range u[3], Range w)
 {
-    size_t kept = 0, count = cover->count;
+    size_t retained = 0, count = cover->count;
     Cover  images = {0};
     for (size_t i = 0; i < count; i++) {
-        CoverPart part = cover->items[i];
+        CoverCell cell = cover->items[i];
         Range     e    = range_sub(range_of(0), w);
         for (int k = 0; k < 3; k++)
-            e = range_add(e, range_mul(u[k], range_of(part.ball.centre[k])));
-        if (!part.outside && e.low >= 0) {
+            e = range_add(e, range_mul(u[k], range_of(cell.ball.centre[k])));
+        if (!cell.outside && e.low >= 0) {
             /* Less than half of a ball, and its image: one ball, or nothing. */
-            part.ball = ball_fold(part.ball, u, w);
-            if (part.ball.radius >= 0)
-                cover->items[kept++] = part;
+            cell.ball = ball_fold(cell.ball, u, w);
+            if (cell.ball.radius >= 0)
+                cover->items[retained++] = cell;
             continue;
         }
-        cover->items[kept++] = part;
-        array_push(arena, &images, mirrored(part, u, e));
+        cover->items[retained++] = cell;
+        array_push(arena, &images, mirrored(cell, u, e));
     }
-    cover->count = kept;
+    cover->count = retained;
     for (size_t i = 0; i < images.count; i++)
         array_push(arena, cover, images.items[i]);
     merge(arena, cover);

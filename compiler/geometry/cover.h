@@ -9,15 +9,15 @@
 
 #include "compiler/geometry/box.h"
 
-/* A ball, or what is not inside of it: all of space where its radius is 0. */
-typedef struct CoverPart {
+/* A ball, or the outside of it: all of space where its radius is 0. */
+typedef struct CoverCell {
     Ball ball;
     bool outside;
-} CoverPart;
+} CoverCell;
 
 /* Zero is the empty set. */
 typedef struct Cover {
-    CoverPart *items;
+    CoverCell *items;
     size_t     count, capacity;
 } Cover;
 

@@ -139,7 +139,7 @@ static void report_steep(Elaboration *e, const Syntax *declaration, const Syntax
     Diag *diag  = diag_add(e->diags, DIAG_STEEP, span, "the slope of `%s` has no bound",
                            declaration->name);
     diag->label = "this can change arbitrarily fast";
-    diag_place(e->diags, diag, distance->span, "the distance is this expression");
+    diag_secondary(e->diags, diag, distance->span, "the distance is this expression");
     diag->help = "give the shape a bounded `within`, or keep this part away from divisions by "
                  "zero and jumps";
 }
@@ -159,7 +159,7 @@ static bool derive_slope(Elaboration *e, Shape *shape, const Syntax *declaration
     shape->derived   = slope.bound;
     shape->region    = slope.region;
     shape->per_frame = slope.slot != NODE_NONE;
-    shape->distance  = bring_out(e, shape->distance, &slope);
+    shape->distance  = extend_from_region(e, shape->distance, &slope);
     return true;
 }
 
@@ -272,9 +272,9 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
     arena_free(e->scratch);
     shape->core = find_property(declaration, "core");
     if (shape->core) {
-        Environment *kept = arena_new(e->arena, Environment);
-        *kept             = *env;
-        shape->core_names = kept;
+        Environment *copy = arena_new(e->arena, Environment);
+        *copy             = *env;
+        shape->core_names = copy;
     }
     if (first && shape->core && !try_core(e, shape))
         return value_error();

@@ -82,7 +82,7 @@ static Shape *deformed_shape(Elaboration *e, ShapeKind kind, const char *name, c
     Shape *deformed = shape_new(e, kind, name, call->syntax->span, &shape, 1);
     deformed->slope = 1; /* what it lowers to has been divided by all slopes */
     deformed->exact = false;
-    check_steady(e, deformed, "a deformation", call->syntax->span);
+    check_lipschitz(e, deformed, "a deformation", call->syntax->span);
     return deformed;
 }
 
@@ -97,7 +97,7 @@ static void note_slope(Shape *deformed, double slope)
 /* (b + sqrt(b^2 + 4)) / 2, the norm of a shear by b. */
 static double shear_norm(double b) { return 0.5 * (b + hypot(b, 2)); }
 
-/* The part `i` of CELLS of a range. */
+/* Cell `i` of the CELLS of a range. */
 static Range range_cell(Range range, int i)
 {
     double width = (range.high - range.low) / CELLS, low = range.low + i * width;
@@ -160,31 +160,31 @@ static Range range_sinc(Range a)
     return (Range){fmax(value - rise, -0.2173), fmin(value + rise, 1)};
 }
 
-/* y and z of the bent box: where its cells go, for all parts of the range of the rate. */
+/* y and z of the bent box: where its cells go, for all cells of the range of the rate. */
 static Box bend_box(Box box, Range rate)
 {
     Range z = box.axis[2], half = range_of(0.5);
     Box   bent  = box_empty;
-    int   parts = range_is_single(rate) ? 1 : CELLS;
-    for (int i = 0; i < parts * CELLS; i++) {
-        Range k = parts == 1 ? rate : range_cell(rate, i / CELLS);
+    int   rates = range_is_single(rate) ? 1 : CELLS;
+    for (int i = 0; i < rates * CELLS; i++) {
+        Range k = rates == 1 ? rate : range_cell(rate, i / CELLS);
         Range y = range_cell(box.axis[1], i % CELLS), angle = range_mul(k, y);
         Range lean = range_mul(half, angle), sinc = range_sinc(lean);
-        Range along = range_mul(y, range_sinc(angle)); /* of the line z = 0 */
-        Range aside = range_mul(range_mul(y, lean), range_square(sinc));
-        Box   cell  = {{box.axis[0], range_sub(along, range_mul(z, range_sin(angle))),
-                        range_add(aside, range_mul(z, range_cos(angle)))}};
-        bent        = box_hull(bent, cell);
+        Range along   = range_mul(y, range_sinc(angle)); /* of the line z = 0 */
+        Range lateral = range_mul(range_mul(y, lean), range_square(sinc));
+        Box   cell    = {{box.axis[0], range_sub(along, range_mul(z, range_sin(angle))),
+                          range_add(lateral, range_mul(z, range_cos(angle)))}};
+        bent          = box_hull(bent, cell);
     }
     return bent;
 }
 
-/* Parts of a quarter turn each, as far as the rate may go. */
-static uint32_t bend_parts(Box box, Range rate)
+/* Segments of a quarter turn each, for the largest rate. */
+static uint32_t bend_segments(Box box, Range rate)
 {
     double turn = range_largest(rate) * (box.axis[1].high - box.axis[1].low);
     double most = ceil(turn / (0.5 * M_PI) - 1e-9);
-    return most > 1 ? (uint32_t)fmin(most, MOST_BEND_PARTS + 1) : 1;
+    return most > 1 ? (uint32_t)fmin(most, MOST_BEND_SEGMENTS + 1) : 1;
 }
 
 /* A bend with the rate k has its axis at z = 1 / k, where all lengths vanish; this much must be
@@ -195,15 +195,15 @@ static bool check_bend(Elaboration *e, const Call *call, Box box, Range rate)
 {
     Range z = box.axis[2], shrink = range_mul(rate, z);
     bool  reaches = !(shrink.high <= 1 - LEAST_LENGTH);
-    if (!reaches && bend_parts(box, rate) <= MOST_BEND_PARTS)
+    if (!reaches && bend_segments(box, rate) <= MOST_BEND_SEGMENTS)
         return true;
-    double most = 0.5 * M_PI * MOST_BEND_PARTS / (box.axis[1].high - box.axis[1].low);
+    double most = 0.5 * M_PI * MOST_BEND_SEGMENTS / (box.axis[1].high - box.axis[1].low);
     double high = z.high > 0 ? (1 - LEAST_LENGTH) / z.high : INFINITY;
     double low  = z.low < 0 ? (1 - LEAST_LENGTH) / z.low : -INFINITY;
     Diag  *diag = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[1].syntax->span,
                           reaches ? "so bent, the shape would reach the axis of the bend"
                                    : "so bent, the shape would turn around more than %d times",
-                           MOST_BEND_PARTS / 4);
+                           MOST_BEND_SEGMENTS / 4);
     diag->label = range_is_single(rate) ? diag_text(e->diags, "this is %g", rate.low)
                   : isinf(rate.low) && isinf(rate.high)
                       ? "this can be any number"
@@ -221,9 +221,9 @@ static const Shape *make_bend(Elaboration *e, const Shape *shape, const Call *ca
         return NULL;
     Shape *bent     = deformed_shape(e, SHAPE_BEND, "bend", shape, call);
     bent->values[0] = values[0];
-    bent->cells[0]  = bend_parts(shape->box, rate);
+    bent->cells[0]  = bend_segments(shape->box, rate);
     bent->box       = bend_box(shape->box, rate);
-    /* Parts overlap by the depth of the solid, so that they have no walls between them. */
+    /* Segments overlap by the depth of the solid, so that they have no walls between them. */
     double depth  = 0.5 * (shape->box.axis[2].high - shape->box.axis[2].low);
     bent->overlap = fmin(depth, 0.6 / fmax(range_largest(rate), 1e-9));
     return bent;
@@ -244,8 +244,8 @@ static const Map *bend_turn(Elaboration *e, Node axis)
     Node upright  = graph_op2(g, OP_less, graph_number(g, 0.999), steep);
     Node stands   = graph_op3(g, OP_select, upright, x, y);
     Node along    = graph_op2(g, OP_dot, stands, unit);
-    Node part     = graph_op2(g, OP_scale, unit, along);
-    Node across   = graph_op2(g, OP_sub, stands, part);
+    Node parallel = graph_op2(g, OP_scale, unit, along);
+    Node across   = graph_op2(g, OP_sub, stands, parallel);
     turn->rows[0] = unit;
     turn->rows[1] = graph_op1(g, OP_normalize, across);
     turn->rows[2] = graph_op2(g, OP_cross, unit, turn->rows[1]);

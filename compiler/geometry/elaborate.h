@@ -123,9 +123,9 @@ Value value_binary(Elaboration *e, const Syntax *syntax, Value a, Value b);
 /* `if` on a condition that is a node: both branches are there, one is chosen. */
 Value value_select(Elaboration *e, const Syntax *syntax, Value condition, Value yes, Value no);
 /* An operation that works element by element, on numbers and vectors whose types go together
-   (graph_op_type); `place` is blamed for results that are not finite. */
+   (graph_op_type); `origin` is blamed for results that are not finite. */
 Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count,
-                   const Syntax *place);
+                   const Syntax *origin);
 /* A number, vector or truth value, plain where the node is constant. */
 Value value_of_node(Elaboration *e, Node node);
 /* Takes over `items`, which are in the arena. */
@@ -237,13 +237,13 @@ size_t builtin_names(const char **names, size_t capacity);
 BuiltinFunction builtin_sum, builtin_product, builtin_any, builtin_all, builtin_least,
     builtin_greatest, builtin_len, builtin_range;
 
-/* ---- chance.c ---- */
+/* ---- random.c ---- */
 BuiltinFunction builtin_random, builtin_random_direction, builtin_noise, builtin_fbm;
 
-/* ---- joining.c ---- */
+/* ---- csg.c ---- */
 BuiltinFunction builtin_union, builtin_intersection, builtin_difference, builtin_xor, builtin_morph;
-/* The shapes of a call: a shape, or the elements of a list; `place` is blamed.  False: reported. */
-bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *place,
+/* The shapes of a call: a shape, or the elements of a list.  False: reported, at `origin`. */
+bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *origin,
                     Values *shapes);
 /* These shapes, if they are all solids or all figures; NULL: reported. */
 const Shape **joinable_shapes(Elaboration *e, const Call *call, const Values *values);
@@ -292,24 +292,24 @@ Node steepness_node(Graph *graph, const Steepness *slope);
 Node divide_by_steepness(Graph *graph, Node distance, const Steepness *slope);
 
 /* ---- field.c: solids given by an expression that is negative inside ---- */
-/* NULL: reported at `place`, the call.  `algebraic`: it must be a polynomial. */
-const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Syntax *place);
+/* NULL: reported at `origin`, the call.  `algebraic`: it must be a polynomial. */
+const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Syntax *origin);
 /* A bound on the distance to where an expression is 0 in the region over which it has this slope:
    that of the nearest point in it, brought out.  1-Lipschitz everywhere. */
-Node bring_out(Elaboration *e, Node formula, const Steepness *slope);
-/* The same shape where only what is in the box matters: fields in it get their bound there; `even`:
-   one that is about the distance near their surfaces, if it can be had. */
-const Shape *restrict_shape(Elaboration *e, const Shape *shape, Box box, bool even);
+Node extend_from_region(Elaboration *e, Node formula, const Steepness *slope);
+/* The same shape where only what is in the box matters: fields in it get their bound there.
+   `uniform`: one that is about the distance near their surfaces, if possible. */
+const Shape *restrict_shape(Elaboration *e, const Shape *shape, Box box, bool uniform);
 /* Reports a field in the tree that has no bound. */
 bool check_bounded(Elaboration *e, const Shape *shape);
 
-/* ---- meta.c ---- */
+/* ---- metasurface.c ---- */
 BuiltinFunction builtin_meta;
 
-/* ---- make_fractal.c ---- */
+/* ---- shapes_fractal.c ---- */
 BuiltinFunction builtin_julia, builtin_mandelbulb;
 /* Reports a distance of which nothing is proven, below something (`what`) that moves a surface. */
-void check_steady(Elaboration *e, const Shape *shape, const char *what, Span span);
+void check_lipschitz(Elaboration *e, const Shape *shape, const char *what, Span span);
 
 /* ---- methods.c ---- */
 Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax);
@@ -323,7 +323,7 @@ Value method_bend(Elaboration *e, const Shape *shape, Call *call);
 Value method_taper(Elaboration *e, const Shape *shape, Call *call);
 Value method_displace(Elaboration *e, const Shape *shape, Call *call);
 
-/* ---- make.c: shapes from shapes, each with its rule for box and slope ---- */
+/* ---- shapes.c: shapes from shapes, each with its rule for box and slope ---- */
 /* A shape with these children, and what most kinds take over from them. */
 Shape       *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
                        const Shape *const *children, uint32_t count);
@@ -344,11 +344,11 @@ const Shape *make_sheet(Elaboration *e, const Shape *shape, Node thickness, Span
 const Shape *make_elongate(Elaboration *e, const Shape *shape, Node half, Span span);
 const Shape *make_extrude(Elaboration *e, const Shape *figure, Node height, Span span);
 const Shape *make_revolve(Elaboration *e, const Shape *figure, Node offset, Span span);
-/* NULL: the shape does not fit its cell, which is reported at `place`. */
+/* NULL: the shape does not fit its cell, which is reported at `origin`. */
 const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const uint32_t cells[3],
-                         const Syntax *place);
+                         const Syntax *origin);
 const Shape *make_repeat_polar(Elaboration *e, const Shape *shape, uint32_t count,
-                               const Syntax *place);
+                               const Syntax *origin);
 const Shape *make_mirror(Elaboration *e, const Shape *shape, Node normal, Node offset, Span span);
 /* The width may be NODE_NONE: a pixel's. */
 const Shape *make_smooth(Elaboration *e, const Shape *shape, Node width, Span span);
@@ -357,7 +357,7 @@ const Shape *make_paint(Elaboration *e, const Shape *shape, const Material *mate
 /* Reports a shape that is endless, at the place of an inversion. */
 bool check_invertible(Elaboration *e, const Shape *shape, Span span);
 /* NULL: something endless is inverted, which is reported. */
-const Shape *make_krs(Elaboration *e, const Stage *stages, uint32_t stage_count,
+const Shape *make_krs(Elaboration *e, const SequenceStage *stages, uint32_t stage_count,
                       const Shape *const *kernels, uint32_t kernel_count, Span span);
 /* Unit normal and offset of a shape that is a plane, also a moved, turned or scaled one. */
 bool shape_plane(Elaboration *e, const Shape *shape, Node *normal, Node *offset);
@@ -396,16 +396,40 @@ const Map *map_of_matrix(Elaboration *e, const double entries[4][4], const char 
 const Map *moebius_product(Elaboration *e, const Map *f, const Map *g);
 const Map *inversion_inverse(Elaboration *e, const Map *f);
 
-/* ---- looks.c: cameras, lights, sky, image, materials ---- */
+/* ---- properties.c: blocks with properties, and values of those ---- */
+/* Reports properties that a block of this kind may not have, and those that are given twice. */
+void check_block(Elaboration *e, const Syntax *block);
+/* "a camera", for messages. */
+const char *block_name(SyntaxKind kind);
 /* The value of `name:` in a block of properties, or NULL. */
 const Syntax *find_property(const Syntax *block, const char *name);
-Value         elaborate_material(Elaboration *e, const Environment *env, const Syntax *syntax);
-/* Adds a camera or light to the scene, or sets its sky or image. */
-void elaborate_look(Elaboration *e, const Environment *env, const Syntax *syntax);
-/* Adds what the scene leaves out: a camera, a sun, a sky. */
-void finish_looks(Elaboration *e);
+/* A number or a vector that does not depend on the point; `otherwise` when it is not given, or is
+   of another type, which is reported. */
+Node number_property(Elaboration *e, const Environment *env, const Syntax *block, const char *name,
+                     double otherwise);
+Node vector_property(Elaboration *e, const Environment *env, const Syntax *block, const char *name,
+                     const double otherwise[3]);
+/* The same of a position, which must be near enough for devices to compute with. */
+Node position_property(Elaboration *e, const Environment *env, const Syntax *block,
+                       const char *name, const double otherwise[3]);
+/* A number that must be known when the scene is compiled, and lie in a range. */
+double constant_property(Elaboration *e, const Environment *env, const Syntax *block,
+                         const char *name, double least, double most, double otherwise);
+/* One of a few words, the last `later` of which are known but not in this version; NULL when it
+   is not given, or not one that is there. */
+const char *word_property(Elaboration *e, const Environment *env, const Syntax *block,
+                          const char *name, const char *const *words, size_t count, size_t later);
+
+/* ---- material.c ---- */
+Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *syntax);
 /* A material, or a colour that becomes one; NULL: reported. */
 const Material *to_material(Elaboration *e, Value value, const Syntax *syntax);
+
+/* ---- view.c: cameras, lights, sky, image, zones ---- */
+/* Adds a camera, a light or a zone to the scene, or sets its sky or image. */
+void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax);
+/* Adds what the scene leaves out: a camera, a sun, a sky. */
+void complete_view(Elaboration *e);
 
 /* ---- statements.c ---- */
 /* The shape of a `krs` block. */

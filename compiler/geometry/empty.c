@@ -80,7 +80,7 @@ static bool is_nowhere(Elaboration *e, const Shape *shape)
 {
     Graph   *g     = e->graph;
     Lowering l     = {.graph = g, .scratch = e->scratch, .most = g->count + MOST_LOWERED};
-    Lowered  all   = lower_shape(&l, shape, place_bare(graph_leaf(g, OP_POINT), true));
+    Lowered  all   = lower_shape(&l, shape, context_new(graph_leaf(g, OP_POINT), true));
     bool     empty = all.distance == NODE_NONE;
     if (!l.overflow && !empty) {
         Node       distance   = divide_by_slope(g, all.distance, shape->slope);
@@ -117,8 +117,8 @@ void warn_if_nothing_is_left(Elaboration *e, const Shape *shape, const char *nam
     Diag *diag  = diag_add(e->diags, DIAG_NO_EFFECT, span, "`%s` is empty", name);
     diag->label = "nothing of this can be seen";
     if (inner->kind == SHAPE_KRS)
-        diag_place(e->diags, diag, inner->span, "the mirrors discard all of its kernels");
+        diag_secondary(e->diags, diag, inner->span, "the mirrors discard all of its kernels");
     else
-        diag_place(e->diags, diag, inner->span,
-                   diag_text(e->diags, "nothing is left by this `%s`", inner->name));
+        diag_secondary(e->diags, diag, inner->span,
+                       diag_text(e->diags, "nothing is left by this `%s`", inner->name));
 }

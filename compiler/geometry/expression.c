@@ -32,7 +32,7 @@ static bool step(Elaboration *e, Span span)
 
 bool check_shape_count(Elaboration *e, const List *list, Span span)
 {
-    if (list->total > MOST_SHAPE_PARTS)
+    if (list->total > MOST_TREE_SHAPES)
         limit_reached(e, span,
                       "a list of more than 100,000 shapes, counted as often as they occur");
     return !e->stopped;

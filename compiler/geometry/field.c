@@ -35,10 +35,10 @@ static Node series_distance(Graph *g, const Series *s)
     return graph_op2(g, OP_mul, sign, series_radius(g, s));
 }
 
-static const Shape *refuse_polynomial(Elaboration *e, SeriesFault fault, const Syntax *place)
+static const Shape *refuse_polynomial(Elaboration *e, SeriesFault fault, const Syntax *origin)
 {
     Span span = e->graph->items[fault.blame].span;
-    span      = span.source ? span : place->span;
+    span      = span.source ? span : origin->span;
     if (fault.degree > 0) {
         Diag *diag  = diag_add(e->diags, DIAG_NOT_POLYNOMIAL, span,
                                "a polynomial of degree %u is too high", fault.degree);
@@ -48,7 +48,7 @@ static const Shape *refuse_polynomial(Elaboration *e, SeriesFault fault, const S
     Diag *diag = diag_add(e->diags, DIAG_NOT_POLYNOMIAL, span, "the equation is not a polynomial");
     const char *name = graph_op_name(e->graph->items[fault.blame].op);
     diag->label      = diag_text(e->diags, "`%s` of coordinates is none", name);
-    diag_place(e->diags, diag, place->span, "in this equation");
+    diag_secondary(e->diags, diag, origin->span, "in this equation");
     diag->help = "`field(...)` takes any expression";
     return NULL;
 }
@@ -68,17 +68,17 @@ static Node nearest_in(Graph *g, Node point, Box box)
 }
 
 /* A bound on the distance at the point's nearest point in C, brought out to the point. */
-static Node brought_out(Graph *g, Node bound, Box box)
+static Node extend_from_box(Graph *g, Node bound, Box box)
 {
     if (!box_is_finite(box))
         return bound;
     Node point = graph_leaf(g, OP_POINT), zero = graph_number(g, 0);
-    Node away    = box_distance(g, point, box);
+    Node excess  = box_distance(g, point, box);
     Node outside = graph_op2(g, OP_max, bound, zero);
-    Node sides   = beyond_sides(g, point, box);
+    Node sides   = sides_excess(g, point, box);
     Node inside  = sides == NODE_NONE ? bound : graph_op2(g, OP_max, bound, sides);
     inside       = graph_op2(g, OP_min, inside, zero);
-    Node both    = graph_op1(g, OP_length, graph_op2(g, OP_vec2, away, outside));
+    Node both    = graph_op1(g, OP_length, graph_op2(g, OP_vec2, excess, outside));
     return graph_op2(g, OP_add, both, inside);
 }
 
@@ -101,8 +101,8 @@ static Node near_zeros(Elaboration *e, Node distance, ZeroBox zeros)
     if (!box_is_finite(zeros.box))
         return distance;
     distance = at_nearest(e, distance, zeros.box);
-    return zeros.sign > 0 ? brought_out(g, distance, zeros.box)
-                          : opposite(g, brought_out(g, opposite(g, distance), zeros.box));
+    return zeros.sign > 0 ? extend_from_box(g, distance, zeros.box)
+                          : opposite(g, extend_from_box(g, opposite(g, distance), zeros.box));
 }
 
 static void settle_polynomial(Elaboration *e, Shape *shape, const Series *series)
@@ -116,14 +116,14 @@ static void settle_polynomial(Elaboration *e, Shape *shape, const Series *series
         shape->box = shape->zeros.box;
 }
 
-Node bring_out(Elaboration *e, Node formula, const Steepness *slope)
+Node extend_from_region(Elaboration *e, Node formula, const Steepness *slope)
 {
     Node inner = at_nearest(e, formula, slope->region);
-    return brought_out(e->graph, divide_by_steepness(e->graph, inner, slope), slope->region);
+    return extend_from_box(e->graph, divide_by_steepness(e->graph, inner, slope), slope->region);
 }
 
 /* Finds the slope over a region, which may be all space; infinite when there is no bound. */
-static void settle(Elaboration *e, Shape *shape, Box box, bool even)
+static void settle(Elaboration *e, Shape *shape, Box box, bool uniform)
 {
     Steepness slope;
     bool      bounded = find_slope(e, shape->formula, &box, 1, shape->span, &slope);
@@ -134,13 +134,13 @@ static void settle(Elaboration *e, Shape *shape, Box box, bool even)
     shape->per_frame  = slope.slot != NODE_NONE;
     if (!bounded)
         return;
-    shape->distance = bring_out(e, shape->formula, &slope);
+    shape->distance = extend_from_region(e, shape->formula, &slope);
     if (shape->per_frame)
         return;
-    FieldBounds bounds = field_bounds(e, shape->formula, slope.bound, box, even);
-    shape->distance    = brought_out(e->graph, at_nearest(e, bounds.steady, box), box);
+    FieldBounds bounds = field_bounds(e, shape->formula, slope.bound, box, uniform);
+    shape->distance    = extend_from_box(e->graph, at_nearest(e, bounds.lipschitz, box), box);
     if (bounds.sharp != NODE_NONE)
-        shape->bound = brought_out(e->graph, at_nearest(e, bounds.sharp, box), box);
+        shape->bound = extend_from_box(e->graph, at_nearest(e, bounds.sharp, box), box);
 }
 
 /* ---- the solids ---- */
@@ -168,11 +168,11 @@ static const Shape *refuse_constant(Elaboration *e, const Shape *shape)
     return NULL;
 }
 
-const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Syntax *place)
+const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Syntax *origin)
 {
     Series      series;
     SeriesFault fault;
-    Shape *shape = shape_new(e, SHAPE_PRIMITIVE, algebraic ? "algebraic" : "field", place->span,
+    Shape *shape = shape_new(e, SHAPE_PRIMITIVE, algebraic ? "algebraic" : "field", origin->span,
                              NULL, 0);
     if (!depends_on_point(e, formula))
         return refuse_constant(e, shape);
@@ -186,7 +186,7 @@ const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Synt
             return refuse_constant(e, shape);
         settle_polynomial(e, shape, &series);
     } else if (algebraic) {
-        return refuse_polynomial(e, fault, place);
+        return refuse_polynomial(e, fault, origin);
     } else {
         settle(e, shape, box_infinite, false);
     }
@@ -205,7 +205,7 @@ static void restrict_polynomial(Elaboration *e, Shape *restricted, Box box)
     restricted->distance = at_nearest(e, restricted->distance, restricted->region);
 }
 
-static const Shape *restrict_field(Elaboration *e, const Shape *shape, Box box, bool even)
+static const Shape *restrict_field(Elaboration *e, const Shape *shape, Box box, bool uniform)
 {
     if (!box_is_finite(box))
         return shape;
@@ -216,47 +216,47 @@ static const Shape *restrict_field(Elaboration *e, const Shape *shape, Box box, 
         restrict_polynomial(e, restricted, box);
         return restricted;
     }
-    settle(e, restricted, box, even);
+    settle(e, restricted, box, uniform);
     arena_free(e->scratch);
     return restricted;
 }
 
 /* The children over the same box, grown by what the joint may reach around. */
-static const Shape *restrict_joint(Elaboration *e, const Shape *shape, Box box, bool even)
+static const Shape *restrict_joint(Elaboration *e, const Shape *shape, Box box, bool uniform)
 {
     const Shape **children = arena_new_array(e->arena, const Shape *, shape->child_count + 1);
     double reach = shape->blend.width == NODE_NONE ? 0 : node_range(e, shape->blend.width, 0).high;
     for (uint32_t i = 0; i < shape->child_count; i++)
-        children[i] = restrict_shape(e, shape->children[i], box_grow(box, reach), even);
+        children[i] = restrict_shape(e, shape->children[i], box_grow(box, reach), uniform);
     return make_joint(e, shape->kind, children, shape->child_count, shape->blend, shape->span);
 }
 
-const Shape *restrict_shape(Elaboration *e, const Shape *shape, Box box, bool even)
+const Shape *restrict_shape(Elaboration *e, const Shape *shape, Box box, bool uniform)
 {
     if (!shape->fields || box_is_empty(box))
         return shape;
     const Shape *child = shape->child_count ? shape->children[0] : NULL;
     switch (shape->kind) {
-    case SHAPE_PRIMITIVE: return restrict_field(e, shape, box, even);
+    case SHAPE_PRIMITIVE: return restrict_field(e, shape, box, uniform);
     case SHAPE_UNION:
     case SHAPE_INTERSECTION:
     case SHAPE_DIFFERENCE:
-    case SHAPE_XOR: return restrict_joint(e, shape, box, even);
+    case SHAPE_XOR: return restrict_joint(e, shape, box, uniform);
     case SHAPE_OFFSET: {
         double r = range_largest(node_range(e, shape->values[0], 0));
-        child    = restrict_shape(e, child, box_grow(box, r), even);
+        child    = restrict_shape(e, child, box_grow(box, r), uniform);
         return make_offset(e, child, shape->values[0], shape->span);
     }
     case SHAPE_SHELL: {
         double t = range_largest(node_range(e, shape->values[0], 0));
-        child    = restrict_shape(e, child, box_grow(box, 0.5 * t), even);
+        child    = restrict_shape(e, child, box_grow(box, 0.5 * t), uniform);
         return make_shell(e, child, shape->values[0], shape->span);
     }
     case SHAPE_PAINT:
-        return make_paint(e, restrict_shape(e, child, box, even), shape->material, shape->span);
+        return make_paint(e, restrict_shape(e, child, box, uniform), shape->material, shape->span);
     case SHAPE_TRANSFORM: {
         Box before = map_box(e, map_inverse(e, &shape->map), box);
-        child      = restrict_shape(e, child, before, even);
+        child      = restrict_shape(e, child, before, uniform);
         return make_transform(e, child, &shape->map, shape->span);
     }
     default: return shape;
@@ -283,7 +283,7 @@ bool check_bounded(Elaboration *e, const Shape *shape)
     Span         span  = field->blame.source ? field->blame : field->span;
     Diag        *diag  = diag_add(e->diags, DIAG_STEEP, span, "the slope of a field has no bound");
     diag->label        = "this can change arbitrarily fast";
-    diag_place(e->diags, diag, field->span, "in this field");
+    diag_secondary(e->diags, diag, field->span, "in this field");
     diag->help = box_is_finite(field->region)
                      ? "keep this part away from divisions by zero and jumps"
                      : "cut it to a region: `.within(box([4, 4, 4]))`; or keep this part away "

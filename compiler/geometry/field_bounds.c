@@ -25,7 +25,7 @@
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/local.h"
 
-/* Into how many parts a region is cut for slopes: of gradients, which decide how long all steps
+/* Into how many cells a region is cut for slopes: of gradients, which decide how long all steps
    are, and of heads, of which there are many. */
 enum { CELLS = 512, HEAD_CELLS = 32 };
 
@@ -203,8 +203,8 @@ static Node by_second_order(Elaboration *e, Node f, Box box)
     Node size    = graph_op1(g, OP_abs, f);
     Node steep   = graph_op1(g, OP_length, gradient);
     Node squared = graph_op2(g, OP_dot, gradient, gradient);
-    Node room    = graph_op2(g, OP_mul, size, graph_number(g, 2 * bend));
-    Node root    = graph_op1(g, OP_sqrt, graph_op2(g, OP_add, squared, room));
+    Node margin  = graph_op2(g, OP_mul, size, graph_number(g, 2 * bend));
+    Node root    = graph_op1(g, OP_sqrt, graph_op2(g, OP_add, squared, margin));
     Node sum     = at_least(g, graph_op2(g, OP_add, steep, root), TINY);
     Node twice   = graph_op2(g, OP_mul, size, graph_number(g, 2));
     return graph_op2(g, OP_div, twice, sum);
@@ -221,13 +221,13 @@ static Node by_local_slope(Elaboration *e, Node f, Box box, double least)
 /* ---- rays on trial ---- */
 
 /* Rays through a box, in double precision, at the parameters' defaults. */
-typedef struct March {
+typedef struct TrialMarch {
     const Graph     *graph;
     Box              box;
     const NodeValue *parameters;
     double           least; /* step */
     Arena           *scratch;
-} March;
+} TrialMarch;
 
 enum { MARCHED_RAYS = 24, MOST_STEPS = 96 };
 
@@ -240,15 +240,15 @@ static TrialRay trial_ray(Box box, uint32_t i)
 {
     static const double root = 1.1347241384015194;
     TrialRay            ray;
-    double              length = 0, place[6];
+    double              length = 0, coordinates[6];
     for (int k = 0; k < 6; k++) {
-        Range  side = box.axis[k % 3];
-        double t    = fmod(0.5 + (i + 1) * pow(root, -(k + 1)), 1);
-        place[k]    = side.low + t * (side.high - side.low);
+        Range  side    = box.axis[k % 3];
+        double t       = fmod(0.5 + (i + 1) * pow(root, -(k + 1)), 1);
+        coordinates[k] = side.low + t * (side.high - side.low);
     }
     for (int k = 0; k < 3; k++) {
-        ray.from[k]      = place[k];
-        ray.direction[k] = place[k + 3] - place[k];
+        ray.from[k]      = coordinates[k];
+        ray.direction[k] = coordinates[k + 3] - coordinates[k];
         length           = hypot(length, ray.direction[k]);
     }
     for (int k = 0; k < 3; k++)
@@ -257,7 +257,7 @@ static TrialRay trial_ray(Box box, uint32_t i)
 }
 
 /* The distance at t; below 0 beyond the box. */
-static double distance_along(const March *m, const Tape *tape, Node root, const TrialRay *ray,
+static double distance_along(const TrialMarch *m, const Tape *tape, Node root, const TrialRay *ray,
                              double t, NodeValue *values)
 {
     double point[3];
@@ -285,7 +285,7 @@ static double length_through(Box box, const TrialRay *ray)
 /* Evaluations up to the surface or the sides of the box.  As the tracer's, a step is as long as
    balls of empty space around its ends are expected to meet, and is taken back if they do not.
    When MOST_STEPS do not suffice, the others are taken to be as long. */
-static double count_steps(const March *m, const Tape *tape, Node root, const TrialRay *ray,
+static double count_steps(const TrialMarch *m, const Tape *tape, Node root, const TrialRay *ray,
                           NodeValue *values)
 {
     double   t = 0, step = 0, change = -1;
@@ -309,7 +309,7 @@ static double count_steps(const March *m, const Tape *tape, Node root, const Tri
 }
 
 /* Multiply-adds of all steps by a distance. */
-static double march_cost(const March *m, Node distance)
+static double trial_march_cost(const TrialMarch *m, Node distance)
 {
     const double OVERHEAD = 20; /* of the tracer, a step */
     Tape         tape     = tape_new(m->graph, &distance, 1, m->scratch);
@@ -330,7 +330,7 @@ static double march_cost(const March *m, Node distance)
     return steps * cost;
 }
 
-static March march_new(Elaboration *e, Box box)
+static TrialMarch trial_march_new(Elaboration *e, Box box)
 {
     Box        tried      = box_is_finite(box) ? box : (Box){{{-10, 10}, {-10, 10}, {-10, 10}}};
     NodeValue *parameters = arena_new_array(e->scratch, NodeValue, e->graph->parameters.count);
@@ -339,7 +339,7 @@ static March march_new(Elaboration *e, Box box)
         for (int k = 0; k < 4; k++)
             parameters[parameter->slot].v[k] = parameter->value[k];
     }
-    return (March){e->graph, tried, parameters, 3e-5 * box_diagonal(tried), e->scratch};
+    return (TrialMarch){e->graph, tried, parameters, 3e-5 * box_diagonal(tried), e->scratch};
 }
 
 /* ---- the choice ---- */
@@ -354,13 +354,14 @@ static Node lengthened(Graph *g, Node formula, Node distance, Node bound)
 
 /* The cheapest of some distances (NODE_NONE: not there), if it is clearly cheaper than the one that
    there is already; *cost follows. */
-static Node cheapest(const March *march, Node present, const Node *others, int count, double *cost)
+static Node cheapest(const TrialMarch *march, Node present, const Node *others, int count,
+                     double *cost)
 {
     const double LEAD  = 0.85;
     Node         best  = present;
     double       least = LEAD * *cost;
     for (int i = 0; i < count; i++) {
-        double tried = others[i] == NODE_NONE ? HUGE_VAL : march_cost(march, others[i]);
+        double tried = others[i] == NODE_NONE ? HUGE_VAL : trial_march_cost(march, others[i]);
         if (tried >= least)
             continue;
         least = *cost = tried;
@@ -369,31 +370,31 @@ static Node cheapest(const March *march, Node present, const Node *others, int c
     return best;
 }
 
-FieldBounds field_bounds(Elaboration *e, Node formula, double slope, Box box, bool even)
+FieldBounds field_bounds(Elaboration *e, Node formula, double slope, Box box, bool uniform)
 {
     /* Of the slope, what a local one may be: fields may be flatter by far where the surface is. */
-    static const double shares[] = {0.25, 0x1p-6, 0x1p-11, 0x1p-17, 0x1p-24, 0x1p-32, 0x1p-42};
-    enum { SHARES = sizeof shares / sizeof *shares };
+    static const double fractions[] = {0.25, 0x1p-6, 0x1p-11, 0x1p-17, 0x1p-24, 0x1p-32, 0x1p-42};
+    enum { FRACTIONS = sizeof fractions / sizeof *fractions };
     Graph      *g      = e->graph;
-    March       march  = march_new(e, box);
+    TrialMarch  march  = trial_march_new(e, box);
     FieldBounds bounds = {divide_by_slope(g, formula, slope), NODE_NONE};
     Node        heads = by_heads(e, formula, box), order = by_second_order(e, formula, box);
-    Node        steady[3] = {NODE_NONE, NODE_NONE, NODE_NONE}, sharp[SHARES];
-    double      cost      = HUGE_VAL;
-    if (even && order != NODE_NONE)
-        bounds.steady = lengthened(g, formula, bounds.steady, order);
+    Node        lipschitz[3] = {NODE_NONE, NODE_NONE, NODE_NONE}, sharp[FRACTIONS];
+    double      cost         = HUGE_VAL;
+    if (uniform && order != NODE_NONE)
+        bounds.lipschitz = lengthened(g, formula, bounds.lipschitz, order);
     else if (order != NODE_NONE)
-        steady[0] = lengthened(g, formula, bounds.steady, order);
+        lipschitz[0] = lengthened(g, formula, bounds.lipschitz, order);
     if (heads != NODE_NONE)
-        steady[1] = lengthened(g, formula, bounds.steady, heads);
-    if (heads != NODE_NONE && steady[0] != NODE_NONE)
-        steady[2] = lengthened(g, formula, steady[0], heads);
-    cost          = march_cost(&march, bounds.steady);
-    bounds.steady = cheapest(&march, bounds.steady, steady, 3, &cost);
-    for (int i = 0; i < SHARES; i++) {
-        Node local = by_local_slope(e, formula, box, slope * shares[i]);
-        sharp[i]   = local == NODE_NONE ? local : lengthened(g, formula, bounds.steady, local);
+        lipschitz[1] = lengthened(g, formula, bounds.lipschitz, heads);
+    if (heads != NODE_NONE && lipschitz[0] != NODE_NONE)
+        lipschitz[2] = lengthened(g, formula, lipschitz[0], heads);
+    cost             = trial_march_cost(&march, bounds.lipschitz);
+    bounds.lipschitz = cheapest(&march, bounds.lipschitz, lipschitz, 3, &cost);
+    for (int i = 0; i < FRACTIONS; i++) {
+        Node local = by_local_slope(e, formula, box, slope * fractions[i]);
+        sharp[i]   = local == NODE_NONE ? local : lengthened(g, formula, bounds.lipschitz, local);
     }
-    bounds.sharp = cheapest(&march, NODE_NONE, sharp, SHARES, &cost);
+    bounds.sharp = cheapest(&march, NODE_NONE, sharp, FRACTIONS, &cost);
     return bounds;
 }

@@ -8,12 +8,12 @@
 
 /* For points in the box, as to what is in it; both with the sign of the expression. */
 typedef struct FieldBounds {
-    Node steady; /* 1-Lipschitz */
-    Node sharp;  /* a longer one that is not, or NODE_NONE */
+    Node lipschitz; /* 1-Lipschitz */
+    Node sharp;     /* a longer one that is not, or NODE_NONE */
 } FieldBounds;
 
-/* Those that cost rays least, of an expression that has this slope over the box.  `even`: near the
-   surface the distance shall be about right everywhere, if it can be had. */
-FieldBounds field_bounds(Elaboration *e, Node formula, double slope, Box box, bool even);
+/* The bounds that cost rays least, of an expression that has this slope over the box.  `uniform`:
+   near the surface the distance shall be about right everywhere, if possible. */
+FieldBounds field_bounds(Elaboration *e, Node formula, double slope, Box box, bool uniform);
 
 #endif

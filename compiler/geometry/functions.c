@@ -41,8 +41,8 @@ static uint32_t find_parameter(Elaboration *e, const Syntax *definition, const S
 }
 
 /* Arguments that are given, evaluated in the caller's environment, by parameter. */
-static bool gather(Elaboration *e, const Environment *env, const Syntax *call,
-                   const Syntax *definition, Value *values, const Syntax **places)
+static bool gather_arguments(Elaboration *e, const Environment *env, const Syntax *call,
+                             const Syntax *definition, Value *values, const Syntax **origins)
 {
     uint32_t count = parameter_count(definition), next = 0;
     bool     good = true;
@@ -61,23 +61,23 @@ static bool gather(Elaboration *e, const Environment *env, const Syntax *call,
             note_signature(e, diag, definition);
             return false;
         }
-        if (places[slot]) {
+        if (origins[slot]) {
             Diag *diag = diag_add(e->diags, DIAG_TOO_MANY_ARGUMENTS, argument->span,
                                   "`%s` is given twice", definition->children[slot]->name);
-            diag_place(e->diags, diag, places[slot]->span, "given here first");
+            diag_secondary(e->diags, diag, origins[slot]->span, "given here first");
             good = false;
             continue;
         }
-        values[slot] = value;
-        places[slot] = argument->children[0];
-        good         = good && value.type != VALUE_ERROR;
+        values[slot]  = value;
+        origins[slot] = argument->children[0];
+        good          = good && value.type != VALUE_ERROR;
     }
     return good;
 }
 
 /* The default of a shape's parameter shows what it must be: a number or a vector, how long. */
 static bool fits_default(Elaboration *e, const Environment *env, const Function *function,
-                         const Syntax *parameter, Value value, const Syntax *place)
+                         const Syntax *parameter, Value value, const Syntax *origin)
 {
     if (function->syntax->kind != SYNTAX_SHAPE || parameter->count == 0)
         return true;
@@ -85,12 +85,12 @@ static bool fits_default(Elaboration *e, const Environment *env, const Function 
     if (value_size(e, usual) == 0 || value_size(e, usual) == value_size(e, value))
         return true;
     const char *found = value_type_name(e, value);
-    Diag       *diag  = diag_add(e->diags, DIAG_TYPE_MISMATCH, place->span,
+    Diag       *diag  = diag_add(e->diags, DIAG_TYPE_MISMATCH, origin->span,
                                  "`%s` of `%s` must be %s, found %s", parameter->name, function->name,
                                  value_type_name(e, usual), found);
     diag->label       = diag_text(e->diags, "this is %s", found);
     note_signature(e, diag, function->syntax);
-    point_at_definition(e, diag, place);
+    point_at_definition(e, diag, origin);
     return false;
 }
 
@@ -125,9 +125,9 @@ static const char *range_text(Elaboration *e, Range range)
     return text.bytes;
 }
 
-/* A parameter with a range takes numbers in it; `place` is the argument, or the default. */
+/* A parameter with a range takes numbers in it; `origin` is the argument, or the default. */
 static bool fits_range(Elaboration *e, const Environment *env, const Function *function,
-                       const Syntax *parameter, Value value, const Syntax *place)
+                       const Syntax *parameter, Value value, const Syntax *origin)
 {
     Range range, found;
     if (parameter->count < 2)
@@ -135,34 +135,34 @@ static bool fits_range(Elaboration *e, const Environment *env, const Function *f
     if (!parameter_range(e, env, parameter, &range))
         return false;
     if (value_size(e, value) != 1) {
-        type_error(e, place, value, "a number");
+        type_error(e, origin, value, "a number");
         return false;
     }
     found = value.type == VALUE_NUMBER ? (Range){value.number, value.number}
                                        : node_range(e, value_node(e, value), 0);
     if (range.low <= found.low && found.high <= range.high)
         return true;
-    Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, place->span, "`%s` of `%s` must be %s",
+    Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, origin->span, "`%s` of `%s` must be %s",
                            parameter->name, function->name, range_text(e, range));
     diag->label = diag_text(e->diags, found.low < found.high ? "this can be %s" : "this is %s",
                             range_text(e, found));
     note_signature(e, diag, function->syntax);
-    point_at_definition(e, diag, place);
+    point_at_definition(e, diag, origin);
     return false;
 }
 
 /* Binds given values and defaults; a default, and a range, sees the parameters before it. */
 static bool bind_parameters(Elaboration *e, const Function *function, const Value *values,
-                            const Syntax *const *places, const Syntax *call, Environment *env)
+                            const Syntax *const *origins, const Syntax *call, Environment *env)
 {
     const Syntax *definition = function->syntax;
     *env                     = *function->closure;
     for (uint32_t i = 0; i < parameter_count(definition); i++) {
         const Syntax *parameter = definition->children[i];
         Value         value;
-        if (places[i]) {
+        if (origins[i]) {
             value = values[i];
-            if (!fits_default(e, env, function, parameter, value, places[i]))
+            if (!fits_default(e, env, function, parameter, value, origins[i]))
                 return false;
         } else if (parameter->count)
             value = evaluate(e, env, parameter->children[0]);
@@ -173,7 +173,7 @@ static bool bind_parameters(Elaboration *e, const Function *function, const Valu
         }
         if (value.type == VALUE_ERROR ||
             !fits_range(e, env, function, parameter, value,
-                        places[i] ? places[i] : parameter->children[0]))
+                        origins[i] ? origins[i] : parameter->children[0]))
             return false;
         *env = bind(e, env, parameter->name, value);
     }
@@ -182,18 +182,18 @@ static bool bind_parameters(Elaboration *e, const Function *function, const Valu
 
 /* A shape's sizes are the same at every point. */
 static bool check_shape_arguments(Elaboration *e, const Function *function, const Value *values,
-                                  const Syntax *const *places)
+                                  const Syntax *const *origins)
 {
     for (uint32_t i = 0; i < parameter_count(function->syntax); i++) {
-        if (!places[i])
+        if (!origins[i])
             continue;
         BindingTime time = value_time(e, values[i]);
         Node        node = time == TIME_FRAME ? value_node(e, values[i]) : NODE_NONE;
-        if (node != NODE_NONE && !check_finite(e, node, places[i]))
+        if (node != NODE_NONE && !check_finite(e, node, origins[i]))
             return false;
         if (time == TIME_POINT) {
             const char *name = function->syntax->children[i]->name;
-            point_error(e, places[i], diag_text(e->diags, "`%s` of `%s`", name, function->name));
+            point_error(e, origins[i], diag_text(e->diags, "`%s` of `%s`", name, function->name));
             return false;
         }
     }
@@ -218,12 +218,12 @@ static bool add_value(Text *text, const Elaboration *e, Value value)
 
 /* "called with levels = 18, size = [1, 2, 1]": numbers and vectors that are known. */
 static void note_arguments(Elaboration *e, Diag *diag, const Function *function,
-                           const Value *values, const Syntax *const *places)
+                           const Value *values, const Syntax *const *origins)
 {
     Text text = {.arena = e->diags->arena};
     for (uint32_t i = 0; i < parameter_count(function->syntax); i++) {
         Text value = {.arena = e->diags->arena};
-        if (!places[i] || !add_value(&value, e, values[i]))
+        if (!origins[i] || !add_value(&value, e, values[i]))
             continue;
         text_format(&text, "%s%s = %s", text.length ? ", " : "called with ",
                     function->syntax->children[i]->name, value.bytes);
@@ -237,35 +237,36 @@ static void note_arguments(Elaboration *e, Diag *diag, const Function *function,
  * to the call, and the place in the library becomes the second one.
  */
 static void blame_caller(Elaboration *e, size_t first, const Syntax *syntax,
-                         const Function *function, const Value *values, const Syntax *const *places)
+                         const Function *function, const Value *values,
+                         const Syntax *const *origins)
 {
     const Source *sources = e->sources->items;
     if (sources[syntax->span.source].library)
         return;
-    size_t kept = first;
+    size_t retained = first;
     for (size_t i = first; i < e->diags->count; i++) {
         Diag *diag  = e->diags->items[i];
         bool  error = diag_info[diag->code].severity == DIAG_ERROR;
         bool  ours  = sources[diag->span.source].library && diag->span.source;
-        if (ours && error && kept > first) { /* one mistake at the call, one report */
+        if (ours && error && retained > first) { /* one mistake at the call, one report */
             e->diags->errors--;
             continue;
         }
-        e->diags->items[kept++] = diag;
+        e->diags->items[retained++] = diag;
         if (!ours)
             continue;
-        diag_place(e->diags, diag, diag->span, diag->label ? diag->label : "found here");
+        diag_secondary(e->diags, diag, diag->span, diag->label ? diag->label : "found here");
         diag->span        = syntax->span;
         diag->label       = diag_text(e->diags, "in this call of `%s`", function->name);
         diag->replacement = NULL;
-        note_arguments(e, diag, function, values, places);
+        note_arguments(e, diag, function, values, origins);
     }
-    e->diags->count = kept;
+    e->diags->count = retained;
 }
 
 /* The body of a function, or the shape that a declaration makes, for arguments in order. */
 static Value call_values(Elaboration *e, const Function *function, const Value *values,
-                         const Syntax *const *places, const Syntax *syntax)
+                         const Syntax *const *origins, const Syntax *syntax)
 {
     if (e->calls >= MOST_CALLS) {
         if (!e->stopped)
@@ -278,14 +279,14 @@ static Value call_values(Elaboration *e, const Function *function, const Value *
     size_t      said   = e->diags->count;
     Value       result = value_error();
     e->calls++;
-    if (bind_parameters(e, function, values, places, syntax, &env)) {
+    if (bind_parameters(e, function, values, origins, syntax, &env)) {
         if (function->syntax->kind == SYNTAX_SHAPE)
             result = declare_instance(e, function, &env, syntax->span);
         else
             result = evaluate(e, &env, function->syntax->children[function->syntax->count - 1]);
     }
     e->calls--;
-    blame_caller(e, said, syntax, function, values, places);
+    blame_caller(e, said, syntax, function, values, origins);
     return result;
 }
 
@@ -322,13 +323,13 @@ Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax
 {
     if (function->builtin)
         return call_builtin(e, env, syntax, function->builtin);
-    uint32_t       count  = parameter_count(function->syntax);
-    Value         *values = arena_new_array(e->arena, Value, count + 1);
-    const Syntax **places = arena_new_array(e->arena, const Syntax *, count + 1);
-    if (!gather(e, env, syntax, function->syntax, values, places))
+    uint32_t       count   = parameter_count(function->syntax);
+    Value         *values  = arena_new_array(e->arena, Value, count + 1);
+    const Syntax **origins = arena_new_array(e->arena, const Syntax *, count + 1);
+    if (!gather_arguments(e, env, syntax, function->syntax, values, origins))
         return value_error();
     if (function->syntax->kind == SYNTAX_SHAPE &&
-        !check_shape_arguments(e, function, values, places))
+        !check_shape_arguments(e, function, values, origins))
         return value_error();
-    return call_values(e, function, values, places, syntax);
+    return call_values(e, function, values, origins, syntax);
 }

@@ -15,30 +15,30 @@ static const List *list_argument(Elaboration *e, const Call *call, uint32_t inde
 }
 
 /* Reduces values with a binary operation, in pairs, so that the graph stays shallow. */
-static Value reduce(Elaboration *e, Op op, const Value *items, size_t count, const Syntax *place)
+static Value reduce(Elaboration *e, Op op, const Value *items, size_t count, const Syntax *origin)
 {
     if (count == 1)
         return items[0];
     size_t half = count / 2;
-    Value  a    = reduce(e, op, items, half, place);
-    Value  b    = reduce(e, op, items + half, count - half, place);
+    Value  a    = reduce(e, op, items, half, origin);
+    Value  b    = reduce(e, op, items + half, count - half, origin);
     if (a.type == VALUE_ERROR || b.type == VALUE_ERROR)
         return value_error();
     Node nodes[] = {value_node(e, a), value_node(e, b)};
     if (nodes[0] == NODE_NONE || nodes[1] == NODE_NONE) {
-        type_error(e, place, nodes[0] == NODE_NONE ? a : b,
+        type_error(e, origin, nodes[0] == NODE_NONE ? a : b,
                    op == OP_and || op == OP_or ? "truth values" : "numbers or vectors");
         return value_error();
     }
     GraphType types[] = {e->graph->items[nodes[0]].type, e->graph->items[nodes[1]].type};
     if (!graph_op_type(op, types, 2)) {
-        diag_add(e->diags, DIAG_TYPE_MISMATCH, place->span, "%s and %s do not go together",
+        diag_add(e->diags, DIAG_TYPE_MISMATCH, origin->span, "%s and %s do not go together",
                  value_type_name(e, a), value_type_name(e, b));
         return value_error();
     }
     if (op == OP_and || op == OP_or)
         return value_of_node(e, graph_op(e->graph, op, nodes));
-    return value_map_op(e, op, (Value[]){a, b}, 2, place);
+    return value_map_op(e, op, (Value[]){a, b}, 2, origin);
 }
 
 /* Of the elements of the first argument; `empty` when it has none. */
@@ -46,15 +46,15 @@ static Value reduce_list(Elaboration *e, Call *call, Op op, Value empty)
 {
     if (call->arguments[0].value.type == VALUE_EXPRESSION) { /* a vector known only as a node */
         Node     vector = call->arguments[0].value.node;
-        Value    parts[4];
+        Value    components[4];
         uint32_t type = e->graph->items[vector].type;
         if (type > TYPE_VEC4) {
             type_error(e, call->arguments[0].syntax, call->arguments[0].value, "a list");
             return value_error();
         }
         for (uint32_t i = 0; i < type; i++)
-            parts[i] = value_of_node(e, graph_component(e->graph, vector, i));
-        return reduce(e, op, parts, type, call->syntax);
+            components[i] = value_of_node(e, graph_component(e->graph, vector, i));
+        return reduce(e, op, components, type, call->syntax);
     }
     const List *list = list_argument(e, call, 0);
     if (!list)

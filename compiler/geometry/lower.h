@@ -70,7 +70,7 @@ bool has_thin_sheets(const Shape *shape);
 Node box_distance(Graph *graph, Node point, Box box);
 /* How far outside of a box a point is along the axis where that is most; negative inside.
    NODE_NONE of a box that no axis bounds. */
-Node beyond_sides(Graph *graph, Node point, Box box);
+Node sides_excess(Graph *graph, Node point, Box box);
 
 /* What grows `slope` times as fast as distance, made safe. */
 Node divide_by_slope(Graph *graph, Node distance, double slope);

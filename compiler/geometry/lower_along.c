@@ -86,9 +86,9 @@ static Node fall_towards(Lowering *l, const Node *terms, uint32_t n, uint32_t i)
     Graph *g   = l->graph;
     Node   sum = NODE_NONE;
     for (uint32_t k = 1; k <= i; k++) {
-        double share = -binomial(i, k) / binomial(n, k) * n / i;
-        Node   term  = graph_op2(g, OP_mul, terms[k], number(l, share));
-        sum          = sum == NODE_NONE ? term : graph_op2(g, OP_add, sum, term);
+        double fraction = -binomial(i, k) / binomial(n, k) * n / i;
+        Node   term     = graph_op2(g, OP_mul, terms[k], number(l, fraction));
+        sum             = sum == NODE_NONE ? term : graph_op2(g, OP_add, sum, term);
     }
     return sum;
 }
@@ -107,9 +107,9 @@ static Node safe_step(Lowering *l, const Series *s)
         Node fall = fall_towards(l, terms, s->degree, i);
         steepest  = steepest == NODE_NONE ? fall : graph_op2(g, OP_max, steepest, fall);
     }
-    Node share = graph_op2(g, OP_div, s->c[0], at_least(l, steepest, TINY));
-    share      = graph_op2(g, OP_min, share, number(l, 1));
-    return graph_op2(g, OP_mul, piece, share);
+    Node fraction = graph_op2(g, OP_div, s->c[0], at_least(l, steepest, TINY));
+    fraction      = graph_op2(g, OP_min, fraction, number(l, 1));
+    return graph_op2(g, OP_mul, piece, fraction);
 }
 
 /* The r with r sum n |Pn| r^(n-1) = |P0|: the fixed point of the paper, found as a root, since its
@@ -147,14 +147,14 @@ static void clip_ray(Lowering *l, Box box, Ray ray, Node *enter, Node *leave)
         Range side = box.axis[i];
         if (!isfinite(side.low) && !isfinite(side.high))
             continue;
-        Node from = graph_component(g, ray.point, i), way = graph_component(g, ray.direction, i);
+        Node from = graph_component(g, ray.point, i), slope = graph_component(g, ray.direction, i);
         Node tiny = number(l, 1e-18);
-        way = graph_op3(g, OP_select, graph_op2(g, OP_less, graph_op1(g, OP_abs, way), tiny), tiny,
-                        way);
-        Node low  = graph_op2(g, OP_sub, number(l, fmax(side.low, -1e18)), from);
+        slope    = graph_op3(g, OP_select, graph_op2(g, OP_less, graph_op1(g, OP_abs, slope), tiny),
+                             tiny, slope);
+        Node low = graph_op2(g, OP_sub, number(l, fmax(side.low, -1e18)), from);
         Node high = graph_op2(g, OP_sub, number(l, fmin(side.high, 1e18)), from);
-        low       = graph_op2(g, OP_div, low, way);
-        high      = graph_op2(g, OP_div, high, way);
+        low       = graph_op2(g, OP_div, low, slope);
+        high      = graph_op2(g, OP_div, high, slope);
         *enter    = graph_op2(g, OP_max, *enter, graph_op2(g, OP_min, low, high));
         *leave    = graph_op2(g, OP_min, *leave, graph_op2(g, OP_max, low, high));
     }
@@ -174,8 +174,8 @@ static Node clamp_to(Lowering *l, Node point, Box box)
 /* The place of a ray where it enters a box; in the box, whatever is rounded. */
 static Node entrance(Lowering *l, Box box, Ray ray, Node enter)
 {
-    Node way = graph_op2(l->graph, OP_scale, ray.direction, enter);
-    return clamp_to(l, graph_op2(l->graph, OP_add, ray.point, way), box);
+    Node offset = graph_op2(l->graph, OP_scale, ray.direction, enter);
+    return clamp_to(l, graph_op2(l->graph, OP_add, ray.point, offset), box);
 }
 
 /* Where all zeros are in a box, a ray from outside goes there first, and the series is that about
@@ -204,8 +204,8 @@ static Node along_cut(Lowering *l, const Shape *shape, Ray ray)
     Node        origin = clamp_to(l, ray.point, shape->region);
     if (!graph_line_series(g, shape->formula, origin, ray.direction, &s, &fault, l->scratch))
         return NODE_NONE;
-    Node away    = graph_op2(g, OP_sub, ray.point, origin);
-    Node outside = graph_op2(g, OP_less, number(l, 0), graph_op2(g, OP_dot, away, away));
+    Node offset  = graph_op2(g, OP_sub, ray.point, origin);
+    Node outside = graph_op2(g, OP_less, number(l, 0), graph_op2(g, OP_dot, offset, offset));
     return graph_op3(g, OP_select, outside, number(l, 0), along_series(l, &s));
 }
 
@@ -229,7 +229,7 @@ static Node along(Lowering *l, const Shape *shape, Ray ray);
 
 static Node along_distance(Lowering *l, const Shape *shape, Ray ray)
 {
-    Lowered ball = lower_shape(l, shape, place_bare(ray.point, false));
+    Lowered ball = lower_shape(l, shape, context_new(ray.point, false));
     if (ball.distance == NODE_NONE)
         return NODE_NONE;
     Node distance = divide_by_slope(l->graph, ball.distance, shape->slope);
@@ -264,14 +264,14 @@ static Node value_at(Lowering *l, const Shape *shape, Node point)
     case SHAPE_SMOOTH: return value_at(l, shape->children[0], point);
     default: break;
     }
-    return lower_shape(l, shape, place_bare(point, false)).distance;
+    return lower_shape(l, shape, context_new(point, false)).distance;
 }
 
 /* A place of the ray behind its point. */
-static Node place_behind_point(Lowering *l, Ray ray)
+static Node context_behind_point(Lowering *l, Ray ray)
 {
-    Node way = graph_op2(l->graph, OP_scale, ray.direction, ray.back);
-    return graph_op2(l->graph, OP_sub, ray.point, way);
+    Node offset = graph_op2(l->graph, OP_scale, ray.direction, ray.back);
+    return graph_op2(l->graph, OP_sub, ray.point, offset);
 }
 
 /* How far behind a point sheets are looked for in what cuts them, `ahead` along the ray: up to the
@@ -279,7 +279,7 @@ static Node place_behind_point(Lowering *l, Ray ray)
 static Node back_within(Lowering *l, const Shape *shape, Ray ray, Node ahead)
 {
     Graph *g      = l->graph;
-    Node   behind = place_behind_point(l, ray), before = NODE_NONE;
+    Node   behind = context_behind_point(l, ray), before = NODE_NONE;
     for (uint32_t i = 0; i < shape->child_count; i++)
         if (!shape->children[i]->sheets)
             before = joined(l, OP_max, before, value_at(l, shape->children[i], behind));
@@ -351,7 +351,7 @@ static Node along_sheet(Lowering *l, const Shape *shape, Ray ray)
     if (step == NODE_NONE)
         return step;
     Node here   = value_at(l, shape->children[0], ray.point);
-    Node before = value_at(l, shape->children[0], place_behind_point(l, ray));
+    Node before = value_at(l, shape->children[0], context_behind_point(l, ray));
     Node turned = graph_op2(g, OP_mul, graph_op1(g, OP_sign, here), graph_op1(g, OP_sign, before));
     Node size = graph_op1(g, OP_abs, here), all = graph_op1(g, OP_abs, before);
     all         = at_least(l, graph_op2(g, OP_add, size, all), TINY);

@@ -3,8 +3,6 @@
  */
 #include "compiler/geometry/lowering.h"
 
-#include <math.h>
-
 static Node join_distances(Graph *g, Blend blend, Node a, Node b)
 {
     if (blend.width == NODE_NONE)
@@ -43,56 +41,57 @@ static Lowered complement(Lowering *l, Lowered a)
     return a;
 }
 
-Place joint_place(const Shape *shape, Place place)
+LowerContext joint_context(const Shape *shape, LowerContext context)
 {
-    return shape->blend.width == NODE_NONE ? place : place_steady(place);
+    return shape->blend.width == NODE_NONE ? context : context_lipschitz(context);
 }
 
 /* What is only a bound may be small far from the shape; the distance to the sides of its box is a
-   bound as well, and with it the place where it is r lies within r of the box, as the boxes of make.c
-   say. */
-Lowered lower_operand(Lowering *l, const Shape *shape, Place place)
+   bound as well, and with it the points where it is r lie within r of the box, as the boxes of
+   shapes.c say. */
+Lowered lower_operand(Lowering *l, const Shape *shape, LowerContext context)
 {
-    Lowered result = lower_shape(l, shape, place_steady(place));
+    Lowered result = lower_shape(l, shape, context_lipschitz(context));
     if (result.distance == NODE_NONE || shape->exact)
         return result;
-    Node beyond = beyond_sides(l->graph, place.point, shape->box);
-    if (beyond != NODE_NONE)
-        result.distance = graph_op2(l->graph, OP_max, result.distance, beyond);
+    Node excess = sides_excess(l->graph, context.point, shape->box);
+    if (excess != NODE_NONE)
+        result.distance = graph_op2(l->graph, OP_max, result.distance, excess);
     return result;
 }
 
-static Lowered lower_joined(Lowering *l, const Shape *joint, const Shape *child, Place place)
+static Lowered lower_joined(Lowering *l, const Shape *joint, const Shape *child,
+                            LowerContext context)
 {
-    return joint->blend.width == NODE_NONE ? lower_shape(l, child, place)
-                                           : lower_operand(l, child, place);
+    return joint->blend.width == NODE_NONE ? lower_shape(l, child, context)
+                                           : lower_operand(l, child, context);
 }
 
 /* Joined in pairs, so that the graph stays shallow and a blend of many keeps its slope. */
 static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *children,
-                        uint32_t count, Place place)
+                        uint32_t count, LowerContext context)
 {
     if (count == 0)
         return lowered_nothing;
     if (count == 1)
-        return lower_joined(l, shape, children[0], place);
+        return lower_joined(l, shape, children[0], context);
     uint32_t half  = count / 2;
-    Lowered  left  = union_of(l, shape, children, half, place);
-    Lowered  right = union_of(l, shape, children + half, count - half, place);
+    Lowered  left  = union_of(l, shape, children, half, context);
+    Lowered  right = union_of(l, shape, children + half, count - half, context);
     return join_two(l, shape->blend, left, right);
 }
 
-Lowered lower_union(Lowering *l, const Shape *shape, Place place)
+Lowered lower_union(Lowering *l, const Shape *shape, LowerContext context)
 {
-    return union_of(l, shape, shape->children, shape->child_count, place);
+    return union_of(l, shape, shape->children, shape->child_count, context);
 }
 
-Lowered lower_intersection(Lowering *l, const Shape *shape, Place place)
+Lowered lower_intersection(Lowering *l, const Shape *shape, LowerContext context)
 {
     /* The complement of the union of the complements. */
-    Lowered all = lower_joined(l, shape, shape->children[0], place);
+    Lowered all = lower_joined(l, shape, shape->children[0], context);
     for (uint32_t i = 1; i < shape->child_count; i++) {
-        Lowered next = lower_joined(l, shape, shape->children[i], place);
+        Lowered next = lower_joined(l, shape, shape->children[i], context);
         if (all.distance == NODE_NONE || next.distance == NODE_NONE)
             return lowered_nothing;
         Lowered joined = join_two(l, shape->blend, complement(l, all), complement(l, next));
@@ -101,10 +100,10 @@ Lowered lower_intersection(Lowering *l, const Shape *shape, Place place)
     return all;
 }
 
-Lowered lower_difference(Lowering *l, const Shape *shape, Place place)
+Lowered lower_difference(Lowering *l, const Shape *shape, LowerContext context)
 {
-    Lowered left  = lower_joined(l, shape, shape->children[0], place);
-    Lowered right = union_of(l, shape, shape->children + 1, shape->child_count - 1, place);
+    Lowered left  = lower_joined(l, shape, shape->children[0], context);
+    Lowered right = union_of(l, shape, shape->children + 1, shape->child_count - 1, context);
     if (left.distance == NODE_NONE || right.distance == NODE_NONE)
         return left;
     Lowered joined = join_two(l, shape->blend, complement(l, left), right);
@@ -112,10 +111,10 @@ Lowered lower_difference(Lowering *l, const Shape *shape, Place place)
 }
 
 /* What is in one of two: their union less what they share. */
-Lowered lower_xor(Lowering *l, const Shape *shape, Place place)
+Lowered lower_xor(Lowering *l, const Shape *shape, LowerContext context)
 {
-    Lowered a = lower_joined(l, shape, shape->children[0], place);
-    Lowered b = lower_joined(l, shape, shape->children[1], place);
+    Lowered a = lower_joined(l, shape, shape->children[0], context);
+    Lowered b = lower_joined(l, shape, shape->children[1], context);
     if (a.distance == NODE_NONE || b.distance == NODE_NONE)
         return join_two(l, shape->blend, a, b);
     Lowered result = join_two(l, shape->blend, a, b);
@@ -125,10 +124,10 @@ Lowered lower_xor(Lowering *l, const Shape *shape, Place place)
     return result;
 }
 
-Lowered lower_morph(Lowering *l, const Shape *shape, Place place)
+Lowered lower_morph(Lowering *l, const Shape *shape, LowerContext context)
 {
-    Lowered a = lower_shape(l, shape->children[0], place_steady(place));
-    Lowered b = lower_shape(l, shape->children[1], place_steady(place));
+    Lowered a = lower_shape(l, shape->children[0], context_lipschitz(context));
+    Lowered b = lower_shape(l, shape->children[1], context_lipschitz(context));
     if (a.distance == NODE_NONE || b.distance == NODE_NONE)
         return a.distance == NODE_NONE ? b : a;
     Graph  *g       = l->graph;

@@ -59,69 +59,71 @@ static Node over_angle(Graph *g, Op f, Node a)
 
 /* ---- what deformations share ---- */
 
-/* A point in C as far as it is known: nearest to the point, how far from it, and undone. */
-typedef struct Undone {
-    Node away, point;
+/* The deformation undone at the point of C that is nearest to a point: how far that is, and the
+   point before the deformation. */
+typedef struct InverseDeformation {
+    Node offset, point;
     Node in[3], out[3]; /* rows of matrices that take normals to the child's space, and back */
     Node shrink;        /* how much larger things are in the child's space; NODE_NONE: not */
-} Undone;
+} InverseDeformation;
 
 static Node times_rows(Graph *g, const Node rows[3], Node vector)
 {
-    Node parts[3];
+    Node products[3];
     for (int i = 0; i < 3; i++)
-        parts[i] = graph_op2(g, OP_dot, rows[i], vector);
-    return graph_op(g, OP_vec3, parts);
+        products[i] = graph_op2(g, OP_dot, rows[i], vector);
+    return graph_op(g, OP_vec3, products);
 }
 
 static Node row(Graph *g, Node x, Node y, Node z) { return graph_op3(g, OP_vec3, x, y, z); }
 
 /* The child where the deformation is undone, by a distance with the slope 1. */
-static Lowered lower_undone(Lowering *l, const Shape *shape, Place place, const Undone *undone)
+static Lowered lower_undone(Lowering *l, const Shape *shape, LowerContext context,
+                            const InverseDeformation *inverse)
 {
     Graph       *g     = l->graph;
     const Shape *child = shape->children[0];
-    Place        inner = place_steady(place_at(place, undone->point));
+    LowerContext inner = context_lipschitz(context_at(context, inverse->point));
     if (l->surfaces) {
-        inner.normal = graph_op1(g, OP_normalize, times_rows(g, undone->in, place.normal));
-        if (undone->shrink != NODE_NONE)
-            inner.footprint = mul(g, inner.footprint, undone->shrink);
-        if (undone->shrink != NODE_NONE && inner.smoothing != NODE_NONE)
-            inner.smoothing = mul(g, inner.smoothing, undone->shrink);
+        inner.normal = graph_op1(g, OP_normalize, times_rows(g, inverse->in, context.normal));
+        if (inverse->shrink != NODE_NONE)
+            inner.footprint = mul(g, inner.footprint, inverse->shrink);
+        if (inverse->shrink != NODE_NONE && inner.smoothing != NODE_NONE)
+            inner.smoothing = mul(g, inner.smoothing, inverse->shrink);
     }
     Lowered result = lower_shape(l, child, inner);
     if (result.distance == NODE_NONE)
         return result;
     result.distance = divide_by_slope(g, result.distance, child->slope);
     if (!l->surfaces || result.surface.normal == inner.normal)
-        result.surface.normal = place.normal;
+        result.surface.normal = context.normal;
     else {
-        Node back             = times_rows(g, undone->out, result.surface.normal);
+        Node back             = times_rows(g, inverse->out, result.surface.normal);
         result.surface.normal = graph_op1(g, OP_normalize, back);
     }
     return result;
 }
 
-/* With g in the place of the distance: the distance outside of C as well. */
-static Lowered with_region(Lowering *l, Lowered result, Node away)
+/* With g as the distance in C: the distance outside of C as well. */
+static Lowered with_region(Lowering *l, Lowered result, Node offset)
 {
     Graph *g        = l->graph;
     Node   zero     = graph_number(g, 0);
-    Node   outside  = length_of(g, away, most(g, result.distance, zero));
+    Node   outside  = length_of(g, offset, most(g, result.distance, zero));
     Node   inside   = least(g, result.distance, zero);
     result.distance = add(g, outside, inside);
     return result;
 }
 
-/* As much of a distance as a weight needs whose slope is `steep`: a part of the width of the solid
+/* As much of a distance as a weight needs whose slope is `steep`: a fraction of the width of the solid
    where that is less.  *cost is what the weight adds to the slope. */
 static Node cut_distance(Graph *g, Node distance, double width, Node steep, Node *cost)
 {
-    Node part  = graph_number(g, COST_OF_WEIGHT);
-    Node whole = graph_number(g, COST_OF_WEIGHT / fmax(width, 1e-9));
-    Node limit = over(g, part, most(g, steep, whole));
-    Node low   = graph_op1(g, OP_neg, limit);
-    *cost      = mul(g, steep, limit);
+    Node fraction = graph_number(g, COST_OF_WEIGHT);
+    Node whole    = graph_number(g, COST_OF_WEIGHT / fmax(width, 1e-9));
+    Node limit    = over(g, fraction, most(g, steep, whole));
+    Node low      = graph_op1(g, OP_neg, limit);
+    *cost         = mul(g, steep, limit);
     return graph_op3(g, OP_clamp, distance, low, limit);
 }
 
@@ -150,179 +152,181 @@ static Node radius_of(Graph *g, Node point)
 
 /* Turned about y by minus the angle: of the map (x, y, z) -> (c x - s z, y, s x + c z), and, for
    normals, of its derivative, which has rate * (-z, 0, x) along y besides. */
-static void undo_twist(Lowering *l, Node point, Node rate, Undone *undone)
+static void undo_twist(Lowering *l, Node point, Node rate, InverseDeformation *inverse)
 {
     Graph *g     = l->graph;
     Node   angle = mul(g, graph_component(g, point, 1), rate);
     Node   c = graph_op1(g, OP_cos, angle), s = graph_op1(g, OP_sin, angle);
     Node   zero = graph_number(g, 0), one = graph_number(g, 1), minus = graph_op1(g, OP_neg, s);
-    Node   rows[3] = {row(g, c, zero, minus), graph_vec3(g, 0, 1, 0), row(g, s, zero, c)};
-    undone->point  = graph_op4(g, OP_turn, point, rows[0], rows[1], rows[2]);
-    undone->shrink = NODE_NONE;
+    Node   rows[3]  = {row(g, c, zero, minus), graph_vec3(g, 0, 1, 0), row(g, s, zero, c)};
+    inverse->point  = graph_op4(g, OP_turn, point, rows[0], rows[1], rows[2]);
+    inverse->shrink = NODE_NONE;
     if (!l->surfaces)
         return;
-    Node against   = graph_op1(g, OP_neg, rate);
-    Node x         = mul(g, graph_component(g, undone->point, 2), against);
-    Node z         = mul(g, graph_component(g, undone->point, 0), rate);
-    Node back      = row(g, x, zero, z), turned[3];
-    undone->out[0] = row(g, c, zero, s);
-    undone->out[1] = row(g, x, one, z);
-    undone->out[2] = row(g, minus, zero, c);
+    Node against    = graph_op1(g, OP_neg, rate);
+    Node x          = mul(g, graph_component(g, inverse->point, 2), against);
+    Node z          = mul(g, graph_component(g, inverse->point, 0), rate);
+    Node back       = row(g, x, zero, z), turned[3];
+    inverse->out[0] = row(g, c, zero, s);
+    inverse->out[1] = row(g, x, one, z);
+    inverse->out[2] = row(g, minus, zero, c);
     transpose_rows(g, rows, turned);
-    Node level    = graph_op4(g, OP_turn, back, turned[0], turned[1], turned[2]);
-    undone->in[0] = rows[0];
-    undone->in[1] = sub(g, rows[1], level);
-    undone->in[2] = rows[2];
+    Node level     = graph_op4(g, OP_turn, back, turned[0], turned[1], turned[2]);
+    inverse->in[0] = rows[0];
+    inverse->in[1] = sub(g, rows[1], level);
+    inverse->in[2] = rows[2];
 }
 
-Lowered lower_twist(Lowering *l, const Shape *shape, Place place)
+Lowered lower_twist(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph *g    = l->graph;
     Box    box  = shape->children[0]->box;
     Node   zero = graph_number(g, 0), rate = shape->values[0];
     Node   radius = graph_number(g, axis_radius(box));
     Node   low = graph_number(g, box.axis[1].low), high = graph_number(g, box.axis[1].high);
-    Node   y = graph_component(g, place.point, 1), r = radius_of(g, place.point);
-    Node   level  = graph_op3(g, OP_clamp, y, low, high);
-    Node   inside = over(g, radius, most(g, r, radius));
-    Node   beyond = most(g, sub(g, r, radius), zero);
-    Node   above  = sub(g, y, level);
-    Undone undone = {.away = length_of(g, beyond, above)};
-    undo_twist(l, across_scaled(g, place.point, level, inside), rate, &undone);
-    Lowered result = lower_undone(l, shape, place, &undone);
+    Node   y = graph_component(g, context.point, 1), r = radius_of(g, context.point);
+    Node   level               = graph_op3(g, OP_clamp, y, low, high);
+    Node   inside              = over(g, radius, most(g, r, radius));
+    Node   excess              = most(g, sub(g, r, radius), zero);
+    Node   above               = sub(g, y, level);
+    InverseDeformation inverse = {.offset = length_of(g, excess, above)};
+    undo_twist(l, across_scaled(g, context.point, level, inside), rate, &inverse);
+    Lowered result = lower_undone(l, shape, context, &inverse);
     if (result.distance == NODE_NONE)
         return result;
     Node shear      = mul(g, graph_op1(g, OP_abs, rate), radius);
     result.distance = over(g, result.distance, shear_norm(g, shear));
-    return with_region(l, result, undone.away);
+    return with_region(l, result, inverse.offset);
 }
 
-/* ---- bend: C is a box for each part ---- */
+/* ---- bend: C is a box for each segment ---- */
 
 /*
  * Material at (x, y, z) goes along the circle through the origin with curvature k: to the angle
  * k y, at the distance 1 / k - z from the axis of the bend.  All formulas are such that they hold
- * for k = 0 too.  A part reaches from -half to half along y, less than a right angle to either
+ * for k = 0 too.  A segment reaches from -half to half along y, less than a right angle to either
  * side: more would have the axis in its convex hull, and turns that T cannot tell apart.
  */
-typedef struct Part {
+typedef struct BendSegment {
     Node rate, middle, half; /* where on y, and how far to both sides */
-    Map  place;              /* of the part about its middle, in the whole */
-} Part;
+    Map  map;                /* from the segment about its middle to the whole bend */
+} BendSegment;
 
-static Part bend_part(Graph *g, const Shape *shape, uint32_t i)
+static BendSegment bend_segment(Graph *g, const Shape *shape, uint32_t i)
 {
     Range  side = shape->children[0]->box.axis[1];
     double step = (side.high - side.low) / shape->cells[0], middle = side.low + (i + 0.5) * step;
-    double beyond = shape->cells[0] > 1 ? shape->overlap : 0;
-    Part   part   = {.rate = shape->values[0], .middle = graph_number(g, middle)};
-    part.half     = graph_number(g, 0.5 * step + beyond);
+    double excess       = shape->cells[0] > 1 ? shape->overlap : 0;
+    BendSegment segment = {.rate = shape->values[0], .middle = graph_number(g, middle)};
+    segment.half        = graph_number(g, 0.5 * step + excess);
     Node zero = graph_number(g, 0), half = graph_number(g, 0.5);
-    Node angle = mul(g, part.rate, part.middle), lean = mul(g, angle, half);
+    Node angle = mul(g, segment.rate, segment.middle), lean = mul(g, angle, half);
     Node c = graph_op1(g, OP_cos, angle), s = graph_op1(g, OP_sin, angle);
-    Node chord         = mul(g, part.middle, over_angle(g, OP_sin, lean)); /* from the origin */
-    Node along         = mul(g, chord, graph_op1(g, OP_cos, lean));
-    Node aside         = mul(g, chord, graph_op1(g, OP_sin, lean));
-    part.place.scale   = graph_number(g, 1);
-    part.place.rows[0] = graph_vec3(g, 1, 0, 0);
-    part.place.rows[1] = row(g, zero, c, graph_op1(g, OP_neg, s));
-    part.place.rows[2] = row(g, zero, s, c);
-    part.place.shift   = row(g, zero, along, aside);
-    part.place.pole    = NODE_NONE;
-    return part;
+    Node chord          = mul(g, segment.middle, over_angle(g, OP_sin, lean)); /* from the origin */
+    Node along          = mul(g, chord, graph_op1(g, OP_cos, lean));
+    Node lateral        = mul(g, chord, graph_op1(g, OP_sin, lean));
+    segment.map.scale   = graph_number(g, 1);
+    segment.map.rows[0] = graph_vec3(g, 1, 0, 0);
+    segment.map.rows[1] = row(g, zero, c, graph_op1(g, OP_neg, s));
+    segment.map.rows[2] = row(g, zero, s, c);
+    segment.map.shift   = row(g, zero, along, lateral);
+    segment.map.pole    = NODE_NONE;
+    return segment;
 }
 
-/* The box around the bent part; rate * z stays below 1 in the child's box. */
-static void part_region(Graph *g, const Part *part, Box box, Node *low, Node *high)
+/* The box around the bent segment; rate * z stays below 1 in the child's box. */
+static void segment_region(Graph *g, const BendSegment *segment, Box box, Node *low, Node *high)
 {
     Node one = graph_number(g, 1), half = graph_number(g, 0.5);
     Node z0 = graph_number(g, box.axis[2].low), z1 = graph_number(g, box.axis[2].high);
-    Node angle = mul(g, part->rate, part->half), lean = mul(g, angle, half);
-    Node c      = graph_op1(g, OP_cos, angle);
-    Node chord  = mul(g, part->half, over_angle(g, OP_sin, lean));
-    Node aside  = mul(g, chord, graph_op1(g, OP_sin, lean));
-    Node long0  = sub(g, one, mul(g, part->rate, z0));
-    Node long1  = sub(g, one, mul(g, part->rate, z1));
-    Node across = mul(g, part->half, over_angle(g, OP_sin, angle));
-    Node y      = mul(g, across, most(g, long0, long1));
-    Node end0   = add(g, mul(g, z0, c), aside);
-    Node end1   = add(g, mul(g, z1, c), aside);
+    Node angle = mul(g, segment->rate, segment->half), lean = mul(g, angle, half);
+    Node c       = graph_op1(g, OP_cos, angle);
+    Node chord   = mul(g, segment->half, over_angle(g, OP_sin, lean));
+    Node lateral = mul(g, chord, graph_op1(g, OP_sin, lean));
+    Node long0   = sub(g, one, mul(g, segment->rate, z0));
+    Node long1   = sub(g, one, mul(g, segment->rate, z1));
+    Node across  = mul(g, segment->half, over_angle(g, OP_sin, angle));
+    Node y       = mul(g, across, most(g, long0, long1));
+    Node end0    = add(g, mul(g, z0, c), lateral);
+    Node end1    = add(g, mul(g, z1, c), lateral);
     Node bottom = least(g, z0, end0), top = most(g, z1, end1), back = graph_op1(g, OP_neg, y);
     *low  = row(g, graph_number(g, box.axis[0].low), back, bottom);
     *high = row(g, graph_number(g, box.axis[0].high), y, top);
 }
 
 /* *lengths: how much longer things along y are there than they were. */
-static void undo_bend(Lowering *l, const Part *part, Node point, Undone *undone, Node *lengths)
+static void undo_bend(Lowering *l, const BendSegment *segment, Node point,
+                      InverseDeformation *inverse, Node *lengths)
 {
     Graph *g   = l->graph;
     Node   one = graph_number(g, 1), zero = graph_number(g, 0);
     Node   x = graph_component(g, point, 0), y = graph_component(g, point, 1);
     Node   z = graph_component(g, point, 2);
-    Node   u = mul(g, part->rate, y), w = sub(g, one, mul(g, part->rate, z));
+    Node   u = mul(g, segment->rate, y), w = sub(g, one, mul(g, segment->rate, z));
     Node   along  = over_angle(g, OP_atan, over(g, u, w));
     Node   y_less = over(g, y, w), y_old = mul(g, y_less, along);
-    Node   y_part  = mul(g, u, y); /* z (2 - rate z) - rate y^2 over 1 + lengths */
-    Node   z_part  = mul(g, z, add(g, w, one));
-    *lengths       = length_of(g, u, w);
-    Node both      = add(g, *lengths, one);
-    Node z_old     = over(g, sub(g, z_part, y_part), both);
-    undone->point  = row(g, x, y_old, z_old);
-    undone->shrink = NODE_NONE;
+    Node   y_part   = mul(g, u, y); /* z (2 - rate z) - rate y^2 over 1 + lengths */
+    Node   z_part   = mul(g, z, add(g, w, one));
+    *lengths        = length_of(g, u, w);
+    Node both       = add(g, *lengths, one);
+    Node z_old      = over(g, sub(g, z_part, y_part), both);
+    inverse->point  = row(g, x, y_old, z_old);
+    inverse->shrink = NODE_NONE;
     if (!l->surfaces)
         return;
     Node s = over(g, u, *lengths), c = over(g, w, *lengths), minus = graph_op1(g, OP_neg, s);
     Node s_less = over(g, s, *lengths), c_less = over(g, c, *lengths);
-    undone->in[0] = undone->out[0] = graph_vec3(g, 1, 0, 0);
-    undone->in[1]                  = row(g, zero, w, u);
-    undone->in[2]                  = row(g, zero, minus, c);
-    undone->out[1]                 = row(g, zero, c_less, minus);
-    undone->out[2]                 = row(g, zero, s_less, c);
+    inverse->in[0] = inverse->out[0] = graph_vec3(g, 1, 0, 0);
+    inverse->in[1]                   = row(g, zero, w, u);
+    inverse->in[2]                   = row(g, zero, minus, c);
+    inverse->out[1]                  = row(g, zero, c_less, minus);
+    inverse->out[2]                  = row(g, zero, s_less, c);
 }
 
-/* A part, at a place in its own space. */
-static Lowered lower_part(Lowering *l, const Shape *shape, Place place, const Part *part)
+/* A segment, at a point of its own space. */
+static Lowered lower_segment(Lowering *l, const Shape *shape, LowerContext context,
+                             const BendSegment *segment)
 {
-    Graph *g   = l->graph;
-    Box    box = shape->children[0]->box;
-    Node   one = graph_number(g, 1), low, high, lengths, cost;
-    Undone undone;
-    part_region(g, part, box, &low, &high);
-    Node nearest = graph_op3(g, OP_clamp, place.point, low, high);
-    undone.away  = graph_op1(g, OP_length, sub(g, place.point, nearest));
-    undo_bend(l, part, nearest, &undone, &lengths);
-    Node height  = graph_component(g, undone.point, 1);
-    Node whole_y = add(g, height, part->middle);
-    Node x = graph_component(g, undone.point, 0), z = graph_component(g, undone.point, 2);
-    undone.point   = row(g, x, whole_y, z);
-    Lowered result = lower_undone(l, shape, place, &undone);
+    Graph             *g   = l->graph;
+    Box                box = shape->children[0]->box;
+    Node               one = graph_number(g, 1), low, high, lengths, cost;
+    InverseDeformation inverse;
+    segment_region(g, segment, box, &low, &high);
+    Node nearest   = graph_op3(g, OP_clamp, context.point, low, high);
+    inverse.offset = graph_op1(g, OP_length, sub(g, context.point, nearest));
+    undo_bend(l, segment, nearest, &inverse, &lengths);
+    Node height  = graph_component(g, inverse.point, 1);
+    Node whole_y = add(g, height, segment->middle);
+    Node x = graph_component(g, inverse.point, 0), z = graph_component(g, inverse.point, 2);
+    inverse.point  = row(g, x, whole_y, z);
+    Lowered result = lower_undone(l, shape, context, &inverse);
     if (result.distance == NODE_NONE)
         return result;
     if (shape->cells[0] > 1) {
-        Node ends       = sub(g, graph_op1(g, OP_abs, height), part->half);
+        Node ends       = sub(g, graph_op1(g, OP_abs, height), segment->half);
         result.distance = most(g, result.distance, ends);
     }
     double x_size = box.axis[0].high - box.axis[0].low, z_size = box.axis[2].high - box.axis[2].low;
     double width  = 0.5 * fmax(x_size, z_size);
-    Node   steep  = graph_op1(g, OP_abs, part->rate);
+    Node   steep  = graph_op1(g, OP_abs, segment->rate);
     Node   cut    = cut_distance(g, result.distance, width, steep, &cost);
     Node   weight = least(g, lengths, one), slope = add(g, cost, one);
     result.distance = over(g, mul(g, cut, weight), slope);
-    return with_region(l, result, undone.away);
+    return with_region(l, result, inverse.offset);
 }
 
-Lowered lower_bend(Lowering *l, const Shape *shape, Place place)
+Lowered lower_bend(Lowering *l, const Shape *shape, LowerContext context)
 {
     Lowered result = lowered_nothing;
     for (uint32_t i = 0; i < shape->cells[0]; i++) {
-        Part       part  = bend_part(l->graph, shape, i);
-        NormalPath path  = normal_path(l, place, 1);
-        Node       point = before_map(l->graph, &part.place, place.point);
-        normal_turn(l, &path, part.place.rows, part.place.scale);
-        Place   inner       = place_behind(&path, place, point);
-        Lowered bent        = lower_part(l, shape, inner, &part);
+        BendSegment segment = bend_segment(l->graph, shape, i);
+        NormalPath  path    = normal_path(l, context, 1);
+        Node        point   = before_map(l->graph, &segment.map, context.point);
+        normal_turn(l, &path, segment.map.rows, segment.map.scale);
+        LowerContext inner  = context_behind(&path, context, point);
+        Lowered      bent   = lower_segment(l, shape, inner, &segment);
         bent.surface.normal = bent.surface.normal == inner.normal
-                                  ? place.normal
+                                  ? context.normal
                                   : normal_out(l, &path, bent.surface.normal);
         result              = join_two(l, blend_sharp, result, bent);
     }
@@ -342,20 +346,20 @@ typedef struct Frustum {
 static Node frustum_nearest(Graph *g, const Frustum *f, Node r, Node y)
 {
     Node zero = graph_number(g, 0), one = graph_number(g, 1), middle = graph_number(g, 0.5);
-    Node place = graph_op2(g, OP_vec2, r, y), foot = graph_op2(g, OP_vec2, f->low, f->bottom);
+    Node position = graph_op2(g, OP_vec2, r, y), foot = graph_op2(g, OP_vec2, f->low, f->bottom);
     Node tip = graph_op2(g, OP_vec2, f->high, f->top), side = sub(g, tip, foot);
-    Node along    = graph_op2(g, OP_dot, sub(g, place, foot), side);
-    Node part     = over(g, along, graph_op2(g, OP_dot, side, side));
-    part          = graph_op3(g, OP_clamp, part, zero, one);
-    Node slant    = add(g, foot, graph_op2(g, OP_scale, side, part));
+    Node along    = graph_op2(g, OP_dot, sub(g, position, foot), side);
+    Node fraction = over(g, along, graph_op2(g, OP_dot, side, side));
+    fraction      = graph_op3(g, OP_clamp, fraction, zero, one);
+    Node slant    = add(g, foot, graph_op2(g, OP_scale, side, fraction));
     Node level    = sub(g, y, f->bottom);
     level         = over(g, level, graph_number(g, f->height));
     Node upper    = graph_op2(g, OP_less, middle, level);
     Node ring     = graph_op3(g, OP_select, upper, f->high, f->low);
     Node edge     = graph_op3(g, OP_select, upper, f->top, f->bottom);
     Node end      = graph_op2(g, OP_vec2, least(g, r, ring), edge);
-    Node to_slant = graph_op1(g, OP_length, sub(g, place, slant));
-    Node to_end   = graph_op1(g, OP_length, sub(g, place, end));
+    Node to_slant = graph_op1(g, OP_length, sub(g, position, slant));
+    Node to_end   = graph_op1(g, OP_length, sub(g, position, end));
     Node nearer   = graph_op2(g, OP_less, to_end, to_slant);
     Node outside  = graph_op3(g, OP_select, nearer, end, slant);
     Node above    = graph_op2(g, OP_less_equal, zero, level);
@@ -363,31 +367,31 @@ static Node frustum_nearest(Graph *g, const Frustum *f, Node r, Node y)
     Node inside   = graph_op2(g, OP_and, above, below);
     Node reach    = graph_op3(g, OP_mix, f->low, f->high, level);
     inside        = graph_op2(g, OP_and, inside, graph_op2(g, OP_less_equal, r, reach));
-    return graph_op3(g, OP_select, inside, place, outside);
+    return graph_op3(g, OP_select, inside, position, outside);
 }
 
 /* (x, y, z) -> (x / s, y, z / s) with s = scale(y), whose slope is `rise`. */
-static void undo_taper(Lowering *l, Node point, Node scale, Node rise, Undone *undone)
+static void undo_taper(Lowering *l, Node point, Node scale, Node rise, InverseDeformation *inverse)
 {
     Graph *g    = l->graph;
     Node   zero = graph_number(g, 0), one = graph_number(g, 1), less = over(g, one, scale);
-    undone->point  = across_scaled(g, point, graph_component(g, point, 1), less);
-    undone->shrink = less;
+    inverse->point  = across_scaled(g, point, graph_component(g, point, 1), less);
+    inverse->shrink = less;
     if (!l->surfaces)
         return;
-    Node x         = mul(g, graph_component(g, undone->point, 0), rise);
-    Node z         = mul(g, graph_component(g, undone->point, 2), rise);
-    Node back      = graph_op1(g, OP_neg, less);
-    undone->in[0]  = row(g, scale, zero, zero);
-    undone->in[1]  = row(g, x, one, z);
-    undone->in[2]  = row(g, zero, zero, scale);
-    undone->out[0] = row(g, less, zero, zero);
-    undone->out[1] = graph_op2(g, OP_scale, row(g, x, zero, z), back);
-    undone->out[1] = add(g, undone->out[1], graph_vec3(g, 0, 1, 0));
-    undone->out[2] = row(g, zero, zero, less);
+    Node x          = mul(g, graph_component(g, inverse->point, 0), rise);
+    Node z          = mul(g, graph_component(g, inverse->point, 2), rise);
+    Node back       = graph_op1(g, OP_neg, less);
+    inverse->in[0]  = row(g, scale, zero, zero);
+    inverse->in[1]  = row(g, x, one, z);
+    inverse->in[2]  = row(g, zero, zero, scale);
+    inverse->out[0] = row(g, less, zero, zero);
+    inverse->out[1] = graph_op2(g, OP_scale, row(g, x, zero, z), back);
+    inverse->out[1] = add(g, inverse->out[1], graph_vec3(g, 0, 1, 0));
+    inverse->out[2] = row(g, zero, zero, less);
 }
 
-Lowered lower_taper(Lowering *l, const Shape *shape, Place place)
+Lowered lower_taper(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph  *g      = l->graph;
     Box     box    = shape->children[0]->box;
@@ -399,24 +403,24 @@ Lowered lower_taper(Lowering *l, const Shape *shape, Place place)
     f.low       = mul(g, wide, shape->values[0]);
     f.high      = mul(g, wide, shape->values[1]);
     f.height    = fmax(side.high - side.low, 1e-9);
-    Node   y = graph_component(g, place.point, 1), r = radius_of(g, place.point);
-    Node   nearest = frustum_nearest(g, &f, r, y), away = graph_op2(g, OP_vec2, r, y);
-    Node   inner_r = graph_component(g, nearest, 0), inner_y = graph_component(g, nearest, 1);
-    Node   inside = over(g, inner_r, most(g, r, tiny));
-    Node   height = graph_number(g, f.height);
-    Node   level  = over(g, sub(g, inner_y, f.bottom), height);
-    Node   scale  = graph_op3(g, OP_mix, shape->values[0], shape->values[1], level);
-    Node   rise   = over(g, sub(g, shape->values[1], shape->values[0]), height);
-    Undone undone = {.away = graph_op1(g, OP_length, sub(g, away, nearest))};
-    undo_taper(l, across_scaled(g, place.point, inner_y, inside), scale, rise, &undone);
-    Lowered result = lower_undone(l, shape, place, &undone);
+    Node y = graph_component(g, context.point, 1), r = radius_of(g, context.point);
+    Node nearest = frustum_nearest(g, &f, r, y), offset = graph_op2(g, OP_vec2, r, y);
+    Node inner_r = graph_component(g, nearest, 0), inner_y = graph_component(g, nearest, 1);
+    Node inside                = over(g, inner_r, most(g, r, tiny));
+    Node height                = graph_number(g, f.height);
+    Node level                 = over(g, sub(g, inner_y, f.bottom), height);
+    Node scale                 = graph_op3(g, OP_mix, shape->values[0], shape->values[1], level);
+    Node rise                  = over(g, sub(g, shape->values[1], shape->values[0]), height);
+    InverseDeformation inverse = {.offset = graph_op1(g, OP_length, sub(g, offset, nearest))};
+    undo_taper(l, across_scaled(g, context.point, inner_y, inside), scale, rise, &inverse);
+    Lowered result = lower_undone(l, shape, context, &inverse);
     if (result.distance == NODE_NONE)
         return result;
     Node steep = graph_op1(g, OP_abs, rise), shear = mul(g, steep, wide);
     Node cut    = cut_distance(g, result.distance, radius, steep, &cost);
     Node weight = least(g, scale, one), slope = add(g, shear_norm(g, shear), cost);
     result.distance = over(g, mul(g, cut, weight), slope);
-    return with_region(l, result, undone.away);
+    return with_region(l, result, inverse.offset);
 }
 
 /* ---- displace: C is a box, which may be endless ---- */
@@ -466,7 +470,7 @@ static Node cut_to_sides(Graph *g, Node distance, Node point, const Sides *sides
 }
 
 /* d - amplitude * formula, over the sum of both slopes. */
-Lowered lower_displace(Lowering *l, const Shape *shape, Place place)
+Lowered lower_displace(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph       *g     = l->graph;
     const Shape *child = shape->children[0];
@@ -475,10 +479,10 @@ Lowered lower_displace(Lowering *l, const Shape *shape, Place place)
     bool         ends  = false;
     for (int i = 0; i < 3; i++)
         ends = ends || isfinite(child->box.axis[i].low) || isfinite(child->box.axis[i].high);
-    Node point = place.point;
+    Node point = context.point;
     if (ends)
-        point = graph_op3(g, OP_clamp, place.point, sides.below, sides.above);
-    Lowered result = lower_shape(l, child, place_steady(place_at(place, point)));
+        point = graph_op3(g, OP_clamp, context.point, sides.below, sides.above);
+    Lowered result = lower_shape(l, child, context_lipschitz(context_at(context, point)));
     if (result.distance == NODE_NONE)
         return result;
     Node bump       = graph_substitute(g, shape->formula, substitute_point(point), l->scratch);
@@ -490,6 +494,6 @@ Lowered lower_displace(Lowering *l, const Shape *shape, Place place)
         return result;
     if (!child->exact)
         result.distance = cut_to_sides(g, result.distance, point, &sides);
-    Node away = graph_op1(g, OP_length, sub(g, place.point, point));
-    return with_region(l, result, away);
+    Node offset = graph_op1(g, OP_length, sub(g, context.point, point));
+    return with_region(l, result, offset);
 }

@@ -11,11 +11,11 @@
 
 #include <math.h>
 
-/* Boxes are made larger by this part of the size of their coordinates: single precision. */
+/* Boxes are made larger by this fraction of the size of their coordinates: single precision. */
 static const double ROUNDING = 1e-6;
 
-/* Farther than this part of its radius, a box stands for what is in it.  Smaller parts leave more
-   out and make more steps; on the processor all from 0.25 to 1 cost the same within 10 %. */
+/* Farther than this fraction of its radius, a box stands for what is in it.  Smaller fractions
+   leave more out and make more steps; on the processor all from 0.25 to 1 cost the same within 10 %. */
 static const double FAR = 0.5;
 
 /* Farther than any scene. */
@@ -23,51 +23,51 @@ static const double NOWHERE = 1e30;
 
 /* Where the point was just mapped, before kernels, and before everything.  What is guarded jumps,
    so not where a slope is needed. */
-bool may_stop(const Lowering *l, const Shape *krs, uint32_t stage, Place place)
+bool may_guard(const Lowering *l, const Shape *krs, uint32_t stage, LowerContext context)
 {
     const LevelBound *bound  = &krs->bounds[stage];
     bool              last   = stage + 1 == krs->stage_count;
-    bool              mapped = krs->stages[stage].kind == STAGE_KERNEL &&
-                  (last || krs->stages[stage + 1].kind != STAGE_KERNEL);
-    return l->guarded && !place.lipschitz && (last || mapped) && bound->ball.radius > 0 &&
+    bool              mapped = krs->stages[stage].kind == SEQUENCE_KERNEL &&
+                  (last || krs->stages[stage + 1].kind != SEQUENCE_KERNEL);
+    return l->guarded && !context.lipschitz && (last || mapped) && bound->ball.radius > 0 &&
            isfinite(bound->ball.radius) && box_is_finite(bound->box);
 }
 
 /* A distance behind the maps as one outside of the sequence. */
-static Node out(Lowering *l, const Passage *passage, Node distance)
+static Node out(Lowering *l, const MapChain *chain, Node distance)
 {
     Lowered behind  = lowered_nothing;
     behind.distance = distance;
-    return passage_out(l, passage, behind).distance;
+    return map_chain_out(l, chain, behind).distance;
 }
 
 /* From where on nothing but the bound is of interest: never below where what is left is smaller
    than a pixel. */
-static Node far_from(Lowering *l, const Stop *stop)
+static Node far_from(Lowering *l, const GuardSite *site)
 {
     Graph *g       = l->graph;
-    Node   radius  = graph_number(g, stop->bound->ball.radius);
-    Node   near    = graph_number(g, FAR * stop->bound->ball.radius);
-    Node   outside = graph_op2(g, OP_mul, out(l, &stop->passage, radius), l->unit);
+    Node   radius  = graph_number(g, site->bound->ball.radius);
+    Node   near    = graph_number(g, FAR * site->bound->ball.radius);
+    Node   outside = graph_op2(g, OP_mul, out(l, &site->chain, radius), l->unit);
     Node   pixel   = graph_leaf(g, OP_FOOTPRINT);
     Node   small   = graph_op2(g, OP_less, outside, pixel);
     Node   always  = graph_number(g, -NOWHERE);
-    return graph_op3(g, OP_select, small, always, out(l, &stop->passage, near));
+    return graph_op3(g, OP_select, small, always, out(l, &site->chain, near));
 }
 
-Node guard_stops(Lowering *l, const Stop *stops, uint32_t count, Node whole)
+Node guard_at_sites(Lowering *l, const GuardSite *guard_sites, uint32_t count, Node whole)
 {
     Graph *g = l->graph;
     for (uint32_t i = count; i-- > 0 && whole != NODE_NONE;) {
-        const Stop *stop    = &stops[i];
-        Box         box     = stop->bound->box;
-        double      largest = 0;
+        const GuardSite *site    = &guard_sites[i];
+        Box              box     = site->bound->box;
+        double           largest = 0;
         for (int k = 0; k < 3; k++)
             largest = fmax(largest, fmax(fabs(box.axis[k].low), fabs(box.axis[k].high)));
-        Node bound  = box_distance(g, stop->passage.point, box_grow(box, ROUNDING * largest));
-        bound       = out(l, &stop->passage, bound);
-        Node so_far = stop->so_far == NODE_NONE ? graph_number(g, NOWHERE) : stop->so_far;
-        whole       = graph_op4(g, OP_guard, bound, so_far, whole, far_from(l, stop));
+        Node bound  = box_distance(g, site->chain.point, box_grow(box, ROUNDING * largest));
+        bound       = out(l, &site->chain, bound);
+        Node so_far = site->so_far == NODE_NONE ? graph_number(g, NOWHERE) : site->so_far;
+        whole       = graph_op4(g, OP_guard, bound, so_far, whole, far_from(l, site));
     }
     return whole;
 }

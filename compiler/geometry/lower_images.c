@@ -28,15 +28,15 @@ static const double NEAR_POLE = 1e-3;
 static const double TINY = 1e-30;
 
 /* What has been taken through maps, so far. */
-typedef struct Image {
-    Passage passage;
-    Node    direction;    /* DIRECTIONAL: w */
-    Node    bow;          /* h; NODE_NONE: 0, nothing has inverted, */
-    Node    tilt, square; /* and with it h.w, h.h */
-    Node    ahead;        /* 1 / t of the first mirror that is crossed, by those so far; */
-    Node    cut;          /* by those farther out than an inversion; NODE_NONE: there are none */
-    Node    radius;       /* PROBE */
-} Image;
+typedef struct RayImage {
+    MapChain chain;
+    Node     direction;    /* DIRECTIONAL: w */
+    Node     bow;          /* h; NODE_NONE: 0, nothing has inverted, */
+    Node     tilt, square; /* and with it h.w, h.h */
+    Node     ahead;        /* 1 / t of the first mirror that is crossed, by those so far; */
+    Node     cut;          /* by those farther out than an inversion; NODE_NONE: there are none */
+    Node     radius;       /* PROBE */
+} RayImage;
 
 static Node number(Lowering *l, double value) { return graph_number(l->graph, value); }
 
@@ -52,43 +52,43 @@ static Node sum(Lowering *l, Node a, Node b) { return graph_op2(l->graph, OP_add
 static Node difference(Lowering *l, Node a, Node b) { return graph_op2(l->graph, OP_sub, a, b); }
 
 /* a - axis * along. */
-static Node less_part(Lowering *l, Node a, Node axis, Node along)
+static Node less_parallel(Lowering *l, Node a, Node axis, Node along)
 {
-    Node part = graph_op2(l->graph, OP_scale, axis, along);
-    return graph_op2(l->graph, OP_sub, a, part);
+    Node parallel = graph_op2(l->graph, OP_scale, axis, along);
+    return graph_op2(l->graph, OP_sub, a, parallel);
 }
 
 static Node reflected(Lowering *l, Node a, Node axis)
 {
     Node along = graph_op2(l->graph, OP_dot, axis, a);
-    return less_part(l, a, axis, product(l, along, number(l, 2)));
+    return less_parallel(l, a, axis, product(l, along, number(l, 2)));
 }
 
 /* A: what 1 becomes, per length outside. */
-static Node shrink_of(Lowering *l, const Image *image)
+static Node shrink_of(Lowering *l, const RayImage *image)
 {
-    const Passage *passage = &image->passage;
-    if (passage->shrink != NODE_NONE)
-        return passage->shrink;
-    return graph_op2(l->graph, OP_div, number(l, 1), passage->scale);
+    const MapChain *chain = &image->chain;
+    if (chain->shrink != NODE_NONE)
+        return chain->shrink;
+    return graph_op2(l->graph, OP_div, number(l, 1), chain->scale);
 }
 
 /* ---- leaves ---- */
 
 /* The t at which the ray leaves the ball of radius |d| around its image here. */
-static Node exit_of(Lowering *l, const Image *image, Node d)
+static Node exit_of(Lowering *l, const RayImage *image, Node d)
 {
     Graph *g = l->graph;
     if (image->bow == NODE_NONE)
-        return product(l, d, image->passage.scale);
-    Node shrink = image->passage.shrink;
-    Node size   = graph_op1(g, OP_abs, d);
-    Node whole  = sum(l, shrink, product(l, image->passage.bend, size)); /* centred: |d| / whole */
-    Node across = difference(l, image->square, graph_op1(g, OP_square, image->tilt));
-    Node bent   = product(l, across, graph_op1(g, OP_square, size));
-    Node room   = difference(l, graph_op1(g, OP_square, shrink), bent);
-    Node root   = graph_op1(g, OP_sqrt, larger(l, room, number(l, 0)));
-    Node rate   = difference(l, root, product(l, image->tilt, size));
+        return product(l, d, image->chain.scale);
+    Node shrink    = image->chain.shrink;
+    Node size      = graph_op1(g, OP_abs, d);
+    Node whole     = sum(l, shrink, product(l, image->chain.bend, size)); /* centred: |d| / whole */
+    Node across    = difference(l, image->square, graph_op1(g, OP_square, image->tilt));
+    Node bent      = product(l, across, graph_op1(g, OP_square, size));
+    Node remainder = difference(l, graph_op1(g, OP_square, shrink), bent);
+    Node root      = graph_op1(g, OP_sqrt, larger(l, remainder, number(l, 0)));
+    Node rate      = difference(l, root, product(l, image->tilt, size));
     if (image->cut != NODE_NONE)
         rate = larger(l, rate, product(l, image->cut, size));
     rate = larger(l, rate, number(l, 0));
@@ -99,7 +99,7 @@ static Node exit_of(Lowering *l, const Image *image, Node d)
 
 /* What a distance at the image is worth outside: the way to go or, of a ball, the distance times
    how much larger the ball is outside: more than its radius there when it is empty. */
-static Node worth_of(Lowering *l, const Image *image, Node distance)
+static Node worth_of(Lowering *l, const RayImage *image, Node distance)
 {
     if (distance == NODE_NONE)
         return NODE_NONE;
@@ -108,13 +108,13 @@ static Node worth_of(Lowering *l, const Image *image, Node distance)
     Node radius = graph_leaf(l->graph, OP_FOOTPRINT);
     if (image->radius == radius)
         return distance;
-    Node share = graph_op2(l->graph, OP_div, radius, image->radius);
-    return product(l, distance, share);
+    Node ratio = graph_op2(l->graph, OP_div, radius, image->radius);
+    return product(l, distance, ratio);
 }
 
 /* ---- maps ---- */
 
-static void bend_ray(Lowering *l, Image *image, const Map *map, const Inversion *inversion)
+static void bend_ray(Lowering *l, RayImage *image, const Map *map, const Inversion *inversion)
 {
     Graph *g       = l->graph;
     Node   curving = product(l, shrink_of(l, image), inversion->inverse), bow;
@@ -123,7 +123,7 @@ static void bend_ray(Lowering *l, Image *image, const Map *map, const Inversion 
     } else {
         Node along = graph_op2(g, OP_dot, inversion->axis, image->bow);
         along      = sum(l, product(l, along, number(l, 2)), curving);
-        bow        = less_part(l, image->bow, inversion->axis, along);
+        bow        = less_parallel(l, image->bow, inversion->axis, along);
     }
     Node direction   = reflected(l, image->direction, inversion->axis);
     image->direction = turn_behind(g, map, direction);
@@ -135,59 +135,59 @@ static void bend_ray(Lowering *l, Image *image, const Map *map, const Inversion 
 }
 
 /* Returns what the pole lets pass of a ball outside, as its worth. */
-static Node invert_ball(Lowering *l, Image *image, const Map *map)
+static Node invert_ball(Lowering *l, RayImage *image, const Map *map)
 {
-    Graph *g             = l->graph;
-    Node   way           = graph_op2(g, OP_sub, image->passage.point, map->shift);
-    Node   square        = graph_op2(g, OP_dot, way, way);
-    Node   room          = difference(l, square, graph_op1(g, OP_square, image->radius));
-    Node   least         = product(l, square, number(l, NEAR_POLE));
-    least                = sum(l, least, number(l, TINY));
-    Node factor          = graph_op2(g, OP_div, map->scale, larger(l, room, least));
-    Node reach           = graph_op1(g, OP_length, way);
-    reach                = product(l, reach, number(l, 1 - NEAR_POLE));
-    Node worth           = worth_of(l, image, reach);
-    Node centre          = graph_op2(g, OP_scale, turn_behind(g, map, way), factor);
-    image->passage.point = graph_op2(g, OP_add, centre, map->pole);
-    image->radius        = product(l, image->radius, factor);
+    Graph *g           = l->graph;
+    Node   offset      = graph_op2(g, OP_sub, image->chain.point, map->shift);
+    Node   square      = graph_op2(g, OP_dot, offset, offset);
+    Node   remainder   = difference(l, square, graph_op1(g, OP_square, image->radius));
+    Node   least       = product(l, square, number(l, NEAR_POLE));
+    least              = sum(l, least, number(l, TINY));
+    Node factor        = graph_op2(g, OP_div, map->scale, larger(l, remainder, least));
+    Node reach         = graph_op1(g, OP_length, offset);
+    reach              = product(l, reach, number(l, 1 - NEAR_POLE));
+    Node worth         = worth_of(l, image, reach);
+    Node centre        = graph_op2(g, OP_scale, turn_behind(g, map, offset), factor);
+    image->chain.point = graph_op2(g, OP_add, centre, map->pole);
+    image->radius      = product(l, image->radius, factor);
     return worth;
 }
 
 /* Returns the worth of the pole, or NODE_NONE. */
-static Node image_map(Lowering *l, Image *image, const Map *map)
+static Node image_map(Lowering *l, RayImage *image, const Map *map)
 {
     Graph     *g    = l->graph;
-    NormalPath none = normal_path(l, place_bare(image->passage.point, false), 0);
+    NormalPath none = normal_path(l, context_new(image->chain.point, false), 0);
     if (l->method == ALONG_PROBE && map->pole != NODE_NONE)
         return invert_ball(l, image, map);
     if (l->method == ALONG_PROBE)
         image->radius = graph_op2(g, OP_div, image->radius, map->scale);
     else if (map->pole != NODE_NONE) {
-        Inversion inversion = inversion_at(g, map, image->passage.point);
+        Inversion inversion = inversion_at(g, map, image->chain.point);
         bend_ray(l, image, map, &inversion);
     } else {
         image->direction = turn_behind(g, map, image->direction);
         if (image->bow != NODE_NONE)
             image->bow = turn_behind(g, map, image->bow);
     }
-    passage_map(l, &image->passage, map, &none);
+    map_chain_append(l, &image->chain, map, &none);
     return NODE_NONE;
 }
 
-/* 1 / t where the ray crosses a mirror that is `away`, towards which it goes at `speed`: the larger
-   root y of away y^2 + (2 away h.w - speed) y + away h.h - A h.axis = 0. */
-static Node crossing(Lowering *l, const Image *image, Node axis, Node away, Node speed)
+/* 1 / t where the ray crosses a mirror at this distance, which it approaches at `speed`: the larger
+   root y of distance y^2 + (2 distance h.w - speed) y + distance h.h - A h.axis = 0. */
+static Node crossing(Lowering *l, const RayImage *image, Node axis, Node distance, Node speed)
 {
     Graph *g    = l->graph;
-    Node   some = larger(l, away, number(l, TINY));
+    Node   some = larger(l, distance, number(l, TINY));
     if (image->bow == NODE_NONE)
         return graph_op2(g, OP_div, speed, some);
     Node half    = product(l, speed, number(l, -0.5));
-    half         = sum(l, half, product(l, away, image->tilt));
+    half         = sum(l, half, product(l, distance, image->tilt));
     Node curving = graph_op2(g, OP_dot, axis, image->bow);
-    curving      = product(l, curving, image->passage.shrink);
-    Node rest    = difference(l, product(l, away, image->square), curving);
-    Node inner   = product(l, away, rest);
+    curving      = product(l, curving, image->chain.shrink);
+    Node rest    = difference(l, product(l, distance, image->square), curving);
+    Node inner   = product(l, distance, rest);
     inner        = difference(l, graph_op1(g, OP_square, half), inner);
     Node root    = graph_op1(g, OP_sqrt, larger(l, inner, number(l, 0)));
     /* Whichever form of it adds what has the same sign. */
@@ -199,11 +199,11 @@ static Node crossing(Lowering *l, const Image *image, Node axis, Node away, Node
     return graph_op3(g, OP_select, leaves, leaving, nearing);
 }
 
-static void image_mirror(Lowering *l, Image *image, Node axis, Node offset)
+static void image_mirror(Lowering *l, RayImage *image, Node axis, Node offset)
 {
-    Graph *g             = l->graph;
-    Node   point         = image->passage.point;
-    image->passage.point = graph_op3(g, OP_fold, point, axis, offset);
+    Graph *g           = l->graph;
+    Node   point       = image->chain.point;
+    image->chain.point = graph_op3(g, OP_fold, point, axis, offset);
     if (l->method == ALONG_PROBE)
         return;
     Node front       = graph_op3(g, OP_front, point, axis, offset);
@@ -213,33 +213,33 @@ static void image_mirror(Lowering *l, Image *image, Node axis, Node offset)
         mirrored   = reflected(l, image->bow, axis);
         image->bow = graph_op3(g, OP_select, front, mirrored, image->bow);
     }
-    Node away    = graph_op2(g, OP_dot, axis, point);
-    away         = graph_op1(g, OP_abs, difference(l, away, offset));
-    Node speed   = graph_op2(g, OP_dot, axis, image->direction);
-    speed        = product(l, speed, shrink_of(l, image));
-    image->ahead = larger(l, image->ahead, crossing(l, image, axis, away, speed));
+    Node distance = graph_op2(g, OP_dot, axis, point);
+    distance      = graph_op1(g, OP_abs, difference(l, distance, offset));
+    Node speed    = graph_op2(g, OP_dot, axis, image->direction);
+    speed         = product(l, speed, shrink_of(l, image));
+    image->ahead  = larger(l, image->ahead, crossing(l, image, axis, distance, speed));
 }
 
 /* ---- shapes ---- */
 
-static Node image_shape(Lowering *l, const Shape *shape, Image image);
+static Node image_shape(Lowering *l, const Shape *shape, RayImage image);
 
-static Node image_distance(Lowering *l, const Shape *shape, Image image)
+static Node image_distance(Lowering *l, const Shape *shape, RayImage image)
 {
-    Lowered ball = lower_shape(l, shape, place_bare(image.passage.point, false));
+    Lowered ball = lower_shape(l, shape, context_new(image.chain.point, false));
     if (ball.distance == NODE_NONE)
         return NODE_NONE;
     return worth_of(l, &image, divide_by_slope(l->graph, ball.distance, shape->slope));
 }
 
 /* Around what a map that inverts is applied to, as seen through all maps farther out. */
-static Node hull_worth(Lowering *l, const Image *image, const Map *map, Ball ball)
+static Node hull_worth(Lowering *l, const RayImage *image, const Map *map, Ball ball)
 {
-    Passage here = passage_new(l->graph, image->passage.point);
-    return worth_of(l, image, passage_hull(l, &here, map, &ball));
+    MapChain here = map_chain_new(l->graph, image->chain.point);
+    return worth_of(l, image, map_chain_hull(l, &here, map, &ball));
 }
 
-static Node image_inversion(Lowering *l, const Shape *shape, Image image)
+static Node image_inversion(Lowering *l, const Shape *shape, RayImage image)
 {
     Node hull  = hull_worth(l, &image, &shape->map, ball_around(shape->children[0]->box));
     Node pole  = image_map(l, &image, &shape->map);
@@ -247,23 +247,23 @@ static Node image_inversion(Lowering *l, const Shape *shape, Image image)
     return inner == NODE_NONE ? NODE_NONE : larger(l, nearer_of(l->graph, inner, pole), hull);
 }
 
-/* What is first inwards is nearest at once, so that nothing has to be kept: behind a map no ball
+/* What is first inwards is nearest at once, so that nothing has to be stored: behind a map no ball
    that holds its pole passes, but what is outside of its hull and of those farther out. */
-static Node image_krs(Lowering *l, const Shape *shape, Image image)
+static Node image_krs(Lowering *l, const Shape *shape, RayImage image)
 {
     Graph   *g    = l->graph;
     Node     hull = NODE_NONE, nearest = NODE_NONE;
     uint32_t first = 0; /* kernel: what comes before it has nothing to be applied to */
-    while (first < shape->stage_count && shape->stages[first].kind != STAGE_KERNEL)
+    while (first < shape->stage_count && shape->stages[first].kind != SEQUENCE_KERNEL)
         first++;
     for (uint32_t i = shape->stage_count; i-- > first;) {
-        const Stage *stage = &shape->stages[i];
-        const Map   *map   = &stage->map;
-        Node         found = NODE_NONE;
+        const SequenceStage *stage = &shape->stages[i];
+        const Map           *map   = &stage->map;
+        Node                 found = NODE_NONE;
         switch (stage->kind) {
-        case STAGE_REFLECT: image_mirror(l, &image, stage->normal, stage->offset); break;
-        case STAGE_KERNEL: found = image_shape(l, shape->children[stage->kernel], image); break;
-        case STAGE_MAP:
+        case SEQUENCE_REFLECT: image_mirror(l, &image, stage->normal, stage->offset); break;
+        case SEQUENCE_KERNEL: found = image_shape(l, shape->children[stage->kernel], image); break;
+        case SEQUENCE_MAP:
             if (map->pole != NODE_NONE)
                 hull = larger(l, hull, hull_worth(l, &image, map, shape->bounds[i - 1].ball));
             found = image_map(l, &image, map);
@@ -275,7 +275,7 @@ static Node image_krs(Lowering *l, const Shape *shape, Image image)
     return nearest;
 }
 
-static Node image_union(Lowering *l, const Shape *shape, Image image)
+static Node image_union(Lowering *l, const Shape *shape, RayImage image)
 {
     Node nearest = NODE_NONE;
     for (uint32_t i = 0; i < shape->child_count; i++)
@@ -291,7 +291,7 @@ static bool sees_inversion(const Shape *shape)
     case SHAPE_INVERSION: return true;
     case SHAPE_KRS:
         for (uint32_t i = 0; i < shape->stage_count; i++)
-            if (shape->stages[i].kind == STAGE_MAP && shape->stages[i].map.pole != NODE_NONE)
+            if (shape->stages[i].kind == SEQUENCE_MAP && shape->stages[i].map.pole != NODE_NONE)
                 return true;
         break;
     case SHAPE_UNION:
@@ -309,7 +309,7 @@ static bool sees_inversion(const Shape *shape)
     return false;
 }
 
-static Node image_shape(Lowering *l, const Shape *shape, Image image)
+static Node image_shape(Lowering *l, const Shape *shape, RayImage image)
 {
     l->graph->here = shape->span;
     l->overflow    = l->overflow || l->graph->count > l->most;
@@ -336,12 +336,12 @@ Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod metho
                        .most    = graph->count + MOST_LOWERED,
                        .method  = method,
                        .thin    = true};
-    Image    image  = {.bow    = NODE_NONE,
+    RayImage image  = {.bow    = NODE_NONE,
                        .tilt   = NODE_NONE,
                        .square = NODE_NONE,
                        .ahead  = NODE_NONE,
                        .cut    = NODE_NONE};
-    image.passage   = passage_new(graph, graph_leaf(graph, OP_POINT));
+    image.chain     = map_chain_new(graph, graph_leaf(graph, OP_POINT));
     image.direction = graph_leaf(graph, OP_DIRECTION);
     image.radius    = graph_leaf(graph, OP_FOOTPRINT);
     Node all        = image_shape(&l, shape, image);

@@ -12,43 +12,43 @@
 
 #include <math.h>
 
-/* X is no less than this part of the radius of the sphere, so that everything stays finite. */
+/* X is no less than this fraction of the radius of the sphere, so that everything stays finite. */
 static const double NEAR_POLE = 1e-6;
 
 /* How far a pole stays from a ball to be of no concern, in radii. */
 static const double CLEAR = 0.5;
 
-/* Balls are made larger by this part: single precision.  The surface of a ball that is inverted
-   keeps off the pole, by this part of its radius, so that its image is no half-space. */
+/* Balls are made larger by this fraction: single precision.  The surface of a ball that is inverted
+   keeps off the pole, by this fraction of its radius, so that its image is no half-space. */
 static const double ROUNDING = 1e-5, KEEP_OFF = 0.1;
 
-Passage passage_new(Graph *g, Node point)
+MapChain map_chain_new(Graph *g, Node point)
 {
-    return (Passage){point, graph_number(g, 1), NODE_NONE, NODE_NONE};
+    return (MapChain){point, graph_number(g, 1), NODE_NONE, NODE_NONE};
 }
 
-Node turn_behind(Graph *g, const Map *map, Node way)
+Node turn_behind(Graph *g, const Map *map, Node direction)
 {
     Node rows[3];
     transpose_rows(g, map->rows, rows);
     Node e0 = graph_vec3(g, 1, 0, 0), e1 = graph_vec3(g, 0, 1, 0), e2 = graph_vec3(g, 0, 0, 1);
     if (rows[0] == e0 && rows[1] == e1 && rows[2] == e2)
-        return way;
-    return graph_op4(g, OP_turn, way, rows[0], rows[1], rows[2]);
+        return direction;
+    return graph_op4(g, OP_turn, direction, rows[0], rows[1], rows[2]);
 }
 
-/* R^T way * factor + pole. */
-static Node behind_inversion(Graph *g, const Map *map, Node way, Node factor)
+/* R^T offset * factor + pole. */
+static Node behind_inversion(Graph *g, const Map *map, Node offset, Node factor)
 {
-    way = graph_op2(g, OP_scale, turn_behind(g, map, way), factor);
-    return graph_op2(g, OP_add, way, map->pole);
+    offset = graph_op2(g, OP_scale, turn_behind(g, map, offset), factor);
+    return graph_op2(g, OP_add, offset, map->pole);
 }
 
 Inversion inversion_at(Graph *g, const Map *map, Node point)
 {
     Inversion at;
-    at.way      = graph_op2(g, OP_sub, point, map->shift);
-    Node square = graph_op2(g, OP_dot, at.way, at.way);
+    at.offset   = graph_op2(g, OP_sub, point, map->shift);
+    Node square = graph_op2(g, OP_dot, at.offset, at.offset);
     Node limit  = graph_number(g, NEAR_POLE * NEAR_POLE);
     limit       = graph_op2(g, OP_mul, map->scale, limit);
     square      = graph_op2(g, OP_max, square, limit);
@@ -56,23 +56,23 @@ Inversion inversion_at(Graph *g, const Map *map, Node point)
     at.inverse  = graph_op1(g, OP_inversesqrt, map->scale);
     Node size   = graph_op1(g, OP_sqrt, at.sigma);
     at.inverse  = graph_op2(g, OP_mul, size, at.inverse);
-    at.axis     = graph_op2(g, OP_scale, at.way, at.inverse);
+    at.axis     = graph_op2(g, OP_scale, at.offset, at.inverse);
     return at;
 }
 
-static void passage_invert(Lowering *l, Passage *passage, const Map *map, NormalPath *path)
+static void map_chain_invert(Lowering *l, MapChain *chain, const Map *map, NormalPath *path)
 {
     Graph    *g  = l->graph;
-    Inversion at = inversion_at(g, map, passage->point);
-    if (passage->shrink == NODE_NONE) {
-        Node one        = graph_number(g, 1);
-        passage->shrink = graph_op2(g, OP_div, one, passage->scale);
-        passage->bend   = graph_number(g, 0);
+    Inversion at = inversion_at(g, map, chain->point);
+    if (chain->shrink == NODE_NONE) {
+        Node one      = graph_number(g, 1);
+        chain->shrink = graph_op2(g, OP_div, one, chain->scale);
+        chain->bend   = graph_number(g, 0);
     }
-    Node bend       = graph_op2(g, OP_mul, passage->shrink, at.inverse);
-    passage->bend   = graph_op2(g, OP_add, passage->bend, bend);
-    passage->shrink = graph_op2(g, OP_mul, passage->shrink, at.sigma);
-    passage->point  = behind_inversion(g, map, at.way, at.sigma);
+    Node bend     = graph_op2(g, OP_mul, chain->shrink, at.inverse);
+    chain->bend   = graph_op2(g, OP_add, chain->bend, bend);
+    chain->shrink = graph_op2(g, OP_mul, chain->shrink, at.sigma);
+    chain->point  = behind_inversion(g, map, at.offset, at.sigma);
     if (l->surfaces) {
         Node one   = graph_number(g, 1);
         Node grown = graph_op2(g, OP_div, one, at.sigma);
@@ -81,39 +81,39 @@ static void passage_invert(Lowering *l, Passage *passage, const Map *map, Normal
     }
 }
 
-void passage_map(Lowering *l, Passage *passage, const Map *map, NormalPath *path)
+void map_chain_append(Lowering *l, MapChain *chain, const Map *map, NormalPath *path)
 {
     Graph *g = l->graph;
     if (map->pole != NODE_NONE) {
-        passage_invert(l, passage, map, path);
+        map_chain_invert(l, chain, map, path);
         return;
     }
-    passage->point = before_map(g, map, passage->point);
+    chain->point = before_map(g, map, chain->point);
     normal_turn(l, path, map->rows, map->scale);
-    if (passage->shrink == NODE_NONE)
-        passage->scale = graph_op2(g, OP_mul, passage->scale, map->scale);
+    if (chain->shrink == NODE_NONE)
+        chain->scale = graph_op2(g, OP_mul, chain->scale, map->scale);
     else
-        passage->shrink = graph_op2(g, OP_div, passage->shrink, map->scale);
+        chain->shrink = graph_op2(g, OP_div, chain->shrink, map->scale);
 }
 
-Lowered passage_out(Lowering *l, const Passage *passage, Lowered result)
+Lowered map_chain_out(Lowering *l, const MapChain *chain, Lowered result)
 {
     Graph *g = l->graph;
-    if (passage->shrink == NODE_NONE || result.distance == NODE_NONE)
-        return scale_distance(l, result, passage->scale);
+    if (chain->shrink == NODE_NONE || result.distance == NODE_NONE)
+        return scale_distance(l, result, chain->scale);
     Node size       = graph_op1(g, OP_abs, result.distance);
-    Node bend       = graph_op2(g, OP_mul, passage->bend, size);
-    Node divisor    = graph_op2(g, OP_add, passage->shrink, bend);
+    Node bend       = graph_op2(g, OP_mul, chain->bend, size);
+    Node divisor    = graph_op2(g, OP_add, chain->shrink, bend);
     result.distance = graph_op2(g, OP_div, result.distance, divisor);
     return result;
 }
 
-Node enter_passage(Lowering *l, const Passage *passage)
+Node enter_map_chain(Lowering *l, const MapChain *chain)
 {
-    if (!l->guarded || passage->shrink == NODE_NONE)
-        return enter_scale(l, passage->scale);
+    if (!l->guarded || chain->shrink == NODE_NONE)
+        return enter_scale(l, chain->scale);
     Node one = graph_number(l->graph, 1);
-    return enter_scale(l, graph_op2(l->graph, OP_div, one, passage->shrink));
+    return enter_scale(l, graph_op2(l->graph, OP_div, one, chain->shrink));
 }
 
 static Range frame_range(Lowering *l, Node node, uint32_t component)
@@ -128,41 +128,41 @@ static Range frame_range(Lowering *l, Node node, uint32_t component)
  * inverted lies in some ball, whose image, the inside or the outside of another ball, leaves the
  * pole out.  The distance to that is the larger bound near the pole, and 1-Lipschitz as well.
  */
-Node passage_hull(Lowering *l, const Passage *passage, const Map *map, Ball *ball)
+Node map_chain_hull(Lowering *l, const MapChain *chain, const Map *map, Ball *ball)
 {
     Graph *g = l->graph;
     if (ball->radius < 0 || isinf(ball->radius))
         return NODE_NONE;
-    Node way       = graph_constant(g, TYPE_VEC3, ball->centre);
-    way            = graph_op2(g, OP_sub, way, map->pole);
-    Node   square  = graph_op2(g, OP_dot, way, way);
-    Range  away    = frame_range(l, square, 0);
+    Node offset    = graph_constant(g, TYPE_VEC3, ball->centre);
+    offset         = graph_op2(g, OP_sub, offset, map->pole);
+    Node   square  = graph_op2(g, OP_dot, offset, offset);
+    Range  squared = frame_range(l, square, 0);
     double radius  = ball->radius * (1 + ROUNDING);
-    bool   outside = !(away.low >= radius * radius * (1 + KEEP_OFF) * (1 + KEEP_OFF));
+    bool   outside = !(squared.low >= radius * radius * (1 + KEEP_OFF) * (1 + KEEP_OFF));
     if (outside)
-        radius = fmax(radius, sqrt(away.high) * (1 + KEEP_OFF));
+        radius = fmax(radius, sqrt(squared.high) * (1 + KEEP_OFF));
     if (isinf(radius) || radius == 0)
         return NODE_NONE;
     ball->radius = radius;
-    /* Centre and radius: scale (R way, radius) / (|way|^2 - radius^2); outside that is < 0. */
-    Node rest                = graph_number(g, radius * radius);
-    rest                     = graph_op2(g, OP_sub, square, rest);
-    Node factor              = graph_op2(g, OP_div, map->scale, rest);
-    Node centre              = graph_op4(g, OP_turn, way, map->rows[0], map->rows[1], map->rows[2]);
-    centre                   = graph_op2(g, OP_scale, centre, factor);
-    centre                   = graph_op2(g, OP_add, centre, map->shift);
-    Node size                = graph_number(g, radius);
-    size                     = graph_op2(g, OP_mul, size, factor);
-    Node    away_from_centre = graph_op2(g, OP_sub, passage->point, centre);
-    Node    length           = graph_op1(g, OP_length, away_from_centre);
-    Lowered bound            = lowered_nothing;
+    /* Centre and radius: scale (R offset, radius) / (|offset|^2 - radius^2); outside that is < 0. */
+    Node rest           = graph_number(g, radius * radius);
+    rest                = graph_op2(g, OP_sub, square, rest);
+    Node factor         = graph_op2(g, OP_div, map->scale, rest);
+    Node centre         = graph_op4(g, OP_turn, offset, map->rows[0], map->rows[1], map->rows[2]);
+    centre              = graph_op2(g, OP_scale, centre, factor);
+    centre              = graph_op2(g, OP_add, centre, map->shift);
+    Node size           = graph_number(g, radius);
+    size                = graph_op2(g, OP_mul, size, factor);
+    Node    from_centre = graph_op2(g, OP_sub, chain->point, centre);
+    Node    length      = graph_op1(g, OP_length, from_centre);
+    Lowered bound       = lowered_nothing;
     if (outside)
         length = graph_op1(g, OP_neg, length);
     bound.distance = graph_op2(g, OP_sub, length, size);
-    return passage_out(l, passage, bound).distance;
+    return map_chain_out(l, chain, bound).distance;
 }
 
-/* ---- hulls of sequences ---- */
+/* ---- bounds around the poles of sequences ---- */
 
 /* Around all places of a ball whose centre may move. */
 static Ball ball_about(Lowering *l, Node centre, double radius)
@@ -178,13 +178,13 @@ static Ball ball_about(Lowering *l, Node centre, double radius)
     return ball;
 }
 
-void hulls_fold(Lowering *l, Hulls *hulls, Node normal, Node offset)
+void pole_bounds_fold(Lowering *l, PoleBounds *pole_bounds, Node normal, Node offset)
 {
-    if (isinf(hulls->within.radius))
+    if (isinf(pole_bounds->within.radius))
         return;
-    Node centre   = graph_constant(l->graph, TYPE_VEC3, hulls->within.centre);
-    centre        = graph_op3(l->graph, OP_fold, centre, normal, offset);
-    hulls->within = ball_about(l, centre, hulls->within.radius);
+    Node centre         = graph_constant(l->graph, TYPE_VEC3, pole_bounds->within.centre);
+    centre              = graph_op3(l->graph, OP_fold, centre, normal, offset);
+    pole_bounds->within = ball_about(l, centre, pole_bounds->within.radius);
 }
 
 /* What the map makes of a ball, inwards; endless unless its pole is clear of the ball. */
@@ -200,27 +200,28 @@ static Ball ball_behind(Lowering *l, const Map *map, Ball ball)
         return ball_about(l, before_map(g, map, centre), ball.radius / scale.low);
     }
     double least  = (1 + CLEAR) * ball.radius;
-    Node   way    = graph_op2(g, OP_sub, centre, map->shift);
-    Node   square = graph_op2(g, OP_dot, way, way);
+    Node   offset = graph_op2(g, OP_sub, centre, map->shift);
+    Node   square = graph_op2(g, OP_dot, offset, offset);
     if (!(frame_range(l, square, 0).low >= least * least))
         return around;
     Node rest   = graph_number(g, ball.radius * ball.radius);
     rest        = graph_op2(g, OP_sub, square, rest);
     Node factor = graph_op2(g, OP_div, map->scale, rest);
-    centre      = behind_inversion(g, map, way, factor);
+    centre      = behind_inversion(g, map, offset, factor);
     return ball_about(l, centre, ball.radius * frame_range(l, factor, 0).high);
 }
 
-bool hulls_map(Lowering *l, Hulls *hulls, const Passage *passage, const Map *map, Ball ball)
+bool pole_bounds_append(Lowering *l, PoleBounds *pole_bounds, const MapChain *chain, const Map *map,
+                        Ball ball)
 {
-    hulls->within = ball_behind(l, map, hulls->within);
-    if (map->pole == NODE_NONE || !isinf(hulls->within.radius))
+    pole_bounds->within = ball_behind(l, map, pole_bounds->within);
+    if (map->pole == NODE_NONE || !isinf(pole_bounds->within.radius))
         return false;
-    Node hull = passage_hull(l, passage, map, &ball);
+    Node hull = map_chain_hull(l, chain, map, &ball);
     if (hull == NODE_NONE)
         return false;
-    hulls->within   = ball;
-    hulls->distance = farther_of(l->graph, hulls->distance, hull);
+    pole_bounds->within   = ball;
+    pole_bounds->distance = farther_of(l->graph, pole_bounds->distance, hull);
     return true;
 }
 
@@ -238,17 +239,17 @@ Node farther_of(Graph *g, Node a, Node b)
     return graph_op2(g, OP_max, a, b);
 }
 
-Lowered lower_inversion(Lowering *l, const Shape *shape, Place place)
+Lowered lower_inversion(Lowering *l, const Shape *shape, LowerContext context)
 {
-    NormalPath path    = normal_path(l, place, 2);
-    Passage    passage = passage_new(l->graph, place.point);
-    Ball       ball    = ball_around(shape->children[0]->box);
-    Node       hull    = passage_hull(l, &passage, &shape->map, &ball);
-    passage_map(l, &passage, &shape->map, &path);
-    Node    unit   = enter_passage(l, &passage);
-    Lowered result = lower_behind(l, shape->children[0], place, &path, passage.point);
+    NormalPath path  = normal_path(l, context, 2);
+    MapChain   chain = map_chain_new(l->graph, context.point);
+    Ball       ball  = ball_around(shape->children[0]->box);
+    Node       hull  = map_chain_hull(l, &chain, &shape->map, &ball);
+    map_chain_append(l, &chain, &shape->map, &path);
+    Node    unit   = enter_map_chain(l, &chain);
+    Lowered result = lower_behind(l, shape->children[0], context, &path, chain.point);
     l->unit        = unit;
-    result         = passage_out(l, &passage, result);
+    result         = map_chain_out(l, &chain, result);
     if (result.distance != NODE_NONE)
         result.distance = farther_of(l->graph, result.distance, hull);
     return result;

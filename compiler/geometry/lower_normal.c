@@ -3,7 +3,7 @@
  *
  * On the way in it is turned as space is, so that materials see it as they see the point.  It has
  * to come out again only where mirrors are smooth (math.md, section 1, "Smooth shading"): on the
- * way in a mirror reflects it or does not; on the way out it does so by a share that rises from 0
+ * way in a mirror reflects it or does not; on the way out it does so by an amount that rises from 0
  * to 1 across the mirror.  Everywhere else the normal is the one that came in.
  */
 #include "compiler/geometry/lowering.h"
@@ -13,15 +13,15 @@ static const double NO_WIDTH = 1e-30;
 /* Of a normal that the mirrors have shortened to nothing: its square. */
 static const double NO_LENGTH = 1e-8;
 
-/* normal - 2 share (axis . normal) axis: reflected where the share is 1. */
-static Node mirrored(Graph *g, Node normal, Node axis, Node share)
+/* normal - 2 amount (axis . normal) axis: reflected where the amount is 1. */
+static Node mirrored(Graph *g, Node normal, Node axis, Node amount)
 {
-    Node along = graph_op2(g, OP_dot, normal, axis);
-    Node two   = graph_number(g, 2);
-    Node twice = graph_op2(g, OP_mul, share, two);
-    Node back  = graph_op2(g, OP_mul, twice, along);
-    Node apart = graph_op2(g, OP_scale, axis, back);
-    return graph_op2(g, OP_sub, normal, apart);
+    Node along      = graph_op2(g, OP_dot, normal, axis);
+    Node two        = graph_number(g, 2);
+    Node twice      = graph_op2(g, OP_mul, amount, two);
+    Node back       = graph_op2(g, OP_mul, twice, along);
+    Node correction = graph_op2(g, OP_scale, axis, back);
+    return graph_op2(g, OP_sub, normal, correction);
 }
 
 static Node turned(Graph *g, Node vector, const Node rows[3])
@@ -41,35 +41,35 @@ Node unit_normal(Graph *g, Node normal, Node otherwise)
 }
 
 /* Lengths of a space that is `stretch` times as large outside. */
-static Place place_stretched(Graph *g, Place place, Node stretch)
+static LowerContext place_stretched(Graph *g, LowerContext context, Node stretch)
 {
     if (stretch == graph_number(g, 1))
-        return place;
-    place.footprint = graph_op2(g, OP_div, place.footprint, stretch);
-    if (place.smoothing != NODE_NONE)
-        place.smoothing = graph_op2(g, OP_div, place.smoothing, stretch);
-    return place;
+        return context;
+    context.footprint = graph_op2(g, OP_div, context.footprint, stretch);
+    if (context.smoothing != NODE_NONE)
+        context.smoothing = graph_op2(g, OP_div, context.smoothing, stretch);
+    return context;
 }
 
 /* How much of a reflection there is at a distance from the mirror, in front of it: 0 or 1, or
    both sides of it meet over a width. */
-static Node share_of(Graph *g, Place place, Node front, Node behind)
+static Node mirrored_amount(Graph *g, LowerContext context, Node front, Node behind)
 {
     Node zero = graph_number(g, 0), one = graph_number(g, 1);
-    if (place.smoothing == NODE_NONE)
+    if (context.smoothing == NODE_NONE)
         return graph_op3(g, OP_select, behind, one, zero);
     Node least = graph_number(g, NO_WIDTH), half = graph_number(g, 0.5);
-    Node width = graph_op2(g, OP_max, place.smoothing, least);
-    Node share = graph_op2(g, OP_div, front, width);
-    share      = graph_op2(g, OP_add, share, half);
-    return graph_op3(g, OP_clamp, share, zero, one);
+    Node width  = graph_op2(g, OP_max, context.smoothing, least);
+    Node amount = graph_op2(g, OP_div, front, width);
+    amount      = graph_op2(g, OP_add, amount, half);
+    return graph_op3(g, OP_clamp, amount, zero, one);
 }
 
 /* ---- steps ---- */
 
-NormalPath normal_path(Lowering *l, Place place, uint32_t most)
+NormalPath normal_path(Lowering *l, LowerContext context, uint32_t most)
 {
-    NormalPath path = {.innermost = place};
+    NormalPath path = {.innermost = context};
     if (l->surfaces)
         path.steps = arena_new_array(l->scratch, NormalStep, most + 1);
     return path;
@@ -144,7 +144,7 @@ void normal_flip(Lowering *l, NormalPath *path, Node axis)
         return;
     Node whole             = graph_number(l->graph, 1);
     path->innermost.normal = mirrored(l->graph, path->innermost.normal, axis, whole);
-    add_step(path, (NormalStep){.kind = NORMAL_MIRROR, .axis = axis, .share = whole});
+    add_step(path, (NormalStep){.kind = NORMAL_MIRROR, .axis = axis, .amount = whole});
 }
 
 void normal_fold(Lowering *l, NormalPath *path, Node point, Node axis, Node offset)
@@ -152,14 +152,14 @@ void normal_fold(Lowering *l, NormalPath *path, Node point, Node axis, Node offs
     Graph *g = l->graph;
     if (!l->surfaces)
         return;
-    Place bare        = path->innermost;
+    LowerContext bare = path->innermost;
     bare.smoothing    = NODE_NONE;
     Node       along  = graph_op2(g, OP_dot, axis, point);
     Node       front  = graph_op2(g, OP_sub, along, offset);
     Node       behind = graph_op3(g, OP_front, point, axis, offset);
-    Node       hard   = share_of(g, bare, front, behind);
+    Node       hard   = mirrored_amount(g, bare, front, behind);
     NormalStep step   = {.kind = NORMAL_MIRROR, .axis = axis};
-    step.share        = share_of(g, path->innermost, front, behind);
+    step.amount       = mirrored_amount(g, path->innermost, front, behind);
     add_step(path, step);
     path->innermost.normal = mirrored(g, path->innermost.normal, axis, hard);
 }
@@ -175,13 +175,13 @@ void normal_kernel(Lowering *l, NormalPath *path, Lowered outer, Lowered kernel)
     add_step(path, step);
 }
 
-Place place_behind(const NormalPath *path, Place place, Node point)
+LowerContext context_behind(const NormalPath *path, LowerContext context, Node point)
 {
-    place.point     = point;
-    place.normal    = path->innermost.normal;
-    place.footprint = path->innermost.footprint;
-    place.smoothing = path->innermost.smoothing;
-    return place;
+    context.point     = point;
+    context.normal    = path->innermost.normal;
+    context.footprint = path->innermost.footprint;
+    context.smoothing = path->innermost.smoothing;
+    return context;
 }
 
 /* From the innermost step outwards.  The normal is that of the nearest of the kernels so far:
@@ -195,7 +195,7 @@ Node normal_out(Lowering *l, const NormalPath *path, Node inner)
     for (uint32_t i = path->count; i-- > 0;) {
         const NormalStep *step = &path->steps[i];
         if (step->kind == NORMAL_MIRROR)
-            normal = mirrored(g, normal, step->axis, step->share);
+            normal = mirrored(g, normal, step->axis, step->amount);
         else if (step->kind == NORMAL_TURN)
             normal = turned(g, normal, step->rows);
         else if (step->kind == NORMAL_STRETCH) {

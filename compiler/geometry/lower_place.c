@@ -28,10 +28,10 @@ Lowered scale_distance(Lowering *l, Lowered result, Node factor)
     return result;
 }
 
-Lowered lower_behind(Lowering *l, const Shape *child, Place place, const NormalPath *path,
+Lowered lower_behind(Lowering *l, const Shape *child, LowerContext context, const NormalPath *path,
                      Node point)
 {
-    Lowered result        = lower_shape(l, child, place_behind(path, place, point));
+    Lowered result        = lower_shape(l, child, context_behind(path, context, point));
     result.surface.normal = normal_out(l, path, result.surface.normal);
     return result;
 }
@@ -44,56 +44,56 @@ Node enter_scale(Lowering *l, Node scale)
     return unit;
 }
 
-Lowered lower_transform(Lowering *l, const Shape *shape, Place place)
+Lowered lower_transform(Lowering *l, const Shape *shape, LowerContext context)
 {
-    NormalPath path  = normal_path(l, place, 1);
-    Node       point = before_map(l->graph, &shape->map, place.point);
+    NormalPath path  = normal_path(l, context, 1);
+    Node       point = before_map(l->graph, &shape->map, context.point);
     normal_turn(l, &path, shape->map.rows, shape->map.scale);
     Node    unit   = enter_scale(l, shape->map.scale);
-    Lowered result = lower_behind(l, shape->children[0], place, &path, point);
+    Lowered result = lower_behind(l, shape->children[0], context, &path, point);
     l->unit        = unit;
     return scale_distance(l, result, shape->map.scale);
 }
 
-Lowered lower_stretch(Lowering *l, const Shape *shape, Place place)
+Lowered lower_stretch(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph *g = l->graph;
     Node   x = graph_component(g, shape->values[0], 0), y = graph_component(g, shape->values[0], 1);
     Node   z         = graph_component(g, shape->values[0], 2);
     Node   least     = graph_op2(g, OP_min, x, y);
     least            = graph_op2(g, OP_min, least, z);
-    Node       point = graph_op2(g, OP_div, place.point, shape->values[0]);
-    NormalPath path  = normal_path(l, place, 1);
+    Node       point = graph_op2(g, OP_div, context.point, shape->values[0]);
+    NormalPath path  = normal_path(l, context, 1);
     normal_stretch(l, &path, shape->values[0], least);
     Node    unit   = enter_scale(l, least);
-    Lowered result = lower_behind(l, shape->children[0], place, &path, point);
+    Lowered result = lower_behind(l, shape->children[0], context, &path, point);
     l->unit        = unit;
     return scale_distance(l, result, least);
 }
 
-Lowered lower_mirror(Lowering *l, const Shape *shape, Place place)
+Lowered lower_mirror(Lowering *l, const Shape *shape, LowerContext context)
 {
-    NormalPath path = normal_path(l, place, 1);
-    normal_fold(l, &path, place.point, shape->values[0], shape->values[1]);
-    Node point = graph_op3(l->graph, OP_fold, place.point, shape->values[0], shape->values[1]);
-    return lower_behind(l, shape->children[0], place, &path, point);
+    NormalPath path = normal_path(l, context, 1);
+    normal_fold(l, &path, context.point, shape->values[0], shape->values[1]);
+    Node point = graph_op3(l->graph, OP_fold, context.point, shape->values[0], shape->values[1]);
+    return lower_behind(l, shape->children[0], context, &path, point);
 }
 
 /* The last of a chain counts, as with paint. */
-Lowered lower_smooth(Lowering *l, const Shape *shape, Place place)
+Lowered lower_smooth(Lowering *l, const Shape *shape, LowerContext context)
 {
-    if (l->surfaces && place.smoothing == NODE_NONE)
-        place.smoothing = shape->values[0] != NODE_NONE
-                              ? shape->values[0]
-                              : graph_op2(l->graph, OP_add, place.footprint, place.footprint);
-    return lower_shape(l, shape->children[0], place);
+    if (l->surfaces && context.smoothing == NODE_NONE)
+        context.smoothing = shape->values[0] != NODE_NONE
+                                ? shape->values[0]
+                                : graph_op2(l->graph, OP_add, context.footprint, context.footprint);
+    return lower_shape(l, shape->children[0], context);
 }
 
-Lowered lower_elongate(Lowering *l, const Shape *shape, Place place)
+Lowered lower_elongate(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph *g      = l->graph;
     Node   low    = graph_op1(g, OP_neg, shape->values[0]);
-    Node   inside = graph_op3(g, OP_clamp, place.point, low, shape->values[0]);
-    Node   point  = graph_op2(g, OP_sub, place.point, inside);
-    return lower_shape(l, shape->children[0], place_at(place, point));
+    Node   inside = graph_op3(g, OP_clamp, context.point, low, shape->values[0]);
+    Node   point  = graph_op2(g, OP_sub, context.point, inside);
+    return lower_shape(l, shape->children[0], context_at(context, point));
 }

@@ -14,16 +14,16 @@ static const double NOWHERE = 1e30;
  * The walls of cells go on for ever, and far away would still hold rays up and throw false
  * penumbras; the distance to the box of all copies is a bound as well, and there the larger one.
  */
-static Lowered outside_of_box(Lowering *l, const Shape *shape, Place place, Lowered result)
+static Lowered outside_of_box(Lowering *l, const Shape *shape, LowerContext context, Lowered result)
 {
     Graph *g = l->graph;
     if (result.distance == NODE_NONE || !box_is_finite(shape->box))
         return result;
-    Node around     = box_distance(g, place.point, shape->box);
+    Node around     = box_distance(g, context.point, shape->box);
     Node zero       = graph_number(g, 0);
-    Node beyond     = graph_op2(g, OP_less, zero, around);
+    Node outside    = graph_op2(g, OP_less, zero, around);
     Node larger     = graph_op2(g, OP_max, result.distance, around);
-    result.distance = graph_op3(g, OP_select, beyond, larger, result.distance);
+    result.distance = graph_op3(g, OP_select, outside, larger, result.distance);
     return result;
 }
 
@@ -32,7 +32,7 @@ static Lowered outside_of_box(Lowering *l, const Shape *shape, Place place, Lowe
 static bool is_symmetric(Lowering *l, const Shape *content, Node mapped, uint32_t axis)
 {
     Lowering alone = {.graph = l->graph, .scratch = l->scratch, .most = l->most};
-    Lowered  inner = lower_shape(&alone, content, place_bare(mapped, true));
+    Lowered  inner = lower_shape(&alone, content, context_new(mapped, true));
     l->overflow    = l->overflow || alone.overflow;
     return inner.distance != NODE_NONE && graph_is_even(l->graph, inner.distance, axis, l->scratch);
 }
@@ -47,14 +47,14 @@ static bool is_symmetric(Lowering *l, const Shape *content, Node mapped, uint32_
  *   NEIGHBOURS else: the copy on the nearer side is evaluated as well, which is exact
  *              (math.md, section 4, "repetition").
  */
-typedef enum Joining { SYMMETRIC, WALLS, NEIGHBOURS } Joining;
+typedef enum CellRule { SYMMETRIC, WALLS, NEIGHBOURS } CellRule;
 
-static Joining choose_joining(Lowering *l, const Shape *content, Node mapped, uint32_t axis,
-                              double margin, double size, Place place)
+static CellRule choose_cell_rule(Lowering *l, const Shape *content, Node mapped, uint32_t axis,
+                                 double margin, double size, LowerContext context)
 {
     if (is_symmetric(l, content, mapped, axis))
         return SYMMETRIC;
-    return margin >= 0.05 * size && !place.lipschitz ? WALLS : NEIGHBOURS;
+    return margin >= 0.05 * size && !context.lipschitz ? WALLS : NEIGHBOURS;
 }
 
 typedef struct Lattice {
@@ -73,11 +73,11 @@ static Range frame_range(Lowering *l, Node node)
     return graph_frame_fact(l->graph, node, l->scratch).value[0];
 }
 
-static Lattice lattice_of(Lowering *l, const Shape *shape, Place place, uint32_t axis)
+static Lattice lattice_of(Lowering *l, const Shape *shape, LowerContext context, uint32_t axis)
 {
     Graph  *g     = l->graph;
     Lattice cells = {.repeats = shape->cells[axis] != 1};
-    cells.shifted = graph_component(g, place.point, axis);
+    cells.shifted = graph_component(g, context.point, axis);
     if (!cells.repeats)
         return cells;
     cells.period       = graph_component(g, shape->values[0], axis);
@@ -152,22 +152,22 @@ static Node wall_distance(Graph *g, const Lattice *cells, Node local, Node numbe
  * of the next copy's box, and copies' distances are made no less than that.  From there the limit
  * grows with the coordinate, and it is the same on both sides of a wall.
  */
-static bool needs_limit(const Shape *content, Place place)
+static bool needs_limit(const Shape *content, LowerContext context)
 {
-    return place.lipschitz && !content->exact;
+    return context.lipschitz && !content->exact;
 }
 
 static Node limit_in_cell(Graph *g, const Lattice *cells, Range content, Node local)
 {
-    Node half = graph_number(g, fmax(-content.low, content.high));
-    Node away = graph_op1(g, OP_abs, local);
-    Node next = graph_op2(g, OP_sub, cells->period, half);
-    return graph_op2(g, OP_add, away, next);
+    Node half   = graph_number(g, fmax(-content.low, content.high));
+    Node offset = graph_op1(g, OP_abs, local);
+    Node next   = graph_op2(g, OP_sub, cells->period, half);
+    return graph_op2(g, OP_add, offset, next);
 }
 
 /* With limits the distance is small far from all copies; that to the sides of their box is not, and
    it is a bound. */
-static Lowered cut_to_limit(Lowering *l, const Shape *shape, Place place, Lowered result,
+static Lowered cut_to_limit(Lowering *l, const Shape *shape, LowerContext context, Lowered result,
                             Node limit)
 {
     Graph *g = l->graph;
@@ -175,72 +175,72 @@ static Lowered cut_to_limit(Lowering *l, const Shape *shape, Place place, Lowere
         return result;
     result.distance = graph_op2(g, OP_min, result.distance, limit);
     if (box_is_finite(shape->box))
-        return outside_of_box(l, shape, place, result);
-    Node beyond = beyond_sides(g, place.point, shape->box);
-    if (beyond != NODE_NONE)
-        result.distance = graph_op2(g, OP_max, result.distance, beyond);
+        return outside_of_box(l, shape, context, result);
+    Node excess = sides_excess(g, context.point, shape->box);
+    if (excess != NODE_NONE)
+        result.distance = graph_op2(g, OP_max, result.distance, excess);
     return result;
 }
 
 /* The copy in the point's own cell, joined with those in the neighbour cells that count: at
    most one on each axis, so the cells of a corner. */
-static Lowered join_neighbours(Lowering *l, const Shape *shape, Place place, const Node own[3],
-                               const Node other[3], const bool neighbour[3])
+static Lowered join_neighbours(Lowering *l, const Shape *shape, LowerContext context,
+                               const Node own[3], const Node other[3], const bool neighbour[3])
 {
     Lowered result = lowered_nothing;
     for (uint32_t corner = 0; corner < 8; corner++) {
-        Node parts[3];
+        Node coordinates[3];
         bool exists = true;
         for (uint32_t i = 0; i < 3; i++) {
-            bool across = corner >> i & 1;
-            exists      = exists && (!across || neighbour[i]);
-            parts[i]    = across ? other[i] : own[i];
+            bool across    = corner >> i & 1;
+            exists         = exists && (!across || neighbour[i]);
+            coordinates[i] = across ? other[i] : own[i];
         }
         if (!exists)
             continue;
         const Shape *content = shape->children[0];
-        Place        there   = place_at(place, graph_op(l->graph, OP_vec3, parts));
-        Lowered      copy    = needs_limit(content, place) ? lower_operand(l, content, there)
-                                                           : lower_shape(l, content, there);
+        LowerContext there   = context_at(context, graph_op(l->graph, OP_vec3, coordinates));
+        Lowered      copy    = needs_limit(content, context) ? lower_operand(l, content, there)
+                                                             : lower_shape(l, content, there);
         result               = join_two(l, blend_sharp, result, copy);
     }
     return result;
 }
 
-Lowered lower_repeat(Lowering *l, const Shape *shape, Place place)
+Lowered lower_repeat(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph *g = l->graph;
     Node   own[3], other[3], walls = NODE_NONE, limit = NODE_NONE;
     bool   neighbour[3];
     Node   plain = graph_leaf(g, OP_POINT);
     for (uint32_t i = 0; i < 3; i++) {
-        Lattice cells = lattice_of(l, shape, place, i);
+        Lattice cells = lattice_of(l, shape, context, i);
         own[i] = other[i] = cells.shifted;
         neighbour[i]      = false;
         if (!cells.repeats)
             continue;
         Node number;
-        own[i]          = in_cell(g, &cells, &number);
-        Joining joining = choose_joining(l, shape->children[0], plain, i, cells.margin,
-                                         cells.least_period, place);
-        neighbour[i]    = joining == NEIGHBOURS;
+        own[i]        = in_cell(g, &cells, &number);
+        CellRule rule = choose_cell_rule(l, shape->children[0], plain, i, cells.margin,
+                                         cells.least_period, context);
+        neighbour[i]  = rule == NEIGHBOURS;
         if (neighbour[i])
             other[i] = in_neighbour(g, &cells, own[i], number);
-        if (neighbour[i] && needs_limit(shape->children[0], place)) {
+        if (neighbour[i] && needs_limit(shape->children[0], context)) {
             Range content = shape->children[0]->box.axis[i];
             limit         = nearer_of(g, limit, limit_in_cell(g, &cells, content, own[i]));
         }
-        if (joining == WALLS) {
+        if (rule == WALLS) {
             Node wall = wall_distance(g, &cells, own[i], number);
             walls     = walls == NODE_NONE ? wall : graph_op2(g, OP_min, walls, wall);
         }
     }
-    Lowered result = join_neighbours(l, shape, place, own, other, neighbour);
-    result         = cut_to_limit(l, shape, place, result, limit);
+    Lowered result = join_neighbours(l, shape, context, own, other, neighbour);
+    result         = cut_to_limit(l, shape, context, result, limit);
     if (walls == NODE_NONE || result.distance == NODE_NONE)
         return result;
     result.distance = graph_op2(g, OP_min, result.distance, walls);
-    return outside_of_box(l, shape, place, result);
+    return outside_of_box(l, shape, context, result);
 }
 
 static bool range_is_finite(Range range) { return isfinite(range.low) && isfinite(range.high); }
@@ -276,22 +276,22 @@ static double sector_margin(Box content, double angle, double half_sector)
 }
 
 /* A copy that stands turned about y. */
-static Lowered lower_turned(Lowering *l, const Shape *content, Place place, Node point)
+static Lowered lower_turned(Lowering *l, const Shape *content, LowerContext context, Node point)
 {
-    NormalPath path = normal_path(l, place, 1);
-    normal_turn_about_y(l, &path, place.point, point);
-    return lower_behind(l, content, place, &path, point);
+    NormalPath path = normal_path(l, context, 1);
+    normal_turn_about_y(l, &path, context.point, point);
+    return lower_behind(l, content, context, &path, point);
 }
 
-static Lowered all_around(Lowering *l, const Shape *shape, Place place, uint32_t first,
+static Lowered all_around(Lowering *l, const Shape *shape, LowerContext context, uint32_t first,
                           uint32_t count)
 {
     if (count == 1) {
-        Node point = turn_about_y(l->graph, place.point, 2 * M_PI * first / shape->cells[0]);
-        return lower_turned(l, shape->children[0], place, point);
+        Node point = turn_about_y(l->graph, context.point, 2 * M_PI * first / shape->cells[0]);
+        return lower_turned(l, shape->children[0], context, point);
     }
-    Lowered a = all_around(l, shape, place, first, count / 2);
-    Lowered b = all_around(l, shape, place, first + count / 2, count - count / 2);
+    Lowered a = all_around(l, shape, context, first, count / 2);
+    Lowered b = all_around(l, shape, context, first + count / 2, count - count / 2);
     return join_two(l, blend_sharp, a, b);
 }
 
@@ -317,12 +317,12 @@ typedef struct Sector {
 static Node across_sector(Graph *g, const Sector *sector, Node local, double factor)
 {
     Node z = graph_component(g, local, 2), x = graph_component(g, local, 0);
-    Node sine   = graph_number(g, sin(sector->half));
-    Node cosine = graph_number(g, factor * cos(sector->half));
-    Node along  = graph_op2(g, OP_mul, x, sine);
-    Node aside  = graph_op1(g, OP_abs, z);
-    aside       = graph_op2(g, OP_mul, aside, cosine);
-    return graph_op2(g, OP_add, along, aside);
+    Node sine    = graph_number(g, sin(sector->half));
+    Node cosine  = graph_number(g, factor * cos(sector->half));
+    Node along   = graph_op2(g, OP_mul, x, sine);
+    Node lateral = graph_op1(g, OP_abs, z);
+    lateral      = graph_op2(g, OP_mul, lateral, cosine);
+    return graph_op2(g, OP_add, along, lateral);
 }
 
 /* Distance to the nearer wall, plus the margin behind it; or what takes its place as a limit. */
@@ -333,23 +333,23 @@ static Node sector_wall(Graph *g, const Sector *sector, Node local, double facto
 }
 
 /* The content, seen from a place in its sector or next to it. */
-static Lowered lower_in_sector(Lowering *l, const Shape *shape, Place place, const Sector *sector,
-                               Node local)
+static Lowered lower_in_sector(Lowering *l, const Shape *shape, LowerContext context,
+                               const Sector *sector, Node local)
 {
     Graph  *g      = l->graph;
     Node    point  = turn_about_y(g, local, -sector->angle);
-    Lowered result = lower_turned(l, shape->children[0], place, point);
-    if (result.distance == NODE_NONE || !needs_limit(shape->children[0], place))
+    Lowered result = lower_turned(l, shape->children[0], context, point);
+    if (result.distance == NODE_NONE || !needs_limit(shape->children[0], context))
         return result;
     Node wall       = across_sector(g, sector, local, -1);
-    Node beyond     = graph_op2(g, OP_sub, graph_number(g, sector->margin), wall);
-    result.distance = graph_op2(g, OP_max, result.distance, beyond);
+    Node excess     = graph_op2(g, OP_sub, graph_number(g, sector->margin), wall);
+    result.distance = graph_op2(g, OP_max, result.distance, excess);
     return result;
 }
 
 /* Copies around y: the point is turned into the sector of the content, and the sectors join as
    cells do.  Content that crosses the walls is written out, copy by copy. */
-Lowered lower_repeat_polar(Lowering *l, const Shape *shape, Place place)
+Lowered lower_repeat_polar(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph       *g       = l->graph;
     const Shape *content = shape->children[0];
@@ -359,25 +359,25 @@ Lowered lower_repeat_polar(Lowering *l, const Shape *shape, Place place)
     sector.angle  = ends_across(content->box) ? atan2(centre[2], centre[0]) : 0;
     sector.margin = sector_margin(content->box, sector.angle, sector.half);
     if (shape->cells[0] < 3 || sector.margin < 0)
-        return all_around(l, shape, place, 0, shape->cells[0]);
+        return all_around(l, shape, context, 0, shape->cells[0]);
 
-    Node    facing  = turn_about_y(g, place.point, sector.angle);
-    Node    count   = graph_number(g, shape->cells[0]);
-    Node    local   = graph_op2(g, OP_cell_polar, facing, count);
-    Lowered result  = lower_in_sector(l, shape, place, &sector, local);
-    Node    mapped  = turn_about_y(g, graph_leaf(g, OP_POINT), -sector.angle);
-    double  width   = hypot(centre[0], centre[2]) * sin(sector.half);
-    Joining joining = choose_joining(l, content, mapped, 2, sector.margin, width, place);
-    if (joining == SYMMETRIC || result.distance == NODE_NONE)
+    Node     facing = turn_about_y(g, context.point, sector.angle);
+    Node     count  = graph_number(g, shape->cells[0]);
+    Node     local  = graph_op2(g, OP_cell_polar, facing, count);
+    Lowered  result = lower_in_sector(l, shape, context, &sector, local);
+    Node     mapped = turn_about_y(g, graph_leaf(g, OP_POINT), -sector.angle);
+    double   width  = hypot(centre[0], centre[2]) * sin(sector.half);
+    CellRule rule   = choose_cell_rule(l, content, mapped, 2, sector.margin, width, context);
+    if (rule == SYMMETRIC || result.distance == NODE_NONE)
         return result;
-    if (joining == NEIGHBOURS) {
+    if (rule == NEIGHBOURS) {
         Node    next  = in_next_sector(g, shape, local);
-        Lowered copy  = lower_in_sector(l, shape, place, &sector, next);
-        bool    cut   = needs_limit(content, place);
+        Lowered copy  = lower_in_sector(l, shape, context, &sector, next);
+        bool    cut   = needs_limit(content, context);
         Node    limit = cut ? sector_wall(g, &sector, local, 1) : NODE_NONE;
-        return cut_to_limit(l, shape, place, join_two(l, blend_sharp, result, copy), limit);
+        return cut_to_limit(l, shape, context, join_two(l, blend_sharp, result, copy), limit);
     }
     Node wall       = sector_wall(g, &sector, local, -1);
     result.distance = graph_op2(g, OP_min, result.distance, wall);
-    return outside_of_box(l, shape, place, result);
+    return outside_of_box(l, shape, context, result);
 }

@@ -54,16 +54,16 @@ static void paint_with(Lowering *l, Node *property, Node paint, Substitution wit
 }
 
 /* The outermost paint counts, as the last method of a chain does. */
-Lowered lower_paint(Lowering *l, const Shape *shape, Place place)
+Lowered lower_paint(Lowering *l, const Shape *shape, LowerContext context)
 {
-    Lowered result = lower_shape(l, shape->children[0], place);
+    Lowered result = lower_shape(l, shape->children[0], context);
     if (!l->surfaces || result.distance == NODE_NONE)
         return result;
     Substitution with = {
-        place.point, result.surface.instance, result.surface.level, result.surface.uv,
-        NODE_NONE,   result.surface.trap};
+        context.point, result.surface.instance, result.surface.level, result.surface.uv,
+        NODE_NONE,     result.surface.trap};
     const Material *material = shape->material;
-    with.normal              = unit_normal(l->graph, result.surface.normal, place.normal);
+    with.normal              = unit_normal(l->graph, result.surface.normal, context.normal);
     paint_with(l, &result.surface.color, material->color, with);
     paint_with(l, &result.surface.roughness, material->roughness, with);
     paint_with(l, &result.surface.metallic, material->metallic, with);

@@ -119,22 +119,22 @@ const Map *map_alignment(Elaboration *e, Node from, Node to)
     ax           = graph_op1(g, OP_abs, ax);
     Node along_x = graph_op2(g, OP_less, ax, small);
     Node other = unit_axis(g, 0), third = unit_axis(g, 1);
-    other            = graph_op3(g, OP_select, along_x, other, third);
-    Node aside       = graph_op2(g, OP_cross, a, other);
-    Node tiny        = graph_number(g, 1e-9);
-    Node opposite    = graph_op2(g, OP_less, size, tiny);
-    Node bisector    = graph_op3(g, OP_select, opposite, aside, sum);
-    bisector         = graph_op1(g, OP_normalize, bisector);
-    Node       zero  = graph_number(g, 0);
-    const Map *first = map_reflection(e, bisector, zero);
+    other              = graph_op3(g, OP_select, along_x, other, third);
+    Node perpendicular = graph_op2(g, OP_cross, a, other);
+    Node tiny          = graph_number(g, 1e-9);
+    Node opposite      = graph_op2(g, OP_less, size, tiny);
+    Node bisector      = graph_op3(g, OP_select, opposite, perpendicular, sum);
+    bisector           = graph_op1(g, OP_normalize, bisector);
+    Node       zero    = graph_number(g, 0);
+    const Map *first   = map_reflection(e, bisector, zero);
     /* The first takes a to -b; when they are opposite it leaves a, which is -b, where it is. */
-    Node turned       = map_turn(e, first, a);
-    Node way          = graph_op2(g, OP_sub, turned, b);
-    Node way_size     = graph_op1(g, OP_length, way);
-    Node still        = graph_op2(g, OP_less, way_size, tiny);
-    Node mirror       = graph_op3(g, OP_select, still, bisector, way);
-    mirror            = graph_op1(g, OP_normalize, mirror);
-    const Map *second = map_reflection(e, mirror, zero);
+    Node turned          = map_turn(e, first, a);
+    Node difference      = graph_op2(g, OP_sub, turned, b);
+    Node difference_size = graph_op1(g, OP_length, difference);
+    Node coincide        = graph_op2(g, OP_less, difference_size, tiny);
+    Node mirror          = graph_op3(g, OP_select, coincide, bisector, difference);
+    mirror               = graph_op1(g, OP_normalize, mirror);
+    const Map *second    = map_reflection(e, mirror, zero);
     return map_product(e, second, first);
 }
 

@@ -333,7 +333,8 @@ static Value unknown_method(Elaboration *e, const Syntax *syntax, Value receiver
         diag->replacement = nearest_name(syntax->name, names, METHOD_COUNT);
     if (diag->replacement)
         diag->help = "a method with a similar name exists";
-    diag_place(e->diags, diag, syntax->children[0]->span, diag_text(e->diags, "this is %s", type));
+    diag_secondary(e->diags, diag, syntax->children[0]->span,
+                   diag_text(e->diags, "this is %s", type));
     if (receiver.type == VALUE_FUNCTION)
         diag->help = "call it first: write parentheses after the name";
     return value_error();

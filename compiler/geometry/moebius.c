@@ -78,13 +78,13 @@ static const Map *concentric_inversions(Elaboration *e, const Map *f, const Map 
  * the pole is g^-1(pole(f)), infinity goes to f(shift(g)), the scale is scale(f) scale(g) / d.d
  * and the rows are R(f) M R(g), as both sides near infinity show.
  */
-static const Map *eccentric_inversions(Elaboration *e, const Map *f, const Map *g, Node way,
+static const Map *eccentric_inversions(Elaboration *e, const Map *f, const Map *g, Node offset,
                                        Node square)
 {
     Graph     *graph  = e->graph;
     Map       *map    = map_new(e);
     Node       zero   = graph_number(graph, 0);
-    Node       normal = graph_op1(graph, OP_normalize, way);
+    Node       normal = graph_op1(graph, OP_normalize, offset);
     const Map *mirror = map_reflection(e, normal, zero);
     Node       rows[3];
     turn_product(e, mirror->rows, g->rows, rows);
@@ -113,15 +113,15 @@ const Map *moebius_product(Elaboration *e, const Map *f, const Map *g)
         return inversion_after_similarity(e, f, g);
     if (f->pole == g->shift)
         return concentric_inversions(e, f, g);
-    Node   way    = graph_op2(graph, OP_sub, g->shift, f->pole);
-    Node   square = graph_op2(graph, OP_dot, way, way);
+    Node   offset = graph_op2(graph, OP_sub, g->shift, f->pole);
+    Node   square = graph_op2(graph, OP_dot, offset, offset);
     Range  range  = node_range(e, square, 0);
     double radius = fmax(node_range(e, f->scale, 0).high, node_range(e, g->scale, 0).high);
     double size   = radius + largest_square(e, f->pole) + largest_square(e, g->shift);
     if (graph_is_constant(graph, square) && range.high <= POLES_MEET * POLES_MEET * size)
         return concentric_inversions(e, f, g);
     if (range.low >= POLES_TOO_NEAR * POLES_TOO_NEAR * radius && isfinite(range.low))
-        return eccentric_inversions(e, f, g, way, square);
+        return eccentric_inversions(e, f, g, offset, square);
     return NULL;
 }
 
@@ -148,7 +148,7 @@ static Quaternion plus(Quaternion a, Quaternion b)
     return (Quaternion){a.re + b.re, a.i + b.i, a.j + b.j, a.k + b.k};
 }
 
-static Node place_of(Elaboration *e, Quaternion q, double factor)
+static Node point_of(Elaboration *e, Quaternion q, double factor)
 {
     return graph_vec3(e->graph, factor * q.i, factor * q.j, factor * q.k);
 }
@@ -205,7 +205,7 @@ const Map *map_of_matrix(Elaboration *e, const double entries[4][4], const char 
     if (cc <= 1e-24 * fmin(square_of(a), square_of(d))) {
         /* (a q + b) d^-1, where d^-1 = conj(a) / l. */
         map->scale = graph_number(e->graph, square_of(a) / fabs(l));
-        map->shift = place_of(e, times(b, conjugate(a)), 1 / l);
+        map->shift = point_of(e, times(b, conjugate(a)), 1 / l);
         rows_of(e, a, l, map->rows);
         return map;
     }
@@ -213,8 +213,8 @@ const Map *map_of_matrix(Elaboration *e, const double entries[4][4], const char 
     Quaternion back = times(conjugate(c), d), to = times(a, conjugate(c));
     Quaternion rest = plus(times(to, d), times((Quaternion){-cc, 0, 0, 0}, b));
     map->scale      = graph_number(e->graph, fabs(l) / cc);
-    map->pole       = place_of(e, back, -1 / cc);
-    map->shift      = place_of(e, to, 1 / cc);
+    map->pole       = point_of(e, back, -1 / cc);
+    map->shift      = point_of(e, to, 1 / cc);
     rows_of(e, c, times(rest, conjugate(c)).re, map->rows);
     return map;
 }

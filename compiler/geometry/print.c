@@ -115,13 +115,13 @@ static void print_shape(const Scene *scene, const Sources *sources, const Shape 
     }
     text_add(out, "\n");
     for (uint32_t i = 0; i < shape->stage_count; i++) {
-        const Stage *stage = &shape->stages[i];
-        if (stage->kind == STAGE_KERNEL) {
+        const SequenceStage *stage = &shape->stages[i];
+        if (stage->kind == SEQUENCE_KERNEL) {
             print_shape(scene, sources, shape->children[stage->kernel], depth + 1, out);
             continue;
         }
         print_indent(out, depth + 1);
-        if (stage->kind == STAGE_MAP)
+        if (stage->kind == SEQUENCE_MAP)
             print_map(scene, &stage->map, out);
         else {
             text_add(out, "reflect ");

@@ -13,23 +13,23 @@
 
 enum { MOST_BRANCHES = 512, MOST_OPENED = 2000 };
 
-/* What is left to gain may be this part of the set's radius. */
+/* The search ends when no more than this fraction of the set's radius can be gained. */
 static const double TOLERANCE = 0.005;
 
-/* The largest direction.x + beyond over the set after the first `stages` stages. */
+/* The largest direction.x + offset over the set after the first `stages` stages. */
 typedef struct Branch {
     uint32_t stages;
-    double   direction[3], beyond;
+    double   direction[3], offset;
     double   bound;
 } Branch;
 
 /* A heap, the branch with the largest bound on top. */
-typedef struct Search {
+typedef struct ReachSearch {
     const ReachStage *stages;
     Branch            heap[MOST_BRANCHES];
     uint32_t          count;
     double            reached; /* by a kernel's box */
-} Search;
+} ReachSearch;
 
 static double dot(const double a[3], const double b[3])
 {
@@ -54,7 +54,7 @@ static double bound_of(const ReachStage *stage, const Branch *branch)
         return -INFINITY;
     double by_box  = box_support(stage->box, u);
     double by_ball = dot(u, stage->ball.centre) + stage->ball.radius * sqrt(dot(u, u));
-    return fmin(by_box, by_ball) + branch->beyond;
+    return fmin(by_box, by_ball) + branch->offset;
 }
 
 static void swap(Branch *a, Branch *b)
@@ -64,8 +64,8 @@ static void swap(Branch *a, Branch *b)
     *b       = c;
 }
 
-/* False when there is no room: then nothing may be opened any more. */
-static bool push(Search *search, Branch branch)
+/* False when the heap is full: then no more branches may be opened. */
+static bool push(ReachSearch *search, Branch branch)
 {
     if (branch.stages == 0)
         return true;
@@ -81,7 +81,7 @@ static bool push(Search *search, Branch branch)
     return true;
 }
 
-static Branch pop(Search *search)
+static Branch pop(ReachSearch *search)
 {
     Branch top      = search->heap[0];
     search->heap[0] = search->heap[--search->count];
@@ -96,7 +96,7 @@ static Branch pop(Search *search)
 }
 
 /* What the set after the branch's last stage is made of. */
-static bool open_branch(Search *search, const Branch *branch)
+static bool open_branch(ReachSearch *search, const Branch *branch)
 {
     const ReachStage *stage  = &search->stages[branch->stages - 1];
     Branch            before = *branch;
@@ -104,13 +104,13 @@ static bool open_branch(Search *search, const Branch *branch)
     if (stage->kind == REACH_KERNEL) {
         if (!box_is_empty(stage->kernel))
             search->reached = fmax(search->reached,
-                                   box_support(stage->kernel, branch->direction) + branch->beyond);
+                                   box_support(stage->kernel, branch->direction) + branch->offset);
     } else if (stage->kind == REACH_REFLECT) {
         Branch mirrored = before;
         double along    = dot(branch->direction, stage->normal);
         for (int i = 0; i < 3; i++)
             mirrored.direction[i] -= 2 * along * stage->normal[i];
-        mirrored.beyond += 2 * along * stage->offset;
+        mirrored.offset += 2 * along * stage->offset;
         if (!push(search, mirrored))
             return false;
     } else {
@@ -119,7 +119,7 @@ static bool open_branch(Search *search, const Branch *branch)
             for (int j = 0; j < 3; j++)
                 before.direction[i] += branch->direction[j] * stage->rows[j][i];
         }
-        before.beyond += dot(branch->direction, stage->shift);
+        before.offset += dot(branch->direction, stage->shift);
     }
     return push(search, before);
 }
@@ -128,8 +128,8 @@ static bool open_branch(Search *search, const Branch *branch)
 static double find_support(const ReachStage *stages, uint32_t count, const double u[3],
                            double tolerance)
 {
-    Search search = {.stages = stages, .reached = -INFINITY};
-    Branch whole  = {.stages = count, .direction = {u[0], u[1], u[2]}};
+    ReachSearch search = {.stages = stages, .reached = -INFINITY};
+    Branch      whole  = {.stages = count, .direction = {u[0], u[1], u[2]}};
     push(&search, whole);
     for (int opened = 0; search.count > 0 && opened < MOST_OPENED; opened++) {
         Branch top = pop(&search);

@@ -28,17 +28,17 @@ typedef enum ShapeKind {
     SHAPE_DIFFERENCE,   /* [0] less all others; likewise */
     SHAPE_XOR,          /* [0], [1]; likewise */
     SHAPE_MORPH,        /* [0], [1]; values[0] in [0, 1]; largest slope */
-    SHAPE_META,         /* [..]; values[0] level, values[1] reach; largest slope: see meta.c */
-    SHAPE_OFFSET,       /* [0]; values[0]; d - r; slope of the child */
-    SHAPE_SHELL,        /* [0]; values[0]; |d| - t / 2; slope of the child */
-    SHAPE_ELONGATE,     /* [0]; values[0] half lengths; slope of the child (a clamp's is 1) */
-    SHAPE_EXTRUDE,      /* [0] a figure; values[0] half height; largest of child's and 1 */
-    SHAPE_REVOLVE,      /* [0] a figure; values[0] offset; slope of the child */
-    SHAPE_REPEAT,       /* [0]; values[0] period, cells; slope of the child: see lower_repeat.c */
+    SHAPE_META,     /* [..]; values[0] level, values[1] reach; largest slope: see metasurface.c */
+    SHAPE_OFFSET,   /* [0]; values[0]; d - r; slope of the child */
+    SHAPE_SHELL,    /* [0]; values[0]; |d| - t / 2; slope of the child */
+    SHAPE_ELONGATE, /* [0]; values[0] half lengths; slope of the child (a clamp's is 1) */
+    SHAPE_EXTRUDE,  /* [0] a figure; values[0] half height; largest of child's and 1 */
+    SHAPE_REVOLVE,  /* [0] a figure; values[0] offset; slope of the child */
+    SHAPE_REPEAT,   /* [0]; values[0] period, cells; slope of the child: see lower_repeat.c */
     SHAPE_REPEAT_POLAR, /* [0]; cells[0] copies about y; slope of the child */
     SHAPE_MIRROR,       /* [0]; values[0] unit normal, values[1] offset; slope of the child */
     SHAPE_TWIST,        /* [0]; values[0] rate, about y; 1: see lower_deform.c, also for the next */
-    SHAPE_BEND,         /* [0]; values[0] rate, about x; cells[0] parts, which overlap; 1 */
+    SHAPE_BEND,         /* [0]; values[0] rate, about x; cells[0] segments, which overlap; 1 */
     SHAPE_TAPER,        /* [0]; values[0], values[1] factors at both ends of y; 1 */
     SHAPE_DISPLACE,     /* [0]; values[0] amplitude of `formula`, values[1] its slope; 1 */
     SHAPE_SMOOTH,       /* [0]; values[0] width or NODE_NONE; slope of the child */
@@ -93,13 +93,13 @@ typedef struct Blend {
 extern const Blend blend_sharp;
 
 /* One statement of a `krs` block. */
-typedef struct Stage {
-    enum { STAGE_KERNEL, STAGE_REFLECT, STAGE_MAP } kind;
+typedef struct SequenceStage {
+    enum { SEQUENCE_KERNEL, SEQUENCE_REFLECT, SEQUENCE_MAP } kind;
     uint32_t kernel;         /* KERNEL: index of the child */
     Node     normal, offset; /* REFLECT: unit normal and offset */
     Map      map;            /* MAP, without `first` */
     Span     span;
-} Stage;
+} SequenceStage;
 
 /* Around all that the stages of a sequence up to one have made, where that one leaves it. */
 typedef struct LevelBound {
@@ -108,12 +108,12 @@ typedef struct LevelBound {
 } LevelBound;
 
 /* Each is about a quarter turn. */
-enum { MOST_BEND_PARTS = 16 };
+enum { MOST_BEND_SEGMENTS = 16 };
 
 /* Walks of the tree are recursive. */
 enum { MOST_SHAPE_DEPTH = 1000 };
-/* And go through a part as often as it is used, which is more often than there are shapes. */
-enum { MOST_SHAPE_PARTS = 100000 };
+/* Walks visit a shape as often as it is used, which is more often than there are shapes. */
+enum { MOST_TREE_SHAPES = 100000 };
 
 struct Shape {
     ShapeKind     kind;
@@ -121,15 +121,15 @@ struct Shape {
     const char   *name; /* of the declaration or operation, for dumps */
     const Shape **children;
     uint32_t      child_count;
-    uint32_t      depth; /* of the tree below, at most MOST_SHAPE_DEPTH */
-    uint32_t      parts; /* of that tree and itself, each where it is used; MOST_SHAPE_PARTS */
+    uint32_t      depth;  /* of the tree below, at most MOST_SHAPE_DEPTH */
+    uint32_t tree_shapes; /* of that tree and itself, each where it is used; MOST_TREE_SHAPES */
 
     Box      box;     /* around the solid, for all values of the parameters */
     double   slope;   /* Lipschitz constant of what it lowers to */
     double   derived; /* PRIMITIVE: the slope of its expression, by which it is divided; else the
                        largest in the tree */
     bool     exact;   /* the distance outside is the true one */
-    bool     curved_parts; /* shape_is_curved of a child */
+    bool     curved_child; /* shape_is_curved of a child */
     bool     claimed;      /* PRIMITIVE: its slope is claimed, not derived */
     Box      region;    /* PRIMITIVE: over which its slope was derived; infinite: over all space */
     bool     estimate;  /* nothing is proven of the distance: a primitive in it is measured only */
@@ -144,7 +144,7 @@ struct Shape {
 
     /* PRIMITIVE, in its own coordinates; bound, uv and trap (VEC2) may be NODE_NONE. */
     Node     formula; /* of a field, algebraic surface (field.c) or DISPLACE, else NODE_NONE */
-    double   overlap; /* BEND: by how much the parts reach beyond their ends */
+    double   overlap; /* BEND: by how much the segments reach beyond their ends */
     double   reach;   /* DISPLACE: largest size of the formula in the box */
     uint32_t degree;  /* of a formula that is a polynomial, else 0, */
     ZeroBox  zeros;   /* and where that may be 0 */
@@ -166,7 +166,7 @@ struct Shape {
     const Syntax       *core; /* PRIMITIVE: what .round(r) grows by r, using `rounding`; or NULL */
     const struct Environment *core_names; /* what that expression sees */
     const Material           *material;
-    const Stage              *stages;
+    const SequenceStage      *stages;
     uint32_t                  stage_count;
     const LevelBound         *bounds; /* of the stages, for all values of the parameters */
 };
@@ -217,7 +217,7 @@ typedef struct FrameSlope {
 /* The slot has a number of single precision that is no less than the slope; infinite: there is no
    bound. */
 double frame_slope_upward(double slope);
-/* Into how many parts the region is cut at most. */
+/* Into how many cells the region is cut at most. */
 uint32_t frame_slope_cells(Box region);
 
 /* The host finds each anew whenever anything changes. */

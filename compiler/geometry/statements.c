@@ -9,8 +9,8 @@
 /* Where the statements of a `krs` block go; those at the top level have none (NULL). */
 typedef struct Sequence {
     struct {
-        Stage *items;
-        size_t count, capacity;
+        SequenceStage *items;
+        size_t         count, capacity;
     } stages;
     struct {
         const Shape **items;
@@ -91,7 +91,7 @@ static bool param_range(Elaboration *e, const Environment *env, const Syntax *sy
     Diag *diag  = diag_add(e->diags, DIAG_RANGE_OF_PARAM, syntax->children[1]->span,
                            "the range of `%s` does not fit its default", syntax->name);
     diag->label = "[low, high] with low <= default <= high";
-    diag_place(e->diags, diag, syntax->children[0]->span, "the default");
+    diag_secondary(e->diags, diag, syntax->children[0]->span, "the default");
     return false;
 }
 
@@ -123,7 +123,7 @@ Value run_definition(Elaboration *e, Definition *definition, Span use)
         Diag *diag  = diag_add(e->diags, DIAG_CYCLE, definition->syntax->name_span,
                                "`%s` needs itself", definition->name);
         diag->label = "defined here";
-        diag_place(e->diags, diag, use, "needed here");
+        diag_secondary(e->diags, diag, use, "needed here");
         return value_error();
     }
     definition->state    = DEFINITION_RUNNING;
@@ -212,9 +212,9 @@ static void add_kernel(Elaboration *e, const Environment *env, const Syntax *syn
 {
     Value value = evaluate(e, env, syntax->children[0]);
     if (value.type == VALUE_SHAPE && !value.shape->figure) {
-        Stage stage = {.kind   = STAGE_KERNEL,
-                       .kernel = (uint32_t)sequence->kernels.count,
-                       .span   = syntax->span};
+        SequenceStage stage = {.kind   = SEQUENCE_KERNEL,
+                               .kernel = (uint32_t)sequence->kernels.count,
+                               .span   = syntax->span};
         array_push(e->arena, &sequence->kernels, value.shape);
         array_push(e->arena, &sequence->stages, stage);
         return;
@@ -233,7 +233,7 @@ static void add_mirror(Elaboration *e, const Environment *env, const Syntax *syn
 {
     const Syntax *argument = syntax->children[0];
     Value         value    = evaluate(e, env, argument);
-    Stage         stage    = {.kind = STAGE_REFLECT, .span = syntax->span};
+    SequenceStage stage    = {.kind = SEQUENCE_REFLECT, .span = syntax->span};
     if (value.type == VALUE_SHAPE && shape_plane(e, value.shape, &stage.normal, &stage.offset)) {
         array_push(e->arena, &sequence->stages, stage);
         return;
@@ -254,7 +254,7 @@ static void add_mirror(Elaboration *e, const Environment *env, const Syntax *syn
 /* One stage for each map of a chain, the innermost first. */
 static void push_map(Elaboration *e, Sequence *sequence, const Map *map, Span span)
 {
-    Stage stage = {.kind = STAGE_MAP, .map = *map, .span = span};
+    SequenceStage stage = {.kind = SEQUENCE_MAP, .map = *map, .span = span};
     if (map->first)
         push_map(e, sequence, map->first, span);
     stage.map.first = NULL;
@@ -268,9 +268,9 @@ static void add_map(Elaboration *e, const Environment *env, const Syntax *syntax
     Value  value = evaluate(e, env, syntax->children[0]);
     size_t count = sequence->stages.count;
     if (value.type == VALUE_MAP) {
-        const Map *map  = value.map;
-        Stage      last = count ? sequence->stages.items[count - 1] : (Stage){0};
-        if (count && last.kind == STAGE_MAP) {
+        const Map    *map  = value.map;
+        SequenceStage last = count ? sequence->stages.items[count - 1] : (SequenceStage){0};
+        if (count && last.kind == SEQUENCE_MAP) {
             map = map_product(e, map, &last.map);
             sequence->stages.count--;
         }
@@ -328,7 +328,7 @@ static void run_statement(Elaboration *e, Environment *env, const Syntax *syntax
     case SYNTAX_LIGHT:
     case SYNTAX_SKY:
     case SYNTAX_IMAGE:
-    case SYNTAX_ZONE: elaborate_look(e, env, syntax); break;
+    case SYNTAX_ZONE: elaborate_view(e, env, syntax); break;
     default: break; /* errors of the parser */
     }
 }
@@ -427,7 +427,7 @@ void elaborate(Elaboration *e, uint32_t source, const char *path)
     e->scene->box = box_empty;
     for (size_t i = 0; i < e->scene->components.count; i++)
         e->scene->box = box_hull(e->scene->box, e->scene->components.items[i].shape->box);
-    finish_looks(e);
+    complete_view(e);
     if (e->scene->components.count == 0 && e->diags->errors == 0) {
         Diag *diag = diag_add(e->diags, DIAG_NOTHING_SHOWN, scope->file->span,
                               "the scene shows nothing");

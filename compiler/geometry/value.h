@@ -69,7 +69,7 @@ typedef struct Values {
     size_t count, capacity;
 } Values;
 
-/* How the surface of a shape looks: numbers are nodes, colours linear VEC3 nodes; NODE_NONE leaves
+/* The material of a surface: numbers are nodes, colours linear VEC3 nodes; NODE_NONE leaves
    what it was painted with before. */
 struct Material {
     const char *name;

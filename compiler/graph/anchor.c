@@ -14,28 +14,28 @@
 #include "compiler/graph/evaluate.h"
 
 /* base + rest; base NODE_NONE: the rest is all. */
-typedef struct Pair {
+typedef struct SplitValue {
     Node base, rest;
-} Pair;
+} SplitValue;
 
-static Pair whole(Node node) { return (Pair){NODE_NONE, node}; }
+static SplitValue whole(Node node) { return (SplitValue){NODE_NONE, node}; }
 
 static Node precise(Graph *g, Node node)
 {
     return g->items[node].time == TIME_COMPILE ? node : graph_op1(g, OP_precise, node);
 }
 
-static Node sum_of(Graph *g, Pair pair)
+static Node sum_of(Graph *g, SplitValue value)
 {
-    if (pair.base == NODE_NONE)
-        return pair.rest;
-    Node base = precise(g, pair.base);
-    return graph_op2(g, OP_add, base, pair.rest);
+    if (value.base == NODE_NONE)
+        return value.rest;
+    Node base = precise(g, value.base);
+    return graph_op2(g, OP_add, base, value.rest);
 }
 
-static bool is_still(const Graph *g, Pair pair)
+static bool is_held_constant(const Graph *g, SplitValue value)
 {
-    return pair.base == NODE_NONE && g->items[pair.rest].time != TIME_POINT;
+    return value.base == NODE_NONE && g->items[value.rest].time != TIME_POINT;
 }
 
 static Node zero_like(Graph *g, Node node)
@@ -45,14 +45,14 @@ static Node zero_like(Graph *g, Node node)
 }
 
 /* a + b and a - b: what stands still joins the base. */
-static Pair add_pairs(Graph *g, Op op, Pair a, Pair b)
+static SplitValue add_values(Graph *g, Op op, SplitValue a, SplitValue b)
 {
-    Pair sum  = {NODE_NONE, NODE_NONE};
-    Node zero = NODE_NONE;
-    if (is_still(g, a))
-        a = (Pair){a.rest, zero = zero_like(g, a.rest)};
-    if (is_still(g, b))
-        b = (Pair){b.rest, zero = zero_like(g, b.rest)};
+    SplitValue sum  = {NODE_NONE, NODE_NONE};
+    Node       zero = NODE_NONE;
+    if (is_held_constant(g, a))
+        a = (SplitValue){a.rest, zero = zero_like(g, a.rest)};
+    if (is_held_constant(g, b))
+        b = (SplitValue){b.rest, zero = zero_like(g, b.rest)};
     if (a.base == NODE_NONE || b.base == NODE_NONE) {
         bool first = a.base != NODE_NONE;
         sum.base = first || op == OP_add ? (first ? a.base : b.base) : graph_op1(g, OP_neg, b.base);
@@ -63,77 +63,79 @@ static Pair add_pairs(Graph *g, Op op, Pair a, Pair b)
 }
 
 /* The same linear operation on both; other operands stand still. */
-static Pair map_pair(Graph *g, const Expr *e, Pair a, int place)
+static SplitValue map_value(Graph *g, const Expr *e, SplitValue a, int index)
 {
     Node operands[MAX_OPERANDS];
     for (int i = 0; i < e->operand_count; i++)
         operands[i] = e->operands[i];
-    operands[place] = a.base;
-    Pair mapped     = {graph_op(g, e->op, operands), NODE_NONE};
-    operands[place] = a.rest;
-    mapped.rest     = graph_op(g, e->op, operands);
+    operands[index]   = a.base;
+    SplitValue mapped = {graph_op(g, e->op, operands), NODE_NONE};
+    operands[index]   = a.rest;
+    mapped.rest       = graph_op(g, e->op, operands);
     return mapped;
 }
 
-static Pair make_vector(Graph *g, const Expr *e, const Pair *parts)
+static SplitValue make_vector(Graph *g, const Expr *e, const SplitValue *components)
 {
     Node bases[MAX_OPERANDS], rests[MAX_OPERANDS];
     for (int i = 0; i < e->operand_count; i++) {
-        bool still = is_still(g, parts[i]);
-        Node zero  = graph_number(g, 0);
-        bases[i]   = still ? parts[i].rest : parts[i].base == NODE_NONE ? zero : parts[i].base;
-        rests[i]   = still ? zero : parts[i].rest;
+        bool held = is_held_constant(g, components[i]);
+        Node zero = graph_number(g, 0);
+        bases[i]  = held                              ? components[i].rest
+                    : components[i].base == NODE_NONE ? zero
+                                                      : components[i].base;
+        rests[i]  = held ? zero : components[i].rest;
     }
-    return (Pair){graph_op(g, e->op, bases), graph_op(g, e->op, rests)};
+    return (SplitValue){graph_op(g, e->op, bases), graph_op(g, e->op, rests)};
 }
 
 /* w - dot(u, base): the offset of a mirror as the rest sees it. */
-static Node offset_seen(Graph *g, const Expr *e, Pair a)
+static Node offset_seen(Graph *g, const Expr *e, SplitValue a)
 {
     Node depth = graph_op2(g, OP_dot, e->operands[1], a.base);
     return graph_op2(g, OP_sub, e->operands[2], depth);
 }
 
-static Pair fold_pair(Graph *g, const Expr *e, Pair a)
+static SplitValue fold_value(Graph *g, const Expr *e, SplitValue a)
 {
     Node seen = offset_seen(g, e, a), zero = graph_number(g, 0);
-    Node before = graph_op3(g, OP_front, a.base, e->operands[1], e->operands[2]);
-    Node kept   = graph_op3(g, OP_select, before, zero, seen);
-    Node depth  = graph_op2(g, OP_dot, e->operands[1], a.rest);
-    Node excess = graph_op2(g, OP_max, depth, precise(g, seen));
-    excess      = graph_op2(g, OP_sub, excess, precise(g, kept));
-    Node twice  = graph_op2(g, OP_mul, excess, graph_number(g, 2));
-    Node way    = graph_op2(g, OP_scale, e->operands[1], twice);
-    Pair folded = {graph_op3(g, OP_fold, a.base, e->operands[1], e->operands[2]), NODE_NONE};
-    folded.rest = graph_op2(g, OP_sub, a.rest, way);
+    Node before       = graph_op3(g, OP_front, a.base, e->operands[1], e->operands[2]);
+    Node retained     = graph_op3(g, OP_select, before, zero, seen);
+    Node depth        = graph_op2(g, OP_dot, e->operands[1], a.rest);
+    Node excess       = graph_op2(g, OP_max, depth, precise(g, seen));
+    excess            = graph_op2(g, OP_sub, excess, precise(g, retained));
+    Node       twice  = graph_op2(g, OP_mul, excess, graph_number(g, 2));
+    Node       offset = graph_op2(g, OP_scale, e->operands[1], twice);
+    SplitValue folded = {graph_op3(g, OP_fold, a.base, e->operands[1], e->operands[2]), NODE_NONE};
+    folded.rest       = graph_op2(g, OP_sub, a.rest, offset);
     return folded;
 }
 
 /* round, floor and ceil: that of the base, and that of the rest and what the base is beyond. */
-static Pair round_pair(Graph *g, const Expr *e, Pair a)
+static SplitValue round_value(Graph *g, const Expr *e, SplitValue a)
 {
-    Pair rounded = {graph_op1(g, e->op, a.base), NODE_NONE};
-    Node beyond  = graph_op2(g, OP_sub, a.base, rounded.base);
-    Node rest    = graph_op2(g, OP_add, precise(g, beyond), a.rest);
-    rounded.rest = graph_op1(g, e->op, rest);
+    SplitValue rounded = {graph_op1(g, e->op, a.base), NODE_NONE};
+    Node       excess  = graph_op2(g, OP_sub, a.base, rounded.base);
+    Node       rest    = graph_op2(g, OP_add, precise(g, excess), a.rest);
+    rounded.rest       = graph_op1(g, e->op, rest);
     return rounded;
 }
 
 /* min, max and clamp by limits that stand still. */
-static Pair limit_pair(Graph *g, const Expr *e, Pair a)
+static SplitValue limit_value(Graph *g, const Expr *e, SplitValue a)
 {
     Node operands[MAX_OPERANDS] = {a.rest};
     for (int i = 1; i < e->operand_count; i++) {
         Node limit  = graph_op2(g, OP_sub, e->operands[i], a.base);
         operands[i] = precise(g, limit);
     }
-    return (Pair){a.base, graph_op(g, e->op, operands)};
+    return (SplitValue){a.base, graph_op(g, e->op, operands)};
 }
 
 /* a < b as rest a - rest b < base b - base a. */
-static Node compare_pairs(Graph *g, const Expr *e, Pair a, Pair b)
+static Node compare_values(Graph *g, const Expr *e, SplitValue a, SplitValue b)
 {
-    Pair difference = add_pairs(g, OP_sub, a, b);
+    SplitValue difference = add_values(g, OP_sub, a, b);
     if (difference.base == NODE_NONE)
         return graph_op2(g, e->op, sum_of(g, a), sum_of(g, b));
     Node limit = graph_op1(g, OP_neg, difference.base);
@@ -141,44 +143,45 @@ static Node compare_pairs(Graph *g, const Expr *e, Pair a, Pair b)
 }
 
 /* Whether all operands but one stand still. */
-static bool others_are_still(const Graph *g, const Expr *e, const Pair *pairs, int but)
+static bool others_are_held_constant(const Graph *g, const Expr *e, const SplitValue *values,
+                                     int but)
 {
     for (int i = 0; i < e->operand_count; i++)
-        if (i != but && !is_still(g, pairs[i]))
+        if (i != but && !is_held_constant(g, values[i]))
             return false;
     return true;
 }
 
 /* An operation of which nothing is known but its value. */
-static Pair plain_pair(Graph *g, const Expr *e, const Pair *pairs)
+static SplitValue plain_value(Graph *g, const Expr *e, const SplitValue *values)
 {
     Node operands[MAX_OPERANDS];
     for (int i = 0; i < e->operand_count; i++)
-        operands[i] = sum_of(g, pairs[i]);
+        operands[i] = sum_of(g, values[i]);
     return whole(e->op == OP_COMPONENT ? graph_component(g, operands[0], e->index)
                                        : graph_op(g, e->op, operands));
 }
 
-static bool any_base(const Expr *e, const Pair *pairs)
+static bool any_base(const Expr *e, const SplitValue *values)
 {
     for (int i = 0; i < e->operand_count; i++)
-        if (pairs[i].base != NODE_NONE)
+        if (values[i].base != NODE_NONE)
             return true;
     return false;
 }
 
-static Pair anchored(Graph *g, const Expr *e, const Pair *p)
+static SplitValue anchored(Graph *g, const Expr *e, const SplitValue *p)
 {
     if (!any_base(e, p))
-        return plain_pair(g, e, p);
+        return plain_value(g, e, p);
     int first = p[0].base != NODE_NONE ? 0 : 1;
     switch (e->op) {
     case OP_add:
-    case OP_sub: return add_pairs(g, e->op, p[0], p[1]);
-    case OP_neg: return map_pair(g, e, p[0], 0);
+    case OP_sub: return add_values(g, e->op, p[0], p[1]);
+    case OP_neg: return map_value(g, e, p[0], 0);
     case OP_COMPONENT:
-        return (Pair){graph_component(g, p[0].base, e->index),
-                      graph_component(g, p[0].rest, e->index)};
+        return (SplitValue){graph_component(g, p[0].base, e->index),
+                            graph_component(g, p[0].rest, e->index)};
     case OP_splat2:
     case OP_splat3:
     case OP_splat4:
@@ -188,51 +191,54 @@ static Pair anchored(Graph *g, const Expr *e, const Pair *p)
     case OP_mul:
     case OP_dot:
     case OP_scale:
-        return others_are_still(g, e, p, first) ? map_pair(g, e, p[first], first)
-                                                : plain_pair(g, e, p);
+        return others_are_held_constant(g, e, p, first) ? map_value(g, e, p[first], first)
+                                                        : plain_value(g, e, p);
     case OP_div:
     case OP_turn:
-        return others_are_still(g, e, p, 0) ? map_pair(g, e, p[0], 0) : plain_pair(g, e, p);
-    case OP_fold: return others_are_still(g, e, p, 0) ? fold_pair(g, e, p[0]) : plain_pair(g, e, p);
+        return others_are_held_constant(g, e, p, 0) ? map_value(g, e, p[0], 0)
+                                                    : plain_value(g, e, p);
+    case OP_fold:
+        return others_are_held_constant(g, e, p, 0) ? fold_value(g, e, p[0]) : plain_value(g, e, p);
     case OP_front:
-        if (!others_are_still(g, e, p, 0))
-            return plain_pair(g, e, p);
+        if (!others_are_held_constant(g, e, p, 0))
+            return plain_value(g, e, p);
         return whole(
             graph_op3(g, OP_front, p[0].rest, e->operands[1], precise(g, offset_seen(g, e, p[0]))));
     case OP_round:
     case OP_floor:
-    case OP_ceil: return round_pair(g, e, p[0]);
+    case OP_ceil: return round_value(g, e, p[0]);
     case OP_min:
     case OP_max:
     case OP_clamp:
-        return others_are_still(g, e, p, 0) ? limit_pair(g, e, p[0]) : plain_pair(g, e, p);
+        return others_are_held_constant(g, e, p, 0) ? limit_value(g, e, p[0])
+                                                    : plain_value(g, e, p);
     case OP_less:
-    case OP_less_equal: return whole(compare_pairs(g, e, p[0], p[1]));
-    default: return plain_pair(g, e, p);
+    case OP_less_equal: return whole(compare_values(g, e, p[0], p[1]));
+    default: return plain_value(g, e, p);
     }
 }
 
 void graph_anchor(Graph *graph, Node *roots, size_t count, Node anchor, Arena *scratch)
 {
-    Span  here  = graph->here;
-    Tape  tape  = tape_new(graph, roots, count, scratch);
-    Pair *pairs = arena_new_array(scratch, Pair, tape.count);
+    Span        here   = graph->here;
+    Tape        tape   = tape_new(graph, roots, count, scratch);
+    SplitValue *values = arena_new_array(scratch, SplitValue, tape.count);
     for (size_t i = 0; i < tape.count; i++) {
-        Node node = tape.nodes[i];
-        Expr e    = graph->items[node];
-        Pair operands[MAX_OPERANDS];
+        Node       node = tape.nodes[i];
+        Expr       e    = graph->items[node];
+        SplitValue operands[MAX_OPERANDS];
         graph->here = e.span;
         if (e.op == OP_POINT)
-            pairs[i] = (Pair){anchor, node};
+            values[i] = (SplitValue){anchor, node};
         else if (e.time != TIME_POINT || e.operand_count == 0)
-            pairs[i] = whole(node);
+            values[i] = whole(node);
         else {
             for (int k = 0; k < e.operand_count; k++)
-                operands[k] = pairs[tape_place(&tape, e.operands[k])];
-            pairs[i] = anchored(graph, &e, operands);
+                operands[k] = values[tape_index(&tape, e.operands[k])];
+            values[i] = anchored(graph, &e, operands);
         }
     }
     for (size_t i = 0; i < count; i++)
-        roots[i] = sum_of(graph, pairs[tape_place(&tape, roots[i])]);
+        roots[i] = sum_of(graph, values[tape_index(&tape, roots[i])]);
     graph->here = here;
 }

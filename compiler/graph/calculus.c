@@ -19,10 +19,10 @@ Fact fact_unknown(uint32_t size)
     return fact;
 }
 
-bool operands_constant(const Call *call, uint32_t first, uint32_t count)
+bool operands_constant(const RuleInput *input, uint32_t first, uint32_t count)
 {
     for (uint32_t i = first; i < count; i++)
-        if (call->operands[i].slope != 0)
+        if (input->operands[i].slope != 0)
             return false;
     return true;
 }
@@ -106,11 +106,11 @@ Range fact_size(const Fact *fact, uint32_t size)
     return (Range){size > 1 && isfinite(least) ? least - least * 0x1p-50 : least, largest};
 }
 
-Fact fact_truth(const Call *call, uint32_t count, bool always, bool never)
+Fact fact_truth(const RuleInput *input, uint32_t count, bool always, bool never)
 {
     Fact fact     = fact_unknown(1);
     fact.value[0] = (Range){always, !never};
-    fact.slope    = always || never || operands_constant(call, 0, count) ? 0 : HUGE_VAL;
+    fact.slope    = always || never || operands_constant(input, 0, count) ? 0 : HUGE_VAL;
     return fact;
 }
 
@@ -180,7 +180,7 @@ Fact fact_agreed(Fact fact, uint32_t size)
 
 /* ---- means, sums and products ---- */
 
-/* Whether the first two weights are shares of one, whose sum is not above 1. */
+/* Whether the first two are weights whose sum is not above 1. */
 static bool mixes(Norm norm, const Partials *rows, uint32_t size)
 {
     for (uint32_t i = 0; i < size; i++)
@@ -232,7 +232,7 @@ static double slope_sum(int first, int arity, const Fact *operands, const Partia
 }
 
 /* Of numbers the mean of slopes is at most the largest.  Components of vectors may take their
-   shares from different operands: |w|^2 <= |u|^2 + |v|^2. */
+   terms from different operands: |w|^2 <= |u|^2 + |v|^2. */
 static double slope_convex(int arity, const Fact *operands, const Partials *rows, uint32_t size)
 {
     double slope = 0;

@@ -16,8 +16,8 @@
 typedef struct Derivation {
     Graph      *graph;
     Smoothness  smoothness; /* the least of all so far */
-    const bool *still;      /* nodes that are taken for constants, by number; or NULL */
-    size_t      still_end;  /* none from this number on */
+    const bool *held;       /* nodes that are taken for constants, by number; or NULL */
+    size_t      held_end;   /* none from this number on */
 } Derivation;
 
 /* ---- the functions of the columns da, db, dc, for nodes ---- */
@@ -29,7 +29,7 @@ static Node times(Derivation *d, Node a, Node b) { return graph_op2(d->graph, OP
 static Node over(Derivation *d, Node a, Node b) { return graph_op2(d->graph, OP_div, a, b); }
 
 /* A derivative that holds only where nothing jumps or breaks off. */
-static Node between(Derivation *d, Node derivative)
+static Node between_jumps(Derivation *d, Node derivative)
 {
     if (d->smoothness > DERIVED_BETWEEN)
         d->smoothness = DERIVED_BETWEEN;
@@ -41,7 +41,7 @@ static Node is_less(Derivation *d, Node a, Node b)
 {
     Node not_less = graph_op2(d->graph, OP_step, b, a);
     Node one      = number(d, 1);
-    return between(d, graph_op2(d->graph, OP_sub, one, not_less));
+    return between_jumps(d, graph_op2(d->graph, OP_sub, one, not_less));
 }
 
 /* -1/2 a^(-3/2), with r = a^(-1/2). */
@@ -86,21 +86,21 @@ static Node atan2_slope(Derivation *d, Node a, Node b, Node numerator)
 }
 
 /* Of h^2 (3 - 2 h), h = (c - a) / (b - a) clamped: by c it is 6 h (1 - h) / (b - a), by the edges
-   the same less the parts that they have in h. */
+   the same less what they contribute to h. */
 static Node smoothstep_slope(Derivation *d, Node a, Node b, Node c, int operand)
 {
     Graph *g    = d->graph;
     Node   zero = number(d, 0), one = number(d, 1);
-    Node   width = graph_op2(g, OP_sub, b, a);
-    Node   part  = over(d, graph_op2(g, OP_sub, c, a), width);
-    Node   h     = graph_op3(g, OP_clamp, part, zero, one);
-    Node   rest  = graph_op2(g, OP_sub, one, h);
-    Node   slope = over(d, times(d, times(d, h, rest), number(d, 6)), width);
+    Node   width    = graph_op2(g, OP_sub, b, a);
+    Node   fraction = over(d, graph_op2(g, OP_sub, c, a), width);
+    Node   h        = graph_op3(g, OP_clamp, fraction, zero, one);
+    Node   rest     = graph_op2(g, OP_sub, one, h);
+    Node   slope    = over(d, times(d, times(d, h, rest), number(d, 6)), width);
     if (operand == 0)
         slope = graph_op1(g, OP_neg, times(d, slope, rest));
     else if (operand == 1)
         slope = graph_op1(g, OP_neg, times(d, slope, h));
-    return between(d, slope);
+    return between_jumps(d, slope);
 }
 
 #define ZERO                                     number(d, 0)
@@ -109,10 +109,10 @@ static Node smoothstep_slope(Derivation *d, Node a, Node b, Node c, int operand)
 #define HALF                                     number(d, 0.5)
 #define LN2                                      number(d, M_LN2)
 #define MINUS_ONE                                number(d, -1)
-#define ANYTHING                                 between(d, ZERO)
-#define jumps(steps)                             between(d, ZERO)
-#define unless_jumps(steps, derivative)          between(d, derivative)
-#define range_sign(a)                            between(d, graph_op1(d->graph, OP_sign, a))
+#define ANYTHING                                 between_jumps(d, ZERO)
+#define jumps(steps)                             between_jumps(d, ZERO)
+#define unless_jumps(steps, derivative)          between_jumps(d, derivative)
+#define range_sign(a)                            between_jumps(d, graph_op1(d->graph, OP_sign, a))
 #define range_mul(a, b)                          times(d, a, b)
 #define range_div(a, b)                          over(d, a, b)
 #define range_add(a, b)                          graph_op2(d->graph, OP_add, a, b)
@@ -195,7 +195,7 @@ static Node derive_choice(Derivation *d, const Expr *e, const Node *inner)
     bool least = e->op == OP_min;
     Op   op    = is_zero(d->graph, inner[1]) ? OP_less_equal : OP_less;
     Node less  = graph_op2(d->graph, op, e->operands[!least], e->operands[least]);
-    return between(d, graph_op3(d->graph, OP_select, less, inner[0], inner[1]));
+    return between_jumps(d, graph_op3(d->graph, OP_select, less, inner[0], inner[1]));
 }
 
 /* Sum over the operands of the row's derivative times the operand's own. */
@@ -248,7 +248,7 @@ static Node derive_normalize(Derivation *d, const Expr *e, Node node, const Node
 }
 
 /* Where only some operands may depend on the point. */
-static bool others_are_still(const Graph *g, const Node *inner, int from, int count)
+static bool others_are_constant(const Graph *g, const Node *inner, int from, int count)
 {
     for (int i = from; i < count; i++)
         if (!is_zero(g, inner[i]))
@@ -259,14 +259,14 @@ static bool others_are_still(const Graph *g, const Node *inner, int from, int co
 /* rows a' + rows' a */
 static Node derive_turn(Graph *g, const Expr *e, const Node *inner)
 {
-    Node sum = zero_of(g, TYPE_VEC3), parts[3];
+    Node sum = zero_of(g, TYPE_VEC3), components[3];
     if (!is_zero(g, inner[0]))
         sum = graph_op4(g, OP_turn, inner[0], e->operands[1], e->operands[2], e->operands[3]);
-    if (others_are_still(g, inner, 1, 4))
+    if (others_are_constant(g, inner, 1, 4))
         return sum;
     for (int i = 0; i < 3; i++)
-        parts[i] = graph_op2(g, OP_dot, inner[i + 1], e->operands[0]);
-    Node turning = graph_op(g, OP_vec3, parts);
+        components[i] = graph_op2(g, OP_dot, inner[i + 1], e->operands[0]);
+    Node turning = graph_op(g, OP_vec3, components);
     return plus(g, sum, turning);
 }
 
@@ -278,7 +278,7 @@ static Node derive_fold(Derivation *d, const Expr *e, const Node *inner)
     Node   along    = graph_op2(g, OP_dot, e->operands[1], inner[0]);
     Node   twice    = graph_op2(g, OP_mul, along, graph_number(g, 2));
     Node   mirrored = graph_op2(g, OP_sub, inner[0], graph_op2(g, OP_scale, e->operands[1], twice));
-    return between(d, graph_op3(g, OP_select, front, mirrored, inner[0]));
+    return between_jumps(d, graph_op3(g, OP_select, front, mirrored, inner[0]));
 }
 
 /* A turn about y by an angle that stays the same within its sector; its sine and cosine are told by
@@ -301,42 +301,42 @@ static Node derive_cell_polar(Derivation *d, const Expr *e, Node node, const Nod
     Node cx = times(d, cosine, v[0]), sz = times(d, sine, v[2]);
     Node cz = times(d, cosine, v[2]), sx = times(d, sine, v[0]);
     Node x = graph_op2(g, OP_add, cx, sz), z = graph_op2(g, OP_sub, cz, sx);
-    return between(d, graph_op3(g, OP_vec3, x, v[1], z));
+    return between_jumps(d, graph_op3(g, OP_vec3, x, v[1], z));
 }
 
-/* ---- blends: share[0] da + share[1] db ---- */
+/* ---- blends: weight[0] da + weight[1] db ---- */
 
 /* Of a sharp minimum. */
-static void sharp_shares(Derivation *d, Node a, Node b, Node share[2])
+static void sharp_weights(Derivation *d, Node a, Node b, Node weight[2])
 {
     Node less = graph_op2(d->graph, OP_less, a, b), one = number(d, 1), zero = number(d, 0);
-    share[0] = graph_op3(d->graph, OP_select, less, one, zero);
-    share[1] = graph_op3(d->graph, OP_select, less, zero, one);
+    weight[0] = graph_op3(d->graph, OP_select, less, one, zero);
+    weight[1] = graph_op3(d->graph, OP_select, less, zero, one);
 }
 
-/* Those that give the farther one a share of 1/2 at most, the less the farther it is. */
-static void smooth_shares(Derivation *d, Op op, Node a, Node b, Node width, Node share[2])
+/* The farther one has a weight of 1/2 at most, the less the farther it is. */
+static void smooth_weights(Derivation *d, Op op, Node a, Node b, Node width, Node weight[2])
 {
-    Graph *g     = d->graph;
-    Node   apart = graph_op1(g, OP_abs, graph_op2(g, OP_sub, a, b)), one = number(d, 1), far;
-    width = not_zero(d, width);
-    apart = over(d, apart, width);
+    Graph *g          = d->graph;
+    Node   difference = graph_op1(g, OP_abs, graph_op2(g, OP_sub, a, b)), one = number(d, 1), far;
+    width      = not_zero(d, width);
+    difference = over(d, difference, width);
     if (op == OP_smin_exponential) {
-        far = graph_op1(g, OP_exp, graph_op1(g, OP_neg, apart));
+        far = graph_op1(g, OP_exp, graph_op1(g, OP_neg, difference));
         far = over(d, far, graph_op2(g, OP_add, one, far));
     } else {
-        far = graph_op2(g, OP_sub, one, apart);
+        far = graph_op2(g, OP_sub, one, difference);
         far = graph_op2(g, OP_max, far, number(d, 0));
         far = op == OP_smin_cubic ? graph_op1(g, OP_square, far) : far;
         far = times(d, far, number(d, 0.5));
     }
     Node less = graph_op2(g, OP_less, a, b), near = graph_op2(g, OP_sub, one, far);
-    share[0] = graph_op3(g, OP_select, less, near, far);
-    share[1] = graph_op3(g, OP_select, less, far, near);
+    weight[0] = graph_op3(g, OP_select, less, near, far);
+    weight[1] = graph_op3(g, OP_select, less, far, near);
 }
 
 /* max(k, min(a, b)) - length(max(k - a, 0), max(k - b, 0)) */
-static void circular_shares(Derivation *d, Node a, Node b, Node width, Node share[2])
+static void circular_weights(Derivation *d, Node a, Node b, Node width, Node weight[2])
 {
     Graph *g    = d->graph;
     Node   zero = number(d, 0), depth[2];
@@ -345,11 +345,11 @@ static void circular_shares(Derivation *d, Node a, Node b, Node width, Node shar
     Node both = not_zero(d, graph_op1(g, OP_length, graph_op(g, OP_vec2, depth)));
     Node out  = graph_op2(g, OP_less, width, graph_op2(g, OP_min, a, b));
     for (int i = 0; i < 2; i++)
-        share[i] = graph_op3(g, OP_select, out, share[i], over(d, depth[i], both));
+        weight[i] = graph_op3(g, OP_select, out, weight[i], over(d, depth[i], both));
 }
 
 /* min(a, b, (a + b - k) / sqrt(2)) */
-static void chamfer_shares(Derivation *d, Node a, Node b, Node width, Node share[2])
+static void chamfer_weights(Derivation *d, Node a, Node b, Node width, Node weight[2])
 {
     Graph *g     = d->graph;
     Node   half  = number(d, M_SQRT1_2);
@@ -357,11 +357,11 @@ static void chamfer_shares(Derivation *d, Node a, Node b, Node width, Node share
     Node   least = graph_op2(g, OP_min, a, b);
     Node   cuts  = graph_op2(g, OP_less, times(d, cut, half), least);
     for (int i = 0; i < 2; i++)
-        share[i] = graph_op3(g, OP_select, cuts, half, share[i]);
+        weight[i] = graph_op3(g, OP_select, cuts, half, weight[i]);
 }
 
 /* min(a, b, (b - k + a + |mod(b - k - a + s, 2 s) - s|) / 2), s the width of a step */
-static void stairs_shares(Derivation *d, Node node, Node a, Node b, Node share[2])
+static void stairs_weights(Derivation *d, Node node, Node a, Node b, Node weight[2])
 {
     Graph *g     = d->graph;
     Expr   e     = g->items[node];
@@ -377,40 +377,40 @@ static void stairs_shares(Derivation *d, Node node, Node a, Node b, Node share[2
     Node zero = number(d, 0), one = number(d, 1);
     Node by_b = graph_op3(g, OP_select, rises, one, zero);
     Node by_a = graph_op3(g, OP_select, rises, zero, one);
-    share[0]  = graph_op3(g, OP_select, stairs, by_a, share[0]);
-    share[1]  = graph_op3(g, OP_select, stairs, by_b, share[1]);
+    weight[0] = graph_op3(g, OP_select, stairs, by_a, weight[0]);
+    weight[1] = graph_op3(g, OP_select, stairs, by_b, weight[1]);
 }
 
 static Node derive_blend(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
     Node a = e->operands[0], b = e->operands[1], width = e->operands[2];
-    Node sharp[2], share[2];
-    sharp_shares(d, a, b, sharp);
-    memcpy(share, sharp, sizeof share);
+    Node sharp[2], weight[2];
+    sharp_weights(d, a, b, sharp);
+    memcpy(weight, sharp, sizeof weight);
     switch (e->op) {
-    case OP_smin_circular: circular_shares(d, a, b, width, share); break;
-    case OP_smin_chamfer: chamfer_shares(d, a, b, width, share); break;
-    case OP_smin_stairs: stairs_shares(d, node, a, b, share); break;
-    default: smooth_shares(d, (Op)e->op, a, b, width, share); break;
+    case OP_smin_circular: circular_weights(d, a, b, width, weight); break;
+    case OP_smin_chamfer: chamfer_weights(d, a, b, width, weight); break;
+    case OP_smin_stairs: stairs_weights(d, node, a, b, weight); break;
+    default: smooth_weights(d, (Op)e->op, a, b, width, weight); break;
     }
     Node blends = graph_op2(d->graph, OP_less, number(d, 0), width), sum[2];
     for (int i = 0; i < 2; i++) {
-        share[i] = graph_op3(d->graph, OP_select, blends, share[i], sharp[i]);
-        sum[i]   = times(d, share[i], inner[i]);
+        weight[i] = graph_op3(d->graph, OP_select, blends, weight[i], sharp[i]);
+        sum[i]    = times(d, weight[i], inner[i]);
     }
-    return between(d, graph_op2(d->graph, OP_add, sum[0], sum[1]));
+    return between_jumps(d, graph_op2(d->graph, OP_add, sum[0], sum[1]));
 }
 
 /* clamp(1/2 + (b - a) / 2k, 0, 1) */
 static Node derive_blend_weight(Derivation *d, const Expr *e, const Node *inner)
 {
-    Graph *g      = d->graph;
-    Node   apart  = graph_op1(g, OP_abs, graph_op2(g, OP_sub, e->operands[1], e->operands[0]));
-    Node   blends = graph_op2(g, OP_less, apart, e->operands[2]);
-    Node   width  = not_zero(d, e->operands[2]);
-    Node   slope  = over(d, number(d, 0.5), width);
-    Node   change = times(d, graph_op2(g, OP_sub, inner[1], inner[0]), slope);
-    return between(d, graph_op3(g, OP_select, blends, change, number(d, 0)));
+    Graph *g          = d->graph;
+    Node   difference = graph_op1(g, OP_abs, graph_op2(g, OP_sub, e->operands[1], e->operands[0]));
+    Node   blends     = graph_op2(g, OP_less, difference, e->operands[2]);
+    Node   width      = not_zero(d, e->operands[2]);
+    Node   slope      = over(d, number(d, 0.5), width);
+    Node   change     = times(d, graph_op2(g, OP_sub, inner[1], inner[0]), slope);
+    return between_jumps(d, graph_op3(g, OP_select, blends, change, number(d, 0)));
 }
 
 /* ---- any node ---- */
@@ -424,7 +424,7 @@ static Node derive_node(Derivation *d, Node node, const Node *inner)
         return derive_choice(d, &e, inner);
     if (partials[e.op])
         return derive_map(d, node, inner);
-    if (e.type <= TYPE_VEC4 && others_are_still(g, inner, 0, e.operand_count) &&
+    if (e.type <= TYPE_VEC4 && others_are_constant(g, inner, 0, e.operand_count) &&
         e.op != OP_select && e.op != OP_guard)
         return zero_of(g, e.type);
     switch (e.op) {
@@ -440,7 +440,8 @@ static Node derive_node(Derivation *d, Node node, const Node *inner)
     case OP_scale: return derive_bilinear(g, e.op, &e, inner);
     case OP_length: return derive_length(d, &e, node, inner);
     case OP_normalize: return derive_normalize(d, &e, node, inner);
-    case OP_select: return between(d, graph_op3(g, OP_select, e.operands[0], inner[1], inner[2]));
+    case OP_select:
+        return between_jumps(d, graph_op3(g, OP_select, e.operands[0], inner[1], inner[2]));
     case OP_guard: {
         Node limit     = graph_op2(g, OP_min, e.operands[1], e.operands[3]);
         Node out       = graph_op2(g, OP_less_equal, limit, e.operands[0]);
@@ -449,11 +450,13 @@ static Node derive_node(Derivation *d, Node node, const Node *inner)
         out            = graph_op2(g, OP_and, out, least_far);
         Node least     = graph_op2(g, OP_less, e.operands[0], e.operands[1]);
         least          = graph_op3(g, OP_select, least, inner[0], inner[1]);
-        return between(d, graph_op3(g, OP_select, out, least, inner[2]));
+        return between_jumps(d, graph_op3(g, OP_select, out, least, inner[2]));
     }
     case OP_turn: return derive_turn(g, &e, inner);
-    case OP_fold: return others_are_still(g, inner, 1, 3) ? derive_fold(d, &e, inner) : NODE_NONE;
-    case OP_cell: return others_are_still(g, inner, 1, 4) ? between(d, inner[0]) : NODE_NONE;
+    case OP_fold:
+        return others_are_constant(g, inner, 1, 3) ? derive_fold(d, &e, inner) : NODE_NONE;
+    case OP_cell:
+        return others_are_constant(g, inner, 1, 4) ? between_jumps(d, inner[0]) : NODE_NONE;
     case OP_cell_polar:
         return is_zero(g, inner[1]) ? derive_cell_polar(d, &e, node, inner) : NODE_NONE;
     case OP_smin_quadratic:
@@ -462,8 +465,8 @@ static Node derive_node(Derivation *d, Node node, const Node *inner)
     case OP_smin_circular:
     case OP_smin_chamfer:
     case OP_smin_stairs:
-        return others_are_still(g, inner, 2, e.operand_count) ? derive_blend(d, &e, node, inner)
-                                                              : NODE_NONE;
+        return others_are_constant(g, inner, 2, e.operand_count) ? derive_blend(d, &e, node, inner)
+                                                                 : NODE_NONE;
     case OP_blend_weight:
         return is_zero(g, inner[2]) ? derive_blend_weight(d, &e, inner) : NODE_NONE;
     default: return NODE_NONE;
@@ -481,7 +484,7 @@ static Node derive_along(Derivation *d, const Tape *tape, int axis, Node *made, 
         g->here = e.span;
         if (e.type > TYPE_VEC4)
             made[i] = zero_of(g, TYPE_FLOAT); /* conditions: between them nothing changes */
-        else if (d->still && node < d->still_end && d->still[node])
+        else if (d->held && node < d->held_end && d->held[node])
             made[i] = zero_of(g, e.type);
         else if (e.op == OP_POINT)
             made[i] = graph_vec3(g, axis == 0, axis == 1, axis == 2);
@@ -489,7 +492,7 @@ static Node derive_along(Derivation *d, const Tape *tape, int axis, Node *made, 
             made[i] = zero_of(g, e.type);
         else {
             for (int k = 0; k < e.operand_count; k++)
-                inner[k] = made[tape_place(tape, e.operands[k])];
+                inner[k] = made[tape_index(tape, e.operands[k])];
             made[i] = e.operand_count ? derive_node(d, node, inner) : NODE_NONE;
         }
         if (made[i] == NODE_NONE) {
@@ -508,7 +511,7 @@ static Smoothness derive(Derivation *d, Node root, Node partial[3], Node *blame,
     Tape   tape    = tape_new(graph, &root, 1, scratch);
     assert(graph->items[root].type <= TYPE_VEC4);
     /* The root's place: frame-time nodes come first on a tape, so it need not be the last. */
-    size_t place = tape_place(&tape, root);
+    size_t index = tape_index(&tape, root);
     Node  *made  = arena_new_array(scratch, Node, tape.count);
     for (int axis = 0; axis < 3; axis++) {
         if (derive_along(d, &tape, axis, made, &culprit) == NODE_NONE) {
@@ -517,7 +520,7 @@ static Smoothness derive(Derivation *d, Node root, Node partial[3], Node *blame,
                 *blame = culprit;
             return DERIVED_NOT;
         }
-        partial[axis] = made[place];
+        partial[axis] = made[index];
     }
     graph->here = here;
     return d->smoothness;
@@ -534,14 +537,14 @@ Smoothness graph_gradient(Graph *graph, Node root, Node *gradient, Node *blame, 
     return graph_gradient_of(graph, root, NULL, 0, gradient, blame, scratch);
 }
 
-Smoothness graph_gradient_of(Graph *graph, Node root, const Node *still, size_t still_count,
+Smoothness graph_gradient_of(Graph *graph, Node root, const Node *held, size_t held_count,
                              Node *gradient, Node *blame, Arena *scratch)
 {
     Node       partial[3];
-    bool      *marks = still_count ? arena_new_array(scratch, bool, graph->count) : NULL;
+    bool      *marks = held_count ? arena_new_array(scratch, bool, graph->count) : NULL;
     Derivation d     = {graph, DERIVED_SMOOTH, marks, graph->count};
-    for (size_t i = 0; i < still_count; i++)
-        marks[still[i]] = true;
+    for (size_t i = 0; i < held_count; i++)
+        marks[held[i]] = true;
     Smoothness smoothness = derive(&d, root, partial, blame, scratch);
     if (smoothness != DERIVED_NOT)
         *gradient = graph_op(graph, OP_vec3, partial);

@@ -21,7 +21,7 @@ Smoothness graph_derive(Graph *graph, Node root, Node partial[3], Node *blame, A
 /* The gradient of a FLOAT as one VEC3. */
 Smoothness graph_gradient(Graph *graph, Node root, Node *gradient, Node *blame, Arena *scratch);
 /* The same where some nodes are taken for constants. */
-Smoothness graph_gradient_of(Graph *graph, Node root, const Node *still, size_t still_count,
+Smoothness graph_gradient_of(Graph *graph, Node root, const Node *held, size_t held_count,
                              Node *gradient, Node *blame, Arena *scratch);
 
 #endif

@@ -204,7 +204,7 @@ static uint32_t scramble(uint32_t x)
  */
 static const double NOISE_END = 1073741824, NOISE_UNIT_2 = 0.99, NOISE_UNIT_3 = 0.96;
 
-static double lattice_place(double p, uint32_t *cell)
+static double lattice_fraction(double p, uint32_t *cell)
 {
     double clamped = fmin(fmax(p, -NOISE_END), NOISE_END), whole = floor(clamped);
     *cell = (uint32_t)(int32_t)whole;
@@ -229,7 +229,7 @@ static double slope_of_3(uint32_t h, double x, double y, double z)
     return (h & 1 ? -u : u) + (h & 2 ? -v : v);
 }
 
-static double between(double a, double b, double t) { return a + (b - a) * t; }
+static double interpolate(double a, double b, double t) { return a + (b - a) * t; }
 
 static NodeValue evaluate_noise2(const NodeValue *o, uint32_t size)
 {
@@ -238,16 +238,16 @@ static NodeValue evaluate_noise2(const NodeValue *o, uint32_t size)
     for (uint32_t i = 0; i < size; i++) {
         if (isnan(o[0].v[i]))
             return number(o[0].v[i]);
-        f[i] = lattice_place(o[0].v[i], &cell[i]);
+        f[i] = lattice_fraction(o[0].v[i], &cell[i]);
     }
     for (uint32_t i = 0; i < 2; i++) {
         uint32_t column = scramble(cell[0] + i);
         double   x      = f[0] - i;
         double   low    = slope_of_2(lattice_bits(column, cell[1]), x, f[1]);
         double   high   = slope_of_2(lattice_bits(column, cell[1] + 1), x, f[1] - 1);
-        rows[i]         = between(low, high, fade(f[1]));
+        rows[i]         = interpolate(low, high, fade(f[1]));
     }
-    return number(NOISE_UNIT_2 * between(rows[0], rows[1], fade(f[0])));
+    return number(NOISE_UNIT_2 * interpolate(rows[0], rows[1], fade(f[0])));
 }
 
 static NodeValue evaluate_noise3(const NodeValue *o, uint32_t size)
@@ -257,7 +257,7 @@ static NodeValue evaluate_noise3(const NodeValue *o, uint32_t size)
     for (uint32_t i = 0; i < size; i++) {
         if (isnan(o[0].v[i]))
             return number(o[0].v[i]);
-        f[i] = lattice_place(o[0].v[i], &cell[i]);
+        f[i] = lattice_fraction(o[0].v[i], &cell[i]);
     }
     for (uint32_t i = 0; i < 2; i++) {
         uint32_t plane = scramble(cell[0] + i);
@@ -266,11 +266,11 @@ static NodeValue evaluate_noise3(const NodeValue *o, uint32_t size)
             double   x = f[0] - i, y = f[1] - k;
             double   low  = slope_of_3(lattice_bits(row, cell[2]), x, y, f[2]);
             double   high = slope_of_3(lattice_bits(row, cell[2] + 1), x, y, f[2] - 1);
-            rows[k]       = between(low, high, fade(f[2]));
+            rows[k]       = interpolate(low, high, fade(f[2]));
         }
-        planes[i] = between(rows[0], rows[1], fade(f[1]));
+        planes[i] = interpolate(rows[0], rows[1], fade(f[1]));
     }
-    return number(NOISE_UNIT_3 * between(planes[0], planes[1], fade(f[0])));
+    return number(NOISE_UNIT_3 * interpolate(planes[0], planes[1], fade(f[0])));
 }
 
 static NodeValue evaluate_push_id(const NodeValue *o, uint32_t size)
@@ -319,8 +319,8 @@ static double smin_cubic(double a, double b, double k)
 
 static double smin_exponential(double a, double b, double k)
 {
-    double apart = a == b ? 0 : fabs(a - b);
-    return fmin(a, b) - k * log1p(exp(-apart / k));
+    double difference = a == b ? 0 : fabs(a - b);
+    return fmin(a, b) - k * log1p(exp(-difference / k));
 }
 
 static double smin_circular(double a, double b, double k)
@@ -538,13 +538,13 @@ uint32_t tape_loops(const Tape *tape)
     for (size_t i = tape->frame_count; i < tape->count; i++) {
         const Expr *expr  = &items[tape->nodes[i]];
         uint32_t    range = expr->op == OP_julia ? 2 : expr->op == OP_mandelbulb ? 1 : 0;
-        if (range > 0) /* always a constant (make_fractal.c) */
+        if (range > 0) /* always a constant (shapes_fractal.c) */
             loops += fractal_loops((Op)expr->op, items[expr->operands[range]].number[1]);
     }
     return loops;
 }
 
-size_t tape_place(const Tape *tape, Node node)
+size_t tape_index(const Tape *tape, Node node)
 {
     bool   point = tape->graph->items[node].time == TIME_POINT;
     size_t low = point ? tape->frame_count : 0, high = point ? tape->count : tape->frame_count;

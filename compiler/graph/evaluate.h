@@ -40,7 +40,7 @@ double tape_flops(const Tape *tape);
 uint32_t tape_loops(const Tape *tape);
 
 /* Where on the tape a node is that the roots need. */
-size_t tape_place(const Tape *tape, Node node);
+size_t tape_index(const Tape *tape, Node node);
 
 /* Runs the part of a tape that does not depend on the point.  `values` has graph->count
    elements, indexed by node; parameters[slot] is the parameter block (slot 0: time). */

@@ -16,18 +16,18 @@ static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_
 
 /* ---- facts of nodes ---- */
 
-/* What facts are computed for: the needed nodes, each with its place in `facts`. */
-typedef struct Study {
+/* What facts are computed for: the needed nodes, each with its index in `facts`. */
+typedef struct Analysis {
     const Graph *graph;
     Tape         tape;
     bool         whole; /* facts of all nodes, else of those on the tape, in its order */
     const double (*parameters)[4];
     Fact *facts;
-} Study;
+} Analysis;
 
-static Fact *study_fact(const Study *study, Node node)
+static Fact *analysis_fact(const Analysis *analysis, Node node)
 {
-    return &study->facts[study->whole ? node : tape_place(&study->tape, node)];
+    return &analysis->facts[analysis->whole ? node : tape_index(&analysis->tape, node)];
 }
 
 /* What the values of leaves lie in that are not the point and not parameters. */
@@ -43,7 +43,7 @@ static Range hit_range(Op op)
     }
 }
 
-static Fact leaf_fact(const Study *study, const Expr *e, Box box)
+static Fact leaf_fact(const Analysis *analysis, const Expr *e, Box box)
 {
     Fact fact = {.slope = HUGE_VAL};
     for (uint32_t i = 0; i < components(e->type); i++)
@@ -54,13 +54,13 @@ static Fact leaf_fact(const Study *study, const Expr *e, Box box)
             fact.gradient[i][i] = range_of(1);
     } else if (e->op == OP_PARAMETER) {
         fact                    = (Fact){0};
-        const GraphParameter *p = e->index < study->graph->parameters.count
-                                      ? &study->graph->parameters.items[e->index]
+        const GraphParameter *p = e->index < analysis->graph->parameters.count
+                                      ? &analysis->graph->parameters.items[e->index]
                                       : NULL;
         for (uint32_t i = 0; i < components(e->type); i++)
-            fact.value[i] = study->parameters ? range_of(study->parameters[e->index][i])
-                            : p               ? (Range){p->low[i], p->high[i]}
-                                              : ANYTHING;
+            fact.value[i] = analysis->parameters ? range_of(analysis->parameters[e->index][i])
+                            : p                  ? (Range){p->low[i], p->high[i]}
+                                                 : ANYTHING;
     } else
         for (uint32_t i = 0; i < components(e->type); i++)
             for (int j = 0; j < 3; j++)
@@ -68,16 +68,16 @@ static Fact leaf_fact(const Study *study, const Expr *e, Box box)
     return fact;
 }
 
-static Fact node_fact(const Study *study, Node node, Box box)
+static Fact node_fact(const Analysis *analysis, Node node, Box box)
 {
-    const Expr *e = &study->graph->items[node];
+    const Expr *e = &analysis->graph->items[node];
     GraphType   types[MAX_OPERANDS];
     Fact        operands[MAX_OPERANDS];
     if (e->operand_count == 0 && e->op != OP_CONSTANT)
-        return leaf_fact(study, e, box);
+        return leaf_fact(analysis, e, box);
     for (int i = 0; i < e->operand_count; i++) {
-        types[i]    = study->graph->items[e->operands[i]].type;
-        operands[i] = *study_fact(study, e->operands[i]);
+        types[i]    = analysis->graph->items[e->operands[i]].type;
+        operands[i] = *analysis_fact(analysis, e->operands[i]);
     }
     /* Rules do not know that two operands are the same number; a square is not negative. */
     bool same = e->operand_count == 2 && e->operands[0] == e->operands[1];
@@ -88,62 +88,63 @@ static Fact node_fact(const Study *study, Node node, Box box)
     return fact;
 }
 
-static void study_run(const Study *study, Box box, size_t from, size_t to)
+static void analysis_run(const Analysis *analysis, Box box, size_t from, size_t to)
 {
     for (size_t i = from; i < to; i++)
-        *study_fact(study, study->tape.nodes[i]) = node_fact(study, study->tape.nodes[i], box);
+        *analysis_fact(analysis, analysis->tape.nodes[i]) = node_fact(analysis,
+                                                                      analysis->tape.nodes[i], box);
 }
 
 Fact *graph_facts(const Graph *graph, Box box, const double (*parameters)[4], Arena *arena)
 {
-    Study study = {.graph = graph, .whole = true, .parameters = parameters};
-    study.facts = arena_new_array(arena, Fact, graph->count);
+    Analysis analysis = {.graph = graph, .whole = true, .parameters = parameters};
+    analysis.facts    = arena_new_array(arena, Fact, graph->count);
     for (Node node = 0; node < graph->count; node++)
-        study.facts[node] = node_fact(&study, node, box);
-    return study.facts;
+        analysis.facts[node] = node_fact(&analysis, node, box);
+    return analysis.facts;
 }
 
 Fact graph_frame_fact(const Graph *graph, Node node, Arena *scratch)
 {
     assert(graph->items[node].time != TIME_POINT);
-    Study study = {.graph = graph, .tape = tape_new(graph, &node, 1, scratch)};
-    study.facts = arena_new_array(scratch, Fact, study.tape.count);
-    study_run(&study, (Box){0}, 0, study.tape.frame_count);
-    return *study_fact(&study, node);
+    Analysis analysis = {.graph = graph, .tape = tape_new(graph, &node, 1, scratch)};
+    analysis.facts    = arena_new_array(scratch, Fact, analysis.tape.count);
+    analysis_run(&analysis, (Box){0}, 0, analysis.tape.frame_count);
+    return *analysis_fact(&analysis, node);
 }
 
 RangeTask range_task(const Graph *graph, const Node *roots, size_t count, Arena *arena)
 {
-    RangeTask task = {.tape = tape_new(graph, roots, count, arena)};
-    task.facts     = arena_new_array(arena, Fact, task.tape.count);
-    Study study    = {.graph = graph, .tape = task.tape, .facts = task.facts};
-    study_run(&study, (Box){0}, 0, task.tape.frame_count);
+    RangeTask task    = {.tape = tape_new(graph, roots, count, arena)};
+    task.facts        = arena_new_array(arena, Fact, task.tape.count);
+    Analysis analysis = {.graph = graph, .tape = task.tape, .facts = task.facts};
+    analysis_run(&analysis, (Box){0}, 0, task.tape.frame_count);
     return task;
 }
 
 void range_task_run(const RangeTask *task, Box box)
 {
-    Study study = {.graph = task->tape.graph, .tape = task->tape, .facts = task->facts};
-    study_run(&study, box, task->tape.frame_count, task->tape.count);
+    Analysis analysis = {.graph = task->tape.graph, .tape = task->tape, .facts = task->facts};
+    analysis_run(&analysis, box, task->tape.frame_count, task->tape.count);
 }
 
 Range range_task_value(const RangeTask *task, Node node)
 {
-    return task->facts[tape_place(&task->tape, node)].value[0];
+    return task->facts[tape_index(&task->tape, node)].value[0];
 }
 
-/* ---- the slope of an expression, over parts of a box ---- */
+/* ---- the slope of an expression, over cells of a box ---- */
 
 /* Parts of the box in a heap, the steepest first. */
-typedef struct Part {
+typedef struct Cell {
     Box    box;
     double slope;
-} Part;
+} Cell;
 
-static double part_slope(const Study *study, Node root, Box box)
+static double cell_slope(const Analysis *analysis, Node root, Box box)
 {
-    study_run(study, box, study->tape.frame_count, study->tape.count);
-    return study_fact(study, root)->slope;
+    analysis_run(analysis, box, analysis->tape.frame_count, analysis->tape.count);
+    return analysis_fact(analysis, root)->slope;
 }
 
 /* A place to cut: the middle, or further and further out where there is none. */
@@ -168,52 +169,52 @@ static int widest_axis(Box box)
     return widest;
 }
 
-/* Puts a part into its place, from the top of the heap downwards. */
-static void heap_sink(Part *heap, size_t count, Part part)
+/* Sinks a cell from the top of the heap to its position. */
+static void heap_sink(Cell *heap, size_t count, Cell cell)
 {
     size_t hole = 0;
     for (size_t child; (child = 2 * hole + 1) < count; hole = child) {
         if (child + 1 < count && heap[child + 1].slope > heap[child].slope)
             child++;
-        if (heap[child].slope <= part.slope)
+        if (heap[child].slope <= cell.slope)
             break;
         heap[hole] = heap[child];
     }
-    heap[hole] = part;
+    heap[hole] = cell;
 }
 
-static void heap_rise(Part *heap, size_t count, Part part)
+static void heap_rise(Cell *heap, size_t count, Cell cell)
 {
     size_t hole = count;
-    for (; hole && heap[(hole - 1) / 2].slope < part.slope; hole = (hole - 1) / 2)
+    for (; hole && heap[(hole - 1) / 2].slope < cell.slope; hole = (hole - 1) / 2)
         heap[hole] = heap[(hole - 1) / 2];
-    heap[hole] = part;
+    heap[hole] = cell;
 }
 
-/* The part that holds the middle point is at least as steep as that point alone, however small
+/* The cell that holds the middle point is at least as steep as that point alone, however small
    it is cut: when that is as steep as the whole, cutting is of no use. */
-static bool cutting_helps(const Study *study, Node root, Part part)
+static bool cutting_helps(const Analysis *analysis, Node root, Cell cell)
 {
     Box middle;
     for (int i = 0; i < 3; i++)
-        middle.axis[i] = range_of(range_cut(part.box.axis[i]));
-    return part_slope(study, root, middle) < part.slope * (1 - 1e-9);
+        middle.axis[i] = range_of(range_cut(cell.box.axis[i]));
+    return cell_slope(analysis, root, middle) < cell.slope * (1 - 1e-9);
 }
 
-/* Cuts the steepest part in two until there are `cells`; the steepest is then the first. */
-static void heap_refine(const Study *study, Node root, Part *heap, size_t cells)
+/* Cuts the steepest cell in two until there are `cells`; the steepest is then the first. */
+static void heap_refine(const Analysis *analysis, Node root, Cell *heap, size_t cells)
 {
     for (size_t count = 1; count < cells; count++) {
-        Part worst = heap[0];
-        if (!(worst.slope > 0) || !cutting_helps(study, root, worst))
+        Cell worst = heap[0];
+        if (!(worst.slope > 0) || !cutting_helps(analysis, root, worst))
             return;
         int    axis                   = widest_axis(worst.box);
         double cut                    = range_cut(worst.box.axis[axis]);
-        Part   halves[2]              = {worst, worst};
+        Cell   halves[2]              = {worst, worst};
         halves[0].box.axis[axis].high = cut;
         halves[1].box.axis[axis].low  = cut;
         for (int i = 0; i < 2; i++)
-            halves[i].slope = fmin(worst.slope, part_slope(study, root, halves[i].box));
+            halves[i].slope = fmin(worst.slope, cell_slope(analysis, root, halves[i].box));
         heap_sink(heap, count, halves[0]);
         heap_rise(heap, count, halves[1]);
     }
@@ -221,16 +222,16 @@ static void heap_refine(const Study *study, Node root, Part *heap, size_t cells)
 
 /* Down the steepest operands: the node where the slope first becomes infinite or, when it never
    does, the one that multiplies it most. */
-static Node study_blame(const Study *study, Node root)
+static Node analysis_blame(const Analysis *analysis, Node root)
 {
     Node   worst = root;
     double most  = 0;
     for (Node node = root;;) {
-        const Expr *e   = &study->graph->items[node];
-        double      own = study_fact(study, node)->slope, steepest = 0;
+        const Expr *e   = &analysis->graph->items[node];
+        double      own = analysis_fact(analysis, node)->slope, steepest = 0;
         Node        next = node;
         for (int i = 0; i < e->operand_count; i++) {
-            double slope = study_fact(study, e->operands[i])->slope;
+            double slope = analysis_fact(analysis, e->operands[i])->slope;
             next         = slope > steepest ? e->operands[i] : next;
             steepest     = fmax(slope, steepest);
         }
@@ -251,21 +252,22 @@ SlopeTask slope_task(const Graph *graph, Node root, Box box, uint32_t cells, Are
     return (SlopeTask){tape_new(graph, &root, 1, arena), root, box, cells};
 }
 
-size_t slope_task_room(const SlopeTask *task)
+size_t slope_task_size(const SlopeTask *task)
 {
-    return task->tape.count * sizeof(Fact) + ((size_t)task->cells + 1) * sizeof(Part);
+    return task->tape.count * sizeof(Fact) + ((size_t)task->cells + 1) * sizeof(Cell);
 }
 
-double slope_task_run(const SlopeTask *task, const double (*parameters)[4], void *room, Node *blame)
+double slope_task_run(const SlopeTask *task, const double (*parameters)[4], void *workspace,
+                      Node *blame)
 {
-    Study study = {task->tape.graph, task->tape, false, parameters, room};
-    Part *heap  = (Part *)(study.facts + task->tape.count);
-    study_run(&study, (Box){0}, 0, task->tape.frame_count);
-    heap[0] = (Part){task->box, part_slope(&study, task->root, task->box)};
-    heap_refine(&study, task->root, heap, task->cells);
+    Analysis analysis = {task->tape.graph, task->tape, false, parameters, workspace};
+    Cell    *heap     = (Cell *)(analysis.facts + task->tape.count);
+    analysis_run(&analysis, (Box){0}, 0, task->tape.frame_count);
+    heap[0] = (Cell){task->box, cell_slope(&analysis, task->root, task->box)};
+    heap_refine(&analysis, task->root, heap, task->cells);
     if (blame) {
-        part_slope(&study, task->root, heap[0].box);
-        *blame = study_blame(&study, task->root);
+        cell_slope(&analysis, task->root, heap[0].box);
+        *blame = analysis_blame(&analysis, task->root);
     }
     return heap[0].slope;
 }
@@ -273,7 +275,7 @@ double slope_task_run(const SlopeTask *task, const double (*parameters)[4], void
 double graph_slope(const Graph *graph, Node root, Box box, const double (*parameters)[4],
                    uint32_t cells, Node *blame, Arena *scratch)
 {
-    SlopeTask task = slope_task(graph, root, box, cells, scratch);
-    double   *room = arena_alloc(scratch, slope_task_room(&task), 1);
-    return slope_task_run(&task, parameters, room, blame);
+    SlopeTask task      = slope_task(graph, root, box, cells, scratch);
+    double   *workspace = arena_alloc(scratch, slope_task_size(&task), 1);
+    return slope_task_run(&task, parameters, workspace, blame);
 }

@@ -32,7 +32,7 @@ Fact *graph_facts(const Graph *graph, Box box, const double (*parameters)[4], Ar
 /* Range of one node that does not depend on the point, over the ranges of the parameters. */
 Fact graph_frame_fact(const Graph *graph, Node node, Arena *scratch);
 
-/* The slope of `root` over a box, refined by cutting the box into at most `cells` parts; inf
+/* The slope of `root` over a box, refined by cutting the box into at most `cells` cells; inf
    when there is no bound. `*blame` (may be NULL) is the node whose slope first became infinite
    or contributes most. */
 double graph_slope(const Graph *graph, Node root, Box box, const double (*parameters)[4],
@@ -49,9 +49,9 @@ typedef struct SlopeTask {
 /* The tape is in the arena; the graph must live as long. */
 SlopeTask slope_task(const Graph *graph, Node root, Box box, uint32_t cells, Arena *arena);
 /* Bytes that it needs to be run, aligned as doubles. */
-size_t slope_task_room(const SlopeTask *task);
+size_t slope_task_size(const SlopeTask *task);
 /* As graph_slope. */
-double slope_task_run(const SlopeTask *task, const double (*parameters)[4], void *room,
+double slope_task_run(const SlopeTask *task, const double (*parameters)[4], void *workspace,
                       Node *blame);
 
 /* Ranges of some expressions, to be found over one box after the other. */

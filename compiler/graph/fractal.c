@@ -24,7 +24,7 @@
  * square over all directions, e^2 (2 + s^2) / 3, it is too long in one place of some thousands;
  * where that counts as 0.85 e^2 at least, so that many steps of small s do not add up, it was
  * never found to be.
- * Inside, d is tried so that what it becomes keeps below the room R - |w|, taking it to be
+ * Inside, d is chosen so that what it becomes keeps below the margin R - |w|, taking it to be
  *     x = |w'| d / (1 - g d),  as  (|w| + x)^p - |w|^p <= e x / (1 - (p - 1) x / (2 |w|))
  * coefficient by coefficient, by which each step adds (p - 1) |w'| / (2 |w|) to g.  What is nearer
  * to the origin than `least` counts as so near there.
@@ -90,11 +90,11 @@ static void raise(double result[2], const double base[2], int power, double squa
 /* z^power + c: a power of a + v is A + B v. */
 static void julia_step(double z[4], const double c[4], int power)
 {
-    double parts[2], square = z[1] * z[1] + z[2] * z[2] + z[3] * z[3];
-    raise(parts, (double[]){z[0], 1}, power, square);
-    z[0] = parts[0] + c[0];
+    double raised[2], square = z[1] * z[1] + z[2] * z[2] + z[3] * z[3];
+    raise(raised, (double[]){z[0], 1}, power, square);
+    z[0] = raised[0] + c[0];
     for (int i = 1; i < 4; i++)
-        z[i] = parts[1] * z[i] + c[i];
+        z[i] = raised[1] * z[i] + c[i];
 }
 
 /* White and Nylander's power, its poles on the y axis: the angles from the axis and about it
@@ -126,10 +126,10 @@ typedef struct Trap {
     double nearest, which;
 } Trap;
 
-static void trap_add(Trap *trap, double away, int iterate, int count)
+static void trap_add(Trap *trap, double modulus, int iterate, int count)
 {
-    if (away < trap->nearest)
-        *trap = (Trap){away, (double)iterate / count};
+    if (modulus < trap->nearest)
+        *trap = (Trap){modulus, (double)iterate / count};
 }
 
 static NodeValue trap_value(Trap trap) { return (NodeValue){{trap.nearest, trap.which}}; }
@@ -166,12 +166,12 @@ NodeValue evaluate_julia_trap(const NodeValue *o, uint32_t size)
 {
     (void)size;
     int    power = power_of(&o[2]), last = iterations_of(&o[2], &o[3]);
-    double z[4] = {o[0].v[0], o[0].v[1], o[0].v[2], 0}, away = norm(z, 4);
+    double z[4] = {o[0].v[0], o[0].v[1], o[0].v[2], 0}, modulus = norm(z, 4);
     Trap   trap = {1, 1};
-    for (int n = 1; n <= last && away <= 2 * o[3].v[1]; n++) {
+    for (int n = 1; n <= last && modulus <= 2 * o[3].v[1]; n++) {
         julia_step(z, o[1].v, power);
-        away = norm(z, 4);
-        trap_add(&trap, away, n, last);
+        modulus = norm(z, 4);
+        trap_add(&trap, modulus, n, last);
     }
     return trap_value(trap);
 }
@@ -194,22 +194,22 @@ NodeValue evaluate_mandelbulb(const NodeValue *o, uint32_t size)
     const double *c     = o[0].v;
     double        power = o[1].v[0], radius = o[2].v[1], core = mandelbulb_core(power);
     double        least = least_size(power), w[3] = {c[0], c[1], c[2]}, from_origin = norm(c, 3);
-    double        away = from_origin, steep = 1, sum = 0, distance;
+    double        modulus = from_origin, steep = 1, sum = 0, distance;
     if (from_origin > MANDELBULB_NEAR * radius)
         return (NodeValue){{from_origin - radius}};
-    for (int n = 0; n < last && away <= bailout(power); n++) {
-        double even  = pow(fmax(away, least), power - 1);
-        double aside = triplex_step(w, c, power_of(&o[1]));
-        double mean  = (2 * even * even + aside * aside) / 3;
+    for (int n = 0; n < last && modulus <= bailout(power); n++) {
+        double radial  = pow(fmax(modulus, least), power - 1);
+        double lateral = triplex_step(w, c, power_of(&o[1]));
+        double mean    = (2 * radial * radial + lateral * lateral) / 3;
         sum += steep;
-        steep = power * sqrt(fmax(mean, LEAST_STRETCH * even * even)) * steep + 1;
-        away  = norm(w, 3);
+        steep   = power * sqrt(fmax(mean, LEAST_STRETCH * radial * radial)) * steep + 1;
+        modulus = norm(w, 3);
     }
-    double room = radius - away;
-    if (room < 0)
-        distance = fmin(0.5 * away * log(away / radius) / steep, fmax(from_origin - core, 0));
+    double margin = radius - modulus;
+    if (margin < 0)
+        distance = fmin(0.5 * modulus * log(modulus / radius) / steep, fmax(from_origin - core, 0));
     else
-        distance = -0.5 * room / (steep + (power - 1) / (2 * least) * sum * room);
+        distance = -0.5 * margin / (steep + (power - 1) / (2 * least) * sum * margin);
     return (NodeValue){{fmax(distance, from_origin - radius)}};
 }
 
@@ -217,12 +217,12 @@ NodeValue evaluate_mandelbulb_trap(const NodeValue *o, uint32_t size)
 {
     (void)size;
     int    last = iterations_of(&o[1], &o[2]);
-    double w[3] = {o[0].v[0], o[0].v[1], o[0].v[2]}, away = norm(w, 3);
+    double w[3] = {o[0].v[0], o[0].v[1], o[0].v[2]}, modulus = norm(w, 3);
     Trap   trap = {1, 1};
-    for (int n = 1; n <= last && away <= 2 * o[2].v[1]; n++) {
+    for (int n = 1; n <= last && modulus <= 2 * o[2].v[1]; n++) {
         triplex_step(w, o[0].v, power_of(&o[1]));
-        away = norm(w, 3);
-        trap_add(&trap, away, n, last);
+        modulus = norm(w, 3);
+        trap_add(&trap, modulus, n, last);
     }
     return trap_value(trap);
 }

@@ -538,7 +538,7 @@ static Node substitute_operands(Graph *graph, Expr e, Node node, const Tape *tap
 {
     bool changed = false;
     for (int i = 0; i < e.operand_count; i++) {
-        Node copy     = copies[tape_place(tape, e.operands[i])];
+        Node copy     = copies[tape_index(tape, e.operands[i])];
         changed       = changed || copy != e.operands[i];
         e.operands[i] = copy;
     }
@@ -561,7 +561,7 @@ Node graph_substitute(Graph *graph, Node root, Substitution with, Arena *scratch
                                     : substitute_leaf(&e, node, with);
     }
     graph->here = here;
-    return copies[tape_place(&tape, root)];
+    return copies[tape_index(&tape, root)];
 }
 
 /* ---- validation ---- */

@@ -18,7 +18,7 @@ typedef struct LocalBound {
 } LocalBound;
 
 /* The radius is as long as a step can be: |root| over the slope at the point, which is taken to
-   be at least `least`, a number above 0.  False: a part of `root` has no slope over the box. */
+   be at least `least`, a number above 0.  False: an operand in `root` has no slope over the box. */
 bool graph_local_bound(Graph *graph, Node root, Box box, double least, LocalBound *bound,
                        Arena *scratch);
 

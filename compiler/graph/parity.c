@@ -133,8 +133,8 @@ bool graph_is_even(const Graph *graph, Node root, uint32_t axis, Arena *scratch)
         const Expr   *e = &graph->items[tape.nodes[i]];
         const Parity *operands[MAX_OPERANDS];
         for (int k = 0; k < e->operand_count; k++)
-            operands[k] = &parities[tape_place(&tape, e->operands[k])];
+            operands[k] = &parities[tape_index(&tape, e->operands[k])];
         parities[i] = node_parity(graph, e, operands, axis);
     }
-    return parities[tape_place(&tape, root)].of[0] & EVEN;
+    return parities[tape_index(&tape, root)].of[0] & EVEN;
 }

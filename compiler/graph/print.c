@@ -29,7 +29,7 @@ static void print_constant(const Expr *e, Text *out)
     text_add(out, vector ? "]" : "");
 }
 
-static void print_place(const Sources *sources, Span span, Text *out)
+static void print_position(const Sources *sources, Span span, Text *out)
 {
     if (!sources || span.source == 0 || span.source >= sources->count)
         return;
@@ -50,7 +50,7 @@ static void print_node(const Graph *graph, Node node, const Sources *sources, Te
         text_format(out, " %%%u", (unsigned)e->operands[i]);
     if (e->op == OP_COMPONENT || e->op == OP_PARAMETER)
         text_format(out, " %u", (unsigned)e->index);
-    print_place(sources, e->span, out);
+    print_position(sources, e->span, out);
     text_add(out, "\n");
 }
 

@@ -365,10 +365,10 @@ Range range_mix(Range a, Range b, Range c)
     Range mixed = {HUGE_VAL, -HUGE_VAL};
     for (int corner = 0; corner < 8; corner++) {
         Range x = range_of(corner & 1 ? a.low : a.high), y = range_of(corner & 2 ? b.low : b.high);
-        Range t     = range_of(corner & 4 ? c.low : c.high);
-        Range rest  = range_mul(x, range_sub(range_of(1), t));
-        Range share = range_mul(y, t);
-        mixed       = range_hull(mixed, range_add(rest, share));
+        Range t       = range_of(corner & 4 ? c.low : c.high);
+        Range rest    = range_mul(x, range_sub(range_of(1), t));
+        Range product = range_mul(y, t);
+        mixed         = range_hull(mixed, range_add(rest, product));
     }
     return isnan(mixed.low) ? ANYTHING : widened(mixed.low, mixed.high);
 }

@@ -20,7 +20,7 @@ static uint32_t common(const Regions *regions, uint32_t a, uint32_t b)
     return a;
 }
 
-static void use(Regions *regions, Node node, uint32_t from)
+static void add_use(Regions *regions, Node node, uint32_t from)
 {
     uint32_t *of = &regions->of[node];
     *of          = *of == NO_REGION ? from : common(regions, *of, from);
@@ -60,6 +60,7 @@ void graph_regions(Regions *regions, const Graph *graph, const Node *roots, size
         if (e->op == OP_guard)
             regions->body[node] = open_region(regions, node, arena);
         for (int i = 0; i < e->operand_count; i++)
-            use(regions, e->operands[i], e->op == OP_guard && i == REST ? regions->body[node] : of);
+            add_use(regions, e->operands[i],
+                    e->op == OP_guard && i == REST ? regions->body[node] : of);
     }
 }

@@ -16,47 +16,47 @@
 
 /* ---- OP rows: vectors ---- */
 
-static Fact fact_splat(const Call *call)
+static Fact fact_splat(const RuleInput *input)
 {
-    Fact fact = {.slope = call->operands[0].slope};
-    for (uint32_t i = 0; i < call->size; i++) {
-        fact_set(&fact, i, jet_of(&call->operands[0], 0));
+    Fact fact = {.slope = input->operands[0].slope};
+    for (uint32_t i = 0; i < input->size; i++) {
+        fact_set(&fact, i, jet_of(&input->operands[0], 0));
         if (i > 0)
-            fact.slope = hypot_upward(fact.slope, call->operands[0].slope);
+            fact.slope = hypot_upward(fact.slope, input->operands[0].slope);
     }
     return fact;
 }
 
-static Fact fact_vector(const Call *call)
+static Fact fact_vector(const RuleInput *input)
 {
     Fact fact = {0};
-    for (uint32_t i = 0; i < call->size; i++) {
-        fact_set(&fact, i, jet_of(&call->operands[i], 0));
-        fact.slope = hypot_upward(fact.slope, call->operands[i].slope);
+    for (uint32_t i = 0; i < input->size; i++) {
+        fact_set(&fact, i, jet_of(&input->operands[i], 0));
+        fact.slope = hypot_upward(fact.slope, input->operands[i].slope);
     }
     return fact;
 }
 
 /* |(u . v)'| and |(u x v)'| are at most |u| |v'| + |v| |u'|, and so is |(s v)'|. */
-static double slope_product(const Call *call)
+static double slope_product(const RuleInput *input)
 {
-    const Fact *u = &call->operands[0], *v = &call->operands[1];
-    double      left  = product_upward(fact_size(u, type_size(call->types[0])).high, v->slope);
-    double      right = product_upward(fact_size(v, type_size(call->types[1])).high, u->slope);
+    const Fact *u = &input->operands[0], *v = &input->operands[1];
+    double      left  = product_upward(fact_size(u, type_size(input->types[0])).high, v->slope);
+    double      right = product_upward(fact_size(v, type_size(input->types[1])).high, u->slope);
     return sum_upward(left, right);
 }
 
-static Fact fact_dot(const Call *call)
+static Fact fact_dot(const RuleInput *input)
 {
-    Fact fact = {.slope = slope_product(call)};
-    fact_set(&fact, 0, jet_dot(&call->operands[0], &call->operands[1], call->size));
+    Fact fact = {.slope = slope_product(input)};
+    fact_set(&fact, 0, jet_dot(&input->operands[0], &input->operands[1], input->size));
     return fact;
 }
 
-static Fact fact_cross(const Call *call)
+static Fact fact_cross(const RuleInput *input)
 {
-    const Fact *u = &call->operands[0], *v = &call->operands[1];
-    Fact        fact = {.slope = slope_product(call)};
+    const Fact *u = &input->operands[0], *v = &input->operands[1];
+    Fact        fact = {.slope = slope_product(input)};
     for (uint32_t i = 0; i < 3; i++) {
         uint32_t y = (i + 1) % 3, z = (i + 2) % 3;
         Jet      left  = jet_mul(jet_of(u, y), jet_of(v, z));
@@ -66,11 +66,11 @@ static Fact fact_cross(const Call *call)
     return fact;
 }
 
-static Fact fact_scale(const Call *call)
+static Fact fact_scale(const RuleInput *input)
 {
-    Fact fact = {.slope = slope_product(call)};
-    for (uint32_t i = 0; i < call->size; i++)
-        fact_set(&fact, i, jet_mul(jet_of(&call->operands[0], i), jet_of(&call->operands[1], 0)));
+    Fact fact = {.slope = slope_product(input)};
+    for (uint32_t i = 0; i < input->size; i++)
+        fact_set(&fact, i, jet_mul(jet_of(&input->operands[0], i), jet_of(&input->operands[1], 0)));
     return fact;
 }
 
@@ -83,14 +83,14 @@ static Range unit_component(const Fact *v, uint32_t i, Range whole)
 
 /* The derivative is that of v seen along the unit vector, so it is no longer than that of v:
    nothing is divided by a length that may be 0. */
-static Fact fact_length(const Call *call)
+static Fact fact_length(const RuleInput *input)
 {
-    const Fact *v     = &call->operands[0];
-    Range       whole = fact_size(v, call->size);
+    const Fact *v     = &input->operands[0];
+    Range       whole = fact_size(v, input->size);
     Jet         jet   = {.value = whole};
     for (int j = 0; j < 3; j++) {
         double longest = 0;
-        for (uint32_t i = 0; i < call->size; i++) {
+        for (uint32_t i = 0; i < input->size; i++) {
             Range unit      = unit_component(v, i, whole);
             jet.gradient[j] = range_add(jet.gradient[j], range_mul(unit, v->gradient[i][j]));
             longest         = hypot_upward(longest, range_largest(v->gradient[i][j]));
@@ -103,19 +103,19 @@ static Fact fact_length(const Call *call)
 }
 
 /* The derivative of v, less its part along v, over the length of v. */
-static Fact fact_normalize(const Call *call)
+static Fact fact_normalize(const RuleInput *input)
 {
-    const Fact *v        = &call->operands[0];
-    Range       whole    = fact_size(v, call->size);
-    Fact        fact     = fact_unknown(call->size);
+    const Fact *v        = &input->operands[0];
+    Range       whole    = fact_size(v, input->size);
+    Fact        fact     = fact_unknown(input->size);
     double      steepest = whole.low > 0 ? 1 / whole.low * (1 + 0x1p-50) : HUGE_VAL;
     fact.slope           = product_upward(v->slope, steepest);
-    for (uint32_t i = 0; i < call->size; i++)
+    for (uint32_t i = 0; i < input->size; i++)
         fact.value[i] = loosened(unit_component(v, i, whole), 1);
-    for (uint32_t i = 0; whole.low > 0 && i < call->size; i++)
+    for (uint32_t i = 0; whole.low > 0 && i < input->size; i++)
         for (int j = 0; j < 3; j++) {
             Range along = range_of(0);
-            for (uint32_t k = 0; k < call->size; k++)
+            for (uint32_t k = 0; k < input->size; k++)
                 along = range_add(along, range_mul(fact.value[k], v->gradient[k][j]));
             Range across        = range_sub(v->gradient[i][j], range_mul(fact.value[i], along));
             fact.gradient[i][j] = range_div(across, whole);
@@ -132,16 +132,16 @@ static Fact fact_component(const Fact *vector, uint32_t index)
 
 /* ---- OP rows: truth and choice ---- */
 
-static Fact fact_less(const Call *call)
+static Fact fact_less(const RuleInput *input)
 {
-    Range a = call->operands[0].value[0], b = call->operands[1].value[0];
-    return fact_truth(call, 2, a.high < b.low, a.low >= b.high);
+    Range a = input->operands[0].value[0], b = input->operands[1].value[0];
+    return fact_truth(input, 2, a.high < b.low, a.low >= b.high);
 }
 
-static Fact fact_less_equal(const Call *call)
+static Fact fact_less_equal(const RuleInput *input)
 {
-    Range a = call->operands[0].value[0], b = call->operands[1].value[0];
-    return fact_truth(call, 2, a.high <= b.low, a.low > b.high);
+    Range a = input->operands[0].value[0], b = input->operands[1].value[0];
+    return fact_truth(input, 2, a.high <= b.low, a.low > b.high);
 }
 
 static bool always_equal(Range a, Range b)
@@ -151,46 +151,46 @@ static bool always_equal(Range a, Range b)
 
 static bool never_equal(Range a, Range b) { return a.high < b.low || b.high < a.low; }
 
-static Fact fact_equal(const Call *call)
+static Fact fact_equal(const RuleInput *input)
 {
-    Range a = call->operands[0].value[0], b = call->operands[1].value[0];
-    return fact_truth(call, 2, always_equal(a, b), never_equal(a, b));
+    Range a = input->operands[0].value[0], b = input->operands[1].value[0];
+    return fact_truth(input, 2, always_equal(a, b), never_equal(a, b));
 }
 
-static Fact fact_not_equal(const Call *call)
+static Fact fact_not_equal(const RuleInput *input)
 {
-    Range a = call->operands[0].value[0], b = call->operands[1].value[0];
-    return fact_truth(call, 2, never_equal(a, b), always_equal(a, b));
+    Range a = input->operands[0].value[0], b = input->operands[1].value[0];
+    return fact_truth(input, 2, never_equal(a, b), always_equal(a, b));
 }
 
-static Fact fact_and(const Call *call)
+static Fact fact_and(const RuleInput *input)
 {
-    Range a = call->operands[0].value[0], b = call->operands[1].value[0];
-    return fact_truth(call, 2, a.low > 0 && b.low > 0, a.high == 0 || b.high == 0);
+    Range a = input->operands[0].value[0], b = input->operands[1].value[0];
+    return fact_truth(input, 2, a.low > 0 && b.low > 0, a.high == 0 || b.high == 0);
 }
 
-static Fact fact_or(const Call *call)
+static Fact fact_or(const RuleInput *input)
 {
-    Range a = call->operands[0].value[0], b = call->operands[1].value[0];
-    return fact_truth(call, 2, a.low > 0 || b.low > 0, a.high == 0 && b.high == 0);
+    Range a = input->operands[0].value[0], b = input->operands[1].value[0];
+    return fact_truth(input, 2, a.low > 0 || b.low > 0, a.high == 0 && b.high == 0);
 }
 
-static Fact fact_not(const Call *call)
+static Fact fact_not(const RuleInput *input)
 {
-    Range a = call->operands[0].value[0];
-    return fact_truth(call, 1, a.high == 0, a.low > 0);
+    Range a = input->operands[0].value[0];
+    return fact_truth(input, 1, a.high == 0, a.low > 0);
 }
 
 /* Where the condition changes within the box, the value may jump. */
-static Fact fact_select(const Call *call)
+static Fact fact_select(const RuleInput *input)
 {
-    const Fact *truth = &call->operands[0], *yes = &call->operands[1], *no = &call->operands[2];
+    const Fact *truth = &input->operands[0], *yes = &input->operands[1], *no = &input->operands[2];
     if (truth->value[0].low > 0)
         return *yes;
     if (truth->value[0].high == 0)
         return *no;
-    Fact fact = fact_unknown(call->size);
-    for (uint32_t i = 0; i < call->size; i++) {
+    Fact fact = fact_unknown(input->size);
+    for (uint32_t i = 0; i < input->size; i++) {
         Jet either = jet_hull(jet_of(yes, i), jet_of(no, i));
         if (truth->slope == 0)
             fact_set(&fact, i, either);
@@ -202,18 +202,18 @@ static Fact fact_select(const Call *call)
 }
 
 /* Where it goes from one case to the other, the value jumps. */
-static Fact fact_guard(const Call *call)
+static Fact fact_guard(const RuleInput *input)
 {
-    Range a = call->operands[0].value[0], b = call->operands[1].value[0];
-    Range far = call->operands[3].value[0], limit = range_min(b, far);
+    Range a = input->operands[0].value[0], b = input->operands[1].value[0];
+    Range far = input->operands[3].value[0], limit = range_min(b, far);
     if (a.high < limit.low || a.high <= fmin(far.low, 0))
-        return call->operands[2];
+        return input->operands[2];
     Fact fact     = fact_unknown(1);
     fact.value[0] = range_min(a, b);
     if (a.low < limit.high || a.low <= fmin(far.high, 0))
-        fact.value[0] = range_hull(fact.value[0], call->operands[2].value[0]);
+        fact.value[0] = range_hull(fact.value[0], input->operands[2].value[0]);
     else
-        fact.slope = fmax(call->operands[0].slope, call->operands[1].slope);
+        fact.slope = fmax(input->operands[0].slope, input->operands[1].slope);
     return fact;
 }
 
@@ -226,42 +226,42 @@ static Fact fact_guard(const Call *call)
 #define HALF      range_of(0.5)
 #define LN2       ((Range){0.69314718055994528, 0.6931471805599454})
 
-static Fact rule_of_row(const Call *call, uint32_t index, const double *constant)
+static Fact rule_of_row(const RuleInput *input, uint32_t index, const double *constant)
 {
-    const Fact *o = call->operands;
+    const Fact *o = input->operands;
     Partials    rows[4];
     Fact        fact = {0};
-    switch (call->op) {
+    switch (input->op) {
     case OP_CONSTANT:
-        for (uint32_t i = 0; i < call->size; i++)
+        for (uint32_t i = 0; i < input->size; i++)
             fact.value[i] = range_of(constant[i]);
         return fact;
     case OP_COMPONENT: return fact_component(&o[0], index);
 #define MAP(name, arity, glsl, value_, range, da, db, dc, norm, meaning)           \
     case OP_##name:                                                                \
-        for (uint32_t i = 0; i < call->size; i++) {                                \
+        for (uint32_t i = 0; i < input->size; i++) {                               \
             Range a = o[0].value[i], b = arity > 1 ? o[arity > 1].value[i] : ZERO; \
             Range c = arity > 2 ? o[arity > 2 ? 2 : 0].value[i] : ZERO;            \
             Range r = (range);                                                     \
             (void)b, (void)c;                                                      \
             rows[i] = (Partials){r, {da, db, dc}};                                 \
         }                                                                          \
-        return fact_map(norm, arity, o, rows, call->size);
+        return fact_map(norm, arity, o, rows, input->size);
 #define OP(name, signature, glsl, evaluate, facts, meaning) \
     case OP_##name:                                         \
-        return facts(call);
+        return facts(input);
 #include "compiler/graph/ops.def"
 #undef MAP
 #undef OP
-    default: assert(!"leaves have facts of their own"); return fact_unknown(call->size);
+    default: assert(!"leaves have facts of their own"); return fact_unknown(input->size);
     }
 }
 
 /* Quotients by 0 all over the box: of 0, too, whose derivatives make the slope seem to be 0. */
-static bool is_defined_nowhere(const Call *call)
+static bool is_defined_nowhere(const RuleInput *input)
 {
-    for (uint32_t i = 0; call->op == OP_div && i < call->size; i++)
-        if (range_is_zero(call->operands[1].value[i]))
+    for (uint32_t i = 0; input->op == OP_div && i < input->size; i++)
+        if (range_is_zero(input->operands[1].value[i]))
             return true;
     return false;
 }
@@ -269,11 +269,11 @@ static bool is_defined_nowhere(const Call *call)
 Fact op_fact(Op op, GraphType type, uint32_t index, const GraphType *types, const Fact *operands,
              const double *constant)
 {
-    Call call = {.op = op, .type = type, .types = types, .operands = operands};
-    call.size = type_size(type);
-    if (op != OP_CONSTANT && op != OP_COMPONENT && type_size(types[0]) > call.size)
-        call.size = type_size(types[0]);
-    Fact fact = is_defined_nowhere(&call) ? fact_unknown(call.size)
-                                          : rule_of_row(&call, index, constant);
+    RuleInput input = {.op = op, .type = type, .types = types, .operands = operands};
+    input.size      = type_size(type);
+    if (op != OP_CONSTANT && op != OP_COMPONENT && type_size(types[0]) > input.size)
+        input.size = type_size(types[0]);
+    Fact fact = is_defined_nowhere(&input) ? fact_unknown(input.size)
+                                           : rule_of_row(&input, index, constant);
     return fact_agreed(fact, type_size(type));
 }

@@ -10,16 +10,16 @@
 #include "compiler/graph/range.h"
 
 /* An operation and the facts of its operands. */
-typedef struct Call {
+typedef struct RuleInput {
     Op               op;
     GraphType        type;
     const GraphType *types;
     const Fact      *operands;
     uint32_t         size; /* components of the result or the first operand, whichever has more */
-} Call;
+} RuleInput;
 
 /* The fact of the result. */
-typedef Fact Rule(const Call *call);
+typedef Fact Rule(const RuleInput *input);
 
 static inline uint32_t type_size(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
 
@@ -47,7 +47,7 @@ Range fact_size(const Fact *fact, uint32_t size);
 /* Room for the rounding of a computation with numbers of this size. */
 Range loosened(Range range, double scale);
 /* Whether the operands from `first` up to `count` are the same all over the box. */
-bool operands_constant(const Call *call, uint32_t first, uint32_t count);
+bool operands_constant(const RuleInput *input, uint32_t first, uint32_t count);
 
 /* How slopes combine: ops.def. */
 typedef enum Norm { NORM_SUM, NORM_CONVEX, NORM_MIX, NORM_NONE } Norm;
@@ -64,7 +64,7 @@ Fact fact_map(Norm norm, int arity, const Fact *operands, const Partials *rows, 
 Fact fact_agreed(Fact fact, uint32_t size);
 
 /* A truth value of so many operands; where it is neither always true nor never, it may jump. */
-Fact fact_truth(const Call *call, uint32_t count, bool always, bool never);
+Fact fact_truth(const RuleInput *input, uint32_t count, bool always, bool never);
 
 /* ---- rules of rows ---- */
 

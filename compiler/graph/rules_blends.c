@@ -1,34 +1,34 @@
 /*
- * rules_blends.c: facts of smooth minima of a and b over a width k, and of the share of each.
+ * rules_blends.c: facts of smooth minima of a and b over a width k, and of the weight of each.
  */
 #include <math.h>
 
 #include "compiler/graph/rules.h"
 
-static double smooth_corner(const Call *call, double a, double b, double k, double n)
+static double smooth_corner(const RuleInput *input, double a, double b, double k, double n)
 {
     static const GraphType types[]    = {TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT};
     NodeValue              operands[] = {{{a}}, {{b}}, {{k}}, {{n}}};
-    return op_evaluate(call->op, TYPE_FLOAT, 0, types, operands).v[0];
+    return op_evaluate(input->op, TYPE_FLOAT, 0, types, operands).v[0];
 }
 
 /* All grow with a and b and shrink with k. */
-static Range smooth_range(const Call *call, double n)
+static Range smooth_range(const RuleInput *input, double n)
 {
-    Range  a = call->operands[0].value[0], b = call->operands[1].value[0];
-    Range  k     = call->operands[2].value[0];
-    double low   = smooth_corner(call, a.low, b.low, k.high, n);
-    double high  = smooth_corner(call, a.high, b.high, k.low, n);
+    Range  a = input->operands[0].value[0], b = input->operands[1].value[0];
+    Range  k     = input->operands[2].value[0];
+    double low   = smooth_corner(input, a.low, b.low, k.high, n);
+    double high  = smooth_corner(input, a.high, b.high, k.low, n);
     Range  range = {isnan(low) ? -HUGE_VAL : low, isnan(high) ? HUGE_VAL : high};
     double scale = fmin(range_largest(a) + range_largest(b), 1e300) + fmin(fabs(k.high), 1e300);
     return loosened(range, scale);
 }
 
 /* A width (or number of steps) that moves with the point would need a rule of its own. */
-static Fact fact_smooth(const Call *call, uint32_t count, Range value, double slope, Jet jet)
+static Fact fact_smooth(const RuleInput *input, uint32_t count, Range value, double slope, Jet jet)
 {
     Fact fact = fact_unknown(1);
-    if (operands_constant(call, 2, count)) {
+    if (operands_constant(input, 2, count)) {
         fact_set(&fact, 0, jet);
         fact.slope = slope;
     }
@@ -38,46 +38,46 @@ static Fact fact_smooth(const Call *call, uint32_t count, Range value, double sl
 
 /* The derivatives by a and b are at least 0 and sum to 1; further apart than the width, one of
    them is 1. */
-static Fact smooth_mean(const Call *call, uint32_t count, Range value)
+static Fact smooth_mean(const RuleInput *input, uint32_t count, Range value)
 {
-    const Fact *a = &call->operands[0], *b = &call->operands[1];
+    const Fact *a = &input->operands[0], *b = &input->operands[1];
     Jet         left = jet_of(a, 0), right = jet_of(b, 0);
-    double      width = fmax(call->operands[2].value[0].high, 0);
-    if (call->op != OP_smin_exponential && left.value.high + width <= right.value.low)
-        return fact_smooth(call, count, value, a->slope, left);
-    if (call->op != OP_smin_exponential && right.value.high + width <= left.value.low)
-        return fact_smooth(call, count, value, b->slope, right);
-    return fact_smooth(call, count, value, fmax(a->slope, b->slope), jet_hull(left, right));
+    double      width = fmax(input->operands[2].value[0].high, 0);
+    if (input->op != OP_smin_exponential && left.value.high + width <= right.value.low)
+        return fact_smooth(input, count, value, a->slope, left);
+    if (input->op != OP_smin_exponential && right.value.high + width <= left.value.low)
+        return fact_smooth(input, count, value, b->slope, right);
+    return fact_smooth(input, count, value, fmax(a->slope, b->slope), jet_hull(left, right));
 }
 
-Fact fact_smin(const Call *call) { return smooth_mean(call, 3, smooth_range(call, 0)); }
+Fact fact_smin(const RuleInput *input) { return smooth_mean(input, 3, smooth_range(input, 0)); }
 
 /* Along the arc the derivatives by a and b are the sides of a unit vector: |a'| and |b'| add as
    the sides of a right triangle, at most sqrt 2 times the larger. */
-Fact fact_smin_circular(const Call *call)
+Fact fact_smin_circular(const RuleInput *input)
 {
-    const Fact *a = &call->operands[0], *b = &call->operands[1];
+    const Fact *a = &input->operands[0], *b = &input->operands[1];
     Jet         left = jet_of(a, 0), right = jet_of(b, 0);
-    double      width = call->operands[2].value[0].high;
-    Range       value = smooth_range(call, 0), share = {0, 1};
+    double      width = input->operands[2].value[0].high;
+    Range       value = smooth_range(input, 0), weight = {0, 1};
     if (left.value.low >= fmax(width, right.value.high))
-        return fact_smooth(call, 3, value, b->slope, right);
+        return fact_smooth(input, 3, value, b->slope, right);
     if (right.value.low >= fmax(width, left.value.high))
-        return fact_smooth(call, 3, value, a->slope, left);
-    Jet sum = jet_add(jet_times(left, share), jet_times(right, share));
-    return fact_smooth(call, 3, value, hypot_upward(a->slope, b->slope), sum);
+        return fact_smooth(input, 3, value, a->slope, left);
+    Jet sum = jet_add(jet_times(left, weight), jet_times(right, weight));
+    return fact_smooth(input, 3, value, hypot_upward(a->slope, b->slope), sum);
 }
 
 /* The third candidate, (a + b - k) / sqrt 2, is as steep as sqrt 1/2 of both together. */
-Fact fact_smin_chamfer(const Call *call)
+Fact fact_smin_chamfer(const RuleInput *input)
 {
-    const Fact *a = &call->operands[0], *b = &call->operands[1];
+    const Fact *a = &input->operands[0], *b = &input->operands[1];
     Jet         candidates[3] = {jet_of(a, 0), jet_of(b, 0)};
     double      both = product_upward(sqrt(0.5) * (1 + 0x1p-50), sum_upward(a->slope, b->slope));
     double      slopes[3] = {a->slope, b->slope, both}, slope = 0;
     Range       root = {sqrt(0.5) * (1 - 0x1p-50), sqrt(0.5) * (1 + 0x1p-50)};
     Jet         sum  = jet_add(candidates[0], candidates[1]);
-    sum.value        = range_sub(sum.value, range_above(call->operands[2].value[0], 0));
+    sum.value        = range_sub(sum.value, range_above(input->operands[2].value[0], 0));
     candidates[2]    = jet_times(sum, root);
     double least     = fmin(candidates[0].value.high, candidates[1].value.high);
     Jet hull = {.gradient = {{HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, -HUGE_VAL}}};
@@ -86,37 +86,37 @@ Fact fact_smin_chamfer(const Call *call)
             hull  = jet_hull(hull, candidates[i]);
             slope = fmax(slope, slopes[i]);
         }
-    return fact_smooth(call, 3, smooth_range(call, 0), slope, hull);
+    return fact_smooth(input, 3, smooth_range(input, 0), slope, hull);
 }
 
 /* On each step one of a and b has the derivative 1 and the other 0 (evaluate.c). */
-Fact fact_smin_stairs(const Call *call)
+Fact fact_smin_stairs(const RuleInput *input)
 {
-    Range  a = call->operands[0].value[0], b = call->operands[1].value[0];
-    Range  k = call->operands[2].value[0], n = call->operands[3].value[0];
+    Range  a = input->operands[0].value[0], b = input->operands[1].value[0];
+    Range  k = input->operands[2].value[0], n = input->operands[3].value[0];
     Range  value  = range_min(a, b);
     double lowest = sum_upward(sum_upward(-a.low, -b.low), fmax(k.high, 0)) / -2;
     value.low     = fmin(value.low, lowest);
     if (range_is_single(k) && range_is_single(n))
-        value = range_intersect(value, smooth_range(call, n.low));
+        value = range_intersect(value, smooth_range(input, n.low));
     double scale = range_largest(a) + range_largest(b) + range_largest(k);
-    return smooth_mean(call, 4, loosened(value, scale));
+    return smooth_mean(input, 4, loosened(value, scale));
 }
 
-Fact fact_blend_weight(const Call *call)
+Fact fact_blend_weight(const RuleInput *input)
 {
-    const Fact *a = &call->operands[0], *b = &call->operands[1];
-    Range       k = call->operands[2].value[0], value = {1, 0};
+    const Fact *a = &input->operands[0], *b = &input->operands[1];
+    Range       k = input->operands[2].value[0], value = {1, 0};
     double      ks[2] = {k.low, k.high};
     for (int i = 0; i < 2; i++) {
-        double low  = smooth_corner(call, a->value[0].high, b->value[0].low, ks[i], 0);
-        double high = smooth_corner(call, a->value[0].low, b->value[0].high, ks[i], 0);
+        double low  = smooth_corner(input, a->value[0].high, b->value[0].low, ks[i], 0);
+        double high = smooth_corner(input, a->value[0].low, b->value[0].high, ks[i], 0);
         value       = range_hull(value, (Range){low, high});
     }
-    double steepest = k.low > 0 ? 0.5 / k.low * (1 + 0x1p-50) : HUGE_VAL;
-    double slope    = product_upward(steepest, sum_upward(a->slope, b->slope));
-    Jet    apart    = jet_sub(jet_of(b, 0), jet_of(a, 0));
-    Jet    jet      = jet_times(apart, (Range){0, steepest});
-    bool   flat     = range_is_single(value);
-    return fact_smooth(call, 3, flat ? value : loosened(value, 1), slope, jet);
+    double steepest   = k.low > 0 ? 0.5 / k.low * (1 + 0x1p-50) : HUGE_VAL;
+    double slope      = product_upward(steepest, sum_upward(a->slope, b->slope));
+    Jet    difference = jet_sub(jet_of(b, 0), jet_of(a, 0));
+    Jet    jet        = jet_times(difference, (Range){0, steepest});
+    bool   flat       = range_is_single(value);
+    return fact_smooth(input, 3, flat ? value : loosened(value, 1), slope, jet);
 }

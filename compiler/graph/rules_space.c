@@ -9,32 +9,32 @@
 /* ---- maps of space ---- */
 
 /* The rows are orthonormal by construction, so lengths and slopes stay as they are. */
-Fact fact_turn(const Call *call)
+Fact fact_turn(const RuleInput *input)
 {
-    const Fact *p    = &call->operands[0];
+    const Fact *p    = &input->operands[0];
     double      size = fact_size(p, 3).high, rows = 0;
     Fact        fact = {0};
     for (uint32_t i = 0; i < 3; i++) {
-        Jet jet   = jet_dot(&call->operands[i + 1], p, 3);
+        Jet jet   = jet_dot(&input->operands[i + 1], p, 3);
         jet.value = range_intersect(jet.value, loosened((Range){-size, size}, size));
         fact_set(&fact, i, jet);
-        rows = hypot_upward(rows, call->operands[i + 1].slope);
+        rows = hypot_upward(rows, input->operands[i + 1].slope);
     }
     fact.slope = sum_upward(p->slope, product_upward(size, rows));
     return fact;
 }
 
 /* dot(u, p) - w, the height above a mirror. */
-static Jet mirror_height(const Call *call)
+static Jet mirror_height(const RuleInput *input)
 {
-    Jet along = jet_dot(&call->operands[1], &call->operands[0], 3);
-    return jet_sub(along, jet_of(&call->operands[2], 0));
+    Jet along = jet_dot(&input->operands[1], &input->operands[0], 3);
+    return jet_sub(along, jet_of(&input->operands[2], 0));
 }
 
 /* A fold about a fixed mirror brings no two points further apart. */
-Fact fact_fold(const Call *call)
+Fact fact_fold(const RuleInput *input)
 {
-    Jet depth = mirror_height(call), none = {0};
+    Jet depth = mirror_height(input), none = {0};
     if (depth.value.high <= 0)
         depth = none;
     else if (depth.value.low < 0) {
@@ -44,18 +44,18 @@ Fact fact_fold(const Call *call)
     Fact fact  = {.slope = HUGE_VAL};
     Jet  twice = jet_times(depth, range_of(2));
     for (uint32_t i = 0; i < 3; i++) {
-        Jet back = jet_mul(twice, jet_of(&call->operands[1], i));
-        fact_set(&fact, i, jet_sub(jet_of(&call->operands[0], i), back));
+        Jet back = jet_mul(twice, jet_of(&input->operands[1], i));
+        fact_set(&fact, i, jet_sub(jet_of(&input->operands[0], i), back));
     }
-    if (operands_constant(call, 1, 3))
-        fact.slope = call->operands[0].slope;
+    if (operands_constant(input, 1, 3))
+        fact.slope = input->operands[0].slope;
     return fact;
 }
 
-Fact fact_front(const Call *call)
+Fact fact_front(const RuleInput *input)
 {
-    Range height = mirror_height(call).value;
-    return fact_truth(call, 3, height.low > 0, height.high <= 0);
+    Range height = mirror_height(input).value;
+    return fact_truth(input, 3, height.low > 0, height.high <= 0);
 }
 
 /* Of p - period * k for the cell k in [low, high] that is nearest. */
@@ -71,9 +71,9 @@ static Range cell_range(Range p, Range period, Range low, Range high)
 }
 
 /* Within a cell it is a translation. */
-Fact fact_cell(const Call *call)
+Fact fact_cell(const RuleInput *input)
 {
-    const Fact *o    = call->operands;
+    const Fact *o    = input->operands;
     Fact        fact = o[0];
     for (uint32_t i = 0; i < 3; i++) {
         Range p = o[0].value[i], period = o[1].value[i];
@@ -82,7 +82,7 @@ Fact fact_cell(const Call *call)
         if (period.high > 0 && period.low <= 0)
             fact.value[i] = range_hull(fact.value[i], p);
     }
-    if (operands_constant(call, 1, 4))
+    if (operands_constant(input, 1, 4))
         return fact;
     Fact unknown = fact_unknown(3);
     for (uint32_t i = 0; i < 3; i++)
@@ -109,11 +109,11 @@ static void sector_bounds(const Fact *p, Range count, Fact *fact)
 }
 
 /* Within a sector it is a turn, and a known one when the box lies in one sector. */
-Fact fact_cell_polar(const Call *call)
+Fact fact_cell_polar(const RuleInput *input)
 {
-    const Fact *p     = &call->operands[0];
-    Range       count = call->operands[1].value[0];
-    if (count.high < 1 || call->operands[1].slope != 0)
+    const Fact *p     = &input->operands[0];
+    Range       count = input->operands[1].value[0];
+    if (count.high < 1 || input->operands[1].slope != 0)
         return count.high < 1 ? *p : fact_unknown(3);
     Fact fact = *p;
     sector_bounds(p, range_above(count, 1), &fact);
@@ -140,24 +140,24 @@ Fact fact_cell_polar(const Call *call)
  * direction: proven by tests/property/noise.c for all directions of all gradients.  Over a small
  * part of space the value is near that in the middle.
  */
-static Fact fact_noise(const Call *call, double steepest)
+static Fact fact_noise(const RuleInput *input, double steepest)
 {
-    const Fact *p      = &call->operands[0];
+    const Fact *p      = &input->operands[0];
     NodeValue   middle = {0};
     double      reach  = 0;
     Fact        fact   = {.slope = product_upward(steepest, p->slope)};
     Jet         jet    = {.value = {-1, 1}};
-    for (uint32_t i = 0; i < call->size; i++) {
+    for (uint32_t i = 0; i < input->size; i++) {
         Range side  = p->value[i];
         middle.v[i] = side.low / 2 + side.high / 2;
         reach       = hypot_upward(reach, fmax(side.high - middle.v[i], middle.v[i] - side.low));
         for (int j = 0; j < 3; j++) {
-            Range part      = range_mul((Range){-steepest, steepest}, p->gradient[i][j]);
-            jet.gradient[j] = range_add(jet.gradient[j], part);
+            Range term      = range_mul((Range){-steepest, steepest}, p->gradient[i][j]);
+            jet.gradient[j] = range_add(jet.gradient[j], term);
         }
     }
     if (reach < 1) {
-        double value = op_evaluate(call->op, TYPE_FLOAT, 0, call->types, &middle).v[0];
+        double value = op_evaluate(input->op, TYPE_FLOAT, 0, input->types, &middle).v[0];
         double rise  = reach > 0 ? steepest * reach + 1e-12 : 0;
         jet.value    = range_intersect((Range){value - rise, value + rise}, jet.value);
     }
@@ -165,70 +165,70 @@ static Fact fact_noise(const Call *call, double steepest)
     return fact;
 }
 
-Fact fact_noise2(const Call *call) { return fact_noise(call, 2.84); }
-Fact fact_noise3(const Call *call) { return fact_noise(call, 3.64); }
+Fact fact_noise2(const RuleInput *input) { return fact_noise(input, 2.84); }
+Fact fact_noise3(const RuleInput *input) { return fact_noise(input, 3.64); }
 
 /* ---- identities ---- */
 
-static Fact fact_steps(const Call *call, uint32_t count, double most)
+static Fact fact_steps(const RuleInput *input, uint32_t count, double most)
 {
     Fact fact     = fact_unknown(1);
     fact.value[0] = (Range){0, most};
-    fact.slope    = operands_constant(call, 0, count) ? 0 : HUGE_VAL;
+    fact.slope    = operands_constant(input, 0, count) ? 0 : HUGE_VAL;
     return fact;
 }
 
-Fact fact_identity(const Call *call) { return fact_steps(call, 2, UINT32_MAX); }
-Fact fact_id_unit(const Call *call) { return fact_steps(call, 1, 1); }
+Fact fact_identity(const RuleInput *input) { return fact_steps(input, 2, UINT32_MAX); }
+Fact fact_id_unit(const RuleInput *input) { return fact_steps(input, 1, 1); }
 
 /* ---- fractals ---- */
 
 /* The value in the middle of the point's range, and how far from there the point can be; false
    where other operands move. */
-static bool fractal_middle(const Call *call, uint32_t others, double *middle, double *reach)
+static bool fractal_middle(const RuleInput *input, uint32_t others, double *middle, double *reach)
 {
     NodeValue operands[MAX_OPERANDS] = {0};
     *reach                           = 0;
     for (uint32_t i = 0; i < 3; i++) {
-        Range at         = call->operands[0].value[i];
+        Range at         = input->operands[0].value[i];
         operands[0].v[i] = at.low / 2 + at.high / 2;
         *reach           = hypot_upward(*reach, fmax(sum_upward(at.high, -operands[0].v[i]),
                                                      sum_upward(operands[0].v[i], -at.low)));
     }
     for (uint32_t i = 1; i <= others; i++)
-        for (uint32_t k = 0; k < type_size(call->types[i]); k++) {
-            if (!range_is_single(call->operands[i].value[k]))
+        for (uint32_t k = 0; k < type_size(input->types[i]); k++) {
+            if (!range_is_single(input->operands[i].value[k]))
                 return false;
-            operands[i].v[k] = call->operands[i].value[k].low;
+            operands[i].v[k] = input->operands[i].value[k].low;
         }
-    *middle = op_evaluate(call->op, TYPE_FLOAT, 0, call->types, operands).v[0];
+    *middle = op_evaluate(input->op, TYPE_FLOAT, 0, input->types, operands).v[0];
     return isfinite(*middle) && isfinite(*reach);
 }
 
 /* 1-Lipschitz in the point (fractal.c), between |q| - R and |q| + R. */
-Fact fact_julia(const Call *call)
+Fact fact_julia(const RuleInput *input)
 {
     Fact        fact  = fact_unknown(1);
-    const Fact *point = &call->operands[0];
-    Range       size = fact_size(point, 3), radius = call->operands[3].value[1];
+    const Fact *point = &input->operands[0];
+    Range       size = fact_size(point, 3), radius = input->operands[3].value[1];
     double      middle, reach;
     fact.value[0] = (Range){size.low - radius.high, sum_upward(size.high, radius.high)};
-    if (fractal_middle(call, 3, &middle, &reach)) {
+    if (fractal_middle(input, 3, &middle, &reach)) {
         Range near    = {middle - reach, middle + reach};
         fact.value[0] = range_intersect(fact.value[0], loosened(near, fabs(middle) + reach));
     }
-    if (operands_constant(call, 1, 4))
+    if (operands_constant(input, 1, 4))
         fact.slope = point->slope;
     return fact;
 }
 
 /* Outside of a ball the distance to a smaller one, inside nothing but an estimate. */
-Fact fact_mandelbulb(const Call *call)
+Fact fact_mandelbulb(const RuleInput *input)
 {
     Fact        fact  = fact_unknown(1);
-    const Fact *point = &call->operands[0];
-    Range       size = fact_size(point, 3), radius = call->operands[2].value[1];
-    Range       power = call->operands[1].value[0];
+    const Fact *point = &input->operands[0];
+    Range       size = fact_size(point, 3), radius = input->operands[2].value[1];
+    Range       power = input->operands[1].value[0];
     if (!range_is_single(power) || !(power.low >= 2) || !(radius.low > 0))
         return fact; /* what no scene can write */
     double core  = mandelbulb_core(power.low);
@@ -237,16 +237,16 @@ Fact fact_mandelbulb(const Call *call)
     if (far)
         value.high = sum_upward(size.high, -radius.low);
     fact.value[0] = loosened(value, size.high);
-    if (operands_constant(call, 1, 3) && (far || point->slope == 0))
+    if (operands_constant(input, 1, 3) && (far || point->slope == 0))
         fact.slope = point->slope;
     return fact;
 }
 
-Fact fact_trap(const Call *call)
+Fact fact_trap(const RuleInput *input)
 {
     Fact fact     = fact_unknown(2);
     fact.value[0] = fact.value[1] = (Range){0, 1};
-    if (operands_constant(call, 0, call->op == OP_julia_trap ? 4 : 3))
+    if (operands_constant(input, 0, input->op == OP_julia_trap ? 4 : 3))
         fact.slope = 0;
     return fact;
 }

@@ -16,18 +16,18 @@
 /* The series of one number, in a ball with the gradient beside it, and while the degree is at most
    2 and the numbers are known, the second derivatives: x^2 + y^2 + z^2 is r^2 in size, not 3 r^2.
    */
-typedef struct Part {
+typedef struct SeriesElement {
     Series series;
     Node   gradient; /* VEC3; NODE_NONE along lines */
     bool   quadric;
     double hessian[3][3];
-} Part;
+} SeriesElement;
 
 /* Of a number, or of the components of a vector. */
-typedef struct Parts {
-    uint32_t count;
-    Part    *items;
-} Parts;
+typedef struct SeriesElements {
+    uint32_t       count;
+    SeriesElement *items;
+} SeriesElements;
 
 typedef struct Expansion {
     Graph       *graph;
@@ -79,11 +79,11 @@ static Node order(const Expansion *x, const Series *series, uint32_t k)
     return k == 0 && in_ball(x) ? size_of(x, series->c[0]) : series->c[k];
 }
 
-static void set_gradient(const Expansion *x, Part *part, Node gradient)
+static void set_gradient(const Expansion *x, SeriesElement *element, Node gradient)
 {
-    part->gradient = gradient;
-    if (in_ball(x) && part->series.degree > 0)
-        part->series.c[1] = graph_op1(x->graph, OP_length, gradient);
+    element->gradient = gradient;
+    if (in_ball(x) && element->series.degree > 0)
+        element->series.c[1] = graph_op1(x->graph, OP_length, gradient);
 }
 
 /* The largest size of an eigenvalue of a symmetric matrix: how fast what has these second
@@ -108,15 +108,16 @@ static double largest_bend(double a[3][3])
 }
 
 /* Puts what the second derivatives say into order 2. */
-static void settle_quadric(const Expansion *x, Part *part)
+static void settle_quadric(const Expansion *x, SeriesElement *element)
 {
-    if (part->quadric && part->series.degree == 2)
-        part->series.c[2] = graph_number(x->graph, 0.5 * largest_bend(part->hessian));
+    if (element->quadric && element->series.degree == 2)
+        element->series.c[2] = graph_number(x->graph, 0.5 * largest_bend(element->hessian));
 }
 
-static bool gradient_is_known(const Expansion *x, const Part *part)
+static bool gradient_is_known(const Expansion *x, const SeriesElement *element)
 {
-    return part->quadric && part->series.degree <= 1 && graph_is_constant(x->graph, part->gradient);
+    return element->quadric && element->series.degree <= 1 &&
+           graph_is_constant(x->graph, element->gradient);
 }
 
 static Node no_gradient(const Expansion *x)
@@ -124,33 +125,33 @@ static Node no_gradient(const Expansion *x)
     return in_ball(x) ? graph_vec3(x->graph, 0, 0, 0) : NODE_NONE;
 }
 
-static Part constant_part(const Expansion *x, Node node)
+static SeriesElement constant_element(const Expansion *x, Node node)
 {
-    Part part        = {.gradient = no_gradient(x), .quadric = in_ball(x)};
-    part.series.c[0] = node;
-    return part;
+    SeriesElement element = {.gradient = no_gradient(x), .quadric = in_ball(x)};
+    element.series.c[0]   = node;
+    return element;
 }
 
 /* Coordinate i of the point. */
-static Part coordinate_part(const Expansion *x, uint32_t i)
+static SeriesElement coordinate_element(const Expansion *x, uint32_t i)
 {
-    Part part        = {.series = {.degree = 1}, .quadric = in_ball(x)};
-    part.series.c[0] = graph_component(x->graph, x->origin, i);
+    SeriesElement element = {.series = {.degree = 1}, .quadric = in_ball(x)};
+    element.series.c[0]   = graph_component(x->graph, x->origin, i);
     if (in_ball(x)) {
-        part.gradient    = graph_vec3(x->graph, i == 0, i == 1, i == 2);
-        part.series.c[1] = graph_number(x->graph, 1);
+        element.gradient    = graph_vec3(x->graph, i == 0, i == 1, i == 2);
+        element.series.c[1] = graph_number(x->graph, 1);
     } else {
-        part.gradient    = NODE_NONE;
-        part.series.c[1] = graph_component(x->graph, x->direction, i);
+        element.gradient    = NODE_NONE;
+        element.series.c[1] = graph_component(x->graph, x->direction, i);
     }
-    return part;
+    return element;
 }
 
-static Part add_parts(const Expansion *x, Part a, Part b)
+static SeriesElement add_elements(const Expansion *x, SeriesElement a, SeriesElement b)
 {
     Graph        *g = x->graph;
     const Series *s = &a.series, *t = &b.series;
-    Part          sum = {.series = {.degree = s->degree > t->degree ? s->degree : t->degree}};
+    SeriesElement sum = {.series = {.degree = s->degree > t->degree ? s->degree : t->degree}};
     for (uint32_t k = 0; k <= sum.series.degree; k++)
         sum.series.c[k] = k > s->degree   ? t->c[k]
                           : k > t->degree ? s->c[k]
@@ -163,7 +164,7 @@ static Part add_parts(const Expansion *x, Part a, Part b)
     return sum;
 }
 
-static Part negate_part(const Expansion *x, Part a)
+static SeriesElement negate_element(const Expansion *x, SeriesElement a)
 {
     for (uint32_t k = 0; k <= a.series.degree; k++)
         if (k == 0 || !in_ball(x))
@@ -177,11 +178,13 @@ static Part negate_part(const Expansion *x, Part a)
 
 /* The second derivatives of a product of two known linear numbers, or of a quadric and a known
    constant. */
-static void multiply_quadrics(const Expansion *x, const Part *a, const Part *b, Part *product)
+static void multiply_quadrics(const Expansion *x, const SeriesElement *a, const SeriesElement *b,
+                              SeriesElement *product)
 {
-    const Expr *u = &x->graph->items[a->gradient], *v = &x->graph->items[b->gradient];
-    bool        scaled = a->series.degree == 0 || b->series.degree == 0;
-    const Part *other = a->series.degree == 0 ? b : a, *factor = a->series.degree == 0 ? a : b;
+    const Expr          *u = &x->graph->items[a->gradient], *v = &x->graph->items[b->gradient];
+    bool                 scaled = a->series.degree == 0 || b->series.degree == 0;
+    const SeriesElement *other  = a->series.degree == 0 ? b : a,
+                        *factor = a->series.degree == 0 ? a : b;
     if (scaled) {
         const Expr *number = &x->graph->items[factor->series.c[0]];
         product->quadric   = other->quadric && number->op == OP_CONSTANT;
@@ -196,10 +199,10 @@ static void multiply_quadrics(const Expansion *x, const Part *a, const Part *b, 
     settle_quadric(x, product);
 }
 
-static Part multiply_parts(const Expansion *x, Part a, Part b)
+static SeriesElement multiply_elements(const Expansion *x, SeriesElement a, SeriesElement b)
 {
-    Graph *g       = x->graph;
-    Part   product = {.series = {.degree = a.series.degree + b.series.degree}};
+    Graph        *g       = x->graph;
+    SeriesElement product = {.series = {.degree = a.series.degree + b.series.degree}};
     assert(product.series.degree <= MOST_DEGREE);
     product.series.c[0] = times(g, a.series.c[0], b.series.c[0]);
     for (uint32_t k = 1; k <= product.series.degree; k++) {
@@ -224,62 +227,66 @@ static Part multiply_parts(const Expansion *x, Part a, Part b)
     return product;
 }
 
-static bool is_constant(Part part) { return part.series.degree == 0; }
+static bool is_constant(SeriesElement element) { return element.series.degree == 0; }
 
-static Parts new_parts(const Expansion *x, uint32_t count)
+static SeriesElements new_elements(const Expansion *x, uint32_t count)
 {
-    return (Parts){count, arena_new_array(x->scratch, Part, count)};
+    return (SeriesElements){count, arena_new_array(x->scratch, SeriesElement, count)};
 }
 
 /* Component i of an operand; a number counts for all components. */
-static Part part_of(const Parts *parts, uint32_t i)
+static SeriesElement element_of(const SeriesElements *elements, uint32_t i)
 {
-    return parts->items[parts->count > i ? i : 0];
+    return elements->items[elements->count > i ? i : 0];
 }
 
-static bool multiply(Expansion *x, Node node, Part a, Part b, Part *product)
+static bool multiply(Expansion *x, Node node, SeriesElement a, SeriesElement b,
+                     SeriesElement *product)
 {
     uint32_t degree = a.series.degree + b.series.degree;
     if (degree > MOST_DEGREE) {
         *x->fault = (SeriesFault){node, degree};
         return false;
     }
-    *product = multiply_parts(x, a, b);
+    *product = multiply_elements(x, a, b);
     return true;
 }
 
 /* Sums of products of components: dot, and each component of cross. */
-static bool dot_parts(Expansion *x, Node node, const Parts *a, const Parts *b, Part *sum)
+static bool dot_elements(Expansion *x, Node node, const SeriesElements *a, const SeriesElements *b,
+                         SeriesElement *sum)
 {
     for (uint32_t i = 0; i < a->count; i++) {
-        Part product;
+        SeriesElement product;
         if (!multiply(x, node, a->items[i], b->items[i], &product))
             return false;
-        *sum = i == 0 ? product : add_parts(x, *sum, product);
+        *sum = i == 0 ? product : add_elements(x, *sum, product);
     }
     return true;
 }
 
-static bool cross_parts(Expansion *x, Node node, const Parts *a, const Parts *b, Parts *result)
+static bool cross_elements(Expansion *x, Node node, const SeriesElements *a,
+                           const SeriesElements *b, SeriesElements *result)
 {
     for (uint32_t i = 0; i < 3; i++) {
-        uint32_t j = (i + 1) % 3, k = (i + 2) % 3;
-        Part     first, second;
+        uint32_t      j = (i + 1) % 3, k = (i + 2) % 3;
+        SeriesElement first, second;
         if (!multiply(x, node, a->items[j], b->items[k], &first) ||
             !multiply(x, node, a->items[k], b->items[j], &second))
             return false;
-        result->items[i] = add_parts(x, first, negate_part(x, second));
+        result->items[i] = add_elements(x, first, negate_element(x, second));
     }
     return true;
 }
 
 /* What works component by component; false for an operation that no polynomial has. */
-static bool expand_component(Expansion *x, Node node, Op op, Part a, Part b, Part *result)
+static bool expand_component(Expansion *x, Node node, Op op, SeriesElement a, SeriesElement b,
+                             SeriesElement *result)
 {
     switch (op) {
-    case OP_add: *result = add_parts(x, a, b); return true;
-    case OP_sub: *result = add_parts(x, a, negate_part(x, b)); return true;
-    case OP_neg: *result = negate_part(x, a); return true;
+    case OP_add: *result = add_elements(x, a, b); return true;
+    case OP_sub: *result = add_elements(x, a, negate_element(x, b)); return true;
+    case OP_neg: *result = negate_element(x, a); return true;
     case OP_square: return multiply(x, node, a, a, result);
     case OP_mul:
     case OP_scale: return multiply(x, node, a, b, result);
@@ -292,11 +299,12 @@ static bool expand_component(Expansion *x, Node node, Op op, Part a, Part b, Par
     }
 }
 
-static bool expand_op(Expansion *x, Node node, const Parts *operands, Parts *result)
+static bool expand_op(Expansion *x, Node node, const SeriesElements *operands,
+                      SeriesElements *result)
 {
     Expr e = x->graph->items[node];
     switch (e.op) {
-    case OP_COMPONENT: result->items[0] = part_of(&operands[0], e.index); return true;
+    case OP_COMPONENT: result->items[0] = element_of(&operands[0], e.index); return true;
     case OP_splat2:
     case OP_splat3:
     case OP_splat4:
@@ -309,49 +317,50 @@ static bool expand_op(Expansion *x, Node node, const Parts *operands, Parts *res
         for (uint32_t i = 0; i < result->count; i++)
             result->items[i] = operands[i].items[0];
         return true;
-    case OP_dot: return dot_parts(x, node, &operands[0], &operands[1], &result->items[0]);
-    case OP_cross: return cross_parts(x, node, &operands[0], &operands[1], result);
+    case OP_dot: return dot_elements(x, node, &operands[0], &operands[1], &result->items[0]);
+    case OP_cross: return cross_elements(x, node, &operands[0], &operands[1], result);
     case OP_turn:
         for (uint32_t i = 0; i < 3; i++)
-            if (!dot_parts(x, node, &operands[0], &operands[i + 1], &result->items[i]))
+            if (!dot_elements(x, node, &operands[0], &operands[i + 1], &result->items[i]))
                 return false;
         return true;
     default:
         for (uint32_t i = 0; i < result->count; i++)
-            if (!expand_component(x, node, e.op, part_of(&operands[0], i),
-                                  part_of(&operands[e.operand_count > 1], i), &result->items[i]))
+            if (!expand_component(x, node, e.op, element_of(&operands[0], i),
+                                  element_of(&operands[e.operand_count > 1], i), &result->items[i]))
                 return false;
         return true;
     }
 }
 
 /* A node of point time whose operands are expanded. */
-static bool expand_node(Expansion *x, Node node, const Tape *tape, const Parts *all, Parts *result)
+static bool expand_node(Expansion *x, Node node, const Tape *tape, const SeriesElements *all,
+                        SeriesElements *result)
 {
     Expr e         = x->graph->items[node];
     x->graph->here = e.span;
-    *result        = new_parts(x, e.type <= TYPE_VEC4 ? e.type : 1);
+    *result        = new_elements(x, e.type <= TYPE_VEC4 ? e.type : 1);
     if (e.time != TIME_POINT) {
         for (uint32_t i = 0; e.type <= TYPE_VEC4 && i < result->count; i++)
-            result->items[i] = constant_part(x, graph_component(x->graph, node, i));
+            result->items[i] = constant_element(x, graph_component(x->graph, node, i));
         return true;
     }
     if (e.op == OP_POINT) {
         for (uint32_t i = 0; i < 3; i++)
-            result->items[i] = coordinate_part(x, i);
+            result->items[i] = coordinate_element(x, i);
         return true;
     }
-    Parts operands[MAX_OPERANDS];
+    SeriesElements operands[MAX_OPERANDS];
     for (int i = 0; i < e.operand_count; i++)
-        operands[i] = all[tape_place(tape, e.operands[i])];
+        operands[i] = all[tape_index(tape, e.operands[i])];
     return e.type <= TYPE_VEC4 && e.operand_count > 0 && expand_op(x, node, operands, result);
 }
 
 static bool expand(Expansion *x, Node root, Series *series)
 {
-    Span   here = x->graph->here;
-    Tape   tape = tape_new(x->graph, &root, 1, x->scratch);
-    Parts *all  = arena_new_array(x->scratch, Parts, tape.count);
+    Span            here = x->graph->here;
+    Tape            tape = tape_new(x->graph, &root, 1, x->scratch);
+    SeriesElements *all  = arena_new_array(x->scratch, SeriesElements, tape.count);
     assert(x->graph->items[root].type == TYPE_FLOAT);
     for (size_t i = 0; i < tape.count; i++) {
         *x->fault = (SeriesFault){tape.nodes[i], 0};
@@ -361,7 +370,7 @@ static bool expand(Expansion *x, Node root, Series *series)
         }
     }
     x->graph->here = here;
-    *series        = all[tape_place(&tape, root)].items[0].series;
+    *series        = all[tape_index(&tape, root)].items[0].series;
     return true;
 }
 
@@ -444,8 +453,8 @@ Node series_radius(Graph *g, const Series *s)
         Node step   = graph_op2(g, OP_div, excess, at_least(g, slope, TINY));
         r           = graph_op2(g, OP_sub, r, step);
     }
-    Node sum   = series_sum(g, s, r, &slope);
-    Node share = graph_op2(g, OP_div, size, at_least(g, sum, TINY));
-    share      = graph_op2(g, OP_min, share, graph_number(g, 1));
-    return graph_op2(g, OP_mul, r, share);
+    Node sum      = series_sum(g, s, r, &slope);
+    Node fraction = graph_op2(g, OP_div, size, at_least(g, sum, TINY));
+    fraction      = graph_op2(g, OP_min, fraction, graph_number(g, 1));
+    return graph_op2(g, OP_mul, r, fraction);
 }

@@ -1,8 +1,8 @@
 /*
- * series.h: polynomials of the point as power series about a place.
+ * series.h: polynomials of the point as power series about a point.
  *
- * A polynomial is kept as it was written, in factors, and never multiplied out: its series about
- * a place comes from the series of its parts, by sums and products (math.md, section 3, "jets").
+ * A polynomial stays as it was written, in factors, and never multiplied out: its series about
+ * a place comes from the series of its operands, by sums and products (math.md, section 3, "jets").
  */
 #ifndef KRS_SERIES_H
 #define KRS_SERIES_H

@@ -19,25 +19,25 @@ typedef struct Simplifier {
 } Simplifier;
 
 /* A node about to be rebuilt: its operands in the new graph. */
-typedef struct Step {
+typedef struct Rewrite {
     Graph    *graph;
     Op        op;
     GraphType type;
     uint32_t  index;
     Node      o[MAX_OPERANDS];
     bool      finite[MAX_OPERANDS]; /* of each operand */
-} Step;
+} Rewrite;
 
 /* ---- what rules ask about ---- */
 
-static const Expr *expr(const Step *s, Node node) { return &s->graph->items[node]; }
-static bool        is(const Step *s, Node node, Op op) { return expr(s, node)->op == op; }
-static bool        constant(const Step *s, Node node) { return is(s, node, OP_CONSTANT); }
+static const Expr *expr(const Rewrite *s, Node node) { return &s->graph->items[node]; }
+static bool        is(const Rewrite *s, Node node, Op op) { return expr(s, node)->op == op; }
+static bool        constant(const Rewrite *s, Node node) { return is(s, node, OP_CONSTANT); }
 
 static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
 
 /* Whether a node is the constant with all components equal to this number. */
-static bool equals(const Step *s, Node node, double number)
+static bool equals(const Rewrite *s, Node node, double number)
 {
     const Expr *e = expr(s, node);
     for (uint32_t i = 0; e->op == OP_CONSTANT && i < components(e->type); i++)
@@ -46,19 +46,19 @@ static bool equals(const Step *s, Node node, double number)
     return e->op == OP_CONSTANT;
 }
 
-static Node operand(const Step *s, Node node, int i) { return expr(s, node)->operands[i]; }
+static Node operand(const Rewrite *s, Node node, int i) { return expr(s, node)->operands[i]; }
 
-static Node zero(const Step *s)
+static Node zero(const Rewrite *s)
 {
     static const double zeros[4] = {0};
     return graph_constant(s->graph, s->type, zeros);
 }
 
-static Node op2(const Step *s, Op op, Node a, Node b) { return graph_op2(s->graph, op, a, b); }
+static Node op2(const Rewrite *s, Op op, Node a, Node b) { return graph_op2(s->graph, op, a, b); }
 
 /* The constant that `op` makes of two, or NODE_NONE where it is not finite or the digits of a
    subnormal would be lost. */
-static Node gathered(const Step *s, Op op, Node a, Node b)
+static Node gathered(const Rewrite *s, Op op, Node a, Node b)
 {
     Node node = op2(s, op, a, b);
     if (!constant(s, node))
@@ -70,7 +70,7 @@ static Node gathered(const Step *s, Op op, Node a, Node b)
 }
 
 /* x `op` (c `join` d) for (x `op` c) ... d, where the constants gather. */
-static Node gather(const Step *s, Op op, Node x, Op join, Node c, Node d)
+static Node gather(const Rewrite *s, Op op, Node x, Op join, Node c, Node d)
 {
     Node both = gathered(s, join, c, d);
     return both == NODE_NONE ? NODE_NONE : op2(s, op, x, both);
@@ -84,7 +84,7 @@ static Node gather(const Step *s, Op op, Node x, Op join, Node c, Node d)
 
 /* Of operations that may take their operands in either order: the older first, a constant
    last. */
-static void order_operands(Step *s)
+static void order_operands(Rewrite *s)
 {
     bool swap = constant(s, s->o[0]) ? !constant(s, s->o[1])
                                      : !constant(s, s->o[1]) && s->o[1] < s->o[0];
@@ -98,7 +98,7 @@ static void order_operands(Step *s)
     }
 }
 
-static Node simplify_add(const Step *s)
+static Node simplify_add(const Rewrite *s)
 {
     Node a = s->o[0], b = s->o[1];
     RULE(equals(s, b, 0), a);
@@ -112,7 +112,7 @@ static Node simplify_add(const Step *s)
     return NODE_NONE;
 }
 
-static Node simplify_sub(const Step *s)
+static Node simplify_sub(const Rewrite *s)
 {
     Node a = s->o[0], b = s->o[1];
     RULE(equals(s, b, 0), a);
@@ -127,7 +127,7 @@ static Node simplify_sub(const Step *s)
     return NODE_NONE;
 }
 
-static Node simplify_mul(const Step *s)
+static Node simplify_mul(const Rewrite *s)
 {
     Node a = s->o[0], b = s->o[1];
     RULE(equals(s, b, 1), a);
@@ -141,7 +141,7 @@ static Node simplify_mul(const Step *s)
 }
 
 /* Divisions cost more than products, and no driver may make one of the other. */
-static Node simplify_div(const Step *s)
+static Node simplify_div(const Rewrite *s)
 {
     Node a = s->o[0], b = s->o[1];
     RULE(equals(s, b, 1), a);
@@ -151,7 +151,7 @@ static Node simplify_div(const Step *s)
     return reciprocal == NODE_NONE ? NODE_NONE : op2(s, OP_mul, a, reciprocal);
 }
 
-static Node simplify_neg(const Step *s)
+static Node simplify_neg(const Rewrite *s)
 {
     Node a = s->o[0];
     RULE(is(s, a, OP_neg), operand(s, a, 0));
@@ -159,7 +159,7 @@ static Node simplify_neg(const Step *s)
     return NODE_NONE;
 }
 
-static Node simplify_abs(const Step *s)
+static Node simplify_abs(const Rewrite *s)
 {
     Node a = s->o[0];
     RULE(is(s, a, OP_abs) || is(s, a, OP_square) || is(s, a, OP_length), a);
@@ -167,7 +167,7 @@ static Node simplify_abs(const Step *s)
     return NODE_NONE;
 }
 
-static Node simplify_square(const Step *s)
+static Node simplify_square(const Rewrite *s)
 {
     Node a = s->o[0];
     RULE(is(s, a, OP_abs) || is(s, a, OP_neg), graph_op1(s->graph, OP_square, operand(s, a, 0)));
@@ -176,7 +176,7 @@ static Node simplify_square(const Step *s)
 
 /* Whether a sum has only squares as terms, at most 4; what is squared goes to `roots`, the oldest
    first, as they are when they are the components of one vector. */
-static bool sum_of_squares(const Step *s, Node sum, Node *roots, uint32_t *count)
+static bool sum_of_squares(const Rewrite *s, Node sum, Node *roots, uint32_t *count)
 {
     if (is(s, sum, OP_add))
         return sum_of_squares(s, operand(s, sum, 0), roots, count) &&
@@ -192,7 +192,7 @@ static bool sum_of_squares(const Step *s, Node sum, Node *roots, uint32_t *count
 }
 
 /* The slope of a root of squares is unbounded to whoever does not see that it is a length. */
-static Node simplify_sqrt(const Step *s)
+static Node simplify_sqrt(const Rewrite *s)
 {
     static const Op vectors[] = {OP_vec2, OP_vec3, OP_vec4};
     Node            a         = s->o[0], roots[4];
@@ -206,20 +206,20 @@ static Node simplify_sqrt(const Step *s)
     return graph_op1(s->graph, OP_length, vector);
 }
 
-static Node simplify_pow(const Step *s)
+static Node simplify_pow(const Rewrite *s)
 {
     Node power = graph_power(s->graph, s->o[0], s->o[1]);
     return is(s, power, OP_pow) ? NODE_NONE : power;
 }
 
-static Node simplify_extremum(const Step *s)
+static Node simplify_extremum(const Rewrite *s)
 {
     RULE(s->o[0] == s->o[1], s->o[0]);
     return NODE_NONE;
 }
 
 /* From constant to constant by k x + b is a constant times x and another. */
-static Node simplify_ramp(const Step *s)
+static Node simplify_ramp(const Rewrite *s)
 {
     Node from = s->o[0], x = s->o[2];
     Node span = op2(s, OP_sub, s->o[1], from), steep = span;
@@ -236,7 +236,7 @@ static Node simplify_ramp(const Step *s)
     return op2(s, OP_add, op2(s, OP_mul, x, steep), from);
 }
 
-static Node simplify_mix(const Step *s)
+static Node simplify_mix(const Rewrite *s)
 {
     RULE(equals(s, s->o[2], 0) && s->finite[1], s->o[0]);
     RULE(equals(s, s->o[2], 1) && s->finite[0], s->o[1]);
@@ -246,7 +246,7 @@ static Node simplify_mix(const Step *s)
     return NODE_NONE;
 }
 
-static Node simplify_scale(const Step *s)
+static Node simplify_scale(const Rewrite *s)
 {
     RULE(equals(s, s->o[1], 1), s->o[0]);
     RULE(equals(s, s->o[1], -1), graph_op1(s->graph, OP_neg, s->o[0]));
@@ -254,7 +254,7 @@ static Node simplify_scale(const Step *s)
     return NODE_NONE;
 }
 
-static Node simplify_component(const Step *s)
+static Node simplify_component(const Rewrite *s)
 {
     Node a = s->o[0];
     switch ((Op)expr(s, a)->op) {
@@ -269,7 +269,7 @@ static Node simplify_component(const Step *s)
 }
 
 /* [v.x, v.y, v.z] is v, and [x, x, x] a splat. */
-static Node simplify_vector(const Step *s)
+static Node simplify_vector(const Rewrite *s)
 {
     static const Op splats[] = {OP_splat2, OP_splat3, OP_splat4};
     uint32_t        size     = s->type;
@@ -285,7 +285,7 @@ static Node simplify_vector(const Step *s)
     return NODE_NONE;
 }
 
-static Node simplify_logic(const Step *s)
+static Node simplify_logic(const Rewrite *s)
 {
     Node a = s->o[0], b = s->o[1];
     RULE(a == b, a);
@@ -293,13 +293,13 @@ static Node simplify_logic(const Step *s)
     return NODE_NONE;
 }
 
-static Node simplify_not(const Step *s)
+static Node simplify_not(const Rewrite *s)
 {
     RULE(is(s, s->o[0], OP_not), operand(s, s->o[0], 0));
     return NODE_NONE;
 }
 
-static Node simplify_select(const Step *s)
+static Node simplify_select(const Rewrite *s)
 {
     Node condition = s->o[0], yes = s->o[1], no = s->o[2];
     RULE(yes == no, yes);
@@ -309,7 +309,7 @@ static Node simplify_select(const Step *s)
     return NODE_NONE;
 }
 
-static Node simplify_turn(const Step *s)
+static Node simplify_turn(const Rewrite *s)
 {
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
@@ -320,19 +320,19 @@ static Node simplify_turn(const Step *s)
     return s->o[0];
 }
 
-static Node simplify_cell(const Step *s)
+static Node simplify_cell(const Rewrite *s)
 {
     RULE(equals(s, s->o[1], 0), s->o[0]);
     return NODE_NONE;
 }
 
-static Node simplify_smin(const Step *s)
+static Node simplify_smin(const Rewrite *s)
 {
     RULE(equals(s, s->o[2], 0), op2(s, OP_min, s->o[0], s->o[1]));
     return NODE_NONE;
 }
 
-static Node simplify_by_rule(Step *s)
+static Node simplify_by_rule(Rewrite *s)
 {
     switch (s->op) {
     case OP_add: order_operands(s); return simplify_add(s);
@@ -418,7 +418,7 @@ static Node rebuild(Simplifier *simplifier, const Expr *e, bool with_rules)
     graph->here  = e->span;
     if (e->operand_count == 0)
         return rebuild_leaf(graph, e);
-    Step step = {.graph = graph, .op = e->op, .type = e->type, .index = e->index};
+    Rewrite step = {.graph = graph, .op = e->op, .type = e->type, .index = e->index};
     for (int i = 0; i < e->operand_count; i++) {
         step.o[i]      = simplifier->nodes[e->operands[i]];
         step.finite[i] = simplifier->finite[e->operands[i]];

@@ -22,20 +22,20 @@ static const double MOST_WORK = 1e5;
 
 enum { MOST_DEPTH = 6, LEAST_DEPTH = 2, SLAB_DEPTH = 5, MOST_ROUNDS = 40 };
 
-typedef struct Hunt {
+typedef struct ZeroSearch {
     RangeTask task; /* of the forms; later of the polynomial */
     Node      root;
     Series    forms; /* c_k, of the point as q */
     double    work;  /* what is left */
     int       sign;  /* of the leading form; 0: not known yet */
-} Hunt;
+} ZeroSearch;
 
-static bool run(Hunt *hunt, Box box)
+static bool run(ZeroSearch *search, Box box)
 {
-    hunt->work -= (double)hunt->task.tape.count;
-    if (hunt->work < 0)
+    search->work -= (double)search->task.tape.count;
+    if (search->work < 0)
         return false;
-    range_task_run(&hunt->task, box);
+    range_task_run(&search->task, box);
     return true;
 }
 
@@ -44,15 +44,15 @@ static int sign_of(Range a) { return a.low > 0 ? 1 : a.high < 0 ? -1 : 0; }
 /* ---- by the leading form ---- */
 
 /* The t beyond which c_n t^n outweighs what the other terms may take away, over the last box. */
-static double outweighed_until(const Hunt *hunt)
+static double outweighed_until(const ZeroSearch *search)
 {
-    uint32_t n = hunt->forms.degree;
+    uint32_t n = search->forms.degree;
     double   falls[MOST_DEGREE + 1],
-        lead   = range_least(range_task_value(&hunt->task, hunt->forms.c[n]));
+        lead   = range_least(range_task_value(&search->task, search->forms.c[n]));
     double low = 0, high = 0;
     for (uint32_t k = 0; k < n; k++) {
-        Range c  = range_task_value(&hunt->task, hunt->forms.c[k]);
-        falls[k] = fmax(hunt->sign > 0 ? -c.low : c.high, 0);
+        Range c  = range_task_value(&search->task, search->forms.c[k]);
+        falls[k] = fmax(search->sign > 0 ? -c.low : c.high, 0);
         high     = fmax(high, 2 * pow(falls[k] / lead, 1.0 / (n - k)));
     }
     for (int i = 0; i < 30 && isfinite(high); i++) {
@@ -72,53 +72,54 @@ static Box middle_of(Box box)
 }
 
 /* Whether the leading form can have no 0 in a cell: it has one sign in its middle. */
-static bool may_be_definite(Hunt *hunt, Box cell)
+static bool may_be_definite(ZeroSearch *search, Box cell)
 {
-    if (!run(hunt, middle_of(cell)))
+    if (!run(search, middle_of(cell)))
         return false;
-    int sign   = sign_of(range_task_value(&hunt->task, hunt->forms.c[hunt->forms.degree]));
-    hunt->sign = hunt->sign == 0 ? sign : hunt->sign;
-    return sign != 0 && sign == hunt->sign;
+    int sign     = sign_of(range_task_value(&search->task, search->forms.c[search->forms.degree]));
+    search->sign = search->sign == 0 ? sign : search->sign;
+    return sign != 0 && sign == search->sign;
 }
 
 /* Adds where zeros in the directions of a cell may be; false: they may be anywhere. */
-static bool bound_cell(Hunt *hunt, Box cell, int depth, Box *zeros)
+static bool bound_cell(ZeroSearch *search, Box cell, int depth, Box *zeros)
 {
-    if (!run(hunt, cell))
+    if (!run(search, cell))
         return false;
-    int sign = sign_of(range_task_value(&hunt->task, hunt->forms.c[hunt->forms.degree]));
-    if (sign != 0 && sign == hunt->sign && depth >= LEAST_DEPTH) {
-        double reach = outweighed_until(hunt);
+    int sign = sign_of(range_task_value(&search->task, search->forms.c[search->forms.degree]));
+    if (sign != 0 && sign == search->sign && depth >= LEAST_DEPTH) {
+        double reach = outweighed_until(search);
         for (int i = 0; i < 3; i++)
             zeros->axis[i] = range_hull(
                 zeros->axis[i],
                 (Range){fmin(reach * cell.axis[i].low, 0), fmax(reach * cell.axis[i].high, 0)});
         return isfinite(reach);
     }
-    if (depth == MOST_DEPTH || !may_be_definite(hunt, cell))
+    if (depth == MOST_DEPTH || !may_be_definite(search, cell))
         return false;
-    Box parts[4] = {cell, cell, cell, cell};
+    Box quarters[4] = {cell, cell, cell, cell};
     for (int i = 0, bit = 1; i < 3; i++) {
         if (range_is_single(cell.axis[i]))
             continue;
         double middle = 0.5 * (cell.axis[i].low + cell.axis[i].high);
-        for (int part = 0; part < 4; part++)
-            *(part & bit ? &parts[part].axis[i].low : &parts[part].axis[i].high) = middle;
+        for (int quarter = 0; quarter < 4; quarter++)
+            *(quarter & bit ? &quarters[quarter].axis[i].low
+                            : &quarters[quarter].axis[i].high) = middle;
         bit = 2;
     }
-    for (int part = 0; part < 4; part++)
-        if (!bound_cell(hunt, parts[part], depth + 1, zeros))
+    for (int quarter = 0; quarter < 4; quarter++)
+        if (!bound_cell(search, quarters[quarter], depth + 1, zeros))
             return false;
     return true;
 }
 
-static bool bound_by_leading_form(Hunt *hunt, Box *zeros)
+static bool bound_by_leading_form(ZeroSearch *search, Box *zeros)
 {
     *zeros = (Box){{{0, 0}, {0, 0}, {0, 0}}};
     for (int face = 0; face < 6; face++) {
         Box cell            = {{{-1, 1}, {-1, 1}, {-1, 1}}};
         cell.axis[face / 2] = range_of(face % 2 ? 1 : -1);
-        if (!may_be_definite(hunt, cell) || !bound_cell(hunt, cell, 0, zeros))
+        if (!may_be_definite(search, cell) || !bound_cell(search, cell, 0, zeros))
             return false;
     }
     return true;
@@ -137,11 +138,11 @@ static double cut_of(Range side)
 }
 
 /* Whether the polynomial has this sign all over a box. */
-static bool has_sign(Hunt *hunt, Box box, int sign, int depth)
+static bool has_sign(ZeroSearch *search, Box box, int sign, int depth)
 {
-    if (!run(hunt, box))
+    if (!run(search, box))
         return false;
-    if (sign_of(range_task_value(&hunt->task, hunt->root)) == sign)
+    if (sign_of(range_task_value(&search->task, search->root)) == sign)
         return true;
     if (depth == 0)
         return false;
@@ -152,34 +153,34 @@ static bool has_sign(Hunt *hunt, Box box, int sign, int depth)
     Box    half            = box;
     double cut             = cut_of(box.axis[widest]);
     half.axis[widest].high = cut;
-    if (!has_sign(hunt, half, sign, depth - 1))
+    if (!has_sign(search, half, sign, depth - 1))
         return false;
     half                  = box;
     half.axis[widest].low = cut;
-    return has_sign(hunt, half, sign, depth - 1);
+    return has_sign(search, half, sign, depth - 1);
 }
 
 /* Moves one side of the box inwards to `at` if there is no zero beyond. */
-static bool cut_side(Hunt *hunt, Box *box, int side, double at, int sign)
+static bool cut_side(ZeroSearch *search, Box *box, int side, double at, int sign)
 {
     Box     slab                                                       = *box;
     Range  *axis                                                       = &box->axis[side / 2];
     double *ends[2]                                                    = {&axis->low, &axis->high};
     *(side % 2 ? &slab.axis[side / 2].low : &slab.axis[side / 2].high) = at;
-    if (!has_sign(hunt, slab, sign, SLAB_DEPTH))
+    if (!has_sign(search, slab, sign, SLAB_DEPTH))
         return false;
     *ends[side % 2] = at;
     return true;
 }
 
 /* From as far out as numbers of single precision can be squared inwards, by ever smaller steps. */
-static bool cut_endless_side(Hunt *hunt, Box *box, int side, int sign)
+static bool cut_endless_side(ZeroSearch *search, Box *box, int side, int sign)
 {
     double other = side % 2 ? box->axis[side / 2].low : box->axis[side / 2].high;
     bool   any   = false;
     for (double exponent = 40, step = 4; exponent > -20 && step >= 0.0625;) {
-        double at    = side % 2 ? exp2(exponent) : -exp2(exponent);
-        bool   clear = (side % 2 ? at > other : at < other) && cut_side(hunt, box, side, at, sign);
+        double at  = side % 2 ? exp2(exponent) : -exp2(exponent);
+        bool clear = (side % 2 ? at > other : at < other) && cut_side(search, box, side, at, sign);
         if (!clear && !any)
             return false;
         exponent += clear ? 0 : step;
@@ -190,21 +191,22 @@ static bool cut_endless_side(Hunt *hunt, Box *box, int side, int sign)
     return any;
 }
 
-static bool cut_finite_side(Hunt *hunt, Box *box, int side, int sign)
+static bool cut_finite_side(ZeroSearch *search, Box *box, int side, int sign)
 {
-    static const double shares[] = {0.5, 0.25, 0.1, 0.03};
-    Range               axis     = box->axis[side / 2];
-    for (size_t i = 0; i < sizeof shares / sizeof *shares; i++) {
-        double part = shares[i] * (axis.high - axis.low);
-        double at   = side % 2 ? axis.high - part : axis.low + part;
-        if (part > 1e-6 * (fabs(axis.low) + fabs(axis.high)) && cut_side(hunt, box, side, at, sign))
+    static const double fractions[] = {0.5, 0.25, 0.1, 0.03};
+    Range               axis        = box->axis[side / 2];
+    for (size_t i = 0; i < sizeof fractions / sizeof *fractions; i++) {
+        double depth = fractions[i] * (axis.high - axis.low);
+        double at    = side % 2 ? axis.high - depth : axis.low + depth;
+        if (depth > 1e-6 * (fabs(axis.low) + fabs(axis.high)) &&
+            cut_side(search, box, side, at, sign))
             return true;
     }
     return false;
 }
 
 /* As near to the zeros as ranges tell. */
-static void cut_sides(Hunt *hunt, Box *box, int sign)
+static void cut_sides(ZeroSearch *search, Box *box, int sign)
 {
     bool any = true;
     for (int round = 0; any && round < MOST_ROUNDS; round++) {
@@ -214,8 +216,8 @@ static void cut_sides(Hunt *hunt, Box *box, int sign)
             bool  ends = isfinite(side % 2 ? axis.high : axis.low);
             if (ends && !isfinite(axis.high - axis.low))
                 continue; /* no part of it is finite: the other side first */
-            any = (ends ? cut_finite_side(hunt, box, side, sign)
-                        : cut_endless_side(hunt, box, side, sign)) ||
+            any = (ends ? cut_finite_side(search, box, side, sign)
+                        : cut_endless_side(search, box, side, sign)) ||
                   any;
         }
     }
@@ -245,22 +247,22 @@ ZeroBox graph_zero_box(Graph *graph, Node polynomial, Arena *scratch)
 {
     const Box   endless = {{ANYTHING, ANYTHING, ANYTHING}};
     ZeroBox     found   = {endless, 0};
-    Hunt        hunt    = {.root = polynomial};
+    ZeroSearch  search  = {.root = polynomial};
     SeriesFault fault;
     if (!graph_line_series(graph, polynomial, graph_vec3(graph, 0, 0, 0),
-                           graph_leaf(graph, OP_POINT), &hunt.forms, &fault, scratch))
+                           graph_leaf(graph, OP_POINT), &search.forms, &fault, scratch))
         return found;
-    hunt.task = range_task(graph, hunt.forms.c, hunt.forms.degree + 1, scratch);
-    hunt.work = MOST_WORK;
-    if (bound_by_leading_form(&hunt, &found.box))
-        found.sign = hunt.sign;
+    search.task = range_task(graph, search.forms.c, search.forms.degree + 1, scratch);
+    search.work = MOST_WORK;
+    if (bound_by_leading_form(&search, &found.box))
+        found.sign = search.sign;
     else
         found.box = endless;
-    hunt.task = range_task(graph, &hunt.root, 1, scratch);
+    search.task = range_task(graph, &search.root, 1, scratch);
     for (int sign = 1; sign >= -1; sign -= 2) {
-        hunt.work = MOST_WORK;
+        search.work = MOST_WORK;
         if (found.sign == 0 || found.sign == sign)
-            cut_sides(&hunt, &found.box, sign);
+            cut_sides(&search, &found.box, sign);
         if (found.sign == 0 && !is_endless(found.box))
             found.sign = sign;
     }

@@ -220,7 +220,7 @@ static void emit_anchored(Emitter *e, const EmitMarch *march, size_t components,
     e->from_host = false;
     text_add(e->out, "float krs_cut(vec3 p, float d) { return d; }\n\n");
     emit_distances(e, roots, components, NULL, march->flat);
-    emit_parts(e, NULL, march->flat, components);
+    emit_scene_parts(e, NULL, march->flat, components);
     emit_flats(e, &plain);
     emit_surfaces(e, roots, components);
     text_add(e->out, "#else\n");
@@ -235,8 +235,8 @@ static Emitter emitter_new(const Graph *graph, const Sources *sources, Arena *sc
     e.frame        = arena_new_array(scratch, const char *, count);
     e.nesting      = arena_new_array(scratch, uint8_t, count);
     e.uses         = arena_new_array(scratch, uint32_t, count);
-    e.beyond       = arena_new_array(scratch, const char *, count);
-    e.place        = arena_new_array(scratch, uint32_t, count);
+    e.excess       = arena_new_array(scratch, const char *, count);
+    e.found_index  = arena_new_array(scratch, uint32_t, count);
     e.feeds_mirror = arena_new_array(scratch, uint8_t, count);
     return e;
 }
@@ -335,7 +335,7 @@ void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
     if (march->groups)
         text_add(out, "#ifndef GROUP\n");
     emit_early_outs(&e, march, roots, component_count);
-    emit_parts(&e, march->boxes, march->flat, component_count);
+    emit_scene_parts(&e, march->boxes, march->flat, component_count);
     if (march->gradient)
         emit_gradients(&e, march, component_count, zone);
     emit_surfaces(&e, roots, component_count);

@@ -23,9 +23,9 @@ typedef struct EmitMarch {
                                where there is none; NULL: nobody wants any */
 } EmitMarch;
 
-/* In how many parts so many components are marched, where each ray goes on with the one that comes
+/* In how many scene parts so many components are marched: each is one component or neighbours, where each ray goes on with the one that comes
    next. */
-uint32_t emit_part_count(size_t components);
+uint32_t emit_scene_part_count(size_t components);
 /* What the host finds for each frame, and for each anchor. */
 typedef struct EmittedFrame {
     FrameValues plain, anchored;

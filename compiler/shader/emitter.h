@@ -24,13 +24,13 @@ typedef struct Emitter {
     } needed;                  /* all that have uses, in order */
     const char **frame;        /* names of the globals that krs_prepare sets */
     uint8_t     *feeds_mirror; /* whether a mirror (OP_fold) uses it */
-    const char **beyond;       /* of mirrors in a row: the name of how far beyond it the point is */
+    const char **excess;       /* of mirrors in a row: the name of how far beyond it the point is */
     uint32_t     next;         /* number of the next local name */
     uint32_t     globals;
-    uint32_t    *place;     /* of values that the host finds: their number + 1 */
-    bool         from_host; /* there is nothing but what the host finds of the frame */
-    Regions      regions;   /* of the function being written, where it has guards */
-    Span         last;      /* the line that was commented last */
+    uint32_t    *found_index; /* of values that the host finds: their index + 1 */
+    bool         from_host;   /* there is nothing but what the host finds of the frame */
+    Regions      regions;     /* of the function being written, where it has guards */
+    Span         last;        /* the line that was commented last */
 } Emitter;
 
 /* ---- statements.c ---- */
@@ -73,7 +73,7 @@ void emit_early_outs(Emitter *e, const EmitMarch *march, const Node *roots, size
 /* krs_ahead and krs_rise: where rays meet planes. */
 void emit_flats(Emitter *e, const EmitMarch *march);
 /* krs_distance_of and krs_part_box.  `boxes` of components; NULL: not known. */
-void emit_parts(Emitter *e, const Box *boxes, const bool *flat, size_t components);
+void emit_scene_parts(Emitter *e, const Box *boxes, const bool *flat, size_t components);
 /* krs_along by all methods that are better than the distance, and krs_probe. */
 void emit_along(Emitter *e, const EmitMarch *march, const Node *roots, size_t components);
 

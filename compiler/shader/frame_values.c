@@ -36,16 +36,16 @@ bool frame_value_is_arranged(const Graph *graph, Node node)
     }
 }
 
-typedef struct Nodes {
+typedef struct NodeList {
     Node  *items;
     size_t count, capacity;
-} Nodes;
+} NodeList;
 
 /* What is wanted, or what that arranges. */
-static Nodes find_values(const Graph *graph, const Node *wanted, size_t count, Arena *scratch)
+static NodeList find_values(const Graph *graph, const Node *wanted, size_t count, Arena *scratch)
 {
-    bool *seen = arena_new_array(scratch, bool, graph->count + 1);
-    Nodes rest = {0}, found = {0};
+    bool    *seen = arena_new_array(scratch, bool, graph->count + 1);
+    NodeList rest = {0}, found = {0};
     for (size_t i = count; i-- > 0;)
         array_push(scratch, &rest, wanted[i]);
     while (rest.count > 0) {
@@ -71,7 +71,7 @@ static Fact find_fact(const Tape *tape, size_t at, const Fact *facts)
     Fact        operands[MAX_OPERANDS], fact = {0};
     for (uint32_t k = 0; k < e->operand_count; k++) {
         types[k]    = (GraphType)tape->graph->items[e->operands[k]].type;
-        operands[k] = facts[tape_place(tape, e->operands[k])];
+        operands[k] = facts[tape_index(tape, e->operands[k])];
     }
     if (e->op != OP_PARAMETER)
         return op_fact((Op)e->op, (GraphType)e->type, e->index, types, operands, e->number);
@@ -81,10 +81,10 @@ static Fact find_fact(const Tape *tape, size_t at, const Fact *facts)
     return fact;
 }
 
-void frame_values_place(FrameValues *values, const Graph *graph, const Node *wanted, size_t count,
-                        Arena *arena, Arena *scratch)
+void frame_values_assign(FrameValues *values, const Graph *graph, const Node *wanted, size_t count,
+                         Arena *arena, Arena *scratch)
 {
-    Nodes    found = find_values(graph, wanted, count, scratch);
+    NodeList found = find_values(graph, wanted, count, scratch);
     uint32_t used  = 4 * values->first_slot;
     values->count  = found.count;
     values->items  = arena_new_array(arena, FrameValue, found.count + 1);
@@ -94,7 +94,7 @@ void frame_values_place(FrameValues *values, const Graph *graph, const Node *wan
         facts[i] = find_fact(&values->tape, i, facts);
     for (size_t i = 0; i < found.count; i++) {
         FrameValue *value = &values->items[i];
-        const Fact *fact  = &facts[tape_place(&values->tape, found.items[i])];
+        const Fact *fact  = &facts[tape_index(&values->tape, found.items[i])];
         *value = (FrameValue){.node = found.items[i], .width = width_of(graph, found.items[i])};
         for (uint32_t k = 0; k < value->width; k++) {
             bool same          = range_is_single(fact->value[k]) && isfinite(fact->value[k].low);
@@ -111,15 +111,15 @@ static float to_single(double number)
     return (float)(number > FLT_MAX ? FLT_MAX : number < -FLT_MAX ? -FLT_MAX : number);
 }
 
-void frame_values_find(const FrameValues *values, const NodeValue *parameters, NodeValue *room,
+void frame_values_find(const FrameValues *values, const NodeValue *parameters, NodeValue *workspace,
                        float (*block)[4])
 {
     const Graph *graph = values->tape.graph;
-    tape_run_frame(&values->tape, parameters, room);
+    tape_run_frame(&values->tape, parameters, workspace);
     memset(block, 0, values->slots * sizeof *block);
     for (size_t i = 0; i < values->count; i++) {
         const FrameValue *value = &values->items[i];
-        const double     *found = room[value->node].v;
+        const double     *found = workspace[value->node].v;
         for (uint32_t k = 0; k < value->width; k++) {
             if (value->at[k] == NO_PLACE)
                 continue;

@@ -32,10 +32,10 @@ bool frame_value_is_given(const Graph *graph, Node node);
 /* Whether it only arranges its operands: kernels do that. */
 bool frame_value_is_arranged(const Graph *graph, Node node);
 /* Places for `wanted`, or for what those arrange. */
-void frame_values_place(FrameValues *values, const Graph *graph, const Node *wanted, size_t count,
-                        Arena *arena, Arena *scratch);
+void frame_values_assign(FrameValues *values, const Graph *graph, const Node *wanted, size_t count,
+                         Arena *arena, Arena *scratch);
 /* Finds them all; `block` has room for `slots`. */
-void frame_values_find(const FrameValues *values, const NodeValue *parameters, NodeValue *room,
+void frame_values_find(const FrameValues *values, const NodeValue *parameters, NodeValue *workspace,
                        float (*block)[4]);
 
 #endif

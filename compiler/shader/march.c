@@ -23,30 +23,30 @@ void emit_flats(Emitter *e, const EmitMarch *march)
     text_format(e->out, "    return %s;\n}\n#endif\n\n", e->text[march->ahead[1]]);
 }
 
-/* ---- parts ---- */
+/* ---- scene parts: one component, or neighbours that share a distance function ---- */
 
-/* Beyond so many, neighbours share a part. */
-enum { MOST_PARTS = 64 };
+/* With more components, neighbours share a scene part. */
+enum { MOST_SCENE_PARTS = 64 };
 
-uint32_t emit_part_count(size_t components)
+uint32_t emit_scene_part_count(size_t components)
 {
-    return components < MOST_PARTS ? (uint32_t)components : MOST_PARTS;
+    return components < MOST_SCENE_PARTS ? (uint32_t)components : MOST_SCENE_PARTS;
 }
 
-/* The first component of a part, or of the one behind the last. */
-static size_t first_of_part(size_t part, size_t components)
+/* The first component of a scene part; for the number of parts, the number of components. */
+static size_t first_of_scene_part(size_t part, size_t components)
 {
-    return part * components / emit_part_count(components);
+    return part * components / emit_scene_part_count(components);
 }
 
-/* What is inside of a switch over parts. */
-static void emit_part_distance(Emitter *e, size_t part, const bool *flat, size_t components)
+/* A case of the switch over scene parts. */
+static void emit_scene_part_distance(Emitter *e, size_t part, const bool *flat, size_t components)
 {
     text_format(e->out, "    case %zuu:\n", part);
     for (int guarded = 1; guarded >= 0; guarded--) {
         text_add(e->out, guarded ? "#ifdef EARLY_OUTS\n" : "#else\n");
-        for (size_t i = first_of_part(part, components); i < first_of_part(part + 1, components);
-             i++) {
+        for (size_t i = first_of_scene_part(part, components);
+             i < first_of_scene_part(part + 1, components); i++) {
             text_add(e->out, flat && flat[i] ? "#ifndef FLATS\n" : "");
             text_format(e->out,
                         guarded ? "        d = min(d, krs_distance_lod_%zu(p, 0.0));\n"
@@ -60,7 +60,7 @@ static void emit_part_distance(Emitter *e, size_t part, const bool *flat, size_t
 
 /* Its box, grown by what single precision may lose.  Where points are given from an anchor, no box
    is known. */
-static void emit_part_box(Emitter *e, size_t part, Box box, bool flat)
+static void emit_scene_part_box(Emitter *e, size_t part, Box box, bool flat)
 {
     if (box_is_empty(box))
         return;
@@ -77,9 +77,9 @@ static void emit_part_box(Emitter *e, size_t part, Box box, bool flat)
     text_add(e->out, flat ? "#endif\n" : "");
 }
 
-void emit_parts(Emitter *e, const Box *boxes, const bool *flat, size_t components)
+void emit_scene_parts(Emitter *e, const Box *boxes, const bool *flat, size_t components)
 {
-    size_t parts = emit_part_count(components);
+    size_t parts = emit_scene_part_count(components);
     if (parts < 2)
         return;
     text_format(e->out,
@@ -91,19 +91,19 @@ void emit_parts(Emitter *e, const Box *boxes, const bool *flat, size_t component
                 "    float d = 1e30;\n    switch (part) {\n",
                 parts);
     for (size_t part = 0; part < parts; part++)
-        emit_part_distance(e, part, flat, components);
+        emit_scene_part_distance(e, part, flat, components);
     text_add(e->out, "    }\n    return krs_cut(p, d);\n}\n\n"
                      "void krs_part_box(uint part, inout vec3 low, inout vec3 high)\n{\n"
                      "    switch (part) {\n");
     for (size_t part = 0; part < parts; part++) {
         Box  box      = box_empty;
         bool all_flat = true;
-        for (size_t i = first_of_part(part, components); i < first_of_part(part + 1, components);
-             i++) {
+        for (size_t i = first_of_scene_part(part, components);
+             i < first_of_scene_part(part + 1, components); i++) {
             box      = box_hull(box, boxes ? boxes[i] : box_infinite);
             all_flat = all_flat && flat && flat[i];
         }
-        emit_part_box(e, part, box, all_flat);
+        emit_scene_part_box(e, part, box, all_flat);
     }
     text_add(e->out, "    }\n}\n#endif\n\n");
 }

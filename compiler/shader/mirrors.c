@@ -33,8 +33,8 @@ static const char *across_axis(Emitter *e, const Expr *fold, int axis)
 {
     Text        text  = {.arena = e->scratch};
     const char *point = e->text[fold->operands[0]], *offset = e->text[fold->operands[2]];
-    const Expr *place  = &e->graph->items[fold->operands[2]];
-    bool        middle = place->op == OP_CONSTANT && place->number[0] == 0;
+    const Expr *offset_node = &e->graph->items[fold->operands[2]];
+    bool        middle      = offset_node->op == OP_CONSTANT && offset_node->number[0] == 0;
     text_add(&text, "vec3(");
     for (int i = 0; i < 3; i++) {
         char name = "xyz"[i];
@@ -82,13 +82,13 @@ static void subtract_move(Emitter *e, Text *text, const Expr *fold, Node mirror)
     const Expr   *items = e->graph->items;
     const double *n     = items[fold->operands[1]].number;
     const double *b     = items[items[mirror].operands[1]].number;
-    text_format(text, " - KRS_BACK(%s * %s, 0.0)", e->beyond[mirror],
+    text_format(text, " - KRS_BACK(%s * %s, 0.0)", e->excess[mirror],
                 emit_number(e, 2 * (n[0] * b[0] + n[1] * b[1] + n[2] * b[2])));
 }
 
 /* How far beyond the mirror the point is, from where it was before the mirrors `first` and
    `before`; the term that waits for the last comes last. */
-static const char *distance_beyond(Emitter *e, const Expr *fold, Node first, Node before)
+static const char *mirror_excess(Emitter *e, const Expr *fold, Node first, Node before)
 {
     Text        text  = {.arena = e->scratch};
     const char *point = e->text[fold->operands[0]];
@@ -110,12 +110,12 @@ static const char *distance_beyond(Emitter *e, const Expr *fold, Node first, Nod
 static const char *in_row(Emitter *e, const Expr *fold, Node n, Node before)
 {
     Node        first  = before == NODE_NONE ? NODE_NONE : mirror_before(e, before);
-    const char *beyond = distance_beyond(e, fold, first, before);
+    const char *excess = mirror_excess(e, fold, first, before);
     Text        name = {.arena = e->scratch}, text = name;
     text_format(&name, "t%u", e->next++);
     emit_comment(e, fold->span);
-    text_format(e->out, "    float %s = max(%s, 0.0);\n", name.bytes, beyond);
-    e->beyond[n] = name.bytes;
+    text_format(e->out, "    float %s = max(%s, 0.0);\n", name.bytes, excess);
+    e->excess[n] = name.bytes;
     text_format(&text, "(%s - %s * (2.0 * %s))", e->text[fold->operands[0]], name.bytes,
                 e->text[fold->operands[1]]);
     return text.bytes;

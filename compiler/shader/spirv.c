@@ -98,8 +98,8 @@ static char *name_log(const char *entry, const char *tool, char *words_of_tool)
 }
 
 /* What the border says, in the words of the library; takes over `words_of_tool`. */
-static KrsStatus judge(BorderResult result, const char *entry, const char *tool,
-                       char *words_of_tool, char **log)
+static KrsStatus status_of(BorderResult result, const char *entry, const char *tool,
+                           char *words_of_tool, char **log)
 {
     bool refused = result == BORDER_REFUSED && words_of_tool;
     *log         = refused ? name_log(entry, tool, words_of_tool) : NULL;
@@ -120,11 +120,11 @@ KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, s
         result = border_compile(glsl, words, word_count, &refusal);
         end_use(result);
     }
-    KrsStatus status = judge(result, entry, "glslang", refusal, log);
+    KrsStatus status = status_of(result, entry, "glslang", refusal, log);
     if (status != KRS_OK)
         return status;
     result = border_validate(*words, *word_count, &refusal);
-    status = judge(result, entry, "the SPIR-V validator", refusal, log);
+    status = status_of(result, entry, "the SPIR-V validator", refusal, log);
     if (status != KRS_OK) {
         free(*words);
         *words = NULL;

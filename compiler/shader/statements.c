@@ -236,7 +236,7 @@ const char *emit_bare(Emitter *e, const char *text)
     return arena_copy_text(e->scratch, text + 1, length - 2);
 }
 
-static void use(Emitter *e, Node node, uint32_t count)
+static void add_use(Emitter *e, Node node, uint32_t count)
 {
     if (e->uses[node] == 0)
         array_push(e->scratch, &e->needed, node);
@@ -256,13 +256,13 @@ static void count_uses(Emitter *e, const Node *roots, size_t count, bool frame)
         e->uses[e->needed.items[i]] = e->feeds_mirror[e->needed.items[i]] = 0;
     e->needed.count = 0;
     for (size_t i = 0; i < count; i++)
-        use(e, roots[i], 2); /* a root needs a name */
+        add_use(e, roots[i], 2); /* a root needs a name */
     for (size_t i = 0; i < e->needed.count; i++) {
         const Expr *expr = &e->graph->items[e->needed.items[i]];
         if (!frame && expr->time != TIME_POINT)
             continue;
         for (uint32_t k = 0; k < expr->operand_count; k++)
-            use(e, expr->operands[k], repeats_operand(e, expr, expr->operands[k]) ? 2 : 1);
+            add_use(e, expr->operands[k], repeats_operand(e, expr, expr->operands[k]) ? 2 : 1);
         if (expr->op == OP_fold)
             e->feeds_mirror[expr->operands[0]] = true;
     }
@@ -341,8 +341,8 @@ static size_t emit_globals(Emitter *e, const Node *roots, size_t count, Node *se
 void emit_lay_out(Emitter *e, const Node *roots, size_t count, FrameValues *values)
 {
     count_uses(e, roots, count, false);
-    frame_values_place(values, e->graph, e->needed.items, e->needed.count, e->out->arena,
-                       e->scratch);
+    frame_values_assign(values, e->graph, e->needed.items, e->needed.count, e->out->arena,
+                        e->scratch);
 }
 
 static const char *number_text(Emitter *e, const FrameValue *value, uint32_t k)
@@ -382,8 +382,8 @@ static const char *found_text(Emitter *e, const FrameValue *value)
 static const char *read_text(Emitter *e, const FrameValues *values, Node n)
 {
     const Expr *expr = &e->graph->items[n];
-    if (e->place[n])
-        return found_text(e, &values->items[e->place[n] - 1]);
+    if (e->found_index[n])
+        return found_text(e, &values->items[e->found_index[n] - 1]);
     if (expr->op == OP_COMPONENT && frame_value_is_given(e->graph, n))
         return slot_text(e, e->graph->items[expr->operands[0]].index, expr->index, 1);
     for (uint32_t k = 0; k < expr->operand_count; k++) /* a leaf has none */
@@ -394,9 +394,9 @@ static const char *read_text(Emitter *e, const FrameValues *values, Node n)
 /* The globals from the parameter block, in which the host has put them. */
 static void emit_reads(Emitter *e, const Node *set, size_t globals, const FrameValues *values)
 {
-    memset(e->place, 0, e->graph->count * sizeof *e->place);
+    memset(e->found_index, 0, e->graph->count * sizeof *e->found_index);
     for (size_t i = 0; i < values->count; i++)
-        e->place[values->items[i].node] = (uint32_t)i + 1;
+        e->found_index[values->items[i].node] = (uint32_t)i + 1;
     for (size_t i = 0; i < globals; i++)
         text_format(e->out, "    %s = %s;\n", e->frame[set[i]],
                     emit_bare(e, read_text(e, values, set[i])));

@@ -241,7 +241,7 @@ KrsStatus krs_device_raycast(KrsRendering *rendering, KrsFrame *frame, const dou
                              double tolerance, KrsHit *hits)
 {
     renderer_clear(rendering->renderer);
-    if (!krs_rays_are_sound(origins, directions, count, farthest, tolerance) ||
+    if (!krs_rays_are_valid(origins, directions, count, farthest, tolerance) ||
         !is_in_reach(origins, count) || tolerance > 1e18)
         return refuse(rendering, "rays have finite origins below 1e18, directions that are not 0, "
                                  "and neither end nor tolerance below 0");

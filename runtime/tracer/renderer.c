@@ -270,8 +270,8 @@ static bool goes_along(const KrsRendering *rendering, KrsTrace trace)
 bool rendering_marches_packed(const KrsRendering *rendering, KrsComponents components,
                               KrsTrace trace)
 {
-    bool by_default = rendering->program->heavy >= 2 && !gpu_is_cpu(&rendering->renderer->gpu);
-    return rendering->program->parts >= 2 && !goes_along(rendering, trace) &&
+    bool by_default = rendering->program->expensive >= 2 && !gpu_is_cpu(&rendering->renderer->gpu);
+    return rendering->program->scene_parts >= 2 && !goes_along(rendering, trace) &&
            (components == KRS_COMPONENTS_DEFAULT ? by_default
                                                  : components == KRS_COMPONENTS_PACKED);
 }

@@ -40,8 +40,8 @@ static void check_diags(const Diags *diags, size_t size, Arena *arena)
 {
     for (size_t i = 0; i < diags->count; i++) {
         check_span(diags->items[i]->span, size);
-        for (size_t k = 0; k < diags->items[i]->places.count; k++)
-            check_span(diags->items[i]->places.items[k].span, size);
+        for (size_t k = 0; k < diags->items[i]->secondary.count; k++)
+            check_span(diags->items[i]->secondary.items[k].span, size);
     }
     Text text = {.arena = arena};
     diags_print_text(diags, true, &text);

@@ -63,7 +63,7 @@ static Cloud borders(const Chain *chain, Vec low, Vec high, int segments, Random
 /* A chain that was compiled, and where to look. */
 typedef struct Case {
     const char *text;
-    Product     product, steady; /* behind an offset by 0 */
+    Product     product, lipschitz; /* behind an offset by 0 */
     Chain       chain;
     Vec         low, high; /* a box some larger than that of the solid */
     bool        bounded;
@@ -186,12 +186,12 @@ static bool inside_case(const void *c, Vec p)
    not be steep. */
 static void check_slope(Case *c, int points, uint64_t seed)
 {
-    if (!c->steady.scene)
+    if (!c->lipschitz.scene)
         return; /* too large for the language */
     Vec    middle = vec_mix(c->low, c->high, 0.5);
     double half   = 0.5 *
                   fmax(c->high.x - c->low.x, fmax(c->high.y - c->low.y, c->high.z - c->low.z));
-    Trial   trial   = {product_field, &c->steady, inside_case, c, middle, half, points, seed};
+    Trial   trial   = {product_field, &c->lipschitz, inside_case, c, middle, half, points, seed};
     Verdict verdict = judge(&trial);
     if (verdict.sign_errors + verdict.ball_errors + verdict.slope_errors)
         complain(c, middle, "slope, or ball that is not empty", verdict.steepest, 1);
@@ -243,18 +243,18 @@ static void look_at(Case *c, Random *random, Tally *tally)
 
 static void check_chain(const Run *run, Random *random, Tally *tally)
 {
-    static SceneText text, steady;
+    static SceneText text, lipschitz;
     Case             c = {.text = text.bytes, .seed = random->state};
     text.length        = 0;
     chain_random(&c.chain, &run->recipe, random, &tally->refusals);
     chain_write(&c.chain, &text);
     c.product = product_compile(text.bytes);
-    steady    = text;
-    steady.length -= 2;
-    scene_write(&steady, ".offset(0);\ncamera { eye: [0, 0, 9], target: [0, 0, 0] }\n");
-    if (krs_compile_text(steady.bytes, steady.length, "steady.krs", NULL, &c.steady.scene) ==
-        KRS_OK)
-        assert_int_equal(krs_frame_new(c.steady.scene, &c.steady.frame), KRS_OK);
+    lipschitz = text;
+    lipschitz.length -= 2;
+    scene_write(&lipschitz, ".offset(0);\ncamera { eye: [0, 0, 9], target: [0, 0, 0] }\n");
+    if (krs_compile_text(lipschitz.bytes, lipschitz.length, "steady.krs", NULL,
+                         &c.lipschitz.scene) == KRS_OK)
+        assert_int_equal(krs_frame_new(c.lipschitz.scene, &c.lipschitz.frame), KRS_OK);
     c.bounded = chain_box(&c.product, &c.low, &c.high);
     if (!c.bounded)
         c.low = vec(-4, -4, -4), c.high = vec(4, 4, 4);
@@ -263,7 +263,7 @@ static void check_chain(const Run *run, Random *random, Tally *tally)
     c.high     = vec_add(c.high, margin);
     for (int frame = 0; frame < (run->recipe.moving ? 3 : 1); frame++) {
         if (frame)
-            chain_move(&c.chain, &c.product, &c.steady, random);
+            chain_move(&c.chain, &c.product, &c.lipschitz, random);
         look_at(&c, random, tally);
     }
     for (int k = 0; k < LINK_KINDS; k++)
@@ -271,7 +271,7 @@ static void check_chain(const Run *run, Random *random, Tally *tally)
     tally->chains++;
     tally->wrong += c.faults > 0;
     product_free(&c.product);
-    product_free(&c.steady);
+    product_free(&c.lipschitz);
 }
 
 static void chains_are_right(void **state)

@@ -38,8 +38,8 @@ static bool compile_quietly(const char *text, Product *product, Said *said)
     return true;
 }
 
-/* `steady`: as below something that moves the surface, where distances must not be steep. */
-static void write_case(const Case *c, bool steady, SceneText *text)
+/* `lipschitz`: as below something that moves the surface, where distances must not be steep. */
+static void write_case(const Case *c, bool lipschitz, SceneText *text)
 {
     scene_write(text, "%sshow ", prelude);
     for (int i = c->count; i-- > 0;)
@@ -48,7 +48,7 @@ static void write_case(const Case *c, bool steady, SceneText *text)
     for (int i = 0; i < c->count; i++)
         scene_write(text, "%s)", c->methods[i]->after);
     scene_write(text, "%s;\ncamera { eye: [0, 0, 9], target: [0, 0, 0] }\n",
-                steady ? ".offset(0)" : "");
+                lipschitz ? ".offset(0)" : "");
 }
 
 typedef struct Tally {
@@ -63,7 +63,7 @@ static void complain(const char *text, const char *what, Vec p, double is, Tally
 }
 
 /* The distance against a membership: that of points, or its own sign. */
-static void judge_case(const Product *product, Inside *membership, const void *user, bool steady,
+static void judge_case(const Product *product, Inside *membership, const void *user, bool lipschitz,
                        const char *text, uint64_t seed, Tally *tally)
 {
     Trial   trial  = {product_field, product, membership, user, vec(0, 0, 0), 2, 24, seed};
@@ -71,7 +71,7 @@ static void judge_case(const Product *product, Inside *membership, const void *u
     trial.half     = 8;
     trial.points   = 8;
     Verdict far    = judge(&trial);
-    int     slopes = steady ? near.slope_errors + far.slope_errors : 0;
+    int     slopes = lipschitz ? near.slope_errors + far.slope_errors : 0;
     if (near.sign_errors + far.sign_errors)
         complain(text, "wrong side", vec(0, 0, 0), near.sign_errors + far.sign_errors, tally);
     else if (near.ball_errors + far.ball_errors)
@@ -137,16 +137,16 @@ static bool may_be_refused(const Case *c, const Said *said)
     return expected;
 }
 
-/* `steady`: as below something that moves the surface, where that can be. */
-static void check_case(const Case *c, bool steady, uint64_t seed, Tally *tally)
+/* `lipschitz`: as below something that moves the surface, where that can be. */
+static void check_case(const Case *c, bool lipschitz, uint64_t seed, Tally *tally)
 {
     SceneText text = {.length = 0};
     Product   product;
     Said      said;
     Random    random = {seed};
-    write_case(c, steady, &text);
+    write_case(c, lipschitz, &text);
     bool made = compile_quietly(text.bytes, &product, &said);
-    if (!made && steady && strstr(said.codes, "E0409")) {
+    if (!made && lipschitz && strstr(said.codes, "E0409")) {
         check_case(c, false, seed, tally);
         return;
     }
@@ -163,7 +163,7 @@ static void check_case(const Case *c, bool steady, uint64_t seed, Tally *tally)
         undone = undone && c->methods[i]->undo;
     Inside     *membership = undone ? inside_case : is_negative;
     const void *user       = undone ? (const void *)c : &product;
-    judge_case(&product, membership, user, steady, text.bytes, seed, tally);
+    judge_case(&product, membership, user, lipschitz, text.bytes, seed, tally);
     if (c->methods[c->count - 1]->keeps && (c->count == 1 || c->methods[0]->undo))
         check_growth(&product, c, text.bytes, &random, tally);
     for (int i = 0; i < 8 && tally->wrong == wrong; i++)

@@ -28,7 +28,7 @@ typedef struct Solid {
     Formula    *formula, *solid; /* `solid` is negative inside; NULL: so is the formula */
     double      half;            /* points are drawn from this cube */
     double      cut;             /* half side of the cube that the text cuts it to; 0: none */
-    double      loose;           /* how many times too large the slope may be, up to FAST */
+    double      slope_factor;    /* how many times too large the slope may be, up to FAST */
 } Solid;
 
 static double wobble(Vec p, Frame f) { return vec_length(p) - 1 + 0.1 * sin(p.x * f.time); }
@@ -147,7 +147,7 @@ static void slopes_are_those_of_the_frame(void **state)
         set_frame(&product, frames[i]);
         double half  = solid->cut > 0 ? solid->cut : fmin(solid->half, 1);
         double found = slope_in_block(&product), least = steepest(solid, frames[i], half);
-        bool   tight = i > FAST || found <= solid->loose * least + 1e-4;
+        bool   tight = i > FAST || found <= solid->slope_factor * least + 1e-4;
         if (!(found >= least * (1 - 1e-4) && tight))
             fail_msg("%s at time %g: slope %g, seen %g", solid->name, frames[i].time, found, least);
     }

@@ -208,7 +208,7 @@ static double blended(Vec p, const double n[])
     return least(least(box, ball) - n[0] * h * h / 4, p.y);
 }
 
-static double loose(Vec p, const double n[])
+static double underestimate(Vec p, const double n[])
 {
     double high = ball_bound(p, vec(-0.6, 1.2, 0), n[0]);
     return least(least(high, ball_bound(p, vec(0.7, 0.5, 0.4), 0.5)), p.y);
@@ -383,7 +383,7 @@ const Room rooms[ROOMS] = {
      " within: box(2 * radius * [1, 1, 1]) }\n"
      "show ball(a).move([-0.6, 1.2, 0]).paint(white);\n"
      "show ball(0.5).move([0.7, 0.5, 0.4]).paint(white);\n" FLOOR,
-     loose,
+     underestimate,
      {{0.3, 0.8}},
      FROM_THE_FRONT,
      HIGH_SUN},

@@ -88,7 +88,7 @@ static void write_solid(SceneText *text, const Stage *stage, const Solid *solid)
     }
 }
 
-static void write_looks(SceneText *text, const Stage *stage)
+static void write_view(SceneText *text, const Stage *stage)
 {
     const char *where = stage->lamp ? "position" : "direction";
     const char *wide  = stage->lamp ? "radius" : "softness";
@@ -123,7 +123,7 @@ Stage *use_stage(StageKind kind)
     if (stage->rendering)
         return stage;
     place_solids(kind);
-    write_looks(&stage->text, stage);
+    write_view(&stage->text, stage);
     if (stage->slope > 0)
         scene_write(&stage->text,
                     "shape ball(radius = 1) { distance: length(p) - radius, "

@@ -22,7 +22,7 @@
 
 static Scene scenes[SCENES];
 
-static void write_looks(Scene *scene, const char *more)
+static void write_view(Scene *scene, const char *more)
 {
     Vec    eye = scene->eye, target = scene->target;
     double height = 2 * tan(scene->fov / 2) * vec_distance(eye, target);
@@ -109,7 +109,7 @@ static void make_thicket(Scene *scene, const char *more)
     scene->fov    = 0.45;
     scene->low    = vec(-20, -20, -2.3);
     scene->high   = vec(20, 20, -2);
-    write_looks(scene, more);
+    write_view(scene, more);
     show_sequence(scene, &sequence);
     show_wall(scene);
 }
@@ -128,7 +128,7 @@ static void make_heap(Scene *scene)
     scene->count  = TWIGS;
     scene->rods   = calloc(TWIGS, sizeof *scene->rods);
     assert_non_null(scene->rods);
-    write_looks(scene, "");
+    write_view(scene, "");
     scene_write(&scene->text, "show union([\n");
     for (size_t i = 0; i < TWIGS; i++) {
         double across = random_between(&random, 0, 16);
@@ -167,7 +167,7 @@ static void make_tree(Scene *scene)
     scene->target = vec(0, 2.6, 0);
     scene->eye    = vec(2, 3.2, 11);
     scene->fov    = 0.5;
-    write_looks(scene, "");
+    write_view(scene, "");
     show_sequence(scene, &sequence);
 }
 

@@ -75,7 +75,7 @@ static double uniform(uint32_t *seed)
     return (*seed >> 8) / 16777216.0;
 }
 
-static void place_at(const double o[3], const double v[3], double t, double p[3])
+static void context_at(const double o[3], const double v[3], double t, double p[3])
 {
     for (int i = 0; i < 3; i++)
         p[i] = o[i] + t * v[i];
@@ -86,16 +86,16 @@ static double first_change(Formula *f, const double o[3], const double v[3], dou
                            double most)
 {
     double p[3], step = 1e-3;
-    place_at(o, v, from, p);
+    context_at(o, v, from, p);
     bool inside = f(p) < 0;
     for (double t = from; t < most; t += step) {
-        place_at(o, v, t + step, p);
+        context_at(o, v, t + step, p);
         if ((f(p) < 0) == inside)
             continue;
         double low = t, high = t + step;
         for (int i = 0; i < 60; i++) {
             double middle = 0.5 * (low + high);
-            place_at(o, v, middle, p);
+            context_at(o, v, middle, p);
             *((f(p) < 0) == inside ? &low : &high) = middle;
         }
         return low;
@@ -137,7 +137,7 @@ static void steps_stay_before_the_surface(void **state)
         double t = 0, end = 9, truth = first_change(c->formula, o, v, 0, end), step = 1;
         double side = c->formula(o) < 0 ? -1 : 1; /* which rounding at the zero may change */
         for (int i = 0; i < 200 && t < end && fabs(step) > 1e-9; i++) {
-            place_at(o, v, t, p);
+            context_at(o, v, t, p);
             step = fmax(side * along_at(frame, &tape, root, p, v), 0);
             t += step;
             evaluations++;

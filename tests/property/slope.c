@@ -134,7 +134,7 @@ static void tasks_follow_their_parameters(void **state)
     Node      wave = graph_op1(g, OP_sin, graph_op2(g, OP_mul, time, b->x));
     Node      root = graph_op2(g, OP_add, graph_op2(g, OP_mul, wave, b->y), b->z);
     SlopeTask task = slope_task(g, root, around, 64, &b->arena);
-    void     *room = arena_alloc(&b->arena, slope_task_room(&task), 1);
+    void     *room = arena_alloc(&b->arena, slope_task_size(&task), 1);
     for (int i = -20; i <= 20; i++) {
         const double values[1][4] = {{0.3 * i}};
         double       size = fabs(values[0][0]), slope = slope_task_run(&task, values, room, NULL);

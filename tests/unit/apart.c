@@ -373,10 +373,10 @@ static void only_what_is_heavy_is_apart(void **state)
     KrsScene         *scene;
     assert_int_equal(krs_compile_text(cheap, strlen(cheap), "cheap", NULL, &scene), KRS_OK);
     assert_int_equal(krs_scene_program(scene)->group_count, 0);
-    assert_int_equal(krs_scene_program(scene)->heavy, 0);
+    assert_int_equal(krs_scene_program(scene)->expensive, 0);
     krs_scene_free(scene);
     assert_int_equal(krs_scene_program(scenes[SCATTERED].scene)->group_count, 4);
-    assert_int_equal(krs_scene_program(scenes[SCATTERED].scene)->heavy, 4);
+    assert_int_equal(krs_scene_program(scenes[SCATTERED].scene)->expensive, 4);
     assert_false(krs_scene_program(scenes[MIXED].scene)->apart);
     const KrsProgram *ground = krs_scene_program(scenes[GROUND].scene);
     assert_int_equal(ground->group_count, 5); /* the last: the ball; rays know the plane */

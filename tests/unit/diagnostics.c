@@ -57,9 +57,9 @@ static void several_places_are_drawn(void **state)
     Diag             *diag = add(r, DIAG_DUPLICATE_NAME, file, 27, 28);
     diag->label            = "again";
     diag->replacement      = "c";
-    diag_place(&r->diags, diag, (Span){file, 4, 5}, "first");
-    diag_place(&r->diags, diag, (Span){file, 31, 32}, "this, too");
-    diag_place(&r->diags, diag, (Span){used, 0, 12}, "elsewhere");
+    diag_secondary(&r->diags, diag, (Span){file, 4, 5}, "first");
+    diag_secondary(&r->diags, diag, (Span){file, 31, 32}, "this, too");
+    diag_secondary(&r->diags, diag, (Span){used, 0, 12}, "elsewhere");
     diag_note(&r->diags, diag, "a note\nof two lines");
     diag              = add(r, DIAG_NO_EFFECT, used, 4, 5);
     diag->help        = "a name that is similar exists";
@@ -118,7 +118,7 @@ static void long_lines_are_cut(void **state)
     Reading *r    = read_text("");
     uint32_t file = source_add(&r->sources, "long.krs", scene, 1000, false);
     Diag    *diag = add(r, DIAG_STRAY_BYTES, file, 500, 503);
-    diag_place(&r->diags, diag, (Span){file, 0, 2}, "far away");
+    diag_secondary(&r->diags, diag, (Span){file, 0, 2}, "far away");
     expect_picture(r, "error[E0102]: a message\n"
                       " --> long.krs:1:501\n"
                       "  |\n"
@@ -160,7 +160,7 @@ static void json_has_places_of_the_protocol(void **state)
     uint32_t          file    = source_add(&r->sources, "j.krs", scene, sizeof scene - 1, false);
     Diag             *diag    = add(r, DIAG_UNKNOWN_NAME, file, 7, 8);
     diag->replacement         = "d";
-    diag_place(&r->diags, diag, (Span){file, 0, 1}, "a \"place\"");
+    diag_secondary(&r->diags, diag, (Span){file, 0, 1}, "a \"place\"");
     Text text = {.arena = &r->arena};
     diags_print_json(&r->diags, &text);
     assert_string_equal(

@@ -1,5 +1,5 @@
 /*
- * joining.c: the built-in functions that make one shape of several.
+ * csg.c: the built-in functions that make one shape of several.
  */
 #include "compiler/geometry/elaborate.h"
 
@@ -59,19 +59,19 @@ static bool blend_arguments(Elaboration *e, const Call *call, uint32_t first, Bl
     return true;
 }
 
-bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *place,
+bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *origin,
                     Values *shapes)
 {
     if (value.type == VALUE_LIST) {
-        if (!check_shape_count(e, value.list, place->span))
+        if (!check_shape_count(e, value.list, origin->span))
             return false;
         for (size_t i = 0; i < value.list->count; i++)
-            if (!collect_shapes(e, call, value.list->items[i], place, shapes))
+            if (!collect_shapes(e, call, value.list->items[i], origin, shapes))
                 return false;
         return true;
     }
     if (value.type != VALUE_SHAPE) {
-        type_error(e, place, value, "shapes");
+        type_error(e, origin, value, "shapes");
         return false;
     }
     array_push(e->arena, shapes, value);

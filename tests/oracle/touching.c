@@ -1,5 +1,5 @@
 /*
- * seams.c: what must not show in a picture: where solids touch, and where the equation of a smooth
+ * touching.c: what must not show in a picture: where solids touch, and where the equation of a smooth
  * surface is singular.
  *
  * A wall of blocks that touch is the same set of points as one block, and must look like it, also
@@ -121,7 +121,7 @@ int main(void)
         cmocka_unit_test(a_heart_has_no_belt),
     };
     spirv_start();
-    int failed = cmocka_run_group_tests_name("seams", tests, renderer_open, renderer_close);
+    int failed = cmocka_run_group_tests_name("touching", tests, renderer_open, renderer_close);
     spirv_stop();
     return failed;
 }

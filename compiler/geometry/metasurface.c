@@ -1,25 +1,26 @@
 /*
- * meta.c: metasurfaces, from the call to the nodes.
+ * metasurface.c: metasurfaces, from the call to the nodes.
  *
  * Each shape counts 1 where it is, and less with the distance d from it: f(d / reach), 0 from the
  * end of its reach.  The solid is where the sum F is at least the level T.
  *
- * Within a step s the share of a shape can rise by L s, L = steepest / reach, and that of one whose
- * reach begins only after a gap by L (s - gap).  So s is safe as long as
- *     sum over all of max(s - gap_i, 0) <= (T - F) / L = room.
- * With all gaps and s counted from the nearest gap on, max(s - gap, 0) <= s max(1 - gap / most, 0)
- * for s <= most = T / L, and room is never more than that.  So
- *     s = nearest + room / sum of max(1 - (gap_i - nearest) / most, 0)
- * is safe.  The sum is at least 1, at least the number of shapes that can be felt (which serves
- * inside), and changes gradually, so that normals found by differences show no seams.
+ * Within a step s the falloff of a shape can rise by L s, L = steepest / reach.  A shape whose reach
+ * begins only after a distance, its entry, can rise by L (s - entry).  So s is safe as long as
+ *     sum over all of max(s - entry_i, 0) <= (T - F) / L = margin.
+ * Let all entries and s be counted from the nearest entry.  Then
+ *     max(s - entry, 0) <= s max(1 - entry / most, 0)   for s <= most = T / L,
+ * and the margin is never more than `most`.  So
+ *     s = nearest + margin / sum of max(1 - (entry_i - nearest) / most, 0)
+ * is safe.  The sum is at least 1.  Inside it is at least the number of shapes within reach, which is
+ * what matters there.  It changes gradually, so normals found by differences show no edges.
  *
- * Where something above needs the slope, the sum is no more than n: nearest + room / n is
- * 1-Lipschitz, since F is 0 wherever there is a gap.
+ * Where something above needs the slope, the sum is n: nearest + margin / n is 1-Lipschitz, since F is
+ * 0 outside of every reach.
  *
  * A bound d may be much below the distance, and then what counts by it is fat.  The distance to
  * the shape's box is a bound as well, but shows: flat faces.  So such a d is lengthened, by a
  * factor k for which it is the longer of the two around the box (found by looking).  Its shape
- * counts f(k d / reach), which rises by k L s in a step s, from a gap of d - reach / k on: so it
+ * counts f(k d / reach), which rises by k L s in a step s, from the entry d - reach / k on: so it
  * counts k times in the sums above, and all else holds.
  */
 #include "compiler/geometry/elaborate.h"
@@ -103,7 +104,7 @@ Value builtin_meta(Elaboration *e, Call *call)
     meta->box       = box_empty;
     for (size_t i = 0; i < values.count; i++)
         meta->box = box_hull(meta->box, box_grow(shapes[i]->box, node_range(e, reach, 0).high));
-    check_steady(e, meta, "`meta`", span);
+    check_lipschitz(e, meta, "`meta`", span);
     return value_shape(meta);
 }
 
@@ -146,7 +147,7 @@ static Node falloff_at(Graph *g, FalloffKind kind, Node t)
 
 /* ---- bounds that are too short ---- */
 
-/* Points of a face of the box, and how far above it they are looked at, in parts of the reach. */
+/* Points of a face of the box, and how far above it they are looked at, in fractions of the reach. */
 enum { FACE_POINTS = 7, FACE_LEVELS = 3 };
 
 /* Beyond it, steps would be too short, and a box shows. */
@@ -183,10 +184,10 @@ static double stretch_around(const Tape *tape, Node distance, Box box, double re
 {
     double most = 1;
     for (int i = 0; i < 6 * FACE_LEVELS * FACE_POINTS * FACE_POINTS; i++) {
-        int    place = i % (FACE_POINTS * FACE_POINTS), face = i / (FACE_POINTS * FACE_POINTS);
+        int    cell = i % (FACE_POINTS * FACE_POINTS), face = i / (FACE_POINTS * FACE_POINTS);
         double above = reach * (1 + face / 6) / FACE_LEVELS, point[3];
-        double u     = place % FACE_POINTS / (FACE_POINTS - 1.0);
-        double v     = place / FACE_POINTS / (FACE_POINTS - 1.0);
+        double u     = cell % FACE_POINTS / (FACE_POINTS - 1.0);
+        double v     = cell / FACE_POINTS / (FACE_POINTS - 1.0);
         point_above(box, face % 6, u, v, above, point);
         tape_run_point(tape, point, values);
         most = fmax(most, fmin(above / fmax(values[distance].v[0], 1e-30), MOST_STRETCH));
@@ -196,29 +197,29 @@ static double stretch_around(const Tape *tape, Node distance, Box box, double re
 
 static double stretch_of(const Lowering *l, const Shape *meta, const Shape *child)
 {
-    Graph   *g     = l->graph;
-    Lowering plain = {.graph = g, .scratch = l->scratch, .most = l->most};
-    Lowered  part  = lower_shape(&plain, child, place_bare(graph_leaf(g, OP_POINT), true));
-    if (part.distance == NODE_NONE || plain.overflow)
+    Graph   *g       = l->graph;
+    Lowering plain   = {.graph = g, .scratch = l->scratch, .most = l->most};
+    Lowered  lowered = lower_shape(&plain, child, context_new(graph_leaf(g, OP_POINT), true));
+    if (lowered.distance == NODE_NONE || plain.overflow)
         return 1;
-    Node       roots[] = {part.distance, meta->values[1]};
+    Node       roots[] = {lowered.distance, meta->values[1]};
     Tape       tape    = tape_new(g, roots, 2, l->scratch);
     NodeValue *values  = arena_new_array(l->scratch, NodeValue, g->count);
     tape_run_frame(&tape, middle_parameters(g, l->scratch), values);
     double reach   = values[roots[1]].v[0];
-    double stretch = stretch_around(&tape, part.distance, child->box, reach, values);
+    double stretch = stretch_around(&tape, lowered.distance, child->box, reach, values);
     return stretch > 1 + 1e-6 ? stretch : 1;
 }
 
-/* The shapes of a metasurface that there are. */
-typedef struct Parts {
+/* The shapes of a metasurface that are not empty. */
+typedef struct MetaTerms {
     Graph   *graph;
-    Node    *shares, *gaps;
+    Node    *falloffs, *entries;
     double  *stretches, stretched; /* by how much distances are lengthened; the sum of all */
     uint32_t count;
-    Surface  surface; /* mixed by the shares, `total` of them so far */
+    Surface  surface; /* mixed by the falloffs, whose sum so far is `total` */
     Node     total;
-} Parts;
+} MetaTerms;
 
 /* In pairs, so that the graph stays shallow. */
 static Node reduce(Graph *g, Op op, const Node *nodes, uint32_t count)
@@ -230,97 +231,98 @@ static Node reduce(Graph *g, Op op, const Node *nodes, uint32_t count)
     return graph_op2(g, op, left, right);
 }
 
-static void mix_in(Lowering *l, Parts *parts, Surface surface, Node share)
+static void mix_in(Lowering *l, MetaTerms *terms, Surface surface, Node falloff)
 {
     Graph *g = l->graph;
-    if (parts->count == 0) {
-        parts->surface = surface;
-        parts->total   = share;
+    if (terms->count == 0) {
+        terms->surface = surface;
+        terms->total   = falloff;
         return;
     }
-    Node total     = graph_op2(g, OP_add, parts->total, share);
+    Node total     = graph_op2(g, OP_add, terms->total, falloff);
     Node divisor   = graph_op2(g, OP_max, total, graph_number(g, 1e-30));
-    Node weight    = graph_op2(g, OP_div, share, divisor);
+    Node weight    = graph_op2(g, OP_div, falloff, divisor);
     Node half      = graph_number(g, 0.5);
     Node nearer    = graph_op2(g, OP_less, half, weight);
-    parts->surface = mix_surface(g, nearer, weight, surface, parts->surface);
-    parts->total   = total;
+    terms->surface = mix_surface(g, nearer, weight, surface, terms->surface);
+    terms->total   = total;
 }
 
-static void add_part(Lowering *l, const Shape *meta, const Shape *child, Place place, Parts *parts)
+static void add_term(Lowering *l, const Shape *meta, const Shape *child, LowerContext context,
+                     MetaTerms *terms)
 {
     Graph  *g    = l->graph;
     Node    zero = graph_number(g, 0), one = graph_number(g, 1), reach = meta->values[1];
-    bool    loose = !child->exact && box_is_finite(child->box);
-    Lowered part  = lower_shape(l, child, place_steady(place));
-    if (part.distance == NODE_NONE)
+    bool    underestimates = !child->exact && box_is_finite(child->box);
+    Lowered lowered        = lower_shape(l, child, context_lipschitz(context));
+    if (lowered.distance == NODE_NONE)
         return;
-    double stretch = loose ? stretch_of(l, meta, child) : 1;
-    Node   begins  = graph_op2(g, OP_mul, reach, graph_number(g, 1 / stretch));
-    Node   gap     = graph_op2(g, OP_sub, part.distance, begins);
-    part.distance  = graph_op2(g, OP_mul, part.distance, graph_number(g, stretch));
-    if (loose) {
-        Node around   = box_distance(g, place.point, child->box);
-        part.distance = graph_op2(g, OP_max, part.distance, around);
-        gap           = graph_op2(g, OP_max, gap, graph_op2(g, OP_sub, around, reach));
+    double stretch   = underestimates ? stretch_of(l, meta, child) : 1;
+    Node   begins    = graph_op2(g, OP_mul, reach, graph_number(g, 1 / stretch));
+    Node   entry     = graph_op2(g, OP_sub, lowered.distance, begins);
+    lowered.distance = graph_op2(g, OP_mul, lowered.distance, graph_number(g, stretch));
+    if (underestimates) {
+        Node around      = box_distance(g, context.point, child->box);
+        lowered.distance = graph_op2(g, OP_max, lowered.distance, around);
+        entry            = graph_op2(g, OP_max, entry, graph_op2(g, OP_sub, around, reach));
     }
-    Node t     = graph_op2(g, OP_div, part.distance, reach);
-    t          = graph_op3(g, OP_clamp, t, zero, one);
-    Node share = falloff_at(g, meta->falloff, t);
+    Node t       = graph_op2(g, OP_div, lowered.distance, reach);
+    t            = graph_op3(g, OP_clamp, t, zero, one);
+    Node falloff = falloff_at(g, meta->falloff, t);
     if (l->surfaces)
-        mix_in(l, parts, part.surface, share);
-    parts->stretched += stretch;
-    parts->stretches[parts->count] = stretch;
-    parts->shares[parts->count]    = share;
-    parts->gaps[parts->count++]    = graph_op2(g, OP_max, gap, zero);
+        mix_in(l, terms, lowered.surface, falloff);
+    terms->stretched += stretch;
+    terms->stretches[terms->count] = stretch;
+    terms->falloffs[terms->count]  = falloff;
+    terms->entries[terms->count++] = graph_op2(g, OP_max, entry, zero);
 }
 
-/* How many shapes a step can meet: those whose reach begins at once, and others less, down to 0 at
-   the longest there is, `most`. */
-static Node count_felt(const Parts *parts, Node nearest, Node most)
+/* How many shapes a step can reach: one each for those whose reach begins at once, less for others,
+   0 for those that the longest step, `most`, does not reach. */
+static Node count_reached(const MetaTerms *terms, Node nearest, Node most)
 {
-    Graph *g    = parts->graph;
+    Graph *g    = terms->graph;
     Node   zero = graph_number(g, 0), one = graph_number(g, 1), sum = NODE_NONE;
-    for (uint32_t i = 0; i < parts->count; i++) {
-        Node behind = graph_op2(g, OP_sub, parts->gaps[i], nearest);
-        Node part   = graph_op2(g, OP_div, behind, most);
-        part        = graph_op2(g, OP_sub, one, part);
-        part        = graph_op2(g, OP_max, part, zero);
-        part        = graph_op2(g, OP_mul, part, graph_number(g, parts->stretches[i]));
-        sum         = i == 0 ? part : graph_op2(g, OP_add, sum, part);
+    for (uint32_t i = 0; i < terms->count; i++) {
+        Node behind = graph_op2(g, OP_sub, terms->entries[i], nearest);
+        Node term   = graph_op2(g, OP_div, behind, most);
+        term        = graph_op2(g, OP_sub, one, term);
+        term        = graph_op2(g, OP_max, term, zero);
+        term        = graph_op2(g, OP_mul, term, graph_number(g, terms->stretches[i]));
+        sum         = i == 0 ? term : graph_op2(g, OP_add, sum, term);
     }
     return sum;
 }
 
-static Node step_of(const Parts *parts, Node room, Node most, bool lipschitz)
+static Node step_of(const MetaTerms *terms, Node margin, Node most, bool lipschitz)
 {
-    Graph *g       = parts->graph;
-    Node   nearest = reduce(g, OP_min, parts->gaps, parts->count);
-    Node   count   = lipschitz || parts->count == 1 ? graph_number(g, parts->stretched)
-                                                    : count_felt(parts, nearest, most);
-    Node   share   = graph_op2(g, OP_div, room, count);
-    return graph_op2(g, OP_add, nearest, share);
+    Graph *g       = terms->graph;
+    Node   nearest = reduce(g, OP_min, terms->entries, terms->count);
+    Node   count   = lipschitz || terms->count == 1 ? graph_number(g, terms->stretched)
+                                                    : count_reached(terms, nearest, most);
+    Node   step    = graph_op2(g, OP_div, margin, count);
+    return graph_op2(g, OP_add, nearest, step);
 }
 
-Lowered lower_meta(Lowering *l, const Shape *shape, Place place)
+Lowered lower_meta(Lowering *l, const Shape *shape, LowerContext context)
 {
-    Graph  *g       = l->graph;
-    Parts   parts   = {.graph = g, .surface = lowered_nothing.surface};
-    Lowered all     = lowered_nothing;
-    parts.shares    = arena_new_array(l->scratch, Node, shape->child_count + 1);
-    parts.gaps      = arena_new_array(l->scratch, Node, shape->child_count + 1);
-    parts.stretches = arena_new_array(l->scratch, double, shape->child_count + 1);
+    Graph    *g     = l->graph;
+    MetaTerms terms = {.graph = g, .surface = lowered_nothing.surface};
+    Lowered   all   = lowered_nothing;
+    terms.falloffs  = arena_new_array(l->scratch, Node, shape->child_count + 1);
+    terms.entries   = arena_new_array(l->scratch, Node, shape->child_count + 1);
+    terms.stretches = arena_new_array(l->scratch, double, shape->child_count + 1);
     for (uint32_t i = 0; i < shape->child_count; i++)
-        add_part(l, shape, shape->children[i], place, &parts);
-    if (parts.count == 0)
+        add_term(l, shape, shape->children[i], context, &terms);
+    if (terms.count == 0)
         return all;
-    Node sum     = reduce(g, OP_add, parts.shares, parts.count);
+    Node sum     = reduce(g, OP_add, terms.falloffs, terms.count);
     Node slope   = graph_number(g, 1 / falloff_info[shape->falloff].steepest);
     slope        = graph_op2(g, OP_mul, slope, shape->values[1]);
     Node most    = graph_op2(g, OP_mul, shape->values[0], slope);
-    Node room    = graph_op2(g, OP_mul, sum, slope);
-    room         = graph_op2(g, OP_sub, most, room);
-    all.distance = step_of(&parts, room, most, place.lipschitz);
-    all.surface  = parts.surface;
+    Node margin  = graph_op2(g, OP_mul, sum, slope);
+    margin       = graph_op2(g, OP_sub, most, margin);
+    all.distance = step_of(&terms, margin, most, context.lipschitz);
+    all.surface  = terms.surface;
     return all;
 }

@@ -1,5 +1,5 @@
 /*
- * make_krs.c: sequences: their bounding volumes, level by level.
+ * shapes_krs.c: sequences: their bounding volumes, level by level.
  */
 #include "compiler/geometry/elaborate.h"
 
@@ -15,13 +15,14 @@ static bool read_number(Range range, double *number)
 }
 
 /* The numbers of a stage; false when some are not known when compiling. */
-static bool read_stage(Elaboration *e, const Shape *krs, const Stage *stage, ReachStage *reach)
+static bool read_stage(Elaboration *e, const Shape *krs, const SequenceStage *stage,
+                       ReachStage *reach)
 {
     bool known = true;
-    if (stage->kind == STAGE_KERNEL) {
+    if (stage->kind == SEQUENCE_KERNEL) {
         reach->kind   = REACH_KERNEL;
         reach->kernel = krs->children[stage->kernel]->box;
-    } else if (stage->kind == STAGE_REFLECT) {
+    } else if (stage->kind == SEQUENCE_REFLECT) {
         reach->kind = REACH_REFLECT;
         for (uint32_t i = 0; i < 3; i++)
             known = read_number(node_range(e, stage->normal, i), &reach->normal[i]) && known;
@@ -47,8 +48,8 @@ static Box bound_inverted(Elaboration *e, const Shape *krs, LevelBound *bounds)
 {
     Cover cover = {0};
     for (uint32_t i = 0; i < krs->stage_count; i++) {
-        const Stage *stage = &krs->stages[i];
-        if (stage->kind == STAGE_KERNEL) {
+        const SequenceStage *stage = &krs->stages[i];
+        if (stage->kind == SEQUENCE_KERNEL) {
             const Shape *kernel = krs->children[stage->kernel];
             if (!box_is_finite(kernel->box) && !box_is_empty(kernel->box)) {
                 for (; i < krs->stage_count; i++)
@@ -56,7 +57,7 @@ static Box bound_inverted(Elaboration *e, const Shape *krs, LevelBound *bounds)
                 return box_infinite; /* after the last inversion: see check_kernels */
             }
             cover_add(e->arena, &cover, kernel->box);
-        } else if (stage->kind == STAGE_REFLECT) {
+        } else if (stage->kind == SEQUENCE_REFLECT) {
             Range u[3];
             for (uint32_t k = 0; k < 3; k++)
                 u[k] = node_range(e, stage->normal, k);
@@ -84,12 +85,12 @@ static Box bound_sequence(Elaboration *e, const Shape *krs, LevelBound *bounds)
     Box         box   = box_empty;
     Ball        ball  = ball_around(box_empty);
     for (uint32_t i = 0; i < krs->stage_count; i++) {
-        const Stage *stage = &krs->stages[i];
-        if (stage->kind == STAGE_KERNEL) {
+        const SequenceStage *stage = &krs->stages[i];
+        if (stage->kind == SEQUENCE_KERNEL) {
             Box kernel = krs->children[stage->kernel]->box;
             box        = box_hull(box, kernel);
             ball       = ball_hull(ball, ball_around(kernel));
-        } else if (stage->kind == STAGE_REFLECT) {
+        } else if (stage->kind == SEQUENCE_REFLECT) {
             Range u[3];
             for (uint32_t k = 0; k < 3; k++)
                 u[k] = node_range(e, stage->normal, k);
@@ -107,7 +108,7 @@ static Box bound_sequence(Elaboration *e, const Shape *krs, LevelBound *bounds)
         known         = known && read_stage(e, krs, stage, &reach[i]);
         reach[i].box  = box;
         reach[i].ball = ball;
-        if (known && stage->kind == STAGE_REFLECT)
+        if (known && stage->kind == SEQUENCE_REFLECT)
             reach_tighten(reach, i + 1);
         box       = reach[i].box;
         ball      = reach[i].ball;
@@ -120,26 +121,26 @@ static uint32_t count_inversions(const Shape *krs)
 {
     uint32_t count = 0;
     for (uint32_t i = 0; i < krs->stage_count; i++)
-        count += krs->stages[i].kind == STAGE_MAP && krs->stages[i].map.pole != NODE_NONE;
+        count += krs->stages[i].kind == SEQUENCE_MAP && krs->stages[i].map.pole != NODE_NONE;
     return count;
 }
 
 /* What is inverted must not be endless; reported at the first inversion after it. */
 static bool check_kernels(Elaboration *e, const Shape *krs)
 {
-    bool         good      = true;
-    const Stage *inversion = NULL;
+    bool                 good      = true;
+    const SequenceStage *inversion = NULL;
     for (uint32_t i = krs->stage_count; i-- > 0;) {
-        const Stage *stage = &krs->stages[i];
-        if (stage->kind == STAGE_MAP && stage->map.pole != NODE_NONE)
+        const SequenceStage *stage = &krs->stages[i];
+        if (stage->kind == SEQUENCE_MAP && stage->map.pole != NODE_NONE)
             inversion = stage;
-        if (stage->kind == STAGE_KERNEL && inversion)
+        if (stage->kind == SEQUENCE_KERNEL && inversion)
             good = check_invertible(e, krs->children[stage->kernel], inversion->span) && good;
     }
     return good;
 }
 
-const Shape *make_krs(Elaboration *e, const Stage *stages, uint32_t stage_count,
+const Shape *make_krs(Elaboration *e, const SequenceStage *stages, uint32_t stage_count,
                       const Shape *const *kernels, uint32_t kernel_count, Span span)
 {
     Shape *krs       = shape_new(e, SHAPE_KRS, "krs", span, kernels, kernel_count);
@@ -149,9 +150,9 @@ const Shape *make_krs(Elaboration *e, const Stage *stages, uint32_t stage_count,
     krs->instances   = 0;
     krs->levels      = 0;
     for (uint32_t i = 0; i < stage_count; i++) {
-        if (stages[i].kind == STAGE_KERNEL)
+        if (stages[i].kind == SEQUENCE_KERNEL)
             krs->instances += kernels[stages[i].kernel]->instances;
-        else if (stages[i].kind == STAGE_REFLECT) {
+        else if (stages[i].kind == SEQUENCE_REFLECT) {
             krs->instances *= 2;
             krs->levels++;
         }

@@ -1,5 +1,5 @@
 /*
- * loose.c: hard shadows of solids whose distance is only a bound, held against roots.
+ * underestimates.c: hard shadows of solids whose distance is only a bound, held against roots.
  *
  * Red light casts shadows, green light does not, on white ground: red over green is 0 or 1, and
  * has to be what a search for roots along the ray to the light says, in double precision, of the
@@ -210,7 +210,8 @@ int main(void)
         cmocka_unit_test(shadows_end_where_roots_say),
     };
     spirv_start(); /* held for all, so that no renderer starts the shader compiler anew */
-    int failed = cmocka_run_group_tests_name("loose", tests, renderer_open, renderer_close);
+    int failed = cmocka_run_group_tests_name("underestimates", tests, renderer_open,
+                                             renderer_close);
     spirv_stop();
     return failed;
 }

@@ -1,5 +1,5 @@
 /*
- * make_fractal.c: Julia sets and Mandelbulbs as shapes.
+ * shapes_fractal.c: Julia sets and Mandelbulbs as shapes.
  *
  * The number of iterations may change from frame to frame; the greatest that its range permits
  * bounds the loop on the device.  A Julia set's distance is a bound that is 1-Lipschitz
@@ -25,7 +25,7 @@ static const Shape *find_estimate(const Shape *shape)
     return shape;
 }
 
-void check_steady(Elaboration *e, const Shape *shape, const char *what, Span span)
+void check_lipschitz(Elaboration *e, const Shape *shape, const char *what, Span span)
 {
     if (!shape->estimate)
         return;
@@ -33,7 +33,7 @@ void check_steady(Elaboration *e, const Shape *shape, const char *what, Span spa
     Diag *diag = diag_add(e->diags, DIAG_ESTIMATE, span, "%s needs a distance whose slope is known",
                           what);
     diag->label = diag_text(e->diags, "that of `%s` is an estimate", source->name);
-    diag_place(e->diags, diag, source->span, "nothing is proven of this distance");
+    diag_secondary(e->diags, diag, source->span, "nothing is proven of this distance");
     diag->help = "join it with `|`, `&` or `-`, which work with estimates, too";
 }
 

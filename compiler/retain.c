@@ -1,5 +1,5 @@
 /*
- * keep.c: what stays of a scene when it has been compiled.
+ * retain.c: what stays of a scene when it has been compiled.
  *
  * The elaborated scene, its shapes and their names go with the memory of the run; the program, its
  * tapes and what callers may ask (program.c) are copied into the scene's own.
@@ -8,12 +8,12 @@
 
 #include "compiler/compilation.h"
 
-static const char *keep(Compilation *c, const char *text)
+static const char *retain_text(Compilation *c, const char *text)
 {
     return text ? arena_copy_text(&c->scene->arena, text, strlen(text)) : NULL;
 }
 
-static void keep_components(Compilation *c)
+static void retain_components(Compilation *c)
 {
     KrsScene    *scene     = c->scene;
     const Scene *s         = &c->elaborated;
@@ -24,7 +24,7 @@ static void keep_components(Compilation *c)
     for (size_t i = 0; i < s->components.count; i++) {
         const Component *from = &s->components.items[i];
         KrsComponent    *to   = &scene->components[i];
-        *to                   = (KrsComponent){.name       = keep(c, from->name),
+        *to                   = (KrsComponent){.name       = retain_text(c, from->name),
                                                .slope      = from->shape->slope * from->shape->derived,
                                                .per_frame  = from->shape->per_frame,
                                                .exact      = from->shape->exact,
@@ -51,11 +51,11 @@ static bool is_needed(const Graph *graph, uint32_t slot)
     return false;
 }
 
-static void keep_slopes(Compilation *c)
+static void retain_slopes(Compilation *c)
 {
     KrsScene    *scene = c->scene;
     const Scene *s     = &c->elaborated;
-    scene->slopes      = arena_new_array(&scene->arena, KeptSlope, s->slopes.count + 1);
+    scene->slopes      = arena_new_array(&scene->arena, RetainedSlope, s->slopes.count + 1);
     for (size_t i = 0; i < s->slopes.count; i++) {
         const FrameSlope *from = &s->slopes.items[i];
         if (!is_needed(scene->graph, from->slot))
@@ -64,7 +64,7 @@ static void keep_slopes(Compilation *c)
         Position      position = source_position(source, from->span.start);
         Text          place    = {.arena = &scene->arena};
         text_format(&place, "%s:%u:%u", source->name, position.line, position.column);
-        scene->slopes[scene->slope_count++] = (KeptSlope){
+        scene->slopes[scene->slope_count++] = (RetainedSlope){
             from->slot,
             slope_task(scene->graph, scene->roots.slopes[i], from->region,
                        frame_slope_cells(from->region), &scene->arena),
@@ -72,24 +72,24 @@ static void keep_slopes(Compilation *c)
     }
 }
 
-void keep_scene(Compilation *c)
+void retain_scene(Compilation *c)
 {
     KrsScene    *scene = c->scene;
     const Scene *s     = &c->elaborated;
     Arena       *arena = &scene->arena;
-    keep_components(c);
-    keep_slopes(c);
+    retain_components(c);
+    retain_slopes(c);
     scene->parameter_count = s->parameters.count;
     scene->parameters      = arena_new_array(arena, Parameter, s->parameters.count + 1);
     for (size_t i = 0; i < s->parameters.count; i++) {
         scene->parameters[i]      = s->parameters.items[i];
-        scene->parameters[i].name = keep(c, s->parameters.items[i].name);
+        scene->parameters[i].name = retain_text(c, s->parameters.items[i].name);
     }
     scene->camera_count = s->cameras.count;
     scene->cameras      = arena_new_array(arena, SceneCamera, s->cameras.count + 1);
     for (size_t i = 0; i < s->cameras.count; i++) {
         scene->cameras[i]      = s->cameras.items[i];
-        scene->cameras[i].name = keep(c, s->cameras.items[i].name);
+        scene->cameras[i].name = retain_text(c, s->cameras.items[i].name);
     }
     scene->light_count = s->lights.count;
     scene->lights      = arena_new_array(arena, SceneLight, s->lights.count + 1);
@@ -98,8 +98,8 @@ void keep_scene(Compilation *c)
         scene->program.shadows = scene->program.shadows || s->lights.items[i].shadow;
     scene->zone_count       = s->zone_count;
     scene->image            = s->image;
-    scene->image.integrator = keep(c, s->image.integrator);
-    scene->image.tone_map   = keep(c, s->image.tone_map);
+    scene->image.integrator = retain_text(c, s->image.integrator);
+    scene->image.tone_map   = retain_text(c, s->image.tone_map);
     for (int k = 0; k < 3; k++) {
         scene->program.low[k]  = s->box.axis[k].low;
         scene->program.high[k] = s->box.axis[k].high;
@@ -117,7 +117,7 @@ static void find_steps(KrsScene *scene, const Node *distances)
     }
 }
 
-void keep_tapes(Compilation *c)
+void retain_tapes(Compilation *c)
 {
     KrsScene    *scene     = c->scene;
     const Roots *roots     = &scene->roots;

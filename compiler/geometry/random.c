@@ -1,5 +1,5 @@
 /*
- * chance.c: random numbers, known at compile time, and noise, which is a value at each point.
+ * random.c: random numbers, known at compile time, and noise, which is a value at each point.
  */
 #include "compiler/geometry/elaborate.h"
 
@@ -58,21 +58,21 @@ Value builtin_random_direction(Elaboration *e, Call *call)
 /* ---- noise ---- */
 
 /* Of a number, a straight cut through the noise of the plane, off its zeros. */
-static Node noise_of(Graph *g, Node place)
+static Node noise_of(Graph *g, Node point)
 {
-    if (g->items[place].type == TYPE_FLOAT) {
-        Node aside = graph_number(g, 0.37);
-        place      = graph_op2(g, OP_vec2, place, aside);
+    if (g->items[point].type == TYPE_FLOAT) {
+        Node second = graph_number(g, 0.37);
+        point       = graph_op2(g, OP_vec2, point, second);
     }
-    return graph_op1(g, g->items[place].type == TYPE_VEC2 ? OP_noise2 : OP_noise3, place);
+    return graph_op1(g, g->items[point].type == TYPE_VEC2 ? OP_noise2 : OP_noise3, point);
 }
 
 /* The argument `p`; NODE_NONE: reported. */
-static Node noise_place(Elaboration *e, const Call *call)
+static Node noise_point(Elaboration *e, const Call *call)
 {
-    Node place = want_numeric(e, call, 0);
-    if (place == NODE_NONE || e->graph->items[place].type <= TYPE_VEC3)
-        return place;
+    Node point = want_numeric(e, call, 0);
+    if (point == NODE_NONE || e->graph->items[point].type <= TYPE_VEC3)
+        return point;
     diag_add(e->diags, DIAG_LENGTH_MISMATCH, call->arguments[0].syntax->span,
              "`%s` needs a number or a vector of 2 or 3", call->name);
     return NODE_NONE;
@@ -80,11 +80,11 @@ static Node noise_place(Elaboration *e, const Call *call)
 
 Value builtin_noise(Elaboration *e, Call *call)
 {
-    Node place = noise_place(e, call);
-    if (place == NODE_NONE)
+    Node point = noise_point(e, call);
+    if (point == NODE_NONE)
         return value_error();
     e->graph->here = call->syntax->span;
-    return value_of_node(e, noise_of(e->graph, place));
+    return value_of_node(e, noise_of(e->graph, point));
 }
 
 /* Where an octave begins: all are 0 on their lattices, which must not meet. */
@@ -100,10 +100,10 @@ static Node octave_start(Graph *g, GraphType type, uint32_t octave)
 Value builtin_fbm(Elaboration *e, Call *call)
 {
     Graph   *g     = e->graph;
-    Node     place = noise_place(e, call);
+    Node     point = noise_point(e, call);
     Node     gain = want_number(e, call, 2, 0.5), lacunarity = want_number(e, call, 3, 2);
     uint32_t octaves;
-    if (place == NODE_NONE || gain == NODE_NONE || lacunarity == NODE_NONE ||
+    if (point == NODE_NONE || gain == NODE_NONE || lacunarity == NODE_NONE ||
         !want_count(e, call, 1, 1, 16, 5, &octaves))
         return value_error();
     if ((is_given(call, 2) && !check_positive(e, gain, call->arguments[2].syntax, "`gain`")) ||
@@ -113,9 +113,9 @@ Value builtin_fbm(Elaboration *e, Call *call)
     g->here  = call->syntax->span;
     Node sum = NODE_NONE, total = NODE_NONE, loud = graph_number(g, 1), fine = loud;
     for (uint32_t i = 0; i < octaves; i++) {
-        Node scaled_place = graph_op2(g, OP_mul, place, fine);
-        Node start        = octave_start(g, g->items[place].type, i);
-        Node moved        = graph_op2(g, OP_add, scaled_place, start);
+        Node scaled_point = graph_op2(g, OP_mul, point, fine);
+        Node start        = octave_start(g, g->items[point].type, i);
+        Node moved        = graph_op2(g, OP_add, scaled_point, start);
         Node octave       = noise_of(g, moved);
         octave            = graph_op2(g, OP_mul, octave, loud);
         sum               = i ? graph_op2(g, OP_add, sum, octave) : octave;

@@ -1,5 +1,5 @@
 /*
- * make.c: shapes from shapes.  Each function states, for its kind, the box of the result and
+ * shapes.c: shapes from shapes.  Each function states, for its kind, the box of the result and
  * how the slope follows from the children's (shape.h has the table, math.md section 4 the
  * proofs); lower.c states the distance.
  */
@@ -39,7 +39,7 @@ bool shape_is_curved(const Shape *shape)
     case SHAPE_BEND:
     case SHAPE_TAPER:
     case SHAPE_DISPLACE: return true;
-    default: return shape->blend.width != NODE_NONE || shape->levels > 0 || shape->curved_parts;
+    default: return shape->blend.width != NODE_NONE || shape->levels > 0 || shape->curved_child;
     }
 }
 
@@ -61,15 +61,15 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
     shape->formula = shape->declared = NODE_NONE;
     shape->plane_normal = shape->plane_offset = NODE_NONE;
     shape->values[0] = shape->values[1] = NODE_NONE;
-    uint64_t parts                      = 1;
-    double   sequences = 0; /* instances of the sequences among the parts; other parts make one */
+    uint64_t tree_shapes                = 1;
+    double   sequences = 0; /* instances of the sequences in the tree; any other shape counts one */
     for (uint32_t i = 0; i < count; i++) {
         const Shape *child  = children[i];
         shape->children[i]  = child;
         shape->slope        = fmax(shape->slope, child->slope);
         shape->derived      = fmax(shape->derived, child->derived);
         shape->exact        = shape->exact && child->exact;
-        shape->curved_parts = shape->curved_parts || shape_is_curved(child);
+        shape->curved_child = shape->curved_child || shape_is_curved(child);
         shape->estimate     = shape->estimate || child->estimate;
         shape->per_frame    = shape->per_frame || child->per_frame;
         shape->trapped      = shape->trapped || child->trapped;
@@ -80,7 +80,7 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
         shape->without_uv   = shape->without_uv ? shape->without_uv : child->without_uv;
         sequences += child->levels > 0 ? child->instances : 0;
         shape->depth = child->depth >= shape->depth ? child->depth + 1 : shape->depth;
-        parts += child->parts;
+        tree_shapes += child->tree_shapes;
         shape->levels = child->levels > shape->levels ? child->levels : shape->levels;
         if (child->inversions > shape->inversions)
             shape->inversions = child->inversions;
@@ -88,10 +88,10 @@ Shape *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
     shape->instances = sequences > 0 ? sequences : kind != SHAPE_EMPTY;
     if (count == 1)
         shape->box = children[0]->box;
-    shape->parts = parts < UINT32_MAX ? (uint32_t)parts : UINT32_MAX;
-    if ((shape->depth > MOST_SHAPE_DEPTH || parts > MOST_SHAPE_PARTS) && !e->stopped) {
+    shape->tree_shapes = tree_shapes < UINT32_MAX ? (uint32_t)tree_shapes : UINT32_MAX;
+    if ((shape->depth > MOST_SHAPE_DEPTH || tree_shapes > MOST_TREE_SHAPES) && !e->stopped) {
         diag_add(e->diags, DIAG_LIMIT, span,
-                 parts > MOST_SHAPE_PARTS
+                 tree_shapes > MOST_TREE_SHAPES
                      ? "a shape of more than 100,000 parts, each counted where it is used"
                      : "shapes are nested more than 1,000 deep");
         e->stopped = true;
@@ -117,7 +117,7 @@ bool check_invertible(Elaboration *e, const Shape *shape, Span span)
                            "something endless cannot be inverted");
     diag->label = "an inversion";
     diag->help  = "cut it first, with `.within(sphere(10))`, say";
-    diag_place(e->diags, diag, shape->span, "this is endless");
+    diag_secondary(e->diags, diag, shape->span, "this is endless");
     return false;
 }
 
@@ -185,7 +185,7 @@ const Shape *make_joint(Elaboration *e, ShapeKind kind, const Shape *const *shap
     Shape                   *joint   = shape_new(e, kind, names[kind], span, shapes, count);
     joint->blend                     = blend;
     if (blend.width != NODE_NONE)
-        check_steady(e, joint, "a blend", span);
+        check_lipschitz(e, joint, "a blend", span);
     /* Outside, the least of exact distances is exact; every other joint only bounds it. */
     joint->exact = joint->exact && kind == SHAPE_UNION && blend.width == NODE_NONE;
     for (uint32_t i = 0; i < count; i++) {
@@ -213,7 +213,7 @@ const Shape *make_morph(Elaboration *e, const Shape *a, const Shape *b, Node t, 
     const Shape *children[] = {a, b};
     Shape       *morph      = shape_new(e, SHAPE_MORPH, "morph", span, children, 2);
     morph->values[0]        = t;
-    check_steady(e, morph, "`morph`", span);
+    check_lipschitz(e, morph, "`morph`", span);
     morph->exact = false;
     /* Where the mix is 0 one of the distances is at most 0, or both are. */
     morph->box = box_hull(a->box, b->box);
@@ -227,7 +227,7 @@ static Shape *new_offset(Elaboration *e, const Shape *shape, Node radius, Span s
     offset->values[0] = radius;
     offset->box       = box_grow(shape->box, fmax(range.high, 0));
     offset->exact     = shape->exact && range.low >= 0;
-    check_steady(e, offset, "an offset", span);
+    check_lipschitz(e, offset, "an offset", span);
     return offset;
 }
 
@@ -249,7 +249,7 @@ const Shape *make_shell(Elaboration *e, const Shape *shape, Node thickness, Span
     Shape *shell     = wrap(e, SHAPE_SHELL, "shell", shape, span);
     shell->values[0] = thickness;
     shell->box       = box_grow(shape->box, 0.5 * node_range(e, thickness, 0).high);
-    check_steady(e, shell, "a shell", span);
+    check_lipschitz(e, shell, "a shell", span);
     return shell;
 }
 
@@ -315,11 +315,11 @@ const Shape *make_revolve(Elaboration *e, const Shape *figure, Node offset, Span
 }
 
 const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const uint32_t cells[3],
-                         const Syntax *place)
+                         const Syntax *origin)
 {
     if (box_is_empty(shape->box))
         return shape;
-    Shape *repeat     = wrap(e, SHAPE_REPEAT, "repeat", shape, place->span);
+    Shape *repeat     = wrap(e, SHAPE_REPEAT, "repeat", shape, origin->span);
     repeat->values[0] = period;
     repeat->exact     = false; /* walls of cells are bounds */
     for (uint32_t i = 0; i < 3; i++) {
@@ -331,7 +331,7 @@ const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const 
         double margin = cell_margin(shape->box.axis[i], range.low);
         if (!(margin >= -1e-9 * range.low)) {
             Range is    = shape->box.axis[i];
-            Diag *diag  = diag_add(e->diags, DIAG_OUTSIDE_CELL, place->span,
+            Diag *diag  = diag_add(e->diags, DIAG_OUTSIDE_CELL, origin->span,
                                    "the shape reaches from %.4g to %.4g on the %c axis, "
                                     "its cell from %.4g to %.4g",
                                    is.low, is.high, "xyz"[i], -0.5 * range.low, 0.5 * range.low);
@@ -347,11 +347,11 @@ const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const 
 }
 
 const Shape *make_repeat_polar(Elaboration *e, const Shape *shape, uint32_t count,
-                               const Syntax *place)
+                               const Syntax *origin)
 {
     if (box_is_empty(shape->box))
         return shape;
-    Shape *repeat    = wrap(e, SHAPE_REPEAT_POLAR, "repeat_polar", shape, place->span);
+    Shape *repeat    = wrap(e, SHAPE_REPEAT_POLAR, "repeat_polar", shape, origin->span);
     repeat->cells[0] = count;
     repeat->exact    = false;
     double most      = 0;
@@ -406,7 +406,7 @@ const Shape *make_paint(Elaboration *e, const Shape *shape, const Material *mate
                                "`orbit_trap` has no meaning on `%s`", shape->name);
         diag->label = "this needs a fractal";
         diag->help  = "`julia` and `mandelbulb` are fractals";
-        diag_place(e->diags, diag, shape->span, "none in this shape");
+        diag_secondary(e->diags, diag, shape->span, "none in this shape");
         return NULL;
     }
     if (shape->without_uv && material_needs(e, material, OP_UV)) {
@@ -414,7 +414,7 @@ const Shape *make_paint(Elaboration *e, const Shape *shape, const Material *mate
         Diag        *diag    = diag_add(e->diags, DIAG_OUT_OF_PLACE, span,
                                         "`u` and `v` have no meaning on `%s`", without->name);
         diag->label          = "this material needs them";
-        diag_place(e->diags, diag, without->span, "declared without `uv`");
+        diag_secondary(e->diags, diag, without->span, "declared without `uv`");
         diag->help = "give the declaration of the shape a `uv: [...]`";
         return NULL;
     }
