@@ -29,7 +29,7 @@ JOBS    ?= $(shell nproc)
 BASE     := $(addprefix compiler/base/, arena.c text.c source.c beneath.c loader.c diag.c diag_text.c)
 FRONT    := $(addprefix compiler/front/, lexer.c lex_literals.c syntax.c parser.c parse_expression.c \
                 parse_declaration.c parse.c names.c)
-GRAPH    := $(addprefix compiler/graph/, graph.c derive.c series.c zeros.c local.c anchor.c simplify.c \
+GRAPH    := $(addprefix compiler/graph/, graph.c derive.c series.c zeros.c local.c rebase.c simplify.c \
                 range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c regions.c \
                 fractal.c evaluate.c print.c)
 GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c arguments.c \
@@ -42,7 +42,7 @@ GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c a
                 lower_krs.c lower_along.c lower_guards.c lower_moebius.c lower_images.c)
 SHADER   := $(addprefix compiler/shader/, emit.c statements.c frame_values.c mirrors.c early_outs.c march.c spirv.c)
 BORDER   := compiler/shader/glslang_border.cpp
-API      := $(addprefix compiler/, compile.c roots.c precision.c limits.c retain.c groups.c program.c \
+API      := $(addprefix compiler/, compile.c roots.c precision.c limits.c retain.c march_groups.c program.c \
                 framing.c frame.c query.c search_pairs.c search_targets.c search_starts.c search.c \
                 refute.c refute_settings.c refute_blame.c refute_report.c bounds.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer film writer))))

@@ -57,10 +57,10 @@ static void make_questions(Inquiry *in)
         for (int k = 0; k < 4; k++)
             at[k] = fmod(0.5 + step[k] * (double)i, 1);
         double up = 2 * at[3] - 1, ring = sqrt(1 - up * up), turn = 2.399963229728653 * (double)i;
-        double away[3] = {ring * cos(turn), up, ring * sin(turn)};
+        double direction[3] = {ring * cos(turn), up, ring * sin(turn)};
         for (int k = 0; k < 3; k++) {
             double target    = center[k] + half * (2 * at[k] - 1);
-            in->points[i][k] = center[k] + radius * away[k];
+            in->points[i][k] = center[k] + radius * direction[k];
             in->aims[i][k]   = target - in->points[i][k];
         }
     }

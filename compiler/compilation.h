@@ -40,7 +40,7 @@ typedef struct Compilation {
     double            started;
 } Compilation;
 
-static inline bool is_flat(const Component *component)
+static inline bool component_is_plane(const Component *component)
 {
     return component->plane_normal != NODE_NONE;
 }
@@ -49,8 +49,8 @@ static inline bool is_flat(const Component *component)
 bool lower_scene(Compilation *c, Graph *graph);
 
 /* precision.c: whether a camera may see something so closely, so far from the origin, that points
-   need an anchor; `distances` are those of the components, ROOT_COUNT apart. */
-bool may_need_anchor(const Scene *scene, Graph *graph, const Node *distances, Arena *scratch);
+   must be relative to it; `distances` are those of the components, ROOT_COUNT apart. */
+bool may_need_rebase(const Scene *scene, Graph *graph, const Node *distances, Arena *scratch);
 
 /* limits.c: what no compiler of shaders, or no shader, can have. */
 bool check_operations(Compilation *c);
@@ -66,8 +66,8 @@ void refuse_component(Compilation *c, size_t component, size_t operations);
 void retain_scene(Compilation *c);
 void retain_tapes(Compilation *c);
 
-/* groups.c: which components are marched by themselves.  groups[i] gets the number of the group of
-   each, from 1; 0 for those that need no march. */
-void form_groups(Compilation *c, uint32_t *groups);
+/* march_groups.c: which components are marched by themselves.  march_groups[i] gets the number of
+   the group of each, from 1; 0 for those that need no march. */
+void form_march_groups(Compilation *c, uint32_t *march_groups);
 
 #endif

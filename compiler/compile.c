@@ -80,16 +80,16 @@ static void dump_graph(Compilation *c, DumpStage stage, const Graph *graph)
                     (size_t)(roots->guarded - roots->components), &c->dump);
 }
 
-/* `boxes` of all components, and which of them are `flat`; the program gets the box of the rest. */
-static void find_rest(Compilation *c, Box *boxes, bool *flat)
+/* `boxes` of all components, and whether each is a plane; the program gets the box of the rest. */
+static void find_rest(Compilation *c, Box *boxes, bool *is_plane)
 {
     KrsProgram *program = &c->scene->program;
     Box         rest    = box_empty;
     for (size_t i = 0; i < c->scene->component_count; i++) {
         const Component *component = &c->elaborated.components.items[i];
         boxes[i]                   = component->shape->box;
-        flat[i]                    = is_flat(component);
-        rest                       = flat[i] ? rest : box_hull(rest, boxes[i]);
+        is_plane[i]                = component_is_plane(component);
+        rest                       = is_plane[i] ? rest : box_hull(rest, boxes[i]);
     }
     for (int k = 0; k < 3; k++) {
         program->rest_low[k]  = box_is_empty(rest) ? 0 : rest.axis[k].low;
@@ -99,35 +99,35 @@ static void find_rest(Compilation *c, Box *boxes, bool *flat)
 
 static void emit(Compilation *c)
 {
-    KrsScene    *scene   = c->scene;
-    KrsProgram  *program = &scene->program;
-    const Roots *roots   = &scene->roots;
-    size_t       count   = scene->component_count;
-    uint32_t     slots   = (uint32_t)scene->graph->parameters.count;
-    Text         glsl    = {.arena = &scene->arena};
-    Box         *boxes   = arena_new_array(&c->scratch, Box, count + 1);
-    bool        *flat    = arena_new_array(&c->scratch, bool, count + 1);
-    uint32_t    *groups  = arena_new_array(&c->scratch, uint32_t, count + 1);
-    find_rest(c, boxes, flat);
-    form_groups(c, groups);
+    KrsScene    *scene        = c->scene;
+    KrsProgram  *program      = &scene->program;
+    const Roots *roots        = &scene->roots;
+    size_t       count        = scene->component_count;
+    uint32_t     slots        = (uint32_t)scene->graph->parameters.count;
+    Text         glsl         = {.arena = &scene->arena};
+    Box         *boxes        = arena_new_array(&c->scratch, Box, count + 1);
+    bool        *is_plane     = arena_new_array(&c->scratch, bool, count + 1);
+    uint32_t    *march_groups = arena_new_array(&c->scratch, uint32_t, count + 1);
+    find_rest(c, boxes, is_plane);
+    form_march_groups(c, march_groups);
     program->scene_parts = emit_scene_part_count(count);
-    EmitMarch march      = {.guarded    = roots->guarded,
-                            .along      = roots->along,
-                            .boxes      = boxes,
-                            .groups     = program->group_count ? groups : NULL,
-                            .flat       = program->flats ? flat : NULL,
-                            .anchored   = program->anchored ? roots->anchored : NULL,
-                            .zone_slots = KRS_MOST_ZONES,
-                            .ahead      = roots->flats,
-                            .slopes     = scene->slope_count > 0,
-                            .gradient   = program->gradients ? roots->gradients : NULL};
+    EmitMarch march      = {.guarded         = roots->guarded,
+                            .along           = roots->along,
+                            .boxes           = boxes,
+                            .march_groups    = program->march_group_count ? march_groups : NULL,
+                            .is_plane        = program->planes ? is_plane : NULL,
+                            .camera_relative = program->camera_relative ? roots->camera_relative : NULL,
+                            .zone_slots      = KRS_MOST_ZONES,
+                            .plane_roots     = roots->planes,
+                            .slopes          = scene->slope_count > 0,
+                            .gradient        = program->gradients ? roots->gradients : NULL};
     emit_glsl(scene->graph, &c->sources, roots->components, count, zone_root(scene), &march,
               &c->scratch, &glsl, &scene->found);
-    program->glsl            = glsl.bytes;
-    program->glsl_length     = glsl.length;
-    program->parameter_slots = slots;
-    program->value_slots     = scene->found.plain.slots;
-    program->anchored_slots  = scene->found.anchored.slots;
+    program->glsl                  = glsl.bytes;
+    program->glsl_length           = glsl.length;
+    program->parameter_slots       = slots;
+    program->value_slots           = scene->found.plain.slots;
+    program->camera_relative_slots = scene->found.camera_relative.slots;
     if (dumps(c, DUMP_GLSL))
         text_add(&c->dump, glsl.bytes);
 }

@@ -35,8 +35,8 @@
  * than `footprint`, the radius of a pixel's cone at p, counts as the box around it (0: nothing
  * does).  Where a branch saves no work, as on lavapipe, krs_distance costs less.
  *
- * A scene of several expensive components has groups of them (KrsGroup): with GROUP defined as the
- * number of one there is krs_distance alone, and of that group alone.
+ * A scene of several expensive components has groups of them (KrsMarchGroup): with MARCH_GROUP
+ * defined as the number of one there is krs_distance alone, and of that group alone.
  *
  * N is parameter_slots (at least 1), what is in them is told at krs_frame_parameters.  With
  * FRAME_VALUES defined, value_slots more follow (krs_frame_values), and lanes need not find what
@@ -80,13 +80,13 @@ typedef struct KrsView {
     const KrsLight *lights; /* lives as long as the frame, until the next krs_frame_view */
 } KrsView;
 
-/* Components that are best marched by themselves, one group after another: with GROUP defined as
-   the number of a group, from 1, krs_distance is that of the group's components alone. */
-typedef struct KrsGroup {
+/* Components that are best marched by themselves, one group after another: with MARCH_GROUP defined
+   as the number of a group, from 1, krs_distance is that of the group's components alone. */
+typedef struct KrsMarchGroup {
     double flops;           /* as below, of its components */
     double low[3], high[3]; /* box around them */
-} KrsGroup;
-enum { KRS_MOST_GROUPS = 8 };
+} KrsMarchGroup;
+enum { KRS_MOST_MARCH_GROUPS = 8 };
 
 typedef struct KrsProgram {
     const char *glsl; /* promised functions, readable, with comments of source lines */
@@ -97,24 +97,24 @@ typedef struct KrsProgram {
     size_t      operations;      /* of krs_distance */
     double      flops;           /* of krs_distance, weighted as op_cost has it */
     uint32_t    loops;           /* iterations of loops in it, at most */
-    bool        flats;           /* there is krs_ahead, for kernels with #define FLATS */
-    double      rest_low[3], rest_high[3]; /* with flats: the box around what is left to march */
-    bool        anchored;       /* points may be given from an anchor, with #define ANCHORED */
-    uint32_t    anchored_slots; /* then: how many more slots follow those of the zones */
-    bool        gradients;      /* there is krs_gradient, for kernels with #define GRADIENT */
-    bool        algebraic;      /* normals are by krs_gradient unless asked for otherwise */
-    bool        along;          /* there is krs_along, for kernels with #define ALONG */
-    bool        sheets;  /* surfaces without thickness, where krs_distance is not negative: rays
+    bool        planes;          /* there is krs_plane_t, for kernels with #define PLANES */
+    double      rest_low[3], rest_high[3]; /* with planes: the box around what is left to march */
+    bool camera_relative; /* points may be relative to the camera, with #define CAMERA_RELATIVE */
+    uint32_t      camera_relative_slots; /* then: how many more slots follow those of the zones */
+    bool          gradients; /* there is krs_gradient, for kernels with #define GRADIENT */
+    bool          algebraic; /* normals are by krs_gradient unless asked for otherwise */
+    bool          along;     /* there is krs_along, for kernels with #define ALONG */
+    bool          sheets;    /* surfaces without thickness, where krs_distance is not negative: rays
                                  go by krs_along, normals by krs_gradient, with #define SHEETS */
-    bool        inverts; /* there are its variants for sequences with maps that invert */
-    bool        plain;   /* no component is curved (shape_is_curved): #define PLAIN */
-    bool        shadows; /* a light casts some */
-    KrsGroup    groups[KRS_MOST_GROUPS];
-    size_t      group_count;       /* 0: all components belong together */
-    bool        apart;             /* taking turns is worth it */
-    uint32_t    scene_parts;       /* how many (emit.h), for kernels with #define PACKED */
-    uint32_t    expensive;         /* components that cost enough to be marched by themselves */
-    double      front_ms, glsl_ms; /* time spent */
+    bool          inverts;   /* there are its variants for sequences with maps that invert */
+    bool          plain;     /* no component is curved (shape_is_curved): #define PLAIN */
+    bool          shadows;   /* a light casts some */
+    KrsMarchGroup march_groups[KRS_MOST_MARCH_GROUPS];
+    size_t        march_group_count; /* 0: all components belong together */
+    bool          per_component;     /* marching groups one after the other is worth it */
+    uint32_t      scene_parts;       /* how many (emit.h), for kernels with #define PACKED */
+    uint32_t      expensive;         /* components that cost enough to be marched by themselves */
+    double        front_ms, glsl_ms; /* time spent */
 } KrsProgram;
 
 /* The scene's program; lives as long as the scene. */
@@ -129,10 +129,11 @@ size_t krs_zone_count(const KrsScene *scene);
 /* Camera `camera`, lights, sky and image at the frame's parameters and time. */
 KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view);
 /* Whether what single precision does not tell of such a coordinate shows in pixels of that width,
-   so that points have to be given from an anchor. */
-bool krs_needs_anchor(double coordinate, double pixel);
-/* What kernels with an anchor get for it, anchored_slots vec4s, found in double precision. */
-void krs_frame_anchor(KrsFrame *frame, const double anchor[3], float (*block)[4]);
+   so that points have to be relative to an origin near it. */
+bool krs_needs_rebase(double coordinate, double pixel);
+/* What camera-relative kernels get for their origin: camera_relative_slots vec4s, found in double
+   precision. */
+void krs_frame_rebase(KrsFrame *frame, const double rebase_origin[3], float (*block)[4]);
 /* The zones of the caller (center, radius), to stand behind the parameter block when the GLSL is
    compiled with ZONES defined as that many or more; the others must have a radius that is far
    below 0.  Returns how many. */

@@ -206,14 +206,15 @@ size_t krs_frame_zones(const KrsFrame *frame, float (*zones)[4])
     return frame->zone_count;
 }
 
-/* The anchor has the last slot. */
-void krs_frame_anchor(KrsFrame *frame, const double anchor[3], float (*block)[4])
+/* The origin has the last slot. */
+void krs_frame_rebase(KrsFrame *frame, const double rebase_origin[3], float (*block)[4])
 {
     const KrsScene *scene = frame->scene;
-    if (!scene->program.anchored)
+    if (!scene->program.camera_relative)
         return;
-    memcpy(frame->parameters[scene->program.parameter_slots - 1].v, anchor, 3 * sizeof *anchor);
-    frame_values_find(&scene->found.anchored, frame->parameters, frame->values, block);
+    memcpy(frame->parameters[scene->program.parameter_slots - 1].v, rebase_origin,
+           3 * sizeof *rebase_origin);
+    frame_values_find(&scene->found.camera_relative, frame->parameters, frame->values, block);
 }
 
 void krs_frame_values(const KrsFrame *frame, float (*block)[4])

@@ -96,7 +96,7 @@ static void refuse_number(Compilation *c, const Component *shown, Span span)
 }
 
 /* The first node that the roots of some components need and no shader can have; else NODE_NONE. */
-static Node find_beyond_numbers(Compilation *c, size_t first, size_t count)
+static Node find_overflow(Compilation *c, size_t first, size_t count)
 {
     const Graph *graph = c->scene->graph;
     Tape tape = tape_new(graph, &c->scene->roots.components[first * ROOT_COUNT], count * ROOT_COUNT,
@@ -113,10 +113,10 @@ static Node find_beyond_numbers(Compilation *c, size_t first, size_t count)
 bool check_numbers(Compilation *c)
 {
     size_t count = c->elaborated.components.count;
-    if (find_beyond_numbers(c, 0, count) == NODE_NONE)
+    if (find_overflow(c, 0, count) == NODE_NONE)
         return true;
     for (size_t i = 0; i < count; i++) {
-        Node node = find_beyond_numbers(c, i, 1);
+        Node node = find_overflow(c, i, 1);
         if (node != NODE_NONE)
             refuse_number(c, &c->elaborated.components.items[i], c->scene->graph->items[node].span);
     }

@@ -1,5 +1,5 @@
 /*
- * precision.c: where single precision shows, so that points have to be given from an anchor.
+ * precision.c: where single precision shows, so that points have to be relative to the camera.
  *
  * A coordinate is known to a few units in its last place, so the larger it is the less is known of
  * it.  That shows where it is more than a part of a pixel.  What is nearest to the eye is seen by
@@ -16,10 +16,10 @@
 
 /* What a kernel takes a coordinate to be known to, relative (ROUNDING in frame.glsl). */
 static const double ROUNDING = 2.4e-7;
-/* Of a pixel: as much as a march leaves open (MOST_OPEN in trace.comp). */
+/* Of a pixel: as much as a march leaves open (MOST_TOLERANCE in trace.comp). */
 static const double MOST_OF_PIXEL = 1.0 / 64;
 
-bool krs_needs_anchor(double coordinate, double pixel)
+bool krs_needs_rebase(double coordinate, double pixel)
 {
     return ROUNDING * coordinate > MOST_OF_PIXEL * pixel;
 }
@@ -105,7 +105,7 @@ static double lines_of(const Scene *s)
 }
 
 /* What the camera sees may be narrow as it is by default. */
-static bool camera_needs_anchor(const ViewPrecision *view, const SceneCamera *camera)
+static bool camera_needs_rebase(const ViewPrecision *view, const SceneCamera *camera)
 {
     const double *eye     = view->values[camera->eye].v;
     double        nearest = nearest_to(view, eye), lines = lines_of(view->scene);
@@ -114,20 +114,20 @@ static bool camera_needs_anchor(const ViewPrecision *view, const SceneCamera *ca
                           : camera->projection == KRS_PANORAMA
                               ? M_PI * nearest / lines
                               : 2 * tan(view->values[camera->fov].v[0] / 2) * nearest / lines;
-    return krs_needs_anchor(largest(eye), pixel);
+    return krs_needs_rebase(largest(eye), pixel);
 }
 
 /* A camera that the compiler places stands as far away as the scene is large (framing.c). */
-static bool scene_needs_anchor(const Scene *s)
+static bool scene_needs_rebase(const Scene *s)
 {
     double size = 0;
     for (int i = 0; i < 3; i++)
         if (isfinite(s->box.axis[i].high - s->box.axis[i].low))
             size = fmax(size, s->box.axis[i].high - s->box.axis[i].low);
-    return krs_needs_anchor(reach_of_boxes(s), 0.5 * size / lines_of(s));
+    return krs_needs_rebase(reach_of_boxes(s), 0.5 * size / lines_of(s));
 }
 
-bool may_need_anchor(const Scene *scene, Graph *graph, const Node *distances, Arena *scratch)
+bool may_need_rebase(const Scene *scene, Graph *graph, const Node *distances, Arena *scratch)
 {
     ViewPrecision view = {
         .scene = scene, .graph = graph, .distances = distances, .scratch = scratch};
@@ -140,9 +140,9 @@ bool may_need_anchor(const Scene *scene, Graph *graph, const Node *distances, Ar
     for (size_t i = 0; i < scene->cameras.count && !needs; i++) {
         const SceneCamera *camera = &scene->cameras.items[i];
         if (camera->standing_in)
-            needs = scene_needs_anchor(scene) || (moves && reach_of_boxes(scene) > FAR_OUT);
+            needs = scene_needs_rebase(scene) || (moves && reach_of_boxes(scene) > FAR_OUT);
         else
-            needs = camera_needs_anchor(&view, camera) ||
+            needs = camera_needs_rebase(&view, camera) ||
                     (moves && reach_of_eye(&view, camera->eye) > FAR_OUT);
     }
     arena_free(scratch);

@@ -11,7 +11,7 @@
 #include "compiler/shader/emit.h"
 
 /* How many roots each has. */
-enum { CAMERA_ROOTS = 5, LIGHT_ROOTS = 3, SKY_ROOTS = 3, FLAT_ROOTS = 2, GRADIENT_ROOTS = 2 };
+enum { CAMERA_ROOTS = 5, LIGHT_ROOTS = 3, SKY_ROOTS = 3, PLANE_ROOTS = 2, GRADIENT_ROOTS = 2 };
 
 /* What is asked of the graph: nodes in one array, in this order, so that they are simplified
    together.  What begins with `guarded` is for the march: nothing else depends on it. */
@@ -23,11 +23,11 @@ typedef struct Roots {
     Node  *sky;        /* zenith, horizon, ground */
     Node  *guarded;    /* of each component: lower_guarded */
     Node  *along;      /* of each component, method by method: lower_along */
-    Node  *flats;      /* where a ray meets a plane, and how steeply it falls */
+    Node  *planes;     /* where a ray meets a plane, and how steeply it falls */
     Node  *gradients;  /* of each component and then of all zones: lower_gradient's two; the same
                           node twice, a FLOAT, where there is none */
-    Node  *anchored;   /* where points may be given from an anchor: components and flats again */
-    Node  *slopes;     /* of each slope that is found for each frame */
+    Node  *camera_relative; /* components and planes, of camera-relative points */
+    Node  *slopes;          /* of each slope that is found for each frame */
     size_t count;
 } Roots;
 
@@ -63,8 +63,9 @@ struct KrsScene {
     Tape           ahead;    /* with sheets: of all components, and zones, how far rays may go */
     Tape           turned;   /* with sheets: gradients of all components */
     Tape           surface;  /* all roots of all components */
-    EmittedFrame   found;    /* what kernels get from the host for a frame, and for an anchor */
-    Tape           view;     /* cameras, lights and sky */
+    EmittedFrame
+         found; /* what kernels get from the host for a frame, and for an origin near the camera */
+    Tape view;  /* cameras, lights and sky */
 };
 
 /* A frame: what varies, and memory for the values of all nodes. */

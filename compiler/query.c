@@ -61,12 +61,12 @@ static double distance_at(KrsFrame *frame, const double point[3], uint32_t *near
 static double step_ahead(KrsFrame *frame, const double point[3], const double direction[3],
                          double step)
 {
-    const KrsScene *scene = frame->scene;
-    const Node     *ahead = scene->roots.along + ALONG_EXACT * scene->component_count;
-    double          least = INFINITY;
+    const KrsScene *scene       = frame->scene;
+    const Node     *along_roots = scene->roots.along + ALONG_EXACT * scene->component_count;
+    double          least       = INFINITY;
     tape_run_surface(&scene->ahead, point, direction, step, frame->values);
     for (size_t i = 0; i < scene->component_count; i++)
-        least = fmin(least, frame->values[ahead[i]].v[0]);
+        least = fmin(least, frame->values[along_roots[i]].v[0]);
     return fmax(least, zone_depth(frame, point));
 }
 
@@ -269,8 +269,8 @@ static double march_clearance(RayMarch *march, double t)
 }
 
 /* Where the surface is crossed between t, where the clearance is positive, and t + step, where it
-   is `clearance` and not positive: by false position, each end's weight halved when the other has moved twice
-   (the Illinois method). */
+   is `clearance` and not positive: by false position, each end's weight halved when the other has
+   moved twice (the Illinois method). */
 static double find_crossing(RayMarch *march, double clearance)
 {
     enum { MOST_ROUNDS = 100 };
@@ -300,10 +300,11 @@ static double find_crossing(RayMarch *march, double clearance)
 typedef enum RayState { MARCHING, HIT, MISS } RayState;
 
 /*
- * One step, by the rule of trace.comp.  The ball of empty space around t and the one around t + step
- * must meet; what lies between them is unverified.  Where they do not meet, the step is cut to end in
- * the middle of that, until no more than a sixteenth of the tolerance is unverified.  So a step may be
- * as long as the balls are expected to meet, if the clearance changes as before (automatic relaxation).
+ * One step, by the rule of trace.comp.  The ball of empty space around t and the one around t +
+ * step must meet; what lies between them is unverified.  Where they do not meet, the step is cut to
+ * end in the middle of that, until no more than a sixteenth of the tolerance is unverified.  So a
+ * step may be as long as the balls are expected to meet, if the clearance changes as before
+ * (automatic relaxation).
  */
 static RayState march_step(RayMarch *march)
 {

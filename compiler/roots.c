@@ -3,21 +3,21 @@
  *
  * Of each component its distance and material, and after these what only the march needs, so that
  * nothing else depends on it: guards, steps along a ray, planes, gradients, and the same again for
- * points that are given from an anchor.
+ * camera-relative points.
  */
 #include <math.h>
 #include <string.h>
 
 #include "compiler/compilation.h"
-#include "compiler/graph/anchor.h"
+#include "compiler/graph/rebase.h"
 #include "compiler/graph/derive.h"
 
-static size_t anchored_roots(const Scene *s)
+static size_t camera_relative_roots(const Scene *s)
 {
-    return s->components.count * ROOT_COUNT + FLAT_ROOTS;
+    return s->components.count * ROOT_COUNT + PLANE_ROOTS;
 }
 
-/* Room for all roots, one kind behind the other; those near an anchor come last. */
+/* Room for all roots, one kind behind the other; those for camera-relative points come last. */
 static void allocate_roots(Compilation *c)
 {
     const Scene *s     = &c->elaborated;
@@ -33,10 +33,10 @@ static void allocate_roots(Compilation *c)
                  {&r->sky, SKY_ROOTS},
                  {&r->guarded, count},
                  {&r->along, count * ALONG_COUNT},
-                 {&r->flats, FLAT_ROOTS},
+                 {&r->planes, PLANE_ROOTS},
                  {&r->gradients, (count + 1) * GRADIENT_ROOTS},
                  {&r->slopes, s->slopes.count},
-                 {&r->anchored, anchored_roots(s)}};
+                 {&r->camera_relative, camera_relative_roots(s)}};
     enum { KINDS = sizeof kinds / sizeof *kinds };
     r->count = 0;
     for (size_t i = 0; i < KINDS; i++)
@@ -98,23 +98,23 @@ static void lower_marches(Compilation *c, Graph *g)
  * at (w - n.p) / n.d, if n.d < 0.  The first root is the least of these, the second the least n.d.
  * Where there are zones, planes have holes, and are marched like the rest.
  */
-static void lower_flats(Compilation *c, Graph *g)
+static void lower_planes(Compilation *c, Graph *g)
 {
     const Scene *s     = &c->elaborated;
-    Node        *roots = c->scene->roots.flats;
+    Node        *roots = c->scene->roots.planes;
     Node         point = graph_leaf(g, OP_POINT), direction = graph_leaf(g, OP_DIRECTION);
     Node         far = graph_number(g, 1e30), zero = graph_number(g, 0);
     roots[0] = far;
     roots[1] = graph_number(g, 1);
     for (size_t i = 0; i < s->components.count && s->zone_count == 0; i++) {
         const Component *component = &s->components.items[i];
-        if (!is_flat(component))
+        if (!component_is_plane(component))
             continue;
-        c->scene->program.flats = true;
-        Node rise               = graph_op2(g, OP_dot, component->plane_normal, direction);
-        Node depth              = graph_op2(g, OP_dot, component->plane_normal, point);
-        Node clearance          = graph_op2(g, OP_sub, component->plane_offset, depth);
-        Node falls              = graph_op2(g, OP_less, rise, zero);
+        c->scene->program.planes = true;
+        Node rise                = graph_op2(g, OP_dot, component->plane_normal, direction);
+        Node depth               = graph_op2(g, OP_dot, component->plane_normal, point);
+        Node clearance           = graph_op2(g, OP_sub, component->plane_offset, depth);
+        Node falls               = graph_op2(g, OP_less, rise, zero);
         Node step = graph_op3(g, OP_select, falls, graph_op2(g, OP_div, clearance, rise), far);
         roots[0]  = graph_op2(g, OP_min, roots[0], step);
         roots[1]  = graph_op2(g, OP_min, roots[1], rise);
@@ -159,17 +159,17 @@ static void lower_gradients(Compilation *c, Graph *g)
     }
 }
 
-/* The roots of the components, and those of planes, for points given from an anchor. */
-static void lower_anchored(Compilation *c, Graph *g)
+/* The roots of the components, and those of planes, for camera-relative points. */
+static void lower_camera_relative(Compilation *c, Graph *g)
 {
     const Roots   *roots    = &c->scene->roots;
     size_t         count    = c->elaborated.components.count * ROOT_COUNT;
     GraphParameter anywhere = {{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL, HUGE_VAL}};
-    Node           anchor   = graph_parameter(g, (uint32_t)g->parameters.count, TYPE_VEC3);
+    Node           rebase_origin = graph_parameter(g, (uint32_t)g->parameters.count, TYPE_VEC3);
     array_push(&c->scene->arena, &g->parameters, anywhere);
-    memcpy(roots->anchored, roots->components, count * sizeof(Node));
-    memcpy(roots->anchored + count, roots->flats, FLAT_ROOTS * sizeof(Node));
-    graph_anchor(g, roots->anchored, count + FLAT_ROOTS, anchor, &c->scratch);
+    memcpy(roots->camera_relative, roots->components, count * sizeof(Node));
+    memcpy(roots->camera_relative + count, roots->planes, PLANE_ROOTS * sizeof(Node));
+    graph_rebase(g, roots->camera_relative, count + PLANE_ROOTS, rebase_origin, &c->scratch);
     arena_free(&c->scratch);
 }
 
@@ -182,19 +182,19 @@ bool lower_scene(Compilation *c, Graph *graph)
         return false;
     for (size_t i = 0; i < s->components.count; i++)
         c->scene->program.sheets |= has_thin_sheets(s->components.items[i].shape);
-    bool anchored = !c->scene->program.sheets &&
-                    may_need_anchor(s, graph, roots->components, &c->scratch);
+    bool camera_relative = !c->scene->program.sheets &&
+                           may_need_rebase(s, graph, roots->components, &c->scratch);
     gather_view(s, roots);
     lower_marches(c, graph);
-    lower_flats(c, graph);
+    lower_planes(c, graph);
     arena_free(&c->scratch);
     lower_gradients(c, graph);
     for (size_t i = 0; i < s->slopes.count; i++)
         roots->slopes[i] = s->slopes.items[i].formula;
-    c->scene->program.anchored = anchored;
-    if (anchored)
-        lower_anchored(c, graph);
+    c->scene->program.camera_relative = camera_relative;
+    if (camera_relative)
+        lower_camera_relative(c, graph);
     else
-        roots->count -= anchored_roots(s); /* they are the last */
+        roots->count -= camera_relative_roots(s); /* they are the last */
     return true;
 }

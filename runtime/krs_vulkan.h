@@ -38,8 +38,8 @@ typedef struct KrsDevice {
 /* A complaint of Vulkan's validation layers; the text lives until the callback returns. */
 typedef void KrsValidationCallback(void *user, const char *message);
 
-/* Called about once a second while the driver compiles and the processor is busy with it: what takes
-   long is not stuck. */
+/* Called about once a second while the driver compiles and the processor is busy with it: what
+   takes long is not stuck. */
 typedef void KrsWorkingCallback(void *user);
 
 /* Whether rays leave out by branches what is far away for its size.  The default is to, but not on
@@ -152,7 +152,7 @@ typedef enum KrsTrace {
 } KrsTrace;
 extern const char *const krs_trace_names[KRS_TRACE_COUNT]; /* "default", "plain", ... */
 
-/* How rays are dealt out to the lanes of the device; the pictures are the same bit by bit. */
+/* How rays are assigned to the lanes of the device; the pictures are the same bit by bit. */
 typedef enum KrsSchedule {
     KRS_SCHEDULE_DEFAULT,
     KRS_SCHEDULE_PIXEL,  /* a lane to a pixel until it is done */
@@ -188,7 +188,7 @@ typedef enum KrsNormals {
     KRS_NORMALS_DODECAHEDRON,
     KRS_NORMALS_ANALYTIC, /* by derivatives, at the hit alone, of a scene that was compiled with
                                  `gradients`; by the octahedron for components in which something
-                                 has none (noise, fractals), and where points have an anchor.
+                                 has none (noise, fractals), and where points are camera-relative.
                                  Neither these nor those by steps to one side tell what is finer
                                  than a pixel: as with no_filter. */
     KRS_NORMALS_COUNT

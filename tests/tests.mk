@@ -18,8 +18,8 @@ UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c
 PROPERTY_SHARED := $(addprefix tests/property/, garden.c op_trial.c reach_crowd.c)
 UNIT        := texts front diagnostics film devices tracer rendering methods schedules writer \
                image_files memory validate search refute frame query zones cache cache_limits \
-               compiled pipelines apart stencils glslang loader drivers grid
-PROPERTY    := ops noise graph simplify facts derive series zeros local along anchor slope \
+               compiled pipelines per_component stencils glslang loader drivers grid
+PROPERTY    := ops noise graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees
 ORACLES     := self primitives krs_expand trees maps moebius moebius_images operators \
                combinations deform deform_bounds chains chain_pictures moving normals fields \
@@ -39,7 +39,7 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/diagnostics unit/f
                unit/refute unit/memory unit/cache unit/cache_limits unit/frame unit/query \
                unit/zones property/ops property/noise property/graph property/simplify \
                property/facts property/derive property/series property/zeros property/local \
-               property/along property/anchor property/slope property/parity property/reach \
+               property/along property/rebase property/slope property/parity property/reach \
                property/reach_trees oracle/primitives oracle/krs_expand oracle/bounds \
                oracle/maps oracle/moebius oracle/moebius_images oracle/operators oracle/moving \
                oracle/fractals oracle/metasurfaces oracle/normals fuzz/sentences)

@@ -17,7 +17,7 @@ for scene in "$@"; do
     "$build/krs" compile --quiet "$scene" -o "$folder" || exit 1
 done
 set --
-for kernel in trace normals secondary shade query sample; do
+for kernel in trace normals secondary shade query point_query; do
     set -- "$@" "$folder"/*".$kernel.spv"
 done
 {

@@ -36,17 +36,17 @@ const Definition definitions[] = {
     {"l4", "(y^2*z^2+x^2)"},           {NULL, NULL}};
 
 /* Ours; all but the last with the normals that are the default. */
-static const struct Way {
+static const struct Variant {
     const char *name;
     KrsTrace    trace;
     KrsNormals  normals;
-} ways[] = {{"plain", KRS_TRACE_PLAIN, 0},
-            {"auto", KRS_TRACE_AUTO, 0},
-            {"taylor", KRS_TRACE_TAYLOR, 0},
-            {"root-free", KRS_TRACE_ROOT_FREE, 0},
-            {"exact", KRS_TRACE_EXACT, 0},
-            {"exact, octahedron", KRS_TRACE_EXACT, KRS_NORMALS_OCTAHEDRON}};
-enum { WAYS = sizeof ways / sizeof *ways, CHOSEN = 4 };
+} variants[] = {{"plain", KRS_TRACE_PLAIN, 0},
+                {"auto", KRS_TRACE_AUTO, 0},
+                {"taylor", KRS_TRACE_TAYLOR, 0},
+                {"root-free", KRS_TRACE_ROOT_FREE, 0},
+                {"exact", KRS_TRACE_EXACT, 0},
+                {"exact, octahedron", KRS_TRACE_EXACT, KRS_NORMALS_OCTAHEDRON}};
+enum { VARIANTS = sizeof variants / sizeof *variants, CHOSEN = 4 };
 
 static FILE *kept; /* all that has been said */
 
@@ -146,17 +146,17 @@ static void stage_close(Stage *stage)
 }
 
 /* Without occlusion, which the other programs do not have either. */
-static KrsPicture *shoot(const Stage *stage, const struct Way *way)
+static KrsPicture *shoot(const Stage *stage, const struct Variant *variant)
 {
     KrsPicture      *picture;
     KrsRenderOptions options = {.width        = WIDTH,
                                 .height       = HEIGHT,
-                                .trace        = way->trace,
-                                .normals      = way->normals,
+                                .trace        = variant->trace,
+                                .normals      = variant->normals,
                                 .no_occlusion = true,
                                 .planes       = KRS_PLANE_COLOR};
     if (krs_render(stage->rendering, stage->frame, &options, &picture) != KRS_OK)
-        give_up(way->name, krs_renderer_message(stage->renderer));
+        give_up(variant->name, krs_renderer_message(stage->renderer));
     return picture;
 }
 
@@ -183,19 +183,19 @@ static Judgement judge_picture(const Subject *subject, const View *view, const K
 
 /* One picture that is judged, and then all in turns. */
 static void run_methods(const Stage *stage, const Subject *subject, const View *view,
-                        size_t repeats, Method methods[WAYS], double *coverage)
+                        size_t repeats, Method methods[VARIANTS], double *coverage)
 {
-    for (int m = 0; m < WAYS; m++) {
-        KrsPicture *picture    = shoot(stage, &ways[m]);
+    for (int m = 0; m < VARIANTS; m++) {
+        KrsPicture *picture    = shoot(stage, &variants[m]);
         methods[m].judgement   = judge_picture(subject, view, picture, coverage);
         methods[m].evaluations = picture->stats.evaluations_per_ray;
         methods[m].unresolved  = picture->stats.unresolved;
         krs_picture_free(picture);
     }
     for (size_t turn = 0; turn < repeats; turn++)
-        for (int m = 0; m < WAYS; m++) {
+        for (int m = 0; m < VARIANTS; m++) {
             double      before     = cpu_ms();
-            KrsPicture *picture    = shoot(stage, &ways[m]);
+            KrsPicture *picture    = shoot(stage, &variants[m]);
             methods[m].cpu[turn]   = cpu_ms() - before;
             methods[m].frame[turn] = picture->stats.total_ms;
             methods[m].rays[turn]  = picture->stats.phase_ms[KRS_PHASE_BEAMS] +
@@ -208,18 +208,18 @@ static void run_methods(const Stage *stage, const Subject *subject, const View *
 static Frame print_tracers(KrsRenderer *renderer, const Subject *subject, const View *view,
                            size_t repeats)
 {
-    static Method methods[WAYS];
+    static Method methods[VARIANTS];
     char          text[1024];
     Frame         frame = {0};
     write_scene(subject, view, text, sizeof text);
     Stage stage = stage_open(renderer, subject->name, text);
     run_methods(&stage, subject, view, repeats, methods, &frame.coverage);
-    for (int m = 0; m < WAYS; m++) {
+    for (int m = 0; m < VARIANTS; m++) {
         Method *method = &methods[m];
         double  cpu = middle(method->cpu, repeats), rays = middle(method->rays, repeats);
         say("| %s | %d | %s | %.0f | %.0f | %.1f | %.1f | %.1f | %zu / %zu / %zu | %llu |\n",
-            subject->name, subject->degree, ways[m].name, cpu, middle(method->frame, repeats), rays,
-            rays * 1e6 / (WIDTH * HEIGHT), method->evaluations, method->judgement.missed,
+            subject->name, subject->degree, variants[m].name, cpu, middle(method->frame, repeats),
+            rays, rays * 1e6 / (WIDTH * HEIGHT), method->evaluations, method->judgement.missed,
             method->judgement.extra, method->judgement.apart,
             (unsigned long long)method->unresolved);
     }

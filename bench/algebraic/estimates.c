@@ -57,10 +57,11 @@ static Real estimate(Formula *formula, const Real p[3], Real f, int order)
 }
 
 /* Whether a ray from outside gets inside within the ball; steps are a 64th of a pixel at least. */
-static bool march(const Subject *subject, Vec origin, Vec way, Real least, int order, Tally *tally)
+static bool march(const Subject *subject, Vec origin, Vec direction, Real least, int order,
+                  Tally *tally)
 {
     Formula *formula = surface_named(subject->oracle)->formula;
-    Real     middle  = -(origin.x * way.x + origin.y * way.y + origin.z * way.z);
+    Real     middle  = -(origin.x * direction.x + origin.y * direction.y + origin.z * direction.z);
     Real     square  = vec_dot(origin, origin) - middle * middle;
     Real     half    = (Real)subject->radius * subject->radius - square;
     if (half <= 0)
@@ -68,7 +69,8 @@ static bool march(const Subject *subject, Vec origin, Vec way, Real least, int o
     half   = sqrtl(half);
     Real t = middle - half;
     for (int step = 0; step < MOST_STEPS; step++) {
-        Real p[3] = {origin.x + t * way.x, origin.y + t * way.y, origin.z + t * way.z};
+        Real p[3] = {origin.x + t * direction.x, origin.y + t * direction.y,
+                     origin.z + t * direction.z};
         Real f    = formula(p);
         tally->evaluations++;
         if (f <= 0)
@@ -87,9 +89,9 @@ static Tally march_all(const Subject *subject, const View *view, int order)
     Real  least = view->height / HEIGHT / 64;
     for (int y = 0; y < HEIGHT; y += SPARSE)
         for (int x = 0; x < WIDTH; x += SPARSE) {
-            Vec origin, way;
-            find_ray(view, x, y, &origin, &way);
-            bool seen = march(subject, origin, way, least, order, &tally);
+            Vec origin, direction;
+            find_ray(view, x, y, &origin, &direction);
+            bool seen = march(subject, origin, direction, least, order, &tally);
             tally.rays++;
             judge_one(subject, view, CUT_SOLID, x, y, seen, &tally.judgement);
         }

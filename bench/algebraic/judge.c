@@ -13,24 +13,24 @@
 
 #include "tests/oracle/formulas.h"
 
-void find_ray(const View *view, int x, int y, Vec *origin, Vec *way)
+void find_ray(const View *view, int x, int y, Vec *origin, Vec *direction)
 {
     double pixel = view->height / HEIGHT, at[3];
     double u = (x + 0.5 * (1 - WIDTH)) * pixel, v = -(y + 0.5 * (1 - HEIGHT)) * pixel;
     for (int i = 0; i < 3; i++)
         at[i] = view->distance * view->back[i] + u * view->right[i] + v * view->up[i];
-    *origin = vec(at[0], at[1], at[2]);
-    *way    = vec(-view->back[0], -view->back[1], -view->back[2]);
+    *origin    = vec(at[0], at[1], at[2]);
+    *direction = vec(-view->back[0], -view->back[1], -view->back[2]);
 }
 
 static Fate fate_of(const Subject *subject, const View *view, Drawn drawn, int x, int y)
 {
     const Surface *surface = surface_named(subject->oracle);
-    Vec            origin, way;
-    find_ray(view, x, y, &origin, &way);
+    Vec            origin, direction;
+    find_ray(view, x, y, &origin, &direction);
     return drawn == CUT_SOLID
-               ? surface_entry(surface->formula, subject->radius, origin, way).fate
-               : surface_crossing(surface->formula, subject->radius, origin, way).fate;
+               ? surface_entry(surface->formula, subject->radius, origin, direction).fate
+               : surface_crossing(surface->formula, subject->radius, origin, direction).fate;
 }
 
 /* What is known of a surface: found once, as that takes a while. */

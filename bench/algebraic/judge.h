@@ -14,7 +14,7 @@ typedef enum Drawn { CUT_SOLID, OPEN_SURFACE } Drawn;
 enum { STRIDE = 4, SEEN_ROWS = HEIGHT / STRIDE, SEEN_COLUMNS = WIDTH / STRIDE };
 
 /* The ray of a pixel. */
-void find_ray(const View *view, int x, int y, Vec *origin, Vec *way);
+void find_ray(const View *view, int x, int y, Vec *origin, Vec *direction);
 
 /* Counts one pixel, of those that are looked at. */
 void      judge_one(const Subject *subject, const View *view, Drawn drawn, int x, int y, bool seen,

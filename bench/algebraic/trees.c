@@ -19,7 +19,7 @@ static const double EYE[3] = {0.15, 1, 9}, TARGET[3] = {0.15, 1.55, 0}, FOV = 19
 /* ---- the tree, a second time ---- */
 
 typedef struct Fork { /* where a branch begins, its direction there, the side to which it bends */
-    double at[3], ahead[3], aside[3];
+    double at[3], ahead[3], lateral[3];
 } Fork;
 
 typedef struct Limb {
@@ -35,7 +35,7 @@ static void point_of(const Fork *fork, double angle, double length, double point
 {
     for (int k = 0; k < 3; k++)
         point[k] = fork->at[k] +
-                   length * (cos(angle) * fork->ahead[k] + sin(angle) * fork->aside[k]);
+                   length * (cos(angle) * fork->ahead[k] + sin(angle) * fork->lateral[k]);
 }
 
 static Fork next_fork(const Fork *below, int i)
@@ -44,13 +44,13 @@ static Fork next_fork(const Fork *below, int i)
     double angle = 2 * bend_of(i), turn = 100 * DEGREE, left[3];
     point_of(below, bend_of(i), reach_of(i), fork.at);
     for (int k = 0; k < 3; k++) {
-        fork.ahead[k] = cos(angle) * below->ahead[k] + sin(angle) * below->aside[k];
-        left[k]       = cos(angle) * below->aside[k] - sin(angle) * below->ahead[k];
+        fork.ahead[k] = cos(angle) * below->ahead[k] + sin(angle) * below->lateral[k];
+        left[k]       = cos(angle) * below->lateral[k] - sin(angle) * below->ahead[k];
     }
     for (int k = 0; k < 3; k++) {
         int m = (k + 1) % 3, n = (k + 2) % 3;
-        fork.aside[k] = cos(turn) * left[k] +
-                        sin(turn) * (fork.ahead[m] * left[n] - fork.ahead[n] * left[m]);
+        fork.lateral[k] = cos(turn) * left[k] +
+                          sin(turn) * (fork.ahead[m] * left[n] - fork.ahead[n] * left[m]);
     }
     return fork;
 }
@@ -59,7 +59,7 @@ static void mirror_point(const Fork *fork, const double p[3], double image[3])
 {
     double normal[3], above = 0;
     for (int k = 0; k < 3; k++) {
-        normal[k] = -sin(9 * DEGREE) * fork->ahead[k] - cos(9 * DEGREE) * fork->aside[k];
+        normal[k] = -sin(9 * DEGREE) * fork->ahead[k] - cos(9 * DEGREE) * fork->lateral[k];
         above += normal[k] * (p[k] - fork->at[k]);
     }
     for (int k = 0; k < 3; k++)
@@ -69,8 +69,8 @@ static void mirror_point(const Fork *fork, const double p[3], double image[3])
 /* From the twigs down: a mirror at each fork, and the branch below it. */
 static size_t grow(Limb limbs[MOST_BRANCHES])
 {
-    Fork   forks[WRITTEN_LEVELS] = {{.ahead = {-sin(5 * DEGREE), cos(5 * DEGREE), 0},
-                                     .aside = {cos(5 * DEGREE), sin(5 * DEGREE), 0}}};
+    Fork   forks[WRITTEN_LEVELS] = {{.ahead   = {-sin(5 * DEGREE), cos(5 * DEGREE), 0},
+                                     .lateral = {cos(5 * DEGREE), sin(5 * DEGREE), 0}}};
     size_t count                 = 0;
     for (int i = 1; i < WRITTEN_LEVELS; i++)
         forks[i] = next_fork(&forks[i - 1], i - 1);

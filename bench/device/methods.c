@@ -8,13 +8,13 @@
 
 enum { REPEATS = 3 };
 
-typedef struct Way {
+typedef struct Method {
     const char      *name;
     KrsRenderOptions options;
     uint64_t         band; /* pixels of a band at most; 0: as the renderer has it */
-} Way;
+} Method;
 
-static const Way ways[] = {
+static const Method methods[] = {
     {"default", {0}, 0},
     {"schedule pixel", {.schedule = KRS_SCHEDULE_PIXEL}, 0},
     {"schedule refill", {.schedule = KRS_SCHEDULE_REFILL}, 0},
@@ -69,17 +69,17 @@ void print_methods(KrsRenderer *renderer, const char *path, Size size, bool earl
     KrsPicture *first    = NULL;
     renderer->early_outs = early_outs;
     Stage stage          = stage_open(renderer, path, NULL, false);
-    for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
-        KrsRenderOptions options = ways[i].options;
+    for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++) {
+        KrsRenderOptions options = methods[i].options;
         options.width            = size.width;
         options.height           = size.height;
         options.samples          = 1;
         krs_rendering_free(stage.rendering); /* and its band */
-        limit_band(renderer, ways[i].band, usual);
+        limit_band(renderer, methods[i].band, usual);
         if (krs_rendering_new_for(renderer, stage.scene, KRS_FOR_QUESTIONS, &stage.rendering))
             give_up(path, krs_renderer_message(renderer));
         KrsPicture *picture = render_best(&stage, &options);
-        print_row(ways[i].name, early_outs, picture, first ? first : picture);
+        print_row(methods[i].name, early_outs, picture, first ? first : picture);
         if (first)
             krs_picture_free(picture);
         else

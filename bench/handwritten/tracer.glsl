@@ -22,20 +22,20 @@ const struct Sky { vec4 zenith, horizon, ground; } frame =
 
 #include "light.glsl"
 
-vec3 normal_at(vec3 p, float apart)
+vec3 normal_at(vec3 p, float spacing)
 {
     vec3 sum = vec3(0.0);
     for (int i = zero; i < 4; i++) {
-        vec3 way = 0.5773 * (2.0 * vec3(((i + 3) >> 1) & 1, (i >> 1) & 1, i & 1) - 1.0);
-        sum += way * map(p + apart * way);
+        vec3 direction = 0.5773 * (2.0 * vec3(((i + 3) >> 1) & 1, (i >> 1) & 1, i & 1) - 1.0);
+        sum += direction * map(p + spacing * direction);
     }
     return normalize(sum);
 }
 
 // Where the ray is inside of the box.
-vec2 clip_to_box(vec3 eye, vec3 way)
+vec2 clip_to_box(vec3 eye, vec3 direction)
 {
-    vec3 a = (LOW - eye) / way, b = (HIGH - eye) / way;
+    vec3 a = (LOW - eye) / direction, b = (HIGH - eye) / direction;
     vec3 enter = min(a, b), leave = max(a, b);
     return vec2(max(max(enter.x, enter.y), max(enter.z, 0.0)), min(leave.x, min(leave.y, leave.z)));
 }
@@ -61,15 +61,15 @@ void main()
     vec2  place = (2.0 * vec2(pixel) + 1.0 - vec2(WIDTH, HEIGHT)) / float(HEIGHT);
     vec3  straight = forward + tan(0.5 * FOV) * (place.x * right - place.y * up);
     float stretch = length(straight);
-    vec3  way = straight / stretch;
+    vec3  direction = straight / stretch;
     float width = 2.0 * tan(0.5 * FOV) / float(HEIGHT) / stretch; // of a pixel, times t
 
-    vec2  range = clip_to_box(EYE, way);
+    vec2  range = clip_to_box(EYE, direction);
     float t = range.x;
     int   steps = 0;
     bool  hit = false;
     for (; steps < MOST_STEPS && t < range.y; steps++) {
-        float d = map(EYE + t * way);
+        float d = map(EYE + t * direction);
         if (d < ERROR * width * t) {
             hit = true;
             break;
@@ -78,14 +78,15 @@ void main()
     }
     hit = hit || (steps == MOST_STEPS && t < range.y); // creeping along a surface
 
-    vec3 color = sky_radiance(way) + sun_radiance(way, SUN_DIRECTION, SUN_COLOR, SUN_SOFTNESS);
+    vec3 color = sky_radiance(direction) +
+                 sun_radiance(direction, SUN_DIRECTION, SUN_COLOR, SUN_SOFTNESS);
     if (hit) {
-        vec3 p = EYE + t * way;
+        vec3 p = EYE + t * direction;
         vec3 n = normal_at(p, 0.5 * width * t);
         vec4 m = material(p);
         color = m.rgb * (1.0 - METALLIC) * sky_light(n) +
-                sky_reflected(n, -way, m.rgb, m.a, METALLIC) +
-                SUN_COLOR * reflected(n, -way, SUN_DIRECTION, m.rgb, m.a, METALLIC);
+                sky_reflected(n, -direction, m.rgb, m.a, METALLIC) +
+                SUN_COLOR * reflected(n, -direction, SUN_DIRECTION, m.rgb, m.a, METALLIC);
     }
 #ifdef COUNT_STEPS
     color = vec3(min(steps + (hit ? 1 : 0), MOST_STEPS));

@@ -19,9 +19,9 @@ static const char path[] = "bench/scenes/palm-leaf.krs";
 
 enum { WIDTH = 480, HEIGHT = 320, PIXELS = WIDTH * HEIGHT, BLACK = 70 };
 
-static const KrsTrace ways[] = {KRS_TRACE_BINARY, KRS_TRACE_PREDICTED, KRS_TRACE_PLAIN,
-                                KRS_TRACE_AUTO, KRS_TRACE_DIRECTIONAL};
-enum { WAYS = sizeof ways / sizeof *ways };
+static const KrsTrace methods[] = {KRS_TRACE_BINARY, KRS_TRACE_PREDICTED, KRS_TRACE_PLAIN,
+                                   KRS_TRACE_AUTO, KRS_TRACE_DIRECTIONAL};
+enum { METHODS = sizeof methods / sizeof *methods };
 
 static Sheet sheet;
 
@@ -32,28 +32,30 @@ static void shade(uint32_t steps, uint8_t *rgb)
     rgb[1] = rgb[2] = gray;
 }
 
-static uint8_t strip[3 * PIXELS * WAYS]; /* the pictures, side by side */
+static uint8_t strip[3 * PIXELS * METHODS]; /* the pictures, side by side */
 
 static void put(const KrsPicture *picture, int place)
 {
     for (int i = 0; i < PIXELS; i++) {
         int x = place * WIDTH + i % WIDTH, y = i / WIDTH;
-        shade(picture->steps[i], &strip[3 * (y * WIDTH * WAYS + x)]);
+        shade(picture->steps[i], &strip[3 * (y * WIDTH * METHODS + x)]);
     }
 }
 
 static void write_strip(const char *name)
 {
     OutputError   error = {0};
-    const Picture frame = {
-        .width = WIDTH * WAYS, .height = HEIGHT, .crop_width = WIDTH * WAYS, .crop_height = HEIGHT};
-    OutputFile *file = output_open(name, NULL, &error);
+    const Picture frame = {.width       = WIDTH * METHODS,
+                           .height      = HEIGHT,
+                           .crop_width  = WIDTH * METHODS,
+                           .crop_height = HEIGHT};
+    OutputFile   *file  = output_open(name, NULL, &error);
     if (!file || !png_write(&frame, strip, file, &error) || output_commit(file) != KRS_OK)
         give_up(name, error.message);
 }
 
 /* Of the pixels that cost something at all. */
-static void tell(const KrsPicture *picture, KrsTrace way)
+static void tell(const KrsPicture *picture, KrsTrace method)
 {
     double   sum   = 0;
     size_t   count = 0, dark = 0;
@@ -65,22 +67,22 @@ static void tell(const KrsPicture *picture, KrsTrace way)
         dark += steps > BLACK;
         most = steps > most ? steps : most;
     }
-    sheet_print(&sheet, "| %s | %.1f | %u | %.2f %% |\n", krs_trace_names[way],
+    sheet_print(&sheet, "| %s | %.1f | %u | %.2f %% |\n", krs_trace_names[method],
                 sum / (double)(count ? count : 1), most, 100.0 * (double)dark / PIXELS);
 }
 
-static void shoot(const Stage *stage, KrsTrace way, int place)
+static void shoot(const Stage *stage, KrsTrace method, int place)
 {
     KrsRenderOptions options = {.width    = WIDTH,
                                 .height   = HEIGHT,
                                 .samples  = 1,
                                 .no_beams = true,
                                 .planes   = KRS_PLANE_COLOR | KRS_PLANE_STEPS,
-                                .trace    = way,
+                                .trace    = method,
                                 .schedule = KRS_SCHEDULE_PIXEL};
     KrsPicture      *picture = stage_render(stage, &options);
     put(picture, place);
-    tell(picture, way);
+    tell(picture, method);
     krs_picture_free(picture);
 }
 
@@ -107,8 +109,8 @@ int main(int count, char **arguments)
                 "| %dx%d | iterations of a pixel that has any | most | more than %d |\n"
                 "| --- | --- | --- | --- |\n",
                 WIDTH, HEIGHT, BLACK);
-    for (int i = 0; i < WAYS; i++)
-        shoot(&stage, ways[i], i);
+    for (int i = 0; i < METHODS; i++)
+        shoot(&stage, methods[i], i);
     sheet_print(&sheet, "\n![iterations](%s)\n", base_name(name));
     write_strip(name);
     stage_close(&stage);

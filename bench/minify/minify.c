@@ -32,11 +32,11 @@ static const struct Flight {
 enum { FLIGHTS = sizeof flights / sizeof *flights };
 
 /* What is compared: samples, and whether surfaces are filtered. */
-static const struct Way {
+static const struct Setting {
     uint32_t samples;
     bool     plain;
-} ways[] = {{1, true}, {1, false}, {4, false}};
-enum { WAYS = sizeof ways / sizeof *ways };
+} settings[] = {{1, true}, {1, false}, {4, false}};
+enum { SETTINGS = sizeof settings / sizeof *settings };
 
 typedef struct Shot {
     double color[PIXELS][3]; /* as a screen shows it, 0 to 255 */
@@ -164,7 +164,7 @@ static double mean_light(const Shot *shot)
 
 static void fly(KrsRenderer *renderer, const struct Flight *flight, uint32_t samples)
 {
-    static Shot   truth[FRAMES], shots[WAYS][FRAMES], sky, covered;
+    static Shot   truth[FRAMES], shots[SETTINGS][FRAMES], sky, covered;
     Stage         stage   = stage_of(renderer, flight);
     struct Flight nothing = *flight;
     nothing.path          = "bench/minify/nothing.krs";
@@ -172,12 +172,12 @@ static void fly(KrsRenderer *renderer, const struct Flight *flight, uint32_t sam
     double true_change    = 0;
     for (int f = 0; f < FRAMES; f++) {
         shoot(&stage, f, samples, true, &truth[f]);
-        for (int w = 0; w < WAYS; w++)
-            shoot(&stage, f, ways[w].samples, ways[w].plain, &shots[w][f]);
+        for (int w = 0; w < SETTINGS; w++)
+            shoot(&stage, f, settings[w].samples, settings[w].plain, &shots[w][f]);
     }
     for (int f = 1; f < FRAMES; f++)
         true_change += change_of(&truth[f], &truth[f - 1]) / (FRAMES - 1);
-    for (int w = 0; w < WAYS; w++) {
+    for (int w = 0; w < SETTINGS; w++) {
         double error = 0, cut = 0, change = 0, ms = 0;
         for (int f = 0; f < FRAMES; f++) {
             shoot(&empty, f, 1, true, &sky);
@@ -188,7 +188,7 @@ static void fly(KrsRenderer *renderer, const struct Flight *flight, uint32_t sam
             change += f ? change_of(&shots[w][f], &shots[w][f - 1]) / (FRAMES - 1) : 0;
         }
         sheet_print(&sheet, "| %s | %u | %s | %.2f | %.2f | %.2f | %+.2f %% | %+.2f %% | %.0f |\n",
-                    flight->name, ways[w].samples, ways[w].plain ? "no" : "yes", error, cut,
+                    flight->name, settings[w].samples, settings[w].plain ? "no" : "yes", error, cut,
                     change - true_change,
                     100 * (mean_alpha(&shots[w][0]) / mean_alpha(&truth[0]) - 1),
                     100 * (mean_light(&shots[w][0]) / mean_light(&truth[0]) - 1), ms);

@@ -26,14 +26,14 @@ typedef struct Filtered {
 } Filtered;
 
 /* As renderers have it: less what it is at the radius, so that it ends at 0. */
-static double weight(Filter filter, double away)
+static double weight(Filter filter, double distance)
 {
-    if (fabs(away) >= filter.radius)
+    if (fabs(distance) >= filter.radius)
         return 0;
     if (filter.sigma == 0)
         return 1;
     double scale = -0.5 / (filter.sigma * filter.sigma);
-    return exp(scale * away * away) - exp(scale * filter.radius * filter.radius);
+    return exp(scale * distance * distance) - exp(scale * filter.radius * filter.radius);
 }
 
 /* Along one side: the samples from `REACH` before a pixel to as many behind its first, by number;

@@ -52,15 +52,15 @@ typedef void Truth(const double p[3], double n[3]);
 /* length([length([x, z]) - 1, y]) - 0.35 + 0.03 sin(9 x) sin(9 y) sin(9 z) */
 static void bumpy_normal(const double p[3], double n[3])
 {
-    double away = hypot(p[0], p[2]), size = hypot(away - 1, p[1]);
+    double distance = hypot(p[0], p[2]), size = hypot(distance - 1, p[1]);
     double s[3], c[3];
     for (int i = 0; i < 3; i++) {
         s[i] = sin(9 * p[i]);
         c[i] = cos(9 * p[i]);
     }
-    n[0] = p[0] / away * (away - 1) / size + 0.27 * c[0] * s[1] * s[2];
+    n[0] = p[0] / distance * (distance - 1) / size + 0.27 * c[0] * s[1] * s[2];
     n[1] = p[1] / size + 0.27 * s[0] * c[1] * s[2];
-    n[2] = p[2] / away * (away - 1) / size + 0.27 * s[0] * s[1] * c[2];
+    n[2] = p[2] / distance * (distance - 1) / size + 0.27 * s[0] * s[1] * c[2];
 }
 
 /* (1 + 2 g) (r^2 - 1)^2 = 4 (h x^2 - y^2) (h y^2 - z^2) (h z^2 - x^2), h = g^2, g golden */

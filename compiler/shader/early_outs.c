@@ -124,17 +124,17 @@ void emit_early_outs(Emitter *e, const EmitMarch *march, const Node *roots, size
              "// the same places as krs_distance.  What is far for its size is not looked at, nor\n"
              "// what is smaller than the footprint.\n"
              "float krs_distance_lod(vec3 p, float footprint)\n{\n");
-    size_t count = march->flat != NULL;
-    if (march->flat)
+    size_t count = march->is_plane != NULL;
+    if (march->is_plane)
         text_add(e->out, "    float d = 1e30;\n");
     for (int finite = 0; finite < 2; finite++)
         for (size_t i = 0; i < components; i++) {
-            bool flat = march->flat && march->flat[i];
+            bool is_plane = march->is_plane && march->is_plane[i];
             if (box_is_empty(march->boxes[i]) || box_is_finite(march->boxes[i]) != finite)
                 continue;
-            text_add(e->out, flat ? "#ifndef FLATS\n" : "");
+            text_add(e->out, is_plane ? "#ifndef PLANES\n" : "");
             emit_guarded_component(e, i, march->boxes[i], count++ == 0);
-            text_add(e->out, flat ? "#endif\n" : "");
+            text_add(e->out, is_plane ? "#endif\n" : "");
         }
     if (count == 0)
         text_add(e->out, "    float d = 1e30;\n");

@@ -30,53 +30,54 @@ static void emit_zones(Emitter *e, Node zone)
                      "    return d;\n}\n\n");
 }
 
-/* With flats, kernels that know them march the rest. */
-static void emit_union(Emitter *e, size_t components, const bool *flat)
+/* Kernels that intersect planes march the rest. */
+static void emit_union(Emitter *e, size_t components, const bool *is_plane)
 {
-    if (flat) {
-        text_add(e->out, "#ifdef FLATS\n    float d = 1e30;\n");
+    if (is_plane) {
+        text_add(e->out, "#ifdef PLANES\n    float d = 1e30;\n");
         for (size_t i = 0; i < components; i++)
-            if (!flat[i])
+            if (!is_plane[i])
                 text_format(e->out, "    d = min(d, krs_distance_%zu(p));\n", i + 1);
         text_add(e->out, "#else\n");
     }
     text_add(e->out, components ? "    float d = krs_distance_1(p);\n" : "    float d = 1e30;\n");
     for (size_t i = 1; i < components; i++)
         text_format(e->out, "    d = min(d, krs_distance_%zu(p));\n", i + 1);
-    if (flat)
+    if (is_plane)
         text_add(e->out, "#endif\n");
 }
 
-/* Of the group that is defined, or of all. */
-static void emit_group_distances(Emitter *e, size_t components, const uint32_t *groups,
-                                 const bool *flat)
+/* Of the march group that is defined, or of all. */
+static void emit_march_group_distances(Emitter *e, size_t components, const uint32_t *march_groups,
+                                       const bool *is_plane)
 {
-    text_add(e->out, "#ifdef GROUP\n    float d = 1e30;\n");
+    text_add(e->out, "#ifdef MARCH_GROUP\n    float d = 1e30;\n");
     for (size_t i = 0; i < components; i++)
-        text_format(e->out, "#if GROUP == %u\n    d = min(d, krs_distance_%zu(p));\n#endif\n",
-                    groups[i], i + 1);
+        text_format(e->out, "#if MARCH_GROUP == %u\n    d = min(d, krs_distance_%zu(p));\n#endif\n",
+                    march_groups[i], i + 1);
     text_add(e->out, "#else\n");
-    emit_union(e, components, flat);
+    emit_union(e, components, is_plane);
     text_add(e->out, "#endif\n");
 }
 
-static void emit_distances(Emitter *e, const Node *roots, size_t components, const uint32_t *groups,
-                           const bool *flat)
+static void emit_distances(Emitter *e, const Node *roots, size_t components,
+                           const uint32_t *march_groups, const bool *is_plane)
 {
     for (size_t i = 0; i < components; i++) {
         Node root = roots[i * ROOT_COUNT + ROOT_DISTANCE];
-        if (groups)
-            text_format(e->out, "#if !defined GROUP || GROUP == %u\n", groups[i]);
+        if (march_groups)
+            text_format(e->out, "#if !defined MARCH_GROUP || MARCH_GROUP == %u\n", march_groups[i]);
         text_format(e->out, "float krs_distance_%zu(vec3 p)\n{\n", i + 1);
         emit_body(e, &root, 1);
-        text_format(e->out, "    return %s;\n}\n%s\n", e->text[root], groups ? "#endif\n" : "");
+        text_format(e->out, "    return %s;\n}\n%s\n", e->text[root],
+                    march_groups ? "#endif\n" : "");
     }
     text_add(e->out, "// Never above the distance to the nearest surface; negative inside.\n"
                      "float krs_distance(vec3 p)\n{\n");
-    if (groups)
-        emit_group_distances(e, components, groups, flat);
+    if (march_groups)
+        emit_march_group_distances(e, components, march_groups, is_plane);
     else
-        emit_union(e, components, flat);
+        emit_union(e, components, is_plane);
     text_add(e->out, "    return krs_cut(p, d);\n}\n\n");
 }
 
@@ -100,10 +101,10 @@ static void emit_gradient_of(Emitter *e, size_t component, const Node *roots)
     text_format(e->out,
                 "    vec4 found = vec4(0.0);\n"
                 "    for (uint i = 0u; i < 7u; i++) {\n"
-                "        vec3 way = vec3(i >> 1u == 0u, i >> 1u == 1u, i >> 1u == 2u);\n"
-                "        way *= (i & 1u) == 0u ? reach : -reach;\n"
-                "        float d = krs_distance_%zu(p + way);\n"
-                "        found += i < 6u ? vec4(d * way, 0.0) : vec4(0.0, 0.0, 0.0, d);\n"
+                "        vec3 offset = vec3(i >> 1u == 0u, i >> 1u == 1u, i >> 1u == 2u);\n"
+                "        offset *= (i & 1u) == 0u ? reach : -reach;\n"
+                "        float d = krs_distance_%zu(p + offset);\n"
+                "        found += i < 6u ? vec4(d * offset, 0.0) : vec4(0.0, 0.0, 0.0, d);\n"
                 "    }\n"
                 "    return found;\n}\n\n",
                 component + 1);
@@ -128,7 +129,7 @@ static void emit_zone_gradients(Emitter *e, Node zone, const Node *roots)
 
 static void emit_gradients(Emitter *e, const EmitMarch *march, size_t components, Node zone)
 {
-    text_add(e->out, "#if defined(GRADIENT) && !defined(ANCHORED)\n");
+    text_add(e->out, "#if defined(GRADIENT) && !defined(CAMERA_RELATIVE)\n");
     for (size_t i = 0; i < components; i++)
         emit_gradient_of(e, i, march->gradient + 2 * i);
     text_add(e->out,
@@ -201,16 +202,16 @@ static void emit_struct(Emitter *e)
 
 /* ---- the whole ---- */
 
-/* The whole again for kernels far from the origin, to whom points are given from an anchor. */
-static void emit_anchored(Emitter *e, const EmitMarch *march, size_t components,
-                          FrameValues *values)
+/* The whole again for kernels far from the origin, with camera-relative points. */
+static void emit_camera_relative(Emitter *e, const EmitMarch *march, size_t components,
+                                 FrameValues *values)
 {
-    const Node *roots = march->anchored, *ahead = roots + components * ROOT_COUNT;
-    EmitMarch   plain = {.flat = march->flat, .ahead = ahead};
+    const Node *roots = march->camera_relative, *plane_roots = roots + components * ROOT_COUNT;
+    EmitMarch   plain = {.is_plane = march->is_plane, .plane_roots = plane_roots};
     emit_lay_out(e, roots, components * ROOT_COUNT + 2, values);
     e->from_host = true;
     text_format(e->out,
-                "#ifdef ANCHORED // p is given from an anchor near it: graph/anchor.h\n"
+                "#ifdef CAMERA_RELATIVE // p is relative to an origin near it: graph/rebase.h\n"
                 "layout(std140, set = 0, binding = 0) uniform KrsParameters "
                 "{ vec4 krs_parameter[%u]; };\n\n",
                 values->first_slot + values->slots + 1);
@@ -219,9 +220,9 @@ static void emit_anchored(Emitter *e, const EmitMarch *march, size_t components,
     emit_frame(e, roots, components * ROOT_COUNT + 2, values);
     e->from_host = false;
     text_add(e->out, "float krs_cut(vec3 p, float d) { return d; }\n\n");
-    emit_distances(e, roots, components, NULL, march->flat);
-    emit_scene_parts(e, NULL, march->flat, components);
-    emit_flats(e, &plain);
+    emit_distances(e, roots, components, NULL, march->is_plane);
+    emit_scene_parts(e, NULL, march->is_plane, components);
+    emit_planes(e, &plain);
     emit_surfaces(e, roots, components);
     text_add(e->out, "#else\n");
 }
@@ -241,7 +242,7 @@ static Emitter emitter_new(const Graph *graph, const Sources *sources, Arena *sc
     return e;
 }
 
-/* All that the functions of a program need, anchored ones aside. */
+/* All that the functions of a program need, but for the camera-relative ones. */
 static Node *gather_roots(const Node *roots, size_t plain, const EmitMarch *march,
                           size_t components, Arena *scratch, size_t *count)
 {
@@ -251,7 +252,7 @@ static Node *gather_roots(const Node *roots, size_t plain, const EmitMarch *marc
     } kinds[] = {{roots, plain},
                  {march->guarded, components},
                  {march->along, ALONG_COUNT * components},
-                 {march->ahead, march->flat ? 2 : 0},
+                 {march->plane_roots, march->is_plane ? 2 : 0},
                  {march->gradient, march->gradient ? 2 * (components + 1) : 0}};
     enum { KINDS = sizeof kinds / sizeof *kinds };
     *count = 0;
@@ -320,27 +321,28 @@ void emit_glsl(const Graph *graph, const Sources *sources, const Node *roots,
                                component_count, scratch, &count);
     *frame      = (EmittedFrame){.plain.first_slot = (uint32_t)graph->parameters.count};
     emit_lay_out(&e, all, count, &frame->plain);
-    frame->anchored.first_slot = frame->plain.first_slot + frame->plain.slots + march->zone_slots;
+    frame->camera_relative.first_slot = frame->plain.first_slot + frame->plain.slots +
+                                        march->zone_slots;
     emit_head(&e, march);
-    if (march->anchored)
-        emit_anchored(&e, march, component_count, &frame->anchored);
+    if (march->camera_relative)
+        emit_camera_relative(&e, march, component_count, &frame->camera_relative);
     emit_parameters(&e, &frame->plain);
     emit_struct(&e);
     emit_helpers(&e, all, count);
     emit_frame(&e, all, count, &frame->plain);
     emit_zones(&e, zone);
-    emit_distances(&e, roots, component_count, march->groups, march->flat);
-    emit_flats(&e, march);
+    emit_distances(&e, roots, component_count, march->march_groups, march->is_plane);
+    emit_planes(&e, march);
     emit_along(&e, march, roots, component_count);
-    if (march->groups)
-        text_add(out, "#ifndef GROUP\n");
+    if (march->march_groups)
+        text_add(out, "#ifndef MARCH_GROUP\n");
     emit_early_outs(&e, march, roots, component_count);
-    emit_scene_parts(&e, march->boxes, march->flat, component_count);
+    emit_scene_parts(&e, march->boxes, march->is_plane, component_count);
     if (march->gradient)
         emit_gradients(&e, march, component_count, zone);
     emit_surfaces(&e, roots, component_count);
-    if (march->groups)
+    if (march->march_groups)
         text_add(out, "#endif\n");
-    if (march->anchored)
+    if (march->camera_relative)
         text_add(out, "#endif\n");
 }

@@ -12,23 +12,23 @@ typedef struct EmitMarch {
     const Node     *guarded; /* of each component: lower_guarded */
     const Node     *along;   /* of each component, method by method: lower_along */
     const Box      *boxes;
-    const uint32_t *groups; /* the group of each, or NULL: all together */
-    const bool     *flat;   /* whether each is a plane that krs_ahead knows; NULL: none is */
-    const Node *anchored;   /* NULL, or all roots of all components and the two of `ahead` again, by
-                               graph_anchor, for kernels with #define ANCHORED */
-    uint32_t    zone_slots; /* before what the host finds for those */
-    const Node *ahead;      /* with `flat`: where a ray meets one, and how steeply it falls */
-    bool        slopes;     /* there are slots of slopes */
-    const Node *gradient;   /* of each component and of the zones: lower_gradient's two; FLOATs
+    const uint32_t *march_groups; /* the group of each, or NULL: all together */
+    const bool     *is_plane;    /* whether each is a plane that krs_plane_t knows; NULL: none is */
+    const Node *camera_relative; /* all roots and `plane_roots` again, by graph_rebase; NULL: none
+                               is rebased.  For kernels with #define CAMERA_RELATIVE */
+    uint32_t    zone_slots;      /* before what the host finds for those */
+    const Node *plane_roots; /* with `is_plane`: where a ray meets one, and how steeply it falls */
+    bool        slopes;      /* there are slots of slopes */
+    const Node *gradient;    /* of each component and of the zones: lower_gradient's two; FLOATs
                                where there is none; NULL: nobody wants any */
 } EmitMarch;
 
-/* In how many scene parts so many components are marched: each is one component or neighbours, where each ray goes on with the one that comes
-   next. */
+/* In how many scene parts so many components are marched: each is one component or neighbours,
+   where each ray goes on with the one that comes next. */
 uint32_t emit_scene_part_count(size_t components);
-/* What the host finds for each frame, and for each anchor. */
+/* What the host finds for each frame, and for each origin of camera-relative points. */
 typedef struct EmittedFrame {
-    FrameValues plain, anchored;
+    FrameValues plain, camera_relative;
 } EmittedFrame;
 
 /* Text of a program with `component_count` components; the roots of component i are

@@ -1,8 +1,8 @@
 /*
  * emitter.h: what the files of the emitter share.
  *
- * statements.c and mirrors.c turn nodes into statements; emit.c, early_outs.c and march.c write the functions
- * around them.
+ * statements.c and mirrors.c turn nodes into statements; emit.c, early_outs.c and march.c write the
+ * functions around them.
  */
 #ifndef KRS_EMITTER_H
 #define KRS_EMITTER_H
@@ -24,7 +24,7 @@ typedef struct Emitter {
     } needed;                  /* all that have uses, in order */
     const char **frame;        /* names of the globals that krs_prepare sets */
     uint8_t     *feeds_mirror; /* whether a mirror (OP_fold) uses it */
-    const char **excess;       /* of mirrors in a row: the name of how far beyond it the point is */
+    const char **excess;       /* of mirrors in a row: the name of the point's excess over it */
     uint32_t     next;         /* number of the next local name */
     uint32_t     globals;
     uint32_t    *found_index; /* of values that the host finds: their index + 1 */
@@ -70,10 +70,10 @@ void emit_early_outs(Emitter *e, const EmitMarch *march, const Node *roots, size
 
 /* ---- march.c: what some marches need beside a distance ---- */
 
-/* krs_ahead and krs_rise: where rays meet planes. */
-void emit_flats(Emitter *e, const EmitMarch *march);
-/* krs_distance_of and krs_part_box.  `boxes` of components; NULL: not known. */
-void emit_scene_parts(Emitter *e, const Box *boxes, const bool *flat, size_t components);
+/* krs_plane_t and krs_plane_cosine: where rays meet planes. */
+void emit_planes(Emitter *e, const EmitMarch *march);
+/* krs_scene_part_distance and krs_scene_part_box.  `boxes` of components; NULL: not known. */
+void emit_scene_parts(Emitter *e, const Box *boxes, const bool *is_plane, size_t components);
 /* krs_along by all methods that are better than the distance, and krs_probe. */
 void emit_along(Emitter *e, const EmitMarch *march, const Node *roots, size_t components);
 

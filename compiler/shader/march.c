@@ -8,19 +8,19 @@
 
 /* ---- planes ---- */
 
-void emit_flats(Emitter *e, const EmitMarch *march)
+void emit_planes(Emitter *e, const EmitMarch *march)
 {
-    if (!march->flat)
+    if (!march->is_plane)
         return;
-    text_add(e->out, "#ifdef FLATS\n"
+    text_add(e->out, "#ifdef PLANES\n"
                      "// How far it is along a ray from outside to the nearest of the planes that\n"
                      "// krs_distance then leaves out, and how steeply it falls towards one: n.d.\n"
-                     "float krs_ahead(vec3 p, vec3 direction)\n{\n");
-    emit_body(e, &march->ahead[0], 1);
-    text_format(e->out, "    return %s;\n}\n\nfloat krs_rise(vec3 direction)\n{\n",
-                e->text[march->ahead[0]]);
-    emit_body(e, &march->ahead[1], 1);
-    text_format(e->out, "    return %s;\n}\n#endif\n\n", e->text[march->ahead[1]]);
+                     "float krs_plane_t(vec3 p, vec3 direction)\n{\n");
+    emit_body(e, &march->plane_roots[0], 1);
+    text_format(e->out, "    return %s;\n}\n\nfloat krs_plane_cosine(vec3 direction)\n{\n",
+                e->text[march->plane_roots[0]]);
+    emit_body(e, &march->plane_roots[1], 1);
+    text_format(e->out, "    return %s;\n}\n#endif\n\n", e->text[march->plane_roots[1]]);
 }
 
 /* ---- scene parts: one component, or neighbours that share a distance function ---- */
@@ -34,33 +34,34 @@ uint32_t emit_scene_part_count(size_t components)
 }
 
 /* The first component of a scene part; for the number of parts, the number of components. */
-static size_t first_of_scene_part(size_t part, size_t components)
+static size_t first_of_scene_part(size_t scene_part, size_t components)
 {
-    return part * components / emit_scene_part_count(components);
+    return scene_part * components / emit_scene_part_count(components);
 }
 
 /* A case of the switch over scene parts. */
-static void emit_scene_part_distance(Emitter *e, size_t part, const bool *flat, size_t components)
+static void emit_scene_part_distance(Emitter *e, size_t scene_part, const bool *is_plane,
+                                     size_t components)
 {
-    text_format(e->out, "    case %zuu:\n", part);
+    text_format(e->out, "    case %zuu:\n", scene_part);
     for (int guarded = 1; guarded >= 0; guarded--) {
         text_add(e->out, guarded ? "#ifdef EARLY_OUTS\n" : "#else\n");
-        for (size_t i = first_of_scene_part(part, components);
-             i < first_of_scene_part(part + 1, components); i++) {
-            text_add(e->out, flat && flat[i] ? "#ifndef FLATS\n" : "");
+        for (size_t i = first_of_scene_part(scene_part, components);
+             i < first_of_scene_part(scene_part + 1, components); i++) {
+            text_add(e->out, is_plane && is_plane[i] ? "#ifndef PLANES\n" : "");
             text_format(e->out,
                         guarded ? "        d = min(d, krs_distance_lod_%zu(p, 0.0));\n"
                                 : "        d = min(d, krs_distance_%zu(p));\n",
                         i + 1);
-            text_add(e->out, flat && flat[i] ? "#endif\n" : "");
+            text_add(e->out, is_plane && is_plane[i] ? "#endif\n" : "");
         }
     }
     text_add(e->out, "#endif\n        break;\n");
 }
 
-/* Its box, grown by what single precision may lose.  Where points are given from an anchor, no box
+/* Its box, grown by what single precision may lose.  Of camera-relative points no box
    is known. */
-static void emit_scene_part_box(Emitter *e, size_t part, Box box, bool flat)
+static void emit_scene_part_box(Emitter *e, size_t scene_part, Box box, bool is_plane)
 {
     if (box_is_empty(box))
         return;
@@ -71,39 +72,40 @@ static void emit_scene_part_box(Emitter *e, size_t part, Box box, bool flat)
         corner[0][i]  = fmax(box.axis[i].low - margin, -1e18);
         corner[1][i]  = fmin(box.axis[i].high + margin, 1e18);
     }
-    text_add(e->out, flat ? "#ifndef FLATS\n" : "");
+    text_add(e->out, is_plane ? "#ifndef PLANES\n" : "");
     text_format(e->out, "    case %zuu:\n        low = %s;\n        high = %s;\n        break;\n",
-                part, emit_vector(e, corner[0]), emit_vector(e, corner[1]));
-    text_add(e->out, flat ? "#endif\n" : "");
+                scene_part, emit_vector(e, corner[0]), emit_vector(e, corner[1]));
+    text_add(e->out, is_plane ? "#endif\n" : "");
 }
 
-void emit_scene_parts(Emitter *e, const Box *boxes, const bool *flat, size_t components)
+void emit_scene_parts(Emitter *e, const Box *boxes, const bool *is_plane, size_t components)
 {
-    size_t parts = emit_scene_part_count(components);
-    if (parts < 2)
+    size_t scene_parts = emit_scene_part_count(components);
+    if (scene_parts < 2)
         return;
     text_format(e->out,
                 "#ifdef PACKED\n"
                 "// Parts of the scene, most of them one component: the distance of one,"
                 " and a box\n// around it; where there is none the box stays empty.\n"
-                "const uint KRS_PARTS = %zuu;\n\n"
-                "float krs_distance_of(uint part, vec3 p)\n{\n"
-                "    float d = 1e30;\n    switch (part) {\n",
-                parts);
-    for (size_t part = 0; part < parts; part++)
-        emit_scene_part_distance(e, part, flat, components);
-    text_add(e->out, "    }\n    return krs_cut(p, d);\n}\n\n"
-                     "void krs_part_box(uint part, inout vec3 low, inout vec3 high)\n{\n"
-                     "    switch (part) {\n");
-    for (size_t part = 0; part < parts; part++) {
-        Box  box      = box_empty;
-        bool all_flat = true;
-        for (size_t i = first_of_scene_part(part, components);
-             i < first_of_scene_part(part + 1, components); i++) {
-            box      = box_hull(box, boxes ? boxes[i] : box_infinite);
-            all_flat = all_flat && flat && flat[i];
+                "const uint KRS_SCENE_PARTS = %zuu;\n\n"
+                "float krs_scene_part_distance(uint scene_part, vec3 p)\n{\n"
+                "    float d = 1e30;\n    switch (scene_part) {\n",
+                scene_parts);
+    for (size_t scene_part = 0; scene_part < scene_parts; scene_part++)
+        emit_scene_part_distance(e, scene_part, is_plane, components);
+    text_add(e->out,
+             "    }\n    return krs_cut(p, d);\n}\n\n"
+             "void krs_scene_part_box(uint scene_part, inout vec3 low, inout vec3 high)\n{\n"
+             "    switch (scene_part) {\n");
+    for (size_t scene_part = 0; scene_part < scene_parts; scene_part++) {
+        Box  box        = box_empty;
+        bool all_planes = true;
+        for (size_t i = first_of_scene_part(scene_part, components);
+             i < first_of_scene_part(scene_part + 1, components); i++) {
+            box        = box_hull(box, boxes ? boxes[i] : box_infinite);
+            all_planes = all_planes && is_plane && is_plane[i];
         }
-        emit_scene_part_box(e, part, box, all_flat);
+        emit_scene_part_box(e, scene_part, box, all_planes);
     }
     text_add(e->out, "    }\n}\n#endif\n\n");
 }
@@ -120,16 +122,17 @@ static void emit_one_along(Emitter *e, Node along, size_t component, const char 
 
 static void open_component(Emitter *e, const EmitMarch *march, size_t component)
 {
-    if (march->groups)
-        text_format(e->out, "#if !defined GROUP || GROUP == %u\n", march->groups[component]);
-    if (march->flat && march->flat[component])
-        text_add(e->out, "#ifndef FLATS\n");
+    if (march->march_groups)
+        text_format(e->out, "#if !defined MARCH_GROUP || MARCH_GROUP == %u\n",
+                    march->march_groups[component]);
+    if (march->is_plane && march->is_plane[component])
+        text_add(e->out, "#ifndef PLANES\n");
 }
 
 static void close_component(Emitter *e, const EmitMarch *march, size_t component)
 {
-    text_add(e->out, march->flat && march->flat[component] ? "#endif\n" : "");
-    text_add(e->out, march->groups ? "#endif\n" : "");
+    text_add(e->out, march->is_plane && march->is_plane[component] ? "#endif\n" : "");
+    text_add(e->out, march->march_groups ? "#endif\n" : "");
 }
 
 static const char about_probe[] =

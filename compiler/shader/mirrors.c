@@ -2,8 +2,9 @@
  * mirrors.c: mirrors (OP_fold) as statements.
  *
  * A mirror waits for the one before it, and processors with few threads wait with it: in a row of
- * mirrors that is all that a distance costs.  With p(k+1) = p(k) - 2 m(k) n(k) and how far the
- * point is beyond the mirror, m(k) = max(p(k) n(k) - w(k), 0), where n(j) n(k) is a number,
+ * mirrors that is all that a distance costs.  With p(k+1) = p(k) - 2 m(k) n(k) and the
+ * excess of the point over the mirror, m(k) = max(p(k) n(k) - w(k), 0), where n(j) n(k) is a
+ * number,
  *
  *     m(k) = max(p(k-2) n(k) - w(k) - 2 m(k-2) n(k-2) n(k) - 2 m(k-1) n(k-1) n(k), 0)
  *
@@ -86,13 +87,13 @@ static void subtract_move(Emitter *e, Text *text, const Expr *fold, Node mirror)
                 emit_number(e, 2 * (n[0] * b[0] + n[1] * b[1] + n[2] * b[2])));
 }
 
-/* How far beyond the mirror the point is, from where it was before the mirrors `first` and
+/* The excess of the point over the mirror, from where it was before the mirrors `first` and
    `before`; the term that waits for the last comes last. */
 static const char *mirror_excess(Emitter *e, const Expr *fold, Node first, Node before)
 {
     Text        text  = {.arena = e->scratch};
     const char *point = e->text[fold->operands[0]];
-    text_add(&text, "krs_beyond(");
+    text_add(&text, "krs_mirror_excess(");
     if (before == NODE_NONE) {
         text_add(&text, point);
     } else {

@@ -140,8 +140,8 @@ failed:
     return false;
 }
 
-bool gpu_rehearse(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
-                  const VkDescriptorSet sets[2], const void *constants, uint32_t bytes)
+bool gpu_warm_up(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
+                 const VkDescriptorSet sets[2], const void *constants, uint32_t bytes)
 {
     const char     *attempt = "try a kernel out";
     VkCommandBuffer commands; /* the pool's, until it is destroyed */
@@ -149,7 +149,7 @@ bool gpu_rehearse(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
         vkAllocateCommandBuffers(gpu->device,
                                  &(VkCommandBufferAllocateInfo){
                                      .sType       = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                     .commandPool = gpu->rehearsals,
+                                     .commandPool = gpu->warm_up_pool,
                                      .level       = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                      .commandBufferCount = 1,
                                  },
@@ -159,7 +159,7 @@ bool gpu_rehearse(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
                                            .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                            .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
                                        }));
-    barrier(commands); /* all rehearsals use the same buffers */
+    barrier(commands); /* all kernels are warmed up with the same buffers */
     uint32_t first = sets[0] == VK_NULL_HANDLE;
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, first, 2 - first,

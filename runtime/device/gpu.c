@@ -186,7 +186,7 @@ static bool make_commands(Gpu *gpu)
         .queueFamilyIndex = gpu->family,
     };
     TRY(gpu, OPENING, vkCreateCommandPool(gpu->device, &pool, NULL, &gpu->pool));
-    TRY(gpu, OPENING, vkCreateCommandPool(gpu->device, &pool, NULL, &gpu->rehearsals));
+    TRY(gpu, OPENING, vkCreateCommandPool(gpu->device, &pool, NULL, &gpu->warm_up_pool));
     TRY(gpu, OPENING,
         vkAllocateCommandBuffers(gpu->device,
                                  &(VkCommandBufferAllocateInfo){
@@ -284,7 +284,7 @@ void gpu_close(Gpu *gpu)
         pipelines_close(gpu);
         vkDestroyQueryPool(gpu->device, gpu->times, NULL);
         vkDestroyFence(gpu->device, gpu->fence, NULL);
-        vkDestroyCommandPool(gpu->device, gpu->rehearsals, NULL);
+        vkDestroyCommandPool(gpu->device, gpu->warm_up_pool, NULL);
         vkDestroyCommandPool(gpu->device, gpu->pool, NULL);
         vkDestroyDevice(gpu->device, NULL);
     }

@@ -13,7 +13,7 @@
 #include "runtime/device/cache.h"
 #include "runtime/krs_vulkan.h"
 
-/* What a stage of a kernel binds of storage buffers (stage.h); devices may have four and no more,
+/* What a stage of a kernel binds of storage buffers (layouts.h); devices may have four and no more,
    but those of desktops have 16 and more. */
 enum { STORAGE_BUFFERS = 8 };
 
@@ -24,7 +24,7 @@ typedef struct Gpu {
     VkDevice         device;
     VkQueue          queue;
     uint32_t         family;
-    VkCommandPool    pool, rehearsals;
+    VkCommandPool    pool, warm_up_pool;
     VkCommandBuffer  commands; /* the one that is recorded, run and waited for */
     VkFence          fence;
     VkQueryPool      times; /* timestamps; none when the queue has no clock */
@@ -100,9 +100,9 @@ bool gpu_finish(Gpu *gpu, double *ms);
 
 /* Has the device run one group of a kernel, and does not wait for it: a driver that compiles a
    kernel only when it first runs does so meanwhile.  The first set may be VK_NULL_HANDLE. */
-bool gpu_rehearse(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
-                  const VkDescriptorSet sets[2], const void *constants, uint32_t bytes);
-/* Until all that was rehearsed has run. */
+bool gpu_warm_up(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
+                 const VkDescriptorSet sets[2], const void *constants, uint32_t bytes);
+/* Until all that is warmed up has run. */
 bool gpu_wait(Gpu *gpu);
 
 /* Milliseconds of the host's steady clock. */

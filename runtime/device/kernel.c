@@ -116,7 +116,7 @@ char *kernel_text(Gpu *gpu, const KernelSource *source)
 }
 
 /* A kernel on its way to SPIR-V, in a thread of its own when it must be compiled. */
-typedef struct Making {
+typedef struct KernelBuild {
     const char *file;
     char       *text;
     CacheKey    key;
@@ -126,14 +126,14 @@ typedef struct Making {
     char       *log;
     pthread_t   thread;
     bool        started; /* the thread */
-} Making;
+} KernelBuild;
 
 static void *compile(void *user)
 {
-    Making *making = user;
-    size_t  count  = 0;
-    making->status = spirv_compile(making->text, making->file, &making->made, &count, &making->log);
-    making->bytes  = count * sizeof *making->made;
+    KernelBuild *build = user;
+    size_t       count = 0;
+    build->status      = spirv_compile(build->text, build->file, &build->made, &count, &build->log);
+    build->bytes       = count * sizeof *build->made;
     return NULL;
 }
 
@@ -149,101 +149,101 @@ static const EmbeddedFile *find_module(const KernelSource *source)
 }
 
 /* Takes the kernel from the program itself, or puts its text together and looks into the cache. */
-static bool begin(Gpu *gpu, Making *making, const KernelSource *source)
+static bool begin(Gpu *gpu, KernelBuild *build, const KernelSource *source)
 {
     char                maker[160];
     const EmbeddedFile *module = find_module(source);
-    *making                    = (Making){.file = source->file};
+    *build                     = (KernelBuild){.file = source->file};
     if (module) {
-        making->bytes = module->length;
-        making->found = gpu_alloc(gpu, module->length, 1, "load a kernel");
-        if (making->found)
-            memcpy(making->found, module->text, module->length);
-        return making->found != NULL;
+        build->bytes = module->length;
+        build->found = gpu_alloc(gpu, module->length, 1, "load a kernel");
+        if (build->found)
+            memcpy(build->found, module->text, module->length);
+        return build->found != NULL;
     }
-    making->text = kernel_text(gpu, source);
-    if (!making->text)
+    build->text = kernel_text(gpu, source);
+    if (!build->text)
         return false;
     snprintf(maker, sizeof maker, "%s: krs %s, glslang %s, SPIRV-Tools %s, inlined", source->file,
              KRS_VERSION, spirv_glslang_version(), spirv_tools_version());
-    making->key   = cache_key(maker, making->text, strlen(making->text));
-    making->found = cache_load(&gpu->cache, CACHE_SPIRV, making->key, &making->bytes);
+    build->key   = cache_key(maker, build->text, strlen(build->text));
+    build->found = cache_load(&gpu->cache, CACHE_SPIRV, build->key, &build->bytes);
     return true;
 }
 
 /* Compiles what was not found, all at once; where a thread cannot be had, one after another. */
-static void compile_all(Making *makings, size_t count)
+static void compile_all(KernelBuild *builds, size_t count)
 {
     size_t first = count; /* the one that this thread compiles */
     for (size_t i = 0; i < count; i++) {
-        Making *making = &makings[i];
-        if (making->found)
+        KernelBuild *build = &builds[i];
+        if (build->found)
             continue;
         if (first == count)
             first = i;
-        else if (pthread_create(&making->thread, NULL, compile, making) == 0)
-            making->started = true;
+        else if (pthread_create(&build->thread, NULL, compile, build) == 0)
+            build->started = true;
         else
-            compile(making);
+            compile(build);
     }
     if (first < count)
-        compile(&makings[first]);
+        compile(&builds[first]);
     for (size_t i = 0; i < count; i++)
-        if (makings[i].started)
-            pthread_join(makings[i].thread, NULL);
+        if (builds[i].started)
+            pthread_join(builds[i].thread, NULL);
 }
 
 /* Keeps what was compiled, or says why it was not. */
-static bool finish(Gpu *gpu, const Making *making)
+static bool finish(Gpu *gpu, const KernelBuild *build)
 {
-    const char *log = making->log ? making->log : "";
-    if (making->found)
+    const char *log = build->log ? build->log : "";
+    if (build->found)
         return true;
-    if (making->status == KRS_OK)
-        cache_store(&gpu->cache, CACHE_SPIRV, making->key, making->made, making->bytes);
-    else if (making->status == KRS_OUT_OF_MEMORY)
-        gpu_refuse(gpu, making->status, "cannot compile the kernel `%s`: out of memory",
-                   making->file);
+    if (build->status == KRS_OK)
+        cache_store(&gpu->cache, CACHE_SPIRV, build->key, build->made, build->bytes);
+    else if (build->status == KRS_OUT_OF_MEMORY)
+        gpu_refuse(gpu, build->status, "cannot compile the kernel `%s`: out of memory",
+                   build->file);
     else
-        gpu_refuse(gpu, KRS_INTERNAL, "the kernel `%s` does not compile: %.*s", making->file,
+        gpu_refuse(gpu, KRS_INTERNAL, "the kernel `%s` does not compile: %.*s", build->file,
                    (int)strcspn(log, "\n"), log);
-    return making->status == KRS_OK;
+    return build->status == KRS_OK;
 }
 
-static void release(Gpu *gpu, Making *making)
+static void release(Gpu *gpu, KernelBuild *build)
 {
-    gpu_release(gpu, making->text);
-    gpu_release(gpu, making->found);
-    free(making->made);
-    free(making->log);
+    gpu_release(gpu, build->text);
+    gpu_release(gpu, build->found);
+    free(build->made);
+    free(build->log);
 }
 
 /* Takes the words over, for good or bad. */
-static KernelCode take_code(Making *making)
+static KernelCode take_code(KernelBuild *build)
 {
-    KernelCode code = {making->file, making->found ? making->found : making->made, making->bytes,
-                       !making->found};
-    making->found = making->made = NULL;
+    KernelCode code = {build->file, build->found ? build->found : build->made, build->bytes,
+                       !build->found};
+    build->found = build->made = NULL;
     return code;
 }
 
 bool kernel_compile_all(Gpu *gpu, const KernelRequest *requests, size_t count, KernelCode *codes,
                         double *spirv_ms)
 {
-    double  start   = clock_ms();
-    Making *makings = gpu_alloc(gpu, count, sizeof *makings, "compile the kernels");
-    bool    ready   = makings != NULL;
+    double       start  = clock_ms();
+    KernelBuild *builds = gpu_alloc(gpu, count, sizeof *builds, "compile the kernels");
+    bool         ready  = builds != NULL;
     for (size_t i = 0; i < count && ready; i++)
-        ready = begin(gpu, &makings[i], &requests[i].source);
+        ready = begin(gpu, &builds[i], &requests[i].source);
     if (ready)
-        compile_all(makings, count);
+        compile_all(builds, count);
     for (size_t i = 0; i < count && ready; i++)
-        ready = finish(gpu, &makings[i]);
+        ready = finish(gpu, &builds[i]);
     for (size_t i = 0; i < count; i++)
-        codes[i] = ready ? take_code(&makings[i]) : (KernelCode){0};
-    for (size_t i = 0; i < count && makings; i++)
-        release(gpu, &makings[i]);
-    gpu_release(gpu, makings);
+        codes[i] = ready ? take_code(&builds[i]) : (KernelCode){0};
+    for (size_t i = 0; i < count && builds; i++)
+        release(gpu, &builds[i]);
+    gpu_release(gpu, builds);
     *spirv_ms += clock_ms() - start;
     return ready;
 }

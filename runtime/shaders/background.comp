@@ -8,7 +8,7 @@
  * An item is a quarter of a tile of 8x8 pixels.
  */
 #include "frame.glsl"
-#include "solid.glsl"
+#include "hit_lists.glsl"
 #include "light.glsl"
 #include "results.glsl"
 
@@ -27,41 +27,41 @@ void begin_group()
     keeps_counts = control.phase == FIRST && control.first_ray != 0u && is_wanted(COUNTS);
 }
 
-// In the order of quarters, whatever hits something in between.  Room is taken for all at once: what
-// lanes count together costs each of them as much as many distances.
-void list(uint quarter, uint hits)
+// In the order of quarters.  Indices are reserved for all pixels of the quarter at once: an atomic
+// operation costs each lane as much as many distances.
+void list_hits(uint quarter, uint hits)
 {
-    uint first = slot_of_quarter(quarter), anchors = hits & anchors_of_quarter(quarter);
-    uint at = 0u, anchor_at = 0u;
+    uint first = slot_of_quarter(quarter), sparse = hits & sparse_pixels_of_quarter(quarter);
+    uint at = 0u, sparse_at = 0u;
     if (hits != 0u) {
-        at = atomicAdd(counts.solid, bitCount(hits));
-        solid[quarter_at(LISTED_QUARTERS, atomicAdd(counts.quarters, 1u))] = quarter;
+        at = atomicAdd(counts.hit_count, bitCount(hits));
+        pixel_lists[quarter_at(LISTED_QUARTERS, atomicAdd(counts.quarters, 1u))] = quarter;
     }
-    if (anchors != 0u)
-        anchor_at = band_pixels() + atomicAdd(counts.anchors, bitCount(anchors));
+    if (sparse != 0u)
+        sparse_at = band_pixels() + atomicAdd(counts.sparse, bitCount(sparse));
     do { // as in pixels.glsl
         uint bit = hits & ~hits + 1u, slot = slot_of_bit(first, bit);
         if (hits != 0u)
-            solid[at++] = slot;
-        if ((anchors & bit) != 0u)
-            solid[anchor_at++] = slot;
+            pixel_lists[at++] = slot;
+        if ((sparse & bit) != 0u)
+            pixel_lists[sparse_at++] = slot;
         hits &= ~bit;
     } while (hits != 0u);
 }
 
-// What is not often asked for: how many steps there were, and lists by groups of components.
-void keep_more(uint quarter, uint exist, uint hits)
+// What is not often asked for: how many steps there were, and lists by march group.
+void store_more(uint quarter, uint exist, uint hits)
 {
-    bool parts = control.parts != 0u;
-    uint first = slot_of_quarter(quarter), left = parts || keeps_counts ? exist : 0u;
+    bool by_march_group = control.by_march_group != 0u;
+    uint first = slot_of_quarter(quarter), left = by_march_group || keeps_counts ? exist : 0u;
     for (; left != 0u; left &= left - 1u) {
         uint slot = slot_of_bit(first, left), index = index_of(pixel_of(slot));
-        Ray  ray = find_end(index);
+        RayEnd  ray = find_end(index);
         if (keeps_counts)
             results[COUNTS * band_pixels() + index] = uvec4(0u, ray.steps, 0u, 0u);
-        if (parts && (hits & left & ~left + 1u) != 0u)
-            solid[(4u + ray.group) * band_pixels() + atomicAdd(counts.of_group[ray.group], 1u)] =
-                slot;
+        if (by_march_group && (hits & left & ~left + 1u) != 0u)
+            pixel_lists[(4u + ray.march_group) * band_pixels() +
+                        atomicAdd(counts.of_march_group[ray.march_group], 1u)] = slot;
     }
 }
 
@@ -70,8 +70,8 @@ vec3 find_radiance(uvec2 pixel)
     vec3  origin, direction;
     float base, slope;
     find_ray(vec2(work.corner + pixel) + work.offset, origin, direction, base, slope);
-    return sound(sky * sky_radiance(direction) +
-                 sun_radiance(direction, sun.vector, sun.color, sun.softness));
+    return finite_or_black(sky * sky_radiance(direction) +
+                           sun_radiance(direction, sun.vector, sun.color, sun.softness));
 }
 
 // A bit for each pixel of the band in the quarter that begins at this one.
@@ -84,30 +84,30 @@ uint find_existing(uvec2 corner)
 void do_item(uint quarter)
 {
     uvec2 corner = pixel_of(slot_of_quarter(quarter));
-    uint  exist = find_existing(corner), hits = 0u, lost = 0u, bit = 0u;
+    uint  exist = find_existing(corner), hits = 0u, unresolved = 0u, bit = 0u;
     do {
         uvec2 pixel = corner + uvec2(bit & 3u, bit >> 2u);
         uint  index = index_of(pixel);
         bool  exists = (exist >> bit & 1u) != 0u;
-        Ray   ray = find_end(exists ? index : 0u);
+        RayEnd   ray = find_end(exists ? index : 0u);
         vec3  radiance = find_radiance(pixel);
-        hits |= uint(ray.fate == HIT) << bit;
-        lost |= uint(ray.lost) << bit;
-        if (exists && ray.fate != HIT)
+        hits |= uint(ray.state == HIT) << bit;
+        unresolved |= uint(ray.unresolved) << bit;
+        if (exists && ray.state != HIT)
             add_light(index, radiance);
         bit++;
     } while (bit < 16u);
     exist = control.phase == FIRST ? exist : 0u;
-    lost &= exist;
+    unresolved &= exist;
     hits &= exist;
-    if (lost != 0u)
-        atomicAdd(counts.unresolved, bitCount(lost));
+    if (unresolved != 0u)
+        atomicAdd(counts.unresolved, bitCount(unresolved));
     if (control.phase == FIRST) {
-        solid[quarter_at(HITS_OF_QUARTERS, quarter)] = hits;
-        solid[quarter_at(LIGHT_OF_QUARTERS, quarter)] = 0u; // for good where nothing is hit
+        pixel_lists[quarter_at(HITS_OF_QUARTERS, quarter)] = hits;
+        pixel_lists[quarter_at(LIGHT_OF_QUARTERS, quarter)] = 0u; // for good where nothing is hit
     }
-    list(quarter, hits);
-    keep_more(quarter, exist, hits);
+    list_hits(quarter, hits);
+    store_more(quarter, exist, hits);
 }
 
 #include "pixels.glsl"

@@ -16,8 +16,8 @@ const float INFINITE = 1e38;
 const float ROUNDING = 2.4e-7; // four units in the last place of 1
 
 const uint PERSPECTIVE = 0u, ORTHOGRAPHIC = 1u, PANORAMA = 2u;
-const uint MARCHING = 0u, HIT = 1u, MISS = 2u, CLOSING = 3u; // the fate of a ray
-const uint FRESH = 0u, QUEUED = 1u, REST = 2u; // control.source: where items come from
+const uint MARCHING = 0u, HIT = 1u, MISS = 2u, REFINING = 3u; // the state of a ray
+const uint FRESH = 0u, QUEUED = 1u, UNTAKEN = 2u; // control.source: where items come from
 
 struct Frame {
     vec4  eye;               // w: no ray goes farther
@@ -31,7 +31,7 @@ struct Frame {
     float error;             // permitted distance from the surface, in pixels
     float occlusion_reach;   // of the farthest occlusion tap
     uint  most_steps;
-    float blur;              // how far around a hit its normal is looked for, in pixels
+    float normal_reach;      // how far around a hit its normal is looked for, in pixels
 };
 
 struct Work {
@@ -45,37 +45,37 @@ struct Work {
 // kernel anew, and keeps it, for every set of constants that decides one.
 struct Control {
     uint projection;
-    uint phase;      // of the kernel
-    uint first_ray;  // 1: it is the first of its pixel
-    uint light;      // which one a dispatch is about,
-    uint lights;     // of how many
-    uint ray;        // the number of the ray within its pixel
-    uint seed;       // moves what is drawn by lot
-    uint follow;     // 1: rays start where the beams of their tiles end, 2: of quarters of these,
-    uint listed;     // and 1: there are rays in listed tiles only
-    uint source;     // of the items (schedule.glsl),
-    uint items;      // how many there are,
-    uint share;      // and at most for a lane
-    uint reading;    // where the queue or list that is read begins,
-    uint writing;    // and the one that is written
-    uint value;      // of a hit's LIGHTING that is looked for
-    uint rows;       // of results.glsl that are asked for, a bit each
-    uint parts;      // 1: rays tell which group of components they hit, and are listed by it
-    uint open;       // 1: occlusion is not looked for
-    uint window;     // of the tiles of beams, counted in the band, the first: column | row << 16,
-    uint across;     // and how many in a row
-    uint rays;       // of each pixel
-    uint filters;    // 1: neighbours share what their rays find (shared.glsl)
+    uint phase;          // of the kernel
+    uint first_ray;      // 1: it is the first of its pixel
+    uint light;          // which one a dispatch is about,
+    uint lights;         // of how many
+    uint ray;            // the number of the ray within its pixel
+    uint seed;           // moves what is drawn by lot
+    uint starts_from; // 1: rays start where the beams of their tiles end, 2: of quarters of these,
+    uint listed;         // and 1: there are rays in listed tiles only
+    uint source;         // of the items (schedule.glsl),
+    uint items;          // how many there are,
+    uint items_per_lane; // and at most for a lane
+    uint reading;        // where the queue or list that is read begins,
+    uint writing;        // and the one that is written
+    uint value;          // of a hit's LIGHTING that is looked for
+    uint rows;           // of results.glsl that are asked for, a bit each
+    uint by_march_group; // 1: rays tell which march group they hit, and are listed by it
+    uint no_occlusion;   // 1: occlusion is not looked for
+    uint window; // of the tiles of beams, counted in the band, the first: column | row << 16,
+    uint across;         // and how many in a row
+    uint rays;           // of each pixel
+    uint filters;        // 1: neighbours share what their rays find (shared.glsl)
 };
 
-// A ray that is done.
-struct Ray {
+// How a ray has ended.
+struct RayEnd {
     float t;
     float side;  // 1 outside of all solids; -1 when the camera is inside of one
     uint  steps;
-    uint  fate;
-    bool  lost;  // it ran out of steps
-    uint  group; // of the components that it hits; 0: of none, or not known
+    uint  state;
+    bool  unresolved;  // it ran out of steps
+    uint  march_group; // of the component that it hits; 0: of none, or not known
 };
 
 // What is kept of a pixel, a light or a ray lies in memory in rows of four numbers, or one by one,
@@ -112,7 +112,7 @@ uvec2 load_end(uint index) { return ends[index]; }
 vec4  load_hit_row(uint number) { return hits[number]; }
 #else
 layout(std430, set = 1, binding = 2) writeonly buffer Hits { vec4 hits[]; };
-// Of lights two texels each; the others are what is in these buffers (stage.c).
+// Of lights two texels each; the others are what is in these buffers (layouts.c).
 layout(set = 1, binding = 8) uniform usamplerBuffer light_texels;
 layout(set = 1, binding = 10) uniform usamplerBuffer end_texels;
 layout(set = 1, binding = 11) uniform usamplerBuffer hit_texels;
@@ -124,17 +124,17 @@ layout(std140, set = 1, binding = 0) uniform FrameBlock { Frame given_frame; };
 layout(push_constant) uniform WorkBlock { Work given_work; };
 layout(std430, set = 1, binding = 4) buffer ControlBlock {
     Control given_control;
-    uint    queued;           // counts rays that need another dispatch,
-    uint    left;             // and items that nobody has begun
-    uint    tiles;            // counts listed tiles,
-    uint    solid, anchors;   // pixels that see something (solid.glsl),
-    uint    rest;             // and those that need rays of their own
-    uint    unresolved;       // counts rays that ran out of steps
-    uint    evaluations;      // counts distances spent on beams and rays; the most on one of these
+    uint    queued;            // counts rays that need another dispatch,
+    uint    untaken;           // and items that nobody has begun
+    uint    tiles;             // counts listed tiles,
+    uint    hit_count, sparse; // pixels that see something (hit_lists.glsl),
+    uint    remaining;         // and those that need rays of their own
+    uint    unresolved;        // counts rays that ran out of steps
+    uint    evaluations;       // counts distances spent on beams and rays; the most on one of these
     uint    most_evaluations;
-    uint    wide;             // pixels that need a wide mean of a shadow (shadow.comp),
-    uint    quarters;         // and quarters of tiles that see something
-    uint    of_group[9];      // pixels that see something, by the group of their ray
+    uint    wide;              // pixels that need a wide mean of a shadow (shadow.comp),
+    uint    quarters;          // and quarters of tiles that see something
+    uint    of_march_group[9]; // pixels that see something, by their march group
 } counts;
 
 Frame   frame;
@@ -156,30 +156,30 @@ Light find_light(uint number)
     return Light(vector.xyz, vector.w, uintBitsToFloat(color.xyz), color.w);
 }
 
-// Of the pixel of a slot (solid.glsl).
-vec4 find_hit(uint row, uint slot) { return load_hit_row(HIT_ROWS * slot + row); }
+// Of the pixel of a slot (hit_lists.glsl).
+vec4 load_hit(uint row, uint slot) { return load_hit_row(HIT_ROWS * slot + row); }
 
-void keep_hit(uint row, uint slot, vec4 numbers) { hits[HIT_ROWS * slot + row] = numbers; }
+void store_hit(uint row, uint slot, vec4 numbers) { hits[HIT_ROWS * slot + row] = numbers; }
 
 // One of LIGHTING.
-void keep_lighting(uint which, uint slot, float number)
+void store_lighting(uint which, uint slot, float number)
 {
     hit_numbers[4u * (HIT_ROWS * slot + LIGHTING) + which] = number;
 }
 
-// The least bits: fate, side, lost, group; then the steps.
-uint pack_ray(Ray ray)
+// From the lowest bit on: state, side, unresolved, march group; then the steps.
+uint pack_ray(RayEnd ray)
 {
-    return ray.fate | (ray.side < 0.0 ? 4u : 0u) | (ray.lost ? 8u : 0u) | ray.group << 4u |
-           ray.steps << 8u;
+    return ray.state | (ray.side < 0.0 ? 4u : 0u) | (ray.unresolved ? 8u : 0u) |
+           ray.march_group << 4u | ray.steps << 8u;
 }
 
-Ray find_end(uint index)
+RayEnd find_end(uint index)
 {
     uvec2 row = load_end(index);
     uint  bits = row.y;
-    return Ray(uintBitsToFloat(row.x), (bits & 4u) != 0u ? -1.0 : 1.0, bits >> 8u, bits & 3u,
-               (bits & 8u) != 0u, bits >> 4u & 15u);
+    return RayEnd(uintBitsToFloat(row.x), (bits & 4u) != 0u ? -1.0 : 1.0, bits >> 8u, bits & 3u,
+                  (bits & 8u) != 0u, bits >> 4u & 15u);
 }
 
 // The tiles of `side` pixels a side, counted in the whole picture, that the band has a part of:
@@ -190,11 +190,13 @@ void find_tiles(uint side, out uvec2 first, out uvec2 count)
     count = (work.corner + work.extent - 1u) / side - first + 1u;
 }
 
-// The ray through a place of the picture, in pixels from its top left corner, and how wide a
+// The ray through a point of the picture, in pixels from its top left corner, and how wide a
 // pixel is along it: base + slope t.
-void find_ray(vec2 place, out vec3 origin, out vec3 direction, out float base, out float slope)
+void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float base,
+              out float slope)
 {
-    vec2 plane = vec2(2.0 * place.x / frame.size.x - 1.0, 1.0 - 2.0 * place.y / frame.size.y);
+    vec2 plane = vec2(2.0 * image_point.x / frame.size.x - 1.0,
+                      1.0 - 2.0 * image_point.y / frame.size.y);
     origin = frame.eye.xyz;
     base = frame.pixel_base;
     slope = frame.pixel_slope;

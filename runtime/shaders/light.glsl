@@ -21,9 +21,9 @@ vec3 sky_light(vec3 normal)
 // What a directional light that has a size adds to the sky: its disc and a glow around it.
 vec3 sun_radiance(vec3 direction, vec3 toward_sun, vec3 color, float diameter)
 {
-    float away = length(direction - toward_sun); // the angle, where it matters
-    float disc = 1.0 - smoothstep(0.4 * diameter, 0.6 * diameter, away);
-    float glow = 0.12 * exp2(-24.0 * away) + 0.03 * exp2(-5.0 * away);
+    float angle = length(direction - toward_sun); // the angle, where it matters
+    float disc = 1.0 - smoothstep(0.4 * diameter, 0.6 * diameter, angle);
+    float glow = 0.12 * exp2(-24.0 * angle) + 0.03 * exp2(-5.0 * angle);
     return diameter > 0.0 ? color * (2.0 * disc + glow) : vec3(0.0);
 }
 

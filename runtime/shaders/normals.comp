@@ -4,13 +4,13 @@
  * normals.comp: the normal of each hit, from the distance at a few places around it.
  *
  * The places are known before, so a lane does pixel after pixel (pixels.glsl): lanes that loop
- * together are done together, but where something is looked at again (sides.glsl).
+ * together are done together, but where something is looked at again (edge_normals.glsl).
  *
  * ROOTS: rays go from root to root.
  */
 #include "scene.glsl"
 #include "frame.glsl"
-#include "solid.glsl"
+#include "hit_lists.glsl"
 #include "stencil.glsl"
 
 // Differences for normals reach as far as a pixel asks for, but less of the coordinates would be
@@ -20,18 +20,18 @@ const float NOISE = 3e-4;
 const float EVEN = 0.9995;
 
 // The item.
-Place place;
-vec3  start, way;  // the next distance is asked for at start + t way
+HitPoint hit;
+vec3  start, direction; // the next distance is sampled at start + t direction
 float t;
-uint  taps, limit; // so far, and at most
-vec3  sum, level;  // of the taps of a normal, with the signs of their directions and without
+uint  taps, tap_limit; // so far, and at most
+vec3  sum, level;      // of the taps of a normal, with the signs of their directions and without
 #if STENCIL == 3 && defined(ROOTS)
-bool  again;       // they are looked at from nearer,
-float even;        // where all was so even
+bool  looks_nearer; // they are looked at from nearer,
+float even;         // where all was so even
 #elif STENCIL == 3
 void begin_taps();
 vec3 find_backwards();
-#include "sides.glsl"
+#include "edge_normals.glsl"
 #endif
 #ifdef GRADIENT
 bool  derived;     // the normal is by derivatives
@@ -46,15 +46,15 @@ bool  derived;     // the normal is by derivatives
 vec3 find_backwards()
 {
     return control.projection == ORTHOGRAPHIC ? -frame.forward.xyz
-                                              : normalize(frame.eye.xyz - place.position);
+                                              : normalize(frame.eye.xyz - hit.position);
 }
 
 // The taps of a stencil around the hit.
 void begin_taps()
 {
     taps = 0u;
-    limit = TAPS;
-    way = stencil(0u);
+    tap_limit = TAPS;
+    direction = stencil(0u);
     sum = level = vec3(0.0);
 }
 
@@ -65,29 +65,29 @@ void begin_nearer();
 void begin_normal()
 {
     // Differences over a pixel or so: finer detail would only be noise.
-    t = max(frame.blur * place.width, NOISE * largest(place.position) + place.rounding);
+    t = max(frame.normal_reach * hit.width, NOISE * largest(hit.position) + hit.rounding);
 #if STENCIL == 3 && defined(ROOTS)
-    again = false;
+    looks_nearer = false;
 #elif STENCIL == 3
-    look = WIDE;
+    tap_set = WIDE;
 #endif
     begin_taps();
 #ifdef GRADIENT
     derived = false;
-#ifndef ANCHORED
+#ifndef CAMERA_RELATIVE
     // Differences are for where derivatives are no numbers.
-    vec3 gradient = krs_gradient(place.position, t);
+    vec3 gradient = krs_gradient(hit.position, t);
     // Differences are as well for where rounding makes what is seen face away.
-    float facing_eye = place.side * dot(gradient, find_backwards());
+    float facing_eye = hit.side * dot(gradient, find_backwards());
 #ifdef SHEETS // of which either side is seen
     gradient *= facing_eye < 0.0 ? -1.0 : 1.0;
     facing_eye = abs(facing_eye);
 #endif
     derived = facing_eye > 0.0 && dot(gradient, gradient) < INFINITE;
     if (derived) {
-        sum = place.side * normalize(gradient);
-        way = sum;
-        limit = TAPS_OUTSIDE;
+        sum = hit.side * normalize(gradient);
+        direction = sum;
+        tap_limit = TAPS_OUTSIDE;
     }
 #if defined(ROOTS) && STENCIL == 3
     else
@@ -99,19 +99,19 @@ void begin_normal()
 
 void begin_item(uint number)
 {
-    place = find_place(number);
-    start = place.position;
+    hit = find_hit_point(number);
+    start = hit.position;
     begin_normal();
 }
 
-bool item_wants_more()
+bool item_needs_step()
 {
-    return taps < limit;
+    return taps < tap_limit;
 }
 
-vec3 item_place()
+vec3 item_position()
 {
-    return start + t * way;
+    return start + t * direction;
 }
 
 // The parts of the sum that do not cancel: where all is flat, opposite taps do; on an edge, or
@@ -133,53 +133,53 @@ vec3 corner(uint i)
     return 0.57735026919 * (2.0 * vec3(i & 1u, i >> 1u & 1u, i >> 2u & 1u) - 1.0);
 }
 
-void look_nearer()
+void begin_nearer_taps()
 {
-    t = max(NEARER * t, NOISE / 3.0 * largest(place.position) + place.rounding);
-    again = true;
+    t = max(NEARER * t, NOISE / 3.0 * largest(hit.position) + hit.rounding);
+    looks_nearer = true;
     begin_taps();
-    limit = TAPS + CORNERS;
+    tap_limit = TAPS + CORNERS;
 }
 
 // At once: on such a curve all is odd, and six differences are even where they are wrong.
 void begin_nearer()
 {
     even = 1.0;
-    look_nearer();
+    begin_nearer_taps();
 }
 
 void take_difference(float distance)
 {
     float weight = taps > TAPS ? 1.125 : 1.0;
-    sum += weight * distance * way;
-    level += weight * distance * abs(way);
-    way = taps < TAPS ? stencil(taps) : corner(taps - TAPS);
-    if (taps < TAPS || again)
+    sum += weight * distance * direction;
+    level += weight * distance * abs(direction);
+    direction = taps < TAPS ? stencil(taps) : corner(taps - TAPS);
+    if (taps < TAPS || looks_nearer)
         return;
     even = find_evenness();
     if (even < EVEN)
-        look_nearer();
+        begin_nearer_taps();
 }
 
-float find_flatness() { return again ? even : find_evenness(); }
+float find_flatness() { return looks_nearer ? even : find_evenness(); }
 #else
 #if STENCIL != 3
 void take_difference(float distance)
 {
 #if STENCIL == 1
-    sum += distance * (taps == 1u ? vec3(-1.0) : way);
+    sum += distance * (taps == 1u ? vec3(-1.0) : direction);
 #else
-    sum += distance * way;
-    level += distance * abs(way);
+    sum += distance * direction;
+    level += distance * abs(direction);
 #endif
-    way = stencil(taps);
+    direction = stencil(taps);
 }
 #endif
 
 float find_flatness()
 {
 #if STENCIL == 3
-    if (look == ONE_SIDE)
+    if (tap_set == ONE_SIDE)
         return 1.0;
 #endif
     return find_evenness();
@@ -201,16 +201,16 @@ void take_outside(float rise)
 }
 #endif
 
-void keep_normal()
+void store_normal()
 {
     float size = length(sum), flatness = find_flatness();
     vec3  normal = size > 0.0 && size < INFINITE ? sum / size : find_backwards();
-    keep_hit(FACING, place.slot, vec4(normal, flatness));
+    store_hit(FACING, hit.slot, vec4(normal, flatness));
 }
 
 void take_distance(float distance)
 {
-    distance *= place.side;
+    distance *= hit.side;
     taps++;
 #if defined(GRADIENT) && defined(ROOTS) && STENCIL == 3
     if (derived) {
@@ -223,14 +223,14 @@ void take_distance(float distance)
 
 // What is looked at again is so in a loop of its own: what it needs to know would have to be
 // carried through each step of the other.
-bool item_begins_anew()
+bool item_needs_more_taps()
 {
 #if STENCIL == 3 && !defined(ROOTS)
 #ifdef GRADIENT
     if (derived)
         return false;
 #endif
-    return looks_again();
+    return needs_more_taps();
 #else
     return false;
 #endif
@@ -243,12 +243,12 @@ void do_item(uint number)
     begin_item(number);
     do { // lavapipe goes through the body of another loop once more
         do {
-            float distance = krs_distance(item_place());
-            if (item_wants_more())
+            float distance = krs_distance(item_position());
+            if (item_needs_step())
                 take_distance(distance);
-        } while (item_wants_more());
-    } while (item_begins_anew());
-    keep_normal();
+        } while (item_needs_step());
+    } while (item_needs_more_taps());
+    store_normal();
 }
 
 #include "pixels.glsl"

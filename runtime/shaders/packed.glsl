@@ -1,90 +1,92 @@
 /*
  * packed.glsl: the parts of a scene, most of them one component, each marched by itself within one
- * ray or beam (KRS paper of 2016, section 5.1): of each is kept how far nothing of it is, and the
- * part for which that is least makes the next step, by its own distance, which is a branch.
+ * ray or beam (KRS paper of 2016, section 5.1).  Each part has a length of the ray that is known to
+ * miss it.  The part with the shortest such length takes the next step, by its own distance, which
+ * is a branch.
  *
- * A ray is done when the part that comes next has been hit: nothing of the others is before.  Which
- * comes next is told by words of eight numbers of four bits, the nearest first; a step moves one
- * part farther away, so its number moves up past those that are nearer now.  Where there are more
- * than eight parts, there are more words, whose first numbers are compared.
+ * A ray is done when the next part has been hit: the others are farther.  The order of the parts is
+ * in words of eight numbers of four bits, the nearest first.  After a step the part may be farther
+ * than others, so its number moves up past theirs.  Where there are more than eight parts, there
+ * are more words, whose first numbers are compared.
  *
  * The eye must be outside of everything.
  */
-const uint WORDS = (KRS_PARTS + 7u) / 8u;
+const uint WORDS = (KRS_SCENE_PARTS + 7u) / 8u;
 
-vec4  part_march[8u * WORDS]; // t, room, gap and slope of its March,
-uint  part_fate[8u * WORDS];  // and fate;
-float part_end[8u * WORDS];   // where the ray leaves its box;
-float part_free[8u * WORDS];  // nothing of it is before; INFINITE: it is missed
+vec4  saved_marches[8u * WORDS]; // t, clearance, step and slope of its march,
+uint  saved_states[8u * WORDS];  // and state;
+float exit_t[8u * WORDS];        // where the ray leaves its box;
+float free_until[8u * WORDS];    // the ray misses it up to here; INFINITE: it does so everywhere
 uint  order[WORDS];
-uint  part;                   // whose March is `march`
+uint  scene_part;                // whose march is `march`
 
-// The number at a place of its word, in bits, moves up past all that are nearer.
-void move_up(uint word, uint place)
+// The number at this bit of its word moves up past all that are nearer.
+void reorder(uint word, uint shift)
 {
-    uint numbers = order[word], first = 8u * word;
-    for (; place < 28u; place += 4u) {
-        uint a = numbers >> place & 7u, b = numbers >> place + 4u & 7u;
-        if (part_free[first + a] <= part_free[first + b])
+    uint order_word = order[word], first = 8u * word;
+    for (; shift < 28u; shift += 4u) {
+        uint a = order_word >> shift & 7u, b = order_word >> shift + 4u & 7u;
+        if (free_until[first + a] <= free_until[first + b])
             break;
-        numbers ^= (a ^ b) << place | (a ^ b) << place + 4u;
+        order_word ^= (a ^ b) << shift | (a ^ b) << shift + 4u;
     }
-    order[word] = numbers;
+    order[word] = order_word;
 }
 
-void keep_part()
+void save_part()
 {
-    part_march[part] = vec4(march.t, march.room, march.gap, march.slope);
-    part_fate[part] = march.fate;
-    part_free[part] = march.fate == MISS ? INFINITE
-                    : march.fate == HIT  ? march.t : march.t + march.room;
+    saved_marches[scene_part] = vec4(march.t, march.clearance, march.step, march.slope);
+    saved_states[scene_part] = march.state;
+    free_until[scene_part] = march.state == MISS ? INFINITE
+                           : march.state == HIT  ? march.t : march.t + march.clearance;
 }
 
-void find_next_part()
+void select_next_part()
 {
-    part = order[0] & 7u;
+    scene_part = order[0] & 7u;
     for (uint word = 1u; word < WORDS; word++) {
         uint first = 8u * word + (order[word] & 7u);
-        part = part_free[first] < part_free[part] ? first : part;
+        scene_part = free_until[first] < free_until[scene_part] ? first : scene_part;
     }
-    vec4 kept = part_march[part];
+    vec4 kept = saved_marches[scene_part];
     march.t = kept.x;
-    march.room = kept.y;
-    march.gap = kept.z;
+    march.clearance = kept.y;
+    march.step = kept.z;
     march.slope = kept.w;
-    march.fate = part_fate[part];
-    end = part_end[part];
+    march.state = saved_states[scene_part];
+    end = exit_t[scene_part];
 }
 
-void turn_to_next_part()
+void advance_to_next_part()
 {
-    keep_part();
-    move_up(part / 8u, 0u);
-    find_next_part();
+    save_part();
+    reorder(scene_part / 8u, 0u);
+    select_next_part();
 }
 
-// For the ray or beam that has just begun to march.  Beams are wider than boxes know.
-void begin_parts(bool is_ray)
+// For the ray or beam that has just begun to march.  Boxes are not clipped against beams, which
+// have a width.
+void begin_scene_parts(bool is_ray)
 {
     float start = march.t, farthest = end;
     vec3  margin = vec3(4.0 * ROUNDING * rounding);
     march.side = 1.0;
-    for (part = 0u; part < 8u * WORDS; part++) {
+    for (scene_part = 0u; scene_part < 8u * WORDS; scene_part++) {
         vec3 low = vec3(1.0), high = vec3(-1.0);
-        if (part < KRS_PARTS)
-            krs_part_box(part, low, high);
+        if (scene_part < KRS_SCENE_PARTS)
+            krs_scene_part_box(scene_part, low, high);
         vec2 within = clip_to(low - margin, high + margin, origin, direction, farthest);
         within = is_ray ? within : vec2(0.0, farthest);
         march.t = max(start, within.x);
         end = min(farthest, within.y);
-        march.fate = low.x <= high.x && march.t <= end ? MARCHING : MISS;
-        part_end[part] = end;
-        keep_part();
+        march.state = low.x <= high.x && march.t <= end ? MARCHING : MISS;
+        exit_t[scene_part] = end;
+        save_part();
     }
     for (uint word = 0u; word < WORDS; word++) {
         order[word] = 0x76543210u;
-        for (uint place = 28u; place > 0u; place -= 4u)
-            move_up(word, place - 4u);
+        for (uint shift = 28u; shift > 0u; shift -= 4u)
+            reorder(word, shift - 4u);
     }
-    find_next_part();
+    select_next_part();
 }

@@ -7,7 +7,7 @@
  * An item is a quarter of the list, of which unproven.comp has left two bits a pixel.
  */
 #include "frame.glsl"
-#include "solid.glsl"
+#include "hit_lists.glsl"
 #include "shared.glsl"
 
 // No mean reaches farther.
@@ -28,7 +28,7 @@ void do_item(uint number)
         hidden += uint(hides);
         width += hides ? min(width_of_code(code), WIDEST_PENUMBRA) : 0.0;
     }
-    solid[at] = pack_penumbrae(Penumbrae(float(lit), float(hidden), width));
+    pixel_lists[at] = pack_penumbrae(Penumbrae(float(lit), float(hidden), width));
 }
 
 #include "pixels.glsl"

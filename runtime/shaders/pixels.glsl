@@ -12,14 +12,14 @@ void main()
 {
     load_frame();
     begin_group();
-    // The stride spreads neighbours over a device that deals out workgroups in contiguous halves.
+    // The stride spreads neighbours over a device that assigns workgroups in contiguous halves.
     uint group = work.first + gl_WorkGroupID.x * work.stride % work.groups;
-    uint number = group * 64u * control.share + gl_LocalInvocationIndex;
+    uint number = group * 64u * control.items_per_lane + gl_LocalInvocationIndex;
     uint done = 0u;
     do { // lavapipe goes through the body of another loop once more
         if (number < control.items)
             do_item(number);
         number += 64u;
         done++;
-    } while (done < control.share);
+    } while (done < control.items_per_lane);
 }

@@ -11,7 +11,7 @@ layout(local_size_x = 1) in;
 layout(push_constant) uniform Plan {
     uint counter;  // items are `each` times this word of the control block; 0: just `each`
     uint each;
-    uint taken;    // 1: the counter is 0 from then on
+    uint resets;   // 1: the counter is 0 from then on
     uint in_group; // items of a group
     uint most;     // groups that may run at once
     uint number;   // of the dispatch in its chain, from 1
@@ -28,7 +28,7 @@ void main()
     if (words[STOPPED] == 0u && groups > plan.most)
         words[STOPPED] = plan.number;
     bool runs = words[STOPPED] == 0u;
-    if (runs && plan.taken != 0u)
+    if (runs && plan.resets != 0u)
         words[plan.counter] = 0u;
     words[ITEMS] = items;
     words[GROUPS] = runs ? groups : 0u;

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : enable
 #extension GL_KHR_shader_subgroup_shuffle : enable
 /*
- * query.comp: where rays that a program asks about end; sample.comp says what is there.
+ * query.comp: where rays that a program asks about end; point_query.comp says what is there.
  *
  * The rule is that of trace.comp, without beams, and the permitted error is a length.  A ray that
  * runs out of steps ends where it is, and is told apart.
@@ -13,136 +13,141 @@
 #include "scene.glsl"
 #include "frame.glsl"
 
-const uint HUNGRY = 2u;
+const uint REFILL_THRESHOLD = 2u;
 const bool SAVES = false;
 
-// What may be left open between two balls, of the permitted error.
-const float OPEN = 0.0625;
+// The longest interval that may stay unverified, in permitted errors.
+const float TOLERANCE = 0.0625;
 const float LEARNING = 0.3; // of the mean slope
 // Solids that touch are one: from inside they count as grown by what rounding may leave open at
 // the seam between two.
 const float SEAM = 4.0;     // roundings
 
 // Where a ray begins nearer than this to a surface, rounding may have decided on which side.
-const float DOUBTFUL = 64.0; // roundings
-const uint  UNSURE = 0x80000000u, INSIDE = 0x40000000u; // as in blocks.h
+const float SIDE_ROUNDINGS = 64.0; // roundings
+const uint  SIDE_UNKNOWN = 0x80000000u, BEGINS_INSIDE = 0x40000000u; // as in blocks.h
 
 const float BEGINS_OUTSIDE = 1.0, ENDS_AT_WALLS = 2.0; // as in blocks.h
 
-// Two rows a ray: origin, and where it ends; unit direction, and its kind.
-layout(std430, set = 1, binding = 5) readonly buffer Questions { vec4 questions[]; };
-// Bits of t; fate; place of the point; steps, UNSURE and INSIDE.
-layout(std430, set = 1, binding = 3) writeonly buffer Ways { uvec4 ways[]; };
-// Where rays hit, or were given up, for sample.comp.
+// Two rows a ray: origin, and where it ends; unit direction, and the kind of ray.
+layout(std430, set = 1, binding = 5) readonly buffer QueryRays { vec4 query_rays[]; };
+// Bits of t; state; index of the point; steps, SIDE_UNKNOWN and BEGINS_INSIDE.
+layout(std430, set = 1, binding = 3) writeonly buffer RayHits { uvec4 ray_hits[]; };
+// Where rays hit, or were given up, for point_query.comp.
 layout(std430, set = 1, binding = 1) writeonly buffer Points { vec4 points[]; };
 
 uint  index;              // of the ray
 vec3  origin, direction;
 float end;
 float rounding;           // of coordinates at t = 0
-float t, clear, gap;      // nothing is before t, nor for `clear` behind it; next look: at t + gap
-float slope;              // of the room along the ray, as it was on average
-float side;               // as of a Ray; 0: not known
-bool  walls;              // all solids end at `end`
-uint  steps, fate;
-uint  unsure;             // UNSURE, INSIDE: on which side the ray begins
+float t, clearance, step; // as of a RayMarch (trace.comp)
+float slope;              // of the clearance along the ray: a running mean
+float side;               // as of a RayEnd; 0: not known
+bool  ends_at_walls;      // all solids end at `end`
+uint  steps, state;
+uint  side_bits;          // SIDE_UNKNOWN, BEGINS_INSIDE: on which side the ray begins
 
-void look_up_item(uint number) {}
+void exchange_item(uint number) {}
 void begin_group(uint first) {}
 
 void begin_item(uint number, bool saved)
 {
-    vec4 from = questions[2u * number], way = questions[2u * number + 1u];
+    vec4 origin_and_end = query_rays[2u * number],
+         direction_and_kind = query_rays[2u * number + 1u];
     index = number;
-    origin = from.xyz;
-    direction = way.xyz;
-    end = from.w;
+    origin = origin_and_end.xyz;
+    direction = direction_and_kind.xyz;
+    end = origin_and_end.w;
     rounding = largest(origin);
-    t = clear = gap = 0.0;
+    t = clearance = step = 0.0;
     slope = -1.0;
-    side = way.w == BEGINS_OUTSIDE ? 1.0 : 0.0;
-    walls = way.w == ENDS_AT_WALLS;
-    steps = unsure = 0u;
-    fate = end >= 0.0 ? MARCHING : MISS;
+    side = direction_and_kind.w == BEGINS_OUTSIDE ? 1.0 : 0.0;
+    ends_at_walls = direction_and_kind.w == ENDS_AT_WALLS;
+    steps = side_bits = 0u;
+    state = end >= 0.0 ? MARCHING : MISS;
 }
 
-bool item_wants_more()
+bool item_needs_step()
 {
-    return (fate == MARCHING || fate == CLOSING) && steps < frame.most_steps;
+    return (state == MARCHING || state == REFINING) && steps < frame.most_steps;
 }
 
-// What is far for its size need not be looked at, where a branch saves work.
-float item_distance(vec3 place)
+// Where branches save work, components that are far away for their size are left out.
+float item_distance(vec3 position)
 {
 #ifdef ALONG
     // Some roundings farther back than the ray has been: what was just before a surface without
     // thickness there must not be behind it here.
-    return krs_along(place, direction, gap > 0.0 ? gap + 2.0 * ROUNDING * (rounding + t) : 0.0);
+    return krs_along(position, direction,
+                     step > 0.0 ? step + 2.0 * ROUNDING * (rounding + t) : 0.0);
 #elif defined(EARLY_OUTS)
-    return krs_distance_lod(place, 0.0);
+    return krs_distance_lod(position, 0.0);
 #else
-    return krs_distance(place);
+    return krs_distance(position);
 #endif
 }
 
-vec3 item_place() { return origin + (t + gap) * direction; }
+vec3 item_position() { return origin + (t + step) * direction; }
 
-// The surface is crossed between t, where there is room (`before`), and t + gap, where there is
-// none, within the permitted error: looks there once more, unless what is between is short anyway.
-void close_in(float before, float room, float open)
+// The surface is crossed between t and t + step, within the permitted error.  The ray ends where
+// the chord of the clearances crosses 0; a long interval is sampled there once more.
+void refine(float last_clearance, float new_clearance, float tolerance)
 {
-    float along = before > room ? clamp(before / (before - room), 0.0, 2.0) : 0.0;
-    bool  accurate = gap - clear <= 2.0 * open || fate == CLOSING;
-    gap *= along;
-    t += accurate ? gap : 0.0;
-    fate = !accurate ? CLOSING : t <= end ? HIT : MISS;
+    float along = last_clearance > new_clearance
+                      ? clamp(last_clearance / (last_clearance - new_clearance), 0.0, 2.0)
+                      : 0.0;
+    bool  accurate = step - clearance <= 2.0 * tolerance || state == REFINING;
+    step *= along;
+    t += accurate ? step : 0.0;
+    state = !accurate ? REFINING : t <= end ? HIT : MISS;
 }
 
 void take_distance(float distance)
 {
-    float at = t + gap;
-    float least = ROUNDING * (rounding + at), open = OPEN * frame.error + least;
+    float at = t + step;
+    float least = ROUNDING * (rounding + at), tolerance = TOLERANCE * frame.error + least;
     if (side == 0.0) {
         side = distance < 0.0 ? -1.0 : 1.0;
-        unsure = abs(distance) > DOUBTFUL * least ? 0u
-                 : distance < 0.0                 ? UNSURE | INSIDE
-                                                  : UNSURE;
+        side_bits = abs(distance) > SIDE_ROUNDINGS * least ? 0u
+                    : distance < 0.0                 ? SIDE_UNKNOWN | BEGINS_INSIDE
+                                                     : SIDE_UNKNOWN;
     }
     float seam = side < 0.0 ? SEAM * least : 0.0;
-    float room = side * distance + seam;
-    float doubtful = gap - clear; // as long as may hide something
+    float new_clearance = side * distance + seam;
+    float unverified = step - clearance; // a surface may hide in an interval of this length
     steps++;
-    // Twice: a gap of `open` beyond what is clear may be rounded up.
-    if (fate == CLOSING || (room <= 0.0 && doubtful <= frame.error + 2.0 * open)) {
-        close_in(clear - seam, room - seam, open);
-    } else if (room > 0.0 && doubtful <= room + 1.01 * open) {
-        slope = mix(slope, gap > 0.0 ? (room - clear) / gap : -1.0, LEARNING);
+    // Twice: a step of `tolerance` beyond the clearance may be rounded up.
+    if (state == REFINING ||
+        (new_clearance <= 0.0 && unverified <= frame.error + 2.0 * tolerance)) {
+        refine(clearance - seam, new_clearance - seam, tolerance);
+    } else if (new_clearance > 0.0 && unverified <= new_clearance + 1.01 * tolerance) {
+        slope = mix(slope, step > 0.0 ? (new_clearance - clearance) / step : -1.0, LEARNING);
         t = at;
-        clear = room;
+        clearance = new_clearance;
 #ifdef ALONG // it is what is free ahead, and tells nothing of what is behind
-        gap = room + open;
+        step = new_clearance + tolerance;
 #else
-        gap = room * max(1.0, 2.0 / (1.0 - min(slope, 0.98))) + open;
+        step = new_clearance * max(1.0, 2.0 / (1.0 - min(slope, 0.98))) + tolerance;
 #endif
-        fate = at + room > end ? MISS : MARCHING;
+        state = at + new_clearance > end ? MISS : MARCHING;
     } else {
-        gap = max(0.5 * (gap + clear - max(room, 0.0)), clear + open);
+        step = max(0.5 * (step + clearance - max(new_clearance, 0.0)), clearance + tolerance);
         slope = -1.0;
     }
 }
 
 void end_item()
 {
-    uint place = 0u;
-    if (fate == MISS && side < 0.0 && walls) {
-        fate = HIT;
+    uint point = 0u;
+    if (state == MISS && side < 0.0 && ends_at_walls) {
+        state = HIT;
         t = end;
     }
-    if (fate != MISS) {
-        place = atomicAdd(counts.solid, 1u);
-        points[place] = vec4(origin + t * direction, 0.0);
+    if (state != MISS) {
+        point = atomicAdd(counts.hit_count, 1u);
+        points[point] = vec4(origin + t * direction, 0.0);
     }
-    ways[index] = uvec4(floatBitsToUint(t), fate, place, steps | unsure);
+    ray_hits[index] = uvec4(floatBitsToUint(t), state, point, steps | side_bits);
 }
 
 void save_item() {}

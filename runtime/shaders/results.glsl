@@ -3,11 +3,11 @@
  * pixels of the band, then their places, and so on.  Rows that are not asked for are not written.
  * The first ray of a pixel goes through its centre and gives everything but the colour.
  */
-const uint COLORS = 0u;  // floats, summed over the rays
-const uint PLACES = 1u;  // floats: position; depth
+const uint COLORS = 0u;    // floats, summed over the rays
+const uint POSITIONS = 1u; // floats: position; depth
 const uint NORMALS = 2u; // floats, and component, 0: nothing, all else but colour and steps is void
-const uint ALBEDOS = 3u; // floats, and level
-const uint COUNTS = 4u;  // instance; steps
+const uint ALBEDOS = 3u;   // floats, and level
+const uint COUNTS = 4u;    // instance; steps
 
 layout(std430, set = 1, binding = 3) writeonly buffer Colors { vec3 colors[]; }; // 16 bytes each
 #ifdef NO_TEXELS
@@ -33,7 +33,7 @@ void add_light(uint index, vec3 color)
 }
 
 // What is not a number or infinite counts as black.
-vec3 sound(vec3 radiance)
+vec3 finite_or_black(vec3 radiance)
 {
     bvec3 finite = bvec3(radiance.x < INFINITE, radiance.y < INFINITE, radiance.z < INFINITE);
     return mix(vec3(0.0), max(radiance, 0.0), finite);

@@ -3,123 +3,123 @@
  * needs, every step one call of the distance.
  *
  * The kernel that includes this says what an item is:
- *     void begin_group(uint first)         first of all: the group's items begin with this one
- *     void look_up_item(uint number)       what is to be had of an item from other lanes; these
- *                                          may have an item each, and must keep it
- *     void begin_item(uint number, bool saved)   takes an item up, or one that was saved
- *     bool item_wants_more()               it is not finished
- *     vec3 item_place()                    where it wants to know the distance
- *     float item_distance(vec3 place)      the distance there, or less
+ *     void begin_group(uint first)         first of all: the workgroup's items begin with this one
+ *     void exchange_item(uint number)      gets what other lanes know of an item; these may have
+ *                                          an item each, and must keep it
+ *     void begin_item(uint number, bool saved)   begins an item, or resumes one that was saved
+ *     bool item_needs_step()               it is not finished
+ *     vec3 item_position()                 where its distance is sampled next
+ *     float item_distance(vec3 position)   the distance there, or less
  *     void take_distance(float distance)   one step
  *     void end_item()                      stores what it has found
  *     void save_item()                     stores how far it is
  *     void end_group(uint steps)           last of all, after so many of them by this lane
- *     const uint HUNGRY                    lanes that are done, until they take up new items together
+ *     const uint REFILL_THRESHOLD          lanes that are done before they begin new items together
  *     const bool SAVES                     whether items are saved when the dispatch has had its
  *                                          steps; else those that are begun are finished
  *
  * On lavapipe, where a branch skips nothing and eight lanes go through a loop together, a lane that
- * is done takes the group's next item while the others march on (REFILL): the loop over steps ends
- * when so many lanes can do so.  What is in these loops stands on every lane's way, so saving and resuming
- * are outside.  On a graphics card a lane has one item.
+ * is done takes the workgroup's next item while the others march on (REFILL): the loop over steps
+ * ends when REFILL_THRESHOLD lanes can do so.  All lanes execute what is in these loops, so saving
+ * and resuming are outside.  On a graphics card a lane has one item.
  */
-// Whether a lane may go on with its item after so many steps.
-bool may_go_on(uint turns, uint allowed)
+// Whether the lane's item takes another step, after so many iterations.
+bool may_take_step(uint iterations, uint allowed)
 {
-    return item_wants_more() && (!SAVES || turns < allowed);
+    return item_needs_step() && (!SAVES || iterations < allowed);
 }
 
 #if REFILL
 const uint LANES = uint(REFILL); // as many as go through a loop together: 4 or 8
 layout(local_size_x = REFILL) in;
-// How many of its items a group has taken up so far.
+// How many of its items a workgroup has begun so far.
 layout(std430, set = 1, binding = 7) buffer Taken { uint taken[]; };
 
 // The bits of all lanes.  Of a vote lavapipe makes a loop over the lanes; of this, six
 // instructions.
-uint join_lanes(uint bits)
+uint or_lanes(uint bits)
 {
     bits |= subgroupShuffleXor(bits, 1u);
     bits |= subgroupShuffleXor(bits, 2u);
     return LANES > 4u ? bits | subgroupShuffleXor(bits, 4u) : bits;
 }
 
-bool any_lane(bool says) { return join_lanes(uint(says)) != 0u; }
+bool any_lane(bool truth) { return or_lanes(uint(truth)) != 0u; }
 
-// Turns are counted for lanes that wait as well: lavapipe counts them, and ends loops without a word
-// when there are too many.
-void work_on_items(uint group, uint turns_allowed, inout uint steps)
+// Iterations are counted for lanes that wait as well: lavapipe ends a loop silently after too many.
+void work_on_items(uint group, uint steps_allowed, inout uint steps)
 {
-    uint turns = 0u;
-    uint lane = gl_LocalInvocationIndex, first = group * LANES * control.share, next = first;
-    uint limit = min(first + LANES * control.share, control.items);
-    bool holding = false, going, hungry;
+    uint iterations = 0u;
+    uint lane = gl_LocalInvocationIndex, first = group * LANES * control.items_per_lane,
+         next = first;
+    uint limit = min(first + LANES * control.items_per_lane, control.items);
+    bool has_item = false, is_stepping, wants_item;
     if (control.source == QUEUED) {
-        holding = first + lane < limit;
-        if (holding)
+        has_item = first + lane < limit;
+        if (has_item)
             begin_item(first + lane, true);
         next = limit;
     }
-    if (control.source == REST)
+    if (control.source == UNTAKEN)
         next += taken[group];
     do {
-        do { // until each lane marches, or there is nothing left
-            if (holding && !item_wants_more()) {
+        do { // until each lane has an item, or none is left
+            if (has_item && !item_needs_step()) {
                 end_item();
-                holding = false;
+                has_item = false;
             }
-            bool asks = !holding && turns < turns_allowed; // and takes what is next, lane by lane
-            uint asking = join_lanes(uint(asks) << lane);
-            uint number = next + bitCount(asking & (1u << lane) - 1u);
-            look_up_item(number);
-            if (asks && number < limit) {
+            bool takes_item = !has_item && iterations < steps_allowed; // the next ones, in order
+            uint takers = or_lanes(uint(takes_item) << lane);
+            uint number = next + bitCount(takers & (1u << lane) - 1u);
+            exchange_item(number);
+            if (takes_item && number < limit) {
                 begin_item(number, false);
-                holding = true;
+                has_item = true;
             }
-            next += bitCount(asking);
-            going = holding && may_go_on(turns, turns_allowed);
-            hungry = !going && next < limit && turns < turns_allowed;
-        } while (any_lane(hungry));
-        uint wants;
-        bool waiting;
-        do { // until some are done while there is something left, or all are
-            float distance = item_distance(item_place());
-            if (going) {
+            next += bitCount(takers);
+            is_stepping = has_item && may_take_step(iterations, steps_allowed);
+            wants_item = !is_stepping && next < limit && iterations < steps_allowed;
+        } while (any_lane(wants_item));
+        uint votes;
+        bool goes_on;
+        do { // until some lanes can take an item, or all are done
+            float distance = item_distance(item_position());
+            if (is_stepping) {
                 take_distance(distance);
                 steps++;
             }
-            turns++;
-            going = going && may_go_on(turns, turns_allowed);
-            hungry = !going && next < limit && turns < turns_allowed;
-            wants = join_lanes((uint(going) | uint(hungry) << LANES) << lane);
-            waiting = bitCount(wants >> LANES) < HUNGRY;
-        } while (waiting && (wants & (1u << LANES) - 1u) != 0u);
-        going = wants != 0u;
-    } while (going);
-    if (holding && item_wants_more())
+            iterations++;
+            is_stepping = is_stepping && may_take_step(iterations, steps_allowed);
+            wants_item = !is_stepping && next < limit && iterations < steps_allowed;
+            votes = or_lanes((uint(is_stepping) | uint(wants_item) << LANES) << lane);
+            goes_on = bitCount(votes >> LANES) < REFILL_THRESHOLD;
+        } while (goes_on && (votes & (1u << LANES) - 1u) != 0u);
+        is_stepping = votes != 0u;
+    } while (is_stepping);
+    if (has_item && item_needs_step())
         save_item();
-    else if (holding)
+    else if (has_item)
         end_item();
     next = min(next, limit);
     if (lane == 0u && control.source != QUEUED) {
         taken[group] = next - first;
         if (next < limit)
-            atomicAdd(counts.left, limit - next);
+            atomicAdd(counts.untaken, limit - next);
     }
 }
 #else
 layout(local_size_x = 64) in;
 
-void work_on_items(uint group, uint turns_allowed, inout uint steps)
+void work_on_items(uint group, uint steps_allowed, inout uint steps)
 {
     uint number = group * 64u + gl_LocalInvocationIndex;
     if (number >= control.items)
         return;
-    look_up_item(number);
+    exchange_item(number);
     begin_item(number, control.source == QUEUED);
-    for (; may_go_on(steps, turns_allowed); steps++)
-        take_distance(item_distance(item_place()));
-    if (item_wants_more())
+    for (; may_take_step(steps, steps_allowed); steps++)
+        take_distance(item_distance(item_position()));
+    if (item_needs_step())
         save_item();
     else
         end_item();
@@ -131,7 +131,7 @@ void main()
     load_frame();
     krs_prepare();
     uint steps = 0u, group = work.first + gl_WorkGroupID.x * work.stride % work.groups;
-    begin_group(group * gl_WorkGroupSize.x * (REFILL != 0 ? control.share : 1u));
+    begin_group(group * gl_WorkGroupSize.x * (REFILL != 0 ? control.items_per_lane : 1u));
     work_on_items(group, work.steps, steps);
     end_group(steps);
 }

@@ -7,8 +7,8 @@
  * Such a ray is blocked where it is inside of something, not where the distance is small: a
  * distance may be a bound far below the true one, and light must not depend on how it was derived.
  * What is seen of a light, and how open a hit is, are shares of rays: means of neighbours
- * (shadow.comp, occlusion.comp).  A cone from a hit to the whole of a light saves rays where it proves to be empty:
- * then all points of the light are seen, from the pixels around as well.
+ * (shadow.comp, occlusion.comp).  A cone from a hit to the whole of a light saves rays where it
+ * proves to be empty: then all points of the light are seen, from the pixels around as well.
  *
  * ALONG: there is krs_along, by which rays go from root to root.
  */
@@ -17,7 +17,7 @@
 #endif
 #include "scene.glsl"
 #include "frame.glsl"
-#include "solid.glsl"
+#include "hit_lists.glsl"
 #include "shared.glsl"
 #include "samples.glsl"
 
@@ -33,14 +33,14 @@ const float UNEVEN = 0.9, EVEN = 0.99;
 const float NEAR_START = 8.0;
 // A ray steps by at least so much of the permitted error, or of a pixel, and by so much more with
 // each step, so that it leaves the surface along which it creeps.
-const float LEAST_STEP = 0.0625, LEAST_STEP_IN_PIXELS = 0.015625, IMPATIENCE = 1.008;
+const float LEAST_STEP = 0.0625, LEAST_STEP_IN_PIXELS = 0.015625, STEP_GROWTH = 1.008;
 // An empty cone is empty for pixels so far away, in pixels.
-const float CLEARANCE = 3.0;
+const float CONE_MARGIN = 3.0;
 // Where a surface is seen at a grazing angle its pixels are apart by up to so much more.
 const float MOST_STRETCHED = 4.0;
-// Relaxation: of the gap between balls that would still meet; how fast the slope is learned, and
-// the steepest that is counted on.
-const float CAUTION = 0.6, LEARNING = 0.5, STEEPEST = 0.9;
+// Relaxation: of the longest step after which balls would still meet; how fast the slope is
+// learned, and the steepest that is counted on.
+const float SAFETY = 0.6, LEARNING = 0.5, STEEPEST = 0.9;
 
 // What a dispatch is about.
 Light light;
@@ -48,7 +48,7 @@ bool  positional;
 float radius;      // of the light, where a directional one is 1 away
 
 // The item.
-Place place;
+HitPoint hit;
 vec3  start, direction; // the next distance is asked for at start + t direction
 float t;
 float end;         // of the ray
@@ -59,15 +59,15 @@ bool  is_cone;     // else a ray
 float spread;      // radius of the cone per distance
 float margin;      // around the cone that must be empty, too
 bool  blocked;
-bool  below;       // its point of the light is behind the surface
-float before, gap; // the distance at the step before, which was so long
-bool  crept;       // whatever the distance was
+bool  below_horizon;            // its point of the light is behind the surface
+float last_distance, last_step; // the distance at the step before, which was so long
+bool  took_least_step;          // whatever the distance was
 float least_step;
-float slope;       // of the distance along the ray, as it was on average
-float share;       // of the true distance that the distance is at the start
-uint  taps, limit; // so far, and at most
+float slope;                  // of the distance along the ray, as it was on average
+float start_ratio;            // of the true distance that the distance is at the start
+uint  step_count, step_limit; // so far, and at most
 
-uint  lost;        // rays of this lane that ran out of steps
+uint  unresolved;  // rays of this lane that ran out of steps
 
 void begin_ray(vec3 normal, vec3 toward)
 {
@@ -75,9 +75,9 @@ void begin_ray(vec3 normal, vec3 toward)
     facing = dot(normal, direction);
     float box_end = clip_ray(start, direction, end).y;
     // From inside of a solid nothing leaves the box around all of them.
-    blocked = place.side < 0.0 && box_end < end;
+    blocked = hit.side < 0.0 && box_end < end;
     end = min(end, box_end);
-    limit = blocked || below ? 0u : MOST_STEPS;
+    step_limit = blocked || below_horizon ? 0u : MOST_STEPS;
 }
 
 // Two directions at right angles to a third (Duff et al. 2017).
@@ -91,17 +91,17 @@ void find_frame(vec3 axis, out vec3 right, out vec3 up)
 
 vec2 sample_disc(uint use)
 {
-    uvec2 pixel = work.corner + pixel_of(place.slot);
+    uvec2 pixel = work.corner + pixel_of(hit.slot);
     return disc_of_square(sample_square(pixel, control.ray, use, control.seed));
 }
 
 // Where the axis of a cone leaves the box around the scene, and its whole width has, too.
 float find_end_of_cone()
 {
-    vec3 apart = mix(start - frame.low.xyz, frame.high.xyz - start,
-                     greaterThan(direction, vec3(0.0)));
+    vec3 to_walls = mix(start - frame.low.xyz, frame.high.xyz - start,
+                        greaterThan(direction, vec3(0.0)));
     vec3 speed = abs(direction) - spread;
-    vec3 ends = mix(vec3(INFINITE), max(apart + margin, 0.0) / max(speed, 1e-6),
+    vec3 ends = mix(vec3(INFINITE), max(to_walls + margin, 0.0) / max(speed, 1e-6),
                     greaterThan(speed, vec3(1e-6)));
     return min(min(ends.x, ends.y), min(ends.z, end));
 }
@@ -109,20 +109,20 @@ float find_end_of_cone()
 // From the hit to the light: to its middle, or to a point of its disc.
 void aim_at_light(vec3 normal)
 {
-    lift = lift_in_pixels * place.width + 4.0 * place.rounding;
-    start = place.position + normal * lift;
+    lift = lift_in_pixels * hit.width + 4.0 * hit.rounding;
+    start = hit.position + normal * lift;
     vec3  toward = positional ? light.vector - start : light.vector;
-    float remote = max(length(toward), 1e-12);
-    vec3  axis = toward / remote;
-    end = positional ? remote : frame.eye.w;
+    float light_distance = max(length(toward), 1e-12);
+    vec3  axis = toward / light_distance;
+    end = positional ? light_distance : frame.eye.w;
     if (is_cone) {
-        float turned = max(-dot(normal, place.direction), 1.0 / MOST_STRETCHED);
+        float turned = max(-dot(normal, hit.direction), 1.0 / MOST_STRETCHED);
         begin_ray(normal, axis);
-        spread = radius / remote;
-        margin = CLEARANCE * place.width / turned;
-        end = min(positional ? remote : frame.eye.w, find_end_of_cone());
+        spread = radius / light_distance;
+        margin = CONE_MARGIN * hit.width / turned;
+        end = min(positional ? light_distance : frame.eye.w, find_end_of_cone());
         blocked = blocked || facing <= 2.0 * spread;
-        limit = blocked ? 0u : MOST_STEPS;
+        step_limit = blocked ? 0u : MOST_STEPS;
         return;
     }
     if (radius > 0.0) {
@@ -130,11 +130,11 @@ void aim_at_light(vec3 normal)
         vec2 point = radius * sample_disc(1u + control.light);
         find_frame(axis, right, up);
         toward += point.x * right + point.y * up;
-        remote = length(toward);
-        end = positional ? remote : end;
+        light_distance = length(toward);
+        end = positional ? light_distance : end;
     }
-    below = dot(normal, toward) <= 0.0;
-    begin_ray(normal, toward / remote);
+    below_horizon = dot(normal, toward) <= 0.0;
+    begin_ray(normal, toward / light_distance);
 }
 
 // By a cosine around the normal, as light from there counts.
@@ -142,19 +142,20 @@ void aim_over_hemisphere(vec3 normal)
 {
     vec3 right, up;
     vec2 point = sample_disc(0u);
-    lift = max(lift_in_pixels * place.width, LIFT_OF_REACH * frame.occlusion_reach) + 4.0 * place.rounding;
-    start = place.position + normal * lift;
+    lift = max(lift_in_pixels * hit.width, LIFT_OF_REACH * frame.occlusion_reach) +
+           4.0 * hit.rounding;
+    start = hit.position + normal * lift;
     end = frame.occlusion_reach;
     find_frame(normal, right, up);
     float rise = sqrt(max(1.0 - dot(point, point), 0.0));
     begin_ray(normal, point.x * right + point.y * up + rise * normal);
 }
 
-void look_up_item(uint number) {}
+void exchange_item(uint number) {}
 
 void begin_group(uint first)
 {
-    lost = 0u;
+    unresolved = 0u;
     light = find_light(control.light);
     positional = (light.kind & POSITIONAL) != 0u;
     radius = light_radius(light);
@@ -165,10 +166,10 @@ void begin_item(uint number, bool saved)
 {
     uint listed = find_listed(control.reading + number);
     bool exists = !is_cone || has_cone(listed);
-    place = find_place_of(!exists ? 0u : is_cone ? cone_of_quarter(listed) : listed);
+    hit = hit_point_of_slot(!exists ? 0u : is_cone ? cone_of_quarter(listed) : listed);
     spread = margin = 0.0;
-    below = false;
-    vec4 facing_and_evenness = find_hit(FACING, place.slot);
+    below_horizon = false;
+    vec4 facing_and_evenness = load_hit(FACING, hit.slot);
     vec3 normal = facing_and_evenness.xyz;
     lift_in_pixels = mix(LIFT, LIFT_OF_EVEN, smoothstep(UNEVEN, EVEN, facing_and_evenness.w));
     if (control.phase == OVER_HEMISPHERE)
@@ -176,17 +177,17 @@ void begin_item(uint number, bool saved)
     else
         aim_at_light(normal);
     blocked = blocked || !exists;
-    limit = exists ? limit : 0u;
+    step_limit = exists ? step_limit : 0u;
     t = 0.0;
     slope = facing;
-    taps = 0u;
-    before = gap = 0.0;
-    crept = true;
+    step_count = 0u;
+    last_distance = last_step = 0.0;
+    took_least_step = true;
     float least = min(LEAST_STEP * frame.error, LEAST_STEP_IN_PIXELS);
-    least_step = (is_cone ? 1.0 : least) * place.width + place.rounding;
+    least_step = (is_cone ? 1.0 : least) * hit.width + hit.rounding;
 }
 
-bool item_wants_more() { return taps < limit; }
+bool item_needs_step() { return step_count < step_limit; }
 
 float item_distance(vec3 position)
 {
@@ -194,71 +195,73 @@ float item_distance(vec3 position)
     // Some roundings farther back than the ray has been: what was just before a surface without
     // thickness there must not be behind it here.
     float some = 2.0 * ROUNDING * (largest(position) + t);
-    return krs_along(position, direction, gap > 0.0 ? gap + some : 0.0);
+    return krs_along(position, direction, last_step > 0.0 ? last_step + some : 0.0);
 #else
     return krs_distance(position);
 #endif
 }
 
-vec3 item_place() { return start + t * direction; }
+vec3 item_position() { return start + t * direction; }
 
-// How much room there must be around the axis of a cone.  The surface that it starts from falls
-// away by the cosine.
-float find_room_needed(float at) { return spread * at + min(margin, 0.5 * facing * at); }
+// The clearance that the axis of a cone needs.  The surface that it starts from recedes by the
+// cosine.
+float clearance_needed(float at) { return spread * at + min(margin, 0.5 * facing * at); }
 
-// A gap beyond the distance, as long as may be if the distance goes on as it did.
+// A step longer than the distance: as long as may be if the distance goes on as it did.
 float relax(float distance)
 {
 #ifdef ALONG // it is what is free ahead, and tells nothing of what is behind
     return distance;
 #endif
-    float needed = find_room_needed(t);
-    float aside = sqrt(max(distance * distance - needed * needed, 0.0));
-    return max(2.0 * CAUTION / (1.0 - clamp(slope, -1.0, STEEPEST)) * aside, distance);
+    float needed = clearance_needed(t);
+    float lateral = sqrt(max(distance * distance - needed * needed, 0.0));
+    return max(2.0 * SAFETY / (1.0 - clamp(slope, -1.0, STEEPEST)) * lateral, distance);
 }
 
-// Whether the balls of empty space of this step and the last leave too little room where they meet:
-// so far behind here, so far aside (math.md 6).
-bool has_gone_too_far(float distance, float per_gap)
+// Whether the balls of empty space of this step and the last are too narrow where they meet, which
+// is `behind` this position and `lateral` from the axis (math.md 6).
+bool has_overstepped(float distance, float per_gap)
 {
-    float back = 0.5 * (gap + (distance - before) * (distance + before) * per_gap);
-    float aside = max(distance * distance - back * back, 0.0);
-    float needed = find_room_needed(t - back);
-    bool  narrow = back > 0.0 && back < gap && aside < needed * needed;
-    return !crept && gap > before && (narrow || gap > before + distance);
+    float behind = 0.5 *
+                   (last_step + (distance - last_distance) * (distance + last_distance) * per_gap);
+    float lateral = max(distance * distance - behind * behind, 0.0);
+    float needed = clearance_needed(t - behind);
+    bool  narrow = behind > 0.0 && behind < last_step && lateral < needed * needed;
+    return !took_least_step && last_step > last_distance &&
+           (narrow || last_step > last_distance + distance);
 }
 
 // A ray is blocked inside of something.  Near the start even what is open may have a small
 // distance, where that is only a bound.
 bool is_blocked(float distance)
 {
-    float near = mix(share, 1.0, min(t / (NEAR_START * place.width), 1.0));
-    return distance < (is_cone ? find_room_needed(t) : near * place.rounding);
+    float near = mix(start_ratio, 1.0, min(t / (NEAR_START * hit.width), 1.0));
+    return distance < (is_cone ? clearance_needed(t) : near * hit.rounding);
 }
 
 void take_distance(float distance)
 {
-    distance *= place.side;
-    taps++;
+    distance *= hit.side;
+    step_count++;
     float first = clamp(distance / lift, 0.0625, 1.0);
-    share = taps == 1u ? first : share;
-    float per_gap = 1.0 / max(gap, 1e-30);
+    start_ratio = step_count == 1u ? first : start_ratio;
+    float per_gap = 1.0 / max(last_step, 1e-30);
     bool  inside = is_blocked(distance);
-    bool  back = has_gone_too_far(distance, per_gap) && !(inside && !is_cone);
-    float risen = mix(slope, (distance - before) * per_gap, LEARNING);
-    slope = back ? -1.0 : gap > 0.0 ? risen : slope;
-    blocked = blocked || inside && !back;
+    bool  steps_back = has_overstepped(distance, per_gap) && !(inside && !is_cone);
+    float risen = mix(slope, (distance - last_distance) * per_gap, LEARNING);
+    slope = steps_back ? -1.0 : last_step > 0.0 ? risen : slope;
+    blocked = blocked || inside && !steps_back;
     bool  arrives = t + max(distance, least_step) >= end;
-    limit = !back && (inside || arrives) ? 0u : limit;
-    crept = !back && distance < least_step;
+    step_limit = !steps_back && (inside || arrives) ? 0u : step_limit;
+    took_least_step = !steps_back && distance < least_step;
     // Where the way in is between the last step and this one.
-    float crossing = gap * distance / max(before - distance, 1e-30);
-    float next = crept ? least_step : max(relax(distance), least_step);
+    float crossing = last_step * distance / max(last_distance - distance, 1e-30);
+    float next = took_least_step ? least_step : max(relax(distance), least_step);
     next = min(next, max(end - t, 0.0));
-    least_step *= IMPATIENCE;
-    t += back ? before - gap : inside && !is_cone ? min(crossing, 0.0) : next;
-    gap = back ? before : next;
-    before = back ? before : distance;
+    least_step *= STEP_GROWTH;
+    t += steps_back ? last_distance - last_step : inside && !is_cone ? min(crossing, 0.0) : next;
+    last_step = steps_back ? last_distance : next;
+    last_distance = steps_back ? last_distance : distance;
 }
 
 // How wide the penumbra of what blocks the light is at the hit, in pixels.
@@ -267,39 +270,39 @@ float find_penumbra()
     float width = 2.0 * radius * t;
     if (positional)
         width /= max(length(light.vector - start) - t, 1e-30);
-    return width / place.width;
+    return width / hit.width;
 }
 
 // How much of the sky comes past what a ray hits after this share of its reach.
-float openness_of_hit(float part) { return part * part; }
+float openness_of_hit(float fraction) { return fraction * fraction; }
 
 void end_item()
 {
     if (is_cone) {
-        if (!blocked && limit == 0u)
-            keep_shared(RAYS_SHARED, place.slot, find_depth(place), LIT);
+        if (!blocked && step_limit == 0u)
+            store_shared(RAYS_SHARED, hit.slot, find_depth(hit), LIT);
         return;
     }
-    lost += limit > 0u ? 1u : 0u;
-    float visible = blocked || below ? 0.0 : 1.0;
-    uint  code = below ? BELOW_HORIZON : blocked ? code_of_width(find_penumbra()) : LIT;
+    unresolved += step_limit > 0u ? 1u : 0u;
+    float visible = blocked || below_horizon ? 0.0 : 1.0;
+    uint  code = below_horizon ? BELOW_HORIZON : blocked ? code_of_width(find_penumbra()) : LIT;
     if (control.phase == OVER_HEMISPHERE) {
         visible = blocked ? openness_of_hit(t / frame.occlusion_reach) : 1.0;
         code = code_of_openness(visible);
     }
     if (control.filters != 0u)
-        keep_shared(RAYS_SHARED, place.slot, find_depth(place), code);
+        store_shared(RAYS_SHARED, hit.slot, find_depth(hit), code);
     else
-        keep_lighting(control.value, place.slot, visible);
+        store_lighting(control.value, hit.slot, visible);
 }
 
 void end_group(uint steps)
 {
-    if (lost > 0u)
-        atomicAdd(counts.unresolved, lost);
+    if (unresolved > 0u)
+        atomicAdd(counts.unresolved, unresolved);
 }
 
-const uint HUNGRY = 3u;
+const uint REFILL_THRESHOLD = 3u;
 const bool SAVES = false;
 void save_item() {}
 

@@ -6,13 +6,13 @@
  */
 #include "scene.glsl"
 #include "frame.glsl"
-#include "solid.glsl"
+#include "hit_lists.glsl"
 #include "light.glsl"
 #include "results.glsl"
 
-const float EVEN = 0.98;      // less is not a curved surface's own, but detail
-const float LEAST_BLUR = 0.5; // without filtering (normal_reach in render.c)
-const float SEEN = 0.78;      // the mean of the normals that are seen of a thin round thing
+const float EVEN = 0.98;              // less is not a curved surface's own, but detail
+const float LEAST_NORMAL_REACH = 0.5; // without filtering (normal_reach in render.c)
+const float SEEN = 0.78;              // the mean of the normals that are seen of a thin round thing
 
 // A sum of rays of such light is still a number.
 const float BRIGHTEST = 1e30;
@@ -20,55 +20,55 @@ const float BRIGHTEST = 1e30;
 // What reflects light.
 struct Coat {
     vec3  color, normal; // the latter is the direction of the mean of the normals,
-    float share;         // and this its length
+    float mean_length;   // and this its length
     float roughness, metallic;
     vec3  toward_eye;
 };
 
 // Within 0 and most; what is not a number is 0.
-vec4 between(vec4 numbers, float most)
+vec4 saturate(vec4 numbers, float most)
 {
     return mix(vec4(0.0), min(numbers, most), greaterThan(numbers, vec4(0.0)));
 }
 
 // The mean of the normals that the pixel sees, not a unit vector, where the mean of all around is
 // this share of a unit normal.  Of what is thin only the side towards the eye is seen.
-vec3 mean_normal(vec3 normal, float share, vec3 toward_eye)
+vec3 mean_normal(vec3 normal, float mean_length, vec3 toward_eye)
 {
-    float rest = 1.0 - share;
-    return share * normal + SEEN * rest * rest * toward_eye;
+    float rest = 1.0 - mean_length;
+    return mean_length * normal + SEEN * rest * rest * toward_eye;
 }
 
 // Normals that vary within the pixel make the coat rougher: the shorter their mean, the wider
 // their lobe (Toksvig 2005).
-float roughen(float roughness, float share)
+float roughen(float roughness, float mean_length)
 {
     float square = roughness * roughness;
-    float spread = 2.0 * (1.0 - share) / max(share, 1e-3);
+    float spread = 2.0 * (1.0 - mean_length) / max(mean_length, 1e-3);
     return sqrt(sqrt(min(square * square + spread, 1.0)));
 }
 
-Coat find_coat(Place place, KrsSurface surface, float evenness)
+Coat find_coat(HitPoint hit, KrsSurface surface, float evenness)
 {
-    float share = frame.blur > LEAST_BLUR ? min(evenness / EVEN, 1.0) : 1.0;
-    vec3  mean = mean_normal(place.side * surface.normal, share, -place.direction);
-    vec4  coat = between(vec4(surface.color, surface.roughness), 1.0);
+    float mean_length = frame.normal_reach > LEAST_NORMAL_REACH ? min(evenness / EVEN, 1.0) : 1.0;
+    vec3  mean = mean_normal(hit.side * surface.normal, mean_length, -hit.direction);
+    vec4  coat = saturate(vec4(surface.color, surface.roughness), 1.0);
     float size = length(mean);
-    return Coat(coat.rgb, mean / max(size, 1e-6), min(size, 1.0), roughen(coat.a, share),
-                between(vec4(surface.metallic), 1.0).x, -place.direction);
+    return Coat(coat.rgb, mean / max(size, 1e-6), min(size, 1.0), roughen(coat.a, mean_length),
+                saturate(vec4(surface.metallic), 1.0).x, -hit.direction);
 }
 
 // Scattered light goes with the cosine, and so with the mean of the normals, which is shorter than
 // each; what a coat mirrors is as much whatever its roughness.
-vec3 mean_color(Coat coat) { return coat.color * mix(coat.share, 1.0, coat.metallic); }
+vec3 mean_color(Coat coat) { return coat.color * mix(coat.mean_length, 1.0, coat.metallic); }
 
-vec3 lit(Light light, Place place, Coat coat, vec3 facing, float visible)
+vec3 direct_light(Light light, HitPoint hit, Coat coat, vec3 facing, float visible)
 {
     vec3 toward = light.vector, color = light.color;
     if ((light.kind & POSITIONAL) != 0u) {
-        vec3  apart = light.vector - place.position;
-        float square = max(dot(apart, apart), 1e-12);
-        toward = apart * inversesqrt(square);
+        vec3  difference = light.vector - hit.position;
+        float square = max(dot(difference, difference), 1e-12);
+        toward = difference * inversesqrt(square);
         color /= square;
     }
     // Who casts no shadows has not been looked for, but a surface that is turned away is dark.
@@ -80,35 +80,35 @@ vec3 lit(Light light, Place place, Coat coat, vec3 facing, float visible)
 
 // The hemisphere of the sky, as far as it is open; what is closed off by a surface of like
 // colour gives some light back.
-vec3 ambient(Coat coat, float open)
+vec3 ambient(Coat coat, float openness)
 {
-    vec3 bounce = open / max(1.0 - coat.color * (1.0 - open), 0.05);
-    vec3 scattered = coat.color * (1.0 - coat.metallic) * sky_light(coat.share * coat.normal) *
-                     bounce;
+    vec3 bounce = openness / max(1.0 - coat.color * (1.0 - openness), 0.05);
+    vec3 scattered = coat.color * (1.0 - coat.metallic) *
+                     sky_light(coat.mean_length * coat.normal) * bounce;
     vec3 mirrored = sky_reflected(coat.normal, coat.toward_eye, coat.color, coat.roughness,
                                   coat.metallic);
-    return scattered + mirrored * open;
+    return scattered + mirrored * openness;
 }
 
 // What becomes of the pixel of a hit, row by row: whatever is not asked for would take lavapipe as
 // long as what is.
-void keep_results(uint index, uint rows, vec4 color, Place place, Coat coat, KrsSurface surface)
+void store_results(uint index, uint rows, vec4 color, HitPoint hit, Coat coat, KrsSurface surface)
 {
-    vec3  apart = place.position - frame.eye.xyz;
-    float along = dot(apart, frame.forward.xyz);
-    float depth = control.projection == PANORAMA ? length(apart) : along;
-    uvec3 normal = floatBitsToUint(place.side * coat.normal);
+    vec3  difference = hit.position - frame.eye.xyz;
+    float along = dot(difference, frame.forward.xyz);
+    float depth = control.projection == PANORAMA ? length(difference) : along;
+    uvec3 normal = floatBitsToUint(hit.side * coat.normal);
     do { // as in pixels.glsl
         uint  row = uint(findLSB(rows));
         uvec4 numbers = floatBitsToUint(color);
-        if (row == PLACES)
-            numbers = floatBitsToUint(vec4(place.position, depth));
+        if (row == POSITIONS)
+            numbers = floatBitsToUint(vec4(hit.position, depth));
         if (row == NORMALS)
             numbers = uvec4(normal, surface.component);
         if (row == ALBEDOS)
             numbers = uvec4(floatBitsToUint(coat.color), surface.level);
         if (row == COUNTS)
-            numbers = uvec4(surface.instance, place.steps, 0u, 0u);
+            numbers = uvec4(surface.instance, hit.steps, 0u, 0u);
         results[row * band_pixels() + index] = numbers;
         rows &= rows - 1u;
     } while (rows != 0u);
@@ -128,15 +128,15 @@ void begin_group()
 
 void do_item(uint number)
 {
-    Place      place = find_place(number);
-    vec4       facing = find_hit(FACING, place.slot), lighting = find_hit(LIGHTING, place.slot);
-    KrsSurface surface = krs_surface(place.position, place.side * facing.xyz, 0.5 * place.width);
-    uint       index = index_of(pixel_of(place.slot));
-    Coat       coat = find_coat(place, surface, facing.w);
+    HitPoint      hit = find_hit_point(number);
+    vec4       facing = load_hit(FACING, hit.slot), lighting = load_hit(LIGHTING, hit.slot);
+    KrsSurface surface = krs_surface(hit.position, hit.side * facing.xyz, 0.5 * hit.width);
+    uint       index = index_of(pixel_of(hit.slot));
+    Coat       coat = find_coat(hit, surface, facing.w);
     vec4       radiance = vec4(0.0);
     if (control.light == 0u) {
-        radiance.rgb = between(vec4(surface.emission, 0.0), BRIGHTEST).rgb +
-                       ambient(coat, control.open != 0u ? 1.0 : lighting.x);
+        radiance.rgb = saturate(vec4(surface.emission, 0.0), BRIGHTEST).rgb +
+                       ambient(coat, control.no_occlusion != 0u ? 1.0 : lighting.x);
         radiance.a = 1.0;
     }
     uint end = min(control.light + LIGHTS_AT_ONCE, control.lights);
@@ -144,15 +144,15 @@ void do_item(uint number)
     uint i = control.light;
     Light now = lights[0], next = lights[1];
     do { // as in pixels.glsl
-        vec3 light = lit(now, place, coat, facing.xyz, visible.x);
+        vec3 light = direct_light(now, hit, coat, facing.xyz, visible.x);
         radiance.rgb += i < end ? light : vec3(0.0);
         visible = visible.yzx;
         now = next;
         next = lights[2];
         i++;
     } while (i < end);
-    vec4 sum = find_color(index) + vec4(sound(radiance.rgb), radiance.a);
-    keep_results(index, rows, sum, place, coat, surface);
+    vec4 sum = find_color(index) + vec4(finite_or_black(radiance.rgb), radiance.a);
+    store_results(index, rows, sum, hit, coat, surface);
 }
 
 #include "pixels.glsl"

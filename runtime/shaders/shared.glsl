@@ -22,39 +22,40 @@ const float WIDTHS_A_DOUBLING = 8.0, NARROWEST_LOG = -4.0;
 const uint CLOSED = 1u;
 const float OPEN_CODES = 254.0;
 
-// Words of slots (solid.glsl): of rays, and of means of these, whose codes are all from closed to
-// open.
+// Words of slots (hit_lists.glsl): of rays, and of means of these, whose codes are all from closed
+// to open.
 const uint RAYS_SHARED = 0u, MEANS_SHARED = 1u;
 
 // A pixel's ray, not a unit vector where that would cost a root: it is 1 along the view.
-void find_axis(vec2 place, out vec3 origin, out vec3 axis)
+void find_axis(vec2 image_point, out vec3 origin, out vec3 axis)
 {
-    vec2  plane = vec2(2.0 * place.x / frame.size.x - 1.0, 1.0 - 2.0 * place.y / frame.size.y);
-    vec3  aside = plane.x * frame.right.xyz + plane.y * frame.up.xyz;
+    vec2 plane = vec2(2.0 * image_point.x / frame.size.x - 1.0,
+                      1.0 - 2.0 * image_point.y / frame.size.y);
+    vec3  lateral = plane.x * frame.right.xyz + plane.y * frame.up.xyz;
     float spreads = control.projection == PERSPECTIVE ? 1.0 : 0.0;
-    origin = frame.eye.xyz + (1.0 - spreads) * aside;
-    axis = frame.forward.xyz + spreads * aside;
+    origin = frame.eye.xyz + (1.0 - spreads) * lateral;
+    axis = frame.forward.xyz + spreads * lateral;
 #ifdef PANORAMIC
     float base, slope;
     if (control.projection == PANORAMA)
-        find_ray(place, origin, axis, base, slope);
+        find_ray(image_point, origin, axis, base, slope);
 #endif
 }
 
 // How far along its axis a place is.
-float find_depth(Place place)
+float find_depth(HitPoint hit)
 {
-    float along = dot(place.position - frame.eye.xyz, frame.forward.xyz);
+    float along = dot(hit.position - frame.eye.xyz, frame.forward.xyz);
 #ifdef PANORAMIC
     if (control.projection == PANORAMA)
-        along = find_end(index_of(pixel_of(place.slot))).t;
+        along = find_end(index_of(pixel_of(hit.slot))).t;
 #endif
     return along;
 }
 
-void keep_shared(uint list, uint slot, float depth, uint code)
+void store_shared(uint list, uint slot, float depth, uint code)
 {
-    solid[shared_at(list, slot)] = floatBitsToUint(depth) & 0xffffff00u | code;
+    pixel_lists[shared_at(list, slot)] = floatBitsToUint(depth) & 0xffffff00u | code;
 }
 
 uint find_shared(uint list, uint slot)
@@ -73,7 +74,7 @@ float width_of_code(uint code)
     return exp2(float(code - NARROWEST) / WIDTHS_A_DOUBLING + NARROWEST_LOG);
 }
 
-uint code_of_openness(float open) { return CLOSED + uint(OPEN_CODES * open + 0.5); }
+uint code_of_openness(float openness) { return CLOSED + uint(OPEN_CODES * openness + 0.5); }
 
 float openness_of_code(uint code) { return float(code - CLOSED) / OPEN_CODES; }
 

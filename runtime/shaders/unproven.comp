@@ -7,21 +7,21 @@
  * An item is a quarter of the list.
  */
 #include "frame.glsl"
-#include "solid.glsl"
+#include "hit_lists.glsl"
 #include "shared.glsl"
 
-// Of an empty cone: who is so near to its start in pixels, about, on its plane and faces its way.
+// Of an empty cone: pixels so near to its start, about, on its plane and with a similar normal.
 const float PROVEN_NEAR = 3.0, PROVEN_ON_PLANE = 1.0, FACING_ALIKE = 0.9;
 
 // Whether the empty cone of one pixel, which faces that way, tells that the light is seen from
 // another.
-bool is_proven(Place here, vec3 normal, Place cone, vec3 facing)
+bool is_proven(HitPoint here, vec3 normal, HitPoint cone, vec3 facing)
 {
-    vec3  apart = here.position - cone.position;
+    vec3  difference = here.position - cone.position;
     float turned = max(-dot(facing, cone.direction), 0.25) / here.width;
     return dot(normal, facing) > FACING_ALIKE &&
-           abs(dot(apart, facing)) < PROVEN_ON_PLANE * here.width &&
-           dot(apart, apart) * turned * turned < PROVEN_NEAR * PROVEN_NEAR;
+           abs(dot(difference, facing)) < PROVEN_ON_PLANE * here.width &&
+           dot(difference, difference) * turned * turned < PROVEN_NEAR * PROVEN_NEAR;
 }
 
 // Those of these pixels for which it tells that.
@@ -29,36 +29,36 @@ uint find_proven(uint quarter, uint hits)
 {
     uint first = slot_of_quarter(quarter), cone = cone_of_quarter(quarter), proven = 0u;
     uint left = find_shared(RAYS_SHARED, cone) != 0u ? hits : 0u;
-    Place there = find_place_of(cone);
-    vec3  facing = find_hit(FACING, cone).xyz;
+    HitPoint there = hit_point_of_slot(cone);
+    vec3  facing = load_hit(FACING, cone).xyz;
     for (; left != 0u; left &= left - 1u) {
         uint  slot = slot_of_bit(first, left);
-        Place here = find_place_of(slot);
-        if (cone != slot && !is_proven(here, find_hit(FACING, slot).xyz, there, facing))
+        HitPoint here = hit_point_of_slot(slot);
+        if (cone != slot && !is_proven(here, load_hit(FACING, slot).xyz, there, facing))
             continue;
         proven |= left & ~left + 1u;
-        keep_lighting(control.value, slot, 1.0);
-        keep_shared(MEANS_SHARED, slot, find_depth(here), code_of_openness(1.0));
+        store_lighting(control.value, slot, 1.0);
+        store_shared(MEANS_SHARED, slot, find_depth(here), code_of_openness(1.0));
         if (cone != slot)
-            keep_shared(RAYS_SHARED, slot, find_depth(here), LIT);
+            store_shared(RAYS_SHARED, slot, find_depth(here), LIT);
     }
     return proven;
 }
 
 void begin_group() {}
 
-// Room in the list is taken for all at once.
+// Indices in the list are reserved for all at once.
 void do_item(uint number)
 {
     uint quarter = find_listed(control.reading + number), first = slot_of_quarter(quarter);
     uint hits = find_listed(quarter_at(HITS_OF_QUARTERS, quarter));
     uint proven = find_proven(quarter, hits), rest = hits & ~proven;
-    solid[quarter_at(LIGHT_OF_QUARTERS, quarter)] = rest | proven << 16u;
+    pixel_lists[quarter_at(LIGHT_OF_QUARTERS, quarter)] = rest | proven << 16u;
     if (rest == 0u)
         return;
-    uint at = 2u * band_pixels() + atomicAdd(counts.rest, bitCount(rest));
+    uint at = 2u * band_pixels() + atomicAdd(counts.remaining, bitCount(rest));
     for (; rest != 0u; rest &= rest - 1u)
-        solid[at++] = slot_of_bit(first, rest);
+        pixel_lists[at++] = slot_of_bit(first, rest);
 }
 
 #include "pixels.glsl"

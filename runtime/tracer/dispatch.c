@@ -18,7 +18,7 @@ static_assert(WORD_OF(items) == 10 && WORD_OF(groups) == 42 && WORD_OF(stopped) 
                   WORD_OF(ran) == 46,
               "plan.comp");
 typedef struct PlanBlock {
-    uint32_t counter, each, taken, in_group, most, number;
+    uint32_t counter, each, resets, in_group, most, number;
 } PlanBlock;
 static_assert(sizeof(PlanBlock) <= sizeof(WorkBlock), "push constants");
 
@@ -30,9 +30,9 @@ bool dispatch_chains(const Job *job)
 /* ---- Slices ---- */
 
 /* How many groups to take next, after `groups` took `ms`. */
-static uint32_t next_slice(double groups, double ms, double aim)
+static uint32_t next_slice(double groups, double ms, double target_ms)
 {
-    double factor = ms > 0 ? aim / ms : 4;
+    double factor = ms > 0 ? target_ms / ms : 4;
     double next   = groups * fmin(fmax(factor, 0.1), 4);
     return next < 1 ? 1 : next > MOST_GROUPS ? MOST_GROUPS : (uint32_t)next;
 }
@@ -40,8 +40,9 @@ static uint32_t next_slice(double groups, double ms, double aim)
 /* A phase may turn out to have more parts than was thought, but progress never goes back. */
 static bool report(Job *job, double within_phase)
 {
-    job->shown = fmax(job->shown, fmin(job->done + job->share * within_phase, 1));
-    if (job->options.progress && !job->options.progress(job->options.user, job->shown)) {
+    job->progress_shown = fmax(job->progress_shown,
+                               fmin(job->progress_done + job->progress_share * within_phase, 1));
+    if (job->options.progress && !job->options.progress(job->options.user, job->progress_shown)) {
         gpu_refuse(job->gpu, KRS_INTERRUPTED, "interrupted");
         return false;
     }
@@ -109,16 +110,16 @@ static uint32_t groups_of(const Dispatch *dispatch, uint32_t items)
 }
 
 Dispatch dispatch_of(const Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
-                     Items items, Dealing deal)
+                     Items items, LaneBudget budget)
 {
-    Dispatch dispatch      = {.phase    = phase,
-                              .kernel   = kernel,
-                              .work     = *work,
-                              .items    = items,
-                              .in_group = deal.lanes * deal.share};
-    dispatch.control       = *(const ControlBlock *)job->rendering->control.bytes;
-    dispatch.control.share = deal.share;
-    dispatch.work.steps    = deal.steps;
+    Dispatch dispatch               = {.phase    = phase,
+                                       .kernel   = kernel,
+                                       .work     = *work,
+                                       .items    = items,
+                                       .in_group = budget.lanes * budget.items_per_lane};
+    dispatch.control                = *(const ControlBlock *)job->rendering->control.bytes;
+    dispatch.control.items_per_lane = budget.items_per_lane;
+    dispatch.work.steps             = budget.steps;
     return dispatch;
 }
 
@@ -153,7 +154,7 @@ static bool run_in_slices(Job *job, const Dispatch *dispatch)
     uint32_t      items   = items_now(job, dispatch->items);
     memcpy(control, &dispatch->control, offsetof(ControlBlock, queued));
     control->items = items;
-    if (dispatch->items.taken)
+    if (dispatch->items.resets)
         *word_of(job, dispatch->items.counter) = 0;
     if (dispatch->clears)
         *word_of(job, dispatch->clears) = 0;
@@ -185,7 +186,7 @@ static void record(Job *job, uint32_t i)
     const Items    *items    = &dispatch->items;
     VkBuffer        control  = rendering_control(r)->buffer;
     PlanBlock       plan     = {
-                  items->counter, items->each, items->taken, dispatch->in_group, most_groups(job, dispatch),
+                  items->counter, items->each, items->resets, dispatch->in_group, most_groups(job, dispatch),
                   i + 1};
     WorkBlock work = dispatch->work;
     work.first     = 0;
@@ -210,7 +211,7 @@ static void learn(Job *job, uint32_t first, uint32_t end, double ms)
 {
     const ControlBlock *control = job->rendering->control.bytes;
     const Dispatch     *list = job->chain.list, *told = &list[first];
-    double              groups = 0, aim = job->options.slice_ms;
+    double              groups = 0, target_ms = job->options.slice_ms;
     for (uint32_t i = first; i < end; i++)
         if (has_scene(job, list[i].kernel))
             told = &list[i];
@@ -218,8 +219,8 @@ static void learn(Job *job, uint32_t first, uint32_t end, double ms)
         if (has_scene(job, list[i].kernel) == has_scene(job, told->kernel))
             groups += control->ran[i] * weight_of(job, &list[i]);
     uint32_t *at_once = groups_at_once(job, told->phase, told->kernel);
-    uint32_t  next    = next_slice(groups, ms, aim);
-    if (groups > 0 && (ms > aim || next > *at_once))
+    uint32_t  next    = next_slice(groups, ms, target_ms);
+    if (groups > 0 && (ms > target_ms || next > *at_once))
         *at_once = next;
     job->picture->stats.phase_ms[told->phase] += ms;
 }
@@ -321,22 +322,22 @@ bool dispatch_together(Job *job, const Dispatch *dispatches, size_t count)
 }
 
 bool dispatch_items(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
-                    Items items, Dealing deal)
+                    Items items, LaneBudget budget)
 {
-    Dispatch dispatch = dispatch_of(job, phase, kernel, work, items, deal);
+    Dispatch dispatch = dispatch_of(job, phase, kernel, work, items, budget);
     return dispatch_run(job, &dispatch);
 }
 
 /* Of items that all cost alike lavapipe's lanes take so many. */
 #define ITEMS_OF_LANE 8
 
-Dealing deal_pixels(const Job *job)
+LaneBudget pixel_budget(const Job *job)
 {
-    return (Dealing){64, gpu_is_cpu(job->gpu) ? ITEMS_OF_LANE : 1, 0};
+    return (LaneBudget){64, gpu_is_cpu(job->gpu) ? ITEMS_OF_LANE : 1, 0};
 }
 
 bool dispatch_pixels(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
                      Items items)
 {
-    return dispatch_items(job, phase, kernel, work, items, deal_pixels(job));
+    return dispatch_items(job, phase, kernel, work, items, pixel_budget(job));
 }

@@ -15,21 +15,21 @@
 typedef struct Job Job;
 
 /* How many items a dispatch has: `each` times a counter of the control block, as it is when the
-   dispatch runs, and 0 afterwards if it is taken; or just `each`. */
+   dispatch runs, and 0 afterwards if `resets`; or just `each`. */
 typedef struct Items {
     uint32_t each;
     uint32_t counter; /* its number among the words of the block; 0: none */
-    bool     taken;
+    bool     resets;
 } Items;
 #define WORD_OF(counter)          (offsetof(ControlBlock, counter) / sizeof(uint32_t))
 #define ITEMS_COUNTED(each, name) ((Items){(each), WORD_OF(name), false})
 #define ITEMS_KNOWN(count)        ((Items){(count), 0, false})
 
-/* How items are dealt out (schedule.glsl): to so many lanes a group, to a lane so many; and how
-   many steps a lane has in a dispatch. */
-typedef struct Dealing {
-    uint32_t lanes, share, steps;
-} Dealing;
+/* How items are assigned to lanes (schedule.glsl): lanes of a workgroup, items of a lane, and the
+   steps that a lane may take in a dispatch. */
+typedef struct LaneBudget {
+    uint32_t lanes, items_per_lane, steps;
+} LaneBudget;
 
 typedef struct Dispatch {
     KrsPhase      phase;
@@ -53,7 +53,7 @@ bool dispatch_chains(const Job *job);
 
 /* A dispatch by what the control block says now, but for its items. */
 Dispatch dispatch_of(const Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
-                     Items items, Dealing deal);
+                     Items items, LaneBudget budget);
 /* Runs it, or adds it to the chain. */
 bool dispatch_run(Job *job, const Dispatch *dispatch);
 /* One after the other, none of which leaves an item over or counts for the next: in one submission
@@ -64,11 +64,11 @@ bool dispatch_finish(Job *job);
 
 /* A kernel over items of which each takes the steps that it needs (schedule.glsl), */
 bool dispatch_items(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
-                    Items items, Dealing deal);
-/* or that all cost alike (pixels.glsl): as such items are dealt out. */
-bool    dispatch_pixels(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
-                        Items items);
-Dealing deal_pixels(const Job *job);
+                    Items items, LaneBudget budget);
+/* or that all cost alike (pixels.glsl): the budget of such a dispatch. */
+bool       dispatch_pixels(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
+                           Items items);
+LaneBudget pixel_budget(const Job *job);
 /* How many there are, where the host knows what was counted. */
 uint32_t items_now(const Job *job, Items items);
 

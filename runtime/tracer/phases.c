@@ -12,24 +12,24 @@
 #include <stddef.h>
 #include <string.h>
 
-#define MOST_TURNS      16384 /* of a lane that takes item after item */
+#define MOST_LANE_STEPS 16384 /* of a lane that takes item after item */
 #define MOST_BEAM_STEPS 256   /* of a beam, as in trace.comp */
 #define MOST_PASS_STEPS 2048  /* of rays that are left over, in one more pass */
 
-static uint32_t turns_within(const Job *job, uint32_t wanted)
+static uint32_t steps_within(const Job *job, uint32_t wanted)
 {
-    return rendering_turns(job->rendering, wanted);
+    return rendering_steps_within(job->rendering, wanted);
 }
 
-static Dealing dealing(const Job *job)
+static LaneBudget lane_budget(const Job *job)
 {
     uint32_t steps = job->options.steps_at_once;
     if (job->schedule == KRS_SCHEDULE_REFILL)
-        steps = 8 * steps < MOST_TURNS ? 8 * steps : MOST_TURNS;
-    steps = turns_within(job, steps);
+        steps = 8 * steps < MOST_LANE_STEPS ? 8 * steps : MOST_LANE_STEPS;
+    steps = steps_within(job, steps);
     if (job->schedule == KRS_SCHEDULE_REFILL)
-        return (Dealing){job->gpu->refill_lanes, 128, steps};
-    return (Dealing){64, 1, steps};
+        return (LaneBudget){job->gpu->refill_lanes, 128, steps};
+    return (LaneBudget){64, 1, steps};
 }
 
 /* ---- Beams and primary rays ---- */
@@ -45,7 +45,7 @@ static bool clear_ends(Job *job)
     Gpu *gpu = job->gpu;
     if (!gpu_begin(gpu))
         return false;
-    vkCmdFillBuffer(gpu->commands, job->rendering->band.ends.buffer, 0, VK_WHOLE_SIZE, FATE_MISS);
+    vkCmdFillBuffer(gpu->commands, job->rendering->band.ends.buffer, 0, VK_WHOLE_SIZE, STATE_MISS);
     return gpu_finish(gpu, &job->picture->stats.phase_ms[KRS_PHASE_BEAMS]);
 }
 
@@ -79,19 +79,19 @@ static uint32_t choose_tiles(const Job *job, const WorkBlock *work, uint32_t sid
     return count[0] * count[1];
 }
 
-/* At most so many beams for a lane, and turns enough for all, as none is saved: whichever lanes
+/* At most so many beams for a lane, and steps enough for all, as none is saved: whichever lanes
    take them, the last is done after those of a lane and one more. */
-static Dealing deal_beams(const Job *job, uint32_t most)
+static LaneBudget beam_budget(const Job *job, uint32_t most)
 {
-    Dealing deal = dealing(job);
-    deal.share   = deal.share < most ? deal.share : most;
-    for (; deal.share > 1; deal.share /= 2) {
-        uint32_t half = (deal.share + 1) * MOST_BEAM_STEPS / 2; /* as in has_beams */
-        if (turns_within(job, half) == half)
+    LaneBudget budget     = lane_budget(job);
+    budget.items_per_lane = budget.items_per_lane < most ? budget.items_per_lane : most;
+    for (; budget.items_per_lane > 1; budget.items_per_lane /= 2) {
+        uint32_t half = (budget.items_per_lane + 1) * MOST_BEAM_STEPS / 2; /* as in has_beams */
+        if (steps_within(job, half) == half)
             break;
     }
-    deal.steps = (deal.share + 1) * MOST_BEAM_STEPS;
-    return deal;
+    budget.steps = (budget.items_per_lane + 1) * MOST_BEAM_STEPS;
+    return budget;
 }
 
 /* Where a distance costs less than this, beams of 4x4 pixels cost more than they gain. */
@@ -106,26 +106,26 @@ static bool march_beams(Job *job, const WorkBlock *work, double flops)
         uint32_t phase, side;
     } sizes[]             = {{TRACE_BEAMS_32, 32}, {TRACE_BEAMS_8, 8}};
     ControlBlock *control = job->rendering->control.bytes;
-    Dealing       deal    = deal_beams(job, 2); /* a slot each, of two that a lane keeps */
+    LaneBudget    budget  = beam_budget(job, 2); /* a slot each, of two that a lane keeps */
     Dispatch      beams[2];
     control->tiles  = 0;
     control->source = ITEMS_FRESH;
     for (uint32_t i = 0; i < 2; i++) {
-        uint32_t tiles  = choose_tiles(job, work, sizes[i].side);
-        control->phase  = sizes[i].phase;
-        control->follow = i;
-        beams[i] = dispatch_of(job, KRS_PHASE_BEAMS, job->beams, work, ITEMS_KNOWN(tiles), deal);
+        uint32_t tiles       = choose_tiles(job, work, sizes[i].side);
+        control->phase       = sizes[i].phase;
+        control->starts_from = i;
+        beams[i] = dispatch_of(job, KRS_PHASE_BEAMS, job->beams, work, ITEMS_KNOWN(tiles), budget);
     }
     if (!dispatch_together(job, beams, 2))
         return false;
-    control->follow = control->listed = 1;
+    control->starts_from = control->listed = 1;
     if (flops < FLOPS_WORTH_QUARTERS)
         return true;
     control->phase = TRACE_BEAMS_4;
     if (!dispatch_items(job, KRS_PHASE_BEAMS, job->beams, work, ITEMS_COUNTED(4, tiles),
-                        deal_beams(job, 8))) /* four of a slot */
+                        beam_budget(job, 8))) /* four of a slot */
         return false;
-    control->follow = 2;
+    control->starts_from = 2;
     return true;
 }
 
@@ -137,7 +137,7 @@ static uint32_t next_steps(const Job *job, const ControlBlock *control, uint32_t
         steps = job->options.steps_at_once;
     else if (steps < MOST_PASS_STEPS)
         steps *= 2;
-    return turns_within(job, steps);
+    return steps_within(job, steps);
 }
 
 /* The next pass reads the queue that the last one has written, and writes the other one. */
@@ -153,17 +153,17 @@ static void turn_queue(ControlBlock *control, const WorkBlock *work)
 #define PASSES_AT_ONCE 5
 
 /* As `trace` does it where the host does not look at how many rays are left after each pass. */
-static bool trace_in_chain(Job *job, const WorkBlock *work, Dealing deal)
+static bool trace_in_chain(Job *job, const WorkBlock *work, LaneBudget budget)
 {
     ControlBlock *control = job->rendering->control.bytes;
     Items         items   = pixels_of_rays(job, work);
     do {
         for (int pass = 0; pass <= PASSES_AT_ONCE; pass++) {
-            if (!dispatch_items(job, KRS_PHASE_PRIMARY, job->trace, work, items, deal))
+            if (!dispatch_items(job, KRS_PHASE_PRIMARY, job->trace, work, items, budget))
                 return false;
-            deal.steps = next_steps(job, control, deal.steps);
+            budget.steps = next_steps(job, control, budget.steps);
             turn_queue(control, work);
-            items = (Items){1, WORD_OF(queued), .taken = true};
+            items = (Items){1, WORD_OF(queued), .resets = true};
         }
         if (!dispatch_finish(job))
             return false;
@@ -176,51 +176,52 @@ static bool trace_in_chain(Job *job, const WorkBlock *work, Dealing deal)
 static bool trace(Job *job, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    Dealing       deal    = dealing(job);
+    LaneBudget    budget  = lane_budget(job);
     Items         items   = pixels_of_rays(job, work);
     control->phase        = TRACE_RAYS;
     control->source       = ITEMS_FRESH;
     control->queued = control->writing = 0;
     if (dispatch_chains(job))
-        return trace_in_chain(job, work, deal);
-    while (deal.lanes * deal.share > 128 && items_now(job, items) / (deal.lanes * deal.share) < 64)
-        deal.share /= 2; /* groups enough for every core of the device */
-    for (double left = job->share;; left -= job->share) {
-        control->left = 0;
-        job->share    = 0.9 * left; /* few rays need a second pass */
-        if (!dispatch_items(job, KRS_PHASE_PRIMARY, job->trace, work, items, deal))
+        return trace_in_chain(job, work, budget);
+    while (budget.lanes * budget.items_per_lane > 128 &&
+           items_now(job, items) / (budget.lanes * budget.items_per_lane) < 64)
+        budget.items_per_lane /= 2; /* groups enough for every core of the device */
+    for (double left = job->progress_share;; left -= job->progress_share) {
+        control->untaken    = 0;
+        job->progress_share = 0.9 * left; /* few rays need a second pass */
+        if (!dispatch_items(job, KRS_PHASE_PRIMARY, job->trace, work, items, budget))
             return false;
-        job->done += job->share;
-        if (control->left > 0) {
-            control->source = ITEMS_REST;
+        job->progress_done += job->progress_share;
+        if (control->untaken > 0) {
+            control->source = ITEMS_UNTAKEN;
             continue;
         }
         if (control->queued == 0)
             return true;
-        deal.steps = next_steps(job, control, deal.steps);
+        budget.steps = next_steps(job, control, budget.steps);
         turn_queue(control, work);
-        items           = ITEMS_KNOWN(control->queued);
-        control->queued = 0;
-        deal.share      = 1;
+        items                 = ITEMS_KNOWN(control->queued);
+        control->queued       = 0;
+        budget.items_per_lane = 1;
     }
 }
 
 static bool has_beams(const Job *job)
 {
     return !job->options.no_beams && job->view.camera.projection != KRS_PANORAMA &&
-           turns_within(job, MOST_BEAM_STEPS / 2) == MOST_BEAM_STEPS / 2;
+           steps_within(job, MOST_BEAM_STEPS / 2) == MOST_BEAM_STEPS / 2;
 }
 
 /* Beams, then rays, of one kernel, whose distance costs so much. */
-static bool march(Job *job, const WorkBlock *work, double flops)
+static bool march_kernel(Job *job, const WorkBlock *work, double flops)
 {
-    ControlBlock *control = job->rendering->control.bytes;
-    const double  share   = job->share;
-    control->follow = control->listed = 0;
-    job->share                        = 0; /* of beams: too short to be seen */
+    ControlBlock *control        = job->rendering->control.bytes;
+    const double  progress_share = job->progress_share;
+    control->starts_from = control->listed = 0;
+    job->progress_share                    = 0; /* of beams: too short to be seen */
     if (has_beams(job) && !march_beams(job, work, flops))
         return false;
-    job->share = share;
+    job->progress_share = progress_share;
     return trace(job, work);
 }
 
@@ -228,32 +229,33 @@ static bool march_all(Job *job, const WorkBlock *work)
 {
     FrameBlock       *frame   = job->rendering->frame.bytes;
     Kernel           *whole   = job->trace;
-    bool              good    = (!has_beams(job) && job->part_count == 0) || clear_ends(job);
+    bool              good    = (!has_beams(job) && job->group_march_count == 0) || clear_ends(job);
     const KrsProgram *program = job->rendering->program;
-    if (job->rest) {
+    if (job->knows_planes) {
         double low[3], high[3];
         for (int i = 0; i < 3; i++) {
-            low[i]  = program->rest_low[i] - job->anchor[i];
-            high[i] = program->rest_high[i] - job->anchor[i];
+            low[i]  = program->rest_low[i] - job->rebase_origin[i];
+            high[i] = program->rest_high[i] - job->rebase_origin[i];
         }
         view_place_box(&job->view, low, high, frame);
     }
     job->window = (KrsWindow){0, 0, (uint32_t)frame->size[0], (uint32_t)frame->size[1]};
-    if (job->part_count == 0)
-        good = good && march(job, work, program->flops);
-    job->share /= job->part_count ? job->part_count : 1;
-    for (uint32_t i = 0; i < job->part_count && good; i++) {
-        const MarchPart *part  = &job->parts[i];
-        const KrsGroup  *group = &job->rendering->program->groups[part->group];
-        view_place_box(&job->view, group->low, group->high, frame);
+    if (job->group_march_count == 0)
+        good = good && march_kernel(job, work, program->flops);
+    job->progress_share /= job->group_march_count ? job->group_march_count : 1;
+    for (uint32_t i = 0; i < job->group_march_count && good; i++) {
+        const GroupMarch    *march = &job->group_marches[i];
+        const KrsMarchGroup *march_group =
+            &job->rendering->program->march_groups[march->march_group];
+        view_place_box(&job->view, march_group->low, march_group->high, frame);
         /* The first one's rays find the planes, which are all around. */
-        if (i > 0 || !rendering_knows_flats(job->rendering))
+        if (i > 0 || !rendering_knows_planes(job->rendering))
             job->window = view_window(frame, &job->view.camera);
-        job->trace = job->beams = part->trace;
-        job->schedule           = part->schedule;
-        double share            = job->share;
-        good                    = march(job, work, group->flops);
-        job->share              = share;
+        job->trace = job->beams = march->trace;
+        job->schedule           = march->schedule;
+        double progress_share   = job->progress_share;
+        good                    = march_kernel(job, work, march_group->flops);
+        job->progress_share     = progress_share;
     }
     job->schedule = job->options.schedule;
     memcpy(frame->low, job->frame.low, sizeof frame->low);
@@ -265,14 +267,15 @@ static bool march_all(Job *job, const WorkBlock *work)
 /* ---- What follows a hit ---- */
 
 /* Rays from the pixels of a list. */
-static Dealing deal_secondary(const Job *job, uint32_t count)
+static LaneBudget secondary_budget(const Job *job, uint32_t count)
 {
-    Dealing deal = dealing(job);
-    deal.steps   = turns_within(job, MOST_TURNS);
-    bool loops   = job->rendering->program->loops > 0; /* which leave turns for few items */
-    while (deal.lanes * deal.share > 64 && (loops || count / (deal.lanes * deal.share) < 64))
-        deal.share /= 2; /* groups enough for every core of the device */
-    return deal;
+    LaneBudget budget = lane_budget(job);
+    budget.steps      = steps_within(job, MOST_LANE_STEPS);
+    bool loops        = job->rendering->program->loops > 0; /* which leave steps for few items */
+    while (budget.lanes * budget.items_per_lane > 64 &&
+           (loops || count / (budget.lanes * budget.items_per_lane) < 64))
+        budget.items_per_lane /= 2; /* groups enough for every core of the device */
+    return budget;
 }
 
 /* Where a list of pixels begins, */
@@ -293,33 +296,33 @@ static bool send_rays(Job *job, KrsPhase phase, uint32_t rays, const WorkBlock *
                       uint32_t reading, Items items, bool first)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    Dealing       deal    = deal_secondary(job, items_now(job, items));
+    LaneBudget    budget  = secondary_budget(job, items_now(job, items));
     control->phase        = rays;
     control->source       = ITEMS_FRESH;
     control->reading      = reading;
     do { /* in a chain no item is left over */
-        control->left          = 0;
-        Dispatch dispatch      = dispatch_of(job, phase, job->secondary, work, items, deal);
+        control->untaken       = 0;
+        Dispatch dispatch      = dispatch_of(job, phase, job->secondary, work, items, budget);
         dispatch.clears_shared = first && control->source == ITEMS_FRESH;
         if (!dispatch_run(job, &dispatch))
             return false;
-        control->source = ITEMS_REST;
-    } while (control->left > 0);
+        control->source = ITEMS_UNTAKEN;
+    } while (control->untaken > 0);
     return true;
 }
 
 /* What neighbours share, for the items of the list that begins there, by one of the kernels and a
    phase of it; `counter`: of those that it lists, 0 for none. */
-static bool share(Job *job, KrsPhase phase, PixelKernel kernel, uint32_t what,
-                  const WorkBlock *work, uint32_t reading, Items items, uint32_t counter)
+static bool filter_pixels(Job *job, KrsPhase phase, PixelKernel kernel, uint32_t kernel_phase,
+                          const WorkBlock *work, uint32_t reading, Items items, uint32_t counter)
 {
     KrsRendering *r       = job->rendering;
     ControlBlock *control = r->control.bytes;
-    control->phase        = what;
+    control->phase        = kernel_phase;
     control->source       = ITEMS_FRESH;
     control->reading      = reading;
     Dispatch dispatch = dispatch_of(job, phase, &r->renderer->pixels[r->panoramic][kernel], work,
-                                    items, deal_pixels(job));
+                                    items, pixel_budget(job));
     dispatch.clears   = counter;
     return dispatch_run(job, &dispatch);
 }
@@ -339,10 +342,10 @@ static bool resolve(Job *job, const WorkBlock *work)
     KrsRendering *r       = job->rendering;
     ControlBlock *control = r->control.bytes;
     uint32_t      sun     = find_sun(job, 0);
-    control->solid = control->anchors = control->quarters = control->value = 0;
-    control->parts = job->part_count > 0 && job->parts[0].normals;
-    control->phase = BACKGROUND_FIRST;
-    memset(control->of_group, 0, sizeof control->of_group);
+    control->hit_count = control->sparse = control->quarters = control->value = 0;
+    control->by_march_group = job->group_march_count > 0 && job->group_marches[0].normals;
+    control->phase          = BACKGROUND_FIRST;
+    memset(control->of_march_group, 0, sizeof control->of_march_group);
     do {
         control->light = sun;
         if (!dispatch_pixels(job, KRS_PHASE_RESOLVE,
@@ -360,78 +363,85 @@ static bool resolve(Job *job, const WorkBlock *work)
 static bool find_normals(Job *job, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
-    Dispatch      parts[1 + KRS_MOST_GROUPS];
+    Dispatch      dispatches[1 + KRS_MOST_MARCH_GROUPS];
     control->reading = list_at(work, LIST_ALL);
-    if (!control->parts)
-        return dispatch_pixels(job, KRS_PHASE_NORMALS, job->around, work, ITEMS_COUNTED(1, solid));
+    if (!control->by_march_group)
+        return dispatch_pixels(job, KRS_PHASE_NORMALS, job->normals, work,
+                               ITEMS_COUNTED(1, hit_count));
     control->source = ITEMS_FRESH;
-    for (uint32_t i = 0; i <= job->part_count; i++) {
-        bool     part    = i < job->part_count; /* else what belongs to none: planes */
-        uint32_t group   = part ? job->parts[i].group + 1 : 0;
-        Items    items   = {1, WORD_OF(of_group) + group, false};
-        control->reading = list_at(work, LIST_OF_GROUP + group);
-        parts[i] = dispatch_of(job, KRS_PHASE_NORMALS, part ? job->parts[i].normals : job->around,
-                               work, items, deal_pixels(job));
+    for (uint32_t i = 0; i <= job->group_march_count; i++) {
+        bool     is_march    = i < job->group_march_count; /* else what belongs to none: planes */
+        uint32_t march_group = is_march ? job->group_marches[i].march_group + 1 : 0;
+        Items    items       = {1, WORD_OF(of_march_group) + march_group, false};
+        control->reading     = list_at(work, LIST_OF_MARCH_GROUP + march_group);
+        dispatches[i]        = dispatch_of(job, KRS_PHASE_NORMALS,
+                                    is_march ? job->group_marches[i].normals : job->normals, work,
+                                           items, pixel_budget(job));
     }
-    return dispatch_together(job, parts, 1 + job->part_count);
+    return dispatch_together(job, dispatches, 1 + job->group_march_count);
 }
 
-/* A ray over the hemisphere of each pixel, and always the means of neighbours: what a surface gives back of the
-   light that it closes off is no linear function of how open it is (shade.comp), so the mean of
-   noise would be too dark. */
+/* A ray over the hemisphere of each pixel, and always the means of neighbours: what a surface gives
+   back of the light that it closes off is no linear function of how open it is (shade.comp), so the
+   mean of noise would be too dark. */
 static bool find_occlusion(Job *job, const WorkBlock *work)
 {
     const KrsPhase phase = KRS_PHASE_OCCLUSION;
-    const Items    all = ITEMS_COUNTED(1, solid), anchors = ITEMS_COUNTED(1, anchors);
-    const Items    rest    = ITEMS_COUNTED(1, rest);
-    ControlBlock  *control = job->rendering->control.bytes;
-    control->value         = VALUE_OCCLUSION;
-    control->filters       = 1;
-    if (control->open)
+    const Items    all = ITEMS_COUNTED(1, hit_count), sparse = ITEMS_COUNTED(1, sparse);
+    const Items    remaining = ITEMS_COUNTED(1, remaining);
+    ControlBlock  *control   = job->rendering->control.bytes;
+    control->value           = VALUE_OCCLUSION;
+    control->filters         = 1;
+    if (control->no_occlusion)
         return true;
     const PixelKernel kernel = PIXELS_OCCLUSION;
     return send_rays(job, phase, RAYS_OVER_HEMISPHERE, work, list_at(work, LIST_ALL), all, true) &&
-           share(job, phase, kernel, OCCLUSION_AT_ANCHORS, work, list_at(work, LIST_ANCHORS),
-                 anchors, 0) &&
-           share(job, phase, kernel, OCCLUSION_WIDER, work, list_at(work, LIST_ANCHORS), anchors,
-                 0) &&
-           share(job, phase, kernel, OCCLUSION_BY_ANCHORS, work, list_at(work, LIST_ALL), all,
-                 WORD_OF(rest)) &&
-           share(job, phase, kernel, OCCLUSION_OF_REST, work, list_at(work, LIST_REST), rest, 0);
+           filter_pixels(job, phase, kernel, OCCLUSION_AT_SPARSE_PIXELS, work,
+                         list_at(work, LIST_SPARSE), sparse, 0) &&
+           filter_pixels(job, phase, kernel, OCCLUSION_WIDER, work, list_at(work, LIST_SPARSE),
+                         sparse, 0) &&
+           filter_pixels(job, phase, kernel, OCCLUSION_UPSAMPLED, work, list_at(work, LIST_ALL),
+                         all, WORD_OF(remaining)) &&
+           filter_pixels(job, phase, kernel, OCCLUSION_OF_REMAINING, work,
+                         list_at(work, LIST_REMAINING), remaining, 0);
 }
 
 /* Cones first: where they are empty all of the light is seen.  Rays that go from root to root know
-   of no room around them, so there are no cones, and nothing is proven. */
+   of no clearance around them, so there are no cones, and nothing is proven. */
 static bool list_unproven(Job *job, const WorkBlock *work)
 {
     const KrsPhase phase    = KRS_PHASE_SHADOWS;
     const Items    quarters = ITEMS_COUNTED(1, quarters);
     const Items    cones    = job->by_roots ? ITEMS_KNOWN(0) : quarters;
     return send_rays(job, phase, RAYS_CONES, work, quarters_at(work), cones, true) &&
-           share(job, phase, PIXELS_UNPROVEN, 0, work, quarters_at(work), quarters, WORD_OF(rest));
+           filter_pixels(job, phase, PIXELS_UNPROVEN, 0, work, quarters_at(work), quarters,
+                         WORD_OF(remaining));
 }
 
 /* The means of what rays to a light have found. */
 static bool find_means(Job *job, const WorkBlock *work)
 {
     const KrsPhase phase    = KRS_PHASE_SHADOWS;
-    const uint32_t unproven = list_at(work, LIST_REST), wide = list_at(work, LIST_WIDE);
-    return share(job, phase, PIXELS_PENUMBRAE, 0, work, quarters_at(work),
-                 ITEMS_COUNTED(1, quarters), 0) &&
-           share(job, phase, PIXELS_SHADOW, SHADOW_NEAR, work, unproven, ITEMS_COUNTED(1, rest),
-                 WORD_OF(wide)) &&
-           share(job, phase, PIXELS_SHADOW, SHADOW_WIDE, work, wide, ITEMS_COUNTED(1, wide), 0);
+    const uint32_t unproven = list_at(work, LIST_REMAINING), wide = list_at(work, LIST_WIDE);
+    return filter_pixels(job, phase, PIXELS_PENUMBRAE, 0, work, quarters_at(work),
+                         ITEMS_COUNTED(1, quarters), 0) &&
+           filter_pixels(job, phase, PIXELS_SHADOW, SHADOW_NEAR, work, unproven,
+                         ITEMS_COUNTED(1, remaining), WORD_OF(wide)) &&
+           filter_pixels(job, phase, PIXELS_SHADOW, SHADOW_WIDE, work, wide, ITEMS_COUNTED(1, wide),
+                         0);
 }
 
 /* A ray of each pixel to a point of the light; the mean of neighbours, where it has a size. */
 static bool find_visible(Job *job, const KrsLight *light, const WorkBlock *work)
 {
-    const uint32_t list    = list_at(work, job->shares ? LIST_REST : LIST_ALL);
-    const Items    items   = job->shares ? ITEMS_COUNTED(1, rest) : ITEMS_COUNTED(1, solid);
+    const uint32_t list    = list_at(work, job->filters_shadows ? LIST_REMAINING : LIST_ALL);
+    const Items    items   = job->filters_shadows ? ITEMS_COUNTED(1, remaining)
+                                                  : ITEMS_COUNTED(1, hit_count);
     ControlBlock  *control = job->rendering->control.bytes;
-    control->filters       = job->shares && light->softness > 0;
-    return (!job->shares || list_unproven(job, work)) &&
-           send_rays(job, KRS_PHASE_SHADOWS, RAYS_TO_LIGHT, work, list, items, !job->shares) &&
+    control->filters       = job->filters_shadows && light->softness > 0;
+    return (!job->filters_shadows || list_unproven(job, work)) &&
+           send_rays(job, KRS_PHASE_SHADOWS, RAYS_TO_LIGHT, work, list, items,
+                     !job->filters_shadows) &&
            (!control->filters || find_means(job, work));
 }
 
@@ -445,7 +455,7 @@ static bool find_lights(Job *job, uint32_t first, const WorkBlock *work)
         control->value        = VALUE_VISIBLE + i;
         if (light->shadow && !find_visible(job, light, work))
             return false;
-        job->done += job->share;
+        job->progress_done += job->progress_share;
     }
     return true;
 }
@@ -455,17 +465,17 @@ static bool light_up(Job *job, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
     uint32_t      count = (uint32_t)job->view.light_count, first = 0;
-    job->share /= count ? count : 1;
+    job->progress_share /= count ? count : 1;
     do {
         if (!find_lights(job, first, work))
             return false;
-        control->light   = first;
-        control->reading = 0;
-        double share     = job->share;
-        job->share       = 0;
-        if (!dispatch_pixels(job, KRS_PHASE_SHADING, job->shade, work, ITEMS_COUNTED(1, solid)))
+        control->light        = first;
+        control->reading      = 0;
+        double progress_share = job->progress_share;
+        job->progress_share   = 0;
+        if (!dispatch_pixels(job, KRS_PHASE_SHADING, job->shade, work, ITEMS_COUNTED(1, hit_count)))
             return false;
-        job->share = share;
+        job->progress_share = progress_share;
         first += LIGHTS_AT_ONCE;
     } while (first < count);
     return true;
@@ -476,55 +486,55 @@ static bool light_up(Job *job, const WorkBlock *work)
    pixel evenly however many there are, moved by the seed. */
 static void place_ray(uint32_t index, uint64_t seed, float offset[2])
 {
-    static const double step[2] = {0.75487766624669276, 0.56984029099805327};
+    static const double increment[2] = {0.75487766624669276, 0.56984029099805327};
     for (int i = 0; i < 2; i++) {
         uint64_t hash = seed * 2 + (uint64_t)i; /* splitmix64 */
         hash          = (hash ^ hash >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
         hash          = (hash ^ hash >> 27) * UINT64_C(0x94d049bb133111eb);
         hash ^= hash >> 31;
         double moved = seed && index ? (double)(hash >> 11) / 9007199254740992.0 : 0;
-        double place = 0.5 + step[i] * index + moved;
+        double place = 0.5 + increment[i] * index + moved;
         offset[i]    = (float)(place - floor(place));
     }
 }
 
-/* The steps from rays to light, and their shares of the time, about. */
-typedef enum Step {
-    STEP_TRACE,
-    STEP_RESOLVE,
-    STEP_NORMALS,
-    STEP_OCCLUSION,
-    STEP_LIGHTS,
-    STEP_COUNT
-} Step;
-static const double step_share[STEP_COUNT] = {0.5, 0.02, 0.1, 0.1, 0.28};
+/* The stages from rays to light, and their fractions of the time, about. */
+typedef enum RenderStage {
+    STAGE_TRACE,
+    STAGE_RESOLVE,
+    STAGE_NORMALS,
+    STAGE_OCCLUSION,
+    STAGE_LIGHTS,
+    STAGE_COUNT
+} RenderStage;
+static const double stage_share[STAGE_COUNT] = {0.5, 0.02, 0.1, 0.1, 0.28};
 
-static bool run_step(Job *job, Step step, const WorkBlock *work)
+static bool run_stage(Job *job, RenderStage stage, const WorkBlock *work)
 {
-    switch (step) {
-    case STEP_TRACE: return march_all(job, work);
-    case STEP_RESOLVE: return resolve(job, work);
-    case STEP_NORMALS: return find_normals(job, work);
-    case STEP_OCCLUSION: return find_occlusion(job, work);
-    case STEP_LIGHTS: return light_up(job, work);
-    case STEP_COUNT: break;
+    switch (stage) {
+    case STAGE_TRACE: return march_all(job, work);
+    case STAGE_RESOLVE: return resolve(job, work);
+    case STAGE_NORMALS: return find_normals(job, work);
+    case STAGE_OCCLUSION: return find_occlusion(job, work);
+    case STAGE_LIGHTS: return light_up(job, work);
+    case STAGE_COUNT: break;
     }
     return false;
 }
 
 bool phases_run(Job *job, WorkBlock *work, uint32_t index)
 {
-    const double  whole   = job->share;
+    const double  whole   = job->progress_share;
     ControlBlock *control = job->rendering->control.bytes;
     place_ray(index, job->options.seed, work->offset);
     control->ray       = index;
     control->rays      = job->options.samples;
     control->first_ray = index == 0;
-    double done        = job->done;
-    for (Step step = 0; step < STEP_COUNT; done += whole * step_share[step], step++) {
-        job->done  = done;
-        job->share = whole * step_share[step];
-        if (!run_step(job, step, work))
+    double done        = job->progress_done;
+    for (RenderStage stage = 0; stage < STAGE_COUNT; done += whole * stage_share[stage], stage++) {
+        job->progress_done  = done;
+        job->progress_share = whole * stage_share[stage];
+        if (!run_stage(job, stage, work))
             return false;
     }
     return dispatch_finish(job);

@@ -19,8 +19,8 @@ static const struct Plane {
         offsetof(KrsPicture, name), bit, 4 * numbers, row, number \
     }
     PLANE(color, KRS_PLANE_COLOR, 4, ROW_COLORS, 0),
-    PLANE(depth, KRS_PLANE_DEPTH, 1, ROW_PLACES, DEPTH_NUMBER),
-    PLANE(position, KRS_PLANE_POSITION, 3, ROW_PLACES, 0),
+    PLANE(depth, KRS_PLANE_DEPTH, 1, ROW_POSITIONS, DEPTH_NUMBER),
+    PLANE(position, KRS_PLANE_POSITION, 3, ROW_POSITIONS, 0),
     PLANE(normal, KRS_PLANE_NORMAL, 3, ROW_NORMALS, 0),
     PLANE(albedo, KRS_PLANE_ALBEDO, 3, ROW_ALBEDOS, 0),
     PLANE(component, KRS_PLANE_IDS, 1, ROW_NORMALS, 3),

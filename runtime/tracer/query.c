@@ -1,7 +1,7 @@
 /*
  * query.c: points and rays that a program asks about, answered by the device.
  *
- * Rays are marched by query.comp; then sample.comp says what is where they hit, as it does at
+ * Rays are marched by query.comp; then point_query.comp says what is where they hit, as it does at
  * points.  Both work on a batch at a time.  What can be done in double precision before and
  * after is: rays are brought to the box around the scene, t is counted from the origin, and rays
  * that begin on a surface, as far as the device can tell, are followed by the host if the device
@@ -12,10 +12,10 @@
 
 #include "runtime/tracer/renderer.h"
 
-enum { MOST_STEPS = 8192, MOST_TURNS = 16384 };
+enum { MOST_STEPS = 8192, MOST_LANE_STEPS = 16384 };
 
-/* Bindings of the set of points; sample.c has the first three. */
-enum { WAYS_BINDING = 3, CONTROL_BINDING = 4, QUESTIONS_BINDING = 5, SHARES_BINDING = 7 };
+/* Bindings of the set of points; point_query.c has the first three. */
+enum { RAY_HITS_BINDING = 3, CONTROL_BINDING = 4, QUERY_RAYS_BINDING = 5, TAKEN_BINDING = 7 };
 
 /* What single precision can square. */
 static bool is_in_reach(const double (*vectors)[3], size_t count)
@@ -58,7 +58,7 @@ static bool probe_batch(KrsRendering *rendering, const double (*points)[3], uint
     for (uint32_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++)
             to[i].point[k] = (float)points[i][k];
-    if (!sample_run(rendering, count, true))
+    if (!point_query_run(rendering, count, true))
         return false;
     const AnswerBlock *answers = rendering->answers.bytes;
     for (uint32_t i = 0; i < count; i++) {
@@ -80,7 +80,7 @@ KrsStatus krs_device_probe(KrsRendering *rendering, KrsFrame *frame, const doubl
     renderer_clear(rendering->renderer);
     if (!is_in_reach(points, count))
         return refuse(rendering, "a coordinate is not a number below 1e18");
-    if (!sample_prepare(rendering) || !rendering_set_parameters(rendering, frame))
+    if (!point_query_prepare(rendering) || !rendering_set_parameters(rendering, frame))
         return rendering->renderer->gpu.status;
     for (size_t first = 0; first < count; first += POINTS_AT_ONCE)
         if (!probe_batch(rendering, points + first, batch_of(count - first), hits + first))
@@ -99,11 +99,11 @@ static bool prepare(KrsRendering *rendering)
         size_t      size; /* for one ray */
         const char *name;
     } wanted[] = {
-        {&rendering->questions, QUESTIONS_BINDING, sizeof(QuestionBlock), "questions"},
-        {&rendering->ways, WAYS_BINDING, sizeof(WayBlock), "rays"},
-        {&rendering->shares, SHARES_BINDING, sizeof(uint32_t), "shares of lanes"},
+        {&rendering->query_rays, QUERY_RAYS_BINDING, sizeof(QueryRayBlock), "questions"},
+        {&rendering->ray_hits, RAY_HITS_BINDING, sizeof(RayHitBlock), "rays"},
+        {&rendering->taken, TAKEN_BINDING, sizeof(uint32_t), "shares of lanes"},
     };
-    if (!sample_prepare(rendering))
+    if (!point_query_prepare(rendering))
         return false;
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
         if (!wanted[i].buffer->buffer &&
@@ -123,114 +123,118 @@ static void set_frame(KrsRendering *rendering, double tolerance)
 }
 
 /* A ray of the device begins where the box around the scene does. */
-static QuestionBlock ask(const KrsRay *ray)
+static QueryRayBlock query_ray_block(const KrsRay *ray)
 {
-    const double  nowhere  = 1e18;
-    QuestionBlock question = {.end  = (float)fmin(ray->end - ray->start, nowhere),
-                              .kind = ray->start > 0 ? BEGINS_OUTSIDE
-                                      : ray->walls   ? ENDS_AT_WALLS
-                                                     : ENDS_ANYWHERE};
+    const double  nowhere   = 1e18;
+    QueryRayBlock query_ray = {.end  = (float)fmin(ray->end - ray->start, nowhere),
+                               .kind = ray->start > 0 ? BEGINS_OUTSIDE
+                                       : ray->walls   ? ENDS_AT_WALLS
+                                                      : ENDS_ANYWHERE};
     for (int k = 0; k < 3; k++) {
-        question.origin[k]    = (float)(ray->origin[k] + ray->start * ray->direction[k]);
-        question.direction[k] = (float)ray->direction[k];
+        query_ray.origin[k]    = (float)(ray->origin[k] + ray->start * ray->direction[k]);
+        query_ray.direction[k] = (float)ray->direction[k];
     }
     if (!(ray->start <= ray->end))
-        question = (QuestionBlock){.end = -1};
-    return question;
+        query_ray = (QueryRayBlock){.end = -1};
+    return query_ray;
 }
 
-/* Marches the questions.  As look_around in phases.c: a few items are dealt out to a lane, and what
-   a dispatch had no turns for is for the next. */
-static bool march(KrsRendering *rendering, uint32_t count)
+/* Marches the rays.  As in send_rays of phases.c a lane has a few items, and those for which a
+   dispatch had no steps left are for the next one. */
+static bool march_rays(KrsRendering *rendering, uint32_t count)
 {
     Gpu        *gpu      = &rendering->renderer->gpu;
     KrsTrace    trace    = KRS_TRACE_DEFAULT;
     KrsSchedule schedule = KRS_SCHEDULE_DEFAULT;
     rendering_choose(rendering, &trace, &schedule);
     bool          refill = schedule == KRS_SCHEDULE_REFILL;
-    uint32_t      lanes = refill ? gpu->refill_lanes : 64, share = refill ? 128 : 1;
+    uint32_t      lanes = refill ? gpu->refill_lanes : 64, items_per_lane = refill ? 128 : 1;
     const Kernel *kernel = rendering_query(rendering, schedule);
-    while (lanes * share > 64 && count / (lanes * share) < 64)
-        share /= 2; /* groups enough for every core of the device */
-    uint32_t      groups  = (count + lanes * share - 1) / (lanes * share);
-    WorkBlock     work    = {.steps  = rendering_turns(rendering, refill ? MOST_TURNS : MOST_STEPS),
-                             .groups = groups,
-                             .stride = rendering_spread(rendering, groups)};
+    while (lanes * items_per_lane > 64 && count / (lanes * items_per_lane) < 64)
+        items_per_lane /= 2; /* groups enough for every core of the device */
+    uint32_t  groups = (count + lanes * items_per_lane - 1) / (lanes * items_per_lane);
+    WorkBlock work   = {
+          .steps  = rendering_steps_within(rendering, refill ? MOST_LANE_STEPS : MOST_STEPS),
+          .groups = groups,
+          .stride = rendering_spread(rendering, groups)};
     ControlBlock *control = rendering->control.bytes;
-    *control              = (ControlBlock){.source = ITEMS_FRESH, .items = count, .share = share};
-    for (bool more = kernel != NULL; more; control->source = ITEMS_REST) {
-        double ms     = 0;
-        control->left = 0;
+    *control              = (ControlBlock){
+                     .source = ITEMS_FRESH, .items = count, .items_per_lane = items_per_lane};
+    for (bool more = kernel != NULL; more; control->source = ITEMS_UNTAKEN) {
+        double ms        = 0;
+        control->untaken = 0;
         if (!rendering_begin(rendering))
             return false;
         rendering_dispatch(rendering, kernel, rendering->points_set, &work, sizeof work, groups);
         if (!rendering_finish(rendering, &ms))
             return false;
-        more = control->left > 0;
+        more = control->untaken > 0;
     }
     return kernel != NULL;
 }
 
-bool ways_are_sound(const WayBlock *ways, uint32_t count, uint32_t ends)
+bool ray_hits_are_valid(const RayHitBlock *ray_hits, uint32_t count, uint32_t ends)
 {
     bool sound = ends <= count;
     for (uint32_t i = 0; i < count && sound; i++)
-        sound = ways[i].fate == QUERY_MISS || (ways[i].fate < QUERY_MISS && ways[i].place < ends);
+        sound = ray_hits[i].state == QUERY_MISS ||
+                (ray_hits[i].state < QUERY_MISS && ray_hits[i].point < ends);
     return sound;
 }
 
-static void take_way(const KrsRay *ray, bool sheets, const WayBlock *way,
-                     const AnswerBlock *answers, KrsHit *hit)
+static void take_ray_hit(const KrsRay *ray, bool sheets, const RayHitBlock *ray_hit,
+                         const AnswerBlock *answers, KrsHit *hit)
 {
     *hit = (KrsHit){0};
-    if (way->fate == QUERY_MISS)
+    if (ray_hit->state == QUERY_MISS)
         return;
-    hit->hit        = way->fate == QUERY_HIT;
+    hit->hit        = ray_hit->state == QUERY_HIT;
     hit->unresolved = !hit->hit;
-    hit->t          = ray->start + (double)way->t;
+    hit->t          = ray->start + (double)ray_hit->t;
     for (int k = 0; k < 3; k++)
         hit->point[k] = ray->origin[k] + hit->t * ray->direction[k];
-    describe(&answers[way->place], hit);
+    describe(&answers[ray_hit->point], hit);
     if (sheets)
         krs_face(ray, hit);
 }
 
 /* Single precision cannot tell on which side of a surface a ray begins that is as near to it as
    rounding: on the wrong one it would go through the solid, or past its end.  The host can. */
-static bool took_wrong_side(KrsFrame *frame, const WayBlock *way, const double (*origin)[3])
+static bool took_wrong_side(KrsFrame *frame, const RayHitBlock *ray_hit, const double (*origin)[3])
 {
-    bool   inside = way->steps & QUERY_INSIDE;
+    bool   inside = ray_hit->steps & QUERY_BEGINS_INSIDE;
     double distance;
-    return (way->steps & QUERY_UNSURE) && krs_distance(frame, origin, 1, &distance) == KRS_OK &&
-           (distance < 0) != inside;
+    return (ray_hit->steps & QUERY_SIDE_UNKNOWN) &&
+           krs_distance(frame, origin, 1, &distance) == KRS_OK && (distance < 0) != inside;
 }
 
 static bool raycast_batch(KrsRendering *rendering, KrsFrame      *frame, const double (*origins)[3],
                           const double (*directions)[3], uint32_t count, double farthest,
                           double tolerance, KrsHit *hits)
 {
-    const KrsScene *scene     = rendering->scene;
-    QuestionBlock  *questions = rendering->questions.bytes;
+    const KrsScene *scene      = rendering->scene;
+    QueryRayBlock  *query_rays = rendering->query_rays.bytes;
     for (uint32_t i = 0; i < count; i++) {
-        KrsRay ray   = krs_ray(scene, origins[i], directions[i], farthest);
-        questions[i] = ask(&ray);
+        KrsRay ray    = krs_ray(scene, origins[i], directions[i], farthest);
+        query_rays[i] = query_ray_block(&ray);
     }
-    if (!march(rendering, count))
+    if (!march_rays(rendering, count))
         return false;
-    const ControlBlock *control = rendering->control.bytes;
-    const WayBlock     *ways    = rendering->ways.bytes;
-    uint32_t            ends    = control->solid;
-    if (!ways_are_sound(ways, count, ends)) {
+    const ControlBlock *control  = rendering->control.bytes;
+    const RayHitBlock  *ray_hits = rendering->ray_hits.bytes;
+    uint32_t            ends     = control->hit_count;
+    if (!ray_hits_are_valid(ray_hits, count, ends)) {
         gpu_refuse(&rendering->renderer->gpu, KRS_INTERNAL,
                    "cannot read where rays end: the device answers with numbers that cannot be");
         return false;
     }
-    if (ends > 0 && !sample_run(rendering, ends, true))
+    if (ends > 0 && !point_query_run(rendering, ends, true))
         return false;
     for (uint32_t i = 0; i < count; i++) {
         KrsRay ray = krs_ray(scene, origins[i], directions[i], farthest);
-        take_way(&ray, rendering->program->sheets, &ways[i], rendering->answers.bytes, &hits[i]);
-        if (took_wrong_side(frame, &ways[i], origins + i))
+        take_ray_hit(&ray, rendering->program->sheets, &ray_hits[i], rendering->answers.bytes,
+                     &hits[i]);
+        if (took_wrong_side(frame, &ray_hits[i], origins + i))
             krs_raycast(frame, origins + i, directions + i, 1, farthest, tolerance, hits + i);
     }
     return true;

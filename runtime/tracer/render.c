@@ -9,7 +9,7 @@
 
 #include "runtime/tracer/phases.h"
 #include "runtime/tracer/picture.h"
-#include "runtime/tracer/stage.h"
+#include "runtime/tracer/layouts.h"
 #include "runtime/tracer/view.h"
 
 /* Pixels of a band: on a graphics card all of a common picture, in 560 MB of buffers, or as many
@@ -26,7 +26,7 @@
 /* All loops of an invocation together stay under 32768 iterations: some devices end them
    silently after 65535. */
 #define MOST_STEPS_AT_ONCE 8192
-#define MOST_TURNS         16384 /* of a lane that takes item after item */
+#define MOST_LANE_STEPS    16384 /* of a lane that takes item after item */
 #define MOST_BEAM_STEPS    256   /* of a beam, as in trace.comp */
 /* Steps of a pass of the queue: more leave lanes idle, fewer cost passes. */
 #define QUEUE_STEPS 16
@@ -97,26 +97,26 @@ static float normal_reach(const KrsRenderOptions *options)
     return options->no_filter || options->samples > 1 || one_sided ? 0.5f : 0.7f;
 }
 
-/* The eye is an anchor where single precision would show in what is nearest to it: points on the
-   device are then what is seen from there. */
-static void choose_anchor(Job *job, KrsFrame *frame)
+/* Points on the device are relative to the eye where single precision would show in what is nearest
+   to it. */
+static void choose_rebase_origin(Job *job, KrsFrame *frame)
 {
     const KrsCamera *camera = &job->view.camera;
     float            zones[KRS_MOST_ZONES][4];
     double           nearest = 0, far = 0;
-    if (!job->rendering->program->anchored || krs_frame_zones(frame, zones) > 0)
+    if (!job->rendering->program->camera_relative || krs_frame_zones(frame, zones) > 0)
         return;
     for (int i = 0; i < 3; i++)
         far = fmax(far, fabs(camera->eye[i]));
     if (krs_distance(frame, &camera->eye, 1, &nearest) != KRS_OK)
         nearest = 0;
-    if (krs_needs_anchor(far, view_pixel(camera, job->options.height, fabs(nearest))))
-        memcpy(job->anchor, camera->eye, sizeof job->anchor);
+    if (krs_needs_rebase(far, view_pixel(camera, job->options.height, fabs(nearest))))
+        memcpy(job->rebase_origin, camera->eye, sizeof job->rebase_origin);
 }
 
-static bool is_anchored(const Job *job)
+static bool is_camera_relative(const Job *job)
 {
-    return job->anchor[0] != 0 || job->anchor[1] != 0 || job->anchor[2] != 0;
+    return job->rebase_origin[0] != 0 || job->rebase_origin[1] != 0 || job->rebase_origin[2] != 0;
 }
 
 /* Reads the frame: camera, lights, parameters. */
@@ -126,27 +126,28 @@ static bool settle_frame(Job *job, KrsFrame *frame)
         return refuse(job, "the scene has no such camera");
     if (!settle_options(job))
         return false;
-    choose_anchor(job, frame);
+    choose_rebase_origin(job, frame);
     const KrsProgram *program = job->rendering->program;
     KrsView           seen    = job->view;
     double            low[3], high[3];
     for (int i = 0; i < 3; i++) {
-        seen.camera.eye[i] -= job->anchor[i];
-        seen.camera.target[i] -= job->anchor[i];
-        low[i]  = program->low[i] - job->anchor[i];
-        high[i] = program->high[i] - job->anchor[i];
+        seen.camera.eye[i] -= job->rebase_origin[i];
+        seen.camera.target[i] -= job->rebase_origin[i];
+        low[i]  = program->low[i] - job->rebase_origin[i];
+        high[i] = program->high[i] - job->rebase_origin[i];
     }
     if (!view_prepare(&seen, low, high, job->options.width, job->options.height, &job->frame))
         return refuse(job, "the camera sees nothing: its eye is at its target, or its angle or"
                            " height is not one");
-    job->frame.error      = (float)job->options.error;
-    job->frame.most_steps = job->options.most_steps;
-    job->frame.blur       = normal_reach(&job->options);
+    job->frame.error        = (float)job->options.error;
+    job->frame.most_steps   = job->options.most_steps;
+    job->frame.normal_reach = normal_reach(&job->options);
     memcpy(job->rendering->frame.bytes, &job->frame, sizeof job->frame);
     return rendering_set_parameters(job->rendering, frame) &&
-           (!is_anchored(job) || rendering_set_anchor(job->rendering, frame, job->anchor)) &&
+           (!is_camera_relative(job) ||
+            rendering_rebase(job->rendering, frame, job->rebase_origin)) &&
            rendering_set_lights(job->rendering, job->view.lights, job->view.light_count,
-                                job->anchor);
+                                job->rebase_origin);
 }
 
 /* ---- The buffers of a band ---- */
@@ -184,7 +185,7 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels)
         {&band->ends, ENDS_BINDING, END_TEXELS, (pixels + beams) * END_BYTES, ON_DEVICE, "rays"},
         {&band->hits, HITS_BINDING, HIT_TEXELS, pixels * HIT_BYTES, ON_DEVICE, "hits"},
         {&band->results, RESULTS_BINDING, RESULT_TEXELS, results, shared, "pixels"},
-        {&band->queue, QUEUE_BINDING, SOLID_TEXELS, 2 * pixels * MARCH_BYTES, ON_DEVICE,
+        {&band->queue, QUEUE_BINDING, PIXEL_LIST_TEXELS, 2 * pixels * MARCH_BYTES, ON_DEVICE,
          "queue of rays"},
         {&band->taken, TAKEN_BINDING, 0, beams * sizeof(uint32_t), ON_DEVICE, "shares of groups"},
         {&band->tiles, TILES_BINDING, 0, beams * sizeof(uint32_t), ON_DEVICE, "tiles"},
@@ -200,7 +201,8 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels)
         VkDeviceSize bytes = wanted[i].texels ? buffer_texel_bytes(wanted[i].bytes)
                                               : wanted[i].bytes;
         if (!buffer_create(gpu, buffer, bytes, wanted[i].where, wanted[i].name) ||
-            (wanted[i].texels && !stage_view(gpu, wanted[i].texels, buffer, wanted[i].name))) {
+            (wanted[i].texels &&
+             !layouts_view_texels(gpu, wanted[i].texels, buffer, wanted[i].name))) {
             band_destroy(gpu, band);
             return false;
         }
@@ -246,7 +248,7 @@ static uint64_t most_pixels(const Gpu *gpu)
 
 /* Makes room for a band of the picture, for a smaller one when memory is short, and returns its
    rows; 0 when there is no room at all. */
-static uint32_t make_room(Job *job)
+static uint32_t allocate_band(Job *job)
 {
     const KrsWindow *window = &job->cover;
     const uint64_t   across = round_to_tiles(window->width) + 2 * job->halo;
@@ -278,7 +280,7 @@ static bool clear_results(Job *job, uint32_t rows, VkDeviceSize row_bytes)
     for (VkDeviceSize row = 0; row < RESULT_ROWS; row++)
         if (rows >> row & 1)
             vkCmdFillBuffer(job->gpu->commands, results->buffer, row * row_bytes, row_bytes,
-                            row == ROW_PLACES ? infinite : 0);
+                            row == ROW_POSITIONS ? infinite : 0);
     return gpu_finish(job->gpu, &ms);
 }
 
@@ -299,7 +301,7 @@ static bool fetch(Job *job, uint32_t rows, VkDeviceSize row_bytes)
     return gpu_finish(job->gpu, &ms);
 }
 
-/* Back from the anchor; nothing has no place. */
+/* Back to the origin of the world; where nothing is there is no position. */
 static void place_positions(Job *job, const float *places, size_t first, size_t count)
 {
     float *position = job->picture->position;
@@ -307,7 +309,7 @@ static void place_positions(Job *job, const float *places, size_t first, size_t 
         for (int i = 0; i < 3; i++) {
             float *number   = &position[3 * (first + k) + i];
             bool   is_place = isfinite(places[k * RESULT_NUMBERS + DEPTH_NUMBER]);
-            *number         = is_place ? (float)(*number + job->anchor[i]) : 0;
+            *number         = is_place ? (float)(*number + job->rebase_origin[i]) : 0;
         }
 }
 
@@ -326,7 +328,7 @@ static void take_band(Job *job, const KrsWindow *traced, uint32_t from, uint32_t
         size_t first = (size_t)(y - crop->y) * crop->width;
         picture_take(job->picture, results + row * RESULT_NUMBERS, band, first, crop->width,
                      job->options.samples);
-        place_positions(job, results + (ROW_PLACES * band + row) * RESULT_NUMBERS, first,
+        place_positions(job, results + (ROW_POSITIONS * band + row) * RESULT_NUMBERS, first,
                         crop->width);
     }
 }
@@ -356,18 +358,18 @@ static bool render_band(Job *job, uint32_t from, uint32_t rows)
                     .extent = {traced.width, traced.height},
     };
     *control = (ControlBlock){
-        .projection = (uint32_t)job->view.camera.projection,
-        .lights     = (uint32_t)job->view.light_count,
-        .seed       = (uint32_t)(job->options.seed ^ job->options.seed >> 32),
-        .rows       = picture_rows(job->picture),
-        .open       = job->options.no_occlusion,
+        .projection   = (uint32_t)job->view.camera.projection,
+        .lights       = (uint32_t)job->view.light_count,
+        .seed         = (uint32_t)(job->options.seed ^ job->options.seed >> 32),
+        .rows         = picture_rows(job->picture),
+        .no_occlusion = job->options.no_occlusion,
     };
     if (!clear_results(job, control->rows, row_bytes))
         return false;
     for (uint32_t i = 0; i < job->options.samples; i++) {
-        double band_share = (double)rows / cover->height;
-        job->share        = band_share / job->options.samples;
-        job->done         = (double)from / cover->height + job->share * i;
+        double band_share   = (double)rows / cover->height;
+        job->progress_share = band_share / job->options.samples;
+        job->progress_done  = (double)from / cover->height + job->progress_share * i;
         if (!phases_run(job, &work, i))
             return false;
         stats->unresolved += control->unresolved;
@@ -410,15 +412,15 @@ static bool find_marches(Job *job, KrsFrame *frame)
     /* Balls that are tried know of no inside. */
     if (job->options.trace >= KRS_TRACE_BINARY && !begins_outside(job, frame))
         job->options.trace = KRS_TRACE_PLAIN;
-    if (!apart_prepare(job, frame))
+    if (!per_component_prepare(job, frame))
         return false;
-    if (job->part_count > 0)
+    if (job->group_march_count > 0)
         return true;
-    bool outside = begins_outside(job, frame);
-    job->rest    = rendering_knows_flats(job->rendering) && outside;
-    bool packed  = outside &&
+    bool outside      = begins_outside(job, frame);
+    job->knows_planes = rendering_knows_planes(job->rendering) && outside;
+    bool packed       = outside &&
                   rendering_marches_packed(job->rendering, options->components, options->trace);
-    uint32_t group = packed ? GROUP_PACKED : job->rest ? GROUP_REST : 0;
+    uint32_t group = packed ? MARCH_PACKED : job->knows_planes ? MARCH_WITHOUT_PLANES : 0;
     job->trace     = rendering_trace(job->rendering, options->trace, options->schedule, group);
     job->beams     = options->no_beams
                          ? job->trace
@@ -448,17 +450,18 @@ static bool find_secondary(Job *job)
 
 static bool render(Job *job, KrsFrame *frame)
 {
-    job->shares   = !job->options.no_upsampling && job->options.shadows == KRS_SHADOWS_SOFT;
-    job->halo     = !job->options.no_occlusion || (job->shares && needs_secondary(job)) ? TILE : 0;
-    job->cover    = whole_tiles(&job->options);
-    uint32_t rows = make_room(job);
+    job->filters_shadows = !job->options.no_upsampling && job->options.shadows == KRS_SHADOWS_SOFT;
+    job->halo  = !job->options.no_occlusion || (job->filters_shadows && needs_secondary(job)) ? TILE
+                                                                                              : 0;
+    job->cover = whole_tiles(&job->options);
+    uint32_t rows = allocate_band(job);
     if (rows == 0)
         return false;
     if (!find_marches(job, frame))
         return false;
-    job->around = rendering_around(job->rendering, job->options.normals, 0);
-    job->shade  = rendering_shade(job->rendering);
-    if (!job->around || !job->shade || !find_secondary(job) || !wait_for_kernels(job))
+    job->normals = rendering_normals_kernel(job->rendering, job->options.normals, 0);
+    job->shade   = rendering_shade(job->rendering);
+    if (!job->normals || !job->shade || !find_secondary(job) || !wait_for_kernels(job))
         return false;
     double   start       = clock_ms();
     uint64_t submissions = job->gpu->submissions;

@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "runtime/tracer/stage.h"
+#include "runtime/tracer/layouts.h"
+#include "runtime/tracer/warmup.h"
 
 KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
 {
@@ -59,8 +60,8 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
         [PIXEL_KERNELS] = {&renderer->plan, {.file = "plan.comp"}}};
     request_pixels(renderer, false, kernels);
     const size_t count = PIXEL_KERNELS + (gpu_is_cpu(&renderer->gpu) ? 0 : 1);
-    if (!stage_create(renderer) || !stage_make_kernels(renderer, VK_NULL_HANDLE, kernels, count,
-                                                       &renderer->spirv_ms, &renderer->pipeline_ms))
+    if (!layouts_create(renderer) || !kernels_make(renderer, VK_NULL_HANDLE, kernels, count,
+                                                   &renderer->spirv_ms, &renderer->pipeline_ms))
         return renderer->gpu.status;
     return KRS_OK;
 }
@@ -77,7 +78,7 @@ void krs_renderer_free(KrsRenderer *renderer)
             kernel_destroy(gpu, &renderer->pixels[1][i]);
         }
         kernel_destroy(gpu, &renderer->plan);
-        stage_destroy(renderer);
+        layouts_destroy(renderer);
     }
     gpu_close(gpu);
     if (renderer->compiler_started)
@@ -109,7 +110,7 @@ uint64_t krs_renderer_complaints(const KrsRenderer *renderer) { return renderer-
 void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding,
                     const Buffer *buffer)
 {
-    stage_bind(&rendering->renderer->gpu, set, binding, buffer);
+    layouts_bind(&rendering->renderer->gpu, set, binding, buffer);
 }
 
 static bool sets_create(KrsRendering *rendering)
@@ -156,7 +157,7 @@ failed:
 /* Of the parameter block, aside from values of the frame that kernels may find by themselves. */
 static uint32_t slots_without_values(const KrsProgram *program)
 {
-    return program->parameter_slots + KRS_MOST_ZONES + program->anchored_slots + 1;
+    return program->parameter_slots + KRS_MOST_ZONES + program->camera_relative_slots + 1;
 }
 
 static uint32_t most_slots(const KrsRendering *rendering)
@@ -169,7 +170,7 @@ static uint32_t value_slots(const KrsRendering *rendering)
 {
     const KrsProgram *program = rendering->program;
     uint32_t          slots   = slots_without_values(program) + program->value_slots;
-    return program->anchored || slots <= most_slots(rendering) ? program->value_slots : 0;
+    return program->camera_relative || slots <= most_slots(rendering) ? program->value_slots : 0;
 }
 
 static bool buffers_create(KrsRendering *rendering)
@@ -194,10 +195,10 @@ static bool buffers_create(KrsRendering *rendering)
     return true;
 }
 
-/* Where a distance costs less than this, dealing items out to lanes costs more than it gains. */
+/* Where a distance costs less than this, refilling lanes costs more than it gains. */
 #define FLOPS_WORTH_REFILL 150
-/* For a part of the scene it is more: few of the rays of its tiles meet it. */
-#define FLOPS_WORTH_REFILL_APART 350
+/* For a march group it is more: few of the rays of its tiles meet it. */
+#define FLOPS_WORTH_REFILL_OF_GROUP 350
 
 void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule)
 {
@@ -219,18 +220,19 @@ void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedul
    and an item that is begun may be finished. */
 #define MOST_ITERATIONS 24576
 
-uint32_t rendering_turns(const KrsRendering *rendering, uint32_t wanted)
+uint32_t rendering_steps_within(const KrsRendering *rendering, uint32_t wanted)
 {
     uint32_t most = MOST_ITERATIONS / (1 + rendering->program->loops);
     return wanted < most ? wanted : most > 0 ? most : 1;
 }
 
-KrsSchedule rendering_schedule_of_group(const KrsRendering *rendering, KrsSchedule asked,
-                                        uint32_t group)
+KrsSchedule rendering_schedule_of_march_group(const KrsRendering *rendering, KrsSchedule asked,
+                                              uint32_t march_group)
 {
     KrsTrace trace = KRS_TRACE_DEFAULT;
-    bool     light = rendering->program->groups[group - 1].flops < FLOPS_WORTH_REFILL_APART;
-    if (asked == KRS_SCHEDULE_DEFAULT && light && gpu_is_cpu(&rendering->renderer->gpu))
+    bool     cheap = rendering->program->march_groups[march_group - 1].flops <
+                 FLOPS_WORTH_REFILL_OF_GROUP;
+    if (asked == KRS_SCHEDULE_DEFAULT && cheap && gpu_is_cpu(&rendering->renderer->gpu))
         return KRS_SCHEDULE_PIXEL;
     rendering_choose(rendering, &trace, &asked);
     return asked;
@@ -243,19 +245,19 @@ static KrsSchedule schedule_of_kernel(KrsSchedule schedule)
 }
 
 /* Zones cut holes into planes. */
-bool rendering_knows_flats(const KrsRendering *rendering)
+bool rendering_knows_planes(const KrsRendering *rendering)
 {
-    return rendering->program->flats && rendering->in_use->zones == 0;
+    return rendering->program->planes && rendering->current_kernels->zones == 0;
 }
 
 /* On devices of type CPU alone: others leave far components out by branches. */
-bool rendering_marches_apart(const KrsRendering *rendering, KrsComponents components)
+bool rendering_marches_per_component(const KrsRendering *rendering, KrsComponents components)
 {
-    bool by_default = rendering->program->apart && gpu_is_cpu(&rendering->renderer->gpu) &&
+    bool by_default = rendering->program->per_component && gpu_is_cpu(&rendering->renderer->gpu) &&
                       !rendering->renderer->early_outs;
-    bool holes = rendering->program->flats && !rendering_knows_flats(rendering);
-    return rendering->program->group_count > 0 && !rendering->program->along && !holes &&
-           !rendering->in_use->anchored &&
+    bool holes = rendering->program->planes && !rendering_knows_planes(rendering);
+    return rendering->program->march_group_count > 0 && !rendering->program->along && !holes &&
+           !rendering->current_kernels->camera_relative &&
            (components == KRS_COMPONENTS_DEFAULT ? by_default : components == KRS_COMPONENTS_APART);
 }
 
@@ -264,7 +266,7 @@ static bool goes_along(const KrsRendering *rendering, KrsTrace trace)
 {
     bool known = trace >= KRS_TRACE_DIRECTIONAL ? rendering->program->inverts
                                                 : rendering->program->along;
-    return trace >= KRS_TRACE_EXACT && known && !rendering->in_use->anchored;
+    return trace >= KRS_TRACE_EXACT && known && !rendering->current_kernels->camera_relative;
 }
 
 bool rendering_marches_packed(const KrsRendering *rendering, KrsComponents components,
@@ -295,20 +297,21 @@ static bool sums_lanes(const Gpu *gpu) { return !gpu_is_cpu(gpu) && gpu->sums_la
 
 static Variant name_variant(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule)
 {
-    uint32_t zones    = rendering->in_use->zones;
-    bool     anchored = rendering->in_use->anchored; /* has the distance and the surface alone */
-    bool     by_ray   = trace >= KRS_TRACE_EXACT;
-    Variant  variant;
-    int      length = snprintf(
-             variant.defines, sizeof variant.defines,
-             "#define TRACE %du\n#define REFILL %d\n%s%s%s%s%s%s%s%s",
-             (int)(by_ray ? KRS_TRACE_PLAIN : trace),
+    uint32_t zones = rendering->current_kernels->zones;
+    bool     camera_relative =
+        rendering->current_kernels->camera_relative; /* has the distance and the surface alone */
+    bool    by_ray = trace >= KRS_TRACE_EXACT;
+    Variant variant;
+    int     length = snprintf(
+            variant.defines, sizeof variant.defines,
+            "#define TRACE %du\n#define REFILL %d\n%s%s%s%s%s%s%s%s",
+            (int)(by_ray ? KRS_TRACE_PLAIN : trace),
         schedule == KRS_SCHEDULE_REFILL ? (int)rendering->renderer->gpu.refill_lanes : 0,
         rendering->renderer->gpu.texels ? "" : NO_TEXELS,
         sums_lanes(&rendering->renderer->gpu) ? "#define SUBGROUPS\n" : "",
         value_slots(rendering) > 0 ? "#define FRAME_VALUES\n" : "",
-        rendering->panoramic ? PANORAMIC : "", anchored ? "#define ANCHORED\n" : "",
-        rendering->renderer->early_outs && !anchored ? "#define EARLY_OUTS\n" : "",
+        rendering->panoramic ? PANORAMIC : "", camera_relative ? "#define CAMERA_RELATIVE\n" : "",
+        rendering->renderer->early_outs && !camera_relative ? "#define EARLY_OUTS\n" : "",
         goes_along(rendering, trace) ? along_names[trace] : "",
         rendering->program->sheets ? "#define SHEETS\n" : "");
     if (zones > 0)
@@ -317,18 +320,18 @@ static Variant name_variant(const KrsRendering *rendering, KrsTrace trace, KrsSc
     return variant;
 }
 
-static Variant name_group(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
-                          uint32_t group)
+static Variant name_march_group(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+                                uint32_t march_group)
 {
     Variant variant = name_variant(rendering, trace, schedule);
     size_t  length  = strlen(variant.defines);
-    if (group > 0 && rendering_knows_flats(rendering))
+    if (march_group > 0 && rendering_knows_planes(rendering))
         length += (size_t)snprintf(variant.defines + length, sizeof variant.defines - length,
-                                   "#define FLATS\n");
-    if (group > 0 && group < GROUP_REST)
-        snprintf(variant.defines + length, sizeof variant.defines - length, "#define GROUP %u\n",
-                 group);
-    if (group == GROUP_PACKED)
+                                   "#define PLANES\n");
+    if (march_group > 0 && march_group < MARCH_WITHOUT_PLANES)
+        snprintf(variant.defines + length, sizeof variant.defines - length,
+                 "#define MARCH_GROUP %u\n", march_group);
+    if (march_group == MARCH_PACKED)
         snprintf(variant.defines + length, sizeof variant.defines - length, "#define PACKED\n");
     return variant;
 }
@@ -337,9 +340,8 @@ static Kernel *find_kernel(KrsRendering *rendering, Kernel *kernel, const char *
                            Variant variant)
 {
     KernelRequest request = {kernel, {file, rendering->program->glsl, variant.defines}};
-    if (!kernel->pipeline &&
-        !stage_make_kernels(rendering->renderer, rendering->scene_set, &request, 1,
-                            &rendering->spirv_ms, &rendering->pipeline_ms))
+    if (!kernel->pipeline && !kernels_make(rendering->renderer, rendering->scene_set, &request, 1,
+                                           &rendering->spirv_ms, &rendering->pipeline_ms))
         return NULL;
     return kernel;
 }
@@ -351,18 +353,18 @@ static Kernel *find_variant(KrsRendering *rendering, Kernel *kernel, const char 
 }
 
 Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
-                        uint32_t group)
+                        uint32_t march_group)
 {
     schedule = schedule_of_kernel(schedule);
-    return find_kernel(rendering, &rendering->in_use->trace[trace][schedule][group], "trace.comp",
-                       name_group(rendering, trace, schedule, group));
+    return find_kernel(rendering, &rendering->current_kernels->trace[trace][schedule][march_group],
+                       "trace.comp", name_march_group(rendering, trace, schedule, march_group));
 }
 
 Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
-                        uint32_t group)
+                        uint32_t march_group)
 {
     return rendering_trace(rendering, trace >= KRS_TRACE_EXACT ? KRS_TRACE_PLAIN : trace, schedule,
-                           group);
+                           march_group);
 }
 
 KrsNormals rendering_normals(const KrsRendering *rendering, KrsNormals normals)
@@ -387,13 +389,13 @@ static Variant name_secondary(const KrsRendering *rendering, KrsTrace trace, Krs
 }
 
 /* Normals as rendering_normals says; the octahedron is what the kernel has otherwise. */
-static Variant name_around(const KrsRendering *rendering, KrsNormals normals, uint32_t group)
+static Variant name_normals(const KrsRendering *rendering, KrsNormals normals, uint32_t march_group)
 {
     Variant variant = name_secondary(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     size_t  length  = strlen(variant.defines);
-    if (group > 0)
+    if (march_group > 0)
         length += (size_t)snprintf(variant.defines + length, sizeof variant.defines - length,
-                                   "#define GROUP %u\n", group);
+                                   "#define MARCH_GROUP %u\n", march_group);
     if (normals == KRS_NORMALS_ANALYTIC)
         snprintf(variant.defines + length, sizeof variant.defines - length, "#define GRADIENT\n");
     else if (normals != KRS_NORMALS_OCTAHEDRON)
@@ -405,22 +407,22 @@ static Variant name_around(const KrsRendering *rendering, KrsNormals normals, ui
 bool rendering_has_roots(const KrsRendering *rendering, KrsTrace trace)
 {
     return (trace == KRS_TRACE_EXACT || rendering->program->sheets) && rendering->program->along &&
-           !rendering->in_use->anchored;
+           !rendering->current_kernels->camera_relative;
 }
 
 Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots)
 {
     schedule       = schedule_of_kernel(schedule);
     KrsTrace trace = by_roots ? KRS_TRACE_EXACT : KRS_TRACE_PLAIN;
-    return find_variant(rendering, &rendering->in_use->secondary[schedule][by_roots],
+    return find_variant(rendering, &rendering->current_kernels->secondary[schedule][by_roots],
                         "secondary.comp", trace, schedule);
 }
 
-Kernel *rendering_around(KrsRendering *rendering, KrsNormals normals, uint32_t group)
+Kernel *rendering_normals_kernel(KrsRendering *rendering, KrsNormals normals, uint32_t march_group)
 {
     normals = rendering_normals(rendering, normals);
-    return find_kernel(rendering, &rendering->in_use->around[normals][group], "normals.comp",
-                       name_around(rendering, normals, group));
+    return find_kernel(rendering, &rendering->current_kernels->normals[normals][march_group],
+                       "normals.comp", name_normals(rendering, normals, march_group));
 }
 
 static KrsTrace trace_of_questions(const KrsRendering *rendering)
@@ -431,18 +433,18 @@ static KrsTrace trace_of_questions(const KrsRendering *rendering)
 Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule)
 {
     schedule = schedule_of_kernel(schedule);
-    return find_variant(rendering, &rendering->in_use->query[schedule], "query.comp",
+    return find_variant(rendering, &rendering->current_kernels->query[schedule], "query.comp",
                         trace_of_questions(rendering), schedule);
 }
 
 Kernel *rendering_shade(KrsRendering *rendering)
 {
-    return find_variant(rendering, &rendering->in_use->shade, "shade.comp", KRS_TRACE_PLAIN,
-                        KRS_SCHEDULE_PIXEL);
+    return find_variant(rendering, &rendering->current_kernels->shade, "shade.comp",
+                        KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
 }
 
 /* Differences of a distance see both sides of a sheet. */
-static Variant name_sample(const KrsRendering *rendering)
+static Variant name_point_query(const KrsRendering *rendering)
 {
     Variant variant = name_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     size_t  length  = strlen(variant.defines);
@@ -451,10 +453,10 @@ static Variant name_sample(const KrsRendering *rendering)
     return variant;
 }
 
-Kernel *rendering_sample(KrsRendering *rendering)
+Kernel *rendering_point_query(KrsRendering *rendering)
 {
-    return find_kernel(rendering, &rendering->in_use->sample, "sample.comp",
-                       name_sample(rendering));
+    return find_kernel(rendering, &rendering->current_kernels->point_query, "point_query.comp",
+                       name_point_query(rendering));
 }
 
 /* The renderer's kernels for panoramas. */
@@ -464,14 +466,14 @@ static bool panoramic_create(KrsRendering *rendering)
     KernelRequest kernels[PIXEL_KERNELS];
     request_pixels(renderer, true, kernels);
     return !rendering->panoramic || renderer->pixels[1][0].pipeline ||
-           stage_make_kernels(renderer, VK_NULL_HANDLE, kernels, PIXEL_KERNELS,
-                              &rendering->spirv_ms, &rendering->pipeline_ms);
+           kernels_make(renderer, VK_NULL_HANDLE, kernels, PIXEL_KERNELS, &rendering->spirv_ms,
+                        &rendering->pipeline_ms);
 }
 
 /* Kernels of the scene that are made at the same time. */
 typedef struct Requests {
-    KernelRequest items[5 + 2 * KRS_MOST_GROUPS];
-    Variant       variants[5 + 2 * KRS_MOST_GROUPS];
+    KernelRequest items[5 + 2 * KRS_MOST_MARCH_GROUPS];
+    Variant       variants[5 + 2 * KRS_MOST_MARCH_GROUPS];
     size_t        count;
 } Requests;
 
@@ -484,38 +486,41 @@ static void request(Requests *requests, const KrsRendering *rendering, Kernel *k
         kernel, {file, rendering->program->glsl, kept->defines}};
 }
 
-/* Where components take turns each of them has its own march, and normals. */
+/* Where march groups follow one another each of them has its own kernel of rays and of normals. */
 static void request_marches(Requests *requests, KrsRendering *rendering, KrsTrace trace,
                             KrsSchedule schedule)
 {
-    SceneKernels *to     = rendering->in_use;
-    KrsNormals    usual  = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
-    bool          apart  = rendering_marches_apart(rendering, KRS_COMPONENTS_DEFAULT);
-    bool          packed = rendering_marches_packed(rendering, KRS_COMPONENTS_DEFAULT, trace);
-    uint32_t      whole = packed ? GROUP_PACKED : rendering_knows_flats(rendering) ? GROUP_REST : 0;
+    SceneKernels *to       = rendering->current_kernels;
+    KrsNormals    usual    = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
+    bool     per_component = rendering_marches_per_component(rendering, KRS_COMPONENTS_DEFAULT);
+    bool     packed        = rendering_marches_packed(rendering, KRS_COMPONENTS_DEFAULT, trace);
+    uint32_t whole         = packed                              ? MARCH_PACKED
+                             : rendering_knows_planes(rendering) ? MARCH_WITHOUT_PLANES
+                                                                 : 0;
     if (trace == KRS_TRACE_EXACT)
         request(requests, rendering, &to->trace[KRS_TRACE_PLAIN][schedule][whole], "trace.comp",
-                name_group(rendering, KRS_TRACE_PLAIN, schedule, whole));
-    if (!apart)
+                name_march_group(rendering, KRS_TRACE_PLAIN, schedule, whole));
+    if (!per_component)
         request(requests, rendering, &to->trace[trace][schedule][whole], "trace.comp",
-                name_group(rendering, trace, schedule, whole));
-    for (uint32_t group = 1; apart && group <= rendering->program->group_count; group++) {
+                name_march_group(rendering, trace, schedule, whole));
+    for (uint32_t march_group = 1;
+         per_component && march_group <= rendering->program->march_group_count; march_group++) {
         KrsSchedule own = schedule_of_kernel(
-            rendering_schedule_of_group(rendering, KRS_SCHEDULE_DEFAULT, group));
-        request(requests, rendering, &to->trace[trace][own][group], "trace.comp",
-                name_group(rendering, trace, own, group));
-        request(requests, rendering, &to->around[usual][group], "normals.comp",
-                name_around(rendering, usual, group));
+            rendering_schedule_of_march_group(rendering, KRS_SCHEDULE_DEFAULT, march_group));
+        request(requests, rendering, &to->trace[trace][own][march_group], "trace.comp",
+                name_march_group(rendering, trace, own, march_group));
+        request(requests, rendering, &to->normals[usual][march_group], "normals.comp",
+                name_normals(rendering, usual, march_group));
     }
 }
 
 static void request_pictures(Requests *requests, KrsRendering *rendering, KrsTrace trace,
                              KrsSchedule schedule)
 {
-    SceneKernels *to    = rendering->in_use;
+    SceneKernels *to    = rendering->current_kernels;
     KrsNormals    usual = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
-    request(requests, rendering, &to->around[usual][0], "normals.comp",
-            name_around(rendering, usual, 0));
+    request(requests, rendering, &to->normals[usual][0], "normals.comp",
+            name_normals(rendering, usual, 0));
     request(requests, rendering, &to->shade, "shade.comp",
             name_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL));
     bool     by_roots = rendering_has_roots(rendering, trace);
@@ -528,7 +533,7 @@ static void request_pictures(Requests *requests, KrsRendering *rendering, KrsTra
 /* Those that a picture by default, or questions, need. */
 static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
 {
-    SceneKernels *to       = rendering->in_use;
+    SceneKernels *to       = rendering->current_kernels;
     KrsTrace      trace    = KRS_TRACE_DEFAULT;
     KrsSchedule   schedule = KRS_SCHEDULE_DEFAULT;
     Requests      requests = {.count = 0};
@@ -539,26 +544,27 @@ static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
     } else {
         request(&requests, rendering, &to->query[schedule], "query.comp",
                 name_variant(rendering, trace_of_questions(rendering), schedule));
-        request(&requests, rendering, &to->sample, "sample.comp", name_sample(rendering));
+        request(&requests, rendering, &to->point_query, "point_query.comp",
+                name_point_query(rendering));
     }
-    return stage_make_kernels(rendering->renderer, rendering->scene_set, requests.items,
-                              requests.count, &rendering->spirv_ms, &rendering->pipeline_ms);
+    return kernels_make(rendering->renderer, rendering->scene_set, requests.items, requests.count,
+                        &rendering->spirv_ms, &rendering->pipeline_ms);
 }
 
 static void kernels_destroy(Gpu *gpu, SceneKernels *kernels)
 {
     kernel_destroy(gpu, &kernels->shade);
-    kernel_destroy(gpu, &kernels->sample);
+    kernel_destroy(gpu, &kernels->point_query);
     for (int normals = 0; normals < KRS_NORMALS_COUNT; normals++)
-        for (uint32_t group = 0; group <= KRS_MOST_GROUPS; group++)
-            kernel_destroy(gpu, &kernels->around[normals][group]);
+        for (uint32_t march_group = 0; march_group <= KRS_MOST_MARCH_GROUPS; march_group++)
+            kernel_destroy(gpu, &kernels->normals[normals][march_group]);
     for (int schedule = 0; schedule < KRS_SCHEDULE_COUNT; schedule++) {
         kernel_destroy(gpu, &kernels->query[schedule]);
         for (int by_roots = 0; by_roots < 2; by_roots++)
             kernel_destroy(gpu, &kernels->secondary[schedule][by_roots]);
         for (int trace = 0; trace < KRS_TRACE_COUNT; trace++)
-            for (uint32_t group = 0; group < GROUP_KINDS; group++)
-                kernel_destroy(gpu, &kernels->trace[trace][schedule][group]);
+            for (uint32_t march_group = 0; march_group < MARCH_KINDS; march_group++)
+                kernel_destroy(gpu, &kernels->trace[trace][schedule][march_group]);
     }
     *kernels = (SceneKernels){0};
 }
@@ -601,14 +607,14 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
     KrsRendering *rendering = gpu_alloc(&renderer->gpu, 1, sizeof *rendering, "prepare the scene");
     if (!rendering)
         return renderer->gpu.status;
-    rendering->renderer    = renderer;
-    rendering->scene       = scene;
-    rendering->program     = krs_scene_program(scene);
-    rendering->in_use      = &rendering->kernels;
-    rendering->purpose     = purpose;
-    rendering->panoramic   = krs_scene_is_panoramic(scene);
-    rendering->spirv_ms    = renderer->spirv_ms;
-    rendering->pipeline_ms = renderer->pipeline_ms;
+    rendering->renderer        = renderer;
+    rendering->scene           = scene;
+    rendering->program         = krs_scene_program(scene);
+    rendering->current_kernels = &rendering->kernels;
+    rendering->purpose         = purpose;
+    rendering->panoramic       = krs_scene_is_panoramic(scene);
+    rendering->spirv_ms        = renderer->spirv_ms;
+    rendering->pipeline_ms     = renderer->pipeline_ms;
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         for (int has_scene = 0; has_scene < 2; has_scene++)
             rendering->groups_at_once[phase][has_scene] = guess_slice(rendering, phase, has_scene);
@@ -635,9 +641,9 @@ void krs_rendering_free(KrsRendering *rendering)
                          &rendering->lights,
                          &rendering->points,
                          &rendering->answers,
-                         &rendering->questions,
-                         &rendering->ways,
-                         &rendering->shares,
+                         &rendering->query_rays,
+                         &rendering->ray_hits,
+                         &rendering->taken,
                          &band->ends,
                          &band->hits,
                          &band->results,
@@ -645,19 +651,19 @@ void krs_rendering_free(KrsRendering *rendering)
                          &band->queue,
                          &band->taken,
                          &band->tiles};
-    gpu_wait(gpu); /* rehearsals may still run; a device that is lost has none */
+    gpu_wait(gpu); /* kernels may still be warmed up; a device that is lost has none */
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         buffer_destroy(gpu, buffers[i]);
     kernels_destroy(gpu, &rendering->kernels);
     kernels_destroy(gpu, &rendering->zoned);
-    kernels_destroy(gpu, &rendering->anchored);
+    kernels_destroy(gpu, &rendering->camera_relative);
     if (!gpu->stuck)
         vkDestroyDescriptorPool(gpu->device, rendering->pool, NULL);
     gpu_release(gpu, rendering);
 }
 
 bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count,
-                          const double anchor[3])
+                          const double rebase_origin[3])
 {
     Gpu    *gpu    = &rendering->renderer->gpu;
     Buffer *buffer = &rendering->lights;
@@ -666,7 +672,7 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
     if (buffer->size < bytes) {
         buffer_destroy(gpu, buffer);
         if (!buffer_create(gpu, buffer, bytes, UPLOADED, "lights") ||
-            !stage_view(gpu, LIGHTS_BINDING, buffer, "lights"))
+            !layouts_view_texels(gpu, LIGHTS_BINDING, buffer, "lights"))
             return false;
         rendering_bind(rendering, rendering->band_set,
                        gpu->texels ? LIGHTS_BINDING : LIGHT_ROWS_BINDING, buffer);
@@ -678,7 +684,8 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
                          (light->shadow ? LIGHT_CASTS_SHADOWS : 0);
         blocks[i].softness = (float)light->softness;
         for (int k = 0; k < 3; k++) {
-            blocks[i].vector[k] = (float)(light->vector[k] - (light->positional ? anchor[k] : 0));
+            blocks[i].vector[k] = (float)(light->vector[k] -
+                                          (light->positional ? rebase_origin[k] : 0));
             blocks[i].color[k]  = (float)light->color[k];
         }
     }
@@ -688,12 +695,12 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
 /* Kernels with room for so many zones: 1, 2, 4, 8 or 16; those that have more room stay. */
 static bool choose_zones(KrsRendering *rendering, size_t count)
 {
-    Gpu          *gpu   = &rendering->renderer->gpu;
-    SceneKernels *zoned = &rendering->zoned;
-    rendering->in_use   = count > 0 ? zoned : &rendering->kernels;
+    Gpu          *gpu          = &rendering->renderer->gpu;
+    SceneKernels *zoned        = &rendering->zoned;
+    rendering->current_kernels = count > 0 ? zoned : &rendering->kernels;
     if (count <= zoned->zones)
         return true;
-    if (!gpu_wait(gpu)) /* rehearsals of the old ones */
+    if (!gpu_wait(gpu)) /* the old ones may still be warmed up */
         return false;
     kernels_destroy(gpu, zoned);
     for (zoned->zones = 1; zoned->zones < count;)
@@ -722,21 +729,22 @@ bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame)
     return choose_zones(rendering, zones);
 }
 
-bool rendering_set_anchor(KrsRendering *rendering, KrsFrame *frame, const double anchor[3])
+bool rendering_rebase(KrsRendering *rendering, KrsFrame *frame, const double rebase_origin[3])
 {
     Gpu   *gpu   = &rendering->renderer->gpu;
     size_t first = rendering->program->parameter_slots + rendering->program->value_slots +
                    KRS_MOST_ZONES;
-    size_t slots     = rendering->program->anchored_slots;
-    float(*block)[4] = gpu_alloc(gpu, slots + 1, sizeof *block, "set the scene's anchor");
+    size_t slots     = rendering->program->camera_relative_slots;
+    float(*block)[4] = gpu_alloc(gpu, slots + 1, sizeof *block,
+                                 "move the scene's origin to the camera");
     if (!block)
         return false;
-    krs_frame_anchor(frame, anchor, block);
+    krs_frame_rebase(frame, rebase_origin, block);
     memcpy((char *)rendering->parameters.bytes + first * sizeof *block, block,
            slots * sizeof *block);
     gpu_release(gpu, block);
-    rendering->in_use           = &rendering->anchored;
-    rendering->in_use->anchored = true;
+    rendering->current_kernels                  = &rendering->camera_relative;
+    rendering->current_kernels->camera_relative = true;
     return true;
 }
 

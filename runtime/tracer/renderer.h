@@ -9,8 +9,8 @@
 #include "runtime/device/kernel.h"
 #include "runtime/tracer/blocks.h"
 
-/* The kernels without a scene that do one thing for every pixel of a list, row or quarter of a tile:
-   on lavapipe a kernel takes as long as all of its branches. */
+/* The kernels without a scene that do one thing for every pixel of a list, row or quarter of a
+   tile: on lavapipe a kernel takes as long as all of its branches. */
 typedef enum PixelKernel {
     PIXELS_BACKGROUND,
     PIXELS_UNPROVEN,
@@ -33,7 +33,7 @@ struct KrsRenderer {
     Kernel           pixels[2][PIXEL_KERNELS]; /* [1]: for scenes with panoramas, when needed */
     Kernel           plan;                     /* on graphics cards (dispatch.c) */
     double           spirv_ms, pipeline_ms;    /* of the former */
-    VkDescriptorPool idle_pool;                /* for rehearsals: */
+    VkDescriptorPool idle_pool;                /* to warm kernels up: */
     VkDescriptorSet  idle_scene, idle_frame;   /* with nothing in them, */
     Buffer           idle[TEXEL_KINDS];        /* all of it in these */
 };
@@ -45,18 +45,18 @@ typedef struct Band {
     Buffer   fetched; /* where the host reads the results; none where it reads them directly */
 } Band;
 
-/* Instead of a group: all that is not a plane, where rays know planes by themselves. */
-enum { GROUP_REST = 1 + KRS_MOST_GROUPS };
-/* And all, part by part within each ray. */
-enum { GROUP_PACKED = 1 + GROUP_REST, GROUP_KINDS };
+/* Instead of a march group: all but planes, which rays intersect without a march. */
+enum { MARCH_WITHOUT_PLANES = 1 + KRS_MOST_MARCH_GROUPS };
+/* And all, scene part by scene part within each ray. */
+enum { MARCH_PACKED = 1 + MARCH_WITHOUT_PLANES, MARCH_KINDS };
 
 /* The kernels with the scene in them, each compiled when it is first needed. */
 typedef struct SceneKernels {
-    uint32_t zones;    /* of the caller, that they have room for */
-    bool     anchored; /* points are given from an anchor */
-    Kernel   shade, sample;
-    Kernel   trace[KRS_TRACE_COUNT][KRS_SCHEDULE_COUNT][GROUP_KINDS]; /* [0]: of all */
-    Kernel   around[KRS_NORMALS_COUNT][1 + KRS_MOST_GROUPS];          /* likewise */
+    uint32_t zones;           /* of the caller, that they have room for */
+    bool     camera_relative; /* points are relative to the camera */
+    Kernel   shade, point_query;
+    Kernel   trace[KRS_TRACE_COUNT][KRS_SCHEDULE_COUNT][MARCH_KINDS]; /* [0]: of all */
+    Kernel   normals[KRS_NORMALS_COUNT][1 + KRS_MOST_MARCH_GROUPS];   /* likewise */
     Kernel   secondary[KRS_SCHEDULE_COUNT][2];                        /* [1]: from root to root */
     Kernel   query[KRS_SCHEDULE_COUNT];
 } SceneKernels;
@@ -65,9 +65,9 @@ struct KrsRendering {
     KrsRenderer      *renderer;
     const KrsScene   *scene;
     const KrsProgram *program;
-    SceneKernels      kernels, zoned; /* without and with zones of the caller */
-    SceneKernels      anchored;       /* for eyes that are far from the origin */
-    SceneKernels     *in_use;         /* those for the zones of the last frame */
+    SceneKernels      kernels, zoned;  /* without and with zones of the caller */
+    SceneKernels      camera_relative; /* for eyes that are far from the origin */
+    SceneKernels     *current_kernels; /* those for the zones of the last frame */
     KrsPurpose        purpose;
     bool              panoramic; /* a camera of the scene is a panorama */
     double            spirv_ms, pipeline_ms;
@@ -78,25 +78,25 @@ struct KrsRendering {
     Buffer           device_control; /* what kernels use of the control block, of which the host
                                          has a copy; none where they use the host's */
     Band             band;
-    Buffer           points, answers;                    /* of sample.comp */
-    Buffer           questions, ways, shares;            /* of query.comp */
+    Buffer           points, answers;                    /* of point_query.comp */
+    Buffer           query_rays, ray_hits, taken;        /* of query.comp */
     uint32_t         groups_at_once[KRS_PHASE_COUNT][2]; /* learned from the last slices */
 };
 
 /* The kernel of primary rays for a method and a schedule (neither is the default), of a group of
-   components, of all (0), or GROUP_REST, compiled when it is first asked for.  NULL with the
-   failure noted. */
+   components, of all (0), or MARCH_WITHOUT_PLANES, compiled when it is first asked for.  NULL with
+   the failure noted. */
 Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
-                        uint32_t group);
+                        uint32_t march_group);
 /* The same for beams, which need distances for all directions. */
 Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
-                        uint32_t group);
-/* Whether there is a march of GROUP_REST. */
-bool rendering_knows_flats(const KrsRendering *rendering);
+                        uint32_t march_group);
+/* Whether there is a kernel of MARCH_WITHOUT_PLANES. */
+bool rendering_knows_planes(const KrsRendering *rendering);
 /* The normals that are meant: by derivatives where all is algebraic, else the octahedron's. */
 KrsNormals rendering_normals(const KrsRendering *rendering, KrsNormals normals);
-/* That of normals; of a group. */
-Kernel *rendering_around(KrsRendering *rendering, KrsNormals normals, uint32_t group);
+/* The kernel of normals, of a march group or of all (0). */
+Kernel *rendering_normals_kernel(KrsRendering *rendering, KrsNormals normals, uint32_t march_group);
 /* Whether primary rays by this method go from root to root.  Then so do secondary ones. */
 bool rendering_has_roots(const KrsRendering *rendering, KrsTrace trace);
 /* The kernel of rays to lights and for occlusion. */
@@ -104,30 +104,30 @@ Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool 
 Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule);
 /* Likewise. */
 Kernel *rendering_shade(KrsRendering *rendering);
-Kernel *rendering_sample(KrsRendering *rendering);
+Kernel *rendering_point_query(KrsRendering *rendering);
 /* Puts what `make bench` found fastest for such a scene on such a device where the default is
    asked for. */
 void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule);
 /* As many steps as are wanted of a lane in a dispatch, or as many as may be. */
-uint32_t rendering_turns(const KrsRendering *rendering, uint32_t wanted);
+uint32_t rendering_steps_within(const KrsRendering *rendering, uint32_t wanted);
 /* The schedule for the rays of a group that is marched by itself. */
-KrsSchedule rendering_schedule_of_group(const KrsRendering *rendering, KrsSchedule asked,
-                                        uint32_t group);
+KrsSchedule rendering_schedule_of_march_group(const KrsRendering *rendering, KrsSchedule asked,
+                                              uint32_t march_group);
 /* Whether groups of components are marched one after the other, where that can be. */
-bool rendering_marches_apart(const KrsRendering *rendering, KrsComponents components);
+bool rendering_marches_per_component(const KrsRendering *rendering, KrsComponents components);
 /* Whether rays march by this method part by part, where that can be. */
 bool rendering_marches_packed(const KrsRendering *rendering, KrsComponents components,
                               KrsTrace trace);
 /* Copies the frame's parameters and zones to the device, and chooses the kernels for them. */
 bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame);
-/* After it: gives points from an anchor from now on, and chooses the kernels for that. */
-bool rendering_set_anchor(KrsRendering *rendering, KrsFrame *frame, const double anchor[3]);
+/* After it: points are relative to this origin from now on; chooses the kernels for that. */
+bool rendering_rebase(KrsRendering *rendering, KrsFrame *frame, const double rebase_origin[3]);
 /* A step through [0, count) that visits all and goes far each time, so that neighbours, which cost
-   alike, are spread over a device that deals out contiguous shares. */
+   alike, are spread over a device that assigns contiguous ranges. */
 uint32_t rendering_spread(const KrsRendering *rendering, uint32_t count);
-/* Copies the lights of a frame to the device, as seen from an anchor. */
+/* Copies the lights of a frame to the device, relative to an origin. */
 bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count,
-                          const double anchor[3]);
+                          const double rebase_origin[3]);
 /* Points a binding of set 1 at a buffer. */
 void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding,
                     const Buffer *buffer);
@@ -144,17 +144,17 @@ void rendering_dispatch_counted(KrsRendering *rendering, const Kernel *kernel, V
                                 const void *work, uint32_t work_bytes);
 /* The most workgroups of a dispatch on any device. */
 enum { MOST_GROUPS = 65535 };
-/* ---- sample.c ---- */
+/* ---- point_query.c ---- */
 enum { POINTS_AT_ONCE = 16384 };
 /* Makes room for that many points, and their answers. */
-bool sample_prepare(KrsRendering *rendering);
+bool point_query_prepare(KrsRendering *rendering);
 /* What is at the first `count` of them; with normals, or the distance alone. */
-bool sample_run(KrsRendering *rendering, uint32_t count, bool normals);
+bool point_query_run(KrsRendering *rendering, uint32_t count, bool normals);
 
 /* ---- query.c ---- */
 /* Whether what the device says of `count` rays can be used: each has missed, or has its own place
    among the `ends` of rays. */
-bool ways_are_sound(const WayBlock *ways, uint32_t count, uint32_t ends);
+bool ray_hits_are_valid(const RayHitBlock *ray_hits, uint32_t count, uint32_t ends);
 
 /* Forgets the message of the call before. */
 void renderer_clear(KrsRenderer *renderer);

@@ -76,7 +76,7 @@ static void half_extent(const KrsCamera *camera, uint32_t width, uint32_t height
     extent[0]   = camera->projection == KRS_PANORAMA ? 1 : half * width / height;
 }
 
-static bool camera_is_sound(const KrsCamera *camera)
+static bool camera_is_valid(const KrsCamera *camera)
 {
     for (int i = 0; i < 3; i++)
         if (!isfinite(camera->eye[i]) || !isfinite(camera->target[i]) || !isfinite(camera->up[i]))
@@ -143,18 +143,18 @@ static double dot_floats(const double a[3], const float b[3])
 /* In half pictures from the middle, rightwards and upwards; false for what is not in front of the
    eye. */
 static bool project(const FrameBlock *block, const double point[3], bool perspective,
-                    double place[2])
+                    double image_point[2])
 {
     const float *axes[2] = {block->right, block->up};
-    double       way[3], length = 0;
+    double       offset[3], length = 0;
     for (int i = 0; i < 3; i++) {
-        way[i] = point[i] - (double)block->eye[i];
-        length = hypot(length, way[i]);
+        offset[i] = point[i] - (double)block->eye[i];
+        length    = hypot(length, offset[i]);
     }
-    double ahead = perspective ? dot_floats(way, block->forward) : 1;
+    double ahead = perspective ? dot_floats(offset, block->forward) : 1;
     for (int i = 0; i < 2; i++) {
         const double axis[3] = {axes[i][0], axes[i][1], axes[i][2]};
-        place[i]             = dot_floats(way, axes[i]) / (dot_floats(axis, axes[i]) * ahead);
+        image_point[i]       = dot_floats(offset, axes[i]) / (dot_floats(axis, axes[i]) * ahead);
     }
     return !perspective || ahead > 1e-3 * length;
 }
@@ -166,13 +166,13 @@ KrsWindow view_window(const FrameBlock *block, const KrsCamera *camera)
     bool         known  = camera->projection != KRS_PANORAMA;
     bool         widens = camera->projection == KRS_PERSPECTIVE;
     for (int corner = 0; corner < 8; corner++) {
-        double point[3], place[2];
+        double point[3], image_point[2];
         for (int i = 0; i < 3; i++)
             point[i] = (double)(corner >> i & 1 ? block->high[i] : block->low[i]);
-        known = project(block, point, widens, place) && known;
+        known = project(block, point, widens, image_point) && known;
         for (int i = 0; i < 2; i++) {
-            low[i]  = fmin(low[i], place[i]);
-            high[i] = fmax(high[i], place[i]);
+            low[i]  = fmin(low[i], image_point[i]);
+            high[i] = fmax(high[i], image_point[i]);
         }
     }
     double from[2] = {0.5 * (1 + low[0]), 0.5 * (1 - high[1])};
@@ -228,7 +228,7 @@ bool view_prepare(const KrsView *view, const double low[3], const double high[3]
     const KrsCamera *camera = &view->camera;
     Basis            basis;
     double           extent[2];
-    if (!camera_is_sound(camera) || !camera_basis(camera, &basis))
+    if (!camera_is_valid(camera) || !camera_basis(camera, &basis))
         return false;
     half_extent(camera, width, height, extent);
 

@@ -74,7 +74,7 @@ float krs_cut(vec3 p, float d)
     return d;
 }
 
-#if !defined GROUP || GROUP == 1
+#if !defined MARCH_GROUP || MARCH_GROUP == 1
 float krs_distance_1(vec3 p)
 {
     // tests/golden/algebraic.krs:3
@@ -146,7 +146,7 @@ float krs_distance_1(vec3 p)
 }
 #endif
 
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_distance_2(vec3 p)
 {
     // tests/golden/algebraic.krs:4
@@ -186,12 +186,12 @@ float krs_distance_2(vec3 p)
 // Never above the distance to the nearest surface; negative inside.
 float krs_distance(vec3 p)
 {
-#ifdef GROUP
+#ifdef MARCH_GROUP
     float d = 1e30;
-#if GROUP == 1
+#if MARCH_GROUP == 1
     d = min(d, krs_distance_1(p));
 #endif
-#if GROUP == 2
+#if MARCH_GROUP == 2
     d = min(d, krs_distance_2(p));
 #endif
 #else
@@ -202,7 +202,7 @@ float krs_distance(vec3 p)
 }
 
 #if defined(ALONG) && ALONG == 0
-#if !defined GROUP || GROUP == 1
+#if !defined MARCH_GROUP || MARCH_GROUP == 1
 float krs_along_1(vec3 p, vec3 direction, float footprint)
 {
     // tests/golden/algebraic.krs:3
@@ -282,7 +282,7 @@ float krs_along_1(vec3 p, vec3 direction, float footprint)
 }
 
 #endif
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_along_2(vec3 p, vec3 direction, float footprint)
 {
     // tests/golden/algebraic.krs:4
@@ -336,10 +336,10 @@ float krs_along_2(vec3 p, vec3 direction, float footprint)
 float krs_along(vec3 p, vec3 direction, float footprint)
 {
     float t = 1e30;
-#if !defined GROUP || GROUP == 1
+#if !defined MARCH_GROUP || MARCH_GROUP == 1
     t = min(t, krs_along_1(p, direction, footprint));
 #endif
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
     t = min(t, krs_along_2(p, direction, footprint));
 #endif
     return krs_cut(p, t);
@@ -352,7 +352,7 @@ float krs_along(vec3 p, vec3 direction)
 #endif
 
 #if defined(ALONG) && ALONG == 1
-#if !defined GROUP || GROUP == 1
+#if !defined MARCH_GROUP || MARCH_GROUP == 1
 float krs_along_1(vec3 p, vec3 direction, float footprint)
 {
     // tests/golden/algebraic.krs:3
@@ -437,7 +437,7 @@ float krs_along_1(vec3 p, vec3 direction, float footprint)
 }
 
 #endif
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_along_2(vec3 p, vec3 direction, float footprint)
 {
     // tests/golden/algebraic.krs:4
@@ -494,10 +494,10 @@ float krs_along_2(vec3 p, vec3 direction, float footprint)
 float krs_along(vec3 p, vec3 direction, float footprint)
 {
     float t = 1e30;
-#if !defined GROUP || GROUP == 1
+#if !defined MARCH_GROUP || MARCH_GROUP == 1
     t = min(t, krs_along_1(p, direction, footprint));
 #endif
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
     t = min(t, krs_along_2(p, direction, footprint));
 #endif
     return krs_cut(p, t);
@@ -510,7 +510,7 @@ float krs_along(vec3 p, vec3 direction)
 #endif
 
 #if defined(ALONG) && ALONG == 2
-#if !defined GROUP || GROUP == 1
+#if !defined MARCH_GROUP || MARCH_GROUP == 1
 float krs_along_1(vec3 p, vec3 direction, float footprint)
 {
     // tests/golden/algebraic.krs:3
@@ -595,7 +595,7 @@ float krs_along_1(vec3 p, vec3 direction, float footprint)
 }
 
 #endif
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_along_2(vec3 p, vec3 direction, float footprint)
 {
     // tests/golden/algebraic.krs:4
@@ -652,10 +652,10 @@ float krs_along_2(vec3 p, vec3 direction, float footprint)
 float krs_along(vec3 p, vec3 direction, float footprint)
 {
     float t = 1e30;
-#if !defined GROUP || GROUP == 1
+#if !defined MARCH_GROUP || MARCH_GROUP == 1
     t = min(t, krs_along_1(p, direction, footprint));
 #endif
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
     t = min(t, krs_along_2(p, direction, footprint));
 #endif
     return krs_cut(p, t);
@@ -667,7 +667,7 @@ float krs_along(vec3 p, vec3 direction)
 }
 #endif
 
-#ifndef GROUP
+#ifndef MARCH_GROUP
 #ifdef EARLY_OUTS
 float krs_distance_lod_1(vec3 p, float footprint)
 {
@@ -699,12 +699,12 @@ float krs_distance_lod(vec3 p, float footprint)
 #ifdef PACKED
 // Parts of the scene, most of them one component: the distance of one, and a box
 // around it; where there is none the box stays empty.
-const uint KRS_PARTS = 2u;
+const uint KRS_SCENE_PARTS = 2u;
 
-float krs_distance_of(uint part, vec3 p)
+float krs_scene_part_distance(uint scene_part, vec3 p)
 {
     float d = 1e30;
-    switch (part) {
+    switch (scene_part) {
     case 0u:
 #ifdef EARLY_OUTS
         d = min(d, krs_distance_lod_1(p, 0.0));
@@ -723,9 +723,9 @@ float krs_distance_of(uint part, vec3 p)
     return krs_cut(p, d);
 }
 
-void krs_part_box(uint part, inout vec3 low, inout vec3 high)
+void krs_scene_part_box(uint scene_part, inout vec3 low, inout vec3 high)
 {
-    switch (part) {
+    switch (scene_part) {
     case 0u:
         low = vec3((-1.6535387));
         high = vec3(1.6535387);
@@ -738,7 +738,7 @@ void krs_part_box(uint part, inout vec3 low, inout vec3 high)
 }
 #endif
 
-#if defined(GRADIENT) && !defined(ANCHORED)
+#if defined(GRADIENT) && !defined(CAMERA_RELATIVE)
 vec4 krs_gradient_1(vec3 p, float reach)
 {
     // tests/golden/algebraic.krs:3

@@ -160,7 +160,7 @@ float krs_cut(vec3 p, float d)
     return d;
 }
 
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_distance_1(vec3 p)
 {
     // library:solids.krs:48
@@ -184,7 +184,7 @@ float krs_distance_1(vec3 p)
 }
 #endif
 
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_distance_2(vec3 p)
 {
     // library:solids.krs:38
@@ -207,7 +207,7 @@ float krs_distance_2(vec3 p)
 }
 #endif
 
-#if !defined GROUP || GROUP == 1
+#if !defined MARCH_GROUP || MARCH_GROUP == 1
 float krs_distance_3(vec3 p)
 {
     // tests/golden/fields.krs:4
@@ -222,15 +222,15 @@ float krs_distance_3(vec3 p)
 // Never above the distance to the nearest surface; negative inside.
 float krs_distance(vec3 p)
 {
-#ifdef GROUP
+#ifdef MARCH_GROUP
     float d = 1e30;
-#if GROUP == 2
+#if MARCH_GROUP == 2
     d = min(d, krs_distance_1(p));
 #endif
-#if GROUP == 2
+#if MARCH_GROUP == 2
     d = min(d, krs_distance_2(p));
 #endif
-#if GROUP == 1
+#if MARCH_GROUP == 1
     d = min(d, krs_distance_3(p));
 #endif
 #else
@@ -241,7 +241,7 @@ float krs_distance(vec3 p)
     return krs_cut(p, d);
 }
 
-#ifndef GROUP
+#ifndef MARCH_GROUP
 #ifdef EARLY_OUTS
 float krs_distance_lod_1(vec3 p, float footprint)
 {
@@ -280,12 +280,12 @@ float krs_distance_lod(vec3 p, float footprint)
 #ifdef PACKED
 // Parts of the scene, most of them one component: the distance of one, and a box
 // around it; where there is none the box stays empty.
-const uint KRS_PARTS = 3u;
+const uint KRS_SCENE_PARTS = 3u;
 
-float krs_distance_of(uint part, vec3 p)
+float krs_scene_part_distance(uint scene_part, vec3 p)
 {
     float d = 1e30;
-    switch (part) {
+    switch (scene_part) {
     case 0u:
 #ifdef EARLY_OUTS
         d = min(d, krs_distance_lod_1(p, 0.0));
@@ -311,9 +311,9 @@ float krs_distance_of(uint part, vec3 p)
     return krs_cut(p, d);
 }
 
-void krs_part_box(uint part, inout vec3 low, inout vec3 high)
+void krs_scene_part_box(uint scene_part, inout vec3 low, inout vec3 high)
 {
-    switch (part) {
+    switch (scene_part) {
     case 0u:
         low = vec3((-1.0003474));
         high = vec3(1.0003474);

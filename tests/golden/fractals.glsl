@@ -118,7 +118,7 @@ vec2 krs_multiplied(vec2 base, int power, float norm, float square)
     }
     return all;
 }
-vec3 krs_triplex_step(vec3 w, vec3 c, float norm, int power, out float aside)
+vec3 krs_triplex_step(vec3 w, vec3 c, float norm, int power, out float lateral)
 {
     float square = max(dot(w.xz, w.xz), 1e-18), inverse = 1.0 / square;
     vec2 tilt = krs_multiplied(vec2(2.0 * w.y, 1.0), power, norm, square);
@@ -131,15 +131,15 @@ vec3 krs_triplex_step(vec3 w, vec3 c, float norm, int power, out float aside)
     if (power % 2 == 1)
         turn = vec2(0.5 * turn.x * once.x - 2.0 * turn.y * once.y,
                     0.5 * (turn.x * once.y + turn.y * once.x));
-    aside = tilt.y;
-    float reach = power % 2 == 0 ? aside * sqrt(square) : aside;
+    lateral = tilt.y;
+    float reach = power % 2 == 0 ? lateral * sqrt(square) : lateral;
     return vec3(reach * turn.y, 0.5 * tilt.x, 0.5 * reach * turn.x) + c;
 }
 float krs_mandelbulb(vec3 c, vec2 range, vec2 settings)
 {
     int power = int(range.x), most = int(range.y);
     float radius = settings.y, norm = dot(c, c), start = sqrt(norm), steep = 1.0;
-    float far = min(256.0, exp2(64.0 / range.x)), sum = 0.0, aside;
+    float far = min(256.0, exp2(64.0 / range.x)), sum = 0.0, lateral;
     float root = -1.0 / (range.x - 1.0), core = pow(range.x, root) * (1.0 - 1.0 / range.x);
     float least = pow(4.0 * range.x, root), least_even = 1.0 / (16.0 * range.x * range.x);
     float last = norm, stretch = 1.0;
@@ -150,10 +150,10 @@ float krs_mandelbulb(vec3 c, vec2 range, vec2 settings)
         if (most > 8 && !going)
             break;
         float even = max(krs_whole_power(norm, power - 1), least_even);
-        w = krs_triplex_step(w, c, norm, power, aside);
+        w = krs_triplex_step(w, c, norm, power, lateral);
         norm = dot(w, w);
         sum = going ? sum + steep : sum;
-        even = max(0.85 * even, mix(even, aside * aside, 0.33333333));
+        even = max(0.85 * even, mix(even, lateral * lateral, 0.33333333));
         steep = range.x * sqrt(even) * steep + 1.0;
         last = going ? norm : last;
         stretch = going ? steep : stretch;
@@ -162,17 +162,17 @@ float krs_mandelbulb(vec3 c, vec2 range, vec2 settings)
     bool outside = room < 0.0;
     float under = stretch + (0.5 * (range.x - 1.0) / least) * sum * room;
     float d = (outside ? 0.25 * size : -0.5 * room) / (outside ? stretch : under);
-    float most_away = start > 1.15 * radius ? rim : max(start - core, 0.0);
+    float farthest = start > 1.15 * radius ? rim : max(start - core, 0.0);
     d = outside ? d * log(last * (1.0 / (radius * radius))) : d;
-    return max(rim, min(d, most_away));
+    return max(rim, min(d, farthest));
 }
 vec2 krs_mandelbulb_trap(vec3 c, vec2 range, vec2 settings)
 {
-    float last = min(settings.x, range.y), norm = dot(c, c), size = sqrt(norm), aside;
+    float last = min(settings.x, range.y), norm = dot(c, c), size = sqrt(norm), lateral;
     vec3 w = c;
     vec2 trap = vec2(1.0);
     for (float n = 1.0; n <= last && size <= 2.0 * settings.y; n++) {
-        w = krs_triplex_step(w, c, norm, int(range.x), aside);
+        w = krs_triplex_step(w, c, norm, int(range.x), lateral);
         norm = dot(w, w);
         size = sqrt(norm);
         trap = size < trap.x ? vec2(size, n / last) : trap;
@@ -201,7 +201,7 @@ float krs_cut(vec3 p, float d)
     return d;
 }
 
-#if !defined GROUP || GROUP == 1
+#if !defined MARCH_GROUP || MARCH_GROUP == 1
 float krs_distance_1(vec3 p)
 {
     // tests/golden/fractals.krs:2
@@ -210,7 +210,7 @@ float krs_distance_1(vec3 p)
 }
 #endif
 
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_distance_2(vec3 p)
 {
     // tests/golden/fractals.krs:3
@@ -222,12 +222,12 @@ float krs_distance_2(vec3 p)
 // Never above the distance to the nearest surface; negative inside.
 float krs_distance(vec3 p)
 {
-#ifdef GROUP
+#ifdef MARCH_GROUP
     float d = 1e30;
-#if GROUP == 1
+#if MARCH_GROUP == 1
     d = min(d, krs_distance_1(p));
 #endif
-#if GROUP == 2
+#if MARCH_GROUP == 2
     d = min(d, krs_distance_2(p));
 #endif
 #else
@@ -237,7 +237,7 @@ float krs_distance(vec3 p)
     return krs_cut(p, d);
 }
 
-#ifndef GROUP
+#ifndef MARCH_GROUP
 #ifdef EARLY_OUTS
 float krs_distance_lod_1(vec3 p, float footprint)
 {
@@ -269,12 +269,12 @@ float krs_distance_lod(vec3 p, float footprint)
 #ifdef PACKED
 // Parts of the scene, most of them one component: the distance of one, and a box
 // around it; where there is none the box stays empty.
-const uint KRS_PARTS = 2u;
+const uint KRS_SCENE_PARTS = 2u;
 
-float krs_distance_of(uint part, vec3 p)
+float krs_scene_part_distance(uint scene_part, vec3 p)
 {
     float d = 1e30;
-    switch (part) {
+    switch (scene_part) {
     case 0u:
 #ifdef EARLY_OUTS
         d = min(d, krs_distance_lod_1(p, 0.0));
@@ -293,9 +293,9 @@ float krs_distance_of(uint part, vec3 p)
     return krs_cut(p, d);
 }
 
-void krs_part_box(uint part, inout vec3 low, inout vec3 high)
+void krs_scene_part_box(uint scene_part, inout vec3 low, inout vec3 high)
 {
-    switch (part) {
+    switch (scene_part) {
     case 0u:
         low = vec3((-1.4715018));
         high = vec3(1.4715018);

@@ -145,12 +145,12 @@ float krs_distance_lod(vec3 p, float footprint)
 #ifdef PACKED
 // Parts of the scene, most of them one component: the distance of one, and a box
 // around it; where there is none the box stays empty.
-const uint KRS_PARTS = 3u;
+const uint KRS_SCENE_PARTS = 3u;
 
-float krs_distance_of(uint part, vec3 p)
+float krs_scene_part_distance(uint scene_part, vec3 p)
 {
     float d = 1e30;
-    switch (part) {
+    switch (scene_part) {
     case 0u:
 #ifdef EARLY_OUTS
         d = min(d, krs_distance_lod_1(p, 0.0));
@@ -176,9 +176,9 @@ float krs_distance_of(uint part, vec3 p)
     return krs_cut(p, d);
 }
 
-void krs_part_box(uint part, inout vec3 low, inout vec3 high)
+void krs_scene_part_box(uint scene_part, inout vec3 low, inout vec3 high)
 {
-    switch (part) {
+    switch (scene_part) {
     case 0u:
         low = vec3((-1.0003474));
         high = vec3(1.0003474);

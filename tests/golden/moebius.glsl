@@ -91,10 +91,10 @@ vec4 krs_tan(vec4 a) { return vec4(krs_tan(a.x), krs_tan(a.y), krs_tan(a.z), krs
 
 #endif
 
-float krs_beyond(vec3 p, vec3 n, float w)
+float krs_mirror_excess(vec3 p, vec3 n, float w)
 { return (p.x * n.x + p.y * n.y) + (p.z * n.z - w); }
 vec3 krs_fold(vec3 p, vec3 n, float w)
-{ return p - max(krs_beyond(p, n, w), 0.0) * (2.0 * n); }
+{ return p - max(krs_mirror_excess(p, n, w), 0.0) * (2.0 * n); }
 
 vec3 krs_frame0;
 vec3 krs_frame1;
@@ -141,7 +141,7 @@ float krs_cut(vec3 p, float d)
     return d;
 }
 
-#if !defined GROUP || GROUP == 1
+#if !defined MARCH_GROUP || MARCH_GROUP == 1
 float krs_distance_1(vec3 p)
 {
     // library:solids.krs:48
@@ -186,7 +186,7 @@ float krs_distance_1(vec3 p)
 }
 #endif
 
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_distance_2(vec3 p)
 {
     // tests/golden/moebius.krs:11
@@ -208,12 +208,12 @@ float krs_distance_2(vec3 p)
 // Never above the distance to the nearest surface; negative inside.
 float krs_distance(vec3 p)
 {
-#ifdef GROUP
+#ifdef MARCH_GROUP
     float d = 1e30;
-#if GROUP == 1
+#if MARCH_GROUP == 1
     d = min(d, krs_distance_1(p));
 #endif
-#if GROUP == 2
+#if MARCH_GROUP == 2
     d = min(d, krs_distance_2(p));
 #endif
 #else
@@ -224,7 +224,7 @@ float krs_distance(vec3 p)
 }
 
 #if defined(ALONG) && ALONG == 3
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_along_2(vec3 p, vec3 direction, float footprint)
 {
     // tests/golden/moebius.krs:11
@@ -257,10 +257,10 @@ float krs_along_2(vec3 p, vec3 direction, float footprint)
 float krs_along(vec3 p, vec3 direction, float footprint)
 {
     float t = 1e30;
-#if !defined GROUP || GROUP == 1
+#if !defined MARCH_GROUP || MARCH_GROUP == 1
     t = min(t, krs_distance_1(p));
 #endif
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
     t = min(t, krs_along_2(p, direction, footprint));
 #endif
     return krs_cut(p, t);
@@ -273,7 +273,7 @@ float krs_along(vec3 p, vec3 direction)
 #endif
 
 #if defined(ALONG) && ALONG == 4
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_along_2(vec3 p, float footprint)
 {
     // tests/golden/moebius.krs:11
@@ -301,17 +301,17 @@ float krs_along_2(vec3 p, float footprint)
 float krs_probe(vec3 p, float footprint)
 {
     float t = 1e30;
-#if !defined GROUP || GROUP == 1
+#if !defined MARCH_GROUP || MARCH_GROUP == 1
     t = min(t, krs_distance_1(p));
 #endif
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
     t = min(t, krs_along_2(p, footprint));
 #endif
     return krs_cut(p, t) / footprint;
 }
 #endif
 
-#ifndef GROUP
+#ifndef MARCH_GROUP
 #ifdef EARLY_OUTS
 float krs_distance_lod_1(vec3 p, float footprint)
 {
@@ -408,12 +408,12 @@ float krs_distance_lod(vec3 p, float footprint)
 #ifdef PACKED
 // Parts of the scene, most of them one component: the distance of one, and a box
 // around it; where there is none the box stays empty.
-const uint KRS_PARTS = 2u;
+const uint KRS_SCENE_PARTS = 2u;
 
-float krs_distance_of(uint part, vec3 p)
+float krs_scene_part_distance(uint scene_part, vec3 p)
 {
     float d = 1e30;
-    switch (part) {
+    switch (scene_part) {
     case 0u:
 #ifdef EARLY_OUTS
         d = min(d, krs_distance_lod_1(p, 0.0));
@@ -432,9 +432,9 @@ float krs_distance_of(uint part, vec3 p)
     return krs_cut(p, d);
 }
 
-void krs_part_box(uint part, inout vec3 low, inout vec3 high)
+void krs_scene_part_box(uint scene_part, inout vec3 low, inout vec3 high)
 {
-    switch (part) {
+    switch (scene_part) {
     case 0u:
         low = vec3((-3.6582658), (-0.93471235), (-0.12380768));
         high = vec3(3.8582659, 4.4991107, 0.12380768);

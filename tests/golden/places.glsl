@@ -31,10 +31,10 @@ struct KrsSurface {
     vec3  normal;
 };
 
-float krs_beyond(vec3 p, vec3 n, float w)
+float krs_mirror_excess(vec3 p, vec3 n, float w)
 { return (p.x * n.x + p.y * n.y) + (p.z * n.z - w); }
 vec3 krs_fold(vec3 p, vec3 n, float w)
-{ return p - max(krs_beyond(p, n, w), 0.0) * (2.0 * n); }
+{ return p - max(krs_mirror_excess(p, n, w), 0.0) * (2.0 * n); }
 
 
 // Everything that stays the same within a frame: call it first.
@@ -57,7 +57,7 @@ float krs_cut(vec3 p, float d)
     return d;
 }
 
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_distance_1(vec3 p)
 {
     // tests/golden/places.krs:2
@@ -87,7 +87,7 @@ float krs_distance_1(vec3 p)
 }
 #endif
 
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_distance_2(vec3 p)
 {
     // tests/golden/places.krs:3
@@ -101,7 +101,7 @@ float krs_distance_2(vec3 p)
 }
 #endif
 
-#if !defined GROUP || GROUP == 2
+#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_distance_3(vec3 p)
 {
     // tests/golden/places.krs:4
@@ -115,7 +115,7 @@ float krs_distance_3(vec3 p)
 }
 #endif
 
-#if !defined GROUP || GROUP == 1
+#if !defined MARCH_GROUP || MARCH_GROUP == 1
 float krs_distance_4(vec3 p)
 {
     // tests/golden/places.krs:5
@@ -161,18 +161,18 @@ float krs_distance_4(vec3 p)
 // Never above the distance to the nearest surface; negative inside.
 float krs_distance(vec3 p)
 {
-#ifdef GROUP
+#ifdef MARCH_GROUP
     float d = 1e30;
-#if GROUP == 2
+#if MARCH_GROUP == 2
     d = min(d, krs_distance_1(p));
 #endif
-#if GROUP == 2
+#if MARCH_GROUP == 2
     d = min(d, krs_distance_2(p));
 #endif
-#if GROUP == 2
+#if MARCH_GROUP == 2
     d = min(d, krs_distance_3(p));
 #endif
-#if GROUP == 1
+#if MARCH_GROUP == 1
     d = min(d, krs_distance_4(p));
 #endif
 #else
@@ -184,7 +184,7 @@ float krs_distance(vec3 p)
     return krs_cut(p, d);
 }
 
-#ifndef GROUP
+#ifndef MARCH_GROUP
 #ifdef EARLY_OUTS
 float krs_distance_lod_1(vec3 p, float footprint)
 {
@@ -230,12 +230,12 @@ float krs_distance_lod(vec3 p, float footprint)
 #ifdef PACKED
 // Parts of the scene, most of them one component: the distance of one, and a box
 // around it; where there is none the box stays empty.
-const uint KRS_PARTS = 4u;
+const uint KRS_SCENE_PARTS = 4u;
 
-float krs_distance_of(uint part, vec3 p)
+float krs_scene_part_distance(uint scene_part, vec3 p)
 {
     float d = 1e30;
-    switch (part) {
+    switch (scene_part) {
     case 0u:
 #ifdef EARLY_OUTS
         d = min(d, krs_distance_lod_1(p, 0.0));
@@ -268,9 +268,9 @@ float krs_distance_of(uint part, vec3 p)
     return krs_cut(p, d);
 }
 
-void krs_part_box(uint part, inout vec3 low, inout vec3 high)
+void krs_scene_part_box(uint scene_part, inout vec3 low, inout vec3 high)
 {
-    switch (part) {
+    switch (scene_part) {
     case 0u:
         low = vec3((-0.7118751), 1.6705394, (-0.31030196));
         high = vec3(0.7118751, 4.3294606, 0.31030196);

@@ -97,10 +97,10 @@ vec2 krs_normalize(vec2 a) { return a * krs_inverse_length(dot(a, a)); }
 vec3 krs_normalize(vec3 a) { return a * krs_inverse_length(dot(a, a)); }
 vec4 krs_normalize(vec4 a) { return a * krs_inverse_length(dot(a, a)); }
 
-float krs_beyond(vec3 p, vec3 n, float w)
+float krs_mirror_excess(vec3 p, vec3 n, float w)
 { return (p.x * n.x + p.y * n.y) + (p.z * n.z - w); }
 vec3 krs_fold(vec3 p, vec3 n, float w)
-{ return p - max(krs_beyond(p, n, w), 0.0) * (2.0 * n); }
+{ return p - max(krs_mirror_excess(p, n, w), 0.0) * (2.0 * n); }
 
 vec3 krs_frame0;
 float krs_frame1;

@@ -225,7 +225,7 @@ static size_t wrong_rays(Stage *stage, const KrsPicture *picture)
 {
     static double places[ASKED][3], directions[ASKED][3];
     const double(*origins)[3] = (const double(*)[3])places;
-    const double(*ways)[3]    = (const double(*)[3])directions;
+    const double(*rays)[3]    = (const double(*)[3])directions;
     static KrsHit host[ASKED], device[ASKED];
     static int    pixels[ASKED];
     Random        random = {(uint64_t)strlen(stage->name) + 3};
@@ -238,17 +238,17 @@ static size_t wrong_rays(Stage *stage, const KrsPicture *picture)
         put(directions[i], ray.direction);
     }
     assert_int_equal(
-        krs_raycast(stage->frame, origins, ways, ASKED, HUGE_VAL, 1e-7 * (1 + size), host), KRS_OK);
+        krs_raycast(stage->frame, origins, rays, ASKED, HUGE_VAL, 1e-7 * (1 + size), host), KRS_OK);
     double nearest = HUGE_VAL;
     for (int i = 0; i < ASKED; i++)
         if (host[i].hit)
             nearest = fmin(nearest, host[i].t);
     double tolerance = nearest < HUGE_VAL ? 0.25 * pixel_at(stage, nearest) : 1e-3;
-    if (krs_device_raycast(stage->rendering, stage->frame, origins, ways, ASKED, HUGE_VAL,
+    if (krs_device_raycast(stage->rendering, stage->frame, origins, rays, ASKED, HUGE_VAL,
                            tolerance, device) != KRS_OK)
         fail_msg("%s", krs_renderer_message(renderer));
     for (int i = 0; i < ASKED; i++) {
-        Line   ray      = {vec_of(origins[i]), vec_of(ways[i])};
+        Line   ray      = {vec_of(origins[i]), vec_of(rays[i])};
         Answer truth    = answer_of(&host[i]);
         Answer picked   = seen_at(stage, picture, pixels[i], ray);
         Answer answered = answer_of(&device[i]);
@@ -366,8 +366,8 @@ static void other_pictures_are_found(void **state)
         picture->instance[k] ^= 1;
     assert_true(wrong_rays(&stage, picture) > 0);
     krs_picture_free(picture);
-    const double aside = 2 * pixel_at(&stage, 5), none = 0;
-    assert_int_equal(krs_frame_set(stage.frame, "aside", &aside, 1), KRS_OK);
+    const double lateral = 2 * pixel_at(&stage, 5), none = 0;
+    assert_int_equal(krs_frame_set(stage.frame, "aside", &lateral, 1), KRS_OK);
     picture = stage_render(&stage, (KrsRenderOptions){0});
     assert_int_equal(krs_frame_set(stage.frame, "aside", &none, 1), KRS_OK);
     assert_true(wrong_rays(&stage, picture) > 0);

@@ -173,16 +173,16 @@ static double nearest_in_range(const Vec *points, size_t count, int axis, Vec p,
     size_t middle     = count / 2;
     Vec    to         = vec_sub(points[middle], p);
     best              = fmin(best, vec_dot(to, to));
-    double     beyond = vec_axis(&p, axis) - vec_axis(&points[middle], axis);
+    double     excess = vec_axis(&p, axis) - vec_axis(&points[middle], axis);
     const Vec *upper  = points + middle + 1;
     size_t     above  = count - middle - 1;
     int        next   = (axis + 1) % 3;
-    if (beyond < 0) {
+    if (excess < 0) {
         best = nearest_in_range(points, middle, next, p, best);
-        return beyond * beyond < best ? nearest_in_range(upper, above, next, p, best) : best;
+        return excess * excess < best ? nearest_in_range(upper, above, next, p, best) : best;
     }
     best = nearest_in_range(upper, above, next, p, best);
-    return beyond * beyond < best ? nearest_in_range(points, middle, next, p, best) : best;
+    return excess * excess < best ? nearest_in_range(points, middle, next, p, best) : best;
 }
 
 double cloud_nearest(Cloud *cloud, Vec point)

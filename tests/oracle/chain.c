@@ -64,23 +64,24 @@ static bool primitive_contains(const Link *link, Vec p)
 }
 
 /* What stands upright for an axis of a bend, and the direction to which it bends. */
-static void bend_frame(Vec axis, Vec *along, Vec *aside)
+static void bend_frame(Vec axis, Vec *along, Vec *lateral)
 {
-    Vec up = fabs(axis.y) > 0.999 ? vec(1, 0, 0) : vec(0, 1, 0);
-    *along = vec_unit(vec_sub(up, vec_scale(vec_dot(up, axis), axis)));
-    *aside = vec_cross(axis, *along);
+    Vec up   = fabs(axis.y) > 0.999 ? vec(1, 0, 0) : vec(0, 1, 0);
+    *along   = vec_unit(vec_sub(up, vec_scale(vec_dot(up, axis), axis)));
+    *lateral = vec_cross(axis, *along);
 }
 
 /* Where a point was before it was bent; `turn` counts turns about the axis of the bend. */
 static Vec unbent(const Link *link, Vec p, int turn)
 {
-    Vec along, aside;
-    bend_frame(link->v, &along, &aside);
+    Vec along, lateral;
+    bend_frame(link->v, &along, &lateral);
     double rate = link->number, side = rate > 0 ? 1 : -1;
-    double y = vec_dot(p, along), z = vec_dot(p, aside);
+    double y = vec_dot(p, along), z = vec_dot(p, lateral);
     double angle  = atan2(side * y, side * (1 / rate - z)) + 2 * PI * turn;
     double radius = hypot(y, 1 / rate - z);
-    Vec flat = vec_add(vec_scale(angle / rate, along), vec_scale(1 / rate - side * radius, aside));
+    Vec    flat   = vec_add(vec_scale(angle / rate, along),
+                            vec_scale(1 / rate - side * radius, lateral));
     return vec_add(vec_scale(vec_dot(p, link->v), link->v), flat);
 }
 
@@ -115,8 +116,8 @@ static Vec undone(const Link *link, Vec p)
     case LINK_TAPER: return untapered(link, p);
     case LINK_ELONGATE: return vec(pulled(p.x, v.x), pulled(p.y, v.y), pulled(p.z, v.z));
     default: {
-        Vec away = vec_sub(p, v); /* INVERT, MOBIUS */
-        return vec_add(v, vec_scale(square(link->number) / vec_dot(away, away), away));
+        Vec offset = vec_sub(p, v); /* INVERT, MOBIUS */
+        return vec_add(v, vec_scale(square(link->number) / vec_dot(offset, offset), offset));
     }
     }
 }

@@ -25,11 +25,11 @@ typedef struct View {
 
 static View view_of(Vec low, Vec high, Random *random)
 {
-    Vec    middle = vec_mix(low, high, 0.5), way = random_unit(random);
+    Vec    middle = vec_mix(low, high, 0.5), direction = random_unit(random);
     double radius = 0.5 * vec_distance(low, high);
     View   view   = {.half = tan(0.35), .farthest = 5 * radius};
-    view.eye      = vec_add(middle, vec_scale(2.9 * radius, way));
-    view.forward  = vec_scale(-1, way);
+    view.eye      = vec_add(middle, vec_scale(2.9 * radius, direction));
+    view.forward  = vec_scale(-1, direction);
     view.right    = vec_unit(vec_cross(view.forward, vec(0, 1, 0)));
     view.up       = vec_cross(view.right, view.forward);
     return view;

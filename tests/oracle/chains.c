@@ -112,9 +112,9 @@ static void check_box(Case *c)
     for (size_t i = 0; i < c->cloud.count; i++) {
         Vec    p = c->cloud.points[i];
         Vec    q = vec_sub(p, vec_mix(low, high, 0.5)), half = vec_scale(0.5, vec_sub(high, low));
-        double beyond = fmax(fabs(q.x) - half.x, fmax(fabs(q.y) - half.y, fabs(q.z) - half.z));
-        if (!(beyond <= ROUNDING * (1 + vec_length(p))))
-            complain(c, p, "outside of the box", beyond, 0);
+        double excess = fmax(fabs(q.x) - half.x, fmax(fabs(q.y) - half.y, fabs(q.z) - half.z));
+        if (!(excess <= ROUNDING * (1 + vec_length(p))))
+            complain(c, p, "outside of the box", excess, 0);
     }
 }
 

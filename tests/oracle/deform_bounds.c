@@ -84,14 +84,14 @@ static double mean_share(const Product *product, const Deformed *chain, Cloud *c
     double sum   = 0;
     int    count = 0;
     for (int i = 0; i < 400; i++) {
-        Vec    p    = random_in_cube(random, half);
-        double away = cloud_nearest(cloud, p), bound = product_distance(product, p);
-        if (fabs(bound) > away + 1e-9)
+        Vec    p        = random_in_cube(random, half);
+        double distance = cloud_nearest(cloud, p), bound = product_distance(product, p);
+        if (fabs(bound) > distance + 1e-9)
             fail_msg("at (%g, %g, %g) %.9g, but a surface point is %.9g away", p.x, p.y, p.z, bound,
-                     away);
-        if (deformed_contains(chain, p) || away < 5 * cloud->spacing)
+                     distance);
+        if (deformed_contains(chain, p) || distance < 5 * cloud->spacing)
             continue;
-        sum += bound / away;
+        sum += bound / distance;
         count++;
     }
     return count ? sum / count : 1;

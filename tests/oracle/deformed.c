@@ -39,11 +39,11 @@ void solid_write(SceneText *text, const Solid *solid)
     scene_write(text, ".move([%.17g, %.17g, %.17g])", c.x, c.y, c.z);
 }
 
-void bend_frame(Vec axis, Vec *along, Vec *aside)
+void bend_frame(Vec axis, Vec *along, Vec *lateral)
 {
-    Vec up = fabs(axis.y) > 0.999 ? vec(1, 0, 0) : vec(0, 1, 0);
-    *along = vec_unit(vec_sub(up, vec_scale(vec_dot(up, axis), axis)));
-    *aside = vec_cross(axis, *along);
+    Vec up   = fabs(axis.y) > 0.999 ? vec(1, 0, 0) : vec(0, 1, 0);
+    *along   = vec_unit(vec_sub(up, vec_scale(vec_dot(up, axis), axis)));
+    *lateral = vec_cross(axis, *along);
 }
 
 double taper_factor(const Deed *deed, double height)
@@ -62,11 +62,11 @@ Vec deed_forward(const Deed *deed, Vec p)
         return vec_add(on_axis, vec_scale(taper_factor(deed, height), vec_sub(p, on_axis)));
     }
     /* Around the axis of the bend, at the distance 1 / rate. */
-    Vec along, aside;
-    bend_frame(deed->axis, &along, &aside);
-    double angle = deed->rate * vec_dot(p, along), radius = 1 / deed->rate - vec_dot(p, aside);
+    Vec along, lateral;
+    bend_frame(deed->axis, &along, &lateral);
+    double angle = deed->rate * vec_dot(p, along), radius = 1 / deed->rate - vec_dot(p, lateral);
     Vec    bent = vec_add(vec_scale(radius * sin(angle), along),
-                          vec_scale(1 / deed->rate - radius * cos(angle), aside));
+                          vec_scale(1 / deed->rate - radius * cos(angle), lateral));
     return vec_add(vec_scale(height, deed->axis), bent);
 }
 
@@ -79,13 +79,14 @@ Vec deed_backward(const Deed *deed, Vec p, int turn)
         Vec on_axis = vec_scale(height, deed->axis);
         return vec_add(on_axis, vec_scale(1 / taper_factor(deed, height), vec_sub(p, on_axis)));
     }
-    Vec along, aside;
-    bend_frame(deed->axis, &along, &aside);
-    double side = deed->rate > 0 ? 1 : -1, y = vec_dot(p, along), z = vec_dot(p, aside);
+    Vec along, lateral;
+    bend_frame(deed->axis, &along, &lateral);
+    double side = deed->rate > 0 ? 1 : -1, y = vec_dot(p, along), z = vec_dot(p, lateral);
     double angle  = side * atan2(side * y, side * (1 / deed->rate - z)) + 2 * PI * turn;
     double radius = hypot(y, 1 / deed->rate - z);
     double before = (angle * side) / fabs(deed->rate) * side;
-    Vec flat = vec_add(vec_scale(before, along), vec_scale(1 / deed->rate - side * radius, aside));
+    Vec    flat   = vec_add(vec_scale(before, along),
+                            vec_scale(1 / deed->rate - side * radius, lateral));
     return vec_add(vec_scale(height, deed->axis), flat);
 }
 

@@ -31,7 +31,7 @@ typedef struct Deed {
 } Deed;
 
 /* What stands upright for an axis of a bend, and the direction to which it bends. */
-void   bend_frame(Vec axis, Vec *along, Vec *aside);
+void   bend_frame(Vec axis, Vec *along, Vec *lateral);
 double taper_factor(const Deed *deed, double height);
 Vec    deed_forward(const Deed *deed, Vec p);
 /* Where a point was before; `turn` counts turns about the axis of a bend. */

@@ -133,12 +133,12 @@ Lens lens_make(Vec eye, Vec target, double half, bool parallel, int width, int h
 
 Line lens_ray(const Lens *lens, double x, double y)
 {
-    double across = (2 * x - lens->width) / lens->height * lens->half;
-    double above  = (1 - 2 * y / lens->height) * lens->half;
-    Vec    aside  = vec_add(vec_scale(across, lens->right), vec_scale(above, lens->up));
+    double across  = (2 * x - lens->width) / lens->height * lens->half;
+    double above   = (1 - 2 * y / lens->height) * lens->half;
+    Vec    lateral = vec_add(vec_scale(across, lens->right), vec_scale(above, lens->up));
     if (lens->parallel)
-        return (Line){vec_add(lens->eye, aside), lens->forward};
-    return (Line){lens->eye, vec_unit(vec_add(lens->forward, aside))};
+        return (Line){vec_add(lens->eye, lateral), lens->forward};
+    return (Line){lens->eye, vec_unit(vec_add(lens->forward, lateral))};
 }
 
 double lens_pixel(const Lens *lens, double depth)
@@ -189,8 +189,8 @@ static void rod_seen(const Rod *rod, const Lens *lens, const Line *rays, double 
     for (int j = pixel_from(fmin(from.y, to.y) - reach, y, lens->height); j < end; j++) {
         if (!row_part(from, to, j + y, reach, &left, &right))
             continue;
-        int beyond = pixel_from(right, x, lens->width);
-        for (int i = pixel_from(left, x, lens->width); i < beyond; i++) {
+        int excess = pixel_from(right, x, lens->width);
+        for (int i = pixel_from(left, x, lens->width); i < excess; i++) {
             int   k     = j * lens->width + i;
             Chord chord = chord_of_rod(rays[k], rod);
             if (!chord_is_empty(chord))

@@ -191,18 +191,18 @@ static bool copy_keeps(const Copy *copy, Vec q, double slack)
 }
 
 /* Whether all of a copy is farther from a point than `distance`. */
-static bool is_beyond(const Copy *copy, Vec point, double distance)
+static bool is_outside(const Copy *copy, Vec point, double distance)
 {
-    Vec    way  = vec_sub(point, copy->middle);
-    double more = copy->reach + distance;
-    return vec_dot(way, way) > more * more;
+    Vec    offset = vec_sub(point, copy->middle);
+    double more   = copy->reach + distance;
+    return vec_dot(offset, offset) > more * more;
 }
 
 bool expansion_contains(const Expansion *expansion, Vec point)
 {
     for (size_t i = 0; i < expansion->count; i++) {
         const Copy *copy = &expansion->copies[i];
-        if (is_beyond(copy, point, 0))
+        if (is_outside(copy, point, 0))
             continue;
         Vec q = isometry_apply(&copy->pull, point);
         if (vec_distance(q, body_project(copy->body, 0, q)) <= 1e-12 && copy_keeps(copy, q, 1e-12))
@@ -265,7 +265,7 @@ double expansion_distance(const Expansion *expansion, Vec point, bool *sure)
     *sure       = true;
     for (size_t i = 0; i < expansion->count; i++) {
         bool survives;
-        if (is_beyond(&expansion->copies[i], point, best))
+        if (is_outside(&expansion->copies[i], point, best))
             continue;
         double distance = copy_distance_uncut(&expansion->copies[i], point, &survives);
         if (survives)
@@ -274,7 +274,7 @@ double expansion_distance(const Expansion *expansion, Vec point, bool *sure)
     for (size_t i = 0; i < expansion->count; i++) {
         const Copy *copy = &expansion->copies[i];
         bool        survives;
-        if (is_beyond(copy, point, best))
+        if (is_outside(copy, point, best))
             continue;
         double distance = copy_distance_uncut(copy, point, &survives);
         if (survives || distance >= best)

@@ -80,21 +80,21 @@ enum { RAYS = 400 };
 
 static double origins[RAYS][3], directions[RAYS][3];
 static Entry  entries[RAYS];
-#define FROM ((const double(*)[3])origins)
-#define WAYS ((const double(*)[3])directions)
+#define FROM       ((const double(*)[3])origins)
+#define DIRECTIONS ((const double(*)[3])directions)
 
 /* From 3 to 100,000 units away, to somewhere near the surface; or past it. */
 static void draw_rays(const struct Form *form, Random *random)
 {
     for (int i = 0; i < RAYS; i++) {
-        double away = 3 * form->radius * pow(10, 4.5 * random_between(random, 0, 1));
-        Vec    from = vec_scale(away, random_unit(random));
-        Vec    to   = random_in_cube(random, i % 4 ? 0.6 * form->radius : 2 * form->radius);
-        Vec    way  = vec_unit(vec_sub(to, from));
-        entries[i]  = surface_entry(form->formula, form->radius, from, way);
+        double distance  = 3 * form->radius * pow(10, 4.5 * random_between(random, 0, 1));
+        Vec    from      = vec_scale(distance, random_unit(random));
+        Vec    to        = random_in_cube(random, i % 4 ? 0.6 * form->radius : 2 * form->radius);
+        Vec    direction = vec_unit(vec_sub(to, from));
+        entries[i]       = surface_entry(form->formula, form->radius, from, direction);
         for (int k = 0; k < 3; k++) {
             origins[i][k]    = (&from.x)[k];
-            directions[i][k] = (&way.x)[k];
+            directions[i][k] = (&direction.x)[k];
         }
     }
 }
@@ -141,12 +141,13 @@ static void rays_end_at_roots(void **state)
     KrsRendering      *rendering;
     static KrsHit      hits[RAYS];
     draw_rays(form, &random);
-    assert_int_equal(krs_raycast(product.frame, FROM, WAYS, RAYS, 1e6, 1e-3, hits), KRS_OK);
+    assert_int_equal(krs_raycast(product.frame, FROM, DIRECTIONS, RAYS, 1e6, 1e-3, hits), KRS_OK);
     assert_int_equal(count_wrong(form, hits, "the host"), 0);
     assert_int_equal(krs_rendering_new_for(renderer, product.scene, KRS_FOR_QUESTIONS, &rendering),
                      KRS_OK);
     assert_int_equal(
-        krs_device_raycast(rendering, product.frame, FROM, WAYS, RAYS, 1e6, 1e-3, hits), KRS_OK);
+        krs_device_raycast(rendering, product.frame, FROM, DIRECTIONS, RAYS, 1e6, 1e-3, hits),
+        KRS_OK);
     assert_int_equal(count_wrong(form, hits, "the device"), 0);
     krs_rendering_free(rendering);
     product_free(&product);

@@ -231,8 +231,8 @@ static void rays_end_at_roots(void **state)
         int     hits    = 0;
         for (int k = 0; k < 150; k++) {
             Vec    origin = vec_scale(4, random_unit(&random)), target = random_in_cube(&random, 1);
-            Vec    way       = vec_sub(target, origin);
-            Vec    direction = vec_scale(1 / vec_distance(target, origin), way);
+            Vec    offset    = vec_sub(target, origin);
+            Vec    direction = vec_scale(1 / vec_distance(target, origin), offset);
             double root      = first_root(solid, origin, direction);
             KrsHit hit       = product_raycast(&product, origin, direction, 8, TOLERANCE);
             if (!isfinite(root))
@@ -257,8 +257,8 @@ static double steepness(Formula *f, Vec p)
     return hypot(hypot(x, y), z) / (2 * h);
 }
 
-/* At the field's zeros, which are found by Newton's method, the distance is 0, and beside them it is
-   more, on the sides of the box as well. */
+/* At the field's zeros, which are found by Newton's method, the distance is 0, and beside them it
+   is more, on the sides of the box as well. */
 static void sheets_are_thin(void **state)
 {
     static const char *const text[] = {
@@ -274,11 +274,11 @@ static void sheets_are_thin(void **state)
         Product product = product_compile(text[i]);
         int     zeros   = 0;
         for (int k = 0; k < 2000; k++) {
-            Vec    p    = random_in_cube(&random, 2), surface;
-            double side = k % 2 ? 2 : p.x;
-            p           = vec(side, p.y, p.z);
-            double away = fabs(formulas[i](p)) / steepness(formulas[i], p);
-            if (away > 0.3)
+            Vec    p        = random_in_cube(&random, 2), surface;
+            double side     = k % 2 ? 2 : p.x;
+            p               = vec(side, p.y, p.z);
+            double distance = fabs(formulas[i](p)) / steepness(formulas[i], p);
+            if (distance > 0.3)
                 assert_true(product_distance(&product, p) > 0);
             if (!nearby_surface(formulas[i], p, &surface) || box_side(surface, 1.99) > 0)
                 continue;

@@ -154,7 +154,7 @@ static void voxels_free(Voxels *v)
 }
 
 /* The length of the shortest way found from p to a point of the other side. */
-static double way_to_other_side(const Fractal *f, const Voxels *v, Random *random, Vec p)
+static double distance_to_other_side(const Fractal *f, const Voxels *v, Random *random, Vec p)
 {
     bool       own   = inside(f, p);
     const Vec *all   = own ? v->empty : v->solid;
@@ -192,19 +192,20 @@ static Measure measure(const Product *product, const Fractal *f, int points)
     for (int i = 0; i < points; i++) {
         Vec p = random_in_cube(&random, 1.3 * f->radius);
         if (i % 3 == 0 && v.solid_count > 0) {
-            Vec    border = v.solid[random_below(&random, (int)v.solid_count)];
-            double away   = random_between(&random, 0, 3 * v.side);
-            p             = vec_add(border, vec_scale(away, random_unit(&random)));
+            Vec    border   = v.solid[random_below(&random, (int)v.solid_count)];
+            double distance = random_between(&random, 0, 3 * v.side);
+            p               = vec_add(border, vec_scale(distance, random_unit(&random)));
         }
-        double way = way_to_other_side(f, &v, &random, p), d = product_distance(product, p);
-        bool   own = inside(f, p);
+        double distance = distance_to_other_side(f, &v, &random, p),
+               d        = product_distance(product, p);
+        bool own        = inside(f, p);
         m.wrong_sides += (d <= 0) != own && fabs(d) > 1e-12;
         m.count++;
         if (own)
-            m.most_inside = fmax(m.most_inside, -d / way);
+            m.most_inside = fmax(m.most_inside, -d / distance);
         else {
-            m.most = fmax(m.most, d / way);
-            m.mean += d / way;
+            m.most = fmax(m.most, d / distance);
+            m.mean += d / distance;
             outside++;
         }
     }

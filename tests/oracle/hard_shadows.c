@@ -226,11 +226,11 @@ static void symmetric_scenes_have_symmetric_pictures(void **state)
         "show plane([0, 1, 0], 0);\n"
         "show box([0.4, 1.6, 3]).move([0, 0.8, 0]);\n"
         "show sphere(0.6).move([1.2, 0.6, 0.3]) | sphere(0.6).move([-1.2, 0.6, 0.3]);\n";
-    for (int way = 0; way < 2; way++) {
+    for (int plain = 0; plain < 2; plain++) {
         KrsPicture *picture = picture_of(
-            text, &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .no_upsampling = way});
+            text, &(KrsRenderOptions){.width = WIDTH, .height = HEIGHT, .no_upsampling = plain});
         double most = asymmetry(picture);
-        print_message("# symmetry: off by %.2g%s\n", most, way ? "" : " with upsampling");
+        print_message("# symmetry: off by %.2g%s\n", most, plain ? "" : " with upsampling");
         assert_true(most < MOST_ASYMMETRY);
         picture->color[4 * (HEIGHT / 2 * WIDTH + 20)] += 800 * MOST_ASYMMETRY; /* a planted fault */
         assert_false(asymmetry(picture) < MOST_ASYMMETRY);

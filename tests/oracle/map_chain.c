@@ -87,10 +87,10 @@ static double solid_distance(const Kernel *k, Vec p)
         Vec o = vec(fmax(d.x, 0), fmax(d.y, 0), fmax(d.z, 0));
         return vec_length(o) + fmin(fmax(d.x, fmax(d.y, d.z)), 0);
     }
-    Vec    way = vec_sub(k->to, k->from), z = vec_sub(p, k->from);
-    double along = vec_dot(way, way) > 0 ? vec_dot(z, way) / vec_dot(way, way) : 0;
+    Vec    offset = vec_sub(k->to, k->from), z = vec_sub(p, k->from);
+    double along = vec_dot(offset, offset) > 0 ? vec_dot(z, offset) / vec_dot(offset, offset) : 0;
     along        = fmax(0, fmin(1, along));
-    return vec_distance(z, vec_scale(along, way)) - k->radius;
+    return vec_distance(z, vec_scale(along, offset)) - k->radius;
 }
 
 double naive_distance(const Chain *chain, Vec p, double scale, Nearest *nearest)
@@ -150,12 +150,12 @@ static Vec random_on_solid(const Kernel *k, Random *random)
         q        = vec(q.x / m * k->sides.x, q.y / m * k->sides.y, q.z / m * k->sides.z);
         return vec_add(k->from, vec_turn(q, k->axis, k->angle));
     }
-    Vec way = vec_sub(k->to, k->from), u = random_unit(random);
-    Vec end = vec_dot(u, way) > 0 ? k->to : k->from;
-    if (random_below(random, 2) || vec_length(way) == 0)
+    Vec offset = vec_sub(k->to, k->from), u = random_unit(random);
+    Vec end = vec_dot(u, offset) > 0 ? k->to : k->from;
+    if (random_below(random, 2) || vec_length(offset) == 0)
         return vec_add(end, vec_scale(k->radius, u));
-    Vec across = vec_unit(vec_cross(way, u));
-    return vec_add(vec_add(k->from, vec_scale(random_between(random, 0, 1), way)),
+    Vec across = vec_unit(vec_cross(offset, u));
+    return vec_add(vec_add(k->from, vec_scale(random_between(random, 0, 1), offset)),
                    vec_scale(k->radius, across));
 }
 
@@ -234,9 +234,9 @@ static Word random_word(const Flavour *flavour, Random *random)
     if (random_below(random, 4) == 0)
         word_add(&word, REFLECT, random_unit(random), random_between(random, -0.2, 0.2));
     if (random_between(random, 0, 1) < flavour->inverting) {
-        double away = random_between(random, flavour->near, flavour->far);
-        word_add(&word, INVERT, vec_scale(away, random_unit(random)),
-                 away * random_between(random, 0.8, 1.2));
+        double distance = random_between(random, flavour->near, flavour->far);
+        word_add(&word, INVERT, vec_scale(distance, random_unit(random)),
+                 distance * random_between(random, 0.8, 1.2));
     }
     if (random_below(random, 3) == 0)
         word_add(&word, SCALE, vec(0, 0, 0), random_between(random, 0.6, 1.4));

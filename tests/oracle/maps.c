@@ -131,10 +131,10 @@ static double word_hardness(const Word *word, Vec p)
     double hardness = 1;
     for (int i = 0; i < word->count; i++) {
         const Elementary *l    = &word->letters[i];
-        double            size = vec_length(p), away = vec_distance(p, l->vector) / l->number;
+        double            size = vec_length(p), distance = vec_distance(p, l->vector) / l->number;
         hardness = fmax(hardness, size);
         if (l->letter == INVERT)
-            hardness = fmax(hardness, fmax(1 / away, away));
+            hardness = fmax(hardness, fmax(1 / distance, distance));
         p = letter_apply(l, p);
     }
     return fmax(hardness, vec_length(p));
@@ -270,9 +270,9 @@ static void products_and_inverses(void **state)
         Word word = random_word(1 + trial % MOST_LETTERS, random_below(&randomness, 5));
         if (trial % 20 == 0) {
             /* Poles that almost meet, a hundredth of a radius apart. */
-            Elementary ball = random_letter(INVERT);
-            Vec        way  = vec_scale(0.01 * ball.number, random_unit(&randomness));
-            word            = (Word){{ball, {TRANSLATE, way, 0}, ball}, 3};
+            Elementary ball      = random_letter(INVERT);
+            Vec        direction = vec_scale(0.01 * ball.number, random_unit(&randomness));
+            word                 = (Word){{ball, {TRANSLATE, direction, 0}, ball}, 3};
         }
         const Map *map  = word_map(&word, 0, word.count);
         const Map *back = map_inverse(&elaboration, map);
@@ -425,11 +425,11 @@ static void parameters(void **state)
         array_push(&arena, &graph->parameters, range);
         Node       t = graph_parameter(graph, 1, TYPE_FLOAT);
         Elementary a = random_letter(INVERT), b = random_letter(INVERT), c = random_letter(ROTATE);
-        bool       meeting = trial % 3 == 0;
-        Vec        way     = random_in_cube(&randomness, 0.5);
+        bool       meeting   = trial % 3 == 0;
+        Vec        direction = random_in_cube(&randomness, 0.5);
         if (meeting)
             b.vector = a.vector; /* at t = 0 */
-        Node       shift  = graph_op2(graph, OP_scale, vec_node(way), t);
+        Node       shift  = graph_op2(graph, OP_scale, vec_node(direction), t);
         Node       centre = graph_op2(graph, OP_add, vec_node(b.vector), shift);
         Node       angle  = graph_op2(graph, OP_mul, graph_number(graph, c.number), t);
         const Map *turn   = map_rotation(e, vec_node(c.vector), angle);
@@ -442,7 +442,7 @@ static void parameters(void **state)
             NodeValue  values[2] = {{{0}}, {{i == 0 ? 0 : between(-1, 1)}}};
             double     at        = values[1].v[0];
             Elementary moved = b, turned = c;
-            moved.vector  = vec_add(b.vector, vec_scale(at, way));
+            moved.vector  = vec_add(b.vector, vec_scale(at, direction));
             turned.number = c.number * at;
             Word   word   = {{a, moved, turned}, 3};
             Vec    p = random_in_cube(&randomness, 3), q = word_apply(&word, p);

@@ -41,8 +41,8 @@ static double excess(const Meta *meta, Vec p)
 {
     double sum = -meta->level;
     for (int i = 0; i < meta->count; i++) {
-        double away = vec_distance(p, meta->blobs[i].centre) - meta->blobs[i].radius;
-        sum += falloff(meta->kind, fmax(away, 0) / meta->reach);
+        double distance = vec_distance(p, meta->blobs[i].centre) - meta->blobs[i].radius;
+        sum += falloff(meta->kind, fmax(distance, 0) / meta->reach);
     }
     return sum;
 }
@@ -67,7 +67,7 @@ static Meta meta_new(Random *random, int kind, char *text, size_t size)
 }
 
 /* The shortest way along `rays` rays to where the sum crosses the level; infinite if none does. */
-static double way_to_surface(const Meta *meta, Random *random, Vec p, int rays)
+static double distance_to_surface(const Meta *meta, Random *random, Vec p, int rays)
 {
     enum { STEPS = 200 };
     double nearest = INFINITY, own = excess(meta, p);
@@ -105,13 +105,14 @@ static void meta_bounds_hold(void **state)
         snprintf(scene, sizeof scene, "show %s;", text);
         Product product = product_compile(scene);
         for (int i = 0; i < 150; i++) {
-            Vec    p = random_in_cube(&random, 2.5);
-            double d = product_distance(&product, p), way = way_to_surface(&meta, &random, p, 40);
+            Vec    p        = random_in_cube(&random, 2.5);
+            double d        = product_distance(&product, p),
+                   distance = distance_to_surface(&meta, &random, p, 40);
             assert_true((d <= 0) == (excess(&meta, p) >= 0) || fabs(d) < 1e-12);
-            assert_true(fabs(d) <= way);
-            most = fmax(most, fabs(d) / way);
-            if (isfinite(way) && d > 0) {
-                sum += d / way;
+            assert_true(fabs(d) <= distance);
+            most = fmax(most, fabs(d) / distance);
+            if (isfinite(distance) && d > 0) {
+                sum += d / distance;
                 near++;
             }
         }
@@ -142,9 +143,9 @@ static bool is_on_a_face(const Product *product, Vec p)
     const double h = 1e-5;
     double       slopes[3], size = 0, most = 0;
     for (int k = 0; k < 3; k++) {
-        Vec way   = vec(k == 0 ? h : 0, k == 1 ? h : 0, k == 2 ? h : 0);
-        slopes[k] = product_distance(product, vec_add(p, way)) -
-                    product_distance(product, vec_sub(p, way));
+        Vec direction = vec(k == 0 ? h : 0, k == 1 ? h : 0, k == 2 ? h : 0);
+        slopes[k]     = product_distance(product, vec_add(p, direction)) -
+                    product_distance(product, vec_sub(p, direction));
         size = hypot(size, slopes[k]);
         most = fmax(most, fabs(slopes[k]));
     }

@@ -124,8 +124,8 @@ static bool undo_mirror(const Case *c, int k, Vec p)
 
 static Vec inverted(Vec p, Vec centre, double radius)
 {
-    Vec away = vec_sub(p, centre);
-    return vec_add(centre, vec_scale(radius * radius / vec_dot(away, away), away));
+    Vec offset = vec_sub(p, centre);
+    return vec_add(centre, vec_scale(radius * radius / vec_dot(offset, offset), offset));
 }
 
 static bool undo_invert(const Case *c, int k, Vec p)
@@ -167,7 +167,7 @@ static bool undo_polar_far(const Case *c, int k, Vec p)
     return false;
 }
 
-static bool undo_polar_aside(const Case *c, int k, Vec p)
+static bool undo_polar_offset(const Case *c, int k, Vec p)
 {
     return around(c, k, p, vec(1, 0, 1), 2);
 }
@@ -231,7 +231,7 @@ const Method methods[METHODS] = {
     {"repeat", "", ".repeat([5, 0, 0])", undo_repeat_for_ever, 0, false, CELLS},
     {"repeat_polar", "", ".repeat_polar(5)", undo_polar, 0, false, ""},
     {"repeat_polar", "", ".move([0, 0, 3]).repeat_polar(6)", undo_polar_far, 0, false, ""},
-    {"repeat_polar", "", ".repeat_polar(2, [1, 0, 1])", undo_polar_aside, 0, false, ""},
+    {"repeat_polar", "", ".repeat_polar(2, [1, 0, 1])", undo_polar_offset, 0, false, ""},
     {"round", "", ".round(0.05)", NULL, 0.05, false, MEASURED},
     {"offset", "", ".offset(0.1)", NULL, 0.1, true, MEASURED},
     {"shell", "", ".shell(0.1)", NULL, 0.05, false, MEASURED},

@@ -195,15 +195,15 @@ static void poles_are_empty(void **state)
             Vec pole = vec(0, 0, 0);
             if (!cloud.count || !world_pole(&chain, i, &pole))
                 continue;
-            Vec    aside = vec_add(pole, vec_scale(1e-7, random_unit(&random)));
-            double truth = cloud_nearest(&cloud, pole);
-            if (!(truth > 1e-2) || map_chain_contains(&chain, aside))
+            Vec    lateral = vec_add(pole, vec_scale(1e-7, random_unit(&random)));
+            double truth   = cloud_nearest(&cloud, pole);
+            if (!(truth > 1e-2) || map_chain_contains(&chain, lateral))
                 continue;
-            for (double away = 1e-3; away > 1e-13; away *= 0.1) {
-                Vec    p = vec_add(pole, vec_scale(away > 1e-12 ? away : 0, random_unit(&random)));
+            for (double gap = 1e-3; gap > 1e-13; gap *= 0.1) {
+                Vec    p = vec_add(pole, vec_scale(gap > 1e-12 ? gap : 0, random_unit(&random)));
                 double distance = product_distance(&product, p);
-                if (!(distance > 0 && distance <= truth + away))
-                    fail_msg("distance %.12g at %g from a pole, %.12g from the set", distance, away,
+                if (!(distance > 0 && distance <= truth + gap))
+                    fail_msg("distance %.12g at %g from a pole, %.12g from the set", distance, gap,
                              truth);
             }
             double part = product_distance(&product, pole) / truth;

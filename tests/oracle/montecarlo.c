@@ -18,8 +18,8 @@ static double first_inside(const Setting *setting, Line line, double t, double e
 {
     double before = t;
     while (t < end) {
-        double away = bound_at(setting, line_at(line, t));
-        if (away <= 0) {
+        double distance = bound_at(setting, line_at(line, t));
+        if (distance <= 0) {
             while (t - before > 1e-9) {
                 double middle = 0.5 * (t + before);
                 if (bound_at(setting, line_at(line, middle)) <= 0)
@@ -30,7 +30,7 @@ static double first_inside(const Setting *setting, Line line, double t, double e
             return t;
         }
         before = t;
-        t += fmax(away, LEAST_STEP);
+        t += fmax(distance, LEAST_STEP);
     }
     return HUGE_VAL;
 }
@@ -77,16 +77,16 @@ static double find_visible(const Setting *setting, Vec point, Vec normal, int ra
     Vec    start  = vec_add(point, vec_scale(ABOVE, normal));
     Vec    apart  = setting->room->lamp ? vec_sub(setting->light, start) : vec_unit(setting->light);
     double radius = setting->room->lamp ? setting->wide : tan(setting->wide / 2);
-    Vec    axis = vec_unit(apart), aside = vec_across(axis), other = vec_cross(axis, aside);
+    Vec    axis = vec_unit(apart), lateral = vec_across(axis), other = vec_cross(axis, lateral);
     double turn = random_between(random, 0, 1), shift = random_between(random, 0, 1);
     int    open = 0;
     for (int i = 0; i < rays; i++) {
-        double away  = radius * sqrt((i + shift) / rays);
-        double angle = 2 * M_PI * (turn + 0.6180339887 * i);
-        Vec    way   = vec_add(apart, vec_add(vec_scale(away * cos(angle), aside),
-                                              vec_scale(away * sin(angle), other)));
-        double end   = setting->room->lamp ? vec_length(way) : FARTHEST;
-        open += first_inside(setting, (Line){start, vec_unit(way)}, 0, end) > end;
+        double distance  = radius * sqrt((i + shift) / rays);
+        double angle     = 2 * M_PI * (turn + 0.6180339887 * i);
+        Vec    direction = vec_add(apart, vec_add(vec_scale(distance * cos(angle), lateral),
+                                                  vec_scale(distance * sin(angle), other)));
+        double end       = setting->room->lamp ? vec_length(direction) : FARTHEST;
+        open += first_inside(setting, (Line){start, vec_unit(direction)}, 0, end) > end;
     }
     return (double)open / rays;
 }
@@ -111,15 +111,15 @@ Seen see(const Setting *setting, Line ray, int rays, Random *random)
 double openness(const Setting *setting, Vec point, Vec normal, double reach, double above, int rays,
                 Random *random)
 {
-    Vec    start = vec_add(point, vec_scale(above, normal));
-    Vec    aside = vec_across(normal), other = vec_cross(normal, aside);
+    Vec    start   = vec_add(point, vec_scale(above, normal));
+    Vec    lateral = vec_across(normal), other = vec_cross(normal, lateral);
     double turn = random_between(random, 0, 1), shift = random_between(random, 0, 1), sum = 0;
     for (int i = 0; i < rays; i++) {
-        double away = sqrt((i + shift) / rays), angle = 2 * M_PI * (turn + 0.6180339887 * i);
-        Vec    way = vec_add(
-               vec_scale(sqrt(fmax(1 - away * away, 0)), normal),
-               vec_add(vec_scale(away * cos(angle), aside), vec_scale(away * sin(angle), other)));
-        double part = fmin(first_inside(setting, (Line){start, way}, 0, reach) / reach, 1);
+        double distance = sqrt((i + shift) / rays), angle = 2 * M_PI * (turn + 0.6180339887 * i);
+        Vec    direction = vec_add(vec_scale(sqrt(fmax(1 - distance * distance, 0)), normal),
+                                   vec_add(vec_scale(distance * cos(angle), lateral),
+                                           vec_scale(distance * sin(angle), other)));
+        double part = fmin(first_inside(setting, (Line){start, direction}, 0, reach) / reach, 1);
         sum += part * part;
     }
     return sum / rays;

@@ -124,7 +124,7 @@ static double steepest(const Solid *solid, Frame frame, double half)
     Random random = {31};
     double most = 0, step = 1e-5 / (1 + fabs(frame.time) + frame.k * frame.k);
     for (int i = 0; i < 4000; i++) {
-        Vec    p = random_in_cube(&random, half), way = vec_scale(step, random_unit(&random));
+        Vec    p = random_in_cube(&random, half), direction = vec_scale(step, random_unit(&random));
         Vec    gradient;
         double at = solid->formula(p, frame);
         if (i % 2) { /* up the gradient */
@@ -132,9 +132,10 @@ static double steepest(const Solid *solid, Frame frame, double half)
                            solid->formula(vec(p.x, p.y + step, p.z), frame) - at,
                            solid->formula(vec(p.x, p.y, p.z + step), frame) - at);
             if (vec_length(gradient) > 0)
-                way = vec_scale(step, vec_unit(gradient));
+                direction = vec_scale(step, vec_unit(gradient));
         }
-        most = fmax(most, fabs(solid->formula(vec_add(p, way), frame) - at) / vec_length(way));
+        most = fmax(most, fabs(solid->formula(vec_add(p, direction), frame) - at) /
+                              vec_length(direction));
     }
     return most;
 }

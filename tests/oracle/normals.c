@@ -79,12 +79,12 @@ static Expected expect(const Chain *chain, Vec point, double width)
     Expected result = {.distance = HUGE_VAL, .margin = HUGE_VAL};
     double   excess[MOST_MIRRORS], stretch = 1, to_world[MOST_MIRRORS];
     for (int level = chain->mirrors; level >= 0; level--) {
-        Vec    away     = vec_sub(point, chain->centre[level]);
-        double distance = stretch * (vec_length(away) - chain->radius);
+        Vec    offset   = vec_sub(point, chain->centre[level]);
+        double distance = stretch * (vec_length(offset) - chain->radius);
         result.margin   = fmin(result.margin, fabs(distance - result.distance));
         if (distance < result.distance) {
             result.distance = distance;
-            result.hard = result.smooth = vec_unit(away);
+            result.hard = result.smooth = vec_unit(offset);
             for (int i = level; i < chain->mirrors; i++) {
                 double share  = fmin(fmax(excess[i] * to_world[i] / width + 0.5, 0), 1);
                 Vec    axis   = chain->mirror[i].normal;
@@ -245,8 +245,8 @@ static Vec twice_reflected(Vec at)
 
 static Vec invert(Vec at)
 {
-    Vec centre = vec(0.5, 3, 0), way = vec_sub(at, centre);
-    return vec_add(centre, vec_scale(4 / vec_dot(way, way), way));
+    Vec centre = vec(0.5, 3, 0), offset = vec_sub(at, centre);
+    return vec_add(centre, vec_scale(4 / vec_dot(offset, offset), offset));
 }
 static Vec twist(Vec at) { return vec_turn(at, vec(0, 1, 0), 0.5 * at.y); }
 

@@ -83,8 +83,8 @@ static bool rises_to_open(const double *row, int count)
     return right;
 }
 
-/* The ground to the right of the wall, but for the first pixel, some of whose rays hit the wall: the
-   means of all rows, which all see the same. */
+/* The ground to the right of the wall, but for the first pixel, some of whose rays hit the wall:
+   the means of all rows, which all see the same. */
 static int ground_of_rows(const KrsPicture *picture, double *mean)
 {
     int  count = 0;
@@ -107,10 +107,10 @@ static int ground_of_rows(const KrsPicture *picture, double *mean)
 static void a_wall_closes_the_ground_at_its_foot(void **state)
 {
     (void)state;
-    static const bool ways[2] = {true, false};
+    static const bool upsampled[2] = {true, false};
     for (int i = 0; i < 2; i++) {
         KrsRenderOptions options = WALL_VIEW;
-        options.no_upsampling    = ways[i];
+        options.no_upsampling    = upsampled[i];
         options.samples          = 16;
         KrsPicture *picture      = picture_of(
                  OPEN_SKY "show box([40, 3, 80]).move([-20, 1.5, 0]).paint(striped);", &options);
@@ -164,15 +164,15 @@ static double part_of_reach(Line line, double reach)
 static double openness_of_room(Vec p, Vec normal, double reach)
 {
     enum { RINGS = 16, SPOKES = 32 };
-    Vec    aside = vec_across(normal), other = vec_cross(normal, aside);
+    Vec    lateral = vec_across(normal), other = vec_cross(normal, lateral);
     double sum = 0;
     for (int i = 0; i < RINGS; i++)
         for (int k = 0; k < SPOKES; k++) {
-            double away = sqrt((i + 0.5) / RINGS), turn = 2 * M_PI * (k + 0.618 * i) / SPOKES;
-            Vec    way = vec_add(
-                   vec_add(vec_scale(away * cos(turn), aside), vec_scale(away * sin(turn), other)),
-                   vec_scale(sqrt(1 - away * away), normal));
-            double part = part_of_reach((Line){p, way}, reach);
+            double distance = sqrt((i + 0.5) / RINGS), turn = 2 * M_PI * (k + 0.618 * i) / SPOKES;
+            Vec    direction = vec_add(vec_add(vec_scale(distance * cos(turn), lateral),
+                                               vec_scale(distance * sin(turn), other)),
+                                       vec_scale(sqrt(1 - distance * distance), normal));
+            double part      = part_of_reach((Line){p, direction}, reach);
             sum += part * part;
         }
     return sum / (RINGS * SPOKES);

@@ -69,9 +69,9 @@ static void thin_twigs_are_hit_as_thick_as_they_are(void **context)
     }
     cast_device(s, 2000, 10, 0.005);
     for (int i = 0; i < 2000; i++) {
-        double way = 2 * sqrt(fmax(1e-6 - points[i][1] * points[i][1], 0));
-        if ((way == 0 && points[i][1] > 0.001 + 1e-5) || way > 0.005 / 16)
-            assert_int_equal(found[i].hit, way > 0);
+        double chord = 2 * sqrt(fmax(1e-6 - points[i][1] * points[i][1], 0));
+        if ((chord == 0 && points[i][1] > 0.001 + 1e-5) || chord > 0.005 / 16)
+            assert_int_equal(found[i].hit, chord > 0);
         hits += found[i].hit;
     }
     assert_in_range(hits, 195, 202);
@@ -84,8 +84,8 @@ static double ball_less_zones(const double point[3], const double (*zones)[4], s
 {
     double distance = length3(point) - 1;
     for (size_t i = 0; i < count; i++) {
-        double away[3] = {point[0] - zones[i][0], point[1] - zones[i][1], point[2] - zones[i][2]};
-        distance       = fmax(distance, zones[i][3] - length3(away));
+        double offset[3] = {point[0] - zones[i][0], point[1] - zones[i][1], point[2] - zones[i][2]};
+        distance         = fmax(distance, zones[i][3] - length3(offset));
     }
     return distance;
 }
@@ -103,7 +103,7 @@ static void zones_come_and_go(void **context)
             random_vector(&chance, 0.8, zones[i]);
             zones[i][3] = uniform(0.1, 0.4);
         }
-        const Kernel before = s.rendering->zoned.sample;
+        const Kernel before = s.rendering->zoned.point_query;
         const size_t room   = s.rendering->zoned.zones;
         assert_int_equal(krs_frame_set_zones(s.frame, (const double(*)[4])zones, count), KRS_OK);
         points_agree(s, 2000, 1.5, 16);
@@ -113,7 +113,7 @@ static void zones_come_and_go(void **context)
         rays_agree(s, 500, 1.5, 0, 16);
         assert_true(s.rendering->zoned.zones >= count);
         if (count <= room)
-            assert_true(s.rendering->zoned.sample.pipeline == before.pipeline);
+            assert_true(s.rendering->zoned.point_query.pipeline == before.pipeline);
     }
     scene_close(s);
 }

@@ -148,24 +148,24 @@ static void wrong_questions_are_refused(void **context)
 static void wrong_answers_are_refused(void **context)
 {
     (void)context;
-    const WayBlock good[4] = {{1, QUERY_HIT, 1, 9},
-                              {9, QUERY_MISS, 77, 2},
-                              {2, QUERY_HIT, 0, 8},
-                              {3, QUERY_MARCHING, 2, 99}};
-    assert_true(ways_are_sound(good, 4, 3));
-    assert_true(ways_are_sound(good, 0, 0));
-    assert_false(ways_are_sound(good, 4, 2)); /* the last ray has no place */
-    assert_false(ways_are_sound(good, 4, 5)); /* more places than rays */
-    const WayBlock faults[] = {{1, QUERY_HIT, 3, 9},
-                               {1, QUERY_HIT, UINT32_MAX, 9},
-                               {1, QUERY_MARCHING, 3, 9},
-                               {1, QUERY_MISS + 1, 0, 9}};
+    const RayHitBlock good[4] = {{1, QUERY_HIT, 1, 9},
+                                 {9, QUERY_MISS, 77, 2},
+                                 {2, QUERY_HIT, 0, 8},
+                                 {3, QUERY_MARCHING, 2, 99}};
+    assert_true(ray_hits_are_valid(good, 4, 3));
+    assert_true(ray_hits_are_valid(good, 0, 0));
+    assert_false(ray_hits_are_valid(good, 4, 2)); /* the last ray has no place */
+    assert_false(ray_hits_are_valid(good, 4, 5)); /* more places than rays */
+    const RayHitBlock faults[] = {{1, QUERY_HIT, 3, 9},
+                                  {1, QUERY_HIT, UINT32_MAX, 9},
+                                  {1, QUERY_MARCHING, 3, 9},
+                                  {1, QUERY_MISS + 1, 0, 9}};
     for (size_t fault = 0; fault < sizeof faults / sizeof *faults; fault++)
         for (int at = 0; at < 4; at++) {
-            WayBlock ways[4];
-            memcpy(ways, good, sizeof ways);
-            ways[at] = faults[fault];
-            assert_false(ways_are_sound(ways, 4, 3));
+            RayHitBlock ray_hits[4];
+            memcpy(ray_hits, good, sizeof ray_hits);
+            ray_hits[at] = faults[fault];
+            assert_false(ray_hits_are_valid(ray_hits, 4, 3));
         }
 }
 

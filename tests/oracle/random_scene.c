@@ -72,9 +72,9 @@ static void write_sequence(SceneText *text, Random *random)
 
 void write_random_scene(SceneText *text, Random *random, Vec at, double size)
 {
-    bool   narrow = random_below(random, 4) == 0;
-    double away   = narrow ? 200 : pow(10, random_between(random, -0.5, 1));
-    Vec    eye    = vec_add(at, vec_scale(size * away, random_unit(random)));
+    bool   narrow   = random_below(random, 4) == 0;
+    double distance = narrow ? 200 : pow(10, random_between(random, -0.5, 1));
+    Vec    eye      = vec_add(at, vec_scale(size * distance, random_unit(random)));
     write_vec(text, "camera { eye: ", eye, ", ");
     write_vec(text, "target: ", at, ", ");
     scene_write(text, "fov: %g }\nlight { direction: [1, 2, 3], shadow: false }\n",

@@ -89,9 +89,10 @@ static double metaballs(Vec p, const double n[])
     const double radii[]   = {0.3, n[0], 0.2};
     double       sum = 0, nearest = HUGE_VAL;
     for (int i = 0; i < 3; i++) {
-        double away = ball_bound(p, centres[i], radii[i]), t = least(most(away, 0) / n[2], 1);
+        double distance = ball_bound(p, centres[i], radii[i]),
+               t        = least(most(distance, 0) / n[2], 1);
         sum += pow(1 - t * t, 3);
-        nearest = least(nearest, away);
+        nearest = least(nearest, distance);
     }
     /* Each falls by 1.718 / reach at most. */
     double melted = (n[1] - sum) * n[2] / (3 * 1.718);
@@ -126,8 +127,8 @@ static double pierced(Vec p, const double n[])
     Vec    q    = lowered(p, 1.1);
     double vase = most(vec_length(q) - 0.9, 0.82 - vec_length(q));
     for (int i = 0; i < 4; i++) {
-        Vec away = turned(q, n[1] + 45 * DEGREE * i);
-        vase     = most(vase, -cylinder_bound(vec(away.y, away.x, away.z), n[0], 4));
+        Vec direction = turned(q, n[1] + 45 * DEGREE * i);
+        vase = most(vase, -cylinder_bound(vec(direction.y, direction.x, direction.z), n[0], 4));
     }
     return least(vase, least(p.y, p.z + 1.5));
 }
@@ -145,8 +146,8 @@ static double inverted(Vec p, const double n[])
 {
     Vec    q      = lowered(p, -0.6);
     double square = vec_dot(q, q), power = 1.44;
-    double away = box_bound(lowered(vec_scale(power / square, q), 1.2), n[0], 0.8, n[1]);
-    return least(away * square / (power + fabs(away) * sqrt(square)), p.y);
+    double distance = box_bound(lowered(vec_scale(power / square, q), 1.2), n[0], 0.8, n[1]);
+    return least(distance * square / (power + fabs(distance) * sqrt(square)), p.y);
 }
 
 static double tree(Vec p, const double n[])

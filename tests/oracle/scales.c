@@ -148,11 +148,11 @@ static double rounded(double x) { return (double)(float)x; }
 static Vec rounded_vec(Vec v) { return vec(rounded(v.x), rounded(v.y), rounded(v.z)); }
 
 /* An eye some way from what it looks at. */
-static void place(Shot *shot, Random *random, double far, double away)
+static void place(Shot *shot, Random *random, double far, double distance)
 {
     Vec heading = random_unit(random);
     shot->at    = rounded_vec(vec_scale(far, random_unit(random)));
-    shot->eye   = vec_add(shot->at, vec_scale(away, heading));
+    shot->eye   = vec_add(shot->at, vec_scale(distance, heading));
 }
 
 static const double OUT[]   = {0, 1, 30, 64, 300, 900, 1100, 5000, 1e5};

@@ -44,9 +44,9 @@ static void scatter_twigs(Stage *stage)
         double turn = random_between(&random, 0, M_PI), length = random_between(&random, 0.5, 1.2);
         Vec    middle    = vec(random_between(&random, -3, 3), random_between(&random, 0.6, 1),
                                random_between(&random, -2, 2));
-        Vec    aside     = vec(0.5 * length * cos(turn), random_between(&random, -0.2, 0.2),
+        Vec    lateral   = vec(0.5 * length * cos(turn), random_between(&random, -0.2, 0.2),
                                0.5 * length * sin(turn));
-        stage->solids[i] = (Solid){TWIG, vec_sub(middle, aside), vec_add(middle, aside), 1};
+        stage->solids[i] = (Solid){TWIG, vec_sub(middle, lateral), vec_add(middle, lateral), 1};
     }
 }
 

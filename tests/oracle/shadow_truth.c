@@ -29,11 +29,11 @@ static Chord chord_of(Line line, const Solid *solid, double size)
     }
 }
 
-bool is_hidden(const Shot *shot, Vec point, Vec way, bool endless)
+bool is_hidden(const Shot *shot, Vec point, Vec direction, bool endless)
 {
     const Stage *stage = &stages[shot->stage];
-    Line         line  = {point, vec_unit(way)};
-    double       end   = endless ? HUGE_VAL : vec_length(way);
+    Line         line  = {point, vec_unit(direction)};
+    double       end   = endless ? HUGE_VAL : vec_length(direction);
     for (int i = 0; i < stage->count; i++) {
         Chord chord = chord_of(line, &stage->solids[i], shot->size);
         if (i + 1 != shot->without && !chord_is_empty(chord) && chord.leave > 0 &&
@@ -46,17 +46,17 @@ bool is_hidden(const Shot *shot, Vec point, Vec way, bool endless)
 double share_by_rays(const Shot *shot, Vec point)
 {
     enum { RINGS = 16, SPOKES = 24 };
-    Disc disc  = disc_from(shot, point);
-    Vec  aside = vec_across(disc.axis), other = vec_cross(disc.axis, aside);
+    Disc disc    = disc_from(shot, point);
+    Vec  lateral = vec_across(disc.axis), other = vec_cross(disc.axis, lateral);
     int  open = 0;
     for (int i = 0; i < RINGS; i++)
         for (int k = 0; k < SPOKES; k++) {
-            double away = disc.radius * sqrt((i + 0.5) / RINGS);
-            double turn = 2 * M_PI * (k + 0.618 * i) / SPOKES;
-            Vec    at   = vec_add(vec_scale(away * cos(turn), aside),
-                                  vec_scale(away * sin(turn), other));
-            Vec    way  = vec_add(vec_scale(disc.remote, disc.axis), at);
-            open += !is_hidden(shot, point, way, disc.endless);
+            double distance  = disc.radius * sqrt((i + 0.5) / RINGS);
+            double turn      = 2 * M_PI * (k + 0.618 * i) / SPOKES;
+            Vec    at        = vec_add(vec_scale(distance * cos(turn), lateral),
+                                       vec_scale(distance * sin(turn), other));
+            Vec    direction = vec_add(vec_scale(disc.remote, disc.axis), at);
+            open += !is_hidden(shot, point, direction, disc.endless);
         }
     return (double)open / (RINGS * SPOKES);
 }

@@ -21,8 +21,8 @@ typedef struct Disc {
 } Disc;
 
 Disc disc_from(const Shot *shot, Vec point);
-/* Whether a solid stands between a point and another that is `way` off. */
-bool is_hidden(const Shot *shot, Vec point, Vec way, bool endless);
+/* Whether a solid stands between a point and another that is `direction` off. */
+bool is_hidden(const Shot *shot, Vec point, Vec direction, bool endless);
 
 typedef double Truth(const Shot *shot, Vec point);
 

@@ -4,9 +4,9 @@
  * Each is looked at from a view of its own.  formulas.h finds, in long double precision, where the
  * ray of every pixel first changes the sign of the formula within the ball, and the picture must
  * show that: no pixel more and none less but where a hair of the ray decides, or a twentieth of a
- * pixel at the rim of the ball; depths to a fiftieth of a pixel, and normals that are the formula's gradient, towards the eye.  Questions to
- * the host and to the device are held against the same roots, and shadows on a floor against roots
- * on the way to the light.
+ * pixel at the rim of the ball; depths to a fiftieth of a pixel, and normals that are the formula's
+ * gradient, towards the eye.  Questions to the host and to the device are held against the same
+ * roots, and shadows on a floor against roots on the way to the light.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -177,12 +177,13 @@ static void judge_questions(const char *name, const Case *c, const Product *prod
             origins[k][i]    = (&rays[k].origin.x)[i];
             directions[k][i] = (&rays[k].direction.x)[i];
         }
-    const double(*from)[3] = (const double(*)[3])origins,
-          (*way)[3]        = (const double(*)[3])directions;
-    assert_int_equal(krs_raycast(product->frame, from, way, PIXELS, 1e3, 0, hits[0]), KRS_OK);
+    const double(*from)[3]    = (const double(*)[3])origins,
+          (*ray_direction)[3] = (const double(*)[3])directions;
+    assert_int_equal(krs_raycast(product->frame, from, ray_direction, PIXELS, 1e3, 0, hits[0]),
+                     KRS_OK);
     assert_int_equal(krs_rendering_new_for(renderer, product->scene, KRS_FOR_QUESTIONS, &rendering),
                      KRS_OK);
-    assert_int_equal(krs_device_raycast(rendering, product->frame, from, way, PIXELS, 1e3,
+    assert_int_equal(krs_device_raycast(rendering, product->frame, from, ray_direction, PIXELS, 1e3,
                                         1e-3 * c->radius, hits[1]),
                      KRS_OK);
     krs_rendering_free(rendering);

@@ -48,7 +48,7 @@ typedef struct Scene {
 
 /* How far a point is from a side, and its normal there. */
 typedef struct Side {
-    double away;
+    double distance;
     Vec    normal;
 } Side;
 
@@ -58,8 +58,8 @@ static int sides_of_box(Vec p, Vec size, Side *sides)
 {
     const double at[3] = {p.x, p.y, p.z}, half[3] = {size.x / 2, size.y / 2, size.z / 2};
     for (int i = 0; i < 6; i++) {
-        double sign     = i % 2 ? 1 : -1;
-        sides[i].away   = sign * at[i / 2] - half[i / 2];
+        double sign       = i % 2 ? 1 : -1;
+        sides[i].distance = sign * at[i / 2] - half[i / 2];
         sides[i].normal = vec(i / 2 == 0 ? sign : 0, i / 2 == 1 ? sign : 0, i / 2 == 2 ? sign : 0);
     }
     return 6;
@@ -68,14 +68,14 @@ static int sides_of_box(Vec p, Vec size, Side *sides)
 /* In the space in which the solid is not turned. */
 static int sides_of(const Solid *solid, Vec p, Side *sides)
 {
-    double radius = solid->size.x, half = solid->size.y / 2, away = hypot(p.x, p.z);
-    Vec    out = vec(p.x / away, 0, p.z / away);
+    double radius = solid->size.x, half = solid->size.y / 2, distance = hypot(p.x, p.z);
+    Vec    out = vec(p.x / distance, 0, p.z / distance);
     switch (solid->kind) {
     case FLOOR: sides[0] = (Side){p.y, vec(0, 1, 0)}; return 1;
     case BOX: return sides_of_box(p, solid->size, sides);
     case BALL: sides[0] = (Side){vec_length(p) - radius, vec_unit(p)}; return 1;
     case DRUM:
-        sides[0] = (Side){away - radius, out};
+        sides[0] = (Side){distance - radius, out};
         sides[1] = (Side){p.y - half, vec(0, 1, 0)};
         sides[2] = (Side){-p.y - half, vec(0, -1, 0)};
         return 3;
@@ -99,11 +99,11 @@ static double find_off(const Scene *scene, Vec point, Vec normal, double near)
         int          count   = sides_of(solid, p, sides);
         double       outside = -HUGE_VAL;
         for (int k = 0; k < count; k++)
-            outside = fmax(outside, sides[k].away);
+            outside = fmax(outside, sides[k].distance);
         for (int k = 0; k < count && outside < near; k++) {
             Vec    facing = vec_turn(sides[k].normal, solid->axis, solid->angle);
             double angle  = atan2(vec_length(vec_cross(facing, normal)), vec_dot(facing, normal));
-            if (sides[k].away > -near)
+            if (sides[k].distance > -near)
                 least = fmin(least, angle * 180 / M_PI);
         }
     }

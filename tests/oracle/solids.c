@@ -159,10 +159,10 @@ static double ball_depth(const Sweep *sweep, const Curve *curve, Vec point, doub
 /* How much the depth can change, at most, while t goes from 0 to 1. */
 static double depth_change(const Sweep *sweep, const Curve *c)
 {
-    double way = c->kind == CURVE_ARC
-                     ? c->angle * vec_length(c->right)
-                     : 2 * fmax(vec_distance(c->from, c->via), vec_distance(c->via, c->to));
-    return way + fabs(sweep->radius - sweep->radius_end);
+    double distance = c->kind == CURVE_ARC
+                          ? c->angle * vec_length(c->right)
+                          : 2 * fmax(vec_distance(c->from, c->via), vec_distance(c->via, c->to));
+    return distance + fabs(sweep->radius - sweep->radius_end);
 }
 
 /* The least depth between two parameters that hold one minimum. */

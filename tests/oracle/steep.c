@@ -45,8 +45,8 @@ static double slope(Vec p) { return exp(4 * (p.x + p.y + p.z)) - 1; }
 static double weighted(Vec p) { return (vec_length(p) - 1) * exp(5 * p.x); }
 static double ring(Vec p)
 {
-    double away = hypot(p.x, p.z) - 1;
-    return (hypot(away, p.y) - 0.4) * (1 + 10000 * pow(p.x, 8));
+    double distance = hypot(p.x, p.z) - 1;
+    return (hypot(distance, p.y) - 0.4) * (1 + 10000 * pow(p.x, 8));
 }
 static double waves(Vec p) { return sinh(5 * (p.y - 0.3 * sin(2 * p.x))) - 1; }
 

@@ -93,7 +93,7 @@ typedef void Closed(const double p[3], double n[3]);
 
 static void normal_of_torus(const double p[3], double n[3])
 {
-    double away = hypot(p[0], p[2]), side = (away - 1) / away;
+    double distance = hypot(p[0], p[2]), side = (distance - 1) / distance;
     n[0] = p[0] * side;
     n[1] = p[1];
     n[2] = p[2] * side;
@@ -280,13 +280,14 @@ static void stencils_keep_their_order(void **state)
             for (int k = 0; k < 3; k++)
                 p[k] = picture->position[3 * i + k];
             normal_of_torus(p, n);
-            double away  = sqrt(pow(p[0] - 1, 2) + pow(p[1] - 3, 2) + pow(p[2] - 3, 2));
-            double reach = fmax(0.5 * away * 2 * tan(0.5 * 40 * acos(-1) / 180) / HEIGHT, 3e-4 * 2);
-            double error = angle(&picture->normal[3 * i], n);
-            double bound = reach * curvature;
-            bound        = (first ? bound : bound * bound) + 1e-3;
-            worst        = fmax(worst, error / bound);
-            most         = fmax(most, error);
+            double distance = sqrt(pow(p[0] - 1, 2) + pow(p[1] - 3, 2) + pow(p[2] - 3, 2));
+            double reach    = fmax(0.5 * distance * 2 * tan(0.5 * 40 * acos(-1) / 180) / HEIGHT,
+                                   3e-4 * 2);
+            double error    = angle(&picture->normal[3 * i], n);
+            double bound    = reach * curvature;
+            bound           = (first ? bound : bound * bound) + 1e-3;
+            worst           = fmax(worst, error / bound);
+            most            = fmax(most, error);
             seen++;
         }
         krs_picture_free(picture);

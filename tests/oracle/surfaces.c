@@ -301,14 +301,16 @@ static void distances_reach_nodes(const Surface *surface, const Nodes *nodes)
     Product product = surface_compile(surface, 2 * farthest + 1, false);
     Random  random  = {41};
     for (int i = 0; i < nodes->count; i++) {
-        Vec    node = nodes->points[i], away = random_unit(&random);
+        Vec    node = nodes->points[i], direction = random_unit(&random);
         double size = 1 + vec_length(node);
         double zero = fabs(product_distance(&product, node));
         if (zero > 1e-6 * size)
             fail_msg("%s: at a node the distance is %g", surface->name, zero);
         double far = 1e-3 * size, near = 1e-4 * size;
-        double more = fabs(product_distance(&product, vec_add(node, vec_scale(far, away)))) / far;
-        double less = fabs(product_distance(&product, vec_add(node, vec_scale(near, away)))) / near;
+        double more = fabs(product_distance(&product, vec_add(node, vec_scale(far, direction)))) /
+                      far;
+        double less = fabs(product_distance(&product, vec_add(node, vec_scale(near, direction)))) /
+                      near;
         if (more > 1 + 1e-6 || less > 1 + 1e-6)
             fail_msg("%s: %g and %g of the way to a node", surface->name, more, less);
         sum += less;
@@ -425,11 +427,11 @@ static void is_well_in_view(void **state)
     up           = vec_cross(right, forward);
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
         int    column = i % WIDTH, row = i / WIDTH;
-        double u    = half * WIDTH / HEIGHT * (2 * (column + 0.5) / WIDTH - 1);
-        double v    = half * (2 * (row + 0.5) / HEIGHT - 1);
-        Vec    way  = vec_add(forward, vec_add(vec_scale(u, right), vec_scale(v, up)));
-        bool   hit  = product_raycast(&product, eye, way, 1e3, 0.01).hit;
-        bool   edge = row == 0 || row == HEIGHT - 1 || column == 0 || column == WIDTH - 1;
+        double u         = half * WIDTH / HEIGHT * (2 * (column + 0.5) / WIDTH - 1);
+        double v         = half * (2 * (row + 0.5) / HEIGHT - 1);
+        Vec    direction = vec_add(forward, vec_add(vec_scale(u, right), vec_scale(v, up)));
+        bool   hit       = product_raycast(&product, eye, direction, 1e3, 0.01).hit;
+        bool   edge      = row == 0 || row == HEIGHT - 1 || column == 0 || column == WIDTH - 1;
         hits += hit;
         on_edge += hit && edge;
     }

@@ -110,8 +110,8 @@ static Vec arc_point(Vec a, Vec b, Vec c, double t)
 {
     Vec    centre = circle_centre(a, b, c);
     Vec    from = vec_sub(a, centre), axis = vec_unit(vec_cross(vec_sub(b, a), vec_sub(c, b)));
-    Vec    aside = vec_cross(axis, from), to = vec_sub(c, centre);
-    double angle = atan2(vec_dot(to, aside), vec_dot(to, from));
+    Vec    lateral = vec_cross(axis, from), to = vec_sub(c, centre);
+    double angle = atan2(vec_dot(to, lateral), vec_dot(to, from));
     if (angle < 0)
         angle += 2 * acos(-1);
     return vec_add(centre, vec_turn(from, axis, t * angle));
@@ -132,11 +132,11 @@ static bool image_of(Vec *point, int i, unsigned choice)
 {
     for (; i >= 1; i--) {
         Half   half   = mirror_at(i);
-        double beyond = half_excess(half, *point);
-        if (beyond > 1e-12)
+        double excess = half_excess(half, *point);
+        if (excess > 1e-12)
             return false;
         if (choice >> (i - 1) & 1)
-            *point = vec_sub(*point, vec_scale(2 * beyond, half.normal));
+            *point = vec_sub(*point, vec_scale(2 * excess, half.normal));
     }
     return true;
 }

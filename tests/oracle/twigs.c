@@ -131,12 +131,12 @@ static void make_heap(Scene *scene)
     write_view(scene, "");
     scene_write(&scene->text, "show union([\n");
     for (size_t i = 0; i < TWIGS; i++) {
-        double across = random_between(&random, 0, 16);
-        Line   ray    = lens_ray(&lens, across, random_between(&random, 0, 9));
-        double way = random_between(&random, 7, 13), share = way / vec_length(scene->eye);
-        Vec    middle = line_at(ray, way), aside = vec_scale(0.5 * share, random_unit(&random));
-        Rod   *rod  = &scene->rods[i];
-        *rod        = (Rod){.from = vec_sub(middle, aside), .to = vec_add(middle, aside)};
+        double across   = random_between(&random, 0, 16);
+        Line   ray      = lens_ray(&lens, across, random_between(&random, 0, 9));
+        double distance = random_between(&random, 7, 13), share = distance / vec_length(scene->eye);
+        Vec middle = line_at(ray, distance), lateral = vec_scale(0.5 * share, random_unit(&random));
+        Rod *rod    = &scene->rods[i];
+        *rod        = (Rod){.from = vec_sub(middle, lateral), .to = vec_add(middle, lateral)};
         rod->radius = vec_dot(vec_sub(middle, lens.eye), lens.forward) / vec_length(scene->eye);
         write_capsule(&scene->text, rod->from, rod->to, rod->radius);
         scene_write(&scene->text, i + 1 < TWIGS ? ",\n" : "]);\n");
@@ -157,8 +157,8 @@ static void make_tree(Scene *scene)
         sequence.bodies[i] = (Body){
             .from = fork, .to = end, .radius = pow(0.75, i - LEVELS + 1), .level = LEVELS - 1 - i};
         if (i > 0) {
-            Vec aside  = vec_sub(vec_scale(vec_dot(heading, before), before), heading);
-            Vec normal = vec_unit(aside);
+            Vec lateral = vec_sub(vec_scale(vec_dot(heading, before), before), heading);
+            Vec normal  = vec_unit(lateral);
             sequence.mirrors[LEVELS - 1 - i] = (Half){normal, vec_dot(normal, fork)};
         }
         fork   = end;

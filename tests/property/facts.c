@@ -60,9 +60,9 @@ static bool is_at_a_jump(const Graph *graph, const Expr *e, const NodeValue *val
         types[i] = graph->items[e->operands[i]].type;
         above[i] = below[i] = values[e->operands[i]];
         for (uint32_t k = 0; types[i] <= TYPE_VEC4 && k < components(types[i]); k++) {
-            double away = AWAY * fmax(1, fabs(above[i].v[k])) * (i ? -1 : 1);
-            above[i].v[k] += away;
-            below[i].v[k] -= away;
+            double distance = AWAY * fmax(1, fabs(above[i].v[k])) * (i ? -1 : 1);
+            above[i].v[k] += distance;
+            below[i].v[k] -= distance;
         }
     }
     NodeValue high = op_evaluate(e->op, e->type, e->index, types, above);

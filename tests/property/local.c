@@ -102,13 +102,14 @@ static void random_point(Bench *b, double size, double point[3])
 /* A random way from a point; its length is at most `radius`. */
 static double go(Bench *b, const double from[3], double radius, double to[3])
 {
-    double way[3], length, r = radius * sqrt(uniform(b));
+    double direction[3], length, r = radius * sqrt(uniform(b));
     do {
-        random_point(b, 1, way);
-        length = sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+        random_point(b, 1, direction);
+        length = sqrt(direction[0] * direction[0] + direction[1] * direction[1] +
+                      direction[2] * direction[2]);
     } while (!(length <= 1 && length > 0.01));
     for (int k = 0; k < 3; k++)
-        to[k] = from[k] + r * way[k] / length;
+        to[k] = from[k] + r * direction[k] / length;
     return r;
 }
 

@@ -406,13 +406,13 @@ static void has_no_pattern(void **context)
 {
     enum { SAMPLES = 100000 };
     int size = *(const int *)*context;
-    for (int way = 0; way < 4 * size; way++) {
+    for (int direction = 0; direction < 4 * size; direction++) {
         double product = 0, sizes = 0, squares = 0, fourth = 0;
         for (int k = 0; k < SAMPLES; k++) {
             double p[3], beside[3], a, b;
             for (int i = 0; i < 3; i++)
                 p[i] = beside[i] = floor(uniform(-1000, 1000)) + 0.4;
-            beside[way / 4] += 2 + way % 4;
+            beside[direction / 4] += 2 + direction % 4;
             a = noise(size, p);
             b = noise(size, beside);
             product += a * b;

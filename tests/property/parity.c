@@ -102,9 +102,9 @@ static void what_libraries_write_is_seen(void **context)
     Node box     = graph_op1(g, OP_length, outside);
     assert_true(graph_is_even(g, box, 1, &arena));
 
-    Node aside = graph_vec3(g, 1, 0, 0);
-    Node moved = graph_op2(g, OP_sub, point, aside);
-    Node other = graph_op1(g, OP_length, moved);
+    Node lateral = graph_vec3(g, 1, 0, 0);
+    Node moved   = graph_op2(g, OP_sub, point, lateral);
+    Node other   = graph_op1(g, OP_length, moved);
     assert_false(graph_is_even(g, other, 0, &arena));
     assert_true(graph_is_even(g, other, 2, &arena));
 

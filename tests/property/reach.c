@@ -52,17 +52,17 @@ static double copy_bound(const ReachStage *stage, const double u[3], Fault fault
 }
 
 /* Instance by instance, depth first; skips what cannot reach farther. */
-static void copy_search(Copy *copy, uint32_t count, const double u[3], double beyond)
+static void copy_search(Copy *copy, uint32_t count, const double u[3], double excess)
 {
     Fault fault = copy->fault;
     if (count == 0 || (copy->opened++ > 20 && fault == ENDED_TOO_EARLY))
         return;
     const ReachStage *stage = &copy->stages[count - 1];
-    if (copy_bound(stage, u, fault) + beyond <= copy->reached)
+    if (copy_bound(stage, u, fault) + excess <= copy->reached)
         return;
     double v[3] = {u[0], u[1], u[2]}, sign = fault == MIRRORED_WITH_WRONG_SIGN ? -1 : 1;
     if (stage->kind == REACH_KERNEL) {
-        double reach = beyond;
+        double reach = excess;
         for (int i = 0; i < 3; i++)
             reach += fmax(u[i] * stage->kernel.axis[i].low, u[i] * stage->kernel.axis[i].high);
         if (!is_empty(stage->kernel))
@@ -74,15 +74,15 @@ static void copy_search(Copy *copy, uint32_t count, const double u[3], double be
         for (int i = 0; i < 3; i++)
             v[i] -= sign * 2 * along * stage->normal[i];
         sign = fault == MOVED_WITH_WRONG_SIGN ? -1 : 1;
-        copy_search(copy, count - 1, v, beyond + sign * 2 * along * stage->offset);
+        copy_search(copy, count - 1, v, excess + sign * 2 * along * stage->offset);
     } else if (stage->kind == REACH_MAP) {
         for (int i = 0; i < 3; i++) {
             double column[3] = {stage->rows[0][i], stage->rows[1][i], stage->rows[2][i]};
             v[i]             = dot(u, fault == MAP_NOT_TRANSPOSED ? stage->rows[i] : column);
         }
-        beyond += fault == MAP_NOT_SHIFTED ? 0 : dot(u, stage->shift);
+        excess += fault == MAP_NOT_SHIFTED ? 0 : dot(u, stage->shift);
     }
-    copy_search(copy, count - 1, stage->kind == REACH_MAP ? v : u, beyond);
+    copy_search(copy, count - 1, stage->kind == REACH_MAP ? v : u, excess);
 }
 
 static void copy_tighten(ReachStage *stages, uint32_t count, Fault fault)

@@ -78,8 +78,8 @@ bool in_box(Box box, const double p[3])
 
 bool in_ball(Ball ball, const double p[3])
 {
-    double way[3] = {p[0] - ball.centre[0], p[1] - ball.centre[1], p[2] - ball.centre[2]};
-    return sqrt(dot(way, way)) <= ball.radius;
+    double offset[3] = {p[0] - ball.centre[0], p[1] - ball.centre[1], p[2] - ball.centre[2]};
+    return sqrt(dot(offset, offset)) <= ball.radius;
 }
 
 double excess(const ReachStage *mirror, const double p[3])
@@ -280,14 +280,14 @@ static Ball loose_ball(const ReachStage *stage, Ball before)
     Ball ball = before;
     if (stage->kind == REACH_KERNEL && !is_empty(stage->kernel)) {
         Ball   kernel = {.radius = 0.5 * diagonal(stage->kernel)};
-        double way[3];
+        double offset[3];
         for (int i = 0; i < 3; i++) {
             kernel.centre[i] = middle(stage->kernel.axis[i]);
-            way[i]           = kernel.centre[i] - ball.centre[i];
+            offset[i]        = kernel.centre[i] - ball.centre[i];
         }
         if (ball.radius < 0)
             return kernel;
-        ball.radius = fmax(ball.radius, sqrt(dot(way, way)) + kernel.radius);
+        ball.radius = fmax(ball.radius, sqrt(dot(offset, offset)) + kernel.radius);
     } else if (stage->kind == REACH_REFLECT && ball.radius >= 0) {
         double ahead = excess(stage, ball.centre);
         ball.radius += fabs(ahead);

@@ -136,11 +136,11 @@ static void trees_shrink_to_their_crowns(void **state)
    solid may be met outside of the box. */
 static bool walk(KrsFrame *frame, Box box, const double from[3], const double to[3], double p[3])
 {
-    double way[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]}, distance, t = 0;
-    double length = sqrt(dot(way, way));
+    double offset[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]}, distance, t = 0;
+    double length = sqrt(dot(offset, offset));
     while (t < 2 * length) {
         for (int i = 0; i < 3; i++)
-            p[i] = from[i] + way[i] * t / length;
+            p[i] = from[i] + offset[i] * t / length;
         krs_distance(frame, (const double(*)[3])p, 1, &distance);
         assert_true(distance > 0 || in_box(box, p));
         if (distance <= 0)

@@ -94,17 +94,17 @@ static void line_series_are_the_polynomial(void **state)
     for (int i = 0; i < 150; i++) {
         Series      ball, line;
         SeriesFault fault;
-        double      way[3], start[3], point[3];
+        double      ray_direction[3], start[3], point[3];
         Node        root = some_polynomial(b, &ball);
-        random_point(b, 1, way);
-        Node direction = graph_vec3(b->graph, way[0], way[1], way[2]);
+        random_point(b, 1, ray_direction);
+        Node direction = graph_vec3(b->graph, ray_direction[0], ray_direction[1], ray_direction[2]);
         assert_true(
             graph_line_series(b->graph, root, b->point, direction, &line, &fault, &b->arena));
         for (int k = 0; k < 5; k++) {
             double t = 4 * uniform(b) - 2;
             random_point(b, 1, start);
             for (int a = 0; a < 3; a++)
-                point[a] = start[a] + t * way[a];
+                point[a] = start[a] + t * ray_direction[a];
             double exact = evaluate(b, root, point), sum = series_at(b, &line, start, t);
             assert_true(fabs(sum - exact) <= 1e-6 * (1 + fabs(exact)));
         }
@@ -118,12 +118,13 @@ static void ball_series_bound_the_change(void **state)
         Series ball;
         Node   root = some_polynomial(b, &ball);
         for (int k = 0; k < 12; k++) {
-            double centre[3], way[3], point[3], r = exp(4 * uniform(b) - 3);
+            double centre[3], direction[3], point[3], r = exp(4 * uniform(b) - 3);
             random_point(b, 1.5, centre);
-            random_point(b, 1, way);
-            double length = sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+            random_point(b, 1, direction);
+            double length = sqrt(direction[0] * direction[0] + direction[1] * direction[1] +
+                                 direction[2] * direction[2]);
             for (int a = 0; a < 3; a++)
-                point[a] = centre[a] + r * way[a] / length;
+                point[a] = centre[a] + r * direction[a] / length;
             double value = evaluate(b, root, centre);
             assert_true(fabs(evaluate(b, ball.c[0], centre) - value) <= 1e-9 * (1 + fabs(value)));
             double most   = series_at(b, &ball, centre, r) - value;

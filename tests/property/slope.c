@@ -71,8 +71,8 @@ static void distances_have_slope_one(void **state)
     assert_true(slope_over(b, sphere, around, 64) == 1);
 
     Node size = graph_op1(g, OP_abs, b->point), half = graph_vec3(g, 1, 2, 3);
-    Node beyond = graph_op2(g, OP_sub, size, half), zero = graph_number(g, 0);
-    Node outside  = graph_op2(g, OP_max, beyond, zero);
+    Node excess = graph_op2(g, OP_sub, size, half), zero = graph_number(g, 0);
+    Node outside  = graph_op2(g, OP_max, excess, zero);
     Node distance = graph_op1(g, OP_length, outside);
     assert_true(slope_over(b, distance, everywhere, 1) <= 1.0000001);
 }

@@ -253,13 +253,13 @@ static void graphics_cards_do_not_rehearse(void **state)
     KrsScene          *scene;
     assert_int_equal(krs_compile_text(text, strlen(text), "scene.krs", NULL, &scene), KRS_OK);
     assert_int_equal(krs_renderer_new(&options, &renderer), KRS_OK);
-    Gpu          *gpu        = &renderer->gpu;
-    VkCommandPool rehearsals = gpu->rehearsals;
+    Gpu          *gpu          = &renderer->gpu;
+    VkCommandPool warm_up_pool = gpu->warm_up_pool;
     assert_true(gpu_wait(gpu));
     gpu->properties.deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
-    gpu->rehearsals            = VK_NULL_HANDLE;
+    gpu->warm_up_pool          = VK_NULL_HANDLE;
     assert_int_equal(krs_rendering_new(renderer, scene, &rendering), KRS_OK);
-    gpu->rehearsals = rehearsals;
+    gpu->warm_up_pool = warm_up_pool;
     krs_rendering_free(rendering);
     krs_renderer_free(renderer);
     krs_scene_free(scene);

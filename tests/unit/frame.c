@@ -196,10 +196,10 @@ static double angle_to(const KrsCamera *camera, double x, double y, double z)
 {
     double to[3] = {x, y, z}, along = 0, a = 0, b = 0;
     for (int k = 0; k < 3; k++) {
-        double axis = camera->target[k] - camera->eye[k], way = to[k] - camera->eye[k];
-        along += axis * way;
+        double axis = camera->target[k] - camera->eye[k], distance = to[k] - camera->eye[k];
+        along += axis * distance;
         a += axis * axis;
-        b += way * way;
+        b += distance * distance;
     }
     return acos(along / sqrt(a * b));
 }

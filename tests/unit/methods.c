@@ -143,13 +143,13 @@ static void rays_that_run_out_show_nothing(void **state)
     (void)state;
     size_t wrong = 0;
     for (const Scene *scene = traced_scenes; scene < traced_scenes + SCENES; scene++)
-        for (unsigned way = 0; way < 2 * KRS_TRACE_COUNT; way++) {
-            if (is_spared(scene, way / 2))
+        for (unsigned variant = 0; variant < 2 * KRS_TRACE_COUNT; variant++) {
+            if (is_spared(scene, variant / 2))
                 continue;
             KrsRenderOptions options = {.width    = SMALL_WIDTH,
                                         .height   = SMALL_HEIGHT,
-                                        .trace    = way / 2,
-                                        .no_beams = way % 2,
+                                        .trace    = variant / 2,
+                                        .no_beams = variant % 2,
                                         .schedule = KRS_SCHEDULE_PIXEL};
             KrsPicture      *full    = render_scene(scene, options);
             options.most_steps       = FEW_STEPS;

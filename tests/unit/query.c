@@ -132,13 +132,13 @@ static void thin_things_keep_their_width(void **context)
     size_t hits = 0;
     for (int i = 0; i < 1000; i++) {
         double origin[3] = {uniform(-4, 4), 0.01 * (i + 0.5) / 1000, 3}, down[3] = {0, 0, -1};
-        KrsHit hit = cast(wire.frame, origin, down, 10, 0.005);
-        double way = 2 * sqrt(fmax(1e-6 - origin[1] * origin[1], 0));
-        if (way == 0 || way > 0.005 / 16)
-            assert_int_equal(hit.hit, way > 0);
+        KrsHit hit   = cast(wire.frame, origin, down, 10, 0.005);
+        double chord = 2 * sqrt(fmax(1e-6 - origin[1] * origin[1], 0));
+        if (chord == 0 || chord > 0.005 / 16)
+            assert_int_equal(hit.hit, chord > 0);
         hits += hit.hit;
         if (hit.hit)
-            assert_true(fabs(hit.t - 3 + way / 2) < 0.005);
+            assert_true(fabs(hit.t - 3 + chord / 2) < 0.005);
     }
     assert_in_range(hits, 98, 100);
     scene_close(wire);

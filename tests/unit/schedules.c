@@ -20,19 +20,19 @@ static void schedules_are_not_seen(void **state)
     (void)state;
     size_t wrong = 0;
     for (const Scene *scene = traced_scenes; scene < traced_scenes + SCENES; scene++)
-        for (unsigned way = 0; way < 2 * KRS_TRACE_COUNT; way++) {
-            if (is_spared(scene, way / 2))
+        for (unsigned variant = 0; variant < 2 * KRS_TRACE_COUNT; variant++) {
+            if (is_spared(scene, variant / 2))
                 continue;
             /* Automatic relaxation with several rays a pixel, too. */
             KrsRenderOptions options = {.width    = SMALL_WIDTH,
                                         .height   = SMALL_HEIGHT,
-                                        .trace    = way / 2,
-                                        .no_beams = way % 2,
-                                        .samples  = way / 2 == KRS_TRACE_AUTO ? 4 : 1,
+                                        .trace    = variant / 2,
+                                        .no_beams = variant % 2,
+                                        .samples  = variant / 2 == KRS_TRACE_AUTO ? 4 : 1,
                                         .schedule = KRS_SCHEDULE_PIXEL};
             KrsPicture      *whole   = render_scene(scene, options);
             /* The default is one of the others, and one that is repeated is the same: once each. */
-            KrsSchedule first = way == 0 ? KRS_SCHEDULE_DEFAULT : KRS_SCHEDULE_REFILL;
+            KrsSchedule first = variant == 0 ? KRS_SCHEDULE_DEFAULT : KRS_SCHEDULE_REFILL;
             for (KrsSchedule i = first; i < KRS_SCHEDULE_COUNT; i++) {
                 options.schedule = i;
                 wrong += !is_part_of(scene, whole, render_scene(scene, options), words(&options));

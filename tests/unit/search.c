@@ -22,16 +22,16 @@ static const Box around_ball = {{{-1, 1}, {-1, 1}, {-1, 1}}};
 static Node ball(Bench *b)
 {
     Node point = graph_leaf(b->graph, OP_POINT), one = graph_number(b->graph, 1);
-    Node away = graph_op1(b->graph, OP_length, point);
-    return graph_op2(b->graph, OP_sub, away, one);
+    Node distance = graph_op1(b->graph, OP_length, point);
+    return graph_op2(b->graph, OP_sub, distance, one);
 }
 
 /* The distance from a place near the ball's surface. */
 static Node from_spot(Bench *b)
 {
     Node point = graph_leaf(b->graph, OP_POINT), spot = graph_vec3(b->graph, 0.36, 0.48, 0.82);
-    Node away = graph_op2(b->graph, OP_sub, point, spot);
-    return graph_op1(b->graph, OP_length, away);
+    Node offset = graph_op2(b->graph, OP_sub, point, spot);
+    return graph_op1(b->graph, OP_length, offset);
 }
 
 static Search search(Bench *b, Node distance, Box box, bool steep, uint64_t operations)

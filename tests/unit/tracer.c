@@ -63,13 +63,13 @@ static TestRay pixel_ray(const KrsCamera *camera, unsigned i, unsigned j)
     cross3(right, ray.forward, up);
 
     double half = camera->projection == KRS_PERSPECTIVE ? tan(camera->fov / 2) : camera->height / 2;
-    double aside = x * half * WIDTH / HEIGHT, above = y * half;
+    double lateral = x * half * WIDTH / HEIGHT, above = y * half;
     for (int k = 0; k < 3; k++) {
         ray.origin[k] = camera->eye[k];
         if (camera->projection == KRS_PERSPECTIVE) {
-            ray.direction[k] = ray.forward[k] + aside * right[k] + above * up[k];
+            ray.direction[k] = ray.forward[k] + lateral * right[k] + above * up[k];
         } else if (camera->projection == KRS_ORTHOGRAPHIC) {
-            ray.origin[k] += aside * right[k] + above * up[k];
+            ray.origin[k] += lateral * right[k] + above * up[k];
             ray.direction[k] = ray.forward[k];
         } else {
             double level     = cos(x * PI) * ray.forward[k] + sin(x * PI) * right[k];
@@ -112,23 +112,23 @@ static void check_pixel(const KrsPicture *picture, size_t index, const TestRay *
         return;
     }
 
-    double outwards[3], normal[3], away = 0;
+    double outwards[3], normal[3], distance = 0;
     for (int k = 0; k < 3; k++) {
         outwards[k] = picture->position[3 * index + k] - CENTRE[k];
         normal[k]   = picture->normal[3 * index + k];
     }
-    away = sqrt(dot3(outwards, outwards)) - radius;
+    distance = sqrt(dot3(outwards, outwards)) - radius;
     unit3(outwards);
     assert_near(sqrt(dot3(normal, normal)), 1, 1e-5);
     assert_true(dot3(outwards, normal) > 1 - 2e-5);
 
     /* Within a fiftieth of a pixel of the surface, unless the ray only grazes it. */
     double facing = fabs(dot3(outwards, ray->direction));
-    assert_true(fabs(away) < 0.26 * pixel + 2e-6);
+    assert_true(fabs(distance) < 0.26 * pixel + 2e-6);
     if (facing < 0.2)
         return;
     double depth = panorama ? t : t * dot3(ray->direction, ray->forward);
-    assert_true(fabs(away) < 0.02 * pixel + 2e-6);
+    assert_true(fabs(distance) < 0.02 * pixel + 2e-6);
     assert_near(picture->depth[index], depth, (0.02 * pixel + 4e-6) / facing);
 }
 
@@ -241,10 +241,10 @@ static void points_are_sampled(void **state)
                                   distances, surfaces);
     assert_int_equal(status, KRS_OK);
     for (int i = 0; i < COUNT; i++) {
-        double away[3];
+        double offset[3];
         for (int k = 0; k < 3; k++)
-            away[k] = points[i][k] - CENTRE[k];
-        assert_near(distances[i], sqrt(dot3(away, away)) - 1, 2e-6);
+            offset[k] = points[i][k] - CENTRE[k];
+        assert_near(distances[i], sqrt(dot3(offset, offset)) - 1, 2e-6);
         assert_near(surfaces[i].distance, distances[i], 2e-6);
         assert_int_equal(surfaces[i].component, 1);
     }

@@ -1,9 +1,9 @@
 /*
- * anchor.c: expressions near an anchor against the same expressions at the point.
+ * rebase.c: expressions of a point relative to an origin against the same expressions of the point.
  *
- * In double precision both are the same number, whatever the anchor.  What the pass is for shows
- * when all numbers are rounded to single precision after each operation: near a far anchor the
- * values then stay right to a small part of the way from there.
+ * In double precision both are the same number, whatever the origin.  What the pass is for shows
+ * when all numbers are rounded to single precision after each operation: near a far origin the
+ * values then stay right to a small part of the offset from there.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -11,14 +11,14 @@
 #include <stddef.h>
 #include <cmocka.h>
 
-#include "compiler/graph/anchor.h"
+#include "compiler/graph/rebase.h"
 #include "compiler/graph/evaluate.h"
 
 typedef struct Bench {
     Memory   memory;
     Arena    arena;
     Graph   *graph;
-    Node     point, anchor;
+    Node     point, rebase_origin;
     uint32_t seed;
 } Bench;
 
@@ -33,8 +33,8 @@ static int bench_start(void **state)
     bench.point             = graph_leaf(bench.graph, OP_POINT);
     GraphParameter anywhere = {{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL, HUGE_VAL}};
     array_push(&bench.arena, &bench.graph->parameters, anywhere);
-    bench.anchor = graph_parameter(bench.graph, 1, TYPE_VEC3);
-    *state       = &bench;
+    bench.rebase_origin = graph_parameter(bench.graph, 1, TYPE_VEC3);
+    *state              = &bench;
     return 0;
 }
 
@@ -51,13 +51,13 @@ static double uniform(Bench *b)
 }
 
 /* `single`: what depends on the point, and what is handed to it, has seven digits. */
-static double evaluate(Bench *b, Node root, const double point[3], const double anchor[3],
+static double evaluate(Bench *b, Node root, const double point[3], const double rebase_origin[3],
                        bool single)
 {
-    const Graph *g             = b->graph;
-    Tape         tape          = tape_new(g, &root, 1, &b->arena);
-    NodeValue   *values        = arena_new_array(&b->arena, NodeValue, g->count);
-    NodeValue    parameters[2] = {{{0.4}}, {{anchor[0], anchor[1], anchor[2]}}};
+    const Graph *g          = b->graph;
+    Tape         tape       = tape_new(g, &root, 1, &b->arena);
+    NodeValue   *values     = arena_new_array(&b->arena, NodeValue, g->count);
+    NodeValue parameters[2] = {{{0.4}}, {{rebase_origin[0], rebase_origin[1], rebase_origin[2]}}};
     tape_run_frame(&tape, parameters, values);
     for (size_t i = 0; i < tape.count; i++) {
         Node        n = tape.nodes[i];
@@ -127,17 +127,17 @@ static void values_are_the_same(void **state)
     Bench *b = *state;
     for (int i = 0; i < 400; i++) {
         Node plain = chain(b, 5), near = plain;
-        graph_anchor(b->graph, &near, 1, b->anchor, &b->arena);
-        graph_validate(b->graph, "anchor");
+        graph_rebase(b->graph, &near, 1, b->rebase_origin, &b->arena);
+        graph_validate(b->graph, "rebase");
         for (int k = 0; k < 5; k++) {
-            double anchor[3], way[3], point[3], none[3] = {0};
+            double rebase_origin[3], direction[3], point[3], none[3] = {0};
             for (int a = 0; a < 3; a++) {
-                anchor[a] = 20 * uniform(b);
-                way[a]    = 5 * uniform(b);
-                point[a]  = anchor[a] + way[a];
+                rebase_origin[a] = 20 * uniform(b);
+                direction[a]     = 5 * uniform(b);
+                point[a]         = rebase_origin[a] + direction[a];
             }
             double there = evaluate(b, plain, point, none, false);
-            double here  = evaluate(b, near, way, anchor, false);
+            double here  = evaluate(b, near, direction, rebase_origin, false);
             assert_true(fabs(there - here) <= 1e-9 * (1 + fabs(there)));
         }
     }
@@ -154,17 +154,19 @@ static void single_precision_is_enough(void **state)
         p = graph_op3(g, OP_fold, p, graph_vec3(g, 0.6, 0, 0.8), graph_number(g, exp2(i)));
     Node moved = graph_op2(g, OP_sub, p, graph_vec3(g, 0.2, 0.1, 0.3));
     Node plain = graph_op1(g, OP_length, moved), near = plain;
-    graph_anchor(g, &near, 1, b->anchor, &b->arena);
+    graph_rebase(g, &near, 1, b->rebase_origin, &b->arena);
     for (int k = 0; k < 200; k++) {
-        double anchor[3], way[3], point[3], none[3] = {0}, far = 4e5 * fabs(uniform(b));
+        double rebase_origin[3], direction[3], point[3], none[3] = {0},
+                                                         far = 4e5 * fabs(uniform(b));
         for (int a = 0; a < 3; a++) {
-            anchor[a] = a == 0 ? 0.6 * far : a == 1 ? 0.5 : 0.8 * far;
-            way[a]    = uniform(b);
-            point[a]  = anchor[a] + way[a];
+            rebase_origin[a] = a == 0 ? 0.6 * far : a == 1 ? 0.5 : 0.8 * far;
+            direction[a]     = uniform(b);
+            point[a]         = rebase_origin[a] + direction[a];
         }
         double truth = evaluate(b, plain, point, none, false);
         worst_plain  = fmax(worst_plain, fabs(evaluate(b, plain, point, none, true) - truth));
-        worst_near   = fmax(worst_near, fabs(evaluate(b, near, way, anchor, true) - truth));
+        worst_near   = fmax(worst_near,
+                            fabs(evaluate(b, near, direction, rebase_origin, true) - truth));
     }
     assert_true(worst_near < 2e-5);
     assert_true(worst_plain > 5e-3);

@@ -1,26 +1,27 @@
 /*
- * solid.glsl: the pixels whose ray hits something, as a list: what comes after the primary rays
+ * hit_lists.glsl: the pixels whose ray hits something, as a list: what comes after the primary rays
  * is about them alone.
  *
  * A pixel is known by its slot: 64 times its tile of 8x8 pixels, and its number in there.  So lie
  * the hits in memory, as what is near in the picture is looked at together.
  *
- * A quarter of the pixels, those in columns and rows 0, 2, 5 and 7 of their tile, are anchors, at
- * which means of occlusion are taken.  Lists lie where the queue of rays was, each with room for
- * all pixels: all, the anchors, the rest that need rays of their own, and those whose shadow needs
- * a wide mean.  Where groups of components were marched one after the other, lists of what each of
- * them shows follow, and behind these is what rays share (shared.glsl).
+ * Means of occlusion are taken at a quarter of the pixels: the sparse ones, in columns and rows 0,
+ * 2, 5 and 7 of their tile.  Lists lie where the queue of rays was, each long enough for all
+ * pixels: all hits, the sparse ones, the remaining ones for which neighbours do not suffice, and
+ * those whose shadow needs a wide mean.  Where groups of components were marched one after the
+ * other, lists of what each of them shows follow, and behind these is what rays share
+ * (shared.glsl).
  *
  * Last are words of the quarters of tiles, of 4x4 pixels: the list of those in which something is
  * hit; of each, a bit for every pixel that is; and of each, what is known of a light there.
  */
 #ifdef NO_TEXELS
-layout(std430, set = 1, binding = 6) buffer Solid { uint solid[]; };
-uint find_listed(uint number) { return solid[number]; }
+layout(std430, set = 1, binding = 6) buffer PixelLists { uint pixel_lists[]; };
+uint find_listed(uint number) { return pixel_lists[number]; }
 #else
-layout(std430, set = 1, binding = 6) writeonly buffer Solid { uint solid[]; };
-layout(set = 1, binding = 12) uniform usamplerBuffer solid_texels;
-uint find_listed(uint number) { return texelFetch(solid_texels, int(number)).x; }
+layout(std430, set = 1, binding = 6) writeonly buffer PixelLists { uint pixel_lists[]; };
+layout(set = 1, binding = 12) uniform usamplerBuffer pixel_list_texels;
+uint find_listed(uint number) { return texelFetch(pixel_list_texels, int(number)).x; }
 #endif
 
 uint band_pixels() { return work.extent.x * work.extent.y; }
@@ -31,8 +32,8 @@ uint band_tiles()
     return tiles.x * tiles.y;
 }
 
-// Behind the lists: words of slots by shared.glsl, two lists of them, and words of tiles.  Tiles may
-// reach beyond the band, so there are more slots than pixels.
+// Behind the lists: words of slots by shared.glsl, two lists of them, and words of tiles.  Tiles
+// may reach beyond the band, so there are more slots than pixels.
 const uint FIRST_SHARED = 13u, SHARED_LISTS = 2u;
 
 uint shared_at(uint list, uint slot)
@@ -89,36 +90,39 @@ bool has_cone(uint number)
     return (find_listed(quarter_at(HITS_OF_QUARTERS, number)) >> 4u * row + column & 1u) != 0u;
 }
 
-// Bits of the anchors of a quarter: every second column and row, from its outer ones on.
-uint anchors_of_quarter(uint number)
+// Bits of the sparse pixels of a quarter: every second column and row, from its outer ones on.
+uint sparse_pixels_of_quarter(uint number)
 {
     return ((number & 1u) == 0u ? 0x0505u : 0x0a0au) << ((number & 2u) == 0u ? 0u : 4u);
 }
 
 // The ray of a pixel of the list, and where it hits.  That is found anew wherever it is asked for:
 // it costs no more than to fetch it.
-struct Place {
+struct HitPoint {
     uint  slot;
     vec3  position;
     vec3  direction; // of the ray, unit
     float width;     // of a pixel there
     float rounding;  // of the coordinates
-    float side;      // as of a Ray,
+    float side;      // as of a RayEnd,
     uint  steps;     // likewise
 };
 
-Place find_place_of(uint slot)
+HitPoint hit_point_of_slot(uint slot)
 {
     uvec2 pixel = pixel_of(slot);
-    Ray   ray = find_end(index_of(pixel));
+    RayEnd   ray = find_end(index_of(pixel));
     vec3  origin, direction;
     float base, slope;
     find_ray(vec2(work.corner + pixel) + work.offset, origin, direction, base, slope);
     vec3  position = origin + ray.t * direction;
     float rounding = ROUNDING * (largest(position) + largest(origin));
     float width = max(base + slope * ray.t, 1e-30); // something is divided by it
-    return Place(slot, position, direction, width, rounding, ray.side, ray.steps);
+    return HitPoint(slot, position, direction, width, rounding, ray.side, ray.steps);
 }
 
 // The place of item `number` of the list that is read.
-Place find_place(uint number) { return find_place_of(find_listed(control.reading + number)); }
+HitPoint find_hit_point(uint number)
+{
+    return hit_point_of_slot(find_listed(control.reading + number));
+}

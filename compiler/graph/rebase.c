@@ -1,21 +1,22 @@
 /*
- * anchor.c: the graph near an anchor.
+ * rebase.c: the graph of points that are relative to an origin near them.
  *
- * Every value that is the point, or made of it by moving, turning, scaling or mirroring, is kept
- * as a pair: a base, which is what happens to the anchor, and the rest, which is what happens to
- * the way from there.  Mirrors cost as much as before: behind one with dot(u, p) <= w the rest r is
+ * Every value that is the point, or made of it by moving, turning, scaling or mirroring, has two
+ * summands: a base, which is what happens to the origin, and what is relative to it, which happens
+ * to the offset from there.  Mirrors cost as much as before: behind one with dot(u, p) <= w the
+ * latter, r, is
  *     r - 2 (max(dot(u, r), w') - k) u,   w' = w - dot(u, base),  k = 0 or w'
  * (0 if it mirrors the base), where nothing large is added and taken away again.  Rounding and
- * limits keep pairs, too, so that repetition does.  Everything else gets the sum: near a surface
+ * limits keep both, too, so that repetition does.  Everything else gets the sum: near a surface
  * of a kernel it is no larger than the kernel.
  */
-#include "compiler/graph/anchor.h"
+#include "compiler/graph/rebase.h"
 
 #include "compiler/graph/evaluate.h"
 
-/* base + rest; base NODE_NONE: the rest is all. */
+/* base + relative; base NODE_NONE: the latter is all. */
 typedef struct SplitValue {
-    Node base, rest;
+    Node base, relative;
 } SplitValue;
 
 static SplitValue whole(Node node) { return (SplitValue){NODE_NONE, node}; }
@@ -28,14 +29,14 @@ static Node precise(Graph *g, Node node)
 static Node sum_of(Graph *g, SplitValue value)
 {
     if (value.base == NODE_NONE)
-        return value.rest;
+        return value.relative;
     Node base = precise(g, value.base);
-    return graph_op2(g, OP_add, base, value.rest);
+    return graph_op2(g, OP_add, base, value.relative);
 }
 
 static bool is_held_constant(const Graph *g, SplitValue value)
 {
-    return value.base == NODE_NONE && g->items[value.rest].time != TIME_POINT;
+    return value.base == NODE_NONE && g->items[value.relative].time != TIME_POINT;
 }
 
 static Node zero_like(Graph *g, Node node)
@@ -44,21 +45,21 @@ static Node zero_like(Graph *g, Node node)
     return graph_constant(g, (GraphType)g->items[node].type, zeros);
 }
 
-/* a + b and a - b: what stands still joins the base. */
+/* a + b and a - b: what does not depend on the point joins the base. */
 static SplitValue add_values(Graph *g, Op op, SplitValue a, SplitValue b)
 {
     SplitValue sum  = {NODE_NONE, NODE_NONE};
     Node       zero = NODE_NONE;
     if (is_held_constant(g, a))
-        a = (SplitValue){a.rest, zero = zero_like(g, a.rest)};
+        a = (SplitValue){a.relative, zero = zero_like(g, a.relative)};
     if (is_held_constant(g, b))
-        b = (SplitValue){b.rest, zero = zero_like(g, b.rest)};
+        b = (SplitValue){b.relative, zero = zero_like(g, b.relative)};
     if (a.base == NODE_NONE || b.base == NODE_NONE) {
         bool first = a.base != NODE_NONE;
         sum.base = first || op == OP_add ? (first ? a.base : b.base) : graph_op1(g, OP_neg, b.base);
     } else
         sum.base = graph_op2(g, op, a.base, b.base);
-    sum.rest = graph_op2(g, op, a.rest, b.rest);
+    sum.relative = graph_op2(g, op, a.relative, b.relative);
     return sum;
 }
 
@@ -70,8 +71,8 @@ static SplitValue map_value(Graph *g, const Expr *e, SplitValue a, int index)
         operands[i] = e->operands[i];
     operands[index]   = a.base;
     SplitValue mapped = {graph_op(g, e->op, operands), NODE_NONE};
-    operands[index]   = a.rest;
-    mapped.rest       = graph_op(g, e->op, operands);
+    operands[index]   = a.relative;
+    mapped.relative   = graph_op(g, e->op, operands);
     return mapped;
 }
 
@@ -81,10 +82,10 @@ static SplitValue make_vector(Graph *g, const Expr *e, const SplitValue *compone
     for (int i = 0; i < e->operand_count; i++) {
         bool held = is_held_constant(g, components[i]);
         Node zero = graph_number(g, 0);
-        bases[i]  = held                              ? components[i].rest
+        bases[i]  = held                              ? components[i].relative
                     : components[i].base == NODE_NONE ? zero
                                                       : components[i].base;
-        rests[i]  = held ? zero : components[i].rest;
+        rests[i]  = held ? zero : components[i].relative;
     }
     return (SplitValue){graph_op(g, e->op, bases), graph_op(g, e->op, rests)};
 }
@@ -101,30 +102,30 @@ static SplitValue fold_value(Graph *g, const Expr *e, SplitValue a)
     Node seen = offset_seen(g, e, a), zero = graph_number(g, 0);
     Node before       = graph_op3(g, OP_front, a.base, e->operands[1], e->operands[2]);
     Node retained     = graph_op3(g, OP_select, before, zero, seen);
-    Node depth        = graph_op2(g, OP_dot, e->operands[1], a.rest);
+    Node depth        = graph_op2(g, OP_dot, e->operands[1], a.relative);
     Node excess       = graph_op2(g, OP_max, depth, precise(g, seen));
     excess            = graph_op2(g, OP_sub, excess, precise(g, retained));
     Node       twice  = graph_op2(g, OP_mul, excess, graph_number(g, 2));
     Node       offset = graph_op2(g, OP_scale, e->operands[1], twice);
     SplitValue folded = {graph_op3(g, OP_fold, a.base, e->operands[1], e->operands[2]), NODE_NONE};
-    folded.rest       = graph_op2(g, OP_sub, a.rest, offset);
+    folded.relative   = graph_op2(g, OP_sub, a.relative, offset);
     return folded;
 }
 
-/* round, floor and ceil: that of the base, and that of the rest and what the base is beyond. */
+/* round, floor and ceil: that of the base, and that of what is relative and the base's excess. */
 static SplitValue round_value(Graph *g, const Expr *e, SplitValue a)
 {
-    SplitValue rounded = {graph_op1(g, e->op, a.base), NODE_NONE};
-    Node       excess  = graph_op2(g, OP_sub, a.base, rounded.base);
-    Node       rest    = graph_op2(g, OP_add, precise(g, excess), a.rest);
-    rounded.rest       = graph_op1(g, e->op, rest);
+    SplitValue rounded  = {graph_op1(g, e->op, a.base), NODE_NONE};
+    Node       excess   = graph_op2(g, OP_sub, a.base, rounded.base);
+    Node       relative = graph_op2(g, OP_add, precise(g, excess), a.relative);
+    rounded.relative    = graph_op1(g, e->op, relative);
     return rounded;
 }
 
 /* min, max and clamp by limits that stand still. */
 static SplitValue limit_value(Graph *g, const Expr *e, SplitValue a)
 {
-    Node operands[MAX_OPERANDS] = {a.rest};
+    Node operands[MAX_OPERANDS] = {a.relative};
     for (int i = 1; i < e->operand_count; i++) {
         Node limit  = graph_op2(g, OP_sub, e->operands[i], a.base);
         operands[i] = precise(g, limit);
@@ -139,7 +140,7 @@ static Node compare_values(Graph *g, const Expr *e, SplitValue a, SplitValue b)
     if (difference.base == NODE_NONE)
         return graph_op2(g, e->op, sum_of(g, a), sum_of(g, b));
     Node limit = graph_op1(g, OP_neg, difference.base);
-    return graph_op2(g, e->op, difference.rest, precise(g, limit));
+    return graph_op2(g, e->op, difference.relative, precise(g, limit));
 }
 
 /* Whether all operands but one stand still. */
@@ -170,7 +171,7 @@ static bool any_base(const Expr *e, const SplitValue *values)
     return false;
 }
 
-static SplitValue anchored(Graph *g, const Expr *e, const SplitValue *p)
+static SplitValue rebase_node(Graph *g, const Expr *e, const SplitValue *p)
 {
     if (!any_base(e, p))
         return plain_value(g, e, p);
@@ -181,7 +182,7 @@ static SplitValue anchored(Graph *g, const Expr *e, const SplitValue *p)
     case OP_neg: return map_value(g, e, p[0], 0);
     case OP_COMPONENT:
         return (SplitValue){graph_component(g, p[0].base, e->index),
-                            graph_component(g, p[0].rest, e->index)};
+                            graph_component(g, p[0].relative, e->index)};
     case OP_splat2:
     case OP_splat3:
     case OP_splat4:
@@ -202,8 +203,8 @@ static SplitValue anchored(Graph *g, const Expr *e, const SplitValue *p)
     case OP_front:
         if (!others_are_held_constant(g, e, p, 0))
             return plain_value(g, e, p);
-        return whole(
-            graph_op3(g, OP_front, p[0].rest, e->operands[1], precise(g, offset_seen(g, e, p[0]))));
+        return whole(graph_op3(g, OP_front, p[0].relative, e->operands[1],
+                               precise(g, offset_seen(g, e, p[0]))));
     case OP_round:
     case OP_floor:
     case OP_ceil: return round_value(g, e, p[0]);
@@ -218,7 +219,7 @@ static SplitValue anchored(Graph *g, const Expr *e, const SplitValue *p)
     }
 }
 
-void graph_anchor(Graph *graph, Node *roots, size_t count, Node anchor, Arena *scratch)
+void graph_rebase(Graph *graph, Node *roots, size_t count, Node rebase_origin, Arena *scratch)
 {
     Span        here   = graph->here;
     Tape        tape   = tape_new(graph, roots, count, scratch);
@@ -229,13 +230,13 @@ void graph_anchor(Graph *graph, Node *roots, size_t count, Node anchor, Arena *s
         SplitValue operands[MAX_OPERANDS];
         graph->here = e.span;
         if (e.op == OP_POINT)
-            values[i] = (SplitValue){anchor, node};
+            values[i] = (SplitValue){rebase_origin, node};
         else if (e.time != TIME_POINT || e.operand_count == 0)
             values[i] = whole(node);
         else {
             for (int k = 0; k < e.operand_count; k++)
                 operands[k] = values[tape_index(&tape, e.operands[k])];
-            values[i] = anchored(graph, &e, operands);
+            values[i] = rebase_node(graph, &e, operands);
         }
     }
     for (size_t i = 0; i < count; i++)

@@ -1,7 +1,7 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
- * sample.comp: the scene at given points.
+ * point_query.comp: the scene at given points.
  */
 #include "scene.glsl"
 
@@ -25,16 +25,16 @@ layout(std430, set = 1, binding = 1) readonly buffer Points { vec4 points[]; };
 layout(std430, set = 1, binding = 2) writeonly buffer Answers { Answer answers[]; };
 
 // The distance, then one step along each axis and back: their differences are the gradient.
-vec4 look_around(vec3 p)
+vec4 find_gradient(vec3 p)
 {
     float step = 1e-3 * (0.1 + max(max(abs(p.x), abs(p.y)), abs(p.z)));
     vec4  found = vec4(0.0);
     for (uint i = 0u; i < work.taps; i++) {
         uint  axis = (i + 1u) / 2u;
-        float side = (i & 1u) != 0u ? 1.0 : -1.0;
-        vec3  way = side * vec3(axis == 1u, axis == 2u, axis == 3u);
-        float distance = krs_distance(p + step * way);
-        found += axis == 0u ? vec4(0.0, 0.0, 0.0, distance) : vec4(distance * way, 0.0);
+        float sign_of_tap = (i & 1u) != 0u ? 1.0 : -1.0;
+        vec3  direction = sign_of_tap * vec3(axis == 1u, axis == 2u, axis == 3u);
+        float distance = krs_distance(p + step * direction);
+        found += axis == 0u ? vec4(0.0, 0.0, 0.0, distance) : vec4(distance * direction, 0.0);
     }
 #ifdef SHEETS // the distance is nowhere negative: differences see both sides
     vec3 gradient = krs_gradient(p, step);
@@ -46,7 +46,7 @@ vec4 look_around(vec3 p)
 }
 
 // Within 0 and 1; what is not a number is 0.
-vec4 part(vec4 numbers)
+vec4 saturate(vec4 numbers)
 {
     return mix(vec4(0.0), min(numbers, 1.0), greaterThan(numbers, vec4(0.0)));
 }
@@ -59,20 +59,20 @@ void main()
     krs_prepare();
 
     vec3 p = points[index].xyz;
-    vec4 around = look_around(p);
-    KrsSurface surface = krs_surface(p, around.xyz, 0.0);
+    vec4 gradient_and_distance = find_gradient(p);
+    KrsSurface surface = krs_surface(p, gradient_and_distance.xyz, 0.0);
     Answer answer;
-    answer.color = part(vec4(surface.color, 0.0)).rgb;
-    answer.distance = around.w;
+    answer.color = saturate(vec4(surface.color, 0.0)).rgb;
+    answer.distance = gradient_and_distance.w;
     answer.emission = surface.emission;
     answer.surface_distance = surface.distance;
-    vec4 coat = part(vec4(surface.roughness, surface.metallic, 0.0, 0.0));
+    vec4 coat = saturate(vec4(surface.roughness, surface.metallic, 0.0, 0.0));
     answer.roughness = coat.x;
     answer.metallic = coat.y;
     answer.component = surface.component;
     answer.level = surface.level;
     answer.instance = surface.instance;
     answer.normal = surface.normal;
-    answer.gradient = around.xyz;
+    answer.gradient = gradient_and_distance.xyz;
     answers[index] = answer;
 }

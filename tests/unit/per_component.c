@@ -1,6 +1,6 @@
 /*
- * apart.c: heavy components marched one by one, in kernels of their own or packed in one, and
- * levels that are left out for being far away, are not seen.
+ * per_component.c: heavy components marched one by one, in kernels of their own or packed in one,
+ * and levels that are left out for being far away, are not seen.
  *
  * Pictures of compounds marched apart or packed must be those of the union: no more than one pixel
  * in 2,000 hits where the other misses, depths differ by the permitted error and what a grazing ray
@@ -298,7 +298,7 @@ static void spiral_is_the_union(int count, double far, const char *more, const c
     assert_int_equal(krs_compile_text(text.bytes, text.length, name, &with, &scene.scene), KRS_OK);
     assert_int_equal(krs_frame_new(scene.scene, &scene.frame), KRS_OK);
     assert_int_equal(krs_rendering_new(plain, scene.scene, &scene.plain), KRS_OK);
-    assert_int_equal(krs_scene_program(scene.scene)->anchored, far > 0);
+    assert_int_equal(krs_scene_program(scene.scene)->camera_relative, far > 0);
     KrsPicture *whole = render(&scene, false, together), *turns = render(&scene, false, packed);
     check_same(&scene, whole, turns);
     bool parted = memcmp(whole->steps, turns->steps, PIXELS * sizeof *turns->steps) != 0;
@@ -372,16 +372,16 @@ static void only_what_is_heavy_is_apart(void **state)
                                 "show torus(1, 0.2).move([0, 0, 3]);";
     KrsScene         *scene;
     assert_int_equal(krs_compile_text(cheap, strlen(cheap), "cheap", NULL, &scene), KRS_OK);
-    assert_int_equal(krs_scene_program(scene)->group_count, 0);
+    assert_int_equal(krs_scene_program(scene)->march_group_count, 0);
     assert_int_equal(krs_scene_program(scene)->expensive, 0);
     krs_scene_free(scene);
-    assert_int_equal(krs_scene_program(scenes[SCATTERED].scene)->group_count, 4);
+    assert_int_equal(krs_scene_program(scenes[SCATTERED].scene)->march_group_count, 4);
     assert_int_equal(krs_scene_program(scenes[SCATTERED].scene)->expensive, 4);
-    assert_false(krs_scene_program(scenes[MIXED].scene)->apart);
+    assert_false(krs_scene_program(scenes[MIXED].scene)->per_component);
     const KrsProgram *ground = krs_scene_program(scenes[GROUND].scene);
-    assert_int_equal(ground->group_count, 5); /* the last: the ball; rays know the plane */
-    assert_true(ground->flats && isfinite(ground->groups[4].high[0]));
-    assert_true(ground->groups[4].flops < 100);
+    assert_int_equal(ground->march_group_count, 5); /* the last: the ball; rays know the plane */
+    assert_true(ground->planes && isfinite(ground->march_groups[4].high[0]));
+    assert_true(ground->march_groups[4].flops < 100);
 }
 
 int main(void)

@@ -1,9 +1,9 @@
 /*
- * stage.h: what every kernel of a renderer needs, whatever the scene: layouts, and a scene and a
- * frame of zeros for rehearsals, in which a kernel runs once and finds nothing to do.
+ * layouts.h: what every kernel of a renderer needs, whatever the scene: layouts of what it reads
+ * and writes, and a scene and a frame of zeros, in which a kernel finds nothing to do.
  */
-#ifndef KRS_STAGE_H
-#define KRS_STAGE_H
+#ifndef KRS_LAYOUTS_H
+#define KRS_LAYOUTS_H
 
 #include "runtime/tracer/renderer.h"
 
@@ -23,29 +23,22 @@ enum {
     TILES_BINDING,
     END_TEXELS,
     HIT_TEXELS,
-    SOLID_TEXELS,
+    PIXEL_LIST_TEXELS,
     RESULT_TEXELS,
     BINDING_COUNT,
     TEXEL_BINDINGS  = 1 + BINDING_COUNT - END_TEXELS,
     BUFFER_BINDINGS = BINDING_COUNT - TEXEL_BINDINGS - 1
 };
 
-/* For a renderer whose device is open.  What was made on failure goes with stage_destroy. */
-bool stage_create(KrsRenderer *renderer);
+/* For a renderer whose device is open.  What was made on failure goes with layouts_destroy. */
+bool layouts_create(KrsRenderer *renderer);
 /* After the kernels; for a renderer without a device nothing. */
-void stage_destroy(KrsRenderer *renderer);
+void layouts_destroy(KrsRenderer *renderer);
 
 /* Makes a buffer readable at a binding of texels, where there are some; `name` as in
    buffer_create. */
-bool stage_view(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name);
+bool layouts_view_texels(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name);
 /* Points a binding of a set at a buffer; one of texels, where there are none, at nothing. */
-void stage_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer);
-
-/* Makes at most KERNELS_AT_ONCE kernels, and sends them through the driver once, in the
-   background.  The scene's set may be VK_NULL_HANDLE. */
-enum { KERNELS_AT_ONCE = 20 };
-bool stage_make_kernels(KrsRenderer *renderer, VkDescriptorSet scene_set,
-                        const KernelRequest *requests, size_t count, double *spirv_ms,
-                        double *pipeline_ms);
+void layouts_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer);
 
 #endif

@@ -1,13 +1,13 @@
 /*
- * sample.c: the scene at points, as the device computes it.
+ * point_query.c: the scene at points, as the device computes it.
  */
 #include <string.h>
 
 #include "runtime/tracer/renderer.h"
 
-enum { GROUP = 64 };
+enum { WORKGROUP_SIZE = 64 };
 
-bool sample_prepare(KrsRendering *rendering)
+bool point_query_prepare(KrsRendering *rendering)
 {
     Gpu *gpu = &rendering->renderer->gpu;
     if (!rendering->points.buffer &&
@@ -43,16 +43,16 @@ static void take_answer(const AnswerBlock *answer, float *distance, KrsSurfacePo
     memcpy(surface->normal, answer->normal, sizeof surface->normal);
 }
 
-bool sample_run(KrsRendering *rendering, uint32_t count, bool normals)
+bool point_query_run(KrsRendering *rendering, uint32_t count, bool normals)
 {
-    const uint32_t work[] = {count, normals ? 7 : 1}; /* of sample.comp */
+    const uint32_t work[] = {count, normals ? 7 : 1}; /* of point_query.comp */
     Gpu           *gpu    = &rendering->renderer->gpu;
-    Kernel        *kernel = rendering_sample(rendering);
+    Kernel        *kernel = rendering_point_query(rendering);
     double         ms     = 0;
     if (!kernel || !gpu_begin(gpu))
         return false;
     rendering_dispatch(rendering, kernel, rendering->points_set, work, sizeof work,
-                       (count + GROUP - 1) / GROUP);
+                       (count + WORKGROUP_SIZE - 1) / WORKGROUP_SIZE);
     return gpu_finish(gpu, &ms);
 }
 
@@ -60,7 +60,7 @@ KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*poi
                      size_t count, float *distances, KrsSurfacePoint *surfaces)
 {
     renderer_clear(rendering->renderer);
-    if (!sample_prepare(rendering) || !rendering_set_parameters(rendering, frame))
+    if (!point_query_prepare(rendering) || !rendering_set_parameters(rendering, frame))
         return rendering->renderer->gpu.status;
     for (size_t first = 0; first < count; first += POINTS_AT_ONCE) {
         size_t      left  = count - first;
@@ -68,7 +68,7 @@ KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*poi
         PointBlock *to    = rendering->points.bytes;
         for (uint32_t i = 0; i < batch; i++)
             memcpy(to[i].point, points[first + i], sizeof points[0]);
-        if (!sample_run(rendering, batch, surfaces != NULL))
+        if (!point_query_run(rendering, batch, surfaces != NULL))
             return rendering->renderer->gpu.status;
         const AnswerBlock *answers = rendering->answers.bytes;
         for (uint32_t i = 0; i < batch; i++)

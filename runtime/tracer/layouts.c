@@ -1,18 +1,9 @@
 /*
- * stage.c: layouts, idle sets, and kernels that have run once before they are needed.
- *
- * lavapipe compiles a kernel when it first runs, one after the other, and keeps what it has
- * compiled on disk.  So a rehearsal has it do so while the host is busy with other things; and
- * where several kernels are new, a second device, which exists for no longer, takes some of
- * them: the first then finds those on disk.  Graphics cards compile a kernel when its pipeline is
- * made: only devices of type CPU rehearse.
+ * layouts.c: layouts of descriptors and of the pipeline, and a scene and a frame of zeros.
  */
-#include "runtime/tracer/stage.h"
+#include "runtime/tracer/layouts.h"
 
-#include <pthread.h>
-#include <stdatomic.h>
 #include <string.h>
-#include <unistd.h>
 
 /* ---- Layouts ---- */
 
@@ -26,8 +17,8 @@ static const struct {
     [FOUR_NUMBERS] = {VK_FORMAT_R32G32B32A32_UINT, 16},
 };
 static const TexelKind texels_of[BINDING_COUNT] = {
-    [LIGHTS_BINDING] = FOUR_NUMBERS, [END_TEXELS] = TWO_NUMBERS,     [HIT_TEXELS] = FOUR_NUMBERS,
-    [SOLID_TEXELS] = ONE_NUMBER,     [RESULT_TEXELS] = FOUR_NUMBERS,
+    [LIGHTS_BINDING] = FOUR_NUMBERS,  [END_TEXELS] = TWO_NUMBERS,     [HIT_TEXELS] = FOUR_NUMBERS,
+    [PIXEL_LIST_TEXELS] = ONE_NUMBER, [RESULT_TEXELS] = FOUR_NUMBERS,
 };
 
 static_assert((int)BUFFER_BINDINGS <= (int)STORAGE_BUFFERS, "devices are asked for so many");
@@ -66,7 +57,7 @@ failed:
     return false;
 }
 
-static bool layouts_create(KrsRenderer *renderer)
+static bool pipeline_layout_create(KrsRenderer *renderer)
 {
     Gpu *gpu = &renderer->gpu;
     if (!set_layout_create(gpu, 1, &renderer->scene_layout) ||
@@ -90,7 +81,7 @@ failed:
 
 /* ---- Idle sets ---- */
 
-bool stage_view(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name)
+bool layouts_view_texels(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name)
 {
     TexelKind kind = texels_of[binding];
     if (!is_bound(gpu, binding))
@@ -98,7 +89,7 @@ bool stage_view(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name)
     return buffer_view(gpu, buffer, texel_kinds[kind].format, texel_kinds[kind].bytes, name);
 }
 
-void stage_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer)
+void layouts_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer)
 {
     if (!is_bound(gpu, binding))
         return;
@@ -129,7 +120,7 @@ static bool idle_create(KrsRenderer *renderer)
     Gpu            *gpu     = &renderer->gpu;
     const char     *attempt = "prepare the renderer";
     VkDescriptorSet sets[2];
-    const char     *name = "rehearsals";
+    const char     *name = "idle frame";
     for (TexelKind kind = NO_TEXELS; kind < TEXEL_KINDS; kind++) {
         Buffer      *idle  = &renderer->idle[kind];
         VkDeviceSize bytes = kind == NO_TEXELS ? idle_bytes(gpu) : buffer_texel_bytes(1);
@@ -167,21 +158,21 @@ static bool idle_create(KrsRenderer *renderer)
             sets));
     renderer->idle_scene = sets[0];
     renderer->idle_frame = sets[1];
-    stage_bind(gpu, renderer->idle_scene, 0, &renderer->idle[0]);
+    layouts_bind(gpu, renderer->idle_scene, 0, &renderer->idle[0]);
     for (uint32_t binding = 0; binding < BINDING_COUNT; binding++)
-        stage_bind(gpu, renderer->idle_frame, binding, &renderer->idle[texels_of[binding]]);
+        layouts_bind(gpu, renderer->idle_frame, binding, &renderer->idle[texels_of[binding]]);
     return true;
 
 failed:
     return false;
 }
 
-bool stage_create(KrsRenderer *renderer)
+bool layouts_create(KrsRenderer *renderer)
 {
-    return layouts_create(renderer) && idle_create(renderer);
+    return pipeline_layout_create(renderer) && idle_create(renderer);
 }
 
-void stage_destroy(KrsRenderer *renderer)
+void layouts_destroy(KrsRenderer *renderer)
 {
     Gpu *gpu = &renderer->gpu;
     if (!gpu->device || gpu->stuck)
@@ -192,94 +183,4 @@ void stage_destroy(KrsRenderer *renderer)
     vkDestroyPipelineLayout(gpu->device, renderer->layout, NULL);
     vkDestroyDescriptorSetLayout(gpu->device, renderer->frame_layout, NULL);
     vkDestroyDescriptorSetLayout(gpu->device, renderer->scene_layout, NULL);
-}
-
-/* ---- Rehearsals ---- */
-
-static bool rehearse(KrsRenderer *renderer, VkDescriptorSet scene_set, const Kernel *kernel)
-{
-    const VkDescriptorSet sets[2] = {scene_set, renderer->idle_frame};
-    const WorkBlock       work    = {.groups = 1, .stride = 1};
-    return gpu_rehearse(&renderer->gpu, kernel->pipeline, renderer->layout, sets, &work,
-                        sizeof work);
-}
-
-/* Kernels that two devices rehearse: each takes the next that nobody has. */
-typedef struct Sharing {
-    const Gpu        *gpu; /* the first */
-    const KernelCode *codes;
-    size_t            count;
-    atomic_size_t     next;
-} Sharing;
-
-/* Whether a second device is worth its making: its host has a core for it, and there is more than
-   one kernel that the driver is not likely to have.  The validation layers' callback is for one
-   thread. */
-static bool worth_sharing(const Gpu *gpu, const KernelCode *codes, size_t count)
-{
-    size_t compiled = 0;
-    for (size_t i = 0; i < count; i++)
-        compiled += codes[i].compiled;
-    return compiled > 1 && gpu_is_cpu(gpu) && !gpu->messenger && sysconf(_SC_NPROCESSORS_ONLN) > 1;
-}
-
-/* The second device's thread.  If anything fails, or nothing is kept on disk, the first device
-   compiles what this one should have. */
-static void *assist(void *user)
-{
-    Sharing    *sharing = user;
-    KrsRenderer second  = {0};
-    bool        ready   = gpu_open_beside(&second.gpu, sharing->gpu) && stage_create(&second);
-    for (size_t i; ready && (i = atomic_fetch_add(&sharing->next, 1)) < sharing->count;) {
-        Kernel kernel;
-        double ms = 0;
-        ready     = kernel_load(&second.gpu, &kernel, &sharing->codes[i], second.layout, &ms) &&
-                rehearse(&second, second.idle_scene, &kernel) && gpu_wait(&second.gpu);
-        kernel_destroy(&second.gpu, &kernel);
-    }
-    stage_destroy(&second);
-    gpu_close(&second.gpu);
-    return NULL;
-}
-
-/* Those that the second device does not take, and then, off the disk, those that it did. */
-static bool rehearse_all(KrsRenderer *renderer, VkDescriptorSet scene_set,
-                         const KernelRequest *requests, const KernelCode *codes, size_t count)
-{
-    Sharing   sharing = {.gpu = &renderer->gpu, .codes = codes, .count = count};
-    pthread_t thread;
-    bool      ready = true, taken[KERNELS_AT_ONCE] = {false};
-    bool      shared = worth_sharing(&renderer->gpu, codes, count) &&
-                  pthread_create(&thread, NULL, assist, &sharing) == 0;
-    while (shared && ready) {
-        ready    = gpu_wait(&renderer->gpu); /* takes no more than it can work on */
-        size_t i = atomic_fetch_add(&sharing.next, 1);
-        if (i >= count)
-            break;
-        taken[i] = ready = ready && rehearse(renderer, scene_set, requests[i].kernel);
-    }
-    if (shared)
-        pthread_join(thread, NULL);
-    for (size_t i = 0; i < count && ready; i++)
-        ready = taken[i] || rehearse(renderer, scene_set, requests[i].kernel);
-    return ready;
-}
-
-bool stage_make_kernels(KrsRenderer *renderer, VkDescriptorSet scene_set,
-                        const KernelRequest *requests, size_t count, double *spirv_ms,
-                        double *pipeline_ms)
-{
-    Gpu       *gpu = &renderer->gpu;
-    KernelCode codes[KERNELS_AT_ONCE];
-    bool       ready = kernel_compile_all(gpu, requests, count, codes, spirv_ms);
-    double     start = clock_ms();
-    for (size_t i = 0; i < count; i++)
-        *requests[i].kernel = (Kernel){0};
-    ready = ready && kernel_load_all(gpu, requests, codes, count, renderer->layout);
-    if (gpu_is_cpu(gpu))
-        ready = ready && rehearse_all(renderer, scene_set, requests, codes, count);
-    for (size_t i = 0; i < count; i++)
-        kernel_code_release(gpu, &codes[i]);
-    *pipeline_ms += clock_ms() - start;
-    return ready;
 }

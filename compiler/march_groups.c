@@ -1,0 +1,85 @@
+/*
+ * march_groups.c: which components are marched by themselves (KrsMarchGroup in compile.h).
+ */
+#include "compiler/compilation.h"
+
+/* Components of so many flops are marched by themselves, in scenes of so many: as bench/krs.c
+   found.  Less is gained where their boxes lie within each other. */
+static const double EXPENSIVE_FLOPS = 100, SCATTERED_FLOPS = 1000, MIXED_FLOPS = 2000;
+
+static double component_flops(Compilation *c, size_t component)
+{
+    const KrsScene *scene = c->scene;
+    Tape            tape  = tape_new(scene->graph,
+                                     &scene->roots.components[component * ROOT_COUNT + ROOT_DISTANCE], 1,
+                                     &c->scratch);
+    return tape_flops(&tape);
+}
+
+/* The group that a component joins: one of its own if it is expensive and bounded, while there are
+   any; else the last, of all the others. */
+static size_t choose_march_group(const KrsProgram *program, double flops, Box box)
+{
+    bool own = flops >= EXPENSIVE_FLOPS && box_is_finite(box) && !box_is_empty(box);
+    return own && program->march_group_count < KRS_MOST_MARCH_GROUPS - 1
+               ? program->march_group_count
+               : KRS_MOST_MARCH_GROUPS - 1;
+}
+
+static void add_march_group(KrsProgram *program, double flops, Box box)
+{
+    KrsMarchGroup *group = &program->march_groups[program->march_group_count++];
+    group->flops         = flops;
+    for (int i = 0; i < 3; i++) {
+        group->low[i]  = box.axis[i].low;
+        group->high[i] = box.axis[i].high;
+    }
+}
+
+static double flops_worth_splitting(const KrsProgram *program)
+{
+    double sum = 0, hull = 1;
+    for (size_t i = 0; i < program->march_group_count; i++) {
+        double volume = 1;
+        for (int k = 0; k < 3; k++)
+            volume *= program->march_groups[i].high[k] - program->march_groups[i].low[k];
+        sum += volume;
+    }
+    for (int k = 0; k < 3; k++)
+        hull *= program->high[k] - program->low[k];
+    return sum <= hull ? SCATTERED_FLOPS : MIXED_FLOPS;
+}
+
+void form_march_groups(Compilation *c, uint32_t *march_groups)
+{
+    KrsProgram *program    = &c->scene->program;
+    Box         rest       = box_empty;
+    double      rest_flops = 0;
+    for (size_t i = 0; i < c->scene->component_count; i++) {
+        const Component *component = &c->elaborated.components.items[i];
+        march_groups[i]            = 0;
+        if (program->planes && component_is_plane(component))
+            continue;
+        double flops                  = component_flops(c, i);
+        c->scene->components[i].flops = flops;
+        program->expensive += flops >= EXPENSIVE_FLOPS;
+        size_t group    = choose_march_group(program, flops, component->shape->box);
+        march_groups[i] = (uint32_t)group + 1;
+        if (group < KRS_MOST_MARCH_GROUPS - 1) {
+            add_march_group(program, flops, component->shape->box);
+            continue;
+        }
+        rest_flops += flops;
+        rest = box_hull(rest, component->shape->box);
+    }
+    if (rest_flops > 0 && program->march_group_count > 0) {
+        for (size_t i = 0; i < c->scene->component_count; i++)
+            if (march_groups[i] == KRS_MOST_MARCH_GROUPS)
+                march_groups[i] = (uint32_t)program->march_group_count + 1;
+        add_march_group(program, rest_flops, rest);
+    }
+    if (program->march_group_count < 2)
+        program->march_group_count = 0;
+    program->per_component = program->march_group_count > 0 &&
+                             program->flops >= flops_worth_splitting(program);
+}

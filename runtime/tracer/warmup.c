@@ -1,0 +1,103 @@
+/*
+ * warmup.c: kernels that have run once before they are needed.
+ *
+ * lavapipe compiles a kernel when it first runs, one after the other, and keeps what it has
+ * compiled on disk.  So each kernel runs once on nothing while the host is busy with other things.
+ * Where several kernels are new, a second device, which exists for no longer, takes some of them:
+ * the first then finds those on disk.  Graphics cards compile a kernel when its pipeline is made,
+ * so only devices of type CPU are warmed up.
+ */
+#include "runtime/tracer/warmup.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <unistd.h>
+
+#include "runtime/tracer/layouts.h"
+
+static bool warm_up(KrsRenderer *renderer, VkDescriptorSet scene_set, const Kernel *kernel)
+{
+    const VkDescriptorSet sets[2] = {scene_set, renderer->idle_frame};
+    const WorkBlock       work    = {.groups = 1, .stride = 1};
+    return gpu_warm_up(&renderer->gpu, kernel->pipeline, renderer->layout, sets, &work,
+                       sizeof work);
+}
+
+/* Kernels that two devices warm up: each takes the next that the other has not. */
+typedef struct WarmUpQueue {
+    const Gpu        *gpu; /* the first */
+    const KernelCode *codes;
+    size_t            count;
+    atomic_size_t     next;
+} WarmUpQueue;
+
+/* Whether a second device is worth its making: its host has a core for it, and there is more than
+   one kernel that the driver is not likely to have.  The validation layers' callback is for one
+   thread. */
+static bool worth_second_device(const Gpu *gpu, const KernelCode *codes, size_t count)
+{
+    size_t compiled = 0;
+    for (size_t i = 0; i < count; i++)
+        compiled += codes[i].compiled;
+    return compiled > 1 && gpu_is_cpu(gpu) && !gpu->messenger && sysconf(_SC_NPROCESSORS_ONLN) > 1;
+}
+
+/* The second device's thread.  If anything fails, or nothing is kept on disk, the first device
+   compiles what this one should have. */
+static void *warm_up_beside(void *user)
+{
+    WarmUpQueue *queue  = user;
+    KrsRenderer  second = {0};
+    bool         ready  = gpu_open_beside(&second.gpu, queue->gpu) && layouts_create(&second);
+    for (size_t i; ready && (i = atomic_fetch_add(&queue->next, 1)) < queue->count;) {
+        Kernel kernel;
+        double ms = 0;
+        ready     = kernel_load(&second.gpu, &kernel, &queue->codes[i], second.layout, &ms) &&
+                warm_up(&second, second.idle_scene, &kernel) && gpu_wait(&second.gpu);
+        kernel_destroy(&second.gpu, &kernel);
+    }
+    layouts_destroy(&second);
+    gpu_close(&second.gpu);
+    return NULL;
+}
+
+/* Those that the second device does not take, and then, off the disk, those that it did. */
+static bool warm_up_all(KrsRenderer *renderer, VkDescriptorSet scene_set,
+                        const KernelRequest *requests, const KernelCode *codes, size_t count)
+{
+    WarmUpQueue queue = {.gpu = &renderer->gpu, .codes = codes, .count = count};
+    pthread_t   thread;
+    bool        ready = true, taken[KERNELS_AT_ONCE] = {false};
+    bool        helped = worth_second_device(&renderer->gpu, codes, count) &&
+                  pthread_create(&thread, NULL, warm_up_beside, &queue) == 0;
+    while (helped && ready) {
+        ready    = gpu_wait(&renderer->gpu); /* takes no more than it can work on */
+        size_t i = atomic_fetch_add(&queue.next, 1);
+        if (i >= count)
+            break;
+        taken[i] = ready = ready && warm_up(renderer, scene_set, requests[i].kernel);
+    }
+    if (helped)
+        pthread_join(thread, NULL);
+    for (size_t i = 0; i < count && ready; i++)
+        ready = taken[i] || warm_up(renderer, scene_set, requests[i].kernel);
+    return ready;
+}
+
+bool kernels_make(KrsRenderer *renderer, VkDescriptorSet scene_set, const KernelRequest *requests,
+                  size_t count, double *spirv_ms, double *pipeline_ms)
+{
+    Gpu       *gpu = &renderer->gpu;
+    KernelCode codes[KERNELS_AT_ONCE];
+    bool       ready = kernel_compile_all(gpu, requests, count, codes, spirv_ms);
+    double     start = clock_ms();
+    for (size_t i = 0; i < count; i++)
+        *requests[i].kernel = (Kernel){0};
+    ready = ready && kernel_load_all(gpu, requests, codes, count, renderer->layout);
+    if (gpu_is_cpu(gpu))
+        ready = ready && warm_up_all(renderer, scene_set, requests, codes, count);
+    for (size_t i = 0; i < count; i++)
+        kernel_code_release(gpu, &codes[i]);
+    *pipeline_ms += clock_ms() - start;
+    return ready;
+}

@@ -1,0 +1,15 @@
+/*
+ * warmup.h: kernels, made and run once before they are needed.
+ */
+#ifndef KRS_WARMUP_H
+#define KRS_WARMUP_H
+
+#include "runtime/tracer/renderer.h"
+
+/* Makes at most KERNELS_AT_ONCE kernels, and sends them through the driver once, in the
+   background.  The scene's set may be VK_NULL_HANDLE. */
+enum { KERNELS_AT_ONCE = 20 };
+bool kernels_make(KrsRenderer *renderer, VkDescriptorSet scene_set, const KernelRequest *requests,
+                  size_t count, double *spirv_ms, double *pipeline_ms);
+
+#endif
