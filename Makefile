@@ -51,7 +51,7 @@ CLI      := $(sort $(wildcard cli/*.c))
 # Text files that the program carries: the standard library, what scenes and kernels share, kernels.
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))
 HELPERS  := $(sort $(wildcard compiler/graph/*.glsl))
-SHADERS  := $(sort $(wildcard runtime/shaders/*.comp runtime/shaders/*.glsl))
+SHADERS  := $(sort $(wildcard runtime/shaders/*.comp runtime/shaders/*.glsl)) runtime/shared/blocks.h
 # Kernels without a scene are compiled here and now, not on every machine again; what is optimized
 # here, drivers need not.
 MODULES  := $(shell grep -L 'include "scene.glsl"' runtime/shaders/*.comp)
@@ -96,7 +96,7 @@ $(B)/module_files.c: $(B)/embed $(MODULES)
 $(B)/modules/%.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
 	@mkdir -p $(@D)
 	@echo "shader $<"
-	@glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -Icompiler/graph -o $@ $< >/dev/null
+	@glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/graph -o $@ $< >/dev/null
 	@spirv-opt --target-env=vulkan1.1 -O $@ -o $@
 	@spirv-val --target-env vulkan1.1 $@
 $(B)/embed: compiler/base/embed/embed.c

@@ -9,16 +9,10 @@
 #include "compiler/compile.h"
 #include "runtime/krs_vulkan.h"
 
-KrsStatus command_render(Options *options);
-KrsStatus command_compile(Options *options);
-KrsStatus command_validate(Options *options);
-KrsStatus command_query(Options *options);
-KrsStatus command_info(Options *options);
-KrsStatus command_devices(Options *options);
-KrsStatus command_check(Options *options);
-KrsStatus command_dump(Options *options);
-KrsStatus command_import(Options *options);
-KrsStatus command_explain(Options *options);
+#define COMMAND(id, name, function, arguments, files, summary, examples) \
+    KrsStatus function(Options *options);
+#include "cli/commands.def"
+#undef COMMAND
 
 /* scene.c */
 

@@ -5,36 +5,12 @@
  * Commands, options, values that are one of a few words, codes of diagnostics, and files of the
  * endings that a command takes.
  */
-#include <ctype.h>
 #include <string.h>
 
 #include "cli/options.h"
 #include "compiler/base/diag.h"
 
 /* ---- what the tables say ---- */
-
-/* The words of "on|off", "[json]" or "neutral, aces or none", a blank between two; false: other
-   values are possible as well. */
-static bool find_choices(const OptionInfo *option, char *words, size_t size)
-{
-    bool        optional = option->argument[0] == '[';
-    const char *from     = strchr(option->argument, '|') || optional ? option->argument + optional
-                                                                     : option->wants;
-    size_t      length   = 0;
-    bool        listed   = optional;
-    for (; *from && *from != ']' && length + 2 < size; from++) {
-        if (strncmp(from, " or ", 4) == 0 || strncmp(from, ", ", 2) == 0 || *from == '|') {
-            listed          = true;
-            words[length++] = ' ';
-            from += *from == '|' ? 0 : *from == ',' ? 1 : 3;
-        } else if (islower((unsigned char)*from) || *from == '-')
-            words[length++] = *from;
-        else
-            return false;
-    }
-    words[length] = '\0';
-    return listed;
-}
 
 static bool is_path(const OptionInfo *option)
 {
@@ -85,7 +61,8 @@ static void print_bash_values(FILE *out)
 {
     for (OptionId id = 0; id < OPTION_COUNT; id++) {
         const OptionInfo *option = &option_info[id];
-        char              words[256];
+        char              text[OPTION_TEXT];
+        const char       *words = option_words(option, text);
         if (!option->argument || is_told(id))
             continue;
         if (option->argument[0] == '[') /* left out, a file may follow */
@@ -93,7 +70,7 @@ static void print_bash_values(FILE *out)
         fprintf(out, "    --%s", option->name);
         if (option->letter)
             fprintf(out, "|-%c", option->letter);
-        if (find_choices(option, words, sizeof words))
+        if (words)
             fprintf(out, ") words='%s' ;;\n", words);
         else
             fprintf(out, ") %s;;\n", is_path(option) ? "_krs_files '' " : "");
@@ -159,7 +136,8 @@ static void print_zsh_text(FILE *out, const char *text)
 static void print_zsh_option(FILE *out, const OptionInfo *option)
 {
     const char *equals = option->argument ? "=" : "", *plus = option->argument ? "+" : "";
-    char        words[256];
+    char        text[OPTION_TEXT], help[OPTION_TEXT], argument[OPTION_TEXT];
+    const char *words = option_words(option, text);
     fputs(" \\\n        ", out);
     if (option->letter && may_repeat(option))
         fputs("'*'", out);
@@ -169,12 +147,12 @@ static void print_zsh_option(FILE *out, const OptionInfo *option)
         fprintf(out, "{-%c%s,--%s%s}'[", option->letter, plus, option->name, equals);
     else
         fprintf(out, "'%s--%s%s[", may_repeat(option) ? "*" : "", option->name, equals);
-    print_zsh_text(out, option->help);
+    print_zsh_text(out, option_help(option, help));
     fputs("]", out);
     if (option->argument) {
         fputs(option->argument[0] == '[' ? "::" : ":", out);
-        print_zsh_text(out, option->argument);
-        if (find_choices(option, words, sizeof words))
+        print_zsh_text(out, option_argument(option, argument));
+        if (words)
             fprintf(out, ":(%s)", words);
         else
             fprintf(out, ":%s", is_path(option) ? "_files" : " ");
@@ -234,17 +212,18 @@ static void print_zsh(FILE *out)
 
 static void print_fish_option(FILE *out, const char *command, const OptionInfo *option)
 {
-    char words[256];
+    char        text[OPTION_TEXT], help[OPTION_TEXT];
+    const char *words = option_words(option, text);
     fprintf(out, "complete -c krs -n '__fish_seen_subcommand_from %s' -l %s", command,
             option->name);
     if (option->letter)
         fprintf(out, " -s %c", option->letter);
-    if (option->argument && find_choices(option, words, sizeof words))
+    if (words)
         fprintf(out, "%s -a '%s'", option->argument[0] == '[' ? "" : " -x", words);
     else if (option->argument)
         fputs(is_path(option) ? " -r -F" : " -x", out);
     fputs(" -d '", out);
-    print_inside(out, option->help, "\\'", "'");
+    print_inside(out, option_help(option, help), "\\'", "'");
     fputs("'\n", out);
 }
 

@@ -20,11 +20,9 @@
 #include "cli/supervise.h"
 
 static Work *const works[COMMAND_COUNT] = {
-    [COMMAND_RENDER] = command_render,     [COMMAND_COMPILE] = command_compile,
-    [COMMAND_VALIDATE] = command_validate, [COMMAND_QUERY] = command_query,
-    [COMMAND_INFO] = command_info,         [COMMAND_DEVICES] = command_devices,
-    [COMMAND_CHECK] = command_check,       [COMMAND_DUMP] = command_dump,
-    [COMMAND_IMPORT] = command_import,     [COMMAND_EXPLAIN] = command_explain,
+#define COMMAND(id, name, function, arguments, files, summary, examples) [COMMAND_##id] = function,
+#include "cli/commands.def"
+#undef COMMAND
 };
 
 /* A standard stream that the caller closed would otherwise be given out again, and a picture

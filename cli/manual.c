@@ -40,8 +40,29 @@ static void print_title(FILE *out, const char *name, const char *summary)
     fputs("\n", out);
 }
 
+/* What the words mean, where more is to be said of them; what holds without the option is in
+   italics. */
+static void print_choices(FILE *out, const Choice *choices)
+{
+    if (!choices || !choices->about[0])
+        return;
+    fputs(".RS\n", out);
+    for (; choices->name; choices++) {
+        if (!choices->name[0])
+            continue;
+        bool asked = find_choice(choices->name, choices) == 0;
+        fputs(asked ? ".TP\n\\fB" : ".TP\n\\fI", out);
+        print_plain(out, choices->name);
+        fputs("\\fR\n", out);
+        print_plain(out, choices->about);
+        fputs("\n", out);
+    }
+    fputs(".RE\n", out);
+}
+
 static void print_option(FILE *out, const OptionInfo *option)
 {
+    char text[OPTION_TEXT];
     fputs(".TP\n", out);
     if (option->letter)
         fprintf(out, "\\fB\\-%c\\fR, ", option->letter);
@@ -50,12 +71,13 @@ static void print_option(FILE *out, const OptionInfo *option)
     fputs("\\fR", out);
     if (option->argument) {
         fputs(" \\fI", out);
-        print_plain(out, option->argument);
+        print_plain(out, option_argument(option, text));
         fputs("\\fR", out);
     }
     fputs("\n", out);
-    print_plain(out, option->help);
+    print_plain(out, option_help(option, text));
     fputs("\n", out);
+    print_choices(out, option->choices);
 }
 
 static void print_command_page(CommandId command, FILE *out)

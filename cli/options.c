@@ -6,35 +6,121 @@
  */
 #include "cli/options.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "cli/console.h"
 #include "cli/values.h"
 #include "compiler/base/text.h"
 
-#define ON(command)  (1u << COMMAND_##command)
-#define ON_ALL       ((1u << COMMAND_COUNT) - 1)
-#define ON_SCENE     (ON(RENDER) | ON(VALIDATE) | ON(QUERY))
-#define ON_COMPILING (ON_ALL & ~(ON(DEVICES) | ON(EXPLAIN) | ON(IMPORT)))
+#define ON(command)     (1u << COMMAND_##command)
+#define ON_ALL          ((1u << COMMAND_COUNT) - 1)
+#define ON_SCENE        (ON(RENDER) | ON(VALIDATE) | ON(QUERY))
+#define ON_COMPILING    (ON_ALL & ~(ON(DEVICES) | ON(EXPLAIN) | ON(IMPORT)))
+#define TEXT_OF(macro)  TEXT_OF_(macro)
+#define TEXT_OF_(words) #words
 
 const CommandInfo command_table[COMMAND_COUNT] = {
-#define COMMAND(id, name, arguments, files, summary, examples) \
+#define COMMAND(id, name, function, arguments, files, summary, examples) \
     [COMMAND_##id] = {name, arguments, files, summary, examples},
 #include "cli/commands.def"
 #undef COMMAND
 };
 
 const OptionInfo option_info[OPTION_COUNT] = {
-#define OPTION(id, letter, name, argument, commands, take, wants, help) \
-    [OPTION_##id] = {letter, name, argument, commands, wants, help},
+#define NO_MEMBER                  ""
+#define MEMBER(type, name, value)  ""
+#define DEFAULT(type, name, value) " (default: " #value ")"
+#define FLAG(member)               NULL, NULL
+#define SWITCH(member, choices)    NULL, choices
+#define CHOICE(member, choices)    NULL, choices
+#define WORD(take, choices)        NULL, choices
+#define LIST(take, choices, wants) wants, choices
+#define VALUE(take, wants)         wants, NULL
+#define OPTION(id, letter, name, argument, commands, member, value, help) \
+    [OPTION_##id] = {letter, name, argument, commands, help member, value},
 #include "cli/options.def"
-#undef OPTION
 };
 
 bool option_belongs(OptionId id, CommandId command)
 {
     return command < COMMAND_COUNT && (option_info[id].commands & (1u << command)) != 0;
 }
+
+/* ---- What is said about an option ---- */
+
+static void add(char text[OPTION_TEXT], const char *words)
+{
+    size_t length = strlen(text);
+    snprintf(text + length, OPTION_TEXT - length, "%s", words);
+}
+
+/* The choices, in front of the last of which stands another word. */
+static void add_choices(char text[OPTION_TEXT], const Choice *choices, const char *between,
+                        const char *last)
+{
+    const char *waits = NULL, *before = "";
+    for (; choices->name; choices++) {
+        if (find_choice(choices->name, choices) != 0) /* it cannot be asked for */
+            continue;
+        if (waits) {
+            add(text, before);
+            add(text, waits);
+            before = between;
+        }
+        waits = choices->name;
+    }
+    add(text, before[0] ? last : "");
+    add(text, waits);
+}
+
+static const char *with_choices(const OptionInfo *option, const char *given, char text[OPTION_TEXT])
+{
+    const char *mark = strstr(given, "{}");
+    text[0]          = '\0';
+    if (!mark)
+        return given;
+    snprintf(text, OPTION_TEXT, "%.*s", (int)(mark - given), given);
+    add_choices(text, option->choices, option->wants ? "," : ", ", option->wants ? "," : " or ");
+    add(text, mark + 2);
+    return text;
+}
+
+const char *option_argument(const OptionInfo *option, char text[OPTION_TEXT])
+{
+    text[0] = '\0';
+    if (option->argument[0])
+        return option->argument;
+    add_choices(text, option->choices, "|", "|");
+    return text;
+}
+
+const char *option_wants(const OptionInfo *option, char text[OPTION_TEXT])
+{
+    bool or_nothing = option->argument && option->argument[0] == '[';
+    if (or_nothing) {
+        with_choices(option, "{}", text);
+        add(text, " or nothing");
+        return text;
+    }
+    return with_choices(option, option->wants ? option->wants : "{}", text);
+}
+
+const char *option_help(const OptionInfo *option, char text[OPTION_TEXT])
+{
+    return with_choices(option, option->help, text);
+}
+
+const char *option_words(const OptionInfo *option, char text[OPTION_TEXT])
+{
+    text[0] = '\0';
+    if (!option->choices || option->wants)
+        return NULL;
+    add_choices(text, option->choices, " ", " ");
+    return text;
+}
+
+/* ---- Parsing ---- */
 
 static bool add_output(Options *options, const char *file)
 {
@@ -55,25 +141,41 @@ static KrsStatus check_version(const Options *options, OptionId id, const char *
     return KRS_OK;
 }
 
+/* By the row's own means; `choice` is the number of the value among its choices. */
+static bool take_value(Options *options, OptionId id, const char *value, int choice)
+{
+    bool taken = false;
+    switch (id) {
+#define FLAG(member)               options->member = true
+#define SWITCH(member, choices)    (options->member = choice == 1, true)
+#define CHOICE(member, choices)    (options->member = choice, true)
+#define WORD(take, choices)        take
+#define LIST(take, choices, wants) take
+#define VALUE(take, wants)         take
+#define OPTION(id, letter, name, argument, commands, member, value, help) \
+    case OPTION_##id:                                                     \
+        taken = (value);                                                  \
+        break;
+#include "cli/options.def"
+    case OPTION_COUNT: break;
+    }
+    return taken;
+}
+
 /* Takes one option and its argument (NULL when it has none). */
 static KrsStatus option_take(Options *options, OptionId id, const char *value)
 {
-    bool      taken  = false;
-    KrsStatus status = check_version(options, id, value);
+    const OptionInfo *info   = &option_info[id];
+    bool              chosen = value && info->choices && !info->wants;
+    int               choice = chosen ? find_choice(value, info->choices) : 0;
+    char              wants[OPTION_TEXT];
+    KrsStatus         status = check_version(options, id, value);
     if (status != KRS_OK)
         return status;
-    switch (id) {
-#define OPTION(id, letter, name, argument, commands, take, wants, help) \
-    case OPTION_##id:                                                   \
-        taken = (take);                                                 \
-        break;
-#include "cli/options.def"
-#undef OPTION
-    case OPTION_COUNT: break;
-    }
-    return taken ? KRS_OK
-                 : say_usage(options, "--%s wants %s, not `%s`", option_info[id].name,
-                             option_info[id].wants, value);
+    if (choice >= 0 && take_value(options, id, value, choice))
+        return KRS_OK;
+    return say_usage(options, "--%s wants %s, not `%s`", info->name, option_wants(info, wants),
+                     value);
 }
 
 static KrsStatus unknown_option(const Options *options, const char *name, size_t length)
@@ -114,6 +216,7 @@ static OptionId option_find_letter(const Options *options, char letter)
 static KrsStatus take_with_argument(Options *options, OptionId id, const char *glued, int *next)
 {
     const OptionInfo *info = &option_info[id];
+    char              argument[OPTION_TEXT];
     if (!info->argument) {
         if (glued)
             return say_usage(options, "--%s takes no argument", info->name);
@@ -122,10 +225,11 @@ static KrsStatus take_with_argument(Options *options, OptionId id, const char *g
     if (glued)
         return option_take(options, id, glued);
     const char *word = *next < options->argc ? options->argv[*next] : NULL;
-    if (info->argument[0] == '[' && !(word && strcmp(word, "json") == 0))
+    if (info->argument[0] == '[' && !(word && find_choice(word, info->choices) >= 0))
         return option_take(options, id, NULL);
     if (!word)
-        return say_usage(options, "--%s needs an argument: %s", info->name, info->argument);
+        return say_usage(options, "--%s needs an argument: %s", info->name,
+                         option_argument(info, argument));
     ++*next;
     return option_take(options, id, word);
 }
@@ -209,15 +313,14 @@ static KrsStatus check_together(Options *options)
 
 KrsStatus options_parse(Options *options, int argc, char **argv)
 {
-    options->argc     = argc;
-    options->argv     = argv;
-    options->command  = COMMAND_COUNT;
-    options->aovs     = AOV_ALL;
-    options->fps      = 24;
-    options->points   = 20000;
-    options->seconds  = 2;
-    options->farthest = 1e9; /* far beyond any scene, and finite */
-    options->deadline = 60;
+    options->argc    = argc;
+    options->argv    = argv;
+    options->command = COMMAND_COUNT;
+#define NO_MEMBER
+#define MEMBER(type, name, value)                                         options->name = value;
+#define DEFAULT(type, name, value)                                        options->name = value;
+#define OPTION(id, letter, name, argument, commands, member, value, help) member
+#include "cli/options.def"
     if (argc < 2)
         return say_usage(options, "no command is given");
     KrsStatus status     = find_command(options, argv[1]);
@@ -270,13 +373,13 @@ void help_print_command(CommandId command, FILE *out)
         if (!option_belongs(id, command))
             continue;
         const OptionInfo *option = &option_info[id];
-        char              form[64], letter[8] = "";
+        char              form[64], letter[8] = "", argument[OPTION_TEXT] = "", text[OPTION_TEXT];
         if (option->letter)
             snprintf(letter, sizeof letter, "-%c, ", option->letter);
         snprintf(form, sizeof form, "%s--%s %s", letter, option->name,
-                 option->argument ? option->argument : "");
+                 option->argument ? option_argument(option, argument) : "");
         bool wide = strlen(form) > 28;
         fprintf(out, "    %-28s%s %s\n", form, wide ? "\n                                " : "",
-                option->help);
+                option_help(option, text));
     }
 }

@@ -9,19 +9,19 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "cli/choices.h"
 #include "compiler/base/arena.h"
 #include "compiler/krs.h"
 #include "runtime/film/film.h"
 
 enum {
-    MANY_FILES      = -1,    /* a command that takes one or more files */
-    SIDE_LIMIT      = 16384, /* pixels along a side of a picture in this version */
-    SAMPLES_LIMIT   = 65536,
-    DEVICE_PATIENCE = 5 /* deadlines that one step of a device may take */
+    MANY_FILES      = -1,  /* a command that takes one or more files */
+    OPTION_TEXT     = 256, /* bytes of what is said about an option, at most */
+    DEVICE_PATIENCE = 5    /* deadlines that one step of a device may take */
 };
 
 typedef enum CommandId {
-#define COMMAND(id, name, arguments, files, summary, examples) COMMAND_##id,
+#define COMMAND(id, name, function, arguments, files, summary, examples) COMMAND_##id,
 #include "cli/commands.def"
 #undef COMMAND
     COMMAND_COUNT
@@ -36,33 +36,30 @@ typedef struct CommandInfo {
 extern const CommandInfo command_table[COMMAND_COUNT];
 
 typedef enum OptionId {
-#define OPTION(id, letter, name, argument, commands, take, wants, help) OPTION_##id,
+#define OPTION(id, letter, name, argument, commands, member, value, help) OPTION_##id,
 #include "cli/options.def"
-#undef OPTION
     OPTION_COUNT
 } OptionId;
 
+/* A row of options.def; {} in a text stands for the choices. */
 typedef struct OptionInfo {
-    char        letter;          /* 0: none */
-    const char *name, *argument; /* `argument` NULL: it takes none */
-    unsigned    commands;
-    const char *wants, *help;
+    char          letter;          /* 0: none */
+    const char   *name, *argument; /* `argument` NULL: it takes none; "": the choices */
+    unsigned      commands;
+    const char   *help, *wants;
+    const Choice *choices; /* NULL: other values; with `wants` these are for lists of them */
 } OptionInfo;
 
 extern const OptionInfo option_info[OPTION_COUNT];
 
-bool option_belongs(OptionId id, CommandId command);
+/* Texts of a row, with its choices in place. */
+const char *option_argument(const OptionInfo *option, char text[OPTION_TEXT]);
+const char *option_wants(const OptionInfo *option, char text[OPTION_TEXT]);
+const char *option_help(const OptionInfo *option, char text[OPTION_TEXT]);
+/* Its choices with blanks between; NULL: other values are possible. */
+const char *option_words(const OptionInfo *option, char text[OPTION_TEXT]);
 
-/* What `--aov` chooses; colour and alpha are always there. */
-typedef enum Aov {
-    AOV_Z      = 1,
-    AOV_P      = 2,
-    AOV_N      = 4,
-    AOV_ALBEDO = 8,
-    AOV_ID     = 16,
-    AOV_STEPS  = 32,
-    AOV_ALL    = 63
-} Aov;
+bool option_belongs(OptionId id, CommandId command);
 
 typedef enum When { WHEN_AUTO, WHEN_ALWAYS, WHEN_NEVER } When;
 typedef enum StatsForm { STATS_NONE, STATS_TEXT, STATS_JSON } StatsForm;
@@ -87,7 +84,6 @@ typedef struct Limits {
 
 typedef struct Options {
     CommandId command;
-    bool      help;
     int       argc; /* the whole command line, for a report of a crash */
     char    **argv;
 
@@ -106,35 +102,15 @@ typedef struct Options {
     double zones[KRS_MOST_ZONES][4];
     size_t zone_count;
 
-    uint32_t      width, height, samples;          /* 0: not given */
-    const char   *camera, *device, *cache, *after; /* NULL: not given */
-    bool          cropped;
-    uint32_t      crop[4]; /* x, y, width, height */
-    bool          animated;
-    uint32_t      first_frame, last_frame;
-    double        fps, time;
-    unsigned      aovs;
-    bool          exposed, tone_mapped; /* --exposure, --tone-map were given */
-    double        exposure;
-    ToneMap       tone_map;
-    bool          no_beams, no_upsampling, no_occlusion, no_filter, area_shadows;
-    KrsEarlyOuts  early_outs;
-    KrsComponents components;
-    KrsNormals    normals;
-    double        error; /* 0: not given */
-    KrsTrace      trace;
-    KrsSchedule   schedule;
-    uint64_t      seed, points;
-    double        seconds;  /* of the search of `krs validate` */
-    double        deadline; /* seconds */
-    Limits        limits;
-    const char   *root; /* NULL: not given */
-    bool          untrusted;
-    double        tolerance, farthest; /* of rays that are asked about; tolerance 0: not given */
-    bool          on_device;
-    StatsForm     stats;
-    bool          stamp, binary, json, no_device, json_diagnostics, quiet;
-    When          color;
+    bool     animated; /* --frames */
+    uint32_t first_frame, last_frame;
+
+    KrsRenderOptions how; /* what the rows put there; all else is 0 */
+#define NO_MEMBER
+#define MEMBER(type, name, value)                                         type name;
+#define DEFAULT(type, name, value)                                        type name;
+#define OPTION(id, letter, name, argument, commands, member, value, help) member
+#include "cli/options.def"
 
     Arena *arena; /* for whatever a command needs until the process ends */
 } Options;

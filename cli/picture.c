@@ -14,43 +14,27 @@
 #include "runtime/writer/exr.h"
 #include "runtime/writer/png.h"
 
-/* One channel of an EXR: a plane of KrsPicture, how many samples it has per pixel, and which
-   of them this is. */
-typedef struct ChannelRow {
-    const char *name;
-    SampleType  type;
-    unsigned    aov; /* bit of Aov; 0: always */
+/* An array of KrsPicture: how many numbers it has per pixel, and the channel of an EXR for each. */
+typedef struct PlaneArray {
     KrsPlane    plane;
-    size_t      offset, stride, index;
-} ChannelRow;
+    size_t      offset, numbers;
+    SampleType  type;
+    const char *channels[4];
+} PlaneArray;
 
-#define PLANE(member) offsetof(KrsPicture, member)
-static const ChannelRow channel_rows[] = {
-    {"R", SAMPLE_HALF, 0, KRS_PLANE_COLOR, PLANE(color), 4, 0},
-    {"G", SAMPLE_HALF, 0, KRS_PLANE_COLOR, PLANE(color), 4, 1},
-    {"B", SAMPLE_HALF, 0, KRS_PLANE_COLOR, PLANE(color), 4, 2},
-    {"A", SAMPLE_HALF, 0, KRS_PLANE_COLOR, PLANE(color), 4, 3},
-    {"Z", SAMPLE_FLOAT, AOV_Z, KRS_PLANE_DEPTH, PLANE(depth), 1, 0},
-    {"P.X", SAMPLE_FLOAT, AOV_P, KRS_PLANE_POSITION, PLANE(position), 3, 0},
-    {"P.Y", SAMPLE_FLOAT, AOV_P, KRS_PLANE_POSITION, PLANE(position), 3, 1},
-    {"P.Z", SAMPLE_FLOAT, AOV_P, KRS_PLANE_POSITION, PLANE(position), 3, 2},
-    {"N.X", SAMPLE_FLOAT, AOV_N, KRS_PLANE_NORMAL, PLANE(normal), 3, 0},
-    {"N.Y", SAMPLE_FLOAT, AOV_N, KRS_PLANE_NORMAL, PLANE(normal), 3, 1},
-    {"N.Z", SAMPLE_FLOAT, AOV_N, KRS_PLANE_NORMAL, PLANE(normal), 3, 2},
-    {"albedo.R", SAMPLE_HALF, AOV_ALBEDO, KRS_PLANE_ALBEDO, PLANE(albedo), 3, 0},
-    {"albedo.G", SAMPLE_HALF, AOV_ALBEDO, KRS_PLANE_ALBEDO, PLANE(albedo), 3, 1},
-    {"albedo.B", SAMPLE_HALF, AOV_ALBEDO, KRS_PLANE_ALBEDO, PLANE(albedo), 3, 2},
-    {"id.component", SAMPLE_UINT, AOV_ID, KRS_PLANE_IDS, PLANE(component), 1, 0},
-    {"id.level", SAMPLE_UINT, AOV_ID, KRS_PLANE_IDS, PLANE(level), 1, 0},
-    {"id.instance", SAMPLE_UINT, AOV_ID, KRS_PLANE_IDS, PLANE(instance), 1, 0},
-    {"steps", SAMPLE_UINT, AOV_STEPS, KRS_PLANE_STEPS, PLANE(steps), 1, 0},
+static const PlaneArray plane_arrays[] = {
+#define KRS_PLANE(id, bit, aov, about, arrays) arrays
+#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
+    {KRS_PLANE_##plane, offsetof(KrsPicture, member), numbers, SAMPLE_##sample, {__VA_ARGS__}},
+#include "runtime/planes.def"
+#undef KRS_ARRAY
 };
-enum { CHANNELS = sizeof channel_rows / sizeof *channel_rows, TEXTS = 8 };
-
-static bool is_wanted(const Options *options, const ChannelRow *row)
-{
-    return row->aov == 0 || (options->aovs & row->aov) != 0;
-}
+#undef KRS_PLANE
+enum {
+    PLANE_ARRAYS = sizeof plane_arrays / sizeof *plane_arrays,
+    CHANNELS     = 4 * PLANE_ARRAYS, /* at most */
+    TEXTS        = 8
+};
 
 FileForm file_form(const char *path)
 {
@@ -62,11 +46,7 @@ FileForm file_form(const char *path)
 
 uint32_t picture_planes(const Options *options, bool exr)
 {
-    uint32_t planes = KRS_PLANE_COLOR;
-    for (size_t i = 0; exr && i < CHANNELS; i++)
-        if (is_wanted(options, &channel_rows[i]))
-            planes |= channel_rows[i].plane;
-    return planes;
+    return KRS_PLANE_COLOR | (exr ? options->aovs : 0);
 }
 
 /* "radius=0.5 tint=[1, 0.5, 0]": every param of the scene, in its order. */
@@ -141,16 +121,17 @@ static size_t collect_channels(const Options *options, const KrsPicture *source,
                                PictureChannel channels[CHANNELS])
 {
     size_t count = 0;
-    for (size_t i = 0; i < CHANNELS; i++) {
-        const ChannelRow *row = &channel_rows[i];
-        if (!is_wanted(options, row))
+    for (size_t i = 0; i < PLANE_ARRAYS; i++) {
+        const PlaneArray *array = &plane_arrays[i];
+        if (!(array->plane & picture_planes(options, true)))
             continue;
-        const char *plane; /* floats and integers alike: the pointer is taken as bytes */
-        memcpy(&plane, (const char *)source + row->offset, sizeof plane);
-        channels[count++] = (PictureChannel){.name    = row->name,
-                                             .type    = row->type,
-                                             .samples = plane + row->index * sizeof(float),
-                                             .stride  = row->stride};
+        const char *samples; /* floats and integers alike: the pointer is taken as bytes */
+        memcpy(&samples, (const char *)source + array->offset, sizeof samples);
+        for (size_t k = 0; k < array->numbers; k++)
+            channels[count++] = (PictureChannel){.name    = array->channels[k],
+                                                 .type    = array->type,
+                                                 .samples = samples + k * sizeof(float),
+                                                 .stride  = array->numbers};
     }
     return count;
 }

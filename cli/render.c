@@ -4,6 +4,7 @@
  * Whatever can be wrong with the command line or the outputs is found before the work begins.
  */
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -176,6 +177,11 @@ static KrsStatus check_limit(const Options *options, const char *name, uint64_t 
     return KRS_BAD_SCENE;
 }
 
+static uint32_t first_of(uint32_t asked, uint32_t scene, uint32_t otherwise)
+{
+    return asked ? asked : scene ? scene : otherwise;
+}
+
 /* Size, crop and what else the options and the scene's image block say together. */
 static KrsStatus choose_how(Render *render)
 {
@@ -192,48 +198,30 @@ static KrsStatus choose_how(Render *render)
         say("the scene asks for the integrator `%s`, which is not in this version; it is rendered "
             "by preview",
             integrator);
-    uint32_t width   = options->width ? options->width : view.image.width ? view.image.width : 1280;
-    uint32_t height  = options->height     ? options->height
-                       : view.image.height ? view.image.height
-                                           : 720;
-    uint32_t samples = options->samples     ? options->samples
-                       : view.image.samples ? view.image.samples
-                                            : 1;
-    status = check_limit(options, "pixels", (uint64_t)width * height, options->limits.pixels,
-                         !(options->width && options->height));
+    KrsRenderOptions *how     = &render->how;
+    const uint32_t    asked   = options->how.samples;
+    const uint32_t    samples = first_of(asked, view.image.samples, KRS_DEFAULT_SAMPLES);
+    const KrsWindow  *crop    = &options->how.crop;
+    *how                      = options->how;
+    how->width                = first_of(how->width, view.image.width, KRS_DEFAULT_WIDTH);
+    how->height               = first_of(how->height, view.image.height, KRS_DEFAULT_HEIGHT);
+    status                    = check_limit(options, "pixels", (uint64_t)how->width * how->height,
+                                            options->limits.pixels, options->how.width == 0);
     if (status == KRS_OK)
-        status = check_limit(options, "samples", samples, options->limits.samples,
-                             !options->samples);
+        status = check_limit(options, "samples", samples, options->limits.samples, asked == 0);
     if (status != KRS_OK)
         return status;
-    const uint32_t *crop = options->crop;
-    if (options->cropped && (crop[0] + crop[2] > width || crop[1] + crop[3] > height))
-        return say_usage(options, "--crop %u,%u,%u,%u is not inside of a picture of %ux%u", crop[0],
-                         crop[1], crop[2], crop[3], width, height);
+    if (crop->x + crop->width > how->width || crop->y + crop->height > how->height)
+        return say_usage(options, "--crop %u,%u,%u,%u is not inside of a picture of %ux%u", crop->x,
+                         crop->y, crop->width, crop->height, how->width, how->height);
     bool exr = false;
     for (size_t i = 0; i < render->output_count; i++)
         exr = exr || file_form(render->outputs[i]) == FORM_EXR;
-    render->how = (KrsRenderOptions){.width         = width,
-                                     .height        = height,
-                                     .samples       = options->samples,
-                                     .camera        = camera,
-                                     .seed          = options->seed,
-                                     .error         = options->error,
-                                     .trace         = options->trace,
-                                     .schedule      = options->schedule,
-                                     .components    = options->components,
-                                     .no_beams      = options->no_beams,
-                                     .no_upsampling = options->no_upsampling,
-                                     .no_occlusion  = options->no_occlusion,
-                                     .no_filter     = options->no_filter,
-                                     .normals       = options->normals,
-                                     .shadows       = options->area_shadows ? KRS_SHADOWS_AREA
-                                                                            : KRS_SHADOWS_SOFT,
-                                     .planes        = picture_planes(options, exr),
-                                     .progress      = show_progress,
-                                     .user          = render};
-    if (options->cropped)
-        render->how.crop = (KrsWindow){crop[0], crop[1], crop[2], crop[3]};
+    how->camera   = camera;
+    how->seed     = options->seed;
+    how->planes   = picture_planes(options, exr);
+    how->progress = show_progress;
+    how->user     = render;
     return KRS_OK;
 }
 
@@ -305,12 +293,11 @@ static KrsStatus write_outputs(const Render *render, const KrsPicture *picture, 
     const Options *options = render->options;
     KrsView        view;
     KrsStatus      status = krs_frame_view(render->frame, render->how.camera, &view);
-    PictureNotes   notes  = {.scene = render->scene,
-                             .time  = time,
-                             .film = {.tone_map = options->tone_map, .exposure = options->exposure}};
-    if (!options->exposed)
-        notes.film.exposure = view.image.exposure;
-    if (!options->tone_mapped && view.image.tone_map)
+    PictureNotes   notes  = {.scene = render->scene, .time = time};
+    notes.film.exposure   = isnan(options->exposure) ? view.image.exposure : options->exposure;
+    if (options->tone_map >= 0)
+        notes.film.tone_map = options->tone_map;
+    else if (view.image.tone_map)
         tone_map_find(view.image.tone_map, &notes.film.tone_map); /* the compiler knows its name */
     for (size_t i = 0; i < render->output_count && status == KRS_OK; i++)
         status = picture_write(options, picture, &notes,

@@ -70,20 +70,6 @@ static bool read_wholes(const char *word, char separator, uint64_t low, uint64_t
     return *word == '\0';
 }
 
-int find_choice(const char *word, const char *const *names, int count)
-{
-    for (int i = 1; i < count; i++)
-        if (strcmp(word, names[i]) == 0)
-            return i;
-    return 0;
-}
-
-bool read_either(const char *word, const char *yes, const char *no, bool *value)
-{
-    *value = strcmp(word, yes) == 0;
-    return *value || strcmp(word, no) == 0;
-}
-
 /* Colours are linear in all computations, as in the language. */
 static double linear_from_srgb(unsigned byte)
 {
@@ -164,21 +150,34 @@ bool read_zone(Options *options, const char *word)
     return zone[3] >= 0;
 }
 
-bool read_aovs(const char *word, unsigned *aovs)
+/* The plane of which a part of a list is the name; 0: none is. */
+static uint32_t find_aov(const char *word, size_t length)
 {
-    static const char *const names[] = {"Z", "P", "N", "albedo", "id", "steps"};
-    *aovs                            = 0;
-    if (strcmp(word, "all") == 0)
-        *aovs = AOV_ALL;
-    if (strcmp(word, "all") == 0 || strcmp(word, "none") == 0)
+    static const struct {
+        const char *name;
+        KrsPlane    plane;
+    } aovs[] = {
+#define KRS_PLANE(id, bit, aov, about, arrays) {aov, KRS_PLANE_##id},
+#include "runtime/planes.def"
+#undef KRS_PLANE
+    };
+    for (size_t i = 0; length > 0 && i < sizeof aovs / sizeof *aovs; i++)
+        if (strlen(aovs[i].name) == length && strncmp(aovs[i].name, word, length) == 0)
+            return aovs[i].plane;
+    return 0;
+}
+
+bool read_aovs(const char *word, uint32_t *aovs)
+{
+    *aovs = strcmp(word, "all") == 0 ? KRS_PLANE_ALL : 0;
+    if (*aovs || strcmp(word, "none") == 0)
         return true;
     for (;; word++) {
-        size_t length = strcspn(word, ","), i = 0;
-        while (i < 6 && (strlen(names[i]) != length || strncmp(names[i], word, length) != 0))
-            i++;
-        if (i == 6)
+        size_t   length = strcspn(word, ",");
+        uint32_t plane  = find_aov(word, length);
+        if (plane == 0)
             return false;
-        *aovs |= 1u << i;
+        *aovs |= plane;
         word += length;
         if (*word == '\0')
             return true;
@@ -272,56 +271,21 @@ bool read_frames(Options *options, const char *word)
     return true;
 }
 
-bool read_size(Options *options, const char *word)
+bool read_size(const char *word, KrsRenderOptions *how)
 {
     uint32_t size[2];
-    if (!read_wholes(word, 'x', 1, SIDE_LIMIT, size, 2))
+    if (!read_wholes(word, 'x', 1, KRS_MOST_SIDE, size, 2))
         return false;
-    options->width  = size[0];
-    options->height = size[1];
+    how->width  = size[0];
+    how->height = size[1];
     return true;
 }
 
-bool read_crop(Options *options, const char *word)
+bool read_crop(const char *word, KrsWindow *crop)
 {
-    options->cropped = true;
-    return read_wholes(word, ',', 0, SIDE_LIMIT, options->crop, 4) && options->crop[2] > 0 &&
-           options->crop[3] > 0;
-}
-
-bool read_early_outs(const char *word, KrsEarlyOuts *early_outs)
-{
-    bool off;
-    bool read   = read_either(word, "off", "on", &off);
-    *early_outs = off ? KRS_EARLY_OUTS_OFF : KRS_EARLY_OUTS_ON;
-    return read;
-}
-
-bool read_stats(const char *word, StatsForm *stats)
-{
-    *stats = word ? STATS_JSON : STATS_TEXT;
-    return !word || strcmp(word, "json") == 0;
-}
-
-bool read_stage(const char *word, const char **stage)
-{
-    static const char *const stages[] = {"tokens",   "syntax", "scene", "graph",
-                                         "simplify", "glsl",   "spirv"};
-    *stage                            = NULL;
-    for (size_t i = 0; i < sizeof stages / sizeof *stages; i++)
-        if (strcmp(word, stages[i]) == 0)
-            *stage = stages[i];
-    return *stage != NULL;
-}
-
-bool read_when(const char *word, When *when)
-{
-    static const char *const names[] = {
-        [WHEN_AUTO] = "auto", [WHEN_ALWAYS] = "always", [WHEN_NEVER] = "never"};
-    for (int i = WHEN_AUTO; i <= WHEN_NEVER; i++)
-        if (strcmp(word, names[i]) == 0) {
-            *when = (When)i;
-            return true;
-        }
-    return false;
+    uint32_t numbers[4];
+    if (!read_wholes(word, ',', 0, KRS_MOST_SIDE, numbers, 4))
+        return false;
+    *crop = (KrsWindow){numbers[0], numbers[1], numbers[2], numbers[3]};
+    return crop->width > 0 && crop->height > 0;
 }

@@ -15,23 +15,13 @@ bool read_whole(const char *word, uint64_t low, uint64_t high, uint64_t *value);
 bool read_count(const char *word, uint32_t low, uint32_t high, uint32_t *value);
 bool read_number(const char *word, double low, double high, double *value);
 
-/* One of two words. */
-bool read_either(const char *word, const char *yes, const char *no, bool *value);
-/* The number of a word among the names of an enum, whose first is the default and cannot be
-   asked for; 0 when it is not there. */
-int find_choice(const char *word, const char *const *names, int count);
-
-bool read_size(Options *options, const char *word);     /* "640x480" */
-bool read_crop(Options *options, const char *word);     /* "X,Y,WIDTH,HEIGHT" */
-bool read_frames(Options *options, const char *word);   /* "1..24" */
-bool read_setting(Options *options, const char *word);  /* "r=0.5", "at=[1,2,3]", "c=#rrggbb" */
-bool read_zone(Options *options, const char *word);     /* "X,Y,Z,R", of which there is room */
-bool read_exit_map(Options *options, const char *word); /* "71=33,75=99" */
-bool read_limits(const char *word, Limits *limits);     /* "time=10,memory=1G" */
-bool read_aovs(const char *word, unsigned *aovs);       /* "all", "none", "Z,N" */
-bool read_early_outs(const char *word, KrsEarlyOuts *early_outs);
-bool read_stats(const char *word, StatsForm *stats); /* NULL: as text */
-bool read_stage(const char *word, const char **stage);
-bool read_when(const char *word, When *when);
+bool read_size(const char *word, KrsRenderOptions *how); /* "640x480" */
+bool read_crop(const char *word, KrsWindow *crop);       /* "X,Y,WIDTH,HEIGHT" */
+bool read_frames(Options *options, const char *word);    /* "1..24" */
+bool read_setting(Options *options, const char *word);   /* "r=0.5", "at=[1,2,3]", "c=#rrggbb" */
+bool read_zone(Options *options, const char *word);      /* "X,Y,Z,R", of which there is room */
+bool read_exit_map(Options *options, const char *word);  /* "71=33,75=99" */
+bool read_limits(const char *word, Limits *limits);      /* "time=10,memory=1G" */
+bool read_aovs(const char *word, uint32_t *aovs);        /* "all", "none", "Z,N" */
 
 #endif

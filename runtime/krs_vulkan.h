@@ -38,8 +38,8 @@ typedef struct KrsDevice {
 /* A complaint of Vulkan's validation layers; the text lives until the callback returns. */
 typedef void KrsValidationCallback(void *user, const char *message);
 
-/* Called about once a second while the driver compiles and the processor is busy with it: what
-   takes long is not stuck. */
+/* Called about once a second while the driver compiles and the processor is busy with it: what takes
+   long is not stuck. */
 typedef void KrsWorkingCallback(void *user);
 
 /* Whether rays leave out by branches what is far away for its size.  The default is to, but not on
@@ -110,16 +110,15 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
                                 KrsRendering **rendering);
 void      krs_rendering_free(KrsRendering *rendering);
 
-/* The parts of a picture, as bits. */
+/* The parts of a picture, as bits: KRS_PLANE_COLOR and so on, a row of planes.def each. */
 typedef enum KrsPlane {
-    KRS_PLANE_COLOR    = 1,
-    KRS_PLANE_DEPTH    = 2,
-    KRS_PLANE_POSITION = 4,
-    KRS_PLANE_NORMAL   = 8,
-    KRS_PLANE_ALBEDO   = 16,
-    KRS_PLANE_IDS      = 32, /* component, level and instance */
-    KRS_PLANE_STEPS    = 64,
-    KRS_PLANE_ALL      = 127
+#define KRS_PLANE(id, bit, aov, about, arrays) KRS_PLANE_##id = 1 << bit,
+#include "runtime/planes.def"
+#undef KRS_PLANE
+    KRS_PLANE_ALL = 0
+#define KRS_PLANE(id, bit, aov, about, arrays) | 1 << bit
+#include "runtime/planes.def"
+#undef KRS_PLANE
 } KrsPlane;
 
 typedef struct KrsWindow {
@@ -129,91 +128,71 @@ typedef struct KrsWindow {
 /* Called between slices of work; `done` rises from 0 to 1.  False interrupts the render. */
 typedef bool KrsProgressCallback(void *user, double done);
 
-/* How rays advance; the pictures are the same but for the permitted error.  The default is what
-   `make bench` found fastest for the kind of device. */
+/* What there is to choose from has its rows, with what they mean, in choices.def. */
+
+/* How rays advance: KRS_TRACE_DEFAULT, KRS_TRACE_PLAIN and so on. */
 typedef enum KrsTrace {
-    KRS_TRACE_DEFAULT,
-    KRS_TRACE_PLAIN,     /* by the distance (Hart 1996) */
-    KRS_TRACE_RELAXED,   /* by 1.2 times as much, and back where that was too far (Keinert et al.
-                          2014, 3.1, corrected) */
-    KRS_TRACE_AUTO,      /* by as much as the slope of the last steps lets expect (automatic
-                          relaxation) */
-    KRS_TRACE_EXACT,     /* by what lies ahead on the ray: the next zero of polynomials; where there
-                          are none, plain.  By their Bernstein coefficients, */
-    KRS_TRACE_TAYLOR,    /* or by the slope that the Taylor series on the ray permits (Ban and
-                          Valasek 2023, with the safe one of its iterates), */
-    KRS_TRACE_ROOT_FREE, /* or by the radius within which it cannot be 0 */
-    KRS_TRACE_DIRECTIONAL, /* in sequences with maps that invert, by where the ray leaves empty
-                              balls that were found behind the maps; where there are none, plain; */
-    KRS_TRACE_BINARY,      /* or by balls that are tried, the next twice or half as large (KRS 2016,
-                            algorithm 2, corrected), if the camera is outside of everything, */
-    KRS_TRACE_PREDICTED,   /* or as large as the last lets expect */
+#define KRS_TRACE(id, name, about) KRS_TRACE_##id,
+#include "runtime/choices.def"
     KRS_TRACE_COUNT
 } KrsTrace;
 extern const char *const krs_trace_names[KRS_TRACE_COUNT]; /* "default", "plain", ... */
 
-/* How rays are assigned to the lanes of the device; the pictures are the same bit by bit. */
+/* How rays are dealt out to the lanes of the device: KRS_SCHEDULE_PIXEL and so on. */
 typedef enum KrsSchedule {
-    KRS_SCHEDULE_DEFAULT,
-    KRS_SCHEDULE_PIXEL,  /* a lane to a pixel until it is done */
-    KRS_SCHEDULE_REFILL, /* a lane that is done takes the next pixel of its tile */
-    KRS_SCHEDULE_QUEUE,  /* a few steps a pass, then those not done are queued up again */
+#define KRS_SCHEDULE(id, name, about) KRS_SCHEDULE_##id,
+#include "runtime/choices.def"
     KRS_SCHEDULE_COUNT
 } KrsSchedule;
 extern const char *const krs_schedule_names[KRS_SCHEDULE_COUNT];
 
-/* Whether heavy components of a scene are marched together, or each by itself: apart, in kernels of
-   their own, those in front first, or in one kernel, where each ray goes on with the component that
-   may come next (KRS 2016, 5.1).  The pictures are the same but for the permitted error.  The
-   default is apart on devices of type CPU, packed on others.  Together whatever is asked for when
-   the camera is inside of a solid. */
+/* Whether heavy components of a scene are marched by one distance, or each by itself:
+   KRS_COMPONENTS_TOGETHER and so on. */
 typedef enum KrsComponents {
-    KRS_COMPONENTS_DEFAULT,
-    KRS_COMPONENTS_TOGETHER,
-    KRS_COMPONENTS_APART,
-    KRS_COMPONENTS_PACKED,
+#define KRS_COMPONENTS(id, name, about) KRS_COMPONENTS_##id,
+#include "runtime/choices.def"
     KRS_COMPONENTS_COUNT
 } KrsComponents;
 extern const char *const krs_components_names[KRS_COMPONENTS_COUNT];
 
-/* Where the distance is looked at around a hit for its normal: see bench/README.md, Normals. */
+/* Where the distance is looked at around a hit for its normal: KRS_NORMALS_FORWARD and so on.
+   KRS_NORMALS_ANALYTIC wants a scene that was compiled with `gradients`; where points have an anchor
+   it is the octahedron.  Neither this nor KRS_NORMALS_FORWARD tells what is finer than a pixel: as
+   with no_filter. */
 typedef enum KrsNormals {
-    KRS_NORMALS_DEFAULT,     /* analytic where rays go by roots of polynomials, else the
-                                 octahedron: the least error for its price */
-    KRS_NORMALS_FORWARD,     /* there and a step along each axis: an error of first order */
-    KRS_NORMALS_TETRAHEDRON, /* at 4 corners: likewise */
-    KRS_NORMALS_OCTAHEDRON,  /* at 6, 8, 12 or 20 corners: an error of second order */
-    KRS_NORMALS_CUBE,
-    KRS_NORMALS_ICOSAHEDRON,
-    KRS_NORMALS_DODECAHEDRON,
-    KRS_NORMALS_ANALYTIC, /* by derivatives, at the hit alone, of a scene that was compiled with
-                                 `gradients`; by the octahedron for components in which something
-                                 has none (noise, fractals), and where points are camera-relative.
-                                 Neither these nor those by steps to one side tell what is finer
-                                 than a pixel: as with no_filter. */
+#define KRS_NORMALS(id, name, about) KRS_NORMALS_##id,
+#include "runtime/choices.def"
     KRS_NORMALS_COUNT
 } KrsNormals;
-extern const char *const krs_normals_names[KRS_NORMALS_COUNT]; /* "default", "forward", ... */
+extern const char *const krs_normals_names[KRS_NORMALS_COUNT];
 
-/* The shadows of lights that have a size. */
+/* The shadows of lights that have a size: KRS_SHADOWS_SOFT, KRS_SHADOWS_AREA. */
 typedef enum KrsShadows {
-    KRS_SHADOWS_SOFT, /* pixels share their rays to it with those around, the less the more they
-                         have: little noise with one */
-    KRS_SHADOWS_AREA, /* each pixel has its own: right with many, noise with few */
+#define KRS_SHADOWS(id, name, about) KRS_SHADOWS_##id,
+#include "runtime/choices.def"
     KRS_SHADOWS_COUNT
 } KrsShadows;
 extern const char *const krs_shadows_names[KRS_SHADOWS_COUNT];
 
+/* What is meant where neither the caller nor the scene says, and the most there may be. */
+#define KRS_DEFAULT_WIDTH   1280
+#define KRS_DEFAULT_HEIGHT  720
+#define KRS_DEFAULT_SAMPLES 1
+#define KRS_DEFAULT_ERROR   0.25
+#define KRS_MOST_SIDE       16384 /* pixels along a side of a picture */
+#define KRS_MOST_SAMPLES    65536
+#define KRS_MOST_ERROR      1000
+
 /* Zero asks for the defaults. */
 typedef struct KrsRenderOptions {
-    uint32_t      width, height; /* 0: what the scene says, else 1280x720; at most 16384 */
+    uint32_t      width, height; /* 0: what the scene says, or the default */
     KrsWindow     crop;          /* width 0: everything */
-    uint32_t      samples;       /* rays per pixel; 0: what the scene says, else 1; at most 65536 */
+    uint32_t      samples;       /* rays per pixel; 0: likewise */
     size_t        camera;        /* its number */
-    uint64_t      seed;   /* moves the samples of a pixel, but the first stays at its centre */
-    double        error;  /* permitted distance from the surface, pixels; 0: as above, or 0.25 */
-    uint32_t      planes; /* bits of KrsPlane; 0: all */
-    uint32_t      most_steps;    /* of a primary ray; 0: 16384, which is also the most */
+    uint64_t      seed;       /* moves the samples of a pixel, but the first stays at its centre */
+    double        error;      /* permitted distance from the surface, pixels; 0: likewise */
+    uint32_t      planes;     /* bits of KrsPlane; 0: all */
+    uint32_t      most_steps; /* of a primary ray; 0: 16384, which is also the most */
     uint32_t      steps_at_once; /* of a primary ray in one dispatch; 0: 512; at most 8192 */
     KrsTrace      trace;
     KrsSchedule   schedule;
@@ -232,13 +211,8 @@ typedef struct KrsRenderOptions {
 } KrsRenderOptions;
 
 typedef enum KrsPhase {
-    KRS_PHASE_BEAMS,
-    KRS_PHASE_PRIMARY,
-    KRS_PHASE_NORMALS,
-    KRS_PHASE_SHADOWS,
-    KRS_PHASE_OCCLUSION,
-    KRS_PHASE_SHADING,
-    KRS_PHASE_RESOLVE,
+#define KRS_PHASE(id, name) KRS_PHASE_##id,
+#include "runtime/choices.def"
     KRS_PHASE_COUNT
 } KrsPhase;
 extern const char *const krs_phase_names[KRS_PHASE_COUNT]; /* "beams", ... */
@@ -269,14 +243,13 @@ typedef struct KrsRenderStats {
 typedef struct KrsPicture {
     uint32_t  width, height; /* of the whole picture */
     KrsWindow window;        /* the part of it that was rendered */
-    float    *color;         /* R G B A, scene-linear Rec.709; A is the share of rays that hit */
-    float    *depth;         /* along the view axis; along the ray for a panorama */
-    float    *position;      /* x y z of the hit, world units */
-    float    *normal;        /* x y z, unit, outwards */
-    float    *albedo;        /* R G B */
-    uint32_t *component;     /* from 1; 0 for nothing */
-    uint32_t *level, *instance;
-    uint32_t *steps; /* distance evaluations spent on the ray through the centre */
+    /* color, depth, position, normal, albedo, component, level, instance and steps: planes.def says
+       what they are, and how many numbers a pixel has. */
+#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) type *member;
+#define KRS_PLANE(id, bit, aov, about, arrays)                           arrays
+#include "runtime/planes.def"
+#undef KRS_ARRAY
+#undef KRS_PLANE
     /* Row vectors times these: camera space is x right, y up, z along the view axis; in NDC
        x and y run from -1 to 1, and z, in perspective, from 0 at distance 0.001 to 1 at
        infinity.  For a panorama NDC is camera space. */

@@ -5,9 +5,9 @@
 set -u
 cd "$(dirname "$0")/.." || exit 1
 layers="compiler/base compiler/front compiler/graph compiler/geometry compiler/shader compiler
-        runtime/device runtime/tracer runtime/film runtime/writer runtime cli"
+        runtime/device runtime/shared runtime/tracer runtime/film runtime/writer runtime cli"
 api="compiler/base/ compiler/compile.h compiler/krs.h compiler/shader/spirv.h
-          runtime/krs_vulkan.h"
+          runtime/krs_vulkan.h runtime/planes.def runtime/choices.def"
 
 # Whether a header is one of the files, or in one of the folders (with a slash at the end).
 allowed() { # header, files and folders

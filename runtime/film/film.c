@@ -6,7 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-const char *const tone_map_names[TONE_MAP_COUNT] = {"neutral", "aces", "none"};
+const char *const tone_map_names[TONE_MAP_COUNT] = {
+#define TONE_MAP(id, name, about) name,
+#include "runtime/film/tone_maps.def"
+#undef TONE_MAP
+};
 
 bool tone_map_find(const char *name, ToneMap *tone_map)
 {

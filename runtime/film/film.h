@@ -8,9 +8,9 @@
 
 /* Curves from [0, infinity) to [0, 1]. */
 typedef enum ToneMap {
-    TONE_NEUTRAL, /* Khronos PBR Neutral: colours up to 0.8 as they are, highlights compressed */
-    TONE_ACES,    /* the fit of the ACES reference curve by Stephen Hill: filmic contrast */
-    TONE_NONE,    /* cut at 1 */
+#define TONE_MAP(id, name, about) TONE_##id,
+#include "runtime/film/tone_maps.def"
+#undef TONE_MAP
     TONE_MAP_COUNT
 } ToneMap;
 extern const char *const tone_map_names[TONE_MAP_COUNT]; /* "neutral", "aces", "none" */

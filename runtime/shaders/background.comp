@@ -12,8 +12,6 @@
 #include "light.glsl"
 #include "results.glsl"
 
-const uint FIRST = 0u; // control.phase; else it is about the light alone
-
 Light sun;
 float sky; // 1: with the sky
 bool  keeps_counts;
@@ -23,8 +21,9 @@ void begin_group()
     sun = find_light(control.light);
     if (control.light >= control.lights)
         sun.softness = 0.0; // there is none
-    sky = control.phase == FIRST ? 1.0 : 0.0;
-    keeps_counts = control.phase == FIRST && control.first_ray != 0u && is_wanted(COUNTS);
+    sky = control.phase == BACKGROUND_FIRST ? 1.0 : 0.0;
+    keeps_counts = control.phase == BACKGROUND_FIRST && control.first_ray != 0u &&
+                   is_wanted(ROW_COUNTS);
 }
 
 // In the order of quarters.  Indices are reserved for all pixels of the quarter at once: an atomic
@@ -38,7 +37,7 @@ void list_hits(uint quarter, uint hits)
         pixel_lists[quarter_at(LISTED_QUARTERS, atomicAdd(counts.quarters, 1u))] = quarter;
     }
     if (sparse != 0u)
-        sparse_at = band_pixels() + atomicAdd(counts.sparse, bitCount(sparse));
+        sparse_at = LIST_SPARSE * band_pixels() + atomicAdd(counts.sparse, bitCount(sparse));
     do { // as in pixels.glsl
         uint bit = hits & ~hits + 1u, slot = slot_of_bit(first, bit);
         if (hits != 0u)
@@ -58,10 +57,12 @@ void store_more(uint quarter, uint exist, uint hits)
         uint slot = slot_of_bit(first, left), index = index_of(pixel_of(slot));
         RayEnd  ray = find_end(index);
         if (keeps_counts)
-            results[COUNTS * band_pixels() + index] = uvec4(0u, ray.steps, 0u, 0u);
-        if (by_march_group && (hits & left & ~left + 1u) != 0u)
-            pixel_lists[(4u + ray.march_group) * band_pixels() +
-                        atomicAdd(counts.of_march_group[ray.march_group], 1u)] = slot;
+            results[ROW_COUNTS * band_pixels() + index] = uvec4(0u, ray.steps, 0u, 0u);
+        if (by_march_group && (hits & left & ~left + 1u) != 0u) {
+            uint first_of_list = (LIST_OF_MARCH_GROUP + ray.march_group) * band_pixels();
+            pixel_lists[first_of_list + atomicAdd(counts.of_march_group[ray.march_group], 1u)] =
+                slot;
+        }
     }
 }
 
@@ -91,18 +92,18 @@ void do_item(uint quarter)
         bool  exists = (exist >> bit & 1u) != 0u;
         RayEnd   ray = find_end(exists ? index : 0u);
         vec3  radiance = find_radiance(pixel);
-        hits |= uint(ray.state == HIT) << bit;
+        hits |= uint(ray.state == STATE_HIT) << bit;
         unresolved |= uint(ray.unresolved) << bit;
-        if (exists && ray.state != HIT)
+        if (exists && ray.state != STATE_HIT)
             add_light(index, radiance);
         bit++;
     } while (bit < 16u);
-    exist = control.phase == FIRST ? exist : 0u;
+    exist = control.phase == BACKGROUND_FIRST ? exist : 0u;
     unresolved &= exist;
     hits &= exist;
     if (unresolved != 0u)
         atomicAdd(counts.unresolved, bitCount(unresolved));
-    if (control.phase == FIRST) {
+    if (control.phase == BACKGROUND_FIRST) {
         pixel_lists[quarter_at(HITS_OF_QUARTERS, quarter)] = hits;
         pixel_lists[quarter_at(LIGHT_OF_QUARTERS, quarter)] = 0u; // for good where nothing is hit
     }

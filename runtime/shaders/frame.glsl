@@ -2,10 +2,11 @@
  * frame.glsl: what the kernels of a picture share: the frame, the work of a dispatch, the
  * state of each pixel between dispatches, and the rays of pixels.
  *
- * A picture is rendered in bands of rows; the buffers hold one band.  The C side of these blocks
- * is in runtime/tracer/blocks.h.
+ * A picture is rendered in bands of rows; the buffers hold one band.  What the host knows as well
+ * is in runtime/shared/blocks.h.
  */
 
+#include "runtime/shared/blocks.h"
 #include "grid.glsl"
 #ifdef PANORAMIC // a camera of the scene is: sines would be found for every ray
 #include "sines.glsl"
@@ -14,59 +15,6 @@
 const float PI       = 3.14159265358979;
 const float INFINITE = 1e38;
 const float ROUNDING = 2.4e-7; // four units in the last place of 1
-
-const uint PERSPECTIVE = 0u, ORTHOGRAPHIC = 1u, PANORAMA = 2u;
-const uint MARCHING = 0u, HIT = 1u, MISS = 2u, REFINING = 3u; // the state of a ray
-const uint FRESH = 0u, QUEUED = 1u, UNTAKEN = 2u; // control.source: where items come from
-
-struct Frame {
-    vec4  eye;               // w: no ray goes farther
-    vec4  right, up;         // to the edges of the picture, at distance 1 where it is perspective
-    vec4  forward;           // unit
-    vec4  low, high;         // a box around the scene
-    vec4  zenith, horizon, ground;
-    vec2  size;              // of the picture in pixels
-    float pixel_base;        // the width of a pixel at distance t is base + slope t
-    float pixel_slope;
-    float error;             // permitted distance from the surface, in pixels
-    float occlusion_reach;   // of the farthest occlusion tap
-    uint  most_steps;
-    float normal_reach;      // how far around a hit its normal is looked for, in pixels
-};
-
-struct Work {
-    uvec2 corner, extent;        // of the band, in pixels
-    vec2  offset;                // of the ray within its pixel
-    uint  steps;                 // of a lane in this dispatch
-    uint  first, groups, stride; // groups [first, first + groups), in an order of this stride
-};
-
-// What decides branches is here and not among the constants of a dispatch: lavapipe compiles a
-// kernel anew, and keeps it, for every set of constants that decides one.
-struct Control {
-    uint projection;
-    uint phase;          // of the kernel
-    uint first_ray;      // 1: it is the first of its pixel
-    uint light;          // which one a dispatch is about,
-    uint lights;         // of how many
-    uint ray;            // the number of the ray within its pixel
-    uint seed;           // moves what is drawn by lot
-    uint starts_from; // 1: rays start where the beams of their tiles end, 2: of quarters of these,
-    uint listed;         // and 1: there are rays in listed tiles only
-    uint source;         // of the items (schedule.glsl),
-    uint items;          // how many there are,
-    uint items_per_lane; // and at most for a lane
-    uint reading;        // where the queue or list that is read begins,
-    uint writing;        // and the one that is written
-    uint value;          // of a hit's LIGHTING that is looked for
-    uint rows;           // of results.glsl that are asked for, a bit each
-    uint by_march_group; // 1: rays tell which march group they hit, and are listed by it
-    uint no_occlusion;   // 1: occlusion is not looked for
-    uint window; // of the tiles of beams, counted in the band, the first: column | row << 16,
-    uint across;         // and how many in a row
-    uint rays;           // of each pixel
-    uint filters;        // 1: neighbours share what their rays find (shared.glsl)
-};
 
 // How a ray has ended.
 struct RayEnd {
@@ -81,22 +29,6 @@ struct RayEnd {
 // What is kept of a pixel, a light or a ray lies in memory in rows of four numbers, or one by one,
 // and is read as texels: of an access to a buffer lavapipe makes a loop over the lanes for each
 // number, which takes five times as long.  Buffers are for what is written, and what is counted.
-
-// The rows of a hit (HIT_ROWS in blocks.h).
-const uint FACING = 0u;   // normal, towards the side that the ray comes from; how even the surface
-                          // is within a pixel, 1: flat
-const uint LIGHTING = 1u; // occlusion, 1: open, and before that is known how steep the distance is
-                          // there; how much of three lights is visible
-const uint HIT_ROWS = 2u;
-const uint LIGHTS_AT_ONCE = 3u;
-
-struct Light {
-    vec3  vector;   // towards it (unit), or its position
-    float softness; // angular diameter, or radius
-    vec3  color;
-    uint  kind;
-};
-const uint POSITIONAL = 1u, CASTS_SHADOWS = 2u; // bits of its kind
 
 // Where the rays of the pixels end, then the beams of 8x8 tiles, then those of 32x32 tiles, then
 // those of the quarters of 8x8 tiles, tile by tile: bits of t, and the rest by pack_ray.
@@ -124,17 +56,7 @@ layout(std140, set = 1, binding = 0) uniform FrameBlock { Frame given_frame; };
 layout(push_constant) uniform WorkBlock { Work given_work; };
 layout(std430, set = 1, binding = 4) buffer ControlBlock {
     Control given_control;
-    uint    queued;            // counts rays that need another dispatch,
-    uint    untaken;           // and items that nobody has begun
-    uint    tiles;             // counts listed tiles,
-    uint    hit_count, sparse; // pixels that see something (hit_lists.glsl),
-    uint    remaining;         // and those that need rays of their own
-    uint    unresolved;        // counts rays that ran out of steps
-    uint    evaluations;       // counts distances spent on beams and rays; the most on one of these
-    uint    most_evaluations;
-    uint    wide;              // pixels that need a wide mean of a shadow (shadow.comp),
-    uint    quarters;          // and quarters of tiles that see something
-    uint    of_march_group[9]; // pixels that see something, by their march group
+    COUNTER_MEMBERS
 } counts;
 
 Frame   frame;
@@ -197,7 +119,7 @@ void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float b
 {
     vec2 plane = vec2(2.0 * image_point.x / frame.size.x - 1.0,
                       1.0 - 2.0 * image_point.y / frame.size.y);
-    origin = frame.eye.xyz;
+    origin = frame.eye;
     base = frame.pixel_base;
     slope = frame.pixel_slope;
     if (control.projection == PERSPECTIVE) {
@@ -214,7 +136,7 @@ void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float b
         float longitude = plane.x * PI, latitude = plane.y * 0.5 * PI;
         vec3  level = krs_cos(longitude) * frame.forward.xyz +
                       krs_sin(longitude) * frame.right.xyz;
-        origin = frame.eye.xyz;
+        origin = frame.eye;
         direction = krs_cos(latitude) * level + krs_sin(latitude) * frame.up.xyz;
     }
 #endif

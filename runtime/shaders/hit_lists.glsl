@@ -32,16 +32,12 @@ uint band_tiles()
     return tiles.x * tiles.y;
 }
 
-// Behind the lists: words of slots by shared.glsl, two lists of them, and words of tiles.  Tiles
-// may reach beyond the band, so there are more slots than pixels.
-const uint FIRST_SHARED = 13u, SHARED_LISTS = 2u;
-
+// Behind the lists of pixels: words of slots by shared.glsl, and words of quarters.  Tiles may
+// reach beyond the band, so there are more slots than pixels.
 uint shared_at(uint list, uint slot)
 {
-    return FIRST_SHARED * band_pixels() + 64u * band_tiles() * list + slot;
+    return LIST_SHARED * band_pixels() + 64u * band_tiles() * list + slot;
 }
-
-const uint LISTED_QUARTERS = 0u, HITS_OF_QUARTERS = 1u, LIGHT_OF_QUARTERS = 2u;
 
 uint quarter_at(uint list, uint number)
 {

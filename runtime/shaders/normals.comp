@@ -46,7 +46,7 @@ bool  derived;     // the normal is by derivatives
 vec3 find_backwards()
 {
     return control.projection == ORTHOGRAPHIC ? -frame.forward.xyz
-                                              : normalize(frame.eye.xyz - hit.position);
+                                              : normalize(frame.eye - hit.position);
 }
 
 // The taps of a stencil around the hit.

@@ -14,8 +14,6 @@
 #include "shared.glsl"
 #include "neighbours.glsl"
 
-const uint AT_SPARSE_PIXELS = 0u, WIDER = 1u, UPSAMPLED = 2u, OF_REMAINING = 3u; // control.phase
-
 // The mean is over places so near to the plane, in pixels, and asks for so much weight; it reaches
 // so many pixels.  The wider one reaches less far than the occluders are: nearer to them
 // occlusion changes within a pixel.
@@ -71,7 +69,8 @@ void begin_group() {}
 void do_item(uint number)
 {
     uint  slot = find_listed(control.reading + number);
-    bool  upsampled = control.phase == UPSAMPLED, wider = control.phase == WIDER;
+    bool  upsampled = control.phase == OCCLUSION_UPSAMPLED;
+    bool  wider = control.phase == OCCLUSION_WIDER;
     uint  list = wider ? MEANS_SHARED : RAYS_SHARED;
     int   spacing = wider ? 2 : upsampled ? 1 : 0;
     HitPoint hit = hit_point_of_slot(slot);
@@ -81,13 +80,13 @@ void do_item(uint number)
     vec2  sums = sum_openness(list, ivec2(pixel_of(slot)), hit, normal, spacing, max(radius, 1.0));
     float openness = sums.x / max(sums.y, 1e-6);
     // Remaining pixels ask sparse ones as well, so there the mean replaces the ray.
-    if (control.phase == AT_SPARSE_PIXELS || wider)
+    if (control.phase == OCCLUSION_AT_SPARSE_PIXELS || wider)
         store_shared(wider ? RAYS_SHARED : MEANS_SHARED, slot, find_depth(hit),
                      code_of_openness(openness));
     else if (!upsampled || sums.y > LEAST_WEIGHT)
         store_lighting(control.value, slot, openness);
     else
-        pixel_lists[2u * band_pixels() + atomicAdd(counts.remaining, 1u)] = slot;
+        pixel_lists[LIST_REMAINING * band_pixels() + atomicAdd(counts.remaining, 1u)] = slot;
 }
 
 #include "pixels.glsl"

@@ -37,8 +37,8 @@ void save_part()
 {
     saved_marches[scene_part] = vec4(march.t, march.clearance, march.step, march.slope);
     saved_states[scene_part] = march.state;
-    free_until[scene_part] = march.state == MISS ? INFINITE
-                           : march.state == HIT  ? march.t : march.t + march.clearance;
+    free_until[scene_part] = march.state == STATE_MISS ? INFINITE
+                           : march.state == STATE_HIT  ? march.t : march.t + march.clearance;
 }
 
 void select_next_part()
@@ -79,7 +79,7 @@ void begin_scene_parts(bool is_ray)
         within = is_ray ? within : vec2(0.0, farthest);
         march.t = max(start, within.x);
         end = min(farthest, within.y);
-        march.state = low.x <= high.x && march.t <= end ? MARCHING : MISS;
+        march.state = low.x <= high.x && march.t <= end ? STATE_MARCHING : STATE_MISS;
         exit_t[scene_part] = end;
         save_part();
     }

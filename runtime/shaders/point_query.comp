@@ -3,25 +3,14 @@
 /*
  * point_query.comp: the scene at given points.
  */
+#include "runtime/shared/blocks.h"
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
 
-layout(push_constant) uniform Work { uint count, taps; } work; // taps: 1, or 7 with normals
+layout(push_constant) uniform PointWorkBlock { PointWork work; };
 
-struct Answer {
-    vec3  color;
-    float distance;
-    vec3  emission;
-    float surface_distance;
-    float roughness, metallic;
-    uint  component, level;
-    uint  instance;
-    vec3  normal;   // the one to light
-    vec3  gradient; // of the distance, unit
-};
-
-layout(std430, set = 1, binding = 1) readonly buffer Points { vec4 points[]; };
+layout(std430, set = 1, binding = 1) readonly buffer Points { Point points[]; };
 layout(std430, set = 1, binding = 2) writeonly buffer Answers { Answer answers[]; };
 
 // The distance, then one step along each axis and back: their differences are the gradient.
@@ -58,7 +47,7 @@ void main()
         return;
     krs_prepare();
 
-    vec3 p = points[index].xyz;
+    vec3 p = points[index].point;
     vec4 gradient_and_distance = find_gradient(p);
     KrsSurface surface = krs_surface(p, gradient_and_distance.xyz, 0.0);
     Answer answer;

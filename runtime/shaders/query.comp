@@ -25,16 +25,11 @@ const float SEAM = 4.0;     // roundings
 
 // Where a ray begins nearer than this to a surface, rounding may have decided on which side.
 const float SIDE_ROUNDINGS = 64.0; // roundings
-const uint  SIDE_UNKNOWN = 0x80000000u, BEGINS_INSIDE = 0x40000000u; // as in blocks.h
 
-const float BEGINS_OUTSIDE = 1.0, ENDS_AT_WALLS = 2.0; // as in blocks.h
-
-// Two rows a ray: origin, and where it ends; unit direction, and the kind of ray.
-layout(std430, set = 1, binding = 5) readonly buffer QueryRays { vec4 query_rays[]; };
-// Bits of t; state; index of the point; steps, SIDE_UNKNOWN and BEGINS_INSIDE.
-layout(std430, set = 1, binding = 3) writeonly buffer RayHits { uvec4 ray_hits[]; };
+layout(std430, set = 1, binding = 5) readonly buffer QueryRays { QueryRay query_rays[]; };
+layout(std430, set = 1, binding = 3) writeonly buffer RayHits { RayHit ray_hits[]; };
 // Where rays hit, or were given up, for point_query.comp.
-layout(std430, set = 1, binding = 1) writeonly buffer Points { vec4 points[]; };
+layout(std430, set = 1, binding = 1) writeonly buffer Points { Point points[]; };
 
 uint  index;              // of the ray
 vec3  origin, direction;
@@ -45,31 +40,30 @@ float slope;              // of the clearance along the ray: a running mean
 float side;               // as of a RayEnd; 0: not known
 bool  ends_at_walls;      // all solids end at `end`
 uint  steps, state;
-uint  side_bits;          // SIDE_UNKNOWN, BEGINS_INSIDE: on which side the ray begins
+uint  side_bits;          // on which side the ray begins, as of a RayHit
 
 void exchange_item(uint number) {}
 void begin_group(uint first) {}
 
 void begin_item(uint number, bool saved)
 {
-    vec4 origin_and_end = query_rays[2u * number],
-         direction_and_kind = query_rays[2u * number + 1u];
+    QueryRay question = query_rays[number];
     index = number;
-    origin = origin_and_end.xyz;
-    direction = direction_and_kind.xyz;
-    end = origin_and_end.w;
+    origin = question.origin;
+    direction = question.direction;
+    end = question.end;
     rounding = largest(origin);
     t = clearance = step = 0.0;
     slope = -1.0;
-    side = direction_and_kind.w == BEGINS_OUTSIDE ? 1.0 : 0.0;
-    ends_at_walls = direction_and_kind.w == ENDS_AT_WALLS;
+    side = question.kind == float(BEGINS_OUTSIDE) ? 1.0 : 0.0;
+    ends_at_walls = question.kind == float(ENDS_AT_WALLS);
     steps = side_bits = 0u;
-    state = end >= 0.0 ? MARCHING : MISS;
+    state = end >= 0.0 ? STATE_MARCHING : STATE_MISS;
 }
 
 bool item_needs_step()
 {
-    return (state == MARCHING || state == REFINING) && steps < frame.most_steps;
+    return (state == STATE_MARCHING || state == STATE_REFINING) && steps < frame.most_steps;
 }
 
 // Where branches save work, components that are far away for their size are left out.
@@ -96,10 +90,10 @@ void refine(float last_clearance, float new_clearance, float tolerance)
     float along = last_clearance > new_clearance
                       ? clamp(last_clearance / (last_clearance - new_clearance), 0.0, 2.0)
                       : 0.0;
-    bool  accurate = step - clearance <= 2.0 * tolerance || state == REFINING;
+    bool  accurate = step - clearance <= 2.0 * tolerance || state == STATE_REFINING;
     step *= along;
     t += accurate ? step : 0.0;
-    state = !accurate ? REFINING : t <= end ? HIT : MISS;
+    state = !accurate ? STATE_REFINING : t <= end ? STATE_HIT : STATE_MISS;
 }
 
 void take_distance(float distance)
@@ -109,15 +103,15 @@ void take_distance(float distance)
     if (side == 0.0) {
         side = distance < 0.0 ? -1.0 : 1.0;
         side_bits = abs(distance) > SIDE_ROUNDINGS * least ? 0u
-                    : distance < 0.0                 ? SIDE_UNKNOWN | BEGINS_INSIDE
-                                                     : SIDE_UNKNOWN;
+                    : distance < 0.0                 ? QUERY_SIDE_UNKNOWN | QUERY_BEGINS_INSIDE
+                                                     : QUERY_SIDE_UNKNOWN;
     }
     float seam = side < 0.0 ? SEAM * least : 0.0;
     float new_clearance = side * distance + seam;
     float unverified = step - clearance; // a surface may hide in an interval of this length
     steps++;
     // Twice: a step of `tolerance` beyond the clearance may be rounded up.
-    if (state == REFINING ||
+    if (state == STATE_REFINING ||
         (new_clearance <= 0.0 && unverified <= frame.error + 2.0 * tolerance)) {
         refine(clearance - seam, new_clearance - seam, tolerance);
     } else if (new_clearance > 0.0 && unverified <= new_clearance + 1.01 * tolerance) {
@@ -129,7 +123,7 @@ void take_distance(float distance)
 #else
         step = new_clearance * max(1.0, 2.0 / (1.0 - min(slope, 0.98))) + tolerance;
 #endif
-        state = at + new_clearance > end ? MISS : MARCHING;
+        state = at + new_clearance > end ? STATE_MISS : STATE_MARCHING;
     } else {
         step = max(0.5 * (step + clearance - max(new_clearance, 0.0)), clearance + tolerance);
         slope = -1.0;
@@ -139,15 +133,15 @@ void take_distance(float distance)
 void end_item()
 {
     uint point = 0u;
-    if (state == MISS && side < 0.0 && ends_at_walls) {
-        state = HIT;
+    if (state == STATE_MISS && side < 0.0 && ends_at_walls) {
+        state = STATE_HIT;
         t = end;
     }
-    if (state != MISS) {
+    if (state != STATE_MISS) {
         point = atomicAdd(counts.hit_count, 1u);
-        points[point] = vec4(origin + t * direction, 0.0);
+        points[point] = Point(origin + t * direction, 0.0);
     }
-    ray_hits[index] = uvec4(floatBitsToUint(t), state, point, steps | side_bits);
+    ray_hits[index] = RayHit(t, state, point, steps | side_bits);
 }
 
 void save_item() {}

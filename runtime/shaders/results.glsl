@@ -1,14 +1,9 @@
 /*
  * results.glsl: what becomes of each pixel, in rows of four numbers: first the colours of all
  * pixels of the band, then their places, and so on.  Rows that are not asked for are not written.
- * The first ray of a pixel goes through its centre and gives everything but the colour.
+ * The first ray of a pixel goes through its centre and gives everything but the colour.  The rows
+ * are in runtime/shared/blocks.h.
  */
-const uint COLORS = 0u;    // floats, summed over the rays
-const uint POSITIONS = 1u; // floats: position; depth
-const uint NORMALS = 2u; // floats, and component, 0: nothing, all else but colour and steps is void
-const uint ALBEDOS = 3u;   // floats, and level
-const uint COUNTS = 4u;    // instance; steps
-
 layout(std430, set = 1, binding = 3) writeonly buffer Colors { vec3 colors[]; }; // 16 bytes each
 #ifdef NO_TEXELS
 layout(std430, set = 1, binding = 3) buffer Results { uvec4 results[]; };
@@ -23,13 +18,13 @@ bool is_wanted(uint row) { return (control.rows >> row & 1u) != 0u; }
 
 vec4 find_color(uint index)
 {
-    return uintBitsToFloat(load_result(COLORS * band_pixels() + index));
+    return uintBitsToFloat(load_result(ROW_COLORS * band_pixels() + index));
 }
 
 // Of what has no alpha.
 void add_light(uint index, vec3 color)
 {
-    colors[COLORS * band_pixels() + index] = find_color(index).rgb + color;
+    colors[ROW_COLORS * band_pixels() + index] = find_color(index).rgb + color;
 }
 
 // What is not a number or infinite counts as black.

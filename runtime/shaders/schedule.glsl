@@ -54,13 +54,13 @@ void work_on_items(uint group, uint steps_allowed, inout uint steps)
          next = first;
     uint limit = min(first + LANES * control.items_per_lane, control.items);
     bool has_item = false, is_stepping, wants_item;
-    if (control.source == QUEUED) {
+    if (control.source == ITEMS_QUEUED) {
         has_item = first + lane < limit;
         if (has_item)
             begin_item(first + lane, true);
         next = limit;
     }
-    if (control.source == UNTAKEN)
+    if (control.source == ITEMS_UNTAKEN)
         next += taken[group];
     do {
         do { // until each lane has an item, or none is left
@@ -101,7 +101,7 @@ void work_on_items(uint group, uint steps_allowed, inout uint steps)
     else if (has_item)
         end_item();
     next = min(next, limit);
-    if (lane == 0u && control.source != QUEUED) {
+    if (lane == 0u && control.source != ITEMS_QUEUED) {
         taken[group] = next - first;
         if (next < limit)
             atomicAdd(counts.untaken, limit - next);
@@ -116,7 +116,7 @@ void work_on_items(uint group, uint steps_allowed, inout uint steps)
     if (number >= control.items)
         return;
     exchange_item(number);
-    begin_item(number, control.source == QUEUED);
+    begin_item(number, control.source == ITEMS_QUEUED);
     for (; may_take_step(steps, steps_allowed); steps++)
         take_distance(item_distance(item_position()));
     if (item_needs_step())

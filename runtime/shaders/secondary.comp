@@ -21,8 +21,6 @@
 #include "shared.glsl"
 #include "samples.glsl"
 
-const uint CONES = 0u, TO_LIGHT = 1u, OVER_HEMISPHERE = 2u; // control.phase
-
 const uint MOST_STEPS = 1024u;
 // Rays to lights start so many pixels above the surface, where it is even and where it is not, and
 // rays for occlusion by so much of their reach where that is more: finer detail does not count for
@@ -114,13 +112,13 @@ void aim_at_light(vec3 normal)
     vec3  toward = positional ? light.vector - start : light.vector;
     float light_distance = max(length(toward), 1e-12);
     vec3  axis = toward / light_distance;
-    end = positional ? light_distance : frame.eye.w;
+    end = positional ? light_distance : frame.farthest;
     if (is_cone) {
         float turned = max(-dot(normal, hit.direction), 1.0 / MOST_STRETCHED);
         begin_ray(normal, axis);
         spread = radius / light_distance;
         margin = CONE_MARGIN * hit.width / turned;
-        end = min(positional ? light_distance : frame.eye.w, find_end_of_cone());
+        end = min(positional ? light_distance : frame.farthest, find_end_of_cone());
         blocked = blocked || facing <= 2.0 * spread;
         step_limit = blocked ? 0u : MOST_STEPS;
         return;
@@ -157,9 +155,9 @@ void begin_group(uint first)
 {
     unresolved = 0u;
     light = find_light(control.light);
-    positional = (light.kind & POSITIONAL) != 0u;
+    positional = (light.kind & LIGHT_POSITIONAL) != 0u;
     radius = light_radius(light);
-    is_cone = control.phase == CONES;
+    is_cone = control.phase == RAYS_CONES;
 }
 
 void begin_item(uint number, bool saved)
@@ -172,7 +170,7 @@ void begin_item(uint number, bool saved)
     vec4 facing_and_evenness = load_hit(FACING, hit.slot);
     vec3 normal = facing_and_evenness.xyz;
     lift_in_pixels = mix(LIFT, LIFT_OF_EVEN, smoothstep(UNEVEN, EVEN, facing_and_evenness.w));
-    if (control.phase == OVER_HEMISPHERE)
+    if (control.phase == RAYS_OVER_HEMISPHERE)
         aim_over_hemisphere(normal);
     else
         aim_at_light(normal);
@@ -286,7 +284,7 @@ void end_item()
     unresolved += step_limit > 0u ? 1u : 0u;
     float visible = blocked || below_horizon ? 0.0 : 1.0;
     uint  code = below_horizon ? BELOW_HORIZON : blocked ? code_of_width(find_penumbra()) : LIT;
-    if (control.phase == OVER_HEMISPHERE) {
+    if (control.phase == RAYS_OVER_HEMISPHERE) {
         visible = blocked ? openness_of_hit(t / frame.occlusion_reach) : 1.0;
         code = code_of_openness(visible);
     }

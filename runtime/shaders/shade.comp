@@ -65,14 +65,14 @@ vec3 mean_color(Coat coat) { return coat.color * mix(coat.mean_length, 1.0, coat
 vec3 direct_light(Light light, HitPoint hit, Coat coat, vec3 facing, float visible)
 {
     vec3 toward = light.vector, color = light.color;
-    if ((light.kind & POSITIONAL) != 0u) {
+    if ((light.kind & LIGHT_POSITIONAL) != 0u) {
         vec3  difference = light.vector - hit.position;
         float square = max(dot(difference, difference), 1e-12);
         toward = difference * inversesqrt(square);
         color /= square;
     }
     // Who casts no shadows has not been looked for, but a surface that is turned away is dark.
-    if ((light.kind & CASTS_SHADOWS) == 0u)
+    if ((light.kind & LIGHT_CASTS_SHADOWS) == 0u)
         visible = dot(facing, toward) > 0.0 ? 1.0 : 0.0;
     return visible * color * reflected(coat.normal, coat.toward_eye, toward, mean_color(coat),
                                        coat.roughness, coat.metallic);
@@ -94,20 +94,20 @@ vec3 ambient(Coat coat, float openness)
 // long as what is.
 void store_results(uint index, uint rows, vec4 color, HitPoint hit, Coat coat, KrsSurface surface)
 {
-    vec3  difference = hit.position - frame.eye.xyz;
+    vec3  difference = hit.position - frame.eye;
     float along = dot(difference, frame.forward.xyz);
     float depth = control.projection == PANORAMA ? length(difference) : along;
     uvec3 normal = floatBitsToUint(hit.side * coat.normal);
     do { // as in pixels.glsl
         uint  row = uint(findLSB(rows));
         uvec4 numbers = floatBitsToUint(color);
-        if (row == POSITIONS)
+        if (row == ROW_POSITIONS)
             numbers = floatBitsToUint(vec4(hit.position, depth));
-        if (row == NORMALS)
+        if (row == ROW_NORMALS)
             numbers = uvec4(normal, surface.component);
-        if (row == ALBEDOS)
+        if (row == ROW_ALBEDOS)
             numbers = uvec4(floatBitsToUint(coat.color), surface.level);
-        if (row == COUNTS)
+        if (row == ROW_COUNTS)
             numbers = uvec4(surface.instance, hit.steps, 0u, 0u);
         results[row * band_pixels() + index] = numbers;
         rows &= rows - 1u;
@@ -115,7 +115,7 @@ void store_results(uint index, uint rows, vec4 color, HitPoint hit, Coat coat, K
 }
 
 uint  rows;       // of the results
-Light lights[3u]; // LIGHTS_AT_ONCE, as each lane fetches them once
+Light lights[LIGHTS_AT_ONCE]; // each lane fetches them once
 
 void begin_group()
 {
@@ -123,7 +123,7 @@ void begin_group()
     lights[0] = find_light(control.light);
     lights[1] = find_light(control.light + 1u);
     lights[2] = find_light(control.light + 2u);
-    rows = control.first_ray != 0u && control.light == 0u ? control.rows : 1u << COLORS;
+    rows = control.first_ray != 0u && control.light == 0u ? control.rows : 1u << ROW_COLORS;
 }
 
 void do_item(uint number)

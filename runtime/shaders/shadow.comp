@@ -18,8 +18,6 @@
 #include "shared.glsl"
 #include "neighbours.glsl"
 
-const uint NEAR = 0u, WIDE = 1u; // control.phase
-
 // The mean reaches so far, for the width of the penumbra; in pixels at least, and at least for a
 // second mean, where light falls straight, and where it is grazing.
 const float RADIUS_OF_PENUMBRA = 0.5, LEAST_RADIUS = 1.25, NEAR_RADIUS = 2.0, GRAZING = 0.25;
@@ -41,7 +39,7 @@ struct Disc {
 
 Disc find_disc(Light light, HitPoint hit)
 {
-    bool  positional = (light.kind & POSITIONAL) != 0u;
+    bool  positional = (light.kind & LIGHT_POSITIONAL) != 0u;
     vec3  toward = positional ? light.vector - hit.position : light.vector;
     float light_distance = max(length(toward), 1e-30);
     return Disc(toward / light_distance, light_radius(light) / light_distance);
@@ -118,7 +116,7 @@ void begin_group() {}
 void do_item(uint number)
 {
     uint  slot = find_listed(control.reading + number);
-    bool  wide = control.phase == WIDE;
+    bool  wide = control.phase == SHADOW_WIDE;
     HitPoint hit = hit_point_of_slot(slot);
     ivec2 pixel = ivec2(pixel_of(slot));
     uint  word = find_shared(RAYS_SHARED, slot), own = word & 255u;
@@ -131,7 +129,7 @@ void do_item(uint number)
     if (!wide)
         store_shared(MEANS_SHARED, slot, uintBitsToFloat(word), code_of_openness(visible));
     if (!wide && radius > NEAR_RADIUS * clamp(rise, GRAZING, 1.0))
-        pixel_lists[3u * band_pixels() + atomicAdd(counts.wide, 1u)] = slot;
+        pixel_lists[LIST_WIDE * band_pixels() + atomicAdd(counts.wide, 1u)] = slot;
     else
         store_lighting(control.value, slot, visible * find_fraction_above(disc, rise));
 }

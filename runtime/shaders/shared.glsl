@@ -9,7 +9,7 @@
 // Of the disc that a hit sees of a light; a directional one is 1 away.
 float light_radius(Light light)
 {
-    bool positional = (light.kind & POSITIONAL) != 0u;
+    bool positional = (light.kind & LIGHT_POSITIONAL) != 0u;
     return max(positional ? light.softness : krs_tan(0.5 * min(light.softness, 3.0)), 0.0);
 }
 
@@ -22,10 +22,6 @@ const float WIDTHS_A_DOUBLING = 8.0, NARROWEST_LOG = -4.0;
 const uint CLOSED = 1u;
 const float OPEN_CODES = 254.0;
 
-// Words of slots (hit_lists.glsl): of rays, and of means of these, whose codes are all from closed
-// to open.
-const uint RAYS_SHARED = 0u, MEANS_SHARED = 1u;
-
 // A pixel's ray, not a unit vector where that would cost a root: it is 1 along the view.
 void find_axis(vec2 image_point, out vec3 origin, out vec3 axis)
 {
@@ -33,7 +29,7 @@ void find_axis(vec2 image_point, out vec3 origin, out vec3 axis)
                       1.0 - 2.0 * image_point.y / frame.size.y);
     vec3  lateral = plane.x * frame.right.xyz + plane.y * frame.up.xyz;
     float spreads = control.projection == PERSPECTIVE ? 1.0 : 0.0;
-    origin = frame.eye.xyz + (1.0 - spreads) * lateral;
+    origin = frame.eye + (1.0 - spreads) * lateral;
     axis = frame.forward.xyz + spreads * lateral;
 #ifdef PANORAMIC
     float base, slope;
@@ -45,7 +41,7 @@ void find_axis(vec2 image_point, out vec3 origin, out vec3 axis)
 // How far along its axis a place is.
 float find_depth(HitPoint hit)
 {
-    float along = dot(hit.position - frame.eye.xyz, frame.forward.xyz);
+    float along = dot(hit.position - frame.eye, frame.forward.xyz);
 #ifdef PANORAMIC
     if (control.projection == PANORAMA)
         along = find_end(index_of(pixel_of(hit.slot))).t;

@@ -39,8 +39,7 @@
 #include "frame.glsl"
 
 const uint PLAIN = 1u, RELAXED = 2u, AUTOMATIC = 3u; // TRACE: as KrsTrace
-const uint RAYS = 0u, BEAMS_32 = 1u, BEAMS_8 = 2u, BEAMS_4 = 3u; // control.phase
-const uint MOST_BEAM_STEPS = 256u;                   // the rest is left to the rays
+const uint MOST_BEAM_STEPS = 256u; // the rest is left to the rays
 
 // The longest interval that may stay unverified: in permitted errors, and in pixels at most.  Twigs
 // of a tenth of a pixel lose less than 1 % by it (tests/oracle/coverage.c).
@@ -117,12 +116,14 @@ vec4  kept_starts, more_starts; // of the one, and of the other
 // Items go through tiles one after the other, and through the quarters of each.
 uint tile_of_item(uint number)
 {
-    return number >> (control.phase == RAYS ? 6u : control.phase == BEAMS_4 ? 2u : 0u);
+    return number >> (control.phase == TRACE_RAYS ? 6u : control.phase == TRACE_BEAMS_4 ? 2u : 0u);
 }
 
 uint quarter_of(uint number)
 {
-    return control.phase == RAYS ? number >> 4u & 3u : control.phase == BEAMS_4 ? number & 3u : 0u;
+    return control.phase == TRACE_RAYS      ? number >> 4u & 3u
+           : control.phase == TRACE_BEAMS_4 ? number & 3u
+                                            : 0u;
 }
 
 // The tile of a beam, counted in the band.
@@ -152,9 +153,9 @@ float load_start(uint end) { return uintBitsToFloat(ends[end].x); }
 // 8x8 has, and that one where its beam of 32x32 has.
 TileStart load_tile(uint number)
 {
-    bool  is_ray = control.phase == RAYS, large = control.phase == BEAMS_32;
-    bool  small = control.phase == BEAMS_4;
-    bool  exists = control.source != QUEUED && number <= tile_of_item(control.items - 1u);
+    bool  is_ray = control.phase == TRACE_RAYS, large = control.phase == TRACE_BEAMS_32;
+    bool  small = control.phase == TRACE_BEAMS_4;
+    bool  exists = control.source != ITEMS_QUEUED && number <= tile_of_item(control.items - 1u);
     if (exists && (is_ray || small) && control.listed != 0u)
         number = tiles[number];
     uvec2 cell = is_ray || small ? find_cell(number, count_8.x) : cell_of_beam(number);
@@ -201,7 +202,7 @@ void exchange_item(uint number)
 #else
     TileStart found = load_tile(tile_of_item(number));
 #endif
-    uint quarter = control.phase == RAYS ? quarter_of(number) : 0u;
+    uint quarter = control.phase == TRACE_RAYS ? quarter_of(number) : 0u;
     vec2 starts = quarter < 2u ? found.starts.xy : found.starts.zw;
     item_tile = found.tile;
     item_start = (quarter & 1u) == 0u ? starts.x : starts.y;
@@ -270,7 +271,7 @@ void begin_march(uint index, float start, bool is_ray)
     // No side yet: the first distance tells, unless something empty lies behind the ray.
     march.side = march.t > 0.0 || !is_ray ? 1.0 : 0.0;
     march.steps = 0u;
-    march.state = march.t <= end ? MARCHING : MISS;
+    march.state = march.t <= end ? STATE_MARCHING : STATE_MISS;
 #ifdef PROBE
     // Beams end where a tile does not fit into the ball.
     march.step = start > 0.0 ? 3.0 * (pixel_base + pixel_slope * start)
@@ -285,8 +286,8 @@ void begin_march(uint index, float start, bool is_ray)
 
 void begin_item(uint number, bool saved)
 {
-    bool  is_ray = control.phase == RAYS, large = control.phase == BEAMS_32;
-    bool  small = control.phase == BEAMS_4;
+    bool  is_ray = control.phase == TRACE_RAYS, large = control.phase == TRACE_BEAMS_32;
+    bool  small = control.phase == TRACE_BEAMS_4;
     uint  quarter = quarter_of(number);
     uvec2 half_tile = uvec2(quarter & 1u, quarter >> 1u);
     uvec2 pixel = 8u * item_tile + 4u * half_tile + uvec2(number & 3u, number >> 2u & 3u);
@@ -309,19 +310,19 @@ void begin_item(uint number, bool saved)
     shrinking = 1.0 / (1.0 + width.y);
     if (saved && march.side < 0.0)
         width = inside_width();
-    vec2 range = is_ray ? clip_ray(origin, direction, frame.eye.w) : vec2(0.0, frame.eye.w);
+    vec2 range = is_ray ? clip_ray(origin, direction, frame.farthest) : vec2(0.0, frame.farthest);
     end = range.y;
-    ends_at_walls = is_ray && end < frame.eye.w;
+    ends_at_walls = is_ray && end < frame.farthest;
 #ifdef MARCH_GROUP
     uint at_pixel = saved ? march.index : index;
     if (exists && is_ray) {
         RayEnd known = find_end(at_pixel);
-        end = known.state == HIT || known.unresolved ? min(end, known.t) : end;
+        end = known.state == STATE_HIT || known.unresolved ? min(end, known.t) : end;
     }
 #endif
 #ifdef PLANES
     plane_t = is_ray ? krs_plane_t(origin, direction) : INFINITE;
-    plane_t = plane_t > frame.eye.w ? INFINITE : max(plane_t, 0.0);
+    plane_t = plane_t > frame.farthest ? INFINITE : max(plane_t, 0.0);
     end = min(end, plane_t);
 #endif
     if (saved)
@@ -337,8 +338,9 @@ void begin_item(uint number, bool saved)
 
 bool item_needs_step()
 {
-    uint most = control.phase == RAYS ? frame.most_steps : MOST_BEAM_STEPS;
-    return exists && (march.state == MARCHING || march.state == REFINING) && march.steps < most;
+    uint most = control.phase == TRACE_RAYS ? frame.most_steps : MOST_BEAM_STEPS;
+    return exists && (march.state == STATE_MARCHING || march.state == STATE_REFINING) &&
+           march.steps < most;
 }
 
 #ifdef ALONG
@@ -409,7 +411,7 @@ void take_distance(float larger)
     float least = 0.5 * tolerance_at(at);
     if (empty == 0.0 && radius <= 1.01 * least) {
         march.t = at;
-        march.state = HIT;
+        march.state = STATE_HIT;
         return;
     }
     if (PROBE == BINARY) {
@@ -429,12 +431,12 @@ void take_distance(float larger)
     }
     march.step = max(march.step, least);
     march.t += 2.0 * empty * radius;
-    march.state = march.t > end ? MISS : MARCHING;
+    march.state = march.t > end ? STATE_MISS : STATE_MARCHING;
 }
 #else
 void take_distance(float distance)
 {
-    bool  is_ray = control.phase == RAYS, refining = march.state == REFINING;
+    bool  is_ray = control.phase == TRACE_RAYS, refining = march.state == STATE_REFINING;
     float at = march.t + march.step, pixel = pixel_base + pixel_slope * at;
     if (march.side == 0.0) {
         march.side = distance < 0.0 ? -1.0 : 1.0;
@@ -466,9 +468,9 @@ void take_distance(float distance)
                                  : shorter_step;
     march.clearance = verified ? clearance : march.clearance;
     march.slope = verified ? slope : -1.0;
-    march.state = found_surface                      ? (accurate ? HIT : REFINING)
-                  : verified && at + clearance > end ? MISS
-                                                     : MARCHING;
+    march.state = found_surface                           ? (accurate ? STATE_HIT : STATE_REFINING)
+                  : verified && at + clearance > end ? STATE_MISS
+                                                     : STATE_MARCHING;
 #ifdef PACKED
     advance_to_next_part();
 #endif
@@ -479,24 +481,25 @@ void take_distance(float distance)
 // its end is empty.
 void end_item()
 {
-    bool is_ray = control.phase == RAYS;
-    bool unresolved = is_ray && (march.state == MARCHING || march.state == REFINING);
+    bool is_ray = control.phase == TRACE_RAYS;
+    bool unresolved = is_ray && (march.state == STATE_MARCHING || march.state == STATE_REFINING);
     uint march_group = 0u;
-    march.state = unresolved ? MISS : march.state;
+    march.state = unresolved ? STATE_MISS : march.state;
     // From inside of a solid nothing leaves the box around all of them.
-    if (is_ray && !unresolved && march.state == MISS && march.side < 0.0 && ends_at_walls) {
-        march.state = HIT;
+    if (is_ray && !unresolved && march.state == STATE_MISS && march.side < 0.0 && ends_at_walls) {
+        march.state = STATE_HIT;
         march.t = end;
     }
 #ifdef PLANES
     // Planes are met where nothing else was; a beam whose rays may meet one is not done with.
-    if (!unresolved && march.state == MISS && plane_t < INFINITE) {
-        march.state = HIT;
+    if (!unresolved && march.state == STATE_MISS && plane_t < INFINITE) {
+        march.state = STATE_HIT;
         march.t = plane_t;
         march.side = 1.0;
     }
-    if (!is_ray && march.state == MISS && krs_plane_cosine(direction) < 1.01 * width.y + 1e-6) {
-        march.state = HIT;
+    if (!is_ray && march.state == STATE_MISS &&
+        krs_plane_cosine(direction) < 1.01 * width.y + 1e-6) {
+        march.state = STATE_HIT;
         march.t = end;
     }
 #endif
@@ -504,8 +507,8 @@ void end_item()
     // What other groups have found stays, unless this is nearer; so does where they gave up.
     if (exists && is_ray) {
         RayEnd known = find_end(march.index);
-        bool ends = march.state == HIT || unresolved,
-             ended = known.state == HIT || known.unresolved;
+        bool ends = march.state == STATE_HIT || unresolved,
+             ended = known.state == STATE_HIT || known.unresolved;
         bool farther = !ends || ended && known.t < march.t;
         march.t = farther ? known.t : march.t;
         march.state = farther ? known.state : march.state;
@@ -518,9 +521,9 @@ void end_item()
         unresolved = farther ? known.unresolved : unresolved;
     }
 #endif
-    if (!is_ray && march.state == MISS)
+    if (!is_ray && march.state == STATE_MISS)
         march.t = INFINITE;
-    found_tiles |= march.state != MISS ? 1u << (tile_index & 15u) : 0u;
+    found_tiles |= march.state != STATE_MISS ? 1u << (tile_index & 15u) : 0u;
     uint bits = pack_ray(
         RayEnd(march.t, march.side, march.steps, march.state, unresolved, march_group));
     if (exists) {
@@ -531,7 +534,7 @@ void end_item()
 
 void end_group(uint steps)
 {
-    if (control.phase == BEAMS_8)
+    if (control.phase == TRACE_BEAMS_8)
         for (; found_tiles != 0u; found_tiles &= found_tiles - 1u) {
             uvec2 cell = cell_of_beam(first_tile + (tile_index & ~15u) +
                                       uint(findLSB(found_tiles)));

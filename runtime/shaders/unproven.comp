@@ -56,7 +56,7 @@ void do_item(uint number)
     pixel_lists[quarter_at(LIGHT_OF_QUARTERS, quarter)] = rest | proven << 16u;
     if (rest == 0u)
         return;
-    uint at = 2u * band_pixels() + atomicAdd(counts.remaining, bitCount(rest));
+    uint at = LIST_REMAINING * band_pixels() + atomicAdd(counts.remaining, bitCount(rest));
     for (; rest != 0u; rest &= rest - 1u)
         pixel_lists[at++] = slot_of_bit(first, rest);
 }

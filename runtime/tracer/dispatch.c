@@ -13,13 +13,13 @@
 
 #include "runtime/tracer/phases.h"
 
-/* As plan.comp has them. */
-static_assert(WORD_OF(items) == 10 && WORD_OF(groups) == 42 && WORD_OF(stopped) == 45 &&
-                  WORD_OF(ran) == 46,
+static_assert(WORD_OF(items) == ITEMS_WORD && WORD_OF(groups) == GROUPS_WORD &&
+                  WORD_OF(stopped) == STOPPED_WORD && WORD_OF(ran) == RAN_WORD,
               "plan.comp");
-typedef struct PlanBlock {
-    uint32_t counter, each, resets, in_group, most, number;
-} PlanBlock;
+static_assert((int)MARCH_GROUP_LISTS == 1 + KRS_MOST_MARCH_GROUPS &&
+                  (int)PERSPECTIVE == (int)KRS_PERSPECTIVE &&
+                  (int)ORTHOGRAPHIC == (int)KRS_ORTHOGRAPHIC && (int)PANORAMA == (int)KRS_PANORAMA,
+              "compile.h");
 static_assert(sizeof(PlanBlock) <= sizeof(WorkBlock), "push constants");
 
 bool dispatch_chains(const Job *job)

@@ -4,16 +4,31 @@
 #include "runtime/krs_vulkan.h"
 
 const char *const krs_phase_names[KRS_PHASE_COUNT] = {
-    "beams", "primary", "normals", "shadows", "occlusion", "shading", "resolve",
+#define KRS_PHASE(id, name) name,
+#include "runtime/choices.def"
 };
+
 const char *const krs_trace_names[KRS_TRACE_COUNT] = {
-    "default", "plain",     "relaxed",     "auto",   "exact",
-    "taylor",  "root-free", "directional", "binary", "predicted"};
-const char *const krs_schedule_names[KRS_SCHEDULE_COUNT] = {"default", "pixel", "refill", "queue"};
-const char *const krs_components_names[KRS_COMPONENTS_COUNT] = {"default", "together", "apart",
-                                                                "packed"};
-const char *const krs_normals_names[KRS_NORMALS_COUNT]       = {
-          "default", "forward",     "tetrahedron",  "octahedron",
-          "cube",    "icosahedron", "dodecahedron", "analytic",
+#define KRS_TRACE(id, name, about) name,
+#include "runtime/choices.def"
 };
-const char *const krs_shadows_names[KRS_SHADOWS_COUNT] = {"soft", "area"};
+
+const char *const krs_schedule_names[KRS_SCHEDULE_COUNT] = {
+#define KRS_SCHEDULE(id, name, about) name,
+#include "runtime/choices.def"
+};
+
+const char *const krs_components_names[KRS_COMPONENTS_COUNT] = {
+#define KRS_COMPONENTS(id, name, about) name,
+#include "runtime/choices.def"
+};
+
+const char *const krs_normals_names[KRS_NORMALS_COUNT] = {
+#define KRS_NORMALS(id, name, about) name,
+#include "runtime/choices.def"
+};
+
+const char *const krs_shadows_names[KRS_SHADOWS_COUNT] = {
+#define KRS_SHADOWS(id, name, about) name,
+#include "runtime/choices.def"
+};

@@ -6,30 +6,40 @@
 #include <assert.h>
 #include <string.h>
 
-/* The planes: all are arrays of 32-bit numbers. */
+/* The arrays of all planes, of 32-bit numbers each. */
 static const struct Plane {
-    size_t    member; /* offset of its pointer in a KrsPicture */
-    uint32_t  bit;
-    size_t    bytes;  /* per pixel */
-    ResultRow row;    /* that has it, */
-    size_t    number; /* from this of its numbers on */
+    size_t   member; /* offset of its pointer in a KrsPicture */
+    uint32_t bit;
+    size_t   bytes;  /* per pixel */
+    uint32_t row;    /* ROW_... that has it, */
+    size_t   number; /* from this of its numbers on */
 } planes[] = {
-#define PLANE(name, bit, numbers, row, number)                    \
-    {                                                             \
-        offsetof(KrsPicture, name), bit, 4 * numbers, row, number \
-    }
-    PLANE(color, KRS_PLANE_COLOR, 4, ROW_COLORS, 0),
-    PLANE(depth, KRS_PLANE_DEPTH, 1, ROW_POSITIONS, DEPTH_NUMBER),
-    PLANE(position, KRS_PLANE_POSITION, 3, ROW_POSITIONS, 0),
-    PLANE(normal, KRS_PLANE_NORMAL, 3, ROW_NORMALS, 0),
-    PLANE(albedo, KRS_PLANE_ALBEDO, 3, ROW_ALBEDOS, 0),
-    PLANE(component, KRS_PLANE_IDS, 1, ROW_NORMALS, 3),
-    PLANE(level, KRS_PLANE_IDS, 1, ROW_ALBEDOS, 3),
-    PLANE(instance, KRS_PLANE_IDS, 1, ROW_COUNTS, 0),
-    PLANE(steps, KRS_PLANE_STEPS, 1, ROW_COUNTS, 1),
-#undef PLANE
+#define KRS_PLANE(id, bit, aov, about, arrays) arrays
+#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
+    {offsetof(KrsPicture, member), KRS_PLANE_##plane, sizeof(type[numbers]), row, first},
+#include "runtime/planes.def"
+#undef KRS_ARRAY
+#undef KRS_PLANE
 };
 enum { PLANE_COUNT = sizeof planes / sizeof planes[0] };
+
+/* No number of a row is in two arrays: then their bits, added up, give no carry. */
+#define KRS_PLANE(id, bit, aov, about, arrays) arrays
+#define BITS(row, first, numbers)              ((UINT64_C(1) << (numbers)) - 1) << (4 * (row) + (first))
+static_assert((0
+#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
+    +(BITS(row, first, numbers))
+#include "runtime/planes.def"
+#undef KRS_ARRAY
+               ) == (0
+#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
+    | (BITS(row, first, numbers))
+#include "runtime/planes.def"
+#undef KRS_ARRAY
+                     ),
+              "planes.def");
+#undef BITS
+#undef KRS_PLANE
 
 /* The members differ in what they point to, so they are copied, not converted. */
 static void *plane_get(const KrsPicture *picture, int plane)

@@ -5,13 +5,13 @@
 #define KRS_PICTURE_H
 
 #include "runtime/device/gpu.h"
-#include "runtime/tracer/blocks.h"
+#include "runtime/shared/blocks.h"
 
 /* A picture whose wanted planes (bits of KrsPlane) are zero; NULL with the failure noted. */
 KrsPicture *picture_new(Gpu *gpu, uint32_t width, uint32_t height, KrsWindow window,
                         uint32_t wanted);
 
-/* The rows of results (bits of ResultRow) that the planes of a picture come from. */
+/* The rows of results (bit ROW_... of each) that the planes of a picture come from. */
 uint32_t picture_rows(const KrsPicture *picture);
 
 /* Takes `count` finished pixels over into the planes, from the window's pixel number `first` on:

@@ -45,13 +45,13 @@ static void take_answer(const AnswerBlock *answer, float *distance, KrsSurfacePo
 
 bool point_query_run(KrsRendering *rendering, uint32_t count, bool normals)
 {
-    const uint32_t work[] = {count, normals ? 7 : 1}; /* of point_query.comp */
-    Gpu           *gpu    = &rendering->renderer->gpu;
-    Kernel        *kernel = rendering_point_query(rendering);
-    double         ms     = 0;
+    const PointWorkBlock work   = {.count = count, .taps = normals ? 7 : 1};
+    Gpu                 *gpu    = &rendering->renderer->gpu;
+    Kernel              *kernel = rendering_point_query(rendering);
+    double               ms     = 0;
     if (!kernel || !gpu_begin(gpu))
         return false;
-    rendering_dispatch(rendering, kernel, rendering->points_set, work, sizeof work,
+    rendering_dispatch(rendering, kernel, rendering->points_set, &work, sizeof work,
                        (count + WORKGROUP_SIZE - 1) / WORKGROUP_SIZE);
     return gpu_finish(gpu, &ms);
 }

@@ -177,8 +177,8 @@ bool ray_hits_are_valid(const RayHitBlock *ray_hits, uint32_t count, uint32_t en
 {
     bool sound = ends <= count;
     for (uint32_t i = 0; i < count && sound; i++)
-        sound = ray_hits[i].state == QUERY_MISS ||
-                (ray_hits[i].state < QUERY_MISS && ray_hits[i].point < ends);
+        sound = ray_hits[i].state == STATE_MISS ||
+                (ray_hits[i].state < STATE_MISS && ray_hits[i].point < ends);
     return sound;
 }
 
@@ -186,9 +186,9 @@ static void take_ray_hit(const KrsRay *ray, bool sheets, const RayHitBlock *ray_
                          const AnswerBlock *answers, KrsHit *hit)
 {
     *hit = (KrsHit){0};
-    if (ray_hit->state == QUERY_MISS)
+    if (ray_hit->state == STATE_MISS)
         return;
-    hit->hit        = ray_hit->state == QUERY_HIT;
+    hit->hit        = ray_hit->state == STATE_HIT;
     hit->unresolved = !hit->hit;
     hit->t          = ray->start + (double)ray_hit->t;
     for (int k = 0; k < 3; k++)

@@ -20,8 +20,6 @@
 #define PART_OF_MEMORY  4
 /* Bands are halved when the device lacks memory, down to this. */
 #define BAND_PIXELS_MIN (UINT64_C(1) << 12)
-#define LARGEST_SIDE    16384
-#define MOST_SAMPLES    65536
 #define MOST_STEPS      16384
 /* All loops of an invocation together stay under 32768 iterations: some devices end them
    silently after 65535. */
@@ -49,9 +47,9 @@ static bool settle_options(Job *job)
 {
     KrsRenderOptions *o     = &job->options;
     const KrsImage   *image = &job->view.image;
-    o->width                = first_of(o->width, image->width, 1280);
-    o->height               = first_of(o->height, image->height, 720);
-    o->samples              = first_of(o->samples, image->samples, 1);
+    o->width                = first_of(o->width, image->width, KRS_DEFAULT_WIDTH);
+    o->height               = first_of(o->height, image->height, KRS_DEFAULT_HEIGHT);
+    o->samples              = first_of(o->samples, image->samples, KRS_DEFAULT_SAMPLES);
     o->planes               = first_of(o->planes, 0, KRS_PLANE_ALL);
     o->most_steps           = first_of(o->most_steps, 0, MOST_STEPS);
     if ((unsigned)o->trace >= KRS_TRACE_COUNT || (unsigned)o->schedule >= KRS_SCHEDULE_COUNT ||
@@ -69,19 +67,19 @@ static bool settle_options(Job *job)
         return refuse(job, "the device's lanes cannot exchange numbers, which `refill` needs");
     o->steps_at_once = first_of(o->steps_at_once, 0,
                                 o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
-    o->error         = o->error != 0 ? o->error : image->error != 0 ? image->error : 0.25;
-    o->slice_ms      = o->slice_ms != 0 ? o->slice_ms : 50;
+    o->error    = o->error != 0 ? o->error : image->error != 0 ? image->error : KRS_DEFAULT_ERROR;
+    o->slice_ms = o->slice_ms != 0 ? o->slice_ms : 50;
     if (o->crop.width == 0)
         o->crop = (KrsWindow){0, 0, o->width, o->height};
 
-    if (o->width > LARGEST_SIDE || o->height > LARGEST_SIDE)
+    if (o->width > KRS_MOST_SIDE || o->height > KRS_MOST_SIDE)
         return refuse(job, "a picture has at most 16384 pixels a side");
     if (o->crop.height == 0 || o->crop.x >= o->width || o->crop.width > o->width - o->crop.x ||
         o->crop.y >= o->height || o->crop.height > o->height - o->crop.y)
         return refuse(job, "the crop is not inside of the picture");
-    if (o->samples > MOST_SAMPLES)
+    if (o->samples > KRS_MOST_SAMPLES)
         return refuse(job, "there are at most 65536 samples per pixel");
-    if (!(o->error > 0) || !(o->error <= 1000))
+    if (!(o->error > 0) || !(o->error <= KRS_MOST_ERROR))
         return refuse(job, "the permitted error must be above 0 and at most 1000 pixels");
     if (!(o->slice_ms > 0) || o->most_steps > MOST_STEPS || o->steps_at_once > MOST_STEPS_AT_ONCE)
         return refuse(job, "slices must be longer than nothing, and rays have at most 16384 steps");
@@ -165,7 +163,7 @@ static void band_destroy(Gpu *gpu, Band *band)
    pixels, its quarters, and every tile of 32x32. */
 static VkDeviceSize most_beams(uint64_t pixels)
 {
-    return 2 * (pixels / TILE + 2 * LARGEST_SIDE / TILE);
+    return 2 * (pixels / TILE + 2 * KRS_MOST_SIDE / TILE);
 }
 
 static bool band_create(KrsRendering *rendering, uint64_t pixels)

@@ -7,7 +7,7 @@
 #include "compiler/compile.h"
 #include "runtime/device/buffer.h"
 #include "runtime/device/kernel.h"
-#include "runtime/tracer/blocks.h"
+#include "runtime/shared/blocks.h"
 
 /* The kernels without a scene that do one thing for every pixel of a list, row or quarter of a
    tile: on lavapipe a kernel takes as long as all of its branches. */

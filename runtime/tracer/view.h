@@ -6,7 +6,7 @@
 
 #include "compiler/compile.h"
 #include "runtime/krs_vulkan.h"
-#include "runtime/tracer/blocks.h"
+#include "runtime/shared/blocks.h"
 
 /* Fills in all of `block` but error and most_steps.  False when the camera cannot be used: an
    eye at its target, an angle or a height that is not positive, or anything not finite. */

@@ -148,18 +148,18 @@ static void wrong_questions_are_refused(void **context)
 static void wrong_answers_are_refused(void **context)
 {
     (void)context;
-    const RayHitBlock good[4] = {{1, QUERY_HIT, 1, 9},
-                                 {9, QUERY_MISS, 77, 2},
-                                 {2, QUERY_HIT, 0, 8},
-                                 {3, QUERY_MARCHING, 2, 99}};
+    const RayHitBlock good[4] = {{1, STATE_HIT, 1, 9},
+                                 {9, STATE_MISS, 77, 2},
+                                 {2, STATE_HIT, 0, 8},
+                                 {3, STATE_MARCHING, 2, 99}};
     assert_true(ray_hits_are_valid(good, 4, 3));
     assert_true(ray_hits_are_valid(good, 0, 0));
     assert_false(ray_hits_are_valid(good, 4, 2)); /* the last ray has no place */
     assert_false(ray_hits_are_valid(good, 4, 5)); /* more places than rays */
-    const RayHitBlock faults[] = {{1, QUERY_HIT, 3, 9},
-                                  {1, QUERY_HIT, UINT32_MAX, 9},
-                                  {1, QUERY_MARCHING, 3, 9},
-                                  {1, QUERY_MISS + 1, 0, 9}};
+    const RayHitBlock faults[] = {{1, STATE_HIT, 3, 9},
+                                  {1, STATE_HIT, UINT32_MAX, 9},
+                                  {1, STATE_MARCHING, 3, 9},
+                                  {1, STATE_MISS + 1, 0, 9}};
     for (size_t fault = 0; fault < sizeof faults / sizeof *faults; fault++)
         for (int at = 0; at < 4; at++) {
             RayHitBlock ray_hits[4];

@@ -133,11 +133,14 @@ static void planes_do_not_hang_on_others(void **state)
         const struct {
             const void *part, *whole;
             size_t      numbers;
-        } planes[]  = {{part->color, whole->color, 4},       {part->depth, whole->depth, 1},
-                       {part->position, whole->position, 3}, {part->normal, whole->normal, 3},
-                       {part->albedo, whole->albedo, 3},     {part->component, whole->component, 1},
-                       {part->level, whole->level, 1},       {part->instance, whole->instance, 1},
-                       {part->steps, whole->steps, 1}};
+        } planes[] = {
+#define KRS_PLANE(id, bit, aov, about, arrays) arrays
+#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
+    {part->member, whole->member, numbers},
+#include "runtime/planes.def"
+#undef KRS_ARRAY
+#undef KRS_PLANE
+        };
         size_t held = 0;
         for (size_t i = 0; i < sizeof planes / sizeof *planes; i++) {
             held += planes[i].part != NULL;

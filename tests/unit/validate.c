@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include "cli/console.c"
+#include "cli/choices.c"
 #include "cli/options.c"
 #include "cli/values.c"
 #include "cli/validate.c"

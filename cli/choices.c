@@ -1,0 +1,60 @@
+/*
+ * choices.c: the words that options take; most are names of the library's enums, in their order.
+ */
+#include "cli/choices.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#define LAST       \
+    {              \
+        NULL, NULL \
+    }
+
+const Choice trace_choices[] = {
+#define KRS_TRACE(id, name, about) {name, about},
+#include "runtime/choices.def"
+    LAST};
+const Choice schedule_choices[] = {
+#define KRS_SCHEDULE(id, name, about) {name, about},
+#include "runtime/choices.def"
+    LAST};
+const Choice components_choices[] = {
+#define KRS_COMPONENTS(id, name, about) {name, about},
+#include "runtime/choices.def"
+    LAST};
+const Choice normals_choices[] = {
+#define KRS_NORMALS(id, name, about) {name, about},
+#include "runtime/choices.def"
+    LAST};
+const Choice shadows_choices[] = {
+#define KRS_SHADOWS(id, name, about) {name, about},
+#include "runtime/choices.def"
+    LAST};
+const Choice plane_choices[] = {
+#define KRS_PLANE(id, bit, aov, about, arrays) {aov, about},
+#include "runtime/planes.def"
+#undef KRS_PLANE
+    LAST};
+const Choice tone_map_choices[] = {
+#define TONE_MAP(id, name, about) {name, about},
+#include "runtime/film/tone_maps.def"
+#undef TONE_MAP
+    LAST};
+const Choice early_outs_choices[]  = {{"default", ""}, {"on", ""}, {"off", ""}, LAST};
+const Choice on_off_choices[]      = {{"on", ""}, {"off", ""}, LAST};
+const Choice on_choices[]          = {{"host", ""}, {"device", ""}, LAST};
+const Choice when_choices[]        = {{"auto", ""}, {"always", ""}, {"never", ""}, LAST};
+const Choice diagnostics_choices[] = {{"text", ""}, {"json", ""}, LAST};
+const Choice json_choices[]        = {{"json", ""}, LAST};
+const Choice stage_choices[] = {{"tokens", ""},   {"syntax", ""}, {"scene", ""}, {"graph", ""},
+                                {"simplify", ""}, {"glsl", ""},   {"spirv", ""}, LAST};
+
+int find_choice(const char *word, const Choice *choices)
+{
+    for (int i = 0; choices[i].name; i++)
+        if (choices[i].name[0] && strcmp(choices[i].name, "default") != 0 &&
+            strcmp(choices[i].name, word) == 0)
+            return i;
+    return -1;
+}

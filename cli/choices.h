@@ -1,0 +1,20 @@
+/*
+ * choices.h: the words that options take.
+ */
+#ifndef KRS_CHOICES_H
+#define KRS_CHOICES_H
+
+typedef struct Choice {
+    const char *name;  /* "" and "default" cannot be asked for */
+    const char *about; /* what it means; "": its option tells */
+} Choice;
+
+/* The last has no name. */
+extern const Choice trace_choices[], schedule_choices[], components_choices[], normals_choices[],
+    shadows_choices[], early_outs_choices[], plane_choices[], tone_map_choices[], stage_choices[],
+    on_off_choices[], on_choices[], when_choices[], diagnostics_choices[], json_choices[];
+
+/* The number of a word among the choices; -1: it is none of them. */
+int find_choice(const char *word, const Choice *choices);
+
+#endif
