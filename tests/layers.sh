@@ -12,6 +12,7 @@ api="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h
           compiler/shader/spirv.h runtime/krs_vulkan.h runtime/planes.def runtime/choices.def"
 # "A>B": A includes B's header, and B needs A.  Without all of these there is no circle.
 circles="compiler/geometry/lowering>compiler/geometry/lower
+         compiler/refuting>compiler/refute compiler/searching>compiler/search
          compiler/shader/emitter>compiler/shader/emit
          runtime/device/pipelines>runtime/device/gpu runtime/tracer/layouts>runtime/tracer/renderer
          runtime/tracer/warmup>runtime/tracer/renderer
