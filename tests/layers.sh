@@ -14,7 +14,7 @@ api="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h
 circles="compiler/geometry/lowering>compiler/geometry/lower
          compiler/refuting>compiler/refute compiler/searching>compiler/search
          compiler/shader/emitter>compiler/shader/emit
-         runtime/device/pipelines>runtime/device/gpu runtime/tracer/layouts>runtime/tracer/renderer
+         runtime/device/instance>runtime/device/gpu runtime/device/pipelines>runtime/device/gpu runtime/tracer/layouts>runtime/tracer/renderer
          runtime/tracer/warmup>runtime/tracer/renderer
          runtime/tracer/phases>runtime/tracer/dispatch
          cli/options>cli/console cli/options>cli/values"
