@@ -9,13 +9,13 @@
 SUPPORT     := $(addprefix tests/support/, agreement.c bench.c device.c random.c \
                renderer.c scarce.c)
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c chain.c \
-               exact.c formulas.c rooms.c montecarlo.c)
+               exact.c formulas.c shadow_stage.c shadow_truth.c map_chain.c primitive_solids.c primitive_figures.c deformed.c rooms.c montecarlo.c)
 UNIT        := front film tracer methods writer memory validate refute frame query cache compiled \
                apart stencils glslang loader drivers grid
 PROPERTY    := ops noise graph derive series zeros local along anchor slope parity reach
-ORACLES     := self primitives krs_expand trees maps moebius operators combinations deform chains \
-               chain_pictures moving normals fields surfaces rays algebraic fractals device query \
-               picture touching shading coverage shadows occlusion underestimates bounds stencils light sides \
+ORACLES     := self primitives krs_expand trees maps moebius moebius_images operators combinations deform deform_bounds chains \
+               chain_pictures moving normals fields surfaces rays algebraic fractals metasurfaces device query \
+               picture touching shading coverage area_shadows soft_shadows hard_shadows upsampling occlusion underestimates bounds stencils light sides \
                steep scales agree far sheets
 FUZZ        := sentences
 # On SwiftShader, unless another device is tested: what shows that drivers agree.
@@ -33,6 +33,7 @@ SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/val
                tests/property/along tests/property/anchor tests/property/slope \
                tests/property/parity tests/property/reach tests/oracle/primitives \
                tests/oracle/krs_expand tests/oracle/bounds tests/oracle/maps tests/oracle/moebius \
+               tests/oracle/moebius_images tests/oracle/metasurfaces \
                tests/oracle/operators tests/oracle/moving tests/oracle/fractals \
                tests/oracle/normals tests/fuzz/sentences
 SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/editors.sh \
