@@ -69,16 +69,12 @@ static bool has_terms_among(const Graph *g, Node node, uint32_t *nodes)
     if (*nodes == 0)
         return false;
     --*nodes;
-    switch (e->op) {
-    case OP_add:
-    case OP_sub: return e->type == TYPE_FLOAT;
-    case OP_neg:
-    case OP_div: return has_terms_among(g, e->operands[0], nodes);
-    case OP_mul:
-        return has_terms_among(g, e->operands[0], nodes) ||
-               has_terms_among(g, e->operands[1], nodes);
-    default: return false;
-    }
+    if (e->op == OP_add || e->op == OP_sub)
+        return e->type == TYPE_FLOAT;
+    if (e->op != OP_neg && e->op != OP_div && e->op != OP_mul)
+        return false;
+    return has_terms_among(g, e->operands[0], nodes) ||
+           (e->op == OP_mul && has_terms_among(g, e->operands[1], nodes));
 }
 
 /* Whether there are terms below products and signs; one that is not found is no mistake, as a
@@ -102,17 +98,15 @@ static void add_terms(Terms *terms, Node node, Node factor)
     }
     Node opposite = graph_op1(g, OP_neg, factor);
     int  inner    = e.op == OP_mul && !has_terms(g, e.operands[0]);
-    switch (e.op) {
-    case OP_add:
-    case OP_sub:
+    if (e.op == OP_neg)
+        add_terms(terms, e.operands[0], opposite);
+    else if (e.op == OP_mul)
+        add_terms(terms, e.operands[inner], graph_op2(g, OP_mul, factor, e.operands[1 - inner]));
+    else if (e.op == OP_div)
+        add_terms(terms, e.operands[0], graph_op2(g, OP_div, factor, e.operands[1]));
+    else {
         add_terms(terms, e.operands[0], factor);
         add_terms(terms, e.operands[1], e.op == OP_add ? factor : opposite);
-        break;
-    case OP_neg: add_terms(terms, e.operands[0], opposite); break;
-    case OP_mul:
-        add_terms(terms, e.operands[inner], graph_op2(g, OP_mul, factor, e.operands[1 - inner]));
-        break;
-    default: add_terms(terms, e.operands[0], graph_op2(g, OP_div, factor, e.operands[1]));
     }
 }
 

@@ -167,49 +167,69 @@ static bool any_base(const Expr *e, const Pair *pairs)
     return false;
 }
 
+/* ---- rules; one operand at least has a base ---- */
+
+static Pair anchor_none(Graph *g, const Expr *e, const Pair *p) { return plain_pair(g, e, p); }
+
+static Pair anchor_sum(Graph *g, const Expr *e, const Pair *p)
+{
+    return add_pairs(g, (Op)e->op, p[0], p[1]);
+}
+
+/* Linear in the first operand. */
+static Pair anchor_linear(Graph *g, const Expr *e, const Pair *p)
+{
+    return others_are_still(g, e, p, 0) ? map_pair(g, e, p[0], 0) : plain_pair(g, e, p);
+}
+
+/* Linear in each operand. */
+static Pair anchor_product(Graph *g, const Expr *e, const Pair *p)
+{
+    int first = p[0].base != NODE_NONE ? 0 : 1;
+    return others_are_still(g, e, p, first) ? map_pair(g, e, p[first], first) : plain_pair(g, e, p);
+}
+
+static Pair anchor_component(Graph *g, const Expr *e, const Pair *p)
+{
+    return (Pair){graph_component(g, p[0].base, e->index), graph_component(g, p[0].rest, e->index)};
+}
+
+static Pair anchor_vector(Graph *g, const Expr *e, const Pair *p) { return make_vector(g, e, p); }
+
+static Pair anchor_fold(Graph *g, const Expr *e, const Pair *p)
+{
+    return others_are_still(g, e, p, 0) ? fold_pair(g, e, p[0]) : plain_pair(g, e, p);
+}
+
+static Pair anchor_front(Graph *g, const Expr *e, const Pair *p)
+{
+    if (!others_are_still(g, e, p, 0))
+        return plain_pair(g, e, p);
+    return whole(
+        graph_op3(g, OP_front, p[0].rest, e->operands[1], precise(g, offset_seen(g, e, p[0]))));
+}
+
+static Pair anchor_round(Graph *g, const Expr *e, const Pair *p) { return round_pair(g, e, p[0]); }
+
+static Pair anchor_limit(Graph *g, const Expr *e, const Pair *p)
+{
+    return others_are_still(g, e, p, 0) ? limit_pair(g, e, p[0]) : plain_pair(g, e, p);
+}
+
+static Pair anchor_compare(Graph *g, const Expr *e, const Pair *p)
+{
+    return whole(compare_pairs(g, e, p[0], p[1]));
+}
+
+static Pair (*const rules[OP_COUNT])(Graph *g, const Expr *e, const Pair *p) = {
+#define RULES(name, cost, promises, simplify, derive, local, series, parity, anchor, target) \
+    [OP_##name] = anchor,
+#include "compiler/graph/ops.def"
+};
+
 static Pair anchored(Graph *g, const Expr *e, const Pair *p)
 {
-    if (!any_base(e, p))
-        return plain_pair(g, e, p);
-    int first = p[0].base != NODE_NONE ? 0 : 1;
-    switch (e->op) {
-    case OP_add:
-    case OP_sub: return add_pairs(g, e->op, p[0], p[1]);
-    case OP_neg: return map_pair(g, e, p[0], 0);
-    case OP_COMPONENT:
-        return (Pair){graph_component(g, p[0].base, e->index),
-                      graph_component(g, p[0].rest, e->index)};
-    case OP_splat2:
-    case OP_splat3:
-    case OP_splat4:
-    case OP_vec2:
-    case OP_vec3:
-    case OP_vec4: return make_vector(g, e, p);
-    case OP_mul:
-    case OP_dot:
-    case OP_scale:
-        return others_are_still(g, e, p, first) ? map_pair(g, e, p[first], first)
-                                                : plain_pair(g, e, p);
-    case OP_div:
-    case OP_turn:
-        return others_are_still(g, e, p, 0) ? map_pair(g, e, p[0], 0) : plain_pair(g, e, p);
-    case OP_fold: return others_are_still(g, e, p, 0) ? fold_pair(g, e, p[0]) : plain_pair(g, e, p);
-    case OP_front:
-        if (!others_are_still(g, e, p, 0))
-            return plain_pair(g, e, p);
-        return whole(
-            graph_op3(g, OP_front, p[0].rest, e->operands[1], precise(g, offset_seen(g, e, p[0]))));
-    case OP_round:
-    case OP_floor:
-    case OP_ceil: return round_pair(g, e, p[0]);
-    case OP_min:
-    case OP_max:
-    case OP_clamp:
-        return others_are_still(g, e, p, 0) ? limit_pair(g, e, p[0]) : plain_pair(g, e, p);
-    case OP_less:
-    case OP_less_equal: return whole(compare_pairs(g, e, p[0], p[1]));
-    default: return plain_pair(g, e, p);
-    }
+    return any_base(e, p) ? rules[e->op](g, e, p) : plain_pair(g, e, p);
 }
 
 void graph_anchor(Graph *graph, Node *roots, size_t count, Node anchor, Arena *scratch)

@@ -124,6 +124,16 @@ static Node smoothstep_slope(Derivation *d, Node a, Node b, Node c, int operand)
 #define range_sinh(a)                            graph_op1(d->graph, OP_sinh, a)
 #define range_cosh(a)                            graph_op1(d->graph, OP_cosh, a)
 #define range_floor(a)                           graph_op1(d->graph, OP_floor, a)
+#define range_abs(a)                             graph_op1(d->graph, OP_abs, a)
+#define range_sqrt(a)                            graph_op1(d->graph, OP_sqrt, a)
+#define range_exp(a)                             graph_op1(d->graph, OP_exp, a)
+#define range_exp2(a)                            graph_op1(d->graph, OP_exp2, a)
+#define range_log(a)                             graph_op1(d->graph, OP_log, a)
+#define range_log2(a)                            graph_op1(d->graph, OP_log2, a)
+#define range_tan(a)                             graph_op1(d->graph, OP_tan, a)
+#define range_atan(a)                            graph_op1(d->graph, OP_atan, a)
+#define range_tanh(a)                            graph_op1(d->graph, OP_tanh, a)
+#define range_min(a, b)                          graph_op2(d->graph, OP_min, a, b)
 #define range_max(a, b)                          graph_op2(d->graph, OP_max, a, b)
 #define range_above(a, least)                    (a)
 #define range_inversesqrt_slope(a, r)            inversesqrt_slope(d, r)
@@ -144,18 +154,12 @@ typedef Node Partial(Derivation *d, int which, Node a, Node b, Node c, Node r);
         (void)a, (void)b, (void)c, (void)r;                                              \
         return which == 0 ? (da) : which == 1 ? (db) : (dc);                             \
     }
-#define OP(name, signature, glsl, evaluate, facts, meaning)
 #include "compiler/graph/ops.def"
-#undef MAP
-#undef OP
 
 static Partial *const partials[OP_COUNT] = {
 #define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning) \
     [OP_##name] = partial_##name,
-#define OP(name, signature, glsl, evaluate, facts, meaning)
 #include "compiler/graph/ops.def"
-#undef MAP
-#undef OP
 };
 
 /* ---- rules ---- */
@@ -188,27 +192,16 @@ static Node not_zero(Derivation *d, Node length)
     return graph_op2(d->graph, OP_max, length, number(d, 1e-30));
 }
 
-/* min and max choose: 0 times the derivative of what is not chosen need not be 0.  Of two that are
-   equal the one that changes is chosen: min(x, 0) joins the inside of a solid to its outside. */
-static Node derive_choice(Derivation *d, const Expr *e, const Node *inner)
-{
-    bool least = e->op == OP_min;
-    Op   op    = is_zero(d->graph, inner[1]) ? OP_less_equal : OP_less;
-    Node less  = graph_op2(d->graph, op, e->operands[!least], e->operands[least]);
-    return between(d, graph_op3(d->graph, OP_select, less, inner[0], inner[1]));
-}
-
 /* Sum over the operands of the row's derivative times the operand's own. */
-static Node derive_map(Derivation *d, Node node, const Node *inner)
+static Node derive_by_partials(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
-    Expr e = d->graph->items[node];
-    Node a = e.operands[0], b = e.operand_count > 1 ? e.operands[1] : a;
-    Node c   = e.operand_count > 2 ? e.operands[2] : a;
-    Node sum = zero_of(d->graph, e.type);
-    for (int i = 0; i < e.operand_count; i++) {
+    Node a = e->operands[0], b = e->operand_count > 1 ? e->operands[1] : a;
+    Node c   = e->operand_count > 2 ? e->operands[2] : a;
+    Node sum = zero_of(d->graph, (GraphType)e->type);
+    for (int i = 0; i < e->operand_count; i++) {
         if (is_zero(d->graph, inner[i]))
             continue;
-        Node factor = partials[e.op](d, i, a, b, c, node);
+        Node factor = partials[e->op](d, i, a, b, c, node);
         if (is_zero(d->graph, factor))
             continue;
         sum = plus(d->graph, sum, times(d, factor, inner[i]));
@@ -216,10 +209,38 @@ static Node derive_map(Derivation *d, Node node, const Node *inner)
     return sum;
 }
 
-/* op(da, b) + op(a, db): what is linear in both of its operands. */
-static Node derive_bilinear(Graph *g, Op op, const Expr *e, const Node *inner)
+/* min and max of numbers choose: 0 times the derivative of what is not chosen need not be 0.  Of two
+   that are equal the one that changes is chosen: min(x, 0) joins the inside of a solid to its
+   outside. */
+static Node derive_choice(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
-    Node sum = zero_of(g, e->type);
+    if (e->type != TYPE_FLOAT)
+        return derive_by_partials(d, e, node, inner);
+    bool least = e->op == OP_min;
+    Op   op    = is_zero(d->graph, inner[1]) ? OP_less_equal : OP_less;
+    Node less  = graph_op2(d->graph, op, e->operands[!least], e->operands[least]);
+    return between(d, graph_op3(d->graph, OP_select, less, inner[0], inner[1]));
+}
+
+static Node derive_component(Derivation *d, const Expr *e, Node node, const Node *inner)
+{
+    (void)node;
+    return graph_component(d->graph, inner[0], e->index);
+}
+
+static Node derive_vector(Derivation *d, const Expr *e, Node node, const Node *inner)
+{
+    (void)node;
+    return graph_op(d->graph, (Op)e->op, inner);
+}
+
+/* op(da, b) + op(a, db): what is linear in both of its operands. */
+static Node derive_bilinear(Derivation *d, const Expr *e, Node node, const Node *inner)
+{
+    (void)node;
+    Graph *g   = d->graph;
+    Op     op  = (Op)e->op;
+    Node   sum = zero_of(g, e->type);
     if (!is_zero(g, inner[0]))
         sum = graph_op2(g, op, inner[0], e->operands[1]);
     if (!is_zero(g, inner[1])) {
@@ -257,9 +278,11 @@ static bool others_are_still(const Graph *g, const Node *inner, int from, int co
 }
 
 /* rows a' + rows' a */
-static Node derive_turn(Graph *g, const Expr *e, const Node *inner)
+static Node derive_turn(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
-    Node sum = zero_of(g, TYPE_VEC3), parts[3];
+    (void)node;
+    Graph *g   = d->graph;
+    Node   sum = zero_of(g, TYPE_VEC3), parts[3];
     if (!is_zero(g, inner[0]))
         sum = graph_op4(g, OP_turn, inner[0], e->operands[1], e->operands[2], e->operands[3]);
     if (others_are_still(g, inner, 1, 4))
@@ -271,8 +294,11 @@ static Node derive_turn(Graph *g, const Expr *e, const Node *inner)
 }
 
 /* Folds mirror directions as they mirror points: b the unit normal. */
-static Node derive_fold(Derivation *d, const Expr *e, const Node *inner)
+static Node derive_fold(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
+    (void)node;
+    if (!others_are_still(d->graph, inner, 1, 3))
+        return NODE_NONE;
     Graph *g        = d->graph;
     Node   front    = graph_op3(g, OP_front, e->operands[0], e->operands[1], e->operands[2]);
     Node   along    = graph_op2(g, OP_dot, e->operands[1], inner[0]);
@@ -285,6 +311,8 @@ static Node derive_fold(Derivation *d, const Expr *e, const Node *inner)
    what it has made of the point. */
 static Node derive_cell_polar(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
+    if (!is_zero(d->graph, inner[1]))
+        return NODE_NONE;
     Graph *g = d->graph;
     Node   p[3], r[3], v[3];
     for (uint32_t i = 0; i < 3; i++) {
@@ -304,6 +332,33 @@ static Node derive_cell_polar(Derivation *d, const Expr *e, Node node, const Nod
     return between(d, graph_op3(g, OP_vec3, x, v[1], z));
 }
 
+/* A cell stays the same between its walls. */
+static Node derive_cell(Derivation *d, const Expr *e, Node node, const Node *inner)
+{
+    (void)e, (void)node;
+    return others_are_still(d->graph, inner, 1, 4) ? between(d, inner[0]) : NODE_NONE;
+}
+
+static Node derive_select(Derivation *d, const Expr *e, Node node, const Node *inner)
+{
+    (void)node;
+    return between(d, graph_op3(d->graph, OP_select, e->operands[0], inner[1], inner[2]));
+}
+
+static Node derive_guard(Derivation *d, const Expr *e, Node node, const Node *inner)
+{
+    (void)node;
+    Graph *g         = d->graph;
+    Node   limit     = graph_op2(g, OP_min, e->operands[1], e->operands[3]);
+    Node   out       = graph_op2(g, OP_less_equal, limit, e->operands[0]);
+    Node   least_far = graph_op2(g, OP_min, e->operands[3], number(d, 0));
+    least_far        = graph_op2(g, OP_less, least_far, e->operands[0]);
+    out              = graph_op2(g, OP_and, out, least_far);
+    Node least       = graph_op2(g, OP_less, e->operands[0], e->operands[1]);
+    least            = graph_op3(g, OP_select, least, inner[0], inner[1]);
+    return between(d, graph_op3(g, OP_select, out, least, inner[2]));
+}
+
 /* ---- blends: share[0] da + share[1] db ---- */
 
 /* Of a sharp minimum. */
@@ -314,30 +369,60 @@ static void sharp_shares(Derivation *d, Node a, Node b, Node share[2])
     share[1] = graph_op3(d->graph, OP_select, less, zero, one);
 }
 
-/* Those that give the farther one a share of 1/2 at most, the less the farther it is. */
-static void smooth_shares(Derivation *d, Op op, Node a, Node b, Node width, Node share[2])
+/* The same for any width of a blend whose width is above 0; node: the blend. */
+typedef void Shares(Derivation *d, Node node, Node a, Node b, Node width, Node share[2]);
+
+/* How far apart a and b are, in widths. */
+static Node widths_apart(Derivation *d, Node a, Node b, Node width)
 {
     Graph *g     = d->graph;
-    Node   apart = graph_op1(g, OP_abs, graph_op2(g, OP_sub, a, b)), one = number(d, 1), far;
-    width = not_zero(d, width);
-    apart = over(d, apart, width);
-    if (op == OP_smin_exponential) {
-        far = graph_op1(g, OP_exp, graph_op1(g, OP_neg, apart));
-        far = over(d, far, graph_op2(g, OP_add, one, far));
-    } else {
-        far = graph_op2(g, OP_sub, one, apart);
-        far = graph_op2(g, OP_max, far, number(d, 0));
-        far = op == OP_smin_cubic ? graph_op1(g, OP_square, far) : far;
-        far = times(d, far, number(d, 0.5));
-    }
-    Node less = graph_op2(g, OP_less, a, b), near = graph_op2(g, OP_sub, one, far);
+    Node   apart = graph_op1(g, OP_abs, graph_op2(g, OP_sub, a, b));
+    return over(d, apart, not_zero(d, width));
+}
+
+/* By the share of the farther one: 1/2 at most, the less the farther it is. */
+static void share_out(Derivation *d, Node a, Node b, Node far, Node share[2])
+{
+    Graph *g    = d->graph;
+    Node   less = graph_op2(g, OP_less, a, b), near = graph_op2(g, OP_sub, number(d, 1), far);
     share[0] = graph_op3(g, OP_select, less, near, far);
     share[1] = graph_op3(g, OP_select, less, far, near);
 }
 
-/* max(k, min(a, b)) - length(max(k - a, 0), max(k - b, 0)) */
-static void circular_shares(Derivation *d, Node a, Node b, Node width, Node share[2])
+/* max(1 - |a - b| / k, 0) */
+static Node nearness(Derivation *d, Node a, Node b, Node width)
 {
+    Node near = graph_op2(d->graph, OP_sub, number(d, 1), widths_apart(d, a, b, width));
+    return graph_op2(d->graph, OP_max, near, number(d, 0));
+}
+
+static void quadratic_shares(Derivation *d, Node node, Node a, Node b, Node width, Node share[2])
+{
+    (void)node;
+    Node far = nearness(d, a, b, width);
+    share_out(d, a, b, times(d, far, number(d, 0.5)), share);
+}
+
+static void cubic_shares(Derivation *d, Node node, Node a, Node b, Node width, Node share[2])
+{
+    (void)node;
+    Node far = graph_op1(d->graph, OP_square, nearness(d, a, b, width));
+    share_out(d, a, b, times(d, far, number(d, 0.5)), share);
+}
+
+static void exponential_shares(Derivation *d, Node node, Node a, Node b, Node width, Node share[2])
+{
+    (void)node;
+    Graph *g   = d->graph;
+    Node   far = graph_op1(g, OP_exp, graph_op1(g, OP_neg, widths_apart(d, a, b, width)));
+    far        = over(d, far, graph_op2(g, OP_add, number(d, 1), far));
+    share_out(d, a, b, far, share);
+}
+
+/* max(k, min(a, b)) - length(max(k - a, 0), max(k - b, 0)) */
+static void circular_shares(Derivation *d, Node node, Node a, Node b, Node width, Node share[2])
+{
+    (void)node;
     Graph *g    = d->graph;
     Node   zero = number(d, 0), depth[2];
     for (int i = 0; i < 2; i++)
@@ -349,8 +434,9 @@ static void circular_shares(Derivation *d, Node a, Node b, Node width, Node shar
 }
 
 /* min(a, b, (a + b - k) / sqrt(2)) */
-static void chamfer_shares(Derivation *d, Node a, Node b, Node width, Node share[2])
+static void chamfer_shares(Derivation *d, Node node, Node a, Node b, Node width, Node share[2])
 {
+    (void)node;
     Graph *g     = d->graph;
     Node   half  = number(d, M_SQRT1_2);
     Node   cut   = graph_op2(g, OP_sub, graph_op2(g, OP_add, a, b), width);
@@ -361,19 +447,19 @@ static void chamfer_shares(Derivation *d, Node a, Node b, Node width, Node share
 }
 
 /* min(a, b, (b - k + a + |mod(b - k - a + s, 2 s) - s|) / 2), s the width of a step */
-static void stairs_shares(Derivation *d, Node node, Node a, Node b, Node share[2])
+static void stairs_shares(Derivation *d, Node node, Node a, Node b, Node width, Node share[2])
 {
-    Graph *g     = d->graph;
-    Expr   e     = g->items[node];
-    Node   width = not_zero(d, e.operands[2]);
-    Node   steps = graph_op2(g, OP_max, e.operands[3], number(d, 1));
-    Node   step  = over(d, width, steps);
-    Node   level = graph_op2(g, OP_sub, b, width);
-    level        = graph_op2(g, OP_sub, level, a);
-    level        = graph_op2(g, OP_add, level, step);
-    Node within  = graph_op2(g, OP_mod, level, graph_op2(g, OP_add, step, step));
-    Node rises   = graph_op2(g, OP_less, step, within);
-    Node stairs  = graph_op2(g, OP_less, node, graph_op2(g, OP_min, a, b));
+    Graph *g    = d->graph;
+    Expr   e    = g->items[node];
+    width       = not_zero(d, width);
+    Node steps  = graph_op2(g, OP_max, e.operands[3], number(d, 1));
+    Node step   = over(d, width, steps);
+    Node level  = graph_op2(g, OP_sub, b, width);
+    level       = graph_op2(g, OP_sub, level, a);
+    level       = graph_op2(g, OP_add, level, step);
+    Node within = graph_op2(g, OP_mod, level, graph_op2(g, OP_add, step, step));
+    Node rises  = graph_op2(g, OP_less, step, within);
+    Node stairs = graph_op2(g, OP_less, node, graph_op2(g, OP_min, a, b));
     Node zero = number(d, 0), one = number(d, 1);
     Node by_b = graph_op3(g, OP_select, rises, one, zero);
     Node by_a = graph_op3(g, OP_select, rises, zero, one);
@@ -381,18 +467,15 @@ static void stairs_shares(Derivation *d, Node node, Node a, Node b, Node share[2
     share[1]  = graph_op3(g, OP_select, stairs, by_b, share[1]);
 }
 
-static Node derive_blend(Derivation *d, const Expr *e, Node node, const Node *inner)
+static Node derive_blend(Derivation *d, const Expr *e, Node node, const Node *inner, Shares *shares)
 {
+    if (!others_are_still(d->graph, inner, 2, e->operand_count))
+        return NODE_NONE;
     Node a = e->operands[0], b = e->operands[1], width = e->operands[2];
     Node sharp[2], share[2];
     sharp_shares(d, a, b, sharp);
     memcpy(share, sharp, sizeof share);
-    switch (e->op) {
-    case OP_smin_circular: circular_shares(d, a, b, width, share); break;
-    case OP_smin_chamfer: chamfer_shares(d, a, b, width, share); break;
-    case OP_smin_stairs: stairs_shares(d, node, a, b, share); break;
-    default: smooth_shares(d, (Op)e->op, a, b, width, share); break;
-    }
+    shares(d, node, a, b, width, share);
     Node blends = graph_op2(d->graph, OP_less, number(d, 0), width), sum[2];
     for (int i = 0; i < 2; i++) {
         share[i] = graph_op3(d->graph, OP_select, blends, share[i], sharp[i]);
@@ -401,9 +484,25 @@ static Node derive_blend(Derivation *d, const Expr *e, Node node, const Node *in
     return between(d, graph_op2(d->graph, OP_add, sum[0], sum[1]));
 }
 
+#define BLEND(name)                                                                            \
+    static Node derive_smin_##name(Derivation *d, const Expr *e, Node node, const Node *inner) \
+    {                                                                                          \
+        return derive_blend(d, e, node, inner, name##_shares);                                 \
+    }
+BLEND(quadratic)
+BLEND(cubic)
+BLEND(exponential)
+BLEND(circular)
+BLEND(chamfer)
+BLEND(stairs)
+#undef BLEND
+
 /* clamp(1/2 + (b - a) / 2k, 0, 1) */
-static Node derive_blend_weight(Derivation *d, const Expr *e, const Node *inner)
+static Node derive_blend_weight(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
+    (void)node;
+    if (!is_zero(d->graph, inner[2]))
+        return NODE_NONE;
     Graph *g      = d->graph;
     Node   apart  = graph_op1(g, OP_abs, graph_op2(g, OP_sub, e->operands[1], e->operands[0]));
     Node   blends = graph_op2(g, OP_less, apart, e->operands[2]);
@@ -415,59 +514,34 @@ static Node derive_blend_weight(Derivation *d, const Expr *e, const Node *inner)
 
 /* ---- any node ---- */
 
-/* The derivative of `node`, those of its operands in `inner`; NODE_NONE: no rule. */
+/* There is no formula. */
+static Node derive_none(Derivation *d, const Expr *e, Node node, const Node *inner)
+{
+    (void)d, (void)e, (void)node, (void)inner;
+    return NODE_NONE;
+}
+
+/* The derivative of a node from those of its operands, `inner`; NODE_NONE: there is none. */
+static Node (*const rules[OP_COUNT])(Derivation *d, const Expr *e, Node node, const Node *inner) = {
+#define RULES(name, cost, promises, simplify, derive, ...) [OP_##name] = derive,
+#include "compiler/graph/ops.def"
+};
+
+/* A truth value may change where no number does. */
+static bool has_condition(const Graph *g, const Expr *e)
+{
+    for (int i = 0; i < e->operand_count; i++)
+        if (g->items[e->operands[i]].type == TYPE_BOOL)
+            return true;
+    return false;
+}
+
 static Node derive_node(Derivation *d, Node node, const Node *inner)
 {
-    Graph *g = d->graph;
-    Expr   e = g->items[node];
-    if ((e.op == OP_min || e.op == OP_max) && e.type == TYPE_FLOAT)
-        return derive_choice(d, &e, inner);
-    if (partials[e.op])
-        return derive_map(d, node, inner);
-    if (e.type <= TYPE_VEC4 && others_are_still(g, inner, 0, e.operand_count) &&
-        e.op != OP_select && e.op != OP_guard)
-        return zero_of(g, e.type);
-    switch (e.op) {
-    case OP_COMPONENT: return graph_component(g, inner[0], e.index);
-    case OP_splat2:
-    case OP_splat3:
-    case OP_splat4:
-    case OP_vec2:
-    case OP_vec3:
-    case OP_vec4: return graph_op(g, e.op, inner);
-    case OP_dot:
-    case OP_cross:
-    case OP_scale: return derive_bilinear(g, e.op, &e, inner);
-    case OP_length: return derive_length(d, &e, node, inner);
-    case OP_normalize: return derive_normalize(d, &e, node, inner);
-    case OP_select: return between(d, graph_op3(g, OP_select, e.operands[0], inner[1], inner[2]));
-    case OP_guard: {
-        Node limit     = graph_op2(g, OP_min, e.operands[1], e.operands[3]);
-        Node out       = graph_op2(g, OP_less_equal, limit, e.operands[0]);
-        Node least_far = graph_op2(g, OP_min, e.operands[3], number(d, 0));
-        least_far      = graph_op2(g, OP_less, least_far, e.operands[0]);
-        out            = graph_op2(g, OP_and, out, least_far);
-        Node least     = graph_op2(g, OP_less, e.operands[0], e.operands[1]);
-        least          = graph_op3(g, OP_select, least, inner[0], inner[1]);
-        return between(d, graph_op3(g, OP_select, out, least, inner[2]));
-    }
-    case OP_turn: return derive_turn(g, &e, inner);
-    case OP_fold: return others_are_still(g, inner, 1, 3) ? derive_fold(d, &e, inner) : NODE_NONE;
-    case OP_cell: return others_are_still(g, inner, 1, 4) ? between(d, inner[0]) : NODE_NONE;
-    case OP_cell_polar:
-        return is_zero(g, inner[1]) ? derive_cell_polar(d, &e, node, inner) : NODE_NONE;
-    case OP_smin_quadratic:
-    case OP_smin_cubic:
-    case OP_smin_exponential:
-    case OP_smin_circular:
-    case OP_smin_chamfer:
-    case OP_smin_stairs:
-        return others_are_still(g, inner, 2, e.operand_count) ? derive_blend(d, &e, node, inner)
-                                                              : NODE_NONE;
-    case OP_blend_weight:
-        return is_zero(g, inner[2]) ? derive_blend_weight(d, &e, inner) : NODE_NONE;
-    default: return NODE_NONE;
-    }
+    Expr e = d->graph->items[node];
+    if (others_are_still(d->graph, inner, 0, e.operand_count) && !has_condition(d->graph, &e))
+        return zero_of(d->graph, (GraphType)e.type);
+    return rules[e.op](d, &e, node, inner);
 }
 
 /* The derivatives along one axis of all nodes on the tape; NODE_NONE: reached one without. */

@@ -17,6 +17,7 @@
 #include <math.h>
 
 #include "compiler/graph/evaluate.h"
+#include "compiler/graph/parity.h"
 
 /* A number in the ball. */
 typedef struct Part {
@@ -189,69 +190,122 @@ static Node growth(Nearby *x, Part u, Node reach)
     return plus(x, one, times(x, reach, number(x, 1.7183)));
 }
 
-static Curve curve_of_pole(Nearby *x, Op op, Part u, Node value, Node reach)
+typedef Curve CurveOf(Nearby *x, Part u, Node value, Node reach);
+
+static Curve curve_square(Nearby *x, Part u, Node value, Node reach)
 {
-    Graph *g     = x->graph;
-    Curve  curve = {0};
-    Node   near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
-    switch (op) {
-    case OP_log:
-        curve.slope = over(x, number(x, 1), at_least(x, u.value, TINY));
-        if (has_radius(x))
-            curve.bend = over(x, number(x, 1), times(x, near, near));
-        break;
-    case OP_sqrt:
-        curve.slope = over(x, number(x, 0.5), at_least(x, value, TINY));
-        if (has_radius(x))
-            curve.bend = over(x, number(x, 0.25), times(x, near, graph_op1(g, OP_sqrt, near)));
-        break;
-    case OP_inversesqrt: {
-        curve.slope = times(x, times(x, times(x, value, value), value), number(x, -0.5));
-        if (has_radius(x)) {
-            Node root  = graph_op1(g, OP_inversesqrt, near);
-            Node fifth = times(x, graph_op1(g, OP_square, times(x, root, root)), root);
-            curve.bend = times(x, fifth, number(x, 0.75));
-        }
-        break;
-    }
-    default: { /* 1 / u */
-        curve.slope = negative(x, times(x, value, value));
-        if (has_radius(x))
-            curve.bend = over(x, number(x, 2), times(x, times(x, near, near), near));
-        break;
-    }
+    (void)value, (void)reach;
+    return (Curve){times(x, u.value, number(x, 2)), number(x, 2)};
+}
+
+static Curve curve_sin(Nearby *x, Part u, Node value, Node reach)
+{
+    (void)value, (void)reach;
+    Node one = number(x, 1);
+    return (Curve){graph_op1(x->graph, OP_cos, u.value), one};
+}
+
+static Curve curve_cos(Nearby *x, Part u, Node value, Node reach)
+{
+    (void)value, (void)reach;
+    Node one = number(x, 1);
+    return (Curve){negative(x, graph_op1(x->graph, OP_sin, u.value)), one};
+}
+
+static Curve curve_atan(Nearby *x, Part u, Node value, Node reach)
+{
+    (void)value, (void)reach;
+    Node one = number(x, 1);
+    return (Curve){over(x, one, plus(x, one, graph_op1(x->graph, OP_square, u.value))),
+                   number(x, 0.6496)};
+}
+
+static Curve curve_tanh(Nearby *x, Part u, Node value, Node reach)
+{
+    (void)u, (void)reach;
+    Node one = number(x, 1);
+    return (Curve){minus(x, one, graph_op1(x->graph, OP_square, value)), number(x, 0.7699)};
+}
+
+static Curve curve_exp(Nearby *x, Part u, Node value, Node reach)
+{
+    Node one = number(x, 1);
+    return (Curve){value, has_radius(x) ? times(x, value, growth(x, u, reach)) : one};
+}
+
+static Curve curve_exp2(Nearby *x, Part u, Node value, Node reach)
+{
+    Node one = number(x, 1);
+    u        = scale_part(x, u.value, u, number(x, M_LN2));
+    reach    = has_radius(x) ? times(x, reach, number(x, M_LN2)) : reach;
+    return (Curve){times(x, value, number(x, M_LN2)),
+                   has_radius(x)
+                       ? times(x, times(x, value, growth(x, u, reach)), number(x, M_LN2 * M_LN2))
+                       : one};
+}
+
+/* The bend of both is that of the steeper. */
+static Node bend_of_cosh(Nearby *x, Part u, Node cosh, Node reach)
+{
+    return has_radius(x) ? times(x, cosh, growth(x, u, reach)) : number(x, 1);
+}
+
+static Curve curve_sinh(Nearby *x, Part u, Node value, Node reach)
+{
+    (void)value;
+    Node cosh = graph_op1(x->graph, OP_cosh, u.value);
+    return (Curve){cosh, bend_of_cosh(x, u, cosh, reach)};
+}
+
+static Curve curve_cosh(Nearby *x, Part u, Node value, Node reach)
+{
+    (void)value;
+    Node cosh  = graph_op1(x->graph, OP_cosh, u.value);
+    Node slope = graph_op1(x->graph, OP_sinh, u.value);
+    return (Curve){slope, bend_of_cosh(x, u, cosh, reach)};
+}
+
+static Curve curve_log(Nearby *x, Part u, Node value, Node reach)
+{
+    (void)value;
+    Node  near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
+    Curve curve = {.slope = over(x, number(x, 1), at_least(x, u.value, TINY))};
+    if (has_radius(x))
+        curve.bend = over(x, number(x, 1), times(x, near, near));
+    return curve;
+}
+
+static Curve curve_sqrt(Nearby *x, Part u, Node value, Node reach)
+{
+    Node  near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
+    Curve curve = {.slope = over(x, number(x, 0.5), at_least(x, value, TINY))};
+    if (has_radius(x)) {
+        Node root  = graph_op1(x->graph, OP_sqrt, near);
+        curve.bend = over(x, number(x, 0.25), times(x, near, root));
     }
     return curve;
 }
 
-static Curve curve_of(Nearby *x, Op op, Part u, Node value, Node reach)
+static Curve curve_inversesqrt(Nearby *x, Part u, Node value, Node reach)
 {
-    Graph *g   = x->graph;
-    Node   one = number(x, 1);
-    switch (op) {
-    case OP_square: return (Curve){times(x, u.value, number(x, 2)), number(x, 2)};
-    case OP_sin: return (Curve){graph_op1(g, OP_cos, u.value), one};
-    case OP_cos: return (Curve){negative(x, graph_op1(g, OP_sin, u.value)), one};
-    case OP_atan:
-        return (Curve){over(x, one, plus(x, one, graph_op1(g, OP_square, u.value))),
-                       number(x, 0.6496)};
-    case OP_tanh: return (Curve){minus(x, one, graph_op1(g, OP_square, value)), number(x, 0.7699)};
-    case OP_exp: return (Curve){value, has_radius(x) ? times(x, value, growth(x, u, reach)) : one};
-    case OP_exp2:
-        u     = scale_part(x, u.value, u, number(x, M_LN2));
-        reach = has_radius(x) ? times(x, reach, number(x, M_LN2)) : reach;
-        return (Curve){
-            times(x, value, number(x, M_LN2)),
-            has_radius(x) ? times(x, times(x, value, growth(x, u, reach)), number(x, M_LN2 * M_LN2))
-                          : one};
-    case OP_sinh:
-    case OP_cosh: {
-        Node cosh  = graph_op1(g, OP_cosh, u.value);
-        Node slope = op == OP_sinh ? cosh : graph_op1(g, OP_sinh, u.value);
-        return (Curve){slope, has_radius(x) ? times(x, cosh, growth(x, u, reach)) : one};
+    Node  near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
+    Curve curve = {.slope = times(x, times(x, times(x, value, value), value), number(x, -0.5))};
+    if (has_radius(x)) {
+        Node root  = graph_op1(x->graph, OP_inversesqrt, near);
+        Node fifth = times(x, graph_op1(x->graph, OP_square, times(x, root, root)), root);
+        curve.bend = times(x, fifth, number(x, 0.75));
     }
-    default: return curve_of_pole(x, op, u, value, reach);
-    }
+    return curve;
+}
+
+/* 1 / u */
+static Curve curve_inverse(Nearby *x, Part u, Node value, Node reach)
+{
+    Node  near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
+    Curve curve = {.slope = negative(x, times(x, value, value))};
+    if (has_radius(x))
+        curve.bend = over(x, number(x, 2), times(x, times(x, near, near), near));
+    return curve;
 }
 
 static Part bend_part(const Nearby *x, Node value, Part u, Curve curve)
@@ -265,10 +319,10 @@ static Part bend_part(const Nearby *x, Node value, Part u, Curve curve)
     return part;
 }
 
-static Part curved_part(Nearby *x, Op op, Node value, Part u)
+static Part curved_part(Nearby *x, CurveOf *curve_of, Node value, Part u)
 {
     Node reach = has_radius(x) ? times(x, steepness(x, &u), x->radius) : NODE_NONE;
-    return bend_part(x, value, u, curve_of(x, op, u, value, reach));
+    return bend_part(x, value, u, curve_of(x, u, value, reach));
 }
 
 /* |u|^n for a constant n >= 2, which has no kink at 0: M = n (n - 1) (|u| + reach)^(n - 2). */
@@ -451,32 +505,13 @@ static Part length_part(const Nearby *x, Node node, const Parts *a)
 
 /* ---- any operation ---- */
 
-static bool is_curved(Op op)
-{
-    switch (op) {
-    case OP_square:
-    case OP_sin:
-    case OP_cos:
-    case OP_atan:
-    case OP_tanh:
-    case OP_exp:
-    case OP_exp2:
-    case OP_sinh:
-    case OP_cosh:
-    case OP_log:
-    case OP_sqrt:
-    case OP_inversesqrt: return true;
-    default: return false;
-    }
-}
-
 static Part divide_parts(Nearby *x, Node value, Part a, Part b)
 {
     Graph *g       = x->graph;
     Node   inverse = over(x, number(x, 1), b.value);
     if (g->items[b.value].time != TIME_POINT)
         return scale_part(x, value, a, inverse);
-    Part turned = curved_part(x, OP_div, inverse, b);
+    Part turned = curved_part(x, curve_inverse, inverse, b);
     return multiply_parts(x, value, a, turned);
 }
 
@@ -487,81 +522,116 @@ static Part mix_parts(Nearby *x, Node value, Part a, Part b, Part t)
     return add_parts(x, value, a, change);
 }
 
-/* Component `value` of an operation; operands not all there are filled up with the first. */
-static Part component_part(Nearby *x, Op op, Node value, Part a, Part b, Part c)
+/* One component of an operation: of what works component by component, a, b and c are the
+   components of its operands; operands not all there are filled up with the first. */
+typedef struct Place {
+    Expr         e;
+    Node         node, value; /* the whole, and the component */
+    uint32_t     component;
+    const Parts *operands;
+    Part         a, b, c;
+} Place;
+
+typedef Part Rule(Nearby *x, const Place *p);
+
+static Part local_none(Nearby *x, const Place *p) { return opaque_part(x, p->value); }
+static Part local_add(Nearby *x, const Place *p) { return add_parts(x, p->value, p->a, p->b); }
+static Part local_neg(Nearby *x, const Place *p) { return negate_part(x, p->value, p->a); }
+static Part local_mul(Nearby *x, const Place *p) { return multiply_parts(x, p->value, p->a, p->b); }
+static Part local_div(Nearby *x, const Place *p) { return divide_parts(x, p->value, p->a, p->b); }
+static Part local_abs(Nearby *x, const Place *p) { return size_part(x, p->value, p->a); }
+static Part local_mix(Nearby *x, const Place *p)
 {
-    Graph      *g     = x->graph;
-    const Expr *power = &g->items[b.value];
-    switch (op) {
-    case OP_add: return add_parts(x, value, a, b);
-    case OP_sub: return add_parts(x, value, a, negate_part(x, b.value, b));
-    case OP_neg: return negate_part(x, value, a);
-    case OP_mul:
-    case OP_scale: return multiply_parts(x, value, a, b);
-    case OP_div: return divide_parts(x, value, a, b);
-    case OP_abs: return size_part(x, value, a);
-    case OP_min:
-    case OP_max: return choice_part(x, op, value, a, b);
-    case OP_clamp: {
-        Node raised = graph_op2(g, OP_max, a.value, b.value);
-        Part above  = choice_part(x, OP_max, raised, a, b);
-        return choice_part(x, OP_min, value, above, c);
-    }
-    case OP_mix: return mix_parts(x, value, a, b, c);
-    case OP_smoothstep: return smoothstep_part(x, value, a.value, b.value, c);
-    case OP_pow:
-        if (power->op != OP_CONSTANT)
-            return opaque_part(x, value);
-        return power->number[0] >= 2 ? even_power_part(x, value, a, power->number[0])
-                                     : power_part(x, value, a, power->number[0]);
-    default: return is_curved(op) ? curved_part(x, op, value, a) : opaque_part(x, value);
-    }
+    return mix_parts(x, p->value, p->a, p->b, p->c);
+}
+static Part local_dot(Nearby *x, const Place *p)
+{
+    return dot_part(x, p->node, &p->operands[0], &p->operands[1]);
+}
+static Part local_length(Nearby *x, const Place *p)
+{
+    return length_part(x, p->node, &p->operands[0]);
 }
 
-static bool is_componentwise(Op op)
+static Part local_sub(Nearby *x, const Place *p)
 {
-    switch (op) {
-    case OP_add:
-    case OP_sub:
-    case OP_neg:
-    case OP_mul:
-    case OP_scale:
-    case OP_div:
-    case OP_abs:
-    case OP_min:
-    case OP_max:
-    case OP_clamp:
-    case OP_mix:
-    case OP_pow:
-    case OP_smoothstep: return true;
-    default: return is_curved(op);
-    }
+    return add_parts(x, p->value, p->a, negate_part(x, p->b.value, p->b));
 }
+
+static Part local_choice(Nearby *x, const Place *p)
+{
+    return choice_part(x, (Op)p->e.op, p->value, p->a, p->b);
+}
+
+static Part local_clamp(Nearby *x, const Place *p)
+{
+    Node raised = graph_op2(x->graph, OP_max, p->a.value, p->b.value);
+    Part above  = choice_part(x, OP_max, raised, p->a, p->b);
+    return choice_part(x, OP_min, p->value, above, p->c);
+}
+
+static Part local_smoothstep(Nearby *x, const Place *p)
+{
+    return smoothstep_part(x, p->value, p->a.value, p->b.value, p->c);
+}
+
+static Part local_pow(Nearby *x, const Place *p)
+{
+    const Expr *power = &x->graph->items[p->b.value];
+    if (power->op != OP_CONSTANT)
+        return opaque_part(x, p->value);
+    return power->number[0] >= 2 ? even_power_part(x, p->value, p->a, power->number[0])
+                                 : power_part(x, p->value, p->a, power->number[0]);
+}
+
+#define CURVED(name)                                         \
+    static Part local_##name(Nearby *x, const Place *p)      \
+    {                                                        \
+        return curved_part(x, curve_##name, p->value, p->a); \
+    }
+CURVED(square)
+CURVED(sin)
+CURVED(cos)
+CURVED(atan)
+CURVED(tanh)
+CURVED(exp)
+CURVED(exp2)
+CURVED(sinh)
+CURVED(cosh)
+CURVED(log)
+CURVED(sqrt)
+CURVED(inversesqrt)
+#undef CURVED
+
+static Part local_component(Nearby *x, const Place *p)
+{
+    (void)x;
+    return part_of(&p->operands[0], p->e.index);
+}
+
+/* What builds a vector. */
+static Part local_vector(Nearby *x, const Place *p)
+{
+    (void)x;
+    return p->operands[p->e.operand_count > 1 ? p->component : 0].items[0];
+}
+
+static Rule *const rules[OP_COUNT] = {
+#define RULES(name, cost, promises, simplify, derive, local, ...) [OP_##name] = local,
+#include "compiler/graph/ops.def"
+};
 
 static void find_operation(Nearby *x, Node node, const Parts *operands, Parts *result)
 {
-    Expr e = x->graph->items[node];
+    Place place = {.e = x->graph->items[node], .node = node, .operands = operands};
+    int   last  = place.e.operand_count - 1;
     for (uint32_t i = 0; i < result->count; i++) {
-        Node  value = graph_component(x->graph, node, i);
-        Part *part  = &result->items[i];
-        int   last  = e.operand_count - 1;
-        switch (e.op) {
-        case OP_COMPONENT: *part = part_of(&operands[0], e.index); break;
-        case OP_splat2:
-        case OP_splat3:
-        case OP_splat4: *part = operands[0].items[0]; break;
-        case OP_vec2:
-        case OP_vec3:
-        case OP_vec4: *part = operands[i].items[0]; break;
-        case OP_dot: *part = dot_part(x, node, &operands[0], &operands[1]); break;
-        case OP_length: *part = length_part(x, node, &operands[0]); break;
-        default:
-            *part = is_componentwise(e.op)
-                        ? component_part(x, e.op, value, part_of(&operands[0], i),
-                                         part_of(&operands[last > 0], i),
-                                         part_of(&operands[last > 1 ? 2 : 0], i))
-                        : opaque_part(x, value);
-        }
+        place.value      = graph_component(x->graph, node, i);
+        place.component  = i;
+        place.a          = part_of(&operands[0], i);
+        place.b          = part_of(&operands[last > 0], i);
+        place.c          = part_of(&operands[last > 1 ? 2 : 0], i);
+        result->items[i] = rules[place.e.op](x, &place);
     }
 }
 
@@ -569,7 +639,7 @@ static void find_operation(Nearby *x, Node node, const Parts *operands, Parts *r
 static bool is_even(const Graph *g, const Expr *e)
 {
     if (e->op != OP_pow)
-        return e->op == OP_square || e->op == OP_cos || e->op == OP_cosh;
+        return op_parity((Op)e->op) == PARITY_EVEN;
     const Expr *power = &g->items[e->operands[1]];
     return power->op == OP_CONSTANT && power->number[0] >= 2;
 }
@@ -589,7 +659,7 @@ static Parts find_node(Nearby *x, Node node, const Tape *tape, const Parts *all)
     for (int i = 0; i < e.operand_count; i++)
         operands[i] = all[tape_place(tape, e.operands[i])];
     const Expr *inner = &x->graph->items[e.operands[0]];
-    if (inner->op == OP_abs && is_even(x->graph, &e))
+    if (inner->op == OP_abs && e.op != OP_abs && is_even(x->graph, &e))
         operands[0] = all[tape_place(tape, inner->operands[0])];
     x->graph->here = e.span;
     find_operation(x, node, operands, &found);

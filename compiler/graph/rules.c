@@ -231,11 +231,12 @@ static Fact rule_of_row(const Call *call, uint32_t index, const double *constant
     const Fact *o = call->operands;
     Partials    rows[4];
     Fact        fact = {0};
-    switch (call->op) {
-    case OP_CONSTANT:
+    if (call->op == OP_CONSTANT) {
         for (uint32_t i = 0; i < call->size; i++)
             fact.value[i] = range_of(constant[i]);
         return fact;
+    }
+    switch (call->op) {
     case OP_COMPONENT: return fact_component(&o[0], index);
 #define MAP(name, arity, glsl, value_, range, da, db, dc, norm, meaning)           \
     case OP_##name:                                                                \
@@ -251,10 +252,12 @@ static Fact rule_of_row(const Call *call, uint32_t index, const double *constant
     case OP_##name:                                         \
         return facts(call);
 #include "compiler/graph/ops.def"
-#undef MAP
-#undef OP
-    default: assert(!"leaves have facts of their own"); return fact_unknown(call->size);
+#define LEAF(name, ...) case OP_##name:
+#include "compiler/graph/ops.def"
+    case OP_COUNT: break;
     }
+    assert(!"leaves have facts of their own");
+    return fact_unknown(call->size);
 }
 
 /* Quotients by 0 all over the box: of 0, too, whose derivatives make the slope seem to be 0. */

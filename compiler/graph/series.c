@@ -273,57 +273,113 @@ static bool cross_parts(Expansion *x, Node node, const Parts *a, const Parts *b,
     return true;
 }
 
-/* What works component by component; false for an operation that no polynomial has. */
-static bool expand_component(Expansion *x, Node node, Op op, Part a, Part b, Part *result)
+/* A rule gives the components of the result; false: no polynomial, or one of too high a degree. */
+typedef bool Rule(Expansion *x, Node node, const Parts *operands, Parts *result);
+
+static bool series_none(Expansion *x, Node node, const Parts *operands, Parts *result)
 {
-    switch (op) {
-    case OP_add: *result = add_parts(x, a, b); return true;
-    case OP_sub: *result = add_parts(x, a, negate_part(x, b)); return true;
-    case OP_neg: *result = negate_part(x, a); return true;
-    case OP_square: return multiply(x, node, a, a, result);
-    case OP_mul:
-    case OP_scale: return multiply(x, node, a, b, result);
-    case OP_div:
+    (void)x, (void)node, (void)operands, (void)result;
+    return false;
+}
+
+/* Of a sum or a difference. */
+static bool expand_sum(Expansion *x, const Parts *operands, bool minus, Parts *result)
+{
+    for (uint32_t i = 0; i < result->count; i++) {
+        Part a = part_of(&operands[0], i), b = part_of(&operands[1], i);
+        result->items[i] = add_parts(x, a, minus ? negate_part(x, b) : b);
+    }
+    return true;
+}
+
+static bool series_add(Expansion *x, Node node, const Parts *operands, Parts *result)
+{
+    (void)node;
+    return expand_sum(x, operands, false, result);
+}
+
+static bool series_sub(Expansion *x, Node node, const Parts *operands, Parts *result)
+{
+    (void)node;
+    return expand_sum(x, operands, true, result);
+}
+
+static bool series_neg(Expansion *x, Node node, const Parts *operands, Parts *result)
+{
+    (void)node;
+    for (uint32_t i = 0; i < result->count; i++)
+        result->items[i] = negate_part(x, part_of(&operands[0], i));
+    return true;
+}
+
+static bool expand_product(Expansion *x, Node node, const Parts *a, const Parts *b, Parts *result)
+{
+    for (uint32_t i = 0; i < result->count; i++)
+        if (!multiply(x, node, part_of(a, i), part_of(b, i), &result->items[i]))
+            return false;
+    return true;
+}
+
+static bool series_mul(Expansion *x, Node node, const Parts *operands, Parts *result)
+{
+    return expand_product(x, node, &operands[0], &operands[1], result);
+}
+
+static bool series_square(Expansion *x, Node node, const Parts *operands, Parts *result)
+{
+    return expand_product(x, node, &operands[0], &operands[0], result);
+}
+
+static bool series_div(Expansion *x, Node node, const Parts *operands, Parts *result)
+{
+    for (uint32_t i = 0; i < result->count; i++) {
+        Part a = part_of(&operands[0], i), b = part_of(&operands[1], i);
         if (!is_constant(b))
             return false;
         b.series.c[0] = graph_op2(x->graph, OP_div, graph_number(x->graph, 1), b.series.c[0]);
-        return multiply(x, node, a, b, result);
-    default: return false;
+        if (!multiply(x, node, a, b, &result->items[i]))
+            return false;
     }
+    return true;
 }
 
-static bool expand_op(Expansion *x, Node node, const Parts *operands, Parts *result)
+static bool series_component(Expansion *x, Node node, const Parts *operands, Parts *result)
 {
-    Expr e = x->graph->items[node];
-    switch (e.op) {
-    case OP_COMPONENT: result->items[0] = part_of(&operands[0], e.index); return true;
-    case OP_splat2:
-    case OP_splat3:
-    case OP_splat4:
-        for (uint32_t i = 0; i < result->count; i++)
-            result->items[i] = operands[0].items[0];
-        return true;
-    case OP_vec2:
-    case OP_vec3:
-    case OP_vec4:
-        for (uint32_t i = 0; i < result->count; i++)
-            result->items[i] = operands[i].items[0];
-        return true;
-    case OP_dot: return dot_parts(x, node, &operands[0], &operands[1], &result->items[0]);
-    case OP_cross: return cross_parts(x, node, &operands[0], &operands[1], result);
-    case OP_turn:
-        for (uint32_t i = 0; i < 3; i++)
-            if (!dot_parts(x, node, &operands[0], &operands[i + 1], &result->items[i]))
-                return false;
-        return true;
-    default:
-        for (uint32_t i = 0; i < result->count; i++)
-            if (!expand_component(x, node, e.op, part_of(&operands[0], i),
-                                  part_of(&operands[e.operand_count > 1], i), &result->items[i]))
-                return false;
-        return true;
-    }
+    result->items[0] = part_of(&operands[0], x->graph->items[node].index);
+    return true;
 }
+
+/* What builds a vector. */
+static bool series_vector(Expansion *x, Node node, const Parts *operands, Parts *result)
+{
+    bool several = x->graph->items[node].operand_count > 1;
+    for (uint32_t i = 0; i < result->count; i++)
+        result->items[i] = operands[several ? i : 0].items[0];
+    return true;
+}
+
+static bool series_dot(Expansion *x, Node node, const Parts *operands, Parts *result)
+{
+    return dot_parts(x, node, &operands[0], &operands[1], &result->items[0]);
+}
+
+static bool series_cross(Expansion *x, Node node, const Parts *operands, Parts *result)
+{
+    return cross_parts(x, node, &operands[0], &operands[1], result);
+}
+
+static bool series_turn(Expansion *x, Node node, const Parts *operands, Parts *result)
+{
+    for (uint32_t i = 0; i < 3; i++)
+        if (!dot_parts(x, node, &operands[0], &operands[i + 1], &result->items[i]))
+            return false;
+    return true;
+}
+
+static Rule *const rules[OP_COUNT] = {
+#define RULES(name, cost, promises, simplify, derive, local, series, ...) [OP_##name] = series,
+#include "compiler/graph/ops.def"
+};
 
 /* A node of point time whose operands are expanded. */
 static bool expand_node(Expansion *x, Node node, const Tape *tape, const Parts *all, Parts *result)
@@ -344,7 +400,7 @@ static bool expand_node(Expansion *x, Node node, const Tape *tape, const Parts *
     Parts operands[MAX_OPERANDS];
     for (int i = 0; i < e.operand_count; i++)
         operands[i] = all[tape_place(tape, e.operands[i])];
-    return e.type <= TYPE_VEC4 && e.operand_count > 0 && expand_op(x, node, operands, result);
+    return e.type <= TYPE_VEC4 && e.operand_count > 0 && rules[e.op](x, node, operands, result);
 }
 
 static bool expand(Expansion *x, Node root, Series *series)
