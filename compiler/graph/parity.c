@@ -95,18 +95,19 @@ static uint8_t component_parity(const Expr *e, const Parity *const *o, uint32_t 
     return NEITHER;
 }
 
+/* What makes other numbers of numbers, and does not only arrange or sum them up. */
+static bool is_arithmetic(const Expr *e) { return op_parity((Op)e->op) <= PARITY_PRODUCT; }
+
 static Parity node_parity(const Graph *graph, const Expr *e, const Parity *const *operands,
                           uint32_t axis)
 {
     Parity parity = {{NEITHER, NEITHER, NEITHER, NEITHER}};
     if (e->operand_count == 0)
         return leaf_parity(e, axis);
-    bool     even  = all_even(e, operands, graph);
+    bool     even  = is_arithmetic(e) && all_even(e, operands, graph);
     uint32_t first = size_of(&graph->items[e->operands[0]]);
-    for (uint32_t k = 0; k < size_of(e); k++) {
-        uint8_t found = component_parity(e, operands, first, k);
-        parity.of[k]  = even && found == NEITHER ? EVEN : found;
-    }
+    for (uint32_t k = 0; k < size_of(e); k++)
+        parity.of[k] = even ? EVEN : component_parity(e, operands, first, k);
     return parity;
 }
 

@@ -13,7 +13,7 @@ typedef enum ParityRule {
     PARITY_ODD,     /* f(-a) = -f(a) */
     PARITY_EVEN,    /* f(-a) = f(a) */
     PARITY_SUM,     /* a + b or a - b */
-    PARITY_PRODUCT, /* a b or a / b */
+    PARITY_PRODUCT, /* a b or a / b; up to here arithmetic */
     PARITY_COMPONENT,
     PARITY_VECTOR, /* of what BUILDS */
     PARITY_DOT,
