@@ -299,53 +299,24 @@ static NodeValue evaluate_id_unit(const NodeValue *o, uint32_t size)
 
 /* ---- smooth minima (math.md, section 4); a width of 0 leaves min(a, b) ---- */
 
-/* 1 where a = b, falling to 0 where they differ by the width; infinite distances are equal. */
-static double nearness(double a, double b, double width)
+/* Infinite distances are as near as equal ones. */
+static double widths_apart(double a, double b, double width)
 {
-    return a == b ? 1 : fmax(1 - fabs(a - b) / width, 0);
+    return a == b ? 0 : fabs(a - b) / width;
 }
 
-static double smin_quadratic(double a, double b, double k)
-{
-    double h = nearness(a, b, k);
-    return fmin(a, b) - k * h * h / 4;
-}
-
-static double smin_cubic(double a, double b, double k)
-{
-    double h = nearness(a, b, k);
-    return fmin(a, b) - k * h * h * h / 6;
-}
-
-static double smin_exponential(double a, double b, double k)
-{
-    double apart = a == b ? 0 : fabs(a - b);
-    return fmin(a, b) - k * log1p(exp(-apart / k));
-}
-
-static double smin_circular(double a, double b, double k)
-{
-    return fmax(k, fmin(a, b)) - hypot(fmax(k - a, 0), fmax(k - b, 0));
-}
-
-static double smin_chamfer(double a, double b, double k)
-{
-    return fmin(fmin(a, b), (a + b - k) * sqrt(0.5));
-}
-
-#define SMOOTH_MINIMUM(name)                                            \
+#define SMIN(name, glsl, value, facts, meaning)                         \
     static NodeValue evaluate_##name(const NodeValue *o, uint32_t size) \
     {                                                                   \
         (void)size;                                                     \
         double a = o[0].v[0], b = o[1].v[0], k = o[2].v[0];             \
-        return number(k > 0 ? name(a, b, k) : fmin(a, b));              \
+        if (!(k > 0))                                                   \
+            return number(fmin(a, b));                                  \
+        double t = widths_apart(a, b, k), h = fmax(1 - t, 0);           \
+        (void)h;                                                        \
+        return number(value);                                           \
     }
-SMOOTH_MINIMUM(smin_quadratic)
-SMOOTH_MINIMUM(smin_cubic)
-SMOOTH_MINIMUM(smin_exponential)
-SMOOTH_MINIMUM(smin_circular)
-SMOOTH_MINIMUM(smin_chamfer)
-#undef SMOOTH_MINIMUM
+#include "compiler/graph/ops.def"
 
 /* hg_sdf's fOpUnionStairs: a triangle wave turns the line a + b = k into steps along which
    either a or b alone decides; that is why its slope is that of the steeper of them. */

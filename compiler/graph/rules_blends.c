@@ -36,21 +36,28 @@ static Fact fact_smooth(const Call *call, uint32_t count, Range value, double sl
     return fact;
 }
 
-/* The derivatives by a and b are at least 0 and sum to 1; further apart than the width, one of
-   them is 1. */
+/* The derivatives by a and b are at least 0 and sum to 1. */
 static Fact smooth_mean(const Call *call, uint32_t count, Range value)
 {
     const Fact *a = &call->operands[0], *b = &call->operands[1];
-    Jet         left = jet_of(a, 0), right = jet_of(b, 0);
-    double      width = fmax(call->operands[2].value[0].high, 0);
-    if (call->op != OP_smin_exponential && left.value.high + width <= right.value.low)
-        return fact_smooth(call, count, value, a->slope, left);
-    if (call->op != OP_smin_exponential && right.value.high + width <= left.value.low)
-        return fact_smooth(call, count, value, b->slope, right);
-    return fact_smooth(call, count, value, fmax(a->slope, b->slope), jet_hull(left, right));
+    Jet         either = jet_hull(jet_of(a, 0), jet_of(b, 0));
+    return fact_smooth(call, count, value, fmax(a->slope, b->slope), either);
 }
 
-Fact fact_smin(const Call *call) { return smooth_mean(call, 3, smooth_range(call, 0)); }
+/* The same where one of them is 1 further apart than the width. */
+static Fact smooth_mean_within(const Call *call, uint32_t count, Range value)
+{
+    const Fact *a = &call->operands[0], *b = &call->operands[1];
+    double      width = fmax(call->operands[2].value[0].high, 0);
+    if (a->value[0].high + width <= b->value[0].low)
+        return fact_smooth(call, count, value, a->slope, jet_of(a, 0));
+    if (b->value[0].high + width <= a->value[0].low)
+        return fact_smooth(call, count, value, b->slope, jet_of(b, 0));
+    return smooth_mean(call, count, value);
+}
+
+Fact fact_smin(const Call *call) { return smooth_mean_within(call, 3, smooth_range(call, 0)); }
+Fact fact_smin_endless(const Call *call) { return smooth_mean(call, 3, smooth_range(call, 0)); }
 
 /* Along the arc the derivatives by a and b are the sides of a unit vector: |a'| and |b'| add as
    the sides of a right triangle, at most sqrt 2 times the larger. */
@@ -100,7 +107,7 @@ Fact fact_smin_stairs(const Call *call)
     if (range_is_single(k) && range_is_single(n))
         value = range_intersect(value, smooth_range(call, n.low));
     double scale = range_largest(a) + range_largest(b) + range_largest(k);
-    return smooth_mean(call, 4, loosened(value, scale));
+    return smooth_mean_within(call, 4, loosened(value, scale));
 }
 
 Fact fact_blend_weight(const Call *call)
