@@ -16,6 +16,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/vec.h"
+
 /* Where on the way from smooth to steep an expression is looked at. */
 typedef enum Goal {
     GOAL_EQUAL, /* a = b */
@@ -72,19 +74,6 @@ static size_t choose(Search *s, size_t count) { return random_next(&s->random) %
 static double any_scale(Search *s, double least)
 {
     return s->size * pow(least, random_unit(&s->random));
-}
-
-static double length3(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
-
-static void add_scaled(double to[3], const double from[3], double factor, const double v[3])
-{
-    for (int i = 0; i < 3; i++)
-        to[i] = from[i] + factor * v[i];
-}
-
-static double apart(const double a[3], const double b[3])
-{
-    return length3((double[3]){a[0] - b[0], a[1] - b[1], a[2] - b[2]});
 }
 
 static void random_direction(Search *s, double direction[3])
@@ -166,7 +155,7 @@ static double side_now(const Search *s) { return s->values[s->side].v[0]; }
 
 static void aim_along(Search *s, const double from[3], const double to[3])
 {
-    double way = apart(from, to);
+    double way = distance3(from, to);
     for (int i = 0; i < 3 && way > 0; i++)
         s->aim[i] = (to[i] - from[i]) / way;
 }
@@ -176,7 +165,7 @@ static bool are_sides_different(double a, double b) { return (a > 0) != (b > 0);
 /* How much of its claim a pair uses up; 0 where it says nothing. */
 static double ratio_of(const Search *s, const Pair *pair)
 {
-    double way = apart(pair->p, pair->q), rounding = rounding_at(s, pair->p);
+    double way = distance3(pair->p, pair->q), rounding = rounding_at(s, pair->p);
     double a = pair->at_p, b = pair->at_q;
     if (!(way >= NEAREST * s->size) || isnan(a) || isnan(b) || isinf(pair->side_p + pair->side_q))
         return 0;
@@ -212,7 +201,7 @@ static void judge(Search *s, Pair *pair)
 /* The half that is steeper, or for sides that differ the one with the surface; false: too near. */
 static bool halve(Search *s, Pair *pair)
 {
-    if (apart(pair->p, pair->q) < 2.5 * NEAREST * s->size)
+    if (distance3(pair->p, pair->q) < 2.5 * NEAREST * s->size)
         return false;
     Pair   first = *pair, second = *pair;
     double middle[3];
@@ -256,10 +245,10 @@ static bool reach_surface(Search *s, Pair *pair, const double direction[3], doub
     memcpy(s->aim, direction, sizeof s->aim);
     pair->at_p   = distance_at(s, pair->p);
     pair->side_p = side_now(s);
-    add_scaled(s->aim, (double[3]){0}, -1, direction);
+    add_scaled3(s->aim, (double[3]){0}, -1, direction);
     double t = 0.5 * fabs(pair->side_p);
     for (int i = 0; i < 40 && t <= farthest; i++) {
-        add_scaled(pair->q, pair->p, t, direction);
+        add_scaled3(pair->q, pair->p, t, direction);
         pair->at_q   = distance_at(s, pair->q);
         pair->side_q = side_now(s);
         if (!isfinite(pair->side_q))
@@ -412,7 +401,7 @@ static void drive_to_zero(Search *s, const Target *t, double p[3], double axis[3
         if (!(slope > 0) || !isfinite(slope))
             return;
         double way = fmax(-0.5 * s->size, fmin(0.5 * s->size, at / slope));
-        add_scaled(next, p, -way / slope, axis);
+        add_scaled3(next, p, -way / slope, axis);
         double then = target_at(s, t, next);
         if (!isfinite(then))
             return;
@@ -425,7 +414,7 @@ static void drive_to_zero(Search *s, const Target *t, double p[3], double axis[3
             memcpy(first ? next : p, middle, sizeof middle);
             *(first ? &then : &at) = half;
         }
-        bool arrived = apart(p, next) < 1e-7 * s->size;
+        bool arrived = distance3(p, next) < 1e-7 * s->size;
         memcpy(p, next, sizeof next);
         at = then;
         if (arrived)
@@ -441,7 +430,7 @@ static void drive_up(Search *s, const Target *t, double p[3], double axis[3])
         double slope = target_slope(s, t, p, at, axis), next[3];
         if (!(slope > 0) || !isfinite(slope))
             return;
-        add_scaled(next, p, step / slope, axis);
+        add_scaled3(next, p, step / slope, axis);
         double then = target_at(s, t, next);
         if (then > at) {
             memcpy(p, next, sizeof next);
@@ -458,7 +447,7 @@ static void nudge(Search *s, double p[3], double least)
 {
     double direction[3];
     random_direction(s, direction);
-    add_scaled(p, p, any_scale(s, least), direction);
+    add_scaled3(p, p, any_scale(s, least), direction);
 }
 
 /* Along a random ray until close to a surface. */
@@ -472,7 +461,7 @@ static void start_at_surface(Search *s, double p[3])
         double distance = side_now(s);
         if (!(fabs(distance) > 1e-5 * s->size) || !(fabs(distance) < NOWHERE))
             break;
-        add_scaled(p, p, 0.9 * distance, direction);
+        add_scaled3(p, p, 0.9 * distance, direction);
     }
     for (int i = 0; i < 3; i++)
         if (!(p[i] > s->around.axis[i].low && p[i] < s->around.axis[i].high)) {
@@ -548,8 +537,8 @@ static Pair best_around(Search *s, double p[3], const double axis[3])
         else if (i == 3)
             (void)gradient_at(s, p, direction);
         double half = 0.5 * any_scale(s, 1e-5);
-        add_scaled(pair.p, p, half, direction);
-        add_scaled(pair.q, p, -half, direction);
+        add_scaled3(pair.p, p, half, direction);
+        add_scaled3(pair.q, p, -half, direction);
         judge(s, &pair);
         if (pair.ratio > best.ratio)
             best = pair;
@@ -588,10 +577,10 @@ static bool slide_down(Search *s, const Target *distance, double p[3], double ax
         double at = target_at(s, distance, p), slope = target_slope(s, distance, p, at, axis);
         if (!(slope > 0) || !isfinite(slope) || !(fabs(at) < NOWHERE))
             return false;
-        add_scaled(axis, (double[3]){0}, 1 / slope, axis);
+        add_scaled3(axis, (double[3]){0}, 1 / slope, axis);
         if (fabs(at) < NEAREST * s->size)
             return true;
-        add_scaled(p, p, -at, axis);
+        add_scaled3(p, p, -at, axis);
     }
     return false;
 }
@@ -606,13 +595,13 @@ static Pair best_past_guard(Search *s)
     random_point(s, pair.q);
     if (!slide_down(s, &guard->rest, pair.q, axis))
         return best;
-    add_scaled(pair.q, pair.q, -4 * NEAREST * s->size, axis); /* into it */
+    add_scaled3(pair.q, pair.q, -4 * NEAREST * s->size, axis); /* into it */
     double out   = target_at(s, &guard->bound, pair.q);
     double slope = target_slope(s, &guard->bound, pair.q, out, axis);
     if (!(out > 0) || !(slope > 0) || !isfinite(slope) || side_now(s) > 0)
         return best;
     for (double way = s->size; way > 1e-4 * s->size; way *= 0.8) {
-        add_scaled(pair.p, pair.q, way / slope, axis);
+        add_scaled3(pair.p, pair.q, way / slope, axis);
         judge(s, &pair);
         if (pair.ratio > best.ratio)
             best = pair;
@@ -626,14 +615,14 @@ static Pair best_past_guard(Search *s)
 static Pair changed(Search *s, const Pair *pair)
 {
     Pair   next = *pair;
-    double shift[3], way = apart(pair->p, pair->q), move = any_scale(s, 1e-6);
+    double shift[3], way = distance3(pair->p, pair->q), move = any_scale(s, 1e-6);
     random_direction(s, shift);
     switch (choose(s, 3)) {
     case 0:
-        add_scaled(next.p, next.p, move, shift);
-        add_scaled(next.q, next.q, move, shift);
+        add_scaled3(next.p, next.p, move, shift);
+        add_scaled3(next.q, next.q, move, shift);
         break;
-    case 1: add_scaled(next.q, next.q, way * random_unit(&s->random), shift); break;
+    case 1: add_scaled3(next.q, next.q, way * random_unit(&s->random), shift); break;
     default: {
         double factor = exp2(between(s, -2, 1));
         for (int i = 0; i < 3; i++)
@@ -797,7 +786,7 @@ bool search_surface(Search *search, const double p[3], double surface[3])
             direction[k] *= pair.at_p > 0 ? -1 : 1;
         Pair way = pair;
         if (reach_surface(search, &way, direction, 0.999999 * fabs(pair.at_p)) &&
-            (best.ratio < 0 || apart(p, way.q) < apart(p, best.q))) {
+            (best.ratio < 0 || distance3(p, way.q) < distance3(p, best.q))) {
             best       = way;
             best.ratio = 1;
         }

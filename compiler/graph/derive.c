@@ -11,6 +11,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/graph/build.h"
 #include "compiler/graph/evaluate.h"
 
 typedef struct Derivation {
@@ -21,12 +22,6 @@ typedef struct Derivation {
 } Derivation;
 
 /* ---- the functions of the columns da, db, dc, for nodes ---- */
-
-static Node number(Derivation *d, double value) { return graph_number(d->graph, value); }
-
-static Node times(Derivation *d, Node a, Node b) { return graph_op2(d->graph, OP_mul, a, b); }
-
-static Node over(Derivation *d, Node a, Node b) { return graph_op2(d->graph, OP_div, a, b); }
 
 /* A derivative that holds only where nothing jumps or breaks off. */
 static Node between(Derivation *d, Node derivative)
@@ -39,32 +34,36 @@ static Node between(Derivation *d, Node derivative)
 /* 1 where a < b, else 0, component by component. */
 static Node is_less(Derivation *d, Node a, Node b)
 {
-    Node not_less = graph_op2(d->graph, OP_step, b, a);
-    Node one      = number(d, 1);
-    return between(d, graph_op2(d->graph, OP_sub, one, not_less));
+    Graph *g        = d->graph;
+    Node   not_less = graph_op2(g, OP_step, b, a);
+    Node   one      = graph_number(g, 1);
+    return between(d, sub(g, one, not_less));
 }
 
 /* -1/2 a^(-3/2), with r = a^(-1/2). */
 static Node inversesqrt_slope(Derivation *d, Node r)
 {
-    Node cube = times(d, graph_op1(d->graph, OP_square, r), r);
-    return times(d, number(d, -0.5), cube);
+    Graph *g    = d->graph;
+    Node   cube = mul(g, graph_op1(g, OP_square, r), r);
+    return mul(g, graph_number(g, -0.5), cube);
 }
 
 /* 1 + sign * a^2 */
 static Node one_and_square(Derivation *d, Node a, Op sign)
 {
-    Node square = graph_op1(d->graph, OP_square, a);
-    return graph_op2(d->graph, sign, number(d, 1), square);
+    Graph *g      = d->graph;
+    Node   square = graph_op1(g, OP_square, a);
+    return graph_op2(g, sign, graph_number(g, 1), square);
 }
 
 /* asin and acos take what is beyond 1 for 1: there they do not change. */
 static Node asin_slope(Derivation *d, Node a)
 {
-    Node rest   = one_and_square(d, a, OP_sub);
-    Node inside = is_less(d, number(d, 0), rest);
-    Node safe   = graph_op2(d->graph, OP_max, rest, number(d, 1e-300));
-    return times(d, inside, graph_op1(d->graph, OP_inversesqrt, safe));
+    Graph *g      = d->graph;
+    Node   rest   = one_and_square(d, a, OP_sub);
+    Node   inside = is_less(d, graph_number(g, 0), rest);
+    Node   safe   = graph_op2(g, OP_max, rest, graph_number(g, 1e-300));
+    return mul(g, inside, graph_op1(g, OP_inversesqrt, safe));
 }
 
 static Node sech_square(Derivation *d, Node a)
@@ -74,15 +73,16 @@ static Node sech_square(Derivation *d, Node a)
 
 static Node pow_slope(Derivation *d, Node a, Node b)
 {
-    Node less = graph_op2(d->graph, OP_sub, b, number(d, 1));
-    return times(d, b, graph_power(d->graph, a, less));
+    Graph *g    = d->graph;
+    Node   less = sub(g, b, graph_number(g, 1));
+    return mul(g, b, graph_power(g, a, less));
 }
 
 static Node atan2_slope(Derivation *d, Node a, Node b, Node numerator)
 {
-    Node squares = graph_op2(d->graph, OP_add, graph_op1(d->graph, OP_square, a),
-                             graph_op1(d->graph, OP_square, b));
-    return over(d, numerator, squares);
+    Graph *g       = d->graph;
+    Node   squares = add(g, graph_op1(g, OP_square, a), graph_op1(g, OP_square, b));
+    return over(g, numerator, squares);
 }
 
 /* Of h^2 (3 - 2 h), h = (c - a) / (b - a) clamped: by c it is 6 h (1 - h) / (b - a), by the edges
@@ -90,34 +90,34 @@ static Node atan2_slope(Derivation *d, Node a, Node b, Node numerator)
 static Node smoothstep_slope(Derivation *d, Node a, Node b, Node c, int operand)
 {
     Graph *g    = d->graph;
-    Node   zero = number(d, 0), one = number(d, 1);
-    Node   width = graph_op2(g, OP_sub, b, a);
-    Node   part  = over(d, graph_op2(g, OP_sub, c, a), width);
+    Node   zero = graph_number(g, 0), one = graph_number(g, 1);
+    Node   width = sub(g, b, a);
+    Node   part  = over(g, sub(g, c, a), width);
     Node   h     = graph_op3(g, OP_clamp, part, zero, one);
-    Node   rest  = graph_op2(g, OP_sub, one, h);
-    Node   slope = over(d, times(d, times(d, h, rest), number(d, 6)), width);
+    Node   rest  = sub(g, one, h);
+    Node   slope = over(g, mul(g, mul(g, h, rest), graph_number(g, 6)), width);
     if (operand == 0)
-        slope = graph_op1(g, OP_neg, times(d, slope, rest));
+        slope = neg(g, mul(g, slope, rest));
     else if (operand == 1)
-        slope = graph_op1(g, OP_neg, times(d, slope, h));
+        slope = neg(g, mul(g, slope, h));
     return between(d, slope);
 }
 
-#define ZERO                                     number(d, 0)
-#define ONE                                      number(d, 1)
-#define TWO                                      number(d, 2)
-#define HALF                                     number(d, 0.5)
-#define LN2                                      number(d, M_LN2)
-#define MINUS_ONE                                number(d, -1)
+#define ZERO                                     graph_number(d->graph, 0)
+#define ONE                                      graph_number(d->graph, 1)
+#define TWO                                      graph_number(d->graph, 2)
+#define HALF                                     graph_number(d->graph, 0.5)
+#define LN2                                      graph_number(d->graph, M_LN2)
+#define MINUS_ONE                                graph_number(d->graph, -1)
 #define ANYTHING                                 between(d, ZERO)
 #define jumps(steps)                             between(d, ZERO)
 #define unless_jumps(steps, derivative)          between(d, derivative)
 #define range_sign(a)                            between(d, graph_op1(d->graph, OP_sign, a))
-#define range_mul(a, b)                          times(d, a, b)
-#define range_div(a, b)                          over(d, a, b)
-#define range_add(a, b)                          graph_op2(d->graph, OP_add, a, b)
-#define range_sub(a, b)                          graph_op2(d->graph, OP_sub, a, b)
-#define range_neg(a)                             graph_op1(d->graph, OP_neg, a)
+#define range_mul(a, b)                          mul(d->graph, a, b)
+#define range_div(a, b)                          over(d->graph, a, b)
+#define range_add(a, b)                          add(d->graph, a, b)
+#define range_sub(a, b)                          sub(d->graph, a, b)
+#define range_neg(a)                             neg(d->graph, a)
 #define range_square(a)                          graph_op1(d->graph, OP_square, a)
 #define range_sin(a)                             graph_op1(d->graph, OP_sin, a)
 #define range_cos(a)                             graph_op1(d->graph, OP_cos, a)
@@ -141,7 +141,7 @@ static Node smoothstep_slope(Derivation *d, Node a, Node b, Node c, int operand)
 #define range_asin_slope(a)                      asin_slope(d, a)
 #define range_sech_square(a)                     sech_square(d, a)
 #define range_pow_slope(a, b)                    pow_slope(d, a, b)
-#define range_pow_slope_exponent(a, r)           times(d, r, graph_op1(d->graph, OP_log, a))
+#define range_pow_slope_exponent(a, r)           mul(d->graph, r, graph_op1(d->graph, OP_log, a))
 #define range_atan2_slope(a, b, numerator)       atan2_slope(d, a, b, numerator)
 #define range_is_less(a, b)                      is_less(d, a, b)
 #define range_smoothstep_slope(a, b, c, operand) smoothstep_slope(d, a, b, c, operand)
@@ -179,32 +179,27 @@ static Node zero_of(Graph *graph, GraphType type)
     return graph_constant(graph, type, zeros);
 }
 
-static Node plus(Graph *graph, Node a, Node b)
-{
-    if (is_zero(graph, a) || is_zero(graph, b))
-        return is_zero(graph, a) ? b : a;
-    return graph_op2(graph, OP_add, a, b);
-}
-
 /* What a length is divided by: below it, what is divided is 0. */
 static Node not_zero(Derivation *d, Node length)
 {
-    return graph_op2(d->graph, OP_max, length, number(d, 1e-30));
+    Graph *g = d->graph;
+    return graph_op2(g, OP_max, length, graph_number(g, 1e-30));
 }
 
 /* Sum over the operands of the row's derivative times the operand's own. */
 static Node derive_by_partials(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
-    Node a = e->operands[0], b = e->operand_count > 1 ? e->operands[1] : a;
-    Node c   = e->operand_count > 2 ? e->operands[2] : a;
-    Node sum = zero_of(d->graph, (GraphType)e->type);
+    Graph *g = d->graph;
+    Node   a = e->operands[0], b = e->operand_count > 1 ? e->operands[1] : a;
+    Node   c   = e->operand_count > 2 ? e->operands[2] : a;
+    Node   sum = zero_of(g, (GraphType)e->type);
     for (int i = 0; i < e->operand_count; i++) {
-        if (is_zero(d->graph, inner[i]))
+        if (is_zero(g, inner[i]))
             continue;
         Node factor = partials[e->op](d, i, a, b, c, node);
-        if (is_zero(d->graph, factor))
+        if (is_zero(g, factor))
             continue;
-        sum = plus(d->graph, sum, times(d, factor, inner[i]));
+        sum = plus(g, sum, mul(g, factor, inner[i]));
     }
     return sum;
 }
@@ -252,8 +247,9 @@ static Node derive_bilinear(Derivation *d, const Expr *e, Node node, const Node 
 
 static Node derive_length(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
-    Node along = graph_op2(d->graph, OP_dot, e->operands[0], inner[0]);
-    return over(d, along, not_zero(d, node));
+    Graph *g     = d->graph;
+    Node   along = graph_op2(g, OP_dot, e->operands[0], inner[0]);
+    return over(g, along, not_zero(d, node));
 }
 
 /* (a' - n (n.a')) / |a| */
@@ -262,10 +258,10 @@ static Node derive_normalize(Derivation *d, const Expr *e, Node node, const Node
     Graph *g      = d->graph;
     Node   along  = graph_op2(g, OP_dot, node, inner[0]);
     Node   radial = graph_op2(g, OP_scale, node, along);
-    Node   across = graph_op2(g, OP_sub, inner[0], radial);
+    Node   across = sub(g, inner[0], radial);
     Node   size   = graph_op1(g, OP_length, e->operands[0]);
     size          = not_zero(d, size);
-    return graph_op2(g, OP_scale, across, over(d, number(d, 1), size));
+    return graph_op2(g, OP_scale, across, over(g, graph_number(g, 1), size));
 }
 
 /* Where only some operands may depend on the point. */
@@ -302,8 +298,8 @@ static Node derive_fold(Derivation *d, const Expr *e, Node node, const Node *inn
     Graph *g        = d->graph;
     Node   front    = graph_op3(g, OP_front, e->operands[0], e->operands[1], e->operands[2]);
     Node   along    = graph_op2(g, OP_dot, e->operands[1], inner[0]);
-    Node   twice    = graph_op2(g, OP_mul, along, graph_number(g, 2));
-    Node   mirrored = graph_op2(g, OP_sub, inner[0], graph_op2(g, OP_scale, e->operands[1], twice));
+    Node   twice    = mul(g, along, graph_number(g, 2));
+    Node   mirrored = sub(g, inner[0], graph_op2(g, OP_scale, e->operands[1], twice));
     return between(d, graph_op3(g, OP_select, front, mirrored, inner[0]));
 }
 
@@ -320,15 +316,15 @@ static Node derive_cell_polar(Derivation *d, const Expr *e, Node node, const Nod
         r[i] = graph_component(g, node, i);
         v[i] = graph_component(g, inner[0], i);
     }
-    Node xx = times(d, p[0], r[0]), zz = times(d, p[2], r[2]);
-    Node zx = times(d, p[2], r[0]), xz = times(d, p[0], r[2]);
+    Node xx = mul(g, p[0], r[0]), zz = mul(g, p[2], r[2]);
+    Node zx = mul(g, p[2], r[0]), xz = mul(g, p[0], r[2]);
     Node square = graph_op1(g, OP_square, p[0]), other = graph_op1(g, OP_square, p[2]);
-    square      = not_zero(d, graph_op2(g, OP_add, square, other));
-    Node cosine = over(d, graph_op2(g, OP_add, xx, zz), square);
-    Node sine   = over(d, graph_op2(g, OP_sub, zx, xz), square);
-    Node cx = times(d, cosine, v[0]), sz = times(d, sine, v[2]);
-    Node cz = times(d, cosine, v[2]), sx = times(d, sine, v[0]);
-    Node x = graph_op2(g, OP_add, cx, sz), z = graph_op2(g, OP_sub, cz, sx);
+    square      = not_zero(d, add(g, square, other));
+    Node cosine = over(g, add(g, xx, zz), square);
+    Node sine   = over(g, sub(g, zx, xz), square);
+    Node cx = mul(g, cosine, v[0]), sz = mul(g, sine, v[2]);
+    Node cz = mul(g, cosine, v[2]), sx = mul(g, sine, v[0]);
+    Node x = add(g, cx, sz), z = sub(g, cz, sx);
     return between(d, graph_op3(g, OP_vec3, x, v[1], z));
 }
 
@@ -351,7 +347,7 @@ static Node derive_guard(Derivation *d, const Expr *e, Node node, const Node *in
     Graph *g         = d->graph;
     Node   limit     = graph_op2(g, OP_min, e->operands[1], e->operands[3]);
     Node   out       = graph_op2(g, OP_less_equal, limit, e->operands[0]);
-    Node   least_far = graph_op2(g, OP_min, e->operands[3], number(d, 0));
+    Node   least_far = graph_op2(g, OP_min, e->operands[3], graph_number(g, 0));
     least_far        = graph_op2(g, OP_less, least_far, e->operands[0]);
     out              = graph_op2(g, OP_and, out, least_far);
     Node least       = graph_op2(g, OP_less, e->operands[0], e->operands[1]);
@@ -364,9 +360,10 @@ static Node derive_guard(Derivation *d, const Expr *e, Node node, const Node *in
 /* Of a sharp minimum. */
 static void sharp_shares(Derivation *d, Node a, Node b, Node share[2])
 {
-    Node less = graph_op2(d->graph, OP_less, a, b), one = number(d, 1), zero = number(d, 0);
-    share[0] = graph_op3(d->graph, OP_select, less, one, zero);
-    share[1] = graph_op3(d->graph, OP_select, less, zero, one);
+    Graph *g    = d->graph;
+    Node   less = graph_op2(g, OP_less, a, b), one = graph_number(g, 1), zero = graph_number(g, 0);
+    share[0] = graph_op3(g, OP_select, less, one, zero);
+    share[1] = graph_op3(g, OP_select, less, zero, one);
 }
 
 /* The same for any width of a blend whose width is above 0; node: the blend. */
@@ -376,15 +373,15 @@ typedef void Shares(Derivation *d, Node node, Node a, Node b, Node width, Node s
 static Node widths_apart(Derivation *d, Node a, Node b, Node width)
 {
     Graph *g     = d->graph;
-    Node   apart = graph_op1(g, OP_abs, graph_op2(g, OP_sub, a, b));
-    return over(d, apart, not_zero(d, width));
+    Node   apart = graph_op1(g, OP_abs, sub(g, a, b));
+    return over(g, apart, not_zero(d, width));
 }
 
 /* By the share of the farther one: 1/2 at most, the less the farther it is. */
 static void share_out(Derivation *d, Node a, Node b, Node far, Node share[2])
 {
     Graph *g    = d->graph;
-    Node   less = graph_op2(g, OP_less, a, b), near = graph_op2(g, OP_sub, number(d, 1), far);
+    Node   less = graph_op2(g, OP_less, a, b), near = sub(g, graph_number(g, 1), far);
     share[0] = graph_op3(g, OP_select, less, near, far);
     share[1] = graph_op3(g, OP_select, less, far, near);
 }
@@ -392,30 +389,33 @@ static void share_out(Derivation *d, Node a, Node b, Node far, Node share[2])
 /* max(1 - |a - b| / k, 0) */
 static Node nearness(Derivation *d, Node a, Node b, Node width)
 {
-    Node near = graph_op2(d->graph, OP_sub, number(d, 1), widths_apart(d, a, b, width));
-    return graph_op2(d->graph, OP_max, near, number(d, 0));
+    Graph *g    = d->graph;
+    Node   near = sub(g, graph_number(g, 1), widths_apart(d, a, b, width));
+    return graph_op2(g, OP_max, near, graph_number(g, 0));
 }
 
 static void quadratic_shares(Derivation *d, Node node, Node a, Node b, Node width, Node share[2])
 {
+    Graph *g = d->graph;
     (void)node;
     Node far = nearness(d, a, b, width);
-    share_out(d, a, b, times(d, far, number(d, 0.5)), share);
+    share_out(d, a, b, mul(g, far, graph_number(g, 0.5)), share);
 }
 
 static void cubic_shares(Derivation *d, Node node, Node a, Node b, Node width, Node share[2])
 {
+    Graph *g = d->graph;
     (void)node;
-    Node far = graph_op1(d->graph, OP_square, nearness(d, a, b, width));
-    share_out(d, a, b, times(d, far, number(d, 0.5)), share);
+    Node far = graph_op1(g, OP_square, nearness(d, a, b, width));
+    share_out(d, a, b, mul(g, far, graph_number(g, 0.5)), share);
 }
 
 static void exponential_shares(Derivation *d, Node node, Node a, Node b, Node width, Node share[2])
 {
     (void)node;
     Graph *g   = d->graph;
-    Node   far = graph_op1(g, OP_exp, graph_op1(g, OP_neg, widths_apart(d, a, b, width)));
-    far        = over(d, far, graph_op2(g, OP_add, number(d, 1), far));
+    Node   far = graph_op1(g, OP_exp, neg(g, widths_apart(d, a, b, width)));
+    far        = over(g, far, add(g, graph_number(g, 1), far));
     share_out(d, a, b, far, share);
 }
 
@@ -424,13 +424,13 @@ static void circular_shares(Derivation *d, Node node, Node a, Node b, Node width
 {
     (void)node;
     Graph *g    = d->graph;
-    Node   zero = number(d, 0), depth[2];
+    Node   zero = graph_number(g, 0), depth[2];
     for (int i = 0; i < 2; i++)
-        depth[i] = graph_op2(g, OP_max, graph_op2(g, OP_sub, width, i ? b : a), zero);
+        depth[i] = graph_op2(g, OP_max, sub(g, width, i ? b : a), zero);
     Node both = not_zero(d, graph_op1(g, OP_length, graph_op(g, OP_vec2, depth)));
     Node out  = graph_op2(g, OP_less, width, graph_op2(g, OP_min, a, b));
     for (int i = 0; i < 2; i++)
-        share[i] = graph_op3(g, OP_select, out, share[i], over(d, depth[i], both));
+        share[i] = graph_op3(g, OP_select, out, share[i], over(g, depth[i], both));
 }
 
 /* min(a, b, (a + b - k) / sqrt(2)) */
@@ -438,10 +438,10 @@ static void chamfer_shares(Derivation *d, Node node, Node a, Node b, Node width,
 {
     (void)node;
     Graph *g     = d->graph;
-    Node   half  = number(d, M_SQRT1_2);
-    Node   cut   = graph_op2(g, OP_sub, graph_op2(g, OP_add, a, b), width);
+    Node   half  = graph_number(g, M_SQRT1_2);
+    Node   cut   = sub(g, add(g, a, b), width);
     Node   least = graph_op2(g, OP_min, a, b);
-    Node   cuts  = graph_op2(g, OP_less, times(d, cut, half), least);
+    Node   cuts  = graph_op2(g, OP_less, mul(g, cut, half), least);
     for (int i = 0; i < 2; i++)
         share[i] = graph_op3(g, OP_select, cuts, half, share[i]);
 }
@@ -452,15 +452,15 @@ static void stairs_shares(Derivation *d, Node node, Node a, Node b, Node width, 
     Graph *g    = d->graph;
     Expr   e    = g->items[node];
     width       = not_zero(d, width);
-    Node steps  = graph_op2(g, OP_max, e.operands[3], number(d, 1));
-    Node step   = over(d, width, steps);
-    Node level  = graph_op2(g, OP_sub, b, width);
-    level       = graph_op2(g, OP_sub, level, a);
-    level       = graph_op2(g, OP_add, level, step);
-    Node within = graph_op2(g, OP_mod, level, graph_op2(g, OP_add, step, step));
+    Node steps  = graph_op2(g, OP_max, e.operands[3], graph_number(g, 1));
+    Node step   = over(g, width, steps);
+    Node level  = sub(g, b, width);
+    level       = sub(g, level, a);
+    level       = add(g, level, step);
+    Node within = graph_op2(g, OP_mod, level, add(g, step, step));
     Node rises  = graph_op2(g, OP_less, step, within);
     Node stairs = graph_op2(g, OP_less, node, graph_op2(g, OP_min, a, b));
-    Node zero = number(d, 0), one = number(d, 1);
+    Node zero = graph_number(g, 0), one = graph_number(g, 1);
     Node by_b = graph_op3(g, OP_select, rises, one, zero);
     Node by_a = graph_op3(g, OP_select, rises, zero, one);
     share[0]  = graph_op3(g, OP_select, stairs, by_a, share[0]);
@@ -469,19 +469,20 @@ static void stairs_shares(Derivation *d, Node node, Node a, Node b, Node width, 
 
 static Node derive_blend(Derivation *d, const Expr *e, Node node, const Node *inner, Shares *shares)
 {
-    if (!others_are_still(d->graph, inner, 2, e->operand_count))
+    Graph *g = d->graph;
+    if (!others_are_still(g, inner, 2, e->operand_count))
         return NODE_NONE;
     Node a = e->operands[0], b = e->operands[1], width = e->operands[2];
     Node sharp[2], share[2];
     sharp_shares(d, a, b, sharp);
     memcpy(share, sharp, sizeof share);
     shares(d, node, a, b, width, share);
-    Node blends = graph_op2(d->graph, OP_less, number(d, 0), width), sum[2];
+    Node blends = graph_op2(g, OP_less, graph_number(g, 0), width), sum[2];
     for (int i = 0; i < 2; i++) {
-        share[i] = graph_op3(d->graph, OP_select, blends, share[i], sharp[i]);
-        sum[i]   = times(d, share[i], inner[i]);
+        share[i] = graph_op3(g, OP_select, blends, share[i], sharp[i]);
+        sum[i]   = mul(g, share[i], inner[i]);
     }
-    return between(d, graph_op2(d->graph, OP_add, sum[0], sum[1]));
+    return between(d, add(g, sum[0], sum[1]));
 }
 
 #define BLEND(name)                                                                            \
@@ -504,12 +505,12 @@ static Node derive_blend_weight(Derivation *d, const Expr *e, Node node, const N
     if (!is_zero(d->graph, inner[2]))
         return NODE_NONE;
     Graph *g      = d->graph;
-    Node   apart  = graph_op1(g, OP_abs, graph_op2(g, OP_sub, e->operands[1], e->operands[0]));
+    Node   apart  = graph_op1(g, OP_abs, sub(g, e->operands[1], e->operands[0]));
     Node   blends = graph_op2(g, OP_less, apart, e->operands[2]);
     Node   width  = not_zero(d, e->operands[2]);
-    Node   slope  = over(d, number(d, 0.5), width);
-    Node   change = times(d, graph_op2(g, OP_sub, inner[1], inner[0]), slope);
-    return between(d, graph_op3(g, OP_select, blends, change, number(d, 0)));
+    Node   slope  = over(g, graph_number(g, 0.5), width);
+    Node   change = mul(g, sub(g, inner[1], inner[0]), slope);
+    return between(d, graph_op3(g, OP_select, blends, change, graph_number(g, 0)));
 }
 
 /* ---- any node ---- */

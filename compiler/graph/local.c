@@ -16,6 +16,7 @@
 
 #include <math.h>
 
+#include "compiler/graph/build.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/parity.h"
 
@@ -45,117 +46,76 @@ static const double TINY = 1e-30, SMALL = 1e-6;
 /* How many parts the box is cut into for what has no rule. */
 enum { CELLS = 256 };
 
-/* ---- arithmetic that leaves out what is 0 or 1 ---- */
-
-static Node number(const Nearby *x, double value) { return graph_number(x->graph, value); }
-
-/* Of a FLOAT or, for 0, of a vector. */
-static bool is_number(const Nearby *x, Node node, double value)
-{
-    const Expr *e    = &x->graph->items[node];
-    bool        same = e->op == OP_CONSTANT && (e->type == TYPE_FLOAT || value == 0);
-    for (uint32_t i = 0; same && i < (uint32_t)e->type; i++)
-        same = e->number[i] == value;
-    return same;
-}
-
-static Node plus(const Nearby *x, Node a, Node b)
-{
-    if (is_number(x, a, 0) || is_number(x, b, 0))
-        return is_number(x, a, 0) ? b : a;
-    return graph_op2(x->graph, OP_add, a, b);
-}
-
-static Node times(const Nearby *x, Node a, Node b)
-{
-    if (is_number(x, a, 0) || is_number(x, b, 1))
-        return a;
-    if (is_number(x, b, 0) || is_number(x, a, 1))
-        return b;
-    return a == b ? graph_op1(x->graph, OP_square, a) : graph_op2(x->graph, OP_mul, a, b);
-}
-
-/* A vector times a number. */
-static Node stretch(const Nearby *x, Node vector, Node by)
-{
-    if (is_number(x, vector, 0) || is_number(x, by, 1))
-        return vector;
-    return is_number(x, by, 0) ? graph_vec3(x->graph, 0, 0, 0)
-                               : graph_op2(x->graph, OP_scale, vector, by);
-}
-
-static Node minus(const Nearby *x, Node a, Node b) { return graph_op2(x->graph, OP_sub, a, b); }
-static Node over(const Nearby *x, Node a, Node b) { return graph_op2(x->graph, OP_div, a, b); }
-static Node negative(const Nearby *x, Node a) { return graph_op1(x->graph, OP_neg, a); }
-static Node size_of(const Nearby *x, Node a) { return graph_op1(x->graph, OP_abs, a); }
-
-static Node at_least(const Nearby *x, Node node, double least)
-{
-    return graph_op2(x->graph, OP_max, node, number(x, least));
-}
-
 /* ---- parts ---- */
 
 static bool has_radius(const Nearby *x) { return x->radius != NODE_NONE; }
 
 static Part still_part(const Nearby *x, Node value)
 {
-    Node zero = number(x, 0);
-    return (Part){value, graph_vec3(x->graph, 0, 0, 0), zero, zero, NODE_NONE};
+    Graph *g    = x->graph;
+    Node   zero = graph_number(g, 0);
+    return (Part){value, graph_vec3(g, 0, 0, 0), zero, zero, NODE_NONE};
 }
 
 /* Slope at the point. */
 static Node slope_here(const Nearby *x, const Part *a)
 {
-    return plus(x, graph_op1(x->graph, OP_length, a->gradient), a->first);
+    Graph *g = x->graph;
+    return plus(g, graph_op1(g, OP_length, a->gradient), a->first);
 }
 
 /* Slope in the ball. */
 static Node steepness(const Nearby *x, const Part *a)
 {
+    Graph *g = x->graph;
     if (a->steep != NODE_NONE)
         return a->steep;
     Node here = slope_here(x, a);
-    return has_radius(x) ? plus(x, here, times(x, a->second, x->radius)) : here;
+    return has_radius(x) ? plus(g, here, times(g, a->second, x->radius)) : here;
 }
 
 /* Of which nothing is known but its slope over the box. */
 static Part opaque_part(Nearby *x, Node value)
 {
+    Graph *g     = x->graph;
     Part   part  = still_part(x, value);
-    double slope = graph_slope(x->graph, value, x->box, NULL, CELLS, NULL, x->scratch);
+    double slope = graph_slope(g, value, x->box, NULL, CELLS, NULL, x->scratch);
     x->bounded   = x->bounded && isfinite(slope);
-    part.first   = number(x, isfinite(slope) ? slope : 0);
+    part.first   = graph_number(g, isfinite(slope) ? slope : 0);
     return part;
 }
 
 static Part add_parts(const Nearby *x, Node value, Part a, Part b)
 {
-    return (Part){value, plus(x, a.gradient, b.gradient), plus(x, a.first, b.first),
-                  plus(x, a.second, b.second), NODE_NONE};
+    Graph *g = x->graph;
+    return (Part){value, plus(g, a.gradient, b.gradient), plus(g, a.first, b.first),
+                  plus(g, a.second, b.second), NODE_NONE};
 }
 
 static Part negate_part(const Nearby *x, Node value, Part a)
 {
-    return (Part){value, negative(x, a.gradient), a.first, a.second, a.steep};
+    Graph *g = x->graph;
+    return (Part){value, neg(g, a.gradient), a.first, a.second, a.steep};
 }
 
 /* `factor` times the part, for a rule that adds the rest. */
 static Part scale_part(const Nearby *x, Node value, Part a, Node factor)
 {
-    Node size = size_of(x, factor);
-    return (Part){value, stretch(x, a.gradient, factor), times(x, a.first, size),
-                  times(x, a.second, size), NODE_NONE};
+    Graph *g    = x->graph;
+    Node   size = graph_op1(g, OP_abs, factor);
+    return (Part){value, stretch(g, a.gradient, factor), times(g, a.first, size),
+                  times(g, a.second, size), NODE_NONE};
 }
 
 static Part multiply_parts(const Nearby *x, Node value, Part a, Part b)
 {
-    Part first   = scale_part(x, value, a, b.value);
-    Part second  = scale_part(x, value, b, a.value);
-    Part product = add_parts(x, value, first, second);
+    Graph *g       = x->graph;
+    Part   first   = scale_part(x, value, a, b.value);
+    Part   second  = scale_part(x, value, b, a.value);
+    Part   product = add_parts(x, value, first, second);
     if (has_radius(x)) {
-        Node both      = times(x, steepness(x, &a), steepness(x, &b));
-        product.second = plus(x, product.second, both);
+        Node both      = times(g, steepness(x, &a), steepness(x, &b));
+        product.second = plus(g, product.second, both);
     }
     return product;
 }
@@ -171,83 +131,92 @@ typedef struct Curve {
 static Node clear_of_zero(Nearby *x, Part u, Node *reach)
 {
     Graph *g    = x->graph;
-    Node   size = at_least(x, size_of(x, u.value), SMALL), half = times(x, size, number(x, 0.5));
-    Node   room = over(x, times(x, size_of(x, u.value), number(x, 0.5)),
-                       at_least(x, steepness(x, &u), TINY));
+    Node   size = at_least(g, graph_op1(g, OP_abs, u.value), SMALL),
+         half   = times(g, size, graph_number(g, 0.5));
+    Node room   = over(g, times(g, graph_op1(g, OP_abs, u.value), graph_number(g, 0.5)),
+                       at_least(g, steepness(x, &u), TINY));
     x->limit    = x->limit == NODE_NONE ? room : graph_op2(g, OP_min, x->limit, room);
     *reach      = graph_op2(g, OP_min, *reach, half);
-    return minus(x, size, *reach);
+    return sub(g, size, *reach);
 }
 
 /* e^reach - 1 over the ball, of which no more is used than reaches by 1. */
 static Node growth(Nearby *x, Part u, Node reach)
 {
     Graph *g    = x->graph;
-    Node   one  = number(x, 1);
-    Node   room = over(x, one, at_least(x, steepness(x, &u), TINY));
+    Node   one  = graph_number(g, 1);
+    Node   room = over(g, one, at_least(g, steepness(x, &u), TINY));
     x->limit    = x->limit == NODE_NONE ? room : graph_op2(g, OP_min, x->limit, room);
     reach       = graph_op2(g, OP_min, reach, one);
-    return plus(x, one, times(x, reach, number(x, 1.7183)));
+    return plus(g, one, times(g, reach, graph_number(g, 1.7183)));
 }
 
 typedef Curve CurveOf(Nearby *x, Part u, Node value, Node reach);
 
 static Curve curve_square(Nearby *x, Part u, Node value, Node reach)
 {
+    Graph *g = x->graph;
     (void)value, (void)reach;
-    return (Curve){times(x, u.value, number(x, 2)), number(x, 2)};
+    return (Curve){times(g, u.value, graph_number(g, 2)), graph_number(g, 2)};
 }
 
 static Curve curve_sin(Nearby *x, Part u, Node value, Node reach)
 {
+    Graph *g = x->graph;
     (void)value, (void)reach;
-    Node one = number(x, 1);
-    return (Curve){graph_op1(x->graph, OP_cos, u.value), one};
+    Node one = graph_number(g, 1);
+    return (Curve){graph_op1(g, OP_cos, u.value), one};
 }
 
 static Curve curve_cos(Nearby *x, Part u, Node value, Node reach)
 {
+    Graph *g = x->graph;
     (void)value, (void)reach;
-    Node one = number(x, 1);
-    return (Curve){negative(x, graph_op1(x->graph, OP_sin, u.value)), one};
+    Node one = graph_number(g, 1);
+    return (Curve){neg(g, graph_op1(g, OP_sin, u.value)), one};
 }
 
 static Curve curve_atan(Nearby *x, Part u, Node value, Node reach)
 {
+    Graph *g = x->graph;
     (void)value, (void)reach;
-    Node one = number(x, 1);
-    return (Curve){over(x, one, plus(x, one, graph_op1(x->graph, OP_square, u.value))),
-                   number(x, 0.6496)};
+    Node one = graph_number(g, 1);
+    return (Curve){over(g, one, plus(g, one, graph_op1(g, OP_square, u.value))),
+                   graph_number(g, 0.6496)};
 }
 
 static Curve curve_tanh(Nearby *x, Part u, Node value, Node reach)
 {
+    Graph *g = x->graph;
     (void)u, (void)reach;
-    Node one = number(x, 1);
-    return (Curve){minus(x, one, graph_op1(x->graph, OP_square, value)), number(x, 0.7699)};
+    Node one = graph_number(g, 1);
+    return (Curve){sub(g, one, graph_op1(g, OP_square, value)), graph_number(g, 0.7699)};
 }
 
 static Curve curve_exp(Nearby *x, Part u, Node value, Node reach)
 {
-    Node one = number(x, 1);
-    return (Curve){value, has_radius(x) ? times(x, value, growth(x, u, reach)) : one};
+    Graph *g   = x->graph;
+    Node   one = graph_number(g, 1);
+    return (Curve){value, has_radius(x) ? times(g, value, growth(x, u, reach)) : one};
 }
 
 static Curve curve_exp2(Nearby *x, Part u, Node value, Node reach)
 {
-    Node one = number(x, 1);
-    u        = scale_part(x, u.value, u, number(x, M_LN2));
-    reach    = has_radius(x) ? times(x, reach, number(x, M_LN2)) : reach;
-    return (Curve){times(x, value, number(x, M_LN2)),
-                   has_radius(x)
-                       ? times(x, times(x, value, growth(x, u, reach)), number(x, M_LN2 * M_LN2))
-                       : one};
+    Graph *g   = x->graph;
+    Node   one = graph_number(g, 1);
+    u          = scale_part(x, u.value, u, graph_number(g, M_LN2));
+    reach      = has_radius(x) ? times(g, reach, graph_number(g, M_LN2)) : reach;
+    return (Curve){times(g, value, graph_number(g, M_LN2)),
+                   has_radius(x) ? times(g, times(g, value, growth(x, u, reach)),
+                                         graph_number(g, M_LN2 * M_LN2))
+                                 : one};
 }
 
 /* The bend of both is that of the steeper. */
 static Node bend_of_cosh(Nearby *x, Part u, Node cosh, Node reach)
 {
-    return has_radius(x) ? times(x, cosh, growth(x, u, reach)) : number(x, 1);
+    Graph *g = x->graph;
+    return has_radius(x) ? times(g, cosh, growth(x, u, reach)) : graph_number(g, 1);
 }
 
 static Curve curve_sinh(Nearby *x, Part u, Node value, Node reach)
@@ -267,33 +236,37 @@ static Curve curve_cosh(Nearby *x, Part u, Node value, Node reach)
 
 static Curve curve_log(Nearby *x, Part u, Node value, Node reach)
 {
+    Graph *g = x->graph;
     (void)value;
     Node  near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
-    Curve curve = {.slope = over(x, number(x, 1), at_least(x, u.value, TINY))};
+    Curve curve = {.slope = over(g, graph_number(g, 1), at_least(g, u.value, TINY))};
     if (has_radius(x))
-        curve.bend = over(x, number(x, 1), times(x, near, near));
+        curve.bend = over(g, graph_number(g, 1), times(g, near, near));
     return curve;
 }
 
 static Curve curve_sqrt(Nearby *x, Part u, Node value, Node reach)
 {
-    Node  near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
-    Curve curve = {.slope = over(x, number(x, 0.5), at_least(x, value, TINY))};
+    Graph *g     = x->graph;
+    Node   near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
+    Curve  curve = {.slope = over(g, graph_number(g, 0.5), at_least(g, value, TINY))};
     if (has_radius(x)) {
-        Node root  = graph_op1(x->graph, OP_sqrt, near);
-        curve.bend = over(x, number(x, 0.25), times(x, near, root));
+        Node root  = graph_op1(g, OP_sqrt, near);
+        curve.bend = over(g, graph_number(g, 0.25), times(g, near, root));
     }
     return curve;
 }
 
 static Curve curve_inversesqrt(Nearby *x, Part u, Node value, Node reach)
 {
-    Node  near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
-    Curve curve = {.slope = times(x, times(x, times(x, value, value), value), number(x, -0.5))};
+    Graph *g     = x->graph;
+    Node   near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
+    Curve  curve = {
+         .slope = times(g, times(g, times(g, value, value), value), graph_number(g, -0.5))};
     if (has_radius(x)) {
-        Node root  = graph_op1(x->graph, OP_inversesqrt, near);
-        Node fifth = times(x, graph_op1(x->graph, OP_square, times(x, root, root)), root);
-        curve.bend = times(x, fifth, number(x, 0.75));
+        Node root  = graph_op1(g, OP_inversesqrt, near);
+        Node fifth = times(g, graph_op1(g, OP_square, times(g, root, root)), root);
+        curve.bend = times(g, fifth, graph_number(g, 0.75));
     }
     return curve;
 }
@@ -301,27 +274,30 @@ static Curve curve_inversesqrt(Nearby *x, Part u, Node value, Node reach)
 /* 1 / u */
 static Curve curve_inverse(Nearby *x, Part u, Node value, Node reach)
 {
-    Node  near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
-    Curve curve = {.slope = negative(x, times(x, value, value))};
+    Graph *g     = x->graph;
+    Node   near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
+    Curve  curve = {.slope = neg(g, times(g, value, value))};
     if (has_radius(x))
-        curve.bend = over(x, number(x, 2), times(x, times(x, near, near), near));
+        curve.bend = over(g, graph_number(g, 2), times(g, times(g, near, near), near));
     return curve;
 }
 
 static Part bend_part(const Nearby *x, Node value, Part u, Curve curve)
 {
-    Part part = scale_part(x, value, u, curve.slope);
+    Graph *g    = x->graph;
+    Part   part = scale_part(x, value, u, curve.slope);
     if (has_radius(x)) {
-        Node square = graph_op1(x->graph, OP_square, steepness(x, &u));
-        Node rest   = times(x, times(x, curve.bend, number(x, 0.5)), square);
-        part.second = plus(x, part.second, rest);
+        Node square = graph_op1(g, OP_square, steepness(x, &u));
+        Node rest   = times(g, times(g, curve.bend, graph_number(g, 0.5)), square);
+        part.second = plus(g, part.second, rest);
     }
     return part;
 }
 
 static Part curved_part(Nearby *x, CurveOf *curve_of, Node value, Part u)
 {
-    Node reach = has_radius(x) ? times(x, steepness(x, &u), x->radius) : NODE_NONE;
+    Graph *g     = x->graph;
+    Node   reach = has_radius(x) ? times(g, steepness(x, &u), x->radius) : NODE_NONE;
     return bend_part(x, value, u, curve_of(x, u, value, reach));
 }
 
@@ -329,14 +305,14 @@ static Part curved_part(Nearby *x, CurveOf *curve_of, Node value, Part u)
 static Part even_power_part(Nearby *x, Node value, Part u, double n)
 {
     Graph *g     = x->graph;
-    Node   least = at_least(x, graph_op1(g, OP_square, u.value), TINY);
-    Node   share = over(x, times(x, value, u.value), least);
-    Curve  curve = {times(x, share, number(x, n)), NODE_NONE};
+    Node   least = at_least(g, graph_op1(g, OP_square, u.value), TINY);
+    Node   share = over(g, times(g, value, u.value), least);
+    Curve  curve = {times(g, share, graph_number(g, n)), NODE_NONE};
     if (has_radius(x)) {
-        Node reach = times(x, steepness(x, &u), x->radius);
-        Node most  = at_least(x, plus(x, size_of(x, u.value), reach), TINY);
-        Node power = graph_power(g, most, number(x, n - 2));
-        curve.bend = times(x, power, number(x, n * (n - 1)));
+        Node reach = times(g, steepness(x, &u), x->radius);
+        Node most  = at_least(g, plus(g, graph_op1(g, OP_abs, u.value), reach), TINY);
+        Node power = graph_power(g, most, graph_number(g, n - 2));
+        curve.bend = times(g, power, graph_number(g, n * (n - 1)));
     }
     return bend_part(x, value, u, curve);
 }
@@ -349,24 +325,24 @@ static Part even_power_part(Nearby *x, Node value, Part u, double n)
 static Part power_part(Nearby *x, Node value, Part u, double n)
 {
     Graph *g     = x->graph;
-    Node   base  = at_least(x, u.value, TINY), reach;
-    Curve  curve = {over(x, times(x, value, number(x, n)), base), NODE_NONE};
+    Node   base  = at_least(g, u.value, TINY), reach;
+    Curve  curve = {over(g, times(g, value, graph_number(g, n)), base), NODE_NONE};
     if (!has_radius(x))
         return bend_part(x, value, u, curve);
-    reach       = times(x, steepness(x, &u), x->radius);
-    Node factor = number(x, fabs(n * (n - 1))), exponent = number(x, n - 2);
+    reach       = times(g, steepness(x, &u), x->radius);
+    Node factor = graph_number(g, fabs(n * (n - 1))), exponent = graph_number(g, n - 2);
     if (n <= 1) {
         Node least = clear_of_zero(x, u, &reach);
-        curve.bend = times(x, factor, graph_power(g, least, exponent));
+        curve.bend = times(g, factor, graph_power(g, least, exponent));
         return bend_part(x, value, u, curve);
     }
-    Node clear = graph_op2(g, OP_less, times(x, reach, number(x, 2)), u.value);
-    Node least = graph_op3(g, OP_select, clear, minus(x, u.value, reach), reach);
-    Node power = graph_power(g, at_least(x, least, TINY), exponent), zero = number(x, 0);
-    curve.bend = graph_op3(g, OP_select, clear, times(x, factor, power), zero);
+    Node clear = graph_op2(g, OP_less, times(g, reach, graph_number(g, 2)), u.value);
+    Node least = graph_op3(g, OP_select, clear, sub(g, u.value, reach), reach);
+    Node power = graph_power(g, at_least(g, least, TINY), exponent), zero = graph_number(g, 0);
+    curve.bend = graph_op3(g, OP_select, clear, times(g, factor, power), zero);
     Part part  = bend_part(x, value, u, curve);
-    Node rise  = times(x, times(x, reach, power), steepness(x, &u));
-    part.first = plus(x, part.first, graph_op3(g, OP_select, clear, zero, rise));
+    Node rise  = times(g, times(g, reach, power), steepness(x, &u));
+    part.first = plus(g, part.first, graph_op3(g, OP_select, clear, zero, rise));
     return part;
 }
 
@@ -375,22 +351,23 @@ static Part power_part(Nearby *x, Node value, Part u, double n)
 /* How much steeper what has a kink at w = 0 may be than on this side of it. */
 static Node over_kink(const Nearby *x, Node w, Node steep)
 {
-    Node zero = number(x, 0);
+    Graph *g    = x->graph;
+    Node   zero = graph_number(g, 0);
     if (!has_radius(x))
         return zero;
-    Node room = over(x, size_of(x, w), at_least(x, x->radius, TINY));
-    return graph_op2(x->graph, OP_max, minus(x, steep, room), zero);
+    Node room = over(g, graph_op1(g, OP_abs, w), at_least(g, x->radius, TINY));
+    return graph_op2(g, OP_max, sub(g, steep, room), zero);
 }
 
 static Part size_part(const Nearby *x, Node value, Part u)
 {
     Graph *g      = x->graph;
     Part   part   = u;
-    Node   sign   = graph_op2(g, OP_less, u.value, number(x, 0));
+    Node   sign   = graph_op2(g, OP_less, u.value, graph_number(g, 0));
     part.value    = value;
-    part.gradient = graph_op3(g, OP_select, sign, negative(x, u.gradient), u.gradient);
+    part.gradient = graph_op3(g, OP_select, sign, neg(g, u.gradient), u.gradient);
     Node more     = over_kink(x, u.value, steepness(x, &u));
-    part.first    = plus(x, part.first, times(x, more, number(x, 2)));
+    part.first    = plus(g, part.first, times(g, more, graph_number(g, 2)));
     return part;
 }
 
@@ -402,16 +379,17 @@ static Part smoothstep_part(Nearby *x, Node value, Node low, Node high, Part u)
     const Expr *a = &g->items[low], *b = &g->items[high];
     if (a->op != OP_CONSTANT || b->op != OP_CONSTANT || !(a->number[0] < b->number[0]))
         return opaque_part(x, value);
-    Node  whole = number(x, 1 / (b->number[0] - a->number[0])), half = number(x, 0.5);
-    Node  across = times(x, minus(x, u.value, low), whole), zero = number(x, 0);
-    Node  t      = graph_op3(g, OP_clamp, across, zero, number(x, 1));
-    Curve curve  = {times(x, times(x, t, minus(x, number(x, 1), t)), number(x, 6)), NODE_NONE};
+    Node  whole = graph_number(g, 1 / (b->number[0] - a->number[0])), half = graph_number(g, 0.5);
+    Node  across = times(g, sub(g, u.value, low), whole), zero = graph_number(g, 0);
+    Node  t      = graph_op3(g, OP_clamp, across, zero, graph_number(g, 1));
+    Curve curve  = {times(g, times(g, t, sub(g, graph_number(g, 1), t)), graph_number(g, 6)),
+                    NODE_NONE};
     Part  scaled = scale_part(x, across, u, whole);
     if (has_radius(x)) {
-        Node reach = times(x, steepness(x, &scaled), x->radius);
-        Node away  = minus(x, size_of(x, minus(x, across, half)), half);
+        Node reach = times(g, steepness(x, &scaled), x->radius);
+        Node away  = sub(g, graph_op1(g, OP_abs, sub(g, across, half)), half);
         Node level = graph_op2(g, OP_less, reach, away);
-        curve.bend = graph_op3(g, OP_select, level, zero, number(x, 6));
+        curve.bend = graph_op3(g, OP_select, level, zero, graph_number(g, 6));
     }
     return bend_part(x, value, scaled, curve);
 }
@@ -426,13 +404,13 @@ static Part choice_part(const Nearby *x, Op op, Node value, Part a, Part b)
 {
     Graph *g     = x->graph;
     Node   less  = graph_op2(g, OP_less, a.value, b.value);
-    Node   apart = minus(x, a.value, b.value);
+    Node   apart = sub(g, a.value, b.value);
     Part   left = op == OP_min ? a : b, right = op == OP_min ? b : a;
     Part   away   = add_parts(x, apart, a, negate_part(x, b.value, b));
     Part   chosen = {value, choose(x, less, left.gradient, right.gradient),
                      choose(x, less, left.first, right.first),
                      choose(x, less, left.second, right.second), NODE_NONE};
-    chosen.first  = plus(x, chosen.first, over_kink(x, apart, steepness(x, &away)));
+    chosen.first  = plus(g, chosen.first, over_kink(x, apart, steepness(x, &away)));
     return chosen;
 }
 
@@ -452,25 +430,27 @@ static Part part_of(const Parts *parts, uint32_t i)
 /* The square of a vector's slope in the ball; that of one whose components are linear is known. */
 static Node steepness_squared(const Nearby *x, Node vector, const Parts *parts)
 {
-    bool linear = true;
-    Node sum    = number(x, 0);
+    Graph *g      = x->graph;
+    bool   linear = true;
+    Node   sum    = graph_number(g, 0);
     for (uint32_t i = 0; i < parts->count; i++) {
         const Part *part = &parts->items[i];
-        linear           = linear && graph_is_constant(x->graph, part->gradient) &&
-                 is_number(x, part->first, 0) && is_number(x, part->second, 0);
-        sum = plus(x, sum, graph_op1(x->graph, OP_square, steepness(x, part)));
+        linear = linear && graph_is_constant(g, part->gradient) && is_number(g, part->first, 0) &&
+                 is_number(g, part->second, 0);
+        sum = plus(g, sum, graph_op1(g, OP_square, steepness(x, part)));
     }
     if (!linear)
         return sum;
-    double slope = graph_slope(x->graph, vector, x->box, NULL, 1, NULL, x->scratch);
-    Node   whole = number(x, slope * slope);
-    return isfinite(slope) ? graph_op2(x->graph, OP_min, sum, whole) : sum;
+    double slope = graph_slope(g, vector, x->box, NULL, 1, NULL, x->scratch);
+    Node   whole = graph_number(g, slope * slope);
+    return isfinite(slope) ? graph_op2(g, OP_min, sum, whole) : sum;
 }
 
 /* Sums of products of components; of a vector with itself, the tail is the square of its slope. */
 static Part dot_part(const Nearby *x, Node node, const Parts *a, const Parts *b)
 {
-    const Expr e    = x->graph->items[node];
+    Graph     *g    = x->graph;
+    const Expr e    = g->items[node];
     bool       same = e.operands[0] == e.operands[1];
     Part       sum  = still_part(x, node);
     for (uint32_t i = 0; i < a->count; i++) {
@@ -482,23 +462,24 @@ static Part dot_part(const Nearby *x, Node node, const Parts *a, const Parts *b)
             sum = add_parts(x, node, sum, multiply_parts(x, node, left, right));
     }
     if (same && has_radius(x))
-        sum.second = plus(x, sum.second, steepness_squared(x, e.operands[0], a));
+        sum.second = plus(g, sum.second, steepness_squared(x, e.operands[0], a));
     return sum;
 }
 
 /* |v + h| is between |v| + n.h and that and |h|^2 / (2 |v|), n = v / |v|. */
 static Part length_part(const Nearby *x, Node node, const Parts *a)
 {
-    const Expr e     = x->graph->items[node];
+    Graph     *g     = x->graph;
+    const Expr e     = g->items[node];
     Part       sum   = still_part(x, node);
-    Node       least = at_least(x, node, SMALL);
+    Node       least = at_least(g, node, SMALL);
     for (uint32_t i = 0; i < a->count; i++) {
         Part part = part_of(a, i);
-        sum       = add_parts(x, node, sum, scale_part(x, node, part, over(x, part.value, least)));
+        sum       = add_parts(x, node, sum, scale_part(x, node, part, over(g, part.value, least)));
     }
     if (has_radius(x)) {
-        Node bend  = over(x, steepness_squared(x, e.operands[0], a), least);
-        sum.second = plus(x, sum.second, times(x, bend, number(x, 0.5)));
+        Node bend  = over(g, steepness_squared(x, e.operands[0], a), least);
+        sum.second = plus(g, sum.second, times(g, bend, graph_number(g, 0.5)));
     }
     return sum;
 }
@@ -508,7 +489,7 @@ static Part length_part(const Nearby *x, Node node, const Parts *a)
 static Part divide_parts(Nearby *x, Node value, Part a, Part b)
 {
     Graph *g       = x->graph;
-    Node   inverse = over(x, number(x, 1), b.value);
+    Node   inverse = over(g, graph_number(g, 1), b.value);
     if (g->items[b.value].time != TIME_POINT)
         return scale_part(x, value, a, inverse);
     Part turned = curved_part(x, curve_inverse, inverse, b);
@@ -517,8 +498,9 @@ static Part divide_parts(Nearby *x, Node value, Part a, Part b)
 
 static Part mix_parts(Nearby *x, Node value, Part a, Part b, Part t)
 {
-    Part apart  = add_parts(x, minus(x, b.value, a.value), b, negate_part(x, a.value, a));
-    Part change = multiply_parts(x, value, apart, t);
+    Graph *g      = x->graph;
+    Part   apart  = add_parts(x, sub(g, b.value, a.value), b, negate_part(x, a.value, a));
+    Part   change = multiply_parts(x, value, apart, t);
     return add_parts(x, value, a, change);
 }
 
@@ -685,7 +667,7 @@ bool graph_local_bound(Graph *graph, Node root, Box box, double least, LocalBoun
     if (!x.bounded)
         return false;
     Node slope    = graph_op2(graph, OP_max, slope_here(&x, &here), graph_number(graph, least));
-    x.radius      = graph_op2(graph, OP_div, size_of(&x, root), slope);
+    x.radius      = over(graph, graph_op1(graph, OP_abs, root), slope);
     Part ball     = find(&x, root);
     bound->radius = x.limit == NODE_NONE ? x.radius : graph_op2(graph, OP_min, x.radius, x.limit);
     bound->first  = slope_here(&x, &ball);
@@ -696,11 +678,10 @@ bool graph_local_bound(Graph *graph, Node root, Box box, double least, LocalBoun
 /* |f| = first r + second r^2. */
 Node local_radius(Graph *graph, Node root, const LocalBound *bound)
 {
-    Nearby x       = {.graph = graph};
-    Node   size    = size_of(&x, root);
-    Node   room    = times(&x, times(&x, size, bound->second), number(&x, 4));
-    Node   squared = plus(&x, graph_op1(graph, OP_square, bound->first), room);
-    Node   sum     = plus(&x, bound->first, graph_op1(graph, OP_sqrt, squared));
-    Node   twice   = times(&x, size, number(&x, 2));
-    return graph_op2(graph, OP_min, over(&x, twice, at_least(&x, sum, TINY)), bound->radius);
+    Node size    = graph_op1(graph, OP_abs, root);
+    Node room    = times(graph, times(graph, size, bound->second), graph_number(graph, 4));
+    Node squared = plus(graph, graph_op1(graph, OP_square, bound->first), room);
+    Node sum     = plus(graph, bound->first, graph_op1(graph, OP_sqrt, squared));
+    Node twice   = times(graph, size, graph_number(graph, 2));
+    return graph_op2(graph, OP_min, over(graph, twice, at_least(graph, sum, TINY)), bound->radius);
 }

@@ -11,6 +11,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "compiler/graph/build.h"
 #include "compiler/graph/evaluate.h"
 
 /* The series of one number, in a ball with the gradient beside it, and while the degree is at most
@@ -38,45 +39,10 @@ typedef struct Expansion {
 
 static bool in_ball(const Expansion *x) { return x->direction == NODE_NONE; }
 
-/* Of a FLOAT or, for 0, of a vector. */
-static bool is_number(const Graph *graph, Node node, double number)
-{
-    const Expr *e    = &graph->items[node];
-    bool        same = e->op == OP_CONSTANT && (e->type == TYPE_FLOAT || number == 0);
-    for (uint32_t i = 0; same && i < (uint32_t)e->type; i++)
-        same = e->number[i] == number;
-    return same;
-}
-
-static Node plus(Graph *g, Node a, Node b)
-{
-    if (is_number(g, a, 0) || is_number(g, b, 0))
-        return is_number(g, a, 0) ? b : a;
-    return graph_op2(g, OP_add, a, b);
-}
-
-static Node times(Graph *g, Node a, Node b)
-{
-    if (is_number(g, a, 0) || is_number(g, b, 1))
-        return a;
-    if (is_number(g, b, 0) || is_number(g, a, 1))
-        return b;
-    return a == b ? graph_op1(g, OP_square, a) : graph_op2(g, OP_mul, a, b);
-}
-
-static Node times_vector(Graph *g, Node vector, Node number)
-{
-    return is_number(g, vector, 0) || is_number(g, number, 1)
-               ? vector
-               : graph_op2(g, OP_scale, vector, number);
-}
-
-static Node size_of(const Expansion *x, Node a) { return graph_op1(x->graph, OP_abs, a); }
-
 /* Order k of a series, as a size in balls. */
 static Node order(const Expansion *x, const Series *series, uint32_t k)
 {
-    return k == 0 && in_ball(x) ? size_of(x, series->c[0]) : series->c[k];
+    return k == 0 && in_ball(x) ? graph_op1(x->graph, OP_abs, series->c[0]) : series->c[k];
 }
 
 static void set_gradient(const Expansion *x, Part *part, Node gradient)
@@ -167,9 +133,9 @@ static Part negate_part(const Expansion *x, Part a)
 {
     for (uint32_t k = 0; k <= a.series.degree; k++)
         if (k == 0 || !in_ball(x))
-            a.series.c[k] = graph_op1(x->graph, OP_neg, a.series.c[k]);
+            a.series.c[k] = neg(x->graph, a.series.c[k]);
     if (in_ball(x))
-        a.gradient = graph_op1(x->graph, OP_neg, a.gradient);
+        a.gradient = neg(x->graph, a.gradient);
     for (int i = 0; i < 9; i++)
         a.hessian[i / 3][i % 3] = -a.hessian[i / 3][i % 3];
     return a;
@@ -214,8 +180,8 @@ static Part multiply_parts(const Expansion *x, Part a, Part b)
     }
     Node gradient = NODE_NONE;
     if (in_ball(x)) {
-        Node first  = times_vector(g, b.gradient, a.series.c[0]);
-        Node second = times_vector(g, a.gradient, b.series.c[0]);
+        Node first  = stretch(g, b.gradient, a.series.c[0]);
+        Node second = stretch(g, a.gradient, b.series.c[0]);
         gradient    = plus(g, first, second);
     }
     set_gradient(x, &product, gradient);
@@ -336,7 +302,7 @@ static bool series_div(Expansion *x, Node node, const Parts *operands, Parts *re
         Part a = part_of(&operands[0], i), b = part_of(&operands[1], i);
         if (!is_constant(b))
             return false;
-        b.series.c[0] = graph_op2(x->graph, OP_div, graph_number(x->graph, 1), b.series.c[0]);
+        b.series.c[0] = over(x->graph, graph_number(x->graph, 1), b.series.c[0]);
         if (!multiply(x, node, a, b, &result->items[i]))
             return false;
     }
@@ -442,23 +408,6 @@ enum { NEWTON_STEPS = 3 };
 /* Keeps quotients finite; below every coefficient that counts in single precision. */
 static const double TINY = 1e-30;
 
-static Node at_least(Graph *g, Node node, double least)
-{
-    return graph_op2(g, OP_max, node, graph_number(g, least));
-}
-
-/* The k-th root of a number >= 0. */
-static Node root_of(Graph *g, Node number, uint32_t k)
-{
-    if (k == 1)
-        return number;
-    if (k % 2 == 0)
-        return root_of(g, graph_op1(g, OP_sqrt, number), k / 2);
-    Node exponent = graph_op1(g, OP_log2, at_least(g, number, 1e-37));
-    exponent      = graph_op2(g, OP_mul, exponent, graph_number(g, 1.0 / k));
-    return graph_op1(g, OP_exp2, exponent);
-}
-
 /* The least root of one term alone: at least r*, and at most twice that. */
 static Node first_guess(Graph *g, const Series *s, Node size)
 {
@@ -466,7 +415,7 @@ static Node first_guess(Graph *g, const Series *s, Node size)
     for (uint32_t k = 1; k <= s->degree; k++) {
         if (is_number(g, s->c[k], 0))
             continue;
-        Node quotient = graph_op2(g, OP_div, size, at_least(g, s->c[k], TINY));
+        Node quotient = over(g, size, at_least(g, s->c[k], TINY));
         Node root     = root_of(g, quotient, k);
         least         = least == NODE_NONE ? root : graph_op2(g, OP_min, least, root);
     }
@@ -479,10 +428,10 @@ static Node series_sum(Graph *g, const Series *s, Node r, Node *derivative)
     Node sum = s->c[s->degree], slope = sum;
     for (uint32_t k = s->degree; k-- > 0;) {
         if (k + 1 < s->degree)
-            slope = graph_op2(g, OP_add, graph_op2(g, OP_mul, slope, r), sum);
-        sum = graph_op2(g, OP_mul, sum, r);
+            slope = add(g, mul(g, slope, r), sum);
+        sum = mul(g, sum, r);
         if (k > 0)
-            sum = graph_op2(g, OP_add, sum, s->c[k]);
+            sum = add(g, sum, s->c[k]);
     }
     *derivative = slope;
     return sum;
@@ -496,12 +445,12 @@ Node series_radius(Graph *g, const Series *s)
     Node r    = first_guess(g, s, size), slope;
     for (int i = 0; i < NEWTON_STEPS && s->degree > 1; i++) {
         Node sum    = series_sum(g, s, r, &slope);
-        Node excess = graph_op2(g, OP_sub, sum, size);
-        Node step   = graph_op2(g, OP_div, excess, at_least(g, slope, TINY));
-        r           = graph_op2(g, OP_sub, r, step);
+        Node excess = sub(g, sum, size);
+        Node step   = over(g, excess, at_least(g, slope, TINY));
+        r           = sub(g, r, step);
     }
     Node sum   = series_sum(g, s, r, &slope);
-    Node share = graph_op2(g, OP_div, size, at_least(g, sum, TINY));
+    Node share = over(g, size, at_least(g, sum, TINY));
     share      = graph_op2(g, OP_min, share, graph_number(g, 1));
-    return graph_op2(g, OP_mul, r, share);
+    return mul(g, r, share);
 }
