@@ -29,7 +29,7 @@ JOBS    ?= $(shell nproc)
 BASE     := $(addprefix compiler/base/, arena.c text.c source.c beneath.c loader.c diag.c diag_text.c)
 FRONT    := $(addprefix compiler/front/, lexer.c lex_literals.c syntax.c parser.c parse_expression.c \
                 parse_declaration.c parse.c names.c)
-GRAPH    := $(addprefix compiler/graph/, graph.c derive.c series.c zeros.c local.c anchor.c simplify.c \
+GRAPH    := $(addprefix compiler/graph/, graph.c build.c derive.c series.c zeros.c local.c anchor.c simplify.c \
                 range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c regions.c \
                 fractal.c evaluate.c print.c)
 GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c arguments.c \

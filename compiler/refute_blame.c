@@ -10,26 +10,26 @@
 #include <math.h>
 
 /* How far a shape that was met on the way is from its claim in two points; below 1: it is not. */
-static double visit_ratio(const LoweredShape *visit, bool steady, const NodeValue *at_p,
-                          const NodeValue *at_q)
+static double lowered_ratio(const LoweredShape *lowered, bool lipschitz, const NodeValue *at_p,
+                            const NodeValue *at_q)
 {
-    const double *p = at_p[visit->point].v, *q = at_q[visit->point].v;
-    double a = at_p[visit->distance].v[0], b = at_q[visit->distance].v[0], square = 0, size = 1;
+    const double *p = at_p[lowered->point].v, *q = at_q[lowered->point].v;
+    double a = at_p[lowered->distance].v[0], b = at_q[lowered->distance].v[0], square = 0, size = 1;
     if (isnan(a) || isnan(b))
         return isfinite(p[0] + p[1] + p[2]) ? INFINITY : 0;
     for (int i = 0; i < 3; i++) {
         square += (p[i] - q[i]) * (p[i] - q[i]);
         size += fabs(p[i]);
     }
-    double rise = steady && !visit->shape->estimate ? fabs(a - b)
-                  : (a > 0) != (b > 0)              ? fmax(fabs(a), fabs(b))
-                                                    : 0;
-    return fmax(0, rise / visit->shape->slope - 1e-9 * size) / fmax(sqrt(square), 1e-9 * size);
+    double rise = lipschitz && !lowered->shape->estimate ? fabs(a - b)
+                  : (a > 0) != (b > 0)                   ? fmax(fabs(a), fabs(b))
+                                                         : 0;
+    return fmax(0, rise / lowered->shape->slope - 1e-9 * size) / fmax(sqrt(square), 1e-9 * size);
 }
 
 /* All that is met on the way into a refuted shape, with the values at its two points. */
 typedef struct Trail {
-    LoweredShapes visits; /* those with a distance; nodes are of `graph` */
+    LoweredShapes lowered_shapes; /* those with a distance; nodes are of `graph` */
     Graph        *graph;
     NodeValue    *at_p, *at_q;
 } Trail;
@@ -47,15 +47,15 @@ static Trail trail_of(Refuter *r, const Finding *finding)
     Arena        *arena = r->in->scratch;
     Trail         trail = {0};
     LoweredShapes all   = {0};
-    (void)lower_alone(r, shape, finding->steady, &all);
+    (void)lower_alone(r, shape, finding->lipschitz, &all);
     for (size_t i = 0; i < all.count; i++)
         if (all.items[i].distance != NODE_NONE && all.items[i].shape != shape)
-            array_push(arena, &trail.visits, all.items[i]);
-    size_t count = trail.visits.count;
+            array_push(arena, &trail.lowered_shapes, all.items[i]);
+    size_t count = trail.lowered_shapes.count;
     Node  *roots = arena_new_array(arena, Node, 2 * count + 1);
     for (size_t i = 0; i < count; i++) {
-        roots[2 * i]     = trail.visits.items[i].point;
-        roots[2 * i + 1] = trail.visits.items[i].distance;
+        roots[2 * i]     = trail.lowered_shapes.items[i].point;
+        roots[2 * i + 1] = trail.lowered_shapes.items[i].distance;
     }
     trail.graph = r->graph;
     trail.at_p  = arena_new_array(arena, NodeValue, r->graph->count);
@@ -79,11 +79,11 @@ static size_t suspect_of(const Refuter *r, const Shape *shape)
 static bool refute_from(Refuter *r, size_t suspect, const double p[3], const double q[3],
                         uint64_t operations, Finding *finding)
 {
-    const Shape *shape    = r->suspects.items[suspect].shape;
-    bool         steady   = finding->steady && !shape->estimate;
-    Node         distance = lower_alone(r, shape, steady, NULL);
+    const Shape *shape     = r->suspects.items[suspect].shape;
+    bool         lipschitz = finding->lipschitz && !shape->estimate;
+    Node         distance  = lower_alone(r, shape, lipschitz, NULL);
     Search       search;
-    if (distance == NODE_NONE || !search_of(r, shape, distance, steady, &search))
+    if (distance == NODE_NONE || !search_of(r, shape, distance, lipschitz, &search))
         return false;
     bool constant = finding->witness.fault == FAULT_CONSTANT;
     if (search_start(&search, finding->parameters) == constant)
@@ -96,9 +96,9 @@ static bool refute_from(Refuter *r, size_t suspect, const double p[3], const dou
         search_run(&search, operations - (p ? operations / 4 : 0));
     if (!constant && !search_refuted(&search))
         return false;
-    finding->suspect = suspect;
-    finding->steady  = steady;
-    finding->witness = search.worst;
+    finding->suspect   = suspect;
+    finding->lipschitz = lipschitz;
+    finding->witness   = search.worst;
     return true;
 }
 
@@ -108,14 +108,14 @@ static bool descend(Refuter *r, Finding *finding, uint64_t operations)
     Trail               trail = trail_of(r, finding);
     const LoweredShape *best  = NULL;
     double              worst = 0;
-    for (size_t i = 0; i < trail.visits.count; i++) {
-        const LoweredShape *visit = &trail.visits.items[i];
-        double              ratio = visit_ratio(visit, finding->steady, trail.at_p, trail.at_q);
-        bool                less  = !best || visit->shape->depth < best->shape->depth ||
-                    (visit->shape->depth == best->shape->depth && ratio > worst);
-        if (is_wrapper(visit->shape) || !(ratio > 1 + 1e-6) || !less)
+    for (size_t i = 0; i < trail.lowered_shapes.count; i++) {
+        const LoweredShape *lowered = &trail.lowered_shapes.items[i];
+        double ratio = lowered_ratio(lowered, finding->lipschitz, trail.at_p, trail.at_q);
+        bool   less  = !best || lowered->shape->depth < best->shape->depth ||
+                    (lowered->shape->depth == best->shape->depth && ratio > worst);
+        if (is_wrapper(lowered->shape) || !(ratio > 1 + 1e-6) || !less)
             continue;
-        best  = visit;
+        best  = lowered;
         worst = ratio;
     }
     size_t suspect = best ? suspect_of(r, best->shape) : SIZE_MAX;

@@ -29,8 +29,8 @@ typedef enum Claim {
 typedef struct Finding {
     size_t     suspect;
     Claim      claim;
-    ShapeClaim pair;   /* `property` is NULL, or what is claimed beside the distance */
-    bool       steady; /* of the distance that has to be 1-Lipschitz, else of the other */
+    ShapeClaim pair;      /* `property` is NULL, or what is claimed beside the distance */
+    bool       lipschitz; /* of the distance that has to be 1-Lipschitz, else of the other */
     Witness    witness;
     NodeValue *parameters;
 } Finding;
@@ -56,9 +56,9 @@ typedef struct Refuter {
 /* Whether a shape adds nothing to the distance of what it holds. */
 bool is_wrapper(const Shape *shape);
 /* The distance of a shape in its own space; NODE_NONE: of nothing, or of too much. */
-Node lower_alone(Refuter *r, const Shape *shape, bool steady, LoweredShapes *visits);
+Node lower_alone(Refuter *r, const Shape *shape, bool lipschitz, LoweredShapes *lowered_shapes);
 /* A search of one of the distances of a shape; false: there is nothing to search. */
-bool search_of(Refuter *r, const Shape *shape, Node distance, bool steady, Search *search);
+bool search_of(Refuter *r, const Shape *shape, Node distance, bool lipschitz, Search *search);
 
 /* ---- refute_settings.c ---- */
 /* Slopes and frames of the scene, before any parameters are chosen. */

@@ -102,17 +102,18 @@ double distance_at(Search *s, double p[3])
 
 static void aim_along(Search *s, const double from[3], const double to[3])
 {
-    double way = apart(from, to);
-    for (int i = 0; i < 3 && way > 0; i++)
-        s->aim[i] = (to[i] - from[i]) / way;
+    double length = distance3(from, to);
+    for (int i = 0; i < 3 && length > 0; i++)
+        s->aim[i] = (to[i] - from[i]) / length;
 }
 
 /* How much of its claim a pair uses up; 0 where it says nothing. */
-static double ratio_of(const Search *s, const Pair *pair)
+static double ratio_of(const Search *s, const PointPair *pair)
 {
-    double way = apart(pair->p, pair->q), rounding = rounding_at(s, pair->p);
+    double length = distance3(pair->p, pair->q), rounding = rounding_at(s, pair->p);
     double a = pair->at_p, b = pair->at_q;
-    if (!(way >= NEAREST * s->size) || isnan(a) || isnan(b) || isinf(pair->side_p + pair->side_q))
+    if (!(length >= NEAREST * s->size) || isnan(a) || isnan(b) ||
+        isinf(pair->side_p + pair->side_q))
         return 0;
     if (s->side == s->distance && (fabs(a) > NOWHERE || fabs(b) > NOWHERE))
         return 0; /* nothing is anywhere, or a wall is */
@@ -121,10 +122,10 @@ static double ratio_of(const Search *s, const Pair *pair)
     double rise = s->steep                                          ? fabs(a - b)
                   : are_sides_different(pair->side_p, pair->side_q) ? fmax(fabs(a), fabs(b))
                                                                     : 0;
-    return fmax(0, rise - rounding) / way;
+    return fmax(0, rise - rounding) / length;
 }
 
-static void weigh(Search *s, Pair *pair)
+static void weigh(Search *s, PointPair *pair)
 {
     pair->ratio = ratio_of(s, pair);
     if (!is_settled(s) && pair->ratio > s->worst.ratio)
@@ -132,7 +133,7 @@ static void weigh(Search *s, Pair *pair)
              pair->at_q);
 }
 
-void judge_pair(Search *s, Pair *pair)
+void judge_pair(Search *s, PointPair *pair)
 {
     aim_along(s, pair->p, pair->q);
     pair->at_p   = distance_at(s, pair->p);
@@ -143,12 +144,12 @@ void judge_pair(Search *s, Pair *pair)
     weigh(s, pair);
 }
 
-bool halve_pair(Search *s, Pair *pair)
+bool halve_pair(Search *s, PointPair *pair)
 {
-    if (apart(pair->p, pair->q) < 2.5 * NEAREST * s->size)
+    if (distance3(pair->p, pair->q) < 2.5 * NEAREST * s->size)
         return false;
-    Pair   first = *pair, second = *pair;
-    double middle[3];
+    PointPair first = *pair, second = *pair;
+    double    middle[3];
     for (int i = 0; i < 3; i++)
         middle[i] = 0.5 * (pair->p[i] + pair->q[i]);
     double at = distance_at(s, middle);
@@ -161,7 +162,7 @@ bool halve_pair(Search *s, Pair *pair)
     return true;
 }
 
-void tighten_pair(Search *s, Pair *pair)
+void tighten_pair(Search *s, PointPair *pair)
 {
     double low = 0, high = 1, end[3];
     memcpy(end, pair->q, sizeof end);
@@ -182,15 +183,15 @@ void tighten_pair(Search *s, Pair *pair)
     weigh(s, pair);
 }
 
-bool reach_surface(Search *s, Pair *pair, const double direction[3], double farthest)
+bool reach_surface(Search *s, PointPair *pair, const double direction[3], double farthest)
 {
     memcpy(s->aim, direction, sizeof s->aim);
     pair->at_p   = distance_at(s, pair->p);
     pair->side_p = side_now(s);
-    add_scaled(s->aim, (double[3]){0}, -1, direction);
+    add_scaled3(s->aim, (double[3]){0}, -1, direction);
     double t = 0.5 * fabs(pair->side_p);
     for (int i = 0; i < 40 && t <= farthest; i++) {
-        add_scaled(pair->q, pair->p, t, direction);
+        add_scaled3(pair->q, pair->p, t, direction);
         pair->at_q   = distance_at(s, pair->q);
         pair->side_q = side_now(s);
         if (!isfinite(pair->side_q))

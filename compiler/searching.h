@@ -7,10 +7,10 @@
 #define KRS_SEARCHING_H
 
 #include <math.h>
-
-#include "compiler/search.h"
-
 #include <string.h>
+
+#include "compiler/base/vec.h"
+#include "compiler/search.h"
 
 /* Where on the way from smooth to steep an expression is looked at. */
 typedef enum Goal {
@@ -40,27 +40,9 @@ struct Guard {
 /* What stands for the distance to nothing. */
 #define NOWHERE 1e29
 
-typedef struct Pair {
+typedef struct PointPair {
     double p[3], q[3], at_p, at_q, side_p, side_q, ratio;
-} Pair;
-
-/* ---- vectors ---- */
-
-static inline double length3(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-static inline void add_scaled(double to[3], const double from[3], double factor, const double v[3])
-{
-    for (int i = 0; i < 3; i++)
-        to[i] = from[i] + factor * v[i];
-}
-
-static inline double apart(const double a[3], const double b[3])
-{
-    return length3((double[3]){a[0] - b[0], a[1] - b[1], a[2] - b[2]});
-}
+} PointPair;
 
 /* ---- search_pairs.c ---- */
 /* In [low, high), or a number below `count`. */
@@ -82,13 +64,13 @@ static inline double side_now(const Search *s) { return s->values[s->side].v[0];
 static inline bool are_sides_different(double a, double b) { return (a > 0) != (b > 0); }
 
 /* Looks at both points of a pair, and weighs it. */
-void judge_pair(Search *s, Pair *pair);
+void judge_pair(Search *s, PointPair *pair);
 /* The half that is steeper, or for sides that differ the one with the surface; false: too near. */
-bool halve_pair(Search *s, Pair *pair);
+bool halve_pair(Search *s, PointPair *pair);
 /* Brings q as near to p as the other side is, along the segment. */
-void tighten_pair(Search *s, Pair *pair);
+void tighten_pair(Search *s, PointPair *pair);
 /* Marches from p until the side changes, at most `farthest`; then the pair is tightened. */
-bool reach_surface(Search *s, Pair *pair, const double direction[3], double farthest);
+bool reach_surface(Search *s, PointPair *pair, const double direction[3], double farthest);
 /* Unit gradient of the distance by differences; false: flat. */
 bool gradient_at(Search *s, const double p[3], double gradient[3]);
 
@@ -105,9 +87,9 @@ void drive_up(Search *s, const Target *t, double p[3], double axis[3]);
 
 /* ---- search_starts.c ---- */
 /* The best of pairs at a place where claims break.  `steep` searches and others look differently. */
-Pair best_pair(Search *s);
+PointPair best_pair(Search *s);
 /* A point of what a guard may leave out, and one where the guard decides: a way too long for the
    bound if the first is not in the box. */
-Pair best_past_guard(Search *s);
+PointPair best_past_guard(Search *s);
 
 #endif

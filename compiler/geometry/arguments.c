@@ -108,6 +108,40 @@ void unknown_parameter(Elaboration *e, const Syntax *argument, const char *name,
     diag_note(e->diags, diag, signature(e, name, parameters, count));
 }
 
+/* "a", "b" and "c" */
+static const char *listed_names(Elaboration *e, const Choices *names)
+{
+    Text list = {.arena = e->diags->arena};
+    for (uint32_t i = 0; i < names->count; i++) {
+        const char *join = i == 0 ? "" : i + 1 < names->count ? ", " : " and ";
+        text_format(&list, "%s\"%s\"", join, names->items[i]);
+    }
+    return list.bytes;
+}
+
+bool want_name(Elaboration *e, const Argument *argument, const Choices *names, uint32_t *chosen)
+{
+    *chosen = 0;
+    if (!argument->syntax)
+        return true;
+    if (argument->value.type != VALUE_STRING) {
+        type_error(e, argument->syntax, argument->value, names->wanted);
+        return false;
+    }
+    const char *name = argument->value.string;
+    for (; *chosen < names->count; ++*chosen)
+        if (strcmp(names->items[*chosen], name) == 0)
+            return true;
+    Diag       *diag = diag_add(e->diags, DIAG_BAD_VALUE, argument->syntax->span,
+                                "no %s is called \"%s\"", names->noun, name);
+    const char *near = nearest_name(name, names->items, names->count);
+    diag->label      = names->unknown;
+    if (near)
+        diag->replacement = diag_text(e->diags, "\"%s\"", near);
+    diag->help = diag_text(e->diags, "there are %s%s", listed_names(e, names), names->more);
+    return false;
+}
+
 Diag *too_many_arguments(Elaboration *e, const Syntax *argument, const char *name, uint32_t count)
 {
     Diag *diag  = diag_add(e->diags, DIAG_TOO_MANY_ARGUMENTS, argument->span,

@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#include "compiler/base/vec.h"
+
 /* Cells that one box is cut into, about; cells of a cover, beyond which neighbours are merged. */
 enum { BOX_CELLS = 64, MOST_CELLS = 1024, MOST_OUTSIDE = 16 };
 
@@ -15,11 +17,6 @@ static const double ROUNDING = 1e-12, ON_SURFACE = 1e-6;
 static const double FARTHEST = 1e9;
 
 static const CoverCell everything = {.outside = true};
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 static double middle(Range range) { return 0.5 * (range.low + range.high); }
 
@@ -42,7 +39,7 @@ static CoverCell cell_about(const Range centre[3], double radius, bool outside)
     double    leave  = middle_of(centre, cell.ball.centre);
     cell.ball.radius = outside ? radius * (1 - ROUNDING) - leave : radius * (1 + ROUNDING) + leave;
     bool finite      = cell.ball.radius >= 0 && cell.ball.radius <= FARTHEST &&
-                  dot(cell.ball.centre, cell.ball.centre) <= FARTHEST * FARTHEST;
+                  dot3(cell.ball.centre, cell.ball.centre) <= FARTHEST * FARTHEST;
     return finite ? cell : everything;
 }
 
@@ -97,7 +94,7 @@ Box cover_box(const Cover *cover)
 static CoverCell invert(CoverCell cell, Range s)
 {
     const double *c = cell.ball.centre;
-    double        r = cell.ball.radius, square = dot(c, c), d = square - r * r;
+    double        r = cell.ball.radius, square = dot3(c, c), d = square - r * r;
     if (!(fabs(d) > ON_SURFACE * (square + r * r)))
         return everything;
     Range centre[3];
@@ -170,7 +167,7 @@ static Cluster cluster_of(const Cover *cover, size_t from, size_t to)
         double      offset[3];
         for (int k = 0; k < 3; k++)
             offset[k] = ball->centre[k] - cluster.ball.centre[k];
-        cluster.ball.radius = fmax(cluster.ball.radius, sqrt(dot(offset, offset)) + ball->radius);
+        cluster.ball.radius = fmax(cluster.ball.radius, sqrt(dot3(offset, offset)) + ball->radius);
     }
     cluster.ball.radius *= 1 + ROUNDING;
     return cluster;

@@ -3,44 +3,29 @@
  */
 #include "compiler/geometry/elaborate.h"
 
-#include <string.h>
-
-/* The kind of a blend by its spelling; without an argument the quadratic one.  False: reported. */
-static bool blend_kind(Elaboration *e, const Argument *name, BlendKind *kind)
-{
-    *kind = BLEND_QUADRATIC;
-    if (!name->syntax)
-        return true;
-    if (name->value.type != VALUE_STRING) {
-        type_error(e, name->syntax, name->value, "the kind of a blend, a string");
-        return false;
-    }
-    const char *spellings[BLEND_COUNT];
-    for (uint32_t i = 0; i < BLEND_COUNT; i++) {
-        spellings[i] = blend_info[i].spelling;
-        *kind        = (BlendKind)i;
-        if (strcmp(spellings[i], name->value.string) == 0)
-            return true;
-    }
-    Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, name->syntax->span, "no blend is called \"%s\"",
-                          name->value.string);
-    const char *near = nearest_name(name->value.string, spellings, BLEND_COUNT);
-    diag->label      = "unknown kind of blend";
-    if (near)
-        diag->replacement = diag_text(e->diags, "\"%s\"", near);
-    diag->help = "there are \"quadratic\", \"cubic\", \"exponential\", \"circular\", "
-                 "\"chamfer\" and \"stairs\"";
-    return false;
-}
+static const char *const blend_spellings[] = {
+#define BLEND(name, spelling, op, slope, bulge, meaning) spelling,
+#include "compiler/geometry/blends.def"
+#undef BLEND
+};
+static const Choices blend_names = {
+    .noun    = "blend",
+    .wanted  = "the kind of a blend, a string",
+    .unknown = "unknown kind of blend",
+    .more    = "",
+    .items   = blend_spellings,
+    .count   = BLEND_COUNT,
+};
 
 /* The parameters `blend= kind= steps=`, of which `first` is the first.  False: reported. */
 static bool blend_arguments(Elaboration *e, const Call *call, uint32_t first, Blend *blend)
 {
-    uint32_t steps;
+    uint32_t kind, steps;
     *blend = blend_sharp;
-    if (!blend_kind(e, &call->arguments[first + 1], &blend->kind) ||
+    if (!want_name(e, &call->arguments[first + 1], &blend_names, &kind) ||
         !want_count(e, call, first + 2, 1, 64, 4, &steps))
         return false;
+    blend->kind  = (BlendKind)kind;
     blend->steps = graph_number(e->graph, steps);
     if (!is_given(call, first))
         return true;

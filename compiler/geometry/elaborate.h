@@ -165,6 +165,17 @@ typedef struct Call {
  * fail silently.
  */
 
+/* What is chosen by a name: kinds of blends, palettes. */
+typedef struct Choices {
+    const char *noun, *wanted;  /* "blend"; "the kind of a blend, a string" */
+    const char *unknown, *more; /* label of another name; what follows the names in its help */
+    const char *const *items;
+    uint32_t           count;
+} Choices;
+
+/* Which one an argument names, the first without one. */
+bool want_name(Elaboration *e, const Argument *argument, const Choices *names, uint32_t *chosen);
+
 /* A FLOAT, or a VEC3, of frame time. */
 Node want_number(Elaboration *e, const Call *call, uint32_t index, double otherwise);
 Node want_vector(Elaboration *e, const Call *call, uint32_t index, const double otherwise[3]);

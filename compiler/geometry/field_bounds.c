@@ -21,6 +21,7 @@
 #include <math.h>
 
 #include "compiler/geometry/lower.h"
+#include "compiler/graph/build.h"
 #include "compiler/graph/derive.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/local.h"
@@ -31,11 +32,6 @@ enum { CELLS = 512, HEAD_CELLS = 32 };
 
 /* Keeps quotients finite; below every coefficient that counts in single precision. */
 static const double TINY = 1e-30;
-
-static Node at_least(Graph *g, Node node, double least)
-{
-    return graph_op2(g, OP_max, node, graph_number(g, least));
-}
 
 /* Slope over a box; inf when there is no bound. */
 static double slope_over(Elaboration *e, Node node, Box box, uint32_t cells)
@@ -69,16 +65,12 @@ static bool has_terms_among(const Graph *g, Node node, uint32_t *nodes)
     if (*nodes == 0)
         return false;
     --*nodes;
-    switch (e->op) {
-    case OP_add:
-    case OP_sub: return e->type == TYPE_FLOAT;
-    case OP_neg:
-    case OP_div: return has_terms_among(g, e->operands[0], nodes);
-    case OP_mul:
-        return has_terms_among(g, e->operands[0], nodes) ||
-               has_terms_among(g, e->operands[1], nodes);
-    default: return false;
-    }
+    if (e->op == OP_add || e->op == OP_sub)
+        return e->type == TYPE_FLOAT;
+    if (e->op != OP_neg && e->op != OP_div && e->op != OP_mul)
+        return false;
+    return has_terms_among(g, e->operands[0], nodes) ||
+           (e->op == OP_mul && has_terms_among(g, e->operands[1], nodes));
 }
 
 /* Whether there are terms below products and signs; one that is not found is no mistake, as a
@@ -96,23 +88,21 @@ static void add_terms(Terms *terms, Node node, Node factor)
     Expr   e = g->items[node];
     if (!has_terms(g, node) || terms->count + 2 > MOST_TERMS) {
         if (terms->count < MOST_TERMS)
-            terms->items[terms->count].node = graph_op2(g, OP_mul, factor, node);
+            terms->items[terms->count].node = mul(g, factor, node);
         terms->count++;
         return;
     }
-    Node opposite = graph_op1(g, OP_neg, factor);
+    Node opposite = neg(g, factor);
     int  inner    = e.op == OP_mul && !has_terms(g, e.operands[0]);
-    switch (e.op) {
-    case OP_add:
-    case OP_sub:
+    if (e.op == OP_neg)
+        add_terms(terms, e.operands[0], opposite);
+    else if (e.op == OP_mul)
+        add_terms(terms, e.operands[inner], mul(g, factor, e.operands[1 - inner]));
+    else if (e.op == OP_div)
+        add_terms(terms, e.operands[0], over(g, factor, e.operands[1]));
+    else {
         add_terms(terms, e.operands[0], factor);
         add_terms(terms, e.operands[1], e.op == OP_add ? factor : opposite);
-        break;
-    case OP_neg: add_terms(terms, e.operands[0], opposite); break;
-    case OP_mul:
-        add_terms(terms, e.operands[inner], graph_op2(g, OP_mul, factor, e.operands[1 - inner]));
-        break;
-    default: add_terms(terms, e.operands[0], graph_op2(g, OP_div, factor, e.operands[1]));
     }
 }
 
@@ -162,8 +152,8 @@ static Node head_distance(Elaboration *e, Node head, Range range, Box box)
         return NODE_NONE;
     Node low   = graph_number(g, range.low - 1e-12 * fabs(range.low));
     Node high  = graph_number(g, range.high + 1e-12 * fabs(range.high));
-    Node above = graph_op2(g, OP_add, head, low), below = graph_op2(g, OP_add, head, high);
-    Node size = graph_op2(g, OP_max, above, graph_op1(g, OP_neg, below));
+    Node above = add(g, head, low), below = add(g, head, high);
+    Node size = graph_op2(g, OP_max, above, neg(g, below));
     return divide_by_slope(g, size, slope);
 }
 
@@ -175,8 +165,7 @@ static Node by_heads(Elaboration *e, Node formula, Box box)
     Node   heads[MOST_TERMS], longest = NODE_NONE;
     Range  rest = {0, 0};
     for (uint32_t i = 0; i < terms.count; i++)
-        heads[i] = i == 0 ? terms.items[0].node
-                          : graph_op2(g, OP_add, heads[i - 1], terms.items[i].node);
+        heads[i] = i == 0 ? terms.items[0].node : add(g, heads[i - 1], terms.items[i].node);
     for (uint32_t i = terms.count; i-- > 1;) {
         rest.low += terms.items[i].range.low;
         rest.high += terms.items[i].range.high;
@@ -203,11 +192,11 @@ static Node by_second_order(Elaboration *e, Node f, Box box)
     Node size    = graph_op1(g, OP_abs, f);
     Node steep   = graph_op1(g, OP_length, gradient);
     Node squared = graph_op2(g, OP_dot, gradient, gradient);
-    Node margin  = graph_op2(g, OP_mul, size, graph_number(g, 2 * bend));
-    Node root    = graph_op1(g, OP_sqrt, graph_op2(g, OP_add, squared, margin));
-    Node sum     = at_least(g, graph_op2(g, OP_add, steep, root), TINY);
-    Node twice   = graph_op2(g, OP_mul, size, graph_number(g, 2));
-    return graph_op2(g, OP_div, twice, sum);
+    Node margin  = mul(g, size, graph_number(g, 2 * bend));
+    Node root    = graph_op1(g, OP_sqrt, add(g, squared, margin));
+    Node sum     = at_least(g, add(g, steep, root), TINY);
+    Node twice   = mul(g, size, graph_number(g, 2));
+    return over(g, twice, sum);
 }
 
 static Node by_local_slope(Elaboration *e, Node f, Box box, double least)
@@ -349,7 +338,7 @@ static TrialMarch trial_march_new(Elaboration *e, Box box)
 static Node lengthened(Graph *g, Node formula, Node distance, Node bound)
 {
     Node size = graph_op2(g, OP_max, graph_op1(g, OP_abs, distance), bound);
-    return graph_op2(g, OP_mul, graph_op1(g, OP_sign, formula), size);
+    return mul(g, graph_op1(g, OP_sign, formula), size);
 }
 
 /* The cheapest of some distances (NODE_NONE: not there), if it is clearly cheaper than the one that

@@ -25,6 +25,7 @@
 
 #include <math.h>
 
+#include "compiler/graph/build.h"
 #include "compiler/graph/series.h"
 
 /* A ray in the space of a shape: point + t direction, with the same t everywhere. */
@@ -38,35 +39,17 @@ typedef struct Ray {
 static const double PIECE = 4;
 static const double TINY  = 1e-30;
 
-static Node number(Lowering *l, double value) { return graph_number(l->graph, value); }
-
-static Node at_least(Lowering *l, Node node, double least)
-{
-    return graph_op2(l->graph, OP_max, node, number(l, least));
-}
-
 /* ---- polynomials ---- */
-
-static Node root_of(Lowering *l, Node a, uint32_t k)
-{
-    Graph *g = l->graph;
-    if (k == 1)
-        return a;
-    if (k % 2 == 0)
-        return root_of(l, graph_op1(g, OP_sqrt, a), k / 2);
-    Node logarithm = graph_op1(g, OP_log2, at_least(l, a, 1e-37));
-    return graph_op1(g, OP_exp2, graph_op2(g, OP_mul, logarithm, number(l, 1.0 / k)));
-}
 
 /* The length of the piece; bounded, so that its powers are numbers in single precision. */
 static Node piece_length(Lowering *l, const Series *s)
 {
     Graph *g     = l->graph;
-    Node   least = number(l, pow(10, 34.0 / s->degree));
-    Node   whole = graph_op2(g, OP_mul, s->c[0], number(l, PIECE));
+    Node   least = graph_number(g, pow(10, 34.0 / s->degree));
+    Node   whole = mul(g, s->c[0], graph_number(g, PIECE));
     for (uint32_t k = 1; k <= s->degree; k++) {
-        Node fall  = at_least(l, graph_op1(g, OP_neg, s->c[k]), TINY);
-        Node guess = root_of(l, graph_op2(g, OP_div, whole, fall), k);
+        Node fall  = at_least(g, neg(g, s->c[k]), TINY);
+        Node guess = root_of(g, over(g, whole, fall), k);
         least      = graph_op2(g, OP_min, least, guess);
     }
     return least;
@@ -87,8 +70,8 @@ static Node fall_towards(Lowering *l, const Node *terms, uint32_t n, uint32_t i)
     Node   sum = NODE_NONE;
     for (uint32_t k = 1; k <= i; k++) {
         double fraction = -binomial(i, k) / binomial(n, k) * n / i;
-        Node   term     = graph_op2(g, OP_mul, terms[k], number(l, fraction));
-        sum             = sum == NODE_NONE ? term : graph_op2(g, OP_add, sum, term);
+        Node   term     = mul(g, terms[k], graph_number(g, fraction));
+        sum             = sum == NODE_NONE ? term : add(g, sum, term);
     }
     return sum;
 }
@@ -100,25 +83,26 @@ static Node safe_step(Lowering *l, const Series *s)
     Node   piece = piece_length(l, s), power = piece, steepest = NODE_NONE;
     Node   terms[MOST_DEGREE + 1];
     for (uint32_t k = 1; k <= s->degree; k++) {
-        terms[k] = graph_op2(g, OP_mul, s->c[k], power);
-        power    = graph_op2(g, OP_mul, power, piece);
+        terms[k] = mul(g, s->c[k], power);
+        power    = mul(g, power, piece);
     }
     for (uint32_t i = 1; i <= s->degree; i++) {
         Node fall = fall_towards(l, terms, s->degree, i);
         steepest  = steepest == NODE_NONE ? fall : graph_op2(g, OP_max, steepest, fall);
     }
-    Node fraction = graph_op2(g, OP_div, s->c[0], at_least(l, steepest, TINY));
-    fraction      = graph_op2(g, OP_min, fraction, number(l, 1));
-    return graph_op2(g, OP_mul, piece, fraction);
+    Node fraction = over(g, s->c[0], at_least(g, steepest, TINY));
+    fraction      = graph_op2(g, OP_min, fraction, graph_number(g, 1));
+    return mul(g, piece, fraction);
 }
 
 /* The r with r sum n |Pn| r^(n-1) = |P0|: the fixed point of the paper, found as a root, since its
    iterates run away from it where high orders count (math.md, section 3). */
 static Node taylor_radius(Lowering *l, Series *s)
 {
+    Graph *g = l->graph;
     for (uint32_t k = 2; k <= s->degree; k++)
-        s->c[k] = graph_op2(l->graph, OP_mul, s->c[k], number(l, k));
-    return series_radius(l->graph, s);
+        s->c[k] = mul(g, s->c[k], graph_number(g, k));
+    return series_radius(g, s);
 }
 
 static Node along_series(Lowering *l, Series *s)
@@ -126,12 +110,11 @@ static Node along_series(Lowering *l, Series *s)
     Graph *g    = l->graph;
     Node   sign = graph_op1(g, OP_sign, s->c[0]);
     for (uint32_t k = 0; k <= s->degree; k++)
-        s->c[k] = l->method == ALONG_EXACT ? graph_op2(g, OP_mul, s->c[k], sign)
-                                           : graph_op1(g, OP_abs, s->c[k]);
+        s->c[k] = l->method == ALONG_EXACT ? mul(g, s->c[k], sign) : graph_op1(g, OP_abs, s->c[k]);
     Node step = l->method == ALONG_EXACT    ? safe_step(l, s)
                 : l->method == ALONG_TAYLOR ? taylor_radius(l, s)
                                             : series_radius(g, s);
-    return graph_op2(g, OP_mul, step, sign);
+    return mul(g, step, sign);
 }
 
 static const double FAR = 1e30; /* farther than anything is; and 1e18, than any box is large */
@@ -141,20 +124,20 @@ static const double FAR = 1e30; /* farther than anything is; and 1e18, than any 
 static void clip_ray(Lowering *l, Box box, Ray ray, Node *enter, Node *leave)
 {
     Graph *g = l->graph;
-    *enter   = number(l, 0);
-    *leave   = number(l, FAR);
+    *enter   = graph_number(g, 0);
+    *leave   = graph_number(g, FAR);
     for (uint32_t i = 0; i < 3; i++) {
         Range side = box.axis[i];
         if (!isfinite(side.low) && !isfinite(side.high))
             continue;
         Node from = graph_component(g, ray.point, i), slope = graph_component(g, ray.direction, i);
-        Node tiny = number(l, 1e-18);
+        Node tiny = graph_number(g, 1e-18);
         slope    = graph_op3(g, OP_select, graph_op2(g, OP_less, graph_op1(g, OP_abs, slope), tiny),
                              tiny, slope);
-        Node low = graph_op2(g, OP_sub, number(l, fmax(side.low, -1e18)), from);
-        Node high = graph_op2(g, OP_sub, number(l, fmin(side.high, 1e18)), from);
-        low       = graph_op2(g, OP_div, low, slope);
-        high      = graph_op2(g, OP_div, high, slope);
+        Node low = sub(g, graph_number(g, fmax(side.low, -1e18)), from);
+        Node high = sub(g, graph_number(g, fmin(side.high, 1e18)), from);
+        low       = over(g, low, slope);
+        high      = over(g, high, slope);
         *enter    = graph_op2(g, OP_max, *enter, graph_op2(g, OP_min, low, high));
         *leave    = graph_op2(g, OP_min, *leave, graph_op2(g, OP_max, low, high));
     }
@@ -175,7 +158,7 @@ static Node clamp_to(Lowering *l, Node point, Box box)
 static Node entrance(Lowering *l, Box box, Ray ray, Node enter)
 {
     Node offset = graph_op2(l->graph, OP_scale, ray.direction, enter);
-    return clamp_to(l, graph_op2(l->graph, OP_add, ray.point, offset), box);
+    return clamp_to(l, add(l->graph, ray.point, offset), box);
 }
 
 /* Where all zeros are in a box, a ray from outside goes there first, and the series is that about
@@ -185,14 +168,14 @@ static Node along_boxed(Lowering *l, const Shape *shape, Ray ray)
     Graph      *g = l->graph;
     Series      s;
     SeriesFault fault;
-    Node        enter, leave, side = number(l, shape->zeros.sign);
+    Node        enter, leave, side = graph_number(g, shape->zeros.sign);
     clip_ray(l, shape->zeros.box, ray, &enter, &leave);
     Node origin = entrance(l, shape->zeros.box, ray, enter);
     if (!graph_line_series(g, shape->formula, origin, ray.direction, &s, &fault, l->scratch))
         return NODE_NONE;
-    Node step   = graph_op2(g, OP_add, along_series(l, &s), graph_op2(g, OP_mul, side, enter));
+    Node step   = add(g, along_series(l, &s), mul(g, side, enter));
     Node misses = graph_op2(g, OP_less, leave, enter);
-    return graph_op3(g, OP_select, misses, number(l, FAR * shape->zeros.sign), step);
+    return graph_op3(g, OP_select, misses, graph_number(g, FAR * shape->zeros.sign), step);
 }
 
 /* What is cut to a region is not looked at outside of it, where the region says how far to go. */
@@ -204,9 +187,9 @@ static Node along_cut(Lowering *l, const Shape *shape, Ray ray)
     Node        origin = clamp_to(l, ray.point, shape->region);
     if (!graph_line_series(g, shape->formula, origin, ray.direction, &s, &fault, l->scratch))
         return NODE_NONE;
-    Node offset  = graph_op2(g, OP_sub, ray.point, origin);
-    Node outside = graph_op2(g, OP_less, number(l, 0), graph_op2(g, OP_dot, offset, offset));
-    return graph_op3(g, OP_select, outside, number(l, 0), along_series(l, &s));
+    Node offset  = sub(g, ray.point, origin);
+    Node outside = graph_op2(g, OP_less, graph_number(g, 0), graph_op2(g, OP_dot, offset, offset));
+    return graph_op3(g, OP_select, outside, graph_number(g, 0), along_series(l, &s));
 }
 
 static Node along_polynomial(Lowering *l, const Shape *shape, Ray ray)
@@ -233,7 +216,7 @@ static Node along_distance(Lowering *l, const Shape *shape, Ray ray)
     if (ball.distance == NODE_NONE)
         return NODE_NONE;
     Node distance = divide_by_slope(l->graph, ball.distance, shape->slope);
-    return graph_op2(l->graph, OP_div, distance, ray.speed);
+    return over(l->graph, distance, ray.speed);
 }
 
 static Node joined(Lowering *l, Op op, Node a, Node b)
@@ -243,10 +226,7 @@ static Node joined(Lowering *l, Op op, Node a, Node b)
     return graph_op2(l->graph, op, a, b);
 }
 
-static Node opposite(Lowering *l, Node a)
-{
-    return a == NODE_NONE ? a : graph_op1(l->graph, OP_neg, a);
-}
+static Node opposite(Lowering *l, Node a) { return a == NODE_NONE ? a : neg(l->graph, a); }
 
 /* A number that is negative inside. */
 static Node value_at(Lowering *l, const Shape *shape, Node point)
@@ -258,8 +238,7 @@ static Node value_at(Lowering *l, const Shape *shape, Node point)
             break;
         return graph_substitute(g, shape->formula, substitute_point(point), l->scratch);
     case SHAPE_TRANSFORM: return value_at(l, shape->children[0], before_map(g, &shape->map, point));
-    case SHAPE_STRETCH:
-        return value_at(l, shape->children[0], graph_op2(g, OP_div, point, shape->values[0]));
+    case SHAPE_STRETCH: return value_at(l, shape->children[0], over(g, point, shape->values[0]));
     case SHAPE_PAINT:
     case SHAPE_SMOOTH: return value_at(l, shape->children[0], point);
     default: break;
@@ -271,7 +250,7 @@ static Node value_at(Lowering *l, const Shape *shape, Node point)
 static Node context_behind_point(Lowering *l, Ray ray)
 {
     Node offset = graph_op2(l->graph, OP_scale, ray.direction, ray.back);
-    return graph_op2(l->graph, OP_sub, ray.point, offset);
+    return sub(l->graph, ray.point, offset);
 }
 
 /* How far behind a point sheets are looked for in what cuts them, `ahead` along the ray: up to the
@@ -283,8 +262,8 @@ static Node back_within(Lowering *l, const Shape *shape, Ray ray, Node ahead)
     for (uint32_t i = 0; i < shape->child_count; i++)
         if (!shape->children[i]->sheets)
             before = joined(l, OP_max, before, value_at(l, shape->children[i], behind));
-    Node depth  = at_least(l, graph_op1(g, OP_neg, ahead), 0);
-    Node within = graph_op2(g, OP_less, before, number(l, 0));
+    Node depth  = at_least(g, neg(g, ahead), 0);
+    Node within = graph_op2(g, OP_less, before, graph_number(g, 0));
     return graph_op3(g, OP_select, within, ray.back, graph_op2(g, OP_min, ray.back, depth));
 }
 
@@ -330,15 +309,15 @@ static Node along_map(Lowering *l, const Shape *shape, Ray ray)
     Map    linear = shape->map;
     linear.shift  = graph_vec3(g, 0, 0, 0);
     Ray inner     = {before_map(g, &shape->map, ray.point), before_map(g, &linear, ray.direction),
-                     graph_op2(g, OP_div, ray.speed, shape->map.scale), ray.back};
+                     over(g, ray.speed, shape->map.scale), ray.back};
     return along(l, shape->children[0], inner);
 }
 
 static Node along_stretch(Lowering *l, const Shape *shape, Ray ray)
 {
     Graph *g     = l->graph;
-    Ray    inner = {graph_op2(g, OP_div, ray.point, shape->values[0]),
-                    graph_op2(g, OP_div, ray.direction, shape->values[0]), NODE_NONE, ray.back};
+    Ray    inner = {over(g, ray.point, shape->values[0]), over(g, ray.direction, shape->values[0]),
+                    NODE_NONE, ray.back};
     inner.speed  = graph_op1(g, OP_length, inner.direction);
     return along(l, shape->children[0], inner);
 }
@@ -352,12 +331,12 @@ static Node along_sheet(Lowering *l, const Shape *shape, Ray ray)
         return step;
     Node here   = value_at(l, shape->children[0], ray.point);
     Node before = value_at(l, shape->children[0], context_behind_point(l, ray));
-    Node turned = graph_op2(g, OP_mul, graph_op1(g, OP_sign, here), graph_op1(g, OP_sign, before));
+    Node turned = mul(g, graph_op1(g, OP_sign, here), graph_op1(g, OP_sign, before));
     Node size = graph_op1(g, OP_abs, here), all = graph_op1(g, OP_abs, before);
-    all         = at_least(l, graph_op2(g, OP_add, size, all), TINY);
-    Node inside = graph_op2(g, OP_mul, ray.back, graph_op2(g, OP_div, size, all));
-    return graph_op3(g, OP_select, graph_op2(g, OP_less, turned, number(l, 0)),
-                     graph_op1(g, OP_neg, inside), graph_op1(g, OP_abs, step));
+    all         = at_least(g, add(g, size, all), TINY);
+    Node inside = mul(g, ray.back, over(g, size, all));
+    return graph_op3(g, OP_select, graph_op2(g, OP_less, turned, graph_number(g, 0)),
+                     neg(g, inside), graph_op1(g, OP_abs, step));
 }
 
 /* Whether a polynomial can be seen from here through what `along` can see through. */

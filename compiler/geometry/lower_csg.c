@@ -9,9 +9,8 @@ static Node join_distances(Graph *g, Blend blend, Node a, Node b)
 {
     if (blend.width == NODE_NONE)
         return graph_op2(g, OP_min, a, b);
-    if (blend.kind == BLEND_STAIRS)
-        return graph_op4(g, OP_smin_stairs, a, b, blend.width, blend.steps);
-    return graph_op3(g, blend_info[blend.kind].op, a, b, blend.width);
+    Node operands[MAX_OPERANDS] = {a, b, blend.width, blend.steps};
+    return graph_op(g, blend_info[blend.kind].op, operands);
 }
 
 /* The union of two distances, sharp or blended. */

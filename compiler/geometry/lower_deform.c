@@ -18,6 +18,8 @@
 
 #include <math.h>
 
+#include "compiler/graph/build.h"
+
 /* Slopes of weights may cost so much: a quarter of the step. */
 static const double COST_OF_WEIGHT = 0.25;
 
@@ -27,10 +29,6 @@ static const double ENDLESS = 1e30;
 /* Below this, sin(a) / a and atan(a) / a are 1 but for their rounding. */
 static const double SMALL_ANGLE = 1e-6;
 
-static Node add(Graph *g, Node a, Node b) { return graph_op2(g, OP_add, a, b); }
-static Node sub(Graph *g, Node a, Node b) { return graph_op2(g, OP_sub, a, b); }
-static Node mul(Graph *g, Node a, Node b) { return graph_op2(g, OP_mul, a, b); }
-static Node over(Graph *g, Node a, Node b) { return graph_op2(g, OP_div, a, b); }
 static Node least(Graph *g, Node a, Node b) { return graph_op2(g, OP_min, a, b); }
 static Node most(Graph *g, Node a, Node b) { return graph_op2(g, OP_max, a, b); }
 
@@ -122,7 +120,7 @@ static Node cut_distance(Graph *g, Node distance, double width, Node steep, Node
     Node fraction = graph_number(g, COST_OF_WEIGHT);
     Node whole    = graph_number(g, COST_OF_WEIGHT / fmax(width, 1e-9));
     Node limit    = over(g, fraction, most(g, steep, whole));
-    Node low      = graph_op1(g, OP_neg, limit);
+    Node low      = neg(g, limit);
     *cost         = mul(g, steep, limit);
     return graph_op3(g, OP_clamp, distance, low, limit);
 }
@@ -157,13 +155,13 @@ static void undo_twist(Lowering *l, Node point, Node rate, InverseDeformation *i
     Graph *g     = l->graph;
     Node   angle = mul(g, graph_component(g, point, 1), rate);
     Node   c = graph_op1(g, OP_cos, angle), s = graph_op1(g, OP_sin, angle);
-    Node   zero = graph_number(g, 0), one = graph_number(g, 1), minus = graph_op1(g, OP_neg, s);
+    Node   zero = graph_number(g, 0), one = graph_number(g, 1), minus = neg(g, s);
     Node   rows[3]  = {row(g, c, zero, minus), graph_vec3(g, 0, 1, 0), row(g, s, zero, c)};
     inverse->point  = graph_op4(g, OP_turn, point, rows[0], rows[1], rows[2]);
     inverse->shrink = NODE_NONE;
     if (!l->surfaces)
         return;
-    Node against    = graph_op1(g, OP_neg, rate);
+    Node against    = neg(g, rate);
     Node x          = mul(g, graph_component(g, inverse->point, 2), against);
     Node z          = mul(g, graph_component(g, inverse->point, 0), rate);
     Node back       = row(g, x, zero, z), turned[3];
@@ -227,7 +225,7 @@ static BendSegment bend_segment(Graph *g, const Shape *shape, uint32_t i)
     Node lateral        = mul(g, chord, graph_op1(g, OP_sin, lean));
     segment.map.scale   = graph_number(g, 1);
     segment.map.rows[0] = graph_vec3(g, 1, 0, 0);
-    segment.map.rows[1] = row(g, zero, c, graph_op1(g, OP_neg, s));
+    segment.map.rows[1] = row(g, zero, c, neg(g, s));
     segment.map.rows[2] = row(g, zero, s, c);
     segment.map.shift   = row(g, zero, along, lateral);
     segment.map.pole    = NODE_NONE;
@@ -249,7 +247,7 @@ static void segment_region(Graph *g, const BendSegment *segment, Box box, Node *
     Node y       = mul(g, across, most(g, long0, long1));
     Node end0    = add(g, mul(g, z0, c), lateral);
     Node end1    = add(g, mul(g, z1, c), lateral);
-    Node bottom = least(g, z0, end0), top = most(g, z1, end1), back = graph_op1(g, OP_neg, y);
+    Node bottom = least(g, z0, end0), top = most(g, z1, end1), back = neg(g, y);
     *low  = row(g, graph_number(g, box.axis[0].low), back, bottom);
     *high = row(g, graph_number(g, box.axis[0].high), y, top);
 }
@@ -274,7 +272,7 @@ static void undo_bend(Lowering *l, const BendSegment *segment, Node point,
     inverse->shrink = NODE_NONE;
     if (!l->surfaces)
         return;
-    Node s = over(g, u, *lengths), c = over(g, w, *lengths), minus = graph_op1(g, OP_neg, s);
+    Node s = over(g, u, *lengths), c = over(g, w, *lengths), minus = neg(g, s);
     Node s_less = over(g, s, *lengths), c_less = over(g, c, *lengths);
     inverse->in[0] = inverse->out[0] = graph_vec3(g, 1, 0, 0);
     inverse->in[1]                   = row(g, zero, w, u);
@@ -381,7 +379,7 @@ static void undo_taper(Lowering *l, Node point, Node scale, Node rise, InverseDe
         return;
     Node x          = mul(g, graph_component(g, inverse->point, 0), rise);
     Node z          = mul(g, graph_component(g, inverse->point, 2), rise);
-    Node back       = graph_op1(g, OP_neg, less);
+    Node back       = neg(g, less);
     inverse->in[0]  = row(g, scale, zero, zero);
     inverse->in[1]  = row(g, x, one, z);
     inverse->in[2]  = row(g, zero, zero, scale);

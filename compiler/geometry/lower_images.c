@@ -18,6 +18,7 @@
  * not be on one side of: folding its centre is right, since distances do not grow.
  */
 #include "compiler/geometry/lowering.h"
+#include "compiler/graph/build.h"
 
 /* What inverse lengths may be wrong by, in those of the centred bound: single precision. */
 static const double ROUNDING = 1e-5;
@@ -38,8 +39,6 @@ typedef struct RayImage {
     Node     radius;       /* PROBE */
 } RayImage;
 
-static Node number(Lowering *l, double value) { return graph_number(l->graph, value); }
-
 static Node larger(Lowering *l, Node a, Node b)
 {
     if (a == NODE_NONE || b == NODE_NONE)
@@ -47,30 +46,28 @@ static Node larger(Lowering *l, Node a, Node b)
     return graph_op2(l->graph, OP_max, a, b);
 }
 
-static Node product(Lowering *l, Node a, Node b) { return graph_op2(l->graph, OP_mul, a, b); }
-static Node sum(Lowering *l, Node a, Node b) { return graph_op2(l->graph, OP_add, a, b); }
-static Node difference(Lowering *l, Node a, Node b) { return graph_op2(l->graph, OP_sub, a, b); }
-
 /* a - axis * along. */
 static Node less_parallel(Lowering *l, Node a, Node axis, Node along)
 {
     Node parallel = graph_op2(l->graph, OP_scale, axis, along);
-    return graph_op2(l->graph, OP_sub, a, parallel);
+    return sub(l->graph, a, parallel);
 }
 
 static Node reflected(Lowering *l, Node a, Node axis)
 {
-    Node along = graph_op2(l->graph, OP_dot, axis, a);
-    return less_parallel(l, a, axis, product(l, along, number(l, 2)));
+    Graph *g     = l->graph;
+    Node   along = graph_op2(g, OP_dot, axis, a);
+    return less_parallel(l, a, axis, mul(g, along, graph_number(g, 2)));
 }
 
 /* A: what 1 becomes, per length outside. */
 static Node shrink_of(Lowering *l, const RayImage *image)
 {
+    Graph          *g     = l->graph;
     const MapChain *chain = &image->chain;
     if (chain->shrink != NODE_NONE)
         return chain->shrink;
-    return graph_op2(l->graph, OP_div, number(l, 1), chain->scale);
+    return over(g, graph_number(g, 1), chain->scale);
 }
 
 /* ---- leaves ---- */
@@ -80,36 +77,37 @@ static Node exit_of(Lowering *l, const RayImage *image, Node d)
 {
     Graph *g = l->graph;
     if (image->bow == NODE_NONE)
-        return product(l, d, image->chain.scale);
+        return mul(g, d, image->chain.scale);
     Node shrink    = image->chain.shrink;
     Node size      = graph_op1(g, OP_abs, d);
-    Node whole     = sum(l, shrink, product(l, image->chain.bend, size)); /* centred: |d| / whole */
-    Node across    = difference(l, image->square, graph_op1(g, OP_square, image->tilt));
-    Node bent      = product(l, across, graph_op1(g, OP_square, size));
-    Node remainder = difference(l, graph_op1(g, OP_square, shrink), bent);
-    Node root      = graph_op1(g, OP_sqrt, larger(l, remainder, number(l, 0)));
-    Node rate      = difference(l, root, product(l, image->tilt, size));
+    Node whole     = add(g, shrink, mul(g, image->chain.bend, size)); /* centred: |d| / whole */
+    Node across    = sub(g, image->square, graph_op1(g, OP_square, image->tilt));
+    Node bent      = mul(g, across, graph_op1(g, OP_square, size));
+    Node remainder = sub(g, graph_op1(g, OP_square, shrink), bent);
+    Node root      = graph_op1(g, OP_sqrt, larger(l, remainder, graph_number(g, 0)));
+    Node rate      = sub(g, root, mul(g, image->tilt, size));
     if (image->cut != NODE_NONE)
-        rate = larger(l, rate, product(l, image->cut, size));
-    rate = larger(l, rate, number(l, 0));
-    rate = sum(l, rate, product(l, whole, number(l, ROUNDING)));
+        rate = larger(l, rate, mul(g, image->cut, size));
+    rate = larger(l, rate, graph_number(g, 0));
+    rate = add(g, rate, mul(g, whole, graph_number(g, ROUNDING)));
     rate = graph_op2(g, OP_min, rate, whole);
-    return graph_op2(g, OP_div, d, rate);
+    return over(g, d, rate);
 }
 
 /* What a distance at the image is worth outside: the way to go or, of a ball, the distance times
    how much larger the ball is outside: more than its radius there when it is empty. */
 static Node worth_of(Lowering *l, const RayImage *image, Node distance)
 {
+    Graph *g = l->graph;
     if (distance == NODE_NONE)
         return NODE_NONE;
     if (l->method == ALONG_DIRECTIONAL)
         return exit_of(l, image, distance);
-    Node radius = graph_leaf(l->graph, OP_FOOTPRINT);
+    Node radius = graph_leaf(g, OP_FOOTPRINT);
     if (image->radius == radius)
         return distance;
-    Node ratio = graph_op2(l->graph, OP_div, radius, image->radius);
-    return product(l, distance, ratio);
+    Node ratio = over(g, radius, image->radius);
+    return mul(g, distance, ratio);
 }
 
 /* ---- maps ---- */
@@ -117,12 +115,12 @@ static Node worth_of(Lowering *l, const RayImage *image, Node distance)
 static void bend_ray(Lowering *l, RayImage *image, const Map *map, const Inversion *inversion)
 {
     Graph *g       = l->graph;
-    Node   curving = product(l, shrink_of(l, image), inversion->inverse), bow;
+    Node   curving = mul(g, shrink_of(l, image), inversion->inverse), bow;
     if (image->bow == NODE_NONE) {
-        bow = graph_op2(g, OP_scale, inversion->axis, graph_op1(g, OP_neg, curving));
+        bow = graph_op2(g, OP_scale, inversion->axis, neg(g, curving));
     } else {
         Node along = graph_op2(g, OP_dot, inversion->axis, image->bow);
-        along      = sum(l, product(l, along, number(l, 2)), curving);
+        along      = add(g, mul(g, along, graph_number(g, 2)), curving);
         bow        = less_parallel(l, image->bow, inversion->axis, along);
     }
     Node direction   = reflected(l, image->direction, inversion->axis);
@@ -138,18 +136,18 @@ static void bend_ray(Lowering *l, RayImage *image, const Map *map, const Inversi
 static Node invert_ball(Lowering *l, RayImage *image, const Map *map)
 {
     Graph *g           = l->graph;
-    Node   offset      = graph_op2(g, OP_sub, image->chain.point, map->shift);
+    Node   offset      = sub(g, image->chain.point, map->shift);
     Node   square      = graph_op2(g, OP_dot, offset, offset);
-    Node   remainder   = difference(l, square, graph_op1(g, OP_square, image->radius));
-    Node   least       = product(l, square, number(l, NEAR_POLE));
-    least              = sum(l, least, number(l, TINY));
-    Node factor        = graph_op2(g, OP_div, map->scale, larger(l, remainder, least));
+    Node   remainder   = sub(g, square, graph_op1(g, OP_square, image->radius));
+    Node   least       = mul(g, square, graph_number(g, NEAR_POLE));
+    least              = add(g, least, graph_number(g, TINY));
+    Node factor        = over(g, map->scale, larger(l, remainder, least));
     Node reach         = graph_op1(g, OP_length, offset);
-    reach              = product(l, reach, number(l, 1 - NEAR_POLE));
+    reach              = mul(g, reach, graph_number(g, 1 - NEAR_POLE));
     Node worth         = worth_of(l, image, reach);
     Node centre        = graph_op2(g, OP_scale, turn_behind(g, map, offset), factor);
-    image->chain.point = graph_op2(g, OP_add, centre, map->pole);
-    image->radius      = product(l, image->radius, factor);
+    image->chain.point = add(g, centre, map->pole);
+    image->radius      = mul(g, image->radius, factor);
     return worth;
 }
 
@@ -161,7 +159,7 @@ static Node image_map(Lowering *l, RayImage *image, const Map *map)
     if (l->method == ALONG_PROBE && map->pole != NODE_NONE)
         return invert_ball(l, image, map);
     if (l->method == ALONG_PROBE)
-        image->radius = graph_op2(g, OP_div, image->radius, map->scale);
+        image->radius = over(g, image->radius, map->scale);
     else if (map->pole != NODE_NONE) {
         Inversion inversion = inversion_at(g, map, image->chain.point);
         bend_ray(l, image, map, &inversion);
@@ -179,23 +177,23 @@ static Node image_map(Lowering *l, RayImage *image, const Map *map)
 static Node crossing(Lowering *l, const RayImage *image, Node axis, Node distance, Node speed)
 {
     Graph *g    = l->graph;
-    Node   some = larger(l, distance, number(l, TINY));
+    Node   some = larger(l, distance, graph_number(g, TINY));
     if (image->bow == NODE_NONE)
-        return graph_op2(g, OP_div, speed, some);
-    Node half    = product(l, speed, number(l, -0.5));
-    half         = sum(l, half, product(l, distance, image->tilt));
+        return over(g, speed, some);
+    Node half    = mul(g, speed, graph_number(g, -0.5));
+    half         = add(g, half, mul(g, distance, image->tilt));
     Node curving = graph_op2(g, OP_dot, axis, image->bow);
-    curving      = product(l, curving, image->chain.shrink);
-    Node rest    = difference(l, product(l, distance, image->square), curving);
-    Node inner   = product(l, distance, rest);
-    inner        = difference(l, graph_op1(g, OP_square, half), inner);
-    Node root    = graph_op1(g, OP_sqrt, larger(l, inner, number(l, 0)));
+    curving      = mul(g, curving, image->chain.shrink);
+    Node rest    = sub(g, mul(g, distance, image->square), curving);
+    Node inner   = mul(g, distance, rest);
+    inner        = sub(g, graph_op1(g, OP_square, half), inner);
+    Node root    = graph_op1(g, OP_sqrt, larger(l, inner, graph_number(g, 0)));
     /* Whichever form of it adds what has the same sign. */
-    Node divisor = sum(l, half, root);
-    divisor      = larger(l, divisor, number(l, TINY));
-    Node leaving = graph_op2(g, OP_div, graph_op1(g, OP_neg, rest), divisor);
-    Node nearing = graph_op2(g, OP_div, difference(l, root, half), some);
-    Node leaves  = graph_op2(g, OP_less, number(l, 0), half);
+    Node divisor = add(g, half, root);
+    divisor      = larger(l, divisor, graph_number(g, TINY));
+    Node leaving = over(g, neg(g, rest), divisor);
+    Node nearing = over(g, sub(g, root, half), some);
+    Node leaves  = graph_op2(g, OP_less, graph_number(g, 0), half);
     return graph_op3(g, OP_select, leaves, leaving, nearing);
 }
 
@@ -214,9 +212,9 @@ static void image_mirror(Lowering *l, RayImage *image, Node axis, Node offset)
         image->bow = graph_op3(g, OP_select, front, mirrored, image->bow);
     }
     Node distance = graph_op2(g, OP_dot, axis, point);
-    distance      = graph_op1(g, OP_abs, difference(l, distance, offset));
+    distance      = graph_op1(g, OP_abs, sub(g, distance, offset));
     Node speed    = graph_op2(g, OP_dot, axis, image->direction);
-    speed         = product(l, speed, shrink_of(l, image));
+    speed         = mul(g, speed, shrink_of(l, image));
     image->ahead  = larger(l, image->ahead, crossing(l, image, axis, distance, speed));
 }
 

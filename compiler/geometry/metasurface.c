@@ -26,7 +26,6 @@
 #include "compiler/geometry/elaborate.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "compiler/geometry/lowering.h"
 #include "compiler/graph/evaluate.h"
@@ -42,32 +41,19 @@ static const struct {
 
 /* ---- the shape ---- */
 
-/* The falloff of a name, "wyvill" without one; false: reported. */
-static bool want_falloff(Elaboration *e, const Argument *name, FalloffKind *kind)
-{
-    const char *spellings[FALLOFF_COUNT];
-    *kind = FALLOFF_WYVILL;
-    if (!name->syntax)
-        return true;
-    if (name->value.type != VALUE_STRING) {
-        type_error(e, name->syntax, name->value, "the name of a falloff, a string");
-        return false;
-    }
-    for (uint32_t i = 0; i < FALLOFF_COUNT; i++) {
-        spellings[i] = falloff_info[i].spelling;
-        *kind        = (FalloffKind)i;
-        if (strcmp(spellings[i], name->value.string) == 0)
-            return true;
-    }
-    Diag       *diag = diag_add(e->diags, DIAG_BAD_VALUE, name->syntax->span,
-                                "no falloff is called \"%s\"", name->value.string);
-    const char *near = nearest_name(name->value.string, spellings, FALLOFF_COUNT);
-    diag->label      = "unknown falloff";
-    if (near)
-        diag->replacement = diag_text(e->diags, "\"%s\"", near);
-    diag->help = "there are \"wyvill\", \"soft\", \"gaussian\" and \"exponential\"";
-    return false;
-}
+static const char *const falloff_spellings[] = {
+#define FALLOFF(name, spelling, steepest, meaning) spelling,
+#include "compiler/geometry/falloffs.def"
+#undef FALLOFF
+};
+static const Choices falloff_names = {
+    .noun    = "falloff",
+    .wanted  = "the name of a falloff, a string",
+    .unknown = "unknown falloff",
+    .more    = "",
+    .items   = falloff_spellings,
+    .count   = FALLOFF_COUNT,
+};
 
 /* A number above 0; NODE_NONE: reported. */
 static Node want_positive(Elaboration *e, const Call *call, uint32_t index, double otherwise,
@@ -83,10 +69,10 @@ static Node want_positive(Elaboration *e, const Call *call, uint32_t index, doub
 Value builtin_meta(Elaboration *e, Call *call)
 {
     Values          values = {0};
-    FalloffKind     kind;
+    uint32_t        falloff;
     const Argument *list = &call->arguments[0];
     if (!collect_shapes(e, call, list->value, list->syntax, &values) ||
-        !want_falloff(e, &call->arguments[2], &kind))
+        !want_name(e, &call->arguments[2], &falloff_names, &falloff))
         return value_error();
     Node level = want_positive(e, call, 1, 0.5, "the level of a metasurface");
     Node reach = want_positive(e, call, 3, 0.5, "the reach of a falloff");
@@ -99,7 +85,7 @@ Value builtin_meta(Elaboration *e, Call *call)
     Shape *meta     = shape_new(e, SHAPE_META, "meta", span, shapes, (uint32_t)values.count);
     meta->values[0] = level;
     meta->values[1] = reach;
-    meta->falloff   = kind;
+    meta->falloff   = (FalloffKind)falloff;
     meta->exact     = false;
     meta->box       = box_empty;
     for (size_t i = 0; i < values.count; i++)

@@ -5,59 +5,42 @@
  */
 #include "compiler/geometry/elaborate.h"
 
-#include <string.h>
-
 #include "compiler/front/token.h"
 
 enum { STOPS = 6, MOST_STOPS = 64 };
 
-static const struct Palette {
-    const char *name;
-    uint32_t    colors[STOPS]; /* sRGB */
-} palettes[] = {
-#define PALETTE(name, ...) {name, {__VA_ARGS__}},
+/* sRGB */
+static const uint32_t palettes[][STOPS] = {
+#define PALETTE(name, ...) {__VA_ARGS__},
 #include "compiler/geometry/palettes.def"
 #undef PALETTE
 };
-enum { PALETTE_COUNT = sizeof palettes / sizeof *palettes };
-
-/* Reports a name that no palette has. */
-static void refuse_name(Elaboration *e, const Argument *argument)
-{
-    const char *names[PALETTE_COUNT];
-    Text        list = {.arena = e->diags->arena};
-    for (size_t i = 0; i < PALETTE_COUNT; i++) {
-        names[i] = palettes[i].name;
-        text_format(&list, "%s\"%s\"",
-                    i == 0                  ? ""
-                    : i + 1 < PALETTE_COUNT ? ", "
-                                            : " and ",
-                    names[i]);
-    }
-    Diag       *diag = diag_add(e->diags, DIAG_BAD_VALUE, argument->syntax->span,
-                                "no palette is called \"%s\"", argument->value.string);
-    const char *near = nearest_name(argument->value.string, names, PALETTE_COUNT);
-    diag->label      = "unknown palette";
-    if (near)
-        diag->replacement = diag_text(e->diags, "\"%s\"", near);
-    diag->help = diag_text(e->diags, "there are %s; a list of colours is one, too", list.bytes);
-}
+static const char *const palette_spellings[] = {
+#define PALETTE(name, ...) name,
+#include "compiler/geometry/palettes.def"
+#undef PALETTE
+};
+static const Choices palette_names = {
+    .noun    = "palette",
+    .wanted  = "the name of a palette",
+    .unknown = "unknown palette",
+    .more    = "; a list of colours is one, too",
+    .items   = palette_spellings,
+    .count   = sizeof palettes / sizeof *palettes,
+};
 
 /* The colours of a palette's name, the first one's without an argument; 0: reported. */
 static uint32_t named_colors(Elaboration *e, const Argument *argument, Node *colors)
 {
-    for (size_t i = 0; i < PALETTE_COUNT; i++) {
-        if (argument->syntax && strcmp(palettes[i].name, argument->value.string) != 0)
-            continue;
-        for (uint32_t k = 0; k < STOPS; k++) {
-            double linear[3];
-            linear_from_srgb(palettes[i].colors[k], linear);
-            colors[k] = graph_constant(e->graph, TYPE_VEC3, linear);
-        }
-        return STOPS;
+    uint32_t chosen;
+    if (!want_name(e, argument, &palette_names, &chosen))
+        return 0;
+    for (uint32_t k = 0; k < STOPS; k++) {
+        double linear[3];
+        linear_from_srgb(palettes[chosen][k], linear);
+        colors[k] = graph_constant(e->graph, TYPE_VEC3, linear);
     }
-    refuse_name(e, argument);
-    return 0;
+    return STOPS;
 }
 
 /* The colours of a list of them; 0: reported. */

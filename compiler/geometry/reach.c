@@ -11,6 +11,8 @@
 
 #include <math.h>
 
+#include "compiler/base/vec.h"
+
 enum { MOST_BRANCHES = 512, MOST_OPENED = 2000 };
 
 /* The search ends when no more than this fraction of the set's radius can be gained. */
@@ -31,11 +33,6 @@ typedef struct ReachSearch {
     double            reached; /* by a kernel's box */
 } ReachSearch;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static double box_support(Box box, const double direction[3])
 {
     double sum = 0;
@@ -53,7 +50,7 @@ static double bound_of(const ReachStage *stage, const Branch *branch)
     if (box_is_empty(stage->box) || stage->ball.radius < 0)
         return -INFINITY;
     double by_box  = box_support(stage->box, u);
-    double by_ball = dot(u, stage->ball.centre) + stage->ball.radius * sqrt(dot(u, u));
+    double by_ball = dot3(u, stage->ball.centre) + stage->ball.radius * sqrt(dot3(u, u));
     return fmin(by_box, by_ball) + branch->offset;
 }
 
@@ -107,7 +104,7 @@ static bool open_branch(ReachSearch *search, const Branch *branch)
                                    box_support(stage->kernel, branch->direction) + branch->offset);
     } else if (stage->kind == REACH_REFLECT) {
         Branch mirrored = before;
-        double along    = dot(branch->direction, stage->normal);
+        double along    = dot3(branch->direction, stage->normal);
         for (int i = 0; i < 3; i++)
             mirrored.direction[i] -= 2 * along * stage->normal[i];
         mirrored.offset += 2 * along * stage->offset;
@@ -119,7 +116,7 @@ static bool open_branch(ReachSearch *search, const Branch *branch)
             for (int j = 0; j < 3; j++)
                 before.direction[i] += branch->direction[j] * stage->rows[j][i];
         }
-        before.offset += dot(branch->direction, stage->shift);
+        before.offset += dot3(branch->direction, stage->shift);
     }
     return push(search, before);
 }

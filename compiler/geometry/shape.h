@@ -71,7 +71,7 @@ typedef enum BlendKind {
 
 typedef struct BlendInfo {
     const char *spelling;
-    Op          op;    /* smooth minimum of (a, b, width) */
+    Op          op;    /* smooth minimum of (a, b, width) or (a, b, width, steps) */
     double      slope; /* slope of the result over the larger slope of the operands */
     double      bulge; /* how far min(a, b) may exceed the result, in widths */
 } BlendInfo;
@@ -88,7 +88,7 @@ typedef enum FalloffKind {
 typedef struct Blend {
     BlendKind kind;
     Node      width; /* NODE_NONE: the joint is sharp */
-    Node      steps; /* of BLEND_STAIRS */
+    Node      steps; /* of kinds that have some */
 } Blend;
 extern const Blend blend_sharp;
 

@@ -16,7 +16,7 @@ const BlendInfo blend_info[BLEND_COUNT] = {
 #include "compiler/geometry/blends.def"
 #undef BLEND
 };
-const Blend blend_sharp = {BLEND_QUADRATIC, NODE_NONE, NODE_NONE};
+const Blend blend_sharp = {.width = NODE_NONE, .steps = NODE_NONE};
 
 Range node_range(Elaboration *e, Node node, uint32_t component)
 {

@@ -17,6 +17,7 @@
 
 #include <cmocka.h>
 
+#include "compiler/base/vec.h"
 #include "compiler/compile.h"
 #include "runtime/tracer/renderer.h"
 #include "tests/support/device.h"
@@ -59,8 +60,6 @@ static void scene_close(Scene s)
 static Random chance = {77};
 
 static double uniform(double low, double high) { return random_between(&chance, low, high); }
-
-static double length3(const double v[3]) { return hypot(hypot(v[0], v[1]), v[2]); }
 
 enum { MOST = 40000 };
 static double points[MOST][3], aims[MOST][3];

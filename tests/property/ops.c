@@ -38,17 +38,25 @@ static const struct {
     Op          op;
     const char *kinds;
 } special_operands[] = {
-    {OP_turn, "mrrr"},         {OP_fold, "muc"},
-    {OP_front, "muc"},         {OP_cell, "mplh"},
-    {OP_cell_polar, "mn"},     {OP_smin_quadratic, "mmw"},
-    {OP_smin_cubic, "mmw"},    {OP_smin_exponential, "mmw"},
-    {OP_smin_circular, "mmw"}, {OP_smin_chamfer, "mmw"},
-    {OP_smin_stairs, "mmwn"},  {OP_blend_weight, "mmw"},
-    {OP_less, "ee"},           {OP_less_equal, "ee"},
-    {OP_equal, "ee"},          {OP_not_equal, "ee"},
-    {OP_noise2, "s"},          {OP_noise3, "s"},
-    {OP_julia, "mqkk"},        {OP_julia_trap, "mqkk"},
-    {OP_mandelbulb, "mkk"},    {OP_mandelbulb_trap, "mkk"},
+    {OP_turn, "mrrr"},
+    {OP_fold, "muc"},
+    {OP_front, "muc"},
+    {OP_cell, "mplh"},
+    {OP_cell_polar, "mn"},
+    {OP_smin_stairs, "mmwn"},
+    {OP_blend_weight, "mmw"},
+    {OP_less, "ee"},
+    {OP_less_equal, "ee"},
+    {OP_equal, "ee"},
+    {OP_not_equal, "ee"},
+    {OP_noise2, "s"},
+    {OP_noise3, "s"},
+    {OP_julia, "mqkk"},
+    {OP_julia_trap, "mqkk"},
+    {OP_mandelbulb, "mkk"},
+    {OP_mandelbulb_trap, "mkk"},
+#define SMIN(name, ...) {OP_##name, "mmw"},
+#include "compiler/graph/ops.def"
 };
 
 typedef struct Row {
@@ -57,23 +65,14 @@ typedef struct Row {
     const char *signature; /* of a MAP row: g for each operand, FLOAT or vector */
 } Row;
 
-static const char *const map_signatures[] = {"", "g>g", "gg>g", "ggg>g"};
+#define MAP_SIGNATURE(arity) ((arity) == 1 ? "g>g" : (arity) == 2 ? "gg>g" : "ggg>g")
 
-static Row row_of(Op op)
-{
-    switch (op) {
-#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning) \
-    case OP_##name:                                                     \
-        return (Row){op, #name, map_signatures[arity]};
-#define OP(name, signature, glsl, evaluate, facts, meaning) \
-    case OP_##name:                                         \
-        return (Row){op, #name, signature};
+/* Of leaves, too, without a name. */
+static const Row op_rows[OP_COUNT] = {
+#define MAP(name, arity, ...)          [OP_##name] = {OP_##name, #name, MAP_SIGNATURE(arity)},
+#define OP(name, signature, glsl, ...) [OP_##name] = {OP_##name, #name, signature},
 #include "compiler/graph/ops.def"
-#undef MAP
-#undef OP
-    default: return (Row){op, NULL, NULL};
-    }
-}
+};
 
 static void random_unit(Random *random, double u[3])
 {
@@ -511,7 +510,7 @@ static int refuting_trial(Row row, Mutation mutation, bool with_gradient, const 
 
 static void keeps_its_promises(void **state)
 {
-    Row row = row_of(*(Op *)*state);
+    Row row = op_rows[*(Op *)*state];
     for (int with_gradient = 0; with_gradient < 2; with_gradient++) {
         const char *what;
         int         trial = refuting_trial(row, RIGHT, with_gradient, &what);
@@ -561,7 +560,7 @@ static bool is_broken_by(Row row, Mutation mutation)
 
 static void broken_rules_are_refuted(void **state)
 {
-    Row      row   = row_of(*(Op *)*state);
+    Row      row   = op_rows[*(Op *)*state];
     Mutation count = (Mutation)(FORGET_OPERAND + (strchr(row.signature, '>') - row.signature));
     for (Mutation mutation = SMALLER_SLOPE; mutation < count; mutation++)
         for (int with_gradient = 0; with_gradient < 2 && is_broken_by(row, mutation);
@@ -579,7 +578,7 @@ int main(void)
     struct CMUnitTest tests[2 * OP_COUNT];
     size_t            count = 0;
     for (Op op = 0; op < OP_COUNT; op++)
-        if (row_of(op).name) {
+        if (op_rows[op].name) {
             ops[op]        = op;
             tests[count++] = (struct CMUnitTest){graph_op_name(op), keeps_its_promises, NULL, NULL,
                                                  &ops[op]};

@@ -15,38 +15,19 @@
 #include <time.h>
 #include <cmocka.h>
 
+#include "compiler/base/vec.h"
 #include "compiler/geometry/reach.h"
 #include "compiler/krs.h"
 
 #include "tests/support/random.h"
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double c[3])
-{
-    for (int i = 0; i < 3; i++) {
-        int y = (i + 1) % 3, z = (i + 2) % 3;
-        c[i] = a[y] * b[z] - a[z] * b[y];
-    }
-}
-
-static void normalize(double v[3])
-{
-    double length = sqrt(dot(v, v));
-    for (int i = 0; i < 3; i++)
-        v[i] /= length;
-}
 
 static void random_unit(Random *random, double u[3])
 {
     do
         for (int i = 0; i < 3; i++)
             u[i] = random_between(random, -1, 1);
-    while (dot(u, u) < 0.01 || dot(u, u) > 1);
-    normalize(u);
+    while (dot3(u, u) < 0.01 || dot3(u, u) > 1);
+    normalize3(u);
 }
 
 /* ---- points, boxes and balls, the plain way ---- */
@@ -93,13 +74,13 @@ static bool in_box(Box box, const double p[3])
 static bool in_ball(Ball ball, const double p[3])
 {
     double way[3] = {p[0] - ball.centre[0], p[1] - ball.centre[1], p[2] - ball.centre[2]};
-    return sqrt(dot(way, way)) <= ball.radius;
+    return sqrt(dot3(way, way)) <= ball.radius;
 }
 
 /* How far a point is in front of a mirror, where nothing is kept. */
 static double excess(const ReachStage *mirror, const double p[3])
 {
-    return dot(mirror->normal, p) - mirror->offset;
+    return dot3(mirror->normal, p) - mirror->offset;
 }
 
 static void reflect(const ReachStage *mirror, double p[3])
@@ -113,7 +94,7 @@ static void map(const ReachStage *stage, double p[3])
 {
     double q[3] = {p[0], p[1], p[2]};
     for (int i = 0; i < 3; i++)
-        p[i] = dot(stage->rows[i], q) + stage->shift[i];
+        p[i] = dot3(stage->rows[i], q) + stage->shift[i];
 }
 
 /* ---- every instance by itself ---- */
@@ -232,9 +213,9 @@ static void random_map(Random *random, ReachStage *stage)
     double other[3], scale = exp(random_between(random, -1, 0.7));
     random_unit(random, stage->rows[0]);
     random_unit(random, other);
-    cross(stage->rows[0], other, stage->rows[1]);
-    normalize(stage->rows[1]);
-    cross(stage->rows[0], stage->rows[1], stage->rows[2]);
+    cross3(stage->rows[0], other, stage->rows[1]);
+    normalize3(stage->rows[1]);
+    cross3(stage->rows[0], stage->rows[1], stage->rows[2]);
     for (int i = 0; i < 3; i++) {
         stage->shift[i] = random_between(random, -2, 2);
         for (int j = 0; j < 3; j++)
@@ -317,7 +298,7 @@ static Ball loose_ball(const ReachStage *stage, Ball before)
         }
         if (ball.radius < 0)
             return kernel;
-        ball.radius = fmax(ball.radius, sqrt(dot(way, way)) + kernel.radius);
+        ball.radius = fmax(ball.radius, sqrt(dot3(way, way)) + kernel.radius);
     } else if (stage->kind == REACH_REFLECT && ball.radius >= 0) {
         double ahead = excess(stage, ball.centre);
         ball.radius += fabs(ahead);
@@ -325,7 +306,7 @@ static Ball loose_ball(const ReachStage *stage, Ball before)
             ball.centre[i] -= ahead * stage->normal[i];
     } else if (stage->kind == REACH_MAP) {
         map(stage, ball.centre);
-        ball.radius *= sqrt(dot(stage->rows[0], stage->rows[0]));
+        ball.radius *= sqrt(dot3(stage->rows[0], stage->rows[0]));
     }
     return ball;
 }
@@ -387,8 +368,8 @@ typedef struct Copy {
 
 static double copy_bound(const ReachStage *stage, const double u[3], Fault fault)
 {
-    double length = fault == BALL_WITHOUT_SCALE ? 1 : sqrt(dot(u, u));
-    double ball = dot(u, stage->ball.centre) + stage->ball.radius * length, box = 0;
+    double length = fault == BALL_WITHOUT_SCALE ? 1 : sqrt(dot3(u, u));
+    double ball = dot3(u, stage->ball.centre) + stage->ball.radius * length, box = 0;
     for (int i = 0; i < 3; i++)
         box += fmax(u[i] * stage->box.axis[i].low, u[i] * stage->box.axis[i].high);
     return is_empty(stage->box) ? -HUGE_VAL : fmin(ball, box);
@@ -413,7 +394,7 @@ static void copy_search(Copy *copy, uint32_t count, const double u[3], double be
         if (fault == KERNELS_FORGOTTEN && !is_empty(stage->kernel))
             return;
     } else if (stage->kind == REACH_REFLECT && fault != IMAGES_FORGOTTEN) {
-        double along = dot(u, stage->normal);
+        double along = dot3(u, stage->normal);
         for (int i = 0; i < 3; i++)
             v[i] -= sign * 2 * along * stage->normal[i];
         sign = fault == MOVED_WITH_WRONG_SIGN ? -1 : 1;
@@ -421,9 +402,9 @@ static void copy_search(Copy *copy, uint32_t count, const double u[3], double be
     } else if (stage->kind == REACH_MAP) {
         for (int i = 0; i < 3; i++) {
             double column[3] = {stage->rows[0][i], stage->rows[1][i], stage->rows[2][i]};
-            v[i]             = dot(u, fault == MAP_NOT_TRANSPOSED ? stage->rows[i] : column);
+            v[i]             = dot3(u, fault == MAP_NOT_TRANSPOSED ? stage->rows[i] : column);
         }
-        beyond += fault == MAP_NOT_SHIFTED ? 0 : dot(u, stage->shift);
+        beyond += fault == MAP_NOT_SHIFTED ? 0 : dot3(u, stage->shift);
     }
     copy_search(copy, count - 1, stage->kind == REACH_MAP ? v : u, beyond);
 }
@@ -734,7 +715,7 @@ static Branch next_branch(Branch branch, int number, Box *box)
         next.ahead[i] = cos(2 * bend) * branch.ahead[i] + sin(2 * bend) * branch.side[i];
         left[i]       = cos(2 * bend) * branch.side[i] - sin(2 * bend) * branch.ahead[i];
     }
-    cross(next.ahead, left, up);
+    cross3(next.ahead, left, up);
     for (int i = 0; i < 3; i++)
         next.side[i] = cos(turn) * left[i] + sin(turn) * up[i];
     return next;
@@ -753,7 +734,7 @@ static void grow_tree(ReachStage stages[TREE_STAGES])
             *mirror            = (ReachStage){.kind = REACH_REFLECT};
             for (int i = 0; i < 3; i++)
                 mirror->normal[i] = -sin(tilt) * branch.ahead[i] - cos(tilt) * branch.side[i];
-            mirror->offset = dot(mirror->normal, branch.at);
+            mirror->offset = dot3(mirror->normal, branch.at);
         }
         branch = next_branch(branch, number, &kernel->kernel);
     }
@@ -830,7 +811,7 @@ static void trees_shrink_to_their_crowns(void **state)
 static bool walk(KrsFrame *frame, Box box, const double from[3], const double to[3], double p[3])
 {
     double way[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]}, distance, t = 0;
-    double length = sqrt(dot(way, way));
+    double length = sqrt(dot3(way, way));
     while (t < 2 * length) {
         for (int i = 0; i < 3; i++)
             p[i] = from[i] + way[i] * t / length;

@@ -15,6 +15,7 @@
 
 #include <cmocka.h>
 
+#include "compiler/base/vec.h"
 #include "compiler/compile.h"
 #include "tests/support/random.h"
 
@@ -40,14 +41,6 @@ static void scene_close(Scene s)
 static Random chance = {2024};
 
 static double uniform(double low, double high) { return random_between(&chance, low, high); }
-
-static double length3(const double v[3]) { return hypot(hypot(v[0], v[1]), v[2]); }
-
-static double apart(const double a[3], const double b[3])
-{
-    double v[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-    return length3(v);
-}
 
 static KrsHit cast(KrsFrame *frame, const double origin[3], const double direction[3],
                    double farthest, double tolerance)
@@ -111,7 +104,7 @@ static double ball_less_zones(const double point[3], const double (*zones)[4], s
 {
     double distance = length3(point) - 1;
     for (size_t i = 0; i < count; i++)
-        distance = fmax(distance, zones[i][3] - apart(point, zones[i]));
+        distance = fmax(distance, zones[i][3] - distance3(point, zones[i]));
     return distance;
 }
 
@@ -157,7 +150,7 @@ static void zones_cut_rays(void **context)
             random_vector(&chance, 4, origin);
         while (length3(origin) < 1.1);
         random_vector(&chance, 1.2, target);
-        double remote = apart(target, origin), t = -1;
+        double remote = distance3(target, origin), t = -1;
         for (int k = 0; k < 3; k++)
             unit[k] = (target[k] - origin[k]) / remote;
         size_t count = 0;
@@ -281,15 +274,17 @@ static void arrays_are_answered_in_order(void **context)
     assert_int_equal(krs_probe(s.frame, (const double(*)[3])points, COUNT, hits), KRS_OK);
     for (int i = 0; i < COUNT; i++) {
         const double center[2][3] = {{0, 0, 0}, {3, 0, 0}};
-        double       each[2] = {apart(points[i], center[0]) - 1, apart(points[i], center[1]) - 0.5};
-        int          nearer  = each[1] < each[0];
+        double       each[2]      = {distance3(points[i], center[0]) - 1,
+                                     distance3(points[i], center[1]) - 0.5};
+        int          nearer       = each[1] < each[0];
         assert_true(fabs(distances[i] - each[nearer]) < 1e-12);
         assert_true(hits[i].distance == distances[i] && hits[i].hit);
         assert_int_equal(hits[i].component, nearer + 1);
         assert_int_equal(hits[i].instance, 1);
         assert_int_equal(hits[i].level, 0);
         for (int k = 0; k < 3 && fabs(each[0] - each[1]) > 1e-3; k++) {
-            double right = (points[i][k] - center[nearer][k]) / apart(points[i], center[nearer]);
+            double right = (points[i][k] - center[nearer][k]) /
+                           distance3(points[i], center[nearer]);
             assert_true(fabs(normals[i][k] - right) < 1e-6);
             assert_true(hits[i].normal[k] == normals[i][k]);
         }
