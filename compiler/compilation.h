@@ -8,7 +8,7 @@
 #define KRS_COMPILATION_H
 
 #include "compiler/front/parse.h"
-#include "compiler/geometry/elaborate.h"
+#include "compiler/eval/elaborate.h"
 #include "compiler/inspect.h"
 #include "compiler/program.h"
 

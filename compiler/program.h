@@ -6,7 +6,7 @@
 
 #include "compiler/bounds.h"
 #include "compiler/compile.h"
-#include "compiler/geometry/lower.h"
+#include "compiler/lower/lower.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/shader/emit.h"
 
@@ -31,7 +31,7 @@ typedef struct Roots {
     size_t count;
 } Roots;
 
-/* A slope that is found for each frame (geometry/slope.c). */
+/* A slope that is found for each frame (shape/slope.c). */
 typedef struct RetainedSlope {
     uint32_t    slot;
     SlopeTask   task;

@@ -4,7 +4,8 @@
 # and prototypes for everybody) may be included by the half that they belong to.
 set -u
 cd "$(dirname "$0")/.." || exit 1
-layers="compiler/base compiler/front compiler/graph compiler/geometry compiler/shader compiler
+layers="compiler/base compiler/graph compiler/shape compiler/lower compiler/family compiler/front
+        compiler/eval compiler/shader compiler
         runtime/device runtime/tracer runtime/film runtime/writer runtime cli"
 api="compiler/base/ compiler/compile.h compiler/krs.h compiler/shader/spirv.h
           runtime/krs_vulkan.h"

@@ -511,7 +511,7 @@ uint32_t tape_loops(const Tape *tape)
     for (size_t i = tape->frame_count; i < tape->count; i++) {
         const Expr *expr  = &items[tape->nodes[i]];
         uint32_t    range = expr->op == OP_julia ? 2 : expr->op == OP_mandelbulb ? 1 : 0;
-        if (range > 0) /* always a constant (shapes_fractal.c) */
+        if (range > 0) /* always a constant (fractal.c) */
             loops += fractal_loops((Op)expr->op, items[expr->operands[range]].number[1]);
     }
     return loops;

@@ -16,7 +16,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/geometry/elaborate.h"
+#include "compiler/eval/elaborate.h"
 #include "compiler/graph/evaluate.h"
 #include "tests/oracle/brute.h"
 

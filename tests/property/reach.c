@@ -1,7 +1,7 @@
 /*
  * reach.c: the bounds of kernel-reflection sequences hold, and are tight.
  *
- * Random sequences go through reach_tighten stage by stage, as bound_sequence in shapes.c calls it,
+ * Random sequences go through reach_tighten stage by stage, as bound_sequence in builder.c calls it,
  * from correct but loose bounds of this file's own.  All their instances are copied one by one:
  * no point that the mirrors leave may lie outside of box or ball, and no side of the box much
  * farther out than the kernels' boxes, copied without being clipped (the search does not clip
@@ -16,7 +16,7 @@
 #include <cmocka.h>
 
 #include "compiler/base/vec.h"
-#include "compiler/geometry/reach.h"
+#include "compiler/shape/reach.h"
 #include "compiler/krs.h"
 
 #include "tests/support/random.h"
