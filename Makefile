@@ -37,7 +37,7 @@ LOWER    := $(addprefix compiler/lower/, lower.c box_distance.c surface.c normal
                 ray_step.c ray_images.c)
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
 EVAL     := $(addprefix compiler/eval/, scope.c expression.c arithmetic.c arguments.c builtins.c lists.c \
-                random.c functions.c csg.c declare.c claims.c empty.c methods.c properties.c \
+                random.c functions.c csg.c fractal.c declare.c claims.c empty.c methods.c properties.c \
                 material.c view.c palette.c statements.c)
 SHADER   := $(addprefix compiler/shader/, emit.c statements.c frame_values.c mirrors.c early_outs.c march.c spirv.c)
 BORDER   := compiler/shader/glslang_border.cpp

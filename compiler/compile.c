@@ -45,18 +45,25 @@ static Graph *elaborate_scene(Compilation *c)
 {
     uint32_t source = source_add(&c->sources, c->name, c->text, c->length, false);
     dump_front(c, source);
-    Graph *graph  = graph_new(&c->work);
-    c->elaborated = (Scene){.graph = graph, .zenith = NODE_NONE, .zone = NODE_NONE};
-    Elaboration e = {.arena      = &c->work,
-                     .syntax     = &c->syntax,
-                     .scratch    = &c->scratch,
-                     .diags      = &c->diags,
-                     .names      = &c->names,
-                     .sources    = &c->sources,
-                     .graph      = graph,
-                     .scene      = &c->elaborated,
-                     .loader     = c->loader,
-                     .text_total = c->length};
+    Graph *graph         = graph_new(&c->work);
+    c->elaborated        = (Scene){.graph = graph, .zenith = NODE_NONE, .zone = NODE_NONE};
+    ShapeBuilder builder = {.arena      = &c->work,
+                            .scratch    = &c->scratch,
+                            .diags      = &c->diags,
+                            .graph      = graph,
+                            .parameters = &c->elaborated.parameters,
+                            .slopes     = &c->elaborated.slopes};
+    Elaboration  e       = {.builder    = &builder,
+                            .arena      = &c->work,
+                            .syntax     = &c->syntax,
+                            .scratch    = &c->scratch,
+                            .diags      = &c->diags,
+                            .names      = &c->names,
+                            .sources    = &c->sources,
+                            .graph      = graph,
+                            .scene      = &c->elaborated,
+                            .loader     = c->loader,
+                            .text_total = c->length};
     elaborate(&e, source, c->name);
     arena_free(&c->scratch);
     if (dumps(c, DUMP_SCENE) && c->diags.errors == 0)

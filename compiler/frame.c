@@ -8,6 +8,7 @@
 
 #include "compiler/base/vec.h"
 #include "compiler/program.h"
+#include "compiler/shape/slope.h"
 
 /* Zeroed memory of the scene's allocator; NULL: there is none. */
 static void *frame_alloc(const KrsScene *scene, size_t count, size_t size)

@@ -5,7 +5,7 @@
 #define KRS_INSPECT_H
 
 #include "compiler/compile.h"
-#include "compiler/shape/shape.h"
+#include "compiler/shape/scene.h"
 
 /* All of it lives until the look is over.  `diags` is empty; what is added is reported. */
 typedef struct Inspected {

@@ -7,6 +7,7 @@
 #include "compiler/bounds.h"
 #include "compiler/compile.h"
 #include "compiler/lower/lower.h"
+#include "compiler/shape/scene.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/shader/emit.h"
 

@@ -3,6 +3,7 @@
  * have.
  */
 #include "compiler/refuting.h"
+#include "compiler/shape/slope.h"
 
 #include <math.h>
 #include <string.h>

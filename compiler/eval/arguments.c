@@ -184,7 +184,7 @@ bool check_finite(Elaboration *e, Node node, const Syntax *syntax)
     g->parameters.items[0].high[0] = LONGEST_SECONDS;
     bool finite                    = true;
     for (uint32_t k = 0; k < g->items[node].type; k++) {
-        Range range = node_range(e, node, k);
+        Range range = node_range(e->builder, node, k);
         finite      = finite && isfinite(range.low) && isfinite(range.high);
     }
     memcpy(g->parameters.items, copy, count * sizeof *copy);
@@ -232,29 +232,12 @@ Node to_vector(Elaboration *e, Value value, const Syntax *syntax, const char *wh
 
 bool check_direction(Elaboration *e, Node vector, const Syntax *syntax, const char *what)
 {
-    for (uint32_t i = 0; i < 3; i++) {
-        Range range = node_range(e, vector, i);
-        if (range.low != 0 || range.high != 0)
-            return true;
-    }
-    Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "%s cannot be the zero vector",
-                           what);
-    diag->label = "no direction";
-    return false;
+    return require_direction(e->builder, vector, syntax->span, what);
 }
 
 bool check_positive(Elaboration *e, Node number, const Syntax *syntax, const char *what)
 {
-    Range range = node_range(e, number, 0);
-    if (range.low > 0)
-        return true;
-    Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "%s must be greater than 0",
-                           what);
-    diag->label = range.low == range.high ? diag_text(e->diags, "this is %g", range.low)
-                                          : diag_text(e->diags, "this can be %g", range.low);
-    if (range.low != range.high)
-        diag->help = "give the `param` a range that keeps it positive, or use `max(..., 0.001)`";
-    return false;
+    return require_positive(e->builder, number, syntax->span, what);
 }
 
 /* ---- what an argument must be ---- */
@@ -361,7 +344,7 @@ const Shape *want_shape(Elaboration *e, const Call *call, uint32_t index)
 bool want_plane(Elaboration *e, const Call *call, Node *normal, Node *offset)
 {
     const Shape *plane = want_shape(e, call, 0);
-    if (!plane || shape_plane(e, plane, normal, offset))
+    if (!plane || shape_plane(e->builder, plane, normal, offset))
         return plane != NULL;
     Diag *diag  = diag_add(e->diags, DIAG_NEEDS_PLANE, call->arguments[0].syntax->span,
                            "`%s` needs a plane, found a shape", call->name);
@@ -373,7 +356,7 @@ bool want_plane(Elaboration *e, const Call *call, Node *normal, Node *offset)
 const Map *want_translation(Elaboration *e, const Call *call)
 {
     Node by = want_vector(e, call, 0, ORIGIN);
-    return by == NODE_NONE ? NULL : map_translation(e, by);
+    return by == NODE_NONE ? NULL : map_translation(e->builder, by);
 }
 
 const Map *want_rotation(Elaboration *e, const Call *call)
@@ -382,7 +365,7 @@ const Map *want_rotation(Elaboration *e, const Call *call)
     if (axis == NODE_NONE || angle == NODE_NONE ||
         !check_direction(e, axis, call->arguments[0].syntax, "the axis of a rotation"))
         return NULL;
-    return map_rotation(e, axis, angle);
+    return map_rotation(e->builder, axis, angle);
 }
 
 const Map *want_scaling(Elaboration *e, const Call *call)
@@ -390,7 +373,7 @@ const Map *want_scaling(Elaboration *e, const Call *call)
     Node by = want_number(e, call, 0, 1);
     if (by == NODE_NONE || !check_positive(e, by, call->arguments[0].syntax, "a scale"))
         return NULL;
-    return map_scaling(e, by);
+    return map_scaling(e->builder, by);
 }
 
 /* ---- sorting arguments ---- */

@@ -288,7 +288,7 @@ static Value join_shapes(Elaboration *e, const Syntax *syntax, const Shape *a, c
         return value_error();
     }
     const Shape *shapes[] = {a, b};
-    return value_shape(make_joint(e, kind, shapes, 2, blend_sharp, syntax->span));
+    return value_shape(make_joint(e->builder, kind, shapes, 2, blend_sharp, syntax->span));
 }
 
 static Value compare(Elaboration *e, const Syntax *syntax, Value a, Value b)
@@ -320,7 +320,7 @@ static Value multiply_maps(Elaboration *e, const Syntax *syntax, const Map *a, c
     for (const Map *map = b; map; map = map->first)
         count++;
     if (count <= MOST_SHAPE_DEPTH)
-        return value_map(map_product(e, a, b));
+        return value_map(map_product(e->builder, a, b));
     diag_add(e->diags, DIAG_LIMIT, syntax->span,
              "a product of more than 1,000 inversions that cannot be one map");
     return value_error();

@@ -77,7 +77,7 @@ static Value builtin_reflect(Elaboration *e, Call *call)
     Node normal, offset;
     if (!want_plane(e, call, &normal, &offset))
         return value_error();
-    return value_map(map_reflection(e, normal, offset));
+    return value_map(map_reflection(e->builder, normal, offset));
 }
 
 static Value builtin_invert(Elaboration *e, Call *call)
@@ -89,7 +89,7 @@ static Value builtin_invert(Elaboration *e, Call *call)
     if (is_given(call, 1) &&
         !check_positive(e, radius, call->arguments[1].syntax, "the radius of an inversion"))
         return value_error();
-    return value_map(map_inversion(e, center, radius));
+    return value_map(map_inversion(e->builder, center, radius));
 }
 
 /* A real number, or a list of four; false: reported. */
@@ -123,7 +123,7 @@ static Value builtin_matrix(Elaboration *e, Call *call)
     for (uint32_t i = 0; i < 4; i++)
         if (!quaternion_argument(e, call, i, entries[i]))
             return value_error();
-    const Map *map = map_of_matrix(e, (const double(*)[4])entries, &reason);
+    const Map *map = map_of_matrix(e->builder, (const double(*)[4])entries, &reason);
     if (map)
         return value_map(map);
     Diag *diag  = diag_add(e->diags, DIAG_NOT_A_MAP, call->syntax->span,
@@ -151,7 +151,7 @@ static Value builtin_algebraic(Elaboration *e, Call *call)
     }
     Node left = expr->operands[0], right = expr->operands[1];
     Node formula = graph_op2(e->graph, OP_sub, left, right);
-    return value_shape(make_field(e, formula, true, call->syntax));
+    return value_shape(make_field(e->builder, formula, true, call->syntax->span));
 }
 
 static Value builtin_field(Elaboration *e, Call *call)
@@ -162,7 +162,7 @@ static Value builtin_field(Elaboration *e, Call *call)
         return value_error();
     }
     Node formula = value_node(e, argument->value);
-    return value_shape(make_field(e, formula, false, call->syntax));
+    return value_shape(make_field(e->builder, formula, false, call->syntax->span));
 }
 
 static Value builtin_not_supported(Elaboration *e, Call *call)
@@ -268,7 +268,7 @@ bool builtin_constant(Elaboration *e, const char *name, Span span, Value *value)
     else if (strcmp(name, "rounding") == 0)
         *value = rounding_name(e, span);
     else if (strcmp(name, "identity") == 0)
-        *value = value_map(map_identity(e));
+        *value = value_map(map_identity(e->builder));
     else
         return false;
     return true;

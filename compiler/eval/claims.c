@@ -29,7 +29,7 @@ static void add_claim(ShapeClaims *claims, const Shape *shape, const char *prope
                       const char *wrong, Node a, Node b)
 {
     const Shape *declared          = declared_in(shape);
-    Span         span              = find_property(declared->declaration, property)->span;
+    Span         span              = find_property(declared->declaration->syntax, property)->span;
     claims->items[claims->count++] = (ShapeClaim){property, wrong, a, b, declared, span};
 }
 
@@ -201,7 +201,7 @@ static bool is_outside(const Shape *shape, const double point[3], double roundin
 static bool check_slope_and_box(Elaboration *e, const Shape *shape, double slope)
 {
     Node     distance = shape->declared;
-    bool     bounded  = find_property(shape->declaration, "within") != NULL;
+    bool     bounded  = find_property(shape->declaration->syntax, "within") != NULL;
     Sampling s;
     if (!start_sampling(e, &s, &distance, 1, shape->box))
         return true;
@@ -220,11 +220,12 @@ static bool check_slope_and_box(Elaboration *e, const Shape *shape, double slope
         if (slope > 0 && !(fabs(at_a - at_b) <= slope * sqrt(moved) * (1 + 1e-6) + s.rounding)) {
             const char *found = diag_text(e->diags, "its slope is %.4g",
                                           fabs(at_a - at_b) / sqrt(moved));
-            refuse_claim(e, shape->declaration, shape->exact ? "exact" : "slope", found, a);
+            refuse_claim(e, shape->declaration->syntax, shape->exact ? "exact" : "slope", found, a);
             return false;
         }
         if (bounded && at_a < -s.rounding && is_outside(shape, a, s.rounding)) {
-            refuse_claim(e, shape->declaration, "within", "there is something outside of it", a);
+            refuse_claim(e, shape->declaration->syntax, "within",
+                         "there is something outside of it", a);
             return false;
         }
     }
@@ -279,7 +280,7 @@ static bool check_exact(Elaboration *e, const Shape *shape)
                                       "the surface is not %.4g away, as it says, but "
                                       "farther,",
                                       length);
-        refuse_claim(e, shape->declaration, "exact", found, point);
+        refuse_claim(e, shape->declaration->syntax, "exact", found, point);
         return false;
     }
     return true;
@@ -353,7 +354,7 @@ static bool check_pairs(Elaboration *e, const Shape *shape, const ShapeClaims *c
             sample_point(i + 1, s.around, point);
             if (!refutes_between(&s, claim, before, point))
                 continue;
-            refuse_claim(e, shape->declaration, claim->property, claim->wrong, point);
+            refuse_claim(e, shape->declaration->syntax, claim->property, claim->wrong, point);
             return false;
         }
     }
@@ -412,7 +413,7 @@ static bool check_bound(Elaboration *e, const Shape *shape, const Sampling *s,
             continue;
         const char *found = diag_text(e->diags, "it is %.4g, and the surface %.4g away,", bound,
                                       length);
-        refuse_claim(e, shape->declaration, "bound", found, point);
+        refuse_claim(e, shape->declaration->syntax, "bound", found, point);
         return false;
     }
     return true;
@@ -424,7 +425,7 @@ static bool check_uv(Elaboration *e, const Shape *shape, const Sampling *s, Surf
         sample_at(s, surfaces->points[i]);
         if (node_value_is_finite(e->graph, shape->uv, s->values))
             continue;
-        refuse_claim(e, shape->declaration, "uv", "it is not finite", surfaces->points[i]);
+        refuse_claim(e, shape->declaration->syntax, "uv", "it is not finite", surfaces->points[i]);
         return false;
     }
     return true;
@@ -450,7 +451,7 @@ static bool check_at_surface(Elaboration *e, const Shape *shape)
 
 bool is_of_library(const Elaboration *e, const Shape *shape)
 {
-    return e->sources->items[shape->declaration->span.source].library;
+    return e->sources->items[shape->declaration->syntax->span.source].library;
 }
 
 bool check_claims(Elaboration *e, const Shape *shape, double slope)

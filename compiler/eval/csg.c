@@ -17,6 +17,20 @@ static const Choices blend_names = {
     .count   = BLEND_COUNT,
 };
 
+static const char *const falloff_spellings[] = {
+#define FALLOFF(name, spelling, steepest, meaning) spelling,
+#include "compiler/shape/falloffs.def"
+#undef FALLOFF
+};
+static const Choices falloff_names = {
+    .noun    = "falloff",
+    .wanted  = "the name of a falloff, a string",
+    .unknown = "unknown falloff",
+    .more    = "",
+    .items   = falloff_spellings,
+    .count   = FALLOFF_COUNT,
+};
+
 /* The parameters `blend= kind= steps=`, of which `first` is the first.  False: reported. */
 static bool blend_arguments(Elaboration *e, const Call *call, uint32_t first, Blend *blend)
 {
@@ -32,7 +46,7 @@ static bool blend_arguments(Elaboration *e, const Call *call, uint32_t first, Bl
     Node width = want_number(e, call, first, 0);
     if (width == NODE_NONE)
         return false;
-    Range range = node_range(e, width, 0);
+    Range range = node_range(e->builder, width, 0);
     if (range.low < 0) {
         Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[first].syntax->span,
                                "the width of a blend cannot be negative");
@@ -44,8 +58,9 @@ static bool blend_arguments(Elaboration *e, const Call *call, uint32_t first, Bl
     return true;
 }
 
-bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *origin,
-                    Values *shapes)
+/* The shapes of a call: a shape, or the elements of a list.  False: reported, at `origin`. */
+static bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *origin,
+                           Values *shapes)
 {
     if (value.type == VALUE_LIST) {
         if (!check_shape_count(e, value.list, origin->span))
@@ -63,7 +78,8 @@ bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax 
     return true;
 }
 
-const Shape **joinable_shapes(Elaboration *e, const Call *call, const Values *values)
+/* These shapes, if they are all solids or all figures; NULL: reported. */
+static const Shape **joinable_shapes(Elaboration *e, const Call *call, const Values *values)
 {
     const Shape **shapes = arena_new_array(e->arena, const Shape *, values->count + 1);
     for (size_t i = 0; i < values->count; i++) {
@@ -93,7 +109,7 @@ static Value join(Elaboration *e, const Call *call, ShapeKind kind, const Values
     if (!shapes)
         return value_error();
     uint32_t count = (uint32_t)values->count;
-    return value_shape(make_joint(e, kind, shapes, count, blend, call->syntax->span));
+    return value_shape(make_joint(e->builder, kind, shapes, count, blend, call->syntax->span));
 }
 
 static Value join_rest(Elaboration *e, Call *call, ShapeKind kind)
@@ -136,12 +152,42 @@ Value builtin_morph(Elaboration *e, Call *call)
     Node         t = want_number(e, call, 2, 0);
     if (!a || !b || t == NODE_NONE)
         return value_error();
-    Range range = node_range(e, t, 0);
+    Range range = node_range(e->builder, t, 0);
     if (range.low < 0 || range.high > 1) {
         Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[2].syntax->span,
                                "`t` of `morph` must stay in [0, 1]");
         diag->label = diag_text(e->diags, "this goes from %g to %g", range.low, range.high);
         return value_error();
     }
-    return value_shape(make_morph(e, a, b, t, call->syntax->span));
+    return value_shape(make_morph(e->builder, a, b, t, call->syntax->span));
+}
+
+/* A number above 0; NODE_NONE: reported. */
+static Node want_positive(Elaboration *e, const Call *call, uint32_t index, double otherwise,
+                          const char *what)
+{
+    Node node = want_number(e, call, index, otherwise);
+    if (node == NODE_NONE || !is_given(call, index) ||
+        check_positive(e, node, call->arguments[index].syntax, what))
+        return node;
+    return NODE_NONE;
+}
+
+Value builtin_meta(Elaboration *e, Call *call)
+{
+    Values          values = {0};
+    uint32_t        falloff;
+    const Argument *list = &call->arguments[0];
+    if (!collect_shapes(e, call, list->value, list->syntax, &values) ||
+        !want_name(e, &call->arguments[2], &falloff_names, &falloff))
+        return value_error();
+    Node level = want_positive(e, call, 1, 0.5, "the level of a metasurface");
+    Node reach = want_positive(e, call, 3, 0.5, "the reach of a falloff");
+    if (level == NODE_NONE || reach == NODE_NONE)
+        return value_error();
+    const Shape **shapes = joinable_shapes(e, call, &values);
+    if (!shapes)
+        return value_error();
+    return value_shape(make_meta(e->builder, shapes, (uint32_t)values.count, level, reach,
+                                 (FalloffKind)falloff, call->syntax->span));
 }

@@ -10,8 +10,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "compiler/lower/lower.h"
-
 static const char *const property_names[] = {"distance", "bound", "exact",  "slope", "within",
                                              "uv",       "plane", "figure", "core",  "example"};
 enum { PROPERTY_COUNT = sizeof property_names / sizeof *property_names };
@@ -94,7 +92,8 @@ static bool within_property(Elaboration *e, const Environment *env, const Syntax
         Node low  = to_vector(e, value.list->items[0], syntax, "`within`");
         Node high = to_vector(e, value.list->items[1], syntax, "`within`");
         for (uint32_t i = 0; low != NODE_NONE && high != NODE_NONE && i < 3; i++)
-            box->axis[i] = (Range){node_range(e, low, i).low, node_range(e, high, i).high};
+            box->axis[i] = (Range){node_range(e->builder, low, i).low,
+                                   node_range(e->builder, high, i).high};
         return low != NODE_NONE && high != NODE_NONE;
     }
     type_error(e, syntax, value, "a shape or a list of two corners");
@@ -151,15 +150,15 @@ static bool derive_slope(Elaboration *e, Shape *shape, const Syntax *declaration
 {
     Box       regions[2] = {box_infinite, shape->box};
     Steepness slope;
-    if (!find_slope(e, shape->distance, regions, box_is_finite(shape->box) ? 2 : 1, syntax->span,
-                    &slope)) {
+    if (!find_slope(e->builder, shape->distance, regions, box_is_finite(shape->box) ? 2 : 1,
+                    syntax->span, &slope)) {
         report_steep(e, declaration, syntax, slope.blame);
         return false;
     }
     shape->derived   = slope.bound;
     shape->region    = slope.region;
     shape->per_frame = slope.slot != NODE_NONE;
-    shape->distance  = extend_from_region(e, shape->distance, &slope);
+    shape->distance  = extend_from_region(e->builder, shape->distance, &slope);
     return true;
 }
 
@@ -242,11 +241,11 @@ const Shape *declared_core(Elaboration *e, const Shape *shape, Node rounding)
 {
     Node outer  = e->rounding;
     e->rounding = rounding;
-    Value core  = evaluate(e, shape->core_names, shape->core);
+    Value core  = evaluate(e, &shape->declaration->names, shape->declaration->core);
     e->rounding = outer;
     if (core.type == VALUE_SHAPE && core.shape->figure == shape->figure)
         return core.shape;
-    type_error(e, shape->core, core, shape->figure ? "a plane figure" : "a solid");
+    type_error(e, shape->declaration->core, core, shape->figure ? "a plane figure" : "a solid");
     return NULL;
 }
 
@@ -263,20 +262,16 @@ Value declare_instance(Elaboration *e, const Function *function, const Environme
     if (first && !check_properties(e, declaration))
         return value_error();
 
-    Shape *shape       = shape_new(e, SHAPE_PRIMITIVE, function->name, span, NULL, 0);
-    Span   caller      = e->graph->here;
-    shape->declaration = declaration;
+    Shape *shape  = shape_new(e->builder, SHAPE_PRIMITIVE, function->name, span, NULL, 0);
+    Span   caller = e->graph->here;
+    struct Declaration *known = arena_new(e->arena, struct Declaration);
+    *known = (struct Declaration){declaration, find_property(declaration, "core"), *env};
+    shape->declaration = known;
     if (!read_properties(e, env, declaration, shape) ||
         !settle_slope(e, env, declaration, first, shape))
         return value_error();
     arena_free(e->scratch);
-    shape->core = find_property(declaration, "core");
-    if (shape->core) {
-        Environment *copy = arena_new(e->arena, Environment);
-        *copy             = *env;
-        shape->core_names = copy;
-    }
-    if (first && shape->core && !try_core(e, shape))
+    if (first && known->core && !try_core(e, shape))
         return value_error();
     if (shape->plane_normal != NODE_NONE && !is_of_library(e, shape))
         array_push(e->arena, &e->scene->half_spaces, shape);

@@ -12,8 +12,10 @@
 #define KRS_ELABORATE_H
 
 #include "compiler/base/loader.h"
-#include "compiler/shape/cover.h"
-#include "compiler/shape/shape.h"
+#include "compiler/eval/value.h"
+#include "compiler/family/family.h"
+#include "compiler/shape/scene.h"
+#include "compiler/shape/slope.h"
 
 typedef struct Binding {
     const char           *name;
@@ -55,15 +57,16 @@ typedef struct Scope {
 } Scope;
 
 typedef struct Elaboration {
-    Arena   *arena;  /* values, shapes and the scene */
-    Arena   *syntax; /* trees of used files */
-    Arena   *scratch;
-    Diags   *diags;
-    Names   *names;
-    Sources *sources;
-    Graph   *graph;
-    Scene   *scene;
-    Scope   *library;
+    ShapeBuilder *builder; /* with the arenas, diagnostics and graph that stand here as well */
+    Arena        *arena;   /* values, shapes and the scene */
+    Arena        *syntax;  /* trees of used files */
+    Arena        *scratch;
+    Diags        *diags;
+    Names        *names;
+    Sources      *sources;
+    Graph        *graph;
+    Scene        *scene;
+    Scope        *library;
     struct {
         Scope **items;
         size_t  count, capacity;
@@ -81,10 +84,19 @@ typedef struct Elaboration {
     uint64_t      steps;        /* of evaluation, so far */
     uint32_t      depth, calls; /* how deep expressions and calls are nested now */
     size_t        text_total;   /* bytes of all files read */
-    bool          stopped;     /* a limit was reached: everything is an error from here, silently */
-    Node          rounding;    /* what the name `rounding` means in `core:`, or NODE_NONE */
-    bool          in_material; /* level, instance, u, v and normal have a meaning */
+    Node          rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
+    bool          in_material;  /* level, instance, u, v and normal have a meaning */
 } Elaboration;
+
+/* What a shape knows of the declaration that made it. */
+struct Declaration {
+    const Syntax *syntax;
+    const Syntax *core;  /* what .round(r) grows by r, using `rounding`; or NULL */
+    Environment   names; /* what that expression sees */
+};
+
+/* Whether a limit was reached: everything is an error from here, silently. */
+static inline bool is_stopped(const Elaboration *e) { return e->builder->stopped; }
 
 /* Evaluates a file, whose source is already in e->sources, into e->scene; e->scene is complete
    unless e->diags has errors. */
@@ -252,12 +264,11 @@ BuiltinFunction builtin_sum, builtin_product, builtin_any, builtin_all, builtin_
 BuiltinFunction builtin_random, builtin_random_direction, builtin_noise, builtin_fbm;
 
 /* ---- csg.c ---- */
-BuiltinFunction builtin_union, builtin_intersection, builtin_difference, builtin_xor, builtin_morph;
-/* The shapes of a call: a shape, or the elements of a list.  False: reported, at `origin`. */
-bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *origin,
-                    Values *shapes);
-/* These shapes, if they are all solids or all figures; NULL: reported. */
-const Shape **joinable_shapes(Elaboration *e, const Call *call, const Values *values);
+BuiltinFunction builtin_union, builtin_intersection, builtin_difference, builtin_xor, builtin_morph,
+    builtin_meta;
+
+/* ---- fractal.c ---- */
+BuiltinFunction builtin_julia, builtin_mandelbulb;
 
 /* ---- functions.c ---- */
 /* Calls a function, or makes the shape of a declaration; `syntax` is the call. */
@@ -287,125 +298,11 @@ bool check_core(Elaboration *e, const Shape *shape, const Shape *core, Node roun
 /* Warns of a component, shown at `span`, that is known to be empty. */
 void warn_if_nothing_is_left(Elaboration *e, const Shape *shape, const char *name, Span span);
 
-/* ---- slope.c: how fast expressions change ---- */
-typedef struct Steepness {
-    double bound;  /* of all frames; with a slot, of the first: time 0, defaults */
-    Node   slot;   /* the slope in the frame; NODE_NONE: the bound is a constant */
-    Box    region; /* over which; infinite: all space */
-    Span   blame;  /* of what changes fastest */
-} Steepness;
-/* Over the first of these regions where the slope of an expression has a bound; false: it has none.
-   `span` is its place. */
-bool find_slope(Elaboration *e, Node formula, const Box *regions, int count, Span span,
-                Steepness *found);
-Node steepness_node(Graph *graph, const Steepness *slope);
-/* What grows so fast, made safe. */
-Node divide_by_steepness(Graph *graph, Node distance, const Steepness *slope);
-
-/* ---- field.c: solids given by an expression that is negative inside ---- */
-/* NULL: reported at `origin`, the call.  `algebraic`: it must be a polynomial. */
-const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Syntax *origin);
-/* A bound on the distance to where an expression is 0 in the region over which it has this slope:
-   that of the nearest point in it, brought out.  1-Lipschitz everywhere. */
-Node extend_from_region(Elaboration *e, Node formula, const Steepness *slope);
-/* The same shape where only what is in the box matters: fields in it get their bound there.
-   `uniform`: one that is about the distance near their surfaces, if possible. */
-const Shape *restrict_shape(Elaboration *e, const Shape *shape, Box box, bool uniform);
-/* Reports a field in the tree that has no bound. */
-bool check_bounded(Elaboration *e, const Shape *shape);
-
-/* ---- metasurface.c ---- */
-BuiltinFunction builtin_meta;
-
-/* ---- fractal.c ---- */
-BuiltinFunction builtin_julia, builtin_mandelbulb;
-/* Reports a distance of which nothing is proven, below something (`what`) that moves a surface. */
-void check_lipschitz(Elaboration *e, const Shape *shape, const char *what, Span span);
-
 /* ---- methods.c ---- */
 Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax);
 
 /* ---- palette.c ---- */
 Value method_color_by(Elaboration *e, const Shape *shape, Call *call);
-
-/* ---- deform.c: the methods that deform, and the boxes of what they make ---- */
-Value method_twist(Elaboration *e, const Shape *shape, Call *call);
-Value method_bend(Elaboration *e, const Shape *shape, Call *call);
-Value method_taper(Elaboration *e, const Shape *shape, Call *call);
-Value method_displace(Elaboration *e, const Shape *shape, Call *call);
-
-/* ---- builder.c: shapes from shapes, each with its rule for box and slope ---- */
-/* A shape with these children, and what most kinds take over from them. */
-Shape       *shape_new(Elaboration *e, ShapeKind kind, const char *name, Span span,
-                       const Shape *const *children, uint32_t count);
-const Shape *make_empty(Elaboration *e, Span span);
-/* NULL: an inversion of something endless, which is reported. */
-const Shape *make_transform(Elaboration *e, const Shape *shape, const Map *map, Span span);
-const Shape *make_stretch(Elaboration *e, const Shape *shape, Node factors, Span span);
-const Shape *make_joint(Elaboration *e, ShapeKind kind, const Shape *const *shapes, uint32_t count,
-                        Blend blend, Span span);
-const Shape *make_morph(Elaboration *e, const Shape *a, const Shape *b, Node t, Span span);
-const Shape *make_offset(Elaboration *e, const Shape *shape, Node radius, Span span);
-/* `shape` with round edges: its core, grown. */
-const Shape *make_rounded(Elaboration *e, const Shape *shape, const Shape *core, Node radius,
-                          Span span);
-const Shape *make_shell(Elaboration *e, const Shape *shape, Node thickness, Span span);
-/* The surface alone; thick only where something needs a distance to it. */
-const Shape *make_sheet(Elaboration *e, const Shape *shape, Node thickness, Span span);
-const Shape *make_elongate(Elaboration *e, const Shape *shape, Node half, Span span);
-const Shape *make_extrude(Elaboration *e, const Shape *figure, Node height, Span span);
-const Shape *make_revolve(Elaboration *e, const Shape *figure, Node offset, Span span);
-/* NULL: the shape does not fit its cell, which is reported at `origin`. */
-const Shape *make_repeat(Elaboration *e, const Shape *shape, Node period, const uint32_t cells[3],
-                         const Syntax *origin);
-const Shape *make_repeat_polar(Elaboration *e, const Shape *shape, uint32_t count,
-                               const Syntax *origin);
-const Shape *make_mirror(Elaboration *e, const Shape *shape, Node normal, Node offset, Span span);
-/* The width may be NODE_NONE: a pixel's. */
-const Shape *make_smooth(Elaboration *e, const Shape *shape, Node width, Span span);
-/* NULL: the material needs what the shape has not, which is reported. */
-const Shape *make_paint(Elaboration *e, const Shape *shape, const Material *material, Span span);
-/* Reports a shape that is endless, at the place of an inversion. */
-bool check_invertible(Elaboration *e, const Shape *shape, Span span);
-/* NULL: something endless is inverted, which is reported. */
-const Shape *make_krs(Elaboration *e, const SequenceStage *stages, uint32_t stage_count,
-                      const Shape *const *kernels, uint32_t kernel_count, Span span);
-/* Unit normal and offset of a shape that is a plane, also a moved, turned or scaled one. */
-bool shape_plane(Elaboration *e, const Shape *shape, Node *normal, Node *offset);
-/* Ranges of frame-time nodes over all values of the parameters. */
-Range node_range(Elaboration *e, Node node, uint32_t component);
-
-/* ---- map.c: maps of frame time ---- */
-Map       *map_new(Elaboration *e); /* the identity, to be changed */
-const Map *map_identity(Elaboration *e);
-const Map *map_translation(Elaboration *e, Node shift);
-/* By a number above 0. */
-const Map *map_scaling(Elaboration *e, Node scale);
-/* By an angle in radians about an axis of any length but 0; from a direction to another. */
-const Map *map_rotation(Elaboration *e, Node axis, Node angle);
-const Map *map_alignment(Elaboration *e, Node from, Node to);
-/* In the plane of a unit normal and an offset. */
-const Map *map_reflection(Elaboration *e, Node normal, Node offset);
-/* f(g(x)). */
-const Map *map_product(Elaboration *e, const Map *f, const Map *g);
-const Map *map_inverse(Elaboration *e, const Map *f);
-Node       map_turn(Elaboration *e, const Map *f, Node vector); /* rows times vector */
-Node       map_apply(Elaboration *e, const Map *f, Node point); /* without `first` */
-void       turn_product(Elaboration *e, const Node a[3], const Node b[3], Node product[3]);
-/* For all values of the parameters, without `first`; the box around the image of a box under a
-   similarity. */
-MapRange map_range(Elaboration *e, const Map *f);
-Box      map_box(Elaboration *e, const Map *f, Box box);
-
-/* ---- moebius.c: maps of frame time that invert ---- */
-/* In the sphere about `center`; the radius is not 0. */
-const Map *map_inversion(Elaboration *e, Node center, Node radius);
-/* (a q + b) (c q + d)^-1 for the quaternions a, b, c, d; NULL when that does not map space to
-   space, with *reason set. */
-const Map *map_of_matrix(Elaboration *e, const double entries[4][4], const char **reason);
-/* f(g(x)) of two maps, not both similarities, without their `first`; NULL: they stay two. */
-const Map *moebius_product(Elaboration *e, const Map *f, const Map *g);
-const Map *inversion_inverse(Elaboration *e, const Map *f);
 
 /* ---- properties.c: blocks with properties, and values of those ---- */
 /* Reports properties that a block of this kind may not have, and those that are given twice. */

@@ -14,20 +14,20 @@ enum {
 
 static Value limit_reached(Elaboration *e, Span span, const char *message)
 {
-    if (!e->stopped)
+    if (!is_stopped(e))
         diag_add(e->diags, DIAG_LIMIT, span, "%s", message);
-    e->stopped = true;
+    e->builder->stopped = true;
     return value_error();
 }
 
 /* Counts a step of evaluation; false when a limit is reached (reported once). */
 static bool step(Elaboration *e, Span span)
 {
-    if (!e->stopped && ++e->steps > MOST_STEPS)
+    if (!is_stopped(e) && ++e->steps > MOST_STEPS)
         limit_reached(e, span, "the scene takes more than 10 million steps to elaborate");
-    if (!e->stopped && e->graph->count > MOST_NODES)
+    if (!is_stopped(e) && e->graph->count > MOST_NODES)
         limit_reached(e, span, "the expressions of the scene have more than 500,000 operations");
-    return !e->stopped;
+    return !is_stopped(e);
 }
 
 bool check_shape_count(Elaboration *e, const List *list, Span span)
@@ -35,7 +35,7 @@ bool check_shape_count(Elaboration *e, const List *list, Span span)
     if (list->total > MOST_TREE_SHAPES)
         limit_reached(e, span,
                       "a list of more than 100,000 shapes, counted as often as they occur");
-    return !e->stopped;
+    return !is_stopped(e);
 }
 
 Environment bind(Elaboration *e, const Environment *env, const char *name, Value value)

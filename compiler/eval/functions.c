@@ -139,7 +139,7 @@ static bool fits_range(Elaboration *e, const Environment *env, const Function *f
         return false;
     }
     found = value.type == VALUE_NUMBER ? (Range){value.number, value.number}
-                                       : node_range(e, value_node(e, value), 0);
+                                       : node_range(e->builder, value_node(e, value), 0);
     if (range.low <= found.low && found.high <= range.high)
         return true;
     Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, origin->span, "`%s` of `%s` must be %s",
@@ -269,10 +269,10 @@ static Value call_values(Elaboration *e, const Function *function, const Value *
                          const Syntax *const *origins, const Syntax *syntax)
 {
     if (e->calls >= MOST_CALLS) {
-        if (!e->stopped)
+        if (!is_stopped(e))
             diag_add(e->diags, DIAG_LIMIT, syntax->span,
                      "`%s` is called within itself more than 1,000 deep", function->name);
-        e->stopped = true;
+        e->builder->stopped = true;
         return value_error();
     }
     Environment env;

@@ -13,7 +13,8 @@ static const double ORIGIN[3] = {0, 0, 0};
 /* The shape after a map; NULL, whose reason has been reported, is VALUE_ERROR. */
 static Value moved(Elaboration *e, const Shape *shape, const Map *map, const Call *call)
 {
-    return map ? value_shape(make_transform(e, shape, map, call->syntax->span)) : value_error();
+    return map ? value_shape(make_transform(e->builder, shape, map, call->syntax->span))
+               : value_error();
 }
 
 static Value method_move(Elaboration *e, const Shape *shape, Call *call)
@@ -37,7 +38,7 @@ static Value method_scale(Elaboration *e, const Shape *shape, Call *call)
     for (uint32_t i = 0; i < 3; i++)
         if (!check_positive(e, graph_component(e->graph, factors, i), by->syntax, "a scale"))
             return value_error();
-    return value_shape(make_stretch(e, shape, factors, call->syntax->span));
+    return value_shape(make_stretch(e->builder, shape, factors, call->syntax->span));
 }
 
 static Value method_align(Elaboration *e, const Shape *shape, Call *call)
@@ -47,7 +48,7 @@ static Value method_align(Elaboration *e, const Shape *shape, Call *call)
         !check_direction(e, from, call->arguments[0].syntax, "a direction") ||
         !check_direction(e, to, call->arguments[1].syntax, "a direction"))
         return value_error();
-    return moved(e, shape, map_alignment(e, from, to), call);
+    return moved(e, shape, map_alignment(e->builder, from, to), call);
 }
 
 static Value method_mirror(Elaboration *e, const Shape *shape, Call *call)
@@ -55,7 +56,7 @@ static Value method_mirror(Elaboration *e, const Shape *shape, Call *call)
     Node normal, offset;
     if (!want_plane(e, call, &normal, &offset))
         return value_error();
-    return value_shape(make_mirror(e, shape, normal, offset, call->syntax->span));
+    return value_shape(make_mirror(e->builder, shape, normal, offset, call->syntax->span));
 }
 
 static Value method_transform(Elaboration *e, const Shape *shape, Call *call)
@@ -72,7 +73,7 @@ static Value method_transform(Elaboration *e, const Shape *shape, Call *call)
 static bool check_not_negative(Elaboration *e, Node node, const Syntax *syntax, const char *what)
 {
     for (uint32_t i = 0; i < e->graph->items[node].type; i++) {
-        Range range = node_range(e, node, i);
+        Range range = node_range(e->builder, node, i);
         if (range.low >= 0)
             continue;
         bool  known = range.low == range.high;
@@ -125,7 +126,7 @@ static Value method_repeat(Elaboration *e, const Shape *shape, Call *call)
     if (node == NODE_NONE || !cell_counts(e, call, cells) ||
         !check_not_negative(e, node, period->syntax, "a period"))
         return value_error();
-    return value_shape(make_repeat(e, shape, node, cells, call->syntax));
+    return value_shape(make_repeat(e->builder, shape, node, cells, call->syntax->span));
 }
 
 static Value method_repeat_polar(Elaboration *e, const Shape *shape, Call *call)
@@ -139,21 +140,22 @@ static Value method_repeat_polar(Elaboration *e, const Shape *shape, Call *call)
         return value_shape(shape);
     Node up = graph_constant(e->graph, TYPE_VEC3, UP);
     if (axis == up)
-        return value_shape(make_repeat_polar(e, shape, count, call->syntax));
+        return value_shape(make_repeat_polar(e->builder, shape, count, call->syntax->span));
     /* About another axis: turn it up, repeat, turn it back. */
     if (!check_direction(e, axis, call->arguments[1].syntax, "an axis"))
         return value_error();
-    const Map   *raise  = map_alignment(e, axis, up);
-    const Shape *raised = make_transform(e, shape, raise, call->syntax->span);
-    const Shape *copies = make_repeat_polar(e, raised, count, call->syntax);
-    return value_shape(make_transform(e, copies, map_inverse(e, raise), call->syntax->span));
+    const Map   *raise  = map_alignment(e->builder, axis, up);
+    const Shape *raised = make_transform(e->builder, shape, raise, call->syntax->span);
+    const Shape *copies = make_repeat_polar(e->builder, raised, count, call->syntax->span);
+    return value_shape(
+        make_transform(e->builder, copies, map_inverse(e->builder, raise), call->syntax->span));
 }
 
 static Value method_offset(Elaboration *e, const Shape *shape, Call *call)
 {
     Node r = want_number(e, call, 0, 0);
     return r == NODE_NONE ? value_error()
-                          : value_shape(make_offset(e, shape, r, call->syntax->span));
+                          : value_shape(make_offset(e->builder, shape, r, call->syntax->span));
 }
 
 /* The shape that, grown by r, is `shape` with round edges; NULL when it does not know one.  *good
@@ -161,16 +163,17 @@ static Value method_offset(Elaboration *e, const Shape *shape, Call *call)
 static const Shape *core_of(Elaboration *e, const Shape *shape, Node r, const Call *call,
                             bool *good)
 {
-    if (shape->kind == SHAPE_PRIMITIVE && shape->core) {
+    if (shape->declaration && shape->declaration->core) {
         const Shape *core = declared_core(e, shape, r);
-        *good             = core && (!needs_check(e, shape->core) || check_core(e, shape, core, r));
+        *good             = core &&
+                (!needs_check(e, shape->declaration->core) || check_core(e, shape, core, r));
         return core;
     }
     if (shape->kind != SHAPE_TRANSFORM)
         return NULL;
     Node         smaller = graph_op2(e->graph, OP_div, r, shape->map.scale);
     const Shape *core    = core_of(e, shape->children[0], smaller, call, good);
-    return core ? make_transform(e, core, &shape->map, call->syntax->span) : NULL;
+    return core ? make_transform(e->builder, core, &shape->map, call->syntax->span) : NULL;
 }
 
 static Value method_round(Elaboration *e, const Shape *shape, Call *call)
@@ -184,8 +187,8 @@ static Value method_round(Elaboration *e, const Shape *shape, Call *call)
     if (!good)
         return value_error();
     Span span = call->syntax->span;
-    return value_shape(core ? make_rounded(e, shape, core, r, span)
-                            : make_offset(e, shape, r, span));
+    return value_shape(core ? make_rounded(e->builder, shape, core, r, span)
+                            : make_offset(e->builder, shape, r, span));
 }
 
 static Value method_shell(Elaboration *e, const Shape *shape, Call *call)
@@ -194,7 +197,7 @@ static Value method_shell(Elaboration *e, const Shape *shape, Call *call)
     if (t == NODE_NONE ||
         !check_positive(e, t, call->arguments[0].syntax, "the thickness of a shell"))
         return value_error();
-    return value_shape(make_shell(e, shape, t, call->syntax->span));
+    return value_shape(make_shell(e->builder, shape, t, call->syntax->span));
 }
 
 static Value method_elongate(Elaboration *e, const Shape *shape, Call *call)
@@ -206,7 +209,7 @@ static Value method_elongate(Elaboration *e, const Shape *shape, Call *call)
     half      = graph_op2(e->graph, OP_scale, v, half);
     if (!check_not_negative(e, half, call->arguments[0].syntax, "`elongate`"))
         return value_error();
-    return value_shape(make_elongate(e, shape, half, call->syntax->span));
+    return value_shape(make_elongate(e->builder, shape, half, call->syntax->span));
 }
 
 static bool check_figure(Elaboration *e, const Shape *shape, const Call *call)
@@ -229,7 +232,7 @@ static Value method_extrude(Elaboration *e, const Shape *shape, Call *call)
     if (is_given(call, 0) &&
         !check_positive(e, height, call->arguments[0].syntax, "the height of an extrusion"))
         return value_error();
-    return value_shape(make_extrude(e, shape, height, call->syntax->span));
+    return value_shape(make_extrude(e->builder, shape, height, call->syntax->span));
 }
 
 static Value method_revolve(Elaboration *e, const Shape *shape, Call *call)
@@ -237,13 +240,13 @@ static Value method_revolve(Elaboration *e, const Shape *shape, Call *call)
     Node offset = want_number(e, call, 0, 0);
     if (offset == NODE_NONE || !check_figure(e, shape, call))
         return value_error();
-    return value_shape(make_revolve(e, shape, offset, call->syntax->span));
+    return value_shape(make_revolve(e->builder, shape, offset, call->syntax->span));
 }
 
 static Value method_paint(Elaboration *e, const Shape *shape, Call *call)
 {
     const Material *material = to_material(e, call->arguments[0].value, call->arguments[0].syntax);
-    return material ? value_shape(make_paint(e, shape, material, call->syntax->span))
+    return material ? value_shape(make_paint(e->builder, shape, material, call->syntax->span))
                     : value_error();
 }
 
@@ -253,7 +256,7 @@ static Value method_smooth_mirrors(Elaboration *e, const Shape *shape, Call *cal
     if (is_given(call, 0) &&
         (width == NODE_NONE || !check_not_negative(e, width, call->arguments[0].syntax, "a width")))
         return value_error();
-    return value_shape(make_smooth(e, shape, width, call->syntax->span));
+    return value_shape(make_smooth(e->builder, shape, width, call->syntax->span));
 }
 
 /* Of a sheet where a distance to it is needed, unless it is given: it looks like a surface. */
@@ -274,7 +277,7 @@ static const Shape *sheet_of(Elaboration *e, const Shape *shape, const Shape *re
         diag->label = "endless";
         return NULL;
     }
-    return make_sheet(e, shape, thickness, call->syntax->span);
+    return make_sheet(e->builder, shape, thickness, call->syntax->span);
 }
 
 static Value method_within(Elaboration *e, const Shape *shape, Call *call)
@@ -293,12 +296,66 @@ static Value method_within(Elaboration *e, const Shape *shape, Call *call)
         return value_error();
     /* A field's solid ends at the sides of its box, where no sheet shall be. */
     if (open && box_is_finite(box) && !box_is_empty(box))
-        box = box_grow(box, 2 * fmax(node_range(e, thickness, 0).high, 1e-3 * box_diagonal(box)));
-    shape = restrict_shape(e, shape, box, open);
+        box = box_grow(
+            box, 2 * fmax(node_range(e->builder, thickness, 0).high, 1e-3 * box_diagonal(box)));
+    shape = restrict_shape(e->builder, shape, box, open);
     if (open && !(shape = sheet_of(e, shape, region, thickness, call)))
         return value_error();
     const Shape *both[] = {shape, region};
-    return value_shape(make_joint(e, SHAPE_INTERSECTION, both, 2, blend_sharp, call->syntax->span));
+    return value_shape(
+        make_joint(e->builder, SHAPE_INTERSECTION, both, 2, blend_sharp, call->syntax->span));
+}
+
+/* An axis, and numbers after it. */
+static Value deformed(Elaboration *e, const Shape *shape, Call *call, uint32_t numbers,
+                      MakeDeformed *make)
+{
+    DeformArguments asked = {.name       = call->name,
+                             .span       = call->syntax->span,
+                             .shape_span = call->syntax->children[0]->span};
+    asked.axis            = want_vector(e, call, 0, ORIGIN);
+    bool good = asked.axis != NODE_NONE && check_direction(e, asked.axis, call->arguments[0].syntax,
+                                                           "the axis of a deformation");
+    for (uint32_t i = 0; i < numbers; i++) {
+        asked.numbers[i] = want_number(e, call, 1 + i, 0);
+        good             = good && asked.numbers[i] != NODE_NONE;
+        if (good)
+            asked.number_spans[i] = call->arguments[1 + i].syntax->span;
+    }
+    return good ? value_shape(make(e->builder, shape, &asked)) : value_error();
+}
+
+static Value method_twist(Elaboration *e, const Shape *shape, Call *call)
+{
+    return deformed(e, shape, call, 1, make_twist);
+}
+
+static Value method_bend(Elaboration *e, const Shape *shape, Call *call)
+{
+    return deformed(e, shape, call, 1, make_bend);
+}
+
+static Value method_taper(Elaboration *e, const Shape *shape, Call *call)
+{
+    return deformed(e, shape, call, 2, make_taper);
+}
+
+static Value method_displace(Elaboration *e, const Shape *shape, Call *call)
+{
+    const Argument *formula   = &call->arguments[0];
+    Node            amplitude = want_number(e, call, 1, 1);
+    if (value_size(e, formula->value) != 1) {
+        type_error(e, formula->syntax, formula->value, "a number");
+        return value_error();
+    }
+    if (amplitude == NODE_NONE)
+        return value_error();
+    DeformArguments asked = {.name       = call->name,
+                             .numbers    = {amplitude},
+                             .span       = call->syntax->span,
+                             .shape_span = call->syntax->children[0]->span};
+    return value_shape(make_displace(e->builder, shape, value_node(e, formula->value),
+                                     formula->syntax->span, &asked));
 }
 
 static Value method_not_supported(Elaboration *e, const Shape *shape, Call *call)
@@ -346,7 +403,7 @@ Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax)
     if (receiver.type == VALUE_ERROR)
         return receiver;
     if (receiver.type == VALUE_MAP && strcmp(syntax->name, "inverse") == 0 && syntax->count == 1)
-        return value_map(map_inverse(e, receiver.map));
+        return value_map(map_inverse(e->builder, receiver.map));
     for (size_t i = 0; receiver.type == VALUE_SHAPE && i < METHOD_COUNT; i++) {
         Call call;
         if (strcmp(methods[i].name, syntax->name) != 0)

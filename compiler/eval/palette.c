@@ -88,5 +88,5 @@ Value method_color_by(Elaboration *e, const Shape *shape, Call *call)
     Node      number   = value_node(e, field->value);
     *material          = (Material){"palette", color_at(e->graph, number, colors, count), NODE_NONE,
                                     NODE_NONE, NODE_NONE};
-    return value_shape(make_paint(e, shape, material, call->syntax->span));
+    return value_shape(make_paint(e->builder, shape, material, call->syntax->span));
 }

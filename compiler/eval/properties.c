@@ -152,7 +152,7 @@ Node position_property(Elaboration *e, const Environment *env, const Syntax *blo
     Node          position = vector_property(e, env, block, name, otherwise);
     const Syntax *syntax   = find_property(block, name);
     for (uint32_t i = 0; syntax && i < 3; i++) {
-        Range  range = node_range(e, position, i);
+        Range  range = node_range(e->builder, position, i);
         double far   = fmax(isfinite(range.low) ? fabs(range.low) : 0,
                           isfinite(range.high) ? fabs(range.high) : 0);
         if (far <= MOST_EXTENT)

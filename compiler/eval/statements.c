@@ -194,11 +194,11 @@ static bool show_one(Elaboration *e, Value value, void *user)
         diag->help  = "make it solid with `.extrude(height)` or `.revolve()`";
         return false;
     }
-    if (!check_bounded(e, value.shape) || !check_extent(e, value.shape, syntax))
+    if (!check_bounded(e->builder, value.shape) || !check_extent(e, value.shape, syntax))
         return false;
     Component component = {
         .name = component_name(e, syntax), .shape = value.shape, .span = syntax->span};
-    if (!shape_plane(e, value.shape, &component.plane_normal, &component.plane_offset))
+    if (!shape_plane(e->builder, value.shape, &component.plane_normal, &component.plane_offset))
         component.plane_normal = component.plane_offset = NODE_NONE;
     array_push(e->arena, &e->scene->components, component);
     warn_if_nothing_is_left(e, value.shape, component.name, syntax->span);
@@ -234,7 +234,8 @@ static void add_mirror(Elaboration *e, const Environment *env, const Syntax *syn
     const Syntax *argument = syntax->children[0];
     Value         value    = evaluate(e, env, argument);
     SequenceStage stage    = {.kind = SEQUENCE_REFLECT, .span = syntax->span};
-    if (value.type == VALUE_SHAPE && shape_plane(e, value.shape, &stage.normal, &stage.offset)) {
+    if (value.type == VALUE_SHAPE &&
+        shape_plane(e->builder, value.shape, &stage.normal, &stage.offset)) {
         array_push(e->arena, &sequence->stages, stage);
         return;
     }
@@ -271,7 +272,7 @@ static void add_map(Elaboration *e, const Environment *env, const Syntax *syntax
         const Map    *map  = value.map;
         SequenceStage last = count ? sequence->stages.items[count - 1] : (SequenceStage){0};
         if (count && last.kind == SEQUENCE_MAP) {
-            map = map_product(e, map, &last.map);
+            map = map_product(e->builder, map, &last.map);
             sequence->stages.count--;
         }
         push_map(e, sequence, map, syntax->span);
@@ -297,7 +298,7 @@ static bool run_turn(Elaboration *e, Value element, void *user)
     const Loop *loop = user;
     Environment env  = bind(e, loop->env, loop->syntax->name, element);
     run_block(e, &env, loop->syntax->children[1], loop->sequence);
-    return !e->stopped && !(loop->sequence && loop->sequence->wrong);
+    return !is_stopped(e) && !(loop->sequence && loop->sequence->wrong);
 }
 
 static void run_if(Elaboration *e, const Environment *env, const Syntax *syntax,
@@ -337,7 +338,7 @@ static void run_block(Elaboration *e, const Environment *env, const Syntax *bloc
                       Sequence *sequence)
 {
     Environment inner = *env;
-    for (uint32_t i = 0; i < block->count && !e->stopped; i++)
+    for (uint32_t i = 0; i < block->count && !is_stopped(e); i++)
         run_statement(e, &inner, block->children[i], sequence);
 }
 
@@ -366,15 +367,15 @@ Value elaborate_krs(Elaboration *e, const Environment *env, const Syntax *syntax
 {
     Sequence sequence = {0};
     run_block(e, env, syntax, &sequence);
-    if (sequence.wrong || e->stopped)
+    if (sequence.wrong || is_stopped(e))
         return value_error();
     if (sequence.kernels.count == 0) {
         Diag *diag  = diag_add(e->diags, DIAG_NO_EFFECT, syntax->span,
                                "a sequence without a kernel is empty");
         diag->label = "no `kernel` in here";
-        return value_shape(make_empty(e, syntax->span));
+        return value_shape(make_empty(e->builder, syntax->span));
     }
-    const Shape *krs = make_krs(e, sequence.stages.items, (uint32_t)sequence.stages.count,
+    const Shape *krs = make_krs(e->builder, sequence.stages.items, (uint32_t)sequence.stages.count,
                                 sequence.kernels.items, (uint32_t)sequence.kernels.count,
                                 syntax->span);
     return value_shape(krs);
@@ -385,7 +386,7 @@ Value elaborate_krs(Elaboration *e, const Environment *env, const Syntax *syntax
 static void run_file(Elaboration *e, Scope *scope)
 {
     Environment env = scope->environment;
-    for (uint32_t i = 0; i < scope->file->count && !e->stopped; i++) {
+    for (uint32_t i = 0; i < scope->file->count && !is_stopped(e); i++) {
         const Syntax *syntax = scope->file->children[i];
         switch (syntax->kind) {
         case SYNTAX_LET:

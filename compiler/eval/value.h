@@ -9,7 +9,7 @@
 #define KRS_VALUE_H
 
 #include "compiler/front/syntax.h"
-#include "compiler/graph/graph.h"
+#include "compiler/shape/shape.h"
 
 typedef enum ValueType {
     VALUE_ERROR, /* something went wrong and has been reported: goes with everything, silently */
@@ -25,9 +25,6 @@ typedef enum ValueType {
 } ValueType;
 
 typedef struct Value    Value;
-typedef struct Shape    Shape;
-typedef struct Map      Map;
-typedef struct Material Material;
 typedef struct List     List;
 typedef struct Function Function;
 
@@ -68,13 +65,6 @@ typedef struct Values {
     Value *items;
     size_t count, capacity;
 } Values;
-
-/* The material of a surface: numbers are nodes, colours linear VEC3 nodes; NODE_NONE leaves
-   what it was painted with before. */
-struct Material {
-    const char *name;
-    Node        color, roughness, metallic, emission;
-};
 
 static inline Value value_error(void) { return (Value){.type = VALUE_ERROR}; }
 static inline Value value_number(double number)

@@ -23,7 +23,7 @@ static void add_camera(Elaboration *e, const Environment *env, const Syntax *syn
     while (word && projections[camera.projection] != word)
         camera.projection++;
     const Syntax *fov  = find_property(syntax, "fov");
-    Range         span = node_range(e, camera.fov, 0);
+    Range         span = node_range(e->builder, camera.fov, 0);
     if (fov && (span.low <= 0 || span.high >= 3.14159)) {
         Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, fov->span,
                               "`fov` must lie between 0 and 180 degrees");
@@ -123,7 +123,7 @@ static void add_zone(Elaboration *e, const Environment *env, const Syntax *synta
     const Syntax *size   = find_property(syntax, "radius");
     Node          center = vector_property(e, env, syntax, "center", ORIGIN);
     Node          radius = number_property(e, env, syntax, "radius", 1);
-    Range         range  = node_range(e, radius, 0);
+    Range         range  = node_range(e->builder, radius, 0);
     if (size && range.low < 0) {
         Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, size->span,
                                "the radius of a zone must not be negative");

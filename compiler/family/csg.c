@@ -1,9 +1,59 @@
 /*
  * csg.c: joints of shapes: union, intersection, difference, xor, and morph; sharp or blended.
  */
+#include "compiler/family/family.h"
 #include "compiler/lower/lowering.h"
 
 #include <math.h>
+
+/* ---- how it is made ---- */
+
+const Shape *make_joint(ShapeBuilder *builder, ShapeKind kind, const Shape *const *shapes,
+                        uint32_t count, Blend blend, Span span)
+{
+    static const char *const names[] = {[SHAPE_UNION]        = "union",
+                                        [SHAPE_INTERSECTION] = "intersection",
+                                        [SHAPE_DIFFERENCE]   = "difference",
+                                        [SHAPE_XOR]          = "xor"};
+    Shape                   *joint   = shape_new(builder, kind, names[kind], span, shapes, count);
+    joint->blend                     = blend;
+    if (blend.width != NODE_NONE)
+        check_lipschitz(builder, joint, "a blend", span);
+    /* Outside, the least of exact distances is exact; every other joint only bounds it. */
+    joint->exact = joint->exact && kind == SHAPE_UNION && blend.width == NODE_NONE;
+    for (uint32_t i = 0; i < count; i++) {
+        if (i == 0)
+            joint->box = shapes[0]->box;
+        else if (kind == SHAPE_INTERSECTION)
+            joint->box = box_common(joint->box, shapes[i]->box);
+        else if (kind != SHAPE_DIFFERENCE)
+            joint->box = box_hull(joint->box, shapes[i]->box);
+    }
+    if (blend.width != NODE_NONE && count > 1) {
+        const BlendInfo *info = &blend_info[blend.kind];
+        /* Each further operand adds a partial derivative; their squares sum to 1, so the sum of
+           n of them is at most sqrt(n): for two operands the factor of the table. */
+        joint->slope *= info->slope > 1 ? pow(info->slope, log2(count)) : 1;
+        if (kind != SHAPE_INTERSECTION && kind != SHAPE_DIFFERENCE)
+            joint->box = box_grow(
+                joint->box, info->bulge * node_range(builder, blend.width, 0).high * (count - 1));
+    }
+    return joint;
+}
+
+const Shape *make_morph(ShapeBuilder *builder, const Shape *a, const Shape *b, Node t, Span span)
+{
+    const Shape *children[] = {a, b};
+    Shape       *morph      = shape_new(builder, SHAPE_MORPH, "morph", span, children, 2);
+    morph->values[0]        = t;
+    check_lipschitz(builder, morph, "`morph`", span);
+    morph->exact = false;
+    /* Where the mix is 0 one of the distances is at most 0, or both are. */
+    morph->box = box_hull(a->box, b->box);
+    return morph;
+}
+
+/* ---- how it is lowered ---- */
 
 static Node join_distances(Graph *g, Blend blend, Node a, Node b)
 {

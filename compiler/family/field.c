@@ -19,10 +19,10 @@
  * max(f / L, -distance to them), so that nothing jumps there.  In place of f / L there may be
  * another distance, by which rays reach the surface sooner (field_bounds.c).
  */
-#include "compiler/eval/elaborate.h"
 
 #include <math.h>
 
+#include "compiler/family/family.h"
 #include "compiler/family/field_bounds.h"
 #include "compiler/lower/lower.h"
 #include "compiler/graph/series.h"
@@ -35,20 +35,21 @@ static Node series_distance(Graph *g, const Series *s)
     return graph_op2(g, OP_mul, sign, series_radius(g, s));
 }
 
-static const Shape *refuse_polynomial(Elaboration *e, SeriesFault fault, const Syntax *origin)
+static const Shape *refuse_polynomial(ShapeBuilder *builder, SeriesFault fault, Span span)
 {
-    Span span = e->graph->items[fault.blame].span;
-    span      = span.source ? span : origin->span;
+    Span blame = builder->graph->items[fault.blame].span;
+    blame      = blame.source ? blame : span;
     if (fault.degree > 0) {
-        Diag *diag  = diag_add(e->diags, DIAG_NOT_POLYNOMIAL, span,
+        Diag *diag  = diag_add(builder->diags, DIAG_NOT_POLYNOMIAL, blame,
                                "a polynomial of degree %u is too high", fault.degree);
-        diag->label = diag_text(e->diags, "at most %d are possible", MOST_DEGREE);
+        diag->label = diag_text(builder->diags, "at most %d are possible", MOST_DEGREE);
         return NULL;
     }
-    Diag *diag = diag_add(e->diags, DIAG_NOT_POLYNOMIAL, span, "the equation is not a polynomial");
-    const char *name = graph_op_name(e->graph->items[fault.blame].op);
-    diag->label      = diag_text(e->diags, "`%s` of coordinates is none", name);
-    diag_secondary(e->diags, diag, origin->span, "in this equation");
+    Diag       *diag = diag_add(builder->diags, DIAG_NOT_POLYNOMIAL, blame,
+                                "the equation is not a polynomial");
+    const char *name = graph_op_name(builder->graph->items[fault.blame].op);
+    diag->label      = diag_text(builder->diags, "`%s` of coordinates is none", name);
+    diag_secondary(builder->diags, diag, span, "in this equation");
     diag->help = "`field(...)` takes any expression";
     return NULL;
 }
@@ -82,51 +83,52 @@ static Node extend_from_box(Graph *g, Node bound, Box box)
     return graph_op2(g, OP_add, both, inside);
 }
 
-static Node at_nearest(Elaboration *e, Node formula, Box box)
+static Node at_nearest(ShapeBuilder *builder, Node formula, Box box)
 {
     if (!box_is_finite(box))
         return formula;
-    Node         point = nearest_in(e->graph, graph_leaf(e->graph, OP_POINT), box);
+    Node         point = nearest_in(builder->graph, graph_leaf(builder->graph, OP_POINT), box);
     Substitution with  = {.point = point, .instance = NODE_NONE, .level = NODE_NONE};
-    return graph_substitute(e->graph, formula, with, e->scratch);
+    return graph_substitute(builder->graph, formula, with, builder->scratch);
 }
 
 static Node opposite(Graph *g, Node a) { return graph_op1(g, OP_neg, a); }
 
 /* Outside of the box that holds all zeros the polynomial is not looked at: thousands of units away
    its value is too large for single precision, or what is left of numbers that cancel. */
-static Node near_zeros(Elaboration *e, Node distance, ZeroBox zeros)
+static Node near_zeros(ShapeBuilder *builder, Node distance, ZeroBox zeros)
 {
-    Graph *g = e->graph;
+    Graph *g = builder->graph;
     if (!box_is_finite(zeros.box))
         return distance;
-    distance = at_nearest(e, distance, zeros.box);
+    distance = at_nearest(builder, distance, zeros.box);
     return zeros.sign > 0 ? extend_from_box(g, distance, zeros.box)
                           : opposite(g, extend_from_box(g, opposite(g, distance), zeros.box));
 }
 
-static void settle_polynomial(Elaboration *e, Shape *shape, const Series *series)
+static void settle_polynomial(ShapeBuilder *builder, Shape *shape, const Series *series)
 {
-    Node distance   = series_distance(e->graph, series);
+    Node distance   = series_distance(builder->graph, series);
     shape->degree   = series->degree;
-    shape->zeros    = graph_zero_box(e->graph, shape->formula, e->scratch);
-    shape->distance = near_zeros(e, distance, shape->zeros);
+    shape->zeros    = graph_zero_box(builder->graph, shape->formula, builder->scratch);
+    shape->distance = near_zeros(builder, distance, shape->zeros);
     shape->fields   = !box_is_finite(shape->zeros.box);
     if (shape->zeros.sign > 0)
         shape->box = shape->zeros.box;
 }
 
-Node extend_from_region(Elaboration *e, Node formula, const Steepness *slope)
+Node extend_from_region(ShapeBuilder *builder, Node formula, const Steepness *slope)
 {
-    Node inner = at_nearest(e, formula, slope->region);
-    return extend_from_box(e->graph, divide_by_steepness(e->graph, inner, slope), slope->region);
+    Node inner = at_nearest(builder, formula, slope->region);
+    return extend_from_box(builder->graph, divide_by_steepness(builder->graph, inner, slope),
+                           slope->region);
 }
 
 /* Finds the slope over a region, which may be all space; infinite when there is no bound. */
-static void settle(Elaboration *e, Shape *shape, Box box, bool uniform)
+static void settle(ShapeBuilder *builder, Shape *shape, Box box, bool uniform)
 {
     Steepness slope;
-    bool      bounded = find_slope(e, shape->formula, &box, 1, shape->span, &slope);
+    bool      bounded = find_slope(builder, shape->formula, &box, 1, shape->span, &slope);
     shape->derived    = slope.bound;
     shape->region     = box;
     shape->blame      = slope.blame;
@@ -134,20 +136,21 @@ static void settle(Elaboration *e, Shape *shape, Box box, bool uniform)
     shape->per_frame  = slope.slot != NODE_NONE;
     if (!bounded)
         return;
-    shape->distance = extend_from_region(e, shape->formula, &slope);
+    shape->distance = extend_from_region(builder, shape->formula, &slope);
     if (shape->per_frame)
         return;
-    FieldBounds bounds = field_bounds(e, shape->formula, slope.bound, box, uniform);
-    shape->distance    = extend_from_box(e->graph, at_nearest(e, bounds.lipschitz, box), box);
+    FieldBounds bounds = field_bounds(builder, shape->formula, slope.bound, box, uniform);
+    shape->distance    = extend_from_box(builder->graph, at_nearest(builder, bounds.lipschitz, box),
+                                         box);
     if (bounds.sharp != NODE_NONE)
-        shape->bound = extend_from_box(e->graph, at_nearest(e, bounds.sharp, box), box);
+        shape->bound = extend_from_box(builder->graph, at_nearest(builder, bounds.sharp, box), box);
 }
 
 /* ---- the solids ---- */
 
-static bool depends_on_point(const Elaboration *e, Node node)
+static bool depends_on_point(const ShapeBuilder *builder, Node node)
 {
-    return e->graph->items[node].time == TIME_POINT;
+    return builder->graph->items[node].time == TIME_POINT;
 }
 
 /* Whether nothing of the point is left, as in x - x. */
@@ -159,38 +162,38 @@ static bool series_is_constant(const Graph *g, const Series *s)
     return k == 0;
 }
 
-static const Shape *refuse_constant(Elaboration *e, const Shape *shape)
+static const Shape *refuse_constant(ShapeBuilder *builder, const Shape *shape)
 {
-    Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, shape->span,
+    Diag *diag  = diag_add(builder->diags, DIAG_BAD_VALUE, shape->span,
                            "`%s` needs an expression of the point", shape->name);
     diag->label = "the same everywhere";
     diag->help  = "use x, y, z or p in it";
     return NULL;
 }
 
-const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Syntax *origin)
+const Shape *make_field(ShapeBuilder *builder, Node formula, bool algebraic, Span span)
 {
     Series      series;
     SeriesFault fault;
-    Shape *shape = shape_new(e, SHAPE_PRIMITIVE, algebraic ? "algebraic" : "field", origin->span,
-                             NULL, 0);
-    if (!depends_on_point(e, formula))
-        return refuse_constant(e, shape);
+    Shape      *shape = shape_new(builder, SHAPE_PRIMITIVE, algebraic ? "algebraic" : "field", span,
+                                  NULL, 0);
+    if (!depends_on_point(builder, formula))
+        return refuse_constant(builder, shape);
     shape->box = shape->region = box_infinite;
     shape->exact               = false;
     shape->formula             = formula;
     shape->fields              = true;
-    Node point                 = graph_leaf(e->graph, OP_POINT);
-    if (graph_ball_series(e->graph, formula, point, &series, &fault, e->scratch)) {
-        if (series_is_constant(e->graph, &series))
-            return refuse_constant(e, shape);
-        settle_polynomial(e, shape, &series);
+    Node point                 = graph_leaf(builder->graph, OP_POINT);
+    if (graph_ball_series(builder->graph, formula, point, &series, &fault, builder->scratch)) {
+        if (series_is_constant(builder->graph, &series))
+            return refuse_constant(builder, shape);
+        settle_polynomial(builder, shape, &series);
     } else if (algebraic) {
-        return refuse_polynomial(e, fault, origin);
+        return refuse_polynomial(builder, fault, span);
     } else {
-        settle(e, shape, box_infinite, false);
+        settle(builder, shape, box_infinite, false);
     }
-    arena_free(e->scratch);
+    arena_free(builder->scratch);
     return shape;
 }
 
@@ -198,66 +201,70 @@ const Shape *make_field(Elaboration *e, Node formula, bool algebraic, const Synt
 
 /* An endless polynomial is looked at in the region alone, too: the distance at the nearest point
    there is none to more than is in the region, and as steep. */
-static void restrict_polynomial(Elaboration *e, Shape *restricted, Box box)
+static void restrict_polynomial(ShapeBuilder *builder, Shape *restricted, Box box)
 {
     restricted->region   = box_grow(box, 1e-3 * box_diagonal(box));
     restricted->fields   = false;
-    restricted->distance = at_nearest(e, restricted->distance, restricted->region);
+    restricted->distance = at_nearest(builder, restricted->distance, restricted->region);
 }
 
-static const Shape *restrict_field(Elaboration *e, const Shape *shape, Box box, bool uniform)
+static const Shape *restrict_field(ShapeBuilder *builder, const Shape *shape, Box box, bool uniform)
 {
     if (!box_is_finite(box))
         return shape;
-    Shape *restricted = arena_new(e->arena, Shape);
+    Shape *restricted = arena_new(builder->arena, Shape);
     *restricted       = *shape;
     restricted->bound = NODE_NONE;
     if (shape->degree > 0) {
-        restrict_polynomial(e, restricted, box);
+        restrict_polynomial(builder, restricted, box);
         return restricted;
     }
-    settle(e, restricted, box, uniform);
-    arena_free(e->scratch);
+    settle(builder, restricted, box, uniform);
+    arena_free(builder->scratch);
     return restricted;
 }
 
 /* The children over the same box, grown by what the joint may reach around. */
-static const Shape *restrict_joint(Elaboration *e, const Shape *shape, Box box, bool uniform)
+static const Shape *restrict_joint(ShapeBuilder *builder, const Shape *shape, Box box, bool uniform)
 {
-    const Shape **children = arena_new_array(e->arena, const Shape *, shape->child_count + 1);
-    double reach = shape->blend.width == NODE_NONE ? 0 : node_range(e, shape->blend.width, 0).high;
+    const Shape **children = arena_new_array(builder->arena, const Shape *, shape->child_count + 1);
+    double        reach    = shape->blend.width == NODE_NONE
+                                 ? 0
+                                 : node_range(builder, shape->blend.width, 0).high;
     for (uint32_t i = 0; i < shape->child_count; i++)
-        children[i] = restrict_shape(e, shape->children[i], box_grow(box, reach), uniform);
-    return make_joint(e, shape->kind, children, shape->child_count, shape->blend, shape->span);
+        children[i] = restrict_shape(builder, shape->children[i], box_grow(box, reach), uniform);
+    return make_joint(builder, shape->kind, children, shape->child_count, shape->blend,
+                      shape->span);
 }
 
-const Shape *restrict_shape(Elaboration *e, const Shape *shape, Box box, bool uniform)
+const Shape *restrict_shape(ShapeBuilder *builder, const Shape *shape, Box box, bool uniform)
 {
     if (!shape->fields || box_is_empty(box))
         return shape;
     const Shape *child = shape->child_count ? shape->children[0] : NULL;
     switch (shape->kind) {
-    case SHAPE_PRIMITIVE: return restrict_field(e, shape, box, uniform);
+    case SHAPE_PRIMITIVE: return restrict_field(builder, shape, box, uniform);
     case SHAPE_UNION:
     case SHAPE_INTERSECTION:
     case SHAPE_DIFFERENCE:
-    case SHAPE_XOR: return restrict_joint(e, shape, box, uniform);
+    case SHAPE_XOR: return restrict_joint(builder, shape, box, uniform);
     case SHAPE_OFFSET: {
-        double r = range_largest(node_range(e, shape->values[0], 0));
-        child    = restrict_shape(e, child, box_grow(box, r), uniform);
-        return make_offset(e, child, shape->values[0], shape->span);
+        double r = range_largest(node_range(builder, shape->values[0], 0));
+        child    = restrict_shape(builder, child, box_grow(box, r), uniform);
+        return make_offset(builder, child, shape->values[0], shape->span);
     }
     case SHAPE_SHELL: {
-        double t = range_largest(node_range(e, shape->values[0], 0));
-        child    = restrict_shape(e, child, box_grow(box, 0.5 * t), uniform);
-        return make_shell(e, child, shape->values[0], shape->span);
+        double t = range_largest(node_range(builder, shape->values[0], 0));
+        child    = restrict_shape(builder, child, box_grow(box, 0.5 * t), uniform);
+        return make_shell(builder, child, shape->values[0], shape->span);
     }
     case SHAPE_PAINT:
-        return make_paint(e, restrict_shape(e, child, box, uniform), shape->material, shape->span);
+        return make_paint(builder, restrict_shape(builder, child, box, uniform), shape->material,
+                          shape->span);
     case SHAPE_TRANSFORM: {
-        Box before = map_box(e, map_inverse(e, &shape->map), box);
-        child      = restrict_shape(e, child, before, uniform);
-        return make_transform(e, child, &shape->map, shape->span);
+        Box before = map_box(builder, map_inverse(builder, &shape->map), box);
+        child      = restrict_shape(builder, child, before, uniform);
+        return make_transform(builder, child, &shape->map, shape->span);
     }
     default: return shape;
     }
@@ -275,15 +282,15 @@ static const Shape *find_unbounded(const Shape *shape)
     return shape;
 }
 
-bool check_bounded(Elaboration *e, const Shape *shape)
+bool check_bounded(ShapeBuilder *builder, const Shape *shape)
 {
     if (isfinite(shape->slope))
         return true;
     const Shape *field = find_unbounded(shape);
     Span         span  = field->blame.source ? field->blame : field->span;
-    Diag        *diag  = diag_add(e->diags, DIAG_STEEP, span, "the slope of a field has no bound");
-    diag->label        = "this can change arbitrarily fast";
-    diag_secondary(e->diags, diag, field->span, "in this field");
+    Diag *diag  = diag_add(builder->diags, DIAG_STEEP, span, "the slope of a field has no bound");
+    diag->label = "this can change arbitrarily fast";
+    diag_secondary(builder->diags, diag, field->span, "in this field");
     diag->help = box_is_finite(field->region)
                      ? "keep this part away from divisions by zero and jumps"
                      : "cut it to a region: `.within(box([4, 4, 4]))`; or keep this part away "

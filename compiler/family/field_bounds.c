@@ -34,11 +34,12 @@ enum { CELLS = 512, HEAD_CELLS = 32 };
 static const double TINY = 1e-30;
 
 /* Slope over a box; inf when there is no bound. */
-static double slope_over(Elaboration *e, Node node, Box box, uint32_t cells)
+static double slope_over(ShapeBuilder *builder, Node node, Box box, uint32_t cells)
 {
     Node   root  = node;
-    Graph *plain = graph_simplify(e->graph, &root, 1, e->scratch);
-    return graph_slope(plain, root, box, NULL, box_is_finite(box) ? cells : 1, NULL, e->scratch);
+    Graph *plain = graph_simplify(builder->graph, &root, 1, builder->scratch);
+    return graph_slope(plain, root, box, NULL, box_is_finite(box) ? cells : 1, NULL,
+                       builder->scratch);
 }
 
 /* ---- heads of sums ---- */
@@ -125,18 +126,18 @@ static void sort_terms(Terms *terms)
         }
 }
 
-static Terms terms_of(Elaboration *e, Node formula, Box box)
+static Terms terms_of(ShapeBuilder *builder, Node formula, Box box)
 {
-    Terms terms = {.graph = e->graph};
-    add_terms(&terms, formula, graph_number(e->graph, 1));
+    Terms terms = {.graph = builder->graph};
+    add_terms(&terms, formula, graph_number(builder->graph, 1));
     if (terms.count > MOST_TERMS)
         terms.count = 0;
     for (uint32_t i = 0; i < terms.count; i++) {
         Term  *term  = &terms.items[i];
         Node   root  = term->node;
-        Graph *plain = graph_simplify(e->graph, &root, 1, e->scratch);
-        term->range  = graph_facts(plain, box, NULL, e->scratch)[root].value[0];
-        term->slope  = slope_over(e, term->node, box, 1);
+        Graph *plain = graph_simplify(builder->graph, &root, 1, builder->scratch);
+        term->range  = graph_facts(plain, box, NULL, builder->scratch)[root].value[0];
+        term->slope  = slope_over(builder, term->node, box, 1);
     }
     sort_terms(&terms);
     return terms;
@@ -144,10 +145,10 @@ static Terms terms_of(Elaboration *e, Node formula, Box box)
 
 /* (|head + m| - h) / slope for a rest in `range` = m +- h; NODE_NONE: the slope has no bound.  It is
    written by the ends of the range, since where one of them is small nothing may cancel. */
-static Node head_distance(Elaboration *e, Node head, Range range, Box box)
+static Node head_distance(ShapeBuilder *builder, Node head, Range range, Box box)
 {
-    Graph *g     = e->graph;
-    double slope = slope_over(e, head, box, HEAD_CELLS);
+    Graph *g     = builder->graph;
+    double slope = slope_over(builder, head, box, HEAD_CELLS);
     if (!isfinite(slope))
         return NODE_NONE;
     Node low   = graph_number(g, range.low - 1e-12 * fabs(range.low));
@@ -158,10 +159,10 @@ static Node head_distance(Elaboration *e, Node head, Range range, Box box)
 }
 
 /* The longest by all heads; NODE_NONE: the formula is not such a sum. */
-static Node by_heads(Elaboration *e, Node formula, Box box)
+static Node by_heads(ShapeBuilder *builder, Node formula, Box box)
 {
-    Graph *g     = e->graph;
-    Terms  terms = terms_of(e, formula, box);
+    Graph *g     = builder->graph;
+    Terms  terms = terms_of(builder, formula, box);
     Node   heads[MOST_TERMS], longest = NODE_NONE;
     Range  rest = {0, 0};
     for (uint32_t i = 0; i < terms.count; i++)
@@ -171,7 +172,7 @@ static Node by_heads(Elaboration *e, Node formula, Box box)
         rest.high += terms.items[i].range.high;
         if (!isfinite(rest.low) || !isfinite(rest.high))
             break;
-        Node distance = head_distance(e, heads[i - 1], rest, box);
+        Node distance = head_distance(builder, heads[i - 1], rest, box);
         if (distance != NODE_NONE)
             longest = longest == NODE_NONE ? distance : graph_op2(g, OP_max, longest, distance);
     }
@@ -180,13 +181,13 @@ static Node by_heads(Elaboration *e, Node formula, Box box)
 
 /* ---- second order, and local ---- */
 
-static Node by_second_order(Elaboration *e, Node f, Box box)
+static Node by_second_order(ShapeBuilder *builder, Node f, Box box)
 {
-    Graph *g = e->graph;
+    Graph *g = builder->graph;
     Node   gradient;
-    if (graph_gradient(g, f, &gradient, NULL, e->scratch) != DERIVED_SMOOTH)
+    if (graph_gradient(g, f, &gradient, NULL, builder->scratch) != DERIVED_SMOOTH)
         return NODE_NONE;
-    double bend = slope_over(e, gradient, box, CELLS);
+    double bend = slope_over(builder, gradient, box, CELLS);
     if (!isfinite(bend))
         return NODE_NONE;
     Node size    = graph_op1(g, OP_abs, f);
@@ -199,12 +200,12 @@ static Node by_second_order(Elaboration *e, Node f, Box box)
     return over(g, twice, sum);
 }
 
-static Node by_local_slope(Elaboration *e, Node f, Box box, double least)
+static Node by_local_slope(ShapeBuilder *builder, Node f, Box box, double least)
 {
     LocalBound local;
-    if (!graph_local_bound(e->graph, f, box, least, &local, e->scratch))
+    if (!graph_local_bound(builder->graph, f, box, least, &local, builder->scratch))
         return NODE_NONE;
-    return local_radius(e->graph, f, &local);
+    return local_radius(builder->graph, f, &local);
 }
 
 /* ---- rays on trial ---- */
@@ -319,16 +320,18 @@ static double trial_march_cost(const TrialMarch *m, Node distance)
     return steps * cost;
 }
 
-static TrialMarch trial_march_new(Elaboration *e, Box box)
+static TrialMarch trial_march_new(ShapeBuilder *builder, Box box)
 {
     Box        tried      = box_is_finite(box) ? box : (Box){{{-10, 10}, {-10, 10}, {-10, 10}}};
-    NodeValue *parameters = arena_new_array(e->scratch, NodeValue, e->graph->parameters.count);
-    for (size_t i = 0; i < e->scene->parameters.count; i++) {
-        const Parameter *parameter = &e->scene->parameters.items[i];
+    NodeValue *parameters = arena_new_array(builder->scratch, NodeValue,
+                                            builder->graph->parameters.count);
+    for (size_t i = 0; i < builder->parameters->count; i++) {
+        const Parameter *parameter = &builder->parameters->items[i];
         for (int k = 0; k < 4; k++)
             parameters[parameter->slot].v[k] = parameter->value[k];
     }
-    return (TrialMarch){e->graph, tried, parameters, 3e-5 * box_diagonal(tried), e->scratch};
+    return (TrialMarch){builder->graph, tried, parameters, 3e-5 * box_diagonal(tried),
+                        builder->scratch};
 }
 
 /* ---- the choice ---- */
@@ -359,17 +362,17 @@ static Node cheapest(const TrialMarch *march, Node present, const Node *others, 
     return best;
 }
 
-FieldBounds field_bounds(Elaboration *e, Node formula, double slope, Box box, bool uniform)
+FieldBounds field_bounds(ShapeBuilder *builder, Node formula, double slope, Box box, bool uniform)
 {
     /* Of the slope, what a local one may be: fields may be flatter by far where the surface is. */
     static const double fractions[] = {0.25, 0x1p-6, 0x1p-11, 0x1p-17, 0x1p-24, 0x1p-32, 0x1p-42};
     enum { FRACTIONS = sizeof fractions / sizeof *fractions };
-    Graph      *g      = e->graph;
-    TrialMarch  march  = trial_march_new(e, box);
+    Graph      *g      = builder->graph;
+    TrialMarch  march  = trial_march_new(builder, box);
     FieldBounds bounds = {divide_by_slope(g, formula, slope), NODE_NONE};
-    Node        heads = by_heads(e, formula, box), order = by_second_order(e, formula, box);
-    Node        lipschitz[3] = {NODE_NONE, NODE_NONE, NODE_NONE}, sharp[FRACTIONS];
-    double      cost         = HUGE_VAL;
+    Node   heads = by_heads(builder, formula, box), order = by_second_order(builder, formula, box);
+    Node   lipschitz[3] = {NODE_NONE, NODE_NONE, NODE_NONE}, sharp[FRACTIONS];
+    double cost         = HUGE_VAL;
     if (uniform && order != NODE_NONE)
         bounds.lipschitz = lengthened(g, formula, bounds.lipschitz, order);
     else if (order != NODE_NONE)
@@ -381,7 +384,7 @@ FieldBounds field_bounds(Elaboration *e, Node formula, double slope, Box box, bo
     cost             = trial_march_cost(&march, bounds.lipschitz);
     bounds.lipschitz = cheapest(&march, bounds.lipschitz, lipschitz, 3, &cost);
     for (int i = 0; i < FRACTIONS; i++) {
-        Node local = by_local_slope(e, formula, box, slope * fractions[i]);
+        Node local = by_local_slope(builder, formula, box, slope * fractions[i]);
         sharp[i]   = local == NODE_NONE ? local : lengthened(g, formula, bounds.lipschitz, local);
     }
     bounds.sharp = cheapest(&march, NODE_NONE, sharp, FRACTIONS, &cost);

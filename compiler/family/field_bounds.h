@@ -4,7 +4,7 @@
 #ifndef KRS_FIELD_BOUNDS_H
 #define KRS_FIELD_BOUNDS_H
 
-#include "compiler/eval/elaborate.h"
+#include "compiler/shape/builder.h"
 
 /* For points in the box, as to what is in it; both with the sign of the expression. */
 typedef struct FieldBounds {
@@ -14,6 +14,6 @@ typedef struct FieldBounds {
 
 /* The bounds that cost rays least, of an expression that has this slope over the box.  `uniform`:
    near the surface the distance shall be about right everywhere, if possible. */
-FieldBounds field_bounds(Elaboration *e, Node formula, double slope, Box box, bool uniform);
+FieldBounds field_bounds(ShapeBuilder *builder, Node formula, double slope, Box box, bool uniform);
 
 #endif

@@ -1,7 +1,39 @@
 /*
  * figure.c: plane figures made solid, by extrusion and by revolution.
  */
+#include "compiler/family/family.h"
 #include "compiler/lower/lowering.h"
+
+#include <math.h>
+
+/* ---- how it is made ---- */
+
+const Shape *make_extrude(ShapeBuilder *builder, const Shape *figure, Node height, Span span)
+{
+    Graph *g           = builder->graph;
+    Shape *solid       = shape_around(builder, SHAPE_EXTRUDE, "extrude", figure, span);
+    Node   half        = graph_number(g, 0.5);
+    solid->values[0]   = graph_op2(g, OP_mul, height, half);
+    double most        = node_range(builder, solid->values[0], 0).high;
+    solid->box.axis[2] = (Range){-most, most};
+    solid->figure      = false;
+    return solid;
+}
+
+const Shape *make_revolve(ShapeBuilder *builder, const Shape *figure, Node offset, Span span)
+{
+    Shape *solid     = shape_around(builder, SHAPE_REVOLVE, "revolve", figure, span);
+    solid->values[0] = offset;
+    solid->figure    = false;
+    Range  x         = range_add(figure->box.axis[0], node_range(builder, offset, 0));
+    double most      = fmax(x.high, 0);
+    /* What crosses the axis is cut by it: the distance inside the cut is only a bound. */
+    solid->exact       = figure->exact && x.low >= 0;
+    solid->box.axis[0] = solid->box.axis[2] = (Range){-most, most};
+    return solid;
+}
+
+/* ---- how it is lowered ---- */
 
 Lowered lower_extrude(Lowering *l, const Shape *shape, LowerContext context)
 {

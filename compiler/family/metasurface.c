@@ -23,7 +23,7 @@
  * counts f(k d / reach), which rises by k L s in a step s, from the entry d - reach / k on: so it
  * counts k times in the sums above, and all else holds.
  */
-#include "compiler/eval/elaborate.h"
+#include "compiler/family/family.h"
 
 #include <math.h>
 
@@ -31,70 +31,32 @@
 #include "compiler/graph/evaluate.h"
 
 static const struct {
-    const char *spelling;
-    double      steepest; /* of t -> f(t) */
+    double steepest; /* of t -> f(t) */
 } falloff_info[FALLOFF_COUNT] = {
-#define FALLOFF(name, spelling, steepest, meaning) {spelling, steepest},
+#define FALLOFF(name, spelling, steepest, meaning) {steepest},
 #include "compiler/shape/falloffs.def"
 #undef FALLOFF
 };
 
-/* ---- the shape ---- */
+/* ---- how it is made ---- */
 
-static const char *const falloff_spellings[] = {
-#define FALLOFF(name, spelling, steepest, meaning) spelling,
-#include "compiler/shape/falloffs.def"
-#undef FALLOFF
-};
-static const Choices falloff_names = {
-    .noun    = "falloff",
-    .wanted  = "the name of a falloff, a string",
-    .unknown = "unknown falloff",
-    .more    = "",
-    .items   = falloff_spellings,
-    .count   = FALLOFF_COUNT,
-};
-
-/* A number above 0; NODE_NONE: reported. */
-static Node want_positive(Elaboration *e, const Call *call, uint32_t index, double otherwise,
-                          const char *what)
+const Shape *make_meta(ShapeBuilder *builder, const Shape *const *shapes, uint32_t count,
+                       Node level, Node reach, FalloffKind falloff, Span span)
 {
-    Node node = want_number(e, call, index, otherwise);
-    if (node == NODE_NONE || !is_given(call, index) ||
-        check_positive(e, node, call->arguments[index].syntax, what))
-        return node;
-    return NODE_NONE;
-}
-
-Value builtin_meta(Elaboration *e, Call *call)
-{
-    Values          values = {0};
-    uint32_t        falloff;
-    const Argument *list = &call->arguments[0];
-    if (!collect_shapes(e, call, list->value, list->syntax, &values) ||
-        !want_name(e, &call->arguments[2], &falloff_names, &falloff))
-        return value_error();
-    Node level = want_positive(e, call, 1, 0.5, "the level of a metasurface");
-    Node reach = want_positive(e, call, 3, 0.5, "the reach of a falloff");
-    if (level == NODE_NONE || reach == NODE_NONE)
-        return value_error();
-    const Shape **shapes = joinable_shapes(e, call, &values);
-    if (!shapes)
-        return value_error();
-    Span   span     = call->syntax->span;
-    Shape *meta     = shape_new(e, SHAPE_META, "meta", span, shapes, (uint32_t)values.count);
+    Shape *meta     = shape_new(builder, SHAPE_META, "meta", span, shapes, count);
     meta->values[0] = level;
     meta->values[1] = reach;
-    meta->falloff   = (FalloffKind)falloff;
+    meta->falloff   = falloff;
     meta->exact     = false;
     meta->box       = box_empty;
-    for (size_t i = 0; i < values.count; i++)
-        meta->box = box_hull(meta->box, box_grow(shapes[i]->box, node_range(e, reach, 0).high));
-    check_lipschitz(e, meta, "`meta`", span);
-    return value_shape(meta);
+    for (uint32_t i = 0; i < count; i++)
+        meta->box = box_hull(meta->box,
+                             box_grow(shapes[i]->box, node_range(builder, reach, 0).high));
+    check_lipschitz(builder, meta, "`meta`", span);
+    return meta;
 }
 
-/* ---- nodes ---- */
+/* ---- how it is lowered ---- */
 
 /* exp(-4 x), lowered to be 0 at 1. */
 static Node faded(Graph *g, Node x)

@@ -1,7 +1,71 @@
 /*
  * offset.c: shapes grown or shrunk by a distance, shells and sheets.
  */
+#include "compiler/family/family.h"
+#include "compiler/graph/derive.h"
 #include "compiler/lower/lowering.h"
+
+#include <math.h>
+
+/* ---- how it is made ---- */
+
+static Shape *new_offset(ShapeBuilder *builder, const Shape *shape, Node radius, Span span)
+{
+    Shape *offset     = shape_around(builder, SHAPE_OFFSET, "offset", shape, span);
+    Range  range      = node_range(builder, radius, 0);
+    offset->values[0] = radius;
+    offset->box       = box_grow(shape->box, fmax(range.high, 0));
+    offset->exact     = shape->exact && range.low >= 0;
+    check_lipschitz(builder, offset, "an offset", span);
+    return offset;
+}
+
+const Shape *make_offset(ShapeBuilder *builder, const Shape *shape, Node radius, Span span)
+{
+    return new_offset(builder, shape, radius, span);
+}
+
+const Shape *make_rounded(ShapeBuilder *builder, const Shape *shape, const Shape *core, Node radius,
+                          Span span)
+{
+    Shape *round   = new_offset(builder, core, radius, span);
+    round->rounded = shape;
+    return round;
+}
+
+const Shape *make_shell(ShapeBuilder *builder, const Shape *shape, Node thickness, Span span)
+{
+    Shape *shell     = shape_around(builder, SHAPE_SHELL, "shell", shape, span);
+    shell->values[0] = thickness;
+    shell->box       = box_grow(shape->box, 0.5 * node_range(builder, thickness, 0).high);
+    check_lipschitz(builder, shell, "a shell", span);
+    return shell;
+}
+
+/* Whether normals follow from derivatives: differences see both sides of a sheet. */
+static bool is_derivable(ShapeBuilder *builder, const Shape *shape)
+{
+    Node gradient, number = shape->formula != NODE_NONE ? shape->formula : shape->distance;
+    if (shape->kind == SHAPE_PRIMITIVE &&
+        graph_gradient(builder->graph, number, &gradient, NULL, builder->scratch) == DERIVED_NOT)
+        return false;
+    for (uint32_t i = 0; i < shape->child_count; i++)
+        if (!is_derivable(builder, shape->children[i]))
+            return false;
+    return true;
+}
+
+const Shape *make_sheet(ShapeBuilder *builder, const Shape *shape, Node thickness, Span span)
+{
+    Shape *sheet  = arena_new(builder->arena, Shape);
+    *sheet        = *make_shell(builder, shape, thickness, span);
+    sheet->name   = "sheet";
+    sheet->sheet  = is_derivable(builder, shape);
+    sheet->sheets = sheet->sheets || sheet->sheet;
+    return sheet;
+}
+
+/* ---- how it is lowered ---- */
 
 Lowered lower_offset(Lowering *l, const Shape *shape, LowerContext context)
 {

@@ -2,47 +2,128 @@
  * place.c: shapes that are moved, turned, scaled, stretched, mirrored or elongated: the point
  * is taken back to where it was before.
  */
+#include "compiler/family/family.h"
 #include "compiler/lower/lowering.h"
 
-/* R^T (point - shift) / scale: where the point was before the map. */
-Node before_map(Graph *g, const Map *map, Node point)
+/* ---- how it is made ---- */
+
+bool check_invertible(ShapeBuilder *builder, const Shape *shape, Span span)
 {
-    Node rows[3];
-    transpose_rows(g, map->rows, rows);
-    Node moved  = graph_op2(g, OP_sub, point, map->shift);
-    Node turned = moved;
-    Node e0 = graph_vec3(g, 1, 0, 0), e1 = graph_vec3(g, 0, 1, 0), e2 = graph_vec3(g, 0, 0, 1);
-    if (rows[0] != e0 || rows[1] != e1 || rows[2] != e2)
-        turned = graph_op4(g, OP_turn, moved, rows[0], rows[1], rows[2]);
-    Node one = graph_number(g, 1);
-    if (map->scale == one)
-        return turned;
-    Node factor = graph_op2(g, OP_div, one, map->scale);
-    return graph_op2(g, OP_scale, turned, factor);
+    if (box_is_finite(shape->box) || box_is_empty(shape->box))
+        return true;
+    Diag *diag  = diag_add(builder->diags, DIAG_ENDLESS_INVERTED, span,
+                           "something endless cannot be inverted");
+    diag->label = "an inversion";
+    diag->help  = "cut it first, with `.within(sphere(10))`, say";
+    diag_secondary(builder->diags, diag, shape->span, "this is endless");
+    return false;
 }
 
-Lowered scale_distance(Lowering *l, Lowered result, Node factor)
+static const Shape *make_inversion(ShapeBuilder *builder, const Shape *shape, const Map *map,
+                                   Span span)
 {
-    if (result.distance != NODE_NONE && factor != graph_number(l->graph, 1))
-        result.distance = graph_op2(l->graph, OP_mul, result.distance, factor);
-    return result;
+    if (!check_invertible(builder, shape, span))
+        return NULL;
+    Shape   *inverted = shape_around(builder, SHAPE_INVERSION, "transform", shape, span);
+    MapRange range    = map_range(builder, map);
+    Cover    cover    = {0};
+    cover_add(builder->arena, &cover, shape->box);
+    cover_map(&cover, &range);
+    inverted->map   = *map;
+    inverted->exact = false;
+    inverted->inversions++;
+    inverted->box = cover_box(&cover);
+    return inverted;
 }
 
-Lowered lower_behind(Lowering *l, const Shape *child, LowerContext context, const NormalPath *path,
-                     Node point)
+/* By a map without `first`. */
+static const Shape *transform_by(ShapeBuilder *builder, const Shape *shape, const Map *map,
+                                 Span span)
 {
-    Lowered result        = lower_shape(l, child, context_behind(path, context, point));
-    result.surface.normal = normal_out(l, path, result.surface.normal);
-    return result;
+    if (map->pole != NODE_NONE)
+        return make_inversion(builder, shape, map, span);
+    Shape *moved = shape_around(builder, SHAPE_TRANSFORM, "transform", shape, span);
+    moved->map   = *map;
+    moved->box   = map_box(builder, map, shape->box);
+    return moved;
 }
 
-Node enter_scale(Lowering *l, Node scale)
+const Shape *make_transform(ShapeBuilder *builder, const Shape *shape, const Map *map, Span span)
 {
-    Node unit = l->unit;
-    if (l->guarded)
-        l->unit = graph_op2(l->graph, OP_mul, unit, scale);
-    return unit;
+    if (map->first)
+        shape = make_transform(builder, shape, map->first, span);
+    if (!shape)
+        return NULL;
+    Map single   = *map;
+    single.first = NULL;
+    /* A chain of maps is one map, where it can be. */
+    if (shape->kind == SHAPE_TRANSFORM || shape->kind == SHAPE_INVERSION) {
+        const Map *product = map_product(builder, &single, &shape->map);
+        if (!product->first)
+            return transform_by(builder, shape->children[0], product, span);
+    }
+    return transform_by(builder, shape, &single, span);
 }
+
+const Shape *make_stretch(ShapeBuilder *builder, const Shape *shape, Node factors, Span span)
+{
+    Shape *stretched     = shape_around(builder, SHAPE_STRETCH, "scale", shape, span);
+    stretched->values[0] = factors;
+    stretched->exact     = false;
+    for (uint32_t i = 0; i < 3 && !box_is_empty(shape->box); i++)
+        stretched->box.axis[i] = range_mul(shape->box.axis[i], node_range(builder, factors, i));
+    return stretched;
+}
+
+const Shape *make_mirror(ShapeBuilder *builder, const Shape *shape, Node normal, Node offset,
+                         Span span)
+{
+    Shape *mirror     = shape_around(builder, SHAPE_MIRROR, "mirror", shape, span);
+    mirror->values[0] = normal;
+    mirror->values[1] = offset;
+    mirror->exact     = false;
+    Range u[3];
+    for (uint32_t i = 0; i < 3; i++)
+        u[i] = node_range(builder, normal, i);
+    mirror->box = box_fold(shape->box, u, node_range(builder, offset, 0));
+    return mirror;
+}
+
+const Shape *make_elongate(ShapeBuilder *builder, const Shape *shape, Node half, Span span)
+{
+    Shape *longer     = shape_around(builder, SHAPE_ELONGATE, "elongate", shape, span);
+    longer->values[0] = half;
+    Range sides[3];
+    for (uint32_t i = 0; i < 3; i++) {
+        double most = node_range(builder, half, i).high;
+        sides[i]    = (Range){-most, most};
+    }
+    longer->box = box_move(shape->box, sides);
+    return longer;
+}
+
+bool shape_plane(ShapeBuilder *builder, const Shape *shape, Node *normal, Node *offset)
+{
+    Graph *g = builder->graph;
+    if (shape->kind == SHAPE_PAINT)
+        return shape_plane(builder, shape->children[0], normal, offset);
+    if (shape->kind == SHAPE_PRIMITIVE && shape->plane_normal != NODE_NONE) {
+        Node size = graph_op1(g, OP_length, shape->plane_normal);
+        *normal   = graph_op1(g, OP_normalize, shape->plane_normal);
+        *offset   = graph_op2(g, OP_div, shape->plane_offset, size);
+        return true;
+    }
+    if (shape->kind != SHAPE_TRANSFORM || !shape_plane(builder, shape->children[0], normal, offset))
+        return false;
+    /* n.x <= w becomes (R n).y <= s w + (R n).t for y = s R x + t. */
+    *normal      = map_turn(builder, &shape->map, *normal);
+    Node scaled  = graph_op2(g, OP_mul, *offset, shape->map.scale);
+    Node shifted = graph_op2(g, OP_dot, *normal, shape->map.shift);
+    *offset      = graph_op2(g, OP_add, scaled, shifted);
+    return true;
+}
+
+/* ---- how it is lowered ---- */
 
 Lowered lower_transform(Lowering *l, const Shape *shape, LowerContext context)
 {
@@ -79,16 +160,6 @@ Lowered lower_mirror(Lowering *l, const Shape *shape, LowerContext context)
     return lower_behind(l, shape->children[0], context, &path, point);
 }
 
-/* The last of a chain counts, as with paint. */
-Lowered lower_smooth(Lowering *l, const Shape *shape, LowerContext context)
-{
-    if (l->surfaces && context.smoothing == NODE_NONE)
-        context.smoothing = shape->values[0] != NODE_NONE
-                                ? shape->values[0]
-                                : graph_op2(l->graph, OP_add, context.footprint, context.footprint);
-    return lower_shape(l, shape->children[0], context);
-}
-
 Lowered lower_elongate(Lowering *l, const Shape *shape, LowerContext context)
 {
     Graph *g      = l->graph;
@@ -96,4 +167,20 @@ Lowered lower_elongate(Lowering *l, const Shape *shape, LowerContext context)
     Node   inside = graph_op3(g, OP_clamp, context.point, low, shape->values[0]);
     Node   point  = graph_op2(g, OP_sub, context.point, inside);
     return lower_shape(l, shape->children[0], context_at(context, point));
+}
+
+Lowered lower_inversion(Lowering *l, const Shape *shape, LowerContext context)
+{
+    NormalPath path  = normal_path(l, context, 2);
+    MapChain   chain = map_chain_new(l->graph, context.point);
+    Ball       ball  = ball_around(shape->children[0]->box);
+    Node       hull  = map_chain_hull(l, &chain, &shape->map, &ball);
+    map_chain_append(l, &chain, &shape->map, &path);
+    Node    unit   = enter_map_chain(l, &chain);
+    Lowered result = lower_behind(l, shape->children[0], context, &path, chain.point);
+    l->unit        = unit;
+    result         = map_chain_out(l, &chain, result);
+    if (result.distance != NODE_NONE)
+        result.distance = farther_of(l->graph, result.distance, hull);
+    return result;
 }

@@ -2,9 +2,19 @@
  * primitive.c: shapes that hold no others: their distance at a point, and, where a gradient
  * is wanted, a plane that has it.
  */
+#include "compiler/family/family.h"
 #include "compiler/lower/lowering.h"
 
 #include "compiler/graph/derive.h"
+
+/* ---- how it is made ---- */
+
+const Shape *make_empty(ShapeBuilder *builder, Span span)
+{
+    return shape_new(builder, SHAPE_EMPTY, "nothing", span, NULL, 0);
+}
+
+/* ---- how it is lowered ---- */
 
 /* A number with this value and this gradient: with n and the rest w held still, dot(n, q) + w
    changes with the point q as a plane does. */

@@ -1,11 +1,62 @@
 /*
  * repeat.c: copies in the cells of a lattice, and in sectors around an axis.
  */
+#include "compiler/family/family.h"
 #include "compiler/lower/lowering.h"
 
 #include <math.h>
 
 #include "compiler/graph/parity.h"
+
+/* ---- how it is made ---- */
+
+const Shape *make_repeat(ShapeBuilder *builder, const Shape *shape, Node period,
+                         const uint32_t cells[3], Span span)
+{
+    if (box_is_empty(shape->box))
+        return shape;
+    Shape *repeat     = shape_around(builder, SHAPE_REPEAT, "repeat", shape, span);
+    repeat->values[0] = period;
+    repeat->exact     = false; /* walls of cells are bounds */
+    for (uint32_t i = 0; i < 3; i++) {
+        Range range      = node_range(builder, period, i);
+        bool  repeats    = cells[i] != 1 && range.high > 0;
+        repeat->cells[i] = repeats ? cells[i] : 1;
+        if (!repeats)
+            continue;
+        double margin = cell_margin(shape->box.axis[i], range.low);
+        if (!(margin >= -1e-9 * range.low)) {
+            Range is    = shape->box.axis[i];
+            Diag *diag  = diag_add(builder->diags, DIAG_OUTSIDE_CELL, span,
+                                   "the shape reaches from %.4g to %.4g on the %c axis, "
+                                    "its cell from %.4g to %.4g",
+                                   is.low, is.high, "xyz"[i], -0.5 * range.low, 0.5 * range.low);
+            diag->label = "does not fit its cell";
+            diag->help  = "use a larger period, or a smaller shape that is centred in its cell";
+            return NULL;
+        }
+        double reach        = cells[i] ? 0.5 * (cells[i] - 1) * range.high : INFINITY;
+        repeat->box.axis[i] = (Range){shape->box.axis[i].low - reach,
+                                      shape->box.axis[i].high + reach};
+    }
+    return repeat;
+}
+
+const Shape *make_repeat_polar(ShapeBuilder *builder, const Shape *shape, uint32_t count, Span span)
+{
+    if (box_is_empty(shape->box))
+        return shape;
+    Shape *repeat    = shape_around(builder, SHAPE_REPEAT_POLAR, "repeat_polar", shape, span);
+    repeat->cells[0] = count;
+    repeat->exact    = false;
+    double most      = 0;
+    for (int i = 0; i < 3; i += 2)
+        most = hypot(most, fmax(fabs(shape->box.axis[i].low), fabs(shape->box.axis[i].high)));
+    repeat->box.axis[0] = repeat->box.axis[2] = (Range){-most, most};
+    return repeat;
+}
+
+/* ---- how it is lowered ---- */
 
 /* Farther than any wall. */
 static const double NOWHERE = 1e30;

@@ -1,7 +1,7 @@
 /*
  * sequence_bounds.c: sequences: their bounding volumes, level by level.
  */
-#include "compiler/eval/elaborate.h"
+#include "compiler/family/family.h"
 
 #include <math.h>
 
@@ -15,7 +15,7 @@ static bool read_number(Range range, double *number)
 }
 
 /* The numbers of a stage; false when some are not known when compiling. */
-static bool read_stage(Elaboration *e, const Shape *krs, const SequenceStage *stage,
+static bool read_stage(ShapeBuilder *builder, const Shape *krs, const SequenceStage *stage,
                        ReachStage *reach)
 {
     bool known = true;
@@ -25,26 +25,27 @@ static bool read_stage(Elaboration *e, const Shape *krs, const SequenceStage *st
     } else if (stage->kind == SEQUENCE_REFLECT) {
         reach->kind = REACH_REFLECT;
         for (uint32_t i = 0; i < 3; i++)
-            known = read_number(node_range(e, stage->normal, i), &reach->normal[i]) && known;
-        known = read_number(node_range(e, stage->offset, 0), &reach->offset) && known;
+            known = read_number(node_range(builder, stage->normal, i), &reach->normal[i]) && known;
+        known = read_number(node_range(builder, stage->offset, 0), &reach->offset) && known;
     } else {
         double scale;
         reach->kind = REACH_MAP;
-        known       = read_number(node_range(e, stage->map.scale, 0), &scale);
+        known       = read_number(node_range(builder, stage->map.scale, 0), &scale);
         for (uint32_t i = 0; i < 3; i++) {
             for (uint32_t j = 0; j < 3; j++) {
                 double *entry = &reach->rows[i][j];
-                known         = read_number(node_range(e, stage->map.rows[i], j), entry) && known;
+                known = read_number(node_range(builder, stage->map.rows[i], j), entry) && known;
                 *entry *= scale;
             }
-            known = read_number(node_range(e, stage->map.shift, i), &reach->shift[i]) && known;
+            known = read_number(node_range(builder, stage->map.shift, i), &reach->shift[i]) &&
+                    known;
         }
     }
     return known;
 }
 
 /* Of a sequence with maps that invert: balls all the way (cover.h). */
-static Box bound_inverted(Elaboration *e, const Shape *krs, LevelBound *bounds)
+static Box bound_inverted(ShapeBuilder *builder, const Shape *krs, LevelBound *bounds)
 {
     Cover cover = {0};
     for (uint32_t i = 0; i < krs->stage_count; i++) {
@@ -56,14 +57,14 @@ static Box bound_inverted(Elaboration *e, const Shape *krs, LevelBound *bounds)
                     bounds[i] = (LevelBound){box_infinite, ball_around(box_infinite)};
                 return box_infinite; /* after the last inversion: see check_kernels */
             }
-            cover_add(e->arena, &cover, kernel->box);
+            cover_add(builder->arena, &cover, kernel->box);
         } else if (stage->kind == SEQUENCE_REFLECT) {
             Range u[3];
             for (uint32_t k = 0; k < 3; k++)
-                u[k] = node_range(e, stage->normal, k);
-            cover_fold(e->arena, &cover, u, node_range(e, stage->offset, 0));
+                u[k] = node_range(builder, stage->normal, k);
+            cover_fold(builder->arena, &cover, u, node_range(builder, stage->offset, 0));
         } else {
-            MapRange map = map_range(e, &stage->map);
+            MapRange map = map_range(builder, &stage->map);
             cover_map(&cover, &map);
         }
         bounds[i].box  = cover_box(&cover);
@@ -78,9 +79,9 @@ static Box bound_inverted(Elaboration *e, const Shape *krs, LevelBound *bounds)
 /* Boxes and balls grow along the sequence side by side; each is tight where the other is not
    (turned mirrors blow boxes up), so each is cut to the other's size at every level.  While all
    numbers are known, a search then finds how far the set really reaches. */
-static Box bound_sequence(Elaboration *e, const Shape *krs, LevelBound *bounds)
+static Box bound_sequence(ShapeBuilder *builder, const Shape *krs, LevelBound *bounds)
 {
-    ReachStage *reach = arena_new_array(e->arena, ReachStage, krs->stage_count + 1);
+    ReachStage *reach = arena_new_array(builder->arena, ReachStage, krs->stage_count + 1);
     bool        known = true;
     Box         box   = box_empty;
     Ball        ball  = ball_around(box_empty);
@@ -93,19 +94,19 @@ static Box bound_sequence(Elaboration *e, const Shape *krs, LevelBound *bounds)
         } else if (stage->kind == SEQUENCE_REFLECT) {
             Range u[3];
             for (uint32_t k = 0; k < 3; k++)
-                u[k] = node_range(e, stage->normal, k);
-            Range w = node_range(e, stage->offset, 0);
+                u[k] = node_range(builder, stage->normal, k);
+            Range w = node_range(builder, stage->offset, 0);
             box     = box_fold(box, u, w);
             ball    = ball_fold(ball, u, w);
         } else {
-            box  = map_box(e, &stage->map, box);
-            ball = ball_around(map_box(e, &stage->map, ball_box(ball)));
+            box  = map_box(builder, &stage->map, box);
+            ball = ball_around(map_box(builder, &stage->map, ball_box(ball)));
         }
         box          = box_common(box, ball_box(ball));
         Ball tighter = ball_around(box);
         if (tighter.radius < ball.radius)
             ball = tighter;
-        known         = known && read_stage(e, krs, stage, &reach[i]);
+        known         = known && read_stage(builder, krs, stage, &reach[i]);
         reach[i].box  = box;
         reach[i].ball = ball;
         if (known && stage->kind == SEQUENCE_REFLECT)
@@ -126,7 +127,7 @@ static uint32_t count_inversions(const Shape *krs)
 }
 
 /* What is inverted must not be endless; reported at the first inversion after it. */
-static bool check_kernels(Elaboration *e, const Shape *krs)
+static bool check_kernels(ShapeBuilder *builder, const Shape *krs)
 {
     bool                 good      = true;
     const SequenceStage *inversion = NULL;
@@ -135,15 +136,15 @@ static bool check_kernels(Elaboration *e, const Shape *krs)
         if (stage->kind == SEQUENCE_MAP && stage->map.pole != NODE_NONE)
             inversion = stage;
         if (stage->kind == SEQUENCE_KERNEL && inversion)
-            good = check_invertible(e, krs->children[stage->kernel], inversion->span) && good;
+            good = check_invertible(builder, krs->children[stage->kernel], inversion->span) && good;
     }
     return good;
 }
 
-const Shape *make_krs(Elaboration *e, const SequenceStage *stages, uint32_t stage_count,
+const Shape *make_krs(ShapeBuilder *builder, const SequenceStage *stages, uint32_t stage_count,
                       const Shape *const *kernels, uint32_t kernel_count, Span span)
 {
-    Shape *krs       = shape_new(e, SHAPE_KRS, "krs", span, kernels, kernel_count);
+    Shape *krs       = shape_new(builder, SHAPE_KRS, "krs", span, kernels, kernel_count);
     krs->stages      = stages;
     krs->stage_count = stage_count;
     krs->exact       = false;
@@ -158,10 +159,11 @@ const Shape *make_krs(Elaboration *e, const SequenceStage *stages, uint32_t stag
         }
     }
     krs->inversions = count_inversions(krs);
-    if (krs->inversions && !check_kernels(e, krs))
+    if (krs->inversions && !check_kernels(builder, krs))
         return NULL;
-    LevelBound *bounds = arena_new_array(e->arena, LevelBound, stage_count + 1);
+    LevelBound *bounds = arena_new_array(builder->arena, LevelBound, stage_count + 1);
     krs->bounds        = bounds;
-    krs->box = krs->inversions ? bound_inverted(e, krs, bounds) : bound_sequence(e, krs, bounds);
+    krs->box           = krs->inversions ? bound_inverted(builder, krs, bounds)
+                                         : bound_sequence(builder, krs, bounds);
     return krs;
 }

@@ -123,14 +123,6 @@ Lowered lower_shape(Lowering *l, const Shape *shape, LowerContext context)
     return result;
 }
 
-Node divide_by_slope(Graph *g, Node distance, double slope)
-{
-    if (slope <= 1 + 1e-9)
-        return distance;
-    Node factor = graph_number(g, 1 / slope);
-    return graph_op2(g, OP_mul, distance, factor);
-}
-
 static Node or_else(Node node, Node otherwise) { return node == NODE_NONE ? otherwise : node; }
 
 bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roots)
@@ -190,4 +182,19 @@ bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near
     return tape.count <= MOST_DERIVED &&
            graph_gradient_of(graph, *near, held_constant.items, held_constant.count, gradient, NULL,
                              scratch) != DERIVED_NOT;
+}
+
+Lowered scale_distance(Lowering *l, Lowered result, Node factor)
+{
+    if (result.distance != NODE_NONE && factor != graph_number(l->graph, 1))
+        result.distance = graph_op2(l->graph, OP_mul, result.distance, factor);
+    return result;
+}
+
+Node enter_scale(Lowering *l, Node scale)
+{
+    Node unit = l->unit;
+    if (l->guarded)
+        l->unit = graph_op2(l->graph, OP_mul, unit, scale);
+    return unit;
 }

@@ -7,6 +7,8 @@
 #define KRS_LOWERING_H
 
 #include "compiler/lower/lower.h"
+#include "compiler/shape/map.h"
+#include "compiler/shape/slope.h"
 
 /* What a hit needs; NODE_NONE in `color`: not painted yet.  `normal` is in the space of the shape
    that was lowered; it need not be a unit vector (unit_normal). */

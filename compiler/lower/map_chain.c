@@ -22,6 +22,23 @@ static const double CLEAR = 0.5;
    keeps off the pole, by this fraction of its radius, so that its image is no half-space. */
 static const double ROUNDING = 1e-5, KEEP_OFF = 0.1;
 
+/* R^T (point - shift) / scale: where the point was before the map. */
+Node before_map(Graph *g, const Map *map, Node point)
+{
+    Node rows[3];
+    transpose_rows(g, map->rows, rows);
+    Node moved  = graph_op2(g, OP_sub, point, map->shift);
+    Node turned = moved;
+    Node e0 = graph_vec3(g, 1, 0, 0), e1 = graph_vec3(g, 0, 1, 0), e2 = graph_vec3(g, 0, 0, 1);
+    if (rows[0] != e0 || rows[1] != e1 || rows[2] != e2)
+        turned = graph_op4(g, OP_turn, moved, rows[0], rows[1], rows[2]);
+    Node one = graph_number(g, 1);
+    if (map->scale == one)
+        return turned;
+    Node factor = graph_op2(g, OP_div, one, map->scale);
+    return graph_op2(g, OP_scale, turned, factor);
+}
+
 MapChain map_chain_new(Graph *g, Node point)
 {
     return (MapChain){point, graph_number(g, 1), NODE_NONE, NODE_NONE};
@@ -237,20 +254,4 @@ Node farther_of(Graph *g, Node a, Node b)
     if (a == NODE_NONE || b == NODE_NONE)
         return a == NODE_NONE ? b : a;
     return graph_op2(g, OP_max, a, b);
-}
-
-Lowered lower_inversion(Lowering *l, const Shape *shape, LowerContext context)
-{
-    NormalPath path  = normal_path(l, context, 2);
-    MapChain   chain = map_chain_new(l->graph, context.point);
-    Ball       ball  = ball_around(shape->children[0]->box);
-    Node       hull  = map_chain_hull(l, &chain, &shape->map, &ball);
-    map_chain_append(l, &chain, &shape->map, &path);
-    Node    unit   = enter_map_chain(l, &chain);
-    Lowered result = lower_behind(l, shape->children[0], context, &path, chain.point);
-    l->unit        = unit;
-    result         = map_chain_out(l, &chain, result);
-    if (result.distance != NODE_NONE)
-        result.distance = farther_of(l->graph, result.distance, hull);
-    return result;
 }

@@ -208,3 +208,11 @@ Node normal_out(Lowering *l, const NormalPath *path, Node inner)
     }
     return normal;
 }
+
+Lowered lower_behind(Lowering *l, const Shape *child, LowerContext context, const NormalPath *path,
+                     Node point)
+{
+    Lowered result        = lower_shape(l, child, context_behind(path, context, point));
+    result.surface.normal = normal_out(l, path, result.surface.normal);
+    return result;
+}

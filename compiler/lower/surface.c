@@ -45,28 +45,3 @@ Surface mix_surface(Graph *g, Node nearer, Node weight, Surface a, Surface b)
                      mix_nodes(g, a.normal, b.normal, weight),
                      choose(g, nearer, a.trap, b.trap)};
 }
-
-/* What a material leaves open stays. */
-static void paint_with(Lowering *l, Node *property, Node paint, Substitution with)
-{
-    if (paint != NODE_NONE)
-        *property = graph_substitute(l->graph, paint, with, l->scratch);
-}
-
-/* The outermost paint counts, as the last method of a chain does. */
-Lowered lower_paint(Lowering *l, const Shape *shape, LowerContext context)
-{
-    Lowered result = lower_shape(l, shape->children[0], context);
-    if (!l->surfaces || result.distance == NODE_NONE)
-        return result;
-    Substitution with = {
-        context.point, result.surface.instance, result.surface.level, result.surface.uv,
-        NODE_NONE,     result.surface.trap};
-    const Material *material = shape->material;
-    with.normal              = unit_normal(l->graph, result.surface.normal, context.normal);
-    paint_with(l, &result.surface.color, material->color, with);
-    paint_with(l, &result.surface.roughness, material->roughness, with);
-    paint_with(l, &result.surface.metallic, material->metallic, with);
-    paint_with(l, &result.surface.emission, material->emission, with);
-    return result;
-}

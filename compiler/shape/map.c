@@ -6,7 +6,7 @@
  * constants the graph folds everything away.  R is orthonormal by construction, which is why
  * distances need no bound: they are multiplied by the scale.
  */
-#include "compiler/eval/elaborate.h"
+#include "compiler/shape/map.h"
 
 #include <assert.h>
 #include <math.h>
@@ -18,37 +18,37 @@ static Node unit_axis(Graph *graph, int axis)
     return graph_vec3(graph, axis == 0, axis == 1, axis == 2);
 }
 
-Map *map_new(Elaboration *e)
+Map *map_new(ShapeBuilder *builder)
 {
-    Map *map   = arena_new(e->arena, Map);
-    map->scale = graph_number(e->graph, 1);
+    Map *map   = arena_new(builder->arena, Map);
+    map->scale = graph_number(builder->graph, 1);
     for (int i = 0; i < 3; i++)
-        map->rows[i] = unit_axis(e->graph, i);
-    map->shift = graph_constant(e->graph, TYPE_VEC3, ZERO);
+        map->rows[i] = unit_axis(builder->graph, i);
+    map->shift = graph_constant(builder->graph, TYPE_VEC3, ZERO);
     map->pole  = NODE_NONE;
     return map;
 }
 
-const Map *map_identity(Elaboration *e) { return map_new(e); }
+const Map *map_identity(ShapeBuilder *builder) { return map_new(builder); }
 
-const Map *map_translation(Elaboration *e, Node shift)
+const Map *map_translation(ShapeBuilder *builder, Node shift)
 {
-    Map *map   = map_new(e);
+    Map *map   = map_new(builder);
     map->shift = shift;
     return map;
 }
 
-const Map *map_scaling(Elaboration *e, Node scale)
+const Map *map_scaling(ShapeBuilder *builder, Node scale)
 {
-    Map *map   = map_new(e);
+    Map *map   = map_new(builder);
     map->scale = scale;
     return map;
 }
 
 /* Rodrigues: R = cos I + (1 - cos) a a^T + sin [a]x, row by row. */
-static void rotation_rows(Elaboration *e, Node axis, Node cosine, Node sine, Node rows[3])
+static void rotation_rows(ShapeBuilder *builder, Node axis, Node cosine, Node sine, Node rows[3])
 {
-    Graph *g       = e->graph;
+    Graph *g       = builder->graph;
     Node   one     = graph_number(g, 1);
     Node   versine = graph_op2(g, OP_sub, one, cosine);
     for (int i = 0; i < 3; i++) {
@@ -74,21 +74,21 @@ static Node snap(Graph *g, Node node)
     return fabs(number - nearest) < 4e-16 ? graph_number(g, nearest) : node;
 }
 
-const Map *map_rotation(Elaboration *e, Node axis, Node angle)
+const Map *map_rotation(ShapeBuilder *builder, Node axis, Node angle)
 {
-    Map *map    = map_new(e);
-    Node unit   = graph_op1(e->graph, OP_normalize, axis);
-    Node cosine = snap(e->graph, graph_op1(e->graph, OP_cos, angle));
-    Node sine   = snap(e->graph, graph_op1(e->graph, OP_sin, angle));
-    rotation_rows(e, unit, cosine, sine, map->rows);
+    Map *map    = map_new(builder);
+    Node unit   = graph_op1(builder->graph, OP_normalize, axis);
+    Node cosine = snap(builder->graph, graph_op1(builder->graph, OP_cos, angle));
+    Node sine   = snap(builder->graph, graph_op1(builder->graph, OP_sin, angle));
+    rotation_rows(builder, unit, cosine, sine, map->rows);
     return map;
 }
 
 /* The reflection x - 2 (u.x - w) u. */
-const Map *map_reflection(Elaboration *e, Node normal, Node offset)
+const Map *map_reflection(ShapeBuilder *builder, Node normal, Node offset)
 {
-    Graph *g   = e->graph;
-    Map   *map = map_new(e);
+    Graph *g   = builder->graph;
+    Map   *map = map_new(builder);
     Node   two = graph_number(g, 2);
     for (int i = 0; i < 3; i++) {
         Node entry   = graph_component(g, normal, (uint32_t)i);
@@ -107,9 +107,9 @@ const Map *map_reflection(Elaboration *e, Node normal, Node offset)
  * from and from+to, which maps from to -to, then in the plane perpendicular to `to`.  Opposite
  * directions leave the first plane undefined: then any perpendicular axis serves.
  */
-const Map *map_alignment(Elaboration *e, Node from, Node to)
+const Map *map_alignment(ShapeBuilder *builder, Node from, Node to)
 {
-    Graph *g    = e->graph;
+    Graph *g    = builder->graph;
     Node   a    = graph_op1(g, OP_normalize, from);
     Node   b    = graph_op1(g, OP_normalize, to);
     Node   sum  = graph_op2(g, OP_add, a, b);
@@ -126,33 +126,33 @@ const Map *map_alignment(Elaboration *e, Node from, Node to)
     Node bisector      = graph_op3(g, OP_select, opposite, perpendicular, sum);
     bisector           = graph_op1(g, OP_normalize, bisector);
     Node       zero    = graph_number(g, 0);
-    const Map *first   = map_reflection(e, bisector, zero);
+    const Map *first   = map_reflection(builder, bisector, zero);
     /* The first takes a to -b; when they are opposite it leaves a, which is -b, where it is. */
-    Node turned          = map_turn(e, first, a);
+    Node turned          = map_turn(builder, first, a);
     Node difference      = graph_op2(g, OP_sub, turned, b);
     Node difference_size = graph_op1(g, OP_length, difference);
     Node coincide        = graph_op2(g, OP_less, difference_size, tiny);
     Node mirror          = graph_op3(g, OP_select, coincide, bisector, difference);
     mirror               = graph_op1(g, OP_normalize, mirror);
-    const Map *second    = map_reflection(e, mirror, zero);
-    return map_product(e, second, first);
+    const Map *second    = map_reflection(builder, mirror, zero);
+    return map_product(builder, second, first);
 }
 
-Node map_turn(Elaboration *e, const Map *f, Node vector)
+Node map_turn(ShapeBuilder *builder, const Map *f, Node vector)
 {
-    return graph_op4(e->graph, OP_turn, vector, f->rows[0], f->rows[1], f->rows[2]);
+    return graph_op4(builder->graph, OP_turn, vector, f->rows[0], f->rows[1], f->rows[2]);
 }
 
-Node map_apply(Elaboration *e, const Map *f, Node point)
+Node map_apply(ShapeBuilder *builder, const Map *f, Node point)
 {
-    Graph *g     = e->graph;
+    Graph *g     = builder->graph;
     Node   scale = f->scale;
     if (f->pole != NODE_NONE) {
         point       = graph_op2(g, OP_sub, point, f->pole);
         Node square = graph_op2(g, OP_dot, point, point);
         scale       = graph_op2(g, OP_div, scale, square);
     }
-    Node turned = map_turn(e, f, point);
+    Node turned = map_turn(builder, f, point);
     turned      = graph_op2(g, OP_scale, turned, scale);
     return graph_op2(g, OP_add, turned, f->shift);
 }
@@ -171,48 +171,48 @@ static Node product_row(Graph *g, Node row, const Node rows[3])
     return sum;
 }
 
-void turn_product(Elaboration *e, const Node a[3], const Node b[3], Node product[3])
+void turn_product(ShapeBuilder *builder, const Node a[3], const Node b[3], Node product[3])
 {
     for (int i = 0; i < 3; i++)
-        product[i] = product_row(e->graph, a[i], b);
+        product[i] = product_row(builder->graph, a[i], b);
 }
 
-static const Map *similarity_product(Elaboration *e, const Map *f, const Map *g)
+static const Map *similarity_product(ShapeBuilder *builder, const Map *f, const Map *g)
 {
-    Map *map   = map_new(e);
-    map->scale = graph_op2(e->graph, OP_mul, f->scale, g->scale);
-    turn_product(e, f->rows, g->rows, map->rows);
-    map->shift = map_apply(e, f, g->shift);
+    Map *map   = map_new(builder);
+    map->scale = graph_op2(builder->graph, OP_mul, f->scale, g->scale);
+    turn_product(builder, f->rows, g->rows, map->rows);
+    map->shift = map_apply(builder, f, g->shift);
     return map;
 }
 
-static bool is_identity(Elaboration *e, const Map *map)
+static bool is_identity(ShapeBuilder *builder, const Map *map)
 {
-    bool identity = map->pole == NODE_NONE && map->scale == graph_number(e->graph, 1) &&
-                    map->shift == graph_constant(e->graph, TYPE_VEC3, ZERO);
+    bool identity = map->pole == NODE_NONE && map->scale == graph_number(builder->graph, 1) &&
+                    map->shift == graph_constant(builder->graph, TYPE_VEC3, ZERO);
     for (int i = 0; i < 3; i++)
-        identity = identity && map->rows[i] == unit_axis(e->graph, i);
+        identity = identity && map->rows[i] == unit_axis(builder->graph, i);
     return identity;
 }
 
 /* f(g(x)), f without maps before it: what can be one map becomes one. */
-static const Map *prepend(Elaboration *e, const Map *f, const Map *g)
+static const Map *prepend(ShapeBuilder *builder, const Map *f, const Map *g)
 {
-    if (is_identity(e, f))
+    if (is_identity(builder, f))
         return g;
     bool       plain  = f->pole == NODE_NONE && g->pole == NODE_NONE;
-    const Map *joined = plain ? similarity_product(e, f, g) : moebius_product(e, f, g);
+    const Map *joined = plain ? similarity_product(builder, f, g) : moebius_product(builder, f, g);
     if (joined)
-        return g->first ? prepend(e, joined, g->first) : joined;
-    Map *chain   = arena_new(e->arena, Map);
+        return g->first ? prepend(builder, joined, g->first) : joined;
+    Map *chain   = arena_new(builder->arena, Map);
     *chain       = *f;
     chain->first = g;
     return chain;
 }
 
-const Map *map_product(Elaboration *e, const Map *f, const Map *g)
+const Map *map_product(ShapeBuilder *builder, const Map *f, const Map *g)
 {
-    return prepend(e, f, f->first ? map_product(e, f->first, g) : g);
+    return prepend(builder, f, f->first ? map_product(builder, f->first, g) : g);
 }
 
 void transpose_rows(Graph *graph, const Node rows[3], Node transposed[3])
@@ -225,23 +225,24 @@ void transpose_rows(Graph *graph, const Node rows[3], Node transposed[3])
     }
 }
 
-static const Map *similarity_inverse(Elaboration *e, const Map *f)
+static const Map *similarity_inverse(ShapeBuilder *builder, const Map *f)
 {
-    Graph *g   = e->graph;
-    Map   *map = map_new(e);
+    Graph *g   = builder->graph;
+    Map   *map = map_new(builder);
     Node   one = graph_number(g, 1);
     map->scale = graph_op2(g, OP_div, one, f->scale);
     transpose_rows(g, f->rows, map->rows);
-    Node back   = map_turn(e, map, f->shift);
+    Node back   = map_turn(builder, map, f->shift);
     Node factor = graph_op1(g, OP_neg, map->scale);
     map->shift  = graph_op2(g, OP_scale, back, factor);
     return map;
 }
 
-const Map *map_inverse(Elaboration *e, const Map *f)
+const Map *map_inverse(ShapeBuilder *builder, const Map *f)
 {
-    const Map *back = f->pole == NODE_NONE ? similarity_inverse(e, f) : inversion_inverse(e, f);
-    return f->first ? map_product(e, map_inverse(e, f->first), back) : back;
+    const Map *back = f->pole == NODE_NONE ? similarity_inverse(builder, f)
+                                           : inversion_inverse(builder, f);
+    return f->first ? map_product(builder, map_inverse(builder, f->first), back) : back;
 }
 
 /* ---- boxes ---- */
@@ -252,22 +253,22 @@ static Range cosine_range(Range range)
     return (Range){fmax(-1, fmin(range.low, 1)), fmin(1, fmax(range.high, -1))};
 }
 
-MapRange map_range(Elaboration *e, const Map *f)
+MapRange map_range(ShapeBuilder *builder, const Map *f)
 {
-    MapRange range = {.inverts = f->pole != NODE_NONE, .scale = node_range(e, f->scale, 0)};
+    MapRange range = {.inverts = f->pole != NODE_NONE, .scale = node_range(builder, f->scale, 0)};
     for (uint32_t i = 0; i < 3; i++) {
         for (uint32_t j = 0; j < 3; j++)
-            range.rows[i][j] = cosine_range(node_range(e, f->rows[i], j));
-        range.shift[i] = node_range(e, f->shift, i);
+            range.rows[i][j] = cosine_range(node_range(builder, f->rows[i], j));
+        range.shift[i] = node_range(builder, f->shift, i);
         if (range.inverts)
-            range.pole[i] = node_range(e, f->pole, i);
+            range.pole[i] = node_range(builder, f->pole, i);
     }
     return range;
 }
 
-Box map_box(Elaboration *e, const Map *f, Box box)
+Box map_box(ShapeBuilder *builder, const Map *f, Box box)
 {
-    MapRange range = map_range(e, f);
+    MapRange range = map_range(builder, f);
     assert(!range.inverts);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)

@@ -1,7 +1,7 @@
 /*
  * print.c: the elaborated scene as indented text.
  */
-#include "compiler/shape/shape.h"
+#include "compiler/shape/scene.h"
 
 static const char *const kind_names[] = {
     [SHAPE_EMPTY]        = "empty",

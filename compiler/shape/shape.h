@@ -1,16 +1,26 @@
 /*
- * shape.h: the elaborated scene: trees of shapes, and what the picture needs beside them.
+ * shape.h: what a shape is.
  *
- * A shape is made by the functions below, bottom up; each knows at once its bounding box and
+ * Shapes are made by the functions of family.h, bottom up; each knows at once its bounding box and
  * how steep its distance is, by the rule of its kind.  Numbers in it are nodes of the graph
  * that do not depend on the point, so a parameter can move everything.  Shapes never change.
  */
 #ifndef KRS_SHAPE_H
 #define KRS_SHAPE_H
 
-#include "compiler/shape/box.h"
-#include "compiler/eval/value.h"
+#include "compiler/base/source.h"
 #include "compiler/graph/zeros.h"
+#include "compiler/shape/box.h"
+
+typedef struct Shape Shape;
+typedef struct Map   Map;
+
+/* The material of a surface: numbers are nodes, colours linear VEC3 nodes; NODE_NONE leaves
+   what it was painted with before. */
+typedef struct Material {
+    const char *name;
+    Node        color, roughness, metallic, emission;
+} Material;
 
 /*
  * Kinds, with their children and values (nodes).  `slope` says how the Lipschitz constant of
@@ -57,9 +67,6 @@ struct Map {
     Node       pole;  /* NODE_NONE: a similarity */
     const Map *first; /* NULL: nothing; similarities have none */
 };
-
-/* The rows of the inverse of a turn. */
-void transpose_rows(Graph *graph, const Node rows[3], Node transposed[3]);
 
 /* How two distances are joined; blends.def has a row for each. */
 typedef enum BlendKind {
@@ -159,109 +166,20 @@ struct Shape {
     FalloffKind         falloff;    /* META */
     uint32_t            cells[3];   /* REPEAT: copies per axis, 0 for endless */
 
-    Node          plane_normal, plane_offset; /* PRIMITIVE that is a half-space, else NODE_NONE */
-    const Syntax *declaration;                /* PRIMITIVE that a declaration made, else NULL */
-    Node          declared;      /* of such a primitive: its `distance` as it is written */
-    const struct Shape *rounded; /* OFFSET that .round made of a core: what is rounded; or NULL */
-    const Syntax       *core; /* PRIMITIVE: what .round(r) grows by r, using `rounding`; or NULL */
-    const struct Environment *core_names; /* what that expression sees */
-    const Material           *material;
-    const SequenceStage      *stages;
-    uint32_t                  stage_count;
-    const LevelBound         *bounds; /* of the stages, for all values of the parameters */
+    Node plane_normal, plane_offset; /* PRIMITIVE that is a half-space, else NODE_NONE */
+    /* PRIMITIVE that a declaration of the language made: what the evaluator knows of it, and
+       shapes do not; else NULL. */
+    const struct Declaration *declaration;
+    Node                      declared; /* of such a primitive: its `distance` as it is written */
+    const struct Shape  *rounded; /* OFFSET that .round made of a core: what is rounded; or NULL */
+    const Material      *material;
+    const SequenceStage *stages;
+    uint32_t             stage_count;
+    const LevelBound    *bounds; /* of the stages, for all values of the parameters */
 };
-
-/* A `param`: its slot in the parameter block and its range. */
-typedef struct Parameter {
-    const char *name;
-    uint32_t    slot, components;
-    double      value[4], low[4], high[4];
-} Parameter;
-
-/* What a `show` shows. */
-typedef struct Component {
-    const char  *name;
-    const Shape *shape;
-    Span         span;
-    Node         plane_normal, plane_offset; /* of a half-space and nothing else, or NODE_NONE */
-} Component;
-
-/* Numbers and vectors here are frame-time nodes. */
-typedef struct SceneCamera {
-    const char *name; /* or NULL */
-    Node        eye, target, up, fov, height;
-    uint32_t    projection;
-    bool        standing_in; /* for a scene that has no camera: framing.c finds eye and target */
-} SceneCamera;
-
-typedef struct SceneLight {
-    bool positional, shadow;
-    Node vector, color, softness;
-} SceneLight;
-
-typedef struct SceneImage {
-    uint32_t    width, height, samples;
-    const char *integrator, *tone_map;
-    double      exposure, error;
-} SceneImage;
-
-/* The slope of an expression that no constant bounds, as parameters in it have no limits: it is
-   found for the values of each frame (slope.c), and stands in a slot of the parameter block. */
-typedef struct FrameSlope {
-    uint32_t slot;
-    Node     formula;
-    Box      region; /* over which it is found; infinite: all space */
-    Span     span;   /* of the formula */
-} FrameSlope;
-
-/* The slot has a number of single precision that is no less than the slope; infinite: there is no
-   bound. */
-double frame_slope_upward(double slope);
-/* Into how many cells the region is cut at most. */
-uint32_t frame_slope_cells(Box region);
-
-/* The host finds each anew whenever anything changes. */
-enum { MOST_FRAME_SLOPES = 256 };
-
-typedef struct Scene {
-    Graph *graph;
-    struct {
-        Component *items;
-        size_t     count, capacity;
-    } components;
-    struct {
-        Parameter *items;
-        size_t     count, capacity;
-    } parameters;
-    struct {
-        FrameSlope *items;
-        size_t      count, capacity;
-    } slopes;
-    /* Declared half-spaces, which may be in no component: mirrors. */
-    struct {
-        const Shape **items;
-        size_t        count, capacity;
-    } half_spaces;
-    struct {
-        SceneCamera *items;
-        size_t       count, capacity;
-    } cameras;
-    struct {
-        SceneLight *items;
-        size_t      count, capacity;
-    } lights;
-    Node       zenith, horizon, ground;
-    Node       zone; /* the depth of OP_POINT in zones, negative outside; NODE_NONE without any */
-    size_t     zone_count;
-    SceneImage image;
-    Box        box; /* around all components */
-} Scene;
 
 /* Whether it is curved nearly everywhere, or finer than a pixel as a rule, so that where its normal
    turns there need be no edge: blends, sequences, fields, and what is bent or stretched. */
 bool shape_is_curved(const Shape *shape);
-
-/* The scene as indented text, for `krs dump --after=scene`. */
-void scene_print(const Scene *scene, const Sources *sources, Text *out);
 
 #endif

@@ -7,12 +7,10 @@
  * parameter block.  That is promised only if the slope has a bound at first, at time 0 and the
  * defaults, and at other values tried here; a frame that has none is refused when it comes.
  */
-#include "compiler/eval/elaborate.h"
+#include "compiler/shape/slope.h"
 
 #include <math.h>
 #include <string.h>
-
-#include "compiler/lower/lower.h"
 
 enum { CELLS = 512, FRAME_CELLS = 64, TRIALS = 3 };
 
@@ -48,12 +46,12 @@ static bool needs_the_endless(const Graph *graph, Node root, Arena *scratch)
 }
 
 /* What has no limits becomes a single value; ranges stay. */
-static void try_values(const Scene *scene, Graph *plain, int trial)
+static void try_values(const Parameters *parameters, Graph *plain, int trial)
 {
     GraphParameter *ranges = plain->parameters.items;
     ranges[0].low[0] = ranges[0].high[0] = trial_times[trial];
-    for (size_t i = 0; i < scene->parameters.count; i++) {
-        const Parameter *parameter = &scene->parameters.items[i];
+    for (size_t i = 0; i < parameters->count; i++) {
+        const Parameter *parameter = &parameters->items[i];
         GraphParameter  *range     = &ranges[parameter->slot];
         for (uint32_t k = 0; k < parameter->components; k++) {
             double low = parameter->low[k], high = parameter->high[k];
@@ -66,18 +64,19 @@ static void try_values(const Scene *scene, Graph *plain, int trial)
 }
 
 /* Whether frames have a slope over a region; `found` gets the first one, or whom to blame. */
-static bool bounded_in_frames(Elaboration *e, const Graph *plain, Node root, Box region,
+static bool bounded_in_frames(ShapeBuilder *builder, const Graph *plain, Node root, Box region,
                               Steepness *found)
 {
     Graph tried            = *plain;
-    tried.parameters.items = arena_new_array(e->scratch, GraphParameter, plain->parameters.count);
+    tried.parameters.items = arena_new_array(builder->scratch, GraphParameter,
+                                             plain->parameters.count);
     memcpy(tried.parameters.items, plain->parameters.items,
            plain->parameters.count * sizeof *plain->parameters.items);
     for (int trial = TRIALS; trial-- > 0;) {
         Node blame = NODE_NONE;
-        try_values(e->scene, &tried, trial);
+        try_values(builder->parameters, &tried, trial);
         found->bound = graph_slope(&tried, root, region, NULL, frame_slope_cells(region), &blame,
-                                   e->scratch);
+                                   builder->scratch);
         if (isfinite(found->bound) && (trial > 0 || isfinite(frame_slope_upward(found->bound))))
             continue;
         found->blame = plain->items[blame].span;
@@ -96,49 +95,48 @@ static bool same_box(Box a, Box b)
 }
 
 /* The slot of the slope of a formula over a region: equal ones have one. */
-static Node frame_slot(Elaboration *e, Node formula, Box region, Span span)
+static Node frame_slot(ShapeBuilder *builder, Node formula, Box region, Span span)
 {
-    Scene *scene = e->scene;
-    for (size_t i = 0; i < scene->slopes.count; i++)
-        if (scene->slopes.items[i].formula == formula &&
-            same_box(scene->slopes.items[i].region, region))
-            return graph_parameter(e->graph, scene->slopes.items[i].slot, TYPE_FLOAT);
-    if (scene->slopes.count == MOST_FRAME_SLOPES && !e->stopped) {
-        Diag *diag  = diag_add(e->diags, DIAG_LIMIT, span,
-                               "more than %d expressions have a slope of each frame",
-                               MOST_FRAME_SLOPES);
-        diag->label = "this one too changes faster and faster with a `param` or with `time`";
-        diag->help  = "give the `param` a range, or use one expression for several shapes";
-        e->stopped  = true;
+    FrameSlopes *slopes = builder->slopes;
+    for (size_t i = 0; i < slopes->count; i++)
+        if (slopes->items[i].formula == formula && same_box(slopes->items[i].region, region))
+            return graph_parameter(builder->graph, slopes->items[i].slot, TYPE_FLOAT);
+    if (slopes->count == MOST_FRAME_SLOPES && !builder->stopped) {
+        Diag *diag       = diag_add(builder->diags, DIAG_LIMIT, span,
+                                    "more than %d expressions have a slope of each frame",
+                                    MOST_FRAME_SLOPES);
+        diag->label      = "this one too changes faster and faster with a `param` or with `time`";
+        diag->help       = "give the `param` a range, or use one expression for several shapes";
+        builder->stopped = true;
     }
-    FrameSlope     slope = {(uint32_t)e->graph->parameters.count, formula, region, span};
+    FrameSlope     slope = {(uint32_t)builder->graph->parameters.count, formula, region, span};
     GraphParameter range = {{0}, {HUGE_VAL}};
-    array_push(e->arena, &e->graph->parameters, range);
-    array_push(e->arena, &scene->slopes, slope);
-    return graph_parameter(e->graph, slope.slot, TYPE_FLOAT);
+    array_push(builder->arena, &builder->graph->parameters, range);
+    array_push(builder->arena, slopes, slope);
+    return graph_parameter(builder->graph, slope.slot, TYPE_FLOAT);
 }
 
-bool find_slope(Elaboration *e, Node formula, const Box *regions, int count, Span span,
+bool find_slope(ShapeBuilder *builder, Node formula, const Box *regions, int count, Span span,
                 Steepness *found)
 {
     /* Simplified, sqrt(x * x + ...) is a length, whose slope is known. */
     Node   root  = formula;
-    Graph *plain = graph_simplify(e->graph, &root, 1, e->scratch);
+    Graph *plain = graph_simplify(builder->graph, &root, 1, builder->scratch);
     *found       = (Steepness){.slot = NODE_NONE};
     for (int i = 0; i < count; i++) {
         Node blame    = NODE_NONE;
         found->region = regions[i];
         found->bound  = graph_slope(plain, root, regions[i], NULL,
-                                   box_is_finite(regions[i]) ? CELLS : 1, &blame, e->scratch);
+                                   box_is_finite(regions[i]) ? CELLS : 1, &blame, builder->scratch);
         found->blame  = blame == NODE_NONE ? (Span){0, 0, 0} : plain->items[blame].span;
         if (isfinite(found->bound))
             return true;
     }
-    bool frames = needs_the_endless(plain, root, e->scratch);
+    bool frames = needs_the_endless(plain, root, builder->scratch);
     for (int i = 0; frames && i < count; i++) {
         found->region = regions[i];
-        if (bounded_in_frames(e, plain, root, regions[i], found)) {
-            found->slot = frame_slot(e, formula, regions[i], span);
+        if (bounded_in_frames(builder, plain, root, regions[i], found)) {
+            found->slot = frame_slot(builder, formula, regions[i], span);
             return true;
         }
     }
@@ -157,4 +155,12 @@ Node divide_by_steepness(Graph *graph, Node distance, const Steepness *slope)
     Node one    = graph_number(graph, 1);
     Node factor = graph_op2(graph, OP_div, one, graph_op2(graph, OP_max, slope->slot, one));
     return graph_op2(graph, OP_mul, distance, factor);
+}
+
+Node divide_by_slope(Graph *g, Node distance, double slope)
+{
+    if (slope <= 1 + 1e-9)
+        return distance;
+    Node factor = graph_number(g, 1 / slope);
+    return graph_op2(g, OP_mul, distance, factor);
 }
