@@ -33,8 +33,8 @@ GRAPH    := $(addprefix compiler/graph/, graph.c build.c derive.c series.c zeros
                 range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c regions.c \
                 fractal.c evaluate.c print.c)
 SHAPE    := $(addprefix compiler/shape/, box.c reach.c cover.c map.c moebius.c builder.c slope.c print.c)
-LOWER    := $(addprefix compiler/lower/, lower.c box_distance.c surface.c normal.c map_chain.c guards.c \
-                ray_step.c ray_images.c)
+LOWER    := $(addprefix compiler/lower/, context.c box_distance.c surface.c join.c normal.c map_chain.c \
+                guards.c ray_images.c ray_step.c lower.c)
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
 EVAL     := $(addprefix compiler/eval/, scope.c expression.c arithmetic.c arguments.c builtins.c lists.c \
                 random.c functions.c csg.c fractal.c declare.c claims.c empty.c methods.c properties.c \

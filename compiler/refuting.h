@@ -7,7 +7,7 @@
 #define KRS_REFUTING_H
 
 #include "compiler/eval/claims.h"
-#include "compiler/lower/lowering.h"
+#include "compiler/lower/context.h"
 #include "compiler/refute.h"
 #include "compiler/search.h"
 

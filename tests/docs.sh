@@ -66,8 +66,9 @@ none "every word of the language is on its page"
 sed -n '/not_supported/d; s/^\(NUMERIC\|SPECIAL\)(\([a-z_0-9]*\), *"\([^"]*\)".*/\2(\3)/p' \
     compiler/eval/functions.def | signature | undocumented
 none "every function is on the page, with its parameters"
-sed -n '/not_supported/d; s/^METHOD(\([a-z_]*\), *"\([^"]*\)".*/.\1(\2)/p' \
-    compiler/eval/methods.def | signature | while read -r wanted; do
+sed -n '/not_supported/d; s/^METHOD(\([a-z_]*\), *"\([^"]*\)".*/.\1(\2)/p
+    s/^DEFORMATION([A-Z]*, *\([a-z_]*\), *"\([^"]*\)".*/.\1(\2)/p' \
+    compiler/eval/methods.def compiler/shape/shapes.def | signature | while read -r wanted; do
         grep -qF -- "$wanted" "$work/signatures" || echo "$wanted"
     done >"$work/said"
 none "every method is on the page, with its parameters"

@@ -12,8 +12,9 @@
 #include <string.h>
 
 #include "compiler/eval/elaborate.h"
-#include "compiler/lower/lowering.h"
 #include "compiler/graph/evaluate.h"
+#include "compiler/lower/context.h"
+#include "compiler/shape/slope.h"
 
 /* ---- claims as pairs of numbers ---- */
 

@@ -8,8 +8,9 @@
 #include <math.h>
 
 #include "compiler/eval/elaborate.h"
-#include "compiler/lower/lowering.h"
 #include "compiler/graph/evaluate.h"
+#include "compiler/lower/context.h"
+#include "compiler/shape/slope.h"
 
 /* Of a component: operations on numbers, and cells that are open at once. */
 enum { MOST_OPERATIONS = 500000, MOST_CELLS = 64 };

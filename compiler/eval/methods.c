@@ -306,9 +306,23 @@ static Value method_within(Elaboration *e, const Shape *shape, Call *call)
         make_joint(e->builder, SHAPE_INTERSECTION, both, 2, blend_sharp, call->syntax->span));
 }
 
-/* An axis, and numbers after it. */
-static Value deformed(Elaboration *e, const Shape *shape, Call *call, uint32_t numbers,
-                      MakeDeformed *make)
+static MakeDeformed *deformation(const char *name)
+{
+    static const struct {
+        const char   *name;
+        MakeDeformed *make;
+    } all[] = {
+#define DEFORMATION(KIND, name, parameters, rule, meaning) {#name, make_##name},
+#include "compiler/shape/shapes.def"
+    };
+    size_t i = 0;
+    while (strcmp(all[i].name, name) != 0)
+        i++;
+    return all[i].make;
+}
+
+/* One of the deformations of shapes.def: an axis, and one or two numbers after it. */
+static Value method_deform(Elaboration *e, const Shape *shape, Call *call)
 {
     DeformArguments asked = {.name       = call->name,
                              .span       = call->syntax->span,
@@ -316,28 +330,12 @@ static Value deformed(Elaboration *e, const Shape *shape, Call *call, uint32_t n
     asked.axis            = want_vector(e, call, 0, ORIGIN);
     bool good = asked.axis != NODE_NONE && check_direction(e, asked.axis, call->arguments[0].syntax,
                                                            "the axis of a deformation");
-    for (uint32_t i = 0; i < numbers; i++) {
-        asked.numbers[i] = want_number(e, call, 1 + i, 0);
-        good             = good && asked.numbers[i] != NODE_NONE;
-        if (good)
-            asked.number_spans[i] = call->arguments[1 + i].syntax->span;
+    for (uint32_t i = 0; i < 2 && is_given(call, 1 + i); i++) {
+        asked.numbers[i]      = want_number(e, call, 1 + i, 0);
+        asked.number_spans[i] = call->arguments[1 + i].syntax->span;
+        good                  = good && asked.numbers[i] != NODE_NONE;
     }
-    return good ? value_shape(make(e->builder, shape, &asked)) : value_error();
-}
-
-static Value method_twist(Elaboration *e, const Shape *shape, Call *call)
-{
-    return deformed(e, shape, call, 1, make_twist);
-}
-
-static Value method_bend(Elaboration *e, const Shape *shape, Call *call)
-{
-    return deformed(e, shape, call, 1, make_bend);
-}
-
-static Value method_taper(Elaboration *e, const Shape *shape, Call *call)
-{
-    return deformed(e, shape, call, 2, make_taper);
+    return good ? value_shape(deformation(call->name)(e->builder, shape, &asked)) : value_error();
 }
 
 static Value method_displace(Elaboration *e, const Shape *shape, Call *call)

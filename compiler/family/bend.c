@@ -6,6 +6,8 @@
 #include <math.h>
 
 #include "compiler/graph/build.h"
+#include "compiler/lower/join.h"
+#include "compiler/lower/map_chain.h"
 
 /* Below this, sin(a) / a and atan(a) / a are 1 but for their rounding. */
 static const double SMALL_ANGLE = 1e-6;

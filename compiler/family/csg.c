@@ -2,9 +2,11 @@
  * csg.c: joints of shapes: union, intersection, difference, xor, and morph; sharp or blended.
  */
 #include "compiler/family/family.h"
-#include "compiler/lower/lowering.h"
 
 #include <math.h>
+
+#include "compiler/lower/join.h"
+#include "compiler/lower/surface.h"
 
 /* ---- how it is made ---- */
 
@@ -55,36 +57,6 @@ const Shape *make_morph(ShapeBuilder *builder, const Shape *a, const Shape *b, N
 
 /* ---- how it is lowered ---- */
 
-static Node join_distances(Graph *g, Blend blend, Node a, Node b)
-{
-    if (blend.width == NODE_NONE)
-        return graph_op2(g, OP_min, a, b);
-    Node operands[MAX_OPERANDS] = {a, b, blend.width, blend.steps};
-    return graph_op(g, blend_info[blend.kind].op, operands);
-}
-
-/* The union of two distances, sharp or blended. */
-Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b)
-{
-    Graph *g = l->graph;
-    if (a.distance == NODE_NONE)
-        return b;
-    if (b.distance == NODE_NONE)
-        return a;
-    Lowered joined  = lowered_nothing;
-    joined.distance = join_distances(g, blend, a.distance, b.distance);
-    if (!l->surfaces)
-        return joined;
-    Node nearer = graph_op2(g, OP_less, a.distance, b.distance);
-    if (blend.width == NODE_NONE)
-        joined.surface = choose_surface(g, nearer, a.surface, b.surface);
-    else {
-        Node weight    = graph_op3(g, OP_blend_weight, a.distance, b.distance, blend.width);
-        joined.surface = mix_surface(g, nearer, weight, a.surface, b.surface);
-    }
-    return joined;
-}
-
 static Lowered complement(Lowering *l, Lowered a)
 {
     if (a.distance != NODE_NONE)
@@ -95,20 +67,6 @@ static Lowered complement(Lowering *l, Lowered a)
 LowerContext joint_context(const Shape *shape, LowerContext context)
 {
     return shape->blend.width == NODE_NONE ? context : context_lipschitz(context);
-}
-
-/* What is only a bound may be small far from the shape; the distance to the sides of its box is a
-   bound as well, and with it the place where it is r lies within r of the box, as the boxes of builder.c
-   say. */
-Lowered lower_operand(Lowering *l, const Shape *shape, LowerContext context)
-{
-    Lowered result = lower_shape(l, shape, context_lipschitz(context));
-    if (result.distance == NODE_NONE || shape->exact)
-        return result;
-    Node beyond = sides_excess(l->graph, context.point, shape->box);
-    if (beyond != NODE_NONE)
-        result.distance = graph_op2(l->graph, OP_max, result.distance, beyond);
-    return result;
 }
 
 static Lowered lower_joined(Lowering *l, const Shape *joint, const Shape *child,
@@ -134,11 +92,13 @@ static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *chi
 
 Lowered lower_union(Lowering *l, const Shape *shape, LowerContext context)
 {
+    context = joint_context(shape, context);
     return union_of(l, shape, shape->children, shape->child_count, context);
 }
 
 Lowered lower_intersection(Lowering *l, const Shape *shape, LowerContext context)
 {
+    context = joint_context(shape, context);
     /* The complement of the union of the complements. */
     Lowered all = lower_joined(l, shape, shape->children[0], context);
     for (uint32_t i = 1; i < shape->child_count; i++) {
@@ -153,6 +113,7 @@ Lowered lower_intersection(Lowering *l, const Shape *shape, LowerContext context
 
 Lowered lower_difference(Lowering *l, const Shape *shape, LowerContext context)
 {
+    context       = joint_context(shape, context);
     Lowered left  = lower_joined(l, shape, shape->children[0], context);
     Lowered right = union_of(l, shape, shape->children + 1, shape->child_count - 1, context);
     if (left.distance == NODE_NONE || right.distance == NODE_NONE)
@@ -164,6 +125,7 @@ Lowered lower_difference(Lowering *l, const Shape *shape, LowerContext context)
 /* What is in one of two: their union less what they share. */
 Lowered lower_xor(Lowering *l, const Shape *shape, LowerContext context)
 {
+    context   = joint_context(shape, context);
     Lowered a = lower_joined(l, shape, shape->children[0], context);
     Lowered b = lower_joined(l, shape, shape->children[1], context);
     if (a.distance == NODE_NONE || b.distance == NODE_NONE)

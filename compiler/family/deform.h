@@ -5,7 +5,7 @@
 #define KRS_DEFORM_H
 
 #include "compiler/family/family.h"
-#include "compiler/lower/lowering.h"
+#include "compiler/lower/context.h"
 
 /* ---- how they are made ---- */
 

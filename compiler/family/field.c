@@ -20,12 +20,13 @@
  * another distance, by which rays reach the surface sooner (field_bounds.c).
  */
 
+#include "compiler/family/family.h"
+
 #include <math.h>
 
-#include "compiler/family/family.h"
 #include "compiler/family/field_bounds.h"
-#include "compiler/lower/lower.h"
 #include "compiler/graph/series.h"
+#include "compiler/lower/box_distance.h"
 
 /* ---- polynomials ---- */
 
@@ -208,7 +209,8 @@ static void restrict_polynomial(ShapeBuilder *builder, Shape *restricted, Box bo
     restricted->distance = at_nearest(builder, restricted->distance, restricted->region);
 }
 
-static const Shape *restrict_field(ShapeBuilder *builder, const Shape *shape, Box box, bool uniform)
+static const Shape *restrict_primitive(ShapeBuilder *builder, const Shape *shape, Box box,
+                                       bool uniform)
 {
     if (!box_is_finite(box))
         return shape;
@@ -237,37 +239,57 @@ static const Shape *restrict_joint(ShapeBuilder *builder, const Shape *shape, Bo
                       shape->span);
 }
 
+static const Shape *restrict_offset(ShapeBuilder *builder, const Shape *shape, Box box,
+                                    bool uniform)
+{
+    double       r     = range_largest(node_range(builder, shape->values[0], 0));
+    const Shape *child = restrict_shape(builder, shape->children[0], box_grow(box, r), uniform);
+    return make_offset(builder, child, shape->values[0], shape->span);
+}
+
+static const Shape *restrict_shell(ShapeBuilder *builder, const Shape *shape, Box box, bool uniform)
+{
+    double       t     = range_largest(node_range(builder, shape->values[0], 0));
+    const Shape *child = restrict_shape(builder, shape->children[0], box_grow(box, 0.5 * t),
+                                        uniform);
+    return make_shell(builder, child, shape->values[0], shape->span);
+}
+
+static const Shape *restrict_paint(ShapeBuilder *builder, const Shape *shape, Box box, bool uniform)
+{
+    const Shape *child = restrict_shape(builder, shape->children[0], box, uniform);
+    return make_paint(builder, child, shape->material, shape->span);
+}
+
+static const Shape *restrict_transform(ShapeBuilder *builder, const Shape *shape, Box box,
+                                       bool uniform)
+{
+    Box          before = map_box(builder, map_inverse(builder, &shape->map), box);
+    const Shape *child  = restrict_shape(builder, shape->children[0], before, uniform);
+    return make_transform(builder, child, &shape->map, shape->span);
+}
+
+/* Others hide their fields from the region. */
+static const Shape *restrict_none(ShapeBuilder *builder, const Shape *shape, Box box, bool uniform)
+{
+    (void)builder;
+    (void)box;
+    (void)uniform;
+    return shape;
+}
+
+typedef const Shape *Restrict(ShapeBuilder *builder, const Shape *shape, Box box, bool uniform);
+
 const Shape *restrict_shape(ShapeBuilder *builder, const Shape *shape, Box box, bool uniform)
 {
+    static Restrict *const rules[SHAPE_COUNT] = {
+#define SHAPE(KIND, name, parts, curved, divided, rays, step, image, restrict, rule) \
+    restrict_##restrict,
+#include "compiler/shape/shapes.def"
+    };
     if (!shape->fields || box_is_empty(box))
         return shape;
-    const Shape *child = shape->child_count ? shape->children[0] : NULL;
-    switch (shape->kind) {
-    case SHAPE_PRIMITIVE: return restrict_field(builder, shape, box, uniform);
-    case SHAPE_UNION:
-    case SHAPE_INTERSECTION:
-    case SHAPE_DIFFERENCE:
-    case SHAPE_XOR: return restrict_joint(builder, shape, box, uniform);
-    case SHAPE_OFFSET: {
-        double r = range_largest(node_range(builder, shape->values[0], 0));
-        child    = restrict_shape(builder, child, box_grow(box, r), uniform);
-        return make_offset(builder, child, shape->values[0], shape->span);
-    }
-    case SHAPE_SHELL: {
-        double t = range_largest(node_range(builder, shape->values[0], 0));
-        child    = restrict_shape(builder, child, box_grow(box, 0.5 * t), uniform);
-        return make_shell(builder, child, shape->values[0], shape->span);
-    }
-    case SHAPE_PAINT:
-        return make_paint(builder, restrict_shape(builder, child, box, uniform), shape->material,
-                          shape->span);
-    case SHAPE_TRANSFORM: {
-        Box before = map_box(builder, map_inverse(builder, &shape->map), box);
-        child      = restrict_shape(builder, child, before, uniform);
-        return make_transform(builder, child, &shape->map, shape->span);
-    }
-    default: return shape;
-    }
+    return rules[shape->kind](builder, shape, box, uniform);
 }
 
 /* A field in a tree of infinite slope that has no bound. */

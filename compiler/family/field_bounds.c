@@ -20,11 +20,11 @@
 
 #include <math.h>
 
-#include "compiler/lower/lower.h"
 #include "compiler/graph/build.h"
 #include "compiler/graph/derive.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/local.h"
+#include "compiler/shape/slope.h"
 
 /* Into how many cells a region is cut for slopes: of gradients, which decide how long all steps
    are, and of heads, of which there are many. */

@@ -2,9 +2,10 @@
  * figure.c: plane figures made solid, by extrusion and by revolution.
  */
 #include "compiler/family/family.h"
-#include "compiler/lower/lowering.h"
 
 #include <math.h>
+
+#include "compiler/lower/normal.h"
 
 /* ---- how it is made ---- */
 

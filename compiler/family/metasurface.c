@@ -27,8 +27,9 @@
 
 #include <math.h>
 
-#include "compiler/lower/lowering.h"
 #include "compiler/graph/evaluate.h"
+#include "compiler/lower/box_distance.h"
+#include "compiler/lower/surface.h"
 
 static const struct {
     double steepest; /* of t -> f(t) */

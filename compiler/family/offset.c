@@ -2,10 +2,11 @@
  * offset.c: shapes grown or shrunk by a distance, shells and sheets.
  */
 #include "compiler/family/family.h"
-#include "compiler/graph/derive.h"
-#include "compiler/lower/lowering.h"
 
 #include <math.h>
+
+#include "compiler/graph/derive.h"
+#include "compiler/lower/join.h"
 
 /* ---- how it is made ---- */
 

@@ -2,8 +2,9 @@
  * paint.c: what changes how a shape looks, not where it is: materials, and smooth mirrors.
  */
 #include "compiler/family/family.h"
+
 #include "compiler/graph/evaluate.h"
-#include "compiler/lower/lowering.h"
+#include "compiler/lower/normal.h"
 
 /* ---- how it is made ---- */
 
@@ -85,7 +86,7 @@ Lowered lower_paint(Lowering *l, const Shape *shape, LowerContext context)
 }
 
 /* The last of a chain counts, as with paint. */
-Lowered lower_smooth(Lowering *l, const Shape *shape, LowerContext context)
+Lowered lower_smooth_mirrors(Lowering *l, const Shape *shape, LowerContext context)
 {
     if (l->surfaces && context.smoothing == NODE_NONE)
         context.smoothing = shape->values[0] != NODE_NONE

@@ -3,7 +3,8 @@
  * is taken back to where it was before.
  */
 #include "compiler/family/family.h"
-#include "compiler/lower/lowering.h"
+
+#include "compiler/lower/map_chain.h"
 
 /* ---- how it is made ---- */
 

@@ -3,9 +3,9 @@
  * is wanted, a plane that has it.
  */
 #include "compiler/family/family.h"
-#include "compiler/lower/lowering.h"
 
 #include "compiler/graph/derive.h"
+#include "compiler/lower/context.h"
 
 /* ---- how it is made ---- */
 
@@ -110,4 +110,12 @@ Lowered lower_primitive(Lowering *l, const Shape *shape, LowerContext context)
             leaf.surface.trap = graph_substitute(g, shape->trap, with, l->scratch);
     }
     return leaf;
+}
+
+Lowered lower_empty(Lowering *l, const Shape *shape, LowerContext context)
+{
+    (void)l;
+    (void)shape;
+    (void)context;
+    return lowered_nothing;
 }

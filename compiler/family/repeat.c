@@ -2,11 +2,13 @@
  * repeat.c: copies in the cells of a lattice, and in sectors around an axis.
  */
 #include "compiler/family/family.h"
-#include "compiler/lower/lowering.h"
 
 #include <math.h>
 
 #include "compiler/graph/parity.h"
+#include "compiler/lower/box_distance.h"
+#include "compiler/lower/join.h"
+#include "compiler/lower/map_chain.h"
 
 /* ---- how it is made ---- */
 

@@ -5,9 +5,10 @@
  * and gives the instance its next bit, a map takes the point behind it, a kernel joins with the
  * level that it has: the mirrors before it.
  */
-#include "compiler/lower/lowering.h"
-
 #include <math.h>
+
+#include "compiler/lower/guards.h"
+#include "compiler/lower/join.h"
 
 enum { MOST_HEAP_MIRRORS = 31 };
 

@@ -1,7 +1,7 @@
 /*
  * box_distance.c: what boxes say of the distance to what lies in them.
  */
-#include "compiler/lower/lower.h"
+#include "compiler/lower/box_distance.h"
 
 #include <math.h>
 

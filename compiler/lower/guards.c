@@ -7,9 +7,11 @@
  * is nearer to what has been found already cannot.  A branch is worth this where it saves work,
  * which is on graphics cards and in queries, not on lavapipe.
  */
-#include "compiler/lower/lowering.h"
+#include "compiler/lower/guards.h"
 
 #include <math.h>
+
+#include "compiler/lower/box_distance.h"
 
 /* Boxes are made larger by this fraction of the size of their coordinates: single precision. */
 static const double ROUNDING = 1e-6;

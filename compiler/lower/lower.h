@@ -4,6 +4,7 @@
 #ifndef KRS_LOWER_H
 #define KRS_LOWER_H
 
+#include "compiler/lower/along_method.h"
 #include "compiler/shape/shape.h"
 
 /* What is computed for a component at a point: the roots of its graph. */
@@ -19,8 +20,6 @@ typedef enum ComponentRoot {
     ROOT_COUNT
 } ComponentRoot;
 
-enum { MOST_LOWERED = 400000 };
-
 /* Lowers a shape at the point OP_POINT; roots[ROOT_COUNT] are filled.  False when more than
    MOST_LOWERED nodes would be needed: copies within copies. */
 bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roots);
@@ -32,20 +31,6 @@ bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roo
  * ROOT_DISTANCE, and it jumps.  `plain`, which is ROOT_DISTANCE, when it grows too large.
  */
 Node lower_guarded(Graph *graph, const Shape *shape, Node plain, Arena *scratch);
-
-/* How to tell how far a ray may go; all are safe. */
-typedef enum AlongMethod {
-    ALONG_EXACT,       /* by Bernstein coefficients: ray_step.c */
-    ALONG_TAYLOR,      /* by the slope that a Taylor series permits (Ban and Valasek): the r with
-                        r sum n |P_n| r^(n-1) = |P_0| */
-    ALONG_ROOT_FREE,   /* by what keeps a Taylor series from 0: the r with sum |P_n| r^n = |P_0| */
-    ALONG_POLYNOMIALS, /* so many for polynomials; for sequences with maps that invert: */
-    ALONG_DIRECTIONAL = ALONG_POLYNOMIALS, /* by where the ray leaves empty balls: ray_images.c */
-    ALONG_PROBE, /* by whether a ball around OP_POINT, of radius OP_FOOTPRINT, is empty: when
-                        what is computed is more than the radius; no distance, but about what the
-                        radius could be */
-    ALONG_COUNT
-} AlongMethod;
 
 /*
  * How far a ray from OP_POINT along OP_DIRECTION may go before it can enter the shape, negative
@@ -65,14 +50,5 @@ bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near
 /* Whether there are sheets in it that have no thickness: its distance is 0 there, and nowhere
    negative around; only lower_along tells where a ray meets them. */
 bool has_thin_sheets(const Shape *shape);
-
-/* Distance to a finite box, 0 inside. */
-Node box_distance(Graph *graph, Node point, Box box);
-/* How far outside of a box a point is along the axis where that is most; negative inside.
-   NODE_NONE of a box that no axis bounds. */
-Node sides_excess(Graph *graph, Node point, Box box);
-
-/* What grows `slope` times as fast as distance, made safe. */
-Node divide_by_slope(Graph *graph, Node distance, double slope);
 
 #endif

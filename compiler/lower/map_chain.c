@@ -8,7 +8,7 @@
  * and X the distance to its pole.  This is affine in 1 / d, so maps within maps carry two
  * numbers: r = d / (A + B |d|).
  */
-#include "compiler/lower/lowering.h"
+#include "compiler/lower/map_chain.h"
 
 #include <math.h>
 

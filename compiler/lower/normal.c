@@ -6,7 +6,9 @@
  * way in a mirror reflects it or does not; on the way out it does so by an amount that rises from 0
  * to 1 across the mirror.  Everywhere else the normal is the one that came in.
  */
-#include "compiler/lower/lowering.h"
+#include "compiler/lower/normal.h"
+
+#include "compiler/shape/map.h"
 
 /* Widths below this are none: quotients stay numbers. */
 static const double NO_WIDTH = 1e-30;

@@ -17,8 +17,11 @@
  * A ball is the same ball whatever it is seen through, but for mirrors, which the ball's image need
  * not be on one side of: folding its centre is right, since distances do not grow.
  */
-#include "compiler/lower/lowering.h"
+#include "compiler/lower/ray_images.h"
+
 #include "compiler/graph/build.h"
+#include "compiler/lower/map_chain.h"
+#include "compiler/shape/slope.h"
 
 /* What inverse lengths may be wrong by, in those of the centred bound: single precision. */
 static const double ROUNDING = 1e-5;
@@ -281,31 +284,78 @@ static Node image_union(Lowering *l, const Shape *shape, RayImage image)
     return nearest;
 }
 
-/* Whether there is an inversion that can be seen from here through what images can be taken
-   through. */
-static bool sees_inversion(const Shape *shape)
+static Node image_transform(Lowering *l, const Shape *shape, RayImage image)
 {
-    switch (shape->kind) {
-    case SHAPE_INVERSION: return true;
-    case SHAPE_KRS:
-        for (uint32_t i = 0; i < shape->stage_count; i++)
-            if (shape->stages[i].kind == SEQUENCE_MAP && shape->stages[i].map.pole != NODE_NONE)
-                return true;
-        break;
-    case SHAPE_UNION:
-        if (shape->blend.width != NODE_NONE)
-            return false;
-        break;
-    case SHAPE_TRANSFORM:
-    case SHAPE_PAINT:
-    case SHAPE_SMOOTH: break;
-    default: return false;
-    }
+    image_map(l, &image, &shape->map);
+    return image_shape(l, shape->children[0], image);
+}
+
+static Node image_part(Lowering *l, const Shape *shape, RayImage image)
+{
+    return image_shape(l, shape->children[0], image);
+}
+
+/* ---- whether an inversion can be seen from here through what images can be taken through ---- */
+
+static bool sees_inversion(const Shape *shape);
+
+static bool sees_nothing(const Shape *shape)
+{
+    (void)shape;
+    return false;
+}
+
+static bool sees_own(const Shape *shape)
+{
+    (void)shape;
+    return true;
+}
+
+static bool sees_parts(const Shape *shape)
+{
     for (uint32_t i = 0; i < shape->child_count; i++)
         if (sees_inversion(shape->children[i]))
             return true;
     return false;
 }
+
+static bool sees_sharp_parts(const Shape *shape)
+{
+    return shape->blend.width == NODE_NONE && sees_parts(shape);
+}
+
+static bool sees_stages(const Shape *shape)
+{
+    for (uint32_t i = 0; i < shape->stage_count; i++)
+        if (shape->stages[i].kind == SEQUENCE_MAP && shape->stages[i].map.pole != NODE_NONE)
+            return true;
+    return sees_parts(shape);
+}
+
+/* ---- kinds ---- */
+
+typedef struct ImageRule {
+    bool (*sees)(const Shape *shape);
+    Node (*image)(Lowering *l, const Shape *shape, RayImage image);
+} ImageRule;
+
+static const ImageRule rule_none      = {sees_nothing, image_distance};
+static const ImageRule rule_inversion = {sees_own, image_inversion};
+static const ImageRule rule_krs       = {sees_stages, image_krs};
+static const ImageRule rule_union     = {sees_sharp_parts, image_union};
+static const ImageRule rule_map       = {sees_parts, image_transform};
+static const ImageRule rule_part      = {sees_parts, image_part};
+
+static const ImageRule *rule_of(const Shape *shape)
+{
+    static const ImageRule *const rules[SHAPE_COUNT] = {
+#define SHAPE(KIND, name, parts, curved, divided, rays, step, image, restrict, rule) &rule_##image,
+#include "compiler/shape/shapes.def"
+    };
+    return rules[shape->kind];
+}
+
+static bool sees_inversion(const Shape *shape) { return rule_of(shape)->sees(shape); }
 
 static Node image_shape(Lowering *l, const Shape *shape, RayImage image)
 {
@@ -313,16 +363,8 @@ static Node image_shape(Lowering *l, const Shape *shape, RayImage image)
     l->overflow    = l->overflow || l->graph->count > l->most;
     if (l->overflow)
         return NODE_NONE;
-    if (!sees_inversion(shape))
-        return image_distance(l, shape, image);
-    switch (shape->kind) {
-    case SHAPE_INVERSION: return image_inversion(l, shape, image);
-    case SHAPE_KRS: return image_krs(l, shape, image);
-    case SHAPE_UNION: return image_union(l, shape, image);
-    case SHAPE_TRANSFORM: image_map(l, &image, &shape->map); break;
-    default: break;
-    }
-    return image_shape(l, shape->children[0], image);
+    return sees_inversion(shape) ? rule_of(shape)->image(l, shape, image)
+                                 : image_distance(l, shape, image);
 }
 
 Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod method, Arena *scratch)

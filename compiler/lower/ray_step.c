@@ -21,12 +21,14 @@
  * Unions, intersections and differences join such numbers as they join distances; affine maps keep
  * them, as t counts the ray's own steps; whatever else there is counts with its distance.
  */
-#include "compiler/lower/lowering.h"
-
 #include <math.h>
 
 #include "compiler/graph/build.h"
 #include "compiler/graph/series.h"
+#include "compiler/lower/lower.h"
+#include "compiler/lower/map_chain.h"
+#include "compiler/lower/ray_images.h"
+#include "compiler/shape/slope.h"
 
 /* A ray in the space of a shape: point + t direction, with the same t everywhere. */
 typedef struct Ray {
@@ -228,22 +230,35 @@ static Node joined(Lowering *l, Op op, Node a, Node b)
 
 static Node opposite(Lowering *l, Node a) { return a == NODE_NONE ? a : neg(l->graph, a); }
 
-/* A number that is negative inside. */
-static Node value_at(Lowering *l, const Shape *shape, Node point)
+/* ---- numbers that are negative inside ---- */
+
+static Node value_at(Lowering *l, const Shape *shape, Node point);
+
+static Node value_distance(Lowering *l, const Shape *shape, Node point)
 {
-    Graph *g = l->graph;
-    switch (shape->kind) {
-    case SHAPE_PRIMITIVE:
-        if (shape->formula == NODE_NONE)
-            break;
-        return graph_substitute(g, shape->formula, substitute_point(point), l->scratch);
-    case SHAPE_TRANSFORM: return value_at(l, shape->children[0], before_map(g, &shape->map, point));
-    case SHAPE_STRETCH: return value_at(l, shape->children[0], over(g, point, shape->values[0]));
-    case SHAPE_PAINT:
-    case SHAPE_SMOOTH: return value_at(l, shape->children[0], point);
-    default: break;
-    }
     return lower_shape(l, shape, context_new(point, false)).distance;
+}
+
+static Node value_formula(Lowering *l, const Shape *shape, Node point)
+{
+    if (shape->formula == NODE_NONE)
+        return value_distance(l, shape, point);
+    return graph_substitute(l->graph, shape->formula, substitute_point(point), l->scratch);
+}
+
+static Node value_map(Lowering *l, const Shape *shape, Node point)
+{
+    return value_at(l, shape->children[0], before_map(l->graph, &shape->map, point));
+}
+
+static Node value_stretch(Lowering *l, const Shape *shape, Node point)
+{
+    return value_at(l, shape->children[0], over(l->graph, point, shape->values[0]));
+}
+
+static Node value_part(Lowering *l, const Shape *shape, Node point)
+{
+    return value_at(l, shape->children[0], point);
 }
 
 /* A place of the ray behind its point. */
@@ -286,20 +301,27 @@ static Node along_intersection(Lowering *l, const Shape *shape, Ray ray)
     return all;
 }
 
-static Node along_joint(Lowering *l, const Shape *shape, Ray ray)
+/* The least of the parts from `first` on. */
+static Node along_least(Lowering *l, const Shape *shape, uint32_t first, Ray ray)
 {
-    Node first = along(l, shape->children[0], ray), rest = NODE_NONE;
-    if (shape->kind == SHAPE_UNION)
-        rest = first;
-    for (uint32_t i = 1; i < shape->child_count; i++) {
+    Node least = NODE_NONE;
+    for (uint32_t i = first; i < shape->child_count; i++) {
         Node next = along(l, shape->children[i], ray);
-        rest      = joined(l, OP_min, rest, next);
+        least     = joined(l, OP_min, least, next);
     }
-    if (shape->kind == SHAPE_UNION)
-        return rest;
-    if (shape->kind == SHAPE_DIFFERENCE && first != NODE_NONE)
-        return joined(l, OP_max, first, opposite(l, rest));
-    return first;
+    return least;
+}
+
+static Node along_union(Lowering *l, const Shape *shape, Ray ray)
+{
+    return along_least(l, shape, 0, ray);
+}
+
+static Node along_difference(Lowering *l, const Shape *shape, Ray ray)
+{
+    Node first = along(l, shape->children[0], ray);
+    Node rest  = along_least(l, shape, 1, ray);
+    return first == NODE_NONE ? first : joined(l, OP_max, first, opposite(l, rest));
 }
 
 /* Through x -> rows x scale + shift. */
@@ -339,27 +361,71 @@ static Node along_sheet(Lowering *l, const Shape *shape, Ray ray)
                      neg(g, inside), graph_op1(g, OP_abs, step));
 }
 
-/* Whether a polynomial can be seen from here through what `along` can see through. */
-static bool sees_polynomial(const Shape *shape)
+static Node along_part(Lowering *l, const Shape *shape, Ray ray)
 {
-    bool sharp = shape->blend.width == NODE_NONE;
-    switch (shape->kind) {
-    case SHAPE_PRIMITIVE: return shape->formula != NODE_NONE && shape->degree > 0;
-    case SHAPE_SHELL: return shape->sheet;
-    case SHAPE_UNION:
-    case SHAPE_INTERSECTION:
-    case SHAPE_DIFFERENCE:
-        for (uint32_t i = 0; sharp && i < shape->child_count; i++)
-            if (sees_polynomial(shape->children[i]))
-                return true;
-        return false;
-    case SHAPE_TRANSFORM:
-    case SHAPE_STRETCH:
-    case SHAPE_PAINT:
-    case SHAPE_SMOOTH: return sees_polynomial(shape->children[0]);
-    default: return false;
-    }
+    return along(l, shape->children[0], ray);
 }
+
+/* ---- whether a polynomial can be seen from here through what `along` can see through ---- */
+
+static bool sees_polynomial(const Shape *shape);
+
+static bool sees_nothing(const Shape *shape)
+{
+    (void)shape;
+    return false;
+}
+
+static bool sees_formula(const Shape *shape)
+{
+    return shape->formula != NODE_NONE && shape->degree > 0;
+}
+
+static bool sees_sheet(const Shape *shape) { return shape->sheet; }
+
+static bool sees_part(const Shape *shape) { return sees_polynomial(shape->children[0]); }
+
+static bool sees_sharp_parts(const Shape *shape)
+{
+    for (uint32_t i = 0; shape->blend.width == NODE_NONE && i < shape->child_count; i++)
+        if (sees_polynomial(shape->children[i]))
+            return true;
+    return false;
+}
+
+/* ---- kinds ---- */
+
+typedef struct StepRule {
+    bool (*sees)(const Shape *shape);
+    Node (*value)(Lowering *l, const Shape *shape, Node point);
+    Node (*along)(Lowering *l, const Shape *shape, Ray ray);
+} StepRule;
+
+static const StepRule step_none         = {sees_nothing, value_distance, along_distance};
+static const StepRule step_polynomial   = {sees_formula, value_formula, along_polynomial};
+static const StepRule step_map          = {sees_part, value_map, along_map};
+static const StepRule step_stretch      = {sees_part, value_stretch, along_stretch};
+static const StepRule step_sheet        = {sees_sheet, value_distance, along_sheet};
+static const StepRule step_union        = {sees_sharp_parts, value_distance, along_union};
+static const StepRule step_intersection = {sees_sharp_parts, value_distance, along_intersection};
+static const StepRule step_difference   = {sees_sharp_parts, value_distance, along_difference};
+static const StepRule step_part         = {sees_part, value_part, along_part};
+
+static const StepRule *rule_of(const Shape *shape)
+{
+    static const StepRule *const rules[SHAPE_COUNT] = {
+#define SHAPE(KIND, name, parts, curved, divided, rays, step, image, restrict, rule) &step_##step,
+#include "compiler/shape/shapes.def"
+    };
+    return rules[shape->kind];
+}
+
+static Node value_at(Lowering *l, const Shape *shape, Node point)
+{
+    return rule_of(shape)->value(l, shape, point);
+}
+
+static bool sees_polynomial(const Shape *shape) { return rule_of(shape)->sees(shape); }
 
 /* The t up to which nothing changes from outside to inside, negative from within; NODE_NONE: the
    empty set. */
@@ -369,16 +435,7 @@ static Node along(Lowering *l, const Shape *shape, Ray ray)
     l->overflow    = l->overflow || l->graph->count > l->most;
     if (l->overflow || !sees_polynomial(shape) || !rays_pass(shape))
         return l->overflow ? NODE_NONE : along_distance(l, shape, ray);
-    switch (shape->kind) {
-    case SHAPE_PRIMITIVE: return along_polynomial(l, shape, ray);
-    case SHAPE_TRANSFORM: return along_map(l, shape, ray);
-    case SHAPE_STRETCH: return along_stretch(l, shape, ray);
-    case SHAPE_SHELL: return along_sheet(l, shape, ray);
-    case SHAPE_INTERSECTION: return along_intersection(l, shape, ray);
-    case SHAPE_PAINT:
-    case SHAPE_SMOOTH: return along(l, shape->children[0], ray);
-    default: return along_joint(l, shape, ray);
-    }
+    return rule_of(shape)->along(l, shape, ray);
 }
 
 Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod method, Arena *scratch)

@@ -2,7 +2,7 @@
  * surface.c: what a hit knows of the surface: chosen from one of two shapes, mixed where they
  * blend, and painted with a material.
  */
-#include "compiler/lower/lowering.h"
+#include "compiler/lower/surface.h"
 
 static Node choose(Graph *g, Node condition, Node a, Node b)
 {

@@ -3,6 +3,7 @@
  */
 #include "compiler/shape/builder.h"
 
+#include <assert.h>
 #include <math.h>
 
 #include "compiler/graph/evaluate.h"
@@ -24,24 +25,38 @@ Range node_range(ShapeBuilder *builder, Node node, uint32_t component)
     return range;
 }
 
-bool shape_is_curved(const Shape *shape)
+/* ---- kinds ---- */
+
+static bool curved_always(const Shape *shape)
 {
-    switch (shape->kind) {
-    case SHAPE_PRIMITIVE: return !shape->exact && shape->bound == NODE_NONE && !shape->claimed;
-    case SHAPE_STRETCH:
-    case SHAPE_MORPH:
-    case SHAPE_META:
-    case SHAPE_TWIST:
-    case SHAPE_BEND:
-    case SHAPE_TAPER:
-    case SHAPE_DISPLACE: return true;
-    default: return shape->blend.width != NODE_NONE || shape->levels > 0 || shape->curved_child;
-    }
+    (void)shape;
+    return true;
 }
+
+static bool curved_primitive(const Shape *shape)
+{
+    return !shape->exact && shape->bound == NODE_NONE && !shape->claimed;
+}
+
+static bool curved_by_parts(const Shape *shape)
+{
+    return shape->blend.width != NODE_NONE || shape->levels > 0 || shape->curved_child;
+}
+
+const ShapeInfo shape_info[SHAPE_COUNT] = {
+#define SHAPE(KIND, name, parts, curved, divided, rays, step, image, restrict, rule) \
+    {#name, rule, parts, divided, curved_##curved},
+#include "compiler/shape/shapes.def"
+};
+
+bool shape_is_curved(const Shape *shape) { return shape_info[shape->kind].curved(shape); }
+
+/* ---- shapes ---- */
 
 Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span span,
                  const Shape *const *children, uint32_t count)
 {
+    assert(shape_info[kind].parts == SEVERAL || (uint32_t)shape_info[kind].parts == count);
     Shape *shape       = arena_new(builder->arena, Shape);
     shape->kind        = kind;
     shape->name        = name;

@@ -3,35 +3,6 @@
  */
 #include "compiler/shape/scene.h"
 
-static const char *const kind_names[] = {
-    [SHAPE_EMPTY]        = "empty",
-    [SHAPE_PRIMITIVE]    = "primitive",
-    [SHAPE_TRANSFORM]    = "transform",
-    [SHAPE_INVERSION]    = "inversion",
-    [SHAPE_STRETCH]      = "stretch",
-    [SHAPE_UNION]        = "union",
-    [SHAPE_INTERSECTION] = "intersection",
-    [SHAPE_DIFFERENCE]   = "difference",
-    [SHAPE_XOR]          = "xor",
-    [SHAPE_MORPH]        = "morph",
-    [SHAPE_META]         = "meta",
-    [SHAPE_OFFSET]       = "offset",
-    [SHAPE_SHELL]        = "shell",
-    [SHAPE_ELONGATE]     = "elongate",
-    [SHAPE_EXTRUDE]      = "extrude",
-    [SHAPE_REVOLVE]      = "revolve",
-    [SHAPE_REPEAT]       = "repeat",
-    [SHAPE_REPEAT_POLAR] = "repeat_polar",
-    [SHAPE_MIRROR]       = "mirror",
-    [SHAPE_TWIST]        = "twist",
-    [SHAPE_BEND]         = "bend",
-    [SHAPE_TAPER]        = "taper",
-    [SHAPE_DISPLACE]     = "displace",
-    [SHAPE_SMOOTH]       = "smooth_mirrors",
-    [SHAPE_PAINT]        = "paint",
-    [SHAPE_KRS]          = "krs",
-};
-
 static void print_indent(Text *out, uint32_t depth)
 {
     for (uint32_t i = 0; i < depth; i++)
@@ -96,7 +67,7 @@ static void print_shape(const Scene *scene, const Sources *sources, const Shape 
                         uint32_t depth, Text *out)
 {
     print_indent(out, depth);
-    text_add(out, shape->kind == SHAPE_PRIMITIVE ? shape->name : kind_names[shape->kind]);
+    text_add(out, shape->kind == SHAPE_PRIMITIVE ? shape->name : shape_info[shape->kind].name);
     if (shape->span.source) {
         Position position = source_position(&sources->items[shape->span.source], shape->span.start);
         text_format(out, "  %s:%u:%u", sources->items[shape->span.source].name, position.line,

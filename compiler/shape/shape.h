@@ -22,39 +22,22 @@ typedef struct Material {
     Node        color, roughness, metallic, emission;
 } Material;
 
-/*
- * Kinds, with their children and values (nodes).  `slope` says how the Lipschitz constant of
- * the result follows from that of the children (math.md, section 4).
- */
 typedef enum ShapeKind {
-    SHAPE_EMPTY,        /* nothing: distance infinite */
-    SHAPE_PRIMITIVE,    /* `distance`, `bound`; slope 1 after division by the derived one */
-    SHAPE_TRANSFORM,    /* [0]; map; distances times its scale; slope of the child */
-    SHAPE_INVERSION,    /* [0]; map with a pole; distances by the bound of map_chain.c; slope
-                           of the child */
-    SHAPE_STRETCH,      /* [0]; values[0] factors (VEC3); times the least; slope of the child */
-    SHAPE_UNION,        /* [..]; blend; largest slope times the blend's factor */
-    SHAPE_INTERSECTION, /* likewise */
-    SHAPE_DIFFERENCE,   /* [0] less all others; likewise */
-    SHAPE_XOR,          /* [0], [1]; likewise */
-    SHAPE_MORPH,        /* [0], [1]; values[0] in [0, 1]; largest slope */
-    SHAPE_META,     /* [..]; values[0] level, values[1] reach; largest slope: see metasurface.c */
-    SHAPE_OFFSET,   /* [0]; values[0]; d - r; slope of the child */
-    SHAPE_SHELL,    /* [0]; values[0]; |d| - t / 2; slope of the child */
-    SHAPE_ELONGATE, /* [0]; values[0] half lengths; slope of the child (a clamp's is 1) */
-    SHAPE_EXTRUDE,  /* [0] a figure; values[0] half height; largest of child's and 1 */
-    SHAPE_REVOLVE,  /* [0] a figure; values[0] offset; slope of the child */
-    SHAPE_REPEAT,   /* [0]; values[0] period, cells; slope of the child: see repeat.c */
-    SHAPE_REPEAT_POLAR, /* [0]; cells[0] copies about y; slope of the child */
-    SHAPE_MIRROR,       /* [0]; values[0] unit normal, values[1] offset; slope of the child */
-    SHAPE_TWIST,        /* [0]; values[0] rate, about y; 1: see lower_deform.c, also for the next */
-    SHAPE_BEND,         /* [0]; values[0] rate, about x; cells[0] segments, which overlap; 1 */
-    SHAPE_TAPER,        /* [0]; values[0], values[1] factors at both ends of y; 1 */
-    SHAPE_DISPLACE,     /* [0]; values[0] amplitude of `formula`, values[1] its slope; 1 */
-    SHAPE_SMOOTH,       /* [0]; values[0] width or NODE_NONE; slope of the child */
-    SHAPE_PAINT,        /* [0]; material; slope of the child */
-    SHAPE_KRS           /* kernels; stages in order; the largest slope: folds are 1-Lipschitz */
+#define SHAPE(KIND, name, parts, curved, divided, rays, step, image, restrict, rule) SHAPE_##KIND,
+#include "compiler/shape/shapes.def"
+    SHAPE_COUNT
 } ShapeKind;
+
+/* What a row of shapes.def says of all shapes of a kind. */
+typedef struct ShapeInfo {
+    const char *name, *rule;
+    int         parts; /* or SEVERAL */
+    bool        divided;
+    bool (*curved)(const Shape *shape);
+} ShapeInfo;
+extern const ShapeInfo shape_info[SHAPE_COUNT];
+
+enum { SEVERAL = -1 };
 
 /*
  * A conformal map of space: the similarity x -> scale * rows * x + shift or, with a pole,

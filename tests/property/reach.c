@@ -1,7 +1,7 @@
 /*
  * reach.c: the bounds of kernel-reflection sequences hold, and are tight.
  *
- * Random sequences go through reach_tighten stage by stage, as bound_sequence in builder.c calls it,
+ * Random sequences go through reach_tighten stage by stage, as bound_sequence in family/sequence_bounds.c calls it,
  * from correct but loose bounds of this file's own.  All their instances are copied one by one:
  * no point that the mirrors leave may lie outside of box or ball, and no side of the box much
  * farther out than the kernels' boxes, copied without being clipped (the search does not clip
