@@ -10,7 +10,7 @@ SUPPORT     := $(addprefix tests/support/, agreement.c bench.c device.c random.c
                renderer.c scarce.c)
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c chain.c \
                exact.c formulas.c shadow_stage.c shadow_truth.c map_chain.c primitive_solids.c primitive_figures.c deformed.c rooms.c montecarlo.c)
-UNIT        := front film tracer methods writer memory validate refute frame query cache compiled \
+UNIT        := front shape film tracer methods writer memory validate refute frame query cache compiled \
                apart stencils glslang loader drivers grid
 PROPERTY    := ops noise graph derive series zeros local along anchor slope parity reach
 ORACLES     := self primitives krs_expand trees maps moebius moebius_images operators combinations deform deform_bounds chains \
@@ -24,7 +24,7 @@ SECOND      := $(DRIVERS) $(addprefix tests/, unit/tracer oracle/device oracle/p
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
-SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/validate \
+SANITIZED   := tests/unit/front tests/unit/shape tests/unit/film tests/unit/writer tests/unit/validate \
                tests/unit/loader tests/unit/grid \
                tests/unit/refute tests/unit/memory tests/unit/cache tests/unit/frame \
                tests/unit/query tests/property/ops tests/property/noise tests/property/graph \

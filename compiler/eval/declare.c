@@ -143,25 +143,6 @@ static void report_steep(Elaboration *e, const Syntax *declaration, const Syntax
                  "zero and jumps";
 }
 
-/* The slope is derived over all space; where that has no bound, over `within`, and the distance
-   outside of that from the nearest point in it (field.c). */
-static bool derive_slope(Elaboration *e, Shape *shape, const Syntax *declaration,
-                         const Syntax *syntax)
-{
-    Box       regions[2] = {box_infinite, shape->box};
-    Steepness slope;
-    if (!find_slope(e->builder, shape->distance, regions, box_is_finite(shape->box) ? 2 : 1,
-                    syntax->span, &slope)) {
-        report_steep(e, declaration, syntax, slope.blame);
-        return false;
-    }
-    shape->derived   = slope.bound;
-    shape->region    = slope.region;
-    shape->per_frame = slope.slot != NODE_NONE;
-    shape->distance  = extend_from_region(e->builder, shape->distance, &slope);
-    return true;
-}
-
 bool needs_check(Elaboration *e, const Syntax *syntax)
 {
     for (size_t i = 0; i < e->checked.count; i++)
@@ -210,17 +191,19 @@ static bool read_properties(Elaboration *e, const Environment *env, const Syntax
 static bool settle_slope(Elaboration *e, const Environment *env, const Syntax *declaration,
                          bool first, Shape *shape)
 {
-    double slope;
+    const Syntax *distance = find_property(declaration, "distance");
+    double        slope;
+    Span          blame;
     shape->declared = shape->distance;
     if (!slope_property(e, env, declaration, &slope))
         return false;
-    slope          = shape->exact ? 1 : slope;
-    shape->claimed = slope > 0;
-    if (slope > 0) {
-        shape->derived  = slope;
-        shape->distance = divide_by_slope(e->graph, shape->declared, slope);
-    } else if (!derive_slope(e, shape, declaration, find_property(declaration, "distance")))
+    slope = shape->exact ? 1 : slope;
+    if (slope > 0)
+        claim_slope(e->builder, shape, slope);
+    else if (!derive_slope(e->builder, shape, distance->span, &blame)) {
+        report_steep(e, declaration, distance, blame);
         return false;
+    }
     return !first || check_claims(e, shape, slope);
 }
 

@@ -2,7 +2,7 @@
  * family.h: all shapes that can be made.
  *
  * Each function states, for its kind, the box of the result and how its slope follows from the
- * children's (shape.h has the table, math.md section 4 the proofs).  NULL: reported.
+ * children's (shapes.def has the table, math.md section 4 the proofs).  NULL: reported.
  */
 #ifndef KRS_FAMILY_H
 #define KRS_FAMILY_H
@@ -10,8 +10,19 @@
 #include "compiler/shape/map.h"
 #include "compiler/shape/slope.h"
 
-/* ---- shapes from shapes ---- */
+/* ---- primitive.c: shapes that hold no others ---- */
+/* `distance` is an expression of the point, negative inside; all of that is in the box.  What else
+   is known of it may be filled in; then comes one of the next two. */
+Shape *primitive_new(ShapeBuilder *builder, const char *name, Node distance, Box box, Span span);
+/* Makes the distance safe, by a slope that is claimed of it. */
+void claim_slope(ShapeBuilder *builder, Shape *primitive, double slope);
+/* The same, by a slope that is derived over all space or, where that has no bound, over the box; the
+   distance outside of that is then brought out from the nearest point in it (field.c).  False:
+   there is no bound, and *blame is what changes too fast. */
+bool         derive_slope(ShapeBuilder *builder, Shape *primitive, Span distance, Span *blame);
 const Shape *make_empty(ShapeBuilder *builder, Span span);
+
+/* ---- shapes from shapes ---- */
 /* NULL: an inversion of something endless, which is reported. */
 const Shape *make_transform(ShapeBuilder *builder, const Shape *shape, const Map *map, Span span);
 const Shape *make_stretch(ShapeBuilder *builder, const Shape *shape, Node factors, Span span);
@@ -70,7 +81,8 @@ typedef struct DeformArguments {
 /* NULL: reported. */
 typedef const Shape *MakeDeformed(ShapeBuilder *builder, const Shape *shape,
                                   const DeformArguments *arguments);
-MakeDeformed         make_twist, make_bend, make_taper;
+#define DEFORMATION(KIND, name, parameters, rule, meaning) MakeDeformed make_##name;
+#include "compiler/shape/shapes.def"
 /* Moved outwards by a formula of the point, times numbers[0]. */
 const Shape *make_displace(ShapeBuilder *builder, const Shape *shape, Node formula,
                            Span formula_span, const DeformArguments *arguments);

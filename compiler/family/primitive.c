@@ -9,6 +9,39 @@
 
 /* ---- how it is made ---- */
 
+Shape *primitive_new(ShapeBuilder *builder, const char *name, Node distance, Box box, Span span)
+{
+    Shape *primitive    = shape_new(builder, SHAPE_PRIMITIVE, name, span, NULL, 0);
+    primitive->distance = primitive->declared = distance;
+    primitive->box                            = box;
+    primitive->exact                          = false;
+    primitive->without_uv                     = primitive;
+    return primitive;
+}
+
+void claim_slope(ShapeBuilder *builder, Shape *primitive, double slope)
+{
+    primitive->claimed  = true;
+    primitive->derived  = slope;
+    primitive->distance = divide_by_slope(builder->graph, primitive->declared, slope);
+}
+
+bool derive_slope(ShapeBuilder *builder, Shape *primitive, Span distance, Span *blame)
+{
+    Box       regions[2] = {box_infinite, primitive->box};
+    int       count      = box_is_finite(primitive->box) ? 2 : 1;
+    Steepness slope;
+    bool      bounded = find_slope(builder, primitive->declared, regions, count, distance, &slope);
+    *blame            = slope.blame;
+    if (!bounded)
+        return false;
+    primitive->derived   = slope.bound;
+    primitive->region    = slope.region;
+    primitive->per_frame = slope.slot != NODE_NONE;
+    primitive->distance  = extend_from_region(builder, primitive->declared, &slope);
+    return true;
+}
+
 const Shape *make_empty(ShapeBuilder *builder, Span span)
 {
     return shape_new(builder, SHAPE_EMPTY, "nothing", span, NULL, 0);
