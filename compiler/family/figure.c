@@ -64,10 +64,10 @@ Lowered lower_revolve(Lowering *l, const Shape *shape, LowerContext context)
     Node   x = graph_component(g, context.point, 0), y = graph_component(g, context.point, 1);
     Node   z        = graph_component(g, context.point, 2);
     Node   axis     = graph_op2(g, OP_vec2, x, z);
-    Node   away     = graph_op1(g, OP_length, axis);
-    away            = graph_op2(g, OP_sub, away, shape->values[0]);
+    Node   offset   = graph_op1(g, OP_length, axis);
+    offset          = graph_op2(g, OP_sub, offset, shape->values[0]);
     Node       zero = graph_number(g, 0);
-    Node       flat = graph_op3(g, OP_vec3, away, y, zero);
+    Node       flat = graph_op3(g, OP_vec3, offset, y, zero);
     NormalPath path = normal_path(l, context, 1);
     normal_turn_about_y(l, &path, context.point, graph_vec3(g, 1, 0, 0));
     return lower_behind(l, shape->children[0], context, &path, flat);

@@ -49,7 +49,7 @@ const Shape *make_empty(ShapeBuilder *builder, Span span)
 
 /* ---- how it is lowered ---- */
 
-/* A number with this value and this gradient: with n and the rest w held still, dot(n, q) + w
+/* A number with this value and this gradient: with n and the rest w held constant, dot(n, q) + w
    changes with the point q as a plane does. */
 static Node with_gradient(Lowering *l, Node value, Node n, Node point)
 {
@@ -104,10 +104,10 @@ static Node tangent_by_differences(Lowering *l, const Shape *shape, LowerContext
     step      = graph_op2(g, OP_add, step, graph_number(g, 0.1));
     step      = graph_op2(g, OP_mul, step, graph_number(g, 1e-3));
     for (uint32_t i = 0; i < 3; i++) {
-        Node axis = graph_vec3(g, i == 0, i == 1, i == 2);
-        Node away = graph_op2(g, OP_scale, axis, step);
+        Node axis   = graph_vec3(g, i == 0, i == 1, i == 2);
+        Node offset = graph_op2(g, OP_scale, axis, step);
         for (int side = 0; side < 2; side++) {
-            Node point = graph_op2(g, side ? OP_sub : OP_add, context.point, away);
+            Node point = graph_op2(g, side ? OP_sub : OP_add, context.point, offset);
             seen[side] = graph_substitute(g, shape->distance, substitute_point(point), l->scratch);
         }
         sides[i] = graph_op2(g, OP_sub, seen[0], seen[1]);

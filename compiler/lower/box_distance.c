@@ -30,9 +30,9 @@ Node sides_excess(Graph *g, Node point, Box box)
             continue;
         Node middle = graph_number(g, 0.5 * (side.low + side.high));
         Node half   = graph_number(g, 0.5 * (side.high - side.low));
-        Node away   = graph_op2(g, OP_sub, graph_component(g, point, i), middle);
-        Node beyond = graph_op2(g, OP_sub, graph_op1(g, OP_abs, away), half);
-        most        = most == NODE_NONE ? beyond : graph_op2(g, OP_max, most, beyond);
+        Node offset = graph_op2(g, OP_sub, graph_component(g, point, i), middle);
+        Node excess = graph_op2(g, OP_sub, graph_op1(g, OP_abs, offset), half);
+        most        = most == NODE_NONE ? excess : graph_op2(g, OP_max, most, excess);
     }
     return most;
 }

@@ -37,15 +37,15 @@ Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b)
 }
 
 /* What is only a bound may be small far from the shape; the distance to the sides of its box is a
-   bound as well, and with it the place where it is r lies within r of the box, as the boxes of csg.c
-   say. */
+   bound as well, and with it the points where it is r lie within r of the box, as the boxes of
+   csg.c say. */
 Lowered lower_operand(Lowering *l, const Shape *shape, LowerContext context)
 {
     Lowered result = lower_shape(l, shape, context_lipschitz(context));
     if (result.distance == NODE_NONE || shape->exact)
         return result;
-    Node beyond = sides_excess(l->graph, context.point, shape->box);
-    if (beyond != NODE_NONE)
-        result.distance = graph_op2(l->graph, OP_max, result.distance, beyond);
+    Node excess = sides_excess(l->graph, context.point, shape->box);
+    if (excess != NODE_NONE)
+        result.distance = graph_op2(l->graph, OP_max, result.distance, excess);
     return result;
 }
