@@ -13,12 +13,8 @@
 const Shape *make_joint(ShapeBuilder *builder, ShapeKind kind, const Shape *const *shapes,
                         uint32_t count, Blend blend, Span span)
 {
-    static const char *const names[] = {[SHAPE_UNION]        = "union",
-                                        [SHAPE_INTERSECTION] = "intersection",
-                                        [SHAPE_DIFFERENCE]   = "difference",
-                                        [SHAPE_XOR]          = "xor"};
-    Shape                   *joint   = shape_new(builder, kind, names[kind], span, shapes, count);
-    joint->blend                     = blend;
+    Shape *joint = shape_new(builder, kind, shape_info[kind].name, span, shapes, count);
+    joint->blend = blend;
     if (blend.width != NODE_NONE)
         check_lipschitz(builder, joint, "a blend", span);
     /* Outside, the least of exact distances is exact; every other joint only bounds it. */

@@ -24,7 +24,7 @@ Shape *deformed_shape(ShapeBuilder *builder, ShapeKind kind, const char *name, c
 void note_slope(Shape *deformed, double slope);
 /* (b + sqrt(b^2 + 4)) / 2, the norm of a shear by b. */
 double shear_slope(double b);
-/* Cell `i` of the CELLS of a range. */
+/* Cell `i` of the DEFORM_CELLS of a range. */
 Range range_cell(Range range, int i);
 /* The largest distance from the y axis in a box. */
 double box_radius(Box box);

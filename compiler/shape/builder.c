@@ -53,6 +53,47 @@ bool shape_is_curved(const Shape *shape) { return shape_info[shape->kind].curved
 
 /* ---- shapes ---- */
 
+/* What a shape takes over from each of its parts, whatever its kind. */
+static void take_over(Shape *shape, const Shape *part)
+{
+    shape->slope        = fmax(shape->slope, part->slope);
+    shape->derived      = fmax(shape->derived, part->derived);
+    shape->exact        = shape->exact && part->exact;
+    shape->curved_child = shape->curved_child || shape_is_curved(part);
+    shape->estimate     = shape->estimate || part->estimate;
+    shape->per_frame    = shape->per_frame || part->per_frame;
+    shape->trapped      = shape->trapped || part->trapped;
+    shape->figure       = shape->figure || part->figure;
+    shape->fields       = shape->fields || part->fields;
+    shape->sheets       = shape->sheets || part->sheets;
+    shape->smooth       = shape->smooth || part->smooth;
+    shape->without_uv   = shape->without_uv ? shape->without_uv : part->without_uv;
+    shape->depth        = part->depth >= shape->depth ? part->depth + 1 : shape->depth;
+    shape->levels       = part->levels > shape->levels ? part->levels : shape->levels;
+    shape->inversions = part->inversions > shape->inversions ? part->inversions : shape->inversions;
+}
+
+/* Counts what is in the tree, and reports a tree that is too large to be walked through. */
+static void count_tree(ShapeBuilder *builder, Shape *shape)
+{
+    uint64_t tree_shapes = 1;
+    double   sequences = 0; /* instances of the sequences in the tree; any other shape counts one */
+    for (uint32_t i = 0; i < shape->child_count; i++) {
+        const Shape *part = shape->children[i];
+        tree_shapes += part->tree_shapes;
+        sequences += part->levels > 0 ? part->instances : 0;
+    }
+    shape->instances   = sequences > 0 ? sequences : shape->kind != SHAPE_EMPTY;
+    shape->tree_shapes = tree_shapes < UINT32_MAX ? (uint32_t)tree_shapes : UINT32_MAX;
+    if ((shape->depth > MOST_SHAPE_DEPTH || tree_shapes > MOST_TREE_SHAPES) && !builder->stopped) {
+        diag_add(builder->diags, DIAG_LIMIT, shape->span,
+                 tree_shapes > MOST_TREE_SHAPES
+                     ? "a shape of more than 100,000 parts, each counted where it is used"
+                     : "shapes are nested more than 1,000 deep");
+        builder->stopped = true;
+    }
+}
+
 Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span span,
                  const Shape *const *children, uint32_t count)
 {
@@ -63,7 +104,7 @@ Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span s
     shape->span        = span;
     shape->children    = arena_new_array(builder->arena, const Shape *, count + 1);
     shape->child_count = count;
-    shape->box         = box_empty;
+    shape->box         = count == 1 ? children[0]->box : box_empty;
     shape->slope       = 1;
     shape->derived     = 1;
     shape->exact       = true;
@@ -72,41 +113,11 @@ Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span s
     shape->formula = shape->declared = NODE_NONE;
     shape->plane_normal = shape->plane_offset = NODE_NONE;
     shape->values[0] = shape->values[1] = NODE_NONE;
-    uint64_t tree_shapes                = 1;
-    double   sequences = 0; /* instances of the sequences in the tree; any other shape counts one */
     for (uint32_t i = 0; i < count; i++) {
-        const Shape *child  = children[i];
-        shape->children[i]  = child;
-        shape->slope        = fmax(shape->slope, child->slope);
-        shape->derived      = fmax(shape->derived, child->derived);
-        shape->exact        = shape->exact && child->exact;
-        shape->curved_child = shape->curved_child || shape_is_curved(child);
-        shape->estimate     = shape->estimate || child->estimate;
-        shape->per_frame    = shape->per_frame || child->per_frame;
-        shape->trapped      = shape->trapped || child->trapped;
-        shape->figure       = shape->figure || child->figure;
-        shape->fields       = shape->fields || child->fields;
-        shape->sheets       = shape->sheets || child->sheets;
-        shape->smooth       = shape->smooth || child->smooth;
-        shape->without_uv   = shape->without_uv ? shape->without_uv : child->without_uv;
-        sequences += child->levels > 0 ? child->instances : 0;
-        shape->depth = child->depth >= shape->depth ? child->depth + 1 : shape->depth;
-        tree_shapes += child->tree_shapes;
-        shape->levels = child->levels > shape->levels ? child->levels : shape->levels;
-        if (child->inversions > shape->inversions)
-            shape->inversions = child->inversions;
+        shape->children[i] = children[i];
+        take_over(shape, children[i]);
     }
-    shape->instances = sequences > 0 ? sequences : kind != SHAPE_EMPTY;
-    if (count == 1)
-        shape->box = children[0]->box;
-    shape->tree_shapes = tree_shapes < UINT32_MAX ? (uint32_t)tree_shapes : UINT32_MAX;
-    if ((shape->depth > MOST_SHAPE_DEPTH || tree_shapes > MOST_TREE_SHAPES) && !builder->stopped) {
-        diag_add(builder->diags, DIAG_LIMIT, span,
-                 tree_shapes > MOST_TREE_SHAPES
-                     ? "a shape of more than 100,000 parts, each counted where it is used"
-                     : "shapes are nested more than 1,000 deep");
-        builder->stopped = true;
-    }
+    count_tree(builder, shape);
     return shape;
 }
 
