@@ -4,7 +4,7 @@
 #ifndef KRS_EMIT_H
 #define KRS_EMIT_H
 
-#include "compiler/geometry/lower.h"
+#include "compiler/lower/lower.h"
 #include "compiler/shader/frame_values.h"
 
 /* How components are to be marched. */
