@@ -119,6 +119,7 @@ typedef struct Options {
     ToneMap       tone_map;
     bool          no_beams, no_upsampling, no_occlusion, no_filter, area_shadows;
     KrsEarlyOuts  early_outs;
+    bool          frame_values;
     KrsComponents components;
     KrsNormals    normals;
     double        error; /* 0: not given */

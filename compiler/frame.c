@@ -212,12 +212,12 @@ void krs_frame_anchor(KrsFrame *frame, const double anchor[3], float (*block)[4]
     if (!scene->program.anchored)
         return;
     memcpy(frame->parameters[scene->program.parameter_slots - 1].v, anchor, 3 * sizeof *anchor);
-    frame_values_find(&scene->found.anchored, frame->parameters, frame->values, block);
+    frame_values_find(&scene->module.slots.rebased, frame->parameters, frame->values, block);
 }
 
 void krs_frame_values(const KrsFrame *frame, float (*block)[4])
 {
-    frame_values_find(&frame->scene->found.plain, frame->parameters, frame->values, block);
+    frame_values_find(&frame->scene->module.slots.plain, frame->parameters, frame->values, block);
 }
 
 void krs_frame_parameters(const KrsFrame *frame, float (*block)[4])

@@ -7,12 +7,12 @@ report() { # name, status
     if [ "$2" -eq 0 ]; then echo "ok - $1"; else echo "not ok - $1"; failed=1; fi
 }
 for kernel in runtime/shaders/*.comp; do
-    glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -Icompiler/graph -o /dev/null "$kernel" >/dev/null
+    glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -Icompiler/print/glsl -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL" $?
-    glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -Icompiler/graph -DNO_TEXELS \
+    glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -Icompiler/print/glsl -DNO_TEXELS \
         -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL without texels" $?
-    glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -Icompiler/graph -DSUBGROUPS \
+    glslangValidator -V --target-env vulkan1.1 -Iruntime/shaders -Icompiler/print/glsl -DSUBGROUPS \
         -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL with sums of subgroups" $?
 done

@@ -12,7 +12,7 @@
 
 #include "bench/device/device.h"
 #include "compiler/graph/graph.h"
-#include "compiler/shader/spirv.h"
+#include "compiler/target/spirv.h"
 
 enum { LANES = 64, GROUPS = 1024, COUNT = LANES * GROUPS };
 

@@ -8,12 +8,12 @@
  *     m(k) = max(p(k-2) n(k) - w(k) - 2 m(k-2) n(k-2) n(k) - 2 m(k-1) n(k-1) n(k), 0)
  *
  * of which only the last term waits for the mirror before: three operations deep instead of six.
- * It takes four more, which devices with many threads have no use for (KRS_BACK).
+ * It takes four more, which devices with many threads have no use for (KRS_BACK: one or the other).
  */
 #include <math.h>
 #include <stdlib.h>
 
-#include "compiler/shader/emitter.h"
+#include "compiler/print/emitter.h"
 
 /* 1 + the axis that a constant mirror is across, negative where its normal points down; 0: none. */
 static int fold_axis(const Emitter *e, const Expr *fold)
@@ -66,7 +66,8 @@ static bool is_tilted(const Emitter *e, const Expr *expr)
 /* A use of the node by a mirror counts twice: so this is the only one. */
 static bool only_feeds_mirror(const Emitter *e, Node n)
 {
-    return is_tilted(e, &e->graph->items[n]) && e->feeds_mirror[n] && e->uses[n] == 2;
+    return is_tilted(e, &e->graph->items[n]) && e->feeds_mirror[n] && e->uses[n] == 2 &&
+           !e->given[n];
 }
 
 /* The mirror before this one in a row, or NODE_NONE. */
@@ -92,6 +93,7 @@ static const char *distance_beyond(Emitter *e, const Expr *fold, Node first, Nod
 {
     Text        text  = {.arena = e->scratch};
     const char *point = e->text[fold->operands[0]];
+    emit_call(e, "krs_beyond", TYPE_VEC3, 3);
     text_add(&text, "krs_beyond(");
     if (before == NODE_NONE) {
         text_add(&text, point);
@@ -114,7 +116,7 @@ static const char *in_row(Emitter *e, const Expr *fold, Node n, Node before)
     Text        name = {.arena = e->scratch}, text = name;
     text_format(&name, "t%u", e->next++);
     emit_comment(e, fold->span);
-    text_format(e->out, "    float %s = max(%s, 0.0);\n", name.bytes, beyond);
+    emit_line(e, "    float %s = max(%s, 0.0);\n", name.bytes, beyond);
     e->beyond[n] = name.bytes;
     text_format(&text, "(%s - %s * (2.0 * %s))", e->text[fold->operands[0]], name.bytes,
                 e->text[fold->operands[1]]);

@@ -6,7 +6,7 @@
  */
 #include <math.h>
 
-#include "compiler/shader/emitter.h"
+#include "compiler/print/emitter.h"
 
 static const char *emit_region(Emitter *e, const Regions *regions, uint32_t region, Node result,
                                bool returns);
@@ -42,10 +42,10 @@ static void emit_guard(Emitter *e, const Regions *regions, Node guard)
     const char *bound = e->text[o[0]], *least = e->text[o[1]];
     Text        name = {.arena = e->scratch};
     text_format(&name, "t%u", e->next++);
-    text_format(e->out, "    float %s = min(%s, %s);\n    if (!(%s)) {\n", name.bytes, bound, least,
+    emit_line(e, "    float %s = min(%s, %s);\n    if (!(%s)) {\n", name.bytes, bound, least,
                 guard_text(e, o));
     const char *rest = emit_region(e, regions, regions->body[guard], o[2], false);
-    text_format(e->out, "    %s = %s;\n    }\n", name.bytes, rest);
+    emit_line(e, "    %s = %s;\n    }\n", name.bytes, rest);
     e->text[guard]    = name.bytes;
     e->nesting[guard] = 0;
 }
@@ -53,11 +53,11 @@ static void emit_guard(Emitter *e, const Regions *regions, Node guard)
 static void emit_return(Emitter *e, const Node *o)
 {
     const char *bound = e->text[o[0]];
-    text_format(e->out, "    if (%s)\n        return ", guard_text(e, o));
+    emit_line(e, "    if (%s)\n        return ", guard_text(e, o));
     if (nothing_found(e, o[1]))
-        text_format(e->out, "%s;\n", bound);
+        emit_line(e, "%s;\n", bound);
     else
-        text_format(e->out, "min(%s, %s);\n", bound, e->text[o[1]]);
+        emit_line(e, "min(%s, %s);\n", bound, e->text[o[1]]);
 }
 
 /* Statements of a region; returns its result.  Where that is all that the function is about, a
@@ -80,63 +80,77 @@ static const char *emit_region(Emitter *e, const Regions *regions, uint32_t regi
     return e->text[result];
 }
 
-/* Where it has no guards, it is the distance. */
-static void emit_guarded(Emitter *e, size_t component, Node root, Node distance)
+/* A component without guards has the distance alone; one that is nowhere is left out, as is a plane
+   that rays know. */
+static bool is_guarded(const Emitter *e, uint32_t component)
 {
-    text_format(e->out, "float krs_distance_lod_%zu(vec3 p, float footprint)\n{\n", component + 1);
-    if (root == distance) {
-        text_format(e->out, "    return krs_distance_%zu(p);\n}\n\n", component + 1);
+    return emit_root(e, OF_LOD, component) != emit_root(e, OF_DISTANCE, component);
+}
+
+static bool is_looked_at(const Emitter *e, uint32_t component)
+{
+    return !box_is_empty(e->module->boxes[component]) && !emit_leaves_out(e, component);
+}
+
+void need_lod(Emitter *e)
+{
+    for (uint32_t i = 0; i < e->module->components; i++)
+        if (is_looked_at(e, i))
+            need_lod_of(e, i);
+}
+
+void need_lod_of(Emitter *e, uint32_t component)
+{
+    e->needed_of[OF_LOD][component] = true;
+    e->needed_of[OF_DISTANCE][component] |= !is_guarded(e, component);
+}
+
+void emit_lod_of(Emitter *e, const ModuleFunction *function)
+{
+    uint32_t number = function->component + 1;
+    text_format(e->out, "float krs_distance_lod_%u(vec3 p, float footprint)\n{\n", number);
+    if (!is_guarded(e, function->component)) {
+        text_format(e->out, "    return krs_distance_%u(p);\n}\n\n", number);
         return;
     }
-    graph_regions(&e->regions, e->graph, &root, 1, e->scratch);
-    emit_begin(e, &root, 1);
-    const char *result = emit_region(e, &e->regions, REGION_ALWAYS, root, true);
-    text_format(e->out, "    return %s;\n}\n\n", result);
+    graph_regions(&e->regions, e->graph, function->roots, 1, e->scratch);
+    emit_begin(e, function->roots, 1);
+    const char *result = emit_region(e, &e->regions, REGION_ALWAYS, *function->roots, true);
+    emit_line(e, "    return %s;\n}\n\n", result);
 }
 
 /* A component whose box is not nearer than what has been found is left out. */
-static void emit_guarded_component(Emitter *e, size_t component, Box box, bool first)
+static void emit_guarded_component(Emitter *e, uint32_t component, bool first)
 {
+    Box box = e->module->boxes[component];
     if (first) {
-        text_format(e->out, "    float d = krs_distance_lod_%zu(p, footprint);\n", component + 1);
+        text_format(e->out, "    float d = krs_distance_lod_%u(p, footprint);\n", component + 1);
         return;
     }
     double centre[3], half[3];
     box_centre(box, centre);
     for (int i = 0; i < 3; i++)
         half[i] = (0.5 + 1e-6) * (box.axis[i].high - box.axis[i].low) + 1e-6 * fabs(centre[i]);
-    if (box_is_finite(box))
+    if (box_is_finite(box)) {
+        emit_call(e, "krs_box_distance", TYPE_VEC3, 3);
         text_format(e->out, "    if (krs_box_distance(p, %s, %s) < max(d, 1e-30))\n    ",
                     emit_vector(e, centre), emit_vector(e, half));
-    text_format(e->out, "    d = min(d, krs_distance_lod_%zu(p, footprint));\n", component + 1);
+    }
+    text_format(e->out, "    d = min(d, krs_distance_lod_%u(p, footprint));\n", component + 1);
 }
 
-/* What marches by branches: endless components first, then the others where they may be nearer. */
-void emit_early_outs(Emitter *e, const EmitMarch *march, const Node *roots, size_t components)
+/* Endless components first, then the others where they may be nearer. */
+void emit_lod(Emitter *e)
 {
-    text_add(e->out, "#ifdef EARLY_OUTS\n");
-    for (size_t i = 0; i < components; i++)
-        emit_guarded(e, i, march->guarded[i], roots[i * ROOT_COUNT + ROOT_DISTANCE]);
-    text_add(e->out,
-             "float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)\n{\n"
-             "    return length(max(abs(p - center) - half_sides, 0.0));\n}\n\n"
-             "// To march by: never above the distance to the nearest surface, and not above 0 in\n"
-             "// the same places as krs_distance.  What is far for its size is not looked at, nor\n"
-             "// what is smaller than the footprint.\n"
-             "float krs_distance_lod(vec3 p, float footprint)\n{\n");
-    size_t count = march->flat != NULL;
-    if (march->flat)
+    bool   found = e->module->flat == NULL; /* by the first component */
+    size_t count = 0;
+    if (!found)
         text_add(e->out, "    float d = 1e30;\n");
     for (int finite = 0; finite < 2; finite++)
-        for (size_t i = 0; i < components; i++) {
-            bool flat = march->flat && march->flat[i];
-            if (box_is_empty(march->boxes[i]) || box_is_finite(march->boxes[i]) != finite)
-                continue;
-            text_add(e->out, flat ? "#ifndef FLATS\n" : "");
-            emit_guarded_component(e, i, march->boxes[i], count++ == 0);
-            text_add(e->out, flat ? "#endif\n" : "");
-        }
-    if (count == 0)
+        for (uint32_t i = 0; i < e->module->components; i++)
+            if (is_looked_at(e, i) && box_is_finite(e->module->boxes[i]) == finite)
+                emit_guarded_component(e, i, found && count++ == 0);
+    if (found && count == 0)
         text_add(e->out, "    float d = 1e30;\n");
-    text_add(e->out, "    return krs_cut(p, d);\n}\n#endif\n\n");
+    text_format(e->out, "    return %s;\n", emit_cut(e, "d"));
 }

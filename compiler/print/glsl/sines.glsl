@@ -6,8 +6,8 @@
  *
  * An argument is reduced by the nearest multiple of pi (Cody and Waite 1980): n times the first two
  * parts of pi is exact, so the differences must stay as they are written.  sin(a) is then sin(r),
- * with its sign changed where n is odd; cos(a) = sin(a + pi / 2).  Both operations of ops.def and
- * kernels include this file.
+ * with its sign changed where n is odd; cos(a) = sin(a + pi / 2).  Operations of
+ * ops.def call these, and kernels without a scene include this file.
  */
 #ifndef KRS_SINES
 #define KRS_SINES
@@ -19,6 +19,7 @@ float krs_reduce(float a, float n)
     r = r - n * 6.27832947e-7;
     return min(max(r, -1.6), 1.6); // what is left of large arguments may be anything
 }
+
 float krs_sine_small(float r, int n)
 {
     float z = r * r;
@@ -28,26 +29,19 @@ float krs_sine_small(float r, int n)
     float s = r + r * z * p;
     return uintBitsToFloat(floatBitsToUint(s) ^ uint(n) << 31);
 }
+
 float krs_sin(float a)
 {
     float n = floor(a * 0.318309886184 + 0.5);
     return krs_sine_small(krs_reduce(a, n), int(n));
 }
+
 float krs_cos(float a)
 {
     float n = floor(a * 0.318309886184);
     return krs_sine_small(krs_reduce(a, n + 0.5), int(n) + 1);
 }
-float krs_tan(float a) { return krs_sin(a) / krs_cos(a); }
 
-vec2 krs_sin(vec2 a) { return vec2(krs_sin(a.x), krs_sin(a.y)); }
-vec3 krs_sin(vec3 a) { return vec3(krs_sin(a.x), krs_sin(a.y), krs_sin(a.z)); }
-vec4 krs_sin(vec4 a) { return vec4(krs_sin(a.x), krs_sin(a.y), krs_sin(a.z), krs_sin(a.w)); }
-vec2 krs_cos(vec2 a) { return vec2(krs_cos(a.x), krs_cos(a.y)); }
-vec3 krs_cos(vec3 a) { return vec3(krs_cos(a.x), krs_cos(a.y), krs_cos(a.z)); }
-vec4 krs_cos(vec4 a) { return vec4(krs_cos(a.x), krs_cos(a.y), krs_cos(a.z), krs_cos(a.w)); }
-vec2 krs_tan(vec2 a) { return vec2(krs_tan(a.x), krs_tan(a.y)); }
-vec3 krs_tan(vec3 a) { return vec3(krs_tan(a.x), krs_tan(a.y), krs_tan(a.z)); }
-vec4 krs_tan(vec4 a) { return vec4(krs_tan(a.x), krs_tan(a.y), krs_tan(a.z), krs_tan(a.w)); }
+float krs_tan(float a) { return krs_sin(a) / krs_cos(a); }
 
 #endif

@@ -2,7 +2,7 @@
  * glslang_border.cpp: the one C++ file: calls glslang's C interface and SPIRV-Tools, and catches what
  * they throw.
  */
-#include "compiler/shader/glslang_border.h"
+#include "compiler/target/glslang_border.h"
 
 #include <cstdlib>
 #include <cstring>

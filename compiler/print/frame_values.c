@@ -1,7 +1,7 @@
 /*
  * frame_values.c: packs values of the frame into slots, and finds them.
  */
-#include "compiler/shader/frame_values.h"
+#include "compiler/print/frame_values.h"
 
 #include <float.h>
 #include <math.h>

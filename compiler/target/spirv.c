@@ -11,8 +11,8 @@
 
 #include <spirv-tools/libspirv.h>
 
-#include "compiler/shader/glslang_border.h"
-#include "compiler/shader/spirv.h"
+#include "compiler/target/glslang_border.h"
+#include "compiler/target/spirv.h"
 
 /* glslang belongs to the process.  Who compiles holds the lock to read; it is started and stopped
    by one thread while nobody compiles. */
