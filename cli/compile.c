@@ -58,9 +58,9 @@ static KrsStatus write_glsl(const Options *options, const KrsScene *scene, const
 {
     KrsVariant  variant = compiled_variant(options);
     KrsFunction promised[KRS_MOST_PROMISED];
-    variant.shares    = true;
-    size_t      count = krs_promised_functions(scene, variant.many_threads, promised);
-    char       *glsl  = krs_scene_text(scene, &variant, promised, count, NULL);
+    variant.shares = true;
+    size_t count   = krs_promised_functions(scene, variant.many_threads, promised);
+    char  *glsl    = krs_scene_text(scene, &variant, promised, count, NULL);
     if (!glsl) {
         say("out of memory while printing `%s.glsl`", base);
         return KRS_OUT_OF_MEMORY;

@@ -45,8 +45,8 @@ static KrsStatus compile_kernel(const Options *options, const KrsScene *scene, c
     KrsVariant    chosen  = compiled_variant(options);
     KernelVariant variant = variant_for_any(scene, file, &chosen);
     KernelSource  source  = variant_source(file, &variant);
-    char         *text = kernel_text(&gpu, &source);
-    char *log  = NULL;
+    char         *text    = kernel_text(&gpu, &source);
+    char         *log     = NULL;
     if (!text) {
         say("%s", gpu.message);
         return gpu.status;

@@ -56,20 +56,20 @@ typedef struct KrsGroup {
 enum { KRS_MOST_GROUPS = 8 };
 
 typedef struct KrsProgram {
-    size_t   glsl_length; /* of what `krs compile` writes */
+    size_t   glsl_length; /* of all that kernels call, one function beside the other */
     uint32_t parameter_slots;
-    uint32_t value_slots;        /* how many follow where the host finds values of the frame */
-    double   low[3], high[3];    /* box around all components; infinite where unbounded */
-    size_t   operations;         /* of krs_distance */
-    double   flops;              /* of krs_distance, weighted as op_cost has it */
-    uint32_t loops;              /* iterations of loops in it, at most */
-    bool     flats;              /* there is krs_ahead */
+    uint32_t value_slots;     /* how many follow where the host finds values of the frame */
+    double   low[3], high[3]; /* box around all components; infinite where unbounded */
+    size_t   operations;      /* of krs_distance */
+    double   flops;           /* of krs_distance, weighted as op_cost has it */
+    uint32_t loops;           /* iterations of loops in it, at most */
+    bool     flats;           /* there is krs_ahead */
     double   rest_low[3], rest_high[3]; /* with flats: the box around what is left to march */
     bool     anchored;                  /* points may be given from an anchor */
-    uint32_t anchored_slots; /* then: how many more slots follow those of the zones */
-    bool     gradients;      /* there is krs_gradient by derivatives */
-    bool     algebraic;      /* normals are by krs_gradient unless asked for otherwise */
-    bool     along;          /* there is krs_along */
+    uint32_t anchored_slots;            /* then: how many more slots follow those of the zones */
+    bool     gradients;                 /* there is krs_gradient by derivatives */
+    bool     algebraic;                 /* normals are by krs_gradient unless asked for otherwise */
+    bool     along;                     /* there is krs_along */
     bool     sheets;  /* surfaces without thickness, where krs_distance is not negative: rays
                          go by krs_along, normals by krs_gradient */
     bool     inverts; /* there are its steps for sequences with maps that invert */

@@ -1,5 +1,5 @@
 /*
- * make_module.c: what texts are printed from, and the text that `krs compile` writes, for its length.
+ * make_module.c: what texts are printed from, and how long they are.
  */
 #include <string.h>
 
@@ -44,18 +44,16 @@ static Sources keep_lines(const Sources *from, const Graph *graph, Arena *arena)
     return kept;
 }
 
-/* What `krs compile` writes for graphics cards. */
-static void print_promised(Compilation *c)
+/* What is promised, for graphics cards. */
+static Text print_promised(Compilation *c, bool shares)
 {
     KrsScene        *scene = c->scene;
-    const KrsVariant cards = {.many_threads = true, .shares = true};
+    const KrsVariant cards = {.many_threads = true, .shares = shares};
     KrsFunction      promised[KRS_MOST_PROMISED];
     size_t           count = krs_promised_functions(scene, cards.many_threads, promised);
     Text             glsl  = {.arena = &c->scratch};
     module_print(&scene->module, &cards, promised, count, &glsl_printer, &glsl);
-    scene->program.glsl_length = glsl.length;
-    if (c->request->stage == DUMP_GLSL)
-        text_add(&c->dump, glsl.bytes);
+    return glsl;
 }
 
 void make_module(Compilation *c)
@@ -90,5 +88,7 @@ void make_module(Compilation *c)
     program->parameter_slots = (uint32_t)scene->graph->parameters.count;
     program->value_slots     = scene->module.slots.plain.slots;
     program->anchored_slots  = scene->module.slots.rebased.slots;
-    print_promised(c);
+    program->glsl_length     = print_promised(c, false).length;
+    if (c->request->stage == DUMP_GLSL)
+        text_add(&c->dump, print_promised(c, true).bytes);
 }

@@ -45,7 +45,7 @@ static char *copy_text(const Text *text, const Memory *memory)
 static char *print(Printing *printing)
 {
     jmp_buf exhausted;
-    Text    text              = {.arena = &printing->arena};
+    Text    text               = {.arena = &printing->arena};
     printing->memory.exhausted = &exhausted;
     if (setjmp(exhausted) != 0)
         return NULL;
@@ -60,10 +60,10 @@ char *krs_scene_text(const KrsScene *scene, const KrsVariant *variant, const Krs
     Printing printing = {.scene = scene, .variant = variant, .wanted = wanted, .count = count};
     if (allocator)
         printing.memory = (Memory){.allocate = allocator->allocate,
-                                  .release  = allocator->release,
-                                  .user     = allocator->user};
+                                   .release  = allocator->release,
+                                   .user     = allocator->user};
     printing.arena.memory = &printing.memory;
-    char *text           = print(&printing);
+    char *text            = print(&printing);
     arena_free(&printing.arena);
     return text;
 }

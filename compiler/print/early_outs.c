@@ -43,7 +43,7 @@ static void emit_guard(Emitter *e, const Regions *regions, Node guard)
     Text        name = {.arena = e->scratch};
     text_format(&name, "t%u", e->next++);
     emit_line(e, "    float %s = min(%s, %s);\n    if (!(%s)) {\n", name.bytes, bound, least,
-                guard_text(e, o));
+              guard_text(e, o));
     const char *rest = emit_region(e, regions, regions->body[guard], o[2], false);
     emit_line(e, "    %s = %s;\n    }\n", name.bytes, rest);
     e->text[guard]    = name.bytes;

@@ -48,7 +48,7 @@ typedef struct Emitter {
     const KrsVariant *variant;
     const Printer    *printer;
     const Graph      *graph;
-    bool              cuts;     /* zones are cut out of distances: there is krs_cut */
+    bool              cuts; /* zones are cut out of distances: there is krs_cut */
     Arena            *scratch;
     Text             *out;
     bool              wanted[KRS_FUNCTION_COUNT];
@@ -56,17 +56,17 @@ typedef struct Emitter {
     const char      **text;    /* of a node in the function being written: its name or expression */
     uint8_t          *nesting; /* of that expression */
     uint32_t         *uses;    /* in the function being written */
-    NodeList     needed;       /* all that have uses, in order */
-    const char **given;        /* names of nodes that the function need not compute */
-    uint8_t     *mark;         /* for walks, zero between them */
-    const char **frame;        /* names of the globals that krs_prepare sets */
-    uint8_t     *feeds_mirror; /* whether a mirror (OP_fold) uses it */
-    const char **beyond;       /* of mirrors in a row: the name of how far beyond it the point is */
-    uint32_t     next;         /* number of the next local name */
-    uint32_t     globals;
-    uint32_t    *place;   /* of values that the host finds: their number + 1 */
-    Regions      regions; /* of the function being written, where it has guards */
-    Span         last;    /* the line that was commented last */
+    NodeList          needed;  /* all that have uses, in order */
+    const char      **given;   /* names of nodes that the function need not compute */
+    uint8_t          *mark;    /* for walks, zero between them */
+    const char      **frame;   /* names of the globals that krs_prepare sets */
+    uint8_t          *feeds_mirror; /* whether a mirror (OP_fold) uses it */
+    const char      **beyond; /* of mirrors in a row: the name of how far beyond it the point is */
+    uint32_t          next;   /* number of the next local name */
+    uint32_t          globals;
+    uint32_t         *place;   /* of values that the host finds: their number + 1 */
+    Regions           regions; /* of the function being written, where it has guards */
+    Span              last;    /* the line that was commented last */
     struct {
         Helper *items;
         size_t  count, capacity;
@@ -120,6 +120,8 @@ void emit_call(Emitter *e, const char *name, GraphType type, uint32_t operands);
 
 /* krs_prepare, and the globals that it sets: frame values that the roots read. */
 void emit_prepare(Emitter *e, const Node *roots, size_t count, const FrameValues *values);
+/* Whether functions need the zones of the caller. */
+bool emit_reads_zones(const Emitter *e);
 /* Slots that are in the block of a variant before zones of the caller. */
 uint32_t emit_slot_count(const Emitter *e);
 
@@ -136,13 +138,13 @@ bool mirror_repeats(const Emitter *e, const Expr *fold);
 /* distances.c: krs_distance, what zones cut out, krs_gradient. */
 /* A distance without what zones cut out. */
 const char *emit_cut(Emitter *e, const char *distance);
-void need_distance(Emitter *e);
-void need_gradient(Emitter *e);
-void emit_distance_of(Emitter *e, const ModuleFunction *function);
-void emit_gradient_of(Emitter *e, const ModuleFunction *function);
-void emit_zones(Emitter *e);
-void emit_distance(Emitter *e);
-void emit_gradient(Emitter *e);
+void        need_distance(Emitter *e);
+void        need_gradient(Emitter *e);
+void        emit_distance_of(Emitter *e, const ModuleFunction *function);
+void        emit_gradient_of(Emitter *e, const ModuleFunction *function);
+void        emit_zones(Emitter *e);
+void        emit_distance(Emitter *e);
+void        emit_gradient(Emitter *e);
 
 /* shared.c: what a component's distance and surface have in common. */
 /* The values that the distance hands over; false: each is computed by itself. */

@@ -5,6 +5,7 @@
  * is printed before the first that calls it, if any does.  Where there is one of floats alone, the
  * same of vectors is written here.
  */
+#include <assert.h>
 #include <string.h>
 
 #include "compiler/print/emitter.h"
@@ -81,7 +82,8 @@ static void print_helper(Emitter *e, Helper *helper)
     if (helper->printed)
         return;
     helper->printed = true;
-    for (const char *call = helper->name + helper->name_length, *end = helper->text + helper->length;
+    for (const char *call = helper->name + helper->name_length,
+                    *end  = helper->text + helper->length;
          (call = strstr(call, "krs_")) && call < end; call += name_length(call)) {
         Helper *called = find_helper(e, call, name_length(call), NULL);
         if (called)
@@ -114,14 +116,36 @@ static void print_spread(Emitter *e, const char *name, size_t length, GraphType 
     text_add(out, ");\n}\n\n");
 }
 
-void emit_call(Emitter *e, const char *name, GraphType type, uint32_t operands)
+/* False: there is no such function. */
+static bool print_called(Emitter *e, const char *name, GraphType type, uint32_t operands)
 {
     size_t  length = name_length(name);
     Helper *exact  = find_helper(e, name, length, e->printer->types[type]);
     Helper *of_one = find_helper(e, name, length, e->printer->types[TYPE_FLOAT]);
+    if (!exact && (!of_one || type > TYPE_VEC4))
+        return false;
     print_helper(e, exact ? exact : of_one);
     if (!exact)
         print_spread(e, name, length, type, operands);
+    return true;
+}
+
+void emit_call(Emitter *e, const char *name, GraphType type, uint32_t operands)
+{
+    bool found = print_called(e, name, type, operands);
+    assert(found);
+    (void)found;
+}
+
+bool module_print_helpers(const Printer *printer, Op op, GraphType type, uint32_t operands,
+                          Text *out)
+{
+    const char *call = strstr(printer->operation(op), "krs_");
+    Emitter     e    = {.printer = printer, .scratch = out->arena, .helper_text = *out};
+    helpers_read(&e);
+    bool found = !call || print_called(&e, call, type, operands);
+    *out       = e.helper_text;
+    return found;
 }
 
 void emit_struct(Emitter *e)

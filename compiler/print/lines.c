@@ -42,9 +42,9 @@ static size_t operand_length(const char *text, size_t length)
 static size_t write_choice(Emitter *e, Text *to, const Choice *choice, const char *text,
                            size_t length)
 {
-    const char *form = e->variant->many_threads ? choice->threads : choice->few;
-    size_t      first = strlen(choice->name) + 1;
-    size_t      first_length = operand_length(text + first, length - first);
+    const char *form          = e->variant->many_threads ? choice->threads : choice->few;
+    size_t      first         = strlen(choice->name) + 1;
+    size_t      first_length  = operand_length(text + first, length - first);
     size_t      second        = first + first_length + 2; /* behind a comma and a blank */
     size_t      second_length = operand_length(text + second, length - second);
     while (*form) {
@@ -87,14 +87,13 @@ void emit_line(Emitter *e, const char *format, ...)
     va_end(arguments);
     if (!strstr(e->out->bytes + start, "KRS_"))
         return;
-    size_t length = e->out->length - start;
-    char  *line   = arena_copy_text(e->scratch, e->out->bytes + start, length);
+    size_t length  = e->out->length - start;
+    char  *line    = arena_copy_text(e->scratch, e->out->bytes + start, length);
     e->out->length = start;
     write_out(e, e->out, line, length);
 }
 
 /* ---- literals ---- */
-
 
 /* The shortest literal that reads back as the float nearest to the number. */
 static void add_literal(Text *text, double number)
@@ -197,4 +196,3 @@ const char *emit_bare(Emitter *e, const char *text)
     }
     return arena_copy_text(e->scratch, text + 1, length - 2);
 }
-

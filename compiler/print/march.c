@@ -130,7 +130,8 @@ void emit_along_of(Emitter *e, const ModuleFunction *function)
 {
     bool probe = function->kind == OF_PROBE;
     text_format(e->out, "float krs_%s_%u(vec3 p, %sfloat footprint)\n{\n",
-                probe ? "probe" : "along", function->component + 1, probe ? "" : "vec3 direction, ");
+                probe ? "probe" : "along", function->component + 1,
+                probe ? "" : "vec3 direction, ");
     emit_body(e, function->roots, 1);
     emit_line(e, "    return %s;\n}\n\n", e->text[*function->roots]);
 }

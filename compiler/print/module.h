@@ -19,10 +19,11 @@ typedef struct Module {
     Sources      sources; /* names and lines, for comments */
     /* Roots of functions, nodes of the graph.  Of each component: */
     size_t      components;
-    const Node *surfaces;  /* ROOT_COUNT, the distance among them */
-    const Node *guarded;   /* lower_guarded */
-    const Node *along;     /* lower_along, method by method */
-    const Node *gradients; /* lower_gradient's two, of the zones as well; FLOATs where there is none */
+    const Node *surfaces; /* ROOT_COUNT, the distance among them */
+    const Node *guarded;  /* lower_guarded */
+    const Node *along;    /* lower_along, method by method */
+    const Node
+        *gradients; /* lower_gradient's two, of the zones as well; FLOATs where there is none */
     /* Of the scene: */
     Node        zone;    /* the depth in zones, or NODE_NONE */
     const Node *planes;  /* where a ray meets one, and how steeply it falls */
@@ -50,5 +51,10 @@ uint32_t module_part_count(size_t components);
    the surface, and no zones. */
 void module_print(const Module *module, const KrsVariant *variant, const KrsFunction *wanted,
                   size_t count, const Printer *printer, Text *out);
+
+/* Adds the functions that the text of one operation calls, where its first operand has this type;
+   false: it cannot have it. */
+bool module_print_helpers(const Printer *printer, Op op, GraphType type, uint32_t operands,
+                          Text *out);
 
 #endif

@@ -29,7 +29,8 @@ static const struct {
     [KRS_FUNCTION_SURFACE]      = {need_surface, emit_surface},
 };
 
-static void (*const component_functions[FUNCTION_KINDS])(Emitter *e, const ModuleFunction *function) = {
+static void (*const component_functions[FUNCTION_KINDS])(Emitter              *e,
+                                                         const ModuleFunction *function) = {
     [OF_DISTANCE] = emit_distance_of, [OF_ALONG] = emit_along_of,
     [OF_PROBE] = emit_along_of,       [OF_LOD] = emit_lod_of,
     [OF_GRADIENT] = emit_gradient_of, [OF_SURFACE] = emit_surface_of,
@@ -70,7 +71,8 @@ ModuleFunction emit_function(const Emitter *e, FunctionKind kind, uint32_t compo
     const Module *m     = e->module;
     const Node   *along = m->along + component;
     switch (kind) {
-    case OF_ALONG: return (ModuleFunction){kind, component, along + e->variant->step * m->components, 1};
+    case OF_ALONG:
+        return (ModuleFunction){kind, component, along + e->variant->step * m->components, 1};
     case OF_PROBE: return (ModuleFunction){kind, component, along + ALONG_PROBE * m->components, 1};
     case OF_LOD: return (ModuleFunction){kind, component, m->guarded + component, 1};
     case OF_GRADIENT: return (ModuleFunction){kind, component, m->gradients + 2 * component, 2};
@@ -131,6 +133,18 @@ void module_lay_out(Module *module, uint32_t zone_slots, Arena *arena, Arena *sc
 
 /* ---- what is called ---- */
 
+/* Whether a function that is wanted is cut by zones. */
+static bool needs_cut(const Emitter *e)
+{
+    static const KrsFunction cut[]  = {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_ALONG,
+                                       KRS_FUNCTION_DISTANCE_LOD, KRS_FUNCTION_PROBE,
+                                       KRS_FUNCTION_DISTANCE_OF};
+    bool                     needed = e->wanted[KRS_FUNCTION_SURFACE] && e->module->components > 0;
+    for (size_t i = 0; i < sizeof cut / sizeof *cut; i++)
+        needed = needed || e->wanted[cut[i]];
+    return needed;
+}
+
 static void find_needs(Emitter *e)
 {
     for (int kind = 0; kind < FUNCTION_KINDS; kind++)
@@ -151,7 +165,7 @@ static NodeList gather_roots(Emitter *e)
                 add_nodes(e, &roots, function.roots, function.root_count);
             }
     bool zones = e->module->zone != NODE_NONE && !e->variant->rebased;
-    add_nodes(e, &roots, &e->module->zone, zones);
+    add_nodes(e, &roots, &e->module->zone, zones && e->cuts);
     add_nodes(e, &roots, e->module->gradients + 2 * e->module->components,
               zones && e->wanted[KRS_FUNCTION_GRADIENT] ? 2 : 0);
     add_nodes(e, &roots, emit_planes(e), e->wanted[KRS_FUNCTION_AHEAD]);
@@ -205,7 +219,7 @@ static void emit_block(Emitter *e)
                 "layout(std140, set = 0, binding = 0) uniform KrsParameters "
                 "{ vec4 krs_parameter[%u]; };\n\n",
                 slots + v->zones);
-    if (v->zones > 0)
+    if (emit_reads_zones(e))
         text_format(e->out, "vec4 krs_zones[%u];\n\n", v->zones);
 }
 
@@ -227,14 +241,15 @@ static void emit_promises(Emitter *e)
 void module_print(const Module *module, const KrsVariant *variant, const KrsFunction *wanted,
                   size_t count, const Printer *printer, Text *out)
 {
-    Emitter e           = emitter_new(module, out->arena);
-    Text    prepare     = {.arena = out->arena}, functions = prepare;
+    Emitter e       = emitter_new(module, out->arena);
+    Text    prepare = {.arena = out->arena}, functions = prepare;
     e.variant           = variant;
     e.printer           = printer;
-    e.cuts              = variant->zones > 0 || (module->zone != NODE_NONE && !variant->rebased);
     e.helper_text.arena = out->arena;
     for (size_t i = 0; i < count; i++)
         e.wanted[wanted[i]] = true;
+    e.cuts = (variant->zones > 0 || (module->zone != NODE_NONE && !variant->rebased)) &&
+             needs_cut(&e);
     helpers_read(&e);
     find_needs(&e);
     NodeList roots = gather_roots(&e);
@@ -253,9 +268,9 @@ void module_print(const Module *module, const KrsVariant *variant, const KrsFunc
 
 uint64_t krs_variant_hash(const KrsVariant *variant, const KrsFunction *wanted, size_t count)
 {
-    const uint64_t numbers[] = {variant->zones,   variant->group,        variant->step,
-                                variant->planes,  variant->rebased,      variant->many_threads,
-                                variant->values,  variant->shares};
+    const uint64_t numbers[] = {variant->zones,  variant->group,   variant->step,
+                                variant->planes, variant->rebased, variant->many_threads,
+                                variant->values, variant->shares};
     uint64_t       set = 0, h = 0xcbf29ce484222325u; /* FNV-1a */
     for (size_t i = 0; i < count; i++)
         set |= (uint64_t)1 << wanted[i];

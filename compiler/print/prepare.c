@@ -80,7 +80,7 @@ static void emit_reads(Emitter *e, const Node *set, size_t globals, const FrameV
         e->place[values->items[i].node] = (uint32_t)i + 1;
     for (size_t i = 0; i < globals; i++)
         emit_line(e, "    %s = %s;\n", e->frame[set[i]],
-                    emit_bare(e, read_text(e, values, set[i])));
+                  emit_bare(e, read_text(e, values, set[i])));
 }
 
 /* The globals by operations. */
@@ -102,10 +102,15 @@ static void emit_definitions(Emitter *e, const Node *set, size_t globals, const 
     }
 }
 
+bool emit_reads_zones(const Emitter *e)
+{
+    return e->variant->zones > 0 && (e->cuts || e->wanted[KRS_FUNCTION_GRADIENT]);
+}
+
 /* Where zones of the caller are read from. */
 static void emit_zone_reads(Emitter *e)
 {
-    if (e->variant->zones > 0)
+    if (emit_reads_zones(e))
         text_format(e->out,
                     "    for (int i = 0; i < %u; i++)\n"
                     "        krs_zones[i] = krs_parameter[%u + i];\n",

@@ -19,13 +19,13 @@ typedef struct Choice {
 } Choice;
 
 typedef struct Printer {
-    const char *name;
-    const char *const *types;           /* by GraphType */
-    const char *(*operation)(Op op);    /* with $a to $d; what is before a semicolon sets $t first */
-    const EmbeddedFile *helpers;        /* functions that operations call, with blank lines between */
-    const Choice       *choices;        /* the last has no name */
-    const char         *signatures[KRS_FUNCTION_COUNT]; /* by KrsFunction; NULL: it has none of its own */
-    const char         *promises[KRS_FUNCTION_COUNT];   /* comments above them */
+    const char        *name;
+    const char *const *types;        /* by GraphType */
+    const char *(*operation)(Op op); /* with $a to $d; what is before a semicolon sets $t first */
+    const EmbeddedFile *helpers;     /* functions that operations call, with blank lines between */
+    const Choice       *choices;     /* the last has no name */
+    const char *signatures[KRS_FUNCTION_COUNT]; /* by KrsFunction; NULL: it has none of its own */
+    const char *promises[KRS_FUNCTION_COUNT];   /* comments above them */
 } Printer;
 
 extern const Printer glsl_printer;

@@ -176,7 +176,8 @@ void emit_node(Emitter *e, Node n)
     emit_comment(e, expr->span);
     Text name = {.arena = e->scratch};
     text_format(&name, "%c%u", type_letter(expr->type), e->next++);
-    emit_line(e, "    %s %s = %s;\n", e->printer->types[expr->type], name.bytes, emit_bare(e, text));
+    emit_line(e, "    %s %s = %s;\n", e->printer->types[expr->type], name.bytes,
+              emit_bare(e, text));
     e->text[n]    = name.bytes;
     e->nesting[n] = 0;
 }
@@ -215,4 +216,3 @@ void emit_body(Emitter *e, const Node *roots, size_t count)
         if (e->graph->items[e->needed.items[i]].time == TIME_POINT)
             emit_point_node(e, e->needed.items[i]);
 }
-

@@ -66,12 +66,12 @@ typedef struct KrsVariant {
     KrsRayStep step;    /* of krs_along */
     bool       planes;  /* distances leave out the planes that krs_ahead knows */
     bool       rebased; /* points are given from an anchor near them (graph/anchor.h) */
-    bool       many_threads; /* for devices with many threads: operations count, and branches save work.
+    bool many_threads;  /* for devices with many threads: operations count, and branches save work.
                            Elsewhere what has to be waited for counts, and built-in min and max of
                            variables are three instructions, since they mind what is not a number */
-    bool       shares;  /* where both are wanted, krs_surface goes on from what krs_distance has found:
+    bool shares; /* where both are wanted, krs_surface goes on from what krs_distance has found:
                            half the text, in which operations have another order */
-    bool       values;  /* the host fills in what depends on the frame alone (krs_frame_values) */
+    bool values; /* the host fills in what depends on the frame alone (krs_frame_values) */
 } KrsVariant;
 
 /* A number that tells texts apart, for caches. */

@@ -123,10 +123,11 @@ char *kernel_text(Gpu *gpu, const KernelSource *source)
     const KernelScene *s = source->scene;
     if (!s)
         return expand(gpu, source, NULL);
-    char *scene = krs_scene_text(s->scene, &s->variant, s->wanted, s->wanted_count, &gpu->allocator);
+    char *scene = krs_scene_text(s->scene, &s->variant, s->wanted, s->wanted_count,
+                                 &gpu->allocator);
     if (!scene) {
-        gpu_refuse(gpu, KRS_OUT_OF_MEMORY, "cannot print the scene for the kernel `%s`: out of memory",
-                   source->file);
+        gpu_refuse(gpu, KRS_OUT_OF_MEMORY,
+                   "cannot print the scene for the kernel `%s`: out of memory", source->file);
         return NULL;
     }
     char *text = expand(gpu, source, scene);

@@ -368,8 +368,7 @@ typedef struct Requests {
     size_t        count;
 } Requests;
 
-static void request(Requests *requests, Kernel *kernel,
-                    const char *file, KernelVariant variant)
+static void request(Requests *requests, Kernel *kernel, const char *file, KernelVariant variant)
 {
     KernelVariant *kept                = &requests->variants[requests->count];
     *kept                              = variant;
@@ -408,8 +407,7 @@ static void request_pictures(Requests *requests, KrsRendering *rendering, KrsTra
     KrsNormals    usual = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
     request(requests, &to->around[usual][0], "normals.comp",
             variant_of_normals(rendering, usual, 0));
-    request(requests, &to->shade, "shade.comp",
-            variant_of_shade(rendering));
+    request(requests, &to->shade, "shade.comp", variant_of_shade(rendering));
     bool     by_roots = rendering_has_roots(rendering, trace);
     KrsTrace along    = by_roots ? KRS_TRACE_EXACT : KRS_TRACE_PLAIN;
     request(requests, &to->secondary[schedule][by_roots], "secondary.comp",

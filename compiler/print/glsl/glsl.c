@@ -25,16 +25,17 @@ const Printer glsl_printer = {
     .choices   = choices,
     .signatures =
         {
-            [KRS_FUNCTION_DISTANCE]     = "float krs_distance(vec3 p)",
-            [KRS_FUNCTION_AHEAD]        = "float krs_ahead(vec3 p, vec3 direction)",
-            [KRS_FUNCTION_RISE]         = "float krs_rise(vec3 direction)",
-            [KRS_FUNCTION_ALONG]        = "float krs_along(vec3 p, vec3 direction, float footprint)",
-            [KRS_FUNCTION_PROBE]        = "float krs_probe(vec3 p, float footprint)",
+            [KRS_FUNCTION_DISTANCE] = "float krs_distance(vec3 p)",
+            [KRS_FUNCTION_AHEAD]    = "float krs_ahead(vec3 p, vec3 direction)",
+            [KRS_FUNCTION_RISE]     = "float krs_rise(vec3 direction)",
+            [KRS_FUNCTION_ALONG]    = "float krs_along(vec3 p, vec3 direction, float footprint)",
+            [KRS_FUNCTION_PROBE]    = "float krs_probe(vec3 p, float footprint)",
             [KRS_FUNCTION_DISTANCE_LOD] = "float krs_distance_lod(vec3 p, float footprint)",
             [KRS_FUNCTION_DISTANCE_OF]  = "float krs_distance_of(uint part, vec3 p)",
-            [KRS_FUNCTION_PART_BOX] = "void krs_part_box(uint part, inout vec3 low, inout vec3 high)",
+            [KRS_FUNCTION_PART_BOX] =
+                "void krs_part_box(uint part, inout vec3 low, inout vec3 high)",
             [KRS_FUNCTION_GRADIENT] = "vec3 krs_gradient(vec3 p, float reach)",
-            [KRS_FUNCTION_SURFACE]  = "KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)",
+            [KRS_FUNCTION_SURFACE] = "KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)",
         },
     .promises =
         {
