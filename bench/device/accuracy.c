@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "bench/device/device.h"
-#include "compiler/print/module.h"
+#include "compiler/print/printer.h"
 #include "compiler/target/spirv.h"
 
 enum { LANES = 64, GROUPS = 1024, COUNT = LANES * GROUPS };

@@ -52,9 +52,4 @@ uint32_t module_part_count(size_t components);
 void module_print(const Module *module, const KrsVariant *variant, const KrsFunction *wanted,
                   size_t count, const Printer *printer, Text *out);
 
-/* Adds the functions that the text of one operation calls, where its first operand has this type;
-   false: it cannot have it. */
-bool module_print_helpers(const Printer *printer, Op op, GraphType type, uint32_t operands,
-                          Text *out);
-
 #endif

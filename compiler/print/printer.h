@@ -30,4 +30,9 @@ typedef struct Printer {
 
 extern const Printer glsl_printer;
 
+/* Adds the functions that the text of one operation calls, where its first operand has this type;
+   false: it cannot have it. */
+bool module_print_helpers(const Printer *printer, Op op, GraphType type, uint32_t operands,
+                          Text *out);
+
 #endif
