@@ -66,6 +66,9 @@ void refuse_component(Compilation *c, size_t component, size_t operations);
 void retain_scene(Compilation *c);
 void retain_tapes(Compilation *c);
 
+/* make_module.c: what texts are printed from. */
+void make_module(Compilation *c);
+
 /* march_groups.c: which components are marched by themselves.  march_groups[i] gets the number of
    the group of each, from 1; 0 for those that need no march. */
 void form_march_groups(Compilation *c, uint32_t *march_groups);

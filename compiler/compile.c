@@ -9,7 +9,6 @@
 
 #include "compiler/compilation.h"
 #include "compiler/framing.h"
-#include "compiler/shader/emit.h"
 
 static const size_t DEFAULT_MEMORY = (size_t)2 << 30;
 
@@ -80,58 +79,6 @@ static void dump_graph(Compilation *c, DumpStage stage, const Graph *graph)
                     (size_t)(roots->guarded - roots->components), &c->dump);
 }
 
-/* `boxes` of all components, and whether each is a plane; the program gets the box of the rest. */
-static void find_rest(Compilation *c, Box *boxes, bool *is_plane)
-{
-    KrsProgram *program = &c->scene->program;
-    Box         rest    = box_empty;
-    for (size_t i = 0; i < c->scene->component_count; i++) {
-        const Component *component = &c->elaborated.components.items[i];
-        boxes[i]                   = component->shape->box;
-        is_plane[i]                = component_is_plane(component);
-        rest                       = is_plane[i] ? rest : box_hull(rest, boxes[i]);
-    }
-    for (int k = 0; k < 3; k++) {
-        program->rest_low[k]  = box_is_empty(rest) ? 0 : rest.axis[k].low;
-        program->rest_high[k] = box_is_empty(rest) ? 0 : rest.axis[k].high;
-    }
-}
-
-static void emit(Compilation *c)
-{
-    KrsScene    *scene        = c->scene;
-    KrsProgram  *program      = &scene->program;
-    const Roots *roots        = &scene->roots;
-    size_t       count        = scene->component_count;
-    uint32_t     slots        = (uint32_t)scene->graph->parameters.count;
-    Text         glsl         = {.arena = &scene->arena};
-    Box         *boxes        = arena_new_array(&c->scratch, Box, count + 1);
-    bool        *is_plane     = arena_new_array(&c->scratch, bool, count + 1);
-    uint32_t    *march_groups = arena_new_array(&c->scratch, uint32_t, count + 1);
-    find_rest(c, boxes, is_plane);
-    form_march_groups(c, march_groups);
-    program->scene_parts = emit_scene_part_count(count);
-    EmitMarch march      = {.guarded         = roots->guarded,
-                            .along           = roots->along,
-                            .boxes           = boxes,
-                            .march_groups    = program->march_group_count ? march_groups : NULL,
-                            .is_plane        = program->planes ? is_plane : NULL,
-                            .camera_relative = program->camera_relative ? roots->camera_relative : NULL,
-                            .zone_slots      = KRS_MOST_ZONES,
-                            .plane_roots     = roots->planes,
-                            .slopes          = scene->slope_count > 0,
-                            .gradient        = program->gradients ? roots->gradients : NULL};
-    emit_glsl(scene->graph, &c->sources, roots->components, count, zone_root(scene), &march,
-              &c->scratch, &glsl, &scene->found);
-    program->glsl                  = glsl.bytes;
-    program->glsl_length           = glsl.length;
-    program->parameter_slots       = slots;
-    program->value_slots           = scene->found.plain.slots;
-    program->camera_relative_slots = scene->found.camera_relative.slots;
-    if (dumps(c, DUMP_GLSL))
-        text_add(&c->dump, glsl.bytes);
-}
-
 static KrsStatus inspect(Compilation *c)
 {
     c->diags.count = c->diags.warnings = 0;
@@ -169,7 +116,7 @@ static KrsStatus run(Compilation *c)
     retain_scene(c);
     retain_tapes(c);
     c->scene->program.front_ms = now_ms() - c->started;
-    emit(c);
+    make_module(c);
     c->scene->program.glsl_ms = now_ms() - c->started - c->scene->program.front_ms;
     if (!check_length(c))
         return KRS_BAD_SCENE;

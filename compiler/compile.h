@@ -7,42 +7,9 @@
 #include "compiler/base/arena.h"
 #include "compiler/base/diag.h"
 #include "compiler/krs.h"
-#include "compiler/shader/spirv.h"
+#include "compiler/print/variant.h"
+#include "compiler/target/spirv.h"
 
-/*
- * The GLSL of a program declares these promised functions, and the kernels of the runtime
- * include it (their own text says `#include "scene.glsl"`):
- *
- *     layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[N]; };
- *     void  krs_prepare();               once, first in main: all that is constant in a frame
- *     float krs_distance(vec3 p);        safe distance to the scene in world units, < 0 inside
- *     struct KrsSurface { float distance; vec3 color; float roughness; float metallic;
- *                         vec3 emission; uint component; uint level; uint instance;
- *                         vec3 normal; };
- *     KrsSurface krs_surface(vec3 p, vec3 normal, float footprint);
- *                                        what is at p: the component with the least distance
- *
- * krs_surface is given the unit gradient of krs_distance at p, and the radius of the pixel's cone
- * there in world units (0 for a point).  The normal that it returns is the one to light: unit,
- * outwards, and the given one unless mirrors are smooth.
- *
- * With EARLY_OUTS defined, what a graphics card should march by:
- *
- *     float krs_distance_lod(vec3 p, float footprint);
- *
- * It is never above the distance to the nearest surface and not above 0 in the same places, but
- * often less than krs_distance: what is far away for its size is not looked at.  What is smaller
- * than `footprint`, the radius of a pixel's cone at p, counts as the box around it (0: nothing
- * does).  Where a branch saves no work, as on lavapipe, krs_distance costs less.
- *
- * A scene of several expensive components has groups of them (KrsMarchGroup): with MARCH_GROUP
- * defined as the number of one there is krs_distance alone, and of that group alone.
- *
- * N is parameter_slots (at least 1), what is in them is told at krs_frame_parameters.  With
- * FRAME_VALUES defined, value_slots more follow (krs_frame_values), and lanes need not find what
- * depends on the frame alone.  Zones of the scene have been cut out of distances.  With ZONES
- * defined, as many slots follow for zones of the caller (krs_frame_zones).
- */
 typedef struct KrsCamera {
     enum { KRS_PERSPECTIVE, KRS_ORTHOGRAPHIC, KRS_PANORAMA } projection;
     double eye[3], target[3], up[3];
@@ -80,8 +47,8 @@ typedef struct KrsView {
     const KrsLight *lights; /* lives as long as the frame, until the next krs_frame_view */
 } KrsView;
 
-/* Components that are best marched by themselves, one group after another: with MARCH_GROUP defined
-   as the number of a group, from 1, krs_distance is that of the group's components alone. */
+/* Components that are best marched by themselves, one group after another: texts may have one group
+   alone, by its number from 1. */
 typedef struct KrsMarchGroup {
     double flops;           /* as below, of its components */
     double low[3], high[3]; /* box around them */
@@ -89,36 +56,46 @@ typedef struct KrsMarchGroup {
 enum { KRS_MOST_MARCH_GROUPS = 8 };
 
 typedef struct KrsProgram {
-    const char *glsl; /* promised functions, readable, with comments of source lines */
-    size_t      glsl_length;
-    uint32_t    parameter_slots;
-    uint32_t    value_slots;     /* how many follow for kernels with #define FRAME_VALUES */
-    double      low[3], high[3]; /* box around all components; infinite where unbounded */
-    size_t      operations;      /* of krs_distance */
-    double      flops;           /* of krs_distance, weighted as op_cost has it */
-    uint32_t    loops;           /* iterations of loops in it, at most */
-    bool        planes;          /* there is krs_plane_t, for kernels with #define PLANES */
-    double      rest_low[3], rest_high[3]; /* with planes: the box around what is left to march */
-    bool camera_relative; /* points may be relative to the camera, with #define CAMERA_RELATIVE */
+    size_t        glsl_length; /* of all that kernels call, one function beside the other */
+    uint32_t      parameter_slots;
+    uint32_t      value_slots;     /* how many follow where the host finds values of the frame */
+    double        low[3], high[3]; /* box around all components; infinite where unbounded */
+    size_t        operations;      /* of krs_distance */
+    double        flops;           /* of krs_distance, weighted as op_cost has it */
+    uint32_t      loops;           /* iterations of loops in it, at most */
+    bool          planes;          /* there is krs_plane_t */
+    double        rest_low[3], rest_high[3]; /* with planes: the box around what is left to march */
+    bool          camera_relative;           /* points may be given from an anchor */
     uint32_t      camera_relative_slots; /* then: how many more slots follow those of the zones */
-    bool          gradients; /* there is krs_gradient, for kernels with #define GRADIENT */
+    bool          gradients;             /* there is krs_gradient by derivatives */
     bool          algebraic; /* normals are by krs_gradient unless asked for otherwise */
-    bool          along;     /* there is krs_along, for kernels with #define ALONG */
+    bool          along;     /* there is krs_along */
     bool          sheets;    /* surfaces without thickness, where krs_distance is not negative: rays
-                                 go by krs_along, normals by krs_gradient, with #define SHEETS */
-    bool          inverts;   /* there are its variants for sequences with maps that invert */
-    bool          plain;     /* no component is curved (shape_is_curved): #define PLAIN */
+                         go by krs_along, normals by krs_gradient */
+    bool          inverts;   /* there are its steps for sequences with maps that invert */
+    bool          plain;     /* no component is curved (shape_is_curved) */
     bool          shadows;   /* a light casts some */
     KrsMarchGroup march_groups[KRS_MOST_MARCH_GROUPS];
     size_t        march_group_count; /* 0: all components belong together */
     bool          per_component;     /* marching groups one after the other is worth it */
-    uint32_t      scene_parts;       /* how many (emit.h), for kernels with #define PACKED */
+    uint32_t      scene_parts;       /* of krs_scene_part_distance */
     uint32_t      expensive;         /* components that cost enough to be marched by themselves */
     double        front_ms, glsl_ms; /* time spent */
 } KrsProgram;
 
 /* The scene's program; lives as long as the scene. */
 const KrsProgram *krs_scene_program(const KrsScene *scene);
+/* The GLSL of a variant: the wanted functions, what they call, and comments with lines of the
+   scene.  Released by the caller, with free() where there is no allocator (NULL); NULL when there
+   is no memory.  Where a function needs something of the program (flats, along...), it must have
+   that. */
+char *krs_scene_text(const KrsScene *scene, const KrsVariant *variant, const KrsFunction *wanted,
+                     size_t count, const KrsAllocator *allocator);
+/* Those that `krs compile` writes: krs_distance and krs_surface; krs_distance_lod for many threads;
+   what is found by derivatives, and what surfaces without thickness need.  Returns how many. */
+enum { KRS_MOST_PROMISED = 5 };
+size_t krs_promised_functions(const KrsScene *scene, bool many_threads,
+                              KrsFunction promised[KRS_MOST_PROMISED]);
 /* Whether a camera of the scene is a panorama. */
 bool krs_scene_is_panoramic(const KrsScene *scene);
 /* The number of cameras and their names (the first is the default; NULL when unnamed). */
@@ -134,8 +111,8 @@ bool krs_needs_rebase(double coordinate, double pixel);
 /* What camera-relative kernels get for their origin: camera_relative_slots vec4s, found in double
    precision. */
 void krs_frame_rebase(KrsFrame *frame, const double rebase_origin[3], float (*block)[4]);
-/* The zones of the caller (center, radius), to stand behind the parameter block when the GLSL is
-   compiled with ZONES defined as that many or more; the others must have a radius that is far
+/* The zones of the caller (center, radius), to stand behind the parameter block of a variant with
+   room for that many or more; the others must have a radius that is far
    below 0.  Returns how many. */
 size_t krs_frame_zones(const KrsFrame *frame, float (*zones)[4]);
 /* A ray as questions march it: in a unit direction, and from `start` to `end`, which is what the

@@ -8,7 +8,7 @@
 #include "compiler/compile.h"
 #include "compiler/geometry/lower.h"
 #include "compiler/graph/evaluate.h"
-#include "compiler/shader/emit.h"
+#include "compiler/print/module.h"
 
 /* How many roots each has. */
 enum { CAMERA_ROOTS = 5, LIGHT_ROOTS = 3, SKY_ROOTS = 3, PLANE_ROOTS = 2, GRADIENT_ROOTS = 2 };
@@ -43,6 +43,7 @@ struct KrsScene {
     Arena          arena; /* all that stays: graph, names, program */
     KrsProgram     program;
     const Graph   *graph;
+    Module         module; /* what text is printed from */
     Roots          roots;
     size_t         component_count, camera_count, light_count;
     size_t         zone_count; /* declared; all have one root */
@@ -63,9 +64,7 @@ struct KrsScene {
     Tape           ahead;    /* with sheets: of all components, and zones, how far rays may go */
     Tape           turned;   /* with sheets: gradients of all components */
     Tape           surface;  /* all roots of all components */
-    EmittedFrame
-         found; /* what kernels get from the host for a frame, and for an origin near the camera */
-    Tape view;  /* cameras, lights and sky */
+    Tape           view;     /* cameras, lights and sky */
 };
 
 /* A frame: what varies, and memory for the values of all nodes. */

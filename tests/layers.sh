@@ -4,9 +4,10 @@
 # and prototypes for everybody) may be included by the half that they belong to.
 set -u
 cd "$(dirname "$0")/.." || exit 1
-layers="compiler/base compiler/front compiler/graph compiler/geometry compiler/shader compiler
+layers="compiler/base compiler/front compiler/graph compiler/geometry compiler/print
+        compiler/print/glsl compiler/target compiler
         runtime/device runtime/shared runtime/tracer runtime/film runtime/writer runtime cli"
-api="compiler/base/ compiler/compile.h compiler/krs.h compiler/shader/spirv.h
+api="compiler/base/ compiler/compile.h compiler/krs.h compiler/print/variant.h compiler/target/spirv.h
           runtime/krs_vulkan.h runtime/planes.def runtime/choices.def"
 
 # Whether a header is one of the files, or in one of the folders (with a slash at the end).

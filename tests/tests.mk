@@ -69,7 +69,7 @@ clang-objects: $(COMPILER:%.c=$(B)/%.o) $(RUNTIME:%.c=$(B)/%.o) $(CLI:%.c=$(B)/%
 
 # The front end (lexer, parser, names) and the whole compiler but glslang under libFuzzer.
 HARNESSES   := front_fuzz scene_fuzz
-FUZZED      := $(filter-out compiler/shader/spirv.c, $(COMPILER))
+FUZZED      := $(filter-out $(TARGET), $(COMPILER))
 fuzz-programs: $(HARNESSES:%=$(B)/tests/fuzz/%)
 $(HARNESSES:%=$(B)/tests/fuzz/%): $(B)/tests/fuzz/%: $(B)/tests/fuzz/%.o \
                                     $(FUZZED:%.c=$(B)/%.o) $(B)/library_files.o \
