@@ -47,8 +47,11 @@ const Choice on_choices[]          = {{"host", ""}, {"device", ""}, LAST};
 const Choice when_choices[]        = {{"auto", ""}, {"always", ""}, {"never", ""}, LAST};
 const Choice diagnostics_choices[] = {{"text", ""}, {"json", ""}, LAST};
 const Choice json_choices[]        = {{"json", ""}, LAST};
-const Choice stage_choices[] = {{"tokens", ""},   {"syntax", ""}, {"scene", ""}, {"graph", ""},
-                                {"simplify", ""}, {"glsl", ""},   {"spirv", ""}, LAST};
+const Choice pass_choices[]        = {
+#define PASS(name, validate, meaning)          {#name, ""},
+#define PASS_TO(form, name, validate, meaning) {form, ""}, {#name, ""},
+#include "compiler/passes.def"
+    {"spirv", ""}, LAST};
 
 int find_choice(const char *word, const Choice *choices)
 {

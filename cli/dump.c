@@ -1,5 +1,5 @@
 /*
- * dump.c: `krs dump`: the scene as it is after any stage of the compiler, as text.
+ * dump.c: `krs dump`: what any pass of the compiler has made of the scene, as text.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 #include "cli/modules.h"
 #include "cli/supervise.h"
 
-/* SPIR-V comes behind the stages that the library knows, one module for each kernel. */
+/* SPIR-V comes behind the passes that the library knows, one module for each kernel. */
 static KrsStatus dump_spirv(const Options *options, const char *path)
 {
     KrsScene *scene;
@@ -32,19 +32,10 @@ static KrsStatus dump_spirv(const Options *options, const char *path)
     return status;
 }
 
-static DumpStage find_stage(const char *name)
-{
-    DumpStage stage = 0;
-    while (stage < DUMP_STAGE_COUNT && strcmp(dump_stage_names[stage], name) != 0)
-        stage++;
-    return stage;
-}
-
 KrsStatus command_dump(Options *options)
 {
-    const char *path  = options->files.items[0];
-    DumpStage   stage = find_stage(options->after);
-    if (stage == DUMP_STAGE_COUNT)
+    const char *path = options->files.items[0];
+    if (strcmp(options->after, "spirv") == 0)
         return dump_spirv(options, path);
     KrsStatus status = scene_readable(path);
     if (status != KRS_OK)
@@ -53,7 +44,7 @@ KrsStatus command_dump(Options *options)
     DiagnosticSink sink = {.options = options};
     KrsOptions     with = scene_options(&sink, path);
     scene_enter_compile(path);
-    status = krs_dump(path, stage, &with, &text);
+    status = krs_dump(path, options->after, &with, &text);
     scene_print_counts(&sink);
     stage_enter(STAGE_ANSWER);
     if (text)

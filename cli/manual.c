@@ -90,6 +90,7 @@ static void print_command_page(CommandId command, FILE *out)
     print_plain(out, info->arguments);
     fputs("\n.SH EXAMPLES\n.nf\n", out);
     print_plain(out, info->examples);
+    passes_print(command, out);
     fputs(".fi\n.SH OPTIONS\n", out);
     for (OptionId id = 0; id < OPTION_COUNT; id++)
         if (option_belongs(id, command))

@@ -12,6 +12,7 @@
 #include "cli/console.h"
 #include "cli/values.h"
 #include "compiler/base/text.h"
+#include "compiler/compile.h"
 
 #define ON(command)     (1u << COMMAND_##command)
 #define ON_ALL          ((1u << COMMAND_COUNT) - 1)
@@ -305,7 +306,7 @@ static KrsStatus check_together(Options *options)
     if (options->command == COMMAND_IMPORT && options->outputs.count > 1)
         return say_usage(options, "import writes one scene, not %zu", options->outputs.count);
     if (options->command == COMMAND_DUMP && !options->after)
-        return say_usage(options, "dump needs --after=STAGE");
+        return say_usage(options, "dump needs --after=PASS");
     if (options->command == COMMAND_QUERY && options->device && !options->on_device)
         return say_usage(options, "--device is for questions that are answered with --on device");
     return KRS_OK;
@@ -364,11 +365,20 @@ void help_print(FILE *out)
             exit_statuses);
 }
 
+void passes_print(CommandId command, FILE *out)
+{
+    const KrsPass *pass;
+    for (size_t i = 0; command == COMMAND_DUMP && (pass = krs_pass(i)); i++)
+        fprintf(out, "    %-10s%-10s%s\n", pass->name,
+                strcmp(pass->name, pass->form) == 0 ? "" : pass->form, pass->meaning);
+}
+
 void help_print_command(CommandId command, FILE *out)
 {
     const CommandInfo *info = &command_table[command];
-    fprintf(out, "krs %s: %s\n\n%s\nusage: krs %s [OPTION]... %s\n\n", info->name, info->summary,
-            info->examples, info->name, info->arguments);
+    fprintf(out, "krs %s: %s\n\n%s", info->name, info->summary, info->examples);
+    passes_print(command, out);
+    fprintf(out, "\nusage: krs %s [OPTION]... %s\n\n", info->name, info->arguments);
     for (OptionId id = 0; id < OPTION_COUNT; id++) {
         if (!option_belongs(id, command))
             continue;

@@ -125,6 +125,8 @@ extern const char exit_statuses[];
 /* `krs --help`, `krs COMMAND --help`. */
 void help_print(FILE *out);
 void help_print_command(CommandId command, FILE *out);
+/* The passes of the compiler, a line each, on the page of `dump`; else nothing. */
+void passes_print(CommandId command, FILE *out);
 
 /* manual.c: the same as a page for man, of a command or, with COMMAND_COUNT, of `krs` itself. */
 void manual_print(CommandId command, FILE *out);

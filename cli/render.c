@@ -229,8 +229,11 @@ static void add_stats_json(Text *json, const KrsRenderStats *stats, const KrsPro
 {
     text_format(json,
                 "\"compile\": {\"front\": %.3f, \"glsl\": %.3f, \"spirv\": %.3f, "
-                "\"pipeline\": %.3f}, \"render\": {",
+                "\"pipeline\": %.3f, \"passes\": {",
                 program->front_ms, program->glsl_ms, stats->spirv_ms, stats->pipeline_ms);
+    for (size_t i = 0; krs_pass(i); i++)
+        text_format(json, "%s\"%s\": %.3f", i ? ", " : "", krs_pass(i)->name, program->pass_ms[i]);
+    text_add(json, "}}, \"render\": {");
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         text_format(json, "\"%s\": %.3f, ", krs_phase_names[phase], stats->phase_ms[phase]);
     text_format(json,

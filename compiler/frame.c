@@ -68,7 +68,7 @@ static bool find_slopes(KrsFrame *frame, uint32_t changed)
     return !frame->unbounded;
 }
 
-KrsStatus krs_frame_new(const KrsScene *scene, KrsFrame **result)
+KrsStatus frame_new(const KrsScene *scene, KrsFrame **result)
 {
     *result         = NULL;
     KrsFrame *frame = frame_alloc(scene, 1, sizeof *frame);
@@ -81,21 +81,21 @@ KrsStatus krs_frame_new(const KrsScene *scene, KrsFrame **result)
     frame->lights     = frame_alloc(scene, scene->light_count, sizeof *frame->lights);
     frame->workspace  = frame_alloc(scene, slope_workspace(scene), 1);
     if (!frame->parameters || !frame->values || !frame->lights || !frame->workspace) {
-        krs_frame_free(frame);
+        frame_free(frame);
         return KRS_OUT_OF_MEMORY;
     }
     for (size_t i = 0; i < scene->parameter_count; i++)
         memcpy(frame->parameters[scene->parameters[i].slot].v, scene->parameters[i].value,
                sizeof scene->parameters[i].value);
     if (!find_slopes(frame, ANY_SLOT)) { /* such a scene should not have compiled */
-        krs_frame_free(frame);
+        frame_free(frame);
         return KRS_INTERNAL;
     }
     *result = frame;
     return KRS_OK;
 }
 
-void krs_frame_free(KrsFrame *frame)
+void frame_free(KrsFrame *frame)
 {
     if (!frame)
         return;
@@ -123,11 +123,11 @@ void frame_refresh(KrsFrame *frame)
 Node frame_infinite(KrsFrame *frame)
 {
     const KrsScene *scene = frame->scene;
-    const Node     *end   = scene->roots.sky + SKY_ROOTS;
+    RootRange       view  = roots_from(&scene->roots, ROOTS_CAMERA, ROOTS_SKY);
     frame_refresh(frame);
-    for (const Node *root = scene->roots.cameras; root < end; root++)
-        if (!node_value_is_finite(scene->graph, *root, frame->values))
-            return *root;
+    for (size_t i = 0; i < view.count; i++)
+        if (!node_value_is_finite(scene->graph, view.items[i], frame->values))
+            return view.items[i];
     Node found = tape_frame_infinite(&scene->surface, frame->values);
     return found != NODE_NONE ? found : tape_frame_infinite(&scene->distance, frame->values);
 }
@@ -247,40 +247,62 @@ void vector_normalize(double v[3])
         v[i] /= length;
 }
 
-KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view)
+static void view_camera(const KrsFrame *frame, size_t index, KrsCamera *camera)
 {
-    const KrsScene *scene = frame->scene;
+    const KrsScene    *scene = frame->scene;
+    const CameraRoots *roots = camera_roots(&scene->roots, index);
+    *camera                  = (KrsCamera){.projection = scene->cameras[index].projection,
+                                           .fov        = frame->values[roots->fov].v[0],
+                                           .height     = frame->values[roots->height].v[0]};
+    frame_copy(frame, roots->eye, camera->eye);
+    frame_copy(frame, roots->target, camera->target);
+    frame_copy(frame, roots->up, camera->up);
+    if (scene->framed && index == 0) {
+        memcpy(camera->eye, scene->framed_eye, sizeof camera->eye);
+        memcpy(camera->target, scene->framed_target, sizeof camera->target);
+    }
+}
+
+static void view_light(const KrsFrame *frame, size_t index, KrsLight *light)
+{
+    const SceneLight *from  = &frame->scene->lights[index];
+    const LightRoots *roots = light_roots(&frame->scene->roots, index);
+    *light                  = (KrsLight){.positional = from->positional,
+                                         .shadow     = from->shadow,
+                                         .softness   = frame->values[roots->softness].v[0]};
+    frame_copy(frame, roots->vector, light->vector);
+    frame_copy(frame, roots->color, light->color);
+    if (!light->positional)
+        vector_normalize(light->vector);
+}
+
+KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view)
+{
+    const KrsScene   *scene = frame->scene;
+    const SceneImage *image = &scene->image;
+    const SkyRoots   *sky   = sky_roots(&scene->roots);
     if (camera >= scene->camera_count)
         return KRS_BAD_ARGUMENT;
     frame_refresh(frame);
-    const Node *root = scene->roots.cameras + camera * CAMERA_ROOTS, *sky = scene->roots.sky;
-    *view                   = (KrsView){.light_count = scene->light_count, .lights = frame->lights};
-    view->camera.projection = scene->cameras[camera].projection;
-    frame_copy(frame, root[0], view->camera.eye);
-    frame_copy(frame, root[1], view->camera.target);
-    frame_copy(frame, root[2], view->camera.up);
-    if (scene->framed && camera == 0) {
-        memcpy(view->camera.eye, scene->framed_eye, sizeof view->camera.eye);
-        memcpy(view->camera.target, scene->framed_target, sizeof view->camera.target);
-    }
-    view->camera.fov    = frame->values[root[3]].v[0];
-    view->camera.height = frame->values[root[4]].v[0];
-    frame_copy(frame, sky[0], view->sky.zenith);
-    frame_copy(frame, sky[1], view->sky.horizon);
-    frame_copy(frame, sky[2], view->sky.ground);
-    for (size_t i = 0; i < scene->light_count; i++) {
-        const Node *light = scene->roots.lights + i * LIGHT_ROOTS;
-        KrsLight   *to    = &frame->lights[i];
-        *to               = (KrsLight){.positional = scene->lights[i].positional,
-                                       .shadow     = scene->lights[i].shadow,
-                                       .softness   = frame->values[light[2]].v[0]};
-        frame_copy(frame, light[0], to->vector);
-        frame_copy(frame, light[1], to->color);
-        if (!to->positional)
-            vector_normalize(to->vector);
-    }
-    const SceneImage *image = &scene->image;
+    *view = (KrsView){.light_count = scene->light_count, .lights = frame->lights};
+    view_camera(frame, camera, &view->camera);
+    frame_copy(frame, sky->zenith, view->sky.zenith);
+    frame_copy(frame, sky->horizon, view->sky.horizon);
+    frame_copy(frame, sky->ground, view->sky.ground);
+    for (size_t i = 0; i < scene->light_count; i++)
+        view_light(frame, i, &frame->lights[i]);
     view->image = (KrsImage){image->width,    image->height,   image->samples, image->integrator,
                              image->exposure, image->tone_map, image->error};
     return KRS_OK;
+}
+
+/* ---- the same under the names of krs.h and compiled.h ---- */
+
+KrsStatus krs_frame_new(const KrsScene *scene, KrsFrame **frame) { return frame_new(scene, frame); }
+
+void krs_frame_free(KrsFrame *frame) { frame_free(frame); }
+
+KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view)
+{
+    return frame_view(frame, camera, view);
 }

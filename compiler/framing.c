@@ -5,10 +5,10 @@
  * framed by them shows a speck.  So a few hundred rays are cast from the ball around the box to points
  * all over it, and the camera frames what they hit.
  */
-#include "compiler/framing.h"
-
 #include <math.h>
 #include <string.h>
+
+#include "compiler/compilation.h"
 
 enum { RAYS = 512, FEWEST_RAYS = 64, ROUNDS = 3, BATCH = 8, MOST_UNRESOLVED = 4 };
 
@@ -50,7 +50,7 @@ static bool outer_ball(const KrsScene *scene, Sphere *ball)
 static int count_rays(const KrsScene *scene)
 {
     int    count = RAYS;
-    double flops = krs_scene_program(scene)->flops;
+    double flops = scene->program.flops;
     while (count > FEWEST_RAYS && count * flops > RAYS * FLOPS_OF_ALL_RAYS)
         count /= 2;
     return count;
@@ -87,9 +87,9 @@ static bool cast_rays(KrsFrame *frame, const double (*origins)[3], const double 
     int unresolved = 0;
     for (int i = 0; i < count && unresolved <= MOST_UNRESOLVED; i++) {
         if (i % BATCH == 0)
-            krs_raycast(frame, origins + i, directions + i,
-                        (size_t)(count - i < BATCH ? count - i : BATCH), 4 * radius, 1e-3 * radius,
-                        hits + i);
+            frame_raycast(frame, origins + i, directions + i,
+                          (size_t)(count - i < BATCH ? count - i : BATCH), 4 * radius,
+                          1e-3 * radius, hits + i);
         unresolved += hits[i].unresolved;
     }
     return unresolved <= MOST_UNRESOLVED;
@@ -121,7 +121,10 @@ static bool inner_ball(const Extent *seen, Sphere *ball)
     return true;
 }
 
-KrsStatus frame_scene(KrsScene *scene)
+/* Eye and target of the default camera (its direction and field of view stay) from what rays
+   find of the bounded components at the default parameters; nothing changes when they find
+   nothing. */
+static KrsStatus frame_scene(KrsScene *scene)
 {
     static const double towards[3] = {0.53, 0.37, 0.76};
     double              origins[RAYS][3], directions[RAYS][3];
@@ -132,7 +135,7 @@ KrsStatus frame_scene(KrsScene *scene)
     Extent              seen = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     if (!outer_ball(scene, &ball))
         return KRS_OK;
-    KrsStatus status = krs_frame_new(scene, &frame);
+    KrsStatus status = frame_new(scene, &frame);
     if (status != KRS_OK)
         return status;
     int rays = count_rays(scene);
@@ -146,12 +149,45 @@ KrsStatus frame_scene(KrsScene *scene)
         if (!inner_ball(&seen, &ball))
             break;
     }
-    krs_frame_view(frame, 0, &view);
-    krs_frame_free(frame);
+    frame_view(frame, 0, &view);
+    frame_free(frame);
     scene->framed = true;
     memcpy(scene->framed_target, ball.centre, sizeof ball.centre);
     for (int k = 0; k < 3; k++)
         scene->framed_eye[k] = ball.centre[k] +
                                towards[k] * ball.radius / sin(0.5 * view.camera.fov);
     return KRS_OK;
+}
+
+KrsStatus pass_frame(Compilation *c)
+{
+    return c->scene->cameras[0].standing_in ? frame_scene(c->scene) : KRS_OK;
+}
+
+static void print_camera(const KrsScene *scene, size_t index, const KrsCamera *camera, Text *out)
+{
+    static const char *const projections[] = {[KRS_PERSPECTIVE]  = "perspective",
+                                              [KRS_ORTHOGRAPHIC] = "orthographic",
+                                              [KRS_PANORAMA]     = "panorama"};
+    const char              *name          = scene->cameras[index].name;
+    text_format(out, "camera %zu%s%s  %s", index + 1, name ? " " : "", name ? name : "",
+                projections[camera->projection]);
+    text_format(out, "  eye %.6g %.6g %.6g  target %.6g %.6g %.6g", camera->eye[0], camera->eye[1],
+                camera->eye[2], camera->target[0], camera->target[1], camera->target[2]);
+    text_format(out, "  fov %.6g  height %.6g%s\n", camera->fov, camera->height,
+                scene->framed && index == 0 ? "  placed" : "");
+}
+
+void print_frame(Compilation *c, Text *out)
+{
+    KrsFrame *frame;
+    KrsView   view;
+    if (frame_new(c->scene, &frame) != KRS_OK) {
+        text_add(out, "no frame: out of memory\n");
+        return;
+    }
+    for (size_t i = 0; i < c->scene->camera_count; i++)
+        if (frame_view(frame, i, &view) == KRS_OK)
+            print_camera(c->scene, i, &view.camera, out);
+    frame_free(frame);
 }

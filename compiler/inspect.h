@@ -4,8 +4,9 @@
 #ifndef KRS_INSPECT_H
 #define KRS_INSPECT_H
 
-#include "compiler/compile.h"
+#include "compiler/base/diag.h"
 #include "compiler/geometry/shape.h"
+#include "compiler/krs.h"
 
 /* All of it lives until the look is over.  `diags` is empty; what is added is reported. */
 typedef struct Inspected {

@@ -39,7 +39,7 @@ void refuse_component(Compilation *c, size_t component, size_t operations)
 
 static void refuse_zones(Compilation *c, size_t operations)
 {
-    Span  span  = c->scene->graph->items[*c->scene->roots.zone].span;
+    Span  span  = c->scene->graph->items[zone_root(c->scene)].span;
     Diag *diag  = diag_add(&c->diags, DIAG_TOO_LARGE, span,
                            "the scene needs more than %d operations", MOST_OPERATIONS);
     diag->label = diag_text(&c->diags, "its %zu zones need %zu", c->elaborated.zone_count,
@@ -47,24 +47,41 @@ static void refuse_zones(Compilation *c, size_t operations)
     diag->help  = "fewer zones";
 }
 
-bool check_operations(Compilation *c)
+/* Of each component and, behind the last, of the zones: c->operations. */
+static void count_all_operations(Compilation *c)
 {
     const Roots *roots = &c->scene->roots;
-    size_t       total = 0, largest = 0, most = 0, zones = 0;
-    for (size_t i = 0; i < c->elaborated.components.count; i++) {
-        size_t operations = count_operations(c, &roots->components[i * ROOT_COUNT], 1);
-        total += operations;
-        if (operations > most) {
-            most    = operations;
+    size_t       count = c->elaborated.components.count;
+    RootRange    zones = roots_of(roots, ROOTS_ZONE);
+    c->operations      = arena_new_array(&c->work, size_t, count + 1);
+    for (size_t i = 0; i < count; i++) {
+        Node distance    = distance_root(roots, i);
+        c->operations[i] = count_operations(c, &distance, 1);
+    }
+    c->operations[count] = zones.count ? count_operations(c, zones.items, zones.count) : 0;
+}
+
+static size_t total_operations(const Compilation *c)
+{
+    size_t total = 0;
+    for (size_t i = 0; i <= c->elaborated.components.count; i++)
+        total += c->operations[i];
+    return total;
+}
+
+static bool check_operations(Compilation *c)
+{
+    size_t count = c->elaborated.components.count, largest = 0, most = 0;
+    count_all_operations(c);
+    if (total_operations(c) <= MOST_OPERATIONS)
+        return true;
+    for (size_t i = 0; i < count; i++)
+        if (c->operations[i] > most) {
+            most    = c->operations[i];
             largest = i;
         }
-    }
-    if (c->elaborated.zone_count > 0)
-        zones = count_operations(c, roots->zone, 1);
-    if (total + zones <= MOST_OPERATIONS)
-        return true;
-    if (zones > most)
-        refuse_zones(c, zones);
+    if (c->operations[count] > most)
+        refuse_zones(c, c->operations[count]);
     else
         refuse_component(c, largest, most);
     return false;
@@ -99,9 +116,9 @@ static void refuse_number(Compilation *c, const Component *shown, Span span)
 static Node find_overflow(Compilation *c, size_t first, size_t count)
 {
     const Graph *graph = c->scene->graph;
-    Tape tape = tape_new(graph, &c->scene->roots.components[first * ROOT_COUNT], count * ROOT_COUNT,
-                         &c->scratch);
-    Node found = NODE_NONE;
+    Tape         tape  = tape_new(graph, surface_roots(&c->scene->roots, first), count * ROOT_COUNT,
+                                  &c->scratch);
+    Node         found = NODE_NONE;
     for (size_t k = 0; k < tape.count && found == NODE_NONE; k++)
         if (is_beyond_numbers(graph, &graph->items[tape.nodes[k]]))
             found = tape.nodes[k];
@@ -110,7 +127,7 @@ static Node find_overflow(Compilation *c, size_t first, size_t count)
 }
 
 /* An overflow of what is given shows here only, where it has met everything else. */
-bool check_numbers(Compilation *c)
+static bool check_numbers(Compilation *c)
 {
     size_t count = c->elaborated.components.count;
     if (find_overflow(c, 0, count) == NODE_NONE)
@@ -123,11 +140,29 @@ bool check_numbers(Compilation *c)
     return false;
 }
 
+KrsStatus pass_limits(Compilation *c)
+{
+    return check_operations(c) && check_numbers(c) ? KRS_OK : KRS_BAD_SCENE;
+}
+
+void print_limits(Compilation *c, Text *out)
+{
+    size_t count = c->elaborated.components.count;
+    for (size_t i = 0; i < count; i++)
+        text_format(out, "%s  %zu operations\n", c->elaborated.components.items[i].name,
+                    c->operations[i]);
+    if (c->elaborated.zone_count > 0)
+        text_format(out, "zones  %zu operations\n", c->operations[count]);
+    text_format(out, "all  %zu operations of %d\n", total_operations(c), MOST_OPERATIONS);
+}
+
+/* ---- the first frame ---- */
+
 /* The component that needs a node; NULL: a camera, a light or the sky does. */
 static const Component *component_with(Compilation *c, Node node)
 {
     for (size_t i = 0; i < c->elaborated.components.count; i++) {
-        const Node *roots = &c->scene->roots.components[i * ROOT_COUNT];
+        const Node *roots = surface_roots(&c->scene->roots, i);
         Tape        tape  = tape_new(c->scene->graph, roots, ROOT_COUNT, &c->scratch);
         for (size_t k = 0; k < tape.count; k++)
             if (tape.nodes[k] == node)
@@ -149,14 +184,15 @@ static void refuse_default(Compilation *c, Node node)
     arena_free(&c->scratch);
 }
 
-KrsStatus check_defaults(Compilation *c)
+/* The frame at time 0 with all defaults, which is every caller's first. */
+static KrsStatus check_defaults(Compilation *c)
 {
     KrsFrame *frame;
-    KrsStatus status = krs_frame_new(c->scene, &frame);
+    KrsStatus status = frame_new(c->scene, &frame);
     if (status != KRS_OK)
         return status;
     Node node = frame_infinite(frame);
-    krs_frame_free(frame);
+    frame_free(frame);
     if (node != NODE_NONE)
         refuse_default(c, node);
     return node == NODE_NONE ? KRS_OK : KRS_BAD_SCENE;
@@ -181,18 +217,28 @@ static void refuse_length(Compilation *c, size_t largest, size_t operations)
 }
 
 /* Many small components have few operations, and much text around them. */
-bool check_length(Compilation *c)
+static bool check_length(Compilation *c)
 {
     size_t largest = 0, most = 0;
     if (c->scene->program.glsl_length <= MOST_GLSL_BYTES)
         return true;
     arena_free(&c->scratch);
     for (size_t i = 0; i < c->elaborated.components.count; i++) {
-        const Node *root       = &c->scene->roots.components[i * ROOT_COUNT];
-        size_t      operations = count_operations(c, root, ROOT_COUNT);
+        const Node *roots      = surface_roots(&c->scene->roots, i);
+        size_t      operations = count_operations(c, roots, ROOT_COUNT);
         largest                = operations > most ? i : largest;
         most                   = operations > most ? operations : most;
     }
     refuse_length(c, largest, most);
     return false;
+}
+
+KrsStatus pass_check(Compilation *c) { return check_length(c) ? check_defaults(c) : KRS_BAD_SCENE; }
+
+void print_check(Compilation *c, Text *out)
+{
+    const KrsProgram *program = &c->scene->program;
+    text_format(out, "shader  %zu bytes of %d\n", program->glsl_length, MOST_GLSL_BYTES);
+    text_format(out, "first frame  finite in %u slots of parameters and %u of values\n",
+                program->parameter_slots, program->value_slots);
 }

@@ -9,10 +9,8 @@ static const double EXPENSIVE_FLOPS = 100, SCATTERED_FLOPS = 1000, MIXED_FLOPS =
 
 static double component_flops(Compilation *c, size_t component)
 {
-    const KrsScene *scene = c->scene;
-    Tape            tape  = tape_new(scene->graph,
-                                     &scene->roots.components[component * ROOT_COUNT + ROOT_DISTANCE], 1,
-                                     &c->scratch);
+    Node distance = distance_root(&c->scene->roots, component);
+    Tape tape     = tape_new(c->scene->graph, &distance, 1, &c->scratch);
     return tape_flops(&tape);
 }
 
@@ -50,11 +48,13 @@ static double flops_worth_splitting(const KrsProgram *program)
     return sum <= hull ? SCATTERED_FLOPS : MIXED_FLOPS;
 }
 
-void form_march_groups(Compilation *c, uint32_t *march_groups)
+void form_march_groups(Compilation *c)
 {
-    KrsProgram *program    = &c->scene->program;
-    Box         rest       = box_empty;
-    double      rest_flops = 0;
+    KrsProgram *program      = &c->scene->program;
+    uint32_t   *march_groups = arena_new_array(&c->scene->arena, uint32_t,
+                                               c->scene->component_count + 1);
+    Box         rest         = box_empty;
+    double      rest_flops   = 0;
     for (size_t i = 0; i < c->scene->component_count; i++) {
         const Component *component = &c->elaborated.components.items[i];
         march_groups[i]            = 0;
@@ -82,4 +82,5 @@ void form_march_groups(Compilation *c, uint32_t *march_groups)
         program->march_group_count = 0;
     program->per_component = program->march_group_count > 0 &&
                              program->flops >= flops_worth_splitting(program);
+    c->march_groups = march_groups;
 }

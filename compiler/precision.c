@@ -48,7 +48,7 @@ static double reach_of_boxes(const Scene *s)
 typedef struct ViewPrecision {
     const Scene *scene;
     Graph       *graph;
-    const Node  *distances; /* ROOT_COUNT apart */
+    const Roots *roots;
     Tape         tape;
     NodeValue   *values;
     Arena       *scratch;
@@ -61,7 +61,7 @@ static void run_defaults(ViewPrecision *view)
     Node        *roots = arena_new_array(view->scratch, Node,
                                          s->components.count + 3 * s->cameras.count + 1);
     for (size_t i = 0; i < s->components.count; i++)
-        roots[count++] = view->distances[i * ROOT_COUNT + ROOT_DISTANCE];
+        roots[count++] = distance_root(view->roots, i);
     for (size_t i = 0; i < s->cameras.count; i++) {
         roots[count++] = s->cameras.items[i].eye;
         roots[count++] = s->cameras.items[i].fov;
@@ -83,7 +83,7 @@ static double nearest_to(const ViewPrecision *view, const double eye[3])
     double nearest = HUGE_VAL;
     tape_run_point(&view->tape, eye, view->values);
     for (size_t i = 0; i < view->scene->components.count; i++) {
-        Node distance = view->distances[i * ROOT_COUNT + ROOT_DISTANCE];
+        Node distance = distance_root(view->roots, i);
         nearest       = fmin(nearest, fabs(view->values[distance].v[0]));
     }
     return nearest;
@@ -127,11 +127,10 @@ static bool scene_needs_rebase(const Scene *s)
     return krs_needs_rebase(reach_of_boxes(s), 0.5 * size / lines_of(s));
 }
 
-bool may_need_rebase(const Scene *scene, Graph *graph, const Node *distances, Arena *scratch)
+bool may_need_rebase(const Scene *scene, Graph *graph, const Roots *roots, Arena *scratch)
 {
-    ViewPrecision view = {
-        .scene = scene, .graph = graph, .distances = distances, .scratch = scratch};
-    bool needs = false, moves = scene->cameras.count == 0;
+    ViewPrecision view  = {.scene = scene, .graph = graph, .roots = roots, .scratch = scratch};
+    bool          needs = false, moves = scene->cameras.count == 0;
     if (scene->zone_count > 0)
         return false;
     run_defaults(&view);

@@ -78,7 +78,7 @@ KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *compo
     return KRS_OK;
 }
 
-void krs_scene_free(KrsScene *scene)
+void scene_free(KrsScene *scene)
 {
     if (!scene)
         return;
@@ -89,3 +89,5 @@ void krs_scene_free(KrsScene *scene)
     else
         free(scene);
 }
+
+void krs_scene_free(KrsScene *scene) { scene_free(scene); }

@@ -5,31 +5,115 @@
 #define KRS_PROGRAM_H
 
 #include "compiler/bounds.h"
-#include "compiler/compile.h"
+#include "compiler/compiled.h"
 #include "compiler/geometry/lower.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/print/module.h"
 
-/* How many roots each has. */
-enum { CAMERA_ROOTS = 5, LIGHT_ROOTS = 3, SKY_ROOTS = 3, PLANE_ROOTS = 2, GRADIENT_ROOTS = 2 };
+/*
+ * What is asked of the graph: nodes in one array, kind behind kind, so that they are simplified
+ * together.
+ */
+typedef enum RootKind {
+    ROOTS_SURFACE, /* of each component as many as there are kinds of ComponentRoot */
+    ROOTS_ZONE,    /* the depth in zones, if there are any */
+    ROOTS_CAMERA,
+    ROOTS_LIGHT,
+    ROOTS_SKY,
+    /* From here on for the march alone; nothing else depends on these. */
+    ROOTS_GUARDED,         /* of each component: lower_guarded */
+    ROOTS_ALONG,           /* of each component, method by method: lower_along */
+    ROOTS_PLANE,           /* of the nearest half-space */
+    ROOTS_GRADIENT,        /* of each component, and then of all zones */
+    ROOTS_SLOPE,           /* of each slope that is found for each frame */
+    ROOTS_CAMERA_RELATIVE, /* surfaces and plane again, for points that are, or nothing */
+    ROOT_KINDS
+} RootKind;
 
-/* What is asked of the graph: nodes in one array, in this order, so that they are simplified
-   together.  What begins with `guarded` is for the march: nothing else depends on it. */
+typedef struct CameraRoots {
+    Node eye, target, up, fov, height;
+} CameraRoots;
+typedef struct LightRoots {
+    Node vector, color, softness;
+} LightRoots;
+typedef struct SkyRoots {
+    Node zenith, horizon, ground;
+} SkyRoots;
+typedef struct PlaneRoots {
+    Node step, rise; /* how far a ray is from it, and how steeply the ray falls */
+} PlaneRoots;
+typedef struct GradientRoots {
+    Node gradient, near; /* lower_gradient's two; the same FLOAT twice where there is none */
+} GradientRoots;
+
+/* How many nodes such a group of roots has. */
+#define NODES_OF(type) (sizeof(type) / sizeof(Node))
+
 typedef struct Roots {
-    Node  *components; /* ROOT_COUNT of each */
-    Node  *zone;       /* the depth in zones, if there are any */
-    Node  *cameras;    /* eye, target, up, field of view and height of each */
-    Node  *lights;     /* vector, color and softness of each */
-    Node  *sky;        /* zenith, horizon, ground */
-    Node  *guarded;    /* of each component: lower_guarded */
-    Node  *along;      /* of each component, method by method: lower_along */
-    Node  *planes;     /* where a ray meets a plane, and how steeply it falls */
-    Node  *gradients;  /* of each component and then of all zones: lower_gradient's two; the same
-                          node twice, a FLOAT, where there is none */
-    Node  *camera_relative; /* components and planes, of camera-relative points */
-    Node  *slopes;          /* of each slope that is found for each frame */
-    size_t count;
+    Node  *all;
+    size_t first[ROOT_KINDS + 1]; /* where each kind begins; the last: how many there are */
 } Roots;
+
+/* Roots that follow each other. */
+typedef struct RootRange {
+    Node  *items;
+    size_t count;
+} RootRange;
+
+static inline RootRange roots_from(const Roots *roots, RootKind first, RootKind last)
+{
+    return (RootRange){roots->all + roots->first[first],
+                       roots->first[last + 1] - roots->first[first]};
+}
+
+static inline RootRange roots_of(const Roots *roots, RootKind kind)
+{
+    return roots_from(roots, kind, kind);
+}
+
+/* What is computed for a component: to be indexed by ComponentRoot. */
+static inline Node *surface_roots(const Roots *roots, size_t component)
+{
+    return roots_of(roots, ROOTS_SURFACE).items + component * ROOT_COUNT;
+}
+
+static inline Node distance_root(const Roots *roots, size_t component)
+{
+    return surface_roots(roots, component)[ROOT_DISTANCE];
+}
+
+/* Of each component, by one method. */
+static inline Node *along_roots(const Roots *roots, AlongMethod method)
+{
+    RootRange along = roots_of(roots, ROOTS_ALONG);
+    return along.items + method * (along.count / ALONG_COUNT);
+}
+
+static inline CameraRoots *camera_roots(const Roots *roots, size_t camera)
+{
+    return (CameraRoots *)roots_of(roots, ROOTS_CAMERA).items + camera;
+}
+
+static inline LightRoots *light_roots(const Roots *roots, size_t light)
+{
+    return (LightRoots *)roots_of(roots, ROOTS_LIGHT).items + light;
+}
+
+static inline SkyRoots *sky_roots(const Roots *roots)
+{
+    return (SkyRoots *)roots_of(roots, ROOTS_SKY).items;
+}
+
+static inline PlaneRoots *plane_roots(const Roots *roots)
+{
+    return (PlaneRoots *)roots_of(roots, ROOTS_PLANE).items;
+}
+
+/* Of a component; behind the last, of all zones. */
+static inline GradientRoots *gradient_roots(const Roots *roots, size_t component)
+{
+    return (GradientRoots *)roots_of(roots, ROOTS_GRADIENT).items + component;
+}
 
 /* A slope that is found for each frame (geometry/slope.c). */
 typedef struct RetainedSlope {
@@ -60,7 +144,7 @@ struct KrsScene {
     SceneImage     image;
     char           hash[17];
     Tape           distance; /* of all components, and zones */
-    Tape           guarded;  /* of all components: roots.guarded, with what may be left out */
+    Tape           guarded;  /* of all components: ROOTS_GUARDED, with what may be left out */
     Tape           ahead;    /* with sheets: of all components, and zones, how far rays may go */
     Tape           turned;   /* with sheets: gradients of all components */
     Tape           surface;  /* all roots of all components */
@@ -81,6 +165,15 @@ struct KrsFrame {
     size_t          zone_count; /* of the caller */
 };
 
+/* What krs.h and compiled.h have under the same names, for the compiler itself, which asks a scene
+   before it is handed out: from `retain` on. */
+KrsStatus frame_new(const KrsScene *scene, KrsFrame **frame);
+void      frame_free(KrsFrame *frame);
+KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view);
+KrsStatus frame_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
+                        size_t count, double farthest, double tolerance, KrsHit *hits);
+void      scene_free(KrsScene *scene);
+
 /* Computes what depends on parameters only, once after each change. */
 void frame_refresh(KrsFrame *frame);
 /* Of all that points and the view get from the frame, something that is not finite; NODE_NONE. */
@@ -92,7 +185,8 @@ void vector_normalize(double v[3]);
 
 static inline Node zone_root(const KrsScene *scene)
 {
-    return scene->zone_count ? *scene->roots.zone : NODE_NONE;
+    RootRange zone = roots_of(&scene->roots, ROOTS_ZONE);
+    return zone.count ? zone.items[0] : NODE_NONE;
 }
 
 #endif

@@ -45,8 +45,7 @@ static double distance_at(KrsFrame *frame, const double point[3], uint32_t *near
     double          least = INFINITY;
     tape_run_point(&scene->distance, point, frame->values);
     for (size_t i = 0; i < scene->component_count; i++) {
-        Node   root     = scene->roots.components[i * ROOT_COUNT + ROOT_DISTANCE];
-        double distance = frame->values[root].v[0];
+        double distance = frame->values[distance_root(&scene->roots, i)].v[0];
         if (distance < least || i == 0) {
             least    = distance;
             *nearest = (uint32_t)i + 1;
@@ -61,12 +60,12 @@ static double distance_at(KrsFrame *frame, const double point[3], uint32_t *near
 static double step_ahead(KrsFrame *frame, const double point[3], const double direction[3],
                          double step)
 {
-    const KrsScene *scene       = frame->scene;
-    const Node     *along_roots = scene->roots.along + ALONG_EXACT * scene->component_count;
-    double          least       = INFINITY;
+    const KrsScene *scene = frame->scene;
+    const Node     *exact = along_roots(&scene->roots, ALONG_EXACT);
+    double          least = INFINITY;
     tape_run_surface(&scene->ahead, point, direction, step, frame->values);
     for (size_t i = 0; i < scene->component_count; i++)
-        least = fmin(least, frame->values[along_roots[i]].v[0]);
+        least = fmin(least, frame->values[exact[i]].v[0]);
     return fmax(least, zone_depth(frame, point));
 }
 
@@ -74,11 +73,12 @@ static double step_ahead(KrsFrame *frame, const double point[3], const double di
    looked at (lower_guarded). */
 static double clearance_at(KrsFrame *frame, const double point[3])
 {
-    const KrsScene *scene = frame->scene;
-    double          least = INFINITY;
+    const KrsScene *scene   = frame->scene;
+    RootRange       guarded = roots_of(&scene->roots, ROOTS_GUARDED);
+    double          least   = INFINITY;
     tape_run_point(&scene->guarded, point, frame->values);
-    for (size_t i = 0; i < scene->component_count; i++)
-        least = fmin(least, frame->values[scene->roots.guarded[i]].v[0]);
+    for (size_t i = 0; i < guarded.count; i++)
+        least = fmin(least, frame->values[guarded.items[i]].v[0]);
     return fmax(least, zone_depth(frame, point));
 }
 
@@ -100,7 +100,7 @@ static bool derived_normal(KrsFrame *frame, const double point[3], double normal
     uint32_t        nearest = 0;
     if (!scene->program.sheets || distance_at(frame, point, &nearest) <= zone_depth(frame, point))
         return false;
-    Node gradient = scene->roots.gradients[(nearest - 1) * GRADIENT_ROOTS];
+    Node gradient = gradient_roots(&scene->roots, nearest - 1)->gradient;
     if (scene->graph->items[gradient].type != TYPE_VEC3)
         return false;
     tape_run_point(&scene->turned, point, frame->values);
@@ -153,7 +153,7 @@ static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
     if (!hit->component)
         return;
     tape_run_surface(&scene->surface, point, hit->normal, 0, frame->values);
-    const Node *root = &scene->roots.components[(hit->component - 1) * ROOT_COUNT];
+    const Node *root = surface_roots(&scene->roots, hit->component - 1);
     hit->level       = (uint32_t)frame->values[root[ROOT_LEVEL]].v[0];
     hit->instance    = (uint32_t)frame->values[root[ROOT_INSTANCE]].v[0];
     frame_copy(frame, root[ROOT_COLOR], hit->color);
@@ -374,8 +374,8 @@ static void trace(KrsFrame *frame, KrsRay ray, double tolerance, KrsHit *hit)
     hit->unresolved = state == MARCHING;
 }
 
-KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
-                      size_t count, double farthest, double tolerance, KrsHit *hits)
+KrsStatus frame_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
+                        size_t count, double farthest, double tolerance, KrsHit *hits)
 {
     if (!krs_rays_are_valid(origins, directions, count, farthest, tolerance))
         return KRS_BAD_ARGUMENT;
@@ -384,4 +384,10 @@ KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3], const double 
         trace(frame, krs_ray(frame->scene, origins[i], directions[i], farthest), tolerance,
               &hits[i]);
     return KRS_OK;
+}
+
+KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
+                      size_t count, double farthest, double tolerance, KrsHit *hits)
+{
+    return frame_raycast(frame, origins, directions, count, farthest, tolerance, hits);
 }

@@ -4,6 +4,7 @@
 #ifndef KRS_REFUTE_H
 #define KRS_REFUTE_H
 
+#include "compiler/compile.h"
 #include "compiler/inspect.h"
 
 /* What krs_refute does between compiling and the end; a finding is added to in->diags. */

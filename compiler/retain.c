@@ -20,7 +20,6 @@ static void retain_components(Compilation *c)
     scene->component_count = s->components.count;
     scene->components      = arena_new_array(&scene->arena, KrsComponent, s->components.count + 1);
     scene->bounds          = arena_new_array(&scene->arena, KrsBounds, s->components.count + 1);
-    scene->program.plain   = true;
     for (size_t i = 0; i < s->components.count; i++) {
         const Component *from = &s->components.items[i];
         KrsComponent    *to   = &scene->components[i];
@@ -36,7 +35,6 @@ static void retain_components(Compilation *c)
             to->low[k]  = from->shape->box.axis[k].low;
             to->high[k] = from->shape->box.axis[k].high;
         }
-        scene->program.plain = scene->program.plain && !shape_is_curved(from->shape);
         bounds_of(from->shape, &c->sources, &scene->bounds[i], &scene->arena, &c->scratch);
         arena_free(&c->scratch);
     }
@@ -66,13 +64,13 @@ static void retain_slopes(Compilation *c)
         text_format(&place, "%s:%u:%u", source->name, position.line, position.column);
         scene->slopes[scene->slope_count++] = (RetainedSlope){
             from->slot,
-            slope_task(scene->graph, scene->roots.slopes[i], from->region,
+            slope_task(scene->graph, roots_of(&scene->roots, ROOTS_SLOPE).items[i], from->region,
                        frame_slope_cells(from->region), &scene->arena),
             place.bytes};
     }
 }
 
-void retain_scene(Compilation *c)
+static void retain_scene(Compilation *c)
 {
     KrsScene    *scene = c->scene;
     const Scene *s     = &c->elaborated;
@@ -94,57 +92,78 @@ void retain_scene(Compilation *c)
     scene->light_count = s->lights.count;
     scene->lights      = arena_new_array(arena, SceneLight, s->lights.count + 1);
     memcpy(scene->lights, s->lights.items, s->lights.count * sizeof *scene->lights);
-    for (size_t i = 0; i < s->lights.count; i++)
-        scene->program.shadows = scene->program.shadows || s->lights.items[i].shadow;
     scene->zone_count       = s->zone_count;
     scene->image            = s->image;
     scene->image.integrator = retain_text(c, s->image.integrator);
     scene->image.tone_map   = retain_text(c, s->image.tone_map);
-    for (int k = 0; k < 3; k++) {
-        scene->program.low[k]  = s->box.axis[k].low;
-        scene->program.high[k] = s->box.axis[k].high;
-    }
 }
 
-/* Of which components there are steps along rays, and which of those are for inversions. */
-static void find_steps(KrsScene *scene, const Node *distances)
+/* One root of each component, and the zones behind them. */
+static Tape tape_with_zones(const KrsScene *scene, const Node *roots, bool guarded, Arena *arena,
+                            Arena *scratch)
 {
-    const Node *polynomial  = scene->roots.along;
-    const Node *directional = polynomial + ALONG_DIRECTIONAL * scene->component_count;
-    for (size_t i = 0; i < scene->component_count; i++) {
-        scene->program.along   = scene->program.along || polynomial[i] != distances[i];
-        scene->program.inverts = scene->program.inverts || directional[i] != distances[i];
-    }
+    size_t count = scene->component_count;
+    Node   zone = zone_root(scene), *all = arena_new_array(scratch, Node, count + 1);
+    memcpy(all, roots, count * sizeof *all);
+    if (zone != NODE_NONE)
+        all[count++] = zone;
+    return guarded ? tape_new_guarded(scene->graph, all, count, arena)
+                   : tape_new(scene->graph, all, count, arena);
 }
 
-void retain_tapes(Compilation *c)
+static Tape tape_of(const KrsScene *scene, RootRange roots, Arena *arena)
+{
+    return tape_new(scene->graph, roots.items, roots.count, arena);
+}
+
+static void retain_tapes(Compilation *c)
 {
     KrsScene    *scene     = c->scene;
+    Arena       *arena     = &scene->arena;
     const Roots *roots     = &scene->roots;
-    size_t       count     = scene->component_count;
-    Node        *distances = arena_new_array(&c->scratch, Node, count + 1);
-    Node        *guarded   = arena_new_array(&c->scratch, Node, count + 1);
-    for (size_t i = 0; i < count; i++)
-        distances[i] = roots->components[i * ROOT_COUNT + ROOT_DISTANCE];
-    find_steps(scene, distances);
-    memcpy(guarded, roots->guarded, count * sizeof *guarded);
-    if (scene->zone_count > 0)
-        guarded[count] = distances[count] = zone_root(scene);
-    count += scene->zone_count > 0;
-    scene->guarded  = tape_new_guarded(scene->graph, guarded, count, &scene->arena);
-    scene->distance = tape_new(scene->graph, distances, count, &scene->arena);
-    if (scene->program.sheets) {
-        memcpy(guarded, roots->along + ALONG_EXACT * scene->component_count,
-               scene->component_count * sizeof *guarded);
-        scene->ahead  = tape_new(scene->graph, guarded, count, &scene->arena);
-        scene->turned = tape_new(scene->graph, roots->gradients,
-                                 scene->component_count * GRADIENT_ROOTS, &scene->arena);
+    Node        *distances = arena_new_array(&c->scratch, Node, scene->component_count + 1);
+    for (size_t i = 0; i < scene->component_count; i++)
+        distances[i] = distance_root(roots, i);
+    scene->guarded  = tape_with_zones(scene, roots_of(roots, ROOTS_GUARDED).items, true, arena,
+                                      &c->scratch);
+    scene->distance = tape_with_zones(scene, distances, false, arena, &c->scratch);
+    if (c->additions.sheets) {
+        RootRange gradients = roots_of(roots, ROOTS_GRADIENT);
+        gradients.count     = scene->component_count * NODES_OF(GradientRoots);
+        scene->ahead        = tape_with_zones(scene, along_roots(roots, ALONG_EXACT), false, arena,
+                                              &c->scratch);
+        scene->turned       = tape_of(scene, gradients, arena);
     }
-    scene->surface = tape_new(scene->graph, roots->components,
-                              (size_t)(roots->cameras - roots->components), &scene->arena);
-    scene->view = tape_new(scene->graph, roots->cameras, (size_t)(roots->guarded - roots->cameras),
-                           &scene->arena);
-    scene->program.operations = scene->distance.count - scene->distance.frame_count;
-    scene->program.flops      = tape_flops(&scene->distance);
-    scene->program.loops      = tape_loops(&scene->distance);
+    scene->surface = tape_of(scene, roots_from(roots, ROOTS_SURFACE, ROOTS_ZONE), arena);
+    scene->view    = tape_of(scene, roots_from(roots, ROOTS_CAMERA, ROOTS_SKY), arena);
+}
+
+KrsStatus pass_retain(Compilation *c)
+{
+    sources_hash(&c->sources, c->scene->hash);
+    retain_scene(c);
+    retain_tapes(c);
+    return KRS_OK;
+}
+
+static void print_tape(const char *name, const Tape *tape, Text *out)
+{
+    text_format(out, "tape %s  %zu nodes, %zu of the frame\n", name, tape->count,
+                tape->frame_count);
+}
+
+void print_retain(Compilation *c, Text *out)
+{
+    const KrsScene *scene = c->scene;
+    text_format(out, "hash %s\ngraph  %zu nodes\nroots  %zu\n", scene->hash, scene->graph->count,
+                scene->roots.first[ROOT_KINDS]);
+    text_format(out, "components %zu\nparameters %zu\nslopes %zu\ncameras %zu\nlights %zu\n",
+                scene->component_count, scene->parameter_count, scene->slope_count,
+                scene->camera_count, scene->light_count);
+    print_tape("distance", &scene->distance, out);
+    print_tape("guarded", &scene->guarded, out);
+    print_tape("ahead", &scene->ahead, out);
+    print_tape("turned", &scene->turned, out);
+    print_tape("surface", &scene->surface, out);
+    print_tape("view", &scene->view, out);
 }

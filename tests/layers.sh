@@ -2,13 +2,30 @@
 # layers.sh: each folder may include itself and the folders before it in this list; of the
 # compiler, the runtime and the command may see only its api.  The installed headers (types
 # and prototypes for everybody) may be included by the half that they belong to.
+#
+# Units (NAME.c with NAME.h) do not include each other in circles, but for those listed here.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 layers="compiler/base compiler/front compiler/graph compiler/geometry compiler/print
         compiler/print/glsl compiler/target compiler
         runtime/device runtime/shared runtime/tracer runtime/film runtime/writer runtime cli"
-api="compiler/base/ compiler/compile.h compiler/krs.h compiler/print/variant.h compiler/target/spirv.h
-          runtime/krs_vulkan.h runtime/planes.def runtime/choices.def"
+api="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h
+          compiler/print/variant.h compiler/target/spirv.h runtime/krs_vulkan.h runtime/planes.def runtime/choices.def"
+# "A>B": A includes B's header, and B needs A.  Without all of these there is no circle.
+circles="compiler/geometry/lowering>compiler/geometry/lower
+         runtime/device/pipelines>runtime/device/gpu runtime/tracer/layouts>runtime/tracer/renderer
+         runtime/tracer/warmup>runtime/tracer/renderer
+         runtime/tracer/phases>runtime/tracer/dispatch
+         cli/options>cli/console cli/options>cli/values"
+
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+
+# "FILE HEADER", both from the repository's root.
+for layer in $layers; do
+    for ending in c h cpp def; do
+        grep -H '^ *# *include *"' "$layer"/*.$ending 2>/dev/null
+    done
+done | sed 's/ *# *include *"//; s/".*//; s/:/ /' >"$work/includes"
 
 # Whether a header is one of the files, or in one of the folders (with a slash at the end).
 allowed() { # header, files and folders
@@ -21,27 +38,63 @@ allowed() { # header, files and folders
     return 1
 }
 
-echo "1..$(echo "$layers" | wc -w)"
+echo "1..$(echo "$layers $circles 1" | wc -w)"
 places="compiler/krs.h" number=0 bad=0
-for layer in $layers; do
+
+result() { # what is wrong, or nothing; what was looked at
     number=$((number + 1))
-    [ "$layer" = runtime/device ] && places=$api
-    places="$places $layer/"
-    wrong=""
-    for hit in $(grep -Hn '^ *# *include *"' "$layer"/*.c "$layer"/*.h "$layer"/*.cpp \
-        "$layer"/*.def 2>/dev/null | tr -d ' '); do
-        header=${hit#*include\"}
-        header=${header%%\"*}
-        allowed "$header" "$places" ||
-            wrong="$wrong# ${hit%%:#*}: $layer must not know $header
-"
-    done
-    if [ -z "$wrong" ]; then
-        echo "ok $number - $layer"
+    if [ -z "$1" ]; then
+        echo "ok $number - $2"
     else
-        echo "not ok $number - $layer"
-        printf '%s' "$wrong"
+        echo "not ok $number - $2"
+        printf '%s\n' "$1" | sed '/^$/d; s/^/# /'
         bad=1
     fi
+}
+
+# ---- layers ----
+
+# The folders that a folder includes headers of, and how many lines it has.
+describe() { # folder
+    others=$(awk -v here="$1" '{ from = $1; to = $2; sub(/\/[^\/]*$/, "", from)
+                                 sub(/\/[^\/]*$/, "", to)
+                                 if (from == here && to != here) print to }' "$work/includes" |
+        sort | uniq -c | awk '{ printf "%s%s %d", separator, $2, $1; separator = ", " }')
+    files=$(find "$1" -maxdepth 1 -name '*.[ch]' -o -maxdepth 1 -name '*.cpp' \
+        -o -maxdepth 1 -name '*.def')
+    # shellcheck disable=SC2086 # a list of names without blanks
+    echo "# $(cat $files | wc -l) lines in $(echo "$files" | wc -l) files; includes: ${others:-nothing}"
+}
+
+for layer in $layers; do
+    [ "$layer" = runtime/device ] && places=$api
+    places="$places $layer/"
+    wrong=$(while read -r file header; do
+        [ "${file%/*}" != "$layer" ] || allowed "$header" "$places" ||
+            echo "$file: $layer must not know $header"
+    done <"$work/includes")
+    result "$wrong" "$layer"
+    describe "$layer"
 done
+
+# ---- circles ----
+
+awk '{ for (i = 1; i <= 2; i++) sub(/\.(c|h|cpp)$/, "", $i) } $1 != $2' "$work/includes" |
+    sort -u >"$work/units"
+echo "$circles" | tr ' >' '\n ' | sed '/^$/d' | sort -u >"$work/known"
+sort "$work/known" "$work/known" "$work/units" | uniq -u >"$work/plain"
+
+# What stands in a circle, or nothing.
+find_circle() { # pairs
+    tsort "$1" 2>&1 >/dev/null | sed 's/^tsort: //'
+}
+
+result "$(find_circle "$work/plain")" "units do not include each other in circles"
+while read -r from to; do
+    echo "$from $to" | cat "$work/plain" - >"$work/with"
+    gone=""
+    grep -qx "$from $to" "$work/units" && [ -n "$(find_circle "$work/with")" ] ||
+        gone="no longer a circle: take it off the list"
+    result "$gone" "a circle that is known: $from and $to"
+done <"$work/known"
 exit $bad

@@ -10,8 +10,8 @@ SUPPORT     := $(addprefix tests/support/, agreement.c bench.c device.c random.c
                renderer.c scarce.c)
 ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c chain.c \
                exact.c formulas.c rooms.c montecarlo.c)
-UNIT        := front film tracer methods writer memory validate refute frame query cache compiled \
-               per_component stencils glslang loader drivers grid
+UNIT        := front passes film tracer methods writer memory validate refute frame query cache \
+               compiled per_component stencils glslang loader drivers grid
 PROPERTY    := ops noise graph derive series zeros local along rebase slope parity reach
 ORACLES     := self primitives krs_expand trees maps moebius operators combinations deform chains \
                chain_pictures moving normals fields surfaces rays algebraic fractals device query \
@@ -24,8 +24,8 @@ SECOND      := $(DRIVERS) $(addprefix tests/, unit/tracer oracle/device oracle/p
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
-SANITIZED   := tests/unit/front tests/unit/film tests/unit/writer tests/unit/validate \
-               tests/unit/loader tests/unit/grid \
+SANITIZED   := tests/unit/front tests/unit/passes tests/unit/film tests/unit/writer \
+               tests/unit/validate tests/unit/loader tests/unit/grid \
                tests/unit/refute tests/unit/memory tests/unit/cache tests/unit/frame \
                tests/unit/query tests/property/ops tests/property/noise tests/property/graph \
                tests/property/derive tests/property/series tests/property/zeros \

@@ -434,27 +434,19 @@ static bool contains_error(const Syntax *syntax)
 }
 
 /* Whether top-level names may be missing, so that an unknown one is no new mistake: a statement
-   could not be read, or a file that this one uses. */
-static bool is_incomplete(const Checker *c, const Syntax *file)
+   could not be read. */
+static bool has_unread_statement(const Syntax *file)
 {
     for (uint32_t i = 0; i < file->count; i++)
         if (file->children[i]->kind == SYNTAX_ERROR)
             return true;
-    for (size_t i = 0; i < c->diags->count; i++) {
-        const Diag *diag      = c->diags->items[i];
-        bool        elsewhere = diag->span.source != file->span.source;
-        bool        grammar   = diag->code < DIAG_UNKNOWN_NAME;
-        if ((elsewhere && grammar) || diag->code == DIAG_CANNOT_READ || diag->code == DIAG_LIMIT ||
-            diag->code == DIAG_CIRCULAR_USE)
-            return true;
-    }
     return false;
 }
 
 void names_check(const Syntax *file, const NameScope *scope, Diags *diags, Arena *arena)
 {
     Checker checker = {.arena = arena, .diags = diags}, *c = &checker;
-    bool    incomplete = is_incomplete(c, file);
+    bool    incomplete = scope->incomplete || has_unread_statement(file);
     for (size_t i = scope->known_count; i-- > 0;) /* the first shall be the newest */
         add_meaning(c, find_slot(c, scope->known[i]), (Span){0}, NULL);
 

@@ -10,6 +10,7 @@
 typedef struct NameScope {
     const char *const *known; /* names from outside: built-in functions, the library, used files */
     size_t             known_count;
+    bool               incomplete; /* some are missing because of mistakes reported before */
 } NameScope;
 
 /* Reports names used and not defined (E0201, each once, with the nearest known name; not where

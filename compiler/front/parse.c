@@ -4,9 +4,11 @@
  * The comment above each function is its rule in grammar/krs.ebnf, word for word; a test
  * compares them.
  */
-#include "compiler/front/parser.h"
+#include "compiler/front/parse.h"
 
 #include <string.h>
+
+#include "compiler/front/parser.h"
 
 /* ---- definitions ---- */
 

@@ -11,7 +11,7 @@
 #ifndef KRS_PARSER_H
 #define KRS_PARSER_H
 
-#include "compiler/front/parse.h"
+#include "compiler/front/syntax.h"
 
 enum { MOST_NESTING = 200 };
 

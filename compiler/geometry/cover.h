@@ -7,6 +7,7 @@
 #ifndef KRS_COVER_H
 #define KRS_COVER_H
 
+#include "compiler/base/arena.h"
 #include "compiler/geometry/box.h"
 
 /* A ball, or the outside of it: all of space where its radius is 0. */

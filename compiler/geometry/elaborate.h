@@ -11,7 +11,7 @@
 #ifndef KRS_ELABORATE_H
 #define KRS_ELABORATE_H
 
-#include "compiler/base/loader.h"
+#include "compiler/front/files.h"
 #include "compiler/geometry/cover.h"
 #include "compiler/geometry/shape.h"
 
@@ -38,9 +38,7 @@ typedef struct Definition {
 
 /* A file, its definitions, and the files that it uses. */
 typedef struct Scope {
-    const char   *path;
     const Syntax *file;
-    bool          loading;
     Environment   environment; /* no locals, this scope */
     struct {
         Definition **items;
@@ -55,19 +53,17 @@ typedef struct Scope {
 } Scope;
 
 typedef struct Elaboration {
-    Arena   *arena;  /* values, shapes and the scene */
-    Arena   *syntax; /* trees of used files */
+    Arena   *arena; /* values, shapes and the scene */
     Arena   *scratch;
     Diags   *diags;
-    Names   *names;
     Sources *sources;
     Graph   *graph;
     Scene   *scene;
-    Scope   *library;
+    Scope   *library; /* sees the files of the library */
     struct {
         Scope **items;
         size_t  count, capacity;
-    } scopes;
+    } scopes; /* of the files, in their order */
     /* Shape declarations whose claims have been put to the test. */
     struct {
         const Syntax **items;
@@ -77,24 +73,20 @@ typedef struct Elaboration {
         const Syntax **items;
         size_t         count, capacity;
     } checked;
-    const Loader *loader;       /* of files that a `use` names */
-    uint64_t      steps;        /* of evaluation, so far */
-    uint32_t      depth, calls; /* how deep expressions and calls are nested now */
-    size_t        text_total;   /* bytes of all files read */
-    bool          stopped;     /* a limit was reached: everything is an error from here, silently */
-    Node          rounding;    /* what the name `rounding` means in `core:`, or NODE_NONE */
-    bool          in_material; /* level, instance, u, v and normal have a meaning */
+    uint64_t steps;        /* of evaluation, so far */
+    uint32_t depth, calls; /* how deep expressions and calls are nested now */
+    bool     stopped;      /* a limit was reached: everything is an error from here, silently */
+    Node     rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
+    bool     in_material;  /* level, instance, u, v and normal have a meaning */
 } Elaboration;
 
-/* Evaluates a file, whose source is already in e->sources, into e->scene; e->scene is complete
-   unless e->diags has errors. */
-void elaborate(Elaboration *e, uint32_t source, const char *path);
+/* Evaluates the first of the files, whose names have been checked, into e->scene; e->scene is
+   complete unless e->diags has errors. */
+void elaborate(Elaboration *e, const Files *files);
 
 /* ---- scope.c ---- */
-/* Makes e->library of the embedded files that every scene sees. */
-void scope_load_library(Elaboration *e);
-/* Reads a file and all that it uses; its names are checked.  Mistakes are reported. */
-Scope *scope_load(Elaboration *e, uint32_t source, const char *path);
+/* Makes e->scopes of the files, and e->library of those that every scene sees. */
+void scopes_make(Elaboration *e, const Files *files);
 /* A definition of the file or of the files that it uses, or NULL. */
 Definition *scope_find(const Scope *scope, const char *name);
 

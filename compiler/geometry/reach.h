@@ -7,6 +7,8 @@
 #ifndef KRS_REACH_H
 #define KRS_REACH_H
 
+#include <stdint.h>
+
 #include "compiler/geometry/box.h"
 
 /* A stage of a sequence whose numbers are known. */

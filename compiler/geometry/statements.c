@@ -414,13 +414,11 @@ static void run_params(Elaboration *e, Scope *scope)
     }
 }
 
-void elaborate(Elaboration *e, uint32_t source, const char *path)
+void elaborate(Elaboration *e, const Files *files)
 {
     e->rounding = NODE_NONE;
-    scope_load_library(e);
-    Scope *scope = scope_load(e, source, path);
-    if (e->diags->errors)
-        return;
+    scopes_make(e, files);
+    Scope *scope = e->scopes.items[0];
     for (size_t i = 0; i < e->scopes.count; i++)
         run_params(e, e->scopes.items[i]);
     run_file(e, scope);

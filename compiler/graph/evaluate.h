@@ -9,14 +9,6 @@
 
 #include "compiler/graph/graph.h"
 
-typedef struct NodeValue {
-    double v[4]; /* booleans 0 or 1; UINT exact */
-} NodeValue;
-
-/* The value of one operation for operand values of these types; never -0. */
-NodeValue op_evaluate(Op op, GraphType type, uint32_t index, const GraphType *types,
-                      const NodeValue *operands);
-
 /* A list of the nodes that a set of roots needs, in order, ready to be run many times. */
 typedef struct Tape {
     const Graph    *graph;

@@ -10,14 +10,7 @@
 #define KRS_FACTS_H
 
 #include "compiler/graph/evaluate.h"
-
-typedef struct Range {
-    double low, high; /* low <= high; may be infinite; [-inf, inf] is "anything" */
-} Range;
-
-typedef struct Box {
-    Range axis[3];
-} Box;
+#include "compiler/graph/range.h"
 
 typedef struct Fact {
     Range  value[4];       /* per component */

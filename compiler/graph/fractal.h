@@ -7,7 +7,7 @@
 #ifndef KRS_FRACTAL_H
 #define KRS_FRACTAL_H
 
-#include "compiler/graph/evaluate.h"
+#include "compiler/graph/graph.h"
 
 enum { MOST_POWER = 16, MOST_ITERATIONS = 64 };
 

@@ -11,7 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "compiler/graph/evaluate.h"
 
 /* ---- what is known of operations ---- */
 
@@ -467,57 +466,6 @@ Node graph_power(Graph *graph, Node base, Node exponent)
         return power;
     Node one = graph_number(graph, 1);
     return graph_op2(graph, OP_div, one, power);
-}
-
-/* ---- substitution ---- */
-
-Substitution substitute_point(Node point)
-{
-    return (Substitution){point, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE};
-}
-
-static Node substitute_leaf(const Expr *e, Node node, Substitution with)
-{
-    Node other = e->op == OP_POINT      ? with.point
-                 : e->op == OP_INSTANCE ? with.instance
-                 : e->op == OP_LEVEL    ? with.level
-                 : e->op == OP_UV       ? with.uv
-                 : e->op == OP_TRAP     ? with.trap
-                 : e->op == OP_NORMAL   ? with.normal
-                                        : NODE_NONE;
-    return other == NODE_NONE ? node : other;
-}
-
-/* The graph grows meanwhile, so the expression is handed over as a copy. */
-static Node substitute_operands(Graph *graph, Expr e, Node node, const Tape *tape,
-                                const Node *copies)
-{
-    bool changed = false;
-    for (int i = 0; i < e.operand_count; i++) {
-        Node copy     = copies[tape_index(tape, e.operands[i])];
-        changed       = changed || copy != e.operands[i];
-        e.operands[i] = copy;
-    }
-    if (!changed)
-        return node;
-    graph->here = e.span;
-    return e.op == OP_COMPONENT ? graph_component(graph, e.operands[0], e.index)
-                                : graph_op(graph, e.op, e.operands);
-}
-
-Node graph_substitute(Graph *graph, Node root, Substitution with, Arena *scratch)
-{
-    Span  here   = graph->here;
-    Tape  tape   = tape_new(graph, &root, 1, scratch);
-    Node *copies = arena_new_array(scratch, Node, tape.count);
-    for (size_t i = 0; i < tape.count; i++) {
-        Node node = tape.nodes[i];
-        Expr e    = graph->items[node];
-        copies[i] = e.operand_count ? substitute_operands(graph, e, node, &tape, copies)
-                                    : substitute_leaf(&e, node, with);
-    }
-    graph->here = here;
-    return copies[tape_index(&tape, root)];
 }
 
 /* ---- validation ---- */

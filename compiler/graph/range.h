@@ -8,7 +8,16 @@
 #ifndef KRS_RANGE_H
 #define KRS_RANGE_H
 
-#include "compiler/graph/facts.h"
+#include <math.h>
+#include <stdbool.h>
+
+typedef struct Range {
+    double low, high; /* low <= high; may be infinite; [-inf, inf] is "anything" */
+} Range;
+
+typedef struct Box {
+    Range axis[3];
+} Box;
 
 #define ANYTHING ((Range){-HUGE_VAL, HUGE_VAL})
 

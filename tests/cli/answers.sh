@@ -133,12 +133,23 @@ run devices --json
 result $? "devices as JSON"
 
 empty=""
-for stage in tokens syntax scene graph simplify glsl spirv; do
-    run dump --after=$stage ball.krs
-    [ "$status" -eq 0 ] && [ -s out ] || empty="$empty $stage"
+passes=$(sed -n 's/^PASS( *\([a-z]*\),.*/\1/p; s/^PASS_TO("\([a-z]*\)", *\([a-z]*\),.*/\1 \2/p' \
+    "$root/compiler/passes.def")
+for pass in tokens syntax scene graph simplify glsl spirv $passes; do
+    run dump --after="$pass" ball.krs
+    [ "$status" -eq 0 ] && [ -s out ] || empty="$empty $pass"
 done
-[ -z "$empty" ]
-result $? "every stage can be dumped$empty"
+[ -n "$passes" ] && [ -z "$empty" ]
+result $? "every pass can be dumped, by both of its names$empty"
+run dump --after=graphs ball.krs
+words=$(echo "$passes" | tr ' ' '\n' | awk '{ printf "%s%s", separator, $1; separator = ", " }')
+said 2 "--after wants $words or spirv, not \`graphs\`" "an unknown pass is told which there are"
+run dump --help
+missing=$(echo "$passes" | while read -r form pass; do
+    grep -q "^    ${pass:-$form}  *\($form \)*  *[a-z]" out || echo " $form"
+done)
+[ "$status" -eq 0 ] && [ -z "$missing" ]
+result $? "the page of dump has all passes$missing"
 run explain E0101
 [ "$status" -eq 0 ] && grep -q '^error\[E0101\]: ' out
 result $? "a diagnostic is explained"

@@ -51,7 +51,8 @@ static double march_field(const void *user, Vec point)
     double       least = HUGE_VAL;
     tape_run_surface(&march->scene->guarded, p, up, march->footprint, march->values);
     for (size_t i = 0; i < march->scene->component_count; i++)
-        least = fmin(least, march->values[march->scene->roots.guarded[i]].v[0]);
+        least = fmin(least,
+                     march->values[roots_of(&march->scene->roots, ROOTS_GUARDED).items[i]].v[0]);
     march->asked++;
     return least;
 }

@@ -568,7 +568,7 @@ typedef struct Asked {
 static Asked asked_new(Product product, AlongMethod method)
 {
     KrsScene *scene = product.scene;
-    Asked     asked = {product, scene->roots.along[method], {0}};
+    Asked     asked = {product, along_roots(&scene->roots, method)[0], {0}};
     asked.tape      = tape_new(scene->graph, &asked.root, 1, &scene->arena);
     frame_refresh(product.frame);
     tape_run_frame(&asked.tape, product.frame->parameters, product.frame->values);

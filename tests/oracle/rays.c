@@ -33,7 +33,7 @@ static Steps steps_new(Product product, AlongMethod method)
 {
     KrsScene *scene = product.scene;
     assert_int_equal(krs_component_count(scene), 1);
-    Steps steps = {product, method, scene->roots.along[method], {0}};
+    Steps steps = {product, method, along_roots(&scene->roots, method)[0], {0}};
     steps.tape  = tape_new(scene->graph, &steps.root, 1, &scene->arena);
     frame_refresh(product.frame);
     tape_run_frame(&steps.tape, product.frame->parameters, product.frame->values);

@@ -100,6 +100,18 @@ KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsFrame **
     return KRS_OK;
 }
 
+const KrsPass *krs_pass(size_t index)
+{
+    (void)index;
+    return NULL;
+}
+
+const KrsPass *krs_find_pass(const char *word)
+{
+    (void)word;
+    return NULL;
+}
+
 KrsStatus open_renderer(const Options *options, KrsRenderer **renderer)
 {
     (void)options;

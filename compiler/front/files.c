@@ -1,0 +1,278 @@
+/*
+ * files.c: reads the scene, the library, and the files that a `use` names.
+ */
+#include "compiler/front/files.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "compiler/base/embedded.h"
+#include "compiler/front/names.h"
+#include "compiler/front/parse.h"
+
+enum { MOST_TOTAL_BYTES = 64 << 20, MOST_FILES = 1024 };
+
+/* ---- texts, tokens, trees ---- */
+
+static File *add_file(Files *files, const char *path, uint32_t source, bool library)
+{
+    File *file = arena_new(files->arena, File);
+    *file      = (File){.path = path, .source = source, .number = files->count, .library = library};
+    array_push(files->arena, files, file);
+    return file;
+}
+
+static void lex_file(Files *files, File *file)
+{
+    file->tokens = lex(file->source, files->sources, files->names, files->diags, files->trees);
+}
+
+static void parse_file(Files *files, File *file)
+{
+    file->syntax = parse(&file->tokens, files->diags, files->trees);
+}
+
+/* "folder/used.krs" for a `use "used.krs"` in "folder/file.krs". */
+static const char *resolve_path(Files *files, const char *from, const char *path)
+{
+    const char *slash = path[0] == '/' ? NULL : strrchr(from, '/');
+    Text        text  = {.arena = files->arena};
+    text_add_bytes(&text, from, slash ? (size_t)(slash - from + 1) : 0);
+    text_add(&text, path);
+    path_simplify(text.bytes);
+    return text.bytes;
+}
+
+/* Files of compiler/library/ itself; those in its folder std/ wait for a `use`. */
+static void load_library(Files *files)
+{
+    for (const EmbeddedFile *file = library_files; file->name; file++) {
+        if (strchr(file->name, '/'))
+            continue;
+        const char *path   = diag_text(files->diags, "library:%s", file->name);
+        uint32_t    source = source_add(files->sources, path, file->text, file->length, true);
+        add_file(files, path, source, true);
+    }
+}
+
+void files_load(Files *files, const char *path, const char *text, size_t length)
+{
+    uint32_t source = source_add(files->sources, path, text, length, false);
+    files->bytes    = length;
+    add_file(files, resolve_path(files, "", path), source, false);
+    load_library(files);
+}
+
+void files_lex(Files *files)
+{
+    for (size_t i = 0; i < files->count; i++)
+        lex_file(files, files->items[i]);
+}
+
+void files_parse(Files *files)
+{
+    for (size_t i = 0; i < files->count; i++)
+        parse_file(files, files->items[i]);
+}
+
+/* ---- files that are used ---- */
+
+static File *find_file(const Files *files, const char *path)
+{
+    for (size_t i = 0; i < files->count; i++)
+        if (strcmp(files->items[i]->path, path) == 0)
+            return files->items[i];
+    return NULL;
+}
+
+static bool names_library(const Syntax *use) { return strncmp(use->name, "std/", 4) == 0; }
+
+/* A file of the library, or NULL. */
+static const char *read_library(const char *path, size_t *length)
+{
+    for (const EmbeddedFile *file = library_files; file->name; file++)
+        if (strcmp(file->name, path) == 0) {
+            *length = file->length;
+            return file->text;
+        }
+    return NULL;
+}
+
+static void refuse_used(Files *files, const Syntax *use, const char *path, const Loaded *text)
+{
+    Diag *diag  = text->outside
+                      ? diag_add(files->diags, DIAG_OUTSIDE_ROOT, use->name_span,
+                                 "`%s` is outside of the folder that scenes may read from", path)
+                      : diag_add(files->diags, DIAG_CANNOT_READ, use->name_span,
+                                 "cannot read `%s`: %s", path, text->reason);
+    diag->label = "used here";
+}
+
+/* Takes up the text of a used file; NULL: reported. */
+static File *load_text(Files *files, const Syntax *use, const char *path)
+{
+    Loaded text = {.reason = "there is no such file in the library"};
+    File  *file = NULL;
+    if (names_library(use))
+        text.text = read_library(path, &text.length);
+    else
+        text = loader_read(files->loader, path);
+    if (!text.text) {
+        refuse_used(files, use, path, &text);
+        return NULL;
+    }
+    files->bytes += text.length;
+    if (text.length <= MOST_SOURCE_BYTES && files->bytes <= MOST_TOTAL_BYTES &&
+        files->count < MOST_FILES) {
+        bool     library = names_library(use);
+        uint32_t source  = source_add(files->sources, path, text.text, text.length, library);
+        file             = add_file(files, resolve_path(files, "", path), source, false);
+    } else {
+        diag_add(files->diags, DIAG_LIMIT, use->name_span,
+                 "too much text: a file may have 16 MiB, all together 64 MiB in 1,024 files");
+    }
+    free(text.owned);
+    return file;
+}
+
+/* Whether names of a file may be missing, so that an unknown one is no new mistake: something in
+   another file could not be read. */
+static bool may_miss_names(const Files *files, const File *file)
+{
+    for (size_t i = 0; i < files->diags->count; i++) {
+        const Diag *diag      = files->diags->items[i];
+        bool        elsewhere = diag->span.source != file->source;
+        bool        grammar   = diag->code < DIAG_UNKNOWN_NAME;
+        if ((elsewhere && grammar) || diag->code == DIAG_CANNOT_READ || diag->code == DIAG_LIMIT ||
+            diag->code == DIAG_CIRCULAR_USE)
+            return true;
+    }
+    return false;
+}
+
+static void load_all_used(Files *files, File *file);
+
+static void load_one_used(Files *files, File *file, const Syntax *use)
+{
+    const char *path = names_library(use) ? use->name : resolve_path(files, file->path, use->name);
+    File       *used = find_file(files, path);
+    if (used && used->reading) {
+        Diag *diag  = diag_add(files->diags, DIAG_CIRCULAR_USE, use->name_span, "`%s` uses itself",
+                               path);
+        diag->label = "this closes the circle";
+        return;
+    }
+    if (!used) {
+        used = load_text(files, use, path);
+        if (!used)
+            return;
+        lex_file(files, used);
+        parse_file(files, used);
+        load_all_used(files, used);
+    }
+    array_push(files->arena, &file->used, used);
+}
+
+static void load_all_used(Files *files, File *file)
+{
+    file->reading = true;
+    for (uint32_t i = 0; i < file->syntax->count; i++)
+        if (file->syntax->children[i]->kind == SYNTAX_USE)
+            load_one_used(files, file, file->syntax->children[i]);
+    file->reading    = false;
+    file->incomplete = may_miss_names(files, file);
+}
+
+void files_load_used(Files *files) { load_all_used(files, files->items[0]); }
+
+/* ---- names ---- */
+
+typedef struct KnownNames {
+    const char **items;
+    size_t       count, capacity;
+} KnownNames;
+
+/* Names of another file that this one may use: all but private ones (_name). */
+static void add_names(const Files *files, const File *file, KnownNames *known)
+{
+    for (uint32_t i = 0; i < file->syntax->count; i++) {
+        const Syntax *syntax = file->syntax->children[i];
+        if (syntax_defines(syntax) && syntax->name[0] != '_')
+            array_push(files->scratch, known, syntax->name);
+    }
+}
+
+static void check_file(Files *files, File *file, const char *const *builtin, size_t count)
+{
+    KnownNames known = {0};
+    for (size_t i = 0; i < count; i++)
+        array_push(files->scratch, &known,
+                   name_intern(files->names, builtin[i], strlen(builtin[i])));
+    for (size_t i = 0; i < files->count; i++)
+        if (files->items[i]->library && files->items[i] != file)
+            add_names(files, files->items[i], &known);
+    for (size_t i = 0; i < file->used.count; i++)
+        add_names(files, file->used.items[i], &known);
+    NameScope scope = {known.items, known.count, file->incomplete};
+    names_check(file->syntax, &scope, files->diags, files->scratch);
+    file->checked = true;
+}
+
+/* Used files come before those that use them. */
+static void check_used_first(Files *files, File *file, const char *const *builtin, size_t count)
+{
+    for (size_t i = 0; i < file->used.count; i++)
+        if (!file->used.items[i]->checked)
+            check_used_first(files, file->used.items[i], builtin, count);
+    check_file(files, file, builtin, count);
+}
+
+void files_check_names(Files *files, const char *const *builtin, size_t count)
+{
+    for (size_t i = 0; i < files->count; i++)
+        if (files->items[i]->library)
+            check_file(files, files->items[i], builtin, count);
+    check_used_first(files, files->items[0], builtin, count);
+}
+
+/* ---- dumps ---- */
+
+void files_print_texts(const Files *files, Text *out)
+{
+    for (size_t i = 0; i < files->count; i++) {
+        const Source *source = &files->sources->items[files->items[i]->source];
+        text_format(out, "%s  %u bytes, %u lines\n", source->name, source->length,
+                    source->line_count);
+    }
+}
+
+void files_print_uses(const Files *files, Text *out)
+{
+    for (size_t i = 0; i < files->count; i++) {
+        const File *file = files->items[i];
+        text_format(out, "%s%s\n", file->path, file->library ? "  seen by all" : "");
+        for (size_t k = 0; k < file->used.count; k++)
+            text_format(out, "  uses %s\n", file->used.items[k]->path);
+    }
+}
+
+static void print_names_of(const Files *files, const File *file, Text *out)
+{
+    const Source *source = &files->sources->items[file->source];
+    for (uint32_t i = 0; i < file->syntax->count; i++) {
+        const Syntax *syntax = file->syntax->children[i];
+        if (!syntax_defines(syntax))
+            continue;
+        Position position = source_position(source, syntax->name_span.start);
+        text_format(out, "%s %s  %s:%u:%u\n", syntax_kind_name(syntax->kind), syntax->name,
+                    source->name, position.line, position.column);
+    }
+}
+
+void files_print_names(const Files *files, Text *out)
+{
+    for (int library = 0; library <= 1; library++)
+        for (size_t i = 0; i < files->count; i++)
+            if (files->items[i]->library == (library > 0))
+                print_names_of(files, files->items[i], out);
+}

@@ -1,0 +1,116 @@
+/*
+ * passes.c: passes that are a few calls, each with what it prints.
+ */
+#include <stdlib.h>
+
+#include "compiler/compilation.h"
+
+/* ---- the front end ---- */
+
+/* A mistake of the whole scene, of which nothing is shown. */
+static KrsStatus refuse_scene(Compilation *c, DiagCode code, const char *message)
+{
+    uint32_t source = source_add(&c->sources, c->name, "", 0, false);
+    diag_add(&c->diags, code, (Span){source, 0, 0}, "%s", message);
+    return KRS_BAD_SCENE;
+}
+
+KrsStatus pass_load(Compilation *c)
+{
+    source_add(&c->sources, "", "", 0, true); /* source 0: no place */
+    if (!c->loaded.text)
+        c->loaded = loader_read_scene(c->loader, c->name);
+    if (c->loaded.outside)
+        return refuse_scene(c, DIAG_OUTSIDE_ROOT,
+                            "the scene is outside of the folder that scenes may read from");
+    if (!c->loaded.text)
+        return KRS_IO_ERROR;
+    if (c->loaded.length > MOST_SOURCE_BYTES)
+        return refuse_scene(c, DIAG_LIMIT, "the file is longer than 16 MiB");
+    files_load(&c->files, c->name, c->loaded.text, c->loaded.length);
+    free(c->loaded.owned); /* `files` has a copy */
+    c->loaded = (Loaded){0};
+    return KRS_OK;
+}
+
+void print_load(Compilation *c, Text *out) { files_print_texts(&c->files, out); }
+
+/* Mistakes do not end the run before `names`, which may find more. */
+KrsStatus pass_lex(Compilation *c)
+{
+    files_lex(&c->files);
+    return KRS_OK;
+}
+
+void print_lex(Compilation *c, Text *out)
+{
+    tokens_print(&c->files.items[0]->tokens, &c->sources, out);
+}
+
+KrsStatus pass_parse(Compilation *c)
+{
+    files_parse(&c->files);
+    return KRS_OK;
+}
+
+void print_parse(Compilation *c, Text *out)
+{
+    syntax_print(c->files.items[0]->syntax, &c->sources, out);
+}
+
+KrsStatus pass_use(Compilation *c)
+{
+    files_load_used(&c->files);
+    return KRS_OK;
+}
+
+void print_use(Compilation *c, Text *out) { files_print_uses(&c->files, out); }
+
+KrsStatus pass_names(Compilation *c)
+{
+    const char *builtin[512];
+    size_t      count = builtin_names(builtin, sizeof builtin / sizeof *builtin);
+    files_check_names(&c->files, builtin, count);
+    return c->diags.errors ? KRS_BAD_SCENE : KRS_OK;
+}
+
+void print_names(Compilation *c, Text *out) { files_print_names(&c->files, out); }
+
+KrsStatus pass_elaborate(Compilation *c)
+{
+    Graph *graph  = graph_new(&c->work);
+    c->elaborated = (Scene){.graph = graph, .zenith = NODE_NONE, .zone = NODE_NONE};
+    Elaboration e = {.arena   = &c->work,
+                     .scratch = &c->scratch,
+                     .diags   = &c->diags,
+                     .sources = &c->sources,
+                     .graph   = graph,
+                     .scene   = &c->elaborated};
+    elaborate(&e, &c->files);
+    return c->diags.errors ? KRS_BAD_SCENE : KRS_OK;
+}
+
+void print_elaborate(Compilation *c, Text *out) { scene_print(&c->elaborated, &c->sources, out); }
+
+/* ---- graph and GLSL ---- */
+
+/* What surfaces and the view need; roots for the march would say the same again, and more. */
+static void print_graph(const Compilation *c, const Graph *graph, Text *out)
+{
+    RootRange shown = roots_from(&c->scene->roots, ROOTS_SURFACE, ROOTS_SKY);
+    graph_print(graph, &c->sources, shown.items, shown.count, out);
+}
+
+void print_lower(Compilation *c, Text *out) { print_graph(c, c->elaborated.graph, out); }
+
+KrsStatus pass_simplify(Compilation *c)
+{
+    Roots *roots    = &c->scene->roots;
+    c->scene->graph = graph_simplify(c->elaborated.graph, roots->all, roots->first[ROOT_KINDS],
+                                     &c->scene->arena);
+    return KRS_OK;
+}
+
+void print_simplify(Compilation *c, Text *out) { print_graph(c, c->scene->graph, out); }
+
+void validate_simplified(const Compilation *c) { graph_validate(c->scene->graph, "simplify"); }
