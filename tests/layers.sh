@@ -15,6 +15,7 @@ api="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h
 circles="compiler/geometry/lowering>compiler/geometry/lower
          runtime/device/pipelines>runtime/device/gpu runtime/tracer/layouts>runtime/tracer/renderer
          runtime/tracer/warmup>runtime/tracer/renderer
+         runtime/tracer/variants>runtime/tracer/renderer
          runtime/tracer/phases>runtime/tracer/dispatch
          cli/options>cli/console cli/options>cli/values"
 

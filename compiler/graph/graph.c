@@ -11,7 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 
-
 /* ---- what is known of operations ---- */
 
 typedef struct OpInfo {
