@@ -27,8 +27,8 @@ JOBS    ?= $(shell nproc)
 
 # Sources in the order of the pipeline: reading down this list is reading the program.
 BASE     := $(addprefix compiler/base/, arena.c text.c source.c beneath.c loader.c diag.c diag_text.c)
-FRONT    := $(addprefix compiler/front/, lexer.c syntax.c parser.c parse_expression.c parse.c \
-                names.c files.c)
+FRONT    := $(addprefix compiler/front/, lexer.c lex_literals.c syntax.c parser.c parse_expression.c \
+                parse_declaration.c parse.c names.c files.c)
 GRAPH    := $(addprefix compiler/graph/, graph.c substitute.c derive.c series.c zeros.c local.c \
                 rebase.c simplify.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c regions.c \
                 fractal.c evaluate.c print.c)
@@ -36,16 +36,18 @@ GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c a
                 builtins.c lists.c random.c csg.c functions.c expression.c map.c moebius.c \
                 shapes.c shapes_fractal.c metasurface.c shapes_krs.c slope.c field.c \
                 field_bounds.c deform.c declare.c claims.c empty.c methods.c properties.c \
-                material.c view.c palette.c scope.c statements.c print.c lower.c lower_normal.c \
-                lower_repeat.c lower_deform.c lower_krs.c lower_along.c lower_guards.c \
-                lower_moebius.c lower_images.c)
+                material.c view.c palette.c scope.c statements.c print.c lower.c \
+                lower_primitive.c lower_surface.c lower_csg.c lower_place.c lower_figure.c \
+                lower_offset.c lower_box.c lower_normal.c lower_repeat.c lower_deform.c \
+                lower_krs.c lower_along.c lower_guards.c lower_moebius.c lower_images.c)
 PRINT    := $(addprefix compiler/print/, frame_values.c lines.c helpers.c mirrors.c statements.c \
                 prepare.c distances.c shared.c surfaces.c early_outs.c march.c module_print.c \
                 glsl/glsl.c)
 TARGET   := compiler/target/spirv.c
 BORDER   := compiler/target/glslang_border.cpp
 API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c retain.c facts.c \
-                march_groups.c make_module.c program.c scene_text.c framing.c frame.c query.c search.c refute.c bounds.c)
+                march_groups.c make_module.c program.c scene_text.c framing.c frame.c query.c search_pairs.c search_targets.c \
+                search_starts.c search.c refute.c refute_settings.c refute_blame.c refute_report.c bounds.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer film writer))))
 CLI      := $(sort $(wildcard cli/*.c))
 

@@ -53,7 +53,8 @@ DEVICES := $(addprefix $(B)/bench/device/, device.o limits.o accuracy.o examples
              kernels.o)
 $(B)/bench/device/device: $(DEVICES) $(STAGE) $(B)/tests/support/support.a $(B)/libkrs.a
 	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
-CHECKED := tests/unit/methods tests/oracle/device tests/property/ops tests/oracle/coverage
+CHECKED := $(addprefix tests/, unit/methods unit/schedules oracle/device property/ops \
+             oracle/coverage oracle/chords)
 check-device: deps
 	@$(MAKE) --no-print-directory $(B)/krs $(B)/bench/device/device $(CHECKED:%=$(B)/%)
 	@B=$(B) KRS_DEVICE="$(DEVICE)" REVISION=$(REVISION) tools/check-device.sh $(CHECKED:%=$(B)/%)

@@ -131,6 +131,19 @@ static KrsStatus check_outputs(const Render *render)
     return KRS_OK;
 }
 
+static KrsStatus say_unknown_camera(const Options *options, const char *const *names, size_t count)
+{
+    const char *nearest = nearest_name(options->camera, names, count);
+    if (nearest)
+        return say_usage(options, "the scene has no camera `%s`; did you mean `%s`?",
+                         options->camera, nearest);
+    Text known = {.arena = options->arena};
+    for (size_t i = 0; i < count; i++)
+        text_format(&known, "%s`%s`", i ? ", " : "", names[i]);
+    return say_usage(options, "the scene has no camera `%s`; it has %s", options->camera,
+                     count ? known.bytes : "none with a name");
+}
+
 static KrsStatus find_camera(const Options *options, const KrsScene *scene, size_t *camera)
 {
     size_t       count = krs_camera_count(scene), named = 0;
@@ -147,11 +160,7 @@ static KrsStatus find_camera(const Options *options, const KrsScene *scene, size
     }
     if (!options->camera)
         return KRS_OK;
-    const char *nearest = nearest_name(options->camera, names, named);
-    if (nearest)
-        return say_usage(options, "the scene has no camera `%s`; did you mean `%s`?",
-                         options->camera, nearest);
-    return say_usage(options, "the scene has no camera `%s`", options->camera);
+    return say_unknown_camera(options, names, named);
 }
 
 static bool show_progress(void *user, double done)

@@ -49,46 +49,46 @@ typedef struct KrsDiagnostic {
 
 typedef void KrsDiagnosticCallback(void *user, const KrsDiagnostic *diagnostic);
 
-/* Where memory comes from; zero means malloc and free.  It is called by the thread that calls the
-   library, and must last as long as what was made with it.  glslang and the Vulkan driver have
-   their own. */
+/* Where memory comes from; a zeroed struct means malloc and free.  The thread that calls the
+   library calls it.  It must outlive all that was made with it.  glslang and the Vulkan driver
+   do not use it. */
 typedef struct KrsAllocator {
-    void *(*allocate)(void *user, size_t size); /* NULL when there is none; aligned as malloc */
+    void *(*allocate)(void *user, size_t size); /* NULL: out of memory; aligned as by malloc */
     void (*release)(void *user, void *block);
     void *user;
 } KrsAllocator;
 
-/* Supplies the text of a file that a scene uses, by the path that diagnostics show: relative to the
-   scene's folder, as the scene's own name is given.  NULL: there is none.  The text must stay until
-   the next call, or until compiling has ended. */
+/* Supplies the text of a file that a scene uses; NULL: there is no such file.  `path` is the
+   path that diagnostics show.  It begins with the scene's folder, if the scene's name does.  The
+   text must stay valid until the next call, or until compiling has ended. */
 typedef const char *KrsLoadCallback(void *user, const char *path, size_t *length);
 
 typedef struct KrsOptions {
     KrsAllocator           allocator;
     KrsDiagnosticCallback *diagnostic;   /* may be NULL */
     void                  *user;         /* handed to `diagnostic` */
-    size_t                 memory_limit; /* of a scene, while it is compiled; bytes; 0: 2 GiB */
-    bool                   gradients;    /* derivatives as well, for KRS_NORMALS_ANALYTIC and for
-                                            whoever embeds the GLSL: krs_gradient */
-    /* Files are read from this folder and those below only, whatever a scene names and wherever
-       symbolic links lead: E0504.  That goes for the scene itself in krs_compile_file; with
-       krs_compile_text, `name` must be in it for `use` to work.  NULL: any. */
+    size_t                 memory_limit; /* bytes that compiling a scene may use; 0: 2 GiB */
+    bool                   gradients;    /* compile derivatives too: for KRS_NORMALS_ANALYTIC,
+                                            and as krs_gradient in the GLSL */
+    /* Only files in this folder, and below it, are read; others are E0504, also behind symbolic
+       links.  That includes the scene itself in krs_compile_file.  With krs_compile_text, `name`
+       must be in the folder for `use` to work.  NULL: all files may be read. */
     const char      *root;
     KrsLoadCallback *load;      /* instead of reading files that are used; may be NULL */
     void            *load_user; /* handed to `load` */
 } KrsOptions;
 
-/* Compiles a text in memory (`name` is used in diagnostics, and `use` is relative to its
-   folder) or a file.  Nothing of the arguments is kept but the allocator.  On KRS_OK the caller
-   owns *scene; on any other status it is NULL.  `options` may be NULL.  KRS_BAD_SCENE: see the
-   diagnostics; KRS_IO_ERROR: the file cannot be read; KRS_OUT_OF_MEMORY. */
+/* Compiles a text in memory, or a file.  Diagnostics call the text `name`; paths of `use` are
+   relative to its folder.  Of the arguments only the allocator is used after the call.
+   `options` may be NULL.  On KRS_OK the caller owns *scene; on any other status it is NULL.
+   KRS_BAD_SCENE: see the diagnostics; KRS_IO_ERROR: the file cannot be read; KRS_OUT_OF_MEMORY. */
 KrsStatus krs_compile_text(const char *text, size_t length, const char *name,
                            const KrsOptions *options, KrsScene **scene);
 KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene **scene);
 /* Its frames and renderings must be freed before.  NULL is ignored, here as in all that frees. */
 void krs_scene_free(KrsScene *scene);
 
-/* What the functions below say of a scene lives as long as the scene: names, places, rules. */
+/* Strings that the functions below return (names, places, rules) live as long as the scene. */
 
 /* A `param` of the scene.  Angles are in radians, colours linear Rec.709. */
 typedef struct KrsParameter {
@@ -106,21 +106,21 @@ KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *param
    KRS_OUT_OF_MEMORY: *frame is NULL. */
 KrsStatus krs_frame_new(const KrsScene *scene, KrsFrame **frame);
 void      krs_frame_free(KrsFrame *frame);
-/* Gives a parameter all of its `count` components; the time is in seconds.  KRS_BAD_ARGUMENT when
-   there is no such parameter or it has another number of components, one is outside of its range
-   or not finite, or something in the scene is not finite for it; the frame is then unchanged. */
+/* Sets all `count` components of a parameter, or the time in seconds.  KRS_BAD_ARGUMENT, and an
+   unchanged frame: there is no such parameter, it has another number of components, a value is
+   outside of its range or not finite, or something in the scene would not be finite. */
 KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values, size_t count);
 KrsStatus krs_frame_set_time(KrsFrame *frame, double time);
-/* Of the last value or time that was refused: the place of an expression ("scene.krs:3:14") whose
-   slope has no bound for it; NULL when that was not why, or the last one was taken. */
+/* Why the last value or time was refused: the place ("scene.krs:3:14") of an expression whose slope
+   has no bound for it.  NULL if it was accepted, or refused for another reason. */
 const char *krs_frame_unbounded(const KrsFrame *frame);
 
 /*
- * The uniforms of the GLSL that `krs compile` writes, for who embeds it: a vec4 for each slot, of
- * which `block` has room for krs_parameter_slots.  Slot 0 has the time, as (time, 0, 0, 0), then
- * there is one for each parameter, in the order of krs_parameter.  Behind them are slopes, numbers
- * in x, that are found for each frame: what distances are divided by where no constant is safe, as
- * in sin(time * x).
+ * The uniforms of the GLSL that `krs compile` writes, for programs that embed it.  Each slot is a
+ * vec4; `block` needs krs_parameter_slots of them.  Slot 0 is (time, 0, 0, 0).  A slot for each
+ * parameter follows, in the order of krs_parameter.  The last slots are slopes, in x, which are
+ * computed for each frame.  Distances are divided by them where no constant is safe, as for
+ * sin(time * x).
  */
 size_t krs_parameter_slots(const KrsScene *scene);
 void   krs_frame_parameters(const KrsFrame *frame, float (*block)[4]);
@@ -131,23 +131,23 @@ void   krs_frame_parameters(const KrsFrame *frame, float (*block)[4]);
  */
 size_t krs_value_slots(const KrsScene *scene);
 void   krs_frame_values(const KrsFrame *frame, float (*block)[4]);
-/* The slot of slope `index`, and the place of its expression; KRS_BAD_ARGUMENT when there is
-   none. */
+/* A slope that is computed for each frame: its slot, and the place of its expression.
+   KRS_BAD_ARGUMENT: there is none of this index. */
 typedef struct KrsFrameSlope {
     uint32_t    slot;
     const char *place;           /* "scene.krs:3:14" */
-    double      low[3], high[3]; /* of the box over which it is found; may be infinite */
+    double      low[3], high[3]; /* the box for which the slope holds; may be infinite */
 } KrsFrameSlope;
 size_t    krs_frame_slope_count(const KrsScene *scene);
 KrsStatus krs_frame_slope(const KrsScene *scene, size_t index, KrsFrameSlope *slope);
 
 /*
- * Empty zones: spheres (center and radius) within which nothing of the scene is, so that the
- * caller can put something of its own there.  Solids end at a zone as if the sphere had been
- * subtracted; the cut shows the component, and the material, that it goes through.  These zones
- * add to those that the scene declares, and replace those of the call before.
- * KRS_BAD_ARGUMENT when there are more than KRS_MOST_ZONES, a radius is negative, or a number is
- * not finite or beyond 1e18; the frame is then unchanged.
+ * Empty zones: spheres (center and radius) that nothing of the scene enters, so that the caller
+ * can put something of its own there.  Solids end at a zone as if the sphere were subtracted; the
+ * cut has the component and material that it goes through.  These zones replace those of the
+ * previous call; zones that the scene declares stay.
+ * KRS_BAD_ARGUMENT, and an unchanged frame: there are more than KRS_MOST_ZONES, a radius is
+ * negative, or a number is not finite or beyond 1e18.
  */
 #define KRS_MOST_ZONES 16
 KrsStatus krs_frame_set_zones(KrsFrame *frame, const double (*zones)[4], size_t count);
@@ -157,13 +157,13 @@ typedef struct KrsComponent {
     const char *name;            /* the variable it was shown by, or "component 3" */
     double      low[3], high[3]; /* a box around it in world units; may be infinite */
     double      slope;           /* the derived bound on the slope of its expression */
-    bool        per_frame;       /* that is of the first frame, and found anew for each */
+    bool        per_frame;       /* `slope` is that of the first frame; each has its own */
     bool        exact;           /* the distance is exact outside wherever docs/math.md says so */
     bool        estimate;        /* nothing is proven of the distance; else it is a bound */
     uint32_t    levels;          /* reflections of its outermost sequence; 0 without one */
     double      instances;       /* copies of kernels, counted with their reflections */
-    uint32_t    inversions; /* maps of its outermost sequence that invert, or of `.transform` */
-    double      flops;      /* of its distance, at one point: in multiply-adds */
+    uint32_t    inversions;      /* maps that invert, in its outermost sequence or `.transform` */
+    double      flops;           /* multiply-adds to evaluate its distance at a point */
 } KrsComponent;
 
 size_t krs_component_count(const KrsScene *scene);
@@ -172,30 +172,30 @@ KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *compo
 
 /* What is known of the distance of one shape of a component, in the shape's own space. */
 typedef struct KrsBound {
-    uint32_t    depth;           /* 0: all of the component; its parts follow it, one deeper */
+    uint32_t    depth;           /* 0: the whole component; parts follow, one level deeper */
     const char *name;            /* "torus", "union" */
-    const char *source;          /* where the shape is made: name of a text, */
+    const char *source;          /* where the shape is made: a text, */
     uint32_t    line, column;    /* from 1; 0: nowhere */
-    const char *rule;            /* by which its bound follows: "exact, by claim" */
-    double      slope;           /* of the distance that it lowers to; divided out at the root */
+    const char *rule;            /* why its bound holds: "exact, by claim" */
+    double      slope;           /* of its distance; the component is divided by it */
     double      low[3], high[3]; /* a box around it; may be infinite */
     bool        exact, estimate; /* as of components */
     uint32_t    levels;
     double      instances;
-    uint32_t    alike; /* parts like it, made in the same place, that have no entry */
-    size_t      same;  /* from 1: the entry where its parts are; 0: behind this one */
+    uint32_t    alike; /* similar parts, made in the same place, without an entry */
+    size_t      same;  /* the entry, from 1, that lists its parts; 0: this one */
 } KrsBound;
 
-/* How many entries there are, at most 256, and how many shapes there was no room for (`more` may be
-   NULL); 0 of a component that does not exist. */
+/* The number of entries, at most 256; 0 if there is no such component.  *more, unless NULL, becomes
+   the number of shapes for which there was no room. */
 size_t krs_bound_count(const KrsScene *scene, size_t component, size_t *more);
 /* KRS_BAD_ARGUMENT when there is no such entry. */
 KrsStatus krs_bound(const KrsScene *scene, size_t component, size_t index, KrsBound *bound);
 
 /*
- * Questions about a frame, in double precision.  Arrays have `count` elements, which may be 0, and
- * are the caller's.  All are KRS_BAD_ARGUMENT, and answer nothing, when a number among the
- * arguments is not what it must be: coordinates are finite.
+ * Queries of a frame, in double precision.  Arrays belong to the caller and have `count` elements;
+ * 0 is permitted.  If a number is not valid (coordinates must be finite) a query returns
+ * KRS_BAD_ARGUMENT and writes nothing.
  */
 
 /* Distances for `count` points in world units: never above the distance to the nearest surface,
@@ -208,19 +208,19 @@ KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count,
 /* What is at a point, or where a ray ends. */
 typedef struct KrsHit {
     bool     hit;        /* for rays; always true for points */
-    bool     unresolved; /* for rays: given up after KRS_MOST_STEPS steps, clear up to `t` */
+    bool     unresolved; /* for rays: ended after KRS_MOST_STEPS steps; nothing before `t` */
     double   t;          /* for rays: world units along the unit direction */
     double   point[3];
     double   distance;  /* at that point */
     double   normal[3]; /* unit gradient of the distance; 0 where there is none */
     uint32_t component; /* from 1; 0 where nothing is hit */
     uint32_t level;     /* reflections before the kernel */
-    uint32_t instance;  /* docs/math.md, section 1: a number of its own for each copy, or, beyond
-                           31 mirrors, a hash; 1 without a sequence */
+    uint32_t instance;  /* a number for each copy (docs/math.md, section 1); a hash beyond 31
+                           mirrors; 1 without a sequence */
     double   color[3];  /* linear Rec.709 */
     double   roughness, metallic;
-    double   shading[3]; /* the normal that light sees: `normal`, unless mirrors are smooth over a
-                            width of their own */
+    double   shading[3]; /* the normal for lighting; differs from `normal` where mirrors are smooth
+                            over a given width */
 } KrsHit;
 
 /* Distance, normal and identity at points. */
@@ -229,16 +229,15 @@ KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, Kr
 /*
  * First hits of rays in [0, farthest], which may be infinite; directions of any length but 0.
  *
- * A ray hits where the distance is not above 0, so things are as thick as they are, whatever the
- * tolerance.  The tolerance, in world units (0: 1e-9), says how far `t` may be from where the
- * surface is crossed; a sixteenth of it is the length of a way through a solid that may be
- * overlooked, as where a ray grazes one.  Both grow by what coordinates of that size are rounded
- * by.  A ray from inside of a solid sees the solid's inner wall; one that begins on a surface hits
- * it at 0.
+ * A ray hits where the distance is not above 0, so the tolerance makes nothing thicker.  The
+ * tolerance, in world units (0: 1e-9), is how far `t` may be from where the ray crosses the
+ * surface. A ray may miss a solid in which it stays for less than a sixteenth of the tolerance,
+ * as where it grazes one.  Both lengths grow by the rounding of the coordinates.  A ray from
+ * inside of a solid hits the solid's inner wall; a ray that begins on a surface hits it at 0.
  *
- * A ray that comes so near to surfaces for so long that KRS_MOST_STEPS distances do not bring it
- * to an end (as within a hair's breadth of an endless plane) is neither hit nor miss: it is
- * `unresolved`, and nothing is before `t`.
+ * A ray that has not ended after KRS_MOST_STEPS steps is neither hit nor miss: it is
+ * `unresolved`, and nothing is before `t`.  That happens very near to surfaces, as along an
+ * endless plane.
  */
 #define KRS_MOST_STEPS 100000
 KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],

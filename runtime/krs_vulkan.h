@@ -1,11 +1,11 @@
 /*
  * krs_vulkan.h: render compiled scenes on a Vulkan device.
  *
- * A KrsRenderer is a device made ready, a KrsRendering is a scene made ready on it (its
- * shaders are compiled once), and krs_render turns one frame of the scene into a KrsPicture in
- * host memory.  Different renderers may be used from different threads; a renderer and all that
- * was made from it belong to one thread at a time.  Nothing here prints, exits or aborts: every
- * failure is a status, and one line of text that krs_renderer_message returns.
+ * A KrsRenderer is an open device.  A KrsRendering is a scene whose shaders are compiled for it.
+ * krs_render turns one frame of the scene into a KrsPicture in host memory.  Different renderers
+ * may be used from different threads; a renderer, and all that was made from it, belongs to one
+ * thread at a time.  Nothing here prints, exits or aborts: every failure is a status, and one
+ * line of text that krs_renderer_message returns.
  */
 #ifndef KRS_VULKAN_H
 #define KRS_VULKAN_H
@@ -38,22 +38,22 @@ typedef struct KrsDevice {
 /* A complaint of Vulkan's validation layers; the text lives until the callback returns. */
 typedef void KrsValidationCallback(void *user, const char *message);
 
-/* Called about once a second while the driver compiles and the processor is busy with it: what takes
-   long is not stuck. */
+/* Called about once a second while the driver compiles and keeps the processor busy, so that a
+   caller can tell slow from stuck. */
 typedef void KrsWorkingCallback(void *user);
 
-/* Whether rays leave out by branches what is far away for its size.  The default is to, but not on
-   devices of type CPU: those that are known run both sides of a branch. */
+/* Whether branches skip shapes that are far away for their size.  The default is on, but off on
+   devices of type CPU, which run both sides of a branch. */
 typedef enum KrsEarlyOuts {
     KRS_EARLY_OUTS_DEFAULT,
     KRS_EARLY_OUTS_ON,
     KRS_EARLY_OUTS_OFF
 } KrsEarlyOuts;
 
-/* For tests, as bits: what the host takes a device for.  Pictures are the same. */
+/* Bits, for tests: as what the host treats a device.  Pictures are the same. */
 typedef enum KrsPretence {
     KRS_PRETEND_CARD         = 1, /* a graphics card, whatever its type */
-    KRS_PRETEND_LEAST_LIMITS = 2  /* one whose buffers are no longer than any device's may be */
+    KRS_PRETEND_LEAST_LIMITS = 2  /* a device with the smallest limits that Vulkan permits */
 } KrsPretence;
 
 /* Zero asks for the defaults. */
@@ -66,15 +66,14 @@ typedef struct KrsRendererOptions {
     KrsValidationCallback *complaint;  /* may be NULL: complaints are counted all the same */
     KrsWorkingCallback    *working;    /* may be NULL */
     void                  *user;       /* handed to both */
-    /* A folder for what is compiled, so that another time it need not be; it is made if it is
-       missing, and need not be writable.  NULL: none.  Without one nothing is written to disk. */
+    /* A folder that caches compiled shaders.  It is made if it is missing, and need not be
+       writable.  NULL: no cache, and nothing is written to disk. */
     const char  *cache;
     KrsEarlyOuts early_outs;
     unsigned     pretence;  /* bits of KrsPretence */
-    KrsAllocator allocator; /* our memory; the driver's and glslang's is their own */
-    double       patience;  /* seconds that the device may take over one step, of which a
-                                          picture has many; then it counts as lost, with
-                                          KRS_INTERNAL.  0: five minutes */
+    KrsAllocator allocator; /* of the library; the driver and glslang have their own */
+    double       patience;  /* seconds that the device may take for one of the many steps of
+                               a picture; then it counts as lost: KRS_INTERNAL.  0: 300 */
 } KrsRendererOptions;
 
 /* The devices of this machine, in Vulkan's order.  *count is how many there are, of which the
@@ -95,9 +94,9 @@ KrsDevice krs_renderer_device(const KrsRenderer *renderer);
 /* Complaints of the validation layers so far. */
 uint64_t krs_renderer_complaints(const KrsRenderer *renderer);
 
-/* What a rendering is mostly for: those shaders are compiled at once, others when they are
-   needed.  So are those for a frame with empty zones (krs_frame_set_zones): the first time, and
-   again when there are more than 1, 2, 4 or 8 for the first time, never for other numbers. */
+/* What a rendering is mostly for.  Those shaders are compiled at once, others when they are
+   first needed.  Empty zones (krs_frame_set_zones) need shaders of their own: for the first
+   zone, and when there are more than 1, 2, 4 or 8 for the first time. */
 typedef enum KrsPurpose {
     KRS_FOR_PICTURES, /* krs_render */
     KRS_FOR_QUESTIONS /* krs_device_probe, krs_device_raycast */
@@ -138,7 +137,7 @@ typedef enum KrsTrace {
 } KrsTrace;
 extern const char *const krs_trace_names[KRS_TRACE_COUNT]; /* "default", "plain", ... */
 
-/* How rays are dealt out to the lanes of the device: KRS_SCHEDULE_PIXEL and so on. */
+/* How rays are assigned to the lanes of the device: KRS_SCHEDULE_PIXEL and so on. */
 typedef enum KrsSchedule {
 #define KRS_SCHEDULE(id, name, about) KRS_SCHEDULE_##id,
 #include "runtime/choices.def"
@@ -156,9 +155,9 @@ typedef enum KrsComponents {
 extern const char *const krs_components_names[KRS_COMPONENTS_COUNT];
 
 /* Where the distance is looked at around a hit for its normal: KRS_NORMALS_FORWARD and so on.
-   KRS_NORMALS_ANALYTIC wants a scene that was compiled with `gradients`; where points have an anchor
-   it is the octahedron.  Neither this nor KRS_NORMALS_FORWARD tells what is finer than a pixel: as
-   with no_filter. */
+   KRS_NORMALS_ANALYTIC wants a scene that was compiled with `gradients`; where points are relative
+   to the camera it is the octahedron.  Neither this nor KRS_NORMALS_FORWARD tells what is finer
+   than a pixel: as with no_filter. */
 typedef enum KrsNormals {
 #define KRS_NORMALS(id, name, about) KRS_NORMALS_##id,
 #include "runtime/choices.def"
@@ -189,23 +188,22 @@ typedef struct KrsRenderOptions {
     KrsWindow     crop;          /* width 0: everything */
     uint32_t      samples;       /* rays per pixel; 0: likewise */
     size_t        camera;        /* its number */
-    uint64_t      seed;       /* moves the samples of a pixel, but the first stays at its centre */
-    double        error;      /* permitted distance from the surface, pixels; 0: likewise */
-    uint32_t      planes;     /* bits of KrsPlane; 0: all */
-    uint32_t      most_steps; /* of a primary ray; 0: 16384, which is also the most */
+    uint64_t      seed;  /* of the samples' positions; the first stays at the centre of the pixel */
+    double        error; /* permitted distance from the surface, pixels; 0: likewise */
+    uint32_t      planes;        /* bits of KrsPlane; 0: all */
+    uint32_t      most_steps;    /* of a primary ray; 0: 16384, which is also the most */
     uint32_t      steps_at_once; /* of a primary ray in one dispatch; 0: 512; at most 8192 */
     KrsTrace      trace;
     KrsSchedule   schedule;
     KrsShadows    shadows;
     KrsComponents components;
     KrsNormals    normals;
-    bool          no_beams;      /* each ray is marched by itself all the way */
-    bool          no_upsampling; /* neighbours do not share what their rays to lights find, and none
-                                is left out where all of a light is proven to be seen */
-    bool          no_occlusion;  /* the light of the sky comes from everywhere, also into corners */
-    bool          no_filter; /* normals are those of the very point, about, and roughness is what
-                                the material says, however much finer than a pixel detail is */
-    double        slice_ms;  /* aim for dispatches this long; 0: 50 */
+    bool          no_beams;      /* rays of a tile do not share the marching of empty space */
+    bool          no_upsampling; /* neighbours do not share rays to lights, and such rays are sent
+                                    even where a light is proven to be visible */
+    bool          no_occlusion;  /* corners get as much light of the sky as open places */
+    bool          no_filter; /* detail finer than a pixel changes neither normals nor roughness */
+    double        slice_ms;  /* how long a dispatch should take; 0: 50 */
     KrsProgressCallback *progress; /* may be NULL */
     void                *user;     /* handed to `progress` */
 } KrsRenderOptions;
@@ -218,19 +216,19 @@ typedef enum KrsPhase {
 extern const char *const krs_phase_names[KRS_PHASE_COUNT]; /* "beams", ... */
 
 typedef struct KrsRenderStats {
-    double   spirv_ms, pipeline_ms;     /* making the scene ready: our compiler, the driver's */
+    double   spirv_ms, pipeline_ms;     /* compiling shaders: to SPIR-V, by the driver */
     double   phase_ms[KRS_PHASE_COUNT]; /* on the device */
     double   total_ms;                  /* their sum */
-    double   wall_ms;                   /* of krs_render, without making ready */
-    bool     device_time;               /* by timestamp queries, else by the host's clock */
-    uint64_t rays;                      /* primary rays */
-    uint64_t evaluations;               /* of the distance, spent on them */
-    double   evaluations_per_ray;       /* the mean */
+    double   wall_ms;                   /* of krs_render, without compiling */
+    bool     device_time;         /* phases by timestamps of the device, else by the host's clock */
+    uint64_t rays;                /* primary rays */
+    uint64_t evaluations;         /* of the distance, spent on them */
+    double   evaluations_per_ray; /* the mean */
     uint32_t most_evaluations_per_ray;
     double   flops_per_evaluation;
     double   gflops;            /* of the primary phase */
     uint64_t unresolved;        /* primary and shadow rays that ran out of steps */
-    uint64_t submissions;       /* pieces of work that the host waited for */
+    uint64_t submissions;       /* of work to the device; the host waits for each */
     uint64_t peak_memory_bytes; /* the most held at once on the device, and the picture */
     char     device[256];
 } KrsRenderStats;
@@ -250,9 +248,9 @@ typedef struct KrsPicture {
 #include "runtime/planes.def"
 #undef KRS_ARRAY
 #undef KRS_PLANE
-    /* Row vectors times these: camera space is x right, y up, z along the view axis; in NDC
-       x and y run from -1 to 1, and z, in perspective, from 0 at distance 0.001 to 1 at
-       infinity.  For a panorama NDC is camera space. */
+    /* For row vectors, v * M.  Camera space has x to the right, y up, z along the view axis.  NDC
+       has x and y from -1 to 1; in perspective z goes from 0 at distance 0.001 to 1 at infinity.
+       For a panorama NDC is camera space. */
     float          world_to_camera[4][4], world_to_ndc[4][4];
     KrsRenderStats stats;
     KrsAllocator   allocator; /* where the memory came from */
@@ -266,12 +264,12 @@ KrsStatus krs_render(KrsRendering *rendering, KrsFrame *frame, const KrsRenderOp
                      KrsPicture **picture);
 void      krs_picture_free(KrsPicture *picture);
 
-/* What the device says about a point. */
+/* The material and surface at a point, as the device computes them. */
 typedef struct KrsSurfacePoint {
-    float    distance; /* as the surface function sees it */
+    float    distance; /* as the function of the surface computes it */
     float    color[3], roughness, metallic, emission[3];
     uint32_t component, level, instance;
-    float    normal[3]; /* the one to light */
+    float    normal[3]; /* for lighting */
 } KrsSurfacePoint;
 
 /* Evaluates the scene on the device at `count` points in world units: distances, as krs_distance
@@ -280,14 +278,14 @@ KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*poi
                      size_t count, float *distances, KrsSurfacePoint *surfaces);
 
 /*
- * Questions to the device, for many at once: krs_probe and krs_raycast (krs.h) in single
- * precision, with the same arguments and answers; numbers beyond 1e18 are refused, too.
+ * Queries of the device, for large batches: krs_probe and krs_raycast (krs.h) in single
+ * precision, with the same arguments and answers.  Numbers beyond 1e18 are refused as well.
  *
- * Distances, and t on top of the tolerance, are right to a few units in the last place of the
- * coordinates for simple scenes, and to some hundred for sequences of dozens of mirrors; what is
- * far outside of a bounded scene loses nothing, since rays begin at its box.  Normals are
- * differences over a thousandth of the coordinates.  A tolerance of 0 asks for as much as single
- * precision has.  A ray is unresolved after 8192 steps.
+ * In simple scenes distances are accurate to a few units in the last place of the coordinates,
+ * and so is t beyond the tolerance.  For sequences of dozens of mirrors it is some hundred
+ * units.  Rays from far outside of a bounded scene lose no accuracy, since they begin at its
+ * box.  Normals are differences over a thousandth of the coordinates.  A tolerance of 0 asks for
+ * the accuracy of single precision.  A ray is unresolved after 8192 steps.
  *
  * KRS_BAD_ARGUMENT (nothing is answered), KRS_OUT_OF_MEMORY, KRS_INTERNAL; what is written to
  * `hits` is then undefined.  Memory does not grow with `count`.

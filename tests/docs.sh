@@ -1,13 +1,15 @@
 #!/bin/sh
 # docs.sh: the pages agree with the program.  Every scene in them checks; every statement,
 # function, method, property, kind and solid that the tables know is on docs/language.md, with
-# its parameters; every option, code and file that a page names exists.
+# its parameters; every option, code and file that a page names exists.  No page has long
+# sentences.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 krs=${KRS:-build/krs}
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
-pages="README.md docs/language.md docs/library.md docs/architecture.md bench/README.md"
+pages="README.md docs/language.md docs/library.md docs/architecture.md docs/details.md
+docs/how-it-works.md docs/glossary.md bench/README.md bench/measurements.md"
 failed=0
 report() { # status, name
     if [ "$1" -eq 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failed=1; fi
@@ -143,6 +145,36 @@ done | grep -x "[a-z][A-Za-z0-9_/.-]*\.\($kinds\|krs\)" | sort -u | while read -
     grep -q "\(^\|/\)$(echo "$file" | sed 's/\./\\./g')\$" "$work/files" || echo "$file"
 done >"$work/said"
 none "every file that a page names exists"
+
+# ---- links ----
+for page in $pages; do
+    grep -o ']([^)]*)' "$page" | tr -d '])(' | while read -r link; do
+        file=$(dirname "$page")/${link%%#*}
+        heading=${link#*#}
+        if [ ! -e "$file" ]; then
+            echo "$page: $link"
+        elif [ "$heading" != "$link" ]; then
+            grep '^#' "$file" | tr '[:upper:]' '[:lower:]' | sed 's/^#* //; s/[^a-z0-9 -]//g; s/ /-/g' |
+                grep -qxF -- "$heading" || echo "$page: $link"
+        fi
+    done
+done >"$work/said"
+none "every link leads to a file, and to a heading in it"
+
+# ---- sentences ----
+for page in $pages; do
+    awk -v most=30 -f tests/sentences.awk "$page"
+done >"$work/said"
+none "no sentence of these pages has more than 30 words"
+printf '%s\n' 'This is short.  But' 'one two three four five six seven eight nine ten eleven twelve' \
+    'thirteen fourteen fifteen sixteen seventeen eighteen nineteen twenty one two three four five' \
+    'six seven eight nine ten eleven.' >"$work/long"
+awk -v most=30 -f tests/sentences.awk "$work/long" | grep -q ': 32 words: '
+report $? "a long sentence would be found"
+[ "$(wc -l <docs/architecture.md)" -le 200 ]
+report $? "docs/architecture.md has at most 200 lines"
+[ "$(grep -c '^| [a-z]' docs/glossary.md)" -le 31 ]
+report $? "docs/glossary.md has at most 30 words, below its heading"
 
 # ---- the C library ----
 sed -n 's/^[A-Za-z].*\(krs_[a-z_0-9]*\)(.*/\1/p' compiler/krs.h runtime/krs_vulkan.h |

@@ -1,7 +1,7 @@
 #!/bin/sh
 # examples.sh: every example checks without a warning, validates, and renders with no ray left
 # unresolved, silently under the validation layers (core and synchronization); that these do
-# report a planted fault is shown by tests/unit/tracer.c.
+# report a planted fault is shown by tests/unit/devices.c.
 cd "$(dirname "$0")/.." || exit 1
 krs=${KRS:-build/krs}
 folder=$(mktemp -d) && trap 'rm -rf "$folder"' EXIT

@@ -6,6 +6,8 @@ cd "$(dirname "$0")/.." || exit 1
 folder=$(mktemp -d) || exit 1
 trap 'rm -rf "$folder"' EXIT
 failed=0
+parser="compiler/front/parse.c compiler/front/parse_declaration.c
+        compiler/front/parse_expression.c"
 
 result() { # status name
     if [ "$1" -eq 0 ]; then
@@ -21,7 +23,8 @@ rules() { sed -n 's|^\(/\* \)\{0,1\}\([a-z_]* = .* ;\)\( \*/\)\{0,1\}$|\2|p' "$@
 
 # The parser's rules are comments; a rule of the grammar is a line of its own.
 rules grammar/krs.ebnf >"$folder/grammar"
-rules compiler/front/parse.c compiler/front/parse_expression.c >"$folder/parser"
+# shellcheck disable=SC2086 # the list is words
+rules $parser >"$folder/parser"
 diff "$folder/grammar" "$folder/parser" >"$folder/said" && [ -s "$folder/grammar" ]
 result $? "the parser quotes the rules of the grammar"
 
@@ -45,7 +48,7 @@ comm -3 "$folder/defined" "$folder/used" >"$folder/said"
 result $? "every rule is used, and every rule used is defined"
 
 # A function above which no rule stands has escaped the comparison.
-for file in compiler/front/parse.c compiler/front/parse_expression.c; do
+for file in $parser; do
     awk '/^(static )?(Syntax|void|const Token) \*?parse_[a-z_]*\(.*[^;]$/ {
              name = $0; sub(/\(.*/, "", name); sub(/.*parse_/, "", name)
              rule = previous; sub(/^\/\* /, "", rule); sub(/ = .*/, "", rule)

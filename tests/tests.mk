@@ -6,50 +6,70 @@
 # everything compiles under clang as well.
 
 # What tests of several kinds share; nothing of it knows what is tested.
-SUPPORT     := $(addprefix tests/support/, agreement.c bench.c device.c random.c \
+SUPPORT     := $(addprefix tests/support/, agreement.c bench.c device.c folder.c random.c \
                renderer.c scarce.c)
-ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c chain.c \
-               exact.c formulas.c rooms.c montecarlo.c)
-UNIT        := front passes film tracer methods writer memory validate refute frame query cache \
-               compiled per_component stencils glslang loader drivers grid
-PROPERTY    := ops noise graph derive series zeros local along rebase slope parity reach
-ORACLES     := self primitives krs_expand trees maps moebius operators combinations deform chains \
-               chain_pictures moving normals fields surfaces rays algebraic fractals device query \
-               picture touching shading coverage shadows occlusion underestimates bounds stencils light sides \
-               steep scales agree far sheets
+# What tests of one kind share.
+ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c product.c exact.c \
+               formulas.c montecarlo.c quaternions.c chain.c chain_random.c map_chain.c \
+               deformed.c methods.c primitive_solids.c primitive_figures.c random_scene.c \
+               device_answers.c rooms.c shadow_stage.c shadow_truth.c twigs.c)
+UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c queried.c \
+               cache_folder.c compiled_files.c)
+PROPERTY_SHARED := $(addprefix tests/property/, garden.c op_trial.c reach_crowd.c)
+UNIT        := texts front diagnostics passes film devices tracer rendering methods schedules writer \
+               image_files memory validate search refute frame query zones cache cache_limits \
+               compiled pipelines per_component stencils glslang loader drivers grid \
+               printing
+PROPERTY    := ops noise graph simplify facts derive series zeros local along rebase slope \
+               parity reach reach_trees
+ORACLES     := self primitives krs_expand trees maps moebius moebius_images operators \
+               combinations deform deform_bounds chains chain_pictures moving normals fields \
+               surfaces rays algebraic fractals metasurfaces device query query_limits picture \
+               touching shading coverage chords area_shadows soft_shadows hard_shadows upsampling \
+               occlusion underestimates bounds stencils light sides steep scales agree far sheets
 FUZZ        := sentences
 # On SwiftShader, unless another device is tested: what shows that drivers agree.
 DRIVERS     := tests/oracle/drivers
-SECOND      := $(DRIVERS) $(addprefix tests/, unit/tracer oracle/device oracle/picture oracle/query)
+SECOND      := $(DRIVERS) $(addprefix tests/, unit/devices unit/tracer unit/rendering \
+               oracle/device oracle/picture oracle/query oracle/query_limits)
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
-SANITIZED   := tests/unit/front tests/unit/passes tests/unit/film tests/unit/writer \
-               tests/unit/validate tests/unit/loader tests/unit/grid \
-               tests/unit/refute tests/unit/memory tests/unit/cache tests/unit/frame \
-               tests/unit/query tests/property/ops tests/property/noise tests/property/graph \
-               tests/property/derive tests/property/series tests/property/zeros \
-               tests/property/local \
-               tests/property/along tests/property/rebase tests/property/slope \
-               tests/property/parity tests/property/reach tests/oracle/primitives \
-               tests/oracle/krs_expand tests/oracle/bounds tests/oracle/maps tests/oracle/moebius \
-               tests/oracle/operators tests/oracle/moving tests/oracle/fractals \
-               tests/oracle/normals tests/fuzz/sentences
+SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/diagnostics unit/passes unit/film \
+               unit/writer unit/image_files unit/validate unit/loader unit/grid unit/search \
+               unit/refute unit/memory unit/cache unit/cache_limits unit/frame unit/query \
+               unit/zones property/ops property/noise property/graph property/simplify \
+               property/facts property/derive property/series property/zeros property/local \
+               property/along property/rebase property/slope property/parity property/reach \
+               property/reach_trees oracle/primitives oracle/krs_expand oracle/bounds \
+               oracle/maps oracle/moebius oracle/moebius_images oracle/operators oracle/moving \
+               oracle/fractals oracle/metasurfaces oracle/normals fuzz/sentences)
 SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/editors.sh \
                tests/lint.sh tests/errors.sh tests/golden.sh tests/examples.sh tests/library.sh tests/docs.sh \
                $(sort $(filter-out tests/cli/common.sh, $(wildcard tests/cli/*.sh)))
 
-$(B)/tests/oracle/oracle.a: $(ORACLE:%.c=$(B)/%.o)
-	@rm -f $@
-	@$(AR) rcs $@ $^
+ARCHIVE      = rm -f $@ && $(AR) rcs $@ $^
 $(B)/tests/support/support.a: $(SUPPORT:%.c=$(B)/%.o)
-	@rm -f $@
-	@$(AR) rcs $@ $^
-$(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/oracle.a \
-                     $(B)/tests/support/support.a $(B)/libkrs.a
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
-$(B)/tests/%: $(B)/tests/%.o $(B)/tests/support/support.a $(B)/libkrs.a
-	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
+	@$(ARCHIVE)
+$(B)/tests/oracle/oracle.a: $(ORACLE:%.c=$(B)/%.o)
+	@$(ARCHIVE)
+$(B)/tests/unit/unit.a: $(UNIT_SHARED:%.c=$(B)/%.o)
+	@$(ARCHIVE)
+$(B)/tests/property/property.a: $(PROPERTY_SHARED:%.c=$(B)/%.o)
+	@$(ARCHIVE)
+
+LINK         = $(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS) -lcmocka
+LINKED      := $(B)/tests/support/support.a $(B)/libkrs.a
+$(B)/tests/oracle/%: $(B)/tests/oracle/%.o $(B)/tests/oracle/oracle.a $(LINKED)
+	@$(LINK)
+$(B)/tests/unit/%: $(B)/tests/unit/%.o $(B)/tests/unit/unit.a $(LINKED)
+	@$(LINK)
+$(B)/tests/property/%: $(B)/tests/property/%.o $(B)/tests/property/property.a $(LINKED)
+	@$(LINK)
+$(B)/tests/%: $(B)/tests/%.o $(LINKED)
+	@$(LINK)
+# In no archive: system calls that can fail are for those two alone.
+$(B)/tests/unit/writer $(B)/tests/unit/image_files: $(B)/tests/unit/file_faults.o
 .SECONDARY:
 
 # Pictures under every option, bit for bit as they were: for changes that should not be seen.

@@ -5,25 +5,9 @@
  * or a curly quote: these are reported with what to write instead, and become the token that
  * was meant, so that one slip is one error.
  */
-#include "compiler/front/token.h"
+#include "compiler/front/lexer.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
-
-typedef struct Lexer {
-    const char *text;
-    uint32_t    length, at;
-    uint32_t    source;
-    uint32_t    line_end; /* of the line that was last asked for; or 0 */
-    Names      *names;
-    Diags      *diags;
-    Arena      *arena;
-    Tokens      tokens;
-    Text        doc;         /* the `///` lines since the last token */
-    Text        scratch;     /* of the number or string being read */
-    bool        begins[256]; /* find_beginnings */
-} Lexer;
 
 /* ---- rows of token.def ---- */
 
@@ -64,23 +48,6 @@ const char *token_kind_text(TokenKind kind)
 
 bool token_is_statement_word(TokenKind kind) { return rows[kind].class == STATEMENT; }
 
-/* ---- characters ---- */
-
-/* ASCII only, whatever the locale. */
-static bool is_digit(char c) { return c >= '0' && c <= '9'; }
-static bool is_letter(char c)
-{
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-}
-static bool is_word(char c) { return is_letter(c) || is_digit(c); }
-static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-
-/* The byte `ahead` of here; NUL behind the end. */
-static char peek(const Lexer *lexer, uint32_t ahead)
-{
-    return ahead < lexer->length - lexer->at ? lexer->text[lexer->at + ahead] : '\0';
-}
-
 static bool is_next(const Lexer *lexer, const char *spelling)
 {
     if (lexer->at == lexer->length || lexer->text[lexer->at] != spelling[0])
@@ -90,14 +57,9 @@ static bool is_next(const Lexer *lexer, const char *spelling)
            memcmp(lexer->text + lexer->at, spelling, length) == 0;
 }
 
-static Span span_from(const Lexer *lexer, uint32_t start)
-{
-    return (Span){lexer->source, start, lexer->at};
-}
-
 /* ---- tokens ---- */
 
-static Token *add_token(Lexer *lexer, TokenKind kind, uint32_t start)
+Token *add_token(Lexer *lexer, TokenKind kind, uint32_t start)
 {
     Token token = {.kind = kind, .span = span_from(lexer, start)};
     if (lexer->doc.length > 0)
@@ -107,8 +69,8 @@ static Token *add_token(Lexer *lexer, TokenKind kind, uint32_t start)
     return &lexer->tokens.items[lexer->tokens.count - 1];
 }
 
-static Diag *report(Lexer *lexer, DiagCode code, uint32_t start, const char *message,
-                    const char *help)
+Diag *report_from(Lexer *lexer, DiagCode code, uint32_t start, const char *message,
+                  const char *help)
 {
     Diag *diag = diag_add(lexer->diags, code, span_from(lexer, start), "%s", message);
     diag->help = help;
@@ -117,8 +79,7 @@ static Diag *report(Lexer *lexer, DiagCode code, uint32_t start, const char *mes
 
 /* ---- comments ---- */
 
-/* Moves to `end`.  The bytes up to there, the inside of a comment or string, must be UTF-8. */
-static void skip_text(Lexer *lexer, uint32_t end)
+void skip_text(Lexer *lexer, uint32_t end)
 {
     bool reported = false;
     while (lexer->at < end) {
@@ -126,15 +87,15 @@ static void skip_text(Lexer *lexer, uint32_t end)
         size_t   length = text_character(lexer->text + start, end - start, &character);
         lexer->at += length ? (uint32_t)length : 1;
         if (length == 0 && !reported) {
-            report(lexer, DIAG_STRAY_BYTES, start, "bytes that are not UTF-8",
-                   "save the file as UTF-8");
+            report_from(lexer, DIAG_STRAY_BYTES, start, "bytes that are not UTF-8",
+                        "save the file as UTF-8");
             reported = true;
         }
     }
 }
 
 /* Looked for once a line, however many strings there are in it. */
-static uint32_t line_end(Lexer *lexer)
+uint32_t find_line_end(Lexer *lexer)
 {
     if (lexer->line_end > lexer->at)
         return lexer->line_end;
@@ -147,7 +108,7 @@ static uint32_t line_end(Lexer *lexer)
 /* `///` begins documentation, `//` and `////` do not. */
 static void skip_line_comment(Lexer *lexer)
 {
-    uint32_t end = line_end(lexer);
+    uint32_t end = find_line_end(lexer);
     if (peek(lexer, 2) == '/' && peek(lexer, 3) != '/') {
         uint32_t first = lexer->at + (peek(lexer, 3) == ' ' ? 4 : 3), last = end;
         while (last > first && is_space(lexer->text[last - 1]))
@@ -170,8 +131,8 @@ static void skip_block_comment(Lexer *lexer)
         return;
     }
     lexer->at   = start + 2;
-    Diag *diag  = report(lexer, DIAG_UNCLOSED, start, "a comment is not closed",
-                         "close it with `*/`");
+    Diag *diag  = report_from(lexer, DIAG_UNCLOSED, start, "a comment is not closed",
+                              "close it with `*/`");
     diag->label = "begins here";
     skip_text(lexer, lexer->length);
 }
@@ -189,224 +150,6 @@ static void skip_blank(Lexer *lexer)
         else
             return;
     }
-}
-
-/* ---- numbers and colours ---- */
-
-static void skip_digits(Lexer *lexer)
-{
-    while (is_digit(peek(lexer, 0)))
-        lexer->at++;
-}
-
-/* The value of a decimal number.  strtod is given its digits and an exponent, but no point: what
-   it takes for one depends on the locale. */
-static double read_decimal(Lexer *lexer, uint32_t start)
-{
-    Text      *digits   = &lexer->scratch;
-    const long most     = 100000000; /* more than there can be digits */
-    long       exponent = 0;
-    bool       behind   = false; /* the point */
-    digits->length      = 0;
-    for (uint32_t i = start; i < lexer->at; i++) {
-        char c = lexer->text[i];
-        if (c == 'e') {
-            long written = strtol(lexer->text + i + 1, NULL, 10);
-            exponent += written > most ? most : written < -most ? -most : written;
-            break;
-        }
-        if (is_digit(c)) {
-            text_add_bytes(digits, &c, 1);
-            exponent -= behind;
-        }
-        behind = behind || c == '.';
-    }
-    text_format(digits, "e%ld", exponent);
-    return strtod(digits->bytes, NULL);
-}
-
-static void bad_number(Lexer *lexer, uint32_t start, const char *message, const char *help,
-                       const char *instead)
-{
-    Diag *diag        = report(lexer, DIAG_BAD_NUMBER, start, message, help);
-    diag->replacement = instead;
-}
-
-/* The fraction and the exponent; false when they are wrong and have been reported. */
-static bool skip_fraction(Lexer *lexer, uint32_t start)
-{
-    bool exponent_follows = peek(lexer, 1) == 'e' && is_digit(peek(lexer, 2));
-    if (peek(lexer, 0) == '.' && is_digit(peek(lexer, 1))) {
-        lexer->at++;
-        skip_digits(lexer);
-    } else if (peek(lexer, 0) == '.' && peek(lexer, 1) != '.' &&
-               (!is_letter(peek(lexer, 1)) || exponent_follows)) {
-        int         length  = (int)(lexer->at - start);
-        const char *instead = diag_text(lexer->diags, "%.*s.0", length, lexer->text + start);
-        lexer->at++;
-        bad_number(lexer, start, "a number needs digits behind its point", NULL, instead);
-        return false;
-    }
-    if (peek(lexer, 0) != 'e')
-        return true;
-    uint32_t sign = peek(lexer, 1) == '-' || peek(lexer, 1) == '+';
-    if (is_digit(peek(lexer, 1 + sign))) {
-        lexer->at += 1 + sign;
-        skip_digits(lexer);
-    }
-    return true;
-}
-
-/* What touches a number from behind: `deg`, or a mistake. */
-static double read_unit(Lexer *lexer, uint32_t start, double number)
-{
-    uint32_t unit = lexer->at;
-    while (is_word(peek(lexer, 0)))
-        lexer->at++;
-    uint32_t length = lexer->at - unit;
-    if (isinf(number)) {
-        bad_number(lexer, start, "a number that is too large", "the largest is about 1.8e308",
-                   NULL);
-        return 0;
-    }
-    if (length == 3 && memcmp(lexer->text + unit, "deg", 3) == 0)
-        return number / 180 * M_PI;
-    if (length > 0)
-        bad_number(lexer, unit, "letters that do not belong to a number",
-                   "the only unit is `deg`, as in `30deg`; a million is `1e6`", NULL);
-    else if (peek(lexer, 0) == '.' && is_digit(peek(lexer, 1))) {
-        lexer->at++;
-        skip_digits(lexer);
-        bad_number(lexer, start, "a number with two points", NULL, NULL);
-    }
-    return number;
-}
-
-static void lex_number(Lexer *lexer)
-{
-    uint32_t start  = lexer->at;
-    double   number = 0;
-    if (peek(lexer, 0) == '.') {
-        lexer->at++;
-        skip_digits(lexer);
-        int length = (int)(lexer->at - start);
-        bad_number(lexer, start, "a number needs digits before its point", NULL,
-                   diag_text(lexer->diags, "0%.*s", length, lexer->text + start));
-    } else {
-        skip_digits(lexer);
-        if (skip_fraction(lexer, start))
-            number = read_unit(lexer, start, read_decimal(lexer, start));
-    }
-    while (is_word(peek(lexer, 0))) /* after a mistake */
-        lexer->at++;
-    add_token(lexer, TOKEN_NUMBER, start)->number[0] = number;
-}
-
-/* The sRGB curve of IEC 61966-2-1. */
-void linear_from_srgb(uint32_t rgb, double linear[3])
-{
-    for (int i = 0; i < 3; i++) {
-        double value = (rgb >> (16 - 8 * i) & 255) / 255.0;
-        linear[i]    = value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
-    }
-}
-
-static const char *six_digits(Lexer *lexer, uint32_t start)
-{
-    const char *d = lexer->text + start + 1;
-    if (lexer->at - start != 4 || strspn(d, "0123456789abcdefABCDEF") < 3)
-        return NULL;
-    return diag_text(lexer->diags, "#%c%c%c%c%c%c", d[0], d[0], d[1], d[1], d[2], d[2]);
-}
-
-static void lex_colour(Lexer *lexer)
-{
-    uint32_t start = lexer->at++;
-    while (is_word(peek(lexer, 0)))
-        lexer->at++;
-    const char *digits = lexer->text + start + 1;
-    bool        good   = lexer->at - start == 7 && strspn(digits, "0123456789abcdefABCDEF") >= 6;
-    if (!good)
-        bad_number(lexer, start, "a colour has six hexadecimal digits", "for example `#c8553d`",
-                   six_digits(lexer, start));
-    Token        *token = add_token(lexer, TOKEN_COLOUR, start);
-    unsigned long rgb   = good ? strtoul(digits, NULL, 16) : 0;
-    linear_from_srgb((uint32_t)rgb, token->number);
-}
-
-/* ---- strings ---- */
-
-/* Adds what a backslash and the byte after it mean. */
-static void read_escape(Lexer *lexer)
-{
-    uint32_t start = lexer->at;
-    char     c     = peek(lexer, 1);
-    lexer->at += 2;
-    if (c == 'n')
-        text_add(&lexer->scratch, "\n");
-    else if (c == 't')
-        text_add(&lexer->scratch, "\t");
-    else if (c == '"' || c == '\\' || c == '\'')
-        text_add_bytes(&lexer->scratch, &c, 1);
-    else {
-        lexer->at = start + 1;
-        report(lexer, DIAG_STRAY_BYTES, start, "a backslash that means nothing",
-               "there are \\\\, \\\", \\n and \\t");
-    }
-}
-
-/* Other bytes of a string, up to `end`; control bytes have no place in a name of a file. */
-static void read_plain(Lexer *lexer, uint32_t end)
-{
-    uint32_t start = lexer->at;
-    skip_text(lexer, end);
-    for (uint32_t i = start; i < end; i++) {
-        unsigned char c = (unsigned char)lexer->text[i];
-        if (c >= 0x20 || c == '\t')
-            continue;
-        diag_add(lexer->diags, DIAG_STRAY_BYTES, (Span){lexer->source, i, i + 1},
-                 "a control character in a string");
-        return;
-    }
-    text_add_bytes(&lexer->scratch, lexer->text + start, end - start);
-}
-
-static void lex_string(Lexer *lexer, char quote)
-{
-    uint32_t start = lexer->at++, end = line_end(lexer);
-    if (end > lexer->at && lexer->text[end - 1] == '\r')
-        end--;
-    lexer->scratch.length = 0;
-    text_add(&lexer->scratch, "");
-    while (lexer->at < end && peek(lexer, 0) != quote) {
-        uint32_t next = lexer->at;
-        while (next < end && lexer->text[next] != quote && lexer->text[next] != '\\')
-            next++;
-        if (next > lexer->at)
-            read_plain(lexer, next);
-        else if (next + 1 < end)
-            read_escape(lexer);
-        else
-            lexer->at++;
-    }
-    if (lexer->at < end) {
-        lexer->at++;
-        if (quote == '\'') {
-            Diag *diag = report(lexer, DIAG_UNEXPECTED_TOKEN, start, "a string in single quotes",
-                                NULL);
-            diag->help = "strings have double quotes";
-            diag->replacement = diag_text(lexer->diags, "\"%s\"", lexer->scratch.bytes);
-        }
-    } else {
-        Diag *diag  = report(lexer, DIAG_UNCLOSED, start, "a string is not closed",
-                             "close it with a quote on the same line");
-        diag->label = "begins here";
-        add_token(lexer, TOKEN_ERROR, start); /* it has swallowed the rest of the statement */
-        return;
-    }
-    const Text *read                            = &lexer->scratch;
-    add_token(lexer, TOKEN_STRING, start)->name = name_intern(lexer->names, read->bytes,
-                                                              read->length);
 }
 
 /* ---- words and signs ---- */
@@ -469,8 +212,8 @@ static bool lex_lookalike(Lexer *lexer)
         uint32_t start = lexer->at;
         lexer->at += (uint32_t)strlen(found->sign);
         bool  ascii = (found->sign[0] & 0x80) == 0;
-        Diag *diag  = report(lexer, ascii ? DIAG_UNEXPECTED_TOKEN : DIAG_STRAY_BYTES, start, "",
-                             NULL);
+        Diag *diag = report_from(lexer, ascii ? DIAG_UNEXPECTED_TOKEN : DIAG_STRAY_BYTES, start, "",
+                                 NULL);
         diag->replacement = found->instead;
         diag->message = diag_text(lexer->diags, "`%s` is not part of the language", found->sign);
         if (found->kind == TOKEN_END)
@@ -525,7 +268,7 @@ static void lex_stray(Lexer *lexer)
     uint32_t start = lexer->at;
     if (peek(lexer, 0) == '!') {
         lexer->at++;
-        report(lexer, DIAG_UNEXPECTED_TOKEN, start, "`!` is not part of the language", NULL)
+        report_from(lexer, DIAG_UNEXPECTED_TOKEN, start, "`!` is not part of the language", NULL)
             ->replacement = "not";
         add_token(lexer, TOKEN_NOT, start);
         return;
@@ -544,8 +287,8 @@ static void lex_stray(Lexer *lexer)
         help = "save the file as UTF-8";
     else if (lexer->text[start] == '?')
         help = "to choose between two values write `if a < b then a else b`";
-    report(lexer, DIAG_STRAY_BYTES, start,
-           utf8 ? "characters that mean nothing here" : "bytes that are not UTF-8", help);
+    report_from(lexer, DIAG_STRAY_BYTES, start,
+                utf8 ? "characters that mean nothing here" : "bytes that are not UTF-8", help);
     add_token(lexer, TOKEN_ERROR, start);
 }
 

@@ -6,7 +6,7 @@
  * on or complaining; the loop over statements (or properties) in which this happened skips to
  * a place where it can continue, and takes the mark away.
  *
- * This header is for parser.c, parse_expression.c and parse.c.
+ * This header is for parser.c, parse_expression.c, parse_declaration.c and parse.c.
  */
 #ifndef KRS_PARSER_H
 #define KRS_PARSER_H
@@ -97,5 +97,11 @@ Syntax *error_node(Parser *p);
 /* ---- the rules that others begin with ---- */
 Syntax *parse_expression(Parser *p);
 Syntax *parse_krs(Parser *p);
+Syntax *parse_let(Parser *p);
+Syntax *parse_def(Parser *p);
+Syntax *parse_param(Parser *p);
+Syntax *parse_shape(Parser *p);
+Syntax *parse_material(Parser *p);
+Syntax *parse_surroundings(Parser *p); /* a camera, a light and what else is around the scene */
 
 #endif

@@ -96,6 +96,16 @@ const char *signature(Elaboration *e, const char *name, const char *const *param
     return text.bytes;
 }
 
+void note_names(Elaboration *e, Diag *diag, const char *what, const char *const *names,
+                size_t count)
+{
+    Text text = {.arena = e->diags->arena};
+    text_format(&text, "%s:", what);
+    for (size_t i = 0; i < count; i++)
+        text_format(&text, "%s %s", i ? "," : "", names[i]);
+    diag_note(e->diags, diag, text.bytes);
+}
+
 void unknown_parameter(Elaboration *e, const Syntax *argument, const char *name,
                        const char *const *parameters, uint32_t count)
 {

@@ -30,7 +30,10 @@ static bool check_properties(Elaboration *e, const Syntax *declaration)
                                      "a shape has no property `%s`", property->name);
         diag->label       = "unknown property";
         diag->replacement = nearest_name(property->name, property_names, PROPERTY_COUNT);
-        good              = false;
+        if (diag->replacement)
+            diag->help = "a property with a similar name exists";
+        note_names(e, diag, "its properties", property_names, PROPERTY_COUNT);
+        good = false;
     }
     return good;
 }

@@ -196,6 +196,9 @@ Diag *too_many_arguments(Elaboration *e, const Syntax *argument, const char *nam
 Diag *missing_argument(Elaboration *e, const Syntax *call, const char *name, const char *parameter);
 void  unknown_parameter(Elaboration *e, const Syntax *argument, const char *name,
                         const char *const *parameters, uint32_t count);
+/* Adds a note with the names that would be right: "its properties: eye, target". */
+void note_names(Elaboration *e, Diag *diag, const char *what, const char *const *names,
+                size_t count);
 /* A value of another type than `wanted` ("a number"); silent for VALUE_ERROR. */
 void type_error(Elaboration *e, const Syntax *syntax, Value found, const char *wanted);
 /* A value that must be known at compile time, and is not. */

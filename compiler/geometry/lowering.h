@@ -1,7 +1,7 @@
 /*
- * lowering.h: what the files of the lowering share: lower.c walks and joins, lower_repeat.c
- * has the copies in cells, lower_krs.c the sequences, lower_moebius.c maps that invert,
- * lower_normal.c turns normals.
+ * lowering.h: what the files of the lowering share.  lower.c walks through a tree of shapes; the
+ * others have one family of shapes each, and lower_surface.c and lower_normal.c what a hit needs
+ * to know of them.
  */
 #ifndef KRS_LOWERING_H
 #define KRS_LOWERING_H
@@ -109,19 +109,53 @@ Node unit_normal(Graph *g, Node normal, Node otherwise);
 /* Whether rays that go from root to root of what is in a shape are rays to the shape. */
 bool    rays_pass(const Shape *shape);
 Lowered lower_shape(Lowering *l, const Shape *shape, LowerContext context);
+
+/* ---- lower_primitive.c ---- */
+Lowered lower_primitive(Lowering *l, const Shape *shape, LowerContext context);
+
+/* ---- lower_surface.c ---- */
+/* The one where the condition holds, the other elsewhere. */
+Surface choose_surface(Graph *g, Node condition, Surface a, Surface b);
+/* `weight` 1 is a; what cannot be mixed is taken from a where `nearer`. */
+Surface mix_surface(Graph *g, Node nearer, Node weight, Surface a, Surface b);
+Lowered lower_paint(Lowering *l, const Shape *shape, LowerContext context);
+
+/* ---- lower_csg.c ---- */
+/* The union of two distances, sharp or blended. */
+Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b);
+/* The context of what a joint holds: a blend moves the zero set. */
+LowerContext joint_context(const Shape *shape, LowerContext context);
 /* A shape whose distance is looked at where it is not 0: it is no less than that to the sides of the
    shape's box. */
 Lowered lower_operand(Lowering *l, const Shape *shape, LowerContext context);
+Lowered lower_union(Lowering *l, const Shape *shape, LowerContext context);
+Lowered lower_intersection(Lowering *l, const Shape *shape, LowerContext context);
+Lowered lower_difference(Lowering *l, const Shape *shape, LowerContext context);
+Lowered lower_xor(Lowering *l, const Shape *shape, LowerContext context);
+Lowered lower_morph(Lowering *l, const Shape *shape, LowerContext context);
+
+/* ---- lower_place.c ---- */
 /* The same as lower_shape behind maps that have been taken down, at a point there. */
 Lowered lower_behind(Lowering *l, const Shape *child, LowerContext context, const NormalPath *path,
                      Node point);
-/* The union of two distances, sharp or blended. */
-Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b);
 /* R^T (point - shift) / scale: where the point was before the map. */
 Node    before_map(Graph *g, const Map *map, Node point);
 Lowered scale_distance(Lowering *l, Lowered result, Node factor);
 /* Takes up the unit behind a map that enlarges; returns the one to go back to. */
-Node enter_scale(Lowering *l, Node scale);
+Node    enter_scale(Lowering *l, Node scale);
+Lowered lower_transform(Lowering *l, const Shape *shape, LowerContext context);
+Lowered lower_stretch(Lowering *l, const Shape *shape, LowerContext context);
+Lowered lower_mirror(Lowering *l, const Shape *shape, LowerContext context);
+Lowered lower_smooth(Lowering *l, const Shape *shape, LowerContext context);
+Lowered lower_elongate(Lowering *l, const Shape *shape, LowerContext context);
+
+/* ---- lower_figure.c ---- */
+Lowered lower_extrude(Lowering *l, const Shape *shape, LowerContext context);
+Lowered lower_revolve(Lowering *l, const Shape *shape, LowerContext context);
+
+/* ---- lower_offset.c ---- */
+Lowered lower_offset(Lowering *l, const Shape *shape, LowerContext context);
+Lowered lower_shell(Lowering *l, const Shape *shape, LowerContext context);
 
 /* ---- lower_moebius.c ---- */
 /* The maps passed so far, from outside inwards.  An empty ball of radius d around
@@ -196,9 +230,6 @@ Lowered lower_twist(Lowering *l, const Shape *shape, LowerContext context);
 Lowered lower_bend(Lowering *l, const Shape *shape, LowerContext context);
 Lowered lower_taper(Lowering *l, const Shape *shape, LowerContext context);
 Lowered lower_displace(Lowering *l, const Shape *shape, LowerContext context);
-
-/* `weight` 1 is a; what cannot be mixed is taken from a where `nearer`. */
-Surface mix_surface(Graph *g, Node nearer, Node weight, Surface a, Surface b);
 
 /* ---- metasurface.c ---- */
 Lowered lower_meta(Lowering *l, const Shape *shape, LowerContext context);

@@ -322,21 +322,28 @@ enum { METHOD_COUNT = sizeof methods / sizeof *methods };
 
 static Value unknown_method(Elaboration *e, const Syntax *syntax, Value receiver)
 {
-    const char *names[METHOD_COUNT];
+    static const char *const of_maps[] = {"inverse"};
+    const char              *names[METHOD_COUNT];
+    size_t                   count = 0;
     for (size_t i = 0; i < METHOD_COUNT; i++)
-        names[i] = methods[i].name;
+        if (methods[i].method != method_not_supported)
+            names[count++] = methods[i].name;
     const char *type = value_type_name(e, receiver);
     Diag *diag = diag_add(e->diags, DIAG_UNKNOWN_METHOD, syntax->name_span, "%s has no method `%s`",
                           type, syntax->name);
     diag->label = "unknown method";
     if (receiver.type == VALUE_SHAPE)
-        diag->replacement = nearest_name(syntax->name, names, METHOD_COUNT);
+        diag->replacement = nearest_name(syntax->name, names, count);
     if (diag->replacement)
         diag->help = "a method with a similar name exists";
     diag_secondary(e->diags, diag, syntax->children[0]->span,
                    diag_text(e->diags, "this is %s", type));
     if (receiver.type == VALUE_FUNCTION)
         diag->help = "call it first: write parentheses after the name";
+    else if (receiver.type == VALUE_SHAPE && !diag->replacement)
+        note_names(e, diag, "its methods", names, count);
+    else if (receiver.type == VALUE_MAP)
+        note_names(e, diag, "its methods", of_maps, 1);
     return value_error();
 }
 

@@ -70,16 +70,28 @@ const char *block_name(SyntaxKind kind)
     }
 }
 
-/* Whether a block may have a property; false: reported. */
-static bool check_property(Elaboration *e, const Syntax *block, const Syntax *property)
+static void unknown_property(Elaboration *e, const Syntax *block, const Syntax *property)
 {
     const char *names[BLOCK_PROPERTY_COUNT];
     size_t      count = 0;
+    for (size_t i = 0; i < BLOCK_PROPERTY_COUNT; i++)
+        if (block_properties[i].block == block->kind && !block_properties[i].later)
+            names[count++] = block_properties[i].name;
+    Diag *diag        = diag_add(e->diags, DIAG_UNKNOWN_PROPERTY, property->name_span,
+                                 "%s has no property `%s`", block_name(block->kind), property->name);
+    diag->label       = "unknown property";
+    diag->replacement = nearest_name(property->name, names, count);
+    if (diag->replacement)
+        diag->help = "a property with a similar name exists";
+    note_names(e, diag, "its properties", names, count);
+}
+
+/* Whether a block may have a property; false: reported. */
+static bool check_property(Elaboration *e, const Syntax *block, const Syntax *property)
+{
     for (size_t i = 0; i < BLOCK_PROPERTY_COUNT; i++) {
-        if (block_properties[i].block != block->kind)
-            continue;
-        names[count++] = block_properties[i].name;
-        if (strcmp(block_properties[i].name, property->name) != 0)
+        if (block_properties[i].block != block->kind ||
+            strcmp(block_properties[i].name, property->name) != 0)
             continue;
         if (!block_properties[i].later)
             return true;
@@ -87,13 +99,7 @@ static bool check_property(Elaboration *e, const Syntax *block, const Syntax *pr
                       diag_text(e->diags, "`%s` of %s", property->name, block_name(block->kind)));
         return false;
     }
-    const char *owner = block_name(block->kind);
-    Diag       *diag  = diag_add(e->diags, DIAG_UNKNOWN_PROPERTY, property->name_span,
-                                 "%s has no property `%s`", owner, property->name);
-    diag->label       = "unknown property";
-    diag->replacement = nearest_name(property->name, names, count);
-    if (diag->replacement)
-        diag->help = "a property with a similar name exists";
+    unknown_property(e, block, property);
     return false;
 }
 

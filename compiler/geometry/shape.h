@@ -34,7 +34,7 @@ typedef enum ShapeKind {
     SHAPE_ELONGATE, /* [0]; values[0] half lengths; slope of the child (a clamp's is 1) */
     SHAPE_EXTRUDE,  /* [0] a figure; values[0] half height; largest of child's and 1 */
     SHAPE_REVOLVE,  /* [0] a figure; values[0] offset; slope of the child */
-    SHAPE_REPEAT,   /* [0]; values[0] period, cells; slope of the child: see lower.c */
+    SHAPE_REPEAT,   /* [0]; values[0] period, cells; slope of the child: see lower_repeat.c */
     SHAPE_REPEAT_POLAR, /* [0]; cells[0] copies about y; slope of the child */
     SHAPE_MIRROR,       /* [0]; values[0] unit normal, values[1] offset; slope of the child */
     SHAPE_TWIST,        /* [0]; values[0] rate, about y; 1: see lower_deform.c, also for the next */

@@ -47,16 +47,16 @@ void begin_group(uint first) {}
 
 void begin_item(uint number, bool saved)
 {
-    QueryRay question = query_rays[number];
+    QueryRay query_ray = query_rays[number];
     index = number;
-    origin = question.origin;
-    direction = question.direction;
-    end = question.end;
+    origin = query_ray.origin;
+    direction = query_ray.direction;
+    end = query_ray.end;
     rounding = largest(origin);
     t = clearance = step = 0.0;
     slope = -1.0;
-    side = question.kind == float(BEGINS_OUTSIDE) ? 1.0 : 0.0;
-    ends_at_walls = question.kind == float(ENDS_AT_WALLS);
+    side = query_ray.kind == float(BEGINS_OUTSIDE) ? 1.0 : 0.0;
+    ends_at_walls = query_ray.kind == float(ENDS_AT_WALLS);
     steps = side_bits = 0u;
     state = end >= 0.0 ? STATE_MARCHING : STATE_MISS;
 }

@@ -21,11 +21,11 @@ typedef unsigned int uvec2[2];
 
 /* ---- Sizes ---- */
 
-CONSTANT(TILE, 8);              /* pixels a side */
-CONSTANT(QUARTERS_OF_TILE, 4);  /* each with a cone (hit_lists.glsl) */
-CONSTANT(LIGHTS_AT_ONCE, 3);    /* of a dispatch of shade.comp */
-CONSTANT(MARCH_GROUP_LISTS, 9); /* KRS_MOST_MARCH_GROUPS, and pixels of no group */
-CONSTANT(MOST_CHAINED, 48);     /* dispatches of a chain */
+CONSTANT(TILE, 8);             /* pixels a side */
+CONSTANT(QUARTERS_OF_TILE, 4); /* each with a cone (hit_lists.glsl) */
+CONSTANT(LIGHTS_AT_ONCE, 3);   /* of a dispatch of shade.comp */
+CONSTANT(GROUP_LISTS, 9);      /* KRS_MOST_MARCH_GROUPS, and pixels of no group */
+CONSTANT(MOST_CHAINED, 48);    /* dispatches of a chain */
 
 /* ---- The frame and the dispatch ---- */
 
@@ -102,7 +102,7 @@ static_assert(sizeof(PointWorkBlock) == 8, "std430");
     uint writing;        /* and the one that is written */                                         \
     uint value;          /* VALUE_...: of a hit's LIGHTING that is looked for */                   \
     uint rows;           /* of results that are asked for: bit ROW_... of each */                  \
-    uint by_march_group; /* 1: rays tell which group they hit, and are listed by it */             \
+    uint by_march_group; /* 1: rays tell which march group they hit, and are listed by it */       \
     uint no_occlusion;   /* 1: occlusion is not looked for */                                      \
     uint window;  /* of tiles of beams, counted in the band, the first: column | row << 16, */     \
     uint across;  /* and how many in a row */                                                      \
@@ -110,22 +110,21 @@ static_assert(sizeof(PointWorkBlock) == 8, "std430");
     uint filters; /* 1: neighbours share what their rays find (shared.glsl) */
 
 /* What the kernels count, and what plan.comp says of the next dispatch. */
-#define COUNTER_MEMBERS                                                                 \
-    uint queued;            /* rays that need another dispatch, */                      \
-    uint untaken;           /* and items that nobody has begun */                       \
-    uint tiles;             /* listed tiles, */                                         \
-    uint hit_count, sparse; /* pixels that see something (hit_lists.glsl), */           \
-    uint remaining;         /* and those that need rays of their own */                 \
-    uint unresolved;        /* rays that ran out of steps */                            \
-    uint evaluations;       /* distances spent on beams and rays; the most on one */    \
-    uint most_evaluations;                                                              \
-    uint wide;     /* pixels that need a wide mean of a shadow (shadow.comp), */        \
-    uint quarters; /* and quarters of tiles that see something */                       \
-    uint of_march_group                                                                 \
-        [MARCH_GROUP_LISTS]; /* pixels that see something, by the group of their ray */ \
-    uint groups[3];          /* of the next dispatch */                                 \
-    uint stopped;            /* the dispatch of the chain where it stopped; 0: none */  \
-    uint ran[MOST_CHAINED];  /* how many groups each had */
+#define COUNTER_MEMBERS                                                                         \
+    uint queued;            /* rays that need another dispatch, */                              \
+    uint untaken;           /* and items that nobody has begun */                               \
+    uint tiles;             /* listed tiles, */                                                 \
+    uint hit_count, sparse; /* pixels that see something (hit_lists.glsl), */                   \
+    uint remaining;         /* and those that need rays of their own */                         \
+    uint unresolved;        /* rays that ran out of steps */                                    \
+    uint evaluations;       /* distances spent on beams and rays; the most on one */            \
+    uint most_evaluations;                                                                      \
+    uint wide;     /* pixels that need a wide mean of a shadow (shadow.comp), */                \
+    uint quarters; /* and quarters of tiles that see something */                               \
+    uint of_march_group[GROUP_LISTS]; /* pixels that see something, by their march group */     \
+    uint groups[3];                   /* of the next dispatch */                                \
+    uint stopped;                     /* the dispatch of the chain where it stopped; 0: none */ \
+    uint ran[MOST_CHAINED];           /* how many groups each had */
 
 /* buffer ControlBlock, std430: both, one behind the other. */
 struct Control {

@@ -16,7 +16,7 @@
 static_assert(WORD_OF(items) == ITEMS_WORD && WORD_OF(groups) == GROUPS_WORD &&
                   WORD_OF(stopped) == STOPPED_WORD && WORD_OF(ran) == RAN_WORD,
               "plan.comp");
-static_assert((int)MARCH_GROUP_LISTS == 1 + KRS_MOST_MARCH_GROUPS &&
+static_assert((int)GROUP_LISTS == 1 + KRS_MOST_MARCH_GROUPS &&
                   (int)PERSPECTIVE == (int)KRS_PERSPECTIVE &&
                   (int)ORTHOGRAPHIC == (int)KRS_ORTHOGRAPHIC && (int)PANORAMA == (int)KRS_PANORAMA,
               "compile.h");

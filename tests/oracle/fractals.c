@@ -1,62 +1,19 @@
 /*
- * fractals.c: fractals and metasurfaces against what they are defined by.
+ * fractals.c: fractals against what they are defined by.
  *
  * Which points belong to a fractal is found by iterating, with Hamilton's product and with sines
  * and cosines, on a grid of voxels around it; nothing is shared with the compiler.  Any point
  * inside refutes a distance that is longer than the way there, so the nearest inside voxel does,
  * and points still nearer that are looked for around it; for points inside, likewise what is
- * outside.  A metasurface is a sum of falloffs that are written down here again; where it is
- * crossed is found by bisection along rays in all directions.
+ * outside.
  *
  * Proven bounds are never above the truth.  Estimates are measured, and reported.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
+#include "tests/oracle/product.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
-
-#include "compiler/krs.h"
-#include "tests/oracle/brute.h"
-
-/* ---- scenes ---- */
-
-typedef struct Product {
-    KrsScene *scene;
-    KrsFrame *frame;
-} Product;
-
-static void print_diagnostic(void *user, const KrsDiagnostic *diagnostic)
-{
-    (void)user;
-    fputs(diagnostic->text, stderr);
-}
-
-static Product product_new(const char *text)
-{
-    KrsOptions options = {.diagnostic = print_diagnostic};
-    Product    product;
-    assert_int_equal(krs_compile_text(text, strlen(text), "s.krs", &options, &product.scene),
-                     KRS_OK);
-    assert_int_equal(krs_frame_new(product.scene, &product.frame), KRS_OK);
-    return product;
-}
-
-static void product_free(Product *product)
-{
-    krs_frame_free(product->frame);
-    krs_scene_free(product->scene);
-}
-
-static double distance_at(const Product *product, Vec p)
-{
-    double point[1][3] = {{p.x, p.y, p.z}}, distance;
-    assert_int_equal(krs_distance(product->frame, (const double(*)[3])point, 1, &distance), KRS_OK);
-    return distance;
-}
 
 /* ---- membership, by iterating ---- */
 
@@ -136,7 +93,7 @@ static bool inside(const Fractal *f, Vec p)
     return f->bulb ? in_bulb(f, p, &trap) : in_julia(f, p, &trap);
 }
 
-/* ---- voxels ---- */
+/* ---- the way to the other side ---- */
 
 /* The middles of voxels next to one of the other side, of both sides. */
 typedef struct Voxels {
@@ -239,8 +196,9 @@ static Measure measure(const Product *product, const Fractal *f, int points)
             double distance = random_between(&random, 0, 3 * v.side);
             p               = vec_add(border, vec_scale(distance, random_unit(&random)));
         }
-        double distance = distance_to_other_side(f, &v, &random, p), d = distance_at(product, p);
-        bool   own = inside(f, p);
+        double distance = distance_to_other_side(f, &v, &random, p),
+               d        = product_distance(product, p);
+        bool own        = inside(f, p);
         m.wrong_sides += (d <= 0) != own && fabs(d) > 1e-12;
         m.count++;
         if (own)
@@ -292,7 +250,7 @@ static void julia_bounds_hold(void **state)
     for (size_t i = 0; i < sizeof julia_sets / sizeof *julia_sets; i++) {
         char    text[200];
         Fractal f       = julia_of(&julia_sets[i], text, sizeof text);
-        Product product = product_new(text);
+        Product product = product_compile(text);
         Measure m       = measure(&product, &f, 1500);
         print_message("# %-18s z^%d: at most %.3f of the way, %.3f inside; mean %.2f\n",
                       julia_sets[i].name, f.power, m.most, m.most_inside, m.mean);
@@ -310,11 +268,11 @@ static void a_fault_is_found(void **state)
     (void)state;
     char    text[200];
     Fractal f       = julia_of(&julia_sets[4], text, sizeof text);
-    Product product = product_new("show julia(c: [0, 0, 0, 0], iterations: 12).scale(1.02);");
+    Product product = product_compile("show julia(c: [0, 0, 0, 0], iterations: 12).scale(1.02);");
     Measure m       = measure(&product, &f, 500);
     assert_true(m.most_inside > 1);
     product_free(&product);
-    product = product_new("show julia(c: [0, 0, 0, 0], iterations: 12).scale(0.9);");
+    product = product_compile("show julia(c: [0, 0, 0, 0], iterations: 12).scale(0.9);");
     m       = measure(&product, &f, 500);
     assert_true(m.most > 1);
     product_free(&product);
@@ -329,12 +287,12 @@ static void julia_bounds_are_not_steep(void **state)
         char    text[200];
         double  steepest = 0;
         Fractal f        = julia_of(&julia_sets[i], text, sizeof text);
-        Product product  = product_new(text);
+        Product product  = product_compile(text);
         for (int k = 0; k < 20000; k++) {
             double size = pow(10, random_between(&random, -6, 0));
             Vec    a    = random_in_cube(&random, 1.2 * f.radius);
             Vec    b    = vec_add(a, vec_scale(size, random_unit(&random)));
-            double rise = fabs(distance_at(&product, a) - distance_at(&product, b));
+            double rise = fabs(product_distance(&product, a) - product_distance(&product, b));
             steepest    = fmax(steepest, rise / (vec_distance(a, b) + 1e-9));
         }
         assert_true(steepest <= 1);
@@ -353,7 +311,7 @@ static void mandelbulbs_are_measured(void **state)
         f.radius  = pow(2, 1.0 / (f.power - 1));
         snprintf(text, sizeof text, "show mandelbulb(power: %d, iterations: %d);", f.power,
                  f.iterations);
-        Product product = product_new(text);
+        Product product = product_compile(text);
         Measure m       = measure(&product, &f, 1500);
         print_message("# mandelbulb of %d: at most %.3f of the way, %.3f inside; mean %.2f\n",
                       f.power, m.most, m.most_inside, m.mean);
@@ -373,12 +331,12 @@ static void far_away_is_far(void **state)
                                          "show mandelbulb(power: 8);",
                                          "show mandelbulb(power: 16);"};
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
-        Product product = product_new(scenes[i]);
+        Product product = product_compile(scenes[i]);
         for (double far = 10; far < 1e15; far *= 10) {
-            double d = distance_at(&product, vec(0.6 * far, 0, 0.8 * far));
+            double d = product_distance(&product, vec(0.6 * far, 0, 0.8 * far));
             assert_true(d <= far && d > far - 2);
         }
-        assert_true(distance_at(&product, vec(0, 0, 0)) <= 0 || i == 0);
+        assert_true(product_distance(&product, vec(0, 0, 0)) <= 0 || i == 0);
         product_free(&product);
     }
 }
@@ -395,9 +353,9 @@ static void frames_may_change_them(void **state)
 {
     (void)state;
     Random  random = {.state = 5};
-    Product moving = product_new("param n = 4 in [2, 9]; param a = 0.1 in [-0.5, 0.5];"
-                                 "show julia(c: [a, 0.6, 0.2, a], power: 3, iterations: n);"
-                                 "show mandelbulb(iterations: n).move([4, 0, 0]);");
+    Product moving = product_compile("param n = 4 in [2, 9]; param a = 0.1 in [-0.5, 0.5];"
+                                     "show julia(c: [a, 0.6, 0.2, a], power: 3, iterations: n);"
+                                     "show mandelbulb(iterations: n).move([4, 0, 0]);");
     for (int n = 2; n <= 9; n++) {
         char   text[300];
         double a = 0.1 * n - 0.5, number = fmin(n + 0.4, 9);
@@ -405,12 +363,12 @@ static void frames_may_change_them(void **state)
                  "show julia(c: [%.17g, 0.6, 0.2, %.17g], power: 3, iterations: %d);"
                  "show mandelbulb(iterations: %d).move([4, 0, 0]);",
                  a, a, n, n);
-        Product still = product_new(text);
+        Product still = product_compile(text);
         set_parameter(&moving, "n", &number, 1);
         set_parameter(&moving, "a", &a, 1);
         for (int i = 0; i < 300; i++) {
             Vec p = vec_add(random_in_cube(&random, 1.4), vec(i % 2 ? 4 : 0, 0, 0));
-            assert_true(fabs(distance_at(&moving, p) - distance_at(&still, p)) < 1e-6);
+            assert_true(fabs(product_distance(&moving, p) - product_distance(&still, p)) < 1e-6);
         }
         product_free(&still);
     }
@@ -438,10 +396,11 @@ static void palettes_mix(void **state)
 {
     (void)state;
     static const unsigned ember[] = {0x1c0b12, 0x5e1421, 0xb3321d, 0xe8742a, 0xf9b95a, 0xfff1c9};
-    Product product = product_new("show sphere(9).paint(#123456).color_by(x, palette: \"ember\");"
-                                  "show sphere(9).move([0, 40, 0]).color_by(x);"
-                                  "show sphere(9).move([0, 80, 0])"
-                                  ".color_by(x, palette: [#1c0b12, #fff1c9]);");
+    Product               product = product_compile(
+                      "show sphere(9).paint(#123456).color_by(x, palette: \"ember\");"
+                                    "show sphere(9).move([0, 40, 0]).color_by(x);"
+                                    "show sphere(9).move([0, 80, 0])"
+                                    ".color_by(x, palette: [#1c0b12, #fff1c9]);");
     for (double x = -0.5; x <= 1.5; x += 0.01) {
         double t = fmin(fmax(x, 0), 1) * 5, color[3];
         int    i = (int)fmin(floor(t), 4);
@@ -467,7 +426,7 @@ static void traps_are_traps(void **state)
     char    text[200];
     Fractal julia   = julia_of(&julia_sets[6], text, sizeof text);
     Fractal bulb    = {.bulb = true, .power = 8, .iterations = 5, .radius = pow(2, 1.0 / 7)};
-    Product product = product_new(
+    Product product = product_compile(
         "let a = julia(c: [-0.2, 0.6, 0.2, 0.1], power: 3, iterations: 8) - sphere(0.3);"
         "show a.scale(2).move([8, 0, 0]).color_by(orbit_trap, palette: \"gray\");"
         "show mandelbulb(power: 8, iterations: 5)"
@@ -490,232 +449,6 @@ static void traps_are_traps(void **state)
     product_free(&product);
 }
 
-/* ---- metasurfaces ---- */
-
-typedef struct Blob {
-    Vec    centre;
-    double radius;
-} Blob;
-
-typedef struct Meta {
-    int    kind;
-    double level, reach;
-    Blob   blobs[12];
-    int    count;
-} Meta;
-
-static const char *const falloffs[] = {"wyvill", "soft", "gaussian", "exponential"};
-
-static double falloff(int kind, double t)
-{
-    if (t >= 1)
-        return 0;
-    double u = t * t;
-    switch (kind) {
-    case 0: return pow(1 - u, 3);
-    case 1: return 1 - 22.0 / 9 * u + 17.0 / 9 * u * u - 4.0 / 9 * u * u * u;
-    case 2: return (exp(-4 * u) - exp(-4)) / (1 - exp(-4));
-    default: return (exp(-4 * t) - exp(-4)) / (1 - exp(-4));
-    }
-}
-
-static double excess(const Meta *meta, Vec p)
-{
-    double sum = -meta->level;
-    for (int i = 0; i < meta->count; i++) {
-        double distance = vec_distance(p, meta->blobs[i].centre) - meta->blobs[i].radius;
-        sum += falloff(meta->kind, fmax(distance, 0) / meta->reach);
-    }
-    return sum;
-}
-
-static Meta meta_new(Random *random, int kind, char *text, size_t size)
-{
-    Meta   meta = {.kind = kind, .count = 1 + random_below(random, 12)};
-    size_t used = 0;
-    meta.level  = random_between(random, 0.1, 1.2);
-    meta.reach  = random_between(random, 0.3, 1.5);
-    used += (size_t)snprintf(text, size, "meta([");
-    for (int i = 0; i < meta.count; i++) {
-        Blob b        = {random_in_cube(random, 1.2), random_between(random, 0.05, 0.5)};
-        meta.blobs[i] = b;
-        used += (size_t)snprintf(text + used, size - used,
-                                 "%ssphere(%.17g).move([%.17g, %.17g, %.17g])", i ? ", " : "",
-                                 b.radius, b.centre.x, b.centre.y, b.centre.z);
-    }
-    snprintf(text + used, size - used, "], level: %.17g, falloff: \"%s\", reach: %.17g)",
-             meta.level, falloffs[kind], meta.reach);
-    return meta;
-}
-
-/* The shortest way along `rays` rays to where the sum crosses the level; infinite if none does. */
-static double distance_to_surface(const Meta *meta, Random *random, Vec p, int rays)
-{
-    enum { STEPS = 200 };
-    double nearest = INFINITY, own = excess(meta, p);
-    for (int i = 0; i < rays; i++) {
-        Vec    direction = random_unit(random);
-        double farthest = fmin(nearest, 4), low = 0, high = 0;
-        for (int k = 1; k <= STEPS && high == 0; k++) {
-            double t = farthest * k / STEPS;
-            if ((excess(meta, vec_add(p, vec_scale(t, direction))) > 0) != (own > 0))
-                high = t;
-            else
-                low = t;
-        }
-        for (int k = 0; k < 50 && high > 0; k++) {
-            double t = (low + high) / 2;
-            if ((excess(meta, vec_add(p, vec_scale(t, direction))) > 0) != (own > 0))
-                high = t;
-            else
-                low = t;
-        }
-        nearest = high > 0 ? high : nearest;
-    }
-    return nearest;
-}
-
-static void meta_bounds_hold(void **state)
-{
-    (void)state;
-    Random random = {.state = 11};
-    for (int trial = 0; trial < 40; trial++) {
-        char   text[4000], scene[4100];
-        double most = 0, sum = 0;
-        Meta   meta = meta_new(&random, trial % 4, text, sizeof text);
-        int    near = 0;
-        snprintf(scene, sizeof scene, "show %s;", text);
-        Product product = product_new(scene);
-        for (int i = 0; i < 150; i++) {
-            Vec    p        = random_in_cube(&random, 2.5);
-            double d        = distance_at(&product, p),
-                   distance = distance_to_surface(&meta, &random, p, 40);
-            assert_true((d <= 0) == (excess(&meta, p) >= 0) || fabs(d) < 1e-12);
-            assert_true(fabs(d) <= distance);
-            most = fmax(most, fabs(d) / distance);
-            if (isfinite(distance) && d > 0) {
-                sum += d / distance;
-                near++;
-            }
-        }
-        assert_true(near < 20 || sum / near > 0.1); /* it is of use */
-        product_free(&product);
-    }
-}
-
-/* From outside to the surface; false when the way leads past it. */
-static bool walk_in(const Product *product, Vec direction, Vec *surface)
-{
-    double t = 0;
-    for (int i = 0; i < 4000; i++) {
-        *surface = vec_scale(4 - t, direction);
-        double d = distance_at(product, *surface);
-        if (d < 1e-9)
-            return true;
-        t += fmax(d, 1e-6);
-        if (t > 4)
-            return false;
-    }
-    return false;
-}
-
-/* Whether the normal there is along an axis, as on the faces of a box. */
-static bool is_on_a_face(const Product *product, Vec p)
-{
-    const double h = 1e-5;
-    double       slopes[3], size = 0, most = 0;
-    for (int k = 0; k < 3; k++) {
-        Vec direction = vec(k == 0 ? h : 0, k == 1 ? h : 0, k == 2 ? h : 0);
-        slopes[k]     = distance_at(product, vec_add(p, direction)) -
-                    distance_at(product, vec_sub(p, direction));
-        size = hypot(size, slopes[k]);
-        most = fmax(most, fabs(slopes[k]));
-    }
-    return most > size * (1 - 1e-5);
-}
-
-/* Shapes of which only a bound is known must not count as their boxes; and steps stay safe. */
-static void bounds_in_metasurfaces_show_no_box(void **state)
-{
-    static const char *const scenes[] = {
-        "show meta([ellipsoid([1, 0.15, 0.6])]);",
-        "show meta([ellipsoid([1.2, 0.3, 0.3]), sphere(0.2).move([0, 0.6, 0])], level: 0.3);",
-        "show meta([box([0.4, 1.6, 0.4]).twist([0, 1, 0], 3), sphere(0.3).move([0.8, 0, 0])]);",
-    };
-    (void)state;
-    Random random = {.state = 31};
-    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
-        Product product = product_new(scenes[i]);
-        int     found = 0, flat = 0;
-        for (int k = 0; k < 300; k++) {
-            Vec surface;
-            if (!walk_in(&product, random_unit(&random), &surface))
-                continue;
-            found++;
-            flat += is_on_a_face(&product, surface);
-        }
-        if (found < 250 || flat > found / 20)
-            fail_msg("%s: of %d points %d on flat faces", scenes[i], found, flat);
-        for (int k = 0; k < 300; k++) {
-            Vec    p = random_in_cube(&random, 2);
-            double d = distance_at(&product, p);
-            for (int n = 0; n < 20 && d > 0; n++)
-                assert_true(distance_at(&product, random_in_ball(&random, p, 0.999 * d)) > 0);
-        }
-        product_free(&product);
-    }
-}
-
-/* Everything solid is in the box, and the distance for blends rises no faster than 1. */
-static void meta_is_steady(void **state)
-{
-    (void)state;
-    Random random = {.state = 13};
-    for (int trial = 0; trial < 12; trial++) {
-        char         text[4000], scene[4200];
-        KrsComponent component;
-        Meta         meta = meta_new(&random, trial % 4, text, sizeof text);
-        snprintf(scene, sizeof scene, "show union(%s, sphere(0.1).move([50, 0, 0]), blend: 0.01);",
-                 text);
-        Product product = product_new(scene);
-        assert_int_equal(krs_component(product.scene, 0, &component), KRS_OK);
-        for (int i = 0; i < 4000; i++) {
-            Vec a = random_in_cube(&random, 3);
-            Vec b = vec_add(
-                a, vec_scale(pow(10, random_between(&random, -5, 0)), random_unit(&random)));
-            double da = distance_at(&product, a), db = distance_at(&product, b);
-            assert_true(fabs(da - db) <= vec_distance(a, b) * (1 + 1e-9) + 1e-12);
-            assert_true((da <= 0) == (excess(&meta, a) >= 0) || fabs(da) < 1e-12);
-            if (da <= 0)
-                assert_true(a.x >= component.low[0] && a.x <= component.high[0] &&
-                            a.y >= component.low[1] && a.y <= component.high[1] &&
-                            a.z >= component.low[2] && a.z <= component.high[2]);
-        }
-        product_free(&product);
-    }
-}
-
-/* At level 1 the shapes themselves are left, of whatever kind. */
-static void meta_of_other_shapes(void **state)
-{
-    (void)state;
-    Random  random = {.state = 17};
-    Product meta   = product_new("show meta([box([1, 2, 0.5]), box([2, 0.4, 1]) - sphere(0.7),"
-                                   "  torus(1.5, 0.2)], level: 1, reach: 0.3);");
-    Product plain  = product_new("show union(box([1, 2, 0.5]), box([2, 0.4, 1]) - sphere(0.7),"
-                                  "  torus(1.5, 0.2));");
-    for (int i = 0; i < 5000; i++) {
-        Vec p = random_in_cube(&random, 2);
-        if (distance_at(&plain, p) < -1e-9)
-            assert_true(distance_at(&meta, p) <= 1e-12);
-    }
-    product_free(&meta);
-    product_free(&plain);
-    Product none = product_new("show meta([]); show sphere(1);");
-    assert_true(fabs(distance_at(&none, vec(3, 0, 0)) - 2) < 1e-9);
-    product_free(&none);
-}
-
 /* ---- cuts ---- */
 
 static void fractals_can_be_cut(void **state)
@@ -724,18 +457,18 @@ static void fractals_can_be_cut(void **state)
     Random  random = {.state = 23};
     char    text[200];
     Fractal f    = julia_of(&julia_sets[6], text, sizeof text);
-    Product cut  = product_new("show julia(c: [-0.2, 0.6, 0.2, 0.1], power: 3, iterations: 8)"
-                                "     - half_space([0, 1, 0], 0.1);");
-    Product man  = product_new("show (sphere(1) - wedge(60deg)).move([-3, 0, 0]);");
-    Product mold = product_new("show box([3, 3, 3]) - mandelbulb(iterations: 4);");
+    Product cut  = product_compile("show julia(c: [-0.2, 0.6, 0.2, 0.1], power: 3, iterations: 8)"
+                                    "     - half_space([0, 1, 0], 0.1);");
+    Product man  = product_compile("show (sphere(1) - wedge(60deg)).move([-3, 0, 0]);");
+    Product mold = product_compile("show box([3, 3, 3]) - mandelbulb(iterations: 4);");
     Fractal bulb = {.bulb = true, .power = 8, .iterations = 4, .radius = pow(2, 1.0 / 7)};
     for (int i = 0; i < 20000; i++) {
         Vec  p      = random_in_cube(&random, 1.4);
         bool in_cut = inside(&f, p) && p.y > 0.1;
         bool in_man = vec_length(p) < 1 && fabs(atan2(p.x, p.z)) > acos(-1) / 6;
-        assert_true((distance_at(&cut, p) <= 0) == in_cut || fabs(p.y - 0.1) < 1e-9);
-        assert_true((distance_at(&man, vec_add(p, vec(-3, 0, 0))) <= 0) == in_man);
-        assert_true((distance_at(&mold, p) <= 0) == !inside(&bulb, p));
+        assert_true((product_distance(&cut, p) <= 0) == in_cut || fabs(p.y - 0.1) < 1e-9);
+        assert_true((product_distance(&man, vec_add(p, vec(-3, 0, 0))) <= 0) == in_man);
+        assert_true((product_distance(&mold, p) <= 0) == !inside(&bulb, p));
     }
     product_free(&cut);
     product_free(&man);
@@ -753,11 +486,7 @@ int main(void)
         cmocka_unit_test(frames_may_change_them),
         cmocka_unit_test(palettes_mix),
         cmocka_unit_test(traps_are_traps),
-        cmocka_unit_test(meta_bounds_hold),
-        cmocka_unit_test(bounds_in_metasurfaces_show_no_box),
-        cmocka_unit_test(meta_is_steady),
-        cmocka_unit_test(meta_of_other_shapes),
         cmocka_unit_test(fractals_can_be_cut),
     };
-    return cmocka_run_group_tests_name("fractals and metasurfaces", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("fractals", tests, NULL, NULL);
 }

@@ -3,8 +3,8 @@
  * matrices, for random words of translations, turns, scalings, mirrors and inversions.
  *
  * A word is a list of elementary maps.  As points it is applied letter by letter; as a matrix it
- * is a product by the rules of quaternions, written here; the product of the compiler must agree
- * with both, one map or several, known numbers or parameters.
+ * is a product by the rules of quaternions; the product of the compiler must agree with both, one
+ * map or several, known numbers or parameters.
  */
 #include <math.h>
 #include <setjmp.h>
@@ -18,15 +18,21 @@
 
 #include "compiler/geometry/elaborate.h"
 #include "compiler/graph/evaluate.h"
-#include "tests/oracle/brute.h"
+#include "tests/oracle/quaternions.h"
 
-static jmp_buf     exhausted;
-static Memory      memory = {.exhausted = &exhausted};
-static Arena       arena, scratch;
-static Sources     sources;
-static Diags       diags;
+static jmp_buf exhausted;
+
+static Memory memory = {.exhausted = &exhausted};
+
+static Arena arena, scratch;
+
+static Sources sources;
+
+static Diags diags;
+
 static Elaboration elaboration;
-static Random      randomness = {17};
+
+static Random randomness = {17};
 
 static double between(double low, double high) { return random_between(&randomness, low, high); }
 
@@ -149,50 +155,6 @@ static double word_scale(const Word *word, Vec p)
     return scale;
 }
 
-/* ---- quaternions ---- */
-
-typedef struct Quat {
-    double w;
-    Vec    v;
-} Quat;
-
-typedef struct Matrix {
-    Quat a, b, c, d;
-} Matrix;
-
-static Quat quat(double w, Vec v) { return (Quat){w, v}; }
-static Quat pure(Vec v) { return (Quat){0, v}; }
-static Quat real(double w) { return (Quat){w, {0, 0, 0}}; }
-static Quat quat_add(Quat p, Quat q) { return (Quat){p.w + q.w, vec_add(p.v, q.v)}; }
-
-static Quat quat_mul(Quat p, Quat q)
-{
-    Vec v = vec_add(vec_add(vec_scale(p.w, q.v), vec_scale(q.w, p.v)), vec_cross(p.v, q.v));
-    return quat(p.w * q.w - vec_dot(p.v, q.v), v);
-}
-
-static Quat quat_inverse(Quat q)
-{
-    double square = q.w * q.w + vec_dot(q.v, q.v);
-    return quat(q.w / square, vec_scale(-1 / square, q.v));
-}
-
-static Matrix matrix_mul(Matrix m, Matrix n)
-{
-    return (Matrix){quat_add(quat_mul(m.a, n.a), quat_mul(m.b, n.c)),
-                    quat_add(quat_mul(m.a, n.b), quat_mul(m.b, n.d)),
-                    quat_add(quat_mul(m.c, n.a), quat_mul(m.d, n.c)),
-                    quat_add(quat_mul(m.c, n.b), quat_mul(m.d, n.d))};
-}
-
-/* (a q + b) (c q + d)^-1 */
-static Quat matrix_apply(const Matrix *m, Vec p)
-{
-    Quat above = quat_add(quat_mul(m->a, pure(p)), m->b);
-    Quat below = quat_add(quat_mul(m->c, pure(p)), m->d);
-    return quat_mul(above, quat_inverse(below));
-}
-
 /* x - 2 (u.x - w) u is (u x u) + 2 w u: as a matrix [u, 2 w; 0, -u], since u^-1 = -u. */
 static Matrix letter_matrix(const Elementary *l)
 {
@@ -286,6 +248,8 @@ static Vec map_at(const Map *map, Vec p, const NodeValue *parameters)
     return vec_add(vec_scale(scale, p), vec_of(map->shift, parameters));
 }
 
+/* ---- tests ---- */
+
 static void assert_near(Vec a, Vec b, double tolerance)
 {
     if (!(vec_distance(a, b) <= tolerance))
@@ -294,8 +258,6 @@ static void assert_near(Vec a, Vec b, double tolerance)
 }
 
 static int map_count(const Map *map) { return map ? 1 + map_count(map->first) : 0; }
-
-/* ---- tests ---- */
 
 static const NodeValue no_parameters[1];
 

@@ -1,6 +1,6 @@
 /*
- * The cache: what was written comes back, whatever else lies there is as good as nothing and is
- * replaced, the folder stays within its bound, and trouble of every kind stays without words.
+ * cache.c: what was written to the cache comes back, whatever else lies there is as good as nothing
+ * and is replaced, and trouble of every kind stays without words.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,9 +9,7 @@
 
 #include <cmocka.h>
 
-#include <dirent.h>
 #include <fcntl.h>
-#include <limits.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,111 +17,25 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
-#include "runtime/device/cache.h"
 #include "runtime/device/pipelines.h"
 #include "tests/support/scarce.h"
-
-static char  folder[] = "/tmp/krs-cache-XXXXXX";
-static Cache cache;
-
-static int enter_folder(void **state)
-{
-    (void)state;
-    memcpy(folder + sizeof folder - 7, "XXXXXX", 6);
-    if (!mkdtemp(folder) || chdir(folder) != 0)
-        return -1;
-    cache_open(&cache, folder, (KrsAllocator){0});
-    return cache.folder ? 0 : -1;
-}
-
-static int leave_folder(void **state)
-{
-    char command[64];
-    (void)state;
-    cache_close(&cache);
-    snprintf(command, sizeof command, "rm -rf %s", folder);
-    return chdir("/") == 0 && system(command) == 0 ? 0 : -1;
-}
-
-static int is_not_dot(const struct dirent *entry)
-{
-    return strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
-}
-
-/* How many files are in the folder; `name` becomes that of one of them. */
-static int count_files(char name[NAME_MAX + 1])
-{
-    struct dirent **found;
-    int             count = scandir(".", &found, is_not_dot, NULL);
-    for (int i = 0; i < count; i++) {
-        if (name)
-            snprintf(name, NAME_MAX + 1, "%s", found[i]->d_name);
-        free(found[i]);
-    }
-    free(found);
-    return count;
-}
-
-/* Entries are told apart by a number. */
-static CacheKey key_of(int number) { return cache_key("test", &number, sizeof number); }
-
-static bool holds(CacheKey key, const char *content)
-{
-    size_t length = 0;
-    char  *bytes  = cache_load(&cache, CACHE_SPIRV, key, &length);
-    bool   same   = bytes && length == strlen(content) && memcmp(bytes, content, length) == 0;
-    assert_true(!bytes || same); /* never anything else */
-    free(bytes);
-    return same;
-}
-
-static void put(CacheKey key, const char *content)
-{
-    cache_store(&cache, CACHE_SPIRV, key, content, strlen(content));
-}
-
-static size_t read_whole(const char *name, char *bytes, size_t size)
-{
-    FILE *file = fopen(name, "r");
-    assert_non_null(file);
-    size_t length = fread(bytes, 1, size, file);
-    fclose(file);
-    return length;
-}
-
-static void write_whole(const char *name, const char *bytes, size_t length)
-{
-    FILE *file = fopen(name, "w");
-    assert_non_null(file);
-    assert_int_equal(fwrite(bytes, 1, length, file), length);
-    assert_int_equal(fclose(file), 0);
-}
-
-/* How long ago a file was used, by its own account. */
-static void set_age(const char *name, time_t seconds)
-{
-    struct timespec used = {.tv_sec = time(NULL) - seconds};
-    assert_int_equal(utimensat(AT_FDCWD, name, (struct timespec[]){used, used}, 0), 0);
-}
-
-/* ---- What comes back ---- */
+#include "tests/unit/cache_folder.h"
 
 static void what_was_written_comes_back(void **state)
 {
     (void)state;
     assert_false(holds(key_of(1), "one"));
-    put(key_of(1), "one");
-    put(key_of(2), "two");
-    put(key_of(3), "");
+    put_entry(key_of(1), "one");
+    put_entry(key_of(2), "two");
+    put_entry(key_of(3), "");
     assert_true(holds(key_of(1), "one"));
     assert_true(holds(key_of(2), "two"));
     assert_true(holds(key_of(3), ""));
-    put(key_of(1), "another");
+    put_entry(key_of(1), "another");
     assert_true(holds(key_of(1), "another"));
-    assert_int_equal(count_files(NULL), 3);
+    assert_int_equal(count_entries(NULL), 3);
 
     Cache later;
     cache_open(&later, folder, (KrsAllocator){0});
@@ -153,15 +65,13 @@ static void keys_tell_everything_apart(void **state)
     assert_memory_equal(&again, &keys[4 * 6 + 4], sizeof again);
 }
 
-/* ---- What is not what was written ---- */
-
 static void every_damage_is_found_and_repaired(void **state)
 {
     static const char content[] = "the words of a shader";
     char              name[NAME_MAX + 1], good[512], bad[513];
     (void)state;
-    put(key_of(1), content);
-    assert_int_equal(count_files(name), 1);
+    put_entry(key_of(1), content);
+    assert_int_equal(count_entries(name), 1);
     size_t length = read_whole(name, good, sizeof good);
     assert_true(length > strlen(content) && length < sizeof good);
 
@@ -180,9 +90,9 @@ static void every_damage_is_found_and_repaired(void **state)
     write_whole(name, bad, length + 1);
     assert_false(holds(key_of(1), content));
 
-    put(key_of(1), content);
+    put_entry(key_of(1), content);
     assert_true(holds(key_of(1), content));
-    assert_int_equal(count_files(NULL), 1);
+    assert_int_equal(count_entries(NULL), 1);
     char repaired[512];
     assert_int_equal(read_whole(name, repaired, sizeof repaired), length);
     assert_memory_equal(repaired, good, length);
@@ -192,11 +102,11 @@ static void a_file_under_a_false_name_is_a_miss(void **state)
 {
     char one[NAME_MAX + 1], bytes[512], other[NAME_MAX + 1];
     (void)state;
-    put(key_of(1), "one");
-    count_files(one);
+    put_entry(key_of(1), "one");
+    count_entries(one);
     size_t length = read_whole(one, bytes, sizeof bytes);
     cache_store(&cache, CACHE_PIPELINES, key_of(1), "data", 4);
-    put(key_of(2), "two");
+    put_entry(key_of(2), "two");
 
     struct dirent **found;
     int             count = scandir(".", &found, is_not_dot, NULL);
@@ -210,7 +120,7 @@ static void a_file_under_a_false_name_is_a_miss(void **state)
     assert_true(holds(key_of(1), "one"));
     assert_false(holds(key_of(2), "two"));
     assert_null(cache_load(&cache, CACHE_PIPELINES, key_of(1), &length));
-    put(key_of(2), "two");
+    put_entry(key_of(2), "two");
     assert_true(holds(key_of(2), "two"));
 }
 
@@ -218,27 +128,27 @@ static void what_is_no_file_is_a_miss(void **state)
 {
     char name[NAME_MAX + 1];
     (void)state;
-    put(key_of(1), "one");
-    count_files(name);
+    put_entry(key_of(1), "one");
+    count_entries(name);
     assert_int_equal(rename(name, "kept"), 0);
 
     assert_int_equal(symlink("kept", name), 0);
     assert_false(holds(key_of(1), "one"));
-    put(key_of(1), "one");
+    put_entry(key_of(1), "one");
     assert_true(holds(key_of(1), "one"));
 
     assert_int_equal(unlink(name), 0);
     assert_int_equal(mkfifo(name, 0600), 0); /* must not wait for a writer */
     assert_false(holds(key_of(1), "one"));
-    put(key_of(1), "one");
+    put_entry(key_of(1), "one");
     assert_true(holds(key_of(1), "one"));
 
     assert_int_equal(unlink(name), 0);
     assert_int_equal(mkdir(name, 0700), 0);
     assert_false(holds(key_of(1), "one"));
-    put(key_of(1), "one"); /* cannot be */
+    put_entry(key_of(1), "one"); /* cannot be */
     assert_false(holds(key_of(1), "one"));
-    assert_int_equal(count_files(NULL), 2); /* the folder and what was kept; no temporary */
+    assert_int_equal(count_entries(NULL), 2); /* the folder and what was kept; no temporary */
 
     if (geteuid() == 0) { /* nobody else can give files away */
         assert_int_equal(rmdir(name), 0);
@@ -249,7 +159,7 @@ static void what_is_no_file_is_a_miss(void **state)
     }
 }
 
-/* ---- Several processes ---- */
+/* ---- Several writers ---- */
 
 enum { WRITERS = 4, ROUNDS = 40, LARGE = 300000 };
 
@@ -305,108 +215,7 @@ static void writers_do_not_disturb_each_other(void **state)
         assert_true(WIFEXITED(ended) && WEXITSTATUS(ended) == 0);
     }
     assert_true(holds_one_of_them());
-    assert_int_equal(count_files(NULL), 1);
-}
-
-/* ---- The bound ---- */
-
-static void there_are_never_too_many_files(void **state)
-{
-    (void)state;
-    write_whole("notes.txt", "not ours", 8);
-    set_age("notes.txt", 1000000);
-    for (int number = 0; number < CACHE_FILES + 8; number++) {
-        char content[16];
-        snprintf(content, sizeof content, "%d", number);
-        put(key_of(number), content);
-    }
-    int count = count_files(NULL) - 1;
-    assert_true(count <= CACHE_FILES && count >= CACHE_FILES / 2);
-    assert_int_equal(access("notes.txt", F_OK), 0);
-    char newest[16];
-    snprintf(newest, sizeof newest, "%d", CACHE_FILES + 7);
-    assert_true(holds(key_of(CACHE_FILES + 7), newest));
-    assert_false(holds(key_of(0), "0"));
-}
-
-/* An entry's place taken by a file of many bytes that need no room on the disk. */
-static void make_large(int number, time_t age, char name[NAME_MAX + 1])
-{
-    char last[NAME_MAX + 1];
-    put(key_of(number), "x");
-    count_files(last);
-    struct dirent **found;
-    int             count = scandir(".", &found, is_not_dot, NULL);
-    for (int i = 0; i < count; i++) {
-        struct stat info;
-        assert_int_equal(stat(found[i]->d_name, &info), 0);
-        if (info.st_size < 1000) /* the new one is the only small one */
-            snprintf(name, NAME_MAX + 1, "%s", found[i]->d_name);
-        free(found[i]);
-    }
-    free(found);
-    assert_int_equal(truncate(name, 10 << 20), 0);
-    set_age(name, age);
-}
-
-static void there_are_never_too_many_bytes(void **state)
-{
-    char names[7][NAME_MAX + 1];
-    (void)state;
-    for (int i = 0; i < 7; i++) /* 70 MiB, the youngest first */
-        make_large(i, 1000 + 100 * i, names[i]);
-    Cache later; /* knows nothing of them yet */
-    cache_open(&later, folder, (KrsAllocator){0});
-    cache_store(&later, CACHE_SPIRV, key_of(7), "new", 3);
-    cache_close(&later);
-    for (int i = 0; i < 7; i++)
-        assert_int_equal(access(names[i], F_OK), i < 4 ? 0 : -1);
-    assert_true(holds(key_of(7), "new"));
-}
-
-static void what_is_used_stays_young(void **state)
-{
-    char        name[NAME_MAX + 1];
-    struct stat info;
-    (void)state;
-    put(key_of(1), "one");
-    count_files(name);
-    set_age(name, 100000);
-    assert_true(holds(key_of(1), "one"));
-    assert_int_equal(stat(name, &info), 0);
-    assert_true(time(NULL) - info.st_mtime < 1000);
-    set_age(name, 10); /* young enough: a hit writes nothing */
-    assert_int_equal(stat(name, &info), 0);
-    time_t before = info.st_mtime;
-    assert_true(holds(key_of(1), "one"));
-    assert_int_equal(stat(name, &info), 0);
-    assert_int_equal(info.st_mtime, before);
-}
-
-static void temporaries_of_the_dead_go(void **state)
-{
-    (void)state;
-    write_whole(".krs-cache-1-2-0.tmp", "dead", 4);
-    write_whole(".krs-cache-1-3-0.tmp", "alive", 5);
-    write_whole(".other", "not ours", 8);
-    set_age(".krs-cache-1-2-0.tmp", 100000);
-    set_age(".other", 100000);
-    put(key_of(1), "one");
-    assert_int_equal(access(".krs-cache-1-2-0.tmp", F_OK), -1);
-    assert_int_equal(access(".krs-cache-1-3-0.tmp", F_OK), 0);
-    assert_int_equal(access(".other", F_OK), 0);
-}
-
-static void what_is_too_long_is_not_kept(void **state)
-{
-    (void)state;
-    char *bytes = calloc(CACHE_ENTRY_BYTES + 1, 1);
-    assert_non_null(bytes);
-    cache_store(&cache, CACHE_SPIRV, key_of(1), bytes, CACHE_ENTRY_BYTES + 1);
-    assert_int_equal(count_files(NULL), 0);
-    cache_store(&cache, CACHE_SPIRV, key_of(1), bytes, CACHE_ENTRY_BYTES);
-    assert_int_equal(count_files(NULL), 1);
-    free(bytes);
+    assert_int_equal(count_entries(NULL), 1);
 }
 
 /* ---- Trouble ---- */
@@ -492,7 +301,7 @@ static void a_full_disk_leaves_nothing(void **state)
     assert_int_equal(waitpid(child, &ended, 0), child);
     assert_true(WIFEXITED(ended) && WEXITSTATUS(ended) == 0);
     assert_true(holds(key_of(2), "two"));
-    assert_int_equal(count_files(NULL), 1);
+    assert_int_equal(count_entries(NULL), 1);
 }
 
 static void memory_that_runs_out_is_a_miss(void **state)
@@ -507,7 +316,7 @@ static void memory_that_runs_out_is_a_miss(void **state)
     cache_open(&poor, folder, scarce_allocator(&scarce));
     cache_store(&poor, CACHE_SPIRV, key_of(8), "new", 3);
     assert_null(cache_load(&poor, CACHE_SPIRV, key_of(8), &length));
-    assert_int_equal(count_files(NULL), 8);
+    assert_int_equal(count_entries(NULL), 8);
 
     scarce.failing = scarce.made + 2; /* one is enough for either */
     void *bytes    = cache_load(&poor, CACHE_SPIRV, key_of(8), &length);
@@ -516,12 +325,10 @@ static void memory_that_runs_out_is_a_miss(void **state)
     scarce_allocator(&scarce).release(&scarce, bytes);
     scarce.failing = scarce.made + 2;
     cache_store(&poor, CACHE_SPIRV, key_of(9), "new", 3);
-    assert_true(count_files(NULL) < 8);
+    assert_true(count_entries(NULL) < 8);
     cache_close(&poor);
     assert_int_equal(scarce.held, 0);
 }
-
-/* ---- The driver's data ---- */
 
 static void data_of_another_device_is_refused(void **state)
 {
@@ -547,26 +354,19 @@ static void data_of_another_device_is_refused(void **state)
     assert_true(pipelines_fit(&device, &blob, sizeof blob));
 }
 
-#define in_folder(test) cmocka_unit_test_setup_teardown(test, enter_folder, leave_folder)
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        in_folder(what_was_written_comes_back),
+        in_cache(what_was_written_comes_back),
         cmocka_unit_test(keys_tell_everything_apart),
-        in_folder(every_damage_is_found_and_repaired),
-        in_folder(a_file_under_a_false_name_is_a_miss),
-        in_folder(what_is_no_file_is_a_miss),
-        in_folder(writers_do_not_disturb_each_other),
-        in_folder(there_are_never_too_many_files),
-        in_folder(there_are_never_too_many_bytes),
-        in_folder(what_is_used_stays_young),
-        in_folder(temporaries_of_the_dead_go),
-        in_folder(what_is_too_long_is_not_kept),
-        in_folder(places_that_keep_nothing),
-        in_folder(missing_folders_are_made),
-        in_folder(a_full_disk_leaves_nothing),
-        in_folder(memory_that_runs_out_is_a_miss),
+        in_cache(every_damage_is_found_and_repaired),
+        in_cache(a_file_under_a_false_name_is_a_miss),
+        in_cache(what_is_no_file_is_a_miss),
+        in_cache(writers_do_not_disturb_each_other),
+        in_cache(places_that_keep_nothing),
+        in_cache(missing_folders_are_made),
+        in_cache(a_full_disk_leaves_nothing),
+        in_cache(memory_that_runs_out_is_a_miss),
         cmocka_unit_test(data_of_another_device_is_refused),
     };
     return cmocka_run_group_tests_name("cache", tests, NULL, NULL);

@@ -1,9 +1,6 @@
 /*
- * What is compiled once is not compiled again: kernels come from the cache, also under scarce
- * memory; a driver's pipelines are kept; and glslang may be wanted by several threads at once.
- *
- * lavapipe keeps no pipelines of its own.  Mesa's driver for AMD's cards can pretend to have one,
- * which compiles, and keeps what it compiled, but has no queue to run it on.
+ * compiled.c: what is compiled once is not compiled again: kernels come from the cache, also under
+ * scarce memory; and glslang may be wanted by several threads at once.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,8 +9,6 @@
 
 #include <cmocka.h>
 
-#include <dirent.h>
-#include <limits.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,52 +19,11 @@
 #include "compiler/base/embedded.h"
 #include "compiler/compile.h"
 #include "runtime/device/kernel.h"
-#include "runtime/device/pipelines.h"
 #include "runtime/tracer/renderer.h"
 #include "tests/support/device.h"
+#include "tests/support/folder.h"
 #include "tests/support/scarce.h"
-
-static char folder[] = "/tmp/krs-compiled-XXXXXX";
-
-static int enter_folder(void **state)
-{
-    (void)state;
-    memcpy(folder + sizeof folder - 7, "XXXXXX", 6);
-    return mkdtemp(folder) && chdir(folder) == 0 ? 0 : -1;
-}
-
-static int leave_folder(void **state)
-{
-    char command[64];
-    (void)state;
-    snprintf(command, sizeof command, "rm -rf %s", folder);
-    return chdir("/") == 0 && system(command) == 0 ? 0 : -1;
-}
-
-/* The files that end in `ending`: how many, and which of them is the last in the alphabet. */
-static int count_files(const char *ending, char last[NAME_MAX + 1])
-{
-    struct dirent **found;
-    int             count = 0, all = scandir(".", &found, NULL, alphasort);
-    for (int i = 0; i < all; i++) {
-        const char *dot = strrchr(found[i]->d_name, '.');
-        if (dot && strcmp(dot, ending) == 0) {
-            snprintf(last, NAME_MAX + 1, "%s", found[i]->d_name);
-            count++;
-        }
-        free(found[i]);
-    }
-    free(found);
-    return count;
-}
-
-static KrsStatus open_and_close(const KrsRendererOptions *options)
-{
-    KrsRenderer *renderer;
-    KrsStatus    status = krs_renderer_new(options, &renderer);
-    krs_renderer_free(renderer);
-    return status;
-}
+#include "tests/unit/compiled_files.h"
 
 /* Makes a scene ready, whose kernels the program cannot carry. */
 static KrsStatus prepare_scene(const KrsRendererOptions *options)
@@ -88,30 +42,22 @@ static KrsStatus prepare_scene(const KrsRendererOptions *options)
     return status;
 }
 
-/* A file that is written again is another one, because writing is renaming. */
-static ino_t number_of(const char *name)
-{
-    struct stat info;
-    assert_int_equal(stat(name, &info), 0);
-    return info.st_ino;
-}
-
 static void a_kernel_is_compiled_once(void **state)
 {
     (void)state;
     char               name[NAME_MAX + 1];
     KrsRendererOptions options = {.device = tested_device(), .cache = folder};
     assert_int_equal(prepare_scene(&options), KRS_OK);
-    int kernels = count_files(".spirv", name);
+    int kernels = count_files_that_end(".spirv", name);
     assert_true(kernels > 0);
     ino_t number = number_of(name);
     assert_int_equal(prepare_scene(&options), KRS_OK);
-    assert_int_equal(count_files(".spirv", name), kernels);
+    assert_int_equal(count_files_that_end(".spirv", name), kernels);
     assert_int_equal(number_of(name), number);
 
     assert_int_equal(truncate(name, 100), 0);
     assert_int_equal(prepare_scene(&options), KRS_OK);
-    assert_int_equal(count_files(".spirv", name), kernels);
+    assert_int_equal(count_files_that_end(".spirv", name), kernels);
     number = number_of(name);
     struct stat repaired;
     assert_int_equal(stat(name, &repaired), 0);
@@ -127,7 +73,7 @@ static void nothing_is_written_unasked(void **state)
     setenv("XDG_CACHE_HOME", folder, 1);
     setenv("HOME", folder, 1);
     assert_int_equal(prepare_scene(&(KrsRendererOptions){.device = tested_device()}), KRS_OK);
-    assert_int_equal(count_files(".spirv", name), 0);
+    assert_int_equal(count_files_that_end(".spirv", name), 0);
     assert_int_equal(access("krs", F_OK), -1);
 }
 
@@ -196,7 +142,7 @@ static void some_kernels_come_along(void **state)
     char               name[NAME_MAX + 1];
     KrsRendererOptions options = {.device = tested_device(), .cache = folder};
     assert_int_equal(open_and_close(&options), KRS_OK);
-    assert_int_equal(count_files(".spirv", name), 0);
+    assert_int_equal(count_files_that_end(".spirv", name), 0);
 }
 
 /* The key of the cache is of what is compiled: comments, blank lines and blanks before a line's end
@@ -253,7 +199,7 @@ static void kernels_are_compiled_together(void **state)
             assert_true(kernels[i].pipeline != VK_NULL_HANDLE);
             kernel_destroy(&gpu, &kernels[i]);
         }
-        assert_int_equal(count_files(".spirv", name), KERNELS - 1);
+        assert_int_equal(count_files_that_end(".spirv", name), KERNELS - 1);
     }
     assert_false(kernel_create_all(&gpu, requests, KERNELS, layout, &spirv_ms, &pipeline_ms));
     assert_int_equal(gpu.status, KRS_INTERNAL);
@@ -291,152 +237,6 @@ static void memory_that_runs_out_is_reported(void **state)
     assert_true(failures > 3 && failures < PLENTY / 2);
     assert_int_equal(open_with((Scarce){.failing = PLENTY + 1, .lasting = true}), KRS_OK);
     spirv_stop();
-}
-
-/* ---- The driver's pipelines ---- */
-
-static const char small_text[] = "#version 440\n"
-                                 "layout(local_size_x = 1) in;\n"
-                                 "shared uint x;\n"
-                                 "void main() { x = gl_WorkGroupID.x; }\n";
-
-/* The card that is not there: no queue can be had, so gpu_open would not take it.  False when
-   Mesa lacks the driver. */
-static bool pretend_to_open(Gpu *gpu)
-{
-    uint32_t         count = 8;
-    VkPhysicalDevice devices[8];
-    setenv("RADV_FORCE_FAMILY", "navi21", 1);
-    assert_int_equal(vkCreateInstance(
-                         &(VkInstanceCreateInfo){
-                             .sType            = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                             .pApplicationInfo = &(
-                                 VkApplicationInfo){.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-                                                    .apiVersion = VK_API_VERSION_1_1},
-                         },
-                         NULL, &gpu->instance),
-                     VK_SUCCESS);
-    assert_true(vkEnumeratePhysicalDevices(gpu->instance, &count, devices) >= VK_SUCCESS);
-    unsetenv("RADV_FORCE_FAMILY");
-    for (uint32_t i = 0; i < count && !gpu->physical; i++) {
-        vkGetPhysicalDeviceProperties(devices[i], &gpu->properties);
-        if (strstr(gpu->properties.deviceName, "NAVI21"))
-            gpu->physical = devices[i];
-    }
-    if (!gpu->physical) {
-        vkDestroyInstance(gpu->instance, NULL);
-        return false;
-    }
-    assert_int_equal(vkCreateDevice(gpu->physical,
-                                    &(VkDeviceCreateInfo){
-                                        .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-                                        .queueCreateInfoCount = 1,
-                                        .pQueueCreateInfos =
-                                            &(VkDeviceQueueCreateInfo){
-                                                .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                                                .queueCount       = 1,
-                                                .pQueuePriorities = &(float){1},
-                                            },
-                                    },
-                                    NULL, &gpu->device),
-                     VK_SUCCESS);
-    return true;
-}
-
-static void make_pipeline(const Gpu *gpu, const uint32_t *words, size_t bytes)
-{
-    VkShaderModule   module;
-    VkPipelineLayout layout;
-    VkPipeline       pipeline;
-    assert_int_equal(vkCreateShaderModule(gpu->device,
-                                          &(VkShaderModuleCreateInfo){
-                                              .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                              .codeSize = bytes,
-                                              .pCode    = words},
-                                          NULL, &module),
-                     VK_SUCCESS);
-    assert_int_equal(
-        vkCreatePipelineLayout(
-            gpu->device,
-            &(VkPipelineLayoutCreateInfo){.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO},
-            NULL, &layout),
-        VK_SUCCESS);
-    assert_int_equal(vkCreateComputePipelines(
-                         gpu->device, gpu->pipelines, 1,
-                         &(VkComputePipelineCreateInfo){
-                             .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-                             .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                                       .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                                       .module = module,
-                                       .pName  = "main"},
-                             .layout = layout},
-                         NULL, &pipeline),
-                     VK_SUCCESS);
-    vkDestroyPipeline(gpu->device, pipeline, NULL);
-    vkDestroyPipelineLayout(gpu->device, layout, NULL);
-    vkDestroyShaderModule(gpu->device, module, NULL);
-}
-
-/* A run that makes one pipeline, or none; returns how much of the driver's data it began with. */
-static size_t run_on(Gpu *gpu, const uint32_t *words, size_t bytes)
-{
-    cache_open(&gpu->cache, folder, (KrsAllocator){0});
-    gpu->pipelines_loaded = 0;
-    pipelines_open(gpu);
-    assert_true(gpu->pipelines != VK_NULL_HANDLE);
-    if (words)
-        make_pipeline(gpu, words, bytes);
-    pipelines_close(gpu);
-    cache_close(&gpu->cache);
-    return gpu->pipelines_loaded;
-}
-
-static void pipelines_are_kept(void **state)
-{
-    (void)state;
-    Gpu       gpu = {0};
-    uint32_t *words;
-    size_t    count;
-    char      name[NAME_MAX + 1], *log;
-    if (!pretend_to_open(&gpu))
-        skip();
-    spirv_start();
-    assert_int_equal(spirv_compile(small_text, "test", &words, &count, &log), KRS_OK);
-    spirv_stop();
-
-    assert_int_equal(run_on(&gpu, NULL, 0), 0);
-    assert_int_equal(count_files(".pipelines", name), 0); /* nothing to keep */
-    assert_int_equal(run_on(&gpu, words, 4 * count), 0);
-    assert_int_equal(count_files(".pipelines", name), 1);
-    ino_t  number = number_of(name);
-    size_t loaded = run_on(&gpu, words, 4 * count);
-    assert_true(loaded > sizeof(VkPipelineCacheHeaderVersionOne));
-    assert_int_equal(number_of(name), number); /* it was known, so nothing has grown */
-
-    assert_int_equal(truncate(name, 100), 0);
-    assert_int_equal(run_on(&gpu, words, 4 * count), 0);
-    assert_int_equal(run_on(&gpu, words, 4 * count), loaded);
-
-    /* Another device finds nothing, and what its driver would not have made is not kept. */
-    gpu.properties.vendorID ^= 1;
-    assert_int_equal(run_on(&gpu, words, 4 * count), 0);
-    assert_int_equal(count_files(".pipelines", name), 1);
-    gpu.properties.vendorID ^= 1;
-    free(words);
-    vkDestroyDevice(gpu.device, NULL);
-    vkDestroyInstance(gpu.instance, NULL);
-}
-
-static void lavapipe_keeps_none(void **state)
-{
-    (void)state;
-    char               name[NAME_MAX + 1];
-    KrsRendererOptions options = {.device = "llvmpipe", .cache = folder};
-    KrsStatus          status  = open_and_close(&options);
-    if (status == KRS_NO_DEVICE)
-        skip(); /* another driver for the processor */
-    assert_int_equal(status, KRS_OK);
-    assert_int_equal(count_files(".pipelines", name), 0);
 }
 
 /* ---- Rehearsals ---- */
@@ -500,7 +300,6 @@ static void threads_may_compile_at_once(void **state)
 }
 
 #define in_folder(test) cmocka_unit_test_setup_teardown(test, enter_folder, leave_folder)
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -509,8 +308,6 @@ int main(void)
         in_folder(some_kernels_come_along),
         in_folder(kernels_are_compiled_together),
         in_folder(memory_that_runs_out_is_reported),
-        in_folder(lavapipe_keeps_none),
-        in_folder(pipelines_are_kept),
         cmocka_unit_test(graphics_cards_do_not_rehearse),
         cmocka_unit_test(comments_are_not_compiled),
         cmocka_unit_test(threads_may_compile_at_once),

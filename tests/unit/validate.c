@@ -133,7 +133,7 @@ KrsStatus modules_compile(const Options *options, const KrsScene *scene, Modules
     return KRS_OK;
 }
 
-/* The search has a test of its own, refute.c. */
+/* The search has tests of its own, search.c and refute.c. */
 KrsStatus krs_refute(const char *path, const KrsOptions *options, const KrsRefuteOptions *how,
                      KrsRefutation *result)
 {

@@ -1,0 +1,226 @@
+/*
+ * lex_literals.c: tokens with a value: numbers, colours and strings.
+ */
+#include "compiler/front/lexer.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- numbers and colours ---- */
+
+static void skip_digits(Lexer *lexer)
+{
+    while (is_digit(peek(lexer, 0)))
+        lexer->at++;
+}
+
+/* The value of a decimal number.  strtod is given its digits and an exponent, but no point: what
+   it takes for one depends on the locale. */
+static double read_decimal(Lexer *lexer, uint32_t start)
+{
+    Text      *digits   = &lexer->scratch;
+    const long most     = 100000000; /* more than there can be digits */
+    long       exponent = 0;
+    bool       behind   = false; /* the point */
+    digits->length      = 0;
+    for (uint32_t i = start; i < lexer->at; i++) {
+        char c = lexer->text[i];
+        if (c == 'e') {
+            long written = strtol(lexer->text + i + 1, NULL, 10);
+            exponent += written > most ? most : written < -most ? -most : written;
+            break;
+        }
+        if (is_digit(c)) {
+            text_add_bytes(digits, &c, 1);
+            exponent -= behind;
+        }
+        behind = behind || c == '.';
+    }
+    text_format(digits, "e%ld", exponent);
+    return strtod(digits->bytes, NULL);
+}
+
+static void bad_number(Lexer *lexer, uint32_t start, const char *message, const char *help,
+                       const char *instead)
+{
+    Diag *diag        = report_from(lexer, DIAG_BAD_NUMBER, start, message, help);
+    diag->replacement = instead;
+}
+
+/* The fraction and the exponent; false when they are wrong and have been reported. */
+static bool skip_fraction(Lexer *lexer, uint32_t start)
+{
+    bool exponent_follows = peek(lexer, 1) == 'e' && is_digit(peek(lexer, 2));
+    if (peek(lexer, 0) == '.' && is_digit(peek(lexer, 1))) {
+        lexer->at++;
+        skip_digits(lexer);
+    } else if (peek(lexer, 0) == '.' && peek(lexer, 1) != '.' &&
+               (!is_letter(peek(lexer, 1)) || exponent_follows)) {
+        int         length  = (int)(lexer->at - start);
+        const char *instead = diag_text(lexer->diags, "%.*s.0", length, lexer->text + start);
+        lexer->at++;
+        bad_number(lexer, start, "a number needs digits behind its point", NULL, instead);
+        return false;
+    }
+    if (peek(lexer, 0) != 'e')
+        return true;
+    uint32_t sign = peek(lexer, 1) == '-' || peek(lexer, 1) == '+';
+    if (is_digit(peek(lexer, 1 + sign))) {
+        lexer->at += 1 + sign;
+        skip_digits(lexer);
+    }
+    return true;
+}
+
+/* What touches a number from behind: `deg`, or a mistake. */
+static double read_unit(Lexer *lexer, uint32_t start, double number)
+{
+    uint32_t unit = lexer->at;
+    while (is_word(peek(lexer, 0)))
+        lexer->at++;
+    uint32_t length = lexer->at - unit;
+    if (isinf(number)) {
+        bad_number(lexer, start, "a number that is too large", "the largest is about 1.8e308",
+                   NULL);
+        return 0;
+    }
+    if (length == 3 && memcmp(lexer->text + unit, "deg", 3) == 0)
+        return number / 180 * M_PI;
+    if (length > 0)
+        bad_number(lexer, unit, "letters that do not belong to a number",
+                   "the only unit is `deg`, as in `30deg`; a million is `1e6`", NULL);
+    else if (peek(lexer, 0) == '.' && is_digit(peek(lexer, 1))) {
+        lexer->at++;
+        skip_digits(lexer);
+        bad_number(lexer, start, "a number with two points", NULL, NULL);
+    }
+    return number;
+}
+
+void lex_number(Lexer *lexer)
+{
+    uint32_t start  = lexer->at;
+    double   number = 0;
+    if (peek(lexer, 0) == '.') {
+        lexer->at++;
+        skip_digits(lexer);
+        int length = (int)(lexer->at - start);
+        bad_number(lexer, start, "a number needs digits before its point", NULL,
+                   diag_text(lexer->diags, "0%.*s", length, lexer->text + start));
+    } else {
+        skip_digits(lexer);
+        if (skip_fraction(lexer, start))
+            number = read_unit(lexer, start, read_decimal(lexer, start));
+    }
+    while (is_word(peek(lexer, 0))) /* after a mistake */
+        lexer->at++;
+    add_token(lexer, TOKEN_NUMBER, start)->number[0] = number;
+}
+
+/* The sRGB curve of IEC 61966-2-1. */
+void linear_from_srgb(uint32_t rgb, double linear[3])
+{
+    for (int i = 0; i < 3; i++) {
+        double value = (rgb >> (16 - 8 * i) & 255) / 255.0;
+        linear[i]    = value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
+    }
+}
+
+static const char *six_digits(Lexer *lexer, uint32_t start)
+{
+    const char *d = lexer->text + start + 1;
+    if (lexer->at - start != 4 || strspn(d, "0123456789abcdefABCDEF") < 3)
+        return NULL;
+    return diag_text(lexer->diags, "#%c%c%c%c%c%c", d[0], d[0], d[1], d[1], d[2], d[2]);
+}
+
+void lex_colour(Lexer *lexer)
+{
+    uint32_t start = lexer->at++;
+    while (is_word(peek(lexer, 0)))
+        lexer->at++;
+    const char *digits = lexer->text + start + 1;
+    bool        good   = lexer->at - start == 7 && strspn(digits, "0123456789abcdefABCDEF") >= 6;
+    if (!good)
+        bad_number(lexer, start, "a colour has six hexadecimal digits", "for example `#c8553d`",
+                   six_digits(lexer, start));
+    Token        *token = add_token(lexer, TOKEN_COLOUR, start);
+    unsigned long rgb   = good ? strtoul(digits, NULL, 16) : 0;
+    linear_from_srgb((uint32_t)rgb, token->number);
+}
+
+/* ---- strings ---- */
+
+/* Adds what a backslash and the byte after it mean. */
+static void read_escape(Lexer *lexer)
+{
+    uint32_t start = lexer->at;
+    char     c     = peek(lexer, 1);
+    lexer->at += 2;
+    if (c == 'n')
+        text_add(&lexer->scratch, "\n");
+    else if (c == 't')
+        text_add(&lexer->scratch, "\t");
+    else if (c == '"' || c == '\\' || c == '\'')
+        text_add_bytes(&lexer->scratch, &c, 1);
+    else {
+        lexer->at = start + 1;
+        report_from(lexer, DIAG_STRAY_BYTES, start, "a backslash that means nothing",
+                    "there are \\\\, \\\", \\n and \\t");
+    }
+}
+
+/* Other bytes of a string, up to `end`; control bytes have no place in a name of a file. */
+static void read_plain(Lexer *lexer, uint32_t end)
+{
+    uint32_t start = lexer->at;
+    skip_text(lexer, end);
+    for (uint32_t i = start; i < end; i++) {
+        unsigned char c = (unsigned char)lexer->text[i];
+        if (c >= 0x20 || c == '\t')
+            continue;
+        diag_add(lexer->diags, DIAG_STRAY_BYTES, (Span){lexer->source, i, i + 1},
+                 "a control character in a string");
+        return;
+    }
+    text_add_bytes(&lexer->scratch, lexer->text + start, end - start);
+}
+
+void lex_string(Lexer *lexer, char quote)
+{
+    uint32_t start = lexer->at++, end = find_line_end(lexer);
+    if (end > lexer->at && lexer->text[end - 1] == '\r')
+        end--;
+    lexer->scratch.length = 0;
+    text_add(&lexer->scratch, "");
+    while (lexer->at < end && peek(lexer, 0) != quote) {
+        uint32_t next = lexer->at;
+        while (next < end && lexer->text[next] != quote && lexer->text[next] != '\\')
+            next++;
+        if (next > lexer->at)
+            read_plain(lexer, next);
+        else if (next + 1 < end)
+            read_escape(lexer);
+        else
+            lexer->at++;
+    }
+    if (lexer->at < end) {
+        lexer->at++;
+        if (quote == '\'') {
+            Diag *diag        = report_from(lexer, DIAG_UNEXPECTED_TOKEN, start,
+                                            "a string in single quotes", NULL);
+            diag->help        = "strings have double quotes";
+            diag->replacement = diag_text(lexer->diags, "\"%s\"", lexer->scratch.bytes);
+        }
+    } else {
+        Diag *diag  = report_from(lexer, DIAG_UNCLOSED, start, "a string is not closed",
+                                  "close it with a quote on the same line");
+        diag->label = "begins here";
+        add_token(lexer, TOKEN_ERROR, start); /* it has swallowed the rest of the statement */
+        return;
+    }
+    const Text *read                            = &lexer->scratch;
+    add_token(lexer, TOKEN_STRING, start)->name = name_intern(lexer->names, read->bytes,
+                                                              read->length);
+}

@@ -1,0 +1,221 @@
+/*
+ * parse_declaration.c: definitions, and declarations with properties.
+ *
+ * The comment above each function is its rule in grammar/krs.ebnf, word for word; a test
+ * compares them.
+ */
+#include "compiler/front/parser.h"
+
+/* ---- definitions ---- */
+
+/* let = "let" NAME "=" expression ";" ; */
+Syntax *parse_let(Parser *p)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    accept(p, TOKEN_LET); /* it may be missing: see parse_forgotten_let */
+    const Token *name = expect_name(p, "of a `let`");
+    expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` after the name of a `let`");
+    add_child(p, parse_expression(p));
+    if (kind_here(p) == TOKEN_IN)
+        expected(p, "`;` after a `let`")->help =
+            "`let a = 1 in ...` is an expression, and a statement cannot be one";
+    expect_semicolon(p, "a `let`");
+    return finish_named(p, SYNTAX_LET, start, first, name);
+}
+
+/* parameter = NAME [ "=" expression [ "in" expression ] ] ; */
+static Syntax *parse_parameter(Parser *p)
+{
+    Span         start = token_here(p)->span;
+    size_t       first = begin_children(p);
+    const Token *name  = expect_name(p, "of a parameter");
+    if (kind_here(p) == TOKEN_ASSIGN || kind_here(p) == TOKEN_COLON) {
+        expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` before the default of a parameter");
+        add_child(p, parse_expression(p));
+        if (accept(p, TOKEN_IN))
+            add_child(p, parse_expression(p));
+    }
+    return finish_named(p, SYNTAX_PARAMETER, start, first, name);
+}
+
+/* parameters = "(" [ parameter { "," parameter } [ "," ] ] ")" ; */
+static void parse_parameters(Parser *p, const char *what, const char *example)
+{
+    size_t opener = p->here.at;
+    if (!expect(p, TOKEN_LEFT_PAREN, what, example))
+        return;
+    while (!p->failed && kind_here(p) != TOKEN_RIGHT_PAREN) {
+        add_child(p, parse_parameter(p));
+        if (!accept(p, TOKEN_COMMA))
+            break;
+    }
+    expect_closer(p, TOKEN_RIGHT_PAREN, opener, "`,` or `)` after a parameter");
+}
+
+/* def = "def" NAME parameters "=" expression ";" ; */
+Syntax *parse_def(Parser *p)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    advance(p);
+    const Token *name = expect_name(p, "of a function");
+    parse_parameters(p, "`(` after the name of a function",
+                     "for example `def ball(r = 1) = sphere(r);`; without parameters write `let`");
+    expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` before the value of a function");
+    add_child(p, parse_expression(p));
+    expect_semicolon(p, "a `def`");
+    return finish_named(p, SYNTAX_DEF, start, first, name);
+}
+
+/* param = "param" NAME "=" expression [ "in" expression ] ";" ; */
+Syntax *parse_param(Parser *p)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    advance(p);
+    const Token *name = expect_name(p, "of a `param`");
+    expect_or_mend(p, TOKEN_ASSIGN, TOKEN_COLON, "`=` after the name of a `param`");
+    add_child(p, parse_expression(p));
+    if (accept(p, TOKEN_IN))
+        add_child(p, parse_expression(p));
+    expect_semicolon(p, "a `param`");
+    return finish_named(p, SYNTAX_PARAM, start, first, name);
+}
+
+/* ---- declarations with properties ---- */
+
+/* label = NAME | STATEMENT_WORD ; */
+static const Token *parse_label(Parser *p) { return expect_label(p, "the name of a property"); }
+
+/* property = label ":" expression ; */
+static Syntax *parse_property(Parser *p)
+{
+    Span         start = token_here(p)->span;
+    size_t       first = begin_children(p);
+    const Token *name  = parse_label(p);
+    expect_or_mend(p, TOKEN_COLON, TOKEN_ASSIGN, "`:` after the name of a property");
+    add_child(p, parse_expression(p));
+    return finish_named(p, SYNTAX_PROPERTY, start, first, name);
+}
+
+/* What separates two properties; a wrong or missing separator is reported and counts as one. */
+static bool accept_separator(Parser *p)
+{
+    if (p->failed || accept(p, TOKEN_COMMA))
+        return !p->failed;
+    Span end = {token_before(p)->span.source, token_before(p)->span.end, token_before(p)->span.end};
+    if (kind_here(p) == TOKEN_SEMICOLON) {
+        report_at(p, DIAG_UNEXPECTED_TOKEN, token_here(p)->span,
+                  "expected `,` or `}` after a property, found `;`")
+            ->replacement = ",";
+        advance(p);
+        return true;
+    }
+    if (!is_label(p) || kind_after(p) != TOKEN_COLON)
+        return false;
+    report_at(p, DIAG_UNEXPECTED_TOKEN, end, "`,` is missing after a property")->replacement = ",";
+    return true;
+}
+
+/* properties = "{" [ property { "," property } [ "," ] ] "}" ; */
+static void parse_properties(Parser *p, const char *what, const char *example)
+{
+    size_t opener = p->here.at;
+    if (!expect(p, TOKEN_LEFT_BRACE, what, example))
+        return;
+    while (is_label(p) && !begins_declaration(p)) {
+        Level start = p->here;
+        add_child(p, parse_property(p));
+        bool more = accept_separator(p);
+        if (p->failed && !p->abandoned)
+            recover_property(p, start);
+        else if (!more)
+            break;
+    }
+    expect_closer(p, TOKEN_RIGHT_BRACE, opener, "a property like `name: value`, or `}`");
+}
+
+/* shape = "shape" NAME parameters properties ; */
+Syntax *parse_shape(Parser *p)
+{
+    static const char example[] = "for example `shape ball(r = 1) { distance: length(p) - r }`";
+    Span              start     = token_here(p)->span;
+    size_t            first     = begin_children(p);
+    advance(p);
+    const Token *name = expect_name(p, "of a shape");
+    parse_parameters(p, "`(` after the name of a shape", example);
+    parse_properties(p, "`{` and the properties of the shape", example);
+    return finish_named(p, SYNTAX_SHAPE, start, first, name);
+}
+
+/* material = "material" NAME properties ; */
+Syntax *parse_material(Parser *p)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    advance(p);
+    const Token *name = expect_name(p, "of a material");
+    parse_properties(p, "`{` and the properties of the material",
+                     "for example `material clay { color: #c8553d, roughness: 0.6 }`");
+    return finish_named(p, SYNTAX_MATERIAL, start, first, name);
+}
+
+/* A word, a name where one is permitted, and properties. */
+static Syntax *parse_block_of_properties(Parser *p, SyntaxKind kind, bool may_have_name,
+                                         const char *what, const char *example)
+{
+    Span   start = token_here(p)->span;
+    size_t first = begin_children(p);
+    advance(p);
+    const Token *name = may_have_name && kind_here(p) == TOKEN_NAME ? advance(p) : NULL;
+    parse_properties(p, what, example);
+    return finish(p, kind, start, first, name);
+}
+
+/* camera = "camera" [ NAME ] properties ; */
+static Syntax *parse_camera(Parser *p)
+{
+    return parse_block_of_properties(p, SYNTAX_CAMERA, true, "`{` and the properties of the camera",
+                                     "for example `camera { eye: [3, 2, 5], target: [0, 0, 0] }`");
+}
+
+/* light = "light" [ NAME ] properties ; */
+static Syntax *parse_light(Parser *p)
+{
+    return parse_block_of_properties(p, SYNTAX_LIGHT, true, "`{` and the properties of the light",
+                                     "for example `light sun { direction: [-1, 2, 1] }`");
+}
+
+/* sky = "sky" properties ; */
+static Syntax *parse_sky(Parser *p)
+{
+    return parse_block_of_properties(p, SYNTAX_SKY, false, "`{` and the properties of the sky",
+                                     "for example `sky { zenith: #5b87c5, horizon: #dfe9f2 }`");
+}
+
+/* image = "image" properties ; */
+static Syntax *parse_image(Parser *p)
+{
+    return parse_block_of_properties(p, SYNTAX_IMAGE, false, "`{` and the properties of the image",
+                                     "for example `image { size: [1920, 1080], samples: 64 }`");
+}
+
+/* zone = "zone" properties ; */
+static Syntax *parse_zone(Parser *p)
+{
+    return parse_block_of_properties(p, SYNTAX_ZONE, false, "`{` and the properties of the zone",
+                                     "for example `zone { center: [0, 1, 0], radius: 0.5 }`");
+}
+
+/* surroundings = camera | light | sky | image | zone ; */
+Syntax *parse_surroundings(Parser *p)
+{
+    switch (kind_here(p)) {
+    case TOKEN_CAMERA: return parse_camera(p);
+    case TOKEN_LIGHT: return parse_light(p);
+    case TOKEN_SKY: return parse_sky(p);
+    case TOKEN_ZONE: return parse_zone(p);
+    default: return parse_image(p);
+    }
+}

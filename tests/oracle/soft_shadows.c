@@ -1,0 +1,153 @@
+/*
+ * soft_shadows.c: shadows of lights of some width, by few rays that neighbours share: means of 5x5
+ * pixels are held against the share of the light that exact rays reach.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "tests/oracle/shadow_truth.h"
+
+#define LIFT       0.125 /* pixels above even ground, where rays start */
+#define BLUR_REACH 8     /* pixels: so far from a penumbra nothing is shared */
+/* Of means of 5x5 pixels, as shares of the light: root of the mean square in and near the penumbra
+   for 1 and for 4 rays a pixel, and the worst of all. */
+#define MOST_OFF_1      0.025
+#define MOST_OFF_4      0.015
+#define MOST_OFF_AT_ALL 0.15
+
+/* How far the mean of 5x5 pixels is outside of what is true for it; NAN where one of them shows
+   no ground in the light. */
+static double mean_off(const KrsPicture *picture, int x, int y)
+{
+    double seen = 0, low = 0, high = 0;
+    for (int i = 0; i < 25; i++) {
+        int    k    = (y + i / 5 - 2) * truths.width + x + i % 5 - 2;
+        double here = seen_at(picture, k);
+        if (here < 0)
+            return NAN;
+        seen += here / 25;
+        low += truth_low(k) / 25;
+        high += truth_high(k) / 25;
+    }
+    return fmax(fmax(low - seen, seen - high), 0);
+}
+
+typedef struct SharedMatch {
+    int    umbra, penumbra, lit; /* pixels; umbra and lit ones are far from the penumbra */
+    int    wrong;                /* of umbra that are lit, of lit ones that are not */
+    double off, worst;           /* of means: root of the mean square in the penumbra; the most */
+} SharedMatch;
+
+static SharedMatch match_shared(const KrsPicture *picture, const Shot *shot, Truth *truth)
+{
+    SharedMatch match   = {0};
+    double      squares = 0;
+    compute_truths(truth, shot, LIFT);
+    for (int k = 0; k < truths.width * truths.height; k++) {
+        int    x = k % truths.width, y = k / truths.width;
+        double seen = seen_at(picture, k), low, high;
+        if (seen < 0 || x < 2 || y < 2 || x >= truths.width - 2 || y >= truths.height - 2)
+            continue;
+        truths_within(k, BLUR_REACH, &low, &high);
+        if (high <= 0 || low >= 1) {
+            match.umbra += high <= 0;
+            match.lit += low >= 1;
+            match.wrong += fabs(seen - low) > 1e-6;
+            continue;
+        }
+        double off = mean_off(picture, x, y);
+        if (isnan(off))
+            continue;
+        match.penumbra++;
+        match.worst = fmax(match.worst, off);
+        squares += off * off;
+    }
+    match.off = sqrt(squares / match.penumbra);
+    return match;
+}
+
+static bool shared_is_right(const char *name, const KrsPicture *picture, const Shot *shot,
+                            Truth *truth)
+{
+    SharedMatch m    = match_shared(picture, shot, truth);
+    double      most = shot->options.samples > 1 ? MOST_OFF_4 : MOST_OFF_1;
+    print_message("# soft, %s, %u samples: %d pixels of umbra, %d of penumbra, %d lit, %d wrong; "
+                  "off by %.4f, at most %.4f\n",
+                  name, shot->options.samples, m.umbra, m.penumbra, m.lit, m.wrong, m.off, m.worst);
+    assert_true(m.umbra > 100 && m.penumbra > 200 && m.lit > 200);
+    return m.wrong == 0 && m.off < most && m.worst < MOST_OFF_AT_ALL;
+}
+
+static void soft_shadows_are_shares_of_the_disc(void **state)
+{
+    (void)state;
+    size_t wrong = 0;
+    for (int i = 0; i < 2 * LIGHTINGS; i++) {
+        const Lighting *lighting   = &lightings[i / 2];
+        Shot            edge       = edge_shot(lighting, KRS_SHADOWS_SOFT, i % 2 ? 4 : 1);
+        Shot            ball       = ball_shot(lighting, KRS_SHADOWS_SOFT, i % 2 ? 4 : 1);
+        edge.options.no_upsampling = ball.options.no_upsampling = false;
+        edge.options.crop.height                                = 24;
+        KrsPicture *of_edge = shoot(&edge), *of_ball = shoot(&ball);
+        print_message("# %s\n", lighting->name);
+        wrong += !shared_is_right("edge", of_edge, &edge, share_above_edge);
+        wrong += !shared_is_right("ball", of_ball, &ball, share_by_rays);
+        krs_picture_free(of_edge);
+        krs_picture_free(of_ball);
+    }
+    assert_int_equal(wrong, 0);
+}
+
+/* However far below the true distance a bound is. */
+static void soft_shadows_of_bounds_are_the_same(void **state)
+{
+    (void)state;
+    size_t wrong = 0;
+    for (int i = 0; i < 2 * (STAGES - BOUNDS); i++) {
+        const Lighting *lighting   = &lightings[i / (STAGES - BOUNDS)];
+        Shot            ball       = ball_shot(lighting, KRS_SHADOWS_SOFT, 1);
+        ball.stage                 = (StageKind)(BOUNDS + i % (STAGES - BOUNDS));
+        ball.options.no_upsampling = false;
+        KrsPicture  *picture       = shoot(&ball);
+        const Stage *stage         = &stages[ball.stage];
+        print_message("# %s, %s / %g\n", lighting->name, stage->ball ? stage->ball : "distance",
+                      fmax(stage->slope, 1));
+        wrong += !shared_is_right("ball", picture, &ball, share_by_rays);
+        krs_picture_free(picture);
+    }
+    assert_int_equal(wrong, 0);
+}
+
+static void wrong_soft_shadows_are_found(void **state)
+{
+    (void)state;
+    Shot ball                  = ball_shot(&lightings[1], KRS_SHADOWS_SOFT, 4), wrong;
+    ball.options.no_upsampling = false;
+    KrsPicture *picture        = shoot(&ball);
+    assert_true(shared_is_right("ball", picture, &ball, share_by_rays));
+    wrong      = ball;
+    wrong.wide = 1.5 * ball.wide;
+    assert_false(shared_is_right("ball, PLANTED larger light", picture, &wrong, share_by_rays));
+    wrong.wide = 0.7 * ball.wide;
+    assert_false(shared_is_right("ball, PLANTED smaller light", picture, &wrong, share_by_rays));
+    for (int k = 0; k < truths.width * truths.height; k++) /* a ring */
+        if (seen_at(picture, k) > 0.5 && seen_at(picture, k) < 0.7)
+            picture->color[4 * k] -= 0.2F * picture->color[4 * k + 1];
+    assert_false(shared_is_right("ball, PLANTED ring", picture, &ball, share_by_rays));
+    krs_picture_free(picture);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(soft_shadows_are_shares_of_the_disc),
+        cmocka_unit_test(soft_shadows_of_bounds_are_the_same),
+        cmocka_unit_test(wrong_soft_shadows_are_found),
+    };
+    return run_shadow_tests("soft shadows", tests, sizeof tests / sizeof tests[0]);
+}
