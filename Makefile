@@ -29,17 +29,16 @@ JOBS    ?= $(shell nproc)
 BASE     := $(addprefix compiler/base/, arena.c text.c source.c beneath.c loader.c diag.c diag_text.c)
 FRONT    := $(addprefix compiler/front/, lexer.c lex_literals.c syntax.c parser.c parse_expression.c \
                 parse_declaration.c parse.c names.c files.c)
-GRAPH    := $(addprefix compiler/graph/, graph.c substitute.c derive.c series.c zeros.c local.c \
+GRAPH    := $(addprefix compiler/graph/, graph.c build.c substitute.c derive.c series.c zeros.c local.c \
                 rebase.c simplify.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c regions.c \
                 fractal.c evaluate.c print.c)
-GEOMETRY := $(addprefix compiler/geometry/, box.c reach.c cover.c arithmetic.c arguments.c \
-                builtins.c lists.c random.c csg.c functions.c expression.c map.c moebius.c \
-                shapes.c shapes_fractal.c metasurface.c shapes_krs.c slope.c field.c \
-                field_bounds.c deform.c declare.c claims.c empty.c methods.c properties.c \
-                material.c view.c palette.c scope.c statements.c print.c lower.c \
-                lower_primitive.c lower_surface.c lower_csg.c lower_place.c lower_figure.c \
-                lower_offset.c lower_box.c lower_normal.c lower_repeat.c lower_deform.c \
-                lower_krs.c lower_along.c lower_guards.c lower_moebius.c lower_images.c)
+SHAPE    := $(addprefix compiler/shape/, box.c reach.c cover.c map.c moebius.c builder.c slope.c print.c)
+LOWER    := $(addprefix compiler/lower/, context.c box_distance.c surface.c join.c normal.c map_chain.c \
+                guards.c ray_images.c ray_step.c lower.c)
+FAMILY   := $(sort $(wildcard compiler/family/*.c))
+EVAL     := $(addprefix compiler/eval/, scope.c expression.c arithmetic.c arguments.c builtins.c lists.c \
+                random.c functions.c csg.c fractal.c declare.c claims.c empty.c methods.c properties.c \
+                material.c view.c palette.c statements.c)
 PRINT    := $(addprefix compiler/print/, frame_values.c lines.c helpers.c mirrors.c statements.c \
                 prepare.c distances.c shared.c surfaces.c early_outs.c march.c module_print.c \
                 glsl/glsl.c)
@@ -66,7 +65,7 @@ LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLC
             -lSPVRemapper -lglslang-default-resource-limits -lSPIRV-Tools-opt -lSPIRV-Tools \
             -lOpenEXRCore-3_1 -lpng -lxxhash -lvulkan -lstdc++ -lm -pthread
 
-COMPILER := $(BASE) $(FRONT) $(GRAPH) $(GEOMETRY) $(PRINT) $(TARGET) $(API)
+COMPILER := $(BASE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
             $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o
 

@@ -14,6 +14,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "compiler/base/vec.h"
 enum { LIGHTS = 8 };
 
 /* ---- spaces ---- */
@@ -44,11 +45,6 @@ static void space_apply(const Space *space, const double v[3], double shifted, d
                 space->rows[i][3] * shifted;
 }
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static bool read_space(const JsurfSurface *surface, const char *key, Space *space)
 {
     double numbers[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -66,10 +62,11 @@ static double space_factor(const Space *space)
     const double *a = space->rows[0], *b = space->rows[1], *c = space->rows[2];
     double        cross[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
                               a[0] * b[1] - a[1] * b[0]};
-    double        square = dot(a, a), slack = CLOSE * square;
-    bool same_length = fabs(dot(b, b) - square) <= slack && fabs(dot(c, c) - square) <= slack;
-    bool upright = fabs(dot(a, b)) <= slack && fabs(dot(a, c)) <= slack && fabs(dot(b, c)) <= slack;
-    return square > 0 && same_length && upright && dot(cross, c) > 0 ? sqrt(square) : 0;
+    double        square = dot3(a, a), slack = CLOSE * square;
+    bool same_length = fabs(dot3(b, b) - square) <= slack && fabs(dot3(c, c) - square) <= slack;
+    bool upright     = fabs(dot3(a, b)) <= slack && fabs(dot3(a, c)) <= slack &&
+                   fabs(dot3(b, c)) <= slack;
+    return square > 0 && same_length && upright && dot3(cross, c) > 0 ? sqrt(square) : 0;
 }
 
 static bool refuse_space(const JsurfSurface *surface, const char *key, const char *why)
@@ -177,7 +174,7 @@ static bool write_camera(const JsurfSurface *surface, const Space *camera)
     space_apply(camera, origin, 1, eye);
     space_apply(camera, back, 0, backward);
     space_apply(camera, upwards, 0, up);
-    double ahead = dot(eye, backward), distance = flat ? fmax(ahead, 4) : fmax(ahead, 0.1);
+    double ahead = dot3(eye, backward), distance = flat ? fmax(ahead, 4) : fmax(ahead, 0.1);
     for (int i = 0; i < 3; i++) {
         target[i] = surface->scale * (eye[i] - ahead * backward[i]);
         eye[i]    = target[i] + surface->scale * backward[i] * (flat ? distance : ahead);
@@ -218,7 +215,7 @@ static bool write_light(const JsurfSurface *surface, const Space *camera, int nu
     if (!read_color(surface, key, white, color))
         return false;
     space_apply(camera, position, 1, eye);
-    double size = surface->scale, distance = size * fmax(sqrt(dot(eye, eye)), 1);
+    double size = surface->scale, distance = size * fmax(sqrt(dot3(eye, eye)), 1);
     for (int i = 0; i < 3; i++)
         eye[i] *= size;
     Text *scene = &surface->import->scene;

@@ -9,35 +9,6 @@
 
 #include <string.h>
 
-/* Of what is not a primitive: shape.h, math.md section 4. */
-static const char *const kind_rules[] = {
-    [SHAPE_EMPTY]        = "nothing",
-    [SHAPE_TRANSFORM]    = "conformal: a similarity, by its scale",
-    [SHAPE_INVERSION]    = "conformal: an inversion, by the centred bound",
-    [SHAPE_STRETCH]      = "by the least of three factors",
-    [SHAPE_UNION]        = "the least",
-    [SHAPE_INTERSECTION] = "the greatest",
-    [SHAPE_DIFFERENCE]   = "the greatest, of the complement",
-    [SHAPE_XOR]          = "the greatest of two joints",
-    [SHAPE_MORPH]        = "a mean: the steepest part's",
-    [SHAPE_META]         = "by the slopes of falloffs that can be felt",
-    [SHAPE_OFFSET]       = "moved by a constant",
-    [SHAPE_SHELL]        = "both sides, moved by a constant",
-    [SHAPE_ELONGATE]     = "a clamp of space, of slope 1",
-    [SHAPE_EXTRUDE]      = "Pythagoras, with the height",
-    [SHAPE_REVOLVE]      = "distances in the half-plane",
-    [SHAPE_REPEAT]       = "cells, and their walls or neighbours",
-    [SHAPE_REPEAT_POLAR] = "sectors, and their walls or neighbours",
-    [SHAPE_MIRROR]       = "a fold, of slope 1",
-    [SHAPE_TWIST]        = "a deformation undone in a convex region",
-    [SHAPE_BEND]         = "a deformation undone in convex regions",
-    [SHAPE_TAPER]        = "a deformation undone in a convex region",
-    [SHAPE_DISPLACE]     = "the slope of what displaces added",
-    [SHAPE_SMOOTH]       = "its part's",
-    [SHAPE_PAINT]        = "its part's",
-    [SHAPE_KRS]          = "folds of slope 1, conformal maps",
-};
-
 typedef struct Listing {
     Arena         *arena;
     const Sources *sources;
@@ -83,22 +54,16 @@ static const char *primitive_rule(Listing *l, const Shape *shape)
     return rule.bytes;
 }
 
-static bool is_deformation(ShapeKind kind)
-{
-    return kind == SHAPE_TWIST || kind == SHAPE_BEND || kind == SHAPE_TAPER ||
-           kind == SHAPE_DISPLACE;
-}
-
 static const char *rule_of(Listing *l, const Shape *shape)
 {
     if (shape->kind == SHAPE_PRIMITIVE)
         return primitive_rule(l, shape);
     Text rule = {.arena = l->arena};
-    text_add(&rule, kind_rules[shape->kind]);
+    text_add(&rule, shape_info[shape->kind].rule);
     if (shape->blend.width != NODE_NONE)
         text_format(&rule, ", %s blend of factor %.4g", blend_info[shape->blend.kind].spelling,
                     blend_info[shape->blend.kind].slope);
-    if (is_deformation(shape->kind))
+    if (shape_info[shape->kind].divided)
         text_format(&rule, ", of factor %.4g %s", shape->derived,
                     shape->per_frame ? "at first, derived for each frame" : "at most");
     return rule.bytes;

@@ -4,7 +4,7 @@
 #ifndef KRS_BOUNDS_H
 #define KRS_BOUNDS_H
 
-#include "compiler/geometry/shape.h"
+#include "compiler/shape/shape.h"
 #include "compiler/krs.h"
 
 enum { KRS_MOST_BOUNDS = 256 }; /* of one component */

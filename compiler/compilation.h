@@ -6,8 +6,8 @@
 #ifndef KRS_COMPILATION_H
 #define KRS_COMPILATION_H
 
+#include "compiler/eval/elaborate.h"
 #include "compiler/front/files.h"
-#include "compiler/geometry/elaborate.h"
 #include "compiler/inspect.h"
 #include "compiler/program.h"
 

@@ -6,7 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/base/vec.h"
 #include "compiler/program.h"
+#include "compiler/shape/slope.h"
 
 /* Zeroed memory of the scene's allocator; NULL: there is none. */
 static void *frame_alloc(const KrsScene *scene, size_t count, size_t size)
@@ -237,12 +239,12 @@ void frame_copy(const KrsFrame *frame, Node node, double to[3])
 
 void vector_normalize(double v[3])
 {
-    double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    double largest = largest3(v);
     if (!(largest > 0))
         return;
     for (int i = 0; i < 3; i++)
         v[i] /= largest;
-    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    double length = length3(v);
     for (int i = 0; i < 3; i++)
         v[i] /= length;
 }

@@ -5,8 +5,8 @@
 #define KRS_INSPECT_H
 
 #include "compiler/base/diag.h"
-#include "compiler/geometry/shape.h"
 #include "compiler/krs.h"
+#include "compiler/shape/scene.h"
 
 /* All of it lives until the look is over.  `diags` is empty; what is added is reported. */
 typedef struct Inspected {

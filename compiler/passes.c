@@ -78,14 +78,21 @@ void print_names(Compilation *c, Text *out) { files_print_names(&c->files, out);
 
 KrsStatus pass_elaborate(Compilation *c)
 {
-    Graph *graph  = graph_new(&c->work);
-    c->elaborated = (Scene){.graph = graph, .zenith = NODE_NONE, .zone = NODE_NONE};
-    Elaboration e = {.arena   = &c->work,
-                     .scratch = &c->scratch,
-                     .diags   = &c->diags,
-                     .sources = &c->sources,
-                     .graph   = graph,
-                     .scene   = &c->elaborated};
+    Graph *graph         = graph_new(&c->work);
+    c->elaborated        = (Scene){.graph = graph, .zenith = NODE_NONE, .zone = NODE_NONE};
+    ShapeBuilder builder = {.arena      = &c->work,
+                            .scratch    = &c->scratch,
+                            .diags      = &c->diags,
+                            .graph      = graph,
+                            .parameters = &c->elaborated.parameters,
+                            .slopes     = &c->elaborated.slopes};
+    Elaboration  e       = {.builder = &builder,
+                            .arena   = &c->work,
+                            .scratch = &c->scratch,
+                            .diags   = &c->diags,
+                            .sources = &c->sources,
+                            .graph   = graph,
+                            .scene   = &c->elaborated};
     elaborate(&e, &c->files);
     return c->diags.errors ? KRS_BAD_SCENE : KRS_OK;
 }

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/vec.h"
 #include "compiler/compilation.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/facts.h"
@@ -29,8 +30,6 @@ bool krs_needs_rebase(double coordinate, double pixel)
 static const double FAR_OUT = 64;
 /* The narrowest pixels that pictures have: lines of twice the height that the scene says. */
 enum { USUAL_HEIGHT = 720, TIMES_HEIGHT = 2 };
-
-static double largest(const double v[3]) { return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))); }
 
 /* How far out the boxes of the components are, where they end. */
 static double reach_of_boxes(const Scene *s)
@@ -114,7 +113,7 @@ static bool camera_needs_rebase(const ViewPrecision *view, const SceneCamera *ca
                           : camera->projection == KRS_PANORAMA
                               ? M_PI * nearest / lines
                               : 2 * tan(view->values[camera->fov].v[0] / 2) * nearest / lines;
-    return krs_needs_rebase(largest(eye), pixel);
+    return krs_needs_rebase(largest3(eye), pixel);
 }
 
 /* A camera that the compiler places stands as far away as the scene is large (framing.c). */

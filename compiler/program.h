@@ -6,7 +6,8 @@
 
 #include "compiler/bounds.h"
 #include "compiler/compiled.h"
-#include "compiler/geometry/lower.h"
+#include "compiler/lower/lower.h"
+#include "compiler/shape/scene.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/print/module.h"
 
@@ -115,7 +116,7 @@ static inline GradientRoots *gradient_roots(const Roots *roots, size_t component
     return (GradientRoots *)roots_of(roots, ROOTS_GRADIENT).items + component;
 }
 
-/* A slope that is found for each frame (geometry/slope.c). */
+/* A slope that is found for each frame (shape/slope.c). */
 typedef struct RetainedSlope {
     uint32_t    slot;
     SlopeTask   task;

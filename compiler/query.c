@@ -7,9 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/vec.h"
 #include "compiler/program.h"
-
-static double largest3(const double v[3]) { return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))); }
 
 static bool are_finite(const double (*vectors)[3], size_t count)
 {
@@ -28,11 +27,8 @@ static double zone_depth(const KrsFrame *frame, const double point[3])
     Node   zone  = zone_root(frame->scene);
     double depth = zone == NODE_NONE ? -INFINITY : frame->values[zone].v[0];
     for (size_t i = 0; i < frame->zone_count; i++) {
-        const double *at        = frame->zones[i];
-        double        offset[3] = {point[0] - at[0], point[1] - at[1], point[2] - at[2]};
-        double        distance  = sqrt(offset[0] * offset[0] + offset[1] * offset[1] +
-                                       offset[2] * offset[2]);
-        depth                   = fmax(depth, at[3] - distance);
+        const double *at = frame->zones[i];
+        depth            = fmax(depth, at[3] - distance3(point, at));
     }
     return depth;
 }
@@ -125,7 +121,7 @@ static void normal_at(KrsFrame *frame, const double point[3], double normal[3])
         after[i] += step;
         normal[i] = distance_at(frame, after, &nearest) - distance_at(frame, before, &nearest);
     }
-    double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    double length = length3(normal);
     for (int i = 0; i < 3; i++)
         normal[i] = length > 1e-3 * step ? normal[i] / length : 0;
 }

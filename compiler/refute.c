@@ -10,7 +10,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "compiler/geometry/claims.h"
+#include "compiler/eval/claims.h"
+#include "compiler/lower/lower.h"
+#include "compiler/shape/slope.h"
 
 /* Of the machine whose seconds are counted; most of today's are as fast, or faster. */
 static const double OPERATIONS_PER_SECOND = 1e8;

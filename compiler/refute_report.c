@@ -10,7 +10,7 @@ static const char *point_text(Refuter *r, const double p[3])
     return diag_text(r->in->diags, "[%.6g, %.6g, %.6g]", p[0], p[1], p[2]);
 }
 
-static double separation(const double a[3], const double b[3])
+static double distance3(const double a[3], const double b[3])
 {
     return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
 }
@@ -45,7 +45,7 @@ static void note_points(Refuter *r, Diag *diag, const Witness *w)
     if (w->fault == FAULT_STEEP || w->fault == FAULT_LONG)
         diag_note(diags, diag,
                   diag_text(diags, "the distance is %.6g at %s and %.6g at %s, %.6g apart", w->at_p,
-                            p, w->at_q, point_text(r, w->q), separation(w->p, w->q)));
+                            p, w->at_q, point_text(r, w->q), distance3(w->p, w->q)));
     else if (has_point(w))
         diag_note(diags, diag, diag_text(diags, "the distance is %.6g at %s", w->at_p, p));
 }
@@ -89,7 +89,7 @@ static void note_surface(Refuter *r, Diag *diag, const Finding *finding)
                             "nothing is to be within %.6g of %s, but the surface is "
                             "at %s, %.6g away",
                             said, point_text(r, from), point_text(r, surface),
-                            separation(from, surface)));
+                            distance3(from, surface)));
     arena_free(r->in->scratch);
 }
 

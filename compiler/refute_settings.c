@@ -2,10 +2,11 @@
  * refute_settings.c: values of parameters at which distances are searched, such as a frame can
  * have.
  */
-#include "compiler/refuting.h"
-
 #include <math.h>
 #include <string.h>
+
+#include "compiler/refuting.h"
+#include "compiler/shape/slope.h"
 
 enum { SETTING_ATTEMPTS = 8 };
 

@@ -6,8 +6,8 @@
 #ifndef KRS_REFUTING_H
 #define KRS_REFUTING_H
 
-#include "compiler/geometry/claims.h"
-#include "compiler/geometry/lowering.h"
+#include "compiler/eval/claims.h"
+#include "compiler/lower/context.h"
 #include "compiler/refute.h"
 #include "compiler/search.h"
 

@@ -20,14 +20,14 @@ static const double RELATIVE = 1e-6;
 static PointPair changed(Search *s, const PointPair *pair)
 {
     PointPair next = *pair;
-    double    shift[3], length = separation(pair->p, pair->q), move = any_scale(s, 1e-6);
+    double    shift[3], length = distance3(pair->p, pair->q), move = any_scale(s, 1e-6);
     random_direction(s, shift);
     switch (search_index(s, 3)) {
     case 0:
-        add_scaled(next.p, next.p, move, shift);
-        add_scaled(next.q, next.q, move, shift);
+        add_scaled3(next.p, next.p, move, shift);
+        add_scaled3(next.q, next.q, move, shift);
         break;
-    case 1: add_scaled(next.q, next.q, length * random_unit(&s->random), shift); break;
+    case 1: add_scaled3(next.q, next.q, length * random_unit(&s->random), shift); break;
     default: {
         double factor = exp2(search_between(s, -2, 1));
         for (int i = 0; i < 3; i++)
@@ -185,7 +185,7 @@ bool search_surface(Search *search, const double p[3], double surface[3])
             direction[k] *= pair.at_p > 0 ? -1 : 1;
         PointPair candidate = pair;
         if (reach_surface(search, &candidate, direction, 0.999999 * fabs(pair.at_p)) &&
-            (best.ratio < 0 || separation(p, candidate.q) < separation(p, best.q))) {
+            (best.ratio < 0 || distance3(p, candidate.q) < distance3(p, best.q))) {
             best       = candidate;
             best.ratio = 1;
         }

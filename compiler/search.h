@@ -12,7 +12,7 @@
 #ifndef KRS_SEARCH_H
 #define KRS_SEARCH_H
 
-#include "compiler/geometry/box.h"
+#include "compiler/shape/box.h"
 #include "compiler/graph/evaluate.h"
 
 typedef enum Fault {

@@ -104,7 +104,7 @@ double distance_at(Search *s, double p[3])
 
 static void aim_along(Search *s, const double from[3], const double to[3])
 {
-    double length = separation(from, to);
+    double length = distance3(from, to);
     for (int i = 0; i < 3 && length > 0; i++)
         s->aim[i] = (to[i] - from[i]) / length;
 }
@@ -112,7 +112,7 @@ static void aim_along(Search *s, const double from[3], const double to[3])
 /* How much of its claim a pair uses up; 0 where it says nothing. */
 static double ratio_of(const Search *s, const PointPair *pair)
 {
-    double length = separation(pair->p, pair->q), rounding = rounding_at(s, pair->p);
+    double length = distance3(pair->p, pair->q), rounding = rounding_at(s, pair->p);
     double a = pair->at_p, b = pair->at_q;
     if (!(length >= NEAREST * s->size) || isnan(a) || isnan(b) ||
         isinf(pair->side_p + pair->side_q))
@@ -148,7 +148,7 @@ void judge_pair(Search *s, PointPair *pair)
 
 bool halve_pair(Search *s, PointPair *pair)
 {
-    if (separation(pair->p, pair->q) < 2.5 * NEAREST * s->size)
+    if (distance3(pair->p, pair->q) < 2.5 * NEAREST * s->size)
         return false;
     PointPair first = *pair, second = *pair;
     double    middle[3];
@@ -190,10 +190,10 @@ bool reach_surface(Search *s, PointPair *pair, const double direction[3], double
     memcpy(s->aim, direction, sizeof s->aim);
     pair->at_p   = distance_at(s, pair->p);
     pair->side_p = side_now(s);
-    add_scaled(s->aim, (double[3]){0}, -1, direction);
+    add_scaled3(s->aim, (double[3]){0}, -1, direction);
     double t = 0.5 * fabs(pair->side_p);
     for (int i = 0; i < 40 && t <= farthest; i++) {
-        add_scaled(pair->q, pair->p, t, direction);
+        add_scaled3(pair->q, pair->p, t, direction);
         pair->at_q   = distance_at(s, pair->q);
         pair->side_q = side_now(s);
         if (!isfinite(pair->side_q))

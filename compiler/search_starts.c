@@ -14,7 +14,7 @@ static void nudge(Search *s, double p[3], double least)
 {
     double direction[3];
     random_direction(s, direction);
-    add_scaled(p, p, any_scale(s, least), direction);
+    add_scaled3(p, p, any_scale(s, least), direction);
 }
 
 /* Along a random ray until close to a surface. */
@@ -28,7 +28,7 @@ static void start_at_surface(Search *s, double p[3])
         double distance = side_now(s);
         if (!(fabs(distance) > 1e-5 * s->size) || !(fabs(distance) < NOWHERE))
             break;
-        add_scaled(p, p, 0.9 * distance, direction);
+        add_scaled3(p, p, 0.9 * distance, direction);
     }
     for (int i = 0; i < 3; i++)
         if (!(p[i] > s->around.axis[i].low && p[i] < s->around.axis[i].high)) {
@@ -104,8 +104,8 @@ static PointPair best_around(Search *s, double p[3], const double axis[3])
         else if (i == 3)
             (void)gradient_at(s, p, direction);
         double half = 0.5 * any_scale(s, 1e-5);
-        add_scaled(pair.p, p, half, direction);
-        add_scaled(pair.q, p, -half, direction);
+        add_scaled3(pair.p, p, half, direction);
+        add_scaled3(pair.q, p, -half, direction);
         judge_pair(s, &pair);
         if (pair.ratio > best.ratio)
             best = pair;
@@ -153,10 +153,10 @@ static bool slide_down(Search *s, const Target *distance, double p[3], double ax
         double at = target_at(s, distance, p), slope = target_slope(s, distance, p, at, axis);
         if (!(slope > 0) || !isfinite(slope) || !(fabs(at) < NOWHERE))
             return false;
-        add_scaled(axis, (double[3]){0}, 1 / slope, axis);
+        add_scaled3(axis, (double[3]){0}, 1 / slope, axis);
         if (fabs(at) < NEAREST * s->size)
             return true;
-        add_scaled(p, p, -at, axis);
+        add_scaled3(p, p, -at, axis);
     }
     return false;
 }
@@ -169,13 +169,13 @@ PointPair best_past_guard(Search *s)
     random_point(s, pair.q);
     if (!slide_down(s, &guard->rest, pair.q, axis))
         return best;
-    add_scaled(pair.q, pair.q, -4 * NEAREST * s->size, axis); /* into it */
+    add_scaled3(pair.q, pair.q, -4 * NEAREST * s->size, axis); /* into it */
     double out   = target_at(s, &guard->bound, pair.q);
     double slope = target_slope(s, &guard->bound, pair.q, out, axis);
     if (!(out > 0) || !(slope > 0) || !isfinite(slope) || side_now(s) > 0)
         return best;
     for (double length = s->size; length > 1e-4 * s->size; length *= 0.8) {
-        add_scaled(pair.p, pair.q, length / slope, axis);
+        add_scaled3(pair.p, pair.q, length / slope, axis);
         judge_pair(s, &pair);
         if (pair.ratio > best.ratio)
             best = pair;

@@ -33,95 +33,76 @@ double target_at(Search *s, const Target *t, double p[3])
     return target_value(s, t);
 }
 
-static void add_target(Search *s, Arena *arena, Goal goal, const Graph *g, const Expr *e, int a,
-                       int b)
+/* ---- what is worth looking at in one operation: the column `target` of ops.def ---- */
+
+/* A list of targets that grows, and an operation to look at. */
+typedef struct Prospect {
+    Search      *search;
+    Arena       *arena;
+    const Graph *graph;
+    const Expr  *e;
+} Prospect;
+
+static void add_target(const Prospect *p, Goal goal, int a, int b)
 {
-    Node of = e->operands[a];
-    if (g->items[of].time != TIME_POINT && g->items[e->operands[b]].time != TIME_POINT)
+    const Expr *items = p->graph->items;
+    Node        of = p->e->operands[a], by = p->e->operands[b];
+    if (items[of].time != TIME_POINT && items[by].time != TIME_POINT)
         return;
-    uint32_t count = g->items[of].type <= TYPE_VEC4 && goal != GOAL_FRONT ? g->items[of].type : 1;
+    uint32_t count = items[of].type <= TYPE_VEC4 && goal != GOAL_FRONT ? items[of].type : 1;
     for (uint32_t k = 0; k < count; k++) {
-        Target target = {goal, of, e->operands[b], goal == GOAL_FRONT ? e->operands[2] : of, k};
-        array_push(arena, &s->targets, target);
+        Target target = {goal, of, by, goal == GOAL_FRONT ? p->e->operands[2] : of, k};
+        array_push(p->arena, &p->search->targets, target);
     }
 }
 
-static void add_guard(Search *s, Arena *arena, const Expr *e)
+static void target_none(const Prospect *p) { (void)p; }
+static void target_equal(const Prospect *p) { add_target(p, GOAL_EQUAL, 0, 1); }
+static void target_zero(const Prospect *p) { add_target(p, GOAL_ZERO, 0, 0); }
+static void target_divisor(const Prospect *p) { add_target(p, GOAL_ZERO, 1, 1); }
+static void target_whole(const Prospect *p) { add_target(p, GOAL_WHOLE, 0, 0); }
+static void target_half(const Prospect *p) { add_target(p, GOAL_HALF, 0, 0); }
+static void target_unit(const Prospect *p) { add_target(p, GOAL_UNIT, 0, 0); }
+static void target_high(const Prospect *p) { add_target(p, GOAL_HIGH, 0, 0); }
+static void target_front(const Prospect *p) { add_target(p, GOAL_FRONT, 0, 1); }
+static void target_walls(const Prospect *p) { add_target(p, GOAL_WALL, 0, 1); }
+
+static void target_zeros(const Prospect *p)
 {
-    Guard guard = {{GOAL_ZERO, e->operands[0], e->operands[0], e->operands[0], 0},
-                   {GOAL_ZERO, e->operands[2], e->operands[2], e->operands[2], 0}};
-    array_push(arena, &s->guards, guard);
+    target_zero(p);
+    target_divisor(p);
 }
 
-/* Whether an operation chooses between its first two operands. */
-static bool branches_where_equal(Op op)
+static void target_limits(const Prospect *p)
 {
-    switch (op) {
-    case OP_less:
-    case OP_less_equal:
-    case OP_equal:
-    case OP_not_equal:
-    case OP_min:
-    case OP_max:
-    case OP_step:
-    case OP_smin_quadratic:
-    case OP_smin_cubic:
-    case OP_smin_circular:
-    case OP_smin_exponential:
-    case OP_smin_chamfer:
-    case OP_smin_stairs: return true;
-    default: return false;
-    }
+    target_equal(p);
+    add_target(p, GOAL_EQUAL, 0, 2);
 }
+
+static void target_edges(const Prospect *p)
+{
+    add_target(p, GOAL_EQUAL, 2, 0);
+    add_target(p, GOAL_EQUAL, 2, 1);
+}
+
+static void target_guard(const Prospect *p)
+{
+    const Node *o     = p->e->operands;
+    Guard       guard = {{GOAL_ZERO, o[0], o[0], o[0], 0}, {GOAL_ZERO, o[2], o[2], o[2], 0}};
+    array_push(p->arena, &p->search->guards, guard);
+}
+
+static void (*const targets[OP_COUNT])(const Prospect *p) = {
+#define RULES(name, cost, promises, simplify, derive, local, series, parity, rebase_origin, \
+              target)                                                                       \
+    [OP_##name] = target,
+#include "compiler/graph/ops.def"
+};
 
 void add_targets(Search *s, Arena *arena, const Graph *g, const Expr *e)
 {
-    if (branches_where_equal((Op)e->op)) {
-        add_target(s, arena, GOAL_EQUAL, g, e, 0, 1);
-        return;
-    }
-    switch ((Op)e->op) {
-    case OP_clamp:
-        add_target(s, arena, GOAL_EQUAL, g, e, 0, 1);
-        add_target(s, arena, GOAL_EQUAL, g, e, 0, 2);
-        break;
-    case OP_smoothstep:
-        add_target(s, arena, GOAL_EQUAL, g, e, 2, 0);
-        add_target(s, arena, GOAL_EQUAL, g, e, 2, 1);
-        break;
-    case OP_pow:
-    case OP_atan2:
-        add_target(s, arena, GOAL_ZERO, g, e, 0, 0);
-        add_target(s, arena, GOAL_ZERO, g, e, 1, 1);
-        break;
-    case OP_abs:
-    case OP_sign:
-    case OP_sqrt:
-    case OP_inversesqrt:
-    case OP_log:
-    case OP_log2:
-    case OP_length:
-    case OP_normalize: add_target(s, arena, GOAL_ZERO, g, e, 0, 0); break;
-    case OP_div: add_target(s, arena, GOAL_ZERO, g, e, 1, 1); break;
-    case OP_mod: add_target(s, arena, GOAL_WALL, g, e, 0, 1); break;
-    case OP_floor:
-    case OP_ceil:
-    case OP_fract: add_target(s, arena, GOAL_WHOLE, g, e, 0, 0); break;
-    case OP_round: add_target(s, arena, GOAL_HALF, g, e, 0, 0); break;
-    case OP_asin:
-    case OP_acos: add_target(s, arena, GOAL_UNIT, g, e, 0, 0); break;
-    case OP_exp:
-    case OP_exp2:
-    case OP_sinh:
-    case OP_cosh: add_target(s, arena, GOAL_HIGH, g, e, 0, 0); break;
-    case OP_tanh:
-    case OP_atan: add_target(s, arena, GOAL_ZERO, g, e, 0, 0); break;
-    case OP_guard: add_guard(s, arena, e); break;
-    case OP_fold:
-    case OP_front: add_target(s, arena, GOAL_FRONT, g, e, 0, 1); break;
-    case OP_cell: add_target(s, arena, GOAL_WALL, g, e, 0, 1); break;
-    default: break;
-    }
+    if (e->operand_count > 0)
+        targets[e->op](&(Prospect){s, arena, g, e});
 }
 
 double target_slope(Search *s, const Target *t, const double p[3], double at, double gradient[3])
@@ -143,7 +124,7 @@ void drive_to_zero(Search *s, const Target *t, double p[3], double axis[3])
         if (!(slope > 0) || !isfinite(slope))
             return;
         double length = fmax(-0.5 * s->size, fmin(0.5 * s->size, at / slope));
-        add_scaled(next, p, -length / slope, axis);
+        add_scaled3(next, p, -length / slope, axis);
         double then = target_at(s, t, next);
         if (!isfinite(then))
             return;
@@ -156,7 +137,7 @@ void drive_to_zero(Search *s, const Target *t, double p[3], double axis[3])
             memcpy(first ? next : p, middle, sizeof middle);
             *(first ? &then : &at) = half;
         }
-        bool arrived = separation(p, next) < 1e-7 * s->size;
+        bool arrived = distance3(p, next) < 1e-7 * s->size;
         memcpy(p, next, sizeof next);
         at = then;
         if (arrived)
@@ -171,7 +152,7 @@ void drive_up(Search *s, const Target *t, double p[3], double axis[3])
         double slope = target_slope(s, t, p, at, axis), next[3];
         if (!(slope > 0) || !isfinite(slope))
             return;
-        add_scaled(next, p, step / slope, axis);
+        add_scaled3(next, p, step / slope, axis);
         double then = target_at(s, t, next);
         if (then > at) {
             memcpy(p, next, sizeof next);

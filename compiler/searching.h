@@ -8,6 +8,9 @@
 
 #include <math.h>
 
+#include <string.h>
+
+#include "compiler/base/vec.h"
 #include "compiler/search.h"
 
 /* Where on the way from smooth to steep an expression is looked at. */
@@ -40,24 +43,6 @@ struct Guard {
 typedef struct PointPair {
     double p[3], q[3], at_p, at_q, side_p, side_q, ratio;
 } PointPair;
-
-/* ---- vectors ---- */
-
-static inline double length3(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-static inline void add_scaled(double to[3], const double from[3], double factor, const double v[3])
-{
-    for (int i = 0; i < 3; i++)
-        to[i] = from[i] + factor * v[i];
-}
-
-static inline double separation(const double a[3], const double b[3])
-{
-    return length3((double[3]){a[0] - b[0], a[1] - b[1], a[2] - b[2]});
-}
 
 /* ---- search_pairs.c ---- */
 

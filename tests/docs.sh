@@ -66,22 +66,23 @@ sed -n "s/^TOKEN([A-Z_]*, *\"\([a-z]*\)\", *\($words\))/\1/p" compiler/front/tok
     undocumented
 none "every word of the language is on its page"
 sed -n '/not_supported/d; s/^\(NUMERIC\|SPECIAL\)(\([a-z_0-9]*\), *"\([^"]*\)".*/\2(\3)/p' \
-    compiler/geometry/functions.def | signature | undocumented
+    compiler/eval/functions.def | signature | undocumented
 none "every function is on the page, with its parameters"
-sed -n '/not_supported/d; s/^METHOD(\([a-z_]*\), *"\([^"]*\)".*/.\1(\2)/p' \
-    compiler/geometry/methods.def | signature | while read -r wanted; do
+sed -n '/not_supported/d; s/^METHOD(\([a-z_]*\), *"\([^"]*\)".*/.\1(\2)/p
+    s/^DEFORMATION([A-Z]*, *\([a-z_]*\), *"\([^"]*\)".*/.\1(\2)/p' \
+    compiler/eval/methods.def compiler/shape/shapes.def | signature | while read -r wanted; do
         grep -qF -- "$wanted" "$work/signatures" || echo "$wanted"
     done >"$work/said"
 none "every method is on the page, with its parameters"
 sed -n 's/^\(BLEND\|FALLOFF\|PALETTE\)([A-Z_, ]*"\([a-z]*\)".*/\2/p' \
-    compiler/geometry/blends.def compiler/geometry/falloffs.def compiler/geometry/palettes.def |
+    compiler/shape/blends.def compiler/shape/falloffs.def compiler/eval/palettes.def |
     while read -r kind; do
         grep -qF -- "\"$kind\"" "$work/spans" || echo "$kind"
     done >"$work/said"
 none "every kind of blend and falloff and every palette is on the page"
 
 # The row of a block names its properties.
-tr '{' '\n' <compiler/geometry/properties.c |
+tr '{' '\n' <compiler/eval/properties.c |
     sed -n 's/^SYNTAX_\([A-Z]*\), "\([a-z_]*\)", false}.*/\1 \2/p' |
     while read -r block property; do
         row=$(echo "$block" | tr '[:upper:]' '[:lower:]')
@@ -89,7 +90,7 @@ tr '{' '\n' <compiler/geometry/properties.c |
             grep -q "[\` ]${property}[\`:]" || echo "$property of $block"
     done >"$work/said"
 none "every property of a block is in its row"
-sed -n '/property_names\[\]/,/};/p' compiler/geometry/declare.c | grep -o '"[a-z]*"' |
+sed -n '/property_names\[\]/,/};/p' compiler/eval/declare.c | grep -o '"[a-z]*"' |
     tr -d '"' >"$work/properties"
 [ -s "$work/properties" ]
 report $? "the properties of shapes are found"

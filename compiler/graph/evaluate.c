@@ -299,53 +299,24 @@ static NodeValue evaluate_id_unit(const NodeValue *o, uint32_t size)
 
 /* ---- smooth minima (math.md, section 4); a width of 0 leaves min(a, b) ---- */
 
-/* 1 where a = b, falling to 0 where they differ by the width; infinite distances are equal. */
-static double nearness(double a, double b, double width)
+/* Infinite distances are as near as equal ones. */
+static double widths_apart(double a, double b, double width)
 {
-    return a == b ? 1 : fmax(1 - fabs(a - b) / width, 0);
+    return a == b ? 0 : fabs(a - b) / width;
 }
 
-static double smin_quadratic(double a, double b, double k)
-{
-    double h = nearness(a, b, k);
-    return fmin(a, b) - k * h * h / 4;
-}
-
-static double smin_cubic(double a, double b, double k)
-{
-    double h = nearness(a, b, k);
-    return fmin(a, b) - k * h * h * h / 6;
-}
-
-static double smin_exponential(double a, double b, double k)
-{
-    double difference = a == b ? 0 : fabs(a - b);
-    return fmin(a, b) - k * log1p(exp(-difference / k));
-}
-
-static double smin_circular(double a, double b, double k)
-{
-    return fmax(k, fmin(a, b)) - hypot(fmax(k - a, 0), fmax(k - b, 0));
-}
-
-static double smin_chamfer(double a, double b, double k)
-{
-    return fmin(fmin(a, b), (a + b - k) * sqrt(0.5));
-}
-
-#define SMOOTH_MINIMUM(name)                                            \
+#define SMIN(name, glsl, value, facts, meaning)                         \
     static NodeValue evaluate_##name(const NodeValue *o, uint32_t size) \
     {                                                                   \
         (void)size;                                                     \
         double a = o[0].v[0], b = o[1].v[0], k = o[2].v[0];             \
-        return number(k > 0 ? name(a, b, k) : fmin(a, b));              \
+        if (!(k > 0))                                                   \
+            return number(fmin(a, b));                                  \
+        double t = widths_apart(a, b, k), h = fmax(1 - t, 0);           \
+        (void)h;                                                        \
+        return number(value);                                           \
     }
-SMOOTH_MINIMUM(smin_quadratic)
-SMOOTH_MINIMUM(smin_cubic)
-SMOOTH_MINIMUM(smin_exponential)
-SMOOTH_MINIMUM(smin_circular)
-SMOOTH_MINIMUM(smin_chamfer)
-#undef SMOOTH_MINIMUM
+#include "compiler/graph/ops.def"
 
 /* hg_sdf's fOpUnionStairs: a triangle wave turns the line a + b = k into steps along which
    either a or b alone decides; that is why its slope is that of the steeper of them. */
@@ -393,10 +364,12 @@ static NodeValue value_of_row(Op op, GraphType type, uint32_t index, const Graph
     case OP_##name:                                         \
         return evaluate(operands, components(types[0]) > size ? components(types[0]) : size);
 #include "compiler/graph/ops.def"
-#undef MAP
-#undef OP
-    default: assert(!"a leaf has no value by itself"); return result;
+#define LEAF(name, ...) case OP_##name:
+#include "compiler/graph/ops.def"
+    case OP_COUNT: break;
     }
+    assert(!"a leaf has no value by itself");
+    return result;
 }
 
 /* Zero has no sign: -0 becomes 0, so that 1 / (-1 * 0) does not depend on who multiplied. */
@@ -538,7 +511,7 @@ uint32_t tape_loops(const Tape *tape)
     for (size_t i = tape->frame_count; i < tape->count; i++) {
         const Expr *expr  = &items[tape->nodes[i]];
         uint32_t    range = expr->op == OP_julia ? 2 : expr->op == OP_mandelbulb ? 1 : 0;
-        if (range > 0) /* always a constant (shapes_fractal.c) */
+        if (range > 0) /* always a constant (fractal.c) */
             loops += fractal_loops((Op)expr->op, items[expr->operands[range]].number[1]);
     }
     return loops;
@@ -559,6 +532,31 @@ size_t tape_index(const Tape *tape, Node node)
     return low;
 }
 
+/* What leaves get their values from. */
+typedef struct Inputs {
+    const NodeValue *parameters;
+    const double    *point, *normal;
+    double           footprint;
+} Inputs;
+
+static NodeValue all_of(const double v[4]) { return (NodeValue){{v[0], v[1], v[2], v[3]}}; }
+static NodeValue vector_of(const double v[3]) { return vector3(v[0], v[1], v[2]); }
+
+static inline NodeValue leaf_value(const Expr *e, const Inputs *in)
+{
+    switch ((Op)e->op) {
+#define LEAF(name, text, type, low, high, value, meaning) \
+    case OP_##name:                                       \
+        return (value);
+#include "compiler/graph/ops.def"
+#define RULES(name, ...) case OP_##name:
+#include "compiler/graph/ops.def"
+    case OP_COUNT: break;
+    }
+    assert(!"no leaf");
+    return number(0);
+}
+
 /* The rows once more, for tapes: straight from operands to result, without copies. */
 static inline void run_row(const Expr *e, const NodeValue *values, NodeValue *result,
                            const Expr *nodes)
@@ -576,20 +574,19 @@ static inline void run_row(const Expr *e, const NodeValue *values, NodeValue *re
             result->v[i] = (value) + 0.0;                                                 \
         }                                                                                 \
         return;
-#define OP(name, signature, glsl, evaluate, facts, meaning) case OP_##name:
 #include "compiler/graph/ops.def"
-#undef MAP
-#undef OP
-    default: {
-        NodeValue operands[MAX_OPERANDS];
-        GraphType types[MAX_OPERANDS];
-        for (int i = 0; i < e->operand_count; i++) {
-            types[i]    = nodes[e->operands[i]].type;
-            operands[i] = values[e->operands[i]];
-        }
-        *result = op_evaluate(e->op, e->type, e->index, types, operands);
+#define LEAF(name, ...) case OP_##name:
+#define OP(name, ...)   case OP_##name:
+#include "compiler/graph/ops.def"
+    case OP_COUNT: break;
     }
+    NodeValue operands[MAX_OPERANDS];
+    GraphType types[MAX_OPERANDS];
+    for (int i = 0; i < e->operand_count; i++) {
+        types[i]    = nodes[e->operands[i]].type;
+        operands[i] = values[e->operands[i]];
     }
+    *result = op_evaluate(e->op, e->type, e->index, types, operands);
 }
 
 static void tape_run_node(const Graph *graph, Node node, NodeValue *values)
@@ -612,13 +609,12 @@ static size_t run_guard(const Tape *tape, size_t i, NodeValue *values)
 
 void tape_run_frame(const Tape *tape, const NodeValue *parameters, NodeValue *values)
 {
+    Inputs inputs = {.parameters = parameters};
     for (size_t i = 0; i < tape->frame_count; i++) {
         Node        node = tape->nodes[i];
         const Expr *e    = &tape->graph->items[node];
-        if (e->op == OP_CONSTANT)
-            memcpy(values[node].v, e->number, sizeof values[node].v);
-        else if (e->op == OP_PARAMETER)
-            values[node] = parameters[e->index];
+        if (e->operand_count == 0)
+            values[node] = leaf_value(e, &inputs);
         else
             tape_run_node(tape->graph, node, values);
     }
@@ -650,24 +646,18 @@ void tape_run_point(const Tape *tape, const double point[3], NodeValue *values)
     tape_run_surface(tape, point, (double[3]){0, 0, 0}, 0, values);
 }
 
-/* OP_INSTANCE, OP_LEVEL and OP_UV, which stand in materials that were not lowered, count as 1
-   and 0. */
 void tape_run_surface(const Tape *tape, const double point[3], const double normal[3],
                       double footprint, NodeValue *values)
 {
+    Inputs inputs = {.point = point, .normal = normal, .footprint = footprint};
     for (size_t i = tape->frame_count; i < tape->count; i++) {
-        Node node = tape->nodes[i];
-        switch ((Op)tape->graph->items[node].op) {
-        case OP_POINT: memcpy(values[node].v, point, 3 * sizeof *point); break;
-        case OP_INSTANCE: values[node] = number(1); break;
-        case OP_LEVEL:
-        case OP_UV:
-        case OP_TRAP: values[node] = number(0); break;
-        case OP_guard: i += run_guard(tape, i, values); break;
-        case OP_NORMAL:
-        case OP_DIRECTION: memcpy(values[node].v, normal, 3 * sizeof *normal); break;
-        case OP_FOOTPRINT: values[node] = number(footprint); break;
-        default: tape_run_node(tape->graph, node, values);
-        }
+        Node        node = tape->nodes[i];
+        const Expr *e    = &tape->graph->items[node];
+        if (e->operand_count == 0)
+            values[node] = leaf_value(e, &inputs);
+        else if (e->op == OP_guard)
+            i += run_guard(tape, i, values);
+        else
+            tape_run_node(tape->graph, node, values);
     }
 }

@@ -30,24 +30,17 @@ static Fact *analysis_fact(const Analysis *analysis, Node node)
     return &analysis->facts[analysis->whole ? node : tape_index(&analysis->tape, node)];
 }
 
-/* What the values of leaves lie in that are not the point and not parameters. */
-static Range hit_range(Op op)
-{
-    switch (op) {
-    case OP_INSTANCE: return (Range){0, UINT32_MAX};
-    case OP_NORMAL:
-    case OP_DIRECTION: return (Range){-1, 1};
-    case OP_UV: return ANYTHING;
-    case OP_TRAP: return (Range){0, 1};
-    default: return (Range){0, HUGE_VAL};
-    }
-}
+/* What each component of a leaf lies in. */
+static const Range leaf_ranges[OP_COUNT] = {
+#define LEAF(name, text, type, low, high, value, meaning) [OP_##name] = {low, high},
+#include "compiler/graph/ops.def"
+};
 
 static Fact leaf_fact(const Analysis *analysis, const Expr *e, Box box)
 {
     Fact fact = {.slope = HUGE_VAL};
     for (uint32_t i = 0; i < components(e->type); i++)
-        fact.value[i] = hit_range(e->op);
+        fact.value[i] = leaf_ranges[e->op];
     if (e->op == OP_POINT) {
         fact = (Fact){.value = {box.axis[0], box.axis[1], box.axis[2]}, .slope = 1};
         for (int i = 0; i < 3; i++)

@@ -17,104 +17,58 @@ typedef struct OpInfo {
     const char *name, *glsl;
     const char *signature; /* NULL for leaves and componentwise rows */
     uint8_t     arity;     /* of componentwise rows */
+    GraphType   type;      /* of leaves; ANY_TYPE: each has its own */
 } OpInfo;
 
+#define ANY_TYPE 0
+
 static const OpInfo op_info[OP_COUNT] = {
-    [OP_CONSTANT] = {.name = "constant"},   [OP_PARAMETER] = {.name = "parameter"},
-    [OP_POINT] = {.name = "point"},         [OP_INSTANCE] = {.name = "instance"},
-    [OP_LEVEL] = {.name = "level"},         [OP_UV] = {.name = "uv"},
-    [OP_TRAP] = {.name = "trap"},           [OP_NORMAL] = {.name = "normal"},
-    [OP_FOOTPRINT] = {.name = "footprint"}, [OP_DIRECTION] = {.name = "direction"},
-    [OP_COMPONENT] = {.name = "component"},
+#define LEAF(name_, text, type_, low, high, value, meaning) \
+    [OP_##name_] = {.name = text, .type = type_},
+#define INDEXED(name_, text) [OP_##name_] = {.name = text},
 #define MAP(name_, arity_, glsl_, value, range, da, db, dc, norm, meaning) \
     [OP_##name_] = {.name = #name_, .glsl = glsl_, .arity = arity_},
 #define OP(name_, signature_, glsl_, evaluate, facts, meaning) \
     [OP_##name_] = {.name = #name_, .glsl = glsl_, .signature = signature_},
 #include "compiler/graph/ops.def"
-#undef MAP
-#undef OP
 };
+
+/* Every operation has one RULES row: as many as there are, and no array has an element twice. */
+enum {
+    ROW_COUNT = 0
+#define LEAF(...)  +1
+#define RULES(...) +1
+#include "compiler/graph/ops.def"
+};
+_Static_assert(ROW_COUNT == (int)OP_COUNT, "an operation has no row of rules");
+
+static const OpPromises promises[OP_COUNT] = {
+#define RULES(name, cost, promises, simplify, derive, local, series, parity, rebase_origin, \
+              target)                                                                       \
+    [OP_##name] = promises,
+#include "compiler/graph/ops.def"
+};
+
+bool op_promises(Op op, OpPromises what) { return (promises[op] & what) == what; }
 
 const char *graph_op_name(Op op) { return op_info[op].name; }
 const char *op_glsl(Op op) { return op_info[op].glsl; }
 
 static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
 
-/* Cost of one component; of OP rows, of the whole. */
+/* Cost of one component; of OP rows, of the whole; leaves cost nothing. */
 static double op_weight(Op op, double n)
 {
     switch (op) {
-    case OP_CONSTANT:
-    case OP_PARAMETER:
-    case OP_POINT:
-    case OP_INSTANCE:
-    case OP_LEVEL:
-    case OP_UV:
-    case OP_TRAP:
-    case OP_NORMAL:
-    case OP_FOOTPRINT:
-    case OP_DIRECTION:
-    case OP_COMPONENT:
-    case OP_vec2:
-    case OP_vec3:
-    case OP_vec4:
-    case OP_splat2:
-    case OP_splat3:
-    case OP_splat4: return 0;
-    case OP_div: return 1.4;
-    case OP_sqrt: return 1.6;
-    case OP_inversesqrt: return 2.9;
-    case OP_exp:
-    case OP_exp2:
-    case OP_log:
-    case OP_log2: return 4.2;
-    case OP_asin:
-    case OP_acos: return 8;
-    case OP_sin: return 5.6;
-    case OP_cos: return 6.6;
-    case OP_atan: return 8.5;
-    case OP_pow: return 8.7;
-    case OP_tan:
-    case OP_atan2: return 11;
-    case OP_sinh:
-    case OP_cosh:
-    case OP_tanh: return 7;
-    case OP_fract:
-    case OP_round:
-    case OP_clamp:
-    case OP_mix: return 2;
-    case OP_mod: return 4.4;
-    case OP_smoothstep: return 8;
-    case OP_dot:
-    case OP_scale: return n;
-    case OP_length: return n + 1.6;
-    case OP_normalize: return 2 * n + 3.9;
-    case OP_cross: return 6;
-    case OP_select: return n;
-    case OP_turn: return 9;
-    case OP_fold: return 8;
-    case OP_front: return 3;
-    case OP_cell: return 20;
-    case OP_cell_polar: return 30;
-    case OP_noise2: return 90;
-    case OP_noise3: return 220;
-    case OP_julia:
-    case OP_julia_trap: return 400; /* of some ten iterations */
-    case OP_mandelbulb:
-    case OP_mandelbulb_trap: return 300;
-    case OP_push_id:
-    case OP_hash_id:
-    case OP_join_id:
-    case OP_id_unit: return 5;
-    case OP_smin_quadratic:
-    case OP_smin_cubic: return 7;
-    case OP_smin_exponential: return 13;
-    case OP_smin_circular: return 9;
-    case OP_smin_chamfer: return 5;
-    case OP_smin_stairs: return 14;
-    case OP_blend_weight: return 5;
-    default: return 1;
+#define RULES(name, cost, ...) \
+    case OP_##name:            \
+        return (cost);
+#include "compiler/graph/ops.def"
+#define LEAF(name, ...) case OP_##name:
+#include "compiler/graph/ops.def"
+    case OP_COUNT: break;
     }
+    return 0;
 }
 
 double op_cost(Op op, GraphType type, const GraphType *operands)
@@ -319,12 +273,9 @@ Node graph_parameter(Graph *graph, uint32_t slot, GraphType type)
 
 Node graph_leaf(Graph *graph, Op op)
 {
-    assert(op >= OP_POINT && op <= OP_DIRECTION);
-    GraphType type = op == OP_POINT || op == OP_NORMAL || op == OP_DIRECTION ? TYPE_VEC3
-                     : op == OP_INSTANCE                                     ? TYPE_UINT
-                     : op == OP_UV || op == OP_TRAP                          ? TYPE_VEC2
-                                                                             : TYPE_FLOAT;
-    return node_intern(graph, (Expr){.op = (uint8_t)op, .type = (uint8_t)type, .time = TIME_POINT});
+    uint8_t type = (uint8_t)op_info[op].type;
+    assert(type != ANY_TYPE);
+    return node_intern(graph, (Expr){.op = (uint8_t)op, .type = type, .time = TIME_POINT});
 }
 
 bool graph_is_constant(const Graph *graph, Node node)

@@ -29,22 +29,11 @@ typedef enum GraphType {
 typedef enum BindingTime { TIME_COMPILE, TIME_FRAME, TIME_POINT } BindingTime;
 
 typedef enum Op {
-    OP_CONSTANT,  /* number[0..3]; booleans are 0 or 1, UINT exact */
-    OP_PARAMETER, /* frame time: slot `index` of the parameter block; slot 0 is `time` */
-    OP_POINT,     /* point time, VEC3: where the expression is evaluated */
-    OP_INSTANCE,  /* point time, UINT: replaced when a material is lowered, as is OP_LEVEL */
-    OP_LEVEL,     /* point time, FLOAT */
-    OP_UV,        /* point time, VEC2: likewise */
-    OP_TRAP,      /* point time, VEC2: likewise */
-    OP_NORMAL,    /* point time, VEC3: of the surface at the point, unit, outwards */
-    OP_FOOTPRINT, /* point time, FLOAT: the radius that a pixel has there */
-    OP_DIRECTION, /* point time, VEC3: unit, of the ray on which the point lies */
-    OP_COMPONENT, /* component `index` of a vector: FLOAT */
+#define LEAF(name, text, type, low, high, value, meaning)               OP_##name,
+#define INDEXED(name, text)                                             OP_##name,
 #define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning) OP_##name,
 #define OP(name, signature, glsl, evaluate, facts, meaning)             OP_##name,
 #include "compiler/graph/ops.def"
-#undef MAP
-#undef OP
     OP_COUNT
 } Op;
 
@@ -57,6 +46,14 @@ typedef struct NodeValue {
 /* evaluate.c: the value of one operation for operand values of these types; never -0. */
 NodeValue op_evaluate(Op op, GraphType type, uint32_t index, const GraphType *types,
                       const NodeValue *operands);
+
+/* What may be taken for granted of an operation, as bits: ops.def. */
+typedef enum OpPromises {
+    PROMISES_NOTHING = 0,
+    STAYS_FINITE     = 1,
+    COMMUTES         = 2,
+    BUILDS           = 4
+} OpPromises;
 
 typedef struct Expr {
     uint8_t  op, type, time;
@@ -100,7 +97,7 @@ Node graph_vec3(Graph *graph, double x, double y, double z);
 Node graph_bool(Graph *graph, bool value);
 Node graph_uint(Graph *graph, uint32_t value);
 Node graph_parameter(Graph *graph, uint32_t slot, GraphType type);
-Node graph_leaf(Graph *graph, Op op); /* OP_POINT to OP_DIRECTION */
+Node graph_leaf(Graph *graph, Op op); /* one whose type is the same everywhere */
 
 /* An operation on as many operands as its row says (asserted, with their types).  Operands that
    are all constant are folded by op_evaluate, unless the result is not finite: then the node
@@ -125,6 +122,7 @@ bool        graph_is_constant(const Graph *graph, Node node);
 
 /* The row's GLSL, operands $a..$d; NULL for leaves and OP_COMPONENT. */
 const char *op_glsl(Op op);
+bool        op_promises(Op op, OpPromises what);
 /* What an operation costs, in multiply-adds of one component, as measured on lavapipe. */
 double op_cost(Op op, GraphType type, const GraphType *operands);
 

@@ -16,7 +16,9 @@
 
 #include <math.h>
 
+#include "compiler/graph/build.h"
 #include "compiler/graph/evaluate.h"
+#include "compiler/graph/parity.h"
 
 /* A number in the ball. */
 typedef struct BallTerm {
@@ -44,120 +46,76 @@ static const double TINY = 1e-30, SMALL = 1e-6;
 /* How many cells the box is cut into for what has no rule. */
 enum { CELLS = 256 };
 
-/* ---- arithmetic that leaves out what is 0 or 1 ---- */
-
-static Node number(const BallContext *x, double value) { return graph_number(x->graph, value); }
-
-/* Of a FLOAT or, for 0, of a vector. */
-static bool is_number(const BallContext *x, Node node, double value)
-{
-    const Expr *e    = &x->graph->items[node];
-    bool        same = e->op == OP_CONSTANT && (e->type == TYPE_FLOAT || value == 0);
-    for (uint32_t i = 0; same && i < (uint32_t)e->type; i++)
-        same = e->number[i] == value;
-    return same;
-}
-
-static Node plus(const BallContext *x, Node a, Node b)
-{
-    if (is_number(x, a, 0) || is_number(x, b, 0))
-        return is_number(x, a, 0) ? b : a;
-    return graph_op2(x->graph, OP_add, a, b);
-}
-
-static Node times(const BallContext *x, Node a, Node b)
-{
-    if (is_number(x, a, 0) || is_number(x, b, 1))
-        return a;
-    if (is_number(x, b, 0) || is_number(x, a, 1))
-        return b;
-    return a == b ? graph_op1(x->graph, OP_square, a) : graph_op2(x->graph, OP_mul, a, b);
-}
-
-/* A vector times a number. */
-static Node stretch(const BallContext *x, Node vector, Node by)
-{
-    if (is_number(x, vector, 0) || is_number(x, by, 1))
-        return vector;
-    return is_number(x, by, 0) ? graph_vec3(x->graph, 0, 0, 0)
-                               : graph_op2(x->graph, OP_scale, vector, by);
-}
-
-static Node minus(const BallContext *x, Node a, Node b)
-{
-    return graph_op2(x->graph, OP_sub, a, b);
-}
-static Node over(const BallContext *x, Node a, Node b) { return graph_op2(x->graph, OP_div, a, b); }
-static Node negative(const BallContext *x, Node a) { return graph_op1(x->graph, OP_neg, a); }
-static Node size_of(const BallContext *x, Node a) { return graph_op1(x->graph, OP_abs, a); }
-
-static Node at_least(const BallContext *x, Node node, double least)
-{
-    return graph_op2(x->graph, OP_max, node, number(x, least));
-}
-
 /* ---- terms ---- */
 
 static bool has_radius(const BallContext *x) { return x->radius != NODE_NONE; }
 
 static BallTerm constant_term(const BallContext *x, Node value)
 {
-    Node zero = number(x, 0);
-    return (BallTerm){value, graph_vec3(x->graph, 0, 0, 0), zero, zero, NODE_NONE};
+    Graph *g    = x->graph;
+    Node   zero = graph_number(g, 0);
+    return (BallTerm){value, graph_vec3(g, 0, 0, 0), zero, zero, NODE_NONE};
 }
 
 /* Slope at the point. */
 static Node slope_here(const BallContext *x, const BallTerm *a)
 {
-    return plus(x, graph_op1(x->graph, OP_length, a->gradient), a->first);
+    Graph *g = x->graph;
+    return plus(g, graph_op1(g, OP_length, a->gradient), a->first);
 }
 
 /* Slope in the ball. */
 static Node steepness(const BallContext *x, const BallTerm *a)
 {
+    Graph *g = x->graph;
     if (a->steep != NODE_NONE)
         return a->steep;
     Node here = slope_here(x, a);
-    return has_radius(x) ? plus(x, here, times(x, a->second, x->radius)) : here;
+    return has_radius(x) ? plus(g, here, times(g, a->second, x->radius)) : here;
 }
 
 /* Of which nothing is known but its slope over the box. */
 static BallTerm opaque_term(BallContext *x, Node value)
 {
+    Graph   *g     = x->graph;
     BallTerm term  = constant_term(x, value);
-    double   slope = graph_slope(x->graph, value, x->box, NULL, CELLS, NULL, x->scratch);
+    double   slope = graph_slope(g, value, x->box, NULL, CELLS, NULL, x->scratch);
     x->bounded     = x->bounded && isfinite(slope);
-    term.first     = number(x, isfinite(slope) ? slope : 0);
+    term.first     = graph_number(g, isfinite(slope) ? slope : 0);
     return term;
 }
 
 static BallTerm add_terms(const BallContext *x, Node value, BallTerm a, BallTerm b)
 {
-    return (BallTerm){value, plus(x, a.gradient, b.gradient), plus(x, a.first, b.first),
-                      plus(x, a.second, b.second), NODE_NONE};
+    Graph *g = x->graph;
+    return (BallTerm){value, plus(g, a.gradient, b.gradient), plus(g, a.first, b.first),
+                      plus(g, a.second, b.second), NODE_NONE};
 }
 
 static BallTerm negate_term(const BallContext *x, Node value, BallTerm a)
 {
-    return (BallTerm){value, negative(x, a.gradient), a.first, a.second, a.steep};
+    Graph *g = x->graph;
+    return (BallTerm){value, neg(g, a.gradient), a.first, a.second, a.steep};
 }
 
 /* `factor` times the term, for a rule that adds the rest. */
 static BallTerm scale_term(const BallContext *x, Node value, BallTerm a, Node factor)
 {
-    Node size = size_of(x, factor);
-    return (BallTerm){value, stretch(x, a.gradient, factor), times(x, a.first, size),
-                      times(x, a.second, size), NODE_NONE};
+    Graph *g    = x->graph;
+    Node   size = graph_op1(g, OP_abs, factor);
+    return (BallTerm){value, stretch(g, a.gradient, factor), times(g, a.first, size),
+                      times(g, a.second, size), NODE_NONE};
 }
 
 static BallTerm multiply_terms(const BallContext *x, Node value, BallTerm a, BallTerm b)
 {
+    Graph   *g       = x->graph;
     BallTerm first   = scale_term(x, value, a, b.value);
     BallTerm second  = scale_term(x, value, b, a.value);
     BallTerm product = add_terms(x, value, first, second);
     if (has_radius(x)) {
-        Node both      = times(x, steepness(x, &a), steepness(x, &b));
-        product.second = plus(x, product.second, both);
+        Node both      = times(g, steepness(x, &a), steepness(x, &b));
+        product.second = plus(g, product.second, both);
     }
     return product;
 }
@@ -173,119 +131,188 @@ typedef struct Curve {
 static Node clear_of_zero(BallContext *x, BallTerm u, Node *reach)
 {
     Graph *g    = x->graph;
-    Node   size = at_least(x, size_of(x, u.value), SMALL), half = times(x, size, number(x, 0.5));
-    Node   margin = over(x, times(x, size_of(x, u.value), number(x, 0.5)),
-                         at_least(x, steepness(x, &u), TINY));
-    x->limit      = x->limit == NODE_NONE ? margin : graph_op2(g, OP_min, x->limit, margin);
-    *reach        = graph_op2(g, OP_min, *reach, half);
-    return minus(x, size, *reach);
+    Node   size = at_least(g, graph_op1(g, OP_abs, u.value), SMALL),
+         half   = times(g, size, graph_number(g, 0.5));
+    Node margin = over(g, times(g, graph_op1(g, OP_abs, u.value), graph_number(g, 0.5)),
+                       at_least(g, steepness(x, &u), TINY));
+    x->limit    = x->limit == NODE_NONE ? margin : graph_op2(g, OP_min, x->limit, margin);
+    *reach      = graph_op2(g, OP_min, *reach, half);
+    return sub(g, size, *reach);
 }
 
 /* e^reach - 1 over the ball, of which no more is used than reaches by 1. */
 static Node growth(BallContext *x, BallTerm u, Node reach)
 {
     Graph *g      = x->graph;
-    Node   one    = number(x, 1);
-    Node   margin = over(x, one, at_least(x, steepness(x, &u), TINY));
+    Node   one    = graph_number(g, 1);
+    Node   margin = over(g, one, at_least(g, steepness(x, &u), TINY));
     x->limit      = x->limit == NODE_NONE ? margin : graph_op2(g, OP_min, x->limit, margin);
     reach         = graph_op2(g, OP_min, reach, one);
-    return plus(x, one, times(x, reach, number(x, 1.7183)));
+    return plus(g, one, times(g, reach, graph_number(g, 1.7183)));
 }
 
-static Curve curve_of_pole(BallContext *x, Op op, BallTerm u, Node value, Node reach)
+typedef Curve CurveOf(BallContext *x, BallTerm u, Node value, Node reach);
+
+static Curve curve_square(BallContext *x, BallTerm u, Node value, Node reach)
+{
+    Graph *g = x->graph;
+    (void)value, (void)reach;
+    return (Curve){times(g, u.value, graph_number(g, 2)), graph_number(g, 2)};
+}
+
+static Curve curve_sin(BallContext *x, BallTerm u, Node value, Node reach)
+{
+    Graph *g = x->graph;
+    (void)value, (void)reach;
+    Node one = graph_number(g, 1);
+    return (Curve){graph_op1(g, OP_cos, u.value), one};
+}
+
+static Curve curve_cos(BallContext *x, BallTerm u, Node value, Node reach)
+{
+    Graph *g = x->graph;
+    (void)value, (void)reach;
+    Node one = graph_number(g, 1);
+    return (Curve){neg(g, graph_op1(g, OP_sin, u.value)), one};
+}
+
+static Curve curve_atan(BallContext *x, BallTerm u, Node value, Node reach)
+{
+    Graph *g = x->graph;
+    (void)value, (void)reach;
+    Node one = graph_number(g, 1);
+    return (Curve){over(g, one, plus(g, one, graph_op1(g, OP_square, u.value))),
+                   graph_number(g, 0.6496)};
+}
+
+static Curve curve_tanh(BallContext *x, BallTerm u, Node value, Node reach)
+{
+    Graph *g = x->graph;
+    (void)u, (void)reach;
+    Node one = graph_number(g, 1);
+    return (Curve){sub(g, one, graph_op1(g, OP_square, value)), graph_number(g, 0.7699)};
+}
+
+static Curve curve_exp(BallContext *x, BallTerm u, Node value, Node reach)
+{
+    Graph *g   = x->graph;
+    Node   one = graph_number(g, 1);
+    return (Curve){value, has_radius(x) ? times(g, value, growth(x, u, reach)) : one};
+}
+
+static Curve curve_exp2(BallContext *x, BallTerm u, Node value, Node reach)
+{
+    Graph *g   = x->graph;
+    Node   one = graph_number(g, 1);
+    u          = scale_term(x, u.value, u, graph_number(g, M_LN2));
+    reach      = has_radius(x) ? times(g, reach, graph_number(g, M_LN2)) : reach;
+    return (Curve){times(g, value, graph_number(g, M_LN2)),
+                   has_radius(x) ? times(g, times(g, value, growth(x, u, reach)),
+                                         graph_number(g, M_LN2 * M_LN2))
+                                 : one};
+}
+
+/* The bend of both is that of the steeper. */
+static Node bend_of_cosh(BallContext *x, BallTerm u, Node cosh, Node reach)
+{
+    Graph *g = x->graph;
+    return has_radius(x) ? times(g, cosh, growth(x, u, reach)) : graph_number(g, 1);
+}
+
+static Curve curve_sinh(BallContext *x, BallTerm u, Node value, Node reach)
+{
+    (void)value;
+    Node cosh = graph_op1(x->graph, OP_cosh, u.value);
+    return (Curve){cosh, bend_of_cosh(x, u, cosh, reach)};
+}
+
+static Curve curve_cosh(BallContext *x, BallTerm u, Node value, Node reach)
+{
+    (void)value;
+    Node cosh  = graph_op1(x->graph, OP_cosh, u.value);
+    Node slope = graph_op1(x->graph, OP_sinh, u.value);
+    return (Curve){slope, bend_of_cosh(x, u, cosh, reach)};
+}
+
+static Curve curve_log(BallContext *x, BallTerm u, Node value, Node reach)
+{
+    Graph *g = x->graph;
+    (void)value;
+    Node  near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
+    Curve curve = {.slope = over(g, graph_number(g, 1), at_least(g, u.value, TINY))};
+    if (has_radius(x))
+        curve.bend = over(g, graph_number(g, 1), times(g, near, near));
+    return curve;
+}
+
+static Curve curve_sqrt(BallContext *x, BallTerm u, Node value, Node reach)
 {
     Graph *g     = x->graph;
-    Curve  curve = {0};
     Node   near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
-    switch (op) {
-    case OP_log:
-        curve.slope = over(x, number(x, 1), at_least(x, u.value, TINY));
-        if (has_radius(x))
-            curve.bend = over(x, number(x, 1), times(x, near, near));
-        break;
-    case OP_sqrt:
-        curve.slope = over(x, number(x, 0.5), at_least(x, value, TINY));
-        if (has_radius(x))
-            curve.bend = over(x, number(x, 0.25), times(x, near, graph_op1(g, OP_sqrt, near)));
-        break;
-    case OP_inversesqrt: {
-        curve.slope = times(x, times(x, times(x, value, value), value), number(x, -0.5));
-        if (has_radius(x)) {
-            Node root  = graph_op1(g, OP_inversesqrt, near);
-            Node fifth = times(x, graph_op1(g, OP_square, times(x, root, root)), root);
-            curve.bend = times(x, fifth, number(x, 0.75));
-        }
-        break;
-    }
-    default: { /* 1 / u */
-        curve.slope = negative(x, times(x, value, value));
-        if (has_radius(x))
-            curve.bend = over(x, number(x, 2), times(x, times(x, near, near), near));
-        break;
-    }
+    Curve  curve = {.slope = over(g, graph_number(g, 0.5), at_least(g, value, TINY))};
+    if (has_radius(x)) {
+        Node root  = graph_op1(g, OP_sqrt, near);
+        curve.bend = over(g, graph_number(g, 0.25), times(g, near, root));
     }
     return curve;
 }
 
-static Curve curve_of(BallContext *x, Op op, BallTerm u, Node value, Node reach)
+static Curve curve_inversesqrt(BallContext *x, BallTerm u, Node value, Node reach)
 {
-    Graph *g   = x->graph;
-    Node   one = number(x, 1);
-    switch (op) {
-    case OP_square: return (Curve){times(x, u.value, number(x, 2)), number(x, 2)};
-    case OP_sin: return (Curve){graph_op1(g, OP_cos, u.value), one};
-    case OP_cos: return (Curve){negative(x, graph_op1(g, OP_sin, u.value)), one};
-    case OP_atan:
-        return (Curve){over(x, one, plus(x, one, graph_op1(g, OP_square, u.value))),
-                       number(x, 0.6496)};
-    case OP_tanh: return (Curve){minus(x, one, graph_op1(g, OP_square, value)), number(x, 0.7699)};
-    case OP_exp: return (Curve){value, has_radius(x) ? times(x, value, growth(x, u, reach)) : one};
-    case OP_exp2:
-        u     = scale_term(x, u.value, u, number(x, M_LN2));
-        reach = has_radius(x) ? times(x, reach, number(x, M_LN2)) : reach;
-        return (Curve){
-            times(x, value, number(x, M_LN2)),
-            has_radius(x) ? times(x, times(x, value, growth(x, u, reach)), number(x, M_LN2 * M_LN2))
-                          : one};
-    case OP_sinh:
-    case OP_cosh: {
-        Node cosh  = graph_op1(g, OP_cosh, u.value);
-        Node slope = op == OP_sinh ? cosh : graph_op1(g, OP_sinh, u.value);
-        return (Curve){slope, has_radius(x) ? times(x, cosh, growth(x, u, reach)) : one};
+    Graph *g     = x->graph;
+    Node   near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
+    Curve  curve = {
+         .slope = times(g, times(g, times(g, value, value), value), graph_number(g, -0.5))};
+    if (has_radius(x)) {
+        Node root  = graph_op1(g, OP_inversesqrt, near);
+        Node fifth = times(g, graph_op1(g, OP_square, times(g, root, root)), root);
+        curve.bend = times(g, fifth, graph_number(g, 0.75));
     }
-    default: return curve_of_pole(x, op, u, value, reach);
-    }
+    return curve;
+}
+
+/* 1 / u */
+static Curve curve_inverse(BallContext *x, BallTerm u, Node value, Node reach)
+{
+    Graph *g     = x->graph;
+    Node   near  = has_radius(x) ? clear_of_zero(x, u, &reach) : NODE_NONE;
+    Curve  curve = {.slope = neg(g, times(g, value, value))};
+    if (has_radius(x))
+        curve.bend = over(g, graph_number(g, 2), times(g, times(g, near, near), near));
+    return curve;
 }
 
 static BallTerm bend_term(const BallContext *x, Node value, BallTerm u, Curve curve)
 {
+    Graph   *g    = x->graph;
     BallTerm term = scale_term(x, value, u, curve.slope);
     if (has_radius(x)) {
-        Node square = graph_op1(x->graph, OP_square, steepness(x, &u));
-        Node rest   = times(x, times(x, curve.bend, number(x, 0.5)), square);
-        term.second = plus(x, term.second, rest);
+        Node square = graph_op1(g, OP_square, steepness(x, &u));
+        Node rest   = times(g, times(g, curve.bend, graph_number(g, 0.5)), square);
+        term.second = plus(g, term.second, rest);
     }
     return term;
 }
 
-static BallTerm curved_term(BallContext *x, Op op, Node value, BallTerm u)
+static BallTerm curved_term(BallContext *x, CurveOf *curve_of, Node value, BallTerm u)
 {
-    Node reach = has_radius(x) ? times(x, steepness(x, &u), x->radius) : NODE_NONE;
-    return bend_term(x, value, u, curve_of(x, op, u, value, reach));
+    Graph *g     = x->graph;
+    Node   reach = has_radius(x) ? times(g, steepness(x, &u), x->radius) : NODE_NONE;
+    return bend_term(x, value, u, curve_of(x, u, value, reach));
 }
 
 /* |u|^n for a constant n >= 2, which has no kink at 0: M = n (n - 1) (|u| + reach)^(n - 2). */
 static BallTerm even_power_term(BallContext *x, Node value, BallTerm u, double n)
 {
     Graph *g     = x->graph;
-    Node   least = at_least(x, graph_op1(g, OP_square, u.value), TINY);
-    Node   ratio = over(x, times(x, value, u.value), least);
-    Curve  curve = {times(x, ratio, number(x, n)), NODE_NONE};
+    Node   least = at_least(g, graph_op1(g, OP_square, u.value), TINY);
+    Node   ratio = over(g, times(g, value, u.value), least);
+    Curve  curve = {times(g, ratio, graph_number(g, n)), NODE_NONE};
     if (has_radius(x)) {
-        Node reach = times(x, steepness(x, &u), x->radius);
-        Node most  = at_least(x, plus(x, size_of(x, u.value), reach), TINY);
-        Node power = graph_power(g, most, number(x, n - 2));
-        curve.bend = times(x, power, number(x, n * (n - 1)));
+        Node reach = times(g, steepness(x, &u), x->radius);
+        Node most  = at_least(g, plus(g, graph_op1(g, OP_abs, u.value), reach), TINY);
+        Node power = graph_power(g, most, graph_number(g, n - 2));
+        curve.bend = times(g, power, graph_number(g, n * (n - 1)));
     }
     return bend_term(x, value, u, curve);
 }
@@ -298,24 +325,24 @@ static BallTerm even_power_term(BallContext *x, Node value, BallTerm u, double n
 static BallTerm power_term(BallContext *x, Node value, BallTerm u, double n)
 {
     Graph *g     = x->graph;
-    Node   base  = at_least(x, u.value, TINY), reach;
-    Curve  curve = {over(x, times(x, value, number(x, n)), base), NODE_NONE};
+    Node   base  = at_least(g, u.value, TINY), reach;
+    Curve  curve = {over(g, times(g, value, graph_number(g, n)), base), NODE_NONE};
     if (!has_radius(x))
         return bend_term(x, value, u, curve);
-    reach       = times(x, steepness(x, &u), x->radius);
-    Node factor = number(x, fabs(n * (n - 1))), exponent = number(x, n - 2);
+    reach       = times(g, steepness(x, &u), x->radius);
+    Node factor = graph_number(g, fabs(n * (n - 1))), exponent = graph_number(g, n - 2);
     if (n <= 1) {
         Node least = clear_of_zero(x, u, &reach);
-        curve.bend = times(x, factor, graph_power(g, least, exponent));
+        curve.bend = times(g, factor, graph_power(g, least, exponent));
         return bend_term(x, value, u, curve);
     }
-    Node clear = graph_op2(g, OP_less, times(x, reach, number(x, 2)), u.value);
-    Node least = graph_op3(g, OP_select, clear, minus(x, u.value, reach), reach);
-    Node power = graph_power(g, at_least(x, least, TINY), exponent), zero = number(x, 0);
-    curve.bend    = graph_op3(g, OP_select, clear, times(x, factor, power), zero);
+    Node clear = graph_op2(g, OP_less, times(g, reach, graph_number(g, 2)), u.value);
+    Node least = graph_op3(g, OP_select, clear, sub(g, u.value, reach), reach);
+    Node power = graph_power(g, at_least(g, least, TINY), exponent), zero = graph_number(g, 0);
+    curve.bend    = graph_op3(g, OP_select, clear, times(g, factor, power), zero);
     BallTerm term = bend_term(x, value, u, curve);
-    Node     rise = times(x, times(x, reach, power), steepness(x, &u));
-    term.first    = plus(x, term.first, graph_op3(g, OP_select, clear, zero, rise));
+    Node     rise = times(g, times(g, reach, power), steepness(x, &u));
+    term.first    = plus(g, term.first, graph_op3(g, OP_select, clear, zero, rise));
     return term;
 }
 
@@ -324,22 +351,23 @@ static BallTerm power_term(BallContext *x, Node value, BallTerm u, double n)
 /* How much steeper what has a kink at w = 0 may be than on this side of it. */
 static Node over_kink(const BallContext *x, Node w, Node steep)
 {
-    Node zero = number(x, 0);
+    Graph *g    = x->graph;
+    Node   zero = graph_number(g, 0);
     if (!has_radius(x))
         return zero;
-    Node margin = over(x, size_of(x, w), at_least(x, x->radius, TINY));
-    return graph_op2(x->graph, OP_max, minus(x, steep, margin), zero);
+    Node margin = over(g, graph_op1(g, OP_abs, w), at_least(g, x->radius, TINY));
+    return graph_op2(g, OP_max, sub(g, steep, margin), zero);
 }
 
 static BallTerm size_term(const BallContext *x, Node value, BallTerm u)
 {
     Graph   *g    = x->graph;
     BallTerm term = u;
-    Node     sign = graph_op2(g, OP_less, u.value, number(x, 0));
+    Node     sign = graph_op2(g, OP_less, u.value, graph_number(g, 0));
     term.value    = value;
-    term.gradient = graph_op3(g, OP_select, sign, negative(x, u.gradient), u.gradient);
+    term.gradient = graph_op3(g, OP_select, sign, neg(g, u.gradient), u.gradient);
     Node more     = over_kink(x, u.value, steepness(x, &u));
-    term.first    = plus(x, term.first, times(x, more, number(x, 2)));
+    term.first    = plus(g, term.first, times(g, more, graph_number(g, 2)));
     return term;
 }
 
@@ -351,16 +379,17 @@ static BallTerm smoothstep_term(BallContext *x, Node value, Node low, Node high,
     const Expr *a = &g->items[low], *b = &g->items[high];
     if (a->op != OP_CONSTANT || b->op != OP_CONSTANT || !(a->number[0] < b->number[0]))
         return opaque_term(x, value);
-    Node     whole = number(x, 1 / (b->number[0] - a->number[0])), half = number(x, 0.5);
-    Node     across = times(x, minus(x, u.value, low), whole), zero = number(x, 0);
-    Node     t      = graph_op3(g, OP_clamp, across, zero, number(x, 1));
-    Curve    curve  = {times(x, times(x, t, minus(x, number(x, 1), t)), number(x, 6)), NODE_NONE};
+    Node  whole = graph_number(g, 1 / (b->number[0] - a->number[0])), half = graph_number(g, 0.5);
+    Node  across = times(g, sub(g, u.value, low), whole), zero = graph_number(g, 0);
+    Node  t         = graph_op3(g, OP_clamp, across, zero, graph_number(g, 1));
+    Curve curve     = {times(g, times(g, t, sub(g, graph_number(g, 1), t)), graph_number(g, 6)),
+                       NODE_NONE};
     BallTerm scaled = scale_term(x, across, u, whole);
     if (has_radius(x)) {
-        Node reach  = times(x, steepness(x, &scaled), x->radius);
-        Node offset = minus(x, size_of(x, minus(x, across, half)), half);
+        Node reach  = times(g, steepness(x, &scaled), x->radius);
+        Node offset = sub(g, graph_op1(g, OP_abs, sub(g, across, half)), half);
         Node level  = graph_op2(g, OP_less, reach, offset);
-        curve.bend  = graph_op3(g, OP_select, level, zero, number(x, 6));
+        curve.bend  = graph_op3(g, OP_select, level, zero, graph_number(g, 6));
     }
     return bend_term(x, value, scaled, curve);
 }
@@ -375,13 +404,13 @@ static BallTerm choice_term(const BallContext *x, Op op, Node value, BallTerm a,
 {
     Graph   *g          = x->graph;
     Node     less       = graph_op2(g, OP_less, a.value, b.value);
-    Node     difference = minus(x, a.value, b.value);
+    Node     difference = sub(g, a.value, b.value);
     BallTerm left = op == OP_min ? a : b, right = op == OP_min ? b : a;
     BallTerm offset = add_terms(x, difference, a, negate_term(x, b.value, b));
     BallTerm chosen = {value, choose(x, less, left.gradient, right.gradient),
                        choose(x, less, left.first, right.first),
                        choose(x, less, left.second, right.second), NODE_NONE};
-    chosen.first    = plus(x, chosen.first, over_kink(x, difference, steepness(x, &offset)));
+    chosen.first    = plus(g, chosen.first, over_kink(x, difference, steepness(x, &offset)));
     return chosen;
 }
 
@@ -401,25 +430,27 @@ static BallTerm term_of(const BallTerms *terms, uint32_t i)
 /* The square of a vector's slope in the ball; that of one whose components are linear is known. */
 static Node steepness_squared(const BallContext *x, Node vector, const BallTerms *terms)
 {
-    bool linear = true;
-    Node sum    = number(x, 0);
+    Graph *g      = x->graph;
+    bool   linear = true;
+    Node   sum    = graph_number(g, 0);
     for (uint32_t i = 0; i < terms->count; i++) {
         const BallTerm *term = &terms->items[i];
-        linear               = linear && graph_is_constant(x->graph, term->gradient) &&
-                 is_number(x, term->first, 0) && is_number(x, term->second, 0);
-        sum = plus(x, sum, graph_op1(x->graph, OP_square, steepness(x, term)));
+        linear = linear && graph_is_constant(g, term->gradient) && is_number(g, term->first, 0) &&
+                 is_number(g, term->second, 0);
+        sum = plus(g, sum, graph_op1(g, OP_square, steepness(x, term)));
     }
     if (!linear)
         return sum;
-    double slope = graph_slope(x->graph, vector, x->box, NULL, 1, NULL, x->scratch);
-    Node   whole = number(x, slope * slope);
-    return isfinite(slope) ? graph_op2(x->graph, OP_min, sum, whole) : sum;
+    double slope = graph_slope(g, vector, x->box, NULL, 1, NULL, x->scratch);
+    Node   whole = graph_number(g, slope * slope);
+    return isfinite(slope) ? graph_op2(g, OP_min, sum, whole) : sum;
 }
 
 /* Sums of products of components; of a vector with itself, the tail is the square of its slope. */
 static BallTerm dot_term(const BallContext *x, Node node, const BallTerms *a, const BallTerms *b)
 {
-    const Expr e    = x->graph->items[node];
+    Graph     *g    = x->graph;
+    const Expr e    = g->items[node];
     bool       same = e.operands[0] == e.operands[1];
     BallTerm   sum  = constant_term(x, node);
     for (uint32_t i = 0; i < a->count; i++) {
@@ -431,141 +462,167 @@ static BallTerm dot_term(const BallContext *x, Node node, const BallTerms *a, co
             sum = add_terms(x, node, sum, multiply_terms(x, node, left, right));
     }
     if (same && has_radius(x))
-        sum.second = plus(x, sum.second, steepness_squared(x, e.operands[0], a));
+        sum.second = plus(g, sum.second, steepness_squared(x, e.operands[0], a));
     return sum;
 }
 
 /* |v + h| is between |v| + n.h and that and |h|^2 / (2 |v|), n = v / |v|. */
 static BallTerm length_term(const BallContext *x, Node node, const BallTerms *a)
 {
-    const Expr e     = x->graph->items[node];
+    Graph     *g     = x->graph;
+    const Expr e     = g->items[node];
     BallTerm   sum   = constant_term(x, node);
-    Node       least = at_least(x, node, SMALL);
+    Node       least = at_least(g, node, SMALL);
     for (uint32_t i = 0; i < a->count; i++) {
         BallTerm term = term_of(a, i);
-        sum = add_terms(x, node, sum, scale_term(x, node, term, over(x, term.value, least)));
+        sum = add_terms(x, node, sum, scale_term(x, node, term, over(g, term.value, least)));
     }
     if (has_radius(x)) {
-        Node bend  = over(x, steepness_squared(x, e.operands[0], a), least);
-        sum.second = plus(x, sum.second, times(x, bend, number(x, 0.5)));
+        Node bend  = over(g, steepness_squared(x, e.operands[0], a), least);
+        sum.second = plus(g, sum.second, times(g, bend, graph_number(g, 0.5)));
     }
     return sum;
 }
 
 /* ---- any operation ---- */
 
-static bool is_curved(Op op)
-{
-    switch (op) {
-    case OP_square:
-    case OP_sin:
-    case OP_cos:
-    case OP_atan:
-    case OP_tanh:
-    case OP_exp:
-    case OP_exp2:
-    case OP_sinh:
-    case OP_cosh:
-    case OP_log:
-    case OP_sqrt:
-    case OP_inversesqrt: return true;
-    default: return false;
-    }
-}
-
 static BallTerm divide_terms(BallContext *x, Node value, BallTerm a, BallTerm b)
 {
     Graph *g       = x->graph;
-    Node   inverse = over(x, number(x, 1), b.value);
+    Node   inverse = over(g, graph_number(g, 1), b.value);
     if (g->items[b.value].time != TIME_POINT)
         return scale_term(x, value, a, inverse);
-    BallTerm turned = curved_term(x, OP_div, inverse, b);
+    BallTerm turned = curved_term(x, curve_inverse, inverse, b);
     return multiply_terms(x, value, a, turned);
 }
 
 static BallTerm mix_terms(BallContext *x, Node value, BallTerm a, BallTerm b, BallTerm t)
 {
-    BallTerm difference = add_terms(x, minus(x, b.value, a.value), b, negate_term(x, a.value, a));
+    Graph   *g          = x->graph;
+    BallTerm difference = add_terms(x, sub(g, b.value, a.value), b, negate_term(x, a.value, a));
     BallTerm change     = multiply_terms(x, value, difference, t);
     return add_terms(x, value, a, change);
 }
 
-/* Component `value` of an operation; operands not all there are filled up with the first. */
-static BallTerm component_term(BallContext *x, Op op, Node value, BallTerm a, BallTerm b,
-                               BallTerm c)
+/* One component of an operation: of what works component by component, a, b and c are the
+   components of its operands; operands not all there are filled up with the first. */
+typedef struct Place {
+    Expr             e;
+    Node             node, value; /* the whole, and the component */
+    uint32_t         component;
+    const BallTerms *operands;
+    BallTerm         a, b, c;
+} Place;
+
+typedef BallTerm Rule(BallContext *x, const Place *p);
+
+static BallTerm local_none(BallContext *x, const Place *p) { return opaque_term(x, p->value); }
+static BallTerm local_add(BallContext *x, const Place *p)
 {
-    Graph      *g     = x->graph;
-    const Expr *power = &g->items[b.value];
-    switch (op) {
-    case OP_add: return add_terms(x, value, a, b);
-    case OP_sub: return add_terms(x, value, a, negate_term(x, b.value, b));
-    case OP_neg: return negate_term(x, value, a);
-    case OP_mul:
-    case OP_scale: return multiply_terms(x, value, a, b);
-    case OP_div: return divide_terms(x, value, a, b);
-    case OP_abs: return size_term(x, value, a);
-    case OP_min:
-    case OP_max: return choice_term(x, op, value, a, b);
-    case OP_clamp: {
-        Node     raised = graph_op2(g, OP_max, a.value, b.value);
-        BallTerm above  = choice_term(x, OP_max, raised, a, b);
-        return choice_term(x, OP_min, value, above, c);
-    }
-    case OP_mix: return mix_terms(x, value, a, b, c);
-    case OP_smoothstep: return smoothstep_term(x, value, a.value, b.value, c);
-    case OP_pow:
-        if (power->op != OP_CONSTANT)
-            return opaque_term(x, value);
-        return power->number[0] >= 2 ? even_power_term(x, value, a, power->number[0])
-                                     : power_term(x, value, a, power->number[0]);
-    default: return is_curved(op) ? curved_term(x, op, value, a) : opaque_term(x, value);
-    }
+    return add_terms(x, p->value, p->a, p->b);
+}
+static BallTerm local_neg(BallContext *x, const Place *p) { return negate_term(x, p->value, p->a); }
+static BallTerm local_mul(BallContext *x, const Place *p)
+{
+    return multiply_terms(x, p->value, p->a, p->b);
+}
+static BallTerm local_div(BallContext *x, const Place *p)
+{
+    return divide_terms(x, p->value, p->a, p->b);
+}
+static BallTerm local_abs(BallContext *x, const Place *p) { return size_term(x, p->value, p->a); }
+static BallTerm local_mix(BallContext *x, const Place *p)
+{
+    return mix_terms(x, p->value, p->a, p->b, p->c);
+}
+static BallTerm local_dot(BallContext *x, const Place *p)
+{
+    return dot_term(x, p->node, &p->operands[0], &p->operands[1]);
+}
+static BallTerm local_length(BallContext *x, const Place *p)
+{
+    return length_term(x, p->node, &p->operands[0]);
 }
 
-static bool is_componentwise(Op op)
+static BallTerm local_sub(BallContext *x, const Place *p)
 {
-    switch (op) {
-    case OP_add:
-    case OP_sub:
-    case OP_neg:
-    case OP_mul:
-    case OP_scale:
-    case OP_div:
-    case OP_abs:
-    case OP_min:
-    case OP_max:
-    case OP_clamp:
-    case OP_mix:
-    case OP_pow:
-    case OP_smoothstep: return true;
-    default: return is_curved(op);
-    }
+    return add_terms(x, p->value, p->a, negate_term(x, p->b.value, p->b));
 }
+
+static BallTerm local_choice(BallContext *x, const Place *p)
+{
+    return choice_term(x, (Op)p->e.op, p->value, p->a, p->b);
+}
+
+static BallTerm local_clamp(BallContext *x, const Place *p)
+{
+    Node     raised = graph_op2(x->graph, OP_max, p->a.value, p->b.value);
+    BallTerm above  = choice_term(x, OP_max, raised, p->a, p->b);
+    return choice_term(x, OP_min, p->value, above, p->c);
+}
+
+static BallTerm local_smoothstep(BallContext *x, const Place *p)
+{
+    return smoothstep_term(x, p->value, p->a.value, p->b.value, p->c);
+}
+
+static BallTerm local_pow(BallContext *x, const Place *p)
+{
+    const Expr *power = &x->graph->items[p->b.value];
+    if (power->op != OP_CONSTANT)
+        return opaque_term(x, p->value);
+    return power->number[0] >= 2 ? even_power_term(x, p->value, p->a, power->number[0])
+                                 : power_term(x, p->value, p->a, power->number[0]);
+}
+
+#define CURVED(name)                                             \
+    static BallTerm local_##name(BallContext *x, const Place *p) \
+    {                                                            \
+        return curved_term(x, curve_##name, p->value, p->a);     \
+    }
+CURVED(square)
+CURVED(sin)
+CURVED(cos)
+CURVED(atan)
+CURVED(tanh)
+CURVED(exp)
+CURVED(exp2)
+CURVED(sinh)
+CURVED(cosh)
+CURVED(log)
+CURVED(sqrt)
+CURVED(inversesqrt)
+#undef CURVED
+
+static BallTerm local_component(BallContext *x, const Place *p)
+{
+    (void)x;
+    return term_of(&p->operands[0], p->e.index);
+}
+
+/* What builds a vector. */
+static BallTerm local_vector(BallContext *x, const Place *p)
+{
+    (void)x;
+    return p->operands[p->e.operand_count > 1 ? p->component : 0].items[0];
+}
+
+static Rule *const rules[OP_COUNT] = {
+#define RULES(name, cost, promises, simplify, derive, local, ...) [OP_##name] = local,
+#include "compiler/graph/ops.def"
+};
 
 static void find_operation(BallContext *x, Node node, const BallTerms *operands, BallTerms *result)
 {
-    Expr e = x->graph->items[node];
+    Place place = {.e = x->graph->items[node], .node = node, .operands = operands};
+    int   last  = place.e.operand_count - 1;
     for (uint32_t i = 0; i < result->count; i++) {
-        Node      value = graph_component(x->graph, node, i);
-        BallTerm *term  = &result->items[i];
-        int       last  = e.operand_count - 1;
-        switch (e.op) {
-        case OP_COMPONENT: *term = term_of(&operands[0], e.index); break;
-        case OP_splat2:
-        case OP_splat3:
-        case OP_splat4: *term = operands[0].items[0]; break;
-        case OP_vec2:
-        case OP_vec3:
-        case OP_vec4: *term = operands[i].items[0]; break;
-        case OP_dot: *term = dot_term(x, node, &operands[0], &operands[1]); break;
-        case OP_length: *term = length_term(x, node, &operands[0]); break;
-        default:
-            *term = is_componentwise(e.op)
-                        ? component_term(x, e.op, value, term_of(&operands[0], i),
-                                         term_of(&operands[last > 0], i),
-                                         term_of(&operands[last > 1 ? 2 : 0], i))
-                        : opaque_term(x, value);
-        }
+        place.value      = graph_component(x->graph, node, i);
+        place.component  = i;
+        place.a          = term_of(&operands[0], i);
+        place.b          = term_of(&operands[last > 0], i);
+        place.c          = term_of(&operands[last > 1 ? 2 : 0], i);
+        result->items[i] = rules[place.e.op](x, &place);
     }
 }
 
@@ -573,7 +630,7 @@ static void find_operation(BallContext *x, Node node, const BallTerms *operands,
 static bool is_even(const Graph *g, const Expr *e)
 {
     if (e->op != OP_pow)
-        return e->op == OP_square || e->op == OP_cos || e->op == OP_cosh;
+        return op_parity((Op)e->op) == PARITY_EVEN;
     const Expr *power = &g->items[e->operands[1]];
     return power->op == OP_CONSTANT && power->number[0] >= 2;
 }
@@ -593,7 +650,7 @@ static BallTerms find_node(BallContext *x, Node node, const Tape *tape, const Ba
     for (int i = 0; i < e.operand_count; i++)
         operands[i] = all[tape_index(tape, e.operands[i])];
     const Expr *inner = &x->graph->items[e.operands[0]];
-    if (inner->op == OP_abs && is_even(x->graph, &e))
+    if (inner->op == OP_abs && e.op != OP_abs && is_even(x->graph, &e))
         operands[0] = all[tape_index(tape, inner->operands[0])];
     x->graph->here = e.span;
     find_operation(x, node, operands, &found);
@@ -619,7 +676,7 @@ bool graph_local_bound(Graph *graph, Node root, Box box, double least, LocalBoun
     if (!x.bounded)
         return false;
     Node slope    = graph_op2(graph, OP_max, slope_here(&x, &here), graph_number(graph, least));
-    x.radius      = graph_op2(graph, OP_div, size_of(&x, root), slope);
+    x.radius      = over(graph, graph_op1(graph, OP_abs, root), slope);
     BallTerm ball = find(&x, root);
     bound->radius = x.limit == NODE_NONE ? x.radius : graph_op2(graph, OP_min, x.radius, x.limit);
     bound->first  = slope_here(&x, &ball);
@@ -630,11 +687,10 @@ bool graph_local_bound(Graph *graph, Node root, Box box, double least, LocalBoun
 /* |f| = first r + second r^2. */
 Node local_radius(Graph *graph, Node root, const LocalBound *bound)
 {
-    BallContext x       = {.graph = graph};
-    Node        size    = size_of(&x, root);
-    Node        margin  = times(&x, times(&x, size, bound->second), number(&x, 4));
-    Node        squared = plus(&x, graph_op1(graph, OP_square, bound->first), margin);
-    Node        sum     = plus(&x, bound->first, graph_op1(graph, OP_sqrt, squared));
-    Node        twice   = times(&x, size, number(&x, 2));
-    return graph_op2(graph, OP_min, over(&x, twice, at_least(&x, sum, TINY)), bound->radius);
+    Node size    = graph_op1(graph, OP_abs, root);
+    Node margin  = times(graph, times(graph, size, bound->second), graph_number(graph, 4));
+    Node squared = plus(graph, graph_op1(graph, OP_square, bound->first), margin);
+    Node sum     = plus(graph, bound->first, graph_op1(graph, OP_sqrt, squared));
+    Node twice   = times(graph, size, graph_number(graph, 2));
+    return graph_op2(graph, OP_min, over(graph, twice, at_least(graph, sum, TINY)), bound->radius);
 }

@@ -47,30 +47,14 @@ static uint8_t sum_of_products(const Parity *a, const Parity *b, uint32_t size)
     return sum;
 }
 
-static uint8_t component_parity(const Expr *e, const Parity *const *operands, uint32_t k)
-{
-    uint8_t a = operands[0]->of[k], b = e->operand_count > 1 ? operands[1]->of[k] : NEITHER;
-    switch ((Op)e->op) {
-    case OP_neg:
-    case OP_sign:
-    case OP_sin:
-    case OP_tan:
-    case OP_asin:
-    case OP_atan:
-    case OP_sinh:
-    case OP_tanh: return a;
-    case OP_abs:
-    case OP_square:
-    case OP_cos:
-    case OP_cosh: return unsign(a);
-    case OP_add:
-    case OP_sub: return a & b;
-    case OP_mul:
-    case OP_div: return product(a, b);
-    case OP_scale: return product(a, operands[1]->of[0]);
-    default: return NEITHER;
-    }
-}
+static const ParityRule rules[OP_COUNT] = {
+#define RULES(name, cost, promises, simplify, derive, local, series, parity, rebase_origin, \
+              target)                                                                       \
+    [OP_##name] = parity,
+#include "compiler/graph/ops.def"
+};
+
+ParityRule op_parity(Op op) { return rules[op]; }
 
 /* Constants, parameters and the point; whatever else is a leaf is not known. */
 static Parity leaf_parity(const Expr *e, uint32_t axis)
@@ -85,43 +69,46 @@ static Parity leaf_parity(const Expr *e, uint32_t axis)
     return parity;
 }
 
+/* Of a vector whether all components are even, whatever their signs. */
+static uint8_t length_parity(const Parity *vector, uint32_t size)
+{
+    uint8_t parity = EVEN;
+    for (uint32_t k = 0; k < size; k++)
+        parity &= unsign(vector->of[k]);
+    return parity;
+}
+
+/* Component k of a node by its rule; o: its operands, the first of `first` components. */
+static uint8_t component_parity(const Expr *e, const Parity *const *o, uint32_t first, uint32_t k)
+{
+    switch (op_parity((Op)e->op)) {
+    case PARITY_NONE: return NEITHER;
+    case PARITY_ODD: return o[0]->of[k];
+    case PARITY_EVEN: return unsign(o[0]->of[k]);
+    case PARITY_SUM: return o[0]->of[k] & o[1]->of[k];
+    case PARITY_PRODUCT: return product(o[0]->of[k], o[1]->of[e->op == OP_scale ? 0 : k]);
+    case PARITY_COMPONENT: return o[0]->of[e->index];
+    case PARITY_VECTOR: return o[e->operand_count > 1 ? k : 0]->of[0];
+    case PARITY_DOT: return sum_of_products(o[0], o[1], first);
+    case PARITY_LENGTH: return length_parity(o[0], first);
+    case PARITY_TURN: return sum_of_products(o[k + 1], o[0], 3);
+    }
+    return NEITHER;
+}
+
+/* What makes other numbers of numbers, and does not only arrange or sum them up. */
+static bool is_arithmetic(const Expr *e) { return op_parity((Op)e->op) <= PARITY_PRODUCT; }
+
 static Parity node_parity(const Graph *graph, const Expr *e, const Parity *const *operands,
                           uint32_t axis)
 {
-    Parity   parity = {{NEITHER, NEITHER, NEITHER, NEITHER}};
-    uint32_t size   = size_of(e);
+    Parity parity = {{NEITHER, NEITHER, NEITHER, NEITHER}};
     if (e->operand_count == 0)
         return leaf_parity(e, axis);
+    bool     even  = is_arithmetic(e) && all_even(e, operands, graph);
     uint32_t first = size_of(&graph->items[e->operands[0]]);
-    switch ((Op)e->op) {
-    case OP_COMPONENT: parity.of[0] = operands[0]->of[e->index]; return parity;
-    case OP_vec2:
-    case OP_vec3:
-    case OP_vec4:
-        for (uint32_t k = 0; k < size; k++)
-            parity.of[k] = operands[k]->of[0];
-        return parity;
-    case OP_splat2:
-    case OP_splat3:
-    case OP_splat4:
-        for (uint32_t k = 0; k < size; k++)
-            parity.of[k] = operands[0]->of[0];
-        return parity;
-    case OP_dot: parity.of[0] = sum_of_products(operands[0], operands[1], first); return parity;
-    case OP_length:
-        parity.of[0] = EVEN;
-        for (uint32_t k = 0; k < first; k++)
-            parity.of[0] &= unsign(operands[0]->of[k]);
-        return parity;
-    case OP_turn:
-        for (uint32_t k = 0; k < 3; k++)
-            parity.of[k] = sum_of_products(operands[k + 1], operands[0], 3);
-        return parity;
-    default: break;
-    }
-    bool even = all_even(e, operands, graph);
-    for (uint32_t k = 0; k < size; k++)
-        parity.of[k] = even ? EVEN : component_parity(e, operands, k);
+    for (uint32_t k = 0; k < size_of(e); k++)
+        parity.of[k] = even ? EVEN : component_parity(e, operands, first, k);
     return parity;
 }
 

@@ -171,52 +171,81 @@ static bool any_base(const Expr *e, const SplitValue *values)
     return false;
 }
 
+/* ---- rules; one operand at least has a base ---- */
+
+static SplitValue anchor_none(Graph *g, const Expr *e, const SplitValue *p)
+{
+    return plain_value(g, e, p);
+}
+
+static SplitValue anchor_sum(Graph *g, const Expr *e, const SplitValue *p)
+{
+    return add_values(g, (Op)e->op, p[0], p[1]);
+}
+
+/* Linear in the first operand. */
+static SplitValue anchor_linear(Graph *g, const Expr *e, const SplitValue *p)
+{
+    return others_are_held_constant(g, e, p, 0) ? map_value(g, e, p[0], 0) : plain_value(g, e, p);
+}
+
+/* Linear in each operand. */
+static SplitValue anchor_product(Graph *g, const Expr *e, const SplitValue *p)
+{
+    int first = p[0].base != NODE_NONE ? 0 : 1;
+    return others_are_held_constant(g, e, p, first) ? map_value(g, e, p[first], first)
+                                                    : plain_value(g, e, p);
+}
+
+static SplitValue anchor_component(Graph *g, const Expr *e, const SplitValue *p)
+{
+    return (SplitValue){graph_component(g, p[0].base, e->index),
+                        graph_component(g, p[0].relative, e->index)};
+}
+
+static SplitValue anchor_vector(Graph *g, const Expr *e, const SplitValue *p)
+{
+    return make_vector(g, e, p);
+}
+
+static SplitValue anchor_fold(Graph *g, const Expr *e, const SplitValue *p)
+{
+    return others_are_held_constant(g, e, p, 0) ? fold_value(g, e, p[0]) : plain_value(g, e, p);
+}
+
+static SplitValue anchor_front(Graph *g, const Expr *e, const SplitValue *p)
+{
+    if (!others_are_held_constant(g, e, p, 0))
+        return plain_value(g, e, p);
+    return whole(
+        graph_op3(g, OP_front, p[0].relative, e->operands[1], precise(g, offset_seen(g, e, p[0]))));
+}
+
+static SplitValue anchor_round(Graph *g, const Expr *e, const SplitValue *p)
+{
+    return round_value(g, e, p[0]);
+}
+
+static SplitValue anchor_limit(Graph *g, const Expr *e, const SplitValue *p)
+{
+    return others_are_held_constant(g, e, p, 0) ? limit_value(g, e, p[0]) : plain_value(g, e, p);
+}
+
+static SplitValue anchor_compare(Graph *g, const Expr *e, const SplitValue *p)
+{
+    return whole(compare_values(g, e, p[0], p[1]));
+}
+
+static SplitValue (*const rules[OP_COUNT])(Graph *g, const Expr *e, const SplitValue *p) = {
+#define RULES(name, cost, promises, simplify, derive, local, series, parity, rebase_origin, \
+              target)                                                                       \
+    [OP_##name] = rebase_origin,
+#include "compiler/graph/ops.def"
+};
+
 static SplitValue rebase_node(Graph *g, const Expr *e, const SplitValue *p)
 {
-    if (!any_base(e, p))
-        return plain_value(g, e, p);
-    int first = p[0].base != NODE_NONE ? 0 : 1;
-    switch (e->op) {
-    case OP_add:
-    case OP_sub: return add_values(g, e->op, p[0], p[1]);
-    case OP_neg: return map_value(g, e, p[0], 0);
-    case OP_COMPONENT:
-        return (SplitValue){graph_component(g, p[0].base, e->index),
-                            graph_component(g, p[0].relative, e->index)};
-    case OP_splat2:
-    case OP_splat3:
-    case OP_splat4:
-    case OP_vec2:
-    case OP_vec3:
-    case OP_vec4: return make_vector(g, e, p);
-    case OP_mul:
-    case OP_dot:
-    case OP_scale:
-        return others_are_held_constant(g, e, p, first) ? map_value(g, e, p[first], first)
-                                                        : plain_value(g, e, p);
-    case OP_div:
-    case OP_turn:
-        return others_are_held_constant(g, e, p, 0) ? map_value(g, e, p[0], 0)
-                                                    : plain_value(g, e, p);
-    case OP_fold:
-        return others_are_held_constant(g, e, p, 0) ? fold_value(g, e, p[0]) : plain_value(g, e, p);
-    case OP_front:
-        if (!others_are_held_constant(g, e, p, 0))
-            return plain_value(g, e, p);
-        return whole(graph_op3(g, OP_front, p[0].relative, e->operands[1],
-                               precise(g, offset_seen(g, e, p[0]))));
-    case OP_round:
-    case OP_floor:
-    case OP_ceil: return round_value(g, e, p[0]);
-    case OP_min:
-    case OP_max:
-    case OP_clamp:
-        return others_are_held_constant(g, e, p, 0) ? limit_value(g, e, p[0])
-                                                    : plain_value(g, e, p);
-    case OP_less:
-    case OP_less_equal: return whole(compare_values(g, e, p[0], p[1]));
-    default: return plain_value(g, e, p);
-    }
+    return any_base(e, p) ? rules[e->op](g, e, p) : plain_value(g, e, p);
 }
 
 void graph_rebase(Graph *graph, Node *roots, size_t count, Node rebase_origin, Arena *scratch)

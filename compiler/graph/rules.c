@@ -231,11 +231,12 @@ static Fact rule_of_row(const RuleInput *input, uint32_t index, const double *co
     const Fact *o = input->operands;
     Partials    rows[4];
     Fact        fact = {0};
-    switch (input->op) {
-    case OP_CONSTANT:
+    if (input->op == OP_CONSTANT) {
         for (uint32_t i = 0; i < input->size; i++)
             fact.value[i] = range_of(constant[i]);
         return fact;
+    }
+    switch (input->op) {
     case OP_COMPONENT: return fact_component(&o[0], index);
 #define MAP(name, arity, glsl, value_, range, da, db, dc, norm, meaning)           \
     case OP_##name:                                                                \
@@ -251,10 +252,12 @@ static Fact rule_of_row(const RuleInput *input, uint32_t index, const double *co
     case OP_##name:                                         \
         return facts(input);
 #include "compiler/graph/ops.def"
-#undef MAP
-#undef OP
-    default: assert(!"leaves have facts of their own"); return fact_unknown(input->size);
+#define LEAF(name, ...) case OP_##name:
+#include "compiler/graph/ops.def"
+    case OP_COUNT: break;
     }
+    assert(!"leaves have facts of their own");
+    return fact_unknown(input->size);
 }
 
 /* Quotients by 0 all over the box: of 0, too, whose derivatives make the slope seem to be 0. */

@@ -36,21 +36,34 @@ static Fact fact_smooth(const RuleInput *input, uint32_t count, Range value, dou
     return fact;
 }
 
-/* The derivatives by a and b are at least 0 and sum to 1; further apart than the width, one of
-   them is 1. */
+/* The derivatives by a and b are at least 0 and sum to 1. */
 static Fact smooth_mean(const RuleInput *input, uint32_t count, Range value)
 {
     const Fact *a = &input->operands[0], *b = &input->operands[1];
-    Jet         left = jet_of(a, 0), right = jet_of(b, 0);
-    double      width = fmax(input->operands[2].value[0].high, 0);
-    if (input->op != OP_smin_exponential && left.value.high + width <= right.value.low)
-        return fact_smooth(input, count, value, a->slope, left);
-    if (input->op != OP_smin_exponential && right.value.high + width <= left.value.low)
-        return fact_smooth(input, count, value, b->slope, right);
-    return fact_smooth(input, count, value, fmax(a->slope, b->slope), jet_hull(left, right));
+    Jet         either = jet_hull(jet_of(a, 0), jet_of(b, 0));
+    return fact_smooth(input, count, value, fmax(a->slope, b->slope), either);
 }
 
-Fact fact_smin(const RuleInput *input) { return smooth_mean(input, 3, smooth_range(input, 0)); }
+/* The same where one of them is 1 further apart than the width. */
+static Fact smooth_mean_within(const RuleInput *input, uint32_t count, Range value)
+{
+    const Fact *a = &input->operands[0], *b = &input->operands[1];
+    double      width = fmax(input->operands[2].value[0].high, 0);
+    if (a->value[0].high + width <= b->value[0].low)
+        return fact_smooth(input, count, value, a->slope, jet_of(a, 0));
+    if (b->value[0].high + width <= a->value[0].low)
+        return fact_smooth(input, count, value, b->slope, jet_of(b, 0));
+    return smooth_mean(input, count, value);
+}
+
+Fact fact_smin(const RuleInput *input)
+{
+    return smooth_mean_within(input, 3, smooth_range(input, 0));
+}
+Fact fact_smin_endless(const RuleInput *input)
+{
+    return smooth_mean(input, 3, smooth_range(input, 0));
+}
 
 /* Along the arc the derivatives by a and b are the sides of a unit vector: |a'| and |b'| add as
    the sides of a right triangle, at most sqrt 2 times the larger. */
@@ -100,7 +113,7 @@ Fact fact_smin_stairs(const RuleInput *input)
     if (range_is_single(k) && range_is_single(n))
         value = range_intersect(value, smooth_range(input, n.low));
     double scale = range_largest(a) + range_largest(b) + range_largest(k);
-    return smooth_mean(input, 4, loosened(value, scale));
+    return smooth_mean_within(input, 4, loosened(value, scale));
 }
 
 Fact fact_blend_weight(const RuleInput *input)

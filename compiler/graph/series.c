@@ -11,6 +11,7 @@
 #include <assert.h>
 #include <math.h>
 
+#include "compiler/graph/build.h"
 #include "compiler/graph/evaluate.h"
 
 /* The series of one number, in a ball with the gradient beside it, and while the degree is at most
@@ -38,45 +39,10 @@ typedef struct Expansion {
 
 static bool in_ball(const Expansion *x) { return x->direction == NODE_NONE; }
 
-/* Of a FLOAT or, for 0, of a vector. */
-static bool is_number(const Graph *graph, Node node, double number)
-{
-    const Expr *e    = &graph->items[node];
-    bool        same = e->op == OP_CONSTANT && (e->type == TYPE_FLOAT || number == 0);
-    for (uint32_t i = 0; same && i < (uint32_t)e->type; i++)
-        same = e->number[i] == number;
-    return same;
-}
-
-static Node plus(Graph *g, Node a, Node b)
-{
-    if (is_number(g, a, 0) || is_number(g, b, 0))
-        return is_number(g, a, 0) ? b : a;
-    return graph_op2(g, OP_add, a, b);
-}
-
-static Node times(Graph *g, Node a, Node b)
-{
-    if (is_number(g, a, 0) || is_number(g, b, 1))
-        return a;
-    if (is_number(g, b, 0) || is_number(g, a, 1))
-        return b;
-    return a == b ? graph_op1(g, OP_square, a) : graph_op2(g, OP_mul, a, b);
-}
-
-static Node times_vector(Graph *g, Node vector, Node number)
-{
-    return is_number(g, vector, 0) || is_number(g, number, 1)
-               ? vector
-               : graph_op2(g, OP_scale, vector, number);
-}
-
-static Node size_of(const Expansion *x, Node a) { return graph_op1(x->graph, OP_abs, a); }
-
 /* Order k of a series, as a size in balls. */
 static Node order(const Expansion *x, const Series *series, uint32_t k)
 {
-    return k == 0 && in_ball(x) ? size_of(x, series->c[0]) : series->c[k];
+    return k == 0 && in_ball(x) ? graph_op1(x->graph, OP_abs, series->c[0]) : series->c[k];
 }
 
 static void set_gradient(const Expansion *x, SeriesElement *element, Node gradient)
@@ -168,9 +134,9 @@ static SeriesElement negate_element(const Expansion *x, SeriesElement a)
 {
     for (uint32_t k = 0; k <= a.series.degree; k++)
         if (k == 0 || !in_ball(x))
-            a.series.c[k] = graph_op1(x->graph, OP_neg, a.series.c[k]);
+            a.series.c[k] = neg(x->graph, a.series.c[k]);
     if (in_ball(x))
-        a.gradient = graph_op1(x->graph, OP_neg, a.gradient);
+        a.gradient = neg(x->graph, a.gradient);
     for (int i = 0; i < 9; i++)
         a.hessian[i / 3][i % 3] = -a.hessian[i / 3][i % 3];
     return a;
@@ -217,8 +183,8 @@ static SeriesElement multiply_elements(const Expansion *x, SeriesElement a, Seri
     }
     Node gradient = NODE_NONE;
     if (in_ball(x)) {
-        Node first  = times_vector(g, b.gradient, a.series.c[0]);
-        Node second = times_vector(g, a.gradient, b.series.c[0]);
+        Node first  = stretch(g, b.gradient, a.series.c[0]);
+        Node second = stretch(g, a.gradient, b.series.c[0]);
         gradient    = plus(g, first, second);
     }
     set_gradient(x, &product, gradient);
@@ -279,59 +245,127 @@ static bool cross_elements(Expansion *x, Node node, const SeriesElements *a,
     return true;
 }
 
-/* What works component by component; false for an operation that no polynomial has. */
-static bool expand_component(Expansion *x, Node node, Op op, SeriesElement a, SeriesElement b,
-                             SeriesElement *result)
+/* A rule gives the components of the result; false: no polynomial, or one of too high a degree. */
+typedef bool Rule(Expansion *x, Node node, const SeriesElements *operands, SeriesElements *result);
+
+static bool series_none(Expansion *x, Node node, const SeriesElements *operands,
+                        SeriesElements *result)
 {
-    switch (op) {
-    case OP_add: *result = add_elements(x, a, b); return true;
-    case OP_sub: *result = add_elements(x, a, negate_element(x, b)); return true;
-    case OP_neg: *result = negate_element(x, a); return true;
-    case OP_square: return multiply(x, node, a, a, result);
-    case OP_mul:
-    case OP_scale: return multiply(x, node, a, b, result);
-    case OP_div:
-        if (!is_constant(b))
-            return false;
-        b.series.c[0] = graph_op2(x->graph, OP_div, graph_number(x->graph, 1), b.series.c[0]);
-        return multiply(x, node, a, b, result);
-    default: return false;
-    }
+    (void)x, (void)node, (void)operands, (void)result;
+    return false;
 }
 
-static bool expand_op(Expansion *x, Node node, const SeriesElements *operands,
-                      SeriesElements *result)
+/* Of a sum or a difference. */
+static bool expand_sum(Expansion *x, const SeriesElements *operands, bool minus,
+                       SeriesElements *result)
 {
-    Expr e = x->graph->items[node];
-    switch (e.op) {
-    case OP_COMPONENT: result->items[0] = element_of(&operands[0], e.index); return true;
-    case OP_splat2:
-    case OP_splat3:
-    case OP_splat4:
-        for (uint32_t i = 0; i < result->count; i++)
-            result->items[i] = operands[0].items[0];
-        return true;
-    case OP_vec2:
-    case OP_vec3:
-    case OP_vec4:
-        for (uint32_t i = 0; i < result->count; i++)
-            result->items[i] = operands[i].items[0];
-        return true;
-    case OP_dot: return dot_elements(x, node, &operands[0], &operands[1], &result->items[0]);
-    case OP_cross: return cross_elements(x, node, &operands[0], &operands[1], result);
-    case OP_turn:
-        for (uint32_t i = 0; i < 3; i++)
-            if (!dot_elements(x, node, &operands[0], &operands[i + 1], &result->items[i]))
-                return false;
-        return true;
-    default:
-        for (uint32_t i = 0; i < result->count; i++)
-            if (!expand_component(x, node, e.op, element_of(&operands[0], i),
-                                  element_of(&operands[e.operand_count > 1], i), &result->items[i]))
-                return false;
-        return true;
+    for (uint32_t i = 0; i < result->count; i++) {
+        SeriesElement a = element_of(&operands[0], i), b = element_of(&operands[1], i);
+        result->items[i] = add_elements(x, a, minus ? negate_element(x, b) : b);
     }
+    return true;
 }
+
+static bool series_add(Expansion *x, Node node, const SeriesElements *operands,
+                       SeriesElements *result)
+{
+    (void)node;
+    return expand_sum(x, operands, false, result);
+}
+
+static bool series_sub(Expansion *x, Node node, const SeriesElements *operands,
+                       SeriesElements *result)
+{
+    (void)node;
+    return expand_sum(x, operands, true, result);
+}
+
+static bool series_neg(Expansion *x, Node node, const SeriesElements *operands,
+                       SeriesElements *result)
+{
+    (void)node;
+    for (uint32_t i = 0; i < result->count; i++)
+        result->items[i] = negate_element(x, element_of(&operands[0], i));
+    return true;
+}
+
+static bool expand_product(Expansion *x, Node node, const SeriesElements *a,
+                           const SeriesElements *b, SeriesElements *result)
+{
+    for (uint32_t i = 0; i < result->count; i++)
+        if (!multiply(x, node, element_of(a, i), element_of(b, i), &result->items[i]))
+            return false;
+    return true;
+}
+
+static bool series_mul(Expansion *x, Node node, const SeriesElements *operands,
+                       SeriesElements *result)
+{
+    return expand_product(x, node, &operands[0], &operands[1], result);
+}
+
+static bool series_square(Expansion *x, Node node, const SeriesElements *operands,
+                          SeriesElements *result)
+{
+    return expand_product(x, node, &operands[0], &operands[0], result);
+}
+
+static bool series_div(Expansion *x, Node node, const SeriesElements *operands,
+                       SeriesElements *result)
+{
+    for (uint32_t i = 0; i < result->count; i++) {
+        SeriesElement a = element_of(&operands[0], i), b = element_of(&operands[1], i);
+        if (!is_constant(b))
+            return false;
+        b.series.c[0] = over(x->graph, graph_number(x->graph, 1), b.series.c[0]);
+        if (!multiply(x, node, a, b, &result->items[i]))
+            return false;
+    }
+    return true;
+}
+
+static bool series_component(Expansion *x, Node node, const SeriesElements *operands,
+                             SeriesElements *result)
+{
+    result->items[0] = element_of(&operands[0], x->graph->items[node].index);
+    return true;
+}
+
+/* What builds a vector. */
+static bool series_vector(Expansion *x, Node node, const SeriesElements *operands,
+                          SeriesElements *result)
+{
+    bool several = x->graph->items[node].operand_count > 1;
+    for (uint32_t i = 0; i < result->count; i++)
+        result->items[i] = operands[several ? i : 0].items[0];
+    return true;
+}
+
+static bool series_dot(Expansion *x, Node node, const SeriesElements *operands,
+                       SeriesElements *result)
+{
+    return dot_elements(x, node, &operands[0], &operands[1], &result->items[0]);
+}
+
+static bool series_cross(Expansion *x, Node node, const SeriesElements *operands,
+                         SeriesElements *result)
+{
+    return cross_elements(x, node, &operands[0], &operands[1], result);
+}
+
+static bool series_turn(Expansion *x, Node node, const SeriesElements *operands,
+                        SeriesElements *result)
+{
+    for (uint32_t i = 0; i < 3; i++)
+        if (!dot_elements(x, node, &operands[0], &operands[i + 1], &result->items[i]))
+            return false;
+    return true;
+}
+
+static Rule *const rules[OP_COUNT] = {
+#define RULES(name, cost, promises, simplify, derive, local, series, ...) [OP_##name] = series,
+#include "compiler/graph/ops.def"
+};
 
 /* A node of point time whose operands are expanded. */
 static bool expand_node(Expansion *x, Node node, const Tape *tape, const SeriesElements *all,
@@ -353,7 +387,7 @@ static bool expand_node(Expansion *x, Node node, const Tape *tape, const SeriesE
     SeriesElements operands[MAX_OPERANDS];
     for (int i = 0; i < e.operand_count; i++)
         operands[i] = all[tape_index(tape, e.operands[i])];
-    return e.type <= TYPE_VEC4 && e.operand_count > 0 && expand_op(x, node, operands, result);
+    return e.type <= TYPE_VEC4 && e.operand_count > 0 && rules[e.op](x, node, operands, result);
 }
 
 static bool expand(Expansion *x, Node root, Series *series)
@@ -395,23 +429,6 @@ enum { NEWTON_STEPS = 3 };
 /* Keeps quotients finite; below every coefficient that counts in single precision. */
 static const double TINY = 1e-30;
 
-static Node at_least(Graph *g, Node node, double least)
-{
-    return graph_op2(g, OP_max, node, graph_number(g, least));
-}
-
-/* The k-th root of a number >= 0. */
-static Node root_of(Graph *g, Node number, uint32_t k)
-{
-    if (k == 1)
-        return number;
-    if (k % 2 == 0)
-        return root_of(g, graph_op1(g, OP_sqrt, number), k / 2);
-    Node exponent = graph_op1(g, OP_log2, at_least(g, number, 1e-37));
-    exponent      = graph_op2(g, OP_mul, exponent, graph_number(g, 1.0 / k));
-    return graph_op1(g, OP_exp2, exponent);
-}
-
 /* The least root of one term alone: at least r*, and at most twice that. */
 static Node first_guess(Graph *g, const Series *s, Node size)
 {
@@ -419,7 +436,7 @@ static Node first_guess(Graph *g, const Series *s, Node size)
     for (uint32_t k = 1; k <= s->degree; k++) {
         if (is_number(g, s->c[k], 0))
             continue;
-        Node quotient = graph_op2(g, OP_div, size, at_least(g, s->c[k], TINY));
+        Node quotient = over(g, size, at_least(g, s->c[k], TINY));
         Node root     = root_of(g, quotient, k);
         least         = least == NODE_NONE ? root : graph_op2(g, OP_min, least, root);
     }
@@ -432,10 +449,10 @@ static Node series_sum(Graph *g, const Series *s, Node r, Node *derivative)
     Node sum = s->c[s->degree], slope = sum;
     for (uint32_t k = s->degree; k-- > 0;) {
         if (k + 1 < s->degree)
-            slope = graph_op2(g, OP_add, graph_op2(g, OP_mul, slope, r), sum);
-        sum = graph_op2(g, OP_mul, sum, r);
+            slope = add(g, mul(g, slope, r), sum);
+        sum = mul(g, sum, r);
         if (k > 0)
-            sum = graph_op2(g, OP_add, sum, s->c[k]);
+            sum = add(g, sum, s->c[k]);
     }
     *derivative = slope;
     return sum;
@@ -449,12 +466,12 @@ Node series_radius(Graph *g, const Series *s)
     Node r    = first_guess(g, s, size), slope;
     for (int i = 0; i < NEWTON_STEPS && s->degree > 1; i++) {
         Node sum    = series_sum(g, s, r, &slope);
-        Node excess = graph_op2(g, OP_sub, sum, size);
-        Node step   = graph_op2(g, OP_div, excess, at_least(g, slope, TINY));
-        r           = graph_op2(g, OP_sub, r, step);
+        Node excess = sub(g, sum, size);
+        Node step   = over(g, excess, at_least(g, slope, TINY));
+        r           = sub(g, r, step);
     }
     Node sum      = series_sum(g, s, r, &slope);
-    Node fraction = graph_op2(g, OP_div, size, at_least(g, sum, TINY));
+    Node fraction = over(g, size, at_least(g, sum, TINY));
     fraction      = graph_op2(g, OP_min, fraction, graph_number(g, 1));
-    return graph_op2(g, OP_mul, r, fraction);
+    return mul(g, r, fraction);
 }

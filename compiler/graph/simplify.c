@@ -257,15 +257,9 @@ static Node simplify_scale(const Rewrite *s)
 static Node simplify_component(const Rewrite *s)
 {
     Node a = s->o[0];
-    switch ((Op)expr(s, a)->op) {
-    case OP_vec2:
-    case OP_vec3:
-    case OP_vec4: return operand(s, a, (int)s->index);
-    case OP_splat2:
-    case OP_splat3:
-    case OP_splat4: return operand(s, a, 0);
-    default: return NODE_NONE;
-    }
+    if (!op_promises(expr(s, a)->op, BUILDS))
+        return NODE_NONE;
+    return operand(s, a, expr(s, a)->operand_count > 1 ? (int)s->index : 0);
 }
 
 /* [v.x, v.y, v.z] is v, and [x, x, x] a splat. */
@@ -332,70 +326,30 @@ static Node simplify_smin(const Rewrite *s)
     return NODE_NONE;
 }
 
+/* There is no rule. */
+static Node simplify_none(const Rewrite *s)
+{
+    (void)s;
+    return NODE_NONE;
+}
+
+static Node (*const rules[OP_COUNT])(const Rewrite *s) = {
+#define RULES(name, cost, promises, simplify, ...) [OP_##name] = simplify,
+#include "compiler/graph/ops.def"
+};
+
 static Node simplify_by_rule(Rewrite *s)
 {
-    switch (s->op) {
-    case OP_add: order_operands(s); return simplify_add(s);
-    case OP_mul: order_operands(s); return simplify_mul(s);
-    case OP_min:
-    case OP_max: order_operands(s); return simplify_extremum(s);
-    case OP_and:
-    case OP_or: order_operands(s); return simplify_logic(s);
-    case OP_dot:
-    case OP_equal:
-    case OP_not_equal: order_operands(s); return NODE_NONE;
-    case OP_sub: return simplify_sub(s);
-    case OP_div: return simplify_div(s);
-    case OP_neg: return simplify_neg(s);
-    case OP_abs: return simplify_abs(s);
-    case OP_square: return simplify_square(s);
-    case OP_sqrt: return simplify_sqrt(s);
-    case OP_pow: return simplify_pow(s);
-    case OP_mix: return simplify_mix(s);
-    case OP_scale: return simplify_scale(s);
-    case OP_COMPONENT: return simplify_component(s);
-    case OP_vec2:
-    case OP_vec3:
-    case OP_vec4: return simplify_vector(s);
-    case OP_not: return simplify_not(s);
-    case OP_select: return simplify_select(s);
-    case OP_turn: return simplify_turn(s);
-    case OP_cell: return simplify_cell(s);
-    case OP_smin_quadratic:
-    case OP_smin_cubic:
-    case OP_smin_exponential:
-    case OP_smin_circular:
-    case OP_smin_chamfer:
-    case OP_smin_stairs: return simplify_smin(s);
-    default: return NODE_NONE;
-    }
+    if (op_promises(s->op, COMMUTES))
+        order_operands(s);
+    return rules[s->op](s);
 }
 
 /* ---- the pass ---- */
 
-/* Operations that can make what is not finite from what is. */
-static bool op_stays_finite(Op op)
-{
-    switch (op) {
-    case OP_div:
-    case OP_mod:
-    case OP_sqrt:
-    case OP_inversesqrt:
-    case OP_log:
-    case OP_log2:
-    case OP_exp:
-    case OP_exp2:
-    case OP_sinh:
-    case OP_cosh:
-    case OP_tan:
-    case OP_pow: return false;
-    default: return true;
-    }
-}
-
 static bool node_stays_finite(const Simplifier *simplifier, const Expr *e)
 {
-    bool finite = op_stays_finite(e->op);
+    bool finite = e->operand_count == 0 || op_promises(e->op, STAYS_FINITE);
     for (int i = 0; i < 4 && e->op == OP_CONSTANT; i++)
         finite = finite && isfinite(e->number[i]);
     for (int i = 0; i < e->operand_count; i++)
@@ -405,11 +359,10 @@ static bool node_stays_finite(const Simplifier *simplifier, const Expr *e)
 
 static Node rebuild_leaf(Graph *graph, const Expr *e)
 {
-    switch ((Op)e->op) {
-    case OP_CONSTANT: return graph_constant(graph, e->type, e->number);
-    case OP_PARAMETER: return graph_parameter(graph, e->index, e->type);
-    default: return graph_leaf(graph, e->op);
-    }
+    if (e->op == OP_CONSTANT)
+        return graph_constant(graph, e->type, e->number);
+    return e->op == OP_PARAMETER ? graph_parameter(graph, e->index, e->type)
+                                 : graph_leaf(graph, e->op);
 }
 
 static Node rebuild(Simplifier *simplifier, const Expr *e, bool with_rules)

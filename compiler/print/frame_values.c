@@ -24,16 +24,8 @@ bool frame_value_is_given(const Graph *graph, Node node)
 
 bool frame_value_is_arranged(const Graph *graph, Node node)
 {
-    switch (graph->items[node].op) {
-    case OP_vec2:
-    case OP_vec3:
-    case OP_vec4:
-    case OP_splat2:
-    case OP_splat3:
-    case OP_splat4:
-    case OP_neg: return true;
-    default: return false;
-    }
+    Op op = (Op)graph->items[node].op;
+    return op_promises(op, BUILDS) || op == OP_neg;
 }
 
 typedef struct Nodes {

@@ -4,7 +4,7 @@
 #ifndef KRS_MODULE_H
 #define KRS_MODULE_H
 
-#include "compiler/geometry/lower.h"
+#include "compiler/lower/lower.h"
 #include "compiler/print/frame_values.h"
 #include "compiler/print/printer.h"
 #include "compiler/print/variant.h"

@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#include "compiler/base/vec.h"
+
 /* Where z is 0 in the NDC of a perspective picture; it is 1 at infinity. */
 static const double NDC_NEAR = 1e-3;
 
@@ -15,29 +17,6 @@ static const double PI = 3.14159265358979323846;
 /* A scene without bounds ends this many times its size from the camera: far beyond where its
    horizon is a pixel high. */
 #define HORIZON 1e4
-
-static double dot3(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross3(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-/* Scales v to length 1; false when it has none. */
-static bool normalize3(double v[3])
-{
-    double length = sqrt(dot3(v, v));
-    if (!(length > 0) || isinf(length))
-        return false;
-    for (int i = 0; i < 3; i++)
-        v[i] /= length;
-    return true;
-}
 
 typedef struct Basis {
     double right[3], up[3], forward[3]; /* orthonormal */

@@ -1,6 +1,6 @@
 /*
  * What is left out for being far away is far away: guards and the bounds of levels that they rest
- * on (compiler/geometry/lower_guards.c).
+ * on (compiler/lower/guards.c).
  *
  * What rays are marched by may be less than the distance, but never more than the true distance to
  * all copies, one by one, and it must not be above 0 where one of them is: a bound of a level that

@@ -225,7 +225,7 @@ static void every_method_has_a_row(void **state)
 {
     static const char *const names[] = {
 #define METHOD(name, parameters, function, meaning) #name,
-#include "compiler/geometry/methods.def"
+#include "compiler/eval/methods.def"
 #undef METHOD
     };
     (void)state;

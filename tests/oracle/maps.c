@@ -16,7 +16,7 @@
 
 #include <cmocka.h>
 
-#include "compiler/geometry/elaborate.h"
+#include "compiler/shape/map.h"
 #include "compiler/graph/evaluate.h"
 #include "tests/oracle/quaternions.h"
 
@@ -30,7 +30,7 @@ static Sources sources;
 
 static Diags diags;
 
-static Elaboration elaboration;
+static ShapeBuilder builder;
 
 static Random randomness = {17};
 
@@ -43,8 +43,8 @@ static void start(void)
     arena = scratch = (Arena){.memory = &memory};
     sources         = (Sources){.arena = &arena};
     diags           = (Diags){.arena = &arena, .sources = &sources};
-    elaboration     = (Elaboration){
-            .arena = &arena, .scratch = &scratch, .diags = &diags, .graph = graph_new(&arena)};
+    builder         = (ShapeBuilder){
+                .arena = &arena, .scratch = &scratch, .diags = &diags, .graph = graph_new(&arena)};
 }
 
 static int setup(void **state)
@@ -185,18 +185,17 @@ static Matrix word_matrix(const Word *word)
 
 /* ---- the compiler's maps ---- */
 
-static Node vec_node(Vec v) { return graph_vec3(elaboration.graph, v.x, v.y, v.z); }
+static Node vec_node(Vec v) { return graph_vec3(builder.graph, v.x, v.y, v.z); }
 
 static const Map *letter_map(const Elementary *l)
 {
-    Elaboration *e = &elaboration;
-    Node         v = vec_node(l->vector), n = graph_number(e->graph, l->number);
+    Node v = vec_node(l->vector), n = graph_number(builder.graph, l->number);
     switch (l->letter) {
-    case TRANSLATE: return map_translation(e, v);
-    case ROTATE: return map_rotation(e, v, n);
-    case SCALE: return map_scaling(e, n);
-    case REFLECT: return map_reflection(e, v, n);
-    default: return map_inversion(e, v, n);
+    case TRANSLATE: return map_translation(&builder, v);
+    case ROTATE: return map_rotation(&builder, v, n);
+    case SCALE: return map_scaling(&builder, n);
+    case REFLECT: return map_reflection(&builder, v, n);
+    default: return map_inversion(&builder, v, n);
     }
 }
 
@@ -207,13 +206,13 @@ static const Map *word_map(const Word *word, int from, int to)
         return letter_map(&word->letters[from]);
     int        cut   = from + 1 + random_below(&randomness, to - from - 1);
     const Map *first = word_map(word, from, cut), *second = word_map(word, cut, to);
-    return map_product(&elaboration, second, first);
+    return map_product(&builder, second, first);
 }
 
 /* The value of a node at these parameters. */
 static NodeValue value_of(Node node, const NodeValue *parameters)
 {
-    const Graph *graph  = elaboration.graph;
+    const Graph *graph  = builder.graph;
     Tape         tape   = tape_new(graph, &node, 1, &scratch);
     NodeValue   *values = arena_new_array(&scratch, NodeValue, graph->count);
     tape_run_frame(&tape, parameters, values);
@@ -275,7 +274,7 @@ static void products_and_inverses(void **state)
             word                 = (Word){{ball, {TRANSLATE, direction, 0}, ball}, 3};
         }
         const Map *map  = word_map(&word, 0, word.count);
-        const Map *back = map_inverse(&elaboration, map);
+        const Map *back = map_inverse(&builder, map);
         several += map_count(map) > 1;
         assert_int_equal(map_count(map), map_count(back));
         for (int i = 0; i < 4; i++) {
@@ -307,7 +306,7 @@ static void matrices(void **state)
                    (double[]){f * parts[i].w, f * parts[i].v.x, f * parts[i].v.y, f * parts[i].v.z},
                    sizeof entries[i]);
         const char *reason;
-        const Map  *map = map_of_matrix(&elaboration, (const double(*)[4])entries, &reason);
+        const Map  *map = map_of_matrix(&builder, (const double(*)[4])entries, &reason);
         if (!map)
             fail_msg("refused: %s", reason);
         for (int i = 0; i < 4; i++) {
@@ -350,7 +349,7 @@ static void other_matrices_are_refused(void **state)
         for (int i = 0; i < 10; i++)
             real_part = fmax(real_part, fabs(matrix_apply(&n, random_in_cube(&randomness, 2)).w));
         bool leaves = real_part > 1e-7;
-        bool taken  = map_of_matrix(&elaboration, (const double(*)[4])entries, &reason) != NULL;
+        bool taken  = map_of_matrix(&builder, (const double(*)[4])entries, &reason) != NULL;
         if (leaves == taken)
             fail_msg("trial %d: real parts up to %.3g, %s", trial, real_part,
                      taken ? "taken" : reason);
@@ -360,7 +359,7 @@ static void other_matrices_are_refused(void **state)
 static void expect_matrix(const double entries[4][4], Vec p, Vec wanted)
 {
     const char *reason;
-    const Map  *map = map_of_matrix(&elaboration, entries, &reason);
+    const Map  *map = map_of_matrix(&builder, entries, &reason);
     assert_non_null(map);
     assert_near(map_at(map, p, no_parameters), wanted, 1e-14);
 }
@@ -380,30 +379,29 @@ static void elementary_matrices(void **state)
     expect_matrix(inverse, vec(0, 2, 0), vec(0, -0.5, 0));
     expect_matrix(inversion, vec(0, 0, 4), vec(0, 0, 0.25));
     expect_matrix(mirror, vec(5, 1, 7), vec(5, 2, 7));
-    assert_null(map_of_matrix(&elaboration, singular[1], &reason));
+    assert_null(map_of_matrix(&builder, singular[1], &reason));
     assert_non_null(reason);
     /* (q + 1) (-q + 1)^-1 leaves space. */
-    assert_null(map_of_matrix(&elaboration, singular[0], &reason));
+    assert_null(map_of_matrix(&builder, singular[0], &reason));
     assert_non_null(reason);
 }
 
 /* Poles that meet leave a similarity; f f^-1 is the identity. */
 static void what_is_no_inversion_is_none(void **state)
 {
-    Elaboration *e = &elaboration;
     (void)state;
     for (int trial = 0; trial < 200; trial++) {
         start();
         Word       word = random_word(1 + trial % 4, trial % 2);
         const Map *f    = word_map(&word, 0, word.count);
-        const Map *one  = map_product(e, f, map_inverse(e, f));
+        const Map *one  = map_product(&builder, f, map_inverse(&builder, f));
         assert_true(one->pole == NODE_NONE && !one->first);
         Vec p = random_in_cube(&randomness, 3);
         assert_near(map_at(one, p, no_parameters), p, 1e-11);
         /* Two balls about one centre, with a turn between. */
         Elementary inner = random_letter(INVERT), outer = inner;
         outer.number   = 2;
-        const Map *two = map_product(e, letter_map(&outer), letter_map(&inner));
+        const Map *two = map_product(&builder, letter_map(&outer), letter_map(&inner));
         assert_true(two->pole == NODE_NONE);
         p     = random_in_cube(&randomness, 3);
         Vec q = letter_apply(&outer, letter_apply(&inner, p));
@@ -415,13 +413,12 @@ static void what_is_no_inversion_is_none(void **state)
    other value must be followed, also where it makes poles meet. */
 static void parameters(void **state)
 {
-    Elaboration   *e       = &elaboration;
     GraphParameter range   = {{-1, 0, 0, 0}, {1, 0, 0, 0}};
     int            several = 0;
     (void)state;
     for (int trial = 0; trial < 300; trial++) {
         start();
-        Graph *graph = e->graph;
+        Graph *graph = builder.graph;
         array_push(&arena, &graph->parameters, range);
         Node       t = graph_parameter(graph, 1, TYPE_FLOAT);
         Elementary a = random_letter(INVERT), b = random_letter(INVERT), c = random_letter(ROTATE);
@@ -432,10 +429,10 @@ static void parameters(void **state)
         Node       shift  = graph_op2(graph, OP_scale, vec_node(direction), t);
         Node       centre = graph_op2(graph, OP_add, vec_node(b.vector), shift);
         Node       angle  = graph_op2(graph, OP_mul, graph_number(graph, c.number), t);
-        const Map *turn   = map_rotation(e, vec_node(c.vector), angle);
-        const Map *outer  = map_inversion(e, centre, graph_number(graph, b.number));
-        const Map *both   = map_product(e, outer, letter_map(&a));
-        const Map *all    = map_product(e, turn, both);
+        const Map *turn   = map_rotation(&builder, vec_node(c.vector), angle);
+        const Map *outer  = map_inversion(&builder, centre, graph_number(graph, b.number));
+        const Map *both   = map_product(&builder, outer, letter_map(&a));
+        const Map *all    = map_product(&builder, turn, both);
         several += map_count(all) > 1;
         assert_true(!meeting || map_count(all) == 2);
         for (int i = 0; i < 5; i++) {
@@ -450,11 +447,11 @@ static void parameters(void **state)
             if (hardness > 300)
                 continue;
             assert_near(map_at(all, p, values), q, 1e-12 * pow(hardness, 3));
-            assert_near(map_at(map_inverse(e, all), q, values), p,
+            assert_near(map_at(map_inverse(&builder, all), q, values), p,
                         1e-12 * pow(hardness, 3) * fmax(1, 1 / word_scale(&word, p)));
         }
         /* A moving map undone is no map at all, whatever moves. */
-        const Map *none = map_product(e, all, map_inverse(e, all));
+        const Map *none = map_product(&builder, all, map_inverse(&builder, all));
         assert_true(none->pole == NODE_NONE && !none->first);
     }
     print_message("# %d of 300 moving products are several maps\n", several);

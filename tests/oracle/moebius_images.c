@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-/* What is marched by instead of the distance: lower_images.c. */
+/* What is marched by instead of the distance: ray_images.c. */
 typedef struct Asked {
     Product product;
     Node    root;

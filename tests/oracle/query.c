@@ -15,6 +15,7 @@
 
 #include <cmocka.h>
 
+#include "compiler/base/vec.h"
 #include "compiler/compile.h"
 #include "runtime/tracer/renderer.h"
 #include "tests/oracle/device_answers.h"

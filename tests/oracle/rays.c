@@ -1,5 +1,5 @@
 /*
- * How far rays may go along a polynomial (lower_along.c), by each of the three methods, against
+ * How far rays may go along a polynomial (ray_step.c), by each of the three methods, against
  * the roots that formulas.h finds: the library's surfaces, and random polynomials.
  *
  * No step may go beyond the root, and marching must arrive there: soon, where steps are exact.

@@ -22,20 +22,19 @@ static const double LEAST = 0.02;
 
 static double uniform(Bench *b) { return random_between(&b->random, 0, 1); }
 
-static Node number(Bench *b, double value) { return graph_number(b->graph, value); }
-
 /* 1 + a^2 */
 static Node positive(Bench *b, Node a)
 {
     Node square = graph_op1(b->graph, OP_square, a);
-    return graph_op2(b->graph, OP_add, square, number(b, 1));
+    return graph_op2(b->graph, OP_add, square, graph_number(b->graph, 1));
 }
 
 /* What has a slope everywhere. */
 static Node tame(Bench *b, int kind, Node p, Node q)
 {
     Graph *g    = b->graph;
-    Node   size = graph_op1(g, OP_abs, p), three = graph_op3(g, OP_vec3, p, q, number(b, 0.3));
+    Node   size = graph_op1(g, OP_abs, p),
+         three  = graph_op3(g, OP_vec3, p, q, graph_number(b->graph, 0.3));
     switch (kind) {
     case 0: return graph_op2(g, OP_add, p, q);
     case 1: return graph_op2(g, OP_sub, p, q);
@@ -50,11 +49,11 @@ static Node tame(Bench *b, int kind, Node p, Node q)
     case 10: return size;
     case 11: return graph_op2(g, OP_min, p, q);
     case 12: return graph_op2(g, OP_max, p, q);
-    case 13: return graph_op3(g, OP_clamp, p, number(b, -0.4), q);
+    case 13: return graph_op3(g, OP_clamp, p, graph_number(b->graph, -0.4), q);
     case 14: return graph_op3(g, OP_mix, p, q, graph_op1(g, OP_sin, q));
-    case 15: return graph_power(g, size, number(b, 2.5));
-    case 16: return graph_power(g, size, number(b, 1.4));
-    case 17: return graph_power(g, positive(b, p), number(b, -0.7));
+    case 15: return graph_power(g, size, graph_number(b->graph, 2.5));
+    case 16: return graph_power(g, size, graph_number(b->graph, 1.4));
+    case 17: return graph_power(g, positive(b, p), graph_number(b->graph, -0.7));
     case 18: return graph_op1(g, OP_length, three);
     case 19: return graph_op2(g, OP_dot, three, three);
     case 20: return graph_op2(g, OP_dot, three, b->point);
@@ -62,8 +61,10 @@ static Node tame(Bench *b, int kind, Node p, Node q)
     case 22: return graph_op1(g, OP_sinh, graph_op1(g, OP_sin, p));
     case 23: return graph_op1(g, OP_cosh, graph_op1(g, OP_sin, p));
     case 24: return graph_op2(g, OP_mul, graph_parameter(g, 0, TYPE_FLOAT), p);
-    case 25: return graph_op3(g, OP_smoothstep, number(b, -0.3), number(b, 0.4), p);
-    default: return graph_op2(g, OP_div, p, number(b, 1.7));
+    case 25:
+        return graph_op3(g, OP_smoothstep, graph_number(b->graph, -0.3),
+                         graph_number(b->graph, 0.4), p);
+    default: return graph_op2(g, OP_div, p, graph_number(b->graph, 1.7));
     }
 }
 
@@ -76,8 +77,8 @@ static Node wild(Bench *b, int kind, Node p, Node q)
     case 1: return graph_op1(g, OP_sqrt, p);
     case 2: return graph_op1(g, OP_log, p);
     case 3: return graph_op1(g, OP_inversesqrt, p);
-    case 4: return graph_power(g, p, number(b, 0.3));
-    case 5: return graph_power(g, graph_op1(g, OP_abs, p), number(b, 1.2));
+    case 4: return graph_power(g, p, graph_number(b->graph, 0.3));
+    case 5: return graph_power(g, graph_op1(g, OP_abs, p), graph_number(b->graph, 1.2));
     default: return graph_op1(g, OP_exp, p);
     }
 }
@@ -86,7 +87,7 @@ static Node expression(Bench *b, int depth)
 {
     Node leaf = graph_component(b->graph, b->point, (uint32_t)(3 * uniform(b)));
     if (depth == 0)
-        return graph_op2(b->graph, OP_mul, leaf, number(b, 0.3 + 2 * uniform(b)));
+        return graph_op2(b->graph, OP_mul, leaf, graph_number(b->graph, 0.3 + 2 * uniform(b)));
     int  other = uniform(b) < 0.5 ? depth - 1 : 0;
     Node p = expression(b, depth - 1), q = expression(b, other);
     return uniform(b) < 0.2 ? wild(b, (int)(7 * uniform(b)), p, q)

@@ -25,36 +25,34 @@ static const struct {
     Op          op;
     const char *kinds;
 } special_operands[] = {
-    {OP_turn, "mrrr"},         {OP_fold, "muc"},
-    {OP_front, "muc"},         {OP_cell, "mplh"},
-    {OP_cell_polar, "mn"},     {OP_smin_quadratic, "mmw"},
-    {OP_smin_cubic, "mmw"},    {OP_smin_exponential, "mmw"},
-    {OP_smin_circular, "mmw"}, {OP_smin_chamfer, "mmw"},
-    {OP_smin_stairs, "mmwn"},  {OP_blend_weight, "mmw"},
-    {OP_less, "ee"},           {OP_less_equal, "ee"},
-    {OP_equal, "ee"},          {OP_not_equal, "ee"},
-    {OP_noise2, "s"},          {OP_noise3, "s"},
-    {OP_julia, "mqkk"},        {OP_julia_trap, "mqkk"},
-    {OP_mandelbulb, "mkk"},    {OP_mandelbulb_trap, "mkk"},
+    {OP_turn, "mrrr"},
+    {OP_fold, "muc"},
+    {OP_front, "muc"},
+    {OP_cell, "mplh"},
+    {OP_cell_polar, "mn"},
+    {OP_smin_stairs, "mmwn"},
+    {OP_blend_weight, "mmw"},
+    {OP_less, "ee"},
+    {OP_less_equal, "ee"},
+    {OP_equal, "ee"},
+    {OP_not_equal, "ee"},
+    {OP_noise2, "s"},
+    {OP_noise3, "s"},
+    {OP_julia, "mqkk"},
+    {OP_julia_trap, "mqkk"},
+    {OP_mandelbulb, "mkk"},
+    {OP_mandelbulb_trap, "mkk"},
+#define SMIN(name, ...) {OP_##name, "mmw"},
+#include "compiler/graph/ops.def"
 };
 
-static const char *const map_signatures[] = {"", "g>g", "gg>g", "ggg>g"};
+#define MAP_SIGNATURE(arity) ((arity) == 1 ? "g>g" : (arity) == 2 ? "gg>g" : "ggg>g")
 
-Row row_of(Op op)
-{
-    switch (op) {
-#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning) \
-    case OP_##name:                                                     \
-        return (Row){op, #name, map_signatures[arity]};
-#define OP(name, signature, glsl, evaluate, facts, meaning) \
-    case OP_##name:                                         \
-        return (Row){op, #name, signature};
+const Row op_rows[OP_COUNT] = {
+#define MAP(name, arity, ...)          [OP_##name] = {OP_##name, #name, MAP_SIGNATURE(arity)},
+#define OP(name, signature, glsl, ...) [OP_##name] = {OP_##name, #name, signature},
 #include "compiler/graph/ops.def"
-#undef MAP
-#undef OP
-    default: return (Row){op, NULL, NULL};
-    }
-}
+};
 
 static void random_unit(Random *random, double u[3])
 {

@@ -17,8 +17,8 @@ typedef struct Row {
     const char *signature; /* of a MAP row: g for each operand, FLOAT or vector */
 } Row;
 
-/* `name` is NULL where there is nothing to try. */
-Row row_of(Op op);
+/* Of all operations; `name` is NULL where there is nothing to try. */
+extern const Row op_rows[OP_COUNT];
 
 /* base + gradient * point; truths and instance numbers are steps of its first component. */
 typedef struct Operand {

@@ -188,7 +188,7 @@ static int refuting_trial(Row row, Mutation mutation, bool with_gradient, const 
 
 static void keeps_its_promises(void **state)
 {
-    Row row = row_of(*(Op *)*state);
+    Row row = op_rows[*(Op *)*state];
     for (int with_gradient = 0; with_gradient < 2; with_gradient++) {
         const char *what;
         int         trial = refuting_trial(row, RIGHT, with_gradient, &what);
@@ -238,7 +238,7 @@ static bool is_broken_by(Row row, Mutation mutation)
 
 static void broken_rules_are_refuted(void **state)
 {
-    Row      row   = row_of(*(Op *)*state);
+    Row      row   = op_rows[*(Op *)*state];
     Mutation count = (Mutation)(FORGET_OPERAND + (strchr(row.signature, '>') - row.signature));
     for (Mutation mutation = SMALLER_SLOPE; mutation < count; mutation++)
         for (int with_gradient = 0; with_gradient < 2 && is_broken_by(row, mutation);
@@ -256,7 +256,7 @@ int main(void)
     struct CMUnitTest tests[2 * OP_COUNT];
     size_t            count = 0;
     for (Op op = 0; op < OP_COUNT; op++)
-        if (row_of(op).name) {
+        if (op_rows[op].name) {
             ops[op]        = op;
             tests[count++] = (struct CMUnitTest){graph_op_name(op), keeps_its_promises, NULL, NULL,
                                                  &ops[op]};

@@ -44,8 +44,8 @@ typedef struct Copy {
 
 static double copy_bound(const ReachStage *stage, const double u[3], Fault fault)
 {
-    double length = fault == BALL_WITHOUT_SCALE ? 1 : sqrt(dot(u, u));
-    double ball = dot(u, stage->ball.centre) + stage->ball.radius * length, box = 0;
+    double length = fault == BALL_WITHOUT_SCALE ? 1 : sqrt(dot3(u, u));
+    double ball = dot3(u, stage->ball.centre) + stage->ball.radius * length, box = 0;
     for (int i = 0; i < 3; i++)
         box += fmax(u[i] * stage->box.axis[i].low, u[i] * stage->box.axis[i].high);
     return is_empty(stage->box) ? -HUGE_VAL : fmin(ball, box);
@@ -70,7 +70,7 @@ static void copy_search(Copy *copy, uint32_t count, const double u[3], double ex
         if (fault == KERNELS_FORGOTTEN && !is_empty(stage->kernel))
             return;
     } else if (stage->kind == REACH_REFLECT && fault != IMAGES_FORGOTTEN) {
-        double along = dot(u, stage->normal);
+        double along = dot3(u, stage->normal);
         for (int i = 0; i < 3; i++)
             v[i] -= sign * 2 * along * stage->normal[i];
         sign = fault == MOVED_WITH_WRONG_SIGN ? -1 : 1;
@@ -78,9 +78,9 @@ static void copy_search(Copy *copy, uint32_t count, const double u[3], double ex
     } else if (stage->kind == REACH_MAP) {
         for (int i = 0; i < 3; i++) {
             double column[3] = {stage->rows[0][i], stage->rows[1][i], stage->rows[2][i]};
-            v[i]             = dot(u, fault == MAP_NOT_TRANSPOSED ? stage->rows[i] : column);
+            v[i]             = dot3(u, fault == MAP_NOT_TRANSPOSED ? stage->rows[i] : column);
         }
-        excess += fault == MAP_NOT_SHIFTED ? 0 : dot(u, stage->shift);
+        excess += fault == MAP_NOT_SHIFTED ? 0 : dot3(u, stage->shift);
     }
     copy_search(copy, count - 1, stage->kind == REACH_MAP ? v : u, excess);
 }

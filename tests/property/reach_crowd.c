@@ -9,30 +9,13 @@
 #include <stddef.h>
 #include <cmocka.h>
 
-double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-void cross(const double a[3], const double b[3], double c[3])
-{
-    for (int i = 0; i < 3; i++) {
-        int y = (i + 1) % 3, z = (i + 2) % 3;
-        c[i] = a[y] * b[z] - a[z] * b[y];
-    }
-}
-
-static void normalize(double v[3])
-{
-    double length = sqrt(dot(v, v));
-    for (int i = 0; i < 3; i++)
-        v[i] /= length;
-}
-
 static void random_unit(Random *random, double u[3])
 {
     do
         for (int i = 0; i < 3; i++)
             u[i] = random_between(random, -1, 1);
-    while (dot(u, u) < 0.01 || dot(u, u) > 1);
-    normalize(u);
+    while (dot3(u, u) < 0.01 || dot3(u, u) > 1);
+    normalize3(u);
 }
 
 /* ---- points, boxes and balls, the plain way ---- */
@@ -79,12 +62,12 @@ bool in_box(Box box, const double p[3])
 bool in_ball(Ball ball, const double p[3])
 {
     double offset[3] = {p[0] - ball.centre[0], p[1] - ball.centre[1], p[2] - ball.centre[2]};
-    return sqrt(dot(offset, offset)) <= ball.radius;
+    return sqrt(dot3(offset, offset)) <= ball.radius;
 }
 
 double excess(const ReachStage *mirror, const double p[3])
 {
-    return dot(mirror->normal, p) - mirror->offset;
+    return dot3(mirror->normal, p) - mirror->offset;
 }
 
 void reflect(const ReachStage *mirror, double p[3])
@@ -98,7 +81,7 @@ static void map(const ReachStage *stage, double p[3])
 {
     double q[3] = {p[0], p[1], p[2]};
     for (int i = 0; i < 3; i++)
-        p[i] = dot(stage->rows[i], q) + stage->shift[i];
+        p[i] = dot3(stage->rows[i], q) + stage->shift[i];
 }
 
 /* ---- every instance by itself ---- */
@@ -202,9 +185,9 @@ static void random_map(Random *random, ReachStage *stage)
     double other[3], scale = exp(random_between(random, -1, 0.7));
     random_unit(random, stage->rows[0]);
     random_unit(random, other);
-    cross(stage->rows[0], other, stage->rows[1]);
-    normalize(stage->rows[1]);
-    cross(stage->rows[0], stage->rows[1], stage->rows[2]);
+    cross3(stage->rows[0], other, stage->rows[1]);
+    normalize3(stage->rows[1]);
+    cross3(stage->rows[0], stage->rows[1], stage->rows[2]);
     for (int i = 0; i < 3; i++) {
         stage->shift[i] = random_between(random, -2, 2);
         for (int j = 0; j < 3; j++)
@@ -287,7 +270,7 @@ static Ball loose_ball(const ReachStage *stage, Ball before)
         }
         if (ball.radius < 0)
             return kernel;
-        ball.radius = fmax(ball.radius, sqrt(dot(offset, offset)) + kernel.radius);
+        ball.radius = fmax(ball.radius, sqrt(dot3(offset, offset)) + kernel.radius);
     } else if (stage->kind == REACH_REFLECT && ball.radius >= 0) {
         double ahead = excess(stage, ball.centre);
         ball.radius += fabs(ahead);
@@ -295,7 +278,7 @@ static Ball loose_ball(const ReachStage *stage, Ball before)
             ball.centre[i] -= ahead * stage->normal[i];
     } else if (stage->kind == REACH_MAP) {
         map(stage, ball.centre);
-        ball.radius *= sqrt(dot(stage->rows[0], stage->rows[0]));
+        ball.radius *= sqrt(dot3(stage->rows[0], stage->rows[0]));
     }
     return ball;
 }

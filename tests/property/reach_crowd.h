@@ -6,11 +6,9 @@
 
 #include <stddef.h>
 
-#include "compiler/geometry/reach.h"
+#include "compiler/base/vec.h"
+#include "compiler/shape/reach.h"
 #include "tests/support/random.h"
-
-double dot(const double a[3], const double b[3]);
-void   cross(const double a[3], const double b[3], double c[3]);
 
 /* ---- points, boxes and balls, the plain way ---- */
 

@@ -41,7 +41,7 @@ static Branch next_branch(Branch branch, int number, Box *box)
         next.ahead[i] = cos(2 * bend) * branch.ahead[i] + sin(2 * bend) * branch.side[i];
         left[i]       = cos(2 * bend) * branch.side[i] - sin(2 * bend) * branch.ahead[i];
     }
-    cross(next.ahead, left, up);
+    cross3(next.ahead, left, up);
     for (int i = 0; i < 3; i++)
         next.side[i] = cos(turn) * left[i] + sin(turn) * up[i];
     return next;
@@ -60,7 +60,7 @@ static void grow_tree(ReachStage stages[TREE_STAGES])
             *mirror            = (ReachStage){.kind = REACH_REFLECT};
             for (int i = 0; i < 3; i++)
                 mirror->normal[i] = -sin(tilt) * branch.ahead[i] - cos(tilt) * branch.side[i];
-            mirror->offset = dot(mirror->normal, branch.at);
+            mirror->offset = dot3(mirror->normal, branch.at);
         }
         branch = next_branch(branch, number, &kernel->kernel);
     }
@@ -137,7 +137,7 @@ static void trees_shrink_to_their_crowns(void **state)
 static bool walk(KrsFrame *frame, Box box, const double from[3], const double to[3], double p[3])
 {
     double offset[3] = {to[0] - from[0], to[1] - from[1], to[2] - from[2]}, distance, t = 0;
-    double length = sqrt(dot(offset, offset));
+    double length = sqrt(dot3(offset, offset));
     while (t < 2 * length) {
         for (int i = 0; i < 3; i++)
             p[i] = from[i] + offset[i] * t / length;

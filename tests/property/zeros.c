@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <cmocka.h>
 
+#include "compiler/graph/build.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/zeros.h"
 
@@ -18,29 +19,29 @@
 
 static double uniform(Bench *b) { return random_between(&b->random, 0, 1); }
 
-static Node number(Bench *b, double value) { return graph_number(b->graph, value); }
-static Node plus(Bench *b, Node p, Node q) { return graph_op2(b->graph, OP_add, p, q); }
-static Node minus(Bench *b, Node p, Node q) { return graph_op2(b->graph, OP_sub, p, q); }
-static Node times(Bench *b, Node p, Node q) { return graph_op2(b->graph, OP_mul, p, q); }
-static Node power(Bench *b, Node p, int n) { return n == 1 ? p : times(b, power(b, p, n - 1), p); }
+static Node power(Bench *b, Node p, int n)
+{
+    return n == 1 ? p : mul(b->graph, power(b, p, n - 1), p);
+}
 
 /* A sum of products of few factors, of degree `degree` at most, most often with even powers that
    keep it bounded. */
 static Node random_polynomial(Bench *b, int degree)
 {
-    Node axes[3] = {b->x, b->y, b->z}, sum = number(b, random_between(&b->random, -3, 3));
+    Node axes[3] = {b->x, b->y, b->z},
+         sum     = graph_number(b->graph, random_between(&b->random, -3, 3));
     bool bounded = uniform(b) < 0.7;
     for (int i = 0; bounded && i < 3; i++) {
         Node even = power(b, axes[i], degree - degree % 2);
-        sum       = plus(b, sum, times(b, number(b, 0.2 + uniform(b)), even));
+        sum = add(b->graph, sum, mul(b->graph, graph_number(b->graph, 0.2 + uniform(b)), even));
     }
     for (int term = 0; term < 5; term++) {
-        Node product = number(b, random_between(&b->random, -1, 1));
+        Node product = graph_number(b->graph, random_between(&b->random, -1, 1));
         for (int left = (int)(degree * uniform(b)); left > 0; left--) {
-            Node shift = number(b, random_between(&b->random, -2, 2));
-            product    = times(b, product, plus(b, axes[(int)(3 * uniform(b))], shift));
+            Node shift = graph_number(b->graph, random_between(&b->random, -2, 2));
+            product    = mul(b->graph, product, add(b->graph, axes[(int)(3 * uniform(b))], shift));
         }
-        sum = plus(b, sum, product);
+        sum = add(b->graph, sum, product);
     }
     return sum;
 }
@@ -114,20 +115,20 @@ static void known_extents_are_found(void **state)
 {
     Bench *b  = *state;
     Node   x2 = power(b, b->x, 2), y2 = power(b, b->y, 2), z2 = power(b, b->z, 2);
-    Node   square = plus(b, plus(b, x2, y2), z2), one = number(b, 1);
-    assert_reach(b, minus(b, square, one), 1, 1.1, 1, 1, 1);
-    assert_reach(b, minus(b, one, square), -1, 1.1, 1, 1, 1);
-    assert_reach(b, minus(b, plus(b, x2, z2), one), 1, 1.1, 1, INFINITY, 1);
+    Node   square = add(b->graph, add(b->graph, x2, y2), z2), one = graph_number(b->graph, 1);
+    assert_reach(b, sub(b->graph, square, one), 1, 1.1, 1, 1, 1);
+    assert_reach(b, sub(b->graph, one, square), -1, 1.1, 1, 1, 1);
+    assert_reach(b, sub(b->graph, add(b->graph, x2, z2), one), 1, 1.1, 1, INFINITY, 1);
     /* A double torus, whose leading form is x^8: the extents of its curve, and 0.1 in z. */
-    Node curve = minus(b, times(b, x2, minus(b, one, x2)), y2);
-    Node torus = minus(b, plus(b, power(b, curve, 2), z2), number(b, 0.01));
+    Node curve = sub(b->graph, mul(b->graph, x2, sub(b->graph, one, x2)), y2);
+    Node torus = sub(b->graph, add(b->graph, power(b, curve, 2), z2), graph_number(b->graph, 0.01));
     assert_reach(b, torus, 1, 1.2, 1.0448, 0.5917, 0.1);
     /* A ring of radii 1 and 0.25. */
-    Node ring = power(b, plus(b, square, number(b, 1 - 0.0625)), 2);
-    ring      = minus(b, ring, times(b, number(b, 4), plus(b, x2, z2)));
+    Node ring = power(b, add(b->graph, square, graph_number(b->graph, 1 - 0.0625)), 2);
+    ring = sub(b->graph, ring, mul(b->graph, graph_number(b->graph, 4), add(b->graph, x2, z2)));
     assert_reach(b, ring, 1, 6, 1.25, 0.25, 1.25);
     /* A cone has no ends. */
-    assert_reach(b, minus(b, plus(b, x2, y2), z2), 0, 1, INFINITY, INFINITY, INFINITY);
+    assert_reach(b, sub(b->graph, add(b->graph, x2, y2), z2), 0, 1, INFINITY, INFINITY, INFINITY);
 }
 
 int main(void)

@@ -12,6 +12,7 @@
 
 #include <cmocka.h>
 
+#include "compiler/base/vec.h"
 #include "compiler/compile.h"
 #include "tests/unit/queried.h"
 
@@ -29,15 +30,17 @@ static void arrays_are_answered_in_order(void **context)
     assert_int_equal(krs_probe(s.frame, (const double(*)[3])points, COUNT, hits), KRS_OK);
     for (int i = 0; i < COUNT; i++) {
         const double center[2][3] = {{0, 0, 0}, {3, 0, 0}};
-        double       each[2] = {apart(points[i], center[0]) - 1, apart(points[i], center[1]) - 0.5};
-        int          nearer  = each[1] < each[0];
+        double       each[2]      = {distance3(points[i], center[0]) - 1,
+                                     distance3(points[i], center[1]) - 0.5};
+        int          nearer       = each[1] < each[0];
         assert_true(fabs(distances[i] - each[nearer]) < 1e-12);
         assert_true(hits[i].distance == distances[i] && hits[i].hit);
         assert_int_equal(hits[i].component, nearer + 1);
         assert_int_equal(hits[i].instance, 1);
         assert_int_equal(hits[i].level, 0);
         for (int k = 0; k < 3 && fabs(each[0] - each[1]) > 1e-3; k++) {
-            double right = (points[i][k] - center[nearer][k]) / apart(points[i], center[nearer]);
+            double right = (points[i][k] - center[nearer][k]) /
+                           distance3(points[i], center[nearer]);
             assert_true(fabs(normals[i][k] - right) < 1e-6);
             assert_true(hits[i].normal[k] == normals[i][k]);
         }

@@ -1,0 +1,54 @@
+/*
+ * vec.h: vectors of three doubles.
+ */
+#ifndef KRS_VEC_H
+#define KRS_VEC_H
+
+#include <math.h>
+#include <stdbool.h>
+
+static inline double dot3(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline void cross3(const double a[3], const double b[3], double product[3])
+{
+    product[0] = a[1] * b[2] - a[2] * b[1];
+    product[1] = a[2] * b[0] - a[0] * b[2];
+    product[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static inline double length3(const double v[3]) { return sqrt(dot3(v, v)); }
+
+/* The largest size of a component. */
+static inline double largest3(const double v[3])
+{
+    return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+}
+
+static inline double distance3(const double a[3], const double b[3])
+{
+    const double offset[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+    return length3(offset);
+}
+
+/* to = from + factor v; they may be one. */
+static inline void add_scaled3(double to[3], const double from[3], double factor, const double v[3])
+{
+    for (int i = 0; i < 3; i++)
+        to[i] = from[i] + factor * v[i];
+}
+
+/* Scales v to length 1; false when it has none. */
+static inline bool normalize3(double v[3])
+{
+    double length = length3(v);
+    if (!(length > 0) || isinf(length))
+        return false;
+    for (int i = 0; i < 3; i++)
+        v[i] /= length;
+    return true;
+}
+
+#endif

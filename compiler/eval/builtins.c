@@ -1,0 +1,275 @@
+/*
+ * builtins.c: the table of built-in functions and constants; those of vectors and maps, and fields.
+ *
+ * Those of lists, of chance and of joining shapes have files of their own.
+ */
+#include "compiler/eval/elaborate.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- vectors ---- */
+
+static Value vector_op(Elaboration *e, Call *call, Op op, uint32_t arity)
+{
+    Node      nodes[2];
+    GraphType types[2];
+    for (uint32_t i = 0; i < arity; i++) {
+        nodes[i] = want_numeric(e, call, i);
+        if (nodes[i] == NODE_NONE)
+            return value_error();
+        types[i] = e->graph->items[nodes[i]].type;
+    }
+    if (!graph_op_type(op, types, arity)) {
+        const char *wanted = op == OP_cross ? "two vectors of 3" : "two vectors of one length";
+        diag_add(e->diags, DIAG_LENGTH_MISMATCH, call->syntax->span, "`%s` needs %s", call->name,
+                 arity == 1 ? "a vector" : wanted);
+        return value_error();
+    }
+    e->graph->here = call->syntax->span;
+    return value_of_node(e, graph_op(e->graph, op, nodes));
+}
+
+static Value builtin_length(Elaboration *e, Call *call) { return vector_op(e, call, OP_length, 1); }
+static Value builtin_dot(Elaboration *e, Call *call) { return vector_op(e, call, OP_dot, 2); }
+static Value builtin_cross(Elaboration *e, Call *call) { return vector_op(e, call, OP_cross, 2); }
+
+static Value builtin_normalize(Elaboration *e, Call *call)
+{
+    return vector_op(e, call, OP_normalize, 1);
+}
+
+static Value builtin_distance(Elaboration *e, Call *call)
+{
+    Value offset = vector_op(e, call, OP_sub, 2);
+    if (offset.type == VALUE_ERROR)
+        return offset;
+    return value_of_node(e, graph_op1(e->graph, OP_length, value_node(e, offset)));
+}
+
+static Value scaled(Elaboration *e, Call *call, double factor)
+{
+    Value values[] = {call->arguments[0].value, value_number(factor)};
+    if (want_numeric(e, call, 0) == NODE_NONE)
+        return value_error();
+    return value_map_op(e, OP_mul, values, 2, call->syntax);
+}
+
+static Value builtin_radians(Elaboration *e, Call *call) { return scaled(e, call, M_PI / 180); }
+static Value builtin_degrees(Elaboration *e, Call *call) { return scaled(e, call, 180 / M_PI); }
+
+/* ---- maps ---- */
+
+static Value builtin_translate(Elaboration *e, Call *call)
+{
+    return value_map(want_translation(e, call));
+}
+
+static Value builtin_rotate(Elaboration *e, Call *call)
+{
+    return value_map(want_rotation(e, call));
+}
+
+static Value builtin_scale(Elaboration *e, Call *call) { return value_map(want_scaling(e, call)); }
+
+static Value builtin_reflect(Elaboration *e, Call *call)
+{
+    Node normal, offset;
+    if (!want_plane(e, call, &normal, &offset))
+        return value_error();
+    return value_map(map_reflection(e->builder, normal, offset));
+}
+
+static Value builtin_invert(Elaboration *e, Call *call)
+{
+    static const double ORIGIN[3] = {0, 0, 0};
+    Node center = want_vector(e, call, 0, ORIGIN), radius = want_number(e, call, 1, 1);
+    if (center == NODE_NONE || radius == NODE_NONE)
+        return value_error();
+    if (is_given(call, 1) &&
+        !check_positive(e, radius, call->arguments[1].syntax, "the radius of an inversion"))
+        return value_error();
+    return value_map(map_inversion(e->builder, center, radius));
+}
+
+/* A real number, or a list of four; false: reported. */
+static bool quaternion_argument(Elaboration *e, const Call *call, uint32_t index, double entry[4])
+{
+    const Argument *argument = &call->arguments[index];
+    entry[0] = entry[1] = entry[2] = entry[3] = 0;
+    if (value_size(e, argument->value) == 1)
+        return want_constant(e, call, index, entry);
+    if (argument->value.type == VALUE_LIST && value_size(e, argument->value) == 4) {
+        Call one = *call;
+        for (size_t i = 0; i < 4; i++) {
+            one.arguments[index].value = argument->value.list->items[i];
+            if (!want_constant(e, &one, index, &entry[i]))
+                return false;
+        }
+        return true;
+    }
+    if (argument->value.type == VALUE_EXPRESSION)
+        constant_error(e, argument->syntax,
+                       "the entries of a matrix must be known at compile time");
+    else
+        type_error(e, argument->syntax, argument->value, "a quaternion, [re, i, j, k]");
+    return false;
+}
+
+static Value builtin_matrix(Elaboration *e, Call *call)
+{
+    double      entries[4][4];
+    const char *reason;
+    for (uint32_t i = 0; i < 4; i++)
+        if (!quaternion_argument(e, call, i, entries[i]))
+            return value_error();
+    const Map *map = map_of_matrix(e->builder, (const double(*)[4])entries, &reason);
+    if (map)
+        return value_map(map);
+    Diag *diag  = diag_add(e->diags, DIAG_NOT_A_MAP, call->syntax->span,
+                           "this matrix does not map space to space");
+    diag->label = reason;
+    diag->help  = "products of `translate`, `rotate`, `scale`, `reflect` and `invert` are all the "
+                  "maps there are";
+    return value_error();
+}
+
+/* Left minus right of `left == right`; a surface needs no more. */
+static Value builtin_algebraic(Elaboration *e, Call *call)
+{
+    const Argument *equation = &call->arguments[0];
+    Value           value    = equation->value;
+    const Expr     *expr     = value.type == VALUE_EXPRESSION ? &e->graph->items[value.node] : NULL;
+    if (!expr || expr->op != OP_equal) {
+        if (value.type == VALUE_ERROR)
+            return value;
+        Diag *diag  = diag_add(e->diags, DIAG_TYPE_MISMATCH, equation->syntax->span,
+                               "`algebraic` needs an equation of x, y and z");
+        diag->label = "no `==` of expressions of the point";
+        diag->help  = "write `algebraic(x^2 + y^2 + z^2 == 1)`";
+        return value_error();
+    }
+    Node left = expr->operands[0], right = expr->operands[1];
+    Node formula = graph_op2(e->graph, OP_sub, left, right);
+    return value_shape(make_field(e->builder, formula, true, call->syntax->span));
+}
+
+static Value builtin_field(Elaboration *e, Call *call)
+{
+    const Argument *argument = &call->arguments[0];
+    if (value_size(e, argument->value) != 1) {
+        type_error(e, argument->syntax, argument->value, "a number at every point");
+        return value_error();
+    }
+    Node formula = value_node(e, argument->value);
+    return value_shape(make_field(e->builder, formula, false, call->syntax->span));
+}
+
+static Value builtin_not_supported(Elaboration *e, Call *call)
+{
+    not_supported(e, call->syntax->span, diag_text(e->diags, "`%s`", call->name));
+    return value_error();
+}
+
+/* ---- tables ---- */
+
+static const Builtin builtins[] = {
+#define NUMERIC(name, parameters, op, meaning) {#name, parameters, OP_##op, NULL},
+#define SPECIAL(name, parameters, function, meaning) \
+    {#name, parameters, OP_COUNT, builtin_##function},
+#include "compiler/eval/functions.def"
+#undef NUMERIC
+#undef SPECIAL
+};
+enum { BUILTIN_COUNT = sizeof builtins / sizeof *builtins };
+
+const Builtin *builtin_find(const char *name)
+{
+    for (size_t i = 0; i < BUILTIN_COUNT; i++)
+        if (strcmp(builtins[i].name, name) == 0)
+            return &builtins[i];
+    return NULL;
+}
+
+static const char *const constants[] = {
+    "pi",       "tau", "x", "y",      "z",        "p",          "time",       "level",
+    "instance", "u",   "v", "normal", "identity", "orbit_trap", "orbit_step", "rounding"};
+enum { CONSTANT_COUNT = sizeof constants / sizeof *constants };
+
+size_t builtin_names(const char **names, size_t capacity)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < BUILTIN_COUNT && count < capacity; i++)
+        names[count++] = builtins[i].name;
+    for (size_t i = 0; i < CONSTANT_COUNT && count < capacity; i++)
+        names[count++] = constants[i];
+    return count;
+}
+
+/* level, instance, u, v, normal, orbit_trap and orbit_step: in materials only. */
+static Value material_name(Elaboration *e, const char *name, Span span)
+{
+    if (!e->in_material) {
+        Diag *diag  = diag_add(e->diags, DIAG_OUT_OF_PLACE, span,
+                               "`%s` has a meaning in materials only", name);
+        diag->label = "not in a material";
+        return value_error();
+    }
+    if (strcmp(name, "level") == 0)
+        return value_of_node(e, graph_leaf(e->graph, OP_LEVEL));
+    if (strcmp(name, "normal") == 0)
+        return value_of_node(e, graph_leaf(e->graph, OP_NORMAL));
+    if (strlen(name) == 1) {
+        Node uv = graph_leaf(e->graph, OP_UV);
+        return value_of_node(e, graph_component(e->graph, uv, name[0] == 'v'));
+    }
+    if (strncmp(name, "orbit", 5) == 0) {
+        Node trap = graph_leaf(e->graph, OP_TRAP);
+        return value_of_node(e, graph_component(e->graph, trap, strcmp(name, "orbit_step") == 0));
+    }
+    Node instance = graph_leaf(e->graph, OP_INSTANCE);
+    return value_of_node(e, graph_op1(e->graph, OP_id_unit, instance));
+}
+
+/* The radius of .round(r), in `core:` of a shape declaration only. */
+static Value rounding_name(Elaboration *e, Span span)
+{
+    if (e->rounding != NODE_NONE)
+        return value_of_node(e, e->rounding);
+    Diag *diag  = diag_add(e->diags, DIAG_OUT_OF_PLACE, span,
+                           "`rounding` has a meaning in `core:` only");
+    diag->label = "not in the core of a shape declaration";
+    return value_error();
+}
+
+static Value coordinate(Elaboration *e, uint32_t axis)
+{
+    Node point = graph_leaf(e->graph, OP_POINT);
+    return value_of_node(e, graph_component(e->graph, point, axis));
+}
+
+bool builtin_constant(Elaboration *e, const char *name, Span span, Value *value)
+{
+    Graph *g = e->graph;
+    if (strcmp(name, "pi") == 0)
+        *value = value_number(M_PI);
+    else if (strcmp(name, "tau") == 0)
+        *value = value_number(2 * M_PI);
+    else if (strlen(name) == 1 && name[0] >= 'x' && name[0] <= 'z')
+        *value = coordinate(e, (uint32_t)(name[0] - 'x'));
+    else if (strcmp(name, "p") == 0)
+        *value = value_of_node(e, graph_leaf(g, OP_POINT));
+    else if (strcmp(name, "time") == 0)
+        *value = value_of_node(e, graph_parameter(g, 0, TYPE_FLOAT));
+    else if (strcmp(name, "level") == 0 || strcmp(name, "instance") == 0 ||
+             strcmp(name, "u") == 0 || strcmp(name, "v") == 0 || strcmp(name, "normal") == 0 ||
+             strcmp(name, "orbit_trap") == 0 || strcmp(name, "orbit_step") == 0)
+        *value = material_name(e, name, span);
+    else if (strcmp(name, "rounding") == 0)
+        *value = rounding_name(e, span);
+    else if (strcmp(name, "identity") == 0)
+        *value = value_map(map_identity(e->builder));
+    else
+        return false;
+    return true;
+}

@@ -1,0 +1,478 @@
+/*
+ * claims.c: the claims of a declaration, put to the test by sampling when it is first used.
+ *
+ * Pairs of near points refute a slope, single points a solid outside of `within`.  The other claims
+ * are pairs of numbers that are nowhere above 0 both (claims.h).  Where such a pair is above 0 may
+ * be thin, but it then lies at the surface of one of the two.  So between any two samples on
+ * different sides of a surface the surface is found by halving, and its sides are looked at.
+ */
+#include "compiler/eval/claims.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "compiler/eval/elaborate.h"
+#include "compiler/graph/evaluate.h"
+#include "compiler/lower/context.h"
+#include "compiler/shape/slope.h"
+
+/* ---- claims as pairs of numbers ---- */
+
+/* A declared shape, or one that was moved. */
+static const Shape *declared_in(const Shape *shape)
+{
+    while (shape->kind == SHAPE_TRANSFORM)
+        shape = shape->children[0];
+    return shape;
+}
+
+static void add_claim(ShapeClaims *claims, const Shape *shape, const char *property,
+                      const char *wrong, Node a, Node b)
+{
+    const Shape *declared          = declared_in(shape);
+    Span         span              = find_property(declared->declaration->syntax, property)->span;
+    claims->items[claims->count++] = (ShapeClaim){property, wrong, a, b, declared, span};
+}
+
+/* A number of a plane figure is the same at every z. */
+static void claim_flat(Graph *g, ShapeClaims *claims, const Shape *shape, Node number,
+                       const char *wrong, Arena *scratch)
+{
+    Node zero = graph_number(g, 0), point = graph_leaf(g, OP_POINT);
+    Node x = graph_component(g, point, 0), y = graph_component(g, point, 1);
+    Node flat  = graph_op3(g, OP_vec3, x, y, zero);
+    Node other = graph_substitute(g, number, substitute_point(flat), scratch);
+    if (other == number)
+        return;
+    Node change = graph_op2(g, OP_sub, number, other);
+    change      = graph_op1(g, OP_abs, change);
+    add_claim(claims, shape, "figure", wrong, change, change);
+}
+
+static void claim_figure(Graph *g, ShapeClaims *claims, const Shape *shape, Arena *scratch)
+{
+    claim_flat(g, claims, shape, shape->declared, "its `distance` changes with z", scratch);
+    if (shape->bound != NODE_NONE)
+        claim_flat(g, claims, shape, shape->bound, "its `bound` changes with z", scratch);
+    for (uint32_t i = 0; i < 2 && shape->uv != NODE_NONE; i++)
+        claim_flat(g, claims, shape, graph_component(g, shape->uv, i), "its `uv` changes with z",
+                   scratch);
+}
+
+static void claim_plane(Graph *g, ShapeClaims *claims, const Shape *shape)
+{
+    Node point  = graph_leaf(g, OP_POINT);
+    Node size   = graph_op1(g, OP_length, shape->plane_normal);
+    Node height = graph_op2(g, OP_dot, shape->plane_normal, point);
+    height      = graph_op2(g, OP_sub, height, shape->plane_offset);
+    height      = graph_op2(g, OP_div, height, size);
+    Node depth = graph_op1(g, OP_neg, height), inside = graph_op1(g, OP_neg, shape->distance);
+    add_claim(claims, shape, "plane", "it is solid outside of the half-space", height, inside);
+    add_claim(claims, shape, "plane", "it is empty inside of the half-space", depth,
+              shape->distance);
+}
+
+/* The distance of a shape where an offset is above it. */
+static Node offset_distance(Graph *g, const Shape *shape, Arena *scratch)
+{
+    Lowering l   = {.graph = g, .scratch = scratch, .most = g->count + MOST_LOWERED};
+    Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(g, OP_POINT), true));
+    return l.overflow || all.distance == NODE_NONE ? NODE_NONE
+                                                   : divide_by_slope(g, all.distance, shape->slope);
+}
+
+/* The core is what is deeper than `rounding` in the shape: nothing less, and grown by `rounding` it
+   stays within the shape.  The distances have slope 1, so one that is below -rounding at a point
+   has a ball of that radius around it. */
+static void claim_core(Graph *g, ShapeClaims *claims, const Shape *shape, const Shape *core,
+                       Node rounding, Arena *scratch)
+{
+    Node outer = offset_distance(g, shape, scratch), inner = offset_distance(g, core, scratch);
+    if (outer == NODE_NONE || inner == NODE_NONE)
+        return;
+    Node grown = graph_op2(g, OP_sub, rounding, inner);
+    Node deep  = graph_op1(g, OP_neg, graph_op2(g, OP_add, outer, rounding));
+    add_claim(claims, shape, "core", "grown by `rounding` it is outside of the shape", grown,
+              outer);
+    add_claim(claims, shape, "core", "it leaves out what is deeper in the shape than `rounding`",
+              deep, inner);
+}
+
+ShapeClaims claims_of(Graph *graph, const Shape *shape, Arena *scratch)
+{
+    ShapeClaims claims = {.count = 0};
+    if (shape->kind == SHAPE_OFFSET && shape->rounded)
+        claim_core(graph, &claims, shape->rounded, shape->children[0], shape->values[0], scratch);
+    if (shape->kind != SHAPE_PRIMITIVE || !shape->declaration)
+        return claims;
+    if (shape->figure)
+        claim_figure(graph, &claims, shape, scratch);
+    if (shape->plane_normal != NODE_NONE)
+        claim_plane(graph, &claims, shape);
+    if (shape->bound != NODE_NONE) {
+        Node inside = graph_op1(graph, OP_neg, shape->distance);
+        add_claim(&claims, shape, "bound", "it is above 0 inside of the shape", shape->bound,
+                  inside);
+    }
+    return claims;
+}
+
+/* ---- samples ---- */
+
+enum { SAMPLES = 400 };
+
+/* What is sampled: numbers at points of a box, at the default values of the parameters. */
+typedef struct Sampling {
+    Tape       tape;
+    NodeValue *values;
+    Box        around;
+    double     size, rounding;
+    bool       flat; /* z stays 0 */
+} Sampling;
+
+/* Points for sampling: a fixed sequence (Roberts' R3), spread over a box. */
+static void sample_point(uint32_t index, Box box, double point[3])
+{
+    static const double steps[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+    for (int i = 0; i < 3; i++) {
+        double t = fmod(0.5 + (index + 1) * steps[i], 1);
+        point[i] = box.axis[i].low + t * (box.axis[i].high - box.axis[i].low);
+    }
+}
+
+static void parameter_values(const Elaboration *e, NodeValue *values)
+{
+    for (size_t i = 0; i < e->scene->parameters.count; i++) {
+        const Parameter *parameter = &e->scene->parameters.items[i];
+        memcpy(values[parameter->slot].v, parameter->value, sizeof parameter->value);
+    }
+}
+
+/* False: the box is so large that check_extent refuses it, in better words. */
+static bool start_sampling(Elaboration *e, Sampling *s, const Node *roots, size_t count, Box box)
+{
+    NodeValue *parameters = arena_new_array(e->scratch, NodeValue, e->graph->parameters.count);
+    s->tape               = tape_new(e->graph, roots, count, e->scratch);
+    s->values             = arena_new_array(e->scratch, NodeValue, e->graph->count);
+    s->flat               = false;
+    parameter_values(e, parameters);
+    tape_run_frame(&s->tape, parameters, s->values);
+    s->around   = box_is_finite(box) ? box_grow(box, 0.3 * box_diagonal(box) + 0.1)
+                                     : (Box){{{-10, 10}, {-10, 10}, {-10, 10}}};
+    s->size     = box_diagonal(s->around);
+    s->rounding = 1e-9 * (1 + s->size);
+    return s->size < 1e100;
+}
+
+static void sample_at(const Sampling *s, double point[3])
+{
+    if (s->flat)
+        point[2] = 0;
+    tape_run_point(&s->tape, point, s->values);
+}
+
+static void refuse_claim(Elaboration *e, const Syntax *declaration, const char *claim,
+                         const char *found, const double point[3])
+{
+    const Syntax *syntax = find_property(declaration, claim);
+    Diag *diag  = diag_add(e->diags, DIAG_FALSE_CLAIM, syntax->span, "`%s` of `%s` is not true",
+                           claim, declaration->name);
+    diag->label = "claimed here";
+    diag_note(e->diags, diag,
+              diag_text(e->diags, "%s at [%.4g, %.4g, %.4g]", found, point[0], point[1], point[2]));
+    if (strcmp(claim, "exact") == 0)
+        diag->help =
+            "leave `exact` out: the compiler then derives a safe slope; where it is a bound "
+            "that rises no faster than the distance, claim `slope: 1`";
+}
+
+/* ---- slope and box ---- */
+
+/* Whether a point lies farther than `rounding` from the box of the shape. */
+static bool is_outside(const Shape *shape, const double point[3], double rounding)
+{
+    for (int i = 0; i < (shape->figure ? 2 : 3); i++) {
+        Range side = shape->box.axis[i];
+        if (point[i] < side.low - rounding || point[i] > side.high + rounding)
+            return true;
+    }
+    return false;
+}
+
+static bool check_slope_and_box(Elaboration *e, const Shape *shape, double slope)
+{
+    Node     distance = shape->declared;
+    bool     bounded  = find_property(shape->declaration->syntax, "within") != NULL;
+    Sampling s;
+    if (!start_sampling(e, &s, &distance, 1, shape->box))
+        return true;
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        double a[3], b[3], moved = 0;
+        sample_point(i, s.around, a);
+        sample_point(i + 7 * SAMPLES, (Box){{{-1, 1}, {-1, 1}, {-1, 1}}}, b);
+        for (int k = 0; k < 3; k++) {
+            b[k] = shape->figure && k == 2 ? a[k] : a[k] + b[k] * s.size * (i % 2 ? 0.1 : 1e-4);
+            moved += (b[k] - a[k]) * (b[k] - a[k]);
+        }
+        sample_at(&s, a);
+        double at_a = s.values[distance].v[0];
+        sample_at(&s, b);
+        double at_b = s.values[distance].v[0];
+        if (slope > 0 && !(fabs(at_a - at_b) <= slope * sqrt(moved) * (1 + 1e-6) + s.rounding)) {
+            const char *found = diag_text(e->diags, "its slope is %.4g",
+                                          fabs(at_a - at_b) / sqrt(moved));
+            refuse_claim(e, shape->declaration->syntax, shape->exact ? "exact" : "slope", found, a);
+            return false;
+        }
+        if (bounded && at_a < -s.rounding && is_outside(shape, a, s.rounding)) {
+            refuse_claim(e, shape->declaration->syntax, "within",
+                         "there is something outside of it", a);
+            return false;
+        }
+    }
+    return true;
+}
+
+/* ---- exact ---- */
+
+/* The unit gradient of a number; false: it is flat there. */
+static bool gradient_at(const Sampling *s, Node number, const double point[3], double gradient[3])
+{
+    double step = 1e-6 * s->size, length = 0;
+    for (int i = 0; i < 3; i++) {
+        double after[3], before[3];
+        memcpy(after, point, sizeof after);
+        memcpy(before, point, sizeof before);
+        after[i] += step;
+        before[i] -= step;
+        sample_at(s, after);
+        gradient[i] = s->values[number].v[0];
+        sample_at(s, before);
+        gradient[i] -= s->values[number].v[0];
+        length = hypot(length, gradient[i]);
+    }
+    for (int i = 0; i < 3; i++)
+        gradient[i] /= length > 0 ? length : 1;
+    return length > 0 && isfinite(length);
+}
+
+/* From outside, the surface lies against the gradient, as far away as an exact distance says. */
+static bool check_exact(Elaboration *e, const Shape *shape)
+{
+    Node     distance = shape->declared;
+    Sampling s;
+    if (!start_sampling(e, &s, &distance, 1, shape->box))
+        return true;
+    s.flat = shape->figure;
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        double point[3], gradient[3], end[3];
+        sample_point(i, s.around, point);
+        sample_at(&s, point);
+        double length = s.values[distance].v[0];
+        if (!(length > 0) || !gradient_at(&s, distance, point, gradient))
+            continue;
+        for (int k = 0; k < 3; k++)
+            end[k] = point[k] - length * gradient[k];
+        sample_at(&s, end);
+        double rest = s.values[distance].v[0];
+        if (rest <= 1e-4 * length + 1e-5 * s.size)
+            continue;
+        const char *found = diag_text(e->diags,
+                                      "the surface is not %.4g away, as it says, but "
+                                      "farther,",
+                                      length);
+        refuse_claim(e, shape->declaration->syntax, "exact", found, point);
+        return false;
+    }
+    return true;
+}
+
+/* ---- pairs of numbers ---- */
+
+/* Brings two points with different signs of a number to a millionth of the size, at its surface. */
+static void find_surface(const Sampling *s, Node number, double above[3], double below[3])
+{
+    double middle[3], separation;
+    do {
+        separation = 0;
+        for (int i = 0; i < 3; i++) {
+            middle[i]  = 0.5 * (above[i] + below[i]);
+            separation = fmax(separation, fabs(above[i] - below[i]));
+        }
+        sample_at(s, middle);
+        memcpy(s->values[number].v[0] > 0 ? above : below, middle, sizeof middle);
+    } while (separation > 1e-6 * s->size);
+}
+
+static bool refutes(const Sampling *s, const ShapeClaim *claim, double point[3])
+{
+    sample_at(s, point);
+    return s->values[claim->a].v[0] > s->rounding && s->values[claim->b].v[0] > s->rounding;
+}
+
+/* At a sample, or at the surfaces of the two numbers between it and the one before. */
+static bool refutes_between(const Sampling *s, const ShapeClaim *claim, const double before[3],
+                            double point[3])
+{
+    const Node numbers[2] = {claim->a, claim->b};
+    double     last[3], now[3];
+    if (refutes(s, claim, point))
+        return true;
+    for (int i = 0; i < 2; i++) {
+        memcpy(last, before, sizeof last);
+        memcpy(now, point, sizeof now);
+        sample_at(s, last);
+        bool was = s->values[numbers[i]].v[0] > 0;
+        sample_at(s, now);
+        if (was == (s->values[numbers[i]].v[0] > 0))
+            continue;
+        find_surface(s, numbers[i], was ? last : now, was ? now : last);
+        if (refutes(s, claim, last) || refutes(s, claim, now)) {
+            memcpy(point, refutes(s, claim, last) ? last : now, sizeof now);
+            return true;
+        }
+    }
+    return false;
+}
+
+/* `shape`: whose points they are. */
+static bool check_pairs(Elaboration *e, const Shape *shape, const ShapeClaims *claims)
+{
+    Node     roots[2 * MOST_SHAPE_CLAIMS];
+    Sampling s;
+    for (uint32_t i = 0; i < claims->count; i++) {
+        roots[2 * i]     = claims->items[i].a;
+        roots[2 * i + 1] = claims->items[i].b;
+    }
+    if (claims->count == 0 || !start_sampling(e, &s, roots, 2 * claims->count, shape->box))
+        return true;
+    for (uint32_t k = 0; k < claims->count; k++) {
+        const ShapeClaim *claim = &claims->items[k];
+        s.flat                  = shape->figure && strcmp(claim->property, "figure") != 0;
+        for (uint32_t i = 0; i < SAMPLES; i++) {
+            double before[3], point[3];
+            sample_point(i, s.around, before);
+            sample_point(i + 1, s.around, point);
+            if (!refutes_between(&s, claim, before, point))
+                continue;
+            refuse_claim(e, shape->declaration->syntax, claim->property, claim->wrong, point);
+            return false;
+        }
+    }
+    return true;
+}
+
+/* ---- at the surface ---- */
+
+/* Places of the surface, a millionth of the size inside of it at most. */
+typedef struct Surfaces {
+    double   points[SAMPLES][3];
+    uint32_t count;
+} Surfaces;
+
+static void find_surfaces(const Sampling *s, Node distance, Surfaces *surfaces)
+{
+    surfaces->count = 0;
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        double a[3], b[3];
+        sample_point(i, s->around, a);
+        sample_point(i + 1, s->around, b);
+        sample_at(s, a);
+        bool outside = s->values[distance].v[0] > 0;
+        sample_at(s, b);
+        if (outside == (s->values[distance].v[0] > 0))
+            continue;
+        find_surface(s, distance, outside ? a : b, outside ? b : a);
+        memcpy(surfaces->points[surfaces->count++], outside ? b : a, sizeof a);
+    }
+}
+
+/* The distance from a point to the nearest point of the surface. */
+static double distance_to(const Surfaces *surfaces, const double p[3])
+{
+    double least = HUGE_VAL;
+    for (uint32_t i = 0; i < surfaces->count; i++) {
+        const double *at = surfaces->points[i];
+        least            = fmin(least, hypot(hypot(at[0] - p[0], at[1] - p[1]), at[2] - p[2]));
+    }
+    return least;
+}
+
+/* A `bound` is no larger than the distance to any point of the surface. */
+static bool check_bound(Elaboration *e, const Shape *shape, const Sampling *s,
+                        const Surfaces *surfaces)
+{
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        double point[3];
+        sample_point(i, s->around, point);
+        sample_at(s, point);
+        double bound = s->values[shape->bound].v[0];
+        if (!(s->values[shape->distance].v[0] > 0))
+            continue;
+        double length = distance_to(surfaces, point);
+        if (bound <= length * (1 + 1e-6) + 1e-6 * s->size)
+            continue;
+        const char *found = diag_text(e->diags, "it is %.4g, and the surface %.4g away,", bound,
+                                      length);
+        refuse_claim(e, shape->declaration->syntax, "bound", found, point);
+        return false;
+    }
+    return true;
+}
+
+static bool check_uv(Elaboration *e, const Shape *shape, const Sampling *s, Surfaces *surfaces)
+{
+    for (uint32_t i = 0; i < surfaces->count; i++) {
+        sample_at(s, surfaces->points[i]);
+        if (node_value_is_finite(e->graph, shape->uv, s->values))
+            continue;
+        refuse_claim(e, shape->declaration->syntax, "uv", "it is not finite", surfaces->points[i]);
+        return false;
+    }
+    return true;
+}
+
+static bool check_at_surface(Elaboration *e, const Shape *shape)
+{
+    Node     roots[3] = {shape->distance};
+    size_t   count    = 1;
+    Sampling s;
+    Surfaces surfaces;
+    if (shape->bound != NODE_NONE)
+        roots[count++] = shape->bound;
+    if (shape->uv != NODE_NONE)
+        roots[count++] = shape->uv;
+    if (count == 1 || !start_sampling(e, &s, roots, count, shape->box))
+        return true;
+    s.flat = shape->figure;
+    find_surfaces(&s, shape->distance, &surfaces);
+    return (shape->bound == NODE_NONE || check_bound(e, shape, &s, &surfaces)) &&
+           (shape->uv == NODE_NONE || check_uv(e, shape, &s, &surfaces));
+}
+
+bool is_of_library(const Elaboration *e, const Shape *shape)
+{
+    return e->sources->items[shape->declaration->syntax->span.source].library;
+}
+
+bool check_claims(Elaboration *e, const Shape *shape, double slope)
+{
+    if (!check_slope_and_box(e, shape, slope))
+        return false;
+    if (is_of_library(e, shape))
+        return true;
+    ShapeClaims claims = claims_of(e->graph, shape, e->scratch);
+    return (!shape->exact || check_exact(e, shape)) && check_pairs(e, shape, &claims) &&
+           check_at_surface(e, shape);
+}
+
+bool check_core(Elaboration *e, const Shape *shape, const Shape *core, Node rounding)
+{
+    ShapeClaims claims = {.count = 0};
+    if (is_of_library(e, shape))
+        return true;
+    claim_core(e->graph, &claims, shape, core, rounding, e->scratch);
+    bool good = check_pairs(e, shape, &claims);
+    arena_free(e->scratch);
+    return good;
+}

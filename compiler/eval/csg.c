@@ -1,0 +1,193 @@
+/*
+ * csg.c: the built-in functions that make one shape of several.
+ */
+#include "compiler/eval/elaborate.h"
+
+static const char *const blend_spellings[] = {
+#define BLEND(name, spelling, op, slope, bulge, meaning) spelling,
+#include "compiler/shape/blends.def"
+#undef BLEND
+};
+static const Choices blend_names = {
+    .noun    = "blend",
+    .wanted  = "the kind of a blend, a string",
+    .unknown = "unknown kind of blend",
+    .more    = "",
+    .items   = blend_spellings,
+    .count   = BLEND_COUNT,
+};
+
+static const char *const falloff_spellings[] = {
+#define FALLOFF(name, spelling, steepest, meaning) spelling,
+#include "compiler/shape/falloffs.def"
+#undef FALLOFF
+};
+static const Choices falloff_names = {
+    .noun    = "falloff",
+    .wanted  = "the name of a falloff, a string",
+    .unknown = "unknown falloff",
+    .more    = "",
+    .items   = falloff_spellings,
+    .count   = FALLOFF_COUNT,
+};
+
+/* The parameters `blend= kind= steps=`, of which `first` is the first.  False: reported. */
+static bool blend_arguments(Elaboration *e, const Call *call, uint32_t first, Blend *blend)
+{
+    uint32_t kind, steps;
+    *blend = blend_sharp;
+    if (!want_name(e, &call->arguments[first + 1], &blend_names, &kind) ||
+        !want_count(e, call, first + 2, 1, 64, 4, &steps))
+        return false;
+    blend->kind  = (BlendKind)kind;
+    blend->steps = graph_number(e->graph, steps);
+    if (!is_given(call, first))
+        return true;
+    Node width = want_number(e, call, first, 0);
+    if (width == NODE_NONE)
+        return false;
+    Range range = node_range(e->builder, width, 0);
+    if (range.low < 0) {
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[first].syntax->span,
+                               "the width of a blend cannot be negative");
+        diag->label = diag_text(e->diags, "this can be %g", range.low);
+        return false;
+    }
+    if (range.high != 0)
+        blend->width = width;
+    return true;
+}
+
+/* The shapes of a call: a shape, or the elements of a list.  False: reported, at `origin`. */
+static bool collect_shapes(Elaboration *e, const Call *call, Value value, const Syntax *origin,
+                           Values *shapes)
+{
+    if (value.type == VALUE_LIST) {
+        if (!check_shape_count(e, value.list, origin->span))
+            return false;
+        for (size_t i = 0; i < value.list->count; i++)
+            if (!collect_shapes(e, call, value.list->items[i], origin, shapes))
+                return false;
+        return true;
+    }
+    if (value.type != VALUE_SHAPE) {
+        type_error(e, origin, value, "shapes");
+        return false;
+    }
+    array_push(e->arena, shapes, value);
+    return true;
+}
+
+/* These shapes, if they are all solids or all figures; NULL: reported. */
+static const Shape **joinable_shapes(Elaboration *e, const Call *call, const Values *values)
+{
+    const Shape **shapes = arena_new_array(e->arena, const Shape *, values->count + 1);
+    for (size_t i = 0; i < values->count; i++) {
+        shapes[i] = values->items[i].shape;
+        if (shapes[i]->figure != shapes[0]->figure) {
+            Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, call->syntax->span,
+                                  "plane figures and solids cannot be joined");
+            diag->help = "make figures solid with `.extrude(height)` or `.revolve()`";
+            return NULL;
+        }
+    }
+    return shapes;
+}
+
+static Value join(Elaboration *e, const Call *call, ShapeKind kind, const Values *values,
+                  uint32_t first_option)
+{
+    Blend blend;
+    if (!blend_arguments(e, call, first_option, &blend))
+        return value_error();
+    if (values->count == 0 && kind != SHAPE_UNION) {
+        diag_add(e->diags, DIAG_MISSING_ARGUMENT, call->syntax->span,
+                 "`%s` needs at least one shape", call->name);
+        return value_error();
+    }
+    const Shape **shapes = joinable_shapes(e, call, values);
+    if (!shapes)
+        return value_error();
+    uint32_t count = (uint32_t)values->count;
+    return value_shape(make_joint(e->builder, kind, shapes, count, blend, call->syntax->span));
+}
+
+static Value join_rest(Elaboration *e, Call *call, ShapeKind kind)
+{
+    Values shapes = {0};
+    if (is_given(call, 0) &&
+        !collect_shapes(e, call, call->arguments[0].value, call->arguments[0].syntax, &shapes))
+        return value_error();
+    for (uint32_t i = 0; i < call->rest_count; i++)
+        if (!collect_shapes(e, call, call->rest[i].value, call->rest[i].syntax, &shapes))
+            return value_error();
+    return join(e, call, kind, &shapes, 1);
+}
+
+Value builtin_union(Elaboration *e, Call *call) { return join_rest(e, call, SHAPE_UNION); }
+
+Value builtin_intersection(Elaboration *e, Call *call)
+{
+    return join_rest(e, call, SHAPE_INTERSECTION);
+}
+
+Value builtin_difference(Elaboration *e, Call *call)
+{
+    return join_rest(e, call, SHAPE_DIFFERENCE);
+}
+
+Value builtin_xor(Elaboration *e, Call *call)
+{
+    const Shape *a = want_shape(e, call, 0), *b = want_shape(e, call, 1);
+    if (!a || !b)
+        return value_error();
+    Value  pair[] = {call->arguments[0].value, call->arguments[1].value};
+    Values values = {pair, 2, 2};
+    return join(e, call, SHAPE_XOR, &values, 2);
+}
+
+Value builtin_morph(Elaboration *e, Call *call)
+{
+    const Shape *a = want_shape(e, call, 0), *b = want_shape(e, call, 1);
+    Node         t = want_number(e, call, 2, 0);
+    if (!a || !b || t == NODE_NONE)
+        return value_error();
+    Range range = node_range(e->builder, t, 0);
+    if (range.low < 0 || range.high > 1) {
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, call->arguments[2].syntax->span,
+                               "`t` of `morph` must stay in [0, 1]");
+        diag->label = diag_text(e->diags, "this goes from %g to %g", range.low, range.high);
+        return value_error();
+    }
+    return value_shape(make_morph(e->builder, a, b, t, call->syntax->span));
+}
+
+/* A number above 0; NODE_NONE: reported. */
+static Node want_positive(Elaboration *e, const Call *call, uint32_t index, double otherwise,
+                          const char *what)
+{
+    Node node = want_number(e, call, index, otherwise);
+    if (node == NODE_NONE || !is_given(call, index) ||
+        check_positive(e, node, call->arguments[index].syntax, what))
+        return node;
+    return NODE_NONE;
+}
+
+Value builtin_meta(Elaboration *e, Call *call)
+{
+    Values          values = {0};
+    uint32_t        falloff;
+    const Argument *list = &call->arguments[0];
+    if (!collect_shapes(e, call, list->value, list->syntax, &values) ||
+        !want_name(e, &call->arguments[2], &falloff_names, &falloff))
+        return value_error();
+    Node level = want_positive(e, call, 1, 0.5, "the level of a metasurface");
+    Node reach = want_positive(e, call, 3, 0.5, "the reach of a falloff");
+    if (level == NODE_NONE || reach == NODE_NONE)
+        return value_error();
+    const Shape **shapes = joinable_shapes(e, call, &values);
+    if (!shapes)
+        return value_error();
+    return value_shape(make_meta(e->builder, shapes, (uint32_t)values.count, level, reach,
+                                 (FalloffKind)falloff, call->syntax->span));
+}

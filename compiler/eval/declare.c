@@ -1,0 +1,266 @@
+/*
+ * declare.c: shapes declared in the language, the library's and the users' own.
+ *
+ * A declaration gives the distance as an expression of the point.  What it claims is put to the
+ * test when it is first used (claims.c).  Where no slope is claimed one is derived and the distance
+ * divided by it, so that every primitive is 1-Lipschitz from here on.
+ */
+#include "compiler/eval/elaborate.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char *const property_names[] = {"distance", "bound", "exact",  "slope", "within",
+                                             "uv",       "plane", "figure", "core",  "example"};
+enum { PROPERTY_COUNT = sizeof property_names / sizeof *property_names };
+
+static bool check_properties(Elaboration *e, const Syntax *declaration)
+{
+    bool good = true;
+    for (uint32_t i = 0; i < declaration->count; i++) {
+        const Syntax *property = declaration->children[i];
+        bool          known    = property->kind != SYNTAX_PROPERTY;
+        for (size_t k = 0; !known && k < PROPERTY_COUNT; k++)
+            known = strcmp(property->name, property_names[k]) == 0;
+        if (known)
+            continue;
+        Diag *diag        = diag_add(e->diags, DIAG_UNKNOWN_PROPERTY, property->name_span,
+                                     "a shape has no property `%s`", property->name);
+        diag->label       = "unknown property";
+        diag->replacement = nearest_name(property->name, property_names, PROPERTY_COUNT);
+        if (diag->replacement)
+            diag->help = "a property with a similar name exists";
+        note_names(e, diag, "its properties", property_names, PROPERTY_COUNT);
+        good = false;
+    }
+    return good;
+}
+
+/* A property that is a number at every point. */
+static Node field_property(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Value value = evaluate(e, env, syntax);
+    if (value_size(e, value) == 1)
+        return value_node(e, value);
+    type_error(e, syntax, value, "a number");
+    return NODE_NONE;
+}
+
+static bool flag_property(Elaboration *e, const Environment *env, const Syntax *declaration,
+                          const char *name)
+{
+    const Syntax *syntax = find_property(declaration, name);
+    if (!syntax)
+        return false;
+    Value value = evaluate(e, env, syntax);
+    if (value.type == VALUE_BOOLEAN)
+        return value.boolean;
+    /* What is true for some values of the parameters only cannot be claimed. */
+    if (value.type != VALUE_EXPRESSION || e->graph->items[value.node].type != TYPE_BOOL)
+        type_error(e, syntax, value, "true or false");
+    return false;
+}
+
+/* `slope`: a claimed bound on how fast the distance changes; 0 when there is none. */
+static bool slope_property(Elaboration *e, const Environment *env, const Syntax *declaration,
+                           double *slope)
+{
+    const Syntax *syntax = find_property(declaration, "slope");
+    *slope               = 0;
+    if (!syntax)
+        return true;
+    Value value = evaluate(e, env, syntax);
+    if (value.type == VALUE_NUMBER && value.number > 0) {
+        *slope = value.number;
+        return true;
+    }
+    type_error(e, syntax, value, "a constant number above 0");
+    return false;
+}
+
+/* `within`: a shape, or two corners. */
+static bool within_property(Elaboration *e, const Environment *env, const Syntax *declaration,
+                            Box *box)
+{
+    const Syntax *syntax = find_property(declaration, "within");
+    *box                 = box_infinite;
+    if (!syntax)
+        return true;
+    Value value = evaluate(e, env, syntax);
+    if (value.type == VALUE_SHAPE) {
+        *box = value.shape->box;
+        return true;
+    }
+    if (value.type == VALUE_LIST && value.list->count == 2) {
+        Node low  = to_vector(e, value.list->items[0], syntax, "`within`");
+        Node high = to_vector(e, value.list->items[1], syntax, "`within`");
+        for (uint32_t i = 0; low != NODE_NONE && high != NODE_NONE && i < 3; i++)
+            box->axis[i] = (Range){node_range(e->builder, low, i).low,
+                                   node_range(e->builder, high, i).high};
+        return low != NODE_NONE && high != NODE_NONE;
+    }
+    type_error(e, syntax, value, "a shape or a list of two corners");
+    return false;
+}
+
+static bool plane_property(Elaboration *e, const Environment *env, const Syntax *declaration,
+                           Shape *shape)
+{
+    const Syntax *syntax = find_property(declaration, "plane");
+    if (!syntax)
+        return true;
+    Value value = evaluate(e, env, syntax);
+    if (value.type == VALUE_LIST && value.list->count == 2) {
+        shape->plane_normal = to_vector(e, value.list->items[0], syntax, "the normal of a plane");
+        shape->plane_offset = to_number(e, value.list->items[1], syntax, "the offset of a plane");
+        return shape->plane_normal != NODE_NONE && shape->plane_offset != NODE_NONE &&
+               check_direction(e, shape->plane_normal, syntax, "the normal of a plane");
+    }
+    type_error(e, syntax, value, "a list of a normal and an offset");
+    return false;
+}
+
+/* A size of 0 or less leaves nothing to see, or a surface without an inside. */
+static void warn_if_empty(Elaboration *e, const Shape *shape)
+{
+    bool flat = false;
+    for (int i = 0; i < (shape->figure ? 2 : 3); i++)
+        flat = flat || !(shape->box.axis[i].low < shape->box.axis[i].high);
+    if (!flat || e->sources->items[shape->span.source].library)
+        return;
+    Diag *diag = diag_add(e->diags, DIAG_NO_EFFECT, shape->span, "this `%s` is empty", shape->name);
+    diag->label = "a size is 0 or less";
+}
+
+/* ---- slopes ---- */
+
+static void report_steep(Elaboration *e, const Syntax *declaration, const Syntax *distance,
+                         Span blame)
+{
+    Span  span  = blame.source ? blame : distance->span;
+    Diag *diag  = diag_add(e->diags, DIAG_STEEP, span, "the slope of `%s` has no bound",
+                           declaration->name);
+    diag->label = "this can change arbitrarily fast";
+    diag_secondary(e->diags, diag, distance->span, "the distance is this expression");
+    diag->help = "give the shape a bounded `within`, or keep this part away from divisions by "
+                 "zero and jumps";
+}
+
+bool needs_check(Elaboration *e, const Syntax *syntax)
+{
+    for (size_t i = 0; i < e->checked.count; i++)
+        if (e->checked.items[i] == syntax)
+            return false;
+    array_push(e->arena, &e->checked, syntax);
+    return true;
+}
+
+/* Two coordinates on the surface, which materials know as `u` and `v`. */
+static bool uv_property(Elaboration *e, const Environment *env, const Syntax *declaration,
+                        Shape *shape)
+{
+    const Syntax *syntax = find_property(declaration, "uv");
+    shape->without_uv    = syntax ? NULL : shape;
+    if (!syntax)
+        return true;
+    Value value = evaluate(e, env, syntax);
+    if (value_size(e, value) == 2)
+        shape->uv = value_node(e, value);
+    else
+        type_error(e, syntax, value, "a list of two numbers");
+    return shape->uv != NODE_NONE;
+}
+
+/* What the shape is, out of its properties. */
+static bool read_properties(Elaboration *e, const Environment *env, const Syntax *declaration,
+                            Shape *shape)
+{
+    const Syntax *bound = find_property(declaration, "bound");
+    shape->distance     = field_property(e, env, find_property(declaration, "distance"));
+    shape->figure       = flag_property(e, env, declaration, "figure");
+    shape->exact        = flag_property(e, env, declaration, "exact");
+    if (bound)
+        shape->bound = field_property(e, env, bound);
+    bool good = within_property(e, env, declaration, &shape->box) &&
+                plane_property(e, env, declaration, shape) &&
+                uv_property(e, env, declaration, shape) && shape->distance != NODE_NONE &&
+                (!bound || shape->bound != NODE_NONE);
+    if (good)
+        warn_if_empty(e, shape);
+    return good;
+}
+
+/* Makes the distance safe: by its claimed slope, which is put to the test, or a derived one. */
+static bool settle_slope(Elaboration *e, const Environment *env, const Syntax *declaration,
+                         bool first, Shape *shape)
+{
+    const Syntax *distance = find_property(declaration, "distance");
+    double        slope;
+    Span          blame;
+    shape->declared = shape->distance;
+    if (!slope_property(e, env, declaration, &slope))
+        return false;
+    slope = shape->exact ? 1 : slope;
+    if (slope > 0)
+        claim_slope(e->builder, shape, slope);
+    else if (!derive_slope(e->builder, shape, distance->span, &blame)) {
+        report_steep(e, declaration, distance, blame);
+        return false;
+    }
+    return !first || check_claims(e, shape, slope);
+}
+
+/* A core that no `.round` asks for yet is tried by a radius that is a tenth of the least side. */
+static bool try_core(Elaboration *e, const Shape *shape)
+{
+    double least = HUGE_VAL;
+    for (int i = 0; i < (shape->figure ? 2 : 3); i++)
+        least = fmin(least, shape->box.axis[i].high - shape->box.axis[i].low);
+    if (!(least > 0) || is_of_library(e, shape))
+        return true;
+    Node         radius = graph_number(e->graph, isfinite(least) ? 0.1 * least : 0.1);
+    const Shape *core   = declared_core(e, shape, radius);
+    return core && check_core(e, shape, core, radius);
+}
+
+const Shape *declared_core(Elaboration *e, const Shape *shape, Node rounding)
+{
+    Node outer  = e->rounding;
+    e->rounding = rounding;
+    Value core  = evaluate(e, &shape->declaration->names, shape->declaration->core);
+    e->rounding = outer;
+    if (core.type == VALUE_SHAPE && core.shape->figure == shape->figure)
+        return core.shape;
+    type_error(e, shape->declaration->core, core, shape->figure ? "a plane figure" : "a solid");
+    return NULL;
+}
+
+Value declare_instance(Elaboration *e, const Function *function, const Environment *env, Span span)
+{
+    const Syntax *declaration = function->syntax;
+    if (!find_property(declaration, "distance")) {
+        Diag *diag = diag_add(e->diags, DIAG_MISSING_ARGUMENT, declaration->name_span,
+                              "the shape `%s` has no `distance`", function->name);
+        diag->help = "add `distance: ...`, an expression of x, y, z that is negative inside";
+        return value_error();
+    }
+    bool first = needs_check(e, declaration);
+    if (first && !check_properties(e, declaration))
+        return value_error();
+
+    Shape *shape  = shape_new(e->builder, SHAPE_PRIMITIVE, function->name, span, NULL, 0);
+    Span   caller = e->graph->here;
+    struct Declaration *known = arena_new(e->arena, struct Declaration);
+    *known = (struct Declaration){declaration, find_property(declaration, "core"), *env};
+    shape->declaration = known;
+    if (!read_properties(e, env, declaration, shape) ||
+        !settle_slope(e, env, declaration, first, shape))
+        return value_error();
+    arena_free(e->scratch);
+    if (first && known->core && !try_core(e, shape))
+        return value_error();
+    if (shape->plane_normal != NODE_NONE && !is_of_library(e, shape))
+        array_push(e->arena, &e->scene->half_spaces, shape);
+    e->graph->here = caller;
+    return value_shape(shape);
+}

@@ -1,0 +1,341 @@
+/*
+ * elaborate.h: compile-time evaluation, from the syntax tree to the scene.
+ *
+ * Evaluation is eager and by value; only top-level definitions are evaluated when first needed,
+ * so that they may stand in any order.  A mistake is reported where it is found, its value is
+ * VALUE_ERROR, and everything that meets such a value stays silent, so that one run reports
+ * several independent mistakes.
+ *
+ * This header is for the files of this folder; the rest of the compiler calls elaborate() only.
+ */
+#ifndef KRS_ELABORATE_H
+#define KRS_ELABORATE_H
+
+#include "compiler/eval/value.h"
+#include "compiler/family/family.h"
+#include "compiler/front/files.h"
+#include "compiler/shape/scene.h"
+#include "compiler/shape/slope.h"
+
+typedef struct Binding {
+    const char           *name;
+    Value                 value;
+    const struct Binding *next; /* bound before, in this or an outer block */
+} Binding;
+
+typedef struct Environment Environment;
+struct Environment {
+    const Binding *locals;
+    struct Scope  *scope; /* the file whose top-level names are seen */
+};
+
+/* A top-level name. */
+typedef struct Definition {
+    const char   *name;
+    const Syntax *syntax;
+    struct Scope *scope;
+    enum { DEFINITION_NEW, DEFINITION_RUNNING, DEFINITION_DONE } state;
+    Value value;
+} Definition;
+
+/* A file, its definitions, and the files that it uses. */
+typedef struct Scope {
+    const Syntax *file;
+    Environment   environment; /* no locals, this scope */
+    struct {
+        Definition **items;
+        size_t       count, capacity;
+    } definitions;
+    Definition **slots; /* hash table by the address of the name */
+    size_t       slot_count;
+    struct {
+        struct Scope **items;
+        size_t         count, capacity;
+    } used;
+} Scope;
+
+typedef struct Elaboration {
+    ShapeBuilder *builder; /* with the arenas, diagnostics and graph that stand here as well */
+    Arena        *arena;   /* values, shapes and the scene */
+    Arena        *scratch;
+    Diags        *diags;
+    Sources      *sources;
+    Graph        *graph;
+    Scene        *scene;
+    Scope        *library; /* sees the files of the library */
+    struct {
+        Scope **items;
+        size_t  count, capacity;
+    } scopes; /* of the files, in their order */
+    /* Shape declarations whose claims have been put to the test. */
+    struct {
+        const Syntax **items;
+        size_t         count, capacity;
+    } single; /* sky, image, camera */
+    struct {
+        const Syntax **items;
+        size_t         count, capacity;
+    } checked;
+    uint64_t steps;        /* of evaluation, so far */
+    uint32_t depth, calls; /* how deep expressions and calls are nested now */
+    Node     rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
+    bool     in_material;  /* level, instance, u, v and normal have a meaning */
+} Elaboration;
+
+/* What a shape knows of the declaration that made it. */
+struct Declaration {
+    const Syntax *syntax;
+    const Syntax *core;  /* what .round(r) grows by r, using `rounding`; or NULL */
+    Environment   names; /* what that expression sees */
+};
+
+/* Whether a limit was reached: everything is an error from here, silently. */
+static inline bool is_stopped(const Elaboration *e) { return e->builder->stopped; }
+
+/* Evaluates the first of the files, whose names have been checked, into e->scene; e->scene is
+   complete unless e->diags has errors. */
+void elaborate(Elaboration *e, const Files *files);
+
+/* ---- scope.c ---- */
+/* Makes e->scopes of the files, and e->library of those that every scene sees. */
+void scopes_make(Elaboration *e, const Files *files);
+/* A definition of the file or of the files that it uses, or NULL. */
+Definition *scope_find(const Scope *scope, const char *name);
+
+/* How far from the origin shapes, cameras and lights may be: single precision, in which devices
+   compute, ends at 3e38, and its squares much earlier. */
+static const double MOST_EXTENT = 1e12;
+
+/* ---- expression.c ---- */
+/* VALUE_ERROR: a mistake was found, and has been reported. */
+Value evaluate(Elaboration *e, const Environment *env, const Syntax *syntax);
+/* A list's elements in turn: of a SYNTAX_RANGE without making the list.  False: reported. */
+typedef bool EachElement(Elaboration *e, Value element, void *user);
+bool evaluate_each(Elaboration *e, const Environment *env, const Syntax *syntax, EachElement *each,
+                   void *user);
+/* The environment with one more name, which hides any equal one. */
+Environment bind(Elaboration *e, const Environment *env, const char *name, Value value);
+/* Whether one may go through all shapes of a list and of the lists in it; false: reported. */
+bool check_shape_count(Elaboration *e, const List *list, Span span);
+/* The value of a top-level definition, evaluated when it is first needed, at `use`. */
+Value run_definition(Elaboration *e, Definition *definition, Span use);
+
+/* ---- arithmetic.c ---- */
+/* The operator `syntax->op` on values; types that it does not go with are reported. */
+Value value_unary(Elaboration *e, const Syntax *syntax, Value a);
+Value value_binary(Elaboration *e, const Syntax *syntax, Value a, Value b);
+/* `if` on a condition that is a node: both branches are there, one is chosen. */
+Value value_select(Elaboration *e, const Syntax *syntax, Value condition, Value yes, Value no);
+/* An operation that works element by element, on numbers and vectors whose types go together
+   (graph_op_type); `origin` is blamed for results that are not finite. */
+Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count,
+                   const Syntax *origin);
+/* A number, vector or truth value, plain where the node is constant. */
+Value value_of_node(Elaboration *e, Node node);
+/* Takes over `items`, which are in the arena. */
+Value value_list(Elaboration *e, Value *items, size_t count);
+Value value_vector(Elaboration *e, const double *numbers, uint32_t count);
+/* 1 for a number, 2 to 4 for a vector, 0 for anything else. */
+uint32_t value_size(const Elaboration *e, Value value);
+/* "a number", "a vector of 3", "a shape": for messages. */
+const char *value_type_name(Elaboration *e, Value value);
+/* The node of a number, vector or truth value; NODE_NONE when it is none of these. */
+Node value_node(Elaboration *e, Value value);
+/* The latest of its parts. */
+BindingTime value_time(const Elaboration *e, Value value);
+
+/* ---- arguments.c ---- */
+/* An argument as it arrived: its value and where it was written. */
+typedef struct Argument {
+    Value         value;
+    const Syntax *syntax; /* NULL: not given */
+} Argument;
+
+enum { MAX_PARAMETERS = 12 };
+
+/* A call of a built-in function or method, arguments in the order of its parameters.  What
+   stood in a variadic first parameter is gathered in `rest`. */
+typedef struct Call {
+    const Syntax *syntax; /* the whole call, or method call */
+    const char   *name;
+    Argument      arguments[MAX_PARAMETERS];
+    Argument     *rest;
+    uint32_t      rest_count;
+} Call;
+
+/*
+ * Each `want_` says what an argument must be, reports when it is not and then returns NODE_NONE,
+ * NULL or false.  A missing argument gives the default and no report.  Values that are VALUE_ERROR
+ * fail silently.
+ */
+
+/* What is chosen by a name: kinds of blends, palettes. */
+typedef struct Choices {
+    const char *noun, *wanted;  /* "blend"; "the kind of a blend, a string" */
+    const char *unknown, *more; /* label of another name; what follows the names in its help */
+    const char *const *items;
+    uint32_t           count;
+} Choices;
+
+/* Which one an argument names, the first without one. */
+bool want_name(Elaboration *e, const Argument *argument, const Choices *names, uint32_t *chosen);
+
+/* A FLOAT, or a VEC3, of frame time. */
+Node want_number(Elaboration *e, const Call *call, uint32_t index, double otherwise);
+Node want_vector(Elaboration *e, const Call *call, uint32_t index, const double otherwise[3]);
+bool want_count(Elaboration *e, const Call *call, uint32_t index, uint32_t least, uint32_t most,
+                uint32_t otherwise, uint32_t *count);
+const Shape *want_shape(Elaboration *e, const Call *call, uint32_t index);
+/* The node of a number or a vector. */
+Node want_numeric(Elaboration *e, const Call *call, uint32_t index);
+/* A number that is known at compile time; *number stays what it is when nothing was given. */
+bool want_constant(Elaboration *e, const Call *call, uint32_t index, double *number);
+/* True or false, known at compile time; *flag stays what it is when nothing was given. */
+bool want_flag(Elaboration *e, const Call *call, uint32_t index, bool *flag);
+/* The parameter "plane": its unit normal and offset. */
+bool want_plane(Elaboration *e, const Call *call, Node *normal, Node *offset);
+/* The map that the parameters "by", "axis angle" and "by" describe. */
+const Map *want_translation(Elaboration *e, const Call *call);
+const Map *want_rotation(Elaboration *e, const Call *call);
+const Map *want_scaling(Elaboration *e, const Call *call);
+/* The same for a value that stands anywhere; `what` names it: "`fov`", "this argument". */
+Node to_number(Elaboration *e, Value value, const Syntax *syntax, const char *what);
+Node to_vector(Elaboration *e, Value value, const Syntax *syntax, const char *what);
+bool is_given(const Call *call, uint32_t index);
+
+/* Reports a direction that is always the zero vector, or a size that can be 0 or less. */
+bool check_direction(Elaboration *e, Node vector, const Syntax *syntax, const char *what);
+bool check_positive(Elaboration *e, Node number, const Syntax *syntax, const char *what);
+/* Reports a number that can be infinite for some permitted value of the parameters. */
+bool check_finite(Elaboration *e, Node node, const Syntax *syntax);
+
+/* Sorts the arguments of a call into the parameters "a b= rest..."; false: reported.  `=` marks
+   an optional parameter, `...` one that takes all positional ones. */
+bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_syntax,
+                    uint32_t first, const char *name, const char *parameters, Call *call);
+
+/* Report; the strings of `parameters` must live as long as the diagnostics. */
+Diag *too_many_arguments(Elaboration *e, const Syntax *argument, const char *name, uint32_t count);
+Diag *missing_argument(Elaboration *e, const Syntax *call, const char *name, const char *parameter);
+void  unknown_parameter(Elaboration *e, const Syntax *argument, const char *name,
+                        const char *const *parameters, uint32_t count);
+/* Adds a note with the names that would be right: "its properties: eye, target". */
+void note_names(Elaboration *e, Diag *diag, const char *what, const char *const *names,
+                size_t count);
+/* A value of another type than `wanted` ("a number"); silent for VALUE_ERROR. */
+void type_error(Elaboration *e, const Syntax *syntax, Value found, const char *wanted);
+/* A value that must be known at compile time, and is not. */
+void constant_error(Elaboration *e, const Syntax *syntax, const char *message);
+/* A value that must be the same at every point, and is not; `what` names it. */
+void point_error(Elaboration *e, const Syntax *syntax, const char *what);
+/* What the language describes and this version does not have. */
+void not_supported(Elaboration *e, Span span, const char *what);
+/* "torus(major, minor)", for notes. */
+const char *signature(Elaboration *e, const char *name, const char *const *parameters,
+                      uint32_t count);
+/* If `syntax` is a top-level name, marks where it was defined as a second place of `diag`. */
+void point_at_definition(Elaboration *e, Diag *diag, const Syntax *syntax);
+
+/* ---- builtins.c ---- */
+typedef Value BuiltinFunction(Elaboration *e, Call *call);
+typedef struct Builtin {
+    const char      *name;
+    const char      *parameters;
+    Op               op;       /* of componentwise functions, else OP_COUNT */
+    BuiltinFunction *function; /* NULL: componentwise `op` */
+} Builtin;
+const Builtin *builtin_find(const char *name);
+/* A constant (pi, x, time); false when there is none of this name.  One that has no meaning at
+   this place is reported. */
+bool builtin_constant(Elaboration *e, const char *name, Span span, Value *value);
+/* All names that need no definition, for names_check; returns how many, at most `capacity`. */
+size_t builtin_names(const char **names, size_t capacity);
+
+/* ---- lists.c ---- */
+BuiltinFunction builtin_sum, builtin_product, builtin_any, builtin_all, builtin_least,
+    builtin_greatest, builtin_len, builtin_range;
+
+/* ---- random.c ---- */
+BuiltinFunction builtin_random, builtin_random_direction, builtin_noise, builtin_fbm;
+
+/* ---- csg.c ---- */
+BuiltinFunction builtin_union, builtin_intersection, builtin_difference, builtin_xor, builtin_morph,
+    builtin_meta;
+
+/* ---- fractal.c ---- */
+BuiltinFunction builtin_julia, builtin_mandelbulb;
+
+/* ---- functions.c ---- */
+/* Calls a function, or makes the shape of a declaration; `syntax` is the call. */
+Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax,
+                    const Function *function);
+
+/* ---- declare.c: shapes declared in the language ---- */
+/* The shape of a declaration whose parameters `env` binds; `span` is the call. */
+Value declare_instance(Elaboration *e, const Function *function, const Environment *env, Span span);
+/* Whether a declaration or property has not been put to the test yet; it counts as tested from
+   here on. */
+bool needs_check(Elaboration *e, const Syntax *syntax);
+
+/* What `core` is for this `rounding`; NULL: reported. */
+const Shape *declared_core(Elaboration *e, const Shape *shape, Node rounding);
+
+/* ---- claims.c: what declarations claim ---- */
+/* The library's claims hold for all sizes: tests search them, and compiling does not wait. */
+bool is_of_library(const Elaboration *e, const Shape *shape);
+/* Samples the claims of a declared shape at its sizes; `slope` is claimed, 0: none is.  False:
+   reported. */
+bool check_claims(Elaboration *e, const Shape *shape, double slope);
+/* The same of the `core` of a declared shape, for this `rounding`. */
+bool check_core(Elaboration *e, const Shape *shape, const Shape *core, Node rounding);
+
+/* ---- empty.c ---- */
+/* Warns of a component, shown at `span`, that is known to be empty. */
+void warn_if_nothing_is_left(Elaboration *e, const Shape *shape, const char *name, Span span);
+
+/* ---- methods.c ---- */
+Value call_method(Elaboration *e, const Environment *env, const Syntax *syntax);
+
+/* ---- palette.c ---- */
+Value method_color_by(Elaboration *e, const Shape *shape, Call *call);
+
+/* ---- properties.c: blocks with properties, and values of those ---- */
+/* Reports properties that a block of this kind may not have, and those that are given twice. */
+void check_block(Elaboration *e, const Syntax *block);
+/* "a camera", for messages. */
+const char *block_name(SyntaxKind kind);
+/* The value of `name:` in a block of properties, or NULL. */
+const Syntax *find_property(const Syntax *block, const char *name);
+/* A number or a vector that does not depend on the point; `otherwise` when it is not given, or is
+   of another type, which is reported. */
+Node number_property(Elaboration *e, const Environment *env, const Syntax *block, const char *name,
+                     double otherwise);
+Node vector_property(Elaboration *e, const Environment *env, const Syntax *block, const char *name,
+                     const double otherwise[3]);
+/* The same of a position, which must be near enough for devices to compute with. */
+Node position_property(Elaboration *e, const Environment *env, const Syntax *block,
+                       const char *name, const double otherwise[3]);
+/* A number that must be known when the scene is compiled, and lie in a range. */
+double constant_property(Elaboration *e, const Environment *env, const Syntax *block,
+                         const char *name, double least, double most, double otherwise);
+/* One of a few words, the last `later` of which are known but not in this version; NULL when it
+   is not given, or not one that is there. */
+const char *word_property(Elaboration *e, const Environment *env, const Syntax *block,
+                          const char *name, const char *const *words, size_t count, size_t later);
+
+/* ---- material.c ---- */
+Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *syntax);
+/* A material, or a colour that becomes one; NULL: reported. */
+const Material *to_material(Elaboration *e, Value value, const Syntax *syntax);
+
+/* ---- view.c: cameras, lights, sky, image, zones ---- */
+/* Adds a camera, a light or a zone to the scene, or sets its sky or image. */
+void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax);
+/* Adds what the scene leaves out: a camera, a sun, a sky. */
+void complete_view(Elaboration *e);
+
+/* ---- statements.c ---- */
+/* The shape of a `krs` block. */
+Value elaborate_krs(Elaboration *e, const Environment *env, const Syntax *syntax);
+
+#endif

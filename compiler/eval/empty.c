@@ -1,0 +1,125 @@
+/*
+ * empty.c: components of which nothing can be seen, as nothing is left of them.
+ *
+ * A box tells it, or the distance: where it is more than half the diagonal of a cell at the middle
+ * of the cell, nothing is in there.  Cells are halved until each is empty, or one has something in
+ * its middle.  What stays open is taken to be there.
+ */
+#include <math.h>
+
+#include "compiler/eval/elaborate.h"
+#include "compiler/graph/evaluate.h"
+#include "compiler/lower/context.h"
+#include "compiler/shape/slope.h"
+
+/* Of a component: operations on numbers, and cells that are open at once. */
+enum { MOST_OPERATIONS = 500000, MOST_CELLS = 64 };
+
+/* Placing and painting make nothing empty. */
+static const Shape *inside_wrappers(const Shape *shape)
+{
+    while (shape->kind == SHAPE_TRANSFORM || shape->kind == SHAPE_PAINT ||
+           shape->kind == SHAPE_SMOOTH)
+        shape = shape->children[0];
+    return shape;
+}
+
+static bool can_vanish(const Shape *shape)
+{
+    ShapeKind kind = shape->kind;
+    return kind == SHAPE_INTERSECTION || kind == SHAPE_DIFFERENCE || kind == SHAPE_KRS;
+}
+
+static bool needs_frame(const Tape *tape)
+{
+    for (size_t i = 0; i < tape->count; i++)
+        if (tape->graph->items[tape->nodes[i]].time == TIME_FRAME)
+            return true;
+    return false;
+}
+
+static double value_at(const Tape *tape, Node distance, const double point[3], NodeValue *values)
+{
+    tape_run_point(tape, point, values);
+    return values[distance].v[0];
+}
+
+/* The half of a box along its longest side. */
+static Box half_of(Box box, int half)
+{
+    int longest = 0;
+    for (int i = 1; i < 3; i++)
+        if (box.axis[i].high - box.axis[i].low > box.axis[longest].high - box.axis[longest].low)
+            longest = i;
+    Range *side                        = &box.axis[longest];
+    double middle                      = 0.5 * (side->low + side->high);
+    *(half ? &side->low : &side->high) = middle;
+    return box;
+}
+
+static bool cells_are_empty(const Tape *tape, Node distance, Box box, NodeValue *values)
+{
+    Box    cells[MOST_CELLS] = {box};
+    size_t count             = 1;
+    for (size_t i = 0; count > 0 && i * tape->count < MOST_OPERATIONS; i++) {
+        Box    cell = cells[--count];
+        double middle[3];
+        box_centre(cell, middle);
+        double at = value_at(tape, distance, middle, values);
+        if (at > 0.5 * box_diagonal(cell))
+            continue;
+        if (!(at > 0) || count + 2 > MOST_CELLS)
+            return false;
+        cells[count++] = half_of(cell, 0);
+        cells[count++] = half_of(cell, 1);
+    }
+    return count == 0;
+}
+
+/* Known to be empty by the distance; only what no parameter changes is looked at. */
+static bool is_nowhere(Elaboration *e, const Shape *shape)
+{
+    Graph   *g     = e->graph;
+    Lowering l     = {.graph = g, .scratch = e->scratch, .most = g->count + MOST_LOWERED};
+    Lowered  all   = lower_shape(&l, shape, context_new(graph_leaf(g, OP_POINT), true));
+    bool     empty = all.distance == NODE_NONE;
+    if (!l.overflow && !empty) {
+        Node       distance   = divide_by_slope(g, all.distance, shape->slope);
+        Tape       tape       = tape_new(g, &distance, 1, e->scratch);
+        NodeValue *values     = arena_new_array(e->scratch, NodeValue, g->count);
+        NodeValue *parameters = arena_new_array(e->scratch, NodeValue, g->parameters.count);
+        tape_run_frame(&tape, parameters, values);
+        empty = !needs_frame(&tape) && cells_are_empty(&tape, distance, shape->box, values);
+    }
+    arena_free(e->scratch);
+    return empty;
+}
+
+/* The innermost shape of which nothing is left, although something of its parts is. */
+static const Shape *where_it_vanishes(const Shape *shape)
+{
+    for (uint32_t i = 0; i < shape->child_count; i++)
+        if (box_is_empty(shape->children[i]->box))
+            return where_it_vanishes(shape->children[i]);
+    return shape;
+}
+
+void warn_if_nothing_is_left(Elaboration *e, const Shape *shape, const char *name, Span span)
+{
+    const Shape *inner = inside_wrappers(shape);
+    bool         gone  = box_is_empty(shape->box);
+    if (gone)
+        inner = where_it_vanishes(shape);
+    else if (!can_vanish(inner) || inner->estimate || !box_is_finite(inner->box) ||
+             !is_nowhere(e, inner))
+        return;
+    if (inner->kind == SHAPE_EMPTY || inner->kind == SHAPE_PRIMITIVE)
+        return; /* these are warned of where they are made */
+    Diag *diag  = diag_add(e->diags, DIAG_NO_EFFECT, span, "`%s` is empty", name);
+    diag->label = "nothing of this can be seen";
+    if (inner->kind == SHAPE_KRS)
+        diag_secondary(e->diags, diag, inner->span, "the mirrors discard all of its kernels");
+    else
+        diag_secondary(e->diags, diag, inner->span,
+                       diag_text(e->diags, "nothing is left by this `%s`", inner->name));
+}

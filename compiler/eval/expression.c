@@ -1,0 +1,325 @@
+/*
+ * expression.c: the value of an expression.
+ */
+#include "compiler/eval/elaborate.h"
+
+#include <math.h>
+
+enum {
+    MOST_STEPS    = 10 * 1000 * 1000,
+    MOST_DEPTH    = 4000,
+    MOST_ELEMENTS = 1000 * 1000,
+    MOST_NODES    = 500 * 1000
+};
+
+static Value limit_reached(Elaboration *e, Span span, const char *message)
+{
+    if (!is_stopped(e))
+        diag_add(e->diags, DIAG_LIMIT, span, "%s", message);
+    e->builder->stopped = true;
+    return value_error();
+}
+
+/* Counts a step of evaluation; false when a limit is reached (reported once). */
+static bool step(Elaboration *e, Span span)
+{
+    if (!is_stopped(e) && ++e->steps > MOST_STEPS)
+        limit_reached(e, span, "the scene takes more than 10 million steps to elaborate");
+    if (!is_stopped(e) && e->graph->count > MOST_NODES)
+        limit_reached(e, span, "the expressions of the scene have more than 500,000 operations");
+    return !is_stopped(e);
+}
+
+bool check_shape_count(Elaboration *e, const List *list, Span span)
+{
+    if (list->total > MOST_TREE_SHAPES)
+        limit_reached(e, span,
+                      "a list of more than 100,000 shapes, counted as often as they occur");
+    return !is_stopped(e);
+}
+
+Environment bind(Elaboration *e, const Environment *env, const char *name, Value value)
+{
+    Binding *binding = arena_new(e->arena, Binding);
+    *binding         = (Binding){name, value, env->locals};
+    return (Environment){binding, env->scope};
+}
+
+static Value evaluate_name(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    for (const Binding *b = env->locals; b; b = b->next)
+        if (b->name == syntax->name)
+            return b->value;
+    Definition *definition = scope_find(env->scope, syntax->name);
+    if (definition)
+        return run_definition(e, definition, syntax->span);
+    Value value;
+    if (builtin_constant(e, syntax->name, syntax->span, &value))
+        return value;
+    const Builtin *builtin = builtin_find(syntax->name);
+    if (builtin) {
+        Function *function = arena_new(e->arena, Function);
+        *function          = (Function){.name = builtin->name, .builtin = builtin};
+        return (Value){.type = VALUE_FUNCTION, .function = function};
+    }
+    definition = scope_find(e->library, syntax->name);
+    if (definition)
+        return run_definition(e, definition, syntax->span);
+    return value_error(); /* names_check has reported it */
+}
+
+static Value evaluate_list(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Value *items = arena_new_array(e->arena, Value, syntax->count);
+    bool   wrong = false;
+    for (uint32_t i = 0; i < syntax->count; i++) {
+        items[i] = evaluate(e, env, syntax->children[i]);
+        wrong    = wrong || items[i].type == VALUE_ERROR;
+    }
+    return wrong ? value_error() : value_list(e, items, syntax->count);
+}
+
+/* A number that is known now: bounds of ranges, indices. */
+static bool constant_number(Elaboration *e, const Environment *env, const Syntax *syntax,
+                            const char *what, double *number)
+{
+    Value value = evaluate(e, env, syntax);
+    if (value.type == VALUE_NUMBER) {
+        *number = value.number;
+        return true;
+    }
+    if (value.type == VALUE_EXPRESSION) {
+        Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, syntax->span,
+                               "%s must be known at compile time", what);
+        diag->label = value_time(e, value) == TIME_FRAME ? "this depends on a `param` or on `time`"
+                                                         : "this depends on a coordinate";
+        diag->help  = "use a constant; to show a part only, give the most there can be and choose "
+                      "inside with `if`";
+        point_at_definition(e, diag, syntax);
+    } else
+        type_error(e, syntax, value, "a number");
+    return false;
+}
+
+static bool each_of_range(Elaboration *e, const Environment *env, const Syntax *syntax,
+                          EachElement *each, void *user)
+{
+    double from, to;
+    if (!constant_number(e, env, syntax->children[0], "the start of a range", &from) ||
+        !constant_number(e, env, syntax->children[1], "the end of a range", &to))
+        return false;
+    if (to - from > MOST_ELEMENTS) {
+        limit_reached(e, syntax->span,
+                      diag_text(e->diags, "a range of %.0f elements; the limit is a million",
+                                ceil(to - from)));
+        return false;
+    }
+    for (uint32_t i = 0; from + i < to; i++)
+        if (!step(e, syntax->span) || !each(e, value_number(from + i), user))
+            return false;
+    return true;
+}
+
+bool evaluate_each(Elaboration *e, const Environment *env, const Syntax *syntax, EachElement *each,
+                   void *user)
+{
+    if (syntax->kind == SYNTAX_RANGE)
+        return each_of_range(e, env, syntax, each, user);
+    Value value = evaluate(e, env, syntax);
+    if (value.type == VALUE_ERROR)
+        return false;
+    if (value.type != VALUE_LIST) {
+        type_error(e, syntax, value, "a list");
+        return false;
+    }
+    for (size_t i = 0; i < value.list->count; i++)
+        if (!step(e, syntax->span) || !each(e, value.list->items[i], user))
+            return false;
+    return true;
+}
+
+/* What the clauses of a comprehension hand on: the next clause, or the element itself. */
+typedef struct Comprehension {
+    const Environment *env;
+    const Syntax      *syntax;
+    uint32_t           clause;
+    Values            *result;
+} Comprehension;
+
+static bool run_clause(Elaboration *e, const Comprehension *c);
+
+static bool comprehend_each(Elaboration *e, Value element, void *user)
+{
+    const Comprehension *outer  = user;
+    const Syntax        *clause = outer->syntax->children[outer->clause];
+    Environment          env    = bind(e, outer->env, clause->name, element);
+    Comprehension        inner  = *outer;
+    inner.env                   = &env;
+    inner.clause++;
+    return run_clause(e, &inner);
+}
+
+static bool run_clause(Elaboration *e, const Comprehension *c)
+{
+    if (c->clause == c->syntax->count) {
+        Value value = evaluate(e, c->env, c->syntax->children[0]);
+        if (value.type == VALUE_ERROR)
+            return false;
+        if (c->result->count >= MOST_ELEMENTS) {
+            limit_reached(e, c->syntax->span, "a list of more than a million elements");
+            return false;
+        }
+        array_push(e->arena, c->result, value);
+        return true;
+    }
+    const Syntax *clause = c->syntax->children[c->clause];
+    if (clause->kind == SYNTAX_FOR_CLAUSE)
+        return evaluate_each(e, c->env, clause->children[0], comprehend_each, (void *)c);
+    Value condition = evaluate(e, c->env, clause->children[0]);
+    if (condition.type == VALUE_BOOLEAN) {
+        Comprehension next = *c;
+        next.clause++;
+        return !condition.boolean || run_clause(e, &next);
+    }
+    type_error(e, clause->children[0], condition, "a truth value that is known at compile time");
+    return false;
+}
+
+static Value evaluate_comprehension(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Values        result = {0};
+    Comprehension c      = {env, syntax, 1, &result};
+    if (!run_clause(e, &c))
+        return value_error();
+    return value_list(e, result.items, result.count);
+}
+
+static bool push_element(Elaboration *e, Value element, void *user)
+{
+    Values *result = user;
+    array_push(e->arena, result, element);
+    return true;
+}
+
+static Value evaluate_range(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Values result = {0};
+    if (!each_of_range(e, env, syntax, push_element, &result))
+        return value_error();
+    return value_list(e, result.items, result.count);
+}
+
+static Value evaluate_if(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Value condition = evaluate(e, env, syntax->children[0]);
+    if (condition.type == VALUE_ERROR)
+        return condition;
+    if (condition.type == VALUE_BOOLEAN)
+        return evaluate(e, env, syntax->children[condition.boolean ? 1 : 2]);
+    if (condition.type != VALUE_EXPRESSION || e->graph->items[condition.node].type != TYPE_BOOL) {
+        type_error(e, syntax->children[0], condition, "a truth value");
+        return value_error();
+    }
+    Value yes = evaluate(e, env, syntax->children[1]);
+    Value no  = evaluate(e, env, syntax->children[2]);
+    return value_select(e, syntax, condition, yes, no);
+}
+
+static Value evaluate_index(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Value  list = evaluate(e, env, syntax->children[0]);
+    double index;
+    if (list.type == VALUE_ERROR ||
+        !constant_number(e, env, syntax->children[1], "an index", &index))
+        return value_error();
+    bool node = list.type == VALUE_EXPRESSION && e->graph->items[list.node].type >= TYPE_VEC2 &&
+                e->graph->items[list.node].type <= TYPE_VEC4;
+    size_t count = node                      ? e->graph->items[list.node].type
+                   : list.type == VALUE_LIST ? list.list->count
+                                             : 0;
+    if (!node && list.type != VALUE_LIST) {
+        type_error(e, syntax->children[0], list, "a list");
+        return value_error();
+    }
+    if (!(index >= 0 && index < (double)count) || index != floor(index)) {
+        Diag *diag  = diag_add(e->diags, DIAG_INDEX_RANGE, syntax->children[1]->span,
+                               "index %g of a list of %zu", index, count);
+        diag->label = count ? diag_text(e->diags, "whole numbers from 0 to %zu are possible",
+                                        count - 1)
+                            : "the list is empty";
+        return value_error();
+    }
+    if (!node)
+        return list.list->items[(size_t)index];
+    return value_of_node(e, graph_component(e->graph, list.node, (uint32_t)index));
+}
+
+static Value evaluate_call(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Value callee = evaluate(e, env, syntax->children[0]);
+    if (callee.type == VALUE_ERROR)
+        return callee;
+    if (callee.type == VALUE_FUNCTION)
+        return call_function(e, env, syntax, callee.function);
+    Diag *diag  = diag_add(e->diags, DIAG_NOT_CALLABLE, syntax->children[0]->span,
+                           "%s cannot be called", value_type_name(e, callee));
+    diag->label = "neither a function nor a shape declaration";
+    point_at_definition(e, diag, syntax->children[0]);
+    return value_error();
+}
+
+static Value evaluate_binary(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Value a = evaluate(e, env, syntax->children[0]);
+    /* `and` and `or` need their right side only when the left has not decided. */
+    if (a.type == VALUE_BOOLEAN && syntax->op == TOKEN_AND && !a.boolean)
+        return a;
+    if (a.type == VALUE_BOOLEAN && syntax->op == TOKEN_OR && a.boolean)
+        return a;
+    Value b = evaluate(e, env, syntax->children[1]);
+    return value_binary(e, syntax, a, b);
+}
+
+static Value evaluate_let(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Value       value = evaluate(e, env, syntax->children[0]);
+    Environment inner = bind(e, env, syntax->name, value);
+    return evaluate(e, &inner, syntax->children[1]);
+}
+
+static Value evaluate_inner(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    switch (syntax->kind) {
+    case SYNTAX_NUMBER: return value_number(syntax->number[0]);
+    case SYNTAX_COLOUR: return value_vector(e, syntax->number, 3);
+    case SYNTAX_STRING: return (Value){.type = VALUE_STRING, .string = syntax->name};
+    case SYNTAX_BOOLEAN: return value_boolean(syntax->number[0] != 0);
+    case SYNTAX_NAME: return evaluate_name(e, env, syntax);
+    case SYNTAX_LIST: return evaluate_list(e, env, syntax);
+    case SYNTAX_COMPREHENSION: return evaluate_comprehension(e, env, syntax);
+    case SYNTAX_RANGE: return evaluate_range(e, env, syntax);
+    case SYNTAX_UNARY: return value_unary(e, syntax, evaluate(e, env, syntax->children[0]));
+    case SYNTAX_BINARY: return evaluate_binary(e, env, syntax);
+    case SYNTAX_IF: return evaluate_if(e, env, syntax);
+    case SYNTAX_LET_IN: return evaluate_let(e, env, syntax);
+    case SYNTAX_CALL: return evaluate_call(e, env, syntax);
+    case SYNTAX_METHOD: return call_method(e, env, syntax);
+    case SYNTAX_INDEX: return evaluate_index(e, env, syntax);
+    case SYNTAX_KRS: return elaborate_krs(e, env, syntax);
+    default: return value_error(); /* SYNTAX_ERROR: reported by the parser */
+    }
+}
+
+Value evaluate(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    if (!step(e, syntax->span))
+        return value_error();
+    if (e->depth >= MOST_DEPTH)
+        return limit_reached(e, syntax->span,
+                             "evaluation is nested too deeply, perhaps by a function that calls "
+                             "itself without end");
+    e->depth++;
+    Value value = evaluate_inner(e, env, syntax);
+    e->depth--;
+    return value;
+}

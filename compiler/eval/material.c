@@ -1,0 +1,61 @@
+/*
+ * material.c: materials, and colours that stand for one.
+ */
+#include "compiler/eval/elaborate.h"
+
+/* A number or a colour that may depend on the point; *property stays when it is not given. */
+static void material_property(Elaboration *e, const Environment *env, const Syntax *block,
+                              const char *name, GraphType type, Node *property)
+{
+    const Syntax *syntax = find_property(block, name);
+    if (!syntax)
+        return;
+    Value value = evaluate(e, env, syntax);
+    Node  node  = value_node(e, value);
+    if (node != NODE_NONE && type == TYPE_VEC3 && e->graph->items[node].type == TYPE_FLOAT)
+        node = graph_op3(e->graph, OP_vec3, node, node, node);
+    if (node != NODE_NONE && e->graph->items[node].type == type)
+        *property = node;
+    else
+        type_error(e, syntax, value, type == TYPE_VEC3 ? "a colour" : "a number");
+}
+
+static Material *material_new(Elaboration *e, const char *name)
+{
+    Material *material  = arena_new(e->arena, Material);
+    material->name      = name;
+    material->color     = graph_vec3(e->graph, 0.6, 0.6, 0.6);
+    material->roughness = graph_number(e->graph, 0.6);
+    material->metallic  = graph_number(e->graph, 0);
+    material->emission  = graph_vec3(e->graph, 0, 0, 0);
+    return material;
+}
+
+Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    check_block(e, syntax);
+    Material *material = material_new(e, syntax->name);
+    bool      outer    = e->in_material;
+    e->in_material     = true;
+    material_property(e, env, syntax, "color", TYPE_VEC3, &material->color);
+    material_property(e, env, syntax, "roughness", TYPE_FLOAT, &material->roughness);
+    material_property(e, env, syntax, "metallic", TYPE_FLOAT, &material->metallic);
+    material_property(e, env, syntax, "emission", TYPE_VEC3, &material->emission);
+    e->in_material = outer;
+    return (Value){.type = VALUE_MATERIAL, .material = material};
+}
+
+const Material *to_material(Elaboration *e, Value value, const Syntax *syntax)
+{
+    if (value.type == VALUE_MATERIAL)
+        return value.material;
+    Node color = value.type == VALUE_LIST || value.type == VALUE_EXPRESSION ? value_node(e, value)
+                                                                            : NODE_NONE;
+    if (color != NODE_NONE && e->graph->items[color].type == TYPE_VEC3) {
+        Material *material = material_new(e, "colour");
+        material->color    = color;
+        return material;
+    }
+    type_error(e, syntax, value, "a material or a colour");
+    return NULL;
+}

@@ -1,0 +1,228 @@
+/*
+ * properties.c: the properties that blocks of a scene may have, and their values.
+ *
+ * Blocks are materials, cameras, lights, the sky, the image and zones.
+ */
+#include "compiler/eval/elaborate.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Which blocks may have which property; `later` ones are known but not in this version. */
+static const struct BlockProperty {
+    SyntaxKind  block;
+    const char *name;
+    bool        later;
+} block_properties[] = {
+    {SYNTAX_MATERIAL, "color", false},
+    {SYNTAX_MATERIAL, "roughness", false},
+    {SYNTAX_MATERIAL, "metallic", false},
+    {SYNTAX_MATERIAL, "emission", false},
+    {SYNTAX_MATERIAL, "transmission", true},
+    {SYNTAX_MATERIAL, "ior", true},
+    {SYNTAX_MATERIAL, "absorption", true},
+    {SYNTAX_CAMERA, "eye", false},
+    {SYNTAX_CAMERA, "target", false},
+    {SYNTAX_CAMERA, "up", false},
+    {SYNTAX_CAMERA, "fov", false},
+    {SYNTAX_CAMERA, "projection", false},
+    {SYNTAX_CAMERA, "height", false},
+    {SYNTAX_CAMERA, "aperture", true},
+    {SYNTAX_CAMERA, "focus", true},
+    {SYNTAX_CAMERA, "shutter", true},
+    {SYNTAX_LIGHT, "direction", false},
+    {SYNTAX_LIGHT, "position", false},
+    {SYNTAX_LIGHT, "color", false},
+    {SYNTAX_LIGHT, "intensity", false},
+    {SYNTAX_LIGHT, "softness", false},
+    {SYNTAX_LIGHT, "radius", false},
+    {SYNTAX_LIGHT, "shadow", false},
+    {SYNTAX_LIGHT, "size", true},
+    {SYNTAX_SKY, "zenith", false},
+    {SYNTAX_SKY, "horizon", false},
+    {SYNTAX_SKY, "ground", false},
+    {SYNTAX_SKY, "sun", false},
+    {SYNTAX_SKY, "image", true},
+    {SYNTAX_SKY, "rotation", true},
+    {SYNTAX_IMAGE, "size", false},
+    {SYNTAX_IMAGE, "samples", false},
+    {SYNTAX_IMAGE, "integrator", false},
+    {SYNTAX_IMAGE, "exposure", false},
+    {SYNTAX_IMAGE, "tone_map", false},
+    {SYNTAX_IMAGE, "error", false},
+    {SYNTAX_IMAGE, "frames", true},
+    {SYNTAX_IMAGE, "rate", true},
+    {SYNTAX_IMAGE, "bounces", true},
+    {SYNTAX_ZONE, "center", false},
+    {SYNTAX_ZONE, "radius", false},
+};
+enum { BLOCK_PROPERTY_COUNT = sizeof block_properties / sizeof *block_properties };
+
+const char *block_name(SyntaxKind kind)
+{
+    switch (kind) {
+    case SYNTAX_MATERIAL: return "a material";
+    case SYNTAX_CAMERA: return "a camera";
+    case SYNTAX_LIGHT: return "a light";
+    case SYNTAX_SKY: return "the sky";
+    case SYNTAX_ZONE: return "a zone";
+    default: return "the image";
+    }
+}
+
+static void unknown_property(Elaboration *e, const Syntax *block, const Syntax *property)
+{
+    const char *names[BLOCK_PROPERTY_COUNT];
+    size_t      count = 0;
+    for (size_t i = 0; i < BLOCK_PROPERTY_COUNT; i++)
+        if (block_properties[i].block == block->kind && !block_properties[i].later)
+            names[count++] = block_properties[i].name;
+    Diag *diag        = diag_add(e->diags, DIAG_UNKNOWN_PROPERTY, property->name_span,
+                                 "%s has no property `%s`", block_name(block->kind), property->name);
+    diag->label       = "unknown property";
+    diag->replacement = nearest_name(property->name, names, count);
+    if (diag->replacement)
+        diag->help = "a property with a similar name exists";
+    note_names(e, diag, "its properties", names, count);
+}
+
+/* Whether a block may have a property; false: reported. */
+static bool check_property(Elaboration *e, const Syntax *block, const Syntax *property)
+{
+    for (size_t i = 0; i < BLOCK_PROPERTY_COUNT; i++) {
+        if (block_properties[i].block != block->kind ||
+            strcmp(block_properties[i].name, property->name) != 0)
+            continue;
+        if (!block_properties[i].later)
+            return true;
+        not_supported(e, property->name_span,
+                      diag_text(e->diags, "`%s` of %s", property->name, block_name(block->kind)));
+        return false;
+    }
+    unknown_property(e, block, property);
+    return false;
+}
+
+void check_block(Elaboration *e, const Syntax *block)
+{
+    for (uint32_t i = 0; i < block->count; i++) {
+        const Syntax *property = block->children[i];
+        if (property->kind != SYNTAX_PROPERTY || !check_property(e, block, property))
+            continue;
+        for (uint32_t k = 0; k < i; k++)
+            if (block->children[k]->kind == SYNTAX_PROPERTY &&
+                block->children[k]->name == property->name) {
+                Diag *diag = diag_add(e->diags, DIAG_DUPLICATE_NAME, property->name_span,
+                                      "`%s` is given twice", property->name);
+                diag_secondary(e->diags, diag, block->children[k]->name_span, "given here first");
+                break;
+            }
+    }
+}
+
+const Syntax *find_property(const Syntax *block, const char *name)
+{
+    for (uint32_t i = 0; i < block->count; i++)
+        if (block->children[i]->kind == SYNTAX_PROPERTY &&
+            strcmp(block->children[i]->name, name) == 0)
+            return block->children[i]->children[0];
+    return NULL;
+}
+
+/* ---- values of properties: frame time, except in materials ---- */
+
+Node number_property(Elaboration *e, const Environment *env, const Syntax *block, const char *name,
+                     double otherwise)
+{
+    const Syntax *syntax = find_property(block, name);
+    if (!syntax)
+        return graph_number(e->graph, otherwise);
+    Node node = to_number(e, evaluate(e, env, syntax), syntax, diag_text(e->diags, "`%s`", name));
+    return node == NODE_NONE ? graph_number(e->graph, otherwise) : node;
+}
+
+Node vector_property(Elaboration *e, const Environment *env, const Syntax *block, const char *name,
+                     const double otherwise[3])
+{
+    const Syntax *syntax = find_property(block, name);
+    if (!syntax)
+        return graph_constant(e->graph, TYPE_VEC3, otherwise);
+    Node node = to_vector(e, evaluate(e, env, syntax), syntax, diag_text(e->diags, "`%s`", name));
+    return node == NODE_NONE ? graph_constant(e->graph, TYPE_VEC3, otherwise) : node;
+}
+
+/* A position.  A `param` without a range may be anything, and says so at its frame. */
+Node position_property(Elaboration *e, const Environment *env, const Syntax *block,
+                       const char *name, const double otherwise[3])
+{
+    Node          position = vector_property(e, env, block, name, otherwise);
+    const Syntax *syntax   = find_property(block, name);
+    for (uint32_t i = 0; syntax && i < 3; i++) {
+        Range  range = node_range(e->builder, position, i);
+        double far   = fmax(isfinite(range.low) ? fabs(range.low) : 0,
+                          isfinite(range.high) ? fabs(range.high) : 0);
+        if (far <= MOST_EXTENT)
+            continue;
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span,
+                               "`%s` reaches to %.3g on the %c axis", name, far, "xyz"[i]);
+        diag->label = "farther than 1e12, which devices cannot compute with";
+        break;
+    }
+    return position;
+}
+
+double constant_property(Elaboration *e, const Environment *env, const Syntax *block,
+                         const char *name, double least, double most, double otherwise)
+{
+    const Syntax *syntax = find_property(block, name);
+    if (!syntax)
+        return otherwise;
+    Node node = to_number(e, evaluate(e, env, syntax), syntax, diag_text(e->diags, "`%s`", name));
+    if (node == NODE_NONE)
+        return otherwise;
+    double number = e->graph->items[node].number[0];
+    if (!graph_is_constant(e->graph, node)) {
+        Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, syntax->span,
+                               "`%s` must be known at compile time", name);
+        diag->label = "this depends on a `param` or on `time`";
+        return otherwise;
+    }
+    if (!(number >= least && number <= most)) {
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "`%s` cannot be %g", name,
+                               number);
+        diag->label = diag_text(e->diags, "from %g to %g is possible", least, most);
+        return otherwise;
+    }
+    return number;
+}
+
+const char *word_property(Elaboration *e, const Environment *env, const Syntax *block,
+                          const char *name, const char *const *words, size_t count, size_t later)
+{
+    const Syntax *syntax = find_property(block, name);
+    if (!syntax)
+        return NULL;
+    Value value = evaluate(e, env, syntax);
+    if (value.type == VALUE_ERROR)
+        return NULL;
+    if (value.type != VALUE_STRING) {
+        type_error(e, syntax, value, "a string");
+        return NULL;
+    }
+    Text list = {.arena = e->diags->arena};
+    for (size_t i = 0; i < count; i++) {
+        bool same = strcmp(words[i], value.string) == 0;
+        if (same && i + later >= count) {
+            not_supported(e, syntax->span, diag_text(e->diags, "`%s: \"%s\"`", name, words[i]));
+            return NULL;
+        }
+        if (same)
+            return words[i];
+        if (i + later < count)
+            text_format(&list, "%s\"%s\"", i ? ", " : "", words[i]);
+    }
+    Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span, "`%s` cannot be \"%s\"", name,
+                           value.string);
+    diag->label = diag_text(e->diags, "one of %s", list.bytes);
+    return NULL;
+}

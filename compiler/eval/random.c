@@ -1,0 +1,127 @@
+/*
+ * random.c: random numbers, known at compile time, and noise, which is a value at each point.
+ */
+#include "compiler/eval/elaborate.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- random numbers: the same on every machine ---- */
+
+/* SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014) of
+   the bits of the seed; -0 and 0 are one seed. */
+static uint64_t hash_number(double seed, uint64_t stream)
+{
+    uint64_t bits;
+    seed += 0.0;
+    memcpy(&bits, &seed, sizeof bits);
+    bits += (stream + 1) * 0x9E3779B97F4A7C15u;
+    bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9u;
+    bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBu;
+    bits ^= bits >> 31;
+    bits += 0x9E3779B97F4A7C15u;
+    bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9u;
+    bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBu;
+    return bits ^ (bits >> 31);
+}
+
+/* In [0, 1). */
+static double unit_random(double seed, uint64_t stream)
+{
+    return (double)(hash_number(seed, stream) >> 11) * 0x1p-53;
+}
+
+Value builtin_random(Elaboration *e, Call *call)
+{
+    double seed = 0;
+    return want_constant(e, call, 0, &seed) ? value_number(unit_random(seed, 0)) : value_error();
+}
+
+/* Marsaglia (1972): a point of the unit disc gives a point of the sphere by products and roots
+   only, which every machine computes alike. */
+Value builtin_random_direction(Elaboration *e, Call *call)
+{
+    double seed = 0, a, b, s;
+    if (!want_constant(e, call, 0, &seed))
+        return value_error();
+    uint64_t stream = 1;
+    do {
+        a = 2 * unit_random(seed, stream) - 1;
+        b = 2 * unit_random(seed, stream + 1) - 1;
+        s = a * a + b * b;
+        stream += 2;
+    } while (s >= 1);
+    double root = 2 * sqrt(1 - s);
+    return value_vector(e, (double[]){a * root, 1 - 2 * s, b * root}, 3);
+}
+
+/* ---- noise ---- */
+
+/* Of a number, a straight cut through the noise of the plane, off its zeros. */
+static Node noise_of(Graph *g, Node point)
+{
+    if (g->items[point].type == TYPE_FLOAT) {
+        Node second = graph_number(g, 0.37);
+        point       = graph_op2(g, OP_vec2, point, second);
+    }
+    return graph_op1(g, g->items[point].type == TYPE_VEC2 ? OP_noise2 : OP_noise3, point);
+}
+
+/* The argument `p`; NODE_NONE: reported. */
+static Node noise_point(Elaboration *e, const Call *call)
+{
+    Node point = want_numeric(e, call, 0);
+    if (point == NODE_NONE || e->graph->items[point].type <= TYPE_VEC3)
+        return point;
+    diag_add(e->diags, DIAG_LENGTH_MISMATCH, call->arguments[0].syntax->span,
+             "`%s` needs a number or a vector of 2 or 3", call->name);
+    return NODE_NONE;
+}
+
+Value builtin_noise(Elaboration *e, Call *call)
+{
+    Node point = noise_point(e, call);
+    if (point == NODE_NONE)
+        return value_error();
+    e->graph->here = call->syntax->span;
+    return value_of_node(e, noise_of(e->graph, point));
+}
+
+/* Where an octave begins: all are 0 on their lattices, which must not meet. */
+static Node octave_start(Graph *g, GraphType type, uint32_t octave)
+{
+    static const double steps[3] = {17.137, 9.713, 5.371};
+    double              start[4] = {0};
+    for (uint32_t i = 0; i < 3; i++)
+        start[i] = octave * steps[i];
+    return graph_constant(g, type, start);
+}
+
+Value builtin_fbm(Elaboration *e, Call *call)
+{
+    Graph   *g     = e->graph;
+    Node     point = noise_point(e, call);
+    Node     gain = want_number(e, call, 2, 0.5), lacunarity = want_number(e, call, 3, 2);
+    uint32_t octaves;
+    if (point == NODE_NONE || gain == NODE_NONE || lacunarity == NODE_NONE ||
+        !want_count(e, call, 1, 1, 16, 5, &octaves))
+        return value_error();
+    if ((is_given(call, 2) && !check_positive(e, gain, call->arguments[2].syntax, "`gain`")) ||
+        (is_given(call, 3) &&
+         !check_positive(e, lacunarity, call->arguments[3].syntax, "`lacunarity`")))
+        return value_error();
+    g->here  = call->syntax->span;
+    Node sum = NODE_NONE, total = NODE_NONE, loud = graph_number(g, 1), fine = loud;
+    for (uint32_t i = 0; i < octaves; i++) {
+        Node scaled_point = graph_op2(g, OP_mul, point, fine);
+        Node start        = octave_start(g, g->items[point].type, i);
+        Node moved        = graph_op2(g, OP_add, scaled_point, start);
+        Node octave       = noise_of(g, moved);
+        octave            = graph_op2(g, OP_mul, octave, loud);
+        sum               = i ? graph_op2(g, OP_add, sum, octave) : octave;
+        total             = i ? graph_op2(g, OP_add, total, loud) : loud;
+        loud              = graph_op2(g, OP_mul, loud, gain);
+        fine              = graph_op2(g, OP_mul, fine, lacunarity);
+    }
+    return value_of_node(e, graph_op2(g, OP_div, sum, total));
+}

@@ -1,0 +1,435 @@
+/*
+ * statements.c: files and `krs` blocks, statement by statement.
+ */
+#include "compiler/eval/elaborate.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Where the statements of a `krs` block go; those at the top level have none (NULL). */
+typedef struct Sequence {
+    struct {
+        SequenceStage *items;
+        size_t         count, capacity;
+    } stages;
+    struct {
+        const Shape **items;
+        size_t        count, capacity;
+    } kernels;
+    bool wrong; /* a mistake was reported: the block has no value */
+} Sequence;
+
+/* ---- definitions ---- */
+
+static Value function_value(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Environment *closure = arena_new(e->arena, Environment);
+    *closure             = *env;
+    Function *function   = arena_new(e->arena, Function);
+    *function            = (Function){.name = syntax->name, .syntax = syntax, .closure = closure};
+    return (Value){.type = VALUE_FUNCTION, .function = function};
+}
+
+/* Numbers of a `param`: its default, or a bound of its range; 0: reported. */
+static uint32_t constants_of(Elaboration *e, Value value, const Syntax *syntax, double numbers[4])
+{
+    if (value.type == VALUE_NUMBER) {
+        numbers[0] = value.number;
+        return 1;
+    }
+    uint32_t count = value.type == VALUE_LIST && value.list->count <= 4
+                         ? (uint32_t)value.list->count
+                         : 0;
+    for (uint32_t i = 0; i < count; i++) {
+        if (value.list->items[i].type != VALUE_NUMBER)
+            count = 0;
+        else
+            numbers[i] = value.list->items[i].number;
+    }
+    if (count >= 2)
+        return count;
+    if (value_time(e, value) != TIME_COMPILE) {
+        Diag *diag  = diag_add(e->diags, DIAG_NOT_COMPILE_TIME, syntax->span,
+                               "the value of a `param` must be a constant");
+        diag->label = "this is not known at compile time";
+    } else
+        type_error(e, syntax, value, "a number, a vector or a colour");
+    return 0;
+}
+
+/* The range of a `param`, endless when it has none; a number counts for all components. */
+static bool param_range(Elaboration *e, const Environment *env, const Syntax *syntax,
+                        Parameter *parameter)
+{
+    for (int i = 0; i < 4; i++) {
+        parameter->low[i]  = -INFINITY;
+        parameter->high[i] = INFINITY;
+    }
+    if (syntax->count < 2)
+        return true;
+    Value  range = evaluate(e, env, syntax->children[1]);
+    double bounds[2][4];
+    if (range.type == VALUE_ERROR)
+        return false;
+    bool good = range.type == VALUE_LIST && range.list->count == 2;
+    for (uint32_t side = 0; good && side < 2; side++) {
+        uint32_t count = constants_of(e, range.list->items[side], syntax->children[1],
+                                      bounds[side]);
+        if (!count)
+            return false;
+        for (uint32_t i = 0; count == 1 && i < 4; i++)
+            bounds[side][i] = bounds[side][0];
+        good = count == 1 || count == parameter->components;
+    }
+    for (uint32_t i = 0; good && i < parameter->components; i++) {
+        parameter->low[i]  = bounds[0][i];
+        parameter->high[i] = bounds[1][i];
+        good = bounds[0][i] <= parameter->value[i] && parameter->value[i] <= bounds[1][i];
+    }
+    if (good)
+        return true;
+    Diag *diag  = diag_add(e->diags, DIAG_RANGE_OF_PARAM, syntax->children[1]->span,
+                           "the range of `%s` does not fit its default", syntax->name);
+    diag->label = "[low, high] with low <= default <= high";
+    diag_secondary(e->diags, diag, syntax->children[0]->span, "the default");
+    return false;
+}
+
+static Value define_param(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Parameter parameter = {.name = syntax->name};
+    Value     value     = evaluate(e, env, syntax->children[0]);
+    if (value.type == VALUE_ERROR)
+        return value;
+    parameter.components = constants_of(e, value, syntax->children[0], parameter.value);
+    if (!parameter.components || !param_range(e, env, syntax, &parameter))
+        return value_error();
+    parameter.slot       = (uint32_t)e->graph->parameters.count;
+    GraphParameter range = {{0}, {0}};
+    memcpy(range.low, parameter.low, sizeof range.low);
+    memcpy(range.high, parameter.high, sizeof range.high);
+    array_push(e->arena, &e->graph->parameters, range);
+    array_push(e->arena, &e->scene->parameters, parameter);
+    Node node = graph_parameter(e->graph, parameter.slot, (GraphType)parameter.components);
+    return (Value){.type = VALUE_EXPRESSION, .node = node};
+}
+
+Value run_definition(Elaboration *e, Definition *definition, Span use)
+{
+    if (definition->state == DEFINITION_DONE)
+        return definition->value;
+    if (definition->state == DEFINITION_RUNNING) {
+        /* names_check reports circles it can see; this is the one through a function. */
+        Diag *diag  = diag_add(e->diags, DIAG_CYCLE, definition->syntax->name_span,
+                               "`%s` needs itself", definition->name);
+        diag->label = "defined here";
+        diag_secondary(e->diags, diag, use, "needed here");
+        return value_error();
+    }
+    definition->state    = DEFINITION_RUNNING;
+    const Syntax *syntax = definition->syntax;
+    Environment  *env    = &definition->scope->environment;
+    Span          caller = e->graph->here;
+    switch (syntax->kind) {
+    case SYNTAX_LET: definition->value = evaluate(e, env, syntax->children[0]); break;
+    case SYNTAX_PARAM: definition->value = define_param(e, env, syntax); break;
+    case SYNTAX_MATERIAL: definition->value = elaborate_material(e, env, syntax); break;
+    case SYNTAX_DEF:
+    case SYNTAX_SHAPE: definition->value = function_value(e, env, syntax); break;
+    default: definition->value = value_number(0); break; /* cameras, lights: names */
+    }
+    e->graph->here    = caller;
+    definition->state = DEFINITION_DONE;
+    return definition->value;
+}
+
+/* ---- show ---- */
+
+static const char *component_name(Elaboration *e, const Syntax *syntax)
+{
+    if (syntax->kind == SYNTAX_NAME)
+        return syntax->name;
+    /* `show oak.move(...)` shows the oak. */
+    if (syntax->kind == SYNTAX_METHOD)
+        return component_name(e, syntax->children[0]);
+    return diag_text(e->diags, "component %zu", e->scene->components.count + 1);
+}
+
+static bool check_extent(Elaboration *e, const Shape *shape, const Syntax *syntax)
+{
+    for (int i = 0; i < 3; i++) {
+        Range  axis  = shape->box.axis[i];
+        double reach = fmax(isfinite(axis.low) ? fabs(axis.low) : 0,
+                            isfinite(axis.high) ? fabs(axis.high) : 0);
+        if (reach <= MOST_EXTENT)
+            continue;
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, syntax->span,
+                               "the shape reaches to %.3g on the %c axis", reach, "xyz"[i]);
+        diag->label = "farther than 1e12, which devices cannot compute with";
+        return false;
+    }
+    return true;
+}
+
+/* An EachElement: shows a shape, or all shapes of a list; `user` is the expression shown. */
+static bool show_one(Elaboration *e, Value value, void *user)
+{
+    const Syntax *syntax = user;
+    if (value.type == VALUE_LIST) {
+        if (!check_shape_count(e, value.list, syntax->span))
+            return false;
+        for (size_t i = 0; i < value.list->count; i++)
+            if (!show_one(e, value.list->items[i], user))
+                return false;
+        return true;
+    }
+    if (value.type != VALUE_SHAPE) {
+        type_error(e, syntax, value, "a shape");
+        return false;
+    }
+    if (value.shape->figure) {
+        Diag *diag  = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span,
+                               "a plane figure cannot be shown");
+        diag->label = "this has no thickness";
+        diag->help  = "make it solid with `.extrude(height)` or `.revolve()`";
+        return false;
+    }
+    if (!check_bounded(e->builder, value.shape) || !check_extent(e, value.shape, syntax))
+        return false;
+    Component component = {
+        .name = component_name(e, syntax), .shape = value.shape, .span = syntax->span};
+    if (!shape_plane(e->builder, value.shape, &component.plane_normal, &component.plane_offset))
+        component.plane_normal = component.plane_offset = NODE_NONE;
+    array_push(e->arena, &e->scene->components, component);
+    warn_if_nothing_is_left(e, value.shape, component.name, syntax->span);
+    return true;
+}
+
+/* ---- krs blocks ---- */
+
+static void add_kernel(Elaboration *e, const Environment *env, const Syntax *syntax,
+                       Sequence *sequence)
+{
+    Value value = evaluate(e, env, syntax->children[0]);
+    if (value.type == VALUE_SHAPE && !value.shape->figure) {
+        SequenceStage stage = {.kind   = SEQUENCE_KERNEL,
+                               .kernel = (uint32_t)sequence->kernels.count,
+                               .span   = syntax->span};
+        array_push(e->arena, &sequence->kernels, value.shape);
+        array_push(e->arena, &sequence->stages, stage);
+        return;
+    }
+    sequence->wrong = true;
+    if (value.type == VALUE_SHAPE) {
+        Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->children[0]->span,
+                              "a kernel must be solid, found a plane figure");
+        diag->help = "make it solid with `.extrude(height)` or `.revolve()`";
+    } else
+        type_error(e, syntax->children[0], value, "a shape");
+}
+
+static void add_mirror(Elaboration *e, const Environment *env, const Syntax *syntax,
+                       Sequence *sequence)
+{
+    const Syntax *argument = syntax->children[0];
+    Value         value    = evaluate(e, env, argument);
+    SequenceStage stage    = {.kind = SEQUENCE_REFLECT, .span = syntax->span};
+    if (value.type == VALUE_SHAPE &&
+        shape_plane(e->builder, value.shape, &stage.normal, &stage.offset)) {
+        array_push(e->arena, &sequence->stages, stage);
+        return;
+    }
+    sequence->wrong = true;
+    if (value.type == VALUE_ERROR)
+        return;
+    const char *type = value_type_name(e, value);
+    Diag       *diag = diag_add(e->diags, DIAG_NEEDS_PLANE, argument->span,
+                                "`reflect` needs a plane, found %s", type);
+    diag->label      = diag_text(e->diags, "this is %s", type);
+    if (value.type == VALUE_SHAPE)
+        diag->help = "planes are written `plane(normal: [1, 0, 0], offset: 2)`; for an inversion "
+                     "in a sphere there is `mobius invert(center: [0, 0, 0], radius: 2);`";
+    point_at_definition(e, diag, argument);
+}
+
+/* One stage for each map of a chain, the innermost first. */
+static void push_map(Elaboration *e, Sequence *sequence, const Map *map, Span span)
+{
+    SequenceStage stage = {.kind = SEQUENCE_MAP, .map = *map, .span = span};
+    if (map->first)
+        push_map(e, sequence, map->first, span);
+    stage.map.first = NULL;
+    array_push(e->arena, &sequence->stages, stage);
+}
+
+/* Maps with nothing between them are one. */
+static void add_map(Elaboration *e, const Environment *env, const Syntax *syntax,
+                    Sequence *sequence)
+{
+    Value  value = evaluate(e, env, syntax->children[0]);
+    size_t count = sequence->stages.count;
+    if (value.type == VALUE_MAP) {
+        const Map    *map  = value.map;
+        SequenceStage last = count ? sequence->stages.items[count - 1] : (SequenceStage){0};
+        if (count && last.kind == SEQUENCE_MAP) {
+            map = map_product(e->builder, map, &last.map);
+            sequence->stages.count--;
+        }
+        push_map(e, sequence, map, syntax->span);
+        return;
+    }
+    sequence->wrong = true;
+    type_error(e, syntax->children[0], value, "a map of space");
+}
+
+/* ---- blocks ---- */
+
+typedef struct Loop {
+    const Environment *env;
+    const Syntax      *syntax;
+    Sequence          *sequence; /* NULL at the top level */
+} Loop;
+
+static void run_block(Elaboration *e, const Environment *env, const Syntax *block,
+                      Sequence *sequence);
+
+static bool run_turn(Elaboration *e, Value element, void *user)
+{
+    const Loop *loop = user;
+    Environment env  = bind(e, loop->env, loop->syntax->name, element);
+    run_block(e, &env, loop->syntax->children[1], loop->sequence);
+    return !is_stopped(e) && !(loop->sequence && loop->sequence->wrong);
+}
+
+static void run_if(Elaboration *e, const Environment *env, const Syntax *syntax,
+                   Sequence *sequence);
+
+static void run_statement(Elaboration *e, Environment *env, const Syntax *syntax,
+                          Sequence *sequence)
+{
+    Loop loop = {env, syntax, sequence};
+    switch (syntax->kind) {
+    case SYNTAX_LET:
+        *env = bind(e, env, syntax->name, evaluate(e, env, syntax->children[0]));
+        break;
+    case SYNTAX_DEF:
+    case SYNTAX_SHAPE: *env = bind(e, env, syntax->name, function_value(e, env, syntax)); break;
+    case SYNTAX_FOR:
+        if (!evaluate_each(e, env, syntax->children[0], run_turn, &loop) && sequence)
+            sequence->wrong = true;
+        break;
+    case SYNTAX_IF_STATEMENT: run_if(e, env, syntax, sequence); break;
+    case SYNTAX_SHOW:
+        show_one(e, evaluate(e, env, syntax->children[0]), syntax->children[0]);
+        break;
+    case SYNTAX_KERNEL: add_kernel(e, env, syntax, sequence); break;
+    case SYNTAX_REFLECT: add_mirror(e, env, syntax, sequence); break;
+    case SYNTAX_MOBIUS: add_map(e, env, syntax, sequence); break;
+    case SYNTAX_CAMERA:
+    case SYNTAX_LIGHT:
+    case SYNTAX_SKY:
+    case SYNTAX_IMAGE:
+    case SYNTAX_ZONE: elaborate_view(e, env, syntax); break;
+    default: break; /* errors of the parser */
+    }
+}
+
+static void run_block(Elaboration *e, const Environment *env, const Syntax *block,
+                      Sequence *sequence)
+{
+    Environment inner = *env;
+    for (uint32_t i = 0; i < block->count && !is_stopped(e); i++)
+        run_statement(e, &inner, block->children[i], sequence);
+}
+
+static void run_if(Elaboration *e, const Environment *env, const Syntax *syntax, Sequence *sequence)
+{
+    Value condition = evaluate(e, env, syntax->children[0]);
+    if (condition.type == VALUE_BOOLEAN) {
+        uint32_t      taken  = condition.boolean ? 1 : 2;
+        const Syntax *branch = taken < syntax->count ? syntax->children[taken] : NULL;
+        if (branch && branch->kind == SYNTAX_IF_STATEMENT)
+            run_if(e, env, branch, sequence);
+        else if (branch)
+            run_block(e, env, branch, sequence);
+        return;
+    }
+    if (sequence)
+        sequence->wrong = true;
+    if (condition.type == VALUE_EXPRESSION)
+        constant_error(e, syntax->children[0],
+                       "the condition of a statement must be known at compile time");
+    else
+        type_error(e, syntax->children[0], condition, "a truth value");
+}
+
+Value elaborate_krs(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Sequence sequence = {0};
+    run_block(e, env, syntax, &sequence);
+    if (sequence.wrong || is_stopped(e))
+        return value_error();
+    if (sequence.kernels.count == 0) {
+        Diag *diag  = diag_add(e->diags, DIAG_NO_EFFECT, syntax->span,
+                               "a sequence without a kernel is empty");
+        diag->label = "no `kernel` in here";
+        return value_shape(make_empty(e->builder, syntax->span));
+    }
+    const Shape *krs = make_krs(e->builder, sequence.stages.items, (uint32_t)sequence.stages.count,
+                                sequence.kernels.items, (uint32_t)sequence.kernels.count,
+                                syntax->span);
+    return value_shape(krs);
+}
+
+/* ---- the file ---- */
+
+static void run_file(Elaboration *e, Scope *scope)
+{
+    Environment env = scope->environment;
+    for (uint32_t i = 0; i < scope->file->count && !is_stopped(e); i++) {
+        const Syntax *syntax = scope->file->children[i];
+        switch (syntax->kind) {
+        case SYNTAX_LET:
+        case SYNTAX_PARAM:
+        case SYNTAX_MATERIAL:
+        case SYNTAX_DEF:
+        case SYNTAX_SHAPE: {
+            Definition *definition = scope_find(scope, syntax->name);
+            if (definition && definition->syntax == syntax)
+                run_definition(e, definition, syntax->name_span);
+            break;
+        }
+        case SYNTAX_USE: break;
+        default: run_statement(e, &env, syntax, NULL); break;
+        }
+    }
+}
+
+/* Parameters get their slots in the order of the text, whoever needs them first. */
+static void run_params(Elaboration *e, Scope *scope)
+{
+    for (size_t i = 0; i < scope->definitions.count; i++) {
+        Definition *definition = scope->definitions.items[i];
+        if (definition->syntax->kind == SYNTAX_PARAM)
+            run_definition(e, definition, definition->syntax->name_span);
+    }
+}
+
+void elaborate(Elaboration *e, const Files *files)
+{
+    e->rounding = NODE_NONE;
+    scopes_make(e, files);
+    Scope *scope = e->scopes.items[0];
+    for (size_t i = 0; i < e->scopes.count; i++)
+        run_params(e, e->scopes.items[i]);
+    run_file(e, scope);
+    e->scene->box = box_empty;
+    for (size_t i = 0; i < e->scene->components.count; i++)
+        e->scene->box = box_hull(e->scene->box, e->scene->components.items[i].shape->box);
+    complete_view(e);
+    if (e->scene->components.count == 0 && e->diags->errors == 0) {
+        Diag *diag = diag_add(e->diags, DIAG_NOTHING_SHOWN, scope->file->span,
+                              "the scene shows nothing");
+        diag->help = "write `show` and a shape, for example `show sphere(1);`";
+    }
+}

@@ -1,0 +1,220 @@
+/*
+ * view.c: cameras, lights, sky, image and zones, and defaults for those that a scene leaves out.
+ */
+#include "compiler/eval/elaborate.h"
+
+#include <math.h>
+
+/* ---- cameras, lights, sky, image ---- */
+
+static const double ORIGIN[3] = {0, 0, 0}, UP[3] = {0, 1, 0}, WHITE[3] = {1, 1, 1};
+
+static void add_camera(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    static const char *const projections[] = {"perspective", "orthographic", "panorama"};
+    static const double      eye[3]        = {4, 3, 6};
+    SceneCamera              camera        = {.name = syntax->name};
+    camera.eye                             = position_property(e, env, syntax, "eye", eye);
+    camera.target                          = position_property(e, env, syntax, "target", ORIGIN);
+    camera.up                              = vector_property(e, env, syntax, "up", UP);
+    camera.fov       = number_property(e, env, syntax, "fov", 40 * M_PI / 180);
+    camera.height    = number_property(e, env, syntax, "height", 4);
+    const char *word = word_property(e, env, syntax, "projection", projections, 3, 0);
+    while (word && projections[camera.projection] != word)
+        camera.projection++;
+    const Syntax *fov  = find_property(syntax, "fov");
+    Range         span = node_range(e->builder, camera.fov, 0);
+    if (fov && (span.low <= 0 || span.high >= 3.14159)) {
+        Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, fov->span,
+                              "`fov` must lie between 0 and 180 degrees");
+        diag->help = "angles are radians unless they end in `deg`: write `40deg`";
+    }
+    const Syntax *height = find_property(syntax, "height");
+    if (height)
+        check_positive(e, camera.height, height, "the height of the picture");
+    Node          same   = graph_op2(e->graph, OP_sub, camera.eye, camera.target);
+    const Syntax *target = find_property(syntax, "target");
+    check_direction(e, same, target ? target : syntax, "the view of a camera, from eye to target,");
+    array_push(e->arena, &e->scene->cameras, camera);
+}
+
+static void add_light(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    const Syntax *direction = find_property(syntax, "direction");
+    const Syntax *position  = find_property(syntax, "position");
+    SceneLight    light     = {.positional = position != NULL, .shadow = true};
+    if (!direction == !position) {
+        Diag *diag = diag_add(e->diags, direction ? DIAG_TOO_MANY_ARGUMENTS : DIAG_MISSING_ARGUMENT,
+                              syntax->name_span,
+                              "a light has either a `direction` or a `position`");
+        diag->help = "for example `light sun { direction: [-1, 2, 1], intensity: 3 }`";
+        return;
+    }
+    light.vector   = position ? position_property(e, env, syntax, "position", UP)
+                              : vector_property(e, env, syntax, "direction", UP);
+    Node color     = vector_property(e, env, syntax, "color", WHITE);
+    Node intensity = number_property(e, env, syntax, "intensity", 1);
+    light.color    = graph_op2(e->graph, OP_scale, color, intensity);
+    light.softness = number_property(e, env, syntax, position ? "radius" : "softness", 0);
+    if (direction)
+        check_direction(e, light.vector, direction, "the direction of a light");
+    const Syntax *shadow = find_property(syntax, "shadow");
+    Value         value  = shadow ? evaluate(e, env, shadow) : value_boolean(true);
+    if (value.type == VALUE_BOOLEAN)
+        light.shadow = value.boolean;
+    else
+        type_error(e, shadow, value, "true or false");
+    array_push(e->arena, &e->scene->lights, light);
+}
+
+static void set_sky(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    static const double zenith[3]  = {0.17, 0.26, 0.42};
+    static const double horizon[3] = {0.56, 0.6, 0.66};
+    static const double ground[3]  = {0.17, 0.165, 0.16};
+    e->scene->zenith               = vector_property(e, env, syntax, "zenith", zenith);
+    e->scene->horizon              = vector_property(e, env, syntax, "horizon", horizon);
+    e->scene->ground               = vector_property(e, env, syntax, "ground", ground);
+    /* `sun:` names the light that is the sun; every light is in the sky anyway. */
+    const Syntax *sun = find_property(syntax, "sun");
+    if (sun && sun->kind != SYNTAX_NAME)
+        type_error(e, sun, evaluate(e, env, sun), "the name of a light");
+}
+
+static void set_size(Elaboration *e, const Syntax *size, Value value)
+{
+    Node node = value.type == VALUE_LIST ? value_node(e, value) : NODE_NONE;
+    bool good = node != NODE_NONE && e->graph->items[node].type == TYPE_VEC2 &&
+                graph_is_constant(e->graph, node);
+    for (int i = 0; good && i < 2; i++) {
+        double side = e->graph->items[node].number[i];
+        good        = side >= 1 && side <= 16384 && side == floor(side);
+    }
+    if (good) {
+        e->scene->image.width  = (uint32_t)e->graph->items[node].number[0];
+        e->scene->image.height = (uint32_t)e->graph->items[node].number[1];
+    } else if (value.type != VALUE_ERROR) {
+        Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, size->span,
+                              "`size` of the image must be two whole numbers from 1 to 16384");
+        diag->help = "for example `size: [1280, 720]`";
+    }
+}
+
+static void set_image(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    static const char *const integrators[] = {"preview", "direct", "path"};
+    static const char *const tone_maps[]   = {"neutral", "aces", "none"};
+    SceneImage              *image         = &e->scene->image;
+    const Syntax            *size          = find_property(syntax, "size");
+    if (size)
+        set_size(e, size, evaluate(e, env, size));
+    image->samples    = (uint32_t)constant_property(e, env, syntax, "samples", 1, 65536, 0);
+    image->exposure   = constant_property(e, env, syntax, "exposure", -20, 20, 0);
+    image->error      = constant_property(e, env, syntax, "error", 0.001, 1, 0);
+    image->integrator = word_property(e, env, syntax, "integrator", integrators, 3, 2);
+    image->tone_map   = word_property(e, env, syntax, "tone_map", tone_maps, 3, 0);
+}
+
+/* How deep a point is in the deepest of all zones: what the distance must not be below. */
+static void add_zone(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    Graph        *g      = e->graph;
+    Scene        *scene  = e->scene;
+    const Syntax *size   = find_property(syntax, "radius");
+    Node          center = vector_property(e, env, syntax, "center", ORIGIN);
+    Node          radius = number_property(e, env, syntax, "radius", 1);
+    Range         range  = node_range(e->builder, radius, 0);
+    if (size && range.low < 0) {
+        Diag *diag  = diag_add(e->diags, DIAG_BAD_VALUE, size->span,
+                               "the radius of a zone must not be negative");
+        diag->label = diag_text(e->diags, range.low == range.high ? "this is %g" : "this can be %g",
+                                range.low);
+        if (range.low < range.high)
+            diag->help = "give the `param` a range that is not negative, or use `max(..., 0)`";
+        return;
+    }
+    g->here     = syntax->span;
+    Node point  = graph_leaf(g, OP_POINT);
+    Node offset = graph_op2(g, OP_sub, point, center);
+    Node depth  = graph_op1(g, OP_length, offset);
+    depth       = graph_op2(g, OP_sub, radius, depth);
+    scene->zone = scene->zone == NODE_NONE ? depth : graph_op2(g, OP_max, scene->zone, depth);
+    scene->zone_count++;
+}
+
+/* A scene has one sky, one image, and one camera without a name. */
+static void check_single(Elaboration *e, const Syntax *syntax)
+{
+    if (syntax->kind == SYNTAX_LIGHT || syntax->kind == SYNTAX_ZONE || syntax->name)
+        return;
+    for (size_t i = 0; i < e->single.count; i++) {
+        if (e->single.items[i]->kind != syntax->kind)
+            continue;
+        Diag *diag = diag_add(e->diags, DIAG_DUPLICATE_NAME, syntax->span, "%s is described twice",
+                              block_name(syntax->kind));
+        diag_secondary(e->diags, diag, e->single.items[i]->span, "described here first");
+        if (syntax->kind == SYNTAX_CAMERA)
+            diag->help = "give further cameras names: `camera side { ... }`";
+        return;
+    }
+    array_push(e->arena, &e->single, syntax);
+}
+
+void elaborate_view(Elaboration *e, const Environment *env, const Syntax *syntax)
+{
+    check_block(e, syntax);
+    check_single(e, syntax);
+    switch (syntax->kind) {
+    case SYNTAX_CAMERA: add_camera(e, env, syntax); break;
+    case SYNTAX_LIGHT: add_light(e, env, syntax); break;
+    case SYNTAX_SKY: set_sky(e, env, syntax); break;
+    case SYNTAX_ZONE: add_zone(e, env, syntax); break;
+    default: set_image(e, env, syntax); break;
+    }
+}
+
+/* ---- what a scene leaves out ---- */
+
+/* Frames the bounded components, from above and to the right. */
+static void default_camera(Elaboration *e)
+{
+    Box box = box_empty;
+    for (size_t i = 0; i < e->scene->components.count; i++)
+        if (box_is_finite(e->scene->components.items[i].shape->box))
+            box = box_hull(box, e->scene->components.items[i].shape->box);
+    double              target[3] = {0, 0, 0}, eye[3], radius = 2, fov = 35 * M_PI / 180;
+    static const double towards[3] = {0.53, 0.37, 0.76};
+    if (!box_is_empty(box)) {
+        box_centre(box, target);
+        radius = fmax(0.5 * box_diagonal(box), 1e-6);
+    }
+    for (int i = 0; i < 3; i++)
+        eye[i] = target[i] + towards[i] * radius / sin(0.5 * fov);
+    SceneCamera camera = {.standing_in = true,
+                          .eye         = graph_constant(e->graph, TYPE_VEC3, eye),
+                          .target      = graph_constant(e->graph, TYPE_VEC3, target),
+                          .up          = graph_constant(e->graph, TYPE_VEC3, UP),
+                          .fov         = graph_number(e->graph, fov),
+                          .height      = graph_number(e->graph, 2 * radius)};
+    array_push(e->arena, &e->scene->cameras, camera);
+}
+
+static void default_sun(Elaboration *e)
+{
+    SceneLight sun = {.shadow   = true,
+                      .vector   = graph_vec3(e->graph, -0.5, 1, 0.6),
+                      .color    = graph_vec3(e->graph, 2.9, 2.75, 2.5),
+                      .softness = graph_number(e->graph, 0.02)};
+    array_push(e->arena, &e->scene->lights, sun);
+}
+
+void complete_view(Elaboration *e)
+{
+    static const Syntax silent = {.kind = SYNTAX_SKY};
+    if (e->scene->cameras.count == 0)
+        default_camera(e);
+    if (e->scene->lights.count == 0)
+        default_sun(e);
+    if (e->scene->zenith == NODE_NONE)
+        set_sky(e, NULL, &silent);
+}

@@ -1,0 +1,69 @@
+/*
+ * deform.h: what the deformations share; each has a file of its own.
+ */
+#ifndef KRS_DEFORM_H
+#define KRS_DEFORM_H
+
+#include "compiler/family/family.h"
+#include "compiler/lower/context.h"
+
+/* ---- how they are made ---- */
+
+/* Into how many cells a range is cut where the box of a deformed shape is looked for. */
+enum { DEFORM_CELLS = 64 };
+
+/* A solid, whose distance is one; false: reported. */
+bool check_solid(ShapeBuilder *builder, const Shape *shape, const DeformArguments *asked);
+/* A solid with an end in every direction. */
+bool check_deformable(ShapeBuilder *builder, const Shape *shape, const DeformArguments *asked);
+/* The turn that brings an axis to y; NULL: it is y. */
+const Map *raise_axis(ShapeBuilder *builder, Node axis);
+Shape *deformed_shape(ShapeBuilder *builder, ShapeKind kind, const char *name, const Shape *shape,
+                      const DeformArguments *asked);
+/* What the deformation was divided by, at most, if there is a limit: for reports. */
+void note_slope(Shape *deformed, double slope);
+/* (b + sqrt(b^2 + 4)) / 2, the norm of a shear by b. */
+double shear_slope(double b);
+/* Cell `i` of the DEFORM_CELLS of a range. */
+Range range_cell(Range range, int i);
+/* The largest distance from the y axis in a box. */
+double box_radius(Box box);
+/* Deformed in the position to which a turn brings it, and turned back; NULL: reported. */
+const Shape *deform_turned(ShapeBuilder *builder, const Shape *shape, const Map *turn,
+                           MakeDeformed *deform, const DeformArguments *asked);
+
+/* ---- how they are lowered ---- */
+
+/* The deformation undone at the point of C that is nearest to a point: how far that is, and the
+   point before the deformation. */
+typedef struct InverseDeformation {
+    Node offset, point;
+    Node in[3], out[3]; /* rows of matrices that take normals to the child's space, and back */
+    Node shrink;        /* how much larger things are in the child's space; NODE_NONE: not */
+} InverseDeformation;
+
+/* The child where the deformation is undone, by a distance with the slope 1. */
+Lowered lower_undone(Lowering *l, const Shape *shape, LowerContext context,
+                     const InverseDeformation *inverse);
+/* With g as the distance in C: the distance outside of C as well. */
+Lowered with_region(Lowering *l, Lowered result, Node offset);
+/* As much of a distance as a weight needs whose slope is `steep`: a fraction of the width of the solid
+   where that is less.  *cost is what the weight adds to the slope. */
+Node cut_distance(Graph *g, Node distance, double width, Node steep, Node *cost);
+/* How far the solid reaches from the y axis. */
+double axis_radius(Box box);
+/* x and z scaled, y another. */
+Node across_scaled(Graph *g, Node point, Node y, Node factor);
+Node radius_of(Graph *g, Node point);
+/* (b + sqrt(b^2 + 4)) / 2, the norm of a shear by b. */
+Node shear_norm(Graph *g, Node b);
+
+static inline Node least(Graph *g, Node a, Node b) { return graph_op2(g, OP_min, a, b); }
+static inline Node most(Graph *g, Node a, Node b) { return graph_op2(g, OP_max, a, b); }
+static inline Node row(Graph *g, Node x, Node y, Node z) { return graph_op3(g, OP_vec3, x, y, z); }
+static inline Node length_of(Graph *g, Node a, Node b)
+{
+    return graph_op1(g, OP_length, graph_op2(g, OP_vec2, a, b));
+}
+
+#endif

@@ -1,0 +1,74 @@
+/*
+ * figure.c: plane figures made solid, by extrusion and by revolution.
+ */
+#include "compiler/family/family.h"
+
+#include <math.h>
+
+#include "compiler/lower/normal.h"
+
+/* ---- how it is made ---- */
+
+const Shape *make_extrude(ShapeBuilder *builder, const Shape *figure, Node height, Span span)
+{
+    Graph *g           = builder->graph;
+    Shape *solid       = shape_around(builder, SHAPE_EXTRUDE, "extrude", figure, span);
+    Node   half        = graph_number(g, 0.5);
+    solid->values[0]   = graph_op2(g, OP_mul, height, half);
+    double most        = node_range(builder, solid->values[0], 0).high;
+    solid->box.axis[2] = (Range){-most, most};
+    solid->figure      = false;
+    return solid;
+}
+
+const Shape *make_revolve(ShapeBuilder *builder, const Shape *figure, Node offset, Span span)
+{
+    Shape *solid     = shape_around(builder, SHAPE_REVOLVE, "revolve", figure, span);
+    solid->values[0] = offset;
+    solid->figure    = false;
+    Range  x         = range_add(figure->box.axis[0], node_range(builder, offset, 0));
+    double most      = fmax(x.high, 0);
+    /* What crosses the axis is cut by it: the distance inside the cut is only a bound. */
+    solid->exact       = figure->exact && x.low >= 0;
+    solid->box.axis[0] = solid->box.axis[2] = (Range){-most, most};
+    return solid;
+}
+
+/* ---- how it is lowered ---- */
+
+Lowered lower_extrude(Lowering *l, const Shape *shape, LowerContext context)
+{
+    Graph  *g = l->graph;
+    Node    x = graph_component(g, context.point, 0), y = graph_component(g, context.point, 1);
+    Node    zero   = graph_number(g, 0);
+    Node    flat   = graph_op3(g, OP_vec3, x, y, zero);
+    Lowered result = lower_shape(l, shape->children[0], context_at(context, flat));
+    if (result.distance == NODE_NONE)
+        return result;
+    Node height     = graph_component(g, context.point, 2);
+    height          = graph_op1(g, OP_abs, height);
+    height          = graph_op2(g, OP_sub, height, shape->values[0]);
+    Node inside     = graph_op2(g, OP_max, result.distance, height);
+    inside          = graph_op2(g, OP_min, inside, zero);
+    Node across     = graph_op2(g, OP_max, result.distance, zero);
+    Node along      = graph_op2(g, OP_max, height, zero);
+    Node outside    = graph_op2(g, OP_vec2, across, along);
+    outside         = graph_op1(g, OP_length, outside);
+    result.distance = graph_op2(g, OP_add, inside, outside);
+    return result;
+}
+
+Lowered lower_revolve(Lowering *l, const Shape *shape, LowerContext context)
+{
+    Graph *g = l->graph;
+    Node   x = graph_component(g, context.point, 0), y = graph_component(g, context.point, 1);
+    Node   z        = graph_component(g, context.point, 2);
+    Node   axis     = graph_op2(g, OP_vec2, x, z);
+    Node   offset   = graph_op1(g, OP_length, axis);
+    offset          = graph_op2(g, OP_sub, offset, shape->values[0]);
+    Node       zero = graph_number(g, 0);
+    Node       flat = graph_op3(g, OP_vec3, offset, y, zero);
+    NormalPath path = normal_path(l, context, 1);
+    normal_turn_about_y(l, &path, context.point, graph_vec3(g, 1, 0, 0));
+    return lower_behind(l, shape->children[0], context, &path, flat);
+}

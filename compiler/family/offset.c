@@ -1,0 +1,107 @@
+/*
+ * offset.c: shapes grown or shrunk by a distance, shells and sheets.
+ */
+#include "compiler/family/family.h"
+
+#include <math.h>
+
+#include "compiler/graph/derive.h"
+#include "compiler/lower/join.h"
+
+/* ---- how it is made ---- */
+
+static Shape *new_offset(ShapeBuilder *builder, const Shape *shape, Node radius, Span span)
+{
+    Shape *offset     = shape_around(builder, SHAPE_OFFSET, "offset", shape, span);
+    Range  range      = node_range(builder, radius, 0);
+    offset->values[0] = radius;
+    offset->box       = box_grow(shape->box, fmax(range.high, 0));
+    offset->exact     = shape->exact && range.low >= 0;
+    check_lipschitz(builder, offset, "an offset", span);
+    return offset;
+}
+
+const Shape *make_offset(ShapeBuilder *builder, const Shape *shape, Node radius, Span span)
+{
+    return new_offset(builder, shape, radius, span);
+}
+
+const Shape *make_rounded(ShapeBuilder *builder, const Shape *shape, const Shape *core, Node radius,
+                          Span span)
+{
+    Shape *round   = new_offset(builder, core, radius, span);
+    round->rounded = shape;
+    return round;
+}
+
+const Shape *make_shell(ShapeBuilder *builder, const Shape *shape, Node thickness, Span span)
+{
+    Shape *shell     = shape_around(builder, SHAPE_SHELL, "shell", shape, span);
+    shell->values[0] = thickness;
+    shell->box       = box_grow(shape->box, 0.5 * node_range(builder, thickness, 0).high);
+    check_lipschitz(builder, shell, "a shell", span);
+    return shell;
+}
+
+/* Whether normals follow from derivatives: differences see both sides of a sheet. */
+static bool is_derivable(ShapeBuilder *builder, const Shape *shape)
+{
+    Node gradient, number = shape->formula != NODE_NONE ? shape->formula : shape->distance;
+    if (shape->kind == SHAPE_PRIMITIVE &&
+        graph_gradient(builder->graph, number, &gradient, NULL, builder->scratch) == DERIVED_NOT)
+        return false;
+    for (uint32_t i = 0; i < shape->child_count; i++)
+        if (!is_derivable(builder, shape->children[i]))
+            return false;
+    return true;
+}
+
+const Shape *make_sheet(ShapeBuilder *builder, const Shape *shape, Node thickness, Span span)
+{
+    Shape *sheet  = arena_new(builder->arena, Shape);
+    *sheet        = *make_shell(builder, shape, thickness, span);
+    sheet->name   = "sheet";
+    sheet->sheet  = is_derivable(builder, shape);
+    sheet->sheets = sheet->sheets || sheet->sheet;
+    return sheet;
+}
+
+/* ---- how it is lowered ---- */
+
+Lowered lower_offset(Lowering *l, const Shape *shape, LowerContext context)
+{
+    Lowered result = lower_operand(l, shape->children[0], context);
+    if (result.distance != NODE_NONE)
+        result.distance = graph_op2(l->graph, OP_sub, result.distance, shape->values[0]);
+    return result;
+}
+
+/* What is nowhere negative.  A gradient is that of the solid: it does not turn at the sheet. */
+static Lowered thin_sheet(Lowering *l, Lowered solid)
+{
+    Graph *g    = l->graph;
+    Node   size = graph_op1(g, OP_abs, solid.distance);
+    if (l->held_constant) {
+        Node more = graph_op2(g, OP_sub, size, solid.distance);
+        array_push(l->scratch, l->held_constant, more);
+        size = graph_op2(g, OP_add, solid.distance, more);
+    }
+    solid.distance = size;
+    return solid;
+}
+
+Lowered lower_shell(Lowering *l, const Shape *shape, LowerContext context)
+{
+    Graph *g       = l->graph;
+    bool   thin    = l->thin && shape->sheet;
+    l->thin        = false;
+    Lowered result = thin ? lower_shape(l, shape->children[0], context)
+                          : lower_operand(l, shape->children[0], context);
+    if (result.distance == NODE_NONE || thin)
+        return thin && result.distance != NODE_NONE ? thin_sheet(l, result) : result;
+    Node half       = graph_number(g, 0.5);
+    half            = graph_op2(g, OP_mul, shape->values[0], half);
+    Node size       = graph_op1(g, OP_abs, result.distance);
+    result.distance = graph_op2(g, OP_sub, size, half);
+    return result;
+}

@@ -1,0 +1,96 @@
+/*
+ * paint.c: what changes how a shape looks, not where it is: materials, and smooth mirrors.
+ */
+#include "compiler/family/family.h"
+
+#include "compiler/graph/evaluate.h"
+#include "compiler/lower/normal.h"
+
+/* ---- how it is made ---- */
+
+const Shape *make_smooth(ShapeBuilder *builder, const Shape *shape, Node width, Span span)
+{
+    Shape *smooth     = shape_around(builder, SHAPE_SMOOTH, "smooth_mirrors", shape, span);
+    smooth->values[0] = width;
+    smooth->smooth    = true;
+    return smooth;
+}
+
+/* Whether a material uses `u` or `v` (OP_UV), or `orbit_trap` (OP_TRAP). */
+static bool material_needs(ShapeBuilder *builder, const Material *material, Op leaf)
+{
+    Node   all[] = {material->color, material->roughness, material->metallic, material->emission};
+    Node   roots[sizeof all / sizeof *all];
+    size_t count = 0;
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        if (all[i] != NODE_NONE)
+            roots[count++] = all[i];
+    bool needed = false;
+    Tape tape   = tape_new(builder->graph, roots, count, builder->scratch);
+    for (size_t i = 0; i < tape.count; i++)
+        needed = needed || builder->graph->items[tape.nodes[i]].op == leaf;
+    arena_free(builder->scratch);
+    return needed;
+}
+
+const Shape *make_paint(ShapeBuilder *builder, const Shape *shape, const Material *material,
+                        Span span)
+{
+    if (!shape->trapped && material_needs(builder, material, OP_TRAP)) {
+        Diag *diag  = diag_add(builder->diags, DIAG_OUT_OF_PLACE, span,
+                               "`orbit_trap` has no meaning on `%s`", shape->name);
+        diag->label = "this needs a fractal";
+        diag->help  = "`julia` and `mandelbulb` are fractals";
+        diag_secondary(builder->diags, diag, shape->span, "none in this shape");
+        return NULL;
+    }
+    if (shape->without_uv && material_needs(builder, material, OP_UV)) {
+        const Shape *without = shape->without_uv;
+        Diag        *diag    = diag_add(builder->diags, DIAG_OUT_OF_PLACE, span,
+                                        "`u` and `v` have no meaning on `%s`", without->name);
+        diag->label          = "this material needs them";
+        diag_secondary(builder->diags, diag, without->span, "declared without `uv`");
+        diag->help = "give the declaration of the shape a `uv: [...]`";
+        return NULL;
+    }
+    Shape *painted    = shape_around(builder, SHAPE_PAINT, "paint", shape, span);
+    painted->material = material;
+    return painted;
+}
+
+/* ---- how it is lowered ---- */
+
+/* What a material leaves open stays. */
+static void paint_with(Lowering *l, Node *property, Node paint, Substitution with)
+{
+    if (paint != NODE_NONE)
+        *property = graph_substitute(l->graph, paint, with, l->scratch);
+}
+
+/* The outermost paint counts, as the last method of a chain does. */
+Lowered lower_paint(Lowering *l, const Shape *shape, LowerContext context)
+{
+    Lowered result = lower_shape(l, shape->children[0], context);
+    if (!l->surfaces || result.distance == NODE_NONE)
+        return result;
+    Substitution with = {
+        context.point, result.surface.instance, result.surface.level, result.surface.uv,
+        NODE_NONE,     result.surface.trap};
+    const Material *material = shape->material;
+    with.normal              = unit_normal(l->graph, result.surface.normal, context.normal);
+    paint_with(l, &result.surface.color, material->color, with);
+    paint_with(l, &result.surface.roughness, material->roughness, with);
+    paint_with(l, &result.surface.metallic, material->metallic, with);
+    paint_with(l, &result.surface.emission, material->emission, with);
+    return result;
+}
+
+/* The last of a chain counts, as with paint. */
+Lowered lower_smooth_mirrors(Lowering *l, const Shape *shape, LowerContext context)
+{
+    if (l->surfaces && context.smoothing == NODE_NONE)
+        context.smoothing = shape->values[0] != NODE_NONE
+                                ? shape->values[0]
+                                : graph_op2(l->graph, OP_add, context.footprint, context.footprint);
+    return lower_shape(l, shape->children[0], context);
+}

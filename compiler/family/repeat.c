@@ -1,0 +1,436 @@
+/*
+ * repeat.c: copies in the cells of a lattice, and in sectors around an axis.
+ */
+#include "compiler/family/family.h"
+
+#include <math.h>
+
+#include "compiler/graph/parity.h"
+#include "compiler/lower/box_distance.h"
+#include "compiler/lower/join.h"
+#include "compiler/lower/map_chain.h"
+
+/* ---- how it is made ---- */
+
+const Shape *make_repeat(ShapeBuilder *builder, const Shape *shape, Node period,
+                         const uint32_t cells[3], Span span)
+{
+    if (box_is_empty(shape->box))
+        return shape;
+    Shape *repeat     = shape_around(builder, SHAPE_REPEAT, "repeat", shape, span);
+    repeat->values[0] = period;
+    repeat->exact     = false; /* walls of cells are bounds */
+    for (uint32_t i = 0; i < 3; i++) {
+        Range range      = node_range(builder, period, i);
+        bool  repeats    = cells[i] != 1 && range.high > 0;
+        repeat->cells[i] = repeats ? cells[i] : 1;
+        if (!repeats)
+            continue;
+        double margin = cell_margin(shape->box.axis[i], range.low);
+        if (!(margin >= -1e-9 * range.low)) {
+            Range is    = shape->box.axis[i];
+            Diag *diag  = diag_add(builder->diags, DIAG_OUTSIDE_CELL, span,
+                                   "the shape reaches from %.4g to %.4g on the %c axis, "
+                                    "its cell from %.4g to %.4g",
+                                   is.low, is.high, "xyz"[i], -0.5 * range.low, 0.5 * range.low);
+            diag->label = "does not fit its cell";
+            diag->help  = "use a larger period, or a smaller shape that is centred in its cell";
+            return NULL;
+        }
+        double reach        = cells[i] ? 0.5 * (cells[i] - 1) * range.high : INFINITY;
+        repeat->box.axis[i] = (Range){shape->box.axis[i].low - reach,
+                                      shape->box.axis[i].high + reach};
+    }
+    return repeat;
+}
+
+const Shape *make_repeat_polar(ShapeBuilder *builder, const Shape *shape, uint32_t count, Span span)
+{
+    if (box_is_empty(shape->box))
+        return shape;
+    Shape *repeat    = shape_around(builder, SHAPE_REPEAT_POLAR, "repeat_polar", shape, span);
+    repeat->cells[0] = count;
+    repeat->exact    = false;
+    double most      = 0;
+    for (int i = 0; i < 3; i += 2)
+        most = hypot(most, fmax(fabs(shape->box.axis[i].low), fabs(shape->box.axis[i].high)));
+    repeat->box.axis[0] = repeat->box.axis[2] = (Range){-most, most};
+    return repeat;
+}
+
+/* ---- how it is lowered ---- */
+
+/* Farther than any wall. */
+static const double NOWHERE = 1e30;
+
+/*
+ * The walls of cells go on for ever, and far away would still hold rays up and throw false
+ * penumbras; the distance to the box of all copies is a bound as well, and there the larger one.
+ */
+static Lowered outside_of_box(Lowering *l, const Shape *shape, LowerContext context, Lowered result)
+{
+    Graph *g = l->graph;
+    if (result.distance == NODE_NONE || !box_is_finite(shape->box))
+        return result;
+    Node around     = box_distance(g, context.point, shape->box);
+    Node zero       = graph_number(g, 0);
+    Node outside    = graph_op2(g, OP_less, zero, around);
+    Node larger     = graph_op2(g, OP_max, result.distance, around);
+    result.distance = graph_op3(g, OP_select, outside, larger, result.distance);
+    return result;
+}
+
+/* Whether the content looks the same mirrored in the middle of its cell on an axis; `mapped`
+   is OP_POINT seen by the content, which may stand turned in its cell. */
+static bool is_symmetric(Lowering *l, const Shape *content, Node mapped, uint32_t axis)
+{
+    Lowering alone = {.graph = l->graph, .scratch = l->scratch, .most = l->most};
+    Lowered  inner = lower_shape(&alone, content, context_new(mapped, true));
+    l->overflow    = l->overflow || alone.overflow;
+    return inner.distance != NODE_NONE && graph_is_even(l->graph, inner.distance, axis, l->scratch);
+}
+
+/*
+ * On an axis that repeats, the content lies in its cell; what are the other copies to a point?
+ *   SYMMETRIC  content that is its own mirror image: the copies beyond a wall are the image of
+ *              this one, and never nearer.
+ *   WALLS      content that keeps a margin from the walls: the next copy is at least as far as
+ *              the wall plus the margin.  The least of that and the distance inside is safe and
+ *              continuous, but it is a bound only: not where a blend or an offset lies above.
+ *   NEIGHBOURS else: the copy on the nearer side is evaluated as well, which is exact
+ *              (math.md, section 4, "repetition").
+ */
+typedef enum CellRule { SYMMETRIC, WALLS, NEIGHBOURS } CellRule;
+
+static CellRule choose_cell_rule(Lowering *l, const Shape *content, Node mapped, uint32_t axis,
+                                 double margin, double size, LowerContext context)
+{
+    if (is_symmetric(l, content, mapped, axis))
+        return SYMMETRIC;
+    return margin >= 0.05 * size && !context.lipschitz ? WALLS : NEIGHBOURS;
+}
+
+typedef struct Lattice {
+    Node   period;    /* of the axis */
+    Node   shifted;   /* coordinate, moved so that cells have whole numbers */
+    Node   low, high; /* numbers of the first and the last cell; NODE_NONE: endless */
+    double margin;    /* of the content */
+    double least_period;
+    bool   repeats;
+} Lattice;
+
+static Range frame_range(Lowering *l, Node node)
+{
+    if (graph_is_constant(l->graph, node))
+        return (Range){l->graph->items[node].number[0], l->graph->items[node].number[0]};
+    return graph_frame_fact(l->graph, node, l->scratch).value[0];
+}
+
+static Lattice lattice_of(Lowering *l, const Shape *shape, LowerContext context, uint32_t axis)
+{
+    Graph  *g     = l->graph;
+    Lattice cells = {.repeats = shape->cells[axis] != 1};
+    cells.shifted = graph_component(g, context.point, axis);
+    if (!cells.repeats)
+        return cells;
+    cells.period       = graph_component(g, shape->values[0], axis);
+    cells.least_period = frame_range(l, cells.period).low;
+    Range content      = shape->children[0]->box.axis[axis];
+    cells.margin       = cell_margin(content, cells.least_period);
+    uint32_t count     = shape->cells[axis];
+    /* An even number of copies is centred between two of them. */
+    if (count && count % 2 == 0) {
+        Node half     = graph_number(g, 0.5);
+        Node offset   = graph_op2(g, OP_mul, cells.period, half);
+        cells.shifted = graph_op2(g, OP_add, cells.shifted, offset);
+    }
+    double last = floor(count / 2);
+    cells.high  = count ? graph_number(g, last) : NODE_NONE;
+    cells.low   = count ? graph_number(g, last + 1 - count) : NODE_NONE;
+    return cells;
+}
+
+static Node within_lattice(Graph *g, const Lattice *cells, Node number)
+{
+    return cells->low == NODE_NONE ? number
+                                   : graph_op3(g, OP_clamp, number, cells->low, cells->high);
+}
+
+/* Coordinate within the nearest cell. */
+static Node in_cell(Graph *g, const Lattice *cells, Node *number)
+{
+    Node ratio = graph_op2(g, OP_div, cells->shifted, cells->period);
+    ratio      = graph_op1(g, OP_round, ratio);
+    *number    = within_lattice(g, cells, ratio);
+    Node start = graph_op2(g, OP_mul, *number, cells->period);
+    return graph_op2(g, OP_sub, cells->shifted, start);
+}
+
+/* Coordinate within the neighbour cell on the side where the point is; the same cell again
+   where there is no neighbour. */
+static Node in_neighbour(Graph *g, const Lattice *cells, Node local, Node number)
+{
+    Node zero = graph_number(g, 0), one = graph_number(g, 1), minus = graph_number(g, -1);
+    Node left  = graph_op2(g, OP_less, local, zero);
+    Node side  = graph_op3(g, OP_select, left, minus, one);
+    Node next  = graph_op2(g, OP_add, number, side);
+    next       = within_lattice(g, cells, next);
+    Node start = graph_op2(g, OP_mul, next, cells->period);
+    return graph_op2(g, OP_sub, cells->shifted, start);
+}
+
+/* Distance to the wall of the nearest existing neighbour, plus the margin behind it. */
+static Node wall_distance(Graph *g, const Lattice *cells, Node local, Node number)
+{
+    Node half  = graph_number(g, 0.5);
+    Node wall  = graph_op2(g, OP_mul, cells->period, half);
+    Node right = graph_op2(g, OP_sub, wall, local);
+    Node left  = graph_op2(g, OP_add, wall, local);
+    if (cells->low != NODE_NONE) {
+        Node far   = graph_number(g, NOWHERE);
+        Node first = graph_op2(g, OP_less_equal, number, cells->low);
+        Node last  = graph_op2(g, OP_less_equal, cells->high, number);
+        left       = graph_op3(g, OP_select, first, far, left);
+        right      = graph_op3(g, OP_select, last, far, right);
+    }
+    Node nearer = graph_op2(g, OP_min, left, right);
+    Node margin = graph_number(g, cells->margin);
+    return graph_op2(g, OP_add, nearer, margin);
+}
+
+/*
+ * Which neighbour counts changes in the middle of a cell.  Of exact distances the cell's own is the
+ * least there.  Of bounds either neighbour's may be, and where something above needs the slope, the
+ * distance must not jump.  So it is limited: in the middle of a cell to the distance to the sides
+ * of the next copy's box, and copies' distances are made no less than that.  From there the limit
+ * grows with the coordinate, and it is the same on both sides of a wall.
+ */
+static bool needs_limit(const Shape *content, LowerContext context)
+{
+    return context.lipschitz && !content->exact;
+}
+
+static Node limit_in_cell(Graph *g, const Lattice *cells, Range content, Node local)
+{
+    Node half   = graph_number(g, fmax(-content.low, content.high));
+    Node offset = graph_op1(g, OP_abs, local);
+    Node next   = graph_op2(g, OP_sub, cells->period, half);
+    return graph_op2(g, OP_add, offset, next);
+}
+
+/* With limits the distance is small far from all copies; that to the sides of their box is not, and
+   it is a bound. */
+static Lowered cut_to_limit(Lowering *l, const Shape *shape, LowerContext context, Lowered result,
+                            Node limit)
+{
+    Graph *g = l->graph;
+    if (limit == NODE_NONE || result.distance == NODE_NONE)
+        return result;
+    result.distance = graph_op2(g, OP_min, result.distance, limit);
+    if (box_is_finite(shape->box))
+        return outside_of_box(l, shape, context, result);
+    Node excess = sides_excess(g, context.point, shape->box);
+    if (excess != NODE_NONE)
+        result.distance = graph_op2(g, OP_max, result.distance, excess);
+    return result;
+}
+
+/* The copy in the point's own cell, joined with those in the neighbour cells that count: at
+   most one on each axis, so the cells of a corner. */
+static Lowered join_neighbours(Lowering *l, const Shape *shape, LowerContext context,
+                               const Node own[3], const Node other[3], const bool neighbour[3])
+{
+    Lowered result = lowered_nothing;
+    for (uint32_t corner = 0; corner < 8; corner++) {
+        Node coordinates[3];
+        bool exists = true;
+        for (uint32_t i = 0; i < 3; i++) {
+            bool across    = corner >> i & 1;
+            exists         = exists && (!across || neighbour[i]);
+            coordinates[i] = across ? other[i] : own[i];
+        }
+        if (!exists)
+            continue;
+        const Shape *content = shape->children[0];
+        LowerContext there   = context_at(context, graph_op(l->graph, OP_vec3, coordinates));
+        Lowered      copy    = needs_limit(content, context) ? lower_operand(l, content, there)
+                                                             : lower_shape(l, content, there);
+        result               = join_two(l, blend_sharp, result, copy);
+    }
+    return result;
+}
+
+Lowered lower_repeat(Lowering *l, const Shape *shape, LowerContext context)
+{
+    Graph *g = l->graph;
+    Node   own[3], other[3], walls = NODE_NONE, limit = NODE_NONE;
+    bool   neighbour[3];
+    Node   plain = graph_leaf(g, OP_POINT);
+    for (uint32_t i = 0; i < 3; i++) {
+        Lattice cells = lattice_of(l, shape, context, i);
+        own[i] = other[i] = cells.shifted;
+        neighbour[i]      = false;
+        if (!cells.repeats)
+            continue;
+        Node number;
+        own[i]        = in_cell(g, &cells, &number);
+        CellRule rule = choose_cell_rule(l, shape->children[0], plain, i, cells.margin,
+                                         cells.least_period, context);
+        neighbour[i]  = rule == NEIGHBOURS;
+        if (neighbour[i])
+            other[i] = in_neighbour(g, &cells, own[i], number);
+        if (neighbour[i] && needs_limit(shape->children[0], context)) {
+            Range content = shape->children[0]->box.axis[i];
+            limit         = nearer_of(g, limit, limit_in_cell(g, &cells, content, own[i]));
+        }
+        if (rule == WALLS) {
+            Node wall = wall_distance(g, &cells, own[i], number);
+            walls     = walls == NODE_NONE ? wall : graph_op2(g, OP_min, walls, wall);
+        }
+    }
+    Lowered result = join_neighbours(l, shape, context, own, other, neighbour);
+    result         = cut_to_limit(l, shape, context, result, limit);
+    if (walls == NODE_NONE || result.distance == NODE_NONE)
+        return result;
+    result.distance = graph_op2(g, OP_min, result.distance, walls);
+    return outside_of_box(l, shape, context, result);
+}
+
+static bool range_is_finite(Range range) { return isfinite(range.low) && isfinite(range.high); }
+
+/* Whether a box ends in all directions across y. */
+static bool ends_across(Box box)
+{
+    return range_is_finite(box.axis[0]) && range_is_finite(box.axis[2]);
+}
+
+/* Rotation about y that brings an angle to the x axis. */
+static Node turn_about_y(Graph *g, Node point, double angle)
+{
+    double c = cos(angle), s = sin(angle);
+    Node   r0 = graph_vec3(g, c, 0, s), r1 = graph_vec3(g, 0, 1, 0), r2 = graph_vec3(g, -s, 0, c);
+    return angle == 0 ? point : graph_op4(g, OP_turn, point, r0, r1, r2);
+}
+
+/* How far the content, turned by -angle, stays from the walls of the sector around +x.  What has no
+   end across the axis is taken to cross them. */
+static double sector_margin(Box content, double angle, double half_sector)
+{
+    double least = INFINITY, c = cos(angle), s = sin(angle);
+    if (!ends_across(content))
+        return -INFINITY;
+    for (int corner = 0; corner < 4; corner++) {
+        double x     = corner & 1 ? content.axis[0].high : content.axis[0].low;
+        double z     = corner & 2 ? content.axis[2].high : content.axis[2].low;
+        double along = c * x + s * z, across = -s * x + c * z;
+        least = fmin(least, along * sin(half_sector) - fabs(across) * cos(half_sector));
+    }
+    return least;
+}
+
+/* A copy that stands turned about y. */
+static Lowered lower_turned(Lowering *l, const Shape *content, LowerContext context, Node point)
+{
+    NormalPath path = normal_path(l, context, 1);
+    normal_turn_about_y(l, &path, context.point, point);
+    return lower_behind(l, content, context, &path, point);
+}
+
+static Lowered all_around(Lowering *l, const Shape *shape, LowerContext context, uint32_t first,
+                          uint32_t count)
+{
+    if (count == 1) {
+        Node point = turn_about_y(l->graph, context.point, 2 * M_PI * first / shape->cells[0]);
+        return lower_turned(l, shape->children[0], context, point);
+    }
+    Lowered a = all_around(l, shape, context, first, count / 2);
+    Lowered b = all_around(l, shape, context, first + count / 2, count - count / 2);
+    return join_two(l, blend_sharp, a, b);
+}
+
+/* Where a point is, seen from the sector next to its own on its side, turned towards +x. */
+static Node in_next_sector(Graph *g, const Shape *shape, Node local)
+{
+    double sector = 2 * (M_PI / shape->cells[0]);
+    Node   z = graph_component(g, local, 2), zero = graph_number(g, 0);
+    Node   right = graph_op2(g, OP_less, zero, z);
+    Node   plus  = turn_about_y(g, local, sector);
+    Node   minus = turn_about_y(g, local, -sector);
+    return graph_op3(g, OP_select, right, plus, minus);
+}
+
+/* A sector around +x and its content, which stands turned by `angle` and keeps a margin from both
+   walls. */
+typedef struct Sector {
+    double half, angle, margin;
+} Sector;
+
+/* x sin(half) + factor |z| cos(half): with -1 the distance to the nearer wall, and with 1 what is
+   the same in the middle and grows from there. */
+static Node across_sector(Graph *g, const Sector *sector, Node local, double factor)
+{
+    Node z = graph_component(g, local, 2), x = graph_component(g, local, 0);
+    Node sine    = graph_number(g, sin(sector->half));
+    Node cosine  = graph_number(g, factor * cos(sector->half));
+    Node along   = graph_op2(g, OP_mul, x, sine);
+    Node lateral = graph_op1(g, OP_abs, z);
+    lateral      = graph_op2(g, OP_mul, lateral, cosine);
+    return graph_op2(g, OP_add, along, lateral);
+}
+
+/* Distance to the nearer wall, plus the margin behind it; or what takes its place as a limit. */
+static Node sector_wall(Graph *g, const Sector *sector, Node local, double factor)
+{
+    Node wall = across_sector(g, sector, local, factor);
+    return graph_op2(g, OP_add, wall, graph_number(g, sector->margin));
+}
+
+/* The content, seen from a place in its sector or next to it. */
+static Lowered lower_in_sector(Lowering *l, const Shape *shape, LowerContext context,
+                               const Sector *sector, Node local)
+{
+    Graph  *g      = l->graph;
+    Node    point  = turn_about_y(g, local, -sector->angle);
+    Lowered result = lower_turned(l, shape->children[0], context, point);
+    if (result.distance == NODE_NONE || !needs_limit(shape->children[0], context))
+        return result;
+    Node wall       = across_sector(g, sector, local, -1);
+    Node excess     = graph_op2(g, OP_sub, graph_number(g, sector->margin), wall);
+    result.distance = graph_op2(g, OP_max, result.distance, excess);
+    return result;
+}
+
+/* Copies around y: the point is turned into the sector of the content, and the sectors join as
+   cells do.  Content that crosses the walls is written out, copy by copy. */
+Lowered lower_repeat_polar(Lowering *l, const Shape *shape, LowerContext context)
+{
+    Graph       *g       = l->graph;
+    const Shape *content = shape->children[0];
+    double       centre[3];
+    box_centre(content->box, centre);
+    Sector sector = {.half = M_PI / shape->cells[0]};
+    sector.angle  = ends_across(content->box) ? atan2(centre[2], centre[0]) : 0;
+    sector.margin = sector_margin(content->box, sector.angle, sector.half);
+    if (shape->cells[0] < 3 || sector.margin < 0)
+        return all_around(l, shape, context, 0, shape->cells[0]);
+
+    Node     facing = turn_about_y(g, context.point, sector.angle);
+    Node     count  = graph_number(g, shape->cells[0]);
+    Node     local  = graph_op2(g, OP_cell_polar, facing, count);
+    Lowered  result = lower_in_sector(l, shape, context, &sector, local);
+    Node     mapped = turn_about_y(g, graph_leaf(g, OP_POINT), -sector.angle);
+    double   width  = hypot(centre[0], centre[2]) * sin(sector.half);
+    CellRule rule   = choose_cell_rule(l, content, mapped, 2, sector.margin, width, context);
+    if (rule == SYMMETRIC || result.distance == NODE_NONE)
+        return result;
+    if (rule == NEIGHBOURS) {
+        Node    next  = in_next_sector(g, shape, local);
+        Lowered copy  = lower_in_sector(l, shape, context, &sector, next);
+        bool    cut   = needs_limit(content, context);
+        Node    limit = cut ? sector_wall(g, &sector, local, 1) : NODE_NONE;
+        return cut_to_limit(l, shape, context, join_two(l, blend_sharp, result, copy), limit);
+    }
+    Node wall       = sector_wall(g, &sector, local, -1);
+    result.distance = graph_op2(g, OP_min, result.distance, wall);
+    return outside_of_box(l, shape, context, result);
+}

@@ -1,0 +1,135 @@
+/*
+ * sequence.c: kernel-reflection sequences.
+ *
+ * From the last statement to the first (math.md, sections 1 and 2.4): a mirror folds the point
+ * and gives the instance its next bit, a map takes the point behind it, a kernel joins with the
+ * level that it has: the mirrors before it.
+ */
+#include <math.h>
+
+#include "compiler/lower/guards.h"
+#include "compiler/lower/join.h"
+
+enum { MOST_HEAP_MIRRORS = 31 };
+
+/* The state between two stages of a sequence, from the last to the first. */
+typedef struct SequenceState {
+    const Shape *krs;
+    LowerContext context; /* of the sequence */
+    MapChain     chain;
+    NormalPath   path;
+    Node         id;
+    uint32_t     level;
+    Lowered      result; /* of the kernels so far */
+    PoleBounds   pole_bounds;
+    Node         inside;   /* distance of the kernels within the last hull, */
+    Node         distance; /* and of the others, each no nearer than its hulls */
+    GuardSite   *guard_sites;
+    uint32_t     guard_site_count;
+} SequenceState;
+
+static void take_mirror(Lowering *l, SequenceState *state, const SequenceStage *stage)
+{
+    Graph *g     = l->graph;
+    Node   point = state->chain.point;
+    if (l->surfaces) {
+        Op   next   = state->krs->levels <= MOST_HEAP_MIRRORS ? OP_push_id : OP_hash_id;
+        Node behind = graph_op3(g, OP_front, point, stage->normal, stage->offset);
+        state->id   = graph_op2(g, next, state->id, behind);
+    }
+    normal_fold(l, &state->path, point, stage->normal, stage->offset);
+    pole_bounds_fold(l, &state->pole_bounds, stage->normal, stage->offset);
+    state->chain.point = graph_op3(g, OP_fold, point, stage->normal, stage->offset);
+    state->level--;
+}
+
+/* The kernels since the last hull: max(hull, min(a, b)), where nothing waits for what is inside of
+   another hull. */
+static void leave_hull(Lowering *l, SequenceState *state)
+{
+    Node bound      = state->inside == NODE_NONE
+                          ? NODE_NONE
+                          : farther_of(l->graph, state->inside, state->pole_bounds.distance);
+    state->distance = nearer_of(l->graph, state->distance, bound);
+    state->inside   = NODE_NONE;
+}
+
+/* `before`: around what the map is applied to, or NULL.  Where something above moves the surface,
+   it would show how far from a pole the hulls are: then all hulls are used. */
+static void take_map(Lowering *l, SequenceState *state, const SequenceStage *stage,
+                     const LevelBound *before)
+{
+    Ball       ball        = before ? before->ball : (Ball){.radius = HUGE_VAL};
+    PoleBounds pole_bounds = state->pole_bounds;
+    if (state->context.lipschitz)
+        pole_bounds.within.radius = HUGE_VAL;
+    if (pole_bounds_append(l, &pole_bounds, &state->chain, &stage->map, ball))
+        leave_hull(l, state);
+    state->pole_bounds = pole_bounds;
+    map_chain_append(l, &state->chain, &stage->map, &state->path);
+}
+
+/* Nodes become statements in the order in which they are made.  The next fold is what all other
+   levels wait for: it stands before the kernel, so that a processor has both in sight. */
+static void prepare_fold(Lowering *l, const SequenceState *state, const SequenceStage *next)
+{
+    if (next && next->kind == SEQUENCE_REFLECT)
+        graph_op3(l->graph, OP_fold, state->chain.point, next->normal, next->offset);
+}
+
+static void take_kernel(Lowering *l, SequenceState *state, const Shape *shape)
+{
+    Graph       *g     = l->graph;
+    LowerContext inner = context_behind(&state->path, state->context, state->chain.point);
+    if (l->surfaces) {
+        /* Within an outer sequence its level counts, and this instance is hashed in. */
+        bool outer     = state->context.level != NODE_NONE;
+        inner.level    = outer ? state->context.level : graph_number(g, state->level);
+        inner.instance = outer ? graph_op2(g, OP_join_id, state->context.instance, state->id)
+                               : state->id;
+    }
+    Node    unit   = enter_map_chain(l, &state->chain);
+    Lowered kernel = lower_shape(l, shape, inner);
+    l->unit        = unit;
+    kernel         = map_chain_out(l, &state->chain, kernel);
+    normal_kernel(l, &state->path, state->result, kernel);
+    state->result = join_two(l, blend_sharp, state->result, kernel);
+    state->inside = nearer_of(g, state->inside, kernel.distance);
+}
+
+Lowered lower_krs(Lowering *l, const Shape *shape, LowerContext context)
+{
+    uint32_t      count = shape->stage_count;
+    SequenceState state = {.krs         = shape,
+                           .context     = context,
+                           .chain       = map_chain_new(l->graph, context.point),
+                           .path        = normal_path(l, context, 2 * count),
+                           .id          = graph_uint(l->graph, 1),
+                           .level       = shape->levels,
+                           .result      = lowered_nothing,
+                           .pole_bounds = {NODE_NONE, {.radius = HUGE_VAL}},
+                           .inside      = NODE_NONE,
+                           .distance    = NODE_NONE,
+                           .guard_sites = arena_new_array(l->scratch, GuardSite, count + 1)};
+    for (uint32_t i = count; i-- > 0;) {
+        const SequenceStage *stage = &shape->stages[i];
+        if (may_guard(l, shape, i, context))
+            state.guard_sites[state.guard_site_count++] = (GuardSite){
+                &shape->bounds[i], state.chain, state.result.distance};
+        switch (stage->kind) {
+        case SEQUENCE_REFLECT: take_mirror(l, &state, stage); break;
+        case SEQUENCE_MAP: take_map(l, &state, stage, i ? &shape->bounds[i - 1] : NULL); break;
+        case SEQUENCE_KERNEL:
+            prepare_fold(l, &state, i ? stage - 1 : NULL);
+            take_kernel(l, &state, shape->children[stage->kernel]);
+            break;
+        }
+    }
+    Lowered result        = state.result;
+    result.surface.normal = normal_out(l, &state.path, result.surface.normal);
+    leave_hull(l, &state);
+    if (state.pole_bounds.distance != NODE_NONE)
+        result.distance = state.distance;
+    result.distance = guard_at_sites(l, state.guard_sites, state.guard_site_count, result.distance);
+    return result;
+}

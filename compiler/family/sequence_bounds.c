@@ -1,0 +1,169 @@
+/*
+ * sequence_bounds.c: sequences: their bounding volumes, level by level.
+ */
+#include "compiler/family/family.h"
+
+#include <math.h>
+
+#include "compiler/shape/reach.h"
+
+/* A number that does not move in its range, or none. */
+static bool read_number(Range range, double *number)
+{
+    *number = 0.5 * (range.low + range.high);
+    return range.high - range.low <= 1e-12 * (1 + fabs(*number));
+}
+
+/* The numbers of a stage; false when some are not known when compiling. */
+static bool read_stage(ShapeBuilder *builder, const Shape *krs, const SequenceStage *stage,
+                       ReachStage *reach)
+{
+    bool known = true;
+    if (stage->kind == SEQUENCE_KERNEL) {
+        reach->kind   = REACH_KERNEL;
+        reach->kernel = krs->children[stage->kernel]->box;
+    } else if (stage->kind == SEQUENCE_REFLECT) {
+        reach->kind = REACH_REFLECT;
+        for (uint32_t i = 0; i < 3; i++)
+            known = read_number(node_range(builder, stage->normal, i), &reach->normal[i]) && known;
+        known = read_number(node_range(builder, stage->offset, 0), &reach->offset) && known;
+    } else {
+        double scale;
+        reach->kind = REACH_MAP;
+        known       = read_number(node_range(builder, stage->map.scale, 0), &scale);
+        for (uint32_t i = 0; i < 3; i++) {
+            for (uint32_t j = 0; j < 3; j++) {
+                double *entry = &reach->rows[i][j];
+                known = read_number(node_range(builder, stage->map.rows[i], j), entry) && known;
+                *entry *= scale;
+            }
+            known = read_number(node_range(builder, stage->map.shift, i), &reach->shift[i]) &&
+                    known;
+        }
+    }
+    return known;
+}
+
+/* Of a sequence with maps that invert: balls all the way (cover.h). */
+static Box bound_inverted(ShapeBuilder *builder, const Shape *krs, LevelBound *bounds)
+{
+    Cover cover = {0};
+    for (uint32_t i = 0; i < krs->stage_count; i++) {
+        const SequenceStage *stage = &krs->stages[i];
+        if (stage->kind == SEQUENCE_KERNEL) {
+            const Shape *kernel = krs->children[stage->kernel];
+            if (!box_is_finite(kernel->box) && !box_is_empty(kernel->box)) {
+                for (; i < krs->stage_count; i++)
+                    bounds[i] = (LevelBound){box_infinite, ball_around(box_infinite)};
+                return box_infinite; /* after the last inversion: see check_kernels */
+            }
+            cover_add(builder->arena, &cover, kernel->box);
+        } else if (stage->kind == SEQUENCE_REFLECT) {
+            Range u[3];
+            for (uint32_t k = 0; k < 3; k++)
+                u[k] = node_range(builder, stage->normal, k);
+            cover_fold(builder->arena, &cover, u, node_range(builder, stage->offset, 0));
+        } else {
+            MapRange map = map_range(builder, &stage->map);
+            cover_map(&cover, &map);
+        }
+        bounds[i].box  = cover_box(&cover);
+        Ball around    = ball_around(bounds[i].box);
+        bounds[i].ball = cover_ball(&cover);
+        if (around.radius < bounds[i].ball.radius)
+            bounds[i].ball = around;
+    }
+    return cover_box(&cover);
+}
+
+/* Boxes and balls grow along the sequence side by side; each is tight where the other is not
+   (turned mirrors blow boxes up), so each is cut to the other's size at every level.  While all
+   numbers are known, a search then finds how far the set really reaches. */
+static Box bound_sequence(ShapeBuilder *builder, const Shape *krs, LevelBound *bounds)
+{
+    ReachStage *reach = arena_new_array(builder->arena, ReachStage, krs->stage_count + 1);
+    bool        known = true;
+    Box         box   = box_empty;
+    Ball        ball  = ball_around(box_empty);
+    for (uint32_t i = 0; i < krs->stage_count; i++) {
+        const SequenceStage *stage = &krs->stages[i];
+        if (stage->kind == SEQUENCE_KERNEL) {
+            Box kernel = krs->children[stage->kernel]->box;
+            box        = box_hull(box, kernel);
+            ball       = ball_hull(ball, ball_around(kernel));
+        } else if (stage->kind == SEQUENCE_REFLECT) {
+            Range u[3];
+            for (uint32_t k = 0; k < 3; k++)
+                u[k] = node_range(builder, stage->normal, k);
+            Range w = node_range(builder, stage->offset, 0);
+            box     = box_fold(box, u, w);
+            ball    = ball_fold(ball, u, w);
+        } else {
+            box  = map_box(builder, &stage->map, box);
+            ball = ball_around(map_box(builder, &stage->map, ball_box(ball)));
+        }
+        box          = box_common(box, ball_box(ball));
+        Ball tighter = ball_around(box);
+        if (tighter.radius < ball.radius)
+            ball = tighter;
+        known         = known && read_stage(builder, krs, stage, &reach[i]);
+        reach[i].box  = box;
+        reach[i].ball = ball;
+        if (known && stage->kind == SEQUENCE_REFLECT)
+            reach_tighten(reach, i + 1);
+        box       = reach[i].box;
+        ball      = reach[i].ball;
+        bounds[i] = (LevelBound){box, ball};
+    }
+    return box;
+}
+
+static uint32_t count_inversions(const Shape *krs)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < krs->stage_count; i++)
+        count += krs->stages[i].kind == SEQUENCE_MAP && krs->stages[i].map.pole != NODE_NONE;
+    return count;
+}
+
+/* What is inverted must not be endless; reported at the first inversion after it. */
+static bool check_kernels(ShapeBuilder *builder, const Shape *krs)
+{
+    bool                 good      = true;
+    const SequenceStage *inversion = NULL;
+    for (uint32_t i = krs->stage_count; i-- > 0;) {
+        const SequenceStage *stage = &krs->stages[i];
+        if (stage->kind == SEQUENCE_MAP && stage->map.pole != NODE_NONE)
+            inversion = stage;
+        if (stage->kind == SEQUENCE_KERNEL && inversion)
+            good = check_invertible(builder, krs->children[stage->kernel], inversion->span) && good;
+    }
+    return good;
+}
+
+const Shape *make_krs(ShapeBuilder *builder, const SequenceStage *stages, uint32_t stage_count,
+                      const Shape *const *kernels, uint32_t kernel_count, Span span)
+{
+    Shape *krs       = shape_new(builder, SHAPE_KRS, "krs", span, kernels, kernel_count);
+    krs->stages      = stages;
+    krs->stage_count = stage_count;
+    krs->exact       = false;
+    krs->instances   = 0;
+    krs->levels      = 0;
+    for (uint32_t i = 0; i < stage_count; i++) {
+        if (stages[i].kind == SEQUENCE_KERNEL)
+            krs->instances += kernels[stages[i].kernel]->instances;
+        else if (stages[i].kind == SEQUENCE_REFLECT) {
+            krs->instances *= 2;
+            krs->levels++;
+        }
+    }
+    krs->inversions = count_inversions(krs);
+    if (krs->inversions && !check_kernels(builder, krs))
+        return NULL;
+    LevelBound *bounds = arena_new_array(builder->arena, LevelBound, stage_count + 1);
+    krs->bounds        = bounds;
+    krs->box           = krs->inversions ? bound_inverted(builder, krs, bounds)
+                                         : bound_sequence(builder, krs, bounds);
+    return krs;
+}

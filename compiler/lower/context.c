@@ -1,0 +1,106 @@
+/*
+ * context.c: the walk through a tree of shapes.
+ *
+ * Going down the tree the point is mapped into each shape's own space; going up, distances are
+ * joined.  The same walk makes the distance alone, which is what is marched, and the distance
+ * with all that a hit needs (material, level, instance), which is evaluated once per hit.
+ *
+ * Distances are 1-Lipschitz up to the slope that the families derived, by which the root divides.
+ * Where only sharp joints and maps of space lie above a primitive, its sharper `bound` serves:
+ * it need not be Lipschitz, only never exceed the distance.
+ */
+#include "compiler/lower/context.h"
+
+const Lowered lowered_nothing = {NODE_NONE,
+                                 {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE,
+                                  NODE_NONE, NODE_NONE, NODE_NONE}};
+
+LowerContext context_new(Node point, bool lipschitz)
+{
+    return (LowerContext){point, NODE_NONE, NODE_NONE, lipschitz, NODE_NONE, NODE_NONE, NODE_NONE};
+}
+
+LowerContext context_at(LowerContext context, Node point)
+{
+    context.point = point;
+    return context;
+}
+
+LowerContext context_lipschitz(LowerContext context)
+{
+    context.lipschitz = true;
+    return context;
+}
+
+/* ---- rays from root to root ---- */
+
+static bool rays_always(const Shape *shape)
+{
+    (void)shape;
+    return true;
+}
+
+static bool rays_never(const Shape *shape)
+{
+    (void)shape;
+    return false;
+}
+
+static bool rays_sheet(const Shape *shape) { return shape->sheet; }
+
+static bool rays_sharp(const Shape *shape) { return shape->blend.width == NODE_NONE; }
+
+static bool rays_difference(const Shape *shape)
+{
+    for (uint32_t i = 1; i < shape->child_count; i++)
+        if (shape->children[i]->sheets)
+            return false;
+    return rays_sharp(shape);
+}
+
+/* ---- kinds ---- */
+
+static const struct {
+    LowerShape *lower;
+    bool (*rays)(const Shape *shape);
+} rules[SHAPE_COUNT] = {
+#define SHAPE(KIND, name, parts, curved, divided, rays, step, image, restrict, rule) \
+    {lower_##name, rays_##rays},
+#include "compiler/shape/shapes.def"
+};
+
+bool rays_pass(const Shape *shape) { return rules[shape->kind].rays(shape); }
+
+Lowered lower_shape(Lowering *l, const Shape *shape, LowerContext context)
+{
+    bool thin      = l->thin;
+    l->graph->here = shape->span;
+    l->overflow    = l->overflow || l->graph->count > l->most;
+    if (l->overflow)
+        return lowered_nothing;
+    l->thin        = thin && rays_pass(shape);
+    Lowered result = rules[shape->kind].lower(l, shape, context);
+    l->thin        = thin;
+    /* Where no mirror is smooth, the normal that came in is the one that comes out. */
+    if (result.distance != NODE_NONE && context.smoothing == NODE_NONE && !shape->smooth)
+        result.surface.normal = context.normal;
+    if (l->lowered_shapes)
+        array_push(l->scratch, l->lowered_shapes,
+                   ((LoweredShape){shape, context.point, result.distance}));
+    return result;
+}
+
+Lowered scale_distance(Lowering *l, Lowered result, Node factor)
+{
+    if (result.distance != NODE_NONE && factor != graph_number(l->graph, 1))
+        result.distance = graph_op2(l->graph, OP_mul, result.distance, factor);
+    return result;
+}
+
+Node enter_scale(Lowering *l, Node scale)
+{
+    Node unit = l->unit;
+    if (l->guarded)
+        l->unit = graph_op2(l->graph, OP_mul, unit, scale);
+    return unit;
+}

@@ -1,0 +1,40 @@
+/*
+ * builder.h: what shapes are made with.
+ *
+ * A builder knows no syntax: shapes are made of numbers, nodes and other shapes, and what is wrong
+ * with them is reported at a span.  A function that returns NULL or false has reported.
+ */
+#ifndef KRS_BUILDER_H
+#define KRS_BUILDER_H
+
+#include "compiler/base/diag.h"
+#include "compiler/shape/parameters.h"
+#include "compiler/shape/shape.h"
+
+typedef struct ShapeBuilder {
+    Arena            *arena;   /* shapes and maps */
+    Arena            *scratch; /* free to use, and to free */
+    Diags            *diags;
+    Graph            *graph;
+    const Parameters *parameters; /* those that numbers may depend on */
+    FrameSlopes      *slopes;     /* gets those that no constant bounds */
+    bool              stopped;    /* a limit was reached, and reported: nothing more is */
+} ShapeBuilder;
+
+/* A shape with these children, and what most kinds take over from them. */
+Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span span,
+                 const Shape *const *children, uint32_t count);
+/* The same with one child. */
+Shape *shape_around(ShapeBuilder *builder, ShapeKind kind, const char *name, const Shape *child,
+                    Span span);
+
+/* Ranges of frame-time nodes over all values of the parameters. */
+Range node_range(ShapeBuilder *builder, Node node, uint32_t component);
+
+/* Reports a distance of which nothing is proven, below something (`what`) that moves a surface. */
+void check_lipschitz(ShapeBuilder *builder, const Shape *shape, const char *what, Span span);
+/* Reports a number that can be 0 or less, or a direction that is always the zero vector. */
+bool require_positive(ShapeBuilder *builder, Node number, Span span, const char *what);
+bool require_direction(ShapeBuilder *builder, Node vector, Span span, const char *what);
+
+#endif

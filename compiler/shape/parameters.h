@@ -1,0 +1,41 @@
+/*
+ * parameters.h: numbers of a scene that change from frame to frame: what its author may set, and
+ * slopes that follow from that.
+ */
+#ifndef KRS_PARAMETERS_H
+#define KRS_PARAMETERS_H
+
+#include "compiler/base/source.h"
+#include "compiler/graph/graph.h"
+#include "compiler/shape/box.h"
+
+/* A `param`: its slot in the parameter block and its range. */
+typedef struct Parameter {
+    const char *name;
+    uint32_t    slot, components;
+    double      value[4], low[4], high[4];
+} Parameter;
+
+typedef struct Parameters {
+    Parameter *items;
+    size_t     count, capacity;
+} Parameters;
+
+/* The slope of an expression that no constant bounds, as parameters in it have no limits: it is
+   found for the values of each frame (slope.c), and stands in a slot of the parameter block. */
+typedef struct FrameSlope {
+    uint32_t slot;
+    Node     formula;
+    Box      region; /* over which it is found; infinite: all space */
+    Span     span;   /* of the formula */
+} FrameSlope;
+
+typedef struct FrameSlopes {
+    FrameSlope *items;
+    size_t      count, capacity;
+} FrameSlopes;
+
+/* The host finds each anew whenever anything changes. */
+enum { MOST_FRAME_SLOPES = 256 };
+
+#endif

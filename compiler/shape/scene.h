@@ -1,0 +1,68 @@
+/*
+ * scene.h: the elaborated scene: trees of shapes, and what the picture needs beside them.
+ */
+#ifndef KRS_SCENE_H
+#define KRS_SCENE_H
+
+#include "compiler/shape/parameters.h"
+#include "compiler/shape/shape.h"
+
+/* What a `show` shows. */
+typedef struct Component {
+    const char  *name;
+    const Shape *shape;
+    Span         span;
+    Node         plane_normal, plane_offset; /* of a half-space and nothing else, or NODE_NONE */
+} Component;
+
+/* Numbers and vectors here are frame-time nodes. */
+typedef struct SceneCamera {
+    const char *name; /* or NULL */
+    Node        eye, target, up, fov, height;
+    uint32_t    projection;
+    bool        standing_in; /* for a scene that has no camera: framing.c finds eye and target */
+} SceneCamera;
+
+typedef struct SceneLight {
+    bool positional, shadow;
+    Node vector, color, softness;
+} SceneLight;
+
+typedef struct SceneImage {
+    uint32_t    width, height, samples;
+    const char *integrator, *tone_map;
+    double      exposure, error;
+} SceneImage;
+
+typedef struct Scene {
+    Graph *graph;
+    struct {
+        Component *items;
+        size_t     count, capacity;
+    } components;
+    Parameters  parameters;
+    FrameSlopes slopes;
+    /* Declared half-spaces, which may be in no component: mirrors. */
+    struct {
+        const Shape **items;
+        size_t        count, capacity;
+    } half_spaces;
+    struct {
+        SceneCamera *items;
+        size_t       count, capacity;
+    } cameras;
+    struct {
+        SceneLight *items;
+        size_t      count, capacity;
+    } lights;
+    Node       zenith, horizon, ground;
+    Node       zone; /* the depth of OP_POINT in zones, negative outside; NODE_NONE without any */
+    size_t     zone_count;
+    SceneImage image;
+    Box        box; /* around all components */
+} Scene;
+
+/* The scene as indented text, for `krs dump --after=scene`. */
+void scene_print(const Scene *scene, const Sources *sources, Text *out);
+
+#endif

@@ -1,0 +1,168 @@
+/*
+ * shape.h: what a shape is.
+ *
+ * Shapes are made by the functions of family.h, bottom up; each knows at once its bounding box and
+ * how steep its distance is, by the rule of its kind.  Numbers in it are nodes of the graph
+ * that do not depend on the point, so a parameter can move everything.  Shapes never change.
+ */
+#ifndef KRS_SHAPE_H
+#define KRS_SHAPE_H
+
+#include "compiler/base/source.h"
+#include "compiler/graph/zeros.h"
+#include "compiler/shape/box.h"
+
+typedef struct Shape Shape;
+typedef struct Map   Map;
+
+/* The material of a surface: numbers are nodes, colours linear VEC3 nodes; NODE_NONE leaves
+   what it was painted with before. */
+typedef struct Material {
+    const char *name;
+    Node        color, roughness, metallic, emission;
+} Material;
+
+typedef enum ShapeKind {
+#define SHAPE(KIND, name, parts, curved, divided, rays, step, image, restrict, rule) SHAPE_##KIND,
+#include "compiler/shape/shapes.def"
+    SHAPE_COUNT
+} ShapeKind;
+
+/* What a row of shapes.def says of all shapes of a kind. */
+typedef struct ShapeInfo {
+    const char *name, *rule;
+    int         parts; /* or SEVERAL */
+    bool        divided;
+    bool (*curved)(const Shape *shape);
+} ShapeInfo;
+extern const ShapeInfo shape_info[SHAPE_COUNT];
+
+enum { SEVERAL = -1 };
+
+/*
+ * A conformal map of space: the similarity x -> scale * rows * x + shift or, with a pole,
+ * x -> scale * rows * (x - pole) / |x - pole|^2 + shift; rows orthonormal, scale > 0.  Products
+ * are one map again, except of inversions whose poles may come too near to each other: those
+ * stay apart, and `first` is what is applied before.
+ */
+struct Map {
+    Node       scale, rows[3], shift;
+    Node       pole;  /* NODE_NONE: a similarity */
+    const Map *first; /* NULL: nothing; similarities have none */
+};
+
+/* How two distances are joined; blends.def has a row for each. */
+typedef enum BlendKind {
+#define BLEND(name, spelling, op, slope, bulge, meaning) BLEND_##name,
+#include "compiler/shape/blends.def"
+#undef BLEND
+    BLEND_COUNT
+} BlendKind;
+
+typedef struct BlendInfo {
+    const char *spelling;
+    Op          op;    /* smooth minimum of (a, b, width) or (a, b, width, steps) */
+    double      slope; /* slope of the result over the larger slope of the operands */
+    double      bulge; /* how far min(a, b) may exceed the result, in widths */
+} BlendInfo;
+extern const BlendInfo blend_info[BLEND_COUNT];
+
+/* How the shapes of a metasurface fade; falloffs.def has a row for each. */
+typedef enum FalloffKind {
+#define FALLOFF(name, spelling, steepest, meaning) FALLOFF_##name,
+#include "compiler/shape/falloffs.def"
+#undef FALLOFF
+    FALLOFF_COUNT
+} FalloffKind;
+
+typedef struct Blend {
+    BlendKind kind;
+    Node      width; /* NODE_NONE: the joint is sharp */
+    Node      steps; /* of kinds that have some */
+} Blend;
+extern const Blend blend_sharp;
+
+/* One statement of a `krs` block. */
+typedef struct SequenceStage {
+    enum { SEQUENCE_KERNEL, SEQUENCE_REFLECT, SEQUENCE_MAP } kind;
+    uint32_t kernel;         /* KERNEL: index of the child */
+    Node     normal, offset; /* REFLECT: unit normal and offset */
+    Map      map;            /* MAP, without `first` */
+    Span     span;
+} SequenceStage;
+
+/* Around all that the stages of a sequence up to one have made, where that one leaves it. */
+typedef struct LevelBound {
+    Box  box;
+    Ball ball; /* may be the tighter of the two */
+} LevelBound;
+
+/* Each is about a quarter turn. */
+enum { MOST_BEND_SEGMENTS = 16 };
+
+/* Walks of the tree are recursive. */
+enum { MOST_SHAPE_DEPTH = 1000 };
+/* Walks visit a shape as often as it is used, which is more often than there are shapes. */
+enum { MOST_TREE_SHAPES = 100000 };
+
+struct Shape {
+    ShapeKind     kind;
+    Span          span; /* of the expression that made it */
+    const char   *name; /* of the declaration or operation, for dumps */
+    const Shape **children;
+    uint32_t      child_count;
+    uint32_t      depth;  /* of the tree below, at most MOST_SHAPE_DEPTH */
+    uint32_t tree_shapes; /* of that tree and itself, each where it is used; MOST_TREE_SHAPES */
+
+    Box      box;     /* around the solid, for all values of the parameters */
+    double   slope;   /* Lipschitz constant of what it lowers to */
+    double   derived; /* PRIMITIVE: the slope of its expression, by which it is divided; else the
+                       largest in the tree */
+    bool     exact;   /* the distance outside is the true one */
+    bool     curved_child; /* shape_is_curved of a child */
+    bool     claimed;      /* PRIMITIVE: its slope is claimed, not derived */
+    Box      region;    /* PRIMITIVE: over which its slope was derived; infinite: over all space */
+    bool     estimate;  /* nothing is proven of the distance: a primitive in it is measured only */
+    bool     per_frame; /* in the tree is a slope that is found anew for each frame (FrameSlope) */
+    bool     trapped;   /* in the tree is a fractal: `orbit_trap` means something */
+    bool     figure;    /* a plane figure in x and y */
+    bool     sheet;  /* SHELL: has no thickness where rays can go from root to root (rays_pass) */
+    bool     sheets; /* in the tree are some */
+    double   instances;  /* copies of kernels that reflections make; 1 without a sequence */
+    uint32_t levels;     /* reflections of the outermost sequence in it */
+    uint32_t inversions; /* maps of that sequence that invert, or of `.transform` on the way */
+
+    /* PRIMITIVE, in its own coordinates; bound, uv and trap (VEC2) may be NODE_NONE. */
+    Node     formula; /* of a field, algebraic surface (field.c) or DISPLACE, else NODE_NONE */
+    double   overlap; /* BEND: by how much the segments reach beyond their ends */
+    double   reach;   /* DISPLACE: largest size of the formula in the box */
+    uint32_t degree;  /* of a formula that is a polynomial, else 0, */
+    ZeroBox  zeros;   /* and where that may be 0 */
+    Span     blame;   /* what a field without a bound owes that to */
+    bool     fields;  /* in the tree is a field whose bound follows from a region */
+    Node     distance, bound, uv, trap;
+    const struct Shape *without_uv; /* a primitive in the tree that has none, or NULL */
+    bool                smooth;     /* mirrors in the tree are smooth */
+    Node                values[2];  /* see ShapeKind; NODE_NONE where there are fewer */
+    Map                 map;        /* without `first` */
+    Blend               blend;      /* of joints */
+    FalloffKind         falloff;    /* META */
+    uint32_t            cells[3];   /* REPEAT: copies per axis, 0 for endless */
+
+    Node plane_normal, plane_offset; /* PRIMITIVE that is a half-space, else NODE_NONE */
+    /* PRIMITIVE that a declaration of the language made: what the evaluator knows of it, and
+       shapes do not; else NULL. */
+    const struct Declaration *declaration;
+    Node                      declared; /* of such a primitive: its `distance` as it is written */
+    const struct Shape  *rounded; /* OFFSET that .round made of a core: what is rounded; or NULL */
+    const Material      *material;
+    const SequenceStage *stages;
+    uint32_t             stage_count;
+    const LevelBound    *bounds; /* of the stages, for all values of the parameters */
+};
+
+/* Whether it is curved nearly everywhere, or finer than a pixel as a rule, so that where its normal
+   turns there need be no edge: blends, sequences, fields, and what is bent or stretched. */
+bool shape_is_curved(const Shape *shape);
+
+#endif

@@ -1,0 +1,166 @@
+/*
+ * slope.c: how fast an expression changes at most, by which its value becomes a distance.
+ *
+ * A bound that holds for all values of the parameters and of the time is a constant.  Where there
+ * is none because they have no limits, as in sin(time * x), the slope is a number of the frame:
+ * the host finds it by the same rules, at the values of the frame, and puts it into a slot of the
+ * parameter block.  That is promised only if the slope has a bound at first, at time 0 and the
+ * defaults, and at other values tried here; a frame that has none is refused when it comes.
+ */
+#include "compiler/shape/slope.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { CELLS = 512, FRAME_CELLS = 64, TRIALS = 3 };
+
+/* The time, and what is added to parameters without limits.  Numbers of no significance: what is
+   bounded there is nowhere unbounded but by accident. */
+static const double trial_times[TRIALS] = {0, 1.618, 100.7}, trial_steps[TRIALS] = {0, 0.732, 14.1};
+
+uint32_t frame_slope_cells(Box box) { return box_is_finite(box) ? FRAME_CELLS : 1; }
+
+/* Above this, single precision has no room for quotients by it. */
+double frame_slope_upward(double slope)
+{
+    const double MOST = 1e30, SLACK = 1 + 0x1p-20; /* parameters are rounded, too */
+    if (!(slope <= MOST))
+        return HUGE_VAL;
+    return slope > 0 ? (double)nextafterf((float)(slope * SLACK), HUGE_VALF) : 0;
+}
+
+/* Whether some value of the frame that the expression needs can be any number. */
+static bool needs_the_endless(const Graph *graph, Node root, Arena *scratch)
+{
+    Tape tape = tape_new(graph, &root, 1, scratch);
+    for (size_t i = 0; i < tape.frame_count; i++) {
+        const Expr *e = &graph->items[tape.nodes[i]];
+        if (e->op != OP_PARAMETER)
+            continue;
+        const GraphParameter *range = &graph->parameters.items[e->index];
+        for (int k = 0; k < (int)e->type; k++)
+            if (!isfinite(range->low[k]) || !isfinite(range->high[k]))
+                return true;
+    }
+    return false;
+}
+
+/* What has no limits becomes a single value; ranges stay. */
+static void try_values(const Parameters *parameters, Graph *plain, int trial)
+{
+    GraphParameter *ranges = plain->parameters.items;
+    ranges[0].low[0] = ranges[0].high[0] = trial_times[trial];
+    for (size_t i = 0; i < parameters->count; i++) {
+        const Parameter *parameter = &parameters->items[i];
+        GraphParameter  *range     = &ranges[parameter->slot];
+        for (uint32_t k = 0; k < parameter->components; k++) {
+            double low = parameter->low[k], high = parameter->high[k];
+            if (isfinite(low) && isfinite(high))
+                continue;
+            double value  = parameter->value[k] + trial_steps[trial];
+            range->low[k] = range->high[k] = fmin(fmax(value, low), high);
+        }
+    }
+}
+
+/* Whether frames have a slope over a region; `found` gets the first one, or whom to blame. */
+static bool bounded_in_frames(ShapeBuilder *builder, const Graph *plain, Node root, Box region,
+                              Steepness *found)
+{
+    Graph tried            = *plain;
+    tried.parameters.items = arena_new_array(builder->scratch, GraphParameter,
+                                             plain->parameters.count);
+    memcpy(tried.parameters.items, plain->parameters.items,
+           plain->parameters.count * sizeof *plain->parameters.items);
+    for (int trial = TRIALS; trial-- > 0;) {
+        Node blame = NODE_NONE;
+        try_values(builder->parameters, &tried, trial);
+        found->bound = graph_slope(&tried, root, region, NULL, frame_slope_cells(region), &blame,
+                                   builder->scratch);
+        if (isfinite(found->bound) && (trial > 0 || isfinite(frame_slope_upward(found->bound))))
+            continue;
+        found->blame = plain->items[blame].span;
+        found->bound = HUGE_VAL;
+        return false;
+    }
+    return true;
+}
+
+static bool same_box(Box a, Box b)
+{
+    bool same = true;
+    for (int i = 0; i < 3; i++)
+        same = same && a.axis[i].low == b.axis[i].low && a.axis[i].high == b.axis[i].high;
+    return same;
+}
+
+/* The slot of the slope of a formula over a region: equal ones have one. */
+static Node frame_slot(ShapeBuilder *builder, Node formula, Box region, Span span)
+{
+    FrameSlopes *slopes = builder->slopes;
+    for (size_t i = 0; i < slopes->count; i++)
+        if (slopes->items[i].formula == formula && same_box(slopes->items[i].region, region))
+            return graph_parameter(builder->graph, slopes->items[i].slot, TYPE_FLOAT);
+    if (slopes->count == MOST_FRAME_SLOPES && !builder->stopped) {
+        Diag *diag       = diag_add(builder->diags, DIAG_LIMIT, span,
+                                    "more than %d expressions have a slope of each frame",
+                                    MOST_FRAME_SLOPES);
+        diag->label      = "this one too changes faster and faster with a `param` or with `time`";
+        diag->help       = "give the `param` a range, or use one expression for several shapes";
+        builder->stopped = true;
+    }
+    FrameSlope     slope = {(uint32_t)builder->graph->parameters.count, formula, region, span};
+    GraphParameter range = {{0}, {HUGE_VAL}};
+    array_push(builder->arena, &builder->graph->parameters, range);
+    array_push(builder->arena, slopes, slope);
+    return graph_parameter(builder->graph, slope.slot, TYPE_FLOAT);
+}
+
+bool find_slope(ShapeBuilder *builder, Node formula, const Box *regions, int count, Span span,
+                Steepness *found)
+{
+    /* Simplified, sqrt(x * x + ...) is a length, whose slope is known. */
+    Node   root  = formula;
+    Graph *plain = graph_simplify(builder->graph, &root, 1, builder->scratch);
+    *found       = (Steepness){.slot = NODE_NONE};
+    for (int i = 0; i < count; i++) {
+        Node blame    = NODE_NONE;
+        found->region = regions[i];
+        found->bound  = graph_slope(plain, root, regions[i], NULL,
+                                   box_is_finite(regions[i]) ? CELLS : 1, &blame, builder->scratch);
+        found->blame  = blame == NODE_NONE ? (Span){0, 0, 0} : plain->items[blame].span;
+        if (isfinite(found->bound))
+            return true;
+    }
+    bool frames = needs_the_endless(plain, root, builder->scratch);
+    for (int i = 0; frames && i < count; i++) {
+        found->region = regions[i];
+        if (bounded_in_frames(builder, plain, root, regions[i], found)) {
+            found->slot = frame_slot(builder, formula, regions[i], span);
+            return true;
+        }
+    }
+    return false;
+}
+
+Node steepness_node(Graph *graph, const Steepness *slope)
+{
+    return slope->slot != NODE_NONE ? slope->slot : graph_number(graph, slope->bound);
+}
+
+Node divide_by_steepness(Graph *graph, Node distance, const Steepness *slope)
+{
+    if (slope->slot == NODE_NONE)
+        return divide_by_slope(graph, distance, slope->bound);
+    Node one    = graph_number(graph, 1);
+    Node factor = graph_op2(graph, OP_div, one, graph_op2(graph, OP_max, slope->slot, one));
+    return graph_op2(graph, OP_mul, distance, factor);
+}
+
+Node divide_by_slope(Graph *g, Node distance, double slope)
+{
+    if (slope <= 1 + 1e-9)
+        return distance;
+    Node factor = graph_number(g, 1 / slope);
+    return graph_op2(g, OP_mul, distance, factor);
+}

@@ -1,0 +1,32 @@
+/*
+ * slope.h: how fast expressions change, and distances that follow from that.
+ */
+#ifndef KRS_SLOPE_H
+#define KRS_SLOPE_H
+
+#include "compiler/shape/builder.h"
+
+typedef struct Steepness {
+    double bound;  /* of all frames; with a slot, of the first: time 0, defaults */
+    Node   slot;   /* the slope in the frame; NODE_NONE: the bound is a constant */
+    Box    region; /* over which; infinite: all space */
+    Span   blame;  /* of what changes fastest */
+} Steepness;
+/* Over the first of these regions where the slope of an expression has a bound; false: it has none.
+   `span` is its place. */
+bool find_slope(ShapeBuilder *builder, Node formula, const Box *regions, int count, Span span,
+                Steepness *found);
+Node steepness_node(Graph *graph, const Steepness *slope);
+/* What grows so fast, made safe. */
+Node divide_by_steepness(Graph *graph, Node distance, const Steepness *slope);
+
+/* What grows `slope` times as fast as distance, made safe. */
+Node divide_by_slope(Graph *graph, Node distance, double slope);
+
+/* The slot has a number of single precision that is no less than the slope; infinite: there is no
+   bound. */
+double frame_slope_upward(double slope);
+/* Into how many cells the region is cut at most. */
+uint32_t frame_slope_cells(Box region);
+
+#endif
