@@ -39,17 +39,20 @@ FAMILY   := $(sort $(wildcard compiler/family/*.c))
 EVAL     := $(addprefix compiler/eval/, scope.c expression.c arithmetic.c arguments.c builtins.c lists.c \
                 random.c functions.c csg.c fractal.c declare.c claims.c empty.c methods.c properties.c \
                 material.c view.c palette.c statements.c)
-SHADER   := $(addprefix compiler/shader/, emit.c statements.c frame_values.c mirrors.c early_outs.c march.c spirv.c)
-BORDER   := compiler/shader/glslang_border.cpp
+PRINT    := $(addprefix compiler/print/, frame_values.c lines.c helpers.c mirrors.c statements.c \
+                prepare.c distances.c shared.c surfaces.c early_outs.c march.c module_print.c \
+                glsl/glsl.c)
+TARGET   := compiler/target/spirv.c
+BORDER   := compiler/target/glslang_border.cpp
 API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c retain.c facts.c \
-                march_groups.c program.c framing.c frame.c query.c search_pairs.c search_targets.c \
+                march_groups.c make_module.c program.c scene_text.c framing.c frame.c query.c search_pairs.c search_targets.c \
                 search_starts.c search.c refute.c refute_settings.c refute_blame.c refute_report.c bounds.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer film writer))))
 CLI      := $(sort $(wildcard cli/*.c))
 
 # Text files that the program carries: the standard library, what scenes and kernels share, kernels.
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))
-HELPERS  := $(sort $(wildcard compiler/graph/*.glsl))
+HELPERS  := $(sort $(wildcard compiler/print/glsl/*.glsl))
 SHADERS  := $(sort $(wildcard runtime/shaders/*.comp runtime/shaders/*.glsl)) runtime/shared/blocks.h
 # Kernels without a scene are compiled here and now, not on every machine again; what is optimized
 # here, drivers need not.
@@ -62,7 +65,7 @@ LIBS     := -lglslang -lMachineIndependent -lGenericCodeGen -lOSDependent -lOGLC
             -lSPVRemapper -lglslang-default-resource-limits -lSPIRV-Tools-opt -lSPIRV-Tools \
             -lOpenEXRCore-3_1 -lpng -lxxhash -lvulkan -lstdc++ -lm -pthread
 
-COMPILER := $(BASE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(SHADER) $(API)
+COMPILER := $(BASE) $(GRAPH) $(SHAPE) $(LOWER) $(FAMILY) $(FRONT) $(EVAL) $(PRINT) $(TARGET) $(API)
 OBJECTS  := $(COMPILER:%.c=$(B)/%.o) $(BORDER:%.cpp=$(B)/%.o) $(B)/library_files.o \
             $(B)/helper_files.o $(RUNTIME:%.c=$(B)/%.o) $(B)/shader_files.o $(B)/module_files.o
 
@@ -87,7 +90,7 @@ $(B)/%.o: $(B)/%.c
 $(B)/library_files.c: $(B)/embed $(LIBRARY)
 	@$(B)/embed library_files compiler/library/ $(LIBRARY) >$@
 $(B)/helper_files.c: $(B)/embed $(HELPERS)
-	@$(B)/embed helper_files compiler/graph/ $(HELPERS) >$@
+	@$(B)/embed helper_files compiler/print/glsl/ $(HELPERS) >$@
 $(B)/shader_files.c: $(B)/embed $(SHADERS)
 	@$(B)/embed shader_files runtime/shaders/ $(SHADERS) >$@
 $(B)/module_files.c: $(B)/embed $(MODULES)
@@ -95,7 +98,7 @@ $(B)/module_files.c: $(B)/embed $(MODULES)
 $(B)/modules/%.spv: runtime/shaders/% $(SHADERS) $(HELPERS)
 	@mkdir -p $(@D)
 	@echo "shader $<"
-	@glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/graph -o $@ $< >/dev/null
+	@glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl -o $@ $< >/dev/null
 	@spirv-opt --target-env=vulkan1.1 -O $@ -o $@
 	@spirv-val --target-env vulkan1.1 $@
 $(B)/embed: compiler/base/embed/embed.c

@@ -7,6 +7,8 @@
  */
 #include "bench/growth.h"
 
+#include <stdlib.h>
+
 #include "bench/shader.h"
 #include "bench/subject.h"
 
@@ -33,9 +35,13 @@ static void plant(Bench *bench, Tree *tree, uint32_t levels, const KrsRenderOpti
     subject_warm_up(bench, &tree->subject, options, &tree->stats);
     Text sizes = {.arena = bench->arena};
     text_format(&sizes, "#define EVALUATIONS %d\n", EVALUATIONS);
-    char *text = shader_text(
-        bench, path,
-        (StandIn[]){{"scene.glsl", tree->subject.program->glsl}, {"sizes.glsl", sizes.bytes}, {0}});
+    const KrsFunction wanted[] = {KRS_FUNCTION_DISTANCE};
+    char *scene = krs_scene_text(tree->subject.scene, &(KrsVariant){0}, wanted, 1, NULL);
+    if (!scene)
+        fail("out of memory");
+    char *text = shader_text(bench, path,
+                             (StandIn[]){{"scene.glsl", scene}, {"sizes.glsl", sizes.bytes}, {0}});
+    free(scene);
     shader_create(bench, &tree->distance, text, path, ends);
 }
 

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "compiler/base/embedded.h"
-#include "compiler/shader/spirv.h"
+#include "compiler/target/spirv.h"
 
 enum { BUFFER_BINDING = 1 };
 

@@ -2,6 +2,7 @@
  * compile.c: `krs compile`: the shaders of a scene and their description, as files.
  */
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -52,20 +53,32 @@ static KrsStatus write_description(const Options *options, const KrsScene *scene
     return write_output_file(options, base, ".json", json.bytes, json.length);
 }
 
+/* The functions that are promised, and what they call. */
+static KrsStatus write_glsl(const Options *options, const KrsScene *scene, const char *base)
+{
+    KrsVariant  variant = compiled_variant(options);
+    KrsFunction promised[KRS_MOST_PROMISED];
+    variant.shares = true;
+    size_t count   = krs_promised_functions(scene, variant.many_threads, promised);
+    char  *glsl    = krs_scene_text(scene, &variant, promised, count, NULL);
+    if (!glsl) {
+        say("out of memory while printing `%s.glsl`", base);
+        return KRS_OUT_OF_MEMORY;
+    }
+    KrsStatus status = write_output_file(options, base, ".glsl", glsl, strlen(glsl));
+    free(glsl);
+    return status;
+}
+
 /* Everything is compiled before anything is written. */
 static KrsStatus write_all(const Options *options, const KrsScene *scene, const Modules *modules)
 {
-    const KrsProgram *program = krs_scene_program(scene);
-    const char       *name    = scene_name(options->arena, options->files.items[0]);
-    Text              base    = {.arena = options->arena};
+    const char *name = scene_name(options->arena, options->files.items[0]);
+    Text        base = {.arena = options->arena};
     text_format(&base, "%s/%s", options->outputs.items[0], name);
-    Text glsl = {.arena = options->arena};
-    text_add(&glsl, compiled_defines(options));
-    text_add_bytes(&glsl, program->glsl, program->glsl_length);
-
     KrsStatus status = make_folder(options->outputs.items[0]);
     if (status == KRS_OK)
-        status = write_output_file(options, base.bytes, ".glsl", glsl.bytes, glsl.length);
+        status = write_glsl(options, scene, base.bytes);
     for (size_t i = 0; i < modules->count && status == KRS_OK; i++) {
         const Module *module = &modules->items[i];
         Text          ending = {.arena = options->arena};

@@ -10,7 +10,7 @@
 #include "cli/console.h"
 #include "cli/supervise.h"
 #include "compiler/base/embedded.h"
-#include "runtime/device/kernel.h"
+#include "runtime/tracer/variants.h"
 
 /* The parts of a module that are looked at, with their numbers in the SPIR-V specification. */
 enum {
@@ -32,17 +32,21 @@ static bool is_kernel(const char *file)
     return length > 5 && strcmp(file + length - 5, ".comp") == 0;
 }
 
-const char *compiled_defines(const Options *options)
+KrsVariant compiled_variant(const Options *options)
 {
-    return options->early_outs == KRS_EARLY_OUTS_OFF ? "" : "#define EARLY_OUTS\n";
+    return (KrsVariant){.many_threads = options->early_outs != KRS_EARLY_OUTS_OFF,
+                        .values       = !options->no_frame_values};
 }
 
-static KrsStatus compile_kernel(const Options *options, const char *glsl, const char *file,
+static KrsStatus compile_kernel(const Options *options, const KrsScene *scene, const char *file,
                                 Modules *modules)
 {
-    Gpu   gpu  = {0}; /* stays closed: it only carries the reason of a failure */
-    char *text = kernel_text(&gpu, &(KernelSource){file, glsl, compiled_defines(options)});
-    char *log  = NULL;
+    Gpu           gpu     = {0}; /* stays closed: it only carries the reason of a failure */
+    KrsVariant    chosen  = compiled_variant(options);
+    KernelVariant variant = variant_for_any(scene, file, &chosen);
+    KernelSource  source  = variant_source(file, &variant);
+    char         *text    = kernel_text(&gpu, &source);
+    char         *log     = NULL;
     if (!text) {
         say("%s", gpu.message);
         return gpu.status;
@@ -64,14 +68,13 @@ static KrsStatus compile_kernel(const Options *options, const char *glsl, const 
 
 KrsStatus modules_compile(const Options *options, const KrsScene *scene, Modules *modules)
 {
-    const char *glsl   = krs_scene_program(scene)->glsl;
-    KrsStatus   status = KRS_OK;
-    *modules           = (Modules){0};
+    KrsStatus status = KRS_OK;
+    *modules         = (Modules){0};
     stage_enter(STAGE_SHADERS);
     spirv_start();
     for (const EmbeddedFile *file = shader_files; file->name && status == KRS_OK; file++)
         if (is_kernel(file->name))
-            status = compile_kernel(options, glsl, file->name, modules);
+            status = compile_kernel(options, scene, file->name, modules);
     spirv_stop();
     stage_enter(STAGE_START);
     return status;

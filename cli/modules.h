@@ -18,8 +18,8 @@ typedef struct Modules {
     size_t  count, capacity;
 } Modules;
 
-/* What stands before a scene's text: what suits graphics cards, unless the options differ. */
-const char *compiled_defines(const Options *options);
+/* What suits graphics cards, unless the options differ. */
+KrsVariant compiled_variant(const Options *options);
 
 /* Compiles and validates every kernel for the scene; when one is refused, a bug of ours, its
    log is said.  modules_free in either case. */

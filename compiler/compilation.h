@@ -60,9 +60,10 @@ struct Compilation {
     Files             files;
     Scene             elaborated; /* its graph is the one that `lower` extends */
     Additions         additions;
-    size_t           *operations;   /* of each component and, behind the last, of its zones */
-    uint32_t         *march_groups; /* of each component, from 1; 0: it needs no march */
-    Text              dump;
+    size_t           *operations; /* of each component and, behind the last, of its zones */
+    uint32_t
+        *march_groups; /* of each component, from 1; 0: it needs no march; in the scene's arena */
+    Text dump;
 };
 
 static inline bool component_is_plane(const Component *component)

@@ -7,42 +7,7 @@
 #include "compiler/base/arena.h"
 #include "compiler/base/diag.h"
 #include "compiler/compiled.h"
-#include "compiler/shader/spirv.h"
-
-/*
- * The GLSL of a program declares these promised functions, and the kernels of the runtime
- * include it (their own text says `#include "scene.glsl"`):
- *
- *     layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[N]; };
- *     void  krs_prepare();               once, first in main: all that is constant in a frame
- *     float krs_distance(vec3 p);        safe distance to the scene in world units, < 0 inside
- *     struct KrsSurface { float distance; vec3 color; float roughness; float metallic;
- *                         vec3 emission; uint component; uint level; uint instance;
- *                         vec3 normal; };
- *     KrsSurface krs_surface(vec3 p, vec3 normal, float footprint);
- *                                        what is at p: the component with the least distance
- *
- * krs_surface is given the unit gradient of krs_distance at p, and the radius of the pixel's cone
- * there in world units (0 for a point).  The normal that it returns is the one to light: unit,
- * outwards, and the given one unless mirrors are smooth.
- *
- * With EARLY_OUTS defined, what a graphics card should march by:
- *
- *     float krs_distance_lod(vec3 p, float footprint);
- *
- * It is never above the distance to the nearest surface and not above 0 in the same places, but
- * often less than krs_distance: what is far away for its size is not looked at.  What is smaller
- * than `footprint`, the radius of a pixel's cone at p, counts as the box around it (0: nothing
- * does).  Where a branch saves no work, as on lavapipe, krs_distance costs less.
- *
- * A scene of several expensive components has groups of them (KrsMarchGroup): with MARCH_GROUP
- * defined as the number of one there is krs_distance alone, and of that group alone.
- *
- * N is parameter_slots (at least 1), what is in them is told at krs_frame_parameters.  With
- * FRAME_VALUES defined, value_slots more follow (krs_frame_values), and lanes need not find what
- * depends on the frame alone.  Zones of the scene have been cut out of distances.  With ZONES
- * defined, as many slots follow for zones of the caller (krs_frame_zones).
- */
+#include "compiler/target/spirv.h"
 
 /*
  * The attempt to refute the distances of a scene, and of every shape in it by itself: a directed

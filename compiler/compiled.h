@@ -5,6 +5,7 @@
 #define KRS_COMPILED_H
 
 #include "compiler/krs.h"
+#include "compiler/print/variant.h"
 
 typedef struct KrsCamera {
     enum { KRS_PERSPECTIVE, KRS_ORTHOGRAPHIC, KRS_PANORAMA } projection;
@@ -43,8 +44,8 @@ typedef struct KrsView {
     const KrsLight *lights; /* lives as long as the frame, until the next krs_frame_view */
 } KrsView;
 
-/* Components that are best marched by themselves, one group after another: with MARCH_GROUP defined
-   as the number of a group, from 1, krs_distance is that of the group's components alone. */
+/* Components that are best marched by themselves, one group after another: texts may have one group
+   alone, by its number from 1. */
 typedef struct KrsMarchGroup {
     double flops;           /* as below, of its components */
     double low[3], high[3]; /* box around them */
@@ -52,30 +53,29 @@ typedef struct KrsMarchGroup {
 enum { KRS_MOST_MARCH_GROUPS = 8 };
 
 typedef struct KrsProgram {
-    const char *glsl; /* promised functions, readable, with comments of source lines */
-    size_t      glsl_length;
-    uint32_t    parameter_slots;
-    uint32_t    value_slots;     /* how many follow for kernels with #define FRAME_VALUES */
-    double      low[3], high[3]; /* box around all components; infinite where unbounded */
-    size_t      operations;      /* of krs_distance */
-    double      flops;           /* of krs_distance, weighted as op_cost has it */
-    uint32_t    loops;           /* iterations of loops in it, at most */
-    bool        planes;          /* there is krs_plane_t, for kernels with #define PLANES */
-    double      rest_low[3], rest_high[3]; /* with planes: the box around what is left to march */
-    bool camera_relative; /* points may be relative to the camera, with #define CAMERA_RELATIVE */
+    size_t        glsl_length; /* of all that kernels call, one function beside the other */
+    uint32_t      parameter_slots;
+    uint32_t      value_slots;     /* how many follow where the host finds values of the frame */
+    double        low[3], high[3]; /* box around all components; infinite where unbounded */
+    size_t        operations;      /* of krs_distance */
+    double        flops;           /* of krs_distance, weighted as op_cost has it */
+    uint32_t      loops;           /* iterations of loops in it, at most */
+    bool          planes;          /* there is krs_plane_t */
+    double        rest_low[3], rest_high[3]; /* with planes: the box around what is left to march */
+    bool          camera_relative;           /* points may be relative to the camera */
     uint32_t      camera_relative_slots; /* then: how many more slots follow those of the zones */
-    bool          gradients; /* there is krs_gradient, for kernels with #define GRADIENT */
+    bool          gradients;             /* there is krs_gradient by derivatives */
     bool          algebraic; /* normals are by krs_gradient unless asked for otherwise */
-    bool          along;     /* there is krs_along, for kernels with #define ALONG */
+    bool          along;     /* there is krs_along */
     bool          sheets;    /* surfaces without thickness, where krs_distance is not negative: rays
-                                 go by krs_along, normals by krs_gradient, with #define SHEETS */
-    bool          inverts;   /* there are its variants for sequences with maps that invert */
-    bool          plain;     /* no component is curved (shape_is_curved): #define PLAIN */
+                                 go by krs_along, normals by krs_gradient */
+    bool          inverts;   /* there are its steps for sequences with maps that invert */
+    bool          plain;     /* no component is curved (shape_is_curved) */
     bool          shadows;   /* a light casts some */
     KrsMarchGroup march_groups[KRS_MOST_MARCH_GROUPS];
     size_t        march_group_count; /* 0: all components belong together */
     bool          per_component;     /* marching groups one after the other is worth it */
-    uint32_t      scene_parts;       /* how many (emit.h), for kernels with #define PACKED */
+    uint32_t      scene_parts;       /* of krs_scene_part_distance */
     uint32_t      expensive;         /* components that cost enough to be marched by themselves */
     const double *pass_ms;           /* time spent: in each pass (krs_pass, compile.h), */
     double        front_ms, glsl_ms; /* in all before `emit`, and in `emit` */
@@ -83,6 +83,16 @@ typedef struct KrsProgram {
 
 /* The scene's program; lives as long as the scene. */
 const KrsProgram *krs_scene_program(const KrsScene *scene);
+/* The GLSL of a variant: the wanted functions, what they call, and comments with lines of the scene.
+   Released by the caller, with free() where there is no allocator (NULL); NULL when there is no
+   memory.  Where a function needs something of the program (planes, along...), it must have that. */
+char *krs_scene_text(const KrsScene *scene, const KrsVariant *variant, const KrsFunction *wanted,
+                     size_t count, const KrsAllocator *allocator);
+/* Those that `krs compile` writes: krs_distance and krs_surface; krs_distance_lod for many threads;
+   what is found by derivatives, and what surfaces without thickness need.  Returns how many. */
+enum { KRS_MOST_PROMISED = 5 };
+size_t krs_promised_functions(const KrsScene *scene, bool many_threads,
+                              KrsFunction promised[KRS_MOST_PROMISED]);
 /* Whether a camera of the scene is a panorama. */
 bool krs_scene_is_panoramic(const KrsScene *scene);
 /* The number of cameras and their names (the first is the default; NULL when unnamed). */
@@ -98,8 +108,8 @@ bool krs_needs_rebase(double coordinate, double pixel);
 /* What camera-relative kernels get for their origin: camera_relative_slots vec4s, found in double
    precision. */
 void krs_frame_rebase(KrsFrame *frame, const double rebase_origin[3], float (*block)[4]);
-/* The zones of the caller (center, radius), to stand behind the parameter block when the GLSL is
-   compiled with ZONES defined as that many or more; the others must have a radius that is far
+/* The zones of the caller (center, radius), to stand behind the parameter block of a variant with
+   room for that many or more; the others must have a radius that is far
    below 0.  Returns how many. */
 size_t krs_frame_zones(const KrsFrame *frame, float (*zones)[4]);
 /* A ray as questions march it: in a unit direction, and from `start` to `end`, which is what the

@@ -95,7 +95,7 @@ KrsStatus pass_facts(Compilation *c)
     find_additions(c);
     find_steps(c);
     form_march_groups(c); /* by boxes, costs and planes */
-    c->scene->program.scene_parts = emit_scene_part_count(c->scene->component_count);
+    c->scene->program.scene_parts = module_scene_part_count(c->scene->component_count);
     return KRS_OK;
 }
 

@@ -216,12 +216,13 @@ void krs_frame_rebase(KrsFrame *frame, const double rebase_origin[3], float (*bl
         return;
     memcpy(frame->parameters[scene->program.parameter_slots - 1].v, rebase_origin,
            3 * sizeof *rebase_origin);
-    frame_values_find(&scene->found.camera_relative, frame->parameters, frame->values, block);
+    frame_values_find(&scene->module.slots.camera_relative, frame->parameters, frame->values,
+                      block);
 }
 
 void krs_frame_values(const KrsFrame *frame, float (*block)[4])
 {
-    frame_values_find(&frame->scene->found.plain, frame->parameters, frame->values, block);
+    frame_values_find(&frame->scene->module.slots.plain, frame->parameters, frame->values, block);
 }
 
 void krs_frame_parameters(const KrsFrame *frame, float (*block)[4])

@@ -125,9 +125,9 @@ const char *krs_frame_unbounded(const KrsFrame *frame);
 size_t krs_parameter_slots(const KrsScene *scene);
 void   krs_frame_parameters(const KrsFrame *frame, float (*block)[4]);
 /*
- * With FRAME_VALUES defined, that GLSL reads what else depends on the frame alone (turns by a
- * parameter, sines of the time) from krs_value_slots more slots, behind those, instead of finding
- * it for each point anew: fewer registers, and the digits of double precision.
+ * With `krs compile --frame-values on`, that GLSL reads what else depends on the frame alone (turns
+ * by a parameter, sines of the time) from krs_value_slots more slots, behind those, instead of
+ * finding it for each point anew: fewer registers, and the digits of double precision.
  */
 size_t krs_value_slots(const KrsScene *scene);
 void   krs_frame_values(const KrsFrame *frame, float (*block)[4]);

@@ -51,7 +51,8 @@ static double flops_worth_splitting(const KrsProgram *program)
 void form_march_groups(Compilation *c)
 {
     KrsProgram *program      = &c->scene->program;
-    uint32_t   *march_groups = arena_new_array(&c->work, uint32_t, c->scene->component_count + 1);
+    uint32_t   *march_groups = arena_new_array(&c->scene->arena, uint32_t,
+                                               c->scene->component_count + 1);
     Box         rest         = box_empty;
     double      rest_flops   = 0;
     for (size_t i = 0; i < c->scene->component_count; i++) {

@@ -121,39 +121,3 @@ KrsStatus pass_simplify(Compilation *c)
 void print_simplify(Compilation *c, Text *out) { print_graph(c, c->scene->graph, out); }
 
 void validate_simplified(const Compilation *c) { graph_validate(c->scene->graph, "simplify"); }
-
-KrsStatus pass_emit(Compilation *c)
-{
-    KrsScene    *scene    = c->scene;
-    KrsProgram  *program  = &scene->program;
-    const Roots *roots    = &scene->roots;
-    size_t       count    = scene->component_count;
-    Text         glsl     = {.arena = &scene->arena};
-    Box         *boxes    = arena_new_array(&c->scratch, Box, count + 1);
-    bool        *is_plane = arena_new_array(&c->scratch, bool, count + 1);
-    for (size_t i = 0; i < count; i++) {
-        boxes[i]    = c->elaborated.components.items[i].shape->box;
-        is_plane[i] = component_is_plane(&c->elaborated.components.items[i]);
-    }
-    EmitMarch march = {
-        .guarded         = roots_of(roots, ROOTS_GUARDED).items,
-        .along           = roots_of(roots, ROOTS_ALONG).items,
-        .boxes           = boxes,
-        .march_groups    = program->march_group_count ? c->march_groups : NULL,
-        .is_plane        = program->planes ? is_plane : NULL,
-        .camera_relative = program->camera_relative ? roots_of(roots, ROOTS_CAMERA_RELATIVE).items
-                                                    : NULL,
-        .zone_slots      = KRS_MOST_ZONES,
-        .plane_roots     = roots_of(roots, ROOTS_PLANE).items,
-        .slopes          = scene->slope_count > 0,
-        .gradient        = program->gradients ? roots_of(roots, ROOTS_GRADIENT).items : NULL};
-    emit_glsl(scene->graph, &c->sources, roots_of(roots, ROOTS_SURFACE).items, count,
-              zone_root(scene), &march, &c->scratch, &glsl, &scene->found);
-    program->glsl                  = glsl.bytes;
-    program->glsl_length           = glsl.length;
-    program->value_slots           = scene->found.plain.slots;
-    program->camera_relative_slots = scene->found.camera_relative.slots;
-    return KRS_OK;
-}
-
-void print_emit(Compilation *c, Text *out) { text_add(out, c->scene->program.glsl); }

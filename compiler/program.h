@@ -9,7 +9,7 @@
 #include "compiler/lower/lower.h"
 #include "compiler/shape/scene.h"
 #include "compiler/graph/evaluate.h"
-#include "compiler/shader/emit.h"
+#include "compiler/print/module.h"
 
 /*
  * What is asked of the graph: nodes in one array, kind behind kind, so that they are simplified
@@ -128,6 +128,7 @@ struct KrsScene {
     Arena          arena; /* all that stays: graph, names, program */
     KrsProgram     program;
     const Graph   *graph;
+    Module         module; /* what text is printed from */
     Roots          roots;
     size_t         component_count, camera_count, light_count;
     size_t         zone_count; /* declared; all have one root */
@@ -148,9 +149,7 @@ struct KrsScene {
     Tape           ahead;    /* with sheets: of all components, and zones, how far rays may go */
     Tape           turned;   /* with sheets: gradients of all components */
     Tape           surface;  /* all roots of all components */
-    EmittedFrame
-         found; /* what kernels get from the host for a frame, and for an origin near the camera */
-    Tape view;  /* cameras, lights and sky */
+    Tape           view;     /* cameras, lights and sky */
 };
 
 /* A frame: what varies, and memory for the values of all nodes. */

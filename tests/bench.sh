@@ -79,7 +79,7 @@ report $? "every scene has a table"
 
 for shader in bench/*.comp bench/handwritten/*.comp; do
     glslangValidator -V --target-env vulkan1.1 -Ibench -Ibench/handwritten -I. -Iruntime/shaders \
-        -Icompiler/graph -o /dev/null "$shader" || echo "$shader" >>"$work/refused"
+        -Icompiler/print/glsl -o /dev/null "$shader" || echo "$shader" >>"$work/refused"
 done >"$work/said"
 [ ! -e "$work/refused" ] || sed 's/^/# /' "$work/said"
 [ ! -e "$work/refused" ]

@@ -8,14 +8,42 @@ report() { # name, status
     if [ "$2" -eq 0 ]; then echo "ok - $1"; else echo "not ok - $1"; failed=1; fi
 }
 for kernel in runtime/shaders/*.comp; do
-    glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/graph -o /dev/null "$kernel" >/dev/null
+    glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL" $?
-    glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/graph -DNO_TEXELS \
+    glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl -DNO_TEXELS \
         -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL without texels" $?
-    glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/graph -DSUBGROUPS \
+    glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl -DSUBGROUPS \
         -o /dev/null "$kernel" >/dev/null
     report "$kernel is valid GLSL with sums of subgroups" $?
+done
+# Emitted text is GLSL as it is pasted, without directives (every variant: tests/unit/texts.c); so is
+# every file of helpers.
+pasted=$(mktemp) && trap 'rm -f "$pasted"' EXIT
+for text in tests/golden/*.glsl; do
+    {
+        printf '#version 440\nlayout(local_size_x = 1) in;\n'
+        cat "$text"
+        printf 'layout(std430, set = 1, binding = 0) buffer Found { float found; };\n'
+        printf 'void main()\n{\n    krs_prepare();\n    vec3 p = vec3(found);\n'
+        printf '    found = krs_distance(p) + krs_surface(p, p, 0.0).roughness;\n}\n'
+    } >"$pasted"
+    glslangValidator -V --target-env vulkan1.1 --stdin -S comp -o /dev/null <"$pasted" >/dev/null
+    report "$text can be pasted" $?
+    ! grep -q '^ *#' "$text"
+    report "$text has no directives" $?
+done
+for helpers in compiler/print/glsl/*.glsl; do
+    {
+        printf '#version 440\nlayout(local_size_x = 1) in;\n'
+        case $helpers in
+        */cells.glsl) cat compiler/print/glsl/arcs.glsl compiler/print/glsl/sines.glsl ;;
+        esac
+        cat "$helpers"
+        printf 'void main() {}\n'
+    } >"$pasted"
+    glslangValidator -V --target-env vulkan1.1 --stdin -S comp -o /dev/null <"$pasted" >/dev/null
+    report "$helpers is valid GLSL" $?
 done
 for script in tools/*.sh tests/*.sh tests/*/*.sh .ci/run; do
     shellcheck -x -P SCRIPTDIR "$script"

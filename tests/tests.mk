@@ -18,7 +18,8 @@ UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c
 PROPERTY_SHARED := $(addprefix tests/property/, garden.c op_trial.c reach_crowd.c)
 UNIT        := texts front diagnostics shape passes film devices tracer rendering methods schedules writer \
                image_files memory validate search refute frame query zones cache cache_limits \
-               compiled pipelines per_component stencils glslang loader drivers grid
+               compiled pipelines per_component stencils glslang loader drivers grid \
+               printing
 PROPERTY    := ops noise graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees
 ORACLES     := self primitives krs_expand trees maps moebius moebius_images operators \
@@ -89,7 +90,7 @@ clang-objects: $(COMPILER:%.c=$(B)/%.o) $(RUNTIME:%.c=$(B)/%.o) $(CLI:%.c=$(B)/%
 
 # The front end (lexer, parser, names) and the whole compiler but glslang under libFuzzer.
 HARNESSES   := front_fuzz scene_fuzz
-FUZZED      := $(filter-out compiler/shader/spirv.c, $(COMPILER))
+FUZZED      := $(filter-out $(TARGET), $(COMPILER))
 fuzz-programs: $(HARNESSES:%=$(B)/tests/fuzz/%)
 $(HARNESSES:%=$(B)/tests/fuzz/%): $(B)/tests/fuzz/%: $(B)/tests/fuzz/%.o \
                                     $(FUZZED:%.c=$(B)/%.o) $(B)/library_files.o \

@@ -11,8 +11,8 @@
 #include <string.h>
 
 #include "bench/device/device.h"
-#include "compiler/graph/graph.h"
-#include "compiler/shader/spirv.h"
+#include "compiler/print/printer.h"
+#include "compiler/target/spirv.h"
 
 enum { LANES = 64, GROUPS = 1024, COUNT = LANES * GROUPS };
 
@@ -213,15 +213,28 @@ static int glsl_length(const char *text)
     return length;
 }
 
+/* The functions that the operation calls. */
+static void write_helpers(const Operation *operation, FILE *out)
+{
+    jmp_buf exhausted;
+    Memory  memory  = {.exhausted = &exhausted};
+    Arena   arena   = {.memory = &memory};
+    Text    helpers = {.arena = &arena};
+    if (setjmp(exhausted) != 0)
+        give_up(operation->glsl, "no memory");
+    module_print_helpers(&glsl_printer, operation->op, TYPE_FLOAT, 2, &helpers);
+    if (helpers.length > 0)
+        fwrite(helpers.bytes, 1, helpers.length, out);
+    arena_free(&arena);
+}
+
 static void write_kernel(const Operation *operation, FILE *out)
 {
-    const char *helper;
     fprintf(out,
             "#version 440\nlayout(local_size_x = %d) in;\n"
             "layout(std430, set = 0, binding = 0) buffer Numbers { vec4 numbers[]; };\n",
             LANES);
-    for (uint32_t i = 0; (helper = op_helper(operation->op, i)); i++)
-        fputs(helper, out);
+    write_helpers(operation, out);
     fprintf(out,
             "void main()\n{\n    uint i = gl_GlobalInvocationID.x;\n"
             "    float a = numbers[i].x, b = numbers[i].y;\n    numbers[i].z = %.*s;\n}\n",

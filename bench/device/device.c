@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "bench/sheet.h"
-#include "compiler/shader/spirv.h"
+#include "compiler/target/spirv.h"
 
 static const char usage[] =
     "usage: device name|limits|accuracy\n"

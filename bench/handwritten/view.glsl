@@ -4,7 +4,7 @@
  * The bench puts the scene's own in its place, so that the pictures are of the same view, and
  * with it the permitted error.  With this one the shaders can be checked by themselves:
  *     glslangValidator -V --target-env vulkan1.1 -Ibench/handwritten -Iruntime/shaders \
- *         -Icompiler/graph FILE
+ *         -Icompiler/print/glsl FILE
  */
 #define WIDTH      1280
 #define HEIGHT     720

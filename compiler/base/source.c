@@ -71,7 +71,7 @@ uint32_t source_add(Sources *sources, const char *name, const char *text, size_t
     return (uint32_t)(sources->count - 1);
 }
 
-Position source_position(const Source *source, uint32_t offset)
+uint32_t source_line(const Source *source, uint32_t offset)
 {
     uint32_t low = 0, high = source->line_count; /* the line is in [low, high) */
     while (high - low > 1) {
@@ -81,12 +81,18 @@ Position source_position(const Source *source, uint32_t offset)
         else
             high = middle;
     }
+    return low + 1;
+}
+
+Position source_position(const Source *source, uint32_t offset)
+{
+    uint32_t line   = source_line(source, offset);
     uint32_t column = 1 + characters_before(source, offset) -
-                      characters_before(source, source->lines[low]);
+                      characters_before(source, source->lines[line - 1]);
     /* A place in the middle of a character counts as its beginning. */
     if (offset < source->length && !begins_character(source->text[offset]) && column > 1)
         column--;
-    return (Position){low + 1, column};
+    return (Position){line, column};
 }
 
 Span span_join(Span from, Span to)

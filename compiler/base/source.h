@@ -51,6 +51,7 @@ uint32_t source_add(Sources *sources, const char *name, const char *text, size_t
                     bool library);
 /* 64 bits of the text of all sources that are not the library's, in hexadecimal digits. */
 void     sources_hash(const Sources *sources, char hash[17]);
+uint32_t source_line(const Source *source, uint32_t offset);
 Position source_position(const Source *source, uint32_t offset);
 
 /* From the start of one place to the end of another in the same source. */

@@ -188,7 +188,7 @@ static NodeValue evaluate_cell_polar(const NodeValue *o, uint32_t size)
     return vector3(c * p[0] + s * p[2], p[1], c * p[2] - s * p[0]);
 }
 
-/* The same integer arithmetic as in helpers.def; every input gives another output. */
+/* The same integer arithmetic as in print/glsl/identity.glsl; every input gives another output. */
 static uint32_t scramble(uint32_t x)
 {
     x = (x ^ (x >> 16)) * 0x7feb352du;

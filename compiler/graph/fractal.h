@@ -2,7 +2,7 @@
  * fractal.h: Julia sets of quaternions and Mandelbulbs, in double precision.
  *
  * The solid of n iterations is the set of points whose orbit has not left the ball of the escape
- * radius after n steps; it contains the solid of n + 1.  helpers.def has the same in GLSL.
+ * radius after n steps; it contains the solid of n + 1.  print/glsl has the same in GLSL.
  */
 #ifndef KRS_FRACTAL_H
 #define KRS_FRACTAL_H
@@ -24,7 +24,7 @@ NodeValue evaluate_julia_trap(const NodeValue *o, uint32_t size);
 NodeValue evaluate_mandelbulb(const NodeValue *o, uint32_t size);
 NodeValue evaluate_mandelbulb_trap(const NodeValue *o, uint32_t size);
 
-/* Iterations of loops in a kernel's bound (helpers.def) with so many iterations of the orbit at
+/* Iterations of loops in a kernel's bound (print/glsl) with so many iterations of the orbit at
    most: there and back again in a Julia set, unless both ways are unrolled. */
 enum { UNROLLED_JULIA = 32 };
 uint32_t fractal_loops(Op op, double iterations);

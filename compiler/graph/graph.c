@@ -11,8 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "compiler/base/embedded.h"
-
 /* ---- what is known of operations ---- */
 
 typedef struct OpInfo {
@@ -54,49 +52,6 @@ bool op_promises(Op op, OpPromises what) { return (promises[op] & what) == what;
 
 const char *graph_op_name(Op op) { return op_info[op].name; }
 const char *op_glsl(Op op) { return op_info[op].glsl; }
-
-typedef struct Helper {
-    const char *text, *file; /* one of them */
-} Helper;
-
-#define HELPER(name, text)      static const Helper helper_##name = {text, NULL};
-#define HELPER_FILE(name, file) static const Helper helper_##name = {NULL, file};
-#define HELPS(op, name)
-#include "compiler/graph/helpers.def"
-#undef HELPER
-#undef HELPER_FILE
-#undef HELPS
-
-static const struct {
-    Op            op;
-    const Helper *helper;
-} op_helpers[] = {
-#define HELPER(name, text)
-#define HELPER_FILE(name, file)
-#define HELPS(op, name) {OP_##op, &helper_##name},
-#include "compiler/graph/helpers.def"
-#undef HELPER
-#undef HELPER_FILE
-#undef HELPS
-};
-
-static const char *helper_file_text(const char *name)
-{
-    const EmbeddedFile *file = helper_files;
-    while (file->name && strcmp(file->name, name) != 0)
-        file++;
-    return file->text;
-}
-
-const char *op_helper(Op op, uint32_t number)
-{
-    for (size_t i = 0; i < sizeof op_helpers / sizeof *op_helpers; i++) {
-        const Helper *helper = op_helpers[i].helper;
-        if (op_helpers[i].op == op && number-- == 0)
-            return helper->text ? helper->text : helper_file_text(helper->file);
-    }
-    return NULL;
-}
 
 static uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
 

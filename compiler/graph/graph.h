@@ -122,9 +122,6 @@ bool        graph_is_constant(const Graph *graph, Node node);
 
 /* The row's GLSL, operands $a..$d; NULL for leaves and OP_COMPONENT. */
 const char *op_glsl(Op op);
-/* GLSL functions that op_glsl calls: text `number`, each after those that it needs itself; NULL: no
-   more.  Operations share texts: emit a pointer once. */
-const char *op_helper(Op op, uint32_t number);
 bool        op_promises(Op op, OpPromises what);
 /* What an operation costs, in multiply-adds of one component, as measured on lavapipe. */
 double op_cost(Op op, GraphType type, const GraphType *operands);

@@ -5,6 +5,7 @@
 #include "runtime/device/kernel.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -33,7 +34,8 @@ static const char *find_file(const char *name, size_t length)
 /* A kernel's text as it grows. */
 typedef struct Expansion {
     const KernelSource *source;
-    char               *out; /* NULL: it is only counted */
+    const char         *scene; /* its text */
+    char               *out;   /* NULL: it is only counted */
     size_t              length;
 } Expansion;
 
@@ -49,7 +51,7 @@ static bool append_file(Expansion *to, const char *name, size_t name_length)
 {
     static const char include[] = "#include \"";
     bool              is_scene  = strncmp(name, "scene.glsl", name_length) == 0;
-    const char       *text      = is_scene ? to->source->scene : find_file(name, name_length);
+    const char       *text      = is_scene ? to->scene : find_file(name, name_length);
     if (is_scene && text)
         append(to, text, strlen(text));
     for (; !is_scene && text && *text; text += strcspn(text, "\n"), text += *text == '\n') {
@@ -98,9 +100,10 @@ void kernel_strip(char *text)
     *to = '\0';
 }
 
-char *kernel_text(Gpu *gpu, const KernelSource *source)
+/* The text of a kernel around that of its scene, or NULL. */
+static char *expand(Gpu *gpu, const KernelSource *source, const char *scene)
 {
-    Expansion expansion = {source, NULL, 0};
+    Expansion expansion = {source, scene, NULL, 0};
     if (!append_file(&expansion, source->file, strlen(source->file))) {
         gpu_refuse(gpu, KRS_INTERNAL, "the kernel `%s`, or a file that it includes, is missing",
                    source->file);
@@ -113,6 +116,23 @@ char *kernel_text(Gpu *gpu, const KernelSource *source)
         kernel_strip(expansion.out);
     }
     return expansion.out;
+}
+
+char *kernel_text(Gpu *gpu, const KernelSource *source)
+{
+    const KernelScene *s = source->scene;
+    if (!s)
+        return expand(gpu, source, NULL);
+    char *scene = krs_scene_text(s->scene, &s->variant, s->wanted, s->wanted_count,
+                                 &gpu->allocator);
+    if (!scene) {
+        gpu_refuse(gpu, KRS_OUT_OF_MEMORY,
+                   "cannot print the scene for the kernel `%s`: out of memory", source->file);
+        return NULL;
+    }
+    char *text = expand(gpu, source, scene);
+    gpu_release(gpu, scene);
+    return text;
 }
 
 /* A kernel on its way to SPIR-V, in a thread of its own when it must be compiled. */
@@ -148,10 +168,21 @@ static const EmbeddedFile *find_module(const KernelSource *source)
     return NULL;
 }
 
+/* The cache's key: all that the text depends on but cannot show, and the text. */
+static CacheKey make_key(const KernelSource *source, const char *text)
+{
+    const KernelScene *s       = source->scene;
+    uint64_t           variant = s ? krs_variant_hash(&s->variant, s->wanted, s->wanted_count) : 0;
+    char               maker[192];
+    snprintf(maker, sizeof maker,
+             "%s: krs %s, glslang %s, SPIRV-Tools %s, inlined, variant %016" PRIx64, source->file,
+             KRS_VERSION, spirv_glslang_version(), spirv_tools_version(), variant);
+    return cache_key(maker, text, strlen(text));
+}
+
 /* Takes the kernel from the program itself, or puts its text together and looks into the cache. */
 static bool begin(Gpu *gpu, KernelBuild *build, const KernelSource *source)
 {
-    char                maker[160];
     const EmbeddedFile *module = find_module(source);
     *build                     = (KernelBuild){.file = source->file};
     if (module) {
@@ -164,9 +195,7 @@ static bool begin(Gpu *gpu, KernelBuild *build, const KernelSource *source)
     build->text = kernel_text(gpu, source);
     if (!build->text)
         return false;
-    snprintf(maker, sizeof maker, "%s: krs %s, glslang %s, SPIRV-Tools %s, inlined", source->file,
-             KRS_VERSION, spirv_glslang_version(), spirv_tools_version());
-    build->key   = cache_key(maker, build->text, strlen(build->text));
+    build->key   = make_key(source, build->text);
     build->found = cache_load(&gpu->cache, CACHE_SPIRV, build->key, &build->bytes);
     return true;
 }

@@ -4,17 +4,26 @@
 #ifndef KRS_KERNEL_H
 #define KRS_KERNEL_H
 
+#include "compiler/compile.h"
 #include "runtime/device/gpu.h"
 
 typedef struct Kernel {
     VkPipeline pipeline;
 } Kernel;
 
+/* What a kernel calls of a scene: its text takes the place of "scene.glsl". */
+typedef struct KernelScene {
+    const KrsScene *scene;
+    KrsVariant      variant;
+    KrsFunction     wanted[KRS_FUNCTION_COUNT];
+    size_t          wanted_count;
+} KernelScene;
+
 /* What a kernel is made from. */
 typedef struct KernelSource {
-    const char *file;    /* of runtime/shaders */
-    const char *scene;   /* takes the place of "scene.glsl"; NULL for a kernel without one */
-    const char *defines; /* lines of `#define NAME VALUE` that choose a variant, or NULL */
+    const char        *file;    /* of runtime/shaders */
+    const KernelScene *scene;   /* NULL for a kernel without one */
+    const char        *defines; /* lines of `#define NAME VALUE` that choose a variant, or NULL */
 } KernelSource;
 
 /* The text of a kernel: its includes in place, its defines after the `#version` line, and without

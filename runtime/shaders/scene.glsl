@@ -3,7 +3,7 @@
  *
  * At run time the compiler's text takes the place of this file.  It promises what is declared
  * here, so that the kernels can be checked by themselves:
- *     glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/graph \
+ *     glslangValidator -V --target-env vulkan1.1 -I. -Iruntime/shaders -Icompiler/print/glsl \
  *         runtime/shaders/trace.comp
  */
 layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[1]; };

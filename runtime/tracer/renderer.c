@@ -11,17 +11,13 @@
 
 #include "runtime/tracer/layouts.h"
 #include "runtime/tracer/warmup.h"
+#include "runtime/tracer/variants.h"
 
 KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
 {
     Gpu gpu = {0};
     return gpu_list(&gpu, devices, capacity, count) ? KRS_OK : gpu.status;
 }
-
-/* Defines of kernels: */
-#define NO_TEXELS "#define NO_TEXELS\n" /* see Gpu.texels */
-/* rays of panoramas, which cost more, are in kernels of scenes that have some. */
-#define PANORAMIC "#define PANORAMIC\n"
 
 /* The radius of a zone in which nothing is. */
 #define NO_ZONE (-1e30f)
@@ -165,8 +161,7 @@ static uint32_t most_slots(const KrsRendering *rendering)
     return rendering->renderer->gpu.properties.limits.maxUniformBufferRange / (4 * sizeof(float));
 }
 
-/* How many slots of such values the host fills in: all, or none where the device has no room. */
-static uint32_t value_slots(const KrsRendering *rendering)
+uint32_t rendering_value_slots(const KrsRendering *rendering)
 {
     const KrsProgram *program = rendering->program;
     uint32_t          slots   = slots_without_values(program) + program->value_slots;
@@ -176,7 +171,7 @@ static uint32_t value_slots(const KrsRendering *rendering)
 static bool buffers_create(KrsRendering *rendering)
 {
     Gpu     *gpu   = &rendering->renderer->gpu;
-    uint32_t slots = slots_without_values(rendering->program) + value_slots(rendering);
+    uint32_t slots = slots_without_values(rendering->program) + rendering_value_slots(rendering);
     if (slots > most_slots(rendering)) {
         gpu_refuse(gpu, KRS_NO_DEVICE, "the device has no room for the scene's %u parameters",
                    rendering->program->parameter_slots);
@@ -261,8 +256,7 @@ bool rendering_marches_per_component(const KrsRendering *rendering, KrsComponent
            (components == KRS_COMPONENTS_DEFAULT ? by_default : components == KRS_COMPONENTS_APART);
 }
 
-/* Whether rays go by what lies ahead of them (krs_along). */
-static bool goes_along(const KrsRendering *rendering, KrsTrace trace)
+bool rendering_goes_along(const KrsRendering *rendering, KrsTrace trace)
 {
     bool known = trace >= KRS_TRACE_DIRECTIONAL ? rendering->program->inverts
                                                 : rendering->program->along;
@@ -273,83 +267,19 @@ bool rendering_marches_packed(const KrsRendering *rendering, KrsComponents compo
                               KrsTrace trace)
 {
     bool by_default = rendering->program->expensive >= 2 && !gpu_is_cpu(&rendering->renderer->gpu);
-    return rendering->program->scene_parts >= 2 && !goes_along(rendering, trace) &&
+    return rendering->program->scene_parts >= 2 && !rendering_goes_along(rendering, trace) &&
            (components == KRS_COMPONENTS_DEFAULT ? by_default
                                                  : components == KRS_COMPONENTS_PACKED);
 }
 
-typedef struct Variant {
-    char defines[320];
-} Variant;
-
-/* By the numbers of AlongMethod. */
-static const char *const along_names[KRS_TRACE_COUNT] = {
-    [KRS_TRACE_EXACT]       = "#define ALONG 0\n",
-    [KRS_TRACE_TAYLOR]      = "#define ALONG 1\n",
-    [KRS_TRACE_ROOT_FREE]   = "#define ALONG 2\n",
-    [KRS_TRACE_DIRECTIONAL] = "#define ALONG 3\n",
-    [KRS_TRACE_BINARY]      = "#define ALONG 4\n#define PROBE 1\n",
-    [KRS_TRACE_PREDICTED]   = "#define ALONG 4\n#define PROBE 2\n",
-};
-
-/* Of a sum lavapipe makes a loop over the lanes. */
-static bool sums_lanes(const Gpu *gpu) { return !gpu_is_cpu(gpu) && gpu->sums_lanes; }
-
-static Variant name_variant(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule)
-{
-    uint32_t zones = rendering->current_kernels->zones;
-    bool     camera_relative =
-        rendering->current_kernels->camera_relative; /* has the distance and the surface alone */
-    bool    by_ray = trace >= KRS_TRACE_EXACT;
-    Variant variant;
-    int     length = snprintf(
-            variant.defines, sizeof variant.defines,
-            "#define TRACE %du\n#define REFILL %d\n%s%s%s%s%s%s%s%s",
-            (int)(by_ray ? KRS_TRACE_PLAIN : trace),
-        schedule == KRS_SCHEDULE_REFILL ? (int)rendering->renderer->gpu.refill_lanes : 0,
-        rendering->renderer->gpu.texels ? "" : NO_TEXELS,
-        sums_lanes(&rendering->renderer->gpu) ? "#define SUBGROUPS\n" : "",
-        value_slots(rendering) > 0 ? "#define FRAME_VALUES\n" : "",
-        rendering->panoramic ? PANORAMIC : "", camera_relative ? "#define CAMERA_RELATIVE\n" : "",
-        rendering->renderer->early_outs && !camera_relative ? "#define EARLY_OUTS\n" : "",
-        goes_along(rendering, trace) ? along_names[trace] : "",
-        rendering->program->sheets ? "#define SHEETS\n" : "");
-    if (zones > 0)
-        snprintf(variant.defines + length, sizeof variant.defines - (size_t)length,
-                 "#define ZONES %u\n", zones);
-    return variant;
-}
-
-static Variant name_march_group(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
-                                uint32_t march_group)
-{
-    Variant variant = name_variant(rendering, trace, schedule);
-    size_t  length  = strlen(variant.defines);
-    if (march_group > 0 && rendering_knows_planes(rendering))
-        length += (size_t)snprintf(variant.defines + length, sizeof variant.defines - length,
-                                   "#define PLANES\n");
-    if (march_group > 0 && march_group < MARCH_WITHOUT_PLANES)
-        snprintf(variant.defines + length, sizeof variant.defines - length,
-                 "#define MARCH_GROUP %u\n", march_group);
-    if (march_group == MARCH_PACKED)
-        snprintf(variant.defines + length, sizeof variant.defines - length, "#define PACKED\n");
-    return variant;
-}
-
 static Kernel *find_kernel(KrsRendering *rendering, Kernel *kernel, const char *file,
-                           Variant variant)
+                           KernelVariant variant)
 {
-    KernelRequest request = {kernel, {file, rendering->program->glsl, variant.defines}};
+    KernelRequest request = {kernel, variant_source(file, &variant)};
     if (!kernel->pipeline && !kernels_make(rendering->renderer, rendering->scene_set, &request, 1,
                                            &rendering->spirv_ms, &rendering->pipeline_ms))
         return NULL;
     return kernel;
-}
-
-static Kernel *find_variant(KrsRendering *rendering, Kernel *kernel, const char *file,
-                            KrsTrace trace, KrsSchedule schedule)
-{
-    return find_kernel(rendering, kernel, file, name_variant(rendering, trace, schedule));
 }
 
 Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
@@ -357,7 +287,7 @@ Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule sch
 {
     schedule = schedule_of_kernel(schedule);
     return find_kernel(rendering, &rendering->current_kernels->trace[trace][schedule][march_group],
-                       "trace.comp", name_march_group(rendering, trace, schedule, march_group));
+                       "trace.comp", variant_of_trace(rendering, trace, schedule, march_group));
 }
 
 Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
@@ -376,34 +306,6 @@ KrsNormals rendering_normals(const KrsRendering *rendering, KrsNormals normals)
     return rendering->program->algebraic ? KRS_NORMALS_ANALYTIC : KRS_NORMALS_OCTAHEDRON;
 }
 
-/* With what is special about a scene's distance around a hit. */
-static Variant name_secondary(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule)
-{
-    const KrsProgram *program = rendering->program;
-    Variant           variant = name_variant(rendering, trace, schedule);
-    size_t            length  = strlen(variant.defines);
-    snprintf(variant.defines + length, sizeof variant.defines - length, "%s%s",
-             program->along && !program->inverts ? "#define ROOTS\n" : "",
-             program->plain ? "#define PLAIN\n" : "");
-    return variant;
-}
-
-/* Normals as rendering_normals says; the octahedron is what the kernel has otherwise. */
-static Variant name_normals(const KrsRendering *rendering, KrsNormals normals, uint32_t march_group)
-{
-    Variant variant = name_secondary(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
-    size_t  length  = strlen(variant.defines);
-    if (march_group > 0)
-        length += (size_t)snprintf(variant.defines + length, sizeof variant.defines - length,
-                                   "#define MARCH_GROUP %u\n", march_group);
-    if (normals == KRS_NORMALS_ANALYTIC)
-        snprintf(variant.defines + length, sizeof variant.defines - length, "#define GRADIENT\n");
-    else if (normals != KRS_NORMALS_OCTAHEDRON)
-        snprintf(variant.defines + length, sizeof variant.defines - length, "#define STENCIL %d\n",
-                 (int)normals);
-    return variant;
-}
-
 bool rendering_has_roots(const KrsRendering *rendering, KrsTrace trace)
 {
     return (trace == KRS_TRACE_EXACT || rendering->program->sheets) && rendering->program->along &&
@@ -414,15 +316,15 @@ Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool 
 {
     schedule       = schedule_of_kernel(schedule);
     KrsTrace trace = by_roots ? KRS_TRACE_EXACT : KRS_TRACE_PLAIN;
-    return find_variant(rendering, &rendering->current_kernels->secondary[schedule][by_roots],
-                        "secondary.comp", trace, schedule);
+    return find_kernel(rendering, &rendering->current_kernels->secondary[schedule][by_roots],
+                       "secondary.comp", variant_of_secondary(rendering, trace, schedule));
 }
 
 Kernel *rendering_normals_kernel(KrsRendering *rendering, KrsNormals normals, uint32_t march_group)
 {
     normals = rendering_normals(rendering, normals);
     return find_kernel(rendering, &rendering->current_kernels->normals[normals][march_group],
-                       "normals.comp", name_normals(rendering, normals, march_group));
+                       "normals.comp", variant_of_normals(rendering, normals, march_group));
 }
 
 static KrsTrace trace_of_questions(const KrsRendering *rendering)
@@ -433,30 +335,20 @@ static KrsTrace trace_of_questions(const KrsRendering *rendering)
 Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule)
 {
     schedule = schedule_of_kernel(schedule);
-    return find_variant(rendering, &rendering->current_kernels->query[schedule], "query.comp",
-                        trace_of_questions(rendering), schedule);
+    return find_kernel(rendering, &rendering->current_kernels->query[schedule], "query.comp",
+                       variant_of_query(rendering, trace_of_questions(rendering), schedule));
 }
 
 Kernel *rendering_shade(KrsRendering *rendering)
 {
-    return find_variant(rendering, &rendering->current_kernels->shade, "shade.comp",
-                        KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
-}
-
-/* Differences of a distance see both sides of a sheet. */
-static Variant name_point_query(const KrsRendering *rendering)
-{
-    Variant variant = name_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
-    size_t  length  = strlen(variant.defines);
-    if (rendering->program->sheets)
-        snprintf(variant.defines + length, sizeof variant.defines - length, "#define GRADIENT\n");
-    return variant;
+    return find_kernel(rendering, &rendering->current_kernels->shade, "shade.comp",
+                       variant_of_shade(rendering));
 }
 
 Kernel *rendering_point_query(KrsRendering *rendering)
 {
     return find_kernel(rendering, &rendering->current_kernels->point_query, "point_query.comp",
-                       name_point_query(rendering));
+                       variant_of_point_query(rendering));
 }
 
 /* The renderer's kernels for panoramas. */
@@ -473,17 +365,15 @@ static bool panoramic_create(KrsRendering *rendering)
 /* Kernels of the scene that are made at the same time. */
 typedef struct Requests {
     KernelRequest items[5 + 2 * KRS_MOST_MARCH_GROUPS];
-    Variant       variants[5 + 2 * KRS_MOST_MARCH_GROUPS];
+    KernelVariant variants[5 + 2 * KRS_MOST_MARCH_GROUPS];
     size_t        count;
 } Requests;
 
-static void request(Requests *requests, const KrsRendering *rendering, Kernel *kernel,
-                    const char *file, Variant variant)
+static void request(Requests *requests, Kernel *kernel, const char *file, KernelVariant variant)
 {
-    Variant *kept                      = &requests->variants[requests->count];
+    KernelVariant *kept                = &requests->variants[requests->count];
     *kept                              = variant;
-    requests->items[requests->count++] = (KernelRequest){
-        kernel, {file, rendering->program->glsl, kept->defines}};
+    requests->items[requests->count++] = (KernelRequest){kernel, variant_source(file, kept)};
 }
 
 /* Where march groups follow one another each of them has its own kernel of rays and of normals. */
@@ -498,19 +388,19 @@ static void request_marches(Requests *requests, KrsRendering *rendering, KrsTrac
                              : rendering_knows_planes(rendering) ? MARCH_WITHOUT_PLANES
                                                                  : 0;
     if (trace == KRS_TRACE_EXACT)
-        request(requests, rendering, &to->trace[KRS_TRACE_PLAIN][schedule][whole], "trace.comp",
-                name_march_group(rendering, KRS_TRACE_PLAIN, schedule, whole));
+        request(requests, &to->trace[KRS_TRACE_PLAIN][schedule][whole], "trace.comp",
+                variant_of_trace(rendering, KRS_TRACE_PLAIN, schedule, whole));
     if (!per_component)
-        request(requests, rendering, &to->trace[trace][schedule][whole], "trace.comp",
-                name_march_group(rendering, trace, schedule, whole));
+        request(requests, &to->trace[trace][schedule][whole], "trace.comp",
+                variant_of_trace(rendering, trace, schedule, whole));
     for (uint32_t march_group = 1;
          per_component && march_group <= rendering->program->march_group_count; march_group++) {
         KrsSchedule own = schedule_of_kernel(
             rendering_schedule_of_march_group(rendering, KRS_SCHEDULE_DEFAULT, march_group));
-        request(requests, rendering, &to->trace[trace][own][march_group], "trace.comp",
-                name_march_group(rendering, trace, own, march_group));
-        request(requests, rendering, &to->normals[usual][march_group], "normals.comp",
-                name_normals(rendering, usual, march_group));
+        request(requests, &to->trace[trace][own][march_group], "trace.comp",
+                variant_of_trace(rendering, trace, own, march_group));
+        request(requests, &to->normals[usual][march_group], "normals.comp",
+                variant_of_normals(rendering, usual, march_group));
     }
 }
 
@@ -519,14 +409,13 @@ static void request_pictures(Requests *requests, KrsRendering *rendering, KrsTra
 {
     SceneKernels *to    = rendering->current_kernels;
     KrsNormals    usual = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
-    request(requests, rendering, &to->normals[usual][0], "normals.comp",
-            name_normals(rendering, usual, 0));
-    request(requests, rendering, &to->shade, "shade.comp",
-            name_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL));
+    request(requests, &to->normals[usual][0], "normals.comp",
+            variant_of_normals(rendering, usual, 0));
+    request(requests, &to->shade, "shade.comp", variant_of_shade(rendering));
     bool     by_roots = rendering_has_roots(rendering, trace);
     KrsTrace along    = by_roots ? KRS_TRACE_EXACT : KRS_TRACE_PLAIN;
-    request(requests, rendering, &to->secondary[schedule][by_roots], "secondary.comp",
-            name_variant(rendering, along, schedule));
+    request(requests, &to->secondary[schedule][by_roots], "secondary.comp",
+            variant_of_secondary(rendering, along, schedule));
     request_marches(requests, rendering, trace, schedule);
 }
 
@@ -542,10 +431,9 @@ static bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
     if (purpose == KRS_FOR_PICTURES) {
         request_pictures(&requests, rendering, trace, schedule);
     } else {
-        request(&requests, rendering, &to->query[schedule], "query.comp",
-                name_variant(rendering, trace_of_questions(rendering), schedule));
-        request(&requests, rendering, &to->point_query, "point_query.comp",
-                name_point_query(rendering));
+        request(&requests, &to->query[schedule], "query.comp",
+                variant_of_query(rendering, trace_of_questions(rendering), schedule));
+        request(&requests, &to->point_query, "point_query.comp", variant_of_point_query(rendering));
     }
     return kernels_make(rendering->renderer, rendering->scene_set, requests.items, requests.count,
                         &rendering->spirv_ms, &rendering->pipeline_ms);
@@ -713,7 +601,7 @@ bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame)
     /* Into memory of the host first: the compiler may read back what it writes. */
     Gpu   *gpu         = &rendering->renderer->gpu;
     size_t first_value = rendering->program->parameter_slots;
-    size_t values = value_slots(rendering), slots = first_value + values;
+    size_t values = rendering_value_slots(rendering), slots = first_value + values;
     float(*block)[4] = gpu_alloc(gpu, slots + KRS_MOST_ZONES, sizeof *block,
                                  "set the scene's parameters");
     if (!block)

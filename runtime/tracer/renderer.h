@@ -91,6 +91,11 @@ Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule sch
 /* The same for beams, which need distances for all directions. */
 Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
                         uint32_t march_group);
+/* How many slots of values of the frame the host fills in: all, or none where the device has no
+   room. */
+uint32_t rendering_value_slots(const KrsRendering *rendering);
+/* Whether rays go by what lies ahead of them (krs_along). */
+bool rendering_goes_along(const KrsRendering *rendering, KrsTrace trace);
 /* Whether there is a kernel of MARCH_WITHOUT_PLANES. */
 bool rendering_knows_planes(const KrsRendering *rendering);
 /* The normals that are meant: by derivatives where all is algebraic, else the octahedron's. */

@@ -116,6 +116,14 @@ run compile wave.krs -o compiled
     grep -q '"parameter_slots": 3, "value_slots": 1' compiled/wave.json &&
     grep -q 'krs_parameter\[2\].x' compiled/wave.glsl
 result $? "compile says in which slot of the GLSL it is"
+[ "$(grep -c '^[^/]*krs_distance_lod(vec3 p, float footprint)' compiled/wave.glsl)" -eq 2 ] &&
+    ! grep -q '#\|krs_parameter\[3\]\.' compiled/wave.glsl
+result $? "the GLSL has no directives, and asks for no more slots than that"
+run compile --frame-values on --early-outs off wave.krs -o compiled
+[ "$status" -eq 0 ] && grep -q 'krs_parameter\[3\].x' compiled/wave.glsl &&
+    grep -q 'vec4 krs_parameter\[4\]' compiled/wave.glsl &&
+    ! grep -q 'krs_distance_lod' compiled/wave.glsl
+result $? "values of the frame are read from further slots where that is asked for"
 run query --time 2 wave.krs
 said 2 "at time 2 the slope of the expression at wave.krs:2:11 has no bound" "a frame without one"
 run query --set k=1e38 wave.krs

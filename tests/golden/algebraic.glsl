@@ -1,29 +1,5 @@
 // Distance code of a scene; slot 0 holds the time, then one slot for each `param`.
-// Where branches save work there are many threads, and operations count.
-// Elsewhere what has to be waited for counts, and built-in min and max of
-// variables are three instructions, since they mind what is not a number.
-#ifdef EARLY_OUTS
-#define KRS_MIN(a, b) min(a, b)
-#define KRS_MAX(a, b) max(a, b)
-#define KRS_BACK(back, here) here
-#else
-#define KRS_MIN(a, b) mix(a, b, (b) < (a))
-#define KRS_MAX(a, b) mix(a, b, (a) < (b))
-#define KRS_BACK(back, here) back
-#endif
-// With FRAME_VALUES defined, 1 more slots hold what else depends on the
-// frame alone: krs_frame_values in krs.h.
-#ifdef FRAME_VALUES
-#define KRS_SLOTS 3
-#else
-#define KRS_SLOTS 2
-#endif
-#ifdef ZONES
-layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[KRS_SLOTS + ZONES]; };
-vec4 krs_zones[ZONES];
-#else
-layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[KRS_SLOTS]; };
-#endif
+layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[2]; };
 
 struct KrsSurface {
     float distance;
@@ -37,44 +13,53 @@ struct KrsSurface {
     vec3  normal;
 };
 
+// Everything that stays the same within a frame: call it first.
+void krs_prepare();
+
+// Never above the distance to the nearest surface; negative inside.
+float krs_distance(vec3 p);
+
+// How far a ray from p along a unit direction may go before it can meet a
+// surface: at least the distance, and farther where polynomials or maps tell;
+// negative inside, and where a surface without thickness lies between p and the
+// last place, `footprint` behind.
+float krs_along(vec3 p, vec3 direction, float footprint);
+
+// To march by: never above the distance to the nearest surface, and not above 0
+// in the same places as krs_distance.  What is far for its size is not looked
+// at, nor what is smaller than the footprint.
+float krs_distance_lod(vec3 p, float footprint);
+
+// The direction in which krs_distance rises fastest at a surface, of any
+// length, by derivatives; by differences over `reach` where there are none.
+vec3 krs_gradient(vec3 p, float reach);
+
+// What is at p: the component with the least distance.  `normal` is the
+// gradient of krs_distance there, `footprint` the radius of a pixel, or 0.
+KrsSurface krs_surface(vec3 p, vec3 normal, float footprint);
+
 float krs_inverse_length(float square)
-{ return mix(0.0, inversesqrt(square), square > 0.0); }
-vec2 krs_normalize(vec2 a) { return a * krs_inverse_length(dot(a, a)); }
+{
+    return mix(0.0, inversesqrt(square), square > 0.0);
+}
+
 vec3 krs_normalize(vec3 a) { return a * krs_inverse_length(dot(a, a)); }
-vec4 krs_normalize(vec4 a) { return a * krs_inverse_length(dot(a, a)); }
+
+float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)
+{
+    return length(max(abs(p - center) - half_sides, 0.0));
+}
 
 float krs_frame0;
 float krs_frame1;
 
-// Everything that stays the same within a frame: call it first.
 void krs_prepare()
 {
-#ifdef FRAME_VALUES // the host has found them
-    krs_frame0 = krs_parameter[1].x;
-    krs_frame1 = krs_parameter[2].x;
-#else
     krs_frame0 = krs_parameter[1].x;
     // tests/golden/algebraic.krs:3
     krs_frame1 = abs(krs_frame0) * 1.0000001;
-#endif
-#ifdef ZONES
-    for (int i = 0; i < ZONES; i++)
-        krs_zones[i] = krs_parameter[KRS_SLOTS + i];
-#endif
 }
 
-// The distance where zones have been cut out: those of the scene, and ZONES of
-// the caller, of which slot KRS_SLOTS holds the first: center and radius.
-float krs_cut(vec3 p, float d)
-{
-#ifdef ZONES
-    for (int i = 0; i < ZONES; i++)
-        d = max(d, krs_zones[i].w - length(p - krs_zones[i].xyz));
-#endif
-    return d;
-}
-
-#if !defined MARCH_GROUP || MARCH_GROUP == 1
 float krs_distance_1(vec3 p)
 {
     // tests/golden/algebraic.krs:3
@@ -110,11 +95,11 @@ float krs_distance_1(vec3 p)
     float t29 = abs(t28);
     float t30 = t29 / max(t27, 1e-30);
     float t31 = sqrt((t29 / max(t25, 1e-30)));
-    float t32 = KRS_MIN(t30, t31);
+    float t32 = min(t30, t31);
     float t33 = exp2((log2(max((t29 / max(t23, 1e-30)), 1e-37)) * 0.33333334));
-    float t34 = KRS_MIN(t32, t33);
+    float t34 = min(t32, t33);
     float t35 = sqrt(sqrt((t29 * 0.33333325)));
-    float t36 = KRS_MIN(t34, t35);
+    float t36 = min(t34, t35);
     float t37 = t36 * 3.0000007;
     float t38 = t23 + t37;
     float t39 = t25 + (t36 * t38);
@@ -137,16 +122,14 @@ float krs_distance_1(vec3 p)
     float t56 = sign(t28) * (t54 * min((t29 / max((t54 * t55), 1e-30)), 1.0));
     float t57 = abs(p.x) - 1.6529645;
     float t58 = abs(p.y) - 1.6529645;
-    float t59 = KRS_MAX(t57, t58);
+    float t59 = max(t57, t58);
     float t60 = abs(p.z) - 1.6529645;
-    float t61 = KRS_MAX(t59, t60);
+    float t61 = max(t59, t60);
     float t62 = length(vec2(length(max((abs(p) - vec3(1.6529645)), vec3(0.0))), max(t56, 0.0)));
-    float t63 = min(KRS_MAX(t56, t61), 0.0) + t62;
+    float t63 = min(max(t56, t61), 0.0) + t62;
     return t63;
 }
-#endif
 
-#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_distance_2(vec3 p)
 {
     // tests/golden/algebraic.krs:4
@@ -160,9 +143,9 @@ float krs_distance_2(vec3 p)
     float t7 = abs(t6);
     float t8 = t7 / max(t5, 1e-30);
     float t9 = sqrt((t7 / max(t4, 1e-30)));
-    float t10 = KRS_MIN(t8, t9);
+    float t10 = min(t8, t9);
     float t11 = exp2((log2(max((t7 * 1.9999998), 1e-37)) * 0.33333334));
-    float t12 = KRS_MIN(t10, t11);
+    float t12 = min(t10, t11);
     float t13 = t12 * 0.50000006;
     float t14 = t4 + t13;
     float t15 = t5 + (t12 * t14);
@@ -178,52 +161,31 @@ float krs_distance_2(vec3 p)
     float t25 = max((t24 * (t5 + (t24 * (t4 + (t24 * 0.50000006))))), 1e-30);
     float t26 = 1.5 - length(v0);
     float t27 = -abs((sign(t6) * (t24 * min((t7 / t25), 1.0))));
-    float t28 = -KRS_MIN(t26, t27);
+    float t28 = -min(t26, t27);
     return t28;
 }
-#endif
 
-// Never above the distance to the nearest surface; negative inside.
-float krs_distance(vec3 p)
-{
-#ifdef MARCH_GROUP
-    float d = 1e30;
-#if MARCH_GROUP == 1
-    d = min(d, krs_distance_1(p));
-#endif
-#if MARCH_GROUP == 2
-    d = min(d, krs_distance_2(p));
-#endif
-#else
-    float d = krs_distance_1(p);
-    d = min(d, krs_distance_2(p));
-#endif
-    return krs_cut(p, d);
-}
-
-#if defined(ALONG) && ALONG == 0
-#if !defined MARCH_GROUP || MARCH_GROUP == 1
 float krs_along_1(vec3 p, vec3 direction, float footprint)
 {
     // tests/golden/algebraic.krs:3
     float t0 = mix(direction.x, 1e-18, abs(direction.x) < 1e-18);
     float t1 = ((-1.6529645) - p.x) / t0;
     float t2 = (1.6529645 - p.x) / t0;
-    float t3 = max(KRS_MIN(t1, t2), 0.0);
-    float t4 = min(KRS_MAX(t1, t2), 1e+30);
+    float t3 = max(min(t1, t2), 0.0);
+    float t4 = min(max(t1, t2), 1e+30);
     float t5 = mix(direction.y, 1e-18, abs(direction.y) < 1e-18);
     float t6 = ((-1.6529645) - p.y) / t5;
     float t7 = (1.6529645 - p.y) / t5;
-    float t8 = KRS_MIN(t6, t7);
-    float t9 = KRS_MAX(t3, t8);
-    float t10 = KRS_MAX(t6, t7);
-    float t11 = KRS_MIN(t4, t10);
+    float t8 = min(t6, t7);
+    float t9 = max(t3, t8);
+    float t10 = max(t6, t7);
+    float t11 = min(t4, t10);
     float t12 = mix(direction.z, 1e-18, abs(direction.z) < 1e-18);
     float t13 = ((-1.6529645) - p.z) / t12;
     float t14 = (1.6529645 - p.z) / t12;
-    float t15 = KRS_MIN(t13, t14);
-    float t16 = KRS_MAX(t9, t15);
-    float t17 = KRS_MAX(t13, t14);
+    float t15 = min(t13, t14);
+    float t16 = max(t9, t15);
+    float t17 = max(t13, t14);
     vec3 v18 = min(max((p + (direction * t16)), vec3((-1.6529645))), vec3(1.6529645));
     float t19 = v18.x * v18.x;
     float t20 = direction.x * v18.x;
@@ -259,12 +221,12 @@ float krs_along_1(vec3 p, vec3 direction, float footprint)
     float t50 = t45 * 4.0;
     float t51 = min((t50 / max((-t46), 1e-30)), 3.1622778e+08);
     float t52 = sqrt((t50 / max((-t47), 1e-30)));
-    float t53 = KRS_MIN(t51, t52);
+    float t53 = min(t51, t52);
     float t54 = log2(max((t50 / max((-t48), 1e-30)), 1e-37)) * 0.33333334;
     float t55 = exp2(t54);
-    float t56 = KRS_MIN(t53, t55);
+    float t56 = min(t53, t55);
     float t57 = sqrt(sqrt((t50 / max((-t49), 1e-30))));
-    float t58 = KRS_MIN(t56, t57);
+    float t58 = min(t56, t57);
     float t59 = t46 * t58;
     float t60 = t58 * t58;
     float t61 = t47 * t60;
@@ -272,17 +234,15 @@ float krs_along_1(vec3 p, vec3 direction, float footprint)
     float t63 = t48 * t62;
     float t64 = -t59;
     float t65 = (t61 * (-0.33333334)) - t59;
-    float t66 = KRS_MAX(t64, t65);
+    float t66 = max(t64, t65);
     float t67 = ((t61 * (-0.6666667)) - t59) + (t63 * (-0.33333334));
-    float t68 = KRS_MAX(t66, t67);
+    float t68 = max(t66, t67);
     float t69 = ((t64 - t61) - t63) - (t49 * (t58 * t62));
-    float t70 = t44 * (t58 * min((t45 / max(KRS_MAX(t68, t69), 1e-30)), 1.0));
-    float t71 = mix((t16 + t70), 1e+30, KRS_MIN(t11, t17) < t16);
+    float t70 = t44 * (t58 * min((t45 / max(max(t68, t69), 1e-30)), 1.0));
+    float t71 = mix((t16 + t70), 1e+30, min(t11, t17) < t16);
     return t71;
 }
 
-#endif
-#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_along_2(vec3 p, vec3 direction, float footprint)
 {
     // tests/golden/algebraic.krs:4
@@ -291,12 +251,12 @@ float krs_along_2(vec3 p, vec3 direction, float footprint)
     float t2 = v1.x * v1.y;
     float t3 = (v1.z * t2) + (-0.1);
     float t4 = sign(t3);
-    // library:solids.krs:38
+    // library:solids.krs
     float t5 = length(v0);
     float t6 = t5 - 1.5;
     // tests/golden/algebraic.krs:4
     float t7 = max((1.5 - t5), 0.0);
-    float t8 = mix(KRS_MIN(footprint, t7), footprint, (length((v0 - (direction * footprint))) - 1.5) < 0.0);
+    float t8 = mix(min(footprint, t7), footprint, (length((v0 - (direction * footprint))) - 1.5) < 0.0);
     float t9 = (v1.x * direction.y) + (v1.y * direction.x);
     float t10 = direction.x * direction.y;
     vec3 v11 = v0 - v1;
@@ -307,368 +267,28 @@ float krs_along_2(vec3 p, vec3 direction, float footprint)
     float t16 = t12 * 4.0;
     float t17 = min((t16 / max((-t13), 1e-30)), 2.1544347e+11);
     float t18 = sqrt((t16 / max((-t14), 1e-30)));
-    float t19 = KRS_MIN(t17, t18);
+    float t19 = min(t17, t18);
     float t20 = log2(max((t16 / max((-t15), 1e-30)), 1e-37)) * 0.33333334;
     float t21 = exp2(t20);
-    float t22 = KRS_MIN(t19, t21);
+    float t22 = min(t19, t21);
     float t23 = t13 * t22;
     float t24 = t22 * t22;
     float t25 = t14 * t24;
     float t26 = -t23;
     float t27 = (t25 * (-0.5)) - t23;
-    float t28 = KRS_MAX(t26, t27);
+    float t28 = max(t26, t27);
     float t29 = (t26 - t25) - (t15 * (t22 * t24));
-    float t30 = t4 * (t22 * min((t12 / max(KRS_MAX(t28, t29), 1e-30)), 1.0));
+    float t30 = t4 * (t22 * min((t12 / max(max(t28, t29), 1e-30)), 1.0));
     float t31 = (v0.z * (v0.x * v0.y)) - 0.1;
     vec3 v32 = v0 - (direction * t8);
     float t33 = (v32.z * (v32.x * v32.y)) - 0.1;
     float t34 = abs(t31);
     float t35 = -(t8 * (t34 / max((t34 + abs(t33)), 1e-30)));
     float t36 = mix(abs(mix(t30, 0.0, 0.0 < dot(v11, v11))), t35, (sign(t33) * sign(t31)) < 0.0);
-    float t37 = KRS_MAX(t6, t36);
+    float t37 = max(t6, t36);
     return t37;
 }
 
-#endif
-// How far a ray from p along a unit direction may go before it can meet a surface: at
-// least the distance, and farther where polynomials or maps tell; negative inside, and
-// where a surface without thickness lies between p and the last place, `footprint` behind.
-float krs_along(vec3 p, vec3 direction, float footprint)
-{
-    float t = 1e30;
-#if !defined MARCH_GROUP || MARCH_GROUP == 1
-    t = min(t, krs_along_1(p, direction, footprint));
-#endif
-#if !defined MARCH_GROUP || MARCH_GROUP == 2
-    t = min(t, krs_along_2(p, direction, footprint));
-#endif
-    return krs_cut(p, t);
-}
-
-float krs_along(vec3 p, vec3 direction)
-{
-    return krs_along(p, direction, 0.0);
-}
-#endif
-
-#if defined(ALONG) && ALONG == 1
-#if !defined MARCH_GROUP || MARCH_GROUP == 1
-float krs_along_1(vec3 p, vec3 direction, float footprint)
-{
-    // tests/golden/algebraic.krs:3
-    float t0 = mix(direction.x, 1e-18, abs(direction.x) < 1e-18);
-    float t1 = ((-1.6529645) - p.x) / t0;
-    float t2 = (1.6529645 - p.x) / t0;
-    float t3 = max(KRS_MIN(t1, t2), 0.0);
-    float t4 = min(KRS_MAX(t1, t2), 1e+30);
-    float t5 = mix(direction.y, 1e-18, abs(direction.y) < 1e-18);
-    float t6 = ((-1.6529645) - p.y) / t5;
-    float t7 = (1.6529645 - p.y) / t5;
-    float t8 = KRS_MIN(t6, t7);
-    float t9 = KRS_MAX(t3, t8);
-    float t10 = KRS_MAX(t6, t7);
-    float t11 = KRS_MIN(t4, t10);
-    float t12 = mix(direction.z, 1e-18, abs(direction.z) < 1e-18);
-    float t13 = ((-1.6529645) - p.z) / t12;
-    float t14 = (1.6529645 - p.z) / t12;
-    float t15 = KRS_MIN(t13, t14);
-    float t16 = KRS_MAX(t9, t15);
-    float t17 = KRS_MAX(t13, t14);
-    vec3 v18 = min(max((p + (direction * t16)), vec3((-1.6529645))), vec3(1.6529645));
-    float t19 = v18.x * v18.x;
-    float t20 = direction.x * v18.x;
-    float t21 = t20 + t20;
-    float t22 = direction.x * direction.x;
-    float t23 = t19 * t21;
-    float t24 = t19 * t22;
-    float t25 = t21 * t22;
-    float t26 = v18.y * v18.y;
-    float t27 = direction.y * v18.y;
-    float t28 = t27 + t27;
-    float t29 = direction.y * direction.y;
-    float t30 = t26 * t28;
-    float t31 = t26 * t29;
-    float t32 = t28 * t29;
-    float t33 = v18.z * v18.z;
-    float t34 = direction.z * v18.z;
-    float t35 = t34 + t34;
-    float t36 = direction.z * direction.z;
-    float t37 = t33 * t35;
-    float t38 = t33 * t36;
-    float t39 = t35 * t36;
-    float t40 = ((t24 + (t24 + (t21 * t21))) + (t31 + (t31 + (t28 * t28)))) + (t38 + (t38 + (t35 * t35)));
-    float t41 = (((t19 * t19) + (t26 * t26)) + (t33 * t33)) - (krs_frame0 * (t33 + (t19 + t26)));
-    float t42 = (((t23 + t23) + (t30 + t30)) + (t37 + t37)) - (krs_frame0 * (t35 + (t21 + t28)));
-    float t43 = t41 + (-0.2);
-    float t44 = abs(t43);
-    float t45 = abs(t42);
-    float t46 = abs((t40 - (krs_frame0 * (t36 + (t22 + t29))))) * 2.0;
-    float t47 = abs((((t25 + t25) + (t32 + t32)) + (t39 + t39))) * 3.0;
-    float t48 = abs((((t22 * t22) + (t29 * t29)) + (t36 * t36))) * 4.0;
-    float t49 = t44 / max(t45, 1e-30);
-    float t50 = sqrt((t44 / max(t46, 1e-30)));
-    float t51 = KRS_MIN(t49, t50);
-    float t52 = exp2((log2(max((t44 / max(t47, 1e-30)), 1e-37)) * 0.33333334));
-    float t53 = KRS_MIN(t51, t52);
-    float t54 = sqrt(sqrt((t44 / max(t48, 1e-30))));
-    float t55 = KRS_MIN(t53, t54);
-    float t56 = t48 * t55;
-    float t57 = t47 + t56;
-    float t58 = t46 + (t55 * t57);
-    float t59 = t45 + (t55 * t58);
-    float t60 = max((t59 + (t55 * (t58 + (t55 * (t56 + t57))))), 1e-30);
-    float t61 = t55 - (((t55 * t59) - t44) / t60);
-    float t62 = t48 * t61;
-    float t63 = t47 + t62;
-    float t64 = t46 + (t61 * t63);
-    float t65 = t45 + (t61 * t64);
-    float t66 = max((t65 + (t61 * (t64 + (t61 * (t62 + t63))))), 1e-30);
-    float t67 = t61 - (((t61 * t65) - t44) / t66);
-    float t68 = t48 * t67;
-    float t69 = t47 + t68;
-    float t70 = t46 + (t67 * t69);
-    float t71 = t45 + (t67 * t70);
-    float t72 = max((t71 + (t67 * (t70 + (t67 * (t68 + t69))))), 1e-30);
-    float t73 = t67 - (((t67 * t71) - t44) / t72);
-    float t74 = t45 + (t73 * (t46 + (t73 * (t47 + (t48 * t73)))));
-    float t75 = sign(t43) * (t73 * min((t44 / max((t73 * t74), 1e-30)), 1.0));
-    float t76 = mix((t16 + t75), 1e+30, KRS_MIN(t11, t17) < t16);
-    return t76;
-}
-
-#endif
-#if !defined MARCH_GROUP || MARCH_GROUP == 2
-float krs_along_2(vec3 p, vec3 direction, float footprint)
-{
-    // tests/golden/algebraic.krs:4
-    vec3 v0 = p - vec3(3.0, 0.0, 0.0);
-    vec3 v1 = min(max(v0, vec3((-1.5156244))), vec3(1.5156244));
-    float t2 = v1.x * v1.y;
-    float t3 = (v1.z * t2) + (-0.1);
-    float t4 = abs(t3);
-    // library:solids.krs:38
-    float t5 = length(v0);
-    float t6 = t5 - 1.5;
-    // tests/golden/algebraic.krs:4
-    float t7 = max((1.5 - t5), 0.0);
-    float t8 = mix(KRS_MIN(footprint, t7), footprint, (length((v0 - (direction * footprint))) - 1.5) < 0.0);
-    float t9 = (v1.x * direction.y) + (v1.y * direction.x);
-    float t10 = direction.x * direction.y;
-    vec3 v11 = v0 - v1;
-    float t12 = (v0.z * (v0.x * v0.y)) - 0.1;
-    vec3 v13 = v0 - (direction * t8);
-    float t14 = (v13.z * (v13.x * v13.y)) - 0.1;
-    float t15 = abs(t12);
-    float t16 = -(t8 * (t15 / max((t15 + abs(t14)), 1e-30)));
-    float t17 = abs(((t2 * direction.z) + (v1.z * t9)));
-    float t18 = abs(((direction.z * t9) + (v1.z * t10))) * 2.0;
-    float t19 = abs((direction.z * t10)) * 3.0;
-    float t20 = t4 / max(t17, 1e-30);
-    float t21 = sqrt((t4 / max(t18, 1e-30)));
-    float t22 = KRS_MIN(t20, t21);
-    float t23 = exp2((log2(max((t4 / max(t19, 1e-30)), 1e-37)) * 0.33333334));
-    float t24 = KRS_MIN(t22, t23);
-    float t25 = t19 * t24;
-    float t26 = t18 + t25;
-    float t27 = t17 + (t24 * t26);
-    float t28 = t24 - (((t24 * t27) - t4) / max((t27 + (t24 * (t25 + t26))), 1e-30));
-    float t29 = t19 * t28;
-    float t30 = t18 + t29;
-    float t31 = t17 + (t28 * t30);
-    float t32 = t28 - (((t28 * t31) - t4) / max((t31 + (t28 * (t29 + t30))), 1e-30));
-    float t33 = t19 * t32;
-    float t34 = t18 + t33;
-    float t35 = t17 + (t32 * t34);
-    float t36 = t32 - (((t32 * t35) - t4) / max((t35 + (t32 * (t33 + t34))), 1e-30));
-    float t37 = max((t36 * (t17 + (t36 * (t18 + (t19 * t36))))), 1e-30);
-    float t38 = mix((sign(t3) * (t36 * min((t4 / t37), 1.0))), 0.0, 0.0 < dot(v11, v11));
-    float t39 = mix(abs(t38), t16, (sign(t14) * sign(t12)) < 0.0);
-    float t40 = KRS_MAX(t6, t39);
-    return t40;
-}
-
-#endif
-// How far a ray from p along a unit direction may go before it can meet a surface: at
-// least the distance, and farther where polynomials or maps tell; negative inside, and
-// where a surface without thickness lies between p and the last place, `footprint` behind.
-float krs_along(vec3 p, vec3 direction, float footprint)
-{
-    float t = 1e30;
-#if !defined MARCH_GROUP || MARCH_GROUP == 1
-    t = min(t, krs_along_1(p, direction, footprint));
-#endif
-#if !defined MARCH_GROUP || MARCH_GROUP == 2
-    t = min(t, krs_along_2(p, direction, footprint));
-#endif
-    return krs_cut(p, t);
-}
-
-float krs_along(vec3 p, vec3 direction)
-{
-    return krs_along(p, direction, 0.0);
-}
-#endif
-
-#if defined(ALONG) && ALONG == 2
-#if !defined MARCH_GROUP || MARCH_GROUP == 1
-float krs_along_1(vec3 p, vec3 direction, float footprint)
-{
-    // tests/golden/algebraic.krs:3
-    float t0 = mix(direction.x, 1e-18, abs(direction.x) < 1e-18);
-    float t1 = ((-1.6529645) - p.x) / t0;
-    float t2 = (1.6529645 - p.x) / t0;
-    float t3 = max(KRS_MIN(t1, t2), 0.0);
-    float t4 = min(KRS_MAX(t1, t2), 1e+30);
-    float t5 = mix(direction.y, 1e-18, abs(direction.y) < 1e-18);
-    float t6 = ((-1.6529645) - p.y) / t5;
-    float t7 = (1.6529645 - p.y) / t5;
-    float t8 = KRS_MIN(t6, t7);
-    float t9 = KRS_MAX(t3, t8);
-    float t10 = KRS_MAX(t6, t7);
-    float t11 = KRS_MIN(t4, t10);
-    float t12 = mix(direction.z, 1e-18, abs(direction.z) < 1e-18);
-    float t13 = ((-1.6529645) - p.z) / t12;
-    float t14 = (1.6529645 - p.z) / t12;
-    float t15 = KRS_MIN(t13, t14);
-    float t16 = KRS_MAX(t9, t15);
-    float t17 = KRS_MAX(t13, t14);
-    vec3 v18 = min(max((p + (direction * t16)), vec3((-1.6529645))), vec3(1.6529645));
-    float t19 = v18.x * v18.x;
-    float t20 = direction.x * v18.x;
-    float t21 = t20 + t20;
-    float t22 = direction.x * direction.x;
-    float t23 = t19 * t21;
-    float t24 = t19 * t22;
-    float t25 = t21 * t22;
-    float t26 = v18.y * v18.y;
-    float t27 = direction.y * v18.y;
-    float t28 = t27 + t27;
-    float t29 = direction.y * direction.y;
-    float t30 = t26 * t28;
-    float t31 = t26 * t29;
-    float t32 = t28 * t29;
-    float t33 = v18.z * v18.z;
-    float t34 = direction.z * v18.z;
-    float t35 = t34 + t34;
-    float t36 = direction.z * direction.z;
-    float t37 = t33 * t35;
-    float t38 = t33 * t36;
-    float t39 = t35 * t36;
-    float t40 = ((t24 + (t24 + (t21 * t21))) + (t31 + (t31 + (t28 * t28)))) + (t38 + (t38 + (t35 * t35)));
-    float t41 = (((t19 * t19) + (t26 * t26)) + (t33 * t33)) - (krs_frame0 * (t33 + (t19 + t26)));
-    float t42 = (((t23 + t23) + (t30 + t30)) + (t37 + t37)) - (krs_frame0 * (t35 + (t21 + t28)));
-    float t43 = t41 + (-0.2);
-    float t44 = abs(t43);
-    float t45 = abs(t42);
-    float t46 = abs((t40 - (krs_frame0 * (t36 + (t22 + t29)))));
-    float t47 = abs((((t25 + t25) + (t32 + t32)) + (t39 + t39)));
-    float t48 = abs((((t22 * t22) + (t29 * t29)) + (t36 * t36)));
-    float t49 = t44 / max(t45, 1e-30);
-    float t50 = sqrt((t44 / max(t46, 1e-30)));
-    float t51 = KRS_MIN(t49, t50);
-    float t52 = exp2((log2(max((t44 / max(t47, 1e-30)), 1e-37)) * 0.33333334));
-    float t53 = KRS_MIN(t51, t52);
-    float t54 = sqrt(sqrt((t44 / max(t48, 1e-30))));
-    float t55 = KRS_MIN(t53, t54);
-    float t56 = t48 * t55;
-    float t57 = t47 + t56;
-    float t58 = t46 + (t55 * t57);
-    float t59 = t45 + (t55 * t58);
-    float t60 = max((t59 + (t55 * (t58 + (t55 * (t56 + t57))))), 1e-30);
-    float t61 = t55 - (((t55 * t59) - t44) / t60);
-    float t62 = t48 * t61;
-    float t63 = t47 + t62;
-    float t64 = t46 + (t61 * t63);
-    float t65 = t45 + (t61 * t64);
-    float t66 = max((t65 + (t61 * (t64 + (t61 * (t62 + t63))))), 1e-30);
-    float t67 = t61 - (((t61 * t65) - t44) / t66);
-    float t68 = t48 * t67;
-    float t69 = t47 + t68;
-    float t70 = t46 + (t67 * t69);
-    float t71 = t45 + (t67 * t70);
-    float t72 = max((t71 + (t67 * (t70 + (t67 * (t68 + t69))))), 1e-30);
-    float t73 = t67 - (((t67 * t71) - t44) / t72);
-    float t74 = t45 + (t73 * (t46 + (t73 * (t47 + (t48 * t73)))));
-    float t75 = sign(t43) * (t73 * min((t44 / max((t73 * t74), 1e-30)), 1.0));
-    float t76 = mix((t16 + t75), 1e+30, KRS_MIN(t11, t17) < t16);
-    return t76;
-}
-
-#endif
-#if !defined MARCH_GROUP || MARCH_GROUP == 2
-float krs_along_2(vec3 p, vec3 direction, float footprint)
-{
-    // tests/golden/algebraic.krs:4
-    vec3 v0 = p - vec3(3.0, 0.0, 0.0);
-    vec3 v1 = min(max(v0, vec3((-1.5156244))), vec3(1.5156244));
-    float t2 = v1.x * v1.y;
-    float t3 = (v1.z * t2) + (-0.1);
-    float t4 = abs(t3);
-    // library:solids.krs:38
-    float t5 = length(v0);
-    float t6 = t5 - 1.5;
-    // tests/golden/algebraic.krs:4
-    float t7 = max((1.5 - t5), 0.0);
-    float t8 = mix(KRS_MIN(footprint, t7), footprint, (length((v0 - (direction * footprint))) - 1.5) < 0.0);
-    float t9 = (v1.x * direction.y) + (v1.y * direction.x);
-    float t10 = direction.x * direction.y;
-    vec3 v11 = v0 - v1;
-    float t12 = (v0.z * (v0.x * v0.y)) - 0.1;
-    vec3 v13 = v0 - (direction * t8);
-    float t14 = (v13.z * (v13.x * v13.y)) - 0.1;
-    float t15 = abs(t12);
-    float t16 = -(t8 * (t15 / max((t15 + abs(t14)), 1e-30)));
-    float t17 = abs(((t2 * direction.z) + (v1.z * t9)));
-    float t18 = abs(((direction.z * t9) + (v1.z * t10)));
-    float t19 = abs((direction.z * t10));
-    float t20 = t4 / max(t17, 1e-30);
-    float t21 = sqrt((t4 / max(t18, 1e-30)));
-    float t22 = KRS_MIN(t20, t21);
-    float t23 = exp2((log2(max((t4 / max(t19, 1e-30)), 1e-37)) * 0.33333334));
-    float t24 = KRS_MIN(t22, t23);
-    float t25 = t19 * t24;
-    float t26 = t18 + t25;
-    float t27 = t17 + (t24 * t26);
-    float t28 = t24 - (((t24 * t27) - t4) / max((t27 + (t24 * (t25 + t26))), 1e-30));
-    float t29 = t19 * t28;
-    float t30 = t18 + t29;
-    float t31 = t17 + (t28 * t30);
-    float t32 = t28 - (((t28 * t31) - t4) / max((t31 + (t28 * (t29 + t30))), 1e-30));
-    float t33 = t19 * t32;
-    float t34 = t18 + t33;
-    float t35 = t17 + (t32 * t34);
-    float t36 = t32 - (((t32 * t35) - t4) / max((t35 + (t32 * (t33 + t34))), 1e-30));
-    float t37 = max((t36 * (t17 + (t36 * (t18 + (t19 * t36))))), 1e-30);
-    float t38 = mix((sign(t3) * (t36 * min((t4 / t37), 1.0))), 0.0, 0.0 < dot(v11, v11));
-    float t39 = mix(abs(t38), t16, (sign(t14) * sign(t12)) < 0.0);
-    float t40 = KRS_MAX(t6, t39);
-    return t40;
-}
-
-#endif
-// How far a ray from p along a unit direction may go before it can meet a surface: at
-// least the distance, and farther where polynomials or maps tell; negative inside, and
-// where a surface without thickness lies between p and the last place, `footprint` behind.
-float krs_along(vec3 p, vec3 direction, float footprint)
-{
-    float t = 1e30;
-#if !defined MARCH_GROUP || MARCH_GROUP == 1
-    t = min(t, krs_along_1(p, direction, footprint));
-#endif
-#if !defined MARCH_GROUP || MARCH_GROUP == 2
-    t = min(t, krs_along_2(p, direction, footprint));
-#endif
-    return krs_cut(p, t);
-}
-
-float krs_along(vec3 p, vec3 direction)
-{
-    return krs_along(p, direction, 0.0);
-}
-#endif
-
-#ifndef MARCH_GROUP
-#ifdef EARLY_OUTS
 float krs_distance_lod_1(vec3 p, float footprint)
 {
     return krs_distance_1(p);
@@ -679,66 +299,6 @@ float krs_distance_lod_2(vec3 p, float footprint)
     return krs_distance_2(p);
 }
 
-float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)
-{
-    return length(max(abs(p - center) - half_sides, 0.0));
-}
-
-// To march by: never above the distance to the nearest surface, and not above 0 in
-// the same places as krs_distance.  What is far for its size is not looked at, nor
-// what is smaller than the footprint.
-float krs_distance_lod(vec3 p, float footprint)
-{
-    float d = krs_distance_lod_1(p, footprint);
-    if (krs_box_distance(p, vec3(3.0, 0.0, 0.0), vec3(1.500006, 1.500003, 1.500003)) < max(d, 1e-30))
-        d = min(d, krs_distance_lod_2(p, footprint));
-    return krs_cut(p, d);
-}
-#endif
-
-#ifdef PACKED
-// Parts of the scene, most of them one component: the distance of one, and a box
-// around it; where there is none the box stays empty.
-const uint KRS_SCENE_PARTS = 2u;
-
-float krs_scene_part_distance(uint scene_part, vec3 p)
-{
-    float d = 1e30;
-    switch (scene_part) {
-    case 0u:
-#ifdef EARLY_OUTS
-        d = min(d, krs_distance_lod_1(p, 0.0));
-#else
-        d = min(d, krs_distance_1(p));
-#endif
-        break;
-    case 1u:
-#ifdef EARLY_OUTS
-        d = min(d, krs_distance_lod_2(p, 0.0));
-#else
-        d = min(d, krs_distance_2(p));
-#endif
-        break;
-    }
-    return krs_cut(p, d);
-}
-
-void krs_scene_part_box(uint scene_part, inout vec3 low, inout vec3 high)
-{
-    switch (scene_part) {
-    case 0u:
-        low = vec3((-1.6535387));
-        high = vec3(1.6535387);
-        break;
-    case 1u:
-        low = vec3(1.4994758, (-1.5005211), (-1.5005211));
-        high = vec3(4.500524, 1.5005211, 1.5005211);
-        break;
-    }
-}
-#endif
-
-#if defined(GRADIENT) && !defined(CAMERA_RELATIVE)
 vec4 krs_gradient_1(vec3 p, float reach)
 {
     // tests/golden/algebraic.krs:3
@@ -761,7 +321,7 @@ vec4 krs_gradient_2(vec3 p, float reach)
 {
     // tests/golden/algebraic.krs:4
     vec3 v0 = p - vec3(3.0, 0.0, 0.0);
-    // library:solids.krs:38
+    // library:solids.krs
     float t1 = length(v0);
     // tests/golden/algebraic.krs:4
     float t2 = 1.5 - t1;
@@ -771,8 +331,8 @@ vec4 krs_gradient_2(vec3 p, float reach)
     float t6 = dot(v0, v5);
     float t7 = t6 + ((((v0.z * t3) - 0.1) / max(length(v4), 1e-30)) - t6);
     float t8 = -(t7 + (abs(t7) - t7));
-    float t9 = -KRS_MIN(t2, t8);
-    // library:solids.krs:38
+    float t9 = -min(t2, t8);
+    // library:solids.krs
     float t10 = max(t1, 1e-30);
     // tests/golden/algebraic.krs:4
     bool b11 = t8 < t2;
@@ -783,8 +343,41 @@ vec4 krs_gradient_2(vec3 p, float reach)
     return vec4(v15, t9);
 }
 
-// The direction in which krs_distance rises fastest at a surface, of any
-// length, by derivatives; by differences over `reach` where there are none.
+KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
+{
+    float d = krs_distance_1(p);
+    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 1u, uint(0.0), 1u, normal);
+}
+
+KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
+{
+    float d = krs_distance_2(p);
+    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 2u, uint(0.0), 1u, normal);
+}
+
+float krs_distance(vec3 p)
+{
+    float d = krs_distance_1(p);
+    d = min(d, krs_distance_2(p));
+    return d;
+}
+
+float krs_along(vec3 p, vec3 direction, float footprint)
+{
+    float t = 1e30;
+    t = min(t, krs_along_1(p, direction, footprint));
+    t = min(t, krs_along_2(p, direction, footprint));
+    return t;
+}
+
+float krs_distance_lod(vec3 p, float footprint)
+{
+    float d = krs_distance_lod_1(p, footprint);
+    if (krs_box_distance(p, vec3(3.0, 0.0, 0.0), vec3(1.500006, 1.500003, 1.500003)) < max(d, 1e-30))
+        d = min(d, krs_distance_lod_2(p, footprint));
+    return d;
+}
+
 vec3 krs_gradient(vec3 p, float reach)
 {
     vec4 nearest = vec4(0.0, 0.0, 0.0, 1e30), other;
@@ -792,124 +385,9 @@ vec3 krs_gradient(vec3 p, float reach)
     nearest = other.w < nearest.w ? other : nearest;
     other = krs_gradient_2(p, reach);
     nearest = other.w < nearest.w ? other : nearest;
-#ifdef ZONES
-    for (int i = 0; i < ZONES; i++) {
-        vec3 toward = krs_zones[i].xyz - p;
-        float depth = krs_zones[i].w - length(toward);
-        nearest = depth > nearest.w ? vec4(toward, depth) : nearest;
-    }
-#endif
     return nearest.xyz;
 }
-#endif
 
-KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
-{
-    // tests/golden/algebraic.krs:3
-    vec3 v0 = min(max(p, vec3((-1.6529645))), vec3(1.6529645));
-    float t1 = v0.x * v0.x;
-    float t2 = v0.y * v0.y;
-    float t3 = v0.z * v0.z;
-    vec3 v4 = vec3(1.0, 0.0, 0.0) * v0.x;
-    vec3 v5 = v4 + v4;
-    float t6 = length(v5);
-    float t7 = t1 * 1.0000001;
-    float t8 = t6 * 1.0000001;
-    vec3 v9 = v5 * t1;
-    vec3 v10 = vec3(0.0, 1.0, 0.0) * v0.y;
-    vec3 v11 = v10 + v10;
-    float t12 = length(v11);
-    float t13 = t2 * 1.0000001;
-    float t14 = t12 * 1.0000001;
-    vec3 v15 = v11 * t2;
-    vec3 v16 = vec3(0.0, 0.0, 1.0) * v0.z;
-    vec3 v17 = v16 + v16;
-    float t18 = length(v17);
-    float t19 = t3 * 1.0000001;
-    float t20 = t18 * 1.0000001;
-    vec3 v21 = v17 * t3;
-    float t22 = ((t7 + (t7 + (t6 * t6))) + (t13 + (t13 + (t12 * t12)))) + (t19 + (t19 + (t18 * t18)));
-    float t23 = ((t8 + t8) + (t14 + t14)) + (t20 + t20);
-    float t24 = (((t1 * t1) + (t2 * t2)) + (t3 * t3)) - (krs_frame0 * (t3 + (t1 + t2)));
-    float t25 = krs_frame1 + t22;
-    vec3 v26 = (((v9 + v9) + (v15 + v15)) + (v21 + v21)) - ((v17 + (v5 + v11)) * krs_frame0);
-    float t27 = length(v26);
-    float t28 = t24 + (-0.2);
-    float t29 = abs(t28);
-    float t30 = t29 / max(t27, 1e-30);
-    float t31 = sqrt((t29 / max(t25, 1e-30)));
-    float t32 = KRS_MIN(t30, t31);
-    float t33 = exp2((log2(max((t29 / max(t23, 1e-30)), 1e-37)) * 0.33333334));
-    float t34 = KRS_MIN(t32, t33);
-    float t35 = sqrt(sqrt((t29 * 0.33333325)));
-    float t36 = KRS_MIN(t34, t35);
-    float t37 = t36 * 3.0000007;
-    float t38 = t23 + t37;
-    float t39 = t25 + (t36 * t38);
-    float t40 = t27 + (t36 * t39);
-    float t41 = max((t40 + (t36 * (t39 + (t36 * (t37 + t38))))), 1e-30);
-    float t42 = t36 - (((t36 * t40) - t29) / t41);
-    float t43 = t42 * 3.0000007;
-    float t44 = t23 + t43;
-    float t45 = t25 + (t42 * t44);
-    float t46 = t27 + (t42 * t45);
-    float t47 = max((t46 + (t42 * (t45 + (t42 * (t43 + t44))))), 1e-30);
-    float t48 = t42 - (((t42 * t46) - t29) / t47);
-    float t49 = t48 * 3.0000007;
-    float t50 = t23 + t49;
-    float t51 = t25 + (t48 * t50);
-    float t52 = t27 + (t48 * t51);
-    float t53 = max((t52 + (t48 * (t51 + (t48 * (t49 + t50))))), 1e-30);
-    float t54 = t48 - (((t48 * t52) - t29) / t53);
-    float t55 = t27 + (t54 * (t25 + (t54 * (t23 + (t54 * 3.0000007)))));
-    float t56 = sign(t28) * (t54 * min((t29 / max((t54 * t55), 1e-30)), 1.0));
-    float t57 = abs(p.x) - 1.6529645;
-    float t58 = abs(p.y) - 1.6529645;
-    float t59 = KRS_MAX(t57, t58);
-    float t60 = abs(p.z) - 1.6529645;
-    float t61 = KRS_MAX(t59, t60);
-    float t62 = length(vec2(length(max((abs(p) - vec3(1.6529645)), vec3(0.0))), max(t56, 0.0)));
-    float t63 = min(KRS_MAX(t56, t61), 0.0) + t62;
-    return KrsSurface(t63, vec3(0.6), 0.6, 0.0, vec3(0.0), 1u, uint(0.0), 1u, normal);
-}
-
-KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
-{
-    // tests/golden/algebraic.krs:4
-    vec3 v0 = p - vec3(3.0, 0.0, 0.0);
-    vec3 v1 = min(max(v0, vec3((-1.5156244))), vec3(1.5156244));
-    float t2 = v1.x * v1.y;
-    vec3 v3 = (vec3(0.0, 1.0, 0.0) * v1.x) + (vec3(1.0, 0.0, 0.0) * v1.y);
-    float t4 = length(v3) + (abs(v1.z) * 0.50000006);
-    float t5 = length(((vec3(0.0, 0.0, 1.0) * t2) + (v3 * v1.z)));
-    float t6 = (v1.z * t2) + (-0.1);
-    float t7 = abs(t6);
-    float t8 = t7 / max(t5, 1e-30);
-    float t9 = sqrt((t7 / max(t4, 1e-30)));
-    float t10 = KRS_MIN(t8, t9);
-    float t11 = exp2((log2(max((t7 * 1.9999998), 1e-37)) * 0.33333334));
-    float t12 = KRS_MIN(t10, t11);
-    float t13 = t12 * 0.50000006;
-    float t14 = t4 + t13;
-    float t15 = t5 + (t12 * t14);
-    float t16 = t12 - (((t12 * t15) - t7) / max((t15 + (t12 * (t13 + t14))), 1e-30));
-    float t17 = t16 * 0.50000006;
-    float t18 = t4 + t17;
-    float t19 = t5 + (t16 * t18);
-    float t20 = t16 - (((t16 * t19) - t7) / max((t19 + (t16 * (t17 + t18))), 1e-30));
-    float t21 = t20 * 0.50000006;
-    float t22 = t4 + t21;
-    float t23 = t5 + (t20 * t22);
-    float t24 = t20 - (((t20 * t23) - t7) / max((t23 + (t20 * (t21 + t22))), 1e-30));
-    float t25 = max((t24 * (t5 + (t24 * (t4 + (t24 * 0.50000006))))), 1e-30);
-    float t26 = 1.5 - length(v0);
-    float t27 = -abs((sign(t6) * (t24 * min((t7 / t25), 1.0))));
-    float t28 = -KRS_MIN(t26, t27);
-    return KrsSurface(t28, vec3(0.6), 0.6, 0.0, vec3(0.0), 2u, uint(0.0), 1u, normal);
-}
-
-// What is at p: the component with the least distance.  `normal` is the
-// gradient of krs_distance there, `footprint` the radius of a pixel, or 0.
 KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)
 {
     KrsSurface nearest = krs_surface_1(p, normal, footprint);
@@ -917,10 +395,6 @@ KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)
     other = krs_surface_2(p, normal, footprint);
     if (other.distance < nearest.distance)
         nearest = other;
-    float cut = krs_cut(p, nearest.distance);
-    if (cut > nearest.distance)
-        nearest.normal = normal;
-    nearest.distance = cut;
     return nearest;
 }
-#endif
+

@@ -1,23 +1,5 @@
 // Distance code of a scene; slot 0 holds the time, then one slot for each `param`.
-// Where branches save work there are many threads, and operations count.
-// Elsewhere what has to be waited for counts, and built-in min and max of
-// variables are three instructions, since they mind what is not a number.
-#ifdef EARLY_OUTS
-#define KRS_MIN(a, b) min(a, b)
-#define KRS_MAX(a, b) max(a, b)
-#define KRS_BACK(back, here) here
-#else
-#define KRS_MIN(a, b) mix(a, b, (b) < (a))
-#define KRS_MAX(a, b) mix(a, b, (a) < (b))
-#define KRS_BACK(back, here) back
-#endif
-#define KRS_SLOTS 1
-#ifdef ZONES
-layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[KRS_SLOTS + ZONES]; };
-vec4 krs_zones[ZONES];
-#else
-layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[KRS_SLOTS]; };
-#endif
+layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[1]; };
 
 struct KrsSurface {
     float distance;
@@ -31,8 +13,26 @@ struct KrsSurface {
     vec3  normal;
 };
 
+// Everything that stays the same within a frame: call it first.
+void krs_prepare();
+
+// Never above the distance to the nearest surface; negative inside.
+float krs_distance(vec3 p);
+
+// To march by: never above the distance to the nearest surface, and not above 0
+// in the same places as krs_distance.  What is far for its size is not looked
+// at, nor what is smaller than the footprint.
+float krs_distance_lod(vec3 p, float footprint);
+
+// What is at p: the component with the least distance.  `normal` is the
+// gradient of krs_distance there, `footprint` the radius of a pixel, or 0.
+KrsSurface krs_surface(vec3 p, vec3 normal, float footprint);
+
 vec2 krs_times(vec2 a, vec2 b, float square)
-{ return vec2(a.x * b.x - square * a.y * b.y, a.x * b.y + a.y * b.x); }
+{
+    return vec2(a.x * b.x - square * a.y * b.y, a.x * b.y + a.y * b.x);
+}
+
 vec2 krs_raise(vec2 base, int power, float square)
 {
     vec2 all = vec2(1.0, 0.0);
@@ -43,11 +43,13 @@ vec2 krs_raise(vec2 base, int power, float square)
     }
     return all;
 }
+
 vec4 krs_julia_step(vec4 z, vec4 c, int power)
 {
     vec2 parts = krs_raise(vec2(z.x, 1.0), power, dot(z.yzw, z.yzw));
     return vec4(parts.x, parts.y * z.yzw) + c;
 }
+
 float krs_step_back(float size, float x, int power)
 {
     float sum = 1.0, lower = 1.0, raised = krs_raise(vec2(size, 0.0), power, 0.0).x + x;
@@ -59,6 +61,7 @@ float krs_step_back(float size, float x, int power)
     }
     return mix(0.0, x / sum, sum > 0.0);
 }
+
 float krs_julia(vec3 p, vec4 c, vec2 range, vec2 settings)
 {
     int power = int(range.x), most = int(range.y), n = 0;
@@ -80,18 +83,6 @@ float krs_julia(vec3 p, vec4 c, vec2 range, vec2 settings)
         x = i < n ? max(krs_step_back(sizes[i], x, power), sizes[i] - radius) : x;
     return mix(-x, x, size > radius);
 }
-vec2 krs_julia_trap(vec3 p, vec4 c, vec2 range, vec2 settings)
-{
-    float last = min(settings.x, range.y), size = length(p);
-    vec4 z = vec4(p, 0.0);
-    vec2 trap = vec2(1.0);
-    for (float n = 1.0; n <= last && size <= 2.0 * settings.y; n++) {
-        z = krs_julia_step(z, c, int(range.x));
-        size = length(z);
-        trap = size < trap.x ? vec2(size, n / last) : trap;
-    }
-    return trap;
-}
 
 float krs_whole_power(float x, int power)
 {
@@ -103,8 +94,12 @@ float krs_whole_power(float x, int power)
     }
     return all;
 }
+
 vec2 krs_doubled(vec2 a, float norm)
-{ return vec2(a.x * a.x - 2.0 * norm, a.x * a.y); }
+{
+    return vec2(a.x * a.x - 2.0 * norm, a.x * a.y);
+}
+
 vec2 krs_multiplied(vec2 base, int power, float norm, float square)
 {
     vec2 all = base;
@@ -118,6 +113,7 @@ vec2 krs_multiplied(vec2 base, int power, float norm, float square)
     }
     return all;
 }
+
 vec3 krs_triplex_step(vec3 w, vec3 c, float norm, int power, out float lateral)
 {
     float square = max(dot(w.xz, w.xz), 1e-18), inverse = 1.0 / square;
@@ -135,6 +131,7 @@ vec3 krs_triplex_step(vec3 w, vec3 c, float norm, int power, out float lateral)
     float reach = power % 2 == 0 ? lateral * sqrt(square) : lateral;
     return vec3(reach * turn.y, 0.5 * tilt.x, 0.5 * reach * turn.x) + c;
 }
+
 float krs_mandelbulb(vec3 c, vec2 range, vec2 settings)
 {
     int power = int(range.x), most = int(range.y);
@@ -166,79 +163,30 @@ float krs_mandelbulb(vec3 c, vec2 range, vec2 settings)
     d = outside ? d * log(last * (1.0 / (radius * radius))) : d;
     return max(rim, min(d, farthest));
 }
-vec2 krs_mandelbulb_trap(vec3 c, vec2 range, vec2 settings)
+
+float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)
 {
-    float last = min(settings.x, range.y), norm = dot(c, c), size = sqrt(norm), lateral;
-    vec3 w = c;
-    vec2 trap = vec2(1.0);
-    for (float n = 1.0; n <= last && size <= 2.0 * settings.y; n++) {
-        w = krs_triplex_step(w, c, norm, int(range.x), lateral);
-        norm = dot(w, w);
-        size = sqrt(norm);
-        trap = size < trap.x ? vec2(size, n / last) : trap;
-    }
-    return trap;
+    return length(max(abs(p - center) - half_sides, 0.0));
 }
 
-
-// Everything that stays the same within a frame: call it first.
 void krs_prepare()
 {
-#ifdef ZONES
-    for (int i = 0; i < ZONES; i++)
-        krs_zones[i] = krs_parameter[KRS_SLOTS + i];
-#endif
 }
 
-// The distance where zones have been cut out: those of the scene, and ZONES of
-// the caller, of which slot KRS_SLOTS holds the first: center and radius.
-float krs_cut(vec3 p, float d)
-{
-#ifdef ZONES
-    for (int i = 0; i < ZONES; i++)
-        d = max(d, krs_zones[i].w - length(p - krs_zones[i].xyz));
-#endif
-    return d;
-}
-
-#if !defined MARCH_GROUP || MARCH_GROUP == 1
 float krs_distance_1(vec3 p)
 {
     // tests/golden/fractals.krs:2
     float t0 = krs_julia(p, vec4((-0.2), 0.6, 0.2, 0.2), vec2(2.0, 6.0), vec2(6.0, 1.4709893));
     return t0;
 }
-#endif
 
-#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_distance_2(vec3 p)
 {
     // tests/golden/fractals.krs:3
     float t0 = krs_mandelbulb((p - vec3(3.0, 0.0, 0.0)), vec2(8.0, 4.0), vec2(4.0, 1.1040895));
     return t0;
 }
-#endif
 
-// Never above the distance to the nearest surface; negative inside.
-float krs_distance(vec3 p)
-{
-#ifdef MARCH_GROUP
-    float d = 1e30;
-#if MARCH_GROUP == 1
-    d = min(d, krs_distance_1(p));
-#endif
-#if MARCH_GROUP == 2
-    d = min(d, krs_distance_2(p));
-#endif
-#else
-    float d = krs_distance_1(p);
-    d = min(d, krs_distance_2(p));
-#endif
-    return krs_cut(p, d);
-}
-
-#ifndef MARCH_GROUP
-#ifdef EARLY_OUTS
 float krs_distance_lod_1(vec3 p, float footprint)
 {
     return krs_distance_1(p);
@@ -249,81 +197,33 @@ float krs_distance_lod_2(vec3 p, float footprint)
     return krs_distance_2(p);
 }
 
-float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)
+KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
 {
-    return length(max(abs(p - center) - half_sides, 0.0));
+    float d = krs_distance_1(p);
+    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 1u, uint(0.0), 1u, normal);
 }
 
-// To march by: never above the distance to the nearest surface, and not above 0 in
-// the same places as krs_distance.  What is far for its size is not looked at, nor
-// what is smaller than the footprint.
+KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
+{
+    float d = krs_distance_2(p);
+    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 2u, uint(0.0), 1u, normal);
+}
+
+float krs_distance(vec3 p)
+{
+    float d = krs_distance_1(p);
+    d = min(d, krs_distance_2(p));
+    return d;
+}
+
 float krs_distance_lod(vec3 p, float footprint)
 {
     float d = krs_distance_lod_1(p, footprint);
     if (krs_box_distance(p, vec3(3.0, 0.0, 0.0), vec3(1.1040947, 1.1040918, 1.1040918)) < max(d, 1e-30))
         d = min(d, krs_distance_lod_2(p, footprint));
-    return krs_cut(p, d);
-}
-#endif
-
-#ifdef PACKED
-// Parts of the scene, most of them one component: the distance of one, and a box
-// around it; where there is none the box stays empty.
-const uint KRS_SCENE_PARTS = 2u;
-
-float krs_scene_part_distance(uint scene_part, vec3 p)
-{
-    float d = 1e30;
-    switch (scene_part) {
-    case 0u:
-#ifdef EARLY_OUTS
-        d = min(d, krs_distance_lod_1(p, 0.0));
-#else
-        d = min(d, krs_distance_1(p));
-#endif
-        break;
-    case 1u:
-#ifdef EARLY_OUTS
-        d = min(d, krs_distance_lod_2(p, 0.0));
-#else
-        d = min(d, krs_distance_2(p));
-#endif
-        break;
-    }
-    return krs_cut(p, d);
+    return d;
 }
 
-void krs_scene_part_box(uint scene_part, inout vec3 low, inout vec3 high)
-{
-    switch (scene_part) {
-    case 0u:
-        low = vec3((-1.4715018));
-        high = vec3(1.4715018);
-        break;
-    case 1u:
-        low = vec3(1.8955239, (-1.1044731), (-1.1044731));
-        high = vec3(4.104476, 1.1044731, 1.1044731);
-        break;
-    }
-}
-#endif
-
-KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
-{
-    // tests/golden/fractals.krs:2
-    float t0 = krs_julia(p, vec4((-0.2), 0.6, 0.2, 0.2), vec2(2.0, 6.0), vec2(6.0, 1.4709893));
-    return KrsSurface(t0, vec3(0.6), 0.6, 0.0, vec3(0.0), 1u, uint(0.0), 1u, normal);
-}
-
-KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
-{
-    // tests/golden/fractals.krs:3
-    float t0 = krs_mandelbulb((p - vec3(3.0, 0.0, 0.0)), vec2(8.0, 4.0), vec2(4.0, 1.1040895));
-    return KrsSurface(t0, vec3(0.6), 0.6, 0.0, vec3(0.0), 2u, uint(0.0), 1u, normal);
-}
-
-// What is at p: the component with the least distance.  `normal` is the
-// gradient of krs_distance there, `footprint` the radius of a pixel, or 0.
 KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)
 {
     KrsSurface nearest = krs_surface_1(p, normal, footprint);
@@ -331,10 +231,6 @@ KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)
     other = krs_surface_2(p, normal, footprint);
     if (other.distance < nearest.distance)
         nearest = other;
-    float cut = krs_cut(p, nearest.distance);
-    if (cut > nearest.distance)
-        nearest.normal = normal;
-    nearest.distance = cut;
     return nearest;
 }
-#endif
+

@@ -1,29 +1,5 @@
 // Distance code of a scene; slot 0 holds the time, then one slot for each `param`.
-// Where branches save work there are many threads, and operations count.
-// Elsewhere what has to be waited for counts, and built-in min and max of
-// variables are three instructions, since they mind what is not a number.
-#ifdef EARLY_OUTS
-#define KRS_MIN(a, b) min(a, b)
-#define KRS_MAX(a, b) max(a, b)
-#define KRS_BACK(back, here) here
-#else
-#define KRS_MIN(a, b) mix(a, b, (b) < (a))
-#define KRS_MAX(a, b) mix(a, b, (a) < (b))
-#define KRS_BACK(back, here) back
-#endif
-// With FRAME_VALUES defined, 1 more slots hold what else depends on the
-// frame alone: krs_frame_values in krs.h.
-#ifdef FRAME_VALUES
-#define KRS_SLOTS 3
-#else
-#define KRS_SLOTS 2
-#endif
-#ifdef ZONES
-layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[KRS_SLOTS + ZONES]; };
-vec4 krs_zones[ZONES];
-#else
-layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[KRS_SLOTS]; };
-#endif
+layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[2]; };
 
 struct KrsSurface {
     float distance;
@@ -37,21 +13,32 @@ struct KrsSurface {
     vec3  normal;
 };
 
+// Everything that stays the same within a frame: call it first.
+void krs_prepare();
+
+// Never above the distance to the nearest surface; negative inside.
+float krs_distance(vec3 p);
+
+// To march by: never above the distance to the nearest surface, and not above 0
+// in the same places as krs_distance.  What is far for its size is not looked
+// at, nor what is smaller than the footprint.
+float krs_distance_lod(vec3 p, float footprint);
+
+// What is at p: the component with the least distance.  `normal` is the
+// gradient of krs_distance there, `footprint` the radius of a pixel, or 0.
+KrsSurface krs_surface(vec3 p, vec3 normal, float footprint);
+
+float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)
+{
+    return length(max(abs(p - center) - half_sides, 0.0));
+}
+
 vec3 krs_frame0;
 
-// Everything that stays the same within a frame: call it first.
 void krs_prepare()
 {
-#ifdef FRAME_VALUES // the host has found them
-    krs_frame0 = vec3(krs_parameter[2].x, krs_parameter[2].y, krs_parameter[1].x);
-#else
     // tests/golden/looks.krs:4
     krs_frame0 = vec3((krs_parameter[1].x * 3.0), (krs_parameter[1].x * 2.0), krs_parameter[1].x);
-#endif
-#ifdef ZONES
-    for (int i = 0; i < ZONES; i++)
-        krs_zones[i] = krs_parameter[KRS_SLOTS + i];
-#endif
 }
 
 // How deep p is in the zones of the scene, where nothing is.
@@ -62,52 +49,36 @@ float krs_zone_depth(vec3 p)
     return t0;
 }
 
-// The distance where zones have been cut out: those of the scene, and ZONES of
-// the caller, of which slot KRS_SLOTS holds the first: center and radius.
+// The distance where zones have been cut out.
 float krs_cut(vec3 p, float d)
 {
     d = max(d, krs_zone_depth(p));
-#ifdef ZONES
-    for (int i = 0; i < ZONES; i++)
-        d = max(d, krs_zones[i].w - length(p - krs_zones[i].xyz));
-#endif
     return d;
 }
 
 float krs_distance_1(vec3 p)
 {
-    // library:solids.krs:38
+    // library:solids.krs
     float t0 = length(p) - 1.0;
     return t0;
 }
 
 float krs_distance_2(vec3 p)
 {
-    // library:solids.krs:48
+    // library:solids.krs
     vec3 v0 = abs((p - vec3(2.0, 0.0, 0.0))) - vec3(0.5);
-    // library:solids.krs:14
-    float t1 = KRS_MAX(v0.y, v0.z);
-    float t2 = length(max(v0, vec3(0.0))) + min(KRS_MAX(v0.x, t1), 0.0);
+    float t1 = max(v0.y, v0.z);
+    float t2 = length(max(v0, vec3(0.0))) + min(max(v0.x, t1), 0.0);
     return t2;
 }
 
 float krs_distance_3(vec3 p)
 {
-    // library:solids.krs:435
+    // library:solids.krs
     float t0 = dot(p, vec3(0.0, 1.0, 0.0)) - (-1.0);
     return t0;
 }
 
-// Never above the distance to the nearest surface; negative inside.
-float krs_distance(vec3 p)
-{
-    float d = krs_distance_1(p);
-    d = min(d, krs_distance_2(p));
-    d = min(d, krs_distance_3(p));
-    return krs_cut(p, d);
-}
-
-#ifdef EARLY_OUTS
 float krs_distance_lod_1(vec3 p, float footprint)
 {
     return krs_distance_1(p);
@@ -123,14 +94,35 @@ float krs_distance_lod_3(vec3 p, float footprint)
     return krs_distance_3(p);
 }
 
-float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)
+KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
 {
-    return length(max(abs(p - center) - half_sides, 0.0));
+    float d = krs_distance_1(p);
+    // tests/golden/looks.krs:3
+    float t0 = dot(normal, vec3(0.0, 1.0, 0.0));
+    vec3 v1 = vec3(((t0 * (-0.3)) + 0.5), ((t0 * (-0.2)) + 0.4), ((t0 * 0.05) + 0.25));
+    return KrsSurface(d, v1, 0.3, 1.0, vec3(0.0), 1u, uint(0.0), 1u, normal);
 }
 
-// To march by: never above the distance to the nearest surface, and not above 0 in
-// the same places as krs_distance.  What is far for its size is not looked at, nor
-// what is smaller than the footprint.
+KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
+{
+    float d = krs_distance_2(p);
+    return KrsSurface(d, vec3(1.0), 0.6, 0.0, krs_frame0, 2u, uint(0.0), 1u, normal);
+}
+
+KrsSurface krs_surface_3(vec3 p, vec3 normal, float footprint)
+{
+    float d = krs_distance_3(p);
+    return KrsSurface(d, vec3(0.2158605, 0.27889428, 0.3515326), 0.6, 0.0, vec3(0.0), 3u, uint(0.0), 1u, normal);
+}
+
+float krs_distance(vec3 p)
+{
+    float d = krs_distance_1(p);
+    d = min(d, krs_distance_2(p));
+    d = min(d, krs_distance_3(p));
+    return krs_cut(p, d);
+}
+
 float krs_distance_lod(vec3 p, float footprint)
 {
     float d = krs_distance_lod_3(p, footprint);
@@ -140,90 +132,7 @@ float krs_distance_lod(vec3 p, float footprint)
         d = min(d, krs_distance_lod_2(p, footprint));
     return krs_cut(p, d);
 }
-#endif
 
-#ifdef PACKED
-// Parts of the scene, most of them one component: the distance of one, and a box
-// around it; where there is none the box stays empty.
-const uint KRS_SCENE_PARTS = 3u;
-
-float krs_scene_part_distance(uint scene_part, vec3 p)
-{
-    float d = 1e30;
-    switch (scene_part) {
-    case 0u:
-#ifdef EARLY_OUTS
-        d = min(d, krs_distance_lod_1(p, 0.0));
-#else
-        d = min(d, krs_distance_1(p));
-#endif
-        break;
-    case 1u:
-#ifdef EARLY_OUTS
-        d = min(d, krs_distance_lod_2(p, 0.0));
-#else
-        d = min(d, krs_distance_2(p));
-#endif
-        break;
-    case 2u:
-#ifdef EARLY_OUTS
-        d = min(d, krs_distance_lod_3(p, 0.0));
-#else
-        d = min(d, krs_distance_3(p));
-#endif
-        break;
-    }
-    return krs_cut(p, d);
-}
-
-void krs_scene_part_box(uint scene_part, inout vec3 low, inout vec3 high)
-{
-    switch (scene_part) {
-    case 0u:
-        low = vec3((-1.0003474));
-        high = vec3(1.0003474);
-        break;
-    case 1u:
-        low = vec3(1.4998243, (-0.5001737), (-0.5001737));
-        high = vec3(2.5001757, 0.5001737, 0.5001737);
-        break;
-    case 2u:
-        low = vec3((-1e+18));
-        high = vec3(1e+18);
-        break;
-    }
-}
-#endif
-
-KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
-{
-    // tests/golden/looks.krs:3
-    float t0 = dot(normal, vec3(0.0, 1.0, 0.0));
-    vec3 v1 = vec3(((t0 * (-0.3)) + 0.5), ((t0 * (-0.2)) + 0.4), ((t0 * 0.05) + 0.25));
-    // library:solids.krs:38
-    float t2 = length(p) - 1.0;
-    return KrsSurface(t2, v1, 0.3, 1.0, vec3(0.0), 1u, uint(0.0), 1u, normal);
-}
-
-KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
-{
-    // library:solids.krs:48
-    vec3 v0 = abs((p - vec3(2.0, 0.0, 0.0))) - vec3(0.5);
-    // library:solids.krs:14
-    float t1 = KRS_MAX(v0.y, v0.z);
-    float t2 = length(max(v0, vec3(0.0))) + min(KRS_MAX(v0.x, t1), 0.0);
-    return KrsSurface(t2, vec3(1.0), 0.6, 0.0, krs_frame0, 2u, uint(0.0), 1u, normal);
-}
-
-KrsSurface krs_surface_3(vec3 p, vec3 normal, float footprint)
-{
-    // library:solids.krs:435
-    float t0 = dot(p, vec3(0.0, 1.0, 0.0)) - (-1.0);
-    return KrsSurface(t0, vec3(0.2158605, 0.27889428, 0.3515326), 0.6, 0.0, vec3(0.0), 3u, uint(0.0), 1u, normal);
-}
-
-// What is at p: the component with the least distance.  `normal` is the
-// gradient of krs_distance there, `footprint` the radius of a pixel, or 0.
 KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)
 {
     KrsSurface nearest = krs_surface_1(p, normal, footprint);
@@ -240,3 +149,4 @@ KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)
     nearest.distance = cut;
     return nearest;
 }
+

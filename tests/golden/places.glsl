@@ -1,23 +1,5 @@
 // Distance code of a scene; slot 0 holds the time, then one slot for each `param`.
-// Where branches save work there are many threads, and operations count.
-// Elsewhere what has to be waited for counts, and built-in min and max of
-// variables are three instructions, since they mind what is not a number.
-#ifdef EARLY_OUTS
-#define KRS_MIN(a, b) min(a, b)
-#define KRS_MAX(a, b) max(a, b)
-#define KRS_BACK(back, here) here
-#else
-#define KRS_MIN(a, b) mix(a, b, (b) < (a))
-#define KRS_MAX(a, b) mix(a, b, (a) < (b))
-#define KRS_BACK(back, here) back
-#endif
-#define KRS_SLOTS 1
-#ifdef ZONES
-layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[KRS_SLOTS + ZONES]; };
-vec4 krs_zones[ZONES];
-#else
-layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[KRS_SLOTS]; };
-#endif
+layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[1]; };
 
 struct KrsSurface {
     float distance;
@@ -31,161 +13,116 @@ struct KrsSurface {
     vec3  normal;
 };
 
-float krs_mirror_excess(vec3 p, vec3 n, float w)
-{ return (p.x * n.x + p.y * n.y) + (p.z * n.z - w); }
-vec3 krs_fold(vec3 p, vec3 n, float w)
-{ return p - max(krs_mirror_excess(p, n, w), 0.0) * (2.0 * n); }
-
-
 // Everything that stays the same within a frame: call it first.
+void krs_prepare();
+
+// Never above the distance to the nearest surface; negative inside.
+float krs_distance(vec3 p);
+
+// To march by: never above the distance to the nearest surface, and not above 0
+// in the same places as krs_distance.  What is far for its size is not looked
+// at, nor what is smaller than the footprint.
+float krs_distance_lod(vec3 p, float footprint);
+
+// What is at p: the component with the least distance.  `normal` is the
+// gradient of krs_distance there, `footprint` the radius of a pixel, or 0.
+KrsSurface krs_surface(vec3 p, vec3 normal, float footprint);
+
+float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)
+{
+    return length(max(abs(p - center) - half_sides, 0.0));
+}
+
 void krs_prepare()
 {
-#ifdef ZONES
-    for (int i = 0; i < ZONES; i++)
-        krs_zones[i] = krs_parameter[KRS_SLOTS + i];
-#endif
 }
 
-// The distance where zones have been cut out: those of the scene, and ZONES of
-// the caller, of which slot KRS_SLOTS holds the first: center and radius.
-float krs_cut(vec3 p, float d)
-{
-#ifdef ZONES
-    for (int i = 0; i < ZONES; i++)
-        d = max(d, krs_zones[i].w - length(p - krs_zones[i].xyz));
-#endif
-    return d;
-}
-
-#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_distance_1(vec3 p)
 {
     // tests/golden/places.krs:2
     vec3 v0 = (p - vec3(0.0, 3.0, 0.0)) * vec3(1.0, 0.5, 2.0);
     vec3 v1 = vec3(dot(vec3(0.78275555, 0.54879886, (-0.2934511)), v0), dot(vec3((-0.48195443), 0.8328889, 0.27205887), v0), dot(vec3(0.39371777, (-0.071525544), 0.9164444), v0));
-    // library:solids.krs:80
+    // library:solids.krs
     float t2 = length(vec2(v1.x, v1.z));
-    // library:solids.krs:72
     float t3 = t2 - 0.4;
     float t4 = v1.y - (-0.5);
-    // library:solids.krs:73
     float t5 = min(max((dot(vec2(t3, t4), vec2((-0.4), 1.0)) * 0.86206895), 0.0), 1.0);
     float t6 = t3 - (t5 * (-0.4));
-    // library:solids.krs:74
     float t7 = abs(v1.y) - 0.5;
-    // library:solids.krs:76
     vec2 v8 = vec2(t6, (t4 - t5));
-    // library:solids.krs:33
     float t9 = dot(v8, v8);
     vec2 v10 = vec2(max((t2 - mix(0.0, 0.4, v1.y < 0.0)), 0.0), t7);
     float t11 = dot(v10, v10);
-    // library:solids.krs:76
-    float t12 = mix(1.0, (-1.0), all(bvec2((t6 < 0.0), (t7 < 0.0)))) * sqrt(KRS_MIN(t9, t11));
+    float t12 = mix(1.0, (-1.0), all(bvec2((t6 < 0.0), (t7 < 0.0)))) * sqrt(min(t9, t11));
     // tests/golden/places.krs:2
     float t13 = t12 * 0.5;
     return t13;
 }
-#endif
 
-#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_distance_2(vec3 p)
 {
     // tests/golden/places.krs:3
     vec3 v0 = p * 2.0;
-    vec3 v1 = vec3(KRS_MIN(v0.x, 2.0 * 0.3 - v0.x), v0.y, v0.z);
-    // library:solids.krs:243
+    vec3 v1 = vec3(min(v0.x, 2.0 * 0.3 - v0.x), v0.y, v0.z);
+    // library:solids.krs
     float t2 = length(vec2((length(vec2(v1.x, v1.z)) - 1.0), v1.y)) - 0.2;
     // tests/golden/places.krs:3
     float t3 = t2 * 0.5;
     return t3;
 }
-#endif
 
-#if !defined MARCH_GROUP || MARCH_GROUP == 2
 float krs_distance_3(vec3 p)
 {
     // tests/golden/places.krs:4
     vec3 v0 = vec3((p.x - (min(max(floor((p.x * 2.0) + 0.5), (-2.0)), 2.0) * 0.5)), p.y, (p.z - (min(max(floor((p.z * 2.0) + 0.5), (-1.0)), 1.0) * 0.5)));
-    // library:solids.krs:48
+    // library:solids.krs
     vec3 v1 = abs(v0) - vec3(0.1, 0.3, 0.1);
-    // library:solids.krs:14
-    float t2 = KRS_MAX(v1.y, v1.z);
-    float t3 = length(max(v1, vec3(0.0))) + min(KRS_MAX(v1.x, t2), 0.0);
+    float t2 = max(v1.y, v1.z);
+    float t3 = length(max(v1, vec3(0.0))) + min(max(v1.x, t2), 0.0);
     return t3;
 }
-#endif
 
-#if !defined MARCH_GROUP || MARCH_GROUP == 1
 float krs_distance_4(vec3 p)
 {
     // tests/golden/places.krs:5
     vec3 v0 = p - vec3(0.0, (-2.0), 0.0);
-    // library:solids.krs:104
+    // library:solids.krs
     float t1 = length((v0 - vec3(min(max(dot(v0, vec3(1.0, 0.0, 0.0)), 0.0), 1.0), 0.0, 0.0)));
     float t2 = t1 - 0.1;
     // tests/golden/places.krs:5
     vec3 v3 = vec3(dot(vec3(0.5, 0.0, 0.8660254), v0), dot(vec3(0.0, 1.0, 0.0), v0), dot(vec3((-0.8660254), 0.0, 0.5), v0));
-    // library:solids.krs:104
+    // library:solids.krs
     float t4 = length((v3 - vec3(min(max(dot(v3, vec3(1.0, 0.0, 0.0)), 0.0), 1.0), 0.0, 0.0)));
     float t5 = t4 - 0.1;
     // tests/golden/places.krs:5
     vec3 v6 = vec3(dot(vec3((-0.5), 0.0, 0.8660254), v0), dot(vec3(0.0, 1.0, 0.0), v0), dot(vec3((-0.8660254), 0.0, (-0.5)), v0));
-    // library:solids.krs:104
+    // library:solids.krs
     float t7 = length((v6 - vec3(min(max(dot(v6, vec3(1.0, 0.0, 0.0)), 0.0), 1.0), 0.0, 0.0)));
     float t8 = t7 - 0.1;
     // tests/golden/places.krs:5
-    float t9 = KRS_MIN(t5, t8);
-    float t10 = KRS_MIN(t2, t9);
+    float t9 = min(t5, t8);
+    float t10 = min(t2, t9);
     vec3 v11 = vec3(dot(vec3((-1.0), 0.0, 1.2246469e-16), v0), dot(vec3(0.0, 1.0, 0.0), v0), dot(vec3((-1.2246469e-16), 0.0, (-1.0)), v0));
-    // library:solids.krs:104
+    // library:solids.krs
     vec3 v12 = v11 - vec3(min(max(dot(v11, vec3(1.0, 0.0, 0.0)), 0.0), 1.0), 0.0, 0.0);
     float t13 = length(v12) - 0.1;
     // tests/golden/places.krs:5
     vec3 v14 = vec3(dot(vec3((-0.5), 0.0, (-0.8660254)), v0), dot(vec3(0.0, 1.0, 0.0), v0), dot(vec3(0.8660254, 0.0, (-0.5)), v0));
-    // library:solids.krs:104
+    // library:solids.krs
     vec3 v15 = v14 - vec3(min(max(dot(v14, vec3(1.0, 0.0, 0.0)), 0.0), 1.0), 0.0, 0.0);
     float t16 = length(v15) - 0.1;
     // tests/golden/places.krs:5
     vec3 v17 = vec3(dot(vec3(0.5, 0.0, (-0.8660254)), v0), dot(vec3(0.0, 1.0, 0.0), v0), dot(vec3(0.8660254, 0.0, 0.5), v0));
-    // library:solids.krs:104
+    // library:solids.krs
     vec3 v18 = v17 - vec3(min(max(dot(v17, vec3(1.0, 0.0, 0.0)), 0.0), 1.0), 0.0, 0.0);
     float t19 = length(v18) - 0.1;
     // tests/golden/places.krs:5
-    float t20 = KRS_MIN(t16, t19);
-    float t21 = KRS_MIN(t13, t20);
-    float t22 = KRS_MIN(t10, t21);
+    float t20 = min(t16, t19);
+    float t21 = min(t13, t20);
+    float t22 = min(t10, t21);
     return t22;
 }
-#endif
 
-// Never above the distance to the nearest surface; negative inside.
-float krs_distance(vec3 p)
-{
-#ifdef MARCH_GROUP
-    float d = 1e30;
-#if MARCH_GROUP == 2
-    d = min(d, krs_distance_1(p));
-#endif
-#if MARCH_GROUP == 2
-    d = min(d, krs_distance_2(p));
-#endif
-#if MARCH_GROUP == 2
-    d = min(d, krs_distance_3(p));
-#endif
-#if MARCH_GROUP == 1
-    d = min(d, krs_distance_4(p));
-#endif
-#else
-    float d = krs_distance_1(p);
-    d = min(d, krs_distance_2(p));
-    d = min(d, krs_distance_3(p));
-    d = min(d, krs_distance_4(p));
-#endif
-    return krs_cut(p, d);
-}
-
-#ifndef MARCH_GROUP
-#ifdef EARLY_OUTS
 float krs_distance_lod_1(vec3 p, float footprint)
 {
     return krs_distance_1(p);
@@ -206,14 +143,39 @@ float krs_distance_lod_4(vec3 p, float footprint)
     return krs_distance_4(p);
 }
 
-float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)
+KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
 {
-    return length(max(abs(p - center) - half_sides, 0.0));
+    float d = krs_distance_1(p);
+    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 1u, uint(0.0), 1u, normal);
 }
 
-// To march by: never above the distance to the nearest surface, and not above 0 in
-// the same places as krs_distance.  What is far for its size is not looked at, nor
-// what is smaller than the footprint.
+KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
+{
+    float d = krs_distance_2(p);
+    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 2u, uint(0.0), 1u, normal);
+}
+
+KrsSurface krs_surface_3(vec3 p, vec3 normal, float footprint)
+{
+    float d = krs_distance_3(p);
+    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 3u, uint(0.0), 1u, normal);
+}
+
+KrsSurface krs_surface_4(vec3 p, vec3 normal, float footprint)
+{
+    float d = krs_distance_4(p);
+    return KrsSurface(d, vec3(0.6), 0.6, 0.0, vec3(0.0), 4u, uint(0.0), 1u, normal);
+}
+
+float krs_distance(vec3 p)
+{
+    float d = krs_distance_1(p);
+    d = min(d, krs_distance_2(p));
+    d = min(d, krs_distance_3(p));
+    d = min(d, krs_distance_4(p));
+    return d;
+}
+
 float krs_distance_lod(vec3 p, float footprint)
 {
     float d = krs_distance_lod_1(p, footprint);
@@ -223,169 +185,9 @@ float krs_distance_lod(vec3 p, float footprint)
         d = min(d, krs_distance_lod_3(p, footprint));
     if (krs_box_distance(p, vec3(0.0, (-2.0), 0.0), vec3(1.1045383, 0.1000022, 1.1045383)) < max(d, 1e-30))
         d = min(d, krs_distance_lod_4(p, footprint));
-    return krs_cut(p, d);
-}
-#endif
-
-#ifdef PACKED
-// Parts of the scene, most of them one component: the distance of one, and a box
-// around it; where there is none the box stays empty.
-const uint KRS_SCENE_PARTS = 4u;
-
-float krs_scene_part_distance(uint scene_part, vec3 p)
-{
-    float d = 1e30;
-    switch (scene_part) {
-    case 0u:
-#ifdef EARLY_OUTS
-        d = min(d, krs_distance_lod_1(p, 0.0));
-#else
-        d = min(d, krs_distance_1(p));
-#endif
-        break;
-    case 1u:
-#ifdef EARLY_OUTS
-        d = min(d, krs_distance_lod_2(p, 0.0));
-#else
-        d = min(d, krs_distance_2(p));
-#endif
-        break;
-    case 2u:
-#ifdef EARLY_OUTS
-        d = min(d, krs_distance_lod_3(p, 0.0));
-#else
-        d = min(d, krs_distance_3(p));
-#endif
-        break;
-    case 3u:
-#ifdef EARLY_OUTS
-        d = min(d, krs_distance_lod_4(p, 0.0));
-#else
-        d = min(d, krs_distance_4(p));
-#endif
-        break;
-    }
-    return krs_cut(p, d);
+    return d;
 }
 
-void krs_scene_part_box(uint scene_part, inout vec3 low, inout vec3 high)
-{
-    switch (scene_part) {
-    case 0u:
-        low = vec3((-0.7118751), 1.6705394, (-0.31030196));
-        high = vec3(0.7118751, 4.3294606, 0.31030196);
-        break;
-    case 1u:
-        low = vec3((-0.60019404), (-0.10019323), (-0.60019374));
-        high = vec3(0.90019405, 0.10019323, 0.60019374);
-        break;
-    case 2u:
-        low = vec3((-1.1002588), (-0.30025798), (-0.6002583));
-        high = vec3(1.1002588, 0.30025798, 0.6002583);
-        break;
-    case 3u:
-        low = vec3((-1.1048503), (-2.100315), (-1.1048503));
-        high = vec3(1.1048503, (-1.8996849), 1.1048503);
-        break;
-    }
-}
-#endif
-
-KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
-{
-    // tests/golden/places.krs:2
-    vec3 v0 = (p - vec3(0.0, 3.0, 0.0)) * vec3(1.0, 0.5, 2.0);
-    vec3 v1 = vec3(dot(vec3(0.78275555, 0.54879886, (-0.2934511)), v0), dot(vec3((-0.48195443), 0.8328889, 0.27205887), v0), dot(vec3(0.39371777, (-0.071525544), 0.9164444), v0));
-    // library:solids.krs:80
-    float t2 = length(vec2(v1.x, v1.z));
-    // library:solids.krs:72
-    float t3 = t2 - 0.4;
-    float t4 = v1.y - (-0.5);
-    // library:solids.krs:73
-    float t5 = min(max((dot(vec2(t3, t4), vec2((-0.4), 1.0)) * 0.86206895), 0.0), 1.0);
-    float t6 = t3 - (t5 * (-0.4));
-    // library:solids.krs:74
-    float t7 = abs(v1.y) - 0.5;
-    // library:solids.krs:76
-    vec2 v8 = vec2(t6, (t4 - t5));
-    // library:solids.krs:33
-    float t9 = dot(v8, v8);
-    vec2 v10 = vec2(max((t2 - mix(0.0, 0.4, v1.y < 0.0)), 0.0), t7);
-    float t11 = dot(v10, v10);
-    // library:solids.krs:76
-    float t12 = mix(1.0, (-1.0), all(bvec2((t6 < 0.0), (t7 < 0.0)))) * sqrt(KRS_MIN(t9, t11));
-    // tests/golden/places.krs:2
-    float t13 = t12 * 0.5;
-    return KrsSurface(t13, vec3(0.6), 0.6, 0.0, vec3(0.0), 1u, uint(0.0), 1u, normal);
-}
-
-KrsSurface krs_surface_2(vec3 p, vec3 normal, float footprint)
-{
-    // tests/golden/places.krs:3
-    vec3 v0 = p * 2.0;
-    vec3 v1 = vec3(KRS_MIN(v0.x, 2.0 * 0.3 - v0.x), v0.y, v0.z);
-    // library:solids.krs:243
-    float t2 = length(vec2((length(vec2(v1.x, v1.z)) - 1.0), v1.y)) - 0.2;
-    // tests/golden/places.krs:3
-    float t3 = t2 * 0.5;
-    return KrsSurface(t3, vec3(0.6), 0.6, 0.0, vec3(0.0), 2u, uint(0.0), 1u, normal);
-}
-
-KrsSurface krs_surface_3(vec3 p, vec3 normal, float footprint)
-{
-    // tests/golden/places.krs:4
-    vec3 v0 = vec3((p.x - (min(max(floor((p.x * 2.0) + 0.5), (-2.0)), 2.0) * 0.5)), p.y, (p.z - (min(max(floor((p.z * 2.0) + 0.5), (-1.0)), 1.0) * 0.5)));
-    // library:solids.krs:48
-    vec3 v1 = abs(v0) - vec3(0.1, 0.3, 0.1);
-    // library:solids.krs:14
-    float t2 = KRS_MAX(v1.y, v1.z);
-    float t3 = length(max(v1, vec3(0.0))) + min(KRS_MAX(v1.x, t2), 0.0);
-    return KrsSurface(t3, vec3(0.6), 0.6, 0.0, vec3(0.0), 3u, uint(0.0), 1u, normal);
-}
-
-KrsSurface krs_surface_4(vec3 p, vec3 normal, float footprint)
-{
-    // tests/golden/places.krs:5
-    vec3 v0 = p - vec3(0.0, (-2.0), 0.0);
-    // library:solids.krs:104
-    float t1 = length((v0 - vec3(min(max(dot(v0, vec3(1.0, 0.0, 0.0)), 0.0), 1.0), 0.0, 0.0)));
-    float t2 = t1 - 0.1;
-    // tests/golden/places.krs:5
-    vec3 v3 = vec3(dot(vec3(0.5, 0.0, 0.8660254), v0), dot(vec3(0.0, 1.0, 0.0), v0), dot(vec3((-0.8660254), 0.0, 0.5), v0));
-    // library:solids.krs:104
-    float t4 = length((v3 - vec3(min(max(dot(v3, vec3(1.0, 0.0, 0.0)), 0.0), 1.0), 0.0, 0.0)));
-    float t5 = t4 - 0.1;
-    // tests/golden/places.krs:5
-    vec3 v6 = vec3(dot(vec3((-0.5), 0.0, 0.8660254), v0), dot(vec3(0.0, 1.0, 0.0), v0), dot(vec3((-0.8660254), 0.0, (-0.5)), v0));
-    // library:solids.krs:104
-    float t7 = length((v6 - vec3(min(max(dot(v6, vec3(1.0, 0.0, 0.0)), 0.0), 1.0), 0.0, 0.0)));
-    float t8 = t7 - 0.1;
-    // tests/golden/places.krs:5
-    float t9 = KRS_MIN(t5, t8);
-    float t10 = KRS_MIN(t2, t9);
-    vec3 v11 = vec3(dot(vec3((-1.0), 0.0, 1.2246469e-16), v0), dot(vec3(0.0, 1.0, 0.0), v0), dot(vec3((-1.2246469e-16), 0.0, (-1.0)), v0));
-    // library:solids.krs:104
-    vec3 v12 = v11 - vec3(min(max(dot(v11, vec3(1.0, 0.0, 0.0)), 0.0), 1.0), 0.0, 0.0);
-    float t13 = length(v12) - 0.1;
-    // tests/golden/places.krs:5
-    vec3 v14 = vec3(dot(vec3((-0.5), 0.0, (-0.8660254)), v0), dot(vec3(0.0, 1.0, 0.0), v0), dot(vec3(0.8660254, 0.0, (-0.5)), v0));
-    // library:solids.krs:104
-    vec3 v15 = v14 - vec3(min(max(dot(v14, vec3(1.0, 0.0, 0.0)), 0.0), 1.0), 0.0, 0.0);
-    float t16 = length(v15) - 0.1;
-    // tests/golden/places.krs:5
-    vec3 v17 = vec3(dot(vec3(0.5, 0.0, (-0.8660254)), v0), dot(vec3(0.0, 1.0, 0.0), v0), dot(vec3(0.8660254, 0.0, 0.5), v0));
-    // library:solids.krs:104
-    vec3 v18 = v17 - vec3(min(max(dot(v17, vec3(1.0, 0.0, 0.0)), 0.0), 1.0), 0.0, 0.0);
-    float t19 = length(v18) - 0.1;
-    // tests/golden/places.krs:5
-    float t20 = KRS_MIN(t16, t19);
-    float t21 = KRS_MIN(t13, t20);
-    float t22 = KRS_MIN(t10, t21);
-    return KrsSurface(t22, vec3(0.6), 0.6, 0.0, vec3(0.0), 4u, uint(0.0), 1u, normal);
-}
-
-// What is at p: the component with the least distance.  `normal` is the
-// gradient of krs_distance there, `footprint` the radius of a pixel, or 0.
 KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)
 {
     KrsSurface nearest = krs_surface_1(p, normal, footprint);
@@ -399,10 +201,6 @@ KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)
     other = krs_surface_4(p, normal, footprint);
     if (other.distance < nearest.distance)
         nearest = other;
-    float cut = krs_cut(p, nearest.distance);
-    if (cut > nearest.distance)
-        nearest.normal = normal;
-    nearest.distance = cut;
     return nearest;
 }
-#endif
+

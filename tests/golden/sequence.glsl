@@ -1,29 +1,5 @@
 // Distance code of a scene; slot 0 holds the time, then one slot for each `param`.
-// Where branches save work there are many threads, and operations count.
-// Elsewhere what has to be waited for counts, and built-in min and max of
-// variables are three instructions, since they mind what is not a number.
-#ifdef EARLY_OUTS
-#define KRS_MIN(a, b) min(a, b)
-#define KRS_MAX(a, b) max(a, b)
-#define KRS_BACK(back, here) here
-#else
-#define KRS_MIN(a, b) mix(a, b, (b) < (a))
-#define KRS_MAX(a, b) mix(a, b, (a) < (b))
-#define KRS_BACK(back, here) back
-#endif
-// With FRAME_VALUES defined, 5 more slots hold what else depends on the
-// frame alone: krs_frame_values in krs.h.
-#ifdef FRAME_VALUES
-#define KRS_SLOTS 7
-#else
-#define KRS_SLOTS 2
-#endif
-#ifdef ZONES
-layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[KRS_SLOTS + ZONES]; };
-vec4 krs_zones[ZONES];
-#else
-layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[KRS_SLOTS]; };
-#endif
+layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[2]; };
 
 struct KrsSurface {
     float distance;
@@ -37,27 +13,21 @@ struct KrsSurface {
     vec3  normal;
 };
 
-/*
- * sines.glsl: sine, cosine and tangent in single precision, the same on every device.
- *
- * Vulkan promises 2^-11 of the built-in ones, and only within +-pi.  These are good to 2^-22 up to
- * 51,000 = 2^14 pi.  Beyond, they are those of an argument that is off by its last digit.
- *
- * An argument is reduced by the nearest multiple of pi (Cody and Waite 1980): n times the first two
- * parts of pi is exact, so the differences must stay as they are written.  sin(a) is then sin(r),
- * with its sign changed where n is odd; cos(a) = sin(a + pi / 2).  Both operations of ops.def and
- * kernels include this file.
- */
-#ifndef KRS_SINES
-#define KRS_SINES
+// Everything that stays the same within a frame: call it first.
+void krs_prepare();
 
-float krs_reduce(float a, float n)
-{
-    precise float r = a - n * 3.140625;
-    r = r - n * 9.67025756836e-4;
-    r = r - n * 6.27832947e-7;
-    return min(max(r, -1.6), 1.6); // what is left of large arguments may be anything
-}
+// Never above the distance to the nearest surface; negative inside.
+float krs_distance(vec3 p);
+
+// To march by: never above the distance to the nearest surface, and not above 0
+// in the same places as krs_distance.  What is far for its size is not looked
+// at, nor what is smaller than the footprint.
+float krs_distance_lod(vec3 p, float footprint);
+
+// What is at p: the component with the least distance.  `normal` is the
+// gradient of krs_distance there, `footprint` the radius of a pixel, or 0.
+KrsSurface krs_surface(vec3 p, vec3 normal, float footprint);
+
 float krs_sine_small(float r, int n)
 {
     float z = r * r;
@@ -67,40 +37,43 @@ float krs_sine_small(float r, int n)
     float s = r + r * z * p;
     return uintBitsToFloat(floatBitsToUint(s) ^ uint(n) << 31);
 }
-float krs_sin(float a)
+
+float krs_reduce(float a, float n)
 {
-    float n = floor(a * 0.318309886184 + 0.5);
-    return krs_sine_small(krs_reduce(a, n), int(n));
+    precise float r = a - n * 3.140625;
+    r = r - n * 9.67025756836e-4;
+    r = r - n * 6.27832947e-7;
+    return min(max(r, -1.6), 1.6); // what is left of large arguments may be anything
 }
+
 float krs_cos(float a)
 {
     float n = floor(a * 0.318309886184);
     return krs_sine_small(krs_reduce(a, n + 0.5), int(n) + 1);
 }
-float krs_tan(float a) { return krs_sin(a) / krs_cos(a); }
 
-vec2 krs_sin(vec2 a) { return vec2(krs_sin(a.x), krs_sin(a.y)); }
-vec3 krs_sin(vec3 a) { return vec3(krs_sin(a.x), krs_sin(a.y), krs_sin(a.z)); }
-vec4 krs_sin(vec4 a) { return vec4(krs_sin(a.x), krs_sin(a.y), krs_sin(a.z), krs_sin(a.w)); }
-vec2 krs_cos(vec2 a) { return vec2(krs_cos(a.x), krs_cos(a.y)); }
-vec3 krs_cos(vec3 a) { return vec3(krs_cos(a.x), krs_cos(a.y), krs_cos(a.z)); }
-vec4 krs_cos(vec4 a) { return vec4(krs_cos(a.x), krs_cos(a.y), krs_cos(a.z), krs_cos(a.w)); }
-vec2 krs_tan(vec2 a) { return vec2(krs_tan(a.x), krs_tan(a.y)); }
-vec3 krs_tan(vec3 a) { return vec3(krs_tan(a.x), krs_tan(a.y), krs_tan(a.z)); }
-vec4 krs_tan(vec4 a) { return vec4(krs_tan(a.x), krs_tan(a.y), krs_tan(a.z), krs_tan(a.w)); }
-
-#endif
+float krs_sin(float a)
+{
+    float n = floor(a * 0.318309886184 + 0.5);
+    return krs_sine_small(krs_reduce(a, n), int(n));
+}
 
 float krs_inverse_length(float square)
-{ return mix(0.0, inversesqrt(square), square > 0.0); }
-vec2 krs_normalize(vec2 a) { return a * krs_inverse_length(dot(a, a)); }
+{
+    return mix(0.0, inversesqrt(square), square > 0.0);
+}
+
 vec3 krs_normalize(vec3 a) { return a * krs_inverse_length(dot(a, a)); }
-vec4 krs_normalize(vec4 a) { return a * krs_inverse_length(dot(a, a)); }
 
 float krs_mirror_excess(vec3 p, vec3 n, float w)
-{ return (p.x * n.x + p.y * n.y) + (p.z * n.z - w); }
+{
+    return (p.x * n.x + p.y * n.y) + (p.z * n.z - w);
+}
+
 vec3 krs_fold(vec3 p, vec3 n, float w)
-{ return p - max(krs_mirror_excess(p, n, w), 0.0) * (2.0 * n); }
+{
+    return p - max(krs_mirror_excess(p, n, w), 0.0) * (2.0 * n);
+}
 
 vec3 krs_frame0;
 float krs_frame1;
@@ -113,118 +86,81 @@ float krs_frame7;
 vec3 krs_frame8;
 float krs_frame9;
 
-// Everything that stays the same within a frame: call it first.
 void krs_prepare()
 {
-#ifdef FRAME_VALUES // the host has found them
-    krs_frame0 = krs_parameter[2].xyz;
-    krs_frame1 = krs_parameter[2].w;
-    krs_frame2 = krs_parameter[3].xyz;
-    krs_frame3 = krs_parameter[3].w;
-    krs_frame4 = krs_parameter[4].xyz;
-    krs_frame5 = krs_parameter[4].w;
-    krs_frame6 = krs_parameter[5].xyz;
-    krs_frame7 = krs_parameter[5].w;
-    krs_frame8 = krs_parameter[6].xyz;
-    krs_frame9 = krs_parameter[6].w;
-#else
     // tests/golden/sequence.krs:6
     vec3 v0 = vec3(krs_cos(krs_parameter[1].x), krs_sin(krs_parameter[1].x), 0.2);
-    // library:solids.krs:31
+    // library:solids.krs
     krs_frame0 = krs_normalize(v0);
     // tests/golden/sequence.krs:6
     krs_frame1 = 0.3 / length(v0);
     float t1 = krs_parameter[1].x * 2.0;
     vec3 v2 = vec3(krs_cos(t1), krs_sin(t1), 0.2);
-    // library:solids.krs:31
+    // library:solids.krs
     krs_frame2 = krs_normalize(v2);
     // tests/golden/sequence.krs:6
     krs_frame3 = 0.3 / length(v2);
     float t3 = krs_parameter[1].x * 3.0;
     vec3 v4 = vec3(krs_cos(t3), krs_sin(t3), 0.2);
-    // library:solids.krs:31
+    // library:solids.krs
     krs_frame4 = krs_normalize(v4);
     // tests/golden/sequence.krs:6
     krs_frame5 = 0.3 / length(v4);
     float t5 = krs_parameter[1].x * 4.0;
     vec3 v6 = vec3(krs_cos(t5), krs_sin(t5), 0.2);
-    // library:solids.krs:31
+    // library:solids.krs
     krs_frame6 = krs_normalize(v6);
     // tests/golden/sequence.krs:6
     krs_frame7 = 0.3 / length(v6);
     float t7 = krs_parameter[1].x * 5.0;
     vec3 v8 = vec3(krs_cos(t7), krs_sin(t7), 0.2);
-    // library:solids.krs:31
+    // library:solids.krs
     krs_frame8 = krs_normalize(v8);
     // tests/golden/sequence.krs:6
     krs_frame9 = 0.3 / length(v8);
-#endif
-#ifdef ZONES
-    for (int i = 0; i < ZONES; i++)
-        krs_zones[i] = krs_parameter[KRS_SLOTS + i];
-#endif
-}
-
-// The distance where zones have been cut out: those of the scene, and ZONES of
-// the caller, of which slot KRS_SLOTS holds the first: center and radius.
-float krs_cut(vec3 p, float d)
-{
-#ifdef ZONES
-    for (int i = 0; i < ZONES; i++)
-        d = max(d, krs_zones[i].w - length(p - krs_zones[i].xyz));
-#endif
-    return d;
 }
 
 float krs_distance_1(vec3 p)
 {
     // tests/golden/sequence.krs:3
     vec3 v0 = krs_fold(p, krs_frame8, krs_frame9);
-    // library:solids.krs:38
+    // library:solids.krs
     float t1 = length((p - vec3(0.5, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:7
     vec3 v2 = krs_fold(v0, krs_frame6, krs_frame7);
-    // library:solids.krs:38
+    // library:solids.krs
     float t3 = length((v0 - vec3(0.4, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:7
-    float t4 = KRS_MIN(t1, t3);
+    float t4 = min(t1, t3);
     vec3 v5 = krs_fold(v2, krs_frame4, krs_frame5);
-    // library:solids.krs:38
+    // library:solids.krs
     float t6 = length((v2 - vec3(0.3, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:7
-    float t7 = KRS_MIN(t4, t6);
+    float t7 = min(t4, t6);
     vec3 v8 = krs_fold(v5, krs_frame2, krs_frame3);
-    // library:solids.krs:38
+    // library:solids.krs
     float t9 = length((v5 - vec3(0.2, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:7
-    float t10 = KRS_MIN(t7, t9);
+    float t10 = min(t7, t9);
     vec3 v11 = krs_fold(v8, krs_frame0, krs_frame1);
-    // library:solids.krs:38
+    // library:solids.krs
     float t12 = length((v8 - vec3(0.1, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:7
-    float t13 = KRS_MIN(t10, t12);
+    float t13 = min(t10, t12);
     vec3 v14 = krs_fold(v11, vec3(0.9805807, 0.0, 0.19611613), 0.2941742);
-    // library:solids.krs:38
+    // library:solids.krs
     float t15 = length((v11 - vec3(0.0, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:7
-    float t16 = KRS_MIN(t13, t15);
-    // library:solids.krs:104
+    float t16 = min(t13, t15);
+    // library:solids.krs
     float t17 = min(max(dot(v14, vec3(0.0, 1.0, 0.0)), 0.0), 1.0);
     float t18 = t17 * 0.0;
     float t19 = length((v14 - vec3(t18, t17, t18))) - 0.08;
     // tests/golden/sequence.krs:4
-    float t20 = KRS_MIN(t16, t19);
+    float t20 = min(t16, t19);
     return t20;
 }
 
-// Never above the distance to the nearest surface; negative inside.
-float krs_distance(vec3 p)
-{
-    float d = krs_distance_1(p);
-    return krs_cut(p, d);
-}
-
-#ifdef EARLY_OUTS
 float krs_distance_lod_1(vec3 p, float footprint)
 {
     // tests/golden/sequence.krs:4
@@ -235,7 +171,7 @@ float krs_distance_lod_1(vec3 p, float footprint)
         return t1;
     // tests/golden/sequence.krs:3
     vec3 v3 = krs_fold(p, krs_frame8, krs_frame9);
-    // library:solids.krs:38
+    // library:solids.krs
     float t4 = length((p - vec3(0.5, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:4
     vec3 v5 = max((abs((v3 - vec3(0.19529413, 0.98853356, 1.1247915))) - vec3(17.059797)), vec3(0.0));
@@ -245,10 +181,10 @@ float krs_distance_lod_1(vec3 p, float footprint)
         return min(t6, t4);
     // tests/golden/sequence.krs:7
     vec3 v8 = krs_fold(v3, krs_frame6, krs_frame7);
-    // library:solids.krs:38
+    // library:solids.krs
     float t9 = length((v3 - vec3(0.4, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:7
-    float t10 = KRS_MIN(t4, t9);
+    float t10 = min(t4, t9);
     // tests/golden/sequence.krs:4
     vec3 v11 = max((abs((v8 - vec3(0.19529413, 0.98853356, 0.6273937))) - vec3(10.23508)), vec3(0.0));
     float t12 = length(v11);
@@ -257,10 +193,10 @@ float krs_distance_lod_1(vec3 p, float footprint)
         return min(t12, t10);
     // tests/golden/sequence.krs:7
     vec3 v14 = krs_fold(v8, krs_frame4, krs_frame5);
-    // library:solids.krs:38
+    // library:solids.krs
     float t15 = length((v8 - vec3(0.3, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:7
-    float t16 = KRS_MIN(t10, t15);
+    float t16 = min(t10, t15);
     // tests/golden/sequence.krs:4
     vec3 v17 = max((abs((v14 - vec3(0.19529413, 1.0332536, 0.67211366))) - vec3(5.757064)), vec3(0.0));
     float t18 = length(v17);
@@ -269,10 +205,10 @@ float krs_distance_lod_1(vec3 p, float footprint)
         return min(t18, t16);
     // tests/golden/sequence.krs:7
     vec3 v20 = krs_fold(v14, krs_frame2, krs_frame3);
-    // library:solids.krs:38
+    // library:solids.krs
     float t21 = length((v14 - vec3(0.2, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:7
-    float t22 = KRS_MIN(t16, t21);
+    float t22 = min(t16, t21);
     // tests/golden/sequence.krs:4
     vec3 v23 = abs((v20 - vec3(0.08748466, 0.3945249, (-0.28967765)))) - vec3(1.7067112, 1.8145207, 1.0555377);
     float t24 = length(max(v23, vec3(0.0)));
@@ -281,10 +217,10 @@ float krs_distance_lod_1(vec3 p, float footprint)
         return min(t24, t22);
     // tests/golden/sequence.krs:7
     vec3 v26 = krs_fold(v20, krs_frame0, krs_frame1);
-    // library:solids.krs:38
+    // library:solids.krs
     float t27 = length((v20 - vec3(0.1, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:7
-    float t28 = KRS_MIN(t22, t27);
+    float t28 = min(t22, t27);
     // tests/golden/sequence.krs:4
     vec3 v29 = abs((v26 - vec3(0.24076924, 0.5, 0.01))) - vec3(0.4407703, 0.58000106, 0.21000108);
     float t30 = length(max(v29, vec3(0.0)));
@@ -293,76 +229,61 @@ float krs_distance_lod_1(vec3 p, float footprint)
         return min(t30, t28);
     // tests/golden/sequence.krs:7
     vec3 v32 = krs_fold(v26, vec3(0.9805807, 0.0, 0.19611613), 0.2941742);
-    // library:solids.krs:38
+    // library:solids.krs
     float t33 = length((v26 - vec3(0.0, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:7
-    float t34 = KRS_MIN(t28, t33);
+    float t34 = min(t28, t33);
     // tests/golden/sequence.krs:4
     vec3 v35 = abs((v32 - vec3(0.0, 0.5, 0.0))) - vec3(0.08000108, 0.58000106, 0.08000108);
     float t36 = length(max(v35, vec3(0.0)));
     float t37 = mix(0.29546574, (-1e+30), 0.5909315 < footprint);
     if (t36 >= min(t34, t37) && t36 > min(t37, 0.0))
         return min(t36, t34);
-    // library:solids.krs:104
+    // library:solids.krs
     float t38 = min(max(dot(v32, vec3(0.0, 1.0, 0.0)), 0.0), 1.0);
     float t39 = t38 * 0.0;
     float t40 = length((v32 - vec3(t39, t38, t39))) - 0.08;
-    return KRS_MIN(t34, t40);
+    return min(t34, t40);
 }
-
-float krs_box_distance(vec3 p, vec3 center, vec3 half_sides)
-{
-    return length(max(abs(p - center) - half_sides, 0.0));
-}
-
-// To march by: never above the distance to the nearest surface, and not above 0 in
-// the same places as krs_distance.  What is far for its size is not looked at, nor
-// what is smaller than the footprint.
-float krs_distance_lod(vec3 p, float footprint)
-{
-    float d = krs_distance_lod_1(p, footprint);
-    return krs_cut(p, d);
-}
-#endif
 
 KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
 {
     // tests/golden/sequence.krs:3
     vec3 v0 = krs_fold(p, krs_frame8, krs_frame9);
-    // library:solids.krs:38
+    // library:solids.krs
     float t1 = length((p - vec3(0.5, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:7
     vec3 v2 = krs_fold(v0, krs_frame6, krs_frame7);
-    // library:solids.krs:38
+    // library:solids.krs
     float t3 = length((v0 - vec3(0.4, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:7
-    float t4 = KRS_MIN(t1, t3);
+    float t4 = min(t1, t3);
     vec3 v5 = krs_fold(v2, krs_frame4, krs_frame5);
-    // library:solids.krs:38
+    // library:solids.krs
     float t6 = length((v2 - vec3(0.3, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:7
-    float t7 = KRS_MIN(t4, t6);
+    float t7 = min(t4, t6);
     vec3 v8 = krs_fold(v5, krs_frame2, krs_frame3);
-    // library:solids.krs:38
+    // library:solids.krs
     float t9 = length((v5 - vec3(0.2, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:7
-    float t10 = KRS_MIN(t7, t9);
+    float t10 = min(t7, t9);
     vec3 v11 = krs_fold(v8, krs_frame0, krs_frame1);
-    // library:solids.krs:38
+    // library:solids.krs
     float t12 = length((v8 - vec3(0.1, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:7
-    float t13 = KRS_MIN(t10, t12);
+    float t13 = min(t10, t12);
     vec3 v14 = krs_fold(v11, vec3(0.9805807, 0.0, 0.19611613), 0.2941742);
-    // library:solids.krs:38
+    // library:solids.krs
     float t15 = length((v11 - vec3(0.0, 0.5, 0.0))) - 0.2;
     // tests/golden/sequence.krs:7
-    float t16 = KRS_MIN(t13, t15);
-    // library:solids.krs:104
+    float t16 = min(t13, t15);
+    // library:solids.krs
     float t17 = min(max(dot(v14, vec3(0.0, 1.0, 0.0)), 0.0), 1.0);
     float t18 = t17 * 0.0;
     float t19 = length((v14 - vec3(t18, t17, t18))) - 0.08;
     // tests/golden/sequence.krs:4
-    float t20 = KRS_MIN(t16, t19);
+    float t20 = min(t16, t19);
     // tests/golden/sequence.krs:7
     uint n21 = 1u * 2u + uint((dot(krs_frame8, p) > krs_frame9));
     bool b22 = t1 < t3;
@@ -384,14 +305,21 @@ KrsSurface krs_surface_1(vec3 p, vec3 normal, float footprint)
     return KrsSurface(t20, vec3(0.6), 0.6, 0.0, vec3(0.0), 1u, uint(t35), n36, normal);
 }
 
-// What is at p: the component with the least distance.  `normal` is the
-// gradient of krs_distance there, `footprint` the radius of a pixel, or 0.
+float krs_distance(vec3 p)
+{
+    float d = krs_distance_1(p);
+    return d;
+}
+
+float krs_distance_lod(vec3 p, float footprint)
+{
+    float d = krs_distance_lod_1(p, footprint);
+    return d;
+}
+
 KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)
 {
     KrsSurface nearest = krs_surface_1(p, normal, footprint);
-    float cut = krs_cut(p, nearest.distance);
-    if (cut > nearest.distance)
-        nearest.normal = normal;
-    nearest.distance = cut;
     return nearest;
 }
+

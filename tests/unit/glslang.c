@@ -16,7 +16,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "compiler/shader/spirv.h"
+#include "compiler/target/spirv.h"
 
 /* ---- allocations that fail ---- */
 

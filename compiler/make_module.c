@@ -1,0 +1,79 @@
+/*
+ * make_module.c: what texts are printed from, and how long they are.
+ */
+#include <string.h>
+
+#include "compiler/compilation.h"
+
+/* Names and lines of the texts that nodes come from, names alone of the library's; the texts go. */
+static Sources keep_lines(const Sources *from, const Graph *graph, Arena *arena)
+{
+    Sources kept = {.arena = arena, .count = from->count};
+    kept.items   = arena_new_array(arena, Source, from->count + 1);
+    for (Node n = 0; n < graph->count; n++) {
+        uint32_t      number = graph->items[n].span.source;
+        const Source *source = &from->items[number];
+        Source       *copy   = &kept.items[number];
+        if (number == 0 || copy->name)
+            continue;
+        copy->name    = arena_copy_text(arena, source->name, strlen(source->name));
+        copy->library = source->library;
+        if (source->library)
+            continue;
+        copy->line_count = source->line_count;
+        copy->lines      = arena_new_array(arena, uint32_t, source->line_count);
+        memcpy(copy->lines, source->lines, source->line_count * sizeof *copy->lines);
+    }
+    return kept;
+}
+
+/* What is promised, for graphics cards. */
+static Text print_promised(Compilation *c, bool shares)
+{
+    KrsScene        *scene = c->scene;
+    const KrsVariant cards = {.many_threads = true, .shares = shares};
+    KrsFunction      promised[KRS_MOST_PROMISED];
+    size_t           count = krs_promised_functions(scene, cards.many_threads, promised);
+    Text             glsl  = {.arena = &c->scratch};
+    module_print(&scene->module, &cards, promised, count, &glsl_printer, &glsl);
+    return glsl;
+}
+
+KrsStatus pass_emit(Compilation *c)
+{
+    KrsScene    *scene    = c->scene;
+    KrsProgram  *program  = &scene->program;
+    const Roots *roots    = &scene->roots;
+    Arena       *arena    = &scene->arena;
+    size_t       count    = scene->component_count;
+    Box         *boxes    = arena_new_array(arena, Box, count + 1);
+    bool        *is_plane = arena_new_array(arena, bool, count + 1);
+    for (size_t i = 0; i < count; i++) {
+        boxes[i]    = c->elaborated.components.items[i].shape->box;
+        is_plane[i] = component_is_plane(&c->elaborated.components.items[i]);
+    }
+    scene->module = (Module){.graph           = scene->graph,
+                             .sources         = keep_lines(&c->sources, scene->graph, arena),
+                             .components      = count,
+                             .surfaces        = roots_of(roots, ROOTS_SURFACE).items,
+                             .guarded         = roots_of(roots, ROOTS_GUARDED).items,
+                             .along           = roots_of(roots, ROOTS_ALONG).items,
+                             .gradients       = roots_of(roots, ROOTS_GRADIENT).items,
+                             .zone            = zone_root(scene),
+                             .planes          = roots_of(roots, ROOTS_PLANE).items,
+                             .camera_relative = program->camera_relative
+                                                    ? roots_of(roots, ROOTS_CAMERA_RELATIVE).items
+                                                    : NULL,
+                             .boxes           = boxes,
+                             .march_groups    = program->march_group_count ? c->march_groups : NULL,
+                             .is_plane        = program->planes ? is_plane : NULL,
+                             .has_slopes      = scene->slope_count > 0,
+                             .derives         = program->gradients};
+    module_lay_out(&scene->module, KRS_MOST_ZONES, arena, &c->scratch);
+    program->value_slots           = scene->module.slots.plain.slots;
+    program->camera_relative_slots = scene->module.slots.camera_relative.slots;
+    program->glsl_length           = print_promised(c, false).length;
+    return KRS_OK;
+}
+
+void print_emit(Compilation *c, Text *out) { text_add(out, print_promised(c, true).bytes); }

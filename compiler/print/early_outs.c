@@ -1,0 +1,156 @@
+/*
+ * early_outs.c: krs_distance_lod: the distance, less what is far for its size, by branches.
+ *
+ * A guard stands for a region of the graph that is evaluated only where the guard cannot do
+ * without it (graph/regions.h); boxes around components do the same between them.
+ */
+#include <math.h>
+
+#include "compiler/print/emitter.h"
+
+static const char *emit_region(Emitter *e, const Regions *regions, uint32_t region, Node result,
+                               bool returns);
+
+/* Where nothing has been found yet, the bound alone counts. */
+static bool nothing_found(const Emitter *e, Node least)
+{
+    const Expr *expr = &e->graph->items[least];
+    return expr->op == OP_CONSTANT && expr->number[0] >= 1e30;
+}
+
+/* The condition of OP_guard, shorter where some of it is known. */
+static const char *guard_text(Emitter *e, const Node *o)
+{
+    const Expr *limit = &e->graph->items[o[3]];
+    const char *bound = e->text[o[0]], *far = e->text[o[3]];
+    Text        text = {.arena = e->scratch};
+    if (nothing_found(e, o[1]))
+        text_format(&text, "%s >= %s", bound, far);
+    else
+        text_format(&text, "%s >= min(%s, %s)", bound, e->text[o[1]], emit_bare(e, far));
+    if (limit->op != OP_CONSTANT)
+        text_format(&text, " && %s > min(%s, 0.0)", bound, emit_bare(e, far));
+    else if (limit->number[0] >= 0)
+        text_format(&text, " && %s > 0.0", bound);
+    return text.bytes;
+}
+
+/* A guard within an expression: what it may leave out stands in a block. */
+static void emit_guard(Emitter *e, const Regions *regions, Node guard)
+{
+    const Node *o     = e->graph->items[guard].operands;
+    const char *bound = e->text[o[0]], *least = e->text[o[1]];
+    Text        name = {.arena = e->scratch};
+    text_format(&name, "t%u", e->next++);
+    emit_line(e, "    float %s = min(%s, %s);\n    if (!(%s)) {\n", name.bytes, bound, least,
+              guard_text(e, o));
+    const char *rest = emit_region(e, regions, regions->body[guard], o[2], false);
+    emit_line(e, "    %s = %s;\n    }\n", name.bytes, rest);
+    e->text[guard]    = name.bytes;
+    e->nesting[guard] = 0;
+}
+
+static void emit_return(Emitter *e, const Node *o)
+{
+    const char *bound = e->text[o[0]];
+    emit_line(e, "    if (%s)\n        return ", guard_text(e, o));
+    if (nothing_found(e, o[1]))
+        emit_line(e, "%s;\n", bound);
+    else
+        emit_line(e, "min(%s, %s);\n", bound, e->text[o[1]]);
+}
+
+/* Statements of a region; returns its result.  Where that is all that the function is about, a
+   guard can return. */
+static const char *emit_region(Emitter *e, const Regions *regions, uint32_t region, Node result,
+                               bool returns)
+{
+    for (Node n = regions->list.items[region].first; n != NODE_NONE; n = regions->next[n]) {
+        const Node *o = e->graph->items[n].operands;
+        if (regions->body[n] == NO_REGION) {
+            emit_node(e, n);
+        } else if (n != result || !returns) {
+            emit_comment(e, e->graph->items[n].span);
+            emit_guard(e, regions, n);
+        } else {
+            emit_return(e, o);
+            return emit_region(e, regions, regions->body[n], o[2], true);
+        }
+    }
+    return e->text[result];
+}
+
+/* A component without guards has the distance alone; one that is nowhere is left out, as is a plane
+   that rays know. */
+static bool is_guarded(const Emitter *e, uint32_t component)
+{
+    return emit_root(e, OF_LOD, component) != emit_root(e, OF_DISTANCE, component);
+}
+
+static bool is_looked_at(const Emitter *e, uint32_t component)
+{
+    return !box_is_empty(e->module->boxes[component]) && !emit_leaves_out(e, component);
+}
+
+void need_lod(Emitter *e)
+{
+    for (uint32_t i = 0; i < e->module->components; i++)
+        if (is_looked_at(e, i))
+            need_lod_of(e, i);
+}
+
+void need_lod_of(Emitter *e, uint32_t component)
+{
+    e->needed_of[OF_LOD][component] = true;
+    e->needed_of[OF_DISTANCE][component] |= !is_guarded(e, component);
+}
+
+void emit_lod_of(Emitter *e, const ModuleFunction *function)
+{
+    uint32_t number = function->component + 1;
+    text_format(e->out, "float krs_distance_lod_%u(vec3 p, float footprint)\n{\n", number);
+    if (!is_guarded(e, function->component)) {
+        text_format(e->out, "    return krs_distance_%u(p);\n}\n\n", number);
+        return;
+    }
+    graph_regions(&e->regions, e->graph, function->roots, 1, e->scratch);
+    emit_begin(e, function->roots, 1);
+    const char *result = emit_region(e, &e->regions, REGION_ALWAYS, *function->roots, true);
+    emit_line(e, "    return %s;\n}\n\n", result);
+}
+
+/* A component whose box is not nearer than what has been found is left out. */
+static void emit_guarded_component(Emitter *e, uint32_t component, bool first)
+{
+    Box box = e->module->boxes[component];
+    if (first) {
+        text_format(e->out, "    float d = krs_distance_lod_%u(p, footprint);\n", component + 1);
+        return;
+    }
+    double centre[3], half[3];
+    box_centre(box, centre);
+    for (int i = 0; i < 3; i++)
+        half[i] = (0.5 + 1e-6) * (box.axis[i].high - box.axis[i].low) + 1e-6 * fabs(centre[i]);
+    if (box_is_finite(box)) {
+        emit_call(e, "krs_box_distance", TYPE_VEC3, 3);
+        text_format(e->out, "    if (krs_box_distance(p, %s, %s) < max(d, 1e-30))\n    ",
+                    emit_vector(e, centre), emit_vector(e, half));
+    }
+    text_format(e->out, "    d = min(d, krs_distance_lod_%u(p, footprint));\n", component + 1);
+}
+
+/* Endless components first, then the others where they may be nearer. */
+void emit_lod(Emitter *e)
+{
+    bool   found = e->module->is_plane == NULL; /* by the first component */
+    size_t count = 0;
+    if (!found)
+        text_add(e->out, "    float d = 1e30;\n");
+    for (int finite = 0; finite < 2; finite++)
+        for (uint32_t i = 0; i < e->module->components; i++)
+            if (is_looked_at(e, i) && box_is_finite(e->module->boxes[i]) == finite)
+                emit_guarded_component(e, i, found && count++ == 0);
+    if (found && count == 0)
+        text_add(e->out, "    float d = 1e30;\n");
+    text_format(e->out, "    return %s;\n", emit_cut(e, "d"));
+}

@@ -1,0 +1,191 @@
+/*
+ * emitter.h: what the files that print a module share.
+ *
+ * statements.c and mirrors.c turn nodes into statements; distances.c, surfaces.c, early_outs.c and
+ * march.c write the functions around them; module_print.c puts all together.
+ */
+#ifndef KRS_EMITTER_H
+#define KRS_EMITTER_H
+
+#include "compiler/graph/regions.h"
+#include "compiler/print/module.h"
+
+/* Functions of one component.  They are printed in this order, before those of the scene. */
+typedef enum FunctionKind {
+    OF_DISTANCE,
+    OF_ALONG,
+    OF_PROBE,
+    OF_LOD,
+    OF_GRADIENT,
+    OF_SURFACE,
+    FUNCTION_KINDS
+} FunctionKind;
+
+/* A function and what it computes. */
+typedef struct ModuleFunction {
+    FunctionKind kind;
+    uint32_t     component; /* from 0 */
+    const Node  *roots;
+    uint32_t     root_count;
+} ModuleFunction;
+
+/* A function of the helpers' files. */
+typedef struct Helper {
+    const char *name, *type; /* of the function, and of its first operand; not terminated */
+    size_t      name_length, type_length;
+    const char *text;
+    size_t      length;
+    bool        printed;
+} Helper;
+
+typedef struct NodeList {
+    Node  *items;
+    size_t count, capacity;
+} NodeList;
+
+typedef struct Emitter {
+    const Module     *module;
+    const KrsVariant *variant;
+    const Printer    *printer;
+    const Graph      *graph;
+    bool              cuts; /* zones are cut out of distances: there is krs_cut */
+    Arena            *scratch;
+    Text             *out;
+    bool              wanted[KRS_FUNCTION_COUNT];
+    bool             *needed_of[FUNCTION_KINDS]; /* of each component, whether it is called */
+    const char      **text;    /* of a node in the function being written: its name or expression */
+    uint8_t          *nesting; /* of that expression */
+    uint32_t         *uses;    /* in the function being written */
+    NodeList          needed;  /* all that have uses, in order */
+    const char      **given;   /* names of nodes that the function need not compute */
+    uint8_t          *mark;    /* for walks, zero between them */
+    const char      **frame;   /* names of the globals that krs_prepare sets */
+    uint8_t          *feeds_mirror; /* whether a mirror (OP_fold) uses it */
+    const char      **excess; /* of mirrors in a row: the name of how far beyond it the point is */
+    uint32_t          next;   /* number of the next local name */
+    uint32_t          globals;
+    uint32_t         *place;   /* of values that the host finds: their number + 1 */
+    Regions           regions; /* of the function being written, where it has guards */
+    Span              last;    /* the line that was commented last */
+    struct {
+        Helper *items;
+        size_t  count, capacity;
+    } helpers;        /* of the printer */
+    Text helper_text; /* of those that are called */
+} Emitter;
+
+/* Room for what is known of each node of a module. */
+Emitter emitter_new(const Module *module, Arena *scratch);
+
+/* ---- statements.c ---- */
+
+/* Statements for all that the roots need, in a function of the point; e->text has what stands for
+   each root then. */
+void emit_body(Emitter *e, const Node *roots, size_t count);
+/* A function that is not a list of statements: what it needs, with names for what is constant in
+   it; then emit_node for each of the others. */
+void emit_begin(Emitter *e, const Node *roots, size_t count);
+void emit_node(Emitter *e, Node n);
+/* The expression of a node whose operands have theirs. */
+const char *emit_expression(Emitter *e, const Expr *expr);
+/* Finds the nodes that a function needs, counting uses; unless it is one of the `frame`, frame
+   values end the walk. */
+void emit_count_uses(Emitter *e, const Node *roots, size_t count, bool frame);
+
+/* ---- lines.c ---- */
+
+/* A line of code, in which choices of the printer are written out. */
+void emit_line(Emitter *e, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Says where the next statement comes from, unless it is the same line as before, or the same file
+   of the standard library. */
+void emit_comment(Emitter *e, Span span);
+/* A constant; a number, or a vector, as a literal. */
+const char *emit_constant(Emitter *e, const Expr *constant);
+const char *emit_number(Emitter *e, double number);
+const char *emit_vector(Emitter *e, const double v[3]);
+/* An expression that is a whole statement needs no parentheses around it. */
+const char *emit_bare(Emitter *e, const char *text);
+/* `width` components of a slot of the block. */
+const char *emit_slot(Emitter *e, uint32_t slot, uint32_t first, uint32_t width);
+
+/* ---- helpers.c ---- */
+
+/* Reads the printer's files; then, of a call in a text, what it needs is in e->helper_text. */
+void helpers_read(Emitter *e);
+void emit_struct(Emitter *e); /* KrsSurface */
+/* The function that `name` begins with is called, with so many operands of that type. */
+void emit_call(Emitter *e, const char *name, GraphType type, uint32_t operands);
+
+/* ---- prepare.c ---- */
+
+/* krs_prepare, and the globals that it sets: frame values that the roots read. */
+void emit_prepare(Emitter *e, const Node *roots, size_t count, const FrameValues *values);
+/* Whether functions need the zones of the caller. */
+bool emit_reads_zones(const Emitter *e);
+/* Slots that are in the block of a variant before zones of the caller. */
+uint32_t emit_slot_count(const Emitter *e);
+
+/* ---- mirrors.c ---- */
+
+/* The expression of a mirror (OP_fold), and statements before it; NULL: as the operation's row
+   has it. */
+const char *mirror_text(Emitter *e, const Expr *fold);
+/* Whether that may name the point more than once. */
+bool mirror_repeats(const Emitter *e, const Expr *fold);
+
+/* ---- Functions: what they need of each component, and their text ---- */
+
+/* distances.c: krs_distance, what zones cut out, krs_gradient. */
+/* A distance without what zones cut out. */
+const char *emit_cut(Emitter *e, const char *distance);
+void        need_distance(Emitter *e);
+void        need_gradient(Emitter *e);
+void        emit_distance_of(Emitter *e, const ModuleFunction *function);
+void        emit_gradient_of(Emitter *e, const ModuleFunction *function);
+void        emit_zones(Emitter *e);
+void        emit_distance(Emitter *e);
+void        emit_gradient(Emitter *e);
+
+/* shared.c: what a component's distance and surface have in common. */
+/* The values that the distance hands over; false: each is computed by itself. */
+bool emit_find_shared(Emitter *e, uint32_t component, NodeList *shared);
+void emit_shared_distance(Emitter *e, const ModuleFunction *distance, const NodeList *shared);
+/* The statements of the rest of a surface. */
+void emit_shared_rest(Emitter *e, const ModuleFunction *surface, const NodeList *shared);
+
+/* surfaces.c: krs_surface. */
+void need_surface(Emitter *e);
+void emit_surface_of(Emitter *e, const ModuleFunction *function);
+void emit_surface(Emitter *e);
+
+/* early_outs.c: krs_distance_lod. */
+void need_lod(Emitter *e);
+void need_lod_of(Emitter *e, uint32_t component);
+void emit_lod_of(Emitter *e, const ModuleFunction *function);
+void emit_lod(Emitter *e);
+
+/* march.c: what some marches need beside a distance: krs_plane_t and krs_plane_cosine;
+   krs_scene_part_distance and krs_scene_part_box; krs_along and krs_probe. */
+void emit_plane_t(Emitter *e);
+void emit_plane_cosine(Emitter *e);
+void need_scene_parts(Emitter *e);
+void emit_scene_part_distance(Emitter *e);
+void emit_scene_part_box(Emitter *e);
+void need_along(Emitter *e);
+void need_probe(Emitter *e);
+void emit_along_of(Emitter *e, const ModuleFunction *function);
+void emit_along(Emitter *e);
+void emit_probe(Emitter *e);
+
+/* ---- module_print.c ---- */
+
+/* The roots of a function of a component. */
+ModuleFunction emit_function(const Emitter *e, FunctionKind kind, uint32_t component);
+/* krs_plane_t's root and krs_plane_cosine's. */
+const Node *emit_planes(const Emitter *e);
+/* What a function computes first. */
+Node emit_root(const Emitter *e, FunctionKind kind, uint32_t component);
+/* Whether distances of the variant leave a component out that is a plane, or of another group. */
+bool emit_leaves_out(const Emitter *e, uint32_t component);
+
+#endif

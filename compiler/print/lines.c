@@ -1,0 +1,198 @@
+/*
+ * lines.c: lines of code, comments of where they come from, literals.
+ *
+ * A line may name choices of the printer.  They are written out when the line is whole, so that
+ * expressions are as long as their names, whatever is chosen.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "compiler/print/emitter.h"
+
+/* ---- choices ---- */
+
+static void write_out(Emitter *e, Text *to, const char *text, size_t length);
+
+/* What is called at `text`, or NULL. */
+static const Choice *find_choice(const Emitter *e, const char *text, size_t length)
+{
+    for (const Choice *choice = e->printer->choices; choice->name; choice++) {
+        size_t name = strlen(choice->name);
+        if (name < length && strncmp(text, choice->name, name) == 0 && text[name] == '(')
+            return choice;
+    }
+    return NULL;
+}
+
+/* The length of an operand, up to a comma or a parenthesis that ends it. */
+static size_t operand_length(const char *text, size_t length)
+{
+    size_t at = 0;
+    for (int depth = 0; at < length; at++) {
+        if (depth == 0 && (text[at] == ',' || text[at] == ')'))
+            break;
+        depth += (text[at] == '(') - (text[at] == ')');
+    }
+    return at;
+}
+
+/* Writes a choice between two operands out; returns the length of what stood for it. */
+static size_t write_choice(Emitter *e, Text *to, const Choice *choice, const char *text,
+                           size_t length)
+{
+    const char *form          = e->variant->many_threads ? choice->threads : choice->few;
+    size_t      first         = strlen(choice->name) + 1;
+    size_t      first_length  = operand_length(text + first, length - first);
+    size_t      second        = first + first_length + 2; /* behind a comma and a blank */
+    size_t      second_length = operand_length(text + second, length - second);
+    while (*form) {
+        size_t plain = strcspn(form, "$");
+        text_add_bytes(to, form, plain);
+        form += plain;
+        if (!*form)
+            break;
+        if (form[1] == 'a')
+            write_out(e, to, text + first, first_length);
+        else
+            write_out(e, to, text + second, second_length);
+        form += 2;
+    }
+    return second + second_length + 1;
+}
+
+static void write_out(Emitter *e, Text *to, const char *text, size_t length)
+{
+    size_t plain = 0; /* before what is looked at */
+    for (size_t at = 0; at < length;) {
+        const Choice *choice = text[at] == 'K' ? find_choice(e, text + at, length - at) : NULL;
+        if (!choice) {
+            at++;
+            continue;
+        }
+        text_add_bytes(to, text + plain, at - plain);
+        at += write_choice(e, to, choice, text + at, length - at);
+        plain = at;
+    }
+    text_add_bytes(to, text + plain, length - plain);
+}
+
+void emit_line(Emitter *e, const char *format, ...)
+{
+    va_list arguments;
+    size_t  start = e->out->length;
+    va_start(arguments, format);
+    text_format_list(e->out, format, arguments);
+    va_end(arguments);
+    if (!strstr(e->out->bytes + start, "KRS_"))
+        return;
+    size_t length  = e->out->length - start;
+    char  *line    = arena_copy_text(e->scratch, e->out->bytes + start, length);
+    e->out->length = start;
+    write_out(e, e->out, line, length);
+}
+
+/* ---- literals ---- */
+
+/* The shortest literal that reads back as the float nearest to the number. */
+static void add_literal(Text *text, double number)
+{
+    char   digits[40];
+    double limited = fmax(-FLT_MAX, fmin(number, FLT_MAX));
+    float  single  = (float)limited;
+    for (int precision = 6; precision <= 9; precision++) {
+        snprintf(digits, sizeof digits, "%.*g", precision, (double)single);
+        float back;
+        if (sscanf(digits, "%f", &back) == 1 && back == single)
+            break;
+    }
+    bool bare = !strpbrk(digits, ".e");
+    text_format(text, single < 0 ? "(%s%s)" : "%s%s", digits, bare ? ".0" : "");
+}
+
+const char *emit_constant(Emitter *e, const Expr *expr)
+{
+    Text text = {.arena = e->scratch};
+    if (expr->type == TYPE_BOOL)
+        return expr->number[0] != 0 ? "true" : "false";
+    if (expr->type == TYPE_UINT) {
+        text_format(&text, "%.0fu", expr->number[0]);
+        return text.bytes;
+    }
+    if (expr->type > TYPE_FLOAT)
+        text_format(&text, "%s(", e->printer->types[expr->type]);
+    bool equal = true;
+    for (uint32_t i = 1; i < expr->type; i++)
+        equal = equal && expr->number[i] == expr->number[0];
+    for (uint32_t i = 0; i < (equal ? 1u : expr->type); i++) {
+        if (i)
+            text_add(&text, ", ");
+        add_literal(&text, expr->number[i]);
+    }
+    if (expr->type > TYPE_FLOAT)
+        text_add(&text, ")");
+    return text.bytes;
+}
+
+const char *emit_number(Emitter *e, double number)
+{
+    Text text = {.arena = e->scratch};
+    add_literal(&text, number);
+    return text.bytes;
+}
+
+const char *emit_vector(Emitter *e, const double v[3])
+{
+    Expr constant = {.op = OP_CONSTANT, .type = TYPE_VEC3, .number = {v[0], v[1], v[2]}};
+    return emit_constant(e, &constant);
+}
+
+/* A file may have any name; what would end the comment, or the text, is shown as `?`. */
+static void add_file_name(Text *out, const char *name)
+{
+    for (; *name; name++) {
+        bool control = (unsigned char)*name < ' ' || *name == 0x7f;
+        text_add_bytes(out, control ? "?" : name, 1);
+    }
+}
+
+void emit_comment(Emitter *e, Span span)
+{
+    if (!span.source)
+        return;
+    const Source *source = &e->module->sources.items[span.source];
+    uint32_t      line   = source->library ? 0 : source_line(source, span.start);
+    if (e->last.source == span.source && e->last.start == line)
+        return;
+    e->last = (Span){span.source, line, 0};
+    text_add(e->out, "    // ");
+    add_file_name(e->out, source->name);
+    if (source->library)
+        text_add(e->out, "\n");
+    else
+        text_format(e->out, ":%u\n", line);
+}
+
+const char *emit_slot(Emitter *e, uint32_t slot, uint32_t first, uint32_t width)
+{
+    Text text = {.arena = e->scratch};
+    text_format(&text, width == 4 ? "krs_parameter[%u]" : "krs_parameter[%u].%.*s", slot,
+                (int)width, &"xyzw"[first]);
+    return text.bytes;
+}
+
+const char *emit_bare(Emitter *e, const char *text)
+{
+    size_t   length = strlen(text);
+    uint32_t open   = 0;
+    if (text[0] != '(')
+        return text;
+    for (size_t i = 0; i < length; i++) {
+        open += text[i] == '(';
+        open -= text[i] == ')';
+        if (open == 0 && i + 1 < length)
+            return text;
+    }
+    return arena_copy_text(e->scratch, text + 1, length - 2);
+}

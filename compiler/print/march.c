@@ -1,0 +1,163 @@
+/*
+ * march.c: what some marches need beside a distance: where rays meet planes, parts of the scene by
+ * themselves, steps along a ray.
+ */
+#include <math.h>
+
+#include "compiler/print/emitter.h"
+
+/* ---- planes ---- */
+
+static void emit_plane(Emitter *e, Node root)
+{
+    emit_body(e, &root, 1);
+    emit_line(e, "    return %s;\n", e->text[root]);
+}
+
+void emit_plane_t(Emitter *e) { emit_plane(e, emit_planes(e)[0]); }
+void emit_plane_cosine(Emitter *e) { emit_plane(e, emit_planes(e)[1]); }
+
+/* ---- parts ---- */
+
+/* Beyond so many, neighbours share a part. */
+enum { MOST_SCENE_PARTS = 64 };
+
+uint32_t module_scene_part_count(size_t components)
+{
+    return components < MOST_SCENE_PARTS ? (uint32_t)components : MOST_SCENE_PARTS;
+}
+
+/* The first component of a part, or of the one behind the last. */
+static uint32_t first_of_scene_part(size_t part, size_t components)
+{
+    return (uint32_t)(part * components / module_scene_part_count(components));
+}
+
+/* Branches save work; of camera-relative points nobody knows what is far. */
+static bool goes_by_lod(const Emitter *e)
+{
+    return e->variant->many_threads && !e->variant->camera_relative;
+}
+
+void need_scene_parts(Emitter *e)
+{
+    for (uint32_t i = 0; i < e->module->components; i++) {
+        if (emit_leaves_out(e, i))
+            continue;
+        if (goes_by_lod(e))
+            need_lod_of(e, i);
+        else
+            e->needed_of[OF_DISTANCE][i] = true;
+    }
+}
+
+/* What is inside of a switch over parts. */
+static void emit_part_case(Emitter *e, size_t part)
+{
+    const char *lod = goes_by_lod(e) ? "_lod" : "", *footprint = goes_by_lod(e) ? ", 0.0" : "";
+    size_t      count = e->module->components;
+    text_format(e->out, "    case %zuu:\n", part);
+    for (uint32_t i = first_of_scene_part(part, count); i < first_of_scene_part(part + 1, count);
+         i++)
+        if (!emit_leaves_out(e, i))
+            text_format(e->out, "        d = min(d, krs_distance%s_%u(p%s));\n", lod, i + 1,
+                        footprint);
+    text_add(e->out, "        break;\n");
+}
+
+void emit_scene_part_distance(Emitter *e)
+{
+    size_t parts = module_scene_part_count(e->module->components);
+    text_add(e->out, "    float d = 1e30;\n    switch (scene_part) {\n");
+    for (size_t part = 0; part < parts; part++)
+        emit_part_case(e, part);
+    text_format(e->out, "    }\n    return %s;\n", emit_cut(e, "d"));
+}
+
+/* Its box, grown by what single precision may lose. */
+static void emit_box_case(Emitter *e, size_t part, Box box)
+{
+    if (box_is_empty(box))
+        return;
+    double corner[2][3], size = box_is_finite(box) ? box_diagonal(box) : 0;
+    for (int i = 0; i < 3; i++) {
+        double reach  = fmax(fabs(box.axis[i].low), fabs(box.axis[i].high));
+        double margin = isfinite(reach) ? 1e-4 * size + 1e-6 * reach : 0;
+        corner[0][i]  = fmax(box.axis[i].low - margin, -1e18);
+        corner[1][i]  = fmin(box.axis[i].high + margin, 1e18);
+    }
+    text_format(e->out, "    case %zuu:\n        low = %s;\n        high = %s;\n        break;\n",
+                part, emit_vector(e, corner[0]), emit_vector(e, corner[1]));
+}
+
+/* Of camera-relative points no box is known. */
+void emit_scene_part_box(Emitter *e)
+{
+    size_t count = e->module->components, parts = module_scene_part_count(count);
+    text_add(e->out, "    switch (scene_part) {\n");
+    for (size_t part = 0; part < parts; part++) {
+        Box  box  = box_empty;
+        bool some = false;
+        for (uint32_t i = first_of_scene_part(part, count);
+             i < first_of_scene_part(part + 1, count); i++) {
+            box  = box_hull(box, e->variant->camera_relative ? box_infinite : e->module->boxes[i]);
+            some = some || !emit_leaves_out(e, i);
+        }
+        if (some)
+            emit_box_case(e, part, box);
+    }
+    text_add(e->out, "    }\n");
+}
+
+/* ---- along rays ---- */
+
+/* Whether a component has more to tell than its distance. */
+static bool has_own_step(const Emitter *e, FunctionKind kind, uint32_t component)
+{
+    return emit_root(e, kind, component) != emit_root(e, OF_DISTANCE, component);
+}
+
+static void need_steps(Emitter *e, FunctionKind kind)
+{
+    for (uint32_t i = 0; i < e->module->components; i++)
+        if (!emit_leaves_out(e, i))
+            e->needed_of[has_own_step(e, kind, i) ? kind : OF_DISTANCE][i] = true;
+}
+
+void need_along(Emitter *e) { need_steps(e, OF_ALONG); }
+void need_probe(Emitter *e) { need_steps(e, OF_PROBE); }
+
+/* What a component has to itself, and where it joins the others. */
+void emit_along_of(Emitter *e, const ModuleFunction *function)
+{
+    bool probe = function->kind == OF_PROBE;
+    text_format(e->out, "float krs_%s_%u(vec3 p, %sfloat footprint)\n{\n",
+                probe ? "probe" : "along", function->component + 1,
+                probe ? "" : "vec3 direction, ");
+    emit_body(e, function->roots, 1);
+    emit_line(e, "    return %s;\n}\n\n", e->text[*function->roots]);
+}
+
+/* The least of all, of which some have no more than a distance. */
+static void emit_steps(Emitter *e, FunctionKind kind, const char *name, const char *operands)
+{
+    text_add(e->out, "    float t = 1e30;\n");
+    for (uint32_t i = 0; i < e->module->components; i++) {
+        bool own = has_own_step(e, kind, i);
+        if (!emit_leaves_out(e, i))
+            text_format(e->out, "    t = min(t, krs_%s_%u(%s));\n", own ? name : "distance", i + 1,
+                        own ? operands : "p");
+    }
+}
+
+void emit_along(Emitter *e)
+{
+    emit_steps(e, OF_ALONG, "along", "p, direction, footprint");
+    text_format(e->out, "    return %s;\n", emit_cut(e, "t"));
+}
+
+void emit_probe(Emitter *e)
+{
+    emit_steps(e, OF_PROBE, "probe", "p, footprint");
+    text_format(e->out, "    return %s / footprint;\n", emit_cut(e, "t"));
+}

@@ -1,0 +1,55 @@
+/*
+ * module.h: what the compiler makes of a scene, from which text is printed on request.
+ */
+#ifndef KRS_MODULE_H
+#define KRS_MODULE_H
+
+#include "compiler/lower/lower.h"
+#include "compiler/print/frame_values.h"
+#include "compiler/print/printer.h"
+#include "compiler/print/variant.h"
+
+/* The slots of what the host finds: for each frame, and for each origin of camera-relative points. */
+typedef struct FrameSlots {
+    FrameValues plain, camera_relative;
+} FrameSlots;
+
+typedef struct Module {
+    const Graph *graph;   /* simplified; parameters have the first slots */
+    Sources      sources; /* names and lines, for comments */
+    /* Roots of functions, nodes of the graph.  Of each component: */
+    size_t      components;
+    const Node *surfaces; /* ROOT_COUNT, the distance among them */
+    const Node *guarded;  /* lower_guarded */
+    const Node *along;    /* lower_along, method by method */
+    const Node
+        *gradients; /* lower_gradient's two, of the zones as well; FLOATs where there is none */
+    /* Of the scene: */
+    Node        zone;            /* the depth in zones, or NODE_NONE */
+    const Node *planes;          /* where a ray meets one, and how steeply it falls */
+    const Node *camera_relative; /* surfaces and planes once more, of camera-relative points; NULL:
+                            there are none */
+    /* What is known of components: */
+    const Box      *boxes;
+    const uint32_t *march_groups; /* the group of each, or NULL: all together */
+    const bool     *is_plane;   /* whether each is a plane that krs_plane_t knows; NULL: none is */
+    bool            has_slopes; /* there are slots of slopes behind those of parameters */
+    bool            derives;    /* gradients were asked for */
+    FrameSlots      slots;
+} Module;
+
+/* Gives all that functions of the point need of the frame their slots, behind those of the
+   parameters; `zone_slots` stay free before those of camera-relative points. */
+void module_lay_out(Module *module, uint32_t zone_slots, Arena *arena, Arena *scratch);
+
+/* In how many parts so many components are marched, where each ray goes on with the one that comes
+   next. */
+uint32_t module_scene_part_count(size_t components);
+
+/* Adds the text of a variant: the wanted functions, and what they call.  Memory is that of `out`.
+   A group has krs_distance and krs_along alone; a camera-relative one the distance, planes, scene parts
+   and the surface, and no zones. */
+void module_print(const Module *module, const KrsVariant *variant, const KrsFunction *wanted,
+                  size_t count, const Printer *printer, Text *out);
+
+#endif

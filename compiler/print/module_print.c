@@ -1,0 +1,282 @@
+/*
+ * module_print.c: the text of a variant: what is wanted of a module, what that calls, and no more.
+ *
+ * Functions are printed first, since they tell which helpers they call; then all is put together.
+ */
+#include <string.h>
+
+#include "compiler/print/emitter.h"
+
+_Static_assert((int)KRS_STEP_DIRECTIONAL == (int)ALONG_DIRECTIONAL &&
+                   (int)KRS_STEP_ROOT_FREE == (int)ALONG_ROOT_FREE &&
+                   (int)KRS_STEP_TAYLOR == (int)ALONG_TAYLOR,
+               "steps have the numbers of methods");
+
+/* What each function of the scene needs of components, and what is inside of it. */
+static const struct {
+    void (*need)(Emitter *e);
+    void (*emit)(Emitter *e);
+} scene_functions[KRS_FUNCTION_COUNT] = {
+    [KRS_FUNCTION_DISTANCE]            = {need_distance, emit_distance},
+    [KRS_FUNCTION_PLANE_T]             = {NULL, emit_plane_t},
+    [KRS_FUNCTION_PLANE_COSINE]        = {NULL, emit_plane_cosine},
+    [KRS_FUNCTION_ALONG]               = {need_along, emit_along},
+    [KRS_FUNCTION_PROBE]               = {need_probe, emit_probe},
+    [KRS_FUNCTION_DISTANCE_LOD]        = {need_lod, emit_lod},
+    [KRS_FUNCTION_SCENE_PART_DISTANCE] = {need_scene_parts, emit_scene_part_distance},
+    [KRS_FUNCTION_SCENE_PART_BOX]      = {NULL, emit_scene_part_box},
+    [KRS_FUNCTION_GRADIENT]            = {need_gradient, emit_gradient},
+    [KRS_FUNCTION_SURFACE]             = {need_surface, emit_surface},
+};
+
+static void (*const component_functions[FUNCTION_KINDS])(Emitter              *e,
+                                                         const ModuleFunction *function) = {
+    [OF_DISTANCE] = emit_distance_of, [OF_ALONG] = emit_along_of,
+    [OF_PROBE] = emit_along_of,       [OF_LOD] = emit_lod_of,
+    [OF_GRADIENT] = emit_gradient_of, [OF_SURFACE] = emit_surface_of,
+};
+
+/* ---- what there is ---- */
+
+Emitter emitter_new(const Module *module, Arena *scratch)
+{
+    size_t  count  = module->graph->count + 1;
+    Emitter e      = {.module = module, .graph = module->graph, .scratch = scratch};
+    e.text         = arena_new_array(scratch, const char *, count);
+    e.frame        = arena_new_array(scratch, const char *, count);
+    e.nesting      = arena_new_array(scratch, uint8_t, count);
+    e.uses         = arena_new_array(scratch, uint32_t, count);
+    e.excess       = arena_new_array(scratch, const char *, count);
+    e.place        = arena_new_array(scratch, uint32_t, count);
+    e.feeds_mirror = arena_new_array(scratch, uint8_t, count);
+    e.given        = arena_new_array(scratch, const char *, count);
+    e.mark         = arena_new_array(scratch, uint8_t, count);
+    return e;
+}
+
+/* Of components, or camera-relative ones. */
+static const Node *surface_roots(const Emitter *e)
+{
+    return e->variant->camera_relative ? e->module->camera_relative : e->module->surfaces;
+}
+
+const Node *emit_planes(const Emitter *e)
+{
+    return e->variant->camera_relative
+               ? e->module->camera_relative + e->module->components * ROOT_COUNT
+               : e->module->planes;
+}
+
+ModuleFunction emit_function(const Emitter *e, FunctionKind kind, uint32_t component)
+{
+    const Module *m     = e->module;
+    const Node   *along = m->along + component;
+    switch (kind) {
+    case OF_ALONG:
+        return (ModuleFunction){kind, component, along + e->variant->step * m->components, 1};
+    case OF_PROBE: return (ModuleFunction){kind, component, along + ALONG_PROBE * m->components, 1};
+    case OF_LOD: return (ModuleFunction){kind, component, m->guarded + component, 1};
+    case OF_GRADIENT: return (ModuleFunction){kind, component, m->gradients + 2 * component, 2};
+    default: break;
+    }
+    const Node *surface = surface_roots(e) + component * ROOT_COUNT;
+    return kind == OF_SURFACE ? (ModuleFunction){kind, component, surface, ROOT_COUNT}
+                              : (ModuleFunction){kind, component, surface + ROOT_DISTANCE, 1};
+}
+
+Node emit_root(const Emitter *e, FunctionKind kind, uint32_t component)
+{
+    return *emit_function(e, kind, component).roots;
+}
+
+bool emit_leaves_out(const Emitter *e, uint32_t component)
+{
+    if (e->variant->march_group > 0)
+        return e->module->march_groups[component] != e->variant->march_group;
+    return e->variant->planes && e->module->is_plane && e->module->is_plane[component];
+}
+
+/* ---- slots ---- */
+
+static void add_nodes(Emitter *e, NodeList *list, const Node *nodes, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        array_push(e->scratch, list, nodes[i]);
+}
+
+static void lay_out(Emitter *e, const NodeList *roots, FrameValues *values, Arena *arena)
+{
+    emit_count_uses(e, roots->items, roots->count, false);
+    frame_values_assign(values, e->graph, e->needed.items, e->needed.count, arena, e->scratch);
+}
+
+void module_lay_out(Module *module, uint32_t zone_slots, Arena *arena, Arena *scratch)
+{
+    Emitter  e     = emitter_new(module, scratch);
+    size_t   count = module->components, planes = module->is_plane ? 2 : 0;
+    NodeList all = {0}, camera_relative = {0};
+    e.printer = &glsl_printer;
+    add_nodes(&e, &all, module->surfaces, count * ROOT_COUNT);
+    add_nodes(&e, &all, &module->zone, module->zone != NODE_NONE);
+    add_nodes(&e, &all, module->guarded, count);
+    add_nodes(&e, &all, module->along, ALONG_COUNT * count);
+    add_nodes(&e, &all, module->planes, planes);
+    add_nodes(&e, &all, module->gradients, module->derives ? 2 * (count + 1) : 0);
+    FrameSlots *slots       = &module->slots;
+    slots->plain.first_slot = (uint32_t)module->graph->parameters.count;
+    lay_out(&e, &all, &slots->plain, arena);
+    slots->camera_relative.first_slot = slots->plain.first_slot + slots->plain.slots + zone_slots;
+    if (!module->camera_relative)
+        return;
+    add_nodes(&e, &camera_relative, module->camera_relative, count * ROOT_COUNT + 2);
+    lay_out(&e, &camera_relative, &slots->camera_relative, arena);
+}
+
+/* ---- what is called ---- */
+
+/* Whether a function that is wanted is cut by zones. */
+static bool needs_cut(const Emitter *e)
+{
+    static const KrsFunction cut[]  = {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_ALONG,
+                                       KRS_FUNCTION_DISTANCE_LOD, KRS_FUNCTION_PROBE,
+                                       KRS_FUNCTION_SCENE_PART_DISTANCE};
+    bool                     needed = e->wanted[KRS_FUNCTION_SURFACE] && e->module->components > 0;
+    for (size_t i = 0; i < sizeof cut / sizeof *cut; i++)
+        needed = needed || e->wanted[cut[i]];
+    return needed;
+}
+
+static void find_needs(Emitter *e)
+{
+    for (int kind = 0; kind < FUNCTION_KINDS; kind++)
+        e->needed_of[kind] = arena_new_array(e->scratch, bool, e->module->components + 1);
+    for (int f = 0; f < KRS_FUNCTION_COUNT; f++)
+        if (e->wanted[f] && scene_functions[f].need)
+            scene_functions[f].need(e);
+}
+
+/* Of all functions. */
+static NodeList gather_roots(Emitter *e)
+{
+    NodeList roots = {0};
+    for (FunctionKind kind = 0; kind < FUNCTION_KINDS; kind++)
+        for (uint32_t i = 0; i < e->module->components; i++)
+            if (e->needed_of[kind][i]) {
+                ModuleFunction function = emit_function(e, kind, i);
+                add_nodes(e, &roots, function.roots, function.root_count);
+            }
+    bool zones = e->module->zone != NODE_NONE && !e->variant->camera_relative;
+    add_nodes(e, &roots, &e->module->zone, zones && e->cuts);
+    add_nodes(e, &roots, e->module->gradients + 2 * e->module->components,
+              zones && e->wanted[KRS_FUNCTION_GRADIENT] ? 2 : 0);
+    add_nodes(e, &roots, emit_planes(e), e->wanted[KRS_FUNCTION_PLANE_T]);
+    add_nodes(e, &roots, emit_planes(e) + 1, e->wanted[KRS_FUNCTION_PLANE_COSINE]);
+    return roots;
+}
+
+/* ---- text ---- */
+
+static void emit_functions(Emitter *e)
+{
+    static const char *const sines[] = {"krs_sin", "krs_cos", "krs_tan"};
+    emit_zones(e);
+    for (FunctionKind kind = 0; kind < FUNCTION_KINDS; kind++)
+        for (uint32_t i = 0; i < e->module->components; i++)
+            if (e->needed_of[kind][i]) {
+                ModuleFunction function = emit_function(e, kind, i);
+                component_functions[kind](e, &function);
+            }
+    for (int f = 0; f < KRS_FUNCTION_COUNT; f++) {
+        if (!e->wanted[f] || !scene_functions[f].emit)
+            continue;
+        text_format(e->out, "%s\n{\n", e->printer->signatures[f]);
+        scene_functions[f].emit(e);
+        text_add(e->out, "}\n\n");
+    }
+    for (size_t i = 0; e->wanted[KRS_FUNCTION_SINES] && i < sizeof sines / sizeof *sines; i++)
+        emit_call(e, sines[i], TYPE_FLOAT, 1);
+}
+
+/* What is in the parameter block. */
+static void emit_block(Emitter *e)
+{
+    const KrsVariant *v     = e->variant;
+    uint32_t          slots = emit_slot_count(e);
+    text_add(e->out, "// Distance code of a scene; "
+                     "slot 0 holds the time, then one slot for each `param`.\n");
+    if (e->module->has_slopes)
+        text_add(e->out, "// Behind them slopes that the host finds for each frame: "
+                         "krs_frame_parameters in krs.h.\n");
+    if (v->values && e->module->slots.plain.slots > 0)
+        text_format(e->out,
+                    "// %u more slots hold what else depends on the frame alone: "
+                    "krs_frame_values in krs.h.\n",
+                    e->module->slots.plain.slots);
+    if (v->camera_relative)
+        text_add(e->out,
+                 "// Points are relative to an origin near them, of which the last slots tell.\n");
+    if (v->zones > 0)
+        text_format(e->out, "// The last %u hold zones: center and radius.\n", v->zones);
+    text_format(e->out,
+                "layout(std140, set = 0, binding = 0) uniform KrsParameters "
+                "{ vec4 krs_parameter[%u]; };\n\n",
+                slots + v->zones);
+    if (emit_reads_zones(e))
+        text_format(e->out, "vec4 krs_zones[%u];\n\n", v->zones);
+}
+
+/* Promised functions, which may then be called in any order. */
+static void emit_promises(Emitter *e)
+{
+    if (e->wanted[KRS_FUNCTION_SURFACE])
+        emit_struct(e);
+    text_add(e->out, "// Everything that stays the same within a frame: call it first.\n"
+                     "void krs_prepare();\n\n");
+    for (int f = 0; f < KRS_FUNCTION_COUNT; f++)
+        if (e->wanted[f] && e->printer->signatures[f])
+            text_format(e->out, "%s%s;\n\n", e->printer->promises[f], e->printer->signatures[f]);
+    if (e->wanted[KRS_FUNCTION_SCENE_PART_DISTANCE])
+        text_format(e->out, "const uint KRS_SCENE_PARTS = %uu;\n\n",
+                    module_scene_part_count(e->module->components));
+}
+
+void module_print(const Module *module, const KrsVariant *variant, const KrsFunction *wanted,
+                  size_t count, const Printer *printer, Text *out)
+{
+    Emitter e       = emitter_new(module, out->arena);
+    Text    prepare = {.arena = out->arena}, functions = prepare;
+    e.variant           = variant;
+    e.printer           = printer;
+    e.helper_text.arena = out->arena;
+    for (size_t i = 0; i < count; i++)
+        e.wanted[wanted[i]] = true;
+    e.cuts = (variant->zones > 0 || (module->zone != NODE_NONE && !variant->camera_relative)) &&
+             needs_cut(&e);
+    helpers_read(&e);
+    find_needs(&e);
+    NodeList roots = gather_roots(&e);
+    e.out          = &prepare;
+    emit_prepare(&e, roots.items, roots.count,
+                 variant->camera_relative ? &module->slots.camera_relative : &module->slots.plain);
+    e.out = &functions;
+    emit_functions(&e);
+    e.out = out;
+    emit_block(&e);
+    emit_promises(&e);
+    text_add_bytes(out, e.helper_text.bytes, e.helper_text.length);
+    text_add_bytes(out, prepare.bytes, prepare.length);
+    text_add_bytes(out, functions.bytes, functions.length);
+}
+
+uint64_t krs_variant_hash(const KrsVariant *variant, const KrsFunction *wanted, size_t count)
+{
+    const uint64_t numbers[] = {variant->zones,  variant->march_group,     variant->step,
+                                variant->planes, variant->camera_relative, variant->many_threads,
+                                variant->values, variant->shares};
+    uint64_t       set = 0, h = 0xcbf29ce484222325u; /* FNV-1a */
+    for (size_t i = 0; i < count; i++)
+        set |= (uint64_t)1 << wanted[i];
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        h = (h ^ numbers[i]) * 0x100000001b3u;
+    return (h ^ set) * 0x100000001b3u;
+}

@@ -1,0 +1,141 @@
+/*
+ * prepare.c: krs_prepare: what depends on parameters only, once, in globals that functions of the point
+ * read.  The host has found it, or it is computed.
+ */
+#include <string.h>
+
+#include "compiler/print/emitter.h"
+
+/* Declares the globals; `set` gets the nodes that have one, of which there are so many. */
+static size_t emit_globals(Emitter *e, const Node *roots, size_t count, Node *set, bool *is_global)
+{
+    const Graph *g       = e->graph;
+    size_t       globals = 0;
+    emit_count_uses(e, roots, count, false);
+    for (size_t i = 0; i < e->needed.count; i++) {
+        Node n = e->needed.items[i];
+        if (g->items[n].time != TIME_FRAME)
+            continue;
+        set[globals++] = n;
+        is_global[n]   = true;
+        Text name      = {.arena = e->scratch};
+        text_format(&name, "krs_frame%u", e->globals++);
+        e->frame[n] = name.bytes;
+        text_format(e->out, "%s %s;\n", e->printer->types[g->items[n].type], name.bytes);
+    }
+    return globals;
+}
+
+static const char *number_text(Emitter *e, const FrameValue *value, uint32_t k)
+{
+    return value->at[k] == NO_PLACE ? emit_number(e, value->constant[k])
+                                    : emit_slot(e, value->at[k] / 4, value->at[k] % 4, 1);
+}
+
+/* What the host has found, out of its slots. */
+static const char *found_text(Emitter *e, const FrameValue *value)
+{
+    GraphType type     = (GraphType)e->graph->items[value->node].type;
+    uint32_t  last     = value->width - 1;
+    bool      together = true;
+    for (uint32_t k = 0; k <= last; k++)
+        together = together && value->at[k] != NO_PLACE && value->at[k] == value->at[0] + k;
+    Text text = {.arena = e->scratch};
+    if (type == TYPE_BOOL)
+        text_format(&text, "(%s != 0.0)", number_text(e, value, 0));
+    else if (type == TYPE_UINT && value->at[0] == NO_PLACE)
+        text_format(&text, "%.0fu", value->constant[0]);
+    else if (type == TYPE_UINT)
+        text_format(&text, "floatBitsToUint(%s)", number_text(e, value, 0));
+    else if (together && value->at[0] / 4 == value->at[last] / 4)
+        return emit_slot(e, value->at[0] / 4, value->at[0] % 4, value->width);
+    else if (type == TYPE_FLOAT)
+        return number_text(e, value, 0);
+    else {
+        text_format(&text, "%s(", e->printer->types[type]);
+        for (uint32_t k = 0; k <= last; k++)
+            text_format(&text, "%s%s", number_text(e, value, k), k < last ? ", " : ")");
+    }
+    return text.bytes;
+}
+
+/* A value of the frame as kernels get it from the host. */
+static const char *read_text(Emitter *e, const FrameValues *values, Node n)
+{
+    const Expr *expr = &e->graph->items[n];
+    if (e->place[n])
+        return found_text(e, &values->items[e->place[n] - 1]);
+    if (expr->op == OP_COMPONENT && frame_value_is_given(e->graph, n))
+        return emit_slot(e, e->graph->items[expr->operands[0]].index, expr->index, 1);
+    for (uint32_t k = 0; k < expr->operand_count; k++) /* a leaf has none */
+        e->text[expr->operands[k]] = read_text(e, values, expr->operands[k]);
+    return emit_expression(e, expr);
+}
+
+/* The globals from the parameter block, in which the host has put them. */
+static void emit_reads(Emitter *e, const Node *set, size_t globals, const FrameValues *values)
+{
+    memset(e->place, 0, e->graph->count * sizeof *e->place);
+    for (size_t i = 0; i < values->count; i++)
+        e->place[values->items[i].node] = (uint32_t)i + 1;
+    for (size_t i = 0; i < globals; i++)
+        emit_line(e, "    %s = %s;\n", e->frame[set[i]],
+                  emit_bare(e, read_text(e, values, set[i])));
+}
+
+/* The globals by operations. */
+static void emit_definitions(Emitter *e, const Node *set, size_t globals, const bool *is_global)
+{
+    emit_count_uses(e, set, globals, true);
+    e->next = 0;
+    for (size_t i = 0; i < e->needed.count; i++) {
+        Node        n    = e->needed.items[i];
+        const Expr *expr = &e->graph->items[n];
+        if (!is_global[n]) {
+            emit_node(e, n);
+            continue;
+        }
+        emit_comment(e, expr->span);
+        emit_line(e, "    %s = %s;\n", e->frame[n], emit_bare(e, emit_expression(e, expr)));
+        e->text[n]    = e->frame[n];
+        e->nesting[n] = 0;
+    }
+}
+
+bool emit_reads_zones(const Emitter *e)
+{
+    return e->variant->zones > 0 && (e->cuts || e->wanted[KRS_FUNCTION_GRADIENT]);
+}
+
+/* Where zones of the caller are read from. */
+static void emit_zone_reads(Emitter *e)
+{
+    if (emit_reads_zones(e))
+        text_format(e->out,
+                    "    for (int i = 0; i < %u; i++)\n"
+                    "        krs_zones[i] = krs_parameter[%u + i];\n",
+                    e->variant->zones, emit_slot_count(e));
+}
+
+uint32_t emit_slot_count(const Emitter *e)
+{
+    const FrameSlots *slots = &e->module->slots;
+    if (e->variant->camera_relative)
+        return slots->camera_relative.first_slot + slots->camera_relative.slots + 1;
+    return slots->plain.first_slot + (e->variant->values ? slots->plain.slots : 0);
+}
+
+void emit_prepare(Emitter *e, const Node *roots, size_t count, const FrameValues *values)
+{
+    Node  *set       = arena_new_array(e->scratch, Node, e->graph->count);
+    bool  *is_global = arena_new_array(e->scratch, bool, e->graph->count);
+    size_t globals   = emit_globals(e, roots, count, set, is_global);
+    bool   reads     = e->variant->camera_relative || (e->variant->values && values->slots > 0);
+    text_add(e->out, globals ? "\nvoid krs_prepare()\n{\n" : "void krs_prepare()\n{\n");
+    if (reads)
+        emit_reads(e, set, globals, values);
+    else
+        emit_definitions(e, set, globals, is_global);
+    emit_zone_reads(e);
+    text_add(e->out, "}\n\n");
+}

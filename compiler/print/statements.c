@@ -1,0 +1,218 @@
+/*
+ * statements.c: nodes of the graph as statements.
+ *
+ * Each function is a list of short statements in the order of the nodes.  A value that is used
+ * once, by something near, stands inside the expression that uses it; everything else gets a
+ * name.  What depends on parameters only is computed once, in krs_prepare, into globals that
+ * the march reads as locals; literals cost nothing.  Statements carry the line of the scene
+ * that they come from.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "compiler/print/emitter.h"
+
+/* Expressions are nested to this depth and length at most: compilers of shaders recurse. */
+enum { MOST_NESTING = 6, MOST_INLINE = 72 };
+
+/* What names of values begin with. */
+static char type_letter(GraphType type)
+{
+    switch (type) {
+    case TYPE_FLOAT: return 't';
+    case TYPE_BOOL: return 'b';
+    case TYPE_UINT: return 'n';
+    default: return 'v';
+    }
+}
+
+/* A row's template with the operands in the place of $a, $b, $c, $d.  What stands before a
+   semicolon is a statement that comes before, and sets a local of its own, $t. */
+static const char *fill_template(Emitter *e, const Expr *expr)
+{
+    Text        text  = {.arena = e->scratch};
+    const char *from  = e->printer->operation((Op)expr->op);
+    uint32_t    local = strchr(from, ';') ? e->next++ : 0;
+    const char *call  = strstr(from, "krs_");
+    if (call)
+        emit_call(e, call, (GraphType)e->graph->items[expr->operands[0]].type, expr->operand_count);
+    while (*from) {
+        size_t plain = strcspn(from, "$;");
+        text_add_bytes(&text, from, plain);
+        from += plain;
+        if (*from == ';') {
+            emit_comment(e, expr->span);
+            emit_line(e, "    %s;\n", text.bytes);
+            text = (Text){.arena = e->scratch};
+            from += strspn(from, "; ");
+        } else if (*from) {
+            if (from[1] == 't')
+                text_format(&text, "t%u", local);
+            else
+                text_add(&text, e->text[expr->operands[from[1] - 'a']]);
+            from += 2;
+        }
+    }
+    return text.bytes;
+}
+
+/* Of two variables by a choice of the printer: built-ins mind what is not a number. */
+static bool picks_variable(const Emitter *e, const Expr *expr)
+{
+    return (expr->op == OP_min || expr->op == OP_max) && expr->type == TYPE_FLOAT &&
+           e->graph->items[expr->operands[0]].op != OP_CONSTANT &&
+           e->graph->items[expr->operands[1]].op != OP_CONSTANT;
+}
+
+/* Of numbers by mix, which is no branch; it knows no others. */
+static const char *select_text(Emitter *e, const Expr *expr)
+{
+    const Node *o    = expr->operands;
+    Text        text = {.arena = e->scratch};
+    if (expr->type == TYPE_BOOL || expr->type == TYPE_UINT)
+        return fill_template(e, expr);
+    text_format(&text, "mix(%s, %s, ", e->text[o[2]], e->text[o[1]]);
+    if (expr->type == TYPE_FLOAT)
+        text_format(&text, "%s)", emit_bare(e, e->text[o[0]]));
+    else
+        text_format(&text, "bvec%d(%s))", (int)expr->type, emit_bare(e, e->text[o[0]]));
+    return text.bytes;
+}
+
+const char *emit_expression(Emitter *e, const Expr *expr)
+{
+    Text text = {.arena = e->scratch};
+    switch (expr->op) {
+    case OP_CONSTANT: return emit_constant(e, expr);
+    case OP_POINT: return "p";
+    case OP_NORMAL: return "normal";
+    case OP_FOOTPRINT: return "footprint";
+    case OP_DIRECTION: return "direction";
+    case OP_PARAMETER: return emit_slot(e, expr->index, 0, expr->type);
+    case OP_COMPONENT:
+        text_format(&text, "%s.%c", e->text[expr->operands[0]], "xyzw"[expr->index]);
+        return text.bytes;
+    case OP_min:
+    case OP_max:
+        if (!picks_variable(e, expr))
+            return fill_template(e, expr);
+        text_format(&text, "%s(%s, %s)", expr->op == OP_min ? "KRS_MIN" : "KRS_MAX",
+                    e->text[expr->operands[0]], e->text[expr->operands[1]]);
+        return text.bytes;
+    case OP_select: return select_text(e, expr);
+    case OP_fold: {
+        const char *mirror = mirror_text(e, expr);
+        return mirror ? mirror : fill_template(e, expr);
+    }
+    default: return fill_template(e, expr);
+    }
+}
+
+/* Whether a template names an operand twice: what stands twice is computed twice. */
+static bool repeats_operand(const Emitter *e, const Expr *user, Node operand)
+{
+    if (user->op == OP_COMPONENT)
+        return false;
+    if (picks_variable(e, user) ||
+        (user->op == OP_fold && user->operands[0] == operand && mirror_repeats(e, user)))
+        return true;
+    const char *glsl  = e->printer->operation((Op)user->op);
+    uint32_t    count = 0;
+    for (const char *at = strchr(glsl, '$'); at; at = strchr(at + 1, '$'))
+        count += at[1] != 't' && user->operands[at[1] - 'a'] == operand;
+    return count > 1;
+}
+
+static void use(Emitter *e, Node node, uint32_t count)
+{
+    if (e->uses[node] == 0)
+        array_push(e->scratch, &e->needed, node);
+    e->uses[node] += count;
+}
+
+static int compare_nodes(const void *a, const void *b)
+{
+    return (*(const Node *)a > *(const Node *)b) - (*(const Node *)a < *(const Node *)b);
+}
+
+/* The work grows with the function, not with the graph: there are several functions for each
+   component. */
+void emit_count_uses(Emitter *e, const Node *roots, size_t count, bool frame)
+{
+    for (size_t i = 0; i < e->needed.count; i++)
+        e->uses[e->needed.items[i]] = e->feeds_mirror[e->needed.items[i]] = 0;
+    e->needed.count = 0;
+    for (size_t i = 0; i < count; i++)
+        use(e, roots[i], 2); /* a root needs a name */
+    for (size_t i = 0; i < e->needed.count; i++) {
+        const Expr *expr = &e->graph->items[e->needed.items[i]];
+        if ((!frame && expr->time != TIME_POINT) || e->given[e->needed.items[i]])
+            continue;
+        for (uint32_t k = 0; k < expr->operand_count; k++)
+            use(e, expr->operands[k], repeats_operand(e, expr, expr->operands[k]) ? 2 : 1);
+        if (expr->op == OP_fold)
+            e->feeds_mirror[expr->operands[0]] = true;
+    }
+    if (e->needed.count)
+        qsort(e->needed.items, e->needed.count, sizeof *e->needed.items, compare_nodes);
+}
+
+static bool is_leaf(const Expr *expr) { return expr->operand_count == 0; }
+
+/* Writes the statement of a node, or keeps its expression for the one place that needs it. */
+void emit_node(Emitter *e, Node n)
+{
+    const Expr *expr = &e->graph->items[n];
+    uint8_t     deep = 0;
+    for (uint32_t i = 0; i < expr->operand_count; i++)
+        if (e->nesting[expr->operands[i]] > deep)
+            deep = e->nesting[expr->operands[i]];
+    const char *text  = emit_expression(e, expr);
+    bool        plain = is_leaf(expr) || (expr->op == OP_COMPONENT && deep == 0);
+    e->nesting[n]     = plain ? 0 : deep + 1;
+    e->text[n]        = text;
+    if (plain || (e->uses[n] == 1 && e->nesting[n] < MOST_NESTING && strlen(text) < MOST_INLINE))
+        return;
+    emit_comment(e, expr->span);
+    Text name = {.arena = e->scratch};
+    text_format(&name, "%c%u", type_letter(expr->type), e->next++);
+    emit_line(e, "    %s %s = %s;\n", e->printer->types[expr->type], name.bytes,
+              emit_bare(e, text));
+    e->text[n]    = name.bytes;
+    e->nesting[n] = 0;
+}
+
+void emit_begin(Emitter *e, const Node *roots, size_t count)
+{
+    emit_count_uses(e, roots, count, false);
+    e->next = 0;
+    e->last = (Span){0, 0, 0};
+    for (size_t i = 0; i < e->needed.count; i++) {
+        Node n = e->needed.items[i];
+        if (e->graph->items[n].time == TIME_COMPILE)
+            emit_node(e, n);
+        if (e->graph->items[n].time != TIME_FRAME)
+            continue;
+        e->text[n]    = e->frame[n];
+        e->nesting[n] = 0;
+    }
+}
+
+/* What is given has its name. */
+static void emit_point_node(Emitter *e, Node n)
+{
+    if (!e->given[n]) {
+        emit_node(e, n);
+        return;
+    }
+    e->text[n]    = e->given[n];
+    e->nesting[n] = 0;
+}
+
+void emit_body(Emitter *e, const Node *roots, size_t count)
+{
+    emit_begin(e, roots, count);
+    for (size_t i = 0; i < e->needed.count; i++)
+        if (e->graph->items[e->needed.items[i]].time == TIME_POINT)
+            emit_point_node(e, e->needed.items[i]);
+}

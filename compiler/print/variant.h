@@ -1,0 +1,81 @@
+/*
+ * variant.h: what a caller chooses of a scene's text before it is printed: a variant, and
+ * functions.
+ */
+#ifndef KRS_VARIANT_H
+#define KRS_VARIANT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/*
+ * Functions that a caller may want.  Each text has these in any case:
+ *
+ *     layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[N]; };
+ *     void krs_prepare();    once, first in main: all that is constant in a frame
+ */
+typedef enum KrsFunction {
+    /* float krs_distance(vec3 p): safe distance to the scene in world units, < 0 inside. */
+    KRS_FUNCTION_DISTANCE,
+    /* float krs_plane_t(vec3 p, vec3 direction): how far it is along a ray to the nearest plane,
+       and float krs_plane_cosine(vec3 direction): how steeply the ray falls towards one. */
+    KRS_FUNCTION_PLANE_T,
+    KRS_FUNCTION_PLANE_COSINE,
+    /* float krs_along(vec3 p, vec3 direction, float footprint): how far a ray may go, by the
+       variant's step. */
+    KRS_FUNCTION_ALONG,
+    /* float krs_probe(vec3 p, float footprint): whether a ball is empty. */
+    KRS_FUNCTION_PROBE,
+    /* float krs_distance_lod(vec3 p, float footprint): what a graphics card should march by.  It is
+       never above the distance to the nearest surface and not above 0 in the same places as
+       krs_distance, but often less: what is far away for its size is not looked at.  What is
+       smaller than `footprint`, the radius of a pixel's cone at p, counts as the box around it (0:
+       nothing does).  Where a branch saves no work, krs_distance costs less. */
+    KRS_FUNCTION_DISTANCE_LOD,
+    /* const uint KRS_SCENE_PARTS; float krs_scene_part_distance(uint scene_part, vec3 p): the distance of one part, and
+       void krs_scene_part_box(uint scene_part, inout vec3 low, inout vec3 high): a box around it. */
+    KRS_FUNCTION_SCENE_PART_DISTANCE,
+    KRS_FUNCTION_SCENE_PART_BOX,
+    /* vec3 krs_gradient(vec3 p, float reach): where krs_distance rises fastest at a surface. */
+    KRS_FUNCTION_GRADIENT,
+    /* KrsSurface krs_surface(vec3 p, vec3 normal, float footprint): what is at p: the component
+       with the least distance.  It is given the unit gradient of krs_distance at p, and the radius
+       of the pixel's cone there in world units (0 for a point).  The normal that it returns is the
+       one to light: unit, outwards, and the given one unless mirrors are smooth.
+
+       struct KrsSurface { float distance; vec3 color; float roughness; float metallic;
+                           vec3 emission; uint component; uint level; uint instance;
+                           vec3 normal; }; */
+    KRS_FUNCTION_SURFACE,
+    /* float krs_sin(float a), krs_cos, krs_tan: for callers that need them as well. */
+    KRS_FUNCTION_SINES,
+    KRS_FUNCTION_COUNT
+} KrsFunction;
+
+/* How krs_along tells how far a ray may go. */
+typedef enum KrsRayStep {
+    KRS_STEP_EXACT,
+    KRS_STEP_TAYLOR,
+    KRS_STEP_ROOT_FREE,
+    KRS_STEP_DIRECTIONAL
+} KrsRayStep;
+
+typedef struct KrsVariant {
+    uint32_t   zones;       /* of the caller, that the block has room for, behind all other slots */
+    uint32_t   march_group; /* krs_distance and krs_along are of this group alone; 0: of all */
+    KrsRayStep step;        /* of krs_along */
+    bool       planes;      /* distances leave out the planes that krs_plane_t knows */
+    bool       camera_relative; /* points are relative to an origin near them (graph/rebase.h) */
+    bool many_threads; /* for devices with many threads: operations count, and branches save work.
+                           Elsewhere what has to be waited for counts, and built-in min and max of
+                           variables are three instructions, since they mind what is not a number */
+    bool shares; /* where both are wanted, krs_surface goes on from what krs_distance has found:
+                           half the text, in which operations have another order */
+    bool values; /* the host fills in what depends on the frame alone (krs_frame_values) */
+} KrsVariant;
+
+/* A number that tells texts apart, for caches. */
+uint64_t krs_variant_hash(const KrsVariant *variant, const KrsFunction *wanted, size_t count);
+
+#endif

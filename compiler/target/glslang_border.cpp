@@ -1,0 +1,235 @@
+/*
+ * glslang_border.cpp: the one C++ file: calls glslang's C interface and SPIRV-Tools, and catches what
+ * they throw.
+ */
+#include "compiler/target/glslang_border.h"
+
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <vector>
+
+#include <glslang/Include/glslang_c_interface.h>
+#include <glslang/Public/resource_limits_c.h>
+#include <spirv-tools/libspirv.h>
+#include <spirv-tools/optimizer.hpp>
+
+/* glslang's own lock, which it does not give back when something is thrown; by threads that do not
+   hold it nothing is released. */
+namespace glslang
+{
+void ReleaseGlobalLock();
+}
+
+static BorderResult refuse(const char *text, char **log)
+{
+    *log = strdup(text && *text ? text : "no reason given");
+    return *log ? BORDER_REFUSED : BORDER_NO_MEMORY;
+}
+
+/* Owns what glslang made, whatever happens. */
+struct Work {
+    glslang_shader_t  *shader  = nullptr;
+    glslang_program_t *program = nullptr;
+    ~Work()
+    {
+        if (program)
+            glslang_program_delete(program);
+        if (shader)
+            glslang_shader_delete(shader);
+    }
+};
+
+/* What is larger would take longer here than it saves. */
+static const size_t MOST_WORDS = 1 << 17;
+
+/* Puts functions where they are called, and leaves out the variables that only pass values on.
+   Drivers do both at every start, the former by copying a body once for each call above it: for a
+   twentieth more time at the first, a program starts in a fifth less from then on.  What is
+   computed stays the same; a driver may round a last digit otherwise. */
+static bool inline_calls(std::vector<uint32_t> &words)
+{
+    spvtools::Optimizer        optimizer(SPV_ENV_VULKAN_1_1);
+    spvtools::OptimizerOptions options;
+    options.set_run_validator(false); /* spirv.c does that, afterwards */
+    optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+        .RegisterPass(spvtools::CreateMergeReturnPass())
+        .RegisterPass(spvtools::CreateInlineExhaustivePass())
+        .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+        .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
+        .RegisterPass(spvtools::CreateAggressiveDCEPass());
+    return optimizer.Run(words.data(), words.size(), &words, options);
+}
+
+static BorderResult compile(const char *glsl, uint32_t **words, size_t *word_count, char **log)
+{
+    glslang_input_t input         = {};
+    input.language                = GLSLANG_SOURCE_GLSL;
+    input.stage                   = GLSLANG_STAGE_COMPUTE;
+    input.client                  = GLSLANG_CLIENT_VULKAN;
+    input.client_version          = GLSLANG_TARGET_VULKAN_1_1;
+    input.target_language         = GLSLANG_TARGET_SPV;
+    input.target_language_version = GLSLANG_TARGET_SPV_1_3;
+    input.code                    = glsl;
+    input.default_version         = 450;
+    input.default_profile         = GLSLANG_NO_PROFILE;
+    input.messages                = GLSLANG_MSG_DEFAULT_BIT;
+    input.resource                = glslang_default_resource();
+
+    Work work;
+    work.shader = glslang_shader_create(&input);
+    if (!work.shader)
+        return BORDER_NO_MEMORY;
+    if (!glslang_shader_preprocess(work.shader, &input) ||
+        !glslang_shader_parse(work.shader, &input))
+        return refuse(glslang_shader_get_info_log(work.shader), log);
+    work.program = glslang_program_create();
+    if (!work.program)
+        return BORDER_NO_MEMORY;
+    glslang_program_add_shader(work.program, work.shader);
+    if (!glslang_program_link(work.program,
+                              GLSLANG_MSG_SPV_RULES_BIT | GLSLANG_MSG_VULKAN_RULES_BIT))
+        return refuse(glslang_program_get_info_log(work.program), log);
+    glslang_spv_options_t options = {}; /* by default it would validate, which spirv.c does */
+    options.disable_optimizer     = true;
+    glslang_program_SPIRV_generate_with_options(work.program, GLSLANG_STAGE_COMPUTE, &options);
+
+    std::vector<uint32_t> made(glslang_program_SPIRV_get_size(work.program));
+    glslang_program_SPIRV_get(work.program, made.data());
+    if (made.size() <= MOST_WORDS && !inline_calls(made))
+        return refuse("its functions cannot be inlined", log);
+    *words = static_cast<uint32_t *>(malloc(made.size() * sizeof **words));
+    if (!*words)
+        return BORDER_NO_MEMORY;
+    memcpy(*words, made.data(), made.size() * sizeof **words);
+    *word_count = made.size();
+    return BORDER_OK;
+}
+
+/* What `work` returns, or why it could not. */
+template <typename Work> static BorderResult guarded(Work work, char **log)
+{
+    *log = nullptr;
+    try {
+        return work();
+    } catch (const std::bad_alloc &) {
+        return BORDER_NO_MEMORY;
+    } catch (...) {
+        return refuse("an exception", log);
+    }
+}
+
+BorderResult border_compile(const char *glsl, uint32_t **words, size_t *word_count, char **log)
+{
+    *words              = nullptr;
+    BorderResult result = guarded([=] { return compile(glsl, words, word_count, log); }, log);
+    if (result != BORDER_OK)
+        glslang::ReleaseGlobalLock();
+    return result;
+}
+
+/* The tables of built-in names are made with the first text of a version, under glslang's lock, and
+   what is thrown then leaves them half made.  So the first text, of the version that kernels have, is
+   one that nobody waits for. */
+static BorderResult start(bool *started, char **log)
+{
+    static const char first[] = "#version 440\nlayout(local_size_x = 1) in;\nvoid main() {}\n";
+    uint32_t         *words   = nullptr;
+    size_t            count;
+    *started            = true; /* should it throw */
+    *started            = glslang_initialize_process() != 0;
+    BorderResult result = *started ? compile(first, &words, &count, log) : BORDER_NO_MEMORY;
+    free(words);
+    return result;
+}
+
+BorderResult border_start(void)
+{
+    char        *log;
+    bool         started = false;
+    BorderResult result  = guarded([&] { return start(&started, &log); }, &log);
+    free(log);
+    if (result != BORDER_OK && started) {
+        glslang::ReleaseGlobalLock();
+        border_stop();
+    }
+    return result;
+}
+
+void border_stop(void)
+{
+    char *log;
+    guarded(
+        [] {
+            glslang_finalize_process();
+            return BORDER_OK;
+        },
+        &log);
+    free(log);
+}
+
+/* ---- SPIRV-Tools ---- */
+
+struct SpirvFree {
+    void operator()(spv_context_t *context) const { spvContextDestroy(context); }
+    void operator()(spv_diagnostic_t *diagnostic) const { spvDiagnosticDestroy(diagnostic); }
+    void operator()(spv_validator_options_t *options) const { spvValidatorOptionsDestroy(options); }
+    void operator()(spv_text_t *text) const { spvTextDestroy(text); }
+};
+template <typename Thing> using Owned = std::unique_ptr<Thing, SpirvFree>;
+
+/* Names for people are made for messages only: of a thousand values that glslang names alike, each
+   is tried against all before it. */
+static spv_result_t run_validator(const uint32_t *words, size_t word_count, bool names,
+                                  spv_context context, spv_diagnostic *diagnostic)
+{
+    Owned<spv_validator_options_t> options(spvValidatorOptionsCreate());
+    spv_const_binary_t             binary = {words, word_count};
+    if (!options)
+        return SPV_ERROR_OUT_OF_MEMORY;
+    spvValidatorOptionsSetFriendlyNames(options.get(), names);
+    return spvValidateWithOptions(context, options.get(), &binary, diagnostic);
+}
+
+static BorderResult validate(const uint32_t *words, size_t word_count, char **log)
+{
+    Owned<spv_context_t> context(spvContextCreate(SPV_ENV_VULKAN_1_1));
+    spv_diagnostic       diagnostic = nullptr;
+    if (!context)
+        return BORDER_NO_MEMORY;
+    if (run_validator(words, word_count, false, context.get(), nullptr) == SPV_SUCCESS)
+        return BORDER_OK;
+    spv_result_t result = run_validator(words, word_count, true, context.get(), &diagnostic);
+    Owned<spv_diagnostic_t> owned(diagnostic);
+    if (result == SPV_ERROR_OUT_OF_MEMORY)
+        return BORDER_NO_MEMORY;
+    return refuse(diagnostic ? diagnostic->error : nullptr, log);
+}
+
+BorderResult border_validate(const uint32_t *words, size_t word_count, char **log)
+{
+    return guarded([=] { return validate(words, word_count, log); }, log);
+}
+
+static BorderResult disassemble(const uint32_t *words, size_t word_count, char **assembly)
+{
+    Owned<spv_context_t> context(spvContextCreate(SPV_ENV_VULKAN_1_1));
+    spv_text             text = nullptr;
+    uint32_t style = SPV_BINARY_TO_TEXT_OPTION_FRIENDLY_NAMES | SPV_BINARY_TO_TEXT_OPTION_INDENT;
+    if (!context)
+        return BORDER_NO_MEMORY;
+    spv_result_t result = spvBinaryToText(context.get(), words, word_count, style, &text, nullptr);
+    Owned<spv_text_t> owned(text);
+    if (result == SPV_SUCCESS)
+        *assembly = strdup(text->str);
+    return *assembly ? BORDER_OK : BORDER_REFUSED;
+}
+
+char *border_disassemble(const uint32_t *words, size_t word_count)
+{
+    char *log, *assembly = nullptr;
+    guarded([&] { return disassemble(words, word_count, &assembly); }, &log);
+    free(log);
+    return assembly;
+}

@@ -1,0 +1,247 @@
+/*
+ * variants.c: which functions of a scene each kernel calls, and what it is told.
+ *
+ * What is chosen once, for the scene's text, is told to the kernel's own text here and nowhere else
+ * (tell_kernel).
+ */
+#include "runtime/tracer/variants.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static void define(KernelVariant *to, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+static void define(KernelVariant *to, const char *format, ...)
+{
+    size_t  length = strlen(to->defines);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(to->defines + length, sizeof to->defines - length, format, arguments);
+    va_end(arguments);
+}
+
+static void want(KernelVariant *to, KrsFunction function)
+{
+    to->scene.wanted[to->scene.wanted_count++] = function;
+}
+
+static bool wants(const KernelVariant *of, KrsFunction function)
+{
+    bool found = false;
+    for (size_t i = 0; i < of->scene.wanted_count; i++)
+        found = found || of->scene.wanted[i] == function;
+    return found;
+}
+
+/* Last of all: what the kernel's text has to know of the scene's. */
+static void tell_kernel(KernelVariant *to)
+{
+    static const struct {
+        KrsFunction function;
+        const char *define;
+    } tells[] = {
+        {KRS_FUNCTION_DISTANCE_LOD, "#define EARLY_OUTS\n"},
+        {KRS_FUNCTION_ALONG, "#define ALONG\n"},
+        {KRS_FUNCTION_PLANE_T, "#define PLANES\n"},
+        {KRS_FUNCTION_SCENE_PART_DISTANCE, "#define PACKED\n"},
+        {KRS_FUNCTION_SINES, "#define KRS_SINES\n"}, /* sines.glsl is there */
+    };
+    for (size_t i = 0; i < sizeof tells / sizeof *tells; i++)
+        if (wants(to, tells[i].function))
+            define(to, "%s", tells[i].define);
+    if (to->scene.variant.march_group > 0)
+        define(to, "#define MARCH_GROUP %u\n", to->scene.variant.march_group);
+    if (to->scene.variant.camera_relative)
+        define(to, "#define CAMERA_RELATIVE\n");
+}
+
+/* By distances that leave out what is far, where branches save work; in groups that is left out
+   already. */
+static void want_distance_to_march(KernelVariant *to)
+{
+    bool lod = to->scene.variant.many_threads && to->scene.variant.march_group == 0;
+    want(to, lod ? KRS_FUNCTION_DISTANCE_LOD : KRS_FUNCTION_DISTANCE);
+}
+
+/* Kernels that include frame.glsl find rays of panoramas by sines. */
+static void want_rays(KernelVariant *to, const KrsRendering *rendering)
+{
+    if (rendering->panoramic)
+        want(to, KRS_FUNCTION_SINES);
+}
+
+/* ---- of a rendering ---- */
+
+/* Of a sum lavapipe makes a loop over the lanes. */
+static bool sums_lanes(const Gpu *gpu) { return !gpu_is_cpu(gpu) && gpu->sums_lanes; }
+
+static KernelVariant begin_variant(const KrsRendering *rendering, KrsTrace trace,
+                                   KrsSchedule schedule)
+{
+    const Gpu    *gpu             = &rendering->renderer->gpu;
+    bool          camera_relative = rendering->current_kernels->camera_relative;
+    bool          by_ray          = trace >= KRS_TRACE_EXACT;
+    KernelVariant to              = {.scene = {.scene = rendering->scene}};
+    to.scene.variant              = (KrsVariant){
+                     .zones           = rendering->current_kernels->zones,
+                     .camera_relative = camera_relative,
+                     .many_threads    = rendering->renderer->early_outs && !camera_relative,
+                     .values          = rendering_value_slots(rendering) > 0,
+    };
+    define(&to, "#define TRACE %du\n#define REFILL %d\n", (int)(by_ray ? KRS_TRACE_PLAIN : trace),
+           schedule == KRS_SCHEDULE_REFILL ? (int)gpu->refill_lanes : 0);
+    define(&to, "%s%s%s%s", gpu->texels ? "" : NO_TEXELS,
+           sums_lanes(gpu) ? "#define SUBGROUPS\n" : "", rendering->panoramic ? PANORAMIC : "",
+           rendering->program->sheets ? "#define SHEETS\n" : "");
+    return to;
+}
+
+/* How a ray goes along, where it does; false where it goes by distances. */
+static bool want_along(KernelVariant *to, const KrsRendering *rendering, KrsTrace trace)
+{
+    static const KrsRayStep steps[KRS_TRACE_COUNT] = {
+        [KRS_TRACE_EXACT]       = KRS_STEP_EXACT,
+        [KRS_TRACE_TAYLOR]      = KRS_STEP_TAYLOR,
+        [KRS_TRACE_ROOT_FREE]   = KRS_STEP_ROOT_FREE,
+        [KRS_TRACE_DIRECTIONAL] = KRS_STEP_DIRECTIONAL,
+    };
+    if (!rendering_goes_along(rendering, trace))
+        return false;
+    to->scene.variant.step = steps[trace];
+    want(to, KRS_FUNCTION_ALONG);
+    return true;
+}
+
+/* Where a ray asks whether balls are empty. */
+static bool want_probe(KernelVariant *to, const KrsRendering *rendering, KrsTrace trace)
+{
+    if ((trace != KRS_TRACE_BINARY && trace != KRS_TRACE_PREDICTED) ||
+        !rendering_goes_along(rendering, trace))
+        return false;
+    define(to, "#define PROBE %d\n", trace == KRS_TRACE_BINARY ? 1 : 2);
+    want(to, KRS_FUNCTION_PROBE);
+    return true;
+}
+
+KernelVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+                               uint32_t group)
+{
+    KernelVariant to = begin_variant(rendering, trace, schedule);
+    want_rays(&to, rendering);
+    if (group > 0 && rendering_knows_planes(rendering)) {
+        to.scene.variant.planes = true;
+        want(&to, KRS_FUNCTION_PLANE_T);
+        want(&to, KRS_FUNCTION_PLANE_COSINE);
+    }
+    to.scene.variant.march_group = group < MARCH_WITHOUT_PLANES ? group : 0;
+    if (group == MARCH_PACKED) {
+        want(&to, KRS_FUNCTION_SCENE_PART_DISTANCE);
+        want(&to, KRS_FUNCTION_SCENE_PART_BOX);
+    } else if (!want_probe(&to, rendering, trace) && !want_along(&to, rendering, trace)) {
+        want_distance_to_march(&to);
+    }
+    tell_kernel(&to);
+    return to;
+}
+
+/* The octahedron is what the kernel has otherwise. */
+KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals normals, uint32_t group)
+{
+    const KrsProgram *program    = rendering->program;
+    KernelVariant     to         = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    to.scene.variant.march_group = group;
+    want_rays(&to, rendering);
+    want(&to, KRS_FUNCTION_DISTANCE);
+    if (normals == KRS_NORMALS_ANALYTIC && !to.scene.variant.camera_relative)
+        want(&to, KRS_FUNCTION_GRADIENT);
+    if (normals == KRS_NORMALS_ANALYTIC)
+        define(&to, "#define GRADIENT\n");
+    else if (normals != KRS_NORMALS_OCTAHEDRON)
+        define(&to, "#define STENCIL %d\n", (int)normals);
+    /* What is special about a scene's distance around a hit. */
+    define(&to, "%s%s", program->along && !program->inverts ? "#define ROOTS\n" : "",
+           program->plain ? "#define PLAIN\n" : "");
+    tell_kernel(&to);
+    return to;
+}
+
+/* Rays are drawn by lot, by sines. */
+KernelVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace,
+                                   KrsSchedule schedule)
+{
+    KernelVariant to = begin_variant(rendering, trace, schedule);
+    want(&to, KRS_FUNCTION_SINES);
+    if (!want_along(&to, rendering, trace))
+        want(&to, KRS_FUNCTION_DISTANCE);
+    tell_kernel(&to);
+    return to;
+}
+
+KernelVariant variant_of_shade(const KrsRendering *rendering)
+{
+    KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    want_rays(&to, rendering);
+    want(&to, KRS_FUNCTION_SURFACE);
+    tell_kernel(&to);
+    return to;
+}
+
+KernelVariant variant_of_query(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule)
+{
+    KernelVariant to = begin_variant(rendering, trace, schedule);
+    want_rays(&to, rendering);
+    if (!want_along(&to, rendering, trace))
+        want_distance_to_march(&to);
+    tell_kernel(&to);
+    return to;
+}
+
+/* Differences of a distance see both sides of a sheet. */
+KernelVariant variant_of_point_query(const KrsRendering *rendering)
+{
+    KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
+    want(&to, KRS_FUNCTION_DISTANCE);
+    want(&to, KRS_FUNCTION_SURFACE);
+    if (rendering->program->sheets)
+        want(&to, KRS_FUNCTION_GRADIENT);
+    tell_kernel(&to);
+    return to;
+}
+
+KernelSource variant_source(const char *file, const KernelVariant *variant)
+{
+    return (KernelSource){file, variant->scene.scene ? &variant->scene : NULL, variant->defines};
+}
+
+/* ---- of no device ---- */
+
+KernelVariant variant_for_any(const KrsScene *scene, const char *file, const KrsVariant *variant)
+{
+    static const struct {
+        const char *file;
+        bool        marches;
+        KrsFunction wanted[2];
+        size_t      count;
+    } kernels[] = {
+        {"trace.comp", true, {0}, 0},
+        {"query.comp", true, {0}, 0},
+        {"normals.comp", false, {KRS_FUNCTION_DISTANCE}, 1},
+        {"secondary.comp", false, {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_SINES}, 2},
+        {"shade.comp", false, {KRS_FUNCTION_SURFACE}, 1},
+        {"point_query.comp", false, {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_SURFACE}, 2},
+    };
+    KernelVariant to = {.scene = {.variant = *variant}};
+    for (size_t i = 0; i < sizeof kernels / sizeof *kernels; i++) {
+        if (strcmp(kernels[i].file, file) != 0)
+            continue;
+        to.scene.scene = scene;
+        if (kernels[i].marches)
+            want_distance_to_march(&to);
+        for (size_t k = 0; k < kernels[i].count; k++)
+            want(&to, kernels[i].wanted[k]);
+    }
+    tell_kernel(&to);
+    return to;
+}

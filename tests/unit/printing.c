@@ -1,0 +1,409 @@
+/*
+ * Texts of scenes: every variant compiles, has no directives, and holds what is wanted, what that
+ * calls, and nothing else.  What a stranger pastes gives what kernels of the runtime give.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <ctype.h>
+#include <glob.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "compiler/print/printer.h"
+#include "runtime/tracer/variants.h"
+#include "tests/support/renderer.h"
+
+static KrsScene *open_file(const char *path, bool gradients)
+{
+    KrsScene        *scene;
+    const KrsOptions options = {.gradients = gradients};
+    if (krs_compile_file(path, &options, &scene) != KRS_OK)
+        fail_msg("%s does not compile", path);
+    return scene;
+}
+
+static void each_of(const char *pattern, void (*look)(const char *path))
+{
+    glob_t found;
+    assert_int_equal(glob(pattern, 0, NULL, &found), 0);
+    for (size_t i = 0; i < found.gl_pathc; i++)
+        look(found.gl_pathv[i]);
+    globfree(&found);
+}
+
+/* ---- what is in a text ---- */
+
+enum { LONGEST_NAME = 64 };
+
+static bool is_of_name(char c) { return isalnum((unsigned char)c) || c == '_'; }
+
+/* Times that a name stands there by itself. */
+static int count_name(const char *text, const char *name)
+{
+    size_t length = strlen(name);
+    int    count  = 0;
+    for (const char *at = text; (at = strstr(at, name)); at += length)
+        count += (at == text || !is_of_name(at[-1])) && !is_of_name(at[length]);
+    return count;
+}
+
+/* The name that a line declares, if it does: "float krs_cut(vec3 p, float d)", "vec3 krs_frame0;". */
+static bool read_name(const char *line, char name[LONGEST_NAME])
+{
+    size_t      type = strspn(line, "abcdefghijklmnopqrstuvwxyzKS234"), length = 0;
+    const char *from = line + type + 1;
+    if (type == 0 || line[type] != ' ' || strncmp(from, "krs_", 4) != 0)
+        return false;
+    while (is_of_name(from[length]) && length < LONGEST_NAME - 1)
+        length++;
+    snprintf(name, LONGEST_NAME, "%.*s", (int)length, from);
+    return true;
+}
+
+/* Lines that declare the name. */
+static int count_declarations(const char *text, const char *name)
+{
+    char other[LONGEST_NAME];
+    int  count = 0;
+    for (const char *line = text; *line; line += strcspn(line, "\n"), line += *line == '\n')
+        count += read_name(line, other) && strcmp(name, other) == 0;
+    return count;
+}
+
+static const char *name_of(KrsFunction function, char name[LONGEST_NAME])
+{
+    const char *signature = glsl_printer.signatures[function];
+    assert_true(!signature || read_name(signature, name));
+    return signature ? name : "";
+}
+
+static bool is_promised(const char *name, const KernelScene *of)
+{
+    char wanted[LONGEST_NAME];
+    bool sines = false;
+    for (size_t i = 0; i < of->wanted_count; i++) {
+        sines = sines || of->wanted[i] == KRS_FUNCTION_SINES;
+        if (strcmp(name, name_of(of->wanted[i], wanted)) == 0)
+            return true;
+    }
+    return strcmp(name, "krs_prepare") == 0 || (sines && strlen(name) == strlen("krs_sin"));
+}
+
+/* A global is declared, set and read; a function that is not wanted is called. */
+static void check_names(const char *text, const KernelScene *of, const char *path)
+{
+    char name[LONGEST_NAME];
+    for (const char *line = text; *line; line += strcspn(line, "\n"), line += *line == '\n') {
+        if (!read_name(line, name) || is_promised(name, of))
+            continue;
+        int uses = count_name(text, name) - count_declarations(text, name);
+        if (uses < (strncmp(name, "krs_frame", 9) == 0 ? 2 : 1))
+            fail_msg("%s: nobody needs %s in\n%s", path, name, text);
+    }
+    for (size_t i = 0; i < of->wanted_count; i++) /* a prototype and the function */
+        if (*name_of(of->wanted[i], name))
+            assert_int_equal(count_declarations(text, name), 2);
+    if (strchr(text, '#'))
+        fail_msg("%s: a directive, or a macro, in\n%s", path, text);
+    for (const char *at = text; (at = strstr(at, "KRS_")); at += 4)
+        assert_int_equal(strncmp(at, "KRS_SCENE_PARTS", 9), 0);
+}
+
+static char *print(const KernelScene *of)
+{
+    char *text = krs_scene_text(of->scene, &of->variant, of->wanted, of->wanted_count, NULL);
+    assert_non_null(text);
+    return text;
+}
+
+/* ---- every variant ---- */
+
+static const char *const calls[KRS_FUNCTION_COUNT] = {
+    [KRS_FUNCTION_DISTANCE]            = "krs_distance(p)",
+    [KRS_FUNCTION_PLANE_T]             = "krs_plane_t(p, p)",
+    [KRS_FUNCTION_PLANE_COSINE]        = "krs_plane_cosine(p)",
+    [KRS_FUNCTION_ALONG]               = "krs_along(p, p, 0.0)",
+    [KRS_FUNCTION_PROBE]               = "krs_probe(p, 0.0)",
+    [KRS_FUNCTION_DISTANCE_LOD]        = "krs_distance_lod(p, 0.0)",
+    [KRS_FUNCTION_SCENE_PART_DISTANCE] = "krs_scene_part_distance(KRS_SCENE_PARTS - 1u, p)",
+    [KRS_FUNCTION_SCENE_PART_BOX]      = "(krs_scene_part_box(0u, p, p), p.x)",
+    [KRS_FUNCTION_GRADIENT]            = "krs_gradient(p, 0.1).x",
+    [KRS_FUNCTION_SURFACE]             = "krs_surface(p, p, 0.0).roughness",
+    [KRS_FUNCTION_SINES]               = "krs_sin(p.x) + krs_cos(p.x) + krs_tan(p.x)",
+};
+
+/* A kernel around it, as a stranger would write one. */
+static void compile_text(const char *text, const KernelScene *of, const char *path)
+{
+    char  *kernel = NULL, *log = NULL;
+    size_t length, count;
+    FILE  *out = open_memstream(&kernel, &length);
+    assert_non_null(out);
+    fprintf(out,
+            "#version 440\nlayout(local_size_x = 1) in;\n%s"
+            "layout(std430, set = 1, binding = 0) buffer Sum { float sum; };\n"
+            "void main()\n{\n    krs_prepare();\n    vec3 p = vec3(sum);\n",
+            text);
+    for (size_t i = 0; i < of->wanted_count; i++)
+        fprintf(out, "    sum += %s;\n", calls[of->wanted[i]]);
+    fputs("}\n", out);
+    fclose(out);
+    uint32_t *words = NULL;
+    if (spirv_compile(kernel, path, &words, &count, &log) != KRS_OK)
+        fail_msg("%s: %s\n%s", path, log ? log : "no memory", kernel);
+    free(words);
+    free(log);
+    free(kernel);
+}
+
+static int texts_seen, kinds_seen[KRS_FUNCTION_COUNT], groups_seen, relative_seen, planes_seen;
+
+static void look_at_text(const KernelScene *of, const char *path, bool compiled)
+{
+    char *text = print(of);
+    check_names(text, of, path);
+    if (compiled)
+        compile_text(text, of, path);
+    free(text);
+    texts_seen++;
+    groups_seen += of->variant.march_group > 0;
+    relative_seen += of->variant.camera_relative;
+    planes_seen += of->variant.planes;
+    for (size_t i = 0; i < of->wanted_count; i++)
+        kinds_seen[of->wanted[i]]++;
+}
+
+/* Whether a function can be had in a variant (module.h). */
+static bool can_want(const KernelScene *of, KrsFunction function)
+{
+    const KrsProgram *program = krs_scene_program(of->scene);
+    const KrsVariant *v       = &of->variant;
+    switch (function) {
+    case KRS_FUNCTION_PLANE_T:
+    case KRS_FUNCTION_PLANE_COSINE: return program->planes && v->march_group == 0;
+    case KRS_FUNCTION_ALONG: return !v->camera_relative;
+    case KRS_FUNCTION_PROBE:
+    case KRS_FUNCTION_DISTANCE_LOD:
+    case KRS_FUNCTION_GRADIENT: return !v->camera_relative && v->march_group == 0;
+    case KRS_FUNCTION_SCENE_PART_DISTANCE:
+    case KRS_FUNCTION_SCENE_PART_BOX: return program->scene_parts >= 2 && v->march_group == 0;
+    case KRS_FUNCTION_SURFACE: return v->march_group == 0;
+    default: return true;
+    }
+}
+
+/* Each function by itself, and all of them. */
+static void look_at_variant(KernelScene of, const char *path, bool compiled)
+{
+    KernelScene all = of;
+    for (KrsFunction function = 0; function < KRS_FUNCTION_COUNT; function++) {
+        if (!can_want(&of, function))
+            continue;
+        of.wanted[0]    = function;
+        of.wanted_count = 1;
+        look_at_text(&of, path, compiled);
+        all.wanted[all.wanted_count++] = function;
+    }
+    look_at_text(&all, path, compiled);
+}
+
+/* Every choice, where there is one. */
+static void look_at_variants(KrsScene *scene, const char *path, bool compiled)
+{
+    const KrsProgram *program  = krs_scene_program(scene);
+    const KrsVariant  chosen[] = {
+         {.many_threads = false},
+         {.many_threads = true},
+         {.many_threads = true, .shares = true},
+         {.values = true},
+         {.values = true, .zones = 2, .many_threads = true},
+         {.step = KRS_STEP_TAYLOR},
+         {.step = KRS_STEP_ROOT_FREE},
+         {.step = KRS_STEP_DIRECTIONAL},
+         {.planes = program->planes, .values = true},
+         {.planes = program->planes, .many_threads = true},
+         {.camera_relative = program->camera_relative, .values = true},
+         {.camera_relative = program->camera_relative, .values = true, .planes = program->planes},
+    };
+    for (size_t i = 0; i < sizeof chosen / sizeof *chosen; i++)
+        look_at_variant((KernelScene){.scene = scene, .variant = chosen[i]}, path, compiled);
+    for (uint32_t group = 1; group <= program->march_group_count; group++)
+        for (int many = 0; many < 2; many++)
+            look_at_variant((KernelScene){.scene   = scene,
+                                          .variant = {.march_group = group, .many_threads = many}},
+                            path, compiled);
+    krs_scene_free(scene);
+}
+
+static void look_at_scene(const char *path)
+{
+    look_at_variants(open_file(path, true), path, false);
+}
+static void compile_scene(const char *path) { look_at_variants(open_file(path, true), path, true); }
+
+/* Points of such a scene are camera-relative. */
+static void look_at_far_scene(bool compiled)
+{
+    static const char text[] = "show sphere(1).move([100000, 1, 0]);"
+                               "show plane([0, 1, 0], 0).paint(#ffffff);"
+                               "show box([1, 1, 1]).move([100003, 1, 0]);"
+                               "camera { eye: [100000, 2, 5], target: [100000, 1, 0] }";
+    KrsScene         *scene;
+    const KrsOptions  options = {.gradients = true};
+    assert_int_equal(krs_compile_text(text, strlen(text), "far.krs", &options, &scene), KRS_OK);
+    assert_true(krs_scene_program(scene)->camera_relative);
+    look_at_variants(scene, "far.krs", compiled);
+}
+
+static void texts_hold_what_is_called(void **state)
+{
+    (void)state;
+    texts_seen = 0;
+    each_of("examples/*.krs", look_at_scene);
+    each_of("bench/scenes/*.krs", look_at_scene);
+    each_of("tests/golden/*.krs", look_at_scene);
+    look_at_far_scene(false);
+    assert_true(texts_seen > 1000);
+    assert_true(groups_seen > 0);
+    assert_true(relative_seen > 0);
+    assert_true(planes_seen > 0);
+    for (KrsFunction function = 0; function < KRS_FUNCTION_COUNT; function++)
+        assert_true(kinds_seen[function] > 0);
+}
+
+static void texts_are_glsl(void **state)
+{
+    (void)state;
+    groups_seen = relative_seen = planes_seen = 0;
+    spirv_start();
+    each_of("tests/golden/[acl]*.krs", compile_scene);
+    compile_scene("tests/golden/places.krs");
+    compile_scene("bench/scenes/compound.krs");
+    look_at_far_scene(true);
+    spirv_stop();
+    assert_true(groups_seen > 0 && relative_seen > 0 && planes_seen > 0);
+}
+
+static void texts_differ_by_what_is_wanted(void **state)
+{
+    (void)state;
+    const KrsVariant  plain = {0}, zoned = {.zones = 1};
+    const KrsFunction wanted[] = {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_SURFACE};
+    const KrsFunction turned[] = {KRS_FUNCTION_SURFACE, KRS_FUNCTION_DISTANCE};
+    uint64_t          hash     = krs_variant_hash(&plain, wanted, 2);
+    assert_true(hash == krs_variant_hash(&plain, turned, 2)); /* the order says nothing */
+    assert_true(hash != krs_variant_hash(&plain, wanted, 1));
+    assert_true(hash != krs_variant_hash(&zoned, wanted, 2));
+}
+
+/* What `krs compile` writes. */
+static void texts_are_short(void **state)
+{
+    (void)state;
+    KrsScene   *scene = open_file("examples/02-gear.krs", false);
+    KernelScene of    = {.scene = scene, .variant = {.many_threads = true, .shares = true}};
+    of.wanted_count   = krs_promised_functions(scene, true, of.wanted);
+    char *text        = print(&of);
+    assert_in_range(strlen(text), 10000, 84000);
+    assert_true(strlen(text) < 2 * krs_scene_program(scene)->glsl_length / 3);
+    free(text);
+    krs_scene_free(scene);
+}
+
+/* ---- on a device ---- */
+
+enum { POINTS = 4096 };
+
+/* What is at the points, by the kernel of questions in another variant. */
+static void probe_by(KrsRendering *rendering, KrsFrame *frame, const KrsVariant *variant,
+                     const double (*points)[3], KrsHit *hits)
+{
+    KernelVariant other = variant_of_point_query(rendering);
+    Kernel       *used = &rendering->current_kernels->point_query, before = *used, kernel;
+    double        spirv_ms = 0, pipeline_ms = 0;
+    other.scene.variant.shares       = variant->shares;
+    other.scene.variant.values       = variant->values;
+    other.scene.variant.many_threads = variant->many_threads;
+    KernelSource source              = variant_source("point_query.comp", &other);
+    assert_true(
+        kernel_create(&renderer->gpu, &kernel, &source, renderer->layout, &spirv_ms, &pipeline_ms));
+    *used            = kernel;
+    KrsStatus status = krs_device_probe(rendering, frame, points, POINTS, hits);
+    *used            = before;
+    assert_true(gpu_wait(&renderer->gpu));
+    kernel_destroy(&renderer->gpu, &kernel);
+    assert_int_equal(status, KRS_OK);
+}
+
+static bool are_near(double a, double b) { return fabs(a - b) <= 1e-4 * (1 + fabs(a)); }
+
+/* Most of the time to the bit; a choice between parts may fall the other way by a rounding. */
+static int count_different(const KrsHit *a, const KrsHit *b)
+{
+    int different = 0;
+    for (int i = 0; i < POINTS; i++) {
+        bool same = are_near(a[i].distance, b[i].distance) && a[i].component == b[i].component &&
+                    a[i].instance == b[i].instance && are_near(a[i].roughness, b[i].roughness);
+        for (int k = 0; k < 3; k++)
+            same = same && are_near(a[i].color[k], b[i].color[k]);
+        different += !same;
+    }
+    return different;
+}
+
+static void compare_variants(const char *path)
+{
+    static const KrsVariant variants[] = {
+        {.shares = true}, {.values = true}, {.shares = true, .many_threads = true}};
+    static double points[POINTS][3];
+    static KrsHit right[POINTS], found[POINTS];
+    KrsScene     *scene = open_file(path, false);
+    KrsFrame     *frame;
+    KrsRendering *rendering;
+    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_frame_set_time(frame, 0.7), KRS_OK);
+    assert_int_equal(krs_rendering_new_for(renderer, scene, KRS_FOR_QUESTIONS, &rendering), KRS_OK);
+    for (int i = 0; i < POINTS; i++)
+        for (int k = 0; k < 3; k++)
+            points[i][k] = 6 * fmod(i * (double[]){0.8191725, 0.6710436, 0.5497005}[k], 1) - 3;
+    assert_int_equal(krs_device_probe(rendering, frame, (const double(*)[3])points, POINTS, right),
+                     KRS_OK);
+    for (size_t v = 0; v < sizeof variants / sizeof *variants; v++) {
+        probe_by(rendering, frame, &variants[v], (const double(*)[3])points, found);
+        int different = count_different(right, found);
+        if (different > POINTS / 1000)
+            fail_msg("%s: %d of %d points differ in variant %zu", path, different, POINTS, v);
+    }
+    krs_rendering_free(rendering);
+    krs_frame_free(frame);
+    krs_scene_free(scene);
+}
+
+static void variants_agree(void **state)
+{
+    (void)state;
+    compare_variants("examples/02-gear.krs");
+    compare_variants("examples/13-lamps.krs");
+    compare_variants("tests/golden/csg.krs");
+    compare_variants("tests/golden/sequence.krs");
+    compare_variants("tests/golden/looks.krs");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(texts_hold_what_is_called),
+        cmocka_unit_test(texts_are_glsl),
+        cmocka_unit_test(texts_differ_by_what_is_wanted),
+        cmocka_unit_test(texts_are_short),
+        cmocka_unit_test_setup_teardown(variants_agree, renderer_open, renderer_close),
+    };
+    return cmocka_run_group_tests_name("printing", tests, NULL, NULL);
+}
