@@ -9,6 +9,7 @@
  */
 #include "tests/oracle/methods.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -192,7 +193,7 @@ static void every_method_on(void **state)
     const Family *family = *state;
     Case          c      = {.family = family, .count = 1, .alone = family_alone(family)};
     Tally         tally  = {0};
-    for (int i = 0; i < METHODS; i++) {
+    for (size_t i = 0; i < method_count; i++) {
         c.methods[0] = &methods[i];
         if (methods[i].before)
             check_case(&c, (i + (family - families)) % 2, (uint64_t)i, &tally);
@@ -207,12 +208,12 @@ static void pairs_of_methods(void **state)
     (void)state;
     Tally  tally  = {0};
     Random random = {2};
-    for (int f = 0; f < FAMILIES; f++) {
+    for (size_t f = 0; f < family_count; f++) {
         Case c = {.family = &families[f], .count = 2, .alone = family_alone(&families[f])};
         for (int i = 0; i < PAIRS; i++) {
             do {
-                c.methods[0] = &methods[random_below(&random, METHODS)];
-                c.methods[1] = &methods[random_below(&random, METHODS)];
+                c.methods[0] = &methods[random_below(&random, (int)method_count)];
+                c.methods[1] = &methods[random_below(&random, (int)method_count)];
             } while (!c.methods[0]->before || !c.methods[1]->before);
             check_case(&c, i % 2, (uint64_t)i, &tally);
         }
@@ -231,20 +232,23 @@ static void every_method_has_a_row(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         bool found = false;
-        for (int k = 0; k < METHODS; k++)
+        for (size_t k = 0; k < method_count; k++)
             found = found || strcmp(names[i], methods[k].name) == 0;
         if (!found)
             fail_msg("`.%s` is not tried on anything", names[i]);
     }
 }
 
+enum { MOST_FAMILIES = 200 };
+
 int main(void)
 {
-    struct CMUnitTest tests[FAMILIES + 2];
-    for (int i = 0; i < FAMILIES; i++)
+    struct CMUnitTest tests[MOST_FAMILIES + 2];
+    assert(family_count <= MOST_FAMILIES);
+    for (size_t i = 0; i < family_count; i++)
         tests[i] = (struct CMUnitTest){families[i].name, every_method_on, NULL, NULL,
                                        (void *)(uintptr_t)&families[i]};
-    tests[FAMILIES]     = (struct CMUnitTest)cmocka_unit_test(pairs_of_methods);
-    tests[FAMILIES + 1] = (struct CMUnitTest)cmocka_unit_test(every_method_has_a_row);
-    return _cmocka_run_group_tests("methods of families", tests, FAMILIES + 2, NULL, NULL);
+    tests[family_count]     = (struct CMUnitTest)cmocka_unit_test(pairs_of_methods);
+    tests[family_count + 1] = (struct CMUnitTest)cmocka_unit_test(every_method_has_a_row);
+    return _cmocka_run_group_tests("methods of families", tests, family_count + 2, NULL, NULL);
 }

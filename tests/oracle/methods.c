@@ -12,7 +12,7 @@ const char prelude[] =
     "let block = box([0.9, 0.6, 0.7]).rotate([1, 2, 0], 0.4).move([-0.2, 0.1, 0]);\n"
     "let lump = algebraic((x - 0.2)^2 + 2 * y^2 + z^2 == 0.4);\n";
 
-const Family families[FAMILIES] = {
+const Family families[] = {
     {"sphere", "sphere(0.5).move([0.3, 0.1, 0.2])"},
     {"box", "block"},
     {"cylinder", "cylinder(0.4, 0.9)"},
@@ -80,6 +80,7 @@ const Family families[FAMILIES] = {
     {"smooth mirrors", "block.mirror(plane([1, 0, 0], 0.1)).smooth_mirrors(0.1)"},
     {"nothing", "block & tool.move([5, 0, 0])"},
 };
+const size_t family_count = sizeof families / sizeof *families;
 
 /* ---- methods ---- */
 
@@ -219,7 +220,7 @@ static bool undo_mobius(const Case *c, int k, Vec p)
 #define MEASURED "E0409 "
 #define STEEP    "E0402 "
 #define CELLS    "E0403 "
-const Method methods[METHODS] = {
+const Method methods[] = {
     {"move", "", ".move([0.3, -0.4, 0.5])", undo_move, 0, false, ""},
     {"rotate", "", ".rotate([1, 2, -0.5], 0.8)", undo_rotate, 0, false, ""},
     {"scale", "", ".scale(0.6)", undo_scale, 0, false, ""},
@@ -264,6 +265,7 @@ const Method methods[METHODS] = {
     {"revolve", NULL, NULL, NULL, 0, false, ""},
     {"sweep", NULL, NULL, NULL, 0, false, ""},
 };
+const size_t method_count = sizeof methods / sizeof *methods;
 
 static bool inside(const Case *c, int done, Vec p)
 {

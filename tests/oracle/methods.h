@@ -14,8 +14,8 @@ typedef struct Family {
     const char *name, *text;
 } Family;
 
-enum { FAMILIES = 62, METHODS = 38 };
-extern const Family families[FAMILIES];
+extern const Family families[];
+extern const size_t family_count;
 
 /* A family behind up to two methods. */
 typedef struct Method Method;
@@ -38,7 +38,8 @@ struct Method {
     const char *refusals;       /* why the language may refuse it */
 };
 
-extern const Method methods[METHODS];
+extern const Method methods[];
+extern const size_t method_count;
 
 /* Whether a point is inside of a whole case; `c` is a Case. */
 bool inside_case(const void *c, Vec p);
