@@ -44,7 +44,7 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/diagnostics unit/s
                oracle/maps oracle/moebius oracle/moebius_images oracle/operators oracle/moving \
                oracle/fractals oracle/metasurfaces oracle/normals fuzz/sentences)
 SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/editors.sh \
-               tests/lint.sh tests/errors.sh tests/golden.sh tests/examples.sh tests/library.sh tests/docs.sh \
+               tests/lint.sh tests/errors.sh tests/golden.sh tests/examples.sh tests/library.sh tests/docs.sh tests/extend/extend.sh \
                $(sort $(filter-out tests/cli/common.sh, $(wildcard tests/cli/*.sh)))
 
 ARCHIVE      = rm -f $@ && $(AR) rcs $@ $^

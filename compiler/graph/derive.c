@@ -366,8 +366,8 @@ static void sharp_weights(Derivation *d, Node a, Node b, Node weight[2])
     weight[1] = graph_op3(g, OP_select, less, zero, one);
 }
 
-/* The same for any width of a blend whose width is above 0; node: the blend. */
-typedef void Shares(Derivation *d, Node node, Node a, Node b, Node width, Node weight[2]);
+/* Of a blend whose width is above 0; `node` is the blend.  `weight` comes as that of a sharp minimum. */
+typedef void Weights(Derivation *d, Node node, Node a, Node b, Node width, Node weight[2]);
 
 /* How far apart a and b are, in widths. */
 static Node widths_apart(Derivation *d, Node a, Node b, Node width)
@@ -377,8 +377,8 @@ static Node widths_apart(Derivation *d, Node a, Node b, Node width)
     return over(g, difference, not_zero(d, width));
 }
 
-/* By the share of the farther one: 1/2 at most, the less the farther it is. */
-static void share_out(Derivation *d, Node a, Node b, Node far, Node weight[2])
+/* By the weight of the farther one: 1/2 at most, the less the farther it is. */
+static void weights_by_farther(Derivation *d, Node a, Node b, Node far, Node weight[2])
 {
     Graph *g    = d->graph;
     Node   less = graph_op2(g, OP_less, a, b), near = sub(g, graph_number(g, 1), far);
@@ -399,7 +399,7 @@ static void quadratic_weights(Derivation *d, Node node, Node a, Node b, Node wid
     Graph *g = d->graph;
     (void)node;
     Node far = nearness(d, a, b, width);
-    share_out(d, a, b, mul(g, far, graph_number(g, 0.5)), weight);
+    weights_by_farther(d, a, b, mul(g, far, graph_number(g, 0.5)), weight);
 }
 
 static void cubic_weights(Derivation *d, Node node, Node a, Node b, Node width, Node weight[2])
@@ -407,7 +407,7 @@ static void cubic_weights(Derivation *d, Node node, Node a, Node b, Node width, 
     Graph *g = d->graph;
     (void)node;
     Node far = graph_op1(g, OP_square, nearness(d, a, b, width));
-    share_out(d, a, b, mul(g, far, graph_number(g, 0.5)), weight);
+    weights_by_farther(d, a, b, mul(g, far, graph_number(g, 0.5)), weight);
 }
 
 static void exponential_weights(Derivation *d, Node node, Node a, Node b, Node width,
@@ -417,7 +417,7 @@ static void exponential_weights(Derivation *d, Node node, Node a, Node b, Node w
     Graph *g   = d->graph;
     Node   far = graph_op1(g, OP_exp, neg(g, widths_apart(d, a, b, width)));
     far        = over(g, far, add(g, graph_number(g, 1), far));
-    share_out(d, a, b, far, weight);
+    weights_by_farther(d, a, b, far, weight);
 }
 
 /* max(k, min(a, b)) - length(max(k - a, 0), max(k - b, 0)) */
@@ -468,7 +468,8 @@ static void stairs_weights(Derivation *d, Node node, Node a, Node b, Node width,
     weight[1] = graph_op3(g, OP_select, stairs, by_b, weight[1]);
 }
 
-static Node derive_blend(Derivation *d, const Expr *e, Node node, const Node *inner, Shares *shares)
+static Node derive_blend(Derivation *d, const Expr *e, Node node, const Node *inner,
+                         Weights *weights)
 {
     Graph *g = d->graph;
     if (!others_are_constant(g, inner, 2, e->operand_count))
@@ -477,7 +478,7 @@ static Node derive_blend(Derivation *d, const Expr *e, Node node, const Node *in
     Node sharp[2], weight[2];
     sharp_weights(d, a, b, sharp);
     memcpy(weight, sharp, sizeof weight);
-    shares(d, node, a, b, width, weight);
+    weights(d, node, a, b, width, weight);
     Node blends = graph_op2(g, OP_less, graph_number(g, 0), width), sum[2];
     for (int i = 0; i < 2; i++) {
         weight[i] = graph_op3(g, OP_select, blends, weight[i], sharp[i]);

@@ -45,8 +45,7 @@ enum {
 _Static_assert(ROW_COUNT == (int)OP_COUNT, "an operation has no row of rules");
 
 static const OpPromises promises[OP_COUNT] = {
-#define RULES(name, cost, promises, simplify, derive, local, series, parity, rebase_origin, \
-              target)                                                                       \
+#define RULES(name, cost, promises, simplify, derive, local, series, parity, rebase, target) \
     [OP_##name] = promises,
 #include "compiler/graph/ops.def"
 };

@@ -506,67 +506,76 @@ static BallTerm mix_terms(BallContext *x, Node value, BallTerm a, BallTerm b, Ba
 
 /* One component of an operation: of what works component by component, a, b and c are the
    components of its operands; operands not all there are filled up with the first. */
-typedef struct Place {
+typedef struct OpComponent {
     Expr             e;
     Node             node, value; /* the whole, and the component */
     uint32_t         component;
     const BallTerms *operands;
     BallTerm         a, b, c;
-} Place;
+} OpComponent;
 
-typedef BallTerm Rule(BallContext *x, const Place *p);
+typedef BallTerm Rule(BallContext *x, const OpComponent *p);
 
-static BallTerm local_none(BallContext *x, const Place *p) { return opaque_term(x, p->value); }
-static BallTerm local_add(BallContext *x, const Place *p)
+static BallTerm local_none(BallContext *x, const OpComponent *p)
+{
+    return opaque_term(x, p->value);
+}
+static BallTerm local_add(BallContext *x, const OpComponent *p)
 {
     return add_terms(x, p->value, p->a, p->b);
 }
-static BallTerm local_neg(BallContext *x, const Place *p) { return negate_term(x, p->value, p->a); }
-static BallTerm local_mul(BallContext *x, const Place *p)
+static BallTerm local_neg(BallContext *x, const OpComponent *p)
+{
+    return negate_term(x, p->value, p->a);
+}
+static BallTerm local_mul(BallContext *x, const OpComponent *p)
 {
     return multiply_terms(x, p->value, p->a, p->b);
 }
-static BallTerm local_div(BallContext *x, const Place *p)
+static BallTerm local_div(BallContext *x, const OpComponent *p)
 {
     return divide_terms(x, p->value, p->a, p->b);
 }
-static BallTerm local_abs(BallContext *x, const Place *p) { return size_term(x, p->value, p->a); }
-static BallTerm local_mix(BallContext *x, const Place *p)
+static BallTerm local_abs(BallContext *x, const OpComponent *p)
+{
+    return size_term(x, p->value, p->a);
+}
+static BallTerm local_mix(BallContext *x, const OpComponent *p)
 {
     return mix_terms(x, p->value, p->a, p->b, p->c);
 }
-static BallTerm local_dot(BallContext *x, const Place *p)
+static BallTerm local_dot(BallContext *x, const OpComponent *p)
 {
     return dot_term(x, p->node, &p->operands[0], &p->operands[1]);
 }
-static BallTerm local_length(BallContext *x, const Place *p)
+static BallTerm local_length(BallContext *x, const OpComponent *p)
 {
     return length_term(x, p->node, &p->operands[0]);
 }
 
-static BallTerm local_sub(BallContext *x, const Place *p)
+static BallTerm local_sub(BallContext *x, const OpComponent *p)
 {
     return add_terms(x, p->value, p->a, negate_term(x, p->b.value, p->b));
 }
 
-static BallTerm local_choice(BallContext *x, const Place *p)
+static BallTerm local_choice(BallContext *x, const OpComponent *p)
 {
     return choice_term(x, (Op)p->e.op, p->value, p->a, p->b);
 }
 
-static BallTerm local_clamp(BallContext *x, const Place *p)
+static BallTerm local_clamp(BallContext *x, const OpComponent *p)
 {
     Node     raised = graph_op2(x->graph, OP_max, p->a.value, p->b.value);
     BallTerm above  = choice_term(x, OP_max, raised, p->a, p->b);
     return choice_term(x, OP_min, p->value, above, p->c);
 }
 
-static BallTerm local_smoothstep(BallContext *x, const Place *p)
+static BallTerm local_smoothstep(BallContext *x, const OpComponent *p)
 {
     return smoothstep_term(x, p->value, p->a.value, p->b.value, p->c);
 }
 
-static BallTerm local_pow(BallContext *x, const Place *p)
+static BallTerm local_pow(BallContext *x, const OpComponent *p)
 {
     const Expr *power = &x->graph->items[p->b.value];
     if (power->op != OP_CONSTANT)
@@ -575,10 +584,10 @@ static BallTerm local_pow(BallContext *x, const Place *p)
                                  : power_term(x, p->value, p->a, power->number[0]);
 }
 
-#define CURVED(name)                                             \
-    static BallTerm local_##name(BallContext *x, const Place *p) \
-    {                                                            \
-        return curved_term(x, curve_##name, p->value, p->a);     \
+#define CURVED(name)                                                   \
+    static BallTerm local_##name(BallContext *x, const OpComponent *p) \
+    {                                                                  \
+        return curved_term(x, curve_##name, p->value, p->a);           \
     }
 CURVED(square)
 CURVED(sin)
@@ -594,14 +603,14 @@ CURVED(sqrt)
 CURVED(inversesqrt)
 #undef CURVED
 
-static BallTerm local_component(BallContext *x, const Place *p)
+static BallTerm local_component(BallContext *x, const OpComponent *p)
 {
     (void)x;
     return term_of(&p->operands[0], p->e.index);
 }
 
 /* What builds a vector. */
-static BallTerm local_vector(BallContext *x, const Place *p)
+static BallTerm local_vector(BallContext *x, const OpComponent *p)
 {
     (void)x;
     return p->operands[p->e.operand_count > 1 ? p->component : 0].items[0];
@@ -614,8 +623,8 @@ static Rule *const rules[OP_COUNT] = {
 
 static void find_operation(BallContext *x, Node node, const BallTerms *operands, BallTerms *result)
 {
-    Place place = {.e = x->graph->items[node], .node = node, .operands = operands};
-    int   last  = place.e.operand_count - 1;
+    OpComponent place = {.e = x->graph->items[node], .node = node, .operands = operands};
+    int         last  = place.e.operand_count - 1;
     for (uint32_t i = 0; i < result->count; i++) {
         place.value      = graph_component(x->graph, node, i);
         place.component  = i;

@@ -173,47 +173,47 @@ static bool any_base(const Expr *e, const SplitValue *values)
 
 /* ---- rules; one operand at least has a base ---- */
 
-static SplitValue anchor_none(Graph *g, const Expr *e, const SplitValue *p)
+static SplitValue rebase_none(Graph *g, const Expr *e, const SplitValue *p)
 {
     return plain_value(g, e, p);
 }
 
-static SplitValue anchor_sum(Graph *g, const Expr *e, const SplitValue *p)
+static SplitValue rebase_sum(Graph *g, const Expr *e, const SplitValue *p)
 {
     return add_values(g, (Op)e->op, p[0], p[1]);
 }
 
 /* Linear in the first operand. */
-static SplitValue anchor_linear(Graph *g, const Expr *e, const SplitValue *p)
+static SplitValue rebase_linear(Graph *g, const Expr *e, const SplitValue *p)
 {
     return others_are_held_constant(g, e, p, 0) ? map_value(g, e, p[0], 0) : plain_value(g, e, p);
 }
 
 /* Linear in each operand. */
-static SplitValue anchor_product(Graph *g, const Expr *e, const SplitValue *p)
+static SplitValue rebase_product(Graph *g, const Expr *e, const SplitValue *p)
 {
     int first = p[0].base != NODE_NONE ? 0 : 1;
     return others_are_held_constant(g, e, p, first) ? map_value(g, e, p[first], first)
                                                     : plain_value(g, e, p);
 }
 
-static SplitValue anchor_component(Graph *g, const Expr *e, const SplitValue *p)
+static SplitValue rebase_component(Graph *g, const Expr *e, const SplitValue *p)
 {
     return (SplitValue){graph_component(g, p[0].base, e->index),
                         graph_component(g, p[0].relative, e->index)};
 }
 
-static SplitValue anchor_vector(Graph *g, const Expr *e, const SplitValue *p)
+static SplitValue rebase_vector(Graph *g, const Expr *e, const SplitValue *p)
 {
     return make_vector(g, e, p);
 }
 
-static SplitValue anchor_fold(Graph *g, const Expr *e, const SplitValue *p)
+static SplitValue rebase_fold(Graph *g, const Expr *e, const SplitValue *p)
 {
     return others_are_held_constant(g, e, p, 0) ? fold_value(g, e, p[0]) : plain_value(g, e, p);
 }
 
-static SplitValue anchor_front(Graph *g, const Expr *e, const SplitValue *p)
+static SplitValue rebase_front(Graph *g, const Expr *e, const SplitValue *p)
 {
     if (!others_are_held_constant(g, e, p, 0))
         return plain_value(g, e, p);
@@ -221,25 +221,24 @@ static SplitValue anchor_front(Graph *g, const Expr *e, const SplitValue *p)
         graph_op3(g, OP_front, p[0].relative, e->operands[1], precise(g, offset_seen(g, e, p[0]))));
 }
 
-static SplitValue anchor_round(Graph *g, const Expr *e, const SplitValue *p)
+static SplitValue rebase_round(Graph *g, const Expr *e, const SplitValue *p)
 {
     return round_value(g, e, p[0]);
 }
 
-static SplitValue anchor_limit(Graph *g, const Expr *e, const SplitValue *p)
+static SplitValue rebase_limit(Graph *g, const Expr *e, const SplitValue *p)
 {
     return others_are_held_constant(g, e, p, 0) ? limit_value(g, e, p[0]) : plain_value(g, e, p);
 }
 
-static SplitValue anchor_compare(Graph *g, const Expr *e, const SplitValue *p)
+static SplitValue rebase_compare(Graph *g, const Expr *e, const SplitValue *p)
 {
     return whole(compare_values(g, e, p[0], p[1]));
 }
 
 static SplitValue (*const rules[OP_COUNT])(Graph *g, const Expr *e, const SplitValue *p) = {
-#define RULES(name, cost, promises, simplify, derive, local, series, parity, rebase_origin, \
-              target)                                                                       \
-    [OP_##name] = rebase_origin,
+#define RULES(name, cost, promises, simplify, derive, local, series, parity, rebase, target) \
+    [OP_##name] = rebase,
 #include "compiler/graph/ops.def"
 };
 
