@@ -93,8 +93,7 @@ static void target_guard(const Prospect *p)
 }
 
 static void (*const targets[OP_COUNT])(const Prospect *p) = {
-#define RULES(name, cost, promises, simplify, derive, local, series, parity, rebase_origin, \
-              target)                                                                       \
+#define RULES(name, cost, promises, simplify, derive, local, series, parity, rebase, target) \
     [OP_##name] = target,
 #include "compiler/graph/ops.def"
 };

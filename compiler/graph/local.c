@@ -509,7 +509,7 @@ static BallTerm mix_terms(BallContext *x, Node value, BallTerm a, BallTerm b, Ba
 typedef struct OpComponent {
     Expr             e;
     Node             node, value; /* the whole, and the component */
-    uint32_t         index;
+    uint32_t         component;
     const BallTerms *operands;
     BallTerm         a, b, c;
 } OpComponent;
@@ -520,42 +520,34 @@ static BallTerm local_none(BallContext *x, const OpComponent *p)
 {
     return opaque_term(x, p->value);
 }
-
 static BallTerm local_add(BallContext *x, const OpComponent *p)
 {
     return add_terms(x, p->value, p->a, p->b);
 }
-
 static BallTerm local_neg(BallContext *x, const OpComponent *p)
 {
     return negate_term(x, p->value, p->a);
 }
-
 static BallTerm local_mul(BallContext *x, const OpComponent *p)
 {
     return multiply_terms(x, p->value, p->a, p->b);
 }
-
 static BallTerm local_div(BallContext *x, const OpComponent *p)
 {
     return divide_terms(x, p->value, p->a, p->b);
 }
-
 static BallTerm local_abs(BallContext *x, const OpComponent *p)
 {
     return size_term(x, p->value, p->a);
 }
-
 static BallTerm local_mix(BallContext *x, const OpComponent *p)
 {
     return mix_terms(x, p->value, p->a, p->b, p->c);
 }
-
 static BallTerm local_dot(BallContext *x, const OpComponent *p)
 {
     return dot_term(x, p->node, &p->operands[0], &p->operands[1]);
 }
-
 static BallTerm local_length(BallContext *x, const OpComponent *p)
 {
     return length_term(x, p->node, &p->operands[0]);
@@ -621,7 +613,7 @@ static BallTerm local_component(BallContext *x, const OpComponent *p)
 static BallTerm local_vector(BallContext *x, const OpComponent *p)
 {
     (void)x;
-    return p->operands[p->e.operand_count > 1 ? p->index : 0].items[0];
+    return p->operands[p->e.operand_count > 1 ? p->component : 0].items[0];
 }
 
 static Rule *const rules[OP_COUNT] = {
@@ -631,15 +623,15 @@ static Rule *const rules[OP_COUNT] = {
 
 static void find_operation(BallContext *x, Node node, const BallTerms *operands, BallTerms *result)
 {
-    OpComponent input = {.e = x->graph->items[node], .node = node, .operands = operands};
-    int         last  = input.e.operand_count - 1;
+    OpComponent place = {.e = x->graph->items[node], .node = node, .operands = operands};
+    int         last  = place.e.operand_count - 1;
     for (uint32_t i = 0; i < result->count; i++) {
-        input.value      = graph_component(x->graph, node, i);
-        input.index      = i;
-        input.a          = term_of(&operands[0], i);
-        input.b          = term_of(&operands[last > 0], i);
-        input.c          = term_of(&operands[last > 1 ? 2 : 0], i);
-        result->items[i] = rules[input.e.op](x, &input);
+        place.value      = graph_component(x->graph, node, i);
+        place.component  = i;
+        place.a          = term_of(&operands[0], i);
+        place.b          = term_of(&operands[last > 0], i);
+        place.c          = term_of(&operands[last > 1 ? 2 : 0], i);
+        result->items[i] = rules[place.e.op](x, &place);
     }
 }
 
