@@ -34,9 +34,9 @@ void print_kernels(KrsRenderer *renderer, const char *path)
         give_up(path, krs_renderer_message(renderer));
     KrsRendering *r = stage.rendering;
     rendering_choose(r, &trace, &schedule);
-    print_kernel(r, name, "query, sample", rendering_sample(r), &spirv, &pipeline);
+    print_kernel(r, name, "query, point query", rendering_point_query(r), &spirv, &pipeline);
     print_kernel(r, name, "trace", rendering_trace(r, trace, schedule, 0), &spirv, &pipeline);
-    print_kernel(r, name, "normals", rendering_around(r, KRS_NORMALS_DEFAULT, 0), &spirv,
+    print_kernel(r, name, "normals", rendering_normals_kernel(r, KRS_NORMALS_DEFAULT, 0), &spirv,
                  &pipeline);
     print_kernel(r, name, "shadows, occlusion", rendering_secondary(r, schedule, false), &spirv,
                  &pipeline);
