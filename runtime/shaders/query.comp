@@ -137,6 +137,8 @@ void end_item()
         state = STATE_HIT;
         t = end;
     }
+    if (state == STATE_REFINING) // no step was left to find where it crosses the surface
+        state = STATE_MARCHING;
     if (state != STATE_MISS) {
         point = atomicAdd(counts.hit_count, 1u);
         points[point] = Point(origin + t * direction, 0.0);
