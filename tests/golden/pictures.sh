@@ -1,15 +1,13 @@
 #!/bin/sh
-# pictures.sh: pictures of all examples and scenes of the bench, under every method, schedule, way
-# with components and stencil of normals, are bit for bit those of pictures.txt beside this file.
+# pictures.sh: pictures of all examples and scenes of the bench, under every method, schedule,
+# grouping of components and stencil of normals, are bit for bit those of pictures.txt beside this file.
 #
 #     make golden                                compare all: three minutes on 2 cores
 #     tests/golden/pictures.sh SCENE.krs...      compare these
 #     tests/golden/pictures.sh --bless           write pictures.txt anew
 #
 # Another driver, or another processor under lavapipe, rounds in another way: the first line of
-# pictures.txt tells which one it is of, and others are refused.  lavapipe does not compile a kernel to
-# the same code every time, and once in some hundred times a pixel is rounded in another way by it: a
-# line that differs in colour alone, and no more once Mesa's cache is emptied, is of that kind.
+# pictures.txt tells which one it is of, and others are refused.
 cd "$(dirname "$0")/../.." || exit 1
 B=${B:-build}
 kept=tests/golden/pictures.txt
