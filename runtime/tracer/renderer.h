@@ -50,24 +50,20 @@ enum { MARCH_WITHOUT_PLANES = 1 + KRS_MOST_MARCH_GROUPS };
 /* And all, scene part by scene part within each ray. */
 enum { MARCH_PACKED = 1 + MARCH_WITHOUT_PLANES, MARCH_KINDS };
 
-/* The kernels with the scene in them, each compiled when it is first needed. */
-typedef struct SceneKernels {
-    uint32_t zones;           /* of the caller, that they have room for */
-    bool     camera_relative; /* points are relative to the camera */
-    Kernel   shade, point_query;
-    Kernel   trace[KRS_TRACE_COUNT][KRS_SCHEDULE_COUNT][MARCH_KINDS]; /* [0]: of all */
-    Kernel   normals[KRS_NORMALS_COUNT][1 + KRS_MOST_MARCH_GROUPS];   /* likewise */
-    Kernel   secondary[KRS_SCHEDULE_COUNT][2];                        /* [1]: from root to root */
-    Kernel   query[KRS_SCHEDULE_COUNT];
-} SceneKernels;
+/* The kernels with the scene in them, each made when it is first needed (kernels.c). */
+typedef struct KernelEntry KernelEntry;
+typedef struct KernelMap {
+    KernelEntry *first;
+} KernelMap;
 
 struct KrsRendering {
     KrsRenderer      *renderer;
     const KrsScene   *scene;
     const KrsProgram *program;
-    SceneKernels      kernels, zoned;  /* without and with zones of the caller */
-    SceneKernels      camera_relative; /* for eyes that are far from the origin */
-    SceneKernels     *current_kernels; /* those for the zones of the last frame */
+    KernelMap         kernels;
+    uint32_t          zone_slots;      /* that kernels of this frame have for zones of the caller */
+    uint32_t          most_zone_slots; /* the most that there are kernels for */
+    bool              camera_relative; /* points of this frame are relative to the camera */
     KrsPurpose        purpose;
     bool              panoramic; /* a camera of the scene is a panorama */
     double            spirv_ms, pipeline_ms;
@@ -161,6 +157,8 @@ bool point_query_run(KrsRendering *rendering, uint32_t count, bool normals);
    among the `ends` of rays. */
 bool ray_hits_are_valid(const RayHitBlock *ray_hits, uint32_t count, uint32_t ends);
 
+/* Makes the kernels for panoramas, unless they are there. */
+bool renderer_create_panoramic(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms);
 /* Forgets the message of the call before. */
 void renderer_clear(KrsRenderer *renderer);
 

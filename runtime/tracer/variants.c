@@ -81,11 +81,11 @@ static KernelVariant begin_variant(const KrsRendering *rendering, KrsTrace trace
                                    KrsSchedule schedule)
 {
     const Gpu    *gpu             = &rendering->renderer->gpu;
-    bool          camera_relative = rendering->current_kernels->camera_relative;
+    bool          camera_relative = rendering->camera_relative;
     bool          by_ray          = trace >= KRS_TRACE_EXACT;
     KernelVariant to              = {.scene = {.scene = rendering->scene}};
     to.scene.variant              = (KrsVariant){
-                     .zones           = rendering->current_kernels->zones,
+                     .zones           = rendering->zone_slots,
                      .camera_relative = camera_relative,
                      .many_threads    = rendering->renderer->early_outs && !camera_relative,
                      .values          = rendering_value_slots(rendering) > 0,

@@ -326,7 +326,7 @@ static void probe_by(KrsRendering *rendering, KrsFrame *frame, const KrsVariant 
                      const double (*points)[3], KrsHit *hits)
 {
     KernelVariant other = variant_of_point_query(rendering);
-    Kernel       *used = &rendering->current_kernels->point_query, before = *used, kernel;
+    Kernel       *used = rendering_point_query(rendering), before = *used, kernel;
     double        spirv_ms = 0, pipeline_ms = 0;
     other.scene.variant.shares       = variant->shares;
     other.scene.variant.values       = variant->values;

@@ -1,0 +1,205 @@
+/*
+ * kernels.c: the kernels with a scene in them, each made when it is first asked for.
+ *
+ * A kernel is found by what it is made from: its file, the scene's variant, the functions that it
+ * calls and its defines (variants.c).  So an option that changes none of these needs no new kernel,
+ * and one that changes some needs no new place here.
+ */
+#include "runtime/tracer/kernels.h"
+
+#include <string.h>
+
+#include "runtime/tracer/variants.h"
+#include "runtime/tracer/warmup.h"
+
+struct KernelEntry {
+    const char   *file;
+    KernelVariant variant;
+    Kernel        kernel; /* zero until it is made */
+    KernelEntry  *next;
+};
+
+static bool is_of(const KernelEntry *entry, const char *file, const KernelVariant *variant)
+{
+    const KernelScene *a = &entry->variant.scene, *b = &variant->scene;
+    return strcmp(entry->file, file) == 0 &&
+           krs_variant_hash(&a->variant, a->wanted, a->wanted_count) ==
+               krs_variant_hash(&b->variant, b->wanted, b->wanted_count) &&
+           strcmp(entry->variant.defines, variant->defines) == 0;
+}
+
+/* NULL with the failure noted. */
+static KernelEntry *find_entry(KrsRendering *rendering, const char *file, KernelVariant variant)
+{
+    KernelEntry *entry = rendering->kernels.first;
+    while (entry && !is_of(entry, file, &variant))
+        entry = entry->next;
+    if (entry)
+        return entry;
+    entry = gpu_alloc(&rendering->renderer->gpu, 1, sizeof *entry, "prepare the scene");
+    if (entry) {
+        *entry                   = (KernelEntry){file, variant, {0}, rendering->kernels.first};
+        rendering->kernels.first = entry;
+    }
+    return entry;
+}
+
+static KernelRequest request_of(KernelEntry *entry)
+{
+    return (KernelRequest){&entry->kernel, variant_source(entry->file, &entry->variant)};
+}
+
+static Kernel *find_kernel(KrsRendering *rendering, const char *file, KernelVariant variant)
+{
+    KernelEntry *entry = find_entry(rendering, file, variant);
+    if (!entry || entry->kernel.pipeline)
+        return entry ? &entry->kernel : NULL;
+    KernelRequest request = request_of(entry);
+    if (!kernels_make(rendering->renderer, rendering->scene_set, &request, 1, &rendering->spirv_ms,
+                      &rendering->pipeline_ms))
+        return NULL;
+    return &entry->kernel;
+}
+
+/* ---- each kernel ---- */
+
+/* A queue is the kernel of pixels with fewer steps. */
+static KrsSchedule schedule_of_kernel(KrsSchedule schedule)
+{
+    return schedule == KRS_SCHEDULE_QUEUE ? KRS_SCHEDULE_PIXEL : schedule;
+}
+
+Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+                        uint32_t march_group)
+{
+    schedule = schedule_of_kernel(schedule);
+    return find_kernel(rendering, "trace.comp",
+                       variant_of_trace(rendering, trace, schedule, march_group));
+}
+
+Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
+                        uint32_t march_group)
+{
+    return rendering_trace(rendering, trace >= KRS_TRACE_EXACT ? KRS_TRACE_PLAIN : trace, schedule,
+                           march_group);
+}
+
+static KernelVariant variant_of_rays(const KrsRendering *rendering, KrsSchedule schedule,
+                                     bool by_roots)
+{
+    return variant_of_secondary(rendering, by_roots ? KRS_TRACE_EXACT : KRS_TRACE_PLAIN,
+                                schedule_of_kernel(schedule));
+}
+
+Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots)
+{
+    return find_kernel(rendering, "secondary.comp", variant_of_rays(rendering, schedule, by_roots));
+}
+
+Kernel *rendering_normals_kernel(KrsRendering *rendering, KrsNormals normals, uint32_t march_group)
+{
+    return find_kernel(
+        rendering, "normals.comp",
+        variant_of_normals(rendering, rendering_normals(rendering, normals), march_group));
+}
+
+static KernelVariant variant_of_questions(const KrsRendering *rendering, KrsSchedule schedule)
+{
+    return variant_of_query(rendering,
+                            rendering->program->sheets ? KRS_TRACE_EXACT : KRS_TRACE_AUTO,
+                            schedule_of_kernel(schedule));
+}
+
+Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule)
+{
+    return find_kernel(rendering, "query.comp", variant_of_questions(rendering, schedule));
+}
+
+Kernel *rendering_shade(KrsRendering *rendering)
+{
+    return find_kernel(rendering, "shade.comp", variant_of_shade(rendering));
+}
+
+Kernel *rendering_point_query(KrsRendering *rendering)
+{
+    return find_kernel(rendering, "point_query.comp", variant_of_point_query(rendering));
+}
+
+/* ---- those that are made at the same time ---- */
+
+typedef struct Requests {
+    KrsRendering *rendering;
+    KernelRequest items[5 + 2 * KRS_MOST_MARCH_GROUPS];
+    size_t        count;
+    bool          failed; /* which is noted */
+} Requests;
+
+static void request(Requests *requests, const char *file, KernelVariant variant)
+{
+    KernelEntry *entry = find_entry(requests->rendering, file, variant);
+    requests->failed   = requests->failed || !entry;
+    if (entry && !entry->kernel.pipeline)
+        requests->items[requests->count++] = request_of(entry);
+}
+
+/* Where march groups follow one another each of them has its own kernel of rays and of normals. */
+static void request_marches(Requests *requests, KrsTrace trace, KrsSchedule schedule)
+{
+    KrsRendering *rendering = requests->rendering;
+    KrsNormals    usual     = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
+    bool     per_component  = rendering_marches_per_component(rendering, KRS_COMPONENTS_DEFAULT);
+    bool     packed         = rendering_marches_packed(rendering, KRS_COMPONENTS_DEFAULT, trace);
+    uint32_t whole          = packed                              ? MARCH_PACKED
+                              : rendering_knows_planes(rendering) ? MARCH_WITHOUT_PLANES
+                                                                  : 0;
+    uint32_t groups         = per_component ? (uint32_t)rendering->program->march_group_count : 0;
+    if (trace == KRS_TRACE_EXACT)
+        request(requests, "trace.comp",
+                variant_of_trace(rendering, KRS_TRACE_PLAIN, schedule, whole));
+    if (!per_component)
+        request(requests, "trace.comp", variant_of_trace(rendering, trace, schedule, whole));
+    for (uint32_t march_group = 1; march_group <= groups; march_group++) {
+        KrsSchedule own = schedule_of_kernel(
+            rendering_schedule_of_march_group(rendering, KRS_SCHEDULE_DEFAULT, march_group));
+        request(requests, "trace.comp", variant_of_trace(rendering, trace, own, march_group));
+        request(requests, "normals.comp", variant_of_normals(rendering, usual, march_group));
+    }
+}
+
+static void request_pictures(Requests *requests, KrsTrace trace, KrsSchedule schedule)
+{
+    KrsRendering *rendering = requests->rendering;
+    KrsNormals    usual     = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
+    request(requests, "normals.comp", variant_of_normals(rendering, usual, 0));
+    request(requests, "shade.comp", variant_of_shade(rendering));
+    request(requests, "secondary.comp",
+            variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace)));
+    request_marches(requests, trace, schedule);
+}
+
+bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
+{
+    KrsTrace    trace    = KRS_TRACE_DEFAULT;
+    KrsSchedule schedule = KRS_SCHEDULE_DEFAULT;
+    Requests    requests = {.rendering = rendering};
+    rendering_choose(rendering, &trace, &schedule);
+    if (purpose == KRS_FOR_PICTURES) {
+        request_pictures(&requests, trace, schedule_of_kernel(schedule));
+    } else {
+        request(&requests, "query.comp", variant_of_questions(rendering, schedule));
+        request(&requests, "point_query.comp", variant_of_point_query(rendering));
+    }
+    return !requests.failed &&
+           kernels_make(rendering->renderer, rendering->scene_set, requests.items, requests.count,
+                        &rendering->spirv_ms, &rendering->pipeline_ms);
+}
+
+void kernels_destroy(Gpu *gpu, KernelMap *map)
+{
+    for (KernelEntry *entry = map->first, *next; entry; entry = next) {
+        next = entry->next;
+        kernel_destroy(gpu, &entry->kernel);
+        gpu_release(gpu, entry);
+    }
+    map->first = NULL;
+}

@@ -1,0 +1,95 @@
+/*
+ * methods.c: which method, schedule and grouping of components suit a scene on a device.
+ */
+#include "runtime/tracer/renderer.h"
+
+/* Where a distance costs less than this, refilling lanes costs more than it gains. */
+#define FLOPS_WORTH_REFILL 150
+/* For a march group it is more: few of the rays of its tiles meet it. */
+#define FLOPS_WORTH_REFILL_OF_GROUP 350
+
+void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule)
+{
+    const Gpu *gpu      = &rendering->renderer->gpu;
+    bool       software = gpu_is_cpu(gpu);
+    bool       heavy    = rendering->program->flops >= FLOPS_WORTH_REFILL && gpu->refill_lanes > 0;
+    if (*trace == KRS_TRACE_DEFAULT)
+        *trace = rendering->program->along ? KRS_TRACE_EXACT : KRS_TRACE_AUTO;
+    /* What has no thickness is met by roots alone. */
+    if (rendering->program->sheets && (*trace < KRS_TRACE_EXACT || *trace >= KRS_TRACE_DIRECTIONAL))
+        *trace = KRS_TRACE_EXACT;
+    if (*schedule == KRS_SCHEDULE_DEFAULT)
+        *schedule = !software ? KRS_SCHEDULE_QUEUE
+                    : heavy   ? KRS_SCHEDULE_REFILL
+                              : KRS_SCHEDULE_PIXEL;
+}
+
+/* Of all loops of an invocation together: some devices end them silently after 65,535 iterations,
+   and an item that is begun may be finished. */
+#define MOST_ITERATIONS 24576
+
+uint32_t rendering_steps_within(const KrsRendering *rendering, uint32_t wanted)
+{
+    uint32_t most = MOST_ITERATIONS / (1 + rendering->program->loops);
+    return wanted < most ? wanted : most > 0 ? most : 1;
+}
+
+KrsSchedule rendering_schedule_of_march_group(const KrsRendering *rendering, KrsSchedule asked,
+                                              uint32_t march_group)
+{
+    KrsTrace trace = KRS_TRACE_DEFAULT;
+    bool     cheap = rendering->program->march_groups[march_group - 1].flops <
+                 FLOPS_WORTH_REFILL_OF_GROUP;
+    if (asked == KRS_SCHEDULE_DEFAULT && cheap && gpu_is_cpu(&rendering->renderer->gpu))
+        return KRS_SCHEDULE_PIXEL;
+    rendering_choose(rendering, &trace, &asked);
+    return asked;
+}
+
+/* Zones cut holes into planes. */
+bool rendering_knows_planes(const KrsRendering *rendering)
+{
+    return rendering->program->planes && rendering->zone_slots == 0;
+}
+
+/* On devices of type CPU alone: others leave far components out by branches. */
+bool rendering_marches_per_component(const KrsRendering *rendering, KrsComponents components)
+{
+    bool by_default = rendering->program->per_component && gpu_is_cpu(&rendering->renderer->gpu) &&
+                      !rendering->renderer->early_outs;
+    bool holes = rendering->program->planes && !rendering_knows_planes(rendering);
+    return rendering->program->march_group_count > 0 && !rendering->program->along && !holes &&
+           !rendering->camera_relative &&
+           (components == KRS_COMPONENTS_DEFAULT ? by_default : components == KRS_COMPONENTS_APART);
+}
+
+bool rendering_goes_along(const KrsRendering *rendering, KrsTrace trace)
+{
+    bool known = trace >= KRS_TRACE_DIRECTIONAL ? rendering->program->inverts
+                                                : rendering->program->along;
+    return trace >= KRS_TRACE_EXACT && known && !rendering->camera_relative;
+}
+
+bool rendering_marches_packed(const KrsRendering *rendering, KrsComponents components,
+                              KrsTrace trace)
+{
+    bool by_default = rendering->program->expensive >= 2 && !gpu_is_cpu(&rendering->renderer->gpu);
+    return rendering->program->scene_parts >= 2 && !rendering_goes_along(rendering, trace) &&
+           (components == KRS_COMPONENTS_DEFAULT ? by_default
+                                                 : components == KRS_COMPONENTS_PACKED);
+}
+
+KrsNormals rendering_normals(const KrsRendering *rendering, KrsNormals normals)
+{
+    if (rendering->program->sheets)
+        return KRS_NORMALS_ANALYTIC; /* differences see both sides of a sheet */
+    if (normals != KRS_NORMALS_DEFAULT)
+        return normals;
+    return rendering->program->algebraic ? KRS_NORMALS_ANALYTIC : KRS_NORMALS_OCTAHEDRON;
+}
+
+bool rendering_has_roots(const KrsRendering *rendering, KrsTrace trace)
+{
+    return (trace == KRS_TRACE_EXACT || rendering->program->sheets) && rendering->program->along &&
+           !rendering->camera_relative;
+}

@@ -1,0 +1,347 @@
+/*
+ * rendering.c: a scene on a device: its buffers, its parameters, and what is sent to the device.
+ */
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+#include "runtime/tracer/kernels.h"
+#include "runtime/tracer/layouts.h"
+
+/* The radius of a zone in which nothing is. */
+#define NO_ZONE (-1e30f)
+
+void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding,
+                    const Buffer *buffer)
+{
+    layouts_bind(&rendering->renderer->gpu, set, binding, buffer);
+}
+
+static bool sets_create(KrsRendering *rendering)
+{
+    Gpu        *gpu     = &rendering->renderer->gpu;
+    const char *attempt = "prepare the scene";
+    TRY(gpu, attempt,
+        vkCreateDescriptorPool(
+            gpu->device,
+            &(VkDescriptorPoolCreateInfo){
+                .sType         = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                .maxSets       = 3,
+                .poolSizeCount = 3,
+                .pPoolSizes =
+                    (VkDescriptorPoolSize[]){
+                        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 3},
+                        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * BUFFER_BINDINGS},
+                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 2 * TEXEL_BINDINGS},
+                    },
+            },
+            NULL, &rendering->pool));
+    VkDescriptorSet sets[3];
+    TRY(gpu, attempt,
+        vkAllocateDescriptorSets(
+            gpu->device,
+            &(VkDescriptorSetAllocateInfo){
+                .sType              = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                .descriptorPool     = rendering->pool,
+                .descriptorSetCount = 3,
+                .pSetLayouts        = (VkDescriptorSetLayout[]){rendering->renderer->scene_layout,
+                                                                rendering->renderer->frame_layout,
+                                                                rendering->renderer->frame_layout},
+            },
+            sets));
+    rendering->scene_set  = sets[0];
+    rendering->band_set   = sets[1];
+    rendering->points_set = sets[2];
+    return true;
+
+failed:
+    return false;
+}
+
+/* Of the parameter block, aside from values of the frame that kernels may find by themselves. */
+static uint32_t slots_without_values(const KrsProgram *program)
+{
+    return program->parameter_slots + KRS_MOST_ZONES + program->camera_relative_slots + 1;
+}
+
+static uint32_t most_slots(const KrsRendering *rendering)
+{
+    return rendering->renderer->gpu.properties.limits.maxUniformBufferRange / (4 * sizeof(float));
+}
+
+uint32_t rendering_value_slots(const KrsRendering *rendering)
+{
+    const KrsProgram *program = rendering->program;
+    uint32_t          slots   = slots_without_values(program) + program->value_slots;
+    return program->camera_relative || slots <= most_slots(rendering) ? program->value_slots : 0;
+}
+
+static bool buffers_create(KrsRendering *rendering)
+{
+    Gpu     *gpu   = &rendering->renderer->gpu;
+    uint32_t slots = slots_without_values(rendering->program) + rendering_value_slots(rendering);
+    if (slots > most_slots(rendering)) {
+        gpu_refuse(gpu, KRS_NO_DEVICE, "the device has no room for the scene's %u parameters",
+                   rendering->program->parameter_slots);
+        return false;
+    }
+    if (!buffer_create(gpu, &rendering->parameters, (VkDeviceSize)slots * 4 * sizeof(float),
+                       UPLOADED, "scene's parameters") ||
+        !buffer_create(gpu, &rendering->frame, sizeof(FrameBlock), UPLOADED, "camera") ||
+        !buffer_create(gpu, &rendering->control, sizeof(ControlBlock), SHARED, "control block") ||
+        (!gpu_is_cpu(gpu) && !buffer_create(gpu, &rendering->device_control, sizeof(ControlBlock),
+                                            ON_DEVICE, "control block")))
+        return false;
+    rendering_bind(rendering, rendering->scene_set, 0, &rendering->parameters);
+    rendering_bind(rendering, rendering->band_set, FRAME_BINDING, &rendering->frame);
+    rendering_bind(rendering, rendering->band_set, CONTROL_BINDING, rendering_control(rendering));
+    return true;
+}
+
+/* What a kernel with the scene does for an item before it may be interrupted, in distances, about;
+   without the scene it does as much as some operations. */
+static const double distances_of_item[KRS_PHASE_COUNT] = {
+    [KRS_PHASE_BEAMS] = 64,   [KRS_PHASE_PRIMARY] = 16,  [KRS_PHASE_NORMALS] = 7,
+    [KRS_PHASE_SHADOWS] = 64, [KRS_PHASE_OCCLUSION] = 5, [KRS_PHASE_SHADING] = 4,
+    [KRS_PHASE_RESOLVE] = 1,
+};
+#define FLOPS_WITHOUT_SCENE 1000
+
+/* The first slice, in groups: 50 ms on a slow device of its kind, until more is known.  A processor
+   is interrupted at every look of its driver, so there it may be short. */
+static uint32_t guess_slice(const KrsRendering *rendering, int phase, bool has_scene)
+{
+    static const double slow[] = {
+        /* flops of 50 ms, where a tenth of what is promised is reached */
+        [KRS_DEVICE_OTHER] = 5e8,      [KRS_DEVICE_CPU] = 5e8,       [KRS_DEVICE_VIRTUAL] = 5e8,
+        [KRS_DEVICE_INTEGRATED] = 1e9, [KRS_DEVICE_DISCRETE] = 1e10,
+    };
+    const Gpu *gpu    = &rendering->renderer->gpu;
+    double     flops  = has_scene ? rendering->program->flops * distances_of_item[phase]
+                                  : FLOPS_WITHOUT_SCENE;
+    double     groups = slow[gpu_describe(gpu->physical).kind] / (64 * fmax(flops, 1));
+    return gpu_is_cpu(gpu) ? 8 : (uint32_t)fmin(fmax(groups, 1), MOST_GROUPS);
+}
+
+KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRendering **out)
+{
+    return krs_rendering_new_for(renderer, scene, KRS_FOR_PICTURES, out);
+}
+
+KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, KrsPurpose purpose,
+                                KrsRendering **out)
+{
+    *out = NULL;
+    renderer_clear(renderer);
+    KrsRendering *rendering = gpu_alloc(&renderer->gpu, 1, sizeof *rendering, "prepare the scene");
+    if (!rendering)
+        return renderer->gpu.status;
+    rendering->renderer    = renderer;
+    rendering->scene       = scene;
+    rendering->program     = krs_scene_program(scene);
+    rendering->purpose     = purpose;
+    rendering->panoramic   = krs_scene_is_panoramic(scene);
+    rendering->spirv_ms    = renderer->spirv_ms;
+    rendering->pipeline_ms = renderer->pipeline_ms;
+    for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
+        for (int has_scene = 0; has_scene < 2; has_scene++)
+            rendering->groups_at_once[phase][has_scene] = guess_slice(rendering, phase, has_scene);
+    if (!sets_create(rendering) || !buffers_create(rendering) ||
+        (rendering->panoramic &&
+         !renderer_create_panoramic(renderer, &rendering->spirv_ms, &rendering->pipeline_ms)) ||
+        !kernels_create(rendering, purpose)) {
+        KrsStatus status = renderer->gpu.status;
+        krs_rendering_free(rendering);
+        return status;
+    }
+    *out = rendering;
+    return KRS_OK;
+}
+
+void krs_rendering_free(KrsRendering *rendering)
+{
+    if (!rendering)
+        return;
+    Gpu    *gpu       = &rendering->renderer->gpu;
+    Band   *band      = &rendering->band;
+    Buffer *buffers[] = {&rendering->parameters,
+                         &rendering->frame,
+                         &rendering->control,
+                         &rendering->device_control,
+                         &rendering->lights,
+                         &rendering->points,
+                         &rendering->answers,
+                         &rendering->query_rays,
+                         &rendering->ray_hits,
+                         &rendering->taken,
+                         &band->ends,
+                         &band->hits,
+                         &band->results,
+                         &band->fetched,
+                         &band->queue,
+                         &band->taken,
+                         &band->tiles};
+    gpu_wait(gpu); /* kernels may still be warmed up; a device that is lost has none */
+    for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
+        buffer_destroy(gpu, buffers[i]);
+    kernels_destroy(gpu, &rendering->kernels);
+    if (!gpu->stuck)
+        vkDestroyDescriptorPool(gpu->device, rendering->pool, NULL);
+    gpu_release(gpu, rendering);
+}
+
+bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count,
+                          const double rebase_origin[3])
+{
+    Gpu    *gpu    = &rendering->renderer->gpu;
+    Buffer *buffer = &rendering->lights;
+    /* Kernels load as many at once, and those beyond the last as well. */
+    VkDeviceSize bytes = buffer_texel_bytes((count + LIGHTS_AT_ONCE) * sizeof(LightBlock));
+    if (buffer->size < bytes) {
+        buffer_destroy(gpu, buffer);
+        if (!buffer_create(gpu, buffer, bytes, UPLOADED, "lights") ||
+            !layouts_view_texels(gpu, LIGHTS_BINDING, buffer, "lights"))
+            return false;
+        rendering_bind(rendering, rendering->band_set,
+                       gpu->texels ? LIGHTS_BINDING : LIGHT_ROWS_BINDING, buffer);
+    }
+    LightBlock *blocks = buffer->bytes;
+    for (size_t i = 0; i < count; i++) {
+        const KrsLight *light = &lights[i];
+        blocks[i].kind        = (light->positional ? LIGHT_POSITIONAL : 0) |
+                         (light->shadow ? LIGHT_CASTS_SHADOWS : 0);
+        blocks[i].softness = (float)light->softness;
+        for (int k = 0; k < 3; k++) {
+            blocks[i].vector[k] = (float)(light->vector[k] -
+                                          (light->positional ? rebase_origin[k] : 0));
+            blocks[i].color[k]  = (float)light->color[k];
+        }
+    }
+    return true;
+}
+
+/* Kernels with room for so many zones: 1, 2, 4, 8 or 16; those that have more room are as good. */
+static bool choose_zones(KrsRendering *rendering, size_t count)
+{
+    uint32_t most              = rendering->most_zone_slots;
+    rendering->camera_relative = false;
+    rendering->zone_slots      = count > 0 ? most : 0;
+    if (count <= most)
+        return true;
+    for (most = 1; most < count;)
+        most *= 2;
+    rendering->zone_slots = rendering->most_zone_slots = most;
+    return kernels_create(rendering, rendering->purpose);
+}
+
+bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame)
+{
+    /* Into memory of the host first: the compiler may read back what it writes. */
+    Gpu   *gpu         = &rendering->renderer->gpu;
+    size_t first_value = rendering->program->parameter_slots;
+    size_t values = rendering_value_slots(rendering), slots = first_value + values;
+    float(*block)[4] = gpu_alloc(gpu, slots + KRS_MOST_ZONES, sizeof *block,
+                                 "set the scene's parameters");
+    if (!block)
+        return false;
+    krs_frame_parameters(frame, block);
+    if (values > 0)
+        krs_frame_values(frame, block + first_value);
+    size_t zones = krs_frame_zones(frame, block + slots);
+    for (size_t i = zones; i < KRS_MOST_ZONES; i++)
+        block[slots + i][3] = NO_ZONE;
+    memcpy(rendering->parameters.bytes, block, (slots + KRS_MOST_ZONES) * sizeof *block);
+    gpu_release(gpu, block);
+    return choose_zones(rendering, zones);
+}
+
+bool rendering_rebase(KrsRendering *rendering, KrsFrame *frame, const double rebase_origin[3])
+{
+    Gpu   *gpu   = &rendering->renderer->gpu;
+    size_t first = rendering->program->parameter_slots + rendering->program->value_slots +
+                   KRS_MOST_ZONES;
+    size_t slots     = rendering->program->camera_relative_slots;
+    float(*block)[4] = gpu_alloc(gpu, slots + 1, sizeof *block,
+                                 "move the scene's origin to the camera");
+    if (!block)
+        return false;
+    krs_frame_rebase(frame, rebase_origin, block);
+    memcpy((char *)rendering->parameters.bytes + first * sizeof *block, block,
+           slots * sizeof *block);
+    gpu_release(gpu, block);
+    rendering->camera_relative = true;
+    rendering->zone_slots      = 0;
+    return true;
+}
+
+uint32_t rendering_spread(const KrsRendering *rendering, uint32_t count)
+{
+    if (!gpu_is_cpu(&rendering->renderer->gpu) || count < 3)
+        return 1;
+    for (uint32_t step = (uint32_t)(0.618 * count);; step++) {
+        uint32_t a = count, b = step;
+        while (b != 0) {
+            uint32_t rest = a % b;
+            a             = b;
+            b             = rest;
+        }
+        if (a == 1)
+            return step;
+    }
+}
+
+const Buffer *rendering_control(const KrsRendering *rendering)
+{
+    return rendering->device_control.buffer ? &rendering->device_control : &rendering->control;
+}
+
+bool rendering_begin(KrsRendering *rendering)
+{
+    Gpu *gpu = &rendering->renderer->gpu;
+    if (!gpu_begin(gpu))
+        return false;
+    if (rendering->device_control.buffer) {
+        vkCmdCopyBuffer(gpu->commands, rendering->control.buffer, rendering->device_control.buffer,
+                        1, &(VkBufferCopy){0, 0, sizeof(ControlBlock)});
+        gpu_barrier(gpu);
+    }
+    return true;
+}
+
+bool rendering_finish(KrsRendering *rendering, double *ms)
+{
+    Gpu               *gpu      = &rendering->renderer->gpu;
+    const VkDeviceSize counters = offsetof(ControlBlock, queued);
+    if (rendering->device_control.buffer) {
+        gpu_barrier(gpu);
+        vkCmdCopyBuffer(gpu->commands, rendering->device_control.buffer, rendering->control.buffer,
+                        1, &(VkBufferCopy){counters, counters, sizeof(ControlBlock) - counters});
+    }
+    return gpu_finish(gpu, ms);
+}
+
+static void bind_kernel(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,
+                        const void *work, uint32_t work_bytes)
+{
+    VkCommandBuffer  commands = rendering->renderer->gpu.commands;
+    VkPipelineLayout layout   = rendering->renderer->layout;
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel->pipeline);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 2,
+                            (VkDescriptorSet[]){rendering->scene_set, set}, 0, NULL);
+    vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, work_bytes, work);
+}
+
+void rendering_dispatch(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,
+                        const void *work, uint32_t work_bytes, uint32_t groups)
+{
+    bind_kernel(rendering, kernel, set, work, work_bytes);
+    vkCmdDispatch(rendering->renderer->gpu.commands, groups, 1, 1);
+}
+
+void rendering_dispatch_counted(KrsRendering *rendering, const Kernel *kernel, VkDescriptorSet set,
+                                const void *work, uint32_t work_bytes)
+{
+    bind_kernel(rendering, kernel, set, work, work_bytes);
+    vkCmdDispatchIndirect(rendering->renderer->gpu.commands, rendering_control(rendering)->buffer,
+                          offsetof(ControlBlock, groups));
+}
