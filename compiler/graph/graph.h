@@ -51,7 +51,7 @@ typedef struct NodeValue {
     double v[4]; /* booleans 0 or 1; UINT exact */
 } NodeValue;
 
-/* evaluate.c: the value of one operation for operand values of these types; never -0. */
+/* op_values.c: the value of one operation for operand values of these types; never -0. */
 NodeValue op_evaluate(Op op, GraphType type, uint32_t index, const GraphType *types,
                       const NodeValue *operands);
 

@@ -102,7 +102,7 @@ Fact fact_smin_chamfer(const RuleInput *input)
     return fact_smooth(input, 3, smooth_range(input, 0), slope, hull);
 }
 
-/* On each step one of a and b has the derivative 1 and the other 0 (evaluate.c). */
+/* On each step one of a and b has the derivative 1 and the other 0 (op_values.c). */
 Fact fact_smin_stairs(const RuleInput *input)
 {
     Range  a = input->operands[0].value[0], b = input->operands[1].value[0];

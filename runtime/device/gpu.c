@@ -14,7 +14,7 @@
 #include "runtime/device/resources.h"
 
 /* Where fewer texels than that can be read, buffers are: the lowest band of the widest picture has
-   so many (render.c). */
+   so many (band.c). */
 #define LEAST_TEXELS (1u << 22)
 /* What every device must have at least (Vulkan, table 53). */
 #define LEAST_TEXEL_LIMIT (1u << 16)

@@ -336,6 +336,17 @@ LaneBudget pixel_budget(const Job *job)
     return (LaneBudget){64, gpu_is_cpu(job->gpu) ? ITEMS_OF_LANE : 1, 0};
 }
 
+LaneBudget lane_budget(const Job *job)
+{
+    uint32_t steps = job->options.steps_at_once;
+    if (job->schedule == KRS_SCHEDULE_REFILL)
+        steps = 8 * steps < MOST_LANE_STEPS ? 8 * steps : MOST_LANE_STEPS;
+    steps = rendering_steps_within(job->rendering, steps);
+    if (job->schedule == KRS_SCHEDULE_REFILL)
+        return (LaneBudget){job->gpu->refill_lanes, 128, steps};
+    return (LaneBudget){64, 1, steps};
+}
+
 bool dispatch_pixels(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
                      Items items)
 {

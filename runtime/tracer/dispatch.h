@@ -30,6 +30,7 @@ typedef struct Items {
 typedef struct LaneBudget {
     uint32_t lanes, items_per_lane, steps;
 } LaneBudget;
+#define MOST_LANE_STEPS 16384 /* of a lane that takes item after item */
 
 typedef struct Dispatch {
     KrsPhase      phase;
@@ -65,6 +66,8 @@ bool dispatch_finish(Job *job);
 /* A kernel over items of which each takes the steps that it needs (schedule.glsl), */
 bool dispatch_items(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
                     Items items, LaneBudget budget);
+/* by the schedule of the kernel that runs now and the steps at once that were asked for, */
+LaneBudget lane_budget(const Job *job);
 /* or that all cost alike (pixels.glsl): the budget of such a dispatch. */
 bool       dispatch_pixels(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
                            Items items);

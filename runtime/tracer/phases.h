@@ -44,6 +44,12 @@ typedef struct Job {
    `progress_done` and `progress_share` of the job are its own. */
 bool phases_run(Job *job, WorkBlock *work, uint32_t index);
 
+/* ---- march.c ---- */
+/* Finds what the rays hit: beams first, then the rays; of groups of components one by one. */
+bool march_all(Job *job, const WorkBlock *work);
+/* How many tiles the band has. */
+uint32_t tiles_of_band(const WorkBlock *work);
+
 /* ---- per_component.c ---- */
 /* Finds the parts that are marched one by one in this frame, and their kernels. */
 bool per_component_prepare(Job *job, KrsFrame *frame);

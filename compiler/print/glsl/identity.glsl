@@ -1,6 +1,6 @@
 /*
  * identity.glsl: numbers of copies by hashing: integers only, so that every device and
- * graph/evaluate.c agree to the bit.
+ * graph/op_values.c agree to the bit.
  */
 
 uint krs_scramble(uint x)

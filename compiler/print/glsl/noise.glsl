@@ -1,5 +1,5 @@
 /*
- * noise.glsl: gradient noise: the same hashes as in graph/evaluate.c, so the same hills.
+ * noise.glsl: gradient noise: the same hashes as in graph/op_values.c, so the same hills.
  *
  * A lane takes both sides of a choice, so directions are chosen by arithmetic on what is there.
  */

@@ -1,0 +1,32 @@
+/*
+ * derive_rules.h: the rules by which expressions are derived, one for each row of ops.def.
+ */
+#ifndef KRS_DERIVE_RULES_H
+#define KRS_DERIVE_RULES_H
+
+#include "compiler/graph/graph.h"
+
+typedef struct Derivation {
+    Graph      *graph;
+    bool        breaks;   /* what was derived so far is true only between kinks and jumps */
+    const bool *held;     /* nodes that are taken for constants, by number; or NULL */
+    size_t      held_end; /* none from this number on */
+} Derivation;
+
+/* The derivative of a node from those of its operands, `inner`; NODE_NONE: there is none. */
+typedef Node DeriveRule(Derivation *d, const Expr *e, Node node, const Node *inner);
+#define RULES(name, cost, promises, simplify, derive, ...) DeriveRule derive;
+#include "compiler/graph/ops.def"
+
+/* ---- what the rules share ---- */
+
+/* A derivative that holds only where nothing jumps or breaks off. */
+Node between_jumps(Derivation *d, Node derivative);
+/* What a length is divided by: below it, what is divided is 0. */
+Node not_zero(Derivation *d, Node length);
+bool is_zero(const Graph *graph, Node node);
+Node zero_of(Graph *graph, GraphType type);
+/* Whether the operands from `from` up to `count` do not depend on the point. */
+bool others_are_constant(const Graph *g, const Node *inner, int from, int count);
+
+#endif

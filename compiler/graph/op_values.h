@@ -1,0 +1,47 @@
+/*
+ * op_values.h: what single operations are, as the rows of ops.def name it.
+ *
+ * evaluate.c runs MAP rows, leaves and guards by itself; op_evaluate of graph.h does any operation.
+ */
+#ifndef KRS_OP_VALUES_H
+#define KRS_OP_VALUES_H
+
+#include <math.h>
+
+#include "compiler/graph/graph.h"
+
+static inline uint32_t components(GraphType type) { return type <= TYPE_VEC4 ? (uint32_t)type : 1; }
+
+static inline NodeValue number(double a) { return (NodeValue){{a}}; }
+static inline NodeValue vector3(double x, double y, double z) { return (NodeValue){{x, y, z}}; }
+
+/* What is at 0 may be anywhere inside: there, inside of something else, only the rest can tell how
+   deep. */
+static inline bool guard_decides(double bound, double least, double far)
+{
+    return bound >= fmin(least, far) && bound > fmin(far, 0);
+}
+
+/* ---- the `value` column of MAP rows ---- */
+
+static inline double value_sign(double a) { return (a > 0) - (a < 0); }
+static inline double value_unit(double a) { return fmin(fmax(a, -1), 1); }
+
+/* Exact, unlike a - b * floor(a / b), so that it never leaves [0, b). */
+static inline double value_mod(double a, double b)
+{
+    double rest = fmod(a, b);
+    return rest != 0 && (rest < 0) != (b < 0) ? rest + b : rest;
+}
+
+/* The sign of a zero means nothing here. */
+static inline double value_pow(double a, double b) { return pow(a + 0.0, b); }
+static inline double value_atan2(double a, double b) { return atan2(a + 0.0, b + 0.0); }
+
+static inline double value_smoothstep(double a, double b, double c)
+{
+    double t = a == b ? !(c < a) : fmin(fmax((c - a) / (b - a), 0), 1);
+    return t * t * (3 - 2 * t);
+}
+
+#endif
