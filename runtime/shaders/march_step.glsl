@@ -1,0 +1,108 @@
+/*
+ * march_step.glsl: what the next distance tells a ray or beam: how far it goes next, whether it has
+ * crossed a surface and where (trace.comp has what a march is).
+ */
+// The surface is crossed between t, where the clearance is positive, and t + step, where it is not:
+// the root of the chord.  The result is at least the clearance at t, within which there is no
+// surface.
+float find_crossing(float clearance)
+{
+    float along = march.clearance > clearance
+                      ? min(march.clearance / (march.clearance - clearance), 2.0)
+                      : 0.0;
+    return max(march.step * along, march.clearance);
+}
+
+// The next step from a position with this clearance, given the last slope and the mean slope: the
+// balls should still meet, or the surface be crossed with no more unverified than is permitted.
+float find_step(float clearance, float last_slope, float slope, float permitted, float tolerance)
+{
+    if (TRACE == RELAXED)
+        return RELAXATION * clearance + tolerance;
+    if (TRACE == AUTOMATIC) {
+        bool  crosses = OVERSHOOT * clearance <= -last_slope * (clearance + permitted);
+        float factor = crosses ? OVERSHOOT / -last_slope : 2.0 / (1.0 - min(slope, 0.98));
+        return max(clearance, factor * clearance) + tolerance;
+    }
+    return clearance + tolerance;
+}
+
+#ifdef PROBE
+// The ball that was tried has the radius `step` and its centre at t + step, so it touches t.  It is
+// empty if a ball more than 1 times as large would be.  The ray hits where a ball no larger than
+// the tolerance is not empty.
+void take_distance(float larger)
+{
+    float radius = march.step, empty = float(larger > 1.0);
+    float at = march.t + radius;
+    float clearance = radius * larger; // at the middle, about
+    march.side = 1.0;
+    march.steps++;
+    float least = 0.5 * tolerance_at(at);
+    if (empty == 0.0 && radius <= 1.01 * least) {
+        march.t = at;
+        march.state = STATE_HIT;
+        return;
+    }
+    if (PROBE == BINARY) {
+        march.step = radius * (empty > 0.0 ? 2.0 : 0.5);
+    } else {
+        // The clearance at the centre of the next ball, clearance + slope * offset, should be its
+        // radius, or a little more.
+        float slope = march.clearance > 0.0 ? (clearance - march.clearance) / (at - march.slope)
+                                            : -1.0;
+        slope = clamp(slope, -1.0, 0.9);
+        float excess = slope * (empty > 0.0 ? radius : -radius);
+        march.step = SAFETY * (clearance + excess) / (1.0 - SAFETY * slope);
+        march.step = empty > 0.0 ? clamp(march.step, 0.1 * radius, 8.0 * radius)
+                                 : clamp(march.step, 0.1 * radius, 0.7 * radius);
+        march.clearance = clearance;
+        march.slope = at;
+    }
+    march.step = max(march.step, least);
+    march.t += 2.0 * empty * radius;
+    march.state = march.t > end ? STATE_MISS : STATE_MARCHING;
+}
+#else
+void take_distance(float distance)
+{
+    bool  is_ray = control.phase == TRACE_RAYS, refining = march.state == STATE_REFINING;
+    float at = march.t + march.step, pixel = pixel_base + pixel_slope * at;
+    if (march.side == 0.0) {
+        march.side = distance < 0.0 ? -1.0 : 1.0;
+        width = distance < 0.0 ? inside_width() : width;
+    }
+    float taken = width.x + width.y * at;
+    float clearance = (march.side * distance - taken) * shrinking;
+    float rounded = ROUNDING * (rounding + at), tolerance = tolerance_in_pixels * pixel + rounded;
+    float least = is_ray ? 0.0 : max(rounded, (BEAM_MARGIN - 1.0) * taken);
+    float unverified = march.step - march.clearance; // a surface may hide in an interval of this length
+    float permitted = is_ray ? frame.error * pixel : 0.0;
+    march.steps++;
+    bool found_surface = clearance <= least && (unverified <= permitted + tolerance || !is_ray) ||
+                         refining;
+    bool verified = !found_surface && clearance > least &&
+                    unverified <= clearance + 1.01 * tolerance;
+    bool accurate = unverified <= 2.0 * tolerance || refining || !is_ray ||
+                    TRACE == AUTOMATIC && -clearance <= SHALLOW * march.clearance;
+    float crossing = find_crossing(clearance);
+    float last_slope = march.step > 0.0 ? (clearance - march.clearance) / march.step : 0.0;
+    float slope = (1.0 - LEARNING) * march.slope + LEARNING * last_slope;
+
+    float shorter_step = max(0.4 * (march.step + march.clearance - max(clearance, 0.0)),
+                             march.clearance + tolerance);
+    float advance = found_surface && accurate ? is_ray ? crossing : march.clearance : 0.0;
+    march.t = verified ? at : march.t + advance;
+    march.step = verified        ? find_step(clearance, last_slope, slope, permitted, tolerance)
+                 : found_surface ? crossing
+                                 : shorter_step;
+    march.clearance = verified ? clearance : march.clearance;
+    march.slope = verified ? slope : -1.0;
+    march.state = found_surface                           ? (accurate ? STATE_HIT : STATE_REFINING)
+                  : verified && at + clearance > end ? STATE_MISS
+                                                     : STATE_MARCHING;
+#ifdef PACKED
+    advance_to_next_part();
+#endif
+}
+#endif
