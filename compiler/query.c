@@ -136,8 +136,16 @@ KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count, d
     return KRS_OK;
 }
 
-/* Within 0 and 1, as pictures show it; what is not a number is 0. */
-static double saturate(double number) { return number > 0 ? fmin(number, 1) : 0; }
+/* Of a component: the numbers of a property of its material, within its limits, as pictures show
+   them; what is not a number is the lower one. */
+static void copy_property(const KrsFrame *frame, const Node *roots, ComponentRoot root, double *to)
+{
+    const RootInfo *info = &root_info[root];
+    for (int k = 0; k < (info->type == TYPE_VEC3 ? 3 : 1); k++) {
+        double number = frame->values[roots[root]].v[k];
+        to[k]         = number > info->low ? fmin(number, info->high) : info->low;
+    }
+}
 
 static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
 {
@@ -150,13 +158,11 @@ static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
         return;
     tape_run_surface(&scene->surface, point, hit->normal, 0, frame->values);
     const Node *root = surface_roots(&scene->roots, hit->component - 1);
-    hit->level       = (uint32_t)frame->values[root[ROOT_LEVEL]].v[0];
-    hit->instance    = (uint32_t)frame->values[root[ROOT_INSTANCE]].v[0];
-    frame_copy(frame, root[ROOT_COLOR], hit->color);
-    hit->roughness = saturate(frame->values[root[ROOT_ROUGHNESS]].v[0]);
-    hit->metallic  = saturate(frame->values[root[ROOT_METALLIC]].v[0]);
-    for (int k = 0; k < 3; k++)
-        hit->color[k] = saturate(hit->color[k]);
+    hit->level       = (uint32_t)frame->values[root[ROOT_level]].v[0];
+    hit->instance    = (uint32_t)frame->values[root[ROOT_instance]].v[0];
+    copy_property(frame, root, ROOT_color, hit->color);
+    copy_property(frame, root, ROOT_roughness, &hit->roughness);
+    copy_property(frame, root, ROOT_metallic, &hit->metallic);
     /* No mirror is smooth where a zone cuts. */
     if (hit->distance > frame->values[root[ROOT_DISTANCE]].v[0])
         memcpy(hit->shading, hit->normal, sizeof hit->shading);

@@ -2,6 +2,7 @@
  * material.c: materials, and colours that stand for one.
  */
 #include "compiler/eval/elaborate.h"
+#include "compiler/lower/lower.h"
 
 /* A number or a colour that may depend on the point; *property stays when it is not given. */
 static void material_property(Elaboration *e, const Environment *env, const Syntax *block,
@@ -22,12 +23,11 @@ static void material_property(Elaboration *e, const Environment *env, const Synt
 
 static Material *material_new(Elaboration *e, const char *name)
 {
-    Material *material  = arena_new(e->arena, Material);
-    material->name      = name;
-    material->color     = graph_vec3(e->graph, 0.6, 0.6, 0.6);
-    material->roughness = graph_number(e->graph, 0.6);
-    material->metallic  = graph_number(e->graph, 0);
-    material->emission  = graph_vec3(e->graph, 0, 0, 0);
+    Material *material = arena_new(e->arena, Material);
+    material->name     = name;
+#define MATERIAL(property, type, otherwise, nothing, low, high, blends) \
+    material->property = root_otherwise(e->graph, ROOT_##property);
+#include "compiler/shape/surface.def"
     return material;
 }
 
@@ -37,10 +37,9 @@ Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *s
     Material *material = material_new(e, syntax->name);
     bool      outer    = e->in_material;
     e->in_material     = true;
-    material_property(e, env, syntax, "color", TYPE_VEC3, &material->color);
-    material_property(e, env, syntax, "roughness", TYPE_FLOAT, &material->roughness);
-    material_property(e, env, syntax, "metallic", TYPE_FLOAT, &material->metallic);
-    material_property(e, env, syntax, "emission", TYPE_VEC3, &material->emission);
+#define MATERIAL(name, type, otherwise, nothing, low, high, blends) \
+    material_property(e, env, syntax, #name, TYPE_##type, &material->name);
+#include "compiler/shape/surface.def"
     e->in_material = outer;
     return (Value){.type = VALUE_MATERIAL, .material = material};
 }

@@ -86,7 +86,10 @@ Value method_color_by(Elaboration *e, const Shape *shape, Call *call)
         return value_error();
     Material *material = arena_new(e->arena, Material);
     Node      number   = value_node(e, field->value);
-    *material          = (Material){"palette", color_at(e->graph, number, colors, count), NODE_NONE,
-                                    NODE_NONE, NODE_NONE};
+    material->name     = "palette";
+#define MATERIAL(property, type, otherwise, nothing, low, high, blends) \
+    material->property = NODE_NONE;
+#include "compiler/shape/surface.def"
+    material->color = color_at(e->graph, number, colors, count);
     return value_shape(make_paint(e->builder, shape, material, call->syntax->span));
 }

@@ -14,10 +14,8 @@ static const struct BlockProperty {
     const char *name;
     bool        later;
 } block_properties[] = {
-    {SYNTAX_MATERIAL, "color", false},
-    {SYNTAX_MATERIAL, "roughness", false},
-    {SYNTAX_MATERIAL, "metallic", false},
-    {SYNTAX_MATERIAL, "emission", false},
+#define MATERIAL(name, type, otherwise, nothing, low, high, blends) {SYNTAX_MATERIAL, #name, false},
+#include "compiler/shape/surface.def"
     {SYNTAX_MATERIAL, "transmission", true},
     {SYNTAX_MATERIAL, "ior", true},
     {SYNTAX_MATERIAL, "absorption", true},

@@ -19,7 +19,10 @@ const Shape *make_smooth(ShapeBuilder *builder, const Shape *shape, Node width, 
 /* Whether a material uses `u` or `v` (OP_UV), or `orbit_trap` (OP_TRAP). */
 static bool material_needs(ShapeBuilder *builder, const Material *material, Op leaf)
 {
-    Node   all[] = {material->color, material->roughness, material->metallic, material->emission};
+    const Node all[] = {
+#define MATERIAL(name, type, otherwise, nothing, low, high, blends) material->name,
+#include "compiler/shape/surface.def"
+    };
     Node   roots[sizeof all / sizeof *all];
     size_t count = 0;
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
@@ -78,10 +81,9 @@ Lowered lower_paint(Lowering *l, const Shape *shape, LowerContext context)
         NODE_NONE,     result.surface.trap};
     const Material *material = shape->material;
     with.normal              = unit_normal(l->graph, result.surface.normal, context.normal);
-    paint_with(l, &result.surface.color, material->color, with);
-    paint_with(l, &result.surface.roughness, material->roughness, with);
-    paint_with(l, &result.surface.metallic, material->metallic, with);
-    paint_with(l, &result.surface.emission, material->emission, with);
+#define MATERIAL(name, type, otherwise, nothing, low, high, blends) \
+    paint_with(l, &result.surface.name, material->name, with);
+#include "compiler/shape/surface.def"
     return result;
 }
 

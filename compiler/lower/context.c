@@ -11,9 +11,13 @@
  */
 #include "compiler/lower/context.h"
 
-const Lowered lowered_nothing = {NODE_NONE,
-                                 {NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE, NODE_NONE,
-                                  NODE_NONE, NODE_NONE, NODE_NONE}};
+const Lowered lowered_nothing = {
+    .distance = NODE_NONE,
+#define INNER(name, blends)                                         .surface.name = NODE_NONE,
+#define MATERIAL(name, type, otherwise, nothing, low, high, blends) INNER(name, blends)
+#define IDENTITY(name, type, shown, otherwise, nothing, blends)     INNER(name, blends)
+#include "compiler/shape/surface.def"
+};
 
 LowerContext context_new(Node point, bool lipschitz)
 {

@@ -9,10 +9,13 @@
 #include "compiler/lower/along_method.h"
 #include "compiler/shape/shape.h"
 
-/* What a hit needs; NODE_NONE in `color`: not painted yet.  `normal` is in the space of the shape
-   that was lowered; it need not be a unit vector (unit_normal). */
+/* What a hit needs (surface.def); NODE_NONE in `color`: not painted yet.  `normal` is in the space
+   of the shape that was lowered; it need not be a unit vector (unit_normal). */
 typedef struct Surface {
-    Node color, roughness, metallic, emission, level, instance, uv, normal, trap;
+#define MATERIAL(name, type, otherwise, nothing, low, high, blends) Node name;
+#define IDENTITY(name, type, shown, otherwise, nothing, blends)     Node name;
+#define INNER(name, blends)                                         Node name;
+#include "compiler/shape/surface.def"
 } Surface;
 
 typedef struct Lowered {

@@ -11,29 +11,43 @@
 /* Farther than any scene: the distance to nothing.  Finite, so that sums stay numbers. */
 static const double NOWHERE = 1e30;
 
+const RootInfo root_info[ROOT_COUNT] = {
+#define MATERIAL(name, type, otherwise, nothing, low, high, blends) \
+    [ROOT_##name] = {#name, TYPE_##type, TYPE_##type, otherwise, nothing, true, low, high},
+#define IDENTITY(name, type, shown, otherwise, nothing, blends) \
+    [ROOT_##name] = {#name, TYPE_##type, TYPE_##shown, otherwise, nothing, false, 0, 0},
+#include "compiler/shape/surface.def"
+};
+
+Node root_otherwise(Graph *graph, ComponentRoot root)
+{
+    double       number     = root_info[root].otherwise;
+    const double numbers[3] = {number, number, number};
+    return graph_constant(graph, root_info[root].type, numbers);
+}
+
 static Node or_else(Node node, Node otherwise) { return node == NODE_NONE ? otherwise : node; }
 
 bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roots)
 {
-    Lowering     l        = {.graph    = graph,
-                             .scratch  = scratch,
-                             .surfaces = true,
-                             .thin     = true,
-                             .most     = graph->count + MOST_LOWERED};
-    LowerContext context  = context_new(graph_leaf(graph, OP_POINT), false);
-    context.normal        = graph_leaf(graph, OP_NORMAL);
-    context.footprint     = graph_leaf(graph, OP_FOOTPRINT);
-    Lowered all           = lower_shape(&l, shape, context);
-    Node    distance      = or_else(all.distance, graph_number(graph, NOWHERE));
-    roots[ROOT_DISTANCE]  = divide_by_slope(graph, distance, shape->slope);
-    roots[ROOT_COLOR]     = or_else(all.surface.color, graph_vec3(graph, 0.6, 0.6, 0.6));
-    roots[ROOT_ROUGHNESS] = or_else(all.surface.roughness, graph_number(graph, 0.6));
-    roots[ROOT_METALLIC]  = or_else(all.surface.metallic, graph_number(graph, 0));
-    roots[ROOT_EMISSION]  = or_else(all.surface.emission, graph_vec3(graph, 0, 0, 0));
-    roots[ROOT_LEVEL]     = or_else(all.surface.level, graph_number(graph, 0));
-    roots[ROOT_INSTANCE]  = or_else(all.surface.instance, graph_uint(graph, 1));
-    Node normal           = or_else(all.surface.normal, context.normal);
-    roots[ROOT_NORMAL]    = unit_normal(graph, normal, context.normal);
+    Lowering     l       = {.graph    = graph,
+                            .scratch  = scratch,
+                            .surfaces = true,
+                            .thin     = true,
+                            .most     = graph->count + MOST_LOWERED};
+    LowerContext context = context_new(graph_leaf(graph, OP_POINT), false);
+    context.normal       = graph_leaf(graph, OP_NORMAL);
+    context.footprint    = graph_leaf(graph, OP_FOOTPRINT);
+    Lowered all          = lower_shape(&l, shape, context);
+    Node    distance     = or_else(all.distance, graph_number(graph, NOWHERE));
+    roots[ROOT_DISTANCE] = divide_by_slope(graph, distance, shape->slope);
+#define MATERIAL(name, type, otherwise, nothing, low, high, blends) \
+    roots[ROOT_##name] = or_else(all.surface.name, root_otherwise(graph, ROOT_##name));
+#define IDENTITY(name, type, shown, otherwise, nothing, blends) \
+    roots[ROOT_##name] = or_else(all.surface.name, root_otherwise(graph, ROOT_##name));
+#include "compiler/shape/surface.def"
+    Node normal        = or_else(all.surface.normal, context.normal);
+    roots[ROOT_NORMAL] = unit_normal(graph, normal, context.normal);
     return !l.overflow;
 }
 

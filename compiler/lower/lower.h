@@ -10,15 +10,24 @@
 /* What is computed for a component at a point: the roots of its graph. */
 typedef enum ComponentRoot {
     ROOT_DISTANCE, /* FLOAT, safe: divided by the slope of the shape */
-    ROOT_COLOR,    /* VEC3 */
-    ROOT_ROUGHNESS,
-    ROOT_METALLIC,
-    ROOT_EMISSION, /* VEC3 */
-    ROOT_LEVEL,    /* FLOAT */
-    ROOT_INSTANCE, /* UINT */
-    ROOT_NORMAL,   /* VEC3, unit: OP_NORMAL, but for smooth mirrors */
+#define MATERIAL(name, type, otherwise, nothing, low, high, blends) ROOT_##name,
+#define IDENTITY(name, type, shown, otherwise, nothing, blends)     ROOT_##name,
+#include "compiler/shape/surface.def"
+    ROOT_NORMAL, /* VEC3, unit: OP_NORMAL, but for smooth mirrors */
     ROOT_COUNT
 } ComponentRoot;
+
+/* What surface.def says of a root; of the distance and the normal, nothing. */
+typedef struct RootInfo {
+    const char *name;
+    GraphType   type, shown;        /* of the node, and in shaders */
+    double      otherwise, nothing; /* in each element */
+    bool        material;           /* it is a property of materials, */
+    double      low, high;          /* and limited to these */
+} RootInfo;
+extern const RootInfo root_info[ROOT_COUNT];
+/* Its value where no material and no shape says another. */
+Node root_otherwise(Graph *graph, ComponentRoot root);
 
 /* Lowers a shape at the point OP_POINT; roots[ROOT_COUNT] are filled.  False when more than
    MOST_LOWERED nodes would be needed: copies within copies. */

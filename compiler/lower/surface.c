@@ -13,15 +13,13 @@ static Node choose(Graph *g, Node condition, Node a, Node b)
 
 Surface choose_surface(Graph *g, Node condition, Surface a, Surface b)
 {
-    return (Surface){choose(g, condition, a.color, b.color),
-                     choose(g, condition, a.roughness, b.roughness),
-                     choose(g, condition, a.metallic, b.metallic),
-                     choose(g, condition, a.emission, b.emission),
-                     choose(g, condition, a.level, b.level),
-                     choose(g, condition, a.instance, b.instance),
-                     choose(g, condition, a.uv, b.uv),
-                     choose(g, condition, a.normal, b.normal),
-                     choose(g, condition, a.trap, b.trap)};
+    Surface chosen;
+#define INNER(name, blends) chosen.name = choose(g, condition, a.name, b.name);
+
+#define MATERIAL(name, type, otherwise, nothing, low, high, blends) INNER(name, blends)
+#define IDENTITY(name, type, shown, otherwise, nothing, blends)     INNER(name, blends)
+#include "compiler/shape/surface.def"
+    return chosen;
 }
 
 /* Weight 1 is a. */
@@ -35,13 +33,13 @@ static Node mix_nodes(Graph *g, Node a, Node b, Node weight)
 /* Materials blend with the shapes; numbers of levels and instances cannot, nor can coordinates. */
 Surface mix_surface(Graph *g, Node nearer, Node weight, Surface a, Surface b)
 {
-    return (Surface){mix_nodes(g, a.color, b.color, weight),
-                     mix_nodes(g, a.roughness, b.roughness, weight),
-                     mix_nodes(g, a.metallic, b.metallic, weight),
-                     mix_nodes(g, a.emission, b.emission, weight),
-                     choose(g, nearer, a.level, b.level),
-                     choose(g, nearer, a.instance, b.instance),
-                     choose(g, nearer, a.uv, b.uv),
-                     mix_nodes(g, a.normal, b.normal, weight),
-                     choose(g, nearer, a.trap, b.trap)};
+    Surface mixed;
+#define MIXED(name)         mix_nodes(g, a.name, b.name, weight)
+#define NEARER(name)        choose(g, nearer, a.name, b.name)
+#define INNER(name, blends) mixed.name = blends(name);
+
+#define MATERIAL(name, type, otherwise, nothing, low, high, blends) INNER(name, blends)
+#define IDENTITY(name, type, shown, otherwise, nothing, blends)     INNER(name, blends)
+#include "compiler/shape/surface.def"
+    return mixed;
 }

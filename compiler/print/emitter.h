@@ -112,7 +112,6 @@ const char *emit_slot(Emitter *e, uint32_t slot, uint32_t first, uint32_t width)
 
 /* Reads the printer's files; then, of a call in a text, what it needs is in e->helper_text. */
 void helpers_read(Emitter *e);
-void emit_struct(Emitter *e); /* KrsSurface */
 /* The function that `name` begins with is called, with so many operands of that type. */
 void emit_call(Emitter *e, const char *name, GraphType type, uint32_t operands);
 
@@ -153,7 +152,8 @@ void emit_shared_distance(Emitter *e, const ModuleFunction *distance, const Node
 /* The statements of the rest of a surface. */
 void emit_shared_rest(Emitter *e, const ModuleFunction *surface, const NodeList *shared);
 
-/* surfaces.c: krs_surface. */
+/* surfaces.c: KrsSurface and krs_surface. */
+void emit_struct(Emitter *e);
 void need_surface(Emitter *e);
 void emit_surface_of(Emitter *e, const ModuleFunction *function);
 void emit_surface(Emitter *e);

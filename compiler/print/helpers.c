@@ -147,11 +147,3 @@ bool module_print_helpers(const Printer *printer, Op op, GraphType type, uint32_
     *out       = e.helper_text;
     return found;
 }
-
-void emit_struct(Emitter *e)
-{
-    static const char name[]  = "KrsSurface";
-    const Helper     *surface = find_helper(e, name, sizeof name - 1, NULL);
-    text_add_bytes(e->out, surface->text, surface->length);
-    text_add(e->out, "\n");
-}

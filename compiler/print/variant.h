@@ -44,9 +44,8 @@ typedef enum KrsFunction {
        of the pixel's cone there in world units (0 for a point).  The normal that it returns is the
        one to light: unit, outwards, and the given one unless mirrors are smooth.
 
-       struct KrsSurface { float distance; vec3 color; float roughness; float metallic;
-                           vec3 emission; uint component; uint level; uint instance;
-                           vec3 normal; }; */
+       KrsSurface has float distance; properties of the material (shape/surface.def): vec3 color,
+       float roughness and others; uint component, level, instance; vec3 normal. */
     KRS_FUNCTION_SURFACE,
     /* float krs_sin(float a), krs_cos, krs_tan: for callers that need them as well. */
     KRS_FUNCTION_SINES,

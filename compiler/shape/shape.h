@@ -15,11 +15,12 @@
 typedef struct Shape Shape;
 typedef struct Map   Map;
 
-/* The material of a surface: numbers are nodes, colours linear VEC3 nodes; NODE_NONE leaves
-   what it was painted with before. */
+/* The material of a surface: a member for each property (surface.def).  Numbers are nodes, colours
+   linear VEC3 nodes; NODE_NONE leaves what it was painted with before. */
 typedef struct Material {
     const char *name;
-    Node        color, roughness, metallic, emission;
+#define MATERIAL(name, type, otherwise, nothing, low, high, blends) Node name;
+#include "compiler/shape/surface.def"
 } Material;
 
 typedef enum ShapeKind {

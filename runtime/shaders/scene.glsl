@@ -8,16 +8,19 @@
  */
 layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[1]; };
 
+// Names of types in surface.def.
+#define FLOAT float
+#define VEC3  vec3
+#define UINT  uint
+
 struct KrsSurface {
     float distance;
-    vec3  color;
-    float roughness;
-    float metallic;
-    vec3  emission;
-    uint  component;
-    uint  level;
-    uint  instance;
-    vec3  normal;
+#define MATERIAL(name, type, otherwise, nothing, low, high, blends) type name;
+#include "compiler/shape/surface.def"
+    uint component;
+#define IDENTITY(name, type, shown, otherwise, nothing, blends) shown name;
+#include "compiler/shape/surface.def"
+    vec3 normal;
 };
 
 float krs_local_radius;
@@ -28,5 +31,13 @@ float krs_distance(vec3 p) { return length(p) - krs_local_radius; }
 
 KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)
 {
-    return KrsSurface(krs_distance(p), vec3(0.8), 0.5, 0.0, vec3(0.0), 1u, 0u, 1u, normal);
+    KrsSurface surface;
+    surface.distance = krs_distance(p);
+#define MATERIAL(name, type, otherwise, nothing, low, high, blends) surface.name = type(otherwise);
+#include "compiler/shape/surface.def"
+    surface.component = 1u;
+#define IDENTITY(name, type, shown, otherwise, nothing, blends) surface.name = shown(otherwise);
+#include "compiler/shape/surface.def"
+    surface.normal = normal;
+    return surface;
 }
