@@ -109,7 +109,7 @@ void emit_gradient_of(Emitter *e, const ModuleFunction *function)
                 "        vec3 offset = vec3(i >> 1u == 0u, i >> 1u == 1u, i >> 1u == 2u);\n"
                 "        offset *= (i & 1u) == 0u ? reach : -reach;\n"
                 "        float d = krs_distance_%u(p + offset);\n"
-                "        found += i < 6u ? vec4(d * way, 0.0) : vec4(0.0, 0.0, 0.0, d);\n"
+                "        found += i < 6u ? vec4(d * offset, 0.0) : vec4(0.0, 0.0, 0.0, d);\n"
                 "    }\n"
                 "    return found;\n}\n\n",
                 function->component + 1);

@@ -285,6 +285,7 @@ static void texts_are_glsl(void **state)
     spirv_start();
     each_of("tests/golden/[acl]*.krs", compile_scene);
     compile_scene("tests/golden/places.krs");
+    compile_scene("tests/golden/fractals.krs"); /* without derivatives */
     compile_scene("bench/scenes/compound.krs");
     look_at_far_scene(true);
     spirv_stop();
