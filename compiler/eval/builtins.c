@@ -1,7 +1,7 @@
 /*
  * builtins.c: the table of built-in functions and constants; those of vectors and maps, and fields.
  *
- * Those of lists, of chance and of joining shapes have files of their own.
+ * Those of lists, random numbers and CSG have files of their own.
  */
 #include "compiler/eval/elaborate.h"
 

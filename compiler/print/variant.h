@@ -33,7 +33,8 @@ typedef enum KrsFunction {
        smaller than `footprint`, the radius of a pixel's cone at p, counts as the box around it (0:
        nothing does).  Where a branch saves no work, krs_distance costs less. */
     KRS_FUNCTION_DISTANCE_LOD,
-    /* const uint KRS_SCENE_PARTS; float krs_scene_part_distance(uint scene_part, vec3 p): the distance of one part, and
+    /* const uint KRS_SCENE_PARTS;
+       float krs_scene_part_distance(uint scene_part, vec3 p): the distance of one part, and
        void krs_scene_part_box(uint scene_part, inout vec3 low, inout vec3 high): a box around it. */
     KRS_FUNCTION_SCENE_PART_DISTANCE,
     KRS_FUNCTION_SCENE_PART_BOX,

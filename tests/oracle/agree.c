@@ -259,7 +259,7 @@ static size_t wrong_rays(Stage *stage, const KrsPicture *picture)
         count(&asked, stage, judge(stage, ray, &truth, &answered, rounding), pixels[i], &truth,
               &answered);
     }
-    /* Queries of the device have no anchor: far out they have as little as single precision. */
+    /* Queries of the device are not camera-relative: far out single precision is all they have. */
     bool has_digits = nearest == HUGE_VAL || 2.4e-7 * size < pixel_at(stage, nearest) / 64;
     bool right      = is_right(stage, &seen, ASKED);
     return !right + (has_digits && !is_right(stage, &asked, ASKED));
