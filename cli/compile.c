@@ -80,8 +80,8 @@ static KrsStatus write_all(const Options *options, const KrsScene *scene, const 
     if (status == KRS_OK)
         status = write_glsl(options, scene, base.bytes);
     for (size_t i = 0; i < modules->count && status == KRS_OK; i++) {
-        const Module *module = &modules->items[i];
-        Text          ending = {.arena = options->arena};
+        const SpirvModule *module = &modules->items[i];
+        Text               ending = {.arena = options->arena};
         text_format(&ending, ".%s.spv", module->entry);
         status = write_output_file(options, base.bytes, ending.bytes, module->words,
                                    module->word_count * sizeof *module->words);

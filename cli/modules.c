@@ -51,9 +51,9 @@ static KrsStatus compile_kernel(const Options *options, const KrsScene *scene, c
         say("%s", gpu.message);
         return gpu.status;
     }
-    Module    module = {.file  = file,
-                        .entry = arena_copy_text(options->arena, file, strlen(file) - 5)};
-    KrsStatus status = spirv_compile(text, file, &module.words, &module.word_count, &log);
+    SpirvModule module = {.file  = file,
+                          .entry = arena_copy_text(options->arena, file, strlen(file) - 5)};
+    KrsStatus   status = spirv_compile(text, file, &module.words, &module.word_count, &log);
     if (status == KRS_OK)
         array_push(options->arena, modules, module);
     else if (status == KRS_OUT_OF_MEMORY)
@@ -121,7 +121,7 @@ static const char *binding_name(const IdInfo *ids, const IdInfo *variable)
     return name ? name : "";
 }
 
-void module_add_json(Text *json, const Module *module)
+void module_add_json(Text *json, const SpirvModule *module)
 {
     uint32_t bound = module->words[BOUND_WORD], size[3] = {1, 1, 1};
     IdInfo  *ids = arena_new_array(json->arena, IdInfo, bound);

@@ -6,16 +6,16 @@
 
 #include "cli/commands.h"
 
-typedef struct Module {
+typedef struct SpirvModule {
     const char *entry; /* "trace" */
     const char *file;  /* "trace.comp" */
     uint32_t   *words;
     size_t      word_count;
-} Module;
+} SpirvModule;
 
 typedef struct Modules {
-    Module *items;
-    size_t  count, capacity;
+    SpirvModule *items;
+    size_t       count, capacity;
 } Modules;
 
 /* What suits graphics cards, unless the options differ. */
@@ -27,6 +27,6 @@ KrsStatus modules_compile(const Options *options, const KrsScene *scene, Modules
 void      modules_free(Modules *modules);
 
 /* Appends {"entry": "trace", "workgroup": [8, 8, 1], "bindings": [{"set": 0, ...}, ...]}. */
-void module_add_json(Text *json, const Module *module);
+void module_add_json(Text *json, const SpirvModule *module);
 
 #endif

@@ -94,7 +94,7 @@ void emit_count_uses(Emitter *e, const Node *roots, size_t count, bool frame);
 
 /* ---- lines.c ---- */
 
-/* A line of code, in which choices of the printer are written out. */
+/* A line of code, in which alternatives of the printer are written out. */
 void emit_line(Emitter *e, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Says where the next statement comes from, unless it is the same line as before, or the same file
    of the standard library. */

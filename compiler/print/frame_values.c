@@ -28,16 +28,16 @@ bool frame_value_is_arranged(const Graph *graph, Node node)
     return op_promises(op, BUILDS) || op == OP_neg;
 }
 
-typedef struct Nodes {
+typedef struct FrameNodes {
     Node  *items;
     size_t count, capacity;
-} Nodes;
+} FrameNodes;
 
 /* What is wanted, or what that arranges. */
-static Nodes find_values(const Graph *graph, const Node *wanted, size_t count, Arena *scratch)
+static FrameNodes find_values(const Graph *graph, const Node *wanted, size_t count, Arena *scratch)
 {
-    bool *seen = arena_new_array(scratch, bool, graph->count + 1);
-    Nodes rest = {0}, found = {0};
+    bool      *seen = arena_new_array(scratch, bool, graph->count + 1);
+    FrameNodes rest = {0}, found = {0};
     for (size_t i = count; i-- > 0;)
         array_push(scratch, &rest, wanted[i]);
     while (rest.count > 0) {
@@ -76,12 +76,12 @@ static Fact find_fact(const Tape *tape, size_t at, const Fact *facts)
 void frame_values_assign(FrameValues *values, const Graph *graph, const Node *wanted, size_t count,
                          Arena *arena, Arena *scratch)
 {
-    Nodes    found = find_values(graph, wanted, count, scratch);
-    uint32_t used  = 4 * values->first_slot;
-    values->count  = found.count;
-    values->items  = arena_new_array(arena, FrameValue, found.count + 1);
-    values->tape   = tape_new(graph, found.items, found.count, arena);
-    Fact *facts    = arena_new_array(scratch, Fact, values->tape.count + 1);
+    FrameNodes found = find_values(graph, wanted, count, scratch);
+    uint32_t   used  = 4 * values->first_slot;
+    values->count    = found.count;
+    values->items    = arena_new_array(arena, FrameValue, found.count + 1);
+    values->tape     = tape_new(graph, found.items, found.count, arena);
+    Fact *facts      = arena_new_array(scratch, Fact, values->tape.count + 1);
     for (size_t i = 0; i < values->tape.count; i++)
         facts[i] = find_fact(&values->tape, i, facts);
     for (size_t i = 0; i < found.count; i++) {

@@ -1,7 +1,7 @@
 /*
  * lines.c: lines of code, comments of where they come from, literals.
  *
- * A line may name choices of the printer.  They are written out when the line is whole, so that
+ * A line may name alternatives of the printer.  They are written out when the line is whole, so that
  * expressions are as long as their names, whatever is chosen.
  */
 #include <float.h>
@@ -11,17 +11,18 @@
 
 #include "compiler/print/emitter.h"
 
-/* ---- choices ---- */
+/* ---- alternatives ---- */
 
 static void write_out(Emitter *e, Text *to, const char *text, size_t length);
 
 /* What is called at `text`, or NULL. */
-static const Choice *find_choice(const Emitter *e, const char *text, size_t length)
+static const Alternative *find_alternative(const Emitter *e, const char *text, size_t length)
 {
-    for (const Choice *choice = e->printer->choices; choice->name; choice++) {
-        size_t name = strlen(choice->name);
-        if (name < length && strncmp(text, choice->name, name) == 0 && text[name] == '(')
-            return choice;
+    for (const Alternative *alternative = e->printer->alternatives; alternative->name;
+         alternative++) {
+        size_t name = strlen(alternative->name);
+        if (name < length && strncmp(text, alternative->name, name) == 0 && text[name] == '(')
+            return alternative;
     }
     return NULL;
 }
@@ -38,12 +39,12 @@ static size_t operand_length(const char *text, size_t length)
     return at;
 }
 
-/* Writes a choice between two operands out; returns the length of what stood for it. */
-static size_t write_choice(Emitter *e, Text *to, const Choice *choice, const char *text,
-                           size_t length)
+/* Writes a alternative between two operands out; returns the length of what stood for it. */
+static size_t write_alternative(Emitter *e, Text *to, const Alternative *alternative,
+                                const char *text, size_t length)
 {
-    const char *form          = e->variant->many_threads ? choice->threads : choice->few;
-    size_t      first         = strlen(choice->name) + 1;
+    const char *form          = e->variant->many_threads ? alternative->threads : alternative->few;
+    size_t      first         = strlen(alternative->name) + 1;
     size_t      first_length  = operand_length(text + first, length - first);
     size_t      second        = first + first_length + 2; /* behind a comma and a blank */
     size_t      second_length = operand_length(text + second, length - second);
@@ -66,13 +67,15 @@ static void write_out(Emitter *e, Text *to, const char *text, size_t length)
 {
     size_t plain = 0; /* before what is looked at */
     for (size_t at = 0; at < length;) {
-        const Choice *choice = text[at] == 'K' ? find_choice(e, text + at, length - at) : NULL;
-        if (!choice) {
+        const Alternative *alternative = text[at] == 'K'
+                                             ? find_alternative(e, text + at, length - at)
+                                             : NULL;
+        if (!alternative) {
             at++;
             continue;
         }
         text_add_bytes(to, text + plain, at - plain);
-        at += write_choice(e, to, choice, text + at, length - at);
+        at += write_alternative(e, to, alternative, text + at, length - at);
         plain = at;
     }
     text_add_bytes(to, text + plain, length - plain);

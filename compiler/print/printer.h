@@ -13,17 +13,17 @@
  * together, and each line is written out at its end: an expression is as long, and stands where it
  * stands, whichever way that is.
  */
-typedef struct Choice {
+typedef struct Alternative {
     const char *name;
     const char *threads, *few; /* for many threads, or for few; with $a and $b */
-} Choice;
+} Alternative;
 
 typedef struct Printer {
     const char        *name;
-    const char *const *types;        /* by GraphType */
-    const char *(*operation)(Op op); /* with $a to $d; what is before a semicolon sets $t first */
-    const EmbeddedFile *helpers;     /* functions that operations call, with blank lines between */
-    const Choice       *choices;     /* the last has no name */
+    const char *const *types;         /* by GraphType */
+    const char *(*operation)(Op op);  /* with $a to $d; what is before a semicolon sets $t first */
+    const EmbeddedFile *helpers;      /* functions that operations call, with blank lines between */
+    const Alternative  *alternatives; /* the last has no name */
     const char *signatures[KRS_FUNCTION_COUNT]; /* by KrsFunction; NULL: it has none of its own */
     const char *promises[KRS_FUNCTION_COUNT];   /* comments above them */
 } Printer;

@@ -32,14 +32,14 @@ static const char *find_file(const char *name, size_t length)
 }
 
 /* A kernel's text as it grows. */
-typedef struct Expansion {
+typedef struct IncludeExpansion {
     const KernelSource *source;
     const char         *scene; /* its text */
     char               *out;   /* NULL: it is only counted */
     size_t              length;
-} Expansion;
+} IncludeExpansion;
 
-static void append(Expansion *to, const char *bytes, size_t count)
+static void append(IncludeExpansion *to, const char *bytes, size_t count)
 {
     if (to->out)
         memcpy(to->out + to->length, bytes, count);
@@ -47,7 +47,7 @@ static void append(Expansion *to, const char *bytes, size_t count)
 }
 
 /* With the files that it includes in place of the lines that say so; false: one is missing. */
-static bool append_file(Expansion *to, const char *name, size_t name_length)
+static bool append_file(IncludeExpansion *to, const char *name, size_t name_length)
 {
     static const char include[] = "#include \"";
     bool              is_scene  = strncmp(name, "scene.glsl", name_length) == 0;
@@ -103,7 +103,7 @@ void kernel_strip(char *text)
 /* The text of a kernel around that of its scene, or NULL. */
 static char *expand(Gpu *gpu, const KernelSource *source, const char *scene)
 {
-    Expansion expansion = {source, scene, NULL, 0};
+    IncludeExpansion expansion = {source, scene, NULL, 0};
     if (!append_file(&expansion, source->file, strlen(source->file))) {
         gpu_refuse(gpu, KRS_INTERNAL, "the kernel `%s`, or a file that it includes, is missing",
                    source->file);
@@ -337,18 +337,18 @@ typedef struct Loading {
 } Loading;
 
 enum { MOST_LOADERS = 16 };
-typedef struct Loader {
+typedef struct PipelineLoader {
     Loading  *loading;
     Gpu       gpu; /* a copy, which takes the note when something fails */
     pthread_t thread;
     bool      started, ready;
-} Loader;
+} PipelineLoader;
 
 static void *load_some(void *user)
 {
-    Loader  *loader  = user;
-    Loading *loading = loader->loading;
-    double   ms      = 0;
+    PipelineLoader *loader  = user;
+    Loading        *loading = loader->loading;
+    double          ms      = 0;
     for (size_t i; loader->ready && (i = atomic_fetch_add(&loading->next, 1)) < loading->count;)
         loader->ready = kernel_load(&loader->gpu, loading->requests[i].kernel, &loading->codes[i],
                                     loading->layout, &ms);
@@ -387,21 +387,21 @@ static size_t count_loaders(const Gpu *gpu, size_t kernels)
 bool kernel_load_all(Gpu *gpu, const KernelRequest *requests, const KernelCode *codes, size_t count,
                      VkPipelineLayout layout)
 {
-    Loading loading = {requests, codes, count, layout, 0};
-    size_t  loaders = count_loaders(gpu, count);
-    Loader *all     = gpu_alloc(gpu, 1 + loaders, sizeof *all, "prepare the kernels");
-    bool    ready   = all != NULL;
+    Loading         loading = {requests, codes, count, layout, 0};
+    size_t          loaders = count_loaders(gpu, count);
+    PipelineLoader *all     = gpu_alloc(gpu, 1 + loaders, sizeof *all, "prepare the kernels");
+    bool            ready   = all != NULL;
     for (size_t i = 0; i < count; i++)
         *requests[i].kernel = (Kernel){0};
     for (size_t i = 0; ready && i < loaders; i++) {
-        all[i]         = (Loader){.loading = &loading, .gpu = *gpu, .ready = true};
+        all[i]         = (PipelineLoader){.loading = &loading, .gpu = *gpu, .ready = true};
         all[i].started = pthread_create(&all[i].thread, NULL, load_some, &all[i]) == 0;
     }
     for (size_t i = 0; all && i < loaders; i++)
         if (all[i].started)
             await(gpu, all[i].thread);
     if (ready) { /* what is left where no thread could be had */
-        all[loaders] = (Loader){.loading = &loading, .gpu = *gpu, .ready = true};
+        all[loaders] = (PipelineLoader){.loading = &loading, .gpu = *gpu, .ready = true};
         load_some(&all[loaders]);
     }
     for (size_t i = 0; all && i <= loaders; i++)

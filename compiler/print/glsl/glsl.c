@@ -10,7 +10,7 @@ static const char *const types[] = {
 };
 
 /* A mix is no branch, and minds nothing that is not a number. */
-static const Choice choices[] = {
+static const Alternative alternatives[] = {
     {"KRS_MIN", "min($a, $b)", "mix($a, $b, ($b) < ($a))"},
     {"KRS_MAX", "max($a, $b)", "mix($a, $b, ($a) < ($b))"},
     {"KRS_BACK", "$b", "$a"}, /* mirrors.c */
@@ -18,11 +18,11 @@ static const Choice choices[] = {
 };
 
 const Printer glsl_printer = {
-    .name      = "GLSL",
-    .types     = types,
-    .operation = op_glsl,
-    .helpers   = helper_files,
-    .choices   = choices,
+    .name         = "GLSL",
+    .types        = types,
+    .operation    = op_glsl,
+    .helpers      = helper_files,
+    .alternatives = alternatives,
     .signatures =
         {
             [KRS_FUNCTION_DISTANCE]     = "float krs_distance(vec3 p)",
