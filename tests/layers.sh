@@ -16,8 +16,7 @@ circles="runtime/device/instance>runtime/device/gpu runtime/device/pipelines>run
          runtime/tracer/layouts>runtime/tracer/renderer
          runtime/tracer/warmup>runtime/tracer/renderer
          runtime/tracer/variants>runtime/tracer/renderer
-         runtime/tracer/phases>runtime/tracer/dispatch cli/options>cli/console
-         cli/options>cli/values"
+         runtime/tracer/phases>runtime/tracer/dispatch"
 
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 
