@@ -12,8 +12,7 @@ layers="compiler/base compiler/graph compiler/shape compiler/lower compiler/fami
 api="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h
           compiler/print/variant.h compiler/target/spirv.h runtime/krs_vulkan.h runtime/planes.def runtime/choices.def"
 # "A>B": A includes B's header, and B needs A.  Without all of these there is no circle.
-circles="runtime/device/instance>runtime/device/gpu runtime/device/pipelines>runtime/device/gpu
-         runtime/tracer/layouts>runtime/tracer/renderer
+circles="runtime/tracer/layouts>runtime/tracer/renderer
          runtime/tracer/warmup>runtime/tracer/renderer
          runtime/tracer/variants>runtime/tracer/renderer
          runtime/tracer/phases>runtime/tracer/dispatch"
