@@ -55,7 +55,8 @@ CLI      := $(sort $(wildcard cli/*.c))
 # Text files that the program carries: the standard library, what scenes and kernels share, kernels.
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))
 HELPERS  := $(sort $(wildcard compiler/print/glsl/*.glsl))
-SHADERS  := $(sort $(wildcard runtime/shaders/*.comp runtime/shaders/*.glsl)) runtime/shared/blocks.h
+SHADERS  := $(sort $(wildcard runtime/shaders/*.comp runtime/shaders/*.glsl runtime/shared/*.h)) \
+            compiler/shape/surface.def
 # Kernels without a scene are compiled here and now, not on every machine again; what is optimized
 # here, drivers need not.
 MODULES  := $(shell grep -L 'include "scene.glsl"' runtime/shaders/*.comp)

@@ -10,7 +10,7 @@ layers="compiler/base compiler/graph compiler/shape compiler/lower compiler/fami
         compiler/eval compiler/print compiler/print/glsl compiler/target compiler
         runtime/device runtime/shared runtime/tracer runtime/film runtime/writer runtime cli"
 api="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h
-          compiler/print/variant.h compiler/target/spirv.h runtime/krs_vulkan.h runtime/planes.def runtime/choices.def"
+          compiler/shape/surface.def compiler/print/variant.h compiler/target/spirv.h runtime/krs_vulkan.h runtime/planes.def runtime/choices.def"
 # "A>B": A includes B's header, and B needs A.  Without all of these there is no circle.
 circles="runtime/tracer/layouts>runtime/tracer/renderer
          runtime/tracer/warmup>runtime/tracer/renderer

@@ -19,7 +19,7 @@ PROPERTY_SHARED := $(addprefix tests/property/, garden.c op_trial.c reach_crowd.
 UNIT        := texts front diagnostics shape passes film devices tracer rendering methods schedules writer \
                image_files memory validate search refute frame query zones cache cache_limits \
                compiled pipelines per_component stencils glslang loader drivers grid \
-               printing
+               printing answers
 PROPERTY    := ops noise graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees
 ORACLES     := self primitives krs_expand trees maps moebius moebius_images operators \

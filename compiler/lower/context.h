@@ -12,9 +12,9 @@
 /* What a hit needs (surface.def); NODE_NONE in `color`: not painted yet.  `normal` is in the space
    of the shape that was lowered; it need not be a unit vector (unit_normal). */
 typedef struct Surface {
-#define MATERIAL(name, type, otherwise, nothing, low, high, blends) Node name;
-#define IDENTITY(name, type, shown, otherwise, nothing, blends)     Node name;
-#define INNER(name, blends)                                         Node name;
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) Node name;
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends)            Node name;
+#define KRS_INNER(name, blends)                                                Node name;
 #include "compiler/shape/surface.def"
 } Surface;
 

@@ -19,7 +19,7 @@ typedef struct Map   Map;
    linear VEC3 nodes; NODE_NONE leaves what it was painted with before. */
 typedef struct Material {
     const char *name;
-#define MATERIAL(name, type, otherwise, nothing, low, high, blends) Node name;
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) Node name;
 #include "compiler/shape/surface.def"
 } Material;
 

@@ -3,6 +3,7 @@
  */
 #include <string.h>
 
+#include "runtime/shared/answers.h"
 #include "runtime/tracer/renderer.h"
 
 enum { WORKGROUP_SIZE = 64 };
@@ -30,17 +31,13 @@ static void take_answer(const AnswerBlock *answer, float *distance, KrsSurfacePo
         *distance = answer->distance;
     if (!surface)
         return;
-    *surface = (KrsSurfacePoint){
-        .distance  = answer->surface_distance,
-        .roughness = answer->roughness,
-        .metallic  = answer->metallic,
-        .component = answer->component,
-        .level     = answer->level,
-        .instance  = answer->instance,
-    };
-    memcpy(surface->color, answer->color, sizeof surface->color);
-    memcpy(surface->emission, answer->emission, sizeof surface->emission);
+    surface->distance  = answer->surface_distance;
+    surface->component = answer->component[0];
     memcpy(surface->normal, answer->normal, sizeof surface->normal);
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) surface->name = answer->name[0];
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    memcpy(&surface->name, answer->name, sizeof surface->name);
+#include "compiler/shape/surface.def"
 }
 
 bool point_query_run(KrsRendering *rendering, uint32_t count, bool normals)
