@@ -10,8 +10,8 @@ layout(local_size_x = 64) in;
 
 layout(push_constant) uniform PointWorkBlock { PointWork work; };
 
-layout(std430, set = 1, binding = 1) readonly buffer Points { Point points[]; };
-layout(std430, set = 1, binding = 2) writeonly buffer Answers { Answer answers[]; };
+layout(std430, set = 1, binding = POINTS_BINDING) readonly buffer Points { Point points[]; };
+layout(std430, set = 1, binding = ANSWERS_BINDING) writeonly buffer Answers { Answer answers[]; };
 
 // The distance, then one step along each axis and back: their differences are the gradient.
 vec4 find_gradient(vec3 p)

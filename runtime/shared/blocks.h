@@ -242,6 +242,13 @@ static_assert(sizeof(LightBlock) == 32, "std430");
 
 /* ---- Points and rays that a program asks about ---- */
 
+/* Where set 1 has them.  Frame, control block and what lanes have taken are where they are for
+   pictures (frame.glsl). */
+CONSTANT(POINTS_BINDING, 1);
+CONSTANT(ANSWERS_BINDING, 2);
+CONSTANT(RAY_HITS_BINDING, 3);
+CONSTANT(QUERY_RAYS_BINDING, 5);
+
 /* Of point_query.comp, std430; answers.h has what it says. */
 struct Point {
     vec3  point;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "runtime/shared/answers.h"
+#include "runtime/tracer/layouts.h"
 #include "runtime/tracer/renderer.h"
 
 enum { WORKGROUP_SIZE = 64 };
@@ -19,9 +20,9 @@ bool point_query_prepare(KrsRendering *rendering)
         !buffer_create(gpu, &rendering->answers, POINTS_AT_ONCE * sizeof(AnswerBlock), SHARED,
                        "answers"))
         return false;
-    rendering_bind(rendering, rendering->points_set, 0, &rendering->frame);
-    rendering_bind(rendering, rendering->points_set, 1, &rendering->points);
-    rendering_bind(rendering, rendering->points_set, 2, &rendering->answers);
+    rendering_bind(rendering, rendering->points_set, FRAME_BINDING, &rendering->frame);
+    rendering_bind(rendering, rendering->points_set, POINTS_BINDING, &rendering->points);
+    rendering_bind(rendering, rendering->points_set, ANSWERS_BINDING, &rendering->answers);
     return true;
 }
 

@@ -11,12 +11,10 @@
 #include <string.h>
 
 #include "runtime/shared/answers.h"
+#include "runtime/tracer/layouts.h"
 #include "runtime/tracer/renderer.h"
 
 enum { MOST_STEPS = 8192, MOST_LANE_STEPS = 16384 };
-
-/* Bindings of the set of points; point_query.c has the first three. */
-enum { RAY_HITS_BINDING = 3, CONTROL_BINDING = 4, QUERY_RAYS_BINDING = 5, TAKEN_BINDING = 7 };
 
 /* What single precision can square. */
 static bool is_in_reach(const double (*vectors)[3], size_t count)
