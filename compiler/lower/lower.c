@@ -17,7 +17,7 @@ const RootInfo root_info[ROOT_COUNT] = {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     [ROOT_##name] = {#name, TYPE_##type, TYPE_##type, otherwise, nothing, true, low, high, asked},
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) \
-    [ROOT_##name] = {#name, TYPE_##type, TYPE_##shown, otherwise, nothing},
+    [ROOT_##name] = {#name, TYPE_##type, TYPE_##shown, otherwise, nothing, false, 0, 0, false},
 #include "compiler/shape/surface.def"
 };
 
