@@ -6,7 +6,7 @@
 #define KRS_BENCH_DEVICE_H
 
 #include "bench/stage.h"
-#include "runtime/tracer/renderer.h"
+#include "runtime/tracer/kernels.h"
 
 typedef struct Size {
     uint32_t width, height;

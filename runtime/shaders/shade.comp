@@ -97,6 +97,9 @@ void store_results(uint index, uint rows, vec4 color, HitPoint hit, Coat coat, K
     vec3  difference = hit.position - frame.eye;
     float along = dot(difference, frame.forward.xyz);
     float depth = control.projection == PANORAMA ? length(difference) : along;
+#ifdef LISTED_RAYS
+    depth = find_end(index).t;
+#endif
     uvec3 normal = floatBitsToUint(hit.side * coat.normal);
     do { // as in pixels.glsl
         uint  row = uint(findLSB(rows));

@@ -7,10 +7,15 @@
  * that begin on a surface, as far as the device can tell, are followed by the host if the device
  * took the wrong side.
  */
+#include "runtime/tracer/query.h"
+
 #include <math.h>
 #include <string.h>
 
+#include "runtime/tracer/kernels.h"
+#include "runtime/tracer/methods.h"
 #include "runtime/tracer/renderer.h"
+#include "runtime/tracer/rendering.h"
 
 enum { MOST_STEPS = 8192, MOST_LANE_STEPS = 16384 };
 
