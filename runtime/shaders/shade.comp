@@ -11,7 +11,7 @@
 #include "results.glsl"
 
 const float EVEN = 0.98;              // less is not a curved surface's own, but detail
-const float LEAST_NORMAL_REACH = 0.5; // without filtering (normal_reach in render.c)
+const float LEAST_NORMAL_REACH = 0.5; // without filtering (normal_reach in job.c)
 const float SEEN = 0.78;              // the mean of the normals that are seen of a thin round thing
 
 // A sum of rays of such light is still a number.

@@ -144,7 +144,7 @@ static QueryRayBlock query_ray_block(const KrsRay *ray)
     return query_ray;
 }
 
-/* Marches the rays.  As in send_rays of phases.c a lane has a few items, and those for which a
+/* Marches the rays.  As in run_rays of plan.c a lane has a few items, and those for which a
    dispatch had no steps left are for the next one. */
 static bool march_rays(KrsRendering *rendering, uint32_t count)
 {
