@@ -13,7 +13,7 @@ typedef struct Size {
 } Size;
 
 /* limits.c: properties, limits and features that the runtime depends on. */
-void print_limits(KrsRenderer *renderer);
+void print_device_limits(KrsRenderer *renderer);
 /* accuracy.c: built-in operations and our own functions, against double precision. */
 void print_accuracy(KrsRenderer *renderer);
 /* examples.c: one row: a scene on this device and on lavapipe. */
