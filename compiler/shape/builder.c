@@ -9,9 +9,8 @@
 #include "compiler/graph/evaluate.h"
 
 const BlendInfo blend_info[BLEND_COUNT] = {
-#define BLEND(name, spelling, op, slope, bulge, meaning) {spelling, OP_##op, slope, bulge},
-#include "compiler/shape/blends.def"
-#undef BLEND
+#define BLEND(name, signature, slope, bulge, ...) {#name, OP_smin_##name, slope, bulge},
+#include "compiler/graph/blends.def"
 };
 const Blend blend_sharp = {.width = NODE_NONE, .steps = NODE_NONE};
 

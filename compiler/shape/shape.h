@@ -52,11 +52,10 @@ struct Map {
     const Map *first; /* NULL: nothing; similarities have none */
 };
 
-/* How two distances are joined; blends.def has a row for each. */
+/* How two distances are joined; graph/blends.def has a row for each. */
 typedef enum BlendKind {
-#define BLEND(name, spelling, op, slope, bulge, meaning) BLEND_##name,
-#include "compiler/shape/blends.def"
-#undef BLEND
+#define BLEND(name, ...) BLEND_##name,
+#include "compiler/graph/blends.def"
     BLEND_COUNT
 } BlendKind;
 
