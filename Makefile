@@ -40,7 +40,7 @@ FAMILY   := $(sort $(wildcard compiler/family/*.c))
 EVAL     := $(addprefix compiler/eval/, scope.c expression.c arithmetic.c arguments.c builtins.c lists.c \
                 random.c functions.c csg.c fractal.c declare.c claims.c empty.c methods.c properties.c \
                 material.c view.c palette.c statements.c)
-PRINT    := $(addprefix compiler/print/, frame_values.c lines.c helpers.c mirrors.c statements.c \
+PRINT    := $(addprefix compiler/print/, frame_values.c lines.c signatures.c helpers.c mirrors.c statements.c \
                 prepare.c distances.c shared.c surfaces.c early_outs.c march.c module_print.c \
                 glsl/glsl.c)
 TARGET   := compiler/target/spirv.c
