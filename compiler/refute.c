@@ -26,7 +26,7 @@ enum { MOST_SHAPES = 4096, MOST_TRIALS = 6 };
 
 bool is_wrapper(const Shape *shape)
 {
-    return shape->kind == SHAPE_PAINT || shape->kind == SHAPE_SMOOTH || shape->kind == SHAPE_EMPTY;
+    return !shape_info[shape->kind].own;
 }
 
 static bool is_known(const Refuter *r, const Shape *shape)
