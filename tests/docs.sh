@@ -65,8 +65,9 @@ words='STATEMENT\|CONTROL\|OPERATOR_WORD\|CONSTANT'
 sed -n "s/^TOKEN([A-Z_]*, *\"\([a-z]*\)\", *\($words\))/\1/p" compiler/front/token.def |
     undocumented
 none "every word of the language is on its page"
-sed -n '/not_supported/d; s/^\(NUMERIC\|SPECIAL\)(\([a-z_0-9]*\), *"\([^"]*\)".*/\2(\3)/p' \
-    compiler/eval/functions.def | signature | undocumented
+sed -n '/not_supported/d; s/^FUNCTION(\([a-z_0-9]*\), *"\([^"]*\)".*/\1(\2)/p
+    s/^MAP(\([a-z_0-9]*\), *[1-4], *"\([a-z ]*\)".*/\1(\2)/p' \
+    compiler/eval/functions.def compiler/graph/ops.def | signature | undocumented
 none "every function is on the page, with its parameters"
 sed -n '/not_supported/d; s/^METHOD(\([a-z_]*\), *"\([^"]*\)".*/.\1(\2)/p
     s/^DEFORMATION([A-Z]*, *\([a-z_]*\), *"\([^"]*\)".*/.\1(\2)/p' \

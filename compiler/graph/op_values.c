@@ -301,7 +301,7 @@ static NodeValue value_of_row(Op op, GraphType type, uint32_t index, const Graph
     uint32_t  size   = components(type);
     switch (op) {
     case OP_COMPONENT: return number(operands[0].v[index]);
-#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning)                \
+#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning)        \
     case OP_##name:                                                                    \
         for (uint32_t i = 0; i < size; i++) {                                          \
             double a = operands[0].v[i], b = arity > 1 ? operands[arity > 1].v[i] : 0; \
