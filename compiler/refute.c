@@ -24,10 +24,7 @@ enum { MOST_SHAPES = 4096, MOST_TRIALS = 6 };
 
 /* ---- shapes ---- */
 
-bool is_wrapper(const Shape *shape)
-{
-    return !shape_info[shape->kind].own;
-}
+bool is_wrapper(const Shape *shape) { return !shape_info[shape->kind].own; }
 
 static bool is_known(const Refuter *r, const Shape *shape)
 {
