@@ -200,8 +200,7 @@ void emit_node(Emitter *e, Node n)
     emit_comment(e, expr->span);
     Text name = {.arena = e->scratch};
     text_format(&name, "%c%u", type_letter(expr->type), e->next++);
-    emit_line(e, "    %s %s = %s;\n", e->printer->types[expr->type], name.bytes,
-              emit_bare(e, text));
+    emit_local(e, (GraphType)expr->type, name.bytes, emit_bare(e, text));
     e->text[n]    = name.bytes;
     e->nesting[n] = 0;
 }

@@ -145,6 +145,19 @@ static bool has_word(const char *line, size_t length, const char *word)
     return false;
 }
 
+/* In this language no name follows its type. */
+static bool declares_as_glsl(const char *line, size_t length)
+{
+    for (size_t at = 0; at < length; at++)
+        for (GraphType type = TYPE_FLOAT; type <= TYPE_UINT; type++) {
+            size_t size = strlen(types[type]);
+            if (strncmp(line + at, types[type], size) == 0 && line[at + size] == ' ' &&
+                isalpha((unsigned char)line[at + size + 1]))
+                return true;
+        }
+    return false;
+}
+
 static int lines_seen;
 
 static void check_language(const char *text, const char *path)
@@ -154,6 +167,8 @@ static void check_language(const char *text, const char *path)
         for (size_t i = 0; i < sizeof words_of_glsl / sizeof *words_of_glsl; i++)
             if (has_word(line, length, words_of_glsl[i]))
                 fail_msg("%s: `%s` in %.*s", path, words_of_glsl[i], (int)length, line);
+        if (declares_as_glsl(line, length))
+            fail_msg("%s: a type before a name in %.*s", path, (int)length, line);
         line += length;
         lines_seen++;
     }
@@ -220,6 +235,8 @@ static void words_of_glsl_are_found(void **state)
     assert_false(has_word(line, strlen(line), "void"));
     assert_false(has_word("afloat floats", 13, "float"));
     assert_true(has_word("a ? b : c", 9, "?"));
+    assert_true(declares_as_glsl("    vec3f v1 = p;", 17));
+    assert_false(declares_as_glsl("    var v1: vec3f = p;", 22));
 }
 
 int main(void)
