@@ -6,73 +6,48 @@
 /* Types of results besides those of the graph. */
 enum { NOTHING = 0, SURFACE = TYPE_UINT + 1 };
 
-typedef struct Parameter {
+typedef struct TextParameter {
     GraphType   type;
     const char *name;
     bool        changes; /* the function changes it */
-} Parameter;
+} TextParameter;
 
 typedef struct Signature {
-    const char *name;
-    int         type; /* of the result: a GraphType, NOTHING or SURFACE */
-    Parameter   parameters[3];
-    const char *promise; /* a comment */
+    const char          *name;
+    int                  type; /* of the result: a GraphType, NOTHING or SURFACE */
+    const TextParameter *parameters[3];
+    const char          *promise; /* a comment */
 } Signature;
 
-#define P                     \
-    {                         \
-        TYPE_VEC3, "p", false \
-    }
-#define DIRECTION                     \
-    {                                 \
-        TYPE_VEC3, "direction", false \
-    }
-#define NORMAL                     \
-    {                              \
-        TYPE_VEC3, "normal", false \
-    }
-#define FOOTPRINT                      \
-    {                                  \
-        TYPE_FLOAT, "footprint", false \
-    }
-#define REACH                      \
-    {                              \
-        TYPE_FLOAT, "reach", false \
-    }
-#define PART                           \
-    {                                  \
-        TYPE_UINT, "scene_part", false \
-    }
-#define LOW                    \
-    {                          \
-        TYPE_VEC3, "low", true \
-    }
-#define HIGH                    \
-    {                           \
-        TYPE_VEC3, "high", true \
-    }
+static const TextParameter point     = {TYPE_VEC3, "p", false},
+                           direction = {TYPE_VEC3, "direction", false};
+static const TextParameter normal    = {TYPE_VEC3, "normal", false},
+                           reach     = {TYPE_FLOAT, "reach", false};
+static const TextParameter footprint = {TYPE_FLOAT, "footprint", false};
+static const TextParameter part      = {TYPE_UINT, "scene_part", false};
+static const TextParameter low = {TYPE_VEC3, "low", true}, high = {TYPE_VEC3, "high", true};
 
 /* Of the scene; what has no row has no function of its own. */
 static const Signature of_scene[KRS_FUNCTION_COUNT] = {
     [KRS_FUNCTION_DISTANCE] =
         {"krs_distance",
          TYPE_FLOAT,
-         {P},
+         {&point},
          "// Never above the distance to the nearest surface; negative inside.\n"},
     [KRS_FUNCTION_PLANE_T] =
         {"krs_plane_t",
          TYPE_FLOAT,
-         {P, DIRECTION},
+         {&point, &direction},
          "// How far it is along a ray from outside to the nearest of the planes that\n"
          "// krs_distance leaves out here.\n"},
     [KRS_FUNCTION_PLANE_COSINE] = {"krs_plane_cosine",
                                    TYPE_FLOAT,
-                                   {DIRECTION},
+                                   {&direction},
                                    "// How steeply a ray falls towards one of them: n.d.\n"},
     [KRS_FUNCTION_ALONG] =
         {"krs_along",
          TYPE_FLOAT,
-         {P, DIRECTION, FOOTPRINT},
+         {&point, &direction, &footprint},
          "// How far a ray from p along a unit direction may go before it can meet a\n"
          "// surface: at least the distance, and farther where polynomials or maps tell;\n"
          "// negative inside, and where a surface without thickness lies between p and the\n"
@@ -80,71 +55,71 @@ static const Signature of_scene[KRS_FUNCTION_COUNT] = {
     [KRS_FUNCTION_PROBE] =
         {"krs_probe",
          TYPE_FLOAT,
-         {P, FOOTPRINT},
+         {&point, &footprint},
          "// Whether the ball around p of this radius is empty: if it could be more than 1\n"
          "// times as large, which is what this says, about.\n"},
     [KRS_FUNCTION_DISTANCE_LOD] =
         {"krs_distance_lod",
          TYPE_FLOAT,
-         {P, FOOTPRINT},
+         {&point, &footprint},
          "// To march by: never above the distance to the nearest surface, and not above 0\n"
          "// in the same places as krs_distance.  What is far for its size is not looked\n"
          "// at, nor what is smaller than the footprint.\n"},
     [KRS_FUNCTION_SCENE_PART_DISTANCE] =
         {"krs_scene_part_distance",
          TYPE_FLOAT,
-         {PART, P},
+         {&part, &point},
          "// Parts of the scene, most of them one component: the distance of one.\n"},
     [KRS_FUNCTION_SCENE_PART_BOX] =
         {"krs_scene_part_box",
          NOTHING,
-         {PART, LOW, HIGH},
+         {&part, &low, &high},
          "// A box around a part; where there is none the box stays empty.\n"},
     [KRS_FUNCTION_GRADIENT] =
         {"krs_gradient",
          TYPE_VEC3,
-         {P, REACH},
+         {&point, &reach},
          "// The direction in which krs_distance rises fastest at a surface, of any\n"
          "// length, by derivatives; by differences over `reach` where there are none.\n"},
     [KRS_FUNCTION_SURFACE] =
         {"krs_surface",
          SURFACE,
-         {P, NORMAL, FOOTPRINT},
+         {&point, &normal, &footprint},
          "// What is at p: the component with the least distance.  `normal` is the\n"
          "// gradient of krs_distance there, `footprint` the radius of a pixel, or 0.\n"},
 };
 
-static const Signature zone_depth = {"krs_zone_depth", TYPE_FLOAT, {P}, NULL};
+static const Signature zone_depth = {"krs_zone_depth", TYPE_FLOAT, {&point}, NULL};
 
 static const Signature prepare = {
     "krs_prepare",
     NOTHING,
-    {{0}},
+    {NULL},
     "// Everything that stays the same within a frame: call it first.\n"};
 
 /* Of components, whose number is the end of the name. */
 static const Signature of_component[FUNCTION_KINDS] = {
-    [OF_DISTANCE] = {"krs_distance", TYPE_FLOAT, {P}, NULL},
-    [OF_ALONG]    = {"krs_along", TYPE_FLOAT, {P, DIRECTION, FOOTPRINT}, NULL},
-    [OF_PROBE]    = {"krs_probe", TYPE_FLOAT, {P, FOOTPRINT}, NULL},
-    [OF_LOD]      = {"krs_distance_lod", TYPE_FLOAT, {P, FOOTPRINT}, NULL},
-    [OF_GRADIENT] = {"krs_gradient", TYPE_VEC4, {P, REACH}, NULL},
-    [OF_SURFACE]  = {"krs_surface", SURFACE, {P, NORMAL, FOOTPRINT}, NULL},
+    [OF_DISTANCE] = {"krs_distance", TYPE_FLOAT, {&point}, NULL},
+    [OF_ALONG]    = {"krs_along", TYPE_FLOAT, {&point, &direction, &footprint}, NULL},
+    [OF_PROBE]    = {"krs_probe", TYPE_FLOAT, {&point, &footprint}, NULL},
+    [OF_LOD]      = {"krs_distance_lod", TYPE_FLOAT, {&point, &footprint}, NULL},
+    [OF_GRADIENT] = {"krs_gradient", TYPE_VEC4, {&point, &reach}, NULL},
+    [OF_SURFACE]  = {"krs_surface", SURFACE, {&point, &normal, &footprint}, NULL},
 };
 
 const char *module_function_name(KrsFunction function) { return of_scene[function].name; }
 
 /* ---- heads ---- */
 
-static const char *parameters_text(Emitter *e, const Parameter parameters[3])
+static const char *parameters_text(Emitter *e, const TextParameter *const parameters[3])
 {
     Text text = {.arena = e->scratch};
     text_add(&text, "");
-    for (int i = 0; i < 3 && parameters[i].name; i++) {
-        Phrase      phrase = parameters[i].changes ? PHRASE_PARAMETER_INOUT : PHRASE_PARAMETER;
-        const char *type   = e->printer->types[parameters[i].type];
+    for (int i = 0; i < 3 && parameters[i]; i++) {
+        Phrase      phrase = parameters[i]->changes ? PHRASE_PARAMETER_INOUT : PHRASE_PARAMETER;
+        const char *type   = e->printer->types[parameters[i]->type];
         text_add(&text, i ? ", " : "");
-        text_add(&text, phrase_text(e, phrase, (Operands){type, parameters[i].name}));
+        text_add(&text, phrase_text(e, phrase, (Operands){type, parameters[i]->name}));
     }
     return text.bytes;
 }
@@ -207,9 +182,9 @@ const char *emit_call_with(Emitter *e, FunctionKind kind, uint32_t component, co
 
 const char *emit_call_of(Emitter *e, FunctionKind kind, uint32_t component)
 {
-    Text             operands   = {.arena = e->scratch};
-    const Parameter *parameters = of_component[kind].parameters;
-    for (int i = 0; i < 3 && parameters[i].name; i++)
-        text_format(&operands, "%s%s", i ? ", " : "", parameters[i].name);
+    Text                        operands   = {.arena = e->scratch};
+    const TextParameter *const *parameters = of_component[kind].parameters;
+    for (int i = 0; i < 3 && parameters[i]; i++)
+        text_format(&operands, "%s%s", i ? ", " : "", parameters[i]->name);
     return emit_call_with(e, kind, component, operands.bytes);
 }
