@@ -49,7 +49,7 @@ API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits
                 march_groups.c make_module.c program.c scene_text.c framing.c frame.c query.c \
                 search_pairs.c search_targets.c search_starts.c search.c refute.c \
                 refute_settings.c refute_blame.c refute_report.c bounds.c)
-RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer film writer))))
+RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer integrators film display writer))))
 CLI      := $(sort $(wildcard cli/*.c))
 
 # Text files that the program carries: the standard library, what scenes and kernels share, kernels.

@@ -38,7 +38,7 @@ const Choice plane_choices[] = {
     LAST};
 const Choice tone_map_choices[] = {
 #define TONE_MAP(id, name, about) {name, about},
-#include "runtime/film/tone_maps.def"
+#include "runtime/display/tone_maps.def"
 #undef TONE_MAP
     LAST};
 const Choice early_outs_choices[]  = {{"default", ""}, {"on", ""}, {"off", ""}, LAST};

@@ -12,7 +12,7 @@
 #include "cli/choices.h"
 #include "compiler/base/arena.h"
 #include "compiler/krs.h"
-#include "runtime/film/film.h"
+#include "runtime/display/display.h"
 
 enum {
     MANY_FILES      = -1,  /* a command that takes one or more files */

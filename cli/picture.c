@@ -167,12 +167,12 @@ static KrsStatus write_exr(const Options *options, const KrsPicture *source, Pic
 }
 
 static KrsStatus write_png(const KrsPicture *source, const Picture *picture,
-                           const FilmOptions *film, const char *path)
+                           const DisplayOptions *display, const char *path)
 {
     uint8_t *rgb = malloc((size_t)source->window.width * source->window.height * 3);
     if (!rgb)
         return say_status(KRS_OUT_OF_MEMORY, path);
-    film_to_srgb8(source, film, rgb);
+    display_to_srgb8(source, display, rgb);
     KrsStatus status = write_output(path, fill_png, &(PngContents){picture, rgb});
     free(rgb);
     return status;
@@ -191,5 +191,5 @@ KrsStatus picture_write(const Options *options, const KrsPicture *source, const 
                            .texts       = texts,
                            .text_count  = collect_texts(options, source, notes, texts)};
     return file_form(path) == FORM_EXR ? write_exr(options, source, &picture, path)
-                                       : write_png(source, &picture, &notes->film, path);
+                                       : write_png(source, &picture, &notes->display, path);
 }

@@ -17,8 +17,8 @@ uint32_t picture_planes(const Options *options, bool exr);
 /* What stands in the files beside the pixels. */
 typedef struct PictureNotes {
     const KrsScene *scene;
-    double          time; /* of the scene */
-    FilmOptions     film; /* for PNG */
+    double          time;    /* of the scene */
+    DisplayOptions  display; /* for PNG */
 } PictureNotes;
 
 /* Writes the picture to a file in the form its name tells. */

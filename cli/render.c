@@ -304,13 +304,14 @@ static KrsStatus write_outputs(const Render *render, const KrsPicture *picture, 
 {
     const Options *options = render->options;
     KrsView        view;
-    KrsStatus      status = krs_frame_view(render->frame, render->how.camera, &view);
-    PictureNotes   notes  = {.scene = render->scene, .time = time};
-    notes.film.exposure   = isnan(options->exposure) ? view.image.exposure : options->exposure;
+    KrsStatus      status  = krs_frame_view(render->frame, render->how.camera, &view);
+    PictureNotes   notes   = {.scene = render->scene, .time = time};
+    notes.display.exposure = isnan(options->exposure) ? view.image.exposure : options->exposure;
     if (options->tone_map >= 0)
-        notes.film.tone_map = options->tone_map;
+        notes.display.tone_map = options->tone_map;
     else if (view.image.tone_map)
-        tone_map_find(view.image.tone_map, &notes.film.tone_map); /* the compiler knows its name */
+        tone_map_find(view.image.tone_map,
+                      &notes.display.tone_map); /* the compiler knows its name */
     for (size_t i = 0; i < render->output_count && status == KRS_OK; i++)
         status = picture_write(options, picture, &notes,
                                frame_path(options, render->outputs[i], frame));

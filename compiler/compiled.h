@@ -7,13 +7,6 @@
 #include "compiler/krs.h"
 #include "compiler/print/variant.h"
 
-typedef struct KrsCamera {
-    enum { KRS_PERSPECTIVE, KRS_ORTHOGRAPHIC, KRS_PANORAMA } projection;
-    double eye[3], target[3], up[3];
-    double fov;    /* vertical, radians */
-    double height; /* orthographic: of the picture, world units */
-} KrsCamera;
-
 typedef struct KrsLight {
     bool   positional; /* else directional */
     double vector[3];  /* position, or unit direction towards the light */
@@ -95,11 +88,10 @@ size_t krs_promised_functions(const KrsScene *scene, bool many_threads,
                               KrsFunction promised[KRS_MOST_PROMISED]);
 /* Whether a camera of the scene is a panorama. */
 bool krs_scene_is_panoramic(const KrsScene *scene);
-/* The number of cameras and their names (the first is the default; NULL when unnamed). */
-size_t      krs_camera_count(const KrsScene *scene);
-const char *krs_camera_name(const KrsScene *scene, size_t index);
 /* Zones that the scene declares. */
 size_t krs_zone_count(const KrsScene *scene);
+/* What the `image` block says. */
+KrsImage krs_scene_image(const KrsScene *scene);
 /* Camera `camera`, lights, sky and image at the frame's parameters and time. */
 KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view);
 /* Whether what single precision does not tell of such a coordinate shows in pixels of that width,

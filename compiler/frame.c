@@ -278,11 +278,17 @@ static void view_light(const KrsFrame *frame, size_t index, KrsLight *light)
         vector_normalize(light->vector);
 }
 
+KrsImage krs_scene_image(const KrsScene *scene)
+{
+    const SceneImage *image = &scene->image;
+    return (KrsImage){image->width,    image->height,   image->samples, image->integrator,
+                      image->exposure, image->tone_map, image->error};
+}
+
 KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view)
 {
-    const KrsScene   *scene = frame->scene;
-    const SceneImage *image = &scene->image;
-    const SkyRoots   *sky   = sky_roots(&scene->roots);
+    const KrsScene *scene = frame->scene;
+    const SkyRoots *sky   = sky_roots(&scene->roots);
     if (camera >= scene->camera_count)
         return KRS_BAD_ARGUMENT;
     frame_refresh(frame);
@@ -293,8 +299,7 @@ KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view)
     frame_copy(frame, sky->ground, view->sky.ground);
     for (size_t i = 0; i < scene->light_count; i++)
         view_light(frame, i, &frame->lights[i]);
-    view->image = (KrsImage){image->width,    image->height,   image->samples, image->integrator,
-                             image->exposure, image->tone_map, image->error};
+    view->image = krs_scene_image(scene);
     return KRS_OK;
 }
 
@@ -307,4 +312,13 @@ void krs_frame_free(KrsFrame *frame) { frame_free(frame); }
 KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view)
 {
     return frame_view(frame, camera, view);
+}
+
+KrsStatus krs_frame_camera(KrsFrame *frame, size_t index, KrsCamera *camera)
+{
+    if (index >= frame->scene->camera_count)
+        return KRS_BAD_ARGUMENT;
+    frame_refresh(frame);
+    view_camera(frame, index, camera);
+    return KRS_OK;
 }

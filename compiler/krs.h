@@ -152,6 +152,28 @@ KrsStatus krs_frame_slope(const KrsScene *scene, size_t index, KrsFrameSlope *sl
 #define KRS_MOST_ZONES 16
 KrsStatus krs_frame_set_zones(KrsFrame *frame, const double (*zones)[4], size_t count);
 
+typedef enum KrsProjection {
+    KRS_PERSPECTIVE,
+    KRS_ORTHOGRAPHIC,
+    KRS_PANORAMA /* all directions: longitude from left to right, latitude from top to bottom */
+} KrsProjection;
+
+/* Where a picture is seen from, in world units. */
+typedef struct KrsCamera {
+    KrsProjection projection;
+    double        eye[3], target[3], up[3]; /* `up` is seen upright; its length means nothing */
+    double        fov;                      /* perspective: vertical angle, radians, below pi */
+    double        height;                   /* orthographic: of the picture */
+} KrsCamera;
+
+/* The cameras that the scene declares, or the one that it is given without; the first is the
+   default.  The name is NULL where there is none, and lives as long as the scene. */
+size_t      krs_camera_count(const KrsScene *scene);
+const char *krs_camera_name(const KrsScene *scene, size_t index);
+/* A camera at the frame's parameters and time.  KRS_BAD_ARGUMENT when there is none of that
+   index. */
+KrsStatus krs_frame_camera(KrsFrame *frame, size_t index, KrsCamera *camera);
+
 /* A component of the scene: what one `show` shows. */
 typedef struct KrsComponent {
     const char *name;            /* the variable it was shown by, or "component 3" */

@@ -2,7 +2,8 @@
  * krs_vulkan.h: render compiled scenes on a Vulkan device.
  *
  * A KrsRenderer is an open device.  A KrsRendering is a scene whose shaders are compiled for it.
- * krs_render turns one frame of the scene into a KrsPicture in host memory.  Different renderers
+ * krs_render turns one frame of the scene into a KrsPicture in host memory.  A KrsFilm is a picture
+ * that persists: samples are added to it, and it is read when it is wanted.  Different renderers
  * may be used from different threads; a renderer, and all that was made from it, belongs to one
  * thread at a time.  Nothing here prints, exits or aborts: every failure is a status, and one
  * line of text that krs_renderer_message returns.
@@ -129,6 +130,14 @@ typedef bool KrsProgressCallback(void *user, double done);
 
 /* What there is to choose from has its rows, with what they mean, in choices.def. */
 
+/* How light is found: KRS_INTEGRATOR_PREVIEW. */
+typedef enum KrsIntegrator {
+#define KRS_INTEGRATOR(id, name, about) KRS_INTEGRATOR_##id,
+#include "runtime/choices.def"
+    KRS_INTEGRATOR_COUNT
+} KrsIntegrator;
+extern const char *const krs_integrator_names[KRS_INTEGRATOR_COUNT]; /* "preview" */
+
 /* How rays advance: KRS_TRACE_DEFAULT, KRS_TRACE_PLAIN and so on. */
 typedef enum KrsTrace {
 #define KRS_TRACE(id, name, about) KRS_TRACE_##id,
@@ -188,6 +197,7 @@ typedef struct KrsRenderOptions {
     KrsWindow     crop;          /* width 0: everything */
     uint32_t      samples;       /* rays per pixel; 0: likewise */
     size_t        camera;        /* its number */
+    KrsIntegrator integrator;
     uint64_t      seed;  /* of the samples' positions; the first stays at the centre of the pixel */
     double        error; /* permitted distance from the surface, pixels; 0: likewise */
     uint32_t      planes;        /* bits of KrsPlane; 0: all */
@@ -234,7 +244,7 @@ typedef struct KrsRenderStats {
 } KrsRenderStats;
 
 /*
- * A rendered frame.  The planes hold the pixels of `window` only, row by row from the top, and
+ * A picture.  The planes hold the pixels of `window` only, row by row from the top, and
  * are NULL when they were not asked for.  Where a pixel's centre hits nothing, the depth is
  * +infinity and all planes but colour and steps are 0.
  */
@@ -248,7 +258,7 @@ typedef struct KrsPicture {
 #include "runtime/planes.def"
 #undef KRS_ARRAY
 #undef KRS_PLANE
-    /* For row vectors, v * M.  Camera space has x to the right, y up, z along the view axis.  NDC
+    /* Without a camera these change nothing.  For row vectors, v * M.  Camera space has x to the right, y up, z along the view axis.  NDC
        has x and y from -1 to 1; in perspective z goes from 0 at distance 0.001 to 1 at infinity.
        For a panorama NDC is camera space. */
     float          world_to_camera[4][4], world_to_ndc[4][4];
@@ -263,6 +273,59 @@ typedef struct KrsPicture {
 KrsStatus krs_render(KrsRendering *rendering, KrsFrame *frame, const KrsRenderOptions *options,
                      KrsPicture **picture);
 void      krs_picture_free(KrsPicture *picture);
+
+/*
+ * Films: pictures that grow.
+ *
+ * A film begins without samples.  Each call that adds some may have another frame and camera: the
+ * mean of all is what is read, so equal ones refine the picture, and others blur it.  The planes
+ * other than colour, and the matrices, are those of the first sample.  As many samples as
+ * `options->samples` says, added in whatever portions, give the picture of krs_render bit by bit;
+ * more may be added.  Samples stay on the device until the film is read, or until another film of
+ * the rendering needs the room.
+ *
+ * Arguments that are refused change nothing; if adding fails otherwise, or is interrupted, the film
+ * is as new.
+ */
+typedef struct KrsFilm KrsFilm;
+
+/* A film for pictures of a rendering's scene; `options` (which may be NULL) are checked and copied,
+   and hold for all of its samples.  On any status but KRS_OK *film is NULL: KRS_BAD_ARGUMENT,
+   KRS_OUT_OF_MEMORY. */
+KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options, KrsFilm **film);
+void      krs_film_free(KrsFilm *film); /* before its rendering */
+/* Forgets all samples, as after the camera has moved. */
+void krs_film_clear(KrsFilm *film);
+/* Samples of each pixel so far. */
+uint32_t krs_film_samples(const KrsFilm *film);
+
+/* Adds samples of a frame, as seen by the camera, or by the one of the options where it is NULL.
+   krs_frame_camera gives the scene's own to begin with.  KRS_BAD_ARGUMENT, KRS_OUT_OF_MEMORY,
+   KRS_INTERRUPTED, KRS_INTERNAL. */
+KrsStatus krs_film_add(KrsFilm *film, KrsFrame *frame, const KrsCamera *camera, uint32_t samples);
+
+/* A ray for each pixel of the whole picture, row by row from the top, also where there is a crop:
+   lenses and projections of the caller's own. */
+typedef struct KrsRays {
+    const double (*origins)[3];    /* in world units */
+    const double (*directions)[3]; /* of any length but 0 */
+    /* What a pixel is for a camera: how wide a ray is at its origin, and how much wider it gets for
+       each unit along it, both at least 0.  The permitted error counts in these widths. */
+    double width, spread;
+    /* No ray goes farther, in world units along it; 0: as far as the scene's box reaches, or, where
+       it has no end, 10,000 times its size or that of the box around the origins (at least 1). */
+    double farthest;
+} KrsRays;
+
+/* Adds a sample of each pixel by rays of a list; its depth is the distance along the ray.  It shows
+   what krs_film_add does of the same rays, but rays share no beams.  The first time it
+   compiles shaders. */
+KrsStatus krs_film_add_rays(KrsFilm *film, KrsFrame *frame, const KrsRays *rays);
+
+/* The mean of the samples so far, with planes of the options (bits; 0: all of these).  The film
+   stays as it is.  On KRS_OK the caller owns *picture; its statistics are sums over the samples.
+   KRS_BAD_ARGUMENT: there is no sample, or no such plane; KRS_OUT_OF_MEMORY, KRS_INTERNAL. */
+KrsStatus krs_film_read(KrsFilm *film, uint32_t planes, KrsPicture **picture);
 
 /* The material and surface at a point, as the device computes them. */
 typedef struct KrsSurfacePoint {

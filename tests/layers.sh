@@ -8,16 +8,13 @@ set -u
 cd "$(dirname "$0")/.." || exit 1
 layers="compiler/base compiler/graph compiler/shape compiler/lower compiler/family compiler/front
         compiler/eval compiler/print compiler/print/glsl compiler/target compiler
-        runtime/device runtime/shared runtime/tracer runtime/film runtime/writer runtime cli"
+        runtime/device runtime/shared runtime/tracer runtime/integrators runtime/film runtime/display runtime/writer runtime cli"
 api="compiler/base/ compiler/compile.h compiler/passes.def compiler/krs.h
           compiler/print/variant.h compiler/target/spirv.h runtime/krs_vulkan.h runtime/planes.def runtime/choices.def"
 # "A>B": A includes B's header, and B needs A.  Without all of these there is no circle.
 circles="compiler/refuting>compiler/refute compiler/searching>compiler/search
          runtime/device/instance>runtime/device/gpu runtime/device/pipelines>runtime/device/gpu
-         runtime/tracer/layouts>runtime/tracer/renderer
-         runtime/tracer/warmup>runtime/tracer/renderer
-         runtime/tracer/variants>runtime/tracer/renderer
-         runtime/tracer/phases>runtime/tracer/dispatch cli/options>cli/console
+         cli/options>cli/console
          cli/options>cli/values"
 
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT

@@ -33,7 +33,7 @@ static bool run(KrsRenderer *renderer, int count, char **words)
         device_slug(krs_renderer_device(renderer).name, slug, sizeof slug);
         printf("%s\n%s\n", slug, krs_renderer_device(renderer).name);
     } else if (count == 2 && strcmp(section, "limits") == 0) {
-        print_limits(renderer);
+        print_device_limits(renderer);
     } else if (count == 2 && strcmp(section, "accuracy") == 0) {
         print_accuracy(renderer);
     } else if (count == 4 && strcmp(section, "example") == 0) {

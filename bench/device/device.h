@@ -6,14 +6,14 @@
 #define KRS_BENCH_DEVICE_H
 
 #include "bench/stage.h"
-#include "runtime/tracer/renderer.h"
+#include "runtime/tracer/kernels.h"
 
 typedef struct Size {
     uint32_t width, height;
 } Size;
 
 /* limits.c: properties, limits and features that the runtime depends on. */
-void print_limits(KrsRenderer *renderer);
+void print_device_limits(KrsRenderer *renderer);
 /* accuracy.c: built-in operations and our own functions, against double precision. */
 void print_accuracy(KrsRenderer *renderer);
 /* examples.c: one row: a scene on this device and on lavapipe. */

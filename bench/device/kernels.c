@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "bench/device/device.h"
+#include "runtime/tracer/methods.h"
 
 static void print_kernel(KrsRendering *rendering, const char *scene, const char *kernel,
                          Kernel *made, double *spirv_ms, double *pipeline_ms)

@@ -93,7 +93,7 @@ static void print_features(VkPhysicalDevice physical)
            features.shaderFloat64 ? "yes" : "no");
 }
 
-void print_limits(KrsRenderer *renderer)
+void print_device_limits(KrsRenderer *renderer)
 {
     const Gpu *gpu = &renderer->gpu;
     puts("| | |\n| --- | --- |");

@@ -17,7 +17,7 @@
 #include "bench/sheet.h"
 #include "bench/stage.h"
 #include "compiler/compile.h"
-#include "runtime/film/film.h"
+#include "runtime/display/display.h"
 #include "runtime/krs_vulkan.h"
 
 enum { WIDTH = 320, HEIGHT = 180, PIXELS = WIDTH * HEIGHT, FRAMES = 3 };

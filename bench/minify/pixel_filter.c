@@ -11,7 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "runtime/film/film.h"
+#include "runtime/display/display.h"
 
 typedef struct Filter {
     double sigma, radius; /* in pixels; sigma 0: the box */

@@ -1,161 +1,340 @@
 /*
- * film.c: tone mapping, sRGB and dithering.
+ * film.c: pictures that samples are added to.
+ *
+ * A picture is made in bands of rows that fit into modest buffers (band.c).  A film keeps the sums
+ * of its samples in memory of the host, but for those of one band, which stay in the buffers until
+ * they are asked for, or the buffers are needed for another band.  So a picture of one band goes
+ * from the device to the host only when it is read.
  */
-#include "runtime/film/film.h"
-
 #include <math.h>
 #include <string.h>
 
-const char *const tone_map_names[TONE_MAP_COUNT] = {
-#define TONE_MAP(id, name, about) name,
-#include "runtime/film/tone_maps.def"
-#undef TONE_MAP
+#include "runtime/tracer/band.h"
+#include "runtime/integrators/integrators.h"
+#include "runtime/film/held.h"
+#include "runtime/film/picture.h"
+#include "runtime/tracer/renderer.h"
+#include "runtime/tracer/rendering.h"
+#include "runtime/film/settings.h"
+#include "runtime/tracer/view.h"
+
+static IntegratorPlan *const integrators[KRS_INTEGRATOR_COUNT] = {
+#define KRS_INTEGRATOR(id, name, about) name##_plan,
+#include "runtime/choices.def"
 };
 
-bool tone_map_find(const char *name, ToneMap *tone_map)
-{
-    for (int i = 0; i < TONE_MAP_COUNT; i++)
-        if (strcmp(name, tone_map_names[i]) == 0) {
-            *tone_map = (ToneMap)i;
-            return true;
-        }
-    return false;
-}
+/* ---- films ---- */
 
-/* fmin and fmax are calls, as they know what is no number; here there is nothing of that kind. */
-static double least_of(double a, double b) { return a < b ? a : b; }
-static double most_of(double a, double b) { return a > b ? a : b; }
-
-/* Khronos PBR Neutral (2024): takes back the 4 % that a dielectric reflects head-on, leaves
-   colours alone up to 0.76 and compresses and whitens what is brighter. */
-static void apply_neutral(const double color[3], double out[3])
+KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options, KrsFilm **out)
 {
-    const double start = 0.8 - 0.04, desaturation = 0.15;
-    double       least  = least_of(color[0], least_of(color[1], color[2]));
-    double       offset = least < 0.08 ? least - 6.25 * least * least : 0.04;
-    double       peak   = most_of(color[0], most_of(color[1], color[2])) - offset;
-    double       top = peak, white = 0;
-    if (peak >= start) {
-        double room = 1 - start;
-        top         = 1 - room * room / (peak + room - start);
-        white       = 1 - 1 / (desaturation * (peak - top) + 1);
+    Gpu *gpu = &rendering->renderer->gpu;
+    *out     = NULL;
+    renderer_clear(rendering->renderer);
+    KrsFilm *film = gpu_alloc(gpu, 1, sizeof *film, "make a film");
+    if (!film)
+        return gpu->status;
+    film->rendering = rendering;
+    if (options)
+        film->options = *options;
+    KrsRenderOptions *o = &film->options;
+    if (settings_complete(rendering, o, &film->asked))
+        film->sums = picture_new(gpu, o->width, o->height, o->crop, o->planes | KRS_PLANE_COLOR);
+    if (!film->sums) {
+        gpu_release(gpu, film);
+        return gpu->status;
     }
-    double scale = peak > 0 ? top / peak : 1;
-    for (int i = 0; i < 3; i++)
-        out[i] = (color[i] - offset) * scale * (1 - white) + top * white;
+    *out = film;
+    return KRS_OK;
 }
 
-static void multiply(const double matrix[3][3], const double v[3], double out[3])
+/* Forgets what the buffers hold of a film. */
+static void let_go(KrsFilm *film)
 {
-    for (int i = 0; i < 3; i++)
-        out[i] = matrix[i][0] * v[0] + matrix[i][1] * v[1] + matrix[i][2] * v[2];
+    if (film->rendering->held.film == film)
+        film->rendering->held = (HeldBand){0};
 }
 
-static void apply_aces(const double color[3], double out[3])
+void krs_film_free(KrsFilm *film)
 {
-    static const double into[3][3] = {
-        {0.59719, 0.35458, 0.04823},
-        {0.07600, 0.90834, 0.01566},
-        {0.02840, 0.13383, 0.83777},
-    };
-    static const double back[3][3] = {
-        {1.60475, -0.53108, -0.07367},
-        {-0.10208, 1.10813, -0.00605},
-        {-0.00327, -0.07276, 1.07602},
-    };
-    double film[3];
-    multiply(into, color, film);
-    for (int i = 0; i < 3; i++) {
-        double v = film[i];
-        film[i] = (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081);
-    }
-    multiply(back, film, out);
+    if (!film)
+        return;
+    let_go(film);
+    krs_picture_free(film->sums);
+    gpu_release(&film->rendering->renderer->gpu, film);
 }
 
-static double clamp_unit(double value) { return value > 0 ? least_of(value, 1) : 0; }
-
-void tone_map_apply(ToneMap tone_map, const double color[3], double out[3])
+void krs_film_clear(KrsFilm *film)
 {
-    /* Far beyond any curve's shoulder: keeps infinity from becoming a quotient of infinities. */
-    const double brightest = 1e9;
-    double       light[3];
-    for (int i = 0; i < 3; i++)
-        light[i] = color[i] > 0 ? least_of(color[i], brightest) : 0;
-    switch (tone_map) {
-    case TONE_NEUTRAL: apply_neutral(light, out); break;
-    case TONE_ACES: apply_aces(light, out); break;
-    default: memcpy(out, light, sizeof light);
-    }
-    for (int i = 0; i < 3; i++)
-        out[i] = clamp_unit(out[i]);
+    const uint64_t bytes = film->sums->stats.peak_memory_bytes;
+    let_go(film);
+    film->samples     = 0;
+    film->sums->stats = (KrsRenderStats){.peak_memory_bytes = bytes};
 }
 
-double srgb_encode(double linear)
+uint32_t krs_film_samples(const KrsFilm *film) { return film->samples; }
+
+/* ---- samples ---- */
+
+/* A window and the halo around it, as far as the picture reaches. */
+static KrsWindow with_halo(const Job *job, uint32_t halo, KrsWindow window)
 {
-    if (linear >= 1) /* the formula gives a little less */
-        return 1;
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+    const uint32_t right = window.x + window.width + halo, bottom = window.y + window.height + halo;
+    window.x      = window.x > halo ? window.x - halo : 0;
+    window.y      = window.y > halo ? window.y - halo : 0;
+    window.width  = (right < job->options.width ? right : job->options.width) - window.x;
+    window.height = (bottom < job->options.height ? bottom : job->options.height) - window.y;
+    return window;
 }
 
-/* srgb_encode for a picture's worth of numbers: of the square root, of which it is nearly a
-   straight line, in so many pieces: off by less than 3e-7. */
-enum { PIECES = 4096 };
-typedef struct Encoding {
-    double at[PIECES + 2];
-} Encoding;
-
-static void encoding_fill(Encoding *encoding)
+/* What a tile has in common must not depend on the crop, so whole tiles are traced. */
+static KrsWindow whole_tiles(const KrsRenderOptions *options)
 {
-    for (int i = 0; i <= PIECES + 1; i++)
-        encoding->at[i] = srgb_encode((double)i / PIECES * i / PIECES);
+    const KrsWindow *crop   = &options->crop;
+    KrsWindow        cover  = {crop->x / TILE * TILE, crop->y / TILE * TILE, 0, 0};
+    uint32_t         right  = (crop->x + crop->width + TILE - 1) / TILE * TILE;
+    uint32_t         bottom = (crop->y + crop->height + TILE - 1) / TILE * TILE;
+    cover.width             = (right < options->width ? right : options->width) - cover.x;
+    cover.height            = (bottom < options->height ? bottom : options->height) - cover.y;
+    return cover;
 }
 
-/* Of what is from 0 to 1. */
-static double encode(const Encoding *encoding, double linear)
+/* Hands the rays of a band to the device, behind the lights. */
+static void upload_rays(const Job *job, const KrsWindow *traced)
 {
-    double place = sqrt(linear) * PIECES;
-    int    piece = (int)place;
-    double below = encoding->at[piece];
-    return below + (place - piece) * (encoding->at[piece + 1] - below);
-}
-
-/* The byte that the definition gives: where the table could decide about it, that is asked. */
-static uint8_t to_byte(const Encoding *encoding, double linear, double step)
-{
-    const double doubt = 1e-3;
-    double       value = 255 * encode(encoding, linear) + step, behind = value - (int)value;
-    if (behind < doubt || behind > 1 - doubt)
-        value = 255 * srgb_encode(linear) + step;
-    return (uint8_t)value;
-}
-
-/* What is behind the point of a number from 0 on; floor is a call. */
-static double fraction(double value) { return value - (double)(int64_t)value; }
-
-/* Interleaved gradient noise (Jimenez 2014) in [0, 1): over any few neighbouring pixels its
-   values are spread evenly, so that dithered areas keep their mean without clumps. */
-static double noise(double x, double y)
-{
-    return fraction(52.9829189 * fraction(0.06711056 * x + 0.00583715 * y));
-}
-
-void film_to_srgb8(const KrsPicture *picture, const FilmOptions *options, uint8_t *rgb)
-{
-    const KrsWindow *window = &picture->window;
-    const double     gain   = exp2(options->exposure);
-    Encoding         encoding;
-    encoding_fill(&encoding);
-    for (uint32_t y = 0; y < window->height; y++)
-        for (uint32_t x = 0; x < window->width; x++) {
-            size_t       index    = (size_t)y * window->width + x;
-            const float *from     = &picture->color[4 * index];
-            const double light[3] = {gain * from[0], gain * from[1], gain * from[2]};
-            double       shown[3];
-            tone_map_apply(options->tone_map, light, shown);
+    const KrsRays  *rays = job->rays;
+    ListedRayBlock *to   = rendering_listed_rays(job->rendering, job->view.light_count);
+    for (uint32_t y = traced->y; y < traced->y + traced->height; y++)
+        for (uint32_t x = traced->x; x < traced->x + traced->width; x++, to++) {
+            const size_t  pixel     = (size_t)y * job->options.width + x;
+            const double *direction = rays->directions[pixel];
+            const double  length    = hypot(hypot(direction[0], direction[1]), direction[2]);
             for (int i = 0; i < 3; i++) {
-                /* The channels' noise differs, by a shift, so that greys are dithered finer. */
-                double step        = noise(window->x + x + 47.0 * i, window->y + y + 17.0 * i);
-                rgb[3 * index + i] = to_byte(&encoding, shown[i], step);
+                to->origin[i]    = (float)(rays->origins[pixel][i] - job->rebase_origin[i]);
+                to->direction[i] = (float)(direction[i] / length);
             }
+            to->width  = (float)rays->width;
+            to->spread = (float)rays->spread;
         }
+}
+
+/* Adds what the kernels have counted. */
+static void take_counters(Job *job)
+{
+    ControlBlock   *control = job->rendering->control.bytes;
+    KrsRenderStats *stats   = job->stats;
+    stats->unresolved += control->unresolved;
+    stats->evaluations += control->evaluations;
+    if (control->most_evaluations > stats->most_evaluations_per_ray)
+        stats->most_evaluations_per_ray = control->most_evaluations;
+    control->unresolved = control->evaluations = control->most_evaluations = 0;
+}
+
+/* Samples of the band that the buffers hold, of which `share` is that of the whole. */
+static bool add_to_band(Job *job, const Plan *plan, const KrsFilm *film, uint32_t samples,
+                        double share)
+{
+    const KrsWindow *traced  = &job->rendering->held.traced;
+    const double     done    = job->progress_done;
+    ControlBlock    *control = job->rendering->control.bytes;
+    WorkBlock        work    = {
+                  .corner = {traced->x, traced->y},
+                  .extent = {traced->width, traced->height},
+    };
+    *control = (ControlBlock){
+        .projection   = job->rays ? LISTED : (uint32_t)job->view.camera.projection,
+        .lights       = (uint32_t)job->view.light_count,
+        .seed         = (uint32_t)(job->options.seed ^ job->options.seed >> 32),
+        .rows         = picture_rows(film->sums),
+        .no_occlusion = job->options.no_occlusion,
+    };
+    if (job->rays)
+        upload_rays(job, traced);
+    for (uint32_t i = 0; i < samples; i++) {
+        job->progress_share = share / samples;
+        job->progress_done  = done + job->progress_share * i;
+        if (!plan_run(job, plan, &work, film->samples + i))
+            return false;
+        take_counters(job);
+    }
+    return true;
+}
+
+static bool add_to_bands(Job *job, const Plan *plan, KrsFilm *film, uint32_t samples)
+{
+    const KrsWindow *cover = &job->cover;
+    for (uint32_t from = 0; from < cover->height; from += film->rows) {
+        const uint32_t left = cover->height - from, rows = left < film->rows ? left : film->rows;
+        const double   height = cover->height;
+        KrsWindow      band   = {cover->x, cover->y + from, cover->width, rows};
+        const HeldBand wanted = {
+            film, from, rows, with_halo(job, plan->halo, band), film->samples == 0, true};
+        job->progress_done = from / height;
+        if (!held_change(film, &wanted) || !add_to_band(job, plan, film, samples, rows / height))
+            return false;
+    }
+    return true;
+}
+
+/* Lets the driver finish with the kernels, so that the clock of the picture does not see it. */
+static bool wait_for_kernels(Job *job)
+{
+    double start = clock_ms();
+    bool   ready = gpu_wait(job->gpu);
+    job->rendering->pipeline_ms += clock_ms() - start;
+    return ready;
+}
+
+/* Buffers for a band, which other films' bands have to leave; they may be made anew. */
+static bool make_room(Job *job, const Plan *plan, KrsFilm *film)
+{
+    KrsRendering *rendering = job->rendering;
+    if (rendering->held.film != film) {
+        if (!held_store(rendering))
+            return false;
+        rendering->held = (HeldBand){0};
+        film->rows      = band_allocate(rendering, &job->cover, plan->halo);
+    }
+    const size_t rays = job->rays ? rendering->band.pixels : 0;
+    return film->rows > 0 && rendering_set_lights(rendering, job->view.lights,
+                                                  job->view.light_count, job->rebase_origin, rays);
+}
+
+/* What the film remembers of its first sample. */
+static void begin_film(const Job *job, KrsFilm *film)
+{
+    const KrsRenderOptions *o = &film->options;
+    memcpy(film->rebase_origin, job->rebase_origin, sizeof film->rebase_origin);
+    view_matrices(job->rays ? NULL : &job->view.camera, o->width, o->height, film->sums);
+}
+
+/* By a plan that is made. */
+static bool run(Job *job, const Plan *plan, KrsFilm *film, uint32_t samples)
+{
+    if (!make_room(job, plan, film) || !wait_for_kernels(job))
+        return false;
+    if (film->samples == 0)
+        begin_film(job, film);
+    const double   start       = clock_ms();
+    const uint64_t submissions = job->gpu->submissions;
+    const bool     good        = add_to_bands(job, plan, film, samples);
+    job->stats->wall_ms += clock_ms() - start;
+    job->stats->submissions += job->gpu->submissions - submissions;
+    return good;
+}
+
+static KrsStatus add(KrsFilm *film, KrsFrame *frame, const KrsCamera *camera, const KrsRays *rays,
+                     uint32_t samples)
+{
+    Job job = {.rendering = film->rendering,
+               .gpu       = &film->rendering->renderer->gpu,
+               .options   = film->options,
+               .asked     = film->asked,
+               .schedule  = film->options.schedule,
+               .rays      = rays,
+               .cover     = whole_tiles(&film->options),
+               .stats     = &film->sums->stats};
+    renderer_clear(film->rendering->renderer);
+    if (samples == 0 || samples > KRS_MOST_SAMPLES - film->samples) {
+        job_refuse(&job, "a film has 1 to 65536 samples per pixel");
+        return job.gpu->status;
+    }
+    if (!job_read_frame(&job, frame, camera))
+        return job.gpu->status;
+    Plan plan = {.gpu = job.gpu};
+    bool good = integrators[job.options.integrator](&job, &plan) && run(&job, &plan, film, samples);
+    plan_free(&plan);
+    if (!good) {
+        krs_film_clear(film);
+        return job.gpu->status;
+    }
+    film->samples += samples;
+    return KRS_OK;
+}
+
+KrsStatus krs_film_add(KrsFilm *film, KrsFrame *frame, const KrsCamera *camera, uint32_t samples)
+{
+    return add(film, frame, camera, NULL, samples);
+}
+
+KrsStatus krs_film_add_rays(KrsFilm *film, KrsFrame *frame, const KrsRays *rays)
+{
+    return add(film, frame, NULL, rays, 1);
+}
+
+/* ---- reading ---- */
+
+/* Brings everything to the host; the time it takes is the picture's. */
+static bool store_all(KrsFilm *film)
+{
+    KrsRendering  *rendering   = film->rendering;
+    const double   start       = clock_ms();
+    const uint64_t submissions = rendering->renderer->gpu.submissions;
+    const bool     good        = rendering->held.film != film || held_store(rendering);
+    film->sums->stats.wall_ms += clock_ms() - start;
+    film->sums->stats.submissions += rendering->renderer->gpu.submissions - submissions;
+    return good;
+}
+
+/* From sums to a picture. */
+static void finish(const KrsFilm *film, KrsPicture *picture)
+{
+    KrsRenderStats     *stats     = &picture->stats;
+    const KrsRendering *rendering = film->rendering;
+    const Gpu          *gpu       = &rendering->renderer->gpu;
+    const KrsWindow    *window    = &film->options.crop;
+    const double        flops     = rendering->program->flops;
+    const double        primary   = stats->phase_ms[KRS_PHASE_PRIMARY];
+    stats->spirv_ms               = rendering->spirv_ms;
+    stats->pipeline_ms            = rendering->pipeline_ms;
+    stats->device_time            = gpu->times != VK_NULL_HANDLE;
+    for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
+        stats->total_ms += stats->phase_ms[phase];
+    stats->rays                 = (uint64_t)film->samples * window->width * window->height;
+    stats->evaluations_per_ray  = (double)stats->evaluations / (double)stats->rays;
+    stats->flops_per_evaluation = flops;
+    stats->gflops = primary > 0 ? (double)stats->evaluations * flops / primary / 1e6 : 0;
+    stats->peak_memory_bytes += gpu->memory_peak;
+    memcpy(stats->device, gpu->properties.deviceName, sizeof stats->device);
+    picture_divide(picture, film->samples);
+}
+
+KrsStatus krs_film_read(KrsFilm *film, uint32_t planes, KrsPicture **picture)
+{
+    Gpu           *gpu    = &film->rendering->renderer->gpu;
+    const uint32_t wanted = planes ? planes : film->options.planes;
+    *picture              = NULL;
+    renderer_clear(film->rendering->renderer);
+    if (film->samples == 0 || wanted & ~film->options.planes) {
+        gpu_refuse(gpu, KRS_BAD_ARGUMENT, "%s",
+                   film->samples == 0 ? "the film has no samples yet"
+                                      : "the film was made without some of these planes");
+        return gpu->status;
+    }
+    if (store_all(film))
+        *picture = picture_copy(gpu, film->sums, wanted);
+    if (!*picture)
+        return gpu->status;
+    finish(film, *picture);
+    return KRS_OK;
+}
+
+/* A film of one reading: its sums become the picture. */
+KrsStatus krs_render(KrsRendering *rendering, KrsFrame *frame, const KrsRenderOptions *options,
+                     KrsPicture **picture)
+{
+    KrsFilm  *film   = NULL;
+    KrsStatus status = krs_film_new(rendering, options, &film);
+    *picture         = NULL;
+    if (status == KRS_OK)
+        status = krs_film_add(film, frame, NULL, film->options.samples);
+    if (status == KRS_OK && !store_all(film))
+        status = rendering->renderer->gpu.status;
+    if (status == KRS_OK) {
+        finish(film, film->sums);
+        picture_drop(film->sums, ~film->options.planes);
+        *picture   = film->sums;
+        film->sums = NULL;
+    }
+    krs_film_free(film);
+    return status;
 }

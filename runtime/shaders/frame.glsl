@@ -38,17 +38,18 @@ layout(std430, set = 1, binding = 2) writeonly buffer HitNumbers { float hit_num
 layout(std430, set = 1, binding = 9) buffer Tiles { uint tiles[]; };
 #ifdef NO_TEXELS // the device reads too few of them: buffers are read instead
 layout(std430, set = 1, binding = 2) buffer Hits { vec4 hits[]; };
-layout(std430, set = 1, binding = 5) readonly buffer Lights { uvec4 light_rows[]; };
-uvec4 load_light_row(uint number) { return light_rows[number]; }
+layout(std430, set = 1, binding = 5) readonly buffer Inputs { uvec4 input_rows[]; };
+uvec4 load_input(uint number) { return input_rows[number]; }
 uvec2 load_end(uint index) { return ends[index]; }
 vec4  load_hit_row(uint number) { return hits[number]; }
 #else
 layout(std430, set = 1, binding = 2) writeonly buffer Hits { vec4 hits[]; };
-// Of lights two texels each; the others are what is in these buffers (layouts.c).
-layout(set = 1, binding = 8) uniform usamplerBuffer light_texels;
+// Of lights, and of rays of a list behind them, two texels each; the others are what is in these
+// buffers (layouts.c).
+layout(set = 1, binding = 8) uniform usamplerBuffer input_texels;
 layout(set = 1, binding = 10) uniform usamplerBuffer end_texels;
 layout(set = 1, binding = 11) uniform usamplerBuffer hit_texels;
-uvec4 load_light_row(uint number) { return texelFetch(light_texels, int(number)); }
+uvec4 load_input(uint number) { return texelFetch(input_texels, int(number)); }
 uvec2 load_end(uint index) { return texelFetch(end_texels, int(index)).xy; }
 vec4  load_hit_row(uint number) { return uintBitsToFloat(texelFetch(hit_texels, int(number))); }
 #endif
@@ -73,8 +74,8 @@ void load_frame()
 
 Light find_light(uint number)
 {
-    vec4  vector = uintBitsToFloat(load_light_row(2u * number));
-    uvec4 color = load_light_row(2u * number + 1u);
+    vec4  vector = uintBitsToFloat(load_input(2u * number));
+    uvec4 color = load_input(2u * number + 1u);
     return Light(vector.xyz, vector.w, uintBitsToFloat(color.xyz), color.w);
 }
 
@@ -114,6 +115,20 @@ void find_tiles(uint side, out uvec2 first, out uvec2 count)
 
 // The ray through a point of the picture, in pixels from its top left corner, and how wide a
 // pixel is along it: base + slope t.
+#ifdef LISTED_RAYS // of the pixel that the point is in, by the list of the band
+void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float base,
+              out float slope)
+{
+    uvec2 pixel = min(uvec2(image_point) - work.corner, work.extent - 1u);
+    uint  number = control.lights + LIGHTS_AT_ONCE + pixel.y * work.extent.x + pixel.x;
+    vec4  start = uintBitsToFloat(load_input(2u * number));
+    vec4  ahead = uintBitsToFloat(load_input(2u * number + 1u));
+    origin = start.xyz;
+    base = start.w;
+    direction = ahead.xyz;
+    slope = ahead.w;
+}
+#else
 void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float base,
               out float slope)
 {
@@ -141,6 +156,7 @@ void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float b
     }
 #endif
 }
+#endif
 
 // Where a ray is inside of a box; empty when the second is the smaller.  The
 // box may be as large as 1e18, and no component of a direction is taken as smaller than 1e-18,

@@ -45,8 +45,12 @@ bool  derived;     // the normal is by derivatives
 // Where the ray comes from that hits here, unit.
 vec3 find_backwards()
 {
+#ifdef LISTED_RAYS
+    return -hit.direction;
+#else
     return control.projection == ORTHOGRAPHIC ? -frame.forward.xyz
                                               : normalize(frame.eye - hit.position);
+#endif
 }
 
 // The taps of a stencil around the hit.

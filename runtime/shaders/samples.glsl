@@ -8,7 +8,7 @@
  * 2^n pixels has points one to each box of its area, whatever the box's shape, and what is left as
  * noise differs most between neighbours.  Each further ray of a pixel goes on by the steps of R4
  * (multiples of powers of a root of x^5 = x + 1, modulo 1), whose first two dimensions are the
- * ray's place in its pixel (place_ray in phases.c): both together fill the pixel and the square.
+ * ray's place in its pixel (place_ray in plan.c): both together fill the pixel and the square.
  */
 
 // The bits of a number of 16 bits, with a 0 before each.

@@ -11,7 +11,7 @@
 #include "results.glsl"
 
 const float EVEN = 0.98;              // less is not a curved surface's own, but detail
-const float LEAST_NORMAL_REACH = 0.5; // without filtering (normal_reach in render.c)
+const float LEAST_NORMAL_REACH = 0.5; // without filtering (normal_reach in job.c)
 const float SEEN = 0.78;              // the mean of the normals that are seen of a thin round thing
 
 // A sum of rays of such light is still a number.
@@ -97,6 +97,9 @@ void store_results(uint index, uint rows, vec4 color, HitPoint hit, Coat coat, K
     vec3  difference = hit.position - frame.eye;
     float along = dot(difference, frame.forward.xyz);
     float depth = control.projection == PANORAMA ? length(difference) : along;
+#ifdef LISTED_RAYS
+    depth = find_end(index).t;
+#endif
     uvec3 normal = floatBitsToUint(hit.side * coat.normal);
     do { // as in pixels.glsl
         uint  row = uint(findLSB(rows));

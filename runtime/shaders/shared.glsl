@@ -23,6 +23,16 @@ const uint CLOSED = 1u;
 const float OPEN_CODES = 254.0;
 
 // A pixel's ray, not a unit vector where that would cost a root: it is 1 along the view.
+#ifdef LISTED_RAYS
+void find_axis(vec2 image_point, out vec3 origin, out vec3 axis)
+{
+    float base, slope;
+    find_ray(image_point, origin, axis, base, slope);
+}
+
+// How far along its axis a place is.
+float find_depth(HitPoint hit) { return find_end(index_of(pixel_of(hit.slot))).t; }
+#else
 void find_axis(vec2 image_point, out vec3 origin, out vec3 axis)
 {
     vec2 plane = vec2(2.0 * image_point.x / frame.size.x - 1.0,
@@ -48,6 +58,7 @@ float find_depth(HitPoint hit)
 #endif
     return along;
 }
+#endif
 
 void store_shared(uint list, uint slot, float depth, uint code)
 {

@@ -54,8 +54,8 @@ struct Work {
     uint  first, groups, stride; /* groups [first, first + groups), in an order of this stride */
 };
 
-/* push_constant of plan.comp. */
-struct Plan {
+/* push_constant of next_dispatch.comp. */
+struct NextDispatch {
     uint counter; /* items are `each` times this word of the control block; 0: just `each` */
     uint each;
     uint resets;   /* 1: the counter is 0 from then on */
@@ -74,8 +74,8 @@ typedef struct Frame FrameBlock;
 static_assert(sizeof(FrameBlock) == 176, "std140");
 typedef struct Work WorkBlock;
 static_assert(sizeof(WorkBlock) == 40, "std430");
-typedef struct Plan PlanBlock;
-static_assert(sizeof(PlanBlock) == 24, "std430");
+typedef struct NextDispatch NextDispatchBlock;
+static_assert(sizeof(NextDispatchBlock) == 24, "std430");
 typedef struct PointWork PointWorkBlock;
 static_assert(sizeof(PointWorkBlock) == 8, "std430");
 #endif
@@ -109,7 +109,7 @@ static_assert(sizeof(PointWorkBlock) == 8, "std430");
     uint rays;    /* of each pixel */                                                              \
     uint filters; /* 1: neighbours share what their rays find (shared.glsl) */
 
-/* What the kernels count, and what plan.comp says of the next dispatch. */
+/* What the kernels count, and what next_dispatch.comp says of the next dispatch. */
 #define COUNTER_MEMBERS                                                                         \
     uint queued;            /* rays that need another dispatch, */                              \
     uint untaken;           /* and items that nobody has begun */                               \
@@ -131,7 +131,7 @@ struct Control {
     CONTROL_MEMBERS
 };
 
-/* Some of its words by their numbers, for plan.comp. */
+/* Some of its words by their numbers, for next_dispatch.comp. */
 CONSTANT(ITEMS_WORD, 10);
 CONSTANT(GROUPS_WORD, 42);
 CONSTANT(STOPPED_WORD, 45);
@@ -150,6 +150,7 @@ static_assert(sizeof(struct Control) == offsetof(ControlBlock, queued), "the hos
 CONSTANT(PERSPECTIVE, 0);
 CONSTANT(ORTHOGRAPHIC, 1);
 CONSTANT(PANORAMA, 2);
+CONSTANT(LISTED, 3); /* no camera: each pixel has a ray in a list */
 
 /* phase of trace.comp, */
 CONSTANT(TRACE_RAYS, 0);
@@ -232,12 +233,22 @@ struct Light {
 CONSTANT(LIGHT_POSITIONAL, 1);
 CONSTANT(LIGHT_CASTS_SHADOWS, 2);
 
+/* A ray of a pixel that the caller gives, behind the lights and LIGHTS_AT_ONCE more. */
+struct ListedRay {
+    vec3  origin;
+    float width;     /* of the ray there, */
+    vec3  direction; /* unit */
+    float spread;    /* and how much wider it gets for each unit */
+};
+
 #ifdef __STDC_VERSION__
 enum { RESULT_NUMBERS = 4, RESULT_BYTES = 4 * RESULT_NUMBERS, DEPTH_NUMBER = 3 };
 /* Of what is packed, or is in rows, only the size matters to the host. */
 enum { END_BYTES = 8, HIT_BYTES = 16 * HIT_ROWS, MARCH_BYTES = 32 };
 typedef struct Light LightBlock;
 static_assert(sizeof(LightBlock) == 32, "std430");
+typedef struct ListedRay ListedRayBlock;
+static_assert(sizeof(ListedRayBlock) == 32, "std430");
 #endif
 
 /* ---- Points and rays that a program asks about ---- */

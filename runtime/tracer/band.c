@@ -4,6 +4,8 @@
 #include "runtime/tracer/band.h"
 
 #include "runtime/tracer/layouts.h"
+#include "runtime/tracer/renderer.h"
+#include "runtime/tracer/rendering.h"
 
 /* Pixels of a band: on a graphics card all of a common picture, in 560 MB of buffers, or as many
    as a part of its memory has room for; on a processor few, which stay near to it, and are made of
@@ -108,19 +110,19 @@ static uint64_t most_pixels(const Gpu *gpu)
     return most > BAND_PIXELS_MIN ? most : BAND_PIXELS_MIN;
 }
 
-uint32_t band_allocate(Job *job)
+uint32_t band_allocate(KrsRendering *rendering, const KrsWindow *cover, uint32_t halo)
 {
-    const KrsWindow *window = &job->cover;
-    const uint64_t   across = round_to_tiles(window->width) + 2 * job->halo;
-    for (uint64_t pixels = most_pixels(job->gpu); pixels >= BAND_PIXELS_MIN; pixels /= 2) {
+    Gpu           *gpu    = &rendering->renderer->gpu;
+    const uint64_t across = round_to_tiles(cover->width) + 2 * halo;
+    for (uint64_t pixels = most_pixels(gpu); pixels >= BAND_PIXELS_MIN; pixels /= 2) {
         uint32_t rows = rows_within((uint32_t)across, pixels);
-        rows          = rows > 2 * job->halo + TILE ? rows - 2 * job->halo : TILE;
-        rows          = rows < window->height ? rows : window->height;
-        if (band_create(job->rendering, (round_to_tiles(rows) + 2 * job->halo) * across)) {
-            renderer_clear(job->rendering->renderer);
+        rows          = rows > 2 * halo + TILE ? rows - 2 * halo : TILE;
+        rows          = rows < cover->height ? rows : cover->height;
+        if (band_create(rendering, (round_to_tiles(rows) + 2 * halo) * across)) {
+            renderer_clear(rendering->renderer);
             return rows;
         }
-        if (job->gpu->status != KRS_OUT_OF_MEMORY)
+        if (gpu->status != KRS_OUT_OF_MEMORY)
             return 0;
     }
     return 0;

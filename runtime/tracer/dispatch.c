@@ -11,16 +11,17 @@
 #include <math.h>
 #include <string.h>
 
-#include "runtime/tracer/phases.h"
+#include "runtime/tracer/methods.h"
+#include "runtime/tracer/rendering.h"
 
 static_assert(WORD_OF(items) == ITEMS_WORD && WORD_OF(groups) == GROUPS_WORD &&
                   WORD_OF(stopped) == STOPPED_WORD && WORD_OF(ran) == RAN_WORD,
-              "plan.comp");
+              "next_dispatch.comp");
 static_assert((int)GROUP_LISTS == 1 + KRS_MOST_MARCH_GROUPS &&
                   (int)PERSPECTIVE == (int)KRS_PERSPECTIVE &&
                   (int)ORTHOGRAPHIC == (int)KRS_ORTHOGRAPHIC && (int)PANORAMA == (int)KRS_PANORAMA,
               "compile.h");
-static_assert(sizeof(PlanBlock) <= sizeof(WorkBlock), "push constants");
+static_assert(sizeof(NextDispatchBlock) <= sizeof(WorkBlock), "push constants");
 
 bool dispatch_chains(const Job *job)
 {
@@ -51,10 +52,9 @@ static bool report(Job *job, double within_phase)
 
 static bool has_scene(const Job *job, const Kernel *kernel)
 {
-    const Kernel *pixels    = job->rendering->renderer->pixels[job->rendering->panoramic];
-    bool          is_pixels = false;
+    bool is_pixels = false;
     for (int i = 0; i < PIXEL_KERNELS; i++)
-        is_pixels = is_pixels || kernel == &pixels[i];
+        is_pixels = is_pixels || kernel == job_pixel_kernel(job, (PixelKernel)i);
     return !is_pixels;
 }
 
@@ -81,7 +81,7 @@ static bool run_groups(Job *job, KrsPhase phase, const Kernel *kernel, WorkBlock
                            count);
         if (!rendering_finish(job->rendering, &ms))
             return false;
-        job->picture->stats.phase_ms[phase] += ms;
+        job->stats->phase_ms[phase] += ms;
         /* The last slice may be too small to learn much from. */
         if (count == *at_once || ms > job->options.slice_ms)
             *at_once = next_slice(count, ms, job->options.slice_ms);
@@ -142,7 +142,7 @@ static bool clear_shared(Job *job, const Dispatch *dispatch)
     record_unshared(job, &dispatch->work);
     if (!rendering_finish(job->rendering, &ms))
         return false;
-    job->picture->stats.phase_ms[dispatch->phase] += ms;
+    job->stats->phase_ms[dispatch->phase] += ms;
     return true;
 }
 
@@ -181,13 +181,13 @@ static uint32_t most_groups(Job *job, const Dispatch *dispatch)
 
 static void record(Job *job, uint32_t i)
 {
-    KrsRendering   *r        = job->rendering;
-    const Dispatch *dispatch = &job->chain.list[i];
-    const Items    *items    = &dispatch->items;
-    VkBuffer        control  = rendering_control(r)->buffer;
-    PlanBlock       plan     = {
-                  items->counter, items->each, items->resets, dispatch->in_group, most_groups(job, dispatch),
-                  i + 1};
+    KrsRendering           *r        = job->rendering;
+    const Dispatch         *dispatch = &job->chain.list[i];
+    const Items            *items    = &dispatch->items;
+    VkBuffer                control  = rendering_control(r)->buffer;
+    const NextDispatchBlock next     = {
+            items->counter, items->each, items->resets, dispatch->in_group, most_groups(job, dispatch),
+            i + 1};
     WorkBlock work = dispatch->work;
     work.first     = 0;
     work.groups    = UINT32_MAX; /* in their order */
@@ -200,7 +200,7 @@ static void record(Job *job, uint32_t i)
     vkCmdUpdateBuffer(job->gpu->commands, control, 0, offsetof(ControlBlock, queued),
                       &dispatch->control);
     gpu_barrier(job->gpu);
-    rendering_dispatch(r, &r->renderer->plan, r->band_set, &plan, sizeof plan, 1);
+    rendering_dispatch(r, &r->renderer->next_dispatch, r->band_set, &next, sizeof next, 1);
     gpu_barrier(job->gpu);
     rendering_dispatch_counted(r, dispatch->kernel, r->band_set, &work, sizeof work);
     gpu_barrier(job->gpu);
@@ -222,7 +222,7 @@ static void learn(Job *job, uint32_t first, uint32_t end, double ms)
     uint32_t  next    = next_slice(groups, ms, target_ms);
     if (groups > 0 && (ms > target_ms || next > *at_once))
         *at_once = next;
-    job->picture->stats.phase_ms[told->phase] += ms;
+    job->stats->phase_ms[told->phase] += ms;
 }
 
 /* Sends the dispatches from `first` on; those of a phase that follow one another are timed
@@ -315,17 +315,10 @@ bool dispatch_together(Job *job, const Dispatch *dispatches, size_t count)
     }
     if (!rendering_finish(job->rendering, &ms))
         return false;
-    job->picture->stats.phase_ms[phase] += ms;
+    job->stats->phase_ms[phase] += ms;
     if (ms > job->options.slice_ms)
         *at_once = next_slice(groups, ms, job->options.slice_ms);
     return report(job, 1);
-}
-
-bool dispatch_items(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
-                    Items items, LaneBudget budget)
-{
-    Dispatch dispatch = dispatch_of(job, phase, kernel, work, items, budget);
-    return dispatch_run(job, &dispatch);
 }
 
 /* Of items that all cost alike lavapipe's lanes take so many. */
@@ -345,10 +338,4 @@ LaneBudget lane_budget(const Job *job)
     if (job->schedule == KRS_SCHEDULE_REFILL)
         return (LaneBudget){job->gpu->refill_lanes, 128, steps};
     return (LaneBudget){64, 1, steps};
-}
-
-bool dispatch_pixels(Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
-                     Items items)
-{
-    return dispatch_items(job, phase, kernel, work, items, pixel_budget(job));
 }

@@ -9,6 +9,7 @@
 
 #include <string.h>
 
+#include "runtime/tracer/methods.h"
 #include "runtime/tracer/variants.h"
 #include "runtime/tracer/warmup.h"
 
@@ -190,8 +191,9 @@ bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
         request(&requests, "point_query.comp", variant_of_point_query(rendering));
     }
     return !requests.failed &&
-           kernels_make(rendering->renderer, rendering->scene_set, requests.items, requests.count,
-                        &rendering->spirv_ms, &rendering->pipeline_ms);
+           (requests.count == 0 ||
+            kernels_make(rendering->renderer, rendering->scene_set, requests.items, requests.count,
+                         &rendering->spirv_ms, &rendering->pipeline_ms));
 }
 
 void kernels_destroy(Gpu *gpu, KernelMap *map)

@@ -5,7 +5,7 @@
 #ifndef KRS_LAYOUTS_H
 #define KRS_LAYOUTS_H
 
-#include "runtime/tracer/renderer.h"
+#include "runtime/tracer/handles.h"
 
 /* Bindings of the frame's set (frame.glsl): a uniform buffer, storage buffers, texels of lights,
    and more storage buffers; then those once more as texels.  Where the device reads too few texels
@@ -16,10 +16,10 @@ enum {
     HITS_BINDING,
     RESULTS_BINDING,
     CONTROL_BINDING,
-    LIGHT_ROWS_BINDING,
+    INPUT_ROWS_BINDING,
     QUEUE_BINDING,
     TAKEN_BINDING,
-    LIGHTS_BINDING,
+    INPUTS_BINDING,
     TILES_BINDING,
     END_TEXELS,
     HIT_TEXELS,

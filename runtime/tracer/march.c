@@ -1,27 +1,23 @@
 /*
  * march.c: beams and primary rays.
  */
+#include "runtime/tracer/march.h"
+
 #include <string.h>
 
-#include "runtime/tracer/phases.h"
+#include "runtime/tracer/dispatch.h"
+#include "runtime/tracer/methods.h"
 #include "runtime/tracer/view.h"
 
-#define MOST_BEAM_STEPS 256  /* of a beam, as in trace.comp */
 #define MOST_PASS_STEPS 2048 /* of rays that are left over, in one more pass */
 
-uint32_t tiles_of_band(const WorkBlock *work)
-{
-    return ((work->extent[0] + TILE - 1) / TILE) * ((work->extent[1] + TILE - 1) / TILE);
-}
-
-/* Until a ray is found to hit something it misses. */
-static bool clear_ends(Job *job)
+bool march_clear(Job *job)
 {
     Gpu *gpu = job->gpu;
     if (!gpu_begin(gpu))
         return false;
     vkCmdFillBuffer(gpu->commands, job->rendering->band.ends.buffer, 0, VK_WHOLE_SIZE, STATE_MISS);
-    return gpu_finish(gpu, &job->picture->stats.phase_ms[KRS_PHASE_BEAMS]);
+    return gpu_finish(gpu, &job->stats->phase_ms[KRS_PHASE_BEAMS]);
 }
 
 /* The pixels of tiles whose rays may hit something. */
@@ -61,7 +57,7 @@ static LaneBudget beam_budget(const Job *job, uint32_t most)
     LaneBudget budget     = lane_budget(job);
     budget.items_per_lane = budget.items_per_lane < most ? budget.items_per_lane : most;
     for (; budget.items_per_lane > 1; budget.items_per_lane /= 2) {
-        uint32_t half = (budget.items_per_lane + 1) * MOST_BEAM_STEPS / 2; /* as in has_beams */
+        uint32_t half = (budget.items_per_lane + 1) * MOST_BEAM_STEPS / 2; /* as in job_has_beams */
         if (rendering_steps_within(job->rendering, half) == half)
             break;
     }
@@ -75,7 +71,7 @@ static LaneBudget beam_budget(const Job *job, uint32_t most)
 /* Beams of tiles, counted in the whole picture, that the band and the window have a part of.  Those
    of 8x8 pixels that find something are listed; the rays of all others miss.  The quarters of the
    listed ones may have beams, too. */
-static bool march_beams(Job *job, const WorkBlock *work, double flops)
+static bool run_beams(Job *job, const March *march, const WorkBlock *work)
 {
     static const struct {
         uint32_t phase, side;
@@ -89,16 +85,18 @@ static bool march_beams(Job *job, const WorkBlock *work, double flops)
         uint32_t tiles       = choose_tiles(job, work, sizes[i].side);
         control->phase       = sizes[i].phase;
         control->starts_from = i;
-        beams[i] = dispatch_of(job, KRS_PHASE_BEAMS, job->beams, work, ITEMS_KNOWN(tiles), budget);
+        beams[i] = dispatch_of(job, KRS_PHASE_BEAMS, march->beams, work, ITEMS_KNOWN(tiles),
+                               budget);
     }
     if (!dispatch_together(job, beams, 2))
         return false;
     control->starts_from = control->listed = 1;
-    if (flops < FLOPS_WORTH_QUARTERS)
+    if (march->flops < FLOPS_WORTH_QUARTERS)
         return true;
     control->phase = TRACE_BEAMS_4;
-    if (!dispatch_items(job, KRS_PHASE_BEAMS, job->beams, work, ITEMS_COUNTED(4, tiles),
-                        beam_budget(job, 8))) /* four of a slot */
+    beams[0]       = dispatch_of(job, KRS_PHASE_BEAMS, march->beams, work, ITEMS_COUNTED(4, tiles),
+                                 beam_budget(job, 8)); /* four of a slot */
+    if (!dispatch_run(job, &beams[0]))
         return false;
     control->starts_from = 2;
     return true;
@@ -124,17 +122,24 @@ static void turn_queue(ControlBlock *control, const WorkBlock *work)
     control->writing = pixels - control->reading;
 }
 
+static bool run_rays(Job *job, const March *march, const WorkBlock *work, Items items,
+                     LaneBudget budget)
+{
+    Dispatch dispatch = dispatch_of(job, KRS_PHASE_PRIMARY, march->rays, work, items, budget);
+    return dispatch_run(job, &dispatch);
+}
+
 /* Passes of a chain: none is left over by most of them, and those that have no rays cost little. */
 #define PASSES_AT_ONCE 5
 
 /* As `trace` does it where the host does not look at how many rays are left after each pass. */
-static bool trace_in_chain(Job *job, const WorkBlock *work, LaneBudget budget)
+static bool trace_in_chain(Job *job, const March *march, const WorkBlock *work, LaneBudget budget)
 {
     ControlBlock *control = job->rendering->control.bytes;
     Items         items   = pixels_of_rays(job, work);
     do {
         for (int pass = 0; pass <= PASSES_AT_ONCE; pass++) {
-            if (!dispatch_items(job, KRS_PHASE_PRIMARY, job->trace, work, items, budget))
+            if (!run_rays(job, march, work, items, budget))
                 return false;
             budget.steps = next_steps(job, control, budget.steps);
             turn_queue(control, work);
@@ -148,7 +153,7 @@ static bool trace_in_chain(Job *job, const WorkBlock *work, LaneBudget budget)
 
 /* First every pixel of the band, or of the listed tiles, until all have been begun; then, pass by
    pass, the rays that are not done. */
-static bool trace(Job *job, const WorkBlock *work)
+static bool trace(Job *job, const March *march, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
     LaneBudget    budget  = lane_budget(job);
@@ -157,14 +162,14 @@ static bool trace(Job *job, const WorkBlock *work)
     control->source       = ITEMS_FRESH;
     control->queued = control->writing = 0;
     if (dispatch_chains(job))
-        return trace_in_chain(job, work, budget);
+        return trace_in_chain(job, march, work, budget);
     while (budget.lanes * budget.items_per_lane > 128 &&
            items_now(job, items) / (budget.lanes * budget.items_per_lane) < 64)
         budget.items_per_lane /= 2; /* groups enough for every core of the device */
     for (double left = job->progress_share;; left -= job->progress_share) {
         control->untaken    = 0;
         job->progress_share = 0.9 * left; /* few rays need a second pass */
-        if (!dispatch_items(job, KRS_PHASE_PRIMARY, job->trace, work, items, budget))
+        if (!run_rays(job, march, work, items, budget))
             return false;
         job->progress_done += job->progress_share;
         if (control->untaken > 0) {
@@ -181,60 +186,30 @@ static bool trace(Job *job, const WorkBlock *work)
     }
 }
 
-static bool has_beams(const Job *job)
+/* Of the pixels whose rays may meet the box. */
+static void choose_window(Job *job, const March *march)
 {
-    return !job->options.no_beams && job->view.camera.projection != KRS_PANORAMA &&
-           rendering_steps_within(job->rendering, MOST_BEAM_STEPS / 2) == MOST_BEAM_STEPS / 2;
+    FrameBlock *frame = job->rendering->frame.bytes;
+    if (march->boxed)
+        view_place_box(&job->view, march->low, march->high, frame);
+    job->window = march->windowed ? view_window(frame, &job->view.camera)
+                                  : (KrsWindow){0, 0, job->options.width, job->options.height};
 }
 
-/* Beams, then rays, of one kernel, whose distance costs so much. */
-static bool march_kernel(Job *job, const WorkBlock *work, double flops)
+bool march_run(Job *job, const March *march, const WorkBlock *work)
 {
+    FrameBlock   *frame          = job->rendering->frame.bytes;
     ControlBlock *control        = job->rendering->control.bytes;
     const double  progress_share = job->progress_share;
+    choose_window(job, march);
+    job->schedule        = march->schedule;
     control->starts_from = control->listed = 0;
     job->progress_share                    = 0; /* of beams: too short to be seen */
-    if (has_beams(job) && !march_beams(job, work, flops))
-        return false;
-    job->progress_share = progress_share;
-    return trace(job, work);
-}
-
-bool march_all(Job *job, const WorkBlock *work)
-{
-    FrameBlock       *frame   = job->rendering->frame.bytes;
-    Kernel           *whole   = job->trace;
-    bool              good    = (!has_beams(job) && job->group_march_count == 0) || clear_ends(job);
-    const KrsProgram *program = job->rendering->program;
-    if (job->knows_planes) {
-        double low[3], high[3];
-        for (int i = 0; i < 3; i++) {
-            low[i]  = program->rest_low[i] - job->rebase_origin[i];
-            high[i] = program->rest_high[i] - job->rebase_origin[i];
-        }
-        view_place_box(&job->view, low, high, frame);
-    }
-    job->window = (KrsWindow){0, 0, (uint32_t)frame->size[0], (uint32_t)frame->size[1]};
-    if (job->group_march_count == 0)
-        good = good && march_kernel(job, work, program->flops);
-    job->progress_share /= job->group_march_count ? job->group_march_count : 1;
-    for (uint32_t i = 0; i < job->group_march_count && good; i++) {
-        const GroupMarch    *march = &job->group_marches[i];
-        const KrsMarchGroup *march_group =
-            &job->rendering->program->march_groups[march->march_group];
-        view_place_box(&job->view, march_group->low, march_group->high, frame);
-        /* The first one's rays find the planes, which are all around. */
-        if (i > 0 || !rendering_knows_planes(job->rendering))
-            job->window = view_window(frame, &job->view.camera);
-        job->trace = job->beams = march->trace;
-        job->schedule           = march->schedule;
-        double progress_share   = job->progress_share;
-        good                    = march_kernel(job, work, march_group->flops);
-        job->progress_share     = progress_share;
-    }
-    job->schedule = job->options.schedule;
+    bool good                              = !march->beams || run_beams(job, march, work);
+    job->progress_share                    = progress_share;
+    good                                   = good && trace(job, march, work);
+    job->schedule                          = job->options.schedule;
     memcpy(frame->low, job->frame.low, sizeof frame->low);
     memcpy(frame->high, job->frame.high, sizeof frame->high);
-    job->trace = whole;
     return good;
 }

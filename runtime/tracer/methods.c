@@ -1,7 +1,7 @@
 /*
  * methods.c: which method, schedule and grouping of components suit a scene on a device.
  */
-#include "runtime/tracer/renderer.h"
+#include "runtime/tracer/methods.h"
 
 /* Where a distance costs less than this, refilling lanes costs more than it gains. */
 #define FLOPS_WORTH_REFILL 150

@@ -8,6 +8,11 @@ const char *const krs_phase_names[KRS_PHASE_COUNT] = {
 #include "runtime/choices.def"
 };
 
+const char *const krs_integrator_names[KRS_INTEGRATOR_COUNT] = {
+#define KRS_INTEGRATOR(id, name, about) #name,
+#include "runtime/choices.def"
+};
+
 const char *const krs_trace_names[KRS_TRACE_COUNT] = {
 #define KRS_TRACE(id, name, about) name,
 #include "runtime/choices.def"

@@ -1,9 +1,13 @@
 /*
  * point_query.c: the scene at points, as the device computes it.
  */
+#include "runtime/tracer/query.h"
+
 #include <string.h>
 
+#include "runtime/tracer/kernels.h"
 #include "runtime/tracer/renderer.h"
+#include "runtime/tracer/rendering.h"
 
 enum { WORKGROUP_SIZE = 64 };
 

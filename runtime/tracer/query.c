@@ -7,10 +7,15 @@
  * that begin on a surface, as far as the device can tell, are followed by the host if the device
  * took the wrong side.
  */
+#include "runtime/tracer/query.h"
+
 #include <math.h>
 #include <string.h>
 
+#include "runtime/tracer/kernels.h"
+#include "runtime/tracer/methods.h"
 #include "runtime/tracer/renderer.h"
+#include "runtime/tracer/rendering.h"
 
 enum { MOST_STEPS = 8192, MOST_LANE_STEPS = 16384 };
 
@@ -139,7 +144,7 @@ static QueryRayBlock query_ray_block(const KrsRay *ray)
     return query_ray;
 }
 
-/* Marches the rays.  As in send_rays of phases.c a lane has a few items, and those for which a
+/* Marches the rays.  As in run_rays of plan.c a lane has a few items, and those for which a
    dispatch had no steps left are for the next one. */
 static bool march_rays(KrsRendering *rendering, uint32_t count)
 {

@@ -19,18 +19,22 @@ KrsStatus krs_devices(KrsDevice *devices, size_t capacity, size_t *count)
     return gpu_list(&gpu, devices, capacity, count) ? KRS_OK : gpu.status;
 }
 
-static void request_pixels(KrsRenderer *renderer, bool panoramic, KernelRequest *requests)
+static void request_pixels(KrsRenderer *renderer, RayKind kind, KernelRequest *requests)
 {
     static const char *const files[PIXEL_KERNELS] = {
         [PIXELS_BACKGROUND] = "background.comp", [PIXELS_UNPROVEN] = "unproven.comp",
         [PIXELS_PENUMBRAE] = "penumbrae.comp",   [PIXELS_SHADOW] = "shadow.comp",
         [PIXELS_OCCLUSION] = "occlusion.comp",
     };
-    static const char *const defines[2][2] = {{NO_TEXELS, NULL}, {PANORAMIC NO_TEXELS, PANORAMIC}};
+    static const char *const defines[RAY_KINDS][2] = {
+        [RAYS_OF_CAMERAS]   = {NO_TEXELS, NULL},
+        [RAYS_OF_PANORAMAS] = {PANORAMIC NO_TEXELS, PANORAMIC},
+        [RAYS_OF_LISTS]     = {LISTED_RAYS NO_TEXELS, LISTED_RAYS},
+    };
     for (int i = 0; i < PIXEL_KERNELS; i++)
         requests[i] = (KernelRequest){
-            &renderer->pixels[panoramic][i],
-            {.file = files[i], .defines = defines[panoramic][renderer->gpu.texels]}};
+            &renderer->pixels[kind][i],
+            {.file = files[i], .defines = defines[kind][renderer->gpu.texels]}};
 }
 
 KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
@@ -48,8 +52,8 @@ KrsStatus krs_renderer_new(const KrsRendererOptions *options, KrsRenderer **out)
     spirv_start();
     renderer->compiler_started               = true;
     KernelRequest kernels[PIXEL_KERNELS + 1] = {
-        [PIXEL_KERNELS] = {&renderer->plan, {.file = "plan.comp"}}};
-    request_pixels(renderer, false, kernels);
+        [PIXEL_KERNELS] = {&renderer->next_dispatch, {.file = "next_dispatch.comp"}}};
+    request_pixels(renderer, RAYS_OF_CAMERAS, kernels);
     const size_t count = PIXEL_KERNELS + (gpu_is_cpu(&renderer->gpu) ? 0 : 1);
     if (!layouts_create(renderer) || !kernels_make(renderer, VK_NULL_HANDLE, kernels, count,
                                                    &renderer->spirv_ms, &renderer->pipeline_ms))
@@ -64,11 +68,10 @@ void krs_renderer_free(KrsRenderer *renderer)
     Gpu *gpu = &renderer->gpu;
     if (gpu->device) {
         gpu_wait(gpu);
-        for (int i = 0; i < PIXEL_KERNELS; i++) {
-            kernel_destroy(gpu, &renderer->pixels[0][i]);
-            kernel_destroy(gpu, &renderer->pixels[1][i]);
-        }
-        kernel_destroy(gpu, &renderer->plan);
+        for (int kind = 0; kind < RAY_KINDS; kind++)
+            for (int i = 0; i < PIXEL_KERNELS; i++)
+                kernel_destroy(gpu, &renderer->pixels[kind][i]);
+        kernel_destroy(gpu, &renderer->next_dispatch);
         layouts_destroy(renderer);
     }
     gpu_close(gpu);
@@ -96,10 +99,11 @@ KrsDevice krs_renderer_device(const KrsRenderer *renderer)
 
 uint64_t krs_renderer_complaints(const KrsRenderer *renderer) { return renderer->gpu.complaints; }
 
-bool renderer_create_panoramic(KrsRenderer *renderer, double *spirv_ms, double *pipeline_ms)
+bool renderer_create_pixels(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
+                            double *pipeline_ms)
 {
     KernelRequest requests[PIXEL_KERNELS];
-    request_pixels(renderer, true, requests);
-    return renderer->pixels[1][0].pipeline ||
+    request_pixels(renderer, kind, requests);
+    return renderer->pixels[kind][0].pipeline ||
            kernels_make(renderer, VK_NULL_HANDLE, requests, PIXEL_KERNELS, spirv_ms, pipeline_ms);
 }

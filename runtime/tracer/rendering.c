@@ -1,12 +1,16 @@
 /*
  * rendering.c: a scene on a device: its buffers, its parameters, and what is sent to the device.
  */
+#include "runtime/tracer/rendering.h"
+
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
 
 #include "runtime/tracer/kernels.h"
 #include "runtime/tracer/layouts.h"
+#include "runtime/tracer/renderer.h"
+#include "runtime/tracer/slots.h"
 
 /* The radius of a zone in which nothing is. */
 #define NO_ZONE (-1e30f)
@@ -58,34 +62,12 @@ failed:
     return false;
 }
 
-/* Of the parameter block, aside from values of the frame that kernels may find by themselves. */
-static uint32_t slots_without_values(const KrsProgram *program)
-{
-    return program->parameter_slots + KRS_MOST_ZONES + program->camera_relative_slots + 1;
-}
-
-static uint32_t most_slots(const KrsRendering *rendering)
-{
-    return rendering->renderer->gpu.properties.limits.maxUniformBufferRange / (4 * sizeof(float));
-}
-
-uint32_t rendering_value_slots(const KrsRendering *rendering)
-{
-    const KrsProgram *program = rendering->program;
-    uint32_t          slots   = slots_without_values(program) + program->value_slots;
-    return program->camera_relative || slots <= most_slots(rendering) ? program->value_slots : 0;
-}
-
 static bool buffers_create(KrsRendering *rendering)
 {
     Gpu     *gpu   = &rendering->renderer->gpu;
-    uint32_t slots = slots_without_values(rendering->program) + rendering_value_slots(rendering);
-    if (slots > most_slots(rendering)) {
-        gpu_refuse(gpu, KRS_NO_DEVICE, "the device has no room for the scene's %u parameters",
-                   rendering->program->parameter_slots);
-        return false;
-    }
-    if (!buffer_create(gpu, &rendering->parameters, (VkDeviceSize)slots * 4 * sizeof(float),
+    uint32_t slots = rendering_slots(rendering);
+    if (slots == 0 ||
+        !buffer_create(gpu, &rendering->parameters, (VkDeviceSize)slots * 4 * sizeof(float),
                        UPLOADED, "scene's parameters") ||
         !buffer_create(gpu, &rendering->frame, sizeof(FrameBlock), UPLOADED, "camera") ||
         !buffer_create(gpu, &rendering->control, sizeof(ControlBlock), SHARED, "control block") ||
@@ -140,15 +122,16 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
     rendering->scene       = scene;
     rendering->program     = krs_scene_program(scene);
     rendering->purpose     = purpose;
-    rendering->panoramic   = krs_scene_is_panoramic(scene);
+    rendering->scene_rays  = krs_scene_is_panoramic(scene) ? RAYS_OF_PANORAMAS : RAYS_OF_CAMERAS;
+    rendering->rays        = rendering->scene_rays;
     rendering->spirv_ms    = renderer->spirv_ms;
     rendering->pipeline_ms = renderer->pipeline_ms;
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         for (int has_scene = 0; has_scene < 2; has_scene++)
             rendering->groups_at_once[phase][has_scene] = guess_slice(rendering, phase, has_scene);
     if (!sets_create(rendering) || !buffers_create(rendering) ||
-        (rendering->panoramic &&
-         !renderer_create_panoramic(renderer, &rendering->spirv_ms, &rendering->pipeline_ms)) ||
+        !renderer_create_pixels(renderer, rendering->rays, &rendering->spirv_ms,
+                                &rendering->pipeline_ms) ||
         !kernels_create(rendering, purpose)) {
         KrsStatus status = renderer->gpu.status;
         krs_rendering_free(rendering);
@@ -168,7 +151,7 @@ void krs_rendering_free(KrsRendering *rendering)
                          &rendering->frame,
                          &rendering->control,
                          &rendering->device_control,
-                         &rendering->lights,
+                         &rendering->inputs,
                          &rendering->points,
                          &rendering->answers,
                          &rendering->query_rays,
@@ -190,22 +173,31 @@ void krs_rendering_free(KrsRendering *rendering)
     gpu_release(gpu, rendering);
 }
 
-bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count,
-                          const double rebase_origin[3])
+/* Room for so many lights, and rays behind them.  Kernels load some lights at once, those beyond the
+   last as well. */
+static bool make_room(KrsRendering *rendering, size_t lights, size_t rays)
 {
-    Gpu    *gpu    = &rendering->renderer->gpu;
-    Buffer *buffer = &rendering->lights;
-    /* Kernels load as many at once, and those beyond the last as well. */
-    VkDeviceSize bytes = buffer_texel_bytes((count + LIGHTS_AT_ONCE) * sizeof(LightBlock));
-    if (buffer->size < bytes) {
-        buffer_destroy(gpu, buffer);
-        if (!buffer_create(gpu, buffer, bytes, UPLOADED, "lights") ||
-            !layouts_view_texels(gpu, LIGHTS_BINDING, buffer, "lights"))
-            return false;
-        rendering_bind(rendering, rendering->band_set,
-                       gpu->texels ? LIGHTS_BINDING : LIGHT_ROWS_BINDING, buffer);
-    }
-    LightBlock *blocks = buffer->bytes;
+    Gpu         *gpu    = &rendering->renderer->gpu;
+    Buffer      *buffer = &rendering->inputs;
+    VkDeviceSize bytes  = buffer_texel_bytes((lights + LIGHTS_AT_ONCE) * sizeof(LightBlock) +
+                                             rays * sizeof(ListedRayBlock));
+    if (buffer->size >= bytes)
+        return true;
+    buffer_destroy(gpu, buffer);
+    if (!buffer_create(gpu, buffer, bytes, UPLOADED, "lights and rays") ||
+        !layouts_view_texels(gpu, INPUTS_BINDING, buffer, "lights and rays"))
+        return false;
+    rendering_bind(rendering, rendering->band_set,
+                   gpu->texels ? INPUTS_BINDING : INPUT_ROWS_BINDING, buffer);
+    return true;
+}
+
+bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_t count,
+                          const double rebase_origin[3], size_t rays)
+{
+    if (!make_room(rendering, count, rays))
+        return false;
+    LightBlock *blocks = rendering->inputs.bytes;
     for (size_t i = 0; i < count; i++) {
         const KrsLight *light = &lights[i];
         blocks[i].kind        = (light->positional ? LIGHT_POSITIONAL : 0) |
@@ -218,6 +210,11 @@ bool rendering_set_lights(KrsRendering *rendering, const KrsLight *lights, size_
         }
     }
     return true;
+}
+
+ListedRayBlock *rendering_listed_rays(KrsRendering *rendering, size_t lights)
+{
+    return (ListedRayBlock *)((LightBlock *)rendering->inputs.bytes + lights + LIGHTS_AT_ONCE);
 }
 
 /* Kernels with room for so many zones: 1, 2, 4, 8 or 16; those that have more room are as good. */
@@ -252,6 +249,7 @@ bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame)
         block[slots + i][3] = NO_ZONE;
     memcpy(rendering->parameters.bytes, block, (slots + KRS_MOST_ZONES) * sizeof *block);
     gpu_release(gpu, block);
+    rendering->rays = rendering->scene_rays;
     return choose_zones(rendering, zones);
 }
 
@@ -272,6 +270,16 @@ bool rendering_rebase(KrsRendering *rendering, KrsFrame *frame, const double reb
     rendering->camera_relative = true;
     rendering->zone_slots      = 0;
     return true;
+}
+
+bool rendering_set_rays(KrsRendering *rendering, RayKind kind)
+{
+    if (kind == RAYS_OF_CAMERAS || kind == rendering->rays)
+        return true;
+    rendering->rays = kind;
+    return renderer_create_pixels(rendering->renderer, kind, &rendering->spirv_ms,
+                                  &rendering->pipeline_ms) &&
+           kernels_create(rendering, KRS_FOR_PICTURES);
 }
 
 uint32_t rendering_spread(const KrsRendering *rendering, uint32_t count)

@@ -10,6 +10,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "runtime/tracer/methods.h"
+#include "runtime/tracer/slots.h"
+
 static void define(KernelVariant *to, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
@@ -68,7 +71,7 @@ static void want_distance_to_march(KernelVariant *to)
 /* Kernels that include frame.glsl find rays of panoramas by sines. */
 static void want_rays(KernelVariant *to, const KrsRendering *rendering)
 {
-    if (rendering->panoramic)
+    if (rendering->rays == RAYS_OF_PANORAMAS)
         want(to, KRS_FUNCTION_SINES);
 }
 
@@ -80,6 +83,11 @@ static bool sums_lanes(const Gpu *gpu) { return !gpu_is_cpu(gpu) && gpu->sums_la
 static KernelVariant begin_variant(const KrsRendering *rendering, KrsTrace trace,
                                    KrsSchedule schedule)
 {
+    static const char *const ray_defines[RAY_KINDS] = {
+        [RAYS_OF_CAMERAS]   = "",
+        [RAYS_OF_PANORAMAS] = PANORAMIC,
+        [RAYS_OF_LISTS]     = LISTED_RAYS,
+    };
     const Gpu    *gpu             = &rendering->renderer->gpu;
     bool          camera_relative = rendering->camera_relative;
     bool          by_ray          = trace >= KRS_TRACE_EXACT;
@@ -93,7 +101,7 @@ static KernelVariant begin_variant(const KrsRendering *rendering, KrsTrace trace
     define(&to, "#define TRACE %du\n#define REFILL %d\n", (int)(by_ray ? KRS_TRACE_PLAIN : trace),
            schedule == KRS_SCHEDULE_REFILL ? (int)gpu->refill_lanes : 0);
     define(&to, "%s%s%s%s", gpu->texels ? "" : NO_TEXELS,
-           sums_lanes(gpu) ? "#define SUBGROUPS\n" : "", rendering->panoramic ? PANORAMIC : "",
+           sums_lanes(gpu) ? "#define SUBGROUPS\n" : "", ray_defines[rendering->rays],
            rendering->program->sheets ? "#define SHEETS\n" : "");
     return to;
 }

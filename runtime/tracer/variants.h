@@ -5,7 +5,7 @@
 #ifndef KRS_VARIANTS_H
 #define KRS_VARIANTS_H
 
-#include "runtime/tracer/renderer.h"
+#include "runtime/tracer/handles.h"
 
 typedef struct KernelVariant {
     KernelScene scene;
@@ -14,8 +14,10 @@ typedef struct KernelVariant {
 
 /* Defines of kernels with or without a scene: */
 #define NO_TEXELS "#define NO_TEXELS\n" /* see Gpu.texels */
-/* rays of panoramas, which cost more, are in kernels of scenes that have some. */
+/* rays of panoramas, which cost more, are in kernels of scenes that have some; */
 #define PANORAMIC "#define PANORAMIC\n"
+/* rays are those of a list (frame.glsl). */
+#define LISTED_RAYS "#define LISTED_RAYS\n"
 
 /* As for rendering_trace and its kind. */
 KernelVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,

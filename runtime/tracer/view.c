@@ -230,10 +230,42 @@ bool view_prepare(const KrsView *view, const double low[3], const double high[3]
     return isfinite(block->farthest);
 }
 
+static bool ray_is_valid(const double origin[3], const double direction[3])
+{
+    bool valid = direction[0] != 0 || direction[1] != 0 || direction[2] != 0;
+    for (int i = 0; i < 3; i++)
+        valid = valid && isfinite(origin[i]) && isfinite(direction[i]);
+    return valid;
+}
+
+bool view_of_rays(const KrsRays *rays, size_t count, KrsCamera *camera)
+{
+    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    bool   good = isfinite(rays->width) && isfinite(rays->spread) && rays->width >= 0 &&
+                rays->spread >= 0 && rays->width + rays->spread > 0 && rays->farthest >= 0;
+    for (size_t k = 0; k < count && good; k++) {
+        good = ray_is_valid(rays->origins[k], rays->directions[k]);
+        for (int i = 0; i < 3; i++) {
+            low[i]  = fmin(low[i], rays->origins[k][i]);
+            high[i] = fmax(high[i], rays->origins[k][i]);
+        }
+    }
+    *camera = (KrsCamera){.projection = KRS_PERSPECTIVE, .fov = 1, .up = {0, 1, 0}};
+    for (int i = 0; i < 3; i++)
+        camera->eye[i] = camera->target[i] = low[i] + 0.5 * (high[i] - low[i]);
+    camera->height = finite_size(low, high);
+    camera->target[2] += fmax(camera->height, 1);
+    return good && isfinite(camera->height);
+}
+
 void view_matrices(const KrsCamera *camera, uint32_t width, uint32_t height, KrsPicture *picture)
 {
     Basis  basis = {0};
     double extent[2];
+    for (int i = 0; i < 4; i++)
+        picture->world_to_camera[i][i] = picture->world_to_ndc[i][i] = 1;
+    if (!camera)
+        return;
     camera_basis(camera, &basis);
     half_extent(camera, width, height, extent);
 

@@ -24,7 +24,12 @@ void view_place_box(const KrsView *view, const double low[3], const double high[
 /* The pixels whose rays may meet the box of the block; of a panorama all. */
 KrsWindow view_window(const FrameBlock *block, const KrsCamera *camera);
 
-/* The matrices of a picture, for a camera that view_prepare has accepted. */
+/* A camera that stands for `count` rays: in the middle of the box around their origins, with that
+   box's diagonal as its height.  False when one of them cannot be used. */
+bool view_of_rays(const KrsRays *rays, size_t count, KrsCamera *camera);
+
+/* The matrices of a picture, for a camera that view_prepare has accepted; NULL: none, they change
+   nothing. */
 void view_matrices(const KrsCamera *camera, uint32_t width, uint32_t height, KrsPicture *picture);
 
 #endif

@@ -4,7 +4,7 @@
 #ifndef KRS_WARMUP_H
 #define KRS_WARMUP_H
 
-#include "runtime/tracer/renderer.h"
+#include "runtime/tracer/handles.h"
 
 /* Makes at most KERNELS_AT_ONCE kernels, and sends them through the driver once, in the
    background.  The scene's set may be VK_NULL_HANDLE. */

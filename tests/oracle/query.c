@@ -17,7 +17,7 @@
 
 #include "compiler/base/vec.h"
 #include "compiler/compile.h"
-#include "runtime/tracer/renderer.h"
+#include "runtime/tracer/handles.h"
 #include "tests/oracle/device_answers.h"
 #include "tests/support/renderer.h"
 

@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "compiler/compile.h"
-#include "runtime/tracer/renderer.h"
+#include "runtime/tracer/query.h"
 #include "tests/oracle/device_answers.h"
 #include "tests/support/device.h"
 #include "tests/support/renderer.h"

@@ -14,7 +14,7 @@
 #include <cmocka.h>
 
 #include "compiler/compile.h"
-#include "runtime/film/film.h"
+#include "runtime/display/display.h"
 #include "tests/oracle/shadow_stage.h"
 
 #define MOST_OFF_SHARED 0.02 /* of means of 5x5 pixels of colours, root of the mean square */

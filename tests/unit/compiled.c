@@ -19,7 +19,7 @@
 #include "compiler/base/embedded.h"
 #include "compiler/compile.h"
 #include "runtime/device/kernel.h"
-#include "runtime/tracer/renderer.h"
+#include "runtime/tracer/handles.h"
 #include "tests/support/device.h"
 #include "tests/support/folder.h"
 #include "tests/support/scarce.h"

@@ -1,241 +1,381 @@
 /*
- * Tone curves, the sRGB transfer function and dithering keep the properties that their formulas
- * promise.
+ * film.c: a film persists.  However samples are added, in portions, by turns with another film,
+ * band by band or on a device that the host cannot look into, it shows what krs_render does at
+ * once, bit by bit; and it sees by the caller's cameras.
  */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
 
-#include "runtime/film/film.h"
+#include "compiler/compile.h"
+#include "tests/support/device.h"
+#include "tests/unit/tracer_stage.h"
 
-#define assert_near(value, expected, within) assert_true(fabs((value) - (expected)) <= (within))
+enum { SAMPLES = 4 };
 
-/* The definition of sRGB, backwards. */
-static double srgb_decode(double shown)
+/* Two suns, a lamp, shadows, and a parameter. */
+static const char film_text[] =
+    "param height = 1 in [0.1, 3];\n"
+    "camera { eye: [3, 2, 5], target: [0, 0.5, 0], fov: 40deg }\n"
+    "camera above { eye: [1, 6, 1], target: [0, 0.5, 0], fov: 50deg }\n"
+    "camera flat { eye: [-2, 3, 4], target: [0, 0.5, 0], projection: \"orthographic\", height: 3 "
+    "}\n"
+    "light sun { direction: [-1, 2, 1], intensity: 3, softness: 1deg }\n"
+    "light low { direction: [2, 1, 0], intensity: 1, softness: 2deg }\n"
+    "light lamp { position: [1, 3, 2], intensity: 8, softness: 0.2 }\n"
+    "show sphere(1).move([0, height, 0]); show box([0.9, 0.9, 0.9]).move([2, 0.5, 0.2]);\n"
+    "show plane([0, 1, 0], 0);\n";
+
+/* ---- A stage ---- */
+
+static void open_as(Stage *stage, const char *text, unsigned pretence)
 {
-    return shown <= 0.04045 ? shown / 12.92 : pow((shown + 0.055) / 1.055, 2.4);
+    const KrsRendererOptions options = {.device     = tested_device(),
+                                        .validation = true,
+                                        .complaint  = note_complaint,
+                                        .user       = stage,
+                                        .pretence   = pretence};
+    *stage                           = (Stage){0};
+    assert_int_equal(krs_renderer_new(&options, &stage->renderer), KRS_OK);
+    assert_int_equal(krs_compile_text(text, strlen(text), "film.krs", NULL, &stage->scene), KRS_OK);
+    assert_int_equal(krs_frame_new(stage->scene, &stage->frame), KRS_OK);
+    assert_int_equal(krs_rendering_new(stage->renderer, stage->scene, &stage->rendering), KRS_OK);
 }
 
-static void srgb_is_its_definition(void **state)
+static void close_watched(Stage *stage)
 {
+    assert_int_equal(krs_renderer_complaints(stage->renderer), 0);
+    assert_int_equal(stage->complaints, 0);
+    stage_close(stage);
+}
+
+static KrsFilm *new_film(Stage *stage, const KrsRenderOptions *options)
+{
+    KrsFilm *film;
+    if (krs_film_new(stage->rendering, options, &film) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(stage->renderer));
+    assert_int_equal(krs_film_samples(film), 0);
+    return film;
+}
+
+static void add(Stage *stage, KrsFilm *film, const KrsCamera *camera, uint32_t samples)
+{
+    uint32_t before = krs_film_samples(film);
+    if (krs_film_add(film, stage->frame, camera, samples) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(stage->renderer));
+    assert_int_equal(krs_film_samples(film), before + samples);
+}
+
+static KrsPicture *read_film(Stage *stage, KrsFilm *film)
+{
+    KrsPicture *picture;
+    if (krs_film_read(film, 0, &picture) != KRS_OK)
+        fail_msg("%s", krs_renderer_message(stage->renderer));
+    return picture;
+}
+
+/* Bytes that differ, of all planes that the first one has. */
+static size_t difference(const KrsPicture *a, const KrsPicture *b)
+{
+    const size_t pixels = (size_t)a->window.width * a->window.height;
+    size_t       differ = 0;
+    assert_memory_equal(&a->window, &b->window, sizeof a->window);
+    assert_memory_equal(a->world_to_camera, b->world_to_camera, sizeof a->world_to_camera);
+    assert_memory_equal(a->world_to_ndc, b->world_to_ndc, sizeof a->world_to_ndc);
+#define KRS_PLANE(id, bit, aov, about, arrays) arrays
+#define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...)      \
+    for (size_t i = 0; a->member && i < pixels * numbers * sizeof(type); i++) \
+        differ += ((const unsigned char *)a->member)[i] != ((const unsigned char *)b->member)[i];
+#include "runtime/planes.def"
+#undef KRS_ARRAY
+#undef KRS_PLANE
+    return differ;
+}
+
+static void assert_same(KrsPicture *a, KrsPicture *b)
+{
+    assert_int_equal(difference(a, b), 0);
+    krs_picture_free(a);
+    krs_picture_free(b);
+}
+
+/* ---- Portions ---- */
+
+static const KrsRenderOptions part = {
+    .width = WIDTH, .height = HEIGHT, .crop = {13, 9, 60, 41}, .samples = SAMPLES, .seed = 3};
+
+/* On devices whose bands are small, or into which the host cannot look, as well. */
+static const unsigned pretences[] = {0, KRS_PRETEND_CARD, KRS_PRETEND_LEAST_LIMITS,
+                                     KRS_PRETEND_CARD | KRS_PRETEND_LEAST_LIMITS};
+enum { PRETENCES = sizeof pretences / sizeof pretences[0] };
+
+static void portions_are_the_whole(void **state)
+{
+    static const uint32_t portions[][SAMPLES] = {{4}, {1, 3}, {2, 1, 1}, {1, 1, 1, 1}};
     (void)state;
-    assert_near(srgb_encode(0), 0, 0);
-    assert_near(srgb_encode(1), 1, 1e-15);
-    assert_near(srgb_encode(0.5), 0.735356983052449, 1e-12);
-    for (int i = 0; i <= 1000; i++)
-        assert_near(srgb_decode(srgb_encode(i / 1000.0)), i / 1000.0, 1e-7);
-}
-
-static double grey(ToneMap map, double value)
-{
-    double out[3];
-    tone_map_apply(map, (double[]){value, value, value}, out);
-    assert_near(out[0], out[1], 1e-4);
-    assert_near(out[1], out[2], 1e-4);
-    return out[1];
-}
-
-static void curves_rise_within_the_unit(void **state)
-{
-    (void)state;
-    for (int map = 0; map < TONE_MAP_COUNT; map++) {
-        double before = -1;
-        for (double value = 0; value < 1e6; value = value * 1.05 + 1e-3) {
-            double shown = grey((ToneMap)map, value);
-            assert_true(shown >= 0 && shown <= 1);
-            assert_true(shown >= before);
-            before = shown;
-        }
-        assert_true(before > 0.95); /* white is reached */
-    }
-}
-
-static void curves_survive_what_is_no_colour(void **state)
-{
-    (void)state;
-    const double odd[] = {NAN, INFINITY, -INFINITY, -1, 1e300, 0};
-    for (int map = 0; map < TONE_MAP_COUNT; map++)
-        for (int i = 0; i < 6; i++)
-            for (int j = 0; j < 6; j++) {
-                double out[3];
-                tone_map_apply((ToneMap)map, (double[]){odd[i], odd[j], 0.5}, out);
-                for (int k = 0; k < 3; k++)
-                    assert_true(out[k] >= 0 && out[k] <= 1);
+    for (size_t k = 0; k < PRETENCES; k++) {
+        Stage stage;
+        open_as(&stage, film_text, pretences[k]);
+        for (size_t i = 0; i < sizeof portions / sizeof portions[0]; i++)
+            for (int reads = 0; reads < 2; reads++) { /* in between */
+                KrsFilm *film = new_film(&stage, &part);
+                for (int n = 0; n < SAMPLES && portions[i][n]; n++) {
+                    add(&stage, film, NULL, portions[i][n]);
+                    if (reads)
+                        krs_picture_free(read_film(&stage, film));
+                }
+                assert_same(read_film(&stage, film), stage_render(&stage, part));
+                krs_film_free(film);
             }
-}
-
-static void neutral_is_its_definition(void **state)
-{
-    (void)state;
-    /* Below its shoulder a colour only loses the 4 % of a dielectric's reflection. */
-    for (int i = 10; i < 80; i++)
-        assert_near(grey(TONE_NEUTRAL, i / 100.0), i / 100.0 - 0.04, 1e-12);
-    assert_near(grey(TONE_NEUTRAL, 0.04), 6.25 * 0.04 * 0.04, 1e-12);
-    /* On the shoulder a grey is 1 - d^2 / (peak + d - s) with s = 0.76 and d = 0.24. */
-    assert_near(grey(TONE_NEUTRAL, 2.04), 1 - 0.24 * 0.24 / (2 + 0.24 - 0.76), 1e-12);
-    /* A bright saturated colour turns towards white but keeps its order. */
-    double out[3];
-    tone_map_apply(TONE_NEUTRAL, (double[]){8, 1, 0.2}, out);
-    assert_true(out[0] > out[1] && out[1] > out[2] && out[2] > 0.2);
-}
-
-static void aces_is_its_definition(void **state)
-{
-    (void)state;
-    /* For a grey the matrices (rows of sum 1, nearly) drop out: the rational curve is left. */
-    for (double v = 0.05; v < 10; v *= 1.5) {
-        double above = v * (v + 0.0245786) - 0.000090537;
-        double below = v * (0.983729 * v + 0.4329510) + 0.238081;
-        assert_near(grey(TONE_ACES, v), fmin(above / below, 1), 2e-4);
+        close_watched(&stage);
     }
 }
 
-static void names_are_found(void **state)
+/* Where buffers hold 4,096 pixels, this picture has dozens of bands. */
+static void bands_are_swapped(void **state)
 {
+    const KrsRenderOptions large = {.width = 300, .height = 200, .samples = 3};
     (void)state;
-    ToneMap map;
-    for (int i = 0; i < TONE_MAP_COUNT; i++) {
-        assert_true(tone_map_find(tone_map_names[i], &map));
-        assert_int_equal(map, i);
-    }
-    assert_false(tone_map_find("neutra", &map));
-    assert_false(tone_map_find("", &map));
-}
-
-enum { SIDE = 64 };
-
-/* A picture of one colour at a place of a larger one. */
-typedef struct Flat {
-    float      color[SIDE * SIDE * 4];
-    KrsPicture picture;
-    uint8_t    rgb[SIDE * SIDE * 3];
-} Flat;
-
-static void flat_develop(Flat *flat, double value, KrsWindow window, FilmOptions options)
-{
-    for (size_t i = 0; i < (size_t)SIDE * SIDE * 4; i++)
-        flat->color[i] = i % 4 == 3 ? 1 : (float)value;
-    flat->picture = (KrsPicture){
-        .width = 256, .height = 256, .window = window, .color = flat->color};
-    film_to_srgb8(&flat->picture, &options, flat->rgb);
-}
-
-static void dithering_keeps_the_mean(void **state)
-{
-    (void)state;
-    static Flat flat;
-    for (int level = 0; level < 40; level++) {
-        double exact = 3.3 + level * 6.17; /* of 255 */
-        flat_develop(&flat, srgb_decode(exact / 255), (KrsWindow){0, 0, SIDE, SIDE},
-                     (FilmOptions){.tone_map = TONE_NONE});
-        double sum = 0;
-        for (size_t i = 0; i < sizeof flat.rgb; i++) {
-            assert_true(flat.rgb[i] == floor(exact) || flat.rgb[i] == ceil(exact));
-            sum += flat.rgb[i];
-        }
-        assert_near(sum / sizeof flat.rgb, exact, 0.02);
+    for (size_t k = 0; k < PRETENCES; k++) {
+        Stage stage;
+        open_as(&stage, film_text, pretences[k]);
+        KrsFilm *film = new_film(&stage, &large);
+        for (int n = 0; n < 3; n++)
+            add(&stage, film, NULL, 1);
+        assert_same(read_film(&stage, film), stage_render(&stage, large));
+        krs_film_free(film);
+        close_watched(&stage);
     }
 }
 
-static void black_and_white_are_clean(void **state)
+/* The buffers hold a band of one film at a time; questions do not touch it. */
+static void films_take_turns(void **state)
 {
+    const KrsRenderOptions other = {.width = 70, .height = 90, .samples = 2, .camera = 1};
     (void)state;
-    static Flat flat;
-    for (int map = 0; map < TONE_MAP_COUNT; map++) {
-        flat_develop(&flat, 0, (KrsWindow){0, 0, SIDE, SIDE},
-                     (FilmOptions){.tone_map = (ToneMap)map});
-        for (size_t i = 0; i < sizeof flat.rgb; i++)
-            assert_int_equal(flat.rgb[i], 0);
+    for (size_t k = 0; k < PRETENCES; k++) {
+        const double point[1][3] = {{0, 5, 0}};
+        KrsHit       hit;
+        Stage        stage;
+        open_as(&stage, film_text, pretences[k]);
+        KrsFilm *a = new_film(&stage, &part), *b = new_film(&stage, &other);
+        add(&stage, a, NULL, 1);
+        add(&stage, b, NULL, 1);
+        add(&stage, a, NULL, 2);
+        assert_int_equal(krs_device_probe(stage.rendering, stage.frame, point, 1, &hit), KRS_OK);
+        assert_near(hit.distance, 3, 1e-4);
+        add(&stage, a, NULL, 1);
+        krs_picture_free(stage_render(&stage, (KrsRenderOptions){.camera = 2}));
+        add(&stage, b, NULL, 1);
+        assert_same(read_film(&stage, a), stage_render(&stage, part));
+        assert_same(read_film(&stage, b), stage_render(&stage, other));
+        krs_film_free(a);
+        krs_film_free(b);
+        close_watched(&stage);
     }
-    flat_develop(&flat, 1, (KrsWindow){0, 0, SIDE, SIDE}, (FilmOptions){.tone_map = TONE_NONE});
-    for (size_t i = 0; i < sizeof flat.rgb; i++)
-        assert_int_equal(flat.rgb[i], 255);
 }
 
-static void dithering_hangs_on_the_place_in_the_whole(void **state)
+/* Fewer samples than were planned, and more, are means all the same. */
+static void samples_go_on(void **state)
 {
-    (void)state;
-    static Flat whole, part;
-    FilmOptions options = {.tone_map = TONE_NEUTRAL};
-    flat_develop(&whole, 0.3, (KrsWindow){100, 50, SIDE, SIDE}, options);
-    flat_develop(&part, 0.3, (KrsWindow){110, 57, 20, 10}, options);
-    for (size_t y = 0; y < 10; y++)
-        assert_memory_equal(&part.rgb[3 * 20 * y], &whole.rgb[3 * (SIDE * (y + 7) + 10)], 3 * 20);
-}
-
-static void a_stop_is_a_doubling(void **state)
-{
-    (void)state;
-    static Flat brighter, doubled;
-    KrsWindow   window = {0, 0, SIDE, SIDE};
-    flat_develop(&brighter, 0.125, window, (FilmOptions){.tone_map = TONE_ACES, .exposure = 1});
-    flat_develop(&doubled, 0.25, window, (FilmOptions){.tone_map = TONE_ACES});
-    assert_memory_equal(brighter.rgb, doubled.rgb, sizeof doubled.rgb);
-    flat_develop(&doubled, 0.125, window, (FilmOptions){.tone_map = TONE_ACES});
-    assert_memory_not_equal(brighter.rgb, doubled.rgb, sizeof doubled.rgb);
-}
-
-/* The byte by the definitions, the noise by floor. */
-static uint8_t defined_byte(const float color[3], FilmOptions options, int channel, double x,
-                            double y)
-{
-    double light[3], shown[3];
-    for (int i = 0; i < 3; i++)
-        light[i] = pow(2, options.exposure) * color[i];
-    tone_map_apply(options.tone_map, light, shown);
-    double noise = 0.06711056 * (x + 47 * channel) + 0.00583715 * (y + 17 * channel);
-    noise        = 52.9829189 * (noise - floor(noise));
-    return (uint8_t)floor(255 * srgb_encode(shown[channel]) + noise - floor(noise));
-}
-
-static void bytes_are_as_defined(void **state)
-{
-    (void)state;
-    enum { WIDTH = 157, HEIGHT = 41, COUNT = 4 * WIDTH * HEIGHT };
-    static const float  odd[]   = {NAN, INFINITY, -1, 1e-42f, 1e30f, 0, 1, 0.08f, 0.76f, 0.8f};
-    static const double stops[] = {0, 1.3, -3, 140};
-    static float        color[COUNT];
-    static uint8_t      rgb[COUNT];
-    uint32_t            chance = 7;
-    for (int kind = 0; kind < 12; kind++) {
-        FilmOptions options = {(ToneMap)(kind % TONE_MAP_COUNT), stops[kind / TONE_MAP_COUNT]};
-        for (int i = 0; i < COUNT; i++) {
-            chance       = chance * 1664525 + 1013904223;
-            double part  = (chance >> 8) / 16777216.0;
-            double light = exp(12 * part - 9) / pow(2, options.exposure);
-            color[i]     = chance % 256 < 16 ? odd[(chance >> 8) % 10] : (float)light;
-        }
-        film_to_srgb8(&(KrsPicture){.width  = 2000,
-                                    .height = 2000,
-                                    .window = {911, 1204, WIDTH, HEIGHT},
-                                    .color  = color},
-                      &options, rgb);
-        for (int k = 0; k < WIDTH * HEIGHT; k++)
-            for (int i = 0; i < 3; i++)
-                assert_int_equal(rgb[3 * k + i], defined_byte(&color[4 * k], options, i,
-                                                              911 + k % WIDTH, 1204 + k / WIDTH));
+    Stage           *stage   = *state;
+    KrsRenderOptions options = {
+        .width = WIDTH, .height = HEIGHT, .samples = 2, .no_occlusion = true};
+    KrsFilm *film = new_film(stage, &options);
+    add(stage, film, NULL, 2);
+    KrsPicture *two = read_film(stage, film);
+    add(stage, film, NULL, 6);
+    KrsPicture *eight = read_film(stage, film);
+    assert_int_equal(eight->stats.rays, 8 * WIDTH * HEIGHT);
+    assert_int_equal(two->stats.rays, 2 * WIDTH * HEIGHT);
+    double shares[2] = {0};
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
+        const float alpha = eight->color[4 * i + 3];
+        assert_near(8 * (double)alpha, round(8 * (double)alpha), 1e-5);
+        shares[0] += (double)two->color[4 * i + 3];
+        shares[1] += (double)alpha;
     }
+    assert_near(shares[0] / shares[1], 1, 0.01);
+    krs_picture_free(two);
+    krs_picture_free(eight);
+    krs_film_free(film);
+}
+
+/* ---- What it is about ---- */
+
+/* The mean of two frames blurs what moves. */
+static void frames_may_differ(void **state)
+{
+    Stage                 *stage      = *state;
+    const double           heights[2] = {1, 1.5};
+    const KrsRenderOptions options    = {.width = WIDTH, .height = HEIGHT, .samples = 2};
+    KrsFilm               *film       = new_film(stage, &options), *alone[2];
+    KrsPicture            *seen[2];
+    for (int n = 0; n < 2; n++) {
+        assert_int_equal(krs_frame_set(stage->frame, "height", &heights[n], 1), KRS_OK);
+        alone[n] = new_film(stage, &options);
+        add(stage, alone[n], NULL, 1);
+        seen[n] = read_film(stage, alone[n]);
+        add(stage, film, NULL, 1);
+    }
+    /* The second sample of a film has another place in its pixel, so only what is flat compares. */
+    KrsPicture *blurred = read_film(stage, film);
+    assert_memory_equal(blurred->depth, seen[0]->depth, WIDTH * HEIGHT * sizeof(float));
+    size_t between = 0;
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
+        const float a = seen[0]->color[4 * i], b = seen[1]->color[4 * i];
+        const float mean = blurred->color[4 * i];
+        between += fabsf(mean - 0.5f * (a + b)) <= 0.02f + 0.05f * (a + b);
+    }
+    assert_in_range(between, WIDTH * HEIGHT * 9 / 10, WIDTH * HEIGHT);
+    assert_true(memcmp(seen[0]->depth, seen[1]->depth, WIDTH * HEIGHT * sizeof(float)) != 0);
+    for (int n = 0; n < 2; n++) {
+        krs_picture_free(seen[n]);
+        krs_film_free(alone[n]);
+    }
+    krs_picture_free(blurred);
+    krs_film_free(film);
+    assert_int_equal(krs_frame_set(stage->frame, "height", &heights[0], 1), KRS_OK);
+}
+
+/* A camera that the caller gives is as good as one of the scene. */
+static void cameras_are_the_callers(void **state)
+{
+    Stage           *stage   = *state;
+    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT};
+    KrsFilm         *film    = new_film(stage, &options);
+    KrsCamera        camera;
+    for (size_t i = 0; i < krs_camera_count(stage->scene); i++) {
+        assert_int_equal(krs_frame_camera(stage->frame, i, &camera), KRS_OK);
+        krs_film_clear(film);
+        add(stage, film, &camera, 1);
+        options.camera = i;
+        assert_same(read_film(stage, film), stage_render(stage, options));
+    }
+    assert_int_equal(krs_camera_count(stage->scene), 3);
+    assert_int_equal(krs_frame_camera(stage->frame, 3, &camera), KRS_BAD_ARGUMENT);
+
+    /* Another scene says what the caller says here; it is compiled without a panorama. */
+    static const char text[]  = "camera { eye: [0.5, 0.75, 4], target: [0, 0.5, 0],"
+                                "         projection: \"panorama\" }"
+                                "show sphere(1).move([0, 1, 0]); show plane([0, 1, 0], 0);"
+                                "light sun { direction: [-1, 2, 1], intensity: 3, softness: 1deg }";
+    static const char plain[] = "show sphere(1).move([0, 1, 0]); show plane([0, 1, 0], 0);"
+                                "light sun { direction: [-1, 2, 1], intensity: 3, softness: 1deg }";
+    Stage             there, here;
+    open_as(&there, text, 0);
+    open_as(&here, plain, 0);
+    const KrsCamera round = {
+        .projection = KRS_PANORAMA, .eye = {0.5, 0.75, 4}, .target = {0, 0.5, 0}, .up = {0, 1, 0}};
+    options.camera      = 0;
+    KrsFilm *all_around = new_film(&here, &options);
+    add(&here, all_around, &round, 1);
+    assert_same(read_film(&here, all_around), stage_render(&there, options));
+    krs_film_free(all_around);
+    krs_film_free(film);
+    close_watched(&there);
+    close_watched(&here);
+}
+
+/* ---- What is refused ---- */
+
+static bool stop(void *user, double done)
+{
+    (void)done;
+    return --*(int *)user > 0;
+}
+
+static void failures_leave_it_empty(void **state)
+{
+    Stage           *stage   = *state;
+    int              left    = 1000000;
+    KrsRenderOptions options = part;
+    KrsPicture      *picture;
+    options.progress = stop;
+    options.user     = &left;
+    KrsFilm *film    = new_film(stage, &options);
+    add(stage, film, NULL, 2);
+    left = 3;
+    assert_int_equal(krs_film_add(film, stage->frame, NULL, 1), KRS_INTERRUPTED);
+    assert_int_equal(krs_film_samples(film), 0);
+    assert_int_equal(krs_film_read(film, 0, &picture), KRS_BAD_ARGUMENT);
+    assert_null(picture);
+    left = 1000000;
+    add(stage, film, NULL, SAMPLES); /* and it is as good as new */
+    assert_same(read_film(stage, film), stage_render(stage, part));
+    krs_film_free(film);
+}
+
+static void wrong_use_is_refused(void **state)
+{
+    Stage                 *stage   = *state;
+    const KrsRenderOptions depths  = {.width = 20, .height = 10, .planes = KRS_PLANE_DEPTH};
+    const KrsRenderOptions wrong[] = {{.width = 16385}, {.integrator = KRS_INTEGRATOR_COUNT}};
+    KrsFilm               *film;
+    KrsPicture            *picture;
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        assert_int_equal(krs_film_new(stage->rendering, &wrong[i], &film), KRS_BAD_ARGUMENT);
+        assert_null(film);
+    }
+    film = new_film(stage, &depths);
+    assert_int_equal(krs_film_add(film, stage->frame, NULL, 0), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_add(film, stage->frame, NULL, KRS_MOST_SAMPLES + 1),
+                     KRS_BAD_ARGUMENT);
+    add(stage, film, NULL, 1);
+    assert_int_equal(krs_film_add(film, stage->frame, NULL, KRS_MOST_SAMPLES), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_add(film, stage->frame, &(KrsCamera){.fov = 1}, 1),
+                     KRS_BAD_ARGUMENT); /* its eye is at its target */
+    assert_int_equal(krs_film_samples(film), 1);
+    assert_int_equal(krs_film_read(film, KRS_PLANE_NORMAL, &picture), KRS_BAD_ARGUMENT);
+    assert_int_equal(krs_film_read(film, 0, &picture), KRS_OK);
+    assert_non_null(picture->depth);
+    assert_null(picture->color);
+    krs_picture_free(picture);
+    krs_film_free(film);
+    krs_film_free(NULL);
+}
+
+/* Some planes of many. */
+static void planes_are_chosen_when_read(void **state)
+{
+    Stage      *stage = *state;
+    KrsFilm    *film  = new_film(stage, &part);
+    KrsPicture *some;
+    add(stage, film, NULL, SAMPLES);
+    assert_int_equal(krs_film_read(film, KRS_PLANE_NORMAL | KRS_PLANE_COLOR, &some), KRS_OK);
+    assert_non_null(some->normal);
+    assert_non_null(some->color);
+    assert_null(some->depth);
+    assert_same(some, stage_render(stage, part));
+    krs_film_free(film);
+}
+
+static int set_up(void **state)
+{
+    static Stage stage;
+    open_as(&stage, film_text, 0);
+    *state = &stage;
+    return 0;
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(srgb_is_its_definition),
-        cmocka_unit_test(curves_rise_within_the_unit),
-        cmocka_unit_test(curves_survive_what_is_no_colour),
-        cmocka_unit_test(neutral_is_its_definition),
-        cmocka_unit_test(aces_is_its_definition),
-        cmocka_unit_test(names_are_found),
-        cmocka_unit_test(dithering_keeps_the_mean),
-        cmocka_unit_test(black_and_white_are_clean),
-        cmocka_unit_test(dithering_hangs_on_the_place_in_the_whole),
-        cmocka_unit_test(a_stop_is_a_doubling),
-        cmocka_unit_test(bytes_are_as_defined),
+        cmocka_unit_test(portions_are_the_whole),
+        cmocka_unit_test(bands_are_swapped),
+        cmocka_unit_test(films_take_turns),
+        cmocka_unit_test_setup_teardown(samples_go_on, set_up, stage_tear_down),
+        cmocka_unit_test_setup_teardown(frames_may_differ, set_up, stage_tear_down),
+        cmocka_unit_test_setup_teardown(cameras_are_the_callers, set_up, stage_tear_down),
+        cmocka_unit_test_setup_teardown(failures_leave_it_empty, set_up, stage_tear_down),
+        cmocka_unit_test_setup_teardown(wrong_use_is_refused, set_up, stage_tear_down),
+        cmocka_unit_test_setup_teardown(planes_are_chosen_when_read, set_up, stage_tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,6 +17,7 @@
 #include <string.h>
 
 #include "compiler/print/module.h"
+#include "runtime/tracer/kernels.h"
 #include "runtime/tracer/variants.h"
 #include "tests/support/renderer.h"
 

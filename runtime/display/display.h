@@ -1,24 +1,24 @@
 /*
- * film.h: from scene-linear light to what a screen shows.
+ * display.h: from scene-linear light to what a screen shows.
  */
-#ifndef KRS_FILM_H
-#define KRS_FILM_H
+#ifndef KRS_DISPLAY_H
+#define KRS_DISPLAY_H
 
 #include "runtime/krs_vulkan.h"
 
 /* Curves from [0, infinity) to [0, 1]. */
 typedef enum ToneMap {
 #define TONE_MAP(id, name, about) TONE_##id,
-#include "runtime/film/tone_maps.def"
+#include "runtime/display/tone_maps.def"
 #undef TONE_MAP
     TONE_MAP_COUNT
 } ToneMap;
 extern const char *const tone_map_names[TONE_MAP_COUNT]; /* "neutral", "aces", "none" */
 
-typedef struct FilmOptions {
+typedef struct DisplayOptions {
     ToneMap tone_map;
     double  exposure; /* stops */
-} FilmOptions;
+} DisplayOptions;
 
 /* False when no curve has that name. */
 bool tone_map_find(const char *name, ToneMap *tone_map);
@@ -33,6 +33,6 @@ double srgb_encode(double linear);
 /* The picture's window as 8-bit sRGB, three bytes a pixel.  Dithering replaces the steps between
    levels; it hangs on the pixel's place in the whole picture alone.  The colour plane must be
    there. */
-void film_to_srgb8(const KrsPicture *picture, const FilmOptions *options, uint8_t *rgb);
+void display_to_srgb8(const KrsPicture *picture, const DisplayOptions *options, uint8_t *rgb);
 
 #endif

@@ -1,7 +1,7 @@
 /*
  * picture.c: making pictures, filling them and freeing them.
  */
-#include "runtime/tracer/picture.h"
+#include "runtime/film/picture.h"
 
 #include <assert.h>
 #include <string.h>
@@ -106,17 +106,53 @@ static void take_plane(void *plane, const float *from, size_t first, size_t coun
         memcpy(to + k * VECTOR, from + k * RESULT_NUMBERS, VECTOR);
 }
 
-void picture_take(KrsPicture *picture, const float *results, size_t row_pixels, size_t first,
-                  size_t count, uint32_t samples)
+void picture_take(KrsPicture *picture, uint32_t wanted, const float *results, size_t row_pixels,
+                  size_t first, size_t count)
 {
     const size_t row = row_pixels * RESULT_NUMBERS;
     for (int i = 0; i < PLANE_COUNT; i++) {
-        void *plane = plane_get(picture, i);
+        void *plane = wanted & planes[i].bit ? plane_get(picture, i) : NULL;
         if (plane)
             take_plane(plane, results + planes[i].row * row + planes[i].number, first, count,
                        planes[i].bytes);
     }
-    for (size_t k = 4 * first; picture->color && samples > 1 && k < 4 * (first + count); k++)
+}
+
+static size_t pixels_of(const KrsPicture *picture)
+{
+    return (size_t)picture->window.width * picture->window.height;
+}
+
+KrsPicture *picture_copy(Gpu *gpu, const KrsPicture *picture, uint32_t wanted)
+{
+    KrsPicture *copy = picture_new(gpu, picture->width, picture->height, picture->window, wanted);
+    if (!copy)
+        return NULL;
+    memcpy(copy->world_to_camera, picture->world_to_camera, sizeof copy->world_to_camera);
+    memcpy(copy->world_to_ndc, picture->world_to_ndc, sizeof copy->world_to_ndc);
+    const uint64_t own_bytes = copy->stats.peak_memory_bytes;
+    copy->stats              = picture->stats;
+    copy->stats.peak_memory_bytes += own_bytes;
+    for (int i = 0; i < PLANE_COUNT; i++)
+        if (plane_get(copy, i))
+            memcpy(plane_get(copy, i), plane_get(picture, i), pixels_of(copy) * planes[i].bytes);
+    return copy;
+}
+
+void picture_drop(KrsPicture *picture, uint32_t unwanted)
+{
+    Gpu allocating = {.allocator = picture->allocator};
+    for (int i = 0; i < PLANE_COUNT; i++)
+        if (unwanted & planes[i].bit) {
+            gpu_release(&allocating, plane_get(picture, i));
+            plane_set(picture, i, NULL);
+        }
+}
+
+void picture_divide(KrsPicture *picture, uint32_t samples)
+{
+    const size_t count = picture->color ? 4 * pixels_of(picture) : 0;
+    for (size_t k = 0; samples > 1 && k < count; k++)
         picture->color[k] /= (float)samples;
 }
 

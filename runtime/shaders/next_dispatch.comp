@@ -1,7 +1,7 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
- * plan.comp: what the host does between two dispatches where it waits for each: how many items the
+ * next_dispatch.comp: what the host does between two dispatches where it waits for each: how many items the
  * next one has, by what those before it have counted, and so how many groups.
  *
  * One with more groups than may run at once, and all behind it, have none: the host goes on there.
@@ -11,21 +11,21 @@
 
 layout(local_size_x = 1) in;
 
-layout(push_constant) uniform PlanBlock { Plan plan; };
+layout(push_constant) uniform NextDispatchBlock { NextDispatch next; };
 layout(std430, set = 1, binding = 4) buffer ControlWords { uint words[]; };
 
 void main()
 {
-    uint items = plan.counter == 0u ? plan.each : plan.each * words[plan.counter];
-    uint groups = (items + plan.in_group - 1u) / plan.in_group;
-    if (words[STOPPED_WORD] == 0u && groups > plan.most)
-        words[STOPPED_WORD] = plan.number;
+    uint items = next.counter == 0u ? next.each : next.each * words[next.counter];
+    uint groups = (items + next.in_group - 1u) / next.in_group;
+    if (words[STOPPED_WORD] == 0u && groups > next.most)
+        words[STOPPED_WORD] = next.number;
     bool runs = words[STOPPED_WORD] == 0u;
-    if (runs && plan.resets != 0u)
-        words[plan.counter] = 0u;
+    if (runs && next.resets != 0u)
+        words[next.counter] = 0u;
     words[ITEMS_WORD] = items;
     words[GROUPS_WORD] = runs ? groups : 0u;
     words[GROUPS_WORD + 1u] = 1u;
     words[GROUPS_WORD + 2u] = 1u;
-    words[RAN_WORD + plan.number - 1u] = runs ? groups : 0u;
+    words[RAN_WORD + next.number - 1u] = runs ? groups : 0u;
 }

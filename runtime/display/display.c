@@ -1,0 +1,162 @@
+/*
+ * display.c: tone mapping, sRGB and dithering.
+ */
+#include "runtime/display/display.h"
+
+#include <math.h>
+#include <string.h>
+
+const char *const tone_map_names[TONE_MAP_COUNT] = {
+#define TONE_MAP(id, name, about) name,
+#include "runtime/display/tone_maps.def"
+#undef TONE_MAP
+};
+
+bool tone_map_find(const char *name, ToneMap *tone_map)
+{
+    for (int i = 0; i < TONE_MAP_COUNT; i++)
+        if (strcmp(name, tone_map_names[i]) == 0) {
+            *tone_map = (ToneMap)i;
+            return true;
+        }
+    return false;
+}
+
+/* fmin and fmax are calls, as they know what is no number; here there is nothing of that kind. */
+static double least_of(double a, double b) { return a < b ? a : b; }
+static double most_of(double a, double b) { return a > b ? a : b; }
+
+/* Khronos PBR Neutral (2024): takes back the 4 % that a dielectric reflects head-on, leaves
+   colours alone up to 0.76 and compresses and whitens what is brighter. */
+static void apply_neutral(const double color[3], double out[3])
+{
+    const double start = 0.8 - 0.04, desaturation = 0.15;
+    double       least  = least_of(color[0], least_of(color[1], color[2]));
+    double       offset = least < 0.08 ? least - 6.25 * least * least : 0.04;
+    double       peak   = most_of(color[0], most_of(color[1], color[2])) - offset;
+    double       top = peak, white = 0;
+    if (peak >= start) {
+        double room = 1 - start;
+        top         = 1 - room * room / (peak + room - start);
+        white       = 1 - 1 / (desaturation * (peak - top) + 1);
+    }
+    double scale = peak > 0 ? top / peak : 1;
+    for (int i = 0; i < 3; i++)
+        out[i] = (color[i] - offset) * scale * (1 - white) + top * white;
+}
+
+static void multiply(const double matrix[3][3], const double v[3], double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = matrix[i][0] * v[0] + matrix[i][1] * v[1] + matrix[i][2] * v[2];
+}
+
+static void apply_aces(const double color[3], double out[3])
+{
+    static const double into[3][3] = {
+        {0.59719, 0.35458, 0.04823},
+        {0.07600, 0.90834, 0.01566},
+        {0.02840, 0.13383, 0.83777},
+    };
+    static const double back[3][3] = {
+        {1.60475, -0.53108, -0.07367},
+        {-0.10208, 1.10813, -0.00605},
+        {-0.00327, -0.07276, 1.07602},
+    };
+    double curved[3];
+    multiply(into, color, curved);
+    for (int i = 0; i < 3; i++) {
+        double v  = curved[i];
+        curved[i] = (v * (v + 0.0245786) - 0.000090537) /
+                    (v * (0.983729 * v + 0.4329510) + 0.238081);
+    }
+    multiply(back, curved, out);
+}
+
+static double clamp_unit(double value) { return value > 0 ? least_of(value, 1) : 0; }
+
+void tone_map_apply(ToneMap tone_map, const double color[3], double out[3])
+{
+    /* Far beyond any curve's shoulder: keeps infinity from becoming a quotient of infinities. */
+    const double brightest = 1e9;
+    double       light[3];
+    for (int i = 0; i < 3; i++)
+        light[i] = color[i] > 0 ? least_of(color[i], brightest) : 0;
+    switch (tone_map) {
+    case TONE_NEUTRAL: apply_neutral(light, out); break;
+    case TONE_ACES: apply_aces(light, out); break;
+    default: memcpy(out, light, sizeof light);
+    }
+    for (int i = 0; i < 3; i++)
+        out[i] = clamp_unit(out[i]);
+}
+
+double srgb_encode(double linear)
+{
+    if (linear >= 1) /* the formula gives a little less */
+        return 1;
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+}
+
+/* srgb_encode for a picture's worth of numbers: of the square root, of which it is nearly a
+   straight line, in so many pieces: off by less than 3e-7. */
+enum { PIECES = 4096 };
+typedef struct Encoding {
+    double at[PIECES + 2];
+} Encoding;
+
+static void encoding_fill(Encoding *encoding)
+{
+    for (int i = 0; i <= PIECES + 1; i++)
+        encoding->at[i] = srgb_encode((double)i / PIECES * i / PIECES);
+}
+
+/* Of what is from 0 to 1. */
+static double encode(const Encoding *encoding, double linear)
+{
+    double place = sqrt(linear) * PIECES;
+    int    piece = (int)place;
+    double below = encoding->at[piece];
+    return below + (place - piece) * (encoding->at[piece + 1] - below);
+}
+
+/* The byte that the definition gives: where the table could decide about it, that is asked. */
+static uint8_t to_byte(const Encoding *encoding, double linear, double step)
+{
+    const double doubt = 1e-3;
+    double       value = 255 * encode(encoding, linear) + step, behind = value - (int)value;
+    if (behind < doubt || behind > 1 - doubt)
+        value = 255 * srgb_encode(linear) + step;
+    return (uint8_t)value;
+}
+
+/* What is behind the point of a number from 0 on; floor is a call. */
+static double fraction(double value) { return value - (double)(int64_t)value; }
+
+/* Interleaved gradient noise (Jimenez 2014) in [0, 1): over any few neighbouring pixels its
+   values are spread evenly, so that dithered areas keep their mean without clumps. */
+static double noise(double x, double y)
+{
+    return fraction(52.9829189 * fraction(0.06711056 * x + 0.00583715 * y));
+}
+
+void display_to_srgb8(const KrsPicture *picture, const DisplayOptions *options, uint8_t *rgb)
+{
+    const KrsWindow *window = &picture->window;
+    const double     gain   = exp2(options->exposure);
+    Encoding         encoding;
+    encoding_fill(&encoding);
+    for (uint32_t y = 0; y < window->height; y++)
+        for (uint32_t x = 0; x < window->width; x++) {
+            size_t       index    = (size_t)y * window->width + x;
+            const float *from     = &picture->color[4 * index];
+            const double light[3] = {gain * from[0], gain * from[1], gain * from[2]};
+            double       shown[3];
+            tone_map_apply(options->tone_map, light, shown);
+            for (int i = 0; i < 3; i++) {
+                /* The channels' noise differs, by a shift, so that greys are dithered finer. */
+                double step        = noise(window->x + x + 47.0 * i, window->y + y + 17.0 * i);
+                rgb[3 * index + i] = to_byte(&encoding, shown[i], step);
+            }
+        }
+}

@@ -1,0 +1,158 @@
+/*
+ * held.c: between the buffers of a band and the film whose band they hold.
+ */
+#include "runtime/film/held.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "runtime/film/picture.h"
+
+/* Records copies of some rows of results, from one buffer to the other. */
+static void record_copies(Gpu *gpu, const Buffer *from, const Buffer *to, uint32_t rows,
+                          VkDeviceSize row_bytes)
+{
+    VkBufferCopy copies[RESULT_ROWS];
+    uint32_t     count = 0;
+    for (VkDeviceSize row = 0; row < RESULT_ROWS; row++)
+        if (rows >> row & 1)
+            copies[count++] = (VkBufferCopy){row * row_bytes, row * row_bytes, row_bytes};
+    vkCmdCopyBuffer(gpu->commands, from->buffer, to->buffer, count, copies);
+}
+
+static VkDeviceSize row_bytes_of(const HeldBand *held)
+{
+    return (VkDeviceSize)held->traced.height * held->traced.width * RESULT_BYTES;
+}
+
+/* The results as the host sees them, and NULL when it cannot. */
+static float *fetch(KrsRendering *rendering, uint32_t rows)
+{
+    Gpu   *gpu  = &rendering->renderer->gpu;
+    Band  *band = &rendering->band;
+    double ms   = 0; /* copying is no phase */
+    if (band->results.bytes)
+        return band->results.bytes;
+    if (!gpu_begin(gpu))
+        return NULL;
+    record_copies(gpu, &band->results, &band->fetched, rows, row_bytes_of(&rendering->held));
+    return gpu_finish(gpu, &ms) ? band->fetched.bytes : NULL;
+}
+
+/* Colours are summed up, what sees nothing is all zero, but positions, which are infinitely far
+   away. */
+static bool clear_results(KrsRendering *rendering, uint32_t rows, VkDeviceSize row_bytes)
+{
+    const uint32_t infinite = 0x7f800000;
+    Gpu           *gpu      = &rendering->renderer->gpu;
+    double         ms       = 0;
+    if (!gpu_begin(gpu))
+        return false;
+    for (VkDeviceSize row = 0; row < RESULT_ROWS; row++)
+        if (rows >> row & 1)
+            vkCmdFillBuffer(gpu->commands, rendering->band.results.buffer, row * row_bytes,
+                            row_bytes, row == ROW_POSITIONS ? infinite : 0);
+    return gpu_finish(gpu, &ms);
+}
+
+/* A row of a band's pixels that the film has: where it begins among those of the band and in the
+   film; false where the crop has none of it. */
+static bool find_row(const KrsFilm *film, const HeldBand *held, uint32_t y, size_t *in_band,
+                     size_t *in_film)
+{
+    const KrsWindow *crop = &film->options.crop, *traced = &held->traced;
+    if (y < crop->y || y >= crop->y + crop->height)
+        return false;
+    *in_band = (size_t)(y - traced->y) * traced->width + (crop->x - traced->x);
+    *in_film = (size_t)(y - crop->y) * crop->width;
+    return true;
+}
+
+/* The first and the last but one row of pixels of a held band. */
+static void rows_of_held(const KrsFilm *film, const HeldBand *held, uint32_t *first, uint32_t *end)
+{
+    *first = film->options.crop.y / TILE * TILE + held->from;
+    *end   = *first + held->rows;
+}
+
+/* Back to the origin of the world; where nothing is there is no position. */
+static void place_positions(KrsFilm *film, const float *places, size_t first, size_t count)
+{
+    float *position = film->sums->position;
+    for (size_t k = 0; position && k < count; k++)
+        for (int i = 0; i < 3; i++) {
+            float *number   = &position[3 * (first + k) + i];
+            bool   is_place = isfinite(places[k * RESULT_NUMBERS + DEPTH_NUMBER]);
+            *number         = is_place ? (float)(*number + film->rebase_origin[i]) : 0;
+        }
+}
+
+bool held_store(KrsRendering *rendering)
+{
+    HeldBand *held = &rendering->held;
+    KrsFilm  *film = held->film;
+    if (!film || !(held->has_colors || held->has_planes))
+        return true;
+    const uint32_t planes  = held->has_planes ? KRS_PLANE_ALL : KRS_PLANE_COLOR;
+    const uint32_t rows    = held->has_planes ? picture_rows(film->sums) : 1u << ROW_COLORS;
+    const size_t   band    = (size_t)held->traced.height * held->traced.width;
+    const float   *results = fetch(rendering, rows);
+    uint32_t       y, end;
+    if (!results)
+        return false;
+    for (rows_of_held(film, held, &y, &end); y < end; y++) {
+        size_t in_band, in_film;
+        if (!find_row(film, held, y, &in_band, &in_film))
+            continue;
+        picture_take(film->sums, planes, results + in_band * RESULT_NUMBERS, band, in_film,
+                     film->options.crop.width);
+        if (held->has_planes)
+            place_positions(film, results + (ROW_POSITIONS * band + in_band) * RESULT_NUMBERS,
+                            in_film, film->options.crop.width);
+    }
+    held->has_colors = held->has_planes = false;
+    return true;
+}
+
+/* Gives the colours of a film back to the buffers, whose colours are 0. */
+static bool load_colors(const KrsFilm *film)
+{
+    KrsRendering *rendering = film->rendering;
+    Gpu          *gpu       = &rendering->renderer->gpu;
+    Band         *buffers   = &rendering->band;
+    HeldBand     *held      = &rendering->held;
+    double        ms        = 0;
+    uint32_t      y, end;
+    float *results = buffers->results.bytes ? buffers->results.bytes : buffers->fetched.bytes;
+    if (!buffers->results.bytes)
+        memset(results, 0, row_bytes_of(held));
+    for (rows_of_held(film, held, &y, &end); y < end; y++) {
+        size_t in_band, in_film;
+        if (find_row(film, held, y, &in_band, &in_film))
+            memcpy(results + in_band * RESULT_NUMBERS, film->sums->color + in_film * RESULT_NUMBERS,
+                   film->options.crop.width * RESULT_BYTES);
+    }
+    if (buffers->results.bytes)
+        return true;
+    if (!gpu_begin(gpu))
+        return false;
+    record_copies(gpu, &buffers->fetched, &buffers->results, 1u << ROW_COLORS, row_bytes_of(held));
+    return gpu_finish(gpu, &ms);
+}
+
+bool held_change(KrsFilm *film, const HeldBand *wanted)
+{
+    KrsRendering *rendering = film->rendering;
+    HeldBand     *held      = &rendering->held;
+    if (held->film == film && held->from == wanted->from && held->rows == wanted->rows &&
+        film->samples > 0) {
+        held->has_colors = true;
+        return true;
+    }
+    if (!held_store(rendering))
+        return false;
+    uint32_t rows = film->samples == 0 ? picture_rows(film->sums) : 1u << ROW_COLORS;
+    *held         = *wanted;
+    return clear_results(rendering, rows, row_bytes_of(held)) &&
+           (film->samples == 0 || load_colors(film));
+}

@@ -1,0 +1,29 @@
+/*
+ * picture.h: the planes of a picture, in memory of the host.
+ */
+#ifndef KRS_PICTURE_H
+#define KRS_PICTURE_H
+
+#include "runtime/device/gpu.h"
+#include "runtime/shared/blocks.h"
+
+/* A picture whose wanted planes (bits of KrsPlane) are zero; NULL with the failure noted. */
+KrsPicture *picture_new(Gpu *gpu, uint32_t width, uint32_t height, KrsWindow window,
+                        uint32_t wanted);
+
+/* The rows of results (bit ROW_... of each) that the planes of a picture come from. */
+uint32_t picture_rows(const KrsPicture *picture);
+
+/* Takes `count` pixels over into those of its planes that are among `planes`, from the window's pixel
+   number `first` on.  `results` is the first of them in the row of colours; the next row lies
+   `row_pixels` pixels behind. */
+void picture_take(KrsPicture *picture, uint32_t planes, const float *results, size_t row_pixels,
+                  size_t first, size_t count);
+/* A copy with those of its planes that are among `planes`; NULL with the failure noted. */
+KrsPicture *picture_copy(Gpu *gpu, const KrsPicture *picture, uint32_t planes);
+/* Frees those of its planes that are among `planes`. */
+void picture_drop(KrsPicture *picture, uint32_t planes);
+/* Makes the mean of colours that are sums of so many samples. */
+void picture_divide(KrsPicture *picture, uint32_t samples);
+
+#endif

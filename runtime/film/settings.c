@@ -1,0 +1,87 @@
+/*
+ * settings.c: what is asked for, with nothing left to be defaulted.
+ */
+#include "runtime/film/settings.h"
+
+#include "runtime/tracer/methods.h"
+
+#define MOST_STEPS 16384
+/* All loops of an invocation together stay under 32768 iterations: some devices end them
+   silently after 65535. */
+#define MOST_STEPS_AT_ONCE 8192
+/* Steps of a pass of the queue: more leave lanes idle, fewer cost passes. */
+#define QUEUE_STEPS 16
+
+static bool refuse(KrsRendering *rendering, const char *words)
+{
+    gpu_refuse(&rendering->renderer->gpu, KRS_BAD_ARGUMENT, "%s", words);
+    return false;
+}
+
+static uint32_t first_of(uint32_t asked, uint32_t scene, uint32_t otherwise)
+{
+    return asked ? asked : scene ? scene : otherwise;
+}
+
+/* Of what there is to choose from (choices.def). */
+static bool choose(KrsRendering *rendering, KrsRenderOptions *o, KrsSchedule *asked)
+{
+    if ((unsigned)o->trace >= KRS_TRACE_COUNT || (unsigned)o->schedule >= KRS_SCHEDULE_COUNT ||
+        (unsigned)o->shadows >= KRS_SHADOWS_COUNT ||
+        (unsigned)o->components >= KRS_COMPONENTS_COUNT ||
+        (unsigned)o->normals >= KRS_NORMALS_COUNT ||
+        (unsigned)o->integrator >= KRS_INTEGRATOR_COUNT)
+        return refuse(rendering, "there is no such method, schedule, stencil, kind of shadow or "
+                                 "integrator");
+    if (o->normals == KRS_NORMALS_ANALYTIC && !rendering->program->gradients)
+        return refuse(rendering,
+                      "analytic normals need a scene that was compiled with `gradients`");
+    o->normals = rendering_normals(rendering, o->normals);
+    *asked     = o->schedule;
+    rendering_choose(rendering, &o->trace, &o->schedule);
+    if (o->schedule == KRS_SCHEDULE_REFILL && rendering->renderer->gpu.refill_lanes == 0)
+        return refuse(rendering,
+                      "the device's lanes cannot exchange numbers, which `refill` needs");
+    return true;
+}
+
+static void put_defaults(const KrsImage *image, KrsRenderOptions *o)
+{
+    o->width         = first_of(o->width, image->width, KRS_DEFAULT_WIDTH);
+    o->height        = first_of(o->height, image->height, KRS_DEFAULT_HEIGHT);
+    o->samples       = first_of(o->samples, image->samples, KRS_DEFAULT_SAMPLES);
+    o->planes        = first_of(o->planes, 0, KRS_PLANE_ALL);
+    o->most_steps    = first_of(o->most_steps, 0, MOST_STEPS);
+    o->steps_at_once = first_of(o->steps_at_once, 0,
+                                o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
+    o->error    = o->error != 0 ? o->error : image->error != 0 ? image->error : KRS_DEFAULT_ERROR;
+    o->slice_ms = o->slice_ms != 0 ? o->slice_ms : 50;
+    if (o->crop.width == 0)
+        o->crop = (KrsWindow){0, 0, o->width, o->height};
+}
+
+static bool check(KrsRendering *rendering, const KrsRenderOptions *o)
+{
+    if (o->width > KRS_MOST_SIDE || o->height > KRS_MOST_SIDE)
+        return refuse(rendering, "a picture has at most 16384 pixels a side");
+    if (o->crop.height == 0 || o->crop.x >= o->width || o->crop.width > o->width - o->crop.x ||
+        o->crop.y >= o->height || o->crop.height > o->height - o->crop.y)
+        return refuse(rendering, "the crop is not inside of the picture");
+    if (o->samples > KRS_MOST_SAMPLES)
+        return refuse(rendering, "there are at most 65536 samples per pixel");
+    if (!(o->error > 0) || !(o->error <= KRS_MOST_ERROR))
+        return refuse(rendering, "the permitted error must be above 0 and at most 1000 pixels");
+    if (!(o->slice_ms > 0) || o->most_steps > MOST_STEPS || o->steps_at_once > MOST_STEPS_AT_ONCE)
+        return refuse(rendering,
+                      "slices must be longer than nothing, and rays have at most 16384 steps");
+    return true;
+}
+
+bool settings_complete(KrsRendering *rendering, KrsRenderOptions *options, KrsSchedule *asked)
+{
+    const KrsImage image = krs_scene_image(rendering->scene);
+    if (!choose(rendering, options, asked))
+        return false;
+    put_defaults(&image, options);
+    return check(rendering, options);
+}

@@ -1,0 +1,199 @@
+/*
+ * preview.c: the light of the sky, as far as it is open, and of each light, as far as it is visible.
+ *
+ * Rays for both start at what the pixels show, and neighbours share what they find (shared.glsl).
+ */
+#include "runtime/integrators/integrators.h"
+#include "runtime/tracer/kernels.h"
+#include "runtime/tracer/methods.h"
+#include "runtime/tracer/primary.h"
+
+/* Fractions of the time, about. */
+#define WEIGHT_MARCH      0.5f
+#define WEIGHT_BACKGROUND 0.02f
+#define WEIGHT_NORMALS    0.1f
+#define WEIGHT_OCCLUSION  0.1f
+#define WEIGHT_LIGHTS     0.28f
+
+typedef struct Preview {
+    Job    *job;
+    Plan   *plan;
+    Kernel *secondary;       /* NULL: there is neither occlusion nor a light with shadows */
+    bool    by_roots;        /* its rays go from root to root */
+    bool    filters_shadows; /* neighbours share what rays to lights find */
+} Preview;
+
+/* ---- passes ---- */
+
+/* A kernel of pixels over a list; `out`: the list that it writes. */
+static void add_pixels(Preview *p, KrsPhase phase, PixelKernel kernel, ListId in, ListId out,
+                       PassConstants constants, float weight)
+{
+    plan_add(p->plan, (Pass){.kind      = PASS_ITEMS,
+                             .phase     = phase,
+                             .weight    = weight,
+                             .kernel    = job_pixel_kernel(p->job, kernel),
+                             .in        = in,
+                             .out       = out,
+                             .constants = constants});
+}
+
+/* Rays from the hits of a list; `anew`: none has been shared before. */
+static void add_rays(Preview *p, KrsPhase phase, ListId in, bool anew, PassConstants constants,
+                     float weight)
+{
+    plan_add(p->plan, (Pass){.kind        = PASS_RAYS,
+                             .phase       = phase,
+                             .weight      = weight,
+                             .kernel      = p->secondary,
+                             .in          = in,
+                             .out         = NO_LIST,
+                             .shares_anew = anew,
+                             .constants   = constants});
+}
+
+/* The first light from this one on that has a disc in the sky. */
+static uint32_t find_sun(const KrsView *view, uint32_t light)
+{
+    while (light < view->light_count &&
+           (view->lights[light].positional || view->lights[light].softness <= 0))
+        light++;
+    return light;
+}
+
+/* The sky and the first sun, and the lists of what hits something; then each other sun. */
+static void add_background(Preview *p)
+{
+    const KrsView *view = &p->job->view;
+    uint32_t       sun  = find_sun(view, 0);
+    add_pixels(p, KRS_PHASE_RESOLVE, PIXELS_BACKGROUND, LIST_OF_BAND, NO_LIST,
+               (PassConstants){BACKGROUND_FIRST, .light = sun}, WEIGHT_BACKGROUND);
+    while (sun < view->light_count && (sun = find_sun(view, sun + 1)) < view->light_count)
+        add_pixels(p, KRS_PHASE_RESOLVE, PIXELS_BACKGROUND, LIST_OF_BAND, NO_LIST,
+                   (PassConstants){BACKGROUND_SUN, .light = sun}, 0);
+}
+
+/* A ray over the hemisphere of each pixel, and always the means of neighbours: what a surface gives
+   back of the light that it closes off is no linear function of how open it is (shade.comp), so the
+   mean of noise would be too dark. */
+static void add_occlusion(Preview *p)
+{
+    static const struct {
+        uint32_t phase;
+        ListId   in, out;
+    } means[] = {
+        {OCCLUSION_AT_SPARSE_PIXELS, LIST_SPARSE, NO_LIST},
+        {OCCLUSION_WIDER, LIST_SPARSE, NO_LIST},
+        {OCCLUSION_UPSAMPLED, LIST_ALL, LIST_REMAINING},
+        {OCCLUSION_OF_REMAINING, LIST_REMAINING, NO_LIST},
+    };
+    PassConstants constants = {RAYS_OVER_HEMISPHERE, 0, VALUE_OCCLUSION, .filters = 1};
+    if (p->job->options.no_occlusion)
+        return;
+    add_rays(p, KRS_PHASE_OCCLUSION, LIST_ALL, true, constants, 0.6f * WEIGHT_OCCLUSION);
+    for (size_t i = 0; i < sizeof means / sizeof means[0]; i++) {
+        constants.phase = means[i].phase;
+        add_pixels(p, KRS_PHASE_OCCLUSION, PIXELS_OCCLUSION, means[i].in, means[i].out, constants,
+                   0.1f * WEIGHT_OCCLUSION);
+    }
+}
+
+/* Cones first: where they are empty all of the light is seen.  Rays that go from root to root know
+   of no clearance around them, so there are no cones, and nothing is proven. */
+static void add_unproven(Preview *p, PassConstants constants, float weight)
+{
+    constants.phase = RAYS_CONES;
+    add_rays(p, KRS_PHASE_SHADOWS, p->by_roots ? NO_LIST : LIST_OF_QUARTERS, true, constants,
+             0.5f * weight);
+    constants.phase = 0;
+    add_pixels(p, KRS_PHASE_SHADOWS, PIXELS_UNPROVEN, LIST_OF_QUARTERS, LIST_REMAINING, constants,
+               0.5f * weight);
+}
+
+/* The means of what rays to a light have found. */
+static void add_means(Preview *p, PassConstants constants, float weight)
+{
+    const KrsPhase phase = KRS_PHASE_SHADOWS;
+    constants.phase      = 0;
+    add_pixels(p, phase, PIXELS_PENUMBRAE, LIST_OF_QUARTERS, NO_LIST, constants, weight / 3);
+    constants.phase = SHADOW_NEAR;
+    add_pixels(p, phase, PIXELS_SHADOW, LIST_REMAINING, LIST_WIDE, constants, weight / 3);
+    constants.phase = SHADOW_WIDE;
+    add_pixels(p, phase, PIXELS_SHADOW, LIST_WIDE, NO_LIST, constants, weight / 3);
+}
+
+/* A ray of each pixel to a point of the light; the mean of neighbours, where it has a size. */
+static void add_visibility(Preview *p, uint32_t light, uint32_t value, float weight)
+{
+    const bool    shares    = p->filters_shadows;
+    const bool    filters   = shares && p->job->view.lights[light].softness > 0;
+    PassConstants constants = {RAYS_TO_LIGHT, light, value, filters};
+    if (shares)
+        add_unproven(p, constants, 0.2f * weight);
+    add_rays(p, KRS_PHASE_SHADOWS, shares ? LIST_REMAINING : LIST_ALL, !shares, constants,
+             0.6f * weight);
+    if (filters)
+        add_means(p, constants, 0.2f * weight);
+}
+
+/* Some lights at a time; all else with the first, of which there may be none. */
+static void add_lights(Preview *p, const Kernel *shade)
+{
+    const KrsView *view  = &p->job->view;
+    const uint32_t count = (uint32_t)view->light_count;
+    const float    each  = WEIGHT_LIGHTS / (float)(count ? count : 1);
+    uint32_t       first = 0;
+    do {
+        for (uint32_t i = 0; i < LIGHTS_AT_ONCE && first + i < count; i++)
+            if (view->lights[first + i].shadow)
+                add_visibility(p, first + i, VALUE_VISIBLE + i, 0.8f * each);
+        plan_add(p->plan, (Pass){.kind      = PASS_ITEMS,
+                                 .phase     = KRS_PHASE_SHADING,
+                                 .weight    = 0.2f * each,
+                                 .kernel    = shade,
+                                 .in        = LIST_ALL,
+                                 .out       = NO_LIST,
+                                 .constants = {.light = first}});
+        first += LIGHTS_AT_ONCE;
+    } while (first < count);
+}
+
+/* ---- the plan ---- */
+
+/* Whether there is occlusion, or a light that casts shadows. */
+static bool needs_secondary(const Job *job)
+{
+    bool needed = !job->options.no_occlusion;
+    for (size_t i = 0; i < job->view.light_count; i++)
+        needed = needed || job->view.lights[i].shadow;
+    return needed;
+}
+
+/* The kernel of rays to lights and for occlusion, if it is needed. */
+static bool find_secondary(Preview *p)
+{
+    const KrsRenderOptions *options = &p->job->options;
+    if (!needs_secondary(p->job))
+        return true;
+    p->by_roots  = rendering_has_roots(p->job->rendering, options->trace);
+    p->secondary = rendering_secondary(p->job->rendering, options->schedule, p->by_roots);
+    return p->secondary != NULL;
+}
+
+bool preview_plan(Job *job, Plan *plan)
+{
+    const KrsRenderOptions *options = &job->options;
+    Preview                 p       = {.job = job, .plan = plan};
+    Primary                 primary;
+    p.filters_shadows = !options->no_upsampling && options->shadows == KRS_SHADOWS_SOFT;
+    bool shares       = !options->no_occlusion || (p.filters_shadows && needs_secondary(job));
+    plan->halo        = shares ? TILE : 0;
+    if (!primary_add_marches(job, plan, WEIGHT_MARCH, &primary) || !find_secondary(&p))
+        return false;
+    const Kernel *shade = rendering_shade(job->rendering);
+    add_background(&p);
+    primary_add_normals(plan, WEIGHT_NORMALS, &primary);
+    add_occlusion(&p);
+    add_lights(&p, shade);
+    return shade && !plan->failed;
+}

@@ -1,0 +1,147 @@
+/*
+ * job.c: what a frame says: where rays come from, lights, parameters.
+ */
+#include "runtime/tracer/job.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "runtime/tracer/methods.h"
+#include "runtime/tracer/rendering.h"
+#include "runtime/tracer/view.h"
+
+bool job_refuse(Job *job, const char *words)
+{
+    gpu_refuse(job->gpu, KRS_BAD_ARGUMENT, "%s", words);
+    return false;
+}
+
+double job_pixel(const Job *job, double distance)
+{
+    if (job->rays)
+        return job->rays->width + job->rays->spread * distance;
+    return view_pixel(&job->view.camera, job->options.height, distance);
+}
+
+const Kernel *job_pixel_kernel(const Job *job, PixelKernel kernel)
+{
+    return &job->rendering->renderer->pixels[job->rendering->rays][kernel];
+}
+
+bool job_has_beams(const Job *job)
+{
+    const uint32_t least = MOST_BEAM_STEPS / 2;
+    return !job->options.no_beams && !job->rays && job->view.camera.projection != KRS_PANORAMA &&
+           rendering_steps_within(job->rendering, least) == least;
+}
+
+uint32_t tiles_of_band(const WorkBlock *work)
+{
+    return ((work->extent[0] + TILE - 1) / TILE) * ((work->extent[1] + TILE - 1) / TILE);
+}
+
+/* How far around a hit its normal is looked for, in pixels; more than half a pixel: what is finer
+   is filtered.  Several rays of a pixel show it by themselves.  bench/minify found the number. */
+static float normal_reach(const KrsRenderOptions *options)
+{
+    bool one_sided = options->normals == KRS_NORMALS_FORWARD ||
+                     options->normals == KRS_NORMALS_ANALYTIC;
+    return options->no_filter || options->samples > 1 || one_sided ? 0.5f : 0.7f;
+}
+
+/* Points on the device are relative to the eye where single precision would show in what is nearest
+   to it. */
+static void choose_rebase_origin(Job *job, KrsFrame *frame)
+{
+    const double(*eye)[3] = (const double(*)[3]) & job->view.camera.eye;
+    float  zones[KRS_MOST_ZONES][4];
+    double nearest = 0, far = 0;
+    if (!job->rendering->program->camera_relative || krs_frame_zones(frame, zones) > 0)
+        return;
+    for (int i = 0; i < 3; i++)
+        far = fmax(far, fabs((*eye)[i]));
+    if (krs_distance(frame, eye, 1, &nearest) != KRS_OK)
+        nearest = 0;
+    if (krs_needs_rebase(far, job_pixel(job, fabs(nearest))))
+        memcpy(job->rebase_origin, *eye, sizeof job->rebase_origin);
+}
+
+static bool is_camera_relative(const Job *job)
+{
+    return job->rebase_origin[0] != 0 || job->rebase_origin[1] != 0 || job->rebase_origin[2] != 0;
+}
+
+/* A ray that begins inside of a solid sees the inner wall of the union, which no part of it knows.
+   Of a list that is not asked for each ray: some may begin anywhere. */
+static bool begins_outside(const Job *job, KrsFrame *frame)
+{
+    const KrsProgram *program   = job->rendering->program;
+    const KrsCamera  *camera    = &job->view.camera;
+    double            clearance = 0;
+    if (job->rays)
+        return false;
+    if (camera->projection != KRS_ORTHOGRAPHIC)
+        return krs_distance(frame, (const double(*)[3]) & camera->eye, 1, &clearance) == KRS_OK &&
+               clearance > 0;
+    for (int corner = 0; corner < 8; corner++) {
+        double ahead = 0;
+        for (int i = 0; i < 3; i++) {
+            double side = corner >> i & 1 ? program->high[i] : program->low[i];
+            ahead += (side - camera->eye[i]) * (camera->target[i] - camera->eye[i]);
+        }
+        if (!(ahead > 0))
+            return false;
+    }
+    return true;
+}
+
+/* What the kernels know of the frame, where points are relative to an origin. */
+static bool prepare_frame_block(Job *job)
+{
+    const KrsProgram *program = job->rendering->program;
+    KrsView           seen    = job->view;
+    double            low[3], high[3];
+    for (int i = 0; i < 3; i++) {
+        seen.camera.eye[i] -= job->rebase_origin[i];
+        seen.camera.target[i] -= job->rebase_origin[i];
+        low[i]  = program->low[i] - job->rebase_origin[i];
+        high[i] = program->high[i] - job->rebase_origin[i];
+    }
+    if (!view_prepare(&seen, low, high, job->options.width, job->options.height, &job->frame))
+        return job_refuse(job, "the camera sees nothing: its eye is at its target, or its angle or"
+                               " height is not one");
+    if (job->rays && job->rays->farthest > 0)
+        job->frame.farthest = (float)fmin(job->rays->farthest, (double)job->frame.farthest);
+    job->frame.error        = (float)job->options.error;
+    job->frame.most_steps   = job->options.most_steps;
+    job->frame.normal_reach = normal_reach(&job->options);
+    return true;
+}
+
+static RayKind kind_of_rays(const Job *job)
+{
+    return job->rays                                     ? RAYS_OF_LISTS
+           : job->view.camera.projection == KRS_PANORAMA ? RAYS_OF_PANORAMAS
+                                                         : RAYS_OF_CAMERAS;
+}
+
+bool job_read_frame(Job *job, KrsFrame *frame, const KrsCamera *camera)
+{
+    if (krs_frame_view(frame, camera || job->rays ? 0 : job->options.camera, &job->view) != KRS_OK)
+        return job_refuse(job, "the scene has no such camera");
+    if (camera)
+        job->view.camera = *camera;
+    if (job->rays && !view_of_rays(job->rays, (size_t)job->options.width * job->options.height,
+                                   &job->view.camera))
+        return job_refuse(job, "rays have finite origins, directions that are not 0, and a width "
+                               "or a spread above 0");
+    choose_rebase_origin(job, frame);
+    job->begins_outside = begins_outside(job, frame);
+    if (!prepare_frame_block(job))
+        return false;
+    memcpy(job->rendering->frame.bytes, &job->frame, sizeof job->frame);
+    return rendering_set_parameters(job->rendering, frame) &&
+           rendering_set_rays(job->rendering, kind_of_rays(job)) &&
+           (!is_camera_relative(job) ||
+            rendering_rebase(job->rendering, frame, job->rebase_origin));
+}

@@ -1,0 +1,209 @@
+/*
+ * plan.c: the passes of a plan, run one after the other.
+ */
+#include "runtime/tracer/plan.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "runtime/tracer/dispatch.h"
+#include "runtime/tracer/march.h"
+#include "runtime/tracer/methods.h"
+
+/* ---- making a plan ---- */
+
+static bool make_room(Plan *plan)
+{
+    size_t room   = plan->room ? 2 * plan->room : 32;
+    Pass  *passes = plan->count < plan->room
+                        ? plan->passes
+                        : gpu_alloc(plan->gpu, room, sizeof *passes, "plan the picture");
+    if (!passes || passes == plan->passes)
+        return passes != NULL;
+    if (plan->count)
+        memcpy(passes, plan->passes, plan->count * sizeof *passes);
+    gpu_release(plan->gpu, plan->passes);
+    plan->passes = passes;
+    plan->room   = room;
+    return true;
+}
+
+void plan_add(Plan *plan, Pass pass)
+{
+    plan->failed = plan->failed || !make_room(plan);
+    if (plan->failed)
+        return;
+    plan->passes[plan->count++] = pass;
+    plan->weight += (double)pass.weight;
+}
+
+void plan_add_march(Plan *plan, const March *march, float weight)
+{
+    March *added = &plan->marches[plan->march_count++];
+    *added       = *march;
+    plan_add(plan, (Pass){PASS_MARCH, KRS_PHASE_PRIMARY, weight, .march = added});
+}
+
+void plan_free(Plan *plan) { gpu_release(plan->gpu, plan->passes); }
+
+/* ---- lists ---- */
+
+/* The counter of a list, as in Items; 0: it has none. */
+static uint32_t counter_of(ListId list)
+{
+    switch (list) {
+    case LIST_ALL: return WORD_OF(hit_count);
+    case LIST_SPARSE: return WORD_OF(sparse);
+    case LIST_REMAINING: return WORD_OF(remaining);
+    case LIST_WIDE: return WORD_OF(wide);
+    case LIST_OF_QUARTERS: return WORD_OF(quarters);
+    case LIST_OF_BAND:
+    case NO_LIST: return 0;
+    default: return WORD_OF(of_march_group) + (list - LIST_OF_MARCH_GROUP);
+    }
+}
+
+/* Where a list begins. */
+static uint32_t list_at(const WorkBlock *work, ListId list)
+{
+    const uint32_t pixels = work->extent[0] * work->extent[1];
+    if (list < LIST_SHARED)
+        return list * pixels;
+    return list == LIST_OF_QUARTERS
+               ? LIST_SHARED * pixels + SHARED_LISTS * TILE * TILE * tiles_of_band(work)
+               : 0;
+}
+
+static Items items_of(const WorkBlock *work, ListId list)
+{
+    if (list == LIST_OF_BAND)
+        return ITEMS_KNOWN(tiles_of_band(work) * QUARTERS_OF_TILE);
+    return list == NO_LIST ? ITEMS_KNOWN(0) : (Items){1, counter_of(list), false};
+}
+
+/* ---- running it ---- */
+
+/* Rays from the pixels of a list. */
+static LaneBudget budget_of_rays(const Job *job, uint32_t count)
+{
+    LaneBudget budget = lane_budget(job);
+    budget.steps      = rendering_steps_within(job->rendering, MOST_LANE_STEPS);
+    bool loops        = job->rendering->program->loops > 0; /* which leave steps for few items */
+    while (budget.lanes * budget.items_per_lane > 64 &&
+           (loops || count / (budget.lanes * budget.items_per_lane) < 64))
+        budget.items_per_lane /= 2; /* groups enough for every core of the device */
+    return budget;
+}
+
+/* A dispatch of a pass, by what the pass tells its kernel. */
+static Dispatch dispatch_of_pass(const Job *job, const Pass *pass, const WorkBlock *work)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    Items         items   = items_of(work, pass->in);
+    control->phase        = pass->constants.phase;
+    control->light        = pass->constants.light;
+    control->value        = pass->constants.value;
+    control->filters      = pass->constants.filters;
+    control->reading      = list_at(work, pass->in);
+    LaneBudget budget     = pass->kind == PASS_RAYS ? budget_of_rays(job, items_now(job, items))
+                                                    : pixel_budget(job);
+    Dispatch   dispatch   = dispatch_of(job, pass->phase, pass->kernel, work, items, budget);
+    dispatch.clears       = counter_of(pass->out);
+    return dispatch;
+}
+
+static bool run_rays(Job *job, const Pass *pass, const WorkBlock *work)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    control->source       = ITEMS_FRESH;
+    do { /* in a chain no item is left over */
+        control->untaken       = 0;
+        Dispatch dispatch      = dispatch_of_pass(job, pass, work);
+        dispatch.clears_shared = pass->shares_anew && control->source == ITEMS_FRESH;
+        if (!dispatch_run(job, &dispatch))
+            return false;
+        control->source = ITEMS_UNTAKEN;
+    } while (control->untaken > 0);
+    return true;
+}
+
+/* Some passes, of which each goes with the one before. */
+static bool run_items(Job *job, const Pass *passes, size_t count, const WorkBlock *work)
+{
+    ControlBlock *control = job->rendering->control.bytes;
+    Dispatch      dispatches[MOST_TOGETHER];
+    control->source = ITEMS_FRESH;
+    for (size_t i = 0; i < count; i++)
+        dispatches[i] = dispatch_of_pass(job, &passes[i], work);
+    return count == 1 ? dispatch_run(job, dispatches) : dispatch_together(job, dispatches, count);
+}
+
+static bool run_passes(Job *job, const Pass *passes, size_t count, const WorkBlock *work)
+{
+    switch (passes[0].kind) {
+    case PASS_CLEAR: return march_clear(job);
+    case PASS_MARCH: return march_run(job, passes[0].march, work);
+    case PASS_ITEMS: return run_items(job, passes, count, work);
+    case PASS_RAYS: return run_rays(job, passes, work);
+    }
+    return false;
+}
+
+/* How many passes run at once from this one on. */
+static size_t count_together(const Plan *plan, size_t first)
+{
+    size_t count = 1;
+    while (first + count < plan->count && plan->passes[first + count].with_last &&
+           count < MOST_TOGETHER)
+        count++;
+    return count;
+}
+
+/* The place of ray `index` within its pixel.  Ray 0 goes through the centre; the others follow
+   the R2 sequence (multiples of the powers of the plastic number, modulo 1), which fills the
+   pixel evenly however many there are, moved by the seed. */
+static void place_ray(uint32_t index, uint64_t seed, float offset[2])
+{
+    static const double increment[2] = {0.75487766624669276, 0.56984029099805327};
+    for (int i = 0; i < 2; i++) {
+        uint64_t hash = seed * 2 + (uint64_t)i; /* splitmix64 */
+        hash          = (hash ^ hash >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+        hash          = (hash ^ hash >> 27) * UINT64_C(0x94d049bb133111eb);
+        hash ^= hash >> 31;
+        double moved = seed && index ? (double)(hash >> 11) / 9007199254740992.0 : 0;
+        double place = 0.5 + increment[i] * index + moved;
+        offset[i]    = (float)(place - floor(place));
+    }
+}
+
+/* What all kernels are told of a ray of each pixel; no list has any pixels. */
+static void begin_ray(Job *job, const Plan *plan, uint32_t index)
+{
+    ControlBlock *control   = job->rendering->control.bytes;
+    control->ray            = index;
+    control->rays           = job->options.samples;
+    control->first_ray      = index == 0;
+    control->by_march_group = plan->by_march_group;
+    control->hit_count = control->sparse = control->quarters = 0;
+    memset(control->of_march_group, 0, sizeof control->of_march_group);
+}
+
+bool plan_run(Job *job, const Plan *plan, WorkBlock *work, uint32_t index)
+{
+    const double whole = job->progress_share, start = job->progress_done;
+    double       done = 0;
+    place_ray(index, job->options.seed, work->offset);
+    begin_ray(job, plan, index);
+    for (size_t i = 0, count; i < plan->count; i += count) {
+        double weight = 0;
+        count         = count_together(plan, i);
+        for (size_t k = 0; k < count; k++)
+            weight += (double)plan->passes[i + k].weight;
+        job->progress_done  = start + whole * done / plan->weight;
+        job->progress_share = whole * weight / plan->weight;
+        if (!run_passes(job, &plan->passes[i], count, work))
+            return false;
+        done += weight;
+    }
+    return dispatch_finish(job);
+}

@@ -1,0 +1,153 @@
+/*
+ * primary.c: passes that find what the rays of pixels hit.
+ *
+ * The distance of a union costs as much as those of all components, at every step of every ray.  So
+ * in scenes of several expensive components, groups (KrsMarchGroup) are marched one after the
+ * other, the nearest first, each by a kernel that has the distance of that group alone.  A ray is in
+ * the box of few of them, and ends at the latest where it has hit another one.
+ */
+#include "runtime/tracer/primary.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "runtime/tracer/kernels.h"
+#include "runtime/tracer/methods.h"
+
+/* From the eye to the box. */
+static double distance_to(const Job *job, const KrsMarchGroup *march_group)
+{
+    double sum = 0;
+    for (int i = 0; i < 3; i++) {
+        double eye     = job->view.camera.eye[i];
+        double lateral = fmax(fmax(march_group->low[i] - eye, eye - march_group->high[i]), 0);
+        sum += lateral * lateral;
+    }
+    return sqrt(sum);
+}
+
+/* The numbers of the groups from 1, the nearest first. */
+static size_t sort_groups(const Job *job, uint32_t groups[KRS_MOST_MARCH_GROUPS])
+{
+    const KrsProgram *program = job->rendering->program;
+    double            distance[KRS_MOST_MARCH_GROUPS];
+    for (uint32_t number = 0; number < program->march_group_count; number++) {
+        double   own = distance_to(job, &program->march_groups[number]);
+        uint32_t at  = number;
+        for (; at > 0 && distance[at - 1] > own; at--) {
+            distance[at] = distance[at - 1];
+            groups[at]   = groups[at - 1];
+        }
+        distance[at] = own;
+        groups[at]   = number + 1;
+    }
+    return program->march_group_count;
+}
+
+/* The march of a group by itself.  The first one's rays find the planes, which are all around. */
+static bool march_of_group(Job *job, uint32_t group, bool first, March *march)
+{
+    KrsRendering        *r        = job->rendering;
+    const KrsMarchGroup *own      = &r->program->march_groups[group - 1];
+    KrsSchedule          schedule = rendering_schedule_of_march_group(r, job->asked, group);
+    Kernel              *kernel   = rendering_trace(r, job->options.trace, schedule, group);
+    *march                        = (March){.rays     = kernel,
+                                            .beams    = job_has_beams(job) ? kernel : NULL,
+                                            .schedule = schedule,
+                                            .flops    = own->flops,
+                                            .boxed    = true,
+                                            .windowed = !first || !rendering_knows_planes(r)};
+    memcpy(march->low, own->low, sizeof march->low);
+    memcpy(march->high, own->high, sizeof march->high);
+    return kernel != NULL;
+}
+
+static bool add_groups(Job *job, Plan *plan, float weight, Primary *primary)
+{
+    uint32_t     groups[KRS_MOST_MARCH_GROUPS];
+    const size_t count = sort_groups(job, groups);
+    const bool   own   = job->options.normals != KRS_NORMALS_ANALYTIC; /* normals */
+    for (size_t i = 0; i < count; i++) {
+        March     march;
+        OwnGroup *group = &primary->groups[i];
+        *group          = (OwnGroup){.march_group = groups[i]};
+        if (!march_of_group(job, groups[i], i == 0, &march))
+            return false;
+        plan_add_march(plan, &march, weight / (float)count);
+        if (own)
+            group->normals = rendering_normals_kernel(job->rendering, job->options.normals,
+                                                      groups[i]);
+        if (own && !group->normals)
+            return false;
+    }
+    primary->groups[count] = (OwnGroup){0, primary->normals};
+    primary->group_count   = own ? count + 1 : 0;
+    return true;
+}
+
+/* With planes apart rays are clipped to the box around what is left to march. */
+static void clip_to_rest(const Job *job, March *march)
+{
+    const KrsProgram *program = job->rendering->program;
+    march->boxed              = true;
+    for (int i = 0; i < 3; i++) {
+        march->low[i]  = program->rest_low[i] - job->rebase_origin[i];
+        march->high[i] = program->rest_high[i] - job->rebase_origin[i];
+    }
+}
+
+/* All components together, or part by part within each ray. */
+static bool add_whole(Job *job, Plan *plan, float weight)
+{
+    const KrsRenderOptions *options = &job->options;
+    KrsRendering           *r       = job->rendering;
+    const bool outside = job->begins_outside, planes = rendering_knows_planes(r) && outside;
+    const bool packed = outside && rendering_marches_packed(r, options->components, options->trace);
+    const uint32_t group = packed ? MARCH_PACKED : planes ? MARCH_WITHOUT_PLANES : 0;
+    March          march = {.schedule = options->schedule, .flops = r->program->flops};
+    march.rays           = rendering_trace(r, options->trace, options->schedule, group);
+    if (job_has_beams(job))
+        march.beams = rendering_beams(r, options->trace, options->schedule, group);
+    if (planes)
+        clip_to_rest(job, &march);
+    plan_add_march(plan, &march, weight);
+    return march.rays && (march.beams || !job_has_beams(job));
+}
+
+bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary)
+{
+    KrsRendering *r    = job->rendering;
+    *primary           = (Primary){0};
+    const bool in_turn = job->begins_outside &&
+                         rendering_marches_per_component(r, job->options.components);
+    /* Balls that are tried know of no inside. */
+    if (job->options.trace >= KRS_TRACE_BINARY && !job->begins_outside)
+        job->options.trace = KRS_TRACE_PLAIN;
+    primary->normals = rendering_normals_kernel(r, job->options.normals, 0);
+    if (!primary->normals)
+        return false;
+    if (in_turn || job_has_beams(job))
+        plan_add(plan, (Pass){.kind = PASS_CLEAR, .phase = KRS_PHASE_BEAMS});
+    return in_turn ? add_groups(job, plan, weight, primary) : add_whole(job, plan, weight);
+}
+
+void primary_add_normals(Plan *plan, float weight, const Primary *primary)
+{
+    Pass pass = {.kind   = PASS_ITEMS,
+                 .phase  = KRS_PHASE_NORMALS,
+                 .weight = weight,
+                 .kernel = primary->normals,
+                 .in     = LIST_ALL,
+                 .out    = NO_LIST};
+    /* At the surface of one group the others do not count. */
+    plan->by_march_group = primary->group_count > 0;
+    if (primary->group_count == 0)
+        plan_add(plan, pass);
+    for (size_t i = 0; i < primary->group_count; i++) {
+        pass.kernel    = primary->groups[i].normals;
+        pass.in        = LIST_OF_MARCH_GROUP + primary->groups[i].march_group;
+        pass.weight    = weight / (float)primary->group_count;
+        pass.with_last = i > 0;
+        plan_add(plan, pass);
+    }
+}

@@ -1,0 +1,21 @@
+/*
+ * query.h: points and rays that a program asks about.
+ */
+#ifndef KRS_QUERY_H
+#define KRS_QUERY_H
+
+#include "runtime/tracer/handles.h"
+
+/* ---- point_query.c ---- */
+enum { POINTS_AT_ONCE = 16384 };
+/* Makes room for that many points, and their answers. */
+bool point_query_prepare(KrsRendering *rendering);
+/* What is at the first `count` of them; with normals, or the distance alone. */
+bool point_query_run(KrsRendering *rendering, uint32_t count, bool normals);
+
+/* ---- query.c ---- */
+/* Whether what the device says of `count` rays can be used: each has missed, or has its own place
+   among the `ends` of rays. */
+bool ray_hits_are_valid(const RayHitBlock *ray_hits, uint32_t count, uint32_t ends);
+
+#endif

@@ -1,0 +1,33 @@
+/*
+ * slots.c: how much room there is in the parameter block.
+ */
+#include "runtime/tracer/slots.h"
+
+/* Aside from values of the frame that kernels may find by themselves. */
+static uint32_t slots_without_values(const KrsProgram *program)
+{
+    return program->parameter_slots + KRS_MOST_ZONES + program->camera_relative_slots + 1;
+}
+
+static uint32_t most_slots(const KrsRendering *rendering)
+{
+    return rendering->renderer->gpu.properties.limits.maxUniformBufferRange / (4 * sizeof(float));
+}
+
+uint32_t rendering_value_slots(const KrsRendering *rendering)
+{
+    const KrsProgram *program = rendering->program;
+    uint32_t          slots   = slots_without_values(program) + program->value_slots;
+    return program->camera_relative || slots <= most_slots(rendering) ? program->value_slots : 0;
+}
+
+uint32_t rendering_slots(const KrsRendering *rendering)
+{
+    uint32_t slots = slots_without_values(rendering->program) + rendering_value_slots(rendering);
+    if (slots <= most_slots(rendering))
+        return slots;
+    gpu_refuse(&rendering->renderer->gpu, KRS_NO_DEVICE,
+               "the device has no room for the scene's %u parameters",
+               rendering->program->parameter_slots);
+    return 0;
+}

@@ -1,0 +1,241 @@
+/*
+ * Tone curves, the sRGB transfer function and dithering keep the properties that their formulas
+ * promise.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "runtime/display/display.h"
+
+#define assert_near(value, expected, within) assert_true(fabs((value) - (expected)) <= (within))
+
+/* The definition of sRGB, backwards. */
+static double srgb_decode(double shown)
+{
+    return shown <= 0.04045 ? shown / 12.92 : pow((shown + 0.055) / 1.055, 2.4);
+}
+
+static void srgb_is_its_definition(void **state)
+{
+    (void)state;
+    assert_near(srgb_encode(0), 0, 0);
+    assert_near(srgb_encode(1), 1, 1e-15);
+    assert_near(srgb_encode(0.5), 0.735356983052449, 1e-12);
+    for (int i = 0; i <= 1000; i++)
+        assert_near(srgb_decode(srgb_encode(i / 1000.0)), i / 1000.0, 1e-7);
+}
+
+static double grey(ToneMap map, double value)
+{
+    double out[3];
+    tone_map_apply(map, (double[]){value, value, value}, out);
+    assert_near(out[0], out[1], 1e-4);
+    assert_near(out[1], out[2], 1e-4);
+    return out[1];
+}
+
+static void curves_rise_within_the_unit(void **state)
+{
+    (void)state;
+    for (int map = 0; map < TONE_MAP_COUNT; map++) {
+        double before = -1;
+        for (double value = 0; value < 1e6; value = value * 1.05 + 1e-3) {
+            double shown = grey((ToneMap)map, value);
+            assert_true(shown >= 0 && shown <= 1);
+            assert_true(shown >= before);
+            before = shown;
+        }
+        assert_true(before > 0.95); /* white is reached */
+    }
+}
+
+static void curves_survive_what_is_no_colour(void **state)
+{
+    (void)state;
+    const double odd[] = {NAN, INFINITY, -INFINITY, -1, 1e300, 0};
+    for (int map = 0; map < TONE_MAP_COUNT; map++)
+        for (int i = 0; i < 6; i++)
+            for (int j = 0; j < 6; j++) {
+                double out[3];
+                tone_map_apply((ToneMap)map, (double[]){odd[i], odd[j], 0.5}, out);
+                for (int k = 0; k < 3; k++)
+                    assert_true(out[k] >= 0 && out[k] <= 1);
+            }
+}
+
+static void neutral_is_its_definition(void **state)
+{
+    (void)state;
+    /* Below its shoulder a colour only loses the 4 % of a dielectric's reflection. */
+    for (int i = 10; i < 80; i++)
+        assert_near(grey(TONE_NEUTRAL, i / 100.0), i / 100.0 - 0.04, 1e-12);
+    assert_near(grey(TONE_NEUTRAL, 0.04), 6.25 * 0.04 * 0.04, 1e-12);
+    /* On the shoulder a grey is 1 - d^2 / (peak + d - s) with s = 0.76 and d = 0.24. */
+    assert_near(grey(TONE_NEUTRAL, 2.04), 1 - 0.24 * 0.24 / (2 + 0.24 - 0.76), 1e-12);
+    /* A bright saturated colour turns towards white but keeps its order. */
+    double out[3];
+    tone_map_apply(TONE_NEUTRAL, (double[]){8, 1, 0.2}, out);
+    assert_true(out[0] > out[1] && out[1] > out[2] && out[2] > 0.2);
+}
+
+static void aces_is_its_definition(void **state)
+{
+    (void)state;
+    /* For a grey the matrices (rows of sum 1, nearly) drop out: the rational curve is left. */
+    for (double v = 0.05; v < 10; v *= 1.5) {
+        double above = v * (v + 0.0245786) - 0.000090537;
+        double below = v * (0.983729 * v + 0.4329510) + 0.238081;
+        assert_near(grey(TONE_ACES, v), fmin(above / below, 1), 2e-4);
+    }
+}
+
+static void names_are_found(void **state)
+{
+    (void)state;
+    ToneMap map;
+    for (int i = 0; i < TONE_MAP_COUNT; i++) {
+        assert_true(tone_map_find(tone_map_names[i], &map));
+        assert_int_equal(map, i);
+    }
+    assert_false(tone_map_find("neutra", &map));
+    assert_false(tone_map_find("", &map));
+}
+
+enum { SIDE = 64 };
+
+/* A picture of one colour at a place of a larger one. */
+typedef struct Flat {
+    float      color[SIDE * SIDE * 4];
+    KrsPicture picture;
+    uint8_t    rgb[SIDE * SIDE * 3];
+} Flat;
+
+static void flat_develop(Flat *flat, double value, KrsWindow window, DisplayOptions options)
+{
+    for (size_t i = 0; i < (size_t)SIDE * SIDE * 4; i++)
+        flat->color[i] = i % 4 == 3 ? 1 : (float)value;
+    flat->picture = (KrsPicture){
+        .width = 256, .height = 256, .window = window, .color = flat->color};
+    display_to_srgb8(&flat->picture, &options, flat->rgb);
+}
+
+static void dithering_keeps_the_mean(void **state)
+{
+    (void)state;
+    static Flat flat;
+    for (int level = 0; level < 40; level++) {
+        double exact = 3.3 + level * 6.17; /* of 255 */
+        flat_develop(&flat, srgb_decode(exact / 255), (KrsWindow){0, 0, SIDE, SIDE},
+                     (DisplayOptions){.tone_map = TONE_NONE});
+        double sum = 0;
+        for (size_t i = 0; i < sizeof flat.rgb; i++) {
+            assert_true(flat.rgb[i] == floor(exact) || flat.rgb[i] == ceil(exact));
+            sum += flat.rgb[i];
+        }
+        assert_near(sum / sizeof flat.rgb, exact, 0.02);
+    }
+}
+
+static void black_and_white_are_clean(void **state)
+{
+    (void)state;
+    static Flat flat;
+    for (int map = 0; map < TONE_MAP_COUNT; map++) {
+        flat_develop(&flat, 0, (KrsWindow){0, 0, SIDE, SIDE},
+                     (DisplayOptions){.tone_map = (ToneMap)map});
+        for (size_t i = 0; i < sizeof flat.rgb; i++)
+            assert_int_equal(flat.rgb[i], 0);
+    }
+    flat_develop(&flat, 1, (KrsWindow){0, 0, SIDE, SIDE}, (DisplayOptions){.tone_map = TONE_NONE});
+    for (size_t i = 0; i < sizeof flat.rgb; i++)
+        assert_int_equal(flat.rgb[i], 255);
+}
+
+static void dithering_hangs_on_the_place_in_the_whole(void **state)
+{
+    (void)state;
+    static Flat    whole, part;
+    DisplayOptions options = {.tone_map = TONE_NEUTRAL};
+    flat_develop(&whole, 0.3, (KrsWindow){100, 50, SIDE, SIDE}, options);
+    flat_develop(&part, 0.3, (KrsWindow){110, 57, 20, 10}, options);
+    for (size_t y = 0; y < 10; y++)
+        assert_memory_equal(&part.rgb[3 * 20 * y], &whole.rgb[3 * (SIDE * (y + 7) + 10)], 3 * 20);
+}
+
+static void a_stop_is_a_doubling(void **state)
+{
+    (void)state;
+    static Flat brighter, doubled;
+    KrsWindow   window = {0, 0, SIDE, SIDE};
+    flat_develop(&brighter, 0.125, window, (DisplayOptions){.tone_map = TONE_ACES, .exposure = 1});
+    flat_develop(&doubled, 0.25, window, (DisplayOptions){.tone_map = TONE_ACES});
+    assert_memory_equal(brighter.rgb, doubled.rgb, sizeof doubled.rgb);
+    flat_develop(&doubled, 0.125, window, (DisplayOptions){.tone_map = TONE_ACES});
+    assert_memory_not_equal(brighter.rgb, doubled.rgb, sizeof doubled.rgb);
+}
+
+/* The byte by the definitions, the noise by floor. */
+static uint8_t defined_byte(const float color[3], DisplayOptions options, int channel, double x,
+                            double y)
+{
+    double light[3], shown[3];
+    for (int i = 0; i < 3; i++)
+        light[i] = pow(2, options.exposure) * color[i];
+    tone_map_apply(options.tone_map, light, shown);
+    double noise = 0.06711056 * (x + 47 * channel) + 0.00583715 * (y + 17 * channel);
+    noise        = 52.9829189 * (noise - floor(noise));
+    return (uint8_t)floor(255 * srgb_encode(shown[channel]) + noise - floor(noise));
+}
+
+static void bytes_are_as_defined(void **state)
+{
+    (void)state;
+    enum { WIDTH = 157, HEIGHT = 41, COUNT = 4 * WIDTH * HEIGHT };
+    static const float  odd[]   = {NAN, INFINITY, -1, 1e-42f, 1e30f, 0, 1, 0.08f, 0.76f, 0.8f};
+    static const double stops[] = {0, 1.3, -3, 140};
+    static float        color[COUNT];
+    static uint8_t      rgb[COUNT];
+    uint32_t            chance = 7;
+    for (int kind = 0; kind < 12; kind++) {
+        DisplayOptions options = {(ToneMap)(kind % TONE_MAP_COUNT), stops[kind / TONE_MAP_COUNT]};
+        for (int i = 0; i < COUNT; i++) {
+            chance       = chance * 1664525 + 1013904223;
+            double part  = (chance >> 8) / 16777216.0;
+            double light = exp(12 * part - 9) / pow(2, options.exposure);
+            color[i]     = chance % 256 < 16 ? odd[(chance >> 8) % 10] : (float)light;
+        }
+        display_to_srgb8(&(KrsPicture){.width  = 2000,
+                                       .height = 2000,
+                                       .window = {911, 1204, WIDTH, HEIGHT},
+                                       .color  = color},
+                         &options, rgb);
+        for (int k = 0; k < WIDTH * HEIGHT; k++)
+            for (int i = 0; i < 3; i++)
+                assert_int_equal(rgb[3 * k + i], defined_byte(&color[4 * k], options, i,
+                                                              911 + k % WIDTH, 1204 + k / WIDTH));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(srgb_is_its_definition),
+        cmocka_unit_test(curves_rise_within_the_unit),
+        cmocka_unit_test(curves_survive_what_is_no_colour),
+        cmocka_unit_test(neutral_is_its_definition),
+        cmocka_unit_test(aces_is_its_definition),
+        cmocka_unit_test(names_are_found),
+        cmocka_unit_test(dithering_keeps_the_mean),
+        cmocka_unit_test(black_and_white_are_clean),
+        cmocka_unit_test(dithering_hangs_on_the_place_in_the_whole),
+        cmocka_unit_test(a_stop_is_a_doubling),
+        cmocka_unit_test(bytes_are_as_defined),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
