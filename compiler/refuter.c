@@ -6,10 +6,7 @@
 #include "compiler/search.h"
 #include "compiler/shape/slope.h"
 
-bool is_wrapper(const Shape *shape)
-{
-    return shape->kind == SHAPE_PAINT || shape->kind == SHAPE_SMOOTH || shape->kind == SHAPE_EMPTY;
-}
+bool is_wrapper(const Shape *shape) { return !shape_info[shape->kind].own; }
 
 static Lowering lowering_of(Refuter *r, LoweredShapes *lowered_shapes)
 {

@@ -69,7 +69,7 @@ static const struct {
     LowerShape *lower;
     bool (*rays)(const Shape *shape);
 } rules[SHAPE_COUNT] = {
-#define SHAPE(KIND, name, parts, curved, divided, rays, step, image, restrict, rule) \
+#define SHAPE(KIND, name, parts, curved, divided, own, leaves, rays, ...) \
     {lower_##name, rays_##rays},
 #include "compiler/shape/shapes.def"
 };

@@ -84,8 +84,7 @@ Node enter_scale(Lowering *l, Node scale);
 
 /* ---- compiler/family: how each kind is lowered ---- */
 typedef Lowered LowerShape(Lowering *l, const Shape *shape, LowerContext context);
-#define SHAPE(KIND, name, parts, curved, divided, rays, step, image, restrict, rule) \
-    LowerShape lower_##name;
+#define SHAPE(KIND, name, ...) LowerShape lower_##name;
 #include "compiler/shape/shapes.def"
 
 #endif
