@@ -41,6 +41,10 @@ const Choice tone_map_choices[] = {
 #include "runtime/display/tone_maps.def"
 #undef TONE_MAP
     LAST};
+const Choice specialize_choices[]  = {
+    {"numbers", "as literals: the fastest frames"},
+    {"structure", "in the parameter block: an edit of a number compiles nothing"},
+    LAST};
 const Choice early_outs_choices[]  = {{"default", ""}, {"on", ""}, {"off", ""}, LAST};
 const Choice on_off_choices[]      = {{"on", ""}, {"off", ""}, LAST};
 const Choice on_choices[]          = {{"host", ""}, {"device", ""}, LAST};

@@ -51,6 +51,7 @@ KrsOptions scene_options(DiagnosticSink *sink, const char *path)
     const Options *options = sink->options;
     return (KrsOptions){.diagnostic   = print_diagnostic,
                         .user         = sink,
+                        .specialize   = options->specialize,
                         .gradients    = options->how.normals == KRS_NORMALS_ANALYTIC,
                         .memory_limit = options->limits.memory,
                         .root         = scene_root(options, path)};

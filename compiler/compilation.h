@@ -57,6 +57,7 @@ struct Compilation {
     Sources           sources;
     Names             names;
     Diags             diags;
+    uint32_t          number_count; /* of the text, that are apart from the shaders */
     Files             files;
     Scene             elaborated; /* its graph is the one that `lower` extends */
     Additions         additions;
@@ -74,6 +75,7 @@ static inline bool component_is_plane(const Component *component)
 /* Asserts what must hold after some passes: columns of passes.def. */
 void validate_lowered(const Compilation *c);
 void validate_simplified(const Compilation *c);
+void validate_hoisted(const Compilation *c);
 void validate_facts(const Compilation *c);
 
 /* precision.c: whether a camera may see something so closely, so far from the origin, that points

@@ -63,11 +63,19 @@ typedef struct KrsAllocator {
    text must stay valid until the next call, or until compiling has ended. */
 typedef const char *KrsLoadCallback(void *user, const char *path, size_t *length);
 
+/* Where numbers of the scene's text are in its shaders. */
+typedef enum KrsSpecialize {
+    KRS_SPECIALIZE_NUMBERS,  /* in their text, as literals: fast frames */
+    KRS_SPECIALIZE_STRUCTURE /* in the parameter block: a scene that differs in numbers alone has
+                                the same shaders, and compiles none */
+} KrsSpecialize;
+
 typedef struct KrsOptions {
     KrsAllocator           allocator;
     KrsDiagnosticCallback *diagnostic;   /* may be NULL */
     void                  *user;         /* handed to `diagnostic` */
     size_t                 memory_limit; /* bytes that compiling a scene may use; 0: 2 GiB */
+    KrsSpecialize          specialize;
     bool                   gradients;    /* compile derivatives too: for KRS_NORMALS_ANALYTIC,
                                             and as krs_gradient in the GLSL */
     /* Only files in this folder, and below it, are read; others are E0504, also behind symbolic

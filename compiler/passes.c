@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "compiler/compilation.h"
+#include "compiler/graph/hoist.h"
 
 /* ---- the front end ---- */
 
@@ -76,6 +77,11 @@ KrsStatus pass_names(Compilation *c)
 
 void print_names(Compilation *c, Text *out) { files_print_names(&c->files, out); }
 
+static bool hoists(const Compilation *c)
+{
+    return c->options->specialize == KRS_SPECIALIZE_STRUCTURE;
+}
+
 KrsStatus pass_elaborate(Compilation *c)
 {
     Graph *graph         = graph_new(&c->work);
@@ -92,8 +98,10 @@ KrsStatus pass_elaborate(Compilation *c)
                             .diags   = &c->diags,
                             .sources = &c->sources,
                             .graph   = graph,
-                            .scene   = &c->elaborated};
+                            .scene   = &c->elaborated,
+                            .hoists  = hoists(c)};
     elaborate(&e, &c->files);
+    c->number_count = e.number_count;
     return c->diags.errors ? KRS_BAD_SCENE : KRS_OK;
 }
 
@@ -117,6 +125,20 @@ KrsStatus pass_simplify(Compilation *c)
                                      &c->scene->arena);
     return KRS_OK;
 }
+
+/* Only where numbers of the text are to be apart from the shaders. */
+KrsStatus pass_hoist(Compilation *c)
+{
+    Roots *roots = &c->scene->roots;
+    if (hoists(c))
+        c->scene->graph = graph_hoist(c->scene->graph, roots->all, roots->first[ROOT_KINDS],
+                                      c->number_count + 1, &c->scene->arena);
+    return KRS_OK;
+}
+
+void print_hoist(Compilation *c, Text *out) { print_graph(c, c->scene->graph, out); }
+
+void validate_hoisted(const Compilation *c) { graph_validate(c->scene->graph, "hoist"); }
 
 void print_simplify(Compilation *c, Text *out) { print_graph(c, c->scene->graph, out); }
 

@@ -223,7 +223,7 @@ static Node frame_time(Elaboration *e, Node node, const Syntax *syntax, const ch
 Node to_number(Elaboration *e, Value value, const Syntax *syntax, const char *what)
 {
     if (value.type == VALUE_NUMBER)
-        return graph_number(e->graph, value.number);
+        return value_node(e, value);
     if (value.type == VALUE_EXPRESSION && e->graph->items[value.node].type == TYPE_FLOAT)
         return frame_time(e, value.node, syntax, what);
     type_error(e, syntax, value, "a number");

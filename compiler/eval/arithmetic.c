@@ -110,7 +110,10 @@ Node value_node(Elaboration *e, Value value)
 {
     Graph *g = e->graph;
     switch (value.type) {
-    case VALUE_NUMBER: return graph_number(g, value.number);
+    case VALUE_NUMBER:
+        return value.number_id
+                   ? graph_hoisted(g, TYPE_FLOAT, &value.number, value.number_id)
+                   : graph_number(g, value.number);
     case VALUE_BOOLEAN: return graph_bool(g, value.boolean);
     case VALUE_EXPRESSION: return value.node;
     case VALUE_LIST: break;
@@ -124,6 +127,21 @@ Node value_node(Elaboration *e, Value value)
     for (uint32_t i = 0; i < length; i++)
         elements[i] = value_node(e, value.list->items[i]);
     return graph_op(g, build[length], elements);
+}
+
+Value value_authored(Elaboration *e, Value value)
+{
+    if (e->hoists && value.type == VALUE_NUMBER)
+        value.number_id = ++e->number_count;
+    return value;
+}
+
+Value value_from(Elaboration *e, Value value, const Value *arguments, uint32_t count)
+{
+    bool authored = false;
+    for (uint32_t i = 0; i < count; i++)
+        authored = authored || (arguments[i].type == VALUE_NUMBER && arguments[i].number_id);
+    return authored ? value_authored(e, value) : value;
 }
 
 BindingTime value_time(const Elaboration *e, Value value)
@@ -171,16 +189,22 @@ Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count
     if (length && !whole)
         return map_elements(e, op, arguments, count, length, origin);
     Node nodes[MAX_OPERANDS];
-    bool constant = true;
+    bool constant = true, known = true; /* now, though the author may change it */
+    for (uint32_t i = 0; i < count; i++)
+        known = known && (arguments[i].type == VALUE_NUMBER || arguments[i].type == VALUE_BOOLEAN);
     for (uint32_t i = 0; i < count; i++) {
-        nodes[i] = value_node(e, arguments[i]);
-        constant = constant && graph_is_constant(e->graph, nodes[i]);
+        Value argument = arguments[i];
+        if (known)
+            argument.number_id = 0;
+        nodes[i] = value_node(e, argument);
+        constant = constant && e->graph->items[nodes[i]].op == OP_CONSTANT;
     }
     e->graph->here = origin->span;
     Node result    = graph_op(e->graph, op, nodes);
-    if (constant && !graph_is_constant(e->graph, result))
+    if (constant && e->graph->items[result].op != OP_CONSTANT)
         return not_finite(e, origin, op == OP_div || op == OP_mod);
-    return value_of_node(e, result);
+    Value value = value_of_node(e, result);
+    return known ? value_from(e, value, arguments, count) : value;
 }
 
 /* The common case, and the one that loops run through: numbers known now. */
@@ -204,7 +228,7 @@ static Value arithmetic(Elaboration *e, const Syntax *syntax, Value a, Value b)
     if (a.type == VALUE_NUMBER && b.type == VALUE_NUMBER &&
         fold_numbers(syntax->op, a.number, b.number, &result)) {
         if (isfinite(result))
-            return value_number(result);
+            return value_from(e, value_number(result), (Value[]){a, b}, 2);
         bool by_zero = (syntax->op == TOKEN_SLASH || syntax->op == TOKEN_PERCENT) && b.number == 0;
         return not_finite(e, syntax, by_zero);
     }
@@ -305,6 +329,8 @@ static Value compare(Elaboration *e, const Syntax *syntax, Value a, Value b)
         [TOKEN_GREATER] = OP_less,      [TOKEN_GREATER_EQUAL] = OP_less_equal,
         [TOKEN_EQUAL_EQUAL] = OP_equal, [TOKEN_NOT_EQUAL] = OP_not_equal};
     bool swap      = syntax->op == TOKEN_GREATER || syntax->op == TOKEN_GREATER_EQUAL;
+    if (a.type == VALUE_NUMBER && b.type == VALUE_NUMBER) /* what is known now is decided now */
+        a.number_id = b.number_id = 0;
     Node left      = value_node(e, swap ? b : a);
     Node right     = value_node(e, swap ? a : b);
     e->graph->here = syntax->span;
@@ -369,7 +395,7 @@ Value value_unary(Elaboration *e, const Syntax *syntax, Value a)
     if (syntax->op == TOKEN_NOT && is_truth(e, a))
         return value_of_node(e, graph_op1(e->graph, OP_not, value_node(e, a)));
     if (syntax->op == TOKEN_MINUS && a.type == VALUE_NUMBER)
-        return value_number(-a.number);
+        return value_from(e, value_number(-a.number), &a, 1);
     if (syntax->op == TOKEN_MINUS && is_numeric(e, a))
         return value_map_op(e, OP_neg, &a, 1, syntax);
     Diag *diag = diag_add(e->diags, DIAG_TYPE_MISMATCH, syntax->span, "`%s` does not go with %s",

@@ -76,6 +76,8 @@ typedef struct Elaboration {
         const Syntax **items;
         size_t         count, capacity;
     } checked;
+    bool     hoists;       /* numbers of the scene's own text are not those of the shaders' text */
+    uint32_t number_count; /* of such numbers so far */
     uint64_t steps;        /* of evaluation, so far */
     uint32_t depth, calls; /* how deep expressions and calls are nested now */
     Node     rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
@@ -126,6 +128,11 @@ Value value_unary(Elaboration *e, const Syntax *syntax, Value a);
 Value value_binary(Elaboration *e, const Syntax *syntax, Value a, Value b);
 /* `if` on a condition that is a node: both branches are there, one is chosen. */
 Value value_select(Elaboration *e, const Syntax *syntax, Value condition, Value yes, Value no);
+/* A number that the author of the scene may change without another program: it gets an identity, by
+   the order of evaluation, if shaders are to be apart from such numbers. */
+Value value_authored(Elaboration *e, Value value);
+/* A number found from others: the author may change it if one of them. */
+Value value_from(Elaboration *e, Value value, const Value *arguments, uint32_t count);
 /* An operation that works element by element, on numbers and vectors whose types go together
    (graph_op_type); `origin` is blamed for results that are not finite. */
 Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count,

@@ -287,11 +287,26 @@ static Value evaluate_let(Elaboration *e, const Environment *env, const Syntax *
     return evaluate(e, &inner, syntax->children[1]);
 }
 
+/* A number of a text: that of the scene may be changed by its author, that of the library not. */
+static Value written_number(Elaboration *e, double number, const Syntax *syntax)
+{
+    Value value = value_number(number);
+    return e->sources->items[syntax->span.source].library ? value : value_authored(e, value);
+}
+
+static Value written_colour(Elaboration *e, const Syntax *syntax)
+{
+    Value *items = arena_new_array(e->arena, Value, 3);
+    for (int i = 0; i < 3; i++)
+        items[i] = written_number(e, syntax->number[i], syntax);
+    return value_list(e, items, 3);
+}
+
 static Value evaluate_inner(Elaboration *e, const Environment *env, const Syntax *syntax)
 {
     switch (syntax->kind) {
-    case SYNTAX_NUMBER: return value_number(syntax->number[0]);
-    case SYNTAX_COLOUR: return value_vector(e, syntax->number, 3);
+    case SYNTAX_NUMBER: return written_number(e, syntax->number[0], syntax);
+    case SYNTAX_COLOUR: return written_colour(e, syntax);
     case SYNTAX_STRING: return (Value){.type = VALUE_STRING, .string = syntax->name};
     case SYNTAX_BOOLEAN: return value_boolean(syntax->number[0] != 0);
     case SYNTAX_NAME: return evaluate_name(e, env, syntax);

@@ -34,7 +34,8 @@ static double unit_random(double seed, uint64_t stream)
 Value builtin_random(Elaboration *e, Call *call)
 {
     double seed = 0;
-    return want_constant(e, call, 0, &seed) ? value_number(unit_random(seed, 0)) : value_error();
+    return want_constant(e, call, 0, &seed) ? value_authored(e, value_number(unit_random(seed, 0)))
+                                            : value_error();
 }
 
 /* Marsaglia (1972): a point of the unit disc gives a point of the sphere by products and roots
@@ -52,7 +53,11 @@ Value builtin_random_direction(Elaboration *e, Call *call)
         stream += 2;
     } while (s >= 1);
     double root = 2 * sqrt(1 - s);
-    return value_vector(e, (double[]){a * root, 1 - 2 * s, b * root}, 3);
+    Value *items = arena_new_array(e->arena, Value, 3);
+    items[0]     = value_authored(e, value_number(a * root));
+    items[1]     = value_authored(e, value_number(1 - 2 * s));
+    items[2]     = value_authored(e, value_number(b * root));
+    return value_list(e, items, 3);
 }
 
 /* ---- noise ---- */

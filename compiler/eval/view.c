@@ -85,14 +85,14 @@ static void set_size(Elaboration *e, const Syntax *size, Value value)
 {
     Node node = value.type == VALUE_LIST ? value_node(e, value) : NODE_NONE;
     bool good = node != NODE_NONE && e->graph->items[node].type == TYPE_VEC2 &&
-                graph_is_constant(e->graph, node);
+                value.list->items[0].type == VALUE_NUMBER && value.list->items[1].type == VALUE_NUMBER;
     for (int i = 0; good && i < 2; i++) {
-        double side = e->graph->items[node].number[i];
+        double side = value.list->items[i].number;
         good        = side >= 1 && side <= 16384 && side == floor(side);
     }
     if (good) {
-        e->scene->image.width  = (uint32_t)e->graph->items[node].number[0];
-        e->scene->image.height = (uint32_t)e->graph->items[node].number[1];
+        e->scene->image.width  = (uint32_t)value.list->items[0].number;
+        e->scene->image.height = (uint32_t)value.list->items[1].number;
     } else if (value.type != VALUE_ERROR) {
         Diag *diag = diag_add(e->diags, DIAG_BAD_VALUE, size->span,
                               "`size` of the image must be two whole numbers from 1 to 16384");

@@ -270,6 +270,13 @@ Node graph_parameter(Graph *graph, uint32_t slot, GraphType type)
     return node_intern(graph, e);
 }
 
+Node graph_hoisted(Graph *graph, GraphType type, const double *numbers, uint32_t index)
+{
+    Expr e = {.op = OP_NUMBER, .type = (uint8_t)type, .time = TIME_FRAME, .index = index};
+    memcpy(e.number, numbers, components(type) * sizeof *numbers);
+    return node_intern(graph, e);
+}
+
 Node graph_leaf(Graph *graph, Op op)
 {
     uint8_t type = (uint8_t)op_info[op].type;
@@ -279,7 +286,7 @@ Node graph_leaf(Graph *graph, Op op)
 
 bool graph_is_constant(const Graph *graph, Node node)
 {
-    return graph->items[node].op == OP_CONSTANT;
+    return graph->items[node].op == OP_CONSTANT || graph->items[node].op == OP_NUMBER;
 }
 
 /* ---- operations ---- */
@@ -425,6 +432,7 @@ static const char *node_mistake(const Graph *graph, Node node)
     GraphType   types[MAX_OPERANDS] = {0};
     uint8_t     latest              = e->op == OP_CONSTANT    ? TIME_COMPILE
                                       : e->op == OP_PARAMETER ? TIME_FRAME
+                                      : e->op == OP_NUMBER    ? TIME_FRAME
                                       : e->operand_count == 0 ? TIME_POINT
                                                               : TIME_FRAME;
     if (e->op >= OP_COUNT || e->operand_count != op_arity(e->op))

@@ -97,6 +97,8 @@ Node graph_vec3(Graph *graph, double x, double y, double z);
 Node graph_bool(Graph *graph, bool value);
 Node graph_uint(Graph *graph, uint32_t value);
 Node graph_parameter(Graph *graph, uint32_t slot, GraphType type);
+/* A number of the frame that is known now, and told apart from others by its index alone. */
+Node graph_hoisted(Graph *graph, GraphType type, const double *numbers, uint32_t index);
 Node graph_leaf(Graph *graph, Op op); /* one whose type is the same everywhere */
 
 /* An operation on as many operands as its row says (asserted, with their types).  Operands that

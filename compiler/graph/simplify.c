@@ -361,6 +361,8 @@ static Node rebuild_leaf(Graph *graph, const Expr *e)
 {
     if (e->op == OP_CONSTANT)
         return graph_constant(graph, e->type, e->number);
+    if (e->op == OP_NUMBER)
+        return graph_hoisted(graph, e->type, e->number, e->index);
     return e->op == OP_PARAMETER ? graph_parameter(graph, e->index, e->type)
                                  : graph_leaf(graph, e->op);
 }

@@ -1,0 +1,79 @@
+/*
+ * hoist.c: constants that change with the numbers of a scene leave the text of its shaders.
+ *
+ * Numbers that the author wrote are OP_NUMBER from the beginning, so that no rule looks at them.
+ * What the compiler derives from them, such as the corners of boxes, is found here: it is a
+ * constant like those of formulas.  The latter are mostly 0, 1, 2 and one half, which stay, since
+ * literals cost nothing.
+ */
+#include "compiler/graph/hoist.h"
+
+#include <math.h>
+
+#include "compiler/graph/evaluate.h"
+
+/* Farther than anything is: an absence, and no number of the scene. */
+#define NOWHERE 1e18
+
+static bool is_of_formulas(double number)
+{
+    double size = fabs(number);
+    return size == 0 || size == 0.5 || size == 1 || size == 2 || size >= NOWHERE;
+}
+
+/* Of what is found at points; the exponent of a power decides how it is computed. */
+static bool hoists(const Expr *user, const Expr *operand)
+{
+    return operand->op == OP_CONSTANT && operand->type <= TYPE_VEC4 && user->time == TIME_POINT &&
+           user->op != OP_pow &&
+           !(operand->type == TYPE_FLOAT && is_of_formulas(operand->number[0]));
+}
+
+typedef struct Hoist {
+    const Graph *old;
+    Graph       *graph;
+    Node        *nodes; /* of the copy, by those of the original */
+    uint32_t     next;
+} Hoist;
+
+static Node copy_leaf(Hoist *h, const Expr *e)
+{
+    switch ((Op)e->op) {
+    case OP_CONSTANT: return graph_constant(h->graph, e->type, e->number);
+    case OP_NUMBER: return graph_hoisted(h->graph, e->type, e->number, e->index);
+    case OP_PARAMETER: return graph_parameter(h->graph, e->index, e->type);
+    default: return graph_leaf(h->graph, e->op);
+    }
+}
+
+static Node copy_operation(Hoist *h, const Expr *e)
+{
+    Node operands[MAX_OPERANDS];
+    for (int i = 0; i < e->operand_count; i++) {
+        const Expr *operand = &h->old->items[e->operands[i]];
+        operands[i]         = hoists(e, operand)
+                                  ? graph_hoisted(h->graph, operand->type, operand->number, h->next++)
+                                  : h->nodes[e->operands[i]];
+    }
+    return e->op == OP_COMPONENT ? graph_component(h->graph, operands[0], e->index)
+                                 : graph_op(h->graph, e->op, operands);
+}
+
+Graph *graph_hoist(const Graph *old, Node *roots, size_t root_count, uint32_t first, Arena *arena)
+{
+    Tape  tape = tape_new(old, roots, root_count, arena);
+    Hoist h    = {old, graph_new(arena), arena_new_array(arena, Node, old->count + 1), first};
+    for (size_t i = 0; i < tape.count; i++) {
+        Node        node = tape.nodes[i];
+        const Expr *e    = &old->items[node];
+        h.graph->here    = e->span;
+        h.nodes[node]    = e->operand_count ? copy_operation(&h, e) : copy_leaf(&h, e);
+    }
+    for (size_t i = 0; i < root_count; i++)
+        roots[i] = h.nodes[roots[i]];
+    h.graph->parameters.count = 0;
+    for (size_t i = 0; i < old->parameters.count; i++)
+        array_push(arena, &h.graph->parameters, old->parameters.items[i]);
+    h.graph->here = (Span){0};
+    return h.graph;
+}
