@@ -1,5 +1,5 @@
 /*
- * loader.c: where the texts of a scene and of the files that it uses come from.
+ * loader.c: reads the texts of a scene and of the files that it uses.
  */
 #include "compiler/base/loader.h"
 
@@ -15,21 +15,21 @@
 #include "compiler/base/beneath.h"
 #include "compiler/base/source.h"
 
-/* The bytes of "folder/" before the name. */
+/* The length of a path's folder with its last slash, in bytes. */
 static size_t folder_length(const char *path)
 {
     const char *slash = strrchr(path, '/');
     return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
-/* Takes "folder/../" and "./" out of a path, so that a file has one name. */
+/* A file must have one name only, since it is known by its path. */
 void path_simplify(char *path)
 {
     char *to = path;
     for (const char *from = path; *from;) {
         size_t length = strcspn(from, "/");
         bool   last   = from[length] == '\0';
-        char  *back   = to > path ? to - 1 : NULL; /* the slash behind the folder before */
+        char  *back   = to > path ? to - 1 : NULL; /* goes to the start of the folder before */
         while (back && back > path && back[-1] != '/')
             back--;
         bool folder = back && !(to - back == 3 && strncmp(back, "../", 3) == 0) && back < to - 1;
@@ -44,7 +44,7 @@ void path_simplify(char *path)
     *to = '\0';
 }
 
-/* Where the folder of the scene is, as seen from the root: "" or "a/b/"; NULL: not in it. */
+/* The path from the root to the scene's folder: "" or "a/b/"; NULL if that is not in the root. */
 static char *find_inside(const char *root, const char *scene)
 {
     size_t length = folder_length(scene);
@@ -89,8 +89,9 @@ void loader_close(Loader *loader)
     *loader = (Loader){.root = -1};
 }
 
-/* The path from the root to a file whose path is given like the scene's: up from the scene's folder
-   to where both paths part, and down again.  NULL: it is not known to be in there, or no memory. */
+/* The path from the root to a file.  `path` begins as the scene's path does.  The result goes up
+   from the scene's folder to the last folder that both paths share, and down to the file.  NULL if
+   the file may be outside of the root, or if there is no memory. */
 static char *path_from_root(const Loader *loader, const char *path)
 {
     const char *folder = loader->scene;
@@ -116,7 +117,7 @@ static char *path_from_root(const Loader *loader, const char *path)
     return whole;
 }
 
-/* Takes over the path from the root; NULL: there is none. */
+/* Reads a file by its path from the root, which is freed here.  NULL: the file is outside. */
 static Loaded read_confined(const Loader *loader, char *path)
 {
     struct stat about;
