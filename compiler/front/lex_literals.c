@@ -15,8 +15,8 @@ static void skip_digits(Lexer *lexer)
         lexer->at++;
 }
 
-/* The value of a decimal number.  strtod gets its digits and an exponent.  It gets no decimal point,
-   since the locale decides which character that is. */
+/* The value of a decimal number.  strtod gets its digits and an exponent, but no decimal point:
+   which character that is depends on the locale. */
 static double read_decimal(Lexer *lexer, uint32_t start)
 {
     Text      *digits   = &lexer->scratch;
