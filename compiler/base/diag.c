@@ -105,7 +105,8 @@ static bool comes_after(const Diag *a, const Diag *b)
     return a->span.end > b->span.end;
 }
 
-/* Insertion sort: there are at most 40 diagnostics, and those at one place must keep their order. */
+/* Insertion sort: there are at most 40 diagnostics, and those at one place must keep their
+   order. */
 void diags_sort(Diags *diags)
 {
     for (size_t i = 1; i < diags->count; i++) {

@@ -262,7 +262,8 @@ static void draw_line(Excerpt *excerpt, Mark *first)
     }
 }
 
-/* The next mark to draw in a file: the first of those on the topmost line that has undrawn marks. */
+/* The next mark to draw in a file: the first of those on the topmost line that has undrawn
+   marks. */
 static Mark *next_mark(const Excerpt *excerpt, uint32_t source)
 {
     Mark *next = NULL;
@@ -293,7 +294,8 @@ static void draw_file(Excerpt *excerpt, const Mark *named, const char *arrow)
     }
 }
 
-/* Writes a note or help below the source lines, with quoted code behind it unless `code` is NULL. */
+/* Writes a note or help below the source lines, with quoted code behind it unless `code` is
+   NULL. */
 static void draw_remark(const Excerpt *excerpt, const char *kind, const char *text,
                         const char *separator, const char *code)
 {

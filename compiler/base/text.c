@@ -57,7 +57,8 @@ void text_format(Text *text, const char *format, ...)
     va_end(arguments);
 }
 
-/* Adds a number that printf has written, with a point in place of the locale's decimal separator. */
+/* Adds a number that printf has written, with a point in place of the locale's decimal
+   separator. */
 static void add_with_point(Text *text, const char *printed)
 {
     bool inside = false;

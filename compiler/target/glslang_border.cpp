@@ -1,6 +1,6 @@
 /*
  * glslang_border.cpp: calls the C interface of glslang and SPIRV-Tools, and catches their
- * exceptions. It is the only file in C++.
+ * exceptions.  It is the only file in C++.
  */
 #include "compiler/target/glslang_border.h"
 
