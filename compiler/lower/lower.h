@@ -10,8 +10,8 @@
 /* The roots of a component's graph: what is computed at a point. */
 typedef enum ComponentRoot {
     ROOT_DISTANCE, /* FLOAT, divided by the slope of the shape, so that it is a safe step */
-#define MATERIAL(name, type, otherwise, nothing, low, high, blends) ROOT_##name,
-#define IDENTITY(name, type, shown, otherwise, nothing, blends)     ROOT_##name,
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) ROOT_##name,
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends)            ROOT_##name,
 #include "compiler/shape/surface.def"
     ROOT_NORMAL, /* VEC3, unit: OP_NORMAL, unless smooth mirrors change it */
     ROOT_COUNT
@@ -23,7 +23,8 @@ typedef struct RootInfo {
     GraphType   type, shown;        /* of the node; in shaders */
     double      otherwise, nothing; /* where no shape sets it; in a scene without components */
     bool        material;           /* it is a property of materials */
-    double      low, high;          /* of a property: its range */
+    double      low, high;          /* of a property: its range in pictures */
+    bool        limited;            /* the range holds for answers to queries, too */
 } RootInfo;
 extern const RootInfo root_info[ROOT_COUNT];
 /* The value of a root where no material and no shape sets it. */

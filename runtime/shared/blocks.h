@@ -253,24 +253,17 @@ static_assert(sizeof(ListedRayBlock) == 32, "std430");
 
 /* ---- Points and rays that a program asks about ---- */
 
-/* Of point_query.comp, std430. */
+/* Where set 1 has them.  Frame, control block and what lanes have taken are where they are for
+   pictures (frame.glsl). */
+CONSTANT(POINTS_BINDING, 1);
+CONSTANT(ANSWERS_BINDING, 2);
+CONSTANT(RAY_HITS_BINDING, 3);
+CONSTANT(QUERY_RAYS_BINDING, 5);
+
+/* Of point_query.comp, std430; answers.h has what it says. */
 struct Point {
     vec3  point;
     float gap_a;
-};
-
-struct Answer {
-    vec3  color;
-    float distance;
-    vec3  emission;
-    float surface_distance;
-    float roughness, metallic;
-    uint  component, level;
-    uint  instance, gap_a, gap_b, gap_c;
-    vec3  normal; /* the one to light */
-    float gap_d;
-    vec3  gradient; /* of the distance, unit */
-    float gap_e;
 };
 
 /* Of query.comp, std430. */
@@ -300,8 +293,6 @@ struct RayHit {
 #ifdef __STDC_VERSION__
 typedef struct Point PointBlock;
 static_assert(sizeof(PointBlock) == 16, "std430");
-typedef struct Answer AnswerBlock;
-static_assert(sizeof(AnswerBlock) == 96, "std430");
 typedef struct QueryRay QueryRayBlock;
 static_assert(sizeof(QueryRayBlock) == 32, "std430");
 typedef struct RayHit RayHitBlock;
