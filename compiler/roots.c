@@ -107,7 +107,7 @@ static void lower_planes(Compilation *c, Graph *g)
     }
 }
 
-/* Whether rays march by the roots of polynomials and there are no sequences or inversions.  Then
+/* Whether rays march by the roots of polynomials and there are no mirrors or inversions.  Then
    derivatives cost less than differences of the distance, and a polynomial's distance is only a
    bound, which is no more accurate than its series. */
 static bool is_algebraic(const Scene *s, const Roots *roots)

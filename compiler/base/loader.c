@@ -45,37 +45,37 @@ void path_simplify(char *path)
 }
 
 /* The path from the root to the scene's folder: "" or "a/b/"; NULL if that is not in the root. */
-static char *find_inside(const char *root, const char *scene)
+static char *find_scene_folder(const char *root, const char *scene)
 {
     size_t length = folder_length(scene);
     char  *folder = length ? strndup(scene, length) : strdup(".");
     char  *whole = realpath(root, NULL), *real = folder ? realpath(folder, NULL) : NULL;
-    char  *inside = NULL;
-    size_t start  = whole && strcmp(whole, "/") != 0 ? strlen(whole) : 0;
+    char  *found = NULL;
+    size_t start = whole && strcmp(whole, "/") != 0 ? strlen(whole) : 0;
     if (whole && real && strncmp(real, whole, start) == 0 &&
         (real[start] == '/' || real[start] == '\0')) {
         const char *rest = real + start + (real[start] == '/');
-        if (asprintf(&inside, "%s%s", rest, *rest ? "/" : "") < 0)
-            inside = NULL;
+        if (asprintf(&found, "%s%s", rest, *rest ? "/" : "") < 0)
+            found = NULL;
     }
     free(folder);
     free(whole);
     free(real);
-    return inside;
+    return found;
 }
 
 bool loader_open(Loader *loader, const char *root, const char *scene)
 {
-    loader->confined = root != NULL;
-    loader->root     = -1;
-    loader->scene    = strdup(scene);
-    loader->inside   = NULL;
+    loader->confined     = root != NULL;
+    loader->root         = -1;
+    loader->scene        = strdup(scene);
+    loader->scene_folder = NULL;
     if (!loader->scene)
         return false;
     path_simplify(loader->scene);
     if (root) {
-        loader->root   = open(root, O_PATH | O_DIRECTORY | O_CLOEXEC);
-        loader->inside = find_inside(root, scene);
+        loader->root         = open(root, O_PATH | O_DIRECTORY | O_CLOEXEC);
+        loader->scene_folder = find_scene_folder(root, scene);
     }
     return true;
 }
@@ -85,7 +85,7 @@ void loader_close(Loader *loader)
     if (loader->root >= 0)
         close(loader->root);
     free(loader->scene);
-    free(loader->inside);
+    free(loader->scene_folder);
     *loader = (Loader){.root = -1};
 }
 
@@ -97,7 +97,7 @@ static char *path_from_root(const Loader *loader, const char *path)
     const char *folder = loader->scene;
     size_t      length = folder_length(folder), common = 0;
     char       *whole = NULL, *up;
-    if (!loader->inside || (path[0] == '/') != (folder[0] == '/' && length > 0))
+    if (!loader->scene_folder || (path[0] == '/') != (folder[0] == '/' && length > 0))
         return NULL;
     for (size_t i = 0; i < length && path[i] == folder[i]; i++)
         if (path[i] == '/')
@@ -111,7 +111,7 @@ static char *path_from_root(const Loader *loader, const char *path)
     for (size_t i = 0; i < levels; i++)
         memcpy(up + 3 * i, "../", 3);
     up[3 * levels] = '\0';
-    if (asprintf(&whole, "%s%s%s", loader->inside, up, path + common) < 0)
+    if (asprintf(&whole, "%s%s%s", loader->scene_folder, up, path + common) < 0)
         whole = NULL;
     free(up);
     return whole;
@@ -144,12 +144,13 @@ static Loaded read_file(const char *path)
 
 Loaded loader_read_scene(const Loader *loader, const char *path)
 {
-    char *inside = NULL;
+    char *whole = NULL;
     if (!loader->confined)
         return read_file(path);
-    if (loader->inside && asprintf(&inside, "%s%s", loader->inside, path + folder_length(path)) < 0)
-        inside = NULL;
-    return read_confined(loader, inside);
+    if (loader->scene_folder &&
+        asprintf(&whole, "%s%s", loader->scene_folder, path + folder_length(path)) < 0)
+        whole = NULL;
+    return read_confined(loader, whole);
 }
 
 Loaded loader_read(const Loader *loader, const char *path)

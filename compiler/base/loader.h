@@ -17,7 +17,7 @@ typedef struct Loader {
     bool          confined; /* only files below the folder `root` may be read */
     int           root;     /* descriptor of that folder; -1 where it could not be opened */
     char         *scene;    /* the scene's path, simplified; paths of used files begin like it */
-    char         *inside;   /* path from the root to the scene's folder; NULL: not in the root */
+    char         *scene_folder; /* path from the root to its folder; NULL: it is not in there */
 } Loader;
 
 typedef struct Loaded {

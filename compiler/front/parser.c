@@ -128,10 +128,10 @@ static void fail(Parser *p) { p->failed = true; }
 
 Diag *expected(Parser *p, const char *what)
 {
-    const Token *found = token_here(p);
-    bool         said  = p->failed || found->kind == TOKEN_ERROR; /* reported by the lexer */
-    Diag        *diag  = &p->diags->scrap;
-    if (!said) {
+    const Token *found    = token_here(p);
+    bool         reported = p->failed || found->kind == TOKEN_ERROR; /* by the lexer */
+    Diag        *diag     = &p->diags->scrap;
+    if (!reported) {
         const char *text = describe(p, found);
         diag             = report_at(p, DIAG_UNEXPECTED_TOKEN, span_here(p),
                                      diag_text(p->diags, "expected %s, found %s", what, text));

@@ -186,13 +186,13 @@ Node map_chain_hull(Lowering *l, const MapChain *chain, const Map *map, Ball *ba
 static Ball ball_about(Lowering *l, Node centre, double radius)
 {
     Ball   ball;
-    double leave = 0;
+    double spread = 0;
     for (uint32_t i = 0; i < 3; i++) {
         Range range    = frame_range(l, centre, i);
         ball.centre[i] = 0.5 * (range.low + range.high);
-        leave          = hypot(leave, 0.5 * (range.high - range.low));
+        spread         = hypot(spread, 0.5 * (range.high - range.low));
     }
-    ball.radius = isfinite(leave) ? radius + leave : HUGE_VAL;
+    ball.radius = isfinite(spread) ? radius + spread : HUGE_VAL;
     return ball;
 }
 
