@@ -41,7 +41,7 @@ const Choice tone_map_choices[] = {
 #include "runtime/display/tone_maps.def"
 #undef TONE_MAP
     LAST};
-const Choice specialize_choices[]  = {
+const Choice specialize_choices[] = {
     {"numbers", "as literals: the fastest frames"},
     {"structure", "in the parameter block: an edit of a number compiles nothing"},
     LAST};

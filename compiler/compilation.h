@@ -58,7 +58,7 @@ struct Compilation {
     Sources           sources;
     Names             names;
     Diags             diags;
-    uint32_t          number_count; /* of the text, that are apart from the shaders */
+    BoxNodes          box_nodes; /* where numbers are apart from the shaders */
     Files             files;
     Scene             elaborated; /* its graph is extended by the pass `lower` */
     Additions         additions;

@@ -75,7 +75,7 @@ typedef struct KrsOptions {
     void                  *user;         /* handed to `diagnostic` */
     size_t                 memory_limit; /* bytes that compiling a scene may use; 0: 2 GiB */
     KrsSpecialize          specialize;
-    bool                   gradients;    /* compile derivatives too: for KRS_NORMALS_ANALYTIC,
+    bool                   gradients; /* compile derivatives too: for KRS_NORMALS_ANALYTIC,
                                             and as krs_gradient in the GLSL */
     /* Only files in this folder, and below it, are read; others are E0504, also behind symbolic
        links.  That includes the scene itself in krs_compile_file.  With krs_compile_text, `name`

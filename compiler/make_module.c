@@ -32,7 +32,9 @@ static Sources retain_lines(const Sources *from, const Graph *graph, Arena *aren
 static Text print_promised(Compilation *c, bool shares)
 {
     KrsScene        *scene = c->scene;
-    const KrsVariant cards = {.many_threads = true, .shares = shares};
+    const KrsVariant cards = {.many_threads = true,
+                              .shares       = shares,
+                              .values       = c->options->specialize == KRS_SPECIALIZE_STRUCTURE};
     KrsFunction      promised[KRS_MOST_PROMISED];
     size_t           count = krs_promised_functions(scene, cards.many_threads, promised);
     Text             glsl  = {.arena = &c->scratch};
@@ -66,6 +68,7 @@ KrsStatus pass_emit(Compilation *c)
                                                     ? roots_of(roots, ROOTS_CAMERA_RELATIVE).items
                                                     : NULL,
                              .boxes           = boxes,
+                             .box_nodes       = c->box_nodes,
                              .march_groups    = program->march_group_count ? c->march_groups : NULL,
                              .is_plane        = program->planes ? is_plane : NULL,
                              .has_slopes      = scene->slope_count > 0,

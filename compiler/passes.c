@@ -101,7 +101,6 @@ KrsStatus pass_elaborate(Compilation *c)
                             .scene   = &c->elaborated,
                             .hoists  = hoists(c)};
     elaborate(&e, &c->files);
-    c->number_count = e.number_count;
     return c->diags.errors ? KRS_BAD_SCENE : KRS_OK;
 }
 
@@ -130,9 +129,19 @@ KrsStatus pass_simplify(Compilation *c)
 KrsStatus pass_hoist(Compilation *c)
 {
     Roots *roots = &c->scene->roots;
-    if (hoists(c))
-        c->scene->graph = graph_hoist(c->scene->graph, roots->all, roots->first[ROOT_KINDS],
-                                      c->number_count + 1, &c->scene->arena);
+    Arena *arena = &c->scene->arena;
+    if (!hoists(c))
+        return KRS_OK;
+    /* Apart from what is counted in the text, and then in the graph. */
+    const uint32_t of_graph = 1u << 30, of_boxes = 1u << 31;
+    Graph *graph = graph_hoist(c->scene->graph, roots->all, roots->first[ROOT_KINDS], of_graph,
+                               arena);
+    const size_t count = c->elaborated.components.count;
+    Box         *boxes = arena_new_array(&c->scratch, Box, count + 1);
+    for (size_t i = 0; i < count; i++)
+        boxes[i] = c->elaborated.components.items[i].shape->box;
+    c->box_nodes    = module_hoist_boxes(graph, boxes, count, of_boxes, arena);
+    c->scene->graph = graph;
     return KRS_OK;
 }
 

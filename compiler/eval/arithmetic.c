@@ -111,9 +111,8 @@ Node value_node(Elaboration *e, Value value)
     Graph *g = e->graph;
     switch (value.type) {
     case VALUE_NUMBER:
-        return value.number_id
-                   ? graph_hoisted(g, TYPE_FLOAT, &value.number, value.number_id)
-                   : graph_number(g, value.number);
+        return value.number_id ? graph_hoisted(g, TYPE_FLOAT, &value.number, value.number_id)
+                               : graph_number(g, value.number);
     case VALUE_BOOLEAN: return graph_bool(g, value.boolean);
     case VALUE_EXPRESSION: return value.node;
     case VALUE_LIST: break;
@@ -328,7 +327,7 @@ static Value compare(Elaboration *e, const Syntax *syntax, Value a, Value b)
         [TOKEN_LESS] = OP_less,         [TOKEN_LESS_EQUAL] = OP_less_equal,
         [TOKEN_GREATER] = OP_less,      [TOKEN_GREATER_EQUAL] = OP_less_equal,
         [TOKEN_EQUAL_EQUAL] = OP_equal, [TOKEN_NOT_EQUAL] = OP_not_equal};
-    bool swap      = syntax->op == TOKEN_GREATER || syntax->op == TOKEN_GREATER_EQUAL;
+    bool swap = syntax->op == TOKEN_GREATER || syntax->op == TOKEN_GREATER_EQUAL;
     if (a.type == VALUE_NUMBER && b.type == VALUE_NUMBER) /* what is known now is decided now */
         a.number_id = b.number_id = 0;
     Node left      = value_node(e, swap ? b : a);

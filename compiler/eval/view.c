@@ -85,7 +85,8 @@ static void set_size(Elaboration *e, const Syntax *size, Value value)
 {
     Node node = value.type == VALUE_LIST ? value_node(e, value) : NODE_NONE;
     bool good = node != NODE_NONE && e->graph->items[node].type == TYPE_VEC2 &&
-                value.list->items[0].type == VALUE_NUMBER && value.list->items[1].type == VALUE_NUMBER;
+                value.list->items[0].type == VALUE_NUMBER &&
+                value.list->items[1].type == VALUE_NUMBER;
     for (int i = 0; good && i < 2; i++) {
         double side = value.list->items[i].number;
         good        = side >= 1 && side <= 16384 && side == floor(side);

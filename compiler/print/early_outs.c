@@ -131,17 +131,17 @@ static void emit_guarded_component(Emitter *e, uint32_t component, bool first)
     }
     Text least = {.arena = e->scratch}, nearer = least;
     text_format(&least, "min(d, %s)", call);
-    double centre[3], half[3];
-    box_centre(box, centre);
-    for (int i = 0; i < 3; i++)
-        half[i] = (0.5 + 1e-6) * (box.axis[i].high - box.axis[i].low) + 1e-6 * fabs(centre[i]);
+    double      centre[3], half[3];
+    const Node *nodes = e->module->box_nodes.around;
+    module_box_vectors(box, centre, half);
     if (!box_is_finite(box)) {
         text_format(e->out, "    d = %s;\n", least.bytes);
         return;
     }
     emit_call(e, "krs_box_distance", TYPE_VEC3, 3);
-    text_format(&nearer, "krs_box_distance(p, %s, %s) < max(d, 1e-30)", emit_vector(e, centre),
-                emit_vector(e, half));
+    text_format(&nearer, "krs_box_distance(p, %s, %s) < max(d, 1e-30)",
+                emit_box_vector(e, nodes, (size_t)2 * component, centre),
+                emit_box_vector(e, nodes, (size_t)2 * component + 1, half));
     emit_phrase(e, PHRASE_SET_IF, (Operands){nearer.bytes, "d", least.bytes});
 }
 

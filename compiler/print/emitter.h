@@ -112,6 +112,8 @@ void emit_comment(Emitter *e, Span span);
 const char *emit_constant(Emitter *e, const Expr *constant);
 const char *emit_number(Emitter *e, double number);
 const char *emit_vector(Emitter *e, const double v[3]);
+/* A vector of a box: the global of node `index`, or a literal where there are no nodes. */
+const char *emit_box_vector(Emitter *e, const Node *nodes, size_t index, const double v[3]);
 /* An expression that is a whole statement needs no parentheses around it. */
 const char *emit_bare(Emitter *e, const char *text);
 /* A count, or the number of something. */

@@ -19,20 +19,6 @@ void emit_plane_cosine(Emitter *e) { emit_plane(e, emit_planes(e)[1]); }
 
 /* ---- parts ---- */
 
-/* Beyond so many, neighbours share a part. */
-enum { MOST_SCENE_PARTS = 64 };
-
-uint32_t module_scene_part_count(size_t components)
-{
-    return components < MOST_SCENE_PARTS ? (uint32_t)components : MOST_SCENE_PARTS;
-}
-
-/* The first component of a part, or of the one behind the last. */
-static uint32_t first_of_scene_part(size_t part, size_t components)
-{
-    return (uint32_t)(part * components / module_scene_part_count(components));
-}
-
 /* Branches save work; of camera-relative points nobody knows what is far. */
 static bool goes_by_lod(const Emitter *e)
 {
@@ -58,8 +44,8 @@ static void emit_part_case(Emitter *e, size_t part)
     const char  *operands = goes_by_lod(e) ? "p, 0.0" : "p";
     size_t       count    = e->module->components;
     emit_phrase(e, PHRASE_CASE, (Operands){emit_count(e, part)});
-    for (uint32_t i = first_of_scene_part(part, count); i < first_of_scene_part(part + 1, count);
-         i++)
+    for (uint32_t i = module_scene_part_first(part, count);
+         i < module_scene_part_first(part + 1, count); i++)
         if (!emit_leaves_out(e, i))
             text_format(e->out, "        d = min(d, %s);\n", emit_call_with(e, kind, i, operands));
     emit_phrase(e, PHRASE_CASE_END, (Operands){0});
@@ -76,41 +62,37 @@ void emit_scene_part_distance(Emitter *e)
     text_format(e->out, "    return %s;\n", emit_cut(e, "d"));
 }
 
-/* Its box, grown by what single precision may lose. */
-static void emit_box_case(Emitter *e, size_t part, Box box)
+static void emit_box_case(Emitter *e, size_t part)
 {
+    static const char *const names[2] = {"low", "high"};
+    const Module            *module   = e->module;
+    const bool  infinite = e->variant->camera_relative; /* of such points no box is known */
+    const Box   box      = infinite ? box_infinite
+                                    : module_scene_part_box(module->boxes, module->components, part);
+    const Node *nodes    = infinite ? NULL : module->box_nodes.parts;
+    double      corner[2][3];
     if (box_is_empty(box))
         return;
-    double corner[2][3], size = box_is_finite(box) ? box_diagonal(box) : 0;
-    for (int i = 0; i < 3; i++) {
-        double reach  = fmax(fabs(box.axis[i].low), fabs(box.axis[i].high));
-        double margin = isfinite(reach) ? 1e-4 * size + 1e-6 * reach : 0;
-        corner[0][i]  = fmax(box.axis[i].low - margin, -1e18);
-        corner[1][i]  = fmin(box.axis[i].high + margin, 1e18);
-    }
+    module_part_corners(box, corner[0], corner[1]);
     emit_phrase(e, PHRASE_CASE, (Operands){emit_count(e, part)});
-    for (int end = 0; end < 2; end++)
+    for (size_t end = 0; end < 2; end++)
         text_format(e->out, "        %s = %s;\n",
-                    phrase_text(e, PHRASE_CHANGED, (Operands){end ? "high" : "low"}),
-                    emit_vector(e, corner[end]));
+                    phrase_text(e, PHRASE_CHANGED, (Operands){names[end]}),
+                    emit_box_vector(e, nodes, 2 * part + end, corner[end]));
     emit_phrase(e, PHRASE_CASE_END, (Operands){0});
 }
 
-/* Of camera-relative points no box is known. */
 void emit_scene_part_box(Emitter *e)
 {
     size_t count = e->module->components, parts = module_scene_part_count(count);
     emit_phrase(e, PHRASE_SWITCH, (Operands){"scene_part"});
     for (size_t part = 0; part < parts; part++) {
-        Box  box  = box_empty;
         bool some = false;
-        for (uint32_t i = first_of_scene_part(part, count);
-             i < first_of_scene_part(part + 1, count); i++) {
-            box  = box_hull(box, e->variant->camera_relative ? box_infinite : e->module->boxes[i]);
+        for (uint32_t i = module_scene_part_first(part, count);
+             i < module_scene_part_first(part + 1, count); i++)
             some = some || !emit_leaves_out(e, i);
-        }
         if (some)
-            emit_box_case(e, part, box);
+            emit_box_case(e, part);
     }
     emit_phrase(e, PHRASE_SWITCH_END, (Operands){0});
 }

@@ -14,6 +14,12 @@ typedef struct FrameSlots {
     FrameValues plain, camera_relative;
 } FrameSlots;
 
+/* Boxes as numbers of the frame (OP_NUMBER), two nodes each; NULL where they are literals. */
+typedef struct BoxNodes {
+    Node *around; /* of each component: centre, and half the lengths of the sides */
+    Node *parts;  /* of each scene part: the low and the high corner */
+} BoxNodes;
+
 typedef struct Module {
     const Graph *graph;   /* simplified; parameters have the first slots */
     Sources      sources; /* names and lines, for comments */
@@ -31,6 +37,7 @@ typedef struct Module {
                             there are none */
     /* What is known of components: */
     const Box      *boxes;
+    BoxNodes        box_nodes;
     const uint32_t *march_groups; /* the group of each, or NULL: all together */
     const bool     *is_plane;   /* whether each is a plane that krs_plane_t knows; NULL: none is */
     bool            has_slopes; /* there are slots of slopes behind those of parameters */
@@ -45,6 +52,16 @@ void module_lay_out(Module *module, uint32_t zone_slots, Arena *arena, Arena *sc
 /* In how many parts so many components are marched, where each ray goes on with the one that comes
    next. */
 uint32_t module_scene_part_count(size_t components);
+/* The first component of a part, or of the one behind the last. */
+uint32_t module_scene_part_first(size_t part, size_t components);
+/* The box around a part. */
+Box module_scene_part_box(const Box *boxes, size_t components, size_t part);
+/* A finite box as shaders look at it from outside, and one that clips rays. */
+void module_box_vectors(Box box, double centre[3], double half[3]);
+void module_part_corners(Box box, double low[3], double high[3]);
+/* All boxes as numbers of the frame, counted from `first` on. */
+BoxNodes module_hoist_boxes(Graph *graph, const Box *boxes, size_t components, uint32_t first,
+                            Arena *arena);
 
 /* What a function is called; NULL: it is several, or none. */
 const char *module_function_name(KrsFunction function);

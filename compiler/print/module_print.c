@@ -104,6 +104,16 @@ static void add_nodes(Emitter *e, NodeList *list, const Node *nodes, size_t coun
         array_push(e->scratch, list, nodes[i]);
 }
 
+/* Of components, of scene parts: where they are numbers of the frame. */
+static void add_boxes(Emitter *e, NodeList *list, bool around, bool parts)
+{
+    const size_t   count = e->module->components;
+    const BoxNodes nodes = e->module->box_nodes;
+    add_nodes(e, list, nodes.around, nodes.around && around ? 2 * count : 0);
+    add_nodes(e, list, nodes.parts,
+              nodes.parts && parts ? 2 * (size_t)module_scene_part_count(count) : 0);
+}
+
 static void lay_out(Emitter *e, const NodeList *roots, FrameValues *values, Arena *arena)
 {
     emit_count_uses(e, roots->items, roots->count, false);
@@ -120,6 +130,7 @@ void module_lay_out(Module *module, uint32_t zone_slots, Arena *arena, Arena *sc
     add_nodes(&e, &all, module->guarded, count);
     add_nodes(&e, &all, module->along, ALONG_COUNT * count);
     add_nodes(&e, &all, module->planes, planes);
+    add_boxes(&e, &all, true, true);
     add_nodes(&e, &all, module->gradients, module->derives ? 2 * (count + 1) : 0);
     FrameSlots *slots       = &module->slots;
     slots->plain.first_slot = (uint32_t)module->graph->parameters.count;
@@ -168,6 +179,8 @@ static NodeList gather_roots(Emitter *e)
     add_nodes(e, &roots, &e->module->zone, zones && e->cuts);
     add_nodes(e, &roots, e->module->gradients + 2 * e->module->components,
               zones && e->wanted[KRS_FUNCTION_GRADIENT] ? 2 : 0);
+    add_boxes(e, &roots, e->wanted[KRS_FUNCTION_DISTANCE_LOD],
+              e->wanted[KRS_FUNCTION_SCENE_PART_BOX] && !e->variant->camera_relative);
     add_nodes(e, &roots, emit_planes(e), e->wanted[KRS_FUNCTION_PLANE_T]);
     add_nodes(e, &roots, emit_planes(e) + 1, e->wanted[KRS_FUNCTION_PLANE_COSINE]);
     return roots;
