@@ -98,12 +98,14 @@ static KrsScene *compile(const char *text, const char *name, KrsSpecialize speci
     return scene;
 }
 
-/* The text of a kernel that marches and shades, without comments. */
-static char *kernel_text_of(const KrsScene *scene)
+/* The text of a kernel that marches and shades, of a processor or of a graphics card, without
+   comments. */
+static char *kernel_text_of(const KrsScene *scene, bool card)
 {
-    const KrsVariant  variant  = {.values = true};
-    const KrsFunction wanted[] = {KRS_FUNCTION_DISTANCE, KRS_FUNCTION_SURFACE};
-    char             *text = krs_scene_text(scene, &variant, wanted, 2, NULL), *to = text;
+    const KrsVariant  variant  = {.values = true, .many_threads = card};
+    const KrsFunction wanted[] = {card ? KRS_FUNCTION_DISTANCE_LOD : KRS_FUNCTION_DISTANCE,
+                                  KRS_FUNCTION_SURFACE};
+    char *text = krs_scene_text(scene, &variant, wanted, 2, NULL), *to = text;
     assert_non_null(text);
     for (const char *from = text; *from;) {
         if (from[0] == '/' && from[1] == '/')
@@ -117,10 +119,13 @@ static char *kernel_text_of(const KrsScene *scene)
 
 static bool same_text(const KrsScene *a, const KrsScene *b)
 {
-    char      *first = kernel_text_of(a), *second = kernel_text_of(b);
-    const bool same = strcmp(first, second) == 0;
-    free(first);
-    free(second);
+    bool same = true;
+    for (int card = 0; card < 2; card++) {
+        char *first = kernel_text_of(a, card), *second = kernel_text_of(b, card);
+        same = same && strcmp(first, second) == 0;
+        free(first);
+        free(second);
+    }
     return same;
 }
 
