@@ -35,15 +35,13 @@ typedef enum TexelKind { NO_TEXELS, ONE_NUMBER, TWO_NUMBERS, FOUR_NUMBERS, TEXEL
 struct KrsRenderer {
     Gpu                   gpu;
     bool                  compiler_started;
-    bool                  early_outs;   /* kernels skip far shapes by
-                                                               branches */
+    bool                  early_outs;   /* kernels skip far shapes by branches */
     VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters */
     VkDescriptorSetLayout frame_layout; /* set 1: what frame.glsl declares */
     VkPipelineLayout      layout;       /* shared by all kernels */
     /* Those for RAYS_OF_CAMERAS are made at once, the others when they are needed. */
     Kernel pixels[RAY_KINDS][PIXEL_KERNELS];
-    Kernel next_dispatch;         /* on graphics cards only
-                                                               (dispatch.c) */
+    Kernel next_dispatch;         /* on graphics cards only (dispatch.c) */
     double spirv_ms, pipeline_ms; /* the time to make these kernels */
     /* For warm-up: sets in which a kernel finds no items, and the buffers of zeros that they
        bind. */
