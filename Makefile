@@ -40,22 +40,23 @@ FAMILY   := $(sort $(wildcard compiler/family/*.c))
 EVAL     := $(addprefix compiler/eval/, scope.c expression.c arithmetic.c arguments.c builtins.c lists.c \
                 random.c functions.c csg.c fractal.c declare.c claims.c empty.c methods.c properties.c \
                 material.c view.c palette.c statements.c)
-PRINT    := $(addprefix compiler/print/, frame_values.c lines.c helpers.c mirrors.c statements.c \
-                prepare.c distances.c shared.c surfaces.c early_outs.c march.c module_print.c \
-                glsl/glsl.c)
+PRINT    := $(addprefix compiler/print/, frame_values.c lines.c signatures.c helpers.c mirrors.c statements.c \
+                prepare.c distances.c shared.c surfaces.c early_outs.c march.c module_print.c) \
+            $(sort $(wildcard compiler/print/*/*.c))
 TARGET   := compiler/target/spirv.c
 BORDER   := compiler/target/glslang_border.cpp
 API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c retain.c facts.c \
                 march_groups.c make_module.c program.c scene_text.c framing.c frame.c query.c \
-                search_pairs.c search_targets.c search_starts.c search.c refute.c \
-                refute_settings.c refute_blame.c refute_report.c bounds.c)
+                search_pairs.c search_targets.c search_starts.c search.c refuter.c \
+                refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer integrators film display writer))))
 CLI      := $(sort $(wildcard cli/*.c))
 
 # Text files that the program carries: the standard library, what scenes and kernels share, kernels.
 LIBRARY  := $(sort $(wildcard compiler/library/*.krs compiler/library/std/*.krs))
 HELPERS  := $(sort $(wildcard compiler/print/glsl/*.glsl))
-SHADERS  := $(sort $(wildcard runtime/shaders/*.comp runtime/shaders/*.glsl)) runtime/shared/blocks.h
+SHADERS  := $(sort $(wildcard runtime/shaders/*.comp runtime/shaders/*.glsl runtime/shared/*.h)) \
+            compiler/shape/surface.def
 # Kernels without a scene are compiled here and now, not on every machine again; what is optimized
 # here, drivers need not.
 MODULES  := $(shell grep -L 'include "scene.glsl"' runtime/shaders/*.comp)

@@ -7,7 +7,7 @@
  */
 #include <string.h>
 
-#include "cli/options.h"
+#include "cli/help.h"
 #include "compiler/base/diag.h"
 
 /* ---- what the tables say ---- */

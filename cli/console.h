@@ -4,6 +4,8 @@
 #ifndef KRS_CONSOLE_H
 #define KRS_CONSOLE_H
 
+#include <stdio.h>
+
 #include "cli/options.h"
 
 /* "krs: " and the words, on a line of their own. */

@@ -5,15 +5,14 @@
  * comments what the file left open.  Nothing is guessed from the contents: the ending of the
  * name says what a file is.
  */
-#include "cli/import.h"
-
 #include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/import_jsurf.h"
+#include "cli/import_tape.h"
 #include "cli/supervise.h"
 
 enum { MOST_BYTES = 16 << 20 };
@@ -23,34 +22,6 @@ static const struct {
     bool (*import)(Import *import);
 } forms[] = {{".jsurf", import_jsurf}, {".vm", import_tape}};
 enum { FORMS = sizeof forms / sizeof *forms };
-
-bool import_refuse(const Import *import, unsigned line, const char *format, ...)
-{
-    Text    words = {.arena = import->arena};
-    va_list arguments;
-    va_start(arguments, format);
-    text_format_list(&words, format, arguments);
-    va_end(arguments);
-    for (char *at = words.bytes; *at != '\0'; at++)
-        if ((unsigned char)*at < ' ' || *at == 0x7f) /* what a file says moves no cursor */
-            *at = '?';
-    say("%s:%u: %s", import->path, line, words.bytes);
-    return false;
-}
-
-void import_add_number(Text *text, double number)
-{
-    text_number(text, number == 0 ? 0 : number); /* never -0 */
-}
-
-void import_add_vector(Text *text, const double *numbers, int count)
-{
-    for (int i = 0; i < count; i++) {
-        text_add(text, i == 0 ? "[" : ", ");
-        import_add_number(text, numbers[i]);
-    }
-    text_add(text, "]");
-}
 
 static KrsStatus read_all(Import *import)
 {

@@ -4,7 +4,7 @@
  * It has the operators of the scenes' language, with the same precedence, so that it is copied sign
  * by sign once it is understood; only numbers and names may have to be written differently.
  */
-#include "cli/import_jsurf.h"
+#include "cli/import_equation.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -14,7 +14,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/import_equation.h"
+#include "cli/import_properties.h"
 #include "compiler/base/vec.h"
+
 enum { LIGHTS = 8 };
 
 /* ---- spaces ---- */

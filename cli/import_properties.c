@@ -2,7 +2,7 @@
  * import_properties.c: lists of properties as Java writes them: `key=value`, with comments,
  * characters that a backslash protects, and lines that one continues.
  */
-#include "cli/import_jsurf.h"
+#include "cli/import_properties.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -5,7 +5,7 @@
  * earlier lines, and the last line is the solid: below 0 inside.  Each line that counts for it
  * becomes a `let`; numbers and coordinates are written where they are used.
  */
-#include "cli/import.h"
+#include "cli/import_tape.h"
 
 #include <ctype.h>
 #include <math.h>

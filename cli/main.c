@@ -1,7 +1,7 @@
 /*
  * main.c: `krs`, the command.
  *
- * The way of a command line: options.c understands it, supervise.c forks, the function of the
+ * The way of a command line: parse_options.c understands it, supervise.c forks, the function of the
  * subcommand does the work in the child, and the status it returns becomes the exit status.
  */
 #include <OpenEXR/openexr.h>
@@ -17,6 +17,8 @@
 
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/help.h"
+#include "cli/parse_options.h"
 #include "cli/supervise.h"
 
 static Work *const works[COMMAND_COUNT] = {

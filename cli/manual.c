@@ -7,7 +7,7 @@
 #include <ctype.h>
 #include <string.h>
 
-#include "cli/options.h"
+#include "cli/help.h"
 
 /* Text in which nothing is a request of troff, line by line. */
 static void print_plain(FILE *out, const char *text)

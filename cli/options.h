@@ -1,5 +1,5 @@
 /*
- * options.h: the command line, understood.
+ * options.h: commands and options: their tables, and what a command line asks for.
  */
 #ifndef KRS_OPTIONS_H
 #define KRS_OPTIONS_H
@@ -7,7 +7,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
 
 #include "cli/choices.h"
 #include "compiler/base/arena.h"
@@ -114,23 +113,5 @@ typedef struct Options {
 
     Arena *arena; /* for whatever a command needs until the process ends */
 } Options;
-
-/* Understands the words behind `krs`.  KRS_OK, or KRS_BAD_ARGUMENT after one line on standard
-   error that says what is wrong.  `options->arena` must be set. */
-KrsStatus options_parse(Options *options, int argc, char **argv);
-
-/* What each exit status means, in a sentence of several lines. */
-extern const char exit_statuses[];
-
-/* `krs --help`, `krs COMMAND --help`. */
-void help_print(FILE *out);
-void help_print_command(CommandId command, FILE *out);
-/* The passes of the compiler, a line each, on the page of `dump`; else nothing. */
-void passes_print(CommandId command, FILE *out);
-
-/* manual.c: the same as a page for man, of a command or, with COMMAND_COUNT, of `krs` itself. */
-void manual_print(CommandId command, FILE *out);
-/* completion.c: what a shell (bash, zsh or fish; else false) completes command lines by. */
-bool completion_print(const char *shell, FILE *out);
 
 #endif

@@ -23,6 +23,7 @@
 #include "cli/console.h"
 #include "cli/modules.h"
 #include "cli/supervise.h"
+#include "compiler/base/splitmix.h"
 
 enum { BATCH = 1024, PROBES = 8, MARCH_STEPS = 64, MEASURE_STEPS = 96 };
 
@@ -49,20 +50,9 @@ typedef struct Validation {
     double         points[BATCH][3];
 } Validation;
 
-/* splitmix64: the same points on every machine. */
-static uint64_t random_next(uint64_t *state)
-{
-    uint64_t z = *state += 0x9e3779b97f4a7c15;
-    z          = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
-    z          = (z ^ z >> 27) * 0x94d049bb133111eb;
-    return z ^ z >> 31;
-}
-
-static double random_unit(uint64_t *state) { return (double)(random_next(state) >> 11) * 0x1p-53; }
-
 static void random_direction(uint64_t *state, double direction[3])
 {
-    double z = 2 * random_unit(state) - 1, angle = 2 * acos(-1) * random_unit(state);
+    double z = 2 * splitmix_unit(state) - 1, angle = 2 * acos(-1) * splitmix_unit(state);
     double radius = sqrt(fmax(0, 1 - z * z));
     direction[0]  = radius * cos(angle);
     direction[1]  = radius * sin(angle);
@@ -114,14 +104,14 @@ static void choose_points(Validation *v)
     for (size_t i = 0; i < BATCH; i++)
         for (int axis = 0; axis < 3; axis++)
             v->points[i][axis] = v->low[axis] +
-                                 random_unit(&v->random) * (v->high[axis] - v->low[axis]);
+                                 splitmix_unit(&v->random) * (v->high[axis] - v->low[axis]);
     march_to_surface(v);
     /* Rays that missed are far away, where nothing can be learned: back into the box. */
     for (size_t i = 1; i < BATCH; i += 2)
         for (int axis = 0; axis < 3; axis++)
             if (!(v->points[i][axis] >= v->low[axis] && v->points[i][axis] <= v->high[axis]))
                 v->points[i][axis] = v->low[axis] +
-                                     random_unit(&v->random) * (v->high[axis] - v->low[axis]);
+                                     splitmix_unit(&v->random) * (v->high[axis] - v->low[axis]);
 }
 
 static void print_point(const char *words, const double point[3])
@@ -167,7 +157,7 @@ static void choose_inside(Validation *v, const KrsHit *hit, int probe, double in
         for (int axis = 0; axis < 3; axis++)
             direction[axis] = hit->distance > 0 ? -hit->normal[axis] : hit->normal[axis];
     else if (probe % 2 == 0)
-        radius *= cbrt(random_unit(&v->random));
+        radius *= cbrt(splitmix_unit(&v->random));
     for (int axis = 0; axis < 3; axis++)
         inside[axis] = hit->point[axis] + radius * direction[axis];
 }

@@ -227,22 +227,30 @@ KrsStatus krs_distance(KrsFrame *frame, const double (*points)[3], size_t count,
 KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count,
                      double (*normals)[3]);
 
+/* How many numbers a member has, by its type in surface.def. */
+#define KRS_NUMBERS_FLOAT
+#define KRS_NUMBERS_VEC3 [3]
+
 /* What is at a point, or where a ray ends. */
 typedef struct KrsHit {
     bool     hit;        /* for rays; always true for points */
     bool     unresolved; /* for rays: ended after KRS_MOST_STEPS steps; nothing before `t` */
     double   t;          /* for rays: world units along the unit direction */
     double   point[3];
-    double   distance;  /* at that point */
-    double   normal[3]; /* unit gradient of the distance; 0 where there is none */
-    uint32_t component; /* from 1; 0 where nothing is hit */
-    uint32_t level;     /* reflections before the kernel */
-    uint32_t instance;  /* a number for each copy (docs/math.md, section 1); a hash beyond 31
-                           mirrors; 1 without a sequence */
-    double   color[3];  /* linear Rec.709 */
-    double   roughness, metallic;
+    double   distance;   /* at that point */
+    double   normal[3];  /* unit gradient of the distance; 0 where there is none */
     double   shading[3]; /* the normal for lighting; differs from `normal` where mirrors are smooth
                             over a given width */
+    uint32_t component;  /* from 1; 0 where nothing is hit */
+    /* Which part of it, and its material: a member for each row of surface.def.
+       level: reflections before the kernel; instance: a number for each copy (docs/math.md, section
+       1), a hash beyond 31 mirrors, 1 without a sequence; color[3]: linear Rec.709, as is
+       emission[3]; roughness; metallic.  All but the emission are limited as in pictures. */
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) uint32_t name;
+#include "compiler/shape/surface.def"
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    double name KRS_NUMBERS_##type;
+#include "compiler/shape/surface.def"
 } KrsHit;
 
 /* Distance, normal and identity at points. */

@@ -136,14 +136,14 @@ KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count, d
     return KRS_OK;
 }
 
-/* Of a component: the numbers of a property of its material, within its limits, as pictures show
-   them; what is not a number is the lower one. */
+/* Of a component: the numbers of a property of its material.  Where it has limits, what is not a
+   number is the lower one. */
 static void copy_property(const KrsFrame *frame, const Node *roots, ComponentRoot root, double *to)
 {
     const RootInfo *info = &root_info[root];
     for (int k = 0; k < (info->type == TYPE_VEC3 ? 3 : 1); k++) {
         double number = frame->values[roots[root]].v[k];
-        to[k]         = number > info->low ? fmin(number, info->high) : info->low;
+        to[k] = !info->limited ? number : number > info->low ? fmin(number, info->high) : info->low;
     }
 }
 
@@ -158,11 +158,11 @@ static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
         return;
     tape_run_surface(&scene->surface, point, hit->normal, 0, frame->values);
     const Node *root = surface_roots(&scene->roots, hit->component - 1);
-    hit->level       = (uint32_t)frame->values[root[ROOT_level]].v[0];
-    hit->instance    = (uint32_t)frame->values[root[ROOT_instance]].v[0];
-    copy_property(frame, root, ROOT_color, hit->color);
-    copy_property(frame, root, ROOT_roughness, &hit->roughness);
-    copy_property(frame, root, ROOT_metallic, &hit->metallic);
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    copy_property(frame, root, ROOT_##name, (double *)&hit->name);
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) \
+    hit->name = (uint32_t)frame->values[root[ROOT_##name]].v[0];
+#include "compiler/shape/surface.def"
     /* No mirror is smooth where a zone cuts. */
     if (hit->distance > frame->values[root[ROOT_DISTANCE]].v[0])
         memcpy(hit->shading, hit->normal, sizeof hit->shading);

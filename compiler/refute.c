@@ -5,14 +5,17 @@
  * above moves its surface, which needs the slope, and as it is where nothing does.  Components
  * come first, and have half of the time; then their parts, parts of parts before the whole.
  */
-#include "compiler/refuting.h"
+#include "compiler/refute.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "compiler/eval/claims.h"
 #include "compiler/lower/lower.h"
-#include "compiler/shape/slope.h"
+#include "compiler/refute_blame.h"
+#include "compiler/refute_report.h"
+#include "compiler/refute_settings.h"
+#include "compiler/refuter.h"
+#include "compiler/search.h"
 
 /* Of the machine whose seconds are counted; most of today's are as fast, or faster. */
 static const double OPERATIONS_PER_SECOND = 1e8;
@@ -23,11 +26,6 @@ static const uint64_t SLICE = 10000000;
 enum { MOST_SHAPES = 4096, MOST_TRIALS = 6 };
 
 /* ---- shapes ---- */
-
-bool is_wrapper(const Shape *shape)
-{
-    return shape->kind == SHAPE_PAINT || shape->kind == SHAPE_SMOOTH || shape->kind == SHAPE_EMPTY;
-}
 
 static bool is_known(const Refuter *r, const Shape *shape)
 {
@@ -45,47 +43,6 @@ static void add_suspects(Refuter *r, const Shape *shape, uint32_t component, siz
     array_push(r->in->arena, &r->suspects, ((Suspect){shape, component, parent}));
     for (uint32_t i = 0; i < shape->child_count; i++)
         add_suspects(r, shape->children[i], component, own);
-}
-
-static Lowering lowering_of(Refuter *r, LoweredShapes *lowered_shapes)
-{
-    return (Lowering){.graph          = r->graph,
-                      .scratch        = r->in->scratch,
-                      .lowered_shapes = lowered_shapes,
-                      .most           = r->graph->count + MOST_LOWERED};
-}
-
-Node lower_alone(Refuter *r, const Shape *shape, bool lipschitz, LoweredShapes *lowered_shapes)
-{
-    Lowering     l       = lowering_of(r, lowered_shapes);
-    LowerContext context = context_new(graph_leaf(r->graph, OP_POINT), lipschitz);
-    Lowered      all     = lower_shape(&l, shape, context);
-    r->result->skipped += l.overflow && !lowered_shapes && !lipschitz;
-    if (l.overflow || all.distance == NODE_NONE)
-        return NODE_NONE;
-    return divide_by_slope(r->graph, all.distance, shape->slope);
-}
-
-/* A search of one of the distances of a shape, or of a step beside the distance that tells on which
-   side points are; false: there is nothing to search. */
-static bool search_step(Refuter *r, const Shape *shape, Node step, Node side, bool lipschitz,
-                        Search *search)
-{
-    Arena *scratch  = r->in->scratch;
-    Node   roots[2] = {step, side};
-    Graph *simple   = graph_simplify(r->graph, roots, 2, scratch);
-    if (!search_new(search, simple, roots[0], roots[1], shape->box, scratch))
-        return false;
-    search->steep  = lipschitz;
-    search->figure = shape->figure;
-    search->random = r->random;
-    r->random += 0x9e3779b97f4a7c15;
-    return true;
-}
-
-bool search_of(Refuter *r, const Shape *shape, Node distance, bool lipschitz, Search *search)
-{
-    return search_step(r, shape, distance, distance, lipschitz, search);
 }
 
 /* ---- looking at a shape ---- */

@@ -5,9 +5,11 @@
  * is refuted, each in its own space.  The smallest of them that is refuted too is next, and so on;
  * where none is, the parts of the last are searched from these points on.
  */
-#include "compiler/refuting.h"
+#include "compiler/refute_blame.h"
 
 #include <math.h>
+
+#include "compiler/search.h"
 
 /* By how much a lowered shape breaks its claim at two points; below 1: it does not. */
 static double claim_ratio(const LoweredShape *lowered, bool lipschitz, const NodeValue *at_p,

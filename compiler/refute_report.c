@@ -1,9 +1,12 @@
 /*
  * refute_report.c: what is said of a distance or a claim that was refuted.
  */
-#include "compiler/refuting.h"
+#include "compiler/refute_report.h"
 
 #include <math.h>
+
+#include "compiler/lower/along_method.h"
+#include "compiler/search.h"
 
 static const char *point_text(Refuter *r, const double p[3])
 {

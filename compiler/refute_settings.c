@@ -2,10 +2,12 @@
  * refute_settings.c: values of parameters at which distances are searched, such as a frame can
  * have.
  */
+#include "compiler/refute_settings.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "compiler/refuting.h"
+#include "compiler/base/splitmix.h"
 #include "compiler/shape/slope.h"
 
 enum { SETTING_ATTEMPTS = 8 };
@@ -20,7 +22,7 @@ static const struct KrsFixed *fixed_value(const Refuter *r, const char *name)
 
 static double random_value(Refuter *r, double usual, double low, double high)
 {
-    double choice = random_unit(&r->random), t = random_unit(&r->random);
+    double choice = splitmix_unit(&r->random), t = splitmix_unit(&r->random);
     if (!isfinite(low))
         low = fmin(usual, isfinite(high) ? high : usual) - 1 - fabs(usual);
     if (!isfinite(high))
@@ -31,7 +33,7 @@ static double random_value(Refuter *r, double usual, double low, double high)
 void choose_parameters(Refuter *r, uint32_t trial, NodeValue *values)
 {
     const Scene *scene = r->in->scene;
-    values[0].v[0]     = trial ? 10 * random_unit(&r->random) : r->how->time;
+    values[0].v[0]     = trial ? 10 * splitmix_unit(&r->random) : r->how->time;
     for (size_t i = 0; i < scene->parameters.count; i++) {
         const Parameter       *parameter = &scene->parameters.items[i];
         const struct KrsFixed *fixed     = fixed_value(r, parameter->name);

@@ -1,10 +1,16 @@
 /*
  * search.c: points that refute a distance: from the best of many starts, uphill.
  */
-#include "compiler/searching.h"
+#include "compiler/search.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "compiler/base/splitmix.h"
+#include "compiler/base/vec.h"
+#include "compiler/search_pairs.h"
+#include "compiler/search_starts.h"
+#include "compiler/search_targets.h"
 
 enum { BATCH = 24, BEST = 4, CLIMB_STEPS = 48 };
 
@@ -27,7 +33,7 @@ static PointPair changed(Search *s, const PointPair *pair)
         add_scaled3(next.p, next.p, move, shift);
         add_scaled3(next.q, next.q, move, shift);
         break;
-    case 1: add_scaled3(next.q, next.q, length * random_unit(&s->random), shift); break;
+    case 1: add_scaled3(next.q, next.q, length * splitmix_unit(&s->random), shift); break;
     default: {
         double factor = exp2(search_between(s, -2, 1));
         for (int i = 0; i < 3; i++)

@@ -4,34 +4,30 @@
  * A pair that is steep on average has a half that is at least as steep, so pairs climb to where a
  * distance jumps by being halved.
  */
-#include "compiler/searching.h"
+#include "compiler/search_pairs.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "compiler/base/splitmix.h"
+#include "compiler/base/vec.h"
 
 /* The absolute part of what rounding may do, in sizes. */
 static const double ABSOLUTE = 1e-9;
 
 /* ---- random numbers ---- */
 
-static uint64_t random_next(uint64_t *state)
-{
-    uint64_t z = *state += 0x9e3779b97f4a7c15;
-    z          = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
-    z          = (z ^ z >> 27) * 0x94d049bb133111eb;
-    return z ^ z >> 31;
-}
-
-double random_unit(uint64_t *state) { return (double)(random_next(state) >> 11) * 0x1p-53; }
-
 double search_between(Search *s, double low, double high)
 {
-    return low + (high - low) * random_unit(&s->random);
+    return low + (high - low) * splitmix_unit(&s->random);
 }
 
-size_t search_index(Search *s, size_t count) { return random_next(&s->random) % count; }
+size_t search_index(Search *s, size_t count) { return splitmix_next(&s->random) % count; }
 
-double any_scale(Search *s, double least) { return s->size * pow(least, random_unit(&s->random)); }
+double any_scale(Search *s, double least)
+{
+    return s->size * pow(least, splitmix_unit(&s->random));
+}
 
 void random_direction(Search *s, double direction[3])
 {

@@ -5,10 +5,14 @@
  * way out of it, and what sticks out is small; so points go down to the surface of what may be left
  * out, and from one that is out of the box another goes away from it to where the guard decides.
  */
-#include "compiler/searching.h"
+#include "compiler/search_starts.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "compiler/base/vec.h"
+#include "compiler/search_pairs.h"
+#include "compiler/search_targets.h"
 
 static void nudge(Search *s, double p[3], double least)
 {

@@ -5,10 +5,13 @@
  * divisor is 0, an exponential where its argument is largest.  From a random point, steps along the
  * gradient of that expression lead there, also into a region too thin for random points to meet.
  */
-#include "compiler/searching.h"
+#include "compiler/search_targets.h"
 
 #include <math.h>
 #include <string.h>
+
+#include "compiler/base/vec.h"
+#include "compiler/search_pairs.h"
 
 static double target_value(const Search *s, const Target *t)
 {

@@ -327,12 +327,17 @@ KrsStatus krs_film_add_rays(KrsFilm *film, KrsFrame *frame, const KrsRays *rays)
    KRS_BAD_ARGUMENT: there is no sample, or no such plane; KRS_OUT_OF_MEMORY, KRS_INTERNAL. */
 KrsStatus krs_film_read(KrsFilm *film, uint32_t planes, KrsPicture **picture);
 
-/* The material and surface at a point, as the device computes them. */
+/* The material and surface at a point, as the device computes them: the members of KrsHit that
+   surface.def has, and these. */
 typedef struct KrsSurfacePoint {
-    float    distance; /* as the function of the surface computes it */
-    float    color[3], roughness, metallic, emission[3];
-    uint32_t component, level, instance;
-    float    normal[3]; /* for lighting */
+    float distance; /* as the function of the surface computes it */
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    float name KRS_NUMBERS_##type;
+#include "compiler/shape/surface.def"
+    uint32_t component;
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) uint32_t name;
+#include "compiler/shape/surface.def"
+    float normal[3]; /* for lighting */
 } KrsSurfacePoint;
 
 /* Evaluates the scene on the device at `count` points in world units: distances, as krs_distance

@@ -65,8 +65,9 @@ words='STATEMENT\|CONTROL\|OPERATOR_WORD\|CONSTANT'
 sed -n "s/^TOKEN([A-Z_]*, *\"\([a-z]*\)\", *\($words\))/\1/p" compiler/front/token.def |
     undocumented
 none "every word of the language is on its page"
-sed -n '/not_supported/d; s/^\(NUMERIC\|SPECIAL\)(\([a-z_0-9]*\), *"\([^"]*\)".*/\2(\3)/p' \
-    compiler/eval/functions.def | signature | undocumented
+sed -n '/not_supported/d; s/^FUNCTION(\([a-z_0-9]*\), *"\([^"]*\)".*/\1(\2)/p
+    s/^MAP(\([a-z_0-9]*\), *[1-4], *"\([a-z ]*\)".*/\1(\2)/p' \
+    compiler/eval/functions.def compiler/graph/ops.def | signature | undocumented
 none "every function is on the page, with its parameters"
 sed -n '/not_supported/d; s/^METHOD(\([a-z_]*\), *"\([^"]*\)".*/.\1(\2)/p
     s/^DEFORMATION([A-Z]*, *\([a-z_]*\), *"\([^"]*\)".*/.\1(\2)/p' \
@@ -74,8 +75,8 @@ sed -n '/not_supported/d; s/^METHOD(\([a-z_]*\), *"\([^"]*\)".*/.\1(\2)/p
         grep -qF -- "$wanted" "$work/signatures" || echo "$wanted"
     done >"$work/said"
 none "every method is on the page, with its parameters"
-sed -n 's/^\(BLEND\|FALLOFF\|PALETTE\)([A-Z_, ]*"\([a-z]*\)".*/\2/p' \
-    compiler/shape/blends.def compiler/shape/falloffs.def compiler/eval/palettes.def |
+sed -n 's/^\(FALLOFF\|PALETTE\)([A-Z_, ]*"\([a-z]*\)".*/\2/p; s/^BLEND(\([a-z]*\),.*/\1/p' \
+    compiler/graph/blends.def compiler/shape/falloffs.def compiler/eval/palettes.def |
     while read -r kind; do
         grep -qF -- "\"$kind\"" "$work/spans" || echo "$kind"
     done >"$work/said"

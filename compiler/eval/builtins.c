@@ -173,20 +173,20 @@ static Value builtin_not_supported(Elaboration *e, Call *call)
 
 /* ---- tables ---- */
 
+/* Operations of the graph without parameters are not called by scenes. */
 static const Builtin builtins[] = {
-#define NUMERIC(name, parameters, op, meaning) {#name, parameters, OP_##op, NULL},
-#define SPECIAL(name, parameters, function, meaning) \
+#define MAP(name, arity, called, ...) {#name, called, OP_##name, NULL},
+#include "compiler/graph/ops.def"
+#define FUNCTION(name, parameters, function, meaning) \
     {#name, parameters, OP_COUNT, builtin_##function},
 #include "compiler/eval/functions.def"
-#undef NUMERIC
-#undef SPECIAL
 };
 enum { BUILTIN_COUNT = sizeof builtins / sizeof *builtins };
 
 const Builtin *builtin_find(const char *name)
 {
     for (size_t i = 0; i < BUILTIN_COUNT; i++)
-        if (strcmp(builtins[i].name, name) == 0)
+        if (builtins[i].parameters && strcmp(builtins[i].name, name) == 0)
             return &builtins[i];
     return NULL;
 }
@@ -200,7 +200,8 @@ size_t builtin_names(const char **names, size_t capacity)
 {
     size_t count = 0;
     for (size_t i = 0; i < BUILTIN_COUNT && count < capacity; i++)
-        names[count++] = builtins[i].name;
+        if (builtins[i].parameters)
+            names[count++] = builtins[i].name;
     for (size_t i = 0; i < CONSTANT_COUNT && count < capacity; i++)
         names[count++] = constants[i];
     return count;

@@ -21,7 +21,7 @@
 /* A declared shape, or one that was moved. */
 static const Shape *declared_in(const Shape *shape)
 {
-    while (shape->kind == SHAPE_TRANSFORM)
+    while (!shape->declaration)
         shape = shape->children[0];
     return shape;
 }
@@ -101,9 +101,9 @@ static void claim_core(Graph *g, ShapeClaims *claims, const Shape *shape, const 
 ShapeClaims claims_of(Graph *graph, const Shape *shape, Arena *scratch)
 {
     ShapeClaims claims = {.count = 0};
-    if (shape->kind == SHAPE_OFFSET && shape->rounded)
+    if (shape->rounded)
         claim_core(graph, &claims, shape->rounded, shape->children[0], shape->values[0], scratch);
-    if (shape->kind != SHAPE_PRIMITIVE || !shape->declaration)
+    if (!shape->declaration)
         return claims;
     if (shape->figure)
         claim_figure(graph, &claims, shape, scratch);

@@ -4,9 +4,8 @@
 #include "compiler/eval/elaborate.h"
 
 static const char *const blend_spellings[] = {
-#define BLEND(name, spelling, op, slope, bulge, meaning) spelling,
-#include "compiler/shape/blends.def"
-#undef BLEND
+#define BLEND(name, ...) #name,
+#include "compiler/graph/blends.def"
 };
 static const Choices blend_names = {
     .noun    = "blend",

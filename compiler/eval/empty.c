@@ -18,16 +18,15 @@ enum { MOST_OPERATIONS = 500000, MOST_CELLS = 64 };
 /* Placing and painting make nothing empty. */
 static const Shape *inside_wrappers(const Shape *shape)
 {
-    while (shape->kind == SHAPE_TRANSFORM || shape->kind == SHAPE_PAINT ||
-           shape->kind == SHAPE_SMOOTH)
+    while (shape_info[shape->kind].leaves == LEAVES_ALL)
         shape = shape->children[0];
     return shape;
 }
 
 static bool can_vanish(const Shape *shape)
 {
-    ShapeKind kind = shape->kind;
-    return kind == SHAPE_INTERSECTION || kind == SHAPE_DIFFERENCE || kind == SHAPE_KRS;
+    Leaves leaves = shape_info[shape->kind].leaves;
+    return leaves == LEAVES_SOME || leaves == LEAVES_MIRRORED;
 }
 
 static bool needs_frame(const Tape *tape)
@@ -113,11 +112,11 @@ void warn_if_nothing_is_left(Elaboration *e, const Shape *shape, const char *nam
     else if (!can_vanish(inner) || inner->estimate || !box_is_finite(inner->box) ||
              !is_nowhere(e, inner))
         return;
-    if (inner->kind == SHAPE_EMPTY || inner->kind == SHAPE_PRIMITIVE)
-        return; /* these are warned of where they are made */
+    if (shape_info[inner->kind].parts == 0)
+        return; /* what has no parts is warned of where it is made */
     Diag *diag  = diag_add(e->diags, DIAG_NO_EFFECT, span, "`%s` is empty", name);
     diag->label = "nothing of this can be seen";
-    if (inner->kind == SHAPE_KRS)
+    if (shape_info[inner->kind].leaves == LEAVES_MIRRORED)
         diag_secondary(e->diags, diag, inner->span, "the mirrors discard all of its kernels");
     else
         diag_secondary(e->diags, diag, inner->span,

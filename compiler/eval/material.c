@@ -25,7 +25,7 @@ static Material *material_new(Elaboration *e, const char *name)
 {
     Material *material = arena_new(e->arena, Material);
     material->name     = name;
-#define MATERIAL(property, type, otherwise, nothing, low, high, blends) \
+#define KRS_MATERIAL(property, type, otherwise, nothing, low, high, asked, blends) \
     material->property = root_otherwise(e->graph, ROOT_##property);
 #include "compiler/shape/surface.def"
     return material;
@@ -37,7 +37,7 @@ Value elaborate_material(Elaboration *e, const Environment *env, const Syntax *s
     Material *material = material_new(e, syntax->name);
     bool      outer    = e->in_material;
     e->in_material     = true;
-#define MATERIAL(name, type, otherwise, nothing, low, high, blends) \
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     material_property(e, env, syntax, #name, TYPE_##type, &material->name);
 #include "compiler/shape/surface.def"
     e->in_material = outer;

@@ -14,7 +14,8 @@ static const struct BlockProperty {
     const char *name;
     bool        later;
 } block_properties[] = {
-#define MATERIAL(name, type, otherwise, nothing, low, high, blends) {SYNTAX_MATERIAL, #name, false},
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    {SYNTAX_MATERIAL, #name, false},
 #include "compiler/shape/surface.def"
     {SYNTAX_MATERIAL, "transmission", true},
     {SYNTAX_MATERIAL, "ior", true},

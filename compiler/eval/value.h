@@ -32,7 +32,7 @@ typedef struct Function Function;
 struct Function {
     const char               *name;
     const Syntax             *syntax;  /* SYNTAX_DEF or SYNTAX_SHAPE; NULL for built-in */
-    const struct Builtin     *builtin; /* row of functions.def */
+    const struct Builtin     *builtin; /* row of functions.def or ops.def */
     const struct Environment *closure;
 };
 

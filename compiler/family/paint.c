@@ -20,7 +20,7 @@ const Shape *make_smooth(ShapeBuilder *builder, const Shape *shape, Node width, 
 static bool material_needs(ShapeBuilder *builder, const Material *material, Op leaf)
 {
     const Node all[] = {
-#define MATERIAL(name, type, otherwise, nothing, low, high, blends) material->name,
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) material->name,
 #include "compiler/shape/surface.def"
     };
     Node   roots[sizeof all / sizeof *all];
@@ -81,7 +81,7 @@ Lowered lower_paint(Lowering *l, const Shape *shape, LowerContext context)
         NODE_NONE,     result.surface.trap};
     const Material *material = shape->material;
     with.normal              = unit_normal(l->graph, result.surface.normal, context.normal);
-#define MATERIAL(name, type, otherwise, nothing, low, high, blends) \
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     paint_with(l, &result.surface.name, material->name, with);
 #include "compiler/shape/surface.def"
     return result;

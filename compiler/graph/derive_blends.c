@@ -1,157 +1,170 @@
 /*
- * derive_blends.c: derivatives of smooth minima of a and b over a width, weight[0] da + weight[1] db,
+ * derive_blends.c: derivatives of smooth minima of a and b over a width: those of a and b, weighted;
  * and of the weight of each.
  */
 #include "compiler/graph/derive_rules.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "compiler/graph/build.h"
 
-/* The weights of a sharp minimum, */
-static void sharp_weights(Derivation *d, Node a, Node b, Node weight[2])
-{
-    Graph *g    = d->graph;
-    Node   less = graph_op2(g, OP_less, a, b), one = graph_number(g, 1), zero = graph_number(g, 0);
-    weight[0] = graph_op3(g, OP_select, less, one, zero);
-    weight[1] = graph_op3(g, OP_select, less, zero, one);
-}
+/* A smooth minimum that is derived: its operands, and the weights that a sharp one would have. */
+typedef struct Blending {
+    Derivation *derivation;
+    Graph      *graph;
+    Node        node, a, b, width, steps;
+    Node        sharp[2];
+} Blending;
 
-/* and of a blend whose width is above 0; `node` is the blend.  `weight` comes as that of a sharp
-   minimum. */
-typedef void Weights(Derivation *d, Node node, Node a, Node b, Node width, Node weight[2]);
+/* What the derivatives of a and b are multiplied by. */
+typedef struct Weights {
+    Node of_a, of_b;
+} Weights;
 
-/* How far apart a and b are, in widths. */
-static Node widths_apart(Derivation *d, Node a, Node b, Node width)
-{
-    Graph *g          = d->graph;
-    Node   difference = graph_op1(g, OP_abs, sub(g, a, b));
-    return over(g, difference, not_zero(d, width));
-}
+/* ---- numbers of which the column `weights` of blends.def is made ---- */
 
-/* By the weight of the farther one: 1/2 at most, the less the farther it is. */
-static void weights_by_farther(Derivation *d, Node a, Node b, Node far, Node weight[2])
+static Node width_above_zero(Blending *x) { return not_zero(x->derivation, x->width); }
+
+/* |a - b| / k */
+static Node widths_apart(Blending *x)
 {
-    Graph *g    = d->graph;
-    Node   less = graph_op2(g, OP_less, a, b), near = sub(g, graph_number(g, 1), far);
-    weight[0] = graph_op3(g, OP_select, less, near, far);
-    weight[1] = graph_op3(g, OP_select, less, far, near);
+    Graph *g          = x->graph;
+    Node   difference = graph_op1(g, OP_abs, sub(g, x->a, x->b));
+    return over(g, difference, width_above_zero(x));
 }
 
 /* max(1 - |a - b| / k, 0) */
-static Node nearness(Derivation *d, Node a, Node b, Node width)
+static Node nearness(Blending *x)
 {
-    Graph *g    = d->graph;
-    Node   near = sub(g, graph_number(g, 1), widths_apart(d, a, b, width));
+    Graph *g     = x->graph;
+    Node   apart = widths_apart(x);
+    Node   near  = sub(g, graph_number(g, 1), apart);
     return graph_op2(g, OP_max, near, graph_number(g, 0));
 }
 
-static void quadratic_weights(Derivation *d, Node node, Node a, Node b, Node width, Node weight[2])
+static Node half(Blending *x, Node number)
 {
-    Graph *g = d->graph;
-    (void)node;
-    Node far = nearness(d, a, b, width);
-    weights_by_farther(d, a, b, mul(g, far, graph_number(g, 0.5)), weight);
+    return mul(x->graph, number, graph_number(x->graph, 0.5));
 }
 
-static void cubic_weights(Derivation *d, Node node, Node a, Node b, Node width, Node weight[2])
+static Node power(Blending *x, Node number, uint32_t exponent)
 {
-    Graph *g = d->graph;
-    (void)node;
-    Node far = graph_op1(g, OP_square, nearness(d, a, b, width));
-    weights_by_farther(d, a, b, mul(g, far, graph_number(g, 0.5)), weight);
+    if (exponent == 1)
+        return number;
+    if (exponent % 2 == 0)
+        return graph_op1(x->graph, OP_square, power(x, number, exponent / 2));
+    return mul(x->graph, power(x, number, exponent - 1), number);
 }
 
-static void exponential_weights(Derivation *d, Node node, Node a, Node b, Node width,
-                                Node weight[2])
+/* 1 / (1 + e^t) = e^-t / (1 + e^-t), which never overflows where t is at least 0 */
+static Node logistic(Blending *x, Node t)
 {
-    (void)node;
-    Graph *g   = d->graph;
-    Node   far = graph_op1(g, OP_exp, neg(g, widths_apart(d, a, b, width)));
-    far        = over(g, far, add(g, graph_number(g, 1), far));
-    weights_by_farther(d, a, b, far, weight);
+    Graph *g       = x->graph;
+    Node   inverse = graph_op1(g, OP_exp, neg(g, t));
+    return over(g, inverse, add(g, graph_number(g, 1), inverse));
 }
 
-/* max(k, min(a, b)) - length(max(k - a, 0), max(k - b, 0)) */
-static void circular_weights(Derivation *d, Node node, Node a, Node b, Node width, Node weight[2])
+/* ---- the column `weights` ---- */
+
+/* By the weight of the farther one: 1/2 at most, the less the farther it is. */
+static Weights by_farther(Blending *x, Node far)
 {
-    (void)node;
-    Graph *g    = d->graph;
-    Node   zero = graph_number(g, 0), depth[2];
+    Graph  *g    = x->graph;
+    Node    less = graph_op2(g, OP_less, x->a, x->b), near = sub(g, graph_number(g, 1), far);
+    Weights weights;
+    weights.of_a = graph_op3(g, OP_select, less, near, far);
+    weights.of_b = graph_op3(g, OP_select, less, far, near);
+    return weights;
+}
+
+/* max(k, min(a, b)) - length(max(k - a, 0), max(k - b, 0)): along the arc, as deep as each is. */
+static Weights by_arc(Blending *x)
+{
+    Graph *g    = x->graph;
+    Node   zero = graph_number(g, 0), depth[2], weight[2];
     for (int i = 0; i < 2; i++)
-        depth[i] = graph_op2(g, OP_max, sub(g, width, i ? b : a), zero);
-    Node both = not_zero(d, graph_op1(g, OP_length, graph_op(g, OP_vec2, depth)));
-    Node out  = graph_op2(g, OP_less, width, graph_op2(g, OP_min, a, b));
+        depth[i] = graph_op2(g, OP_max, sub(g, x->width, i ? x->b : x->a), zero);
+    Node both = graph_op1(g, OP_length, graph_op(g, OP_vec2, depth));
+    both      = not_zero(x->derivation, both);
+    Node out  = graph_op2(g, OP_less, x->width, graph_op2(g, OP_min, x->a, x->b));
     for (int i = 0; i < 2; i++)
-        weight[i] = graph_op3(g, OP_select, out, weight[i], over(g, depth[i], both));
+        weight[i] = graph_op3(g, OP_select, out, x->sharp[i], over(g, depth[i], both));
+    return (Weights){weight[0], weight[1]};
 }
 
 /* min(a, b, (a + b - k) / sqrt(2)) */
-static void chamfer_weights(Derivation *d, Node node, Node a, Node b, Node width, Node weight[2])
+static Weights by_cut(Blending *x)
 {
-    (void)node;
-    Graph *g     = d->graph;
-    Node   half  = graph_number(g, M_SQRT1_2);
-    Node   cut   = sub(g, add(g, a, b), width);
-    Node   least = graph_op2(g, OP_min, a, b);
-    Node   cuts  = graph_op2(g, OP_less, mul(g, cut, half), least);
+    Graph *g     = x->graph;
+    Node   root  = graph_number(g, M_SQRT1_2), weight[2];
+    Node   cut   = sub(g, add(g, x->a, x->b), x->width);
+    Node   least = graph_op2(g, OP_min, x->a, x->b);
+    Node   cuts  = graph_op2(g, OP_less, mul(g, cut, root), least);
     for (int i = 0; i < 2; i++)
-        weight[i] = graph_op3(g, OP_select, cuts, half, weight[i]);
+        weight[i] = graph_op3(g, OP_select, cuts, root, x->sharp[i]);
+    return (Weights){weight[0], weight[1]};
 }
 
 /* min(a, b, (b - k + a + |mod(b - k - a + s, 2 s) - s|) / 2), s the width of a step */
-static void stairs_weights(Derivation *d, Node node, Node a, Node b, Node width, Node weight[2])
+static Weights by_steps(Blending *x)
 {
-    Graph *g    = d->graph;
-    Expr   e    = g->items[node];
-    width       = not_zero(d, width);
-    Node steps  = graph_op2(g, OP_max, e.operands[3], graph_number(g, 1));
-    Node step   = over(g, width, steps);
-    Node level  = sub(g, b, width);
-    level       = sub(g, level, a);
-    level       = add(g, level, step);
-    Node within = graph_op2(g, OP_mod, level, add(g, step, step));
-    Node rises  = graph_op2(g, OP_less, step, within);
-    Node stairs = graph_op2(g, OP_less, node, graph_op2(g, OP_min, a, b));
-    Node zero = graph_number(g, 0), one = graph_number(g, 1);
-    Node by_b = graph_op3(g, OP_select, rises, one, zero);
-    Node by_a = graph_op3(g, OP_select, rises, zero, one);
-    weight[0] = graph_op3(g, OP_select, stairs, by_a, weight[0]);
-    weight[1] = graph_op3(g, OP_select, stairs, by_b, weight[1]);
+    Graph *g       = x->graph;
+    Node   width   = width_above_zero(x);
+    Node   steps   = graph_op2(g, OP_max, x->steps, graph_number(g, 1));
+    Node   step    = over(g, width, steps);
+    Node   level   = sub(g, x->b, width);
+    level          = sub(g, level, x->a);
+    level          = add(g, level, step);
+    Node    within = graph_op2(g, OP_mod, level, add(g, step, step));
+    Node    rises  = graph_op2(g, OP_less, step, within);
+    Node    stairs = graph_op2(g, OP_less, x->node, graph_op2(g, OP_min, x->a, x->b));
+    Node    zero = graph_number(g, 0), one = graph_number(g, 1);
+    Node    by_b = graph_op3(g, OP_select, rises, one, zero);
+    Node    by_a = graph_op3(g, OP_select, rises, zero, one);
+    Weights weights;
+    weights.of_a = graph_op3(g, OP_select, stairs, by_a, x->sharp[0]);
+    weights.of_b = graph_op3(g, OP_select, stairs, by_b, x->sharp[1]);
+    return weights;
 }
 
-static Node derive_blend(Derivation *d, const Expr *e, Node node, const Node *inner,
-                         Weights *weights)
+#define BLEND(name, signature, slope, bulge, cost, facts, glsl, value, weights, meaning) \
+    static Weights weights_of_##name(Blending *x) { return weights; }
+#include "compiler/graph/blends.def"
+
+/* Of those whose width is above 0. */
+static Weights (*const weights_of[OP_COUNT])(Blending *x) = {
+#define BLEND(name, ...) [OP_smin_##name] = weights_of_##name,
+#include "compiler/graph/blends.def"
+};
+
+/* ---- rules ---- */
+
+static void find_sharp_weights(Blending *x)
+{
+    Graph *g    = x->graph;
+    Node   less = graph_op2(g, OP_less, x->a, x->b), one = graph_number(g, 1);
+    Node   zero = graph_number(g, 0);
+    x->sharp[0] = graph_op3(g, OP_select, less, one, zero);
+    x->sharp[1] = graph_op3(g, OP_select, less, zero, one);
+}
+
+Node derive_smin(Derivation *d, const Expr *e, Node node, const Node *inner)
 {
     Graph *g = d->graph;
     if (!others_are_constant(g, inner, 2, e->operand_count))
         return NODE_NONE;
-    Node a = e->operands[0], b = e->operands[1], width = e->operands[2];
-    Node sharp[2], weight[2];
-    sharp_weights(d, a, b, sharp);
-    memcpy(weight, sharp, sizeof weight);
-    weights(d, node, a, b, width, weight);
-    Node blends = graph_op2(g, OP_less, graph_number(g, 0), width), sum[2];
+    const Node *o = e->operands;
+    Blending    x = {d, g, node, o[0], o[1], o[2], e->operand_count > 3 ? o[3] : NODE_NONE, {0}};
+    find_sharp_weights(&x);
+    Weights smooth    = weights_of[e->op](&x);
+    Node    weight[2] = {smooth.of_a, smooth.of_b}, sum[2];
+    Node    blends    = graph_op2(g, OP_less, graph_number(g, 0), x.width);
     for (int i = 0; i < 2; i++) {
-        weight[i] = graph_op3(g, OP_select, blends, weight[i], sharp[i]);
+        weight[i] = graph_op3(g, OP_select, blends, weight[i], x.sharp[i]);
         sum[i]    = mul(g, weight[i], inner[i]);
     }
     return between_jumps(d, add(g, sum[0], sum[1]));
 }
-
-#define BLEND(name)                                                                     \
-    Node derive_smin_##name(Derivation *d, const Expr *e, Node node, const Node *inner) \
-    {                                                                                   \
-        return derive_blend(d, e, node, inner, name##_weights);                         \
-    }
-BLEND(quadratic)
-BLEND(cubic)
-BLEND(exponential)
-BLEND(circular)
-BLEND(chamfer)
-BLEND(stairs)
-#undef BLEND
 
 /* clamp(1/2 + (b - a) / 2k, 0, 1) */
 Node derive_blend_weight(Derivation *d, const Expr *e, Node node, const Node *inner)

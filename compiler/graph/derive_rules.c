@@ -135,7 +135,7 @@ static Node smoothstep_slope(Derivation *d, Node a, Node b, Node c, int operand)
 
 /* The derivative of a row by operand `which`; r is the row's own node. */
 typedef Node Partial(Derivation *d, int which, Node a, Node b, Node c, Node r);
-#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning)                  \
+#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning)          \
     static Node partial_##name(Derivation *d, int which, Node a, Node b, Node c, Node r) \
     {                                                                                    \
         (void)a, (void)b, (void)c, (void)r;                                              \
@@ -144,7 +144,7 @@ typedef Node Partial(Derivation *d, int which, Node a, Node b, Node c, Node r);
 #include "compiler/graph/ops.def"
 
 static Partial *const partials[OP_COUNT] = {
-#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning) \
+#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning) \
     [OP_##name] = partial_##name,
 #include "compiler/graph/ops.def"
 };

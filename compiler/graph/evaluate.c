@@ -196,7 +196,7 @@ static inline void run_row(const Expr *e, const NodeValue *values, NodeValue *re
     uint32_t         size = components(e->type);
     switch ((Op)e->op) {
     case OP_COMPONENT: *result = number(x->v[e->index]); return;
-#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning)                   \
+#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning)           \
     case OP_##name:                                                                       \
         for (uint32_t i = 0; i < size; i++) {                                             \
             double a = x->v[i], b = arity > 1 ? y->v[i] : 0, c = arity > 2 ? z->v[i] : 0; \

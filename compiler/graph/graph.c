@@ -26,7 +26,7 @@ static const OpInfo op_info[OP_COUNT] = {
 #define LEAF(name_, text, type_, low, high, value, meaning) \
     [OP_##name_] = {.name = text, .type = type_},
 #define INDEXED(name_, text) [OP_##name_] = {.name = text},
-#define MAP(name_, arity_, glsl_, value, range, da, db, dc, norm, meaning) \
+#define MAP(name_, arity_, called, glsl_, value, range, da, db, dc, norm, meaning) \
     [OP_##name_] = {.name = #name_, .glsl = glsl_, .arity = arity_},
 #define OP(name_, signature_, glsl_, evaluate, facts, meaning) \
     [OP_##name_] = {.name = #name_, .glsl = glsl_, .signature = signature_},

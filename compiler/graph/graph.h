@@ -29,10 +29,10 @@ typedef enum GraphType {
 typedef enum BindingTime { TIME_COMPILE, TIME_FRAME, TIME_POINT } BindingTime;
 
 typedef enum Op {
-#define LEAF(name, text, type, low, high, value, meaning)               OP_##name,
-#define INDEXED(name, text)                                             OP_##name,
-#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning) OP_##name,
-#define OP(name, signature, glsl, evaluate, facts, meaning)             OP_##name,
+#define LEAF(name, text, type, low, high, value, meaning)   OP_##name,
+#define INDEXED(name, text)                                 OP_##name,
+#define MAP(name, ...)                                      OP_##name,
+#define OP(name, signature, glsl, evaluate, facts, meaning) OP_##name,
 #include "compiler/graph/ops.def"
     OP_COUNT
 } Op;

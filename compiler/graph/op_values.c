@@ -269,31 +269,19 @@ static double widths_apart(double a, double b, double width)
     return a == b ? 0 : fabs(a - b) / width;
 }
 
-#define SMIN(name, glsl, value, facts, meaning)                         \
-    static NodeValue evaluate_##name(const NodeValue *o, uint32_t size) \
-    {                                                                   \
-        (void)size;                                                     \
-        double a = o[0].v[0], b = o[1].v[0], k = o[2].v[0];             \
-        if (!(k > 0))                                                   \
-            return number(fmin(a, b));                                  \
-        double t = widths_apart(a, b, k), h = fmax(1 - t, 0);           \
-        (void)h;                                                        \
-        return number(value);                                           \
+#define BLEND(name, signature, slope, bulge, cost, facts, glsl, value, weights, meaning) \
+    static NodeValue evaluate_smin_##name(const NodeValue *o, uint32_t size)             \
+    {                                                                                    \
+        (void)size;                                                                      \
+        double a = o[0].v[0], b = o[1].v[0], k = o[2].v[0];                              \
+        if (!(k > 0))                                                                    \
+            return number(fmin(a, b));                                                   \
+        double t = widths_apart(a, b, k), h = fmax(1 - t, 0);                            \
+        double n = sizeof signature > sizeof "fff>f" ? o[3].v[0] : 0;                    \
+        (void)h, (void)n;                                                                \
+        return number(value);                                                            \
     }
-#include "compiler/graph/ops.def"
-
-/* hg_sdf's fOpUnionStairs: a triangle wave turns the line a + b = k into steps along which
-   either a or b alone decides; that is why its slope is that of the steeper of them. */
-static NodeValue evaluate_smin_stairs(const NodeValue *o, uint32_t size)
-{
-    (void)size;
-    double a = o[0].v[0], b = o[1].v[0], k = o[2].v[0];
-    if (!(k > 0) || isinf(a) || isinf(b))
-        return number(fmin(a, b));
-    double s = k / fmax(o[3].v[0], 1), u = b - k;
-    double wave = fabs(value_mod(u - a + s, 2 * s) - s);
-    return number(fmin(fmin(a, b), 0.5 * (u + a + wave)));
-}
+#include "compiler/graph/blends.def"
 
 static NodeValue evaluate_blend_weight(const NodeValue *o, uint32_t size)
 {
@@ -313,7 +301,7 @@ static NodeValue value_of_row(Op op, GraphType type, uint32_t index, const Graph
     uint32_t  size   = components(type);
     switch (op) {
     case OP_COMPONENT: return number(operands[0].v[index]);
-#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning)                \
+#define MAP(name, arity, called, glsl, value, range, da, db, dc, norm, meaning)        \
     case OP_##name:                                                                    \
         for (uint32_t i = 0; i < size; i++) {                                          \
             double a = operands[0].v[i], b = arity > 1 ? operands[arity > 1].v[i] : 0; \

@@ -1,5 +1,5 @@
 /*
- * op_values.h: what single operations are, as the rows of ops.def name it.
+ * op_values.h: what single operations are, as the rows of ops.def and blends.def name it.
  *
  * evaluate.c runs MAP rows, leaves and guards by itself; op_evaluate of graph.h does any operation.
  */
@@ -42,6 +42,19 @@ static inline double value_smoothstep(double a, double b, double c)
 {
     double t = a == b ? !(c < a) : fmin(fmax((c - a) / (b - a), 0), 1);
     return t * t * (3 - 2 * t);
+}
+
+/* ---- the `value` column of blends.def ---- */
+
+/* hg_sdf's fOpUnionStairs: a triangle wave turns the line a + b = k into steps along which
+   either a or b alone decides; that is why its slope is that of the steeper of them. */
+static inline double value_stairs(double a, double b, double k, double n)
+{
+    if (isinf(a) || isinf(b))
+        return fmin(a, b);
+    double s = k / fmax(n, 1), u = b - k;
+    double wave = fabs(value_mod(u - a + s, 2 * s) - s);
+    return fmin(fmin(a, b), 0.5 * (u + a + wave));
 }
 
 #endif

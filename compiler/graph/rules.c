@@ -238,7 +238,7 @@ static Fact rule_of_row(const RuleInput *input, uint32_t index, const double *co
     }
     switch (input->op) {
     case OP_COMPONENT: return fact_component(&o[0], index);
-#define MAP(name, arity, glsl, value_, range, da, db, dc, norm, meaning)           \
+#define MAP(name, arity, called, glsl, value_, range, da, db, dc, norm, meaning)   \
     case OP_##name:                                                                \
         for (uint32_t i = 0; i < input->size; i++) {                               \
             Range a = o[0].value[i], b = arity > 1 ? o[arity > 1].value[i] : ZERO; \

@@ -13,9 +13,10 @@
 
 const Lowered lowered_nothing = {
     .distance = NODE_NONE,
-#define INNER(name, blends)                                         .surface.name = NODE_NONE,
-#define MATERIAL(name, type, otherwise, nothing, low, high, blends) INNER(name, blends)
-#define IDENTITY(name, type, shown, otherwise, nothing, blends)     INNER(name, blends)
+#define KRS_INNER(name, blends) .surface.name = NODE_NONE,
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    KRS_INNER(name, blends)
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) KRS_INNER(name, blends)
 #include "compiler/shape/surface.def"
 };
 
@@ -68,7 +69,7 @@ static const struct {
     LowerShape *lower;
     bool (*rays)(const Shape *shape);
 } rules[SHAPE_COUNT] = {
-#define SHAPE(KIND, name, parts, curved, divided, rays, step, image, restrict, rule) \
+#define SHAPE(KIND, name, parts, curved, divided, own, leaves, rays, ...) \
     {lower_##name, rays_##rays},
 #include "compiler/shape/shapes.def"
 };

@@ -12,9 +12,9 @@
 /* What a hit needs (surface.def); NODE_NONE in `color`: not painted yet.  `normal` is in the space
    of the shape that was lowered; it need not be a unit vector (unit_normal). */
 typedef struct Surface {
-#define MATERIAL(name, type, otherwise, nothing, low, high, blends) Node name;
-#define IDENTITY(name, type, shown, otherwise, nothing, blends)     Node name;
-#define INNER(name, blends)                                         Node name;
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) Node name;
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends)            Node name;
+#define KRS_INNER(name, blends)                                                Node name;
 #include "compiler/shape/surface.def"
 } Surface;
 
@@ -84,8 +84,7 @@ Node enter_scale(Lowering *l, Node scale);
 
 /* ---- compiler/family: how each kind is lowered ---- */
 typedef Lowered LowerShape(Lowering *l, const Shape *shape, LowerContext context);
-#define SHAPE(KIND, name, parts, curved, divided, rays, step, image, restrict, rule) \
-    LowerShape lower_##name;
+#define SHAPE(KIND, name, ...) LowerShape lower_##name;
 #include "compiler/shape/shapes.def"
 
 #endif

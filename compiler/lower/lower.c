@@ -12,10 +12,12 @@
 static const double NOWHERE = 1e30;
 
 const RootInfo root_info[ROOT_COUNT] = {
-#define MATERIAL(name, type, otherwise, nothing, low, high, blends) \
-    [ROOT_##name] = {#name, TYPE_##type, TYPE_##type, otherwise, nothing, true, low, high},
-#define IDENTITY(name, type, shown, otherwise, nothing, blends) \
-    [ROOT_##name] = {#name, TYPE_##type, TYPE_##shown, otherwise, nothing, false, 0, 0},
+#define LIMITED   true
+#define UNLIMITED false
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    [ROOT_##name] = {#name, TYPE_##type, TYPE_##type, otherwise, nothing, true, low, high, asked},
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) \
+    [ROOT_##name] = {#name, TYPE_##type, TYPE_##shown, otherwise, nothing, false, 0, 0, false},
 #include "compiler/shape/surface.def"
 };
 
@@ -41,9 +43,9 @@ bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roo
     Lowered all          = lower_shape(&l, shape, context);
     Node    distance     = or_else(all.distance, graph_number(graph, NOWHERE));
     roots[ROOT_DISTANCE] = divide_by_slope(graph, distance, shape->slope);
-#define MATERIAL(name, type, otherwise, nothing, low, high, blends) \
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     roots[ROOT_##name] = or_else(all.surface.name, root_otherwise(graph, ROOT_##name));
-#define IDENTITY(name, type, shown, otherwise, nothing, blends) \
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) \
     roots[ROOT_##name] = or_else(all.surface.name, root_otherwise(graph, ROOT_##name));
 #include "compiler/shape/surface.def"
     Node normal        = or_else(all.surface.normal, context.normal);

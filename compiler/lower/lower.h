@@ -10,8 +10,8 @@
 /* What is computed for a component at a point: the roots of its graph. */
 typedef enum ComponentRoot {
     ROOT_DISTANCE, /* FLOAT, safe: divided by the slope of the shape */
-#define MATERIAL(name, type, otherwise, nothing, low, high, blends) ROOT_##name,
-#define IDENTITY(name, type, shown, otherwise, nothing, blends)     ROOT_##name,
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) ROOT_##name,
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends)            ROOT_##name,
 #include "compiler/shape/surface.def"
     ROOT_NORMAL, /* VEC3, unit: OP_NORMAL, but for smooth mirrors */
     ROOT_COUNT
@@ -23,7 +23,8 @@ typedef struct RootInfo {
     GraphType   type, shown;        /* of the node, and in shaders */
     double      otherwise, nothing; /* in each element */
     bool        material;           /* it is a property of materials, */
-    double      low, high;          /* and limited to these */
+    double      low, high;          /* and limited to these: in pictures, */
+    bool        limited;            /* and in answers too */
 } RootInfo;
 extern const RootInfo root_info[ROOT_COUNT];
 /* Its value where no material and no shape says another. */

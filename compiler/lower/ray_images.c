@@ -349,7 +349,8 @@ static const ImageRule rule_part      = {sees_parts, image_part};
 static const ImageRule *rule_of(const Shape *shape)
 {
     static const ImageRule *const rules[SHAPE_COUNT] = {
-#define SHAPE(KIND, name, parts, curved, divided, rays, step, image, restrict, rule) &rule_##image,
+#define SHAPE(KIND, name, parts, curved, divided, own, leaves, rays, step, image, ...) \
+    &rule_##image,
 #include "compiler/shape/shapes.def"
     };
     return rules[shape->kind];

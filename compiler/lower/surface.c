@@ -14,10 +14,11 @@ static Node choose(Graph *g, Node condition, Node a, Node b)
 Surface choose_surface(Graph *g, Node condition, Surface a, Surface b)
 {
     Surface chosen;
-#define INNER(name, blends) chosen.name = choose(g, condition, a.name, b.name);
+#define KRS_INNER(name, blends) chosen.name = choose(g, condition, a.name, b.name);
 
-#define MATERIAL(name, type, otherwise, nothing, low, high, blends) INNER(name, blends)
-#define IDENTITY(name, type, shown, otherwise, nothing, blends)     INNER(name, blends)
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    KRS_INNER(name, blends)
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) KRS_INNER(name, blends)
 #include "compiler/shape/surface.def"
     return chosen;
 }
@@ -34,12 +35,13 @@ static Node mix_nodes(Graph *g, Node a, Node b, Node weight)
 Surface mix_surface(Graph *g, Node nearer, Node weight, Surface a, Surface b)
 {
     Surface mixed;
-#define MIXED(name)         mix_nodes(g, a.name, b.name, weight)
-#define NEARER(name)        choose(g, nearer, a.name, b.name)
-#define INNER(name, blends) mixed.name = blends(name);
+#define MIXED(name)             mix_nodes(g, a.name, b.name, weight)
+#define NEARER(name)            choose(g, nearer, a.name, b.name)
+#define KRS_INNER(name, blends) mixed.name = blends(name);
 
-#define MATERIAL(name, type, otherwise, nothing, low, high, blends) INNER(name, blends)
-#define IDENTITY(name, type, shown, otherwise, nothing, blends)     INNER(name, blends)
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    KRS_INNER(name, blends)
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) KRS_INNER(name, blends)
 #include "compiler/shape/surface.def"
     return mixed;
 }

@@ -40,10 +40,11 @@ static void emit_guard(Emitter *e, const Regions *regions, Node guard)
 {
     const Node *o     = e->graph->items[guard].operands;
     const char *bound = e->text[o[0]], *least = e->text[o[1]];
-    Text        name = {.arena = e->scratch};
+    Text        name = {.arena = e->scratch}, found = name;
     text_format(&name, "t%u", e->next++);
-    emit_line(e, "    float %s = min(%s, %s);\n    if (!(%s)) {\n", name.bytes, bound, least,
-              guard_text(e, o));
+    text_format(&found, "min(%s, %s)", bound, least);
+    emit_local(e, TYPE_FLOAT, name.bytes, found.bytes);
+    emit_line(e, "    if (!(%s)) {\n", guard_text(e, o));
     const char *rest = emit_region(e, regions, regions->body[guard], o[2], false);
     emit_line(e, "    %s = %s;\n    }\n", name.bytes, rest);
     e->text[guard]    = name.bytes;
@@ -52,12 +53,12 @@ static void emit_guard(Emitter *e, const Regions *regions, Node guard)
 
 static void emit_return(Emitter *e, const Node *o)
 {
-    const char *bound = e->text[o[0]];
-    emit_line(e, "    if (%s)\n        return ", guard_text(e, o));
+    Text found = {.arena = e->scratch};
     if (nothing_found(e, o[1]))
-        emit_line(e, "%s;\n", bound);
+        text_add(&found, e->text[o[0]]);
     else
-        emit_line(e, "min(%s, %s);\n", bound, e->text[o[1]]);
+        text_format(&found, "min(%s, %s)", e->text[o[0]], e->text[o[1]]);
+    emit_phrase(e, PHRASE_RETURN_IF, (Operands){guard_text(e, o), found.bytes});
 }
 
 /* Statements of a region; returns its result.  Where that is all that the function is about, a
@@ -107,10 +108,10 @@ void need_lod_of(Emitter *e, uint32_t component)
 
 void emit_lod_of(Emitter *e, const ModuleFunction *function)
 {
-    uint32_t number = function->component + 1;
-    text_format(e->out, "float krs_distance_lod_%u(vec3 p, float footprint)\n{\n", number);
+    emit_head_of(e, OF_LOD, function->component);
     if (!is_guarded(e, function->component)) {
-        text_format(e->out, "    return krs_distance_%u(p);\n}\n\n", number);
+        text_format(e->out, "    return %s;\n}\n\n",
+                    emit_call_of(e, OF_DISTANCE, function->component));
         return;
     }
     graph_regions(&e->regions, e->graph, function->roots, 1, e->scratch);
@@ -122,21 +123,26 @@ void emit_lod_of(Emitter *e, const ModuleFunction *function)
 /* A component whose box is not nearer than what has been found is left out. */
 static void emit_guarded_component(Emitter *e, uint32_t component, bool first)
 {
-    Box box = e->module->boxes[component];
+    Box         box  = e->module->boxes[component];
+    const char *call = emit_call_of(e, OF_LOD, component);
     if (first) {
-        text_format(e->out, "    float d = krs_distance_lod_%u(p, footprint);\n", component + 1);
+        emit_local(e, TYPE_FLOAT, "d", call);
         return;
     }
+    Text least = {.arena = e->scratch}, nearer = least;
+    text_format(&least, "min(d, %s)", call);
     double centre[3], half[3];
     box_centre(box, centre);
     for (int i = 0; i < 3; i++)
         half[i] = (0.5 + 1e-6) * (box.axis[i].high - box.axis[i].low) + 1e-6 * fabs(centre[i]);
-    if (box_is_finite(box)) {
-        emit_call(e, "krs_box_distance", TYPE_VEC3, 3);
-        text_format(e->out, "    if (krs_box_distance(p, %s, %s) < max(d, 1e-30))\n    ",
-                    emit_vector(e, centre), emit_vector(e, half));
+    if (!box_is_finite(box)) {
+        text_format(e->out, "    d = %s;\n", least.bytes);
+        return;
     }
-    text_format(e->out, "    d = min(d, krs_distance_lod_%u(p, footprint));\n", component + 1);
+    emit_call(e, "krs_box_distance", TYPE_VEC3, 3);
+    text_format(&nearer, "krs_box_distance(p, %s, %s) < max(d, 1e-30)", emit_vector(e, centre),
+                emit_vector(e, half));
+    emit_phrase(e, PHRASE_SET_IF, (Operands){nearer.bytes, "d", least.bytes});
 }
 
 /* Endless components first, then the others where they may be nearer. */
@@ -145,12 +151,12 @@ void emit_lod(Emitter *e)
     bool   found = e->module->is_plane == NULL; /* by the first component */
     size_t count = 0;
     if (!found)
-        text_add(e->out, "    float d = 1e30;\n");
+        emit_local(e, TYPE_FLOAT, "d", "1e30");
     for (int finite = 0; finite < 2; finite++)
         for (uint32_t i = 0; i < e->module->components; i++)
             if (is_looked_at(e, i) && box_is_finite(e->module->boxes[i]) == finite)
                 emit_guarded_component(e, i, found && count++ == 0);
     if (found && count == 0)
-        text_add(e->out, "    float d = 1e30;\n");
+        emit_local(e, TYPE_FLOAT, "d", "1e30");
     text_format(e->out, "    return %s;\n", emit_cut(e, "d"));
 }

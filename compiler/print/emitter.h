@@ -2,7 +2,9 @@
  * emitter.h: what the files that print a module share.
  *
  * statements.c and mirrors.c turn nodes into statements; distances.c, surfaces.c, early_outs.c and
- * march.c write the functions around them; module_print.c puts all together.
+ * march.c write the functions around them; module_print.c puts all together.  None of them knows
+ * the language: what differs between languages is a phrase (phrases.def), a type, an operation or
+ * a helper of the printer.
  */
 #ifndef KRS_EMITTER_H
 #define KRS_EMITTER_H
@@ -96,6 +98,13 @@ void emit_count_uses(Emitter *e, const Node *roots, size_t count, bool frame);
 
 /* A line of code, in which alternatives of the printer are written out. */
 void emit_line(Emitter *e, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* What a phrase is about, as many as its row says. */
+typedef const char *Operands[3];
+/* The printer's words for a phrase; the second writes them as a line. */
+const char *phrase_text(Emitter *e, Phrase phrase, const Operands operands);
+void        emit_phrase(Emitter *e, Phrase phrase, const Operands operands);
+/* A local variable. */
+void emit_local(Emitter *e, GraphType type, const char *name, const char *value);
 /* Says where the next statement comes from, unless it is the same line as before, or the same file
    of the standard library. */
 void emit_comment(Emitter *e, Span span);
@@ -105,6 +114,8 @@ const char *emit_number(Emitter *e, double number);
 const char *emit_vector(Emitter *e, const double v[3]);
 /* An expression that is a whole statement needs no parentheses around it. */
 const char *emit_bare(Emitter *e, const char *text);
+/* A count, or the number of something. */
+const char *emit_count(Emitter *e, size_t count);
 /* `width` components of a slot of the block. */
 const char *emit_slot(Emitter *e, uint32_t slot, uint32_t first, uint32_t width);
 
@@ -114,6 +125,22 @@ const char *emit_slot(Emitter *e, uint32_t slot, uint32_t first, uint32_t width)
 void helpers_read(Emitter *e);
 /* The function that `name` begins with is called, with so many operands of that type. */
 void emit_call(Emitter *e, const char *name, GraphType type, uint32_t operands);
+/* Writes a function of these files that is one of a component: N in it stands for the number. */
+void emit_helper_of(Emitter *e, const char *name, uint32_t component);
+
+/* ---- signatures.c ---- */
+
+/* Promises a function, with a comment; nothing where it has no name of its own. */
+void emit_promise(Emitter *e, KrsFunction function);
+void emit_prepare_promise(Emitter *e);
+/* What a function begins with, up to its brace. */
+void emit_head(Emitter *e, KrsFunction function);
+void emit_prepare_head(Emitter *e);
+void emit_zone_depth_head(Emitter *e);
+void emit_head_of(Emitter *e, FunctionKind kind, uint32_t component);
+/* A call of a component's function, in one with operands of the same names, or with others. */
+const char *emit_call_of(Emitter *e, FunctionKind kind, uint32_t component);
+const char *emit_call_with(Emitter *e, FunctionKind kind, uint32_t component, const char *operands);
 
 /* ---- prepare.c ---- */
 

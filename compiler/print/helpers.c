@@ -1,11 +1,12 @@
 /*
  * helpers.c: functions that texts call, from the printer's files.
  *
- * A helper is a function or a struct of such a file, with a comment above it, between blank lines.  It
- * is printed before the first that calls it, if any does.  Where there is one of floats alone, the
- * same of vectors is written here.
+ * A helper is a function of such a file, with a comment above it, between blank lines.  It is printed
+ * before the first that calls it, if any does.  Where there is one of floats alone, the same of
+ * vectors is written here; that is for languages in which functions of one name may differ by type.
  */
 #include <assert.h>
+#include <ctype.h>
 #include <string.h>
 
 #include "compiler/print/emitter.h"
@@ -27,17 +28,40 @@ static const char *skip_comment(const char *text)
     return text;
 }
 
+static bool is_of_name(char c) { return isalnum((unsigned char)c) || c == '_'; }
+
+static bool is_word(const char *word, size_t length, const char *text)
+{
+    return strlen(word) == length && strncmp(word, text, length) == 0;
+}
+
+/* The type of the first operand: the first word between `from` and a comma or parenthesis that is
+   one, "(float a" or "(a: f32"; or nothing. */
+static void find_type(const Emitter *e, Helper *helper, const char *from)
+{
+    for (; *from && !strchr(",)", *from); from += helper->type_length) {
+        from += strcspn(from, "abcdefghijklmnopqrstuvwxyz,)");
+        helper->type        = from;
+        helper->type_length = 0;
+        while (is_of_name(from[helper->type_length]))
+            helper->type_length++;
+        for (GraphType type = TYPE_FLOAT; type <= TYPE_UINT; type++)
+            if (is_word(e->printer->types[type], helper->type_length, from))
+                return;
+    }
+    helper->type_length = 0;
+}
+
 /* The part of a file between blank lines, unless it is none; "float krs_sin(float a)..." */
 static void read_helper(Emitter *e, const char *text, size_t length)
 {
     const char *from = skip_comment(text), *end = text + length;
-    if (from >= end || *from == '#')
+    const char *name = strstr(from, "krs_");
+    if (from >= end || *from == '#' || !name || name >= end)
         return;
-    const char *name   = from + strcspn(from, " ") + 1;
-    Helper      helper = {.text = text, .length = length, .name = name};
+    Helper helper      = {.text = text, .length = length, .name = name};
     helper.name_length = strcspn(name, "( ");
-    helper.type        = name + helper.name_length + 1;
-    helper.type_length = strcspn(helper.type, " \n");
+    find_type(e, &helper, name + helper.name_length);
     array_push(e->scratch, &e->helpers, helper);
 }
 
@@ -50,11 +74,6 @@ void helpers_read(Emitter *e)
             read_helper(e, text, length);
             text += length + (blank != NULL);
         }
-}
-
-static bool is_word(const char *word, size_t length, const char *text)
-{
-    return strlen(word) == length && strncmp(word, text, length) == 0;
 }
 
 /* The one whose first operand has this type, if any; NULL: any type. */
@@ -93,22 +112,29 @@ static void print_helper(Emitter *e, Helper *helper)
     text_add(&e->helper_text, "\n");
 }
 
+static const char *text_of(Emitter *e, const char *bytes, size_t length)
+{
+    return arena_copy_text(e->scratch, bytes, length);
+}
+
 /* Of vectors, component by component. */
 static void print_spread(Emitter *e, const char *name, size_t length, GraphType type,
                          uint32_t operands)
 {
-    const char *vector = e->printer->types[type];
-    Text       *out    = &e->helper_text;
-    Text        text   = {.arena = e->scratch};
-    text_format(&text, "%s %.*s(", vector, (int)length, name);
-    for (uint32_t k = 0; k < operands; k++)
-        text_format(&text, "%s%s %c", k ? ", " : "", vector, 'a' + (int)k);
-    text_add(&text, ")\n");
-    if (out->length > 0 && strstr(out->bytes, text.bytes))
+    const char *vector = e->printer->types[type], *plain = text_of(e, name, length);
+    Text       *out  = &e->helper_text;
+    Text        text = {.arena = e->scratch};
+    for (uint32_t k = 0; k < operands; k++) {
+        Operands parameter = {vector, text_of(e, &"abcd"[k], 1)};
+        text_add(&text, k ? ", " : "");
+        text_add(&text, phrase_text(e, PHRASE_PARAMETER, parameter));
+    }
+    const char *head = phrase_text(e, PHRASE_FUNCTION, (Operands){vector, plain, text.bytes});
+    if (out->length > 0 && strstr(out->bytes, head))
         return;
-    text_format(out, "%s{\n    return %s(", text.bytes, vector);
+    text_format(out, "%s\n{\n    return %s(", head, vector);
     for (uint32_t i = 0; i < (uint32_t)type; i++) {
-        text_format(out, "%s%.*s(", i ? ", " : "", (int)length, name);
+        text_format(out, "%s%s(", i ? ", " : "", plain);
         for (uint32_t k = 0; k < operands; k++)
             text_format(out, "%s%c.%c", k ? ", " : "", 'a' + (int)k, "xyzw"[i]);
         text_add(out, ")");
@@ -140,10 +166,26 @@ void emit_call(Emitter *e, const char *name, GraphType type, uint32_t operands)
 bool module_print_helpers(const Printer *printer, Op op, GraphType type, uint32_t operands,
                           Text *out)
 {
-    const char *call = strstr(printer->operation(op), "krs_");
+    const char *call = strstr(printer->operation(op, type), "krs_");
     Emitter     e    = {.printer = printer, .scratch = out->arena, .helper_text = *out};
     helpers_read(&e);
     bool found = !call || print_called(&e, call, type, operands);
     *out       = e.helper_text;
     return found;
+}
+
+void emit_helper_of(Emitter *e, const char *name, uint32_t component)
+{
+    const Helper *helper = find_helper(e, name, strlen(name), NULL);
+    assert(helper);
+    const char *from = helper->text, *end = from + helper->length;
+    for (const char *at = from; (at = strstr(at, "_N")) && at < end; at += 2) {
+        if (is_of_name(at[2]))
+            continue;
+        text_add_bytes(e->out, from, (size_t)(at - from));
+        text_format(e->out, "_%u", component + 1);
+        from = at + 2;
+    }
+    text_add_bytes(e->out, from, (size_t)(end - from));
+    text_add(e->out, "\n");
 }

@@ -96,6 +96,33 @@ void emit_line(Emitter *e, const char *format, ...)
     write_out(e, e->out, line, length);
 }
 
+/* ---- phrases ---- */
+
+const char *phrase_text(Emitter *e, Phrase phrase, const Operands operands)
+{
+    Text text = {.arena = e->scratch};
+    for (const char *words = e->printer->phrases[phrase]; *words;) {
+        size_t plain = strcspn(words, "$");
+        text_add_bytes(&text, words, plain);
+        words += plain;
+        if (*words) {
+            text_add(&text, operands[words[1] - 'a']);
+            words += 2;
+        }
+    }
+    return text.length > 0 ? text.bytes : "";
+}
+
+void emit_phrase(Emitter *e, Phrase phrase, const Operands operands)
+{
+    emit_line(e, "%s", phrase_text(e, phrase, operands));
+}
+
+void emit_local(Emitter *e, GraphType type, const char *name, const char *value)
+{
+    emit_phrase(e, PHRASE_LOCAL, (Operands){e->printer->types[type], name, value});
+}
+
 /* ---- literals ---- */
 
 /* The shortest literal that reads back as the float nearest to the number. */
@@ -142,6 +169,13 @@ const char *emit_number(Emitter *e, double number)
 {
     Text text = {.arena = e->scratch};
     add_literal(&text, number);
+    return text.bytes;
+}
+
+const char *emit_count(Emitter *e, size_t count)
+{
+    Text text = {.arena = e->scratch};
+    text_format(&text, "%zu", count);
     return text.bytes;
 }
 

@@ -54,24 +54,26 @@ void need_scene_parts(Emitter *e)
 /* What is inside of a switch over parts. */
 static void emit_part_case(Emitter *e, size_t part)
 {
-    const char *lod = goes_by_lod(e) ? "_lod" : "", *footprint = goes_by_lod(e) ? ", 0.0" : "";
-    size_t      count = e->module->components;
-    text_format(e->out, "    case %zuu:\n", part);
+    FunctionKind kind     = goes_by_lod(e) ? OF_LOD : OF_DISTANCE;
+    const char  *operands = goes_by_lod(e) ? "p, 0.0" : "p";
+    size_t       count    = e->module->components;
+    emit_phrase(e, PHRASE_CASE, (Operands){emit_count(e, part)});
     for (uint32_t i = first_of_scene_part(part, count); i < first_of_scene_part(part + 1, count);
          i++)
         if (!emit_leaves_out(e, i))
-            text_format(e->out, "        d = min(d, krs_distance%s_%u(p%s));\n", lod, i + 1,
-                        footprint);
-    text_add(e->out, "        break;\n");
+            text_format(e->out, "        d = min(d, %s);\n", emit_call_with(e, kind, i, operands));
+    emit_phrase(e, PHRASE_CASE_END, (Operands){0});
 }
 
 void emit_scene_part_distance(Emitter *e)
 {
     size_t parts = module_scene_part_count(e->module->components);
-    text_add(e->out, "    float d = 1e30;\n    switch (scene_part) {\n");
+    emit_local(e, TYPE_FLOAT, "d", "1e30");
+    emit_phrase(e, PHRASE_SWITCH, (Operands){"scene_part"});
     for (size_t part = 0; part < parts; part++)
         emit_part_case(e, part);
-    text_format(e->out, "    }\n    return %s;\n", emit_cut(e, "d"));
+    emit_phrase(e, PHRASE_SWITCH_END, (Operands){0});
+    text_format(e->out, "    return %s;\n", emit_cut(e, "d"));
 }
 
 /* Its box, grown by what single precision may lose. */
@@ -86,15 +88,19 @@ static void emit_box_case(Emitter *e, size_t part, Box box)
         corner[0][i]  = fmax(box.axis[i].low - margin, -1e18);
         corner[1][i]  = fmin(box.axis[i].high + margin, 1e18);
     }
-    text_format(e->out, "    case %zuu:\n        low = %s;\n        high = %s;\n        break;\n",
-                part, emit_vector(e, corner[0]), emit_vector(e, corner[1]));
+    emit_phrase(e, PHRASE_CASE, (Operands){emit_count(e, part)});
+    for (int end = 0; end < 2; end++)
+        text_format(e->out, "        %s = %s;\n",
+                    phrase_text(e, PHRASE_CHANGED, (Operands){end ? "high" : "low"}),
+                    emit_vector(e, corner[end]));
+    emit_phrase(e, PHRASE_CASE_END, (Operands){0});
 }
 
 /* Of camera-relative points no box is known. */
 void emit_scene_part_box(Emitter *e)
 {
     size_t count = e->module->components, parts = module_scene_part_count(count);
-    text_add(e->out, "    switch (scene_part) {\n");
+    emit_phrase(e, PHRASE_SWITCH, (Operands){"scene_part"});
     for (size_t part = 0; part < parts; part++) {
         Box  box  = box_empty;
         bool some = false;
@@ -106,7 +112,7 @@ void emit_scene_part_box(Emitter *e)
         if (some)
             emit_box_case(e, part, box);
     }
-    text_add(e->out, "    }\n");
+    emit_phrase(e, PHRASE_SWITCH_END, (Operands){0});
 }
 
 /* ---- along rays ---- */
@@ -130,34 +136,30 @@ void need_probe(Emitter *e) { need_steps(e, OF_PROBE); }
 /* What a component has to itself, and where it joins the others. */
 void emit_along_of(Emitter *e, const ModuleFunction *function)
 {
-    bool probe = function->kind == OF_PROBE;
-    text_format(e->out, "float krs_%s_%u(vec3 p, %sfloat footprint)\n{\n",
-                probe ? "probe" : "along", function->component + 1,
-                probe ? "" : "vec3 direction, ");
+    emit_head_of(e, function->kind, function->component);
     emit_body(e, function->roots, 1);
     emit_line(e, "    return %s;\n}\n\n", e->text[*function->roots]);
 }
 
 /* The least of all, of which some have no more than a distance. */
-static void emit_steps(Emitter *e, FunctionKind kind, const char *name, const char *operands)
+static void emit_steps(Emitter *e, FunctionKind kind)
 {
-    text_add(e->out, "    float t = 1e30;\n");
+    emit_local(e, TYPE_FLOAT, "t", "1e30");
     for (uint32_t i = 0; i < e->module->components; i++) {
-        bool own = has_own_step(e, kind, i);
+        FunctionKind called = has_own_step(e, kind, i) ? kind : OF_DISTANCE;
         if (!emit_leaves_out(e, i))
-            text_format(e->out, "    t = min(t, krs_%s_%u(%s));\n", own ? name : "distance", i + 1,
-                        own ? operands : "p");
+            text_format(e->out, "    t = min(t, %s);\n", emit_call_of(e, called, i));
     }
 }
 
 void emit_along(Emitter *e)
 {
-    emit_steps(e, OF_ALONG, "along", "p, direction, footprint");
+    emit_steps(e, OF_ALONG);
     text_format(e->out, "    return %s;\n", emit_cut(e, "t"));
 }
 
 void emit_probe(Emitter *e)
 {
-    emit_steps(e, OF_PROBE, "probe", "p, footprint");
+    emit_steps(e, OF_PROBE);
     text_format(e->out, "    return %s / footprint;\n", emit_cut(e, "t"));
 }

@@ -35,7 +35,7 @@ static const char *across_axis(Emitter *e, const Expr *fold, int axis)
     const char *point = e->text[fold->operands[0]], *offset = e->text[fold->operands[2]];
     const Expr *place  = &e->graph->items[fold->operands[2]];
     bool        middle = place->op == OP_CONSTANT && place->number[0] == 0;
-    text_add(&text, "vec3(");
+    text_format(&text, "%s(", e->printer->types[TYPE_VEC3]);
     for (int i = 0; i < 3; i++) {
         char name = "xyz"[i];
         if (i > 0)
@@ -113,10 +113,11 @@ static const char *in_row(Emitter *e, const Expr *fold, Node n, Node before)
 {
     Node        first  = before == NODE_NONE ? NODE_NONE : mirror_before(e, before);
     const char *excess = distance_beyond(e, fold, first, before);
-    Text        name = {.arena = e->scratch}, text = name;
+    Text        name = {.arena = e->scratch}, positive = name, text = name;
     text_format(&name, "t%u", e->next++);
+    text_format(&positive, "max(%s, 0.0)", excess);
     emit_comment(e, fold->span);
-    emit_line(e, "    float %s = max(%s, 0.0);\n", name.bytes, excess);
+    emit_local(e, TYPE_FLOAT, name.bytes, positive.bytes);
     e->excess[n] = name.bytes;
     text_format(&text, "(%s - %s * (2.0 * %s))", e->text[fold->operands[0]], name.bytes,
                 e->text[fold->operands[1]]);

@@ -46,6 +46,9 @@ void module_lay_out(Module *module, uint32_t zone_slots, Arena *arena, Arena *sc
    next. */
 uint32_t module_scene_part_count(size_t components);
 
+/* What a function is called; NULL: it is several, or none. */
+const char *module_function_name(KrsFunction function);
+
 /* Adds the text of a variant: the wanted functions, and what they call.  Memory is that of `out`.
    A group has krs_distance and krs_along alone; a camera-relative one the distance, planes, scene parts
    and the surface, and no zones. */

@@ -115,7 +115,6 @@ void module_lay_out(Module *module, uint32_t zone_slots, Arena *arena, Arena *sc
     Emitter  e     = emitter_new(module, scratch);
     size_t   count = module->components, planes = module->is_plane ? 2 : 0;
     NodeList all = {0}, camera_relative = {0};
-    e.printer = &glsl_printer;
     add_nodes(&e, &all, module->surfaces, count * ROOT_COUNT);
     add_nodes(&e, &all, &module->zone, module->zone != NODE_NONE);
     add_nodes(&e, &all, module->guarded, count);
@@ -189,7 +188,7 @@ static void emit_functions(Emitter *e)
     for (int f = 0; f < KRS_FUNCTION_COUNT; f++) {
         if (!e->wanted[f] || !scene_functions[f].emit)
             continue;
-        text_format(e->out, "%s\n{\n", e->printer->signatures[f]);
+        emit_head(e, (KrsFunction)f);
         scene_functions[f].emit(e);
         text_add(e->out, "}\n\n");
     }
@@ -217,12 +216,9 @@ static void emit_block(Emitter *e)
                  "// Points are relative to an origin near them, of which the last slots tell.\n");
     if (v->zones > 0)
         text_format(e->out, "// The last %u hold zones: center and radius.\n", v->zones);
-    text_format(e->out,
-                "layout(std140, set = 0, binding = 0) uniform KrsParameters "
-                "{ vec4 krs_parameter[%u]; };\n\n",
-                slots + v->zones);
+    emit_phrase(e, PHRASE_PARAMETER_BLOCK, (Operands){emit_count(e, slots + v->zones)});
     if (emit_reads_zones(e))
-        text_format(e->out, "vec4 krs_zones[%u];\n\n", v->zones);
+        emit_phrase(e, PHRASE_ZONES, (Operands){emit_count(e, v->zones)});
 }
 
 /* Promised functions, which may then be called in any order. */
@@ -230,14 +226,14 @@ static void emit_promises(Emitter *e)
 {
     if (e->wanted[KRS_FUNCTION_SURFACE])
         emit_struct(e);
-    text_add(e->out, "// Everything that stays the same within a frame: call it first.\n"
-                     "void krs_prepare();\n\n");
+    emit_prepare_promise(e);
     for (int f = 0; f < KRS_FUNCTION_COUNT; f++)
-        if (e->wanted[f] && e->printer->signatures[f])
-            text_format(e->out, "%s%s;\n\n", e->printer->promises[f], e->printer->signatures[f]);
-    if (e->wanted[KRS_FUNCTION_SCENE_PART_DISTANCE])
-        text_format(e->out, "const uint KRS_SCENE_PARTS = %uu;\n\n",
-                    module_scene_part_count(e->module->components));
+        if (e->wanted[f])
+            emit_promise(e, (KrsFunction)f);
+    if (e->wanted[KRS_FUNCTION_SCENE_PART_DISTANCE]) {
+        uint32_t parts = module_scene_part_count(e->module->components);
+        emit_phrase(e, PHRASE_CONSTANT_UINT, (Operands){"KRS_SCENE_PARTS", emit_count(e, parts)});
+    }
 }
 
 void module_print(const Module *module, const KrsVariant *variant, const KrsFunction *wanted,

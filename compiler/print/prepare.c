@@ -21,7 +21,7 @@ static size_t emit_globals(Emitter *e, const Node *roots, size_t count, Node *se
         Text name      = {.arena = e->scratch};
         text_format(&name, "krs_frame%u", e->globals++);
         e->frame[n] = name.bytes;
-        text_format(e->out, "%s %s;\n", e->printer->types[g->items[n].type], name.bytes);
+        emit_phrase(e, PHRASE_GLOBAL, (Operands){e->printer->types[g->items[n].type], name.bytes});
     }
     return globals;
 }
@@ -46,7 +46,7 @@ static const char *found_text(Emitter *e, const FrameValue *value)
     else if (type == TYPE_UINT && value->at[0] == NO_PLACE)
         text_format(&text, "%.0fu", value->constant[0]);
     else if (type == TYPE_UINT)
-        text_format(&text, "floatBitsToUint(%s)", number_text(e, value, 0));
+        return phrase_text(e, PHRASE_BITS, (Operands){number_text(e, value, 0)});
     else if (together && value->at[0] / 4 == value->at[last] / 4)
         return emit_slot(e, value->at[0] / 4, value->at[0] % 4, value->width);
     else if (type == TYPE_FLOAT)
@@ -111,10 +111,9 @@ bool emit_reads_zones(const Emitter *e)
 static void emit_zone_reads(Emitter *e)
 {
     if (emit_reads_zones(e))
-        text_format(e->out,
-                    "    for (int i = 0; i < %u; i++)\n"
-                    "        krs_zones[i] = krs_parameter[%u + i];\n",
-                    e->variant->zones, emit_slot_count(e));
+        emit_phrase(
+            e, PHRASE_READ_ZONES,
+            (Operands){emit_count(e, e->variant->zones), emit_count(e, emit_slot_count(e))});
 }
 
 uint32_t emit_slot_count(const Emitter *e)
@@ -131,7 +130,8 @@ void emit_prepare(Emitter *e, const Node *roots, size_t count, const FrameValues
     bool  *is_global = arena_new_array(e->scratch, bool, e->graph->count);
     size_t globals   = emit_globals(e, roots, count, set, is_global);
     bool   reads     = e->variant->camera_relative || (e->variant->values && values->slots > 0);
-    text_add(e->out, globals ? "\nvoid krs_prepare()\n{\n" : "void krs_prepare()\n{\n");
+    text_add(e->out, globals ? "\n" : "");
+    emit_prepare_head(e);
     if (reads)
         emit_reads(e, set, globals, values);
     else

@@ -1,5 +1,8 @@
 /*
  * printer.h: what of a text depends on its language.
+ *
+ * A shading language is a Printer: its types, operations and phrases, and files with the functions
+ * that operations call.
  */
 #ifndef KRS_PRINTER_H
 #define KRS_PRINTER_H
@@ -18,14 +21,24 @@ typedef struct Alternative {
     const char *threads, *few; /* for many threads, or for few; with $a and $b */
 } Alternative;
 
+typedef enum Phrase {
+#define PHRASE(NAME, operands, meaning) PHRASE_##NAME,
+#include "compiler/print/phrases.def"
+    PHRASE_COUNT
+} Phrase;
+
 typedef struct Printer {
     const char        *name;
-    const char *const *types;         /* by GraphType */
-    const char *(*operation)(Op op);  /* with $a to $d; what is before a semicolon sets $t first */
-    const EmbeddedFile *helpers;      /* functions that operations call, with blank lines between */
+    const char *const *types; /* by GraphType */
+    /* An expression of operands $a to $d, by the type of its result; $A is $a without parentheses
+       around it.  What is before a semicolon is a statement, which sets $t. */
+    const char *(*operation)(Op op, GraphType type);
+    /* Functions that operations call, with blank lines between; and krs_box_distance,
+       krs_mirror_excess, krs_sin, krs_cos, krs_tan and krs_gradient_N, which texts call themselves:
+       the last is the gradient of component N by differences. */
+    const EmbeddedFile *helpers;
     const Alternative  *alternatives; /* the last has no name */
-    const char *signatures[KRS_FUNCTION_COUNT]; /* by KrsFunction; NULL: it has none of its own */
-    const char *promises[KRS_FUNCTION_COUNT];   /* comments above them */
+    const char *const  *phrases;      /* by Phrase */
 } Printer;
 
 extern const Printer glsl_printer;

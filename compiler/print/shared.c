@@ -60,49 +60,77 @@ bool emit_find_shared(Emitter *e, uint32_t component, NodeList *shared)
     return shared->count <= MOST_SHARED;
 }
 
-/* "type sN", of each. */
-static void add_shared(Emitter *e, const NodeList *shared, const char *before, const char *after)
+static const char *name_of(Emitter *e, const char *what, size_t number)
 {
-    for (size_t i = 0; i < shared->count; i++)
-        text_format(e->out, "%s%s s%zu%s", before,
-                    e->printer->types[e->graph->items[shared->items[i]].type], i, after);
+    Text text = {.arena = e->scratch};
+    text_format(&text, "%s%zu", what, number);
+    return text.bytes;
 }
 
-static void add_call(Emitter *e, const NodeList *shared, uint32_t number)
+static const char *type_text(Emitter *e, GraphType type) { return e->printer->types[type]; }
+
+/* A line, or a parameter, for each. */
+static const char *variable_text(Emitter *e, Phrase phrase, const NodeList *shared, size_t i)
 {
-    text_format(e->out, shared->count ? "krs_shared_%u(p" : "krs_distance_%u(p", number);
+    GraphType type = (GraphType)e->graph->items[shared->items[i]].type;
+    return phrase_text(e, phrase, (Operands){type_text(e, type), name_of(e, "s", i)});
+}
+
+static void emit_variables(Emitter *e, const NodeList *shared)
+{
     for (size_t i = 0; i < shared->count; i++)
-        text_format(e->out, ", s%zu", i);
-    text_add(e->out, ");\n");
+        text_add(e->out, variable_text(e, PHRASE_LOCAL_UNSET, shared, i));
+}
+
+static void emit_shared_head(Emitter *e, const NodeList *shared, uint32_t number)
+{
+    Text           parameters = {.arena = e->scratch};
+    const Operands point      = {type_text(e, TYPE_VEC3), "p"};
+    text_add(&parameters, phrase_text(e, PHRASE_PARAMETER, point));
+    for (size_t i = 0; i < shared->count; i++)
+        text_format(&parameters, ", %s", variable_text(e, PHRASE_PARAMETER_OUT, shared, i));
+    const Operands head = {type_text(e, TYPE_FLOAT), name_of(e, "krs_shared_", number),
+                           parameters.bytes};
+    text_format(e->out, "%s\n{\n", phrase_text(e, PHRASE_FUNCTION, head));
+}
+
+static const char *call_text(Emitter *e, const NodeList *shared, uint32_t component)
+{
+    Text text = {.arena = e->scratch};
+    if (shared->count == 0)
+        return emit_call_of(e, OF_DISTANCE, component);
+    text_format(&text, "krs_shared_%u(p", component + 1);
+    for (size_t i = 0; i < shared->count; i++)
+        text_format(&text, ", %s",
+                    phrase_text(e, PHRASE_ARGUMENT_OUT, (Operands){name_of(e, "s", i)}));
+    text_add(&text, ")");
+    return text.bytes;
 }
 
 void emit_shared_distance(Emitter *e, const ModuleFunction *distance, const NodeList *shared)
 {
-    Node     root   = *distance->roots;
-    uint32_t number = distance->component + 1;
-    NodeList roots  = {0};
+    Node     root  = *distance->roots;
+    NodeList roots = {0};
     array_push(e->scratch, &roots, root);
     for (size_t i = 0; i < shared->count; i++)
         array_push(e->scratch, &roots, shared->items[i]);
-    text_format(e->out, "float krs_shared_%u(vec3 p", number);
-    add_shared(e, shared, ", out ", "");
-    text_add(e->out, ")\n{\n");
+    emit_shared_head(e, shared, distance->component + 1);
     emit_body(e, roots.items, roots.count);
     for (size_t i = 0; i < shared->count; i++)
-        emit_line(e, "    s%zu = %s;\n", i, emit_bare(e, e->text[shared->items[i]]));
-    emit_line(e, "    return %s;\n}\n\nfloat krs_distance_%u(vec3 p)\n{\n", e->text[root], number);
-    add_shared(e, shared, "    ", ";\n");
-    text_add(e->out, "    return ");
-    add_call(e, shared, number);
-    text_add(e->out, "}\n\n");
+        emit_line(e, "    %s = %s;\n",
+                  phrase_text(e, PHRASE_CHANGED, (Operands){name_of(e, "s", i)}),
+                  emit_bare(e, e->text[shared->items[i]]));
+    emit_line(e, "    return %s;\n}\n\n", e->text[root]);
+    emit_head_of(e, OF_DISTANCE, distance->component);
+    emit_variables(e, shared);
+    text_format(e->out, "    return %s;\n}\n\n", call_text(e, shared, distance->component));
 }
 
 /* In a list of statements of the rest; the distance is `d`. */
 void emit_shared_rest(Emitter *e, const ModuleFunction *surface, const NodeList *shared)
 {
-    add_shared(e, shared, "    ", ";\n");
-    text_add(e->out, "    float d = ");
-    add_call(e, shared, surface->component + 1);
+    emit_variables(e, shared);
+    emit_local(e, TYPE_FLOAT, "d", call_text(e, shared, surface->component));
     e->given[surface->roots[ROOT_DISTANCE]] = "d";
     for (size_t i = 0; i < shared->count; i++) {
         Text name = {.arena = e->scratch};

@@ -7,6 +7,7 @@
  * the march reads as locals; literals cost nothing.  Statements carry the line of the scene
  * that they come from.
  */
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,12 +27,29 @@ static char type_letter(GraphType type)
     }
 }
 
-/* A row's template with the operands in the place of $a, $b, $c, $d.  What stands before a
-   semicolon is a statement that comes before, and sets a local of its own, $t. */
+static const char *template_of(const Emitter *e, const Expr *expr)
+{
+    return e->printer->operation((Op)expr->op, (GraphType)expr->type);
+}
+
+/* What $a or $A stands for. */
+static Node operand_of(const Expr *expr, char letter)
+{
+    return expr->operands[letter - (isupper((unsigned char)letter) ? 'A' : 'a')];
+}
+
+static void add_operand(Emitter *e, Text *text, const Expr *expr, char letter)
+{
+    const char *operand = e->text[operand_of(expr, letter)];
+    text_add(text, isupper((unsigned char)letter) ? emit_bare(e, operand) : operand);
+}
+
+/* The printer's template with the operands in the place of $a, $b, $c, $d; $A is bare.  What stands
+   before a semicolon is a statement that comes before, and sets a local of its own, $t. */
 static const char *fill_template(Emitter *e, const Expr *expr)
 {
     Text        text  = {.arena = e->scratch};
-    const char *from  = e->printer->operation((Op)expr->op);
+    const char *from  = template_of(e, expr);
     uint32_t    local = strchr(from, ';') ? e->next++ : 0;
     const char *call  = strstr(from, "krs_");
     if (call)
@@ -49,7 +67,7 @@ static const char *fill_template(Emitter *e, const Expr *expr)
             if (from[1] == 't')
                 text_format(&text, "t%u", local);
             else
-                text_add(&text, e->text[expr->operands[from[1] - 'a']]);
+                add_operand(e, &text, expr, from[1]);
             from += 2;
         }
     }
@@ -64,62 +82,68 @@ static bool picks_variable(const Emitter *e, const Expr *expr)
            e->graph->items[expr->operands[1]].op != OP_CONSTANT;
 }
 
-/* Of numbers by mix, which is no branch; it knows no others. */
-static const char *select_text(Emitter *e, const Expr *expr)
+/* ---- what is not a template of the printer ---- */
+
+static const char *slot_text(Emitter *e, const Expr *expr)
 {
-    const Node *o    = expr->operands;
-    Text        text = {.arena = e->scratch};
-    if (expr->type == TYPE_BOOL || expr->type == TYPE_UINT)
-        return fill_template(e, expr);
-    text_format(&text, "mix(%s, %s, ", e->text[o[2]], e->text[o[1]]);
-    if (expr->type == TYPE_FLOAT)
-        text_format(&text, "%s)", emit_bare(e, e->text[o[0]]));
-    else
-        text_format(&text, "bvec%d(%s))", (int)expr->type, emit_bare(e, e->text[o[0]]));
+    return emit_slot(e, expr->index, 0, expr->type);
+}
+
+static const char *component_text(Emitter *e, const Expr *expr)
+{
+    Text text = {.arena = e->scratch};
+    text_format(&text, "%s.%c", e->text[expr->operands[0]], "xyzw"[expr->index]);
     return text.bytes;
 }
 
-const char *emit_expression(Emitter *e, const Expr *expr)
+static const char *extremum_text(Emitter *e, const Expr *expr)
 {
     Text text = {.arena = e->scratch};
-    switch (expr->op) {
-    case OP_CONSTANT: return emit_constant(e, expr);
-    case OP_POINT: return "p";
-    case OP_NORMAL: return "normal";
-    case OP_FOOTPRINT: return "footprint";
-    case OP_DIRECTION: return "direction";
-    case OP_PARAMETER: return emit_slot(e, expr->index, 0, expr->type);
-    case OP_COMPONENT:
-        text_format(&text, "%s.%c", e->text[expr->operands[0]], "xyzw"[expr->index]);
-        return text.bytes;
-    case OP_min:
-    case OP_max:
-        if (!picks_variable(e, expr))
-            return fill_template(e, expr);
-        text_format(&text, "%s(%s, %s)", expr->op == OP_min ? "KRS_MIN" : "KRS_MAX",
-                    e->text[expr->operands[0]], e->text[expr->operands[1]]);
-        return text.bytes;
-    case OP_select: return select_text(e, expr);
-    case OP_fold: {
-        const char *mirror = mirror_text(e, expr);
-        return mirror ? mirror : fill_template(e, expr);
-    }
-    default: return fill_template(e, expr);
-    }
+    if (!picks_variable(e, expr))
+        return fill_template(e, expr);
+    text_format(&text, "%s(%s, %s)", expr->op == OP_min ? "KRS_MIN" : "KRS_MAX",
+                e->text[expr->operands[0]], e->text[expr->operands[1]]);
+    return text.bytes;
 }
 
-/* Whether a template names an operand twice: what stands twice is computed twice. */
+static const char *fold_text(Emitter *e, const Expr *expr)
+{
+    const char *mirror = mirror_text(e, expr);
+    return mirror ? mirror : fill_template(e, expr);
+}
+
+/* Parameters of the function that is being written. */
+static const char *const leaf_names[OP_COUNT] = {[OP_POINT]     = "p",
+                                                 [OP_NORMAL]    = "normal",
+                                                 [OP_FOOTPRINT] = "footprint",
+                                                 [OP_DIRECTION] = "direction"};
+
+static const char *(*const special[OP_COUNT])(Emitter *e, const Expr *expr) = {
+    [OP_CONSTANT] = emit_constant, [OP_PARAMETER] = slot_text, [OP_COMPONENT] = component_text,
+    [OP_min] = extremum_text,      [OP_max] = extremum_text,   [OP_fold] = fold_text,
+};
+
+const char *emit_expression(Emitter *e, const Expr *expr)
+{
+    if (leaf_names[expr->op])
+        return leaf_names[expr->op];
+    return special[expr->op] ? special[expr->op](e, expr) : fill_template(e, expr);
+}
+
+/* ---- uses ---- */
+
+/* Whether a template names an operand twice: what stands twice is computed twice.  Where nothing is
+   printed there is none. */
 static bool repeats_operand(const Emitter *e, const Expr *user, Node operand)
 {
-    if (user->op == OP_COMPONENT)
+    if (user->op == OP_COMPONENT || !e->printer)
         return false;
     if (picks_variable(e, user) ||
         (user->op == OP_fold && user->operands[0] == operand && mirror_repeats(e, user)))
         return true;
-    const char *glsl  = e->printer->operation((Op)user->op);
-    uint32_t    count = 0;
-    for (const char *at = strchr(glsl, '$'); at; at = strchr(at + 1, '$'))
-        count += at[1] != 't' && user->operands[at[1] - 'a'] == operand;
+    uint32_t count = 0;
+    for (const char *at = strchr(template_of(e, user), '$'); at; at = strchr(at + 1, '$'))
+        count += at[1] != 't' && operand_of(user, at[1]) == operand;
     return count > 1;
 }
 
@@ -176,8 +200,7 @@ void emit_node(Emitter *e, Node n)
     emit_comment(e, expr->span);
     Text name = {.arena = e->scratch};
     text_format(&name, "%c%u", type_letter(expr->type), e->next++);
-    emit_line(e, "    %s %s = %s;\n", e->printer->types[expr->type], name.bytes,
-              emit_bare(e, text));
+    emit_local(e, (GraphType)expr->type, name.bytes, emit_bare(e, text));
     e->text[n]    = name.bytes;
     e->nesting[n] = 0;
 }

@@ -1,6 +1,8 @@
 /*
  * surfaces.c: krs_surface: what is at a point.
  */
+#include <string.h>
+
 #include "compiler/print/emitter.h"
 
 /* Fields of KrsSurface are in the order of the roots; the number of the component is between
@@ -14,7 +16,11 @@ static bool is_first_identity(ComponentRoot root)
 
 static void emit_field(Emitter *e, GraphType type, const char *name)
 {
-    text_format(e->out, "    %-5s %s;\n", e->printer->types[type], name);
+    enum { LONGEST_TYPE = 5 };
+    const char *words = e->printer->types[type], *blanks = "     ";
+    size_t      length = strlen(words);
+    emit_phrase(e, PHRASE_MEMBER,
+                (Operands){words, name, blanks + (length < LONGEST_TYPE ? length : LONGEST_TYPE)});
 }
 
 void emit_struct(Emitter *e)
@@ -49,8 +55,7 @@ void emit_surface_of(Emitter *e, const ModuleFunction *function)
 {
     const Node *root   = function->roots;
     NodeList    shared = {0};
-    text_format(e->out, "KrsSurface krs_surface_%u(vec3 p, vec3 normal, float footprint)\n{\n",
-                function->component + 1);
+    emit_head_of(e, OF_SURFACE, function->component);
     if (emit_find_shared(e, function->component, &shared))
         emit_shared_rest(e, function, &shared);
     else
@@ -68,39 +73,41 @@ void emit_surface_of(Emitter *e, const ModuleFunction *function)
 /* What is anywhere in a scene without components. */
 static void emit_nothing(Emitter *e)
 {
-    text_add(e->out, "    KrsSurface nearest = KrsSurface(1e30");
+    Text nothing = {.arena = e->scratch};
+    text_add(&nothing, "KrsSurface(1e30");
     for (ComponentRoot r = FIRST_ROOT; r < ROOT_NORMAL; r++) {
         if (is_first_identity(r))
-            text_add(e->out, ", 0u");
-        double nothing = root_info[r].nothing;
-        switch (root_info[r].shown) {
-        case TYPE_UINT: text_format(e->out, ", %uu", (unsigned)nothing); break;
-        case TYPE_VEC3: text_format(e->out, ", vec3(%s)", emit_number(e, nothing)); break;
-        default: text_format(e->out, ", %s", emit_number(e, nothing)); break;
-        }
+            text_add(&nothing, ", 0u");
+        double number = root_info[r].nothing;
+        Expr   value  = {.op     = OP_CONSTANT,
+                         .type   = (uint8_t)root_info[r].shown,
+                         .number = {number, number, number, number}};
+        text_format(&nothing, ", %s", emit_constant(e, &value));
     }
-    text_add(e->out, ", normal);\n");
+    text_add(&nothing, ", normal)");
+    emit_phrase(e, PHRASE_LOCAL, (Operands){"KrsSurface", "nearest", nothing.bytes});
 }
 
 void emit_surface(Emitter *e)
 {
-    size_t count = e->module->components;
+    uint32_t count = (uint32_t)e->module->components;
     if (count > 0)
-        text_add(e->out, "    KrsSurface nearest = krs_surface_1(p, normal, footprint);\n");
+        emit_phrase(e, PHRASE_LOCAL,
+                    (Operands){"KrsSurface", "nearest", emit_call_of(e, OF_SURFACE, 0)});
     else
         emit_nothing(e);
     if (count > 1)
-        text_add(e->out, "    KrsSurface other;\n");
-    for (size_t i = 1; i < count; i++)
-        text_format(e->out,
-                    "    other = krs_surface_%zu(p, normal, footprint);\n"
-                    "    if (other.distance < nearest.distance)\n"
-                    "        nearest = other;\n",
-                    i + 1);
-    if (count > 0 && e->cuts)
-        text_add(e->out, "    float cut = krs_cut(p, nearest.distance);\n"
-                         "    if (cut > nearest.distance)\n"
-                         "        nearest.normal = normal;\n"
-                         "    nearest.distance = cut;\n");
+        emit_phrase(e, PHRASE_LOCAL_UNSET, (Operands){"KrsSurface", "other"});
+    for (uint32_t i = 1; i < count; i++) {
+        text_format(e->out, "    other = %s;\n", emit_call_of(e, OF_SURFACE, i));
+        emit_phrase(e, PHRASE_SET_IF,
+                    (Operands){"other.distance < nearest.distance", "nearest", "other"});
+    }
+    if (count > 0 && e->cuts) {
+        emit_local(e, TYPE_FLOAT, "cut", emit_cut(e, "nearest.distance"));
+        emit_phrase(e, PHRASE_SET_IF,
+                    (Operands){"cut > nearest.distance", "nearest.normal", "normal"});
+        text_add(e->out, "    nearest.distance = cut;\n");
+    }
     text_add(e->out, "    return nearest;\n");
 }

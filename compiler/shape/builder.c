@@ -9,9 +9,8 @@
 #include "compiler/graph/evaluate.h"
 
 const BlendInfo blend_info[BLEND_COUNT] = {
-#define BLEND(name, spelling, op, slope, bulge, meaning) {spelling, OP_##op, slope, bulge},
-#include "compiler/shape/blends.def"
-#undef BLEND
+#define BLEND(name, signature, slope, bulge, ...) {#name, OP_smin_##name, slope, bulge},
+#include "compiler/graph/blends.def"
 };
 const Blend blend_sharp = {.width = NODE_NONE, .steps = NODE_NONE};
 
@@ -44,8 +43,8 @@ static bool curved_by_parts(const Shape *shape)
 }
 
 const ShapeInfo shape_info[SHAPE_COUNT] = {
-#define SHAPE(KIND, name, parts, curved, divided, rays, step, image, restrict, rule) \
-    {#name, rule, parts, divided, curved_##curved},
+#define SHAPE(KIND, name, parts, curved, divided, own, leaves, rays, step, image, restrict, rule) \
+    {#name, rule, parts, divided, own, LEAVES_##leaves, curved_##curved},
 #include "compiler/shape/shapes.def"
 };
 
@@ -112,7 +111,7 @@ Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span s
     shape->distance = shape->bound = shape->uv = shape->trap = NODE_NONE;
     shape->formula = shape->declared = NODE_NONE;
     shape->plane_normal = shape->plane_offset = NODE_NONE;
-    shape->values[0] = shape->values[1] = NODE_NONE;
+    shape->values[0] = shape->values[1] = shape->map.scale = NODE_NONE;
     for (uint32_t i = 0; i < count; i++) {
         shape->children[i] = children[i];
         take_over(shape, children[i]);

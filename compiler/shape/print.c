@@ -78,9 +78,9 @@ static void print_shape(const Scene *scene, const Sources *sources, const Shape 
     if (shape->kind == SHAPE_PRIMITIVE && shape->derived > 1 + 1e-9)
         text_format(out, " (derived %.6g)", shape->derived);
     print_values(scene, shape, out);
-    if (shape->kind == SHAPE_PAINT)
+    if (shape->material)
         text_format(out, "  %s", shape->material->name);
-    if (shape->kind == SHAPE_TRANSFORM || shape->kind == SHAPE_INVERSION) {
+    if (shape->map.scale != NODE_NONE) {
         text_add(out, "  ");
         print_map(scene, &shape->map, out);
     }
@@ -102,7 +102,7 @@ static void print_shape(const Scene *scene, const Sources *sources, const Shape 
         }
         text_add(out, "\n");
     }
-    for (uint32_t i = 0; shape->kind != SHAPE_KRS && i < shape->child_count; i++)
+    for (uint32_t i = 0; shape->stage_count == 0 && i < shape->child_count; i++) /* else above */
         print_shape(scene, sources, shape->children[i], depth + 1, out);
 }
 

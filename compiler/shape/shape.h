@@ -19,21 +19,25 @@ typedef struct Map   Map;
    linear VEC3 nodes; NODE_NONE leaves what it was painted with before. */
 typedef struct Material {
     const char *name;
-#define MATERIAL(name, type, otherwise, nothing, low, high, blends) Node name;
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) Node name;
 #include "compiler/shape/surface.def"
 } Material;
 
 typedef enum ShapeKind {
-#define SHAPE(KIND, name, parts, curved, divided, rays, step, image, restrict, rule) SHAPE_##KIND,
+#define SHAPE(KIND, ...) SHAPE_##KIND,
 #include "compiler/shape/shapes.def"
     SHAPE_COUNT
 } ShapeKind;
+
+/* What a kind leaves of its parts. */
+typedef enum Leaves { LEAVES_UNKNOWN, LEAVES_ALL, LEAVES_SOME, LEAVES_MIRRORED } Leaves;
 
 /* What a row of shapes.def says of all shapes of a kind. */
 typedef struct ShapeInfo {
     const char *name, *rule;
     int         parts; /* or SEVERAL */
-    bool        divided;
+    bool        divided, own;
+    Leaves      leaves;
     bool (*curved)(const Shape *shape);
 } ShapeInfo;
 extern const ShapeInfo shape_info[SHAPE_COUNT];
@@ -52,11 +56,10 @@ struct Map {
     const Map *first; /* NULL: nothing; similarities have none */
 };
 
-/* How two distances are joined; blends.def has a row for each. */
+/* How two distances are joined; graph/blends.def has a row for each. */
 typedef enum BlendKind {
-#define BLEND(name, spelling, op, slope, bulge, meaning) BLEND_##name,
-#include "compiler/shape/blends.def"
-#undef BLEND
+#define BLEND(name, ...) BLEND_##name,
+#include "compiler/graph/blends.def"
     BLEND_COUNT
 } BlendKind;
 
@@ -145,7 +148,8 @@ struct Shape {
     const struct Shape *without_uv; /* a primitive in the tree that has none, or NULL */
     bool                smooth;     /* mirrors in the tree are smooth */
     Node                values[2];  /* see ShapeKind; NODE_NONE where there are fewer */
-    Map                 map;        /* without `first` */
+    Map                 map;        /* without `first`; of kinds that have none its scale is
+                                       NODE_NONE */
     Blend               blend;      /* of joints */
     FalloffKind         falloff;    /* META */
     uint32_t            cells[3];   /* REPEAT: copies per axis, 0 for endless */

@@ -1,13 +1,15 @@
 /*
  * devices.c: which Vulkan devices there are, and which of them is taken.
  */
-#include "runtime/device/instance.h"
+#include "runtime/device/devices.h"
 
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+
+#include "runtime/device/instance.h"
 
 /* Whether the device has what all kernels need. */
 static bool is_capable(const VkPhysicalDeviceProperties *properties)
@@ -131,7 +133,7 @@ bool gpu_list(Gpu *gpu, KrsDevice *devices, size_t capacity, size_t *count)
         }
     }
     gpu_release(gpu, physical);
-    gpu_close(gpu);
+    instance_destroy(gpu);
     return physical != NULL;
 }
 

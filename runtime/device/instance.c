@@ -1,5 +1,5 @@
 /*
- * instance.c: starting Vulkan, and listening to its validation layers.
+ * instance.c: starting and ending Vulkan, and listening to its validation layers.
  */
 #include "runtime/device/instance.h"
 
@@ -112,4 +112,17 @@ bool instance_create(Gpu *gpu, bool validation)
 
 failed:
     return false;
+}
+
+void instance_destroy(Gpu *gpu)
+{
+    if (gpu->messenger) {
+        PFN_vkDestroyDebugUtilsMessengerEXT destroy = (PFN_vkDestroyDebugUtilsMessengerEXT)
+            vkGetInstanceProcAddr(gpu->instance, "vkDestroyDebugUtilsMessengerEXT");
+        destroy(gpu->instance, gpu->messenger, NULL);
+    }
+    if (gpu->instance)
+        vkDestroyInstance(gpu->instance, NULL);
+    gpu->messenger = VK_NULL_HANDLE;
+    gpu->instance  = VK_NULL_HANDLE;
 }

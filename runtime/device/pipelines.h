@@ -7,7 +7,7 @@
 #ifndef KRS_PIPELINES_H
 #define KRS_PIPELINES_H
 
-#include "runtime/device/gpu.h"
+#include "runtime/device/gpu_state.h"
 
 /* After the device was opened, and before it is closed. */
 void pipelines_open(Gpu *gpu);

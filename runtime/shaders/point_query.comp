@@ -3,15 +3,15 @@
 /*
  * point_query.comp: the scene at given points.
  */
-#include "runtime/shared/blocks.h"
+#include "runtime/shared/answers.h"
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
 
 layout(push_constant) uniform PointWorkBlock { PointWork work; };
 
-layout(std430, set = 1, binding = 1) readonly buffer Points { Point points[]; };
-layout(std430, set = 1, binding = 2) writeonly buffer Answers { Answer answers[]; };
+layout(std430, set = 1, binding = POINTS_BINDING) readonly buffer Points { Point points[]; };
+layout(std430, set = 1, binding = ANSWERS_BINDING) writeonly buffer Answers { Answer answers[]; };
 
 // The distance, then one step along each axis and back: their differences are the gradient.
 vec4 find_gradient(vec3 p)
@@ -34,11 +34,17 @@ vec4 find_gradient(vec3 p)
     return found;
 }
 
-// Within 0 and 1; what is not a number is 0.
-vec4 saturate(vec4 numbers)
+// A row of an answer.
+vec4 row_of(float number) { return vec4(number, 0.0, 0.0, 0.0); }
+vec4 row_of(vec3 numbers) { return vec4(numbers, 0.0); }
+
+// What is not a number is the lower limit.
+vec4 limit(vec4 numbers, float low, float high)
 {
-    return mix(vec4(0.0), min(numbers, 1.0), greaterThan(numbers, vec4(0.0)));
+    return mix(vec4(low), min(numbers, high), greaterThan(numbers, vec4(low)));
 }
+#define LIMITED(numbers, low, high)   limit(numbers, low, high)
+#define UNLIMITED(numbers, low, high) numbers
 
 void main()
 {
@@ -51,17 +57,15 @@ void main()
     vec4 gradient_and_distance = find_gradient(p);
     KrsSurface surface = krs_surface(p, gradient_and_distance.xyz, 0.0);
     Answer answer;
-    answer.color = saturate(vec4(surface.color, 0.0)).rgb;
-    answer.distance = gradient_and_distance.w;
-    answer.emission = surface.emission;
-    answer.surface_distance = surface.distance;
-    vec4 coat = saturate(vec4(surface.roughness, surface.metallic, 0.0, 0.0));
-    answer.roughness = coat.x;
-    answer.metallic = coat.y;
-    answer.component = surface.component;
-    answer.level = surface.level;
-    answer.instance = surface.instance;
-    answer.normal = surface.normal;
     answer.gradient = gradient_and_distance.xyz;
+    answer.distance = gradient_and_distance.w;
+    answer.normal = surface.normal;
+    answer.surface_distance = surface.distance;
+    answer.component = uvec4(surface.component);
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) \
+    answer.name = uvec4(surface.name);
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    answer.name = asked(row_of(surface.name), low, high);
+#include "compiler/shape/surface.def"
     answers[index] = answer;
 }

@@ -26,10 +26,12 @@ const float SEAM = 4.0;     // roundings
 // Where a ray begins nearer than this to a surface, rounding may have decided on which side.
 const float SIDE_ROUNDINGS = 64.0; // roundings
 
-layout(std430, set = 1, binding = 5) readonly buffer QueryRays { QueryRay query_rays[]; };
-layout(std430, set = 1, binding = 3) writeonly buffer RayHits { RayHit ray_hits[]; };
+layout(std430, set = 1, binding = QUERY_RAYS_BINDING) readonly buffer QueryRays {
+    QueryRay query_rays[];
+};
+layout(std430, set = 1, binding = RAY_HITS_BINDING) writeonly buffer RayHits { RayHit ray_hits[]; };
 // Where rays hit, or were given up, for point_query.comp.
-layout(std430, set = 1, binding = 1) writeonly buffer Points { Point points[]; };
+layout(std430, set = 1, binding = POINTS_BINDING) writeonly buffer Points { Point points[]; };
 
 uint  index;              // of the ray
 vec3  origin, direction;

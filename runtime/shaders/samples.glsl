@@ -3,10 +3,10 @@
  * it evenly.
  *
  * Pixels are numbered along the Z-order curve.  The bits of this number, scrambled from the highest
- * to the lowest, say which point of Sobol's (0, 2)-sequence a pixel takes. (Ahmed and Wonka,
- * Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error, 2020.) So a square of 2^n by 2^n
- * pixels has one point in each box, when the unit square is divided into as many equal boxes of any
- * shape.  The noise that is left differs most between neighbours.
+ * to the lowest, say which point of Sobol's (0, 2)-sequence a pixel takes.  See Ahmed and Wonka,
+ * Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error, 2020.  Divide the unit square
+ * into as many equal boxes, of any shape, as a square of 2^n by 2^n pixels has pixels.  Then each
+ * box has one of its points.  The noise that is left differs most between neighbours.
  *
  * Each further ray of a pixel goes on by steps of the R4 sequence: multiples of powers of a root of
  * x^5 = x + 1, modulo 1.  The position of rays in their pixels follows the R2 sequence (place_ray

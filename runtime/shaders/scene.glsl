@@ -15,10 +15,10 @@ layout(std140, set = 0, binding = 0) uniform KrsParameters { vec4 krs_parameter[
 
 struct KrsSurface {
     float distance;
-#define MATERIAL(name, type, otherwise, nothing, low, high, blends) type name;
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) type name;
 #include "compiler/shape/surface.def"
     uint component;
-#define IDENTITY(name, type, shown, otherwise, nothing, blends) shown name;
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) shown name;
 #include "compiler/shape/surface.def"
     vec3 normal;
 };
@@ -33,10 +33,11 @@ KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)
 {
     KrsSurface surface;
     surface.distance = krs_distance(p);
-#define MATERIAL(name, type, otherwise, nothing, low, high, blends) surface.name = type(otherwise);
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    surface.name = type(otherwise);
 #include "compiler/shape/surface.def"
     surface.component = 1u;
-#define IDENTITY(name, type, shown, otherwise, nothing, blends) surface.name = shown(otherwise);
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) surface.name = shown(otherwise);
 #include "compiler/shape/surface.def"
     surface.normal = normal;
     return surface;

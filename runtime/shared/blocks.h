@@ -256,24 +256,17 @@ static_assert(sizeof(ListedRayBlock) == 32, "std430");
 
 /* ---- Points and rays that a program asks about ---- */
 
-/* For point_query.comp, std430. */
+/* Bindings in set 1 for queries.  The frame, the control block and the items that lanes have taken
+   have the same bindings as for pictures (frame.glsl). */
+CONSTANT(POINTS_BINDING, 1);
+CONSTANT(ANSWERS_BINDING, 2);
+CONSTANT(RAY_HITS_BINDING, 3);
+CONSTANT(QUERY_RAYS_BINDING, 5);
+
+/* For point_query.comp, std430; answers.h has the block of its answers. */
 struct Point {
     vec3  point;
     float gap_a;
-};
-
-struct Answer {
-    vec3  color;
-    float distance;
-    vec3  emission;
-    float surface_distance;
-    float roughness, metallic;
-    uint  component, level;
-    uint  instance, gap_a, gap_b, gap_c;
-    vec3  normal; /* the normal for lighting */
-    float gap_d;
-    vec3  gradient; /* of the distance, a unit vector */
-    float gap_e;
 };
 
 /* For query.comp, std430. */
@@ -304,8 +297,6 @@ struct RayHit {
 #ifdef __STDC_VERSION__
 typedef struct Point PointBlock;
 static_assert(sizeof(PointBlock) == 16, "std430");
-typedef struct Answer AnswerBlock;
-static_assert(sizeof(AnswerBlock) == 96, "std430");
 typedef struct QueryRay QueryRayBlock;
 static_assert(sizeof(QueryRayBlock) == 32, "std430");
 typedef struct RayHit RayHitBlock;

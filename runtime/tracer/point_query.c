@@ -5,7 +5,9 @@
 
 #include <string.h>
 
+#include "runtime/shared/answers.h"
 #include "runtime/tracer/kernels.h"
+#include "runtime/tracer/layouts.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
 
@@ -22,9 +24,9 @@ bool point_query_prepare(KrsRendering *rendering)
         !buffer_create(gpu, &rendering->answers, POINTS_AT_ONCE * sizeof(AnswerBlock), SHARED,
                        "answers"))
         return false;
-    rendering_bind(rendering, rendering->points_set, 0, &rendering->frame);
-    rendering_bind(rendering, rendering->points_set, 1, &rendering->points);
-    rendering_bind(rendering, rendering->points_set, 2, &rendering->answers);
+    rendering_bind(rendering, rendering->points_set, FRAME_BINDING, &rendering->frame);
+    rendering_bind(rendering, rendering->points_set, POINTS_BINDING, &rendering->points);
+    rendering_bind(rendering, rendering->points_set, ANSWERS_BINDING, &rendering->answers);
     return true;
 }
 
@@ -34,17 +36,13 @@ static void take_answer(const AnswerBlock *answer, float *distance, KrsSurfacePo
         *distance = answer->distance;
     if (!surface)
         return;
-    *surface = (KrsSurfacePoint){
-        .distance  = answer->surface_distance,
-        .roughness = answer->roughness,
-        .metallic  = answer->metallic,
-        .component = answer->component,
-        .level     = answer->level,
-        .instance  = answer->instance,
-    };
-    memcpy(surface->color, answer->color, sizeof surface->color);
-    memcpy(surface->emission, answer->emission, sizeof surface->emission);
+    surface->distance  = answer->surface_distance;
+    surface->component = answer->component[0];
     memcpy(surface->normal, answer->normal, sizeof surface->normal);
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) surface->name = answer->name[0];
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    memcpy(&surface->name, answer->name, sizeof surface->name);
+#include "compiler/shape/surface.def"
 }
 
 bool point_query_run(KrsRendering *rendering, uint32_t count, bool normals)

@@ -12,15 +12,14 @@
 #include <math.h>
 #include <string.h>
 
+#include "runtime/shared/answers.h"
 #include "runtime/tracer/kernels.h"
+#include "runtime/tracer/layouts.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
 
 enum { MOST_STEPS = 8192, MOST_LANE_STEPS = 16384 };
-
-/* Bindings of the set of points; point_query.c has the first three. */
-enum { RAY_HITS_BINDING = 3, CONTROL_BINDING = 4, QUERY_RAYS_BINDING = 5, TAKEN_BINDING = 7 };
 
 /* What single precision can square. */
 static bool is_in_reach(const double (*vectors)[3], size_t count)
@@ -39,19 +38,22 @@ static KrsStatus refuse(KrsRendering *rendering, const char *words)
     return KRS_BAD_ARGUMENT;
 }
 
+static void widen(const float *numbers, size_t count, double *to)
+{
+    for (size_t k = 0; k < count; k++)
+        to[k] = numbers[k];
+}
+
 static void describe(const AnswerBlock *answer, KrsHit *hit)
 {
     hit->distance  = answer->distance;
-    hit->component = answer->component;
-    hit->level     = answer->level;
-    hit->instance  = answer->instance;
-    hit->roughness = answer->roughness;
-    hit->metallic  = answer->metallic;
-    for (int k = 0; k < 3; k++) {
-        hit->normal[k]  = answer->gradient[k];
-        hit->shading[k] = answer->normal[k];
-        hit->color[k]   = answer->color[k];
-    }
+    hit->component = answer->component[0];
+    widen(answer->gradient, 3, hit->normal);
+    widen(answer->normal, 3, hit->shading);
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) hit->name = answer->name[0];
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    widen(answer->name, sizeof hit->name / sizeof(double), (double *)&hit->name);
+#include "compiler/shape/surface.def"
 }
 
 /* ---- points ---- */

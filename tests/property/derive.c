@@ -100,7 +100,7 @@ static void componentwise_rows_derive(void **state)
         int         arity;
         const char *name;
     } rows[] = {
-#define MAP(name, arity, glsl, value, range, da, db, dc, norm, meaning) {OP_##name, arity, #name},
+#define MAP(name, arity, ...) {OP_##name, arity, #name},
 #include "compiler/graph/ops.def"
     };
     Bench *b = *state;
@@ -156,21 +156,18 @@ static void blends_derive(void **state)
         const char *name;
     } rows[] = {
         {OP_blend_weight, "weight"},
-#define SMIN(name, ...) {OP_##name, #name},
-#include "compiler/graph/ops.def"
+#define BLEND(name, ...) {OP_smin_##name, #name},
+#include "compiler/graph/blends.def"
     };
     Bench *b = *state;
     Graph *g = b->graph;
-    Node   o[3], steps = graph_number(g, 3);
+    Node   o[4];
     mixed_operands(b, o);
+    o[3] = graph_number(g, 3); /* steps, of those that have some */
     for (double width = 0; width < 3; width += 0.8) {
-        Node k = graph_number(g, width);
-        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-            Node root = graph_op3(g, rows[i].op, o[0], o[1], k);
-            assert_true(check_derivatives(b, rows[i].name, root) > 150);
-        }
-        Node stairs = graph_op4(g, OP_smin_stairs, o[0], o[1], k, steps);
-        assert_true(check_derivatives(b, "stairs", stairs) > 150);
+        o[2] = graph_number(g, width);
+        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+            assert_true(check_derivatives(b, rows[i].name, graph_op(g, rows[i].op, o)) > 150);
     }
 }
 

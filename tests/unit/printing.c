@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "compiler/print/printer.h"
+#include "compiler/print/module.h"
 #include "runtime/tracer/kernels.h"
 #include "runtime/tracer/variants.h"
 #include "tests/support/renderer.h"
@@ -78,20 +78,18 @@ static int count_declarations(const char *text, const char *name)
     return count;
 }
 
-static const char *name_of(KrsFunction function, char name[LONGEST_NAME])
+static const char *name_of(KrsFunction function)
 {
-    const char *signature = glsl_printer.signatures[function];
-    assert_true(!signature || read_name(signature, name));
-    return signature ? name : "";
+    const char *name = module_function_name(function);
+    return name ? name : "";
 }
 
 static bool is_promised(const char *name, const KernelScene *of)
 {
-    char wanted[LONGEST_NAME];
     bool sines = false;
     for (size_t i = 0; i < of->wanted_count; i++) {
         sines = sines || of->wanted[i] == KRS_FUNCTION_SINES;
-        if (strcmp(name, name_of(of->wanted[i], wanted)) == 0)
+        if (strcmp(name, name_of(of->wanted[i])) == 0)
             return true;
     }
     return strcmp(name, "krs_prepare") == 0 || (sines && strlen(name) == strlen("krs_sin"));
@@ -109,8 +107,8 @@ static void check_names(const char *text, const KernelScene *of, const char *pat
             fail_msg("%s: nobody needs %s in\n%s", path, name, text);
     }
     for (size_t i = 0; i < of->wanted_count; i++) /* a prototype and the function */
-        if (*name_of(of->wanted[i], name))
-            assert_int_equal(count_declarations(text, name), 2);
+        if (*name_of(of->wanted[i]))
+            assert_int_equal(count_declarations(text, name_of(of->wanted[i])), 2);
     if (strchr(text, '#'))
         fail_msg("%s: a directive, or a macro, in\n%s", path, text);
     for (const char *at = text; (at = strstr(at, "KRS_")); at += 4)

@@ -14,6 +14,7 @@
 #include "cli/console.c"
 #include "cli/choices.c"
 #include "cli/options.c"
+#include "cli/parse_options.c"
 #include "cli/values.c"
 #include "cli/validate.c"
 
@@ -98,18 +99,6 @@ KrsStatus scene_frame(const Options *options, const KrsScene *scene, KrsFrame **
     (void)options, (void)scene;
     *frame = (KrsFrame *)&something;
     return KRS_OK;
-}
-
-const KrsPass *krs_pass(size_t index)
-{
-    (void)index;
-    return NULL;
-}
-
-const KrsPass *krs_find_pass(const char *word)
-{
-    (void)word;
-    return NULL;
 }
 
 KrsStatus open_renderer(const Options *options, KrsRenderer **renderer)

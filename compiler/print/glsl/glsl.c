@@ -2,7 +2,6 @@
  * glsl.c: GLSL 4.4, with std140 blocks as Vulkan has them.
  */
 #include "compiler/print/printer.h"
-#include "compiler/print/variant.h"
 
 static const char *const types[] = {
     [TYPE_FLOAT] = "float", [TYPE_VEC2] = "vec2", [TYPE_VEC3] = "vec3",
@@ -17,56 +16,67 @@ static const Alternative alternatives[] = {
     {NULL, NULL, NULL},
 };
 
+/* A choice between numbers is a mix, too; it knows no others. */
+static const char *operation(Op op, GraphType type)
+{
+    static const char *const choices[] = {
+        [TYPE_FLOAT] = "mix($c, $b, $A)",
+        [TYPE_VEC2]  = "mix($c, $b, bvec2($A))",
+        [TYPE_VEC3]  = "mix($c, $b, bvec3($A))",
+        [TYPE_VEC4]  = "mix($c, $b, bvec4($A))",
+    };
+    return op == OP_select && type <= TYPE_VEC4 ? choices[type] : op_glsl(op);
+}
+
+static const char *const phrases[PHRASE_COUNT] = {
+    [PHRASE_FUNCTION]        = "$a $b($c)",
+    [PHRASE_PROCEDURE]       = "void $a($b)",
+    [PHRASE_PARAMETER]       = "$a $b",
+    [PHRASE_PARAMETER_OUT]   = "out $a $b",
+    [PHRASE_PARAMETER_INOUT] = "inout $a $b",
+    [PHRASE_CHANGED]         = "$a",
+    [PHRASE_ARGUMENT_OUT]    = "$a",
+    [PHRASE_PROTOTYPE]       = "$a$b;\n\n",
+
+    [PHRASE_LOCAL]         = "    $a $b = $c;\n",
+    [PHRASE_LOCAL_UNSET]   = "    $a $b;\n",
+    [PHRASE_GLOBAL]        = "$a $b;\n",
+    [PHRASE_CONSTANT_UINT] = "const uint $a = $bu;\n\n",
+    [PHRASE_MEMBER]        = "    $a$c $b;\n",
+
+    [PHRASE_RETURN_IF]  = "    if ($a)\n        return $b;\n",
+    [PHRASE_SET_IF]     = "    if ($a)\n        $b = $c;\n",
+    [PHRASE_CHOICE]     = "$a ? $b : $c",
+    [PHRASE_SWITCH]     = "    switch ($a) {\n",
+    [PHRASE_CASE]       = "    case $au:\n",
+    [PHRASE_CASE_END]   = "        break;\n",
+    [PHRASE_SWITCH_END] = "    }\n",
+
+    [PHRASE_BITS] = "floatBitsToUint($a)",
+
+    [PHRASE_PARAMETER_BLOCK] = "layout(std140, set = 0, binding = 0) uniform KrsParameters "
+                               "{ vec4 krs_parameter[$a]; };\n\n",
+    [PHRASE_ZONES]           = "vec4 krs_zones[$a];\n\n",
+    [PHRASE_READ_ZONES]      = "    for (int i = 0; i < $a; i++)\n"
+                               "        krs_zones[i] = krs_parameter[$b + i];\n",
+    [PHRASE_CUT]             = "float krs_cut(vec3 p, float d)\n{\n",
+    [PHRASE_CUT_ZONES]       = "    for (int i = 0; i < $a; i++)\n"
+                               "        d = max(d, krs_zones[i].w - length(p - krs_zones[i].xyz));\n",
+
+    [PHRASE_NEAREST_GRADIENT] = "    vec4 nearest = vec4(0.0, 0.0, 0.0, 1e30), other;\n",
+    [PHRASE_NEAREST_OF_ZONES] =
+        "    for (int i = 0; i < $a; i++) {\n"
+        "        vec3 toward = krs_zones[i].xyz - p;\n"
+        "        float depth = krs_zones[i].w - length(toward);\n"
+        "        nearest = depth > nearest.w ? vec4(toward, depth) : nearest;\n"
+        "    }\n",
+};
+
 const Printer glsl_printer = {
     .name         = "GLSL",
     .types        = types,
-    .operation    = op_glsl,
+    .operation    = operation,
     .helpers      = helper_files,
     .alternatives = alternatives,
-    .signatures =
-        {
-            [KRS_FUNCTION_DISTANCE]     = "float krs_distance(vec3 p)",
-            [KRS_FUNCTION_PLANE_T]      = "float krs_plane_t(vec3 p, vec3 direction)",
-            [KRS_FUNCTION_PLANE_COSINE] = "float krs_plane_cosine(vec3 direction)",
-            [KRS_FUNCTION_ALONG] = "float krs_along(vec3 p, vec3 direction, float footprint)",
-            [KRS_FUNCTION_PROBE] = "float krs_probe(vec3 p, float footprint)",
-            [KRS_FUNCTION_DISTANCE_LOD] = "float krs_distance_lod(vec3 p, float footprint)",
-            [KRS_FUNCTION_SCENE_PART_DISTANCE] =
-                "float krs_scene_part_distance(uint scene_part, vec3 p)",
-            [KRS_FUNCTION_SCENE_PART_BOX] =
-                "void krs_scene_part_box(uint scene_part, inout vec3 low, inout vec3 high)",
-            [KRS_FUNCTION_GRADIENT] = "vec3 krs_gradient(vec3 p, float reach)",
-            [KRS_FUNCTION_SURFACE] = "KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)",
-        },
-    .promises =
-        {
-            [KRS_FUNCTION_DISTANCE] =
-                "// Never above the distance to the nearest surface; negative inside.\n",
-            [KRS_FUNCTION_PLANE_T] =
-                "// How far it is along a ray from outside to the nearest of the planes that\n"
-                "// krs_distance leaves out here.\n",
-            [KRS_FUNCTION_PLANE_COSINE] = "// How steeply a ray falls towards one of them: n.d.\n",
-            [KRS_FUNCTION_ALONG] =
-                "// How far a ray from p along a unit direction may go before it can meet a\n"
-                "// surface: at least the distance, and farther where polynomials or maps tell;\n"
-                "// negative inside, and where a surface without thickness lies between p and the\n"
-                "// last place, `footprint` behind.\n",
-            [KRS_FUNCTION_PROBE] =
-                "// Whether the ball around p of this radius is empty: if it could be more than 1\n"
-                "// times as large, which is what this says, about.\n",
-            [KRS_FUNCTION_DISTANCE_LOD] =
-                "// To march by: never above the distance to the nearest surface, and not above 0\n"
-                "// in the same places as krs_distance.  What is far for its size is not looked\n"
-                "// at, nor what is smaller than the footprint.\n",
-            [KRS_FUNCTION_SCENE_PART_DISTANCE] =
-                "// Parts of the scene, most of them one component: the distance of one.\n",
-            [KRS_FUNCTION_SCENE_PART_BOX] =
-                "// A box around a part; where there is none the box stays empty.\n",
-            [KRS_FUNCTION_GRADIENT] =
-                "// The direction in which krs_distance rises fastest at a surface, of any\n"
-                "// length, by derivatives; by differences over `reach` where there are none.\n",
-            [KRS_FUNCTION_SURFACE] =
-                "// What is at p: the component with the least distance.  `normal` is the\n"
-                "// gradient of krs_distance there, `footprint` the radius of a pixel, or 0.\n",
-        },
+    .phrases      = phrases,
 };

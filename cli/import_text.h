@@ -1,8 +1,8 @@
 /*
- * import.h: files of other programs, turned into scenes.
+ * import_text.h: a file of another program, and the text of the scene that it becomes.
  */
-#ifndef KRS_IMPORT_H
-#define KRS_IMPORT_H
+#ifndef KRS_IMPORT_TEXT_H
+#define KRS_IMPORT_TEXT_H
 
 #include <stdbool.h>
 
@@ -16,10 +16,6 @@ typedef struct Import {
     Arena      *arena;
     Text        scene; /* what came of it */
 } Import;
-
-/* Each fills `scene`, or says what is wrong, and where, and returns false. */
-bool import_jsurf(Import *import); /* SURFER: an algebraic surface and its looks */
-bool import_tape(Import *import);  /* .vm of fidget and libfive's kin: a tape of operations */
 
 /* "krs: path:line: " and the words; returns false. */
 bool import_refuse(const Import *import, unsigned line, const char *format, ...)

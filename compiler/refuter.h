@@ -1,15 +1,14 @@
 /*
- * refuting.h: what the files of the refutation share: refute.c goes through the shapes,
- * refute_settings.c chooses parameters, refute_blame.c finds the smallest shape at fault, and
- * refute_report.c says what was found.
+ * refuter.h: what a refutation knows, and one shape of it by itself: lowered, and searched.
  */
-#ifndef KRS_REFUTING_H
-#define KRS_REFUTING_H
+#ifndef KRS_REFUTER_H
+#define KRS_REFUTER_H
 
+#include "compiler/compile.h"
 #include "compiler/eval/claims.h"
+#include "compiler/inspect.h"
 #include "compiler/lower/context.h"
-#include "compiler/refute.h"
-#include "compiler/search.h"
+#include "compiler/search_types.h"
 
 /* A shape that is looked at, and where in the trees it was met first. */
 typedef struct Suspect {
@@ -52,8 +51,6 @@ typedef struct Refuter {
     bool stopped;
 } Refuter;
 
-/* ---- refute.c ---- */
-
 /* Whether a shape adds nothing to the distance of what it holds. */
 bool is_wrapper(const Shape *shape);
 
@@ -62,31 +59,8 @@ Node lower_alone(Refuter *r, const Shape *shape, bool lipschitz, LoweredShapes *
 
 /* A search of one of the distances of a shape; false: there is nothing to search. */
 bool search_of(Refuter *r, const Shape *shape, Node distance, bool lipschitz, Search *search);
-
-/* ---- refute_settings.c ---- */
-
-/* Slopes and frames of the scene, before any parameters are chosen. */
-void prepare_slopes(Refuter *r);
-void prepare_frames(Refuter *r);
-
-/* Whether what it computes depends on parameters of the scene. */
-bool needs_parameters(const Tape *tape);
-/* Defaults in the first trial, then anything that is permitted. */
-void choose_parameters(Refuter *r, uint32_t trial, NodeValue *values);
-/* Chooses parameters that a frame can have, as good as any others but for the first; false: there
-   are none to be found, or those of the first trial cannot be had, which is a finding. */
-bool choose_possible(Refuter *r, uint32_t trial, NodeValue *parameters);
-
-/* ---- refute_blame.c ---- */
-
-/* From what was refuted to the smallest shape that is refuted too. */
-void find_culprit(Refuter *r, Finding *finding);
-
-/* ---- refute_report.c ---- */
-
-/* The distance of a shape, found to be wrong in `whole`, is refuted in `finding`. */
-void report_finding(Refuter *r, const Finding *whole, const Finding *finding);
-/* A claim beside the distance is. */
-void report_claim(Refuter *r, const Finding *finding);
+/* The same of a step, beside the distance that tells on which side points are. */
+bool search_step(Refuter *r, const Shape *shape, Node step, Node side, bool lipschitz,
+                 Search *search);
 
 #endif

@@ -1,0 +1,25 @@
+/*
+ * help.h: what the command says of itself: --help, pages of the manual, completions of shells.
+ */
+#ifndef KRS_HELP_H
+#define KRS_HELP_H
+
+#include <stdio.h>
+
+#include "cli/options.h"
+
+/* What each exit status means, in a sentence of several lines. */
+extern const char exit_statuses[];
+
+/* `krs --help`, `krs COMMAND --help`. */
+void help_print(FILE *out);
+void help_print_command(CommandId command, FILE *out);
+/* The passes of the compiler, a line each, on the page of `dump`; else nothing. */
+void passes_print(CommandId command, FILE *out);
+
+/* manual.c: the same as a page for man, of a command or, with COMMAND_COUNT, of `krs` itself. */
+void manual_print(CommandId command, FILE *out);
+/* completion.c: what a shell (bash, zsh or fish; else false) completes command lines by. */
+bool completion_print(const char *shell, FILE *out);
+
+#endif

@@ -1,0 +1,236 @@
+/*
+ * parse_options.c: from the words of the command line to Options.
+ *
+ * Written by hand rather than with getopt_long, which prints messages of its own, takes
+ * abbreviations that later options would break, and cannot know which command takes what.
+ */
+#include "cli/parse_options.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "cli/console.h"
+#include "cli/values.h"
+#include "compiler/base/text.h"
+
+static bool add_output(Options *options, const char *file)
+{
+    array_push(options->arena, &options->outputs, file);
+    return true;
+}
+
+/* What its row takes, and yet cannot be. */
+static KrsStatus check_version(const Options *options, OptionId id, const char *value)
+{
+    if (id == OPTION_RESUME)
+        return say_usage(options, "--resume is not in this version; there are no checkpoints");
+    if (id == OPTION_INTEGRATOR && (strcmp(value, "direct") == 0 || strcmp(value, "path") == 0))
+        return say_usage(options, "--integrator %s is not in this version; there is preview",
+                         value);
+    if (id == OPTION_ZONE && options->zone_count == KRS_MOST_ZONES)
+        return say_usage(options, "there are at most %d zones", KRS_MOST_ZONES);
+    return KRS_OK;
+}
+
+/* By the row's own means; `choice` is the number of the value among its choices. */
+static bool take_value(Options *options, OptionId id, const char *value, int choice)
+{
+    bool taken = false;
+    switch (id) {
+#define FLAG(member)               options->member = true
+#define SWITCH(member, choices)    (options->member = choice == 1, true)
+#define CHOICE(member, choices)    (options->member = choice, true)
+#define WORD(take, choices)        take
+#define LIST(take, choices, wants) take
+#define VALUE(take, wants)         take
+#define OPTION(id, letter, name, argument, commands, member, value, help) \
+    case OPTION_##id:                                                     \
+        taken = (value);                                                  \
+        break;
+#include "cli/options.def"
+    case OPTION_COUNT: break;
+    }
+    return taken;
+}
+
+/* Takes one option and its argument (NULL when it has none). */
+static KrsStatus option_take(Options *options, OptionId id, const char *value)
+{
+    const OptionInfo *info   = &option_info[id];
+    bool              chosen = value && info->choices && !info->wants;
+    int               choice = chosen ? find_choice(value, info->choices) : 0;
+    char              wants[OPTION_TEXT];
+    KrsStatus         status = check_version(options, id, value);
+    if (status != KRS_OK)
+        return status;
+    if (choice >= 0 && take_value(options, id, value, choice))
+        return KRS_OK;
+    return say_usage(options, "--%s wants %s, not `%s`", info->name, option_wants(info, wants),
+                     value);
+}
+
+static KrsStatus unknown_option(const Options *options, const char *name, size_t length)
+{
+    const char *candidates[OPTION_COUNT];
+    size_t      count = 0;
+    for (OptionId id = 0; id < OPTION_COUNT; id++)
+        if (option_belongs(id, options->command))
+            candidates[count++] = option_info[id].name;
+    const char *word    = arena_copy_text(options->arena, name, length);
+    const char *nearest = nearest_name(word, candidates, count);
+    const char *command = command_table[options->command].name;
+    if (nearest)
+        return say_usage(options, "%s has no option --%s; did you mean --%s?", command, word,
+                         nearest);
+    return say_usage(options, "%s has no option --%s", command, word);
+}
+
+/* The option that "--name" or "--name=value" begins with, or OPTION_COUNT. */
+static OptionId option_find(const Options *options, const char *name, size_t length)
+{
+    for (OptionId id = 0; id < OPTION_COUNT; id++)
+        if (option_belongs(id, options->command) && strlen(option_info[id].name) == length &&
+            strncmp(option_info[id].name, name, length) == 0)
+            return id;
+    return OPTION_COUNT;
+}
+
+static OptionId option_find_letter(const Options *options, char letter)
+{
+    for (OptionId id = 0; id < OPTION_COUNT; id++)
+        if (option_belongs(id, options->command) && option_info[id].letter == letter)
+            return id;
+    return OPTION_COUNT;
+}
+
+/* The argument of an option: what is glued to it, or the next word. */
+static KrsStatus take_with_argument(Options *options, OptionId id, const char *glued, int *next)
+{
+    const OptionInfo *info = &option_info[id];
+    char              argument[OPTION_TEXT];
+    if (!info->argument) {
+        if (glued)
+            return say_usage(options, "--%s takes no argument", info->name);
+        return option_take(options, id, NULL);
+    }
+    if (glued)
+        return option_take(options, id, glued);
+    const char *word = *next < options->argc ? options->argv[*next] : NULL;
+    if (info->argument[0] == '[' && !(word && find_choice(word, info->choices) >= 0))
+        return option_take(options, id, NULL);
+    if (!word)
+        return say_usage(options, "--%s needs an argument: %s", info->name,
+                         option_argument(info, argument));
+    ++*next;
+    return option_take(options, id, word);
+}
+
+/* Takes the word at *next, which begins with a dash, and its argument. */
+static KrsStatus take_option(Options *options, int *next)
+{
+    const char *word = options->argv[(*next)++];
+    if (word[1] == '-') {
+        size_t   length = strcspn(word + 2, "=");
+        OptionId id     = option_find(options, word + 2, length);
+        if (id == OPTION_COUNT)
+            return unknown_option(options, word + 2, length);
+        const char *equals = word + 2 + length;
+        return take_with_argument(options, id, *equals ? equals + 1 : NULL, next);
+    }
+    OptionId id = option_find_letter(options, word[1]);
+    if (id == OPTION_COUNT)
+        return say_usage(options, "%s has no option -%c", command_table[options->command].name,
+                         word[1]);
+    return take_with_argument(options, id, word[2] ? word + 2 : NULL, next);
+}
+
+static KrsStatus find_command(Options *options, const char *word)
+{
+    const char *names[COMMAND_COUNT];
+    for (CommandId command = 0; command < COMMAND_COUNT; command++) {
+        names[command] = command_table[command].name;
+        if (strcmp(word, names[command]) == 0) {
+            options->command = command;
+            return KRS_OK;
+        }
+    }
+    if (strcmp(word, "format") == 0)
+        return say_usage(options, "`format` is not in this version");
+    const char *nearest = nearest_name(word, names, COMMAND_COUNT);
+    if (nearest)
+        return say_usage(options, "there is no command `%s`; did you mean `%s`?", word, nearest);
+    return say_usage(options, "there is no command `%s`", word);
+}
+
+/* What an untrusted scene may, unless options say otherwise. */
+static void limit_untrusted(Limits *limits)
+{
+    static const Limits most = {60, (uint64_t)2 << 30, (uint64_t)1 << 26, 4096};
+    limits->time             = limits->time > 0 ? limits->time : most.time;
+    limits->memory           = limits->memory ? limits->memory : most.memory;
+    limits->pixels           = limits->pixels ? limits->pixels : most.pixels;
+    limits->samples          = limits->samples ? limits->samples : most.samples;
+}
+
+/* What no single option can see. */
+static KrsStatus check_together(Options *options)
+{
+    const CommandInfo *info  = &command_table[options->command];
+    size_t             files = options->files.count;
+    if (options->command == COMMAND_EXPLAIN) {
+        if (files > 1)
+            return say_usage(options, "explain takes one code, not %zu", files);
+    } else if (info->files == MANY_FILES ? files == 0 : files != (size_t)info->files) {
+        if (files == 0)
+            return say_usage(options, "%s needs a %s: krs %s %s", info->name,
+                             options->command == COMMAND_IMPORT ? "file" : "scene", info->name,
+                             info->arguments);
+        const char *wanted = options->command == COMMAND_IMPORT ? "one file"
+                             : info->files                      ? "one scene"
+                                                                : "no file";
+        return say_usage(options, "%s takes %s, not `%s`", info->name, wanted,
+                         options->files.items[info->files]);
+    }
+    if (options->command == COMMAND_COMPILE && options->outputs.count != 1)
+        return say_usage(options, "compile needs one folder to write to: -o DIR");
+    if (options->command == COMMAND_IMPORT && options->outputs.count > 1)
+        return say_usage(options, "import writes one scene, not %zu", options->outputs.count);
+    if (options->command == COMMAND_DUMP && !options->after)
+        return say_usage(options, "dump needs --after=PASS");
+    if (options->command == COMMAND_QUERY && options->device && !options->on_device)
+        return say_usage(options, "--device is for questions that are answered with --on device");
+    return KRS_OK;
+}
+
+KrsStatus options_parse(Options *options, int argc, char **argv)
+{
+    options->argc    = argc;
+    options->argv    = argv;
+    options->command = COMMAND_COUNT;
+#define NO_MEMBER
+#define MEMBER(type, name, value)                                         options->name = value;
+#define DEFAULT(type, name, value)                                        options->name = value;
+#define OPTION(id, letter, name, argument, commands, member, value, help) member
+#include "cli/options.def"
+    if (argc < 2)
+        return say_usage(options, "no command is given");
+    KrsStatus status     = find_command(options, argv[1]);
+    bool      words_only = false; /* after "--" */
+    for (int next = 2; next < argc && status == KRS_OK;) {
+        const char *word = argv[next];
+        if (!words_only && strcmp(word, "--") == 0) {
+            words_only = true;
+            next++;
+        } else if (!words_only && word[0] == '-' && word[1] != '\0') {
+            status = take_option(options, &next);
+        } else {
+            array_push(options->arena, &options->files, word);
+            next++;
+        }
+    }
+    if (options->untrusted)
+        limit_untrusted(&options->limits);
+    if (status == KRS_OK && !options->help)
+        status = check_together(options);
+    return status;
+}

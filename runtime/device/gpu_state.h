@@ -1,0 +1,93 @@
+/*
+ * gpu_state.h: what is known of a device, memory of the host, and failures.
+ *
+ * Every call that can fail because of the machine returns false and leaves a status and one
+ * line of words in the Gpu.
+ */
+#ifndef KRS_GPU_STATE_H
+#define KRS_GPU_STATE_H
+
+#include <vulkan/vulkan.h>
+
+#include "runtime/device/cache.h"
+#include "runtime/krs_vulkan.h"
+
+/* What a stage of a kernel binds of storage buffers (layouts.h); devices may have four and no more,
+   but those of desktops have 16 and more. */
+enum { STORAGE_BUFFERS = 8 };
+
+typedef struct Gpu {
+    KrsAllocator     allocator;
+    VkInstance       instance;
+    VkPhysicalDevice physical;
+    VkDevice         device;
+    VkQueue          queue;
+    uint32_t         family;
+    VkCommandPool    pool, warm_up_pool;
+    VkCommandBuffer  commands; /* the one that is recorded, run and waited for */
+    VkFence          fence;
+    VkQueryPool      times; /* timestamps; none when the queue has no clock */
+    uint32_t         marks; /* of them, since recording began */
+    uint64_t         time_mask;
+
+    VkPhysicalDeviceProperties       properties;
+    VkPhysicalDeviceMemoryProperties memory;
+    bool     pretends_card; /* a device of type CPU is treated as a graphics card */
+    bool     texels;        /* kernels read what they only read as texels, not as buffers */
+    bool     sums_lanes;    /* lanes of a subgroup can add up before they count */
+    uint32_t refill_lanes;  /* of a group whose lanes exchange numbers: 8, or 4; 0: they cannot */
+    uint64_t memory_used, memory_peak; /* bytes of device memory */
+    uint64_t submissions;              /* that were waited for */
+
+    Cache           cache;            /* of shaders; zero when none was asked for */
+    VkPipelineCache pipelines;        /* the driver's, or none */
+    size_t          pipelines_loaded; /* bytes that it began with */
+
+    VkDebugUtilsMessengerEXT         messenger;
+    PFN_vkSetDebugUtilsObjectNameEXT set_name; /* NULL without validation */
+    KrsValidationCallback           *complaint;
+    KrsWorkingCallback              *working;
+    void                            *user;
+    uint64_t                         complaints;
+
+    double patience; /* seconds that a submission may take */
+    bool   stuck;    /* one took longer */
+
+    KrsStatus status; /* of the last call that failed */
+    char      message[512];
+} Gpu;
+
+#define NO_DEVICE \
+    "no usable Vulkan device: install a driver, for example Debian's mesa-vulkan-drivers"
+
+/* Of type CPU, and not to be treated as a graphics card. */
+bool gpu_is_cpu(const Gpu *gpu);
+/* Bytes of the largest memory that is the device's own. */
+uint64_t gpu_memory(const Gpu *gpu);
+
+/* Zeroed memory of the host, or NULL with the failure noted. */
+void *gpu_alloc(Gpu *gpu, size_t count, size_t size, const char *attempt);
+void  gpu_release(Gpu *gpu, void *block);
+
+/* Notes a failure in words of our own, or in Vulkan's: "cannot <attempt>: <reason>". */
+void gpu_refuse(Gpu *gpu, KrsStatus status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+void gpu_fail(Gpu *gpu, VkResult result, const char *attempt);
+
+/* Gives an object a name in the messages of the validation layers. */
+void gpu_name(Gpu *gpu, VkObjectType type, uint64_t handle, const char *name);
+
+/* Milliseconds of the host's steady clock. */
+double clock_ms(void);
+
+/* Run a Vulkan call, or note why not and go to `failed`. */
+#define TRY(gpu, attempt, call)                \
+    do {                                       \
+        VkResult result_ = (call);             \
+        if (result_ != VK_SUCCESS) {           \
+            gpu_fail((gpu), result_, attempt); \
+            goto failed;                       \
+        }                                      \
+    } while (0)
+
+#endif

@@ -1,0 +1,33 @@
+/*
+ * answers.h: what point_query.comp says of a point.
+ *
+ * C and GLSL read this one file, as they do blocks.h.
+ */
+#ifndef KRS_ANSWERS_H
+#define KRS_ANSWERS_H
+
+#include "runtime/shared/blocks.h"
+
+#ifdef __STDC_VERSION__ /* C */
+typedef unsigned int uvec4[4];
+#endif
+
+/* std430.  What is in surface.def has rows of four numbers, of which it uses as many as it has: so
+   both languages find each row in the same place, whatever the types are. */
+struct Answer {
+    vec3  gradient; /* of the distance, unit */
+    float distance;
+    vec3  normal; /* the one to light */
+    float surface_distance;
+    uvec4 component;
+#define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends)            uvec4 name;
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) vec4 name;
+#include "compiler/shape/surface.def"
+};
+
+#ifdef __STDC_VERSION__
+typedef struct Answer AnswerBlock;
+static_assert(offsetof(AnswerBlock, component) == 32 && sizeof(AnswerBlock) % 16 == 0, "std430");
+#endif
+
+#endif

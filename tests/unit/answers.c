@@ -1,0 +1,219 @@
+/*
+ * answers.c: whoever asks about a point or a ray hears of every row of surface.def, from the
+ * processor and from the device.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "tests/unit/tracer_stage.h"
+
+/* ---- The rows ---- */
+
+#define LIMITED   true
+#define UNLIMITED false
+#define FLOAT     1
+#define VEC3      3
+
+static const struct {
+    const char *name;
+    int         count;
+    double      low, high;
+    bool        limited;
+} properties[] = {
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    {#name, type, low, high, asked},
+#include "compiler/shape/surface.def"
+};
+enum { PROPERTIES = sizeof properties / sizeof *properties };
+
+static const double otherwise_of[PROPERTIES] = {
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) otherwise,
+#include "compiler/shape/surface.def"
+};
+
+/* What an answer says of the properties. */
+typedef double Material[PROPERTIES][3];
+
+static void take_hit(const KrsHit *hit, Material material)
+{
+    int i = 0;
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    memcpy(material[i++], &hit->name, type * sizeof(double));
+#include "compiler/shape/surface.def"
+}
+
+static void take_surface(const KrsSurfacePoint *surface, Material material)
+{
+    int          i = 0;
+    const float *from;
+#define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
+    from = (const float *)&surface->name;                                      \
+    for (int k = 0; k < type; k++)                                             \
+        material[i][k] = from[k];                                              \
+    i++;
+#include "compiler/shape/surface.def"
+}
+
+/* ---- A material with something else in each of its numbers ---- */
+
+/* Below 0 at some points, above 1 at others. */
+static double number_at(int property, const double point[3], int axis)
+{
+    return 0.5 + 0.05 * property + 1.5 * point[axis];
+}
+
+static void write_scene(char *text, size_t size)
+{
+    static const char axes[] = "xyz";
+    size_t            length = (size_t)snprintf(text, size, "material m { ");
+    for (int i = 0; i < PROPERTIES; i++) {
+        bool vector = properties[i].count == 3;
+        length += (size_t)snprintf(text + length, size - length, "%s%s: %s", i ? ", " : "",
+                                   properties[i].name, vector ? "[" : "");
+        for (int k = 0; k < properties[i].count; k++)
+            length += (size_t)snprintf(text + length, size - length, "%s%.17g + 1.5 * %c",
+                                       k ? ", " : "", 0.5 + 0.05 * i, axes[k]);
+        length += (size_t)snprintf(text + length, size - length, "%s", vector ? "]" : "");
+    }
+    snprintf(text + length, size - length, " } show sphere(1).paint(m);");
+}
+
+static void assert_material(Material found, const double point[3])
+{
+    for (int i = 0; i < PROPERTIES; i++)
+        for (int k = 0; k < properties[i].count; k++) {
+            double number = number_at(i, point, k);
+            if (properties[i].limited)
+                number = fmin(fmax(number, properties[i].low), properties[i].high);
+            if (!(fabs(found[i][k] - number) < 1e-5))
+                print_message("%s[%d] is %g, not %g\n", properties[i].name, k, found[i][k], number);
+            assert_near(found[i][k], number, 1e-5);
+        }
+}
+
+static void assert_hit(const KrsHit *hit)
+{
+    Material material;
+    take_hit(hit, material);
+    assert_true(hit->hit);
+    assert_material(material, hit->point);
+    assert_int_equal(hit->component, 1);
+    assert_int_equal(hit->level, 0);
+    assert_int_equal(hit->instance, 1);
+}
+
+/* ---- Questions ---- */
+
+enum { COUNT = 100 };
+
+static double points[COUNT][3], inwards[COUNT][3];
+static float  single_points[COUNT][3];
+
+static void choose_points(void)
+{
+    for (int i = 0; i < COUNT; i++) {
+        double size = 0;
+        for (int k = 0; k < 3; k++) {
+            single_points[i][k] = (float)sin(i * (k + 1.7) + 1);
+            points[i][k]        = (double)single_points[i][k];
+            size += points[i][k] * points[i][k];
+        }
+        for (int k = 0; k < 3; k++)
+            inwards[i][k] = (size < 1 ? 1 : -1) * points[i][k];
+    }
+}
+
+static void points_have_materials(void **state)
+{
+    static KrsHit          hits[COUNT], device_hits[COUNT];
+    static KrsSurfacePoint surfaces[COUNT];
+    const Stage           *stage   = *state;
+    const double(*places)[3]       = (const double(*)[3])points;
+    const float(*single_places)[3] = (const float(*)[3])single_points;
+    assert_int_equal(krs_probe(stage->frame, places, COUNT, hits), KRS_OK);
+    assert_int_equal(krs_device_probe(stage->rendering, stage->frame, places, COUNT, device_hits),
+                     KRS_OK);
+    assert_int_equal(
+        krs_sample(stage->rendering, stage->frame, single_places, COUNT, NULL, surfaces), KRS_OK);
+    for (int i = 0; i < COUNT; i++) {
+        Material material;
+        take_surface(&surfaces[i], material);
+        assert_material(material, points[i]);
+        assert_int_equal(surfaces[i].component, 1);
+        assert_int_equal(surfaces[i].level, 0);
+        assert_int_equal(surfaces[i].instance, 1);
+        assert_hit(&hits[i]);
+        assert_hit(&device_hits[i]);
+    }
+}
+
+static void rays_end_at_materials(void **state)
+{
+    static KrsHit hits[COUNT], device_hits[COUNT];
+    const Stage  *stage          = *state;
+    const double(*origins)[3]    = (const double(*)[3])points;
+    const double(*directions)[3] = (const double(*)[3])inwards;
+    assert_int_equal(krs_raycast(stage->frame, origins, directions, COUNT, 10, 0, hits), KRS_OK);
+    assert_int_equal(krs_device_raycast(stage->rendering, stage->frame, origins, directions, COUNT,
+                                        10, 0, device_hits),
+                     KRS_OK);
+    for (int i = 0; i < COUNT; i++) {
+        assert_hit(&hits[i]);
+        assert_hit(&device_hits[i]);
+    }
+}
+
+/* What no material says is as the table has it. */
+static void the_rest_is_as_the_table_says(void **state)
+{
+    const double point[1][3] = {{0.25, 0.5, 0.75}};
+    KrsHit       hits[2];
+    Stage        stage = {0};
+    (void)state;
+    stage_open(&stage, "show sphere(1);", NULL);
+    assert_int_equal(krs_probe(stage.frame, point, 1, &hits[0]), KRS_OK);
+    assert_int_equal(krs_device_probe(stage.rendering, stage.frame, point, 1, &hits[1]), KRS_OK);
+    for (int each = 0; each < 2; each++) {
+        Material material;
+        take_hit(&hits[each], material);
+        for (int i = 0; i < PROPERTIES; i++)
+            for (int k = 0; k < properties[i].count; k++)
+                assert_near(material[i][k], otherwise_of[i], 1e-6);
+    }
+    stage_close(&stage);
+}
+
+static int set_up(void **state)
+{
+    static Stage stage;
+    char         text[2048];
+    choose_points();
+    write_scene(text, sizeof text);
+    stage_open(&stage, text, NULL);
+    *state = &stage;
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    Stage *stage = *state;
+    int    wrong = krs_renderer_complaints(stage->renderer) != 0;
+    stage_close(stage);
+    return wrong;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(points_have_materials),
+        cmocka_unit_test(rays_end_at_materials),
+        cmocka_unit_test(the_rest_is_as_the_table_says),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

@@ -1,0 +1,250 @@
+/*
+ * Printers: GLSL's has words for all phrases, and a text is in the language of its printer alone.
+ *
+ * A language that nobody has is printed: it has other words for types, operations and phrases.  What
+ * the files of compiler/print wrote by themselves would be GLSL in the midst of it.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <ctype.h>
+#include <glob.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "compiler/program.h"
+
+/* ---- the words of GLSL ---- */
+
+static const int phrase_operands[PHRASE_COUNT] = {
+#define PHRASE(NAME, operands, meaning) operands,
+#include "compiler/print/phrases.def"
+};
+
+/* How many of $a, $b and $c there are, without gaps. */
+static int count_operands(const char *words)
+{
+    int count = 0;
+    while (count < 3 && strstr(words, (const char[]){'$', (char)('a' + count), 0}))
+        count++;
+    for (const char *at = words; (at = strchr(at, '$')); at++)
+        assert_in_range(at[1], 'a', 'a' + count - 1);
+    return count;
+}
+
+static void glsl_has_words_for_all_phrases(void **state)
+{
+    (void)state;
+    for (int phrase = 0; phrase < PHRASE_COUNT; phrase++) {
+        assert_non_null(glsl_printer.phrases[phrase]);
+        assert_int_equal(count_operands(glsl_printer.phrases[phrase]), phrase_operands[phrase]);
+    }
+}
+
+/* ---- another language ---- */
+
+static const char *const types[] = {
+    [TYPE_FLOAT] = "f32",  [TYPE_VEC2] = "vec2f", [TYPE_VEC3] = "vec3f",
+    [TYPE_VEC4] = "vec4f", [TYPE_BOOL] = "truth", [TYPE_UINT] = "u32",
+};
+
+/* As many operands as there are. */
+static const char *operation(Op op, GraphType type)
+{
+    static const char *const texts[] = {"f()", "f($a)", "f($a, $b)", "f($a, $b, $c)",
+                                        "f($a, $b, $c, $D)"};
+    const char              *glsl    = op_glsl(op);
+    size_t                   count   = 0;
+    (void)type;
+    while (count < 4 && strstr(glsl, (const char[]){'$', (char)('a' + count), 0}))
+        count++;
+    return texts[count];
+}
+
+static const EmbeddedFile helpers[] = {
+    {.name = "helpers",
+     .text = "// What texts call by themselves.\n\n"
+             "fn krs_gradient_N(p: vec3f, reach: f32) -> vec4f {\n    krs_distance_N(p);\n}\n\n"
+             "fn krs_box_distance(p: vec3f, center: vec3f, half_sides: vec3f) -> f32 {\n}\n\n"
+             "fn krs_mirror_excess(p: vec3f, n: vec3f, w: f32) -> f32 {\n}\n\n"
+             "fn krs_sin(a: f32) -> f32 {\n}\n\n"
+             "fn krs_cos(a: f32) -> f32 {\n}\n\n"
+             "fn krs_tan(a: f32) -> f32 {\n}\n"},
+    {0},
+};
+
+static const Alternative alternatives[] = {
+    {"KRS_MIN", "min($a, $b)", "least($a, $b)"},
+    {"KRS_MAX", "max($a, $b)", "most($a, $b)"},
+    {"KRS_BACK", "$b", "$a"},
+    {NULL, NULL, NULL},
+};
+
+static const char *const phrases[PHRASE_COUNT] = {
+    [PHRASE_FUNCTION]         = "fn $b($c) -> $a",
+    [PHRASE_PROCEDURE]        = "fn $a($b)",
+    [PHRASE_PARAMETER]        = "$b: $a",
+    [PHRASE_PARAMETER_OUT]    = "$b: ptr<$a>",
+    [PHRASE_PARAMETER_INOUT]  = "$b: ptr<$a>",
+    [PHRASE_CHANGED]          = "*$a",
+    [PHRASE_ARGUMENT_OUT]     = "&$a",
+    [PHRASE_PROTOTYPE]        = "",
+    [PHRASE_LOCAL]            = "    var $b: $a = $c;\n",
+    [PHRASE_LOCAL_UNSET]      = "    var $b: $a;\n",
+    [PHRASE_GLOBAL]           = "var<private> $b: $a;\n",
+    [PHRASE_CONSTANT_UINT]    = "let $a = $bu;\n",
+    [PHRASE_MEMBER]           = "    $b: $a,\n",
+    [PHRASE_RETURN_IF]        = "    if ($a) { return $b; }\n",
+    [PHRASE_SET_IF]           = "    if ($a) { $b = $c; }\n",
+    [PHRASE_CHOICE]           = "select($c, $b, $a)",
+    [PHRASE_SWITCH]           = "    match $a {\n",
+    [PHRASE_CASE]             = "    $au => {\n",
+    [PHRASE_CASE_END]         = "    }\n",
+    [PHRASE_SWITCH_END]       = "    default => {}\n    }\n",
+    [PHRASE_BITS]             = "bitcast<u32>($a)",
+    [PHRASE_PARAMETER_BLOCK]  = "var<block> krs_parameter: array<vec4f, $a>;\n",
+    [PHRASE_ZONES]            = "var<private> krs_zones: array<vec4f, $a>;\n",
+    [PHRASE_READ_ZONES]       = "    read_zones($a, $b);\n",
+    [PHRASE_CUT]              = "fn krs_cut(p: vec3f, uncut: f32) -> f32\n{\n    var d = uncut;\n",
+    [PHRASE_CUT_ZONES]        = "    d = zone_depth(p, d, $a);\n",
+    [PHRASE_NEAREST_GRADIENT] = "    var nearest: vec4f; var other: vec4f;\n",
+    [PHRASE_NEAREST_OF_ZONES] = "    nearest = of_zones(nearest, $a);\n",
+};
+
+static const Printer other_printer = {
+    .name         = "another",
+    .types        = types,
+    .operation    = operation,
+    .helpers      = helpers,
+    .alternatives = alternatives,
+    .phrases      = phrases,
+};
+
+/* ---- its texts ---- */
+
+static const char *const words_of_glsl[] = {"float", "vec2",  "vec3",   "vec4", "bool",   "uint",
+                                            "bvec2", "bvec3", "bvec4",  "void", "const",  "uniform",
+                                            "out",   "inout", "mix",    "for",  "switch", "case",
+                                            "break", "?",     "layout", "int",  "precise"};
+
+static bool is_of_name(char c) { return isalnum((unsigned char)c) || c == '_'; }
+
+/* A word by itself, outside of comments. */
+static bool has_word(const char *line, size_t length, const char *word)
+{
+    size_t size = strlen(word);
+    for (size_t at = 0; at + size <= length && strncmp(line + at, "//", 2) != 0; at++)
+        if (strncmp(line + at, word, size) == 0 &&
+            (!is_of_name(*word) ||
+             ((at == 0 || !is_of_name(line[at - 1])) && !is_of_name(line[at + size]))))
+            return true;
+    return false;
+}
+
+/* In this language no name follows its type. */
+static bool declares_as_glsl(const char *line, size_t length)
+{
+    for (size_t at = 0; at < length; at++)
+        for (GraphType type = TYPE_FLOAT; type <= TYPE_UINT; type++) {
+            size_t size = strlen(types[type]);
+            if (strncmp(line + at, types[type], size) == 0 && line[at + size] == ' ' &&
+                isalpha((unsigned char)line[at + size + 1]))
+                return true;
+        }
+    return false;
+}
+
+static int lines_seen;
+
+static void check_language(const char *text, const char *path)
+{
+    for (const char *line = text; *line; line += *line == '\n') {
+        size_t length = strcspn(line, "\n");
+        for (size_t i = 0; i < sizeof words_of_glsl / sizeof *words_of_glsl; i++)
+            if (has_word(line, length, words_of_glsl[i]))
+                fail_msg("%s: `%s` in %.*s", path, words_of_glsl[i], (int)length, line);
+        if (declares_as_glsl(line, length))
+            fail_msg("%s: a type before a name in %.*s", path, (int)length, line);
+        line += length;
+        lines_seen++;
+    }
+}
+
+static void print_variant(const KrsScene *scene, const KrsVariant *variant, const char *path)
+{
+    KrsFunction wanted[KRS_FUNCTION_COUNT];
+    size_t      count = 0;
+    Memory      memory;
+    jmp_buf     exhausted;
+    memory = (Memory){.exhausted = &exhausted};
+    assert_int_equal(setjmp(exhausted), 0);
+    Arena arena = {.memory = &memory};
+    Text  text  = {.arena = &arena};
+    for (KrsFunction function = 0; function < KRS_FUNCTION_COUNT; function++) {
+        bool plane = function == KRS_FUNCTION_PLANE_T || function == KRS_FUNCTION_PLANE_COSINE;
+        bool part  = function == KRS_FUNCTION_SCENE_PART_DISTANCE ||
+                    function == KRS_FUNCTION_SCENE_PART_BOX;
+        if ((!plane || scene->program.planes) && (!part || scene->program.scene_parts >= 2))
+            wanted[count++] = function;
+    }
+    module_print(&scene->module, variant, wanted, count, &other_printer, &text);
+    check_language(text.bytes, path);
+    arena_free(&arena);
+}
+
+static void print_scene(const char *path)
+{
+    KrsScene        *scene;
+    const KrsOptions options = {.gradients = true};
+    assert_int_equal(krs_compile_file(path, &options, &scene), KRS_OK);
+    const KrsVariant variants[] = {
+        {.many_threads = false},
+        {.many_threads = true, .shares = true},
+        {.many_threads = true, .values = true, .zones = 2},
+        {.planes = scene->program.planes, .values = true, .shares = true},
+    };
+    for (size_t i = 0; i < sizeof variants / sizeof *variants; i++)
+        print_variant(scene, &variants[i], path);
+    krs_scene_free(scene);
+}
+
+static void texts_are_in_the_language_of_their_printer(void **state)
+{
+    glob_t found;
+    (void)state;
+    lines_seen = 0;
+    assert_int_equal(glob("tests/golden/*.krs", 0, NULL, &found), 0);
+    for (size_t i = 0; i < found.gl_pathc; i++)
+        print_scene(found.gl_pathv[i]);
+    globfree(&found);
+    print_scene("bench/scenes/compound.krs");
+    assert_true(lines_seen > 10000);
+}
+
+/* The same search finds GLSL where there is some. */
+static void words_of_glsl_are_found(void **state)
+{
+    static const char line[] = "    float t1 = mix(a, b, c); // void";
+    (void)state;
+    assert_true(has_word(line, strlen(line), "float"));
+    assert_true(has_word(line, strlen(line), "mix"));
+    assert_false(has_word(line, strlen(line), "void"));
+    assert_false(has_word("afloat floats", 13, "float"));
+    assert_true(has_word("a ? b : c", 9, "?"));
+    assert_true(declares_as_glsl("    vec3f v1 = p;", 17));
+    assert_false(declares_as_glsl("    var v1: vec3f = p;", 22));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(glsl_has_words_for_all_phrases),
+        cmocka_unit_test(texts_are_in_the_language_of_their_printer),
+        cmocka_unit_test(words_of_glsl_are_found),
+    };
+    return cmocka_run_group_tests_name("printers", tests, NULL, NULL);
+}
