@@ -41,7 +41,7 @@ static float *fetch(KrsRendering *rendering, uint32_t rows)
 }
 
 /* Clears rows of results.  They are 0, since colours are sums and pixels without a hit have no
-   values; but position_row are infinite where nothing is hit. */
+   values.  Positions are infinite where nothing is hit. */
 static bool clear_results(KrsRendering *rendering, uint32_t rows, VkDeviceSize row_bytes)
 {
     const uint32_t infinite = 0x7f800000;

@@ -27,8 +27,8 @@ struct RayEnd {
 };
 
 // Values of pixels, lights and rays are stored in rows of four numbers, or singly, and are read as
-// texels.  lavapipe makes each number of a buffer access a loop over the lanes, which takes five
-// times as long.  Buffers are for what is written, and what is counted.
+// texels.  lavapipe compiles each number of a buffer access to a loop over the lanes, which takes
+// five times as long.  Buffers are for what is written, and what is counted.
 
 // Where rays and beams end: the bits of t, and the rest by pack_ray.  First are the rays of pixels,
 // then the beams of 8x8 tiles, of 32x32 tiles, and of the quarters of 8x8 tiles, tile by tile.

@@ -21,7 +21,7 @@ vec4 find_color(uint index)
     return uintBitsToFloat(load_result(ROW_COLORS * band_pixels() + index));
 }
 
-// Adds light to a pixel, whose alpha stays.
+// Adds light to the colour of a pixel; alpha stays as it is.
 void add_light(uint index, vec3 color)
 {
     colors[ROW_COLORS * band_pixels() + index] = find_color(index).rgb + color;

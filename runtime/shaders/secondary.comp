@@ -58,7 +58,7 @@ float facing;      // cosine between the normal and the direction
 float lift;        // height of the start above the surface
 float lift_in_pixels;
 bool  is_cone;     // else a ray
-float spread;      // radius of the cone per distance
+float spread;      // radius of the cone at distance 1
 float margin;      // width around the cone that must be empty, too
 bool  blocked;
 bool  below_horizon;            // its point of the light is behind the surface
@@ -76,7 +76,7 @@ void begin_ray(vec3 normal, vec3 toward)
     direction = toward;
     facing = dot(normal, direction);
     float box_end = clip_ray(start, direction, end).y;
-    // From inside of a solid nothing leaves the box around all of them.
+    // A ray from inside of a solid that reaches the box around all solids has met a wall there.
     blocked = hit.side < 0.0 && box_end < end;
     end = min(end, box_end);
     step_limit = blocked || below_horizon ? 0u : MOST_STEPS;

@@ -60,7 +60,7 @@ Coat find_coat(HitPoint hit, KrsSurface surface, float evenness)
 }
 
 // Scattered light is in proportion to the cosine, and so to the mean of the normals, which is
-// shorter than each.  What a coat mirrors is as much whatever its roughness.
+// shorter than each.  What a coat mirrors is the same amount at any roughness.
 vec3 mean_color(Coat coat) { return coat.color * mix(coat.mean_length, 1.0, coat.metallic); }
 
 vec3 direct_light(Light light, HitPoint hit, Coat coat, vec3 facing, float visible)

@@ -278,7 +278,7 @@ void begin_march(uint index, float start, bool is_ray)
     march.steps = 0u;
     march.state = march.t <= end ? STATE_MARCHING : STATE_MISS;
 #ifdef PROBE
-    // Beams end where a tile does not fit into the ball.
+    // Beams end where the tile no longer fits into the ball.
     march.step = start > 0.0 ? 3.0 * (pixel_base + pixel_slope * start)
                              : 0.05 * (end - start);
     march.step = max(march.step, ROUNDING * (rounding + start));
@@ -388,7 +388,7 @@ void end_item()
     bool unresolved = is_ray && (march.state == STATE_MARCHING || march.state == STATE_REFINING);
     uint march_group = 0u;
     march.state = unresolved ? STATE_MISS : march.state;
-    // From inside of a solid nothing leaves the box around all of them.
+    // A ray from inside of a solid that reaches the box around all solids hits a wall there.
     if (is_ray && !unresolved && march.state == STATE_MISS && march.side < 0.0 && ends_at_walls) {
         march.state = STATE_HIT;
         march.t = end;

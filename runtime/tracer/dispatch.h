@@ -14,8 +14,8 @@
    dispatch_finish. */
 bool dispatch_chains(const Job *job);
 
-/* Makes a dispatch from the control block as it is now.  How many items it has may be decided
-   later. */
+/* Makes a dispatch from the control block as it is now.  The number of items is found out when it
+   runs. */
 Dispatch dispatch_of(const Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
                      Items items, LaneBudget budget);
 /* Runs a dispatch, or adds it to the chain. */

@@ -1,6 +1,6 @@
 /*
- * handles.h: the structs behind the handles of krs_vulkan.h, but KrsFilm (film/held.h).  Functions
- * for them are in renderer.h, rendering.h and kernels.h.
+ * handles.h: the structs behind the handles of krs_vulkan.h, except KrsFilm (film/held.h).
+ * Functions for them are in renderer.h, rendering.h and kernels.h.
  */
 #ifndef KRS_HANDLES_H
 #define KRS_HANDLES_H

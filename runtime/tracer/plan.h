@@ -31,7 +31,7 @@ typedef enum PassKind {
 
 typedef struct Pass {
     PassKind      kind;
-    KrsPhase      phase;  /* that its time counts for */
+    KrsPhase      phase;  /* to which its time is added */
     float         weight; /* its part of the progress, relative to other passes */
     const March  *march;  /* PASS_MARCH alone; the members below are for the others */
     const Kernel *kernel;

@@ -87,7 +87,7 @@ static bool add_groups(Job *job, Plan *plan, float weight, Primary *primary)
     return true;
 }
 
-/* Clips rays to the box around what is left to march when planes are intersected apart. */
+/* Clips rays to the box around all components but planes, which rays intersect without a march. */
 static void clip_to_rest(const Job *job, March *march)
 {
     const KrsProgram *program = job->rendering->program;

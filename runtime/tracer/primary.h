@@ -6,13 +6,13 @@
 
 #include "runtime/tracer/plan.h"
 
-/* A march group whose normals its own kernel finds. */
+/* A march group, and the kernel that finds its normals. */
 typedef struct OwnGroup {
     uint32_t march_group; /* from 1; 0: what is in no group, which is planes */
     Kernel  *normals;
 } OwnGroup;
 
-/* How the normals of primary rays' hits are found in this frame. */
+/* The kernels that find normals in this frame. */
 typedef struct Primary {
     OwnGroup groups[1 + KRS_MOST_MARCH_GROUPS];
     size_t   group_count; /* 0: `normals` finds those of all hits */

@@ -78,7 +78,7 @@ static void want_rays(KernelVariant *to, const KrsRendering *rendering)
 
 /* ---- variants for a rendering ---- */
 
-/* Not on lavapipe, which makes a sum over the lanes a loop. */
+/* Not on lavapipe, which compiles a sum over the lanes to a loop. */
 static bool sums_lanes(const Gpu *gpu) { return !gpu_is_cpu(gpu) && gpu->sums_lanes; }
 
 static KernelVariant begin_variant(const KrsRendering *rendering, KrsTrace trace,

@@ -44,7 +44,7 @@ static bool worth_second_device(const Gpu *gpu, const KernelCode *codes, size_t 
 
 /* The second device's thread.  If anything fails, or nothing is kept on disk, the first device
    compiles what this one should have. */
-static void *warm_up_beside(void *user)
+static void *warm_up_on_second_device(void *user)
 {
     WarmUpQueue *queue  = user;
     KrsRenderer  second = {0};
@@ -70,7 +70,7 @@ static bool warm_up_all(KrsRenderer *renderer, VkDescriptorSet scene_set,
     pthread_t   thread;
     bool        ready = true, taken[KERNELS_AT_ONCE] = {false};
     bool        helped = worth_second_device(&renderer->gpu, codes, count) &&
-                  pthread_create(&thread, NULL, warm_up_beside, &queue) == 0;
+                  pthread_create(&thread, NULL, warm_up_on_second_device, &queue) == 0;
     while (helped && ready) {
         ready    = gpu_wait(&renderer->gpu); /* takes a kernel only when it can run it */
         size_t i = atomic_fetch_add(&queue.next, 1);

@@ -91,7 +91,7 @@ static char *folder_of(const char *path)
 }
 
 /* "real/folder/name" of a file that does not exist, in a folder that does. */
-static char *place_missing(const char *path)
+static char *real_path_of_missing(const char *path)
 {
     char *folder = folder_of(path), *real = folder ? realpath(folder, NULL) : NULL, *place = NULL;
     const char *slash = strrchr(path, '/');
@@ -121,14 +121,14 @@ static char *follow_link(const char *path)
 }
 
 /* The real path of a file, which need not exist, with all links followed; NULL with errno set. */
-static char *find_place(const char *path)
+static char *real_path(const char *path)
 {
     char *place = strdup(path);
     for (int links = 0; place && links < MOST_LINKS; links++) {
         char *real = realpath(place, NULL), *next = NULL;
         bool  missing = !real && errno == ENOENT;
         if (missing && !(next = follow_link(place)))
-            real = place_missing(place);
+            real = real_path_of_missing(place);
         free(place);
         if (!next)
             return real;
@@ -141,7 +141,7 @@ static char *find_place(const char *path)
 
 bool output_is_same(const char *a, const char *b)
 {
-    char *first = find_place(a), *second = find_place(b);
+    char *first = real_path(a), *second = real_path(b);
     bool  same = strcmp(a, b) == 0 || (first && second && strcmp(first, second) == 0);
     free(first);
     free(second);
@@ -161,7 +161,7 @@ static bool find_target(OutputFile *file)
     if (file->exists && access(file->shown, W_OK) != 0)
         return fail_create(file);
     file->direct = file->exists && !S_ISREG(info->st_mode);
-    file->target = file->direct ? strdup(file->shown) : find_place(file->shown);
+    file->target = file->direct ? strdup(file->shown) : real_path(file->shown);
     if (!file->target)
         return fail_create(file);
 
@@ -294,7 +294,7 @@ static void warn(OutputFile *file, const char *words)
 
 /* Gives the new file the owner, group and permissions of the file that it replaces.  Where the
    group cannot be kept, the group gets the permissions of all others. */
-static void keep_mode(OutputFile *file)
+static void copy_mode(OutputFile *file)
 {
     const struct stat *before = &file->before;
     struct stat        now    = {0};
@@ -325,7 +325,7 @@ static void flush_folder(OutputFile *file)
    so a second descriptor of the open file keeps the lock until the name is changed. */
 static bool put_in_place(OutputFile *file)
 {
-    keep_mode(file);
+    copy_mode(file);
     int  held = fcntl(file->fd, F_DUPFD_CLOEXEC, 0), fd = file->fd;
     bool done = fsync(fd) == 0 || fail_write(file);
     file->fd  = held;
