@@ -187,7 +187,7 @@ CONSTANT(VALUE_VISIBLE, 1);
 /* The state of a ray. */
 CONSTANT(STATE_MARCHING, 0);
 CONSTANT(STATE_HIT, 1);
-/* also what pack_ray (frame.glsl) makes of a miss without a step */
+/* This is also what pack_ray (frame.glsl) makes of a miss without a step. */
 CONSTANT(STATE_MISS, 2);
 CONSTANT(STATE_REFINING, 3);
 

@@ -54,7 +54,7 @@ struct KrsRenderer {
 typedef struct Band {
     uint64_t pixels; /* the most that fit; 0: there are no buffers */
     Buffer   ends, hits, results, queue, taken, tiles;
-    /* a copy of the results for the host; none where the host reads `results` directly */
+    /* A copy of the results for the host; none where the host reads `results` directly. */
     Buffer fetched;
 } Band;
 
@@ -85,9 +85,9 @@ struct KrsRendering {
     const KrsScene   *scene;
     const KrsProgram *program;
     KernelMap         kernels;
-    /* zones of the caller that kernels of this frame have room for */
+    /* The number of the caller's zones that kernels of this frame have room for. */
     uint32_t zone_slots;
-    /* the most that any kernels have room for */
+    /* The largest number that any kernels have room for. */
     uint32_t   most_zone_slots;
     bool       camera_relative; /* this frame's points are relative to the camera */
     KrsPurpose purpose;
@@ -106,7 +106,7 @@ struct KrsRendering {
     HeldBand held;                        /* what the buffers of `band` hold */
     Buffer   points, answers;             /* for point_query.comp */
     Buffer   query_rays, ray_hits, taken; /* for query.comp */
-    /* workgroups of a slice, as learned; [1]: kernels with the scene */
+    /* The workgroups of a slice, as learned, for each phase; [1]: for kernels with the scene. */
     uint32_t groups_at_once[KRS_PHASE_COUNT][2];
 };
 

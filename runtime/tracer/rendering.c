@@ -95,7 +95,7 @@ static const double distances_of_item[KRS_PHASE_COUNT] = {
 static uint32_t guess_slice(const KrsRendering *rendering, int phase, bool has_scene)
 {
     static const double slow[] = {
-        /* operations in 50 ms at a tenth of the promised speed */
+        /* Operations in 50 ms at a tenth of the promised speed. */
         [KRS_DEVICE_OTHER] = 5e8,      [KRS_DEVICE_CPU] = 5e8,       [KRS_DEVICE_VIRTUAL] = 5e8,
         [KRS_DEVICE_INTEGRATED] = 1e9, [KRS_DEVICE_DISCRETE] = 1e10,
     };

@@ -301,7 +301,7 @@ static void copy_mode(OutputFile *file)
     mode_t             mode   = file->exists ? before->st_mode & 0777 : file->mode;
     bool               known  = file->exists && fstat(file->fd, &now) == 0;
     if (known && now.st_uid != before->st_uid && fchown(file->fd, before->st_uid, (gid_t)-1) != 0)
-        /* only root may do that; else the file belongs to the writer */
+        /* Only root may do that; else the file belongs to the writer. */
         errno = 0;
     if (known && now.st_gid != before->st_gid && fchown(file->fd, (uid_t)-1, before->st_gid) != 0)
         mode = (mode & ~(mode_t)0070) | (mode & 0007) << 3;

@@ -22,7 +22,7 @@ enum {
     /* zlib's level.  Files of level 2 are 3 % larger than those of 4, in two thirds of the time.
        Files of level 4 are within 2 % of those of 9, in a quarter of the time. */
     ZIP_LEVEL = 2,
-    /* only one thread writes at any time, and each needs memory for a chunk */
+    /* Only one thread writes at any time, and each needs memory for a chunk. */
     MOST_WORKERS = 8
 };
 
@@ -109,7 +109,7 @@ static bool exr_try(ExrWriter *writer, exr_result_t result)
     if (result == EXR_ERR_SUCCESS)
         return true;
     if (result == EXR_ERR_CORRUPT_CHUNK)
-        /* when writing, this means that zlib found no memory */
+        /* When writing, this means that zlib found no memory. */
         result = EXR_ERR_OUT_OF_MEMORY;
     if (writer->error->status == KRS_OK) {
         writer->error->status = result == EXR_ERR_OUT_OF_MEMORY ? KRS_OUT_OF_MEMORY : KRS_INTERNAL;
