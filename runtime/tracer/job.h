@@ -58,7 +58,7 @@ typedef struct Job {
     KrsWindow        cover;            /* the crop, extended to whole tiles */
     KrsWindow        window;           /* the pixels whose rays may meet what is marched now */
     KrsRenderStats  *stats;            /* the job adds to them */
-    double           progress_done, progress_share; /* of the whole: before this pass, of it */
+    double           progress_done, progress_share; /* done before this pass; its part of 1 */
     double           progress_shown;                /* the last progress that was reported */
     Chain            chain;
 } Job;
