@@ -1,7 +1,7 @@
 /*
- * compilation.h: one run of the compiler, and its passes.
+ * compilation.h: the state of one run of the compiler, and its passes.
  *
- * A pass that returns anything but KRS_OK has reported why; nothing may follow it.
+ * A pass that returns another status than KRS_OK has reported why, and ends the run.
  */
 #ifndef KRS_COMPILATION_H
 #define KRS_COMPILATION_H
@@ -19,33 +19,34 @@ typedef enum PassId {
     PASS_COUNT
 } PassId;
 
-/* What each pass does, and what it prints for a dump; `scratch` is free to use in both. */
+/* The function of each pass, and the function that prints its result for a dump.  Both may use
+   `scratch`. */
 #define PASS(name, validate, meaning)      \
     KrsStatus pass_##name(Compilation *c); \
     void      print_##name(Compilation *c, Text *out);
 #include "compiler/passes.def"
 
-/* What is wanted beside the scene. */
+/* Results of a run other than the compiled scene. */
 typedef struct Request {
-    PassId   after; /* PASS_COUNT: nothing is dumped */
-    char   **dump;
-    Inspect *inspect; /* or NULL */
-    void    *user;
+    PassId   after;   /* the pass to dump; PASS_COUNT: none */
+    char   **dump;    /* where the dump goes, unless NULL */
+    Inspect *inspect; /* called with the elaborated scene, unless NULL */
+    void    *user;    /* passed to `inspect` */
 } Request;
 
-/* What is lowered beside the surfaces and the march of each component, and why: decided by `lower`,
-   as it needs shapes and the graph before it is simplified. */
+/* Which optional roots are lowered, besides the surface and the march of each component.  `lower`
+   decides it, since it needs the shapes and the graph before it is simplified. */
 typedef struct Additions {
-    bool planes;          /* components that are half-spaces, which rays meet without a march */
+    bool planes;          /* there are half-spaces, which rays meet without a march */
     bool camera_relative; /* points may be relative to the camera */
     bool sheets;          /* there are surfaces without thickness */
-    bool algebraic;       /* derivatives cost less than differences */
-    bool gradients;       /* sheets or `algebraic` need them, or somebody asked for them */
+    bool algebraic;       /* gradients by derivatives cost less than by differences */
+    bool gradients;       /* for `sheets`, for `algebraic`, or because the options ask for them */
 } Additions;
 
-/* Three arenas for three lifetimes: scene->arena stays with the scene, `work` holds sources,
-   diagnostics and the elaborated scene until the end of the run, `scratch` what one pass needs.
-   The syntax tree, which elaboration leaves, has one of its own. */
+/* There are three lifetimes of memory.  scene->arena lives as long as the scene.  `work` has the
+   sources, diagnostics and the elaborated scene until the end of the run; `syntax` is apart, for
+   trees and tokens.  `scratch` is freed after each pass. */
 struct Compilation {
     KrsScene         *scene;
     Arena             work, syntax, scratch;
@@ -53,17 +54,16 @@ struct Compilation {
     const KrsOptions *options;
     const Loader     *loader;
     const char       *name;
-    Loaded            loaded; /* the text of the scene; without one, `load` reads the file `name` */
+    Loaded            loaded; /* the scene's text; if NULL, the pass `load` reads the file `name` */
     Sources           sources;
     Names             names;
     Diags             diags;
     Files             files;
-    Scene             elaborated; /* its graph is the one that `lower` extends */
+    Scene             elaborated; /* its graph is extended by the pass `lower` */
     Additions         additions;
-    size_t           *operations; /* of each component and, behind the last, of its zones */
-    uint32_t
-        *march_groups; /* of each component, from 1; 0: it needs no march; in the scene's arena */
-    Text dump;
+    size_t           *operations;   /* of each component and, behind them, of the zones */
+    uint32_t         *march_groups; /* number from 1 for each component; 0: needs no march */
+    Text              dump;
 };
 
 static inline bool component_is_plane(const Component *component)
@@ -71,20 +71,21 @@ static inline bool component_is_plane(const Component *component)
     return component->plane_normal != NODE_NONE;
 }
 
-/* Asserts what must hold after some passes: columns of passes.def. */
+/* Functions that assert what holds after a pass: a column of passes.def. */
 void validate_lowered(const Compilation *c);
 void validate_simplified(const Compilation *c);
 void validate_facts(const Compilation *c);
 
-/* precision.c: whether a camera may see something so closely, so far from the origin, that points
-   must be relative to it. */
+/* precision.c: whether a camera may be so far from the origin, and so near to a surface, that
+   points must be camera-relative. */
 bool may_need_rebase(const Scene *scene, Graph *graph, const Roots *roots, Arena *scratch);
 
-/* limits.c: reports that the scene is too large; `operations`: of that component, its largest; 0
-   when they were too many to be counted. */
+/* limits.c: reports that the scene is too large.  `component` is the largest, with that number of
+   operations; 0: there were too many to be counted. */
 void refuse_component(Compilation *c, size_t component, size_t operations);
 
-/* march_groups.c: which components are marched by themselves: c->march_groups, and the program's. */
+/* march_groups.c: decides which components have a march group of their own.  Sets c->march_groups
+   and the march groups of the program. */
 void form_march_groups(Compilation *c);
 
 #endif

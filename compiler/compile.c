@@ -31,7 +31,7 @@ static const Pass passes[PASS_COUNT] = {
 
 const KrsPass *krs_pass(size_t index) { return index < PASS_COUNT ? &passes[index].about : NULL; }
 
-/* PASS_COUNT: there is none. */
+/* The pass with this name or form, or PASS_COUNT. */
 static PassId find_pass(const char *word)
 {
     PassId id = 0;
@@ -61,7 +61,7 @@ static KrsStatus run_pass(Compilation *c, const Pass *pass, double *ms)
     return status;
 }
 
-/* From a name to a program; ends at the first pass that refuses the scene. */
+/* Runs all passes; ends at the first one that refuses the scene. */
 static KrsStatus run_passes(Compilation *c)
 {
     KrsProgram *program = &c->scene->program;
@@ -89,7 +89,9 @@ static KrsStatus inspect(Compilation *c)
 
 /* ---- the API ---- */
 
-static void hand_over(const Diags *diags, const Diag *diag, const KrsOptions *options, Arena *arena)
+/* Passes a diagnostic to the caller. */
+static void report_one(const Diags *diags, const Diag *diag, const KrsOptions *options,
+                       Arena *arena)
 {
     const Source *source   = &diags->sources->items[diag->span.source];
     Position      position = source_position(source, diag->span.start);
@@ -112,10 +114,10 @@ static void report(Compilation *c)
     const KrsOptions *options = c->options;
     diags_sort(&c->diags);
     for (size_t i = 0; options->diagnostic && i < c->diags.count; i++)
-        hand_over(&c->diags, c->diags.items[i], options, &c->scratch);
+        report_one(&c->diags, c->diags.items[i], options, &c->scratch);
 }
 
-/* Running out of memory anywhere in there leads back to here. */
+/* Runs the passes, and reports their diagnostics.  Where memory runs out, longjmp returns here. */
 static KrsStatus run_guarded(Compilation *c)
 {
     jmp_buf exhausted;
@@ -129,7 +131,7 @@ static KrsStatus run_guarded(Compilation *c)
     return status;
 }
 
-/* A scene with nothing in it, in memory as the options say; NULL: there is none. */
+/* An empty scene in memory of the options' allocator; NULL if there is no memory. */
 static KrsScene *scene_new(const KrsOptions *options)
 {
     const KrsAllocator *allocator = &options->allocator;
@@ -148,7 +150,7 @@ static KrsScene *scene_new(const KrsOptions *options)
     return scene;
 }
 
-/* Everything of a run stands in an arena of its own. */
+/* Prepares the arenas of a run, and all that uses them. */
 static void begin(Compilation *c)
 {
     c->work = c->syntax = c->scratch = (Arena){.memory = &c->scene->memory};
@@ -191,7 +193,7 @@ static KrsStatus compile(Compilation *c, KrsScene **result)
     return status;
 }
 
-/* Of a text, or, when that is NULL, of the file `name`. */
+/* Compiles a text or, when that is NULL, the file `name`. */
 static KrsStatus load_and_compile(const char *text, size_t length, const char *name,
                                   const KrsOptions *options, const Request *request,
                                   KrsScene **scene)

@@ -1,5 +1,5 @@
 /*
- * compiled.h: a compiled scene, as the runtime sees it: its program, and what a frame of it shows.
+ * compiled.h: a compiled scene, for the runtime: its program, and the view of a frame.
  */
 #ifndef KRS_COMPILED_H
 #define KRS_COMPILED_H
@@ -19,16 +19,16 @@ typedef struct KrsSky {
     double zenith[3], horizon[3], ground[3]; /* linear radiance */
 } KrsSky;
 
-/* What the `image` block says; zero where it is silent. */
+/* The properties of the `image` block; 0 or NULL where one is not given. */
 typedef struct KrsImage {
     uint32_t    width, height, samples;
     const char *integrator; /* "preview", "direct", or NULL */
-    double      exposure;   /* stops; 0 changes nothing */
+    double      exposure;   /* in stops; 0 changes nothing */
     const char *tone_map;   /* or NULL */
     double      error;      /* permitted distance from the surface in pixels; 0: the default */
 } KrsImage;
 
-/* Everything about a picture that the host evaluates once per frame. */
+/* Camera, light and image, which the host evaluates once per frame. */
 typedef struct KrsView {
     KrsCamera       camera;
     KrsSky          sky;
@@ -37,88 +37,87 @@ typedef struct KrsView {
     const KrsLight *lights; /* lives as long as the frame, until the next krs_frame_view */
 } KrsView;
 
-/* Components that are best marched by themselves, one group after another: texts may have one group
-   alone, by its number from 1. */
+/* Components that are marched together, apart from other groups.  A text may have one group only,
+   chosen by its number from 1. */
 typedef struct KrsMarchGroup {
-    double flops;           /* as below, of its components */
+    double flops;           /* of the distances of its components */
     double low[3], high[3]; /* box around them */
 } KrsMarchGroup;
 enum { KRS_MOST_MARCH_GROUPS = 8 };
 
 typedef struct KrsProgram {
-    size_t        glsl_length; /* of all that kernels call, one function beside the other */
-    uint32_t      parameter_slots;
-    uint32_t      value_slots;     /* how many follow where the host finds values of the frame */
+    size_t        glsl_length;     /* bytes of the promised functions (krs_promised_functions) */
+    uint32_t      parameter_slots; /* slots (vec4) of the parameter block */
+    uint32_t      value_slots;     /* further slots, if the host computes values of the frame */
     double        low[3], high[3]; /* box around all components; infinite where unbounded */
-    size_t        operations;      /* of krs_distance */
-    double        flops;           /* of krs_distance, weighted as op_cost has it */
-    uint32_t      loops;           /* iterations of loops in it, at most */
+    size_t        operations;      /* in krs_distance */
+    double        flops;           /* of krs_distance, weighted by op_cost */
+    uint32_t      loops;           /* most iterations of loops in krs_distance */
     bool          planes;          /* there is krs_plane_t */
-    double        rest_low[3], rest_high[3]; /* with planes: the box around what is left to march */
+    double        rest_low[3], rest_high[3]; /* box around the components that are not planes */
     bool          camera_relative;           /* points may be relative to the camera */
-    uint32_t      camera_relative_slots; /* then: how many more slots follow those of the zones */
-    bool          gradients;             /* there is krs_gradient by derivatives */
-    bool          algebraic; /* normals are by krs_gradient unless asked for otherwise */
-    bool          along;     /* there is krs_along */
-    bool          sheets;    /* surfaces without thickness, where krs_distance is not negative: rays
-                                 go by krs_along, normals by krs_gradient */
-    bool          inverts;   /* there are its steps for sequences with maps that invert */
-    bool          plain;     /* no component is curved (shape_is_curved) */
-    bool          shadows;   /* a light casts some */
+    uint32_t      camera_relative_slots;     /* then: further slots, behind those of zones */
+    bool          gradients;                 /* there is krs_gradient, by derivatives */
+    bool          algebraic;                 /* normals are by krs_gradient by default */
+    bool          along;                     /* there is krs_along */
+    bool          sheets;  /* there are surfaces without thickness, where krs_distance is not
+                                negative: rays need krs_along, and normals krs_gradient */
+    bool          inverts; /* krs_along has methods for sequences with maps that invert */
+    bool          plain;   /* no component is curved (shape_is_curved) */
+    bool          shadows; /* a light casts shadows */
     KrsMarchGroup march_groups[KRS_MOST_MARCH_GROUPS];
-    size_t        march_group_count; /* 0: all components belong together */
-    bool          per_component;     /* marching groups one after the other is worth it */
-    uint32_t      scene_parts;       /* of krs_scene_part_distance */
-    uint32_t      expensive;         /* components that cost enough to be marched by themselves */
-    const double *pass_ms;           /* time spent: in each pass (krs_pass, compile.h), */
-    double        front_ms, glsl_ms; /* in all before `emit`, and in `emit` */
+    size_t        march_group_count; /* 0: all components are marched together */
+    bool          per_component;     /* it is faster to march one group after the other */
+    uint32_t      scene_parts;       /* number of parts of krs_scene_part_distance */
+    uint32_t      expensive;         /* components that cost enough for a group of their own */
+    const double *pass_ms;           /* time of each pass (krs_pass, compile.h), in milliseconds */
+    double        front_ms, glsl_ms; /* time of all passes before `emit`, and of `emit` */
 } KrsProgram;
 
 /* The scene's program; lives as long as the scene. */
 const KrsProgram *krs_scene_program(const KrsScene *scene);
-/* The GLSL of a variant: the wanted functions, what they call, and comments with lines of the scene.
-   Released by the caller, with free() where there is no allocator (NULL); NULL when there is no
-   memory.  Where a function needs something of the program (planes, along...), it must have that. */
+/* The GLSL of a variant: the wanted functions, the functions that they call, and comments with
+   lines of the scene.  The caller releases it, with free() if `allocator` is NULL.  NULL when there
+   is no memory.  The program must have what a function needs, such as planes. */
 char *krs_scene_text(const KrsScene *scene, const KrsVariant *variant, const KrsFunction *wanted,
                      size_t count, const KrsAllocator *allocator);
-/* Those that `krs compile` writes: krs_distance and krs_surface; krs_distance_lod for many threads;
-   what is found by derivatives, and what surfaces without thickness need.  Returns how many. */
+/* The functions that `krs compile` writes; returns how many.  They are krs_distance, krs_surface
+   and, for devices with many threads, krs_distance_lod.  krs_gradient is added if the program has
+   gradients, and krs_along if it has sheets. */
 enum { KRS_MOST_PROMISED = 5 };
 size_t krs_promised_functions(const KrsScene *scene, bool many_threads,
                               KrsFunction promised[KRS_MOST_PROMISED]);
 /* Whether a camera of the scene is a panorama. */
 bool krs_scene_is_panoramic(const KrsScene *scene);
-/* Zones that the scene declares. */
+/* The number of zones that the scene declares. */
 size_t krs_zone_count(const KrsScene *scene);
-/* What the `image` block says. */
+/* The properties of the `image` block. */
 KrsImage krs_scene_image(const KrsScene *scene);
 /* Camera `camera`, lights, sky and image at the frame's parameters and time. */
 KrsStatus krs_frame_view(KrsFrame *frame, size_t camera, KrsView *view);
-/* Whether what single precision does not tell of such a coordinate shows in pixels of that width,
-   so that points have to be relative to an origin near it. */
+/* Whether the rounding error of such a coordinate in single precision is visible in pixels of this
+   width.  Then points must be relative to an origin near the camera. */
 bool krs_needs_rebase(double coordinate, double pixel);
-/* What camera-relative kernels get for their origin: camera_relative_slots vec4s, found in double
-   precision. */
+/* Slots of the values that depend on the origin of camera-relative points, computed in double
+   precision: camera_relative_slots vec4s. */
 void krs_frame_rebase(KrsFrame *frame, const double rebase_origin[3], float (*block)[4]);
-/* The zones of the caller (center, radius), to stand behind the parameter block of a variant with
-   room for that many or more; the others must have a radius that is far
-   below 0.  Returns how many. */
+/* The caller's zones (center, radius), for the slots behind the parameter block.  Returns how many.
+   In a variant with room for more the others must have a radius far below 0. */
 size_t krs_frame_zones(const KrsFrame *frame, float (*zones)[4]);
-/* A ray as questions march it: in a unit direction, and from `start` to `end`, which is what the
-   box around the scene has of [0, farthest]; nothing of it when `end` is the smaller.  With `walls`
-   the box ends there: a ray from inside of a solid has left it by then. */
+/* A ray of a query, with a unit direction.  It is marched from `start` to `end`: the part of
+   [0, farthest] in the box around the scene, which is empty when `end` is less than `start`. */
 typedef struct KrsRay {
     double origin[3], direction[3], start, end;
-    bool   walls;
+    bool   walls; /* the box, not `farthest`, ends the ray: no solid is beyond */
 } KrsRay;
 KrsRay krs_ray(const KrsScene *scene, const double origin[3], const double direction[3],
                double farthest);
-/* Where there are sheets the normals of a hit face where its ray comes from. */
+/* Turns the normals of a hit on a sheet to the side from which the ray comes. */
 void krs_face(const KrsRay *ray, KrsHit *hit);
-/* Whether these are arguments that krs_raycast accepts. */
+/* Whether krs_raycast accepts these arguments. */
 bool krs_rays_are_valid(const double (*origins)[3], const double (*directions)[3], size_t count,
                         double farthest, double tolerance);
-/* 64-bit FNV-1a of the whole text (used files included), 16 hexadecimal digits. */
+/* The 64-bit FNV-1a hash of the scene and the files that it uses, as 16 hexadecimal digits. */
 const char *krs_scene_hash(const KrsScene *scene);
 
 #endif

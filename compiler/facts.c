@@ -1,9 +1,9 @@
 /*
- * facts.c: what the renderer has to know of a program: every field of KrsProgram but the text and
- * the times.
+ * facts.c: what the renderer has to know of a program: all fields of KrsProgram except the times
+ * and what the pass `emit` sets.
  *
- * They are read off the elaborated scene, the simplified graph with its tapes, and what `lower`
- * decided.
+ * They follow from the elaborated scene, the simplified graph with its tapes, and the decisions of
+ * the pass `lower`.
  */
 #include <assert.h>
 #include <math.h>
@@ -20,7 +20,7 @@ static void copy_box(Box box, double low[3], double high[3])
     }
 }
 
-/* Around all components, and around those that are no planes. */
+/* Finds the box around all components, and the one around those that are not planes. */
 static void find_boxes(Compilation *c)
 {
     static const Box at_origin = {{{0, 0}, {0, 0}, {0, 0}}};
@@ -36,7 +36,7 @@ static void find_boxes(Compilation *c)
 
 /* ---- costs ---- */
 
-/* Of krs_distance. */
+/* Finds the cost of krs_distance. */
 static void find_costs(Compilation *c)
 {
     const Tape *distance = &c->scene->distance;
@@ -59,7 +59,7 @@ static void find_kinds(Compilation *c)
         program->shadows = program->shadows || s->lights.items[i].shadow;
 }
 
-/* ---- what there is beside distances ---- */
+/* ---- optional roots ---- */
 
 static void find_additions(Compilation *c)
 {
@@ -71,7 +71,7 @@ static void find_additions(Compilation *c)
     program->gradients       = c->additions.gradients;
 }
 
-/* Steps along rays that are no mere distances, and those for maps that invert. */
+/* Finds whether steps along rays exceed the distance, for polynomials and for maps that invert. */
 static void find_steps(Compilation *c)
 {
     KrsProgram  *program     = &c->scene->program;
@@ -94,7 +94,7 @@ KrsStatus pass_facts(Compilation *c)
     find_kinds(c);
     find_additions(c);
     find_steps(c);
-    form_march_groups(c); /* by boxes, costs and planes */
+    form_march_groups(c); /* needs boxes, costs and planes */
     c->scene->program.scene_parts = module_scene_part_count(c->scene->component_count);
     return KRS_OK;
 }
@@ -102,7 +102,7 @@ KrsStatus pass_facts(Compilation *c)
 void validate_facts(const Compilation *c)
 {
     const KrsProgram *program = &c->scene->program;
-    assert(program->parameter_slots > 0); /* the time has one */
+    assert(program->parameter_slots > 0); /* slot 0 is the time */
     assert(isfinite(program->flops) && program->flops >= 0);
     assert(program->march_group_count != 1 && program->march_group_count <= KRS_MOST_MARCH_GROUPS);
     assert(!program->per_component || program->march_group_count > 0);

@@ -1,6 +1,5 @@
 /*
- * frame.c: what varies from frame to frame: parameters, time, zones; and what a picture needs of
- * them.
+ * frame.c: frames: the values of parameters, time and zones, and the view that depends on them.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +9,7 @@
 #include "compiler/program.h"
 #include "compiler/shape/slope.h"
 
-/* Zeroed memory of the scene's allocator; NULL: there is none. */
+/* Zeroed memory from the scene's allocator, or NULL. */
 static void *frame_alloc(const KrsScene *scene, size_t count, size_t size)
 {
     const Memory *memory = &scene->memory;
@@ -52,7 +51,8 @@ static bool depends_on(const Tape *tape, uint32_t slot)
     return false;
 }
 
-/* Finds the slopes that depend on a slot; false, with `unbounded` set: one has no bound. */
+/* Computes the slopes that depend on a slot.  False, and `unbounded` is set, if one has no
+   bound. */
 static bool find_slopes(KrsFrame *frame, uint32_t changed)
 {
     const double(*parameters)[4] = (const double(*)[4])frame->parameters;
@@ -89,7 +89,7 @@ KrsStatus frame_new(const KrsScene *scene, KrsFrame **result)
     for (size_t i = 0; i < scene->parameter_count; i++)
         memcpy(frame->parameters[scene->parameters[i].slot].v, scene->parameters[i].value,
                sizeof scene->parameters[i].value);
-    if (!find_slopes(frame, ANY_SLOT)) { /* such a scene should not have compiled */
+    if (!find_slopes(frame, ANY_SLOT)) { /* a bug: the compiler refuses such scenes */
         frame_free(frame);
         return KRS_INTERNAL;
     }
@@ -134,7 +134,7 @@ Node frame_infinite(KrsFrame *frame)
     return found != NODE_NONE ? found : tape_frame_infinite(&scene->distance, frame->values);
 }
 
-/* Gives slot `slot` of the parameter block new values, unless the scene cannot have them. */
+/* Sets the values of a slot of the parameter block, unless the scene would not be finite. */
 static KrsStatus change_slot(KrsFrame *frame, uint32_t slot, const double *values, size_t count)
 {
     NodeValue before = frame->parameters[slot];
@@ -177,7 +177,7 @@ KrsStatus krs_frame_set_time(KrsFrame *frame, double time)
     return isfinite(time) ? change_slot(frame, 0, &time, 1) : KRS_BAD_ARGUMENT;
 }
 
-/* Single precision can square them. */
+/* Numbers are limited so that their squares are finite in single precision. */
 static bool zone_is_valid(const double zone[4])
 {
     const double most = 1e18;
@@ -208,7 +208,7 @@ size_t krs_frame_zones(const KrsFrame *frame, float (*zones)[4])
     return frame->zone_count;
 }
 
-/* The origin has the last slot. */
+/* The origin is the last slot of the parameter block. */
 void krs_frame_rebase(KrsFrame *frame, const double rebase_origin[3], float (*block)[4])
 {
     const KrsScene *scene = frame->scene;
@@ -303,7 +303,7 @@ KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view)
     return KRS_OK;
 }
 
-/* ---- the same under the names of krs.h and compiled.h ---- */
+/* ---- the functions of krs.h and compiled.h ---- */
 
 KrsStatus krs_frame_new(const KrsScene *scene, KrsFrame **frame) { return frame_new(scene, frame); }
 

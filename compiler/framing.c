@@ -1,9 +1,9 @@
 /*
- * framing.c: a camera for a scene that has none.
+ * framing.c: places a camera in a scene that has none.
  *
- * Boxes of sequences hold for all values of the parameters and are often much too large: a picture
- * framed by them shows a speck.  So a few hundred rays are cast from the ball around the box to points
- * all over it, and the camera frames what they hit.
+ * Boxes of sequences hold for all values of the parameters, so they are often much too large.  In a
+ * picture of the whole box the scene would be tiny.  So a few hundred rays are cast from a sphere
+ * around the box to points inside of it, and the camera frames what they hit.
  */
 #include <math.h>
 #include <string.h>
@@ -12,7 +12,8 @@
 
 enum { RAYS = 512, FEWEST_RAYS = 64, ROUNDS = 3, BATCH = 8, MOST_UNRESOLVED = 4 };
 
-/* With a distance of more flops there are fewer rays: no scene waits long for its camera. */
+/* If the distance has more flops, fewer rays are cast, so that placing a camera takes little
+   time. */
 static const double FLOPS_OF_ALL_RAYS = 2500;
 
 typedef struct Sphere {
@@ -46,7 +47,8 @@ static bool outer_ball(const KrsScene *scene, Sphere *ball)
     return isfinite(ball->radius) && ball->radius > 0;
 }
 
-/* A power of two, which the strides of make_rays have no factor in common with. */
+/* The number of rays: a power of two, so that it has no factor in common with the strides of
+   make_rays, which are odd. */
 static int count_rays(const KrsScene *scene)
 {
     int    count = RAYS;
@@ -56,8 +58,8 @@ static int count_rays(const KrsScene *scene)
     return count;
 }
 
-/* Points evenly on a sphere (a Fibonacci lattice), each looking at a point within the ball that
-   a second lattice gives. */
+/* Makes rays from points that are spread evenly on a sphere (a Fibonacci lattice) to the points of
+   a second lattice inside of the ball. */
 static void make_rays(const Sphere *ball, int count, double (*origins)[3], double (*directions)[3])
 {
     const double golden = 2.399963229728653; /* pi (3 - sqrt 5) */
@@ -74,13 +76,13 @@ static void make_rays(const Sphere *ball, int count, double (*origins)[3], doubl
     }
 }
 
-/* What hits of bounded components have shown so far. */
+/* The box around all hits of bounded components so far. */
 typedef struct Extent {
     double low[3], high[3];
 } Extent;
 
-/* Distances that are much too short need many steps.  After a few rays that do not end, false: the
-   scene is looked at from farther away, and soon. */
+/* Casts rays; false after a few unresolved ones.  Distances that are much too short need many
+   steps, and then the camera is placed by the ball so far, to save time. */
 static bool cast_rays(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],
                       int count, double radius, KrsHit *hits)
 {
@@ -107,7 +109,7 @@ static void add_hits(const KrsScene *scene, const KrsHit *hits, int count, Exten
     }
 }
 
-/* The ball around what was seen, a little larger for what was not. */
+/* The ball around all hits, a little larger since rays miss some of the surface. */
 static bool inner_ball(const Extent *seen, Sphere *ball)
 {
     double radius = 0;
@@ -121,9 +123,9 @@ static bool inner_ball(const Extent *seen, Sphere *ball)
     return true;
 }
 
-/* Eye and target of the default camera (its direction and field of view stay) from what rays
-   find of the bounded components at the default parameters; nothing changes when they find
-   nothing. */
+/* Sets eye and target of the default camera by casting rays to the bounded components, with the
+   defaults of parameters.  Its direction and field of view are fixed.  Without bounded components
+   nothing is changed. */
 static KrsStatus frame_scene(KrsScene *scene)
 {
     static const double towards[3] = {0.53, 0.37, 0.76};
@@ -139,7 +141,7 @@ static KrsStatus frame_scene(KrsScene *scene)
     if (status != KRS_OK)
         return status;
     int rays = count_rays(scene);
-    /* What is found sharpens the ball, and the next round's rays. */
+    /* Each round makes the ball smaller, and so the rays of the next round denser. */
     for (int round = 0; round < ROUNDS; round++) {
         make_rays(&ball, rays, origins, directions);
         if (!cast_rays(frame, (const double(*)[3])origins, (const double(*)[3])directions, rays,

@@ -1,5 +1,5 @@
 /*
- * inspect.h: a look at a scene while its shapes are there; a compiled scene has none.
+ * inspect.h: access to the elaborated scene with its shapes, which a compiled scene has no longer.
  */
 #ifndef KRS_INSPECT_H
 #define KRS_INSPECT_H
@@ -8,17 +8,17 @@
 #include "compiler/krs.h"
 #include "compiler/shape/scene.h"
 
-/* All of it lives until the look is over.  `diags` is empty; what is added is reported. */
+/* An elaborated scene, for the time of the call.  `diags` is empty; what is added is reported. */
 typedef struct Inspected {
-    const Scene *scene; /* its graph may grow */
+    const Scene *scene; /* nodes may be added to its graph */
     Diags       *diags;
-    Arena       *arena, *scratch; /* `scratch` is free to use, and to free */
+    Arena       *arena, *scratch; /* `scratch` may be used, and freed */
 } Inspected;
 
 typedef KrsStatus Inspect(void *user, const Inspected *what);
 
-/* As krs_compile_file, but then `inspect` says what comes of it, and nothing is kept.  Warnings are
-   for those who compile, and not repeated. */
+/* Compiles a file, calls `inspect` and returns its status.  The compiled scene is freed.  Warnings
+   of the compiler are not reported. */
 KrsStatus inspect_file(const char *path, const KrsOptions *options, Inspect *inspect, void *user);
 
 #endif

@@ -2,10 +2,9 @@
  * krs.h: compile scenes and ask them questions.  No Vulkan is needed; rendering is in
  * krs_vulkan.h.
  *
- * There is no global state: different scenes may be used from different threads, and one
- * scene, which never changes once compiled, from many.  What varies from frame to frame (the
- * values of parameters, the time) lives in a KrsFrame, which belongs to one thread at a time.
- * Nothing here prints, exits or aborts.
+ * There is no global state.  A compiled scene never changes, so many threads may use it at the same
+ * time.  What varies (the values of parameters, the time, zones of the caller) is in a KrsFrame,
+ * which only one thread may use at a time.  Nothing here prints, exits or aborts.
  */
 #ifndef KRS_H
 #define KRS_H
@@ -20,7 +19,7 @@ extern "C" {
 
 #define KRS_VERSION "0.1.0"
 
-/* The command's exit statuses are these numbers too. */
+/* The numbers are also the exit statuses of the command `krs`. */
 typedef enum KrsStatus {
     KRS_OK            = 0,
     KRS_BAD_SCENE     = 1,  /* diagnostics say why */
@@ -29,7 +28,7 @@ typedef enum KrsStatus {
     KRS_INTERNAL      = 70, /* a bug of krs or of the driver */
     KRS_OUT_OF_MEMORY = 71,
     KRS_CANNOT_CREATE = 73, /* an output cannot be created */
-    KRS_IO_ERROR      = 74, /* the scene cannot be read, or an output not be written */
+    KRS_IO_ERROR      = 74, /* the scene cannot be read, or an output cannot be written */
     KRS_INTERRUPTED   = 130
 } KrsStatus;
 
@@ -49,9 +48,9 @@ typedef struct KrsDiagnostic {
 
 typedef void KrsDiagnosticCallback(void *user, const KrsDiagnostic *diagnostic);
 
-/* Where memory comes from; a zeroed struct means malloc and free.  The thread that calls the
-   library calls it.  It must outlive all that was made with it.  glslang and the Vulkan driver
-   do not use it. */
+/* Where memory comes from; a zeroed struct means malloc and free.  It is called in the thread that
+   calls the library.  It must outlive all objects that were made with it.  glslang and the Vulkan
+   driver do not use it. */
 typedef struct KrsAllocator {
     void *(*allocate)(void *user, size_t size); /* NULL: out of memory; aligned as by malloc */
     void (*release)(void *user, void *block);
@@ -74,18 +73,19 @@ typedef struct KrsOptions {
        links.  That includes the scene itself in krs_compile_file.  With krs_compile_text, `name`
        must be in the folder for `use` to work.  NULL: all files may be read. */
     const char      *root;
-    KrsLoadCallback *load;      /* instead of reading files that are used; may be NULL */
+    KrsLoadCallback *load;      /* supplies the files that are used; NULL: they are read */
     void            *load_user; /* handed to `load` */
 } KrsOptions;
 
-/* Compiles a text in memory, or a file.  Diagnostics call the text `name`; paths of `use` are
-   relative to its folder.  Of the arguments only the allocator is used after the call.
+/* Compiles a text in memory, or a file.  `name` is the text's name in diagnostics, and paths of
+   `use` are relative to its folder.  Of the arguments only the allocator is used after the call.
    `options` may be NULL.  On KRS_OK the caller owns *scene; on any other status it is NULL.
    KRS_BAD_SCENE: see the diagnostics; KRS_IO_ERROR: the file cannot be read; KRS_OUT_OF_MEMORY. */
 KrsStatus krs_compile_text(const char *text, size_t length, const char *name,
                            const KrsOptions *options, KrsScene **scene);
 KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene **scene);
-/* Its frames and renderings must be freed before.  NULL is ignored, here as in all that frees. */
+/* The frames and renderings of the scene must be freed before.  NULL is ignored, as in all
+   functions that free. */
 void krs_scene_free(KrsScene *scene);
 
 /* Strings that the functions below return (names, places, rules) live as long as the scene. */
@@ -102,17 +102,17 @@ size_t krs_parameter_count(const KrsScene *scene);
 /* Parameter `index` in the order of the text; KRS_BAD_ARGUMENT when there is none. */
 KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *parameter);
 
-/* Parameters at their defaults, time 0, no zones of the caller.  The scene must outlive the frame.
-   KRS_OUT_OF_MEMORY: *frame is NULL. */
+/* Makes a frame: parameters at their defaults, time 0, no zones of the caller.  The scene must
+   outlive the frame.  KRS_OUT_OF_MEMORY: *frame is NULL. */
 KrsStatus krs_frame_new(const KrsScene *scene, KrsFrame **frame);
 void      krs_frame_free(KrsFrame *frame);
-/* Sets all `count` components of a parameter, or the time in seconds.  KRS_BAD_ARGUMENT, and an
-   unchanged frame: there is no such parameter, it has another number of components, a value is
-   outside of its range or not finite, or something in the scene would not be finite. */
+/* Sets all `count` components of a parameter, or the time in seconds.  KRS_BAD_ARGUMENT, and the
+   frame is unchanged: there is no such parameter, it has another number of components, a value is
+   outside of its range or not finite, or a number of the scene would not be finite. */
 KrsStatus krs_frame_set(KrsFrame *frame, const char *name, const double *values, size_t count);
 KrsStatus krs_frame_set_time(KrsFrame *frame, double time);
-/* Why the last value or time was refused: the place ("scene.krs:3:14") of an expression whose slope
-   has no bound for it.  NULL if it was accepted, or refused for another reason. */
+/* The location ("scene.krs:3:14") of an expression whose slope has no bound for the last value or
+   time, which was refused for that reason.  NULL if it was accepted, or refused for another one. */
 const char *krs_frame_unbounded(const KrsFrame *frame);
 
 /*
@@ -125,13 +125,14 @@ const char *krs_frame_unbounded(const KrsFrame *frame);
 size_t krs_parameter_slots(const KrsScene *scene);
 void   krs_frame_parameters(const KrsFrame *frame, float (*block)[4]);
 /*
- * With `krs compile --frame-values on`, that GLSL reads what else depends on the frame alone (turns
- * by a parameter, sines of the time) from krs_value_slots more slots, behind those, instead of
- * finding it for each point anew: fewer registers, and the digits of double precision.
+ * The GLSL of `krs compile --frame-values on` has krs_value_slots more slots behind those.  They
+ * are for other values that depend on the frame alone, such as rotations by a parameter and sines
+ * of the time.  So these are not computed at each point, which saves registers, and they are
+ * computed in double precision.
  */
 size_t krs_value_slots(const KrsScene *scene);
 void   krs_frame_values(const KrsFrame *frame, float (*block)[4]);
-/* A slope that is computed for each frame: its slot, and the place of its expression.
+/* A slope that is computed for each frame: its slot, and the location of its expression.
    KRS_BAD_ARGUMENT: there is none of this index. */
 typedef struct KrsFrameSlope {
     uint32_t    slot;
@@ -142,11 +143,11 @@ size_t    krs_frame_slope_count(const KrsScene *scene);
 KrsStatus krs_frame_slope(const KrsScene *scene, size_t index, KrsFrameSlope *slope);
 
 /*
- * Empty zones: spheres (center and radius) that nothing of the scene enters, so that the caller
- * can put something of its own there.  Solids end at a zone as if the sphere were subtracted; the
- * cut has the component and material that it goes through.  These zones replace those of the
- * previous call; zones that the scene declares stay.
- * KRS_BAD_ARGUMENT, and an unchanged frame: there are more than KRS_MOST_ZONES, a radius is
+ * Sets the caller's zones: spheres (center and radius) that are kept empty, so that the caller can
+ * put its own things there.  The spheres are subtracted from all solids; a cut surface has the
+ * component and material of its solid.  These zones replace those of the previous call.  Zones that
+ * the scene declares stay.
+ * KRS_BAD_ARGUMENT, and the frame is unchanged: there are more than KRS_MOST_ZONES, a radius is
  * negative, or a number is not finite or beyond 1e18.
  */
 #define KRS_MOST_ZONES 16
@@ -158,16 +159,16 @@ typedef enum KrsProjection {
     KRS_PANORAMA /* all directions: longitude from left to right, latitude from top to bottom */
 } KrsProjection;
 
-/* Where a picture is seen from, in world units. */
+/* The position and projection of a camera, in world units. */
 typedef struct KrsCamera {
     KrsProjection projection;
-    double        eye[3], target[3], up[3]; /* `up` is seen upright; its length means nothing */
+    double        eye[3], target[3], up[3]; /* `up` is upright in the picture; of any length */
     double        fov;                      /* perspective: vertical angle, radians, below pi */
     double        height;                   /* orthographic: of the picture */
 } KrsCamera;
 
-/* The cameras that the scene declares, or the one that it is given without; the first is the
-   default.  The name is NULL where there is none, and lives as long as the scene. */
+/* The cameras that the scene declares or, if it has none, one that the compiler places.  The first
+   is the default.  The name is NULL if the camera has none, and lives as long as the scene. */
 size_t      krs_camera_count(const KrsScene *scene);
 const char *krs_camera_name(const KrsScene *scene, size_t index);
 /* A camera at the frame's parameters and time.  KRS_BAD_ARGUMENT when there is none of that
@@ -176,14 +177,14 @@ KrsStatus krs_frame_camera(KrsFrame *frame, size_t index, KrsCamera *camera);
 
 /* A component of the scene: what one `show` shows. */
 typedef struct KrsComponent {
-    const char *name;            /* the variable it was shown by, or "component 3" */
+    const char *name;            /* of the variable in its `show`, or "component 3" */
     double      low[3], high[3]; /* a box around it in world units; may be infinite */
     double      slope;           /* the derived bound on the slope of its expression */
     bool        per_frame;       /* `slope` is that of the first frame; each has its own */
     bool        exact;           /* the distance is exact outside wherever docs/math.md says so */
     bool        estimate;        /* nothing is proven of the distance; else it is a bound */
-    uint32_t    levels;          /* reflections of its outermost sequence; 0 without one */
-    double      instances;       /* copies of kernels, counted with their reflections */
+    uint32_t    levels;          /* number of reflections of its outermost sequence, or 0 */
+    double      instances;       /* number of kernels with all their copies */
     uint32_t    inversions;      /* maps that invert, in its outermost sequence or `.transform` */
     double      flops;           /* multiply-adds to evaluate its distance at a point */
 } KrsComponent;
@@ -194,18 +195,18 @@ KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *compo
 
 /* What is known of the distance of one shape of a component, in the shape's own space. */
 typedef struct KrsBound {
-    uint32_t    depth;           /* 0: the whole component; parts follow, one level deeper */
+    uint32_t    depth;           /* 0: the whole component; its parts follow, with 1, and so on */
     const char *name;            /* "torus", "union" */
-    const char *source;          /* where the shape is made: a text, */
-    uint32_t    line, column;    /* from 1; 0: nowhere */
+    const char *source;          /* name of the text where the shape is made */
+    uint32_t    line, column;    /* position there, from 1; 0: none */
     const char *rule;            /* why its bound holds: "exact, by claim" */
-    double      slope;           /* of its distance; the component is divided by it */
+    double      slope;           /* of its distance; the component's distance is divided by it */
     double      low[3], high[3]; /* a box around it; may be infinite */
-    bool        exact, estimate; /* as of components */
+    bool        exact, estimate; /* as in KrsComponent, like the next two */
     uint32_t    levels;
     double      instances;
-    uint32_t    alike; /* similar parts, made in the same place, without an entry */
-    size_t      same;  /* the entry, from 1, that lists its parts; 0: this one */
+    uint32_t    alike; /* number of similar parts, made at the same place, that have no entry */
+    size_t      same;  /* number from 1 of the entry that lists its parts; 0: this one */
 } KrsBound;
 
 /* The number of entries, at most 256; 0 if there is no such component.  *more, unless NULL, becomes
@@ -231,7 +232,7 @@ KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count,
 #define KRS_NUMBERS_FLOAT
 #define KRS_NUMBERS_VEC3 [3]
 
-/* What is at a point, or where a ray ends. */
+/* What is known at a point, or where a ray ends. */
 typedef struct KrsHit {
     bool     hit;        /* for rays; always true for points */
     bool     unresolved; /* for rays: ended after KRS_MOST_STEPS steps; nothing before `t` */
@@ -242,10 +243,10 @@ typedef struct KrsHit {
     double   shading[3]; /* the normal for lighting; differs from `normal` where mirrors are smooth
                             over a given width */
     uint32_t component;  /* from 1; 0 where nothing is hit */
-    /* Which part of it, and its material: a member for each row of surface.def.
-       level: reflections before the kernel; instance: a number for each copy (docs/math.md, section
-       1), a hash beyond 31 mirrors, 1 without a sequence; color[3]: linear Rec.709, as is
-       emission[3]; roughness; metallic.  All but the emission are limited as in pictures. */
+    /* A member for each row of surface.def: the instance that was hit, and its material.
+       level: number of mirrors that the instance comes through; instance: its number (docs/math.md,
+       section 1), a hash beyond 31 mirrors, 1 without a sequence; color[3] and emission[3]: linear
+       Rec.709; roughness; metallic.  All but the emission are limited as in pictures. */
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) uint32_t name;
 #include "compiler/shape/surface.def"
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
@@ -263,11 +264,12 @@ KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, Kr
  * tolerance, in world units (0: 1e-9), is how far `t` may be from where the ray crosses the
  * surface. A ray may miss a solid in which it stays for less than a sixteenth of the tolerance,
  * as where it grazes one.  Both lengths grow by the rounding of the coordinates.  A ray from
- * inside of a solid hits the solid's inner wall; a ray that begins on a surface hits it at 0.
+ * inside of a solid hits the solid's surface from inside; one that begins on a surface hits it at
+ * 0.
  *
- * A ray that has not ended after KRS_MOST_STEPS steps is neither hit nor miss: it is
- * `unresolved`, and nothing is before `t`.  That happens very near to surfaces, as along an
- * endless plane.
+ * A ray that has not ended after KRS_MOST_STEPS steps is neither a hit nor a miss.  It is
+ * `unresolved`, and no surface is before `t`.  This happens to rays that stay very near to a
+ * surface, for example along an infinite plane.
  */
 #define KRS_MOST_STEPS 100000
 KrsStatus krs_raycast(KrsFrame *frame, const double (*origins)[3], const double (*directions)[3],

@@ -1,9 +1,9 @@
 /*
- * limits.c: scenes that are refused after they were lowered: too large, or with numbers that no
- * shader has.
+ * limits.c: refuses scenes that are too large, or that have numbers which are not finite in single
+ * precision.
  *
- * Size is limited by construction, since compilers of shaders are slow on what is too large: some
- * ten seconds for a million bytes, and three times as long for two.
+ * Size is limited because drivers compile large shaders slowly: a million bytes take about ten
+ * seconds, two million three times as long.
  */
 #include <float.h>
 #include <math.h>
@@ -17,7 +17,7 @@ static const char fewer_shapes[] =
 
 /* ---- operations ---- */
 
-/* Operations at each point: what depends on the frame only does not count. */
+/* The number of operations at each point; those that depend on the frame only do not count. */
 static size_t count_operations(Compilation *c, const Node *roots, size_t count)
 {
     Tape   tape   = tape_new(c->scene->graph, roots, count, &c->scratch);
@@ -47,7 +47,7 @@ static void refuse_zones(Compilation *c, size_t operations)
     diag->help  = "fewer zones";
 }
 
-/* Of each component and, behind the last, of the zones: c->operations. */
+/* Sets c->operations: those of each component and, behind them, of the zones. */
 static void count_all_operations(Compilation *c)
 {
     const Roots *roots = &c->scene->roots;
@@ -89,8 +89,8 @@ static bool check_operations(Compilation *c)
 
 /* ---- numbers ---- */
 
-/* Whether an operation is on constants alone and yet not folded: its result is not finite; or a
-   constant that single precision does not have. */
+/* Whether a node is a constant beyond the range of single precision, or an operation on constants.
+   The latter would have been folded if its result were finite. */
 static bool is_beyond_numbers(const Graph *graph, const Expr *expr)
 {
     bool constants = expr->operand_count > 0, too_large = false;
@@ -106,13 +106,13 @@ static void refuse_number(Compilation *c, const Component *shown, Span span)
     Diag *diag  = diag_add(&c->diags, DIAG_NOT_A_NUMBER, shown->span,
                            "a number in `%s` is too large, or not finite", shown->name);
     diag->label = "single precision goes to 3.4e38";
-    /* Equal expressions are one node, whose place may be in another component. */
+    /* Equal expressions share a node, so its span may be in another component. */
     if (span.source == shown->span.source && span.start > shown->span.start &&
         span.end <= shown->span.end)
         diag_secondary(&c->diags, diag, span, "in here");
 }
 
-/* The first node that the roots of some components need and no shader can have; else NODE_NONE. */
+/* The first node of some components that is_beyond_numbers, or NODE_NONE. */
 static Node find_overflow(Compilation *c, size_t first, size_t count)
 {
     const Graph *graph = c->scene->graph;
@@ -126,7 +126,7 @@ static Node find_overflow(Compilation *c, size_t first, size_t count)
     return found;
 }
 
-/* An overflow of what is given shows here only, where it has met everything else. */
+/* Refuses numbers that overflow in the simplified graph, where all constants have been combined. */
 static bool check_numbers(Compilation *c)
 {
     size_t count = c->elaborated.components.count;
@@ -158,7 +158,7 @@ void print_limits(Compilation *c, Text *out)
 
 /* ---- the first frame ---- */
 
-/* The component that needs a node; NULL: a camera, a light or the sky does. */
+/* The first component that uses a node; NULL if only a camera, a light or the sky does. */
 static const Component *component_with(Compilation *c, Node node)
 {
     for (size_t i = 0; i < c->elaborated.components.count; i++) {
@@ -184,7 +184,8 @@ static void refuse_default(Compilation *c, Node node)
     arena_free(&c->scratch);
 }
 
-/* The frame at time 0 with all defaults, which is every caller's first. */
+/* Refuses a scene that is not finite at time 0 with all defaults, the first frame of all
+   callers. */
 static KrsStatus check_defaults(Compilation *c)
 {
     KrsFrame *frame;
@@ -216,7 +217,8 @@ static void refuse_length(Compilation *c, size_t largest, size_t operations)
                              : fewer_shapes;
 }
 
-/* Many small components have few operations, and much text around them. */
+/* Limits the text in addition to the operations: many small components have few operations but much
+   text. */
 static bool check_length(Compilation *c)
 {
     size_t largest = 0, most = 0;

@@ -1,19 +1,20 @@
 /*
- * make_module.c: what texts are printed from, and how long they are.
+ * make_module.c: the pass `emit`: makes the module from which texts are printed.
  */
 #include <string.h>
 
 #include "compiler/compilation.h"
 
-/* Names and lines of the texts that nodes come from, names alone of the library's; the texts go. */
-static Sources keep_lines(const Sources *from, const Graph *graph, Arena *arena)
+/* Copies the names and the offsets of lines of the sources that nodes come from, without their
+   texts.  Of the library's sources only names are copied. */
+static Sources retain_lines(const Sources *from, const Graph *graph, Arena *arena)
 {
-    Sources kept = {.arena = arena, .count = from->count};
-    kept.items   = arena_new_array(arena, Source, from->count + 1);
+    Sources retained = {.arena = arena, .count = from->count};
+    retained.items   = arena_new_array(arena, Source, from->count + 1);
     for (Node n = 0; n < graph->count; n++) {
         uint32_t      number = graph->items[n].span.source;
         const Source *source = &from->items[number];
-        Source       *copy   = &kept.items[number];
+        Source       *copy   = &retained.items[number];
         if (number == 0 || copy->name)
             continue;
         copy->name    = arena_copy_text(arena, source->name, strlen(source->name));
@@ -24,10 +25,10 @@ static Sources keep_lines(const Sources *from, const Graph *graph, Arena *arena)
         copy->lines      = arena_new_array(arena, uint32_t, source->line_count);
         memcpy(copy->lines, source->lines, source->line_count * sizeof *copy->lines);
     }
-    return kept;
+    return retained;
 }
 
-/* What is promised, for graphics cards. */
+/* The text of the promised functions (krs_promised_functions) for graphics cards. */
 static Text print_promised(Compilation *c, bool shares)
 {
     KrsScene        *scene = c->scene;
@@ -53,7 +54,7 @@ KrsStatus pass_emit(Compilation *c)
         is_plane[i] = component_is_plane(&c->elaborated.components.items[i]);
     }
     scene->module = (Module){.graph           = scene->graph,
-                             .sources         = keep_lines(&c->sources, scene->graph, arena),
+                             .sources         = retain_lines(&c->sources, scene->graph, arena),
                              .components      = count,
                              .surfaces        = roots_of(roots, ROOTS_SURFACE).items,
                              .guarded         = roots_of(roots, ROOTS_GUARDED).items,

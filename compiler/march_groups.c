@@ -1,10 +1,10 @@
 /*
- * march_groups.c: which components are marched by themselves (KrsMarchGroup in compile.h).
+ * march_groups.c: decides which components are marched by themselves (KrsMarchGroup in compiled.h).
  */
 #include "compiler/compilation.h"
 
-/* Components of so many flops are marched by themselves, in scenes of so many: as bench/krs.c
-   found.  Less is gained where their boxes lie within each other. */
+/* Least flops of a component that is marched by itself, and of a scene where this is done.  Scenes
+   whose boxes overlap need more, since they gain less.  Measured by bench/krs.c. */
 static const double EXPENSIVE_FLOPS = 100, SCATTERED_FLOPS = 1000, MIXED_FLOPS = 2000;
 
 static double component_flops(Compilation *c, size_t component)
@@ -14,8 +14,8 @@ static double component_flops(Compilation *c, size_t component)
     return tape_flops(&tape);
 }
 
-/* The group that a component joins: one of its own if it is expensive and bounded, while there are
-   any; else the last, of all the others. */
+/* The index of a component's group: a new one if the component is expensive and bounded, and groups
+   are left.  Else that of the last group, which has all other components. */
 static size_t choose_march_group(const KrsProgram *program, double flops, Box box)
 {
     bool own = flops >= EXPENSIVE_FLOPS && box_is_finite(box) && !box_is_empty(box);

@@ -1,5 +1,5 @@
 /*
- * passes.c: passes that are a few calls, each with what it prints.
+ * passes.c: passes that consist of a few calls, each with the function that prints its result.
  */
 #include <stdlib.h>
 
@@ -7,7 +7,7 @@
 
 /* ---- the front end ---- */
 
-/* A mistake of the whole scene, of which nothing is shown. */
+/* Reports a mistake of the scene as a whole, without lines of its text. */
 static KrsStatus refuse_scene(Compilation *c, DiagCode code, const char *message)
 {
     uint32_t source = source_add(&c->sources, c->name, "", 0, false);
@@ -35,7 +35,7 @@ KrsStatus pass_load(Compilation *c)
 
 void print_load(Compilation *c, Text *out) { files_print_texts(&c->files, out); }
 
-/* Mistakes do not end the run before `names`, which may find more. */
+/* Mistakes end the run only after the pass `names`, which may find more. */
 KrsStatus pass_lex(Compilation *c)
 {
     files_lex(&c->files);
@@ -101,7 +101,7 @@ void print_elaborate(Compilation *c, Text *out) { scene_print(&c->elaborated, &c
 
 /* ---- graph and GLSL ---- */
 
-/* What surfaces and the view need; roots for the march would say the same again, and more. */
+/* Prints the roots of surfaces and the view only; those for the march would repeat much of them. */
 static void print_graph(const Compilation *c, const Graph *graph, Text *out)
 {
     RootRange shown = roots_from(&c->scene->roots, ROOTS_SURFACE, ROOTS_SKY);

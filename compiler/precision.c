@@ -1,11 +1,12 @@
 /*
- * precision.c: where single precision shows, so that points have to be relative to the camera.
+ * precision.c: whether errors of single precision are visible, so that points must be
+ * camera-relative.
  *
- * A coordinate is known to a few units in its last place, so the larger it is the less is known of
- * it.  That shows where it is more than a part of a pixel.  What is nearest to the eye is seen by
- * the narrowest pixels, so the eye and its distance decide.  The renderer asks this of the frame
- * that it has; the compiler has to tell before whether there may be such a frame, since the code
- * for it costs time.
+ * The error of a coordinate is a few units in its last place, so it grows with the coordinate.  It
+ * is visible where it exceeds a fraction of a pixel.  Pixels are narrowest at the surface nearest
+ * to the eye, so the eye's coordinates and its distance from that surface decide.  The renderer
+ * decides this for each frame.  The compiler has to find out whether there may be such a frame,
+ * since code for camera-relative points takes time to compile.
  */
 #include <math.h>
 #include <string.h>
@@ -15,9 +16,10 @@
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/facts.h"
 
-/* What a kernel takes a coordinate to be known to, relative (ROUNDING in frame.glsl). */
+/* The relative error of a coordinate that kernels assume (ROUNDING in frame.glsl). */
 static const double ROUNDING = 2.4e-7;
-/* Of a pixel: as much as a march leaves open (MOST_TOLERANCE in trace.comp). */
+/* The largest permitted error in pixels: the tolerance of a march (MOST_TOLERANCE in
+   trace.comp). */
 static const double MOST_OF_PIXEL = 1.0 / 64;
 
 bool krs_needs_rebase(double coordinate, double pixel)
@@ -25,13 +27,12 @@ bool krs_needs_rebase(double coordinate, double pixel)
     return ROUNDING * coordinate > MOST_OF_PIXEL * pixel;
 }
 
-/* An eye that moves may come near to anything: then what is farther out than this, in units,
-   needs it. */
+/* A moving eye may come near to any surface, so coordinates above this number need rebasing. */
 static const double FAR_OUT = 64;
-/* The narrowest pixels that pictures have: lines of twice the height that the scene says. */
+/* Pictures are assumed to have at most twice as many lines as the scene's image, or as usual. */
 enum { USUAL_HEIGHT = 720, TIMES_HEIGHT = 2 };
 
-/* How far out the boxes of the components are, where they end. */
+/* The largest coordinate of the sides of boxes of components; infinite sides do not count. */
 static double reach_of_boxes(const Scene *s)
 {
     double reach = 0;
@@ -43,7 +44,7 @@ static double reach_of_boxes(const Scene *s)
     return reach;
 }
 
-/* All distances, and what is asked of the cameras. */
+/* The distances and the cameras' properties for the default values of parameters. */
 typedef struct ViewPrecision {
     const Scene *scene;
     Graph       *graph;
@@ -76,7 +77,7 @@ static void run_defaults(ViewPrecision *view)
     tape_run_frame(&view->tape, parameters, view->values);
 }
 
-/* At the defaults of the parameters. */
+/* The least distance of a component from the eye, for the defaults of the parameters. */
 static double nearest_to(const ViewPrecision *view, const double eye[3])
 {
     double nearest = HUGE_VAL;
@@ -88,7 +89,7 @@ static double nearest_to(const ViewPrecision *view, const double eye[3])
     return nearest;
 }
 
-/* How far out the eye may be for any values of the parameters. */
+/* The largest coordinate that the eye may have, for any values of the parameters. */
 static double reach_of_eye(const ViewPrecision *view, Node eye)
 {
     double reach = 0;
@@ -103,7 +104,7 @@ static double lines_of(const Scene *s)
     return TIMES_HEIGHT * (s->image.height ? s->image.height : USUAL_HEIGHT);
 }
 
-/* What the camera sees may be narrow as it is by default. */
+/* Whether a camera needs rebasing with the default values of the parameters. */
 static bool camera_needs_rebase(const ViewPrecision *view, const SceneCamera *camera)
 {
     const double *eye     = view->values[camera->eye].v;
@@ -116,7 +117,8 @@ static bool camera_needs_rebase(const ViewPrecision *view, const SceneCamera *ca
     return krs_needs_rebase(largest3(eye), pixel);
 }
 
-/* A camera that the compiler places stands as far away as the scene is large (framing.c). */
+/* Whether a camera that the compiler places needs rebasing.  Its distance is about the size of the
+   scene (framing.c). */
 static bool scene_needs_rebase(const Scene *s)
 {
     double size = 0;

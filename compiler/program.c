@@ -1,5 +1,5 @@
 /*
- * program.c: what a compiled scene says of itself, and its end.
+ * program.c: the properties of a compiled scene, and scene_free.
  */
 #include "compiler/program.h"
 

@@ -1,5 +1,5 @@
 /*
- * program.h: a compiled scene, as compile.c makes it, and program.c, frame.c and query.c ask it.
+ * program.h: a compiled scene: made by the passes, used by program.c, frame.c and query.c.
  */
 #ifndef KRS_PROGRAM_H
 #define KRS_PROGRAM_H
@@ -12,22 +12,22 @@
 #include "compiler/print/module.h"
 
 /*
- * What is asked of the graph: nodes in one array, kind behind kind, so that they are simplified
- * together.
+ * Kinds of roots of the graph.  All roots are in one array, ordered by kind, so that they are
+ * simplified together.
  */
 typedef enum RootKind {
-    ROOTS_SURFACE, /* of each component as many as there are kinds of ComponentRoot */
-    ROOTS_ZONE,    /* the depth in zones, if there are any */
-    ROOTS_CAMERA,
-    ROOTS_LIGHT,
-    ROOTS_SKY,
-    /* From here on for the march alone; nothing else depends on these. */
-    ROOTS_GUARDED,         /* of each component: lower_guarded */
-    ROOTS_ALONG,           /* of each component, method by method: lower_along */
-    ROOTS_PLANE,           /* of the nearest half-space */
-    ROOTS_GRADIENT,        /* of each component, and then of all zones */
-    ROOTS_SLOPE,           /* of each slope that is found for each frame */
-    ROOTS_CAMERA_RELATIVE, /* surfaces and plane again, for points that are, or nothing */
+    ROOTS_SURFACE, /* for each component an array that is indexed by ComponentRoot */
+    ROOTS_ZONE,    /* the depth in the zones; none if there are no zones */
+    ROOTS_CAMERA,  /* CameraRoots of each camera */
+    ROOTS_LIGHT,   /* LightRoots of each light */
+    ROOTS_SKY,     /* SkyRoots */
+    /* The kinds from here on are for the march, gradients and slopes only. */
+    ROOTS_GUARDED,         /* for each component: lower_guarded */
+    ROOTS_ALONG,           /* for each method, for each component: lower_along */
+    ROOTS_PLANE,           /* PlaneRoots of the nearest half-space */
+    ROOTS_GRADIENT,        /* GradientRoots of each component, then of all zones */
+    ROOTS_SLOPE,           /* each slope that is computed per frame */
+    ROOTS_CAMERA_RELATIVE, /* surfaces and plane again for camera-relative points, or none */
     ROOT_KINDS
 } RootKind;
 
@@ -41,21 +41,21 @@ typedef struct SkyRoots {
     Node zenith, horizon, ground;
 } SkyRoots;
 typedef struct PlaneRoots {
-    Node step, rise; /* how far a ray is from it, and how steeply the ray falls */
+    Node step, cosine; /* length of the ray up to the plane; dot product of normal and direction */
 } PlaneRoots;
 typedef struct GradientRoots {
-    Node gradient, near; /* lower_gradient's two; the same FLOAT twice where there is none */
+    Node gradient, near; /* results of lower_gradient; without one both are the distance */
 } GradientRoots;
 
-/* How many nodes such a group of roots has. */
+/* The number of nodes in such a struct of roots. */
 #define NODES_OF(type) (sizeof(type) / sizeof(Node))
 
 typedef struct Roots {
     Node  *all;
-    size_t first[ROOT_KINDS + 1]; /* where each kind begins; the last: how many there are */
+    size_t first[ROOT_KINDS + 1]; /* index where each kind begins; the last is the total number */
 } Roots;
 
-/* Roots that follow each other. */
+/* A range of consecutive roots. */
 typedef struct RootRange {
     Node  *items;
     size_t count;
@@ -72,7 +72,7 @@ static inline RootRange roots_of(const Roots *roots, RootKind kind)
     return roots_from(roots, kind, kind);
 }
 
-/* What is computed for a component: to be indexed by ComponentRoot. */
+/* The roots of a component, to be indexed by ComponentRoot. */
 static inline Node *surface_roots(const Roots *roots, size_t component)
 {
     return roots_of(roots, ROOTS_SURFACE).items + component * ROOT_COUNT;
@@ -83,7 +83,7 @@ static inline Node distance_root(const Roots *roots, size_t component)
     return surface_roots(roots, component)[ROOT_DISTANCE];
 }
 
-/* Of each component, by one method. */
+/* The root of each component for one method of lower_along. */
 static inline Node *along_roots(const Roots *roots, AlongMethod method)
 {
     RootRange along = roots_of(roots, ROOTS_ALONG);
@@ -110,13 +110,13 @@ static inline PlaneRoots *plane_roots(const Roots *roots)
     return (PlaneRoots *)roots_of(roots, ROOTS_PLANE).items;
 }
 
-/* Of a component; behind the last, of all zones. */
+/* Those of a component; with the number of components, those of all zones. */
 static inline GradientRoots *gradient_roots(const Roots *roots, size_t component)
 {
     return (GradientRoots *)roots_of(roots, ROOTS_GRADIENT).items + component;
 }
 
-/* A slope that is found for each frame (shape/slope.c). */
+/* A slope that is computed per frame (shape/slope.c). */
 typedef struct RetainedSlope {
     uint32_t    slot;
     SlopeTask   task;
@@ -125,49 +125,51 @@ typedef struct RetainedSlope {
 
 struct KrsScene {
     Memory         memory;
-    Arena          arena; /* all that stays: graph, names, program */
+    Arena          arena; /* of all that is below: graph, names, program */
     KrsProgram     program;
     const Graph   *graph;
     Module         module; /* what text is printed from */
     Roots          roots;
     size_t         component_count, camera_count, light_count;
-    size_t         zone_count; /* declared; all have one root */
+    size_t         zone_count; /* zones that the scene declares; they share one root */
     KrsComponent  *components;
     KrsBounds     *bounds; /* of each component */
-    RetainedSlope *slopes; /* those that the program needs */
+    RetainedSlope *slopes; /* slopes that are computed per frame */
     size_t         slope_count;
     Parameter     *parameters;
     size_t         parameter_count;
-    SceneCamera   *cameras; /* their nodes are not used: the roots are */
+    SceneCamera   *cameras; /* for their values use the roots, not the nodes in here */
     SceneLight    *lights;
-    bool           framed; /* the first camera stands in, and framing.c has placed it here: */
+    bool           framed; /* the scene has no camera, and framing.c has placed one: */
     double         framed_eye[3], framed_target[3];
     SceneImage     image;
     char           hash[17];
-    Tape           distance; /* of all components, and zones */
-    Tape           guarded;  /* of all components: ROOTS_GUARDED, with what may be left out */
-    Tape           ahead;    /* with sheets: of all components, and zones, how far rays may go */
-    Tape           turned;   /* with sheets: gradients of all components */
-    Tape           surface;  /* all roots of all components */
+    Tape           distance; /* distances of all components, and zones */
+    Tape           guarded;  /* distances with guards (ROOTS_GUARDED) of all components, and
+    zones */
+    Tape           ahead;    /* if there are sheets: ALONG_EXACT of all components, and zones */
+    Tape           turned;   /* if there are sheets: gradients of all components */
+    Tape           surface;  /* all roots of all components, and zones */
     Tape           view;     /* cameras, lights and sky */
 };
 
-/* A frame: what varies, and memory for the values of all nodes. */
+/* A frame: values of the parameters, and memory for the values of all nodes. */
 struct KrsFrame {
     const KrsScene *scene;
-    NodeValue      *parameters; /* the parameter block: slot 0 is the time; slopes are always those
-                                   of the other values */
-    void           *workspace;  /* to find the slopes in */
-    const char     *unbounded;  /* the place of one that had no bound in the frame refused last */
+    NodeValue      *parameters; /* the parameter block: the time in slot 0, parameters, slopes.  The
+                                   slopes always belong to the other values */
+    void           *workspace;  /* memory for the computation of slopes */
+    const char     *unbounded;  /* location of the slope without a bound in the last refused
+    frame */
     NodeValue      *values;     /* of every node */
     KrsLight       *lights;
-    bool            fresh; /* frame values are of these parameters */
+    bool            fresh; /* the frame values in `values` belong to the parameters */
     double          zones[KRS_MOST_ZONES][4];
-    size_t          zone_count; /* of the caller */
+    size_t          zone_count; /* zones of the caller */
 };
 
-/* What krs.h and compiled.h have under the same names, for the compiler itself, which asks a scene
-   before it is handed out: from `retain` on. */
+/* The functions of krs.h and compiled.h with the same names.  The compiler itself calls them, after
+   the pass `retain`. */
 KrsStatus frame_new(const KrsScene *scene, KrsFrame **frame);
 void      frame_free(KrsFrame *frame);
 KrsStatus frame_view(KrsFrame *frame, size_t camera, KrsView *view);
@@ -175,13 +177,15 @@ KrsStatus frame_raycast(KrsFrame *frame, const double (*origins)[3], const doubl
                         size_t count, double farthest, double tolerance, KrsHit *hits);
 void      scene_free(KrsScene *scene);
 
-/* Computes what depends on parameters only, once after each change. */
+/* Evaluates the nodes that depend on parameters only, unless their values are up to date. */
 void frame_refresh(KrsFrame *frame);
-/* Of all that points and the view get from the frame, something that is not finite; NODE_NONE. */
+/* A value of the frame, used by points or the view, that is not finite; NODE_NONE: there is
+   none. */
 Node frame_infinite(KrsFrame *frame);
-/* The value of a node that is a vector of 3. */
+/* Copies the value of a node of type VEC3. */
 void frame_copy(const KrsFrame *frame, Node node, double to[3]);
-/* Any length but 0: squares of what is very long or short would overflow, or vanish. */
+/* Scales a vector to length 1, unless it is 0.  It may be so long or short that the square of its
+   length would overflow or be 0. */
 void vector_normalize(double v[3]);
 
 static inline Node zone_root(const KrsScene *scene)

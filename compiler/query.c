@@ -1,7 +1,7 @@
 /*
- * query.c: questions: what is at a point, and where a ray ends, in double precision.
+ * query.c: queries in double precision: what is known at a point, and where a ray ends.
  *
- * What is asked of the device (runtime/tracer/query.c) follows the same rules in single precision.
+ * Queries on the device (runtime/tracer/query.c) follow the same rules in single precision.
  */
 #include <float.h>
 #include <math.h>
@@ -20,7 +20,7 @@ static bool are_finite(const double (*vectors)[3], size_t count)
 
 /* ---- points ---- */
 
-/* How deep a point is in the deepest zone, those of the scene (in frame->values) and of the
+/* The largest depth of a point in a zone of the scene, whose value is in frame->values, or of the
    caller; negative outside. */
 static double zone_depth(const KrsFrame *frame, const double point[3])
 {
@@ -33,8 +33,8 @@ static double zone_depth(const KrsFrame *frame, const double point[3])
     return depth;
 }
 
-/* The least distance of all components; *nearest is its component, from 1.  Zones cut what is
-   there, and do not change whose it is. */
+/* The least distance of all components, cut by the zones.  *nearest is the number from 1 of that
+   component, whether or not a zone cuts it. */
 static double distance_at(KrsFrame *frame, const double point[3], uint32_t *nearest)
 {
     const KrsScene *scene = frame->scene;
@@ -51,8 +51,8 @@ static double distance_at(KrsFrame *frame, const double point[3], uint32_t *near
     return least < depth ? depth : least;
 }
 
-/* Where rays have to go from root to root: how far this one may go from a point, the last point
-   having been `step` behind. */
+/* In a scene with sheets: how far a ray may go from a point.  `step` is the length from the
+   previous point to it. */
 static double step_ahead(KrsFrame *frame, const double point[3], const double direction[3],
                          double step)
 {
@@ -65,8 +65,7 @@ static double step_ahead(KrsFrame *frame, const double point[3], const double di
     return fmax(least, zone_depth(frame, point));
 }
 
-/* No more than the distance, and cheaper: levels of sequences that are far for their size are not
-   looked at (lower_guarded). */
+/* A bound for the distance that costs less: far levels of sequences are skipped (lower_guarded). */
 static double clearance_at(KrsFrame *frame, const double point[3])
 {
     const KrsScene *scene   = frame->scene;
@@ -89,7 +88,8 @@ KrsStatus krs_distance(KrsFrame *frame, const double (*points)[3], size_t count,
     return KRS_OK;
 }
 
-/* By derivatives, where differences would see both sides of a sheet.  False: there are none. */
+/* A normal by derivatives, in scenes with sheets: differences would mix both sides of a sheet.
+   False if there is no derivative. */
 static bool derived_normal(KrsFrame *frame, const double point[3], double normal[3])
 {
     const KrsScene *scene   = frame->scene;
@@ -107,7 +107,7 @@ static bool derived_normal(KrsFrame *frame, const double point[3], double normal
     return known;
 }
 
-/* Central differences: in double precision their error is far below what a normal needs. */
+/* A normal by central differences, whose error is negligible in double precision. */
 static void normal_at(KrsFrame *frame, const double point[3], double normal[3])
 {
     double   step = 1e-6 * (1 + largest3(point));
@@ -136,8 +136,8 @@ KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count, d
     return KRS_OK;
 }
 
-/* Of a component: the numbers of a property of its material.  Where it has limits, what is not a
-   number is the lower one. */
+/* Copies a property of the material at a point.  If queries limit it to its range, NaN becomes the
+   lower limit. */
 static void copy_property(const KrsFrame *frame, const Node *roots, ComponentRoot root, double *to)
 {
     const RootInfo *info = &root_info[root];
@@ -163,7 +163,7 @@ static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) \
     hit->name = (uint32_t)frame->values[root[ROOT_##name]].v[0];
 #include "compiler/shape/surface.def"
-    /* No mirror is smooth where a zone cuts. */
+    /* Mirrors do not smooth the surface of a zone. */
     if (hit->distance > frame->values[root[ROOT_DISTANCE]].v[0])
         memcpy(hit->shading, hit->normal, sizeof hit->shading);
     else
@@ -182,7 +182,7 @@ KrsStatus krs_probe(KrsFrame *frame, const double (*points)[3], size_t count, Kr
 
 /* ---- rays ---- */
 
-/* Grown by what rounding may take away from a box. */
+/* Clips a ray to the range of a box along one axis, enlarged by possible rounding errors. */
 static void clip_axis(double low, double high, double from, double along, KrsRay *ray)
 {
     double margin = 1e-9 * (1 + fabs(from));
@@ -205,7 +205,7 @@ KrsRay krs_ray(const KrsScene *scene, const double origin[3], const double direc
                double farthest)
 {
     const KrsProgram *program = &scene->program;
-    const double      nowhere = 1e30; /* farther than anything is; its square is a number */
+    const double      nowhere = 1e30; /* larger than any scene, but its square is finite */
     KrsRay            ray     = {.end = nowhere};
     memcpy(ray.origin, origin, sizeof ray.origin);
     memcpy(ray.direction, direction, sizeof ray.direction);
@@ -229,18 +229,18 @@ bool krs_rays_are_valid(const double (*origins)[3], const double (*directions)[3
     return true;
 }
 
-enum { TOUCHING = 16 }; /* roundings */
+enum { TOUCHING = 16 }; /* largest gap between solids that touch, in rounding errors */
 
-/* The state of a ray.  Nothing is hit before `t`, nor within `clearance` behind it; the distance is
-   next evaluated at t + step. */
+/* A ray that is marched.  There is no surface before `t`, nor within `clearance` behind it.  The
+   distance is evaluated next at t + step. */
 typedef struct RayMarch {
     KrsFrame *frame;
     KrsRay    ray;
-    double    size; /* of the origin's coordinates: what rounding goes by */
+    double    size; /* largest coordinate of the origin, to which rounding errors are relative */
     double    tolerance;
-    double    side; /* -1 from inside of a solid; 0: not known */
+    double    side; /* 1: the ray begins outside; -1: inside of a solid; 0: not yet known */
     double    t, clearance, step;
-    double    slope; /* average change of the clearance along the ray */
+    double    slope; /* moving average of the change of clearance per length of ray */
 } RayMarch;
 
 static void march_point(const RayMarch *march, double t, double point[3])
@@ -254,14 +254,15 @@ static double rounding_at(const RayMarch *march, double t)
     return 4 * DBL_EPSILON * (march->size + t);
 }
 
-/* Solids that touch are one: from inside they count as grown by the gap that rounding may leave
-   between two. */
+/* The clearance at a point of the ray.  Solids that touch count as one solid.  So for a ray from
+   inside they are enlarged by the gap that rounding may leave between them. */
 static double march_clearance(RayMarch *march, double t)
 {
     double point[3];
     march_point(march, t, point);
     bool sheets = march->frame->scene->program.sheets;
-    /* Some roundings farther back: what was just before a sheet there must not be behind it here. */
+    /* Back to the previous point and a little farther, since rounding may put that point before a
+       sheet in one evaluation and behind it in the next. */
     double back     = t > march->t ? t - march->t + 2 * rounding_at(march, t) : 0;
     double distance = sheets ? step_ahead(march->frame, point, march->ray.direction, back)
                              : clearance_at(march->frame, point);
@@ -270,29 +271,29 @@ static double march_clearance(RayMarch *march, double t)
     return march->side < 0 ? TOUCHING * rounding_at(march, t) - distance : distance;
 }
 
-/* Where the surface is crossed between t, where the clearance is positive, and t + step, where it
-   is `clearance` and not positive: by false position, each end's weight halved when the other has
-   moved twice (the Illinois method). */
+/* The t where the ray crosses the surface, between t, where the clearance is positive, and t +
+   step, where it is `clearance` and not positive.  It is found by the Illinois method: false
+   position, where the value at one end is halved when the other end has moved twice. */
 static double find_crossing(RayMarch *march, double clearance)
 {
     enum { MOST_ROUNDS = 100 };
-    double low = march->t, high = march->t + march->step, below = march->clearance,
-           above  = clearance;
+    double low = march->t, high = march->t + march->step;
+    double at_low = march->clearance, at_high = clearance;
     double enough = fmax(rounding_at(march, high), march->tolerance / 16);
     int    moved  = 0;
-    for (int i = 0; i < MOST_ROUNDS && above < 0 && below > 0 && high - low > enough; i++) {
-        double t = low + (high - low) * below / (below - above);
-        t        = fmin(fmax(t, low + 0.25 * enough), high - 0.25 * enough);
-        double r = march_clearance(march, t);
-        if (r > 0) {
-            low   = t;
-            below = r;
-            above *= moved > 0 ? 0.5 : 1;
+    for (int i = 0; i < MOST_ROUNDS && at_high < 0 && at_low > 0 && high - low > enough; i++) {
+        double t    = low + (high - low) * at_low / (at_low - at_high);
+        t           = fmin(fmax(t, low + 0.25 * enough), high - 0.25 * enough);
+        double at_t = march_clearance(march, t);
+        if (at_t > 0) {
+            low    = t;
+            at_low = at_t;
+            at_high *= moved > 0 ? 0.5 : 1;
             moved = 1;
         } else {
-            high  = t;
-            above = r;
-            below *= moved < 0 ? 0.5 : 1;
+            high    = t;
+            at_high = at_t;
+            at_low *= moved < 0 ? 0.5 : 1;
             moved = -1;
         }
     }
@@ -302,11 +303,10 @@ static double find_crossing(RayMarch *march, double clearance)
 typedef enum RayState { MARCHING, HIT, MISS } RayState;
 
 /*
- * One step, by the rule of trace.comp.  The ball of empty space around t and the one around t +
- * step must meet; what lies between them is unverified.  Where they do not meet, the step is cut to
- * end in the middle of that, until no more than a sixteenth of the tolerance is unverified.  So a
- * step may be as long as the balls are expected to meet, if the clearance changes as before
- * (automatic relaxation).
+ * One step, by the rule of trace.comp.  The empty balls around t and around t + step must meet; the
+ * length between them is unverified.  If it is more than a sixteenth of the tolerance, the step is
+ * shortened to the middle of it.  So steps may be longer than the clearance (automatic relaxation):
+ * as long as the balls meet if the clearance goes on changing as before.
  */
 static RayState march_step(RayMarch *march)
 {
@@ -323,7 +323,8 @@ static RayState march_step(RayMarch *march)
         march->slope += 0.3 * (slope - march->slope);
         march->t         = at;
         march->clearance = clearance;
-        /* Where the distance is that to a root, nothing behind the point is known. */
+        /* With sheets, the clearance is known only in the direction of the ray: there is no ball
+           that reaches backwards. */
         double factor = march->frame->scene->program.sheets
                             ? 1
                             : fmax(1, 2 / (1 - fmin(march->slope, 0.98)));

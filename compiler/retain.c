@@ -1,8 +1,8 @@
 /*
- * retain.c: what stays of a scene when it has been compiled.
+ * retain.c: copies what a compiled scene needs.
  *
- * The elaborated scene, its shapes and their names go with the memory of the run; the program, its
- * tapes and what callers may ask (program.c) are copied into the scene's own.
+ * The elaborated scene, its shapes and their names are freed at the end of the run.  The tapes, and
+ * the answers that program.c gives, are copied into the arena of the compiled scene.
  */
 #include <string.h>
 
@@ -40,7 +40,8 @@ static void retain_components(Compilation *c)
     }
 }
 
-/* Shapes that were cut again leave slopes behind that nothing is divided by. */
+/* Whether the graph uses a slope.  Those of shapes that were later cut to a smaller region may be
+   unused. */
 static bool is_needed(const Graph *graph, uint32_t slot)
 {
     for (Node n = 0; n < graph->count; n++)
@@ -98,7 +99,7 @@ static void retain_scene(Compilation *c)
     scene->image.tone_map   = retain_text(c, s->image.tone_map);
 }
 
-/* One root of each component, and the zones behind them. */
+/* A tape of one root of each component and, behind them, that of the zones. */
 static Tape tape_with_zones(const KrsScene *scene, const Node *roots, bool guarded, Arena *arena,
                             Arena *scratch)
 {

@@ -1,9 +1,9 @@
 /*
- * roots.c: what is asked of the graph: everything that a scene shows, lowered.
+ * roots.c: the pass `lower`: lowers the components of a scene, and collects the roots of the graph.
  *
- * Of each component its distance and material, and after these what only the march needs, so that
- * nothing else depends on it: guards, steps along a ray, planes, gradients, and the same again for
- * camera-relative points.
+ * First come the distances and materials of components, and the view.  Behind them are the roots
+ * for the march only: guards, steps along rays, planes, gradients, and roots for camera-relative
+ * points.  They come last so that the nodes of the others do not depend on them.
  */
 #include <math.h>
 #include <string.h>
@@ -12,7 +12,8 @@
 #include "compiler/graph/rebase.h"
 #include "compiler/graph/derive.h"
 
-/* Room for all roots, one kind behind the other; those for camera-relative points come last. */
+/* Allocates all roots, ordered by kind.  Those for camera-relative points are last, so that they
+   can be left out. */
 static void allocate_roots(Compilation *c)
 {
     const Scene *s                  = &c->elaborated;
@@ -47,7 +48,7 @@ static bool lower_components(Compilation *c, Graph *g)
     return true;
 }
 
-/* Zones, cameras, lights and the sky are nodes already. */
+/* Copies the nodes of zones, cameras, lights and the sky, which elaboration has made. */
 static void gather_view(const Scene *s, const Roots *roots)
 {
     if (s->zone_count > 0)
@@ -79,9 +80,9 @@ static void lower_marches(Compilation *c, Graph *g)
 }
 
 /*
- * Components that are half-spaces need no march: a ray from p along d enters the one with n.x <= w
- * at (w - n.p) / n.d, if n.d < 0.  The first root is the least of these, the second the least n.d.
- * Where there are zones, planes have holes, and are marched like the rest.
+ * Components that are half-spaces need no march.  A ray from p along d enters the half-space
+ * n.x <= w at (w - n.p) / n.d, if n.d < 0.  The first root is the least of these lengths, the
+ * second the least n.d.  Zones cut holes into planes, so with zones planes are marched, too.
  */
 static void lower_planes(Compilation *c, Graph *g)
 {
@@ -89,25 +90,26 @@ static void lower_planes(Compilation *c, Graph *g)
     PlaneRoots  *plane = plane_roots(&c->scene->roots);
     Node         point = graph_leaf(g, OP_POINT), direction = graph_leaf(g, OP_DIRECTION);
     Node         far = graph_number(g, 1e30), zero = graph_number(g, 0);
-    plane->step = far;
-    plane->rise = graph_number(g, 1);
+    plane->step   = far;
+    plane->cosine = graph_number(g, 1);
     for (size_t i = 0; i < s->components.count && s->zone_count == 0; i++) {
         const Component *component = &s->components.items[i];
         if (!component_is_plane(component))
             continue;
         c->additions.planes = true;
-        Node rise           = graph_op2(g, OP_dot, component->plane_normal, direction);
+        Node cosine         = graph_op2(g, OP_dot, component->plane_normal, direction);
         Node depth          = graph_op2(g, OP_dot, component->plane_normal, point);
         Node clearance      = graph_op2(g, OP_sub, component->plane_offset, depth);
-        Node falls          = graph_op2(g, OP_less, rise, zero);
-        Node step   = graph_op3(g, OP_select, falls, graph_op2(g, OP_div, clearance, rise), far);
+        Node falls          = graph_op2(g, OP_less, cosine, zero);
+        Node step   = graph_op3(g, OP_select, falls, graph_op2(g, OP_div, clearance, cosine), far);
         plane->step = graph_op2(g, OP_min, plane->step, step);
-        plane->rise = graph_op2(g, OP_min, plane->rise, rise);
+        plane->cosine = graph_op2(g, OP_min, plane->cosine, cosine);
     }
 }
 
-/* Whether rays go by roots of polynomials and nothing has many levels: then derivatives cost less
-   than the differences of a bound, which is no better than its series. */
+/* Whether rays march by the roots of polynomials and there are no mirrors or inversions.  Then
+   derivatives cost less than differences of the distance, and a polynomial's distance is only a
+   bound, which is no more accurate than its series. */
 static bool is_algebraic(const Scene *s, const Roots *roots)
 {
     const Node *exact = along_roots(roots, ALONG_EXACT);
@@ -121,7 +123,7 @@ static bool is_algebraic(const Scene *s, const Roots *roots)
     return found;
 }
 
-/* Of components and of the zones, where they are asked for or the best there is. */
+/* Lowers the gradients of all components and of the zones, if the additions include gradients. */
 static void lower_gradients(Compilation *c, Graph *g)
 {
     const Scene *s     = &c->elaborated;
@@ -141,7 +143,7 @@ static void lower_gradients(Compilation *c, Graph *g)
     }
 }
 
-/* The roots of the components, and that of planes, for points relative to the camera. */
+/* Copies the roots of components and planes, and rebases the copies to camera-relative points. */
 static void lower_camera_relative(Compilation *c, Graph *g)
 {
     const Roots   *roots    = &c->scene->roots;

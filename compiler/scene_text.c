@@ -1,5 +1,5 @@
 /*
- * scene_text.c: the text of a compiled scene, on printing.
+ * scene_text.c: prints the text of a compiled scene.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +21,7 @@ size_t krs_promised_functions(const KrsScene *scene, bool many_threads,
     return count;
 }
 
-/* Memory of one text, and what it is made of. */
+/* A text to be printed, and its memory. */
 typedef struct Printing {
     const KrsScene    *scene;
     const KrsVariant  *variant;
@@ -31,7 +31,7 @@ typedef struct Printing {
     Arena              arena;
 } Printing;
 
-/* A copy in memory of the caller's allocator; NULL: there is none. */
+/* A copy in memory of the caller's allocator, or NULL. */
 static char *copy_text(const Text *text, const Memory *memory)
 {
     size_t bytes = text->length + 1;
@@ -41,7 +41,7 @@ static char *copy_text(const Text *text, const Memory *memory)
     return copy;
 }
 
-/* Running out of memory anywhere in there leads back to here. */
+/* Prints the text; NULL if memory runs out, in which case longjmp returns here. */
 static char *print(Printing *printing)
 {
     jmp_buf exhausted;

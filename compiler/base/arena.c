@@ -1,8 +1,8 @@
 /*
  * arena.c: memory that is freed all at once, taken from the system in blocks.
  *
- * Built with -DKRS_ARENA_SEPARATE every object is a block of its own, so that the address
- * sanitizer sees a write past the end of any of them.
+ * With -DKRS_ARENA_SEPARATE each object is a block of its own, so that the address sanitizer
+ * detects a write past its end.
  */
 #include "compiler/base/arena.h"
 
@@ -24,7 +24,7 @@ enum {
 
 static void out_of_memory(Memory *memory) { longjmp(*memory->exhausted, 1); }
 
-/* A zeroed block with room for `bytes` behind its header, not yet in any list. */
+/* A zeroed block with space for `bytes` behind its header.  The caller links it into a list. */
 static ArenaBlock *block_new(Memory *memory, size_t bytes)
 {
     if (bytes > SIZE_MAX - HEADER_BYTES)
@@ -55,7 +55,8 @@ static void *allocate(Arena *arena, size_t bytes)
 
 #else
 
-/* Starts a new block, each twice as large as the one before, up to a limit. */
+/* Takes an object from a new block.  Each block is twice as large as the one before, up to a
+   limit. */
 static void *take_from_new_block(Arena *arena, size_t bytes)
 {
     size_t capacity = FIRST_BLOCK_BYTES;
@@ -65,7 +66,8 @@ static void *take_from_new_block(Arena *arena, size_t bytes)
     capacity -= HEADER_BYTES;
     ArenaBlock *block = block_new(arena->memory, bytes > capacity ? bytes : capacity);
     if (bytes > capacity / 4 && arena->newest) {
-        /* A large object goes behind the newest block, whose free bytes stay in use. */
+        /* A large object has a block of its own, listed behind the newest one, so that the free
+           bytes of the newest block can still be used. */
         block->older         = arena->newest->older;
         arena->newest->older = block;
         return block_bytes(block);
@@ -83,7 +85,7 @@ static void *allocate(Arena *arena, size_t bytes)
         out_of_memory(arena->memory);
     bytes = (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
     if (bytes == 0)
-        bytes = ALIGNMENT; /* objects without size have addresses of their own, too */
+        bytes = ALIGNMENT; /* so that objects of size 0 have different addresses */
     if (bytes > arena->left)
         return take_from_new_block(arena, bytes);
     char *object = arena->next;

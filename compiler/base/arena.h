@@ -1,10 +1,9 @@
 /*
  * arena.h: memory that is freed all at once.
  *
- * The compiler knows three lifetimes and so has three arenas (compilation.h).  Nothing is
- * freed piece by piece.  Memory comes zeroed.  Running out of it unwinds, by longjmp, to the
- * call of the library that began the work, which reports it, so no caller in between checks
- * for NULL.
+ * The compiler has three arenas, one for each lifetime (compilation.h).  Single objects are never
+ * freed.  Memory is zeroed.  When it runs out, longjmp returns to the function of the library that
+ * the user called.  That function reports it, so no caller in between checks for NULL.
  */
 #ifndef KRS_ARENA_H
 #define KRS_ARENA_H
@@ -19,7 +18,7 @@ typedef struct Memory {
     void    *user;
     size_t   used;      /* bytes now held */
     size_t   limit;     /* most bytes that may be held; 0 means no limit */
-    jmp_buf *exhausted; /* where running out leads; must be set before the first allocation */
+    jmp_buf *exhausted; /* target of longjmp when memory runs out; set before any allocation */
 } Memory;
 
 typedef struct Arena {
@@ -29,11 +28,11 @@ typedef struct Arena {
     size_t             left;   /* free bytes there */
 } Arena;
 
-/* count * size zeroed bytes, aligned for any object; never NULL.  A product that overflows is
-   running out of memory. */
+/* count * size zeroed bytes, aligned for any object; never NULL.  If the product overflows, memory
+   has run out. */
 void *arena_alloc(Arena *arena, size_t count, size_t size);
 
-/* Gives every block back; the arena can be used again. */
+/* Frees all blocks; the arena can be used again. */
 void arena_free(Arena *arena);
 
 /* A copy of length bytes, with a NUL behind them. */
@@ -43,8 +42,7 @@ char *arena_copy_text(Arena *arena, const char *bytes, size_t length);
 #define arena_new(arena, T)          ((T *)arena_alloc((arena), 1, sizeof(T)))
 #define arena_new_array(arena, T, n) ((T *)arena_alloc((arena), (n), sizeof(T)))
 
-/* A larger array in place of a full one, for array_push: the old elements are copied, the old
-   block stays in the arena. */
+/* A larger copy of a full array, for array_push.  The old array stays in the arena. */
 void *arena_grow(Arena *arena, void *items, size_t count, size_t *capacity, size_t size);
 
 /* Growing arrays are structs with these three members, in the arena given at each push:

@@ -1,5 +1,5 @@
 /*
- * beneath.c: files within a folder, and never one outside of it.
+ * beneath.c: opens files below a folder, and none outside of it.
  */
 #include "compiler/base/beneath.h"
 
@@ -12,10 +12,11 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-/* Devices and pipes must not keep us waiting; the caller looks at what was opened. */
+/* O_NONBLOCK: opening a device or a pipe must not block.  The caller checks the kind of file. */
 static const int READ_FLAGS = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
 
-/* Takes out "." and "name/.."; false when the path leads out.  Without links it means the same. */
+/* Removes "." and "name/.." from a path; false when it leads out of the folder.  The simple path
+   names the same file, since links are not followed. */
 static bool simplify(const char *path, char simple[PATH_MAX])
 {
     size_t length = 0;
@@ -42,7 +43,7 @@ static bool simplify(const char *path, char simple[PATH_MAX])
     return true;
 }
 
-/* `name`, a single one, in a folder. */
+/* Opens one component of a path; the last one is the file. */
 static int open_step(int folder, const char *name, bool last)
 {
     int  flags = last ? READ_FLAGS | O_NOFOLLOW : O_PATH | O_CLOEXEC | O_NOFOLLOW | O_DIRECTORY;
@@ -90,5 +91,5 @@ int open_beneath(int root, const char *path)
                        ? fd
                        : open_beneath_by_steps(root, path);
     }
-    return open_beneath_by_steps(root, path); /* something is moved about all the time */
+    return open_beneath_by_steps(root, path); /* EAGAIN: other processes keep renaming folders */
 }

@@ -1,14 +1,14 @@
 /*
- * beneath.h: files within a folder, and never one outside of it.
+ * beneath.h: opens files below a folder, and none outside of it.
  */
 #ifndef KRS_BENEATH_H
 #define KRS_BENEATH_H
 
-/* Opens a file to be read, by a path that is relative to the open folder `root`; -1 with errno,
-   which is EXDEV where the path, or a symbolic link on it, leads out of the folder. */
+/* Opens a file for reading.  Its path is relative to the open folder `root`.  Returns -1 and sets
+   errno on failure: to EXDEV where the path, or a symbolic link on it, leads out of the folder. */
 int open_beneath(int root, const char *path);
-/* The same where the system cannot see to that: folder by folder, and no link is followed, for which
-   errno is EXDEV as well. */
+/* The same for systems without openat2.  Folders are opened one by one, and symbolic links are not
+   followed: they fail with EXDEV too. */
 int open_beneath_by_steps(int root, const char *path);
 
 #endif

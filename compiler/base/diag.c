@@ -1,6 +1,5 @@
 /*
- * diag.c: collecting what the compiler has to say, and writing it for machines.  The pictures
- * for people are drawn in diag_text.c.
+ * diag.c: collects diagnostics and writes them as JSON.  diag_text.c writes them for people.
  */
 #include "compiler/base/diag.h"
 
@@ -31,8 +30,9 @@ static bool same_span(Span a, Span b)
     return a.source == b.source && a.start == b.start && a.end == b.end;
 }
 
-/* The statements of a loop are elaborated many times and would complain each time.  Only the
-   few diagnostics that are stored are compared; one without a location is never a repeat. */
+/* Whether a diagnostic was given before.  The statements of a loop are elaborated many times and
+   would report the same mistake each time.  Only stored diagnostics are compared, which are few.
+   A diagnostic without a location is never a repeat. */
 static bool is_repeat(const Diags *diags, DiagCode code, Span span)
 {
     for (size_t i = 0; i < diags->count && span.source != 0; i++)
@@ -105,7 +105,8 @@ static bool comes_after(const Diag *a, const Diag *b)
     return a->span.end > b->span.end;
 }
 
-/* By insertion: there are at most forty, and what is said first about one place stays first. */
+/* Insertion sort: there are at most 40 diagnostics, and those at one place must keep their
+   order. */
 void diags_sort(Diags *diags)
 {
     for (size_t i = 1; i < diags->count; i++) {
@@ -119,7 +120,7 @@ void diags_sort(Diags *diags)
 
 /* ---- JSON ---- */
 
-/* UTF-16 units between two bytes of a text: characters beyond U+FFFF take two. */
+/* UTF-16 code units between two byte offsets; a character above U+FFFF takes two units. */
 static uint32_t utf16_units(const char *text, uint32_t start, uint32_t end)
 {
     uint32_t units = 0;
@@ -178,7 +179,7 @@ static void json_member(const char *name, const char *value, const char **separa
     *separator = ",";
 }
 
-/* What the protocol has no field for goes into `data`, which is ours to define. */
+/* The Language Server Protocol has no fields for these values.  It leaves `data` to each server. */
 static void json_data(const Diag *diag, Text *out)
 {
     const char *separator = "";

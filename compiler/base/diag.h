@@ -1,8 +1,8 @@
 /*
- * diag.h: what the compiler has to say to the author of a scene.
+ * diag.h: diagnostics: errors and warnings for the author of a scene.
  *
- * Diagnostics are collected, not printed: each has a code (one row of diag.def), a location,
- * and whatever helps to mend it.  Messages start with a lower-case letter and do not end with
+ * Diagnostics are collected, not printed.  Each has a code (a row of diag.def) and a location, and
+ * may have a label, notes and help.  Messages start with a lower-case letter and do not end with
  * punctuation; only `help` suggests what to do.
  */
 #ifndef KRS_DIAG_H
@@ -53,19 +53,19 @@ typedef struct Diag {
 } Diag;
 
 typedef struct Diags {
-    Arena         *arena; /* everything said lives here */
+    Arena         *arena; /* of the diagnostics and their texts */
     const Sources *sources;
     Diag         **items;
     size_t         count, capacity;
-    size_t         errors, warnings; /* all of them, also those not kept */
-    Diag           scrap;
+    size_t         errors, warnings; /* how many there were, stored or not */
+    Diag           scrap;            /* takes a diagnostic that is not stored */
 } Diags;
 
-enum { MOST_DIAGS = 20 }; /* errors that are kept, and warnings */
+enum { MOST_DIAGS = 20 }; /* errors that are stored at most; as many warnings */
 
-/* Adds a diagnostic; the members behind `message` may be set afterwards.  After 20 errors
-   further ones are counted but go to a scrap Diag, and so do repeats of a code at one span, which
-   are not counted; never NULL. */
+/* Adds a diagnostic, whose members behind `message` the caller may set.  Never NULL: a diagnostic
+   that is not stored goes to `scrap`.  These are all after the first MOST_DIAGS, which are counted,
+   and repeats of a code at one span, which are not. */
 Diag *diag_add(Diags *diags, DiagCode code, Span span, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 /* Text formatted into the arena of the diagnostics, for labels and help. */
@@ -73,16 +73,16 @@ const char *diag_text(Diags *diags, const char *format, ...) __attribute__((form
 void        diag_note(Diags *diags, Diag *diag, const char *note);
 void        diag_secondary(Diags *diags, Diag *diag, Span span, const char *label);
 
-/* Whether further errors would not be shown, so that a stage may stop looking for them. */
+/* Whether further errors would not be stored, so that a pass may stop looking for them. */
 bool diags_full(const Diags *diags);
 
-/* Sorts by position (sources in order of reading). */
+/* Sorts by source, in the order in which sources were read, then by position. */
 void diags_sort(Diags *diags);
 
-/* All diagnostics as in language.md, "What an error looks like", ending in "2 errors" and the
-   like; `color` adds terminal colours. */
+/* Writes all diagnostics as in language.md, "What an error looks like".  The last line has their
+   number, as in "2 errors".  `color` adds terminal colours. */
 void diags_print_text(const Diags *diags, bool color, Text *out);
-/* One JSON object a line with the field names of the Language Server Protocol. */
+/* Writes a JSON object in each line, with the field names of the Language Server Protocol. */
 void diags_print_json(const Diags *diags, Text *out);
 /* One diagnostic alone, as the two functions above write it. */
 void diag_print_one(const Diags *diags, const Diag *diag, bool color, Text *out);

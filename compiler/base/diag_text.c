@@ -1,9 +1,9 @@
 /*
- * diag_text.c: diagnostics drawn for people, with the lines of the text they are about.
+ * diag_text.c: writes diagnostics for people, with the source lines that they are about.
  *
- * The text may be anything, so what would disturb a terminal or deceive a reader (control
- * bytes, marks that turn the direction of writing) is made visible, and of a very long line
- * only the part around the mark is shown.
+ * A source may have any bytes.  So control characters, and characters that reverse the direction
+ * of writing, are replaced by visible ones.  Of a very long line only the part around the mark is
+ * shown.
  */
 #include "compiler/base/diag.h"
 
@@ -17,7 +17,7 @@ enum {
     LONG_TEXT_BYTES   = 400
 };
 
-/* A place to be marked, cut to its first line. */
+/* A span to be marked; one that goes over several lines is marked on its first line only. */
 typedef struct Mark {
     Span        span;
     const char *label;
@@ -76,8 +76,8 @@ static bool is_wide(uint32_t c)
     return is_among(c, ranges, sizeof ranges / sizeof *ranges);
 }
 
-/* Adds the characters of some bytes as a terminal may show them (unless out is NULL) and
-   returns how many columns they take. */
+/* Adds bytes to `out`, with visible characters in place of those that a terminal must not get.
+   Returns how many columns they take.  `out` may be NULL, to measure only. */
 static uint32_t add_visible(Text *out, const char *bytes, size_t length)
 {
     static const char replacement[] = "\xEF\xBF\xBD";
@@ -109,8 +109,8 @@ static uint32_t add_visible(Text *out, const char *bytes, size_t length)
     return columns;
 }
 
-/* The same for whole strings, whose lines after the first are indented.  A name may be as long as
-   a file: of a line only the beginning is shown. */
+/* Adds the lines of a string, all but the first indented.  A name may be as long as a file, so each
+   line is cut at LONG_TEXT_BYTES. */
 static void add_lines(Text *out, const char *string, int indent)
 {
     for (;;) {
@@ -118,7 +118,7 @@ static void add_lines(Text *out, const char *string, int indent)
         if (length > LONG_TEXT_BYTES)
             shown = LONG_TEXT_BYTES;
         while (shown < length && ((unsigned char)string[shown] & 0xC0) == 0x80)
-            shown--; /* within a character */
+            shown--; /* a character is not cut */
         add_visible(out, string, shown);
         text_add(out, shown < length ? "..." : "");
         if (string[length] == '\0')
@@ -151,7 +151,7 @@ static const Source *source_of(const Excerpt *excerpt, Span span)
     return &excerpt->diags->sources->items[span.source];
 }
 
-/* The end of a line without what ends it. */
+/* The offset of a line's end, before its line break. */
 static uint32_t line_end(const Source *source, uint32_t line)
 {
     uint32_t end = line + 1 < source->line_count ? source->lines[line + 1] - 1 : source->length;
@@ -246,8 +246,8 @@ static void draw_marks(const Excerpt *excerpt, const Mark *mark, Window window)
     text_add(excerpt->out, "\n");
 }
 
-/* Draws a line with the marks on it, the primary one first.  Marks that the window around the
-   first does not show wait for a picture of their own. */
+/* Draws a line with its marks, beginning with `first`.  Marks outside of the window around `first`
+   are drawn later, below another copy of the line. */
 static void draw_line(Excerpt *excerpt, Mark *first)
 {
     Window window = window_around(source_of(excerpt, first->span), first);
@@ -262,7 +262,8 @@ static void draw_line(Excerpt *excerpt, Mark *first)
     }
 }
 
-/* The next mark to draw in a file: of the undrawn ones on the topmost line, the first given. */
+/* The next mark to draw in a file: the first of those on the topmost line that has undrawn
+   marks. */
 static Mark *next_mark(const Excerpt *excerpt, uint32_t source)
 {
     Mark *next = NULL;
@@ -293,7 +294,8 @@ static void draw_file(Excerpt *excerpt, const Mark *named, const char *arrow)
     }
 }
 
-/* Text under the picture, and code, if any, in quotes behind it. */
+/* Writes a note or help below the source lines, with quoted code behind it unless `code` is
+   NULL. */
 static void draw_remark(const Excerpt *excerpt, const char *kind, const char *text,
                         const char *separator, const char *code)
 {
@@ -310,7 +312,7 @@ static void draw_remark(const Excerpt *excerpt, const char *kind, const char *te
     text_add(excerpt->out, "\n");
 }
 
-/* The replacement stands behind the help, unless the help quotes it already. */
+/* Writes the help and, unless the help quotes it already, the replacement. */
 static void draw_help(const Excerpt *excerpt, const Diag *diag)
 {
     if (diag->help && (!diag->replacement || strstr(diag->help, diag->replacement)))

@@ -1,5 +1,5 @@
 /*
- * loader.c: where the texts of a scene and of the files that it uses come from.
+ * loader.c: reads the texts of a scene and of the files that it uses.
  */
 #include "compiler/base/loader.h"
 
@@ -15,21 +15,21 @@
 #include "compiler/base/beneath.h"
 #include "compiler/base/source.h"
 
-/* The bytes of "folder/" before the name. */
+/* The length of a path's folder with its last slash, in bytes. */
 static size_t folder_length(const char *path)
 {
     const char *slash = strrchr(path, '/');
     return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
-/* Takes "folder/../" and "./" out of a path, so that a file has one name. */
+/* A file must have one name only, since it is known by its path. */
 void path_simplify(char *path)
 {
     char *to = path;
     for (const char *from = path; *from;) {
         size_t length = strcspn(from, "/");
         bool   last   = from[length] == '\0';
-        char  *back   = to > path ? to - 1 : NULL; /* the slash behind the folder before */
+        char  *back   = to > path ? to - 1 : NULL; /* goes to the start of the folder before */
         while (back && back > path && back[-1] != '/')
             back--;
         bool folder = back && !(to - back == 3 && strncmp(back, "../", 3) == 0) && back < to - 1;
@@ -44,38 +44,38 @@ void path_simplify(char *path)
     *to = '\0';
 }
 
-/* Where the folder of the scene is, as seen from the root: "" or "a/b/"; NULL: not in it. */
-static char *find_inside(const char *root, const char *scene)
+/* The path from the root to the scene's folder: "" or "a/b/"; NULL if that is not in the root. */
+static char *find_scene_folder(const char *root, const char *scene)
 {
     size_t length = folder_length(scene);
     char  *folder = length ? strndup(scene, length) : strdup(".");
     char  *whole = realpath(root, NULL), *real = folder ? realpath(folder, NULL) : NULL;
-    char  *inside = NULL;
-    size_t start  = whole && strcmp(whole, "/") != 0 ? strlen(whole) : 0;
+    char  *found = NULL;
+    size_t start = whole && strcmp(whole, "/") != 0 ? strlen(whole) : 0;
     if (whole && real && strncmp(real, whole, start) == 0 &&
         (real[start] == '/' || real[start] == '\0')) {
         const char *rest = real + start + (real[start] == '/');
-        if (asprintf(&inside, "%s%s", rest, *rest ? "/" : "") < 0)
-            inside = NULL;
+        if (asprintf(&found, "%s%s", rest, *rest ? "/" : "") < 0)
+            found = NULL;
     }
     free(folder);
     free(whole);
     free(real);
-    return inside;
+    return found;
 }
 
 bool loader_open(Loader *loader, const char *root, const char *scene)
 {
-    loader->confined = root != NULL;
-    loader->root     = -1;
-    loader->scene    = strdup(scene);
-    loader->inside   = NULL;
+    loader->confined     = root != NULL;
+    loader->root         = -1;
+    loader->scene        = strdup(scene);
+    loader->scene_folder = NULL;
     if (!loader->scene)
         return false;
     path_simplify(loader->scene);
     if (root) {
-        loader->root   = open(root, O_PATH | O_DIRECTORY | O_CLOEXEC);
-        loader->inside = find_inside(root, scene);
+        loader->root         = open(root, O_PATH | O_DIRECTORY | O_CLOEXEC);
+        loader->scene_folder = find_scene_folder(root, scene);
     }
     return true;
 }
@@ -85,18 +85,19 @@ void loader_close(Loader *loader)
     if (loader->root >= 0)
         close(loader->root);
     free(loader->scene);
-    free(loader->inside);
+    free(loader->scene_folder);
     *loader = (Loader){.root = -1};
 }
 
-/* The path from the root to a file whose path is given like the scene's: up from the scene's folder
-   to where both paths part, and down again.  NULL: it is not known to be in there, or no memory. */
+/* The path from the root to a file.  `path` begins as the scene's path does.  The result goes up
+   from the scene's folder to the last folder that both paths share, and down to the file.  NULL if
+   the file may be outside of the root, or if there is no memory. */
 static char *path_from_root(const Loader *loader, const char *path)
 {
     const char *folder = loader->scene;
     size_t      length = folder_length(folder), common = 0;
     char       *whole = NULL, *up;
-    if (!loader->inside || (path[0] == '/') != (folder[0] == '/' && length > 0))
+    if (!loader->scene_folder || (path[0] == '/') != (folder[0] == '/' && length > 0))
         return NULL;
     for (size_t i = 0; i < length && path[i] == folder[i]; i++)
         if (path[i] == '/')
@@ -110,13 +111,13 @@ static char *path_from_root(const Loader *loader, const char *path)
     for (size_t i = 0; i < levels; i++)
         memcpy(up + 3 * i, "../", 3);
     up[3 * levels] = '\0';
-    if (asprintf(&whole, "%s%s%s", loader->inside, up, path + common) < 0)
+    if (asprintf(&whole, "%s%s%s", loader->scene_folder, up, path + common) < 0)
         whole = NULL;
     free(up);
     return whole;
 }
 
-/* Takes over the path from the root; NULL: there is none. */
+/* Reads a file by its path from the root, which is freed here.  NULL: the file is outside. */
 static Loaded read_confined(const Loader *loader, char *path)
 {
     struct stat about;
@@ -143,12 +144,13 @@ static Loaded read_file(const char *path)
 
 Loaded loader_read_scene(const Loader *loader, const char *path)
 {
-    char *inside = NULL;
+    char *whole = NULL;
     if (!loader->confined)
         return read_file(path);
-    if (loader->inside && asprintf(&inside, "%s%s", loader->inside, path + folder_length(path)) < 0)
-        inside = NULL;
-    return read_confined(loader, inside);
+    if (loader->scene_folder &&
+        asprintf(&whole, "%s%s", loader->scene_folder, path + folder_length(path)) < 0)
+        whole = NULL;
+    return read_confined(loader, whole);
 }
 
 Loaded loader_read(const Loader *loader, const char *path)

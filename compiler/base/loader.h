@@ -1,5 +1,5 @@
 /*
- * loader.h: where the texts of a scene and of the files that it uses come from.
+ * loader.h: reads the texts of a scene and of the files that it uses, from disk or from the caller.
  */
 #ifndef KRS_LOADER_H
 #define KRS_LOADER_H
@@ -7,32 +7,35 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* A text by the path that it has in diagnostics, or NULL; the caller's, for as long as it says. */
+/* A caller's function that returns the text of a file, or NULL.  The path is the one shown in
+   diagnostics.  The caller owns the text. */
 typedef const char *TextSupplier(void *user, const char *path, size_t *length);
 
 typedef struct Loader {
-    TextSupplier *supplier; /* or NULL: files are read */
+    TextSupplier *supplier; /* NULL: files are read from disk */
     void         *user;
-    bool          confined; /* to the folder `root`; -1 where it could not be opened */
-    int           root;
-    char         *scene;  /* the scene's path, simplified, as those of files it uses begin */
-    char         *inside; /* its folder, as seen from the root; NULL: outside of it */
+    bool          confined; /* only files below the folder `root` may be read */
+    int           root;     /* descriptor of that folder; -1 where it could not be opened */
+    char         *scene;    /* the scene's path, simplified; paths of used files begin like it */
+    char         *scene_folder; /* path from the root to its folder; NULL: it is not in there */
 } Loader;
 
 typedef struct Loaded {
-    const char *text; /* NULL: there is none, for that reason */
+    const char *text; /* NULL: it could not be read */
     size_t      length;
-    const char *reason;  /* static */
-    bool        outside; /* of the root */
+    const char *reason;  /* why it could not be read; a static text */
+    bool        outside; /* the file is outside of the root */
     char       *owned;   /* to be freed when the text is no longer needed */
 } Loaded;
 
-/* Takes "." and "name/.." out of a path, in place. */
+/* Removes "." and "name/.." from a path, in place. */
 void path_simplify(char *path);
-/* `root` NULL: nothing is confined.  False: no memory. */
+/* Sets all members but `supplier` and `user`.  `root` may be NULL: nothing is confined.  False when
+   there is no memory. */
 bool loader_open(Loader *loader, const char *root, const char *scene);
 void loader_close(Loader *loader);
-/* The text of a file; the scene's own is read from disk, the others as the loader says. */
+/* The text of a file that a scene uses, and of the scene itself, which is read from disk even where
+   there is a supplier. */
 Loaded loader_read(const Loader *loader, const char *path);
 Loaded loader_read_scene(const Loader *loader, const char *path);
 

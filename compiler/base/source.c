@@ -38,7 +38,7 @@ static void count_characters(Arena *arena, Source *source)
         source->characters[source->length / SOURCE_BLOCK] = count;
 }
 
-/* Characters that begin before a byte. */
+/* The number of characters that begin before a byte. */
 static uint32_t characters_before(const Source *source, uint32_t offset)
 {
     offset         = offset < source->length ? offset : source->length;
@@ -89,7 +89,7 @@ Position source_position(const Source *source, uint32_t offset)
     uint32_t line   = source_line(source, offset);
     uint32_t column = 1 + characters_before(source, offset) -
                       characters_before(source, source->lines[line - 1]);
-    /* A place in the middle of a character counts as its beginning. */
+    /* An offset in the middle of a character has the column of that character. */
     if (offset < source->length && !begins_character(source->text[offset]) && column > 1)
         column--;
     return (Position){line, column};
@@ -130,7 +130,7 @@ char *source_read_open(int fd, size_t *length, const char **reason)
     size_t capacity = 0;
     *length         = 0;
     *reason         = NULL;
-    while (*length <= MOST_SOURCE_BYTES) { /* devices have no end */
+    while (*length <= MOST_SOURCE_BYTES) { /* a limit, since devices have no end */
         if (*length == capacity) {
             capacity     = capacity ? 2 * capacity : 16384;
             char *larger = realloc(text, capacity);

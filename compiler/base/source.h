@@ -9,8 +9,8 @@
 
 #include "compiler/base/arena.h"
 
-/* Bytes [start, end) of source number `source`.  Source 0 is "no place" (values that the
-   compiler makes itself), so a zero Span is always valid. */
+/* Bytes [start, end) of source number `source`.  Source 0 is empty: its spans are for values that
+   the compiler makes itself.  So a zero Span is valid. */
 typedef struct Span {
     uint32_t source, start, end;
 } Span;
@@ -22,10 +22,11 @@ typedef struct Source {
     bool        library; /* part of the standard library */
     uint32_t   *lines;   /* offset of the first byte of each line */
     uint32_t    line_count;
-    uint32_t   *characters; /* how many begin before each SOURCE_BLOCK-th byte */
+    uint32_t   *characters; /* number of characters that begin before each block */
 } Source;
 
-enum { SOURCE_BLOCK = 256 }; /* bytes that are looked through to find a column, at most twice */
+/* Bytes of a block.  To find a column at most two blocks are read, however long the line is. */
+enum { SOURCE_BLOCK = 256 };
 
 typedef struct Sources {
     Arena  *arena;
@@ -40,21 +41,23 @@ typedef struct Position {
 
 enum { MOST_SOURCE_BYTES = 16 << 20 };
 
-/* The whole of a file, which the caller frees with free(); NULL, and *reason is a static text.  Of
-   one that is longer than a source, no more than shows that. */
+/* The bytes of a file, which the caller frees with free().  On failure NULL, and *reason is a
+   static text.  Of a file longer than MOST_SOURCE_BYTES, a little more than that is read: *length
+   then shows that it is too long. */
 char *source_read(const char *path, size_t *length, const char **reason);
-/* The same of an open file, which is closed. */
+/* The same for an open file, which is closed. */
 char *source_read_open(int fd, size_t *length, const char **reason);
 
 /* Adds a copy of a text of at most MOST_SOURCE_BYTES and returns its number. */
 uint32_t source_add(Sources *sources, const char *name, const char *text, size_t length,
                     bool library);
-/* 64 bits of the text of all sources that are not the library's, in hexadecimal digits. */
+/* A hash of 64 bits, as hexadecimal digits, of all sources that are not the library's. */
 void     sources_hash(const Sources *sources, char hash[17]);
 uint32_t source_line(const Source *source, uint32_t offset);
 Position source_position(const Source *source, uint32_t offset);
 
-/* From the start of one place to the end of another in the same source. */
+/* The smallest span that contains both.  Of spans in different sources: `from`, unless that is in
+   source 0. */
 Span span_join(Span from, Span to);
 
 #endif

@@ -1,8 +1,8 @@
 /*
  * text.c: text that is built piece by piece, and names that are compared by address.
  *
- * Nothing here depends on the locale: a program around the library may have chosen one whose
- * numbers have a decimal comma.
+ * Nothing here depends on the locale: a program that uses the library may have set one with a
+ * decimal comma.
  */
 #include "compiler/base/text.h"
 
@@ -57,7 +57,8 @@ void text_format(Text *text, const char *format, ...)
     va_end(arguments);
 }
 
-/* Adds what printf made of a number; whatever stands for the decimal point becomes one. */
+/* Adds a number that printf has written, with a point in place of the locale's decimal
+   separator. */
 static void add_with_point(Text *text, const char *printed)
 {
     bool inside = false;
@@ -78,8 +79,9 @@ void text_number(Text *text, double number)
         text_add(text, "nan"); /* printf may give it a sign */
         return;
     }
-    /* Up to 15 digits survive the way through a double, so that %.15g finds every shorter
-       decimal by dropping its zeros; only subnormal numbers hold fewer digits. */
+    /* A decimal of up to 15 digits is unchanged by a conversion to double and back.  So %.15g,
+       which drops zeros at the end, gives the shortest one.  Subnormal numbers hold fewer
+       digits. */
     bool subnormal = number != 0 && fabs(number) < DBL_MIN;
     for (int digits = subnormal ? 1 : 15; digits <= 17; digits++) {
         snprintf(printed, sizeof printed, "%.*g", digits, number);
@@ -103,7 +105,8 @@ static size_t length_by_first(unsigned char byte)
 static size_t utf8_length(const unsigned char *s)
 {
     size_t        length = length_by_first(s[0]);
-    unsigned char low = 0x80, high = 0xBF; /* of the second byte: no surrogates, no overlong form */
+    unsigned char low = 0x80, high = 0xBF; /* range of the next byte, here of the second: it
+                                              excludes surrogates and overlong forms */
     if (s[0] == 0xE0)
         low = 0xA0;
     else if (s[0] == 0xED)
@@ -215,8 +218,8 @@ enum { LONGEST_GUESS = 64 }; /* letters; longer names are not compared */
 
 static size_t least(size_t a, size_t b) { return a < b ? a : b; }
 
-/* Letters inserted, dropped, replaced, or swapped with a neighbour that lead from a to b, where
-   no letter is touched twice. */
+/* Restricted Damerau-Levenshtein distance: the number of insertions, deletions, replacements and
+   swaps of neighbours that make b of a, where no letter is changed twice. */
 static size_t edit_distance(const char *a, size_t a_length, const char *b, size_t b_length)
 {
     size_t  rows[3][LONGEST_GUESS + 1];
@@ -241,7 +244,7 @@ static size_t edit_distance(const char *a, size_t a_length, const char *b, size_
 const char *nearest_name(const char *word, const char *const *candidates, size_t count)
 {
     size_t      length  = strlen(word);
-    size_t      nearest = length < 3 ? 2 : 3; /* one more than is permitted */
+    size_t      nearest = length < 3 ? 2 : 3; /* edits; at first one more than permitted */
     const char *name    = NULL;
     if (length > LONGEST_GUESS)
         return NULL;

@@ -28,11 +28,11 @@ void text_number(Text *text, double number);
 /* A JSON string with its quotes; bytes that are not UTF-8 become U+FFFD. */
 void text_json(Text *text, const char *string);
 
-/* Decodes the UTF-8 character at `bytes`, of which `length` (at least 1) may be read, and returns
-   how many bytes it has; 0, and U+FFFD, when they are not UTF-8. */
+/* Decodes the UTF-8 character at `bytes` and returns how many bytes it has.  `length`, at least 1,
+   is the number of bytes that may be read.  Returns 0, and U+FFFD, when they are not UTF-8. */
 size_t text_character(const char *bytes, size_t length, uint32_t *character);
 
-/* Every spelling of a name is kept once, so equal names are equal pointers. */
+/* A hash table that stores each name once, so that equal names have equal addresses. */
 typedef struct Names {
     Arena       *arena;
     const char **slots;
@@ -41,9 +41,10 @@ typedef struct Names {
 
 const char *name_intern(Names *names, const char *bytes, size_t length);
 
-/* The candidate that a misspelt word most likely means, or NULL: restricted Damerau-Levenshtein
-   distance (a swap counts once), at most 1 edit for words under 3 letters, else 2, and never as
-   many as there are letters; nearest first, ties to the earlier candidate. */
+/* The candidate nearest to a misspelt word, or NULL.  The measure is the restricted
+   Damerau-Levenshtein distance, in which a swap counts once.  Words of less than 3 letters may have
+   1 edit, others 2, and never as many as letters.  Of equally near candidates the first is
+   taken. */
 const char *nearest_name(const char *word, const char *const *candidates, size_t count);
 
 #endif

@@ -21,7 +21,7 @@ static inline void cross3(const double a[3], const double b[3], double product[3
 
 static inline double length3(const double v[3]) { return sqrt(dot3(v, v)); }
 
-/* The largest size of a component. */
+/* The maximum norm: the largest absolute value of a component. */
 static inline double largest3(const double v[3])
 {
     return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
@@ -33,14 +33,14 @@ static inline double distance3(const double a[3], const double b[3])
     return length3(offset);
 }
 
-/* to = from + factor v; they may be one. */
+/* to = from + factor v; `to` may be one of the arguments. */
 static inline void add_scaled3(double to[3], const double from[3], double factor, const double v[3])
 {
     for (int i = 0; i < 3; i++)
         to[i] = from[i] + factor * v[i];
 }
 
-/* Scales v to length 1; false when it has none. */
+/* Scales v to length 1; false when its length is 0 or not finite. */
 static inline bool normalize3(double v[3])
 {
     double length = length3(v);

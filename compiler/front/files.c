@@ -43,7 +43,8 @@ static const char *resolve_path(Files *files, const char *from, const char *path
     return text.bytes;
 }
 
-/* Files of compiler/library/ itself; those in its folder std/ wait for a `use`. */
+/* Adds the files of compiler/library.  Those in its folder std/ are read only when a `use` names
+   them. */
 static void load_library(Files *files)
 {
     for (const EmbeddedFile *file = library_files; file->name; file++) {
@@ -87,7 +88,7 @@ static File *find_file(const Files *files, const char *path)
 
 static bool names_library(const Syntax *use) { return strncmp(use->name, "std/", 4) == 0; }
 
-/* A file of the library, or NULL. */
+/* The text of a file of the library, or NULL. */
 static const char *read_library(const char *path, size_t *length)
 {
     for (const EmbeddedFile *file = library_files; file->name; file++)
@@ -108,7 +109,7 @@ static void refuse_used(Files *files, const Syntax *use, const char *path, const
     diag->label = "used here";
 }
 
-/* Takes up the text of a used file; NULL: reported. */
+/* Adds a used file; NULL if it cannot be read, which is then reported. */
 static File *load_text(Files *files, const Syntax *use, const char *path)
 {
     Loaded text = {.reason = "there is no such file in the library"};
@@ -135,8 +136,8 @@ static File *load_text(Files *files, const Syntax *use, const char *path)
     return file;
 }
 
-/* Whether names of a file may be missing, so that an unknown one is no new mistake: something in
-   another file could not be read. */
+/* Whether names may be missing in a file, because something in another file could not be read.
+   Then unknown names are not reported. */
 static bool may_miss_names(const Files *files, const File *file)
 {
     for (size_t i = 0; i < files->diags->count; i++) {
@@ -192,7 +193,7 @@ typedef struct KnownNames {
     size_t       count, capacity;
 } KnownNames;
 
-/* Names of another file that this one may use: all but private ones (_name). */
+/* Adds the names that a file offers to others: all but private ones (_name). */
 static void add_names(const Files *files, const File *file, KnownNames *known)
 {
     for (uint32_t i = 0; i < file->syntax->count; i++) {
@@ -218,7 +219,7 @@ static void check_file(Files *files, File *file, const char *const *builtin, siz
     file->checked = true;
 }
 
-/* Used files come before those that use them. */
+/* Checks a file after all files that it uses. */
 static void check_used_first(Files *files, File *file, const char *const *builtin, size_t count)
 {
     for (size_t i = 0; i < file->used.count; i++)

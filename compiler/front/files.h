@@ -1,8 +1,8 @@
 /*
- * files.h: the files that a scene consists of: its own, those that it uses, and the library's.
+ * files.h: the files of a scene: its own, those that it uses, and those of the library.
  *
- * They are read before anything is evaluated: texts, then tokens, then trees, and then, tree by
- * tree, the files that a `use` names.
+ * All of them are read before anything is evaluated.  First come texts, tokens and trees of the
+ * scene and the library, then the files that `use` statements in these trees name.
  */
 #ifndef KRS_FILES_H
 #define KRS_FILES_H
@@ -12,47 +12,47 @@
 
 typedef struct File {
     const char   *path;   /* as diagnostics show it */
-    uint32_t      source; /* its number in Files.sources */
-    size_t        number; /* its place in Files.items */
+    uint32_t      source; /* index in Files.sources */
+    size_t        number; /* index in Files.items */
     bool          library;
-    bool          reading;    /* files that it uses are being read */
-    bool          incomplete; /* mistakes may hide names: in another file, or in a missing one */
-    bool          checked;
+    bool          reading;    /* the files that it uses are being read */
+    bool          incomplete; /* names may be missing: a used file has mistakes or was not read */
+    bool          checked;    /* its names have been checked */
     Tokens        tokens;
     const Syntax *syntax;
     struct {
         struct File **items;
         size_t        count, capacity;
-    } used; /* in the order of its `use` statements; no file uses itself, however indirectly */
+    } used; /* in the order of its `use` statements; there are no cycles */
 } File;
 
-/* The scene's own file is the first; those of the library that every scene sees come next, then
-   the used ones in the order of reading. */
+/* All files: first the scene's own, then those of the library that every scene sees, then the used
+   ones in the order in which they were read. */
 typedef struct Files {
     File        **items;
     size_t        count, capacity;
-    size_t        bytes;   /* of all texts, the library's aside */
-    Arena        *arena;   /* paths and lists */
-    Arena        *trees;   /* tokens and syntax */
-    Arena        *scratch; /* free after each call */
+    size_t        bytes;   /* length of all texts but those that every scene sees */
+    Arena        *arena;   /* of paths and lists */
+    Arena        *trees;   /* of tokens and trees */
+    Arena        *scratch; /* of what a call needs only while it runs */
     Diags        *diags;
     Names        *names;
     Sources      *sources;
-    const Loader *loader; /* of files that a `use` names */
+    const Loader *loader; /* reads the files that `use` statements name */
 } Files;
 
-/* Takes up the text of the scene and those of the library. */
+/* Adds the scene, whose text is given, and the files of the library. */
 void files_load(Files *files, const char *path, const char *text, size_t length);
-/* Tokens, and trees, of all that has been taken up. */
+/* Makes tokens, and from these trees, of all files so far. */
 void files_lex(Files *files);
 void files_parse(Files *files);
-/* Reads all that the scene uses, and what that uses.  Mistakes are reported. */
+/* Reads the files that the scene uses, directly or through others.  Mistakes are reported. */
 void files_load_used(Files *files);
-/* Checks the names of each file (names.h); `builtin` need no definition. */
+/* Checks the names of each file (names.h); those in `builtin` need no definition. */
 void files_check_names(Files *files, const char *const *builtin, size_t count);
 
-/* For dumps: a line for each text; for each file with the files it uses; for each definition, the
-   library's last. */
+/* Dumps: a line for each text; for each file, and for each file that it uses; for each definition,
+   those of the library last. */
 void files_print_texts(const Files *files, Text *out);
 void files_print_uses(const Files *files, Text *out);
 void files_print_names(const Files *files, Text *out);

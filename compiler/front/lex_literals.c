@@ -15,14 +15,14 @@ static void skip_digits(Lexer *lexer)
         lexer->at++;
 }
 
-/* The value of a decimal number.  strtod is given its digits and an exponent, but no point: what
-   it takes for one depends on the locale. */
+/* The value of a decimal number.  strtod gets its digits and an exponent, but no decimal point:
+   which character that is depends on the locale. */
 static double read_decimal(Lexer *lexer, uint32_t start)
 {
     Text      *digits   = &lexer->scratch;
-    const long most     = 100000000; /* more than there can be digits */
+    const long most     = 100000000; /* exceeds the number of digits in any file */
     long       exponent = 0;
-    bool       behind   = false; /* the point */
+    bool       fraction = false; /* the digits are behind the decimal point */
     digits->length      = 0;
     for (uint32_t i = start; i < lexer->at; i++) {
         char c = lexer->text[i];
@@ -33,9 +33,9 @@ static double read_decimal(Lexer *lexer, uint32_t start)
         }
         if (is_digit(c)) {
             text_add_bytes(digits, &c, 1);
-            exponent -= behind;
+            exponent -= fraction;
         }
-        behind = behind || c == '.';
+        fraction = fraction || c == '.';
     }
     text_format(digits, "e%ld", exponent);
     return strtod(digits->bytes, NULL);
@@ -48,7 +48,7 @@ static void bad_number(Lexer *lexer, uint32_t start, const char *message, const 
     diag->replacement = instead;
 }
 
-/* The fraction and the exponent; false when they are wrong and have been reported. */
+/* Skips the fraction and the exponent of a number; false after a mistake, which is reported. */
 static bool skip_fraction(Lexer *lexer, uint32_t start)
 {
     bool exponent_follows = peek(lexer, 1) == 'e' && is_digit(peek(lexer, 2));
@@ -73,7 +73,8 @@ static bool skip_fraction(Lexer *lexer, uint32_t start)
     return true;
 }
 
-/* What touches a number from behind: `deg`, or a mistake. */
+/* Reads letters directly behind a number: the unit `deg`, or a mistake.  Returns the number, an
+   angle in radians. */
 static double read_unit(Lexer *lexer, uint32_t start, double number)
 {
     uint32_t unit = lexer->at;
@@ -113,12 +114,12 @@ void lex_number(Lexer *lexer)
         if (skip_fraction(lexer, start))
             number = read_unit(lexer, start, read_decimal(lexer, start));
     }
-    while (is_word(peek(lexer, 0))) /* after a mistake */
+    while (is_word(peek(lexer, 0))) /* there are letters left after a mistake only */
         lexer->at++;
     add_token(lexer, TOKEN_NUMBER, start)->number[0] = number;
 }
 
-/* The sRGB curve of IEC 61966-2-1. */
+/* The transfer function of sRGB, IEC 61966-2-1. */
 void linear_from_srgb(uint32_t rgb, double linear[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -152,7 +153,7 @@ void lex_colour(Lexer *lexer)
 
 /* ---- strings ---- */
 
-/* Adds what a backslash and the byte after it mean. */
+/* Reads a backslash and the byte after it, and adds the character that they stand for. */
 static void read_escape(Lexer *lexer)
 {
     uint32_t start = lexer->at;
@@ -171,7 +172,8 @@ static void read_escape(Lexer *lexer)
     }
 }
 
-/* Other bytes of a string, up to `end`; control bytes have no place in a name of a file. */
+/* Adds the bytes of a string up to `end`, which have no escapes.  Control characters are reported,
+   since strings are mostly names of files. */
 static void read_plain(Lexer *lexer, uint32_t end)
 {
     uint32_t start = lexer->at;
@@ -217,7 +219,7 @@ void lex_string(Lexer *lexer, char quote)
         Diag *diag  = report_from(lexer, DIAG_UNCLOSED, start, "a string is not closed",
                                   "close it with a quote on the same line");
         diag->label = "begins here";
-        add_token(lexer, TOKEN_ERROR, start); /* it has swallowed the rest of the statement */
+        add_token(lexer, TOKEN_ERROR, start); /* the rest of the statement is in the string */
         return;
     }
     const Text *read                            = &lexer->scratch;

@@ -1,9 +1,9 @@
 /*
  * lexer.c: from bytes to tokens.
  *
- * Words and signs come from token.def.  Whoever comes from another language types `&&`, 'text'
- * or a curly quote: these are reported with what to write instead, and become the token that
- * was meant, so that one slip is one error.
+ * Keywords and signs come from token.def.  Authors who know other languages write `&&`, 'text' or a
+ * curly quote.  These are reported with a replacement, and become the token that was meant, so that
+ * one mistake is one error.
  */
 #include "compiler/front/lexer.h"
 
@@ -51,7 +51,7 @@ bool token_is_statement_word(TokenKind kind) { return rows[kind].class == STATEM
 static bool is_next(const Lexer *lexer, const char *spelling)
 {
     if (lexer->at == lexer->length || lexer->text[lexer->at] != spelling[0])
-        return false; /* nearly always, and cheap */
+        return false; /* the usual case, decided by one comparison */
     size_t length = strlen(spelling);
     return length <= lexer->length - lexer->at &&
            memcmp(lexer->text + lexer->at, spelling, length) == 0;
@@ -94,7 +94,7 @@ void skip_text(Lexer *lexer, uint32_t end)
     }
 }
 
-/* Looked for once a line, however many strings there are in it. */
+/* The result is stored, so that a line with many strings is searched once. */
 uint32_t find_line_end(Lexer *lexer)
 {
     if (lexer->line_end > lexer->at)
@@ -137,7 +137,7 @@ static void skip_block_comment(Lexer *lexer)
     skip_text(lexer, lexer->length);
 }
 
-/* Skips what lies between tokens. */
+/* Skips spaces and comments. */
 static void skip_blank(Lexer *lexer)
 {
     while (lexer->at < lexer->length) {
@@ -169,10 +169,10 @@ static void lex_word(Lexer *lexer)
     add_token(lexer, kind < TOKEN_KIND_COUNT ? kind : TOKEN_NAME, start)->name = name;
 }
 
-/* Signs of other languages and of typographers, and what they are here. */
+/* A sign of other languages or of typography, and what is written instead in this language. */
 typedef struct Lookalike {
     const char *sign, *instead;
-    TokenKind   kind; /* TOKEN_ERROR: of no use to the parser; TOKEN_END: a blank */
+    TokenKind   kind; /* the token it becomes; TOKEN_ERROR: not one token; TOKEN_END: a space */
 } Lookalike;
 
 static const Lookalike lookalikes[] = {
@@ -239,8 +239,8 @@ static bool lex_sign(Lexer *lexer)
     return false;
 }
 
-/* The bytes that a token or a blank can begin with; those that lookalikes begin with may mean
-   nothing as well.  A file that is no text has millions of others in a row. */
+/* Finds the bytes with which a token, a space or a lookalike can begin.  A table is fast: a file
+   that is not text may have millions of other bytes in a row. */
 static void find_beginnings(bool begins[256])
 {
     for (int c = 1; c < 128; c++)
@@ -250,7 +250,7 @@ static void find_beginnings(bool begins[256])
         begins[(unsigned char)lookalikes[i].sign[0]] = true;
 }
 
-/* Whether a token that means something, or a blank, can begin here. */
+/* Whether a token, a space or a lookalike begins here. */
 static bool is_known_byte(const Lexer *lexer)
 {
     unsigned char c = (unsigned char)peek(lexer, 0);
@@ -262,7 +262,7 @@ static bool is_known_byte(const Lexer *lexer)
     return false;
 }
 
-/* A `!` alone, or a run of bytes that no token begins with. */
+/* Reads a `!`, or a run of bytes with which no token begins. */
 static void lex_stray(Lexer *lexer)
 {
     uint32_t start = lexer->at;

@@ -1,6 +1,5 @@
 /*
- * lexer.h: what lexer.c and lex_literals.c share: where reading has come to, and what is made of
- * what was read.
+ * lexer.h: what lexer.c and lex_literals.c share: the position in the text and the tokens so far.
  */
 #ifndef KRS_LEXER_H
 #define KRS_LEXER_H
@@ -9,16 +8,16 @@
 
 typedef struct Lexer {
     const char *text;
-    uint32_t    length, at;
+    uint32_t    length, at; /* bytes of the text; offset of the next byte */
     uint32_t    source;
-    uint32_t    line_end; /* of the line that was last asked for; or 0 */
+    uint32_t    line_end; /* result of the last find_line_end, or 0 */
     Names      *names;
     Diags      *diags;
     Arena      *arena;
     Tokens      tokens;
     Text        doc;         /* the `///` lines since the last token */
-    Text        scratch;     /* of the number or string being read */
-    bool        begins[256]; /* find_beginnings */
+    Text        scratch;     /* the number or string being read */
+    bool        begins[256]; /* bytes that something can begin with: find_beginnings */
 } Lexer;
 
 /* ---- characters ---- */
@@ -32,7 +31,7 @@ static inline bool is_letter(char c)
 static inline bool is_word(char c) { return is_letter(c) || is_digit(c); }
 static inline bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-/* The byte `ahead` of here; NUL behind the end. */
+/* The byte that is `ahead` bytes behind the next one; NUL beyond the end. */
 static inline char peek(const Lexer *lexer, uint32_t ahead)
 {
     return ahead < lexer->length - lexer->at ? lexer->text[lexer->at + ahead] : '\0';
@@ -44,14 +43,14 @@ static inline Span span_from(const Lexer *lexer, uint32_t start)
 }
 
 /* ---- lexer.c ---- */
-/* The token from `start` up to here, with the documentation before it. */
+/* Adds the token from `start` up to here, with the documentation before it. */
 Token *add_token(Lexer *lexer, TokenKind kind, uint32_t start);
-/* Something wrong from `start` up to here; `help` may be NULL. */
+/* Reports a mistake in the bytes from `start` up to here; `help` may be NULL. */
 Diag *report_from(Lexer *lexer, DiagCode code, uint32_t start, const char *message,
                   const char *help);
-/* Moves to `end`.  The bytes up to there, the inside of a comment or string, must be UTF-8. */
+/* Skips the inside of a comment or string, up to `end`.  Bytes that are not UTF-8 are reported. */
 void skip_text(Lexer *lexer, uint32_t end);
-/* Where the line that is being read ends. */
+/* The offset of the end of the line that is being read. */
 uint32_t find_line_end(Lexer *lexer);
 
 /* ---- lex_literals.c: each reads the token that begins here ---- */

@@ -1,49 +1,51 @@
 /*
- * names.c: every name is defined somewhere, before anything is evaluated.
+ * names.c: checks, before anything is evaluated, that every name is defined.
  *
- * One walk over the tree with a table of what each name means at the moment: entering a scope
- * puts its definitions on top, leaving it takes them off.  What the top-level definitions need
- * of each other is noted on the way, and searched for circles at the end.
+ * One walk over the tree, with a table of the current meaning of each name.  Entering a scope adds
+ * its definitions, leaving it restores what they hid.  The walk also records which top-level
+ * definitions need which others, and Tarjan's algorithm finds cycles in that graph at the end.
  */
 #include "compiler/front/names.h"
 
 #include <string.h>
 
-/* A top-level definition, a node of the graph of needs. */
+/* A top-level definition: a vertex of the graph whose edges are needs. */
 typedef struct CheckedDefinition {
     const Syntax *syntax;
     struct {
         struct Need *items;
         size_t       count, capacity;
     } needs;
-    const struct CheckedDefinition *user; /* the last that noted its need of this one */
-    /* for the search */
-    uint32_t number, low; /* order of discovery from 1, and the least that can be reached */
-    size_t   next;        /* the need to follow next */
-    uint32_t circle;      /* the strongly connected component, from 1 */
-    const struct Need              *found_by; /* of the shortest way */
+    const struct CheckedDefinition *user; /* the last one that recorded a need of this one */
+    /* Tarjan's algorithm */
+    uint32_t number, low; /* order of discovery, from 1; the least number that can be reached */
+    size_t   next;        /* index of the need to follow next */
+    uint32_t circle;      /* number of the strongly connected component, from 1 */
+    /* the previous edge and vertex on the shortest path of find_cycle */
+    const struct Need              *found_by;
     const struct CheckedDefinition *found_from;
 } CheckedDefinition;
 
+/* A use of one top-level definition in another. */
 typedef struct Need {
     CheckedDefinition *of;
-    Span               use;
+    Span               use; /* where the name stands */
 } Need;
 
-/* What a name means at some place. */
+/* A definition of a name in some scope. */
 typedef struct Meaning {
     struct NameSlot   *slot;
     Span               span;
     CheckedDefinition *definition; /* NULL unless it is a top-level name of this file */
-    uint32_t           depth;      /* of the scope that defines it; 0: from outside */
-    struct Meaning    *hidden;     /* what the name meant outside */
-    struct Meaning    *older;      /* the meaning that was added before this one */
+    uint32_t           depth;      /* of the scope that defines it; 0: another file */
+    struct Meaning    *hidden;     /* the name's meaning in the scopes around */
+    struct Meaning    *older;      /* the meaning, of any name, that was added before this one */
 } Meaning;
 
 typedef struct NameSlot {
     const char *name;
-    Meaning    *meaning; /* NULL: none at the moment */
-    bool        reported;
+    Meaning    *meaning;  /* NULL: not defined in the current scopes */
+    bool        reported; /* as unknown */
 } NameSlot;
 
 typedef struct Checker {
@@ -53,8 +55,8 @@ typedef struct Checker {
     size_t             count, capacity;
     Meaning           *newest;
     uint32_t           depth;
-    CheckedDefinition *current; /* NULL outside of top-level definitions */
-    bool               blind;   /* names may be missing because of mistakes reported before */
+    CheckedDefinition *current;    /* NULL outside of top-level definitions */
+    bool               incomplete; /* names may be missing because of mistakes reported before */
     struct {
         CheckedDefinition **items;
         size_t              count, capacity;
@@ -164,7 +166,7 @@ static const char *suggest(Checker *c, const char *name)
 
 static void report_unknown(Checker *c, NameSlot *slot, Span span)
 {
-    if (slot->reported || c->blind)
+    if (slot->reported || c->incomplete)
         return;
     slot->reported = true; /* further uses are the same mistake */
     Diag *diag     = diag_add(c->diags, DIAG_UNKNOWN_NAME, span, "the name `%s` is not defined",
@@ -201,7 +203,7 @@ static void walk_children(Checker *c, const Syntax *syntax)
         walk(c, syntax->children[i]);
 }
 
-/* Each clause sees the variables of those before it, the element sees all. */
+/* A clause sees the variables of the clauses before it, the element sees those of all clauses. */
 static void walk_comprehension(Checker *c, const Syntax *syntax)
 {
     for (uint32_t i = 1; i < syntax->count; i++) {
@@ -218,7 +220,7 @@ static void walk_comprehension(Checker *c, const Syntax *syntax)
 
 static void check_properties(Checker *c, const Syntax *syntax)
 {
-    enter_scope(c); /* of the names of properties, which mean nothing outside of this check */
+    enter_scope(c); /* a scope for names of properties, to find those that are given twice */
     for (uint32_t i = 0; i < syntax->count; i++) {
         const Syntax *property = syntax->children[i];
         if (property->kind != SYNTAX_PROPERTY)
@@ -235,7 +237,7 @@ static void check_properties(Checker *c, const Syntax *syntax)
     leave_scope(c);
 }
 
-/* A function or shape: a default sees the parameters before it, the body sees all. */
+/* A function or shape.  A default sees the parameters before it, the body sees all of them. */
 static void walk_function(Checker *c, const Syntax *syntax)
 {
     enter_scope(c);
@@ -248,7 +250,7 @@ static void walk_function(Checker *c, const Syntax *syntax)
     check_properties(c, syntax);
 }
 
-/* In blocks a name is known from its definition on. */
+/* In blocks a name is known only behind its definition. */
 static void walk_block(Checker *c, const Syntax *syntax)
 {
     enter_scope(c);
@@ -294,7 +296,7 @@ static void walk(Checker *c, const Syntax *syntax)
 
 /* ---- circles ---- */
 
-/* A function may call itself; the value of anything else cannot need itself. */
+/* A function or shape may call itself; other definitions may not need their own value. */
 static bool may_need_itself(const CheckedDefinition *definition)
 {
     return definition->syntax->kind == SYNTAX_DEF || definition->syntax->kind == SYNTAX_SHAPE;
@@ -307,7 +309,7 @@ typedef struct DefinitionStack {
 
 static uint32_t least(uint32_t a, uint32_t b) { return a < b ? a : b; }
 
-/* Takes a finished component off the stack. */
+/* Removes a complete strongly connected component from the stack and gives it a number. */
 static void close_circle(DefinitionStack *open, const CheckedDefinition *first, uint32_t circle)
 {
     CheckedDefinition *last;
@@ -317,7 +319,8 @@ static void close_circle(DefinitionStack *open, const CheckedDefinition *first, 
     } while (last != first);
 }
 
-/* Tarjan's algorithm from one definition, without recursion: chains of definitions are long. */
+/* Tarjan's algorithm from one definition.  It does not recurse, since chains of definitions may be
+   long. */
 static void find_components(Checker *c, CheckedDefinition *root, uint32_t *numbers,
                             uint32_t *circles)
 {
@@ -345,8 +348,8 @@ static void find_components(Checker *c, CheckedDefinition *root, uint32_t *numbe
     }
 }
 
-/* The shortest way from a definition back to itself, in breadth; NULL when there is none.  The
-   result is the last definition on the way, and found_from leads back. */
+/* Finds the shortest cycle through a definition, by breadth-first search.  Returns the last
+   definition on it, from which `found_from` leads back; NULL when there is no cycle. */
 static const CheckedDefinition *find_cycle(Checker *c, CheckedDefinition *start, const Need **last)
 {
     DefinitionStack queue = {0};
@@ -424,7 +427,7 @@ static void check_circles(Checker *c)
 
 /* ---- the file ---- */
 
-/* What could not be read may have defined the names that the rest of the statement uses. */
+/* Whether a part of a statement could not be read: it may have defined names that the rest uses. */
 static bool contains_error(const Syntax *syntax)
 {
     bool found = syntax->kind == SYNTAX_ERROR;
@@ -433,8 +436,7 @@ static bool contains_error(const Syntax *syntax)
     return found;
 }
 
-/* Whether top-level names may be missing, so that an unknown one is no new mistake: a statement
-   could not be read. */
+/* Whether a top-level statement could not be read.  It may have defined names that others use. */
 static bool has_unread_statement(const Syntax *file)
 {
     for (uint32_t i = 0; i < file->count; i++)
@@ -447,7 +449,7 @@ void names_check(const Syntax *file, const NameScope *scope, Diags *diags, Arena
 {
     Checker checker = {.arena = arena, .diags = diags}, *c = &checker;
     bool    incomplete = scope->incomplete || has_unread_statement(file);
-    for (size_t i = scope->known_count; i-- > 0;) /* the first shall be the newest */
+    for (size_t i = scope->known_count; i-- > 0;) /* backwards: suggestions prefer newer names */
         add_meaning(c, find_slot(c, scope->known[i]), (Span){0}, NULL);
 
     enter_scope(c);
@@ -460,8 +462,8 @@ void names_check(const Syntax *file, const NameScope *scope, Diags *diags, Arena
             define(c, syntax->name, syntax->name_span, definition);
     }
     for (uint32_t i = 0; i < file->count; i++) {
-        c->current = c->definitions.items[i];
-        c->blind   = incomplete || contains_error(file->children[i]);
+        c->current    = c->definitions.items[i];
+        c->incomplete = incomplete || contains_error(file->children[i]);
         walk(c, file->children[i]);
     }
     leave_scope(c);

@@ -1,5 +1,5 @@
 /*
- * parse.c: statements that do something, blocks, and the file as a whole.
+ * parse.c: statements other than definitions and declarations, blocks, and the whole file.
  *
  * The comment above each function is its rule in grammar/krs.ebnf, word for word; a test
  * compares them.
@@ -8,9 +8,8 @@
 
 #include "compiler/front/parser.h"
 
-/* ---- statements that do ---- */
+/* ---- statements of a word and an expression ---- */
 
-/* A word and an expression. */
 static Syntax *parse_simple(Parser *p, SyntaxKind kind, const char *after)
 {
     Span   start = token_here(p)->span;
@@ -36,7 +35,7 @@ static Syntax *parse_use(Parser *p)
     return finish_named(p, SYNTAX_USE, start, first, path);
 }
 
-/* A `;` behind a closing brace is a habit from other languages: a warning, and no statement. */
+/* Skips a `;` behind a closing brace, a habit from other languages, with a warning. */
 static bool skip_needless_semicolon(Parser *p)
 {
     if (kind_here(p) != TOKEN_SEMICOLON)
@@ -47,7 +46,7 @@ static bool skip_needless_semicolon(Parser *p)
     return true;
 }
 
-/* The statements of a block up to its brace.  Each mistake costs one statement. */
+/* Parses the statements of a block and its closing brace.  A mistake loses one statement only. */
 static void parse_statements(Parser *p, size_t opener, ParseFunction *statement, BlockKind kind)
 {
     while (!p->failed && kind_here(p) != TOKEN_RIGHT_BRACE && kind_here(p) != TOKEN_END &&
@@ -62,9 +61,9 @@ static void parse_statements(Parser *p, size_t opener, ParseFunction *statement,
     expect_closer(p, TOKEN_RIGHT_BRACE, opener, "a statement or `}`");
 }
 
-/* A `for` or `if` has this in common whether it stands in a krs block or not: what is in it. */
+/* What differs between a `for` or `if` in a krs block and one elsewhere. */
 typedef struct BlockRules {
-    ParseFunction *block, *branch; /* the `{ ... }`, and the `if` that may follow `else` */
+    ParseFunction *block, *branch; /* parse the `{ ... }`, and an `if` behind `else` */
     const char    *for_example, *if_example;
 } BlockRules;
 
@@ -226,7 +225,7 @@ Syntax *parse_krs(Parser *p)
 
 /* ---- the file ---- */
 
-/* `size = 2;`: a definition all the same. */
+/* Parses `size = 2;` as a definition, after reporting that `let` is missing. */
 static Syntax *parse_forgotten_let(Parser *p)
 {
     const Token *name = token_here(p);
@@ -235,7 +234,8 @@ static Syntax *parse_forgotten_let(Parser *p)
     return parse_let(p);
 }
 
-/* Reading goes on behind it: what follows is probably in order. */
+/* Reports a `}` without a `{`, and continues behind it without recovery: the statements there are
+   probably right. */
 static Syntax *stray_brace(Parser *p)
 {
     Syntax *error = error_node(p);

@@ -6,8 +6,8 @@
 
 #include "compiler/front/syntax.h"
 
-/* The whole file as a SYNTAX_BLOCK; never NULL.  Errors are reported, the parser recovers at
-   the next statement, and what could not be read stands in the tree as SYNTAX_ERROR. */
+/* Returns the whole file as a SYNTAX_BLOCK, never NULL.  After an error, which is reported, parsing
+   continues at the next statement.  A SYNTAX_ERROR stands in place of what could not be read. */
 Syntax *parse(const Tokens *tokens, Diags *diags, Arena *arena);
 
 #endif

@@ -99,7 +99,7 @@ static Syntax *parse_property(Parser *p)
     return finish_named(p, SYNTAX_PROPERTY, start, first, name);
 }
 
-/* What separates two properties; a wrong or missing separator is reported and counts as one. */
+/* Reads the separator of two properties.  A wrong or missing one is reported and accepted. */
 static bool accept_separator(Parser *p)
 {
     if (p->failed || accept(p, TOKEN_COMMA))
@@ -161,7 +161,7 @@ Syntax *parse_material(Parser *p)
     return finish_named(p, SYNTAX_MATERIAL, start, first, name);
 }
 
-/* A word, a name where one is permitted, and properties. */
+/* Parses a keyword, a name where one is permitted, and properties. */
 static Syntax *parse_block_of_properties(Parser *p, SyntaxKind kind, bool may_have_name,
                                          const char *what, const char *example)
 {

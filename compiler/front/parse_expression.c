@@ -1,12 +1,12 @@
 /*
- * parse_expression.c: expressions, one function for each level of precedence, loosest first.
+ * parse_expression.c: expressions, with a function for each level of precedence.
  *
  * The comment above each function is its rule in grammar/krs.ebnf, word for word; a test
  * compares them.
  */
 #include "compiler/front/parser.h"
 
-/* ---- the two that need no operator ---- */
+/* ---- expressions that begin with a keyword ---- */
 
 /* let_in = "let" NAME "=" expression "in" expression ; */
 static Syntax *parse_let_in(Parser *p)
@@ -49,7 +49,7 @@ static Syntax *parse_if_then_else(Parser *p)
 
 /* ---- operators ---- */
 
-/* The node of the operator just read, of two operands. */
+/* A node of the operator that was just read and its two operands. */
 static Syntax *binary(Parser *p, const Token *op, Syntax *left, Syntax *right)
 {
     size_t first = begin_children(p);
@@ -62,7 +62,7 @@ static Syntax *binary(Parser *p, const Token *op, Syntax *left, Syntax *right)
     return node;
 }
 
-/* Operands joined by any of three operators, grouped from the left. */
+/* Parses operands with any of three left-associative operators between them. */
 static Syntax *parse_left(Parser *p, ParseFunction *operand, TokenKind a, TokenKind b, TokenKind c)
 {
     Syntax *left = operand(p);
@@ -144,8 +144,8 @@ static Syntax *parse_range(Parser *p)
     return binary(p, op, from, to);
 }
 
-/* Whether a comparison stands here.  A single `=` behind an expression is a slip, because what
-   is defined is always a name; it is reported and counts as `==`. */
+/* Whether a comparison operator is next.  A single `=` is reported and counts as `==`: behind an
+   expression it cannot be a definition, since only names are defined. */
 static bool at_comparison(Parser *p)
 {
     switch (kind_here(p)) {
@@ -254,13 +254,13 @@ static bool at_name_of_argument(const Parser *p)
 {
     TokenKind after = kind_after(p);
     return (is_label(p) && after == TOKEN_COLON) ||
-           (kind_here(p) == TOKEN_NAME && after == TOKEN_ASSIGN); /* a slip */
+           (kind_here(p) == TOKEN_NAME && after == TOKEN_ASSIGN); /* parse_named reports the `=` */
 }
 
 /* arguments = "(" [ ( named | expression { "," expression } ) { "," named } [ "," ] ] ")" ; */
 static void parse_arguments(Parser *p)
 {
-    const Token *named  = NULL; /* the first */
+    const Token *named  = NULL; /* the name of the first argument that has one */
     size_t       opener = p->here.at;
     enter(p);
     advance(p);
@@ -326,7 +326,7 @@ static Syntax *parse_postfix(Parser *p)
     }
 }
 
-/* ---- what is not made of operators ---- */
+/* ---- lists, parentheses, single tokens ---- */
 
 /* for_clause = "for" NAME "in" expression ; */
 static Syntax *parse_for_clause(Parser *p)
@@ -397,12 +397,12 @@ static Syntax *parse_parentheses(Parser *p)
     Syntax *inside = parse_expression(p);
     expect_closer(p, TOKEN_RIGHT_PAREN, opener, "an operator or `)`");
     leave(p);
-    if (!p->failed) /* the place of a call or an operator then begins at the parenthesis */
+    if (!p->failed) /* so that the span of a call or an operator begins at the parenthesis */
         inside->span = span_join(start, token_before(p)->span);
     return inside;
 }
 
-/* Numbers, colours, strings, truth values and names are one token each. */
+/* Parses an expression of one token: a number, colour, string, truth value or name. */
 static Syntax *parse_token(Parser *p, SyntaxKind kind)
 {
     const Token *token = advance(p);
@@ -415,7 +415,7 @@ static Syntax *parse_token(Parser *p, SyntaxKind kind)
     return node;
 }
 
-/* No expression begins here: the word on what was probably meant. */
+/* Reports that no expression begins here, with help for common mistakes. */
 static Syntax *no_expression(Parser *p)
 {
     TokenKind found   = kind_here(p);

@@ -1,5 +1,5 @@
 /*
- * parser.c: the token at hand, errors, recovery, and nodes of the tree.
+ * parser.c: the current token, errors, recovery, and nodes of the tree.
  */
 #include "compiler/front/parser.h"
 
@@ -62,7 +62,7 @@ bool is_word_here(const Parser *p, const char *word)
     return kind_here(p) == TOKEN_NAME && strcmp(token_here(p)->name, word) == 0;
 }
 
-/* Whether a token is the first on its line. */
+/* Whether the current token is the first on its line. */
 static bool begins_line(const Parser *p)
 {
     if (p->here.at == 0)
@@ -79,7 +79,8 @@ bool begins_declaration(const Parser *p)
            kind_at(p, p->here.at + 1) != TOKEN_COLON && before != TOKEN_DOT;
 }
 
-/* Whether a brace has its counterpart somewhere; looked at only when something is wrong. */
+/* Whether a brace is closed anywhere.  This reads up to the end of the file, but only after a
+   mistake. */
 static bool brace_is_closed(const Parser *p, size_t opener)
 {
     size_t open = 0;
@@ -99,7 +100,7 @@ Diag *report_at(Parser *p, DiagCode code, Span span, const char *message)
     return p->failed ? &p->diags->scrap : diag_add(p->diags, code, span, "%s", message);
 }
 
-/* The place of the token at hand; the end of the file is where the text ends. */
+/* The span of the current token; at the end of the file, the end of the last token. */
 static Span span_here(const Parser *p)
 {
     Span span = token_here(p)->span;
@@ -127,10 +128,10 @@ static void fail(Parser *p) { p->failed = true; }
 
 Diag *expected(Parser *p, const char *what)
 {
-    const Token *found = token_here(p);
-    bool         said  = p->failed || found->kind == TOKEN_ERROR; /* by the lexer */
-    Diag        *diag  = &p->diags->scrap;
-    if (!said) {
+    const Token *found    = token_here(p);
+    bool         reported = p->failed || found->kind == TOKEN_ERROR; /* by the lexer */
+    Diag        *diag     = &p->diags->scrap;
+    if (!reported) {
         const char *text = describe(p, found);
         diag             = report_at(p, DIAG_UNEXPECTED_TOKEN, span_here(p),
                                      diag_text(p->diags, "expected %s, found %s", what, text));
@@ -171,7 +172,8 @@ const Token *expect_label(Parser *p, const char *what)
     return NULL;
 }
 
-/* Something is opened, and what follows shows that it was not closed. */
+/* Reports a bracket that is not closed before the current token.  Of several brackets that lack
+   their end at one token, only the first is reported. */
 static void report_unclosed(Parser *p, TokenKind closer, size_t opener)
 {
     if (p->unclosed != p->here.at || p->here.at == 0) {
@@ -201,7 +203,7 @@ void expect_closer(Parser *p, TokenKind closer, size_t opener, const char *what)
     }
     report_unclosed(p, closer, opener);
     if (found == TOKEN_SEMICOLON)
-        p->here.brackets -= p->here.brackets > 0; /* as if it were closed */
+        p->here.brackets -= p->here.brackets > 0; /* counts as closed */
     else
         fail(p);
 }
@@ -262,8 +264,8 @@ bool block_is_left(const Parser *p, size_t opener, BlockKind kind)
     return (kind == KRS_BLOCK || !fits) && !brace_is_closed(p, opener);
 }
 
-/* Whether recovery may end here.  `let`, `for` and `if` are parts of expressions, too: they must
-   begin a line, outside of brackets that were opened since. */
+/* Whether recovery may end here, because a statement begins.  `let`, `for` and `if` may also begin
+   parts of expressions.  So they must begin a line, outside of brackets opened after `start`. */
 static bool may_resume(const Parser *p, Level start)
 {
     TokenKind kind = token_here(p)->kind;
@@ -273,7 +275,7 @@ static bool may_resume(const Parser *p, Level start)
     return flexible && begins_line(p) && p->here.brackets <= start.brackets;
 }
 
-/* Takes the mark of failure away; at least one token has been read since `start`. */
+/* Clears `failed`.  Reads a token if none was read since `start`, so that parsing terminates. */
 static void begin_recovery(Parser *p, Level start)
 {
     p->failed = p->abandoned = false;
@@ -293,11 +295,11 @@ void recover_statement(Parser *p, Level start)
     while (token_here(p)->kind != TOKEN_END && !may_resume(p, start)) {
         bool outside = p->here.braces <= start.braces;
         if (outside && kind_here(p) == TOKEN_RIGHT_BRACE)
-            break; /* the end of the block around the statement */
+            break; /* this is the end of the block around the statement */
         TokenKind kind = advance(p)->kind;
         if (outside && kind == TOKEN_SEMICOLON)
             break;
-        if (!outside && p->here.braces <= start.braces) { /* the end of a block of the statement */
+        if (!outside && p->here.braces <= start.braces) { /* a block of the statement has ended */
             accept(p, TOKEN_SEMICOLON);
             break;
         }
@@ -334,7 +336,8 @@ Syntax *error_node(Parser *p)
     return node;
 }
 
-/* Long chains like 1+1+1+... are deep trees without being nested. */
+/* Refuses expressions whose tree is too deep.  A long chain like 1+1+1+... makes a deep tree,
+   although nothing is nested. */
 static Syntax *check_height(Parser *p, Syntax *node)
 {
     if (node->height <= SYNTAX_MOST_LEVELS || node->kind > SYNTAX_KRS)

@@ -50,7 +50,7 @@ const char *syntax_kind_name(SyntaxKind kind)
     return names[kind];
 }
 
-/* What a node has besides its children. */
+/* Writes the operator, name or numbers of a node. */
 static void print_content(const Syntax *syntax, Text *out)
 {
     uint32_t numbers = 0;

@@ -1,9 +1,8 @@
 /*
  * syntax.h: the syntax tree.
  *
- * Every node has the same shape: a kind, the place it was read from, a name, and children.
- * The table says what these mean for each kind; everything that walks the tree (printing,
- * names, elaboration) relies on it.
+ * Every node has a kind, a span, a name, and children.  The table says what these mean for each
+ * kind.  Printing, checking of names and elaboration rely on it.
  */
 #ifndef KRS_SYNTAX_H
 #define KRS_SYNTAX_H
@@ -12,9 +11,9 @@
 #include "compiler/base/text.h"
 #include "compiler/front/token.h"
 
-/* kind            name             children, and what else is set */
+/* Behind each kind: its name, its children, and the other members that are set. */
 typedef enum SyntaxKind {
-    SYNTAX_ERROR, /* -      none: something was wrong here and has been reported */
+    SYNTAX_ERROR, /* -      none; a mistake here has been reported */
     /* expressions */
     SYNTAX_NUMBER,        /* -      none; number[0] (degrees are already radians) */
     SYNTAX_COLOUR,        /* -      none; number[0..2], linear Rec.709 */
@@ -27,7 +26,7 @@ typedef enum SyntaxKind {
     SYNTAX_IF_CLAUSE,     /* -      [0] the condition */
     SYNTAX_RANGE,         /* -      [0] from, [1] to */
     SYNTAX_UNARY,         /* -      [0] operand; op is TOKEN_MINUS or TOKEN_NOT */
-    SYNTAX_BINARY,        /* -      [0] left, [1] right; op, and op_span of the operator */
+    SYNTAX_BINARY,        /* -      [0] left, [1] right; op; name_span is the operator's */
     SYNTAX_IF,            /* -      [0] condition, [1] then, [2] else */
     SYNTAX_LET_IN,        /* name   [0] value, [1] body */
     SYNTAX_CALL,          /* -      [0] callee, [1..] ARGUMENT */
@@ -63,17 +62,17 @@ typedef struct Syntax Syntax;
 struct Syntax {
     SyntaxKind  kind;
     TokenKind   op;
-    Span        span;      /* all of it */
-    Span        name_span; /* the name alone; for BINARY the operator */
+    Span        span;      /* of the whole node */
+    Span        name_span; /* of the name; for UNARY, BINARY and RANGE of the operator */
     const char *name;      /* interned, or NULL */
     const char *doc;       /* lines of the `///` comment before a DEF, SHAPE or PARAM, or NULL */
     double      number[3];
     Syntax    **children;
     uint32_t    count;
-    uint32_t    height; /* levels of the tree from here down */
+    uint32_t    height; /* levels of this subtree, at least 1 */
 };
 
-/* Most levels of an expression, so that whoever walks the tree may do so by calling itself. */
+/* Most levels of an expression, so that functions may walk the tree by recursion. */
 enum { SYNTAX_MOST_LEVELS = 1000 };
 
 /* "comprehension", for dumps. */
@@ -82,7 +81,7 @@ const char *syntax_kind_name(SyntaxKind kind);
 /* Whether a statement gives its name a meaning in the whole file. */
 bool syntax_defines(const Syntax *syntax);
 
-/* The tree as indented text, one node a line: kind, name, number, line:column. */
+/* Writes the tree as indented text, a node in each line: kind, name, number, line:column. */
 void syntax_print(const Syntax *syntax, const Sources *sources, Text *out);
 
 #endif

@@ -1,5 +1,5 @@
 /*
- * token.h: the words of the language.
+ * token.h: tokens, and the lexer that makes them.
  */
 #ifndef KRS_TOKEN_H
 #define KRS_TOKEN_H
@@ -16,15 +16,15 @@ typedef enum TokenKind {
 typedef struct Token {
     TokenKind   kind;
     Span        span;
-    const char *name;      /* words: interned; STRING: the text, unescaped */
+    const char *name;      /* names and keywords: interned; STRING: the text, unescaped */
     double      number[3]; /* NUMBER: [0]; COLOUR: linear Rec.709 */
     const char *doc;       /* text of the `///` comment lines just before, or NULL */
 } Token;
 
-/* "`let`", "a number", "the end of the file": how messages call a token. */
+/* What messages call a token: "`let`", "a number", "the end of the file". */
 const char *token_kind_text(TokenKind kind);
 
-/* Words that begin a statement; behind a point and before a `:` they are ordinary names. */
+/* Whether a keyword begins a statement; behind `.` and before `:` such words are names. */
 bool token_is_statement_word(TokenKind kind);
 
 typedef struct Tokens {
@@ -32,15 +32,15 @@ typedef struct Tokens {
     size_t count, capacity;
 } Tokens;
 
-/* Splits a source into tokens.  A bad run of bytes is reported once and becomes one
-   TOKEN_ERROR.  `kernel`, `reflect` and `mobius` are plain names here: only the parser knows
-   where they begin a statement. */
+/* Splits a source into tokens.  A run of bytes that are no token is reported once and becomes one
+   TOKEN_ERROR.  `kernel`, `reflect` and `mobius` are ordinary names here: they begin statements
+   only where the parser expects them. */
 Tokens lex(uint32_t source, const Sources *sources, Names *names, Diags *diags, Arena *arena);
 
 /* 0xrrggbb as linear light. */
 void linear_from_srgb(uint32_t rgb, double linear[3]);
 
-/* One token a line, for `krs dump --after=tokens`. */
+/* Writes a token in each line, for `krs dump --after=lex`. */
 void tokens_print(const Tokens *tokens, const Sources *sources, Text *out);
 
 #endif

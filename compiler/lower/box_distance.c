@@ -1,5 +1,5 @@
 /*
- * box_distance.c: what boxes say of the distance to what lies in them.
+ * box_distance.c: bounds for the distance to a shape, from a box around it.
  */
 #include "compiler/lower/box_distance.h"
 

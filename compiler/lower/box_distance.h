@@ -1,5 +1,5 @@
 /*
- * box_distance.h: what boxes say of the distance to what lies in them.
+ * box_distance.h: bounds for the distance to a shape, from a box around it.
  */
 #ifndef KRS_BOX_DISTANCE_H
 #define KRS_BOX_DISTANCE_H
@@ -7,10 +7,10 @@
 #include "compiler/graph/graph.h"
 #include "compiler/shape/box.h"
 
-/* Distance to a finite box, 0 inside. */
+/* The distance to a finite box, 0 inside. */
 Node box_distance(Graph *graph, Node point, Box box);
-/* How far outside of a box a point is along the axis where that is most; negative inside.
-   NODE_NONE of a box that no axis bounds. */
+/* How far outside of a box a point is along an axis, at most; negative inside.  Axes along which
+   the box is infinite do not count; NODE_NONE when these are all. */
 Node sides_excess(Graph *graph, Node point, Box box);
 
 #endif

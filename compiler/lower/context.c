@@ -1,13 +1,14 @@
 /*
- * context.c: the walk through a tree of shapes.
+ * context.c: the walk through a tree of shapes that lowers it.
  *
- * Going down the tree the point is mapped into each shape's own space; going up, distances are
- * joined.  The same walk makes the distance alone, which is what is marched, and the distance
- * with all that a hit needs (material, level, instance), which is evaluated once per hit.
+ * On the way down the tree the point is mapped into each shape's own space.  On the way up
+ * distances are joined.  There are two lowerings: of the distance alone, which rays evaluate at
+ * every step, and of the distance with material, level and instance, evaluated once per hit.
  *
- * Distances are 1-Lipschitz up to the slope that the families derived, by which the root divides.
- * Where only sharp joints and maps of space lie above a primitive, its sharper `bound` serves:
- * it need not be Lipschitz, only never exceed the distance.
+ * A distance has the slope that the family of its shape derived.  The root is divided by that of
+ * the whole shape, and is then 1-Lipschitz.  A primitive may have a larger `bound` as well, which
+ * need not be Lipschitz but never exceeds the distance.  It is used where only sharp joints and
+ * maps of space are above the primitive.
  */
 #include "compiler/lower/context.h"
 
@@ -37,7 +38,7 @@ LowerContext context_lipschitz(LowerContext context)
     return context;
 }
 
-/* ---- rays from root to root ---- */
+/* ---- shapes whose parts a ray may step through (column `rays` of shapes.def) ---- */
 
 static bool rays_always(const Shape *shape)
 {
@@ -86,7 +87,7 @@ Lowered lower_shape(Lowering *l, const Shape *shape, LowerContext context)
     l->thin        = thin && rays_pass(shape);
     Lowered result = rules[shape->kind].lower(l, shape, context);
     l->thin        = thin;
-    /* Where no mirror is smooth, the normal that came in is the one that comes out. */
+    /* Only smooth mirrors change the normal. */
     if (result.distance != NODE_NONE && context.smoothing == NODE_NONE && !shape->smooth)
         result.surface.normal = context.normal;
     if (l->lowered_shapes)

@@ -1,7 +1,7 @@
 /*
- * context.h: one walk through a tree of shapes: what goes down, and what comes back.
+ * context.h: lowering of a tree of shapes: what is passed down to each shape, and what it returns.
  *
- * Each kind of shape is lowered by the function of its family (shapes.def).
+ * Each kind of shape has a function in the file of its family (shapes.def).
  */
 #ifndef KRS_CONTEXT_H
 #define KRS_CONTEXT_H
@@ -9,8 +9,9 @@
 #include "compiler/lower/along_method.h"
 #include "compiler/shape/shape.h"
 
-/* What a hit needs (surface.def); NODE_NONE in `color`: not painted yet.  `normal` is in the space
-   of the shape that was lowered; it need not be a unit vector (unit_normal). */
+/* What is known of the surface at a hit (surface.def).  `color` is NODE_NONE while nothing has been
+   painted.  `normal` is in the space of the shape that was lowered.  It need not be a unit vector:
+   see unit_normal. */
 typedef struct Surface {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) Node name;
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends)            Node name;
@@ -23,7 +24,7 @@ typedef struct Lowered {
     Surface surface;
 } Lowered;
 
-/* A shape that has been lowered, the point where, and its distance there. */
+/* A shape that has been lowered, the point in its space, and its distance there. */
 typedef struct LoweredShape {
     const struct Shape *shape;
     Node                point, distance; /* `distance` may be NODE_NONE */
@@ -41,48 +42,48 @@ typedef struct Nodes {
 typedef struct Lowering {
     Graph         *graph;
     Arena         *scratch;
-    bool           surfaces; /* else the distance alone */
-    AlongMethod    method;   /* of ray_step.c */
-    bool           thin;     /* rays pass all that is around: sheets have no thickness */
-    bool           guarded;  /* what is far is left out (guards.c) */
-    Node           unit;     /* guarded: how long 1 is outside of everything */
-    size_t         most;     /* nodes that the graph may have */
-    bool           overflow;
+    bool           surfaces;       /* lower the surface too, not the distance alone */
+    AlongMethod    method;         /* for ray_step.c and ray_images.c */
+    bool           thin;           /* rays_pass for all shapes above: sheets have no thickness */
+    bool           guarded;        /* skip levels of sequences that are far away (guards.c) */
+    Node           unit;           /* guarded: length, outside of all shapes, of 1 in this space */
+    size_t         most;           /* nodes that the graph may have */
+    bool           overflow;       /* it would have more */
     Nodes         *held_constant;  /* for lower_gradient: nodes that count as constants; or NULL */
-    LoweredShapes *lowered_shapes; /* NULL, or a list of all shapes, children first */
+    LoweredShapes *lowered_shapes; /* gets all shapes, children first; or NULL */
 } Lowering;
 
-/* Where a shape is lowered: the mapped point, and the sequence around it.  `lipschitz` says that
-   something above (a blend, an offset) moves the zero set and so needs the slope.  With surfaces
-   also the normal of the surface and the radius of a pixel, in the shape's space. */
+/* Where a shape is lowered: the point in the space of the shape, and the sequence around it.
+   `normal` and `footprint`, the radius of a pixel, are set in a lowering with surfaces only. */
 typedef struct LowerContext {
     Node point, level, instance; /* level, instance: NODE_NONE outside of sequences */
-    bool lipschitz;
+    bool lipschitz; /* the slope is needed, as a blend or offset above moves the zero set */
     Node normal, footprint;
-    Node smoothing; /* the width over which normals change sides of a mirror; NODE_NONE: at once */
+    Node smoothing; /* width over which a mirror turns normals; NODE_NONE: mirrors are sharp */
 } LowerContext;
 
-/* Outside of all shapes, for a lowering without surfaces. */
+/* The context outside of all shapes, for a lowering without surfaces. */
 LowerContext context_new(Node point, bool lipschitz);
 
+/* The empty set. */
 extern const Lowered lowered_nothing;
 
-/* The same context at another point; the same below something that needs the slope. */
+/* The same context at another point; the same context with `lipschitz` set. */
 LowerContext context_at(LowerContext context, Node point);
 LowerContext context_lipschitz(LowerContext context);
 
-/* The most nodes that one shape is lowered to. */
+/* Most nodes that one shape may add to the graph. */
 enum { MOST_LOWERED = 400000 };
 
-/* Whether rays that go from root to root of what is in a shape are rays to the shape. */
+/* Whether a step along a ray that is safe for the parts of a shape is safe for the shape. */
 bool    rays_pass(const Shape *shape);
 Lowered lower_shape(Lowering *l, const Shape *shape, LowerContext context);
 
 Lowered scale_distance(Lowering *l, Lowered result, Node factor);
-/* Takes up the unit behind a map that enlarges; returns the one to go back to. */
+/* Sets `unit` for the space behind a map with this scale; returns the old one, to be restored. */
 Node enter_scale(Lowering *l, Node scale);
 
-/* ---- compiler/family: how each kind is lowered ---- */
+/* ---- in compiler/family: the function that lowers each kind ---- */
 typedef Lowered LowerShape(Lowering *l, const Shape *shape, LowerContext context);
 #define SHAPE(KIND, name, ...) LowerShape lower_##name;
 #include "compiler/shape/shapes.def"

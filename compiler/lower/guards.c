@@ -1,11 +1,10 @@
 /*
- * guards.c: levels of sequences that are far away are left out (math.md, section 1,
- * "Early-out").
+ * guards.c: skips levels of sequences that are far away (math.md, section 1, "Early-out").
  *
- * All that the first stages of a sequence make lies in a box, and from outside of it the box is a
- * bound for all of that.  A ray far away for the size of the box need not know more, and one that
- * is nearer to what has been found already cannot.  A branch is worth this where it saves work,
- * which is on graphics cards and in queries, not on lavapipe.
+ * The first stages of a sequence make a set that lies in a box.  Outside of it, the distance to the
+ * box is a bound for the distance to that set.  The bound suffices where the box is far away
+ * compared with its size, or farther than another shape.  So a branch skips the stages there.  It
+ * saves time on graphics cards and in queries, but not on lavapipe.
  */
 #include "compiler/lower/guards.h"
 
@@ -13,18 +12,20 @@
 
 #include "compiler/lower/box_distance.h"
 
-/* Boxes are made larger by this fraction of the size of their coordinates: single precision. */
+/* Boxes are enlarged by this fraction of their largest coordinate, for errors of single
+   precision. */
 static const double ROUNDING = 1e-6;
 
-/* Farther than this fraction of its radius, a box stands for what is in it.  Smaller fractions
-   leave more out and make more steps; on the processor all from 0.25 to 1 cost the same within 10 %. */
+/* A box replaces its content from this distance on, in radii of the ball around it.  Smaller values
+   skip more work but take more steps.  On the processor all from 0.25 to 1 cost the same within
+   10 %. */
 static const double FAR = 0.5;
 
-/* Farther than any scene. */
+/* A distance larger than any scene. */
 static const double NOWHERE = 1e30;
 
-/* Where the point was just mapped, before kernels, and before everything.  What is guarded jumps,
-   so not where a slope is needed. */
+/* Guards go before the outermost stage, and before each run of kernels, where the point has just
+   been mapped.  A guarded distance jumps, so there is no guard where the slope is needed. */
 bool may_guard(const Lowering *l, const Shape *krs, uint32_t stage, LowerContext context)
 {
     const LevelBound *bound  = &krs->bounds[stage];
@@ -35,26 +36,26 @@ bool may_guard(const Lowering *l, const Shape *krs, uint32_t stage, LowerContext
            isfinite(bound->ball.radius) && box_is_finite(bound->box);
 }
 
-/* A distance behind the maps as one outside of the sequence. */
-static Node out(Lowering *l, const MapChain *chain, Node distance)
+/* What a distance behind the maps is outside of the sequence. */
+static Node distance_outside(Lowering *l, const MapChain *chain, Node distance)
 {
     Lowered behind  = lowered_nothing;
     behind.distance = distance;
     return map_chain_out(l, chain, behind).distance;
 }
 
-/* From where on nothing but the bound is of interest: never below where what is left is smaller
-   than a pixel. */
+/* The distance from which on the bound suffices.  It is negative, so that the bound always
+   suffices, where the box is smaller than a pixel. */
 static Node far_from(Lowering *l, const GuardSite *site)
 {
     Graph *g       = l->graph;
     Node   radius  = graph_number(g, site->bound->ball.radius);
     Node   near    = graph_number(g, FAR * site->bound->ball.radius);
-    Node   outside = graph_op2(g, OP_mul, out(l, &site->chain, radius), l->unit);
+    Node   outside = graph_op2(g, OP_mul, distance_outside(l, &site->chain, radius), l->unit);
     Node   pixel   = graph_leaf(g, OP_FOOTPRINT);
     Node   small   = graph_op2(g, OP_less, outside, pixel);
     Node   always  = graph_number(g, -NOWHERE);
-    return graph_op3(g, OP_select, small, always, out(l, &site->chain, near));
+    return graph_op3(g, OP_select, small, always, distance_outside(l, &site->chain, near));
 }
 
 Node guard_at_sites(Lowering *l, const GuardSite *guard_sites, uint32_t count, Node whole)
@@ -67,7 +68,7 @@ Node guard_at_sites(Lowering *l, const GuardSite *guard_sites, uint32_t count, N
         for (int k = 0; k < 3; k++)
             largest = fmax(largest, fmax(fabs(box.axis[k].low), fabs(box.axis[k].high)));
         Node bound  = box_distance(g, site->chain.point, box_grow(box, ROUNDING * largest));
-        bound       = out(l, &site->chain, bound);
+        bound       = distance_outside(l, &site->chain, bound);
         Node so_far = site->so_far == NODE_NONE ? graph_number(g, NOWHERE) : site->so_far;
         whole       = graph_op4(g, OP_guard, bound, so_far, whole, far_from(l, site));
     }

@@ -1,5 +1,5 @@
 /*
- * guards.h: levels of sequences that may be left out.
+ * guards.h: skips levels of sequences that are far away.
  */
 #ifndef KRS_GUARDS_H
 #define KRS_GUARDS_H
@@ -8,15 +8,15 @@
 
 /* A point between two stages of a sequence where a guard may skip the remaining stages. */
 typedef struct GuardSite {
-    const LevelBound *bound; /* around all that the remaining stages make */
-    MapChain          chain;
-    Node              so_far; /* the distance by the stages after; NODE_NONE: of nothing */
+    const LevelBound *bound; /* box and ball around what the remaining stages make */
+    MapChain          chain; /* the maps passed before this site */
+    Node so_far; /* distance to the kernels passed before it; NODE_NONE: there are none */
 } GuardSite;
 
-/* Whether a guard goes before a stage. */
+/* Whether a guard goes before a stage of the sequence `krs`. */
 bool may_guard(const Lowering *l, const Shape *krs, uint32_t stage, LowerContext context);
-/* The distance of a sequence, which is `whole` when nothing is left out; sites from the outermost
-   to the innermost. */
+/* The distance to a sequence with guards at these sites, from the outermost to the innermost.
+   `whole` is the distance without guards. */
 Node guard_at_sites(Lowering *l, const GuardSite *guard_sites, uint32_t count, Node whole);
 
 #endif

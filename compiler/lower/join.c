@@ -1,5 +1,5 @@
 /*
- * join.c: unions of what was lowered, and shapes that something moves.
+ * join.c: unions of lowered shapes, and operands whose distances are used away from the surface.
  */
 #include "compiler/lower/join.h"
 
@@ -14,7 +14,6 @@ static Node join_distances(Graph *g, Blend blend, Node a, Node b)
     return graph_op(g, blend_info[blend.kind].op, operands);
 }
 
-/* The union of two distances, sharp or blended. */
 Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b)
 {
     Graph *g = l->graph;
@@ -36,9 +35,9 @@ Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b)
     return joined;
 }
 
-/* What is only a bound may be small far from the shape; the distance to the sides of its box is a
-   bound as well, and with it the points where it is r lie within r of the box, as the boxes of
-   csg.c say. */
+/* A bound may be small far from its shape.  The distance to the sides of the shape's box is a bound
+   too, and the larger of both is used.  Then points where it is r lie within r of the box, which
+   the boxes of csg.c assume. */
 Lowered lower_operand(Lowering *l, const Shape *shape, LowerContext context)
 {
     Lowered result = lower_shape(l, shape, context_lipschitz(context));

@@ -1,15 +1,15 @@
 /*
- * join.h: unions of what was lowered, and shapes that something moves.
+ * join.h: unions of lowered shapes, and operands whose distances are used away from the surface.
  */
 #ifndef KRS_JOIN_H
 #define KRS_JOIN_H
 
 #include "compiler/lower/context.h"
 
-/* The union of two distances, sharp or blended. */
+/* The union of two lowered shapes, sharp or blended. */
 Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b);
-/* A shape whose distance is looked at where it is not 0: it is no less than that to the sides of the
-   shape's box. */
+/* Lowers an operand of a shape, such as a blend, that needs distances other than 0.  They are at
+   least the distance to the sides of the operand's box. */
 Lowered lower_operand(Lowering *l, const Shape *shape, LowerContext context);
 
 #endif

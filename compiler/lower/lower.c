@@ -8,7 +8,7 @@
 #include "compiler/lower/normal.h"
 #include "compiler/shape/slope.h"
 
-/* Farther than any scene: the distance to nothing.  Finite, so that sums stay numbers. */
+/* The distance to the empty set: larger than any scene, but finite, so that sums are finite. */
 static const double NOWHERE = 1e30;
 
 const RootInfo root_info[ROOT_COUNT] = {
@@ -67,7 +67,8 @@ Node lower_guarded(Graph *graph, const Shape *shape, Node plain, Arena *scratch)
     return divide_by_slope(graph, all.distance, shape->slope);
 }
 
-/* Three derivatives a node: what is larger is looked at by differences. */
+/* Most nodes of which a gradient is derived, since each gets three derivatives.  Gradients of
+   larger shapes are found by differences. */
 enum { MOST_DERIVED = 20000 };
 
 bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near, Arena *scratch)

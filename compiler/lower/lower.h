@@ -7,58 +7,58 @@
 #include "compiler/lower/along_method.h"
 #include "compiler/shape/shape.h"
 
-/* What is computed for a component at a point: the roots of its graph. */
+/* The roots of a component's graph: what is computed at a point. */
 typedef enum ComponentRoot {
-    ROOT_DISTANCE, /* FLOAT, safe: divided by the slope of the shape */
+    ROOT_DISTANCE, /* FLOAT, divided by the slope of the shape, so that it is a safe step */
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) ROOT_##name,
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends)            ROOT_##name,
 #include "compiler/shape/surface.def"
-    ROOT_NORMAL, /* VEC3, unit: OP_NORMAL, but for smooth mirrors */
+    ROOT_NORMAL, /* VEC3, unit: OP_NORMAL, unless smooth mirrors change it */
     ROOT_COUNT
 } ComponentRoot;
 
-/* What surface.def says of a root; of the distance and the normal, nothing. */
+/* The columns of surface.def.  ROOT_DISTANCE and ROOT_NORMAL are not in it: their rows are 0. */
 typedef struct RootInfo {
     const char *name;
-    GraphType   type, shown;        /* of the node, and in shaders */
-    double      otherwise, nothing; /* in each element */
-    bool        material;           /* it is a property of materials, */
-    double      low, high;          /* and limited to these: in pictures, */
-    bool        limited;            /* and in answers too */
+    GraphType   type, shown;        /* of the node; in shaders */
+    double      otherwise, nothing; /* where no shape sets it; in a scene without components */
+    bool        material;           /* it is a property of materials */
+    double      low, high;          /* of a property: its range in pictures */
+    bool        limited;            /* the range holds for answers to queries, too */
 } RootInfo;
 extern const RootInfo root_info[ROOT_COUNT];
-/* Its value where no material and no shape says another. */
+/* The value of a root where no material and no shape sets it. */
 Node root_otherwise(Graph *graph, ComponentRoot root);
 
-/* Lowers a shape at the point OP_POINT; roots[ROOT_COUNT] are filled.  False when more than
-   MOST_LOWERED nodes would be needed: copies within copies. */
+/* Lowers a shape at the point OP_POINT and sets roots[ROOT_COUNT].  False when that needs more than
+   MOST_LOWERED nodes, for example for copies of copies. */
 bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roots);
 
 /*
- * What to march by instead of ROOT_DISTANCE where branches save time: levels of sequences that are
- * far away for their size are left out (OP_guard), and those smaller than OP_FOOTPRINT.  Never
- * above the distance to the surface, and not above 0 in the same places, but often less than
- * ROOT_DISTANCE, and it jumps.  `plain`, which is ROOT_DISTANCE, when it grows too large.
+ * A distance for marching that replaces ROOT_DISTANCE where branches save time.  OP_guard skips
+ * levels of sequences that are far away compared with their size, or smaller than OP_FOOTPRINT.
+ * The result is a bound and positive in the same places as ROOT_DISTANCE, but often smaller, and it
+ * jumps.  It is `plain`, which is ROOT_DISTANCE, when the graph would be too large.
  */
 Node lower_guarded(Graph *graph, const Shape *shape, Node plain, Arena *scratch);
 
 /*
- * How far a ray from OP_POINT along OP_DIRECTION may go before it can enter the shape, negative
- * when it is within and looks for the way out: at least the distance, and where polynomials bound
- * the shape, or inversions are above it, much more.  `plain`, which is ROOT_DISTANCE, where that is
- * as good.
+ * How far a ray from OP_POINT along OP_DIRECTION may go before it can enter the shape.  Inside it
+ * is negative: how far the ray may go before it can leave.  It is at least the distance, and much
+ * more where the shape is given by polynomials or is below inversions.  It is `plain`, which is
+ * ROOT_DISTANCE, where the method does not apply.
  */
 Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod method, Arena *scratch);
 
 /*
- * The gradient of ROOT_DISTANCE, a VEC3 of any length, and in `near` what it is the gradient of,
- * which is about the distance near the surface; false when some operation has no derivative, or
- * when that would grow too large.
+ * The gradient of a function that is about ROOT_DISTANCE near the surface, and in `near` that
+ * function.  The gradient is a VEC3 of any length.  False when an operation has no derivative, or
+ * when the graph would be too large.
  */
 bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near, Arena *scratch);
 
-/* Whether there are sheets in it that have no thickness: its distance is 0 there, and nowhere
-   negative around; only lower_along tells where a ray meets them. */
+/* Whether a shape has sheets without thickness.  Their distance is 0, but nowhere near them is it
+   negative, so only lower_along finds where a ray meets them. */
 bool has_thin_sheets(const Shape *shape);
 
 #endif

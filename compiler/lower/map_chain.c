@@ -2,27 +2,27 @@
  * map_chain.c: points and distances through conformal maps: the centred bound of math.md,
  * section 2.4.
  *
- * An inversion takes balls to balls.  Around the image of a point let a ball of radius d be
- * empty; what comes back of it is a ball that is not centred at the point, and the largest ball
- * in it that is has 1 / r = sigma / d + 1 / X, where sigma is how much the map enlarges there
- * and X the distance to its pole.  This is affine in 1 / d, so maps within maps carry two
- * numbers: r = d / (A + B |d|).
+ * An inversion maps balls to balls.  Let a ball of radius d around the image of a point be empty.
+ * Its preimage is a ball, too, but the point is not its centre.  The largest ball in the preimage
+ * with its centre at the point has the radius r, where 1 / r = sigma / d + 1 / X.  Here sigma is
+ * the factor by which the map enlarges at the point, and X the distance to the map's pole.  This is
+ * affine in 1 / d, so two numbers suffice for a chain of maps: r = d / (A + B |d|).
  */
 #include "compiler/lower/map_chain.h"
 
 #include <math.h>
 
-/* X is no less than this fraction of the radius of the sphere, so that everything stays finite. */
+/* X is at least this fraction of the radius of the sphere, so that all numbers are finite. */
 static const double NEAR_POLE = 1e-6;
 
-/* How far a pole stays from a ball to be of no concern, in radii. */
+/* A ball needs a hull unless the pole is at least this far from its surface, in radii. */
 static const double CLEAR = 0.5;
 
-/* Balls are made larger by this fraction: single precision.  The surface of a ball that is inverted
-   keeps off the pole, by this fraction of its radius, so that its image is no half-space. */
+/* ROUNDING: balls are enlarged by this fraction, for errors of single precision.  KEEP_OFF: the
+   least distance from the pole to the surface of a ball that is inverted, as a fraction of the
+   ball's radius.  Nearer, the image would be almost a half-space. */
 static const double ROUNDING = 1e-5, KEEP_OFF = 0.1;
 
-/* R^T (point - shift) / scale: where the point was before the map. */
 Node before_map(Graph *g, const Map *map, Node point)
 {
     Node rows[3];
@@ -141,9 +141,9 @@ static Range frame_range(Lowering *l, Node node, uint32_t component)
 }
 
 /*
- * By the centred bound alone every pole looks like a point of the surface: r < X.  But what is
- * inverted lies in some ball, whose image, the inside or the outside of another ball, leaves the
- * pole out.  The distance to that is the larger bound near the pole, and 1-Lipschitz as well.
+ * The centred bound is less than X, so at a pole it is 0 as on a surface.  But the inverted shape
+ * lies in a ball.  The image of the ball is the inside or the outside of another ball, and does not
+ * contain the pole.  The distance to that image is a larger bound near the pole, and 1-Lipschitz.
  */
 Node map_chain_hull(Lowering *l, const MapChain *chain, const Map *map, Ball *ball)
 {
@@ -161,7 +161,8 @@ Node map_chain_hull(Lowering *l, const MapChain *chain, const Map *map, Ball *ba
     if (isinf(radius) || radius == 0)
         return NODE_NONE;
     ball->radius = radius;
-    /* Centre and radius: scale (R offset, radius) / (|offset|^2 - radius^2); outside that is < 0. */
+    /* Centre and radius of the image: scale (R offset, radius) / (|offset|^2 - radius^2).  The
+       divisor is negative where the image is the outside of a ball. */
     Node rest           = graph_number(g, radius * radius);
     rest                = graph_op2(g, OP_sub, square, rest);
     Node factor         = graph_op2(g, OP_div, map->scale, rest);
@@ -181,17 +182,17 @@ Node map_chain_hull(Lowering *l, const MapChain *chain, const Map *map, Ball *ba
 
 /* ---- bounds around the poles of sequences ---- */
 
-/* Around all places of a ball whose centre may move. */
+/* A ball around all positions of a ball whose centre depends on parameters. */
 static Ball ball_about(Lowering *l, Node centre, double radius)
 {
     Ball   ball;
-    double leave = 0;
+    double spread = 0;
     for (uint32_t i = 0; i < 3; i++) {
         Range range    = frame_range(l, centre, i);
         ball.centre[i] = 0.5 * (range.low + range.high);
-        leave          = hypot(leave, 0.5 * (range.high - range.low));
+        spread         = hypot(spread, 0.5 * (range.high - range.low));
     }
-    ball.radius = isfinite(leave) ? radius + leave : HUGE_VAL;
+    ball.radius = isfinite(spread) ? radius + spread : HUGE_VAL;
     return ball;
 }
 
@@ -204,7 +205,8 @@ void pole_bounds_fold(Lowering *l, PoleBounds *pole_bounds, Node normal, Node of
     pole_bounds->within = ball_about(l, centre, pole_bounds->within.radius);
 }
 
-/* What the map makes of a ball, inwards; endless unless its pole is clear of the ball. */
+/* A ball around the image of a ball under the inverse of a map.  Its radius is infinite if the pole
+   is not CLEAR of the ball. */
 static Ball ball_behind(Lowering *l, const Map *map, Ball ball)
 {
     Graph *g      = l->graph;

@@ -7,54 +7,55 @@
 #include "compiler/lower/normal.h"
 #include "compiler/shape/map.h"
 
-/* R^T (point - shift) / scale: where the point was before the map. */
+/* The inverse of a map that is a similarity: R^T (point - shift) / scale. */
 Node before_map(Graph *g, const Map *map, Node point);
 
-/* The maps passed so far, from outside inwards.  An empty ball of radius d around
-   the point behind them is one of radius d * scale around the point outside or, once a map has
-   inverted, d / (shrink + bend * |d|). */
+/* The maps passed so far, from outside inwards, and the point behind them.  Let a ball of radius d
+   around this point be empty.  Then a ball around the point outside is empty, too.  Its radius is
+   d * scale or, if a map inverts, d / (shrink + bend * |d|). */
 typedef struct MapChain {
     Node point, scale;
-    Node shrink, bend; /* NODE_NONE: nothing has inverted yet */
+    Node shrink, bend; /* NODE_NONE: no map so far inverts */
 } MapChain;
 
-/* An inversion on the way inwards, at a point. */
+/* The inverse of an inversion at a point. */
 typedef struct Inversion {
-    Node offset, axis; /* from where it takes infinity to the point, and its direction, */
-    Node inverse;      /* and 1 by its length; */
-    Node sigma;        /* how much larger things become */
+    Node offset, axis; /* from the pole of the inverse to the point; its direction */
+    Node inverse;      /* 1 / length of the offset */
+    Node sigma;        /* the factor by which lengths grow at the point */
 } Inversion;
 
 Inversion inversion_at(Graph *g, const Map *map, Node point);
-/* A direction behind a map, but not reflected in the inversion. */
+/* Turns a direction as the inverse of a map does; the reflection of an inversion is left out. */
 Node turn_behind(Graph *g, const Map *map, Node direction);
 
 MapChain map_chain_new(Graph *g, Node point);
-/* Behind a map without `first`; normals take at most two steps. */
+/* Appends a map without `first`, and its at most two steps to the path of the normal. */
 void map_chain_append(Lowering *l, MapChain *chain, const Map *map, NormalPath *path);
-/* What was lowered behind the maps, as distances outside. */
+/* Turns distances behind all maps into distances outside. */
 Lowered map_chain_out(Lowering *l, const MapChain *chain, Lowered result);
-/* As enter_scale, behind all of the maps. */
+/* enter_scale() for all maps of the chain. */
 Node enter_map_chain(Lowering *l, const MapChain *chain);
 
-/* Of what lies in a ball before the map that is next on the way inwards, seen from outside of
-   everything: the distance to it is at least this; NODE_NONE: nothing is known.  The ball becomes
-   the one, a little larger, whose image this is the distance to. */
+/* A bound, outside of all maps, for the distance to the image of a ball.  `map` is the next map
+   inwards, and the ball contains what it is applied to.  NODE_NONE where there is no bound.
+   `*ball` becomes the slightly larger ball to whose image the result is the distance. */
 Node map_chain_hull(Lowering *l, const MapChain *chain, const Map *map, Ball *ball);
 
-/* Bounds of a sequence near the poles of its maps: the hulls passed so far.  Another hull is worth
-   its price where the pole may be within those so far, as seen from outside; otherwise they are far
-   from the pole, and bound there what the next one would. */
+/* Bounds of a sequence near the poles of its maps: the hulls passed so far.  Another hull pays only
+   where the pole of its map may lie within the hulls so far, as seen from outside.  Otherwise these
+   are far from the pole, and are as good a bound there as the next one. */
 typedef struct PoleBounds {
-    Node distance; /* to all of them: the largest; NODE_NONE: there are none */
-    Ball within;   /* where the point is unless that is above 0; infinite: anywhere */
+    Node distance; /* the largest distance to a hull; NODE_NONE: there are none */
+    Ball within;   /* contains the point wherever `distance` is not above 0; may be infinite */
 } PoleBounds;
 
 void pole_bounds_fold(Lowering *l, PoleBounds *pole_bounds, Node normal, Node offset);
-/* Before map_chain_append.  `ball`: around what the map is applied to.  Whether a hull was added. */
+/* To be called before map_chain_append.  `ball` contains what the map is applied to.  Whether a
+   hull was added. */
 bool pole_bounds_append(Lowering *l, PoleBounds *pole_bounds, const MapChain *chain, const Map *map,
                         Ball ball);
-/* Of two distances, each of which may be NODE_NONE. */
+/* The smaller or larger of two distances, either of which may be NODE_NONE. */
 Node nearer_of(Graph *g, Node a, Node b);
 Node farther_of(Graph *g, Node a, Node b);
 

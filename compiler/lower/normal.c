@@ -1,18 +1,18 @@
 /*
- * normal.c: the normal of a surface on its way into each shape's space, and out again.
+ * normal.c: maps the normal of a surface into each shape's space, and back.
  *
- * On the way in it is turned as space is, so that materials see it as they see the point.  It has
- * to come out again only where mirrors are smooth (math.md, section 1, "Smooth shading"): on the
- * way in a mirror reflects it or does not; on the way out it does so by an amount that rises from 0
- * to 1 across the mirror.  Everywhere else the normal is the one that came in.
+ * On the way in it is mapped like the point, so that materials have both in the shape's space.  The
+ * way back is needed only where mirrors are smooth (math.md, section 1, "Smooth shading").  On the
+ * way in a mirror reflects the normal or leaves it.  On the way out it reflects by an amount that
+ * rises from 0 to 1 across the mirror.  Elsewhere the result is the normal at the start.
  */
 #include "compiler/lower/normal.h"
 
 #include "compiler/shape/map.h"
 
-/* Widths below this are none: quotients stay numbers. */
+/* The least width of a smooth mirror that is divided by, so that quotients are finite. */
 static const double NO_WIDTH = 1e-30;
-/* Of a normal that the mirrors have shortened to nothing: its square. */
+/* A normal whose squared length is less has no direction: smooth mirrors have averaged it away. */
 static const double NO_LENGTH = 1e-8;
 
 /* normal - 2 amount (axis . normal) axis: reflected where the amount is 1. */
@@ -42,7 +42,7 @@ Node unit_normal(Graph *g, Node normal, Node otherwise)
     return graph_op3(g, OP_select, gone, otherwise, unit);
 }
 
-/* Lengths of a space that is `stretch` times as large outside. */
+/* Converts the lengths of a context into a space whose unit is `stretch` times as long outside. */
 static LowerContext place_stretched(Graph *g, LowerContext context, Node stretch)
 {
     if (stretch == graph_number(g, 1))
@@ -53,16 +53,17 @@ static LowerContext place_stretched(Graph *g, LowerContext context, Node stretch
     return context;
 }
 
-/* How much of a reflection there is at a distance from the mirror, in front of it: 0 or 1, or
-   both sides of it meet over a width. */
-static Node mirrored_amount(Graph *g, LowerContext context, Node front, Node behind)
+/* By how much a mirror reflects the normal: 0 or 1 or, for a smooth mirror, a ramp from 0 to 1
+   across it.  `height` is the point's signed distance to the mirror, `front` whether it is
+   reflected. */
+static Node mirrored_amount(Graph *g, LowerContext context, Node height, Node front)
 {
     Node zero = graph_number(g, 0), one = graph_number(g, 1);
     if (context.smoothing == NODE_NONE)
-        return graph_op3(g, OP_select, behind, one, zero);
+        return graph_op3(g, OP_select, front, one, zero);
     Node least = graph_number(g, NO_WIDTH), half = graph_number(g, 0.5);
     Node width  = graph_op2(g, OP_max, context.smoothing, least);
-    Node amount = graph_op2(g, OP_div, front, width);
+    Node amount = graph_op2(g, OP_div, height, width);
     amount      = graph_op2(g, OP_add, amount, half);
     return graph_op3(g, OP_clamp, amount, zero, one);
 }
@@ -97,7 +98,8 @@ void normal_turn(Lowering *l, NormalPath *path, const Node rows[3], Node stretch
         step->rows[i] = rows[i];
 }
 
-/* The turn about y from one direction in x and z to another, as the rows of its matrix. */
+/* The rows of the rotation about y that turns one direction into another, both projected to the
+   plane of x and z. */
 static void rows_about_y(Graph *g, Node from, Node to, Node rows[3])
 {
     Node a[2][2], zero = graph_number(g, 0);
@@ -157,11 +159,11 @@ void normal_fold(Lowering *l, NormalPath *path, Node point, Node axis, Node offs
     LowerContext bare = path->innermost;
     bare.smoothing    = NODE_NONE;
     Node       along  = graph_op2(g, OP_dot, axis, point);
-    Node       front  = graph_op2(g, OP_sub, along, offset);
-    Node       behind = graph_op3(g, OP_front, point, axis, offset);
-    Node       hard   = mirrored_amount(g, bare, front, behind);
+    Node       height = graph_op2(g, OP_sub, along, offset);
+    Node       front  = graph_op3(g, OP_front, point, axis, offset);
+    Node       hard   = mirrored_amount(g, bare, height, front);
     NormalStep step   = {.kind = NORMAL_MIRROR, .axis = axis};
-    step.amount       = mirrored_amount(g, path->innermost, front, behind);
+    step.amount       = mirrored_amount(g, path->innermost, height, front);
     add_step(path, step);
     path->innermost.normal = mirrored(g, path->innermost.normal, axis, hard);
 }
@@ -186,8 +188,8 @@ LowerContext context_behind(const NormalPath *path, LowerContext context, Node p
     return context;
 }
 
-/* From the innermost step outwards.  The normal is that of the nearest of the kernels so far:
-   `hit` says that it is nearer than all those outside of it, too. */
+/* Goes from the innermost step outwards.  The normal is that of the nearest kernel so far.  `hit`
+   says that this kernel is also nearer than all kernels further out. */
 Node normal_out(Lowering *l, const NormalPath *path, Node inner)
 {
     Graph *g      = l->graph;

@@ -1,48 +1,48 @@
 /*
- * normal.h: normals of surfaces through maps of space, in and out again.
+ * normal.h: normals of surfaces, mapped into the spaces of shapes and back.
  */
 #ifndef KRS_NORMAL_H
 #define KRS_NORMAL_H
 
 #include "compiler/lower/context.h"
 
-/* One map of space, or a kernel that joins what is further in, from outside inwards. */
+/* A step on the way inwards: a map of space, or a kernel that is joined there. */
 typedef struct NormalStep {
     enum { NORMAL_MIRROR, NORMAL_TURN, NORMAL_STRETCH, NORMAL_KERNEL } kind;
-    Node axis, amount;   /* MIRROR: unit; how much of it, on the way out */
-    Node rows[3];        /* TURN; [0] of STRETCH: factors */
-    Node normal, nearer; /* KERNEL: of its surface; that it is nearer than all further out */
+    Node axis, amount;   /* MIRROR: unit vector; by how much it reflects on the way out */
+    Node rows[3];        /* TURN: the matrix; STRETCH: [0] has the factors */
+    Node normal, nearer; /* KERNEL: its normal; whether it is nearer than those further out */
 } NormalStep;
 
-/* The maps that a normal passes, from outside inwards; empty in a lowering without surfaces. */
+/* The steps of a normal, from outside inwards; empty in a lowering without surfaces. */
 typedef struct NormalPath {
     LowerContext innermost; /* normal, footprint and smoothing behind the steps so far */
     NormalStep  *steps;
     uint32_t     count;
 } NormalPath;
 
-/* `most`: steps that will be taken. */
+/* A path without steps; at most `most` will be added. */
 NormalPath normal_path(Lowering *l, LowerContext context, uint32_t most);
-/* Before x -> stretch * rows * x + shift. */
+/* Adds the inverse of x -> stretch * rows * x + shift. */
 void normal_turn(Lowering *l, NormalPath *path, const Node rows[3], Node stretch);
-/* Before a turn about y that brings `inner` to where `outer` is. */
+/* Adds the rotation about y that turns the direction of `outer` into that of `inner`. */
 void normal_turn_about_y(Lowering *l, NormalPath *path, Node outer, Node inner);
-/* Before x -> factors * x, element by element; `least` of them. */
+/* Adds the inverse of x -> factors * x, element by element.  `least` is the smallest factor. */
 void normal_stretch(Lowering *l, NormalPath *path, Node factors, Node least);
-/* Before a reflection along a unit vector that depends on the point. */
+/* Adds a reflection along a unit vector, which may depend on the point. */
 void normal_flip(Lowering *l, NormalPath *path, Node axis);
-/* OP_fold at the point; mirrors are where smoothing is. */
+/* Adds OP_fold at a point: a mirror, which is smooth where the context has a smoothing. */
 void normal_fold(Lowering *l, NormalPath *path, Node point, Node axis, Node offset);
-/* A kernel was lowered here; `outer` is all that was joined before. */
+/* Adds a kernel that was lowered here; `outer` is the union of the kernels before it. */
 void normal_kernel(Lowering *l, NormalPath *path, Lowered outer, Lowered kernel);
-/* The normal in the space where the path began, of what was lowered behind it: of its kernels, or
-   `inner` where there is none. */
+/* Maps a normal back to the space where the path began.  It is the normal of the nearest kernel of
+   the path, or `inner` where no kernel is nearest. */
 Node normal_out(Lowering *l, const NormalPath *path, Node inner);
-/* The context behind the steps, at a point there. */
+/* The context behind the steps, at a point in that space. */
 LowerContext context_behind(const NormalPath *path, LowerContext context, Node point);
-/* A unit vector; `otherwise` where nothing is left of the normal. */
+/* The normal, scaled to length 1; `otherwise` where its length is almost 0. */
 Node unit_normal(Graph *g, Node normal, Node otherwise);
-/* The same as lower_shape behind maps that have been taken down, at a point there. */
+/* Lowers a shape at a point behind the steps; its normal is mapped back. */
 Lowered lower_behind(Lowering *l, const Shape *child, LowerContext context, const NormalPath *path,
                      Node point);
 

@@ -1,21 +1,21 @@
 /*
- * ray_images.c: the image of a ray, or of a ball, in sequences with maps that invert: how far
- * the ray may go (ALONG_DIRECTIONAL), whether the ball is empty (ALONG_PROBE); math.md, section 2.
+ * ray_images.c: images of rays and balls in sequences with maps that invert (math.md, section 2).
+ * They tell how far a ray may go (ALONG_DIRECTIONAL), and whether a ball is empty (ALONG_PROBE).
  *
- * The image of a ray p + t v under a conformal map F is a circle or a line through q = F(p).  With
- * A = |F'(p)|, w the image's direction at q, and a vector h at q which is 0 while nothing inverts,
- *     F(p + t v) = q + A (t w + t^2 h) / Q,    Q = 1 + 2 t w.h + t^2 h.h,
- * and its distance from q is A t / sqrt(Q).  So w and h are all there is to carry, next to the
- * point: they turn with rotations and mirrors, and an inversion at z from its pole turns h into
- * R^T (h reflected along z - A z / |z|^2).  |h| is at most the B of the centred bound, which is
- * this exit for the worst direction.  No ball is pulled back, so no terms cancel.
+ * The image of a ray p + t v under a conformal map F is a circle or a line through q = F(p).  Let
+ * A = |F'(p)|, w the image's direction at q, and h a vector at q, which is 0 if no map inverts:
+ *     F(p + t v) = q + A (t w + t^2 h) / Q,    Q = 1 + 2 t w.h + t^2 h.h.
+ * The distance of the image from q is A t / sqrt(Q).  So besides the point only w and h are passed
+ * inwards.  Rotations and mirrors turn them.  An inversion at the offset z from its pole turns h
+ * into R^T (h reflected along z - A z / |z|^2).  |h| is at most the B of the centred bound, which
+ * is the exit below in the worst direction.  No preimage of a ball is computed, so no terms cancel.
  *
- * A ball of radius d that is empty around q is left at the t with A t = d sqrt(Q).  Behind a mirror
- * that is farther out than an inversion this holds up to where the image of the ray crosses the
- * mirror: what comes back of the ball may have its centre on the other side.
+ * Let a ball of radius d around q be empty.  The image of the ray leaves it at the t where
+ * A t = d sqrt(Q).  If there is an inversion behind a mirror, this holds only until the image of
+ * the ray crosses the mirror: the centre of the ball's preimage may be on the other side.
  *
- * A ball is the same ball whatever it is seen through, but for mirrors, which the ball's image need
- * not be on one side of: folding its centre is right, since distances do not grow.
+ * The image of a ball under conformal maps is a ball.  A mirror may cut it.  Then the centre is
+ * folded and the radius kept, which is safe since folding does not increase distances.
  */
 #include "compiler/lower/ray_images.h"
 
@@ -23,23 +23,24 @@
 #include "compiler/lower/map_chain.h"
 #include "compiler/shape/slope.h"
 
-/* What inverse lengths may be wrong by, in those of the centred bound: single precision. */
+/* Error of single precision in inverse lengths, relative to those of the centred bound. */
 static const double ROUNDING = 1e-5;
 
-/* A ball that comes so near to the pole, in its distance from it, counts as one that holds it. */
+/* A ball counts as containing the pole if its surface is this near to it, relative to the distance
+   between its centre and the pole. */
 static const double NEAR_POLE = 1e-3;
 
 static const double TINY = 1e-30;
 
-/* What has been taken through maps, so far. */
+/* The image of a ray or ball behind the maps so far. */
 typedef struct RayImage {
     MapChain chain;
     Node     direction;    /* DIRECTIONAL: w */
-    Node     bow;          /* h; NODE_NONE: 0, nothing has inverted, */
-    Node     tilt, square; /* and with it h.w, h.h */
-    Node     ahead;        /* 1 / t of the first mirror that is crossed, by those so far; */
-    Node     cut;          /* by those farther out than an inversion; NODE_NONE: there are none */
-    Node     radius;       /* PROBE */
+    Node     bow;          /* h; NODE_NONE: 0, since no map inverts */
+    Node     tilt, square; /* h.w and h.h, unless h is NODE_NONE */
+    Node     crossing;   /* 1 / t where the ray crosses the first mirror since the last inversion */
+    Node outer_crossing; /* the same of mirrors before an inversion; NODE_NONE: there are none */
+    Node radius;         /* PROBE: of the ball */
 } RayImage;
 
 static Node larger(Lowering *l, Node a, Node b)
@@ -50,7 +51,7 @@ static Node larger(Lowering *l, Node a, Node b)
 }
 
 /* a - axis * along. */
-static Node less_parallel(Lowering *l, Node a, Node axis, Node along)
+static Node subtract_along(Lowering *l, Node a, Node axis, Node along)
 {
     Node parallel = graph_op2(l->graph, OP_scale, axis, along);
     return sub(l->graph, a, parallel);
@@ -60,10 +61,10 @@ static Node reflected(Lowering *l, Node a, Node axis)
 {
     Graph *g     = l->graph;
     Node   along = graph_op2(g, OP_dot, axis, a);
-    return less_parallel(l, a, axis, mul(g, along, graph_number(g, 2)));
+    return subtract_along(l, a, axis, mul(g, along, graph_number(g, 2)));
 }
 
-/* A: what 1 becomes, per length outside. */
+/* A: the length of the image of a short piece of the ray, relative to the piece. */
 static Node shrink_of(Lowering *l, const RayImage *image)
 {
     Graph          *g     = l->graph;
@@ -75,7 +76,7 @@ static Node shrink_of(Lowering *l, const RayImage *image)
 
 /* ---- leaves ---- */
 
-/* The t at which the ray leaves the ball of radius |d| around its image here. */
+/* The t at which the image of the ray leaves the ball of radius |d| around the point. */
 static Node exit_of(Lowering *l, const RayImage *image, Node d)
 {
     Graph *g = l->graph;
@@ -83,23 +84,24 @@ static Node exit_of(Lowering *l, const RayImage *image, Node d)
         return mul(g, d, image->chain.scale);
     Node shrink    = image->chain.shrink;
     Node size      = graph_op1(g, OP_abs, d);
-    Node whole     = add(g, shrink, mul(g, image->chain.bend, size)); /* centred: |d| / whole */
+    Node whole     = add(g, shrink, mul(g, image->chain.bend, size)); /* centred bound: d / whole */
     Node across    = sub(g, image->square, graph_op1(g, OP_square, image->tilt));
     Node bent      = mul(g, across, graph_op1(g, OP_square, size));
     Node remainder = sub(g, graph_op1(g, OP_square, shrink), bent);
     Node root      = graph_op1(g, OP_sqrt, larger(l, remainder, graph_number(g, 0)));
     Node rate      = sub(g, root, mul(g, image->tilt, size));
-    if (image->cut != NODE_NONE)
-        rate = larger(l, rate, mul(g, image->cut, size));
+    if (image->outer_crossing != NODE_NONE)
+        rate = larger(l, rate, mul(g, image->outer_crossing, size));
     rate = larger(l, rate, graph_number(g, 0));
     rate = add(g, rate, mul(g, whole, graph_number(g, ROUNDING)));
     rate = graph_op2(g, OP_min, rate, whole);
     return over(g, d, rate);
 }
 
-/* What a distance at the image is worth outside: the way to go or, of a ball, the distance times
-   how much larger the ball is outside: more than its radius there when it is empty. */
-static Node worth_of(Lowering *l, const RayImage *image, Node distance)
+/* Converts a distance at the image into a length outside.  For a ray that is how far it may go.
+   For a ball it is the distance times the ratio of the ball's radii outside and here.  So it
+   exceeds the radius outside when the ball is empty. */
+static Node length_outside(Lowering *l, const RayImage *image, Node distance)
 {
     Graph *g = l->graph;
     if (distance == NODE_NONE)
@@ -124,18 +126,18 @@ static void bend_ray(Lowering *l, RayImage *image, const Map *map, const Inversi
     } else {
         Node along = graph_op2(g, OP_dot, inversion->axis, image->bow);
         along      = add(g, mul(g, along, graph_number(g, 2)), curving);
-        bow        = less_parallel(l, image->bow, inversion->axis, along);
+        bow        = subtract_along(l, image->bow, inversion->axis, along);
     }
-    Node direction   = reflected(l, image->direction, inversion->axis);
-    image->direction = turn_behind(g, map, direction);
-    image->bow       = turn_behind(g, map, bow);
-    image->tilt      = graph_op2(g, OP_dot, direction, bow);
-    image->square    = graph_op2(g, OP_dot, bow, bow);
-    image->cut       = larger(l, image->cut, image->ahead);
-    image->ahead     = NODE_NONE;
+    Node direction        = reflected(l, image->direction, inversion->axis);
+    image->direction      = turn_behind(g, map, direction);
+    image->bow            = turn_behind(g, map, bow);
+    image->tilt           = graph_op2(g, OP_dot, direction, bow);
+    image->square         = graph_op2(g, OP_dot, bow, bow);
+    image->outer_crossing = larger(l, image->outer_crossing, image->crossing);
+    image->crossing       = NODE_NONE;
 }
 
-/* Returns what the pole lets pass of a ball outside, as its worth. */
+/* Inverts the ball.  Returns the length outside at which a ball would contain the pole. */
 static Node invert_ball(Lowering *l, RayImage *image, const Map *map)
 {
     Graph *g           = l->graph;
@@ -147,14 +149,14 @@ static Node invert_ball(Lowering *l, RayImage *image, const Map *map)
     Node factor        = over(g, map->scale, larger(l, remainder, least));
     Node reach         = graph_op1(g, OP_length, offset);
     reach              = mul(g, reach, graph_number(g, 1 - NEAR_POLE));
-    Node worth         = worth_of(l, image, reach);
+    Node to_pole       = length_outside(l, image, reach);
     Node centre        = graph_op2(g, OP_scale, turn_behind(g, map, offset), factor);
     image->chain.point = add(g, centre, map->pole);
     image->radius      = mul(g, image->radius, factor);
-    return worth;
+    return to_pole;
 }
 
-/* Returns the worth of the pole, or NODE_NONE. */
+/* Returns the length outside up to the pole of a map for a ball, else NODE_NONE. */
 static Node image_map(Lowering *l, RayImage *image, const Map *map)
 {
     Graph     *g    = l->graph;
@@ -175,9 +177,10 @@ static Node image_map(Lowering *l, RayImage *image, const Map *map)
     return NODE_NONE;
 }
 
-/* 1 / t where the ray crosses a mirror at this distance, which it approaches at `speed`: the larger
-   root y of distance y^2 + (2 distance h.w - speed) y + distance h.h - A h.axis = 0. */
-static Node crossing(Lowering *l, const RayImage *image, Node axis, Node distance, Node speed)
+/* 1 / t where the image of the ray crosses a mirror.  `distance` is that to the mirror, and `speed`
+   the rate at which the ray approaches it.  The result is the larger root y of
+   distance y^2 + (2 distance h.w - speed) y + distance h.h - A h.axis = 0. */
+static Node crossing_of(Lowering *l, const RayImage *image, Node axis, Node distance, Node speed)
 {
     Graph *g    = l->graph;
     Node   some = larger(l, distance, graph_number(g, TINY));
@@ -191,7 +194,7 @@ static Node crossing(Lowering *l, const RayImage *image, Node axis, Node distanc
     Node inner   = mul(g, distance, rest);
     inner        = sub(g, graph_op1(g, OP_square, half), inner);
     Node root    = graph_op1(g, OP_sqrt, larger(l, inner, graph_number(g, 0)));
-    /* Whichever form of it adds what has the same sign. */
+    /* Of two forms of the root, take the one that adds terms of the same sign. */
     Node divisor = add(g, half, root);
     divisor      = larger(l, divisor, graph_number(g, TINY));
     Node leaving = over(g, neg(g, rest), divisor);
@@ -214,11 +217,12 @@ static void image_mirror(Lowering *l, RayImage *image, Node axis, Node offset)
         mirrored   = reflected(l, image->bow, axis);
         image->bow = graph_op3(g, OP_select, front, mirrored, image->bow);
     }
-    Node distance = graph_op2(g, OP_dot, axis, point);
-    distance      = graph_op1(g, OP_abs, sub(g, distance, offset));
-    Node speed    = graph_op2(g, OP_dot, axis, image->direction);
-    speed         = mul(g, speed, shrink_of(l, image));
-    image->ahead  = larger(l, image->ahead, crossing(l, image, axis, distance, speed));
+    Node distance   = graph_op2(g, OP_dot, axis, point);
+    distance        = graph_op1(g, OP_abs, sub(g, distance, offset));
+    Node speed      = graph_op2(g, OP_dot, axis, image->direction);
+    speed           = mul(g, speed, shrink_of(l, image));
+    Node crossing   = crossing_of(l, image, axis, distance, speed);
+    image->crossing = larger(l, image->crossing, crossing);
 }
 
 /* ---- shapes ---- */
@@ -230,31 +234,31 @@ static Node image_distance(Lowering *l, const Shape *shape, RayImage image)
     Lowered ball = lower_shape(l, shape, context_new(image.chain.point, false));
     if (ball.distance == NODE_NONE)
         return NODE_NONE;
-    return worth_of(l, &image, divide_by_slope(l->graph, ball.distance, shape->slope));
+    return length_outside(l, &image, divide_by_slope(l->graph, ball.distance, shape->slope));
 }
 
-/* Around what a map that inverts is applied to, as seen through all maps farther out. */
-static Node hull_worth(Lowering *l, const RayImage *image, const Map *map, Ball ball)
+/* A bound, by the hull around what an inversion is applied to, converted into a length outside. */
+static Node hull_length(Lowering *l, const RayImage *image, const Map *map, Ball ball)
 {
     MapChain here = map_chain_new(l->graph, image->chain.point);
-    return worth_of(l, image, map_chain_hull(l, &here, map, &ball));
+    return length_outside(l, image, map_chain_hull(l, &here, map, &ball));
 }
 
 static Node image_inversion(Lowering *l, const Shape *shape, RayImage image)
 {
-    Node hull  = hull_worth(l, &image, &shape->map, ball_around(shape->children[0]->box));
+    Node hull  = hull_length(l, &image, &shape->map, ball_around(shape->children[0]->box));
     Node pole  = image_map(l, &image, &shape->map);
     Node inner = image_shape(l, shape->children[0], image);
     return inner == NODE_NONE ? NODE_NONE : larger(l, nearer_of(l->graph, inner, pole), hull);
 }
 
-/* What is first inwards is nearest at once, so that nothing has to be stored: behind a map no ball
-   that holds its pole passes, but what is outside of its hull and of those farther out. */
+/* Goes from the outermost stage inwards, so that nothing has to be stored.  Behind an inversion a
+   kernel counts with the larger of its own length and those of the hulls so far. */
 static Node image_krs(Lowering *l, const Shape *shape, RayImage image)
 {
     Graph   *g    = l->graph;
     Node     hull = NODE_NONE, nearest = NODE_NONE;
-    uint32_t first = 0; /* kernel: what comes before it has nothing to be applied to */
+    uint32_t first = 0; /* index of the first kernel; stages before it have no effect */
     while (first < shape->stage_count && shape->stages[first].kind != SEQUENCE_KERNEL)
         first++;
     for (uint32_t i = shape->stage_count; i-- > first;) {
@@ -266,7 +270,7 @@ static Node image_krs(Lowering *l, const Shape *shape, RayImage image)
         case SEQUENCE_KERNEL: found = image_shape(l, shape->children[stage->kernel], image); break;
         case SEQUENCE_MAP:
             if (map->pole != NODE_NONE)
-                hull = larger(l, hull, hull_worth(l, &image, map, shape->bounds[i - 1].ball));
+                hull = larger(l, hull, hull_length(l, &image, map, shape->bounds[i - 1].ball));
             found = image_map(l, &image, map);
             break;
         }
@@ -295,56 +299,56 @@ static Node image_part(Lowering *l, const Shape *shape, RayImage image)
     return image_shape(l, shape->children[0], image);
 }
 
-/* ---- whether an inversion can be seen from here through what images can be taken through ---- */
+/* ---- whether there is an inversion in a shape, below kinds that map images of rays ---- */
 
-static bool sees_inversion(const Shape *shape);
+static bool reaches_inversion(const Shape *shape);
 
-static bool sees_nothing(const Shape *shape)
+static bool reaches_none(const Shape *shape)
 {
     (void)shape;
     return false;
 }
 
-static bool sees_own(const Shape *shape)
+static bool reaches_own(const Shape *shape)
 {
     (void)shape;
     return true;
 }
 
-static bool sees_parts(const Shape *shape)
+static bool reaches_in_parts(const Shape *shape)
 {
     for (uint32_t i = 0; i < shape->child_count; i++)
-        if (sees_inversion(shape->children[i]))
+        if (reaches_inversion(shape->children[i]))
             return true;
     return false;
 }
 
-static bool sees_sharp_parts(const Shape *shape)
+static bool reaches_in_sharp_parts(const Shape *shape)
 {
-    return shape->blend.width == NODE_NONE && sees_parts(shape);
+    return shape->blend.width == NODE_NONE && reaches_in_parts(shape);
 }
 
-static bool sees_stages(const Shape *shape)
+static bool reaches_in_stages(const Shape *shape)
 {
     for (uint32_t i = 0; i < shape->stage_count; i++)
         if (shape->stages[i].kind == SEQUENCE_MAP && shape->stages[i].map.pole != NODE_NONE)
             return true;
-    return sees_parts(shape);
+    return reaches_in_parts(shape);
 }
 
 /* ---- kinds ---- */
 
 typedef struct ImageRule {
-    bool (*sees)(const Shape *shape);
+    bool (*reaches)(const Shape *shape);
     Node (*image)(Lowering *l, const Shape *shape, RayImage image);
 } ImageRule;
 
-static const ImageRule rule_none      = {sees_nothing, image_distance};
-static const ImageRule rule_inversion = {sees_own, image_inversion};
-static const ImageRule rule_krs       = {sees_stages, image_krs};
-static const ImageRule rule_union     = {sees_sharp_parts, image_union};
-static const ImageRule rule_map       = {sees_parts, image_transform};
-static const ImageRule rule_part      = {sees_parts, image_part};
+static const ImageRule rule_none      = {reaches_none, image_distance};
+static const ImageRule rule_inversion = {reaches_own, image_inversion};
+static const ImageRule rule_krs       = {reaches_in_stages, image_krs};
+static const ImageRule rule_union     = {reaches_in_sharp_parts, image_union};
+static const ImageRule rule_map       = {reaches_in_parts, image_transform};
+static const ImageRule rule_part      = {reaches_in_parts, image_part};
 
 static const ImageRule *rule_of(const Shape *shape)
 {
@@ -356,7 +360,7 @@ static const ImageRule *rule_of(const Shape *shape)
     return rules[shape->kind];
 }
 
-static bool sees_inversion(const Shape *shape) { return rule_of(shape)->sees(shape); }
+static bool reaches_inversion(const Shape *shape) { return rule_of(shape)->reaches(shape); }
 
 static Node image_shape(Lowering *l, const Shape *shape, RayImage image)
 {
@@ -364,24 +368,24 @@ static Node image_shape(Lowering *l, const Shape *shape, RayImage image)
     l->overflow    = l->overflow || l->graph->count > l->most;
     if (l->overflow)
         return NODE_NONE;
-    return sees_inversion(shape) ? rule_of(shape)->image(l, shape, image)
-                                 : image_distance(l, shape, image);
+    return reaches_inversion(shape) ? rule_of(shape)->image(l, shape, image)
+                                    : image_distance(l, shape, image);
 }
 
 Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod method, Arena *scratch)
 {
-    if (!sees_inversion(shape))
+    if (!reaches_inversion(shape))
         return plain;
     Lowering l      = {.graph   = graph,
                        .scratch = scratch,
                        .most    = graph->count + MOST_LOWERED,
                        .method  = method,
                        .thin    = true};
-    RayImage image  = {.bow    = NODE_NONE,
-                       .tilt   = NODE_NONE,
-                       .square = NODE_NONE,
-                       .ahead  = NODE_NONE,
-                       .cut    = NODE_NONE};
+    RayImage image  = {.bow            = NODE_NONE,
+                       .tilt           = NODE_NONE,
+                       .square         = NODE_NONE,
+                       .crossing       = NODE_NONE,
+                       .outer_crossing = NODE_NONE};
     image.chain     = map_chain_new(graph, graph_leaf(graph, OP_POINT));
     image.direction = graph_leaf(graph, OP_DIRECTION);
     image.radius    = graph_leaf(graph, OP_FOOTPRINT);

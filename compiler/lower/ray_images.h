@@ -7,7 +7,7 @@
 #include "compiler/lower/along_method.h"
 #include "compiler/shape/shape.h"
 
-/* lower_along by ALONG_DIRECTIONAL or ALONG_PROBE. */
+/* lower_along() by the method ALONG_DIRECTIONAL or ALONG_PROBE. */
 Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod method, Arena *scratch);
 
 #endif

@@ -1,25 +1,27 @@
 /*
  * ray_step.c: how far a ray may go, where that is more than a distance.
  *
- * A distance holds for all directions.  A ray has one, and along it a polynomial of the point is
- * one of a single number t, whose next zero is the surface itself.  What is computed at a point is
- * no zero yet but a long safe step towards it, so that the march along the ray does the iterations:
+ * A distance is safe in all directions, but a ray has one direction.  Along it a polynomial of the
+ * point is a polynomial of one number t, whose next root is the surface:
  *     f(p + t v) = c0 + c1 t + ... + cn t^n,           |c0| > 0, taken as c0 > 0
- * Only negative coefficients can bring it down: with m_k their sizes the least of (c0 / m_k)^(1/k)
- * is between the root of c0 = sum m_k t^k and twice that (Cauchy), so it tells a good length w of
- * the piece to look at.  On [0, w] the polynomial lies in the hull of its Bernstein coefficients
- * b_i at t = i w / n, thus above the line from b0 through the one towards which the fall is
- * steepest,
+ * At each point of the ray one long safe step towards the root is computed.  So the march along the
+ * ray is the iteration.
+ *
+ * Only negative coefficients make f decrease.  Let m_k be their absolute values.  The least of
+ * (c0 / m_k)^(1/k) is between the root of c0 = sum m_k t^k and twice that (Cauchy).  So it gives a
+ * good length w of the interval to consider.  On [0, w] the graph of f lies in the convex hull of
+ * its Bernstein coefficients b_i at t = i w / n.  So f is above the line from b0 with the steepest
+ * descent to any b_i, and has no root before
  *     t = w min(1, b0 / max_i (b0 - b_i) n / i).
- * Near a simple zero that is Newton's step, from the safe side; expanding about the point itself
- * keeps single precision good where it matters (math.md, section 3).
+ * Near a simple root this is almost Newton's step, but never too long.  The series is about the
+ * current point, which keeps single precision accurate near roots (math.md, section 3).
  *
- * A sheet is where the sign changes.  At a point of a ray it is asked for between that point and the
- * one before, which is OP_FOOTPRINT behind; there all steps before have said that nothing is but
- * within what may stay open.  So a sheet needs no thickness, and has two sides.
+ * A sheet is where f changes its sign.  At each point of a ray it is looked for back to the
+ * previous point, at a distance of OP_FOOTPRINT.  All steps before were safe, up to the tolerance.
+ * So a sheet needs no thickness, and has two sides.
  *
- * Unions, intersections and differences join such numbers as they join distances; affine maps keep
- * them, as t counts the ray's own steps; whatever else there is counts with its distance.
+ * Unions, intersections and differences join these numbers like distances.  Affine maps leave them
+ * unchanged, since t is a parameter of the original ray.  Other shapes contribute their distance.
  */
 #include <math.h>
 
@@ -33,22 +35,23 @@
 /* A ray in the space of a shape: point + t direction, with the same t everywhere. */
 typedef struct Ray {
     Node point, direction, speed; /* speed: the length of direction */
-    Node back; /* how far behind a point its sheets are looked for: up to the place before */
+    Node back; /* how far backwards sheets are looked for: to the previous point of the ray */
 } Ray;
 
-/* How far a term alone may fall over the piece, in c0; of 1 .. 16, few evaluations.  Twice the
-   length for all terms alike would let t^20 fall by a million, and a step be a millionth. */
-static const double PIECE = 4;
-static const double TINY  = 1e-30;
+/* By how much one term may decrease over the interval, in units of c0.  Of the values from 1 to 16,
+   this one needs few evaluations.  To double the interval's length instead, whatever the degree,
+   would let t^20 decrease by a million, and steps could be a millionth of the interval. */
+static const double MOST_FALL = 4;
+static const double TINY      = 1e-30;
 
 /* ---- polynomials ---- */
 
-/* The length of the piece; bounded, so that its powers are numbers in single precision. */
-static Node piece_length(Lowering *l, const Series *s)
+/* The length w of the interval, limited so that its powers are finite in single precision. */
+static Node interval_length(Lowering *l, const Series *s)
 {
     Graph *g     = l->graph;
     Node   least = graph_number(g, pow(10, 34.0 / s->degree));
-    Node   whole = mul(g, s->c[0], graph_number(g, PIECE));
+    Node   whole = mul(g, s->c[0], graph_number(g, MOST_FALL));
     for (uint32_t k = 1; k <= s->degree; k++) {
         Node fall  = at_least(g, neg(g, s->c[k]), TINY);
         Node guess = root_of(g, over(g, whole, fall), k);
@@ -65,7 +68,8 @@ static double binomial(uint32_t n, uint32_t k)
     return value;
 }
 
-/* (b0 - b_i) n / i from the terms c_k w^k: the fall to the i-th Bernstein coefficient, a piece. */
+/* (b0 - b_i) n / i from the terms c_k w^k: the descent to the i-th Bernstein coefficient, as the
+   decrease over the whole interval. */
 static Node fall_towards(Lowering *l, const Node *terms, uint32_t n, uint32_t i)
 {
     Graph *g   = l->graph;
@@ -78,15 +82,15 @@ static Node fall_towards(Lowering *l, const Node *terms, uint32_t n, uint32_t i)
     return sum;
 }
 
-/* The safe step, for a series that is positive at t = 0. */
+/* The safe step for a series that is positive at t = 0. */
 static Node safe_step(Lowering *l, const Series *s)
 {
-    Graph *g     = l->graph;
-    Node   piece = piece_length(l, s), power = piece, steepest = NODE_NONE;
+    Graph *g      = l->graph;
+    Node   length = interval_length(l, s), power = length, steepest = NODE_NONE;
     Node   terms[MOST_DEGREE + 1];
     for (uint32_t k = 1; k <= s->degree; k++) {
         terms[k] = mul(g, s->c[k], power);
-        power    = mul(g, power, piece);
+        power    = mul(g, power, length);
     }
     for (uint32_t i = 1; i <= s->degree; i++) {
         Node fall = fall_towards(l, terms, s->degree, i);
@@ -94,11 +98,11 @@ static Node safe_step(Lowering *l, const Series *s)
     }
     Node fraction = over(g, s->c[0], at_least(g, steepest, TINY));
     fraction      = graph_op2(g, OP_min, fraction, graph_number(g, 1));
-    return mul(g, piece, fraction);
+    return mul(g, length, fraction);
 }
 
-/* The r with r sum n |Pn| r^(n-1) = |P0|: the fixed point of the paper, found as a root, since its
-   iterates run away from it where high orders count (math.md, section 3). */
+/* The r with r sum n |P_n| r^(n-1) = |P_0|: the fixed point of Ban and Valasek.  It is found as a
+   root, since their iteration diverges where terms of high order are large (math.md, section 3). */
 static Node taylor_radius(Lowering *l, Series *s)
 {
     Graph *g = l->graph;
@@ -119,10 +123,11 @@ static Node along_series(Lowering *l, Series *s)
     return mul(g, step, sign);
 }
 
-static const double FAR = 1e30; /* farther than anything is; and 1e18, than any box is large */
+/* FAR: a length larger than any scene.  FAR_SIDE: a coordinate larger than those of any box. */
+static const double FAR = 1e30, FAR_SIDE = 1e18;
 
-/* Where a ray is in a box that may be endless on some sides: from here or from `enter` on; not at
-   all where `leave` is less. */
+/* The part of a ray in a box, some of whose sides may be infinite: from `enter`, which is 0 inside,
+   to `leave`.  The ray misses the box where `leave` is less than `enter`. */
 static void clip_ray(Lowering *l, Box box, Ray ray, Node *enter, Node *leave)
 {
     Graph *g = l->graph;
@@ -136,8 +141,8 @@ static void clip_ray(Lowering *l, Box box, Ray ray, Node *enter, Node *leave)
         Node tiny = graph_number(g, 1e-18);
         slope    = graph_op3(g, OP_select, graph_op2(g, OP_less, graph_op1(g, OP_abs, slope), tiny),
                              tiny, slope);
-        Node low = sub(g, graph_number(g, fmax(side.low, -1e18)), from);
-        Node high = sub(g, graph_number(g, fmin(side.high, 1e18)), from);
+        Node low = sub(g, graph_number(g, fmax(side.low, -FAR_SIDE)), from);
+        Node high = sub(g, graph_number(g, fmin(side.high, FAR_SIDE)), from);
         low       = over(g, low, slope);
         high      = over(g, high, slope);
         *enter    = graph_op2(g, OP_max, *enter, graph_op2(g, OP_min, low, high));
@@ -149,22 +154,22 @@ static Node clamp_to(Lowering *l, Node point, Box box)
 {
     double low[3], high[3];
     for (int i = 0; i < 3; i++) {
-        low[i]  = fmax(box.axis[i].low, -1e18);
-        high[i] = fmin(box.axis[i].high, 1e18);
+        low[i]  = fmax(box.axis[i].low, -FAR_SIDE);
+        high[i] = fmin(box.axis[i].high, FAR_SIDE);
     }
     Node least = graph_constant(l->graph, TYPE_VEC3, low);
     return graph_op3(l->graph, OP_clamp, point, least, graph_constant(l->graph, TYPE_VEC3, high));
 }
 
-/* The place of a ray where it enters a box; in the box, whatever is rounded. */
+/* The point where a ray enters a box, clamped to the box, since the point is rounded. */
 static Node entrance(Lowering *l, Box box, Ray ray, Node enter)
 {
     Node offset = graph_op2(l->graph, OP_scale, ray.direction, enter);
     return clamp_to(l, add(l->graph, ray.point, offset), box);
 }
 
-/* Where all zeros are in a box, a ray from outside goes there first, and the series is that about
-   where it comes in: from far away no digit of it would be right. */
+/* For a polynomial whose zeros all lie in a box.  A ray from outside first goes to the box.  The
+   series is about the point where it enters: about a far point all its digits would be lost. */
 static Node along_boxed(Lowering *l, const Shape *shape, Ray ray)
 {
     Graph      *g = l->graph;
@@ -180,7 +185,8 @@ static Node along_boxed(Lowering *l, const Shape *shape, Ray ray)
     return graph_op3(g, OP_select, misses, graph_number(g, FAR * shape->zeros.sign), step);
 }
 
-/* What is cut to a region is not looked at outside of it, where the region says how far to go. */
+/* For a polynomial that is intersected with a region.  Outside of the region the result is 0, since
+   the distance to the region is larger there. */
 static Node along_cut(Lowering *l, const Shape *shape, Ray ray)
 {
     Graph      *g = l->graph;
@@ -230,7 +236,7 @@ static Node joined(Lowering *l, Op op, Node a, Node b)
 
 static Node opposite(Lowering *l, Node a) { return a == NODE_NONE ? a : neg(l->graph, a); }
 
-/* ---- numbers that are negative inside ---- */
+/* ---- values whose sign tells inside from outside ---- */
 
 static Node value_at(Lowering *l, const Shape *shape, Node point);
 
@@ -261,19 +267,20 @@ static Node value_part(Lowering *l, const Shape *shape, Node point)
     return value_at(l, shape->children[0], point);
 }
 
-/* A place of the ray behind its point. */
-static Node context_behind_point(Lowering *l, Ray ray)
+/* The previous point of the ray. */
+static Node previous_point(Lowering *l, Ray ray)
 {
     Node offset = graph_op2(l->graph, OP_scale, ray.direction, ray.back);
     return sub(l->graph, ray.point, offset);
 }
 
-/* How far behind a point sheets are looked for in what cuts them, `ahead` along the ray: up to the
-   place before if that is in it as well, else no farther than it surely reaches. */
+/* How far backwards sheets are looked for in an intersection.  `ahead` is the result of `along` for
+   its parts without sheets.  If the previous point is in these parts, too, the sheets are looked
+   for back to it.  Else no farther than the parts certainly reach. */
 static Node back_within(Lowering *l, const Shape *shape, Ray ray, Node ahead)
 {
     Graph *g      = l->graph;
-    Node   behind = context_behind_point(l, ray), before = NODE_NONE;
+    Node   behind = previous_point(l, ray), before = NODE_NONE;
     for (uint32_t i = 0; i < shape->child_count; i++)
         if (!shape->children[i]->sheets)
             before = joined(l, OP_max, before, value_at(l, shape->children[i], behind));
@@ -282,7 +289,7 @@ static Node back_within(Lowering *l, const Shape *shape, Ray ray, Node ahead)
     return graph_op3(g, OP_select, within, ray.back, graph_op2(g, OP_min, ray.back, depth));
 }
 
-/* What is cut comes last: its sheets are looked for in the rest. */
+/* Parts with sheets come last, since their sheets are looked for inside of the others only. */
 static Node along_intersection(Lowering *l, const Shape *shape, Ray ray)
 {
     Node all = NODE_NONE;
@@ -301,7 +308,7 @@ static Node along_intersection(Lowering *l, const Shape *shape, Ray ray)
     return all;
 }
 
-/* The least of the parts from `first` on. */
+/* The least result of the parts from index `first` on. */
 static Node along_least(Lowering *l, const Shape *shape, uint32_t first, Ray ray)
 {
     Node least = NODE_NONE;
@@ -324,7 +331,7 @@ static Node along_difference(Lowering *l, const Shape *shape, Ray ray)
     return first == NODE_NONE ? first : joined(l, OP_max, first, opposite(l, rest));
 }
 
-/* Through x -> rows x scale + shift. */
+/* The inverse of x -> rows x scale + shift maps the ray. */
 static Node along_map(Lowering *l, const Shape *shape, Ray ray)
 {
     Graph *g      = l->graph;
@@ -344,7 +351,7 @@ static Node along_stretch(Lowering *l, const Shape *shape, Ray ray)
     return along(l, shape->children[0], inner);
 }
 
-/* Up to where the sign changes next; negative if it has since the place before. */
+/* The t up to which the sign does not change; negative if it changed since the previous point. */
 static Node along_sheet(Lowering *l, const Shape *shape, Ray ray)
 {
     Graph *g    = l->graph;
@@ -352,7 +359,7 @@ static Node along_sheet(Lowering *l, const Shape *shape, Ray ray)
     if (step == NODE_NONE)
         return step;
     Node here   = value_at(l, shape->children[0], ray.point);
-    Node before = value_at(l, shape->children[0], context_behind_point(l, ray));
+    Node before = value_at(l, shape->children[0], previous_point(l, ray));
     Node turned = mul(g, graph_op1(g, OP_sign, here), graph_op1(g, OP_sign, before));
     Node size = graph_op1(g, OP_abs, here), all = graph_op1(g, OP_abs, before);
     all         = at_least(g, add(g, size, all), TINY);
@@ -366,29 +373,29 @@ static Node along_part(Lowering *l, const Shape *shape, Ray ray)
     return along(l, shape->children[0], ray);
 }
 
-/* ---- whether a polynomial can be seen from here through what `along` can see through ---- */
+/* ---- whether there is a polynomial in a shape, below kinds that `along` maps rays through ---- */
 
-static bool sees_polynomial(const Shape *shape);
+static bool reaches_polynomial(const Shape *shape);
 
-static bool sees_nothing(const Shape *shape)
+static bool reaches_none(const Shape *shape)
 {
     (void)shape;
     return false;
 }
 
-static bool sees_formula(const Shape *shape)
+static bool reaches_formula(const Shape *shape)
 {
     return shape->formula != NODE_NONE && shape->degree > 0;
 }
 
-static bool sees_sheet(const Shape *shape) { return shape->sheet; }
+static bool reaches_sheet(const Shape *shape) { return shape->sheet; }
 
-static bool sees_part(const Shape *shape) { return sees_polynomial(shape->children[0]); }
+static bool reaches_in_part(const Shape *shape) { return reaches_polynomial(shape->children[0]); }
 
-static bool sees_sharp_parts(const Shape *shape)
+static bool reaches_in_sharp_parts(const Shape *shape)
 {
     for (uint32_t i = 0; shape->blend.width == NODE_NONE && i < shape->child_count; i++)
-        if (sees_polynomial(shape->children[i]))
+        if (reaches_polynomial(shape->children[i]))
             return true;
     return false;
 }
@@ -396,20 +403,21 @@ static bool sees_sharp_parts(const Shape *shape)
 /* ---- kinds ---- */
 
 typedef struct StepRule {
-    bool (*sees)(const Shape *shape);
+    bool (*reaches)(const Shape *shape);
     Node (*value)(Lowering *l, const Shape *shape, Node point);
     Node (*along)(Lowering *l, const Shape *shape, Ray ray);
 } StepRule;
 
-static const StepRule step_none         = {sees_nothing, value_distance, along_distance};
-static const StepRule step_polynomial   = {sees_formula, value_formula, along_polynomial};
-static const StepRule step_map          = {sees_part, value_map, along_map};
-static const StepRule step_stretch      = {sees_part, value_stretch, along_stretch};
-static const StepRule step_sheet        = {sees_sheet, value_distance, along_sheet};
-static const StepRule step_union        = {sees_sharp_parts, value_distance, along_union};
-static const StepRule step_intersection = {sees_sharp_parts, value_distance, along_intersection};
-static const StepRule step_difference   = {sees_sharp_parts, value_distance, along_difference};
-static const StepRule step_part         = {sees_part, value_part, along_part};
+static const StepRule step_none         = {reaches_none, value_distance, along_distance};
+static const StepRule step_polynomial   = {reaches_formula, value_formula, along_polynomial};
+static const StepRule step_map          = {reaches_in_part, value_map, along_map};
+static const StepRule step_stretch      = {reaches_in_part, value_stretch, along_stretch};
+static const StepRule step_sheet        = {reaches_sheet, value_distance, along_sheet};
+static const StepRule step_union        = {reaches_in_sharp_parts, value_distance, along_union};
+static const StepRule step_intersection = {reaches_in_sharp_parts, value_distance,
+                                           along_intersection};
+static const StepRule step_difference = {reaches_in_sharp_parts, value_distance, along_difference};
+static const StepRule step_part       = {reaches_in_part, value_part, along_part};
 
 static const StepRule *rule_of(const Shape *shape)
 {
@@ -425,15 +433,15 @@ static Node value_at(Lowering *l, const Shape *shape, Node point)
     return rule_of(shape)->value(l, shape, point);
 }
 
-static bool sees_polynomial(const Shape *shape) { return rule_of(shape)->sees(shape); }
+static bool reaches_polynomial(const Shape *shape) { return rule_of(shape)->reaches(shape); }
 
-/* The t up to which nothing changes from outside to inside, negative from within; NODE_NONE: the
-   empty set. */
+/* The t up to which a ray from outside stays outside; negative inside.  NODE_NONE: the empty
+   set. */
 static Node along(Lowering *l, const Shape *shape, Ray ray)
 {
     l->graph->here = shape->span;
     l->overflow    = l->overflow || l->graph->count > l->most;
-    if (l->overflow || !sees_polynomial(shape) || !rays_pass(shape))
+    if (l->overflow || !reaches_polynomial(shape) || !rays_pass(shape))
         return l->overflow ? NODE_NONE : along_distance(l, shape, ray);
     return rule_of(shape)->along(l, shape, ray);
 }
@@ -442,7 +450,7 @@ Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod metho
 {
     if (method >= ALONG_POLYNOMIALS)
         return lower_image(graph, shape, plain, method, scratch);
-    if (!sees_polynomial(shape))
+    if (!reaches_polynomial(shape))
         return plain;
     Lowering l = {.graph   = graph,
                   .scratch = scratch,

@@ -1,6 +1,6 @@
 /*
- * surface.c: what a hit knows of the surface: chosen from one of two shapes, mixed where they
- * blend, and painted with a material.
+ * surface.c: what is known of the surface at a hit where two shapes are joined: that of one shape,
+ * or a mixture where they blend.
  */
 #include "compiler/lower/surface.h"
 
@@ -23,7 +23,7 @@ Surface choose_surface(Graph *g, Node condition, Surface a, Surface b)
     return chosen;
 }
 
-/* Weight 1 is a. */
+/* The weighted mean of a and b; weight 1 gives a. */
 static Node mix_nodes(Graph *g, Node a, Node b, Node weight)
 {
     if (a == NODE_NONE || b == NODE_NONE || a == b)
@@ -31,7 +31,7 @@ static Node mix_nodes(Graph *g, Node a, Node b, Node weight)
     return graph_op3(g, OP_mix, b, a, weight);
 }
 
-/* Materials blend with the shapes; numbers of levels and instances cannot, nor can coordinates. */
+/* Materials are mixed where shapes blend.  Levels, instances and coordinates cannot be mixed. */
 Surface mix_surface(Graph *g, Node nearer, Node weight, Surface a, Surface b)
 {
     Surface mixed;

@@ -1,5 +1,5 @@
 /*
- * spirv.c: GLSL to SPIR-V, and every module through the SPIR-V validator.
+ * spirv.c: compiles GLSL to SPIR-V and validates every module.
  */
 #include <glslang/build_info.h>
 #include <pthread.h>
@@ -14,16 +14,16 @@
 #include "compiler/target/glslang_border.h"
 #include "compiler/target/spirv.h"
 
-/* glslang belongs to the process.  Who compiles holds the lock to read; it is started and stopped
-   by one thread while nobody compiles. */
+/* The process has one glslang.  A thread that compiles holds the read lock.  A thread that starts
+   or stops glslang holds the write lock, so that none compiles meanwhile. */
 static struct {
     pthread_rwlock_t lock;
-    size_t           users;
+    size_t           users; /* calls of spirv_start without spirv_stop */
     bool             runs;
-    atomic_bool      spoiled; /* memory ran out in it: what it knows may be half of it */
+    atomic_bool      spoiled; /* memory ran out in glslang: its tables may be incomplete */
 } glslang = {.lock = PTHREAD_RWLOCK_INITIALIZER};
 
-/* With the lock held to write. */
+/* The caller holds the write lock. */
 static void stop(void)
 {
     if (glslang.runs)
@@ -47,7 +47,7 @@ void spirv_stop(void)
     pthread_rwlock_unlock(&glslang.lock);
 }
 
-/* Holds the lock to read when it is BORDER_OK. */
+/* Locks for reading, with glslang started; the lock is held only if the result is BORDER_OK. */
 static BorderResult begin_use(void)
 {
     BorderResult result = BORDER_OK;
@@ -77,7 +77,7 @@ static void end_use(BorderResult result)
 #define WORD(number)  #number
 #define WORDS(number) WORD(number)
 
-/* It is linked statically, so its version is known when compiling. */
+/* glslang is linked statically, so its version is known when krs is compiled. */
 const char *spirv_glslang_version(void)
 {
     return WORDS(GLSLANG_VERSION_MAJOR) "." WORDS(GLSLANG_VERSION_MINOR) "." WORDS(
@@ -86,25 +86,25 @@ const char *spirv_glslang_version(void)
 
 const char *spirv_tools_version(void) { return spvSoftwareVersionString(); }
 
-/* The log, headed by the shader's name; takes over `words_of_tool`. */
-static char *name_log(const char *entry, const char *tool, char *words_of_tool)
+/* A log of the names of the shader and of the tool, and the tool's message, which is freed. */
+static char *name_log(const char *entry, const char *tool, char *message)
 {
-    size_t length = strlen(entry) + strlen(tool) + strlen(words_of_tool) + 32;
+    size_t length = strlen(entry) + strlen(tool) + strlen(message) + 32;
     char  *log    = malloc(length);
     if (log)
-        snprintf(log, length, "%s: refused by %s: %s", entry, tool, words_of_tool);
-    free(words_of_tool);
+        snprintf(log, length, "%s: refused by %s: %s", entry, tool, message);
+    free(message);
     return log;
 }
 
-/* What the border says, in the words of the library; takes over `words_of_tool`. */
-static KrsStatus judge(BorderResult result, const char *entry, const char *tool,
-                       char *words_of_tool, char **log)
+/* Converts a BorderResult to a status.  `message` is freed or becomes part of the log. */
+static KrsStatus status_of(BorderResult result, const char *entry, const char *tool, char *message,
+                           char **log)
 {
-    bool refused = result == BORDER_REFUSED && words_of_tool;
-    *log         = refused ? name_log(entry, tool, words_of_tool) : NULL;
+    bool refused = result == BORDER_REFUSED && message;
+    *log         = refused ? name_log(entry, tool, message) : NULL;
     if (!refused)
-        free(words_of_tool);
+        free(message);
     return result == BORDER_OK        ? KRS_OK
            : result == BORDER_REFUSED ? KRS_INTERNAL
                                       : KRS_OUT_OF_MEMORY;
@@ -120,11 +120,11 @@ KrsStatus spirv_compile(const char *glsl, const char *entry, uint32_t **words, s
         result = border_compile(glsl, words, word_count, &refusal);
         end_use(result);
     }
-    KrsStatus status = judge(result, entry, "glslang", refusal, log);
+    KrsStatus status = status_of(result, entry, "glslang", refusal, log);
     if (status != KRS_OK)
         return status;
     result = border_validate(*words, *word_count, &refusal);
-    status = judge(result, entry, "the SPIR-V validator", refusal, log);
+    status = status_of(result, entry, "the SPIR-V validator", refusal, log);
     if (status != KRS_OK) {
         free(*words);
         *words = NULL;

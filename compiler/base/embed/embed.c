@@ -1,6 +1,6 @@
 /*
- * embed.c: writes files as a C table: embed NAME PREFIX FILE... prints `const EmbeddedFile NAME[]`,
- * file names without the prefix.  A build tool, not part of the program.
+ * embed.c: a build tool that writes files as a C array, so that the program contains them.
+ * `embed NAME PREFIX FILE...` prints `const EmbeddedFile NAME[]`.  PREFIX is cut from file names.
  */
 #include <stdio.h>
 #include <string.h>
