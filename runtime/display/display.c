@@ -22,12 +22,12 @@ bool tone_map_find(const char *name, ToneMap *tone_map)
     return false;
 }
 
-/* fmin and fmax are calls, as they know what is no number; here there is nothing of that kind. */
+/* fmin and fmax are calls, since they must treat NaN; here there is none. */
 static double least_of(double a, double b) { return a < b ? a : b; }
 static double most_of(double a, double b) { return a > b ? a : b; }
 
-/* Khronos PBR Neutral (2024): takes back the 4 % that a dielectric reflects head-on, leaves
-   colours alone up to 0.76 and compresses and whitens what is brighter. */
+/* Khronos PBR Neutral (2024).  It subtracts the 4 % that a dielectric reflects head-on, leaves
+   colours up to 0.76 as they are, and compresses and whitens brighter ones. */
 static void apply_neutral(const double color[3], double out[3])
 {
     const double start = 0.8 - 0.04, desaturation = 0.15;
@@ -77,7 +77,7 @@ static double clamp_unit(double value) { return value > 0 ? least_of(value, 1) :
 
 void tone_map_apply(ToneMap tone_map, const double color[3], double out[3])
 {
-    /* Far beyond any curve's shoulder: keeps infinity from becoming a quotient of infinities. */
+    /* Far beyond any curve's shoulder.  It keeps infinity from becoming infinity / infinity. */
     const double brightest = 1e9;
     double       light[3];
     for (int i = 0; i < 3; i++)
@@ -98,8 +98,8 @@ double srgb_encode(double linear)
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
 }
 
-/* srgb_encode for a picture's worth of numbers: of the square root, of which it is nearly a
-   straight line, in so many pieces: off by less than 3e-7. */
+/* A table of srgb_encode over the square root of its argument, in which the curve is nearly
+   straight.  It is linear in each of PIECES pieces; the error is below 3e-7. */
 enum { PIECES = 4096 };
 typedef struct Encoding {
     double at[PIECES + 2];
@@ -111,7 +111,7 @@ static void encoding_fill(Encoding *encoding)
         encoding->at[i] = srgb_encode((double)i / PIECES * i / PIECES);
 }
 
-/* Of what is from 0 to 1. */
+/* The encoded value of a number in [0, 1], by the table. */
 static double encode(const Encoding *encoding, double linear)
 {
     double place = sqrt(linear) * PIECES;
@@ -120,7 +120,8 @@ static double encode(const Encoding *encoding, double linear)
     return below + (place - piece) * (encoding->at[piece + 1] - below);
 }
 
-/* The byte that the definition gives: where the table could decide about it, that is asked. */
+/* The byte that the definition of sRGB gives.  Where an error of the table could change it,
+   srgb_encode itself decides. */
 static uint8_t to_byte(const Encoding *encoding, double linear, double step)
 {
     const double doubt = 1e-3;
@@ -130,11 +131,11 @@ static uint8_t to_byte(const Encoding *encoding, double linear, double step)
     return (uint8_t)value;
 }
 
-/* What is behind the point of a number from 0 on; floor is a call. */
+/* The fractional part of a number that is not negative; floor would be a call. */
 static double fraction(double value) { return value - (double)(int64_t)value; }
 
-/* Interleaved gradient noise (Jimenez 2014) in [0, 1): over any few neighbouring pixels its
-   values are spread evenly, so that dithered areas keep their mean without clumps. */
+/* Interleaved gradient noise (Jimenez 2014) in [0, 1).  Among a few neighbouring pixels its values
+   are evenly spread, so dithered areas keep their mean and have no clumps. */
 static double noise(double x, double y)
 {
     return fraction(52.9829189 * fraction(0.06711056 * x + 0.00583715 * y));
@@ -154,7 +155,7 @@ void display_to_srgb8(const KrsPicture *picture, const DisplayOptions *options, 
             double       shown[3];
             tone_map_apply(options->tone_map, light, shown);
             for (int i = 0; i < 3; i++) {
-                /* The channels' noise differs, by a shift, so that greys are dithered finer. */
+                /* The noise of each channel is shifted, so that greys are dithered more finely. */
                 double step        = noise(window->x + x + 47.0 * i, window->y + y + 17.0 * i);
                 rgb[3 * index + i] = to_byte(&encoding, shown[i], step);
             }

@@ -17,22 +17,22 @@ extern const char *const tone_map_names[TONE_MAP_COUNT]; /* "neutral", "aces", "
 
 typedef struct DisplayOptions {
     ToneMap tone_map;
-    double  exposure; /* stops */
+    double  exposure; /* in stops */
 } DisplayOptions;
 
 /* False when no curve has that name. */
 bool tone_map_find(const char *name, ToneMap *tone_map);
 
-/* Applies a curve to a linear Rec.709 colour; each component of the result is in [0, 1], and 0
-   where it was not a number. */
+/* Applies a curve to a linear Rec.709 colour.  Each component of the result is in [0, 1], and 0
+   where the colour's is NaN. */
 void tone_map_apply(ToneMap tone_map, const double color[3], double out[3]);
 
 /* The sRGB transfer function, [0, 1] to [0, 1]. */
 double srgb_encode(double linear);
 
-/* The picture's window as 8-bit sRGB, three bytes a pixel.  Dithering replaces the steps between
-   levels; it hangs on the pixel's place in the whole picture alone.  The colour plane must be
-   there. */
+/* Converts the picture's window to 8-bit sRGB, three bytes a pixel.  Dithering hides the steps
+   between levels; it depends only on the pixel's position in the whole picture.  The picture must
+   have the colour plane. */
 void display_to_srgb8(const KrsPicture *picture, const DisplayOptions *options, uint8_t *rgb);
 
 #endif

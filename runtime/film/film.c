@@ -1,10 +1,10 @@
 /*
- * film.c: pictures that samples are added to.
+ * film.c: films: pictures that samples are added to.
  *
- * A picture is made in bands of rows that fit into modest buffers (band.c).  A film keeps the sums
- * of its samples in memory of the host, but for those of one band, which stay in the buffers until
- * they are asked for, or the buffers are needed for another band.  So a picture of one band goes
- * from the device to the host only when it is read.
+ * A picture is rendered in bands of rows, whose buffers are of modest size (band.c).  A film keeps
+ * the sums of its samples in host memory, except those of one band.  That band stays in the buffers
+ * until the film is read, or until the buffers are needed for another band.  So a picture of one
+ * band goes from the device to the host only when it is read.
  */
 #include <math.h>
 #include <string.h>
@@ -37,7 +37,7 @@ KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options,
     if (options)
         film->options = *options;
     KrsRenderOptions *o = &film->options;
-    if (settings_complete(rendering, o, &film->asked))
+    if (settings_complete(rendering, o, &film->asked_schedule))
         film->sums = picture_new(gpu, o->width, o->height, o->crop, o->planes | KRS_PLANE_COLOR);
     if (!film->sums) {
         gpu_release(gpu, film);
@@ -47,8 +47,8 @@ KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options,
     return KRS_OK;
 }
 
-/* Forgets what the buffers hold of a film. */
-static void let_go(KrsFilm *film)
+/* Drops the band of a film that the buffers hold, if any. */
+static void release_band(KrsFilm *film)
 {
     if (film->rendering->held.film == film)
         film->rendering->held = (HeldBand){0};
@@ -58,7 +58,7 @@ void krs_film_free(KrsFilm *film)
 {
     if (!film)
         return;
-    let_go(film);
+    release_band(film);
     krs_picture_free(film->sums);
     gpu_release(&film->rendering->renderer->gpu, film);
 }
@@ -66,7 +66,7 @@ void krs_film_free(KrsFilm *film)
 void krs_film_clear(KrsFilm *film)
 {
     const uint64_t bytes = film->sums->stats.peak_memory_bytes;
-    let_go(film);
+    release_band(film);
     film->samples     = 0;
     film->sums->stats = (KrsRenderStats){.peak_memory_bytes = bytes};
 }
@@ -75,7 +75,7 @@ uint32_t krs_film_samples(const KrsFilm *film) { return film->samples; }
 
 /* ---- samples ---- */
 
-/* A window and the halo around it, as far as the picture reaches. */
+/* A window with a halo around it, cut off at the edges of the picture. */
 static KrsWindow with_halo(const Job *job, uint32_t halo, KrsWindow window)
 {
     const uint32_t right = window.x + window.width + halo, bottom = window.y + window.height + halo;
@@ -86,7 +86,8 @@ static KrsWindow with_halo(const Job *job, uint32_t halo, KrsWindow window)
     return window;
 }
 
-/* What a tile has in common must not depend on the crop, so whole tiles are traced. */
+/* The crop extended to whole tiles.  The rays of a tile share a beam, which must not depend on the
+   crop. */
 static KrsWindow whole_tiles(const KrsRenderOptions *options)
 {
     const KrsWindow *crop   = &options->crop;
@@ -98,7 +99,7 @@ static KrsWindow whole_tiles(const KrsRenderOptions *options)
     return cover;
 }
 
-/* Hands the rays of a band to the device, behind the lights. */
+/* Copies the listed rays of a band to the device, behind the lights. */
 static void upload_rays(const Job *job, const KrsWindow *traced)
 {
     const KrsRays  *rays = job->rays;
@@ -117,7 +118,7 @@ static void upload_rays(const Job *job, const KrsWindow *traced)
         }
 }
 
-/* Adds what the kernels have counted. */
+/* Adds the counters of the kernels to the statistics, and resets them. */
 static void take_counters(Job *job)
 {
     ControlBlock   *control = job->rendering->control.bytes;
@@ -129,7 +130,7 @@ static void take_counters(Job *job)
     control->unresolved = control->evaluations = control->most_evaluations = 0;
 }
 
-/* Samples of the band that the buffers hold, of which `share` is that of the whole. */
+/* Adds samples to the band that the buffers hold; `share` is its fraction of all progress. */
 static bool add_to_band(Job *job, const Plan *plan, const KrsFilm *film, uint32_t samples,
                         double share)
 {
@@ -175,7 +176,8 @@ static bool add_to_bands(Job *job, const Plan *plan, KrsFilm *film, uint32_t sam
     return true;
 }
 
-/* Lets the driver finish with the kernels, so that the clock of the picture does not see it. */
+/* Waits until the driver has compiled the kernels, so that this time does not count for the
+   picture. */
 static bool wait_for_kernels(Job *job)
 {
     double start = clock_ms();
@@ -184,7 +186,8 @@ static bool wait_for_kernels(Job *job)
     return ready;
 }
 
-/* Buffers for a band, which other films' bands have to leave; they may be made anew. */
+/* Makes buffers for a band of this film, if another film has them or none are made.  The samples of
+   the other film are copied to host memory before. */
 static bool make_room(Job *job, const Plan *plan, KrsFilm *film)
 {
     KrsRendering *rendering = job->rendering;
@@ -199,7 +202,7 @@ static bool make_room(Job *job, const Plan *plan, KrsFilm *film)
                                                   job->view.light_count, job->rebase_origin, rays);
 }
 
-/* What the film remembers of its first sample. */
+/* Records what the film keeps of its first sample: the rebase origin and the matrices. */
 static void begin_film(const Job *job, KrsFilm *film)
 {
     const KrsRenderOptions *o = &film->options;
@@ -207,7 +210,7 @@ static void begin_film(const Job *job, KrsFilm *film)
     view_matrices(job->rays ? NULL : &job->view.camera, o->width, o->height, film->sums);
 }
 
-/* By a plan that is made. */
+/* Adds samples by a finished plan. */
 static bool run(Job *job, const Plan *plan, KrsFilm *film, uint32_t samples)
 {
     if (!make_room(job, plan, film) || !wait_for_kernels(job))
@@ -225,14 +228,14 @@ static bool run(Job *job, const Plan *plan, KrsFilm *film, uint32_t samples)
 static KrsStatus add(KrsFilm *film, KrsFrame *frame, const KrsCamera *camera, const KrsRays *rays,
                      uint32_t samples)
 {
-    Job job = {.rendering = film->rendering,
-               .gpu       = &film->rendering->renderer->gpu,
-               .options   = film->options,
-               .asked     = film->asked,
-               .schedule  = film->options.schedule,
-               .rays      = rays,
-               .cover     = whole_tiles(&film->options),
-               .stats     = &film->sums->stats};
+    Job job = {.rendering      = film->rendering,
+               .gpu            = &film->rendering->renderer->gpu,
+               .options        = film->options,
+               .asked_schedule = film->asked_schedule,
+               .schedule       = film->options.schedule,
+               .rays           = rays,
+               .cover          = whole_tiles(&film->options),
+               .stats          = &film->sums->stats};
     renderer_clear(film->rendering->renderer);
     if (samples == 0 || samples > KRS_MOST_SAMPLES - film->samples) {
         job_refuse(&job, "a film has 1 to 65536 samples per pixel");
@@ -263,7 +266,7 @@ KrsStatus krs_film_add_rays(KrsFilm *film, KrsFrame *frame, const KrsRays *rays)
 
 /* ---- reading ---- */
 
-/* Brings everything to the host; the time it takes is the picture's. */
+/* Copies all samples to the host; the time that it takes counts for the picture. */
 static bool store_all(KrsFilm *film)
 {
     KrsRendering  *rendering   = film->rendering;
@@ -275,7 +278,7 @@ static bool store_all(KrsFilm *film)
     return good;
 }
 
-/* From sums to a picture. */
+/* Turns the sums of a film into a picture with statistics. */
 static void finish(const KrsFilm *film, KrsPicture *picture)
 {
     KrsRenderStats     *stats     = &picture->stats;
@@ -318,7 +321,7 @@ KrsStatus krs_film_read(KrsFilm *film, uint32_t planes, KrsPicture **picture)
     return KRS_OK;
 }
 
-/* A film of one reading: its sums become the picture. */
+/* Renders by a film that is read once, so its sums become the picture without a copy. */
 KrsStatus krs_render(KrsRendering *rendering, KrsFrame *frame, const KrsRenderOptions *options,
                      KrsPicture **picture)
 {

@@ -1,5 +1,5 @@
 /*
- * held.c: between the buffers of a band and the film whose band they hold.
+ * held.c: copies samples between the buffers of a band and the film that the band belongs to.
  */
 #include "runtime/film/held.h"
 
@@ -8,7 +8,8 @@
 
 #include "runtime/film/picture.h"
 
-/* Records copies of some rows of results, from one buffer to the other. */
+/* Records copies of rows of results from one buffer to another: those whose bit ROW_... is set in
+   `rows`. */
 static void record_copies(Gpu *gpu, const Buffer *from, const Buffer *to, uint32_t rows,
                           VkDeviceSize row_bytes)
 {
@@ -25,12 +26,12 @@ static VkDeviceSize row_bytes_of(const HeldBand *held)
     return (VkDeviceSize)held->traced.height * held->traced.width * RESULT_BYTES;
 }
 
-/* The results as the host sees them, and NULL when it cannot. */
+/* Makes some rows of results readable by the host; NULL with the failure noted. */
 static float *fetch(KrsRendering *rendering, uint32_t rows)
 {
     Gpu   *gpu  = &rendering->renderer->gpu;
     Band  *band = &rendering->band;
-    double ms   = 0; /* copying is no phase */
+    double ms   = 0; /* the time of copies belongs to no phase */
     if (band->results.bytes)
         return band->results.bytes;
     if (!gpu_begin(gpu))
@@ -39,8 +40,8 @@ static float *fetch(KrsRendering *rendering, uint32_t rows)
     return gpu_finish(gpu, &ms) ? band->fetched.bytes : NULL;
 }
 
-/* Colours are summed up, what sees nothing is all zero, but positions, which are infinitely far
-   away. */
+/* Clears rows of results.  They are 0, since colours are sums and pixels without a hit have no
+   values.  Positions are infinite where nothing is hit. */
 static bool clear_results(KrsRendering *rendering, uint32_t rows, VkDeviceSize row_bytes)
 {
     const uint32_t infinite = 0x7f800000;
@@ -55,8 +56,8 @@ static bool clear_results(KrsRendering *rendering, uint32_t rows, VkDeviceSize r
     return gpu_finish(gpu, &ms);
 }
 
-/* A row of a band's pixels that the film has: where it begins among those of the band and in the
-   film; false where the crop has none of it. */
+/* Finds where row `y` of the picture begins, among the pixels of the band and of the film.  False
+   where the row is outside of the crop. */
 static bool find_row(const KrsFilm *film, const HeldBand *held, uint32_t y, size_t *in_band,
                      size_t *in_film)
 {
@@ -68,22 +69,23 @@ static bool find_row(const KrsFilm *film, const HeldBand *held, uint32_t y, size
     return true;
 }
 
-/* The first and the last but one row of pixels of a held band. */
+/* The rows of pixels of a held band: [first, end). */
 static void rows_of_held(const KrsFilm *film, const HeldBand *held, uint32_t *first, uint32_t *end)
 {
     *first = film->options.crop.y / TILE * TILE + held->from;
     *end   = *first + held->rows;
 }
 
-/* Back to the origin of the world; where nothing is there is no position. */
-static void place_positions(KrsFilm *film, const float *places, size_t first, size_t count)
+/* Turns camera-relative positions into positions in the world, and those of pixels without a hit
+   into 0.  `position_row` is their row of results, which has their depths, too. */
+static void place_positions(KrsFilm *film, const float *position_row, size_t first, size_t count)
 {
     float *position = film->sums->position;
     for (size_t k = 0; position && k < count; k++)
         for (int i = 0; i < 3; i++) {
-            float *number   = &position[3 * (first + k) + i];
-            bool   is_place = isfinite(places[k * RESULT_NUMBERS + DEPTH_NUMBER]);
-            *number         = is_place ? (float)(*number + film->rebase_origin[i]) : 0;
+            float *number = &position[3 * (first + k) + i];
+            bool   is_hit = isfinite(position_row[k * RESULT_NUMBERS + DEPTH_NUMBER]);
+            *number       = is_hit ? (float)(*number + film->rebase_origin[i]) : 0;
         }
 }
 
@@ -114,7 +116,7 @@ bool held_store(KrsRendering *rendering)
     return true;
 }
 
-/* Gives the colours of a film back to the buffers, whose colours are 0. */
+/* Copies the colours of a film back to the buffers, whose colours are 0. */
 static bool load_colors(const KrsFilm *film)
 {
     KrsRendering *rendering = film->rendering;

@@ -1,5 +1,5 @@
 /*
- * held.h: a film, and the band of it that the buffers of its rendering hold.
+ * held.h: a film, and the band of it that is in the buffers of its rendering.
  */
 #ifndef KRS_HELD_H
 #define KRS_HELD_H
@@ -8,17 +8,17 @@
 
 struct KrsFilm {
     KrsRendering    *rendering;
-    KrsRenderOptions options; /* with nothing left to be defaulted */
-    KrsSchedule      asked;
+    KrsRenderOptions options;          /* complete: none asks for a default */
+    KrsSchedule      asked_schedule;   /* as the caller asked */
     KrsPicture      *sums;             /* colours are sums over the samples */
     uint32_t         samples;          /* of each pixel so far */
-    uint32_t         rows;             /* of a band; 0: none has been made */
-    double           rebase_origin[3]; /* that positions of the first sample are given from */
+    uint32_t         rows;             /* of a band; 0: no band has been made */
+    double           rebase_origin[3]; /* positions of the first sample are relative to it */
 };
 
-/* Takes what the buffers have over into their film, if it is not there. */
+/* Copies the samples in the buffers to their film, unless it has them. */
 bool held_store(KrsRendering *rendering);
-/* Makes the buffers hold a band of the film: as it is so far, where it has samples. */
+/* Makes the buffers hold a band of the film, with the samples that it has so far. */
 bool held_change(KrsFilm *film, const HeldBand *wanted);
 
 #endif

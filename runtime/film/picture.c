@@ -1,18 +1,18 @@
 /*
- * picture.c: making pictures, filling them and freeing them.
+ * picture.c: makes pictures in host memory, fills them and frees them.
  */
 #include "runtime/film/picture.h"
 
 #include <assert.h>
 #include <string.h>
 
-/* The arrays of all planes, of 32-bit numbers each. */
+/* The arrays of all planes; all numbers have 32 bits. */
 static const struct Plane {
     size_t   member; /* offset of its pointer in a KrsPicture */
     uint32_t bit;
     size_t   bytes;  /* per pixel */
-    uint32_t row;    /* ROW_... that has it, */
-    size_t   number; /* from this of its numbers on */
+    uint32_t row;    /* the row of results that it comes from: ROW_... */
+    size_t   number; /* the first of its numbers in that row */
 } planes[] = {
 #define KRS_PLANE(id, bit, aov, about, arrays) arrays
 #define KRS_ARRAY(plane, member, type, numbers, row, first, sample, ...) \
@@ -23,7 +23,8 @@ static const struct Plane {
 };
 enum { PLANE_COUNT = sizeof planes / sizeof planes[0] };
 
-/* No number of a row is in two arrays: then their bits, added up, give no carry. */
+/* Checks that no number of a row is in two arrays: only then the sum of their bits equals the
+   union. */
 #define KRS_PLANE(id, bit, aov, about, arrays) arrays
 #define BITS(row, first, numbers)              ((UINT64_C(1) << (numbers)) - 1) << (4 * (row) + (first))
 static_assert((0
@@ -41,7 +42,7 @@ static_assert((0
 #undef BITS
 #undef KRS_PLANE
 
-/* The members differ in what they point to, so they are copied, not converted. */
+/* The members point to different types, so pointers are copied as bytes, not converted. */
 static void *plane_get(const KrsPicture *picture, int plane)
 {
     void *values;
@@ -89,8 +90,9 @@ uint32_t picture_rows(const KrsPicture *picture)
     return rows;
 }
 
-/* Some are no floats, so they are copied as bytes; at once where a row is a plane.  Of a size that
-   is known a copy is no call. */
+/* Copies one plane from a row of results.  Some planes are no floats, so bytes are copied.  Where
+   the plane is the whole row one copy is enough.  Where the size is a constant the compiler needs
+   no call. */
 static void take_plane(void *plane, const float *from, size_t first, size_t count, size_t bytes)
 {
     enum { NUMBER = 4, VECTOR = 12 };

@@ -14,16 +14,16 @@ KrsPicture *picture_new(Gpu *gpu, uint32_t width, uint32_t height, KrsWindow win
 /* The rows of results (bit ROW_... of each) that the planes of a picture come from. */
 uint32_t picture_rows(const KrsPicture *picture);
 
-/* Takes `count` pixels over into those of its planes that are among `planes`, from the window's pixel
-   number `first` on.  `results` is the first of them in the row of colours; the next row lies
-   `row_pixels` pixels behind. */
+/* Copies `count` pixels of results to those planes of the picture that are among `planes`.  They
+   become the pixels of the window from number `first` on.  `results` points to the first of them in
+   the row of colours; the next row lies `row_pixels` pixels behind. */
 void picture_take(KrsPicture *picture, uint32_t planes, const float *results, size_t row_pixels,
                   size_t first, size_t count);
-/* A copy with those of its planes that are among `planes`; NULL with the failure noted. */
+/* A copy of the picture with those planes that are among `planes`; NULL with the failure noted. */
 KrsPicture *picture_copy(Gpu *gpu, const KrsPicture *picture, uint32_t planes);
-/* Frees those of its planes that are among `planes`. */
+/* Frees those planes of the picture that are among `planes`. */
 void picture_drop(KrsPicture *picture, uint32_t planes);
-/* Makes the mean of colours that are sums of so many samples. */
+/* Divides the colours, which are sums over `samples`, to get their means. */
 void picture_divide(KrsPicture *picture, uint32_t samples);
 
 #endif

@@ -1,15 +1,16 @@
 /*
- * settings.c: what is asked for, with nothing left to be defaulted.
+ * settings.c: completes the options of a picture, and checks them.
  */
 #include "runtime/film/settings.h"
 
 #include "runtime/tracer/methods.h"
 
 #define MOST_STEPS 16384
-/* All loops of an invocation together stay under 32768 iterations: some devices end them
-   silently after 65535. */
+/* The most steps of a lane in a dispatch.  All loops of an invocation together stay under 32768
+   iterations: some devices end them silently after 65535. */
 #define MOST_STEPS_AT_ONCE 8192
-/* Steps of a pass of the queue: more leave lanes idle, fewer cost passes. */
+/* The steps of a pass of the schedule `queue`.  More steps leave lanes idle, fewer need more
+   passes. */
 #define QUEUE_STEPS 16
 
 static bool refuse(KrsRendering *rendering, const char *words)
@@ -18,12 +19,12 @@ static bool refuse(KrsRendering *rendering, const char *words)
     return false;
 }
 
-static uint32_t first_of(uint32_t asked, uint32_t scene, uint32_t otherwise)
+static uint32_t first_nonzero(uint32_t asked, uint32_t scene, uint32_t otherwise)
 {
     return asked ? asked : scene ? scene : otherwise;
 }
 
-/* Of what there is to choose from (choices.def). */
+/* Checks the choices of choices.def, and replaces defaults among them. */
 static bool choose(KrsRendering *rendering, KrsRenderOptions *o, KrsSchedule *asked)
 {
     if ((unsigned)o->trace >= KRS_TRACE_COUNT || (unsigned)o->schedule >= KRS_SCHEDULE_COUNT ||
@@ -47,13 +48,13 @@ static bool choose(KrsRendering *rendering, KrsRenderOptions *o, KrsSchedule *as
 
 static void put_defaults(const KrsImage *image, KrsRenderOptions *o)
 {
-    o->width         = first_of(o->width, image->width, KRS_DEFAULT_WIDTH);
-    o->height        = first_of(o->height, image->height, KRS_DEFAULT_HEIGHT);
-    o->samples       = first_of(o->samples, image->samples, KRS_DEFAULT_SAMPLES);
-    o->planes        = first_of(o->planes, 0, KRS_PLANE_ALL);
-    o->most_steps    = first_of(o->most_steps, 0, MOST_STEPS);
-    o->steps_at_once = first_of(o->steps_at_once, 0,
-                                o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
+    o->width         = first_nonzero(o->width, image->width, KRS_DEFAULT_WIDTH);
+    o->height        = first_nonzero(o->height, image->height, KRS_DEFAULT_HEIGHT);
+    o->samples       = first_nonzero(o->samples, image->samples, KRS_DEFAULT_SAMPLES);
+    o->planes        = first_nonzero(o->planes, 0, KRS_PLANE_ALL);
+    o->most_steps    = first_nonzero(o->most_steps, 0, MOST_STEPS);
+    o->steps_at_once = first_nonzero(o->steps_at_once, 0,
+                                     o->schedule == KRS_SCHEDULE_QUEUE ? QUEUE_STEPS : 512);
     o->error    = o->error != 0 ? o->error : image->error != 0 ? image->error : KRS_DEFAULT_ERROR;
     o->slice_ms = o->slice_ms != 0 ? o->slice_ms : 50;
     if (o->crop.width == 0)

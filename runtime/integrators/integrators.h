@@ -1,8 +1,8 @@
 /*
- * integrators.h: how light is found: a row of choices.def and a file each.
+ * integrators.h: integrators: how light is found.  Each has a row in choices.def and a file here.
  *
- * NAME_plan appends the passes of a frame to a plan, and fills in its halo; false with the failure
- * noted.
+ * NAME_plan appends the passes of a frame to a plan, and sets the plan's halo.  It returns false
+ * with the failure noted.
  */
 #ifndef KRS_INTEGRATORS_H
 #define KRS_INTEGRATORS_H

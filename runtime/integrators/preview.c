@@ -1,14 +1,16 @@
 /*
- * preview.c: the light of the sky, as far as it is open, and of each light, as far as it is visible.
+ * preview.c: an integrator of direct light: that of the sky, less what is occluded, and that of
+ * each light, less what is in shadow.
  *
- * Rays for both start at what the pixels show, and neighbours share what they find (shared.glsl).
+ * Rays for occlusion and shadows start at the hits of primary rays.  Neighbouring pixels share what
+ * these rays find (shared.glsl).
  */
 #include "runtime/integrators/integrators.h"
 #include "runtime/tracer/kernels.h"
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/primary.h"
 
-/* Fractions of the time, about. */
+/* The fractions of the time that passes take, about. */
 #define WEIGHT_MARCH      0.5f
 #define WEIGHT_BACKGROUND 0.02f
 #define WEIGHT_NORMALS    0.1f
@@ -19,13 +21,13 @@ typedef struct Preview {
     Job    *job;
     Plan   *plan;
     Kernel *secondary;       /* NULL: there is neither occlusion nor a light with shadows */
-    bool    by_roots;        /* its rays go from root to root */
-    bool    filters_shadows; /* neighbours share what rays to lights find */
+    bool    by_roots;        /* secondary rays go from root to root */
+    bool    filters_shadows; /* neighbouring pixels share what rays to lights find */
 } Preview;
 
 /* ---- passes ---- */
 
-/* A kernel of pixels over a list; `out`: the list that it writes. */
+/* Adds a pass of a kernel without a scene over a list; `out`: the list that it writes. */
 static void add_pixels(Preview *p, KrsPhase phase, PixelKernel kernel, ListId in, ListId out,
                        PassConstants constants, float weight)
 {
@@ -38,21 +40,22 @@ static void add_pixels(Preview *p, KrsPhase phase, PixelKernel kernel, ListId in
                              .constants = constants});
 }
 
-/* Rays from the hits of a list; `anew`: none has been shared before. */
-static void add_rays(Preview *p, KrsPhase phase, ListId in, bool anew, PassConstants constants,
-                     float weight)
+/* Adds a pass of rays from the hits of a list; `clears_shared`: no word of shared.glsl is known
+   before. */
+static void add_rays(Preview *p, KrsPhase phase, ListId in, bool clears_shared,
+                     PassConstants constants, float weight)
 {
-    plan_add(p->plan, (Pass){.kind        = PASS_RAYS,
-                             .phase       = phase,
-                             .weight      = weight,
-                             .kernel      = p->secondary,
-                             .in          = in,
-                             .out         = NO_LIST,
-                             .shares_anew = anew,
-                             .constants   = constants});
+    plan_add(p->plan, (Pass){.kind          = PASS_RAYS,
+                             .phase         = phase,
+                             .weight        = weight,
+                             .kernel        = p->secondary,
+                             .in            = in,
+                             .out           = NO_LIST,
+                             .clears_shared = clears_shared,
+                             .constants     = constants});
 }
 
-/* The first light from this one on that has a disc in the sky. */
+/* The first light from number `light` on that has a disc in the sky. */
 static uint32_t find_sun(const KrsView *view, uint32_t light)
 {
     while (light < view->light_count &&
@@ -61,7 +64,8 @@ static uint32_t find_sun(const KrsView *view, uint32_t light)
     return light;
 }
 
-/* The sky and the first sun, and the lists of what hits something; then each other sun. */
+/* Adds the passes for pixels without a hit.  The first one adds the sky and the first sun, and
+   lists the hits; each further one adds another sun. */
 static void add_background(Preview *p)
 {
     const KrsView *view = &p->job->view;
@@ -73,9 +77,9 @@ static void add_background(Preview *p)
                    (PassConstants){BACKGROUND_SUN, .light = sun}, 0);
 }
 
-/* A ray over the hemisphere of each pixel, and always the means of neighbours: what a surface gives
-   back of the light that it closes off is no linear function of how open it is (shade.comp), so the
-   mean of noise would be too dark. */
+/* Adds a ray over the hemisphere of each hit, and means over neighbouring pixels.  The means are
+   needed however many rays there are: the light between a surface and its occluders is no linear
+   function of openness (shade.comp).  So the mean of noisy pixels would be too dark. */
 static void add_occlusion(Preview *p)
 {
     static const struct {
@@ -98,8 +102,9 @@ static void add_occlusion(Preview *p)
     }
 }
 
-/* Cones first: where they are empty all of the light is seen.  Rays that go from root to root know
-   of no clearance around them, so there are no cones, and nothing is proven. */
+/* Adds cones to the light: where one is empty, all of the light is visible and no ray is needed.
+   Rays that go from root to root know no clearance around them.  Then there are no cones, and every
+   pixel has its ray. */
 static void add_unproven(Preview *p, PassConstants constants, float weight)
 {
     constants.phase = RAYS_CONES;
@@ -110,7 +115,7 @@ static void add_unproven(Preview *p, PassConstants constants, float weight)
                0.5f * weight);
 }
 
-/* The means of what rays to a light have found. */
+/* Adds means, over neighbouring pixels, of what rays to a light have found. */
 static void add_means(Preview *p, PassConstants constants, float weight)
 {
     const KrsPhase phase = KRS_PHASE_SHADOWS;
@@ -122,7 +127,8 @@ static void add_means(Preview *p, PassConstants constants, float weight)
     add_pixels(p, phase, PIXELS_SHADOW, LIST_WIDE, NO_LIST, constants, weight / 3);
 }
 
-/* A ray of each pixel to a point of the light; the mean of neighbours, where it has a size. */
+/* Adds a ray from each hit to a point of the light, and means over neighbours if the light has a
+   size. */
 static void add_visibility(Preview *p, uint32_t light, uint32_t value, float weight)
 {
     const bool    shares    = p->filters_shadows;
@@ -136,7 +142,8 @@ static void add_visibility(Preview *p, uint32_t light, uint32_t value, float wei
         add_means(p, constants, 0.2f * weight);
 }
 
-/* Some lights at a time; all else with the first, of which there may be none. */
+/* Adds the passes for lights, LIGHTS_AT_ONCE at a time.  The first shading pass also adds all other
+   light, so there is one even without lights. */
 static void add_lights(Preview *p, const Kernel *shade)
 {
     const KrsView *view  = &p->job->view;
@@ -160,7 +167,7 @@ static void add_lights(Preview *p, const Kernel *shade)
 
 /* ---- the plan ---- */
 
-/* Whether there is occlusion, or a light that casts shadows. */
+/* Whether there are secondary rays: for occlusion, or to a light that casts shadows. */
 static bool needs_secondary(const Job *job)
 {
     bool needed = !job->options.no_occlusion;
@@ -169,7 +176,7 @@ static bool needs_secondary(const Job *job)
     return needed;
 }
 
-/* The kernel of rays to lights and for occlusion, if it is needed. */
+/* Finds the kernel of secondary rays, if there are any; false with the failure noted. */
 static bool find_secondary(Preview *p)
 {
     const KrsRenderOptions *options = &p->job->options;

@@ -1,9 +1,9 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
- * background.comp: what becomes of the rays: those that hit nothing see the sky and a light that
- * has a disc in it; the pixels of the others are listed.  More lights with a disc take it once
- * more each.
+ * background.comp: adds the light of the sky to the pixels whose rays hit nothing, and lists the
+ * pixels of all others.  A sun, a light with a disc in the sky, is added with the sky.  The kernel
+ * runs once more for each further sun.
  *
  * An item is a quarter of a tile of 8x8 pixels.
  */
@@ -13,20 +13,20 @@
 #include "results.glsl"
 
 Light sun;
-float sky; // 1: with the sky
+float sky; // 1: the sky is added; 0: the sun alone
 bool  keeps_counts;
 
 void begin_group()
 {
     sun = find_light(control.light);
     if (control.light >= control.lights)
-        sun.softness = 0.0; // there is none
+        sun.softness = 0.0; // there is no sun
     sky = control.phase == BACKGROUND_FIRST ? 1.0 : 0.0;
     keeps_counts = control.phase == BACKGROUND_FIRST && control.first_ray != 0u &&
                    is_wanted(ROW_COUNTS);
 }
 
-// In the order of quarters.  Indices are reserved for all pixels of the quarter at once: an atomic
+// Lists the hits of a quarter.  Indices are reserved for all of its pixels at once, since an atomic
 // operation costs each lane as much as many distances.
 void list_hits(uint quarter, uint hits)
 {
@@ -38,7 +38,7 @@ void list_hits(uint quarter, uint hits)
     }
     if (sparse != 0u)
         sparse_at = LIST_SPARSE * band_pixels() + atomicAdd(counts.sparse, bitCount(sparse));
-    do { // as in pixels.glsl
+    do { // do-while, as in pixels.glsl
         uint bit = hits & ~hits + 1u, slot = slot_of_bit(first, bit);
         if (hits != 0u)
             pixel_lists[at++] = slot;
@@ -48,7 +48,7 @@ void list_hits(uint quarter, uint hits)
     } while (hits != 0u);
 }
 
-// What is not often asked for: how many steps there were, and lists by march group.
+// Stores what is seldom wanted: the number of steps, and lists by march group.
 void store_more(uint quarter, uint exist, uint hits)
 {
     bool by_march_group = control.by_march_group != 0u;
@@ -75,7 +75,7 @@ vec3 find_radiance(uvec2 pixel)
                            sun_radiance(direction, sun.vector, sun.color, sun.softness));
 }
 
-// A bit for each pixel of the band in the quarter that begins at this one.
+// A bit for each pixel of a quarter that is in the band; `corner` is the quarter's first pixel.
 uint find_existing(uvec2 corner)
 {
     uvec2 size = min(max(work.extent, corner) - corner, uvec2(4u));
@@ -105,7 +105,7 @@ void do_item(uint quarter)
         atomicAdd(counts.unresolved, bitCount(unresolved));
     if (control.phase == BACKGROUND_FIRST) {
         pixel_lists[quarter_at(HITS_OF_QUARTERS, quarter)] = hits;
-        pixel_lists[quarter_at(LIGHT_OF_QUARTERS, quarter)] = 0u; // for good where nothing is hit
+        pixel_lists[quarter_at(LIGHT_OF_QUARTERS, quarter)] = 0u; // it stays 0 where nothing is hit
     }
     list_hits(quarter, hits);
     store_more(quarter, exist, hits);

@@ -1,49 +1,53 @@
 /*
  * edge_normals.glsl: the normal of one side, where a hit is next to an edge or where solids touch.
  *
- * Differences that reach across an edge find what is between the normals of its sides, which shines
- * where neither does.  So where they bend all is looked at from nearer, where most hits have one
- * side alone; where an edge is nearer still, from a little outside, or inside.  What is found
- * counts if the wider differences bear it out: the surface is flat and ends at an edge.  Then of
- * each two opposite taps one sees the same plane, since the least or greatest of some planes lies
- * on one side of each of them.  Where solids touch, the distance inside is that to the face on
- * which they do, and bears nothing out; so the plane is looked for beside the edge as well.  All
- * else is curved or finer than a pixel, and keeps the mean that the wider differences are.
+ * Differences that reach across an edge give a mean of the normals of its sides, which may mirror
+ * light where neither side does.  So where the distance bends over the wide taps, nearer taps are
+ * evaluated, which mostly see one side alone.  Where an edge is nearer still, they are evaluated
+ * around a point a little outside, or inside.
  *
- * Who includes this has the octahedron's vec3 sum and level, float t, and vec3 start.
+ * The nearer taps are believed if the wide ones confirm them: the surface is flat and ends at an
+ * edge.  Then one of each two opposite wide taps sees the same plane: the minimum or maximum of
+ * planes lies on one side of each.  Where solids touch, the distance inside is that
+ * to the face between them, and confirms nothing.  So the plane is looked for beside the edge as
+ * well.  All other surfaces are curved or finer than a pixel, and keep the mean normal of the wide
+ * taps.
+ *
+ * The file that includes this has the octahedron's vec3 sum and level, float t, and vec3 start.
  */
-const float NEARER = 0.02;         // as far as the wider taps
-const float NOISE_NEARER = 4e-5;   // of the coordinates: less would be rounding
-const float OUTWARD_REACHES = 3.0; // outside or inside, in reaches of the nearer taps
-const float FLAT_ENOUGH = 0.0175;  // bends of what is flat
+const float NEARER = 0.02;         // reach of the nearer taps, relative to the wide ones
+const float NOISE_NEARER = 4e-5;   // their least reach, relative to coordinates: less is rounding
+const float OUTWARD_REACHES = 3.0; // how far outside or inside, in reaches of the nearer taps
+const float FLAT_ENOUGH = 0.0175;  // largest bend of a flat surface
 #ifdef PLAIN
-const float SHARP = FLAT_ENOUGH;   // and of what is looked at again: all else,
-const float THIN = 4.0;
+const float SHARP = FLAT_ENOUGH;   // nearer taps are for bends above SHARP: all that is not flat,
+const float THIN = 4.0;            // and below THIN
 #else
-const float SHARP = 0.5;           // and of what is looked at again: what cannot be curved alone,
-const float THIN = 1.0;            // nor so thin that taps on both sides are outside
+const float SHARP = 0.5;           // nearer taps are for bends above SHARP: not by curvature alone,
+const float THIN = 1.0;            // and below THIN: else taps on both sides are outside
 #endif
-const float KINK = 0.06;           // a bend so near that an edge runs between the taps
-const float FLATTER = 0.008;       // what is curved bends in proportion to the reach
+const float KINK = 0.06;           // nearer taps that bend more have an edge between them
+const float FLATTER = 0.008;       // largest bend of one side, relative to the wide bend, as
+                                   // curvature bends in proportion to the reach
 const float FACING_ALIKE = 0.3;    // the least cosine between a side and the mean
-const float ON_PLANE = 0.06;       // in parts of the reach
-const float FACING_SAME = 0.999;   // the least cosine between a plane and what is beside the edge
+const float ON_PLANE = 0.06;       // largest deviation from a plane, in parts of the reach
+const float FACING_SAME = 0.999;   // the least cosine between a plane and the taps beside the edge
 
 const uint WIDE = 0u, AT_HIT = 1u, OUTSIDE = 2u, INSIDE = 3u, BESIDE = 4u, ONE_SIDE = 5u, MEAN = 6u;
 #ifdef PLAIN
 const uint FIRST = AT_HIT, LAST = INSIDE;
-#else // most else is finer than a pixel
+#else // most other detail is finer than a pixel
 const uint FIRST = OUTSIDE, LAST = OUTSIDE;
 #endif
-uint  tap_set;         // which one it is
+uint  tap_set;         // the current set of taps, one of the above
 vec3  sum_wide, level_wide;
-float middle;          // the distance in the middle of the taps; 0 of the wider ones
-float reach;           // of these,
-float bend_wide;       // and how they bend
-float at_hit;          // the distance there
-vec3  plane_normal;    // the plane that is looked for beside the edge
+float middle;          // the distance in the middle of the taps; 0 for the wide ones
+float reach;           // of the wide taps
+float bend_wide;       // bend of the wide taps
+float at_hit;          // the distance at the hit
+vec3  plane_normal;    // of the plane that is looked for beside the edge
 
-// How far from a plane all is, in parts of the reach.
+// The bend: how far the distances are from those to a plane, in parts of the reach.
 float find_bend() { return length(level - 2.0 * middle) / length(sum); }
 
 void begin_tap_set(uint which)
@@ -53,7 +57,7 @@ void begin_tap_set(uint which)
     t = max(NEARER * reach, NOISE_NEARER * largest(hit.position) + hit.rounding);
     start = hit.position + outward * t * (normalize(sum_wide) + find_backwards());
     begin_taps();
-    tap_limit = TAPS + 1u; // the first in their middle
+    tap_limit = TAPS + 1u; // the first one is in the middle
     direction = vec3(0.0);
 }
 
@@ -66,7 +70,7 @@ void take_difference(float distance)
     direction = stencil(wide ? taps : taps - 1u);
 }
 
-// Whether the wider taps see the plane of the nearer ones, up to an edge.
+// Whether the wide taps see the plane of the nearer ones, up to an edge.
 bool is_confirmed()
 {
     vec3 rise = reach / t * 0.5 * sum;
@@ -88,7 +92,8 @@ void end_wide_taps()
     begin_tap_set(FIRST);
 }
 
-// What is so flat may be a seam within, but that has another normal.
+// Whether the nearer taps see one side of an edge.  If they are flat they may also see the seam
+// inside of touching solids, but that has another normal.
 bool is_one_side(float bend)
 {
     bool alike = dot(sum, sum_wide) > FACING_ALIKE * length(sum) * length(sum_wide);
@@ -96,7 +101,8 @@ bool is_one_side(float bend)
            bend < FLAT_ENOUGH && is_confirmed();
 }
 
-// From the edge on which another solid stands: a reach away from that one along the plane.
+// Begins the taps beside an edge at which another solid stands: a reach away from that solid, along
+// the plane.
 void begin_beside()
 {
     plane_normal = normalize(sum);
@@ -127,7 +133,7 @@ void end_nearer_taps()
         tap_set = MEAN;
 }
 
-// Whether there is more to look at.
+// Ends a set of taps.  Returns whether another one has begun.
 bool needs_more_taps()
 {
     if (tap_set == WIDE)

@@ -1,14 +1,14 @@
 /*
- * frame.glsl: what the kernels of a picture share: the frame, the work of a dispatch, the
- * state of each pixel between dispatches, and the rays of pixels.
+ * frame.glsl: what the kernels of a picture share: the frame, the work of a dispatch, the state of
+ * pixels between dispatches, and their rays.
  *
- * A picture is rendered in bands of rows; the buffers hold one band.  What the host knows as well
- * is in runtime/shared/blocks.h.
+ * A picture is rendered in bands of rows; the buffers hold one band.  Declarations that the host
+ * shares are in runtime/shared/blocks.h.
  */
 
 #include "runtime/shared/blocks.h"
 #include "grid.glsl"
-#ifdef PANORAMIC // a camera of the scene is: sines would be found for every ray
+#ifdef PANORAMIC // a camera of the scene is a panorama, whose rays need sines
 #include "sines.glsl"
 #endif
 
@@ -23,20 +23,20 @@ struct RayEnd {
     uint  steps;
     uint  state;
     bool  unresolved;  // it ran out of steps
-    uint  march_group; // of the component that it hits; 0: of none, or not known
+    uint  march_group; // of the component that it hits; 0: none, or unknown
 };
 
-// What is kept of a pixel, a light or a ray lies in memory in rows of four numbers, or one by one,
-// and is read as texels: of an access to a buffer lavapipe makes a loop over the lanes for each
-// number, which takes five times as long.  Buffers are for what is written, and what is counted.
+// Values of pixels, lights and rays are stored in rows of four numbers, or singly, and are read as
+// texels.  lavapipe compiles each number of a buffer access to a loop over the lanes, which takes
+// five times as long.  Buffers are for what is written, and what is counted.
 
-// Where the rays of the pixels end, then the beams of 8x8 tiles, then those of 32x32 tiles, then
-// those of the quarters of 8x8 tiles, tile by tile: bits of t, and the rest by pack_ray.
+// Where rays and beams end: the bits of t, and the rest by pack_ray.  First are the rays of pixels,
+// then the beams of 8x8 tiles, of 32x32 tiles, and of the quarters of 8x8 tiles, tile by tile.
 layout(std430, set = 1, binding = 1) buffer Ends { uvec2 ends[]; };
 layout(std430, set = 1, binding = 2) writeonly buffer HitNumbers { float hit_numbers[]; };
 // Tiles of 8x8 pixels whose beams find something: only their pixels have rays.
 layout(std430, set = 1, binding = 9) buffer Tiles { uint tiles[]; };
-#ifdef NO_TEXELS // the device reads too few of them: buffers are read instead
+#ifdef NO_TEXELS // the device reads too few texels: buffers are read instead
 layout(std430, set = 1, binding = 2) buffer Hits { vec4 hits[]; };
 layout(std430, set = 1, binding = 5) readonly buffer Inputs { uvec4 input_rows[]; };
 uvec4 load_input(uint number) { return input_rows[number]; }
@@ -44,8 +44,8 @@ uvec2 load_end(uint index) { return ends[index]; }
 vec4  load_hit_row(uint number) { return hits[number]; }
 #else
 layout(std430, set = 1, binding = 2) writeonly buffer Hits { vec4 hits[]; };
-// Of lights, and of rays of a list behind them, two texels each; the others are what is in these
-// buffers (layouts.c).
+// The lights, and the rays of a list behind them, two texels each.  The other texels are those of
+// the buffers above (layouts.c).
 layout(set = 1, binding = 8) uniform usamplerBuffer input_texels;
 layout(set = 1, binding = 10) uniform usamplerBuffer end_texels;
 layout(set = 1, binding = 11) uniform usamplerBuffer hit_texels;
@@ -64,7 +64,8 @@ Frame   frame;
 Work    work;
 Control control;
 
-// Once, first in main: inside of a loop lavapipe would fetch every number again, lane by lane.
+// Copies the blocks, first of all in main.  Inside of a loop lavapipe would fetch every number
+// again, lane by lane.
 void load_frame()
 {
     frame = given_frame;
@@ -79,12 +80,12 @@ Light find_light(uint number)
     return Light(vector.xyz, vector.w, uintBitsToFloat(color.xyz), color.w);
 }
 
-// Of the pixel of a slot (hit_lists.glsl).
+// A row of the hit in a slot (hit_lists.glsl).
 vec4 load_hit(uint row, uint slot) { return load_hit_row(HIT_ROWS * slot + row); }
 
 void store_hit(uint row, uint slot, vec4 numbers) { hits[HIT_ROWS * slot + row] = numbers; }
 
-// One of LIGHTING.
+// Stores one number of the row LIGHTING.
 void store_lighting(uint which, uint slot, float number)
 {
     hit_numbers[4u * (HIT_ROWS * slot + LIGHTING) + which] = number;
@@ -105,17 +106,17 @@ RayEnd find_end(uint index)
                   (bits & 8u) != 0u, bits >> 4u & 15u);
 }
 
-// The tiles of `side` pixels a side, counted in the whole picture, that the band has a part of:
-// the first, and how many.
+// The tiles that overlap the band, of `side` pixels a side, counted in the whole picture: the first
+// one, and how many in each direction.
 void find_tiles(uint side, out uvec2 first, out uvec2 count)
 {
     first = work.corner / side;
     count = (work.corner + work.extent - 1u) / side - first + 1u;
 }
 
-// The ray through a point of the picture, in pixels from its top left corner, and how wide a
-// pixel is along it: base + slope t.
-#ifdef LISTED_RAYS // of the pixel that the point is in, by the list of the band
+// The ray through a point of the picture, which is given in pixels from the top left corner.  At t
+// a pixel is base + slope t wide.
+#ifdef LISTED_RAYS // the ray of the point's pixel, in the list of the band
 void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float base,
               out float slope)
 {
@@ -158,9 +159,9 @@ void find_ray(vec2 image_point, out vec3 origin, out vec3 direction, out float b
 }
 #endif
 
-// Where a ray is inside of a box; empty when the second is the smaller.  The
-// box may be as large as 1e18, and no component of a direction is taken as smaller than 1e-18,
-// so that nothing here is infinite times zero.
+// The interval of t in which a ray is inside of a box; empty when its end is the smaller number.
+// The box may be as large as 1e18, and no component of the direction is taken as smaller than
+// 1e-18.  So nothing here is infinite times zero.
 vec2 clip_to(vec3 low, vec3 high, vec3 origin, vec3 direction, float farthest)
 {
     vec3 safe = mix(direction, vec3(1e-18), lessThan(abs(direction), vec3(1e-18)));
@@ -171,7 +172,7 @@ vec2 clip_to(vec3 low, vec3 high, vec3 origin, vec3 direction, float farthest)
                 min(min(leave.x, leave.y), min(leave.z, farthest)));
 }
 
-// Of the box around the scene.
+// The same for the box around the scene.
 vec2 clip_ray(vec3 origin, vec3 direction, float farthest)
 {
     return clip_to(frame.low.xyz, frame.high.xyz, origin, direction, farthest);

@@ -1,19 +1,18 @@
 /*
- * hit_lists.glsl: the pixels whose ray hits something, as a list: what comes after the primary rays
- * is about them alone.
+ * hit_lists.glsl: lists of the pixels whose rays hit something.  All passes after the primary rays
+ * are over such lists.
  *
- * A pixel is known by its slot: 64 times its tile of 8x8 pixels, and its number in there.  So lie
- * the hits in memory, as what is near in the picture is looked at together.
+ * A pixel has a slot: 64 times the number of its tile of 8x8 pixels, plus its number in the tile.
+ * Hits are stored in the order of slots, as pixels that are near in the picture are used together.
  *
- * Means of occlusion are taken at a quarter of the pixels: the sparse ones, in columns and rows 0,
- * 2, 5 and 7 of their tile.  Lists lie where the queue of rays was, each long enough for all
- * pixels: all hits, the sparse ones, the remaining ones for which neighbours do not suffice, and
- * those whose shadow needs a wide mean.  Where groups of components were marched one after the
- * other, lists of what each of them shows follow, and behind these is what rays share
- * (shared.glsl).
+ * Means of occlusion are computed at a quarter of the pixels, the sparse ones: columns and rows 0,
+ * 2, 5 and 7 of their tile.  The lists lie where the queue of rays was, each with room for all
+ * pixels.  They are all hits; the sparse ones; the remaining ones, for which neighbours do not
+ * suffice; and those whose shadow needs a wide mean.  Where march groups were marched one after the
+ * other, lists of the hits of each follow.  Behind these is what rays share (shared.glsl).
  *
- * Last are words of the quarters of tiles, of 4x4 pixels: the list of those in which something is
- * hit; of each, a bit for every pixel that is; and of each, what is known of a light there.
+ * Last are words of the quarters of tiles, of 4x4 pixels.  They are the list of those with
+ * hits, a bit for every pixel that hits, and what is known of a light there.
  */
 #ifdef NO_TEXELS
 layout(std430, set = 1, binding = 6) buffer PixelLists { uint pixel_lists[]; };
@@ -32,8 +31,8 @@ uint band_tiles()
     return tiles.x * tiles.y;
 }
 
-// Behind the lists of pixels: words of slots by shared.glsl, and words of quarters.  Tiles may
-// reach beyond the band, so there are more slots than pixels.
+// Indices of words behind the lists of pixels: of a slot (shared.glsl), and of a quarter.  Tiles
+// may reach beyond the band, so there are more slots than pixels.
 uint shared_at(uint list, uint slot)
 {
     return LIST_SHARED * band_pixels() + 64u * band_tiles() * list + slot;
@@ -44,14 +43,14 @@ uint quarter_at(uint list, uint number)
     return shared_at(SHARED_LISTS, 0u) + 4u * band_tiles() * list + number;
 }
 
-// In the band.
+// The pixel of a slot, counted in the band.
 uvec2 pixel_of(uint slot)
 {
     uvec2 tile = find_cell(slot / 64u, (work.extent.x + 7u) / 8u);
     return 8u * tile + uvec2(slot & 7u, slot >> 3u & 7u);
 }
 
-// Of a pixel among those of the band, row by row.
+// The index of a pixel of the band, counted row by row.
 uint index_of(uvec2 pixel) { return pixel.y * work.extent.x + pixel.x; }
 
 uint slot_of_pixel(uvec2 pixel)
@@ -66,42 +65,43 @@ uint slot_of_quarter(uint number)
     return 64u * (number / 4u) + 4u * (number & 1u) + 32u * (number >> 1u & 1u);
 }
 
-// That of a bit, where a quarter begins at this one.
+// The slot of the lowest bit in a quarter whose first slot is `first`.
 uint slot_of_bit(uint first, uint bit)
 {
     uint number = uint(findLSB(bit));
     return first + 8u * (number >> 2u) + (number & 3u);
 }
 
-// That of its cone: the one nearest to the middle of the tile but one, both ways.
+// The slot at which a quarter's cone starts: in column and row 2 or 5 of the tile.
 uint cone_of_quarter(uint number)
 {
     return 64u * (number / 4u) + 18u + 3u * (number & 1u) + 24u * (number >> 1u & 1u);
 }
 
-// Whether something is hit there.
+// Whether the pixel at which a quarter's cone starts hits something.
 bool has_cone(uint number)
 {
     uint column = 2u - (number & 1u), row = 2u - (number >> 1u & 1u);
     return (find_listed(quarter_at(HITS_OF_QUARTERS, number)) >> 4u * row + column & 1u) != 0u;
 }
 
-// Bits of the sparse pixels of a quarter: every second column and row, from its outer ones on.
+// The bits of the sparse pixels of a quarter: every second column and row, from the edge of the
+// tile on.
 uint sparse_pixels_of_quarter(uint number)
 {
     return ((number & 1u) == 0u ? 0x0505u : 0x0a0au) << ((number & 2u) == 0u ? 0u : 4u);
 }
 
-// The ray of a pixel of the list, and where it hits.  That is found anew wherever it is asked for:
-// it costs no more than to fetch it.
+// Where the ray of a pixel hits.  This is computed again wherever it is needed, which costs no more
+// than to load it.
 struct HitPoint {
     uint  slot;
     vec3  position;
     vec3  direction; // of the ray, unit
     float width;     // of a pixel there
-    float rounding;  // of the coordinates
-    float side;      // as of a RayEnd,
-    uint  steps;     // likewise
+    float rounding;  // error of the coordinates
+    float side;      // as in RayEnd
+    uint  steps;     // as in RayEnd
 };
 
 HitPoint hit_point_of_slot(uint slot)
@@ -113,11 +113,11 @@ HitPoint hit_point_of_slot(uint slot)
     find_ray(vec2(work.corner + pixel) + work.offset, origin, direction, base, slope);
     vec3  position = origin + ray.t * direction;
     float rounding = ROUNDING * (largest(position) + largest(origin));
-    float width = max(base + slope * ray.t, 1e-30); // something is divided by it
+    float width = max(base + slope * ray.t, 1e-30); // it is a divisor
     return HitPoint(slot, position, direction, width, rounding, ray.side, ray.steps);
 }
 
-// The place of item `number` of the list that is read.
+// The hit of item `number` of the list that is read.
 HitPoint find_hit_point(uint number)
 {
     return hit_point_of_slot(find_listed(control.reading + number));

@@ -18,10 +18,10 @@ vec3 sky_light(vec3 normal)
     return mix(frame.ground.rgb, above, 0.5 + 0.5 * normal.y);
 }
 
-// What a directional light that has a size adds to the sky: its disc and a glow around it.
+// The radiance that a directional light with a size adds to the sky: a disc and a glow around it.
 vec3 sun_radiance(vec3 direction, vec3 toward_sun, vec3 color, float diameter)
 {
-    float angle = length(direction - toward_sun); // the angle, where it matters
+    float angle = length(direction - toward_sun); // nearly the angle, where it is small
     float disc = 1.0 - smoothstep(0.4 * diameter, 0.6 * diameter, angle);
     float glow = 0.12 * exp2(-24.0 * angle) + 0.03 * exp2(-5.0 * angle);
     return diameter > 0.0 ? color * (2.0 * disc + glow) : vec3(0.0);
@@ -52,7 +52,7 @@ vec3 reflected(vec3 normal, vec3 toward_eye, vec3 toward_light, vec3 color, floa
     return (scattered + mirrored * lobe * masked) * light;
 }
 
-// The sky seen in the coat: the split-sum integral, fitted (Karis 2014).
+// The sky mirrored by the coat: a fit of the split-sum integral (Karis 2014).
 vec3 sky_reflected(vec3 normal, vec3 toward_eye, vec3 color, float roughness, float metallic)
 {
     float eye = clamp(dot(normal, toward_eye), 0.0, 1.0);

@@ -1,9 +1,9 @@
 /*
- * march_step.glsl: what the next distance tells a ray or beam: how far it goes next, whether it has
- * crossed a surface and where (trace.comp has what a march is).
+ * march_step.glsl: a step of a ray or beam by its next distance.  It finds out whether a surface
+ * was crossed and where, and how long the step after it is.  The march is described in trace.comp.
  */
-// The surface is crossed between t, where the clearance is positive, and t + step, where it is not:
-// the root of the chord.  The result is at least the clearance at t, within which there is no
+// Where the surface is crossed, measured from t: the root of the chord.  The clearance is positive
+// at t, and not at t + step.  The result is at least the clearance at t, within which there is no
 // surface.
 float find_crossing(float clearance)
 {
@@ -13,8 +13,9 @@ float find_crossing(float clearance)
     return max(march.step * along, march.clearance);
 }
 
-// The next step from a position with this clearance, given the last slope and the mean slope: the
-// balls should still meet, or the surface be crossed with no more unverified than is permitted.
+// The next step from a position with this clearance, by the last slope and the mean slope.  The
+// balls at its ends should still meet.  Else the surface should be crossed, with no longer
+// unverified interval than is permitted.
 float find_step(float clearance, float last_slope, float slope, float permitted, float tolerance)
 {
     if (TRACE == RELAXED)
@@ -28,14 +29,14 @@ float find_step(float clearance, float last_slope, float slope, float permitted,
 }
 
 #ifdef PROBE
-// The ball that was tried has the radius `step` and its centre at t + step, so it touches t.  It is
-// empty if a ball more than 1 times as large would be.  The ray hits where a ball no larger than
-// the tolerance is not empty.
+// The ball that was tried has the radius `step` and its centre at t + step, so it touches t.  A
+// ball `larger` times as large would be empty, so it is empty if `larger` is above 1.  The ray hits
+// where a ball no larger than the tolerance is not empty.
 void take_distance(float larger)
 {
     float radius = march.step, empty = float(larger > 1.0);
     float at = march.t + radius;
-    float clearance = radius * larger; // at the middle, about
+    float clearance = radius * larger; // at the centre, about
     march.side = 1.0;
     march.steps++;
     float least = 0.5 * tolerance_at(at);
@@ -76,7 +77,7 @@ void take_distance(float distance)
     float clearance = (march.side * distance - taken) * shrinking;
     float rounded = ROUNDING * (rounding + at), tolerance = tolerance_in_pixels * pixel + rounded;
     float least = is_ray ? 0.0 : max(rounded, (BEAM_MARGIN - 1.0) * taken);
-    float unverified = march.step - march.clearance; // a surface may hide in an interval of this length
+    float unverified = march.step - march.clearance; // a surface may hide in such an interval
     float permitted = is_ray ? frame.error * pixel : 0.0;
     march.steps++;
     bool found_surface = clearance <= least && (unverified <= permitted + tolerance || !is_ray) ||

@@ -1,11 +1,12 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
- * next_dispatch.comp: what the host does between two dispatches where it waits for each: how many items the
- * next one has, by what those before it have counted, and so how many groups.
+ * next_dispatch.comp: computes how many items, and so workgroups, the next dispatch of a chain has,
+ * from what the dispatches before it have counted.  Where dispatches form no chains, the host does
+ * this.
  *
- * One with more groups than may run at once, and all behind it, have none: the host goes on there.
- * The C side is in runtime/tracer/dispatch.c.
+ * If a dispatch has more workgroups than may run at once, it and all behind it get none; the host
+ * goes on from there.  The C side is in runtime/tracer/dispatch.c.
  */
 #include "runtime/shared/blocks.h"
 

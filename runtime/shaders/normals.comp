@@ -1,10 +1,11 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
- * normals.comp: the normal of each hit, from the distance at a few places around it.
+ * normals.comp: the normal of each hit, from the distance at a few taps around it.
  *
- * The places are known before, so a lane does pixel after pixel (pixels.glsl): lanes that loop
- * together are done together, but where something is looked at again (edge_normals.glsl).
+ * The number of taps is known before, so lanes that loop together end together, and a lane takes
+ * pixel after pixel (pixels.glsl).  The exception is where more taps are needed
+ * (edge_normals.glsl).
  *
  * ROOTS: rays go from root to root.
  */
@@ -13,21 +14,20 @@
 #include "hit_lists.glsl"
 #include "stencil.glsl"
 
-// Differences for normals reach as far as a pixel asks for, but less of the coordinates would be
-// noise.
+// The least reach of differences, relative to the coordinates: less would be noise.
 const float NOISE = 3e-4;
-// What is so even is flat.
+// Surfaces of this evenness or more are flat.
 const float EVEN = 0.9995;
 
-// The item.
+// The current item.
 HitPoint hit;
 vec3  start, direction; // the next distance is sampled at start + t direction
 float t;
-uint  taps, tap_limit; // so far, and at most
-vec3  sum, level;      // of the taps of a normal, with the signs of their directions and without
+uint  taps, tap_limit; // evaluated so far, and at most
+vec3  sum, level;      // of distance * direction, and of distance * abs(direction)
 #if STENCIL == 3 && defined(ROOTS)
-bool  looks_nearer; // they are looked at from nearer,
-float even;         // where all was so even
+bool  looks_nearer; // the nearer taps are evaluated
+float even;         // evenness by the wide taps
 #elif STENCIL == 3
 void begin_taps();
 vec3 find_backwards();
@@ -36,13 +36,13 @@ vec3 find_backwards();
 #ifdef GRADIENT
 bool  derived;     // the normal is by derivatives
 #if defined(ROOTS) && STENCIL == 3
-#define TAPS_OUTSIDE 1u // that say whether these can be believed
+#define TAPS_OUTSIDE 1u // a tap that tells whether the derivatives can be trusted
 #else
 #define TAPS_OUTSIDE 0u
 #endif
 #endif
 
-// Where the ray comes from that hits here, unit.
+// The unit vector from the hit back along its ray.
 vec3 find_backwards()
 {
 #ifdef LISTED_RAYS
@@ -53,7 +53,7 @@ vec3 find_backwards()
 #endif
 }
 
-// The taps of a stencil around the hit.
+// Begins the taps of the stencil around the hit.
 void begin_taps()
 {
     taps = 0u;
@@ -79,11 +79,11 @@ void begin_normal()
 #ifdef GRADIENT
     derived = false;
 #ifndef CAMERA_RELATIVE
-    // Differences are for where derivatives are no numbers.
+    // Differences are used where derivatives are not finite.
     vec3 gradient = krs_gradient(hit.position, t);
-    // Differences are as well for where rounding makes what is seen face away.
+    // They are also used where rounding makes a visible surface face away from the eye.
     float facing_eye = hit.side * dot(gradient, find_backwards());
-#ifdef SHEETS // of which either side is seen
+#ifdef SHEETS // both sides are visible
     gradient *= facing_eye < 0.0 ? -1.0 : 1.0;
     facing_eye = abs(facing_eye);
 #endif
@@ -118,8 +118,8 @@ vec3 item_position()
     return start + t * direction;
 }
 
-// The parts of the sum that do not cancel: where all is flat, opposite taps do; on an edge, or
-// where things are smaller than the taps are apart, they do not.
+// How even the surface is: 1 where it is flat.  There opposite taps cancel in `level`.  On an edge,
+// or on detail finer than the distance between taps, they do not.
 float find_evenness()
 {
     float size = length(sum), uneven = length(vec2(size, length(level)));
@@ -128,8 +128,8 @@ float find_evenness()
 
 #if defined(ROOTS) && STENCIL == 3
 // Around a curve on which its gradient vanishes a polynomial's distance is far from linear.  So
-// what is not even is looked at again from nearer, with the corners of a cube as well: of weight
-// 9/8 they make the octahedron exact up to the fifth power.
+// where the surface is not even, nearer taps are evaluated, with the corners of a cube as well.
+// With weight 9/8 these make the octahedron exact up to the fifth power.
 const float NEARER = 0.125;
 const uint CORNERS = 8u;
 vec3 corner(uint i)
@@ -145,7 +145,8 @@ void begin_nearer_taps()
     tap_limit = TAPS + CORNERS;
 }
 
-// At once: on such a curve all is odd, and six differences are even where they are wrong.
+// Begins the nearer taps without the wide ones.  On such a curve the distance is an odd function,
+// and six differences look even where they are wrong.
 void begin_nearer()
 {
     even = 1.0;
@@ -191,12 +192,13 @@ float find_flatness()
 #endif
 
 #if defined(GRADIENT) && defined(ROOTS) && STENCIL == 3
-// Where the distance rises by less than that from the surface, derivatives may be next to nothing
-// but rounding, as near a curve on which a polynomial vanishes several times.
+// The least slope of the distance just outside of the surface.  Where it is less, derivatives may
+// be little more than rounding.  That happens near a curve on which a polynomial vanishes several
+// times.
 const float LEAST_OUTSIDE = 0.4;
 void take_outside(float rise)
 {
-#ifndef SHEETS // of which differences see both sides
+#ifndef SHEETS // differences see both sides of a sheet
     if (rise >= LEAST_OUTSIDE)
         return;
     derived = false;
@@ -225,8 +227,8 @@ void take_distance(float distance)
     take_difference(distance);
 }
 
-// What is looked at again is so in a loop of its own: what it needs to know would have to be
-// carried through each step of the other.
+// Further sets of taps have a loop of their own.  In a single loop their variables would have to be
+// kept through each step.
 bool item_needs_more_taps()
 {
 #if STENCIL == 3 && !defined(ROOTS)
@@ -245,7 +247,7 @@ void begin_group() { krs_prepare(); }
 void do_item(uint number)
 {
     begin_item(number);
-    do { // lavapipe goes through the body of another loop once more
+    do { // do-while, as in pixels.glsl
         do {
             float distance = krs_distance(item_position());
             if (item_needs_step())

@@ -1,26 +1,29 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
- * occlusion.comp: how open a pixel is: the mean of what the rays of the pixels around have found
- * (secondary.comp), over places near the plane of its own, as occlusion differs from surface to
- * surface.
+ * occlusion.comp: how open a hit is to the sky: the mean of what the rays of the pixels around have
+ * found (secondary.comp).  Occlusion differs from surface to surface, so the mean is over hits near
+ * the plane of the pixel's own.
  *
- * Means are taken three times.  At sparse pixels (hit_lists.glsl): of all pixels nearby, whose rays
- * together are spread evenly.  There again: of every second of these means around, as far as the
- * occluders are.  Then everywhere: of the means at the sparse pixels around.
+ * Means are computed three times.  The first are at sparse pixels (hit_lists.glsl), of all pixels
+ * nearby, whose rays together are spread evenly.  The second are there as well, of every second of
+ * the first means, as far as the occluders are.  The third are at all pixels, of the means at the
+ * sparse pixels around.
  */
 #include "frame.glsl"
 #include "hit_lists.glsl"
 #include "shared.glsl"
 #include "neighbours.glsl"
 
-// The mean is over places so near to the plane, in pixels, and asks for so much weight; it reaches
-// so many pixels.  The wider one reaches less far than the occluders are: nearer to them
-// occlusion changes within a pixel.
+// A mean is over hits at most ON_PLANE pixels from the plane; the sum of their weights is at least
+// LEAST_WEIGHT.  The reaches are those of the three means, in pixels.
 const float ON_PLANE = 1.5, LEAST_WEIGHT = 0.5, NEAR_REACH = 3.0, WIDE_REACH = 8.0, FAR_REACH = 4.5;
+// The reach of the wider mean, relative to the distance of the occluders: nearer to them occlusion
+// changes within a pixel.
 const float REACH_OF_HITS = 0.25;
 
-// Sparse pixels by their numbers in the whole band, along a row and a column.
+// The pixel of a sparse pixel's number, which is its column and row among the sparse ones of the
+// band.
 ivec2 pixel_of_sparse(ivec2 number)
 {
     ivec2 within = ivec2(0x7520 >> 4 * (number.x & 3) & 7, 0x7520 >> 4 * (number.y & 3) & 7);
@@ -33,7 +36,7 @@ ivec2 sparse_at(ivec2 pixel)
     return 4 * (pixel >> 3) + within;
 }
 
-// How far the wider mean reaches, in pixels, by how open a place is.
+// The reach of the wider mean, in pixels, by how open the hit is.
 float find_wide_reach(HitPoint hit, float openness)
 {
     float hit_distance = frame.occlusion_reach * sqrt(openness); // root of the mean square
@@ -41,8 +44,8 @@ float find_wide_reach(HitPoint hit, float openness)
            inversesqrt(float(control.rays));
 }
 
-// The sum of how open those around are, times their weights, and of these: all of 5x5 pixels, or
-// 3x3 sparse ones at this spacing.
+// Two sums over the pixels around: of openness times weight, and of weights.  These are all of 5x5
+// pixels, or 3x3 sparse ones at this spacing.
 vec2 sum_openness(uint list, ivec2 pixel, HitPoint hit, vec3 normal, int spacing, float radius)
 {
     bool  sparse = spacing > 0;
@@ -65,7 +68,7 @@ vec2 sum_openness(uint list, ivec2 pixel, HitPoint hit, vec3 normal, int spacing
 
 void begin_group() {}
 
-// Pixels without a sparse pixel on their surface are listed: they remain.
+// Pixels without a sparse pixel on their own surface are listed as the remaining ones.
 void do_item(uint number)
 {
     uint  slot = find_listed(control.reading + number);
@@ -79,7 +82,8 @@ void do_item(uint number)
     vec3  normal = load_hit(FACING, slot).xyz;
     vec2  sums = sum_openness(list, ivec2(pixel_of(slot)), hit, normal, spacing, max(radius, 1.0));
     float openness = sums.x / max(sums.y, 1e-6);
-    // Remaining pixels ask sparse ones as well, so there the mean replaces the ray.
+    // Remaining pixels also use the words of sparse ones, so the mean of a sparse pixel replaces
+    // the word of its ray.
     if (control.phase == OCCLUSION_AT_SPARSE_PIXELS || wider)
         store_shared(wider ? RAYS_SHARED : MEANS_SHARED, slot, find_depth(hit),
                      code_of_openness(openness));

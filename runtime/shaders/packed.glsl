@@ -1,26 +1,26 @@
 /*
- * packed.glsl: the parts of a scene, most of them one component, each marched by itself within one
- * ray or beam (KRS paper of 2016, section 5.1).  Each part has a length of the ray that is known to
- * miss it.  The part with the shortest such length takes the next step, by its own distance, which
- * is a branch.
+ * packed.glsl: marches the scene parts by themselves within one ray or beam (KRS paper of 2016,
+ * section 5.1).  Most parts are one component.  For each part a length of the ray is known to miss
+ * it.  The part with the shortest such length takes the next step, by its own distance, which is a
+ * branch.
  *
- * A ray is done when the next part has been hit: the others are farther.  The order of the parts is
- * in words of eight numbers of four bits, the nearest first.  After a step the part may be farther
- * than others, so its number moves up past theirs.  Where there are more than eight parts, there
- * are more words, whose first numbers are compared.
+ * A ray has ended when the next part has been hit, as the others are farther.  The order of the
+ * parts is in words of eight numbers of four bits, the nearest first.  After a step a part may be
+ * farther than others, so its number moves up past theirs.  Where there are more than eight parts,
+ * there are more words, whose first numbers are compared.
  *
- * The eye must be outside of everything.
+ * The eye must be outside of all solids.
  */
 const uint WORDS = (KRS_SCENE_PARTS + 7u) / 8u;
 
-vec4  saved_marches[8u * WORDS]; // t, clearance, step and slope of its march,
-uint  saved_states[8u * WORDS];  // and state;
-float exit_t[8u * WORDS];        // where the ray leaves its box;
-float free_until[8u * WORDS];    // the ray misses it up to here; INFINITE: it does so everywhere
+vec4  saved_marches[8u * WORDS]; // of each part: t, clearance, step and slope,
+uint  saved_states[8u * WORDS];  // state,
+float exit_t[8u * WORDS];        // where the ray leaves the part's box,
+float free_until[8u * WORDS];    // where it may hit the part at the earliest; INFINITE: nowhere
 uint  order[WORDS];
-uint  scene_part;                // whose march is `march`
+uint  scene_part;                // the part whose march is `march`
 
-// The number at this bit of its word moves up past all that are nearer.
+// Moves the number at this bit of a word up past the numbers of all nearer parts.
 void reorder(uint word, uint shift)
 {
     uint order_word = order[word], first = 8u * word;
@@ -64,8 +64,8 @@ void advance_to_next_part()
     select_next_part();
 }
 
-// For the ray or beam that has just begun to march.  Boxes are not clipped against beams, which
-// have a width.
+// Begins the marches of all parts, for a ray or beam that has just begun.  Beams have a width, so
+// they are not clipped to boxes.
 void begin_scene_parts(bool is_ray)
 {
     float start = march.t, farthest = end;

@@ -1,16 +1,16 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
- * penumbrae.comp: how many pixels of each quarter of a tile see the light, how many do not, and how
- * wide the penumbrae of what blocks it are, so that shadow.comp knows how far to look around.
+ * penumbrae.comp: for each quarter of a tile, how many pixels see the light, how many do not, and
+ * the widths of their penumbrae.  From that shadow.comp finds the radius of its means.
  *
- * An item is a quarter of the list, of which unproven.comp has left two bits a pixel.
+ * An item is a quarter of the list, for which unproven.comp has stored two bits a pixel.
  */
 #include "frame.glsl"
 #include "hit_lists.glsl"
 #include "shared.glsl"
 
-// No mean reaches farther.
+// The widest penumbra that counts, in pixels: no mean reaches farther.
 const float WIDEST_PENUMBRA = 1024.0;
 
 void begin_group() {}

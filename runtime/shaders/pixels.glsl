@@ -1,10 +1,10 @@
 /*
- * pixels.glsl: main() of a kernel that does the same for every item.
+ * pixels.glsl: main() of a kernel whose items all cost the same.
  *
- * The kernel that includes this says what that is:
- *     void begin_group()              first of all
- *     void do_item(uint number)
- * A lane does several, for which the frame is loaded once.
+ * The kernel that includes this defines:
+ *     void begin_group()              called first
+ *     void do_item(uint number)       called for each item
+ * A lane takes several items, for which the frame is loaded once.
  */
 layout(local_size_x = 64) in;
 
@@ -12,11 +12,12 @@ void main()
 {
     load_frame();
     begin_group();
-    // The stride spreads neighbours over a device that assigns workgroups in contiguous halves.
+    // The stride spreads neighbours, which cost the same, over a device that assigns workgroups in
+    // contiguous halves.
     uint group = work.first + gl_WorkGroupID.x * work.stride % work.groups;
     uint number = group * 64u * control.items_per_lane + gl_LocalInvocationIndex;
     uint done = 0u;
-    do { // lavapipe goes through the body of another loop once more
+    do { // do-while: lavapipe executes the body of other loops once more than needed
         if (number < control.items)
             do_item(number);
         number += 64u;

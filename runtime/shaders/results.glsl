@@ -1,8 +1,8 @@
 /*
- * results.glsl: what becomes of each pixel, in rows of four numbers: first the colours of all
- * pixels of the band, then their places, and so on.  Rows that are not asked for are not written.
- * The first ray of a pixel goes through its centre and gives everything but the colour.  The rows
- * are in runtime/shared/blocks.h.
+ * results.glsl: the results of each pixel, in rows of four numbers: the colours of all pixels of
+ * the band, then their positions, and so on.  The rows are in runtime/shared/blocks.h.  Rows that
+ * are not wanted are not written.  The first ray of a pixel goes through its centre, and gives all
+ * results but the colour.
  */
 layout(std430, set = 1, binding = 3) writeonly buffer Colors { vec3 colors[]; }; // 16 bytes each
 #ifdef NO_TEXELS
@@ -21,13 +21,13 @@ vec4 find_color(uint index)
     return uintBitsToFloat(load_result(ROW_COLORS * band_pixels() + index));
 }
 
-// Of what has no alpha.
+// Adds light to the colour of a pixel; alpha stays as it is.
 void add_light(uint index, vec3 color)
 {
     colors[ROW_COLORS * band_pixels() + index] = find_color(index).rgb + color;
 }
 
-// What is not a number or infinite counts as black.
+// Replaces components that are negative, infinite or NaN by 0.
 vec3 finite_or_black(vec3 radiance)
 {
     bvec3 finite = bvec3(radiance.x < INFINITE, radiance.y < INFINITE, radiance.z < INFINITE);

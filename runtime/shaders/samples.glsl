@@ -2,13 +2,15 @@
  * samples.glsl: points of the unit square for the rays of pixels, so that neighbours together fill
  * it evenly.
  *
- * Pixels are numbered along the Z-order curve.  This number, its bits scrambled from the highest to
- * the lowest, says which point of Sobol's (0, 2)-sequence a pixel takes (Ahmed and Wonka,
- * Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error, 2020).  So each square of 2^n by
- * 2^n pixels has points one to each box of its area, whatever the box's shape, and what is left as
- * noise differs most between neighbours.  Each further ray of a pixel goes on by the steps of R4
- * (multiples of powers of a root of x^5 = x + 1, modulo 1), whose first two dimensions are the
- * ray's place in its pixel (place_ray in plan.c): both together fill the pixel and the square.
+ * Pixels are numbered along the Z-order curve.  The bits of this number, scrambled from the highest
+ * to the lowest, say which point of Sobol's (0, 2)-sequence a pixel takes.  See Ahmed and Wonka,
+ * Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error, 2020.  Divide the unit square
+ * into as many equal boxes, of any shape, as a square of 2^n by 2^n pixels has pixels.  Then each
+ * box has one of its points.  The noise that is left differs most between neighbours.
+ *
+ * Each further ray of a pixel goes on by steps of the R4 sequence: multiples of powers of a root of
+ * x^5 = x + 1, modulo 1.  The position of rays in their pixels follows the R2 sequence (place_ray
+ * in plan.c).  Both together fill the pixel and the square evenly.
  */
 
 // The bits of a number of 16 bits, with a 0 before each.
@@ -20,8 +22,8 @@ uint spread_bits(uint bits)
     return (bits | bits << 1u) & 0x55555555u;
 }
 
-// Each bit is turned over or not by chance, which hangs on the lower bits (Laine and Karras 2011,
-// with the constants of Vegdahl 2021).
+// Flips each bit at random, depending on the lower bits (Laine and Karras 2011, with the constants
+// of Vegdahl 2021).
 uint scramble_bits(uint bits, uint seed)
 {
     bits ^= bits * 0x3d20adeau;
@@ -31,7 +33,7 @@ uint scramble_bits(uint bits, uint seed)
     return bits ^ bits * 0x53a22864u;
 }
 
-// A number that looks random (PCG, O'Neill 2014).
+// A hash that looks random (PCG, O'Neill 2014).
 uint hash_bits(uint bits)
 {
     bits = bits * 747796405u + 2891336453u;
@@ -39,7 +41,7 @@ uint hash_bits(uint bits)
     return bits >> 22u ^ bits;
 }
 
-// For ray `ray` of a pixel; uses with different numbers are independent.
+// The point for ray `ray` of a pixel.  Points for different values of `use` are independent.
 vec2 sample_square(uvec2 pixel, uint ray, uint use, uint seed)
 {
     uint number = spread_bits(pixel.x) | spread_bits(pixel.y) << 1u;
@@ -54,7 +56,7 @@ vec2 sample_square(uvec2 pixel, uint ray, uint use, uint seed)
     return fract(vec2(x >> 8u, y >> 8u) / 16777216.0 + vec2(0.6287067, 0.5385973) * float(ray));
 }
 
-// The unit disc from the unit square, areas in proportion.
+// Maps the unit square to the unit disc, with areas in proportion.
 vec2 disc_of_square(vec2 square)
 {
     float angle = 2.0 * PI * square.x;

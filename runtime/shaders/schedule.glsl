@@ -1,42 +1,42 @@
 /*
- * schedule.glsl: main() of a kernel that works on many items, each for as many steps as it
- * needs, every step one call of the distance.
+ * schedule.glsl: main() of a kernel whose items take different numbers of steps.  Each step
+ * evaluates the distance once.
  *
- * The kernel that includes this says what an item is:
- *     void begin_group(uint first)         first of all: the workgroup's items begin with this one
- *     void exchange_item(uint number)      gets what other lanes know of an item; these may have
- *                                          an item each, and must keep it
+ * The kernel that includes this defines:
+ *     void begin_group(uint first)         called first: `first` is the workgroup's first item
+ *     void exchange_item(uint number)      gets from other lanes what they know of an item; lanes
+ *                                          that have an item call it as well, and keep theirs
  *     void begin_item(uint number, bool saved)   begins an item, or resumes one that was saved
- *     bool item_needs_step()               it is not finished
- *     vec3 item_position()                 where its distance is sampled next
+ *     bool item_needs_step()               whether the item is not finished
+ *     vec3 item_position()                 where its distance is evaluated next
  *     float item_distance(vec3 position)   the distance there, or less
- *     void take_distance(float distance)   one step
- *     void end_item()                      stores what it has found
- *     void save_item()                     stores how far it is
- *     void end_group(uint steps)           last of all, after so many of them by this lane
- *     const uint REFILL_THRESHOLD          lanes that are done before they begin new items together
- *     const bool SAVES                     whether items are saved when the dispatch has had its
- *                                          steps; else those that are begun are finished
+ *     void take_distance(float distance)   takes one step
+ *     void end_item()                      stores the result of an item
+ *     void save_item()                     stores the state of an item that is not finished
+ *     void end_group(uint steps)           called last: `steps` is the number of this lane's steps
+ *     const uint REFILL_THRESHOLD          how many idle lanes begin new items together
+ *     const bool SAVES                     whether items are saved when the steps of the dispatch
+ *                                          are used up; else items that have begun are finished
  *
- * On lavapipe, where a branch skips nothing and eight lanes go through a loop together, a lane that
- * is done takes the workgroup's next item while the others march on (REFILL): the loop over steps
- * ends when REFILL_THRESHOLD lanes can do so.  All lanes execute what is in these loops, so saving
- * and resuming are outside.  On a graphics card a lane has one item.
+ * On lavapipe a branch skips nothing, and eight lanes go through a loop together.  So a lane whose
+ * item has ended takes the workgroup's next item while the others march on (REFILL).  The loop over
+ * steps ends when REFILL_THRESHOLD lanes can take an item.  All lanes execute whatever is in these
+ * loops, so saving and resuming are outside.  On a graphics card a lane has one item.
  */
-// Whether the lane's item takes another step, after so many iterations.
+// Whether the lane's item takes another step, after this many iterations.
 bool may_take_step(uint iterations, uint allowed)
 {
     return item_needs_step() && (!SAVES || iterations < allowed);
 }
 
 #if REFILL
-const uint LANES = uint(REFILL); // as many as go through a loop together: 4 or 8
+const uint LANES = uint(REFILL); // lanes that go through a loop together: 4 or 8
 layout(local_size_x = REFILL) in;
-// How many of its items a workgroup has begun so far.
+// The number of its items that each workgroup has begun so far.
 layout(std430, set = 1, binding = 7) buffer Taken { uint taken[]; };
 
-// The bits of all lanes.  Of a vote lavapipe makes a loop over the lanes; of this, six
-// instructions.
+// The union of the bits of all lanes.  lavapipe compiles a vote to a loop over the lanes, but this
+// to six instructions.
 uint or_lanes(uint bits)
 {
     bits |= subgroupShuffleXor(bits, 1u);
@@ -46,7 +46,8 @@ uint or_lanes(uint bits)
 
 bool any_lane(bool truth) { return or_lanes(uint(truth)) != 0u; }
 
-// Iterations are counted for lanes that wait as well: lavapipe ends a loop silently after too many.
+// Works on a workgroup's items.  Iterations are counted for idle lanes as well: lavapipe ends a
+// loop silently after too many.
 void work_on_items(uint group, uint steps_allowed, inout uint steps)
 {
     uint iterations = 0u;
@@ -68,7 +69,7 @@ void work_on_items(uint group, uint steps_allowed, inout uint steps)
                 end_item();
                 has_item = false;
             }
-            bool takes_item = !has_item && iterations < steps_allowed; // the next ones, in order
+            bool takes_item = !has_item && iterations < steps_allowed; // next items, in order
             uint takers = or_lanes(uint(takes_item) << lane);
             uint number = next + bitCount(takers & (1u << lane) - 1u);
             exchange_item(number);

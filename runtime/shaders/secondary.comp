@@ -4,15 +4,15 @@
 /*
  * secondary.comp: rays that start at hits: to lights, and over the hemisphere for occlusion.
  *
- * Such a ray is blocked where it is inside of something, not where the distance is small: a
- * distance may be a bound far below the true one, and light must not depend on how it was derived.
- * What is seen of a light, and how open a hit is, are shares of rays: means of neighbours
- * (shadow.comp, occlusion.comp).  A cone from a hit to the whole of a light saves rays where it
- * proves to be empty: then all points of the light are seen, from the pixels around as well.
+ * Such a ray is blocked where it is inside of a solid, not where the distance is small.  A distance
+ * may be a bound far below the true one, and light must not depend on how the bound was derived.
+ * The visible part of a light, and the openness of a hit, are fractions of rays: means over
+ * neighbours (shadow.comp, occlusion.comp).  A cone from a hit to the whole light saves rays if it
+ * is empty.  Then all points of the light are visible, from the pixels around as well.
  *
  * ALONG: there is krs_along, by which rays go from root to root.
  */
-#ifndef REFILL // which variant: the renderer says so; this one suits every device
+#ifndef REFILL // chosen by the renderer; this choice suits every device
 #define REFILL 0
 #endif
 #include "scene.glsl"
@@ -22,47 +22,51 @@
 #include "samples.glsl"
 
 const uint MOST_STEPS = 1024u;
-// Rays to lights start so many pixels above the surface, where it is even and where it is not, and
-// rays for occlusion by so much of their reach where that is more: finer detail does not count for
-// these.
+// How many pixels above the surface rays start, where it is even and where it is not.  Rays for
+// occlusion start at least this part of their reach above it, as finer detail does not count for
+// them.
 const float LIFT_OF_EVEN = 0.125, LIFT = 0.5, LIFT_OF_REACH = 1.0 / 128.0;
+// The evenness below which a surface is uneven, and above which it is even.
 const float UNEVEN = 0.9, EVEN = 0.99;
-// For so many pixels from the start a distance may be as small a part of the true one as there.
+// Up to this many pixels from the start, a distance may be as small a part of the true one as it is
+// there.
 const float NEAR_START = 8.0;
-// A ray steps by at least so much of the permitted error, or of a pixel, and by so much more with
-// each step, so that it leaves the surface along which it creeps.
+// The least step of a ray: the smaller of these parts of the permitted error and of a pixel.  It
+// grows by STEP_GROWTH with each step, so that a ray which creeps along a surface leaves it.
 const float LEAST_STEP = 0.0625, LEAST_STEP_IN_PIXELS = 0.015625, STEP_GROWTH = 1.008;
-// An empty cone is empty for pixels so far away, in pixels.
+// The margin around a cone, in pixels: if the cone is empty, the light is visible from pixels as
+// near as that, too.
 const float CONE_MARGIN = 3.0;
-// Where a surface is seen at a grazing angle its pixels are apart by up to so much more.
+// On surfaces at a grazing angle pixels are farther apart, by at most this factor.
 const float MOST_STRETCHED = 4.0;
-// Relaxation: of the longest step after which balls would still meet; how fast the slope is
-// learned, and the steepest that is counted on.
+// Relaxation.  SAFETY: the step, relative to the longest after which the balls would still meet.
+// LEARNING: how fast the mean slope follows the last one.  STEEPEST: the largest slope that is
+// relied on.
 const float SAFETY = 0.6, LEARNING = 0.5, STEEPEST = 0.9;
 
-// What a dispatch is about.
+// The light of the dispatch.
 Light light;
 bool  positional;
-float radius;      // of the light, where a directional one is 1 away
+float radius;      // of the light; a directional one is at distance 1
 
-// The item.
+// The current item.
 HitPoint hit;
-vec3  start, direction; // the next distance is asked for at start + t direction
+vec3  start, direction; // the next distance is evaluated at start + t direction
 float t;
 float end;         // of the ray
 float facing;      // cosine between the normal and the direction
-float lift;        // of the start above the surface,
+float lift;        // height of the start above the surface
 float lift_in_pixels;
 bool  is_cone;     // else a ray
-float spread;      // radius of the cone per distance
-float margin;      // around the cone that must be empty, too
+float spread;      // radius of the cone at distance 1
+float margin;      // width around the cone that must be empty, too
 bool  blocked;
 bool  below_horizon;            // its point of the light is behind the surface
-float last_distance, last_step; // the distance at the step before, which was so long
-bool  took_least_step;          // whatever the distance was
+float last_distance, last_step; // the distance before the last step, and its length
+bool  took_least_step;          // the last step was the least one, not the distance
 float least_step;
-float slope;                  // of the distance along the ray, as it was on average
-float start_ratio;            // of the true distance that the distance is at the start
+float slope;                  // of the distance along the ray: a running mean
+float start_ratio;            // distance at the start, relative to the true one
 uint  step_count, step_limit; // so far, and at most
 
 uint  unresolved;  // rays of this lane that ran out of steps
@@ -72,7 +76,7 @@ void begin_ray(vec3 normal, vec3 toward)
     direction = toward;
     facing = dot(normal, direction);
     float box_end = clip_ray(start, direction, end).y;
-    // From inside of a solid nothing leaves the box around all of them.
+    // A ray from inside of a solid that reaches the box around all solids has met a wall there.
     blocked = hit.side < 0.0 && box_end < end;
     end = min(end, box_end);
     step_limit = blocked || below_horizon ? 0u : MOST_STEPS;
@@ -93,7 +97,7 @@ vec2 sample_disc(uint use)
     return disc_of_square(sample_square(pixel, control.ray, use, control.seed));
 }
 
-// Where the axis of a cone leaves the box around the scene, and its whole width has, too.
+// Where a cone, with its whole width, has left the box around the scene.
 float find_end_of_cone()
 {
     vec3 to_walls = mix(start - frame.low.xyz, frame.high.xyz - start,
@@ -104,7 +108,7 @@ float find_end_of_cone()
     return min(min(ends.x, ends.y), min(ends.z, end));
 }
 
-// From the hit to the light: to its middle, or to a point of its disc.
+// Aims a cone at the centre of the light, or a ray at a random point of its disc.
 void aim_at_light(vec3 normal)
 {
     lift = lift_in_pixels * hit.width + 4.0 * hit.rounding;
@@ -135,7 +139,7 @@ void aim_at_light(vec3 normal)
     begin_ray(normal, toward / light_distance);
 }
 
-// By a cosine around the normal, as light from there counts.
+// Aims over the hemisphere, with a density in proportion to the cosine, as light from there counts.
 void aim_over_hemisphere(vec3 normal)
 {
     vec3 right, up;
@@ -190,8 +194,8 @@ bool item_needs_step() { return step_count < step_limit; }
 float item_distance(vec3 position)
 {
 #ifdef ALONG
-    // Some roundings farther back than the ray has been: what was just before a surface without
-    // thickness there must not be behind it here.
+    // Back to the last position and some roundings farther.  Else a point just before a surface
+    // without thickness could count as behind it at this step.
     float some = 2.0 * ROUNDING * (largest(position) + t);
     return krs_along(position, direction, last_step > 0.0 ? last_step + some : 0.0);
 #else
@@ -201,14 +205,14 @@ float item_distance(vec3 position)
 
 vec3 item_position() { return start + t * direction; }
 
-// The clearance that the axis of a cone needs.  The surface that it starts from recedes by the
-// cosine.
+// The clearance that the axis of a cone needs.  Near its start that is less, since the surface
+// there recedes only by the cosine.
 float clearance_needed(float at) { return spread * at + min(margin, 0.5 * facing * at); }
 
-// A step longer than the distance: as long as may be if the distance goes on as it did.
+// A step longer than the distance: the longest that is safe if the distance goes on as it did.
 float relax(float distance)
 {
-#ifdef ALONG // it is what is free ahead, and tells nothing of what is behind
+#ifdef ALONG // krs_along gives what is free ahead, and tells nothing of what is behind
     return distance;
 #endif
     float needed = clearance_needed(t);
@@ -216,8 +220,8 @@ float relax(float distance)
     return max(2.0 * SAFETY / (1.0 - clamp(slope, -1.0, STEEPEST)) * lateral, distance);
 }
 
-// Whether the balls of empty space of this step and the last are too narrow where they meet, which
-// is `behind` this position and `lateral` from the axis (math.md 6).
+// Whether the empty balls of this step and the last are too narrow where they meet (math.md 6).
+// That is `behind` this position; `lateral` is how far they reach from the axis there, squared.
 bool has_overstepped(float distance, float per_gap)
 {
     float behind = 0.5 *
@@ -229,8 +233,8 @@ bool has_overstepped(float distance, float per_gap)
            (narrow || last_step > last_distance + distance);
 }
 
-// A ray is blocked inside of something.  Near the start even what is open may have a small
-// distance, where that is only a bound.
+// Whether a ray is inside of a solid, or a cone is not empty.  Near the start the distance may be
+// small in the open as well, where it is only a bound.
 bool is_blocked(float distance)
 {
     float near = mix(start_ratio, 1.0, min(t / (NEAR_START * hit.width), 1.0));
@@ -252,7 +256,7 @@ void take_distance(float distance)
     bool  arrives = t + max(distance, least_step) >= end;
     step_limit = !steps_back && (inside || arrives) ? 0u : step_limit;
     took_least_step = !steps_back && distance < least_step;
-    // Where the way in is between the last step and this one.
+    // Where the ray enters the solid, between the last position and this one.
     float crossing = last_step * distance / max(last_distance - distance, 1e-30);
     float next = took_least_step ? least_step : max(relax(distance), least_step);
     next = min(next, max(end - t, 0.0));
@@ -262,7 +266,7 @@ void take_distance(float distance)
     last_distance = steps_back ? last_distance : distance;
 }
 
-// How wide the penumbra of what blocks the light is at the hit, in pixels.
+// The width of the blocker's penumbra at the hit, in pixels.
 float find_penumbra()
 {
     float width = 2.0 * radius * t;
@@ -271,7 +275,7 @@ float find_penumbra()
     return width / hit.width;
 }
 
-// How much of the sky comes past what a ray hits after this share of its reach.
+// The openness of a ray that hits something after this fraction of its reach.
 float openness_of_hit(float fraction) { return fraction * fraction; }
 
 void end_item()

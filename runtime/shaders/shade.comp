@@ -1,8 +1,9 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
- * shade.comp: what is at each hit, and the light that it sends along its ray: its own, that of the
- * sky, and of some lights at once.  All of it becomes the pixel's.
+ * shade.comp: finds the material of each hit, and the light that it sends along its ray.  That is
+ * emitted light, light of the sky, and that of LIGHTS_AT_ONCE lights.  All of it is added to the
+ * pixel.
  */
 #include "scene.glsl"
 #include "frame.glsl"
@@ -10,29 +11,29 @@
 #include "light.glsl"
 #include "results.glsl"
 
-const float EVEN = 0.98;              // less is not a curved surface's own, but detail
-const float LEAST_NORMAL_REACH = 0.5; // without filtering (normal_reach in job.c)
-const float SEEN = 0.78;              // the mean of the normals that are seen of a thin round thing
+const float EVEN = 0.98;              // less comes from detail, not from curvature
+const float LEAST_NORMAL_REACH = 0.5; // the reach without filtering (normal_reach in job.c)
+const float SEEN = 0.78;              // length of the mean visible normal of a thin round thing
 
-// A sum of rays of such light is still a number.
+// The most light that a hit emits: sums over rays are still finite.
 const float BRIGHTEST = 1e30;
 
-// What reflects light.
+// How a surface reflects light.
 struct Coat {
-    vec3  color, normal; // the latter is the direction of the mean of the normals,
-    float mean_length;   // and this its length
+    vec3  color, normal; // normal: direction of the mean of the normals
+    float mean_length;   // length of this mean
     float roughness, metallic;
     vec3  toward_eye;
 };
 
-// Within 0 and most; what is not a number is 0.
+// Clamps numbers to [0, most]; NaN becomes 0.
 vec4 saturate(vec4 numbers, float most)
 {
     return mix(vec4(0.0), min(numbers, most), greaterThan(numbers, vec4(0.0)));
 }
 
-// The mean of the normals that the pixel sees, not a unit vector, where the mean of all around is
-// this share of a unit normal.  Of what is thin only the side towards the eye is seen.
+// The mean of the normals that the pixel shows; it is no unit vector.  `mean_length` is the length
+// of the mean of all normals around.  Of a thin thing only the side towards the eye is visible.
 vec3 mean_normal(vec3 normal, float mean_length, vec3 toward_eye)
 {
     float rest = 1.0 - mean_length;
@@ -58,8 +59,8 @@ Coat find_coat(HitPoint hit, KrsSurface surface, float evenness)
                 saturate(vec4(surface.metallic), 1.0).x, -hit.direction);
 }
 
-// Scattered light goes with the cosine, and so with the mean of the normals, which is shorter than
-// each; what a coat mirrors is as much whatever its roughness.
+// Scattered light is in proportion to the cosine, and so to the mean of the normals, which is
+// shorter than each.  What a coat mirrors is the same amount at any roughness.
 vec3 mean_color(Coat coat) { return coat.color * mix(coat.mean_length, 1.0, coat.metallic); }
 
 vec3 direct_light(Light light, HitPoint hit, Coat coat, vec3 facing, float visible)
@@ -71,15 +72,15 @@ vec3 direct_light(Light light, HitPoint hit, Coat coat, vec3 facing, float visib
         toward = difference * inversesqrt(square);
         color /= square;
     }
-    // Who casts no shadows has not been looked for, but a surface that is turned away is dark.
+    // Rays do not test lights without shadows, but a surface that faces away from one is dark.
     if ((light.kind & LIGHT_CASTS_SHADOWS) == 0u)
         visible = dot(facing, toward) > 0.0 ? 1.0 : 0.0;
     return visible * color * reflected(coat.normal, coat.toward_eye, toward, mean_color(coat),
                                        coat.roughness, coat.metallic);
 }
 
-// The hemisphere of the sky, as far as it is open; what is closed off by a surface of like
-// colour gives some light back.
+// The light of the sky, as far as the hemisphere is open.  Occluders are taken to have the
+// surface's own colour, and give some light back.
 vec3 ambient(Coat coat, float openness)
 {
     vec3 bounce = openness / max(1.0 - coat.color * (1.0 - openness), 0.05);
@@ -90,8 +91,8 @@ vec3 ambient(Coat coat, float openness)
     return scattered + mirrored * openness;
 }
 
-// What becomes of the pixel of a hit, row by row: whatever is not asked for would take lavapipe as
-// long as what is.
+// Stores the results of a pixel, one wanted row after the other.  Without the loop lavapipe would
+// take as long for unwanted rows as for wanted ones.
 void store_results(uint index, uint rows, vec4 color, HitPoint hit, Coat coat, KrsSurface surface)
 {
     vec3  difference = hit.position - frame.eye;
@@ -101,7 +102,7 @@ void store_results(uint index, uint rows, vec4 color, HitPoint hit, Coat coat, K
     depth = find_end(index).t;
 #endif
     uvec3 normal = floatBitsToUint(hit.side * coat.normal);
-    do { // as in pixels.glsl
+    do { // do-while, as in pixels.glsl
         uint  row = uint(findLSB(rows));
         uvec4 numbers = floatBitsToUint(color);
         if (row == ROW_POSITIONS)
@@ -117,7 +118,7 @@ void store_results(uint index, uint rows, vec4 color, HitPoint hit, Coat coat, K
     } while (rows != 0u);
 }
 
-uint  rows;       // of the results
+uint  rows;       // wanted rows of results
 Light lights[LIGHTS_AT_ONCE]; // each lane fetches them once
 
 void begin_group()
@@ -146,7 +147,7 @@ void do_item(uint number)
     vec3 visible = lighting.yzw;
     uint i = control.light;
     Light now = lights[0], next = lights[1];
-    do { // as in pixels.glsl
+    do { // do-while, as in pixels.glsl
         vec3 light = direct_light(now, hit, coat, facing.xyz, visible.x);
         radiance.rgb += i < end ? light : vec3(0.0);
         visible = visible.yzx;

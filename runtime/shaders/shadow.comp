@@ -4,36 +4,37 @@
  * shadow.comp: how much of a light a pixel sees: the mean of what the rays of the pixels around
  * have found (secondary.comp).
  *
- * A shadow is a function of the place alone: a mean over places much nearer to each other than the
- * penumbra is wide blurs nothing.  So the radius of the mean comes from how far away the blockers
- * are, and which surfaces the neighbours are on does not matter.  Along the direction to the light
- * a shadow changes little up to half the distance to the blockers, so distances between pixels
- * count across that direction: where light is grazing a surface its penumbrae are long.
+ * A shadow is a function of the position alone, so it does not matter which surfaces the neighbours
+ * are on.  A mean over positions much nearer to each other than the penumbra is wide blurs nothing.
+ * So the radius of the mean follows from how far away the blockers are.  Along the direction to the
+ * light a shadow changes little up to half the distance to the blockers.  So distances between
+ * pixels are measured across that direction: in grazing light penumbrae are long.
  *
- * Means are taken twice where penumbrae are wide: of all pixels nearby, whose rays together are
- * spread evenly, and then of some of these means, farther apart.
+ * Where penumbrae are wide, means are computed twice.  The first are of all pixels nearby, whose
+ * rays together are spread evenly.  The second are of some of the first means, farther apart.
  */
 #include "frame.glsl"
 #include "hit_lists.glsl"
 #include "shared.glsl"
 #include "neighbours.glsl"
 
-// The mean reaches so far, for the width of the penumbra; in pixels at least, and at least for a
-// second mean, where light falls straight, and where it is grazing.
+// RADIUS_OF_PENUMBRA: the radius of a mean, relative to the width of the penumbra.  LEAST_RADIUS:
+// its least, in pixels.  NEAR_RADIUS: a larger radius needs a second mean.  In grazing light that
+// limit is smaller, by a factor down to GRAZING.
 const float RADIUS_OF_PENUMBRA = 0.5, LEAST_RADIUS = 1.25, NEAR_RADIUS = 2.0, GRAZING = 0.25;
 
-// What part of a disc is above a line that is so far below its middle, in radii.
+// The fraction of a disc above a line that is `depth` radii below its centre.
 float fraction_above(float depth)
 {
     float h = clamp(depth, -1.0, 1.0), segment_height = 1.0 - abs(h);
-    // The segment's area over pi: its height^1.5 times a polynomial that is right to 5e-4.
+    // The segment's area over pi: its height^1.5 times a polynomial with an error of 5e-4.
     float segment = segment_height * sqrt(segment_height) * (0.607 - 0.107 * segment_height);
     return h < 0.0 ? segment : 1.0 - segment;
 }
 
-// The light as a place sees it.
+// The disc of a light as a hit sees it.
 struct Disc {
-    vec3  toward; // its middle, unit
+    vec3  toward; // unit vector to its centre
     float spread; // its radius at distance 1
 };
 
@@ -45,7 +46,7 @@ Disc find_disc(Light light, HitPoint hit)
     return Disc(toward / light_distance, light_radius(light) / light_distance);
 }
 
-// The fraction of the light's disc that is in front of the surface.
+// The fraction of the disc in front of the surface; `rise`: cosine between normal and direction.
 float find_fraction_above(Disc disc, float rise)
 {
     float across = sqrt(max(1.0 - rise * rise, 0.0));
@@ -53,7 +54,7 @@ float find_fraction_above(Disc disc, float rise)
                              : float(rise > 0.0);
 }
 
-// What a quarter of a tile adds to the penumbrae around a pixel.
+// The penumbrae of a quarter of a tile, times a weight; 0 outside of the band.
 Penumbrae find_quarter(ivec2 quarter, float weight)
 {
     ivec2 quarters = 2 * ((ivec2(work.extent) + 7) / 8);
@@ -66,9 +67,9 @@ Penumbrae find_quarter(ivec2 quarter, float weight)
     return Penumbrae(weight * of.lit, weight * of.hidden, weight * of.width);
 }
 
-// How far the mean reaches, in pixels, by the four quarters around.  0 where all of them see the
-// light, or nothing does.  Fewer pixels would often agree by chance at the ends of a penumbra, and
-// make it narrower.
+// The radius of the mean in pixels, by the four quarters around.  It is 0 where all of their pixels
+// see the light, or none does.  Fewer pixels would often agree by chance at the ends of a penumbra,
+// and make it narrower.
 float find_radius(ivec2 pixel)
 {
     vec2  tile_point = 0.25 * (vec2(pixel) + 0.5) - 0.5, fraction = fract(tile_point);
@@ -86,12 +87,13 @@ float find_radius(ivec2 pixel)
     return lit > 0.0 && hidden > 0.0 ? radius * inversesqrt(float(control.rays)) : 0.0;
 }
 
-// The mean of what is seen, of every `stride`th of 5x5 pixels, as far as their places are near.
+// The mean visibility over 5x5 pixels that are `stride` apart, weighted by how near their hits are.
 float find_mean(uint list, ivec2 pixel, HitPoint hit, Disc disc, int stride, float radius)
 {
     vec2  sums = vec2(0.0);
     float within = 1.0 / max(radius * hit.width, 1e-30), edge = 1.0 / (2.0 * float(stride) + 1.0);
-    float stretched = 1.0 - min(2.0 * disc.spread, 1.0); // towards the light
+    // How little distances along the light count; 1: not at all.
+    float stretched = 1.0 - min(2.0 * disc.spread, 1.0);
     ivec2 tap = ivec2(-2);
     do {
         ivec2     offset = stride * tap;
@@ -112,7 +114,8 @@ float find_mean(uint list, ivec2 pixel, HitPoint hit, Disc disc, int stride, flo
 
 void begin_group() {}
 
-// First by all around; who needs a wider mean is listed for the second time.
+// Computes the mean of a pixel.  In the first phase pixels that need a wider mean are listed for
+// the second.
 void do_item(uint number)
 {
     uint  slot = find_listed(control.reading + number);

@@ -1,28 +1,31 @@
 /*
- * shared.glsl: what a ray from a hit finds, for the pixels around it: a word a pixel.
+ * shared.glsl: what a ray from a pixel's hit has found, in a word that the pixels around read.
  *
- * The upper 24 bits are those of how far along its axis the pixel's hit is, so that its position is
- * known from the word alone; the lower 8 are a code.  A word of 0 is of a pixel without a ray.
+ * The upper 24 bits are those of the depth of the hit along the pixel's axis, so that the word
+ * alone gives the hit's position.  The lower 8 bits are a code.  A pixel without a ray has the word
+ * 0.
  */
 #include "sines.glsl"
 
-// Of the disc that a hit sees of a light; a directional one is 1 away.
+// The radius of a light's disc; a directional light is at distance 1.
 float light_radius(Light light)
 {
     bool positional = (light.kind & LIGHT_POSITIONAL) != 0u;
     return max(positional ? light.softness : krs_tan(0.5 * min(light.softness, 3.0)), 0.0);
 }
 
-// Codes of rays to a light: it is lit; the point of the light lies behind the surface itself;
-// others are blocked, and tell how wide the penumbra is.
+// Codes of rays to a light.  LIT: nothing is in between.  BELOW_HORIZON: the point of the light
+// lies behind the surface itself.  NARROWEST to WIDEST: the ray is blocked, and this is the width
+// of the penumbra.
 const uint LIT = 1u, BELOW_HORIZON = 255u, NARROWEST = 2u, WIDEST = 254u;
 // Codes of the widths of penumbrae, in pixels: powers of 2^(1/8), from 2^-4 on.
 const float WIDTHS_A_DOUBLING = 8.0, NARROWEST_LOG = -4.0;
-// Codes of rays over the hemisphere: from closed to open.
+// Codes of openness: from CLOSED on, and OPEN_CODES above it where all is open.
 const uint CLOSED = 1u;
 const float OPEN_CODES = 254.0;
 
-// A pixel's ray, not a unit vector where that would cost a root: it is 1 along the view.
+// The axis of a pixel, along its ray.  Where a unit vector would cost a root, the axis has length 1
+// along the view.
 #ifdef LISTED_RAYS
 void find_axis(vec2 image_point, out vec3 origin, out vec3 axis)
 {
@@ -30,7 +33,7 @@ void find_axis(vec2 image_point, out vec3 origin, out vec3 axis)
     find_ray(image_point, origin, axis, base, slope);
 }
 
-// How far along its axis a place is.
+// How far a hit is along the axis of its pixel.
 float find_depth(HitPoint hit) { return find_end(index_of(pixel_of(hit.slot))).t; }
 #else
 void find_axis(vec2 image_point, out vec3 origin, out vec3 axis)
@@ -48,7 +51,7 @@ void find_axis(vec2 image_point, out vec3 origin, out vec3 axis)
 #endif
 }
 
-// How far along its axis a place is.
+// How far a hit is along the axis of its pixel.
 float find_depth(HitPoint hit)
 {
     float along = dot(hit.position - frame.eye, frame.forward.xyz);
@@ -85,13 +88,13 @@ uint code_of_openness(float openness) { return CLOSED + uint(OPEN_CODES * openne
 
 float openness_of_code(uint code) { return float(code - CLOSED) / OPEN_CODES; }
 
-// What is known of the light around: how many pixels see it, how many do not, and the sum of the
-// widths of penumbrae of the latter, in pixels.
+// What is known of a light around a pixel.  `lit` and `hidden` are numbers of pixels that see it
+// and that do not.  `width` is the sum of the penumbrae's widths of the latter, in pixels.
 struct Penumbrae {
     float lit, hidden, width;
 };
 
-// Of a quarter of a tile, in which neither is more than 16.
+// Packs the numbers of a quarter of a tile, whose counts are at most 16.
 uint pack_penumbrae(Penumbrae of)
 {
     return packHalf2x16(vec2(of.width, 0.0)) | uint(of.lit) << 16u | uint(of.hidden) << 24u;

@@ -1,17 +1,18 @@
 /*
- * stencil.glsl: where the distance is looked at for a normal: at unit vectors v around the hit.
+ * stencil.glsl: the taps for a normal: unit vectors v around the hit, where the distance f is
+ * evaluated.
  *
- * The normal is along the sum of v f(p + r v), since the sum of v v^T is TAPS / 3 times the
- * identity for the corners of each of Plato's solids.  Where opposite to each corner there is
- * another one, the error is of second order in r; else, and for differences to one side, of first.
- * STENCIL says which: a KrsNormals without the default.  This is C as well, for
+ * The normal is along the sum of v f(p + r v).  For the corners of each of Plato's solids the sum
+ * of v v^T is TAPS / 3 times the identity.  Where each corner has an opposite one, the error is of
+ * second order in r.  Else, and for differences to one side, it is of first order.  STENCIL is the
+ * KrsNormals of the taps, other than the default.  The file is C as well, for
  * tests/unit/stencils.c.
  */
 #ifndef STENCIL
 #define STENCIL 3
 #endif
 
-#if STENCIL == 1 // forward: the place itself, and one step along each axis
+#if STENCIL == 1 // forward: the hit itself, and one step along each axis
 const uint TAPS = 4u;
 vec3 stencil(uint i)
 {

@@ -64,7 +64,7 @@ typedef struct Stencil {
     uint           taps;
 } Stencil;
 
-/* What a kind of normals looks at; nothing where it does not say. */
+/* The stencil of a kind of normals; none for the default and for derivatives. */
 static inline Stencil find_stencil(KrsNormals normals)
 {
     switch (normals) {

@@ -4,34 +4,36 @@
 #extension GL_KHR_shader_subgroup_arithmetic : enable
 #extension GL_KHR_shader_subgroup_ballot : enable
 /*
- * trace.comp: primary rays, by sphere tracing, behind beams.
+ * trace.comp: marches beams, and behind them primary rays, by sphere tracing.
  *
  * A ray advances by a step from `t`, where the distance is known.  The ball of empty space around
  * `t` and the ball around the next position must meet, or something may be in between.  If they do
  * not meet, a shorter step is tried, which ends at four fifths of the distance to the middle of the
  * unverified interval.  This goes on until the balls meet, or until the unverified interval is no
  * longer than the tolerance: a twentieth of the permitted error.
- * A ray hits where the distance is not above 0, never where it is only small: thin things are as
- * thick as they are, however coarse the steps, and a bound that is far too small shows nothing.  A
- * ray that runs out of steps before it is unresolved: it is counted, and shows the background.  A
- * ray from inside of a solid sees the solid's inner wall.
  *
- * How long a step is depends on the method (TRACE): the distance (plain), 1.2 times the distance
- * (relaxed), or as far as the balls just meet if the distance goes on as it did (automatic).  Where
- * the automatic method expects a surface within the permitted error, it steps behind it.  A surface
- * that has been crossed is found by the chord; one that is only approached takes ever shorter
- * steps.
+ * A ray hits where the distance is not above 0, never where it is only small.  So thin things keep
+ * their thickness, however coarse the steps, and a bound that is far too small shows no false
+ * surface.  A ray that runs out of steps before is unresolved: it is counted, and shows the
+ * background.  A ray from inside of a solid sees the solid's inner wall.
  *
- * Planes that are components of their own need no march: with PLANES a ray knows where it meets the
- * first, and marches the rest up to there.
+ * The length of a step depends on the method (TRACE).  It is the distance (plain), or 1.2 times the
+ * distance (relaxed).  Or it goes as far as the balls just meet if the distance goes on as it did
+ * (automatic).  Where the automatic method expects a surface within the permitted error, it steps
+ * behind it.  A surface that has been crossed is found by the chord.  One that is only approached
+ * takes ever shorter steps.
  *
- * What the rays of a tile share is marched once before, by the beam through the middle of the
- * tile: a ray through empty space less the tile's width.  Tiles of 32x32 pixels are followed by
- * tiles of 8x8; they count from the corner of the picture, whatever the crop and the band, so that
- * equal pixels come out of all of them.  Tiles of 8x8 whose beam goes through the scene unhindered
- * need no rays: the others are listed, and followed by tiles of 4x4, the quarters of these.
+ * Planes that are components of their own need no march.  With PLANES a ray knows where it meets
+ * the first plane, and marches the other components up to there.
+ *
+ * The empty space that the rays of a tile share is marched once before, by a beam through the
+ * middle of the tile.  A beam is a ray whose clearance is less by the tile's width.  Beams of tiles
+ * of 32x32 pixels are followed by those of 8x8.  Tiles are counted from the corner of the picture,
+ * whatever the crop and the band, so that these do not change pixels.  Tiles of 8x8 whose beam hits
+ * nothing need no rays.  The others are listed, and followed by beams of their quarters, tiles of
+ * 4x4.
  */
-#ifndef TRACE // which variant: the renderer says so; this one suits every device
+#ifndef TRACE // chosen by the renderer; these choices suit every device
 #define TRACE 3u
 #define REFILL 0
 #endif
@@ -45,24 +47,26 @@ const uint MOST_BEAM_STEPS = 256u; // the rest is left to the rays
 // of a tenth of a pixel lose less than 1 % by it (tests/oracle/coverage.c).
 const float TOLERANCE = 0.05;
 const float MOST_TOLERANCE = 0.0125;
-// Relaxation: how far beyond the distance; how fast the mean slope is learned.
+// RELAXATION: the relaxed step, relative to the distance.  LEARNING: how fast the mean slope
+// follows the last one.
 const float RELAXATION = 1.2;
 const float LEARNING = 0.3;
-// Automatic: how far a step goes behind the expected surface.  A chord is trusted if the depth at
-// its end is below this part of the clearance at its start.
+// The automatic method.  OVERSHOOT: a step that crosses an expected surface, relative to its
+// distance.  SHALLOW: a chord is trusted if the depth at its end is below this part of the
+// clearance at its start.
 const float OVERSHOOT = 1.05;
 const float SHALLOW = 0.25;
-// Balls that are tried (PROBE): how large the next may be, of what is expected.
+// Methods that try balls (PROBE).  SAFETY: the next radius, relative to the predicted one.
 const uint  BINARY = 1u;
 const float SAFETY = 0.9;
-// Solids that touch are one: from inside they count as grown by what rounding may leave open at
+// Solids that touch are one.  From inside they count as larger, by what rounding may leave open at
 // the seam between two.
 const float SEAM = 4.0; // roundings
 // A beam ends where its ball is hardly wider than the tile.
 const float BEAM_MARGIN = 1.05;
 
 #ifdef PACKED
-const bool SAVES = false; // there is a march of each part
+const bool SAVES = false; // there is a march for each part, too much to save
 #else
 const bool SAVES = true;
 #endif
@@ -70,12 +74,12 @@ const uint REFILL_THRESHOLD = 2u;
 
 // The state of a ray that is marched; in the queue two rows of four numbers.
 struct RayMarch {
-    uint  index;     // of its pixel, or its beam: where it ends up in `ends`
-    float t;         // nothing is hit up to here,
-    float clearance; // nor within this length behind it
+    uint  index;     // of its pixel or beam in `ends`
+    float t;         // nothing is hit up to here
+    float clearance; // nothing is hit for this length behind t either
     float step;      // from t to the next sample of the distance
     float slope;     // of the clearance along the ray: a running mean
-    float side;      // as of a RayEnd; 0: not known
+    float side;      // as in RayEnd; 0: unknown
     uint  steps;
     uint  state;
 };
@@ -84,36 +88,36 @@ layout(std430, set = 1, binding = 6) buffer Queue { uvec4 queue[]; };
 
 RayMarch march;
 bool  exists;                  // the item is in the band
-uint  tile_index;              // of the item, from the first of the workgroup on
+uint  tile_index;              // of the item, counted from the workgroup's first tile
 vec3  origin, direction;
 float end;
 float plane_t;                 // with PLANES: where a ray meets a plane; INFINITE: nowhere
 float pixel_base, pixel_slope; // a pixel is as wide as base + slope t
-vec2  width;                   // so is the beam; 0 for a ray, or less: solids count as grown
+vec2  width;                   // of a beam, likewise; 0 for a ray; less: solids count as larger
 float shrinking;               // of the clearance, since the beam gets wider: 1 / (1 + slope)
 bool  ends_at_walls;           // all solids end at `end`
-float rounding;                // of coordinates at t = 0
-float tolerance_in_pixels;     // may stay unverified, in pixels
+float rounding;                // magnitude of coordinates at t = 0
+float tolerance_in_pixels;     // length that may stay unverified, in pixels
 uvec2 first_8, count_8, first_32, count_32; // the tiles of beams
 uint  most_steps;              // of a ray of this lane
-uint  found_tiles;             // beams of this lane that find something: a bit each
+uint  found_tiles;             // bits of this lane's beams that find something
 
 // What the items of a tile have in common: 64 rays, or four beams of 4x4 pixels.  A beam of 8x8 or
 // of 32x32 pixels is the only item of its tile.
 struct TileStart {
     uvec2 tile;   // its column and row in the picture, of tiles of 8x8 or of 32x32 pixels
-    vec4  starts; // nothing is before: the beam that it is in has ended here; of rays, by quarters
+    vec4  starts; // for each quarter: where the larger beam around it ended; nothing is before
 };
 
 uint  first_tile; // of the workgroup
-uvec2 item_tile;  // of the item that is about to begin,
-float item_start; // and where it starts
+uvec2 item_tile;  // of the item that is about to begin
+float item_start; // where that item starts
 #if REFILL
-uvec2 kept_tiles;               // of two tiles a lane, which is as many as a workgroup has
-vec4  kept_starts, more_starts; // of the one, and of the other
+uvec2 kept_tiles;               // two tiles of each lane are all tiles of the workgroup
+vec4  kept_starts, more_starts; // starts of the first tile, and of the second
 #endif
 
-// Items go through tiles one after the other, and through the quarters of each.
+// The tile of an item.  Items are numbered tile by tile, and quarter by quarter in each.
 uint tile_of_item(uint number)
 {
     return number >> (control.phase == TRACE_RAYS ? 6u : control.phase == TRACE_BEAMS_4 ? 2u : 0u);
@@ -133,7 +137,7 @@ uvec2 cell_of_beam(uint number)
            uvec2(control.window & 0xffffu, control.window >> 16u);
 }
 
-// Where in `ends` the beam of a tile is, by its place in the band.
+// Indices in `ends` of the beams of tiles, which are counted in the band.
 uint end_of_8(uvec2 cell) { return work.extent.x * work.extent.y + cell.y * count_8.x + cell.x; }
 
 uint end_of_32(uvec2 cell)
@@ -148,9 +152,9 @@ uint end_of_4(uvec2 cell, uint quarter)
 
 float load_start(uint end) { return uintBitsToFloat(ends[end].x); }
 
-// Rays and beams of 4x4 pixels are those of all tiles of the band, or of those that are listed.
-// Rays start where the beam of 4x4 pixels has ended, if there is one, that one where its beam of
-// 8x8 has, and that one where its beam of 32x32 has.
+// Loads a tile, and where its rays or beam start.  Rays and beams of 4x4 pixels are those of all
+// tiles of the band, or of the listed ones.  Each starts where the next larger beam around it has
+// ended.  For rays that is one of 4x4 pixels, if there are such beams, else of 8x8.
 TileStart load_tile(uint number)
 {
     bool  is_ray = control.phase == TRACE_RAYS, large = control.phase == TRACE_BEAMS_32;
@@ -220,8 +224,8 @@ void aim(vec2 image_point)
     rounding = largest(origin);
 }
 
-// What the beam of a tile of `side` pixels a side must keep clear: a ray of it is at most base +
-// slope t from the ray through the middle at the same t.  The difference of two unit vectors
+// The width of the beam of a tile, `side` pixels a side: base + slope t.  A ray of the tile is at
+// most as far from the ray through the middle, at the same t.  The difference of two unit vectors
 // a/|a| and b/|b| is at most 2 |a - b| / (|a| + |b|).
 vec2 find_width(float side)
 {
@@ -240,7 +244,8 @@ RayMarch unpack_march(uvec4 low, uvec4 high)
                     float(low.y >> 2u & 3u) - 1.0, low.y >> 4u, low.y & 3u);
 }
 
-// In the queue.  On a graphics card a subgroup takes the indices of its lanes at once (SUBGROUPS).
+// Takes an index in the queue.  On a graphics card a subgroup takes the indices of its lanes at
+// once (SUBGROUPS).
 uint take_queue_index()
 {
 #ifdef SUBGROUPS
@@ -261,19 +266,19 @@ void save_item()
     queue[at + 1u] = floatBitsToUint(vec4(march.step, march.slope, 0.0, 0.0));
 }
 
-// The march of a ray or a beam that starts where nothing is before `start`.
+// Begins the march of a ray or beam at `start`, before which nothing is hit.
 void begin_march(uint index, float start, bool is_ray)
 {
     march.index = index;
     march.t = start;
     march.clearance = march.step = 0.0;
     march.slope = -1.0 / (1.0 - LEARNING); // -1 after the first step
-    // No side yet: the first distance tells, unless something empty lies behind the ray.
+    // The side is not known before the first distance, unless empty space lies behind the ray.
     march.side = march.t > 0.0 || !is_ray ? 1.0 : 0.0;
     march.steps = 0u;
     march.state = march.t <= end ? STATE_MARCHING : STATE_MISS;
 #ifdef PROBE
-    // Beams end where a tile does not fit into the ball.
+    // Beams end where the tile no longer fits into the ball.
     march.step = start > 0.0 ? 3.0 * (pixel_base + pixel_slope * start)
                              : 0.05 * (end - start);
     march.step = max(march.step, ROUNDING * (rounding + start));
@@ -344,8 +349,8 @@ bool item_needs_step()
 }
 
 #ifdef ALONG
-// Where the ray has been before, and some roundings farther: what was just before a surface without
-// thickness there must not be behind it here.
+// The length back to the last position, and some roundings more.  Else a point just before a
+// surface without thickness could count as behind it at this step.
 float distance_behind()
 {
     float margin = 2.0 * ROUNDING * (rounding + march.t + march.step);
@@ -353,7 +358,8 @@ float distance_behind()
 }
 #endif
 
-// Where branches save work, components that are far away for their size are left out.
+// The distance to march by.  Where branches save work, it skips components that are far away for
+// their size.
 float item_distance(vec3 position)
 {
 #ifdef PROBE
@@ -369,7 +375,7 @@ float item_distance(vec3 position)
 #endif
 }
 
-// With PROBE the middle of a ball.
+// Where the distance is evaluated next; with PROBE the centre of a ball.
 vec3 item_position() { return origin + (march.t + march.step) * direction; }
 
 #include "march_step.glsl"
@@ -382,13 +388,14 @@ void end_item()
     bool unresolved = is_ray && (march.state == STATE_MARCHING || march.state == STATE_REFINING);
     uint march_group = 0u;
     march.state = unresolved ? STATE_MISS : march.state;
-    // From inside of a solid nothing leaves the box around all of them.
+    // A ray from inside of a solid that reaches the box around all solids hits a wall there.
     if (is_ray && !unresolved && march.state == STATE_MISS && march.side < 0.0 && ends_at_walls) {
         march.state = STATE_HIT;
         march.t = end;
     }
 #ifdef PLANES
-    // Planes are met where nothing else was; a beam whose rays may meet one is not done with.
+    // A ray that hits nothing else meets its plane.  A beam whose rays may meet a plane counts as a
+    // hit, so that its rays are marched.
     if (!unresolved && march.state == STATE_MISS && plane_t < INFINITE) {
         march.state = STATE_HIT;
         march.t = plane_t;
@@ -401,7 +408,8 @@ void end_item()
     }
 #endif
 #ifdef MARCH_GROUP
-    // What other groups have found stays, unless this is nearer; so does where they gave up.
+    // The hit of another group stays, unless this one is nearer.  So does the point where another
+    // group ran out of steps.
     if (exists && is_ray) {
         RayEnd known = find_end(march.index);
         bool ends = march.state == STATE_HIT || unresolved,

@@ -1,8 +1,8 @@
 #version 440
 #extension GL_GOOGLE_include_directive : enable
 /*
- * unproven.comp: which pixels need rays to a light of their own: those for which the empty cone of
- * their quarter of a tile (secondary.comp) does not prove that all of the light is seen.
+ * unproven.comp: lists the pixels that need rays of their own to a light.  For these the cone of
+ * their quarter of a tile (secondary.comp) does not prove that all of the light is visible.
  *
  * An item is a quarter of the list.
  */
@@ -10,11 +10,12 @@
 #include "hit_lists.glsl"
 #include "shared.glsl"
 
-// Of an empty cone: pixels so near to its start, about, on its plane and with a similar normal.
+// An empty cone proves this for pixels near its start, near its plane (both in pixels, about), and
+// with a similar normal (the least cosine).
 const float PROVEN_NEAR = 3.0, PROVEN_ON_PLANE = 1.0, FACING_ALIKE = 0.9;
 
-// Whether the empty cone of one pixel, which faces that way, tells that the light is seen from
-// another.
+// Whether the empty cone of a pixel with normal `facing` proves that another pixel sees all of the
+// light.
 bool is_proven(HitPoint here, vec3 normal, HitPoint cone, vec3 facing)
 {
     vec3  difference = here.position - cone.position;
@@ -24,7 +25,7 @@ bool is_proven(HitPoint here, vec3 normal, HitPoint cone, vec3 facing)
            dot(difference, difference) * turned * turned < PROVEN_NEAR * PROVEN_NEAR;
 }
 
-// Those of these pixels for which it tells that.
+// The bits of the hits of a quarter for which its cone proves this; their visibility is stored.
 uint find_proven(uint quarter, uint hits)
 {
     uint first = slot_of_quarter(quarter), cone = cone_of_quarter(quarter), proven = 0u;
@@ -47,7 +48,7 @@ uint find_proven(uint quarter, uint hits)
 
 void begin_group() {}
 
-// Indices in the list are reserved for all at once.
+// Lists the other hits of a quarter.  Indices are reserved for all of them at once.
 void do_item(uint number)
 {
     uint quarter = find_listed(control.reading + number), first = slot_of_quarter(quarter);

@@ -1,5 +1,5 @@
 /*
- * answers.h: what point_query.comp says of a point.
+ * answers.h: the block in which point_query.comp answers about a point.
  *
  * C and GLSL read this one file, as they do blocks.h.
  */
@@ -12,12 +12,12 @@
 typedef unsigned int uvec4[4];
 #endif
 
-/* std430.  What is in surface.def has rows of four numbers, of which it uses as many as it has: so
-   both languages find each row in the same place, whatever the types are. */
+/* std430.  Each property of surface.def has a row of four numbers, of which it uses as many as it
+   needs.  So both languages find each row at the same offset, whatever the types are. */
 struct Answer {
-    vec3  gradient; /* of the distance, unit */
+    vec3  gradient; /* of the distance, a unit vector */
     float distance;
-    vec3  normal; /* the one to light */
+    vec3  normal; /* the normal for lighting */
     float surface_distance;
     uvec4 component;
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends)            uvec4 name;

@@ -1,5 +1,5 @@
 /*
- * band.c: the buffers of a band.
+ * band.c: allocates the buffers of a band.
  */
 #include "runtime/tracer/band.h"
 
@@ -7,13 +7,14 @@
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/rendering.h"
 
-/* Pixels of a band: on a graphics card all of a common picture, in 560 MB of buffers, or as many
-   as a part of its memory has room for; on a processor few, which stay near to it, and are made of
-   pages that must be cleared. */
+/* The most pixels of a band.  On a graphics card that is a whole picture of a common size, in 560
+   MB of buffers.  On a processor bands are small, so that they stay in its caches; the pages of
+   their buffers must be cleared, too. */
 #define BAND_PIXELS     (UINT64_C(1) << 21)
 #define BAND_PIXELS_CPU (UINT64_C(1) << 19)
-#define PART_OF_MEMORY  4
-/* Bands are halved when the device lacks memory, down to this. */
+/* The buffers of a band take at most this fraction of the device's memory: 1 / PART_OF_MEMORY. */
+#define PART_OF_MEMORY 4
+/* When the device lacks memory bands are halved, down to this many pixels. */
 #define BAND_PIXELS_MIN (UINT64_C(1) << 12)
 
 static void band_destroy(Gpu *gpu, Band *band)
@@ -25,8 +26,8 @@ static void band_destroy(Gpu *gpu, Band *band)
     band->pixels = 0;
 }
 
-/* Room for the beams of a band of so many pixels, whatever its shape and place: every tile of 8x8
-   pixels, its quarters, and every tile of 32x32. */
+/* The most beams of a band of this many pixels, whatever its shape and position.  There is a beam
+   for every tile of 8x8 pixels, for each of its quarters, and for every tile of 32x32. */
 static VkDeviceSize most_beams(uint64_t pixels)
 {
     return 2 * (pixels / TILE + 2 * KRS_MOST_SIDE / TILE);
@@ -34,15 +35,15 @@ static VkDeviceSize most_beams(uint64_t pixels)
 
 static bool band_create(KrsRendering *rendering, uint64_t pixels)
 {
-    Gpu               *gpu     = &rendering->renderer->gpu;
-    Band              *band    = &rendering->band;
-    const bool         near    = gpu_is_cpu(gpu); /* the host reads the results where they are */
-    const Where        shared  = near ? SHARED : ON_DEVICE;
+    Gpu               *gpu           = &rendering->renderer->gpu;
+    Band              *band          = &rendering->band;
+    const bool         read_in_place = gpu_is_cpu(gpu); /* the host reads the device's buffer */
+    const Where        shared        = read_in_place ? SHARED : ON_DEVICE;
     const VkDeviceSize results = pixels * RESULT_ROWS * RESULT_BYTES, beams = most_beams(pixels);
     const struct {
         Buffer      *buffer;
-        uint32_t     binding, texels; /* of set 1; 0: of none */
-        VkDeviceSize bytes;           /* 0: none is made */
+        uint32_t     binding, texels; /* in set 1: as a buffer, as texels; 0: none */
+        VkDeviceSize bytes;           /* 0: the buffer is not needed */
         Where        where;
         const char  *name;
     } wanted[] = {
@@ -53,7 +54,7 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels)
          "queue of rays"},
         {&band->taken, TAKEN_BINDING, 0, beams * sizeof(uint32_t), ON_DEVICE, "shares of groups"},
         {&band->tiles, TILES_BINDING, 0, beams * sizeof(uint32_t), ON_DEVICE, "tiles"},
-        {&band->fetched, 0, 0, near ? 0 : results, SHARED, "pixels to read"},
+        {&band->fetched, 0, 0, read_in_place ? 0 : results, SHARED, "pixels to read"},
     };
     if (band->pixels >= pixels)
         return true;
@@ -79,21 +80,21 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels)
     return true;
 }
 
-/* Tiles may end outside of the picture. */
+/* Whole tiles are traced, so the last one may reach beyond the picture. */
 static uint32_t round_to_tiles(uint32_t pixels) { return (pixels + TILE - 1) / TILE * TILE; }
 
-/* Rows of a band of at most `pixels`: whole tiles, and at least one. */
+/* The rows of pixels in a band of at most `pixels` pixels: whole tiles, at least one. */
 static uint32_t rows_within(uint32_t width, uint64_t pixels)
 {
     uint64_t rows = pixels / width / TILE * TILE;
     return rows < TILE ? TILE : (uint32_t)rows;
 }
 
-/* What the buffers of a band hold for a pixel, about. */
+/* Bytes of all buffers of a band for a pixel, about. */
 #define BAND_BYTES (END_BYTES + HIT_BYTES + 2 * RESULT_ROWS * RESULT_BYTES + 2 * MARCH_BYTES + 4)
 
-/* As many pixels as a band may have, for it to fit into the device's memory and for none of its
-   buffers to be longer than kernels may read. */
+/* The most pixels that a band may have on this device.  All of its buffers must fit into the
+   device's memory, and none may be longer than kernels can read. */
 static uint64_t most_pixels(const Gpu *gpu)
 {
     const uint64_t                usual    = gpu_is_cpu(gpu) ? BAND_PIXELS_CPU : BAND_PIXELS;

@@ -1,13 +1,14 @@
 /*
- * band.h: the buffers of a band, some rows of the picture that are made at once.
+ * band.h: the buffers of a band: rows of tiles that are rendered together.
  */
 #ifndef KRS_BAND_H
 #define KRS_BAND_H
 
 #include "runtime/tracer/handles.h"
 
-/* Makes room for a band of a window of tiles, with a halo around it, for a smaller one when memory is
-   short, and returns its rows; 0 when there is no room at all. */
+/* Allocates buffers for a band of `cover`, a window of whole tiles, with `halo` more pixels on each
+   side.  When memory is short the band has fewer rows.  Returns its rows; 0, with the failure
+   noted, when even the smallest band does not fit. */
 uint32_t band_allocate(KrsRendering *rendering, const KrsWindow *cover, uint32_t halo);
 
 #endif

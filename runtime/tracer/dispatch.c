@@ -1,10 +1,10 @@
 /*
- * dispatch.c: slices and chains.
+ * dispatch.c: long dispatches are cut into slices, short ones are joined into chains.
  *
- * A slice is short enough that no watchdog minds and an interruption is heard at once; how many
- * groups that is, is learned on the way, and shows in nothing but the time.  In a chain no dispatch
- * has more groups than a slice: where one would, the chain stops, and the host runs that one slice
- * by slice.
+ * A slice is so short that no watchdog of the driver ends it, and that an interruption takes effect
+ * at once.  How many workgroups that is, is learned from the time of former slices; the results do
+ * not depend on it.  In a chain no dispatch has more workgroups than a slice.  Where one would have
+ * more, the chain stops, and the host runs that dispatch in slices.
  */
 #include "runtime/tracer/dispatch.h"
 
@@ -30,7 +30,7 @@ bool dispatch_chains(const Job *job)
 
 /* ---- Slices ---- */
 
-/* How many groups to take next, after `groups` took `ms`. */
+/* The workgroups of the next slice, after `groups` workgroups took `ms`. */
 static uint32_t next_slice(double groups, double ms, double target_ms)
 {
     double factor = ms > 0 ? target_ms / ms : 4;
@@ -38,7 +38,8 @@ static uint32_t next_slice(double groups, double ms, double target_ms)
     return next < 1 ? 1 : next > MOST_GROUPS ? MOST_GROUPS : (uint32_t)next;
 }
 
-/* A phase may turn out to have more parts than was thought, but progress never goes back. */
+/* A phase may turn out to have more passes than was expected, but reported progress never
+   decreases. */
 static bool report(Job *job, double within_phase)
 {
     job->progress_shown = fmax(job->progress_shown,
@@ -58,8 +59,8 @@ static bool has_scene(const Job *job, const Kernel *kernel)
     return !is_pixels;
 }
 
-/* What was learned about slices of a kernel in a phase: kernels without the scene cost next to
-   nothing, and tell nothing about the others. */
+/* How many workgroups of this kernel make a slice, as learned so far.  Kernels without the scene
+   cost next to nothing, so they are counted apart from the others of a phase. */
 static uint32_t *groups_at_once(Job *job, KrsPhase phase, const Kernel *kernel)
 {
     return &job->rendering->groups_at_once[phase][has_scene(job, kernel)];
@@ -123,7 +124,7 @@ Dispatch dispatch_of(const Job *job, KrsPhase phase, const Kernel *kernel, const
     return dispatch;
 }
 
-/* Records that no ray has shared anything yet. */
+/* Records that the words which neighbours share are cleared (shared.glsl). */
 static void record_unshared(const Job *job, const WorkBlock *work)
 {
     const VkDeviceSize list  = (VkDeviceSize)work->extent[0] * work->extent[1];
@@ -146,7 +147,8 @@ static bool clear_shared(Job *job, const Dispatch *dispatch)
     return true;
 }
 
-/* In slices; the host knows the counters. */
+/* Runs a dispatch in slices.  The host has waited for all dispatches before it, so it knows the
+   counters. */
 static bool run_in_slices(Job *job, const Dispatch *dispatch)
 {
     ControlBlock *control = job->rendering->control.bytes;
@@ -165,7 +167,8 @@ static bool run_in_slices(Job *job, const Dispatch *dispatch)
 
 /* ---- Chains ---- */
 
-/* What a group of it costs more than others of its phase: later passes of rays have more steps. */
+/* The cost of a workgroup, relative to others of its phase: later passes of rays have more
+   steps. */
 static double weight_of(const Job *job, const Dispatch *dispatch)
 {
     double steps = job->options.steps_at_once;
@@ -190,7 +193,7 @@ static void record(Job *job, uint32_t i)
             i + 1};
     WorkBlock work = dispatch->work;
     work.first     = 0;
-    work.groups    = UINT32_MAX; /* in their order */
+    work.groups    = UINT32_MAX; /* all groups, in their order */
     work.stride    = 1;
     if (dispatch->clears)
         vkCmdFillBuffer(job->gpu->commands, control, dispatch->clears * sizeof(uint32_t),
@@ -206,27 +209,27 @@ static void record(Job *job, uint32_t i)
     gpu_barrier(job->gpu);
 }
 
-/* Of dispatches [first, end) of the chain, which are of one phase and took `ms`. */
+/* Learns from dispatches [first, end) of the chain, all of one phase, which took `ms` together. */
 static void learn(Job *job, uint32_t first, uint32_t end, double ms)
 {
     const ControlBlock *control = job->rendering->control.bytes;
-    const Dispatch     *list = job->chain.list, *told = &list[first];
+    const Dispatch     *list = job->chain.list, *measured = &list[first];
     double              groups = 0, target_ms = job->options.slice_ms;
     for (uint32_t i = first; i < end; i++)
         if (has_scene(job, list[i].kernel))
-            told = &list[i];
+            measured = &list[i];
     for (uint32_t i = first; i < end; i++)
-        if (has_scene(job, list[i].kernel) == has_scene(job, told->kernel))
+        if (has_scene(job, list[i].kernel) == has_scene(job, measured->kernel))
             groups += control->ran[i] * weight_of(job, &list[i]);
-    uint32_t *at_once = groups_at_once(job, told->phase, told->kernel);
+    uint32_t *at_once = groups_at_once(job, measured->phase, measured->kernel);
     uint32_t  next    = next_slice(groups, ms, target_ms);
     if (groups > 0 && (ms > target_ms || next > *at_once))
         *at_once = next;
-    job->stats->phase_ms[told->phase] += ms;
+    job->stats->phase_ms[measured->phase] += ms;
 }
 
-/* Sends the dispatches from `first` on; those of a phase that follow one another are timed
-   together. */
+/* Submits the dispatches of the chain from `first` on.  Consecutive dispatches of one phase are
+   timed together. */
 static bool submit(Job *job, uint32_t first)
 {
     const Chain *chain = &job->chain;
@@ -261,8 +264,9 @@ bool dispatch_finish(Job *job)
             return false;
         if (control->stopped == 0)
             break;
-        first             = control->stopped;
-        ControlBlock next = *control; /* what the host says already to those behind the chain */
+        first = control->stopped;
+        /* The host has already written values for dispatches after the chain. */
+        ControlBlock next = *control;
         if (!run_in_slices(job, &chain->list[first - 1]))
             return false;
         memcpy(control, &next, offsetof(ControlBlock, queued));
@@ -321,7 +325,7 @@ bool dispatch_together(Job *job, const Dispatch *dispatches, size_t count)
     return report(job, 1);
 }
 
-/* Of items that all cost alike lavapipe's lanes take so many. */
+/* Items of a lane on lavapipe, where all items cost the same. */
 #define ITEMS_OF_LANE 8
 
 LaneBudget pixel_budget(const Job *job)

@@ -1,35 +1,37 @@
 /*
- * dispatch.h: how the kernels of a picture reach the device.
+ * dispatch.h: submits the dispatches of a picture to the device.
  *
- * On devices of type CPU the host runs one dispatch after the other, in slices, and looks at what
- * they have counted.  A graphics card would wait for it each time: there dispatches form a chain,
- * and the device finds by the counters how many items each has (next_dispatch.comp).
+ * On devices of type CPU the host runs one dispatch after the other, in slices, and reads the
+ * counters after each.  A graphics card would idle meanwhile.  There dispatches form a chain, and
+ * the device computes from the counters how many items each one has (next_dispatch.comp).
  */
 #ifndef KRS_DISPATCH_H
 #define KRS_DISPATCH_H
 
 #include "runtime/tracer/job.h"
 
-/* Whether dispatches form chains: then counters are known to the host after dispatch_finish. */
+/* Whether dispatches form chains.  If so, the host knows the counters only after
+   dispatch_finish. */
 bool dispatch_chains(const Job *job);
 
-/* A dispatch by what the control block says now, but for its items. */
+/* Makes a dispatch from the control block as it is now.  The number of items is found out when it
+   runs. */
 Dispatch dispatch_of(const Job *job, KrsPhase phase, const Kernel *kernel, const WorkBlock *work,
                      Items items, LaneBudget budget);
-/* Runs it, or adds it to the chain. */
+/* Runs a dispatch, or adds it to the chain. */
 bool dispatch_run(Job *job, const Dispatch *dispatch);
-/* One after the other, none of which leaves an item over or counts for the next: in one submission
-   where that is no longer than a slice. */
+/* Runs dispatches one after the other, in one submission where that is no longer than a slice.
+   None may leave items over, or count what a later one reads. */
 bool dispatch_together(Job *job, const Dispatch *dispatches, size_t count);
-/* Runs what is in the chain. */
+/* Runs all dispatches in the chain. */
 bool dispatch_finish(Job *job);
 
-/* The budget of a kernel over items of which each takes the steps that it needs (schedule.glsl), by
-   the schedule of the kernel that runs now and the steps at once that were asked for; */
+/* The budget of a kernel whose items take different numbers of steps (schedule.glsl).  It follows
+   from the current schedule and the option `steps_at_once`. */
 LaneBudget lane_budget(const Job *job);
-/* over items that all cost alike (pixels.glsl). */
+/* The budget of a kernel whose items all cost the same (pixels.glsl). */
 LaneBudget pixel_budget(const Job *job);
-/* How many there are, where the host knows what was counted. */
+/* The number of items, where the host knows the counters. */
 uint32_t items_now(const Job *job, Items items);
 
 #endif

@@ -1,6 +1,6 @@
 /*
- * handles.h: what stands behind the handles of krs_vulkan.h.  Their functions are in renderer.h,
- * rendering.h, kernels.h and film.h.
+ * handles.h: the structs behind the handles of krs_vulkan.h, except KrsFilm (film/held.h).
+ * Functions for them are in renderer.h, rendering.h and kernels.h.
  */
 #ifndef KRS_HANDLES_H
 #define KRS_HANDLES_H
@@ -10,8 +10,8 @@
 #include "runtime/device/kernel.h"
 #include "runtime/shared/blocks.h"
 
-/* The kernels without a scene that do one thing for every pixel of a list, row or quarter of a
-   tile: on lavapipe a kernel takes as long as all of its branches. */
+/* The kernels without a scene, each with one task for every item of a list: a pixel, or a quarter
+   of a tile.  Each task has its own kernel because lavapipe executes all branches of a kernel. */
 typedef enum PixelKernel {
     PIXELS_BACKGROUND,
     PIXELS_UNPROVEN,
@@ -21,11 +21,11 @@ typedef enum PixelKernel {
     PIXEL_KERNELS
 } PixelKernel;
 
-/* Where the rays of pixels come from, which kernels know when they are compiled. */
+/* Where the rays of pixels come from.  Each kind has its own kernels. */
 typedef enum RayKind {
-    RAYS_OF_CAMERAS,   /* in perspective or orthographic */
-    RAYS_OF_PANORAMAS, /* and of other cameras of their scenes */
-    RAYS_OF_LISTS,     /* that the caller gives */
+    RAYS_OF_CAMERAS,   /* perspective or orthographic */
+    RAYS_OF_PANORAMAS, /* and all other cameras of a scene with a panorama */
+    RAYS_OF_LISTS,     /* given by the caller */
     RAY_KINDS
 } RayKind;
 
@@ -35,43 +35,49 @@ typedef enum TexelKind { NO_TEXELS, ONE_NUMBER, TWO_NUMBERS, FOUR_NUMBERS, TEXEL
 struct KrsRenderer {
     Gpu                   gpu;
     bool                  compiler_started;
-    bool                  early_outs;                       /* of kernels that march */
-    VkDescriptorSetLayout scene_layout;                     /* set 0: the scene's parameters */
-    VkDescriptorSetLayout frame_layout;                     /* set 1: what frame.glsl declares */
-    VkPipelineLayout      layout;                           /* of every kernel */
-    Kernel                pixels[RAY_KINDS][PIXEL_KERNELS]; /* of cameras; others when needed */
-    Kernel                next_dispatch;                    /* on graphics cards (dispatch.c) */
-    double                spirv_ms, pipeline_ms;            /* of the former */
-    VkDescriptorPool      idle_pool;                        /* to warm kernels up: */
-    VkDescriptorSet       idle_scene, idle_frame;           /* with nothing in them, */
-    Buffer                idle[TEXEL_KINDS];                /* all of it in these */
+    bool                  early_outs;   /* kernels skip far shapes by branches */
+    VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters */
+    VkDescriptorSetLayout frame_layout; /* set 1: what frame.glsl declares */
+    VkPipelineLayout      layout;       /* shared by all kernels */
+    /* Those for RAYS_OF_CAMERAS are made at once, the others when they are needed. */
+    Kernel pixels[RAY_KINDS][PIXEL_KERNELS];
+    Kernel next_dispatch;         /* on graphics cards only (dispatch.c) */
+    double spirv_ms, pipeline_ms; /* the time to make these kernels */
+    /* For warm-up: sets in which a kernel finds no items, and the buffers of zeros that they
+       bind. */
+    VkDescriptorPool idle_pool;
+    VkDescriptorSet  idle_scene, idle_frame;
+    Buffer           idle[TEXEL_KINDS];
 };
 
 /* The buffers that hold a band of the picture. */
 typedef struct Band {
-    uint64_t pixels; /* room for so many; 0: no buffers */
+    uint64_t pixels; /* the most that fit; 0: there are no buffers */
     Buffer   ends, hits, results, queue, taken, tiles;
-    Buffer   fetched; /* where the host reads the results; none where it reads them directly */
+    /* A copy of the results for the host; none where the host reads `results` directly. */
+    Buffer fetched;
 } Band;
 
-/* Instead of a march group: all but planes, which rays intersect without a march. */
+/* In place of a march group's number: all components but planes, which rays intersect without a
+   march. */
 enum { MARCH_WITHOUT_PLANES = 1 + KRS_MOST_MARCH_GROUPS };
-/* And all, scene part by scene part within each ray. */
+/* Likewise: all components, which each ray marches scene part by scene part (packed.glsl). */
 enum { MARCH_PACKED = 1 + MARCH_WITHOUT_PLANES, MARCH_KINDS };
 
-/* The kernels with the scene in them, each made when it is first needed (kernels.c). */
+/* The kernels that contain functions of the scene, each made when it is first needed
+   (kernels.c). */
 typedef struct KernelEntry KernelEntry;
 typedef struct KernelMap {
     KernelEntry *first;
 } KernelMap;
 
-/* A film's band that the buffers of a rendering hold. */
+/* The band of a film whose samples are in the buffers of a rendering. */
 typedef struct HeldBand {
     KrsFilm  *film;       /* NULL: none */
-    uint32_t  from, rows; /* of the tiles that its crop has a part of */
-    KrsWindow traced;     /* with its halo */
-    bool      has_planes; /* those of the first sample are not in the film yet, */
-    bool      has_colors; /* nor are all colours */
+    uint32_t  from, rows; /* of pixels, from the first tile of the crop on */
+    KrsWindow traced;     /* the band with its halo */
+    bool      has_planes; /* the film still lacks the planes of its first sample */
+    bool      has_colors; /* the film still lacks some colours */
 } HeldBand;
 
 struct KrsRendering {
@@ -79,25 +85,29 @@ struct KrsRendering {
     const KrsScene   *scene;
     const KrsProgram *program;
     KernelMap         kernels;
-    uint32_t          zone_slots;      /* that kernels of this frame have for zones of the caller */
-    uint32_t          most_zone_slots; /* the most that there are kernels for */
-    bool              camera_relative; /* points of this frame are relative to the camera */
-    KrsPurpose        purpose;
-    RayKind           scene_rays; /* of the scene's own cameras */
-    RayKind           rays;       /* of this frame */
-    double            spirv_ms, pipeline_ms;
+    /* The number of the caller's zones that kernels of this frame have room for. */
+    uint32_t zone_slots;
+    /* The largest number that any kernels have room for. */
+    uint32_t   most_zone_slots;
+    bool       camera_relative; /* this frame's points are relative to the camera */
+    KrsPurpose purpose;
+    RayKind    scene_rays; /* the kind for the scene's own cameras */
+    RayKind    rays;       /* the kind for this frame */
+    double     spirv_ms, pipeline_ms;
 
     VkDescriptorPool pool;
     VkDescriptorSet  scene_set, band_set, points_set;
     Buffer           parameters, frame, control;
-    Buffer           inputs;         /* lights, and behind them rays of a list */
-    Buffer           device_control; /* what kernels use of the control block, of which the host
-                                         has a copy; none where they use the host's */
-    Band             band;
-    HeldBand         held;                               /* in it */
-    Buffer           points, answers;                    /* of point_query.comp */
-    Buffer           query_rays, ray_hits, taken;        /* of query.comp */
-    uint32_t         groups_at_once[KRS_PHASE_COUNT][2]; /* learned from the last slices */
+    Buffer           inputs; /* lights, then the rays of a list */
+    /* The control block that kernels use, copied from and to `control`; none where kernels use
+       `control` itself. */
+    Buffer   device_control;
+    Band     band;
+    HeldBand held;                        /* what the buffers of `band` hold */
+    Buffer   points, answers;             /* for point_query.comp */
+    Buffer   query_rays, ray_hits, taken; /* for query.comp */
+    /* The workgroups of a slice, as learned, for each phase; [1]: for kernels with the scene. */
+    uint32_t groups_at_once[KRS_PHASE_COUNT][2];
 };
 
 #endif

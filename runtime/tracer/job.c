@@ -1,5 +1,5 @@
 /*
- * job.c: what a frame says: where rays come from, lights, parameters.
+ * job.c: reads a frame: where its rays come from, its lights and parameters.
  */
 #include "runtime/tracer/job.h"
 
@@ -40,8 +40,8 @@ uint32_t tiles_of_band(const WorkBlock *work)
     return ((work->extent[0] + TILE - 1) / TILE) * ((work->extent[1] + TILE - 1) / TILE);
 }
 
-/* How far around a hit its normal is looked for, in pixels; more than half a pixel: what is finer
-   is filtered.  Several rays of a pixel show it by themselves.  bench/minify found the number. */
+/* The radius of the taps for a normal, in pixels.  Beyond half a pixel they also filter detail that
+   is finer than a pixel, which several samples do by themselves.  bench/minify found the number. */
 static float normal_reach(const KrsRenderOptions *options)
 {
     bool one_sided = options->normals == KRS_NORMALS_FORWARD ||
@@ -49,20 +49,20 @@ static float normal_reach(const KrsRenderOptions *options)
     return options->no_filter || options->samples > 1 || one_sided ? 0.5f : 0.7f;
 }
 
-/* Points on the device are relative to the eye where single precision would show in what is nearest
-   to it. */
+/* Makes points on the device relative to the eye, where rounding to single precision would be
+   visible in the surface nearest to it. */
 static void choose_rebase_origin(Job *job, KrsFrame *frame)
 {
     const double(*eye)[3] = (const double(*)[3]) & job->view.camera.eye;
     float  zones[KRS_MOST_ZONES][4];
-    double nearest = 0, far = 0;
+    double nearest = 0, largest_coordinate = 0;
     if (!job->rendering->program->camera_relative || krs_frame_zones(frame, zones) > 0)
         return;
     for (int i = 0; i < 3; i++)
-        far = fmax(far, fabs((*eye)[i]));
+        largest_coordinate = fmax(largest_coordinate, fabs((*eye)[i]));
     if (krs_distance(frame, eye, 1, &nearest) != KRS_OK)
         nearest = 0;
-    if (krs_needs_rebase(far, job_pixel(job, fabs(nearest))))
+    if (krs_needs_rebase(largest_coordinate, job_pixel(job, fabs(nearest))))
         memcpy(job->rebase_origin, *eye, sizeof job->rebase_origin);
 }
 
@@ -71,8 +71,9 @@ static bool is_camera_relative(const Job *job)
     return job->rebase_origin[0] != 0 || job->rebase_origin[1] != 0 || job->rebase_origin[2] != 0;
 }
 
-/* A ray that begins inside of a solid sees the inner wall of the union, which no part of it knows.
-   Of a list that is not asked for each ray: some may begin anywhere. */
+/* Whether all rays begin outside of all solids.  A ray from inside of a solid hits the inner wall
+   of the union, which no march group or scene part knows by itself.  Rays of a list may begin
+   anywhere, and are not tested one by one. */
 static bool begins_outside(const Job *job, KrsFrame *frame)
 {
     const KrsProgram *program   = job->rendering->program;
@@ -95,19 +96,19 @@ static bool begins_outside(const Job *job, KrsFrame *frame)
     return true;
 }
 
-/* What the kernels know of the frame, where points are relative to an origin. */
+/* Fills in the block of the frame for the kernels, with points relative to the rebase origin. */
 static bool prepare_frame_block(Job *job)
 {
     const KrsProgram *program = job->rendering->program;
-    KrsView           seen    = job->view;
+    KrsView           view    = job->view;
     double            low[3], high[3];
     for (int i = 0; i < 3; i++) {
-        seen.camera.eye[i] -= job->rebase_origin[i];
-        seen.camera.target[i] -= job->rebase_origin[i];
+        view.camera.eye[i] -= job->rebase_origin[i];
+        view.camera.target[i] -= job->rebase_origin[i];
         low[i]  = program->low[i] - job->rebase_origin[i];
         high[i] = program->high[i] - job->rebase_origin[i];
     }
-    if (!view_prepare(&seen, low, high, job->options.width, job->options.height, &job->frame))
+    if (!view_prepare(&view, low, high, job->options.width, job->options.height, &job->frame))
         return job_refuse(job, "the camera sees nothing: its eye is at its target, or its angle or"
                                " height is not one");
     if (job->rays && job->rays->farthest > 0)

@@ -1,9 +1,9 @@
 /*
- * kernels.c: the kernels with a scene in them, each made when it is first asked for.
+ * kernels.c: a map of the kernels that contain functions of the scene.
  *
- * A kernel is found by what it is made from: its file, the scene's variant, the functions that it
- * calls and its defines (variants.c).  So an option that changes none of these needs no new kernel,
- * and one that changes some needs no new place here.
+ * The key of a kernel is what it is made from: its file, the scene's variant, the functions that it
+ * calls and its defines (variants.c).  So an option that changes none of these needs no new kernel.
+ * An option that changes some of them needs no change here.
  */
 #include "runtime/tracer/kernels.h"
 
@@ -29,7 +29,7 @@ static bool is_of(const KernelEntry *entry, const char *file, const KernelVarian
            strcmp(entry->variant.defines, variant->defines) == 0;
 }
 
-/* NULL with the failure noted. */
+/* Finds the entry of a kernel, or adds one; NULL with the failure noted. */
 static KernelEntry *find_entry(KrsRendering *rendering, const char *file, KernelVariant variant)
 {
     KernelEntry *entry = rendering->kernels.first;
@@ -64,7 +64,7 @@ static Kernel *find_kernel(KrsRendering *rendering, const char *file, KernelVari
 
 /* ---- each kernel ---- */
 
-/* A queue is the kernel of pixels with fewer steps. */
+/* The schedule `queue` uses the kernel of `pixel`, with fewer steps in a dispatch. */
 static KrsSchedule schedule_of_kernel(KrsSchedule schedule)
 {
     return schedule == KRS_SCHEDULE_QUEUE ? KRS_SCHEDULE_PIXEL : schedule;
@@ -126,13 +126,13 @@ Kernel *rendering_point_query(KrsRendering *rendering)
     return find_kernel(rendering, "point_query.comp", variant_of_point_query(rendering));
 }
 
-/* ---- those that are made at the same time ---- */
+/* ---- kernels that are made at the same time ---- */
 
 typedef struct Requests {
     KrsRendering *rendering;
     KernelRequest items[5 + 2 * KRS_MOST_MARCH_GROUPS];
     size_t        count;
-    bool          failed; /* which is noted */
+    bool          failed; /* the failure is noted */
 } Requests;
 
 static void request(Requests *requests, const char *file, KernelVariant variant)
@@ -143,7 +143,8 @@ static void request(Requests *requests, const char *file, KernelVariant variant)
         requests->items[requests->count++] = request_of(entry);
 }
 
-/* Where march groups follow one another each of them has its own kernel of rays and of normals. */
+/* Requests the kernels that march.  Where march groups are marched one after the other, each has
+   its own kernel for rays and its own for normals. */
 static void request_marches(Requests *requests, KrsTrace trace, KrsSchedule schedule)
 {
     KrsRendering *rendering = requests->rendering;

@@ -1,29 +1,31 @@
 /*
- * kernels.h: the kernels with a scene in them: a map from what a kernel is made from to the kernel.
+ * kernels.h: the kernels that contain functions of the scene, in a map (kernels.c).
  *
- * Each is compiled when it is first asked for; NULL with the failure noted.
+ * A kernel is compiled when it is first asked for.  The functions that return one return NULL, with
+ * the failure noted, where that fails.
  */
 #ifndef KRS_KERNELS_H
 #define KRS_KERNELS_H
 
 #include "runtime/tracer/handles.h"
 
-/* The kernel of primary rays for a method and a schedule (neither is the default), of a group of
-   components, of all (0), or MARCH_WITHOUT_PLANES. */
+/* The kernel of primary rays.  Method and schedule are chosen, not the defaults.  `march_group` is
+   the number of a group from 1, 0 for all components, or MARCH_WITHOUT_PLANES or MARCH_PACKED. */
 Kernel *rendering_trace(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
                         uint32_t march_group);
-/* The same for beams, which need distances for all directions. */
+/* The kernel of beams.  They are wider than a ray, so they need distances that hold in all
+   directions, whatever the method of the rays. */
 Kernel *rendering_beams(KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
                         uint32_t march_group);
-/* The kernel of normals, of a march group or of all (0). */
+/* The kernel of normals, for a march group or for all components (0). */
 Kernel *rendering_normals_kernel(KrsRendering *rendering, KrsNormals normals, uint32_t march_group);
-/* The kernel of rays to lights and for occlusion. */
+/* The kernel of rays to lights and for occlusion; `by_roots`: they go from root to root. */
 Kernel *rendering_secondary(KrsRendering *rendering, KrsSchedule schedule, bool by_roots);
 Kernel *rendering_shade(KrsRendering *rendering);
 Kernel *rendering_query(KrsRendering *rendering, KrsSchedule schedule);
 Kernel *rendering_point_query(KrsRendering *rendering);
 
-/* Makes the kernels that a picture by default, or questions, need, unless they are there. */
+/* Makes the kernels for a purpose, pictures with default options or queries, unless they exist. */
 bool kernels_create(KrsRendering *rendering, KrsPurpose purpose);
 void kernels_destroy(Gpu *gpu, KernelMap *map);
 

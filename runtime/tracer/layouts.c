@@ -1,5 +1,5 @@
 /*
- * layouts.c: layouts of descriptors and of the pipeline, and a scene and a frame of zeros.
+ * layouts.c: layouts of descriptor sets and of the pipeline, and descriptor sets of zeros.
  */
 #include "runtime/tracer/layouts.h"
 
@@ -7,7 +7,7 @@
 
 /* ---- Layouts ---- */
 
-/* What a texel is at a binding, by the TexelKinds. */
+/* The format of each kind of texel, and the kind at each binding. */
 static const struct {
     VkFormat format;
     uint32_t bytes;
@@ -107,14 +107,15 @@ void layouts_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer 
         0, NULL);
 }
 
-/* Room for any scene's parameters, where the device has no more of it than most have. */
+/* The size of a buffer of zeros for the parameters of any scene: 64 KB, the limit of most devices,
+   or this device's own limit if lower. */
 static VkDeviceSize idle_bytes(const Gpu *gpu)
 {
     const uint32_t most = 1 << 16, limit = gpu->properties.limits.maxUniformBufferRange;
     return limit < most ? limit : most;
 }
 
-/* Sets of buffers that hold zeros: no kernel finds any item in them. */
+/* Makes descriptor sets whose buffers hold zeros, so that no kernel finds any item in them. */
 static bool idle_create(KrsRenderer *renderer)
 {
     Gpu            *gpu     = &renderer->gpu;

@@ -1,15 +1,17 @@
 /*
- * layouts.h: what every kernel of a renderer needs, whatever the scene: layouts of what it reads
- * and writes, and a scene and a frame of zeros, in which a kernel finds nothing to do.
+ * layouts.h: what all kernels of a renderer share, whatever the scene.  These are the layouts of
+ * descriptor sets and of the pipeline, and descriptor sets of zeros, in which a kernel finds no
+ * items.
  */
 #ifndef KRS_LAYOUTS_H
 #define KRS_LAYOUTS_H
 
 #include "runtime/tracer/handles.h"
 
-/* Bindings of the frame's set (frame.glsl): a uniform buffer, storage buffers, texels of lights,
-   and more storage buffers; then those once more as texels.  Where the device reads too few texels
-   (Gpu.texels) none of these is bound, and lights are a storage buffer. */
+/* Bindings of the frame's set (frame.glsl).  They are a uniform buffer and storage buffers, and
+   among these the texels of the inputs: lights and listed rays.  Behind them are some of the
+   buffers once more, as texels.  Where the device reads too few texels (Gpu.texels) no texels are
+   bound, and inputs are a storage buffer. */
 enum {
     FRAME_BINDING = 0,
     ENDS_BINDING,
@@ -30,15 +32,15 @@ enum {
     BUFFER_BINDINGS = BINDING_COUNT - TEXEL_BINDINGS - 1
 };
 
-/* For a renderer whose device is open.  What was made on failure goes with layouts_destroy. */
+/* The renderer's device must be open.  On failure layouts_destroy frees what was made. */
 bool layouts_create(KrsRenderer *renderer);
-/* After the kernels; for a renderer without a device nothing. */
+/* Call it after the kernels are destroyed.  It does nothing for a renderer without a device. */
 void layouts_destroy(KrsRenderer *renderer);
 
-/* Makes a buffer readable at a binding of texels, where there are some; `name` as in
-   buffer_create. */
+/* Makes a buffer readable at a binding of texels, on devices that read texels.  `name` is that of
+   the buffer, as in buffer_create. */
 bool layouts_view_texels(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name);
-/* Points a binding of a set at a buffer; one of texels, where there are none, at nothing. */
+/* Points a binding of a set at a buffer.  It does nothing for texels on devices that read none. */
 void layouts_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer);
 
 #endif

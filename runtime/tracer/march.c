@@ -9,7 +9,7 @@
 #include "runtime/tracer/methods.h"
 #include "runtime/tracer/view.h"
 
-#define MOST_PASS_STEPS 2048 /* of rays that are left over, in one more pass */
+#define MOST_PASS_STEPS 2048 /* the steps of a pass double up to this */
 
 bool march_clear(Job *job)
 {
@@ -20,7 +20,7 @@ bool march_clear(Job *job)
     return gpu_finish(gpu, &job->stats->phase_ms[KRS_PHASE_BEAMS]);
 }
 
-/* The pixels of tiles whose rays may hit something. */
+/* The pixels that need rays: those of the listed tiles, or all pixels of the band. */
 static Items pixels_of_rays(const Job *job, const WorkBlock *work)
 {
     const ControlBlock *control = job->rendering->control.bytes;
@@ -28,8 +28,8 @@ static Items pixels_of_rays(const Job *job, const WorkBlock *work)
                            : ITEMS_KNOWN(tiles_of_band(work) * TILE * TILE);
 }
 
-/* The tiles that both the band and the job's window have a part of, as the control block has it;
-   returns how many. */
+/* Writes to the control block which tiles overlap both the band and the job's window.  Returns
+   their number. */
 static uint32_t choose_tiles(const Job *job, const WorkBlock *work, uint32_t side)
 {
     ControlBlock  *control      = job->rendering->control.bytes;
@@ -50,8 +50,9 @@ static uint32_t choose_tiles(const Job *job, const WorkBlock *work, uint32_t sid
     return count[0] * count[1];
 }
 
-/* At most so many beams for a lane, and steps enough for all, as none is saved: whichever lanes
-   take them, the last is done after those of a lane and one more. */
+/* The budget of beams: at most `most` for a lane, and steps enough to end them all, as beams are
+   not saved.  However lanes share the beams, a lane's last one ends within the steps of one more
+   than `items_per_lane`. */
 static LaneBudget beam_budget(const Job *job, uint32_t most)
 {
     LaneBudget budget     = lane_budget(job);
@@ -65,19 +66,20 @@ static LaneBudget beam_budget(const Job *job, uint32_t most)
     return budget;
 }
 
-/* Where a distance costs less than this, beams of 4x4 pixels cost more than they gain. */
+/* Where a distance costs fewer operations than this, beams of 4x4 pixels cost more than they
+   gain. */
 #define FLOPS_WORTH_QUARTERS 150
 
-/* Beams of tiles, counted in the whole picture, that the band and the window have a part of.  Those
-   of 8x8 pixels that find something are listed; the rays of all others miss.  The quarters of the
-   listed ones may have beams, too. */
+/* Marches the beams of tiles that overlap the band and the window; tiles are counted in the whole
+   picture.  Tiles of 8x8 pixels whose beams find something are listed, and the rays of all others
+   miss.  The quarters of the listed tiles may have beams, too. */
 static bool run_beams(Job *job, const March *march, const WorkBlock *work)
 {
     static const struct {
         uint32_t phase, side;
     } sizes[]             = {{TRACE_BEAMS_32, 32}, {TRACE_BEAMS_8, 8}};
     ControlBlock *control = job->rendering->control.bytes;
-    LaneBudget    budget  = beam_budget(job, 2); /* a slot each, of two that a lane keeps */
+    LaneBudget    budget  = beam_budget(job, 2); /* one for each tile that a lane keeps */
     Dispatch      beams[2];
     control->tiles  = 0;
     control->source = ITEMS_FRESH;
@@ -95,15 +97,16 @@ static bool run_beams(Job *job, const March *march, const WorkBlock *work)
         return true;
     control->phase = TRACE_BEAMS_4;
     beams[0]       = dispatch_of(job, KRS_PHASE_BEAMS, march->beams, work, ITEMS_COUNTED(4, tiles),
-                                 beam_budget(job, 8)); /* four of a slot */
+                                 beam_budget(job, 8)); /* four for each of these */
     if (!dispatch_run(job, &beams[0]))
         return false;
     control->starts_from = 2;
     return true;
 }
 
-/* Each pass twice as long as the one before, so that they are few even for the longest rays: the
-   first is of rays that have begun, all at the same time. */
+/* The steps of the next pass.  Each pass over the queue has twice as many as the one before, so
+   that even the longest rays need few passes.  The first has `steps_at_once`: its rays all began
+   together. */
 static uint32_t next_steps(const Job *job, const ControlBlock *control, uint32_t steps)
 {
     if (control->source != ITEMS_QUEUED)
@@ -113,8 +116,8 @@ static uint32_t next_steps(const Job *job, const ControlBlock *control, uint32_t
     return rendering_steps_within(job->rendering, steps);
 }
 
-/* The next pass reads the queue that the last one has written, and writes the other one. */
-static void turn_queue(ControlBlock *control, const WorkBlock *work)
+/* Swaps the two queues: the next pass reads the one that the last pass has written. */
+static void swap_queues(ControlBlock *control, const WorkBlock *work)
 {
     uint32_t pixels  = work->extent[0] * work->extent[1];
     control->source  = ITEMS_QUEUED;
@@ -129,10 +132,11 @@ static bool run_rays(Job *job, const March *march, const WorkBlock *work, Items 
     return dispatch_run(job, &dispatch);
 }
 
-/* Passes of a chain: none is left over by most of them, and those that have no rays cost little. */
+/* Passes over the queue in a chain.  Most chains leave no ray over, and passes without rays cost
+   little. */
 #define PASSES_AT_ONCE 5
 
-/* As `trace` does it where the host does not look at how many rays are left after each pass. */
+/* Traces rays in a chain: the host does not read after each pass how many rays are left. */
 static bool trace_in_chain(Job *job, const March *march, const WorkBlock *work, LaneBudget budget)
 {
     ControlBlock *control = job->rendering->control.bytes;
@@ -142,7 +146,7 @@ static bool trace_in_chain(Job *job, const March *march, const WorkBlock *work, 
             if (!run_rays(job, march, work, items, budget))
                 return false;
             budget.steps = next_steps(job, control, budget.steps);
-            turn_queue(control, work);
+            swap_queues(control, work);
             items = (Items){1, WORD_OF(queued), .resets = true};
         }
         if (!dispatch_finish(job))
@@ -151,8 +155,8 @@ static bool trace_in_chain(Job *job, const March *march, const WorkBlock *work, 
     return true;
 }
 
-/* First every pixel of the band, or of the listed tiles, until all have been begun; then, pass by
-   pass, the rays that are not done. */
+/* Traces rays.  The first passes begin the rays of all pixels of the band, or of the listed tiles.
+   Each further pass goes on with the rays that have not ended. */
 static bool trace(Job *job, const March *march, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
@@ -165,7 +169,7 @@ static bool trace(Job *job, const March *march, const WorkBlock *work)
         return trace_in_chain(job, march, work, budget);
     while (budget.lanes * budget.items_per_lane > 128 &&
            items_now(job, items) / (budget.lanes * budget.items_per_lane) < 64)
-        budget.items_per_lane /= 2; /* groups enough for every core of the device */
+        budget.items_per_lane /= 2; /* enough groups for all cores of the device */
     for (double left = job->progress_share;; left -= job->progress_share) {
         control->untaken    = 0;
         job->progress_share = 0.9 * left; /* few rays need a second pass */
@@ -179,14 +183,14 @@ static bool trace(Job *job, const March *march, const WorkBlock *work)
         if (control->queued == 0)
             return true;
         budget.steps = next_steps(job, control, budget.steps);
-        turn_queue(control, work);
+        swap_queues(control, work);
         items                 = ITEMS_KNOWN(control->queued);
         control->queued       = 0;
         budget.items_per_lane = 1;
     }
 }
 
-/* Of the pixels whose rays may meet the box. */
+/* Sets the box of the march, and the window of pixels whose rays may meet it. */
 static void choose_window(Job *job, const March *march)
 {
     FrameBlock *frame = job->rendering->frame.bytes;
@@ -204,7 +208,7 @@ bool march_run(Job *job, const March *march, const WorkBlock *work)
     choose_window(job, march);
     job->schedule        = march->schedule;
     control->starts_from = control->listed = 0;
-    job->progress_share                    = 0; /* of beams: too short to be seen */
+    job->progress_share                    = 0; /* beams are too short to show progress */
     bool good                              = !march->beams || run_beams(job, march, work);
     job->progress_share                    = progress_share;
     good                                   = good && trace(job, march, work);

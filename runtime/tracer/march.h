@@ -6,19 +6,19 @@
 
 #include "runtime/tracer/job.h"
 
-/* How primary rays and their beams march, all together or those of a group of components. */
+/* A march of primary rays and their beams: through all components, or one march group. */
 typedef struct March {
-    Kernel     *rays, *beams; /* beams NULL: there are none */
+    Kernel     *rays, *beams; /* beams: NULL without beams */
     KrsSchedule schedule;
-    double      flops; /* of a distance */
-    bool        boxed; /* rays are clipped to this box, else to that of the scene; */
+    double      flops; /* operations for one distance */
+    bool        boxed; /* rays are clipped to [low, high], else to the scene's box */
     double      low[3], high[3];
-    bool        windowed; /* and only pixels whose rays may meet it are marched */
+    bool        windowed; /* only pixels whose rays may meet the box are marched */
 } March;
 
-/* Until a ray is found to hit something it misses. */
+/* Sets all rays of the band to misses. */
 bool march_clear(Job *job);
-/* Finds what the rays hit: beams first, then the rays. */
+/* Marches the beams of a band, then the rays. */
 bool march_run(Job *job, const March *march, const WorkBlock *work);
 
 #endif

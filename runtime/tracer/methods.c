@@ -3,29 +3,29 @@
  */
 #include "runtime/tracer/methods.h"
 
-/* Where a distance costs less than this, refilling lanes costs more than it gains. */
+/* Where a distance costs fewer operations than this, refilling lanes costs more than it gains. */
 #define FLOPS_WORTH_REFILL 150
-/* For a march group it is more: few of the rays of its tiles meet it. */
+/* For a march group the threshold is higher, as few rays of its tiles meet it. */
 #define FLOPS_WORTH_REFILL_OF_GROUP 350
 
 void rendering_choose(const KrsRendering *rendering, KrsTrace *trace, KrsSchedule *schedule)
 {
-    const Gpu *gpu      = &rendering->renderer->gpu;
-    bool       software = gpu_is_cpu(gpu);
-    bool       heavy    = rendering->program->flops >= FLOPS_WORTH_REFILL && gpu->refill_lanes > 0;
+    const Gpu *gpu       = &rendering->renderer->gpu;
+    bool       software  = gpu_is_cpu(gpu);
+    bool       expensive = rendering->program->flops >= FLOPS_WORTH_REFILL && gpu->refill_lanes > 0;
     if (*trace == KRS_TRACE_DEFAULT)
         *trace = rendering->program->along ? KRS_TRACE_EXACT : KRS_TRACE_AUTO;
-    /* What has no thickness is met by roots alone. */
+    /* Sheets have no thickness, so rays find them by roots alone. */
     if (rendering->program->sheets && (*trace < KRS_TRACE_EXACT || *trace >= KRS_TRACE_DIRECTIONAL))
         *trace = KRS_TRACE_EXACT;
     if (*schedule == KRS_SCHEDULE_DEFAULT)
-        *schedule = !software ? KRS_SCHEDULE_QUEUE
-                    : heavy   ? KRS_SCHEDULE_REFILL
-                              : KRS_SCHEDULE_PIXEL;
+        *schedule = !software   ? KRS_SCHEDULE_QUEUE
+                    : expensive ? KRS_SCHEDULE_REFILL
+                                : KRS_SCHEDULE_PIXEL;
 }
 
-/* Of all loops of an invocation together: some devices end them silently after 65,535 iterations,
-   and an item that is begun may be finished. */
+/* The most iterations of all loops of an invocation together.  Some devices end loops silently
+   after 65,535 iterations, and there must be enough left to finish an item that is begun. */
 #define MOST_ITERATIONS 24576
 
 uint32_t rendering_steps_within(const KrsRendering *rendering, uint32_t wanted)
@@ -46,13 +46,13 @@ KrsSchedule rendering_schedule_of_march_group(const KrsRendering *rendering, Krs
     return asked;
 }
 
-/* Zones cut holes into planes. */
+/* Zones cut holes into planes, which are then marched like all else. */
 bool rendering_knows_planes(const KrsRendering *rendering)
 {
     return rendering->program->planes && rendering->zone_slots == 0;
 }
 
-/* On devices of type CPU alone: others leave far components out by branches. */
+/* By default only on devices of type CPU: others skip far components by branches. */
 bool rendering_marches_per_component(const KrsRendering *rendering, KrsComponents components)
 {
     bool by_default = rendering->program->per_component && gpu_is_cpu(&rendering->renderer->gpu) &&

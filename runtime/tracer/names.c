@@ -1,5 +1,5 @@
 /*
- * names.c: what the numbers of krs_vulkan.h are called, in options and statistics.
+ * names.c: the names of the enumerators of krs_vulkan.h, in options and statistics.
  */
 #include "runtime/krs_vulkan.h"
 

@@ -48,7 +48,7 @@ void plan_free(Plan *plan) { gpu_release(plan->gpu, plan->passes); }
 
 /* ---- lists ---- */
 
-/* The counter of a list, as in Items; 0: it has none. */
+/* The counter of a list: the index of its word, as in Items; 0: it has none. */
 static uint32_t counter_of(ListId list)
 {
     switch (list) {
@@ -63,7 +63,7 @@ static uint32_t counter_of(ListId list)
     }
 }
 
-/* Where a list begins. */
+/* Where a list begins in the buffer of lists, in words. */
 static uint32_t list_at(const WorkBlock *work, ListId list)
 {
     const uint32_t pixels = work->extent[0] * work->extent[1];
@@ -81,21 +81,22 @@ static Items items_of(const WorkBlock *work, ListId list)
     return list == NO_LIST ? ITEMS_KNOWN(0) : (Items){1, counter_of(list), false};
 }
 
-/* ---- running it ---- */
+/* ---- running a plan ---- */
 
-/* Rays from the pixels of a list. */
+/* The budget of a pass of rays from the `count` pixels of a list. */
 static LaneBudget budget_of_rays(const Job *job, uint32_t count)
 {
     LaneBudget budget = lane_budget(job);
     budget.steps      = rendering_steps_within(job->rendering, MOST_LANE_STEPS);
-    bool loops        = job->rendering->program->loops > 0; /* which leave steps for few items */
+    /* Loops in the distance leave a lane steps for few items. */
+    bool loops = job->rendering->program->loops > 0;
     while (budget.lanes * budget.items_per_lane > 64 &&
            (loops || count / (budget.lanes * budget.items_per_lane) < 64))
-        budget.items_per_lane /= 2; /* groups enough for every core of the device */
+        budget.items_per_lane /= 2; /* enough groups for all cores of the device */
     return budget;
 }
 
-/* A dispatch of a pass, by what the pass tells its kernel. */
+/* Writes the constants of a pass to the control block, and makes its dispatch. */
 static Dispatch dispatch_of_pass(const Job *job, const Pass *pass, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
@@ -119,7 +120,7 @@ static bool run_rays(Job *job, const Pass *pass, const WorkBlock *work)
     do { /* in a chain no item is left over */
         control->untaken       = 0;
         Dispatch dispatch      = dispatch_of_pass(job, pass, work);
-        dispatch.clears_shared = pass->shares_anew && control->source == ITEMS_FRESH;
+        dispatch.clears_shared = pass->clears_shared && control->source == ITEMS_FRESH;
         if (!dispatch_run(job, &dispatch))
             return false;
         control->source = ITEMS_UNTAKEN;
@@ -127,7 +128,7 @@ static bool run_rays(Job *job, const Pass *pass, const WorkBlock *work)
     return true;
 }
 
-/* Some passes, of which each goes with the one before. */
+/* Runs passes that may share a submission. */
 static bool run_items(Job *job, const Pass *passes, size_t count, const WorkBlock *work)
 {
     ControlBlock *control = job->rendering->control.bytes;
@@ -149,19 +150,19 @@ static bool run_passes(Job *job, const Pass *passes, size_t count, const WorkBlo
     return false;
 }
 
-/* How many passes run at once from this one on. */
+/* The number of passes from `first` on that may share a submission. */
 static size_t count_together(const Plan *plan, size_t first)
 {
     size_t count = 1;
-    while (first + count < plan->count && plan->passes[first + count].with_last &&
+    while (first + count < plan->count && plan->passes[first + count].with_previous &&
            count < MOST_TOGETHER)
         count++;
     return count;
 }
 
-/* The place of ray `index` within its pixel.  Ray 0 goes through the centre; the others follow
-   the R2 sequence (multiples of the powers of the plastic number, modulo 1), which fills the
-   pixel evenly however many there are, moved by the seed. */
+/* The position of ray `index` within its pixel.  Ray 0 goes through the centre.  The others follow
+   the R2 sequence: multiples of the powers of the plastic number, modulo 1.  It fills the pixel
+   evenly, however many rays there are.  The seed moves all of them but ray 0. */
 static void place_ray(uint32_t index, uint64_t seed, float offset[2])
 {
     static const double increment[2] = {0.75487766624669276, 0.56984029099805327};
@@ -176,7 +177,7 @@ static void place_ray(uint32_t index, uint64_t seed, float offset[2])
     }
 }
 
-/* What all kernels are told of a ray of each pixel; no list has any pixels. */
+/* Writes to the control block what all passes of this ray need, and empties the lists. */
 static void begin_ray(Job *job, const Plan *plan, uint32_t index)
 {
     ControlBlock *control   = job->rendering->control.bytes;

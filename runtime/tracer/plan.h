@@ -1,5 +1,5 @@
 /*
- * plan.h: what is done for a ray of each pixel, as passes over lists of pixels.
+ * plan.h: a plan: the passes over lists of pixels that render one ray of each pixel.
  *
  * An integrator appends the passes of a frame to a plan.  The plan then runs for each ray of the
  * pixels of each band.
@@ -9,7 +9,7 @@
 
 #include "runtime/tracer/march.h"
 
-/* What a pass reads: a list of pixels, LIST_... of blocks.h, or one of these. */
+/* A list that a pass reads or writes: LIST_... of blocks.h, or one of these. */
 typedef uint32_t ListId;
 enum {
     LIST_OF_QUARTERS = 1 + LIST_SHARED, /* the quarters of tiles in which something is hit */
@@ -17,27 +17,27 @@ enum {
     NO_LIST
 };
 
-/* What a kernel is told for a pass (the control block has the meanings). */
+/* Values of the control block that belong to a pass (blocks.h has their meanings). */
 typedef struct PassConstants {
     uint32_t phase, light, value, filters;
 } PassConstants;
 
 typedef enum PassKind {
-    PASS_CLEAR, /* all rays miss until one is found to hit */
+    PASS_CLEAR, /* sets all rays to misses */
     PASS_MARCH, /* beams, then primary rays until all have ended */
-    PASS_ITEMS, /* a kernel over items that all cost alike */
+    PASS_ITEMS, /* a kernel over items that all cost the same */
     PASS_RAYS   /* rays from the items of a list, each to its end */
 } PassKind;
 
 typedef struct Pass {
     PassKind      kind;
-    KrsPhase      phase;  /* whose time it is */
-    float         weight; /* of its progress, among all passes */
-    const March  *march;  /* of PASS_MARCH; the others have: */
+    KrsPhase      phase;  /* to which its time is added */
+    float         weight; /* its part of the progress, relative to other passes */
+    const March  *march;  /* PASS_MARCH alone; the members below are for the others */
     const Kernel *kernel;
-    ListId in, out;   /* the list that is read, and the one that is written from its beginning on */
-    bool   with_last; /* counts for none of the last pass: one submission may have both */
-    bool   shares_anew; /* no ray has shared anything before it (shared.glsl) */
+    ListId        in, out; /* the list that is read, and the one that is emptied and written */
+    bool          with_previous; /* may share a submission with the previous pass */
+    bool          clears_shared; /* the words of shared.glsl are cleared before */
     PassConstants constants;
 } Pass;
 
@@ -47,10 +47,10 @@ typedef struct Plan {
     Gpu     *gpu; /* whose allocator the passes come from */
     Pass    *passes;
     size_t   count, room;
-    double   weight; /* the sum */
+    double   weight; /* of all passes together */
     March    marches[1 + KRS_MOST_MARCH_GROUPS];
     size_t   march_count;
-    uint32_t halo;           /* so many pixels around what is asked for are traced as well */
+    uint32_t halo;           /* pixels on each side of a band that are traced as well */
     bool     by_march_group; /* pixels are listed by the group of components that they hit */
     bool     failed;         /* memory ran out, which is noted */
 } Plan;
@@ -59,8 +59,8 @@ void plan_add(Plan *plan, Pass pass);
 /* Adds a march and its pass. */
 void plan_add_march(Plan *plan, const March *march, float weight);
 void plan_free(Plan *plan);
-/* Runs all passes for ray number `index` of every pixel of the band, and adds what it sees to the
-   results.  `progress_done` and `progress_share` of the job are its own. */
+/* Runs all passes for ray `index` of every pixel of the band, and adds its light to the results.
+   `progress_done` and `progress_share` of the job are those of this run, and are changed. */
 bool plan_run(Job *job, const Plan *plan, WorkBlock *work, uint32_t index);
 
 #endif

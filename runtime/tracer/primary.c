@@ -1,10 +1,11 @@
 /*
  * primary.c: passes that find what the rays of pixels hit.
  *
- * The distance of a union costs as much as those of all components, at every step of every ray.  So
- * in scenes of several expensive components, groups (KrsMarchGroup) are marched one after the
- * other, the nearest first, each by a kernel that has the distance of that group alone.  A ray is in
- * the box of few of them, and ends at the latest where it has hit another one.
+ * The distance of a union costs as much as those of all components together, at every step of every
+ * ray.  So scenes of several expensive components are split into march groups (KrsMarchGroup).
+ * These are marched one after the other, the nearest first, each by a kernel with the distance of
+ * that group alone.  A ray meets the boxes of few groups, and ends at the latest where it has hit
+ * another one.
  */
 #include "runtime/tracer/primary.h"
 
@@ -14,7 +15,7 @@
 #include "runtime/tracer/kernels.h"
 #include "runtime/tracer/methods.h"
 
-/* From the eye to the box. */
+/* The distance from the eye to the box of a group. */
 static double distance_to(const Job *job, const KrsMarchGroup *march_group)
 {
     double sum = 0;
@@ -26,7 +27,7 @@ static double distance_to(const Job *job, const KrsMarchGroup *march_group)
     return sqrt(sum);
 }
 
-/* The numbers of the groups from 1, the nearest first. */
+/* Lists the numbers of the march groups, counted from 1, the nearest first.  Returns how many. */
 static size_t sort_groups(const Job *job, uint32_t groups[KRS_MOST_MARCH_GROUPS])
 {
     const KrsProgram *program = job->rendering->program;
@@ -44,19 +45,20 @@ static size_t sort_groups(const Job *job, uint32_t groups[KRS_MOST_MARCH_GROUPS]
     return program->march_group_count;
 }
 
-/* The march of a group by itself.  The first one's rays find the planes, which are all around. */
+/* Makes the march of a group by itself.  The first group's rays also find the planes, which may be
+   anywhere, so they are not confined to a window. */
 static bool march_of_group(Job *job, uint32_t group, bool first, March *march)
 {
-    KrsRendering        *r        = job->rendering;
-    const KrsMarchGroup *own      = &r->program->march_groups[group - 1];
-    KrsSchedule          schedule = rendering_schedule_of_march_group(r, job->asked, group);
-    Kernel              *kernel   = rendering_trace(r, job->options.trace, schedule, group);
-    *march                        = (March){.rays     = kernel,
-                                            .beams    = job_has_beams(job) ? kernel : NULL,
-                                            .schedule = schedule,
-                                            .flops    = own->flops,
-                                            .boxed    = true,
-                                            .windowed = !first || !rendering_knows_planes(r)};
+    KrsRendering        *r   = job->rendering;
+    const KrsMarchGroup *own = &r->program->march_groups[group - 1];
+    KrsSchedule schedule     = rendering_schedule_of_march_group(r, job->asked_schedule, group);
+    Kernel     *kernel       = rendering_trace(r, job->options.trace, schedule, group);
+    *march                   = (March){.rays     = kernel,
+                                       .beams    = job_has_beams(job) ? kernel : NULL,
+                                       .schedule = schedule,
+                                       .flops    = own->flops,
+                                       .boxed    = true,
+                                       .windowed = !first || !rendering_knows_planes(r)};
     memcpy(march->low, own->low, sizeof march->low);
     memcpy(march->high, own->high, sizeof march->high);
     return kernel != NULL;
@@ -65,8 +67,8 @@ static bool march_of_group(Job *job, uint32_t group, bool first, March *march)
 static bool add_groups(Job *job, Plan *plan, float weight, Primary *primary)
 {
     uint32_t     groups[KRS_MOST_MARCH_GROUPS];
-    const size_t count = sort_groups(job, groups);
-    const bool   own   = job->options.normals != KRS_NORMALS_ANALYTIC; /* normals */
+    const size_t count       = sort_groups(job, groups);
+    const bool   own_normals = job->options.normals != KRS_NORMALS_ANALYTIC;
     for (size_t i = 0; i < count; i++) {
         March     march;
         OwnGroup *group = &primary->groups[i];
@@ -74,18 +76,18 @@ static bool add_groups(Job *job, Plan *plan, float weight, Primary *primary)
         if (!march_of_group(job, groups[i], i == 0, &march))
             return false;
         plan_add_march(plan, &march, weight / (float)count);
-        if (own)
+        if (own_normals)
             group->normals = rendering_normals_kernel(job->rendering, job->options.normals,
                                                       groups[i]);
-        if (own && !group->normals)
+        if (own_normals && !group->normals)
             return false;
     }
     primary->groups[count] = (OwnGroup){0, primary->normals};
-    primary->group_count   = own ? count + 1 : 0;
+    primary->group_count   = own_normals ? count + 1 : 0;
     return true;
 }
 
-/* With planes apart rays are clipped to the box around what is left to march. */
+/* Clips rays to the box around all components but planes, which rays intersect without a march. */
 static void clip_to_rest(const Job *job, March *march)
 {
     const KrsProgram *program = job->rendering->program;
@@ -96,7 +98,7 @@ static void clip_to_rest(const Job *job, March *march)
     }
 }
 
-/* All components together, or part by part within each ray. */
+/* Adds one march of all components: together, or scene part by scene part within each ray. */
 static bool add_whole(Job *job, Plan *plan, float weight)
 {
     const KrsRenderOptions *options = &job->options;
@@ -116,19 +118,19 @@ static bool add_whole(Job *job, Plan *plan, float weight)
 
 bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary)
 {
-    KrsRendering *r    = job->rendering;
-    *primary           = (Primary){0};
-    const bool in_turn = job->begins_outside &&
-                         rendering_marches_per_component(r, job->options.components);
-    /* Balls that are tried know of no inside. */
+    KrsRendering *r          = job->rendering;
+    *primary                 = (Primary){0};
+    const bool per_component = job->begins_outside &&
+                               rendering_marches_per_component(r, job->options.components);
+    /* Methods that try balls work outside of solids only. */
     if (job->options.trace >= KRS_TRACE_BINARY && !job->begins_outside)
         job->options.trace = KRS_TRACE_PLAIN;
     primary->normals = rendering_normals_kernel(r, job->options.normals, 0);
     if (!primary->normals)
         return false;
-    if (in_turn || job_has_beams(job))
+    if (per_component || job_has_beams(job))
         plan_add(plan, (Pass){.kind = PASS_CLEAR, .phase = KRS_PHASE_BEAMS});
-    return in_turn ? add_groups(job, plan, weight, primary) : add_whole(job, plan, weight);
+    return per_component ? add_groups(job, plan, weight, primary) : add_whole(job, plan, weight);
 }
 
 void primary_add_normals(Plan *plan, float weight, const Primary *primary)
@@ -139,15 +141,16 @@ void primary_add_normals(Plan *plan, float weight, const Primary *primary)
                  .kernel = primary->normals,
                  .in     = LIST_ALL,
                  .out    = NO_LIST};
-    /* At the surface of one group the others do not count. */
+    /* At the surface of one group the distances of the others do not matter, so each group's own
+       kernel finds the normals there. */
     plan->by_march_group = primary->group_count > 0;
     if (primary->group_count == 0)
         plan_add(plan, pass);
     for (size_t i = 0; i < primary->group_count; i++) {
-        pass.kernel    = primary->groups[i].normals;
-        pass.in        = LIST_OF_MARCH_GROUP + primary->groups[i].march_group;
-        pass.weight    = weight / (float)primary->group_count;
-        pass.with_last = i > 0;
+        pass.kernel        = primary->groups[i].normals;
+        pass.in            = LIST_OF_MARCH_GROUP + primary->groups[i].march_group;
+        pass.weight        = weight / (float)primary->group_count;
+        pass.with_previous = i > 0;
         plan_add(plan, pass);
     }
 }

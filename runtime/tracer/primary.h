@@ -6,22 +6,22 @@
 
 #include "runtime/tracer/plan.h"
 
-/* A group of components that is marched by itself, and whose normals are its own. */
+/* A march group, and the kernel that finds its normals. */
 typedef struct OwnGroup {
-    uint32_t march_group; /* from 1; 0: all else, which is planes */
+    uint32_t march_group; /* from 1; 0: what is in no group, which is planes */
     Kernel  *normals;
 } OwnGroup;
 
-/* How primary rays are found in this frame. */
+/* The kernels that find normals in this frame. */
 typedef struct Primary {
     OwnGroup groups[1 + KRS_MOST_MARCH_GROUPS];
-    size_t   group_count; /* 0: the normals of all are found by one kernel: */
-    Kernel  *normals;
+    size_t   group_count; /* 0: `normals` finds those of all hits */
+    Kernel  *normals;     /* for all components */
 } Primary;
 
-/* Adds the passes that march, and says how normals are found; false with the failure noted. */
+/* Adds the passes that march, and fills in *primary; false with the failure noted. */
 bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary);
-/* Adds those that find normals, behind the pass that lists the pixels that hit something. */
+/* Adds the passes that find normals.  The pass that lists the hits must be added before. */
 void primary_add_normals(Plan *plan, float weight, const Primary *primary);
 
 #endif

@@ -1,5 +1,5 @@
 /*
- * renderer.c: a device with what all scenes need of it, made ready and taken down.
+ * renderer.c: makes and frees renderers: a device, and what all scenes need on it.
  */
 #include "runtime/tracer/renderer.h"
 

@@ -6,11 +6,11 @@
 
 #include "runtime/tracer/handles.h"
 
-/* Makes the kernels without a scene for rays of a kind, unless they are there; adds the time that
-   it took. */
+/* Makes the kernels without a scene for rays of a kind, unless they exist.  Adds the time that this
+   takes. */
 bool renderer_create_pixels(KrsRenderer *renderer, RayKind kind, double *spirv_ms,
                             double *pipeline_ms);
-/* Forgets the message of the call before. */
+/* Clears the status and the message of the last failure. */
 void renderer_clear(KrsRenderer *renderer);
 
 #endif

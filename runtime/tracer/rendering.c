@@ -1,5 +1,6 @@
 /*
- * rendering.c: a scene on a device: its buffers, its parameters, and what is sent to the device.
+ * rendering.c: a scene on a device: its buffers and parameters, and the commands that run its
+ * kernels.
  */
 #include "runtime/tracer/rendering.h"
 
@@ -12,7 +13,7 @@
 #include "runtime/tracer/renderer.h"
 #include "runtime/tracer/slots.h"
 
-/* The radius of a zone in which nothing is. */
+/* The radius of an unused zone, in which no point is. */
 #define NO_ZONE (-1e30f)
 
 void rendering_bind(KrsRendering *rendering, VkDescriptorSet set, uint32_t binding,
@@ -80,8 +81,8 @@ static bool buffers_create(KrsRendering *rendering)
     return true;
 }
 
-/* What a kernel with the scene does for an item before it may be interrupted, in distances, about;
-   without the scene it does as much as some operations. */
+/* The work on an item before a kernel may be interrupted, in evaluations of the distance, about.
+   For kernels without the scene it is as much as some operations. */
 static const double distances_of_item[KRS_PHASE_COUNT] = {
     [KRS_PHASE_BEAMS] = 64,   [KRS_PHASE_PRIMARY] = 16,  [KRS_PHASE_NORMALS] = 7,
     [KRS_PHASE_SHADOWS] = 64, [KRS_PHASE_OCCLUSION] = 5, [KRS_PHASE_SHADING] = 4,
@@ -89,12 +90,12 @@ static const double distances_of_item[KRS_PHASE_COUNT] = {
 };
 #define FLOPS_WITHOUT_SCENE 1000
 
-/* The first slice, in groups: 50 ms on a slow device of its kind, until more is known.  A processor
-   is interrupted at every look of its driver, so there it may be short. */
+/* The workgroups of the first slice: 50 ms on a slow device of its kind, until times are known.
+   Waiting for a processor costs little, so its first slice may be short. */
 static uint32_t guess_slice(const KrsRendering *rendering, int phase, bool has_scene)
 {
     static const double slow[] = {
-        /* flops of 50 ms, where a tenth of what is promised is reached */
+        /* Operations in 50 ms at a tenth of the promised speed. */
         [KRS_DEVICE_OTHER] = 5e8,      [KRS_DEVICE_CPU] = 5e8,       [KRS_DEVICE_VIRTUAL] = 5e8,
         [KRS_DEVICE_INTEGRATED] = 1e9, [KRS_DEVICE_DISCRETE] = 1e10,
     };
@@ -164,7 +165,7 @@ void krs_rendering_free(KrsRendering *rendering)
                          &band->queue,
                          &band->taken,
                          &band->tiles};
-    gpu_wait(gpu); /* kernels may still be warmed up; a device that is lost has none */
+    gpu_wait(gpu); /* kernels may still be warming up, unless the device is lost */
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         buffer_destroy(gpu, buffers[i]);
     kernels_destroy(gpu, &rendering->kernels);
@@ -173,8 +174,8 @@ void krs_rendering_free(KrsRendering *rendering)
     gpu_release(gpu, rendering);
 }
 
-/* Room for so many lights, and rays behind them.  Kernels load some lights at once, those beyond the
-   last as well. */
+/* Makes room for lights, and for listed rays behind them.  Kernels load several lights at a time,
+   also beyond the last one. */
 static bool make_room(KrsRendering *rendering, size_t lights, size_t rays)
 {
     Gpu         *gpu    = &rendering->renderer->gpu;
@@ -217,7 +218,8 @@ ListedRayBlock *rendering_listed_rays(KrsRendering *rendering, size_t lights)
     return (ListedRayBlock *)((LightBlock *)rendering->inputs.bytes + lights + LIGHTS_AT_ONCE);
 }
 
-/* Kernels with room for so many zones: 1, 2, 4, 8 or 16; those that have more room are as good. */
+/* Chooses kernels with room for `count` zones: 1, 2, 4, 8 or 16.  Kernels that exist and have more
+   room serve as well. */
 static bool choose_zones(KrsRendering *rendering, size_t count)
 {
     uint32_t most              = rendering->most_zone_slots;
@@ -233,7 +235,7 @@ static bool choose_zones(KrsRendering *rendering, size_t count)
 
 bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame)
 {
-    /* Into memory of the host first: the compiler may read back what it writes. */
+    /* Written to host memory first: the compiler's functions may read back what they write. */
     Gpu   *gpu         = &rendering->renderer->gpu;
     size_t first_value = rendering->program->parameter_slots;
     size_t values = rendering_value_slots(rendering), slots = first_value + values;

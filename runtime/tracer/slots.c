@@ -1,9 +1,9 @@
 /*
- * slots.c: how much room there is in the parameter block.
+ * slots.c: the size of the parameter block.
  */
 #include "runtime/tracer/slots.h"
 
-/* Aside from values of the frame that kernels may find by themselves. */
+/* All slots but those of frame values, which kernels can compute by themselves. */
 static uint32_t slots_without_values(const KrsProgram *program)
 {
     return program->parameter_slots + KRS_MOST_ZONES + program->camera_relative_slots + 1;

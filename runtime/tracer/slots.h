@@ -1,15 +1,15 @@
 /*
- * slots.h: how much room there is in the parameter block.
+ * slots.h: the size of the parameter block, in slots of four numbers.
  */
 #ifndef KRS_SLOTS_H
 #define KRS_SLOTS_H
 
 #include "runtime/tracer/handles.h"
 
-/* How many slots of values of the frame the host fills in: all, or none where the device has no
-   room. */
+/* The slots of frame values that the host computes.  Where the device has no room for all of them
+   it is 0, and kernels compute them. */
 uint32_t rendering_value_slots(const KrsRendering *rendering);
-/* The slots of the whole block; 0 with the failure noted where the device has no room. */
+/* All slots of the block; 0, with the failure noted, where the device has no room for them. */
 uint32_t rendering_slots(const KrsRendering *rendering);
 
 #endif

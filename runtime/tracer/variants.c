@@ -1,8 +1,9 @@
 /*
- * variants.c: which functions of a scene each kernel calls, and what it is told.
+ * variants.c: for each kernel, the functions of the scene that it calls, and the `#define`s for its
+ * own text.
  *
- * What is chosen once, for the scene's text, is told to the kernel's own text here and nowhere else
- * (tell_kernel).
+ * Choices are made once, for the scene's text.  define_choices alone passes them on to the kernel's
+ * own text.
  */
 #include "runtime/tracer/variants.h"
 
@@ -38,46 +39,46 @@ static bool wants(const KernelVariant *of, KrsFunction function)
     return found;
 }
 
-/* Last of all: what the kernel's text has to know of the scene's. */
-static void tell_kernel(KernelVariant *to)
+/* Defines for the kernel's own text what was chosen for the scene's.  It must be called last. */
+static void define_choices(KernelVariant *to)
 {
     static const struct {
         KrsFunction function;
         const char *define;
-    } tells[] = {
+    } choices[] = {
         {KRS_FUNCTION_DISTANCE_LOD, "#define EARLY_OUTS\n"},
         {KRS_FUNCTION_ALONG, "#define ALONG\n"},
         {KRS_FUNCTION_PLANE_T, "#define PLANES\n"},
         {KRS_FUNCTION_SCENE_PART_DISTANCE, "#define PACKED\n"},
-        {KRS_FUNCTION_SINES, "#define KRS_SINES\n"}, /* sines.glsl is there */
+        {KRS_FUNCTION_SINES, "#define KRS_SINES\n"}, /* the scene's text has sines.glsl */
     };
-    for (size_t i = 0; i < sizeof tells / sizeof *tells; i++)
-        if (wants(to, tells[i].function))
-            define(to, "%s", tells[i].define);
+    for (size_t i = 0; i < sizeof choices / sizeof *choices; i++)
+        if (wants(to, choices[i].function))
+            define(to, "%s", choices[i].define);
     if (to->scene.variant.march_group > 0)
         define(to, "#define MARCH_GROUP %u\n", to->scene.variant.march_group);
     if (to->scene.variant.camera_relative)
         define(to, "#define CAMERA_RELATIVE\n");
 }
 
-/* By distances that leave out what is far, where branches save work; in groups that is left out
-   already. */
+/* Chooses the distance to march by.  Where branches save work, it is the one that skips far shapes.
+   Within a march group there is nothing far to skip. */
 static void want_distance_to_march(KernelVariant *to)
 {
     bool lod = to->scene.variant.many_threads && to->scene.variant.march_group == 0;
     want(to, lod ? KRS_FUNCTION_DISTANCE_LOD : KRS_FUNCTION_DISTANCE);
 }
 
-/* Kernels that include frame.glsl find rays of panoramas by sines. */
+/* The rays of panoramas need sines, in all kernels that include frame.glsl. */
 static void want_rays(KernelVariant *to, const KrsRendering *rendering)
 {
     if (rendering->rays == RAYS_OF_PANORAMAS)
         want(to, KRS_FUNCTION_SINES);
 }
 
-/* ---- of a rendering ---- */
+/* ---- variants for a rendering ---- */
 
-/* Of a sum lavapipe makes a loop over the lanes. */
+/* Not on lavapipe, which compiles a sum over the lanes to a loop. */
 static bool sums_lanes(const Gpu *gpu) { return !gpu_is_cpu(gpu) && gpu->sums_lanes; }
 
 static KernelVariant begin_variant(const KrsRendering *rendering, KrsTrace trace,
@@ -106,7 +107,7 @@ static KernelVariant begin_variant(const KrsRendering *rendering, KrsTrace trace
     return to;
 }
 
-/* How a ray goes along, where it does; false where it goes by distances. */
+/* Chooses how rays step by krs_along; false where they step by distances. */
 static bool want_along(KernelVariant *to, const KrsRendering *rendering, KrsTrace trace)
 {
     static const KrsRayStep steps[KRS_TRACE_COUNT] = {
@@ -122,7 +123,7 @@ static bool want_along(KernelVariant *to, const KrsRendering *rendering, KrsTrac
     return true;
 }
 
-/* Where a ray asks whether balls are empty. */
+/* Chooses krs_probe for methods that test whether balls are empty; false for others. */
 static bool want_probe(KernelVariant *to, const KrsRendering *rendering, KrsTrace trace)
 {
     if ((trace != KRS_TRACE_BINARY && trace != KRS_TRACE_PREDICTED) ||
@@ -150,11 +151,11 @@ KernelVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, Kr
     } else if (!want_probe(&to, rendering, trace) && !want_along(&to, rendering, trace)) {
         want_distance_to_march(&to);
     }
-    tell_kernel(&to);
+    define_choices(&to);
     return to;
 }
 
-/* The octahedron is what the kernel has otherwise. */
+/* The octahedron has no define: normals.comp uses it by default. */
 KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals normals, uint32_t group)
 {
     const KrsProgram *program    = rendering->program;
@@ -168,14 +169,14 @@ KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals norma
         define(&to, "#define GRADIENT\n");
     else if (normals != KRS_NORMALS_OCTAHEDRON)
         define(&to, "#define STENCIL %d\n", (int)normals);
-    /* What is special about a scene's distance around a hit. */
+    /* Properties of the scene's distance around a hit. */
     define(&to, "%s%s", program->along && !program->inverts ? "#define ROOTS\n" : "",
            program->plain ? "#define PLAIN\n" : "");
-    tell_kernel(&to);
+    define_choices(&to);
     return to;
 }
 
-/* Rays are drawn by lot, by sines. */
+/* The random directions of rays need sines. */
 KernelVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace,
                                    KrsSchedule schedule)
 {
@@ -183,7 +184,7 @@ KernelVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace
     want(&to, KRS_FUNCTION_SINES);
     if (!want_along(&to, rendering, trace))
         want(&to, KRS_FUNCTION_DISTANCE);
-    tell_kernel(&to);
+    define_choices(&to);
     return to;
 }
 
@@ -192,7 +193,7 @@ KernelVariant variant_of_shade(const KrsRendering *rendering)
     KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
     want_rays(&to, rendering);
     want(&to, KRS_FUNCTION_SURFACE);
-    tell_kernel(&to);
+    define_choices(&to);
     return to;
 }
 
@@ -202,11 +203,11 @@ KernelVariant variant_of_query(const KrsRendering *rendering, KrsTrace trace, Kr
     want_rays(&to, rendering);
     if (!want_along(&to, rendering, trace))
         want_distance_to_march(&to);
-    tell_kernel(&to);
+    define_choices(&to);
     return to;
 }
 
-/* Differences of a distance see both sides of a sheet. */
+/* Differences of a distance see both sides of a sheet, so sheets need the gradient. */
 KernelVariant variant_of_point_query(const KrsRendering *rendering)
 {
     KernelVariant to = begin_variant(rendering, KRS_TRACE_PLAIN, KRS_SCHEDULE_PIXEL);
@@ -214,7 +215,7 @@ KernelVariant variant_of_point_query(const KrsRendering *rendering)
     want(&to, KRS_FUNCTION_SURFACE);
     if (rendering->program->sheets)
         want(&to, KRS_FUNCTION_GRADIENT);
-    tell_kernel(&to);
+    define_choices(&to);
     return to;
 }
 
@@ -223,7 +224,7 @@ KernelSource variant_source(const char *file, const KernelVariant *variant)
     return (KernelSource){file, variant->scene.scene ? &variant->scene : NULL, variant->defines};
 }
 
-/* ---- of no device ---- */
+/* ---- variants for any device ---- */
 
 KernelVariant variant_for_any(const KrsScene *scene, const char *file, const KrsVariant *variant)
 {
@@ -250,6 +251,6 @@ KernelVariant variant_for_any(const KrsScene *scene, const char *file, const Krs
         for (size_t k = 0; k < kernels[i].count; k++)
             want(&to, kernels[i].wanted[k]);
     }
-    tell_kernel(&to);
+    define_choices(&to);
     return to;
 }

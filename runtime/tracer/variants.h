@@ -1,6 +1,6 @@
 /*
- * variants.h: kernels with a scene in them: which functions of the scene each calls, and the `#define`s
- * that tell the kernel's own text what has been chosen of the scene's.
+ * variants.h: what a kernel with a scene is made from: the functions of the scene that it calls,
+ * and `#define`s.  These tell its own text what was chosen for the scene's.
  */
 #ifndef KRS_VARIANTS_H
 #define KRS_VARIANTS_H
@@ -12,14 +12,14 @@ typedef struct KernelVariant {
     char        defines[320];
 } KernelVariant;
 
-/* Defines of kernels with or without a scene: */
+/* Defines of kernels with or without a scene. */
 #define NO_TEXELS "#define NO_TEXELS\n" /* see Gpu.texels */
-/* rays of panoramas, which cost more, are in kernels of scenes that have some; */
+/* Only scenes with a panorama have kernels for its rays, which cost more. */
 #define PANORAMIC "#define PANORAMIC\n"
-/* rays are those of a list (frame.glsl). */
+/* Rays come from a list (frame.glsl). */
 #define LISTED_RAYS "#define LISTED_RAYS\n"
 
-/* As for rendering_trace and its kind. */
+/* The variants of the kernels of kernels.h, with the same arguments. */
 KernelVariant variant_of_trace(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule,
                                uint32_t group);
 KernelVariant variant_of_normals(const KrsRendering *rendering, KrsNormals normals, uint32_t group);
@@ -28,11 +28,11 @@ KernelVariant variant_of_secondary(const KrsRendering *rendering, KrsTrace trace
 KernelVariant variant_of_shade(const KrsRendering *rendering);
 KernelVariant variant_of_query(const KrsRendering *rendering, KrsTrace trace, KrsSchedule schedule);
 KernelVariant variant_of_point_query(const KrsRendering *rendering);
-/* The source of a kernel, for as long as the variant is there. */
+/* The source of a kernel.  It points into the variant, which must live as long. */
 KernelSource variant_source(const char *file, const KernelVariant *variant);
 
-/* The kernel of a file as it suits every device, for who has none: with the scene, when it includes
-   one. */
+/* The variant of a kernel that suits every device, for callers that have none.  It contains the
+   scene if the file includes one. */
 KernelVariant variant_for_any(const KrsScene *scene, const char *file, const KrsVariant *variant);
 
 #endif

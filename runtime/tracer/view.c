@@ -1,5 +1,5 @@
 /*
- * view.c: the camera's frame, how far rays go, and how large the scene is.
+ * view.c: the camera's axes, the length of rays, and the size of the scene.
  */
 #include "runtime/tracer/view.h"
 
@@ -7,14 +7,15 @@
 
 #include "compiler/base/vec.h"
 
-/* Where z is 0 in the NDC of a perspective picture; it is 1 at infinity. */
+/* The depth at which z is 0 in the NDC of a perspective picture; z is 1 at infinity. */
 static const double NDC_NEAR = 1e-3;
 
 static const double PI = 3.14159265358979323846;
 
-/* The shaders' substitute for an infinite box: 1e18 over 1e-18 is still a float. */
+/* Stands for infinity in the boxes of shaders: 1e18 over 1e-18 is still a float (clip_to in
+   frame.glsl). */
 #define UNBOUNDED 1e18
-/* A scene without bounds ends this many times its size from the camera: far beyond where its
+/* Rays in a scene without bounds end this many times its size from the camera: far beyond where its
    horizon is a pixel high. */
 #define HORIZON 1e4
 
@@ -31,7 +32,7 @@ static bool camera_basis(const KrsCamera *camera, Basis *basis)
     if (!normalize3(basis->forward))
         return false;
 
-    /* Looking straight along `up` (or with none), some other axis must say what is right. */
+    /* When the camera looks along `up`, or `up` is 0, another axis defines what is right. */
     cross3(basis->forward, camera->up, basis->right);
     if (!(dot3(basis->right, basis->right) > 1e-18 * dot3(camera->up, camera->up)) ||
         !normalize3(basis->right)) {
@@ -45,7 +46,8 @@ static bool camera_basis(const KrsCamera *camera, Basis *basis)
     return true;
 }
 
-/* Half of what the picture shows, at distance 1 where it is perspective: along up and right. */
+/* Half the extent of the picture to the right and upwards: at distance 1 for a perspective
+   picture. */
 static void half_extent(const KrsCamera *camera, uint32_t width, uint32_t height, double extent[2])
 {
     double half = camera->projection == KRS_PERSPECTIVE    ? tan(camera->fov / 2)
@@ -119,8 +121,8 @@ static double dot_floats(const double a[3], const float b[3])
     return a[0] * (double)b[0] + a[1] * (double)b[1] + a[2] * (double)b[2];
 }
 
-/* In half pictures from the middle, rightwards and upwards; false for what is not in front of the
-   eye. */
+/* Projects a point to the picture: right and up from the middle, in half widths and half heights.
+   False for a point that is not in front of the eye. */
 static bool project(const FrameBlock *block, const double point[3], bool perspective,
                     double image_point[2])
 {
@@ -156,7 +158,7 @@ KrsWindow view_window(const FrameBlock *block, const KrsCamera *camera)
     }
     double from[2] = {0.5 * (1 + low[0]), 0.5 * (1 - high[1])};
     double to[2]   = {0.5 * (1 + high[0]), 0.5 * (1 - low[1])};
-    for (int i = 0; i < 2; i++) { /* a pixel more, for rounding */
+    for (int i = 0; i < 2; i++) { /* one pixel larger, for rounding */
         from[i] = known ? fmin(fmax(floor(from[i] * size[i]) - 1, 0), size[i]) : 0;
         to[i]   = known ? fmin(fmax(ceil(to[i] * size[i]) + 1, from[i]), size[i]) : size[i];
     }
@@ -164,8 +166,8 @@ KrsWindow view_window(const FrameBlock *block, const KrsCamera *camera)
                        (uint32_t)(to[1] - from[1])};
 }
 
-/* Where rays end, and how far occlusion is felt.  The latter hangs on the scene, not on the
-   camera, where that is possible, so that it does not change while the camera moves. */
+/* Sets the end of rays and the reach of occlusion.  The reach depends on the scene alone where
+   possible, not on the camera, so that it does not change while the camera moves. */
 static void place_ends(const KrsView *view, const double low[3], const double high[3],
                        double distance, FrameBlock *block)
 {
@@ -177,7 +179,7 @@ static void place_ends(const KrsView *view, const double low[3], const double hi
             double side = fmax(fabs(low[i] - eye), fabs(high[i] - eye));
             farthest += side * side;
         }
-        /* An orthographic ray starts beside the eye, by no more than the box is away. */
+        /* An orthographic ray starts beside the eye, no farther from it than the box is. */
         block->farthest        = (float)(2.1 * sqrt(farthest) + 2 * view->camera.height);
         block->occlusion_reach = (float)(0.15 * size);
     } else {

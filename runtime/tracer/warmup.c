@@ -1,11 +1,11 @@
 /*
- * warmup.c: kernels that have run once before they are needed.
+ * warmup.c: runs each kernel once before it is needed.
  *
- * lavapipe compiles a kernel when it first runs, one after the other, and keeps what it has
- * compiled on disk.  So each kernel runs once on nothing while the host is busy with other things.
- * Where several kernels are new, a second device, which exists for no longer, takes some of them:
- * the first then finds those on disk.  Graphics cards compile a kernel when its pipeline is made,
- * so only devices of type CPU are warmed up.
+ * lavapipe compiles a kernel when it first runs, one kernel at a time, and keeps the code on disk.
+ * So each kernel runs once without any items, while the host does other work.  Where several
+ * kernels are new, a second device takes some of them, and is closed when they are done.  The first
+ * device then finds those on disk.  Graphics cards compile a kernel when its pipeline is made, so
+ * only devices of type CPU are warmed up.
  */
 #include "runtime/tracer/warmup.h"
 
@@ -23,7 +23,7 @@ static bool warm_up(KrsRenderer *renderer, VkDescriptorSet scene_set, const Kern
                        sizeof work);
 }
 
-/* Kernels that two devices warm up: each takes the next that the other has not. */
+/* Kernels that two devices warm up.  Each takes the next one that the other has not taken. */
 typedef struct WarmUpQueue {
     const Gpu        *gpu; /* the first */
     const KernelCode *codes;
@@ -31,9 +31,9 @@ typedef struct WarmUpQueue {
     atomic_size_t     next;
 } WarmUpQueue;
 
-/* Whether a second device is worth its making: its host has a core for it, and there is more than
-   one kernel that the driver is not likely to have.  The validation layers' callback is for one
-   thread. */
+/* Whether a second device is worth its cost.  There must be a core for it, and more than one kernel
+   that the driver probably does not have yet.  The callback of the validation layers works for one
+   thread only. */
 static bool worth_second_device(const Gpu *gpu, const KernelCode *codes, size_t count)
 {
     size_t compiled = 0;
@@ -44,7 +44,7 @@ static bool worth_second_device(const Gpu *gpu, const KernelCode *codes, size_t 
 
 /* The second device's thread.  If anything fails, or nothing is kept on disk, the first device
    compiles what this one should have. */
-static void *warm_up_beside(void *user)
+static void *warm_up_on_second_device(void *user)
 {
     WarmUpQueue *queue  = user;
     KrsRenderer  second = {0};
@@ -61,7 +61,8 @@ static void *warm_up_beside(void *user)
     return NULL;
 }
 
-/* Those that the second device does not take, and then, off the disk, those that it did. */
+/* Warms up the kernels that the second device does not take, and then, from the disk, those that it
+   took. */
 static bool warm_up_all(KrsRenderer *renderer, VkDescriptorSet scene_set,
                         const KernelRequest *requests, const KernelCode *codes, size_t count)
 {
@@ -69,9 +70,9 @@ static bool warm_up_all(KrsRenderer *renderer, VkDescriptorSet scene_set,
     pthread_t   thread;
     bool        ready = true, taken[KERNELS_AT_ONCE] = {false};
     bool        helped = worth_second_device(&renderer->gpu, codes, count) &&
-                  pthread_create(&thread, NULL, warm_up_beside, &queue) == 0;
+                  pthread_create(&thread, NULL, warm_up_on_second_device, &queue) == 0;
     while (helped && ready) {
-        ready    = gpu_wait(&renderer->gpu); /* takes no more than it can work on */
+        ready    = gpu_wait(&renderer->gpu); /* takes a kernel only when it can run it */
         size_t i = atomic_fetch_add(&queue.next, 1);
         if (i >= count)
             break;

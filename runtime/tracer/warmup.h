@@ -1,13 +1,13 @@
 /*
- * warmup.h: kernels, made and run once before they are needed.
+ * warmup.h: makes kernels, and runs each once before it is needed.
  */
 #ifndef KRS_WARMUP_H
 #define KRS_WARMUP_H
 
 #include "runtime/tracer/handles.h"
 
-/* Makes at most KERNELS_AT_ONCE kernels, and sends them through the driver once, in the
-   background.  The scene's set may be VK_NULL_HANDLE. */
+/* Makes at most KERNELS_AT_ONCE kernels, and has the driver run each once in the background.  The
+   scene's set may be VK_NULL_HANDLE. */
 enum { KERNELS_AT_ONCE = 20 };
 bool kernels_make(KrsRenderer *renderer, VkDescriptorSet scene_set, const KernelRequest *requests,
                   size_t count, double *spirv_ms, double *pipeline_ms);

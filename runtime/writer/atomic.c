@@ -1,10 +1,10 @@
 /*
- * atomic.c: temporary file, flush, rename.
+ * atomic.c: writes a temporary file, flushes it and renames it.
  *
- * Writes are gathered in a buffer as long as each begins where the one before ended, because
- * the EXR library writes its header a few bytes at a time.  The order at the end matters: the
- * bytes must be on the disk before the name points to them, and the folder, which holds the
- * name, is flushed last.
+ * Writes are gathered in a buffer as long as each begins where the one before ended.  The EXR
+ * library writes its header a few bytes at a time.  The order at the end matters.  The bytes must
+ * be on the disk before the name refers to them.  The folder, which holds the name, is flushed
+ * last.
  */
 #include "runtime/writer/atomic.h"
 
@@ -28,13 +28,16 @@ struct OutputFile {
     char                        *shown;  /* the path as the user gave it */
     char                        *target; /* with symbolic links followed */
     char                        *folder;
-    char       *temporary; /* spool file in case of a direct target, else in `folder` */
-    int         fd;
-    bool        direct; /* the target is no regular file */
-    bool        exists; /* and is as `before` says, which the new file will be, too */
+    char                        *temporary; /* path of the temporary file, in `folder` */
+    int                          fd;
+    /* The target is no regular file: it is not renamed over, and the temporary file is in
+       TMPDIR. */
+    bool direct;
+    /* The target exists; the new file takes over owner and permissions from `before`. */
+    bool        exists;
     struct stat before;
-    mode_t      mode; /* of a target that does not exist */
-    uint64_t    end;  /* where the longest write so far ended */
+    mode_t      mode; /* permissions of a new target */
+    uint64_t    end;  /* size of the file so far */
     uint64_t    buffered_at;
     size_t      buffered;
     char        buffer[BUFFER_SIZE];
@@ -43,7 +46,7 @@ struct OutputFile {
 static bool output_fail(OutputError *error, KrsStatus status, const char *path, int reason)
 {
     if (error->status != KRS_OK)
-        return false; /* the first mistake is the one to tell */
+        return false; /* the first failure is the one to report */
     error->status = status;
     if (status == KRS_INTERRUPTED)
         snprintf(error->message, sizeof error->message, "interrupted while writing `%s`", path);
@@ -88,7 +91,7 @@ static char *folder_of(const char *path)
 }
 
 /* "real/folder/name" of a file that does not exist, in a folder that does. */
-static char *place_missing(const char *path)
+static char *real_path_of_missing(const char *path)
 {
     char *folder = folder_of(path), *real = folder ? realpath(folder, NULL) : NULL, *place = NULL;
     const char *slash = strrchr(path, '/');
@@ -100,7 +103,7 @@ static char *place_missing(const char *path)
     return place;
 }
 
-/* What a symbolic link leads to, as seen from the link; NULL when it is none. */
+/* The path that a symbolic link refers to; NULL when `path` is no link. */
 static char *follow_link(const char *path)
 {
     char    to[PATH_MAX], *folder, *place = NULL;
@@ -117,15 +120,15 @@ static char *follow_link(const char *path)
     return place;
 }
 
-/* Where a file is or would be made, by way of links that may lead to nothing; NULL with errno. */
-static char *find_place(const char *path)
+/* The real path of a file, which need not exist, with all links followed; NULL with errno set. */
+static char *real_path(const char *path)
 {
     char *place = strdup(path);
     for (int links = 0; place && links < MOST_LINKS; links++) {
         char *real = realpath(place, NULL), *next = NULL;
         bool  missing = !real && errno == ENOENT;
         if (missing && !(next = follow_link(place)))
-            real = place_missing(place);
+            real = real_path_of_missing(place);
         free(place);
         if (!next)
             return real;
@@ -138,15 +141,14 @@ static char *find_place(const char *path)
 
 bool output_is_same(const char *a, const char *b)
 {
-    char *first = find_place(a), *second = find_place(b);
+    char *first = real_path(a), *second = real_path(b);
     bool  same = strcmp(a, b) == 0 || (first && second && strcmp(first, second) == 0);
     free(first);
     free(second);
     return same;
 }
 
-/* Where the bytes will go in the end: the file behind a symbolic link is replaced, not the
-   link. */
+/* Finds the target: the file that a symbolic link leads to is replaced, not the link. */
 static bool find_target(OutputFile *file)
 {
     struct stat *info   = &file->before;
@@ -159,7 +161,7 @@ static bool find_target(OutputFile *file)
     if (file->exists && access(file->shown, W_OK) != 0)
         return fail_create(file);
     file->direct = file->exists && !S_ISREG(info->st_mode);
-    file->target = file->direct ? strdup(file->shown) : find_place(file->shown);
+    file->target = file->direct ? strdup(file->shown) : real_path(file->shown);
     if (!file->target)
         return fail_create(file);
 
@@ -170,7 +172,8 @@ static bool find_target(OutputFile *file)
     return file->folder || fail_create(file);
 }
 
-/* Nobody else may read what is being written; what the file becomes is decided beside. */
+/* Creates the temporary file with mode 0600, so that nobody else can read it.  The permissions for
+   a new target are found out before; they are set when committing. */
 static bool create_temporary(OutputFile *file)
 {
     if (!file->exists)
@@ -203,7 +206,7 @@ OutputFile *output_open(const char *path, const volatile sig_atomic_t *cancelled
 
 const char *output_temporary(const OutputFile *file) { return file->temporary; }
 
-/* Writes all of it, however many calls that takes; `offset` < 0 is a target without offsets. */
+/* Writes all bytes, in as many calls as that takes.  `offset` < 0: the target has no offsets. */
 static bool write_fully(OutputFile *file, int fd, const char *bytes, size_t length, int64_t offset)
 {
     while (length > 0) {
@@ -214,7 +217,7 @@ static bool write_fully(OutputFile *file, int fd, const char *bytes, size_t leng
             continue;
         if (written <= 0) {
             if (written == 0)
-                errno = EIO; /* no progress and no reason: do not spin */
+                errno = EIO; /* no progress and no reason: do not try forever */
             return fail_write(file);
         }
         bytes += written;
@@ -255,7 +258,7 @@ bool output_append(OutputFile *file, const void *bytes, size_t length)
     return output_write(file, bytes, length, file->end);
 }
 
-/* A pipe cannot be written in any order, so its bytes waited in a spool file. */
+/* Copies the temporary file to a target such as a pipe, which cannot be written in any order. */
 static bool copy_to_target(OutputFile *file)
 {
     int target = open(file->target, O_WRONLY | O_CLOEXEC);
@@ -280,7 +283,7 @@ static bool copy_to_target(OutputFile *file)
     return done;
 }
 
-/* What went wrong when the file was there already, whole. */
+/* Records what failed after the whole file was in place. */
 static void warn(OutputFile *file, const char *words)
 {
     OutputError *error = file->error;
@@ -289,16 +292,17 @@ static void warn(OutputFile *file, const char *words)
                  words, strerror(errno));
 }
 
-/* Gives the new file owner, group and permissions of the one that it replaces.  Where the group
-   cannot be kept, it may no more than everybody. */
-static void keep_mode(OutputFile *file)
+/* Gives the new file the owner, group and permissions of the file that it replaces.  Where the
+   group cannot be kept, the group gets the permissions of all others. */
+static void copy_mode(OutputFile *file)
 {
     const struct stat *before = &file->before;
     struct stat        now    = {0};
     mode_t             mode   = file->exists ? before->st_mode & 0777 : file->mode;
     bool               known  = file->exists && fstat(file->fd, &now) == 0;
     if (known && now.st_uid != before->st_uid && fchown(file->fd, before->st_uid, (gid_t)-1) != 0)
-        errno = 0; /* only the administrator may; the file is the writer's then */
+        /* Only root may do that; else the file belongs to the writer. */
+        errno = 0;
     if (known && now.st_gid != before->st_gid && fchown(file->fd, (uid_t)-1, before->st_gid) != 0)
         mode = (mode & ~(mode_t)0070) | (mode & 0007) << 3;
     if (fchmod(file->fd, mode) != 0)
@@ -310,18 +314,18 @@ static void flush_folder(OutputFile *file)
 {
     int folder = open(file->folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (folder < 0 && errno == EACCES)
-        return; /* may write there, but not look */
+        return; /* may be written to, but not opened */
     if (folder < 0 || (fsync(folder) != 0 && errno != EINVAL))
         warn(file, "its name may not survive a power failure");
     if (folder >= 0)
         close(folder);
 }
 
-/* Flushes, closes and renames.  The lock, which belongs to the open file and not to its number,
-   stays until the name is changed: a file without it counts as abandoned. */
+/* Flushes, closes and renames the file.  Without a lock it would count as abandoned (temporary.h),
+   so a second descriptor of the open file keeps the lock until the name is changed. */
 static bool put_in_place(OutputFile *file)
 {
-    keep_mode(file);
+    copy_mode(file);
     int  held = fcntl(file->fd, F_DUPFD_CLOEXEC, 0), fd = file->fd;
     bool done = fsync(fd) == 0 || fail_write(file);
     file->fd  = held;

@@ -1,5 +1,5 @@
 /*
- * picture.h: what the writers of image files are given: planes of samples and words about them.
+ * picture.h: the input of the writers of image files: planes of samples, and texts about them.
  */
 #ifndef KRS_WRITER_PICTURE_H
 #define KRS_WRITER_PICTURE_H
@@ -10,8 +10,8 @@
 
 #include "runtime/writer/atomic.h"
 
-/* How the samples of a channel are stored; in memory a half is a float and is rounded when
-   written. */
+/* How the samples of a channel are stored in the file.  In memory a half is a float, and is rounded
+   when it is written. */
 typedef enum SampleType { SAMPLE_HALF, SAMPLE_FLOAT, SAMPLE_UINT } SampleType;
 
 typedef struct PictureChannel {
@@ -21,7 +21,7 @@ typedef struct PictureChannel {
     size_t      stride;  /* samples from one pixel to the next: 4 for interleaved RGBA */
 } PictureChannel;
 
-/* Words that travel with the picture: "krs:scene", "9c0ffee...". */
+/* A text that is stored in the file, such as "krs:scene", "9c0ffee...". */
 typedef struct PictureText {
     const char *name, *value;
 } PictureText;
@@ -33,7 +33,7 @@ typedef struct PictureMatrix {
 
 typedef struct Picture {
     uint32_t              width, height;           /* of the whole picture: EXR's displayWindow */
-    uint32_t              crop_x, crop_y;          /* the part that is there: EXR's dataWindow */
+    uint32_t              crop_x, crop_y;          /* the part that is stored: EXR's dataWindow */
     uint32_t              crop_width, crop_height; /* the size of every channel */
     const PictureChannel *channels;
     size_t                channel_count;

@@ -1,8 +1,8 @@
 /*
- * png.c: writes PNG files by libpng, which reports errors by longjmp.
+ * png.c: writes PNG files with libpng, which reports errors by longjmp.
  *
- * Everything that lives across a call of libpng stands in a PngWriter or is an argument, so no
- * local variable loses its value in the jump.
+ * A local variable may lose its value in the jump.  So whatever is used on both sides of a call of
+ * libpng is in a PngWriter or an argument.
  */
 #include "runtime/writer/png.h"
 
@@ -34,7 +34,8 @@ static _Noreturn void error_callback(png_structp png, png_const_charp message)
 {
     PngWriter *writer = png_get_error_ptr(png);
     if (writer->error->status == KRS_OK) {
-        /* libpng has no codes; the second is what it says when its list of texts cannot grow. */
+        /* libpng has no error codes.  The second text is its message when its list of texts cannot
+           grow. */
         bool memory           = strstr(message, "emory") || strstr(message, "too many text chunks");
         writer->error->status = memory ? KRS_OUT_OF_MEMORY : KRS_INTERNAL;
         snprintf(writer->error->message, sizeof writer->error->message,
@@ -57,7 +58,7 @@ static void write_texts(PngWriter *writer, const Picture *picture)
 {
     for (size_t i = 0; i < picture->text_count; i++) {
         const PictureText *text = &picture->texts[i];
-        bool software    = strcmp(text->name, "software") == 0; /* PNG has its own spelling */
+        bool software    = strcmp(text->name, "software") == 0; /* PNG spells it with a capital */
         writer->texts[i] = (png_text){
             .compression = PNG_ITXT_COMPRESSION_NONE,
             .key         = (char *)(software ? "Software" : text->name),
@@ -68,7 +69,7 @@ static void write_texts(PngWriter *writer, const Picture *picture)
     png_set_text(writer->png, writer->info, writer->texts, (int)picture->text_count);
 }
 
-/* False after libpng jumped out. */
+/* Writes the file; false when libpng has jumped out. */
 static bool write_file(PngWriter *writer, const Picture *picture, const uint8_t *rgb)
 {
     if (setjmp(png_jmpbuf(writer->png)) != 0)
@@ -79,8 +80,8 @@ static bool write_file(PngWriter *writer, const Picture *picture, const uint8_t 
                  PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
                  PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB_gAMA_and_cHRM(writer->png, writer->info, PNG_sRGB_INTENT_PERCEPTUAL);
-    /* From a tenth smaller to a third larger than at the default level with a filter chosen for
-       each row, in a sixth of the time. */
+    /* Files are from a tenth smaller to a third larger than at the default level with a filter
+       chosen for each row.  They take a sixth of the time. */
     png_set_compression_level(writer->png, 2);
     png_set_filter(writer->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     if (picture->crop_x || picture->crop_y)

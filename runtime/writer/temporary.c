@@ -18,9 +18,9 @@ enum { ATTEMPTS = 1000 };
 
 static const char prefix[] = ".krs-", ending[] = ".tmp";
 
-/* A file that was not there before; -1 when there is none.  No name comes twice, or the file that
-   somebody has found abandoned could be another one when he removes it; nor does a name contain the
-   target's, which may already be as long as a name can be. */
+/* Creates a file under a new name; -1 when it cannot.  No name is used twice: a process that found
+   an abandoned file could otherwise remove another file of that name.  The target's name is not
+   part of it, since that may already have the longest permitted length. */
 static int create(const char *folder, mode_t mode, char **path)
 {
     for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
@@ -43,8 +43,8 @@ static int create(const char *folder, mode_t mode, char **path)
     return -1;
 }
 
-/* False where somebody who cleans up has come between creating and locking.  File systems without
-   locks do not let him lock either. */
+/* Locks a new file; false where another process has removed it as abandoned before it was locked.
+   On file systems without locks that other process cannot lock it either. */
 static bool lock(int fd)
 {
     struct stat info;
@@ -68,8 +68,8 @@ int temporary_create(const char *folder, char **path)
     return -1;
 }
 
-/* The user's mask cannot be asked for without setting it, and a folder may have a list of its own
-   that decides.  So it is read off a file, which stays empty. */
+/* The user's mask cannot be read without setting it, and an access control list of the folder may
+   decide instead.  So the permissions are read from an empty file that is created for that. */
 mode_t temporary_mode(const char *folder)
 {
     struct stat info;
@@ -109,7 +109,7 @@ void temporary_clean(const char *folder)
 {
     DIR *listing = opendir(folder);
     if (!listing)
-        return; /* may write there, but not look */
+        return; /* may be written to, but not listed */
     for (const struct dirent *found; (found = readdir(listing));)
         if (is_temporary(found->d_name))
             remove_abandoned(dirfd(listing), found->d_name);

@@ -1,8 +1,8 @@
 /*
  * temporary.h: the file that an output is written to before it gets its name.
  *
- * It is the user's alone, and locked for as long as somebody writes to it: one that is not locked
- * has no writer any more, on whatever machine that was.
+ * It is readable by its user alone, and locked as long as a process writes to it.  One without a
+ * lock has no writer any more, on whatever machine the writer ran.
  */
 #ifndef KRS_TEMPORARY_H
 #define KRS_TEMPORARY_H
@@ -14,10 +14,10 @@
    cannot be.  *path is malloc'ed. */
 int temporary_create(const char *folder, char **path);
 
-/* The permissions that a new file gets in that folder; 0600 when that cannot be found out. */
+/* The permissions that a new file gets in that folder; 0600 when they cannot be found out. */
 mode_t temporary_mode(const char *folder);
 
-/* Removes the files of this user in that folder whose writers are gone. */
+/* Removes this user's temporary files in that folder whose writers have ended. */
 void temporary_clean(const char *folder);
 
 #endif
