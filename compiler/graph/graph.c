@@ -272,7 +272,7 @@ Node graph_parameter(Graph *graph, uint32_t slot, GraphType type)
 
 Node graph_hoisted(Graph *graph, GraphType type, const double *numbers, uint32_t index)
 {
-    Expr e = {.op = OP_NUMBER, .type = (uint8_t)type, .time = TIME_FRAME, .index = index};
+    Expr e = {.op = OP_HOISTED, .type = (uint8_t)type, .time = TIME_FRAME, .index = index};
     memcpy(e.number, numbers, components(type) * sizeof *numbers);
     return node_intern(graph, e);
 }
@@ -284,9 +284,19 @@ Node graph_leaf(Graph *graph, Op op)
     return node_intern(graph, (Expr){.op = (uint8_t)op, .type = type, .time = TIME_POINT});
 }
 
+Node graph_copy_leaf(Graph *graph, const Expr *e)
+{
+    if (e->op == OP_CONSTANT)
+        return graph_constant(graph, e->type, e->number);
+    if (e->op == OP_HOISTED)
+        return graph_hoisted(graph, e->type, e->number, e->index);
+    return e->op == OP_PARAMETER ? graph_parameter(graph, e->index, e->type)
+                                 : graph_leaf(graph, e->op);
+}
+
 bool graph_is_constant(const Graph *graph, Node node)
 {
-    return graph->items[node].op == OP_CONSTANT || graph->items[node].op == OP_NUMBER;
+    return graph->items[node].op == OP_CONSTANT || graph->items[node].op == OP_HOISTED;
 }
 
 /* ---- operations ---- */
@@ -432,7 +442,7 @@ static const char *node_mistake(const Graph *graph, Node node)
     GraphType   types[MAX_OPERANDS] = {0};
     uint8_t     latest              = e->op == OP_CONSTANT    ? TIME_COMPILE
                                       : e->op == OP_PARAMETER ? TIME_FRAME
-                                      : e->op == OP_NUMBER    ? TIME_FRAME
+                                      : e->op == OP_HOISTED   ? TIME_FRAME
                                       : e->operand_count == 0 ? TIME_POINT
                                                               : TIME_FRAME;
     if (e->op >= OP_COUNT || e->operand_count != op_arity(e->op))

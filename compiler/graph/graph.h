@@ -99,6 +99,8 @@ Node graph_uint(Graph *graph, uint32_t value);
 Node graph_parameter(Graph *graph, uint32_t slot, GraphType type);
 /* A number of the frame that is known now, and told apart from others by its index alone. */
 Node graph_hoisted(Graph *graph, GraphType type, const double *numbers, uint32_t index);
+/* That of another graph, of which this is the expression. */
+Node graph_copy_leaf(Graph *graph, const Expr *leaf);
 Node graph_leaf(Graph *graph, Op op); /* one whose type is the same everywhere */
 
 /* An operation on as many operands as its row says (asserted, with their types).  Operands that
@@ -120,7 +122,8 @@ Node graph_power(Graph *graph, Node base, Node exponent);
 GraphType graph_op_type(Op op, const GraphType *operands, uint32_t count);
 
 const char *graph_op_name(Op op);
-bool        graph_is_constant(const Graph *graph, Node node);
+/* Whether its value, `number`, is known now: OP_CONSTANT or OP_HOISTED. */
+bool graph_is_constant(const Graph *graph, Node node);
 
 /* The row's GLSL, operands $a..$d; NULL for leaves and OP_COMPONENT. */
 const char *op_glsl(Op op);

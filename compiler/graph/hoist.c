@@ -1,7 +1,7 @@
 /*
  * hoist.c: constants that change with the numbers of a scene leave the text of its shaders.
  *
- * Numbers that the author wrote are OP_NUMBER from the beginning, so that no rule looks at them.
+ * Numbers that the author wrote are OP_HOISTED from the beginning, so that no rule looks at them.
  * What the compiler derives from them, such as the corners of boxes, is found here: it is a
  * constant like those of formulas.  The latter are mostly 0, 1, 2 and one half, which stay, since
  * literals cost nothing.
@@ -36,16 +36,6 @@ typedef struct Hoist {
     uint32_t     next;
 } Hoist;
 
-static Node copy_leaf(Hoist *h, const Expr *e)
-{
-    switch ((Op)e->op) {
-    case OP_CONSTANT: return graph_constant(h->graph, e->type, e->number);
-    case OP_NUMBER: return graph_hoisted(h->graph, e->type, e->number, e->index);
-    case OP_PARAMETER: return graph_parameter(h->graph, e->index, e->type);
-    default: return graph_leaf(h->graph, e->op);
-    }
-}
-
 static Node copy_operation(Hoist *h, const Expr *e)
 {
     Node operands[MAX_OPERANDS];
@@ -67,7 +57,7 @@ Graph *graph_hoist(const Graph *old, Node *roots, size_t root_count, uint32_t fi
         Node        node = tape.nodes[i];
         const Expr *e    = &old->items[node];
         h.graph->here    = e->span;
-        h.nodes[node]    = e->operand_count ? copy_operation(&h, e) : copy_leaf(&h, e);
+        h.nodes[node]    = e->operand_count ? copy_operation(&h, e) : graph_copy_leaf(h.graph, e);
     }
     for (size_t i = 0; i < root_count; i++)
         roots[i] = h.nodes[roots[i]];

@@ -357,22 +357,12 @@ static bool node_stays_finite(const Simplifier *simplifier, const Expr *e)
     return finite;
 }
 
-static Node rebuild_leaf(Graph *graph, const Expr *e)
-{
-    if (e->op == OP_CONSTANT)
-        return graph_constant(graph, e->type, e->number);
-    if (e->op == OP_NUMBER)
-        return graph_hoisted(graph, e->type, e->number, e->index);
-    return e->op == OP_PARAMETER ? graph_parameter(graph, e->index, e->type)
-                                 : graph_leaf(graph, e->op);
-}
-
 static Node rebuild(Simplifier *simplifier, const Expr *e, bool with_rules)
 {
     Graph *graph = simplifier->graph;
     graph->here  = e->span;
     if (e->operand_count == 0)
-        return rebuild_leaf(graph, e);
+        return graph_copy_leaf(graph, e);
     Rewrite step = {.graph = graph, .op = e->op, .type = e->type, .index = e->index};
     for (int i = 0; i < e->operand_count; i++) {
         step.o[i]      = simplifier->nodes[e->operands[i]];

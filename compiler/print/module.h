@@ -14,7 +14,7 @@ typedef struct FrameSlots {
     FrameValues plain, camera_relative;
 } FrameSlots;
 
-/* Boxes as numbers of the frame (OP_NUMBER), two nodes each; NULL where they are literals. */
+/* Boxes as numbers of the frame (OP_HOISTED), two nodes each; NULL where they are literals. */
 typedef struct BoxNodes {
     Node *around; /* of each component: centre, and half the lengths of the sides */
     Node *parts;  /* of each scene part: the low and the high corner */

@@ -119,8 +119,8 @@ static const char *const leaf_names[OP_COUNT] = {[OP_POINT]     = "p",
                                                  [OP_DIRECTION] = "direction"};
 
 static const char *(*const special[OP_COUNT])(Emitter *e, const Expr *expr) = {
-    [OP_CONSTANT] = emit_constant,   [OP_NUMBER] = emit_constant, [OP_PARAMETER] = slot_text,
-    [OP_COMPONENT] = component_text, [OP_min] = extremum_text,    [OP_max] = extremum_text,
+    [OP_CONSTANT] = emit_constant,   [OP_HOISTED] = emit_constant, [OP_PARAMETER] = slot_text,
+    [OP_COMPONENT] = component_text, [OP_min] = extremum_text,     [OP_max] = extremum_text,
     [OP_fold] = fold_text,
 };
 
