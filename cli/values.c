@@ -138,10 +138,9 @@ bool read_setting(Options *options, const char *word)
 /* What the library would refuse is refused here. */
 bool read_zone(Options *options, const char *word)
 {
-    const double most = 1e18;
-    double      *zone = options->zones[options->zone_count];
+    double *zone = options->zones[options->zone_count];
     for (int i = 0; i < 4; i++) {
-        if (!read_number_prefix(word, &word, &zone[i]) || fabs(zone[i]) > most ||
+        if (!read_number_prefix(word, &word, &zone[i]) || fabs(zone[i]) > KRS_MOST_COORDINATE ||
             *word != (i < 3 ? ',' : '\0'))
             return false;
         word += i < 3;

@@ -180,9 +180,8 @@ KrsStatus krs_frame_set_time(KrsFrame *frame, double time)
 /* Numbers are limited so that their squares are finite in single precision. */
 static bool zone_is_valid(const double zone[4])
 {
-    const double most = 1e18;
     for (int k = 0; k < 4; k++)
-        if (!(fabs(zone[k]) <= most))
+        if (!(fabs(zone[k]) <= KRS_MOST_COORDINATE))
             return false;
     return zone[3] >= 0;
 }

@@ -156,9 +156,10 @@ KrsStatus krs_frame_slope(const KrsScene *scene, size_t index, KrsFrameSlope *sl
  * component and material of its solid.  These zones replace those of the previous call.  Zones that
  * the scene declares stay.
  * KRS_BAD_ARGUMENT, and the frame is unchanged: there are more than KRS_MOST_ZONES, a radius is
- * negative, or a number is not finite or beyond 1e18.
+ * negative, or a number is not finite or beyond KRS_MOST_COORDINATE.
  */
-#define KRS_MOST_ZONES 16
+#define KRS_MOST_ZONES      16
+#define KRS_MOST_COORDINATE 1e18 /* single precision can square it */
 KrsStatus krs_frame_set_zones(KrsFrame *frame, const double (*zones)[4], size_t count);
 
 typedef enum KrsProjection {

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/far.h"
 #include "compiler/base/vec.h"
 #include "compiler/program.h"
 
@@ -205,14 +206,13 @@ KrsRay krs_ray(const KrsScene *scene, const double origin[3], const double direc
                double farthest)
 {
     const KrsProgram *program = &scene->program;
-    const double      nowhere = 1e30; /* larger than any scene, but its square is finite */
-    KrsRay            ray     = {.end = nowhere};
+    KrsRay            ray     = {.end = NOWHERE};
     memcpy(ray.origin, origin, sizeof ray.origin);
     memcpy(ray.direction, direction, sizeof ray.direction);
     vector_normalize(ray.direction);
     for (int k = 0; k < 3; k++)
         clip_axis(program->low[k], program->high[k], origin[k], ray.direction[k], &ray);
-    ray.walls = ray.end <= farthest && ray.end < nowhere;
+    ray.walls = ray.end <= farthest && ray.end < NOWHERE;
     ray.end   = fmin(ray.end, farthest);
     return ray;
 }

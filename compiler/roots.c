@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/far.h"
 #include "compiler/compilation.h"
 #include "compiler/graph/rebase.h"
 #include "compiler/graph/derive.h"
@@ -89,7 +90,7 @@ static void lower_planes(Compilation *c, Graph *g)
     const Scene *s     = &c->elaborated;
     PlaneRoots  *plane = plane_roots(&c->scene->roots);
     Node         point = graph_leaf(g, OP_POINT), direction = graph_leaf(g, OP_DIRECTION);
-    Node         far = graph_number(g, 1e30), zero = graph_number(g, 0);
+    Node         far = graph_number(g, NOWHERE), zero = graph_number(g, 0);
     plane->step   = far;
     plane->cosine = graph_number(g, 1);
     for (size_t i = 0; i < s->components.count && s->zone_count == 0; i++) {

@@ -113,7 +113,7 @@ static double ratio_of(const Search *s, const PointPair *pair)
     if (!(length >= NEAREST * s->size) || isnan(a) || isnan(b) ||
         isinf(pair->side_p + pair->side_q))
         return 0;
-    if (s->side == s->distance && (fabs(a) > NOWHERE || fabs(b) > NOWHERE))
+    if (s->side == s->distance && (fabs(a) > LONGEST || fabs(b) > LONGEST))
         return 0; /* nothing is anywhere, or a wall is */
     if (s->claim) /* none is refuted here: uphill is towards 0 */
         return 1 / (1 + fabs(fmax(a, b)) / s->size);

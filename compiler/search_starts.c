@@ -30,7 +30,7 @@ static void start_at_surface(Search *s, double p[3])
     for (int i = 0; i < 40; i++) {
         (void)distance_at(s, p);
         double distance = side_now(s);
-        if (!(fabs(distance) > 1e-5 * s->size) || !(fabs(distance) < NOWHERE))
+        if (!(fabs(distance) > 1e-5 * s->size) || !(fabs(distance) < LONGEST))
             break;
         add_scaled3(p, p, 0.9 * distance, direction);
     }
@@ -132,7 +132,7 @@ static PointPair best_by_directions(Search *s, double p[3])
         double side = side_now(s), farthest = s->aimed ? s->size : 4 * fabs(side);
         for (int k = 0; k < 3 && i == 0; k++)
             direction[k] *= side > 0 ? -1 : 1;
-        if (fabs(side) < 1e-6 * s->size || !(fabs(side) < NOWHERE))
+        if (fabs(side) < 1e-6 * s->size || !(fabs(side) < LONGEST))
             return best;
         if (reach_surface(s, &pair, direction, farthest) && pair.ratio > best.ratio)
             best = pair;
@@ -155,7 +155,7 @@ static bool slide_down(Search *s, const Target *distance, double p[3], double ax
 {
     for (int i = 0; i < 24; i++) {
         double at = target_at(s, distance, p), slope = target_slope(s, distance, p, at, axis);
-        if (!(slope > 0) || !isfinite(slope) || !(fabs(at) < NOWHERE))
+        if (!(slope > 0) || !isfinite(slope) || !(fabs(at) < LONGEST))
             return false;
         add_scaled3(axis, (double[3]){0}, 1 / slope, axis);
         if (fabs(at) < NEAREST * s->size)

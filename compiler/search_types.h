@@ -5,6 +5,7 @@
 #ifndef KRS_SEARCH_TYPES_H
 #define KRS_SEARCH_TYPES_H
 
+#include "compiler/base/far.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/shape/box.h"
 
@@ -87,8 +88,8 @@ typedef struct Search {
 
 /* Pairs nearer than this, in sizes, say more about rounding than about the distance. */
 #define NEAREST 1e-6
-/* What stands for the distance to nothing. */
-#define NOWHERE 1e29
+/* Longer distances are those to the empty set. */
+#define LONGEST (0.1 * NOWHERE)
 
 typedef struct PointPair {
     double p[3], q[3], at_p, at_q, side_p, side_q, ratio;

@@ -1,14 +1,12 @@
 /*
  * displace.c: the surface moved outwards by a formula.  C is a box, which may be endless.
  */
+#include "compiler/base/far.h"
 #include "compiler/family/deform.h"
 
 #include <math.h>
 
 #include "compiler/graph/build.h"
-
-/* Farther than any scene. */
-static const double ENDLESS = 1e30;
 
 /* ---- how it is made ---- */
 
@@ -128,8 +126,8 @@ static Sides sides_of(Graph *g, const Shape *shape, Node size)
     const Box *box = &shape->children[0]->box;
     double     low[3], high[3];
     for (int i = 0; i < 3; i++) {
-        low[i]  = fmax(box->axis[i].low, -ENDLESS);
-        high[i] = fmin(box->axis[i].high, ENDLESS);
+        low[i]  = fmax(box->axis[i].low, -NOWHERE);
+        high[i] = fmin(box->axis[i].high, NOWHERE);
     }
     Sides sides = {.low  = graph_constant(g, TYPE_VEC3, low),
                    .high = graph_constant(g, TYPE_VEC3, high)};

@@ -1,6 +1,7 @@
 /*
  * repeat.c: copies in the cells of a lattice, and in sectors around an axis.
  */
+#include "compiler/base/far.h"
 #include "compiler/family/family.h"
 
 #include <math.h>
@@ -59,9 +60,6 @@ const Shape *make_repeat_polar(ShapeBuilder *builder, const Shape *shape, uint32
 }
 
 /* ---- how it is lowered ---- */
-
-/* Farther than any wall. */
-static const double NOWHERE = 1e30;
 
 /*
  * The walls of cells go on for ever, and far away would still hold rays up and throw false

@@ -10,15 +10,13 @@
 
 #include <math.h>
 
+#include "compiler/base/far.h"
 #include "compiler/graph/evaluate.h"
-
-/* Farther than anything is: an absence, and no number of the scene. */
-#define NOWHERE 1e18
 
 static bool is_of_formulas(double number)
 {
     double size = fabs(number);
-    return size == 0 || size == 0.5 || size == 1 || size == 2 || size >= NOWHERE;
+    return size == 0 || size == 0.5 || size == 1 || size == 2 || size >= FAR_SIDE;
 }
 
 /* Of what is found at points; the exponent of a power decides how it is computed. */

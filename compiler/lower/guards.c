@@ -10,6 +10,7 @@
 
 #include <math.h>
 
+#include "compiler/base/far.h"
 #include "compiler/lower/box_distance.h"
 
 /* Boxes are enlarged by this fraction of their largest coordinate, for errors of single
@@ -20,9 +21,6 @@ static const double ROUNDING = 1e-6;
    skip more work but take more steps.  On the processor all from 0.25 to 1 cost the same within
    10 %. */
 static const double FAR = 0.5;
-
-/* A distance larger than any scene. */
-static const double NOWHERE = 1e30;
 
 /* Guards go before the outermost stage, and before each run of kernels, where the point has just
    been mapped.  A guarded distance jumps, so there is no guard where the slope is needed. */

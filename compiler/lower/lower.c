@@ -3,13 +3,11 @@
  */
 #include "compiler/lower/lower.h"
 
+#include "compiler/base/far.h"
 #include "compiler/graph/derive.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/lower/normal.h"
 #include "compiler/shape/slope.h"
-
-/* The distance to the empty set: larger than any scene, but finite, so that sums are finite. */
-static const double NOWHERE = 1e30;
 
 const RootInfo root_info[ROOT_COUNT] = {
 #define LIMITED   true

@@ -25,6 +25,7 @@
  */
 #include <math.h>
 
+#include "compiler/base/far.h"
 #include "compiler/graph/build.h"
 #include "compiler/graph/series.h"
 #include "compiler/lower/lower.h"
@@ -123,16 +124,13 @@ static Node along_series(Lowering *l, Series *s)
     return mul(g, step, sign);
 }
 
-/* FAR: a length larger than any scene.  FAR_SIDE: a coordinate larger than those of any box. */
-static const double FAR = 1e30, FAR_SIDE = 1e18;
-
 /* The part of a ray in a box, some of whose sides may be infinite: from `enter`, which is 0 inside,
    to `leave`.  The ray misses the box where `leave` is less than `enter`. */
 static void clip_ray(Lowering *l, Box box, Ray ray, Node *enter, Node *leave)
 {
     Graph *g = l->graph;
     *enter   = graph_number(g, 0);
-    *leave   = graph_number(g, FAR);
+    *leave   = graph_number(g, NOWHERE);
     for (uint32_t i = 0; i < 3; i++) {
         Range side = box.axis[i];
         if (!isfinite(side.low) && !isfinite(side.high))
@@ -182,7 +180,7 @@ static Node along_boxed(Lowering *l, const Shape *shape, Ray ray)
         return NODE_NONE;
     Node step   = add(g, along_series(l, &s), mul(g, side, enter));
     Node misses = graph_op2(g, OP_less, leave, enter);
-    return graph_op3(g, OP_select, misses, graph_number(g, FAR * shape->zeros.sign), step);
+    return graph_op3(g, OP_select, misses, graph_number(g, NOWHERE * shape->zeros.sign), step);
 }
 
 /* For a polynomial that is intersected with a region.  Outside of the region the result is 0, since

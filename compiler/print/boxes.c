@@ -4,10 +4,8 @@
  */
 #include <math.h>
 
+#include "compiler/base/far.h"
 #include "compiler/print/emitter.h"
-
-/* Farther than any box is large. */
-#define FAR_SIDE 1e18
 
 /* Beyond so many, neighbours share a part. */
 enum { MOST_SCENE_PARTS = 64 };

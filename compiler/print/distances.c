@@ -1,6 +1,7 @@
 /*
  * distances.c: krs_distance, what zones cut out of distances, and krs_gradient.
  */
+#include "compiler/base/far.h"
 #include "compiler/print/emitter.h"
 
 /* ---- zones ---- */
@@ -59,7 +60,7 @@ void emit_distance(Emitter *e)
 {
     bool     some  = e->variant->march_group > 0 || (e->variant->planes && e->module->is_plane);
     uint32_t count = (uint32_t)e->module->components, first = !some && count > 0;
-    emit_local(e, TYPE_FLOAT, "d", first ? emit_call_of(e, OF_DISTANCE, 0) : "1e30");
+    emit_local(e, TYPE_FLOAT, "d", first ? emit_call_of(e, OF_DISTANCE, 0) : NOWHERE_TEXT);
     for (uint32_t i = first; i < count; i++)
         if (!emit_leaves_out(e, i))
             text_format(e->out, "    d = min(d, %s);\n", emit_call_of(e, OF_DISTANCE, i));

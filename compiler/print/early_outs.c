@@ -6,6 +6,7 @@
  */
 #include <math.h>
 
+#include "compiler/base/far.h"
 #include "compiler/print/emitter.h"
 
 static const char *emit_region(Emitter *e, const Regions *regions, uint32_t region, Node result,
@@ -15,7 +16,7 @@ static const char *emit_region(Emitter *e, const Regions *regions, uint32_t regi
 static bool nothing_found(const Emitter *e, Node least)
 {
     const Expr *expr = &e->graph->items[least];
-    return expr->op == OP_CONSTANT && expr->number[0] >= 1e30;
+    return expr->op == OP_CONSTANT && expr->number[0] >= NOWHERE;
 }
 
 /* The condition of OP_guard, shorter where some of it is known. */
@@ -151,12 +152,12 @@ void emit_lod(Emitter *e)
     bool   found = e->module->is_plane == NULL; /* by the first component */
     size_t count = 0;
     if (!found)
-        emit_local(e, TYPE_FLOAT, "d", "1e30");
+        emit_local(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
     for (int finite = 0; finite < 2; finite++)
         for (uint32_t i = 0; i < e->module->components; i++)
             if (is_looked_at(e, i) && box_is_finite(e->module->boxes[i]) == finite)
                 emit_guarded_component(e, i, found && count++ == 0);
     if (found && count == 0)
-        emit_local(e, TYPE_FLOAT, "d", "1e30");
+        emit_local(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
     text_format(e->out, "    return %s;\n", emit_cut(e, "d"));
 }

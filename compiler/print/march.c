@@ -4,6 +4,7 @@
  */
 #include <math.h>
 
+#include "compiler/base/far.h"
 #include "compiler/print/emitter.h"
 
 /* ---- planes ---- */
@@ -54,7 +55,7 @@ static void emit_part_case(Emitter *e, size_t part)
 void emit_scene_part_distance(Emitter *e)
 {
     size_t parts = module_scene_part_count(e->module->components);
-    emit_local(e, TYPE_FLOAT, "d", "1e30");
+    emit_local(e, TYPE_FLOAT, "d", NOWHERE_TEXT);
     emit_phrase(e, PHRASE_SWITCH, (Operands){"scene_part"});
     for (size_t part = 0; part < parts; part++)
         emit_part_case(e, part);
@@ -126,7 +127,7 @@ void emit_along_of(Emitter *e, const ModuleFunction *function)
 /* The least of all, of which some have no more than a distance. */
 static void emit_steps(Emitter *e, FunctionKind kind)
 {
-    emit_local(e, TYPE_FLOAT, "t", "1e30");
+    emit_local(e, TYPE_FLOAT, "t", NOWHERE_TEXT);
     for (uint32_t i = 0; i < e->module->components; i++) {
         FunctionKind called = has_own_step(e, kind, i) ? kind : OF_DISTANCE;
         if (!emit_leaves_out(e, i))

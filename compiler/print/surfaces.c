@@ -3,6 +3,7 @@
  */
 #include <string.h>
 
+#include "compiler/base/far.h"
 #include "compiler/print/emitter.h"
 
 /* Fields of KrsSurface are in the order of the roots; the number of the component is between
@@ -74,7 +75,7 @@ void emit_surface_of(Emitter *e, const ModuleFunction *function)
 static void emit_nothing(Emitter *e)
 {
     Text nothing = {.arena = e->scratch};
-    text_add(&nothing, "KrsSurface(1e30");
+    text_add(&nothing, "KrsSurface(" NOWHERE_TEXT);
     for (ComponentRoot r = FIRST_ROOT; r < ROOT_NORMAL; r++) {
         if (is_first_identity(r))
             text_add(&nothing, ", 0u");

@@ -32,30 +32,34 @@ struct RayEnd {
 
 // Where rays and beams end: the bits of t, and the rest by pack_ray.  First are the rays of pixels,
 // then the beams of 8x8 tiles, of 32x32 tiles, and of the quarters of 8x8 tiles, tile by tile.
-layout(std430, set = 1, binding = 1) buffer Ends { uvec2 ends[]; };
-layout(std430, set = 1, binding = 2) writeonly buffer HitNumbers { float hit_numbers[]; };
+layout(std430, set = 1, binding = ENDS_BINDING) buffer Ends { uvec2 ends[]; };
+layout(std430, set = 1, binding = HITS_BINDING) writeonly buffer HitNumbers {
+    float hit_numbers[];
+};
 // Tiles of 8x8 pixels whose beams find something: only their pixels have rays.
-layout(std430, set = 1, binding = 9) buffer Tiles { uint tiles[]; };
+layout(std430, set = 1, binding = TILES_BINDING) buffer Tiles { uint tiles[]; };
 #ifdef NO_TEXELS // the device reads too few texels: buffers are read instead
-layout(std430, set = 1, binding = 2) buffer Hits { vec4 hits[]; };
-layout(std430, set = 1, binding = 5) readonly buffer Inputs { uvec4 input_rows[]; };
+layout(std430, set = 1, binding = HITS_BINDING) buffer Hits { vec4 hits[]; };
+layout(std430, set = 1, binding = INPUT_ROWS_BINDING) readonly buffer Inputs {
+    uvec4 input_rows[];
+};
 uvec4 load_input(uint number) { return input_rows[number]; }
 uvec2 load_end(uint index) { return ends[index]; }
 vec4  load_hit_row(uint number) { return hits[number]; }
 #else
-layout(std430, set = 1, binding = 2) writeonly buffer Hits { vec4 hits[]; };
+layout(std430, set = 1, binding = HITS_BINDING) writeonly buffer Hits { vec4 hits[]; };
 // The lights, and the rays of a list behind them, two texels each.  The other texels are those of
 // the buffers above (layouts.c).
-layout(set = 1, binding = 8) uniform usamplerBuffer input_texels;
-layout(set = 1, binding = 10) uniform usamplerBuffer end_texels;
-layout(set = 1, binding = 11) uniform usamplerBuffer hit_texels;
+layout(set = 1, binding = INPUT_TEXELS_BINDING) uniform usamplerBuffer input_texels;
+layout(set = 1, binding = END_TEXELS_BINDING) uniform usamplerBuffer end_texels;
+layout(set = 1, binding = HIT_TEXELS_BINDING) uniform usamplerBuffer hit_texels;
 uvec4 load_input(uint number) { return texelFetch(input_texels, int(number)); }
 uvec2 load_end(uint index) { return texelFetch(end_texels, int(index)).xy; }
 vec4  load_hit_row(uint number) { return uintBitsToFloat(texelFetch(hit_texels, int(number))); }
 #endif
-layout(std140, set = 1, binding = 0) uniform FrameBlock { Frame given_frame; };
+layout(std140, set = 1, binding = FRAME_BINDING) uniform FrameBlock { Frame given_frame; };
 layout(push_constant) uniform WorkBlock { Work given_work; };
-layout(std430, set = 1, binding = 4) buffer ControlBlock {
+layout(std430, set = 1, binding = CONTROL_BINDING) buffer ControlBlock {
     Control given_control;
     COUNTER_MEMBERS
 } counts;

@@ -15,11 +15,13 @@
  * hits, a bit for every pixel that hits, and what is known of a light there.
  */
 #ifdef NO_TEXELS
-layout(std430, set = 1, binding = 6) buffer PixelLists { uint pixel_lists[]; };
+layout(std430, set = 1, binding = QUEUE_BINDING) buffer PixelLists { uint pixel_lists[]; };
 uint find_listed(uint number) { return pixel_lists[number]; }
 #else
-layout(std430, set = 1, binding = 6) writeonly buffer PixelLists { uint pixel_lists[]; };
-layout(set = 1, binding = 12) uniform usamplerBuffer pixel_list_texels;
+layout(std430, set = 1, binding = QUEUE_BINDING) writeonly buffer PixelLists {
+    uint pixel_lists[];
+};
+layout(set = 1, binding = PIXEL_LIST_TEXELS_BINDING) uniform usamplerBuffer pixel_list_texels;
 uint find_listed(uint number) { return texelFetch(pixel_list_texels, int(number)).x; }
 #endif
 

@@ -13,7 +13,7 @@
 layout(local_size_x = 1) in;
 
 layout(push_constant) uniform NextDispatchBlock { NextDispatch next; };
-layout(std430, set = 1, binding = 4) buffer ControlWords { uint words[]; };
+layout(std430, set = 1, binding = CONTROL_BINDING) buffer ControlWords { uint words[]; };
 
 void main()
 {

@@ -4,13 +4,16 @@
  * are not wanted are not written.  The first ray of a pixel goes through its centre, and gives all
  * results but the colour.
  */
-layout(std430, set = 1, binding = 3) writeonly buffer Colors { vec3 colors[]; }; // 16 bytes each
+layout(std430, set = 1, binding = RESULTS_BINDING) writeonly buffer Colors {
+    vec3 colors[]; // 16 bytes each
+};
 #ifdef NO_TEXELS
-layout(std430, set = 1, binding = 3) buffer Results { uvec4 results[]; };
+layout(std430, set = 1, binding = RESULTS_BINDING) buffer Results { uvec4 results[]; };
 uvec4 load_result(uint number) { return results[number]; }
 #else
-layout(std430, set = 1, binding = 3) writeonly buffer Results { uvec4 results[]; };
-layout(set = 1, binding = 13) uniform usamplerBuffer result_texels; // bits of floats
+layout(std430, set = 1, binding = RESULTS_BINDING) writeonly buffer Results { uvec4 results[]; };
+// Bits of floats.
+layout(set = 1, binding = RESULT_TEXELS_BINDING) uniform usamplerBuffer result_texels;
 uvec4 load_result(uint number) { return texelFetch(result_texels, int(number)); }
 #endif
 

@@ -33,7 +33,7 @@ bool may_take_step(uint iterations, uint allowed)
 const uint LANES = uint(REFILL); // lanes that go through a loop together: 4 or 8
 layout(local_size_x = REFILL) in;
 // The number of its items that each workgroup has begun so far.
-layout(std430, set = 1, binding = 7) buffer Taken { uint taken[]; };
+layout(std430, set = 1, binding = TAKEN_BINDING) buffer Taken { uint taken[]; };
 
 // The union of the bits of all lanes.  lavapipe compiles a vote to a loop over the lanes, but this
 // to six instructions.

@@ -84,7 +84,7 @@ struct RayMarch {
     uint  state;
 };
 
-layout(std430, set = 1, binding = 6) buffer Queue { uvec4 queue[]; };
+layout(std430, set = 1, binding = QUEUE_BINDING) buffer Queue { uvec4 queue[]; };
 
 RayMarch march;
 bool  exists;                  // the item is in the band

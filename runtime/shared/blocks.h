@@ -27,6 +27,26 @@ CONSTANT(LIGHTS_AT_ONCE, 3);   /* lights of a dispatch of shade.comp */
 CONSTANT(GROUP_LISTS, 9);      /* KRS_MOST_MARCH_GROUPS, and one for no group */
 CONSTANT(MOST_CHAINED, 48);    /* most dispatches of a chain */
 
+/* ---- Bindings in set 1, of pictures ---- */
+
+CONSTANT(FRAME_BINDING, 0); /* a uniform buffer */
+CONSTANT(ENDS_BINDING, 1);  /* storage buffers */
+CONSTANT(HITS_BINDING, 2);
+CONSTANT(RESULTS_BINDING, 3);
+CONSTANT(CONTROL_BINDING, 4);
+CONSTANT(INPUT_ROWS_BINDING, 5);
+CONSTANT(QUEUE_BINDING, 6);
+CONSTANT(TAKEN_BINDING, 7);
+CONSTANT(INPUT_TEXELS_BINDING, 8); /* texels: lights and listed rays */
+CONSTANT(TILES_BINDING, 9);        /* a storage buffer */
+/* Some of the buffers once more, as texels.  Where the device reads too few texels (Gpu.texels) no
+   texels are bound, and the inputs are a storage buffer. */
+CONSTANT(END_TEXELS_BINDING, 10);
+CONSTANT(HIT_TEXELS_BINDING, 11);
+CONSTANT(PIXEL_LIST_TEXELS_BINDING, 12);
+CONSTANT(RESULT_TEXELS_BINDING, 13);
+CONSTANT(FRAME_BINDINGS, 14); /* how many */
+
 /* ---- The frame and the dispatch ---- */
 
 /* uniform FrameBlock, std140. */
@@ -257,7 +277,7 @@ static_assert(sizeof(ListedRayBlock) == 32, "std430");
 /* ---- Points and rays that a program asks about ---- */
 
 /* Bindings in set 1 for queries.  The frame, the control block and the items that lanes have taken
-   have the same bindings as for pictures (frame.glsl). */
+   have the same bindings as for pictures. */
 CONSTANT(POINTS_BINDING, 1);
 CONSTANT(ANSWERS_BINDING, 2);
 CONSTANT(RAY_HITS_BINDING, 3);

@@ -47,11 +47,12 @@ static bool band_create(KrsRendering *rendering, uint64_t pixels)
         Where        where;
         const char  *name;
     } wanted[] = {
-        {&band->ends, ENDS_BINDING, END_TEXELS, (pixels + beams) * END_BYTES, ON_DEVICE, "rays"},
-        {&band->hits, HITS_BINDING, HIT_TEXELS, pixels * HIT_BYTES, ON_DEVICE, "hits"},
-        {&band->results, RESULTS_BINDING, RESULT_TEXELS, results, shared, "pixels"},
-        {&band->queue, QUEUE_BINDING, PIXEL_LIST_TEXELS, 2 * pixels * MARCH_BYTES, ON_DEVICE,
-         "queue of rays"},
+        {&band->ends, ENDS_BINDING, END_TEXELS_BINDING, (pixels + beams) * END_BYTES, ON_DEVICE,
+         "rays"},
+        {&band->hits, HITS_BINDING, HIT_TEXELS_BINDING, pixels * HIT_BYTES, ON_DEVICE, "hits"},
+        {&band->results, RESULTS_BINDING, RESULT_TEXELS_BINDING, results, shared, "pixels"},
+        {&band->queue, QUEUE_BINDING, PIXEL_LIST_TEXELS_BINDING, 2 * pixels * MARCH_BYTES,
+         ON_DEVICE, "queue of rays"},
         {&band->taken, TAKEN_BINDING, 0, beams * sizeof(uint32_t), ON_DEVICE, "shares of groups"},
         {&band->tiles, TILES_BINDING, 0, beams * sizeof(uint32_t), ON_DEVICE, "tiles"},
         {&band->fetched, 0, 0, read_in_place ? 0 : results, SHARED, "pixels to read"},

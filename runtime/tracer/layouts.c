@@ -16,9 +16,10 @@ static const struct {
     [TWO_NUMBERS]  = {VK_FORMAT_R32G32_UINT, 8},
     [FOUR_NUMBERS] = {VK_FORMAT_R32G32B32A32_UINT, 16},
 };
-static const TexelKind texels_of[BINDING_COUNT] = {
-    [INPUTS_BINDING] = FOUR_NUMBERS,  [END_TEXELS] = TWO_NUMBERS,     [HIT_TEXELS] = FOUR_NUMBERS,
-    [PIXEL_LIST_TEXELS] = ONE_NUMBER, [RESULT_TEXELS] = FOUR_NUMBERS,
+static const TexelKind texels_of[FRAME_BINDINGS] = {
+    [INPUT_TEXELS_BINDING] = FOUR_NUMBERS,  [END_TEXELS_BINDING] = TWO_NUMBERS,
+    [HIT_TEXELS_BINDING] = FOUR_NUMBERS,    [PIXEL_LIST_TEXELS_BINDING] = ONE_NUMBER,
+    [RESULT_TEXELS_BINDING] = FOUR_NUMBERS,
 };
 
 static_assert((int)BUFFER_BINDINGS <= (int)STORAGE_BUFFERS, "devices are asked for so many");
@@ -37,7 +38,7 @@ static bool is_bound(const Gpu *gpu, uint32_t binding)
 
 static bool set_layout_create(Gpu *gpu, uint32_t count, VkDescriptorSetLayout *layout)
 {
-    VkDescriptorSetLayoutBinding bindings[BINDING_COUNT];
+    VkDescriptorSetLayoutBinding bindings[FRAME_BINDINGS];
     for (uint32_t i = 0; i < count; i++)
         bindings[i] = (VkDescriptorSetLayoutBinding){
             .binding         = i,
@@ -61,7 +62,7 @@ static bool pipeline_layout_create(KrsRenderer *renderer)
 {
     Gpu *gpu = &renderer->gpu;
     if (!set_layout_create(gpu, 1, &renderer->scene_layout) ||
-        !set_layout_create(gpu, BINDING_COUNT, &renderer->frame_layout))
+        !set_layout_create(gpu, FRAME_BINDINGS, &renderer->frame_layout))
         return false;
     VkPushConstantRange        work = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(WorkBlock)};
     VkPipelineLayoutCreateInfo info = {
@@ -160,7 +161,7 @@ static bool idle_create(KrsRenderer *renderer)
     renderer->idle_scene = sets[0];
     renderer->idle_frame = sets[1];
     layouts_bind(gpu, renderer->idle_scene, 0, &renderer->idle[0]);
-    for (uint32_t binding = 0; binding < BINDING_COUNT; binding++)
+    for (uint32_t binding = 0; binding < FRAME_BINDINGS; binding++)
         layouts_bind(gpu, renderer->idle_frame, binding, &renderer->idle[texels_of[binding]]);
     return true;
 

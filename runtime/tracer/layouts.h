@@ -8,28 +8,11 @@
 
 #include "runtime/tracer/handles.h"
 
-/* Bindings of the frame's set (frame.glsl).  They are a uniform buffer and storage buffers, and
-   among these the texels of the inputs: lights and listed rays.  Behind them are some of the
-   buffers once more, as texels.  Where the device reads too few texels (Gpu.texels) no texels are
-   bound, and inputs are a storage buffer. */
+/* How many bindings of the frame's set (blocks.h) are texels, and how many are storage buffers: all
+   others but the uniform buffer of the frame. */
 enum {
-    FRAME_BINDING = 0,
-    ENDS_BINDING,
-    HITS_BINDING,
-    RESULTS_BINDING,
-    CONTROL_BINDING,
-    INPUT_ROWS_BINDING,
-    QUEUE_BINDING,
-    TAKEN_BINDING,
-    INPUTS_BINDING,
-    TILES_BINDING,
-    END_TEXELS,
-    HIT_TEXELS,
-    PIXEL_LIST_TEXELS,
-    RESULT_TEXELS,
-    BINDING_COUNT,
-    TEXEL_BINDINGS  = 1 + BINDING_COUNT - END_TEXELS,
-    BUFFER_BINDINGS = BINDING_COUNT - TEXEL_BINDINGS - 1
+    TEXEL_BINDINGS  = 1 + FRAME_BINDINGS - END_TEXELS_BINDING,
+    BUFFER_BINDINGS = FRAME_BINDINGS - TEXEL_BINDINGS - 1
 };
 
 /* The renderer's device must be open.  On failure layouts_destroy frees what was made. */

@@ -24,10 +24,9 @@ enum { MOST_STEPS = 8192, MOST_LANE_STEPS = 16384 };
 /* What single precision can square. */
 static bool is_in_reach(const double (*vectors)[3], size_t count)
 {
-    const double most = 1e18;
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++)
-            if (!(fabs(vectors[i][k]) <= most))
+            if (!(fabs(vectors[i][k]) <= KRS_MOST_COORDINATE))
                 return false;
     return true;
 }
@@ -132,8 +131,7 @@ static void set_frame(KrsRendering *rendering, double tolerance)
 /* A ray of the device begins where the box around the scene does. */
 static QueryRayBlock query_ray_block(const KrsRay *ray)
 {
-    const double  nowhere   = 1e18;
-    QueryRayBlock query_ray = {.end  = (float)fmin(ray->end - ray->start, nowhere),
+    QueryRayBlock query_ray = {.end  = (float)fmin(ray->end - ray->start, KRS_MOST_COORDINATE),
                                .kind = ray->start > 0 ? BEGINS_OUTSIDE
                                        : ray->walls   ? ENDS_AT_WALLS
                                                       : ENDS_ANYWHERE};
@@ -253,7 +251,7 @@ KrsStatus krs_device_raycast(KrsRendering *rendering, KrsFrame *frame, const dou
 {
     renderer_clear(rendering->renderer);
     if (!krs_rays_are_valid(origins, directions, count, farthest, tolerance) ||
-        !is_in_reach(origins, count) || tolerance > 1e18)
+        !is_in_reach(origins, count) || tolerance > KRS_MOST_COORDINATE)
         return refuse(rendering, "rays have finite origins below 1e18, directions that are not 0, "
                                  "and neither end nor tolerance below 0");
     if (!prepare(rendering) || !rendering_set_parameters(rendering, frame))

@@ -186,10 +186,10 @@ static bool make_room(KrsRendering *rendering, size_t lights, size_t rays)
         return true;
     buffer_destroy(gpu, buffer);
     if (!buffer_create(gpu, buffer, bytes, UPLOADED, "lights and rays") ||
-        !layouts_view_texels(gpu, INPUTS_BINDING, buffer, "lights and rays"))
+        !layouts_view_texels(gpu, INPUT_TEXELS_BINDING, buffer, "lights and rays"))
         return false;
     rendering_bind(rendering, rendering->band_set,
-                   gpu->texels ? INPUTS_BINDING : INPUT_ROWS_BINDING, buffer);
+                   gpu->texels ? INPUT_TEXELS_BINDING : INPUT_ROWS_BINDING, buffer);
     return true;
 }
 

@@ -1,6 +1,7 @@
 /*
  * glsl.c: GLSL 4.4, with std140 blocks as Vulkan has them.
  */
+#include "compiler/base/far.h"
 #include "compiler/print/printer.h"
 
 static const char *const types[] = {
@@ -63,7 +64,8 @@ static const char *const phrases[PHRASE_COUNT] = {
     [PHRASE_CUT_ZONES]       = "    for (int i = 0; i < $a; i++)\n"
                                "        d = max(d, krs_zones[i].w - length(p - krs_zones[i].xyz));\n",
 
-    [PHRASE_NEAREST_GRADIENT] = "    vec4 nearest = vec4(0.0, 0.0, 0.0, 1e30), other;\n",
+    [PHRASE_NEAREST_GRADIENT] = "    vec4 nearest = vec4(0.0, 0.0, 0.0, " NOWHERE_TEXT
+                                "), other;\n",
     [PHRASE_NEAREST_OF_ZONES] =
         "    for (int i = 0; i < $a; i++) {\n"
         "        vec3 toward = krs_zones[i].xyz - p;\n"
