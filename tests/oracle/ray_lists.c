@@ -133,7 +133,7 @@ static void box_of(const KrsScene *scene, double low[3], double high[3])
 
 static void examples_are_met(void **state)
 {
-    static const char *const paths[] = {"examples/02-gear.krs", "examples/03-machined-part.krs",
+    static const char *const paths[] = {"examples/03-machined-part.krs",
                                         "examples/14-inversion.krs", "examples/21-sextic.krs"};
     static List              list, turned;
     Random                   random = {5};

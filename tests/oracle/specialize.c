@@ -23,7 +23,7 @@
 #include "tests/support/random.h"
 #include "tests/support/renderer.h"
 
-enum { EDITS = 8, MOST_NUMBERS = 2000 };
+enum { EDITS = 4, MOST_NUMBERS = 2000 };
 
 /* ---- Texts ---- */
 
