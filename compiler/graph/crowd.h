@@ -1,0 +1,83 @@
+/*
+ * crowd.h: crowds: parts that are alike but for numbers, as one body and a table of numbers.
+ *
+ * A table has a row for each part, its member, and a grid, which knows which members are near a point.
+ * A crowd function is a loop over the members that are near.  It keeps states, which begin as
+ * constants.  For each member every state becomes what its body says; all change at once.  The result is
+ * the last value of the first state.
+ *
+ * Bodies are nodes of the graph.  Their leaves are of the crowd (ops.def): OP_CROWD_POINT,
+ * OP_CROWD_NORMAL, OP_CROWD_FOOTPRINT stand for the operands of the call, OP_MEMBER is the number of the
+ * member, and OP_STATE that of a state.  OP_row reads a number of the table.  No other leaf of point time
+ * may be in a body.  So nodes of a body are in no other body and not outside, and share the values[] of a tape with
+ * them.  A body may call functions of crowds with smaller numbers.
+ *
+ * Graphs that are made from one another share a Crowds.  Bodies are roots of the graph, and a function
+ * knows them by their index, so that passes may renumber nodes.
+ */
+#ifndef KRS_CROWD_H
+#define KRS_CROWD_H
+
+#include "compiler/graph/graph.h"
+#include "compiler/graph/grid.h"
+
+enum { MOST_CROWD_STATES = 8, MOST_TABLE_COLUMNS = 64 };
+
+/* A table. */
+typedef struct Crowd {
+    uint32_t rows, columns;
+    double  *numbers; /* rows x columns, row by row */
+    Grid     grid;    /* its members are the rows */
+    Span     span;    /* of the join */
+} Crowd;
+
+typedef struct CrowdState {
+    GraphType type;
+    double    first[4];
+} CrowdState;
+
+typedef struct CrowdFunction {
+    uint32_t   crowd; /* index of the table */
+    GraphType  type;  /* of the result */
+    bool       clear; /* the result is at most the clearance: it is a distance */
+    CrowdState states[MOST_CROWD_STATES];
+    uint32_t   state_count;
+    uint32_t   first_body; /* the body of state i is Crowds.bodies[first_body + i] */
+} CrowdFunction;
+
+/* Functions and tables in the order in which they were made; inner ones come first. */
+typedef struct Crowds {
+    Arena *arena;
+    struct {
+        Crowd *items;
+        size_t count, capacity;
+    } tables;
+    struct {
+        CrowdFunction *items;
+        size_t         count, capacity;
+    } functions;
+    /* Nodes of the graph in which they were made.  Later graphs have them as roots, in this order. */
+    struct {
+        Node  *items;
+        size_t count, capacity;
+    } bodies;
+} Crowds;
+
+/* ---- Leaves and calls; `crowd` is the index of the table, `function` that of the function ---- */
+
+Node graph_crowd_leaf(Graph *graph, Op op, uint32_t crowd); /* but OP_STATE */
+/* State `state` of a function, which is made with these types. */
+Node graph_state(Graph *graph, GraphType type, uint32_t function, uint32_t state);
+/* A number of the row `member`, a UINT node: FLOAT. */
+Node graph_row(Graph *graph, uint32_t crowd, uint32_t column, Node member);
+/* Calls.  OP_crowd_distance, FLOAT, and OP_crowd_member, UINT, have the point alone; OP_crowd_number,
+   FLOAT, and OP_crowd_vector, VEC3, also the normal and the footprint. */
+Node graph_crowd(Graph *graph, Op op, uint32_t function, Node point);
+Node graph_crowd_surface(Graph *graph, Op op, uint32_t function, Node point, Node normal,
+                         Node footprint);
+
+/* The table and the column behind the first operand of OP_row. */
+static inline uint32_t row_crowd(uint32_t id) { return id / MOST_TABLE_COLUMNS; }
+static inline uint32_t row_column(uint32_t id) { return id % MOST_TABLE_COLUMNS; }
+
+#endif

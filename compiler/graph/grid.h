@@ -1,0 +1,40 @@
+/*
+ * grid.h: which of many boxes are near a point: a grid of cubic cells, with a list for each.
+ *
+ * The list of a cell has all members whose box is nearer to the cell than its margin and `reach`.
+ * So, wherever a point is in the cell, all that is not listed is farther than the clearance of the cell,
+ * even when distances up to `reach` apart influence each other (blends).
+ */
+#ifndef KRS_GRID_H
+#define KRS_GRID_H
+
+#include "compiler/base/arena.h"
+#include "compiler/graph/range.h"
+
+typedef struct Grid {
+    Box       inner; /* around all boxes, larger by `reach`; infinite where a box is */
+    double    low[3], size; /* the corner of the first cell; the side of a cell */
+    uint32_t  cells[3];     /* along each axis; x runs fastest, then y */
+    uint32_t *first;     /* of each cell, where its list begins; one more: where the last ends */
+    float    *clearance; /* of each cell, above 0; rounded down */
+    uint32_t *members;   /* the lists, ascending */
+    uint32_t  most_listed; /* the length of the longest list */
+} Grid;
+
+/*
+ * Builds a grid of `count` boxes, at least one.  The clearance is at least `margin` wherever a list does
+ * not have all members; 0 leaves the margin to the builder.  Where a box or the margin is infinite there
+ * is one cell for all of space: its list has all members, and its clearance is infinite.
+ */
+void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
+                Arena *arena, Arena *scratch);
+
+/*
+ * The list for a point, of *count members.  No other member is nearer than *clearance, after all that
+ * `reach` allows for.  Outside of the grid the list is empty, and the clearance is the distance to
+ * `inner`, which is there larger than some constant.
+ */
+const uint32_t *grid_find(const Grid *grid, const double point[3], uint32_t *count,
+                          double *clearance);
+
+#endif
