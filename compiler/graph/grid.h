@@ -12,13 +12,13 @@
 #include "compiler/graph/range.h"
 
 typedef struct Grid {
-    Box       inner; /* around all boxes, larger by `reach`; infinite where a box is */
+    Box       inner;        /* around all boxes, larger by `reach`; infinite where a box is */
     double    low[3], size; /* the corner of the first cell; the side of a cell */
     uint32_t  cells[3];     /* along each axis; x runs fastest, then y */
-    uint32_t *first;     /* of each cell, where its list begins; one more: where the last ends */
-    float    *clearance; /* of each cell, above 0; rounded down */
-    uint32_t *members;   /* the lists, ascending */
-    uint32_t  most_listed; /* the length of the longest list */
+    uint32_t *first;        /* of each cell, where its list begins; one more: where the last ends */
+    float    *clearance;    /* of each cell, above 0; rounded down */
+    uint32_t *members;      /* the lists, ascending */
+    uint32_t  most_listed;  /* the length of the longest list */
 } Grid;
 
 /*
