@@ -3,7 +3,7 @@
  *
  * What is constant is computed on the spot.  Tables about operations are made from ops.def here.
  */
-#include "compiler/graph/intern.h"
+#include "compiler/graph/graph.h"
 
 #include <assert.h>
 #include <math.h>

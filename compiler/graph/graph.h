@@ -95,6 +95,9 @@ typedef struct Graph {
 /* An empty graph whose parameter 0 is `time`, in (-inf, inf). */
 Graph *graph_new(Arena *arena);
 
+/* intern.c: the node of an expression, new if there is none; its operands and time are right. */
+Node node_intern(Graph *graph, Expr e);
+
 /*
  * The nodes made since a mark can be dropped again: the graph is then as it was.  Marks are released or kept
  * in the reverse order.

@@ -3,7 +3,7 @@
  *
  * Every node is looked up in a hash table before it is made.
  */
-#include "compiler/graph/intern.h"
+#include "compiler/graph/graph.h"
 
 #include <string.h>
 
