@@ -145,6 +145,44 @@ static NodeValue read_table(const Graph *graph, const Expr *e, const NodeValue *
     return number(table->numbers[(size_t)member * table->columns + row_column(column)]);
 }
 
+static void run_points(const Tape *tape, const Inputs *in, NodeValue *values);
+
+/* The loop of a crowd function, which has a tape for what it does at each member. */
+static NodeValue run_loop(const Crowds *crowds, const CrowdFunction *function, const Tape *body,
+                          Inputs in, NodeValue *values)
+{
+    const Node     *bodies = crowds->bodies.items + function->first_body;
+    const Grid     *grid   = &crowds->tables.items[function->crowd].grid;
+    NodeValue       states[MOST_CROWD_STATES];
+    double          clearance;
+    uint32_t        listed;
+    const uint32_t *list = grid_find(grid, in.point, &listed, &clearance);
+    for (uint32_t k = 0; k < function->state_count; k++)
+        states[k] = all_of(function->states[k].first);
+    in.states = states;
+    for (uint32_t i = 0; i < listed; i++) {
+        in.member = list[i];
+        run_points(body, &in, values);
+        for (uint32_t k = 0; k < function->state_count; k++)
+            states[k] = values[bodies[k]];
+    }
+    return function->clear ? number(fmin(states[0].v[0], clearance)) : states[0];
+}
+
+static NodeValue run_call(const Tape *tape, const Expr *e, NodeValue *values)
+{
+    const Crowds *crowds = tape->graph->crowds;
+    uint32_t      id     = whole(&values[e->operands[0]]);
+    double        point[3], normal[3] = {0, 0, 0}, footprint = 0;
+    memcpy(point, values[e->operands[1]].v, sizeof point);
+    if (e->operand_count > 2) {
+        memcpy(normal, values[e->operands[2]].v, sizeof normal);
+        footprint = values[e->operands[3]].v[0];
+    }
+    Inputs in = {.point = point, .normal = normal, .footprint = footprint};
+    return run_loop(crowds, &crowds->functions.items[id], &tape->functions[id], in, values);
+}
+
 static void run_points(const Tape *tape, const Inputs *in, NodeValue *values)
 {
     for (size_t i = tape->frame_count; i < tape->count; i++) {
@@ -156,6 +194,8 @@ static void run_points(const Tape *tape, const Inputs *in, NodeValue *values)
             i += run_guard(tape, i, values);
         else if (e->op == OP_row)
             values[node] = read_table(tape->graph, e, values);
+        else if (is_call(e->op))
+            values[node] = run_call(tape, e, values);
         else
             tape_run_node(tape->graph, node, values);
     }

@@ -8,11 +8,14 @@
 #ifndef KRS_GRID_H
 #define KRS_GRID_H
 
+#include <stdint.h>
+
 #include "compiler/base/arena.h"
 #include "compiler/graph/range.h"
 
 typedef struct Grid {
-    Box       inner;        /* around all boxes, larger by `reach`; infinite where a box is */
+    Box       inner; /* around all boxes, larger by `reach`; infinite where a box is, and when all
+                        are empty */
     double    low[3], size; /* the corner of the first cell; the side of a cell */
     uint32_t  cells[3];     /* along each axis; x runs fastest, then y */
     uint32_t *first;        /* of each cell, where its list begins; one more: where the last ends */
@@ -23,8 +26,9 @@ typedef struct Grid {
 
 /*
  * Builds a grid of `count` boxes, at least one.  The clearance is at least `margin` wherever a list does
- * not have all members; 0 leaves the margin to the builder.  Where a box or the margin is infinite there
- * is one cell for all of space: its list has all members, and its clearance is infinite.
+ * not have all members, and NOWHERE where it does; 0 leaves the margin to the builder.  Where a box or
+ * the margin is infinite there is one cell for all of space, its size is infinite, and its list has all
+ * members.  Empty boxes are in no list.
  */
 void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
                 Arena *arena, Arena *scratch);

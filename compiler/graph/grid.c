@@ -1,0 +1,444 @@
+/*
+ * grid.c: a grid of cubic cells over boxes, in time that is linear in boxes, cells and list entries.
+ *
+ * Cells are as small as their number and the length of all lists together allow.  The distance from
+ * a cell to the nearest box that it does not list is measured for boxes around the corner.  Farther
+ * ones are bounded by a distance transform of the cells that have boxes (Felzenszwalb and
+ * Huttenlocher, "Distance transforms of sampled functions", 2012).
+ *
+ * Kernels find the cell of a point in single precision, and may find a neighbour of it.  So boxes are
+ * taken to be larger by what single precision can miss: the pad.
+ */
+#include "compiler/graph/grid.h"
+
+#include <assert.h>
+#include <float.h>
+
+#include "compiler/base/far.h"
+
+/* Most cells and entries: few members may have more cells each, so that they may form a curve. */
+enum {
+    CELLS_PER_MEMBER   = 4,
+    SPARE_CELLS        = 8192,
+    MOST_OF_A_MEMBER   = 64, /* cells, even so */
+    ENTRIES_PER_MEMBER = 32,
+    SPARE_ENTRIES      = 4096
+};
+
+#define MARGIN_IN_CELLS 0.25    /* unless the caller has one */
+#define RING_IN_CELLS   0.5     /* how far beyond the margin boxes are measured */
+#define GROWTH          1.26    /* of the side: twice the volume */
+#define SMALLEST_SIDE   1e-12   /* of a cell */
+#define FLOAT_MISSES    0x1p-21 /* several roundings in single precision, of coordinates */
+#define ROUNDED_DOWN    (1 - 0x1p-22)
+
+typedef struct Builder {
+    Grid      *grid;
+    const Box *boxes;
+    uint32_t   count, present; /* boxes; those that are not empty */
+    double     reach, margin;
+    double     given_margin; /* 0: a part of a cell's side */
+    double     pad[3];
+    double     listed, seen; /* boxes up to this distance are in the list, or are measured */
+    float     *nearest;      /* of each cell: the square of the distance to the nearest box that is
+                                seen and not listed */
+    Arena     *scratch;
+} Builder;
+
+/* Cells from first to last along each axis. */
+typedef struct Cover {
+    uint32_t first[3], last[3];
+} Cover;
+
+static bool box_is_empty(const Box *box)
+{
+    for (int k = 0; k < 3; k++)
+        if (box->axis[k].low > box->axis[k].high)
+            return true;
+    return false;
+}
+
+/* Not so where a coordinate is not a number. */
+static bool box_is_bounded(const Box *box)
+{
+    for (int k = 0; k < 3; k++)
+        if (!(box->axis[k].low > -FAR_SIDE && box->axis[k].high < FAR_SIDE))
+            return false;
+    return true;
+}
+
+static size_t cell_count(const Grid *grid)
+{
+    return (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
+}
+
+/* ---- One cell for all of space ---- */
+
+static bool all_are_bounded(const Builder *b)
+{
+    for (uint32_t i = 0; i < b->count; i++)
+        if (!box_is_empty(&b->boxes[i]) && !box_is_bounded(&b->boxes[i]))
+            return false;
+    return b->given_margin < FAR_SIDE && b->reach < FAR_SIDE;
+}
+
+static void one_cell(Builder *b, Arena *arena)
+{
+    Grid *grid = b->grid;
+    *grid      = (Grid){.inner       = {{ANYTHING, ANYTHING, ANYTHING}},
+                        .size        = HUGE_VAL,
+                        .cells       = {1, 1, 1},
+                        .first       = arena_new_array(arena, uint32_t, 2),
+                        .clearance   = arena_new(arena, float),
+                        .members     = arena_new_array(arena, uint32_t, b->count),
+                        .most_listed = b->present};
+
+    for (uint32_t i = 0; i < b->count; i++)
+        if (!box_is_empty(&b->boxes[i]))
+            grid->members[grid->first[1]++] = i;
+    grid->clearance[0] = (float)NOWHERE;
+}
+
+/* ---- Size of the cells ---- */
+
+static void find_inner(Builder *b)
+{
+    Box *inner = &b->grid->inner;
+    for (int k = 0; k < 3; k++)
+        inner->axis[k] = (Range){HUGE_VAL, -HUGE_VAL};
+    for (uint32_t i = 0; i < b->count; i++)
+        for (int k = 0; k < 3 && !box_is_empty(&b->boxes[i]); k++) {
+            inner->axis[k].low  = fmin(inner->axis[k].low, b->boxes[i].axis[k].low);
+            inner->axis[k].high = fmax(inner->axis[k].high, b->boxes[i].axis[k].high);
+        }
+    for (int k = 0; k < 3; k++) {
+        Range *axis = &inner->axis[k];
+        *axis       = (Range){axis->low - b->reach, axis->high + b->reach};
+        b->pad[k]   = FLOAT_MISSES * (range_largest(*axis) + axis->high - axis->low);
+    }
+}
+
+/* Cells of this side around `inner` and a margin.  Corners are single precision numbers, and so is
+   1 / side, as kernels have them. */
+static void place_cells(Builder *b, double side)
+{
+    Grid *grid = b->grid;
+    grid->size = 1 / (double)(float)(1 / side);
+    /* Rounding a clearance down leaves the margin. */
+    b->margin = (b->given_margin > 0 ? b->given_margin : MARGIN_IN_CELLS * grid->size) *
+                (1 + 8 * FLOAT_MISSES);
+    b->listed = b->margin + b->reach;
+    b->seen   = b->listed + RING_IN_CELLS * grid->size;
+    for (int k = 0; k < 3; k++) {
+        Range  axis    = grid->inner.axis[k];
+        double edge    = b->margin + 2 * b->pad[k];
+        grid->low[k]   = nextafterf((float)(axis.low - edge), -HUGE_VALF);
+        double along   = ceil((axis.high + edge - grid->low[k]) / grid->size);
+        grid->cells[k] = (uint32_t)fmin(fmax(along, 1), UINT32_MAX);
+    }
+}
+
+static double placed_cells(const Grid *grid)
+{
+    return (double)grid->cells[0] * grid->cells[1] * grid->cells[2];
+}
+
+/* The least side with few enough cells. */
+static double least_side(Builder *b)
+{
+    double most    = fmin((double)CELLS_PER_MEMBER * b->present + SPARE_CELLS,
+                          (double)MOST_OF_A_MEMBER * b->present);
+    double longest = 0;
+    for (int k = 0; k < 3; k++) {
+        Range axis = b->grid->inner.axis[k];
+        longest    = fmax(longest, axis.high - axis.low + 4 * b->pad[k] + 2 * b->given_margin);
+    }
+    longest     = fmax(longest, SMALLEST_SIDE);
+    double low  = fmax(longest / (2 * most), SMALLEST_SIDE);
+    double high = 4 * longest;
+    for (int i = 0; i < 40 && high > 1.01 * low; i++) {
+        double side = sqrt(low * high);
+        place_cells(b, side);
+        *(placed_cells(b->grid) > most ? &low : &high) = side;
+    }
+    return high;
+}
+
+static uint32_t cell_along(const Grid *grid, int axis, double coordinate)
+{
+    double cell = (coordinate - grid->low[axis]) / grid->size;
+    if (cell <= 0)
+        return 0;
+    return cell < grid->cells[axis] ? (uint32_t)cell : grid->cells[axis] - 1;
+}
+
+/* The cells that are up to `distance` away from a box along each axis. */
+static Cover cover_box(const Builder *b, const Box *box, double distance)
+{
+    Cover cover;
+    for (int k = 0; k < 3; k++) {
+        double grown   = distance + b->pad[k];
+        cover.first[k] = cell_along(b->grid, k, box->axis[k].low - grown);
+        cover.last[k]  = cell_along(b->grid, k, box->axis[k].high + grown);
+    }
+    return cover;
+}
+
+/* No fewer than the entries of all lists. */
+static double count_entries(const Builder *b)
+{
+    double entries = 0;
+    for (uint32_t i = 0; i < b->count; i++) {
+        if (box_is_empty(&b->boxes[i]))
+            continue;
+        Cover  cover = cover_box(b, &b->boxes[i], b->listed);
+        double cells = 1;
+        for (int k = 0; k < 3; k++)
+            cells *= (double)(cover.last[k] - cover.first[k]) + 1;
+        entries += cells;
+    }
+    return entries;
+}
+
+/* In the end there is one cell, which has as many entries as there are boxes. */
+static void choose_cells(Builder *b)
+{
+    double most = (double)ENTRIES_PER_MEMBER * b->present + SPARE_ENTRIES;
+    double side = least_side(b);
+    for (place_cells(b, side); count_entries(b) > most; place_cells(b, side))
+        side *= GROWTH;
+}
+
+/* ---- Lists ---- */
+
+/* Between a box and a cell along an axis; 0 where they overlap. */
+static double gap_along(const Builder *b, const Box *box, int axis, uint32_t cell)
+{
+    double low   = b->grid->low[axis] + cell * b->grid->size;
+    double above = box->axis[axis].low - b->pad[axis] - (low + b->grid->size);
+    double below = low - box->axis[axis].high - b->pad[axis];
+    double gap   = above > below ? above : below;
+    return gap > 0 ? gap : 0;
+}
+
+/* Visits cells around a box.  First their lists are counted, in first[]; when there are members,
+   they are filled, and first[] moves on. */
+static void visit_cells(const Builder *b, uint32_t member)
+{
+    const Grid *grid   = b->grid;
+    const Box  *box    = &b->boxes[member];
+    double      listed = b->listed * b->listed;
+    Cover       cover  = cover_box(b, box, grid->members ? b->listed : b->seen);
+    for (uint32_t z = cover.first[2]; z <= cover.last[2]; z++) {
+        double gap_z = gap_along(b, box, 2, z);
+        for (uint32_t y = cover.first[1]; y <= cover.last[1]; y++) {
+            double gap_y = gap_along(b, box, 1, y), square = gap_y * gap_y + gap_z * gap_z;
+            size_t row = ((size_t)z * grid->cells[1] + y) * grid->cells[0];
+            for (uint32_t x = cover.first[0]; x <= cover.last[0]; x++) {
+                double gap = gap_along(b, box, 0, x), apart = square + gap * gap;
+                if (apart > listed) {
+                    if (apart < b->nearest[row + x])
+                        b->nearest[row + x] = (float)apart;
+                } else if (grid->members)
+                    grid->members[grid->first[row + x]++] = member;
+                else
+                    grid->first[row + x]++;
+            }
+        }
+    }
+}
+
+static void visit_all(const Builder *b)
+{
+    for (uint32_t i = 0; i < b->count; i++)
+        if (!box_is_empty(&b->boxes[i]))
+            visit_cells(b, i);
+}
+
+static void fill_lists(Builder *b, Arena *arena)
+{
+    Grid  *grid  = b->grid;
+    size_t cells = cell_count(grid);
+    grid->first  = arena_new_array(arena, uint32_t, cells + 1);
+    b->nearest   = arena_new_array(b->scratch, float, cells);
+    for (size_t c = 0; c < cells; c++)
+        b->nearest[c] = HUGE_VALF;
+    visit_all(b);
+
+    /* From lengths to where lists begin. */
+    uint32_t entries = 0;
+    for (size_t c = 0; c < cells; c++) {
+        uint32_t length = grid->first[c];
+        if (length > grid->most_listed)
+            grid->most_listed = length;
+        grid->first[c] = entries;
+        entries += length;
+    }
+    grid->members = arena_new_array(arena, uint32_t, entries + 1);
+    visit_all(b);
+
+    /* Each first[] is now where the next list begins. */
+    for (size_t c = cells; c > 0; c--)
+        grid->first[c] = grid->first[c - 1];
+    grid->first[0] = 0;
+}
+
+/* ---- Distances in cells to the nearest cell with a box ---- */
+
+/* The least of parabolas: value[i] becomes the least value[k] + (i - k)^2 of any k. */
+typedef struct Parabolas {
+    double *value, *begin; /* of each parabola: its least value; where it begins to be the lowest */
+    size_t *center;
+} Parabolas;
+
+/* Where the lower of two parabolas changes, the second one centered to the right. */
+static double parabolas_cross(double value, size_t center, double other, size_t right)
+{
+    double a = (double)center, b = (double)right;
+    return (other - value + b * b - a * a) / (2 * (b - a));
+}
+
+static void transform_line(double *values, size_t count, size_t stride, const Parabolas *lowest)
+{
+    size_t used = 0;
+    for (size_t i = 0; i < count; i++) {
+        double value = values[i * stride], begin = -HUGE_VAL;
+        if (value == HUGE_VAL)
+            continue;
+        while (used > 0) {
+            begin = parabolas_cross(lowest->value[used - 1], lowest->center[used - 1], value, i);
+            if (begin > lowest->begin[used - 1])
+                break;
+            used--;
+            begin = -HUGE_VAL;
+        }
+        lowest->value[used]  = value;
+        lowest->center[used] = i;
+        lowest->begin[used]  = begin;
+        used++;
+    }
+    for (size_t i = 0, at = 0; i < count && used > 0; i++) {
+        while (at + 1 < used && lowest->begin[at + 1] < (double)i)
+            at++;
+        double away        = (double)i - (double)lowest->center[at];
+        values[i * stride] = lowest->value[at] + away * away;
+    }
+}
+
+static void transform(const Grid *grid, double *values, Arena *scratch)
+{
+    size_t    x = grid->cells[0], y = grid->cells[1], z = grid->cells[2];
+    size_t    longest = x > y ? (x > z ? x : z) : (y > z ? y : z);
+    Parabolas lowest  = {arena_new_array(scratch, double, longest),
+                         arena_new_array(scratch, double, longest),
+                         arena_new_array(scratch, size_t, longest)};
+    for (size_t line = 0; line < y * z; line++)
+        transform_line(values + line * x, x, 1, &lowest);
+    for (size_t line = 0; line < x * z; line++)
+        transform_line(values + line / x * x * y + line % x, y, x, &lowest);
+    for (size_t line = 0; line < x * y; line++)
+        transform_line(values + line, z, x * y, &lowest);
+}
+
+/* 0 in cells that touch a cell with a part of this box. */
+static void mark_box(const Builder *b, const Box *box, double *squares)
+{
+    const Grid *grid  = b->grid;
+    Cover       cover = cover_box(b, box, 0);
+    for (int k = 0; k < 3; k++) {
+        cover.first[k] -= cover.first[k] > 0;
+        cover.last[k] += cover.last[k] + 1 < grid->cells[k];
+    }
+    for (uint32_t z = cover.first[2]; z <= cover.last[2]; z++)
+        for (uint32_t y = cover.first[1]; y <= cover.last[1]; y++)
+            for (uint32_t x = cover.first[0]; x <= cover.last[0]; x++)
+                squares[((size_t)z * grid->cells[1] + y) * grid->cells[0] + x] = 0;
+}
+
+/* Squares of lower bounds on the distance between a cell and the nearest box, in cells.  The walls
+   of cells i and k are |i - k| - 1 cells apart: as far as centers when one of them touches. */
+static double *cells_to_boxes(const Builder *b)
+{
+    size_t  cells   = cell_count(b->grid);
+    double *squares = arena_new_array(b->scratch, double, cells);
+    for (size_t c = 0; c < cells; c++)
+        squares[c] = HUGE_VAL;
+    for (uint32_t i = 0; i < b->count; i++)
+        if (!box_is_empty(&b->boxes[i]))
+            mark_box(b, &b->boxes[i], squares);
+    transform(b->grid, squares, b->scratch);
+    return squares;
+}
+
+/* ---- Clearance ---- */
+
+static float rounded_down(double number) { return (float)fmax(number * ROUNDED_DOWN, FLT_MIN); }
+
+static void find_clearances(const Builder *b, Arena *arena)
+{
+    Grid         *grid    = b->grid;
+    size_t        cells   = cell_count(grid);
+    const double *squares = cells_to_boxes(b);
+    grid->clearance       = arena_new_array(arena, float, cells);
+    for (size_t c = 0; c < cells; c++) {
+        double seen = fmin(sqrt((double)b->nearest[c]) * ROUNDED_DOWN, b->seen);
+        double far  = fmax(seen, sqrt(squares[c]) * grid->size);
+        bool   all  = grid->first[c + 1] - grid->first[c] == b->present;
+
+        grid->clearance[c] = all ? (float)NOWHERE : rounded_down(fmax(far - b->reach, b->margin));
+    }
+}
+
+void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, double margin,
+                Arena *arena, Arena *scratch)
+{
+    assert(count > 0);
+    *grid     = (Grid){0};
+    Builder b = {.grid         = grid,
+                 .boxes        = boxes,
+                 .count        = count,
+                 .reach        = reach,
+                 .given_margin = margin,
+                 .scratch      = scratch};
+    for (uint32_t i = 0; i < count; i++)
+        b.present += !box_is_empty(&boxes[i]);
+    if (b.present == 0 || !all_are_bounded(&b)) {
+        one_cell(&b, arena);
+        return;
+    }
+    find_inner(&b);
+    choose_cells(&b);
+    fill_lists(&b, arena);
+    find_clearances(&b, arena);
+}
+
+/* ---- Finding ---- */
+
+static double distance_to_box(const Box *box, const double point[3])
+{
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        Range  axis = box->axis[k];
+        double away = fmax(fmax(axis.low - point[k], point[k] - axis.high), 0);
+        square += away * away;
+    }
+    return sqrt(square);
+}
+
+const uint32_t *grid_find(const Grid *grid, const double point[3], uint32_t *count,
+                          double *clearance)
+{
+    size_t cell = 0;
+    for (int k = 2; k >= 0; k--) {
+        double along = floor((point[k] - grid->low[k]) / grid->size);
+        if (!(along >= 0 && along < grid->cells[k])) {
+            *count     = 0;
+            *clearance = distance_to_box(&grid->inner, point);
+            return grid->members;
+        }
+        cell = cell * grid->cells[k] + (size_t)along;
+    }
+    *count     = grid->first[cell + 1] - grid->first[cell];
+    *clearance = grid->clearance[cell];
+    return grid->members + grid->first[cell];
+}
