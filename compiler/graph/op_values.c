@@ -255,6 +255,12 @@ static NodeValue evaluate_join_id(const NodeValue *o, uint32_t size)
     return number(scramble(scramble((uint32_t)o[0].v[0]) + (uint32_t)o[1].v[0]));
 }
 
+static NodeValue evaluate_to_uint(const NodeValue *o, uint32_t size)
+{
+    (void)size;
+    return number((uint32_t)fmax(o[0].v[0], 0));
+}
+
 static NodeValue evaluate_id_unit(const NodeValue *o, uint32_t size)
 {
     (void)size;
@@ -269,7 +275,8 @@ static double widths_apart(double a, double b, double width)
     return a == b ? 0 : fabs(a - b) / width;
 }
 
-#define BLEND(name, signature, slope, bulge, cost, facts, glsl, value, weights, meaning) \
+#define BLEND(name, signature, slope, bulge, most, reach, cost, facts, glsl, value, weights, \
+              meaning) \
     static NodeValue evaluate_smin_##name(const NodeValue *o, uint32_t size)             \
     {                                                                                    \
         (void)size;                                                                      \

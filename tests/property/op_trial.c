@@ -30,6 +30,7 @@ static const struct {
     {OP_cell_polar, "mn"},  {OP_blend_weight, "mmw"},
     {OP_less, "ee"},        {OP_less_equal, "ee"},
     {OP_equal, "ee"},       {OP_not_equal, "ee"},
+    {OP_to_uint, "k"},
     {OP_noise2, "s"},       {OP_noise3, "s"},
     {OP_julia, "mqkk"},     {OP_julia_trap, "mqkk"},
     {OP_mandelbulb, "mkk"}, {OP_mandelbulb_trap, "mkk"},
