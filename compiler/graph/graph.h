@@ -83,8 +83,9 @@ typedef struct Graph {
     struct {
         GraphParameter *items;
         size_t          count, capacity;
-    } parameters; /* [0] is time */
-    Span here;    /* span given to nodes made now */
+    } parameters;          /* [0] is time */
+    struct Crowds *crowds; /* crowd.h; NULL: there are none */
+    Span           here;   /* span given to nodes made now */
 } Graph;
 
 /* An empty graph whose parameter 0 is `time`, in (-inf, inf). */
