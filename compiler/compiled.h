@@ -46,32 +46,32 @@ typedef struct KrsMarchGroup {
 enum { KRS_MOST_MARCH_GROUPS = 8 };
 
 typedef struct KrsProgram {
-    size_t   glsl_length;     /* bytes of the promised functions (krs_promised_functions) */
-    uint32_t parameter_slots; /* slots (vec4) of the parameter block */
-    uint32_t value_slots;     /* further slots, if the host computes values of the frame */
-    double   low[3], high[3]; /* box around all components; infinite where unbounded */
-    size_t   operations;      /* in krs_distance */
-    double   flops;           /* of krs_distance, weighted by op_cost */
-    uint32_t loops;           /* most iterations of loops in krs_distance */
-    bool     planes;          /* there is krs_plane_t */
-    double   rest_low[3], rest_high[3]; /* box around the components that are not planes */
-    bool     camera_relative;           /* points may be relative to the camera */
-    uint32_t camera_relative_slots;     /* then: further slots, behind those of zones */
-    bool     gradients;                 /* there is krs_gradient, by derivatives */
-    bool     algebraic;                 /* normals are by krs_gradient by default */
-    bool     along;                     /* there is krs_along */
-    bool     sheets;  /* there are surfaces without thickness, where krs_distance is not
+    size_t        glsl_length;     /* bytes of the promised functions (krs_promised_functions) */
+    uint32_t      parameter_slots; /* slots (vec4) of the parameter block */
+    uint32_t      value_slots;     /* further slots, if the host computes values of the frame */
+    double        low[3], high[3]; /* box around all components; infinite where unbounded */
+    size_t        operations;      /* in krs_distance */
+    double        flops;           /* of krs_distance, weighted by op_cost */
+    uint32_t      loops;           /* most iterations of loops in krs_distance */
+    bool          planes;          /* there is krs_plane_t */
+    double        rest_low[3], rest_high[3]; /* box around the components that are not planes */
+    bool          camera_relative;           /* points may be relative to the camera */
+    uint32_t      camera_relative_slots;     /* then: further slots, behind those of zones */
+    bool          gradients;                 /* there is krs_gradient, by derivatives */
+    bool          algebraic;                 /* normals are by krs_gradient by default */
+    bool          along;                     /* there is krs_along */
+    bool          sheets;  /* there are surfaces without thickness, where krs_distance is not
                                 negative: rays need krs_along, and normals krs_gradient */
-    bool     inverts; /* krs_along has methods for sequences with maps that invert */
-    bool     plain;   /* no component is curved (shape_is_curved) */
-    bool     shadows; /* a light casts shadows */
-    /* Texels of the tables (krs_frame_tables); 0: there are none. */
-    size_t        table_rows, table_cells;
+    bool          inverts; /* krs_along has methods for sequences with maps that invert */
+    bool          plain;   /* no component is curved (shape_is_curved) */
+    bool          shadows; /* a light casts shadows */
     KrsMarchGroup march_groups[KRS_MOST_MARCH_GROUPS];
     size_t        march_group_count; /* 0: all components are marched together */
     bool          per_component;     /* it is faster to march one group after the other */
     uint32_t      scene_parts;       /* number of parts of krs_scene_part_distance */
     uint32_t      expensive;         /* components that cost enough for a group of their own */
+    size_t        table_rows;        /* texels of the tables (krs_frame_tables); 0: none */
+    size_t        table_cells;
     const double *pass_ms;           /* time of each pass (krs_pass, compile.h), in milliseconds */
     double        front_ms, glsl_ms; /* time of all passes before `emit`, and of `emit` */
 } KrsProgram;

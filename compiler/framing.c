@@ -32,7 +32,7 @@ static bool is_bounded(const KrsComponent *component)
 static bool outer_ball(const KrsScene *scene, Sphere *ball)
 {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (size_t i = 0; i < scene->component_count; i++) {
+    for (size_t i = 0; i < scene->shown_count; i++) {
         const KrsComponent *component = &scene->components[i];
         for (int k = 0; is_bounded(component) && k < 3; k++) {
             low[k]  = fmin(low[k], component->low[k]);

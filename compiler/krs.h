@@ -252,16 +252,16 @@ KrsStatus krs_normal(KrsFrame *frame, const double (*points)[3], size_t count,
 
 /* What is known at a point, or where a ray ends. */
 typedef struct KrsHit {
-    bool     hit;        /* for rays; always true for points */
-    bool     unresolved; /* for rays: ended after KRS_MOST_STEPS steps; nothing before `t` */
-    double   t;          /* for rays: world units along the unit direction */
-    double   point[3];
-    double   distance;   /* at that point */
-    double   normal[3];  /* unit gradient of the distance; 0 where there is none */
-    double   shading[3]; /* the normal for lighting; differs from `normal` where mirrors are smooth
+    bool   hit;        /* for rays; always true for points */
+    bool   unresolved; /* for rays: ended after KRS_MOST_STEPS steps; nothing before `t` */
+    double t;          /* for rays: world units along the unit direction */
+    double point[3];
+    double distance;   /* at that point */
+    double normal[3];  /* unit gradient of the distance; 0 where there is none */
+    double shading[3]; /* the normal for lighting; differs from `normal` where mirrors are smooth
                             over a given width */
-    uint32_t component;  /* from 1; 0 where nothing is hit */
-    /* A member for each row of surface.def: the instance that was hit, and its material.
+    /* A member for each row of surface.def: which part was hit, and its material.
+       component: from 1; 0 where nothing is hit;
        level: number of mirrors that the instance comes through; instance: its number (docs/math.md,
        section 1), a hash beyond 31 mirrors, 1 without a sequence; color[3] and emission[3]: linear
        Rec.709; roughness; metallic.  All but the emission are limited as in pictures. */

@@ -60,8 +60,9 @@ void form_march_groups(Compilation *c)
         march_groups[i]            = 0;
         if (program->planes && component_is_plane(component))
             continue;
-        double flops                  = component_flops(c, i);
-        c->scene->components[i].flops = flops;
+        double flops = component_flops(c, i);
+        for (size_t k = 0; k < component->count; k++)
+            c->scene->components[component->first + k].flops = flops / (double)component->count;
         program->expensive += flops >= EXPENSIVE_FLOPS;
         size_t group    = choose_march_group(program, flops, component->shape->box);
         march_groups[i] = (uint32_t)group + 1;

@@ -24,7 +24,7 @@ size_t      krs_value_slots(const KrsScene *scene) { return scene->program.value
 size_t      krs_table_rows(const KrsScene *scene) { return scene->program.table_rows; }
 size_t      krs_table_cells(const KrsScene *scene) { return scene->program.table_cells; }
 size_t      krs_frame_slope_count(const KrsScene *scene) { return scene->slope_count; }
-size_t      krs_component_count(const KrsScene *scene) { return scene->component_count; }
+size_t      krs_component_count(const KrsScene *scene) { return scene->shown_count; }
 
 const char *krs_camera_name(const KrsScene *scene, size_t index)
 {
@@ -58,7 +58,7 @@ KrsStatus krs_frame_slope(const KrsScene *scene, size_t index, KrsFrameSlope *sl
 
 size_t krs_bound_count(const KrsScene *scene, size_t component, size_t *more)
 {
-    bool exists = component < scene->component_count;
+    bool exists = component < scene->shown_count;
     if (more)
         *more = exists ? scene->bounds[component].more : 0;
     return exists ? scene->bounds[component].count : 0;
@@ -74,7 +74,7 @@ KrsStatus krs_bound(const KrsScene *scene, size_t component, size_t index, KrsBo
 
 KrsStatus krs_component(const KrsScene *scene, size_t index, KrsComponent *component)
 {
-    if (index >= scene->component_count)
+    if (index >= scene->shown_count)
         return KRS_BAD_ARGUMENT;
     *component = scene->components[index];
     return KRS_OK;

@@ -130,11 +130,11 @@ struct KrsScene {
     const Graph   *graph;
     Module         module; /* what text is printed from */
     Roots          roots;
-    size_t         component_count, camera_count, light_count;
+    size_t         component_count, shown_count, camera_count, light_count;
     size_t         zone_count; /* zones that the scene declares; they share one root */
-    KrsComponent  *components;
-    KrsBounds     *bounds; /* of each component */
-    RetainedSlope *slopes; /* slopes that are computed per frame */
+    KrsComponent  *components; /* all that are shown */
+    KrsBounds     *bounds;     /* of each component */
+    RetainedSlope *slopes;     /* slopes that are computed per frame */
     size_t         slope_count;
     Parameter     *parameters;
     size_t         parameter_count;

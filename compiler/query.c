@@ -150,15 +150,16 @@ static void copy_property(const KrsFrame *frame, const Node *roots, ComponentRoo
 
 static void probe(KrsFrame *frame, const double point[3], KrsHit *hit)
 {
-    const KrsScene *scene = frame->scene;
-    *hit                  = (KrsHit){.hit = true};
+    const KrsScene *scene   = frame->scene;
+    uint32_t        nearest = 0;
+    *hit                    = (KrsHit){.hit = true};
     memcpy(hit->point, point, sizeof hit->point);
     normal_at(frame, point, hit->normal);
-    hit->distance = distance_at(frame, point, &hit->component);
-    if (!hit->component)
+    hit->distance = distance_at(frame, point, &nearest);
+    if (!nearest)
         return;
     tape_run_surface(&scene->surface, point, hit->normal, 0, frame->values);
-    const Node *root = surface_roots(&scene->roots, hit->component - 1);
+    const Node *root = surface_roots(&scene->roots, nearest - 1);
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     copy_property(frame, root, ROOT_##name, (double *)&hit->name);
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) \

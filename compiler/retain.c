@@ -18,10 +18,11 @@ static void retain_components(Compilation *c)
     KrsScene    *scene     = c->scene;
     const Scene *s         = &c->elaborated;
     scene->component_count = s->components.count;
-    scene->components      = arena_new_array(&scene->arena, KrsComponent, s->components.count + 1);
-    scene->bounds          = arena_new_array(&scene->arena, KrsBounds, s->components.count + 1);
-    for (size_t i = 0; i < s->components.count; i++) {
-        const Component *from = &s->components.items[i];
+    scene->shown_count     = s->shown.count;
+    scene->components      = arena_new_array(&scene->arena, KrsComponent, s->shown.count + 1);
+    scene->bounds          = arena_new_array(&scene->arena, KrsBounds, s->shown.count + 1);
+    for (size_t i = 0; i < s->shown.count; i++) {
+        const Component *from = &s->shown.items[i];
         KrsComponent    *to   = &scene->components[i];
         *to                   = (KrsComponent){.name       = retain_text(c, from->name),
                                                .slope      = from->shape->slope * from->shape->derived,

@@ -41,7 +41,8 @@ static bool lower_components(Compilation *c, Graph *g)
 {
     const Scene *s = &c->elaborated;
     for (size_t i = 0; i < s->components.count; i++)
-        if (!lower_component(g, s->components.items[i].shape, &c->scratch,
+        if (!lower_component(g, s->components.items[i].shape,
+                             (uint32_t)s->components.items[i].first + 1, &c->scratch,
                              surface_roots(&c->scene->roots, i))) {
             refuse_component(c, i, 0);
             return false;

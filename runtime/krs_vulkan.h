@@ -334,7 +334,6 @@ typedef struct KrsSurfacePoint {
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     float name KRS_NUMBERS_##type;
 #include "compiler/shape/surface.def"
-    uint32_t component;
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) uint32_t name;
 #include "compiler/shape/surface.def"
     float normal[3]; /* for lighting */

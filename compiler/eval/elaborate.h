@@ -345,4 +345,8 @@ void complete_view(Elaboration *e);
 /* The shape of a `krs` block. */
 Value elaborate_krs(Elaboration *e, const Environment *env, const Syntax *syntax);
 
+/* ---- shown.c ---- */
+/* Gathers the components that turns of a loop have shown; fills Scene.shown with all of them. */
+void gather_shown(Elaboration *e);
+
 #endif

@@ -196,8 +196,11 @@ static bool show_one(Elaboration *e, Value value, void *user)
     }
     if (!check_bounded(e->builder, value.shape) || !check_extent(e, value.shape, syntax))
         return false;
-    Component component = {
-        .name = component_name(e, syntax), .shape = value.shape, .span = syntax->span};
+    Component component = {.name  = component_name(e, syntax),
+                           .first = e->scene->components.count,
+                           .count = 1,
+                           .shape = value.shape,
+                           .span  = syntax->span};
     if (!shape_plane(e->builder, value.shape, &component.plane_normal, &component.plane_offset))
         component.plane_normal = component.plane_offset = NODE_NONE;
     array_push(e->arena, &e->scene->components, component);
@@ -423,6 +426,7 @@ void elaborate(Elaboration *e, const Files *files)
     for (size_t i = 0; i < e->scopes.count; i++)
         run_params(e, e->scopes.items[i]);
     run_file(e, scope);
+    gather_shown(e);
     e->scene->box = box_empty;
     for (size_t i = 0; i < e->scene->components.count; i++)
         e->scene->box = box_hull(e->scene->box, e->scene->components.items[i].shape->box);

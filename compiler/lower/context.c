@@ -90,6 +90,8 @@ Lowered lower_shape(Lowering *l, const Shape *shape, LowerContext context)
     /* Only smooth mirrors change the normal. */
     if (result.distance != NODE_NONE && context.smoothing == NODE_NONE && !shape->smooth)
         result.surface.normal = context.normal;
+    if (l->surfaces && shape->shown > 0)
+        result.surface.component = graph_uint(l->graph, shape->shown);
     if (l->lowered_shapes)
         array_push(l->scratch, l->lowered_shapes,
                    ((LoweredShape){shape, context.point, result.distance}));

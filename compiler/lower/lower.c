@@ -28,7 +28,7 @@ Node root_otherwise(Graph *graph, ComponentRoot root)
 
 static Node or_else(Node node, Node otherwise) { return node == NODE_NONE ? otherwise : node; }
 
-bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roots)
+bool lower_component(Graph *graph, const Shape *shape, uint32_t number, Arena *scratch, Node *roots)
 {
     Lowering     l       = {.graph    = graph,
                             .scratch  = scratch,
@@ -46,6 +46,8 @@ bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roo
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) \
     roots[ROOT_##name] = or_else(all.surface.name, root_otherwise(graph, ROOT_##name));
 #include "compiler/shape/surface.def"
+    if (all.surface.component == NODE_NONE)
+        roots[ROOT_component] = graph_uint(graph, number);
     Node normal        = or_else(all.surface.normal, context.normal);
     roots[ROOT_NORMAL] = unit_normal(graph, normal, context.normal);
     return !l.overflow;

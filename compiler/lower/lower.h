@@ -30,9 +30,11 @@ extern const RootInfo root_info[ROOT_COUNT];
 /* The value of a root where no material and no shape sets it. */
 Node root_otherwise(Graph *graph, ComponentRoot root);
 
-/* Lowers a shape at the point OP_POINT and sets roots[ROOT_COUNT].  False when that needs more than
-   MOST_LOWERED nodes, for example for copies of copies. */
-bool lower_component(Graph *graph, const Shape *shape, Arena *scratch, Node *roots);
+/* Lowers a shape at the point OP_POINT and sets roots[ROOT_COUNT].  `number` is that of the component,
+   from 1, where the shape's parts have none of their own (Shape.shown).  False when that needs more
+   than MOST_LOWERED nodes, for example for copies of copies. */
+bool lower_component(Graph *graph, const Shape *shape, uint32_t number, Arena *scratch,
+                     Node *roots);
 
 /*
  * A distance for marching that replaces ROOT_DISTANCE where branches save time.  OP_guard skips

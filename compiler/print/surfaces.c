@@ -6,14 +6,8 @@
 #include "compiler/base/far.h"
 #include "compiler/print/emitter.h"
 
-/* Fields of KrsSurface are in the order of the roots; the number of the component is between
-   properties of the material and the other identities. */
+/* Fields of KrsSurface are in the order of the roots. */
 static const ComponentRoot FIRST_ROOT = ROOT_DISTANCE + 1;
-
-static bool is_first_identity(ComponentRoot root)
-{
-    return !root_info[root].material && (root == FIRST_ROOT || root_info[root - 1].material);
-}
 
 static void emit_field(Emitter *e, GraphType type, const char *name)
 {
@@ -28,11 +22,8 @@ void emit_struct(Emitter *e)
 {
     text_add(e->out, "struct KrsSurface {\n");
     emit_field(e, TYPE_FLOAT, "distance");
-    for (ComponentRoot r = FIRST_ROOT; r < ROOT_NORMAL; r++) {
-        if (is_first_identity(r))
-            emit_field(e, TYPE_UINT, "component");
+    for (ComponentRoot r = FIRST_ROOT; r < ROOT_NORMAL; r++)
         emit_field(e, root_info[r].shown, root_info[r].name);
-    }
     emit_field(e, TYPE_VEC3, "normal");
     text_add(e->out, "};\n\n");
 }
@@ -62,11 +53,8 @@ void emit_surface_of(Emitter *e, const ModuleFunction *function)
     else
         emit_body(e, root, ROOT_COUNT);
     Text fields = {.arena = e->scratch};
-    for (ComponentRoot r = FIRST_ROOT; r < ROOT_NORMAL; r++) {
-        if (is_first_identity(r))
-            text_format(&fields, "%uu, ", function->component + 1);
+    for (ComponentRoot r = FIRST_ROOT; r < ROOT_NORMAL; r++)
         add_value(e, &fields, &root_info[r], e->text[root[r]]);
-    }
     emit_line(e, "    return KrsSurface(%s, %s%s);\n}\n\n", e->text[root[ROOT_DISTANCE]],
               fields.bytes, e->text[root[ROOT_NORMAL]]);
 }
@@ -77,8 +65,6 @@ static void emit_nothing(Emitter *e)
     Text nothing = {.arena = e->scratch};
     text_add(&nothing, "KrsSurface(" NOWHERE_TEXT);
     for (ComponentRoot r = FIRST_ROOT; r < ROOT_NORMAL; r++) {
-        if (is_first_identity(r))
-            text_add(&nothing, ", 0u");
         double number = root_info[r].nothing;
         Expr   value  = {.op     = OP_CONSTANT,
                          .type   = (uint8_t)root_info[r].shown,

@@ -116,9 +116,9 @@ void scene_print(const Scene *scene, const Sources *sources, Text *out)
                         parameter->high[k]);
         text_add(out, "\n");
     }
-    for (size_t i = 0; i < scene->components.count; i++) {
-        text_format(out, "component %zu %s\n", i + 1, scene->components.items[i].name);
-        print_shape(scene, sources, scene->components.items[i].shape, 1, out);
+    for (size_t i = 0; i < scene->shown.count; i++) {
+        text_format(out, "component %zu %s\n", i + 1, scene->shown.items[i].name);
+        print_shape(scene, sources, scene->shown.items[i].shape, 1, out);
     }
     text_format(out, "cameras %zu\nlights %zu\nzones %zu\n", scene->cameras.count,
                 scene->lights.count, scene->zone_count);

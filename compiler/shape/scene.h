@@ -7,9 +7,10 @@
 #include "compiler/shape/parameters.h"
 #include "compiler/shape/shape.h"
 
-/* What a `show` shows. */
+/* What a `show` shows, or shows all in all where it stands in a loop. */
 typedef struct Component {
     const char  *name;
+    size_t       first, count; /* its part of Scene.shown */
     const Shape *shape;
     Span         span;
     Node         plane_normal, plane_offset; /* of a half-space and nothing else, or NODE_NONE */
@@ -39,7 +40,7 @@ typedef struct Scene {
     struct {
         Component *items;
         size_t     count, capacity;
-    } components;
+    } components, shown; /* what is lowered; what has a number for the user: more in loops */
     Parameters  parameters;
     FrameSlopes slopes;
     /* Declared half-spaces, which may be in no component: mirrors. */

@@ -118,6 +118,8 @@ struct Shape {
     uint32_t      depth;  /* of the tree below, at most MOST_SHAPE_DEPTH */
     uint32_t tree_shapes; /* of that tree and itself, each where it is used; MOST_TREE_SHAPES */
 
+    uint32_t shown;   /* number from 1 of the component that it is, where it has been gathered with
+                       others; else 0 */
     Box      box;     /* around the solid, for all values of the parameters */
     double   slope;   /* Lipschitz constant of what it lowers to */
     double   derived; /* PRIMITIVE: the slope of its expression, by which it is divided; else the

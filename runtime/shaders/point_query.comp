@@ -61,7 +61,6 @@ void main()
     answer.distance = gradient_and_distance.w;
     answer.normal = surface.normal;
     answer.surface_distance = surface.distance;
-    answer.component = uvec4(surface.component);
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) \
     answer.name = uvec4(surface.name);
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \

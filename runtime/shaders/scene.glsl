@@ -17,7 +17,6 @@ struct KrsSurface {
     float distance;
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) type name;
 #include "compiler/shape/surface.def"
-    uint component;
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) shown name;
 #include "compiler/shape/surface.def"
     vec3 normal;
@@ -36,7 +35,6 @@ KrsSurface krs_surface(vec3 p, vec3 normal, float footprint)
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \
     surface.name = type(otherwise);
 #include "compiler/shape/surface.def"
-    surface.component = 1u;
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) surface.name = shown(otherwise);
 #include "compiler/shape/surface.def"
     surface.normal = normal;

@@ -19,7 +19,6 @@ struct Answer {
     float distance;
     vec3  normal; /* the normal for lighting */
     float surface_distance;
-    uvec4 component;
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends)            uvec4 name;
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) vec4 name;
 #include "compiler/shape/surface.def"
@@ -27,7 +26,7 @@ struct Answer {
 
 #ifdef __STDC_VERSION__
 typedef struct Answer AnswerBlock;
-static_assert(offsetof(AnswerBlock, component) == 32 && sizeof(AnswerBlock) % 16 == 0, "std430");
+static_assert(sizeof(AnswerBlock) % 16 == 0, "std430");
 #endif
 
 #endif

@@ -36,8 +36,7 @@ static void take_answer(const AnswerBlock *answer, float *distance, KrsSurfacePo
         *distance = answer->distance;
     if (!surface)
         return;
-    surface->distance  = answer->surface_distance;
-    surface->component = answer->component[0];
+    surface->distance = answer->surface_distance;
     memcpy(surface->normal, answer->normal, sizeof surface->normal);
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) surface->name = answer->name[0];
 #define KRS_MATERIAL(name, type, otherwise, nothing, low, high, asked, blends) \

@@ -45,8 +45,7 @@ static void widen(const float *numbers, size_t count, double *to)
 
 static void describe(const AnswerBlock *answer, KrsHit *hit)
 {
-    hit->distance  = answer->distance;
-    hit->component = answer->component[0];
+    hit->distance = answer->distance;
     widen(answer->gradient, 3, hit->normal);
     widen(answer->normal, 3, hit->shading);
 #define KRS_IDENTITY(name, type, shown, otherwise, nothing, blends) hit->name = answer->name[0];

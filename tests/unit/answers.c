@@ -189,6 +189,42 @@ static void the_rest_is_as_the_table_says(void **state)
     stage_close(&stage);
 }
 
+/* Each turn of a loop is a component, although many turns become one function of the shaders: balls
+   at x = 0, 3, 6, ..., behind another ball and before a last one. */
+static void turns_of_a_loop_are_components(void **state)
+{
+    enum { TURNS = 100, ALL = TURNS + 2 };
+    static double places[ALL][3];
+    static KrsHit hits[2][ALL];
+    Stage         stage = {0};
+    (void)state;
+    stage_open(&stage,
+               "show sphere(1).move([-3, 0, 0]);"
+               "for i in 0..100 { show sphere(1).move([3 * i, 0, 0]).paint([i / 200, 0.5, 0.5]); }"
+               "let last = sphere(1).move([300, 0, 0]); show last;",
+               NULL);
+    for (int i = 0; i < ALL; i++)
+        places[i][0] = 3 * (i - 1) + 0.5;
+    const double(*centres)[3] = (const double(*)[3])places;
+    assert_int_equal(krs_component_count(stage.scene), ALL);
+    assert_int_equal(krs_probe(stage.frame, centres, ALL, hits[0]), KRS_OK);
+    assert_int_equal(krs_device_probe(stage.rendering, stage.frame, centres, ALL, hits[1]), KRS_OK);
+    for (int each = 0; each < 2; each++)
+        for (uint32_t i = 0; i < ALL; i++) {
+            assert_int_equal(hits[each][i].component, i + 1);
+            assert_near(hits[each][i].distance, -0.5, 1e-4);
+            if (i > 0 && i <= TURNS)
+                assert_near(hits[each][i].color[0], (i - 1) / 200.0, 1e-6);
+        }
+    KrsComponent component;
+    assert_int_equal(krs_component(stage.scene, 41, &component), KRS_OK);
+    assert_string_equal(component.name, "component 42");
+    assert_near(component.low[0], 3 * 40 - 1, 1e-9);
+    assert_int_equal(krs_component(stage.scene, ALL - 1, &component), KRS_OK);
+    assert_string_equal(component.name, "last");
+    stage_close(&stage);
+}
+
 static int set_up(void **state)
 {
     static Stage stage;
@@ -214,6 +250,7 @@ int main(void)
         cmocka_unit_test(points_have_materials),
         cmocka_unit_test(rays_end_at_materials),
         cmocka_unit_test(the_rest_is_as_the_table_says),
+        cmocka_unit_test(turns_of_a_loop_are_components),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
