@@ -1,8 +1,7 @@
 /*
  * graph.c: making nodes.
  *
- * Every node is looked up before it is made, so that equal expressions are one node, and what
- * is constant is computed on the spot.  Tables about operations are made from ops.def here.
+ * What is constant is computed on the spot.  Tables about operations are made from ops.def here.
  */
 #include "compiler/graph/graph.h"
 
@@ -145,82 +144,6 @@ static uint32_t op_arity(Op op)
         return 1;
     const char *signature = op_info[op].signature;
     return signature ? (uint32_t)(strchr(signature, '>') - signature) : op_info[op].arity;
-}
-
-/* ---- one node for equal expressions ---- */
-
-/* What makes expressions equal: all but where they were written. */
-static bool expr_equal(const Expr *a, const Expr *b)
-{
-    return a->op == b->op && a->type == b->type && a->index == b->index &&
-           !memcmp(a->operands, b->operands, sizeof a->operands) &&
-           !memcmp(a->number, b->number, sizeof a->number);
-}
-
-static uint64_t hash_word(uint64_t hash, uint64_t word)
-{
-    hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
-    return hash ^ (hash >> 32);
-}
-
-static uint32_t expr_hash(const Expr *e)
-{
-    uint64_t hash = hash_word(e->op, e->type);
-    hash          = hash_word(hash, e->index);
-    for (int i = 0; i < MAX_OPERANDS; i++) {
-        uint64_t bits;
-        memcpy(&bits, &e->number[i], sizeof bits);
-        hash = hash_word(hash, e->operands[i]);
-        hash = hash_word(hash, bits);
-    }
-    return (uint32_t)(hash >> 16);
-}
-
-/* The slot of an equal node, or the empty one where it belongs. */
-static GraphSlot *slot_find(const Graph *graph, const Expr *e, uint32_t hash)
-{
-    size_t slot = hash & (graph->slot_count - 1);
-    for (;; slot = (slot + 1) & (graph->slot_count - 1)) {
-        GraphSlot *at = &graph->slots[slot];
-        if (!at->number || (at->hash == hash && expr_equal(&graph->items[at->number - 1], e)))
-            return at;
-    }
-}
-
-static void slots_grow(Graph *graph)
-{
-    const GraphSlot *old   = graph->slots;
-    size_t           count = graph->slot_count;
-    graph->slot_count      = count ? 2 * count : 64;
-    graph->slots           = arena_new_array(graph->arena, GraphSlot, graph->slot_count);
-    for (size_t i = 0; i < count; i++) {
-        size_t slot = old[i].hash & (graph->slot_count - 1);
-        while (old[i].number && graph->slots[slot].number)
-            slot = (slot + 1) & (graph->slot_count - 1);
-        if (old[i].number)
-            graph->slots[slot] = old[i];
-    }
-}
-
-static Node node_intern(Graph *graph, Expr e)
-{
-    if (2 * (graph->count + 1) > graph->slot_count)
-        slots_grow(graph);
-    for (int i = e.operand_count; i < MAX_OPERANDS; i++)
-        e.operands[i] = NODE_NONE;
-    for (int i = 0; i < 4; i++)
-        e.number[i] += 0.0; /* -0 and 0 are one constant */
-    uint32_t   hash = expr_hash(&e);
-    GraphSlot *slot = slot_find(graph, &e, hash);
-    if (!slot->number) {
-        e.span = graph->here;
-        array_push(graph->arena, graph, e);
-        *slot = (GraphSlot){hash, (uint32_t)graph->count};
-    }
-    Node node = slot->number - 1;
-    if (!graph->items[node].span.source) /* the compiler's own until now */
-        graph->items[node].span = graph->here;
-    return node;
 }
 
 /* ---- leaves ---- */

@@ -86,10 +86,29 @@ typedef struct Graph {
     } parameters;          /* [0] is time */
     struct Crowds *crowds; /* crowd.h; NULL: there are none */
     Span           here;   /* span given to nodes made now */
+    struct {
+        Node  *items;
+        size_t count, capacity;
+    } respanned; /* nodes that got a span since the first mark that is not released */
+    uint32_t marks;
 } Graph;
 
 /* An empty graph whose parameter 0 is `time`, in (-inf, inf). */
 Graph *graph_new(Arena *arena);
+
+/* intern.c: the node of an expression, new if there is none; its operands and time are right. */
+Node node_intern(Graph *graph, Expr e);
+
+/*
+ * The nodes made since a mark can be dropped again: the graph is then as it was.  Marks are released or kept
+ * in the reverse order.
+ */
+typedef struct GraphMark {
+    size_t count, slot_count, respanned;
+} GraphMark;
+GraphMark graph_mark(Graph *graph);
+void      graph_release(Graph *graph, GraphMark mark);
+void      graph_keep(Graph *graph); /* drops the last mark, not the nodes */
 
 /* Leaves. */
 Node graph_constant(Graph *graph, GraphType type, const double *numbers);

@@ -1,0 +1,435 @@
+/*
+ * alike.c: expressions that are alike but for numbers.
+ *
+ * A hash that leaves numbers out finds the template.  Then both are walked together, users before
+ * operands: each node of the template gets an image, and one that would get two has none.
+ */
+#include "compiler/graph/alike.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct NodeNote {
+    uint64_t  hash;
+    NodeValue value;
+    bool      known; /* its value is a finite number that is known now */
+} NodeNote;
+
+struct Alike {
+    Graph *graph;
+    Arena *arena;
+    struct {
+        NodeNote *items;
+        size_t    count, capacity;
+    } notes; /* of the first nodes of the graph */
+};
+
+Alike *alike_new(Graph *graph, Arena *arena)
+{
+    Alike *alike = arena_new(arena, Alike);
+    *alike       = (Alike){.graph = graph, .arena = arena};
+    return alike;
+}
+
+void alike_forget(Alike *alike)
+{
+    if (alike->notes.count > alike->graph->count)
+        alike->notes.count = alike->graph->count;
+}
+
+/* ---- what operands are ---- */
+
+static bool is_number(GraphType type) { return type <= TYPE_VEC4; }
+
+/* Operands that say how an operation works, not where: exponents and counts. */
+static bool is_structure(Op op, int operand)
+{
+    switch (op) {
+    case OP_pow: return operand == 1;
+    case OP_cell: return operand >= 2;
+    case OP_cell_polar: return operand == 1;
+    case OP_smin_stairs: return operand == 3;
+    case OP_julia:
+    case OP_julia_trap: return operand >= 2;
+    case OP_mandelbulb:
+    case OP_mandelbulb_trap: return operand >= 1;
+    default: return false;
+    }
+}
+
+static bool is_operation(const Expr *e) { return e->time == TIME_POINT && e->operand_count > 0; }
+
+/* What a node is where `user` has it as an operand; user NULL: it is a root. */
+static int use_kind(const Alike *alike, const Expr *user, int operand, Node node)
+{
+    if (node == NODE_NONE)
+        return USE_SAME;
+    const Expr *e = &alike->graph->items[node];
+    if (is_operation(e))
+        return USE_NODE;
+    bool number = alike->notes.items[node].known && is_number((GraphType)e->type);
+    return number && !(user && is_structure((Op)user->op, operand)) ? USE_SLOT : USE_SAME;
+}
+
+/* ---- notes ---- */
+
+static uint64_t hash_word(uint64_t hash, uint64_t word)
+{
+    hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
+    return hash ^ (hash >> 29);
+}
+
+static uint64_t hash_value(NodeValue value)
+{
+    uint64_t hash = 0, bits;
+    for (int i = 0; i < 4; i++) {
+        memcpy(&bits, &value.v[i], sizeof bits);
+        hash = hash_word(hash, bits);
+    }
+    return hash;
+}
+
+static uint64_t hash_use(const Alike *alike, const Expr *user, int operand, Node node)
+{
+    if (node == NODE_NONE)
+        return NODE_NONE;
+    const NodeNote *note = &alike->notes.items[node];
+    switch (use_kind(alike, user, operand, node)) {
+    case USE_NODE: return note->hash;
+    case USE_SLOT: return alike->graph->items[node].type;
+    default: return note->known ? hash_value(note->value) : hash_word(1, node);
+    }
+}
+
+static uint64_t hash_operation(const Alike *alike, const Expr *e)
+{
+    uint64_t hash = hash_word(hash_word(e->op, e->type), e->index);
+    for (int i = 0; i < e->operand_count; i++)
+        hash = hash_word(hash, hash_use(alike, e, i, e->operands[i]));
+    return hash;
+}
+
+static void note_value(const Alike *alike, const Expr *e, NodeNote *note)
+{
+    GraphType types[MAX_OPERANDS]    = {0};
+    NodeValue operands[MAX_OPERANDS] = {0};
+    if (e->op == OP_CONSTANT || e->op == OP_HOISTED)
+        memcpy(note->value.v, e->number, sizeof note->value.v);
+    else if (e->operand_count == 0)
+        return;
+    for (int i = 0; i < e->operand_count; i++) {
+        const NodeNote *operand = &alike->notes.items[e->operands[i]];
+        if (!operand->known)
+            return;
+        types[i]    = alike->graph->items[e->operands[i]].type;
+        operands[i] = operand->value;
+    }
+    if (e->operand_count > 0)
+        note->value = op_evaluate((Op)e->op, (GraphType)e->type, e->index, types, operands);
+    note->known = true;
+    for (int i = 0; i < (is_number((GraphType)e->type) ? e->type : 1); i++)
+        note->known = note->known && isfinite(note->value.v[i]);
+}
+
+static void note_all(Alike *alike)
+{
+    for (size_t n = alike->notes.count; n < alike->graph->count; n++) {
+        const Expr *e    = &alike->graph->items[n];
+        NodeNote    note = {0};
+        if (is_operation(e))
+            note.hash = hash_operation(alike, e);
+        else
+            note_value(alike, e, &note);
+        array_push(alike->arena, &alike->notes, note);
+    }
+}
+
+uint64_t alike_hash(Alike *alike, const Node *roots, uint32_t count)
+{
+    uint64_t hash = count;
+    note_all(alike);
+    for (uint32_t i = 0; i < count; i++)
+        hash = hash_word(hash, hash_use(alike, NULL, 0, roots[i]));
+    return hash;
+}
+
+/* ---- templates ---- */
+
+typedef struct TemplateMaker {
+    const Alike *alike;
+    Arena       *arena;
+    Template *template;
+    struct {
+        TemplateNode *items;
+        size_t        count, capacity;
+    } nodes;
+    struct {
+        GraphType *items;
+        size_t     count, capacity;
+    } slots;
+    /* Nodes whose operands are not all made yet; and of those made, where they are: by hashing. */
+    struct {
+        Node  *items;
+        size_t count, capacity;
+    } open;
+    uint32_t *places; /* 1 + index in `nodes`, or 0 */
+    size_t    place_count;
+} TemplateMaker;
+
+static size_t place_of(const TemplateMaker *maker, Node node)
+{
+    size_t at = (node * 0x9e3779b1u) & (maker->place_count - 1);
+    while (maker->places[at] && maker->nodes.items[maker->places[at] - 1].node != node)
+        at = (at + 1) & (maker->place_count - 1);
+    return at;
+}
+
+static void grow_places(TemplateMaker *maker)
+{
+    if (2 * (maker->nodes.count + 1) <= maker->place_count)
+        return;
+    maker->place_count = maker->place_count ? 2 * maker->place_count : 64;
+    maker->places      = arena_new_array(maker->arena, uint32_t, maker->place_count);
+    for (size_t i = 0; i < maker->nodes.count; i++)
+        maker->places[place_of(maker, maker->nodes.items[i].node)] = (uint32_t)i + 1;
+}
+
+static TemplateUse make_use(TemplateMaker *maker, const Expr *user, int operand, Node node)
+{
+    switch (use_kind(maker->alike, user, operand, node)) {
+    case USE_NODE: return (TemplateUse){USE_NODE, maker->places[place_of(maker, node)] - 1};
+    case USE_SLOT:
+        array_push(maker->arena, &maker->slots, maker->alike->graph->items[node].type);
+        return (TemplateUse){USE_SLOT, (uint32_t)maker->slots.count - 1};
+    default: return (TemplateUse){USE_SAME, node};
+    }
+}
+
+/* Opens the operands of a node that are not made yet; false: there are none. */
+static bool open_operands(TemplateMaker *maker, Node node)
+{
+    const Expr *e      = &maker->alike->graph->items[node];
+    size_t      before = maker->open.count;
+    for (int i = e->operand_count; i-- > 0;) {
+        Node operand = e->operands[i];
+        if (use_kind(maker->alike, e, i, operand) == USE_NODE &&
+            !maker->places[place_of(maker, operand)])
+            array_push(maker->arena, &maker->open, operand);
+    }
+    return maker->open.count > before;
+}
+
+static void make_node(TemplateMaker *maker, Node node)
+{
+    grow_places(maker);
+    size_t place = place_of(maker, node);
+    if (maker->places[place])
+        return;
+    const Expr  *e    = &maker->alike->graph->items[node];
+    TemplateNode made = {.node = node};
+    for (int i = 0; i < MAX_OPERANDS; i++)
+        made.uses[i] = i < e->operand_count ? make_use(maker, e, i, e->operands[i])
+                                            : (TemplateUse){USE_SAME, NODE_NONE};
+    array_push(maker->arena, &maker->nodes, made);
+    maker->places[place] = (uint32_t)maker->nodes.count;
+}
+
+/* The nodes that a root needs, operands first. */
+static void make_nodes(TemplateMaker *maker, Node root)
+{
+    grow_places(maker);
+    array_push(maker->arena, &maker->open, root);
+    while (maker->open.count > 0) {
+        Node node = maker->open.items[maker->open.count - 1];
+        if (open_operands(maker, node))
+            continue;
+        maker->open.count--;
+        make_node(maker, node);
+    }
+}
+
+Template *template_new(Alike *alike, const Node *roots, uint32_t count, Arena *arena)
+{
+    TemplateMaker maker  = {.alike = alike, .arena = arena};
+    Template *template   = arena_new(arena, Template);
+    template->hash       = alike_hash(alike, roots, count);
+    template->roots      = arena_new_array(arena, TemplateUse, count);
+    template->root_count = count;
+    grow_places(&maker);
+    for (uint32_t i = 0; i < count; i++) {
+        if (use_kind(alike, NULL, 0, roots[i]) == USE_NODE)
+            make_nodes(&maker, roots[i]);
+        template->roots[i] = make_use(&maker, NULL, 0, roots[i]);
+    }
+    template->nodes      = maker.nodes.items;
+    template->node_count = (uint32_t)maker.nodes.count;
+    template->slots      = maker.slots.items;
+    template->slot_count = (uint32_t)maker.slots.count;
+    template->images     = arena_new_array(arena, Node, maker.nodes.count);
+    return template;
+}
+
+/* ---- matching ---- */
+
+static bool same_node(const Alike *alike, Node a, Node b)
+{
+    if (a == b || a == NODE_NONE || b == NODE_NONE)
+        return a == b;
+    const NodeNote *x = &alike->notes.items[a], *y = &alike->notes.items[b];
+    return x->known && y->known && alike->graph->items[a].type == alike->graph->items[b].type &&
+           !memcmp(&x->value, &y->value, sizeof x->value);
+}
+
+static bool match_use(const Alike *alike, const Template *template, TemplateUse use,
+                      const Expr *user, int operand, Node node, NodeValue *numbers)
+{
+    if (use_kind(alike, user, operand, node) != (int)use.kind)
+        return false;
+    if (use.kind == USE_SAME)
+        return same_node(alike, use.index, node);
+    if (use.kind == USE_SLOT) {
+        numbers[use.index] = alike->notes.items[node].value;
+        return alike->graph->items[node].type == template->slots[use.index];
+    }
+    Node *image = &template->images[use.index];
+    if (*image == NODE_NONE)
+        *image = node;
+    return *image == node;
+}
+
+static bool match_node(const Alike *alike, const Template *template, uint32_t index,
+                       NodeValue *numbers)
+{
+    const TemplateNode *made = &template->nodes[index];
+    const Expr         *mine = &alike->graph->items[made->node];
+    const Expr         *e    = &alike->graph->items[template->images[index]];
+    if (e->op != mine->op || e->type != mine->type || e->index != mine->index)
+        return false;
+    for (int i = 0; i < e->operand_count; i++)
+        if (!match_use(alike, template, made->uses[i], e, i, e->operands[i], numbers))
+            return false;
+    return true;
+}
+
+bool template_match(Alike *alike, const Template *template, const Node *roots, NodeValue *numbers)
+{
+    note_all(alike);
+    for (uint32_t i = 0; i < template->node_count; i++)
+        template->images[i] = NODE_NONE;
+    for (uint32_t i = 0; i < template->root_count; i++)
+        if (!match_use(alike, template, template->roots[i], NULL, 0, roots[i], numbers))
+            return false;
+    for (uint32_t i = template->node_count; i-- > 0;)
+        if (!match_node(alike, template, i, numbers))
+            return false;
+    return true;
+}
+
+/* ---- copies ---- */
+
+/* The nodes that the wanted roots need. */
+static bool *needed_nodes(const Template *template, const bool *wanted, Arena *scratch)
+{
+    bool *needed = arena_new_array(scratch, bool, template->node_count + 1);
+    for (uint32_t i = 0; i < template->root_count; i++)
+        if (wanted[i] && template->roots[i].kind == USE_NODE)
+            needed[template->roots[i].index] = true;
+    for (uint32_t i = template->node_count; i-- > 0;)
+        for (int k = 0; needed[i] && k < MAX_OPERANDS; k++)
+            if (template->nodes[i].uses[k].kind == USE_NODE)
+                needed[template->nodes[i].uses[k].index] = true;
+    return needed;
+}
+
+typedef struct TemplateCopy {
+    const Template *template;
+    const Node     *slots;
+    const LeafPair *pairs;
+    uint32_t        pair_count;
+    Node           *copies;
+} TemplateCopy;
+
+static Node copy_use(const TemplateCopy *copy, TemplateUse use)
+{
+    if (use.kind == USE_NODE)
+        return copy->copies[use.index];
+    if (use.kind == USE_SLOT)
+        return copy->slots[use.index];
+    for (uint32_t i = 0; i < copy->pair_count; i++)
+        if (copy->pairs[i].leaf == use.index)
+            return copy->pairs[i].by;
+    return use.index;
+}
+
+static Node copy_node(Graph *graph, const TemplateCopy *copy, const TemplateNode *made)
+{
+    Expr e = graph->items[made->node]; /* the graph grows meanwhile */
+    for (int i = 0; i < e.operand_count; i++)
+        e.operands[i] = copy_use(copy, made->uses[i]);
+    graph->here = e.span;
+    return e.op == OP_COMPONENT ? graph_component(graph, e.operands[0], e.index)
+                                : graph_op(graph, (Op)e.op, e.operands);
+}
+
+void template_copy(Graph *graph, const Template *template, const Node *slots, const LeafPair *pairs,
+                   uint32_t pair_count, const bool *wanted, Node *roots, Arena *scratch)
+{
+    Span         here   = graph->here;
+    const bool  *needed = needed_nodes(template, wanted, scratch);
+    TemplateCopy copy   = {template, slots, pairs, pair_count,
+                           arena_new_array(scratch, Node, template->node_count + 1)};
+    for (uint32_t i = 0; i < template->node_count; i++)
+        if (needed[i])
+            copy.copies[i] = copy_node(graph, &copy, &template->nodes[i]);
+    for (uint32_t i = 0; i < template->root_count; i++)
+        roots[i] = wanted[i] ? copy_use(&copy, template->roots[i]) : NODE_NONE;
+    graph->here = here;
+}
+
+/* ---- what roots need ---- */
+
+typedef void VisitUse(void *user, TemplateUse use);
+
+static void visit_uses(const Template *template, const bool *wanted, VisitUse *visit, void *user,
+                       Arena *scratch)
+{
+    const bool *needed = needed_nodes(template, wanted, scratch);
+    for (uint32_t i = 0; i < template->root_count; i++)
+        if (wanted[i])
+            visit(user, template->roots[i]);
+    for (uint32_t i = 0; i < template->node_count; i++)
+        for (int k = 0; needed[i] && k < MAX_OPERANDS; k++)
+            visit(user, template->nodes[i].uses[k]);
+}
+
+typedef struct LeafSearch {
+    const Graph *graph;
+    Op           leaf;
+    bool         found;
+} LeafSearch;
+
+static void visit_leaf(void *user, TemplateUse use)
+{
+    LeafSearch *search = user;
+    search->found      = search->found || (use.kind == USE_SAME && use.index != NODE_NONE &&
+                                      search->graph->items[use.index].op == search->leaf);
+}
+
+bool template_needs(const Graph *graph, const Template *template, Op leaf, const bool *wanted,
+                    Arena *scratch)
+{
+    LeafSearch search = {graph, leaf, false};
+    visit_uses(template, wanted, visit_leaf, &search, scratch);
+    return search.found;
+}
+
+static void visit_slot(void *user, TemplateUse use)
+{
+    if (use.kind == USE_SLOT)
+        ((bool *)user)[use.index] = true;
+}
+
+void template_slots_of(const Template *template, const bool *wanted, bool *needed, Arena *scratch)
+{
+    visit_uses(template, wanted, visit_slot, needed, scratch);
+}

@@ -1,0 +1,178 @@
+/*
+ * alike.c: expressions that are alike but for numbers: what matches, what does not, which numbers
+ * come out, and what is made of them again.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "compiler/graph/alike.h"
+#include "compiler/graph/evaluate.h"
+
+#include "tests/support/bench.h"
+
+/* |point - centre| - radius. */
+static Node ball(Graph *g, Node point, double x, double y, double z, double radius)
+{
+    Node centre = graph_vec3(g, x, y, z), size = graph_number(g, radius);
+    Node offset = graph_op2(g, OP_sub, point, centre);
+    Node length = graph_op1(g, OP_length, offset);
+    return graph_op2(g, OP_sub, length, size);
+}
+
+static const bool wanted[2] = {true, true};
+
+static void numbers_come_out(void **state)
+{
+    Bench    *b       = *state;
+    Alike    *alike   = alike_new(b->graph, &b->arena);
+    Node      first[] = {ball(b->graph, b->point, 1, 2, 3, 4), graph_vec3(b->graph, 1, 0, 0)};
+    Template *t       = template_new(alike, first, 2, &b->arena);
+    assert_int_equal(t->slot_count, 3);
+    Node      second[] = {ball(b->graph, b->point, 5, 5, 5, 5), graph_vec3(b->graph, 5, 5, 5)};
+    NodeValue found[3], of_first[3];
+    assert_true(alike_hash(alike, second, 2) == t->hash);
+    assert_true(template_match(alike, t, second, found));
+    assert_true(template_match(alike, t, first, of_first));
+    double sum = 0, sum_of_first = 0;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < (int)t->slots[i]; k++) {
+            sum += found[i].v[k];
+            sum_of_first += of_first[i].v[k];
+        }
+    assert_true(sum == 35 && sum_of_first == 11);
+}
+
+/* With its own numbers a copy is the member itself. */
+static void a_copy_is_the_member(void **state)
+{
+    Bench    *b        = *state;
+    Alike    *alike    = alike_new(b->graph, &b->arena);
+    Node      first[]  = {ball(b->graph, b->point, 1, 2, 3, 4), NODE_NONE};
+    Template *t        = template_new(alike, first, 2, &b->arena);
+    Node      second[] = {ball(b->graph, b->point, 7, 8, 9, 6), NODE_NONE};
+    NodeValue found[2];
+    Node      slots[2], roots[2];
+    assert_true(template_match(alike, t, second, found));
+    for (int i = 0; i < 2; i++)
+        slots[i] = graph_constant(b->graph, t->slots[i], found[i].v);
+    template_copy(b->graph, t, slots, NULL, 0, wanted, roots, &b->arena);
+    assert_true(roots[0] == second[0] && roots[1] == NODE_NONE);
+    Node     elsewhere = graph_op1(b->graph, OP_neg, b->point);
+    LeafPair pair      = {b->point, elsewhere};
+    template_copy(b->graph, t, slots, &pair, 1, wanted, roots, &b->arena);
+    assert_true(roots[0] == ball(b->graph, elsewhere, 7, 8, 9, 6));
+    assert_true(template_needs(b->graph, t, OP_POINT, wanted, &b->arena));
+    assert_false(template_needs(b->graph, t, OP_NORMAL, wanted, &b->arena));
+}
+
+static bool is_alike(Bench *b, Node first, Node second)
+{
+    Alike    *alike = alike_new(b->graph, &b->arena);
+    Template *t     = template_new(alike, &first, 1, &b->arena);
+    NodeValue found[16];
+    assert_true(t->slot_count <= 16);
+    bool matches = template_match(alike, t, &second, found);
+    /* A hash that misses it would hide it. */
+    assert_true(!matches || alike_hash(alike, &second, 1) == t->hash);
+    return matches;
+}
+
+static void structure_stays(void **state)
+{
+    Bench *b   = *state;
+    Graph *g   = b->graph;
+    Node   two = graph_number(g, 2.5), three = graph_number(g, 3.5);
+    Node   sum = graph_op2(g, OP_add, b->x, two), other_sum = graph_op2(g, OP_add, b->x, three);
+    assert_true(is_alike(b, sum, other_sum));
+    assert_false(is_alike(b, sum, graph_op2(g, OP_sub, b->x, two)));
+    assert_false(is_alike(b, sum, graph_op2(g, OP_add, b->y, two)));
+    assert_false(is_alike(b, sum, b->x));
+    Node power = graph_op2(g, OP_pow, sum, two), other = graph_op2(g, OP_pow, sum, three);
+    assert_false(is_alike(b, power, other));
+    assert_true(is_alike(b, power, graph_op2(g, OP_pow, other_sum, two)));
+}
+
+/* A number of the text is its value; one that depends on a parameter is itself alone. */
+static void numbers_of_the_frame(void **state)
+{
+    Bench *b   = *state;
+    Graph *g   = b->graph;
+    double one = 1, two = 2;
+    Node   first  = graph_hoisted(g, TYPE_FLOAT, &one, 1);
+    Node   second = graph_hoisted(g, TYPE_FLOAT, &two, 2);
+    second        = graph_op1(g, OP_sin, second);
+    Node time = graph_parameter(g, 0, TYPE_FLOAT), later = graph_op2(g, OP_add, time, first);
+    Node of_first = graph_op2(g, OP_mul, b->x, first);
+    assert_true(is_alike(b, of_first, graph_op2(g, OP_mul, b->x, second)));
+    assert_false(is_alike(b, of_first, graph_op2(g, OP_mul, b->x, time)));
+    Node of_time = graph_op2(g, OP_mul, b->x, time);
+    assert_true(is_alike(b, of_time, of_time));
+    assert_false(is_alike(b, of_time, graph_op2(g, OP_mul, b->x, later)));
+}
+
+/* One node of the template that would have two images. */
+static void shared_nodes_stay_shared(void **state)
+{
+    Bench *b      = *state;
+    Graph *g      = b->graph;
+    Node   a      = graph_op2(g, OP_add, b->x, graph_number(g, 3));
+    Node   c      = graph_op2(g, OP_add, b->x, graph_number(g, 4));
+    Node   shared = graph_op2(g, OP_mul, a, a), apart = graph_op2(g, OP_mul, a, c);
+    assert_false(is_alike(b, shared, apart));
+    assert_true(is_alike(b, apart, shared));
+}
+
+/* What is dropped leaves the graph as it was, also when its table grew meanwhile. */
+static void dropped_nodes_leave_nothing(void **state)
+{
+    Bench *b = *state;
+    Graph *g = b->graph;
+    for (int many = 1; many < 3000; many = 3 * many + 1) {
+        Node      kept  = ball(g, b->point, many, 0, 0, 1);
+        size_t    count = g->count;
+        GraphMark mark  = graph_mark(g);
+        for (int i = 0; i < many; i++)
+            ball(g, b->point, many, i, -1, 0.125);
+        assert_true(g->count > count);
+        graph_release(g, mark);
+        assert_int_equal(g->count, count);
+        assert_int_equal(ball(g, b->point, many, 0, 0, 1), kept);
+        assert_int_equal(g->count, count);
+        Node made = ball(g, b->point, many, 0.5, -1, 0.125);
+        assert_true(made >= count && made == ball(g, b->point, many, 0.5, -1, 0.125));
+    }
+    graph_validate(g, "release");
+}
+
+/* A place that a dropped member gave to a node of the compiler goes with it. */
+static void dropped_places_go(void **state)
+{
+    Bench    *b    = *state;
+    Graph    *g    = b->graph;
+    Node      half = graph_number(g, 0.5);
+    GraphMark mark = graph_mark(g);
+    g->here        = (Span){1, 2, 3};
+    assert_int_equal(graph_number(g, 0.5), half);
+    assert_int_equal(g->items[half].span.source, 1);
+    graph_release(g, mark);
+    assert_int_equal(g->items[half].span.source, 0);
+    g->here = (Span){0};
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, bench_start, bench_stop)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(numbers_come_out),         TEST(a_copy_is_the_member),
+        TEST(structure_stays),          TEST(numbers_of_the_frame),
+        TEST(shared_nodes_stay_shared), TEST(dropped_nodes_leave_nothing),
+        TEST(dropped_places_go),
+    };
+    return cmocka_run_group_tests_name("alike", tests, NULL, NULL);
+}
