@@ -42,7 +42,7 @@ static void find_costs(Compilation *c)
 {
     const Tape *distance = &c->scene->distance;
     KrsProgram *program  = &c->scene->program;
-    program->operations  = distance->count - distance->frame_count;
+    program->operations  = tape_operations(distance);
     program->flops       = tape_flops(distance);
     program->loops       = tape_loops(distance);
 }

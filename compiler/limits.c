@@ -21,7 +21,7 @@ static const char fewer_shapes[] =
 static size_t count_operations(Compilation *c, const Node *roots, size_t count)
 {
     Tape   tape   = tape_new(c->scene->graph, roots, count, &c->scratch);
-    size_t result = tape.count - tape.frame_count;
+    size_t result = tape_operations(&tape);
     arena_free(&c->scratch);
     return result;
 }

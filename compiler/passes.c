@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "compiler/compilation.h"
+#include "compiler/graph/crowd.h"
 #include "compiler/graph/hoist.h"
 
 /* ---- the front end ---- */
@@ -120,8 +121,11 @@ void print_lower(Compilation *c, Text *out) { print_graph(c, c->elaborated.graph
 KrsStatus pass_simplify(Compilation *c)
 {
     Roots *roots    = &c->scene->roots;
-    c->scene->graph = graph_simplify(c->elaborated.graph, roots->all, roots->first[ROOT_KINDS],
+    Graph *graph    = graph_simplify(c->elaborated.graph, roots->all, roots->first[ROOT_KINDS],
                                      &c->scene->arena);
+    c->scene->graph = graph;
+    if (graph->crowds)
+        crowds_keep(graph->crowds, &c->scene->arena);
     return KRS_OK;
 }
 

@@ -8,12 +8,14 @@
  *
  * Bodies are nodes of the graph.  Their leaves are of the crowd (ops.def): OP_CROWD_POINT,
  * OP_CROWD_NORMAL, OP_CROWD_FOOTPRINT stand for the operands of the call, OP_MEMBER is the number of the
- * member, and OP_STATE that of a state.  OP_row reads a number of the table.  No other leaf of point time
- * may be in a body.  So nodes of a body are in no other body and not outside, and share the values[] of a tape with
- * them.  A body may call functions of crowds with smaller numbers.
+ * member, and OP_STATE that of a state.  OP_row reads a number of the table.  No other leaf of point
+ * time may be in a body.  So bodies have no node of point time in common with anything but functions of
+ * the same table, and share the values[] of a tape: each run finds all that it needs anew.  A body may
+ * call functions with smaller numbers, if they are of other tables.
  *
- * Graphs that are made from one another share a Crowds.  Bodies are roots of the graph, and a function
- * knows them by their index, so that passes may renumber nodes.
+ * Each graph has a Crowds of its own, whose bodies are nodes of that graph.  A pass that makes a graph
+ * of a graph copies the bodies beside its roots (roots_with_bodies); tables and functions are
+ * shared.  A function knows its bodies by their index, so that passes may renumber nodes.
  */
 #ifndef KRS_CROWD_H
 #define KRS_CROWD_H
@@ -56,12 +58,26 @@ typedef struct Crowds {
         CrowdFunction *items;
         size_t         count, capacity;
     } functions;
-    /* Nodes of the graph in which they were made.  Later graphs have them as roots, in this order. */
+    /* Nodes of the graph that has this Crowds. */
     struct {
         Node  *items;
         size_t count, capacity;
     } bodies;
 } Crowds;
+
+/* Those of a graph, which are made when there are none. */
+Crowds *graph_crowds(Graph *graph);
+/* Adds a function, whose member first_body is set here, with a body for each of its states.  Returns its
+   number. */
+uint32_t graph_add_crowd_function(Graph *graph, CrowdFunction function, const Node *bodies);
+/* For a pass that makes a graph: the roots, and behind them the bodies of the graph. */
+Node *roots_with_bodies(const Graph *graph, const Node *roots, size_t root_count, size_t *count,
+                        Arena *arena);
+/* When the pass has made `to` of `from`, and all these nodes are of `to`: copies the roots back, and
+   gives `to` the crowds of `from` with its own bodies. */
+void hand_on_crowds(Graph *to, const Graph *from, const Node *all, Node *roots, size_t root_count);
+/* Copies tables and functions into an arena as well, when that of the original is to be freed. */
+void crowds_keep(Crowds *crowds, Arena *arena);
 
 /* ---- Leaves and calls; `crowd` is the index of the table, `function` that of the function ---- */
 
@@ -79,5 +95,12 @@ Node graph_crowd_surface(Graph *graph, Op op, uint32_t function, Node point, Nod
 /* The table and the column behind the first operand of OP_row. */
 static inline uint32_t row_crowd(uint32_t id) { return id / MOST_TABLE_COLUMNS; }
 static inline uint32_t row_column(uint32_t id) { return id % MOST_TABLE_COLUMNS; }
+/* The function and its state behind the index of OP_STATE. */
+static inline uint32_t function_of(uint32_t index) { return index / MOST_CROWD_STATES; }
+static inline uint32_t state_of(uint32_t index) { return index % MOST_CROWD_STATES; }
+/* Whether it calls a function. */
+static inline bool is_call(Op op) { return op >= OP_crowd_distance && op <= OP_crowd_vector; }
+/* Whether it is a leaf that bodies alone have. */
+static inline bool is_of_crowd(Op op) { return op >= OP_CROWD_POINT && op <= OP_STATE; }
 
 #endif

@@ -16,7 +16,11 @@ typedef struct Tape {
     size_t          count;
     size_t          frame_count; /* the first frame_count of them are compile or frame time */
     const uint32_t *skips;       /* NULL, or how many to skip at each when it is a guard that leaves
-                                  something out */
+                              something out */
+    /* Of crowd functions (crowd.h) that are called, by their number: what each does at a member.
+       What they need of the frame is on the tape that calls them.  Others are empty. */
+    const struct Tape *functions;
+    uint32_t           function_count;
 } Tape;
 
 Tape tape_new(const Graph *graph, const Node *roots, size_t root_count, Arena *arena);
@@ -25,10 +29,13 @@ Tape tape_new(const Graph *graph, const Node *roots, size_t root_count, Arena *a
    stands on it twice: before what it may leave out, and after. */
 Tape tape_new_guarded(const Graph *graph, const Node *roots, size_t root_count, Arena *arena);
 
+/* How many nodes it has at points, those of functions that it calls included. */
+size_t tape_operations(const Tape *tape);
+
 /* What it costs at each point, in multiply-adds; what depends on the frame does not count. */
 double tape_flops(const Tape *tape);
 
-/* Iterations of the loops that its kernels have within operations, at most. */
+/* Iterations of the loops that its kernels have within operations and over members of crowds, at most. */
 uint32_t tape_loops(const Tape *tape);
 
 /* Where on the tape a node is that the roots need. */

@@ -202,9 +202,14 @@ Node graph_hoisted(Graph *graph, GraphType type, const double *numbers, uint32_t
 
 Node graph_leaf(Graph *graph, Op op)
 {
-    uint8_t type = (uint8_t)op_info[op].type;
-    assert(type != ANY_TYPE);
-    return node_intern(graph, (Expr){.op = (uint8_t)op, .type = type, .time = TIME_POINT});
+    assert(op_info[op].type != ANY_TYPE);
+    return graph_indexed_leaf(graph, op, op_info[op].type, 0);
+}
+
+Node graph_indexed_leaf(Graph *graph, Op op, GraphType type, uint32_t index)
+{
+    Expr e = {.op = (uint8_t)op, .type = (uint8_t)type, .time = TIME_POINT, .index = index};
+    return node_intern(graph, e);
 }
 
 Node graph_copy_leaf(Graph *graph, const Expr *e)
@@ -214,7 +219,7 @@ Node graph_copy_leaf(Graph *graph, const Expr *e)
     if (e->op == OP_HOISTED)
         return graph_hoisted(graph, e->type, e->number, e->index);
     return e->op == OP_PARAMETER ? graph_parameter(graph, e->index, e->type)
-                                 : graph_leaf(graph, e->op);
+                                 : graph_indexed_leaf(graph, e->op, e->type, e->index);
 }
 
 bool graph_is_constant(const Graph *graph, Node node)
@@ -227,6 +232,8 @@ bool graph_is_constant(const Graph *graph, Node node)
 /* The constant that e is when all its operands are; NODE_NONE when it is not a finite one. */
 static Node fold_constant(Graph *graph, const Expr *e)
 {
+    if (op_promises(e->op, READS_TABLES))
+        return NODE_NONE;
     GraphType types[MAX_OPERANDS]    = {0};
     NodeValue operands[MAX_OPERANDS] = {0};
     for (int i = 0; i < e->operand_count; i++) {
@@ -243,6 +250,12 @@ static Node fold_constant(Graph *graph, const Expr *e)
     return graph_constant(graph, e->type, value.v);
 }
 
+/* The earliest that the value of an operation is known, but for constants. */
+static uint8_t earliest_time(Op op)
+{
+    return op_promises(op, READS_TABLES) ? TIME_POINT : TIME_FRAME;
+}
+
 /* The node of e, whose operands are in place; its binding time is the latest of theirs, or the
    frame's for what is constant and not finite: shaders have no literal for it. */
 static Node operation(Graph *graph, Expr e)
@@ -253,8 +266,8 @@ static Node operation(Graph *graph, Expr e)
     for (int i = 0; i < e.operand_count; i++)
         if (graph->items[e.operands[i]].time > e.time)
             e.time = graph->items[e.operands[i]].time;
-    if (e.time == TIME_COMPILE)
-        e.time = TIME_FRAME;
+    if (e.time < earliest_time(e.op))
+        e.time = earliest_time(e.op);
     return node_intern(graph, e);
 }
 
@@ -367,7 +380,7 @@ static const char *node_mistake(const Graph *graph, Node node)
                                       : e->op == OP_PARAMETER ? TIME_FRAME
                                       : e->op == OP_HOISTED   ? TIME_FRAME
                                       : e->operand_count == 0 ? TIME_POINT
-                                                              : TIME_FRAME;
+                                                              : earliest_time(e->op);
     if (e->op >= OP_COUNT || e->operand_count != op_arity(e->op))
         return "wrong number of operands";
     for (int i = 0; i < e->operand_count; i++) {

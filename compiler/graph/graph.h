@@ -44,7 +44,8 @@ typedef enum OpPromises {
     PROMISES_NOTHING = 0,
     STAYS_FINITE     = 1,
     COMMUTES         = 2,
-    BUILDS           = 4
+    BUILDS           = 4,
+    READS_TABLES     = 8
 } OpPromises;
 
 typedef struct NodeValue {
@@ -58,7 +59,7 @@ NodeValue op_evaluate(Op op, GraphType type, uint32_t index, const GraphType *ty
 typedef struct Expr {
     uint8_t  op, type, time;
     uint8_t  operand_count;
-    uint32_t index; /* OP_COMPONENT, OP_PARAMETER */
+    uint32_t index; /* OP_COMPONENT, OP_PARAMETER, OP_HOISTED, leaves of crowds */
     Node     operands[MAX_OPERANDS];
     double   number[4]; /* OP_CONSTANT */
     Span     span;      /* where the author wrote it, for blame */
@@ -122,10 +123,12 @@ Node graph_hoisted(Graph *graph, GraphType type, const double *numbers, uint32_t
 /* That of another graph, of which this is the expression. */
 Node graph_copy_leaf(Graph *graph, const Expr *leaf);
 Node graph_leaf(Graph *graph, Op op); /* one whose type is the same everywhere */
+/* A leaf of point time that is told apart from others by its index. */
+Node graph_indexed_leaf(Graph *graph, Op op, GraphType type, uint32_t index);
 
 /* An operation on as many operands as its row says (asserted, with their types).  Operands that
    are all constant are folded by op_evaluate, unless the result is not finite: then the node
-   stays, for whoever wants to report it.  Where one operand
+   stays, for whoever wants to report it.  What reads tables is never folded.  Where one operand
    of a componentwise row is a FLOAT and another a vector, the FLOAT is spread (OP_splat2..4). */
 Node graph_op(Graph *graph, Op op, const Node *operands);
 Node graph_op1(Graph *graph, Op op, Node a);
@@ -169,8 +172,8 @@ Graph *graph_simplify(const Graph *graph, Node *roots, size_t root_count, Arena 
 /* Asserts what every pass must keep: operands first, types right, arity right, times right. */
 void graph_validate(const Graph *graph, const char *pass);
 
-/* One needed node a line, "%12 vec3 point = sub %3 %11  ; file:line:column", then the roots, each
-   as "root %12"; `sources` may be NULL. */
+/* One needed node a line, "%12 vec3 point = sub %3 %11  ; file:line:column", then functions of crowds
+   with their bodies, then the roots, each as "root %12"; `sources` may be NULL. */
 void graph_print(const Graph *graph, const Sources *sources, const Node *roots, size_t root_count,
                  Text *out);
 

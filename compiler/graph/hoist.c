@@ -11,6 +11,7 @@
 #include <math.h>
 
 #include "compiler/base/far.h"
+#include "compiler/graph/crowd.h"
 #include "compiler/graph/evaluate.h"
 
 static bool is_of_formulas(double number)
@@ -47,7 +48,8 @@ static Node copy_operation(Hoist *h, const Expr *e)
                                  : graph_op(h->graph, e->op, operands);
 }
 
-Graph *graph_hoist(const Graph *old, Node *roots, size_t root_count, uint32_t first, Arena *arena)
+static Graph *hoist_all(const Graph *old, Node *roots, size_t root_count, uint32_t first,
+                        Arena *arena)
 {
     Tape  tape = tape_new(old, roots, root_count, arena);
     Hoist h    = {old, graph_new(arena), arena_new_array(arena, Node, old->count + 1), first};
@@ -64,4 +66,13 @@ Graph *graph_hoist(const Graph *old, Node *roots, size_t root_count, uint32_t fi
         array_push(arena, &h.graph->parameters, old->parameters.items[i]);
     h.graph->here = (Span){0};
     return h.graph;
+}
+
+Graph *graph_hoist(const Graph *old, Node *roots, size_t root_count, uint32_t first, Arena *arena)
+{
+    size_t all_count;
+    Node  *all   = roots_with_bodies(old, roots, root_count, &all_count, arena);
+    Graph *graph = hoist_all(old, all, all_count, first, arena);
+    hand_on_crowds(graph, old, all, roots, root_count);
+    return graph;
 }

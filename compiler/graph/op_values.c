@@ -292,6 +292,16 @@ static NodeValue evaluate_blend_weight(const NodeValue *o, uint32_t size)
     return number(a == b ? 0.5 : fmin(fmax(0.5 + 0.5 * (b - a) / k, 0), 1));
 }
 
+/* ---- tables ---- */
+
+/* Only a tape knows the tables of its graph (evaluate.c). */
+static NodeValue evaluate_of_table(const NodeValue *o, uint32_t size)
+{
+    (void)o, (void)size;
+    assert(!"what reads tables is evaluated by tapes");
+    return number(0);
+}
+
 /* ---- one operation ---- */
 
 static NodeValue value_of_row(Op op, GraphType type, uint32_t index, const GraphType *types,

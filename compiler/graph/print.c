@@ -1,6 +1,7 @@
 /*
  * print.c: the graph as text, one node a line, for `krs dump`.
  */
+#include "compiler/graph/crowd.h"
 #include "compiler/graph/evaluate.h"
 #include "compiler/graph/graph.h"
 
@@ -48,10 +49,32 @@ static void print_node(const Graph *graph, Node node, const Sources *sources, Te
         text_add(out, graph_op_name(e->op));
     for (int i = 0; i < e->operand_count; i++)
         text_format(out, " %%%u", (unsigned)e->operands[i]);
-    if (e->op == OP_COMPONENT || e->op == OP_PARAMETER)
+    if (e->op == OP_COMPONENT || e->op == OP_PARAMETER || is_of_crowd(e->op))
         text_format(out, " %u", (unsigned)e->index);
     print_position(sources, e->span, out);
     text_add(out, "\n");
+}
+
+static void print_functions(const Tape *tape, Text *out)
+{
+    const Crowds *crowds = tape->graph->crowds;
+    for (uint32_t id = 0; id < tape->function_count; id++) {
+        const CrowdFunction *function = &crowds->functions.items[id];
+        if (!tape->functions[id].graph)
+            continue;
+        const Crowd *table = &crowds->tables.items[function->crowd];
+        text_format(out, "function %u of table %u, %u rows of %u:", (unsigned)id,
+                    (unsigned)function->crowd, (unsigned)table->rows, (unsigned)table->columns);
+        for (uint32_t i = 0; i < function->state_count; i++)
+            text_format(out, " %%%u", (unsigned)crowds->bodies.items[function->first_body + i]);
+        text_add(out, "\n");
+    }
+}
+
+static void mark(const Tape *tape, bool *needed)
+{
+    for (size_t i = 0; i < tape->count; i++)
+        needed[tape->nodes[i]] = true;
 }
 
 void graph_print(const Graph *graph, const Sources *sources, const Node *roots, size_t root_count,
@@ -59,11 +82,13 @@ void graph_print(const Graph *graph, const Sources *sources, const Node *roots, 
 {
     Tape  tape   = tape_new(graph, roots, root_count, out->arena);
     bool *needed = arena_new_array(out->arena, bool, graph->count);
-    for (size_t i = 0; i < tape.count; i++)
-        needed[tape.nodes[i]] = true;
+    mark(&tape, needed);
+    for (uint32_t id = 0; id < tape.function_count; id++)
+        mark(&tape.functions[id], needed);
     for (Node node = 0; node < graph->count; node++)
         if (needed[node])
             print_node(graph, node, sources, out);
+    print_functions(&tape, out);
     for (size_t i = 0; i < root_count; i++)
         text_format(out, "root %%%u\n", (unsigned)roots[i]);
 }

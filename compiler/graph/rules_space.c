@@ -181,6 +181,15 @@ static Fact fact_steps(const RuleInput *input, uint32_t count, double most)
 Fact fact_identity(const RuleInput *input) { return fact_steps(input, 2, UINT32_MAX); }
 Fact fact_id_unit(const RuleInput *input) { return fact_steps(input, 1, 1); }
 
+/* Rules do not look into tables. */
+Fact fact_of_table(const RuleInput *input)
+{
+    Fact fact = fact_unknown(input->size);
+    if (input->type == TYPE_UINT)
+        fact.value[0] = (Range){0, UINT32_MAX};
+    return fact;
+}
+
 /* ---- fractals ---- */
 
 /* The value in the middle of the point's range, and how far from there the point can be; false

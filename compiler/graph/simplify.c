@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "compiler/graph/crowd.h"
 #include "compiler/graph/evaluate.h"
 
 typedef struct Simplifier {
@@ -402,7 +403,7 @@ static Graph *rebuild_all(const Graph *old, Node *roots, size_t root_count, bool
 }
 
 /* What one rule makes may fit another, so it is done again while it helps. */
-Graph *graph_simplify(const Graph *graph, Node *roots, size_t root_count, Arena *arena)
+static Graph *simplify_all(const Graph *graph, Node *roots, size_t root_count, Arena *arena)
 {
     for (size_t before = SIZE_MAX;;) {
         Graph *simple = rebuild_all(graph, roots, root_count, true, arena);
@@ -412,4 +413,13 @@ Graph *graph_simplify(const Graph *graph, Node *roots, size_t root_count, Arena 
         before = copy->count;
         graph  = copy;
     }
+}
+
+Graph *graph_simplify(const Graph *graph, Node *roots, size_t root_count, Arena *arena)
+{
+    size_t all_count;
+    Node  *all    = roots_with_bodies(graph, roots, root_count, &all_count, arena);
+    Graph *simple = simplify_all(graph, all, all_count, arena);
+    hand_on_crowds(simple, graph, all, roots, root_count);
+    return simple;
 }

@@ -65,7 +65,7 @@ static Node pick(Bench *b, const Garden *garden, GraphType type)
 
 static GraphType random_type(Bench *b) { return (GraphType)(1 + random_below(&b->random, 6)); }
 
-/* A random operation on random operands that it is defined for. */
+/* A random operation on random operands that it is defined for; there are no tables to read. */
 static Node grow(Bench *b, const Garden *garden)
 {
     for (;;) {
@@ -73,6 +73,8 @@ static Node grow(Bench *b, const Garden *garden)
         GraphType types[MAX_OPERANDS];
         Node      operands[MAX_OPERANDS];
         GraphType usual = random_type(b);
+        if (op_promises(op, READS_TABLES))
+            continue;
         for (uint32_t count = 1; count <= MAX_OPERANDS; count++) {
             for (uint32_t i = 0; i < count; i++)
                 types[i] = random_below(&b->random, 3) ? usual : random_type(b);

@@ -213,6 +213,10 @@ static void every_row_can_be_emitted(void **state)
     Bench *b = *state;
     for (Op op = OP_COMPONENT + 1; op < OP_COUNT; op++) {
         const char *glsl = op_glsl(op);
+        if (op_promises(op, READS_TABLES)) { /* functions of the module: print/crowds.c */
+            assert_null(glsl);
+            continue;
+        }
         assert_non_null(glsl);
         assert_non_null(strstr(glsl, "$a"));
         const char *semicolon = strchr(glsl, ';'); /* behind the statement that sets $t */

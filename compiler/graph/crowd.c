@@ -1,0 +1,137 @@
+/*
+ * crowd.c: the tables and functions of crowds, and the nodes that name them.
+ */
+#include "compiler/graph/crowd.h"
+
+#include <assert.h>
+#include <string.h>
+
+Crowds *graph_crowds(Graph *graph)
+{
+    if (!graph->crowds) {
+        graph->crowds        = arena_new(graph->arena, Crowds);
+        graph->crowds->arena = graph->arena;
+    }
+    return graph->crowds;
+}
+
+uint32_t graph_add_crowd_function(Graph *graph, CrowdFunction function, const Node *bodies)
+{
+    Crowds *crowds = graph_crowds(graph);
+    assert(function.crowd < crowds->tables.count);
+    assert(function.state_count > 0 && function.state_count <= MOST_CROWD_STATES);
+    function.first_body = (uint32_t)crowds->bodies.count;
+    for (uint32_t i = 0; i < function.state_count; i++) {
+        assert(graph->items[bodies[i]].type == function.states[i].type);
+        array_push(crowds->arena, &crowds->bodies, bodies[i]);
+    }
+    array_push(crowds->arena, &crowds->functions, function);
+    return (uint32_t)crowds->functions.count - 1;
+}
+
+/* ---- copies ---- */
+
+static void *copy_items(Arena *arena, const void *items, size_t count, size_t size)
+{
+    void *copy = arena_alloc(arena, count, size);
+    if (count)
+        memcpy(copy, items, count * size);
+    return copy;
+}
+
+#define COPY_ITEMS(arena, items, count) copy_items(arena, items, count, sizeof *(items))
+
+Node *roots_with_bodies(const Graph *graph, const Node *roots, size_t root_count, size_t *count,
+                        Arena *arena)
+{
+    size_t bodies = graph->crowds ? graph->crowds->bodies.count : 0;
+    Node  *all    = arena_new_array(arena, Node, root_count + bodies + 1);
+    for (size_t i = 0; i < root_count; i++)
+        all[i] = roots[i];
+    for (size_t i = 0; i < bodies; i++)
+        all[root_count + i] = graph->crowds->bodies.items[i];
+    *count = root_count + bodies;
+    return all;
+}
+
+/* The copy has tables and functions in common; whoever adds some grows it first, since it is full. */
+static Crowds *crowds_with_bodies(const Crowds *crowds, const Node *bodies, Arena *arena)
+{
+    Crowds *copy             = arena_new(arena, Crowds);
+    *copy                    = *crowds;
+    copy->arena              = arena;
+    copy->tables.capacity    = copy->tables.count;
+    copy->functions.capacity = copy->functions.count;
+    copy->bodies.capacity    = copy->bodies.count;
+    copy->bodies.items       = COPY_ITEMS(arena, bodies, copy->bodies.count);
+    return copy;
+}
+
+void hand_on_crowds(Graph *to, const Graph *from, const Node *all, Node *roots, size_t root_count)
+{
+    for (size_t i = 0; i < root_count; i++)
+        roots[i] = all[i];
+    if (from->crowds)
+        to->crowds = crowds_with_bodies(from->crowds, all + root_count, to->arena);
+}
+
+static void keep_table(Crowd *table, Arena *arena)
+{
+    Grid  *grid     = &table->grid;
+    size_t cells    = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
+    table->numbers  = COPY_ITEMS(arena, table->numbers, (size_t)table->rows * table->columns);
+    grid->members   = COPY_ITEMS(arena, grid->members, grid->first[cells]);
+    grid->first     = COPY_ITEMS(arena, grid->first, cells + 1);
+    grid->clearance = COPY_ITEMS(arena, grid->clearance, cells);
+}
+
+void crowds_keep(Crowds *crowds, Arena *arena)
+{
+    crowds->arena           = arena;
+    crowds->tables.items    = COPY_ITEMS(arena, crowds->tables.items, crowds->tables.count);
+    crowds->functions.items = COPY_ITEMS(arena, crowds->functions.items, crowds->functions.count);
+    crowds->bodies.items    = COPY_ITEMS(arena, crowds->bodies.items, crowds->bodies.count);
+    crowds->tables.capacity = crowds->tables.count;
+    crowds->functions.capacity = crowds->functions.count;
+    crowds->bodies.capacity    = crowds->bodies.count;
+    for (size_t i = 0; i < crowds->tables.count; i++)
+        keep_table(&crowds->tables.items[i], arena);
+}
+
+/* ---- nodes ---- */
+
+Node graph_crowd_leaf(Graph *graph, Op op, uint32_t crowd)
+{
+    static const GraphType types[OP_COUNT] = {[OP_CROWD_POINT]     = TYPE_VEC3,
+                                              [OP_CROWD_NORMAL]    = TYPE_VEC3,
+                                              [OP_CROWD_FOOTPRINT] = TYPE_FLOAT,
+                                              [OP_MEMBER]          = TYPE_UINT};
+    assert(types[op] != 0);
+    return graph_indexed_leaf(graph, op, types[op], crowd);
+}
+
+Node graph_state(Graph *graph, GraphType type, uint32_t function, uint32_t state)
+{
+    assert(state < MOST_CROWD_STATES);
+    return graph_indexed_leaf(graph, OP_STATE, type, function * MOST_CROWD_STATES + state);
+}
+
+Node graph_row(Graph *graph, uint32_t crowd, uint32_t column, Node member)
+{
+    assert(column < MOST_TABLE_COLUMNS);
+    Node id = graph_uint(graph, crowd * MOST_TABLE_COLUMNS + column);
+    return graph_op2(graph, OP_row, id, member);
+}
+
+Node graph_crowd(Graph *graph, Op op, uint32_t function, Node point)
+{
+    Node number = graph_uint(graph, function);
+    return graph_op2(graph, op, number, point);
+}
+
+Node graph_crowd_surface(Graph *graph, Op op, uint32_t function, Node point, Node normal,
+                         Node footprint)
+{
+    Node number = graph_uint(graph, function);
+    return graph_op4(graph, op, number, point, normal, footprint);
+}

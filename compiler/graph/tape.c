@@ -1,0 +1,274 @@
+/*
+ * tape.c: lists of nodes that are ready to be run, and what running them costs.
+ */
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "compiler/graph/crowd.h"
+#include "compiler/graph/evaluate.h"
+#include "compiler/graph/fractal.h"
+#include "compiler/graph/regions.h"
+
+/* The nodes found so far, in a hash table; its size is a power of 2, at most half is full. */
+typedef struct NodeSet {
+    Node  *slots; /* node + 1; 0 is free */
+    size_t size;
+    Node  *nodes; /* in the order in which they were found */
+    size_t count, capacity;
+} NodeSet;
+
+/* Whether the node is new; then it takes its slot. */
+static bool set_take(NodeSet *set, Node node)
+{
+    size_t i = node * (size_t)0x9E3779B97F4A7C15u >> 20 & (set->size - 1);
+    for (; set->slots[i]; i = (i + 1) & (set->size - 1))
+        if (set->slots[i] == node + 1)
+            return false;
+    set->slots[i] = node + 1;
+    return true;
+}
+
+static void set_add(NodeSet *set, Node node, Arena *arena)
+{
+    if (2 * (set->count + 1) > set->size) {
+        set->size  = set->size ? 2 * set->size : 64;
+        set->slots = arena_new_array(arena, Node, set->size);
+        for (size_t i = 0; i < set->count; i++)
+            set_take(set, set->nodes[i]);
+    }
+    if (!set_take(set, node))
+        return;
+    if (set->count == set->capacity)
+        set->nodes = arena_grow(arena, set->nodes, set->count, &set->capacity, sizeof *set->nodes);
+    set->nodes[set->count++] = node;
+}
+
+static int compare_nodes(const void *a, const void *b)
+{
+    return (*(const Node *)a > *(const Node *)b) - (*(const Node *)a < *(const Node *)b);
+}
+
+/* What the roots need, ascending. */
+static NodeSet find_needed(const Graph *graph, const Node *roots, size_t root_count, Arena *arena)
+{
+    NodeSet set = {0};
+    for (size_t i = 0; i < root_count; i++)
+        set_add(&set, roots[i], arena);
+    for (size_t i = 0; i < set.count; i++) {
+        const Expr *e = &graph->items[set.nodes[i]];
+        for (int k = 0; k < e->operand_count; k++)
+            set_add(&set, e->operands[k], arena);
+    }
+    if (set.count)
+        qsort(set.nodes, set.count, sizeof *set.nodes, compare_nodes);
+    return set;
+}
+
+/* ---- crowd functions ---- */
+
+/* The number of the function that a call names. */
+static uint32_t called_function(const Graph *graph, const Expr *call)
+{
+    return (uint32_t)graph->items[call->operands[0]].number[0];
+}
+
+/* Gives functions that are called here a tape, which is still empty; their numbers are below `end`. */
+static void note_calls(Tape *functions, size_t end, const Graph *graph, const Node *nodes,
+                       size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (is_call((Op)graph->items[nodes[i]].op)) {
+            uint32_t id = called_function(graph, &graph->items[nodes[i]]);
+            assert(id < end);
+            (void)end;
+            functions[id].graph = graph;
+        }
+}
+
+/* What a function does at each member; what that needs of the frame is added to `frame`. */
+static void fill_function(Tape *functions, uint32_t id, const Graph *graph, NodeSet *frame,
+                          Arena *arena)
+{
+    const Crowds        *crowds   = graph->crowds;
+    const CrowdFunction *function = &crowds->functions.items[id];
+    NodeSet              set      = find_needed(graph, crowds->bodies.items + function->first_body,
+                                                function->state_count, arena);
+    Node                *nodes    = arena_new_array(arena, Node, set.count + 1);
+    size_t               count    = 0;
+    for (size_t i = 0; i < set.count; i++)
+        if (graph->items[set.nodes[i]].time == TIME_POINT)
+            nodes[count++] = set.nodes[i];
+        else
+            set_add(frame, set.nodes[i], arena);
+    note_calls(functions, id, graph, nodes, count);
+    functions[id] = (Tape){.graph          = graph,
+                           .nodes          = nodes,
+                           .count          = count,
+                           .functions      = functions,
+                           .function_count = id};
+}
+
+/* The functions that the nodes of a set call, and those that these call, which have smaller numbers;
+   what they need of the frame joins the set. */
+static Tape *find_functions(const Graph *graph, NodeSet *set, Arena *arena)
+{
+    size_t count     = graph->crowds->functions.count;
+    Tape  *functions = arena_new_array(arena, Tape, count);
+    note_calls(functions, count, graph, set->nodes, set->count);
+    for (size_t id = count; id-- > 0;)
+        if (functions[id].graph)
+            fill_function(functions, (uint32_t)id, graph, set, arena);
+    qsort(set->nodes, set->count, sizeof *set->nodes, compare_nodes);
+    return functions;
+}
+
+static bool any_calls(const Graph *graph, const NodeSet *set)
+{
+    for (size_t i = 0; graph->crowds && i < set->count; i++)
+        if (is_call((Op)graph->items[set->nodes[i]].op))
+            return true;
+    return false;
+}
+
+/* ---- tapes ---- */
+
+/* The work grows with what the roots need, not with the graph: most expressions are small and
+   the graph of many of them is large.  Nothing of frame time needs anything of point time, so
+   it can all go first. */
+Tape tape_new(const Graph *graph, const Node *roots, size_t root_count, Arena *arena)
+{
+    NodeSet set  = find_needed(graph, roots, root_count, arena);
+    Tape    tape = {.graph = graph};
+    if (any_calls(graph, &set)) {
+        tape.functions      = find_functions(graph, &set, arena);
+        tape.function_count = (uint32_t)graph->crowds->functions.count;
+    }
+    Node *nodes = arena_new_array(arena, Node, set.count + 1);
+    for (int frame = 1; frame >= 0; frame--)
+        for (size_t i = 0; i < set.count; i++)
+            if ((graph->items[set.nodes[i]].time != TIME_POINT) == frame) {
+                nodes[tape.count++] = set.nodes[i];
+                tape.frame_count += (size_t)frame;
+            }
+    tape.nodes = nodes;
+    return tape;
+}
+
+/* A tape on which each region follows its guard. */
+typedef struct Layout {
+    const Regions *regions;
+    Node          *nodes;
+    uint32_t      *skips;
+    size_t         count;
+} Layout;
+
+static void lay_out(Layout *layout, uint32_t region)
+{
+    const Regions *regions = layout->regions;
+    for (Node node = regions->list.items[region].first; node != NODE_NONE;
+         node      = regions->next[node]) {
+        if (regions->body[node] != NO_REGION) {
+            size_t test                    = layout->count;
+            layout->nodes[layout->count++] = node;
+            lay_out(layout, regions->body[node]);
+            layout->skips[test] = (uint32_t)(layout->count - test);
+        }
+        layout->nodes[layout->count++] = node;
+    }
+}
+
+Tape tape_new_guarded(const Graph *graph, const Node *roots, size_t root_count, Arena *arena)
+{
+    Tape    tape    = tape_new(graph, roots, root_count, arena);
+    Regions regions = {0};
+    graph_regions(&regions, graph, roots, root_count, arena);
+    size_t most   = tape.count + regions.list.count;
+    Layout layout = {&regions, arena_new_array(arena, Node, most + 1),
+                     arena_new_array(arena, uint32_t, most + 1), tape.frame_count};
+    memcpy(layout.nodes, tape.nodes, tape.frame_count * sizeof *layout.nodes);
+    lay_out(&layout, REGION_ALWAYS);
+    tape.nodes = layout.nodes;
+    tape.skips = layout.skips;
+    tape.count = layout.count;
+    return tape;
+}
+
+/* ---- what it costs ---- */
+
+size_t tape_operations(const Tape *tape)
+{
+    size_t count = tape->count - tape->frame_count;
+    for (uint32_t id = 0; id < tape->function_count; id++)
+        count += tape->functions[id].count;
+    return count;
+}
+
+static const Crowd *table_of(const Tape *tape, uint32_t function)
+{
+    const Crowds *crowds = tape->graph->crowds;
+    return &crowds->tables.items[crowds->functions.items[function].crowd];
+}
+
+/* For a typical list, and one member more. */
+static double call_flops(const Tape *tape, uint32_t function)
+{
+    const Grid *grid  = &table_of(tape, function)->grid;
+    size_t      cells = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
+    double      mean  = (double)grid->first[cells] / (double)cells;
+    return (mean + 1) * tape_flops(&tape->functions[function]);
+}
+
+double tape_flops(const Tape *tape)
+{
+    const Expr *items = tape->graph->items;
+    double      flops = 0;
+    for (size_t i = tape->frame_count; i < tape->count; i++) {
+        const Expr *expr = &items[tape->nodes[i]];
+        GraphType   types[MAX_OPERANDS];
+        for (uint32_t k = 0; k < expr->operand_count; k++)
+            types[k] = items[expr->operands[k]].type;
+        if (expr->operand_count)
+            flops += op_cost((Op)expr->op, expr->type, types);
+        if (is_call((Op)expr->op))
+            flops += call_flops(tape, called_function(tape->graph, expr));
+    }
+    return flops;
+}
+
+/* For the longest list. */
+static double call_loops(const Tape *tape, uint32_t function)
+{
+    return (double)table_of(tape, function)->grid.most_listed *
+           (1 + (double)tape_loops(&tape->functions[function]));
+}
+
+uint32_t tape_loops(const Tape *tape)
+{
+    const Expr *items = tape->graph->items;
+    double      loops = 0;
+    for (size_t i = tape->frame_count; i < tape->count; i++) {
+        const Expr *expr  = &items[tape->nodes[i]];
+        uint32_t    range = expr->op == OP_julia ? 2 : expr->op == OP_mandelbulb ? 1 : 0;
+        if (range > 0) /* always a constant (fractal.c) */
+            loops += fractal_loops((Op)expr->op, items[expr->operands[range]].number[1]);
+        if (is_call((Op)expr->op))
+            loops += call_loops(tape, called_function(tape->graph, expr));
+    }
+    return loops < UINT32_MAX ? (uint32_t)loops : UINT32_MAX;
+}
+
+size_t tape_index(const Tape *tape, Node node)
+{
+    bool   point = tape->graph->items[node].time == TIME_POINT;
+    size_t low = point ? tape->frame_count : 0, high = point ? tape->count : tape->frame_count;
+    while (high - low > 1) {
+        size_t middle = low + (high - low) / 2;
+        if (tape->nodes[middle] <= node)
+            low = middle;
+        else
+            high = middle;
+    }
+    assert(low < tape->count && tape->nodes[low] == node);
+    return low;
+}
