@@ -41,7 +41,8 @@ EVAL     := $(addprefix compiler/eval/, scope.c expression.c arithmetic.c argume
                 random.c functions.c csg.c fractal.c declare.c claims.c empty.c methods.c properties.c \
                 material.c view.c palette.c statements.c shown.c)
 PRINT    := $(addprefix compiler/print/, frame_values.c lines.c signatures.c helpers.c mirrors.c statements.c \
-                prepare.c distances.c shared.c surfaces.c boxes.c early_outs.c march.c module_print.c) \
+                prepare.c crowds.c distances.c shared.c surfaces.c boxes.c early_outs.c march.c \
+                module_print.c) \
             $(sort $(wildcard compiler/print/*/*.c))
 TARGET   := compiler/target/spirv.c
 BORDER   := compiler/target/glslang_border.cpp

@@ -14,7 +14,7 @@ ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c prod
                deformed.c methods.c primitive_solids.c primitive_figures.c random_scene.c \
                device_answers.c rooms.c shadow_stage.c shadow_truth.c twigs.c)
 UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c queried.c \
-               cache_folder.c compiled_files.c)
+               cache_folder.c compiled_files.c crowd_scene.c)
 PROPERTY_SHARED := $(addprefix tests/property/, garden.c op_trial.c reach_crowd.c)
 UNIT        := texts front diagnostics shape passes display devices tracer film rendering methods schedules writer \
                image_files memory validate search refute frame query zones cache cache_limits \
