@@ -18,7 +18,7 @@ UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c
 PROPERTY_SHARED := $(addprefix tests/property/, garden.c op_trial.c reach_crowd.c)
 UNIT        := texts front diagnostics shape passes display devices tracer film rendering methods schedules writer \
                image_files memory validate search refute frame query zones cache cache_limits \
-               compiled pipelines per_component stencils glslang loader drivers grid crowd_grid tables \
+               compiled pipelines per_component stencils glslang loader drivers grid crowd_grid tables device_tables \
                printing printers answers alike
 PROPERTY    := ops noise graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees
