@@ -41,11 +41,12 @@ EVAL     := $(addprefix compiler/eval/, scope.c expression.c arithmetic.c argume
                 random.c functions.c csg.c fractal.c declare.c claims.c empty.c methods.c properties.c \
                 material.c view.c palette.c statements.c shown.c)
 PRINT    := $(addprefix compiler/print/, frame_values.c lines.c signatures.c helpers.c mirrors.c statements.c \
-                prepare.c distances.c shared.c surfaces.c boxes.c early_outs.c march.c module_print.c) \
+                prepare.c crowds.c distances.c shared.c surfaces.c boxes.c early_outs.c march.c \
+                module_print.c) \
             $(sort $(wildcard compiler/print/*/*.c))
 TARGET   := compiler/target/spirv.c
 BORDER   := compiler/target/glslang_border.cpp
-API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c retain.c facts.c \
+API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c retain.c tables.c facts.c \
                 march_groups.c make_module.c program.c scene_text.c framing.c frame.c query.c \
                 search_pairs.c search_targets.c search_starts.c search.c refuter.c \
                 refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)

@@ -70,6 +70,8 @@ typedef struct KrsProgram {
     bool          per_component;     /* it is faster to march one group after the other */
     uint32_t      scene_parts;       /* number of parts of krs_scene_part_distance */
     uint32_t      expensive;         /* components that cost enough for a group of their own */
+    size_t        table_rows;        /* texels of the tables (krs_frame_tables); 0: none */
+    size_t        table_cells;
     const double *pass_ms;           /* time of each pass (krs_pass, compile.h), in milliseconds */
     double        front_ms, glsl_ms; /* time of all passes before `emit`, and of `emit` */
 } KrsProgram;

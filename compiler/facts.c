@@ -9,6 +9,7 @@
 #include <math.h>
 
 #include "compiler/compilation.h"
+#include "compiler/tables.h"
 
 /* ---- boxes ---- */
 
@@ -84,6 +85,13 @@ static void find_steps(Compilation *c)
     }
 }
 
+static void find_tables(Compilation *c)
+{
+    TableSizes sizes              = tables_measure(c->scene->graph->crowds);
+    c->scene->program.table_rows  = sizes.rows;
+    c->scene->program.table_cells = sizes.cells;
+}
+
 /* ---- the pass ---- */
 
 KrsStatus pass_facts(Compilation *c)
@@ -94,6 +102,7 @@ KrsStatus pass_facts(Compilation *c)
     find_kinds(c);
     find_additions(c);
     find_steps(c);
+    find_tables(c);
     form_march_groups(c); /* needs boxes, costs and planes */
     c->scene->program.scene_parts = module_scene_part_count(c->scene->component_count);
     return KRS_OK;

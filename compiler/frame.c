@@ -8,6 +8,7 @@
 #include "compiler/base/vec.h"
 #include "compiler/program.h"
 #include "compiler/shape/slope.h"
+#include "compiler/tables.h"
 
 /* Zeroed memory from the scene's allocator, or NULL. */
 static void *frame_alloc(const KrsScene *scene, size_t count, size_t size)
@@ -229,6 +230,12 @@ void krs_frame_parameters(const KrsFrame *frame, float (*block)[4])
     for (uint32_t i = 0; i < frame->scene->program.parameter_slots; i++)
         for (int k = 0; k < 4; k++)
             block[i][k] = (float)frame->parameters[i].v[k];
+}
+
+void krs_frame_tables(const KrsFrame *frame, float (*rows)[4], uint32_t (*cells)[2])
+{
+    if (frame->scene->program.table_cells > 0)
+        tables_pack(frame->scene->graph->crowds, rows, cells);
 }
 
 void frame_copy(const KrsFrame *frame, Node node, double to[3])

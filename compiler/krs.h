@@ -140,6 +140,15 @@ void   krs_frame_parameters(const KrsFrame *frame, float (*block)[4]);
  */
 size_t krs_value_slots(const KrsScene *scene);
 void   krs_frame_values(const KrsFrame *frame, float (*block)[4]);
+/*
+ * The texel buffers of that GLSL: numbers of parts that are alike but for numbers, and which of them
+ * are near a point.  `rows` needs krs_table_rows texels, for krs_rows (RGBA32F), and `cells` needs
+ * krs_table_cells, for krs_cells (RG32UI).  Both are 0 for scenes without such parts, whose GLSL
+ * has neither buffer.
+ */
+size_t krs_table_rows(const KrsScene *scene);
+size_t krs_table_cells(const KrsScene *scene);
+void   krs_frame_tables(const KrsFrame *frame, float (*rows)[4], uint32_t (*cells)[2]);
 /* A slope that is computed for each frame: its slot, and the location of its expression.
    KRS_BAD_ARGUMENT: there is none of this index. */
 typedef struct KrsFrameSlope {

@@ -21,6 +21,8 @@ const char *krs_scene_hash(const KrsScene *scene) { return scene->hash; }
 size_t      krs_parameter_count(const KrsScene *scene) { return scene->parameter_count; }
 size_t      krs_parameter_slots(const KrsScene *scene) { return scene->program.parameter_slots; }
 size_t      krs_value_slots(const KrsScene *scene) { return scene->program.value_slots; }
+size_t      krs_table_rows(const KrsScene *scene) { return scene->program.table_rows; }
+size_t      krs_table_cells(const KrsScene *scene) { return scene->program.table_cells; }
 size_t      krs_frame_slope_count(const KrsScene *scene) { return scene->slope_count; }
 size_t      krs_component_count(const KrsScene *scene) { return scene->shown_count; }
 

@@ -14,11 +14,11 @@ ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c prod
                deformed.c methods.c primitive_solids.c primitive_figures.c random_scene.c \
                device_answers.c rooms.c shadow_stage.c shadow_truth.c twigs.c)
 UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c queried.c \
-               cache_folder.c compiled_files.c)
+               cache_folder.c compiled_files.c crowd_scene.c)
 PROPERTY_SHARED := $(addprefix tests/property/, garden.c op_trial.c reach_crowd.c)
 UNIT        := texts front diagnostics shape passes display devices tracer film rendering methods schedules writer \
                image_files memory validate search refute frame query zones cache cache_limits \
-               compiled pipelines per_component stencils glslang loader drivers grid crowd_grid \
+               compiled pipelines per_component stencils glslang loader drivers grid crowd_grid tables device_tables \
                printing printers answers alike
 PROPERTY    := ops noise graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees crowds
@@ -36,7 +36,7 @@ PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
 SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/diagnostics unit/shape unit/passes unit/display \
-               unit/writer unit/image_files unit/validate unit/loader unit/grid unit/crowd_grid unit/search \
+               unit/writer unit/image_files unit/validate unit/loader unit/grid unit/crowd_grid unit/tables unit/search \
                unit/refute unit/memory unit/cache unit/cache_limits unit/frame unit/query \
                unit/zones unit/printers unit/alike property/ops property/noise property/graph property/simplify \
                property/facts property/derive property/series property/zeros property/local \

@@ -46,10 +46,12 @@ static void emit_guard(Emitter *e, const Regions *regions, Node guard)
     text_format(&found, "min(%s, %s)", bound, least);
     emit_local(e, TYPE_FLOAT, name.bytes, found.bytes);
     emit_line(e, "    if (!(%s)) {\n", guard_text(e, o));
-    const char *rest = emit_region(e, regions, regions->body[guard], o[2], false);
+    size_t      outside = e->row_texels.count;
+    const char *rest    = emit_region(e, regions, regions->body[guard], o[2], false);
     emit_line(e, "    %s = %s;\n    }\n", name.bytes, rest);
-    e->text[guard]    = name.bytes;
-    e->nesting[guard] = 0;
+    e->row_texels.count = outside;
+    e->text[guard]      = name.bytes;
+    e->nesting[guard]   = 0;
 }
 
 static void emit_return(Emitter *e, const Node *o)

@@ -1,8 +1,8 @@
 /*
  * emitter.h: what the files that print a module share.
  *
- * statements.c and mirrors.c turn nodes into statements; distances.c, surfaces.c, early_outs.c and
- * march.c write the functions around them; module_print.c puts all together.  None of them knows
+ * statements.c and mirrors.c turn nodes into statements; distances.c, surfaces.c, crowds.c,
+ * early_outs.c and march.c write the functions around them; module_print.c puts all together.  None of them knows
  * the language: what differs between languages is a phrase (phrases.def), a type, an operation or
  * a helper of the printer.
  */
@@ -45,6 +45,13 @@ typedef struct NodeList {
     size_t count, capacity;
 } NodeList;
 
+/* A texel of a table's row that has been loaded. */
+typedef struct RowTexel {
+    uint32_t    crowd, texel;
+    Node        member;
+    const char *name;
+} RowTexel;
+
 typedef struct Emitter {
     const Module     *module;
     const KrsVariant *variant;
@@ -69,6 +76,13 @@ typedef struct Emitter {
     uint32_t         *place;   /* of values that the host finds: their number + 1 */
     Regions           regions; /* of the function being written, where it has guards */
     Span              last;    /* the line that was commented last */
+    uint8_t          *called;  /* of each crowd function: how many operands calls have behind its
+                                  number; 0: there is no call.  NULL: there are no crowds */
+    bool             *reads_table; /* of each table */
+    struct {
+        RowTexel *items;
+        size_t    count, capacity;
+    } row_texels; /* in the function being written, where its statements can see them */
     struct {
         Helper *items;
         size_t  count, capacity;
@@ -186,6 +200,19 @@ void emit_struct(Emitter *e);
 void need_surface(Emitter *e);
 void emit_surface_of(Emitter *e, const ModuleFunction *function);
 void emit_surface(Emitter *e);
+
+/* crowds.c: functions of crowds, and the tables that they read. */
+/* Finds what these functions call; bodies of that join their roots. */
+void emit_find_called(Emitter *e, NodeList *roots);
+bool emit_reads_tables(const Emitter *e);
+/* Globals for headers of tables, and in krs_prepare their values. */
+void emit_table_globals(Emitter *e);
+void emit_table_reads(Emitter *e);
+void emit_crowds(Emitter *e);
+/* Expressions of OP_row, calls and OP_STATE. */
+const char *emit_row(Emitter *e, const Expr *row);
+const char *emit_crowd_call(Emitter *e, const Expr *call);
+const char *emit_state(Emitter *e, const Expr *state);
 
 /* early_outs.c: krs_distance_lod. */
 void need_lod(Emitter *e);

@@ -114,8 +114,9 @@ static void add_boxes(Emitter *e, NodeList *list, bool around, bool parts)
               nodes.parts && parts ? 2 * (size_t)module_scene_part_count(count) : 0);
 }
 
-static void lay_out(Emitter *e, const NodeList *roots, FrameValues *values, Arena *arena)
+static void lay_out(Emitter *e, NodeList *roots, FrameValues *values, Arena *arena)
 {
+    emit_find_called(e, roots);
     emit_count_uses(e, roots->items, roots->count, false);
     frame_values_assign(values, e->graph, e->needed.items, e->needed.count, arena, e->scratch);
 }
@@ -183,6 +184,7 @@ static NodeList gather_roots(Emitter *e)
               e->wanted[KRS_FUNCTION_SCENE_PART_BOX] && !e->variant->camera_relative);
     add_nodes(e, &roots, emit_planes(e), e->wanted[KRS_FUNCTION_PLANE_T]);
     add_nodes(e, &roots, emit_planes(e) + 1, e->wanted[KRS_FUNCTION_PLANE_COSINE]);
+    emit_find_called(e, &roots);
     return roots;
 }
 
@@ -191,6 +193,7 @@ static NodeList gather_roots(Emitter *e)
 static void emit_functions(Emitter *e)
 {
     static const char *const sines[] = {"krs_sin", "krs_cos", "krs_tan"};
+    emit_crowds(e);
     emit_zones(e);
     for (FunctionKind kind = 0; kind < FUNCTION_KINDS; kind++)
         for (uint32_t i = 0; i < e->module->components; i++)
@@ -232,6 +235,8 @@ static void emit_block(Emitter *e)
     emit_phrase(e, PHRASE_PARAMETER_BLOCK, (Operands){emit_count(e, slots + v->zones)});
     if (emit_reads_zones(e))
         emit_phrase(e, PHRASE_ZONES, (Operands){emit_count(e, v->zones)});
+    if (emit_reads_tables(e))
+        emit_phrase(e, PHRASE_TABLES, (Operands){0});
 }
 
 /* Promised functions, which may then be called in any order. */

@@ -130,8 +130,10 @@ void emit_prepare(Emitter *e, const Node *roots, size_t count, const FrameValues
     bool  *is_global = arena_new_array(e->scratch, bool, e->graph->count);
     size_t globals   = emit_globals(e, roots, count, set, is_global);
     bool   reads     = e->variant->camera_relative || (e->variant->values && values->slots > 0);
-    text_add(e->out, globals ? "\n" : "");
+    emit_table_globals(e);
+    text_add(e->out, globals || emit_reads_tables(e) ? "\n" : "");
     emit_prepare_head(e);
+    emit_table_reads(e);
     if (reads)
         emit_reads(e, set, globals, values);
     else

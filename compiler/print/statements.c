@@ -113,15 +113,29 @@ static const char *fold_text(Emitter *e, const Expr *expr)
 }
 
 /* Parameters of the function that is being written. */
-static const char *const leaf_names[OP_COUNT] = {[OP_POINT]     = "p",
-                                                 [OP_NORMAL]    = "normal",
-                                                 [OP_FOOTPRINT] = "footprint",
-                                                 [OP_DIRECTION] = "direction"};
+static const char *const leaf_names[OP_COUNT] = {[OP_POINT]           = "p",
+                                                 [OP_NORMAL]          = "normal",
+                                                 [OP_FOOTPRINT]       = "footprint",
+                                                 [OP_DIRECTION]       = "direction",
+                                                 [OP_CROWD_POINT]     = "p",
+                                                 [OP_CROWD_NORMAL]    = "normal",
+                                                 [OP_CROWD_FOOTPRINT] = "footprint",
+                                                 [OP_MEMBER]          = "member"};
 
 static const char *(*const special[OP_COUNT])(Emitter *e, const Expr *expr) = {
-    [OP_CONSTANT] = emit_constant,   [OP_HOISTED] = emit_constant, [OP_PARAMETER] = slot_text,
-    [OP_COMPONENT] = component_text, [OP_min] = extremum_text,     [OP_max] = extremum_text,
-    [OP_fold] = fold_text,
+    [OP_CONSTANT]       = emit_constant,
+    [OP_HOISTED]        = emit_constant,
+    [OP_PARAMETER]      = slot_text,
+    [OP_COMPONENT]      = component_text,
+    [OP_min]            = extremum_text,
+    [OP_max]            = extremum_text,
+    [OP_fold]           = fold_text,
+    [OP_STATE]          = emit_state,
+    [OP_row]            = emit_row,
+    [OP_crowd_distance] = emit_crowd_call,
+    [OP_crowd_member]   = emit_crowd_call,
+    [OP_crowd_number]   = emit_crowd_call,
+    [OP_crowd_vector]   = emit_crowd_call,
 };
 
 const char *emit_expression(Emitter *e, const Expr *expr)
@@ -137,7 +151,7 @@ const char *emit_expression(Emitter *e, const Expr *expr)
    printed there is none. */
 static bool repeats_operand(const Emitter *e, const Expr *user, Node operand)
 {
-    if (user->op == OP_COMPONENT || !e->printer)
+    if (user->op == OP_COMPONENT || op_promises((Op)user->op, READS_TABLES) || !e->printer)
         return false;
     if (picks_variable(e, user) ||
         (user->op == OP_fold && user->operands[0] == operand && mirror_repeats(e, user)))
@@ -193,7 +207,8 @@ void emit_node(Emitter *e, Node n)
         if (e->nesting[expr->operands[i]] > deep)
             deep = e->nesting[expr->operands[i]];
     const char *text  = emit_expression(e, expr);
-    bool        plain = is_leaf(expr) || (expr->op == OP_COMPONENT && deep == 0);
+    bool        part  = (expr->op == OP_COMPONENT && deep == 0) || expr->op == OP_row;
+    bool        plain = is_leaf(expr) || part;
     e->nesting[n]     = plain ? 0 : deep + 1;
     e->text[n]        = text;
     if (plain || (e->uses[n] == 1 && e->nesting[n] < MOST_NESTING && strlen(text) < MOST_INLINE))
@@ -209,8 +224,9 @@ void emit_node(Emitter *e, Node n)
 void emit_begin(Emitter *e, const Node *roots, size_t count)
 {
     emit_count_uses(e, roots, count, false);
-    e->next = 0;
-    e->last = (Span){0, 0, 0};
+    e->next             = 0;
+    e->row_texels.count = 0;
+    e->last             = (Span){0, 0, 0};
     for (size_t i = 0; i < e->needed.count; i++) {
         Node n = e->needed.items[i];
         if (e->graph->items[n].time == TIME_COMPILE)

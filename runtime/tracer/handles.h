@@ -30,13 +30,20 @@ typedef enum RayKind {
 } RayKind;
 
 /* How many numbers a texel has. */
-typedef enum TexelKind { NO_TEXELS, ONE_NUMBER, TWO_NUMBERS, FOUR_NUMBERS, TEXEL_KINDS } TexelKind;
+typedef enum TexelKind {
+    NO_TEXELS,
+    ONE_NUMBER,
+    TWO_NUMBERS,
+    FOUR_NUMBERS,
+    FOUR_FLOATS,
+    TEXEL_KINDS
+} TexelKind;
 
 struct KrsRenderer {
     Gpu                   gpu;
     bool                  compiler_started;
     bool                  early_outs;   /* kernels skip far shapes by branches */
-    VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters */
+    VkDescriptorSetLayout scene_layout; /* set 0: the scene's parameters and tables */
     VkDescriptorSetLayout frame_layout; /* set 1: what frame.glsl declares */
     VkPipelineLayout      layout;       /* shared by all kernels */
     /* Those for RAYS_OF_CAMERAS are made at once, the others when they are needed. */
@@ -98,7 +105,9 @@ struct KrsRendering {
     VkDescriptorPool pool;
     VkDescriptorSet  scene_set, band_set, points_set;
     Buffer           parameters, frame, control;
-    Buffer           inputs; /* lights, then the rays of a list */
+    Buffer           table_rows, table_cells; /* krs_frame_tables; none where there are no tables */
+    bool             has_tables;              /* they are on the device */
+    Buffer           inputs;                  /* lights, then the rays of a list */
     /* The control block that kernels use, copied from and to `control`; none where kernels use
        `control` itself. */
     Buffer   device_control;

@@ -15,6 +15,12 @@ static const struct {
     [ONE_NUMBER]   = {VK_FORMAT_R32_UINT, 4},
     [TWO_NUMBERS]  = {VK_FORMAT_R32G32_UINT, 8},
     [FOUR_NUMBERS] = {VK_FORMAT_R32G32B32A32_UINT, 16},
+    [FOUR_FLOATS]  = {VK_FORMAT_R32G32B32A32_SFLOAT, 16},
+};
+/* Whatever the device: what the compiler prints reads texels. */
+static const TexelKind texels_of_scene[SCENE_BINDINGS] = {
+    [ROWS_BINDING]  = FOUR_FLOATS,
+    [CELLS_BINDING] = TWO_NUMBERS,
 };
 static const TexelKind texels_of[FRAME_BINDINGS] = {
     [INPUT_TEXELS_BINDING] = FOUR_NUMBERS,  [END_TEXELS_BINDING] = TWO_NUMBERS,
@@ -31,21 +37,31 @@ static VkDescriptorType type_of(uint32_t binding)
                                     : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
+static VkDescriptorType type_of_scene(uint32_t binding)
+{
+    return texels_of_scene[binding] ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER
+                                    : VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+}
+
 static bool is_bound(const Gpu *gpu, uint32_t binding)
 {
     return gpu->texels || !texels_of[binding];
 }
 
-static bool set_layout_create(Gpu *gpu, uint32_t count, VkDescriptorSetLayout *layout)
+static VkDescriptorSetLayoutBinding layout_binding(uint32_t binding, VkDescriptorType type,
+                                                   bool bound)
 {
-    VkDescriptorSetLayoutBinding bindings[FRAME_BINDINGS];
-    for (uint32_t i = 0; i < count; i++)
-        bindings[i] = (VkDescriptorSetLayoutBinding){
-            .binding         = i,
-            .descriptorType  = type_of(i),
-            .descriptorCount = is_bound(gpu, i),
-            .stageFlags      = VK_SHADER_STAGE_COMPUTE_BIT,
-        };
+    return (VkDescriptorSetLayoutBinding){
+        .binding         = binding,
+        .descriptorType  = type,
+        .descriptorCount = bound,
+        .stageFlags      = VK_SHADER_STAGE_COMPUTE_BIT,
+    };
+}
+
+static bool set_layout_create(Gpu *gpu, const VkDescriptorSetLayoutBinding *bindings,
+                              uint32_t count, VkDescriptorSetLayout *layout)
+{
     VkDescriptorSetLayoutCreateInfo info = {
         .sType        = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
         .bindingCount = count,
@@ -58,11 +74,22 @@ failed:
     return false;
 }
 
+static bool set_layouts_create(KrsRenderer *renderer)
+{
+    Gpu                         *gpu = &renderer->gpu;
+    VkDescriptorSetLayoutBinding scene[SCENE_BINDINGS], frame[FRAME_BINDINGS];
+    for (uint32_t i = 0; i < SCENE_BINDINGS; i++)
+        scene[i] = layout_binding(i, type_of_scene(i), true);
+    for (uint32_t i = 0; i < FRAME_BINDINGS; i++)
+        frame[i] = layout_binding(i, type_of(i), is_bound(gpu, i));
+    return set_layout_create(gpu, scene, SCENE_BINDINGS, &renderer->scene_layout) &&
+           set_layout_create(gpu, frame, FRAME_BINDINGS, &renderer->frame_layout);
+}
+
 static bool pipeline_layout_create(KrsRenderer *renderer)
 {
     Gpu *gpu = &renderer->gpu;
-    if (!set_layout_create(gpu, 1, &renderer->scene_layout) ||
-        !set_layout_create(gpu, FRAME_BINDINGS, &renderer->frame_layout))
+    if (!set_layouts_create(renderer))
         return false;
     VkPushConstantRange        work = {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(WorkBlock)};
     VkPipelineLayoutCreateInfo info = {
@@ -90,10 +117,15 @@ bool layouts_view_texels(Gpu *gpu, uint32_t binding, Buffer *buffer, const char 
     return buffer_view(gpu, buffer, texel_kinds[kind].format, texel_kinds[kind].bytes, name);
 }
 
-void layouts_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer)
+bool layouts_view_table(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name)
 {
-    if (!is_bound(gpu, binding))
-        return;
+    TexelKind kind = texels_of_scene[binding];
+    return buffer_view(gpu, buffer, texel_kinds[kind].format, texel_kinds[kind].bytes, name);
+}
+
+static void bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, VkDescriptorType type,
+                 const Buffer *buffer)
+{
     vkUpdateDescriptorSets(
         gpu->device, 1,
         &(VkWriteDescriptorSet){
@@ -101,11 +133,27 @@ void layouts_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer 
             .dstSet           = set,
             .dstBinding       = binding,
             .descriptorCount  = 1,
-            .descriptorType   = type_of(binding),
+            .descriptorType   = type,
             .pTexelBufferView = &buffer->texels,
             .pBufferInfo      = &(VkDescriptorBufferInfo){buffer->buffer, 0, buffer->size},
         },
         0, NULL);
+}
+
+void layouts_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer)
+{
+    if (is_bound(gpu, binding))
+        bind(gpu, set, binding, type_of(binding), buffer);
+}
+
+void layouts_bind_scene(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer)
+{
+    bind(gpu, set, binding, type_of_scene(binding), buffer);
+}
+
+const Buffer *layouts_idle_table(const KrsRenderer *renderer, uint32_t binding)
+{
+    return &renderer->idle[texels_of_scene[binding]];
 }
 
 /* The size of a buffer of zeros for the parameters of any scene: 64 KB, the limit of most devices,
@@ -143,7 +191,7 @@ static bool idle_create(KrsRenderer *renderer)
                     (VkDescriptorPoolSize[]){
                         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2},
                         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, BUFFER_BINDINGS},
-                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, TEXEL_BINDINGS},
+                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, TEXEL_BINDINGS + TABLE_BINDINGS},
                     },
             },
             NULL, &renderer->idle_pool));
@@ -160,7 +208,9 @@ static bool idle_create(KrsRenderer *renderer)
             sets));
     renderer->idle_scene = sets[0];
     renderer->idle_frame = sets[1];
-    layouts_bind(gpu, renderer->idle_scene, 0, &renderer->idle[0]);
+    for (uint32_t binding = 0; binding < SCENE_BINDINGS; binding++)
+        layouts_bind_scene(gpu, renderer->idle_scene, binding,
+                           &renderer->idle[texels_of_scene[binding]]);
     for (uint32_t binding = 0; binding < FRAME_BINDINGS; binding++)
         layouts_bind(gpu, renderer->idle_frame, binding, &renderer->idle[texels_of[binding]]);
     return true;

@@ -8,6 +8,16 @@
 
 #include "runtime/tracer/handles.h"
 
+/* Bindings of the scene's set, as the compiler prints them: the parameter block and the tables.
+   Those of the frame's set are in blocks.h. */
+enum {
+    PARAMETERS_BINDING,
+    ROWS_BINDING,
+    CELLS_BINDING,
+    SCENE_BINDINGS,
+    TABLE_BINDINGS = SCENE_BINDINGS - ROWS_BINDING
+};
+
 /* How many bindings of the frame's set (blocks.h) are texels, and how many are storage buffers: all
    others but the uniform buffer of the frame. */
 enum {
@@ -23,7 +33,13 @@ void layouts_destroy(KrsRenderer *renderer);
 /* Makes a buffer readable at a binding of texels, on devices that read texels.  `name` is that of
    the buffer, as in buffer_create. */
 bool layouts_view_texels(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name);
-/* Points a binding of a set at a buffer.  It does nothing for texels on devices that read none. */
+/* Points a binding of a frame's set at a buffer.  It does nothing for texels on devices that read none. */
 void layouts_bind(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer);
+
+/* The same for a scene's set, on all devices. */
+bool layouts_view_table(Gpu *gpu, uint32_t binding, Buffer *buffer, const char *name);
+void layouts_bind_scene(Gpu *gpu, VkDescriptorSet set, uint32_t binding, const Buffer *buffer);
+/* What a scene without tables binds in their place. */
+const Buffer *layouts_idle_table(const KrsRenderer *renderer, uint32_t binding);
 
 #endif

@@ -11,6 +11,7 @@
 #include "runtime/tracer/kernels.h"
 #include "runtime/tracer/layouts.h"
 #include "runtime/tracer/renderer.h"
+#include "runtime/tracer/scene_tables.h"
 #include "runtime/tracer/slots.h"
 
 /* The radius of an unused zone, in which no point is. */
@@ -27,20 +28,20 @@ static bool sets_create(KrsRendering *rendering)
     Gpu        *gpu     = &rendering->renderer->gpu;
     const char *attempt = "prepare the scene";
     TRY(gpu, attempt,
-        vkCreateDescriptorPool(
-            gpu->device,
-            &(VkDescriptorPoolCreateInfo){
-                .sType         = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                .maxSets       = 3,
-                .poolSizeCount = 3,
-                .pPoolSizes =
-                    (VkDescriptorPoolSize[]){
-                        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 3},
-                        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * BUFFER_BINDINGS},
-                        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 2 * TEXEL_BINDINGS},
-                    },
-            },
-            NULL, &rendering->pool));
+        vkCreateDescriptorPool(gpu->device,
+                               &(VkDescriptorPoolCreateInfo){
+                                   .sType         = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                   .maxSets       = 3,
+                                   .poolSizeCount = 3,
+                                   .pPoolSizes =
+                                       (VkDescriptorPoolSize[]){
+                                           {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 3},
+                                           {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2 * BUFFER_BINDINGS},
+                                           {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
+                                            2 * TEXEL_BINDINGS + TABLE_BINDINGS},
+                                       },
+                               },
+                               NULL, &rendering->pool));
     VkDescriptorSet sets[3];
     TRY(gpu, attempt,
         vkAllocateDescriptorSets(
@@ -75,7 +76,7 @@ static bool buffers_create(KrsRendering *rendering)
         (!gpu_is_cpu(gpu) && !buffer_create(gpu, &rendering->device_control, sizeof(ControlBlock),
                                             ON_DEVICE, "control block")))
         return false;
-    rendering_bind(rendering, rendering->scene_set, 0, &rendering->parameters);
+    layouts_bind_scene(gpu, rendering->scene_set, PARAMETERS_BINDING, &rendering->parameters);
     rendering_bind(rendering, rendering->band_set, FRAME_BINDING, &rendering->frame);
     rendering_bind(rendering, rendering->band_set, CONTROL_BINDING, rendering_control(rendering));
     return true;
@@ -130,7 +131,7 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         for (int has_scene = 0; has_scene < 2; has_scene++)
             rendering->groups_at_once[phase][has_scene] = guess_slice(rendering, phase, has_scene);
-    if (!sets_create(rendering) || !buffers_create(rendering) ||
+    if (!sets_create(rendering) || !buffers_create(rendering) || !scene_tables_create(rendering) ||
         !renderer_create_pixels(renderer, rendering->rays, &rendering->spirv_ms,
                                 &rendering->pipeline_ms) ||
         !kernels_create(rendering, purpose)) {
@@ -149,6 +150,8 @@ void krs_rendering_free(KrsRendering *rendering)
     Gpu    *gpu       = &rendering->renderer->gpu;
     Band   *band      = &rendering->band;
     Buffer *buffers[] = {&rendering->parameters,
+                         &rendering->table_rows,
+                         &rendering->table_cells,
                          &rendering->frame,
                          &rendering->control,
                          &rendering->device_control,
@@ -235,6 +238,8 @@ static bool choose_zones(KrsRendering *rendering, size_t count)
 
 bool rendering_set_parameters(KrsRendering *rendering, const KrsFrame *frame)
 {
+    if (!scene_tables_upload(rendering, frame))
+        return false;
     /* Written to host memory first: the compiler's functions may read back what they write. */
     Gpu   *gpu         = &rendering->renderer->gpu;
     size_t first_value = rendering->program->parameter_slots;

@@ -60,6 +60,8 @@ static const char *operation(Op op, GraphType type)
     const char              *glsl    = op_glsl(op);
     size_t                   count   = 0;
     (void)type;
+    if (!glsl) /* it reads tables: a call of a function of the module */
+        return NULL;
     while (count < 4 && strstr(glsl, (const char[]){'$', (char)('a' + count), 0}))
         count++;
     return texts[count];
@@ -111,6 +113,8 @@ static const char *const phrases[PHRASE_COUNT] = {
     [PHRASE_READ_ZONES]       = "    read_zones($a, $b);\n",
     [PHRASE_CUT]              = "fn krs_cut(p: vec3f, uncut: f32) -> f32\n{\n    var d = uncut;\n",
     [PHRASE_CUT_ZONES]        = "    d = zone_depth(p, d, $a);\n",
+    [PHRASE_TABLES]           = "tables;\n",
+    [PHRASE_EACH_LISTED]      = "    each_listed(p, $a) {\n",
     [PHRASE_NEAREST_GRADIENT] = "    var nearest: vec4f; var other: vec4f;\n",
     [PHRASE_NEAREST_OF_ZONES] = "    nearest = of_zones(nearest, $a);\n",
 };

@@ -1,0 +1,218 @@
+/*
+ * crowds.c: functions of crowds: a loop over the members that a grid lists for the point.
+ *
+ * They are opaque to all else: a call is an expression.  Which members are near, and their numbers,
+ * is read from texel buffers by helpers.  A texel of a row is loaded once, before its first use.
+ */
+#include <string.h>
+
+#include "compiler/graph/crowd.h"
+#include "compiler/print/emitter.h"
+
+/* ---- which are called ---- */
+
+static void note_node(Emitter *e, Node node)
+{
+    const Expr *expr = &e->graph->items[node];
+    if (!op_promises((Op)expr->op, READS_TABLES))
+        return;
+    uint32_t id = (uint32_t)e->graph->items[expr->operands[0]].number[0];
+    if (is_call((Op)expr->op))
+        e->called[id] = (uint8_t)(expr->operand_count - 1);
+    uint32_t crowd        = is_call((Op)expr->op) ? e->graph->crowds->functions.items[id].crowd
+                                                  : row_crowd(id);
+    e->reads_table[crowd] = true;
+}
+
+static void note_roots(Emitter *e, const Node *roots, size_t count)
+{
+    emit_count_uses(e, roots, count, false);
+    for (size_t i = 0; i < e->needed.count; i++)
+        note_node(e, e->needed.items[i]);
+}
+
+static Node *bodies_of(const Emitter *e, const CrowdFunction *function)
+{
+    return e->graph->crowds->bodies.items + function->first_body;
+}
+
+void emit_find_called(Emitter *e, NodeList *roots)
+{
+    const Crowds *crowds = e->graph->crowds;
+    if (!crowds)
+        return;
+    e->called      = arena_new_array(e->scratch, uint8_t, crowds->functions.count + 1);
+    e->reads_table = arena_new_array(e->scratch, bool, crowds->tables.count + 1);
+    note_roots(e, roots->items, roots->count);
+    for (size_t id = crowds->functions.count; id-- > 0;) { /* those that it calls come before it */
+        const CrowdFunction *function = &crowds->functions.items[id];
+        if (!e->called[id])
+            continue;
+        note_roots(e, bodies_of(e, function), function->state_count);
+        for (uint32_t i = 0; i < function->state_count; i++)
+            array_push(e->scratch, roots, bodies_of(e, function)[i]);
+    }
+}
+
+/* ---- tables ---- */
+
+static const char *numbered(Emitter *e, const char *name, uint32_t number)
+{
+    Text text = {.arena = e->scratch};
+    text_format(&text, "%s%u", name, (unsigned)number);
+    return text.bytes;
+}
+
+static const char *table_name(Emitter *e, uint32_t table)
+{
+    return numbered(e, "krs_table", table);
+}
+
+bool emit_reads_tables(const Emitter *e)
+{
+    for (size_t i = 0; e->reads_table && i < e->graph->crowds->tables.count; i++)
+        if (e->reads_table[i])
+            return true;
+    return false;
+}
+
+void emit_table_globals(Emitter *e)
+{
+    for (uint32_t i = 0; e->reads_table && i < e->graph->crowds->tables.count; i++)
+        if (e->reads_table[i])
+            emit_phrase(e, PHRASE_GLOBAL, (Operands){"KrsTable", table_name(e, i)});
+}
+
+void emit_table_reads(Emitter *e)
+{
+    for (uint32_t i = 0; e->reads_table && i < e->graph->crowds->tables.count; i++)
+        if (e->reads_table[i]) {
+            emit_call(e, "krs_read_table", TYPE_UINT, 1);
+            emit_line(e, "    %s = krs_read_table(%uu);\n", table_name(e, i), (unsigned)i);
+        }
+}
+
+/* ---- rows ---- */
+
+/* The name of a texel that has been loaded, or NULL. */
+static const char *find_texel(const Emitter *e, uint32_t crowd, uint32_t texel, Node member)
+{
+    for (size_t i = 0; i < e->row_texels.count; i++) {
+        const RowTexel *loaded = &e->row_texels.items[i];
+        if (loaded->crowd == crowd && loaded->texel == texel && loaded->member == member)
+            return loaded->name;
+    }
+    return NULL;
+}
+
+static const char *load_texel(Emitter *e, uint32_t crowd, uint32_t texel, Node member)
+{
+    uint32_t columns = e->graph->crowds->tables.items[crowd].columns;
+    RowTexel loaded  = {crowd, texel, member, numbered(e, "row", e->next++)};
+    Text     text    = {.arena = e->scratch};
+    emit_call(e, "krs_row", TYPE_UINT, 4);
+    text_format(&text, "krs_row(%s, %uu, %uu, %s)", emit_bare(e, e->text[member]),
+                (unsigned)(columns + 3) / 4, (unsigned)texel, table_name(e, crowd));
+    emit_local(e, TYPE_VEC4, loaded.name, text.bytes);
+    array_push(e->scratch, &e->row_texels, loaded);
+    return loaded.name;
+}
+
+const char *emit_row(Emitter *e, const Expr *row)
+{
+    uint32_t    id    = (uint32_t)e->graph->items[row->operands[0]].number[0];
+    uint32_t    crowd = row_crowd(id), texel = row_column(id) / 4;
+    const char *name = find_texel(e, crowd, texel, row->operands[1]);
+    Text        text = {.arena = e->scratch};
+    if (!name)
+        name = load_texel(e, crowd, texel, row->operands[1]);
+    text_format(&text, "%s.%c", name, "xyzw"[row_column(id) % 4]);
+    return text.bytes;
+}
+
+/* ---- functions ---- */
+
+/* The number of a function in texts, which count from 1. */
+static const char *function_name(Emitter *e, uint32_t id)
+{
+    return numbered(e, "krs_crowd_", id + 1);
+}
+
+static const char *state_name(Emitter *e, uint32_t state) { return numbered(e, "state", state); }
+
+const char *emit_crowd_call(Emitter *e, const Expr *call)
+{
+    uint32_t id   = (uint32_t)e->graph->items[call->operands[0]].number[0];
+    Text     text = {.arena = e->scratch};
+    text_format(&text, "%s(", function_name(e, id));
+    for (uint32_t k = 1; k < call->operand_count; k++)
+        text_format(&text, "%s%s", k > 1 ? ", " : "", emit_bare(e, e->text[call->operands[k]]));
+    text_add(&text, ")");
+    return text.bytes;
+}
+
+const char *emit_state(Emitter *e, const Expr *state)
+{
+    return state_name(e, state_of(state->index));
+}
+
+/* What functions are called with: some with the point alone. */
+static const char *parameters_text(Emitter *e, uint32_t count)
+{
+    static const GraphType   types[] = {TYPE_VEC3, TYPE_VEC3, TYPE_FLOAT};
+    static const char *const names[] = {"p", "normal", "footprint"};
+    Text                     text    = {.arena = e->scratch};
+    for (uint32_t i = 0; i < count; i++) {
+        Operands parameter = {e->printer->types[types[i]], names[i]};
+        text_add(&text, i ? ", " : "");
+        text_add(&text, phrase_text(e, PHRASE_PARAMETER, parameter));
+    }
+    return text.bytes;
+}
+
+static void emit_first_states(Emitter *e, const CrowdFunction *function)
+{
+    for (uint32_t i = 0; i < function->state_count; i++) {
+        const CrowdState *state = &function->states[i];
+        Expr              first = {.op = OP_CONSTANT, .type = (uint8_t)state->type};
+        memcpy(first.number, state->first, sizeof first.number);
+        emit_local(e, state->type, state_name(e, i), emit_constant(e, &first));
+    }
+}
+
+/* All states change at once. */
+static void emit_next_states(Emitter *e, const CrowdFunction *function, const Node *bodies)
+{
+    bool one = function->state_count == 1;
+    for (uint32_t i = 0; i < function->state_count && !one; i++)
+        emit_local(e, function->states[i].type, numbered(e, "next", i),
+                   emit_bare(e, e->text[bodies[i]]));
+    for (uint32_t i = 0; i < function->state_count; i++)
+        emit_line(e, "    %s = %s;\n", state_name(e, i),
+                  one ? emit_bare(e, e->text[bodies[i]]) : numbered(e, "next", i));
+}
+
+static void emit_function_of_crowd(Emitter *e, uint32_t id)
+{
+    const CrowdFunction *function = &e->graph->crowds->functions.items[id];
+    const Node          *bodies   = bodies_of(e, function);
+    const char          *table    = table_name(e, function->crowd);
+    const Operands       head     = {e->printer->types[function->type], function_name(e, id),
+                                     parameters_text(e, e->called[id])};
+    emit_call(e, "krs_near", TYPE_VEC3, 2);
+    emit_call(e, "krs_listed", TYPE_UINT, 2);
+    text_format(e->out, "%s\n{\n", phrase_text(e, PHRASE_FUNCTION, head));
+    emit_first_states(e, function);
+    emit_phrase(e, PHRASE_EACH_LISTED, (Operands){table});
+    emit_body(e, bodies, function->state_count);
+    emit_next_states(e, function, bodies);
+    text_format(e->out, "    }\n    return %s;\n}\n\n",
+                function->clear ? "min(state0, nearby.clearance)" : "state0");
+}
+
+void emit_crowds(Emitter *e)
+{
+    for (uint32_t id = 0; e->called && id < e->graph->crowds->functions.count; id++)
+        if (e->called[id])
+            emit_function_of_crowd(e, id);
+}

@@ -1,0 +1,45 @@
+/*
+ * crowds.glsl: tables of parts that are alike but for numbers, and which members are near a point.
+ *
+ * The header of a table has 8 texels of krs_cells; compiler/tables.c writes them.
+ */
+
+// The header of a table.
+KrsTable krs_read_table(uint table)
+{
+    uvec2 texels[8];
+    for (int i = 0; i < 8; i++)
+        texels[i] = texelFetch(krs_cells, 8 * int(table) + i).xy;
+    return KrsTable(uintBitsToFloat(uvec3(texels[0], texels[1].x)), uintBitsToFloat(texels[1].y),
+                    uvec3(texels[2], texels[3].x), texels[3].y,
+                    uintBitsToFloat(uvec3(texels[4], texels[5].x)),
+                    uintBitsToFloat(uvec3(texels[5].y, texels[6])), texels[7].x, texels[7].y);
+}
+
+// The list of the cell where p is, and how far all else is at least.  Outside of the grid there is
+// no list, and all is behind the wall of a box.
+KrsNear krs_near(vec3 p, KrsTable table)
+{
+    vec3 place = floor((p - table.low) * table.cells_per_length);
+    bool inside = all(bvec2(all(greaterThanEqual(place, vec3(0.0))),
+                            all(lessThan(place, vec3(table.cells)))));
+    uvec3 cell = uvec3(mix(vec3(0.0), place, bvec3(inside)));
+    int record = int(table.records + cell.x + table.cells.x * (cell.y + table.cells.y * cell.z));
+    uvec2 first = texelFetch(krs_cells, record).xy;
+    uint end = texelFetch(krs_cells, record + 1).x;
+    float wall = length(max(abs(p - table.centre) - table.half_sides, 0.0));
+    return KrsNear(first.x, inside ? end : first.x, inside ? uintBitsToFloat(first.y) : wall);
+}
+
+// The member at a place of the lists, of which two are in a texel.
+uint krs_listed(uint i, KrsTable table)
+{
+    uvec2 two = texelFetch(krs_cells, int(table.lists + i / 2u)).xy;
+    return (i & 1u) == 0u ? two.x : two.y;
+}
+
+// Four numbers of a member, whose row has so many texels.
+vec4 krs_row(uint member, uint texels, uint texel, KrsTable table)
+{
+    return texelFetch(krs_rows, int(table.rows + member * texels + texel));
+}

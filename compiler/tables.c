@@ -1,0 +1,124 @@
+/*
+ * tables.c: writes tables of crowds for kernels.
+ */
+#include "compiler/tables.h"
+
+#include <string.h>
+
+#include "compiler/base/far.h"
+
+typedef uint32_t Texel[2];
+
+/* Where the parts of a table are, in texels. */
+typedef struct Place {
+    size_t row, cell, list;
+} Place;
+
+static size_t cell_count(const Grid *grid)
+{
+    return (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
+}
+
+/* Of a table that begins at these texels; they move on to the next one. */
+static Place place_table(const Crowd *table, TableSizes *next)
+{
+    size_t cells   = cell_count(&table->grid);
+    size_t entries = table->grid.first[cells];
+    Place  place   = {next->rows, next->cells, next->cells + cells + 1};
+    next->rows += table->rows * row_texels(table);
+    next->cells = place.list + (entries + 1) / 2;
+    return place;
+}
+
+static TableSizes after_headers(const Crowds *crowds)
+{
+    return (TableSizes){0, GRID_HEADER * crowds->tables.count};
+}
+
+TableSizes tables_measure(const Crowds *crowds)
+{
+    if (!crowds || crowds->tables.count == 0)
+        return (TableSizes){0};
+    TableSizes sizes = after_headers(crowds);
+    for (size_t t = 0; t < crowds->tables.count; t++)
+        place_table(&crowds->tables.items[t], &sizes);
+    return sizes;
+}
+
+static uint32_t bits_of(double number)
+{
+    float    rounded = (float)number;
+    uint32_t bits;
+    memcpy(&bits, &rounded, sizeof bits);
+    return bits;
+}
+
+static void put_floats(Texel texel, double first, double second)
+{
+    texel[0] = bits_of(first);
+    texel[1] = bits_of(second);
+}
+
+/* Half of a side, with all that is lost when center and half are rounded. */
+static double half_upward(Range axis, float center)
+{
+    double half = fmax(axis.high - (double)center, (double)center - axis.low);
+    return nextafterf((float)half, HUGE_VALF);
+}
+
+static void put_header(const Grid *grid, Place place, Texel *header)
+{
+    bool   infinite = isinf(grid->size);
+    float  center[3];
+    double half[3];
+    for (int k = 0; k < 3; k++) {
+        Range axis = grid->inner.axis[k];
+        center[k]  = infinite ? 0 : (float)(0.5 * (axis.low + axis.high));
+        half[k]    = infinite ? NOWHERE : half_upward(axis, center[k]);
+    }
+    put_floats(header[0], grid->low[0], grid->low[1]);
+    put_floats(header[1], grid->low[2], 1 / grid->size);
+    memcpy(header[2], grid->cells, 2 * sizeof *grid->cells);
+    header[3][0] = grid->cells[2];
+    header[3][1] = (uint32_t)place.cell;
+    put_floats(header[4], center[0], center[1]);
+    put_floats(header[5], center[2], half[0]);
+    put_floats(header[6], half[1], half[2]);
+    header[7][0] = (uint32_t)place.row;
+    header[7][1] = (uint32_t)place.list;
+}
+
+static void put_grid(const Grid *grid, Texel *records, Texel *lists)
+{
+    size_t   cells   = cell_count(grid);
+    uint32_t entries = grid->first[cells];
+    for (size_t c = 0; c <= cells; c++) {
+        records[c][0] = grid->first[c];
+        records[c][1] = bits_of(c < cells ? (double)grid->clearance[c] : 0);
+    }
+    for (uint32_t i = 0; i < entries; i++)
+        lists[i / 2][i % 2] = grid->members[i];
+    if (entries % 2)
+        lists[entries / 2][1] = 0;
+}
+
+static void put_rows(const Crowd *table, float (*rows)[4])
+{
+    size_t texels = row_texels(table);
+    memset(rows, 0, table->rows * texels * sizeof *rows);
+    for (size_t r = 0; r < table->rows; r++)
+        for (size_t c = 0; c < table->columns; c++)
+            rows[r * texels + c / 4][c % 4] = (float)table->numbers[r * table->columns + c];
+}
+
+void tables_pack(const Crowds *crowds, float (*rows)[4], uint32_t (*cells)[2])
+{
+    TableSizes next = after_headers(crowds);
+    for (size_t t = 0; t < crowds->tables.count; t++) {
+        const Crowd *table = &crowds->tables.items[t];
+        Place        place = place_table(table, &next);
+        put_header(&table->grid, place, cells + GRID_HEADER * t);
+        put_grid(&table->grid, cells + place.cell, cells + place.list);
+        put_rows(table, rows + place.row);
+    }
+}

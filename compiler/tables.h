@@ -1,0 +1,41 @@
+/*
+ * tables.h: the tables of crowds, as kernels read them: rows of numbers, and grids.
+ *
+ * Both are arrays of texels, of four floats or two words.  Those of all tables are in the same two.
+ *
+ * In `rows`, each row of a table begins at a texel: column c of row r is number c % 4 of texel
+ * first + r * row_texels + c / 4.
+ *
+ * In `cells`, header t of GRID_HEADER texels is that of table t; floats are there as their bits:
+ *     low x, low y
+ *     low z, 1 / size of a cell
+ *     cells along x, along y
+ *     cells along z, texel of the first cell
+ *     center x, center y    (of Grid.inner; the half sides are rounded up)
+ *     center z, half x
+ *     half y, half z
+ *     texel of row 0 in `rows`, texel of the lists
+ * Each cell is a texel: where its list begins, counted in members, and its clearance.  One more says
+ * where the last list ends.  The lists have two members a texel.  A grid of one infinite cell has 1 / size
+ * 0, so that all points are in cell 0.
+ */
+#ifndef KRS_TABLES_H
+#define KRS_TABLES_H
+
+#include "compiler/graph/crowd.h"
+
+enum { GRID_HEADER = 8 };
+
+/* How many texels there are. */
+typedef struct TableSizes {
+    size_t rows, cells;
+} TableSizes;
+
+static inline size_t row_texels(const Crowd *table) { return (table->columns + 3) / 4; }
+
+/* 0 when there are no tables; `crowds` may be NULL. */
+TableSizes tables_measure(const Crowds *crowds);
+/* Fills arrays of these sizes. */
+void tables_pack(const Crowds *crowds, float (*rows)[4], uint32_t (*cells)[2]);
+
+#endif
