@@ -76,9 +76,11 @@ static void lower_marches(Compilation *c, Graph *g, LoweredCrowds *crowds)
     for (size_t i = 0; i < count; i++) {
         const Shape *shape                      = s->components.items[i].shape;
         Node         plain                      = distance_root(roots, i);
-        roots_of(roots, ROOTS_GUARDED).items[i] = lower_guarded(g, shape, plain, crowds, &c->scratch);
+        roots_of(roots, ROOTS_GUARDED).items[i] = lower_guarded(g, shape, plain, crowds,
+                                                                &c->scratch);
         for (AlongMethod method = 0; method < ALONG_COUNT; method++)
-            along_roots(roots, method)[i] = lower_along(g, shape, plain, method, crowds, &c->scratch);
+            along_roots(roots, method)[i] = lower_along(g, shape, plain, method, crowds,
+                                                        &c->scratch);
     }
 }
 

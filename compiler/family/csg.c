@@ -109,7 +109,7 @@ Lowered lower_union(Lowering *l, const Shape *shape, LowerContext context)
 
 static Lowered intersection_of_two(Lowering *l, const Shape *shape, Lowered a, Lowered b)
 {
-    Lowered not_a = complement(l, a), not_b = complement(l, b);
+    Lowered not_b = complement(l, b), not_a = complement(l, a);
     return complement(l, join_two(l, shape->blend, not_a, not_b));
 }
 

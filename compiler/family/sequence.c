@@ -89,8 +89,9 @@ static void take_kernel(Lowering *l, SequenceState *state, const Shape *shape)
                                : state->id;
     }
     bool whole     = state->chain.shrink == NODE_NONE;
-    inner.reach    = whole ? reach_behind(g, inner.reach, state->chain.scale)
-                     : inner.reach > 0 ? HUGE_VAL : 0;
+    inner.reach    = whole             ? reach_behind(g, inner.reach, state->chain.scale)
+                     : inner.reach > 0 ? HUGE_VAL
+                                       : 0;
     Node    unit   = enter_map_chain(l, &state->chain);
     Lowered kernel = lower_shape(l, shape, inner);
     l->unit        = unit;

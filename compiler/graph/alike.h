@@ -39,7 +39,7 @@ typedef struct Template {
     uint64_t      hash;
     TemplateNode *nodes; /* what depends on the point, but leaves; operands first */
     uint32_t      node_count;
-    const Node   *slots; /* what the member of the template has there: FLOAT or a vector, and where a
+    const Node  *slots; /* what the member of the template has there: FLOAT or a vector, and where a
                             root is a number also UINT */
     uint32_t     slot_count;
     TemplateUse *roots;
@@ -50,7 +50,8 @@ typedef struct Template {
 /* Alike expressions have equal hashes.  Roots may be NODE_NONE. */
 uint64_t  alike_hash(Alike *alike, const Node *roots, uint32_t count);
 Template *template_new(Alike *alike, const Node *roots, uint32_t count, Arena *arena);
-/* Whether as many roots are alike.  What is in their slots goes to `numbers`, slot_count of them. */
+/* Whether as many roots are alike.  What is in their slots goes to `numbers`, slot_count of
+   them. */
 bool template_match(Alike *alike, const Template *template, const Node *roots, NodeValue *numbers);
 
 /* Leaves that are replaced in a copy. */

@@ -128,7 +128,7 @@ static Weights by_steps(Blending *x)
 }
 
 #define BLEND(name, signature, slope, bulge, most, reach, cost, facts, glsl, value, weights, \
-              meaning) \
+              meaning)                                                                       \
     static Weights weights_of_##name(Blending *x) { return weights; }
 #include "compiler/graph/blends.def"
 

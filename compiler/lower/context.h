@@ -40,18 +40,18 @@ typedef struct Nodes {
 } Nodes;
 
 typedef struct Lowering {
-    Graph         *graph;
-    Arena         *scratch;
-    bool           surfaces;       /* lower the surface too, not the distance alone */
-    AlongMethod    method;         /* for ray_step.c and ray_images.c */
-    bool           thin;           /* rays_pass for all shapes above: sheets have no thickness */
-    bool           guarded;        /* skip levels of sequences that are far away (guards.c) */
-    Node           unit;           /* guarded: length, outside of all shapes, of 1 in this space */
-    size_t         most;           /* nodes that the graph may have */
-    bool           overflow;       /* it would have more */
-    struct LoweredCrowds *crowds;  /* crowd.h; NULL: each part is lowered for itself */
-    Nodes         *held_constant;  /* for lower_gradient: nodes that count as constants; or NULL */
-    LoweredShapes *lowered_shapes; /* gets all shapes, children first; or NULL */
+    Graph                *graph;
+    Arena                *scratch;
+    bool                  surfaces; /* lower the surface too, not the distance alone */
+    AlongMethod           method;   /* for ray_step.c and ray_images.c */
+    bool                  thin;     /* rays_pass for all shapes above: sheets have no thickness */
+    bool                  guarded;  /* skip levels of sequences that are far away (guards.c) */
+    Node                  unit;     /* guarded: length, outside of all shapes, of 1 in this space */
+    size_t                most;     /* nodes that the graph may have */
+    bool                  overflow; /* it would have more */
+    struct LoweredCrowds *crowds;   /* crowd.h; NULL: each part is lowered for itself */
+    Nodes         *held_constant;   /* for lower_gradient: nodes that count as constants; or NULL */
+    LoweredShapes *lowered_shapes;  /* gets all shapes, children first; or NULL */
 } Lowering;
 
 /* Where a shape is lowered: the point in the space of the shape, and the sequence around it.
@@ -60,9 +60,10 @@ typedef struct LowerContext {
     Node point, level, instance; /* level, instance: NODE_NONE outside of sequences */
     bool lipschitz; /* the slope is needed, as a blend or offset above moves the zero set */
     Node normal, footprint;
-    double reach; /* how far from the surface distances must be right; beyond it they may be any bound
+    double
+         reach; /* how far from the surface distances must be right; beyond it they may be any bound
                      that is no less */
-    Node   smoothing; /* width over which a mirror turns normals; NODE_NONE: mirrors are sharp */
+    Node smoothing; /* width over which a mirror turns normals; NODE_NONE: mirrors are sharp */
 } LowerContext;
 
 /* The context outside of all shapes, for a lowering without surfaces. */

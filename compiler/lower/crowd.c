@@ -52,9 +52,9 @@ typedef struct Finder {
     LoweredCrowds   *crowds;
     const Lowering  *outer;
     const CrowdJoin *join;
-    LowerContext     context; /* of the parts */
+    LowerContext     context;  /* of the parts */
     bool             operands; /* their distances are used away from the surface */
-    uint64_t        *hashes;  /* of each part */
+    uint64_t        *hashes;   /* of each part */
     uint64_t        *sorted;
     struct {
         CrowdGroup *items;
@@ -80,17 +80,17 @@ static LowerContext context_of_parts(const PartLeaves *leaves, LowerContext oute
 /* False: it is empty, or too large. */
 static bool lower_part(const Finder *finder, uint32_t part, Node roots[PART_ROOTS])
 {
-    const Lowering *outer = finder->outer;
-    const Shape    *shape = finder->join->parts[part];
-    Lowering        l     = {.graph    = outer->graph,
-                             .scratch  = outer->scratch,
-                             .surfaces = true,
-                             .method   = outer->method,
-                             .most     = outer->most,
-                             .crowds   = outer->crowds};
-    Lowered lowered = finder->operands ? lower_operand(&l, shape, finder->context)
-                                       : lower_shape(&l, shape, finder->context);
-    roots[PART_DISTANCE] = lowered.distance;
+    const Lowering *outer   = finder->outer;
+    const Shape    *shape   = finder->join->parts[part];
+    Lowering        l       = {.graph    = outer->graph,
+                               .scratch  = outer->scratch,
+                               .surfaces = true,
+                               .method   = outer->method,
+                               .most     = outer->most,
+                               .crowds   = outer->crowds};
+    Lowered         lowered = finder->operands ? lower_operand(&l, shape, finder->context)
+                                               : lower_shape(&l, shape, finder->context);
+    roots[PART_DISTANCE]    = lowered.distance;
     memcpy(&roots[PART_SURFACE], &lowered.surface, sizeof lowered.surface);
     return lowered.distance != NODE_NONE && !l.overflow;
 }
@@ -117,9 +117,9 @@ static int compare_hashes(const void *a, const void *b)
 
 static void hash_parts(Finder *finder)
 {
-    uint32_t count  = finder->join->count;
-    finder->hashes  = arena_new_array(finder->outer->scratch, uint64_t, count);
-    finder->sorted  = arena_new_array(finder->outer->scratch, uint64_t, count);
+    uint32_t count = finder->join->count;
+    finder->hashes = arena_new_array(finder->outer->scratch, uint64_t, count);
+    finder->sorted = arena_new_array(finder->outer->scratch, uint64_t, count);
     for (uint32_t i = 0; i < count; i++) {
         Node      roots[PART_ROOTS];
         uint32_t  made = finder->crowds->made;
@@ -198,10 +198,10 @@ static void group_parts(Finder *finder)
     for (uint32_t i = 0; i < finder->join->count; i++) {
         if (!is_frequent(finder, finder->hashes[i]))
             continue;
-        Node      roots[PART_ROOTS];
-        uint32_t  made  = finder->crowds->made;
-        GraphMark mark  = graph_mark(g);
-        bool      there = lower_part(finder, i, roots);
+        Node        roots[PART_ROOTS];
+        uint32_t    made  = finder->crowds->made;
+        GraphMark   mark  = graph_mark(g);
+        bool        there = lower_part(finder, i, roots);
         CrowdGroup *group = there ? find_group(finder, roots) : NULL;
         if (group || !there)
             drop_part(finder, mark, made);
@@ -216,7 +216,8 @@ static void group_parts(Finder *finder)
 
 /* ---- tables ---- */
 
-/* How many widths above a result a member is that changes what is mixed by less than a thousandth. */
+/* How many widths above a result a member is that changes what is mixed by less than a
+   thousandth. */
 static const double MIXING_REACH = 5;
 
 static double blended_reach(const CrowdGroup *group, const GroupJoin *join)
@@ -230,7 +231,8 @@ static double blended_reach(const CrowdGroup *group, const GroupJoin *join)
     return widths * blend->widest;
 }
 
-/* A distance that is a bound only is at least that to the sides of a box, of which the farthest counts. */
+/* A distance that is a bound only is at least that to the sides of a box, of which the farthest
+   counts. */
 static double for_bounds(const Finder *finder, const CrowdGroup *group)
 {
     for (size_t i = 0; i < group->members.count; i++)
@@ -291,12 +293,12 @@ static GroupJoin group_join(const Lowering *l, const CrowdJoin *join)
                        join->complement};
 }
 
-/* Whether the crowds of a joint in one context serve in another.  Surfaces need to know whether there
-   is a level, an instance and a smoothing. */
+/* Whether the crowds of a joint in one context serve in another.  Surfaces need to know whether
+   there is a level, an instance and a smoothing. */
 static bool serves(const JointCrowds *made, const Lowering *l, LowerContext parts)
 {
-    const LowerContext *of = &made->context;
-    bool outside = of->level == parts.level && of->instance == parts.instance &&
+    const LowerContext *of      = &made->context;
+    bool                outside = of->level == parts.level && of->instance == parts.instance &&
                    of->smoothing == parts.smoothing;
     return of->lipschitz == parts.lipschitz && of->reach == parts.reach &&
            (outside || !l->surfaces);
@@ -310,16 +312,16 @@ static JointCrowds *find_joint(Lowering *l, const CrowdJoin *join, LowerContext 
     for (JointCrowds *made = *bucket; made; made = made->next)
         if (made->joint == join->joint && serves(made, l, parts))
             return made;
-    bool        sharp   = join->joint->blend.width == NODE_NONE;
-    Finder      finder  = {.crowds   = crowds,
-                           .outer    = l,
-                           .join     = join,
-                           .context  = parts,
-                           .operands = !sharp || context.reach > 0};
-    GroupJoin   members = group_join(l, join);
-    JointCrowds *made   = arena_new(crowds->arena, JointCrowds);
-    made->joint         = join->joint;
-    made->context       = parts;
+    bool         sharp   = join->joint->blend.width == NODE_NONE;
+    Finder       finder  = {.crowds   = crowds,
+                            .outer    = l,
+                            .join     = join,
+                            .context  = parts,
+                            .operands = !sharp || context.reach > 0};
+    GroupJoin    members = group_join(l, join);
+    JointCrowds *made    = arena_new(crowds->arena, JointCrowds);
+    made->joint          = join->joint;
+    made->context        = parts;
     hash_parts(&finder);
     group_parts(&finder);
     make_crowds(&finder, &members, made);

@@ -9,9 +9,10 @@
 /* Fewer parts that are alike stay apart: a loop over a list costs as much as some. */
 enum { LEAST_CROWD = 16 };
 
-/* The crowds of a scene, by the joints that they are parts of.  All lowerings of a joint use the same. */
+/* The crowds of a scene, by the joints that they are parts of.  All lowerings of a joint use the
+   same. */
 typedef struct LoweredCrowds LoweredCrowds;
-LoweredCrowds *lowered_crowds_new(Graph *graph, Arena *arena);
+LoweredCrowds               *lowered_crowds_new(Graph *graph, Arena *arena);
 
 /* What a joint joins, which is sharp or a blend: its parts or their complements. */
 typedef struct CrowdJoin {

@@ -71,8 +71,7 @@ bool group_has_functions(const CrowdGroup *group, const GroupJoin *join)
     for (uint32_t root = PART_SURFACE; root < PART_ROOTS; root++) {
         bool wanted[PART_ROOTS] = {[0] = false};
         wanted[root]            = true;
-        const Node outer[]      = {join->leaves.level, join->leaves.instance,
-                                   join->leaves.smoothing};
+        const Node outer[] = {join->leaves.level, join->leaves.instance, join->leaves.smoothing};
         for (int i = 0; i < 3; i++)
             if (is_function(group, join, root) &&
                 template_needs(group->template, outer[i], wanted, join->scratch))
@@ -147,7 +146,7 @@ static uint32_t make_property(const CrowdGroup *group, const GroupJoin *join, ui
     GraphType     type     = (GraphType)g->items[member.property].type;
     Node          property = graph_state(g, type, next_function(g), 0);
     Node          state    = graph_state(g, TYPE_FLOAT, next_function(g), 1);
-    Node          weight   = graph_op3(g, OP_blend_weight, state, member.distance, join->blend.width);
+    Node          weight = graph_op3(g, OP_blend_weight, state, member.distance, join->blend.width);
     Node          bodies[] = {graph_op3(g, OP_mix, member.property, property, weight),
                               join_distances(g, join->blend, state, member.distance)};
     CrowdFunction function = {.crowd       = group->crowd,
@@ -173,7 +172,7 @@ static Node call_property(CrowdGroup *group, const GroupJoin *join, uint32_t roo
     if (*function == NO_FUNCTION)
         *function = make_property(group, join, root);
     const CrowdFunction *made = &graph_crowds(join->graph)->functions.items[*function];
-    Op op = made->type == TYPE_FLOAT ? OP_crowd_number : OP_crowd_vector;
+    Op                   op   = made->type == TYPE_FLOAT ? OP_crowd_number : OP_crowd_vector;
     return graph_crowd_surface(join->graph, op, *function, context.point, context.normal,
                                context.footprint);
 }
@@ -184,9 +183,9 @@ static void copy_outside(const CrowdGroup *group, const GroupJoin *join, Node me
 {
     const PartLeaves *leaves = &join->leaves;
     const LeafPair    all[]  = {
-        {leaves->point, context.point},         {leaves->normal, context.normal},
-        {leaves->footprint, context.footprint}, {leaves->level, context.level},
-        {leaves->instance, context.instance},   {leaves->smoothing, context.smoothing}};
+            {leaves->point, context.point},         {leaves->normal, context.normal},
+            {leaves->footprint, context.footprint}, {leaves->level, context.level},
+            {leaves->instance, context.instance},   {leaves->smoothing, context.smoothing}};
     LeafPair pairs[6];
     uint32_t count = 0;
     for (int i = 0; i < 6; i++)

@@ -6,7 +6,7 @@
 
 #include "compiler/graph/alike.h"
 #include "compiler/graph/crowd.h"
-#include "compiler/lower/crowd.h"
+#include "compiler/lower/context.h"
 
 /* The expressions of a part: its distance, and a node for each row of surface.def. */
 enum { PART_DISTANCE, PART_SURFACE, PART_ROOTS = 1 + sizeof(Surface) / sizeof(Node) };
@@ -29,12 +29,12 @@ typedef struct CrowdGroup {
         NodeValue *items; /* slot_count of each member */
         size_t     count, capacity;
     } numbers;
-    bool          *varies;  /* of each slot: it differs between members */
-    uint32_t      *columns; /* of each slot 4: of its elements the column, or NO_COLUMN: equal in all */
+    bool     *varies;  /* of each slot: it differs between members */
+    uint32_t *columns; /* of each slot 4: of its elements the column, or NO_COLUMN: equal in all */
     struct Column *sources; /* of each column, the element that it has */
     uint32_t       column_count;
-    uint32_t       crowd;             /* its table */
-    uint32_t       distance, nearest; /* functions; NO_FUNCTION: not made yet */
+    uint32_t       crowd;                  /* its table */
+    uint32_t       distance, nearest;      /* functions; NO_FUNCTION: not made yet */
     uint32_t       properties[PART_ROOTS]; /* of blends: what is mixed */
 } CrowdGroup;
 

@@ -119,9 +119,8 @@ static Node slot_element(const CrowdGroup *group, Graph *graph, Node member, uin
                          uint32_t element)
 {
     uint32_t column = group->columns[4 * slot + element];
-    return column == NO_COLUMN
-               ? graph_component(graph, group->template->slots[slot], element)
-               : graph_row(graph, group->crowd, column, member);
+    return column == NO_COLUMN ? graph_component(graph, group->template->slots[slot], element)
+                               : graph_row(graph, group->crowd, column, member);
 }
 
 static Node slot_node(const CrowdGroup *group, Graph *graph, Node member, uint32_t slot)
@@ -141,7 +140,6 @@ static Node slot_node(const CrowdGroup *group, Graph *graph, Node member, uint32
 void group_slots(const CrowdGroup *group, Graph *graph, Node member, Node *slots)
 {
     for (uint32_t i = 0; i < group->template->slot_count; i++)
-        slots[i] = group->varies[i] && member == NODE_NONE
-                       ? NODE_NONE
-                       : slot_node(group, graph, member, i);
+        slots[i] = group->varies[i] && member == NODE_NONE ? NODE_NONE
+                                                           : slot_node(group, graph, member, i);
 }

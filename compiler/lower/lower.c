@@ -36,7 +36,7 @@ bool lower_component(Graph *graph, const Shape *shape, uint32_t number,
                             .surfaces = true,
                             .thin     = true,
                             .most     = graph->count + MOST_LOWERED,
-                            .crowds     = crowds};
+                            .crowds   = crowds};
     LowerContext context = context_new(graph_leaf(graph, OP_POINT), false);
     context.normal       = graph_leaf(graph, OP_NORMAL);
     context.footprint    = graph_leaf(graph, OP_FOOTPRINT);
@@ -64,7 +64,7 @@ Node lower_guarded(Graph *graph, const Shape *shape, Node plain, struct LoweredC
                     .thin    = true,
                     .unit    = graph_number(graph, 1),
                     .most    = graph->count + MOST_LOWERED,
-                    .crowds    = crowds};
+                    .crowds  = crowds};
     Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(graph, OP_POINT), false));
     if (all.distance == NODE_NONE || l.overflow)
         return plain;
@@ -84,7 +84,7 @@ bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near
                               .held_constant = &held_constant,
                               .thin          = true,
                               .most          = graph->count + MOST_DERIVED,
-                              .crowds          = crowds};
+                              .crowds        = crowds};
     Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(graph, OP_POINT), false));
     if (all.distance == NODE_NONE || l.overflow)
         return false;

@@ -9,8 +9,7 @@
 #include "compiler/graph/evaluate.h"
 
 const BlendInfo blend_info[BLEND_COUNT] = {
-#define BLEND(name, signature, slope, bulge, most, ...) \
-    {#name, OP_smin_##name, slope, bulge, most},
+#define BLEND(name, signature, slope, bulge, most, ...) {#name, OP_smin_##name, slope, bulge, most},
 #include "compiler/graph/blends.def"
 };
 
@@ -22,13 +21,11 @@ double blend_bulge(BlendKind kind, uint32_t count)
 
 double blend_reach(BlendKind kind, double n)
 {
-    switch (kind) {
-#define BLEND(name, signature, slope, bulge, most, reach, ...) \
-    case BLEND_##name: return reach;
+    const double reaches[BLEND_COUNT] = {
+#define BLEND(name, signature, slope, bulge, most, reach, ...) [BLEND_##name] = (reach),
 #include "compiler/graph/blends.def"
-    case BLEND_COUNT: break;
-    }
-    return HUGE_VAL;
+    };
+    return reaches[kind];
 }
 
 const Blend blend_sharp = {.width = NODE_NONE, .steps = NODE_NONE};

@@ -86,9 +86,9 @@ typedef enum FalloffKind {
 
 typedef struct Blend {
     BlendKind kind;
-    Node      width; /* NODE_NONE: the joint is sharp */
+    Node      width;  /* NODE_NONE: the joint is sharp */
     double    widest; /* for all values of the parameters */
-    Node      steps; /* of kinds that have some */
+    Node      steps;  /* of kinds that have some */
 } Blend;
 extern const Blend blend_sharp;
 

@@ -1,6 +1,6 @@
 /*
- * crowds.c: joints of many parts as crowds: at random points they are what each part, lowered for itself,
- * and the rules of blends make of it.
+ * crowds.c: joints of many parts as crowds: at random points they are what each part, lowered for
+ * itself, and the rules of blends make of it.
  */
 #include <float.h>
 #include <math.h>
@@ -60,19 +60,16 @@ static int finish(void **state)
 
 /* ---- parts ---- */
 
-static Box cube(double half)
-{
-    return (Box){{{-half, half}, {-half, half}, {-half, half}}};
-}
+static Box cube(double half) { return (Box){{{-half, half}, {-half, half}, {-half, half}}}; }
 
 static const Shape *ball(double radius)
 {
-    Graph *g       = builder.graph;
-    Node   point   = graph_leaf(g, OP_POINT), size = graph_number(g, radius);
-    Node   length  = graph_op1(g, OP_length, point);
-    Shape *made    = primitive_new(&builder, "ball", graph_op2(g, OP_sub, length, size),
-                                   cube(radius), no_place);
-    made->exact    = true;
+    Graph *g     = builder.graph;
+    Node   point = graph_leaf(g, OP_POINT), size = graph_number(g, radius);
+    Node   length = graph_op1(g, OP_length, point);
+    Shape *made = primitive_new(&builder, "ball", graph_op2(g, OP_sub, length, size), cube(radius),
+                                no_place);
+    made->exact = true;
     return made;
 }
 
@@ -82,13 +79,13 @@ static const Shape *ring(double radius, double thick)
     Graph *g     = builder.graph;
     Node   point = graph_leaf(g, OP_POINT);
     Node   x = graph_component(g, point, 0), y = graph_component(g, point, 1);
-    Node   z    = graph_component(g, point, 2);
-    Node   flat = graph_op1(g, OP_length, graph_op2(g, OP_vec2, x, z));
-    flat        = graph_op2(g, OP_sub, flat, graph_number(g, radius));
-    Node size   = graph_op1(g, OP_length, graph_op2(g, OP_vec2, flat, y));
+    Node   z        = graph_component(g, point, 2);
+    Node   flat     = graph_op1(g, OP_length, graph_op2(g, OP_vec2, x, z));
+    flat            = graph_op2(g, OP_sub, flat, graph_number(g, radius));
+    Node   size     = graph_op1(g, OP_length, graph_op2(g, OP_vec2, flat, y));
     Node   distance = graph_op2(g, OP_sub, size, graph_number(g, thick));
-    Shape *made = primitive_new(&builder, "ring", distance, cube(radius + thick), no_place);
-    made->exact = true;
+    Shape *made     = primitive_new(&builder, "ring", distance, cube(radius + thick), no_place);
+    made->exact     = true;
     return made;
 }
 
@@ -122,9 +119,9 @@ static const Shape *painted(const Shape *shape)
 
 static const Shape *random_part(bool paint)
 {
-    double radius = between(0.1, 0.3), thick = between(0.02, 0.08);
+    double       radius = between(0.1, 0.3), thick = between(0.02, 0.08);
     const Shape *shape = between(0, 1) < 0.6 ? ball(radius) : ring(radius, thick);
-    double x = between(-3, 3), y = between(-3, 3), z = between(-3, 3), turn = between(0, 6);
+    double       x = between(-3, 3), y = between(-3, 3), z = between(-3, 3), turn = between(0, 6);
     shape = placed(shape, x, y, z, turn, between(0.5, 1.5));
     return paint ? painted(shape) : shape;
 }
@@ -264,8 +261,8 @@ static void intersections(void **state)
 static void below_maps(void **state)
 {
     (void)state;
-    const Shape **parts = random_parts(PARTS, true);
-    const Shape  *all   = make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
+    const Shape  **parts  = random_parts(PARTS, true);
+    const Shape   *all    = make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
     LoweredCrowds *crowds = lowered_crowds_new(builder.graph, &arena);
     const Shape   *moved  = placed(all, 1, 2, 3, 1, 2);
     Seen           apart = lower(moved, NULL), crowd = lower(moved, crowds);
@@ -306,12 +303,12 @@ static void below_offsets(void **state)
 static void lowered_again(void **state)
 {
     (void)state;
-    const Shape **parts = random_parts(PARTS, true);
-    const Shape  *all   = make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
+    const Shape  **parts  = random_parts(PARTS, true);
+    const Shape   *all    = make_joint(&builder, SHAPE_UNION, parts, PARTS, blend_sharp, no_place);
     LoweredCrowds *crowds = lowered_crowds_new(builder.graph, &arena);
     Seen           first  = lower(all, crowds);
-    size_t functions = builder.graph->crowds->functions.count, count = builder.graph->count;
-    Seen   second    = lower(all, crowds);
+    size_t         functions = builder.graph->crowds->functions.count, count = builder.graph->count;
+    Seen           second = lower(all, crowds);
     assert_int_equal(builder.graph->crowds->functions.count, functions);
     assert_int_equal(builder.graph->count, count);
     for (int root = 0; root < ROOT_COUNT; root++)
@@ -357,16 +354,15 @@ static const Shape *chain(BlendKind kind, double width, double step)
 static double joined_in_order(const Shape *shape, const Seen *parts, const double p[3],
                               NodeValue *color)
 {
-    const GraphType types[MAX_OPERANDS] = {TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT};
-    Blend           blend               = shape->blend;
+    const GraphType types[MAX_OPERANDS]    = {TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT, TYPE_FLOAT};
+    Blend           blend                  = shape->blend;
     NodeValue       operands[MAX_OPERANDS] = {{{NOWHERE}}};
-    operands[2].v[0] = builder.graph->items[blend.width].number[0];
+    operands[2].v[0]                       = builder.graph->items[blend.width].number[0];
     operands[3].v[0] = blend.steps == NODE_NONE ? 0 : builder.graph->items[blend.steps].number[0];
     for (uint32_t i = 0; i < shape->child_count; i++) {
-        operands[1].v[0] = look(&parts[i], p);
-        double weight =
-            op_evaluate(OP_blend_weight, TYPE_FLOAT, 0, types, operands).v[0];
-        const NodeValue *own = &parts[i].values[parts[i].roots[ROOT_color]];
+        operands[1].v[0]        = look(&parts[i], p);
+        double           weight = op_evaluate(OP_blend_weight, TYPE_FLOAT, 0, types, operands).v[0];
+        const NodeValue *own    = &parts[i].values[parts[i].roots[ROOT_color]];
         for (int k = 0; k < 3; k++)
             color->v[k] = own->v[k] * (1 - weight) + color->v[k] * weight;
         operands[0] = op_evaluate(blend_info[blend.kind].op, TYPE_FLOAT, 0, types, operands);
@@ -382,7 +378,7 @@ static Difference compare_in_order(const Shape *shape, const Seen *parts, const 
         random_vector(&randomness, 1, unit);
         for (int k = 0; k < 3; k++)
             p[k] = unit[k] * (k ? 0.5 : 2);
-        NodeValue color = {{0}};
+        NodeValue color  = {{0}};
         double    wanted = joined_in_order(shape, parts, p, &color), is = look(crowd, p);
         found.above = fmax(found.above, is - wanted);
         found.inside += wanted < 0;
@@ -391,8 +387,8 @@ static Difference compare_in_order(const Shape *shape, const Seen *parts, const 
         found.right++;
         found.below = fmax(found.below, fabs(is - wanted));
         for (int k = 0; k < 3; k++)
-            found.color = fmax(found.color, fabs(crowd->values[crowd->roots[ROOT_color]].v[k] -
-                                                 color.v[k]));
+            found.color = fmax(found.color,
+                               fabs(crowd->values[crowd->roots[ROOT_color]].v[k] - color.v[k]));
     }
     return found;
 }
@@ -455,10 +451,15 @@ static void reach_is_needed(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        TEST(unions),        TEST(differences),   TEST(intersections),
-        TEST(below_maps),    TEST(below_offsets), TEST(lowered_again),
+        TEST(unions),
+        TEST(differences),
+        TEST(intersections),
+        TEST(below_maps),
+        TEST(below_offsets),
+        TEST(lowered_again),
         TEST(many_parts_need_few_nodes),
-        TEST(blends),        TEST(reach_is_needed),
+        TEST(blends),
+        TEST(reach_is_needed),
     };
     return cmocka_run_group_tests_name("crowds", tests, NULL, NULL);
 }
