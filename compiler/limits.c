@@ -9,6 +9,7 @@
 #include <math.h>
 
 #include "compiler/compilation.h"
+#include "compiler/graph/crowd.h"
 
 enum { MOST_OPERATIONS = 20000, MOST_GLSL_BYTES = 1500000 };
 
@@ -93,7 +94,8 @@ static bool check_operations(Compilation *c)
    The latter would have been folded if its result were finite. */
 static bool is_beyond_numbers(const Graph *graph, const Expr *expr)
 {
-    bool constants = expr->operand_count > 0, too_large = false;
+    bool constants = expr->operand_count > 0 && !op_promises((Op)expr->op, READS_TABLES);
+    bool too_large = false;
     for (uint32_t i = 0; i < expr->operand_count; i++)
         constants = constants && graph->items[expr->operands[i]].op == OP_CONSTANT;
     for (uint32_t i = 0; i < 4 && expr->op == OP_CONSTANT; i++)
@@ -112,18 +114,54 @@ static void refuse_number(Compilation *c, const Component *shown, Span span)
         diag_secondary(&c->diags, diag, span, "in here");
 }
 
+/* Of those that a tape has at points and frames, functions of crowds included. */
+static Node first_beyond_numbers(const Tape *tape)
+{
+    Node found = NODE_NONE;
+    for (size_t k = 0; k < tape->count; k++)
+        if (is_beyond_numbers(tape->graph, &tape->graph->items[tape->nodes[k]]))
+            return tape->nodes[k];
+    for (uint32_t id = 0; id < tape->function_count && found == NODE_NONE; id++)
+        found = first_beyond_numbers(&tape->functions[id]);
+    return found;
+}
+
 /* The first node of some components that is_beyond_numbers, or NODE_NONE. */
 static Node find_overflow(Compilation *c, size_t first, size_t count)
 {
-    const Graph *graph = c->scene->graph;
-    Tape         tape  = tape_new(graph, surface_roots(&c->scene->roots, first), count * ROOT_COUNT,
-                                  &c->scratch);
-    Node         found = NODE_NONE;
-    for (size_t k = 0; k < tape.count && found == NODE_NONE; k++)
-        if (is_beyond_numbers(graph, &graph->items[tape.nodes[k]]))
-            found = tape.nodes[k];
+    Tape tape  = tape_new(c->scene->graph, surface_roots(&c->scene->roots, first),
+                          count * ROOT_COUNT, &c->scratch);
+    Node found = first_beyond_numbers(&tape);
     arena_free(&c->scratch);
     return found;
+}
+
+/* Whether a component was written where a span is, or around it. */
+static bool is_around(const Component *shown, Span span)
+{
+    return shown->span.source == span.source && shown->span.start <= span.start &&
+           shown->span.end >= span.end;
+}
+
+/* Refuses tables with numbers that single precision does not have; they belong to the component around
+   them, or else to the first. */
+static bool check_tables(Compilation *c)
+{
+    const Crowds    *crowds     = c->scene->graph->crowds;
+    const Component *components = c->elaborated.components.items;
+    for (size_t t = 0; crowds && t < crowds->tables.count; t++) {
+        const Crowd *table = &crowds->tables.items[t];
+        size_t       i = 0, of = 0, count = (size_t)table->rows * table->columns;
+        while (i < count && fabs(table->numbers[i]) <= FLT_MAX)
+            i++;
+        if (i == count)
+            continue;
+        while (of < c->elaborated.components.count && !is_around(&components[of], table->span))
+            of++;
+        refuse_number(c, &components[of < c->elaborated.components.count ? of : 0], table->span);
+        return false;
+    }
+    return true;
 }
 
 /* Refuses numbers that overflow in the simplified graph, where all constants have been combined. */
@@ -142,7 +180,7 @@ static bool check_numbers(Compilation *c)
 
 KrsStatus pass_limits(Compilation *c)
 {
-    return check_operations(c) && check_numbers(c) ? KRS_OK : KRS_BAD_SCENE;
+    return check_operations(c) && check_numbers(c) && check_tables(c) ? KRS_OK : KRS_BAD_SCENE;
 }
 
 void print_limits(Compilation *c, Text *out)

@@ -63,14 +63,6 @@ static void climb(Search *s, PointPair pair, int steps)
 
 /* ---- the search ---- */
 
-static uint64_t operation_cost(const Graph *graph, const Expr *e)
-{
-    GraphType types[MAX_OPERANDS];
-    for (uint32_t k = 0; k < e->operand_count; k++)
-        types[k] = graph->items[e->operands[k]].type;
-    return 1 + (e->operand_count ? (uint64_t)op_cost((Op)e->op, e->type, types) : 0);
-}
-
 /* The box and what is next to it, cut where it goes on for ever, and anything for an empty one;
    with guards as far as half the radius of the box, where the outermost begins. */
 static void choose_around(Search *search)
@@ -100,7 +92,7 @@ bool search_new(Search *search, const Graph *graph, Node distance, Node side, Bo
     for (size_t i = search->tape.frame_count; i < search->tape.count; i++) {
         const Expr *e = &graph->items[search->tape.nodes[i]];
         add_targets(search, arena, graph, e);
-        search->cost += operation_cost(graph, e);
+        search->cost += 1 + (uint64_t)tape_node_flops(&search->tape, search->tape.nodes[i]);
         for (int k = 0; k < e->operand_count; k++) {
             const Expr *of = &graph->items[e->operands[k]];
             if (of->type == TYPE_VEC3 && of->time != TIME_POINT)

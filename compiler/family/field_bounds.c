@@ -304,14 +304,7 @@ static double trial_march_cost(const TrialMarch *m, Node distance)
     const double OVERHEAD = 20; /* of the tracer, a step */
     Tape         tape     = tape_new(m->graph, &distance, 1, m->scratch);
     NodeValue   *values   = arena_new_array(m->scratch, NodeValue, m->graph->count);
-    double       cost = OVERHEAD, steps = 0;
-    for (size_t i = tape.frame_count; i < tape.count; i++) {
-        const Expr *e                   = &m->graph->items[tape.nodes[i]];
-        GraphType   types[MAX_OPERANDS] = {0};
-        for (int k = 0; k < e->operand_count; k++)
-            types[k] = (GraphType)m->graph->items[e->operands[k]].type;
-        cost += e->operand_count ? op_cost((Op)e->op, (GraphType)e->type, types) : 0;
-    }
+    double       cost = OVERHEAD + tape_flops(&tape), steps = 0;
     tape_run_frame(&tape, m->parameters, values);
     for (uint32_t i = 0; i < MARCHED_RAYS; i++) {
         TrialRay ray = trial_ray(m->box, i);

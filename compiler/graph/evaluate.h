@@ -18,7 +18,8 @@ typedef struct Tape {
     const uint32_t *skips;       /* NULL, or how many to skip at each when it is a guard that leaves
                               something out */
     /* Of crowd functions (crowd.h) that are called, by their number: what each does at a member.
-       What they need of the frame is on the tape that calls them.  Others are empty. */
+       What they need of the frame is on the tape that calls them.  Others are empty.  These tapes
+       know each other as well, but count none as theirs. */
     const struct Tape *functions;
     uint32_t           function_count;
 } Tape;
@@ -34,6 +35,8 @@ size_t tape_operations(const Tape *tape);
 
 /* What it costs at each point, in multiply-adds; what depends on the frame does not count. */
 double tape_flops(const Tape *tape);
+/* The same of one of its nodes; of a call for a list of usual length. */
+double tape_node_flops(const Tape *tape, Node node);
 
 /* Iterations of the loops that its kernels have within operations and over members of crowds, at most. */
 uint32_t tape_loops(const Tape *tape);

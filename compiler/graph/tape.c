@@ -102,11 +102,7 @@ static void fill_function(Tape *functions, uint32_t id, const Graph *graph, Node
         else
             set_add(frame, set.nodes[i], arena);
     note_calls(functions, id, graph, nodes, count);
-    functions[id] = (Tape){.graph          = graph,
-                           .nodes          = nodes,
-                           .count          = count,
-                           .functions      = functions,
-                           .function_count = id};
+    functions[id] = (Tape){.graph = graph, .nodes = nodes, .count = count, .functions = functions};
 }
 
 /* The functions that the nodes of a set call, and those that these call, which have smaller numbers;
@@ -219,20 +215,24 @@ static double call_flops(const Tape *tape, uint32_t function)
     return (mean + 1) * tape_flops(&tape->functions[function]);
 }
 
+double tape_node_flops(const Tape *tape, Node node)
+{
+    const Expr *expr = &tape->graph->items[node];
+    GraphType   types[MAX_OPERANDS];
+    if (expr->operand_count == 0)
+        return 0;
+    for (uint32_t k = 0; k < expr->operand_count; k++)
+        types[k] = tape->graph->items[expr->operands[k]].type;
+    double flops = op_cost((Op)expr->op, expr->type, types);
+    return is_call((Op)expr->op) ? flops + call_flops(tape, called_function(tape->graph, expr))
+                                 : flops;
+}
+
 double tape_flops(const Tape *tape)
 {
-    const Expr *items = tape->graph->items;
-    double      flops = 0;
-    for (size_t i = tape->frame_count; i < tape->count; i++) {
-        const Expr *expr = &items[tape->nodes[i]];
-        GraphType   types[MAX_OPERANDS];
-        for (uint32_t k = 0; k < expr->operand_count; k++)
-            types[k] = items[expr->operands[k]].type;
-        if (expr->operand_count)
-            flops += op_cost((Op)expr->op, expr->type, types);
-        if (is_call((Op)expr->op))
-            flops += call_flops(tape, called_function(tape->graph, expr));
-    }
+    double flops = 0;
+    for (size_t i = tape->frame_count; i < tape->count; i++)
+        flops += tape_node_flops(tape, tape->nodes[i]);
     return flops;
 }
 
