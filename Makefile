@@ -34,7 +34,7 @@ GRAPH    := $(addprefix compiler/graph/, intern.c alike.c graph.c crowd.c build.
                 simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c \
                 regions.c grid.c fractal.c op_values.c tape.c evaluate.c print.c)
 SHAPE    := $(addprefix compiler/shape/, box.c reach.c cover.c map.c moebius.c builder.c slope.c print.c)
-LOWER    := $(addprefix compiler/lower/, context.c box_distance.c surface.c join.c normal.c map_chain.c \
+LOWER    := $(addprefix compiler/lower/, context.c box_distance.c surface.c join.c crowd_table.c crowd_functions.c crowd.c normal.c map_chain.c \
                 guards.c ray_images.c ray_step.c lower.c)
 FAMILY   := $(sort $(wildcard compiler/family/*.c))
 EVAL     := $(addprefix compiler/eval/, scope.c expression.c arithmetic.c arguments.c builtins.c lists.c \

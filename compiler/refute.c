@@ -173,9 +173,9 @@ static bool try_claims(Refuter *r, size_t suspect, uint64_t operations, Finding 
 static Node lower_claim(Refuter *r, const Shape *shape, Claim claim, Node plain)
 {
     Arena *scratch = r->in->scratch;
-    return claim == CLAIM_GUARDED
-               ? lower_guarded(r->graph, shape, plain, scratch)
-               : lower_along(r->graph, shape, plain, (AlongMethod)(claim - CLAIM_ALONG), scratch);
+    return claim == CLAIM_GUARDED ? lower_guarded(r->graph, shape, plain, NULL, scratch)
+                                  : lower_along(r->graph, shape, plain,
+                                                (AlongMethod)(claim - CLAIM_ALONG), NULL, scratch);
 }
 
 /* The guarded distance of a component, and its steps along rays, where there are such. */

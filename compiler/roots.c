@@ -12,6 +12,7 @@
 #include "compiler/compilation.h"
 #include "compiler/graph/rebase.h"
 #include "compiler/graph/derive.h"
+#include "compiler/lower/crowd.h"
 
 /* Allocates all roots, ordered by kind.  Those for camera-relative points are last, so that they
    can be left out. */
@@ -37,12 +38,12 @@ static void allocate_roots(Compilation *c)
     roots->all = arena_new_array(&c->scene->arena, Node, roots->first[ROOT_KINDS]);
 }
 
-static bool lower_components(Compilation *c, Graph *g)
+static bool lower_components(Compilation *c, Graph *g, LoweredCrowds *crowds)
 {
     const Scene *s = &c->elaborated;
     for (size_t i = 0; i < s->components.count; i++)
         if (!lower_component(g, s->components.items[i].shape,
-                             (uint32_t)s->components.items[i].first + 1, &c->scratch,
+                             (uint32_t)s->components.items[i].first + 1, crowds, &c->scratch,
                              surface_roots(&c->scene->roots, i))) {
             refuse_component(c, i, 0);
             return false;
@@ -67,7 +68,7 @@ static void gather_view(const Scene *s, const Roots *roots)
     *sky_roots(roots) = (SkyRoots){s->zenith, s->horizon, s->ground};
 }
 
-static void lower_marches(Compilation *c, Graph *g)
+static void lower_marches(Compilation *c, Graph *g, LoweredCrowds *crowds)
 {
     const Scene *s     = &c->elaborated;
     const Roots *roots = &c->scene->roots;
@@ -75,9 +76,11 @@ static void lower_marches(Compilation *c, Graph *g)
     for (size_t i = 0; i < count; i++) {
         const Shape *shape                      = s->components.items[i].shape;
         Node         plain                      = distance_root(roots, i);
-        roots_of(roots, ROOTS_GUARDED).items[i] = lower_guarded(g, shape, plain, &c->scratch);
+        roots_of(roots, ROOTS_GUARDED).items[i] = lower_guarded(g, shape, plain, crowds,
+                                                                &c->scratch);
         for (AlongMethod method = 0; method < ALONG_COUNT; method++)
-            along_roots(roots, method)[i] = lower_along(g, shape, plain, method, &c->scratch);
+            along_roots(roots, method)[i] = lower_along(g, shape, plain, method, crowds,
+                                                        &c->scratch);
     }
 }
 
@@ -126,7 +129,7 @@ static bool is_algebraic(const Scene *s, const Roots *roots)
 }
 
 /* Lowers the gradients of all components and of the zones, if the additions include gradients. */
-static void lower_gradients(Compilation *c, Graph *g)
+static void lower_gradients(Compilation *c, Graph *g, LoweredCrowds *crowds)
 {
     const Scene *s     = &c->elaborated;
     const Roots *roots = &c->scene->roots;
@@ -137,7 +140,8 @@ static void lower_gradients(Compilation *c, Graph *g)
         if (zones && wants)
             known = graph_gradient(g, near, &gradient, NULL, &c->scratch) != DERIVED_NOT;
         else if (wants)
-            known = lower_gradient(g, s->components.items[i].shape, &gradient, &near, &c->scratch);
+            known = lower_gradient(g, s->components.items[i].shape, &gradient, &near, crowds,
+                                   &c->scratch);
         Node distance             = zones ? near : distance_root(roots, i);
         *gradient_roots(roots, i) = known ? (GradientRoots){gradient, near}
                                           : (GradientRoots){distance, distance};
@@ -173,18 +177,20 @@ KrsStatus pass_lower(Compilation *c)
     const Scene *s     = &c->elaborated;
     Roots       *roots = &c->scene->roots;
     Additions   *more  = &c->additions;
+    /* None, until shaders can be printed of them. */
+    LoweredCrowds *crowds = NULL;
     allocate_roots(c);
-    if (!lower_components(c, s->graph))
+    if (!lower_components(c, s->graph, crowds))
         return KRS_BAD_SCENE;
     more->sheets          = any_thin_sheets(s);
     more->camera_relative = !more->sheets && may_need_rebase(s, s->graph, roots, &c->scratch);
     gather_view(s, roots);
-    lower_marches(c, s->graph);
+    lower_marches(c, s->graph, crowds);
     lower_planes(c, s->graph);
     arena_free(&c->scratch);
     more->algebraic = is_algebraic(s, roots);
     more->gradients = more->algebraic || more->sheets || c->options->gradients;
-    lower_gradients(c, s->graph);
+    lower_gradients(c, s->graph, crowds);
     for (size_t i = 0; i < s->slopes.count; i++)
         roots_of(roots, ROOTS_SLOPE).items[i] = s->slopes.items[i].formula;
     if (more->camera_relative)

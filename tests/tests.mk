@@ -21,7 +21,7 @@ UNIT        := texts front diagnostics shape passes display devices tracer film 
                compiled pipelines per_component stencils glslang loader drivers grid crowd_grid crowds \
                crowd_kernels tables device_tables printing printers answers alike
 PROPERTY    := ops noise graph simplify facts derive series zeros local along rebase slope \
-               parity reach reach_trees
+               parity reach reach_trees crowds
 ORACLES     := self primitives krs_expand trees maps moebius moebius_images operators \
                combinations deform deform_bounds chains chain_pictures moving normals fields \
                surfaces rays algebraic fractals metasurfaces device query query_limits picture \
@@ -41,7 +41,7 @@ SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/diagnostics unit/s
                unit/zones unit/printers unit/alike property/ops property/noise property/graph property/simplify \
                property/facts property/derive property/series property/zeros property/local \
                property/along property/rebase property/slope property/parity property/reach \
-               property/reach_trees oracle/primitives oracle/krs_expand oracle/bounds \
+               property/reach_trees property/crowds oracle/primitives oracle/krs_expand oracle/bounds \
                oracle/maps oracle/moebius oracle/moebius_images oracle/operators oracle/moving \
                oracle/fractals oracle/metasurfaces oracle/normals fuzz/sentences)
 SCRIPTS     := tests/run_selftest.sh tests/layers.sh tests/grammar.sh tests/editors.sh \

@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "compiler/lower/crowd.h"
 #include "compiler/lower/join.h"
 #include "compiler/lower/surface.h"
 
@@ -15,8 +16,10 @@ const Shape *make_joint(ShapeBuilder *builder, ShapeKind kind, const Shape *cons
 {
     Shape *joint = shape_new(builder, kind, shape_info[kind].name, span, shapes, count);
     joint->blend = blend;
-    if (blend.width != NODE_NONE)
+    if (blend.width != NODE_NONE) {
         check_lipschitz(builder, joint, "a blend", span);
+        joint->blend.widest = node_range(builder, blend.width, 0).high;
+    }
     /* Outside, the least of exact distances is exact; every other joint only bounds it. */
     joint->exact = joint->exact && kind == SHAPE_UNION && blend.width == NODE_NONE;
     for (uint32_t i = 0; i < count; i++) {
@@ -33,8 +36,7 @@ const Shape *make_joint(ShapeBuilder *builder, ShapeKind kind, const Shape *cons
            n of them is at most sqrt(n): for two operands the factor of the table. */
         joint->slope *= info->slope > 1 ? pow(info->slope, log2(count)) : 1;
         if (kind != SHAPE_INTERSECTION && kind != SHAPE_DIFFERENCE)
-            joint->box = box_grow(
-                joint->box, info->bulge * node_range(builder, blend.width, 0).high * (count - 1));
+            joint->box = box_grow(joint->box, blend_bulge(blend.kind, count) * joint->blend.widest);
     }
     return joint;
 }
@@ -62,7 +64,11 @@ static Lowered complement(Lowering *l, Lowered a)
 
 LowerContext joint_context(const Shape *shape, LowerContext context)
 {
-    return shape->blend.width == NODE_NONE ? context : context_lipschitz(context);
+    const Blend *blend = &shape->blend;
+    if (blend->width == NODE_NONE)
+        return context;
+    double widths = blend_reach(blend->kind, shape->child_count);
+    return context_lipschitz_within(context, widths * blend->widest);
 }
 
 static Lowered lower_joined(Lowering *l, const Shape *joint, const Shape *child,
@@ -73,17 +79,26 @@ static Lowered lower_joined(Lowering *l, const Shape *joint, const Shape *child,
 }
 
 /* Joined in pairs, so that the graph stays shallow and a blend of many keeps its slope. */
-static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *children,
-                        uint32_t count, LowerContext context)
+static Lowered union_in_pairs(Lowering *l, const Shape *shape, const Shape *const *children,
+                              uint32_t count, LowerContext context)
 {
     if (count == 0)
         return lowered_nothing;
     if (count == 1)
         return lower_joined(l, shape, children[0], context);
     uint32_t half  = count / 2;
-    Lowered  left  = union_of(l, shape, children, half, context);
-    Lowered  right = union_of(l, shape, children + half, count - half, context);
+    Lowered  left  = union_in_pairs(l, shape, children, half, context);
+    Lowered  right = union_in_pairs(l, shape, children + half, count - half, context);
     return join_two(l, shape->blend, left, right);
+}
+
+static Lowered union_of(Lowering *l, const Shape *shape, const Shape *const *children,
+                        uint32_t count, LowerContext context)
+{
+    CrowdJoin join   = {shape, children, count, false};
+    Lowered   crowds = lower_crowds(l, &join, context);
+    Lowered   others = union_in_pairs(l, shape, join.parts, join.count, context);
+    return join_two(l, shape->blend, crowds, others);
 }
 
 Lowered lower_union(Lowering *l, const Shape *shape, LowerContext context)
@@ -92,17 +107,23 @@ Lowered lower_union(Lowering *l, const Shape *shape, LowerContext context)
     return union_of(l, shape, shape->children, shape->child_count, context);
 }
 
+static Lowered intersection_of_two(Lowering *l, const Shape *shape, Lowered a, Lowered b)
+{
+    Lowered not_b = complement(l, b), not_a = complement(l, a);
+    return complement(l, join_two(l, shape->blend, not_a, not_b));
+}
+
 Lowered lower_intersection(Lowering *l, const Shape *shape, LowerContext context)
 {
     context = joint_context(shape, context);
     /* The complement of the union of the complements. */
-    Lowered all = lower_joined(l, shape, shape->children[0], context);
-    for (uint32_t i = 1; i < shape->child_count; i++) {
-        Lowered next = lower_joined(l, shape, shape->children[i], context);
-        if (all.distance == NODE_NONE || next.distance == NODE_NONE)
+    CrowdJoin join = {shape, shape->children, shape->child_count, true};
+    Lowered   all  = complement(l, lower_crowds(l, &join, context));
+    for (uint32_t i = 0; i < join.count; i++) {
+        Lowered next = lower_joined(l, shape, join.parts[i], context);
+        if (next.distance == NODE_NONE)
             return lowered_nothing;
-        Lowered joined = join_two(l, shape->blend, complement(l, all), complement(l, next));
-        all            = complement(l, joined);
+        all = all.distance == NODE_NONE ? next : intersection_of_two(l, shape, all, next);
     }
     return all;
 }

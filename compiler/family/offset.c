@@ -15,6 +15,7 @@ static Shape *new_offset(ShapeBuilder *builder, const Shape *shape, Node radius,
     Shape *offset     = shape_around(builder, SHAPE_OFFSET, "offset", shape, span);
     Range  range      = node_range(builder, radius, 0);
     offset->values[0] = radius;
+    offset->reach     = fmax(fabs(range.low), fabs(range.high));
     offset->box       = box_grow(shape->box, fmax(range.high, 0));
     offset->exact     = shape->exact && range.low >= 0;
     check_lipschitz(builder, offset, "an offset", span);
@@ -38,7 +39,8 @@ const Shape *make_shell(ShapeBuilder *builder, const Shape *shape, Node thicknes
 {
     Shape *shell     = shape_around(builder, SHAPE_SHELL, "shell", shape, span);
     shell->values[0] = thickness;
-    shell->box       = box_grow(shape->box, 0.5 * node_range(builder, thickness, 0).high);
+    shell->reach     = 0.5 * node_range(builder, thickness, 0).high;
+    shell->box       = box_grow(shape->box, shell->reach);
     check_lipschitz(builder, shell, "a shell", span);
     return shell;
 }
@@ -70,6 +72,7 @@ const Shape *make_sheet(ShapeBuilder *builder, const Shape *shape, Node thicknes
 
 Lowered lower_offset(Lowering *l, const Shape *shape, LowerContext context)
 {
+    context        = context_lipschitz_within(context, shape->reach);
     Lowered result = lower_operand(l, shape->children[0], context);
     if (result.distance != NODE_NONE)
         result.distance = graph_op2(l->graph, OP_sub, result.distance, shape->values[0]);
@@ -96,7 +99,8 @@ Lowered lower_shell(Lowering *l, const Shape *shape, LowerContext context)
     bool   thin    = l->thin && shape->sheet;
     l->thin        = false;
     Lowered result = thin ? lower_shape(l, shape->children[0], context)
-                          : lower_operand(l, shape->children[0], context);
+                          : lower_operand(l, shape->children[0],
+                                          context_lipschitz_within(context, shape->reach));
     if (result.distance == NODE_NONE || thin)
         return thin && result.distance != NODE_NONE ? thin_sheet(l, result) : result;
     Node half       = graph_number(g, 0.5);

@@ -4,6 +4,8 @@
  */
 #include "compiler/family/family.h"
 
+#include <math.h>
+
 #include "compiler/lower/map_chain.h"
 
 /* ---- how it is made ---- */
@@ -131,6 +133,7 @@ Lowered lower_transform(Lowering *l, const Shape *shape, LowerContext context)
     NormalPath path  = normal_path(l, context, 1);
     Node       point = before_map(l->graph, &shape->map, context.point);
     normal_turn(l, &path, shape->map.rows, shape->map.scale);
+    context.reach  = reach_behind(l->graph, context.reach, shape->map.scale);
     Node    unit   = enter_scale(l, shape->map.scale);
     Lowered result = lower_behind(l, shape->children[0], context, &path, point);
     l->unit        = unit;
@@ -147,6 +150,7 @@ Lowered lower_stretch(Lowering *l, const Shape *shape, LowerContext context)
     Node       point = graph_op2(g, OP_div, context.point, shape->values[0]);
     NormalPath path  = normal_path(l, context, 1);
     normal_stretch(l, &path, shape->values[0], least);
+    context.reach  = reach_behind(g, context.reach, least);
     Node    unit   = enter_scale(l, least);
     Lowered result = lower_behind(l, shape->children[0], context, &path, point);
     l->unit        = unit;
@@ -177,6 +181,7 @@ Lowered lower_inversion(Lowering *l, const Shape *shape, LowerContext context)
     Ball       ball  = ball_around(shape->children[0]->box);
     Node       hull  = map_chain_hull(l, &chain, &shape->map, &ball);
     map_chain_append(l, &chain, &shape->map, &path);
+    context.reach  = context.reach > 0 ? HUGE_VAL : 0;
     Node    unit   = enter_map_chain(l, &chain);
     Lowered result = lower_behind(l, shape->children[0], context, &path, chain.point);
     l->unit        = unit;

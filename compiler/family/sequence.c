@@ -88,6 +88,10 @@ static void take_kernel(Lowering *l, SequenceState *state, const Shape *shape)
         inner.instance = outer ? graph_op2(g, OP_join_id, state->context.instance, state->id)
                                : state->id;
     }
+    bool whole     = state->chain.shrink == NODE_NONE;
+    inner.reach    = whole             ? reach_behind(g, inner.reach, state->chain.scale)
+                     : inner.reach > 0 ? HUGE_VAL
+                                       : 0;
     Node    unit   = enter_map_chain(l, &state->chain);
     Lowered kernel = lower_shape(l, shape, inner);
     l->unit        = unit;

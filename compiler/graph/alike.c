@@ -67,7 +67,8 @@ static int use_kind(const Alike *alike, const Expr *user, int operand, Node node
     const Expr *e = &alike->graph->items[node];
     if (is_operation(e))
         return USE_NODE;
-    bool number = alike->notes.items[node].known && is_number((GraphType)e->type);
+    bool number = is_number((GraphType)e->type) || (!user && e->type == TYPE_UINT);
+    number      = number && alike->notes.items[node].known;
     return number && !(user && is_structure((Op)user->op, operand)) ? USE_SLOT : USE_SAME;
 }
 
@@ -89,19 +90,20 @@ static uint64_t hash_value(NodeValue value)
     return hash;
 }
 
+/* Without numbers where a slot would be.  Nodes are not told apart by where they stand: others may
+   have stood there before (graph_release). */
 static uint64_t hash_use(const Alike *alike, const Expr *user, int operand, Node node)
 {
     if (node == NODE_NONE)
         return NODE_NONE;
     const NodeNote *note = &alike->notes.items[node];
-    switch (use_kind(alike, user, operand, node)) {
-    case USE_NODE: return note->hash;
-    case USE_SLOT: return alike->graph->items[node].type;
-    default: return note->known ? hash_value(note->value) : hash_word(1, node);
-    }
+    bool            slot = !user || is_operation(user);
+    if (slot && use_kind(alike, user, operand, node) == USE_SLOT)
+        return alike->graph->items[node].type;
+    return note->known ? hash_value(note->value) : note->hash;
 }
 
-static uint64_t hash_operation(const Alike *alike, const Expr *e)
+static uint64_t hash_expression(const Alike *alike, const Expr *e)
 {
     uint64_t hash = hash_word(hash_word(e->op, e->type), e->index);
     for (int i = 0; i < e->operand_count; i++)
@@ -136,10 +138,10 @@ static void note_all(Alike *alike)
     for (size_t n = alike->notes.count; n < alike->graph->count; n++) {
         const Expr *e    = &alike->graph->items[n];
         NodeNote    note = {0};
-        if (is_operation(e))
-            note.hash = hash_operation(alike, e);
-        else
+        if (!is_operation(e))
             note_value(alike, e, &note);
+        if (!note.known)
+            note.hash = hash_expression(alike, e);
         array_push(alike->arena, &alike->notes, note);
     }
 }
@@ -164,8 +166,8 @@ typedef struct TemplateMaker {
         size_t        count, capacity;
     } nodes;
     struct {
-        GraphType *items;
-        size_t     count, capacity;
+        Node  *items;
+        size_t count, capacity;
     } slots;
     /* Nodes whose operands are not all made yet; and of those made, where they are: by hashing. */
     struct {
@@ -199,7 +201,7 @@ static TemplateUse make_use(TemplateMaker *maker, const Expr *user, int operand,
     switch (use_kind(maker->alike, user, operand, node)) {
     case USE_NODE: return (TemplateUse){USE_NODE, maker->places[place_of(maker, node)] - 1};
     case USE_SLOT:
-        array_push(maker->arena, &maker->slots, maker->alike->graph->items[node].type);
+        array_push(maker->arena, &maker->slots, node);
         return (TemplateUse){USE_SLOT, (uint32_t)maker->slots.count - 1};
     default: return (TemplateUse){USE_SAME, node};
     }
@@ -289,7 +291,8 @@ static bool match_use(const Alike *alike, const Template *template, TemplateUse 
         return same_node(alike, use.index, node);
     if (use.kind == USE_SLOT) {
         numbers[use.index] = alike->notes.items[node].value;
-        return alike->graph->items[node].type == template->slots[use.index];
+        return alike->graph->items[node].type ==
+               alike->graph->items[template->slots[use.index]].type;
     }
     Node *image = &template->images[use.index];
     if (*image == NODE_NONE)
@@ -403,22 +406,19 @@ static void visit_uses(const Template *template, const bool *wanted, VisitUse *v
 }
 
 typedef struct LeafSearch {
-    const Graph *graph;
-    Op           leaf;
-    bool         found;
+    Node leaf;
+    bool found;
 } LeafSearch;
 
 static void visit_leaf(void *user, TemplateUse use)
 {
     LeafSearch *search = user;
-    search->found      = search->found || (use.kind == USE_SAME && use.index != NODE_NONE &&
-                                      search->graph->items[use.index].op == search->leaf);
+    search->found      = search->found || (use.kind == USE_SAME && use.index == search->leaf);
 }
 
-bool template_needs(const Graph *graph, const Template *template, Op leaf, const bool *wanted,
-                    Arena *scratch)
+bool template_needs(const Template *template, Node leaf, const bool *wanted, Arena *scratch)
 {
-    LeafSearch search = {graph, leaf, false};
+    LeafSearch search = {leaf, false};
     visit_uses(template, wanted, visit_leaf, &search, scratch);
     return search.found;
 }

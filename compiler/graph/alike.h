@@ -1,11 +1,12 @@
 /*
  * alike.h: expressions that are alike but for numbers.
  *
- * A template is made of the expressions of one member.  A member is alike if its expressions have the
- * same operations on the same leaves.  Numbers that are known now may differ where what depends on the
- * point uses them: each such use, an operand of an operation, is a slot.  Slots belong to uses and not to nodes,
- * since equal numbers are one node by chance.  What depends on the frame is the same node in both, and
- * so are truth values and integers.  Numbers that decide how long a loop runs are equal.
+ * A template is made of the expressions of one member.  A member is alike if its expressions have
+ * the same operations on the same leaves.  Numbers that are known now may differ where what depends
+ * on the point uses them.  Each such use, an operand of an operation, is a slot.  Slots belong to
+ * uses and not to nodes, since equal numbers are one node by chance.  What depends on the frame is
+ * the same node in both, and so are truth values and integers.  Numbers that decide how long a loop
+ * runs are equal.
  */
 #ifndef KRS_ALIKE_H
 #define KRS_ALIKE_H
@@ -22,7 +23,7 @@ void alike_forget(Alike *alike);
 /* What an operand of a node of a template is, or one of its roots. */
 typedef struct TemplateUse {
     enum {
-        USE_SAME, /* a leaf, or what depends on the frame: the node `index` of the graph, or NODE_NONE */
+        USE_SAME, /* the node `index` of the graph, a leaf or of the frame; or NODE_NONE */
         USE_NODE, /* nodes[index] of the template */
         USE_SLOT  /* slots[index] */
     } kind;
@@ -35,20 +36,22 @@ typedef struct TemplateNode {
 } TemplateNode;
 
 typedef struct Template {
-    uint64_t         hash;
-    TemplateNode    *nodes; /* what depends on the point, but leaves; operands first */
-    uint32_t         node_count;
-    const GraphType *slots; /* of each its type: FLOAT or a vector */
-    uint32_t         slot_count;
-    TemplateUse     *roots;
-    uint32_t         root_count;
-    Node            *images; /* of each node, that of the member; template_match's own */
+    uint64_t      hash;
+    TemplateNode *nodes; /* what depends on the point, but leaves; operands first */
+    uint32_t      node_count;
+    const Node  *slots; /* what the member of the template has there: FLOAT or a vector, and where a
+                            root is a number also UINT */
+    uint32_t     slot_count;
+    TemplateUse *roots;
+    uint32_t     root_count;
+    Node        *images; /* of each node, that of the member; template_match's own */
 } Template;
 
 /* Alike expressions have equal hashes.  Roots may be NODE_NONE. */
 uint64_t  alike_hash(Alike *alike, const Node *roots, uint32_t count);
 Template *template_new(Alike *alike, const Node *roots, uint32_t count, Arena *arena);
-/* Whether as many roots are alike.  The numbers in their slots go to `numbers`, slot_count of them. */
+/* Whether as many roots are alike.  What is in their slots goes to `numbers`, slot_count of
+   them. */
 bool template_match(Alike *alike, const Template *template, const Node *roots, NodeValue *numbers);
 
 /* Leaves that are replaced in a copy. */
@@ -56,13 +59,12 @@ typedef struct LeafPair {
     Node leaf, by;
 } LeafPair;
 
-/* A copy with nodes in the slots.  Of the roots those that are `wanted` are copied; the others become
-   NODE_NONE. */
+/* A copy with nodes in the slots.  Of the roots those that are `wanted` are copied; the others
+   become NODE_NONE. */
 void template_copy(Graph *graph, const Template *template, const Node *slots, const LeafPair *pairs,
                    uint32_t pair_count, const bool *wanted, Node *roots, Arena *scratch);
 /* Whether the wanted roots need this leaf. */
-bool template_needs(const Graph *graph, const Template *template, Op leaf, const bool *wanted,
-                    Arena *scratch);
+bool template_needs(const Template *template, Node leaf, const bool *wanted, Arena *scratch);
 /* Marks the slots that the wanted roots need. */
 void template_slots_of(const Template *template, const bool *wanted, bool *needed, Arena *scratch);
 

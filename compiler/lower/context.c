@@ -12,6 +12,8 @@
  */
 #include "compiler/lower/context.h"
 
+#include <math.h>
+
 const Lowered lowered_nothing = {
     .distance = NODE_NONE,
 #define KRS_INNER(name, blends) .surface.name = NODE_NONE,
@@ -23,7 +25,14 @@ const Lowered lowered_nothing = {
 
 LowerContext context_new(Node point, bool lipschitz)
 {
-    return (LowerContext){point, NODE_NONE, NODE_NONE, lipschitz, NODE_NONE, NODE_NONE, NODE_NONE};
+    return (LowerContext){.point     = point,
+                          .level     = NODE_NONE,
+                          .instance  = NODE_NONE,
+                          .lipschitz = lipschitz,
+                          .normal    = NODE_NONE,
+                          .footprint = NODE_NONE,
+                          .reach     = lipschitz ? HUGE_VAL : 0,
+                          .smoothing = NODE_NONE};
 }
 
 LowerContext context_at(LowerContext context, Node point)
@@ -34,8 +43,22 @@ LowerContext context_at(LowerContext context, Node point)
 
 LowerContext context_lipschitz(LowerContext context)
 {
+    return context_lipschitz_within(context, HUGE_VAL);
+}
+
+LowerContext context_lipschitz_within(LowerContext context, double more)
+{
     context.lipschitz = true;
+    context.reach += fmax(more, 0);
     return context;
+}
+
+double reach_behind(const Graph *graph, double reach, Node scale)
+{
+    if (reach == 0 || !isfinite(reach))
+        return reach;
+    const Expr *e = &graph->items[scale];
+    return graph_is_constant(graph, scale) && e->number[0] > 0 ? reach / e->number[0] : HUGE_VAL;
 }
 
 /* ---- shapes whose parts a ray may step through (column `rays` of shapes.def) ---- */

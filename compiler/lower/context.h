@@ -40,17 +40,18 @@ typedef struct Nodes {
 } Nodes;
 
 typedef struct Lowering {
-    Graph         *graph;
-    Arena         *scratch;
-    bool           surfaces;       /* lower the surface too, not the distance alone */
-    AlongMethod    method;         /* for ray_step.c and ray_images.c */
-    bool           thin;           /* rays_pass for all shapes above: sheets have no thickness */
-    bool           guarded;        /* skip levels of sequences that are far away (guards.c) */
-    Node           unit;           /* guarded: length, outside of all shapes, of 1 in this space */
-    size_t         most;           /* nodes that the graph may have */
-    bool           overflow;       /* it would have more */
-    Nodes         *held_constant;  /* for lower_gradient: nodes that count as constants; or NULL */
-    LoweredShapes *lowered_shapes; /* gets all shapes, children first; or NULL */
+    Graph                *graph;
+    Arena                *scratch;
+    bool                  surfaces; /* lower the surface too, not the distance alone */
+    AlongMethod           method;   /* for ray_step.c and ray_images.c */
+    bool                  thin;     /* rays_pass for all shapes above: sheets have no thickness */
+    bool                  guarded;  /* skip levels of sequences that are far away (guards.c) */
+    Node                  unit;     /* guarded: length, outside of all shapes, of 1 in this space */
+    size_t                most;     /* nodes that the graph may have */
+    bool                  overflow; /* it would have more */
+    struct LoweredCrowds *crowds;   /* crowd.h; NULL: each part is lowered for itself */
+    Nodes         *held_constant;   /* for lower_gradient: nodes that count as constants; or NULL */
+    LoweredShapes *lowered_shapes;  /* gets all shapes, children first; or NULL */
 } Lowering;
 
 /* Where a shape is lowered: the point in the space of the shape, and the sequence around it.
@@ -59,6 +60,9 @@ typedef struct LowerContext {
     Node point, level, instance; /* level, instance: NODE_NONE outside of sequences */
     bool lipschitz; /* the slope is needed, as a blend or offset above moves the zero set */
     Node normal, footprint;
+    double
+         reach; /* how far from the surface distances must be right; beyond it they may be any bound
+                     that is no less */
     Node smoothing; /* width over which a mirror turns normals; NODE_NONE: mirrors are sharp */
 } LowerContext;
 
@@ -68,9 +72,13 @@ LowerContext context_new(Node point, bool lipschitz);
 /* The empty set. */
 extern const Lowered lowered_nothing;
 
-/* The same context at another point; the same context with `lipschitz` set. */
+/* The same context at another point; the same context with `lipschitz` set and distances that are
+   right everywhere, or as far as `more` beyond what was asked for. */
 LowerContext context_at(LowerContext context, Node point);
 LowerContext context_lipschitz(LowerContext context);
+LowerContext context_lipschitz_within(LowerContext context, double more);
+/* The reach behind a map that enlarges by `scale`. */
+double reach_behind(const Graph *graph, double reach, Node scale);
 
 /* Most nodes that one shape may add to the graph. */
 enum { MOST_LOWERED = 400000 };

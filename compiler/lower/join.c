@@ -6,7 +6,7 @@
 #include "compiler/lower/box_distance.h"
 #include "compiler/lower/surface.h"
 
-static Node join_distances(Graph *g, Blend blend, Node a, Node b)
+Node join_distances(Graph *g, Blend blend, Node a, Node b)
 {
     if (blend.width == NODE_NONE)
         return graph_op2(g, OP_min, a, b);
@@ -40,7 +40,7 @@ Lowered join_two(Lowering *l, Blend blend, Lowered a, Lowered b)
    the boxes of csg.c assume. */
 Lowered lower_operand(Lowering *l, const Shape *shape, LowerContext context)
 {
-    Lowered result = lower_shape(l, shape, context_lipschitz(context));
+    Lowered result = lower_shape(l, shape, context_lipschitz_within(context, 0));
     if (result.distance == NODE_NONE || shape->exact)
         return result;
     Node excess = sides_excess(l->graph, context.point, shape->box);

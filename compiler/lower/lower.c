@@ -28,13 +28,15 @@ Node root_otherwise(Graph *graph, ComponentRoot root)
 
 static Node or_else(Node node, Node otherwise) { return node == NODE_NONE ? otherwise : node; }
 
-bool lower_component(Graph *graph, const Shape *shape, uint32_t number, Arena *scratch, Node *roots)
+bool lower_component(Graph *graph, const Shape *shape, uint32_t number,
+                     struct LoweredCrowds *crowds, Arena *scratch, Node *roots)
 {
     Lowering     l       = {.graph    = graph,
                             .scratch  = scratch,
                             .surfaces = true,
                             .thin     = true,
-                            .most     = graph->count + MOST_LOWERED};
+                            .most     = graph->count + MOST_LOWERED,
+                            .crowds   = crowds};
     LowerContext context = context_new(graph_leaf(graph, OP_POINT), false);
     context.normal       = graph_leaf(graph, OP_NORMAL);
     context.footprint    = graph_leaf(graph, OP_FOOTPRINT);
@@ -53,14 +55,16 @@ bool lower_component(Graph *graph, const Shape *shape, uint32_t number, Arena *s
     return !l.overflow;
 }
 
-Node lower_guarded(Graph *graph, const Shape *shape, Node plain, Arena *scratch)
+Node lower_guarded(Graph *graph, const Shape *shape, Node plain, struct LoweredCrowds *crowds,
+                   Arena *scratch)
 {
     Lowering l   = {.graph   = graph,
                     .scratch = scratch,
                     .guarded = true,
                     .thin    = true,
                     .unit    = graph_number(graph, 1),
-                    .most    = graph->count + MOST_LOWERED};
+                    .most    = graph->count + MOST_LOWERED,
+                    .crowds  = crowds};
     Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(graph, OP_POINT), false));
     if (all.distance == NODE_NONE || l.overflow)
         return plain;
@@ -71,14 +75,16 @@ Node lower_guarded(Graph *graph, const Shape *shape, Node plain, Arena *scratch)
    larger shapes are found by differences. */
 enum { MOST_DERIVED = 20000 };
 
-bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near, Arena *scratch)
+bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near,
+                    struct LoweredCrowds *crowds, Arena *scratch)
 {
     Nodes    held_constant = {0};
     Lowering l             = {.graph         = graph,
                               .scratch       = scratch,
                               .held_constant = &held_constant,
                               .thin          = true,
-                              .most          = graph->count + MOST_DERIVED};
+                              .most          = graph->count + MOST_DERIVED,
+                              .crowds        = crowds};
     Lowered  all = lower_shape(&l, shape, context_new(graph_leaf(graph, OP_POINT), false));
     if (all.distance == NODE_NONE || l.overflow)
         return false;

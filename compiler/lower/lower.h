@@ -7,6 +7,8 @@
 #include "compiler/lower/along_method.h"
 #include "compiler/shape/shape.h"
 
+struct LoweredCrowds; /* crowd.h */
+
 /* The roots of a component's graph: what is computed at a point. */
 typedef enum ComponentRoot {
     ROOT_DISTANCE, /* FLOAT, divided by the slope of the shape, so that it is a safe step */
@@ -30,11 +32,13 @@ extern const RootInfo root_info[ROOT_COUNT];
 /* The value of a root where no material and no shape sets it. */
 Node root_otherwise(Graph *graph, ComponentRoot root);
 
+/* In all of these `crowds` are those of the scene (crowd.h), or NULL. */
+
 /* Lowers a shape at the point OP_POINT and sets roots[ROOT_COUNT].  `number` is that of the component,
    from 1, where the shape's parts have none of their own (Shape.shown).  False when that needs more
    than MOST_LOWERED nodes, for example for copies of copies. */
-bool lower_component(Graph *graph, const Shape *shape, uint32_t number, Arena *scratch,
-                     Node *roots);
+bool lower_component(Graph *graph, const Shape *shape, uint32_t number,
+                     struct LoweredCrowds *crowds, Arena *scratch, Node *roots);
 
 /*
  * A distance for marching that replaces ROOT_DISTANCE where branches save time.  OP_guard skips
@@ -42,7 +46,8 @@ bool lower_component(Graph *graph, const Shape *shape, uint32_t number, Arena *s
  * The result is a bound and positive in the same places as ROOT_DISTANCE, but often smaller, and it
  * jumps.  It is `plain`, which is ROOT_DISTANCE, when the graph would be too large.
  */
-Node lower_guarded(Graph *graph, const Shape *shape, Node plain, Arena *scratch);
+Node lower_guarded(Graph *graph, const Shape *shape, Node plain, struct LoweredCrowds *crowds,
+                   Arena *scratch);
 
 /*
  * How far a ray from OP_POINT along OP_DIRECTION may go before it can enter the shape.  Inside it
@@ -50,14 +55,16 @@ Node lower_guarded(Graph *graph, const Shape *shape, Node plain, Arena *scratch)
  * more where the shape is given by polynomials or is below inversions.  It is `plain`, which is
  * ROOT_DISTANCE, where the method does not apply.
  */
-Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod method, Arena *scratch);
+Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod method,
+                 struct LoweredCrowds *crowds, Arena *scratch);
 
 /*
  * The gradient of a function that is about ROOT_DISTANCE near the surface, and in `near` that
  * function.  The gradient is a VEC3 of any length.  False when an operation has no derivative, or
  * when the graph would be too large.
  */
-bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near, Arena *scratch);
+bool lower_gradient(Graph *graph, const Shape *shape, Node *gradient, Node *near,
+                    struct LoweredCrowds *crowds, Arena *scratch);
 
 /* Whether a shape has sheets without thickness.  Their distance is 0, but nowhere near them is it
    negative, so only lower_along finds where a ray meets them. */

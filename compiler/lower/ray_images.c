@@ -372,7 +372,8 @@ static Node image_shape(Lowering *l, const Shape *shape, RayImage image)
                                     : image_distance(l, shape, image);
 }
 
-Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod method, Arena *scratch)
+Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod method,
+                 struct LoweredCrowds *crowds, Arena *scratch)
 {
     if (!reaches_inversion(shape))
         return plain;
@@ -380,6 +381,7 @@ Node lower_image(Graph *graph, const Shape *shape, Node plain, AlongMethod metho
                        .scratch = scratch,
                        .most    = graph->count + MOST_LOWERED,
                        .method  = method,
+                       .crowds  = crowds,
                        .thin    = true};
     RayImage image  = {.bow            = NODE_NONE,
                        .tilt           = NODE_NONE,

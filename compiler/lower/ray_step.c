@@ -444,16 +444,18 @@ static Node along(Lowering *l, const Shape *shape, Ray ray)
     return rule_of(shape)->along(l, shape, ray);
 }
 
-Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod method, Arena *scratch)
+Node lower_along(Graph *graph, const Shape *shape, Node plain, AlongMethod method,
+                 struct LoweredCrowds *crowds, Arena *scratch)
 {
     if (method >= ALONG_POLYNOMIALS)
-        return lower_image(graph, shape, plain, method, scratch);
+        return lower_image(graph, shape, plain, method, crowds, scratch);
     if (!reaches_polynomial(shape))
         return plain;
     Lowering l = {.graph   = graph,
                   .scratch = scratch,
                   .most    = graph->count + MOST_LOWERED,
                   .method  = method,
+                  .crowds  = crowds,
                   .thin    = true};
     Ray ray = {graph_leaf(graph, OP_POINT), graph_leaf(graph, OP_DIRECTION), graph_number(graph, 1),
                graph_leaf(graph, OP_FOOTPRINT)};

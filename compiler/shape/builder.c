@@ -9,9 +9,25 @@
 #include "compiler/graph/evaluate.h"
 
 const BlendInfo blend_info[BLEND_COUNT] = {
-#define BLEND(name, signature, slope, bulge, ...) {#name, OP_smin_##name, slope, bulge},
+#define BLEND(name, signature, slope, bulge, most, ...) {#name, OP_smin_##name, slope, bulge, most},
 #include "compiler/graph/blends.def"
 };
+
+double blend_bulge(BlendKind kind, uint32_t count)
+{
+    const BlendInfo *info = &blend_info[kind];
+    return fmin(info->bulge * log2(count), info->most);
+}
+
+double blend_reach(BlendKind kind, double n)
+{
+    const double reaches[BLEND_COUNT] = {
+#define BLEND(name, signature, slope, bulge, most, reach, ...) [BLEND_##name] = (reach),
+#include "compiler/graph/blends.def"
+    };
+    return reaches[kind];
+}
+
 const Blend blend_sharp = {.width = NODE_NONE, .steps = NODE_NONE};
 
 Range node_range(ShapeBuilder *builder, Node node, uint32_t component)

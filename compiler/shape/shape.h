@@ -67,9 +67,14 @@ typedef struct BlendInfo {
     const char *spelling;
     Op          op;    /* smooth minimum of (a, b, width) or (a, b, width, steps) */
     double      slope; /* slope of the result over the larger slope of the operands */
-    double      bulge; /* how far min(a, b) may exceed the result, in widths */
+    double      bulge; /* how far min(a, b) may exceed a result of 0, in widths */
+    double      most;  /* the same for any number of operands */
 } BlendInfo;
 extern const BlendInfo blend_info[BLEND_COUNT];
+/* Of so many operands, in widths: how far the least may exceed a result of 0; and how far above a
+   result an operand no longer changes it. */
+double blend_bulge(BlendKind kind, uint32_t count);
+double blend_reach(BlendKind kind, double n);
 
 /* How the shapes of a metasurface fade; falloffs.def has a row for each. */
 typedef enum FalloffKind {
@@ -81,8 +86,9 @@ typedef enum FalloffKind {
 
 typedef struct Blend {
     BlendKind kind;
-    Node      width; /* NODE_NONE: the joint is sharp */
-    Node      steps; /* of kinds that have some */
+    Node      width;  /* NODE_NONE: the joint is sharp */
+    double    widest; /* for all values of the parameters */
+    Node      steps;  /* of kinds that have some */
 } Blend;
 extern const Blend blend_sharp;
 
@@ -141,7 +147,8 @@ struct Shape {
     /* PRIMITIVE, in its own coordinates; bound, uv and trap (VEC2) may be NODE_NONE. */
     Node     formula; /* of a field, algebraic surface (field.c) or DISPLACE, else NODE_NONE */
     double   overlap; /* BEND: by how much the segments reach beyond their ends */
-    double   reach;   /* DISPLACE: largest size of the formula in the box */
+    double   reach;   /* DISPLACE: largest size of the formula in the box; OFFSET, SHELL: how far
+                         they take the surface, at most */
     uint32_t degree;  /* of a formula that is a polynomial, else 0, */
     ZeroBox  zeros;   /* and where that may be 0 */
     Span     blame;   /* what a field without a bound owes that to */

@@ -25,14 +25,23 @@ static const struct {
     Op          op;
     const char *kinds;
 } special_operands[] = {
-    {OP_turn, "mrrr"},      {OP_fold, "muc"},
-    {OP_front, "muc"},      {OP_cell, "mplh"},
-    {OP_cell_polar, "mn"},  {OP_blend_weight, "mmw"},
-    {OP_less, "ee"},        {OP_less_equal, "ee"},
-    {OP_equal, "ee"},       {OP_not_equal, "ee"},
-    {OP_noise2, "s"},       {OP_noise3, "s"},
-    {OP_julia, "mqkk"},     {OP_julia_trap, "mqkk"},
-    {OP_mandelbulb, "mkk"}, {OP_mandelbulb_trap, "mkk"},
+    {OP_turn, "mrrr"},
+    {OP_fold, "muc"},
+    {OP_front, "muc"},
+    {OP_cell, "mplh"},
+    {OP_cell_polar, "mn"},
+    {OP_blend_weight, "mmw"},
+    {OP_less, "ee"},
+    {OP_less_equal, "ee"},
+    {OP_equal, "ee"},
+    {OP_not_equal, "ee"},
+    {OP_to_uint, "k"},
+    {OP_noise2, "s"},
+    {OP_noise3, "s"},
+    {OP_julia, "mqkk"},
+    {OP_julia_trap, "mqkk"},
+    {OP_mandelbulb, "mkk"},
+    {OP_mandelbulb_trap, "mkk"},
 #define BLEND(name, ...) {OP_smin_##name, "mmwn"},
 #include "compiler/graph/blends.def"
 };

@@ -219,6 +219,7 @@ static bool only_jumps(Op op)
     case OP_hash_id:
     case OP_join_id:
     case OP_id_unit:
+    case OP_to_uint:
     case OP_julia_trap:
     case OP_mandelbulb_trap: return true;
     default: return false;

@@ -40,7 +40,7 @@ static void numbers_come_out(void **state)
     assert_true(template_match(alike, t, first, of_first));
     double sum = 0, sum_of_first = 0;
     for (int i = 0; i < 3; i++)
-        for (int k = 0; k < (int)t->slots[i]; k++) {
+        for (int k = 0; k < (int)b->graph->items[t->slots[i]].type; k++) {
             sum += found[i].v[k];
             sum_of_first += of_first[i].v[k];
         }
@@ -59,15 +59,15 @@ static void a_copy_is_the_member(void **state)
     Node      slots[2], roots[2];
     assert_true(template_match(alike, t, second, found));
     for (int i = 0; i < 2; i++)
-        slots[i] = graph_constant(b->graph, t->slots[i], found[i].v);
+        slots[i] = graph_constant(b->graph, b->graph->items[t->slots[i]].type, found[i].v);
     template_copy(b->graph, t, slots, NULL, 0, wanted, roots, &b->arena);
     assert_true(roots[0] == second[0] && roots[1] == NODE_NONE);
     Node     elsewhere = graph_op1(b->graph, OP_neg, b->point);
     LeafPair pair      = {b->point, elsewhere};
     template_copy(b->graph, t, slots, &pair, 1, wanted, roots, &b->arena);
     assert_true(roots[0] == ball(b->graph, elsewhere, 7, 8, 9, 6));
-    assert_true(template_needs(b->graph, t, OP_POINT, wanted, &b->arena));
-    assert_false(template_needs(b->graph, t, OP_NORMAL, wanted, &b->arena));
+    assert_true(template_needs(t, b->point, wanted, &b->arena));
+    assert_false(template_needs(t, graph_leaf(b->graph, OP_NORMAL), wanted, &b->arena));
 }
 
 static bool is_alike(Bench *b, Node first, Node second)

@@ -69,7 +69,7 @@ static Distance lower(const Shape *shape)
 {
     Graph *graph = builder.graph;
     Node   roots[ROOT_COUNT];
-    assert_true(lower_component(graph, shape, 1, &scratch, roots));
+    assert_true(lower_component(graph, shape, 1, NULL, &scratch, roots));
     Distance   lowered = {.tape     = tape_new(graph, roots, 1, &scratch),
                           .distance = roots[ROOT_DISTANCE],
                           .values   = arena_new_array(&scratch, NodeValue, graph->count)};
@@ -221,7 +221,7 @@ static void a_union_that_is_smooth(void **state)
 {
     (void)state;
     const Shape *parts[] = {make_sphere(1), moved(make_sphere(0.7), 1.2, 0, 0)};
-    Blend        blend   = {BLEND_quadratic, graph_number(builder.graph, WIDTH), NODE_NONE};
+    Blend        blend   = {BLEND_quadratic, graph_number(builder.graph, WIDTH), 0, NODE_NONE};
     assert_distance(make_joint(&builder, SHAPE_UNION, parts, 2, blend, NOWHERE), blended);
 }
 

@@ -1,0 +1,28 @@
+/*
+ * crowd.h: parts of a joint that are alike, lowered as one body and a table (graph/crowd.h).
+ */
+#ifndef KRS_LOWER_CROWD_H
+#define KRS_LOWER_CROWD_H
+
+#include "compiler/lower/context.h"
+
+/* Fewer parts that are alike stay apart: a loop over a list costs as much as some. */
+enum { LEAST_CROWD = 16 };
+
+/* The crowds of a scene, by the joints that they are parts of.  All lowerings of a joint use the
+   same. */
+typedef struct LoweredCrowds LoweredCrowds;
+LoweredCrowds               *lowered_crowds_new(Graph *graph, Arena *arena);
+
+/* What a joint joins, which is sharp or a blend: its parts or their complements. */
+typedef struct CrowdJoin {
+    const Shape        *joint;
+    const Shape *const *parts;
+    uint32_t            count;
+    bool                complement;
+} CrowdJoin;
+
+/* Joins those parts that are many and alike.  The others are left in *join. */
+Lowered lower_crowds(Lowering *l, CrowdJoin *join, LowerContext context);
+
+#endif

@@ -1,0 +1,68 @@
+/*
+ * crowd_group.h: parts of a joint that are alike, and the functions of the crowd that they become.
+ */
+#ifndef KRS_CROWD_GROUP_H
+#define KRS_CROWD_GROUP_H
+
+#include "compiler/graph/alike.h"
+#include "compiler/graph/crowd.h"
+#include "compiler/lower/context.h"
+
+/* The expressions of a part: its distance, and a node for each row of surface.def. */
+enum { PART_DISTANCE, PART_SURFACE, PART_ROOTS = 1 + sizeof(Surface) / sizeof(Node) };
+
+/* What the context of parts has in place of what is around the joint. */
+typedef struct PartLeaves {
+    Node point, normal, footprint, level, instance, smoothing;
+} PartLeaves;
+
+PartLeaves part_leaves(Graph *graph);
+
+/* Parts that are alike. */
+typedef struct CrowdGroup {
+    Template *template;
+    struct {
+        uint32_t *items; /* of the members, ascending: their places in the joint */
+        size_t    count, capacity;
+    } members;
+    struct {
+        NodeValue *items; /* slot_count of each member */
+        size_t     count, capacity;
+    } numbers;
+    bool     *varies;  /* of each slot: it differs between members */
+    uint32_t *columns; /* of each slot 4: of its elements the column, or NO_COLUMN: equal in all */
+    struct Column *sources; /* of each column, the element that it has */
+    uint32_t       column_count;
+    uint32_t       crowd;                  /* its table */
+    uint32_t       distance, nearest;      /* functions; NO_FUNCTION: not made yet */
+    uint32_t       properties[PART_ROOTS]; /* of blends: what is mixed */
+} CrowdGroup;
+
+enum { NO_COLUMN = UINT32_MAX, NO_FUNCTION = UINT32_MAX };
+
+/* How the members of a group are joined. */
+typedef struct GroupJoin {
+    Graph     *graph;
+    Arena     *scratch;
+    PartLeaves leaves;
+    Blend      blend;
+    bool       complement;
+} GroupJoin;
+
+/* crowd_table.c: finds what varies and its columns; false: there would be too many. */
+bool group_find_columns(CrowdGroup *group, const GroupJoin *join);
+/* Makes the table.  `boxes` are of all parts of the joint. */
+void group_make_table(CrowdGroup *group, const GroupJoin *join, const Box *boxes, double reach,
+                      double margin, Span span);
+/* The nodes in the slots, for the member whose number is that node; without one (NODE_NONE) of what
+   does not vary. */
+void group_slots(const CrowdGroup *group, Graph *graph, Node member, Node *slots);
+
+/* crowd_functions.c: whether functions can be made for all that is asked of the surface. */
+bool group_has_functions(const CrowdGroup *group, const GroupJoin *join);
+/* Whether a blend mixes something in which the members differ. */
+bool group_mixes(const CrowdGroup *group, const GroupJoin *join);
+/* The members of a group, joined, where the context is. */
+Lowered group_lower(CrowdGroup *group, const GroupJoin *join, bool surfaces, LowerContext context);
+
+#endif
