@@ -106,6 +106,18 @@ const char *value_type_name(Elaboration *e, Value value)
     return diag_text(e->diags, "a list of %zu", value.list->count);
 }
 
+/* The elements of a vector, where all are finite numbers that no author may change. */
+static bool vector_numbers(const List *list, double numbers[4])
+{
+    for (size_t i = 0; i < list->count; i++) {
+        if (list->items[i].type != VALUE_NUMBER || list->items[i].number_id ||
+            !isfinite(list->items[i].number))
+            return false;
+        numbers[i] = list->items[i].number;
+    }
+    return true;
+}
+
 Node value_node(Elaboration *e, Value value)
 {
     Graph *g = e->graph;
@@ -123,6 +135,9 @@ Node value_node(Elaboration *e, Value value)
         return NODE_NONE;
     static const Op build[] = {[2] = OP_vec2, [3] = OP_vec3, [4] = OP_vec4};
     Node            elements[4];
+    double          numbers[4];
+    if (vector_numbers(value.list, numbers))
+        return graph_constant(g, (GraphType)length, numbers);
     for (uint32_t i = 0; i < length; i++)
         elements[i] = value_node(e, value.list->items[i]);
     return graph_op(g, build[length], elements);
@@ -175,9 +190,28 @@ static Value map_elements(Elaboration *e, Op op, const Value *arguments, uint32_
     return value_list(e, items, length);
 }
 
+/* The common case, which makes no node: an operation on numbers that are known now.  False: some are
+   not, or the result is not finite. */
+static bool fold_op(Op op, const Value *arguments, uint32_t count, double *result)
+{
+    GraphType types[MAX_OPERANDS]    = {0};
+    NodeValue operands[MAX_OPERANDS] = {0};
+    for (uint32_t i = 0; i < count; i++) {
+        if (arguments[i].type != VALUE_NUMBER || arguments[i].number_id)
+            return false;
+        types[i]         = TYPE_FLOAT;
+        operands[i].v[0] = arguments[i].number + 0.0; /* -0 and 0 are one constant */
+    }
+    *result = op_evaluate(op, TYPE_FLOAT, 0, types, operands).v[0];
+    return isfinite(*result);
+}
+
 Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count,
                    const Syntax *origin)
 {
+    double number;
+    if (fold_op(op, arguments, count, &number))
+        return value_number(number);
     uint32_t length = 0;
     bool     whole  = false; /* some operand is a vector known only as a node */
     for (uint32_t i = 0; i < count; i++) {
@@ -314,6 +348,18 @@ static Value join_shapes(Elaboration *e, const Syntax *syntax, const Shape *a, c
     return value_shape(make_joint(e->builder, kind, shapes, 2, blend_sharp, syntax->span));
 }
 
+static bool compare_numbers(TokenKind op, double a, double b)
+{
+    switch (op) {
+    case TOKEN_LESS: return a < b;
+    case TOKEN_LESS_EQUAL: return a <= b;
+    case TOKEN_GREATER: return a > b;
+    case TOKEN_GREATER_EQUAL: return a >= b;
+    case TOKEN_EQUAL_EQUAL: return a == b;
+    default: return a != b;
+    }
+}
+
 static Value compare(Elaboration *e, const Syntax *syntax, Value a, Value b)
 {
     bool equality = syntax->op == TOKEN_EQUAL_EQUAL || syntax->op == TOKEN_NOT_EQUAL;
@@ -327,9 +373,9 @@ static Value compare(Elaboration *e, const Syntax *syntax, Value a, Value b)
         [TOKEN_LESS] = OP_less,         [TOKEN_LESS_EQUAL] = OP_less_equal,
         [TOKEN_GREATER] = OP_less,      [TOKEN_GREATER_EQUAL] = OP_less_equal,
         [TOKEN_EQUAL_EQUAL] = OP_equal, [TOKEN_NOT_EQUAL] = OP_not_equal};
-    bool swap = syntax->op == TOKEN_GREATER || syntax->op == TOKEN_GREATER_EQUAL;
     if (a.type == VALUE_NUMBER && b.type == VALUE_NUMBER) /* what is known now is decided now */
-        a.number_id = b.number_id = 0;
+        return value_boolean(compare_numbers(syntax->op, a.number, b.number));
+    bool swap      = syntax->op == TOKEN_GREATER || syntax->op == TOKEN_GREATER_EQUAL;
     Node left      = value_node(e, swap ? b : a);
     Node right     = value_node(e, swap ? a : b);
     e->graph->here = syntax->span;

@@ -302,14 +302,15 @@ static double count_steps(const TrialMarch *m, const Tape *tape, Node root, cons
 static double trial_march_cost(const TrialMarch *m, Node distance)
 {
     const double OVERHEAD = 20; /* of the tracer, a step */
-    Tape         tape     = tape_new(m->graph, &distance, 1, m->scratch);
-    NodeValue   *values   = arena_new_array(m->scratch, NodeValue, m->graph->count);
+    const Graph *graph    = graph_extract(m->graph, &distance, 1, m->scratch);
+    Tape         tape     = tape_new(graph, &distance, 1, m->scratch);
+    NodeValue   *values   = arena_new_array(m->scratch, NodeValue, graph->count);
     double       cost = OVERHEAD, steps = 0;
     for (size_t i = tape.frame_count; i < tape.count; i++) {
-        const Expr *e                   = &m->graph->items[tape.nodes[i]];
+        const Expr *e                   = &graph->items[tape.nodes[i]];
         GraphType   types[MAX_OPERANDS] = {0};
         for (int k = 0; k < e->operand_count; k++)
-            types[k] = (GraphType)m->graph->items[e->operands[k]].type;
+            types[k] = (GraphType)graph->items[e->operands[k]].type;
         cost += e->operand_count ? op_cost((Op)e->op, (GraphType)e->type, types) : 0;
     }
     tape_run_frame(&tape, m->parameters, values);
