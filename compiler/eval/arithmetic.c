@@ -106,16 +106,17 @@ const char *value_type_name(Elaboration *e, Value value)
     return diag_text(e->diags, "a list of %zu", value.list->count);
 }
 
-/* The elements of a vector, where all are finite numbers that no author may change. */
-static bool vector_numbers(const List *list, double numbers[4])
+uint32_t value_numbers(Value value, double numbers[4])
 {
-    for (size_t i = 0; i < list->count; i++) {
-        if (list->items[i].type != VALUE_NUMBER || list->items[i].number_id ||
-            !isfinite(list->items[i].number))
-            return false;
-        numbers[i] = list->items[i].number;
+    if (value.type != VALUE_LIST || value.list->count < 2 || value.list->count > 4)
+        return 0;
+    for (size_t i = 0; i < value.list->count; i++) {
+        const Value *item = &value.list->items[i];
+        if (item->type != VALUE_NUMBER || item->number_id || !isfinite(item->number))
+            return 0;
+        numbers[i] = item->number + 0.0; /* -0 and 0 are one constant */
     }
-    return true;
+    return (uint32_t)value.list->count;
 }
 
 Node value_node(Elaboration *e, Value value)
@@ -130,14 +131,15 @@ Node value_node(Elaboration *e, Value value)
     case VALUE_LIST: break;
     default: return NODE_NONE;
     }
-    uint32_t length = vector_length(e, value);
+    double   numbers[4];
+    uint32_t length = value_numbers(value, numbers);
+    if (length)
+        return graph_constant(g, (GraphType)length, numbers);
+    length = vector_length(e, value);
     if (!length)
         return NODE_NONE;
     static const Op build[] = {[2] = OP_vec2, [3] = OP_vec3, [4] = OP_vec4};
     Node            elements[4];
-    double          numbers[4];
-    if (vector_numbers(value.list, numbers))
-        return graph_constant(g, (GraphType)length, numbers);
     for (uint32_t i = 0; i < length; i++)
         elements[i] = value_node(e, value.list->items[i]);
     return graph_op(g, build[length], elements);

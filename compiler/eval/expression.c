@@ -164,7 +164,7 @@ static bool run_clause(Elaboration *e, const Comprehension *c)
             limit_reached(e, c->syntax->span, "a list of more than 4 million elements");
             return false;
         }
-        array_push(e->arena, c->result, value);
+        array_push_large(e->arena, c->result, value);
         return true;
     }
     const Syntax *clause = c->syntax->children[c->clause];
@@ -192,7 +192,7 @@ static Value evaluate_comprehension(Elaboration *e, const Environment *env, cons
 static bool push_element(Elaboration *e, Value element, void *user)
 {
     Values *result = user;
-    array_push(e->arena, result, element);
+    array_push_large(e->arena, result, element);
     return true;
 }
 

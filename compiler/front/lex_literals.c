@@ -37,7 +37,8 @@ static double read_decimal(Lexer *lexer, uint32_t start)
         }
         fraction = fraction || c == '.';
     }
-    text_format(digits, "e%ld", exponent);
+    if (exponent != 0)
+        text_format(digits, "e%ld", exponent);
     return strtod(digits->bytes, NULL);
 }
 

@@ -78,6 +78,7 @@ typedef struct Graph {
     Arena     *arena;
     Expr      *items;
     size_t     count, capacity;
+    Expr      *older; /* the array before `items` */
     GraphSlot *slots;
     size_t     slot_count;
     struct {
