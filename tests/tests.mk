@@ -16,7 +16,7 @@ ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c prod
 UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c queried.c \
                cache_folder.c compiled_files.c)
 PROPERTY_SHARED := $(addprefix tests/property/, garden.c op_trial.c reach_crowd.c)
-UNIT        := texts front diagnostics shape passes display devices tracer film rendering methods schedules writer \
+UNIT        := texts front diagnostics shape parts passes display devices tracer film rendering methods schedules writer \
                image_files memory validate search refute frame query zones cache cache_limits \
                compiled pipelines per_component stencils glslang loader drivers grid \
                printing printers answers

@@ -64,14 +64,14 @@ void arena_release(Arena *arena, void *object, size_t bytes);
      (void)((array)->items[(array)->count++] = (item)))
 
 /* The same for arrays that may be large, and into which nothing points: old copies are freed. */
-#define array_push_large(arena, array, item)                                             \
-    do {                                                                                 \
-        size_t before_ = (array)->capacity * sizeof *(array)->items;                     \
-        void  *old_    = (array)->items;                                                 \
-        bool   full_   = (array)->count == (array)->capacity;                            \
-        array_push(arena, array, item);                                                  \
-        if (full_)                                                                       \
-            arena_release(arena, old_, before_);                                         \
+#define array_push_large(arena, array, item)                         \
+    do {                                                             \
+        size_t before_ = (array)->capacity * sizeof *(array)->items; \
+        void  *old_    = (array)->items;                             \
+        bool   full_   = (array)->count == (array)->capacity;        \
+        array_push(arena, array, item);                              \
+        if (full_)                                                   \
+            arena_release(arena, old_, before_);                     \
     } while (0)
 
 #endif

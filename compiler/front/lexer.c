@@ -250,7 +250,7 @@ static void find_beginnings(Lexer *lexer)
 {
     for (int c = 1; c < 128; c++)
         lexer->begins[c] = is_word((char)c) || is_space((char)c) ||
-                    strchr("#\"'!()[]{},;:.=<>+-*/%^&|", c);
+                           strchr("#\"'!()[]{},;:.=<>+-*/%^&|", c);
     for (size_t i = 0; i < sizeof lookalikes / sizeof *lookalikes; i++)
         lexer->lookalike[(unsigned char)lookalikes[i].sign[0]] = true;
     for (int c = 0; c < 256; c++)

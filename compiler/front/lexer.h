@@ -15,8 +15,8 @@ typedef struct Lexer {
     Diags      *diags;
     Arena      *arena;
     Tokens      tokens;
-    Text        doc;         /* the `///` lines since the last token */
-    Text        scratch;     /* the number or string being read */
+    Text        doc;     /* the `///` lines since the last token */
+    Text        scratch; /* the number or string being read */
     /* By the first byte: find_beginnings. */
     bool    begins[256];    /* whether something can begin with it */
     bool    lookalike[256]; /* whether a lookalike can */

@@ -189,10 +189,10 @@ static GraphSlot *slot_find(const Graph *graph, const Expr *e, uint32_t hash)
 
 static void slots_grow(Graph *graph)
 {
-    GraphSlot *old         = graph->slots;
-    size_t     count       = graph->slot_count;
-    graph->slot_count      = count ? 2 * count : 64;
-    graph->slots           = arena_new_array(graph->arena, GraphSlot, graph->slot_count);
+    GraphSlot *old    = graph->slots;
+    size_t     count  = graph->slot_count;
+    graph->slot_count = count ? 2 * count : 64;
+    graph->slots      = arena_new_array(graph->arena, GraphSlot, graph->slot_count);
     for (size_t i = 0; i < count; i++) {
         size_t slot = old[i].hash & (graph->slot_count - 1);
         while (old[i].number && graph->slots[slot].number)
