@@ -18,8 +18,8 @@ UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c
 PROPERTY_SHARED := $(addprefix tests/property/, garden.c op_trial.c reach_crowd.c)
 UNIT        := texts front diagnostics shape passes display devices tracer film rendering methods schedules writer \
                image_files memory validate search refute frame query zones cache cache_limits \
-               compiled pipelines per_component stencils glslang loader drivers grid crowd_grid tables device_tables \
-               table_files printing printers answers alike
+               compiled pipelines per_component stencils glslang loader drivers grid crowd_grid crowds \
+               crowd_kernels tables device_tables table_files printing printers answers alike
 PROPERTY    := ops noise graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees crowds
 ORACLES     := self primitives krs_expand trees maps moebius moebius_images operators \
@@ -36,7 +36,7 @@ PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
 SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/diagnostics unit/shape unit/passes unit/display \
-               unit/writer unit/image_files unit/validate unit/loader unit/grid unit/crowd_grid unit/tables unit/search \
+               unit/writer unit/image_files unit/validate unit/loader unit/grid unit/crowd_grid unit/crowds unit/tables unit/search \
                unit/refute unit/memory unit/cache unit/cache_limits unit/frame unit/query \
                unit/zones unit/printers unit/alike property/ops property/noise property/graph property/simplify \
                property/facts property/derive property/series property/zeros property/local \
