@@ -29,7 +29,7 @@ JOBS    ?= $(shell nproc)
 BASE     := $(addprefix compiler/base/, arena.c text.c source.c beneath.c loader.c diag.c diag_text.c)
 FRONT    := $(addprefix compiler/front/, lexer.c lex_literals.c syntax.c parser.c parse_expression.c \
                 parse_declaration.c parse.c names.c files.c)
-GRAPH    := $(addprefix compiler/graph/, intern.c alike.c graph.c crowd.c build.c substitute.c derive_rules.c \
+GRAPH    := $(addprefix compiler/graph/, intern.c alike.c graph.c crowd.c build.c substitute.c extract.c derive_rules.c \
                 derive_blends.c derive.c series.c zeros.c local_terms.c local_curves.c local.c rebase.c \
                 simplify.c hoist.c range.c calculus.c rules.c rules_space.c rules_blends.c facts.c parity.c \
                 regions.c grid.c fractal.c op_values.c tape.c evaluate.c print.c)

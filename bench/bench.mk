@@ -65,12 +65,18 @@ $(B)/bench/registers/registers: $(B)/bench/registers/registers.o $(STAGE) $(B)/l
 bench-registers: $(B)/bench/registers/registers $(B)/krs
 	@B=$(B) REVISION=$(REVISION) tools/bench-registers.sh
 
+# How long each pass of the compiler takes for many parts.
+$(B)/bench/parts/parts: $(B)/bench/parts/parts.o $(B)/libkrs.a
+	@$(CC) $(STYLE) $(CFLAGS) -o $@ $^ $(LIBS)
+bench-parts: $(B)/bench/parts/parts
+	@$(B)/bench/parts/parts
+
 # For `make test`.
 SCRIPTS += tests/bench.sh
 test-programs: $(B)/bench/bench
 clang-objects: $(BENCH:%.c=$(B)/%.o) $(STAGE) $(MINIFY) \
                $(B)/bench/iterations/iterations.o $(B)/bench/inverted/inverted.o \
                $(B)/bench/normals/normals.o $(ALGEBRAIC:%=$(B)/%) $(DEVICES) \
-               $(B)/bench/registers/registers.o
+               $(B)/bench/registers/registers.o $(B)/bench/parts/parts.o
 .PHONY: bench bench-quick minify iterations inverted bench-normals bench-algebraic check-device \
-        bench-registers
+        bench-registers bench-parts

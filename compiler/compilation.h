@@ -29,6 +29,7 @@ typedef enum PassId {
 /* Results of a run other than the compiled scene. */
 typedef struct Request {
     PassId   after;   /* the pass to dump; PASS_COUNT: none */
+    PassId   end;     /* the pass before which the run ends; PASS_COUNT: none */
     char   **dump;    /* where the dump goes, unless NULL */
     Inspect *inspect; /* called with the elaborated scene, unless NULL */
     void    *user;    /* passed to `inspect` */

@@ -11,7 +11,7 @@
 
 static const size_t DEFAULT_MEMORY = (size_t)2 << 30;
 
-static const Request scene_alone = {.after = PASS_COUNT};
+static const Request scene_alone = {.after = PASS_COUNT, .end = PASS_COUNT};
 
 /* ---- the passes ---- */
 
@@ -68,7 +68,7 @@ static KrsStatus run_passes(Compilation *c)
     double     *ms      = arena_new_array(&c->scene->arena, double, PASS_COUNT);
     KrsStatus   status  = KRS_OK;
     program->pass_ms    = ms;
-    for (PassId id = 0; id < PASS_COUNT && status == KRS_OK; id++) {
+    for (PassId id = 0; id < c->request->end && status == KRS_OK; id++) {
         status = run_pass(c, &passes[id], &ms[id]);
         if (status == KRS_OK && c->request->after == id) {
             passes[id].print(c, &c->dump);
@@ -83,8 +83,9 @@ static KrsStatus run_passes(Compilation *c)
 static KrsStatus inspect(Compilation *c)
 {
     c->diags.count = c->diags.warnings = 0;
-    return c->request->inspect(c->request->user,
-                               &(Inspected){&c->elaborated, &c->diags, &c->work, &c->scratch});
+    return c->request->inspect(
+        c->request->user,
+        &(Inspected){&c->elaborated, &c->diags, &c->work, &c->scratch, c->scene->program.pass_ms});
 }
 
 /* ---- the API ---- */
@@ -234,7 +235,7 @@ KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene
 KrsStatus krs_dump(const char *path, const char *after, const KrsOptions *options, char **dump)
 {
     KrsScene *scene;
-    Request   request = {.after = find_pass(after), .dump = dump};
+    Request   request = {.after = find_pass(after), .end = PASS_COUNT, .dump = dump};
     *dump             = NULL;
     if (request.after == PASS_COUNT)
         return KRS_BAD_ARGUMENT;
@@ -246,8 +247,19 @@ KrsStatus krs_dump(const char *path, const char *after, const KrsOptions *option
 KrsStatus inspect_file(const char *path, const KrsOptions *options, Inspect *look, void *user)
 {
     KrsScene *scene;
-    Request   request = {.after = PASS_COUNT, .inspect = look, .user = user};
+    Request   request = {.after = PASS_COUNT, .end = PASS_COUNT, .inspect = look, .user = user};
     KrsStatus status  = compile_path(path, options, &request, &scene);
+    scene_free(scene);
+    return status;
+}
+
+KrsStatus inspect_elaborated(const char *text, size_t length, const KrsOptions *options,
+                             Inspect *look, void *user)
+{
+    KrsScene *scene;
+    Request   request = {
+          .after = PASS_COUNT, .end = PASS_elaborate + 1, .inspect = look, .user = user};
+    KrsStatus status = load_and_compile(text, length, "scene.krs", options, &request, &scene);
     scene_free(scene);
     return status;
 }

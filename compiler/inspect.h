@@ -10,9 +10,10 @@
 
 /* An elaborated scene, for the time of the call.  `diags` is empty; what is added is reported. */
 typedef struct Inspected {
-    const Scene *scene; /* nodes may be added to its graph */
-    Diags       *diags;
-    Arena       *arena, *scratch; /* `scratch` may be used, and freed */
+    const Scene  *scene; /* nodes may be added to its graph */
+    Diags        *diags;
+    Arena        *arena, *scratch; /* `scratch` may be used, and freed */
+    const double *pass_ms; /* time of each pass that ran (krs_pass, compile.h), in milliseconds */
 } Inspected;
 
 typedef KrsStatus Inspect(void *user, const Inspected *what);
@@ -20,5 +21,9 @@ typedef KrsStatus Inspect(void *user, const Inspected *what);
 /* Compiles a file, calls `inspect` and returns its status.  The compiled scene is freed.  Warnings
    of the compiler are not reported. */
 KrsStatus inspect_file(const char *path, const KrsOptions *options, Inspect *inspect, void *user);
+
+/* The same of a text, for which only the passes up to `elaborate` run. */
+KrsStatus inspect_elaborated(const char *text, size_t length, const KrsOptions *options,
+                             Inspect *inspect, void *user);
 
 #endif

@@ -174,11 +174,10 @@ static bool any_thin_sheets(const Scene *s)
 
 KrsStatus pass_lower(Compilation *c)
 {
-    const Scene *s     = &c->elaborated;
-    Roots       *roots = &c->scene->roots;
-    Additions   *more  = &c->additions;
-    /* None, until shaders can be printed of them. */
-    LoweredCrowds *crowds = NULL;
+    const Scene   *s      = &c->elaborated;
+    Roots         *roots  = &c->scene->roots;
+    Additions     *more   = &c->additions;
+    LoweredCrowds *crowds = lowered_crowds_new(s->graph, &c->work);
     allocate_roots(c);
     if (!lower_components(c, s->graph, crowds))
         return KRS_BAD_SCENE;

@@ -16,7 +16,7 @@ ORACLE      := $(addprefix tests/oracle/, brute.c solids.c expand.c judge.c prod
 UNIT_SHARED := $(addprefix tests/unit/, reading.c traced_scenes.c tracer_stage.c queried.c \
                cache_folder.c compiled_files.c crowd_scene.c)
 PROPERTY_SHARED := $(addprefix tests/property/, garden.c op_trial.c reach_crowd.c)
-UNIT        := texts front diagnostics shape passes display devices tracer film rendering methods schedules writer \
+UNIT        := texts front diagnostics shape parts passes display devices tracer film rendering methods schedules writer \
                image_files memory validate search refute frame query zones cache cache_limits \
                compiled pipelines per_component stencils glslang loader drivers grid crowd_grid crowds \
                crowd_kernels tables device_tables table_files printing printers answers alike
@@ -35,7 +35,7 @@ SECOND      := $(DRIVERS) $(addprefix tests/, unit/devices unit/tracer unit/rend
 PROGRAMS    := $(UNIT:%=tests/unit/%) $(PROPERTY:%=tests/property/%) $(ORACLES:%=tests/oracle/%) \
                $(FUZZ:%=tests/fuzz/%)
 # Without a device: what runs under the sanitizers, too (drivers leak by design).
-SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/diagnostics unit/shape unit/passes unit/display \
+SANITIZED   := $(addprefix tests/, unit/texts unit/front unit/diagnostics unit/shape unit/parts unit/passes unit/display \
                unit/writer unit/image_files unit/validate unit/loader unit/grid unit/crowd_grid unit/crowds unit/tables unit/search \
                unit/refute unit/memory unit/cache unit/cache_limits unit/frame unit/query \
                unit/zones unit/printers unit/alike property/ops property/noise property/graph property/simplify \

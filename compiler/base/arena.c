@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIRST_BLOCK_BYTES = 4096, LARGEST_BLOCK_BYTES = 1 << 20 };
+enum { FIRST_BLOCK_BYTES = 4096 };
 
 typedef struct ArenaBlock {
     struct ArenaBlock *older;
@@ -103,20 +103,39 @@ void *arena_alloc(Arena *arena, size_t count, size_t size)
     return allocate(arena, count * size);
 }
 
+static void block_free(Memory *memory, ArenaBlock *block)
+{
+    memory->used -= block->size;
+    if (memory->release)
+        memory->release(memory->user, block);
+    else
+        free(block);
+}
+
 void arena_free(Arena *arena)
 {
-    Memory *memory = arena->memory;
     while (arena->newest) {
         ArenaBlock *block = arena->newest;
         arena->newest     = block->older;
-        memory->used -= block->size;
-        if (memory->release)
-            memory->release(memory->user, block);
-        else
-            free(block);
+        block_free(arena->memory, block);
     }
     arena->next = NULL;
     arena->left = 0;
+}
+
+/* An object of this size has a block of its own.  The newest block stays: objects may follow. */
+void arena_release(Arena *arena, void *object, size_t bytes)
+{
+    if (bytes < LARGEST_BLOCK_BYTES)
+        return;
+    for (ArenaBlock *newer = arena->newest; newer->older; newer = newer->older) {
+        ArenaBlock *block = newer->older;
+        if (block_bytes(block) != object)
+            continue;
+        newer->older = block->older;
+        block_free(arena->memory, block);
+        return;
+    }
 }
 
 char *arena_copy_text(Arena *arena, const char *bytes, size_t length)

@@ -9,6 +9,7 @@
 #define KRS_ARENA_H
 
 #include <setjmp.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 /* Where arenas get their blocks, shared by all arenas of one compilation. */
@@ -28,6 +29,9 @@ typedef struct Arena {
     size_t             left;   /* free bytes there */
 } Arena;
 
+/* Objects are put together in blocks of at most this size. */
+enum { LARGEST_BLOCK_BYTES = 1 << 20 };
+
 /* count * size zeroed bytes, aligned for any object; never NULL.  If the product overflows, memory
    has run out. */
 void *arena_alloc(Arena *arena, size_t count, size_t size);
@@ -45,6 +49,10 @@ char *arena_copy_text(Arena *arena, const char *bytes, size_t length);
 /* A larger copy of a full array, for array_push.  The old array stays in the arena. */
 void *arena_grow(Arena *arena, void *items, size_t count, size_t *capacity, size_t size);
 
+/* Frees an object of at least LARGEST_BLOCK_BYTES that nothing refers to any more, such as an array
+   that was copied to a larger one; smaller objects stay. */
+void arena_release(Arena *arena, void *object, size_t bytes);
+
 /* Growing arrays are structs with these three members, in the arena given at each push:
        typedef struct { Token *items; size_t count, capacity; } Tokens;
        array_push(arena, &tokens, token);                                                     */
@@ -54,5 +62,16 @@ void *arena_grow(Arena *arena, void *items, size_t count, size_t *capacity, size
                                               &(array)->capacity, sizeof *(array)->items)) \
          : (void)0,                                                                        \
      (void)((array)->items[(array)->count++] = (item)))
+
+/* The same for arrays that may be large, and into which nothing points: old copies are freed. */
+#define array_push_large(arena, array, item)                         \
+    do {                                                             \
+        size_t before_ = (array)->capacity * sizeof *(array)->items; \
+        void  *old_    = (array)->items;                             \
+        bool   full_   = (array)->count == (array)->capacity;        \
+        array_push(arena, array, item);                              \
+        if (full_)                                                   \
+            arena_release(arena, old_, before_);                     \
+    } while (0)
 
 #endif

@@ -444,6 +444,14 @@ static bool store(Elaboration *e, Argument *slot, const Syntax *argument, Value 
     return true;
 }
 
+static bool has_rest(const ParameterWord *words, uint32_t count)
+{
+    bool rest = false;
+    for (uint32_t i = 0; i < count; i++)
+        rest = rest || words[i].variadic;
+    return rest;
+}
+
 bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_syntax,
                     uint32_t first, const char *name, const char *parameters, Call *call)
 {
@@ -451,7 +459,8 @@ bool bind_arguments(Elaboration *e, const Environment *env, const Syntax *call_s
     uint32_t      count = split_parameters(parameters, words), next = 0;
     bool          good = true;
     *call              = (Call){.syntax = call_syntax, .name = name};
-    call->rest         = arena_new_array(e->arena, Argument, call_syntax->count + 1);
+    if (has_rest(words, count))
+        call->rest = arena_new_array(e->arena, Argument, call_syntax->count);
     for (uint32_t i = first; i < call_syntax->count; i++) {
         const Syntax *argument = call_syntax->children[i];
         if (argument->kind != SYNTAX_ARGUMENT)

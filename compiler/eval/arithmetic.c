@@ -106,6 +106,19 @@ const char *value_type_name(Elaboration *e, Value value)
     return diag_text(e->diags, "a list of %zu", value.list->count);
 }
 
+uint32_t value_numbers(Value value, double numbers[4])
+{
+    if (value.type != VALUE_LIST || value.list->count < 2 || value.list->count > 4)
+        return 0;
+    for (size_t i = 0; i < value.list->count; i++) {
+        const Value *item = &value.list->items[i];
+        if (item->type != VALUE_NUMBER || item->number_id || !isfinite(item->number))
+            return 0;
+        numbers[i] = item->number + 0.0; /* -0 and 0 are one constant */
+    }
+    return (uint32_t)value.list->count;
+}
+
 Node value_node(Elaboration *e, Value value)
 {
     Graph *g = e->graph;
@@ -118,7 +131,11 @@ Node value_node(Elaboration *e, Value value)
     case VALUE_LIST: break;
     default: return NODE_NONE;
     }
-    uint32_t length = vector_length(e, value);
+    double   numbers[4];
+    uint32_t length = value_numbers(value, numbers);
+    if (length)
+        return graph_constant(g, (GraphType)length, numbers);
+    length = vector_length(e, value);
     if (!length)
         return NODE_NONE;
     static const Op build[] = {[2] = OP_vec2, [3] = OP_vec3, [4] = OP_vec4};
@@ -175,9 +192,28 @@ static Value map_elements(Elaboration *e, Op op, const Value *arguments, uint32_
     return value_list(e, items, length);
 }
 
+/* The common case, which makes no node: an operation on numbers that are known now.  False: some are
+   not, or the result is not finite. */
+static bool fold_op(Op op, const Value *arguments, uint32_t count, double *result)
+{
+    GraphType types[MAX_OPERANDS]    = {0};
+    NodeValue operands[MAX_OPERANDS] = {0};
+    for (uint32_t i = 0; i < count; i++) {
+        if (arguments[i].type != VALUE_NUMBER || arguments[i].number_id)
+            return false;
+        types[i]         = TYPE_FLOAT;
+        operands[i].v[0] = arguments[i].number + 0.0; /* -0 and 0 are one constant */
+    }
+    *result = op_evaluate(op, TYPE_FLOAT, 0, types, operands).v[0];
+    return isfinite(*result);
+}
+
 Value value_map_op(Elaboration *e, Op op, const Value *arguments, uint32_t count,
                    const Syntax *origin)
 {
+    double number;
+    if (fold_op(op, arguments, count, &number))
+        return value_number(number);
     uint32_t length = 0;
     bool     whole  = false; /* some operand is a vector known only as a node */
     for (uint32_t i = 0; i < count; i++) {
@@ -314,6 +350,18 @@ static Value join_shapes(Elaboration *e, const Syntax *syntax, const Shape *a, c
     return value_shape(make_joint(e->builder, kind, shapes, 2, blend_sharp, syntax->span));
 }
 
+static bool compare_numbers(TokenKind op, double a, double b)
+{
+    switch (op) {
+    case TOKEN_LESS: return a < b;
+    case TOKEN_LESS_EQUAL: return a <= b;
+    case TOKEN_GREATER: return a > b;
+    case TOKEN_GREATER_EQUAL: return a >= b;
+    case TOKEN_EQUAL_EQUAL: return a == b;
+    default: return a != b;
+    }
+}
+
 static Value compare(Elaboration *e, const Syntax *syntax, Value a, Value b)
 {
     bool equality = syntax->op == TOKEN_EQUAL_EQUAL || syntax->op == TOKEN_NOT_EQUAL;
@@ -327,9 +375,9 @@ static Value compare(Elaboration *e, const Syntax *syntax, Value a, Value b)
         [TOKEN_LESS] = OP_less,         [TOKEN_LESS_EQUAL] = OP_less_equal,
         [TOKEN_GREATER] = OP_less,      [TOKEN_GREATER_EQUAL] = OP_less_equal,
         [TOKEN_EQUAL_EQUAL] = OP_equal, [TOKEN_NOT_EQUAL] = OP_not_equal};
-    bool swap = syntax->op == TOKEN_GREATER || syntax->op == TOKEN_GREATER_EQUAL;
     if (a.type == VALUE_NUMBER && b.type == VALUE_NUMBER) /* what is known now is decided now */
-        a.number_id = b.number_id = 0;
+        return value_boolean(compare_numbers(syntax->op, a.number, b.number));
+    bool swap      = syntax->op == TOKEN_GREATER || syntax->op == TOKEN_GREATER_EQUAL;
     Node left      = value_node(e, swap ? b : a);
     Node right     = value_node(e, swap ? a : b);
     e->graph->here = syntax->span;

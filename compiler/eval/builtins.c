@@ -183,7 +183,7 @@ static const Builtin builtins[] = {
 };
 enum { BUILTIN_COUNT = sizeof builtins / sizeof *builtins };
 
-const Builtin *builtin_find(const char *name)
+static const Builtin *find_row(const char *name)
 {
     for (size_t i = 0; i < BUILTIN_COUNT; i++)
         if (builtins[i].parameters && strcmp(builtins[i].name, name) == 0)
@@ -195,6 +195,25 @@ static const char *const constants[] = {
     "pi",       "tau", "x", "y",      "z",        "p",          "time",       "level",
     "instance", "u",   "v", "normal", "identity", "orbit_trap", "orbit_step", "rounding"};
 enum { CONSTANT_COUNT = sizeof constants / sizeof *constants };
+
+/* Names are compared by their addresses, which are looked up here before tables are searched. */
+const BuiltinName *builtin_find(Elaboration *e, const char *name)
+{
+    uintptr_t    address = (uintptr_t)name;
+    BuiltinName *known   = &e->builtins[(address >> 3 ^ address >> 11) % MOST_BUILTIN_NAMES];
+    if (known->name == name)
+        return known;
+    *known = (BuiltinName){.name = name};
+    for (size_t i = 0; i < CONSTANT_COUNT; i++)
+        known->constant = known->constant || strcmp(constants[i], name) == 0;
+    const Builtin *row = find_row(name);
+    if (row) {
+        Function *function = arena_new(e->arena, Function);
+        *function          = (Function){.name = row->name, .builtin = row};
+        known->function    = function;
+    }
+    return known;
+}
 
 size_t builtin_names(const char **names, size_t capacity)
 {
@@ -249,28 +268,22 @@ static Value coordinate(Elaboration *e, uint32_t axis)
     return value_of_node(e, graph_component(e->graph, point, axis));
 }
 
-bool builtin_constant(Elaboration *e, const char *name, Span span, Value *value)
+Value builtin_constant(Elaboration *e, const char *name, Span span)
 {
     Graph *g = e->graph;
     if (strcmp(name, "pi") == 0)
-        *value = value_number(M_PI);
-    else if (strcmp(name, "tau") == 0)
-        *value = value_number(2 * M_PI);
-    else if (strlen(name) == 1 && name[0] >= 'x' && name[0] <= 'z')
-        *value = coordinate(e, (uint32_t)(name[0] - 'x'));
-    else if (strcmp(name, "p") == 0)
-        *value = value_of_node(e, graph_leaf(g, OP_POINT));
-    else if (strcmp(name, "time") == 0)
-        *value = value_of_node(e, graph_parameter(g, 0, TYPE_FLOAT));
-    else if (strcmp(name, "level") == 0 || strcmp(name, "instance") == 0 ||
-             strcmp(name, "u") == 0 || strcmp(name, "v") == 0 || strcmp(name, "normal") == 0 ||
-             strcmp(name, "orbit_trap") == 0 || strcmp(name, "orbit_step") == 0)
-        *value = material_name(e, name, span);
-    else if (strcmp(name, "rounding") == 0)
-        *value = rounding_name(e, span);
-    else if (strcmp(name, "identity") == 0)
-        *value = value_map(map_identity(e->builder));
-    else
-        return false;
-    return true;
+        return value_number(M_PI);
+    if (strcmp(name, "tau") == 0)
+        return value_number(2 * M_PI);
+    if (strlen(name) == 1 && name[0] >= 'x' && name[0] <= 'z')
+        return coordinate(e, (uint32_t)(name[0] - 'x'));
+    if (strcmp(name, "p") == 0)
+        return value_of_node(e, graph_leaf(g, OP_POINT));
+    if (strcmp(name, "time") == 0)
+        return value_of_node(e, graph_parameter(g, 0, TYPE_FLOAT));
+    if (strcmp(name, "rounding") == 0)
+        return rounding_name(e, span);
+    if (strcmp(name, "identity") == 0)
+        return value_map(map_identity(e->builder));
+    return material_name(e, name, span);
 }

@@ -73,7 +73,7 @@ static bool collect_shapes(Elaboration *e, const Call *call, Value value, const 
         type_error(e, origin, value, "shapes");
         return false;
     }
-    array_push(e->arena, shapes, value);
+    array_push_large(e->arena, shapes, value);
     return true;
 }
 

@@ -78,6 +78,21 @@ static bool slope_property(Elaboration *e, const Environment *env, const Syntax 
     return false;
 }
 
+/* Where a corner of `within` may be, for all values of the parameters; false: reported. */
+static bool corner(Elaboration *e, Value value, const Syntax *syntax, Box *where)
+{
+    double numbers[4];
+    if (value_numbers(value, numbers) == 3) { /* needs no node */
+        for (uint32_t i = 0; i < 3; i++)
+            where->axis[i] = range_of(numbers[i]);
+        return true;
+    }
+    Node node = to_vector(e, value, syntax, "`within`");
+    for (uint32_t i = 0; node != NODE_NONE && i < 3; i++)
+        where->axis[i] = node_range(e->builder, node, i);
+    return node != NODE_NONE;
+}
+
 /* `within`: a shape, or two corners. */
 static bool within_property(Elaboration *e, const Environment *env, const Syntax *declaration,
                             Box *box)
@@ -92,12 +107,13 @@ static bool within_property(Elaboration *e, const Environment *env, const Syntax
         return true;
     }
     if (value.type == VALUE_LIST && value.list->count == 2) {
-        Node low  = to_vector(e, value.list->items[0], syntax, "`within`");
-        Node high = to_vector(e, value.list->items[1], syntax, "`within`");
-        for (uint32_t i = 0; low != NODE_NONE && high != NODE_NONE && i < 3; i++)
-            box->axis[i] = (Range){node_range(e->builder, low, i).low,
-                                   node_range(e->builder, high, i).high};
-        return low != NODE_NONE && high != NODE_NONE;
+        Box low, high;
+        if (!corner(e, value.list->items[0], syntax, &low) ||
+            !corner(e, value.list->items[1], syntax, &high))
+            return false;
+        for (uint32_t i = 0; i < 3; i++)
+            box->axis[i] = (Range){low.axis[i].low, high.axis[i].high};
+        return true;
     }
     type_error(e, syntax, value, "a shape or a list of two corners");
     return false;

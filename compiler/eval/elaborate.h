@@ -54,6 +54,15 @@ typedef struct Scope {
     } used;
 } Scope;
 
+/* A name that is looked up among the built-in ones: a function, a constant, or neither. */
+typedef struct BuiltinName {
+    const char     *name;
+    const Function *function; /* or NULL */
+    bool            constant;
+} BuiltinName;
+
+enum { MOST_BUILTIN_NAMES = 512 };
+
 typedef struct Elaboration {
     ShapeBuilder *builder; /* with the arenas, diagnostics and graph that stand here as well */
     Arena        *arena;   /* values, shapes and the scene */
@@ -76,12 +85,13 @@ typedef struct Elaboration {
         const Syntax **items;
         size_t         count, capacity;
     } checked;
-    bool     hoists;       /* numbers of the scene's own text are not those of the shaders' text */
-    uint32_t number_count; /* of such numbers so far */
-    uint64_t steps;        /* of evaluation, so far */
-    uint32_t depth, calls; /* how deep expressions and calls are nested now */
-    Node     rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
-    bool     in_material;  /* level, instance, u, v and normal have a meaning */
+    BuiltinName builtins[MOST_BUILTIN_NAMES]; /* names looked up so far, by their addresses */
+    bool        hoists; /* numbers of the scene's own text are not those of the shaders' text */
+    uint32_t    number_count; /* of such numbers so far */
+    uint64_t    steps;        /* of evaluation, so far */
+    uint32_t    depth, calls; /* how deep expressions and calls are nested now */
+    Node        rounding;     /* what the name `rounding` means in `core:`, or NODE_NONE */
+    bool        in_material;  /* level, instance, u, v and normal have a meaning */
 } Elaboration;
 
 /* What a shape knows of the declaration that made it. */
@@ -109,6 +119,8 @@ Definition *scope_find(const Scope *scope, const char *name);
 static const double MOST_EXTENT = 1e12;
 
 /* ---- expression.c ---- */
+/* Of one list. */
+enum { MOST_ELEMENTS = 4 * 1000 * 1000 };
 /* VALUE_ERROR: a mistake was found, and has been reported. */
 Value evaluate(Elaboration *e, const Environment *env, const Syntax *syntax);
 /* A list's elements in turn: of a SYNTAX_RANGE without making the list.  False: reported. */
@@ -144,6 +156,8 @@ Value value_list(Elaboration *e, Value *items, size_t count);
 Value value_vector(Elaboration *e, const double *numbers, uint32_t count);
 /* 1 for a number, 2 to 4 for a vector, 0 for anything else. */
 uint32_t value_size(const Elaboration *e, Value value);
+/* How many elements a vector has, all of them finite numbers that no author may change; else 0. */
+uint32_t value_numbers(Value value, double numbers[4]);
 /* "a number", "a vector of 3", "a shape": for messages. */
 const char *value_type_name(Elaboration *e, Value value);
 /* The node of a number, vector or truth value; NODE_NONE when it is none of these. */
@@ -251,10 +265,10 @@ typedef struct Builtin {
     Op               op;       /* of componentwise functions, else OP_COUNT */
     BuiltinFunction *function; /* NULL: componentwise `op` */
 } Builtin;
-const Builtin *builtin_find(const char *name);
-/* A constant (pi, x, time); false when there is none of this name.  One that has no meaning at
-   this place is reported. */
-bool builtin_constant(Elaboration *e, const char *name, Span span, Value *value);
+/* What a name means that no file defines; it is valid until the next call. */
+const BuiltinName *builtin_find(Elaboration *e, const char *name);
+/* A constant (pi, x, time).  One that has no meaning at this place is reported. */
+Value builtin_constant(Elaboration *e, const char *name, Span span);
 /* All names that need no definition, for names_check; returns how many, at most `capacity`. */
 size_t builtin_names(const char **names, size_t capacity);
 

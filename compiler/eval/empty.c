@@ -84,8 +84,9 @@ static bool is_nowhere(Elaboration *e, const Shape *shape)
     bool     empty = all.distance == NODE_NONE;
     if (!l.overflow && !empty) {
         Node       distance   = divide_by_slope(g, all.distance, shape->slope);
-        Tape       tape       = tape_new(g, &distance, 1, e->scratch);
-        NodeValue *values     = arena_new_array(e->scratch, NodeValue, g->count);
+        Graph     *alone      = graph_extract(g, &distance, 1, e->scratch);
+        Tape       tape       = tape_new(alone, &distance, 1, e->scratch);
+        NodeValue *values     = arena_new_array(e->scratch, NodeValue, alone->count);
         NodeValue *parameters = arena_new_array(e->scratch, NodeValue, g->parameters.count);
         tape_run_frame(&tape, parameters, values);
         empty = !needs_frame(&tape) && cells_are_empty(&tape, distance, shape->box, values);

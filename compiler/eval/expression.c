@@ -6,10 +6,9 @@
 #include <math.h>
 
 enum {
-    MOST_STEPS    = 10 * 1000 * 1000,
-    MOST_DEPTH    = 4000,
-    MOST_ELEMENTS = 1000 * 1000,
-    MOST_NODES    = 500 * 1000
+    MOST_STEPS = 200 * 1000 * 1000,
+    MOST_DEPTH = 4000,
+    MOST_NODES = 500 * 1000 /* from one shape to the next */
 };
 
 static Value limit_reached(Elaboration *e, Span span, const char *message)
@@ -24,9 +23,9 @@ static Value limit_reached(Elaboration *e, Span span, const char *message)
 static bool step(Elaboration *e, Span span)
 {
     if (!is_stopped(e) && ++e->steps > MOST_STEPS)
-        limit_reached(e, span, "the scene takes more than 10 million steps to elaborate");
-    if (!is_stopped(e) && e->graph->count > MOST_NODES)
-        limit_reached(e, span, "the expressions of the scene have more than 500,000 operations");
+        limit_reached(e, span, "the scene takes more than 200 million steps to elaborate");
+    if (!is_stopped(e) && e->graph->count - e->builder->nodes_before > MOST_NODES)
+        limit_reached(e, span, "the expressions of a shape have more than 500,000 operations");
     return !is_stopped(e);
 }
 
@@ -34,7 +33,7 @@ bool check_shape_count(Elaboration *e, const List *list, Span span)
 {
     if (list->total > MOST_TREE_SHAPES)
         limit_reached(e, span,
-                      "a list of more than 100,000 shapes, counted as often as they occur");
+                      "a list of more than 4 million shapes, counted as often as they occur");
     return !is_stopped(e);
 }
 
@@ -53,15 +52,11 @@ static Value evaluate_name(Elaboration *e, const Environment *env, const Syntax 
     Definition *definition = scope_find(env->scope, syntax->name);
     if (definition)
         return run_definition(e, definition, syntax->span);
-    Value value;
-    if (builtin_constant(e, syntax->name, syntax->span, &value))
-        return value;
-    const Builtin *builtin = builtin_find(syntax->name);
-    if (builtin) {
-        Function *function = arena_new(e->arena, Function);
-        *function          = (Function){.name = builtin->name, .builtin = builtin};
-        return (Value){.type = VALUE_FUNCTION, .function = function};
-    }
+    const BuiltinName *builtin = builtin_find(e, syntax->name);
+    if (builtin->constant)
+        return builtin_constant(e, syntax->name, syntax->span);
+    if (builtin->function)
+        return (Value){.type = VALUE_FUNCTION, .function = builtin->function};
     definition = scope_find(e->library, syntax->name);
     if (definition)
         return run_definition(e, definition, syntax->span);
@@ -110,7 +105,7 @@ static bool each_of_range(Elaboration *e, const Environment *env, const Syntax *
         return false;
     if (to - from > MOST_ELEMENTS) {
         limit_reached(e, syntax->span,
-                      diag_text(e->diags, "a range of %.0f elements; the limit is a million",
+                      diag_text(e->diags, "a range of %.0f elements; the limit is 4 million",
                                 ceil(to - from)));
         return false;
     }
@@ -166,10 +161,10 @@ static bool run_clause(Elaboration *e, const Comprehension *c)
         if (value.type == VALUE_ERROR)
             return false;
         if (c->result->count >= MOST_ELEMENTS) {
-            limit_reached(e, c->syntax->span, "a list of more than a million elements");
+            limit_reached(e, c->syntax->span, "a list of more than 4 million elements");
             return false;
         }
-        array_push(e->arena, c->result, value);
+        array_push_large(e->arena, c->result, value);
         return true;
     }
     const Syntax *clause = c->syntax->children[c->clause];
@@ -197,7 +192,7 @@ static Value evaluate_comprehension(Elaboration *e, const Environment *env, cons
 static bool push_element(Elaboration *e, Value element, void *user)
 {
     Values *result = user;
-    array_push(e->arena, result, element);
+    array_push_large(e->arena, result, element);
     return true;
 }
 

@@ -323,9 +323,13 @@ Value call_function(Elaboration *e, const Environment *env, const Syntax *syntax
 {
     if (function->builtin)
         return call_builtin(e, env, syntax, function->builtin);
-    uint32_t       count   = parameter_count(function->syntax);
-    Value         *values  = arena_new_array(e->arena, Value, count + 1);
-    const Syntax **origins = arena_new_array(e->arena, const Syntax *, count + 1);
+    enum { FEW = 8 };
+    Value          few_values[FEW];
+    const Syntax  *few_origins[FEW] = {0};
+    uint32_t       count            = parameter_count(function->syntax);
+    bool           few              = count <= FEW; /* need no memory that stays */
+    Value         *values           = few ? few_values : arena_new_array(e->arena, Value, count);
+    const Syntax **origins = few ? few_origins : arena_new_array(e->arena, const Syntax *, count);
     if (!gather_arguments(e, env, syntax, function->syntax, values, origins))
         return value_error();
     if (function->syntax->kind == SYNTAX_SHAPE &&

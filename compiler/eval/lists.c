@@ -129,10 +129,10 @@ Value builtin_range(Elaboration *e, Call *call)
         from = 0;
     }
     double count = ceil((to - from) / by);
-    if (!(by != 0) || !(count <= 1e6)) {
+    if (!(by != 0) || !(count <= MOST_ELEMENTS)) {
         bool  ends  = by != 0;
         Diag *diag  = diag_add(e->diags, ends ? DIAG_LIMIT : DIAG_BAD_VALUE, call->syntax->span,
-                              ends ? "a range of more than a million elements"
+                              ends ? "a range of more than 4 million elements"
                                     : "a range with steps of 0 does not end");
         diag->label = "this range";
         return value_error();

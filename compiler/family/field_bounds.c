@@ -302,8 +302,9 @@ static double count_steps(const TrialMarch *m, const Tape *tape, Node root, cons
 static double trial_march_cost(const TrialMarch *m, Node distance)
 {
     const double OVERHEAD = 20; /* of the tracer, a step */
-    Tape         tape     = tape_new(m->graph, &distance, 1, m->scratch);
-    NodeValue   *values   = arena_new_array(m->scratch, NodeValue, m->graph->count);
+    const Graph *graph    = graph_extract(m->graph, &distance, 1, m->scratch);
+    Tape         tape     = tape_new(graph, &distance, 1, m->scratch);
+    NodeValue   *values   = arena_new_array(m->scratch, NodeValue, graph->count);
     double       cost = OVERHEAD + tape_flops(&tape), steps = 0;
     tape_run_frame(&tape, m->parameters, values);
     for (uint32_t i = 0; i < MARCHED_RAYS; i++) {

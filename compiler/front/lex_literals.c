@@ -37,7 +37,8 @@ static double read_decimal(Lexer *lexer, uint32_t start)
         }
         fraction = fraction || c == '.';
     }
-    text_format(digits, "e%ld", exponent);
+    if (exponent != 0)
+        text_format(digits, "e%ld", exponent);
     return strtod(digits->bytes, NULL);
 }
 
@@ -116,7 +117,7 @@ void lex_number(Lexer *lexer)
     }
     while (is_word(peek(lexer, 0))) /* there are letters left after a mistake only */
         lexer->at++;
-    add_token(lexer, TOKEN_NUMBER, start)->number[0] = number;
+    add_token(lexer, TOKEN_NUMBER, start)->number = number;
 }
 
 /* The transfer function of sRGB, IEC 61966-2-1. */
@@ -146,9 +147,8 @@ void lex_colour(Lexer *lexer)
     if (!good)
         bad_number(lexer, start, "a colour has six hexadecimal digits", "for example `#c8553d`",
                    six_digits(lexer, start));
-    Token        *token = add_token(lexer, TOKEN_COLOUR, start);
-    unsigned long rgb   = good ? strtoul(digits, NULL, 16) : 0;
-    linear_from_srgb((uint32_t)rgb, token->number);
+    unsigned long rgb                          = good ? strtoul(digits, NULL, 16) : 0;
+    add_token(lexer, TOKEN_COLOUR, start)->rgb = (uint32_t)rgb;
 }
 
 /* ---- strings ---- */

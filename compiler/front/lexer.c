@@ -65,7 +65,7 @@ Token *add_token(Lexer *lexer, TokenKind kind, uint32_t start)
     if (lexer->doc.length > 0)
         token.doc = arena_copy_text(lexer->arena, lexer->doc.bytes, lexer->doc.length);
     lexer->doc.length = 0;
-    array_push(lexer->arena, &lexer->tokens, token);
+    array_push_large(lexer->arena, &lexer->tokens, token);
     return &lexer->tokens.items[lexer->tokens.count - 1];
 }
 
@@ -225,11 +225,16 @@ static bool lex_lookalike(Lexer *lexer)
     return false;
 }
 
+static bool is_sign(TokenKind kind)
+{
+    return rows[kind].class == PUNCTUATION || rows[kind].class == OPERATOR;
+}
+
 static bool lex_sign(Lexer *lexer)
 {
-    for (TokenKind kind = 0; kind < TOKEN_KIND_COUNT; kind++) {
-        bool sign = rows[kind].class == PUNCTUATION || rows[kind].class == OPERATOR;
-        if (sign && is_next(lexer, rows[kind].spelling)) {
+    TokenKind first = lexer->sign[(unsigned char)peek(lexer, 0)];
+    for (TokenKind kind = first; kind < TOKEN_KIND_COUNT; kind++) {
+        if (is_sign(kind) && is_next(lexer, rows[kind].spelling)) {
             uint32_t start = lexer->at;
             lexer->at += rows[kind].length;
             add_token(lexer, kind, start);
@@ -241,13 +246,19 @@ static bool lex_sign(Lexer *lexer)
 
 /* Finds the bytes with which a token, a space or a lookalike can begin.  A table is fast: a file
    that is not text may have millions of other bytes in a row. */
-static void find_beginnings(bool begins[256])
+static void find_beginnings(Lexer *lexer)
 {
     for (int c = 1; c < 128; c++)
-        begins[c] = is_word((char)c) || is_space((char)c) ||
-                    strchr("#\"'!()[]{},;:.=<>+-*/%^&|", c);
+        lexer->begins[c] = is_word((char)c) || is_space((char)c) ||
+                           strchr("#\"'!()[]{},;:.=<>+-*/%^&|", c);
     for (size_t i = 0; i < sizeof lookalikes / sizeof *lookalikes; i++)
-        begins[(unsigned char)lookalikes[i].sign[0]] = true;
+        lexer->lookalike[(unsigned char)lookalikes[i].sign[0]] = true;
+    for (int c = 0; c < 256; c++)
+        lexer->begins[c] = lexer->begins[c] || lexer->lookalike[c];
+    memset(lexer->sign, TOKEN_KIND_COUNT, sizeof lexer->sign);
+    for (TokenKind kind = TOKEN_KIND_COUNT; kind-- > 0;)
+        if (is_sign(kind))
+            lexer->sign[(unsigned char)rows[kind].spelling[0]] = (uint8_t)kind;
 }
 
 /* Whether a token, a space or a lookalike begins here. */
@@ -303,7 +314,7 @@ static void lex_token(Lexer *lexer)
         lex_colour(lexer);
     else if (c == '"' || c == '\'')
         lex_string(lexer, c);
-    else if (!lex_lookalike(lexer) && !lex_sign(lexer))
+    else if (!(lexer->lookalike[(unsigned char)c] && lex_lookalike(lexer)) && !lex_sign(lexer))
         lex_stray(lexer);
 }
 
@@ -320,7 +331,7 @@ Tokens lex(uint32_t source, const Sources *sources, Names *names, Diags *diags, 
                            .scratch = {.arena = arena}};
     if (is_next(&lexer, "\xEF\xBB\xBF")) /* a byte order mark */
         lexer.at = 3;
-    find_beginnings(lexer.begins);
+    find_beginnings(&lexer);
     skip_blank(&lexer);
     while (lexer.at < lexer.length && !diags_full(diags)) {
         lex_token(&lexer);

@@ -15,9 +15,12 @@ typedef struct Lexer {
     Diags      *diags;
     Arena      *arena;
     Tokens      tokens;
-    Text        doc;         /* the `///` lines since the last token */
-    Text        scratch;     /* the number or string being read */
-    bool        begins[256]; /* bytes that something can begin with: find_beginnings */
+    Text        doc;     /* the `///` lines since the last token */
+    Text        scratch; /* the number or string being read */
+    /* By the first byte: find_beginnings. */
+    bool    begins[256];    /* whether something can begin with it */
+    bool    lookalike[256]; /* whether a lookalike can */
+    uint8_t sign[256];      /* the first kind of token that is a sign and begins with it */
 } Lexer;
 
 /* ---- characters ---- */

@@ -408,10 +408,12 @@ static Syntax *parse_token(Parser *p, SyntaxKind kind)
     const Token *token = advance(p);
     bool         named = kind == SYNTAX_NAME || kind == SYNTAX_STRING;
     Syntax      *node  = finish(p, kind, token->span, begin_children(p), named ? token : NULL);
-    for (int i = 0; i < 3; i++)
-        node->number[i] = token->number[i];
-    if (token->kind == TOKEN_TRUE)
-        node->number[0] = 1;
+    if (token->kind == TOKEN_NUMBER)
+        node->number[0] = token->number;
+    else if (token->kind == TOKEN_COLOUR)
+        linear_from_srgb(token->rgb, node->number);
+    else
+        node->number[0] = token->kind == TOKEN_TRUE;
     return node;
 }
 

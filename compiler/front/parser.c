@@ -325,7 +325,7 @@ void recover_property(Parser *p, Level start)
 /* ---- nodes ---- */
 
 size_t begin_children(const Parser *p) { return p->pending.count; }
-void   add_child(Parser *p, Syntax *child) { array_push(p->arena, &p->pending, child); }
+void   add_child(Parser *p, Syntax *child) { array_push_large(p->arena, &p->pending, child); }
 
 Syntax *error_node(Parser *p)
 {

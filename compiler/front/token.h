@@ -16,9 +16,12 @@ typedef enum TokenKind {
 typedef struct Token {
     TokenKind   kind;
     Span        span;
-    const char *name;      /* names and keywords: interned; STRING: the text, unescaped */
-    double      number[3]; /* NUMBER: [0]; COLOUR: linear Rec.709 */
-    const char *doc;       /* text of the `///` comment lines just before, or NULL */
+    const char *doc; /* text of the `///` comment lines just before, or NULL */
+    union {
+        const char *name;   /* names and keywords: interned; STRING: the text, unescaped */
+        double      number; /* NUMBER */
+        uint32_t    rgb;    /* COLOUR: 0xrrggbb */
+    };
 } Token;
 
 /* What messages call a token: "`let`", "a number", "the end of the file". */

@@ -79,6 +79,7 @@ typedef struct Graph {
     Arena     *arena;
     Expr      *items;
     size_t     count, capacity;
+    Expr      *older; /* the array before `items` */
     GraphSlot *slots;
     size_t     slot_count;
     struct {
@@ -162,6 +163,10 @@ typedef struct Substitution {
 /* Of the point alone. */
 Substitution substitute_point(Node point);
 Node         graph_substitute(Graph *graph, Node root, Substitution with, Arena *scratch);
+
+/* A copy of all that `roots` need, in a graph of its own with the same parameters; the roots are
+   renumbered in place.  The work grows with what they need, not with the graph. */
+Graph *graph_extract(const Graph *graph, Node *roots, size_t root_count, Arena *arena);
 
 /* Algebraic simplification of everything `roots` need, into a new graph (same parameters):
    the roots are renumbered in place.  Rules keep values: x+0, x*1, x*0 (x finite), --x,

@@ -47,10 +47,10 @@ static GraphSlot *slot_find(const Graph *graph, const Expr *e, uint32_t hash)
 
 static void slots_grow(Graph *graph)
 {
-    const GraphSlot *old   = graph->slots;
-    size_t           count = graph->slot_count;
-    graph->slot_count      = count ? 2 * count : 64;
-    graph->slots           = arena_new_array(graph->arena, GraphSlot, graph->slot_count);
+    GraphSlot *old    = graph->slots;
+    size_t     count  = graph->slot_count;
+    graph->slot_count = count ? 2 * count : 64;
+    graph->slots      = arena_new_array(graph->arena, GraphSlot, graph->slot_count);
     for (size_t i = 0; i < count; i++) {
         size_t slot = old[i].hash & (graph->slot_count - 1);
         while (old[i].number && graph->slots[slot].number)
@@ -58,6 +58,18 @@ static void slots_grow(Graph *graph)
         if (old[i].number)
             graph->slots[slot] = old[i];
     }
+    arena_release(graph->arena, old, count * sizeof *old);
+}
+
+/* An old array stays until the next one is full, since functions refer to nodes while they make a
+   few more. */
+static void add_item(Graph *graph, Expr e)
+{
+    if (graph->count == graph->capacity) {
+        arena_release(graph->arena, graph->older, graph->capacity / 2 * sizeof e);
+        graph->older = graph->items;
+    }
+    array_push(graph->arena, graph, e);
 }
 
 Node node_intern(Graph *graph, Expr e)
@@ -72,7 +84,7 @@ Node node_intern(Graph *graph, Expr e)
     GraphSlot *slot = slot_find(graph, &e, hash);
     if (!slot->number) {
         e.span = graph->here;
-        array_push(graph->arena, graph, e);
+        add_item(graph, e);
         *slot = (GraphSlot){hash, (uint32_t)graph->count};
     }
     Node node = slot->number - 1;

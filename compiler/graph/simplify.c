@@ -402,9 +402,18 @@ static Graph *rebuild_all(const Graph *old, Node *roots, size_t root_count, bool
     return simplifier.graph;
 }
 
+/* Whether the roots need so little of a graph that arrays of its size would cost more than a copy
+   of what they need. */
+static bool is_small_part(const Graph *graph, const Node *roots, size_t root_count, Arena *arena)
+{
+    return tape_new(graph, roots, root_count, arena).count < graph->count / 8;
+}
+
 /* What one rule makes may fit another, so it is done again while it helps. */
 static Graph *simplify_all(const Graph *graph, Node *roots, size_t root_count, Arena *arena)
 {
+    if (is_small_part(graph, roots, root_count, arena))
+        graph = graph_extract(graph, roots, root_count, arena);
     for (size_t before = SIZE_MAX;;) {
         Graph *simple = rebuild_all(graph, roots, root_count, true, arena);
         Graph *copy   = rebuild_all(simple, roots, root_count, false, arena);

@@ -41,8 +41,6 @@ LoweredCrowds *lowered_crowds_new(Graph *graph, Arena *arena)
     LoweredCrowds *crowds = arena_new(arena, LoweredCrowds);
     crowds->graph         = graph;
     crowds->arena         = arena;
-    crowds->alike         = alike_new(graph, arena);
-    crowds->leaves        = part_leaves(graph);
     return crowds;
 }
 
@@ -335,6 +333,10 @@ Lowered lower_crowds(Lowering *l, CrowdJoin *join, LowerContext context)
     Lowered all = lowered_nothing;
     if (!l->crowds || join->count < LEAST_CROWD || join->joint->sheets || l->overflow)
         return all;
+    if (!l->crowds->alike) {
+        l->crowds->alike  = alike_new(l->graph, l->crowds->arena);
+        l->crowds->leaves = part_leaves(l->graph);
+    }
     JointCrowds *made    = find_joint(l, join, context);
     GroupJoin    members = group_join(l, join);
     for (uint32_t i = 0; i < made->group_count; i++) {

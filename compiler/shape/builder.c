@@ -103,7 +103,7 @@ static void count_tree(ShapeBuilder *builder, Shape *shape)
     if ((shape->depth > MOST_SHAPE_DEPTH || tree_shapes > MOST_TREE_SHAPES) && !builder->stopped) {
         diag_add(builder->diags, DIAG_LIMIT, shape->span,
                  tree_shapes > MOST_TREE_SHAPES
-                     ? "a shape of more than 100,000 parts, each counted where it is used"
+                     ? "a shape of more than 4 million parts, each counted where it is used"
                      : "shapes are nested more than 1,000 deep");
         builder->stopped = true;
     }
@@ -133,6 +133,7 @@ Shape *shape_new(ShapeBuilder *builder, ShapeKind kind, const char *name, Span s
         take_over(shape, children[i]);
     }
     count_tree(builder, shape);
+    builder->nodes_before = builder->graph->count;
     return shape;
 }
 

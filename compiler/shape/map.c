@@ -46,11 +46,10 @@ const Map *map_scaling(ShapeBuilder *builder, Node scale)
 }
 
 /* Rodrigues: R = cos I + (1 - cos) a a^T + sin [a]x, row by row. */
-static void rotation_rows(ShapeBuilder *builder, Node axis, Node cosine, Node sine, Node rows[3])
+static void rotation_rows(Graph *g, Node axis, Node cosine, Node sine, Node rows[3])
 {
-    Graph *g       = builder->graph;
-    Node   one     = graph_number(g, 1);
-    Node   versine = graph_op2(g, OP_sub, one, cosine);
+    Node one     = graph_number(g, 1);
+    Node versine = graph_op2(g, OP_sub, one, cosine);
     for (int i = 0; i < 3; i++) {
         Node unit     = unit_axis(g, i);
         Node diagonal = graph_op2(g, OP_scale, unit, cosine);
@@ -74,13 +73,39 @@ static Node snap(Graph *g, Node node)
     return fabs(number - nearest) < 4e-16 ? graph_number(g, nearest) : node;
 }
 
+static void rotate(Graph *g, Node axis, Node angle, Node rows[3])
+{
+    Node unit   = graph_op1(g, OP_normalize, axis);
+    Node cosine = snap(g, graph_op1(g, OP_cos, angle));
+    Node sine   = snap(g, graph_op1(g, OP_sin, angle));
+    rotation_rows(g, unit, cosine, sine, rows);
+}
+
+static bool is_known(const Graph *graph, Node node) { return graph->items[node].op == OP_CONSTANT; }
+
+/* Rows that are known, found in a graph of their own: nothing needs what leads to them.  False: the
+   axis or the angle depends on the frame. */
+static bool rotate_known(ShapeBuilder *builder, Node axis, Node angle, Node rows[3])
+{
+    Graph *graph = builder->graph, *steps;
+    if (!is_known(graph, axis) || !is_known(graph, angle))
+        return false;
+    steps = graph_new(builder->scratch);
+    axis  = graph_copy_leaf(steps, &graph->items[axis]);
+    angle = graph_copy_leaf(steps, &graph->items[angle]);
+    rotate(steps, axis, angle, rows);
+    if (!is_known(steps, rows[0]) || !is_known(steps, rows[1]) || !is_known(steps, rows[2]))
+        return false; /* not finite */
+    for (int i = 0; i < 3; i++)
+        rows[i] = graph_copy_leaf(graph, &steps->items[rows[i]]);
+    return true;
+}
+
 const Map *map_rotation(ShapeBuilder *builder, Node axis, Node angle)
 {
-    Map *map    = map_new(builder);
-    Node unit   = graph_op1(builder->graph, OP_normalize, axis);
-    Node cosine = snap(builder->graph, graph_op1(builder->graph, OP_cos, angle));
-    Node sine   = snap(builder->graph, graph_op1(builder->graph, OP_sin, angle));
-    rotation_rows(builder, unit, cosine, sine, map->rows);
+    Map *map = map_new(builder);
+    if (!rotate_known(builder, axis, angle, map->rows))
+        rotate(builder->graph, axis, angle, map->rows);
     return map;
 }
 

@@ -113,7 +113,7 @@ enum { MOST_BEND_SEGMENTS = 16 };
 /* Walks of the tree are recursive. */
 enum { MOST_SHAPE_DEPTH = 1000 };
 /* Walks visit a shape as often as it is used, which is more often than there are shapes. */
-enum { MOST_TREE_SHAPES = 100000 };
+enum { MOST_TREE_SHAPES = 4000000 };
 
 struct Shape {
     ShapeKind     kind;

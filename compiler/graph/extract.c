@@ -1,0 +1,46 @@
+/*
+ * extract.c: a part of a graph as a graph of its own, so that arrays by node are as small as the
+ * part.
+ */
+#include "compiler/graph/evaluate.h"
+
+static Node copy_node(Graph *part, const Tape *tape, const Node *copies, Node node)
+{
+    const Expr *e = &tape->graph->items[node];
+    Node        operands[MAX_OPERANDS];
+    part->here = e->span;
+    if (e->operand_count == 0)
+        return graph_copy_leaf(part, e);
+    for (int i = 0; i < e->operand_count; i++)
+        operands[i] = copies[tape_index(tape, e->operands[i])];
+    return e->op == OP_COMPONENT ? graph_component(part, operands[0], e->index)
+                                 : graph_op(part, e->op, operands);
+}
+
+/* Nodes keep their order: of the two that come next on the tape, of the frame and of the point, the
+   older one is copied first. */
+static void copy_nodes(Graph *part, const Tape *tape, Node *copies)
+{
+    size_t frame = 0, point = tape->frame_count;
+    while (frame < tape->frame_count || point < tape->count) {
+        bool older = point == tape->count ||
+                     (frame < tape->frame_count && tape->nodes[frame] < tape->nodes[point]);
+        size_t i  = older ? frame++ : point++;
+        copies[i] = copy_node(part, tape, copies, tape->nodes[i]);
+    }
+}
+
+Graph *graph_extract(const Graph *graph, Node *roots, size_t root_count, Arena *arena)
+{
+    Tape   tape            = tape_new(graph, roots, root_count, arena);
+    Node  *copies          = arena_new_array(arena, Node, tape.count + 1);
+    Graph *part            = graph_new(arena);
+    part->parameters.count = 0;
+    for (size_t i = 0; i < graph->parameters.count; i++)
+        array_push(arena, &part->parameters, graph->parameters.items[i]);
+    copy_nodes(part, &tape, copies);
+    for (size_t i = 0; i < root_count; i++)
+        roots[i] = copies[tape_index(&tape, roots[i])];
+    part->here = (Span){0};
+    return part;
+}
