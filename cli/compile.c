@@ -1,6 +1,7 @@
 /*
  * compile.c: `krs compile`: the shaders of a scene and their description, as files.
  */
+#include <endian.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,6 +36,79 @@ static KrsStatus write_output_file(const Options *options, const char *base, con
     return write_output_text(path.bytes, bytes, length);
 }
 
+/* ---- tables ---- */
+
+/* A texel buffer of the GLSL, and the file that has its contents. */
+typedef struct TableFile {
+    const char *buffer, *ending, *format;
+    uint32_t    binding; /* in set 0 */
+} TableFile;
+
+static const TableFile rows_file  = {"krs_rows", ".rows.bin", "RGBA32F", 1};
+static const TableFile cells_file = {"krs_cells", ".cells.bin", "RG32UI", 2};
+
+/* Numbers and words are little-endian in files. */
+static KrsStatus write_table(const Options *options, const char *base, const TableFile *file,
+                             unsigned char *bytes, size_t size)
+{
+    for (size_t i = 0; i < size; i += sizeof(uint32_t)) {
+        uint32_t word;
+        memcpy(&word, bytes + i, sizeof word);
+        word = htole32(word);
+        memcpy(bytes + i, &word, sizeof word);
+    }
+    return write_output_file(options, base, file->ending, bytes, size);
+}
+
+/* The contents of the texel buffers, where there are any. */
+static KrsStatus write_tables(const Options *options, const KrsScene *scene, const char *base)
+{
+    size_t    rows_size  = krs_table_rows(scene) * sizeof(float[4]);
+    size_t    cells_size = krs_table_cells(scene) * sizeof(uint32_t[2]);
+    KrsFrame *frame;
+    if (cells_size == 0)
+        return KRS_OK;
+    KrsStatus status = krs_frame_new(scene, &frame);
+    if (status != KRS_OK) {
+        say("out of memory while writing the tables of `%s`", base);
+        return status;
+    }
+    void *rows  = arena_alloc(options->arena, 1, rows_size);
+    void *cells = arena_alloc(options->arena, 1, cells_size);
+    krs_frame_tables(frame, rows, cells);
+    krs_frame_free(frame);
+    status = write_table(options, base, &rows_file, rows, rows_size);
+    if (status == KRS_OK)
+        status = write_table(options, base, &cells_file, cells, cells_size);
+    return status;
+}
+
+static void add_table_json(Text *json, const char *name, const TableFile *file, size_t texels)
+{
+    Text path = {.arena = json->arena};
+    text_format(&path, "%s%s", name, file->ending);
+    text_format(json, "{\"name\": \"%s\", \"set\": 0, \"binding\": %u, \"format\": \"%s\", ",
+                file->buffer, file->binding, file->format);
+    text_format(json, "\"texels\": %zu, \"file\": ", texels);
+    text_json(json, path.bytes);
+    text_add(json, "}");
+}
+
+static void add_tables_json(Text *json, const KrsScene *scene, const char *name)
+{
+    size_t rows = krs_table_rows(scene), cells = krs_table_cells(scene);
+    text_format(json, ", \"table_rows\": %zu, \"table_cells\": %zu, \"texel_buffers\": [", rows,
+                cells);
+    if (cells > 0) {
+        add_table_json(json, name, &rows_file, rows);
+        text_add(json, ", ");
+        add_table_json(json, name, &cells_file, cells);
+    }
+    text_add(json, "]");
+}
+
+/* ---- all files ---- */
+
 static KrsStatus write_description(const Options *options, const KrsScene *scene,
                                    const Modules *modules, const char *base, const char *name)
 {
@@ -43,8 +117,10 @@ static KrsStatus write_description(const Options *options, const KrsScene *scene
     text_json(&json, name);
     text_add(&json, ", ");
     info_add_json(&json, scene);
-    text_format(&json, ", \"parameter_slots\": %zu, \"value_slots\": %zu, \"entries\": [",
+    text_format(&json, ", \"parameter_slots\": %zu, \"value_slots\": %zu",
                 krs_parameter_slots(scene), krs_value_slots(scene));
+    add_tables_json(&json, scene, name);
+    text_add(&json, ", \"entries\": [");
     for (size_t i = 0; i < modules->count; i++) {
         text_add(&json, i == 0 ? "" : ", ");
         module_add_json(&json, &modules->items[i]);
@@ -86,6 +162,8 @@ static KrsStatus write_all(const Options *options, const KrsScene *scene, const 
         status = write_output_file(options, base.bytes, ending.bytes, module->words,
                                    module->word_count * sizeof *module->words);
     }
+    if (status == KRS_OK)
+        status = write_tables(options, scene, base.bytes);
     if (status == KRS_OK)
         status = write_description(options, scene, modules, base.bytes, name);
     return status;

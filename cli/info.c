@@ -16,7 +16,8 @@ static void print_vector(const double *values, size_t count)
     fputs(count > 1 ? "]" : "", stdout);
 }
 
-enum { MOST_LINES = 48 }; /* of the bounds of one component; JSON has all */
+/* Of the bounds of one component, and of the components of one loop; JSON has all. */
+enum { MOST_LINES = 48, MOST_TURNS = 50 };
 
 static bool is_box(const KrsBound *bound)
 {
@@ -102,15 +103,42 @@ static void print_parameter(const KrsParameter *parameter)
     putchar('\n');
 }
 
+/* Of one `show` in a loop the first ones. */
+static void print_components(const KrsScene *scene)
+{
+    size_t end;
+    for (size_t i = 0; i < krs_component_count(scene); i = end) {
+        end         = krs_turns_end(scene, i);
+        size_t last = end - i > MOST_TURNS ? i + MOST_TURNS : end;
+        for (; i < last; i++) {
+            KrsComponent component;
+            krs_component(scene, i, &component);
+            print_component(&component, i + 1);
+            print_bounds(scene, i);
+        }
+        if (last < end)
+            printf("components %zu to %zu: %zu more of this loop\n", last + 1, end, end - last);
+    }
+}
+
+static size_t table_bytes(const KrsProgram *program)
+{
+    return program->table_rows * sizeof(float[4]) + program->table_cells * sizeof(uint32_t[2]);
+}
+
+static void print_tables(const KrsProgram *program)
+{
+    double bytes = (double)table_bytes(program);
+    bool   large = bytes >= 999500;
+    printf("tables: %zu %s, %zu rows, %.*f %s\n", program->table_count,
+           program->table_count == 1 ? "kind" : "kinds", program->table_members, large,
+           large ? bytes / 1e6 : ceil(bytes / 1e3), large ? "MB" : "kB");
+}
+
 static void print_text(const KrsScene *scene)
 {
     const KrsProgram *program = krs_scene_program(scene);
-    for (size_t i = 0; i < krs_component_count(scene); i++) {
-        KrsComponent component;
-        krs_component(scene, i, &component);
-        print_component(&component, i + 1);
-        print_bounds(scene, i);
-    }
+    print_components(scene);
     for (size_t i = 0; i < krs_parameter_count(scene); i++) {
         KrsParameter parameter;
         krs_parameter(scene, i, &parameter);
@@ -126,6 +154,8 @@ static void print_text(const KrsScene *scene)
             printf("camera %zu: %s\n", i, krs_camera_name(scene, i));
     if (krs_zone_count(scene) > 0)
         printf("zones %zu\n", krs_zone_count(scene));
+    if (program->table_count > 0)
+        print_tables(program);
     fputs("bounds ", stdout);
     print_vector(program->low, 3);
     fputs(" to ", stdout);
@@ -246,6 +276,8 @@ void info_add_json(Text *json, const KrsScene *scene)
     text_add(json, ", \"high\": ");
     json_vector(json, program->high, 3);
     text_format(json, "}, \"zones\": %zu", krs_zone_count(scene));
+    text_format(json, ", \"tables\": {\"kinds\": %zu, \"rows\": %zu, \"bytes\": %zu}",
+                program->table_count, program->table_members, table_bytes(program));
     text_format(json, ", \"operations\": %zu, \"flops_per_evaluation\": ", program->operations);
     json_number(json, program->flops);
     text_add(json, ", ");

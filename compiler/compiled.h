@@ -72,6 +72,7 @@ typedef struct KrsProgram {
     uint32_t      expensive;         /* components that cost enough for a group of their own */
     size_t        table_rows;        /* texels of the tables (krs_frame_tables); 0: none */
     size_t        table_cells;
+    size_t        table_count, table_members; /* tables, and the rows of all of them */
     const double *pass_ms;           /* time of each pass (krs_pass, compile.h), in milliseconds */
     double        front_ms, glsl_ms; /* time of all passes before `emit`, and of `emit` */
 } KrsProgram;
@@ -91,6 +92,9 @@ size_t krs_promised_functions(const KrsScene *scene, bool many_threads,
                               KrsFunction promised[KRS_MOST_PROMISED]);
 /* Whether a camera of the scene is a panorama. */
 bool krs_scene_is_panoramic(const KrsScene *scene);
+/* The index behind the last of the components that one `show` of a loop shows, from this one on; the
+   next index where they are not one component of the shaders. */
+size_t krs_turns_end(const KrsScene *scene, size_t component);
 /* The number of zones that the scene declares. */
 size_t krs_zone_count(const KrsScene *scene);
 /* The properties of the `image` block. */

@@ -87,9 +87,14 @@ static void find_steps(Compilation *c)
 
 static void find_tables(Compilation *c)
 {
-    TableSizes sizes              = tables_measure(c->scene->graph->crowds);
-    c->scene->program.table_rows  = sizes.rows;
-    c->scene->program.table_cells = sizes.cells;
+    KrsProgram   *program = &c->scene->program;
+    const Crowds *crowds  = c->scene->graph->crowds;
+    TableSizes    sizes   = tables_measure(crowds);
+    program->table_rows   = sizes.rows;
+    program->table_cells  = sizes.cells;
+    program->table_count  = crowds ? crowds->tables.count : 0;
+    for (size_t t = 0; t < program->table_count; t++)
+        program->table_members += crowds->tables.items[t].rows;
 }
 
 /* ---- the pass ---- */

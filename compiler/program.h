@@ -133,6 +133,7 @@ struct KrsScene {
     size_t         component_count, shown_count, camera_count, light_count;
     size_t         zone_count; /* zones that the scene declares; they share one root */
     KrsComponent  *components; /* all that are shown */
+    size_t        *turns_end;  /* of each of these: krs_turns_end */
     KrsBounds     *bounds;     /* of each component */
     RetainedSlope *slopes;     /* slopes that are computed per frame */
     size_t         slope_count;

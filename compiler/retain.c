@@ -41,6 +41,18 @@ static void retain_components(Compilation *c)
     }
 }
 
+static void retain_turns(Compilation *c)
+{
+    const Scene *s      = &c->elaborated;
+    c->scene->turns_end = arena_new_array(&c->scene->arena, size_t, s->shown.count + 1);
+    for (size_t i = 0; i < s->components.count; i++) {
+        const Component *component = &s->components.items[i];
+        size_t           end       = component->first + component->count;
+        for (size_t k = component->first; k < end; k++)
+            c->scene->turns_end[k] = end;
+    }
+}
+
 /* Whether the graph uses a slope.  Those of shapes that were later cut to a smaller region may be
    unused. */
 static bool is_needed(const Graph *graph, uint32_t slot)
@@ -78,6 +90,7 @@ static void retain_scene(Compilation *c)
     const Scene *s     = &c->elaborated;
     Arena       *arena = &scene->arena;
     retain_components(c);
+    retain_turns(c);
     retain_slopes(c);
     scene->parameter_count = s->parameters.count;
     scene->parameters      = arena_new_array(arena, Parameter, s->parameters.count + 1);

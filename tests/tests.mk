@@ -19,7 +19,7 @@ PROPERTY_SHARED := $(addprefix tests/property/, garden.c op_trial.c reach_crowd.
 UNIT        := texts front diagnostics shape parts passes display devices tracer film rendering methods schedules writer \
                image_files memory validate search refute frame query zones cache cache_limits \
                compiled pipelines per_component stencils glslang loader drivers grid crowd_grid crowds \
-               crowd_kernels tables device_tables printing printers answers alike
+               crowd_kernels tables device_tables table_files printing printers answers alike
 PROPERTY    := ops noise graph simplify facts derive series zeros local along rebase slope \
                parity reach reach_trees crowds
 ORACLES     := self primitives krs_expand trees maps moebius moebius_images operators \
@@ -69,6 +69,8 @@ $(B)/tests/property/%: $(B)/tests/property/%.o $(B)/tests/property/property.a $(
 	@$(LINK)
 $(B)/tests/%: $(B)/tests/%.o $(LINKED)
 	@$(LINK)
+# It runs the command.
+$(B)/tests/unit/table_files: | $(B)/krs
 # In no archive: system calls that can fail are for those two alone.
 $(B)/tests/unit/writer $(B)/tests/unit/image_files: $(B)/tests/unit/file_faults.o
 .SECONDARY:
