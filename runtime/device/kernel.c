@@ -152,7 +152,8 @@ static void *compile(void *user)
 {
     KernelBuild *build = user;
     size_t       count = 0;
-    build->status      = spirv_compile(build->text, build->file, &build->made, &count, &build->log);
+    build->status      = spirv_compile(build->text, build->file, false, &build->made, &count,
+                                       &build->log);
     build->bytes       = count * sizeof *build->made;
     return NULL;
 }
@@ -175,7 +176,7 @@ static CacheKey make_key(const KernelSource *source, const char *text)
     uint64_t           variant = s ? krs_variant_hash(&s->variant, s->wanted, s->wanted_count) : 0;
     char               maker[192];
     snprintf(maker, sizeof maker,
-             "%s: krs %s, glslang %s, SPIRV-Tools %s, inlined, variant %016" PRIx64, source->file,
+             "%s: krs %s, glslang %s, SPIRV-Tools %s, inlined without names, variant %016" PRIx64, source->file,
              KRS_VERSION, spirv_glslang_version(), spirv_tools_version(), variant);
     return cache_key(maker, text, strlen(text));
 }

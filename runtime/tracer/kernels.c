@@ -172,7 +172,11 @@ static void request_pictures(Requests *requests, KrsTrace trace, KrsSchedule sch
 {
     KrsRendering *rendering = requests->rendering;
     KrsNormals    usual     = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
-    request(requests, "normals.comp", variant_of_normals(rendering, usual, 0));
+    bool by_group = usual != KRS_NORMALS_ANALYTIC &&
+                    rendering_marches_per_component(rendering, KRS_COMPONENTS_DEFAULT);
+    if (!by_group || rendering_knows_planes(rendering))
+        request(requests, "normals.comp",
+                variant_of_normals(rendering, usual, by_group ? KRS_MARCH_GROUP_OF_PLANES : 0));
     request(requests, "shade.comp", variant_of_shade(rendering));
     request(requests, "secondary.comp",
             variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace)));
