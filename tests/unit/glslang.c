@@ -86,7 +86,8 @@ static int compile_once(void **state)
     char *log;
     (void)state;
     alarm(240); /* a lock that stays locked */
-    return spirv_compile(text, "test.comp", false, &expected, &expected_count, &log) == KRS_OK ? 0 : -1;
+    return spirv_compile(text, "test.comp", false, &expected, &expected_count, &log) == KRS_OK ? 0
+                                                                                               : -1;
 }
 
 static int forget(void **state)
