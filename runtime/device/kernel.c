@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "compiler/base/embedded.h"
+#include "runtime/device/shared_kernels.h"
 #include "compiler/compile.h"
 
 static const char *find_in(const EmbeddedFile *file, const char *name, size_t length)
@@ -137,15 +138,17 @@ char *kernel_text(Gpu *gpu, const KernelSource *source)
 
 /* A kernel on its way to SPIR-V, in a thread of its own when it must be compiled. */
 typedef struct KernelBuild {
-    const char *file;
-    char       *text;
-    CacheKey    key;
-    uint32_t   *found, *made; /* in the cache, or by the compiler; one of them, when done */
-    size_t      bytes;
-    KrsStatus   status; /* of the compiler */
-    char       *log;
-    pthread_t   thread;
-    bool        started; /* the thread */
+    const char   *file;
+    char         *text;
+    CacheKey      key;
+    uint32_t     *found, *made; /* in the cache, or by the compiler; one of them, when done */
+    size_t        bytes;
+    KrsStatus     status; /* of the compiler */
+    char         *log;
+    pthread_t     thread;
+    bool          started; /* the thread */
+    bool          to_share;
+    SharedKernel *shared; /* the device has it already: nothing is found or made */
 } KernelBuild;
 
 static void *compile(void *user)
@@ -195,7 +198,11 @@ static bool begin(Gpu *gpu, KernelBuild *build, const KernelSource *source)
     build->text = kernel_text(gpu, source);
     if (!build->text)
         return false;
-    build->key   = make_key(source, build->text);
+    build->key      = make_key(source, build->text);
+    build->to_share = source->scene != NULL;
+    build->shared   = build->to_share ? shared_kernel_find(gpu, build->key) : NULL;
+    if (build->shared)
+        return true;
     build->found = cache_load(&gpu->cache, CACHE_SPIRV, build->key, &build->bytes);
     return true;
 }
@@ -206,7 +213,7 @@ static void compile_all(KernelBuild *builds, size_t count)
     size_t first = count; /* the one that this thread compiles */
     for (size_t i = 0; i < count; i++) {
         KernelBuild *build = &builds[i];
-        if (build->found)
+        if (build->found || build->shared)
             continue;
         if (first == count)
             first = i;
@@ -226,7 +233,7 @@ static void compile_all(KernelBuild *builds, size_t count)
 static bool finish(Gpu *gpu, const KernelBuild *build)
 {
     const char *log = build->log ? build->log : "";
-    if (build->found)
+    if (build->found || build->shared)
         return true;
     if (build->status == KRS_OK)
         cache_store(&gpu->cache, CACHE_SPIRV, build->key, build->made, build->bytes);
@@ -243,6 +250,8 @@ static void release(Gpu *gpu, KernelBuild *build)
 {
     gpu_release(gpu, build->text);
     gpu_release(gpu, build->found);
+    if (build->shared)
+        shared_kernel_leave(gpu, build->shared);
     free(build->made);
     free(build->log);
 }
@@ -250,9 +259,15 @@ static void release(Gpu *gpu, KernelBuild *build)
 /* Takes the words over, for good or bad. */
 static KernelCode take_code(KernelBuild *build)
 {
-    KernelCode code = {build->file, build->found ? build->found : build->made, build->bytes,
-                       !build->found};
+    KernelCode code = {.file     = build->file,
+                       .words    = build->found ? build->found : build->made,
+                       .bytes    = build->bytes,
+                       .compiled = build->made != NULL,
+                       .shared   = build->shared,
+                       .to_share = build->to_share,
+                       .key      = build->key};
     build->found = build->made = NULL;
+    build->shared              = NULL;
     return code;
 }
 
@@ -283,6 +298,8 @@ void kernel_code_release(Gpu *gpu, KernelCode *code)
         free(code->words);
     else
         gpu_release(gpu, code->words);
+    if (code->shared)
+        shared_kernel_leave(gpu, code->shared);
     *code = (KernelCode){0};
 }
 
@@ -350,7 +367,8 @@ static void *load_some(void *user)
     Loading        *loading = loader->loading;
     double          ms      = 0;
     for (size_t i; loader->ready && (i = atomic_fetch_add(&loading->next, 1)) < loading->count;)
-        loader->ready = kernel_load(&loader->gpu, loading->requests[i].kernel, &loading->codes[i],
+        loader->ready = loading->codes[i].shared ||
+                        kernel_load(&loader->gpu, loading->requests[i].kernel, &loading->codes[i],
                                     loading->layout, &ms);
     return NULL;
 }
@@ -384,6 +402,20 @@ static size_t count_loaders(const Gpu *gpu, size_t kernels)
     return gpu->messenger ? 0 : kernels < most ? kernels : most;
 }
 
+/* Takes what the device has already, and shares what is new. */
+static bool share(Gpu *gpu, Kernel *kernel, const KernelCode *code)
+{
+    if (code->shared) {
+        kernel->shared   = shared_kernel_find(gpu, code->key);
+        kernel->pipeline = kernel->shared->pipeline;
+        return true;
+    }
+    gpu->kernels_made++;
+    if (code->to_share)
+        kernel->shared = shared_kernel_add(gpu, code->key, kernel->pipeline);
+    return kernel->shared || !code->to_share;
+}
+
 bool kernel_load_all(Gpu *gpu, const KernelRequest *requests, const KernelCode *codes, size_t count,
                      VkPipelineLayout layout)
 {
@@ -410,6 +442,8 @@ bool kernel_load_all(Gpu *gpu, const KernelRequest *requests, const KernelCode *
             ready = false;
         }
     gpu_release(gpu, all);
+    for (size_t i = 0; i < count && ready; i++)
+        ready = share(gpu, requests[i].kernel, &codes[i]);
     return ready;
 }
 
@@ -438,7 +472,9 @@ bool kernel_create(Gpu *gpu, Kernel *kernel, const KernelSource *source, VkPipel
 
 void kernel_destroy(Gpu *gpu, Kernel *kernel)
 {
-    if (gpu->device && !gpu->stuck)
+    if (kernel->shared)
+        shared_kernel_leave(gpu, kernel->shared);
+    else if (gpu->device && !gpu->stuck)
         vkDestroyPipeline(gpu->device, kernel->pipeline, NULL);
     *kernel = (Kernel){0};
 }

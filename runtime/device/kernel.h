@@ -8,7 +8,8 @@
 #include "runtime/device/gpu.h"
 
 typedef struct Kernel {
-    VkPipeline pipeline;
+    VkPipeline    pipeline;
+    SharedKernel *shared; /* whose pipeline it is, if others may use it as well */
 } Kernel;
 
 /* What a kernel calls of a scene: its text takes the place of "scene.glsl". */
@@ -37,12 +38,15 @@ void kernel_strip(char *text);
 bool kernel_create(Gpu *gpu, Kernel *kernel, const KernelSource *source, VkPipelineLayout layout,
                    double *spirv_ms, double *pipeline_ms);
 
-/* What becomes of it: SPIR-V. */
+/* A kernel on its way to the device: SPIR-V, unless the device has it already. */
 typedef struct KernelCode {
-    const char *file;
-    uint32_t   *words;
-    size_t      bytes;
-    bool        compiled; /* just now: it was in no cache */
+    const char   *file;
+    uint32_t     *words;
+    size_t        bytes;
+    bool          compiled; /* just now: it was in no cache */
+    SharedKernel *shared;   /* what the device has already: then there are no words */
+    bool          to_share; /* others may use it */
+    CacheKey      key;      /* of its text, then */
 } KernelCode;
 
 typedef struct KernelRequest {
