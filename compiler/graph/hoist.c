@@ -19,11 +19,23 @@ static bool is_of_formulas(double number)
     return size == 0 || size == 0.5 || size == 1 || size == 2 || size >= FAR_SIDE;
 }
 
-/* Of what is found at points; the exponent of a power decides how it is computed. */
+/* Whether an operand decides how something is computed: an exponent, or how often a loop runs. */
+static bool is_structure(const Expr *user, int operand)
+{
+    switch (user->op) {
+    case OP_pow: return true;
+    case OP_mandelbulb:
+    case OP_mandelbulb_trap: return operand == 1;
+    case OP_julia:
+    case OP_julia_trap: return operand == 2;
+    default: return false;
+    }
+}
+
+/* Constants of what is found at points. */
 static bool hoists(const Expr *user, const Expr *operand)
 {
     return operand->op == OP_CONSTANT && operand->type <= TYPE_VEC4 && user->time == TIME_POINT &&
-           user->op != OP_pow &&
            !(operand->type == TYPE_FLOAT && is_of_formulas(operand->number[0]));
 }
 
@@ -39,7 +51,7 @@ static Node copy_operation(Hoist *h, const Expr *e)
     Node operands[MAX_OPERANDS];
     for (int i = 0; i < e->operand_count; i++) {
         const Expr *operand = &h->old->items[e->operands[i]];
-        operands[i]         = hoists(e, operand)
+        operands[i]         = hoists(e, operand) && !is_structure(e, i)
                                   ? graph_hoisted(h->graph, operand->type, operand->number, h->next++)
                                   : h->nodes[e->operands[i]];
     }
