@@ -19,18 +19,11 @@ static bool is_of_formulas(double number)
     return size == 0 || size == 0.5 || size == 1 || size == 2 || size >= FAR_SIDE;
 }
 
-/* Whether an operand decides how something is computed: an exponent, or how often a loop runs. */
-static bool is_structure(const Expr *user, int operand)
-{
-    switch (user->op) {
-    case OP_pow: return true;
-    case OP_mandelbulb:
-    case OP_mandelbulb_trap: return operand == 1;
-    case OP_julia:
-    case OP_julia_trap: return operand == 2;
-    default: return false;
-    }
-}
+/* Operands, as bits, that decide how something is computed: exponents, and how often loops run. */
+static const uint8_t structure_of[OP_COUNT] = {
+    [OP_pow] = 1 << 0 | 1 << 1,    [OP_mandelbulb] = 1 << 1, [OP_julia] = 1 << 2,
+    [OP_mandelbulb_trap] = 1 << 1, [OP_julia_trap] = 1 << 2,
+};
 
 /* Constants of what is found at points. */
 static bool hoists(const Expr *user, const Expr *operand)
@@ -51,7 +44,7 @@ static Node copy_operation(Hoist *h, const Expr *e)
     Node operands[MAX_OPERANDS];
     for (int i = 0; i < e->operand_count; i++) {
         const Expr *operand = &h->old->items[e->operands[i]];
-        operands[i]         = hoists(e, operand) && !is_structure(e, i)
+        operands[i]         = hoists(e, operand) && !(structure_of[e->op] >> i & 1)
                                   ? graph_hoisted(h->graph, operand->type, operand->number, h->next++)
                                   : h->nodes[e->operands[i]];
     }
