@@ -6,6 +6,9 @@
  * constants.  For each member every state becomes what its body says; all change at once.  The result is
  * the last value of the first state.
  *
+ * Kernels loop over the list of one cell, of which a distance is at most the clearance.  On the host the
+ * loop is over all members that may count, as far as the state `distance` tells (evaluate.h).
+ *
  * Bodies are nodes of the graph.  Their leaves are of the crowd (ops.def): OP_CROWD_POINT,
  * OP_CROWD_NORMAL, OP_CROWD_FOOTPRINT stand for the operands of the call, OP_MEMBER is the number of the
  * member, and OP_STATE that of a state.  OP_row reads a number of the table.  No other leaf of point
@@ -23,13 +26,14 @@
 #include "compiler/graph/graph.h"
 #include "compiler/graph/grid.h"
 
-enum { MOST_CROWD_STATES = 8, MOST_TABLE_COLUMNS = 64 };
+enum { MOST_CROWD_STATES = 8, MOST_TABLE_COLUMNS = 64, NO_DISTANCE = MOST_CROWD_STATES };
 
 /* A table. */
 typedef struct Crowd {
     uint32_t rows, columns;
     double  *numbers; /* rows x columns, row by row */
     Grid     grid;    /* its members are the rows */
+    double   stretch; /* the distance of a member, times this, is at least that to its box */
     Span     span;    /* of the join */
 } Crowd;
 
@@ -44,6 +48,7 @@ typedef struct CrowdFunction {
     bool       clear; /* the result is at most the clearance: it is a distance */
     CrowdState states[MOST_CROWD_STATES];
     uint32_t   state_count;
+    uint32_t   distance;   /* the state that is a distance; NO_DISTANCE: there is none */
     uint32_t   first_body; /* the body of state i is Crowds.bodies[first_body + i] */
 } CrowdFunction;
 

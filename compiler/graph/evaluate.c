@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "compiler/base/far.h"
 #include "compiler/graph/crowd.h"
 #include "compiler/graph/op_values.h"
 
@@ -17,6 +18,7 @@ typedef struct Inputs {
     const NodeValue *parameters;
     const double    *point, *normal;
     double           footprint;
+    bool             by_cells;
     /* In bodies of crowd functions, whose call has these operands: */
     uint32_t         member;
     const NodeValue *states;
@@ -145,31 +147,88 @@ static NodeValue read_table(const Graph *graph, const Expr *e, const NodeValue *
     return number(table->numbers[(size_t)member * table->columns + row_column(column)]);
 }
 
+static uint32_t lowest_bit(uint64_t bits)
+{
+    uint32_t bit = 0;
+    for (uint32_t half = 32; half; half /= 2)
+        if (!(bits & (((uint64_t)1 << half) - 1))) {
+            bits >>= half;
+            bit += half;
+        }
+    return bit;
+}
+
 static void run_points(const Tape *tape, const Inputs *in, NodeValue *values);
 
 /* The loop of a crowd function, which has a tape for what it does at each member. */
-static NodeValue run_loop(const Crowds *crowds, const CrowdFunction *function, const Tape *body,
-                          Inputs in, NodeValue *values)
+typedef struct Loop {
+    const CrowdFunction *function;
+    const Crowd         *table;
+    const Tape          *body;
+    const Node          *bodies;
+    NodeValue           *values;
+    NodeValue            states[MOST_CROWD_STATES];
+    Inputs               in;
+} Loop;
+
+static void begin_loop(Loop *loop)
 {
-    const Node     *bodies = crowds->bodies.items + function->first_body;
-    const Grid     *grid   = &crowds->tables.items[function->crowd].grid;
-    NodeValue       states[MOST_CROWD_STATES];
-    double          clearance;
-    uint32_t        listed;
-    const uint32_t *list = grid_find(grid, in.point, &listed, &clearance);
-    for (uint32_t k = 0; k < function->state_count; k++)
-        states[k] = all_of(function->states[k].first);
-    in.states = states;
-    for (uint32_t i = 0; i < listed; i++) {
-        in.member = list[i];
-        run_points(body, &in, values);
-        for (uint32_t k = 0; k < function->state_count; k++)
-            states[k] = values[bodies[k]];
-    }
-    return function->clear ? number(fmin(states[0].v[0], clearance)) : states[0];
+    for (uint32_t k = 0; k < loop->function->state_count; k++)
+        loop->states[k] = all_of(loop->function->states[k].first);
+    loop->in.states = loop->states;
 }
 
-static NodeValue run_call(const Tape *tape, const Expr *e, NodeValue *values)
+static void loop_over(Loop *loop, uint32_t member)
+{
+    loop->in.member = member;
+    run_points(loop->body, &loop->in, loop->values);
+    for (uint32_t k = 0; k < loop->function->state_count; k++)
+        loop->states[k] = loop->values[loop->bodies[k]];
+}
+
+static void loop_over_near(Loop *loop, double radius)
+{
+    NearMembers near;
+    begin_loop(loop);
+    for (near.first = 0; near.first < loop->table->rows; near.first += NEAR_AT_ONCE) {
+        grid_near(&loop->table->grid, loop->in.point, radius, &near);
+        for (uint32_t word = 0; word < NEAR_AT_ONCE / 64; word++)
+            for (uint64_t bits = near.bits[word]; bits; bits &= bits - 1)
+                loop_over(loop, near.first + 64 * word + lowest_bit(bits));
+    }
+}
+
+/* From the list of the cell to all that may be as near as what is found.  The second time that is
+   enough: each further member only makes a distance less. */
+static void loop_to_the_nearest(Loop *loop, double clearance)
+{
+    const Grid   *grid     = &loop->table->grid;
+    const double *distance = loop->states[loop->function->distance].v;
+    double        radius = clearance, more = grid->size;
+    while (*distance * loop->table->stretch > radius && radius < NOWHERE &&
+           !grid_is_within(grid, loop->in.point, radius)) {
+        radius = *distance < NOWHERE ? *distance * loop->table->stretch : radius + more;
+        more *= 2;
+        loop_over_near(loop, radius);
+    }
+}
+
+static NodeValue run_loop(Loop *loop)
+{
+    double          clearance;
+    uint32_t        listed;
+    const uint32_t *list = grid_find(&loop->table->grid, loop->in.point, &listed, &clearance);
+    begin_loop(loop);
+    for (uint32_t i = 0; i < listed; i++)
+        loop_over(loop, list[i]);
+    if (loop->function->distance != NO_DISTANCE && !loop->in.by_cells)
+        loop_to_the_nearest(loop, clearance);
+    else if (loop->function->clear)
+        return number(fmin(loop->states[0].v[0], clearance));
+    return loop->states[0];
+}
+
+static NodeValue run_call(const Tape *tape, const Expr *e, const Inputs *outer, NodeValue *values)
 {
     const Crowds *crowds = tape->graph->crowds;
     uint32_t      id     = whole(&values[e->operands[0]]);
@@ -179,8 +238,18 @@ static NodeValue run_call(const Tape *tape, const Expr *e, NodeValue *values)
         memcpy(normal, values[e->operands[2]].v, sizeof normal);
         footprint = values[e->operands[3]].v[0];
     }
-    Inputs in = {.point = point, .normal = normal, .footprint = footprint};
-    return run_loop(crowds, &crowds->functions.items[id], &tape->functions[id], in, values);
+    const CrowdFunction *function = &crowds->functions.items[id];
+
+    Loop loop = {.function = function,
+                 .table    = &crowds->tables.items[function->crowd],
+                 .body     = &tape->functions[id],
+                 .bodies   = crowds->bodies.items + function->first_body,
+                 .values   = values,
+                 .in       = {.point     = point,
+                              .normal    = normal,
+                              .footprint = footprint,
+                              .by_cells  = outer->by_cells}};
+    return run_loop(&loop);
 }
 
 static void run_points(const Tape *tape, const Inputs *in, NodeValue *values)
@@ -195,7 +264,7 @@ static void run_points(const Tape *tape, const Inputs *in, NodeValue *values)
         else if (e->op == OP_row)
             values[node] = read_table(tape->graph, e, values);
         else if (is_call(e->op))
-            values[node] = run_call(tape, e, values);
+            values[node] = run_call(tape, e, in, values);
         else
             tape_run_node(tape->graph, node, values);
     }
@@ -209,6 +278,7 @@ void tape_run_point(const Tape *tape, const double point[3], NodeValue *values)
 void tape_run_surface(const Tape *tape, const double point[3], const double normal[3],
                       double footprint, NodeValue *values)
 {
-    Inputs in = {.point = point, .normal = normal, .footprint = footprint};
+    Inputs in = {
+        .point = point, .normal = normal, .footprint = footprint, .by_cells = tape->by_cells};
     run_points(tape, &in, values);
 }

@@ -22,6 +22,9 @@ typedef struct Tape {
        know each other as well, but count none as theirs. */
     const struct Tape *functions;
     uint32_t           function_count;
+    /* Crowd functions have the list of one cell, as in kernels, so a distance is at most the cell's
+       clearance.  Else all members count that may be nearest. */
+    bool by_cells;
 } Tape;
 
 Tape tape_new(const Graph *graph, const Node *roots, size_t root_count, Arena *arena);

@@ -164,22 +164,14 @@ static double least_side(Builder *b)
     return high;
 }
 
-static uint32_t cell_along(const Grid *grid, int axis, double coordinate)
-{
-    double cell = (coordinate - grid->low[axis]) / grid->size;
-    if (cell <= 0)
-        return 0;
-    return cell < grid->cells[axis] ? (uint32_t)cell : grid->cells[axis] - 1;
-}
-
 /* The cells that are up to `distance` away from a box along each axis. */
 static Cover cover_box(const Builder *b, const Box *box, double distance)
 {
     Cover cover;
     for (int k = 0; k < 3; k++) {
         double grown   = distance + b->pad[k];
-        cover.first[k] = cell_along(b->grid, k, box->axis[k].low - grown);
-        cover.last[k]  = cell_along(b->grid, k, box->axis[k].high + grown);
+        cover.first[k] = grid_cell_along(b->grid, k, box->axis[k].low - grown);
+        cover.last[k]  = grid_cell_along(b->grid, k, box->axis[k].high + grown);
     }
     return cover;
 }
@@ -410,35 +402,4 @@ void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, doub
     choose_cells(&b);
     fill_lists(&b, arena);
     find_clearances(&b, arena);
-}
-
-/* ---- Finding ---- */
-
-static double distance_to_box(const Box *box, const double point[3])
-{
-    double square = 0;
-    for (int k = 0; k < 3; k++) {
-        Range  axis = box->axis[k];
-        double away = fmax(fmax(axis.low - point[k], point[k] - axis.high), 0);
-        square += away * away;
-    }
-    return sqrt(square);
-}
-
-const uint32_t *grid_find(const Grid *grid, const double point[3], uint32_t *count,
-                          double *clearance)
-{
-    size_t cell = 0;
-    for (int k = 2; k >= 0; k--) {
-        double along = floor((point[k] - grid->low[k]) / grid->size);
-        if (!(along >= 0 && along < grid->cells[k])) {
-            *count     = 0;
-            *clearance = distance_to_box(&grid->inner, point);
-            return grid->members;
-        }
-        cell = cell * grid->cells[k] + (size_t)along;
-    }
-    *count     = grid->first[cell + 1] - grid->first[cell];
-    *clearance = grid->clearance[cell];
-    return grid->members + grid->first[cell];
 }

@@ -248,8 +248,8 @@ static bool make_crowd(const Finder *finder, CrowdGroup *group, const GroupJoin 
     double factor = for_bounds(finder, group);
     double reach  = factor * blended_reach(group, join);
     double margin = isfinite(reach) ? factor * finder->context.reach : HUGE_VAL;
-    group_make_table(group, join, boxes, isfinite(reach) ? reach : 0, margin,
-                     finder->join->joint->span);
+    Crowd  table  = {.stretch = factor, .span = finder->join->joint->span};
+    group_make_table(group, join, boxes, isfinite(reach) ? reach : 0, margin, table);
     return true;
 }
 

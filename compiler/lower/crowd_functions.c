@@ -131,11 +131,12 @@ static uint32_t make_nearest(const CrowdGroup *group, const GroupJoin *join)
     Member        member   = member_in_body(group, join, PART_DISTANCE);
     Node          stays    = graph_op2(g, OP_less, state, member.distance);
     Node          bodies[] = {graph_op3(g, OP_select, stays, number, member.number),
-                              graph_op2(g, OP_min, state, member.distance)};
+                              join_distances(g, join->blend, state, member.distance)};
     CrowdFunction function = {.crowd       = group->crowd,
                               .type        = TYPE_UINT,
                               .states      = {{TYPE_UINT, {0}}, {TYPE_FLOAT, {NOWHERE}}},
-                              .state_count = 2};
+                              .state_count = 2,
+                              .distance    = 1};
     return graph_add_crowd_function(g, function, bodies);
 }
 
@@ -152,7 +153,8 @@ static uint32_t make_property(const CrowdGroup *group, const GroupJoin *join, ui
     CrowdFunction function = {.crowd       = group->crowd,
                               .type        = type,
                               .states      = {{type, {0}}, {TYPE_FLOAT, {NOWHERE}}},
-                              .state_count = 2};
+                              .state_count = 2,
+                              .distance    = 1};
     return graph_add_crowd_function(g, function, bodies);
 }
 

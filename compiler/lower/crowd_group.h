@@ -52,9 +52,9 @@ typedef struct GroupJoin {
 
 /* crowd_table.c: finds what varies and its columns; false: there would be too many. */
 bool group_find_columns(CrowdGroup *group, const GroupJoin *join);
-/* Makes the table.  `boxes` are of all parts of the joint. */
+/* Makes the table, of which `stretch` and `span` are set.  `boxes` are of all parts of the joint. */
 void group_make_table(CrowdGroup *group, const GroupJoin *join, const Box *boxes, double reach,
-                      double margin, Span span);
+                      double margin, Crowd table);
 /* The nodes in the slots, for the member whose number is that node; without one (NODE_NONE) of what
    does not vary. */
 void group_slots(const CrowdGroup *group, Graph *graph, Node member, Node *slots);

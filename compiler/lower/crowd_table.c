@@ -94,12 +94,12 @@ bool group_find_columns(CrowdGroup *group, const GroupJoin *join)
 /* ---- the table ---- */
 
 void group_make_table(CrowdGroup *group, const GroupJoin *join, const Box *boxes, double reach,
-                      double margin, Span span)
+                      double margin, Crowd table)
 {
     Crowds  *crowds = graph_crowds(join->graph);
     uint32_t rows = (uint32_t)group->members.count, columns = group->column_count;
-    Crowd    table = {.rows = rows, .columns = columns, .span = span};
-    table.numbers  = arena_new_array(crowds->arena, double, (size_t)rows *columns + 1);
+    table.rows = rows, table.columns = columns;
+    table.numbers = arena_new_array(crowds->arena, double, (size_t)rows *columns + 1);
     for (uint32_t i = 0; i < rows; i++)
         for (uint32_t k = 0; k < columns; k++)
             table.numbers[(size_t)i * columns + k] = number_at(group, i, group->sources[k].slot,

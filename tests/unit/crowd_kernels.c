@@ -75,6 +75,7 @@ static int count_differences(const Stage *stage, Node root, Bench *bench)
     NodeValue      *values     = arena_new_array(&bench->arena, NodeValue, graph->count);
     const NodeValue parameters = {{TIME}};
     int             count      = 0;
+    tape.by_cells              = true;
     tape_run_frame(&tape, &parameters, values);
     for (int i = 0; i < POINTS; i++) {
         const float *point = stage->points[i];

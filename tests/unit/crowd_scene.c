@@ -15,6 +15,7 @@ static uint32_t add_table(Bench *b, Crowd table, const Box *boxes, double reach)
 {
     Crowds *crowds  = graph_crowds(b->graph);
     Arena   scratch = {.memory = &b->memory};
+    table.stretch   = 1;
     grid_build(&table.grid, boxes, table.rows, reach, 0, &b->arena, &scratch);
     arena_free(&scratch);
     array_push(&b->arena, &crowds->tables, table);
@@ -103,7 +104,8 @@ static uint32_t add_nearest(Graph *g, uint32_t crowd)
     CrowdFunction function = {.crowd       = crowd,
                               .type        = TYPE_UINT,
                               .states      = {{TYPE_UINT, {0}}, {TYPE_FLOAT, {NOWHERE}}},
-                              .state_count = 2};
+                              .state_count = 2,
+                              .distance    = 1};
     Node member = graph_state(g, TYPE_UINT, id, 0), least = graph_state(g, TYPE_FLOAT, id, 1);
     Node here = graph_crowd_leaf(g, OP_MEMBER, crowd), distance = sphere_distance(g, crowd);
     Node nearer   = graph_op2(g, OP_less, distance, least);
@@ -115,8 +117,11 @@ static uint32_t add_nearest(Graph *g, uint32_t crowd)
 /* Each member halves the vector, after it has added something to it: the order counts. */
 static uint32_t add_lean(Graph *g, uint32_t crowd)
 {
-    CrowdFunction function = {
-        .crowd = crowd, .type = TYPE_VEC3, .states = {{TYPE_VEC3, {0.5, 1, 2}}}, .state_count = 1};
+    CrowdFunction function = {.crowd       = crowd,
+                              .type        = TYPE_VEC3,
+                              .states      = {{TYPE_VEC3, {0.5, 1, 2}}},
+                              .state_count = 1,
+                              .distance    = NO_DISTANCE};
     Node state = graph_state(g, TYPE_VEC3, next_function(g), 0), half = graph_number(g, 0.5);
     Node normal = graph_crowd_leaf(g, OP_CROWD_NORMAL, crowd);
     Node size   = graph_crowd_leaf(g, OP_CROWD_FOOTPRINT, crowd);
@@ -183,14 +188,14 @@ double clearance_at(const Crowd *table, const double p[3])
     return clearance;
 }
 
-double all_spheres(const Crowd *table, const double p[3], bool smooth)
+double all_spheres(const Crowd *table, const double p[3], bool smooth, bool by_cells)
 {
     double least = NOWHERE;
     for (uint32_t i = 0; i < table->rows; i++) {
         double d = sphere_at(table, i, p);
         least    = smooth ? blend(least, d) : fmin(least, d);
     }
-    return fmin(least, clearance_at(table, p));
+    return by_cells ? fmin(least, clearance_at(table, p)) : least;
 }
 
 uint32_t nearest_sphere(const Crowd *table, const double p[3])
@@ -202,17 +207,17 @@ uint32_t nearest_sphere(const Crowd *table, const double p[3])
     return nearest;
 }
 
-double all_copies(const Crowd *outer, const Crowd *inner, const double p[3])
+double all_copies(const Crowd *outer, const Crowd *inner, const double p[3], bool by_cells)
 {
     double          least = NOWHERE, clearance;
     uint32_t        count;
     const uint32_t *list = grid_find(&outer->grid, p, &count, &clearance);
-    for (uint32_t i = 0; i < count; i++) {
-        const double *centre = row_of(outer, list[i]);
+    for (uint32_t i = 0; i < (by_cells ? count : outer->rows); i++) {
+        const double *centre = row_of(outer, by_cells ? list[i] : i);
         const double  q[3]   = {p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]};
-        least                = fmin(least, all_spheres(inner, q, false));
+        least                = fmin(least, all_spheres(inner, q, false, by_cells));
     }
-    return fmin(least, clearance);
+    return by_cells ? fmin(least, clearance) : least;
 }
 
 void lean_there(const Crowd *table, const double p[3], const double normal[3], double size,

@@ -32,23 +32,26 @@ static double value_at(const Many *many, const NodeValue *values, int root)
 }
 
 /* How many points are nearer to something than all that is not listed. */
-static uint32_t compare_at(const Many *many, const NodeValue *values, const double p[3])
+static uint32_t compare_at(const Many *many, const NodeValue *values, const double p[3],
+                           bool by_cells)
 {
     const Graph *g     = many->graph;
     const Crowd *plain = table_of(g, many->sharp), *mixed = table_of(g, many->smooth);
-    double       sharp = all_spheres(plain, p, false), lean[3];
+    double       sharp = all_spheres(plain, p, false, by_cells), lean[3];
+    double       smooth = all_spheres(mixed, p, true, by_cells);
+    double nested = all_copies(table_of(g, many->nested), table_of(g, many->inner), p, by_cells);
     assert_true(fabs(value_at(many, values, SHARP) - sharp) < 1e-12);
-    assert_true(fabs(value_at(many, values, SMOOTH) - all_spheres(mixed, p, true)) < 1e-12);
-    assert_true(fabs(value_at(many, values, NESTED) -
-                     all_copies(table_of(g, many->nested), table_of(g, many->inner), p)) < 1e-12);
+    assert_true(fabs(value_at(many, values, SMOOTH) - smooth) < 1e-12);
+    assert_true(fabs(value_at(many, values, NESTED) - nested) < 1e-12);
     lean_there(plain, p, NORMAL, FOOTPRINT, lean);
     for (int k = 0; k < 3; k++)
         assert_true(fabs(values[many->roots[LEAN]].v[k] - lean[k]) < 1e-12);
-    if (sharp >= clearance_at(plain, p))
+    bool near = sharp < clearance_at(plain, p);
+    if (!near && by_cells)
         return 0;
     uint32_t nearest = nearest_sphere(plain, p);
     assert_true(value_at(many, values, SHADED) == row_of(plain, nearest)[SHADE]);
-    return 1;
+    return near;
 }
 
 static void near_sphere(Bench *b, const Crowd *table, double p[3])
@@ -59,12 +62,13 @@ static void near_sphere(Bench *b, const Crowd *table, double p[3])
         p[k] += row[k];
 }
 
-static void compare_with_loops(Bench *b, const Many *many)
+static void compare_tape(Bench *b, const Many *many, bool by_cells)
 {
     Tape            tape       = tape_new(many->graph, many->roots, KINDS, &b->arena);
     NodeValue      *values     = arena_new_array(&b->arena, NodeValue, many->graph->count);
     const NodeValue parameters = {{TIME}};
     uint32_t        near       = 0;
+    tape.by_cells              = by_cells;
     tape_run_frame(&tape, &parameters, values);
     assert_int_equal(tape_frame_infinite(&tape, values), NODE_NONE);
     for (int i = 0; i < POINTS; i++) {
@@ -74,9 +78,15 @@ static void compare_with_loops(Bench *b, const Many *many)
         else
             near_sphere(b, table_of(many->graph, many->sharp), p);
         tape_run_surface(&tape, p, NORMAL, FOOTPRINT, values);
-        near += compare_at(many, values, p);
+        near += compare_at(many, values, p, by_cells);
     }
     assert_in_range(near, POINTS / 8, POINTS - POINTS / 8);
+}
+
+static void compare_with_loops(Bench *b, const Many *many)
+{
+    compare_tape(b, many, true);
+    compare_tape(b, many, false);
 }
 
 static void tapes_give_what_loops_give(void **state)
@@ -199,7 +209,7 @@ static void compile_text(Bench *b, const char *text)
                 "    data[i] = vec4(s.normal, s.roughness + s.distance + krs_distance(p) +\n"
                 "                   krs_distance_lod(p, 0.1));\n}\n",
                 text);
-    if (spirv_compile(shader.bytes, "crowds", &words, &count, &log) != KRS_OK)
+    if (spirv_compile(shader.bytes, "crowds", false, &words, &count, &log) != KRS_OK)
         fail_msg("%s\n%s", log, shader.bytes);
     free(words);
     free(log);

@@ -1,0 +1,115 @@
+/*
+ * grid_find.c: which members of a grid are near a point.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "compiler/graph/grid.h"
+
+uint32_t grid_cell_along(const Grid *grid, int axis, double coordinate)
+{
+    double cell = (coordinate - grid->low[axis]) / grid->size;
+    if (cell <= 0)
+        return 0;
+    return cell < grid->cells[axis] ? (uint32_t)cell : grid->cells[axis] - 1;
+}
+
+static double outside(double low, double high, double coordinate)
+{
+    return fmax(fmax(low - coordinate, coordinate - high), 0);
+}
+
+/* ---- the list of a cell ---- */
+
+static double distance_to_box(const Box *box, const double point[3])
+{
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        double away = outside(box->axis[k].low, box->axis[k].high, point[k]);
+        square += away * away;
+    }
+    return sqrt(square);
+}
+
+const uint32_t *grid_find(const Grid *grid, const double point[3], uint32_t *count,
+                          double *clearance)
+{
+    size_t cell = 0;
+    for (int k = 2; k >= 0; k--) {
+        double along = floor((point[k] - grid->low[k]) / grid->size);
+        if (!(along >= 0 && along < grid->cells[k])) {
+            *count     = 0;
+            *clearance = distance_to_box(&grid->inner, point);
+            return grid->members;
+        }
+        cell = cell * grid->cells[k] + (size_t)along;
+    }
+    *count     = grid->first[cell + 1] - grid->first[cell];
+    *clearance = grid->clearance[cell];
+    return grid->members + grid->first[cell];
+}
+
+/* ---- the lists of all cells that a ball meets ---- */
+
+/* How far a point is from a cell along an axis. */
+static double outside_cell(const Grid *grid, int axis, uint32_t cell, double coordinate)
+{
+    double low = grid->low[axis] + cell * grid->size;
+    return outside(low, low + grid->size, coordinate);
+}
+
+/* The first of the members from `first` on in an ascending list. */
+static const uint32_t *list_from(const uint32_t *list, const uint32_t *end, uint32_t first)
+{
+    while (list < end) {
+        const uint32_t *middle = list + (end - list) / 2;
+        if (*middle < first)
+            list = middle + 1;
+        else
+            end = middle;
+    }
+    return list;
+}
+
+static void add_list(const Grid *grid, size_t cell, NearMembers *near)
+{
+    const uint32_t *end  = grid->members + grid->first[cell + 1];
+    const uint32_t *list = list_from(grid->members + grid->first[cell], end, near->first);
+    for (; list < end && *list - near->first < NEAR_AT_ONCE; list++)
+        near->bits[(*list - near->first) / 64] |= (uint64_t)1 << (*list - near->first) % 64;
+}
+
+void grid_near(const Grid *grid, const double point[3], double radius, NearMembers *near)
+{
+    uint32_t first[3], last[3];
+    double   most = radius * radius;
+    memset(near->bits, 0, sizeof near->bits);
+    for (int k = 0; k < 3; k++) {
+        first[k] = grid_cell_along(grid, k, point[k] - radius);
+        last[k]  = grid_cell_along(grid, k, point[k] + radius);
+    }
+    for (uint32_t z = first[2]; z <= last[2]; z++) {
+        double away_z = outside_cell(grid, 2, z, point[2]);
+        for (uint32_t y = first[1]; y <= last[1]; y++) {
+            double away_y = outside_cell(grid, 1, y, point[1]);
+            double square = away_y * away_y + away_z * away_z;
+            size_t row    = ((size_t)z * grid->cells[1] + y) * grid->cells[0];
+            for (uint32_t x = first[0]; x <= last[0]; x++) {
+                double away = outside_cell(grid, 0, x, point[0]);
+                if (square + away * away <= most)
+                    add_list(grid, row + x, near);
+            }
+        }
+    }
+}
+
+bool grid_is_within(const Grid *grid, const double point[3], double radius)
+{
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        double low  = grid->low[k], high = low + grid->cells[k] * grid->size;
+        double away = fmax(point[k] - low, high - point[k]);
+        square += away * away;
+    }
+    return square <= radius * radius;
+}
