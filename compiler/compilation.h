@@ -33,6 +33,7 @@ typedef struct Request {
     char   **dump;    /* where the dump goes, unless NULL */
     Inspect *inspect; /* called with the elaborated scene, unless NULL */
     void    *user;    /* passed to `inspect` */
+    bool     apart;   /* parts that are alike stay apart: no crowds */
 } Request;
 
 /* Which optional roots are lowered, besides the surface and the march of each component.  `lower`

@@ -263,3 +263,10 @@ KrsStatus inspect_elaborated(const char *text, size_t length, const KrsOptions *
     scene_free(scene);
     return status;
 }
+
+KrsStatus compile_apart(const char *text, size_t length, const KrsOptions *options,
+                        KrsScene **scene)
+{
+    Request request = {.after = PASS_COUNT, .end = PASS_COUNT, .apart = true};
+    return load_and_compile(text, length, "scene.krs", options, &request, scene);
+}

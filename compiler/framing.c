@@ -4,6 +4,8 @@
  * Boxes of sequences hold for all values of the parameters, so they are often much too large.  In a
  * picture of the whole box the scene would be tiny.  So a few hundred rays are cast from a sphere
  * around the box to points inside of it, and the camera frames what they hit.
+ *
+ * The picture does not depend on whether parts are a crowd: rays and their number are as without.
  */
 #include <math.h>
 #include <string.h>
@@ -52,7 +54,7 @@ static bool outer_ball(const KrsScene *scene, Sphere *ball)
 static int count_rays(const KrsScene *scene)
 {
     int    count = RAYS;
-    double flops = scene->program.flops;
+    double flops = tape_flops_apart(&scene->distance);
     while (count > FEWEST_RAYS && count * flops > RAYS * FLOPS_OF_ALL_RAYS)
         count /= 2;
     return count;
@@ -140,7 +142,8 @@ static KrsStatus frame_scene(KrsScene *scene)
     KrsStatus status = frame_new(scene, &frame);
     if (status != KRS_OK)
         return status;
-    int rays = count_rays(scene);
+    frame->exact = true;
+    int rays     = count_rays(scene);
     /* Each round makes the ball smaller, and so the rays of the next round denser. */
     for (int round = 0; round < ROUNDS; round++) {
         make_rays(&ball, rays, origins, directions);

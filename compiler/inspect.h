@@ -1,5 +1,6 @@
 /*
- * inspect.h: access to the elaborated scene with its shapes, which a compiled scene has no longer.
+ * inspect.h: access to the elaborated scene with its shapes, which a compiled scene has no longer, and
+ * to a scene without crowds.
  */
 #ifndef KRS_INSPECT_H
 #define KRS_INSPECT_H
@@ -25,5 +26,10 @@ KrsStatus inspect_file(const char *path, const KrsOptions *options, Inspect *ins
 /* The same of a text, for which only the passes up to `elaborate` run. */
 KrsStatus inspect_elaborated(const char *text, size_t length, const KrsOptions *options,
                              Inspect *inspect, void *user);
+
+/* Compiles a text as krs_compile_text does, but parts that are alike stay apart, however many they
+   are: what crowds (graph/crowd.h) are held against. */
+KrsStatus compile_apart(const char *text, size_t length, const KrsOptions *options,
+                        KrsScene **scene);
 
 #endif

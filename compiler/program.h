@@ -166,6 +166,7 @@ struct KrsFrame {
     frame */
     NodeValue      *values;     /* of every node */
     KrsLight       *lights;
+    bool            exact; /* rays are marched with exact distances of crowds */
     bool            fresh; /* the frame values in `values` belong to the parameters */
     double          zones[KRS_MOST_ZONES][4];
     size_t          zone_count; /* zones of the caller */

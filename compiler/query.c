@@ -52,6 +52,14 @@ static double distance_at(KrsFrame *frame, const double point[3], uint32_t *near
     return least < depth ? depth : least;
 }
 
+/* Far from surfaces, short steps cost less than exact ones. */
+static Tape march_tape(const KrsFrame *frame, const Tape *tape)
+{
+    Tape march     = *tape;
+    march.by_cells = !frame->exact;
+    return march;
+}
+
 /* In a scene with sheets: how far a ray may go from a point.  `step` is the length from the
    previous point to it. */
 static double step_ahead(KrsFrame *frame, const double point[3], const double direction[3],
@@ -59,8 +67,9 @@ static double step_ahead(KrsFrame *frame, const double point[3], const double di
 {
     const KrsScene *scene = frame->scene;
     const Node     *exact = along_roots(&scene->roots, ALONG_EXACT);
+    Tape            ahead = march_tape(frame, &scene->ahead);
     double          least = INFINITY;
-    tape_run_surface(&scene->ahead, point, direction, step, frame->values);
+    tape_run_surface(&ahead, point, direction, step, frame->values);
     for (size_t i = 0; i < scene->component_count; i++)
         least = fmin(least, frame->values[exact[i]].v[0]);
     return fmax(least, zone_depth(frame, point));
@@ -70,11 +79,12 @@ static double step_ahead(KrsFrame *frame, const double point[3], const double di
 static double clearance_at(KrsFrame *frame, const double point[3])
 {
     const KrsScene *scene   = frame->scene;
-    RootRange       guarded = roots_of(&scene->roots, ROOTS_GUARDED);
+    RootRange       roots   = roots_of(&scene->roots, ROOTS_GUARDED);
+    Tape            guarded = march_tape(frame, &scene->guarded);
     double          least   = INFINITY;
-    tape_run_point(&scene->guarded, point, frame->values);
-    for (size_t i = 0; i < guarded.count; i++)
-        least = fmin(least, frame->values[guarded.items[i]].v[0]);
+    tape_run_point(&guarded, point, frame->values);
+    for (size_t i = 0; i < roots.count; i++)
+        least = fmin(least, frame->values[roots.items[i]].v[0]);
     return fmax(least, zone_depth(frame, point));
 }
 

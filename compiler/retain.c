@@ -141,14 +141,12 @@ static void retain_tapes(Compilation *c)
         distances[i] = distance_root(roots, i);
     scene->guarded  = tape_with_zones(scene, roots_of(roots, ROOTS_GUARDED).items, true, arena,
                                       &c->scratch);
-    scene->guarded.by_cells = true;
     scene->distance = tape_with_zones(scene, distances, false, arena, &c->scratch);
     if (c->additions.sheets) {
         RootRange gradients = roots_of(roots, ROOTS_GRADIENT);
         gradients.count     = scene->component_count * NODES_OF(GradientRoots);
         scene->ahead        = tape_with_zones(scene, along_roots(roots, ALONG_EXACT), false, arena,
                                               &c->scratch);
-        scene->ahead.by_cells = true;
         scene->turned       = tape_of(scene, gradients, arena);
     }
     scene->surface = tape_of(scene, roots_from(roots, ROOTS_SURFACE, ROOTS_ZONE), arena);

@@ -177,7 +177,7 @@ KrsStatus pass_lower(Compilation *c)
     const Scene   *s      = &c->elaborated;
     Roots         *roots  = &c->scene->roots;
     Additions     *more   = &c->additions;
-    LoweredCrowds *crowds = lowered_crowds_new(s->graph, &c->work);
+    LoweredCrowds *crowds = c->request->apart ? NULL : lowered_crowds_new(s->graph, &c->work);
     allocate_roots(c);
     if (!lower_components(c, s->graph, crowds))
         return KRS_BAD_SCENE;

@@ -189,10 +189,12 @@ static void loop_over(Loop *loop, uint32_t member)
 static void loop_over_near(Loop *loop, double radius)
 {
     NearMembers near;
+    uint32_t    rows = loop->table->rows;
     begin_loop(loop);
-    for (near.first = 0; near.first < loop->table->rows; near.first += NEAR_AT_ONCE) {
+    for (near.first = 0; near.first < rows; near.first += near.count) {
+        near.count = rows - near.first < NEAR_AT_ONCE ? rows - near.first : NEAR_AT_ONCE;
         grid_near(&loop->table->grid, loop->in.point, radius, &near);
-        for (uint32_t word = 0; word < NEAR_AT_ONCE / 64; word++)
+        for (uint32_t word = 0; word < (near.count + 63) / 64; word++)
             for (uint64_t bits = near.bits[word]; bits; bits &= bits - 1)
                 loop_over(loop, near.first + 64 * word + lowest_bit(bits));
     }

@@ -42,16 +42,16 @@ void grid_build(Grid *grid, const Box *boxes, uint32_t count, double reach, doub
 const uint32_t *grid_find(const Grid *grid, const double point[3], uint32_t *count,
                           double *clearance);
 
-/* The members from number `first` on that are near a point, NEAR_AT_ONCE at a time, each once: bit
-   i % 64 of bits[i / 64] is that of member first + i. */
-enum { NEAR_AT_ONCE = 8192 };
+/* Which of `count` members from number `first` on are near a point: bit i % 64 of bits[i / 64] is that
+   of member first + i. */
+enum { NEAR_AT_ONCE = 32768 };
 typedef struct NearMembers {
-    uint32_t first;
+    uint32_t first, count; /* at most NEAR_AT_ONCE */
     uint64_t bits[NEAR_AT_ONCE / 64];
 } NearMembers;
 
-/* Finds all members whose box is nearer than radius + `reach`, and some that are farther: the lists of
-   all cells that meet the ball.  `near->first` is set before. */
+/* Sets the bits of all whose box is nearer than radius + `reach`, and some that are farther: the lists
+   of all cells that meet the ball.  `first` and `count` are set before. */
 void grid_near(const Grid *grid, const double point[3], double radius, NearMembers *near);
 /* Whether all cells are in the ball, so that no member is left out. */
 bool grid_is_within(const Grid *grid, const double point[3], double radius);

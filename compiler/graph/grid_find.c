@@ -75,16 +75,24 @@ static void add_list(const Grid *grid, size_t cell, NearMembers *near)
 {
     const uint32_t *end  = grid->members + grid->first[cell + 1];
     const uint32_t *list = list_from(grid->members + grid->first[cell], end, near->first);
-    for (; list < end && *list - near->first < NEAR_AT_ONCE; list++)
+    for (; list < end && *list - near->first < near->count; list++)
         near->bits[(*list - near->first) / 64] |= (uint64_t)1 << (*list - near->first) % 64;
 }
 
+/* The cells of a row along x that are not farther than `away` along it. */
+static void add_row(const Grid *grid, size_t row, double x, double away, NearMembers *near)
+{
+    uint32_t last = grid_cell_along(grid, 0, x + away);
+    for (uint32_t cell = grid_cell_along(grid, 0, x - away); cell <= last; cell++)
+        add_list(grid, row + cell, near);
+}
+
+/* A part of a cell's side that rounding may miss is less than boxes are larger in the lists. */
 void grid_near(const Grid *grid, const double point[3], double radius, NearMembers *near)
 {
     uint32_t first[3], last[3];
-    double   most = radius * radius;
-    memset(near->bits, 0, sizeof near->bits);
-    for (int k = 0; k < 3; k++) {
+    memset(near->bits, 0, (near->count + 63) / 64 * sizeof near->bits[0]);
+    for (int k = 1; k < 3; k++) {
         first[k] = grid_cell_along(grid, k, point[k] - radius);
         last[k]  = grid_cell_along(grid, k, point[k] + radius);
     }
@@ -92,13 +100,10 @@ void grid_near(const Grid *grid, const double point[3], double radius, NearMembe
         double away_z = outside_cell(grid, 2, z, point[2]);
         for (uint32_t y = first[1]; y <= last[1]; y++) {
             double away_y = outside_cell(grid, 1, y, point[1]);
-            double square = away_y * away_y + away_z * away_z;
+            double left   = radius * radius - away_y * away_y - away_z * away_z;
             size_t row    = ((size_t)z * grid->cells[1] + y) * grid->cells[0];
-            for (uint32_t x = first[0]; x <= last[0]; x++) {
-                double away = outside_cell(grid, 0, x, point[0]);
-                if (square + away * away <= most)
-                    add_list(grid, row + x, near);
-            }
+            if (left >= 0)
+                add_row(grid, row, point[0], sqrt(left), near);
         }
     }
 }

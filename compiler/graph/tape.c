@@ -206,35 +206,43 @@ static const Crowd *table_of(const Tape *tape, uint32_t function)
     return &crowds->tables.items[crowds->functions.items[function].crowd];
 }
 
-/* For a typical list, and one member more. */
-static double call_flops(const Tape *tape, uint32_t function)
+static double flops_of(const Tape *tape, bool apart);
+
+/* For all members, or a typical list and one member more. */
+static double call_flops(const Tape *tape, uint32_t function, bool apart)
 {
-    const Grid *grid  = &table_of(tape, function)->grid;
-    size_t      cells = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
-    double      mean  = (double)grid->first[cells] / (double)cells;
-    return (mean + 1) * tape_flops(&tape->functions[function]);
+    const Crowd *table = table_of(tape, function);
+    const Grid  *grid  = &table->grid;
+    size_t       cells = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
+    double       mean  = (double)grid->first[cells] / (double)cells;
+    return (apart ? table->rows : mean + 1) * flops_of(&tape->functions[function], apart);
 }
 
-double tape_node_flops(const Tape *tape, Node node)
+static double node_flops(const Tape *tape, Node node, bool apart)
 {
     const Expr *expr = &tape->graph->items[node];
     GraphType   types[MAX_OPERANDS];
-    if (expr->operand_count == 0)
+    if (expr->operand_count == 0 || (apart && expr->op == OP_row))
         return 0;
     for (uint32_t k = 0; k < expr->operand_count; k++)
         types[k] = tape->graph->items[expr->operands[k]].type;
     double flops = op_cost((Op)expr->op, expr->type, types);
-    return is_call((Op)expr->op) ? flops + call_flops(tape, called_function(tape->graph, expr))
-                                 : flops;
+    if (is_call((Op)expr->op))
+        flops += call_flops(tape, called_function(tape->graph, expr), apart);
+    return flops;
 }
 
-double tape_flops(const Tape *tape)
+static double flops_of(const Tape *tape, bool apart)
 {
     double flops = 0;
     for (size_t i = tape->frame_count; i < tape->count; i++)
-        flops += tape_node_flops(tape, tape->nodes[i]);
+        flops += node_flops(tape, tape->nodes[i], apart);
     return flops;
 }
+
+double tape_node_flops(const Tape *tape, Node node) { return node_flops(tape, node, false); }
+double tape_flops(const Tape *tape) { return flops_of(tape, false); }
+double tape_flops_apart(const Tape *tape) { return flops_of(tape, true); }
 
 /* For the longest list. */
 static double call_loops(const Tape *tape, uint32_t function)
