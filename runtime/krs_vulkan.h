@@ -368,7 +368,10 @@ typedef struct KrsSurfacePoint {
 } KrsSurfacePoint;
 
 /* Evaluates the scene on the device at `count` points in world units: distances, as krs_distance
-   in single precision, and what is there; either may be NULL.  KRS_OUT_OF_MEMORY, KRS_INTERNAL. */
+   in single precision, and what is there; either may be NULL.  In scenes with many parts that are
+   alike, a distance may be less far from them, never more; near surfaces it is as on the host.
+   Where it is constant around a point the normal by differences is 0, and what is there is that of
+   some part.  KRS_OUT_OF_MEMORY, KRS_INTERNAL. */
 KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*points)[3],
                      size_t count, float *distances, KrsSurfacePoint *surfaces);
 
@@ -379,7 +382,8 @@ KrsStatus krs_sample(KrsRendering *rendering, KrsFrame *frame, const float (*poi
  * In simple scenes distances are accurate to a few units in the last place of the coordinates,
  * and so is t beyond the tolerance.  For sequences of dozens of mirrors it is some hundred
  * units.  Rays from far outside of a bounded scene lose no accuracy, since they begin at its
- * box.  Normals are differences over a thousandth of the coordinates.  A tolerance of 0 asks for
+ * box.  Normals are differences over a thousandth of the coordinates.  At points far from many
+ * alike parts, distances and normals are those of krs_sample.  A tolerance of 0 asks for
  * the accuracy of single precision.  A ray is unresolved after 8192 steps.
  *
  * KRS_BAD_ARGUMENT (nothing is answered), KRS_OUT_OF_MEMORY, KRS_INTERNAL; what is written to

@@ -242,15 +242,14 @@ static NodeValue run_call(const Tape *tape, const Expr *e, const Inputs *outer, 
     }
     const CrowdFunction *function = &crowds->functions.items[id];
 
-    Loop loop = {.function = function,
-                 .table    = &crowds->tables.items[function->crowd],
-                 .body     = &tape->functions[id],
-                 .bodies   = crowds->bodies.items + function->first_body,
-                 .values   = values,
-                 .in       = {.point     = point,
-                              .normal    = normal,
-                              .footprint = footprint,
-                              .by_cells  = outer->by_cells}};
+    Loop loop = {
+        .function = function,
+        .table    = &crowds->tables.items[function->crowd],
+        .body     = &tape->functions[id],
+        .bodies   = crowds->bodies.items + function->first_body,
+        .values   = values,
+        .in       = {
+                  .point = point, .normal = normal, .footprint = footprint, .by_cells = outer->by_cells}};
     return run_loop(&loop);
 }
 

@@ -40,7 +40,7 @@ size_t tape_operations(const Tape *tape);
 double tape_flops(const Tape *tape);
 /* The same of one of its nodes; of a call for a list of usual length. */
 double tape_node_flops(const Tape *tape, Node node);
-/* Of a tape, if the members of crowds were parts by themselves: their rows are constants then. */
+/* About that of a tape on which members of crowds are parts by themselves, and rows constants. */
 double tape_flops_apart(const Tape *tape);
 
 /* Iterations of the loops that its kernels have within operations and over members of crowds, at most. */

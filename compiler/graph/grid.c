@@ -25,7 +25,7 @@ enum {
     SPARE_ENTRIES      = 4096
 };
 
-#define MARGIN_IN_CELLS 0.25    /* unless the caller has one */
+#define MARGIN_IN_CELLS 0.25    /* beyond what the caller gives */
 #define RING_IN_CELLS   0.5     /* how far beyond the margin boxes are measured */
 #define GROWTH          1.26    /* of the side: twice the volume */
 #define SMALLEST_SIDE   1e-12   /* of a cell */
@@ -37,7 +37,7 @@ typedef struct Builder {
     const Box *boxes;
     uint32_t   count, present; /* boxes; those that are not empty */
     double     reach, margin;
-    double     given_margin; /* 0: a part of a cell's side */
+    double     given_margin;
     double     pad[3];
     double     listed, seen; /* boxes up to this distance are in the list, or are measured */
     float     *nearest;      /* of each cell: the square of the distance to the nearest box that is
@@ -125,8 +125,7 @@ static void place_cells(Builder *b, double side)
     Grid *grid = b->grid;
     grid->size = 1 / (double)(float)(1 / side);
     /* Rounding a clearance down leaves the margin. */
-    b->margin = (b->given_margin > 0 ? b->given_margin : MARGIN_IN_CELLS * grid->size) *
-                (1 + 8 * FLOAT_MISSES);
+    b->margin = (b->given_margin + MARGIN_IN_CELLS * grid->size) * (1 + 8 * FLOAT_MISSES);
     b->listed = b->margin + b->reach;
     b->seen   = b->listed + RING_IN_CELLS * grid->size;
     for (int k = 0; k < 3; k++) {

@@ -26,8 +26,8 @@ typedef struct Grid {
 } Grid;
 
 /*
- * Builds a grid of `count` boxes, at least one.  The clearance is at least `margin` wherever a list does
- * not have all members, and NOWHERE where it does; 0 leaves the margin to the builder.  Where a box or
+ * Builds a grid of `count` boxes, at least one.  The clearance is more than `margin`, by a part of a cell,
+ * wherever a list does not have all members, and NOWHERE where it does: taps for normals need more.  Where a box or
  * the margin is infinite there is one cell for all of space, its size is infinite, and its list has all
  * members.  Empty boxes are in no list.
  */

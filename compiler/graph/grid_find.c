@@ -112,7 +112,7 @@ bool grid_is_within(const Grid *grid, const double point[3], double radius)
 {
     double square = 0;
     for (int k = 0; k < 3; k++) {
-        double low  = grid->low[k], high = low + grid->cells[k] * grid->size;
+        double low = grid->low[k], high = low + grid->cells[k] * grid->size;
         double away = fmax(point[k] - low, high - point[k]);
         square += away * away;
     }

@@ -227,9 +227,10 @@ static double node_flops(const Tape *tape, Node node, bool apart)
     for (uint32_t k = 0; k < expr->operand_count; k++)
         types[k] = tape->graph->items[expr->operands[k]].type;
     double flops = op_cost((Op)expr->op, expr->type, types);
-    if (is_call((Op)expr->op))
-        flops += call_flops(tape, called_function(tape->graph, expr), apart);
-    return flops;
+    if (!is_call((Op)expr->op))
+        return flops;
+    double loop = call_flops(tape, called_function(tape->graph, expr), apart);
+    return apart ? loop : flops + loop;
 }
 
 static double flops_of(const Tape *tape, bool apart)

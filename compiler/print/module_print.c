@@ -242,7 +242,8 @@ static void emit_block(Emitter *e)
         text_add(e->out,
                  "// Parts that are alike are rows of krs_rows, a texel buffer of format RGBA32F.\n"
                  "// krs_cells, of format RG32UI, says which of them are near a point.  Both are\n"
-                 "// equal in all frames: krs_frame_tables in krs.h.\n");
+                 "// equal in all frames: krs_frame_tables in krs.h.  Far from all of them\n"
+                 "// krs_distance may be less than the distance, never more.\n");
     emit_phrase(e, PHRASE_PARAMETER_BLOCK, (Operands){emit_count(e, slots + v->zones)});
     if (emit_reads_zones(e))
         emit_phrase(e, PHRASE_ZONES, (Operands){emit_count(e, v->zones)});

@@ -153,6 +153,29 @@ static const char *list_is_wrong(const Grid *grid, const Case *of, const double 
     return NULL;
 }
 
+/* How the members near a point are wrong, or NULL; they are asked for in two parts. */
+static const char *near_is_wrong(const Grid *grid, const Case *of, const double point[3],
+                                 double radius)
+{
+    double rounding = 1e-14 * (largest3(point) + of->reach + radius);
+    bool   all      = grid_is_within(grid, point, radius);
+    for (uint32_t part = 0; part < 2; part++) {
+        uint32_t    half = of->count / 2;
+        NearMembers near = {.first = part * half, .count = part ? of->count - half : half};
+        grid_near(grid, point, radius, &near);
+        for (uint32_t i = 0; i < near.count; i++) {
+            const Box *box = &of->boxes[near.first + i];
+            bool       is  = near.bits[i / 64] >> i % 64 & 1;
+            if (is && is_empty(box))
+                return "an empty box is near";
+            if (!is && !is_empty(box) &&
+                (all || box_distance(box, point) + rounding < radius + of->reach))
+                return "a near box is left out";
+        }
+    }
+    return NULL;
+}
+
 static const char *totals_are_wrong(const Grid *grid, const Case *of)
 {
     size_t   cells = (size_t)grid->cells[0] * grid->cells[1] * grid->cells[2];
@@ -201,6 +224,9 @@ static const char *grid_is_wrong(const Grid *grid, const Case *of, Random *rando
             point[k] = find[k];
         if (!wrong)
             wrong = list_is_wrong(grid, of, point);
+        double side = isfinite(grid->size) ? grid->size : 1;
+        if (!wrong)
+            wrong = near_is_wrong(grid, of, point, side * random_between(random, 0, i % 10));
     }
     return wrong;
 }

@@ -36,9 +36,9 @@ const Crowd  *table_of(const Graph *g, uint32_t function);
 const double *row_of(const Crowd *table, uint32_t i);
 double        clearance_at(const Crowd *table, const double p[3]);
 /* Over all members, whether they are listed or not; by cells it is at most the clearance. */
-double        all_spheres(const Crowd *table, const double p[3], bool smooth, bool by_cells);
+double   all_spheres(const Crowd *table, const double p[3], bool smooth, bool by_cells);
 uint32_t nearest_sphere(const Crowd *table, const double p[3]);
-double all_copies(const Crowd *outer, const Crowd *inner, const double p[3], bool by_cells);
+double   all_copies(const Crowd *outer, const Crowd *inner, const double p[3], bool by_cells);
 void     lean_there(const Crowd *table, const double p[3], const double normal[3], double size,
                     double lean[3]);
 

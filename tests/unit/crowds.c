@@ -37,7 +37,7 @@ static uint32_t compare_at(const Many *many, const NodeValue *values, const doub
 {
     const Graph *g     = many->graph;
     const Crowd *plain = table_of(g, many->sharp), *mixed = table_of(g, many->smooth);
-    double       sharp = all_spheres(plain, p, false, by_cells), lean[3];
+    double       sharp  = all_spheres(plain, p, false, by_cells), lean[3];
     double       smooth = all_spheres(mixed, p, true, by_cells);
     double nested = all_copies(table_of(g, many->nested), table_of(g, many->inner), p, by_cells);
     assert_true(fabs(value_at(many, values, SHARP) - sharp) < 1e-12);

@@ -1,0 +1,162 @@
+/*
+ * crowd_pictures.c: pictures of scenes with crowds are pictures of the same parts apart.
+ *
+ * Both are as deep as the permitted error says; rays that graze something may hit it in one of them
+ * only.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "compiler/base/vec.h"
+#include "compiler/inspect.h"
+#include "tests/support/crowd_texts.h"
+#include "tests/support/random.h"
+#include "tests/support/renderer.h"
+
+enum { WIDTH = 400, HEIGHT = 240, PIXELS = WIDTH * HEIGHT, SEED = 23, SAMPLED = 256, TOGETHER = 3 };
+
+typedef struct Seen {
+    KrsScene     *scene;
+    KrsFrame     *frame;
+    KrsRendering *rendering;
+    KrsPicture   *picture;
+} Seen;
+
+static void look(Seen *seen, const CrowdText *scenes, size_t count, bool apart)
+{
+    char            *text    = crowd_text(scenes, count, SEED);
+    KrsRenderOptions options = {.width = WIDTH, .height = HEIGHT, .samples = 1};
+    KrsStatus        status  = apart
+                                   ? compile_apart(text, strlen(text), NULL, &seen->scene)
+                                   : krs_compile_text(text, strlen(text), "scene.krs", NULL, &seen->scene);
+    free(text);
+    assert_int_equal(status, KRS_OK);
+    assert_int_equal(krs_frame_new(seen->scene, &seen->frame), KRS_OK);
+    assert_int_equal(krs_rendering_new(renderer, seen->scene, &seen->rendering), KRS_OK);
+    if (krs_render(seen->rendering, seen->frame, &options, &seen->picture) != KRS_OK)
+        fail_msg("%s: %s", scenes->name, krs_renderer_message(renderer));
+}
+
+static void forget(Seen *seen)
+{
+    krs_picture_free(seen->picture);
+    krs_rendering_free(seen->rendering);
+    krs_frame_free(seen->frame);
+    krs_scene_free(seen->scene);
+}
+
+/* ---- pictures ---- */
+
+/* Pixels where something else is hit, or nothing; and of the others those with another depth or
+   colour. */
+typedef struct Different {
+    int    hits, depths, colors, covered;
+    double shade; /* the mean difference of colours */
+} Different;
+
+static bool is_hit(const KrsPicture *picture, int pixel) { return picture->component[pixel] != 0; }
+
+static double color_difference(const KrsPicture *a, const KrsPicture *b, int pixel)
+{
+    double most = 0;
+    for (int k = 0; k < 3; k++)
+        most = fmax(most, fabs((double)a->color[4 * pixel + k] - (double)b->color[4 * pixel + k]));
+    return most;
+}
+
+static Different compare(const KrsPicture *apart, const KrsPicture *crowd)
+{
+    Different found = {0};
+    for (int i = 0; i < PIXELS; i++) {
+        double color = color_difference(apart, crowd, i);
+        found.covered += is_hit(apart, i);
+        found.shade += color / PIXELS;
+        if (is_hit(apart, i) != is_hit(crowd, i) || apart->instance[i] != crowd->instance[i])
+            found.hits++;
+        else if (is_hit(apart, i)) {
+            double depth = (double)apart->depth[i];
+            found.depths += !(fabs((double)crowd->depth[i] - depth) < 2e-3 * depth);
+            found.colors += !(color < 0.02);
+        }
+    }
+    return found;
+}
+
+/* One pixel in 500 may graze something, and one in 50 be shaded otherwise: where parts have the size of
+   pixels, taps for normals are as far from surfaces as the clearance. */
+static bool are_same(const Different *d)
+{
+    return d->covered > 200 && d->hits + d->depths <= 1 + d->covered / 500 &&
+           d->colors <= d->covered / 50 && d->shade < 1e-4;
+}
+
+static void pictures_are_as_apart(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < PICTURED_CROWDS; i += TOGETHER) {
+        Seen apart, crowd;
+        look(&apart, &crowd_texts[i], TOGETHER, true);
+        look(&crowd, &crowd_texts[i], TOGETHER, false);
+        Different d = compare(apart.picture, crowd.picture);
+        if (!are_same(&d))
+            fail_msg("from %s: of %d pixels %d hits, %d depths, %d colors, shade %.1e",
+                     crowd_texts[i].name, d.covered, d.hits, d.depths, d.colors, d.shade);
+        forget(&apart);
+        forget(&crowd);
+    }
+}
+
+/* ---- queries ---- */
+
+/* Far from all parts the distance on the device may be less, and has a normal of length 0 or 1. */
+static void answers_of_the_device_are_bounds(void **state)
+{
+    static double          points[SAMPLED][3], wanted[SAMPLED];
+    static float           places[SAMPLED][3], sampled[SAMPLED];
+    static KrsSurfacePoint surfaces[SAMPLED];
+    static KrsHit          hits[SAMPLED];
+    Random                 random = {SEED};
+    Seen                   seen;
+    int                    less = 0, flat = 0;
+    (void)state;
+    look(&seen, &crowd_texts[0], 1, false);
+    for (int i = 0; i < SAMPLED * 3; i++)
+        points[i / 3][i % 3] = places[i / 3][i % 3] = (float)random_between(&random, -2, 2);
+    assert_int_equal(krs_distance(seen.frame, (const double(*)[3])points, SAMPLED, wanted), KRS_OK);
+    assert_int_equal(krs_sample(seen.rendering, seen.frame, (const float(*)[3])places, SAMPLED,
+                                sampled, surfaces),
+                     KRS_OK);
+    assert_int_equal(
+        krs_device_probe(seen.rendering, seen.frame, (const double(*)[3])points, SAMPLED, hits),
+        KRS_OK);
+    for (int i = 0; i < SAMPLED; i++) {
+        double length = length3(hits[i].normal);
+        assert_true((double)sampled[i] < wanted[i] + 1e-5 && hits[i].distance < wanted[i] + 1e-5);
+        assert_true((sampled[i] > 0) == (wanted[i] > 0));
+        assert_true(length == 0 || fabs(length - 1) < 1e-5);
+        for (int k = 0; k < 3; k++)
+            assert_true(isfinite(hits[i].shading[k]) && isfinite(surfaces[i].normal[k]) &&
+                        isfinite(surfaces[i].color[k]));
+        less += (double)sampled[i] < wanted[i] - 1e-3;
+        flat += length == 0;
+    }
+    assert_in_range(less, 1, SAMPLED - 1);
+    assert_in_range(flat, 1, less);
+    forget(&seen);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pictures_are_as_apart),
+        cmocka_unit_test(answers_of_the_device_are_bounds),
+    };
+    return cmocka_run_group_tests_name("pictures of crowds", tests, renderer_open, renderer_close);
+}
