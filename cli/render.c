@@ -260,6 +260,45 @@ static void add_stats_json(Text *json, const KrsRenderStats *stats, const KrsPro
                 (unsigned long long)stats->peak_memory_bytes);
 }
 
+/* The most kernels that statistics list: those of a picture are fewer. */
+enum { MOST_KERNELS = 64 };
+
+static size_t read_kernels(const KrsRendering *rendering, KrsKernelStats kernels[MOST_KERNELS])
+{
+    const size_t count = krs_rendering_kernels(rendering, kernels, MOST_KERNELS);
+    return count < MOST_KERNELS ? count : MOST_KERNELS;
+}
+
+static void add_kernels_json(Text *json, const KrsRendering *rendering)
+{
+    KrsKernelStats kernels[MOST_KERNELS];
+    const size_t   count = read_kernels(rendering, kernels);
+    text_add(json, ", \"kernels\": [");
+    for (size_t i = 0; i < count; i++)
+        text_format(json,
+                    "%s{\"name\": \"%s\", \"glsl_bytes\": %llu, \"spirv_ms\": %.3f, "
+                    "\"driver_ms\": %.3f, \"cached\": %s}",
+                    i ? ", " : "", kernels[i].name, (unsigned long long)kernels[i].glsl_bytes,
+                    kernels[i].spirv_ms, kernels[i].driver_ms,
+                    kernels[i].cached ? "true" : "false");
+    text_add(json, "]");
+}
+
+static void print_kernels(const KrsRendering *rendering)
+{
+    KrsKernelStats kernels[MOST_KERNELS];
+    const size_t   count    = read_kernels(rendering, kernels);
+    size_t         compiled = 0;
+    double         spirv_ms = 0, driver_ms = 0;
+    for (size_t i = 0; i < count; i++) {
+        compiled += !kernels[i].cached;
+        spirv_ms += kernels[i].spirv_ms;
+        driver_ms += kernels[i].driver_ms;
+    }
+    printf("kernels        %zu, %zu compiled; one after the other SPIR-V %.1f ms, driver %.1f ms\n",
+           count, compiled, spirv_ms, driver_ms);
+}
+
 static void print_stats(const KrsRenderStats *stats, const KrsProgram *program)
 {
     printf("device         %s\n", stats->device);
@@ -288,6 +327,8 @@ static void show_stats(Render *render, const KrsRenderStats *stats, uint32_t fra
         progress_end(&render->progress);
     if (options->stats == STATS_TEXT)
         print_stats(stats, program);
+    if (options->stats == STATS_TEXT)
+        print_kernels(render->rendering);
     if (options->stats != STATS_JSON)
         return;
     Text json = {.arena = options->arena};
@@ -295,6 +336,7 @@ static void show_stats(Render *render, const KrsRenderStats *stats, uint32_t fra
     if (options->animated)
         text_format(&json, "\"frame\": %u, ", frame);
     add_stats_json(&json, stats, program);
+    add_kernels_json(&json, render->rendering);
     text_add(&json, "}");
     puts(json.bytes);
 }

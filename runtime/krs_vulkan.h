@@ -110,6 +110,20 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
                                 KrsRendering **rendering);
 void      krs_rendering_free(KrsRendering *rendering);
 
+/* A kernel: a compute shader that a picture or a query is made by. */
+typedef struct KrsKernelStats {
+    char     name[48];   /* "trace.comp"; "trace.comp 2" of march group 2 alone */
+    uint64_t glsl_bytes; /* of its text; 0: the library carries it as SPIR-V */
+    double   spirv_ms;   /* of one processor, to print the text and to compile it */
+    double   driver_ms;  /* to make it ready on the device; some drivers do so in its first run */
+    bool     cached;     /* its SPIR-V was found in the cache, or in the library */
+} KrsKernelStats;
+
+/* The kernels made so far, those without a scene first.  Writes up to `capacity` of them, and
+   returns how many there are. */
+size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelStats *kernels,
+                             size_t capacity);
+
 /* The parts of a picture, as bits: KRS_PLANE_COLOR and so on, a row of planes.def each. */
 typedef enum KrsPlane {
 #define KRS_PLANE(id, bit, aov, about, arrays) KRS_PLANE_##id = 1 << bit,

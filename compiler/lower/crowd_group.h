@@ -38,7 +38,8 @@ typedef struct CrowdGroup {
     uint32_t       properties[PART_ROOTS]; /* of blends: what is mixed */
 } CrowdGroup;
 
-enum { NO_COLUMN = UINT32_MAX, NO_FUNCTION = UINT32_MAX };
+#define NO_COLUMN   UINT32_MAX
+#define NO_FUNCTION UINT32_MAX
 
 /* How the members of a group are joined. */
 typedef struct GroupJoin {

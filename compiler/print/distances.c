@@ -77,8 +77,7 @@ static bool has_gradient(const Emitter *e, Node gradient)
 /* Planes that rays know have gradients as well. */
 static bool is_of_group(const Emitter *e, uint32_t component)
 {
-    return e->variant->march_group == 0 ||
-           e->module->march_groups[component] == e->variant->march_group;
+    return e->variant->march_group == 0 || emit_is_of_group(e, component);
 }
 
 void need_gradient(Emitter *e)

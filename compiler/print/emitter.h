@@ -241,6 +241,8 @@ ModuleFunction emit_function(const Emitter *e, FunctionKind kind, uint32_t compo
 const Node *emit_planes(const Emitter *e);
 /* What a function computes first. */
 Node emit_root(const Emitter *e, FunctionKind kind, uint32_t component);
+/* Whether a component is of the variant's march group, which may be that of the planes. */
+bool emit_is_of_group(const Emitter *e, uint32_t component);
 /* Whether distances of the variant leave a component out that is a plane, or of another group. */
 bool emit_leaves_out(const Emitter *e, uint32_t component);
 

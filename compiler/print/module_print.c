@@ -89,10 +89,16 @@ Node emit_root(const Emitter *e, FunctionKind kind, uint32_t component)
     return *emit_function(e, kind, component).roots;
 }
 
+bool emit_is_of_group(const Emitter *e, uint32_t component)
+{
+    const uint32_t group = e->variant->march_group;
+    return e->module->march_groups[component] == (group == KRS_MARCH_GROUP_OF_PLANES ? 0 : group);
+}
+
 bool emit_leaves_out(const Emitter *e, uint32_t component)
 {
     if (e->variant->march_group > 0)
-        return e->module->march_groups[component] != e->variant->march_group;
+        return !emit_is_of_group(e, component);
     return e->variant->planes && e->module->is_plane && e->module->is_plane[component];
 }
 

@@ -61,6 +61,9 @@ typedef enum KrsRayStep {
     KRS_STEP_DIRECTIONAL
 } KrsRayStep;
 
+/* In place of a march group's number: the planes that rays meet without a march. */
+enum { KRS_MARCH_GROUP_OF_PLANES = 255 };
+
 typedef struct KrsVariant {
     uint32_t   zones;       /* of the caller, that the block has room for, behind all other slots */
     uint32_t   march_group; /* krs_distance and krs_along are of this group alone; 0: of all */

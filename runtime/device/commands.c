@@ -140,8 +140,33 @@ failed:
     return false;
 }
 
+/* Records one of the two timestamps of a warm-up, unless all are used. */
+static void time_warm_up(const Gpu *gpu, VkCommandBuffer commands, bool end)
+{
+    const uint32_t first = 2 * gpu->warm_ups;
+    if (!gpu->warm_up_times || gpu->warm_ups >= MOST_TIMED_WARM_UPS)
+        return;
+    if (!end)
+        vkCmdResetQueryPool(commands, gpu->warm_up_times, first, 2);
+    vkCmdWriteTimestamp(
+        commands, end ? VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT : VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
+        gpu->warm_up_times, first + end);
+}
+
+double gpu_warm_up_ms(const Gpu *gpu, uint32_t number)
+{
+    uint64_t ticks[2];
+    if (!gpu->warm_up_times || number >= gpu->warm_ups || number >= MOST_TIMED_WARM_UPS ||
+        vkGetQueryPoolResults(gpu->device, gpu->warm_up_times, 2 * number, 2, sizeof ticks, ticks,
+                              sizeof *ticks, VK_QUERY_RESULT_64_BIT) != VK_SUCCESS)
+        return 0;
+    const uint64_t passed = (ticks[1] - ticks[0]) & gpu->time_mask;
+    return (double)passed * (double)gpu->properties.limits.timestampPeriod / 1e6;
+}
+
 bool gpu_warm_up(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
-                 const VkDescriptorSet sets[2], const void *constants, uint32_t bytes)
+                 const VkDescriptorSet sets[2], const void *constants, uint32_t bytes,
+                 uint32_t *number)
 {
     const char     *attempt = "try a kernel out";
     VkCommandBuffer commands; /* the pool's, until it is destroyed */
@@ -160,12 +185,15 @@ bool gpu_warm_up(Gpu *gpu, VkPipeline pipeline, VkPipelineLayout layout,
                                            .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
                                        }));
     barrier(commands); /* all kernels are warmed up with the same buffers */
+    time_warm_up(gpu, commands, false);
     uint32_t first = sets[0] == VK_NULL_HANDLE;
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, first, 2 - first,
                             sets + first, 0, NULL);
     vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, bytes, constants);
     vkCmdDispatch(commands, 1, 1, 1);
+    time_warm_up(gpu, commands, true);
+    *number = gpu->warm_ups++;
     TRY(gpu, attempt, vkEndCommandBuffer(commands));
     TRY(gpu, attempt,
         vkQueueSubmit(gpu->queue, 1,

@@ -115,6 +115,15 @@ static bool make_commands(Gpu *gpu)
                                   .queryCount = 2 + MOST_MARKS,
                               },
                               NULL, &gpu->times));
+    if (gpu->time_mask != 0)
+        TRY(gpu, OPENING,
+            vkCreateQueryPool(gpu->device,
+                              &(VkQueryPoolCreateInfo){
+                                  .sType      = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                  .queryType  = VK_QUERY_TYPE_TIMESTAMP,
+                                  .queryCount = 2 * MOST_TIMED_WARM_UPS,
+                              },
+                              NULL, &gpu->warm_up_times));
     gpu_name(gpu, VK_OBJECT_TYPE_COMMAND_BUFFER, (uint64_t)(uintptr_t)gpu->commands, "slice");
     return true;
 
@@ -186,6 +195,7 @@ void gpu_close(Gpu *gpu)
     }
     if (gpu->device) {
         pipelines_close(gpu);
+        vkDestroyQueryPool(gpu->device, gpu->warm_up_times, NULL);
         vkDestroyQueryPool(gpu->device, gpu->times, NULL);
         vkDestroyFence(gpu->device, gpu->fence, NULL);
         vkDestroyCommandPool(gpu->device, gpu->warm_up_pool, NULL);

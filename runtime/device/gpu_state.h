@@ -29,6 +29,8 @@ typedef struct Gpu {
     VkQueryPool      times; /* timestamps; none when the queue has no clock */
     uint32_t         marks; /* of them, since recording began */
     uint64_t         time_mask;
+    VkQueryPool      warm_up_times; /* timestamps before and after each warm-up; none likewise */
+    uint32_t         warm_ups;      /* that were timed */
 
     VkPhysicalDeviceProperties       properties;
     VkPhysicalDeviceMemoryProperties memory;

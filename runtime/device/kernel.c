@@ -142,18 +142,31 @@ typedef struct KernelBuild {
     CacheKey    key;
     uint32_t   *found, *made; /* in the cache, or by the compiler; one of them, when done */
     size_t      bytes;
+    size_t      glsl_bytes;
+    uint32_t    march_group;
+    double      ms;     /* that SPIR-V took, of one processor */
     KrsStatus   status; /* of the compiler */
     char       *log;
     pthread_t   thread;
     bool        started; /* the thread */
 } KernelBuild;
 
+static double ms_of(clockid_t clock)
+{
+    struct timespec used;
+    clock_gettime(clock, &used);
+    return (double)used.tv_sec * 1e3 + (double)used.tv_nsec / 1e6;
+}
+
 static void *compile(void *user)
 {
     KernelBuild *build = user;
     size_t       count = 0;
-    build->status      = spirv_compile(build->text, build->file, &build->made, &count, &build->log);
+    const double start = ms_of(CLOCK_THREAD_CPUTIME_ID);
+    build->status      = spirv_compile(build->text, build->file, false, &build->made, &count,
+                                       &build->log);
     build->bytes       = count * sizeof *build->made;
+    build->ms += ms_of(CLOCK_THREAD_CPUTIME_ID) - start;
     return NULL;
 }
 
@@ -175,8 +188,8 @@ static CacheKey make_key(const KernelSource *source, const char *text)
     uint64_t           variant = s ? krs_variant_hash(&s->variant, s->wanted, s->wanted_count) : 0;
     char               maker[192];
     snprintf(maker, sizeof maker,
-             "%s: krs %s, glslang %s, SPIRV-Tools %s, inlined, variant %016" PRIx64, source->file,
-             KRS_VERSION, spirv_glslang_version(), spirv_tools_version(), variant);
+             "%s: krs %s, glslang %s, SPIRV-Tools %s, inlined without names, variant %016" PRIx64,
+             source->file, KRS_VERSION, spirv_glslang_version(), spirv_tools_version(), variant);
     return cache_key(maker, text, strlen(text));
 }
 
@@ -184,6 +197,7 @@ static CacheKey make_key(const KernelSource *source, const char *text)
 static bool begin(Gpu *gpu, KernelBuild *build, const KernelSource *source)
 {
     const EmbeddedFile *module = find_module(source);
+    const double        start  = ms_of(CLOCK_THREAD_CPUTIME_ID);
     *build                     = (KernelBuild){.file = source->file};
     if (module) {
         build->bytes = module->length;
@@ -195,31 +209,27 @@ static bool begin(Gpu *gpu, KernelBuild *build, const KernelSource *source)
     build->text = kernel_text(gpu, source);
     if (!build->text)
         return false;
-    build->key   = make_key(source, build->text);
-    build->found = cache_load(&gpu->cache, CACHE_SPIRV, build->key, &build->bytes);
+    build->glsl_bytes  = strlen(build->text);
+    build->march_group = source->scene ? source->scene->variant.march_group : 0;
+    build->key         = make_key(source, build->text);
+    build->found       = cache_load(&gpu->cache, CACHE_SPIRV, build->key, &build->bytes);
+    build->ms          = ms_of(CLOCK_THREAD_CPUTIME_ID) - start;
     return true;
 }
 
-/* Compiles what was not found, all at once; where a thread cannot be had, one after another. */
-static void compile_all(KernelBuild *builds, size_t count)
+/* Begins to compile what was not found.  Meanwhile the texts of other kernels are printed. */
+static void start_build(KernelBuild *build)
 {
-    size_t first = count; /* the one that this thread compiles */
-    for (size_t i = 0; i < count; i++) {
-        KernelBuild *build = &builds[i];
-        if (build->found)
-            continue;
-        if (first == count)
-            first = i;
-        else if (pthread_create(&build->thread, NULL, compile, build) == 0)
-            build->started = true;
-        else
-            compile(build);
-    }
-    if (first < count)
-        compile(&builds[first]);
-    for (size_t i = 0; i < count; i++)
-        if (builds[i].started)
-            pthread_join(builds[i].thread, NULL);
+    build->started = !build->found && pthread_create(&build->thread, NULL, compile, build) == 0;
+}
+
+/* Waits for what was started, and compiles what found no thread. */
+static void end_build(KernelBuild *build)
+{
+    if (build->started)
+        pthread_join(build->thread, NULL);
+    else if (build->text && !build->found)
+        compile(build);
 }
 
 /* Keeps what was compiled, or says why it was not. */
@@ -250,8 +260,13 @@ static void release(Gpu *gpu, KernelBuild *build)
 /* Takes the words over, for good or bad. */
 static KernelCode take_code(KernelBuild *build)
 {
-    KernelCode code = {build->file, build->found ? build->found : build->made, build->bytes,
-                       !build->found};
+    KernelCode code = {.file        = build->file,
+                       .words       = build->found ? build->found : build->made,
+                       .bytes       = build->bytes,
+                       .compiled    = !build->found,
+                       .march_group = build->march_group,
+                       .glsl_bytes  = build->glsl_bytes,
+                       .ms          = build->ms};
     build->found = build->made = NULL;
     return code;
 }
@@ -262,10 +277,13 @@ bool kernel_compile_all(Gpu *gpu, const KernelRequest *requests, size_t count, K
     double       start  = clock_ms();
     KernelBuild *builds = gpu_alloc(gpu, count, sizeof *builds, "compile the kernels");
     bool         ready  = builds != NULL;
-    for (size_t i = 0; i < count && ready; i++)
+    for (size_t i = 0; i < count && ready; i++) {
         ready = begin(gpu, &builds[i], &requests[i].source);
-    if (ready)
-        compile_all(builds, count);
+        if (ready)
+            start_build(&builds[i]);
+    }
+    for (size_t i = 0; i < count && builds; i++)
+        end_build(&builds[i]);
     for (size_t i = 0; i < count && ready; i++)
         ready = finish(gpu, &builds[i]);
     for (size_t i = 0; i < count; i++)
@@ -292,7 +310,11 @@ bool kernel_load(Gpu *gpu, Kernel *kernel, const KernelCode *code, VkPipelineLay
     double         start  = clock_ms();
     VkShaderModule module = VK_NULL_HANDLE;
     bool           ready  = false;
-    *kernel               = (Kernel){0};
+    *kernel               = (Kernel){.file        = code->file,
+                                     .march_group = code->march_group,
+                                     .glsl_bytes  = code->glsl_bytes,
+                                     .cached      = !code->compiled,
+                                     .spirv_ms    = code->ms};
     TRY(gpu, "load a kernel",
         vkCreateShaderModule(gpu->device,
                              &(VkShaderModuleCreateInfo){
@@ -321,8 +343,14 @@ bool kernel_load(Gpu *gpu, Kernel *kernel, const KernelCode *code, VkPipelineLay
 
 failed:
     vkDestroyShaderModule(gpu->device, module, NULL);
-    *pipeline_ms += clock_ms() - start;
+    kernel->pipeline_ms = clock_ms() - start;
+    *pipeline_ms += kernel->pipeline_ms;
     return ready;
+}
+
+double kernel_driver_ms(const Gpu *gpu, const Kernel *kernel)
+{
+    return kernel->pipeline_ms + (kernel->warmed_up ? gpu_warm_up_ms(gpu, kernel->warm_up) : 0);
 }
 
 /* ---- Side by side ---- */
@@ -355,21 +383,14 @@ static void *load_some(void *user)
     return NULL;
 }
 
-static double processor_ms(void)
-{
-    struct timespec used;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
-    return (double)used.tv_sec * 1e3 + (double)used.tv_nsec / 1e6;
-}
-
 /* Tells once a second whether the process has worked for a part of it. */
 static void await(const Gpu *gpu, pthread_t thread)
 {
     struct timespec until;
-    double          worked = processor_ms();
+    double          worked = ms_of(CLOCK_PROCESS_CPUTIME_ID);
     clock_gettime(CLOCK_REALTIME, &until);
     for (until.tv_sec++; pthread_timedjoin_np(thread, NULL, &until) == ETIMEDOUT; until.tv_sec++) {
-        double now = processor_ms();
+        double now = ms_of(CLOCK_PROCESS_CPUTIME_ID);
         if (gpu->working && now > worked + 50)
             gpu->working(gpu->user);
         worked = now;

@@ -8,7 +8,14 @@
 #include "runtime/device/gpu.h"
 
 typedef struct Kernel {
-    VkPipeline pipeline;
+    VkPipeline  pipeline;
+    const char *file; /* of runtime/shaders */
+    uint32_t    march_group;
+    size_t      glsl_bytes; /* 0: the program carries it as SPIR-V */
+    bool        cached;     /* its SPIR-V was not compiled */
+    double      spirv_ms, pipeline_ms;
+    bool        warmed_up;
+    uint32_t    warm_up; /* its number (gpu_warm_up_ms) */
 } Kernel;
 
 /* What a kernel calls of a scene: its text takes the place of "scene.glsl". */
@@ -43,6 +50,9 @@ typedef struct KernelCode {
     uint32_t   *words;
     size_t      bytes;
     bool        compiled; /* just now: it was in no cache */
+    uint32_t    march_group;
+    size_t      glsl_bytes;
+    double      ms; /* processor time */
 } KernelCode;
 
 typedef struct KernelRequest {
@@ -59,7 +69,9 @@ bool kernel_load(Gpu *gpu, Kernel *kernel, const KernelCode *code, VkPipelineLay
                  double *pipeline_ms);
 bool kernel_load_all(Gpu *gpu, const KernelRequest *requests, const KernelCode *codes, size_t count,
                      VkPipelineLayout layout);
-void kernel_code_release(Gpu *gpu, KernelCode *code);
+/* What the driver has taken for a kernel so far. */
+double kernel_driver_ms(const Gpu *gpu, const Kernel *kernel);
+void   kernel_code_release(Gpu *gpu, KernelCode *code);
 
 /* The same for several kernels, which are compiled at the same time.  On failure some may have
    been made: kernel_destroy in either case. */

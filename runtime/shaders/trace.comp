@@ -150,7 +150,7 @@ uint end_of_4(uvec2 cell, uint quarter)
     return end_of_32(uvec2(0u, count_32.y)) + 4u * (cell.y * count_8.x + cell.x) + quarter;
 }
 
-float load_start(uint end) { return uintBitsToFloat(ends[end].x); }
+float load_start(uint end) { return uintBitsToFloat(load_end(end).x); }
 
 // Loads a tile, and where its rays or beam start.  Rays and beams of 4x4 pixels are those of all
 // tiles of the band, or of the listed ones.  Each starts where the next larger beam around it has

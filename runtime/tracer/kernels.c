@@ -7,6 +7,7 @@
  */
 #include "runtime/tracer/kernels.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "runtime/tracer/methods.h"
@@ -172,7 +173,11 @@ static void request_pictures(Requests *requests, KrsTrace trace, KrsSchedule sch
 {
     KrsRendering *rendering = requests->rendering;
     KrsNormals    usual     = rendering_normals(rendering, KRS_NORMALS_DEFAULT);
-    request(requests, "normals.comp", variant_of_normals(rendering, usual, 0));
+    bool          by_group  = usual != KRS_NORMALS_ANALYTIC &&
+                    rendering_marches_per_component(rendering, KRS_COMPONENTS_DEFAULT);
+    if (!by_group || rendering_knows_planes(rendering))
+        request(requests, "normals.comp",
+                variant_of_normals(rendering, usual, by_group ? KRS_MARCH_GROUP_OF_PLANES : 0));
     request(requests, "shade.comp", variant_of_shade(rendering));
     request(requests, "secondary.comp",
             variant_of_rays(rendering, schedule, rendering_has_roots(rendering, trace)));
@@ -195,6 +200,51 @@ bool kernels_create(KrsRendering *rendering, KrsPurpose purpose)
            (requests.count == 0 ||
             kernels_make(rendering->renderer, rendering->scene_set, requests.items, requests.count,
                          &rendering->spirv_ms, &rendering->pipeline_ms));
+}
+
+/* ---- statistics ---- */
+
+typedef struct KernelListing {
+    const Gpu      *gpu;
+    KrsKernelStats *items;
+    size_t          capacity, count;
+} KernelListing;
+
+static void describe(const Gpu *gpu, const Kernel *kernel, KrsKernelStats *stats)
+{
+    char group[16] = "";
+    if (kernel->march_group == KRS_MARCH_GROUP_OF_PLANES)
+        snprintf(group, sizeof group, " planes");
+    else if (kernel->march_group > 0)
+        snprintf(group, sizeof group, " %u", kernel->march_group);
+    *stats = (KrsKernelStats){.glsl_bytes = kernel->glsl_bytes,
+                              .spirv_ms   = kernel->spirv_ms,
+                              .driver_ms  = kernel_driver_ms(gpu, kernel),
+                              .cached     = kernel->cached};
+    snprintf(stats->name, sizeof stats->name, "%s%s", kernel->file, group);
+}
+
+static void list_kernel(KernelListing *listing, const Kernel *kernel)
+{
+    if (!kernel->pipeline)
+        return;
+    if (listing->count < listing->capacity)
+        describe(listing->gpu, kernel, &listing->items[listing->count]);
+    listing->count++;
+}
+
+size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelStats *kernels,
+                             size_t capacity)
+{
+    const KrsRenderer *renderer = rendering->renderer;
+    KernelListing      listing  = {&renderer->gpu, kernels, capacity, 0};
+    for (int kind = 0; kind < RAY_KINDS; kind++)
+        for (int i = 0; i < PIXEL_KERNELS; i++)
+            list_kernel(&listing, &renderer->pixels[kind][i]);
+    list_kernel(&listing, &renderer->next_dispatch);
+    for (const KernelEntry *entry = rendering->kernels.first; entry; entry = entry->next)
+        list_kernel(&listing, &entry->kernel);
+    return listing.count;
 }
 
 void kernels_destroy(Gpu *gpu, KernelMap *map)

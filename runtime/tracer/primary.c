@@ -64,6 +64,25 @@ static bool march_of_group(Job *job, uint32_t group, bool first, March *march)
     return kernel != NULL;
 }
 
+/* Finds the kernel of normals for all components. */
+static bool find_normals(Job *job, Primary *primary)
+{
+    primary->normals = rendering_normals_kernel(job->rendering, job->options.normals, 0);
+    return primary->normals != NULL;
+}
+
+/* Adds the planes, which need no march, as a group with normals of its own. */
+static bool add_planes(Job *job, Primary *primary)
+{
+    OwnGroup *group = &primary->groups[primary->group_count];
+    if (!rendering_knows_planes(job->rendering))
+        return true;
+    *group = (OwnGroup){0, rendering_normals_kernel(job->rendering, job->options.normals,
+                                                    KRS_MARCH_GROUP_OF_PLANES)};
+    primary->group_count++;
+    return group->normals != NULL;
+}
+
 static bool add_groups(Job *job, Plan *plan, float weight, Primary *primary)
 {
     uint32_t     groups[KRS_MOST_MARCH_GROUPS];
@@ -82,9 +101,8 @@ static bool add_groups(Job *job, Plan *plan, float weight, Primary *primary)
         if (own_normals && !group->normals)
             return false;
     }
-    primary->groups[count] = (OwnGroup){0, primary->normals};
-    primary->group_count   = own_normals ? count + 1 : 0;
-    return true;
+    primary->group_count = own_normals ? count : 0;
+    return own_normals ? add_planes(job, primary) : find_normals(job, primary);
 }
 
 /* Clips rays to the box around all components but planes, which rays intersect without a march. */
@@ -125,12 +143,10 @@ bool primary_add_marches(Job *job, Plan *plan, float weight, Primary *primary)
     /* Methods that try balls work outside of solids only. */
     if (job->options.trace >= KRS_TRACE_BINARY && !job->begins_outside)
         job->options.trace = KRS_TRACE_PLAIN;
-    primary->normals = rendering_normals_kernel(r, job->options.normals, 0);
-    if (!primary->normals)
-        return false;
     if (per_component || job_has_beams(job))
         plan_add(plan, (Pass){.kind = PASS_CLEAR, .phase = KRS_PHASE_BEAMS});
-    return per_component ? add_groups(job, plan, weight, primary) : add_whole(job, plan, weight);
+    return per_component ? add_groups(job, plan, weight, primary)
+                         : find_normals(job, primary) && add_whole(job, plan, weight);
 }
 
 void primary_add_normals(Plan *plan, float weight, const Primary *primary)

@@ -15,20 +15,21 @@
 
 #include "runtime/tracer/layouts.h"
 
-static bool warm_up(KrsRenderer *renderer, VkDescriptorSet scene_set, const Kernel *kernel)
+static bool warm_up(KrsRenderer *renderer, VkDescriptorSet scene_set, Kernel *kernel)
 {
     const VkDescriptorSet sets[2] = {scene_set, renderer->idle_frame};
     const WorkBlock       work    = {.groups = 1, .stride = 1};
-    return gpu_warm_up(&renderer->gpu, kernel->pipeline, renderer->layout, sets, &work,
-                       sizeof work);
+    return kernel->warmed_up = gpu_warm_up(&renderer->gpu, kernel->pipeline, renderer->layout, sets,
+                                           &work, sizeof work, &kernel->warm_up);
 }
 
 /* Kernels that two devices warm up.  Each takes the next one that the other has not taken. */
 typedef struct WarmUpQueue {
-    const Gpu        *gpu; /* the first */
-    const KernelCode *codes;
-    size_t            count;
-    atomic_size_t     next;
+    const Gpu           *gpu; /* the first */
+    const KernelRequest *requests;
+    const KernelCode    *codes;
+    size_t               count;
+    atomic_size_t        next;
 } WarmUpQueue;
 
 /* Whether a second device is worth its cost.  There must be a core for it, and more than one kernel
@@ -54,6 +55,7 @@ static void *warm_up_on_second_device(void *user)
         double ms = 0;
         ready     = kernel_load(&second.gpu, &kernel, &queue->codes[i], second.layout, &ms) &&
                 warm_up(&second, second.idle_scene, &kernel) && gpu_wait(&second.gpu);
+        queue->requests[i].kernel->pipeline_ms += kernel_driver_ms(&second.gpu, &kernel);
         kernel_destroy(&second.gpu, &kernel);
     }
     layouts_destroy(&second);
@@ -66,10 +68,11 @@ static void *warm_up_on_second_device(void *user)
 static bool warm_up_all(KrsRenderer *renderer, VkDescriptorSet scene_set,
                         const KernelRequest *requests, const KernelCode *codes, size_t count)
 {
-    WarmUpQueue queue = {.gpu = &renderer->gpu, .codes = codes, .count = count};
-    pthread_t   thread;
-    bool        ready = true, taken[KERNELS_AT_ONCE] = {false};
-    bool        helped = worth_second_device(&renderer->gpu, codes, count) &&
+    WarmUpQueue queue = {
+        .gpu = &renderer->gpu, .requests = requests, .codes = codes, .count = count};
+    pthread_t thread;
+    bool      ready = true, taken[KERNELS_AT_ONCE] = {false};
+    bool      helped = worth_second_device(&renderer->gpu, codes, count) &&
                   pthread_create(&thread, NULL, warm_up_on_second_device, &queue) == 0;
     while (helped && ready) {
         ready    = gpu_wait(&renderer->gpu); /* takes a kernel only when it can run it */

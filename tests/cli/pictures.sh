@@ -100,7 +100,7 @@ passes=$(sed -n 's/^PASS.*[( ]\([a-z]*\), *\(NULL\|validate_[a-z]*\),.*/\1/p' "$
 # shellcheck disable=SC2086 # names without blanks
 for member in compile front glsl spirv pipeline passes $passes render beams primary normals shadows occlusion shading resolve total wall \
     rays evaluations evaluations_per_ray flops_per_evaluation gflops unresolved device \
-    peak_memory_bytes; do
+    peak_memory_bytes kernels name glsl_bytes spirv_ms driver_ms cached; do
     grep -q "\"$member\":" out || missing="$missing $member"
 done
 [ -z "$missing" ]
