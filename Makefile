@@ -48,7 +48,7 @@ TARGET   := compiler/target/spirv.c
 BORDER   := compiler/target/glslang_border.cpp
 API      := $(addprefix compiler/, compile.c passes.c roots.c precision.c limits.c retain.c tables.c facts.c \
                 march_groups.c make_module.c program.c scene_text.c framing.c frame.c query.c \
-                search_pairs.c search_targets.c search_starts.c search.c refuter.c \
+                update.c search_pairs.c search_targets.c search_starts.c search.c refuter.c \
                 refute_settings.c refute_blame.c refute_report.c refute.c bounds.c)
 RUNTIME  := $(sort $(wildcard $(addsuffix /*.c, $(addprefix runtime/, device tracer integrators film display writer))))
 CLI      := $(sort $(wildcard cli/*.c))

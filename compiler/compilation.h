@@ -60,6 +60,7 @@ struct Compilation {
     Names             names;
     Diags             diags;
     BoxNodes          box_nodes; /* where numbers are apart from the shaders */
+    MirrorNodes      *mirror_nodes;
     Files             files;
     Scene             elaborated; /* its graph is extended by the pass `lower` */
     Additions         additions;

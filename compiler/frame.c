@@ -178,6 +178,35 @@ KrsStatus krs_frame_set_time(KrsFrame *frame, double time)
     return isfinite(time) ? change_slot(frame, 0, &time, 1) : KRS_BAD_ARGUMENT;
 }
 
+/* Whether a parameter of a frame has another value than its default. */
+static bool is_set(const KrsFrame *frame, const Parameter *parameter)
+{
+    return memcmp(frame->parameters[parameter->slot].v, parameter->value,
+                  parameter->components * sizeof *parameter->value) != 0;
+}
+
+KrsStatus krs_frame_update(KrsFrame *frame, const KrsScene *scene)
+{
+    const KrsScene *old = frame->scene;
+    KrsFrame       *fresh;
+    KrsStatus       status = frame_new(scene, &fresh);
+    if (status != KRS_OK)
+        return status;
+    for (size_t i = 0; i < old->parameter_count; i++) {
+        const Parameter *from = &old->parameters[i];
+        if (is_set(frame, from))
+            krs_frame_set(fresh, from->name, frame->parameters[from->slot].v, from->components);
+    }
+    krs_frame_set_time(fresh, frame->parameters[0].v[0]);
+    krs_frame_set_zones(fresh, (const double(*)[4])frame->zones, frame->zone_count);
+    fresh->unbounded = NULL;
+    KrsFrame other   = *frame;
+    *frame           = *fresh;
+    *fresh           = other;
+    frame_free(fresh);
+    return KRS_OK;
+}
+
 /* Numbers are limited so that their squares are finite in single precision. */
 static bool zone_is_valid(const double zone[4])
 {

@@ -64,9 +64,11 @@ typedef const char *KrsLoadCallback(void *user, const char *path, size_t *length
 
 /* Where numbers of the scene's text are in its shaders. */
 typedef enum KrsSpecialize {
-    KRS_SPECIALIZE_NUMBERS,  /* in their text, as literals: fast frames */
-    KRS_SPECIALIZE_STRUCTURE /* in the parameter block: a scene that differs in numbers alone has
-                                the same shaders, and compiles none */
+    KRS_SPECIALIZE_NUMBERS,   /* in their text, as literals: fast frames */
+    KRS_SPECIALIZE_STRUCTURE, /* in the parameter block: a scene that differs in numbers alone has
+                                 the same shaders, and compiles none */
+    KRS_SPECIALIZE_AUTO       /* as NUMBERS at first, and as STRUCTURE from the first
+                                 krs_scene_update on */
 } KrsSpecialize;
 
 typedef struct KrsOptions {
@@ -86,15 +88,46 @@ typedef struct KrsOptions {
 } KrsOptions;
 
 /* Compiles a text in memory, or a file.  `name` is the text's name in diagnostics, and paths of
-   `use` are relative to its folder.  Of the arguments only the allocator is used after the call.
+   `use` are relative to its folder.  Of the arguments only the allocator is used after the call,
+   and by krs_scene_update the callbacks with what is handed to them.
    `options` may be NULL.  On KRS_OK the caller owns *scene; on any other status it is NULL.
    KRS_BAD_SCENE: see the diagnostics; KRS_IO_ERROR: the file cannot be read; KRS_OUT_OF_MEMORY. */
 KrsStatus krs_compile_text(const char *text, size_t length, const char *name,
                            const KrsOptions *options, KrsScene **scene);
 KrsStatus krs_compile_file(const char *path, const KrsOptions *options, KrsScene **scene);
-/* The frames and renderings of the scene must be freed before.  NULL is ignored, as in all
-   functions that free. */
+/* The frames and renderings of the scene must be freed, or updated to another scene, before.  NULL
+   is ignored, as in all functions that free. */
 void krs_scene_free(KrsScene *scene);
+
+/* What is different in an edited scene. */
+typedef enum KrsChange {
+    KRS_CHANGE_NOTHING,  /* but names, comments and blanks: pictures and distances are the same */
+    KRS_CHANGE_VALUES,   /* numbers, colours, parameters, cameras, lights, image: kernels stay */
+    KRS_CHANGE_STRUCTURE /* kernels must be compiled */
+} KrsChange;
+
+typedef struct KrsChanges {
+    KrsChange kind;
+    bool      parameters; /* their number, names, order, components, defaults or ranges */
+    bool      components; /* their number or names */
+    bool      cameras;    /* their number, names or properties */
+    bool      lights;     /* lights or sky */
+    bool      image;      /* the `image` block */
+} KrsChanges;
+
+/*
+ * Compiles an edited text of a scene.  The result is a new scene; the given one stays as it is, and
+ * other threads may use it meanwhile.  Name, options and root are those of the first compilation,
+ * so that diagnostics go where they went, and files of `use` are read again.
+ *
+ * On KRS_OK the caller owns *updated, and *changes (unless NULL) says what is different.  On any
+ * other status *updated is NULL, as of krs_compile_text.
+ *
+ * Frames and renderings belong to the scene that they were made of.  krs_frame_update and
+ * krs_rendering_update (krs_vulkan.h) take them over to the new one.
+ */
+KrsStatus krs_scene_update(const KrsScene *scene, const char *text, size_t length,
+                           KrsScene **updated, KrsChanges *changes);
 
 /* Strings that the functions below return (names, places, rules) live as long as the scene. */
 
@@ -114,6 +147,11 @@ KrsStatus krs_parameter(const KrsScene *scene, size_t index, KrsParameter *param
    outlive the frame.  KRS_OUT_OF_MEMORY: *frame is NULL. */
 KrsStatus krs_frame_new(const KrsScene *scene, KrsFrame **frame);
 void      krs_frame_free(KrsFrame *frame);
+/* Takes a frame over to an update of its scene, or to one that its scene is an update of.  Time and
+   zones stay.  Parameters that were set keep their value where the other scene has one of this name
+   that permits it; all others have the other scene's default.  A time that the other scene refuses
+   becomes 0.  KRS_OUT_OF_MEMORY: the frame is unchanged. */
+KrsStatus krs_frame_update(KrsFrame *frame, const KrsScene *scene);
 /* Sets all `count` components of a parameter, or the time in seconds.  KRS_BAD_ARGUMENT, and the
    frame is unchanged: there is no such parameter, it has another number of components, a value is
    outside of its range or not finite, or a number of the scene would not be finite. */

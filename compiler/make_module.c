@@ -69,6 +69,7 @@ KrsStatus pass_emit(Compilation *c)
                                                     : NULL,
                              .boxes           = boxes,
                              .box_nodes       = c->box_nodes,
+                             .mirror_nodes    = c->mirror_nodes,
                              .march_groups    = program->march_group_count ? c->march_groups : NULL,
                              .is_plane        = program->planes ? is_plane : NULL,
                              .has_slopes      = scene->slope_count > 0,

@@ -144,6 +144,7 @@ KrsStatus pass_hoist(Compilation *c)
     Box         *boxes = arena_new_array(&c->scratch, Box, count + 1);
     for (size_t i = 0; i < count; i++)
         boxes[i] = c->elaborated.components.items[i].shape->box;
+    c->mirror_nodes = module_hoist_mirrors(graph, arena);
     c->box_nodes    = module_hoist_boxes(graph, boxes, count, of_boxes, arena);
     c->scene->graph = graph;
     return KRS_OK;

@@ -125,7 +125,9 @@ typedef struct RetainedSlope {
 
 struct KrsScene {
     Memory         memory;
-    Arena          arena; /* of all that is below: graph, names, program */
+    Arena          arena;   /* of all that is below: graph, names, program */
+    const char    *name;    /* as it was compiled, */
+    KrsOptions     options; /* and how: for krs_scene_update */
     KrsProgram     program;
     const Graph   *graph;
     Module         module; /* what text is printed from */

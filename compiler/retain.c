@@ -153,8 +153,17 @@ static void retain_tapes(Compilation *c)
     scene->view    = tape_of(scene, roots_from(roots, ROOTS_CAMERA, ROOTS_SKY), arena);
 }
 
+/* What an update of the scene is compiled with. */
+static void retain_options(Compilation *c)
+{
+    c->scene->name         = retain_text(c, c->name);
+    c->scene->options      = *c->options;
+    c->scene->options.root = retain_text(c, c->options->root);
+}
+
 KrsStatus pass_retain(Compilation *c)
 {
+    retain_options(c);
     sources_hash(&c->sources, c->scene->hash);
     retain_scene(c);
     retain_tapes(c);

@@ -124,6 +124,19 @@ typedef struct KrsKernelStats {
 size_t krs_rendering_kernels(const KrsRendering *rendering, KrsKernelStats *kernels,
                              size_t capacity);
 
+/*
+ * Takes a rendering over to an update of its scene (krs_scene_update), or to one that its scene is
+ * an update of.  Its films stay as large as they are, and lose their samples; what their options
+ * left to the scene is chosen anew.  Afterwards the rendering needs the other scene alone, and
+ * frames of that one.  On any other status than KRS_OK rendering and films are as they were:
+ * KRS_OUT_OF_MEMORY, KRS_INTERNAL.
+ *
+ * Kernels whose text is the same stay.  A renderer has each of them once, whatever scene they are
+ * of, and keeps some that are no longer used.  So after an edit of numbers nothing is compiled, nor
+ * after an edit that is undone.  krs_rendering_new finds them as well.
+ */
+KrsStatus krs_rendering_update(KrsRendering *rendering, const KrsScene *scene);
+
 /* The parts of a picture, as bits: KRS_PLANE_COLOR and so on, a row of planes.def each. */
 typedef enum KrsPlane {
 #define KRS_PLANE(id, bit, aov, about, arrays) KRS_PLANE_##id = 1 << bit,
@@ -253,6 +266,7 @@ typedef struct KrsRenderStats {
     double   gflops;            /* of the primary phase */
     uint64_t unresolved;        /* primary and shadow rays that ran out of steps */
     uint64_t submissions;       /* of work to the device; the host waits for each */
+    uint64_t kernels;           /* that the renderer has made since it was opened, for all scenes */
     uint64_t peak_memory_bytes; /* the most held at once on the device, and the picture */
     char     device[256];
 } KrsRenderStats;

@@ -21,12 +21,15 @@ typedef struct Analysis {
     const Graph *graph;
     Tape         tape;
     bool         whole; /* facts of all nodes, else of those on the tape, in its order */
+    bool         frame; /* facts that the graph keeps */
     const double (*parameters)[4];
     Fact *facts;
 } Analysis;
 
 static Fact *analysis_fact(const Analysis *analysis, Node node)
 {
+    if (analysis->frame)
+        return analysis->graph->frame_facts->items[node];
     return &analysis->facts[analysis->whole ? node : tape_index(&analysis->tape, node)];
 }
 
@@ -101,13 +104,45 @@ Fact *graph_facts(const Graph *graph, Box box, const double (*parameters)[4], Ar
     return analysis.facts;
 }
 
+/* Nodes whose facts are not found yet. */
+typedef struct NodeStack {
+    Node  *items;
+    size_t count, capacity;
+} NodeStack;
+
+/* Puts operands without facts on the stack; false: there are none. */
+static bool push_operands(NodeStack *rest, const Graph *graph, Node node, Arena *scratch)
+{
+    const Expr  *e      = &graph->items[node];
+    const size_t before = rest->count;
+    for (uint32_t k = 0; k < e->operand_count; k++)
+        if (!graph->frame_facts->items[e->operands[k]])
+            array_push(scratch, rest, e->operands[k]);
+    return rest->count > before;
+}
+
+/* Expressions grow from one another, and each is asked for.  So the graph keeps what is found. */
 Fact graph_frame_fact(const Graph *graph, Node node, Arena *scratch)
 {
+    const Analysis analysis = {.graph = graph, .frame = true};
+    FrameFacts    *found    = graph->frame_facts;
+    NodeStack      rest     = {0};
     assert(graph->items[node].time != TIME_POINT);
-    Analysis analysis = {.graph = graph, .tape = tape_new(graph, &node, 1, scratch)};
-    analysis.facts    = arena_new_array(scratch, Fact, analysis.tape.count);
-    analysis_run(&analysis, (Box){0}, 0, analysis.tape.frame_count);
-    return *analysis_fact(&analysis, node);
+    while (found->count <= node)
+        found->items = arena_grow(graph->arena, found->items, found->count, &found->count,
+                                  sizeof(Fact *));
+    array_push(scratch, &rest, node);
+    while (rest.count > 0) {
+        Node next = rest.items[rest.count - 1];
+        if (!found->items[next] && push_operands(&rest, graph, next, scratch))
+            continue;
+        if (!found->items[next]) {
+            found->items[next]  = arena_new(graph->arena, Fact);
+            *found->items[next] = node_fact(&analysis, next, (Box){0});
+        }
+        rest.count--;
+    }
+    return *found->items[node];
 }
 
 RangeTask range_task(const Graph *graph, const Node *roots, size_t count, Arena *arena)
@@ -257,7 +292,10 @@ size_t slope_task_size(const SlopeTask *task)
 double slope_task_run(const SlopeTask *task, const double (*parameters)[4], void *workspace,
                       Node *blame)
 {
-    Analysis analysis = {task->tape.graph, task->tape, false, parameters, workspace};
+    Analysis analysis = {.graph      = task->tape.graph,
+                         .tape       = task->tape,
+                         .parameters = parameters,
+                         .facts      = workspace};
     Cell    *heap     = (Cell *)(analysis.facts + task->tape.count);
     analysis_run(&analysis, (Box){0}, 0, task->tape.frame_count);
     heap[0] = (Cell){task->box, cell_slope(&analysis, task->root, task->box)};

@@ -152,6 +152,7 @@ Graph *graph_new(Arena *arena)
 {
     Graph *graph        = arena_new(arena, Graph);
     graph->arena        = arena;
+    graph->frame_facts  = arena_new(arena, FrameFacts);
     GraphParameter time = {{-HUGE_VAL}, {HUGE_VAL}};
     array_push(arena, &graph->parameters, time);
     return graph;

@@ -75,13 +75,20 @@ typedef struct GraphSlot {
     uint32_t hash, number; /* node + 1; 0 is free */
 } GraphSlot;
 
+/* Facts of nodes that do not depend on the point, as far as somebody has asked (facts.c). */
+typedef struct FrameFacts {
+    struct Fact **items; /* by node; NULL: not found yet */
+    size_t        count;
+} FrameFacts;
+
 typedef struct Graph {
-    Arena     *arena;
-    Expr      *items;
-    size_t     count, capacity;
-    Expr      *older; /* the array before `items` */
-    GraphSlot *slots;
-    size_t     slot_count;
+    Arena      *arena;
+    FrameFacts *frame_facts;
+    Expr       *items;
+    size_t      count, capacity;
+    Expr       *older; /* the array before `items` */
+    GraphSlot  *slots;
+    size_t      slot_count;
     struct {
         GraphParameter *items;
         size_t          count, capacity;

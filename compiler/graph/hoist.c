@@ -20,11 +20,16 @@ static bool is_of_formulas(double number)
     return size == 0 || size == 0.5 || size == 1 || size == 2 || size >= FAR_SIDE;
 }
 
-/* Of what is found at points; the exponent of a power decides how it is computed. */
+/* Operands, as bits, that decide how something is computed: exponents, and how often loops run. */
+static const uint8_t structure_of[OP_COUNT] = {
+    [OP_pow] = 1 << 0 | 1 << 1,    [OP_mandelbulb] = 1 << 1, [OP_julia] = 1 << 2,
+    [OP_mandelbulb_trap] = 1 << 1, [OP_julia_trap] = 1 << 2,
+};
+
+/* Constants of what is found at points. */
 static bool hoists(const Expr *user, const Expr *operand)
 {
     return operand->op == OP_CONSTANT && operand->type <= TYPE_VEC4 && user->time == TIME_POINT &&
-           user->op != OP_pow &&
            !(operand->type == TYPE_FLOAT && is_of_formulas(operand->number[0]));
 }
 
@@ -40,7 +45,7 @@ static Node copy_operation(Hoist *h, const Expr *e)
     Node operands[MAX_OPERANDS];
     for (int i = 0; i < e->operand_count; i++) {
         const Expr *operand = &h->old->items[e->operands[i]];
-        operands[i]         = hoists(e, operand)
+        operands[i]         = hoists(e, operand) && !(structure_of[e->op] >> i & 1)
                                   ? graph_hoisted(h->graph, operand->type, operand->number, h->next++)
                                   : h->nodes[e->operands[i]];
     }

@@ -174,6 +174,8 @@ uint32_t emit_slot_count(const Emitter *e);
 const char *mirror_text(Emitter *e, const Expr *fold);
 /* Whether that may name the point more than once. */
 bool mirror_repeats(const Emitter *e, const Expr *fold);
+/* What a mirror needs of the frame besides its operands; NULL: nothing. */
+const MirrorNodes *mirror_nodes(const Emitter *e, Node fold);
 
 /* ---- Functions: what they need of each component, and their text ---- */
 

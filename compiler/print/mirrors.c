@@ -57,10 +57,17 @@ static const char *across_axis(Emitter *e, const Expr *fold, int axis)
 
 /* ---- Rows ---- */
 
+const MirrorNodes *mirror_nodes(const Emitter *e, Node fold)
+{
+    const MirrorNodes *nodes = e->module->mirror_nodes;
+    return nodes && nodes[fold].in_row ? &nodes[fold] : NULL;
+}
+
 static bool is_tilted(const Emitter *e, const Expr *expr)
 {
-    return expr->op == OP_fold && e->graph->items[expr->operands[1]].op == OP_CONSTANT &&
-           fold_axis(e, expr) == 0;
+    return expr->op == OP_fold &&
+           (mirror_nodes(e, (Node)(expr - e->graph->items)) ||
+            (e->graph->items[expr->operands[1]].op == OP_CONSTANT && fold_axis(e, expr) == 0));
 }
 
 /* A use of the node by a mirror counts twice: so this is the only one. */
@@ -77,14 +84,31 @@ static Node mirror_before(const Emitter *e, Node n)
     return only_feeds_mirror(e, before) ? before : NODE_NONE;
 }
 
-/* Less what a mirror before has moved the point by, along the normal. */
-static void subtract_move(Emitter *e, Text *text, const Expr *fold, Node mirror)
+/* A value of the frame, or a literal where it is the same in all frames. */
+static const char *frame_text(Emitter *e, Node node)
 {
-    const Expr   *items = e->graph->items;
-    const double *n     = items[fold->operands[1]].number;
-    const double *b     = items[items[mirror].operands[1]].number;
+    const Expr *expr = &e->graph->items[node];
+    return expr->op == OP_CONSTANT ? emit_constant(e, expr) : e->frame[node];
+}
+
+/* Twice the product of the normals of a mirror and of the one `back` places before it, 1 or 2. */
+static const char *product_text(Emitter *e, Node fold, Node mirror, int back)
+{
+    const Expr        *items = e->graph->items;
+    const MirrorNodes *nodes = mirror_nodes(e, fold);
+    if (nodes)
+        return frame_text(e, nodes->products[back - 1]);
+    const double *n = items[items[fold].operands[1]].number;
+    const double *b = items[items[mirror].operands[1]].number;
+    return emit_number(e, 2 * (n[0] * b[0] + n[1] * b[1] + n[2] * b[2]));
+}
+
+/* Less what a mirror before has moved the point by, along the normal. */
+static void subtract_move(Emitter *e, Text *text, const Expr *fold, Node mirror, int back)
+{
+    Node n = (Node)(fold - e->graph->items);
     text_format(text, " - KRS_BACK(%s * %s, 0.0)", e->excess[mirror],
-                emit_number(e, 2 * (n[0] * b[0] + n[1] * b[1] + n[2] * b[2])));
+                product_text(e, n, mirror, back));
 }
 
 /* How far beyond the mirror the point is, from where it was before the mirrors `first` and
@@ -103,9 +127,9 @@ static const char *distance_beyond(Emitter *e, const Expr *fold, Node first, Nod
     }
     text_format(&text, ", %s, %s)", e->text[fold->operands[1]], e->text[fold->operands[2]]);
     if (first != NODE_NONE)
-        subtract_move(e, &text, fold, first);
+        subtract_move(e, &text, fold, first, 2);
     if (before != NODE_NONE)
-        subtract_move(e, &text, fold, before);
+        subtract_move(e, &text, fold, before, 1);
     return text.bytes;
 }
 
@@ -119,8 +143,8 @@ static const char *in_row(Emitter *e, const Expr *fold, Node n, Node before)
     emit_comment(e, fold->span);
     emit_local(e, TYPE_FLOAT, name.bytes, positive.bytes);
     e->excess[n] = name.bytes;
-    text_format(&text, "(%s - %s * (2.0 * %s))", e->text[fold->operands[0]], name.bytes,
-                e->text[fold->operands[1]]);
+    text_format(&text, mirror_nodes(e, n) ? "(%s - (%s * 2.0) * %s)" : "(%s - %s * (2.0 * %s))",
+                e->text[fold->operands[0]], name.bytes, e->text[fold->operands[1]]);
     return text.bytes;
 }
 
@@ -137,4 +161,57 @@ const char *mirror_text(Emitter *e, const Expr *fold)
 bool mirror_repeats(const Emitter *e, const Expr *fold)
 {
     return fold_axis(e, fold) != 0 || is_tilted(e, fold);
+}
+
+/* ---- numbers of the frame ---- */
+
+/* Rows need two or three more numbers of the frame for each mirror.  A driver takes ever longer for
+   those that do not fit into registers, so scenes with more mirrors go without rows. */
+enum { MOST_MIRRORS = 64 };
+
+static const MirrorNodes no_nodes = {false, {NODE_NONE, NODE_NONE}};
+
+static bool is_across_axis(const Expr *normal)
+{
+    bool across = false;
+    for (int i = 0; i < 3; i++)
+        across = across || (normal->op == OP_CONSTANT && fabs(normal->number[i]) == 1);
+    return across;
+}
+
+/* Rows may have mirrors with literal normals among the others. */
+static bool may_be_in_row(const Graph *graph, Node node)
+{
+    const Expr *e = &graph->items[node];
+    return e->op == OP_fold && graph->items[e->operands[1]].time != TIME_POINT &&
+           !is_across_axis(&graph->items[e->operands[1]]);
+}
+
+static MirrorNodes hoist_mirror(Graph *graph, Node fold)
+{
+    MirrorNodes nodes  = no_nodes;
+    const Node  normal = graph->items[fold].operands[1];
+    const Node  two    = graph_number(graph, 2);
+    Node        before = graph->items[fold].operands[0];
+    for (int back = 0; back < 2 && graph->items[before].op == OP_fold; back++) {
+        Node product         = graph_op2(graph, OP_dot, normal, graph->items[before].operands[1]);
+        nodes.products[back] = graph_op2(graph, OP_mul, product, two);
+        before               = graph->items[before].operands[0];
+    }
+    nodes.in_row = true;
+    return nodes;
+}
+
+MirrorNodes *module_hoist_mirrors(Graph *graph, Arena *arena)
+{
+    const size_t count   = graph->count;
+    size_t       mirrors = 0;
+    for (Node n = 0; n < count; n++)
+        mirrors += may_be_in_row(graph, n);
+    if (mirrors == 0 || mirrors > MOST_MIRRORS)
+        return NULL;
+    MirrorNodes *nodes = arena_new_array(arena, MirrorNodes, count);
+    for (Node n = 0; n < count; n++)
+        nodes[n] = may_be_in_row(graph, n) ? hoist_mirror(graph, n) : no_nodes;
+    return nodes;
 }

@@ -20,6 +20,13 @@ typedef struct BoxNodes {
     Node *parts;  /* of each scene part: the low and the high corner */
 } BoxNodes;
 
+/* Of a mirror (OP_fold) where normals are numbers of the frame: whether it may be in a row, and twice
+   the products of its normal with those of the two mirrors before; NODE_NONE: there are none. */
+typedef struct MirrorNodes {
+    bool in_row;
+    Node products[2];
+} MirrorNodes;
+
 typedef struct Module {
     const Graph *graph;   /* simplified; parameters have the first slots */
     Sources      sources; /* names and lines, for comments */
@@ -38,6 +45,7 @@ typedef struct Module {
     /* What is known of components: */
     const Box      *boxes;
     BoxNodes        box_nodes;
+    MirrorNodes    *mirror_nodes; /* by the mirror's node; NULL: where normals are literals */
     const uint32_t *march_groups; /* the group of each, or NULL: all together */
     const bool     *is_plane;   /* whether each is a plane that krs_plane_t knows; NULL: none is */
     bool            has_slopes; /* there are slots of slopes behind those of parameters */
@@ -62,6 +70,9 @@ void module_part_corners(Box box, double low[3], double high[3]);
 /* All boxes as numbers of the frame, counted from `first` on. */
 BoxNodes module_hoist_boxes(Graph *graph, const Box *boxes, size_t components, uint32_t first,
                             Arena *arena);
+
+/* Adds what rows of mirrors need of the frame. */
+MirrorNodes *module_hoist_mirrors(Graph *graph, Arena *arena);
 
 /* What a function is called; NULL: it is several, or none. */
 const char *module_function_name(KrsFunction function);

@@ -169,6 +169,18 @@ static void use(Emitter *e, Node node, uint32_t count)
     e->uses[node] += count;
 }
 
+/* What a row of mirrors needs. */
+static void use_mirror(Emitter *e, Node fold)
+{
+    const MirrorNodes *nodes                           = mirror_nodes(e, fold);
+    e->feeds_mirror[e->graph->items[fold].operands[0]] = true;
+    if (!nodes)
+        return;
+    for (int i = 0; i < 2; i++)
+        if (nodes->products[i] != NODE_NONE)
+            use(e, nodes->products[i], 1);
+}
+
 static int compare_nodes(const void *a, const void *b)
 {
     return (*(const Node *)a > *(const Node *)b) - (*(const Node *)a < *(const Node *)b);
@@ -190,7 +202,7 @@ void emit_count_uses(Emitter *e, const Node *roots, size_t count, bool frame)
         for (uint32_t k = 0; k < expr->operand_count; k++)
             use(e, expr->operands[k], repeats_operand(e, expr, expr->operands[k]) ? 2 : 1);
         if (expr->op == OP_fold)
-            e->feeds_mirror[expr->operands[0]] = true;
+            use_mirror(e, e->needed.items[i]);
     }
     if (e->needed.count)
         qsort(e->needed.items, e->needed.count, sizeof *e->needed.items, compare_nodes);

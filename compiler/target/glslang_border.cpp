@@ -128,7 +128,8 @@ BorderResult border_compile(const char *glsl, bool names, uint32_t **words, size
                             char **log)
 {
     *words              = nullptr;
-    BorderResult result = guarded([=] { return compile(glsl, names, words, word_count, log); }, log);
+    BorderResult result = guarded([=] { return compile(glsl, names, words, word_count, log); },
+                                  log);
     if (result != BORDER_OK)
         glslang::ReleaseGlobalLock();
     return result;

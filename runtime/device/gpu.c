@@ -6,6 +6,7 @@
 #include "runtime/device/instance.h"
 #include "runtime/device/pipelines.h"
 #include "runtime/device/resources.h"
+#include "runtime/device/shared_kernels.h"
 
 /* Where fewer texels than that can be read, buffers are: the lowest band of the widest picture has
    so many (band.c). */
@@ -193,6 +194,7 @@ void gpu_close(Gpu *gpu)
         cache_close(&gpu->cache);
         return;
     }
+    shared_kernels_destroy(gpu);
     if (gpu->device) {
         pipelines_close(gpu);
         vkDestroyQueryPool(gpu->device, gpu->warm_up_times, NULL);

@@ -16,6 +16,8 @@
    but those of desktops have 16 and more. */
 enum { STORAGE_BUFFERS = 8 };
 
+typedef struct SharedKernel SharedKernel; /* shared_kernels.h */
+
 typedef struct Gpu {
     KrsAllocator     allocator;
     VkInstance       instance;
@@ -43,6 +45,8 @@ typedef struct Gpu {
 
     Cache           cache;            /* of shaders; zero when none was asked for */
     VkPipelineCache pipelines;        /* the driver's, or none */
+    SharedKernel   *shared_kernels;   /* kernels with a scene */
+    uint64_t        kernels_made;     /* pipelines, so far */
     size_t          pipelines_loaded; /* bytes that it began with */
 
     VkDebugUtilsMessengerEXT         messenger;

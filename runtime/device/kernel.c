@@ -1,6 +1,6 @@
 /*
- * kernel.c: a kernel's text, with the scene's put in, becomes SPIR-V and then a pipeline; both
- * are kept in the cache, the pipeline by the driver's own.
+ * kernel.c: a kernel's text becomes SPIR-V and then a pipeline; both are kept in the cache, the
+ * pipeline by the driver's own.
  */
 #include "runtime/device/kernel.h"
 
@@ -15,140 +15,25 @@
 #include <unistd.h>
 
 #include "compiler/base/embedded.h"
+#include "runtime/device/shared_kernels.h"
 #include "compiler/compile.h"
-
-static const char *find_in(const EmbeddedFile *file, const char *name, size_t length)
-{
-    for (; file->name; file++)
-        if (strlen(file->name) == length && strncmp(file->name, name, length) == 0)
-            return file->text;
-    return NULL;
-}
-
-static const char *find_file(const char *name, size_t length)
-{
-    const char *text = find_in(shader_files, name, length);
-    return text ? text : find_in(helper_files, name, length);
-}
-
-/* A kernel's text as it grows. */
-typedef struct IncludeExpansion {
-    const KernelSource *source;
-    const char         *scene; /* its text */
-    char               *out;   /* NULL: it is only counted */
-    size_t              length;
-} IncludeExpansion;
-
-static void append(IncludeExpansion *to, const char *bytes, size_t count)
-{
-    if (to->out)
-        memcpy(to->out + to->length, bytes, count);
-    to->length += count;
-}
-
-/* With the files that it includes in place of the lines that say so; false: one is missing. */
-static bool append_file(IncludeExpansion *to, const char *name, size_t name_length)
-{
-    static const char include[] = "#include \"";
-    bool              is_scene  = strncmp(name, "scene.glsl", name_length) == 0;
-    const char       *text      = is_scene ? to->scene : find_file(name, name_length);
-    if (is_scene && text)
-        append(to, text, strlen(text));
-    for (; !is_scene && text && *text; text += strcspn(text, "\n"), text += *text == '\n') {
-        const char *file = text + sizeof include - 1;
-        if (strncmp(text, include, sizeof include - 1) != 0)
-            append(to, text, strcspn(text, "\n") + (strchr(text, '\n') != NULL));
-        else if (!append_file(to, file, strcspn(file, "\"")))
-            return false;
-        if (to->source->defines && strncmp(text, "#version", 8) == 0) /* nothing may be before it */
-            append(to, to->source->defines, strlen(to->source->defines));
-    }
-    return text != NULL;
-}
-
-/* The end of the comment that begins at `text`, at the line's end or behind the closing mark; NULL
-   where none begins.  GLSL has no strings, in which such a mark would mean something else. */
-static const char *comment_end(const char *text)
-{
-    if (text[0] != '/' || (text[1] != '/' && text[1] != '*'))
-        return NULL;
-    if (text[1] == '/')
-        return text + strcspn(text, "\n");
-    const char *end = strstr(text + 2, "*/");
-    return end ? end + 2 : text + strlen(text);
-}
-
-/* Takes out comments, blanks at the ends of lines, and lines with nothing else: what no compiler
-   looks at.  A comment within a line leaves the blank that it stands for. */
-void kernel_strip(char *text)
-{
-    char *to = text, *line = text; /* where the line begins in what has been written */
-    for (const char *from = text; *from;) {
-        const char *behind = comment_end(from);
-        char        next   = behind ? ' ' : *from;
-        from               = behind ? behind : from + 1;
-        if (next != '\n') {
-            *to++ = next;
-            continue;
-        }
-        while (to > line && strchr(" \t\r", to[-1]))
-            to--;
-        if (to > line)
-            *to++ = '\n';
-        line = to;
-    }
-    *to = '\0';
-}
-
-/* The text of a kernel around that of its scene, or NULL. */
-static char *expand(Gpu *gpu, const KernelSource *source, const char *scene)
-{
-    IncludeExpansion expansion = {source, scene, NULL, 0};
-    if (!append_file(&expansion, source->file, strlen(source->file))) {
-        gpu_refuse(gpu, KRS_INTERNAL, "the kernel `%s`, or a file that it includes, is missing",
-                   source->file);
-        return NULL;
-    }
-    expansion.out    = gpu_alloc(gpu, expansion.length + 1, 1, "put a kernel together");
-    expansion.length = 0;
-    if (expansion.out) { /* zeroed memory: the text ends */
-        append_file(&expansion, source->file, strlen(source->file));
-        kernel_strip(expansion.out);
-    }
-    return expansion.out;
-}
-
-char *kernel_text(Gpu *gpu, const KernelSource *source)
-{
-    const KernelScene *s = source->scene;
-    if (!s)
-        return expand(gpu, source, NULL);
-    char *scene = krs_scene_text(s->scene, &s->variant, s->wanted, s->wanted_count,
-                                 &gpu->allocator);
-    if (!scene) {
-        gpu_refuse(gpu, KRS_OUT_OF_MEMORY,
-                   "cannot print the scene for the kernel `%s`: out of memory", source->file);
-        return NULL;
-    }
-    char *text = expand(gpu, source, scene);
-    gpu_release(gpu, scene);
-    return text;
-}
 
 /* A kernel on its way to SPIR-V, in a thread of its own when it must be compiled. */
 typedef struct KernelBuild {
-    const char *file;
-    char       *text;
-    CacheKey    key;
-    uint32_t   *found, *made; /* in the cache, or by the compiler; one of them, when done */
-    size_t      bytes;
-    size_t      glsl_bytes;
-    uint32_t    march_group;
-    double      ms;     /* that SPIR-V took, of one processor */
-    KrsStatus   status; /* of the compiler */
-    char       *log;
-    pthread_t   thread;
-    bool        started; /* the thread */
+    const char   *file;
+    char         *text;
+    CacheKey      key;
+    uint32_t     *found, *made; /* in the cache, or by the compiler; one of them, when done */
+    size_t        bytes;
+    size_t        glsl_bytes;
+    uint32_t      march_group;
+    double        ms;     /* that SPIR-V took, of one processor */
+    KrsStatus     status; /* of the compiler */
+    char         *log;
+    pthread_t     thread;
+    bool          started; /* the thread */
+    bool          to_share;
+    SharedKernel *shared; /* the device has it already: nothing is found or made */
 } KernelBuild;
 
 static double ms_of(clockid_t clock)
@@ -212,15 +97,19 @@ static bool begin(Gpu *gpu, KernelBuild *build, const KernelSource *source)
     build->glsl_bytes  = strlen(build->text);
     build->march_group = source->scene ? source->scene->variant.march_group : 0;
     build->key         = make_key(source, build->text);
-    build->found       = cache_load(&gpu->cache, CACHE_SPIRV, build->key, &build->bytes);
-    build->ms          = ms_of(CLOCK_THREAD_CPUTIME_ID) - start;
+    build->to_share    = source->scene != NULL;
+    build->shared      = build->to_share ? shared_kernel_find(gpu, build->key) : NULL;
+    if (!build->shared)
+        build->found = cache_load(&gpu->cache, CACHE_SPIRV, build->key, &build->bytes);
+    build->ms = ms_of(CLOCK_THREAD_CPUTIME_ID) - start;
     return true;
 }
 
 /* Begins to compile what was not found.  Meanwhile the texts of other kernels are printed. */
 static void start_build(KernelBuild *build)
 {
-    build->started = !build->found && pthread_create(&build->thread, NULL, compile, build) == 0;
+    build->started = !build->found && !build->shared &&
+                     pthread_create(&build->thread, NULL, compile, build) == 0;
 }
 
 /* Waits for what was started, and compiles what found no thread. */
@@ -228,7 +117,7 @@ static void end_build(KernelBuild *build)
 {
     if (build->started)
         pthread_join(build->thread, NULL);
-    else if (build->text && !build->found)
+    else if (build->text && !build->found && !build->shared)
         compile(build);
 }
 
@@ -236,7 +125,7 @@ static void end_build(KernelBuild *build)
 static bool finish(Gpu *gpu, const KernelBuild *build)
 {
     const char *log = build->log ? build->log : "";
-    if (build->found)
+    if (build->found || build->shared)
         return true;
     if (build->status == KRS_OK)
         cache_store(&gpu->cache, CACHE_SPIRV, build->key, build->made, build->bytes);
@@ -253,6 +142,8 @@ static void release(Gpu *gpu, KernelBuild *build)
 {
     gpu_release(gpu, build->text);
     gpu_release(gpu, build->found);
+    if (build->shared)
+        shared_kernel_leave(gpu, build->shared);
     free(build->made);
     free(build->log);
 }
@@ -263,11 +154,15 @@ static KernelCode take_code(KernelBuild *build)
     KernelCode code = {.file        = build->file,
                        .words       = build->found ? build->found : build->made,
                        .bytes       = build->bytes,
-                       .compiled    = !build->found,
+                       .compiled    = build->made != NULL,
                        .march_group = build->march_group,
                        .glsl_bytes  = build->glsl_bytes,
-                       .ms          = build->ms};
+                       .ms          = build->ms,
+                       .shared      = build->shared,
+                       .to_share    = build->to_share,
+                       .key         = build->key};
     build->found = build->made = NULL;
+    build->shared              = NULL;
     return code;
 }
 
@@ -301,7 +196,19 @@ void kernel_code_release(Gpu *gpu, KernelCode *code)
         free(code->words);
     else
         gpu_release(gpu, code->words);
+    if (code->shared)
+        shared_kernel_leave(gpu, code->shared);
     *code = (KernelCode){0};
+}
+
+/* What is known of a kernel before the device has it. */
+static Kernel describe(const KernelCode *code)
+{
+    return (Kernel){.file        = code->file,
+                    .march_group = code->march_group,
+                    .glsl_bytes  = code->glsl_bytes,
+                    .cached      = !code->compiled,
+                    .spirv_ms    = code->ms};
 }
 
 bool kernel_load(Gpu *gpu, Kernel *kernel, const KernelCode *code, VkPipelineLayout layout,
@@ -310,11 +217,7 @@ bool kernel_load(Gpu *gpu, Kernel *kernel, const KernelCode *code, VkPipelineLay
     double         start  = clock_ms();
     VkShaderModule module = VK_NULL_HANDLE;
     bool           ready  = false;
-    *kernel               = (Kernel){.file        = code->file,
-                                     .march_group = code->march_group,
-                                     .glsl_bytes  = code->glsl_bytes,
-                                     .cached      = !code->compiled,
-                                     .spirv_ms    = code->ms};
+    *kernel               = describe(code);
     TRY(gpu, "load a kernel",
         vkCreateShaderModule(gpu->device,
                              &(VkShaderModuleCreateInfo){
@@ -378,7 +281,8 @@ static void *load_some(void *user)
     Loading        *loading = loader->loading;
     double          ms      = 0;
     for (size_t i; loader->ready && (i = atomic_fetch_add(&loading->next, 1)) < loading->count;)
-        loader->ready = kernel_load(&loader->gpu, loading->requests[i].kernel, &loading->codes[i],
+        loader->ready = loading->codes[i].shared ||
+                        kernel_load(&loader->gpu, loading->requests[i].kernel, &loading->codes[i],
                                     loading->layout, &ms);
     return NULL;
 }
@@ -403,6 +307,21 @@ static size_t count_loaders(const Gpu *gpu, size_t kernels)
     long   cores = sysconf(_SC_NPROCESSORS_ONLN);
     size_t most  = cores < 1 ? 1 : cores < MOST_LOADERS ? (size_t)cores : MOST_LOADERS;
     return gpu->messenger ? 0 : kernels < most ? kernels : most;
+}
+
+/* Takes what the device has already, and shares what is new. */
+static bool share(Gpu *gpu, Kernel *kernel, const KernelCode *code)
+{
+    if (code->shared) {
+        *kernel          = describe(code);
+        kernel->shared   = shared_kernel_find(gpu, code->key);
+        kernel->pipeline = kernel->shared->pipeline;
+        return true;
+    }
+    gpu->kernels_made++;
+    if (code->to_share)
+        kernel->shared = shared_kernel_add(gpu, code->key, kernel->pipeline);
+    return kernel->shared || !code->to_share;
 }
 
 bool kernel_load_all(Gpu *gpu, const KernelRequest *requests, const KernelCode *codes, size_t count,
@@ -431,6 +350,8 @@ bool kernel_load_all(Gpu *gpu, const KernelRequest *requests, const KernelCode *
             ready = false;
         }
     gpu_release(gpu, all);
+    for (size_t i = 0; i < count && ready; i++)
+        ready = share(gpu, requests[i].kernel, &codes[i]);
     return ready;
 }
 
@@ -459,7 +380,9 @@ bool kernel_create(Gpu *gpu, Kernel *kernel, const KernelSource *source, VkPipel
 
 void kernel_destroy(Gpu *gpu, Kernel *kernel)
 {
-    if (gpu->device && !gpu->stuck)
+    if (kernel->shared)
+        shared_kernel_leave(gpu, kernel->shared);
+    else if (gpu->device && !gpu->stuck)
         vkDestroyPipeline(gpu->device, kernel->pipeline, NULL);
     *kernel = (Kernel){0};
 }

@@ -8,14 +8,15 @@
 #include "runtime/device/gpu.h"
 
 typedef struct Kernel {
-    VkPipeline  pipeline;
-    const char *file; /* of runtime/shaders */
-    uint32_t    march_group;
-    size_t      glsl_bytes; /* 0: the program carries it as SPIR-V */
-    bool        cached;     /* its SPIR-V was not compiled */
-    double      spirv_ms, pipeline_ms;
-    bool        warmed_up;
-    uint32_t    warm_up; /* its number (gpu_warm_up_ms) */
+    VkPipeline    pipeline;
+    const char   *file; /* of runtime/shaders */
+    uint32_t      march_group;
+    size_t        glsl_bytes; /* 0: the program carries it as SPIR-V */
+    bool          cached;     /* its SPIR-V was not compiled */
+    double        spirv_ms, pipeline_ms;
+    bool          warmed_up;
+    uint32_t      warm_up; /* its number (gpu_warm_up_ms) */
+    SharedKernel *shared;  /* whose pipeline it is, if others may use it as well */
 } Kernel;
 
 /* What a kernel calls of a scene: its text takes the place of "scene.glsl". */
@@ -44,15 +45,18 @@ void kernel_strip(char *text);
 bool kernel_create(Gpu *gpu, Kernel *kernel, const KernelSource *source, VkPipelineLayout layout,
                    double *spirv_ms, double *pipeline_ms);
 
-/* What becomes of it: SPIR-V. */
+/* A kernel on its way to the device: SPIR-V, unless the device has it already. */
 typedef struct KernelCode {
-    const char *file;
-    uint32_t   *words;
-    size_t      bytes;
-    bool        compiled; /* just now: it was in no cache */
-    uint32_t    march_group;
-    size_t      glsl_bytes;
-    double      ms; /* processor time */
+    const char   *file;
+    uint32_t     *words;
+    size_t        bytes;
+    bool          compiled; /* just now: it was in no cache */
+    uint32_t      march_group;
+    size_t        glsl_bytes;
+    double        ms;       /* processor time */
+    SharedKernel *shared;   /* what the device has already: then there are no words */
+    bool          to_share; /* others may use it */
+    CacheKey      key;      /* of its text, then */
 } KernelCode;
 
 typedef struct KernelRequest {

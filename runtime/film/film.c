@@ -34,8 +34,9 @@ KrsStatus krs_film_new(KrsRendering *rendering, const KrsRenderOptions *options,
     if (!film)
         return gpu->status;
     film->rendering = rendering;
+    film->updates   = rendering->updates;
     if (options)
-        film->options = *options;
+        film->asked = film->options = *options;
     KrsRenderOptions *o = &film->options;
     if (settings_complete(rendering, o, &film->asked_schedule))
         film->sums = picture_new(gpu, o->width, o->height, o->crop, o->planes | KRS_PLANE_COLOR);
@@ -71,7 +72,27 @@ void krs_film_clear(KrsFilm *film)
     film->sums->stats = (KrsRenderStats){.peak_memory_bytes = bytes};
 }
 
-uint32_t krs_film_samples(const KrsFilm *film) { return film->samples; }
+uint32_t krs_film_samples(const KrsFilm *film)
+{
+    return film->updates == film->rendering->updates ? film->samples : 0;
+}
+
+/* Forgets the samples of a scene that the rendering no longer has, and completes the options for the
+   present one.  The picture stays as large as it was. */
+static bool follow_rendering(KrsFilm *film)
+{
+    KrsRenderOptions options = film->asked;
+    if (film->updates == film->rendering->updates)
+        return true;
+    options.width  = film->options.width;
+    options.height = film->options.height;
+    if (!settings_complete(film->rendering, &options, &film->asked_schedule))
+        return false;
+    krs_film_clear(film);
+    film->options = options;
+    film->updates = film->rendering->updates;
+    return true;
+}
 
 /* ---- samples ---- */
 
@@ -228,6 +249,9 @@ static bool run(Job *job, const Plan *plan, KrsFilm *film, uint32_t samples)
 static KrsStatus add(KrsFilm *film, KrsFrame *frame, const KrsCamera *camera, const KrsRays *rays,
                      uint32_t samples)
 {
+    renderer_clear(film->rendering->renderer);
+    if (!follow_rendering(film))
+        return film->rendering->renderer->gpu.status;
     Job job = {.rendering      = film->rendering,
                .gpu            = &film->rendering->renderer->gpu,
                .options        = film->options,
@@ -236,7 +260,6 @@ static KrsStatus add(KrsFilm *film, KrsFrame *frame, const KrsCamera *camera, co
                .rays           = rays,
                .cover          = whole_tiles(&film->options),
                .stats          = &film->sums->stats};
-    renderer_clear(film->rendering->renderer);
     if (samples == 0 || samples > KRS_MOST_SAMPLES - film->samples) {
         job_refuse(&job, "a film has 1 to 65536 samples per pixel");
         return job.gpu->status;
@@ -289,6 +312,7 @@ static void finish(const KrsFilm *film, KrsPicture *picture)
     const double        primary   = stats->phase_ms[KRS_PHASE_PRIMARY];
     stats->spirv_ms               = rendering->spirv_ms;
     stats->pipeline_ms            = rendering->pipeline_ms;
+    stats->kernels                = gpu->kernels_made;
     stats->device_time            = gpu->times != VK_NULL_HANDLE;
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         stats->total_ms += stats->phase_ms[phase];
@@ -307,10 +331,10 @@ KrsStatus krs_film_read(KrsFilm *film, uint32_t planes, KrsPicture **picture)
     const uint32_t wanted = planes ? planes : film->options.planes;
     *picture              = NULL;
     renderer_clear(film->rendering->renderer);
-    if (film->samples == 0 || wanted & ~film->options.planes) {
+    if (krs_film_samples(film) == 0 || wanted & ~film->options.planes) {
         gpu_refuse(gpu, KRS_BAD_ARGUMENT, "%s",
-                   film->samples == 0 ? "the film has no samples yet"
-                                      : "the film was made without some of these planes");
+                   krs_film_samples(film) == 0 ? "the film has no samples yet"
+                                               : "the film was made without some of these planes");
         return gpu->status;
     }
     if (store_all(film))

@@ -8,8 +8,10 @@
 
 struct KrsFilm {
     KrsRendering    *rendering;
+    KrsRenderOptions asked;            /* by the caller */
     KrsRenderOptions options;          /* complete: none asks for a default */
-    KrsSchedule      asked_schedule;   /* as the caller asked */
+    KrsSchedule      asked_schedule;   /* before it was completed */
+    uint32_t         updates;          /* of its rendering that it has followed */
     KrsPicture      *sums;             /* colours are sums over the samples */
     uint32_t         samples;          /* of each pixel so far */
     uint32_t         rows;             /* of a band; 0: no band has been made */

@@ -91,6 +91,7 @@ struct KrsRendering {
     KrsRenderer      *renderer;
     const KrsScene   *scene;
     const KrsProgram *program;
+    uint32_t          updates; /* how often it was taken over to another scene */
     KernelMap         kernels;
     /* The number of the caller's zones that kernels of this frame have room for. */
     uint32_t zone_slots;

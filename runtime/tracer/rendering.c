@@ -64,19 +64,36 @@ failed:
     return false;
 }
 
-static bool buffers_create(KrsRendering *rendering)
+static void bind_scene(KrsRendering *rendering)
+{
+    layouts_bind_scene(&rendering->renderer->gpu, rendering->scene_set, PARAMETERS_BINDING,
+                       &rendering->parameters);
+    scene_tables_bind(rendering);
+}
+
+/* Makes the parameter block and the tables of the rendering's scene. */
+static bool scene_buffers_create(KrsRendering *rendering)
 {
     Gpu     *gpu   = &rendering->renderer->gpu;
     uint32_t slots = rendering_slots(rendering);
     if (slots == 0 ||
         !buffer_create(gpu, &rendering->parameters, (VkDeviceSize)slots * 4 * sizeof(float),
                        UPLOADED, "scene's parameters") ||
+        !scene_tables_create(rendering))
+        return false;
+    bind_scene(rendering);
+    return true;
+}
+
+static bool buffers_create(KrsRendering *rendering)
+{
+    Gpu *gpu = &rendering->renderer->gpu;
+    if (!scene_buffers_create(rendering) ||
         !buffer_create(gpu, &rendering->frame, sizeof(FrameBlock), UPLOADED, "camera") ||
         !buffer_create(gpu, &rendering->control, sizeof(ControlBlock), SHARED, "control block") ||
         (!gpu_is_cpu(gpu) && !buffer_create(gpu, &rendering->device_control, sizeof(ControlBlock),
                                             ON_DEVICE, "control block")))
         return false;
-    layouts_bind_scene(gpu, rendering->scene_set, PARAMETERS_BINDING, &rendering->parameters);
     rendering_bind(rendering, rendering->band_set, FRAME_BINDING, &rendering->frame);
     rendering_bind(rendering, rendering->band_set, CONTROL_BINDING, rendering_control(rendering));
     return true;
@@ -107,6 +124,22 @@ static uint32_t guess_slice(const KrsRendering *rendering, int phase, bool has_s
     return gpu_is_cpu(gpu) ? 8 : (uint32_t)fmin(fmax(groups, 1), MOST_GROUPS);
 }
 
+static void set_scene(KrsRendering *rendering, const KrsScene *scene)
+{
+    rendering->scene      = scene;
+    rendering->program    = krs_scene_program(scene);
+    rendering->scene_rays = krs_scene_is_panoramic(scene) ? RAYS_OF_PANORAMAS : RAYS_OF_CAMERAS;
+    rendering->rays       = rendering->scene_rays;
+}
+
+/* Makes the kernels that every rendering of a purpose needs. */
+static bool prepare_kernels(KrsRendering *rendering)
+{
+    return renderer_create_pixels(rendering->renderer, rendering->rays, &rendering->spirv_ms,
+                                  &rendering->pipeline_ms) &&
+           kernels_create(rendering, rendering->purpose);
+}
+
 KrsStatus krs_rendering_new(KrsRenderer *renderer, const KrsScene *scene, KrsRendering **out)
 {
     return krs_rendering_new_for(renderer, scene, KRS_FOR_PICTURES, out);
@@ -121,26 +154,51 @@ KrsStatus krs_rendering_new_for(KrsRenderer *renderer, const KrsScene *scene, Kr
     if (!rendering)
         return renderer->gpu.status;
     rendering->renderer    = renderer;
-    rendering->scene       = scene;
-    rendering->program     = krs_scene_program(scene);
     rendering->purpose     = purpose;
-    rendering->scene_rays  = krs_scene_is_panoramic(scene) ? RAYS_OF_PANORAMAS : RAYS_OF_CAMERAS;
-    rendering->rays        = rendering->scene_rays;
     rendering->spirv_ms    = renderer->spirv_ms;
     rendering->pipeline_ms = renderer->pipeline_ms;
+    set_scene(rendering, scene);
     for (int phase = 0; phase < KRS_PHASE_COUNT; phase++)
         for (int has_scene = 0; has_scene < 2; has_scene++)
             rendering->groups_at_once[phase][has_scene] = guess_slice(rendering, phase, has_scene);
-    if (!sets_create(rendering) || !buffers_create(rendering) || !scene_tables_create(rendering) ||
-        !renderer_create_pixels(renderer, rendering->rays, &rendering->spirv_ms,
-                                &rendering->pipeline_ms) ||
-        !kernels_create(rendering, purpose)) {
+    if (!sets_create(rendering) || !buffers_create(rendering) || !prepare_kernels(rendering)) {
         KrsStatus status = renderer->gpu.status;
         krs_rendering_free(rendering);
         return status;
     }
     *out = rendering;
     return KRS_OK;
+}
+
+KrsStatus krs_rendering_update(KrsRendering *rendering, const KrsScene *scene)
+{
+    Gpu         *gpu    = &rendering->renderer->gpu;
+    KrsRendering before = *rendering;
+    renderer_clear(rendering->renderer);
+    if (!gpu_wait(gpu)) /* kernels may still be warming up */
+        return gpu->status;
+    rendering->kernels    = (KernelMap){0};
+    rendering->parameters = rendering->table_rows = rendering->table_cells = (Buffer){0};
+    rendering->has_tables                                                  = false;
+    rendering->zone_slots = rendering->most_zone_slots = 0;
+    rendering->camera_relative                         = false;
+    set_scene(rendering, scene);
+    const bool      ready   = scene_buffers_create(rendering) && prepare_kernels(rendering);
+    const KrsStatus status  = gpu->status;
+    KrsRendering    dropped = ready ? before : *rendering;
+    gpu_wait(gpu);
+    kernels_destroy(gpu, &dropped.kernels);
+    if (ready) {
+        rendering->held = (HeldBand){0};
+        rendering->updates++;
+    } else {
+        *rendering = before;
+        bind_scene(rendering);
+    }
+    buffer_destroy(gpu, &dropped.parameters);
+    buffer_destroy(gpu, &dropped.table_rows);
+    buffer_destroy(gpu, &dropped.table_cells);
+    return ready ? KRS_OK : status;
 }
 
 void krs_rendering_free(KrsRendering *rendering)

@@ -24,26 +24,29 @@ static bool table_create(KrsRendering *rendering, uint32_t binding, Buffer *buff
                    texels, most);
         return false;
     }
-    if (!buffer_create(gpu, buffer, bytes, ON_DEVICE, TABLES) ||
-        !layouts_view_table(gpu, binding, buffer, TABLES))
-        return false;
-    layouts_bind_scene(gpu, rendering->scene_set, binding, buffer);
-    return true;
+    return buffer_create(gpu, buffer, bytes, ON_DEVICE, TABLES) &&
+           layouts_view_table(gpu, binding, buffer, TABLES);
 }
 
 bool scene_tables_create(KrsRendering *rendering)
 {
-    Gpu              *gpu     = &rendering->renderer->gpu;
     const KrsProgram *program = rendering->program;
-    if (program->table_cells > 0)
-        return table_create(rendering, ROWS_BINDING, &rendering->table_rows, program->table_rows,
-                            ROW_BYTES) &&
-               table_create(rendering, CELLS_BINDING, &rendering->table_cells, program->table_cells,
-                            CELL_BYTES);
+    return program->table_cells == 0 ||
+           (table_create(rendering, ROWS_BINDING, &rendering->table_rows, program->table_rows,
+                         ROW_BYTES) &&
+            table_create(rendering, CELLS_BINDING, &rendering->table_cells, program->table_cells,
+                         CELL_BYTES));
+}
+
+void scene_tables_bind(KrsRendering *rendering)
+{
+    const bool    any                    = rendering->program->table_cells > 0;
+    const Buffer *tables[SCENE_BINDINGS] = {
+        [ROWS_BINDING] = &rendering->table_rows, [CELLS_BINDING] = &rendering->table_cells};
     for (uint32_t binding = ROWS_BINDING; binding < SCENE_BINDINGS; binding++)
-        layouts_bind_scene(gpu, rendering->scene_set, binding,
-                           layouts_idle_table(rendering->renderer, binding));
-    return true;
+        layouts_bind_scene(&rendering->renderer->gpu, rendering->scene_set, binding,
+                           any ? tables[binding]
+                               : layouts_idle_table(rendering->renderer, binding));
 }
 
 static bool copy(Gpu *gpu, const Buffer *rows, const Buffer *cells, const KrsRendering *to)

@@ -6,8 +6,10 @@
 
 #include "runtime/tracer/handles.h"
 
-/* Makes room for the tables, and binds it in the scene's set. */
+/* Makes room for the tables of the scene, if it has some. */
 bool scene_tables_create(KrsRendering *rendering);
+/* Binds them, or idle ones, in the scene's set. */
+void scene_tables_bind(KrsRendering *rendering);
 /* Brings the tables to the device, unless they are there.  They are the same for all frames. */
 bool scene_tables_upload(KrsRendering *rendering, const KrsFrame *frame);
 

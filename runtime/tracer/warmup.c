@@ -53,7 +53,9 @@ static void *warm_up_on_second_device(void *user)
     for (size_t i; ready && (i = atomic_fetch_add(&queue->next, 1)) < queue->count;) {
         Kernel kernel;
         double ms = 0;
-        ready     = kernel_load(&second.gpu, &kernel, &queue->codes[i], second.layout, &ms) &&
+        if (queue->codes[i].shared)
+            continue;
+        ready = kernel_load(&second.gpu, &kernel, &queue->codes[i], second.layout, &ms) &&
                 warm_up(&second, second.idle_scene, &kernel) && gpu_wait(&second.gpu);
         queue->requests[i].kernel->pipeline_ms += kernel_driver_ms(&second.gpu, &kernel);
         kernel_destroy(&second.gpu, &kernel);
@@ -79,12 +81,13 @@ static bool warm_up_all(KrsRenderer *renderer, VkDescriptorSet scene_set,
         size_t i = atomic_fetch_add(&queue.next, 1);
         if (i >= count)
             break;
-        taken[i] = ready = ready && warm_up(renderer, scene_set, requests[i].kernel);
+        taken[i] = ready = ready &&
+                           (codes[i].shared || warm_up(renderer, scene_set, requests[i].kernel));
     }
     if (helped)
         pthread_join(thread, NULL);
     for (size_t i = 0; i < count && ready; i++)
-        ready = taken[i] || warm_up(renderer, scene_set, requests[i].kernel);
+        ready = taken[i] || codes[i].shared || warm_up(renderer, scene_set, requests[i].kernel);
     return ready;
 }
 

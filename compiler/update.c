@@ -1,0 +1,328 @@
+/*
+ * update.c: compiles an edited text of a scene, and finds what is different.
+ *
+ * Two scenes have the same kernels if these are made of the same nodes, apart from numbers of the
+ * frame, and if all else that decides about their text is equal.  Some constants never get into the
+ * text.  So scenes whose nodes differ are compared by their text as well.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "compiler/program.h"
+
+/* What two parts of scenes have in common, the least first. */
+typedef enum Likeness { DIFFERENT, ALIKE_BUT_NUMBERS, EQUAL } Likeness;
+
+static Likeness equal_if(bool equal) { return equal ? EQUAL : DIFFERENT; }
+
+static Likeness least(Likeness a, Likeness b) { return a < b ? a : b; }
+
+typedef struct Comparison {
+    const KrsScene *a, *b;
+    Memory          memory;
+    Arena           arena;
+    KrsChanges      changes;
+} Comparison;
+
+/* ---- graphs ---- */
+
+typedef struct RootList {
+    Node  *items;
+    size_t count, capacity;
+} RootList;
+
+/* The roots that kernels are made of, or those of the view. */
+static RootList collect_roots(const KrsScene *scene, bool of_kernels, RootKind first, RootKind last,
+                              Arena *arena)
+{
+    RootList list = {0};
+    for (RootKind kind = first; kind <= last; kind++) {
+        RootRange range = roots_of(&scene->roots, kind);
+        bool      view  = kind >= ROOTS_CAMERA && kind <= ROOTS_SKY;
+        for (size_t i = 0; i < range.count && view != of_kernels; i++)
+            array_push(arena, &list, range.items[i]);
+    }
+    return list;
+}
+
+static Likeness compare_nodes(const Tape *a, const Tape *b, size_t at)
+{
+    const Expr *x = &a->graph->items[a->nodes[at]], *y = &b->graph->items[b->nodes[at]];
+    if (x->op != y->op || x->type != y->type || x->operand_count != y->operand_count)
+        return DIFFERENT;
+    for (uint32_t k = 0; k < x->operand_count; k++)
+        if (tape_index(a, x->operands[k]) != tape_index(b, y->operands[k]))
+            return DIFFERENT;
+    bool same_number = memcmp(x->number, y->number, sizeof x->number) == 0;
+    if (x->op == OP_HOISTED)
+        return same_number ? EQUAL : ALIKE_BUT_NUMBERS;
+    return equal_if(x->index == y->index && same_number);
+}
+
+/* Compares the roots of these kinds, with all nodes that they need. */
+static Likeness compare_graphs(Comparison *c, bool of_kernels, RootKind first, RootKind last)
+{
+    RootList a     = collect_roots(c->a, of_kernels, first, last, &c->arena);
+    RootList b     = collect_roots(c->b, of_kernels, first, last, &c->arena);
+    Tape     x     = tape_new(c->a->graph, a.items, a.count, &c->arena);
+    Tape     y     = tape_new(c->b->graph, b.items, b.count, &c->arena);
+    Likeness found = equal_if(a.count == b.count && x.count == y.count &&
+                              x.frame_count == y.frame_count);
+    for (size_t i = 0; i < x.count && found != DIFFERENT; i++)
+        found = least(found, compare_nodes(&x, &y, i));
+    for (size_t i = 0; i < a.count && found != DIFFERENT; i++)
+        found = least(found, equal_if(tape_index(&x, a.items[i]) == tape_index(&y, b.items[i])));
+    return found;
+}
+
+/* ---- what decides about kernels beside the graph ---- */
+
+static bool same_slots(const KrsProgram *a, const KrsProgram *b)
+{
+    return a->parameter_slots == b->parameter_slots && a->value_slots == b->value_slots &&
+           a->camera_relative_slots == b->camera_relative_slots;
+}
+
+static bool same_methods(const KrsProgram *a, const KrsProgram *b)
+{
+    return a->planes == b->planes && a->camera_relative == b->camera_relative &&
+           a->gradients == b->gradients && a->algebraic == b->algebraic && a->along == b->along &&
+           a->sheets == b->sheets && a->inverts == b->inverts && a->plain == b->plain &&
+           a->march_group_count == b->march_group_count && a->per_component == b->per_component &&
+           a->scene_parts == b->scene_parts && a->expensive == b->expensive;
+}
+
+/* Whether shaders treat the boxes alike; corners are numbers of the frame. */
+static bool same_kinds_of_boxes(const KrsScene *a, const KrsScene *b)
+{
+    bool same = true;
+    for (size_t i = 0; i < a->component_count; i++) {
+        const Box *x = &a->module.boxes[i], *y = &b->module.boxes[i];
+        same = same && box_is_empty(*x) == box_is_empty(*y) &&
+               box_is_finite(*x) == box_is_finite(*y);
+    }
+    return same;
+}
+
+static bool same_groups(const Module *a, const Module *b)
+{
+    size_t count = a->components;
+    if (!a->march_groups != !b->march_groups || !a->is_plane != !b->is_plane)
+        return false;
+    return (!a->march_groups ||
+            memcmp(a->march_groups, b->march_groups, count * sizeof *a->march_groups) == 0) &&
+           (!a->is_plane || memcmp(a->is_plane, b->is_plane, count * sizeof *a->is_plane) == 0);
+}
+
+static bool same_facts(const KrsScene *a, const KrsScene *b)
+{
+    return a->component_count == b->component_count && a->zone_count == b->zone_count &&
+           krs_scene_is_panoramic(a) == krs_scene_is_panoramic(b) &&
+           same_slots(&a->program, &b->program) && same_methods(&a->program, &b->program) &&
+           a->module.has_slopes == b->module.has_slopes &&
+           !a->module.box_nodes.around == !b->module.box_nodes.around &&
+           same_kinds_of_boxes(a, b) && same_groups(&a->module, &b->module);
+}
+
+/* ---- texts ---- */
+
+/* All functions that a scene has in a variant. */
+static size_t known_functions(const KrsScene *scene, const KrsVariant *variant,
+                              KrsFunction wanted[KRS_FUNCTION_COUNT])
+{
+    const KrsProgram *program = &scene->program;
+    size_t            count   = 0;
+    wanted[count++]           = KRS_FUNCTION_DISTANCE;
+    wanted[count++]           = KRS_FUNCTION_SURFACE;
+    wanted[count++]           = KRS_FUNCTION_SCENE_PART_DISTANCE;
+    wanted[count++]           = KRS_FUNCTION_SCENE_PART_BOX;
+    if (program->planes) {
+        wanted[count++] = KRS_FUNCTION_PLANE_T;
+        wanted[count++] = KRS_FUNCTION_PLANE_COSINE;
+    }
+    if (variant->many_threads)
+        wanted[count++] = KRS_FUNCTION_DISTANCE_LOD;
+    if (program->gradients && !variant->camera_relative)
+        wanted[count++] = KRS_FUNCTION_GRADIENT;
+    if (program->along && !variant->camera_relative)
+        wanted[count++] = KRS_FUNCTION_ALONG;
+    return count;
+}
+
+/* Takes out comments, which name lines of the scene. */
+static void strip_comments(char *text)
+{
+    char *to = text;
+    for (const char *from = text; *from;) {
+        if (from[0] == '/' && from[1] == '/')
+            from += strcspn(from, "\n");
+        else
+            *to++ = *from++;
+    }
+    *to = '\0';
+}
+
+static char *print_variant(Comparison *c, const KrsScene *scene, const KrsVariant *variant)
+{
+    KrsFunction wanted[KRS_FUNCTION_COUNT];
+    size_t      count = known_functions(scene, variant, wanted);
+    Text        text  = {.arena = &c->arena};
+    module_print(&scene->module, variant, wanted, count, &glsl_printer, &text);
+    strip_comments(text.bytes);
+    return text.bytes;
+}
+
+static bool same_text(Comparison *c, const KrsVariant *variant)
+{
+    return strcmp(print_variant(c, c->a, variant), print_variant(c, c->b, variant)) == 0;
+}
+
+/* Whether kernels of the same facts have the same text. */
+static bool same_texts(Comparison *c)
+{
+    return same_text(c, &(KrsVariant){.values = true}) &&
+           same_text(c, &(KrsVariant){.values = true, .many_threads = true}) &&
+           (!c->a->program.camera_relative ||
+            same_text(c, &(KrsVariant){.values = true, .camera_relative = true}));
+}
+
+static Likeness compare_kernels(Comparison *c)
+{
+    if (!same_facts(c->a, c->b))
+        return DIFFERENT;
+    Likeness found = compare_graphs(c, true, ROOTS_SURFACE, ROOT_KINDS - 1);
+    return found != DIFFERENT || !same_texts(c) ? found : ALIKE_BUT_NUMBERS;
+}
+
+/* ---- the rest of a scene ---- */
+
+static bool same_name(const char *a, const char *b)
+{
+    return a == b || (a && b && strcmp(a, b) == 0);
+}
+
+static bool same_parameters(const KrsScene *a, const KrsScene *b)
+{
+    bool same = a->parameter_count == b->parameter_count;
+    for (size_t i = 0; same && i < a->parameter_count; i++) {
+        const Parameter *x = &a->parameters[i], *y = &b->parameters[i];
+        same = same_name(x->name, y->name) && x->components == y->components &&
+               memcmp(x->value, y->value, sizeof x->value) == 0 &&
+               memcmp(x->low, y->low, sizeof x->low) == 0 &&
+               memcmp(x->high, y->high, sizeof x->high) == 0;
+    }
+    return same;
+}
+
+static bool same_components(const KrsScene *a, const KrsScene *b)
+{
+    bool same = a->component_count == b->component_count;
+    for (size_t i = 0; same && i < a->component_count; i++)
+        same = same_name(a->components[i].name, b->components[i].name);
+    return same;
+}
+
+/* What the compiler knows of components bounds rays, also where the graph is the same. */
+static bool same_bounds(const KrsScene *a, const KrsScene *b)
+{
+    bool same = a->slope_count == b->slope_count;
+    for (size_t i = 0; same && i < a->slope_count; i++)
+        same = a->slopes[i].slot == b->slopes[i].slot &&
+               memcmp(&a->slopes[i].task.box, &b->slopes[i].task.box,
+                      sizeof a->slopes[i].task.box) == 0;
+    for (size_t i = 0; same && i < a->component_count; i++)
+        same = memcmp(a->components[i].low, b->components[i].low, sizeof(double[3])) == 0 &&
+               memcmp(a->components[i].high, b->components[i].high, sizeof(double[3])) == 0;
+    return same;
+}
+
+static bool same_cameras(const KrsScene *a, const KrsScene *b)
+{
+    bool same = a->camera_count == b->camera_count && a->framed == b->framed;
+    for (size_t i = 0; same && i < a->camera_count; i++)
+        same = same_name(a->cameras[i].name, b->cameras[i].name) &&
+               a->cameras[i].projection == b->cameras[i].projection;
+    return same && memcmp(a->framed_eye, b->framed_eye, sizeof a->framed_eye) == 0 &&
+           memcmp(a->framed_target, b->framed_target, sizeof a->framed_target) == 0;
+}
+
+static bool same_lights(const KrsScene *a, const KrsScene *b)
+{
+    bool same = a->light_count == b->light_count;
+    for (size_t i = 0; same && i < a->light_count; i++)
+        same = a->lights[i].positional == b->lights[i].positional &&
+               a->lights[i].shadow == b->lights[i].shadow;
+    return same;
+}
+
+static bool same_image(const SceneImage *a, const SceneImage *b)
+{
+    return a->width == b->width && a->height == b->height && a->samples == b->samples &&
+           same_name(a->integrator, b->integrator) && same_name(a->tone_map, b->tone_map) &&
+           a->exposure == b->exposure && a->error == b->error;
+}
+
+/* ---- all together ---- */
+
+static void compare(Comparison *c)
+{
+    KrsChanges *changes = &c->changes;
+    Likeness    kernels = compare_kernels(c);
+    changes->parameters = !same_parameters(c->a, c->b);
+    changes->components = !same_components(c->a, c->b);
+    changes->cameras    = !same_cameras(c->a, c->b) ||
+                       compare_graphs(c, false, ROOTS_CAMERA, ROOTS_CAMERA) != EQUAL;
+    changes->lights = !same_lights(c->a, c->b) ||
+                      compare_graphs(c, false, ROOTS_LIGHT, ROOTS_SKY) != EQUAL;
+    changes->image = !same_image(&c->a->image, &c->b->image);
+    bool values = kernels != EQUAL || changes->parameters || changes->cameras || changes->lights ||
+                  changes->image || !same_bounds(c->a, c->b);
+    changes->kind = kernels == DIFFERENT ? KRS_CHANGE_STRUCTURE
+                    : values             ? KRS_CHANGE_VALUES
+                                         : KRS_CHANGE_NOTHING;
+}
+
+/* Where memory runs out, longjmp returns here. */
+static KrsStatus compare_guarded(Comparison *c)
+{
+    jmp_buf exhausted;
+    c->memory.exhausted = &exhausted;
+    if (setjmp(exhausted) != 0)
+        return KRS_OUT_OF_MEMORY;
+    compare(c);
+    return KRS_OK;
+}
+
+static KrsStatus find_changes(const KrsScene *a, const KrsScene *b, KrsChanges *changes)
+{
+    const KrsAllocator *allocator = &a->options.allocator;
+    Comparison          c         = {.a      = a,
+                                     .b      = b,
+                                     .memory = {.allocate = allocator->allocate,
+                                                .release  = allocator->release,
+                                                .user     = allocator->user}};
+    c.arena.memory                = &c.memory;
+    KrsStatus status              = compare_guarded(&c);
+    arena_free(&c.arena);
+    *changes = c.changes;
+    return status;
+}
+
+KrsStatus krs_scene_update(const KrsScene *scene, const char *text, size_t length,
+                           KrsScene **updated, KrsChanges *changes)
+{
+    KrsOptions options = scene->options;
+    KrsChanges found   = {0};
+    if (options.specialize == KRS_SPECIALIZE_AUTO)
+        options.specialize = KRS_SPECIALIZE_STRUCTURE;
+    KrsStatus status = krs_compile_text(text, length, scene->name, &options, updated);
+    if (status == KRS_OK)
+        status = find_changes(scene, *updated, &found);
+    if (status != KRS_OK) {
+        krs_scene_free(*updated);
+        *updated = NULL;
+    }
+    if (changes)
+        *changes = found;
+    return status;
+}

@@ -1,0 +1,381 @@
+/*
+ * update.c: edited texts of a scene: what is said to be different, and what frames keep.
+ *
+ * An updated scene is the scene that its text alone makes: distances, cameras and slots are equal.
+ */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "compiler/compile.h"
+#include "tests/support/random.h"
+#include "tests/support/scarce.h"
+
+typedef struct Heard {
+    int  errors;
+    char code[8], source[32];
+} Heard;
+
+static void hear(void *user, const KrsDiagnostic *diagnostic)
+{
+    Heard *heard = user;
+    heard->errors += diagnostic->error;
+    snprintf(heard->code, sizeof heard->code, "%s", diagnostic->code);
+    snprintf(heard->source, sizeof heard->source, "%s", diagnostic->source);
+}
+
+static KrsScene *compile_with(const char *text, const KrsOptions *options)
+{
+    KrsScene *scene;
+    assert_int_equal(krs_compile_text(text, strlen(text), "edited.krs", options, &scene), KRS_OK);
+    return scene;
+}
+
+static KrsScene *compile(const char *text, KrsSpecialize specialize)
+{
+    return compile_with(text, &(KrsOptions){.specialize = specialize});
+}
+
+static KrsScene *update(const KrsScene *scene, const char *text, KrsChanges *changes)
+{
+    KrsScene *updated;
+    assert_int_equal(krs_scene_update(scene, text, strlen(text), &updated, changes), KRS_OK);
+    return updated;
+}
+
+/* ---- what is different ---- */
+
+#define BEFORE                                                    \
+    "param r = 1 in [0.5, 2];\n"                                  \
+    "material m { color: #ff8000, roughness: 0.5 }\n"             \
+    "let ball = sphere(r).move([0.25, 0, 0]);\n"                  \
+    "show union([ball, box([2, 1, 1])], blend: 0.25).paint(m);\n" \
+    "camera front { eye: [4, 3, 5], fov: 0.7 }\n"                 \
+    "light sun { direction: [1, 2, 3], intensity: 2 }\n"
+
+typedef struct Edit {
+    const char *what, *from, *to;
+    KrsChange   kind;
+    bool        parameters, components, cameras, lights, image;
+} Edit;
+
+static const Edit edits[] = {
+    {"nothing", "", "", KRS_CHANGE_NOTHING, 0, 0, 0, 0, 0},
+    {"a comment", "show", "// the ball\n\n  show", KRS_CHANGE_NOTHING, 0, 0, 0, 0, 0},
+    {"a name of a camera", "front", "side", KRS_CHANGE_VALUES, 0, 0, 1, 0, 0},
+    {"a place", "0.25, 0, 0", "0.5, 0.1, 0", KRS_CHANGE_VALUES, 0, 0, 0, 0, 0},
+    {"a size", "[2, 1, 1]", "[2, 1.5, 1]", KRS_CHANGE_VALUES, 0, 0, 0, 0, 0},
+    {"a width", "blend: 0.25", "blend: 0.3", KRS_CHANGE_VALUES, 0, 0, 0, 0, 0},
+    {"a colour", "#ff8000", "#20c040", KRS_CHANGE_VALUES, 0, 0, 0, 0, 0},
+    {"a material", "roughness: 0.5", "roughness: 0.3", KRS_CHANGE_VALUES, 0, 0, 0, 0, 0},
+    {"a default", "r = 1", "r = 1.5", KRS_CHANGE_VALUES, 1, 0, 0, 0, 0},
+    {"an eye", "[4, 3, 5]", "[4, 3, 6]", KRS_CHANGE_VALUES, 0, 0, 1, 0, 0},
+    {"another camera", "light", "camera { eye: [1, 9, 1] } light", KRS_CHANGE_VALUES, 0, 0, 1, 0,
+     0},
+    {"a light", "intensity: 2", "intensity: 3", KRS_CHANGE_VALUES, 0, 0, 0, 1, 0},
+    {"another light", "light", "light { direction: [0, 1, 0] } light", KRS_CHANGE_VALUES, 0, 0, 0,
+     1, 0},
+    {"a sky", "light", "sky { zenith: #8090ff } light", KRS_CHANGE_VALUES, 0, 0, 0, 1, 0},
+    {"a picture", "light", "image { size: [64, 48] } light", KRS_CHANGE_VALUES, 0, 0, 0, 0, 1},
+    {"another parameter", "let", "param s = 1; let", KRS_CHANGE_STRUCTURE, 1, 0, 0, 0, 0},
+    {"another shape", "box([2, 1, 1])", "cylinder(0.5, 2)", KRS_CHANGE_STRUCTURE, 0, 0, 0, 0, 0},
+    {"another operator", ", blend: 0.25", "", KRS_CHANGE_STRUCTURE, 0, 0, 0, 0, 0},
+    {"another component", "light", "show torus(3, 0.2); light", KRS_CHANGE_STRUCTURE, 0, 1, 0, 0,
+     0},
+};
+
+/* The text with the first occurrence of one string replaced by another. */
+static const char *edited(const char *text, const char *from, const char *to)
+{
+    static char result[2000];
+    const char *at = strstr(text, from);
+    assert_non_null(at);
+    snprintf(result, sizeof result, "%.*s%s%s", (int)(at - text), text, to, at + strlen(from));
+    return result;
+}
+
+/* The text of the functions that kernels call, without comments. */
+static void print_kernels(const KrsScene *scene, bool card, char *to, size_t capacity)
+{
+    const KrsVariant  variant  = {.values = true, .many_threads = card};
+    const KrsFunction wanted[] = {card ? KRS_FUNCTION_DISTANCE_LOD : KRS_FUNCTION_DISTANCE,
+                                  KRS_FUNCTION_SURFACE};
+    char  *text   = krs_scene_text(scene, &variant, wanted, 2, NULL);
+    size_t length = 0;
+    assert_non_null(text);
+    for (const char *from = text; *from && length + 1 < capacity;) {
+        if (from[0] == '/' && from[1] == '/')
+            from += strcspn(from, "\n");
+        else
+            to[length++] = *from++;
+    }
+    to[length] = '\0';
+    free(text);
+}
+
+static bool same_kernels(const KrsScene *a, const KrsScene *b)
+{
+    static char x[1 << 16], y[1 << 16];
+    bool        same = true;
+    for (int card = 0; card < 2; card++) {
+        print_kernels(a, card, x, sizeof x);
+        print_kernels(b, card, y, sizeof y);
+        same = same && strcmp(x, y) == 0;
+    }
+    return same;
+}
+
+/* Distances at many points, and the first camera, are equal to the last bit. */
+static void assert_same_scene(const KrsScene *a, const KrsScene *b)
+{
+    KrsFrame *first, *second;
+    KrsCamera x, y;
+    Random    random = {7};
+    assert_int_equal(krs_frame_new(a, &first), KRS_OK);
+    assert_int_equal(krs_frame_new(b, &second), KRS_OK);
+    for (int i = 0; i < 200; i++) {
+        double point[1][3], near[1], same[1];
+        random_vector(&random, 4, point[0]);
+        assert_int_equal(krs_distance(first, (const double(*)[3])point, 1, near), KRS_OK);
+        assert_int_equal(krs_distance(second, (const double(*)[3])point, 1, same), KRS_OK);
+        assert_true(near[0] == same[0]);
+    }
+    assert_int_equal(krs_frame_camera(first, 0, &x), KRS_OK);
+    assert_int_equal(krs_frame_camera(second, 0, &y), KRS_OK);
+    assert_memory_equal(x.eye, y.eye, sizeof x.eye);
+    assert_int_equal(krs_value_slots(a), krs_value_slots(b));
+    krs_frame_free(first);
+    krs_frame_free(second);
+}
+
+static void assert_changes(const Edit *edit, const KrsChanges *changes)
+{
+    if (changes->kind != edit->kind || changes->parameters != edit->parameters ||
+        changes->components != edit->components || changes->cameras != edit->cameras ||
+        changes->lights != edit->lights || changes->image != edit->image)
+        fail_msg("%s: kind %d, parameters %d, components %d, cameras %d, lights %d, image %d",
+                 edit->what, changes->kind, changes->parameters, changes->components,
+                 changes->cameras, changes->lights, changes->image);
+}
+
+static void changes_are_told(void **state)
+{
+    (void)state;
+    KrsScene *scene = compile(BEFORE, KRS_SPECIALIZE_STRUCTURE);
+    for (size_t i = 0; i < sizeof edits / sizeof *edits; i++) {
+        KrsChanges  changes, back;
+        const char *text    = edited(BEFORE, edits[i].from, edits[i].to);
+        KrsScene   *updated = update(scene, text, &changes);
+        KrsScene   *alone   = compile(text, KRS_SPECIALIZE_STRUCTURE);
+        KrsScene   *undone  = update(updated, BEFORE, &back);
+        assert_changes(&edits[i], &changes);
+        assert_int_equal(back.kind, changes.kind);
+        assert_int_equal(same_kernels(scene, updated), changes.kind != KRS_CHANGE_STRUCTURE);
+        assert_same_scene(updated, alone);
+        assert_same_scene(undone, scene);
+        krs_scene_free(undone);
+        krs_scene_free(alone);
+        krs_scene_free(updated);
+    }
+    krs_scene_free(scene);
+}
+
+static void literals_are_structure(void **state)
+{
+    (void)state;
+    KrsChanges  changes;
+    const char *text    = edited(BEFORE, "[2, 1, 1]", "[2, 1.5, 1]");
+    KrsScene   *scene   = compile(BEFORE, KRS_SPECIALIZE_NUMBERS);
+    KrsScene   *updated = update(scene, text, &changes);
+    assert_int_equal(changes.kind, KRS_CHANGE_STRUCTURE);
+    assert_false(same_kernels(scene, updated));
+    krs_scene_free(updated);
+    krs_scene_free(scene);
+}
+
+static void auto_takes_numbers_out_with_the_first_edit(void **state)
+{
+    (void)state;
+    KrsChanges changes;
+    KrsScene  *literal = compile(BEFORE, KRS_SPECIALIZE_NUMBERS);
+    KrsScene  *scene   = compile(BEFORE, KRS_SPECIALIZE_AUTO);
+    assert_true(same_kernels(scene, literal));
+    KrsScene *first = update(scene, edited(BEFORE, "0.25, 0, 0", "0.5, 0, 0"), &changes);
+    assert_int_equal(changes.kind, KRS_CHANGE_STRUCTURE);
+    KrsScene *second = update(first, edited(BEFORE, "0.25, 0, 0", "0.75, 0, 0"), &changes);
+    assert_int_equal(changes.kind, KRS_CHANGE_VALUES);
+    assert_true(same_kernels(first, second));
+    krs_scene_free(second);
+    krs_scene_free(first);
+    krs_scene_free(scene);
+    krs_scene_free(literal);
+}
+
+/* ---- mistakes, and what is kept of the first compilation ---- */
+
+static void mistakes_leave_the_scene(void **state)
+{
+    (void)state;
+    Heard       heard = {0};
+    KrsChanges  changes;
+    KrsScene   *updated;
+    KrsFrame   *frame;
+    const char *wrong = "show sphere(rr);";
+    KrsScene   *scene = compile_with(
+          BEFORE,
+          &(KrsOptions){.diagnostic = hear, .user = &heard, .specialize = KRS_SPECIALIZE_STRUCTURE});
+    KrsScene *alone = compile(BEFORE, KRS_SPECIALIZE_STRUCTURE);
+    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    assert_int_equal(krs_scene_update(scene, wrong, strlen(wrong), &updated, &changes),
+                     KRS_BAD_SCENE);
+    assert_null(updated);
+    assert_int_equal(heard.errors, 1);
+    assert_string_equal(heard.code, "E0201");
+    assert_string_equal(heard.source, "edited.krs");
+    assert_int_equal(krs_frame_set(frame, "r", (double[]){2}, 1), KRS_OK);
+    assert_same_scene(scene, alone);
+    krs_frame_free(frame);
+    krs_scene_free(alone);
+    krs_scene_free(scene);
+}
+
+static const char *load(void *user, const char *path, size_t *length)
+{
+    const char **text = user;
+    if (strcmp(path, "inner/part.krs") != 0)
+        return NULL;
+    *length = strlen(*text);
+    return *text;
+}
+
+/* The path of what is used begins with the scene's folder; the options may be gone by then. */
+static void used_files_are_read_again(void **state)
+{
+    (void)state;
+    static const char scene_text[] = "use \"part.krs\"; show part;";
+    const char       *part         = "let part = sphere(1);";
+    KrsChanges        changes;
+    KrsScene         *scene, *updated;
+    {
+        KrsOptions options = {
+            .load = load, .load_user = &part, .specialize = KRS_SPECIALIZE_STRUCTURE};
+        char name[] = "inner/scene.krs";
+        assert_int_equal(krs_compile_text(scene_text, strlen(scene_text), name, &options, &scene),
+                         KRS_OK);
+        memset(name, 'x', sizeof name - 1);
+        memset(&options, 0, sizeof options);
+    }
+    part    = "let part = sphere(2);";
+    updated = update(scene, scene_text, &changes);
+    assert_int_equal(changes.kind, KRS_CHANGE_VALUES);
+    krs_scene_free(scene);
+    part  = "let part = box([1, 1, 1]);";
+    scene = update(updated, scene_text, &changes);
+    assert_int_equal(changes.kind, KRS_CHANGE_STRUCTURE);
+    krs_scene_free(scene);
+    krs_scene_free(updated);
+}
+
+static void memory_may_run_out(void **state)
+{
+    (void)state;
+    Scarce     scarce  = {0};
+    KrsStatus  status  = KRS_OUT_OF_MEMORY;
+    int        refused = 0;
+    KrsChanges changes;
+    KrsScene  *updated,
+        *scene   = compile_with(BEFORE, &(KrsOptions){.allocator  = scarce_allocator(&scarce),
+                                                      .specialize = KRS_SPECIALIZE_STRUCTURE});
+    int64_t held = scarce.held;
+    for (int64_t failing = 1; status != KRS_OK; failing++) {
+        scarce.made    = 0;
+        scarce.failing = failing;
+        status         = krs_scene_update(scene, edited(BEFORE, "box([2, 1, 1])", "sphere(1)"),
+                                          strlen(edited(BEFORE, "box([2, 1, 1])", "sphere(1)")), &updated,
+                                          &changes);
+        assert_true(status == KRS_OK || (status == KRS_OUT_OF_MEMORY && !updated));
+        assert_true(status == KRS_OK || scarce.held == held);
+        refused += status != KRS_OK;
+    }
+    assert_true(refused > 2);
+    scarce.failing = 0;
+    krs_scene_free(updated);
+    krs_scene_free(scene);
+    assert_int_equal(scarce.held, 0);
+}
+
+/* ---- frames ---- */
+
+static double distance_at(KrsFrame *frame, double x)
+{
+    double point[1][3] = {{x, 0, 0}}, distance;
+    assert_int_equal(krs_distance(frame, (const double(*)[3])point, 1, &distance), KRS_OK);
+    return distance;
+}
+
+static KrsFrame *frame_of(const KrsScene *scene)
+{
+    KrsFrame *frame;
+    assert_int_equal(krs_frame_new(scene, &frame), KRS_OK);
+    return frame;
+}
+
+static void frames_follow(void **state)
+{
+    (void)state;
+    KrsScene *scene = compile("param r = 1 in [0.5, 4]; param at = 2; param gone = 1;"
+                              "show sphere(r).move([at + time + 0 * gone, 0, 0]);",
+                              KRS_SPECIALIZE_STRUCTURE);
+    KrsFrame *frame = frame_of(scene), *other = frame_of(scene);
+    assert_int_equal(krs_frame_set(frame, "r", (double[]){3}, 1), KRS_OK);
+    assert_int_equal(krs_frame_set(frame, "gone", (double[]){5}, 1), KRS_OK);
+    assert_int_equal(krs_frame_set_time(frame, 10), KRS_OK);
+    assert_int_equal(krs_frame_set_zones(frame, (const double[][4]){{0, 0, 0, 0.5}}, 1), KRS_OK);
+    const double before = distance_at(other, 9);
+
+    /* The radius was set; the place was not, so that it is the new default. */
+    const char *text    = "param at = 4; param r = 1 in [0.5, 4];"
+                          "show sphere(r).move([at + time, 0, 0]);";
+    KrsScene   *updated = update(scene, text, NULL);
+    assert_int_equal(krs_frame_update(frame, updated), KRS_OK);
+    assert_true(distance_at(other, 9) == before);
+    assert_true(fabs(distance_at(frame, 20) - (20 - 14 - 3)) < 1e-12);
+
+    /* A value that the other scene does not permit is left out. */
+    text = "param r = 1 in [0.5, 2]; param at = 4; show sphere(r).move([at + time, 0, 0]);";
+    KrsScene *third = update(updated, text, NULL);
+    assert_int_equal(krs_frame_update(frame, third), KRS_OK);
+    krs_scene_free(updated);
+    assert_true(fabs(distance_at(frame, 20) - (20 - 14 - 1)) < 1e-12);
+
+    /* The zone is there still. */
+    assert_int_equal(krs_frame_set_time(frame, -4), KRS_OK);
+    assert_true(distance_at(frame, 0) > 0);
+    assert_int_equal(krs_frame_set_zones(frame, NULL, 0), KRS_OK);
+    assert_true(distance_at(frame, 0) < 0);
+    krs_frame_free(frame);
+    krs_frame_free(other);
+    krs_scene_free(third);
+    krs_scene_free(scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(changes_are_told),
+        cmocka_unit_test(literals_are_structure),
+        cmocka_unit_test(auto_takes_numbers_out_with_the_first_edit),
+        cmocka_unit_test(mistakes_leave_the_scene),
+        cmocka_unit_test(used_files_are_read_again),
+        cmocka_unit_test(memory_may_run_out),
+        cmocka_unit_test(frames_follow),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
