@@ -75,7 +75,8 @@ typedef struct GraphSlot {
     uint32_t hash, number; /* node + 1; 0 is free */
 } GraphSlot;
 
-/* Facts of nodes that do not depend on the point, as far as somebody has asked (facts.c). */
+/* Facts of nodes that depend neither on the point nor on parameters, as far as somebody has asked
+   (facts.c). */
 typedef struct FrameFacts {
     struct Fact **items; /* by node; NULL: not found yet */
     size_t        count;
