@@ -183,7 +183,7 @@ static void the_text_compiles(void **state)
     char *shader = calloc(1, sizeof shader_head + length + sizeof shader_main);
     strcat(strcat(strcpy(shader, shader_head), text), shader_main);
     spirv_start();
-    if (spirv_compile(shader, "parts", true, &words, &count, &log) != KRS_OK)
+    if (spirv_compile(shader, "parts", &words, &count, &log) != KRS_OK)
         fail_msg("%s", log ? log : "no memory");
     spirv_stop();
     free(words);
