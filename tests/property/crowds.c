@@ -412,11 +412,11 @@ static Difference compare_blend(const Shape *shape, bool without_reach)
     return compare_in_order(shape, parts, &crowd);
 }
 
-/* How wrong a blend may be: a millionth of a width where its reach is not exact. */
+/* How wrong a blend may be: a ten-thousandth of a width where its reach is not exact. */
 static double allowed(BlendKind kind, double width)
 {
     bool exact = kind == BLEND_circular || kind == BLEND_chamfer || kind == BLEND_stairs;
-    return exact ? 1e-12 : 1e-6 * width;
+    return exact ? 1e-12 : 1e-4 * width;
 }
 
 static void blends(void **state)
