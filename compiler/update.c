@@ -2,12 +2,13 @@
  * update.c: compiles an edited text of a scene, and finds what is different.
  *
  * Two scenes have the same kernels if these are made of the same nodes, apart from numbers of the
- * frame, and if all else that decides about their text is equal.  Some constants never get into the
- * text.  So scenes whose nodes differ are compared by their text as well.
+ * frame and of tables, and if all else that decides about their text is equal.  Some constants never
+ * get into the text.  So scenes whose nodes differ are compared by their text as well.
  */
 #include <stdlib.h>
 #include <string.h>
 
+#include "compiler/graph/crowd.h"
 #include "compiler/program.h"
 
 /* What two parts of scenes have in common, the least first. */
@@ -75,6 +76,64 @@ static Likeness compare_graphs(Comparison *c, bool of_kernels, RootKind first, R
     return found;
 }
 
+/* ---- crowds ---- */
+
+static size_t table_count(const Crowds *crowds) { return crowds ? crowds->tables.count : 0; }
+
+static size_t function_count(const Crowds *crowds) { return crowds ? crowds->functions.count : 0; }
+
+static bool same_lists(const Grid *a, const Grid *b, size_t cells)
+{
+    const size_t entries = a->first[cells]; /* none where all boxes are empty */
+    return memcmp(a->first, b->first, (cells + 1) * sizeof *a->first) == 0 &&
+           (entries == 0 || memcmp(a->members, b->members, entries * sizeof *a->members) == 0);
+}
+
+static bool same_grid(const Grid *a, const Grid *b)
+{
+    const size_t cells = (size_t)a->cells[0] * a->cells[1] * a->cells[2];
+    return memcmp(&a->inner, &b->inner, sizeof a->inner) == 0 &&
+           memcmp(a->low, b->low, sizeof a->low) == 0 && a->size == b->size &&
+           memcmp(a->cells, b->cells, sizeof a->cells) == 0 &&
+           memcmp(a->clearance, b->clearance, cells * sizeof *a->clearance) == 0 &&
+           same_lists(a, b, cells);
+}
+
+/* Rows and grids are data of kernels; how many columns there are is in their text. */
+static Likeness compare_tables(const Crowd *a, const Crowd *b)
+{
+    if (a->columns != b->columns)
+        return DIFFERENT;
+    const size_t numbers = (size_t)a->rows * a->columns;
+    return a->rows == b->rows &&
+                   memcmp(a->numbers, b->numbers, numbers * sizeof *a->numbers) == 0 &&
+                   same_grid(&a->grid, &b->grid)
+               ? EQUAL
+               : ALIKE_BUT_NUMBERS;
+}
+
+static bool same_function(const CrowdFunction *a, const CrowdFunction *b)
+{
+    bool same = a->crowd == b->crowd && a->type == b->type && a->clear == b->clear &&
+                a->state_count == b->state_count && a->first_body == b->first_body;
+    for (uint32_t i = 0; same && i < a->state_count; i++)
+        same = a->states[i].type == b->states[i].type &&
+               memcmp(a->states[i].first, b->states[i].first, sizeof a->states[i].first) == 0;
+    return same;
+}
+
+/* Their bodies are compared with the graph. */
+static Likeness compare_crowds(const Crowds *a, const Crowds *b)
+{
+    Likeness found = equal_if(table_count(a) == table_count(b) &&
+                              function_count(a) == function_count(b));
+    for (size_t i = 0; found != DIFFERENT && i < function_count(a); i++)
+        found = equal_if(same_function(&a->functions.items[i], &b->functions.items[i]));
+    for (size_t i = 0; found != DIFFERENT && i < table_count(a); i++)
+        found = least(found, compare_tables(&a->tables.items[i], &b->tables.items[i]));
+    return found;
+}
+
 /* ---- what decides about kernels beside the graph ---- */
 
 static bool same_slots(const KrsProgram *a, const KrsProgram *b)
@@ -92,7 +151,7 @@ static bool same_methods(const KrsProgram *a, const KrsProgram *b)
            a->scene_parts == b->scene_parts && a->expensive == b->expensive;
 }
 
-/* Whether shaders treat the boxes alike; corners are numbers of the frame. */
+/* Whether shaders treat the boxes alike. */
 static bool same_kinds_of_boxes(const KrsScene *a, const KrsScene *b)
 {
     bool same = true;
@@ -101,6 +160,15 @@ static bool same_kinds_of_boxes(const KrsScene *a, const KrsScene *b)
         same = same && box_is_empty(*x) == box_is_empty(*y) &&
                box_is_finite(*x) == box_is_finite(*y);
     }
+    return same;
+}
+
+/* Corners are numbers of the frame, or literals, which tables may change and no node of the graph. */
+static bool same_literal_boxes(const KrsScene *a, const KrsScene *b)
+{
+    bool same = true;
+    for (size_t i = 0; i < a->component_count && !a->module.box_nodes.around; i++)
+        same = same && memcmp(&a->module.boxes[i], &b->module.boxes[i], sizeof(Box)) == 0;
     return same;
 }
 
@@ -191,6 +259,8 @@ static Likeness compare_kernels(Comparison *c)
     if (!same_facts(c->a, c->b))
         return DIFFERENT;
     Likeness found = compare_graphs(c, true, ROOTS_SURFACE, ROOT_KINDS - 1);
+    found          = least(found, compare_crowds(c->a->graph->crowds, c->b->graph->crowds));
+    found          = least(found, equal_if(same_literal_boxes(c->a, c->b)));
     return found != DIFFERENT || !same_texts(c) ? found : ALIKE_BUT_NUMBERS;
 }
 
